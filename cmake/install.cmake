@@ -1,0 +1,19 @@
+# make install: library, header, program, pkg-config and CMake package files.
+include(CMakePackageConfigHelpers)
+
+# libscree.a is shipped with the names of what it stands on: pkg-config --static lists them.
+install(TARGETS scree RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+install(TARGETS scree_shared EXPORT screeTargets
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(TARGETS scree_static ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(FILES include/scree.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(EXPORT screeTargets NAMESPACE scree:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
+
+configure_package_config_file(cmake/screeConfig.cmake.in ${CMAKE_BINARY_DIR}/screeConfig.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
+write_basic_package_version_file(${CMAKE_BINARY_DIR}/screeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_BINARY_DIR}/screeConfig.cmake ${CMAKE_BINARY_DIR}/screeConfigVersion.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
+
+configure_file(cmake/scree.pc.in ${CMAKE_BINARY_DIR}/scree.pc @ONLY)
+install(FILES ${CMAKE_BINARY_DIR}/scree.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)

@@ -1,0 +1,118 @@
+/* Each block carries its raw pointer and size in the 64 bytes before it, so that use can be counted
+ * with any allocator behind the hook. */
+#include "base/alloc.h"
+
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { ALIGNMENT = 64 };
+
+typedef struct header {
+  void *raw;
+  size_t size;
+} header;
+
+static void *default_reallocate(void *context, void *block, size_t size) {
+  (void)context;
+  if (size == 0) {
+    free(block);
+    return NULL;
+  }
+  return realloc(block, size);
+}
+
+static scree_reallocate *hook = default_reallocate;
+static void *hook_context = NULL;
+static atomic_size_t limit_bytes, used_bytes, peak_bytes, allocation_count;
+
+void scree_set_allocator(scree_reallocate *reallocate, void *context) {
+  hook = reallocate ? reallocate : default_reallocate;
+  hook_context = reallocate ? context : NULL;
+}
+
+void scree_set_memory_limit(size_t byte_count) {
+  atomic_store(&limit_bytes, byte_count);
+}
+size_t scree_memory_used(void) {
+  return atomic_load(&used_bytes);
+}
+size_t scree_memory_peak(void) {
+  return atomic_load(&peak_bytes);
+}
+void scree_reset_memory_peak(void) {
+  atomic_store(&peak_bytes, atomic_load(&used_bytes));
+}
+size_t scree_allocation_count(void) {
+  return atomic_load(&allocation_count);
+}
+
+static bool reserve(size_t size) {
+  size_t used = atomic_fetch_add(&used_bytes, size) + size;
+  size_t limit = atomic_load(&limit_bytes);
+  if (limit && used > limit) {
+    atomic_fetch_sub(&used_bytes, size);
+    return false;
+  }
+  size_t peak = atomic_load(&peak_bytes);
+  while (used > peak && !atomic_compare_exchange_weak(&peak_bytes, &peak, used)) {
+  }
+  return true;
+}
+
+static header *header_of(void *block) {
+  return (header *)((char *)block - ALIGNMENT);
+}
+
+static bool padded_size(size_t count, size_t size, size_t *bytes, size_t *padded) {
+  return !__builtin_mul_overflow(count, size, bytes) &&
+         !__builtin_add_overflow(*bytes, (size_t)(2 * ALIGNMENT), padded) &&
+         *padded <= (size_t)PTRDIFF_MAX;
+}
+
+void *scree_alloc(size_t count, size_t size) {
+  size_t bytes, padded;
+  if (!padded_size(count, size, &bytes, &padded) || !reserve(padded)) return NULL;
+  void *raw = hook(hook_context, NULL, padded);
+  if (!raw) {
+    atomic_fetch_sub(&used_bytes, padded);
+    return NULL;
+  }
+  atomic_fetch_add(&allocation_count, 1);
+  uintptr_t address = (uintptr_t)raw + ALIGNMENT;
+  size_t shift = (size_t)(-address & (ALIGNMENT - 1));
+  char *block = (char *)raw + ALIGNMENT + shift;
+  *header_of(block) = (header){raw, padded};
+  return block;
+}
+
+void *scree_alloc_zero(size_t count, size_t size) {
+  void *block = scree_alloc(count, size);
+  if (block) memset(block, 0, count * size);
+  return block;
+}
+
+/* Moves rather than resizes in place: the aligned position inside the raw block may differ. */
+void *scree_resize(void *block, size_t count, size_t size) {
+  if (!block) return scree_alloc(count, size);
+  void *moved = scree_alloc(count, size);
+  if (!moved) return NULL;
+  size_t old_bytes = header_of(block)->size - 2 * (size_t)ALIGNMENT, new_bytes = count * size;
+  memcpy(moved, block, old_bytes < new_bytes ? old_bytes : new_bytes);
+  scree_free(block);
+  return moved;
+}
+
+void scree_free(void *block) {
+  if (!block) return;
+  header found = *header_of(block);
+  atomic_fetch_sub(&used_bytes, found.size);
+  hook(hook_context, found.raw, 0);
+}
+
+char *scree_strdup(const char *text) {
+  size_t size = strlen(text) + 1;
+  char *copy = scree_alloc(size, 1);
+  if (copy) memcpy(copy, text, size);
+  return copy;
+}

@@ -1,0 +1,35 @@
+/* The one way to memory. Every block is 64-byte aligned, counted against the limit, and may fail.
+ */
+#ifndef SCREE_BASE_ALLOC_H
+#define SCREE_BASE_ALLOC_H
+
+#include "base/error.h"
+
+/* count * size bytes, not cleared; NULL on overflow, above the limit, or when memory is out.
+ * A count or size of 0 gives a valid block. */
+void *scree_alloc(size_t count, size_t size) __attribute__((malloc, alloc_size(1, 2)));
+/* The same, cleared. */
+void *scree_alloc_zero(size_t count, size_t size) __attribute__((malloc, alloc_size(1, 2)));
+/* A block of scree_alloc, or NULL, resized keeping its content; the old block stays on failure. */
+void *scree_resize(void *block, size_t count, size_t size);
+void scree_free(void *block);
+
+/* For strings and paths. */
+char *scree_strdup(const char *text);
+
+/* How many allocations were made so far: a step that claims to allocate nothing is checked with it.
+ */
+size_t scree_allocation_count(void);
+
+/* Allocates a typed array and jumps to `label` on failure after filling `error`: the pattern of
+ * every function with several arrays. */
+#define SCREE_ALLOC_OR(pointer, count, error, label)                                               \
+  do {                                                                                             \
+    (pointer) = scree_alloc((count), sizeof *(pointer));                                           \
+    if (!(pointer)) {                                                                              \
+      scree_fail_memory((error), (size_t)(count) * sizeof *(pointer), #pointer);                   \
+      goto label;                                                                                  \
+    }                                                                                              \
+  } while (0)
+
+#endif

@@ -1,0 +1,40 @@
+#include "base/error.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+
+const char *scree_version(void) {
+  return SCREE_VERSION;
+}
+
+const char *scree_status_text(scree_status status) {
+  static const char *const texts[] = {
+#define STATUS_TEXT(name, text) text,
+      SCREE_STATUS_LIST(STATUS_TEXT)
+#undef STATUS_TEXT
+  };
+  return (unsigned)status < SCREE_STATUS_COUNT ? texts[status] : "unknown status";
+}
+
+scree_status scree_fail(scree_error *error, scree_status status, const char *format, ...) {
+  if (error) {
+    error->status = status;
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(error->message, sizeof error->message, format, arguments);
+    va_end(arguments);
+  }
+  return status;
+}
+
+scree_status scree_fail_memory(scree_error *error, size_t byte_count, const char *what) {
+  return scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory: %zu bytes for %s", byte_count,
+                    what);
+}
+
+#ifdef SCREE_ASSERTIONS
+void scree_assert_failed(const char *condition, const char *file, int line) {
+  fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);
+  abort();
+}
+#endif

@@ -1,0 +1,23 @@
+/* Filling a scree_error, and the assertion for callers' bugs (never for user data). */
+#ifndef SCREE_BASE_ERROR_H
+#define SCREE_BASE_ERROR_H
+
+#include "scree.h"
+
+/* Fills *error (may be NULL) with status and a printf-formatted sentence; returns status, so that
+ * `return scree_fail(error, SCREE_BAD_FILE, "...", ...)` is the whole handling. */
+scree_status scree_fail(scree_error *error, scree_status status, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* The one sentence for a failed allocation of byte_count bytes needed for `what`. */
+scree_status scree_fail_memory(scree_error *error, size_t byte_count, const char *what);
+
+#ifdef SCREE_ASSERTIONS
+void scree_assert_failed(const char *condition, const char *file, int line);
+#define SCREE_ASSERT(condition)                                                                    \
+  ((condition) ? (void)0 : scree_assert_failed(#condition, __FILE__, __LINE__))
+#else
+#define SCREE_ASSERT(condition) ((void)sizeof(condition))
+#endif
+
+#endif

@@ -1,0 +1,191 @@
+#include "base/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <xxhash.h>
+
+enum { STREAM_START_BYTES = 1 << 20 };
+
+/* Reads a stream of unknown length, doubling. */
+static scree_status read_stream(int fd, const char *name, size_t max_bytes, char **bytes,
+                                size_t *byte_count, scree_error *error) {
+  size_t capacity = STREAM_START_BYTES, used = 0;
+  char *buffer = scree_alloc(capacity, 1);
+  if (!buffer) return scree_fail_memory(error, capacity, name);
+  for (;;) {
+    if (used + 1 >= capacity) {
+      char *grown = capacity > SIZE_MAX / 2 ? NULL : scree_resize(buffer, capacity * 2, 1);
+      if (!grown) {
+        scree_free(buffer);
+        return scree_fail_memory(error, capacity, name);
+      }
+      buffer = grown;
+      capacity *= 2;
+    }
+    ssize_t got = read(fd, buffer + used, capacity - used - 1);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      int reason = errno;
+      scree_free(buffer);
+      return scree_fail(error, SCREE_IO, "%s: cannot read at byte %zu: %s", name, used,
+                        strerror(reason));
+    }
+    if (got == 0) break;
+    used += (size_t)got;
+    if (max_bytes && used > max_bytes) {
+      scree_free(buffer);
+      return scree_fail(error, SCREE_LIMIT, "%s: more than the limit of %zu bytes", name,
+                        max_bytes);
+    }
+  }
+  buffer[used] = 0;
+  *bytes = buffer;
+  *byte_count = used;
+  return SCREE_OK;
+}
+
+/* Reads a regular file of known size into one block. */
+static scree_status read_regular(int fd, const char *path, size_t size, char **bytes,
+                                 size_t *byte_count, scree_error *error) {
+  char *buffer = scree_alloc(size + 1, 1);
+  if (!buffer) return scree_fail_memory(error, size, path);
+  size_t used = 0;
+  while (used < size) {
+    ssize_t got = read(fd, buffer + used, size - used);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    used += (size_t)got;
+  }
+  if (used < size) {
+    int reason = errno;
+    scree_free(buffer);
+    return scree_fail(error, SCREE_IO, "%s: cannot read past byte %zu of %zu: %s", path, used, size,
+                      reason ? strerror(reason) : "the file became shorter");
+  }
+  buffer[used] = 0;
+  *bytes = buffer;
+  *byte_count = used;
+  return SCREE_OK;
+}
+
+scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
+                             scree_error *error) {
+  if (!strcmp(path, "-"))
+    return read_stream(STDIN_FILENO, "standard input", max_bytes, bytes, byte_count, error);
+  int fd = open(path, O_RDONLY | O_CLOEXEC);
+  if (fd < 0) return scree_fail(error, SCREE_IO, "%s: cannot open: %s", path, strerror(errno));
+  struct stat info;
+  scree_status status;
+  errno = 0;
+  if (fstat(fd, &info) != 0)
+    status = scree_fail(error, SCREE_IO, "%s: cannot open: %s", path, strerror(errno));
+  else if (S_ISDIR(info.st_mode))
+    status = scree_fail(error, SCREE_IO, "%s: is a folder, not a file", path);
+  else if (!S_ISREG(info.st_mode))
+    status = read_stream(fd, path, max_bytes, bytes, byte_count, error);
+  else if (max_bytes && (size_t)info.st_size > max_bytes)
+    status = scree_fail(error, SCREE_LIMIT, "%s: %zu bytes, more than the limit of %zu", path,
+                        (size_t)info.st_size, max_bytes);
+  else
+    status = read_regular(fd, path, (size_t)info.st_size, bytes, byte_count, error);
+  close(fd);
+  return status;
+}
+
+scree_status scree_output_open(const char *path, bool overwrite, scree_output *output,
+                               scree_error *error) {
+  if (!strcmp(path, "-")) {
+    *output = (scree_output){stdout, NULL, NULL};
+    return SCREE_OK;
+  }
+  struct stat info;
+  if (!overwrite && stat(path, &info) == 0)
+    return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
+  size_t size = strlen(path) + 32;
+  scree_output opened = {NULL, scree_strdup(path), scree_alloc(size, 1)};
+  int fd = -1;
+  if (!opened.path || !opened.temporary_path) {
+    scree_fail_memory(error, size, "a file name");
+    goto fail;
+  }
+  snprintf(opened.temporary_path, size, "%s.%ld.part", path, (long)getpid());
+  fd = open(opened.temporary_path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  opened.stream = fd >= 0 ? fdopen(fd, "wb") : NULL;
+  if (!opened.stream) {
+    scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
+    goto fail;
+  }
+  *output = opened;
+  return SCREE_OK;
+fail:
+  if (fd >= 0) close(fd);
+  scree_free(opened.path);
+  scree_free(opened.temporary_path);
+  return error ? error->status : SCREE_IO;
+}
+
+scree_status scree_output_commit(scree_output *output, scree_error *error) {
+  if (!output->temporary_path) {
+    if (fflush(output->stream) == 0 && !ferror(output->stream)) return SCREE_OK;
+    return scree_fail(error, SCREE_IO, "standard output: cannot write: %s", strerror(errno));
+  }
+  errno = 0;
+  bool written =
+      fflush(output->stream) == 0 && !ferror(output->stream) && fsync(fileno(output->stream)) == 0;
+  int reason = errno;
+  if (fclose(output->stream) != 0 && written) {
+    written = false;
+    reason = errno;
+  }
+  output->stream = NULL;
+  if (written && rename(output->temporary_path, output->path) != 0) {
+    written = false;
+    reason = errno;
+  }
+  scree_status status = SCREE_OK;
+  if (!written)
+    status = scree_fail(error, SCREE_IO, "%s: cannot write: %s", output->path, strerror(reason));
+  scree_output_discard(output);
+  return status;
+}
+
+void scree_output_discard(scree_output *output) {
+  if (output->temporary_path) {
+    if (output->stream) fclose(output->stream);
+    unlink(output->temporary_path);
+  }
+  scree_free(output->path);
+  scree_free(output->temporary_path);
+  *output = (scree_output){0};
+}
+
+static bool folder_exists(const char *path) {
+  struct stat info;
+  return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+scree_status scree_folder_create(const char *path, scree_error *error) {
+  char *partial = scree_strdup(path);
+  if (!partial) return scree_fail_memory(error, strlen(path), "a folder name");
+  scree_status status = SCREE_OK;
+  for (char *end = partial + 1; status == SCREE_OK; end++) {
+    if (*end != '/' && *end != 0) continue;
+    char kept = *end;
+    *end = 0;
+    if (mkdir(partial, 0777) != 0 && !folder_exists(partial))
+      status =
+          scree_fail(error, SCREE_IO, "%s: cannot create the folder: %s", partial, strerror(errno));
+    *end = kept;
+    if (!kept) break;
+  }
+  scree_free(partial);
+  return status;
+}
+
+scree_checksum scree_checksum_of(const void *bytes, size_t byte_count) {
+  XXH128_hash_t hash = XXH3_128bits(bytes, byte_count);
+  return (scree_checksum){hash.high64, hash.low64};
+}

@@ -1,0 +1,33 @@
+/* Whole files in, whole files out. Nothing half-written: output goes to a temporary name beside the
+ * target and is renamed when complete and on disk. */
+#ifndef SCREE_BASE_FILE_H
+#define SCREE_BASE_FILE_H
+
+#include "base/alloc.h"
+
+/* Reads all of path ("-" is stdin), refusing more than max_bytes (0: no limit of its own). The
+ * bytes are followed by one 0 that is not counted. Free with scree_free. */
+scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
+                             scree_error *error);
+
+/* A file being written. */
+typedef struct scree_output {
+  FILE *stream;
+  char *path, *temporary_path; /* temporary_path NULL: the stream is stdout */
+} scree_output;
+
+/* Opens path for writing ("-" is stdout). Without overwrite an existing file is refused with
+ * SCREE_EXISTS. */
+scree_status scree_output_open(const char *path, bool overwrite, scree_output *output,
+                               scree_error *error);
+/* Flushes, syncs and renames; a full disk is found here at the latest. Closes in every case. */
+scree_status scree_output_commit(scree_output *output, scree_error *error);
+/* Closes and removes the temporary file. */
+void scree_output_discard(scree_output *output);
+
+/* Creates the folder and its parents; an existing folder is fine. */
+scree_status scree_folder_create(const char *path, scree_error *error);
+
+scree_checksum scree_checksum_of(const void *bytes, size_t byte_count);
+
+#endif

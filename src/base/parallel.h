@@ -1,0 +1,24 @@
+/* The only door to threads. Work is cut into blocks whose size depends on the count alone, never on
+ * the number of threads: a reduction that combines its blocks in block order is therefore the same
+ * bits for any number of threads. Nested calls run serially. */
+#ifndef SCREE_BASE_PARALLEL_H
+#define SCREE_BASE_PARALLEL_H
+
+#include <stddef.h>
+
+/* Handles items [begin, end) of block `block`; worker is in [0, scree_worker_count()). */
+typedef void scree_block_function(void *context, size_t begin, size_t end, size_t block,
+                                  int worker);
+
+/* Calls body for every block of block_size items in [0, count), on all threads, in any order;
+ * returns when all are done. Blocks are handed out as workers come free. */
+void scree_parallel_for(size_t count, size_t block_size, scree_block_function *body, void *context);
+
+static inline size_t scree_block_count(size_t count, size_t block_size) {
+  return count / block_size + (count % block_size != 0);
+}
+
+/* How many workers a scree_parallel_for called here may use: the size of per-worker scratch. */
+int scree_worker_count(void);
+
+#endif

@@ -1,0 +1,18 @@
+/* Rate-limited calls of a scree_progress. */
+#ifndef SCREE_BASE_PROGRESS_H
+#define SCREE_BASE_PROGRESS_H
+
+#include "scree.h"
+
+typedef struct scree_ticker {
+  const scree_progress *progress; /* may be NULL: then every tick answers true */
+  double last_report;             /* seconds, monotonic clock */
+} scree_ticker;
+
+/* Reports at most ten times a second (always when fraction is 0 or 1); false means cancel. */
+bool scree_tick(scree_ticker *ticker, const char *phase, double fraction);
+
+/* Seconds on the monotonic clock: for timers and reports, never for results. */
+double scree_now(void);
+
+#endif

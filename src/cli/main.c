@@ -1,0 +1,5 @@
+#include "scree.h"
+
+int main(void) {
+  return puts(scree_version()) < 0;
+}

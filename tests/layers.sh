@@ -1,0 +1,50 @@
+#!/bin/sh
+# Fails where a file includes a layer that stands after its own, where cli, examples or bench see more
+# than the public header (cli also sees itself), and where a header does not compile alone.
+# usage: layers.sh SOURCE_DIR C_COMPILER
+set -eu
+root=$1
+compiler=$2
+layers="base mesh simplify choice sample particle world pile report"
+failed=0
+complain() {
+  echo "$1"
+  failed=1
+}
+
+allowed=""
+for layer in $layers; do
+  allowed="$allowed $layer"
+  # physics knows particles only: world sees no scan, no curve, no choice
+  visible=$allowed
+  [ "$layer" = world ] && visible="base particle world"
+  # report reads results through the public header
+  [ "$layer" = report ] && visible="base report"
+  for file in "$root"/src/"$layer"/*; do
+    [ -f "$file" ] || continue
+    for included in $(sed -n 's/^ *# *include *"\([a-z_]*\)\/.*/\1/p' "$file" | sort -u); do
+      case " $visible " in
+        *" $included "*) ;;
+        *) complain "${file#"$root"/}: layer $layer must not include $included/" ;;
+      esac
+    done
+  done
+done
+
+for folder in src/cli examples bench; do
+  for file in $(find "$root/$folder" -name '*.[ch]' 2>/dev/null); do
+    for included in $(sed -n 's/^ *# *include *"\([^"]*\)".*/\1/p' "$file" | sort -u); do
+      case "$folder:$included" in
+        *:scree.h | src/cli:cli/* | bench:bench.h) ;;
+        *) complain "${file#"$root"/}: only scree.h is to be seen from $folder, not $included" ;;
+      esac
+    done
+  done
+done
+
+for header in "$root"/include/scree.h $(find "$root/src" -name '*.h'); do
+  echo "#include \"$header\"" |
+    "$compiler" -std=c17 -D_POSIX_C_SOURCE=200809L -fsyntax-only -Wall -Wextra -Werror \
+      -I"$root/include" -I"$root/src" -x c - || complain "${header#"$root"/}: does not compile alone"
+done
+exit $failed

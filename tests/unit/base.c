@@ -1,0 +1,139 @@
+#include "base/alloc.h"
+#include "base/arena.h"
+#include "base/array.h"
+#include "base/file.h"
+#include "base/parallel.h"
+#include "base/rng.h"
+#include "base/sum.h"
+#include "support/check.h"
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+static void memory_is_aligned_and_counted(void **state) {
+  (void)state;
+  size_t before = scree_memory_used();
+  for (size_t size = 0; size < 300; size += 7) {
+    char *block = scree_alloc(size, 1);
+    assert_non_null(block);
+    assert_int_equal((uintptr_t)block % 64, 0);
+    memset(block, 1, size);
+    scree_free(block);
+  }
+  assert_int_equal(scree_memory_used(), before);
+  volatile size_t huge = SIZE_MAX / 2;
+  assert_null(scree_alloc(huge, 3));
+  scree_set_memory_limit(before + 1000);
+  assert_null(scree_alloc(2000, 1));
+  scree_set_memory_limit(0);
+  char *block = scree_alloc(4, 1);
+  memcpy(block, "abc", 4);
+  block = scree_resize(block, 100, 1);
+  assert_string_equal(block, "abc");
+  scree_free(block);
+}
+
+static void arena_allocates_nothing_once_warm(void **state) {
+  (void)state;
+  scree_arena arena = {0};
+  size_t after_warm_up = 0;
+  for (int round = 0; round < 3; round++) {
+    for (int i = 0; i < 100; i++) assert_non_null(scree_arena_take(&arena, 1000 + (size_t)i, 8));
+    scree_arena_reset(&arena);
+    if (round == 0) after_warm_up = scree_allocation_count();
+  }
+  assert_int_equal(scree_allocation_count(), after_warm_up);
+  scree_arena_free(&arena);
+}
+
+static void block_sum(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  double sum = 0;
+  for (size_t i = begin; i < end; i++) sum += 1.0 / (double)(i + 1);
+  ((double *)context)[block] = sum;
+}
+
+static void blocks_do_not_depend_on_threads(void **state) {
+  (void)state;
+  double reference[64], other[64];
+  scree_set_threads(1);
+  scree_parallel_for(6301, 100, block_sum, reference);
+  for (int threads = 2; threads <= 8; threads++) {
+    scree_set_threads(threads);
+    memset(other, 0, sizeof other);
+    scree_parallel_for(6301, 100, block_sum, other);
+    assert_memory_equal(reference, other, sizeof other);
+  }
+  scree_set_threads(0);
+}
+
+static void compensated_sum_is_exact_where_plain_is_not(void **state) {
+  (void)state;
+  scree_sum s = {0};
+  double terms[] = {1e100, 1, -1e100, 1};
+  for (int i = 0; i < 4; i++) scree_sum_add(&s, terms[i]);
+  assert_true(scree_sum_value(s) == 2);
+}
+
+static void random_numbers_have_the_moments_they_claim(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 7};
+  double mean = 0, mean_square = 0, normal2 = 0;
+  const int n = 200000;
+  for (int i = 0; i < n; i++) {
+    double u = scree_rng_uniform(&rng), z = scree_rng_normal(&rng);
+    assert_true(u >= 0 && u < 1);
+    mean += u / n;
+    mean_square += u * u / n;
+    normal2 += z * z / n;
+  }
+  CHECK_NEAR(mean, 0.5, 0.003);
+  CHECK_NEAR(mean_square, 1.0 / 3, 0.003);
+  CHECK_NEAR(normal2, 1, 0.015);
+  assert_true(scree_rng_bits(1, 2, 3) != scree_rng_bits(1, 3, 2));
+  for (int i = 0; i < 1000; i++) assert_true(scree_rng_below(&rng, 7) < 7);
+  mat3 r = quat_to_mat3(scree_rng_rotation(&rng)), t = mat3_transpose(&r), one = mat3_mul(&r, &t);
+  for (int i = 0; i < 9; i++) CHECK_NEAR(one.m[i / 3][i % 3], i % 4 == 0, 1e-15);
+}
+
+static void files_are_whole_or_absent(void **state) {
+  (void)state;
+  char folder[] = "/tmp/scree_test_XXXXXX", path[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/a/b", folder);
+  scree_error error;
+  CHECK_OK(scree_folder_create(path, &error), error);
+  snprintf(path, sizeof path, "%s/a/b/file", folder);
+  scree_output output;
+  CHECK_OK(scree_output_open(path, false, &output, &error), error);
+  fputs("hello", output.stream);
+  assert_int_not_equal(access(path, F_OK), 0);
+  CHECK_OK(scree_output_commit(&output, &error), error);
+  assert_int_equal(scree_output_open(path, false, &output, &error), SCREE_EXISTS);
+  CHECK_OK(scree_output_open(path, true, &output, &error), error);
+  fputs("other", output.stream);
+  scree_output_discard(&output);
+  char *bytes;
+  size_t count;
+  CHECK_OK(scree_file_read(path, 0, &bytes, &count, &error), error);
+  assert_int_equal(count, 5);
+  assert_string_equal(bytes, "hello");
+  scree_free(bytes);
+  assert_int_equal(scree_file_read(path, 3, &bytes, &count, &error), SCREE_LIMIT);
+  assert_int_equal(scree_file_read(folder, 0, &bytes, &count, &error), SCREE_IO);
+  char command[96];
+  snprintf(command, sizeof command, "rm -r %s", folder);
+  assert_int_equal(system(command), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(memory_is_aligned_and_counted),
+      cmocka_unit_test(arena_allocates_nothing_once_warm),
+      cmocka_unit_test(blocks_do_not_depend_on_threads),
+      cmocka_unit_test(compensated_sum_is_exact_where_plain_is_not),
+      cmocka_unit_test(random_numbers_have_the_moments_they_claim),
+      cmocka_unit_test(files_are_whole_or_absent),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
