@@ -1,5 +1,112 @@
-#include "scree.h"
+#include "cli/args.h"
+#include "cli/terminal.h"
 
-int main(void) {
-  return puts(scree_version()) < 0;
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+const cli_verb *cli_find_verb(const char *name) {
+  for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
+    if (!strcmp((*verb)->name, name)) return *verb;
+  return NULL;
+}
+
+/* The words as one line that a shell reads back as the same words. */
+static char *join_words(int count, char **words) {
+  size_t size = 8;
+  for (int i = 0; i < count; i++) size += 4 * strlen(words[i]) + 3;
+  char *line = malloc(size), *end = line;
+  if (!line) return NULL;
+  end += sprintf(end, "scree");
+  for (int i = 1; i < count; i++) {
+    const char *plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=./,:+@%";
+    *end++ = ' ';
+    if (words[i][0] && words[i][strspn(words[i], plain)] == 0) {
+      end += sprintf(end, "%s", words[i]);
+      continue;
+    }
+    *end++ = '\'';
+    for (const char *c = words[i]; *c; c++) end += sprintf(end, *c == '\'' ? "'\\''" : "%c", *c);
+    *end++ = '\'';
+  }
+  *end = 0;
+  return line;
+}
+
+static int help(int word_count, char **words) {
+  if (word_count == 0) {
+    cli_print_overview(stdout);
+    return 0;
+  }
+  if (!strcmp(words[0], "--man")) {
+    cli_print_man(stdout);
+    return 0;
+  }
+  if (!strcmp(words[0], "--completion")) {
+    cli_print_completion(stdout);
+    return 0;
+  }
+  const cli_verb *verb = cli_find_verb(words[0]);
+  if (!verb) return cli_misuse(NULL, "unknown verb '%s'", words[0]);
+  cli_print_help(stdout, verb);
+  return 0;
+}
+
+static int run(const cli_verb *verb, int argc, char **argv) {
+  _Alignas(max_align_t) unsigned char options[CLI_OPTIONS_BYTES];
+  cli_common common = {0};
+  memcpy(options, verb->defaults, verb->options_size);
+  const char **inputs = malloc((size_t)argc * sizeof *inputs);
+  char *command_line = join_words(argc, argv);
+  size_t input_count = 0;
+  int result = 1;
+  if (!inputs || !command_line) {
+    fputs("scree: out of memory\n", stderr);
+    goto done;
+  }
+  result = cli_parse(verb, argc - 2, argv + 2, options, &common, inputs, &input_count);
+  if (result) goto done;
+  if (common.help) {
+    cli_print_help(stdout, verb);
+    goto done;
+  }
+  scree_set_threads((int)common.threads);
+  scree_set_memory_limit(common.max_memory);
+  bool show = common.progress || (!common.quiet && isatty(STDERR_FILENO));
+  cli_call call = {verb,
+                   options,
+                   inputs,
+                   input_count,
+                   common.quiet,
+                   common.verbose,
+                   cli_terminal_start(show),
+                   command_line};
+  result = verb->run(&call);
+  cli_terminal_end();
+  if (cli_interrupted()) cli_terminal_reraise();
+  if (fflush(stdout) != 0 || ferror(stdout)) {
+    perror("scree: cannot write to standard output");
+    result = 1;
+  }
+done:
+  free(command_line);
+  free(inputs);
+  return result;
+}
+
+int main(int argc, char **argv) {
+  if (argc < 2) {
+    cli_print_overview(stderr);
+    return 2;
+  }
+  const char *word = argv[1];
+  if (!strcmp(word, "help") || !strcmp(word, "--help") || !strcmp(word, "-h"))
+    return help(argc - 2, argv + 2);
+  if (!strcmp(word, "version") || !strcmp(word, "--version")) {
+    printf("scree %s\n", scree_version());
+    return 0;
+  }
+  const cli_verb *verb = cli_find_verb(word);
+  if (!verb) return cli_misuse(NULL, "unknown verb '%s'", word);
+  return run(verb, argc, argv);
 }

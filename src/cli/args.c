@@ -1,0 +1,311 @@
+#include "cli/args.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+const cli_option cli_common_options[] = {
+    {"threads", 'j', CLI_COUNT, offsetof(cli_common, threads), "N",
+     "Threads to use; 0 is one per processor, the default. The results do not depend on it.", 0,
+     4096, NULL},
+    {"max-memory", 0, CLI_BYTES, offsetof(cli_common, max_memory), "SIZE",
+     "Fail rather than hold more than SIZE bytes (suffixes K, M, G). Default: no limit.", 0, 0,
+     NULL},
+    {"progress", 0, CLI_FLAG, offsetof(cli_common, progress), NULL,
+     "Show progress even where stderr is not a terminal.", 0, 0, NULL},
+    {"quiet", 'q', CLI_FLAG, offsetof(cli_common, quiet), NULL, "Only results and errors.", 0, 0,
+     NULL},
+    {"verbose", 'v', CLI_FLAG, offsetof(cli_common, verbose), NULL, "Say more on stderr.", 0, 0,
+     NULL},
+    {"help", 'h', CLI_FLAG, offsetof(cli_common, help), NULL, "Show this help.", 0, 0, NULL},
+};
+const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
+
+static const struct {
+  const char *name;
+  double metres;
+} units[] = {{"m", 1},    {"mm", 1e-3},     {"cm", 1e-2},   {"um", 1e-6},
+             {"km", 1e3}, {"inch", 0.0254}, {"in", 0.0254}, {"ft", 0.3048}};
+
+bool cli_unit_from_text(const char *text, double *metres) {
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    if (!strcmp(text, units[i].name)) {
+      *metres = units[i].metres;
+      return true;
+    }
+  return false;
+}
+
+const char *cli_unit_name(double metres) {
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    if (units[i].metres == metres) return units[i].name;
+  return "?";
+}
+
+bool cli_real_from_text(const char *text, double *value) {
+  char *end;
+  if (!*text) return false;
+  *value = strtod(text, &end);
+  return *end == 0 && isfinite(*value);
+}
+
+int cli_fail(const scree_error *error) {
+  fprintf(stderr, "scree: %s\n", error->message);
+  return 1;
+}
+
+int cli_misuse(const cli_verb *verb, const char *format, ...) {
+  va_list arguments;
+  fprintf(stderr, "scree%s%s: ", verb ? " " : "", verb ? verb->name : "");
+  va_start(arguments, format);
+  vfprintf(stderr, format, arguments);
+  va_end(arguments);
+  if (verb)
+    fprintf(stderr, "\nusage: scree %s [options] %s\n`scree help %s` lists the options.\n",
+            verb->name, verb->inputs, verb->name);
+  else
+    fprintf(stderr, "\nusage: scree VERB [options] INPUT...\n`scree help` lists the verbs.\n");
+  return 2;
+}
+
+/* ---- values ---- */
+
+static bool in_range(const cli_option *option, double value) {
+  if (option->minimum == 0 && option->maximum == 0) return value >= 0;
+  return value >= option->minimum && value <= option->maximum;
+}
+
+static int out_of_range(const cli_verb *verb, const cli_option *option, const char *text) {
+  if (option->minimum == 0 && option->maximum == 0)
+    return cli_misuse(verb, "--%s %s: must not be below 0", option->name, text);
+  return cli_misuse(verb, "--%s %s: outside the range %g to %g", option->name, text,
+                    option->minimum, option->maximum);
+}
+
+static int parse_count(const cli_verb *verb, const cli_option *option, const char *text,
+                       void *value) {
+  char *end;
+  errno = 0;
+  unsigned long long parsed = strtoull(text, &end, 10);
+  if (*text < '0' || *text > '9' || *end || errno)
+    return cli_misuse(verb, "--%s %s: not a whole number", option->name, text);
+  if (!in_range(option, (double)parsed)) return out_of_range(verb, option, text);
+  *(size_t *)value = (size_t)parsed;
+  return 0;
+}
+
+static int parse_bytes(const cli_verb *verb, const cli_option *option, const char *text,
+                       void *value) {
+  char *end;
+  double parsed = strtod(text, &end);
+  const char *suffixes = "KMG", *suffix = *end ? strchr(suffixes, *end) : NULL;
+  if (end == text || !(parsed >= 0) || (*end && (!suffix || end[1])))
+    return cli_misuse(verb, "--%s %s: not a size such as 500M or 4G", option->name, text);
+  for (const char *s = suffixes; suffix && s <= suffix; s++) parsed *= 1024;
+  if (parsed > 1e18) return cli_misuse(verb, "--%s %s: too large", option->name, text);
+  *(size_t *)value = (size_t)parsed;
+  return 0;
+}
+
+static int parse_length(const cli_verb *verb, const cli_option *option, const char *text,
+                        void *value) {
+  char *end;
+  double number = strtod(text, &end), metres = 0;
+  if (end == text || !isfinite(number))
+    return cli_misuse(verb, "--%s %s: not a length such as 0.27mm", option->name, text);
+  if (!cli_unit_from_text(end, &metres) && number != 0)
+    return cli_misuse(verb, "--%s %s: needs a unit (m, cm, mm, um, inch), as in %.*smm",
+                      option->name, text, (int)(end - text), text);
+  if (!in_range(option, number * metres)) return out_of_range(verb, option, text);
+  *(double *)value = number * metres;
+  return 0;
+}
+
+static int parse_choice(const cli_verb *verb, const cli_option *option, const char *text,
+                        void *value) {
+  size_t length = strlen(text);
+  int index = 0;
+  for (const char *word = option->words; word; index++) {
+    const char *bar = strchr(word, '|');
+    size_t word_length = bar ? (size_t)(bar - word) : strlen(word);
+    if (word_length == length && !strncmp(word, text, length)) {
+      *(int *)value = index;
+      return 0;
+    }
+    word = bar ? bar + 1 : NULL;
+  }
+  return cli_misuse(verb, "--%s %s: must be one of %s", option->name, text, option->words);
+}
+
+static int store(const cli_verb *verb, const cli_option *option, const char *text, void *base) {
+  void *value = (char *)base + option->offset;
+  double real;
+  switch (option->kind) {
+  case CLI_FLAG:
+    *(bool *)value = true;
+    return 0;
+  case CLI_TEXT:
+    *(const char **)value = text;
+    return 0;
+  case CLI_COUNT:
+    return parse_count(verb, option, text, value);
+  case CLI_REAL:
+    if (!cli_real_from_text(text, &real))
+      return cli_misuse(verb, "--%s %s: not a number", option->name, text);
+    if (!in_range(option, real)) return out_of_range(verb, option, text);
+    *(double *)value = real;
+    return 0;
+  case CLI_LENGTH:
+    return parse_length(verb, option, text, value);
+  case CLI_UNIT:
+    if (!cli_unit_from_text(text, &real))
+      return cli_misuse(verb, "--%s %s: no unit of length (m, cm, mm, um, km, inch, ft)",
+                        option->name, text);
+    *(double *)value = real;
+    return 0;
+  case CLI_BYTES:
+    return parse_bytes(verb, option, text, value);
+  case CLI_CHOICE:
+    return parse_choice(verb, option, text, value);
+  }
+  return 2;
+}
+
+/* ---- words ---- */
+
+typedef struct found_option {
+  const cli_option *option;
+  void *base;
+} found_option;
+
+typedef struct parser {
+  const cli_verb *verb;
+  void *options;
+  cli_common *common;
+  int word_count;
+  char **words;
+  int next;
+} parser;
+
+static found_option find_option(const parser *p, const char *name, size_t length, char letter) {
+  for (int table = 0; table < 2; table++) {
+    const cli_option *options = table ? cli_common_options : p->verb->options;
+    size_t count = table ? cli_common_option_count : p->verb->option_count;
+    for (size_t i = 0; i < count; i++)
+      if (letter ? options[i].letter == letter
+                 : strlen(options[i].name) == length && !strncmp(options[i].name, name, length))
+        return (found_option){&options[i], table ? (void *)p->common : p->options};
+  }
+  return (found_option){NULL, NULL};
+}
+
+/* Levenshtein distance, for "did you mean". */
+static size_t edit_distance(const char *a, const char *b) {
+  enum { LONGEST = 40 };
+  size_t row[LONGEST + 1], n = strlen(a), m = strlen(b);
+  if (n > LONGEST || m > LONGEST) return LONGEST;
+  for (size_t j = 0; j <= m; j++) row[j] = j;
+  for (size_t i = 1; i <= n; i++) {
+    size_t diagonal = row[0];
+    row[0] = i;
+    for (size_t j = 1; j <= m; j++) {
+      size_t best = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      if (row[j] + 1 < best) best = row[j] + 1;
+      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
+      row[j] = best;
+    }
+  }
+  return row[m];
+}
+
+static const char *closest_option(const cli_verb *verb, const char *name) {
+  const char *best = NULL;
+  size_t best_distance = 3;
+  for (int table = 0; table < 2; table++) {
+    const cli_option *options = table ? cli_common_options : verb->options;
+    size_t count = table ? cli_common_option_count : verb->option_count;
+    for (size_t i = 0; i < count; i++) {
+      size_t distance = edit_distance(name, options[i].name);
+      if (distance < best_distance) {
+        best_distance = distance;
+        best = options[i].name;
+      }
+    }
+  }
+  return best;
+}
+
+static int unknown_option(const cli_verb *verb, const char *word, size_t name_length) {
+  char name[64];
+  snprintf(name, sizeof name, "%.*s", (int)name_length, word + 2);
+  const char *meant = closest_option(verb, name);
+  if (meant) return cli_misuse(verb, "unknown option '--%s'; did you mean '--%s'?", name, meant);
+  return cli_misuse(verb, "unknown option '--%s'", name);
+}
+
+static int parse_long(parser *p, const char *word) {
+  const char *equals = strchr(word, '=');
+  size_t length = equals ? (size_t)(equals - word - 2) : strlen(word + 2);
+  found_option found = find_option(p, word + 2, length, 0);
+  if (!found.option) return unknown_option(p->verb, word, length);
+  if (found.option->kind == CLI_FLAG) {
+    if (equals) return cli_misuse(p->verb, "--%s takes no value", found.option->name);
+    return store(p->verb, found.option, NULL, found.base);
+  }
+  if (equals) return store(p->verb, found.option, equals + 1, found.base);
+  if (p->next >= p->word_count)
+    return cli_misuse(p->verb, "--%s needs a value %s", found.option->name,
+                      found.option->value_name);
+  return store(p->verb, found.option, p->words[p->next++], found.base);
+}
+
+/* -qv, -n100, -n 100 */
+static int parse_letters(parser *p, const char *word) {
+  for (const char *letter = word + 1; *letter; letter++) {
+    found_option found = find_option(p, NULL, 0, *letter);
+    if (!found.option) return cli_misuse(p->verb, "unknown option '-%c' in '%s'", *letter, word);
+    if (found.option->kind == CLI_FLAG) {
+      store(p->verb, found.option, NULL, found.base);
+      continue;
+    }
+    if (letter[1]) return store(p->verb, found.option, letter + 1, found.base);
+    if (p->next >= p->word_count)
+      return cli_misuse(p->verb, "-%c needs a value %s", *letter, found.option->value_name);
+    return store(p->verb, found.option, p->words[p->next++], found.base);
+  }
+  return 0;
+}
+
+static int check_input_count(const cli_verb *verb, const char *const *inputs, size_t count) {
+  if (count < verb->input_minimum && verb->input_minimum == 1)
+    return cli_misuse(verb, "needs at least one input");
+  if (count < verb->input_minimum)
+    return cli_misuse(verb, "needs %zu inputs, got %zu", verb->input_minimum, count);
+  if (count > verb->input_maximum)
+    return cli_misuse(verb, "takes at most %zu input%s; '%s' is one too many", verb->input_maximum,
+                      verb->input_maximum == 1 ? "" : "s", inputs[verb->input_maximum]);
+  return 0;
+}
+
+int cli_parse(const cli_verb *verb, int word_count, char **words, void *options, cli_common *common,
+              const char **inputs, size_t *input_count) {
+  parser p = {verb, options, common, word_count, words, 0};
+  bool only_inputs = false;
+  *input_count = 0;
+  while (p.next < word_count) {
+    const char *word = words[p.next++];
+    int result = 0;
+    if (only_inputs || word[0] != '-' || !word[1])
+      inputs[(*input_count)++] = word;
+    else if (!strcmp(word, "--"))
+      only_inputs = true;
+    else
+      result = word[1] == '-' ? parse_long(&p, word) : parse_letters(&p, word);
+    if (result) return result;
+    if (common->help) return 0;
+  }
+  return check_input_count(verb, inputs, *input_count);
+}

@@ -1,0 +1,92 @@
+/* One table of options per verb drives parsing, help, the man page and shell completion. */
+#ifndef SCREE_CLI_ARGS_H
+#define SCREE_CLI_ARGS_H
+
+#include "scree.h"
+
+typedef enum cli_kind {
+  CLI_FLAG,   /* bool: set to true */
+  CLI_TEXT,   /* const char * */
+  CLI_COUNT,  /* size_t in [minimum, maximum] */
+  CLI_REAL,   /* double in [minimum, maximum] */
+  CLI_LENGTH, /* double in metres; the value carries its unit, as in 0.27mm */
+  CLI_UNIT,   /* double: metres per unit, from m, cm, mm, um, inch, ft, km */
+  CLI_BYTES,  /* size_t, with suffix K, M, G */
+  CLI_CHOICE, /* int: index of the word in `words`, which reads "one|two|three" */
+} cli_kind;
+
+typedef struct cli_option {
+  const char *name;        /* long name without dashes */
+  char letter;             /* short name, or 0 */
+  cli_kind kind;           /* */
+  size_t offset;           /* of the value in the verb's struct */
+  const char *value_name;  /* in the help, as RP; NULL for flags */
+  const char *help;        /* one or more sentences; says unit and default */
+  double minimum, maximum; /* CLI_COUNT, CLI_REAL, CLI_LENGTH; both 0: any value not below 0 */
+  const char *words;       /* CLI_CHOICE */
+} cli_option;
+
+struct cli_call;
+
+typedef struct cli_verb {
+  const char *name;
+  const char *summary;     /* one line, lower case, no full stop */
+  const char *inputs;      /* as in the usage line: "FILE..." */
+  const char *description; /* paragraphs, wrapped at 80 columns */
+  const char *examples;    /* lines "scree ...", or NULL */
+  const cli_option *options;
+  size_t option_count;
+  const void *defaults; /* the verb's struct with its default values */
+  size_t options_size;  /* its size, at most CLI_OPTIONS_BYTES */
+  size_t input_minimum, input_maximum;
+  int (*run)(const struct cli_call *call); /* the exit code */
+} cli_verb;
+
+enum { CLI_OPTIONS_BYTES = 4096 };
+
+/* What a verb is called with. */
+typedef struct cli_call {
+  const cli_verb *verb;
+  const void *options; /* the verb's struct, filled */
+  const char *const *inputs;
+  size_t input_count;
+  bool quiet, verbose;
+  const scree_progress *progress; /* draws on stderr where that is a terminal; Ctrl-C cancels */
+  const char *command_line;       /* for provenance, words quoted where needed */
+} cli_call;
+
+/* The verbs in the order of the flow, ended by NULL. */
+extern const cli_verb *const cli_verbs[];
+const cli_verb *cli_find_verb(const char *name);
+
+/* Options that every verb takes. */
+typedef struct cli_common {
+  bool help, quiet, verbose, progress;
+  size_t threads, max_memory;
+} cli_common;
+extern const cli_option cli_common_options[];
+extern const size_t cli_common_option_count;
+
+/* Parses words (without the verb) into the verb's struct, the common options and the inputs (an
+ * array as long as words). Returns 0, or 2 after telling stderr what is wrong with which word. */
+int cli_parse(const cli_verb *verb, int word_count, char **words, void *options, cli_common *common,
+              const char **inputs, size_t *input_count);
+
+void cli_print_overview(FILE *stream);
+void cli_print_help(FILE *stream, const cli_verb *verb);
+void cli_print_man(FILE *stream);
+void cli_print_completion(FILE *stream);
+
+/* Prints "scree: message" on stderr; returns the exit code 1. */
+int cli_fail(const scree_error *error);
+/* Says what is wrong with the call on stderr and how to get help; returns the exit code 2. */
+int cli_misuse(const cli_verb *verb, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* "mm" to 1e-3; false where the word is no unit of length. */
+bool cli_unit_from_text(const char *text, double *metres);
+/* 1e-3 to "mm"; "?" where it is none of ours. */
+const char *cli_unit_name(double metres);
+/* A number, all of the text; false otherwise. Not locale-dependent: the program never sets one. */
+bool cli_real_from_text(const char *text, double *value);
+
+#endif

@@ -1,0 +1,86 @@
+#include "cli/terminal.h"
+
+#include <math.h>
+#include <signal.h>
+#include <string.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { BAR_WIDTH = 24 };
+
+static volatile sig_atomic_t received_signal;
+
+static struct {
+  bool show, drawn;
+  char phase[48];
+  double phase_start; /* s, monotonic */
+} terminal;
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void on_signal(int number) {
+  received_signal = number;
+}
+
+static void format_seconds(char *text, size_t size, double seconds) {
+  if (!isfinite(seconds))
+    snprintf(text, size, "...");
+  else if (seconds < 100)
+    snprintf(text, size, "%.0f s", seconds);
+  else if (seconds < 6000)
+    snprintf(text, size, "%.0f min", seconds / 60);
+  else
+    snprintf(text, size, "%.1f h", seconds / 3600);
+}
+
+static void draw(const char *phase, double fraction) {
+  if (strncmp(phase, terminal.phase, sizeof terminal.phase - 1) != 0) {
+    snprintf(terminal.phase, sizeof terminal.phase, "%s", phase);
+    terminal.phase_start = now();
+  }
+  double elapsed = now() - terminal.phase_start;
+  char left[32], bar[BAR_WIDTH + 1];
+  format_seconds(left, sizeof left,
+                 fraction > 0.01 ? elapsed * (1 - fraction) / fraction : INFINITY);
+  int full = (int)(fraction * BAR_WIDTH);
+  for (int i = 0; i < BAR_WIDTH; i++) bar[i] = i < full ? '#' : '.';
+  bar[BAR_WIDTH] = 0;
+  fprintf(stderr, "\r%-30.30s [%s] %3.0f %%  %s left   ", phase, bar, 100 * fraction, left);
+  fflush(stderr);
+  terminal.drawn = true;
+}
+
+static bool report(void *context, const char *phase, double fraction) {
+  (void)context;
+  if (terminal.show) draw(phase, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction);
+  return !received_signal;
+}
+
+const scree_progress *cli_terminal_start(bool show) {
+  static const scree_progress progress = {report, NULL};
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
+  sigemptyset(&action.sa_mask);
+  sigaction(SIGINT, &action, NULL);
+  sigaction(SIGTERM, &action, NULL);
+  terminal.show = show;
+  return &progress;
+}
+
+void cli_terminal_end(void) {
+  if (terminal.drawn) fprintf(stderr, "\r%78s\r", "");
+  terminal.drawn = false;
+}
+
+bool cli_interrupted(void) {
+  return received_signal != 0;
+}
+
+void cli_terminal_reraise(void) {
+  int number = received_signal;
+  signal(number, SIG_DFL);
+  raise(number);
+}

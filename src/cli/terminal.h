@@ -1,0 +1,17 @@
+/* Progress on the terminal, and Ctrl-C. */
+#ifndef SCREE_CLI_TERMINAL_H
+#define SCREE_CLI_TERMINAL_H
+
+#include "scree.h"
+
+/* A progress that draws one line on stderr (when show is set) and cancels after Ctrl-C or SIGTERM.
+ */
+const scree_progress *cli_terminal_start(bool show);
+/* Clears the line. */
+void cli_terminal_end(void);
+/* Whether Ctrl-C or SIGTERM came; with true, cli_terminal_reraise ends the program as the signal
+ * would have done, so that the shell sees it. */
+bool cli_interrupted(void);
+void cli_terminal_reraise(void);
+
+#endif
