@@ -1,0 +1,38 @@
+# A thin face: everything real is in CMake (CMakePresets.json names the builds).
+#   make         build/release/bin/scree
+#   make demo    installs what is missing, builds, runs the main job on the built-in samples
+#   make test    installs what is missing, builds, runs the tests
+# PRESET=asan|debug|tsan|clang for another build; DATA_DIR=... for a folder of real scans that some tests
+# read; LABELS="-LE slow" and the like are passed to ctest; JOBS=N.
+PRESET ?= release
+DATA_DIR ?=
+LABELS ?=
+JOBS ?= $(shell nproc)
+DEMO_DIR ?= demo
+
+.PHONY: all build packages demo test install clean
+all: build
+
+packages:
+	@tools/install-packages.sh build
+
+build: packages
+	@cmake --preset $(PRESET) -DSCREE_DATA_DIR="$(DATA_DIR)" -DBUILD_TESTING=OFF >build.log 2>&1 || { cat build.log; exit 1; }
+	@rm -f build.log
+	@cmake --build --preset $(PRESET) -j $(JOBS)
+
+demo: build
+	@tools/demo.sh build/$(PRESET)/bin/scree "$(DEMO_DIR)"
+
+test:
+	@tools/install-packages.sh build test
+	@cmake --preset $(PRESET) -DSCREE_DATA_DIR="$(DATA_DIR)" -DBUILD_TESTING=ON >build.log 2>&1 || { cat build.log; exit 1; }
+	@rm -f build.log
+	@cmake --build --preset $(PRESET) -j $(JOBS)
+	@ctest --preset $(PRESET) -j $(JOBS) $(LABELS)
+
+install: build
+	@cmake --install build/$(PRESET)
+
+clean:
+	@rm -rf build
