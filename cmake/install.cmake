@@ -17,3 +17,17 @@ install(FILES ${CMAKE_BINARY_DIR}/screeConfig.cmake ${CMAKE_BINARY_DIR}/screeCon
 
 configure_file(cmake/scree.pc.in ${CMAKE_BINARY_DIR}/scree.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/scree.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+
+# The man page and the bash completion come from the program's own option tables.
+find_program(SCDOC scdoc)
+if(SCDOC)
+  add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/scree.1
+    COMMAND sh -c "$<TARGET_FILE:scree> help --man | ${SCDOC} > scree.1"
+    COMMAND sh -c "$<TARGET_FILE:scree> help --completion > scree.bash"
+    BYPRODUCTS ${CMAKE_BINARY_DIR}/scree.bash
+    DEPENDS scree WORKING_DIRECTORY ${CMAKE_BINARY_DIR} VERBATIM)
+  add_custom_target(man ALL DEPENDS ${CMAKE_BINARY_DIR}/scree.1)
+  install(FILES ${CMAKE_BINARY_DIR}/scree.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+  install(FILES ${CMAKE_BINARY_DIR}/scree.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+          RENAME scree)
+endif()
