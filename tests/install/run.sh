@@ -1,0 +1,30 @@
+#!/bin/sh
+# Installs into an empty prefix and builds the same small program against it in the three ways that users
+# have: pkg-config, pkg-config --static, and find_package(scree).
+# usage: run.sh SOURCE_DIR BUILD_DIR C_COMPILER
+set -eu
+here=$(cd "$(dirname "$0")" && pwd)
+build=$2
+compiler=$3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+cmake --install "$build" --prefix "$folder/prefix" >"$folder/log" || { cat "$folder/log"; exit 1; }
+version=$(cat "$1/VERSION")
+libdir=$(dirname "$(find "$folder/prefix" -name scree.pc)")/..
+pc() { PKG_CONFIG_PATH="$libdir/pkgconfig" pkg-config --define-variable=prefix="$folder/prefix" "$@" scree; }
+
+expect() {
+  [ "$2" = "$version" ] || { echo "$1: printed '$2', not $version"; exit 1; }
+}
+# shellcheck disable=SC2046
+"$compiler" "$here/consumer.c" -o "$folder/shared" $(pc --cflags --libs)
+expect shared "$(LD_LIBRARY_PATH=$libdir "$folder/shared")"
+# shellcheck disable=SC2046
+"$compiler" "$here/consumer.c" -o "$folder/static" $(pc --cflags) "$libdir/libscree.a" \
+  $(pc --static --libs-only-l | sed 's/-lscree//')
+expect static "$("$folder/static")"
+cmake -S "$here" -B "$folder/cmake" -DCMAKE_PREFIX_PATH="$folder/prefix" -DCMAKE_C_COMPILER="$compiler" \
+  >"$folder/log" && cmake --build "$folder/cmake" >>"$folder/log" || { cat "$folder/log"; exit 1; }
+expect cmake "$("$folder/cmake/consumer")"
+expect program "$("$folder/prefix/bin/scree" version | sed 's/scree //')"
+[ -s "$folder/prefix/share/man/man1/scree.1" ] || { echo "no man page installed"; exit 1; }
