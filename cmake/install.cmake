@@ -15,8 +15,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/screeConfigVersion.cmake CO
 install(FILES ${CMAKE_BINARY_DIR}/screeConfig.cmake ${CMAKE_BINARY_DIR}/screeConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
 
-list(TRANSFORM OpenMP_C_LIB_NAMES PREPEND -l OUTPUT_VARIABLE SCREE_OPENMP_LIBS)
-list(JOIN SCREE_OPENMP_LIBS " " SCREE_OPENMP_LIBS)
+list(JOIN OpenMP_C_LIBRARIES " " SCREE_OPENMP_LIBS)
 configure_file(cmake/scree.pc.in ${CMAKE_BINARY_DIR}/scree.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/scree.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 

@@ -21,7 +21,7 @@ expect() {
 expect shared "$(LD_LIBRARY_PATH=$libdir "$folder/shared")"
 # shellcheck disable=SC2046
 "$compiler" "$here/consumer.c" -o "$folder/static" $(pc --cflags) "$libdir/libscree.a" \
-  $(pc --static --libs-only-l | sed 's/-lscree//')
+  $(pc --static --libs | sed 's/-lscree//')
 expect static "$("$folder/static")"
 cmake -S "$here" -B "$folder/cmake" -DCMAKE_PREFIX_PATH="$folder/prefix" -DCMAKE_C_COMPILER="$compiler" \
   >"$folder/log" && cmake --build "$folder/cmake" >>"$folder/log" || { cat "$folder/log"; exit 1; }
