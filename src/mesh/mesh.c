@@ -1,4 +1,7 @@
+#include "mesh/mesh.h"
+
 #include "base/alloc.h"
+#include "base/parallel.h"
 
 #include <string.h>
 
@@ -19,5 +22,61 @@ scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy, scree_err
   return SCREE_OK;
 out_of_memory:
   scree_mesh_free(&made);
+  return SCREE_OUT_OF_MEMORY;
+}
+
+enum { VERIFY_BLOCK = 1 << 15 };
+
+/* The first fault of each block; the lowest is reported, whatever the number of threads. */
+typedef struct verification {
+  const scree_mesh *mesh;
+  size_t *fault; /* per block, SIZE_MAX where there is none */
+} verification;
+
+static void find_bad_index(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  verification *v = context;
+  size_t i = begin;
+  while (i < end && v->mesh->triangles[i] < v->mesh->vertex_count) i++;
+  v->fault[block] = i < end ? i : SIZE_MAX;
+}
+
+static void find_bad_coordinate(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  verification *v = context;
+  size_t i = begin;
+  while (i < end && isfinite(v->mesh->positions[i])) i++;
+  v->fault[block] = i < end ? i : SIZE_MAX;
+}
+
+static size_t first_fault(verification *v, size_t count, scree_block_function *find) {
+  scree_parallel_for(count, VERIFY_BLOCK, find, v);
+  for (size_t block = 0; block < scree_block_count(count, VERIFY_BLOCK); block++)
+    if (v->fault[block] != SIZE_MAX) return v->fault[block];
+  return SIZE_MAX;
+}
+
+scree_status scree_mesh_verify(const scree_mesh *mesh, scree_error *error) {
+  if (mesh->triangle_count > (UINT32_MAX - 1) / 3 || mesh->vertex_count > UINT32_MAX)
+    return scree_fail(
+        error, SCREE_LIMIT,
+        "the mesh has %zu triangles and %zu vertices, above the limit of %u triangles "
+        "and %u vertices",
+        mesh->triangle_count, mesh->vertex_count, (UINT32_MAX - 1) / 3, UINT32_MAX);
+  size_t corner_count = 3 * mesh->triangle_count, value_count = 3 * mesh->vertex_count;
+  size_t most = corner_count > value_count ? corner_count : value_count;
+  verification v = {.mesh = mesh};
+  SCREE_ALLOC_OR(v.fault, scree_block_count(most, VERIFY_BLOCK), error, out_of_memory);
+  size_t bad_index = first_fault(&v, corner_count, find_bad_index);
+  size_t bad_value = first_fault(&v, value_count, find_bad_coordinate);
+  scree_free(v.fault);
+  if (bad_index != SIZE_MAX)
+    return scree_fail(error, SCREE_BAD_MESH, "triangle %zu names vertex %u, but there are only %zu",
+                      bad_index / 3, mesh->triangles[bad_index], mesh->vertex_count);
+  if (bad_value != SIZE_MAX)
+    return scree_fail(error, SCREE_BAD_MESH, "vertex %zu has the coordinate %c = %g, not finite",
+                      bad_value / 3, "xyz"[bad_value % 3], mesh -> positions[bad_value]);
+  return SCREE_OK;
+out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }

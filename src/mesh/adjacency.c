@@ -1,0 +1,150 @@
+/* Edges by counting sort: each half-edge goes to the bucket of its lower vertex; within a bucket
+ * the pairs (higher vertex, half-edge), packed in 64 bits, are sorted. A bucket holds about six
+ * pairs, so insertion sort does; a hub of thousands of facets falls back on qsort. Equal higher
+ * vertices then stand together in ascending order of half-edge: one edge. */
+#include "mesh/adjacency.h"
+
+#include "base/alloc.h"
+#include "base/parallel.h"
+
+#include <stdlib.h>
+
+enum {
+  INSERTION_LIMIT = 48,  /* pairs; above, qsort wins */
+  VERTEX_BLOCK = 1 << 14 /* vertices per parallel block */
+};
+
+typedef struct builder {
+  const scree_mesh *mesh;
+  uint32_t *start; /* vertex_count + 1; bucket v is [start[v], start[v + 1]) */
+  uint64_t *pairs; /* higher vertex << 32 | half-edge */
+  size_t *block_edges;
+  scree_adjacency *out;
+} builder;
+
+static int compare_pairs(const void *a, const void *b) {
+  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+  return (x > y) - (x < y);
+}
+
+static void sort_pairs(uint64_t *pairs, size_t count) {
+  if (count > INSERTION_LIMIT) {
+    qsort(pairs, count, sizeof *pairs, compare_pairs);
+    return;
+  }
+  for (size_t i = 1; i < count; i++) {
+    uint64_t pair = pairs[i];
+    size_t j = i;
+    for (; j > 0 && pairs[j - 1] > pair; j--) pairs[j] = pairs[j - 1];
+    pairs[j] = pair;
+  }
+}
+
+static bool takes_part(const uint32_t *corner) {
+  return corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
+}
+
+/* Counts the bucket sizes, then places the pairs; on return start[v] is where bucket v begins. */
+static void fill_buckets(builder *b) {
+  const uint32_t *corners = b->mesh->triangles;
+  size_t vertex_count = b->mesh->vertex_count, corner_count = 3 * b->mesh->triangle_count;
+  for (size_t v = 0; v <= vertex_count; v++) b->start[v] = 0;
+  for (size_t c = 0; c < corner_count; c += 3) {
+    const uint32_t *corner = corners + c;
+    if (!takes_part(corner)) continue;
+    for (int k = 0; k < 3; k++) {
+      uint32_t from = corner[k], to = corner[(k + 1) % 3];
+      b->start[from < to ? from : to]++;
+    }
+  }
+  uint32_t sum = 0;
+  for (size_t v = 0; v <= vertex_count; v++) {
+    uint32_t size = b->start[v];
+    b->start[v] = sum += size; /* the end of bucket v: filled from the back */
+  }
+  for (size_t c = corner_count; c > 0;) {
+    c -= 3;
+    const uint32_t *corner = corners + c;
+    bool part = takes_part(corner);
+    for (int k = 2; k >= 0; k--) {
+      uint32_t from = corner[k], to = corner[(k + 1) % 3], h = (uint32_t)c + (uint32_t)k;
+      if (!part) {
+        b->out->ring[h] = SCREE_NO_HALF_EDGE;
+        continue;
+      }
+      uint32_t low = from < to ? from : to, high = from < to ? to : from;
+      b->pairs[--b->start[low]] = (uint64_t)high << 32 | h;
+    }
+  }
+}
+
+/* Sorts the buckets of a block of vertices, links the rings, and leaves the lowest half-edge of
+ * each edge at the front of the block's pairs. */
+static void link_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  builder *b = context;
+  uint32_t *ring = b->out->ring;
+  size_t write = b->start[begin];
+  for (size_t v = begin; v < end; v++) {
+    size_t first = b->start[v], last = b->start[v + 1];
+    sort_pairs(b->pairs + first, last - first);
+    for (size_t i = first; i < last;) {
+      uint32_t lowest = (uint32_t)b->pairs[i], high = (uint32_t)(b->pairs[i] >> 32);
+      uint32_t h = lowest;
+      for (i++; i < last && (uint32_t)(b->pairs[i] >> 32) == high; i++) {
+        uint32_t next = (uint32_t)b->pairs[i];
+        ring[h] = next;
+        h = next;
+      }
+      ring[h] = lowest;
+      b->pairs[write++] = lowest;
+    }
+  }
+  b->block_edges[block] = write - b->start[begin];
+}
+
+static scree_status collect_edges(builder *b, size_t block_count, scree_error *error) {
+  size_t edge_count = 0;
+  for (size_t i = 0; i < block_count; i++) edge_count += b->block_edges[i];
+  SCREE_ALLOC_OR(b->out->edges, edge_count, error, out_of_memory);
+  uint32_t *edge = b->out->edges;
+  for (size_t i = 0; i < block_count; i++) {
+    const uint64_t *pair = b->pairs + b->start[i * VERTEX_BLOCK];
+    for (size_t j = 0; j < b->block_edges[i]; j++) *edge++ = (uint32_t)pair[j];
+  }
+  b->out->edge_count = edge_count;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_adjacency_build(const scree_mesh *mesh, scree_adjacency *adjacency,
+                                   scree_error *error) {
+  scree_adjacency made = {0};
+  builder b = {.mesh = mesh, .out = &made};
+  size_t block_count = scree_block_count(mesh->vertex_count, VERTEX_BLOCK);
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(made.ring, 3 * mesh->triangle_count, error, done);
+  SCREE_ALLOC_OR(b.start, mesh->vertex_count + 1, error, done);
+  SCREE_ALLOC_OR(b.pairs, 3 * mesh->triangle_count, error, done);
+  SCREE_ALLOC_OR(b.block_edges, block_count, error, done);
+  fill_buckets(&b);
+  scree_parallel_for(mesh->vertex_count, VERTEX_BLOCK, link_block, &b);
+  status = collect_edges(&b, block_count, error);
+done:
+  scree_free(b.start);
+  scree_free(b.pairs);
+  scree_free(b.block_edges);
+  if (status == SCREE_OK)
+    *adjacency = made;
+  else
+    scree_adjacency_free(&made);
+  return status;
+}
+
+void scree_adjacency_free(scree_adjacency *adjacency) {
+  if (!adjacency) return;
+  scree_free(adjacency->ring);
+  scree_free(adjacency->edges);
+  *adjacency = (scree_adjacency){0};
+}

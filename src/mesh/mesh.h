@@ -1,0 +1,17 @@
+/* What every function that takes a mesh from outside asks first. */
+#ifndef SCREE_MESH_MESH_H
+#define SCREE_MESH_MESH_H
+
+#include "base/error.h"
+#include "base/vec.h"
+
+/* SCREE_BAD_MESH where an index is out of range or a coordinate is not finite, SCREE_LIMIT where
+ * corners cannot be numbered in 32 bits. O(N), parallel. */
+scree_status scree_mesh_verify(const scree_mesh *mesh, scree_error *error);
+
+/* Corner k (0, 1, 2) of a triangle. */
+static inline vec3 scree_mesh_corner(const scree_mesh *mesh, size_t triangle, int k) {
+  return vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * triangle + (size_t)k]);
+}
+
+#endif

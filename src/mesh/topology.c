@@ -1,0 +1,264 @@
+/* How the facets hang together, from the rings of half-edges (mesh/adjacency.h).
+ *
+ * Shells are the pieces connected through shared edges, however many facets meet there. A vertex is
+ * non-manifold where its facets form more than one fan, that is where not all of them are connected
+ * through edges at that vertex (two cones touching at their tips); a vertex of a non-manifold edge
+ * counts only if that holds as well. A facet is flat where its height over its longest edge is not
+ * above the rounding of its coordinates: an exact zero would be lost when units are converted. The
+ * genus g follows from Euler-Poincare, V - E + F = 2 (shells - g). */
+#include "base/array.h"
+#include "base/sum.h"
+#include "mesh/adjacency.h"
+#include "mesh/mesh.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Roundings (units in the last place of the largest coordinate) below which a height is none: each
+ * of the coordinates may be off by one from parsing and unit conversion, the cross product adds a
+ * few. */
+#define FLAT_ULPS 4.0
+
+typedef struct counter {
+  const scree_mesh *mesh;
+  scree_adjacency adjacency;
+  scree_topology found;
+} counter;
+
+static bool takes_part(const counter *c, size_t triangle) {
+  return c->adjacency.ring[3 * triangle] != SCREE_NO_HALF_EDGE;
+}
+
+static bool is_flat(const scree_mesh *mesh, size_t triangle) {
+  vec3 p = scree_mesh_corner(mesh, triangle, 0), q = scree_mesh_corner(mesh, triangle, 1),
+       r = scree_mesh_corner(mesh, triangle, 2);
+  double longest2 = fmax(fmax(vec3_norm2(vec3_sub(q, p)), vec3_norm2(vec3_sub(r, q))),
+                         vec3_norm2(vec3_sub(p, r)));
+  vec3 low = vec3_min(vec3_min(p, q), r), high = vec3_max(vec3_max(p, q), r);
+  double largest = fmax(fmax(fmax(fabs(low.x), fabs(high.x)), fmax(fabs(low.y), fabs(high.y))),
+                        fmax(fabs(low.z), fabs(high.z)));
+  double twice_area = vec3_norm(vec3_triangle_normal(p, q, r)),
+         rounding = FLAT_ULPS * DBL_EPSILON * largest;
+  return twice_area <= rounding * sqrt(longest2);
+}
+
+static void count_facets(counter *c) {
+  for (size_t t = 0; t < c->mesh->triangle_count; t++) {
+    c->found.facet_count += takes_part(c, t);
+    c->found.degenerate_facet_count += !takes_part(c, t) || is_flat(c->mesh, t);
+  }
+}
+
+static void count_edges(counter *c) {
+  const uint32_t *ring = c->adjacency.ring;
+  scree_topology *found = &c->found;
+  found->edge_count = c->adjacency.edge_count;
+  found->oriented = true;
+  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
+    uint32_t first = c->adjacency.edges[e], second = ring[first];
+    uint32_t from = scree_half_edge_from(c->mesh, first);
+    if (second == first) {
+      found->boundary_edge_count++;
+    } else if (ring[second] == first) {
+      found->inconsistent_edge_count += scree_half_edge_from(c->mesh, second) == from;
+    } else {
+      found->non_manifold_edge_count++;
+      size_t same = 1, all = 1;
+      for (uint32_t h = second; h != first; h = ring[h], all++)
+        same += scree_half_edge_from(c->mesh, h) == from;
+      if (all % 2 == 0 && same != all / 2) found->oriented = false;
+    }
+  }
+  if (found->inconsistent_edge_count) found->oriented = false;
+  found->closed = found->boundary_edge_count == 0;
+}
+
+/* The facets with the same three vertices share the edge of the two lower ones: there, count equal
+ * third vertices. */
+static int compare_vertices(const void *a, const void *b) {
+  uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+  return (x > y) - (x < y);
+}
+
+static scree_status count_duplicates(counter *c, scree_error *error) {
+  const scree_mesh *mesh = c->mesh;
+  uint32_t *third = NULL;
+  size_t capacity = 0;
+  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
+    uint32_t first = c->adjacency.edges[e];
+    if (c->adjacency.ring[first] == first) continue;
+    size_t facets = scree_edge_facet_count(&c->adjacency, first), count = 0;
+    if (!scree_array_reserve((void **)&third, &capacity, facets, sizeof *third)) goto out_of_memory;
+    uint32_t h = first;
+    do {
+      uint32_t apex = mesh->triangles[scree_half_edge_previous(h)];
+      if (apex > scree_half_edge_from(mesh, h) && apex > scree_half_edge_to(mesh, h))
+        third[count++] = apex;
+      h = c->adjacency.ring[h];
+    } while (h != first);
+    if (count > 2) qsort(third, count, sizeof *third, compare_vertices);
+    for (size_t i = 1; i < count; i++) c->found.duplicate_facet_count += third[i] == third[i - 1];
+  }
+  scree_free(third);
+  return SCREE_OK;
+out_of_memory:
+  scree_free(third);
+  return scree_fail_memory(error, capacity * sizeof *third, "facets at an edge");
+}
+
+/* Floods the fan of corner start round its vertex; corners are marked as they are reached. */
+static void flood_fan(const counter *c, uint32_t start, bool *reached, uint32_t *stack) {
+  const uint32_t *ring = c->adjacency.ring, *corners = c->mesh->triangles;
+  uint32_t vertex = corners[start];
+  size_t depth = 0;
+  stack[depth++] = start;
+  reached[start] = true;
+  while (depth > 0) {
+    uint32_t corner = stack[--depth];
+    uint32_t sides[2] = {corner, scree_half_edge_previous(corner)};
+    for (int s = 0; s < 2; s++)
+      for (uint32_t h = ring[sides[s]]; h != sides[s]; h = ring[h]) {
+        uint32_t other = corners[h] == vertex ? h : scree_half_edge_next(h);
+        if (reached[other]) continue;
+        reached[other] = true;
+        stack[depth++] = other;
+      }
+  }
+}
+
+static scree_status count_vertices(counter *c, scree_error *error) {
+  const scree_mesh *mesh = c->mesh;
+  size_t corner_count = 3 * mesh->triangle_count;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  bool *reached = NULL;
+  uint32_t *stack = NULL, *valence = NULL;
+  uint8_t *fans = NULL;
+  SCREE_ALLOC_OR(valence, mesh->vertex_count, error, done);
+  memset(valence, 0, mesh->vertex_count * sizeof *valence);
+  uint32_t largest = 0;
+  for (size_t corner = 0; corner < corner_count; corner++)
+    if (c->adjacency.ring[corner] != SCREE_NO_HALF_EDGE) {
+      uint32_t now = ++valence[mesh->triangles[corner]];
+      if (now > largest) largest = now;
+    }
+  SCREE_ALLOC_OR(stack, largest, error, done);
+  SCREE_ALLOC_OR(reached, corner_count, error, done);
+  SCREE_ALLOC_OR(fans, mesh->vertex_count, error, done);
+  memset(reached, 0, corner_count * sizeof *reached);
+  memset(fans, 0, mesh->vertex_count * sizeof *fans);
+  for (uint32_t corner = 0; corner < corner_count; corner++) {
+    if (c->adjacency.ring[corner] == SCREE_NO_HALF_EDGE || reached[corner]) continue;
+    flood_fan(c, corner, reached, stack);
+    uint8_t *at = &fans[mesh->triangles[corner]];
+    if (*at < 2) c->found.non_manifold_vertex_count += ++*at == 2;
+  }
+  for (size_t v = 0; v < mesh->vertex_count; v++) c->found.unused_vertex_count += valence[v] == 0;
+  c->found.vertex_count = mesh->vertex_count - c->found.unused_vertex_count;
+  status = SCREE_OK;
+done:
+  scree_free(valence);
+  scree_free(stack);
+  scree_free(reached);
+  scree_free(fans);
+  return status;
+}
+
+/* Signed volumes about one of each shell's own corners; an open shell has none (NaN). */
+static void count_inward(counter *c, uint32_t *parent, scree_sum *volume) {
+  const scree_mesh *mesh = c->mesh;
+  for (size_t t = 0; t < mesh->triangle_count; t++) volume[t] = (scree_sum){0};
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    if (!takes_part(c, t)) continue;
+    uint32_t root = scree_find_root(parent, (uint32_t)t);
+    vec3 origin = scree_mesh_corner(mesh, root, 0), p = scree_mesh_corner(mesh, t, 0);
+    vec3 normal =
+        vec3_triangle_normal(p, scree_mesh_corner(mesh, t, 1), scree_mesh_corner(mesh, t, 2));
+    scree_sum_add(&volume[root], vec3_dot(vec3_sub(p, origin), normal));
+  }
+  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
+    uint32_t h = c->adjacency.edges[e];
+    if (c->adjacency.ring[h] == h) volume[scree_find_root(parent, h / 3)].sum = NAN;
+  }
+  for (size_t t = 0; t < mesh->triangle_count; t++)
+    if (takes_part(c, t) && parent[t] == t) {
+      c->found.shell_count++;
+      c->found.inward_shell_count += scree_sum_value(volume[t]) < 0;
+    }
+}
+
+static scree_status count_shells(counter *c, scree_error *error) {
+  size_t triangle_count = c->mesh->triangle_count;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  uint32_t *parent = NULL;
+  scree_sum *volume = NULL;
+  SCREE_ALLOC_OR(parent, triangle_count, error, done);
+  SCREE_ALLOC_OR(volume, triangle_count, error, done);
+  for (uint32_t t = 0; t < triangle_count; t++) parent[t] = t;
+  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
+    uint32_t first = c->adjacency.edges[e];
+    for (uint32_t h = c->adjacency.ring[first]; h != first; h = c->adjacency.ring[h])
+      scree_join(parent, first / 3, h / 3);
+  }
+  count_inward(c, parent, volume);
+  status = SCREE_OK;
+done:
+  scree_free(parent);
+  scree_free(volume);
+  return status;
+}
+
+/* Every vertex met first is a piece of its own; every edge that joins two pieces takes one away. */
+static scree_status count_boundaries(counter *c, scree_error *error) {
+  const uint32_t none = UINT32_MAX;
+  uint32_t *parent = NULL;
+  if (c->found.closed) return SCREE_OK;
+  SCREE_ALLOC_OR(parent, c->mesh->vertex_count, error, out_of_memory);
+  for (size_t v = 0; v < c->mesh->vertex_count; v++) parent[v] = none;
+  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
+    uint32_t h = c->adjacency.edges[e];
+    if (c->adjacency.ring[h] != h) continue;
+    uint32_t ends[2] = {scree_half_edge_from(c->mesh, h), scree_half_edge_to(c->mesh, h)};
+    for (int i = 0; i < 2; i++)
+      if (parent[ends[i]] == none) {
+        parent[ends[i]] = ends[i];
+        c->found.boundary_count++;
+      }
+    if (scree_find_root(parent, ends[0]) == scree_find_root(parent, ends[1])) continue;
+    scree_join(parent, ends[0], ends[1]);
+    c->found.boundary_count--;
+  }
+  scree_free(parent);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static void conclude(scree_topology *found) {
+  found->manifold = !found->non_manifold_edge_count && !found->non_manifold_vertex_count;
+  found->euler_characteristic =
+      (long long)found->vertex_count - (long long)found->edge_count + (long long)found->facet_count;
+  found->genus = found->closed && found->manifold && found->oriented && found->facet_count
+                     ? (long long)found->shell_count - found->euler_characteristic / 2
+                     : -1;
+}
+
+scree_status scree_mesh_topology(const scree_mesh *mesh, scree_topology *topology,
+                                 scree_error *error) {
+  counter c = {.mesh = mesh};
+  scree_status status = scree_mesh_verify(mesh, error);
+  if (status != SCREE_OK) return status;
+  status = scree_adjacency_build(mesh, &c.adjacency, error);
+  if (status != SCREE_OK) return status;
+  count_facets(&c);
+  count_edges(&c);
+  status = count_duplicates(&c, error);
+  if (status == SCREE_OK) status = count_vertices(&c, error);
+  if (status == SCREE_OK) status = count_shells(&c, error);
+  if (status == SCREE_OK) status = count_boundaries(&c, error);
+  scree_adjacency_free(&c.adjacency);
+  if (status != SCREE_OK) return status;
+  conclude(&c.found);
+  *topology = c.found;
+  return SCREE_OK;
+}
