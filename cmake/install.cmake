@@ -16,6 +16,9 @@ install(FILES ${CMAKE_BINARY_DIR}/screeConfig.cmake ${CMAKE_BINARY_DIR}/screeCon
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
 
 list(JOIN OpenMP_C_LIBRARIES " " SCREE_OPENMP_LIBS)
+if(embree_FOUND)
+  set(SCREE_EMBREE_LIBS -lembree3)
+endif()
 configure_file(cmake/scree.pc.in ${CMAKE_BINARY_DIR}/scree.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/scree.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 

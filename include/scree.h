@@ -272,8 +272,61 @@ typedef enum scree_method {
 /* ==== 8. Pile: filling, lifting, angle of repose, studies ======================================
  */
 
-/* ==== 9. Reports: figures, pictures, files for other programs ==================================
- */
+/* ==== 9. Reports: figures, pictures, files for other programs ================================= */
+
+/* ---- 9.1 Pictures ---- */
+
+/* One body in a picture. */
+typedef struct scree_render_item {
+  const scree_mesh *mesh; /* borrowed */
+  double position[3];     /* m: where the mesh's origin goes */
+  double quaternion[4];   /* w, x, y, z: applied before; 0 0 0 0 stands for no rotation */
+  const double
+      *vertex_values; /* vertex_count values for the colour map, or NULL for plain colour */
+  float color[3];     /* linear RGB in [0, 1] */
+} scree_render_item;
+
+/* One view of some bodies, framed on its own, with a caption below. */
+typedef struct scree_render_cell {
+  const scree_render_item *items;
+  size_t item_count;
+  const char *caption; /* UTF-8 text, never interpreted; NULL: none */
+} scree_render_cell;
+
+typedef struct scree_render_options {
+  size_t width, height; /* pixels of the whole picture; default 1200 x 900 */
+  size_t columns;       /* of cells; 0 (default): chosen from the shape of the picture */
+  double azimuth_deg;   /* of the camera about the vertical z; default 35 */
+  double elevation_deg; /* of the camera above the horizontal; default 25 */
+  size_t samples;       /* per pixel; default 24 */
+  bool edges;           /* draw the triangles' edges; default false */
+  bool wire;            /* only the edges, seen through; default false */
+  bool ground;          /* a white floor under the lowest point, with shadows; default true */
+  double value_minimum, value_maximum; /* of the colour map; default 0 and 1 */
+  double value_scale;      /* what the values are multiplied by in the bar's labels; default 1 */
+  const char *value_label; /* beside the scale bar, for example "distance / mm"; NULL: no bar */
+} scree_render_options;
+
+SCREE_API scree_render_options scree_default_render_options(void);
+
+/* An image of 8-bit sRGB, rows from the top. */
+typedef struct scree_image {
+  size_t width, height;
+  uint8_t *pixels; /* 3 * width * height */
+} scree_image;
+
+SCREE_API void scree_image_free(scree_image *image);
+
+/* Ray-traced, softly lit picture of the cells; the same bits for any number of threads. Needs a
+ * build with Embree, else SCREE_UNSUPPORTED. Cost: about three rays a sample. */
+SCREE_API scree_status scree_render(const scree_render_cell *cells, size_t cell_count,
+                                    const scree_render_options *options,
+                                    const scree_progress *progress, scree_image *image,
+                                    scree_error *error);
+
+/* Writes a PNG; "-" is stdout. */
+SCREE_API scree_status scree_image_write_png(const scree_image *image, const char *path,
+                                             bool overwrite, scree_error *error);
 
 #ifdef __cplusplus
 }

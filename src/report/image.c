@@ -1,0 +1,183 @@
+#include "report/image.h"
+
+#include "base/alloc.h"
+#include "base/file.h"
+
+#include <cairo.h>
+#include <string.h>
+
+enum { BAR_WIDTH = 16, BAR_MARGIN = 90, CAPTION_FONT_PX = 19, BAR_FONT_PX = 15 };
+
+void scree_image_free(scree_image *image) {
+  if (!image) return;
+  scree_free(image->pixels);
+  *image = (scree_image){0};
+}
+
+/* The matplotlib map viridis by sixth-degree fits of its three channels (linear light is left
+ * aside: the values are sRGB and squared on the way in). */
+vec3 scree_viridis(double t) {
+  static const double c[7][3] = {{0.2777273272234177, 0.005407344544966578, 0.3340998053353061},
+                                 {0.1050930431085774, 1.404613529898575, 1.384590162594685},
+                                 {-0.3308618287255563, 0.214847559468213, 0.09509516302823659},
+                                 {-4.634230498983486, -5.799100973351585, -19.33244095627987},
+                                 {6.228269936347081, 14.17993336680509, 56.69055260068105},
+                                 {4.776384997670288, -13.74514537774601, -65.35303263337234},
+                                 {-5.435455855934631, 4.645852612178535, 26.3124352495832}};
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  double rgb[3];
+  for (int channel = 0; channel < 3; channel++) {
+    double value = c[6][channel];
+    for (int i = 5; i >= 0; i--) value = value * t + c[i][channel];
+    value = value < 0 ? 0 : value > 1 ? 1 : value;
+    rgb[channel] = pow(value, 2.2);
+  }
+  return (vec3){rgb[0], rgb[1], rgb[2]};
+}
+
+uint8_t scree_to_srgb(double linear) {
+  double x = linear <= 0 ? 0 : linear >= 1 ? 1 : linear;
+  double s = x <= 0.0031308 ? 12.92 * x : 1.055 * pow(x, 1 / 2.4) - 0.055;
+  return (uint8_t)(255 * s + 0.5);
+}
+
+/* ---- between our rows of bytes and cairo's rows of native 32-bit words ---- */
+
+static cairo_surface_t *surface_of(const scree_image *image) {
+  cairo_surface_t *surface =
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)image->width, (int)image->height);
+  if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS) {
+    cairo_surface_destroy(surface);
+    return NULL;
+  }
+  cairo_surface_flush(surface);
+  unsigned char *data = cairo_image_surface_get_data(surface);
+  size_t stride = (size_t)cairo_image_surface_get_stride(surface);
+  for (size_t row = 0; row < image->height; row++)
+    for (size_t column = 0; column < image->width; column++) {
+      const uint8_t *p = image->pixels + 3 * (row * image->width + column);
+      uint32_t word = (uint32_t)p[0] << 16 | (uint32_t)p[1] << 8 | p[2];
+      memcpy(data + row * stride + 4 * column, &word, 4);
+    }
+  cairo_surface_mark_dirty(surface);
+  return surface;
+}
+
+static void take_back(scree_image *image, cairo_surface_t *surface) {
+  cairo_surface_flush(surface);
+  const unsigned char *data = cairo_image_surface_get_data(surface);
+  size_t stride = (size_t)cairo_image_surface_get_stride(surface);
+  for (size_t row = 0; row < image->height; row++)
+    for (size_t column = 0; column < image->width; column++) {
+      uint32_t word;
+      memcpy(&word, data + row * stride + 4 * column, 4);
+      uint8_t *p = image->pixels + 3 * (row * image->width + column);
+      p[0] = (uint8_t)(word >> 16);
+      p[1] = (uint8_t)(word >> 8);
+      p[2] = (uint8_t)word;
+    }
+}
+
+static void set_font(cairo_t *cr, double size) {
+  cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL, CAIRO_FONT_WEIGHT_NORMAL);
+  cairo_set_font_size(cr, size);
+  cairo_set_source_rgb(cr, 0.1, 0.1, 0.12);
+}
+
+/* Draws with `draw` on the image. */
+typedef void draw_function(cairo_t *cr, const scree_image *image, const void *context);
+
+static scree_status draw_on(scree_image *image, draw_function *draw, const void *context,
+                            scree_error *error) {
+  cairo_surface_t *surface = surface_of(image);
+  if (!surface) return scree_fail_memory(error, 4 * image->width * image->height, "a picture");
+  cairo_t *cr = cairo_create(surface);
+  draw(cr, image, context);
+  bool drawn = cairo_status(cr) == CAIRO_STATUS_SUCCESS;
+  cairo_destroy(cr);
+  if (drawn) take_back(image, surface);
+  cairo_surface_destroy(surface);
+  return drawn ? SCREE_OK : scree_fail(error, SCREE_BAD_ARGUMENT, "text is not valid UTF-8");
+}
+
+typedef struct caption_box {
+  const char *text;
+  size_t x, y, width, height;
+} caption_box;
+
+static void draw_caption(cairo_t *cr, const scree_image *image, const void *context) {
+  (void)image;
+  const caption_box *box = context;
+  cairo_text_extents_t extents;
+  set_font(cr, CAPTION_FONT_PX);
+  cairo_text_extents(cr, box->text, &extents);
+  double room = (double)box->width - 8;
+  if (extents.x_advance > room) {
+    cairo_set_font_size(cr, CAPTION_FONT_PX * room / extents.x_advance);
+    cairo_text_extents(cr, box->text, &extents);
+  }
+  cairo_move_to(cr, (double)box->x + 0.5 * ((double)box->width - extents.x_advance),
+                (double)box->y + 0.68 * (double)box->height);
+  cairo_show_text(cr, box->text);
+}
+
+scree_status scree_image_caption(scree_image *image, const char *text, size_t x, size_t y,
+                                 size_t width, size_t height, scree_error *error) {
+  caption_box box = {text, x, y, width, height};
+  return draw_on(image, draw_caption, &box, error);
+}
+
+static void draw_scale_bar(cairo_t *cr, const scree_image *image, const void *context) {
+  const scree_render_options *options = context;
+  double height = 0.5 * (double)image->height, top = 0.25 * (double)image->height;
+  double left = (double)image->width - BAR_MARGIN;
+  for (int i = 0; i < (int)height; i++) {
+    vec3 c = scree_viridis(1 - i / height);
+    cairo_set_source_rgb(cr, scree_to_srgb(c.x) / 255.0, scree_to_srgb(c.y) / 255.0,
+                         scree_to_srgb(c.z) / 255.0);
+    cairo_rectangle(cr, left, top + i, BAR_WIDTH, 1.5);
+    cairo_fill(cr);
+  }
+  set_font(cr, BAR_FONT_PX);
+  for (int i = 0; i <= 4; i++) {
+    double t = i / 4.0;
+    double value = options->value_minimum + t * (options->value_maximum - options->value_minimum);
+    char text[32];
+    snprintf(text, sizeof text, "%.3g", value * options->value_scale);
+    cairo_move_to(cr, left + BAR_WIDTH + 6, top + (1 - t) * height + 0.35 * BAR_FONT_PX);
+    cairo_show_text(cr, text);
+  }
+  cairo_text_extents_t extents;
+  cairo_text_extents(cr, options->value_label, &extents);
+  cairo_move_to(cr, (double)image->width - 8 - extents.x_advance, top - 14);
+  cairo_show_text(cr, options->value_label);
+}
+
+scree_status scree_image_scale_bar(scree_image *image, const scree_render_options *options,
+                                   scree_error *error) {
+  return draw_on(image, draw_scale_bar, options, error);
+}
+
+static cairo_status_t write_bytes(void *closure, const unsigned char *data, unsigned int length) {
+  return fwrite(data, 1, length, closure) == length ? CAIRO_STATUS_SUCCESS
+                                                    : CAIRO_STATUS_WRITE_ERROR;
+}
+
+scree_status scree_image_write_png(const scree_image *image, const char *path, bool overwrite,
+                                   scree_error *error) {
+  cairo_surface_t *surface = surface_of(image);
+  if (!surface) return scree_fail_memory(error, 4 * image->width * image->height, "a picture");
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status == SCREE_OK) {
+    if (cairo_surface_write_to_png_stream(surface, write_bytes, output.stream) ==
+        CAIRO_STATUS_SUCCESS) {
+      status = scree_output_commit(&output, error);
+    } else {
+      scree_output_discard(&output);
+      status = scree_fail(error, SCREE_IO, "%s: cannot write the picture", path);
+    }
+  }
+  cairo_surface_destroy(surface);
+  return status;
+}
