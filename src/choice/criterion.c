@@ -1,0 +1,272 @@
+/* The criterion: eq. 1 and 2 of Katagiri and Koyanaka (2020),
+ *
+ *   eps_s = |S - S_ref| / S_ref,      Ip = eps_s + w Nr / Nm,
+ *
+ * on the paper's logarithmic grid and on every level, and the robust form with the monotone
+ * envelope
+ *
+ *   worst(i) = max over j <= i of eps_s(j)      (level 0 is the scan, i grows as triangles go)
+ *
+ * The paper leaves open what a grid Rp means where Rp Nm is no triangle count of a level; here it
+ * is the first level not above the truncated product, as MeshLab stops there. Everything comes from
+ * one pass over the levels from fine to coarse; grid and trace are cursors that the pass fills as
+ * it passes their counts. */
+#include "choice/criterion.h"
+
+#include "base/alloc.h"
+#include "choice/noise.h"
+
+#include <math.h>
+
+/* Relative slack that keeps 1e-3 * 762000 at 762, whichever way 1e-3 was rounded. */
+static const double TARGET_SLACK = 1e-12;
+/* Slack at the ends of the grid: 1e-5 10^(36/9) may come out just above 1e-1. */
+static const double GRID_SLACK = 1e-9;
+/* The plain minimum counts as an accident where its error is below this part of the worst so far.
+ */
+static const double ACCIDENT_RATIO = 0.1;
+
+scree_choice_options scree_default_choice_options(void) {
+  return (scree_choice_options){1, 1e-5, 1e-1, 9, SCREE_REFERENCE_SCAN, false, false};
+}
+
+const char *scree_shape_error_name(scree_shape_error which) {
+#define SCREE_SHAPE_ERROR_NAME(name, text) text,
+  static const char *const names[] = {SCREE_SHAPE_ERROR_LIST(SCREE_SHAPE_ERROR_NAME)};
+#undef SCREE_SHAPE_ERROR_NAME
+  return (unsigned)which < SCREE_SHAPE_ERROR_COUNT ? names[which] : "?";
+}
+
+static double log_grid(double rp_min, int per_decade, size_t index) {
+  return pow(10, log10(rp_min) + (double)index / per_decade);
+}
+
+static size_t log_grid_count(double rp_min, double rp_max, int per_decade) {
+  size_t count = 0;
+  while (log_grid(rp_min, per_decade, count) <= rp_max * (1 + GRID_SLACK)) count++;
+  return count;
+}
+
+double scree_choice_grid_rp(const scree_choice_options *options, size_t index) {
+  return log_grid(options->rp_min, options->per_decade, index);
+}
+
+size_t scree_choice_grid_count(const scree_choice_options *options) {
+  return log_grid_count(options->rp_min, options->rp_max, options->per_decade);
+}
+
+size_t scree_level_target(double rp, size_t triangle_count) {
+  return (size_t)(rp * (double)triangle_count * (1 + TARGET_SLACK));
+}
+
+size_t scree_level_find(const scree_level_table *table, size_t target) {
+  size_t low = 0, high = table->count - 1;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (table->row(table->context, middle).triangle_count <= target)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
+
+/* The state of the pass over the levels. */
+typedef struct pass {
+  const scree_choice_options *options;
+  const scree_noise *noise;
+  double triangle_count, reference, scan_volume;
+  scree_level_row row; /* at the level under the pass */
+  size_t index;
+  double eps, worst, smooth_eps, smooth_worst;
+  double best_finer_ip;
+} pass;
+
+static double penalty(const pass *p) {
+  return p->options->weight * (double)p->row.triangle_count / p->triangle_count;
+}
+
+/* Moves the pass to the next level: the errors there and the envelopes so far. */
+static void pass_enter(pass *p, size_t index, scree_level_row row) {
+  p->index = index;
+  p->row = row;
+  p->eps = fabs(row.area - p->reference) / p->reference;
+  p->worst = fmax(p->worst, p->eps);
+  p->smooth_eps = fabs(row.area - p->noise->area) / p->noise->area;
+  /* finer than the plateau the error is the noise itself: it must not hide the shape's behind it */
+  p->smooth_worst =
+      index <= p->noise->level_index ? p->smooth_eps : fmax(p->smooth_worst, p->smooth_eps);
+}
+
+static void record_level(const pass *p, scree_choice_level *level, size_t target) {
+  level->level_index = p->index;
+  level->triangle_count = p->row.triangle_count;
+  level->rp_reached = (double)p->row.triangle_count / p->triangle_count;
+  level->reached = p->row.triangle_count <= target;
+  level->area = p->row.area;
+  level->volume = p->row.volume;
+  level->eps_s = p->eps;
+  level->ip = p->eps + penalty(p);
+  level->worst_eps_s = p->worst;
+  level->robust_ip = p->worst + penalty(p);
+  level->smooth_ip = p->smooth_worst + penalty(p);
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) level->errors[e] = NAN;
+  level->errors[SCREE_ERROR_AREA] = p->eps;
+  level->errors[SCREE_ERROR_VOLUME] = fabs(p->row.volume - p->scan_volume) / fabs(p->scan_volume);
+}
+
+/* Keeps the level under the pass where its criterion is not above the best: with counts falling,
+ * ties go to the fewest triangles. */
+static void keep_best(const pass *p, double error, scree_pick *best) {
+  double ip = error + penalty(p);
+  if (best->triangle_count && ip > best->ip) return;
+  *best = (scree_pick){(double)p->row.triangle_count / p->triangle_count,
+                       p->index,
+                       p->row.triangle_count,
+                       p->row.area,
+                       p->row.volume,
+                       error,
+                       ip,
+                       p->eps};
+}
+
+/* Fills the levels, from the finest down, whose target the pass has reached. */
+static size_t fill_levels(const pass *p, scree_choice_level *levels, size_t left, bool last) {
+  while (left) {
+    size_t target = scree_level_target(levels[left - 1].rp, (size_t)p->triangle_count);
+    if (p->row.triangle_count > target && !last) break;
+    record_level(p, &levels[--left], target);
+  }
+  return left;
+}
+
+static void run_pass(const scree_level_table *table, const scree_choice_options *options,
+                     scree_choice *choice) {
+  pass p = {.options = options,
+            .noise = &choice->noise,
+            .triangle_count = (double)choice->triangle_count,
+            .reference = choice->reference_area,
+            .scan_volume = choice->volume,
+            .best_finer_ip = INFINITY};
+  size_t grid_left = choice->level_count, trace_left = choice->trace_count;
+  for (size_t i = 0; i < table->count; i++) {
+    pass_enter(&p, i, table->row(table->context, i));
+    keep_best(&p, p.eps, &choice->plain);
+    keep_best(&p, p.worst, &choice->robust);
+    keep_best(&p, p.smooth_worst, &choice->smooth);
+    if (choice->plain.level_index == i)
+      choice->plain_is_accident = p.eps < ACCIDENT_RATIO * p.worst;
+    double finer_ip = p.worst + 0.25 * penalty(&p); /* Nm four times as large */
+    if (finer_ip <= p.best_finer_ip) {
+      p.best_finer_ip = finer_ip;
+      choice->finer_count = p.row.triangle_count;
+    }
+    grid_left = fill_levels(&p, choice->levels, grid_left, i + 1 == table->count);
+    trace_left = fill_levels(&p, choice->trace, trace_left, i + 1 == table->count);
+  }
+  choice->floor_count = p.row.triangle_count;
+}
+
+/* How far the grid's Rp is from the one reached, in decades. */
+static double misfit(const scree_choice_level *level) {
+  return fabs(log10(level->rp / level->rp_reached));
+}
+
+/* The grid index with the least value of error + w Nr/Nm; NaN never wins. */
+static size_t best_on_grid(const scree_choice *choice, scree_shape_error which, double weight) {
+  size_t best = choice->level_count;
+  double best_ip = INFINITY;
+  for (size_t i = 0; i < choice->level_count; i++) {
+    const scree_choice_level *level = &choice->levels[i];
+    double ip = level->errors[which] + weight * level->rp_reached;
+    bool nearer = best < choice->level_count && ip == best_ip &&
+                  level->triangle_count == choice->levels[best].triangle_count &&
+                  misfit(level) < misfit(&choice->levels[best]);
+    if (ip < best_ip || nearer) {
+      best = i;
+      best_ip = ip;
+    }
+  }
+  return best;
+}
+
+size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error which, double weight) {
+  return best_on_grid(choice, which, weight);
+}
+
+static scree_status check_options(const scree_choice_options *o, scree_error *error) {
+  if (!(o->weight > 0 && o->weight < INFINITY))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "weight %g: must be above 0 and finite",
+                      o->weight);
+  if (!(o->rp_min > 0 && o->rp_min <= o->rp_max && o->rp_max <= 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "grid from %g to %g: must be 0 < smallest Rp <= largest Rp <= 1", o->rp_min,
+                      o->rp_max);
+  if (o->per_decade < 1 || o->per_decade > 1000)
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "%d grid points per decade: must be from 1 to 1000", o->per_decade);
+  if (o->rp_min < 1e-12)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "grid from %g: smaller than the limit 1e-12",
+                      o->rp_min);
+  return SCREE_OK;
+}
+
+static scree_status check_table(const scree_level_table *table, scree_error *error) {
+  scree_level_row scan = table->row(table->context, 0);
+  if (!(scan.triangle_count && scan.area > 0 && scan.area < INFINITY))
+    return scree_fail(error, SCREE_BAD_MESH, "%zu triangles of area %g m2: no surface to judge",
+                      scan.triangle_count, scan.area);
+  for (size_t i = 1; i < table->count; i++) {
+    scree_level_row row = table->row(table->context, i);
+    if (!(row.triangle_count && row.area >= 0 && row.area < INFINITY))
+      return scree_fail(error, SCREE_BAD_MESH, "level %zu: %zu triangles of area %g m2", i,
+                        row.triangle_count, row.area);
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_choice_from_table(const scree_level_table *table,
+                                     const scree_choice_options *options, scree_choice *choice,
+                                     scree_error *error) {
+  scree_status status = check_options(options, error);
+  if (status == SCREE_OK) status = check_table(table, error);
+  if (status != SCREE_OK) return status;
+  scree_level_row scan = table->row(table->context, 0);
+  scree_choice filled = {.triangle_count = scan.triangle_count,
+                         .area = scan.area,
+                         .volume = scan.volume,
+                         .noise = scree_noise_find(table),
+                         .level_count = scree_choice_grid_count(options),
+                         .trace_count = log_grid_count(options->rp_min, 1, SCREE_TRACE_PER_DECADE)};
+  bool smooth = options->reference == SCREE_REFERENCE_SMOOTH;
+  filled.reference_area = smooth ? filled.noise.area : filled.area;
+  filled.levels = scree_alloc_zero(filled.level_count, sizeof *filled.levels);
+  filled.trace = scree_alloc_zero(filled.trace_count, sizeof *filled.trace);
+  if (!filled.levels || !filled.trace) {
+    scree_choice_free(&filled);
+    return scree_fail_memory(error,
+                             (filled.level_count + filled.trace_count) * sizeof *filled.levels,
+                             "the levels of a choice");
+  }
+  for (size_t i = 0; i < filled.level_count; i++)
+    filled.levels[i].rp = scree_choice_grid_rp(options, i);
+  for (size_t i = 0; i < filled.trace_count; i++)
+    filled.trace[i].rp = log_grid(options->rp_min, SCREE_TRACE_PER_DECADE, i);
+  run_pass(table, options, &filled);
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    filled.best[e] = best_on_grid(&filled, (scree_shape_error)e, options->weight);
+  const scree_choice_level *paper = &filled.levels[filled.best[SCREE_ERROR_AREA]];
+  filled.paper = (scree_pick){paper->rp,   paper->level_index, paper->triangle_count,
+                              paper->area, paper->volume,      paper->eps_s,
+                              paper->ip,   paper->eps_s};
+  if (smooth) filled.robust = filled.smooth;
+  *choice = filled;
+  return SCREE_OK;
+}
+
+void scree_choice_free(scree_choice *choice) {
+  if (!choice) return;
+  scree_free(choice->levels);
+  scree_free(choice->trace);
+  *choice = (scree_choice){0};
+}

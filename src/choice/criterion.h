@@ -1,0 +1,37 @@
+/* The criterion on a plain table of levels: no engine needed, so that it can be tested by hand. */
+#ifndef SCREE_CHOICE_CRITERION_H
+#define SCREE_CHOICE_CRITERION_H
+
+#include "base/error.h"
+
+/* One level of a curve as far as the criterion sees it. */
+typedef struct scree_level_row {
+  size_t triangle_count;
+  double area, volume;
+} scree_level_row;
+
+/* Levels from the scan (index 0) to the floor, triangle counts never rising. Rows are fetched one
+ * by one, so that a curve of millions of levels needs no second copy. */
+typedef struct scree_level_table {
+  size_t count;
+  scree_level_row (*row)(const void *context, size_t index);
+  const void *context;
+} scree_level_table;
+
+/* The first level whose count is not above target, or the last. O(log count). */
+size_t scree_level_find(const scree_level_table *table, size_t target);
+
+/* floor(rp Nm), where rounding of rp alone does not cost a triangle. */
+size_t scree_level_target(double rp, size_t triangle_count);
+
+/* Fills *choice (grid, trace, picks, noise) from the table; errors other than area and volume are
+ * NaN. O(levels). SCREE_BAD_MESH where the scan has no area, SCREE_BAD_ARGUMENT for bad options. */
+scree_status scree_choice_from_table(const scree_level_table *table,
+                                     const scree_choice_options *options, scree_choice *choice,
+                                     scree_error *error);
+
+/* The grid index with the least errors[which] + w Nr/Nm (ties as for `paper`), or level_count where
+ * it was not measured. */
+size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error which, double weight);
+
+#endif
