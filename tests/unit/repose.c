@@ -1,0 +1,149 @@
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "support/check.h"
+
+/* Heaps of known shape, written into the field directly. */
+typedef double shape(double x, double y, const double *p);
+
+static double cone_shape(double x, double y, const double *p) { /* apex x, y, height, tan */
+  return p[2] - p[3] * hypot(x - p[0], y - p[1]);
+}
+static double truncated_shape(double x, double y, const double *p) {
+  return fmin(p[4], cone_shape(x, y, p));
+}
+static double pyramid_shape(double x, double y, const double *p) { /* height, tan across a face */
+  return p[0] - p[1] * fmax(fabs(x), fabs(y));
+}
+static double tilted_shape(double x, double y, const double *p) {
+  return cone_shape(x, y, p) + p[4] * x;
+}
+static double layer_shape(double x, double y, const double *p) {
+  return hypot(x, y) < 0.4 ? p[0] : 0;
+}
+
+static scree_repose measured(shape *surface, const double *p, double noise, double particle_size) {
+  scree_height_field field;
+  scree_error error;
+  CHECK_OK(scree_height_field_create(0, 0, 0.5, 2e-3, &field, &error), error);
+  scree_rng rng = {.seed = 3};
+  for (size_t j = 0; j < field.rows; j++)
+    for (size_t i = 0; i < field.columns; i++) {
+      double z = surface(field.x + ((double)i + 0.5) * field.cell,
+                         field.y + ((double)j + 0.5) * field.cell, p);
+      if (z > 0)
+        field.height[j * field.columns + i] = fmax(1e-9, z + noise * scree_rng_normal(&rng));
+    }
+  scree_repose_options options = scree_default_repose_options();
+  options.particle_size = particle_size;
+  scree_repose repose;
+  CHECK_OK(scree_repose_measure(&field, &options, &repose, &error), error);
+  scree_height_field_free(&field);
+  return repose;
+}
+
+static double deg(double tangent) {
+  return atan(tangent) * 57.29577951308232;
+}
+
+static void cones_give_their_angle_each_way(void **state) {
+  (void)state;
+  for (double angle = 10; angle <= 50; angle += 8) {
+    double tangent = tan(angle / 57.29577951308232), p[] = {0.02, -0.03, 0.35 * tangent, tangent};
+    scree_repose r = measured(cone_shape, p, 0, 0.02);
+    assert_true(r.heap);
+    CHECK_NEAR(r.sector_deg, angle, 0.15);
+    CHECK_NEAR(r.cone_deg, angle, 1e-6);
+    CHECK_NEAR(r.silhouette_deg, angle, 0.15);
+    CHECK_NEAR(r.cone_apex[0], 0.02, 1e-6);
+    CHECK_NEAR(r.base_radius, 0.35, 0.003);
+    CHECK_NEAR(r.axis[1], -0.03, 1e-3);
+    CHECK_NEAR(r.envelope_volume, 3.14159265 * 0.35 * 0.35 * p[2] / 3, 2e-3 * p[2] * 0.35 * 0.35);
+    assert_int_equal(r.sector_count, 36);
+    assert_int_equal(r.flank_count, 36);
+    assert_true(r.sector_sd_deg < 0.3);
+  }
+}
+
+static void rough_and_truncated_heaps_give_the_angle_of_their_flanks(void **state) {
+  (void)state;
+  double p[] = {0, 0, 0.2, 0.5, 0.12};
+  scree_repose rough = measured(cone_shape, p, 4e-3, 0.02);
+  CHECK_NEAR(rough.sector_deg, deg(0.5), 0.5);
+  CHECK_NEAR(rough.cone_deg, deg(0.5), 0.5);
+  scree_repose cut = measured(truncated_shape, p, 0, 0.02);
+  CHECK_NEAR(cut.height, 0.12, 1e-9);
+  CHECK_NEAR(cut.sector_deg, deg(0.5), 0.15);
+  CHECK_NEAR(cut.cone_deg, deg(0.5), 1e-6);
+  CHECK_NEAR(cut.silhouette_deg, deg(0.5), 0.2);
+}
+
+/* In a sector at the angle a from the middle of a face the slope is tan * cos a: the mean over an
+ * eighth turn of atan(tan cos a), and from the side the slope is that of the outline, tan cos a
+ * again. */
+static void pyramids_and_tilted_cones_give_the_mean_over_directions(void **state) {
+  (void)state;
+  double p[] = {0.2, 0.6}, mean = 0;
+  for (int i = 0; i < 1000; i++)
+    mean += deg(0.6 * cos((i + 0.5) / 1000 * 0.7853981633974483)) / 1000;
+  scree_repose pyramid = measured(pyramid_shape, p, 0, 0.02);
+  CHECK_NEAR(pyramid.sector_deg, mean, 0.4);
+  assert_true(pyramid.sector_sd_deg > 1);
+  double q[] = {0, 0, 0.15, 0.5, 0.05};
+  scree_repose tilted = measured(tilted_shape, q, 0, 0.02);
+  CHECK_NEAR(tilted.sector_deg, deg(0.5), 0.7);
+  CHECK_NEAR(tilted.cone_deg, deg(0.5), 1.0);
+}
+
+static void what_is_no_heap_gets_no_number(void **state) {
+  (void)state;
+  double p[] = {0.03};
+  scree_repose layer = measured(layer_shape, p, 0, 0.02);
+  assert_false(layer.heap);
+  assert_true(isnan(layer.sector_deg) && isnan(layer.cone_deg) && isnan(layer.silhouette_deg));
+  assert_string_equal(layer.reason, "30.0 mm high, less than 2 particle sizes of 20.0 mm");
+  double tall[] = {0.2};
+  assert_false(measured(layer_shape, tall, 0, 0.02).heap);
+  double none[] = {-1};
+  assert_string_equal(measured(layer_shape, none, 0, 0).reason, "nothing lies on the floor");
+}
+
+/* The field of one tetrahedron and one sphere against a direct evaluation. */
+static void surfaces_are_raised_exactly_at_the_centres(void **state) {
+  (void)state;
+  double corners[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+  uint32_t faces[] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  scree_mesh mesh = {corners, faces, 4, 4};
+  scree_height_field field;
+  scree_error error;
+  CHECK_OK(scree_height_field_create(0, 0, 2, 0.05, &field, &error), error);
+  const double at[] = {0.01, 0.02, 5}, upright[] = {1, 0, 0, 0}, centre[] = {-1, -1, 5.5};
+  scree_height_field_add_mesh(&field, &mesh, at, upright, 5);
+  scree_height_field_add_sphere(&field, centre, 0.4, 5);
+  size_t raised = 0;
+  for (size_t j = 0; j < field.rows; j++)
+    for (size_t i = 0; i < field.columns; i++) {
+      double x = field.x + ((double)i + 0.5) * 0.05, y = field.y + ((double)j + 0.5) * 0.05;
+      double plane = 1 - (x - 0.01) - (y - 0.02), got = field.height[j * field.columns + i];
+      double d2 = (x + 1) * (x + 1) + (y + 1) * (y + 1);
+      if (d2 < 0.15) {
+        CHECK_NEAR(got, 0.5 + sqrt(0.16 - d2), 1e-12);
+      } else if (x > 0.05 && y > 0.05 && plane > 0.05) {
+        CHECK_NEAR(got, plane, 1e-12);
+        raised++;
+      }
+    }
+  assert_true(raised > 100);
+  scree_height_field_free(&field);
+  assert_int_equal(scree_height_field_create(0, 0, 1, 1e-7, &field, &error), SCREE_BAD_ARGUMENT);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(cones_give_their_angle_each_way),
+      cmocka_unit_test(rough_and_truncated_heaps_give_the_angle_of_their_flanks),
+      cmocka_unit_test(pyramids_and_tilted_cones_give_the_mean_over_directions),
+      cmocka_unit_test(what_is_no_heap_gets_no_number),
+      cmocka_unit_test(surfaces_are_raised_exactly_at_the_centres),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
