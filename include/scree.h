@@ -474,6 +474,61 @@ SCREE_API scree_status scree_repose_measure(const scree_height_field *field,
                                             const scree_repose_options *options,
                                             scree_repose *repose, scree_error *error);
 
+/* ---- 8.2 Describing an experiment ---- */
+
+typedef enum scree_mass_rule {
+  SCREE_MASS_FROM_MESH, /* density times the volume of each decimated mesh */
+  SCREE_MASS_FROM_SCAN, /* density times the volume of the scan, at every level */
+} scree_mass_rule;
+
+/* The angle-of-repose experiment of Katagiri and Koyanaka (2020), section 2.3, with everything
+ * settable. One table (src/pile/experiment.c) holds each field's key in YAML, unit, range and
+ * source; the comments here repeat the unit. Strings are owned; free with scree_experiment_free. */
+typedef struct scree_experiment {
+  char *preset; /* the name it started from */
+  size_t particle_count;
+  uint64_t seed;
+  double density;                          /* kg/m3 */
+  int mass_rule;                           /* a scree_mass_rule */
+  double cylinder_diameter, disc_diameter; /* m */
+  double pack_time, settle_time;           /* s */
+  double lift_speed;                       /* m/s */
+  double lift_time;                        /* s */
+  double hold_time;                        /* s: at most, until still */
+  double still_energy;                     /* J of kinetic energy a particle: less is still */
+  bool stop_when_still;                    /* end a phase early when still */
+  double drop_height;                      /* m between the heap and the layer being filled in */
+  double gravity;                          /* m/s2 */
+  double young_particle, young_wall;       /* Pa */
+  double poisson;
+  double restitution, friction_particle, friction_wall;
+  int contact_law;            /* 0 linear, 1 hysteretic */
+  double steps_per_contact;   /* N of the time step */
+  double stiffness_factor;    /* multiplies all stiffnesses */
+  double frame_interval;      /* s between frames written; 0: none */
+  double checkpoint_interval; /* s of wall-clock time between checkpoints */
+  double height_cell;         /* m: cells of the height field; 0: a tenth of the particle size */
+  size_t sector_count;
+  double band_low, band_high;
+} scree_experiment;
+
+/* The names of the presets: "paper", "small", "demo"; NULL past the last. */
+SCREE_API const char *scree_preset_name(size_t index);
+SCREE_API scree_status scree_experiment_preset(const char *name, scree_experiment *experiment,
+                                               scree_error *error);
+SCREE_API void scree_experiment_free(scree_experiment *experiment);
+/* Reads YAML (or JSON) over the values that *experiment has; `preset: NAME` first takes that
+ * preset. Errors name file, line, column, key, value and limit; *experiment is untouched on
+ * failure. */
+SCREE_API scree_status scree_experiment_read(const char *path, scree_experiment *experiment,
+                                             scree_error *error);
+/* Sets one field from text, as `cylinder.diameter` to "0.3". */
+SCREE_API scree_status scree_experiment_set(scree_experiment *experiment, const char *key,
+                                            const char *value, scree_error *error);
+/* Writes the whole experiment as YAML with units and comments; reading it back gives the same
+ * values. */
+SCREE_API void scree_experiment_print(const scree_experiment *experiment, FILE *stream);
+
 /* ==== 9. Reports: figures, pictures, files for other programs ================================= */
 
 /* ---- 9.1 Pictures ---- */

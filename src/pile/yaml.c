@@ -1,0 +1,173 @@
+#include "pile/yaml.h"
+
+#include "base/alloc.h"
+#include "base/file.h"
+
+#include <string.h>
+#include <yaml.h>
+
+enum { LARGEST_FILE = 1 << 20, DEEPEST = 16 };
+
+void scree_yaml_free(scree_yaml *root) {
+  if (!root) return;
+  for (size_t i = 0; i < root->item_count; i++) scree_yaml_free(&root->items[i]);
+  scree_free(root->items);
+  scree_free(root->key);
+  scree_free(root->text);
+  *root = (scree_yaml){0};
+}
+
+const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key) {
+  for (size_t i = 0; i < mapping->item_count; i++)
+    if (mapping->items[i].key && !strcmp(mapping->items[i].key, key)) return &mapping->items[i];
+  return NULL;
+}
+
+typedef struct reader {
+  yaml_parser_t parser;
+  const char *name;
+  scree_error *error;
+} reader;
+
+static scree_status fail_at(reader *r, const yaml_mark_t *mark, const char *what) {
+  return scree_fail(r->error, SCREE_BAD_FILE, "%s, line %zu, column %zu: %s", r->name,
+                    mark->line + 1, mark->column + 1, what);
+}
+
+static scree_status next_event(reader *r, yaml_event_t *event) {
+  if (yaml_parser_parse(&r->parser, event)) return SCREE_OK;
+  const char *problem = r->parser.problem ? r->parser.problem : "cannot be read as YAML";
+  if (r->parser.error == YAML_MEMORY_ERROR) return scree_fail_memory(r->error, 0, r->name);
+  return fail_at(r, &r->parser.problem_mark, problem);
+}
+
+static char *copy_scalar(const yaml_event_t *event) {
+  return scree_strdup((const char *)event->data.scalar.value);
+}
+
+static scree_status read_node(reader *r, const yaml_event_t *event, int depth, scree_yaml *node);
+
+/* A new empty item at the end, or NULL after filling the error. */
+static scree_yaml *append(reader *r, scree_yaml *parent, size_t *capacity) {
+  if (parent->item_count == *capacity) {
+    size_t grown = *capacity ? 2 * *capacity : 8;
+    scree_yaml *items = scree_resize(parent->items, grown, sizeof *items);
+    if (!items) {
+      scree_fail_memory(r->error, grown * sizeof *items, r->name);
+      return NULL;
+    }
+    parent->items = items;
+    *capacity = grown;
+  }
+  scree_yaml *item = &parent->items[parent->item_count++];
+  *item = (scree_yaml){0};
+  return item;
+}
+
+/* A key and its value into the mapping; *event is the key's. */
+static scree_status read_pair(reader *r, yaml_event_t *event, int depth, scree_yaml *mapping,
+                              size_t *capacity) {
+  if (event->type != YAML_SCALAR_EVENT)
+    return fail_at(r, &event->start_mark, "a key must be a word");
+  if (scree_yaml_find(mapping, (const char *)event->data.scalar.value))
+    return fail_at(r, &event->start_mark, "this key stands here twice");
+  char *key = copy_scalar(event);
+  if (!key) return scree_fail_memory(r->error, 0, r->name);
+  scree_yaml *item = append(r, mapping, capacity);
+  if (!item) {
+    scree_free(key);
+    return SCREE_OUT_OF_MEMORY;
+  }
+  item->key = key;
+  yaml_event_t value;
+  scree_status status = next_event(r, &value);
+  if (status != SCREE_OK) return status;
+  status = read_node(r, &value, depth + 1, item);
+  yaml_event_delete(&value);
+  return status;
+}
+
+static scree_status read_items(reader *r, int depth, scree_yaml *node, yaml_event_type_t end) {
+  size_t capacity = 0;
+  for (;;) {
+    yaml_event_t event;
+    scree_status status = next_event(r, &event);
+    if (status != SCREE_OK) return status;
+    bool done = event.type == end;
+    if (!done && node->kind == SCREE_YAML_MAPPING) {
+      status = read_pair(r, &event, depth, node, &capacity);
+    } else if (!done) {
+      scree_yaml *item = append(r, node, &capacity);
+      status = item ? read_node(r, &event, depth + 1, item) : SCREE_OUT_OF_MEMORY;
+    }
+    yaml_event_delete(&event);
+    if (done || status != SCREE_OK) return status;
+  }
+}
+
+static scree_status read_node(reader *r, const yaml_event_t *event, int depth, scree_yaml *node) {
+  node->line = event->start_mark.line + 1;
+  node->column = event->start_mark.column + 1;
+  if (depth > DEEPEST) return fail_at(r, &event->start_mark, "nested too deeply");
+  switch (event->type) {
+  case YAML_SCALAR_EVENT:
+    node->kind = SCREE_YAML_SCALAR;
+    node->text = copy_scalar(event);
+    return node->text ? SCREE_OK : scree_fail_memory(r->error, 0, r->name);
+  case YAML_SEQUENCE_START_EVENT:
+    node->kind = SCREE_YAML_SEQUENCE;
+    return read_items(r, depth, node, YAML_SEQUENCE_END_EVENT);
+  case YAML_MAPPING_START_EVENT:
+    node->kind = SCREE_YAML_MAPPING;
+    return read_items(r, depth, node, YAML_MAPPING_END_EVENT);
+  default:
+    return fail_at(r, &event->start_mark, "aliases are not understood here");
+  }
+}
+
+/* stream start, document start, one node, document end, stream end */
+static scree_status read_stream(reader *r, scree_yaml *root) {
+  bool seen = false;
+  *root = (scree_yaml){.kind = SCREE_YAML_MAPPING, .line = 1, .column = 1};
+  for (;;) {
+    yaml_event_t event;
+    scree_status status = next_event(r, &event);
+    if (status != SCREE_OK) return status;
+    bool end = event.type == YAML_STREAM_END_EVENT;
+    bool frame =
+        end || event.type == YAML_STREAM_START_EVENT || event.type == YAML_DOCUMENT_END_EVENT;
+    if (event.type == YAML_DOCUMENT_START_EVENT && seen)
+      status = fail_at(r, &event.start_mark, "a second document; one is expected");
+    else if (!frame && event.type != YAML_DOCUMENT_START_EVENT) {
+      seen = true;
+      status = read_node(r, &event, 0, root);
+    }
+    yaml_event_delete(&event);
+    if (end || status != SCREE_OK) return status;
+  }
+}
+
+scree_status scree_yaml_parse(const char *bytes, size_t byte_count, const char *name,
+                              scree_yaml *root, scree_error *error) {
+  reader r = {.name = name, .error = error};
+  if (!yaml_parser_initialize(&r.parser)) return scree_fail_memory(error, 0, name);
+  yaml_parser_set_input_string(&r.parser, (const unsigned char *)bytes, byte_count);
+  scree_yaml made;
+  scree_status status = read_stream(&r, &made);
+  yaml_parser_delete(&r.parser);
+  if (status == SCREE_OK)
+    *root = made;
+  else
+    scree_yaml_free(&made);
+  return status;
+}
+
+scree_status scree_yaml_read(const char *path, scree_yaml *root, scree_error *error) {
+  char *bytes;
+  size_t byte_count;
+  scree_status status = scree_file_read(path, LARGEST_FILE, &bytes, &byte_count, error);
+  if (status != SCREE_OK) return status;
+  status = scree_yaml_parse(bytes, byte_count, path, root, error);
+  scree_free(bytes);
+  return status;
+}

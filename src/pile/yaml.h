@@ -1,0 +1,33 @@
+/* A YAML file (JSON is YAML) as a small tree whose every node knows its line and column. Only what
+ * configuration needs: one document of mappings, sequences and scalars; no anchors, aliases or
+ * tags. */
+#ifndef SCREE_PILE_YAML_H
+#define SCREE_PILE_YAML_H
+
+#include "base/error.h"
+
+typedef enum scree_yaml_kind {
+  SCREE_YAML_SCALAR,
+  SCREE_YAML_SEQUENCE,
+  SCREE_YAML_MAPPING
+} scree_yaml_kind;
+
+typedef struct scree_yaml {
+  scree_yaml_kind kind;
+  size_t line, column;      /* from 1 */
+  char *key;                /* in a mapping; else NULL */
+  char *text;               /* of a scalar; else NULL */
+  struct scree_yaml *items; /* of a sequence or a mapping */
+  size_t item_count;
+} scree_yaml;
+
+/* Reads a file of at most 1 MB ("-" is stdin); an empty file is an empty mapping. */
+scree_status scree_yaml_read(const char *path, scree_yaml *root, scree_error *error);
+scree_status scree_yaml_parse(const char *bytes, size_t byte_count, const char *name,
+                              scree_yaml *root, scree_error *error);
+void scree_yaml_free(scree_yaml *root);
+
+/* The item with the key, or NULL. */
+const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key);
+
+#endif
