@@ -110,6 +110,107 @@ SCREE_API scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy,
 
 /* ---- 2.1 Reading and writing ---- */
 
+/* How a scan is read. Files carry no unit: it is stated here, never guessed. */
+typedef struct scree_read_options {
+  /* Metres per unit of the file, in [1e-12, 1e12]; default 1e-3 (millimetres, as scanners write).
+   */
+  double unit_m;
+  /* Vertices closer than this share of the bounding box diagonal become one: 0 (the default: only
+   * equal positions) or in [1e-12, 0.1]. See scree_mesh_weld. */
+  double weld_tolerance;
+  /* The most bytes read from a file or stream; default 0: only memory limits. */
+  size_t max_bytes;
+} scree_read_options;
+
+SCREE_API scree_read_options scree_default_read_options(void);
+
+/* A scan: its welded surface and what the file said. */
+typedef struct scree_scan {
+  scree_mesh mesh;         /* metres; vertices and triangles in canonical order (scree_mesh_weld) */
+  scree_checksum checksum; /* of the file's bytes */
+  size_t byte_count;
+  char format[32];         /* for example "STL binary", "PLY binary little endian" */
+  size_t facet_count;      /* triangles in the file; a polygon counts as its triangles */
+  size_t degenerate_count; /* of these, dropped because two corners coincide */
+  size_t solid_count;      /* `solid`s of an ASCII STL; else 1 */
+  size_t
+      ignored_byte_count; /* bytes after the last facet of a binary STL, fewer than a facet has */
+} scree_scan;
+
+SCREE_API void scree_scan_free(scree_scan *scan);
+
+/* Reads and welds a scan. path "-" is standard input. The format is found by content, not by name:
+ * STL (binary, also with colours or a header that begins with `solid`; ASCII), PLY (ASCII, both
+ * byte orders, polygons, triangle strips), OBJ (polygons, v/vt/vn, negative indices), OFF (also
+ * with colours, normals, texture coordinates). options NULL means the defaults.
+ *
+ * Sizes in the file are believed only where its length allows them, so memory stays within a fixed
+ * multiple of the file's length. Errors: SCREE_IO; SCREE_LIMIT above max_bytes or 2^32 - 2
+ * vertices; SCREE_UNSUPPORTED for a format known but not read; SCREE_BAD_FILE with the line or
+ * byte, the value and the limit; SCREE_BAD_MESH where every facet is degenerate;
+ * SCREE_OUT_OF_MEMORY. Free *scan with scree_scan_free. */
+SCREE_API scree_status scree_scan_read(const char *path, const scree_read_options *options,
+                                       scree_scan *scan, scree_error *error);
+/* The same for byte_count bytes in memory; name stands for the file in errors. */
+SCREE_API scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
+                                        const scree_read_options *options, scree_scan *scan,
+                                        scree_error *error);
+
+/* Makes an indexed mesh of loose triangles: triangle t has its corners at corner_positions[9t ..
+ * 9t+8], finite and at most 1e30 in size, in metres.
+ *
+ * The order is canonical, so that every order of the same facets, and every start corner, gives the
+ * same bits: vertices are sorted by x, then y, then z; each triangle starts at its smallest index,
+ * winding kept; triangles are sorted by their three indices. -0 counts as 0. Triangles of which two
+ * corners coincide are dropped and counted in *degenerate_count (may be NULL); vertices without a
+ * triangle are dropped. Duplicate triangles stay.
+ *
+ * tolerance > 0 also unites all vertices that are linked by steps no longer than tolerance times
+ * the bounding box diagonal; the first of each group, in canonical order, gives the position. The
+ * result welded again with the same distance is itself.
+ *
+ * Errors: SCREE_BAD_ARGUMENT for a coordinate or tolerance out of range; SCREE_LIMIT above 2^32 - 2
+ * vertices or 1.4e9 triangles, or where the tolerance joins so many pairs that the work would not
+ * end; SCREE_OUT_OF_MEMORY. Cost: linear in practice, n log n at worst. A mesh without triangles is
+ * a valid result. */
+SCREE_API scree_status scree_mesh_weld(const double *corner_positions, size_t facet_count,
+                                       double tolerance, scree_mesh *mesh, size_t *degenerate_count,
+                                       scree_error *error);
+
+/* Formats that are written. */
+typedef enum scree_file_format {
+  SCREE_FORMAT_AUTO,      /* by the path's extension: .stl .ply .obj .off */
+  SCREE_FORMAT_STL,       /* "stl": binary; positions rounded to 24 bits */
+  SCREE_FORMAT_STL_ASCII, /* "stl-ascii": positions rounded to 24 bits */
+  SCREE_FORMAT_PLY,       /* "ply": binary little endian, double */
+  SCREE_FORMAT_PLY_FLOAT, /* "ply-float": binary little endian, positions rounded to 24 bits */
+  SCREE_FORMAT_OBJ,       /* "obj" */
+  SCREE_FORMAT_OFF,       /* "off" */
+  SCREE_FILE_FORMAT_COUNT,
+} scree_file_format;
+
+/* The format's name as in the comments above ("auto" for SCREE_FORMAT_AUTO). */
+SCREE_API const char *scree_file_format_name(scree_file_format format);
+
+typedef struct scree_write_options {
+  scree_file_format format; /* default SCREE_FORMAT_AUTO */
+  double unit_m;            /* metres per unit of the file, in [1e-12, 1e12]; default 1e-3 */
+  bool overwrite;           /* default false: an existing file is refused */
+  /* One line of provenance, put after scree's version where the format has comments (PLY, OBJ, OFF;
+   * its first 40 bytes in the header of a binary STL); NULL for none. Borrowed. */
+  const char *comment;
+} scree_write_options;
+
+SCREE_API scree_write_options scree_default_write_options(void);
+
+/* Writes the mesh; path "-" is standard output (then format must not be AUTO). The file appears
+ * whole or not at all. Formats with text or double carry every bit of position / unit_m. options
+ * NULL means the defaults. Errors: SCREE_BAD_ARGUMENT for an unknown extension or an index or
+ * coordinate out of range, SCREE_EXISTS, SCREE_IO, SCREE_LIMIT where the format cannot hold the
+ * count. */
+SCREE_API scree_status scree_mesh_write(const scree_mesh *mesh, const char *path,
+                                        const scree_write_options *options, scree_error *error);
+
 /* ---- 2.2 Measures ---- */
 
 /* Sizes and mass properties of a surface, as exact integrals over its polyhedron (docs/method.md,

@@ -1,0 +1,21 @@
+/* Decimal numbers in and out, whatever the locale: the C library's strtod and printf read and write
+ * a decimal comma where the surrounding program asked for one. */
+#ifndef SCREE_BASE_NUMBER_H
+#define SCREE_BASE_NUMBER_H
+
+#include <stddef.h>
+
+/* Reads [+-] digits [. digits] [e|E|d|D [+-] digits] at `begin`, never beyond `end`, correctly
+ * rounded (nearest, ties to even; overflow gives infinity). Answers the first byte behind the
+ * number, or NULL where none begins; a number needs one digit before or after the point. Words
+ * (nan, inf) and hexadecimal are no numbers here. */
+const char *scree_number_parse(const char *begin, const char *end, double *value);
+
+enum { SCREE_NUMBER_SIZE = 32 };
+/* Writes a finite value with the fewest of 15, 16 or 17 digits that scree_number_parse reads back
+ * to the same bits; answers the length. */
+size_t scree_number_format(double value, char text[SCREE_NUMBER_SIZE]);
+/* The same with 6 to 9 digits for a float. */
+size_t scree_number_format_float(float value, char text[SCREE_NUMBER_SIZE]);
+
+#endif

@@ -1,0 +1,199 @@
+/* Which reader a file needs is decided by its content alone.
+ *
+ * Marks that cannot be mistaken come first. Then binary STL, which has no mark: a file whose length
+ * is what bytes 80 to 83 say is one, whatever its header says; text that begins with `solid` is
+ * ASCII STL if its start is free of control characters, which a binary count and floats are not. */
+#include "mesh/read.h"
+
+#include "base/file.h"
+#include "base/number.h"
+#include "mesh/weld.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <string.h>
+
+enum { SNIFF_BYTES = 4096, STL_HEADER = 84, STL_FACET = 50 };
+
+scree_read_options scree_default_read_options(void) {
+  return (scree_read_options){.unit_m = 1e-3};
+}
+
+void scree_scan_free(scree_scan *scan) {
+  if (!scan) return;
+  scree_mesh_free(&scan->mesh);
+  *scan = (scree_scan){0};
+}
+
+scree_status scree_reading_fail(const scree_reading *r, scree_status status, const char *format,
+                                ...) {
+  char sentence[512];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_end(arguments);
+  return scree_fail(r->error, status, "%s: %s", r->name, sentence);
+}
+
+scree_text scree_reading_text(const scree_reading *r) {
+  const char *begin = (const char *)r->bytes, *end = begin + r->byte_count, *p = begin;
+  if (r->byte_count >= 3 && !memcmp(p, "\xef\xbb\xbf", 3)) p += 3;
+  return (scree_text){begin, p, end, r->name, r->options->unit_m, r->error};
+}
+
+typedef struct scaled_positions {
+  const double *positions;
+  double unit_m;
+} scaled_positions;
+
+static void fetch_scaled(const void *context, size_t first, size_t count, double *out) {
+  const scaled_positions *scaled = context;
+  const double *p = scaled->positions + 3 * first;
+  for (size_t i = 0; i < 3 * count; i++) out[i] = p[i] * scaled->unit_m;
+}
+
+scree_status scree_reading_weld(scree_reading *r, const double *positions, size_t position_count,
+                                const uint32_t *triangles, size_t triangle_count) {
+  if (triangle_count == 0)
+    return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets", r->scan->format);
+  scaled_positions scaled = {positions, r->options->unit_m};
+  scree_corner_source source = {fetch_scaled, &scaled, position_count, triangles, triangle_count};
+  r->scan->facet_count = triangle_count;
+  return scree_weld_corners(&source, r->options->weld_tolerance, &r->scan->mesh,
+                            &r->scan->degenerate_count, NULL, r->error);
+}
+
+/* ---- sniffing ---- */
+
+typedef struct mark {
+  const char *bytes;
+  size_t length;
+  const char *advice;
+} mark;
+
+/* Files that are certainly no mesh scree reads, by how they begin. */
+static const mark foreign_marks[] = {
+    {"\x1f\x8b", 2, "is compressed with gzip; decompress it first"},
+    {"BZh", 3, "is compressed with bzip2; decompress it first"},
+    {"\xfd"
+     "7zXZ",
+     5, "is compressed with xz; decompress it first"},
+    {"\x28\xb5\x2f\xfd", 4, "is compressed with zstd; decompress it first"},
+    {"7z\xbc\xaf", 4, "is a 7z archive; unpack it first"},
+    {"Rar!", 4, "is a RAR archive; unpack it first"},
+    {"PK\x03\x04", 4, "is a zip archive (3MF is one); scree reads STL, PLY, OBJ and OFF"},
+    {"\x89PNG", 4, "is a PNG picture, not a mesh"},
+    {"\xff\xd8\xff", 3, "is a JPEG picture, not a mesh"},
+    {"%PDF", 4, "is a PDF document, not a mesh"},
+    {"\x7f"
+     "ELF",
+     4, "is a program, not a mesh"},
+    {"\xff\xfe", 2, "is text in UTF-16; save it as UTF-8"},
+    {"\xfe\xff", 2, "is text in UTF-16; save it as UTF-8"},
+    {"ISO-10303-21", 12, "is a STEP model; export it as STL"},
+    {"glTF", 4, "is a glTF model; scree reads STL, PLY, OBJ and OFF"},
+};
+
+/* Free of control characters other than white space, as far as one looks. */
+static bool looks_like_text(const unsigned char *bytes, size_t count) {
+  if (count > SNIFF_BYTES) count = SNIFF_BYTES;
+  for (size_t i = 0; i < count; i++)
+    if ((bytes[i] < 32 && !(bytes[i] >= 9 && bytes[i] <= 13)) || bytes[i] == 127) return false;
+  return true;
+}
+
+/* The length is what the count in the header says; a count made of text is a text file of that very
+ * length by chance, and far longer than any. */
+static bool has_stl_length(const unsigned char *bytes, size_t byte_count) {
+  if (byte_count < STL_HEADER) return false;
+  uint32_t count = (uint32_t)bytes[80] | (uint32_t)bytes[81] << 8 | (uint32_t)bytes[82] << 16 |
+                   (uint32_t)bytes[83] << 24;
+  return byte_count == STL_HEADER + (size_t)count * STL_FACET;
+}
+
+static bool begins_with(const scree_text *t, const char *word) {
+  size_t length = strlen(word);
+  return (size_t)(t->end - t->p) >= length && scree_token_is((scree_token){t->p, length}, word);
+}
+
+static scree_status fail_text(scree_reading *r, scree_text text) {
+  char quote[SCREE_QUOTE_SIZE];
+  scree_text_skip_space(&text);
+  if (begins_with(&text, "<!doctype html") || begins_with(&text, "<html"))
+    return scree_reading_fail(
+        r, SCREE_BAD_FILE,
+        "is an HTML page, not a mesh (line 1 begins %s); was a link saved instead of the file?",
+        scree_text_quote(&text, text.p, quote));
+  if (text.p == text.end)
+    return scree_reading_fail(r, SCREE_BAD_FILE, "holds only white space (%zu bytes)",
+                              r->byte_count);
+  return scree_reading_fail(r, SCREE_BAD_FILE,
+                            "is text, but neither STL, PLY, OBJ nor OFF: it begins with %s",
+                            scree_text_quote(&text, text.p, quote));
+}
+
+static scree_status read_binary_or_fail(scree_reading *r) {
+  for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++) {
+    const mark *m = &foreign_marks[i];
+    if (r->byte_count >= m->length && !memcmp(r->bytes, m->bytes, m->length))
+      return scree_reading_fail(r, SCREE_BAD_FILE, "%s", m->advice);
+  }
+  if (r->byte_count < STL_HEADER)
+    return scree_reading_fail(r, SCREE_BAD_FILE,
+                              "too short: %zu bytes; a binary STL has at least %d", r->byte_count,
+                              STL_HEADER);
+  return scree_read_stl_binary(r);
+}
+
+static scree_status read_any(scree_reading *r) {
+  if (r->byte_count == 0) return scree_reading_fail(r, SCREE_BAD_FILE, "the file is empty");
+  if (has_stl_length(r->bytes, r->byte_count)) return scree_read_stl_binary(r);
+  if (!looks_like_text(r->bytes, r->byte_count)) return read_binary_or_fail(r);
+  scree_text text = scree_reading_text(r), start = text;
+  if (scree_token_is(scree_text_next(&start), "solid")) return scree_read_stl_ascii(r);
+  return fail_text(r, text);
+}
+
+/* ---- the public calls ---- */
+
+static scree_status check_options(const scree_read_options *o, scree_error *error) {
+  if (!(o->unit_m >= 1e-12 && o->unit_m <= 1e12))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the unit is %g m; it must lie in [1e-12, 1e12] m",
+                      o->unit_m);
+  return SCREE_OK;
+}
+
+scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
+                              const scree_read_options *options, scree_scan *scan,
+                              scree_error *error) {
+  scree_read_options used = options ? *options : scree_default_read_options();
+  scree_status status = check_options(&used, error);
+  if (status != SCREE_OK) return status;
+  scree_scan made = {.byte_count = byte_count};
+  scree_reading r = {name, bytes, byte_count, &used, &made, error};
+  status = read_any(&r);
+  if (status == SCREE_OK && made.mesh.triangle_count == 0)
+    status = scree_reading_fail(&r, SCREE_BAD_MESH,
+                                "all %zu facets are degenerate: two corners of each coincide",
+                                made.facet_count);
+  if (status != SCREE_OK) {
+    scree_scan_free(&made);
+    return status;
+  }
+  made.checksum = scree_checksum_of(bytes, byte_count);
+  *scan = made;
+  return SCREE_OK;
+}
+
+scree_status scree_scan_read(const char *path, const scree_read_options *options, scree_scan *scan,
+                             scree_error *error) {
+  char *bytes;
+  size_t byte_count;
+  scree_status status =
+      scree_file_read(path, options ? options->max_bytes : 0, &bytes, &byte_count, error);
+  if (status != SCREE_OK) return status;
+  const char *name = strcmp(path, "-") != 0 ? path : "standard input";
+  status = scree_scan_parse(bytes, byte_count, name, options, scan, error);
+  scree_free(bytes);
+  return status;
+}

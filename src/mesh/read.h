@@ -1,0 +1,35 @@
+/* What the readers share. One file is read by one of them, found by content (read.c). */
+#ifndef SCREE_MESH_READ_H
+#define SCREE_MESH_READ_H
+
+#include "base/alloc.h"
+#include "mesh/text.h"
+
+/* One file being read. */
+typedef struct scree_reading {
+  const char *name; /* for errors */
+  const unsigned char *bytes;
+  size_t byte_count;
+  const scree_read_options *options;
+  scree_scan *scan; /* filled; its mesh is freed by the caller on failure */
+  scree_error *error;
+} scree_reading;
+
+/* The file as text, behind a byte order mark. */
+scree_text scree_reading_text(const scree_reading *r);
+
+/* The readers. Each fills scan->mesh, format and counts. */
+scree_status scree_read_stl_binary(scree_reading *r);
+scree_status scree_read_stl_ascii(scree_reading *r);
+
+/* "NAME: no facets" and its like: the sentence is for the whole file. */
+scree_status scree_reading_fail(const scree_reading *r, scree_status status, const char *format,
+                                ...) __attribute__((format(printf, 3, 4)));
+
+/* Welds loose positions in file units into scan->mesh: the end of every reader but binary STL's.
+ * With triangles NULL, each three positions are one; triangle_count counts what the file gives,
+ * also `lost` ones that had fewer than three corners from the start. */
+scree_status scree_reading_weld(scree_reading *r, const double *positions, size_t position_count,
+                                const uint32_t *triangles, size_t triangle_count);
+
+#endif

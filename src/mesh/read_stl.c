@@ -1,0 +1,188 @@
+/* STL, both kinds.
+ *
+ * Binary: 80 bytes of header, which may say anything (also `solid`), a 32-bit count, then 50 bytes
+ * per facet: normal and three corners as 12 little-endian floats, and an attribute word (colours;
+ * ignored). Normals are ignored: the order of the corners says what is outside. The count must fit
+ * the file; fewer than 50 bytes may follow the last facet, as some writers pad.
+ *
+ * ASCII: words in any case, any white space between them. A solid's name goes to the end of its
+ * line, unless a facet begins on that line. Every solid must be ended: a file that stops before was
+ * cut. */
+#include "base/array.h"
+#include "mesh/read.h"
+#include "mesh/weld.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { HEADER_BYTES = 84, FACET_BYTES = 50, NORMAL_BYTES = 12 };
+
+static uint32_t load_u32(const unsigned char *p) {
+  return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
+}
+
+static float load_float(const unsigned char *p) {
+  uint32_t bits = load_u32(p);
+  float value;
+  memcpy(&value, &bits, sizeof value);
+  return value;
+}
+
+/* ---- binary ---- */
+
+typedef struct binary_facets {
+  const unsigned char *first;
+  double unit_m;
+} binary_facets;
+
+/* Corners come in whole facets. */
+static void fetch_binary(const void *context, size_t first, size_t count, double *out) {
+  const binary_facets *facets = context;
+  const unsigned char *p = facets->first + first / 3 * FACET_BYTES + NORMAL_BYTES;
+  for (size_t f = 0; f < count / 3; f++, p += FACET_BYTES)
+    for (size_t i = 0; i < 9; i++) *out++ = (double)load_float(p + 4 * i) * facets->unit_m;
+}
+
+static scree_status fail_bad_corner(const scree_reading *r, size_t corner) {
+  size_t byte = HEADER_BYTES + corner / 3 * FACET_BYTES + NORMAL_BYTES + corner % 3 * 12;
+  const unsigned char *p = r->bytes + byte;
+  return scree_reading_fail(r, SCREE_BAD_FILE,
+                            "facet %zu of %zu, corner %zu (byte %zu) lies at (%g, %g, %g); "
+                            "coordinates must be finite and "
+                            "at most %g m in size",
+                            corner / 3 + 1, r->scan->facet_count, corner % 3 + 1, byte,
+                            (double)load_float(p), (double)load_float(p + 4),
+                            (double)load_float(p + 8), SCREE_COORDINATE_LIMIT);
+}
+
+scree_status scree_read_stl_binary(scree_reading *r) {
+  scree_scan *scan = r->scan;
+  snprintf(scan->format, sizeof scan->format, "STL binary");
+  size_t count = load_u32(r->bytes + 80), room = (r->byte_count - HEADER_BYTES) / FACET_BYTES;
+  if (count != room)
+    return scree_reading_fail(
+        r, SCREE_BAD_FILE,
+        "binary STL %s: bytes 80 to 83 say %zu facets, which take %zu bytes, but the file has %zu "
+        "bytes, room for %zu facets",
+        count > room ? "cut off" : "with a wrong count", count, HEADER_BYTES + count * FACET_BYTES,
+        r->byte_count, room);
+  if (count == 0)
+    return scree_reading_fail(r, SCREE_BAD_FILE, "binary STL with no facets: bytes 80 to 83 say 0");
+  scan->facet_count = count;
+  scan->solid_count = 1;
+  scan->ignored_byte_count = r->byte_count - HEADER_BYTES - count * FACET_BYTES;
+  binary_facets facets = {r->bytes + HEADER_BYTES, r->options->unit_m};
+  scree_corner_source source = {fetch_binary, &facets, 3 * count, NULL, count};
+  size_t bad_corner = SIZE_MAX;
+  scree_status status = scree_weld_corners(&source, r->options->weld_tolerance, &scan->mesh,
+                                           &scan->degenerate_count, &bad_corner, r->error);
+  return bad_corner != SIZE_MAX ? fail_bad_corner(r, bad_corner) : status;
+}
+
+/* ---- ASCII ---- */
+
+typedef struct corner_list {
+  double *items; /* three per corner */
+  size_t count, capacity;
+} corner_list;
+
+/* Whether `facet normal` and three numbers begin at t: only then a facet shares the line with the
+ * solid's name. Moves t. */
+static bool facet_begins(scree_text *t) {
+  double number;
+  scree_text probe = *t;
+  probe.error = NULL;
+  if (!scree_token_is(scree_text_next(&probe), "facet")) return false;
+  if (!scree_token_is(scree_text_next(&probe), "normal")) return false;
+  for (int i = 0; i < 3; i++)
+    if (scree_text_number(&probe, "", &number) != SCREE_OK) return false;
+  return true;
+}
+
+static void skip_name(scree_text *t) {
+  for (;;) {
+    scree_text_skip_blanks(t);
+    if (scree_text_at_line_end(t)) return;
+    if ((*t->p | 0x20) == 'f' && facet_begins(t)) return;
+    scree_text_next(t);
+  }
+}
+
+static scree_status fail_expected(const scree_text *t, const char *at, const char *expected) {
+  char quote[SCREE_QUOTE_SIZE];
+  scree_text_quote(t, at, quote);
+  /* every caller has just read the word at `at` */
+  if (t->p == t->end)
+    return scree_text_fail(t, at, "the file is cut off: it ends in %s where `%s` should stand",
+                           at < t->end ? quote : "nothing", expected);
+  return scree_text_fail(t, at, "expected `%s`, found %s", expected, quote);
+}
+
+static scree_status expect_word(scree_text *t, const char *word) {
+  scree_token token = scree_text_next(t);
+  return scree_token_is(token, word) ? SCREE_OK : fail_expected(t, token.begin, word);
+}
+
+static scree_status skip_normal(scree_text *t) {
+  scree_status status = expect_word(t, "normal");
+  for (int i = 0; i < 3 && status == SCREE_OK; i++) {
+    scree_token token = scree_text_next(t); /* any word: exporters write NaN in many ways */
+    if (token.length == 0 || scree_token_is(token, "outer"))
+      status = fail_expected(t, token.begin, "three numbers of the normal");
+  }
+  return status;
+}
+
+static scree_status read_facet(scree_text *t, corner_list *corners) {
+  scree_status status = skip_normal(t);
+  if (status == SCREE_OK) status = expect_word(t, "outer");
+  if (status == SCREE_OK) status = expect_word(t, "loop");
+  if (status != SCREE_OK) return status;
+  if (!SCREE_RESERVE(corners, corners->count + 9))
+    return scree_fail_memory(t->error, corners->capacity * sizeof(double), "the facets of an STL");
+  for (int i = 0; i < 3 && status == SCREE_OK; i++) {
+    status = expect_word(t, "vertex");
+    if (status == SCREE_OK) status = scree_text_position(t, corners->items + corners->count);
+    corners->count += 3;
+  }
+  if (status == SCREE_OK) status = expect_word(t, "endloop");
+  if (status == SCREE_OK) status = expect_word(t, "endfacet");
+  return status;
+}
+
+static scree_status read_solids(scree_reading *r, scree_text *t, corner_list *corners) {
+  bool inside = false;
+  for (;;) {
+    scree_token token = scree_text_next(t);
+    scree_status status = SCREE_OK;
+    if (token.length == 0) {
+      if (!inside) return SCREE_OK;
+      return scree_text_fail(t, t->end,
+                             "the file ends after %zu facets without `endsolid`: it is cut off",
+                             corners->count / 9);
+    }
+    if (inside && scree_token_is(token, "facet"))
+      status = read_facet(t, corners);
+    else if (inside && scree_token_is(token, "endsolid")) {
+      inside = false;
+      scree_text_skip_line(t);
+    } else if (!inside && scree_token_is(token, "solid")) {
+      inside = true;
+      r->scan->solid_count++;
+      skip_name(t);
+    } else
+      status = fail_expected(t, token.begin, inside ? "facet` or `endsolid" : "solid");
+    if (status != SCREE_OK) return status;
+  }
+}
+
+scree_status scree_read_stl_ascii(scree_reading *r) {
+  snprintf(r->scan->format, sizeof r->scan->format, "STL ASCII");
+  scree_text text = scree_reading_text(r);
+  corner_list corners = {0};
+  scree_status status = read_solids(r, &text, &corners);
+  if (status == SCREE_OK)
+    status = scree_reading_weld(r, corners.items, corners.count / 3, NULL, corners.count / 9);
+  scree_free(corners.items);
+  return status;
+}

@@ -1,0 +1,153 @@
+/* Single linkage: two vertices belong together when a chain of steps no longer than the distance d
+ * joins them. That relation does not depend on any order, and because each group keeps the position
+ * of one of its members, different groups stay further apart than d: welding again changes nothing.
+ *
+ * Vertices are entered one by one into a hash table of cells of side d; each is compared with the
+ * earlier ones in its cell and the 26 around it. Groups are kept by union-find whose root is the
+ * smallest index. Crowded cells cost the product of their counts: the work is counted and refused
+ * above a limit, rather than left to run for hours. */
+#include "mesh/weld_near.h"
+
+#include "base/vec.h"
+#include "mesh/weld_sort.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { NO_VERTEX = UINT32_MAX, WORK_PER_VERTEX = 4000 };
+
+typedef struct cells {
+  const double *positions;
+  size_t vertex_count;
+  double scale; /* 1 / d */
+  vec3 low;
+  uint32_t *heads; /* the last vertex entered of a chain of cells; NO_VERTEX where none */
+  uint32_t *next;  /* the one entered before it */
+  size_t head_count;
+  uint32_t *parent; /* union-find */
+} cells;
+
+static uint32_t find_root(uint32_t *parent, uint32_t v) {
+  while (parent[v] != v) v = parent[v] = parent[parent[v]];
+  return v;
+}
+
+static void unite(uint32_t *parent, uint32_t a, uint32_t b) {
+  a = find_root(parent, a);
+  b = find_root(parent, b);
+  if (a < b)
+    parent[b] = a;
+  else
+    parent[a] = b;
+}
+
+static vec3 scaled_position(const cells *c, uint32_t v) {
+  return vec3_scale(vec3_sub(vec3_load(c->positions + 3 * (size_t)v), c->low), c->scale);
+}
+
+static size_t head_of(const cells *c, int64_t x, int64_t y, int64_t z) {
+  uint64_t h = (uint64_t)x * 0x9e3779b97f4a7c15u;
+  h = (h ^ h >> 29 ^ (uint64_t)y) * 0xbf58476d1ce4e5b9u;
+  h = (h ^ h >> 32 ^ (uint64_t)z) * 0x94d049bb133111ebu;
+  return (size_t)(h >> 32) & (c->head_count - 1);
+}
+
+/* Unites v with the earlier vertices of one chain; answers how many were compared. Vertices of
+ * other cells in the chain do no harm: only the distance decides. */
+static size_t join_chain(cells *c, uint32_t v, vec3 p, size_t head) {
+  size_t compared = 0;
+  for (uint32_t other = c->heads[head]; other != NO_VERTEX; other = c->next[other], compared++) {
+    if (vec3_norm2(vec3_sub(p, scaled_position(c, other))) <= 1) unite(c->parent, v, other);
+  }
+  return compared;
+}
+
+static size_t enter_vertex(cells *c, uint32_t v) {
+  vec3 p = scaled_position(c, v);
+  int64_t x = (int64_t)p.x, y = (int64_t)p.y, z = (int64_t)p.z;
+  size_t compared = 0;
+  for (int64_t i = x - 1; i <= x + 1; i++)
+    for (int64_t j = y - 1; j <= y + 1; j++)
+      for (int64_t k = z - 1; k <= z + 1; k++) compared += join_chain(c, v, p, head_of(c, i, j, k));
+  size_t own = head_of(c, x, y, z);
+  c->next[v] = c->heads[own];
+  c->heads[own] = v;
+  return compared;
+}
+
+static scree_status group_vertices(cells *c, double tolerance, scree_error *error) {
+  uint64_t limit = (uint64_t)c->vertex_count * WORK_PER_VERTEX, work = 0;
+  for (size_t i = 0; i < c->head_count; i++) c->heads[i] = NO_VERTEX;
+  for (size_t v = 0; v < c->vertex_count; v++) c->parent[v] = (uint32_t)v;
+  for (size_t v = 0; v < c->vertex_count; v++) {
+    work += enter_vertex(c, (uint32_t)v);
+    if (work > limit)
+      return scree_fail(error, SCREE_LIMIT,
+                        "the welding tolerance %g brings vertices too close: after %zu of %zu "
+                        "vertices more than %d pairs each; use a smaller one",
+                        tolerance, v + 1, c->vertex_count, WORK_PER_VERTEX);
+  }
+  return SCREE_OK;
+}
+
+/* Renames the vertices to their group's first one, and brings what is left into order. */
+static scree_status rebuild(scree_mesh *mesh, uint32_t *parent, scree_error *error) {
+  scree_mesh made = {0};
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  uint8_t *used = scree_alloc_zero(mesh->vertex_count, 1);
+  uint32_t *triangles = NULL;
+  if (!used) {
+    scree_fail_memory(error, mesh->vertex_count, "the vertices of a mesh");
+    goto done;
+  }
+  SCREE_ALLOC_OR(triangles, 3 * mesh->triangle_count, error, done);
+  size_t count = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    uint32_t v[3];
+    for (int k = 0; k < 3; k++) v[k] = find_root(parent, mesh->triangles[3 * t + (size_t)k]);
+    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+    used[v[0]] = used[v[1]] = used[v[2]] = 1;
+    memcpy(triangles + 3 * count++, v, sizeof v);
+  }
+  scree_loose_mesh loose = {mesh->positions, used, mesh->vertex_count, triangles, count};
+  status = scree_weld_sort(&loose, &made, error);
+done:
+  scree_free(used);
+  scree_free(triangles);
+  if (status != SCREE_OK) return status;
+  scree_mesh_free(mesh);
+  *mesh = made;
+  return SCREE_OK;
+}
+
+/* The diagonal, safe from overflow and underflow; *low is the corner. */
+static double bounding_diagonal(const scree_mesh *mesh, vec3 *low) {
+  vec3 high = *low = vec3_load(mesh->positions);
+  for (size_t v = 1; v < mesh->vertex_count; v++) {
+    vec3 p = vec3_load(mesh->positions + 3 * v);
+    *low = vec3_min(*low, p);
+    high = vec3_max(high, p);
+  }
+  vec3 size = vec3_sub(high, *low);
+  return hypot(hypot(size.x, size.y), size.z);
+}
+
+scree_status scree_weld_near(scree_mesh *mesh, double tolerance, scree_error *error) {
+  if (mesh->vertex_count == 0) return SCREE_OK;
+  cells c = {.positions = mesh->positions, .vertex_count = mesh->vertex_count};
+  c.scale = 1 / (tolerance * bounding_diagonal(mesh, &c.low));
+  if (!isfinite(c.scale)) return SCREE_OK; /* no two doubles are that close */
+  c.head_count = 64;
+  while (c.head_count < mesh->vertex_count) c.head_count *= 2;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(c.heads, c.head_count, error, done);
+  SCREE_ALLOC_OR(c.next, mesh->vertex_count, error, done);
+  SCREE_ALLOC_OR(c.parent, mesh->vertex_count, error, done);
+  status = group_vertices(&c, tolerance, error);
+  if (status == SCREE_OK) status = rebuild(mesh, c.parent, error);
+done:
+  scree_free(c.heads);
+  scree_free(c.next);
+  scree_free(c.parent);
+  return status;
+}

@@ -1,0 +1,312 @@
+/* Sorting of vertices and triangles; see weld.c for the whole. */
+#include "mesh/weld_sort.h"
+
+#include "base/parallel.h"
+
+#include <string.h>
+
+enum {
+  SMALL = 24,         /* sorted by insertion */
+  MOST_DEPTH = 12,    /* spreads of one range before a heap sort bounds the worst case */
+  PER_BUCKET = 2,     /* vertices per bucket, on average */
+  SORT_BLOCK = 32768, /* vertices per block of parallel work */
+};
+
+typedef struct record {
+  double x[3];
+  uint64_t index; /* in the loose mesh */
+} record;
+
+static bool record_less(const record *a, const record *b) {
+  if (a->x[0] != b->x[0]) return a->x[0] < b->x[0];
+  if (a->x[1] != b->x[1]) return a->x[1] < b->x[1];
+  return a->x[2] < b->x[2];
+}
+
+static void insertion_sort(record *r, size_t n) {
+  for (size_t i = 1; i < n; i++) {
+    record moving = r[i];
+    size_t j = i;
+    for (; j > 0 && record_less(&moving, &r[j - 1]); j--) r[j] = r[j - 1];
+    r[j] = moving;
+  }
+}
+
+static void sift_down(record *r, size_t root, size_t n) {
+  record moving = r[root];
+  for (size_t child; (child = 2 * root + 1) < n; root = child) {
+    if (child + 1 < n && record_less(&r[child], &r[child + 1])) child++;
+    if (!record_less(&moving, &r[child])) break;
+    r[root] = r[child];
+  }
+  r[root] = moving;
+}
+
+static void heap_sort(record *r, size_t n) {
+  for (size_t i = n / 2; i-- > 0;) sift_down(r, i, n);
+  for (size_t end = n; end-- > 1;) {
+    record largest = r[0];
+    r[0] = r[end];
+    r[end] = largest;
+    sift_down(r, 0, end);
+  }
+}
+
+/* The bucket of coordinate x: its place in [low, high], spread over `last` + 1 buckets. Monotone,
+ * also after rounding: subtraction, product and conversion all are. */
+typedef struct spread {
+  double low, scale;
+  int axis;
+  uint32_t last;
+} spread;
+
+static uint32_t bucket_of(const spread *s, double x) {
+  double place = (x - s->low) * s->scale;
+  return place < (double)s->last ? (uint32_t)place : s->last;
+}
+
+/* The spread of n records along the first axis from `axis` on where they differ. */
+static spread find_spread(const record *r, size_t n, int axis) {
+  for (;; axis++) {
+    double low = r[0].x[axis], high = low;
+    for (size_t i = 1; i < n; i++) {
+      double x = r[i].x[axis];
+      low = x < low ? x : low;
+      high = x > high ? x : high;
+    }
+    if (low < high || axis == 2) {
+      uint32_t last = (uint32_t)(n / PER_BUCKET);
+      double scale = (double)last / (high - low);
+      /* a range below the least normal number overflows the quotient: everything above low goes to
+       * the last bucket, which is still monotone */
+      return (spread){low, scale, axis, last};
+    }
+  }
+}
+
+/* Sorts r; scratch and counts have room for n entries, of which only these n are touched: disjoint
+ * ranges can be sorted at the same time. */
+static void sort_records(record *r, record *scratch, uint32_t *counts, size_t n, int axis,
+                         int depth) {
+  if (n <= SMALL) {
+    insertion_sort(r, n);
+    return;
+  }
+  if (depth == MOST_DEPTH) {
+    heap_sort(r, n);
+    return;
+  }
+  spread s = find_spread(r, n, axis);
+  memset(counts, 0, ((size_t)s.last + 2) * sizeof *counts);
+  for (size_t i = 0; i < n; i++) counts[bucket_of(&s, r[i].x[s.axis]) + 1]++;
+  for (size_t b = 1; b <= s.last; b++) counts[b] += counts[b - 1];
+  for (size_t i = 0; i < n; i++) scratch[counts[bucket_of(&s, r[i].x[s.axis])]++] = r[i];
+  memcpy(r, scratch, n * sizeof *r);
+  /* the counts are free again: bucket ends are found by asking */
+  for (size_t begin = 0; begin < n;) {
+    uint32_t bucket = bucket_of(&s, r[begin].x[s.axis]);
+    size_t end = begin + 1;
+    while (end < n && bucket_of(&s, r[end].x[s.axis]) == bucket) end++;
+    if (end - begin > 1)
+      sort_records(r + begin, scratch + begin, counts + begin, end - begin, s.axis, depth + 1);
+    begin = end;
+  }
+}
+
+/* ---- vertices ---- */
+
+typedef struct vertex_sort {
+  const scree_loose_mesh *loose;
+  record *sorted, *scratch;
+  uint32_t *counts; /* one per record, and one more */
+  size_t count;
+  spread spread;
+  double *positions; /* of the made mesh */
+  uint32_t *rank;    /* of each loose vertex */
+} vertex_sort;
+
+/* Fills v->scratch with the used vertices. */
+static void gather_records(vertex_sort *v) {
+  const scree_loose_mesh *loose = v->loose;
+  size_t count = 0;
+  for (size_t i = 0; i < loose->vertex_count; i++) {
+    if (loose->used && !loose->used[i]) continue;
+    const double *p = loose->positions + 3 * i;
+    v->scratch[count++] = (record){{p[0], p[1], p[2]}, i};
+  }
+}
+
+/* Spreads scratch over sorted: the first, serial pass of the sort. */
+static void spread_records(vertex_sort *v) {
+  v->spread = find_spread(v->scratch, v->count, 0);
+  const spread *s = &v->spread;
+  uint32_t *counts = v->counts;
+  memset(counts, 0, ((size_t)s->last + 2) * sizeof *counts);
+  for (size_t i = 0; i < v->count; i++) counts[bucket_of(s, v->scratch[i].x[s->axis]) + 1]++;
+  for (size_t b = 1; b <= s->last; b++) counts[b] += counts[b - 1];
+  for (size_t i = 0; i < v->count; i++)
+    v->sorted[counts[bucket_of(s, v->scratch[i].x[s->axis])]++] = v->scratch[i];
+}
+
+/* The first bucket start at or behind i. */
+static size_t bucket_start(const vertex_sort *v, size_t i) {
+  const spread *s = &v->spread;
+  if (i == 0) return 0;
+  while (i < v->count &&
+         bucket_of(s, v->sorted[i].x[s->axis]) == bucket_of(s, v->sorted[i - 1].x[s->axis]))
+    i++;
+  return i;
+}
+
+/* Sorts the buckets that start in [begin, end) and writes their vertices. */
+static void sort_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  vertex_sort *v = context;
+  begin = bucket_start(v, begin);
+  end = bucket_start(v, end);
+  for (size_t first = begin; first < end;) {
+    size_t next = bucket_start(v, first + 1);
+    if (next - first > 1)
+      sort_records(v->sorted + first, v->scratch + first, v->counts + first, next - first,
+                   v->spread.axis, 1);
+    first = next;
+  }
+  for (size_t i = begin; i < end; i++) {
+    memcpy(v->positions + 3 * i, v->sorted[i].x, sizeof v->sorted[i].x);
+    v->rank[v->sorted[i].index] = (uint32_t)i;
+  }
+}
+
+static scree_status sort_vertices(vertex_sort *v, scree_error *error) {
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(v->sorted, v->count, error, done);
+  SCREE_ALLOC_OR(v->scratch, v->count, error, done);
+  SCREE_ALLOC_OR(v->counts, v->count + 2, error, done);
+  gather_records(v);
+  if (v->count) spread_records(v);
+  scree_parallel_for(v->count, SORT_BLOCK, sort_block, v);
+  status = SCREE_OK;
+done:
+  scree_free(v->sorted);
+  scree_free(v->scratch);
+  scree_free(v->counts);
+  return status;
+}
+
+/* ---- triangles ---- */
+
+typedef struct triangle_sort {
+  const uint32_t
+      *starts;    /* of the triangles whose smallest vertex is v: [starts[v], starts[v+1]) */
+  uint64_t *rest; /* the second index, high, and the third */
+  uint32_t *triangles;
+} triangle_sort;
+
+static void sort_keys_by_heap(uint64_t *keys, size_t n) {
+  for (size_t built = n / 2, end = n; end > 1;) {
+    size_t root = 0;
+    uint64_t moving;
+    if (built > 0)
+      moving = keys[root = --built];
+    else {
+      moving = keys[--end];
+      keys[end] = keys[0];
+    }
+    for (size_t child; (child = 2 * root + 1) < end; root = child) {
+      if (child + 1 < end && keys[child] < keys[child + 1]) child++;
+      if (moving >= keys[child]) break;
+      keys[root] = keys[child];
+    }
+    keys[root] = moving;
+  }
+}
+
+static void sort_keys(uint64_t *keys, size_t n) {
+  if (n > SMALL) { /* a fan around one vertex */
+    sort_keys_by_heap(keys, n);
+    return;
+  }
+  for (size_t i = 1; i < n; i++) {
+    uint64_t moving = keys[i];
+    size_t j = i;
+    for (; j > 0 && moving < keys[j - 1]; j--) keys[j] = keys[j - 1];
+    keys[j] = moving;
+  }
+}
+
+static void sort_triangle_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const triangle_sort *s = context;
+  for (size_t v = begin; v < end; v++) {
+    size_t first = s->starts[v], last = s->starts[v + 1];
+    sort_keys(s->rest + first, last - first);
+    for (size_t t = first; t < last; t++) {
+      s->triangles[3 * t] = (uint32_t)v;
+      s->triangles[3 * t + 1] = (uint32_t)(s->rest[t] >> 32);
+      s->triangles[3 * t + 2] = (uint32_t)s->rest[t];
+    }
+  }
+}
+
+static uint32_t least_of(uint32_t a, uint32_t b, uint32_t c) {
+  uint32_t ab = a < b ? a : b;
+  return ab < c ? ab : c;
+}
+
+/* Renumbers loose->triangles by rank, into made->triangles. */
+static scree_status sort_triangles(const scree_loose_mesh *loose, const uint32_t *rank,
+                                   scree_mesh *made, scree_error *error) {
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  size_t count = loose->triangle_count, vertex_count = made->vertex_count;
+  uint32_t *starts = scree_alloc_zero(vertex_count + 2, sizeof *starts);
+  uint64_t *rest = NULL;
+  if (!starts) {
+    scree_fail_memory(error, vertex_count * sizeof *starts, "the triangles of a mesh");
+    goto done;
+  }
+  SCREE_ALLOC_OR(rest, count, error, done);
+  /* shifted by two, so that filling moves starts[v + 1] to where triangles of v + 1 begin */
+  for (size_t t = 0; t < 3 * count; t += 3) {
+    const uint32_t *v = loose->triangles + t;
+    uint32_t *ranked = made->triangles + t;
+    for (int k = 0; k < 3; k++) ranked[k] = rank[v[k]];
+    starts[least_of(ranked[0], ranked[1], ranked[2]) + 2]++;
+  }
+  for (size_t v = 2; v < vertex_count + 2; v++) starts[v] += starts[v - 1];
+  for (size_t t = 0; t < 3 * count; t += 3) {
+    const uint32_t *v = made->triangles + t;
+    uint32_t least = least_of(v[0], v[1], v[2]);
+    int k = v[0] == least ? 0 : v[1] == least ? 1 : 2;
+    uint32_t second = v[(k + 1) % 3], third = v[(k + 2) % 3];
+    rest[starts[least + 1]++] = (uint64_t)second << 32 | third;
+  }
+  triangle_sort sort = {starts, rest, made->triangles};
+  scree_parallel_for(vertex_count, SORT_BLOCK, sort_triangle_block, &sort);
+  status = SCREE_OK;
+done:
+  scree_free(starts);
+  scree_free(rest);
+  return status;
+}
+
+scree_status scree_weld_sort(const scree_loose_mesh *loose, scree_mesh *mesh, scree_error *error) {
+  size_t count = 0;
+  for (size_t i = 0; i < loose->vertex_count; i++) count += !loose->used || loose->used[i];
+  scree_mesh made = {.vertex_count = count, .triangle_count = loose->triangle_count};
+  uint32_t *rank = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(made.positions, 3 * count, error, done);
+  SCREE_ALLOC_OR(made.triangles, 3 * made.triangle_count, error, done);
+  SCREE_ALLOC_OR(rank, loose->vertex_count, error, done);
+  vertex_sort vertices = {
+      .loose = loose, .count = count, .positions = made.positions, .rank = rank};
+  status = sort_vertices(&vertices, error);
+  if (status == SCREE_OK) status = sort_triangles(loose, rank, &made, error);
+  if (status != SCREE_OK) goto done;
+  *mesh = made;
+  made = (scree_mesh){0};
+done:
+  scree_free(rank);
+  scree_mesh_free(&made);
+  return status;
+}

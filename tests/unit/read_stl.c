@@ -1,0 +1,218 @@
+/* STL: every trap of the format, and the sentences for what is no STL. */
+#include "base/alloc.h"
+#include "support/check.h"
+
+typedef struct buffer {
+  unsigned char bytes[300000];
+  size_t count;
+} buffer;
+
+static buffer file;
+
+static void put(const void *bytes, size_t count) {
+  assert_true(file.count + count <= sizeof file.bytes);
+  memcpy(file.bytes + file.count, bytes, count);
+  file.count += count;
+}
+static void put_text(const char *text) {
+  put(text, strlen(text));
+}
+
+static const float tetrahedron[4][9] = {{0, 0, 0, 0, 1, 0, 1, 0, 0},
+                                        {0, 0, 0, 1, 0, 0, 0, 0, 1},
+                                        {0, 0, 0, 0, 0, 1, 0, 1, 0},
+                                        {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+
+/* A binary STL of a unit tetrahedron whose header begins with the text. */
+static void make_binary(const char *header, uint32_t count) {
+  unsigned char start[84] = {0};
+  memcpy(start, header, strlen(header));
+  memcpy(start + 80, &count, 4);
+  file.count = 0;
+  put(start, sizeof start);
+  for (int f = 0; f < 4; f++) {
+    unsigned char facet[50] = {0};
+    memcpy(facet + 12, tetrahedron[f], 36);
+    facet[48] = 0x80;
+    put(facet, sizeof facet);
+  }
+}
+
+static scree_status parse(scree_scan *scan, scree_error *error) {
+  return scree_scan_parse(file.bytes, file.count, "made.stl", NULL, scan, error);
+}
+
+static void expect_tetrahedron(const char *format) {
+  scree_scan scan = {0};
+  scree_error error;
+  CHECK_OK(parse(&scan, &error), error);
+  assert_string_equal(scan.format, format);
+  assert_int_equal(scan.facet_count, 4);
+  assert_int_equal(scan.mesh.triangle_count, 4);
+  assert_int_equal(scan.mesh.vertex_count, 4);
+  static const double expected[] = {0, 0, 0, 0, 0, 1e-3, 0, 1e-3, 0, 1e-3, 0, 0};
+  assert_memory_equal(scan.mesh.positions, expected, sizeof expected);
+  assert_int_equal(scan.byte_count, file.count);
+  scree_scan_free(&scan);
+}
+
+static void expect_error(scree_status status, const char *part) {
+  scree_scan scan = {0};
+  scree_error error = {0};
+  scree_status got = parse(&scan, &error);
+  if (got != status || !strstr(error.message, part) || strncmp(error.message, "made.stl: ", 10)) {
+    print_error("status %d, '%s'; expected %d with '%s'\n", got, error.message, status, part);
+    fail();
+  }
+  assert_null(scan.mesh.positions);
+}
+
+static void binary(void **state) {
+  (void)state;
+  make_binary("", 4);
+  expect_tetrahedron("STL binary");
+  make_binary("solid", 4);
+  expect_tetrahedron("STL binary");
+  make_binary("solid potato\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n", 4);
+  expect_tetrahedron("STL binary");
+  make_binary("COLOR=\xff\x80\x01\xff,MATERIAL=", 4);
+  expect_tetrahedron("STL binary");
+  make_binary("solid", 4);
+  put("", 1);
+  expect_tetrahedron("STL binary");
+}
+
+static void binary_wrong(void **state) {
+  (void)state;
+  make_binary("solid", 5);
+  expect_error(SCREE_BAD_FILE, "say 5 facets, which take 334 bytes, but the file has 284");
+  make_binary("", 3);
+  expect_error(SCREE_BAD_FILE, "wrong count");
+  make_binary("", 0xffffffff);
+  expect_error(SCREE_BAD_FILE, "4294967295 facets");
+  make_binary("", 0);
+  file.count = 84;
+  expect_error(SCREE_BAD_FILE, "no facets");
+  make_binary("", 4);
+  float bad = NAN;
+  memcpy(file.bytes + 84 + 50 + 12 + 12 + 8, &bad, 4);
+  expect_error(SCREE_BAD_FILE, "facet 2 of 4, corner 2 (byte 158) lies at (1, 0, nan)");
+  file.count = 60;
+  expect_error(SCREE_BAD_FILE, "too short: 60 bytes");
+  make_binary("", 4);
+  for (int f = 0; f < 4; f++) memset(file.bytes + 84 + 50 * f, 0, 50);
+  expect_error(SCREE_BAD_MESH, "all 4 facets are degenerate");
+}
+
+/* The tetrahedron as text: the keywords and separators given. */
+static void put_solid(const char *const words[7], const char *space, const char *line,
+                      const char *numbers[2]) {
+  for (int f = 0; f < 4; f++) {
+    put_text(words[0]), put_text(space), put_text(words[1]);
+    for (int i = 0; i < 3; i++) put_text(space), put_text("-nan(ind)");
+    put_text(line), put_text(words[2]), put_text(space), put_text(words[3]), put_text(line);
+    for (int k = 0; k < 9; k++) {
+      if (k % 3 == 0) put_text(words[4]);
+      put_text(space), put_text(numbers[tetrahedron[f][k] != 0]);
+      if (k % 3 == 2) put_text(line);
+    }
+    put_text(words[5]), put_text(line), put_text(words[6]), put_text(line);
+  }
+}
+
+static const char *const lower[7] = {"facet",  "normal",  "outer",   "loop",
+                                     "vertex", "endloop", "endfacet"};
+static const char *const upper[7] = {"FACET",  "Normal",  "OUTER",   "LOOP",
+                                     "VERTEX", "ENDLOOP", "EndFacet"};
+
+static void ascii(void **state) {
+  (void)state;
+  const char *lines[] = {"\n", "\r\n", "\r", " \n\n\t", " "};
+  const char *spellings[][2] = {
+      {"0", "1"}, {"0.0E+00", "+1.000E+00"}, {"-0", "10e-1"}, {".0", "1."}, {"0d0", "0.1D+01"}};
+  for (int l = 0; l < 5; l++)
+    for (int n = 0; n < 5; n++) {
+      file.count = 0;
+      if (n % 2) put("\xef\xbb\xbf", 3);
+      put_text(l % 2 ? "SOLID a name with spaces" : "solid"), put_text(l == 4 ? "\n" : lines[l]);
+      put_solid(n % 2 ? upper : lower, l % 2 ? "\t  " : " ", lines[l], spellings[n]);
+      put_text("endsolid another name"), put_text(l % 2 ? "" : lines[l]);
+      expect_tetrahedron("STL ASCII");
+    }
+  const char *numbers[] = {"0", "1"};
+  file.count = 0; /* all on one line */
+  put_text("solid a b facet c "), put_solid(lower, " ", " ", numbers);
+  /* the normal is no number here, so the name would swallow the facet */
+  expect_error(SCREE_BAD_FILE, "cut off");
+  file.count = 0;
+  put_text("solid facet normal 0 0 1 outer loop vertex 0 0 0 vertex 1 0 0 vertex 0 1 0 endloop "
+           "endfacet endsolid");
+  scree_scan scan;
+  scree_error error;
+  CHECK_OK(parse(&scan, &error), error);
+  assert_int_equal(scan.facet_count, 1);
+  scree_scan_free(&scan);
+}
+
+static void ascii_several_solids_and_a_long_name(void **state) {
+  (void)state;
+  const char *numbers[] = {"0", "1"};
+  file.count = 0;
+  put_text("solid ");
+  memset(file.bytes + file.count, 'x', 200000);
+  file.count += 200000;
+  put_text("\nendsolid\nsolid two\n"), put_solid(lower, " ", "\n", numbers);
+  put_text("endsolid two\n");
+  expect_tetrahedron("STL ASCII");
+}
+
+static void ascii_wrong(void **state) {
+  (void)state;
+  const char *numbers[] = {"0", "1"}, *wrong[] = {"0", "1e999"}, *words[] = {"0", "nan"},
+             *comma[] = {"0", "1,5"};
+  file.count = 0, put_text("solid\n"), put_solid(lower, " ", "\n", wrong);
+  expect_error(SCREE_BAD_FILE, "line 5: y is '1e999'");
+  file.count = 0, put_text("solid\r\n"), put_solid(lower, " ", "\r\n", words);
+  expect_error(SCREE_BAD_FILE, "line 5: y is 'nan'");
+  file.count = 0, put_text("solid\r"), put_solid(lower, " ", "\r", comma);
+  expect_error(SCREE_BAD_FILE, "line 5: y is '1,5'");
+  file.count = 0, put_text("solid\n"), put_solid(lower, " ", "\n", numbers);
+  expect_error(SCREE_BAD_FILE, "line 30: the file ends after 4 facets without `endsolid`");
+  file.count -= 40;
+  expect_error(SCREE_BAD_FILE, "cut off");
+  file.count = 0, put_text("solid empty\nendsolid empty\n");
+  expect_error(SCREE_BAD_FILE, "no facets");
+  file.count = 0, put_text("solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\nvertex");
+  expect_error(SCREE_BAD_FILE, "line 5: z is 'vertex'");
+  file.count = 0, put_text("solid\nendsolid\nrubbish\n");
+  expect_error(SCREE_BAD_FILE, "line 3: expected `solid`, found 'rubbish'");
+}
+
+static void no_mesh_at_all(void **state) {
+  (void)state;
+  file.count = 0;
+  expect_error(SCREE_BAD_FILE, "empty");
+  put_text("\n <!DOCTYPE HTML><html>");
+  expect_error(SCREE_BAD_FILE, "HTML");
+  file.count = 0, put("\x1f\x8b\x08\x00\x00", 5);
+  expect_error(SCREE_BAD_FILE, "gzip");
+  file.count = 0, put_text("dear reader\n");
+  expect_error(SCREE_BAD_FILE, "'dear'");
+  file.count = 0, put_text(" \n");
+  expect_error(SCREE_BAD_FILE, "white space");
+  scree_scan scan;
+  scree_error error;
+  assert_int_equal(scree_scan_read("/nonexistent/file.stl", NULL, &scan, &error), SCREE_IO);
+  scree_read_options options = scree_default_read_options();
+  options.unit_m = 0;
+  assert_int_equal(scree_scan_parse("", 0, "x", &options, &scan, &error), SCREE_BAD_ARGUMENT);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(binary),      cmocka_unit_test(binary_wrong),
+      cmocka_unit_test(ascii),       cmocka_unit_test(ascii_several_solids_and_a_long_name),
+      cmocka_unit_test(ascii_wrong), cmocka_unit_test(no_mesh_at_all),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
