@@ -686,6 +686,48 @@ SCREE_API scree_status scree_render(const scree_render_cell *cells, size_t cell_
 SCREE_API scree_status scree_image_write_png(const scree_image *image, const char *path,
                                              bool overwrite, scree_error *error);
 
+/* ---- 9.2 Files for ParaView ---- */
+
+typedef enum scree_vtk_type {
+  SCREE_VTK_FLOAT64,
+  SCREE_VTK_FLOAT32,
+  SCREE_VTK_INT64,
+  SCREE_VTK_UINT8
+} scree_vtk_type;
+
+/* A named array over points or cells. */
+typedef struct scree_vtk_array {
+  const char *name;
+  scree_vtk_type type;
+  size_t component_count; /* 1 for scalars, 3 for vectors, 4 for quaternions */
+  const void *values;     /* component_count values of the type per point or cell, borrowed */
+} scree_vtk_array;
+
+/* What goes into one .vtp file (VTK XML PolyData): points, and over them either triangles, line
+ * segments, or, where both are NULL, one vertex cell a point. */
+typedef struct scree_vtk_data {
+  const double *points; /* 3 * point_count, m */
+  size_t point_count;
+  const uint32_t *triangles; /* 3 * cell_count indices, or NULL */
+  const uint32_t *lines;     /* 2 * cell_count indices, or NULL */
+  size_t cell_count;         /* of triangles or lines */
+  const scree_vtk_array *point_arrays;
+  size_t point_array_count;
+  const scree_vtk_array *cell_arrays;
+  size_t cell_array_count;
+  double time; /* s, written as field data TimeValue; NaN: none */
+} scree_vtk_data;
+
+/* Writes version 1.0 XML with raw appended data, 64-bit headers: read by VTK 6 and later. */
+SCREE_API scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool overwrite,
+                                       scree_error *error);
+
+/* Writes the collection of a series: file i is valid at time times[i]. The names are written as
+ * given, relative to the .pvd file. */
+SCREE_API scree_status scree_pvd_write(const char *const *files, const double *times,
+                                       size_t file_count, const char *path, bool overwrite,
+                                       scree_error *error);
+
 #ifdef __cplusplus
 }
 #endif
