@@ -1,0 +1,261 @@
+/* What is wrong with a surface: topology (mesh/topology.c), meetings of facets (mesh/meetings.c)
+ * and the nesting of shells (mesh/shells.c) put together, and a verdict.
+ *
+ * The volume of a solid is that where the winding number is positive. Where no facets meet, each
+ * shell bounds one region against one other: outward shells in empty space add their volume, inward
+ * ones in material take theirs away, and shells in material that are no cavities change nothing.
+ * Anything else (open, crossing, touching or inside-out shells) leaves the volume unknown. */
+#include "mesh/check.h"
+
+#include "base/alloc.h"
+#include "base/sum.h"
+#include "mesh/adjacency.h"
+#include "mesh/intersect.h"
+#include "mesh/shells.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* More pairs than this are not told apart: a surface that meets itself so often is no surface. */
+enum { MEETING_LIMIT = 20000000 };
+
+static const struct {
+  const char *name, *text;
+  bool grave;
+} defects[] = {
+#define DEFECT_ROW(name, key, grave, text) {key, text, grave},
+    SCREE_DEFECT_LIST(DEFECT_ROW)
+#undef DEFECT_ROW
+};
+
+const char *scree_defect_name(scree_defect defect) {
+  return (unsigned)defect < SCREE_DEFECT_COUNT ? defects[defect].name : "unknown";
+}
+
+const char *scree_defect_text(scree_defect defect) {
+  return (unsigned)defect < SCREE_DEFECT_COUNT ? defects[defect].text : "unknown";
+}
+
+bool scree_defect_is_grave(scree_defect defect) {
+  return (unsigned)defect < SCREE_DEFECT_COUNT && defects[defect].grave;
+}
+
+scree_check_options scree_default_check_options(void) {
+  return (scree_check_options){.intersections = true};
+}
+
+/* ---- Counting ---- */
+
+static scree_status verify_indices(const scree_mesh *mesh, scree_error *error) {
+  if (mesh->triangle_count > (UINT32_MAX - 1) / 3)
+    return scree_fail(error, SCREE_LIMIT, "The mesh has %zu triangles; the limit is %u",
+                      mesh->triangle_count, (UINT32_MAX - 1) / 3);
+  for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+    if (mesh->triangles[c] >= mesh->vertex_count)
+      return scree_fail(error, SCREE_BAD_MESH,
+                        "Triangle %zu names vertex %u, but there are only %zu vertices", c / 3,
+                        mesh->triangles[c], mesh->vertex_count);
+  return SCREE_OK;
+}
+
+bool scree_vertex_is_bad(const double *position) {
+  for (int k = 0; k < 3; k++)
+    if (!(fabs(position[k]) <= SCREE_EXACT_MAX)) return true;
+  return false;
+}
+
+static void take_topology(const scree_topology *t, scree_check *check) {
+  size_t *defect = check->defects;
+  check->shell_count = t->shell_count;
+  defect[SCREE_DEFECT_DEGENERATE_FACET] = t->degenerate_facet_count;
+  defect[SCREE_DEFECT_DUPLICATE_FACET] = t->duplicate_facet_count;
+  defect[SCREE_DEFECT_BOUNDARY_EDGE] = t->boundary_edge_count;
+  defect[SCREE_DEFECT_HOLE] = t->boundary_count;
+  defect[SCREE_DEFECT_NON_MANIFOLD_EDGE] = t->non_manifold_edge_count;
+  defect[SCREE_DEFECT_NON_MANIFOLD_VERTEX] = t->non_manifold_vertex_count;
+  defect[SCREE_DEFECT_INCONSISTENT_EDGE] = t->inconsistent_edge_count;
+  defect[SCREE_DEFECT_UNUSED_VERTEX] = t->unused_vertex_count;
+}
+
+static int compare_keys(const void *a, const void *b) {
+  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+  return (x > y) - (x < y);
+}
+
+/* How many different pairs of shells meet. */
+static scree_status count_shell_pairs(const scree_meetings *found, const scree_shells *shells,
+                                      size_t *count, scree_error *error) {
+  uint64_t *keys = NULL;
+  size_t key_count = 0;
+  SCREE_ALLOC_OR(keys, found->count, error, out_of_memory);
+  for (size_t i = 0; i < found->count; i++) {
+    uint32_t a = shells->label[found->items[i].first], b = shells->label[found->items[i].second];
+    if (a != b) keys[key_count++] = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+  }
+  qsort(keys, key_count, sizeof *keys, compare_keys);
+  *count = 0;
+  for (size_t i = 0; i < key_count; i++) *count += i == 0 || keys[i] != keys[i - 1];
+  scree_free(keys);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status count_meetings(const scree_facet_tree *tree, const scree_shells *shells,
+                                   const scree_progress *progress, scree_check *check,
+                                   scree_error *error) {
+  scree_meetings found;
+  scree_status status = scree_facet_meetings(tree, MEETING_LIMIT, progress, &found, error);
+  if (status != SCREE_OK) return status;
+  check->intersections_known = true;
+  if (found.truncated) {
+    check->defects[SCREE_DEFECT_CROSSING_PAIR] = found.count;
+    return SCREE_OK;
+  }
+  for (size_t i = 0; i < found.count; i++) {
+    scree_meet meet = found.items[i].meet;
+    check->defects[meet == SCREE_MEET_CROSS   ? SCREE_DEFECT_CROSSING_PAIR
+                   : meet == SCREE_MEET_TOUCH ? SCREE_DEFECT_TOUCHING_PAIR
+                                              : SCREE_DEFECT_OVERLAPPING_PAIR]++;
+  }
+  status =
+      count_shell_pairs(&found, shells, &check->defects[SCREE_DEFECT_OVERLAPPING_SHELLS], error);
+  scree_free(found.items);
+  return status;
+}
+
+static void count_kinds(const scree_shells *shells, scree_check *check) {
+  size_t kinds[SCREE_SHELL_INSIDE_OUT + 1] = {0};
+  scree_sum volume = {0};
+  for (size_t i = 0; i < shells->count; i++) {
+    scree_shell_kind kind = scree_shell_kind_of(&shells->items[i]);
+    kinds[kind]++;
+    if (kind == SCREE_SHELL_BODY || kind == SCREE_SHELL_CAVITY)
+      scree_sum_add(&volume, shells->items[i].volume);
+  }
+  size_t *defect = check->defects, bodies = kinds[SCREE_SHELL_BODY];
+  defect[SCREE_DEFECT_INSIDE_OUT_SHELL] = kinds[SCREE_SHELL_INSIDE_OUT];
+  defect[SCREE_DEFECT_NESTED_SHELL] = kinds[SCREE_SHELL_NESTED];
+  defect[SCREE_DEFECT_CAVITY] = kinds[SCREE_SHELL_CAVITY];
+  defect[SCREE_DEFECT_EXTRA_BODY] = bodies > 1 ? bodies - 1 : 0;
+  bool met = defect[SCREE_DEFECT_CROSSING_PAIR] || defect[SCREE_DEFECT_TOUCHING_PAIR] ||
+             defect[SCREE_DEFECT_OVERLAPPING_PAIR];
+  check->volume_known = check->intersections_known && !met && shells->count &&
+                        !kinds[SCREE_SHELL_OPEN] && !kinds[SCREE_SHELL_INSIDE_OUT];
+  check->volume = check->volume_known ? scree_sum_value(volume) : 0;
+}
+
+static scree_status examine(const scree_mesh *mesh, const scree_check_options *options,
+                            const scree_progress *progress, scree_check *check,
+                            scree_error *error) {
+  scree_topology topology;
+  scree_adjacency adjacency = {0};
+  scree_shells shells = {0};
+  scree_facet_tree tree = {0};
+  scree_status status = scree_mesh_topology(mesh, &topology, error);
+  if (status != SCREE_OK) return status;
+  take_topology(&topology, check);
+  if (mesh->triangle_count == 0) return SCREE_OK;
+  status = scree_adjacency_build(mesh, &adjacency, error);
+  if (status == SCREE_OK) status = scree_shells_find(mesh, &adjacency, &shells, error);
+  scree_adjacency_free(&adjacency);
+  if (status == SCREE_OK && (options->intersections || shells.count > 1))
+    status = scree_facet_tree_build(mesh, &tree, error);
+  if (status == SCREE_OK && options->intersections)
+    status = count_meetings(&tree, &shells, progress, check, error);
+  if (status == SCREE_OK) {
+    if (shells.count > 1) scree_shells_wind(&shells, &tree);
+    count_kinds(&shells, check);
+  }
+  scree_facet_tree_free(&tree);
+  scree_shells_free(&shells);
+  return status;
+}
+
+/* ---- The verdict ---- */
+
+typedef struct text {
+  char *at;
+  size_t left;
+} text;
+
+static void add_text(text *t, const char *words) {
+  size_t length = strlen(words);
+  if (length >= t->left) length = t->left - 1;
+  memcpy(t->at, words, length);
+  t->at += length;
+  t->left -= length;
+  *t->at = 0;
+}
+
+static bool ends_with(const char *word, const char *end) {
+  size_t length = strlen(word), end_length = strlen(end);
+  return length >= end_length && strcmp(word + length - end_length, end) == 0;
+}
+
+/* "1 non manifold edge", "12 boundary edges". */
+static void add_count(text *t, size_t count, const char *name) {
+  char words[96];
+  snprintf(words, sizeof words, "%zu %s", count, name);
+  size_t length = strlen(words);
+  if (count == 1 && ends_with(words, "vertices"))
+    memcpy(words + length - 4, "x", 2);
+  else if (count == 1 && (ends_with(words, "cavities") || ends_with(words, "bodies")))
+    memcpy(words + length - 3, "y", 2);
+  else if (count == 1 && ends_with(words, "s"))
+    words[length - 1] = 0;
+  for (char *c = words; *c; c++)
+    if (*c == '_') *c = ' ';
+  add_text(t, words);
+}
+
+static void add_defects(text *t, const scree_check *check, bool grave) {
+  bool first = true;
+  for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
+    if (!check->defects[i] || defects[i].grave != grave) continue;
+    if (!first) add_text(t, ", ");
+    first = false;
+    add_count(t, check->defects[i], defects[i].name);
+  }
+}
+
+static void conclude(scree_check *check) {
+  text t = {check->verdict, sizeof check->verdict};
+  bool grave = false, noted = false;
+  for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
+    grave |= check->defects[i] && defects[i].grave;
+    noted |= check->defects[i] && !defects[i].grave;
+  }
+  check->usable = !grave && check->triangle_count > 0;
+  if (check->triangle_count == 0) {
+    add_text(&t, "not usable as a particle: no facets");
+  } else if (grave) {
+    add_text(&t, "not usable as a particle: ");
+    add_defects(&t, check, true);
+  } else {
+    add_text(&t, "usable as a particle: closed, manifold, outward");
+    add_text(&t, check->intersections_known ? ", nowhere meeting itself"
+                                            : "; self-intersections were not looked for");
+  }
+  if (noted) {
+    add_text(&t, "; with ");
+    add_defects(&t, check, false);
+  }
+}
+
+scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options *options,
+                              const scree_progress *progress, scree_check *check,
+                              scree_error *error) {
+  scree_check_options defaults = scree_default_check_options();
+  scree_check made = {.triangle_count = mesh->triangle_count, .vertex_count = mesh->vertex_count};
+  scree_status status = verify_indices(mesh, error);
+  if (status != SCREE_OK) return status;
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    made.defects[SCREE_DEFECT_BAD_COORDINATE] += scree_vertex_is_bad(mesh->positions + 3 * v);
+  if (!made.defects[SCREE_DEFECT_BAD_COORDINATE])
+    status = examine(mesh, options ? options : &defaults, progress, &made, error);
+  if (status != SCREE_OK) return status;
+  conclude(&made);
+  *check = made;
+  return SCREE_OK;
+}

@@ -1,0 +1,341 @@
+/* A tree of boxes over facets, cut at the middle of the facets' middles, or near their median where
+ * that is lopsided.
+ *
+ * A tree follows the facets wherever they crowd; a grid's one cell size fails where sizes differ by
+ * orders of magnitude. Axis-aligned boxes alone fail too where many long thin facets lie side by
+ * side at a slant (the sides of a twig): every box overlaps every other. So nodes whose facets are
+ * about as long as the node carry a second box along the longest edge and the facet's normal
+ * (Gottschalk, Lin and Manocha, "OBBTree", SIGGRAPH 1996, of which only the six face directions are
+ * tested). Facets round one vertex, a fan of slivers as on a drawn disc, overlap near it in any
+ * box; nodes whose facets all have one vertex are told apart by the directions in which they leave
+ * it: where a plane through the vertex keeps two such cones strictly apart, no two of their facets
+ * meet elsewhere.
+ *
+ * Bounds of the second kind are rounded generously outwards, so rounding costs time only. The tree
+ * depends on the mesh alone. */
+#include "mesh/facet_tree.h"
+
+#include "base/array.h"
+#include "base/parallel.h"
+
+#include <float.h>
+
+enum {
+  FRAME_FACETS = 2048, /* larger nodes get no second box: there are too few of them to matter */
+  LOPSIDED = 8,        /* a split leaving less than 1/8 on a side is replaced by the median */
+  NO_VERTEX = UINT32_MAX,
+  NO_FRAME = UINT32_MAX,
+};
+
+/* A second box is worth its test where it holds less than this share of the first. */
+#define FRAME_SHARE 0.3
+/* A node's longest edge against its diagonal from which a second box is tried. */
+#define FRAME_LENGTH 0.25
+/* Relative outward rounding of the second boxes and the cones. */
+#define MARGIN 1e-12
+
+typedef struct scree_facet_frame {
+  vec3 axis[3];             /* orthonormal */
+  vec3 center;              /* of the slanted box */
+  double half[3];           /* its half sides */
+  uint32_t hub;             /* the vertex that all facets have, or NO_VERTEX */
+  vec3 cone_low, cone_high; /* unit directions from the hub to the opposite edges' ends */
+} scree_facet_frame;
+
+/* ---- Building ---- */
+
+static scree_box facet_box(const scree_mesh *mesh, uint32_t t) {
+  vec3 p = scree_mesh_corner(mesh, t, 0), q = scree_mesh_corner(mesh, t, 1),
+       r = scree_mesh_corner(mesh, t, 2);
+  scree_box b;
+  vec3_store(b.low, vec3_min(vec3_min(p, q), r));
+  vec3_store(b.high, vec3_max(vec3_max(p, q), r));
+  return b;
+}
+
+static void box_add(scree_box *b, const scree_box *other) {
+  for (int k = 0; k < 3; k++) {
+    if (other->low[k] < b->low[k]) b->low[k] = other->low[k];
+    if (other->high[k] > b->high[k]) b->high[k] = other->high[k];
+  }
+}
+
+static bool boxes_apart(const scree_box *a, const scree_box *b) {
+  return a->low[0] > b->high[0] || b->low[0] > a->high[0] || a->low[1] > b->high[1] ||
+         b->low[1] > a->high[1] || a->low[2] > b->high[2] || b->low[2] > a->high[2];
+}
+
+static double along(const scree_facet_tree *t, uint32_t facet, int axis) {
+  const vec3 *m = &t->middle[facet];
+  return axis == 0 ? m->x : axis == 1 ? m->y : m->z;
+}
+
+/* Moves facets whose middle lies below `at` to the front; returns how many. */
+static size_t partition(scree_facet_tree *t, size_t begin, size_t end, int axis, double at) {
+  size_t write = begin;
+  for (size_t i = begin; i < end; i++) {
+    uint32_t facet = t->order[i];
+    if (along(t, facet, axis) >= at) continue;
+    t->order[i] = t->order[write];
+    t->order[write++] = facet;
+  }
+  return write - begin;
+}
+
+/* A pivot near the median: the median of up to 1023 middles taken at even steps. */
+static double middle_value(const scree_facet_tree *t, size_t begin, size_t end, int axis) {
+  double sample[1023];
+  size_t count = end - begin < 1023 ? end - begin : 1023;
+  for (size_t i = 0; i < count; i++) {
+    double value = along(t, t->order[begin + (end - begin) * i / count], axis);
+    size_t j = i;
+    if (count <= 64) {
+      for (; j > 0 && sample[j - 1] > value; j--) sample[j] = sample[j - 1];
+    }
+    sample[j] = value;
+  }
+  if (count <= 64) return sample[count / 2];
+  /* quickselect */
+  size_t low = 0, high = count - 1, want = count / 2;
+  while (low < high) {
+    double pivot = sample[low + (high - low) / 2];
+    size_t i = low, j = high;
+    for (;; i++, j--) {
+      while (sample[i] < pivot) i++;
+      while (sample[j] > pivot) j--;
+      if (i >= j) break;
+      double keep = sample[i];
+      sample[i] = sample[j];
+      sample[j] = keep;
+    }
+    if (want <= j)
+      high = j;
+    else
+      low = j + 1;
+  }
+  return sample[want];
+}
+
+/* Cuts [begin, end) in two; returns the size of the first part, neither part empty. */
+static size_t cut(scree_facet_tree *t, size_t begin, size_t end) {
+  vec3 low = t->middle[t->order[begin]], high = low;
+  for (size_t i = begin + 1; i < end; i++) {
+    low = vec3_min(low, t->middle[t->order[i]]);
+    high = vec3_max(high, t->middle[t->order[i]]);
+  }
+  vec3 size = vec3_sub(high, low);
+  int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  double from = axis == 0 ? low.x : axis == 1 ? low.y : low.z;
+  double length = axis == 0 ? size.x : axis == 1 ? size.y : size.z;
+  size_t count = end - begin, first = partition(t, begin, end, axis, from + 0.5 * length);
+  if (first >= count / LOPSIDED && count - first >= count / LOPSIDED && first && first < count)
+    return first;
+  first = partition(t, begin, end, axis, middle_value(t, begin, end, axis));
+  if (first >= count / LOPSIDED && count - first >= count / LOPSIDED && first && first < count)
+    return first;
+  return count / 2; /* middles coincide: any halves will do */
+}
+
+/* ---- Second boxes ---- */
+
+static vec3 load(const scree_facet_tree *t, uint32_t facet, int k) {
+  return scree_mesh_corner(t->mesh, facet, k % 3);
+}
+
+/* The longest edge among the node's facets and the facet that has it. */
+static double longest_edge(const scree_facet_tree *t, const scree_facet_node *n, uint32_t *facet,
+                           vec3 *direction) {
+  double longest2 = 0;
+  for (uint32_t i = n->begin; i < n->begin + n->count; i++)
+    for (int k = 0; k < 3; k++) {
+      vec3 edge = vec3_sub(load(t, t->order[i], k + 1), load(t, t->order[i], k));
+      double length2 = vec3_norm2(edge);
+      if (length2 <= longest2) continue;
+      longest2 = length2;
+      *facet = t->order[i];
+      *direction = edge;
+    }
+  return sqrt(longest2);
+}
+
+/* Axes along the edge, along the facet's normal, and across both; false where the facet has no
+ * usable normal. */
+static bool frame_axes(const scree_facet_tree *t, uint32_t facet, vec3 edge, scree_facet_frame *f) {
+  vec3 normal = vec3_triangle_normal(load(t, facet, 0), load(t, facet, 1), load(t, facet, 2));
+  f->axis[0] = vec3_unit(edge);
+  normal = vec3_mad(normal, f->axis[0], -vec3_dot(normal, f->axis[0]));
+  f->axis[1] = vec3_unit(vec3_unit(normal));
+  f->axis[2] = vec3_cross(f->axis[0], f->axis[1]);
+  return fabs(vec3_norm2(f->axis[2]) - 1) < 1e-9;
+}
+
+static double frame_box(const scree_facet_tree *t, const scree_facet_node *n,
+                        scree_facet_frame *f) {
+  double low[3] = {DBL_MAX, DBL_MAX, DBL_MAX}, high[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
+  vec3 origin = load(t, t->order[n->begin], 0);
+  for (uint32_t i = n->begin; i < n->begin + n->count; i++)
+    for (int k = 0; k < 3; k++) {
+      vec3 p = vec3_sub(load(t, t->order[i], k), origin);
+      for (int a = 0; a < 3; a++) {
+        double d = vec3_dot(p, f->axis[a]);
+        low[a] = fmin(low[a], d);
+        high[a] = fmax(high[a], d);
+      }
+    }
+  double volume = 1, reach = fabs(origin.x) + fabs(origin.y) + fabs(origin.z) + high[0] - low[0];
+  f->center = origin;
+  for (int a = 0; a < 3; a++) {
+    f->half[a] = 0.5 * (high[a] - low[a]) + MARGIN * reach;
+    f->center = vec3_mad(f->center, f->axis[a], 0.5 * (low[a] + high[a]));
+    volume *= 2 * f->half[a];
+  }
+  return volume;
+}
+
+/* The vertex that all facets of the node have, if any. */
+static uint32_t common_vertex(const scree_facet_tree *t, const scree_facet_node *n) {
+  const uint32_t *first = t->mesh->triangles + 3 * (size_t)t->order[n->begin];
+  for (int k = 0; k < 3; k++) {
+    uint32_t i = n->begin;
+    for (; i < n->begin + n->count; i++) {
+      const uint32_t *c = t->mesh->triangles + 3 * (size_t)t->order[i];
+      if (c[0] != first[k] && c[1] != first[k] && c[2] != first[k]) break;
+    }
+    if (i == n->begin + n->count) return first[k];
+  }
+  return NO_VERTEX;
+}
+
+static void frame_cone(const scree_facet_tree *t, const scree_facet_node *n, scree_facet_frame *f) {
+  vec3 hub = vec3_load(t->mesh->positions + 3 * (size_t)f->hub);
+  f->cone_low = (vec3){2, 2, 2};
+  f->cone_high = (vec3){-2, -2, -2};
+  for (uint32_t i = n->begin; i < n->begin + n->count; i++)
+    for (int k = 0; k < 3; k++) {
+      if (t->mesh->triangles[3 * (size_t)t->order[i] + (size_t)k] == f->hub) continue;
+      vec3 d = vec3_unit(vec3_sub(load(t, t->order[i], k), hub));
+      f->cone_low = vec3_min(f->cone_low, d);
+      f->cone_high = vec3_max(f->cone_high, d);
+    }
+}
+
+/* Gives the node a second box where that is much the smaller one, or a cone. */
+static bool add_frame(scree_facet_tree *t, scree_facet_node *n) {
+  double volume = 1, diagonal2 = 0;
+  uint32_t facet = t->order[n->begin];
+  vec3 edge = {0, 0, 0};
+  scree_facet_frame f;
+  for (int k = 0; k < 3; k++) {
+    double side = n->bounds.high[k] - n->bounds.low[k];
+    volume *= side;
+    diagonal2 += side * side;
+  }
+  if (longest_edge(t, n, &facet, &edge) < FRAME_LENGTH * sqrt(diagonal2)) return true;
+  f.hub = n->count > 1 ? common_vertex(t, n) : NO_VERTEX;
+  bool useful = f.hub != NO_VERTEX && n->count > SCREE_LEAF_FACETS / 2;
+  if (!frame_axes(t, facet, edge, &f)) return true;
+  if (frame_box(t, n, &f) < FRAME_SHARE * volume) useful = true;
+  if (!useful) return true;
+  if (f.hub != NO_VERTEX) frame_cone(t, n, &f);
+  n->frame = (uint32_t)t->frames.count;
+  return SCREE_PUSH(&t->frames, f);
+}
+
+/* Whether one of the three face directions of `a` keeps the slanted boxes apart. */
+static bool frames_apart_along(const scree_facet_frame *a, const scree_facet_frame *b) {
+  vec3 between = vec3_sub(b->center, a->center);
+  for (int i = 0; i < 3; i++) {
+    double reach = a->half[i];
+    for (int j = 0; j < 3; j++) reach += b->half[j] * fabs(vec3_dot(a->axis[i], b->axis[j]));
+    if (fabs(vec3_dot(between, a->axis[i])) > reach * (1 + MARGIN)) return true;
+  }
+  return false;
+}
+
+/* The least value of d . x for x in the cone's box of directions. */
+static double cone_least(const scree_facet_frame *f, vec3 d) {
+  return d.x * (d.x > 0 ? f->cone_low.x : f->cone_high.x) +
+         d.y * (d.y > 0 ? f->cone_low.y : f->cone_high.y) +
+         d.z * (d.z > 0 ? f->cone_low.z : f->cone_high.z);
+}
+
+/* A plane through the common hub with the cones strictly on either side. */
+static bool cones_apart(const scree_facet_frame *a, const scree_facet_frame *b) {
+  vec3 middle_a = vec3_unit(vec3_add(a->cone_low, a->cone_high));
+  vec3 middle_b = vec3_unit(vec3_add(b->cone_low, b->cone_high));
+  vec3 d = vec3_sub(middle_a, middle_b);
+  return cone_least(a, d) > 1e-9 && cone_least(b, vec3_neg(d)) > 1e-9;
+}
+
+bool scree_facet_nodes_apart(const scree_facet_tree *t, const scree_facet_node *a,
+                             const scree_facet_node *b) {
+  if (boxes_apart(&a->bounds, &b->bounds)) return true;
+  if (a->frame == NO_FRAME || b->frame == NO_FRAME) return false;
+  const scree_facet_frame *f = &t->frames.items[a->frame], *g = &t->frames.items[b->frame];
+  if (frames_apart_along(f, g) || frames_apart_along(g, f)) return true;
+  return f->hub != NO_VERTEX && f->hub == g->hub && cones_apart(f, g);
+}
+
+static void leaf_bounds(const scree_facet_tree *t, scree_facet_node *n) {
+  n->bounds = facet_box(t->mesh, t->order[n->begin]);
+  for (uint32_t i = n->begin + 1; i < n->begin + n->count; i++) {
+    scree_box b = facet_box(t->mesh, t->order[i]);
+    box_add(&n->bounds, &b);
+  }
+}
+
+/* Builds the node of [begin, end) and all below it. */
+static bool build(scree_facet_tree *t, uint32_t begin, uint32_t end) {
+  scree_facet_node n = {.begin = begin, .count = end - begin, .frame = NO_FRAME};
+  uint32_t index = (uint32_t)t->nodes.count;
+  if (!SCREE_PUSH(&t->nodes, n)) return false;
+  if (n.count <= SCREE_LEAF_FACETS) {
+    leaf_bounds(t, &n);
+  } else {
+    uint32_t split = begin + (uint32_t)cut(t, begin, end);
+    if (!build(t, begin, split)) return false;
+    n.right = (uint32_t)t->nodes.count;
+    if (!build(t, split, end)) return false;
+    n.bounds = t->nodes.items[index + 1].bounds;
+    box_add(&n.bounds, &t->nodes.items[n.right].bounds);
+  }
+  if (n.count <= FRAME_FACETS && !add_frame(t, &n)) return false;
+  t->nodes.items[index] = n;
+  return true;
+}
+
+static void middle_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block;
+  (void)worker;
+  scree_facet_tree *t = context;
+  for (size_t i = begin; i < end; i++) {
+    scree_box b = facet_box(t->mesh, (uint32_t)i);
+    t->order[i] = (uint32_t)i;
+    t->middle[i] = vec3_lerp(vec3_load(b.low), vec3_load(b.high), 0.5);
+  }
+}
+
+scree_status scree_facet_tree_build(const scree_mesh *mesh, scree_facet_tree *out,
+                                    scree_error *error) {
+  scree_facet_tree t = {.mesh = mesh};
+  SCREE_ALLOC_OR(t.order, mesh->triangle_count, error, out_of_memory);
+  SCREE_ALLOC_OR(t.middle, mesh->triangle_count, error, out_of_memory);
+  scree_parallel_for(mesh->triangle_count, 1 << 14, middle_block, &t);
+  if (!build(&t, 0, (uint32_t)mesh->triangle_count)) {
+    scree_fail_memory(error, t.nodes.count * sizeof(scree_facet_node), "the tree of facets");
+    goto out_of_memory;
+  }
+  *out = t;
+  return SCREE_OK;
+out_of_memory:
+  scree_facet_tree_free(&t);
+  return SCREE_OUT_OF_MEMORY;
+}
+
+void scree_facet_tree_free(scree_facet_tree *tree) {
+  scree_free(tree->order);
+  scree_free(tree->middle);
+  scree_free(tree->nodes.items);
+  scree_free(tree->frames.items);
+  *tree = (scree_facet_tree){0};
+}

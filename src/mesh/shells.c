@@ -1,0 +1,179 @@
+/* Shells by union-find over edges; their nesting by winding numbers.
+ *
+ * The winding number of a closed surface around a point is the signed number of its facets that a
+ * ray from the point leaves through, less those it enters through. Rays run along +x from a
+ * shell's extreme vertex, so they meet no facet of its own. A ray may run through an edge or a
+ * vertex of another shell; it is thought to be displaced by (0, e, e^2) with e infinitely small
+ * ("simulation of simplicity", Edelsbrunner and Muecke, ACM Trans. Graph. 9 (1990)), which makes
+ * every crossing a plain one and the count exact. */
+#include "mesh/shells.h"
+
+#include "base/alloc.h"
+#include "base/sum.h"
+#include "mesh/predicates.h"
+
+#include <string.h>
+
+static bool takes_part(const scree_adjacency *adjacency, size_t triangle) {
+  return adjacency->ring[3 * triangle] != SCREE_NO_HALF_EDGE;
+}
+
+/* Labels in the order of the lowest facets; returns how many shells there are. */
+static size_t label_shells(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                           uint32_t *label) {
+  size_t count = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t++) label[t] = (uint32_t)t;
+  for (size_t e = 0; e < adjacency->edge_count; e++) {
+    uint32_t first = adjacency->edges[e];
+    for (uint32_t h = adjacency->ring[first]; h != first; h = adjacency->ring[h])
+      scree_join(label, first / 3, h / 3);
+  }
+  /* roots are the lowest of their set, so the root's label is made before the others ask for it */
+  for (size_t t = 0; t < mesh->triangle_count; t++) label[t] = scree_find_root(label, (uint32_t)t);
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    uint32_t root = label[t];
+    if (!takes_part(adjacency, t))
+      label[t] = SCREE_NO_SHELL;
+    else
+      label[t] = root == t ? (uint32_t)count++ : label[root];
+  }
+  return count;
+}
+
+static bool is_farther(const scree_mesh *mesh, uint32_t v, uint32_t than) {
+  const double *p = mesh->positions + 3 * (size_t)v, *q = mesh->positions + 3 * (size_t)than;
+  for (int k = 0; k < 3; k++)
+    if (p[k] != q[k]) return p[k] > q[k];
+  return false;
+}
+
+static void add_facet(const scree_mesh *mesh, size_t t, scree_shell *shell, scree_sum *sums) {
+  if (shell->facet_count++ == 0) {
+    shell->first_facet = (uint32_t)t;
+    shell->extreme = mesh->triangles[3 * t];
+    shell->closed = true;
+  }
+  vec3 origin = scree_mesh_corner(mesh, shell->first_facet, 0), p = scree_mesh_corner(mesh, t, 0);
+  vec3 normal =
+      vec3_triangle_normal(p, scree_mesh_corner(mesh, t, 1), scree_mesh_corner(mesh, t, 2));
+  scree_sum_add(&sums[0], 0.5 * vec3_norm(normal));
+  scree_sum_add(&sums[1], vec3_dot(vec3_sub(p, origin), normal) / 6);
+  for (int k = 0; k < 3; k++)
+    if (is_farther(mesh, mesh->triangles[3 * t + (size_t)k], shell->extreme))
+      shell->extreme = mesh->triangles[3 * t + (size_t)k];
+}
+
+static void mark_open(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                      scree_shells *shells) {
+  for (size_t e = 0; e < adjacency->edge_count; e++) {
+    uint32_t first = adjacency->edges[e], from = scree_half_edge_from(mesh, first), h = first;
+    long long balance = 0;
+    do {
+      balance += scree_half_edge_from(mesh, h) == from ? 1 : -1;
+      h = adjacency->ring[h];
+    } while (h != first);
+    if (balance) shells->items[shells->label[first / 3]].closed = false;
+  }
+}
+
+scree_status scree_shells_find(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                               scree_shells *shells, scree_error *error) {
+  scree_shells made = {0};
+  scree_sum(*sums)[2] = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(made.label, mesh->triangle_count, error, done);
+  made.count = label_shells(mesh, adjacency, made.label);
+  SCREE_ALLOC_OR(made.items, made.count, error, done);
+  SCREE_ALLOC_OR(sums, made.count, error, done);
+  memset(made.items, 0, made.count * sizeof *made.items);
+  memset(sums, 0, made.count * sizeof *sums);
+  for (size_t t = 0; t < mesh->triangle_count; t++)
+    if (made.label[t] != SCREE_NO_SHELL)
+      add_facet(mesh, t, &made.items[made.label[t]], sums[made.label[t]]);
+  for (size_t i = 0; i < made.count; i++) {
+    made.items[i].area = scree_sum_value(sums[i][0]);
+    made.items[i].volume = scree_sum_value(sums[i][1]);
+  }
+  mark_open(mesh, adjacency, &made);
+  status = SCREE_OK;
+done:
+  scree_free(sums);
+  if (status == SCREE_OK)
+    *shells = made;
+  else
+    scree_shells_free(&made);
+  return status;
+}
+
+void scree_shells_free(scree_shells *shells) {
+  if (!shells) return;
+  scree_free(shells->label);
+  scree_free(shells->items);
+  *shells = (scree_shells){0};
+}
+
+/* ---- Winding numbers ---- */
+
+/* On which side of the line a b, seen along x, the displaced point lies; 0 only where a and b
+ * coincide so seen. */
+static int displaced_side(const double *a, const double *b, const double *p) {
+  int side = scree_orient2(a + 1, b + 1, p + 1);
+  if (side) return side;
+  if (a[2] != b[2]) return a[2] > b[2] ? 1 : -1;
+  return (b[1] > a[1]) - (b[1] < a[1]);
+}
+
+/* +1 where the ray from p along x leaves through the facet, -1 where it enters, else 0. */
+static int crossing(const scree_mesh *mesh, uint32_t facet, const double *p) {
+  const double *corner[3];
+  for (size_t k = 0; k < 3; k++)
+    corner[k] = mesh->positions + 3 * (size_t)mesh->triangles[3 * (size_t)facet + k];
+  int side = displaced_side(corner[0], corner[1], p);
+  if (!side || displaced_side(corner[1], corner[2], p) != side ||
+      displaced_side(corner[2], corner[0], p) != side)
+    return 0;
+  return scree_orient3(corner[0], corner[1], corner[2], p) == -side ? side : 0;
+}
+
+static bool ray_misses(const scree_box *box, const double *p) {
+  return box->high[0] < p[0] || box->low[1] > p[1] || box->high[1] < p[1] || box->low[2] > p[2] ||
+         box->high[2] < p[2];
+}
+
+static long long wind_around(const scree_shells *shells, const scree_facet_tree *tree,
+                             uint32_t own) {
+  const scree_mesh *mesh = tree->mesh;
+  const double *p = mesh->positions + 3 * (size_t)shells->items[own].extreme;
+  uint32_t stack[256]; /* deeper than any tree */
+  int depth = 0;
+  long long winding = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    uint32_t index = stack[--depth];
+    const scree_facet_node *n = &tree->nodes.items[index];
+    if (ray_misses(&n->bounds, p)) continue;
+    if (!scree_facet_node_is_leaf(n)) {
+      stack[depth++] = n->right;
+      stack[depth++] = index + 1;
+      continue;
+    }
+    for (uint32_t i = n->begin; i < n->begin + n->count; i++) {
+      uint32_t label = shells->label[tree->order[i]];
+      if (label == SCREE_NO_SHELL || label == own || !shells->items[label].closed) continue;
+      winding += crossing(mesh, tree->order[i], p);
+    }
+  }
+  return winding;
+}
+
+void scree_shells_wind(scree_shells *shells, const scree_facet_tree *tree) {
+  for (size_t i = 0; i < shells->count; i++)
+    shells->items[i].around = shells->items[i].closed ? wind_around(shells, tree, (uint32_t)i) : 0;
+}
+
+scree_shell_kind scree_shell_kind_of(const scree_shell *shell) {
+  if (!shell->closed) return SCREE_SHELL_OPEN;
+  if (shell->volume > 0) return shell->around == 0 ? SCREE_SHELL_BODY : SCREE_SHELL_NESTED;
+  if (shell->around == 1) return SCREE_SHELL_CAVITY;
+  return shell->around > 1 ? SCREE_SHELL_NESTED : SCREE_SHELL_INSIDE_OUT;
+}

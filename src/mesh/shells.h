@@ -1,0 +1,45 @@
+/* The separate shells of a mesh, and how they lie in each other. */
+#ifndef SCREE_MESH_SHELLS_H
+#define SCREE_MESH_SHELLS_H
+
+#include "mesh/adjacency.h"
+#include "mesh/facet_tree.h"
+
+typedef enum scree_shell_kind {
+  SCREE_SHELL_OPEN,       /* bounds no volume: an edge is not used equally often both ways */
+  SCREE_SHELL_BODY,       /* outward, in empty space */
+  SCREE_SHELL_CAVITY,     /* inward, in material */
+  SCREE_SHELL_NESTED,     /* in material already, and no cavity: adds nothing to the union */
+  SCREE_SHELL_INSIDE_OUT, /* inward, in empty space */
+} scree_shell_kind;
+
+typedef struct scree_shell {
+  uint32_t first_facet; /* the lowest */
+  uint32_t extreme;     /* the vertex of the largest x, then y, then z */
+  size_t facet_count;
+  bool closed;      /* every edge is used equally often both ways */
+  double area;      /* m^2 */
+  double volume;    /* m^3, signed; about first_facet's first corner where the shell is open */
+  long long around; /* the winding number of the other closed shells around it */
+} scree_shell;
+
+#define SCREE_NO_SHELL UINT32_MAX
+
+typedef struct scree_shells {
+  uint32_t *label; /* of each facet: its shell, or SCREE_NO_SHELL where it names a vertex twice */
+  scree_shell *items; /* by first_facet */
+  size_t count;
+} scree_shells;
+
+/* Finds the facets connected through shared edges; `around` is left 0. O(N). */
+scree_status scree_shells_find(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                               scree_shells *shells, scree_error *error);
+void scree_shells_free(scree_shells *shells);
+
+/* Fills `around` of the closed shells by shooting a ray from the extreme vertex of each: exact
+ * where shells neither cross nor touch. O(log N + crossings) each. */
+void scree_shells_wind(scree_shells *shells, const scree_facet_tree *tree);
+
+scree_shell_kind scree_shell_kind_of(const scree_shell *shell);
+
+#endif
