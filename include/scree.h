@@ -866,6 +866,53 @@ SCREE_API scree_status scree_pvd_write(const char *const *files, const double *t
                                        size_t file_count, const char *path, bool overwrite,
                                        scree_error *error);
 
+/* ---- 9.3 The choice: figure, tables, JSON ---- */
+
+/* One object of a choice, with all that is needed to run it again. Texts are borrowed. */
+typedef struct scree_choice_entry {
+  const char *name;        /* short, for tables and legends */
+  const char *file;        /* as given: a path, or sample:NAME */
+  const char *format;      /* as read, for example "binary STL"; "sample" for built-in ones */
+  scree_checksum checksum; /* of the file's bytes; zero for samples */
+  double unit_m;           /* metres per unit of the file */
+  bool is_sample;          /* then resolution, noise and seed say how it was made */
+  double sample_resolution, sample_noise; /* m */
+  uint64_t sample_seed;
+  const char *note;      /* what was repaired or is wrong, in one sentence; NULL: nothing */
+  const char *mesh_file; /* where the chosen mesh was written; NULL: nowhere */
+  const scree_choice *choice;
+} scree_choice_entry;
+
+typedef struct scree_choice_report {
+  const scree_choice_entry *entries;
+  size_t entry_count;
+  const scree_set_choice *set;
+  const scree_choice_options *options;
+  scree_method method;
+  bool paper;               /* the default choice is the paper's, not the robust one */
+  const char *command_line; /* for provenance; NULL: unknown */
+} scree_choice_report;
+
+/* The paper's Fig. 4, by the path's ending (.png, .svg, .pdf; .csv and .gnuplot for its data and a
+ * script): eps_s and Ip against Rp, all objects, the choices marked. */
+SCREE_API scree_status scree_choice_figure_write(const scree_choice_report *report,
+                                                 const char *path, bool overwrite,
+                                                 scree_error *error);
+
+/* One array: an object per entry, then the set's with "set": true. Lengths in metres, areas and
+ * volumes in m2 and m3. docs/formats.md has every field. "-" is stdout. */
+SCREE_API scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
+                                               bool overwrite, scree_error *error);
+
+/* One row per object and grid Rp. "-" is stdout. */
+SCREE_API scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
+                                              bool overwrite, scree_error *error);
+
+/* The dense curve of one object: one row per point of its trace that is another level. */
+SCREE_API scree_status scree_choice_curve_csv_write(const scree_choice_entry *entry,
+                                                    const char *path, bool overwrite,
+                                                    scree_error *error);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,186 @@
+/* The paper's Fig. 4: (a) the surface error, (b) the criterion, against Rp, on log axes. Thin lines
+ * are the dense curve, markers the paper's grid; a ring goes around the paper's choice and a star
+ * stands at the robust one. With one object the robust criterion is drawn too. */
+#include "report/plot.h"
+
+#include "base/alloc.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double PANEL_WIDTH = 350, PANEL_HEIGHT = 310;
+/* eps_s crosses zero; below this part of the largest error nothing is to be read. */
+static const double ERROR_FLOOR = 1e-4;
+
+enum { SERIES_PER_ENTRY = 2, EXTRA_SERIES = 3, NOTE_BYTES = 256 };
+
+typedef struct panel_data {
+  scree_series *series;
+  double *values; /* all the arrays below */
+  size_t series_count, used;
+} panel_data;
+
+static double *take(panel_data *data, size_t count) {
+  double *block = data->values + data->used;
+  data->used += count;
+  return block;
+}
+
+static void copy_levels(panel_data *data, const scree_choice_level *levels, size_t count,
+                        bool criterion, scree_series *series) {
+  double *x = take(data, count), *y = take(data, count);
+  for (size_t i = 0; i < count; i++) {
+    x[i] = levels[i].rp;
+    y[i] = criterion ? levels[i].ip : levels[i].eps_s;
+    /* a level that stands for several Rp below the floor is drawn once, where it is */
+    bool repeated = i + 1 < count && levels[i].level_index == levels[i + 1].level_index;
+    if (repeated && !levels[i].reached) y[i] = NAN;
+  }
+  *series = (scree_series){.x = x, .y = y, .count = count};
+}
+
+static void add_entries(const scree_choice_report *report, bool criterion, panel_data *data) {
+  for (size_t e = 0; e < report->entry_count; e++) {
+    const scree_choice_entry *entry = &report->entries[e];
+    scree_series *line = &data->series[data->series_count++];
+    copy_levels(data, entry->choice->trace, entry->choice->trace_count, criterion, line);
+    line->style = (int)e;
+    line->draw = SCREE_DRAW_LINE | SCREE_DRAW_FAINT | SCREE_DRAW_UNFITTED;
+  }
+  for (size_t e = 0; e < report->entry_count; e++) {
+    const scree_choice_entry *entry = &report->entries[e];
+    scree_series *points = &data->series[data->series_count++];
+    copy_levels(data, entry->choice->levels, entry->choice->level_count, criterion, points);
+    points->label = entry->name;
+    points->style = (int)e;
+    points->draw = SCREE_DRAW_MARKERS;
+  }
+}
+
+static void add_robust_line(const scree_choice *choice, bool criterion, panel_data *data) {
+  size_t count = choice->trace_count;
+  double *x = take(data, count), *y = take(data, count);
+  for (size_t i = 0; i < count; i++) {
+    x[i] = choice->trace[i].rp;
+    y[i] = choice->trace[i].reached
+               ? (criterion ? choice->trace[i].robust_ip : choice->trace[i].worst_eps_s)
+               : NAN;
+  }
+  data->series[data->series_count++] =
+      (scree_series){.label = "worst at this or finer levels",
+                     .x = x,
+                     .y = y,
+                     .count = count,
+                     .style = SCREE_STYLE_INK,
+                     .draw = SCREE_DRAW_LINE | SCREE_DRAW_DASHED | SCREE_DRAW_UNFITTED};
+}
+
+static void add_picks(const scree_choice_report *report, bool robust, bool criterion,
+                      panel_data *data) {
+  size_t count = report->entry_count;
+  double *x = take(data, count), *y = take(data, count);
+  for (size_t e = 0; e < count; e++) {
+    const scree_choice *choice = report->entries[e].choice;
+    const scree_pick *pick = robust ? &choice->robust : &choice->paper;
+    double part = pick->ip - pick->eps_s; /* w Nr / Nm */
+    x[e] = pick->rp;
+    y[e] = pick->level_eps_s + (criterion ? part : 0);
+  }
+  data->series[data->series_count++] =
+      (scree_series){.label = robust ? "robust choice" : "paper's choice (grid minimum)",
+                     .x = x,
+                     .y = y,
+                     .count = count,
+                     .style = SCREE_STYLE_INK,
+                     .draw = SCREE_DRAW_MARKERS | SCREE_DRAW_UNFITTED,
+                     .marker = robust ? SCREE_MARKER_STAR : SCREE_MARKER_RING};
+}
+
+/* The error axis from the least grid value down to the floor only. */
+static void fit_errors(const scree_choice_report *report, bool criterion, scree_axis *axis) {
+  double low = INFINITY, high = 0;
+  for (size_t e = 0; e < report->entry_count; e++)
+    for (size_t i = 0; i < report->entries[e].choice->level_count; i++) {
+      const scree_choice_level *level = &report->entries[e].choice->levels[i];
+      double value = criterion ? level->ip : level->eps_s;
+      if (value > 0) low = fmin(low, value);
+      high = fmax(high, value);
+    }
+  if (!(high > 0)) return;
+  axis->minimum = fmax(low / 1.4, ERROR_FLOOR * high);
+  axis->maximum = high * 1.4;
+}
+
+static scree_status allocate(const scree_choice_report *report, panel_data *data,
+                             scree_error *error) {
+  size_t points = 4 * report->entry_count;
+  for (size_t e = 0; e < report->entry_count; e++)
+    points += 2 * (report->entries[e].choice->level_count + report->entries[e].choice->trace_count);
+  points += 2 * report->entries[0].choice->trace_count;
+  size_t series = SERIES_PER_ENTRY * report->entry_count + EXTRA_SERIES;
+  data->series = scree_alloc_zero(series, sizeof *data->series);
+  data->values = scree_alloc(points, sizeof *data->values);
+  if (!data->series || !data->values)
+    return scree_fail_memory(error, points * sizeof *data->values, "a figure's data");
+  return SCREE_OK;
+}
+
+static scree_panel make_panel(const scree_choice_report *report, bool criterion, panel_data *data) {
+  scree_panel panel = {.title = criterion ? "(b) criterion" : "(a) surface error",
+                       .x = {"percentage reduction  R_{p} = N^{r}/N^{m}", SCREE_SCALE_LOG,
+                             0.75 * report->options->rp_min, report->options->rp_max / 0.75},
+                       .y = {criterion ? "I_{p}" : "\u03b5_{s}", SCREE_SCALE_LOG, 0, 0}};
+  add_entries(report, criterion, data);
+  if (report->entry_count == 1) add_robust_line(report->entries[0].choice, criterion, data);
+  add_picks(report, false, criterion, data);
+  if (!report->paper) add_picks(report, true, criterion, data);
+  fit_errors(report, criterion, &panel.y);
+  panel.series = data->series;
+  panel.series_count = data->series_count;
+  return panel;
+}
+
+/* The set's choice as a line, where there is a set to speak of. */
+static size_t set_guide(const scree_choice_report *report, char *text, size_t size,
+                        scree_guide *guide) {
+  if (report->entry_count < 2 || !report->set) return 0;
+  double rp = report->paper ? report->set->paper_rp : report->set->robust_rp;
+  snprintf(text, size, "set: %.2g", rp);
+  *guide = (scree_guide){text, rp, false};
+  return 1;
+}
+
+scree_status scree_choice_figure_write(const scree_choice_report *report, const char *path,
+                                       bool overwrite, scree_error *error) {
+  if (report->entry_count == 0)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no object to draw", path);
+  panel_data data[2] = {{0}, {0}};
+  scree_panel panels[2];
+  char guide_text[64], note[NOTE_BYTES];
+  scree_guide guide;
+  size_t guide_count = set_guide(report, guide_text, sizeof guide_text, &guide);
+  scree_status status = SCREE_OK;
+  for (int p = 0; p < 2 && status == SCREE_OK; p++) {
+    status = allocate(report, &data[p], error);
+    if (status != SCREE_OK) break;
+    panels[p] = make_panel(report, p == 1, &data[p]);
+    panels[p].guides = &guide;
+    panels[p].guide_count = guide_count;
+  }
+  if (status == SCREE_OK) {
+    snprintf(note, sizeof note, "scree %s, method %s, w = %g, reference area: %s", scree_version(),
+             report->method == SCREE_METHOD_QECD ? "qecd" : "volume", report->options->weight,
+             report->options->reference == SCREE_REFERENCE_SMOOTH ? "free of noise" : "the scan's");
+    scree_figure figure = {.panels = panels,
+                           .panel_count = 2,
+                           .panel_width = PANEL_WIDTH,
+                           .panel_height = PANEL_HEIGHT,
+                           .note = note};
+    status = scree_figure_write(&figure, path, overwrite, error);
+  }
+  for (int p = 0; p < 2; p++) {
+    scree_free(data[p].series);
+    scree_free(data[p].values);
+  }
+  return status;
+}

@@ -1,0 +1,242 @@
+/* A choice as JSON and CSV. Every object carries its provenance: version, command, options, input
+ * checksum, unit, and for samples how they were made. */
+#include "base/file.h"
+#include "report/csv.h"
+#include "report/json.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+static const char *method_name(scree_method method) {
+  return method == SCREE_METHOD_QECD ? "qecd" : "volume";
+}
+static const char *reference_name(scree_reference reference) {
+  return reference == SCREE_REFERENCE_SMOOTH ? "smooth" : "scan";
+}
+
+static void json_pick(scree_json *json, const char *key, const scree_pick *pick) {
+  scree_json_row_object(json, key);
+  scree_json_number(json, "rp", pick->rp);
+  scree_json_count(json, "triangle_count", pick->triangle_count);
+  scree_json_number(json, "eps_s", pick->eps_s);
+  scree_json_number(json, "ip", pick->ip);
+  scree_json_number(json, "level_eps_s", pick->level_eps_s);
+  scree_json_number(json, "area", pick->area);
+  scree_json_number(json, "volume", pick->volume);
+  scree_json_end(json);
+}
+
+static void json_levels(scree_json *json, const scree_choice *choice) {
+  scree_json_array(json, "levels");
+  for (size_t i = 0; i < choice->level_count; i++) {
+    const scree_choice_level *level = &choice->levels[i];
+    scree_json_row_object(json, NULL);
+    scree_json_number(json, "rp", level->rp);
+    scree_json_count(json, "triangle_count", level->triangle_count);
+    scree_json_number(json, "area", level->area);
+    scree_json_number(json, "volume", level->volume);
+    scree_json_number(json, "eps_s", level->eps_s);
+    scree_json_number(json, "ip", level->ip);
+    scree_json_number(json, "worst_eps_s", level->worst_eps_s);
+    scree_json_number(json, "robust_ip", level->robust_ip);
+    scree_json_bool(json, "reached", level->reached);
+    scree_json_row_object(json, "errors");
+    for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+      if (isfinite(level->errors[e]))
+        scree_json_number(json, scree_shape_error_name((scree_shape_error)e), level->errors[e]);
+    scree_json_end(json);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+}
+
+/* The level with the least error + w Nr/Nm for each error that was measured. */
+static void json_best(scree_json *json, const scree_choice *choice, double weight) {
+  scree_json_object(json, "best_by_error");
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) {
+    if (choice->best[e] >= choice->level_count) continue;
+    const scree_choice_level *level = &choice->levels[choice->best[e]];
+    scree_json_row_object(json, scree_shape_error_name((scree_shape_error)e));
+    scree_json_number(json, "rp", level->rp);
+    scree_json_count(json, "triangle_count", level->triangle_count);
+    scree_json_number(json, "error", level->errors[e]);
+    scree_json_number(json, "ip", level->errors[e] + weight * level->rp_reached);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+}
+
+static void json_noise(scree_json *json, const scree_choice *choice) {
+  scree_json_row_object(json, "noise");
+  scree_json_bool(json, "found", choice->noise.found);
+  scree_json_number(json, "fraction", choice->noise.fraction);
+  scree_json_number(json, "smooth_area", choice->noise.area);
+  scree_json_count(json, "plateau_triangle_count", choice->noise.triangle_count);
+  scree_json_end(json);
+}
+
+static void json_options(scree_json *json, const scree_choice_report *report) {
+  const scree_choice_options *o = report->options;
+  scree_json_row_object(json, "options");
+  scree_json_text(json, "method", method_name(report->method));
+  scree_json_bool(json, "paper", report->paper);
+  scree_json_number(json, "weight", o->weight);
+  scree_json_number(json, "rp_min", o->rp_min);
+  scree_json_number(json, "rp_max", o->rp_max);
+  scree_json_count(json, "per_decade", (uint64_t)o->per_decade);
+  scree_json_text(json, "reference", reference_name(o->reference));
+  scree_json_end(json);
+}
+
+static void json_source(scree_json *json, const scree_choice_entry *entry) {
+  char checksum[40];
+  snprintf(checksum, sizeof checksum, "%016" PRIx64 "%016" PRIx64, entry->checksum.high,
+           entry->checksum.low);
+  scree_json_text(json, "name", entry->name);
+  scree_json_text(json, "format", entry->format);
+  scree_json_text(json, "checksum", entry->is_sample ? NULL : checksum);
+  scree_json_number(json, "unit_m", entry->unit_m);
+  if (entry->is_sample) {
+    scree_json_row_object(json, "sample");
+    scree_json_number(json, "resolution_m", entry->sample_resolution);
+    scree_json_number(json, "noise_m", entry->sample_noise);
+    scree_json_count(json, "seed", entry->sample_seed);
+    scree_json_end(json);
+  }
+  scree_json_text(json, "note", entry->note);
+  scree_json_text(json, "mesh_file", entry->mesh_file);
+}
+
+static void json_entry(scree_json *json, const scree_choice_report *report,
+                       const scree_choice_entry *entry) {
+  const scree_choice *choice = entry->choice;
+  scree_json_object(json, NULL);
+  scree_json_text(json, "file", entry->file);
+  scree_json_count(json, "triangle_count", choice->triangle_count);
+  scree_json_number(json, "area", choice->area);
+  scree_json_number(json, "volume", choice->volume);
+  json_levels(json, choice);
+  json_pick(json, "paper", &choice->paper);
+  json_pick(json, "robust", &choice->robust);
+  scree_json_text(json, "default", report->paper ? "paper" : "robust");
+  json_pick(json, "plain", &choice->plain);
+  scree_json_bool(json, "plain_is_accident", choice->plain_is_accident);
+  json_pick(json, "smooth", &choice->smooth);
+  json_noise(json, choice);
+  json_best(json, choice, report->options->weight);
+  scree_json_number(json, "reference_area", choice->reference_area);
+  scree_json_count(json, "floor_triangle_count", choice->floor_count);
+  scree_json_count(json, "triangle_count_if_scanned_twice_as_fine", choice->finer_count);
+  json_source(json, entry);
+  scree_json_text(json, "version", scree_version());
+  scree_json_text(json, "command", report->command_line);
+  json_options(json, report);
+  scree_json_end(json);
+}
+
+static void json_set_pick(scree_json *json, const char *key, double rp, double ip) {
+  scree_json_row_object(json, key);
+  scree_json_number(json, "rp", rp);
+  scree_json_number(json, "ip", ip);
+  scree_json_end(json);
+}
+
+static void json_set(scree_json *json, const scree_choice_report *report) {
+  const scree_set_choice *set = report->set;
+  scree_json_object(json, NULL);
+  scree_json_bool(json, "set", true);
+  scree_json_count(json, "object_count", set->object_count);
+  scree_json_array(json, "levels");
+  for (size_t i = 0; i < set->level_count; i++) {
+    scree_json_row_object(json, NULL);
+    scree_json_number(json, "rp", scree_choice_grid_rp(report->options, i));
+    scree_json_number(json, "ip", set->ip[i]);
+    scree_json_number(json, "ip_low", set->low[i]);
+    scree_json_number(json, "ip_high", set->high[i]);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+  json_set_pick(json, "paper", set->paper_rp, set->paper_ip);
+  json_set_pick(json, "robust", set->robust_rp, set->robust_ip);
+  json_set_pick(json, "smooth", set->smooth_rp, set->smooth_ip);
+  scree_json_number(json, "paper_spread", set->paper_spread);
+  scree_json_number(json, "robust_spread", set->robust_spread);
+  scree_json_text(json, "version", scree_version());
+  scree_json_text(json, "command", report->command_line);
+  json_options(json, report);
+  scree_json_end(json);
+}
+
+scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
+                                     bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  scree_json json = scree_json_start(output.stream);
+  scree_json_array(&json, NULL);
+  for (size_t e = 0; e < report->entry_count; e++) json_entry(&json, report, &report->entries[e]);
+  if (report->set) json_set(&json, report);
+  scree_json_end(&json);
+  return scree_output_commit(&output, error);
+}
+
+/* ---- CSV ---- */
+
+static void csv_level(FILE *stream, const scree_choice_level *level) {
+  const double values[] = {level->area,        level->volume,    level->eps_s,    level->ip,
+                           level->worst_eps_s, level->robust_ip, level->smooth_ip};
+  scree_csv_number(stream, level->rp);
+  fprintf(stream, ",%zu", level->triangle_count);
+  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+    putc(',', stream);
+    scree_csv_number(stream, values[i]);
+  }
+}
+
+static const char LEVEL_HEADER[] =
+    "rp,triangle_count,area_m2,volume_m3,eps_s,ip,worst_eps_s,robust_ip,smooth_ip";
+
+scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
+                                    bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  fprintf(output.stream, "file,scan_triangle_count,%s,choice", LEVEL_HEADER);
+  for (int e = SCREE_ERROR_VOLUME; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    fprintf(output.stream, ",error_%s", scree_shape_error_name((scree_shape_error)e));
+  putc('\n', output.stream);
+  for (size_t k = 0; k < report->entry_count; k++) {
+    const scree_choice *choice = report->entries[k].choice;
+    for (size_t i = 0; i < choice->level_count; i++) {
+      scree_csv_text(output.stream, report->entries[k].file);
+      fprintf(output.stream, ",%zu,", choice->triangle_count);
+      csv_level(output.stream, &choice->levels[i]);
+      fputs(i == choice->best[SCREE_ERROR_AREA] ? ",paper" : ",", output.stream);
+      for (int e = SCREE_ERROR_VOLUME; e < SCREE_SHAPE_ERROR_COUNT; e++) {
+        putc(',', output.stream);
+        scree_csv_number(output.stream, choice->levels[i].errors[e]);
+      }
+      putc('\n', output.stream);
+    }
+  }
+  return scree_output_commit(&output, error);
+}
+
+scree_status scree_choice_curve_csv_write(const scree_choice_entry *entry, const char *path,
+                                          bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  fprintf(output.stream, "%s\n", LEVEL_HEADER);
+  const scree_choice *choice = entry->choice;
+  for (size_t i = 0; i < choice->trace_count; i++) {
+    if (i + 1 < choice->trace_count &&
+        choice->trace[i].level_index == choice->trace[i + 1].level_index)
+      continue;
+    scree_choice_level level = choice->trace[i];
+    level.rp = level.rp_reached; /* here Rp is what the level has, not what was asked for */
+    csv_level(output.stream, &level);
+    putc('\n', output.stream);
+  }
+  return scree_output_commit(&output, error);
+}

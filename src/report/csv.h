@@ -1,0 +1,14 @@
+/* Comma-separated values by RFC 4180, with '\n' line ends. */
+#ifndef SCREE_REPORT_CSV_H
+#define SCREE_REPORT_CSV_H
+
+#include "base/error.h"
+
+/* A text field, quoted where it needs to be. */
+void scree_csv_text(FILE *stream, const char *text);
+/* The shortest form that reads back the same; nothing for NaN and infinities. */
+void scree_csv_number(FILE *stream, double value);
+/* The shortest decimal form that reads back as the same double, into buffer of 32 bytes. */
+void scree_shortest_double(double value, char *buffer);
+
+#endif

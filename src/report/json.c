@@ -1,0 +1,105 @@
+#include "report/json.h"
+
+#include "report/csv.h"
+#include "report/utf8.h"
+
+#include <math.h>
+#include <string.h>
+
+static void write_text(FILE *stream, const char *text) {
+  putc('"', stream);
+  while (*text) {
+    size_t length = scree_utf8_length(text);
+    if (length == 0)
+      fputs("\\ufffd", stream);
+    else if (length > 1)
+      fwrite(text, 1, length, stream);
+    else if (*text == '"' || *text == '\\')
+      fprintf(stream, "\\%c", *text);
+    else if (*text < 0x20 || *text == 0x7f || strchr("<>&", *text))
+      fprintf(stream, "\\u%04x", (unsigned)*text); /* also safe inside an HTML script element */
+    else
+      putc(*text, stream);
+    text += length ? length : 1;
+  }
+  putc('"', stream);
+}
+
+scree_json scree_json_start(FILE *stream) {
+  return (scree_json){.stream = stream};
+}
+
+/* Comma, line end, indentation and key before a value. */
+static void lead(scree_json *json, const char *key) {
+  if (json->depth > 0) {
+    bool filled = json->open[json->depth - 1].filled;
+    if (filled) putc(',', json->stream);
+    if (json->open[json->depth - 1].one_line) {
+      if (filled) putc(' ', json->stream);
+    } else {
+      fprintf(json->stream, "\n%*s", 2 * json->depth, "");
+    }
+    json->open[json->depth - 1].filled = true;
+  }
+  if (!key) return;
+  write_text(json->stream, key);
+  fputs(": ", json->stream);
+}
+
+static void open(scree_json *json, const char *key, char opening, bool one_line) {
+  SCREE_ASSERT(json->depth < SCREE_JSON_DEPTH);
+  lead(json, key);
+  putc(opening, json->stream);
+  bool outer = json->depth > 0 && json->open[json->depth - 1].one_line;
+  json->open[json->depth].closing = opening == '{' ? '}' : ']';
+  json->open[json->depth].one_line = one_line || outer;
+  json->open[json->depth].filled = false;
+  json->depth++;
+}
+
+void scree_json_object(scree_json *json, const char *key) {
+  open(json, key, '{', false);
+}
+void scree_json_array(scree_json *json, const char *key) {
+  open(json, key, '[', false);
+}
+void scree_json_row_object(scree_json *json, const char *key) {
+  open(json, key, '{', true);
+}
+void scree_json_row_array(scree_json *json, const char *key) {
+  open(json, key, '[', true);
+}
+
+void scree_json_end(scree_json *json) {
+  SCREE_ASSERT(json->depth > 0);
+  json->depth--;
+  if (json->open[json->depth].filled && !json->open[json->depth].one_line)
+    fprintf(json->stream, "\n%*s", 2 * json->depth, "");
+  putc(json->open[json->depth].closing, json->stream);
+  if (json->depth == 0) putc('\n', json->stream);
+}
+
+void scree_json_text(scree_json *json, const char *key, const char *text) {
+  lead(json, key);
+  if (text)
+    write_text(json->stream, text);
+  else
+    fputs("null", json->stream);
+}
+
+void scree_json_number(scree_json *json, const char *key, double value) {
+  char buffer[32] = "null";
+  lead(json, key);
+  if (isfinite(value)) scree_shortest_double(value, buffer);
+  fputs(buffer, json->stream);
+}
+
+void scree_json_count(scree_json *json, const char *key, uint64_t value) {
+  lead(json, key);
+  fprintf(json->stream, "%llu", (unsigned long long)value);
+}
+
+void scree_json_bool(scree_json *json, const char *key, bool value) {
+  lead(json, key);
+  fputs(value ? "true" : "false", json->stream);
+}

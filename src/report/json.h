@@ -1,0 +1,42 @@
+/* A streaming JSON writer (RFC 8259): no tree in memory, correct nesting and commas by itself.
+ *
+ *   scree_json json = scree_json_start(stream);
+ *   scree_json_object(&json, NULL);
+ *   scree_json_number(&json, "area", 1.5);
+ *   scree_json_end(&json);
+ *
+ * A key is given inside objects and NULL inside arrays. Numbers are written in the shortest form
+ * that reads back as the same double; NaN and infinities, which JSON lacks, as null. Texts that are
+ * not UTF-8 keep their good parts; each bad byte becomes U+FFFD. Write errors stay in the stream
+ * (ferror). */
+#ifndef SCREE_REPORT_JSON_H
+#define SCREE_REPORT_JSON_H
+
+#include "base/error.h"
+
+enum { SCREE_JSON_DEPTH = 32 };
+
+typedef struct scree_json {
+  FILE *stream;
+  int depth;
+  struct {
+    char closing;  /* ']' or '}' */
+    bool one_line; /* its content, and all below */
+    bool filled;
+  } open[SCREE_JSON_DEPTH];
+} scree_json;
+
+scree_json scree_json_start(FILE *stream);
+void scree_json_object(scree_json *json, const char *key);
+void scree_json_array(scree_json *json, const char *key);
+/* The same, all on one line: for rows of a table. */
+void scree_json_row_object(scree_json *json, const char *key);
+void scree_json_row_array(scree_json *json, const char *key);
+/* Closes the innermost object or array; after the outermost a line end follows. */
+void scree_json_end(scree_json *json);
+void scree_json_text(scree_json *json, const char *key, const char *text); /* NULL: null */
+void scree_json_number(scree_json *json, const char *key, double value);
+void scree_json_count(scree_json *json, const char *key, uint64_t value);
+void scree_json_bool(scree_json *json, const char *key, bool value);
+
+#endif

@@ -1,0 +1,220 @@
+/* One description, five files. Cairo streams into our own output file, so that a picture appears
+ * complete or not at all. */
+#include "report/plot_draw.h"
+
+#include "base/alloc.h"
+#include "base/file.h"
+#include "report/csv.h"
+#include "report/text.h"
+
+#include <cairo-pdf.h>
+#include <cairo-svg.h>
+#include <math.h>
+#include <string.h>
+
+static const double PIXELS_PER_POINT = 2;
+static const char *const ENDINGS[] = {".png", ".svg", ".pdf", ".csv", ".gnuplot"};
+enum { ENDING_COUNT = 5, LABEL_BYTES = 256 };
+
+static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsigned count) {
+  return fwrite(bytes, 1, count, stream) == count ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
+}
+
+static cairo_status_t draw_to(const scree_figure *figure, cairo_surface_t *surface, double scale) {
+  cairo_t *cr = cairo_create(surface);
+  cairo_scale(cr, scale, scale);
+  scree_figure_draw(figure, cr);
+  cairo_status_t status = cairo_status(cr);
+  cairo_destroy(cr);
+  return status;
+}
+
+static cairo_status_t write_png(const scree_figure *figure, FILE *stream) {
+  double width, height;
+  scree_figure_extent(figure, &width, &height);
+  cairo_surface_t *surface =
+      cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width * PIXELS_PER_POINT),
+                                 (int)ceil(height * PIXELS_PER_POINT));
+  cairo_status_t status = draw_to(figure, surface, PIXELS_PER_POINT);
+  if (status == CAIRO_STATUS_SUCCESS)
+    status = cairo_surface_write_to_png_stream(surface, to_stream, stream);
+  cairo_surface_destroy(surface);
+  return status;
+}
+
+static cairo_status_t write_vector(const scree_figure *figure, FILE *stream, bool pdf) {
+  double width, height;
+  scree_figure_extent(figure, &width, &height);
+  cairo_surface_t *surface =
+      pdf ? cairo_pdf_surface_create_for_stream(to_stream, stream, width, height)
+          : cairo_svg_surface_create_for_stream(to_stream, stream, width, height);
+  cairo_status_t status = draw_to(figure, surface, 1);
+  cairo_surface_finish(surface);
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
+  cairo_surface_destroy(surface);
+  return status;
+}
+
+/* ---- data ---- */
+
+static void write_csv(const scree_figure *figure, FILE *stream) {
+  fputs("panel,series,label,x,y,low,high\n", stream);
+  for (size_t p = 0; p < figure->panel_count; p++)
+    for (size_t s = 0; s < figure->panels[p].series_count; s++) {
+      const scree_series *series = &figure->panels[p].series[s];
+      char label[LABEL_BYTES];
+      scree_text_plain(series->label ? series->label : "", label, sizeof label);
+      for (size_t i = 0; i < series->count; i++) {
+        const double *values[4] = {series->x, series->y, series->low, series->high};
+        fprintf(stream, "%zu,%zu,", p + 1, s + 1);
+        scree_csv_text(stream, label);
+        for (int v = 0; v < 4; v++) {
+          putc(',', stream);
+          if (values[v]) scree_csv_number(stream, values[v][i]);
+        }
+        putc('\n', stream);
+      }
+    }
+}
+
+/* A gnuplot string in double quotes; its enhanced text knows our marks, and its own signs are made
+ * harmless. */
+static void write_quoted(FILE *stream, const char *text) {
+  putc('"', stream);
+  for (; *text; text++) {
+    bool mark = (*text == '_' || *text == '^') && text[1] == '{';
+    if (*text == '"' || *text == '\\')
+      fprintf(stream, "\\%c", *text);
+    else if (!mark && strchr("_^@&~", *text))
+      fprintf(stream, "\\\\%c", *text);
+    else
+      putc((unsigned char)*text < 0x20 ? ' ' : *text, stream);
+  }
+  putc('"', stream);
+}
+
+static void write_script_axis(FILE *stream, char name, const scree_axis *axis) {
+  fprintf(stream, "set %clabel ", name);
+  write_quoted(stream, axis->label ? axis->label : "");
+  fprintf(stream, "\n%s logscale %c\n", axis->scale == SCREE_SCALE_LOG ? "set" : "unset", name);
+  if (axis->scale == SCREE_SCALE_LOG) fprintf(stream, "set format %c \"10^{%%L}\"\n", name);
+  if (axis->minimum != 0 || axis->maximum != 0)
+    fprintf(stream, "set %crange [%.17g:%.17g]\n", name, axis->minimum, axis->maximum);
+  else
+    fprintf(stream, "set %crange [*:*]\n", name);
+}
+
+static void write_script_series(FILE *stream, const char *data, size_t panel, size_t index,
+                                const scree_series *series) {
+  const char *kind = !(series->draw & SCREE_DRAW_LINE)   ? "points"
+                     : series->draw & SCREE_DRAW_MARKERS ? "linespoints"
+                                                         : "lines";
+  fputs("  ", stream);
+  write_quoted(stream, data);
+  fprintf(stream, " using ($1==%zu&&$2==%zu?$4:NaN):5 with %s lc %d dt %d title ", panel, index,
+          kind, series->style < 0 ? 0 : series->style + 1,
+          series->draw & SCREE_DRAW_DASHED ? 2 : 1);
+  write_quoted(stream, series->label ? series->label : "");
+  if ((series->draw & (SCREE_DRAW_BARS | SCREE_DRAW_BAND)) && series->low && series->high) {
+    fputs(", \\\n  ", stream);
+    write_quoted(stream, data);
+    fprintf(stream, " using ($1==%zu&&$2==%zu?$4:NaN):5:6:7 with yerrorbars lc %d notitle", panel,
+            index, series->style < 0 ? 0 : series->style + 1);
+  }
+}
+
+static void write_script(const scree_figure *figure, const char *data, FILE *stream) {
+  size_t columns = figure->columns ? figure->columns : figure->panel_count;
+  if (columns > figure->panel_count) columns = figure->panel_count;
+  fputs("# gnuplot -p FILE draws the figure from the .csv beside it (run it in the same folder)\n"
+        "set datafile separator comma\nset key below maxrows 4\nset grid\n",
+        stream);
+  fprintf(stream, "set multiplot layout %zu,%zu\n", (figure->panel_count + columns - 1) / columns,
+          columns);
+  for (size_t p = 0; p < figure->panel_count; p++) {
+    const scree_panel *panel = &figure->panels[p];
+    fputs("set title ", stream);
+    write_quoted(stream, panel->title ? panel->title : "");
+    putc('\n', stream);
+    write_script_axis(stream, 'x', &panel->x);
+    write_script_axis(stream, 'y', &panel->y);
+    if (panel->series_count == 0) continue;
+    fputs("plot \\\n", stream);
+    for (size_t s = 0; s < panel->series_count; s++) {
+      write_script_series(stream, data, p + 1, s + 1, &panel->series[s]);
+      fputs(s + 1 < panel->series_count ? ", \\\n" : "\n", stream);
+    }
+  }
+  fputs("unset multiplot\n", stream);
+}
+
+/* The name without folders and with .csv in place of .gnuplot. */
+static scree_status write_script_for(const scree_figure *figure, const char *path, FILE *stream,
+                                     scree_error *error) {
+  const char *slash = strrchr(path, '/');
+  char *data = scree_strdup(slash ? slash + 1 : path);
+  if (!data) return scree_fail_memory(error, strlen(path), "a file name");
+  memcpy(data + strlen(data) - strlen(".gnuplot"), ".csv", sizeof ".csv");
+  write_script(figure, data, stream);
+  scree_free(data);
+  return SCREE_OK;
+}
+
+static int ending_of(const char *path) {
+  size_t length = strlen(path);
+  for (int i = 0; i < ENDING_COUNT; i++) {
+    size_t size = strlen(ENDINGS[i]);
+    if (length > size && !strcmp(path + length - size, ENDINGS[i])) return i;
+  }
+  return -1;
+}
+
+scree_status scree_figure_write(const scree_figure *figure, const char *path, bool overwrite,
+                                scree_error *error) {
+  int ending = ending_of(path);
+  if (ending < 0)
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "%s: a figure ends in .png, .svg, .pdf, .csv or .gnuplot", path);
+  if (figure->panel_count == 0)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: a figure without panels", path);
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  cairo_status_t drawn = CAIRO_STATUS_SUCCESS;
+  switch (ending) {
+  case 0:
+    drawn = write_png(figure, output.stream);
+    break;
+  case 1:
+    drawn = write_vector(figure, output.stream, false);
+    break;
+  case 2:
+    drawn = write_vector(figure, output.stream, true);
+    break;
+  case 3:
+    write_csv(figure, output.stream);
+    break;
+  default:
+    status = write_script_for(figure, path, output.stream, error);
+  }
+  if (drawn != CAIRO_STATUS_SUCCESS)
+    status =
+        scree_fail(error, SCREE_IO, "%s: cannot draw: %s", path, cairo_status_to_string(drawn));
+  if (status == SCREE_OK) return scree_output_commit(&output, error);
+  scree_output_discard(&output);
+  return status;
+}
+
+scree_status scree_figure_write_all(const scree_figure *figure, const char *stem, bool overwrite,
+                                    scree_error *error) {
+  size_t size = strlen(stem) + 16;
+  char *path = scree_alloc(size, 1);
+  if (!path) return scree_fail_memory(error, size, "a file name");
+  scree_status status = SCREE_OK;
+  for (int i = 0; i < ENDING_COUNT && status == SCREE_OK; i++) {
+    snprintf(path, size, "%s%s", stem, ENDINGS[i]);
+    status = scree_figure_write(figure, path, overwrite, error);
+  }
+  scree_free(path);
+  return status;
+}
