@@ -9,6 +9,7 @@
 
 #include "report/text.h"
 
+#include <cairo.h>
 #include <math.h>
 #include <string.h>
 

@@ -4,11 +4,11 @@
 
 #include "report/plot.h"
 
-#include <cairo.h>
+struct _cairo; /* cairo_t */
 
 /* Size of the whole figure in points. */
 void scree_figure_extent(const scree_figure *figure, double *width, double *height);
 /* Draws in points from the origin, background included. */
-void scree_figure_draw(const scree_figure *figure, cairo_t *cr);
+void scree_figure_draw(const scree_figure *figure, struct _cairo *cr);
 
 #endif

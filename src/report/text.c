@@ -4,6 +4,7 @@
 
 #include "report/utf8.h"
 
+#include <cairo.h>
 #include <stdbool.h>
 #include <string.h>
 

@@ -2,14 +2,17 @@
 #ifndef SCREE_REPORT_TEXT_H
 #define SCREE_REPORT_TEXT_H
 
-#include <cairo.h>
 #include <stddef.h>
 
+/* cairo_t, so that this header compiles without cairo's include path. */
+struct _cairo;
+
 /* Width in user units at the size given. */
-double scree_text_width(cairo_t *cr, const char *text, double size);
+double scree_text_width(struct _cairo *cr, const char *text, double size);
 
 /* Draws with the anchor at (x, y): align 0 left, 0.5 centre, 1 right; y is the baseline. */
-void scree_text_draw(cairo_t *cr, const char *text, double size, double x, double y, double align);
+void scree_text_draw(struct _cairo *cr, const char *text, double size, double x, double y,
+                     double align);
 
 /* The text without its marks, for files that know none, into buffer of size bytes. */
 void scree_text_plain(const char *text, char *buffer, size_t size);
