@@ -26,7 +26,7 @@ static bool push(scree_ring *r, uint32_t h) {
 
 /* Triangles counter-clockwise after outgoing half-edge g up to the one with `stop`; *open: met a
  * boundary. */
-static bool push_turning_left(const scree_surface *s, scree_ring *r, uint32_t g, uint32_t stop,
+static bool push_turning_left(const scree_halfmesh *s, scree_ring *r, uint32_t g, uint32_t stop,
                               bool *open) {
   for (;;) {
     g = scree_turn(s, g);
@@ -37,7 +37,7 @@ static bool push_turning_left(const scree_surface *s, scree_ring *r, uint32_t g,
 }
 
 /* Triangles clockwise before g up to a boundary, listed counter-clockwise. */
-static bool push_turning_right(const scree_surface *s, scree_ring *r, uint32_t g) {
+static bool push_turning_right(const scree_halfmesh *s, scree_ring *r, uint32_t g) {
   uint32_t begin = r->count;
   while (s->twin[g] != SCREE_NONE) {
     g = scree_next(s->twin[g]);
@@ -51,7 +51,7 @@ static bool push_turning_right(const scree_surface *s, scree_ring *r, uint32_t g
   return true;
 }
 
-bool scree_ring_gather(const scree_surface *s, uint32_t h, scree_ring *r) {
+bool scree_ring_gather(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
   uint32_t twin = s->twin[h];
   bool open;
   r->half_edge = h;
@@ -69,7 +69,7 @@ bool scree_ring_gather(const scree_surface *s, uint32_t h, scree_ring *r) {
   return !open || push_turning_right(s, r, scree_next(h));
 }
 
-bool scree_collapse_keeps_topology(const scree_surface *s, const scree_ring *r) {
+bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *r) {
   if ((s->flags[r->a] | s->flags[r->b]) & SCREE_VERTEX_LOCKED) return false;
   if (r->count < 3 && s->twin[r->half_edge] != SCREE_NONE && !scree_on_boundary(s, r->a) &&
       !scree_on_boundary(s, r->b))
@@ -114,7 +114,7 @@ static inline bool folded(vec3 n, vec3 m) {
   return dot < 0 && dot * dot > FOLD * FOLD * vec3_norm2(n) * vec3_norm2(m);
 }
 
-static vec3 normal_of(const scree_surface *s, uint32_t h) {
+static vec3 normal_of(const scree_halfmesh *s, uint32_t h) {
   return vec3_triangle_normal(s->position[s->from[h]], s->position[scree_to(s, h)],
                               s->position[s->from[scree_previous(h)]]);
 }
@@ -124,7 +124,7 @@ typedef struct sides {
   vec3 before[SCREE_RING_MAX], after[SCREE_RING_MAX];
 } sides;
 
-static bool check_triangles(const scree_surface *s, scree_ring *r, scree_change *change,
+static bool check_triangles(const scree_halfmesh *s, scree_ring *r, scree_change *change,
                             sides *around) {
   vec3 pa = s->position[r->a], pb = s->position[r->b], x = change->target;
   double worst_before = 1, worst_after = 1, area = 0, volume = 0;
@@ -149,14 +149,14 @@ static bool check_triangles(const scree_surface *s, scree_ring *r, scree_change 
     around->after[i] = m;
   }
   vec3 n1 = normal_of(s, r->half_edge), n2 = {0, 0, 0};
-  worst_before = fmin(worst_before, squared_shape(n1, vec3_sub(pb, pa),
-                                                  vec3_sub(s->position[r->c], pa),
-                                                  vec3_sub(s->position[r->c], pb)));
+  worst_before =
+      fmin(worst_before, squared_shape(n1, vec3_sub(pb, pa), vec3_sub(s->position[r->c], pa),
+                                       vec3_sub(s->position[r->c], pb)));
   if (r->d != SCREE_NONE) {
     n2 = normal_of(s, s->twin[r->half_edge]);
-    worst_before = fmin(worst_before, squared_shape(n2, vec3_sub(pb, pa),
-                                                    vec3_sub(s->position[r->d], pa),
-                                                    vec3_sub(s->position[r->d], pb)));
+    worst_before =
+        fmin(worst_before, squared_shape(n2, vec3_sub(pb, pa), vec3_sub(s->position[r->d], pa),
+                                         vec3_sub(s->position[r->d], pb)));
   }
   change->area = 0.5 * (area - vec3_norm(n1) - vec3_norm(n2));
   change->volume = (volume + vec3_dot(vec3_add(n1, n2), vec3_sub(x, pa))) / 6;
@@ -165,7 +165,7 @@ static bool check_triangles(const scree_surface *s, scree_ring *r, scree_change 
 
 /* Folds around before and after the collapse. An edge between two triangles of the ring is there
  * before and after; the edges to c and d change partners. */
-static bool folds_do_not_grow(const scree_surface *s, const scree_ring *r, const sides *around) {
+static bool folds_do_not_grow(const scree_halfmesh *s, const scree_ring *r, const sides *around) {
   int before = 0, after = 0;
   for (uint32_t i = 0; i < r->count; i++) {
     uint32_t j = i + 1 == r->count ? 0 : i + 1, beyond = s->twin[r->edge[i]];
@@ -190,14 +190,14 @@ static bool folds_do_not_grow(const scree_surface *s, const scree_ring *r, const
   return after <= before;
 }
 
-bool scree_collapse_check(const scree_surface *s, scree_ring *ring, scree_change *change) {
+bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change) {
   sides around;
   return check_triangles(s, ring, change, &around) && folds_do_not_grow(s, ring, &around);
 }
 
 /* Joins the neighbours across the two other sides of the triangle of h, which goes. The apex may
  * need another outgoing half-edge. */
-static void close_gap(scree_surface *s, uint32_t h) {
+static void close_gap(scree_halfmesh *s, uint32_t h) {
   uint32_t next = scree_next(h), previous = scree_previous(h);
   uint32_t x = s->twin[next], y = s->twin[previous], apex = s->from[previous];
   if (x != SCREE_NONE) s->twin[x] = y;
@@ -206,7 +206,7 @@ static void close_gap(scree_surface *s, uint32_t h) {
   for (uint32_t i = 0; i < 3; i++) s->from[h - h % 3 + i] = SCREE_NONE;
 }
 
-void scree_collapse_apply(scree_surface *s, const scree_ring *r, vec3 target) {
+void scree_collapse_apply(scree_halfmesh *s, const scree_ring *r, vec3 target) {
   uint32_t twin = s->twin[r->half_edge];
   for (uint32_t i = r->a_count; i < r->count; i++) s->from[scree_previous(r->edge[i])] = r->a;
   close_gap(s, r->half_edge);

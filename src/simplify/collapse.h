@@ -2,14 +2,15 @@
 #ifndef SCREE_SIMPLIFY_COLLAPSE_H
 #define SCREE_SIMPLIFY_COLLAPSE_H
 
-#include "simplify/surface.h"
+#include "simplify/halfmesh.h"
 
 /* Collapses that would leave a vertex with more neighbours are refused. */
 enum { SCREE_RING_MAX = 256 };
 
-/* The edge (a, b) and the triangles around it that stay: triangle i has the half-edge edge[i] across
- * from a (i < a_count) or from b. Around a, then around b, counter-clockwise each: a closed loop
- * from apex c over a's side to apex d and over b's side back, unless a boundary interrupts it. */
+/* The edge (a, b) and the triangles around it that stay: triangle i has the half-edge edge[i]
+ * across from a (i < a_count) or from b. Around a, then around b, counter-clockwise each: a closed
+ * loop from apex c over a's side to apex d and over b's side back, unless a boundary interrupts it.
+ */
 typedef struct scree_ring {
   uint32_t half_edge, a, b, c, d; /* d NONE: the edge is boundary */
   uint32_t a_count, count;
@@ -23,17 +24,17 @@ typedef struct scree_change {
 } scree_change;
 
 /* False: more than SCREE_RING_MAX triangles. */
-bool scree_ring_gather(const scree_surface *s, uint32_t half_edge, scree_ring *ring);
+bool scree_ring_gather(const scree_halfmesh *s, uint32_t half_edge, scree_ring *ring);
 
 /* Whether the surface stays a manifold (link condition) if the edge is collapsed. */
-bool scree_collapse_keeps_topology(const scree_surface *s, const scree_ring *ring);
+bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *ring);
 
 /* Whether the triangles around change->target would be sound: none flipped, degenerate, a sliver
  * worse than those before, no more folds than before. Fills the rest of change and the box. */
-bool scree_collapse_check(const scree_surface *s, scree_ring *ring, scree_change *change);
+bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change);
 
 /* Collapses: a moves to target, b goes, with the triangles at the edge. Touches only triangles of
  * the two fans and the outgoing half-edges of a, b, c and d. */
-void scree_collapse_apply(scree_surface *s, const scree_ring *ring, vec3 target);
+void scree_collapse_apply(scree_halfmesh *s, const scree_ring *ring, vec3 target);
 
 #endif

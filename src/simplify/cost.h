@@ -2,7 +2,7 @@
 #ifndef SCREE_SIMPLIFY_COST_H
 #define SCREE_SIMPLIFY_COST_H
 
-#include "simplify/surface.h"
+#include "simplify/halfmesh.h"
 
 typedef struct scree_candidate {
   double cost;  /* the order of collapses; INFINITY: not possible */
@@ -13,10 +13,10 @@ typedef struct scree_candidate {
 typedef struct scree_coster {
   /* Fills s->sums[v] from the triangles around v. Volume: after every change of them; qecd: once at
    * the start. */
-  void (*sum)(scree_surface *s, uint32_t v);
-  void (*evaluate)(const scree_surface *s, uint32_t half_edge, scree_candidate *candidate);
+  void (*sum)(scree_halfmesh *s, uint32_t v);
+  void (*evaluate)(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *candidate);
   /* What the sums of the survivor are after the collapse; qecd only. */
-  void (*merge)(scree_surface *s, uint32_t survivor, uint32_t gone);
+  void (*merge)(scree_halfmesh *s, uint32_t survivor, uint32_t gone);
 } scree_coster;
 
 extern const scree_coster scree_volume_coster, scree_qecd_coster;

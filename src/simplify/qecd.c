@@ -15,12 +15,12 @@
 #include <string.h>
 
 /* MeshLab's QualityThr and BoundaryQuadricWeight, and the error below which the middle is taken. */
-#define QUALITY 0.3
-#define BOUNDARY 0.5
+#define QUALITY      0.3
+#define BOUNDARY     0.5
 #define MIDDLE_ERROR 2e-15
 /* Pull to the middle relative to the trace: decides singular quadrics only. */
 #define PULL 1e-8
-#define TIE 1e-12
+#define TIE  1e-12
 
 enum { XX, XY, XZ, YY, YZ, ZZ, X, Y, Z, ONE };
 
@@ -44,14 +44,14 @@ static double value(const double *q, vec3 v) {
   return v.x * x + v.y * y + v.z * z + q[ONE];
 }
 
-static void add_boundary(const scree_surface *s, double *q, uint32_t h) {
+static void add_boundary(const scree_halfmesh *s, double *q, uint32_t h) {
   vec3 p = s->position[s->from[h]], e = vec3_sub(s->position[scree_to(s, h)], p);
   vec3 n = vec3_cross(e, vec3_sub(s->position[s->from[scree_previous(h)]], p));
   vec3 side = vec3_unit(vec3_cross(vec3_unit(e), vec3_unit(n)));
   add_plane(q, side, -vec3_dot(side, p), BOUNDARY * vec3_norm2(e));
 }
 
-static void qecd_sum(scree_surface *s, uint32_t v) {
+static void qecd_sum(scree_halfmesh *s, uint32_t v) {
   double q[10] = {0};
   uint32_t first = s->outgoing[v], g = first, last;
   vec3 p = s->position[v];
@@ -71,7 +71,7 @@ static void qecd_sum(scree_surface *s, uint32_t v) {
   memcpy(s->sums[v], q, sizeof q);
 }
 
-static void qecd_merge(scree_surface *s, uint32_t survivor, uint32_t gone) {
+static void qecd_merge(scree_halfmesh *s, uint32_t survivor, uint32_t gone) {
   for (int i = 0; i < 10; i++) s->sums[survivor][i] += s->sums[gone][i];
 }
 
@@ -90,7 +90,7 @@ static vec3 minimise(const double *q, vec3 m, double pull) {
 }
 
 /* The worst shape among the triangles of v's fan, those with `other` apart, once v lies at x. */
-static double worst_quality(const scree_surface *s, uint32_t v, uint32_t other, vec3 x,
+static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other, vec3 x,
                             double worst) {
   uint32_t first = s->outgoing[v], g = first;
   do {
@@ -106,7 +106,7 @@ static double worst_quality(const scree_surface *s, uint32_t v, uint32_t other, 
   return worst;
 }
 
-static void qecd_evaluate(const scree_surface *s, uint32_t half_edge, scree_candidate *out) {
+static void qecd_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
   uint32_t a = s->from[half_edge], b = scree_to(s, half_edge);
   double q[10];
   for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];

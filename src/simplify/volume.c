@@ -59,7 +59,7 @@ static inline vec3 multiply(const double *h, vec3 v) {
                 h[HXZ] * v.x + h[HYZ] * v.y + h[HZZ] * v.z};
 }
 
-static void volume_sum(scree_surface *s, uint32_t v) {
+static void volume_sum(scree_halfmesh *s, uint32_t v) {
   double h[10] = {0};
   vec3 p = s->position[v];
   uint32_t first = s->outgoing[v], g = first, last = first;
@@ -101,7 +101,7 @@ static inline vec3 minimise_on_plane(const double *h, vec3 g, vec3 n, double d) 
   return vec3_mad(y, n, d - vec3_dot(n, y)); /* back onto the plane, past rounding */
 }
 
-static void volume_evaluate(const scree_surface *s, uint32_t half_edge, scree_candidate *out) {
+static void volume_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
   uint32_t a = s->from[half_edge], b = scree_to(s, half_edge), twin = s->twin[half_edge];
   const double *ha = s->sums[a], *hb = s->sums[b];
   vec3 p = s->position[a], e = vec3_sub(s->position[b], p);

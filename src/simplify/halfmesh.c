@@ -2,7 +2,7 @@
  * among them (about six). An edge is sound if it has exactly one half-edge each way; with one alone
  * it is boundary; anything else is non-manifold or wound inconsistently: its half-edges get no twin
  * and its ends are locked. */
-#include "simplify/surface.h"
+#include "simplify/halfmesh.h"
 
 #include "base/parallel.h"
 
@@ -12,14 +12,14 @@ enum { BLOCK = 4096 };
 
 typedef struct builder {
   const scree_mesh *mesh;
-  scree_surface *surface;
-  uint32_t *start;    /* per vertex, into fan; vertex_count + 1 */
-  uint32_t *fan;      /* half-edges by the vertex they leave */
-  size_t fan_count;   /* vertices after the cut */
-  uint32_t *root;     /* union-find over vertices, for shells */
+  scree_halfmesh *surface;
+  uint32_t *start;  /* per vertex, into fan; vertex_count + 1 */
+  uint32_t *fan;    /* half-edges by the vertex they leave */
+  size_t fan_count; /* vertices after the cut */
+  uint32_t *root;   /* union-find over vertices, for shells */
 } builder;
 
-void scree_surface_free(scree_surface *s) {
+void scree_halfmesh_free(scree_halfmesh *s) {
   scree_free(s->position);
   scree_free(s->outgoing);
   scree_free(s->origin);
@@ -28,7 +28,7 @@ void scree_surface_free(scree_surface *s) {
   scree_free(s->from);
   scree_free(s->twin);
   scree_free(s->refused);
-  *s = (scree_surface){0};
+  *s = (scree_halfmesh){0};
 }
 
 static scree_status check_mesh(const scree_mesh *mesh, vec3 *low, vec3 *high, scree_error *error) {
@@ -54,7 +54,7 @@ static scree_status check_mesh(const scree_mesh *mesh, vec3 *low, vec3 *high, sc
 }
 
 /* The box: its centre, and the power of two not below its longest side. */
-static scree_status choose_box(scree_surface *s, vec3 low, vec3 high, scree_error *error) {
+static scree_status choose_box(scree_halfmesh *s, vec3 low, vec3 high, scree_error *error) {
   double extent = fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
   if (!(extent > 0) || !isfinite(extent))
     return scree_fail(error, SCREE_BAD_MESH, "the mesh has an extent of %g m: nothing to decimate",
@@ -91,7 +91,7 @@ static uint32_t count_from_to(const builder *b, uint32_t u, uint32_t v, uint32_t
 static void find_twins(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   builder *b = context;
-  scree_surface *s = b->surface;
+  scree_halfmesh *s = b->surface;
   for (size_t h = begin; h < end; h++) {
     uint32_t u = b->mesh->triangles[h], v = b->mesh->triangles[scree_next((uint32_t)h)];
     uint32_t twin = SCREE_NONE, self = SCREE_NONE;
@@ -108,7 +108,7 @@ static void find_twins(void *context, size_t begin, size_t end, size_t block, in
 }
 
 /* Turns clockwise from h to the boundary, or back to h. */
-static uint32_t first_of_fan(const scree_surface *s, uint32_t h) {
+static uint32_t first_of_fan(const scree_halfmesh *s, uint32_t h) {
   for (uint32_t g = h;;) {
     if (s->twin[g] == SCREE_NONE) return g;
     g = scree_next(s->twin[g]);
@@ -121,7 +121,7 @@ static uint32_t first_of_fan(const scree_surface *s, uint32_t h) {
  * when there is room). */
 static void number_fans(builder *b, bool write) {
   const scree_mesh *mesh = b->mesh;
-  scree_surface *s = b->surface;
+  scree_halfmesh *s = b->surface;
   size_t next_number = mesh->vertex_count;
   for (uint32_t v = 0; v < mesh->vertex_count; v++) {
     uint32_t begin = b->start[v], end = b->start[v + 1], seen = 0;
@@ -151,7 +151,7 @@ static uint32_t find_root(uint32_t *root, uint32_t v) {
 }
 
 static void count_facts(builder *b) {
-  scree_surface *s = b->surface;
+  scree_halfmesh *s = b->surface;
   size_t boundary = 0, locked = 0, vertices = 0, joined = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++) b->root[v] = v;
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
@@ -175,7 +175,7 @@ static void count_facts(builder *b) {
   s->live_triangle_count = s->triangle_count;
 }
 
-static scree_status allocate_vertices(scree_surface *s, size_t count, const uint8_t *flags,
+static scree_status allocate_vertices(scree_halfmesh *s, size_t count, const uint8_t *flags,
                                       size_t flag_count, scree_error *error) {
   SCREE_ALLOC_OR(s->position, count, error, out_of_memory);
   SCREE_ALLOC_OR(s->outgoing, count, error, out_of_memory);
@@ -196,7 +196,7 @@ out_of_memory:
 }
 
 static void place_vertices(builder *b) {
-  scree_surface *s = b->surface;
+  scree_halfmesh *s = b->surface;
   for (size_t v = 0; v < s->vertex_count; v++) {
     if (s->outgoing[v] == SCREE_NONE) continue;
     vec3 p = vec3_load(b->mesh->positions + 3 * (size_t)s->origin[v]);
@@ -204,11 +204,11 @@ static void place_vertices(builder *b) {
   }
 }
 
-scree_status scree_surface_build(const scree_mesh *mesh, scree_surface *surface,
-                                 scree_error *error) {
-  scree_surface made = {.triangle_count = mesh->triangle_count};
+scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surface,
+                                  scree_error *error) {
+  scree_halfmesh made = {.triangle_count = mesh->triangle_count};
   builder b = {.mesh = mesh, .surface = &made};
-  vec3 low, high;
+  vec3 low = {0, 0, 0}, high = low;
   scree_status status = check_mesh(mesh, &low, &high, error);
   if (status == SCREE_OK) status = choose_box(&made, low, high, error);
   if (status != SCREE_OK) return status;
@@ -237,17 +237,17 @@ scree_status scree_surface_build(const scree_mesh *mesh, scree_surface *surface,
   memset(made.refused, 0, half_edges);
   count_facts(&b);
   *surface = made;
-  made = (scree_surface){0};
+  made = (scree_halfmesh){0};
   status = SCREE_OK;
 done:
   scree_free(b.start);
   scree_free(b.fan);
   scree_free(b.root);
-  scree_surface_free(&made);
+  scree_halfmesh_free(&made);
   return status;
 }
 
-static void move_vertex(scree_surface *s, size_t to, size_t v) {
+static void move_vertex(scree_halfmesh *s, size_t to, size_t v) {
   s->position[to] = s->position[v];
   s->outgoing[to] = s->outgoing[v];
   s->origin[to] = s->origin[v];
@@ -255,7 +255,8 @@ static void move_vertex(scree_surface *s, size_t to, size_t v) {
   memcpy(s->sums[to], s->sums[v], sizeof s->sums[v]);
 }
 
-void scree_surface_compact(scree_surface *s, uint32_t *vertex_scratch, uint32_t *triangle_scratch) {
+void scree_halfmesh_compact(scree_halfmesh *s, uint32_t *vertex_scratch,
+                            uint32_t *triangle_scratch) {
   uint32_t vertices = 0, triangles = 0;
   for (size_t v = 0; v < s->vertex_count; v++)
     if (s->outgoing[v] != SCREE_NONE) vertex_scratch[v] = vertices++;

@@ -1,0 +1,355 @@
+/* The public face: building the record, reading levels, rebuilding their meshes.
+ *
+ * A level is rebuilt from the record alone: vertex `gone` of each collapse becomes `kept`, whose
+ * position is the last one written; a triangle lives while its corners are three. Going through
+ * the collapses backwards, the vertex that `kept` finally became is known when it is asked for, so
+ * that no search is needed. */
+#include "base/parallel.h"
+#include "base/sum.h"
+#include "simplify/decimate.h"
+
+#include <string.h>
+
+struct scree_curve {
+  const scree_mesh *mesh;
+  scree_record record;
+  scree_curve_facts facts;
+  uint32_t *counts;    /* triangles per level, NULL where every collapse takes two */
+  double area, volume; /* of level 0 */
+};
+
+struct scree_replay {
+  const scree_curve *curve;
+  size_t level;
+  uint32_t *root;   /* of the given mesh's vertices */
+  double *position; /* of the given mesh's vertices, at the level */
+  uint32_t *corner; /* triangles of the level, in the given mesh's vertices */
+  size_t triangle_count;
+  scree_mesh mesh;
+  uint32_t *number; /* of the given mesh's vertices, in mesh */
+};
+
+const char *scree_method_name(scree_method method) {
+  return method == SCREE_METHOD_QECD ? "qecd" : "volume";
+}
+
+scree_simplify_options scree_default_simplify_options(void) {
+  return (scree_simplify_options){.method = SCREE_METHOD_VOLUME};
+}
+
+static void record_free(scree_record *r) {
+  scree_free(r->kept);
+  scree_free(r->gone);
+  scree_free(r->position);
+  scree_free(r->area);
+  scree_free(r->volume);
+  scree_free(r->error);
+  *r = (scree_record){0};
+}
+
+static scree_status record_allocate(scree_record *r, size_t capacity, scree_error *error) {
+  r->capacity = capacity;
+  SCREE_ALLOC_OR(r->kept, capacity, error, out_of_memory);
+  SCREE_ALLOC_OR(r->gone, capacity, error, out_of_memory);
+  SCREE_ALLOC_OR(r->position, capacity, error, out_of_memory);
+  SCREE_ALLOC_OR(r->area, capacity, error, out_of_memory);
+  SCREE_ALLOC_OR(r->volume, capacity, error, out_of_memory);
+  SCREE_ALLOC_OR(r->error, capacity, error, out_of_memory);
+  return SCREE_OK;
+out_of_memory:
+  record_free(r);
+  return SCREE_OUT_OF_MEMORY;
+}
+
+void scree_record_add(scree_decimator *d, const scree_ring *ring, const scree_change *change,
+                      double error) {
+  scree_record *r = &d->record;
+  size_t i = r->count++;
+  bool one = d->s.twin[ring->half_edge] == SCREE_NONE;
+  r->kept[i] = d->s.origin[ring->a] | (one ? SCREE_ONE_TRIANGLE : 0);
+  r->gone[i] = d->s.origin[ring->b];
+  r->position[i] = vec3_mad(d->s.centre, change->target, d->s.scale);
+  r->area[i] = change->area;
+  r->volume[i] = change->volume;
+  r->error[i] = (float)error;
+}
+
+bool scree_decimate_tick(scree_decimator *d) {
+  double left = (double)d->s.live_triangle_count / (double)d->first_triangle_count;
+  return scree_tick(&d->ticker, "decimating", 1 - left);
+}
+
+void scree_curve_free(scree_curve *curve) {
+  if (!curve) return;
+  record_free(&curve->record);
+  scree_free(curve->counts);
+  scree_free(curve);
+}
+
+static void measure_surface(const scree_halfmesh *s, scree_sum *area, scree_sum *volume) {
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    const uint32_t *c = s->from + 3 * t;
+    vec3 p0 = s->position[c[0]], p1 = s->position[c[1]], p2 = s->position[c[2]];
+    vec3 n = vec3_triangle_normal(p0, p1, p2);
+    scree_sum_add(area, 0.5 * vec3_norm(n));
+    scree_sum_add(volume, vec3_dot(p0, n) / 6);
+  }
+}
+
+/* Turns the changes into the levels' values, in metres. */
+static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum volume, double scale,
+                               scree_error *error) {
+  scree_record *r = &curve->record;
+  double worst = 0;
+  curve->area = scree_sum_value(area) * scale * scale;
+  curve->volume = scree_sum_value(volume) * scale * scale * scale;
+  uint32_t count = (uint32_t)curve->mesh->triangle_count;
+  bool all_two = true;
+  for (size_t i = 0; i < r->count; i++) {
+    scree_sum_add(&area, r->area[i]);
+    scree_sum_add(&volume, r->volume[i]);
+    r->area[i] = scree_sum_value(area) * scale * scale;
+    r->volume[i] = scree_sum_value(volume) * scale * scale * scale;
+    worst = fmax(worst, sqrt((double)r->error[i]) * scale);
+    r->error[i] = (float)worst;
+    all_two &= !(r->kept[i] & SCREE_ONE_TRIANGLE);
+  }
+  curve->facts.floor_count = count - 2 * r->count;
+  if (all_two) return SCREE_OK;
+  SCREE_ALLOC_OR(curve->counts, r->count + 1, error, out_of_memory);
+  curve->counts[0] = count;
+  for (size_t i = 0; i < r->count; i++)
+    curve->counts[i + 1] = count -= r->kept[i] & SCREE_ONE_TRIANGLE ? 1 : 2;
+  curve->facts.floor_count = count;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* Drops collapses beyond the first level that is low enough. */
+static void cut_at_stop(scree_decimator *d) {
+  size_t count = d->first_triangle_count, i = 0;
+  while (i < d->record.count && count > d->options.stop_count)
+    count -= d->record.kept[i++] & SCREE_ONE_TRIANGLE ? 1 : 2;
+  d->record.count = i;
+}
+
+static void record_shrink(scree_record *r) {
+  struct {
+    void **block;
+    size_t size;
+  } fields[] = {
+      {(void **)&r->kept, sizeof *r->kept},         {(void **)&r->gone, sizeof *r->gone},
+      {(void **)&r->position, sizeof *r->position}, {(void **)&r->area, sizeof *r->area},
+      {(void **)&r->volume, sizeof *r->volume},     {(void **)&r->error, sizeof *r->error}};
+  for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
+    void *moved = scree_resize(*fields[i].block, r->count, fields[i].size);
+    if (moved) *fields[i].block = moved;
+  }
+  r->capacity = r->count;
+}
+
+static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  scree_decimator *d = context;
+  for (size_t v = begin; v < end; v++)
+    if (d->s.outgoing[v] != SCREE_NONE) d->coster->sum(&d->s, (uint32_t)v);
+}
+
+static scree_status decimate(scree_decimator *d) {
+  scree_parallel_for(d->s.vertex_count, 1024, sum_block, d);
+  scree_status status = scree_decimate_in_batches(d);
+  if (status == SCREE_OK) status = scree_decimate_one_by_one(d);
+  if (status == SCREE_CANCELLED)
+    return scree_fail(d->error, SCREE_CANCELLED, "decimation was cancelled at %zu triangles",
+                      d->s.live_triangle_count);
+  return status;
+}
+
+static scree_status check_options(const scree_simplify_options *options, scree_error *error) {
+  if (options->method != SCREE_METHOD_VOLUME && options->method != SCREE_METHOD_QECD)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "decimation method %d is not known",
+                      (int)options->method);
+  if (!(options->error_limit >= 0))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the error limit %g m is not 0 or above",
+                      options->error_limit);
+  return SCREE_OK;
+}
+
+scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_options *options,
+                               const scree_progress *progress, scree_curve **curve,
+                               scree_error *error) {
+  scree_status status = check_options(options, error);
+  if (status != SCREE_OK) return status;
+  scree_decimator d = {.options = *options, .ticker = {.progress = progress}, .error = error};
+  scree_sum area = {0}, volume = {0};
+  d.coster = options->method == SCREE_METHOD_QECD ? &scree_qecd_coster : &scree_volume_coster;
+  scree_curve *made = scree_alloc_zero(1, sizeof *made);
+  if (!made) return scree_fail_memory(error, sizeof *made, "the curve");
+  status = scree_halfmesh_build(mesh, &d.s, error);
+  if (status != SCREE_OK) goto finished;
+  d.first_triangle_count = mesh->triangle_count;
+  double limit = options->error_limit / d.s.scale;
+  d.error_limit = limit > 0 ? limit * limit : INFINITY;
+  made->mesh = mesh;
+  made->facts = (scree_curve_facts){.method = options->method,
+                                    .triangle_count = mesh->triangle_count,
+                                    .shell_count = d.s.shell_count,
+                                    .boundary_edge_count = d.s.boundary_edge_count,
+                                    .locked_vertex_count = d.s.locked_vertex_count,
+                                    .closed = d.s.closed};
+  measure_surface(&d.s, &area, &volume);
+  status = record_allocate(&d.record, d.s.live_vertex_count, error);
+  if (status == SCREE_OK) status = decimate(&d);
+  if (status != SCREE_OK) goto finished;
+  cut_at_stop(&d);
+  record_shrink(&d.record);
+  made->record = d.record;
+  d.record = (scree_record){0};
+  status = accumulate(made, area, volume, d.s.scale, error);
+finished:
+  scree_halfmesh_free(&d.s);
+  scree_grid_free(&d.grid);
+  record_free(&d.record);
+  if (status == SCREE_OK)
+    *curve = made;
+  else
+    scree_curve_free(made);
+  return status;
+}
+
+scree_curve_facts scree_curve_get_facts(const scree_curve *curve) {
+  return curve->facts;
+}
+
+size_t scree_curve_level_count(const scree_curve *curve) {
+  return curve->record.count + 1;
+}
+
+static size_t count_at(const scree_curve *curve, size_t level) {
+  return curve->counts ? curve->counts[level] : curve->mesh->triangle_count - 2 * level;
+}
+
+void scree_curve_level(const scree_curve *curve, size_t index, scree_level *level) {
+  size_t count = count_at(curve, index);
+  *level = (scree_level){.triangle_count = count,
+                         .rp = (double)count / (double)curve->mesh->triangle_count,
+                         .area = index ? curve->record.area[index - 1] : curve->area,
+                         .volume = index ? curve->record.volume[index - 1] : curve->volume,
+                         .quadric_error = index ? (double)curve->record.error[index - 1] : 0};
+}
+
+size_t scree_curve_find(const scree_curve *curve, size_t target) {
+  size_t low = 0, high = curve->record.count; /* the answer lies in [low, high] */
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (count_at(curve, middle) <= target)
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
+
+void scree_replay_free(scree_replay *replay) {
+  if (!replay) return;
+  scree_free(replay->root);
+  scree_free(replay->position);
+  scree_free(replay->corner);
+  scree_free(replay->number);
+  scree_mesh_free(&replay->mesh);
+  scree_free(replay);
+}
+
+scree_status scree_replay_start(const scree_curve *curve, scree_replay **replay,
+                                scree_error *error) {
+  const scree_mesh *mesh = curve->mesh;
+  scree_replay *made = scree_alloc_zero(1, sizeof *made);
+  if (!made) return scree_fail_memory(error, sizeof *made, "the replay");
+  made->curve = curve;
+  made->triangle_count = mesh->triangle_count;
+  SCREE_ALLOC_OR(made->root, mesh->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(made->number, mesh->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(made->position, 3 * mesh->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(made->corner, 3 * mesh->triangle_count, error, out_of_memory);
+  for (uint32_t v = 0; v < mesh->vertex_count; v++) made->root[v] = v;
+  memcpy(made->position, mesh->positions, 3 * mesh->vertex_count * sizeof *made->position);
+  memcpy(made->corner, mesh->triangles, 3 * mesh->triangle_count * sizeof *made->corner);
+  *replay = made;
+  return SCREE_OK;
+out_of_memory:
+  scree_replay_free(made);
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static void replay_collapses(scree_replay *r, size_t level) {
+  const scree_record *record = &r->curve->record;
+  for (size_t i = level; i-- > r->level;)
+    r->root[record->gone[i]] = r->root[record->kept[i] & ~SCREE_ONE_TRIANGLE];
+  for (size_t i = r->level; i < level; i++)
+    vec3_store(r->position + 3 * (size_t)(record->kept[i] & ~SCREE_ONE_TRIANGLE),
+               record->position[i]);
+  size_t count = 0;
+  for (size_t t = 0; t < r->triangle_count; t++) {
+    uint32_t c0 = r->root[r->corner[3 * t]], c1 = r->root[r->corner[3 * t + 1]],
+             c2 = r->root[r->corner[3 * t + 2]];
+    if (level > 0 && (c0 == c1 || c1 == c2 || c2 == c0)) continue;
+    r->corner[3 * count] = c0;
+    r->corner[3 * count + 1] = c1;
+    r->corner[3 * count + 2] = c2;
+    count++;
+  }
+  r->triangle_count = count;
+  r->level = level;
+}
+
+/* The level's mesh with its own vertices, in the order of the mesh given. */
+static scree_status number_vertices(scree_replay *r, scree_mesh *mesh, scree_error *error) {
+  size_t vertex_count = r->curve->mesh->vertex_count, used = 0;
+  scree_mesh made = {.triangle_count = r->triangle_count};
+  memset(r->number, 0xff, vertex_count * sizeof *r->number);
+  for (size_t i = 0; i < 3 * r->triangle_count; i++) r->number[r->corner[i]] = 0;
+  for (size_t v = 0; v < vertex_count; v++)
+    if (r->number[v] == 0) r->number[v] = (uint32_t)used++;
+  made.vertex_count = used;
+  SCREE_ALLOC_OR(made.positions, 3 * used, error, out_of_memory);
+  SCREE_ALLOC_OR(made.triangles, 3 * r->triangle_count, error, out_of_memory);
+  for (size_t v = 0; v < vertex_count; v++)
+    if (r->number[v] != SCREE_NONE)
+      memcpy(made.positions + 3 * (size_t)r->number[v], r->position + 3 * v, 3 * sizeof(double));
+  for (size_t i = 0; i < 3 * r->triangle_count; i++) made.triangles[i] = r->number[r->corner[i]];
+  *mesh = made;
+  return SCREE_OK;
+out_of_memory:
+  scree_mesh_free(&made);
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_replay_step(scree_replay *replay, size_t level_index, const scree_mesh **mesh,
+                               scree_error *error) {
+  if (level_index < replay->level || level_index > replay->curve->record.count)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "level %zu is not within [%zu, %zu]", level_index,
+                      replay->level, replay->curve->record.count);
+  scree_mesh made;
+  replay_collapses(replay, level_index);
+  scree_status status = number_vertices(replay, &made, error);
+  if (status != SCREE_OK) return status;
+  scree_mesh_free(&replay->mesh);
+  replay->mesh = made;
+  *mesh = &replay->mesh;
+  return SCREE_OK;
+}
+
+scree_status scree_curve_mesh(const scree_curve *curve, size_t level_index, scree_mesh *mesh,
+                              scree_error *error) {
+  scree_replay *replay = NULL;
+  const scree_mesh *level;
+  scree_status status = scree_replay_start(curve, &replay, error);
+  if (status == SCREE_OK) status = scree_replay_step(replay, level_index, &level, error);
+  if (status == SCREE_OK) {
+    *mesh = replay->mesh;
+    replay->mesh = (scree_mesh){0};
+  }
+  scree_replay_free(replay);
+  return status;
+}

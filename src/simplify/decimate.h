@@ -1,0 +1,47 @@
+/* The engine: from a surface to the record of its collapses. */
+#ifndef SCREE_SIMPLIFY_DECIMATE_H
+#define SCREE_SIMPLIFY_DECIMATE_H
+
+#include "base/progress.h"
+#include "simplify/cost.h"
+#include "simplify/grid.h"
+
+/* The collapses in their order, one array per field. Positions and measures are in metres. */
+typedef struct scree_record {
+  size_t count, capacity;
+  uint32_t *kept,
+      *gone;      /* vertices of the mesh given; bit 31 of kept: one triangle goes, not two */
+  vec3 *position; /* where kept lies afterwards */
+  double *area, *volume; /* while decimating: change of the collapse; then: the level's value */
+  float *error;          /* mean square move, unit box; then: running maximum, metres */
+} scree_record;
+
+#define SCREE_ONE_TRIANGLE UINT32_C(0x80000000)
+
+typedef struct scree_decimator {
+  scree_halfmesh s;
+  const scree_coster *coster;
+  scree_simplify_options options;
+  double error_limit; /* mean square, unit box; INFINITY: none */
+  scree_record record;
+  size_t first_triangle_count;
+  scree_grid grid;
+  scree_ticker ticker;
+  scree_error *error;
+} scree_decimator;
+
+/* Adds one collapse to the record (its capacity was reserved: the number of vertices). */
+void scree_record_add(scree_decimator *d, const scree_ring *ring, const scree_change *change,
+                      double error);
+
+/* Where the batches end and single collapses begin, in triangles. */
+enum { SCREE_GREEDY_COUNT = 20000 };
+
+/* Passes of many independent collapses, while there are more than SCREE_GREEDY_COUNT triangles. */
+scree_status scree_decimate_in_batches(scree_decimator *d);
+/* One collapse after the other, always the cheapest, to the end. */
+scree_status scree_decimate_one_by_one(scree_decimator *d);
+
+bool scree_decimate_tick(scree_decimator *d);
+
+#endif

@@ -1,0 +1,221 @@
+/* One by one: the coarse levels, always the cheapest collapse next. A binary heap holds every edge
+ * by its owner half-edge; after a collapse the edges whose cost it changed are moved in place, so
+ * that no entry is ever stale or missing. Equal costs are ordered by the vertices' numbers in the
+ * mesh given. An edge that is refused leaves the heap until something around it changes. */
+#include "simplify/decimate.h"
+
+#include <string.h>
+
+/* Cells per mean edge of the grid for exact tests, and when it is built anew: half the triangles
+ * gone, or so many entries stale. */
+#define EDGES_PER_CELL 1.5
+#define REGRID_BELOW   0.5
+#define STALE_FACTOR   12
+
+typedef struct queue {
+  scree_decimator *d;
+  double *cost;    /* per half-edge */
+  uint32_t *place; /* per half-edge: its place in the heap, or NONE */
+  uint32_t *heap;  /* half-edges */
+  size_t heap_count;
+  uint32_t *stamp; /* per vertex: the collapse that last touched it */
+  uint32_t now;
+  size_t since_tick;
+} queue;
+
+static bool before(const queue *q, uint32_t g, uint32_t h) {
+  if (q->cost[g] != q->cost[h]) return q->cost[g] < q->cost[h];
+  const scree_halfmesh *s = &q->d->s;
+  uint32_t ga = s->origin[s->from[g]], ha = s->origin[s->from[h]];
+  if (ga != ha) return ga < ha;
+  return s->origin[scree_to(s, g)] < s->origin[scree_to(s, h)];
+}
+
+static void put(queue *q, size_t place, uint32_t h) {
+  q->heap[place] = h;
+  q->place[h] = (uint32_t)place;
+}
+
+static void sift_up(queue *q, size_t place) {
+  uint32_t h = q->heap[place];
+  while (place > 0 && before(q, h, q->heap[(place - 1) / 2])) {
+    put(q, place, q->heap[(place - 1) / 2]);
+    place = (place - 1) / 2;
+  }
+  put(q, place, h);
+}
+
+static void sift_down(queue *q, size_t place) {
+  uint32_t h = q->heap[place];
+  for (;;) {
+    size_t child = 2 * place + 1;
+    if (child >= q->heap_count) break;
+    if (child + 1 < q->heap_count && before(q, q->heap[child + 1], q->heap[child])) child++;
+    if (!before(q, q->heap[child], h)) break;
+    put(q, place, q->heap[child]);
+    place = child;
+  }
+  put(q, place, h);
+}
+
+static void leave(queue *q, uint32_t h) {
+  uint32_t place = q->place[h];
+  if (place == SCREE_NONE) return;
+  q->place[h] = SCREE_NONE;
+  uint32_t last = q->heap[--q->heap_count];
+  if (last == h) return;
+  put(q, place, last);
+  sift_up(q, place);
+  sift_down(q, q->place[last]);
+}
+
+/* An edge is known by the half-edge of its lower end, or its only one. */
+static uint32_t owner(const scree_halfmesh *s, uint32_t h) {
+  uint32_t twin = s->twin[h];
+  return twin != SCREE_NONE && scree_to(s, h) < s->from[h] ? twin : h;
+}
+
+static void evaluate(queue *q, uint32_t h) {
+  scree_halfmesh *s = &q->d->s;
+  scree_candidate candidate = {.cost = INFINITY};
+  if (!((s->flags[s->from[h]] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_LOCKED))
+    q->d->coster->evaluate(s, h, &candidate);
+  if (!(candidate.cost < INFINITY) || candidate.error > q->d->error_limit) {
+    leave(q, h);
+    return;
+  }
+  q->cost[h] = candidate.cost;
+  if (q->place[h] == SCREE_NONE) put(q, q->heap_count++, h);
+  sift_up(q, q->place[h]);
+  sift_down(q, q->place[h]);
+}
+
+static void queue_free(queue *q) {
+  scree_free(q->cost);
+  scree_free(q->place);
+  scree_free(q->heap);
+  scree_free(q->stamp);
+}
+
+static scree_status queue_fill(queue *q) {
+  scree_decimator *d = q->d;
+  scree_halfmesh *s = &d->s;
+  size_t half_edges = 3 * s->triangle_count;
+  SCREE_ALLOC_OR(q->cost, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->place, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->heap, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->stamp, s->vertex_count, d->error, out_of_memory);
+  memset(q->place, 0xff, half_edges * sizeof *q->place);
+  memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
+  for (uint32_t v = 0; v < s->vertex_count; v++)
+    if (s->outgoing[v] != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
+  for (uint32_t h = 0; h < half_edges; h++)
+    if (s->from[h] != SCREE_NONE && owner(s, h) == h) evaluate(q, h);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status prepare_grid(scree_decimator *d) {
+  scree_grid *g = &d->grid;
+  if (g->built_for && (double)d->s.live_triangle_count > REGRID_BELOW * (double)g->built_for &&
+      g->count < STALE_FACTOR * g->built_for + 1000)
+    return SCREE_OK;
+  scree_status status = scree_grid_shape(g, &d->s, EDGES_PER_CELL, d->error);
+  if (status != SCREE_OK) return status;
+  if (!scree_grid_list_all(g, &d->s, NULL, false))
+    return scree_fail_memory(d->error, g->capacity * sizeof *g->items, "grid lists");
+  return SCREE_OK;
+}
+
+/* Takes the ring's edges that vanish or change owner out of the heap. */
+static void forget(queue *q, const scree_ring *r) {
+  const scree_halfmesh *s = &q->d->s;
+  uint32_t ends[2] = {r->a, r->b};
+  for (int i = 0; i < 2; i++) {
+    uint32_t first = s->outgoing[ends[i]], h = first, last;
+    do {
+      leave(q, owner(s, h));
+      last = h;
+      h = scree_turn(s, h);
+    } while (h != SCREE_NONE && h != first);
+    if (h == SCREE_NONE) leave(q, scree_previous(last));
+  }
+}
+
+/* Re-evaluates all edges at the vertices stamped now, once each. */
+static void update_vertex(queue *q, uint32_t v) {
+  scree_halfmesh *s = &q->d->s;
+  uint32_t first = s->outgoing[v], h = first, last;
+  do {
+    uint32_t other = scree_to(s, h);
+    if (q->stamp[other] != q->now || other > v) evaluate(q, owner(s, h));
+    last = h;
+    h = scree_turn(s, h);
+  } while (h != SCREE_NONE && h != first);
+  if (h == SCREE_NONE) {
+    uint32_t incoming = scree_previous(last), other = s->from[incoming];
+    if (q->stamp[other] != q->now || other > v) evaluate(q, incoming);
+  }
+}
+
+static scree_status collapse(queue *q, const scree_ring *r, const scree_change *change,
+                             double error) {
+  scree_decimator *d = q->d;
+  scree_halfmesh *s = &d->s;
+  uint32_t around[2 * SCREE_RING_MAX + 1];
+  size_t count = 0;
+  scree_record_add(d, r, change, error);
+  s->live_vertex_count--;
+  s->live_triangle_count -= s->twin[r->half_edge] == SCREE_NONE ? 1 : 2;
+  forget(q, r);
+  scree_collapse_apply(s, r, change->target);
+  if (d->coster->merge) d->coster->merge(s, r->a, r->b);
+  q->now++;
+  around[count++] = r->a;
+  q->stamp[r->a] = q->now;
+  for (uint32_t i = 0; i < 2 * r->count; i++) {
+    uint32_t v = i % 2 ? scree_to(s, r->edge[i / 2]) : s->from[r->edge[i / 2]];
+    if (q->stamp[v] == q->now) continue;
+    q->stamp[v] = q->now;
+    around[count++] = v;
+  }
+  if (!d->coster->merge)
+    for (size_t i = 0; i < count; i++) d->coster->sum(s, around[i]);
+  for (size_t i = 0; i < count; i++) update_vertex(q, around[i]);
+  for (uint32_t i = 0; i < r->count; i++)
+    if (!scree_grid_list_triangle(&d->grid, s, r->edge[i] / 3))
+      return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
+  return SCREE_OK;
+}
+
+static scree_status try_cheapest(queue *q) {
+  scree_decimator *d = q->d;
+  uint32_t h = q->heap[0];
+  scree_ring ring;
+  scree_candidate candidate;
+  scree_change change;
+  leave(q, h);
+  if (!scree_ring_gather(&d->s, h, &ring) || !scree_collapse_keeps_topology(&d->s, &ring))
+    return SCREE_OK;
+  d->coster->evaluate(&d->s, h, &candidate);
+  change.target = candidate.target;
+  if (!scree_collapse_check(&d->s, &ring, &change)) return SCREE_OK;
+  scree_status status = prepare_grid(d);
+  if (status != SCREE_OK) return status;
+  if (!scree_grid_clear(&d->grid, &d->s, &ring, change.target, NULL)) return SCREE_OK;
+  return collapse(q, &ring, &change, candidate.error);
+}
+
+scree_status scree_decimate_one_by_one(scree_decimator *d) {
+  queue q = {.d = d};
+  scree_grid_free(&d->grid);
+  scree_status status = queue_fill(&q);
+  while (status == SCREE_OK && q.heap_count > 0 &&
+         d->s.live_triangle_count > d->options.stop_count) {
+    if (q.since_tick++ % 1024 == 0 && !scree_decimate_tick(d)) status = SCREE_CANCELLED;
+    if (status == SCREE_OK) status = try_cheapest(&q);
+  }
+  queue_free(&q);
+  return status;
+}

@@ -1,0 +1,68 @@
+/* Does a collapse make the surface run into itself? A grid of cubic cells answers at two prices.
+ *
+ * Certificate. Each cell knows for which of 50 directions g all triangles that touch it face g
+ * (n.g > 0). If over the cells of a box all triangles face one g, then, the surface being closed
+ * and free of self-intersections, every line along g crosses it at most once inside the box: two
+ * crossings in a row would go in and out, one of them facing away. So the surface in the box is a
+ * graph over the plane across g, and replacing a part of it, boundary kept, by triangles that lie
+ * in the box and face g too gives a graph again: no self-intersection. The cells' directions only
+ * shrink until the grid is built anew, whatever is replaced meanwhile, in any order.
+ *
+ * Search. Where that does not decide, exact tests against the triangles listed in those cells. */
+#ifndef SCREE_SIMPLIFY_GRID_H
+#define SCREE_SIMPLIFY_GRID_H
+
+#include "simplify/collapse.h"
+
+typedef struct scree_grid_node {
+  uint32_t triangle, next;
+} scree_grid_node;
+
+typedef struct scree_grid {
+  vec3 low;
+  double cells_per_length;
+  uint32_t size[3];
+  size_t cell_count;
+  uint64_t *averse;       /* per cell: bit k set if some triangle does not face direction k */
+  uint64_t averse_all;    /* the same for triangles too large to be entered cell by cell */
+  uint32_t *head;         /* per cell: its list */
+  scree_grid_node *items; /* the lists' nodes (an array as base/array.h has it) */
+  size_t count, capacity;
+  uint32_t *large; /* triangles too large for lists */
+  size_t large_count, large_capacity;
+  size_t built_for; /* live triangles when it was built */
+} scree_grid;
+
+/* What other collapses of the same pass will do: chosen[v] is NONE or the index of the collapse
+ * that takes vertex v to targets[chosen[v]]. NULL where there are none. */
+typedef struct scree_planned {
+  const uint32_t *chosen;
+  const scree_change *changes;
+} scree_planned;
+
+/* Sets the cells for the surface as it is: about cells_per_edge cells per mean edge, at most a few
+ * per triangle. Cells are empty: fill directions or lists as needed. */
+scree_status scree_grid_shape(scree_grid *grid, const scree_halfmesh *s, double edges_per_cell,
+                              scree_error *error);
+void scree_grid_free(scree_grid *grid);
+
+/* Enters the directions of all triangles, in parallel. */
+void scree_grid_enter_directions(scree_grid *grid, const scree_halfmesh *s);
+/* Enters those of the ring's triangles as they will be, over the ring's box. Thread-safe. */
+void scree_grid_enter_ring(scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
+                           vec3 target);
+/* True: the collapse cannot make the surface meet itself. */
+bool scree_grid_certifies(const scree_grid *grid, const scree_ring *ring);
+
+/* Marks the cells of a box; then enters into the lists all triangles, and what they will become,
+ * that touch a marked cell (all cells if none is marked). False: out of memory. */
+void scree_grid_mark(scree_grid *grid, vec3 low, vec3 high);
+bool scree_grid_list_all(scree_grid *grid, const scree_halfmesh *s, const scree_planned *planned,
+                         bool marked_only);
+bool scree_grid_list_triangle(scree_grid *grid, const scree_halfmesh *s, uint32_t triangle);
+
+/* Exact: true if the triangles around target meet no more others than those around the edge do. */
+bool scree_grid_clear(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
+                      vec3 target, const scree_planned *planned);
+
+#endif

@@ -1,0 +1,64 @@
+/* The surface while it is decimated: half-edges in flat arrays, in a box of about unit size.
+ *
+ * Half-edge h = 3 t + i of triangle t goes from vertex from[h] to from[next(h)]; twin[h] is the
+ * half-edge the other way in the neighbouring triangle, or NONE on a boundary. Every vertex keeps
+ * one outgoing half-edge: on a boundary the one without twin, so that turning counter-clockwise
+ * from it visits the whole fan. A vertex of the mesh where several fans meet, or with an edge of
+ * three or more triangles, becomes one locked vertex per fan: such a vertex never moves, and the
+ * copies come together again when a level is rebuilt. Hence everything here is manifold, whatever
+ * the scan. */
+#ifndef SCREE_SIMPLIFY_HALFMESH_H
+#define SCREE_SIMPLIFY_HALFMESH_H
+
+#include "base/alloc.h"
+#include "base/vec.h"
+
+#define SCREE_NONE UINT32_MAX
+
+enum { SCREE_VERTEX_LOCKED = 1, SCREE_VERTEX_DIRTY = 2 };
+
+typedef struct scree_halfmesh {
+  vec3 *position;     /* of vertices, in the unit box */
+  uint32_t *outgoing; /* of vertices; NONE: the vertex is gone */
+  uint32_t *origin;   /* of vertices: the vertex of the mesh given */
+  uint8_t *flags;     /* of vertices: SCREE_VERTEX_... */
+  double (*sums)[10]; /* of vertices: the method's quadric, see cost.h */
+  uint32_t *from;     /* of half-edges; from[3t] NONE: the triangle is gone */
+  uint32_t *twin;     /* of half-edges */
+  uint8_t *refused;   /* of half-edges: the collapse was tried and is not allowed now */
+  size_t vertex_count, triangle_count;           /* extents of the arrays */
+  size_t live_vertex_count, live_triangle_count; /* still there */
+  vec3 centre;  /* position in metres = centre + scale * position in the box */
+  double scale; /* a power of two */
+  size_t boundary_edge_count, locked_vertex_count, shell_count;
+  bool closed; /* no half-edge without twin at the start */
+} scree_halfmesh;
+
+static inline uint32_t scree_next(uint32_t h) {
+  return h % 3 == 2 ? h - 2 : h + 1;
+}
+static inline uint32_t scree_previous(uint32_t h) {
+  return h % 3 == 0 ? h + 2 : h - 1;
+}
+static inline uint32_t scree_to(const scree_halfmesh *s, uint32_t h) {
+  return s->from[scree_next(h)];
+}
+/* The next outgoing half-edge of the same vertex, counter-clockwise; NONE past a boundary. */
+static inline uint32_t scree_turn(const scree_halfmesh *s, uint32_t h) {
+  return s->twin[scree_previous(h)];
+}
+static inline bool scree_on_boundary(const scree_halfmesh *s, uint32_t v) {
+  return s->twin[s->outgoing[v]] == SCREE_NONE;
+}
+
+/* Builds the surface of a mesh; what scree_curve_build says about bad meshes is checked here. */
+scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surface,
+                                  scree_error *error);
+void scree_halfmesh_free(scree_halfmesh *surface);
+
+/* Squeezes out what is gone, keeping the order. Needs scratch for 4 bytes per vertex and per
+ * triangle. */
+void scree_halfmesh_compact(scree_halfmesh *surface, uint32_t *vertex_scratch,
+                            uint32_t *triangle_scratch);
+
+#endif
