@@ -18,7 +18,8 @@
 #define QUALITY      0.3
 #define BOUNDARY     0.5
 #define MIDDLE_ERROR 2e-15
-/* Pull to the middle relative to the trace: decides singular quadrics only. */
+/* Pull to the middle relative to the trace: decides singular quadrics only; a second step from
+ * where the first one ended removes its bias elsewhere. */
 #define PULL 1e-8
 #define TIE  1e-12
 
@@ -114,7 +115,7 @@ static void qecd_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_can
   double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
   *out = (scree_candidate){.cost = INFINITY};
   if (error > MIDDLE_ERROR && trace > 0) {
-    vec3 best = minimise(q, x, PULL * trace);
+    vec3 best = minimise(q, minimise(q, x, PULL * trace), PULL * trace);
     double least = value(q, best);
     if (least < error) {
       x = best;

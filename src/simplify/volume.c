@@ -23,9 +23,10 @@
 
 #include <string.h>
 
-/* Weight of the squared distance to the middle of the edge against the trace of H: places the
- * vertex where the surface leaves it free (flat, or along a crease). */
-#define PULL 1e-3
+/* Weight of the squared distance to the middle of the edge against the trace of H, and proximal
+ * steps: places the vertex where the surface leaves it free (flat, or along a crease). */
+#define PULL 1e-6
+enum { STEPS = 3 };
 /* The same in the cost: orders collapses of equal cost, short edges first. Far below the cost of
  * anything that changes shape. */
 #define TIE 1e-9
@@ -89,15 +90,24 @@ static inline void frame(vec3 n, vec3 *u, vec3 *w) {
   *w = (vec3){b, sign + n.y * n.y * a, -n.y};
 }
 
-/* Minimises y.H y - 2 g.y over the plane n.y = d, n a unit vector; H is positive definite. */
-static inline vec3 minimise_on_plane(const double *h, vec3 g, vec3 n, double d) {
-  vec3 u, w, y0 = vec3_scale(n, d);
+/* Minimises y.H y - 2 g.y over the plane n.y = d, n a unit vector, from the point nearest to
+ * `middle`: y moves by proximal steps, each minimising that plus pull |y - y_before|^2. Where the
+ * surface decides, the step's error shrinks by pull over the curvature every time, to nothing;
+ * where it does not, y stays. */
+static inline vec3 minimise_on_plane(const double *h, vec3 g, vec3 n, double d, vec3 middle,
+                                     double pull) {
+  vec3 u, w, y = vec3_mad(middle, n, d - vec3_dot(n, middle));
   frame(n, &u, &w);
-  vec3 hu = multiply(h, u), hw = multiply(h, w), r = vec3_sub(g, multiply(h, y0));
+  vec3 hu = multiply(h, u), hw = multiply(h, w), r = vec3_sub(g, multiply(h, y));
   double uu = vec3_dot(u, hu), uw = vec3_dot(u, hw), ww = vec3_dot(w, hw);
-  double ru = vec3_dot(u, r), rw = vec3_dot(w, r), det = uu * ww - uw * uw;
-  double cu = (ru * ww - rw * uw) / det, cw = (rw * uu - ru * uw) / det;
-  vec3 y = vec3_mad(vec3_mad(y0, u, cu), w, cw);
+  double ru = vec3_dot(u, r), rw = vec3_dot(w, r);
+  double a = uu + pull, c = ww + pull, inverse = 1 / (a * c - uw * uw), cu = 0, cw = 0;
+  for (int step = 0; step < STEPS; step++) {
+    double su = ru - uu * cu - uw * cw, sw = rw - uw * cu - ww * cw;
+    cu += (su * c - sw * uw) * inverse;
+    cw += (sw * a - su * uw) * inverse;
+  }
+  y = vec3_mad(vec3_mad(y, u, cu), w, cw);
   return vec3_mad(y, n, d - vec3_dot(n, y)); /* back onto the plane, past rounding */
 }
 
@@ -120,12 +130,11 @@ static void volume_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_c
   vec3 n = {h[NX] - n1.x - n2.x, h[NY] - n1.y - n2.y, h[NZ] - n1.z - n2.z};
   vec3 nb = {hb[NX], hb[NY], hb[NZ]}, g = multiply(hb, e);
   double k = vec3_dot(e, g), length2 = vec3_norm2(e), trace = h[HXX] + h[HYY] + h[HZZ];
-  double norm = vec3_norm(n), pull = PULL * trace;
+  double norm = vec3_norm(n);
   *out = (scree_candidate){.cost = INFINITY};
   if (!(norm > 0) || !(trace > 0)) return;
-  double hr[6] = {h[HXX] + pull, h[HXY], h[HXZ], h[HYY] + pull, h[HYZ], h[HZZ] + pull};
-  vec3 y = minimise_on_plane(hr, vec3_mad(g, e, 0.5 * pull), vec3_scale(n, 1 / norm),
-                             vec3_dot(nb, e) / norm);
+  vec3 y = minimise_on_plane(h, g, vec3_scale(n, 1 / norm), vec3_dot(nb, e) / norm,
+                             vec3_scale(e, 0.5), PULL * trace);
   double off2 = vec3_norm2(vec3_mad(y, e, -0.5));
   if (!(off2 <= REACH * REACH * length2)) return;
   double energy = vec3_dot(y, multiply(h, y)) - 2 * vec3_dot(g, y) + k;
