@@ -1,0 +1,543 @@
+/* Built top-down: at each node the surface area heuristic (Goldsmith and Salmon 1987) is evaluated
+ * at bins of the triangles' box centres (Wald 2007, "On fast construction of SAH-based bounding
+ * volume hierarchies"). Nearest-point queries go down the nearer child first and skip boxes farther
+ * than the best found; the point in a triangle follows Ericson, "Real-Time Collision Detection",
+ * 5.1.5, with a special case for needles. */
+#include "mesh/bvh.h"
+
+#include "base/alloc.h"
+#include "base/parallel.h"
+#include "mesh/mesh.h"
+#include "mesh/predicates.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  LEAF = 4,            /* triangles at most */
+  LEAST = 2,           /* triangles on either side of a split, so nodes are fewer than triangles */
+  BINS = 16,           /* per axis; more gains nothing measurable */
+  SUBTREES = 64,       /* parts built in parallel: fixed, so that the tree is */
+  BALANCED_DEPTH = 48, /* below this, halves: bounds the depth and so the stack */
+  STACK = 96,          /* > BALANCED_DEPTH + log2(2^32) */
+  PRIMITIVE_BLOCK = 1 << 14,
+  DIRECTIONS = 8
+};
+
+/* A triangle while building. Twice the centre is low + high. */
+typedef struct primitive {
+  double low[3], high[3];
+  uint32_t triangle;
+} primitive;
+
+typedef struct box {
+  double low[3], high[3];
+} box;
+
+typedef struct task {
+  uint32_t node; /* in the scratch nodes */
+  uint32_t first, count;
+  int depth;
+} task;
+
+typedef struct builder {
+  const scree_mesh *mesh;
+  primitive *primitives;
+  scree_bvh_node *scratch; /* the subtree over [first, first + count) uses slots of that range */
+  uint32_t root_slot;
+  task subtrees[SUBTREES];
+  size_t subtree_count;
+  scree_bvh *out;
+} builder;
+
+static const box nothing = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+
+static void grow(box *b, const double *low, const double *high) {
+  for (int k = 0; k < 3; k++) {
+    b->low[k] = low[k] < b->low[k] ? low[k] : b->low[k];
+    b->high[k] = high[k] > b->high[k] ? high[k] : b->high[k];
+  }
+}
+
+static double half_area(const box *b) {
+  double d[3];
+  for (int k = 0; k < 3; k++) d[k] = b->high[k] > b->low[k] ? b->high[k] - b->low[k] : 0;
+  return d[0] * d[1] + d[1] * d[2] + d[2] * d[0];
+}
+
+/* ---- Building ---- */
+
+static void make_primitives(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  builder *b = context;
+  for (size_t t = begin; t < end; t++) {
+    primitive *made = &b->primitives[t];
+    box bounds = nothing;
+    for (int k = 0; k < 3; k++) {
+      const double *p = b->mesh->positions + 3 * (size_t)b->mesh->triangles[3 * t + (size_t)k];
+      grow(&bounds, p, p);
+    }
+    memcpy(made->low, bounds.low, sizeof made->low);
+    memcpy(made->high, bounds.high, sizeof made->high);
+    made->triangle = (uint32_t)t;
+  }
+}
+
+static double twice_centre(const primitive *p, int axis) {
+  return p->low[axis] + p->high[axis];
+}
+
+static int compare_centres(const void *a, const void *b, int axis) {
+  const primitive *p = a, *q = b;
+  double x = twice_centre(p, axis), y = twice_centre(q, axis);
+  return x != y ? (x > y) - (x < y) : (p->triangle > q->triangle) - (p->triangle < q->triangle);
+}
+static int compare_x(const void *a, const void *b) {
+  return compare_centres(a, b, 0);
+}
+static int compare_y(const void *a, const void *b) {
+  return compare_centres(a, b, 1);
+}
+static int compare_z(const void *a, const void *b) {
+  return compare_centres(a, b, 2);
+}
+
+/* How a node's triangles are told apart: bin i of an axis. */
+typedef struct binning {
+  int axis;
+  double low, scale;
+} binning;
+
+static int bin_of(const binning *bins, const primitive *p) {
+  int bin = (int)((twice_centre(p, bins->axis) - bins->low) * bins->scale);
+  return bin < 0 ? 0 : bin >= BINS ? BINS - 1 : bin;
+}
+
+/* The bin before which to split, or 0 where no split leaves LEAST on either side. */
+static int best_split(const binning *bins, const primitive *primitives, size_t count) {
+  box bounds[BINS], right = nothing, left = nothing;
+  size_t counts[BINS] = {0}, right_count = 0, left_count = 0;
+  double right_cost[BINS], least = INFINITY;
+  int best = 0;
+  for (int i = 0; i < BINS; i++) bounds[i] = nothing;
+  for (size_t i = 0; i < count; i++) {
+    int bin = bin_of(bins, &primitives[i]);
+    grow(&bounds[bin], primitives[i].low, primitives[i].high);
+    counts[bin]++;
+  }
+  for (int i = BINS - 1; i > 0; i--) {
+    grow(&right, bounds[i].low, bounds[i].high);
+    right_count += counts[i];
+    right_cost[i] = right_count < LEAST ? INFINITY : half_area(&right) * (double)right_count;
+  }
+  for (int i = 1; i < BINS; i++) {
+    grow(&left, bounds[i - 1].low, bounds[i - 1].high);
+    left_count += counts[i - 1];
+    double cost = half_area(&left) * (double)left_count + right_cost[i];
+    if (left_count >= LEAST && cost < least) least = cost, best = i;
+  }
+  return best;
+}
+
+static size_t partition(const binning *bins, int split, primitive *primitives, size_t count) {
+  size_t i = 0, j = count;
+  for (;;) {
+    while (i < j && bin_of(bins, &primitives[i]) < split) i++;
+    while (i < j && bin_of(bins, &primitives[j - 1]) >= split) j--;
+    if (i >= j) return i;
+    primitive swap = primitives[i];
+    primitives[i++] = primitives[--j];
+    primitives[j] = swap;
+  }
+}
+
+/* Orders the triangles so that the first part, whose size is returned, goes left. */
+static size_t split_primitives(primitive *primitives, size_t count, const box *centres, int depth) {
+  binning bins = {0};
+  double longest = -1;
+  for (int k = 0; k < 3; k++)
+    if (centres->high[k] - centres->low[k] > longest) {
+      longest = centres->high[k] - centres->low[k];
+      bins.axis = k;
+    }
+  bins.low = centres->low[bins.axis];
+  bins.scale = BINS / longest;
+  if (longest > 0 && isfinite(bins.scale) && depth < BALANCED_DEPTH) {
+    int split = best_split(&bins, primitives, count);
+    if (split) return partition(&bins, split, primitives, count);
+  }
+  static int (*const compare[3])(const void *, const void *) = {compare_x, compare_y, compare_z};
+  qsort(primitives, count, sizeof *primitives, compare[bins.axis]);
+  return count / 2;
+}
+
+/* Bounds the task's node; makes it a leaf (false), or splits it in two further tasks whose nodes
+ * are *slot and *slot + 1. */
+static bool build_node(builder *b, const task *t, uint32_t *slot, task *left, task *right) {
+  scree_bvh_node *node = &b->scratch[t->node];
+  primitive *primitives = b->primitives + t->first;
+  box bounds = nothing, centres = nothing;
+  for (size_t i = 0; i < t->count; i++) {
+    double centre[3];
+    for (int k = 0; k < 3; k++) centre[k] = twice_centre(&primitives[i], k);
+    grow(&bounds, primitives[i].low, primitives[i].high);
+    grow(&centres, centre, centre);
+  }
+  memcpy(node->low, bounds.low, sizeof node->low);
+  memcpy(node->high, bounds.high, sizeof node->high);
+  node->first = t->first;
+  node->count = t->count;
+  if (t->count <= LEAF) return false;
+  uint32_t middle = (uint32_t)split_primitives(primitives, t->count, &centres, t->depth);
+  node->first = *slot;
+  node->count = 0;
+  *left = (task){*slot, t->first, middle, t->depth + 1};
+  *right = (task){*slot + 1, t->first + middle, t->count - middle, t->depth + 1};
+  *slot += 2;
+  return true;
+}
+
+static void build_subtree(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  builder *b = context;
+  for (size_t i = begin; i < end; i++) {
+    task stack[STACK];
+    int depth = 0;
+    uint32_t slot = b->subtrees[i].first;
+    stack[depth++] = b->subtrees[i];
+    while (depth > 0) {
+      task now = stack[--depth], left, right;
+      if (!build_node(b, &now, &slot, &left, &right)) continue;
+      stack[depth++] = right;
+      stack[depth++] = left;
+    }
+  }
+}
+
+/* Splits the largest part until there are SUBTREES of them or all are small. */
+static void build_top(builder *b) {
+  uint32_t count = (uint32_t)b->mesh->triangle_count, slot = count + 1;
+  b->root_slot = count;
+  b->subtrees[0] = (task){b->root_slot, 0, count, 0};
+  b->subtree_count = 1;
+  while (b->subtree_count < SUBTREES) {
+    size_t largest = 0;
+    for (size_t i = 1; i < b->subtree_count; i++)
+      if (b->subtrees[i].count > b->subtrees[largest].count) largest = i;
+    task now = b->subtrees[largest], left, right;
+    if (now.count <= SUBTREES || !build_node(b, &now, &slot, &left, &right)) break;
+    b->subtrees[largest] = left;
+    b->subtrees[b->subtree_count++] = right;
+  }
+}
+
+static size_t count_nodes(const builder *b) {
+  uint32_t stack[STACK];
+  size_t count = 0;
+  int depth = 0;
+  stack[depth++] = b->root_slot;
+  while (depth > 0) {
+    const scree_bvh_node *node = &b->scratch[stack[--depth]];
+    count++;
+    if (node->count) continue;
+    stack[depth++] = node->first + 1;
+    stack[depth++] = node->first;
+  }
+  return count;
+}
+
+/* Copies the scratch nodes depth first, without holes. */
+static void lay_out(const builder *b) {
+  struct {
+    uint32_t from, to;
+  } stack[STACK];
+  int depth = 0;
+  uint32_t used = 1;
+  stack[depth].from = b->root_slot;
+  stack[depth++].to = 0;
+  while (depth > 0) {
+    depth--;
+    uint32_t to = stack[depth].to;
+    scree_bvh_node node = b->scratch[stack[depth].from];
+    uint32_t children = node.first;
+    if (!node.count) node.first = used;
+    b->out->nodes[to] = node;
+    if (node.count) continue;
+    for (uint32_t side = 2; side-- > 0;) {
+      stack[depth].from = children + side;
+      stack[depth++].to = used + side;
+    }
+    used += 2;
+  }
+}
+
+static void copy_corners(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  builder *b = context;
+  for (size_t i = begin; i < end; i++) {
+    uint32_t t = b->primitives[i].triangle;
+    b->out->order[i] = t;
+    for (int k = 0; k < 3; k++)
+      vec3_store(b->out->corners + 9 * i + 3 * k, scree_mesh_corner(b->mesh, t, k));
+  }
+}
+
+scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error *error) {
+  scree_bvh made = {.triangle_count = mesh->triangle_count};
+  builder b = {.mesh = mesh, .out = &made};
+  size_t count = mesh->triangle_count;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(b.primitives, count, error, done);
+  SCREE_ALLOC_OR(b.scratch, count + (size_t)2 * SUBTREES + 1, error, done);
+  if (count > 0) {
+    scree_parallel_for(count, PRIMITIVE_BLOCK, make_primitives, &b);
+    build_top(&b);
+    scree_parallel_for(b.subtree_count, 1, build_subtree, &b);
+    made.node_count = count_nodes(&b);
+  }
+  SCREE_ALLOC_OR(made.nodes, made.node_count, error, done);
+  if (count > 0) lay_out(&b);
+  scree_free(b.scratch);
+  b.scratch = NULL;
+  SCREE_ALLOC_OR(made.corners, 9 * count, error, done);
+  SCREE_ALLOC_OR(made.order, count, error, done);
+  scree_parallel_for(count, PRIMITIVE_BLOCK, copy_corners, &b);
+  status = SCREE_OK;
+done:
+  scree_free(b.primitives);
+  scree_free(b.scratch);
+  if (status == SCREE_OK)
+    *bvh = made;
+  else
+    scree_bvh_free(&made);
+  return status;
+}
+
+void scree_bvh_free(scree_bvh *bvh) {
+  if (!bvh) return;
+  scree_free(bvh->nodes);
+  scree_free(bvh->corners);
+  scree_free(bvh->order);
+  *bvh = (scree_bvh){0};
+}
+
+/* ---- Nearest points ---- */
+
+static vec3 closest_on_segment(vec3 a, vec3 b, vec3 p) {
+  vec3 ab = vec3_sub(b, a);
+  double length2 = vec3_norm2(ab), along = vec3_dot(vec3_sub(p, a), ab);
+  if (along <= 0 || length2 == 0) return a;
+  return along >= length2 ? b : vec3_mad(a, ab, along / length2);
+}
+
+/* Where a triangle is a needle its normal is mostly rounding: the edges decide, and the inside only
+ * where it is nearer still. */
+static vec3 closest_on_needle(const vec3 corner[3], vec3 p, vec3 inside) {
+  const vec3 candidate[4] = {closest_on_segment(corner[0], corner[1], p),
+                             closest_on_segment(corner[1], corner[2], p),
+                             closest_on_segment(corner[2], corner[0], p), inside};
+  int best = 0;
+  for (int i = 1; i < 4; i++)
+    if (vec3_norm2(vec3_sub(candidate[i], p)) < vec3_norm2(vec3_sub(candidate[best], p))) best = i;
+  return candidate[best];
+}
+
+/* The nearest point lies on an edge that p is beyond: one whose opposite corner has a negative
+ * barycentric coordinate. */
+static vec3 closest_on_outline(const vec3 corner[3], const double weight[3], vec3 p) {
+  vec3 nearest = corner[0];
+  double least = INFINITY;
+  for (int k = 0; k < 3; k++) {
+    if (weight[k] >= 0) continue;
+    vec3 tried = closest_on_segment(corner[(k + 1) % 3], corner[(k + 2) % 3], p);
+    double distance2 = vec3_norm2(vec3_sub(tried, p));
+    if (distance2 < least) least = distance2, nearest = tried;
+  }
+  return nearest;
+}
+
+#define NEEDLE 1e-10 /* squared height over squared length, below which an own way is taken */
+
+double scree_triangle_closest(const double corners[9], vec3 p, vec3 *point) {
+  const vec3 corner[3] = {vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6)};
+  vec3 ab = vec3_sub(corner[1], corner[0]), ac = vec3_sub(corner[2], corner[0]),
+       ap = vec3_sub(p, corner[0]), normal = vec3_cross(ab, ac);
+  double squared = vec3_norm2(normal), bb = vec3_norm2(ab), cc = vec3_norm2(ac);
+  /* barycentric coordinates of the foot of p, times squared */
+  double v = vec3_dot(vec3_cross(ap, ac), normal), w = vec3_dot(vec3_cross(ab, ap), normal);
+  const double weight[3] = {squared - v - w, v, w};
+  bool above = squared > 0 && weight[0] >= 0 && v >= 0 && w >= 0;
+  vec3 inside = above ? vec3_mad(vec3_mad(corner[0], ab, v / squared), ac, w / squared) : corner[0];
+  if (squared <= NEEDLE * (bb > cc ? bb * bb : cc * cc))
+    *point = closest_on_needle(corner, p, inside);
+  else
+    *point = above ? inside : closest_on_outline(corner, weight, p);
+  return vec3_norm2(vec3_sub(p, *point));
+}
+
+static double box_distance2(const scree_bvh_node *node, vec3 p) {
+  double x = fmax(fmax(node->low[0] - p.x, p.x - node->high[0]), 0),
+         y = fmax(fmax(node->low[1] - p.y, p.y - node->high[1]), 0),
+         z = fmax(fmax(node->low[2] - p.z, p.z - node->high[2]), 0);
+  return x * x + y * y + z * z;
+}
+
+static bool closest_in_leaf(const scree_bvh *bvh, const scree_bvh_node *leaf, vec3 p,
+                            scree_bvh_hit *hit) {
+  bool found = false;
+  for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
+    vec3 point;
+    double distance2 = scree_triangle_closest(bvh->corners + 9 * (size_t)i, p, &point);
+    if (distance2 >= hit->distance2) continue;
+    *hit = (scree_bvh_hit){distance2, point, i};
+    found = true;
+  }
+  return found;
+}
+
+bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
+  struct {
+    uint32_t node;
+    double distance2;
+  } stack[STACK];
+  int depth = 0;
+  bool found = false;
+  if (bvh->node_count == 0) return false;
+  stack[depth].node = 0;
+  stack[depth++].distance2 = box_distance2(bvh->nodes, p);
+  while (depth > 0) {
+    depth--;
+    if (stack[depth].distance2 >= hit->distance2) continue;
+    const scree_bvh_node *node = &bvh->nodes[stack[depth].node];
+    if (node->count) {
+      found |= closest_in_leaf(bvh, node, p, hit);
+      continue;
+    }
+    uint32_t near = node->first, far = near + 1;
+    double near2 = box_distance2(&bvh->nodes[near], p), far2 = box_distance2(&bvh->nodes[far], p);
+    if (far2 < near2) {
+      double swap = near2;
+      near2 = far2, far2 = swap;
+      near++, far--;
+    }
+    if (far2 < hit->distance2) stack[depth].node = far, stack[depth++].distance2 = far2;
+    if (near2 < hit->distance2) stack[depth].node = near, stack[depth++].distance2 = near2;
+  }
+  return found;
+}
+
+/* ---- Overlaps ---- */
+
+static bool corners_overlap(const double *corners, const double *low, const double *high) {
+  for (int k = 0; k < 3; k++) {
+    double least = fmin(fmin(corners[k], corners[3 + k]), corners[6 + k]),
+           most = fmax(fmax(corners[k], corners[3 + k]), corners[6 + k]);
+    if (least > high[k] || most < low[k]) return false;
+  }
+  return true;
+}
+
+static bool node_overlaps(const scree_bvh_node *node, const double *low, const double *high) {
+  for (int k = 0; k < 3; k++)
+    if (node->low[k] > high[k] || node->high[k] < low[k]) return false;
+  return true;
+}
+
+bool scree_bvh_overlap(const scree_bvh *bvh, vec3 low, vec3 high, scree_bvh_visit *visit,
+                       void *context) {
+  const double from[3] = {low.x, low.y, low.z}, to[3] = {high.x, high.y, high.z};
+  uint32_t stack[STACK];
+  int depth = 0;
+  if (bvh->node_count) stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_bvh_node *node = &bvh->nodes[stack[--depth]];
+    if (!node_overlaps(node, from, to)) continue;
+    if (!node->count) {
+      stack[depth++] = node->first + 1;
+      stack[depth++] = node->first;
+      continue;
+    }
+    for (uint32_t i = node->first; i < node->first + node->count; i++)
+      if (corners_overlap(bvh->corners + 9 * (size_t)i, from, to) && !visit(context, bvh->order[i]))
+        return false;
+  }
+  return true;
+}
+
+/* ---- Crossings ---- */
+
+/* Whether the segment comes near the node's box: the slab test, widened by far more than its
+ * rounding. */
+static bool segment_meets(const scree_bvh_node *node, const double *p, const double *q,
+                          double slack) {
+  double enter = 0, leave = 1;
+  for (int k = 0; k < 3; k++) {
+    double along = q[k] - p[k], low = node->low[k] - slack - p[k],
+           high = node->high[k] + slack - p[k];
+    if (along == 0) {
+      if (low > 0 || high < 0) return false;
+      continue;
+    }
+    double first = low / along, second = high / along;
+    enter = fmax(enter, fmin(first, second));
+    leave = fmin(leave, fmax(first, second));
+  }
+  return enter <= leave * (1 + 1e-12);
+}
+
+/* +1 or -1: crosses, with or against the normal; 0: does not (nor does a facet shrunk to a point);
+ * 2: touches. */
+static int cross_triangle(const double *corners, const double *p, const double *q) {
+  const double *a = corners, *b = corners + 3, *c = corners + 6;
+  int start = scree_orient3(a, b, c, p), end = scree_orient3(a, b, c, q);
+  if (start == end && start != 0) return 0;
+  int s = scree_orient3(p, q, a, b), t = scree_orient3(p, q, b, c), u = scree_orient3(p, q, c, a);
+  bool out = (s > 0 || t > 0 || u > 0) && (s < 0 || t < 0 || u < 0);
+  if (out) return 0;
+  if (s != 0 && t != 0 && u != 0 && start != 0 && end != 0) return end;
+  return memcmp(a, b, 3 * sizeof *a) == 0 && memcmp(b, c, 3 * sizeof *b) == 0 ? 0 : 2;
+}
+
+bool scree_bvh_crossings(const scree_bvh *bvh, vec3 p, vec3 q, size_t *count, int *balance) {
+  const double from[3] = {p.x, p.y, p.z}, to[3] = {q.x, q.y, q.z};
+  uint32_t stack[STACK];
+  int depth = 0, net = 0;
+  size_t crossings = 0;
+  double slack = 1e-12 * (vec3_norm(p) + vec3_norm(q));
+  if (bvh->node_count) stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_bvh_node *node = &bvh->nodes[stack[--depth]];
+    if (!segment_meets(node, from, to, slack)) continue;
+    if (!node->count) {
+      stack[depth++] = node->first + 1;
+      stack[depth++] = node->first;
+      continue;
+    }
+    for (uint32_t i = node->first; i < node->first + node->count; i++) {
+      int crossed = cross_triangle(bvh->corners + 9 * (size_t)i, from, to);
+      if (crossed == 2) return false;
+      crossings += crossed != 0;
+      net += crossed;
+    }
+  }
+  *count = crossings;
+  *balance = net;
+  return true;
+}
+
+bool scree_bvh_winding(const scree_bvh *bvh, vec3 p, int *winding) {
+  /* no plane of a designed object holds these */
+  static const vec3 direction[DIRECTIONS] = {{0.617, 0.541, 0.572},   {-0.523, 0.631, 0.573},
+                                             {0.557, -0.607, 0.567},  {0.593, 0.569, -0.571},
+                                             {-0.601, -0.547, 0.583}, {-0.563, 0.599, -0.569},
+                                             {0.587, -0.577, -0.568}, {-0.571, -0.593, -0.567}};
+  size_t count = 0;
+  *winding = 0;
+  if (bvh->node_count == 0) return true;
+  const scree_bvh_node *root = &bvh->nodes[0];
+  vec3 size = vec3_sub(vec3_load(root->high), vec3_load(root->low));
+  double reach = 2 * (vec3_norm(size) + sqrt(box_distance2(root, p)));
+  for (int i = 0; i < DIRECTIONS; i++)
+    if (scree_bvh_crossings(bvh, p, vec3_mad(p, direction[i], reach), &count, winding)) return true;
+  return false;
+}
