@@ -1,0 +1,163 @@
+/* Closest points.
+ *
+ * Point to triangle: barycentric coordinates of the projection, then the regions of Ericson (2005,
+ * 5.1.5). Segment to segment: Ericson 5.1.9 with clamping. Point to surface: depth-first through
+ * the box tree, nearer child first. */
+#include "particle/closest.h"
+
+static vec3 on_edge(vec3 from, vec3 along, vec3 p, double *s) {
+  double length2 = vec3_norm2(along);
+  *s = length2 > 0 ? vec3_dot(vec3_sub(p, from), along) / length2 : 0;
+  *s = *s < 0 ? 0 : *s > 1 ? 1 : *s;
+  return vec3_mad(from, along, *s);
+}
+
+/* The closest point when the projection is outside: the nearest of the three edges. */
+static vec3 on_border(const scree_face *face, vec3 p, int *region) {
+  vec3 from[3] = {face->corner, vec3_add(face->corner, face->along1),
+                  vec3_add(face->corner, face->along2)};
+  vec3 along[3] = {face->along1, vec3_sub(face->along2, face->along1), vec3_neg(face->along2)};
+  double best = INFINITY;
+  vec3 closest = from[0];
+  for (int e = 0; e < 3; e++) {
+    double s;
+    vec3 c = on_edge(from[e], along[e], p, &s);
+    double d2 = vec3_norm2(vec3_sub(p, c));
+    if (d2 >= best) continue;
+    best = d2;
+    closest = c;
+    *region = s <= 0   ? (int)SCREE_REGION_CORNER + e
+              : s >= 1 ? (int)SCREE_REGION_CORNER + (e + 1) % 3
+                       : (int)SCREE_REGION_EDGE + e;
+  }
+  return closest;
+}
+
+vec3 scree_closest_on_face(const scree_face *face, vec3 p, int *region) {
+  vec3 w = vec3_sub(p, face->corner);
+  double d1 = vec3_dot(w, face->along1), d2 = vec3_dot(w, face->along2);
+  double u = (face->d22 * d1 - face->d12 * d2) * face->inverse,
+         v = (face->d11 * d2 - face->d12 * d1) * face->inverse;
+  if (u >= 0 && v >= 0 && u + v <= 1) {
+    *region = SCREE_REGION_INSIDE;
+    return vec3_mad(p, face->normal, -vec3_dot(w, face->normal));
+  }
+  return on_border(face, p, region);
+}
+
+static double clamp01(double x) {
+  return x < 0 ? 0 : x > 1 ? 1 : x;
+}
+
+void scree_closest_on_segments(vec3 p0, vec3 p1, vec3 q0, vec3 q1, double *s, double *t) {
+  vec3 u = vec3_sub(p1, p0), v = vec3_sub(q1, q0), w = vec3_sub(p0, q0);
+  double a = vec3_dot(u, u), e = vec3_dot(v, v), f = vec3_dot(v, w), c = vec3_dot(u, w),
+         b = vec3_dot(u, v), denominator = a * e - b * b;
+  double ss = denominator > 1e-14 * a * e ? clamp01((b * f - c * e) / denominator) : 0;
+  double tt = (b * ss + f) / e;
+  if (tt < 0) {
+    tt = 0;
+    ss = clamp01(-c / a);
+  } else if (tt > 1) {
+    tt = 1;
+    ss = clamp01((b - c) / a);
+  }
+  *s = ss;
+  *t = tt;
+}
+
+/* Keeps the nearest, ascending; what falls off the end bounds `next`. */
+static void insert_near(scree_near *near, uint32_t face, double distance) {
+  if (near->count == SCREE_NEAR_FACES && distance >= near->distance[near->count - 1]) {
+    near->next = fmin(near->next, distance);
+    return;
+  }
+  if (near->count == SCREE_NEAR_FACES) near->next = fmin(near->next, near->distance[--near->count]);
+  int i = near->count++;
+  for (; i > 0 && near->distance[i - 1] > distance; i--) {
+    near->distance[i] = near->distance[i - 1];
+    near->face[i] = near->face[i - 1];
+  }
+  near->distance[i] = distance;
+  near->face[i] = face;
+}
+
+static double near_bound(const scree_near *near, double reach, double slack) {
+  double bound = near->count ? fmin(reach, near->distance[0] + slack) : reach;
+  return fmin(bound, near->next);
+}
+
+typedef struct tree_entry {
+  uint32_t node;
+  double distance2;
+} tree_entry;
+
+void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, double slack,
+                         scree_near *near) {
+  near->count = 0;
+  near->next = INFINITY;
+  const scree_tree_node *nodes = particle->face_tree.nodes;
+  tree_entry stack[SCREE_TREE_STACK];
+  int depth = 0;
+  stack[depth++] = (tree_entry){0, scree_box_distance2(&nodes[0].box, p)};
+  double pruned2 = INFINITY;
+  while (depth > 0) {
+    tree_entry entry = stack[--depth];
+    double bound = near_bound(near, reach, slack);
+    if (entry.distance2 > bound * bound) {
+      pruned2 = fmin(pruned2, entry.distance2);
+      continue;
+    }
+    const scree_tree_node *node = &nodes[entry.node];
+    if (node->count == 0) {
+      uint32_t left = node->first, right = left + 1;
+      double dl = scree_box_distance2(&nodes[left].box, p),
+             dr = scree_box_distance2(&nodes[right].box, p);
+      bool left_first = dl <= dr;
+      stack[depth++] = left_first ? (tree_entry){right, dr} : (tree_entry){left, dl};
+      stack[depth++] = left_first ? (tree_entry){left, dl} : (tree_entry){right, dr};
+      continue;
+    }
+    for (uint32_t k = 0; k < node->count; k++) {
+      uint32_t face = particle->face_tree.order[node->first + k];
+      int region;
+      vec3 c = scree_closest_on_face(&particle->faces[face], p, &region);
+      insert_near(near, face, vec3_distance(p, c));
+    }
+  }
+  double bound = near->count ? fmin(reach, near->distance[0] + slack) : reach;
+  near->next = fmin(near->next, sqrt(pruned2));
+  while (near->count > 0 && near->distance[near->count - 1] > bound)
+    near->next = fmin(near->next, near->distance[--near->count]);
+}
+
+bool scree_is_inside(const scree_particle *particle, vec3 p) {
+  double turns = 0;
+  for (size_t f = 0; f < particle->face_count; f++) {
+    const scree_face *face = &particle->faces[f];
+    vec3 a = vec3_sub(face->corner, p), b = vec3_add(a, face->along1),
+         c = vec3_add(a, face->along2);
+    double na = vec3_norm(a), nb = vec3_norm(b), nc = vec3_norm(c);
+    double top = vec3_dot(a, vec3_cross(b, c));
+    double bottom = na * nb * nc + vec3_dot(a, b) * nc + vec3_dot(b, c) * na + vec3_dot(c, a) * nb;
+    turns += atan2(top, bottom);
+  }
+  return turns > 3.14159265358979323846; /* the full turn is 2 pi in half angles */
+}
+
+double scree_ray_depth(const scree_particle *particle, vec3 p, vec3 direction, size_t skip_face) {
+  double best = INFINITY;
+  for (size_t f = 0; f < particle->face_count; f++) {
+    const scree_face *face = &particle->faces[f];
+    double slope = vec3_dot(face->normal, direction);
+    if (f == skip_face || slope < 0.2) continue; /* only walls that stand across */
+    double s = vec3_dot(vec3_sub(face->corner, p), face->normal) / slope;
+    if (!(s > 0 && s < best)) continue;
+    vec3 hit = vec3_mad(p, direction, s), w = vec3_sub(hit, face->corner);
+    double d1 = vec3_dot(w, face->along1), d2 = vec3_dot(w, face->along2);
+    double u = (face->d22 * d1 - face->d12 * d2) * face->inverse,
+           v = (face->d11 * d2 - face->d12 * d1) * face->inverse;
+    if (u >= 0 && v >= 0 && u + v <= 1) best = s;
+  }
+  return best;
+}

@@ -1,0 +1,321 @@
+/* Contact features of a mesh: faces with pseudonormals, corners, straight convex edges.
+ *
+ * Features follow the shape, not its tessellation. An edge is bent when its two faces turn by more
+ * than `flat_angle`. A vertex without bent edges lies inside a flat region, one with exactly two
+ * bent edges in line lies inside a straight edge: neither can touch anything before the corners and
+ * edges around it do, so neither is a feature, and the edge runs on through it. A vertex with only
+ * concave edges lies in a pit and is none either. Every other vertex is a corner. Convex edges that
+ * turn by more than `sharp_angle` are features; below that the corners alone carry the shape (an
+ * edge of length s and turn b bulges by s b / 8: under 11 um for 10 mm).
+ *
+ * Pseudonormals: sum of the face normals over an edge; sum of the face normals times the corner
+ * angles at a vertex (Baerentzen and Aanaes 2005): the sign of (p - c).pseudonormal at the closest
+ * point c tells inside from outside. */
+#include "particle/particle.h"
+
+#include "base/alloc.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double flat_angle = 2e-5;             /* rad; sagitta 0.05 um over 10 mm; above the
+                                                      noise of single-precision coordinates */
+static const double sharp_angle = 0.5 * 0.0174533; /* rad; design value, see above */
+static const double fold_cosine = -0.8660254;      /* normals over 150 degrees apart */
+
+typedef struct half_edge {
+  uint32_t low, high; /* vertices, low < high */
+  uint32_t face;
+  uint8_t place;    /* edge 0 (01), 1 (12) or 2 (20) of the face */
+  uint8_t reversed; /* runs from high to low */
+} half_edge;
+
+typedef struct mesh_edge {
+  uint32_t low, high, face1, face2; /* face2 == face1 at a border */
+  double turn;                      /* angle between the normals, positive where convex */
+} mesh_edge;
+
+typedef struct vertex_bends {
+  uint32_t bent, convex; /* how many */
+  uint32_t edge[2];      /* the first two bent edges */
+} vertex_bends;
+
+typedef struct extraction {
+  scree_particle *particle;
+  half_edge *halves;
+  mesh_edge *edges;
+  size_t edge_count;
+  vertex_bends *bends;
+  bool *visited; /* edges already in a chain */
+} extraction;
+
+static vec3 position_of(const scree_mesh *mesh, uint32_t v) {
+  return vec3_load(&mesh->positions[3 * (size_t)v]);
+}
+
+static scree_status check_indices(const scree_mesh *mesh, scree_error *error) {
+  if (mesh->triangle_count == 0 || mesh->vertex_count == 0)
+    return scree_fail(error, SCREE_BAD_MESH, "particle: the mesh has no triangles");
+  if (mesh->vertex_count > UINT32_MAX / 8 || mesh->triangle_count > UINT32_MAX / 8)
+    return scree_fail(error, SCREE_LIMIT, "particle: %zu triangles; at most %u",
+                      mesh->triangle_count, UINT32_MAX / 8);
+  for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
+    if (mesh->triangles[i] >= mesh->vertex_count)
+      return scree_fail(error, SCREE_BAD_MESH,
+                        "particle: triangle %zu names vertex %u of a mesh of %zu vertices", i / 3,
+                        mesh->triangles[i], mesh->vertex_count);
+  for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+    if (!isfinite(mesh->positions[i]))
+      return scree_fail(error, SCREE_BAD_MESH, "particle: vertex %zu has a coordinate of %g", i / 3,
+                        mesh->positions[i]);
+  return SCREE_OK;
+}
+
+static scree_status make_faces(scree_particle *p, scree_error *error) {
+  const scree_mesh *mesh = &p->mesh;
+  for (size_t f = 0; f < mesh->triangle_count; f++) {
+    const uint32_t *t = &mesh->triangles[3 * f];
+    scree_face *face = &p->faces[f];
+    face->corner = position_of(mesh, t[0]);
+    face->along1 = vec3_sub(position_of(mesh, t[1]), face->corner);
+    face->along2 = vec3_sub(position_of(mesh, t[2]), face->corner);
+    vec3 n = vec3_cross(face->along1, face->along2);
+    face->d11 = vec3_norm2(face->along1);
+    face->d22 = vec3_norm2(face->along2);
+    face->d12 = vec3_dot(face->along1, face->along2);
+    double area2 = vec3_norm2(n), longest2 = fmax(face->d11, face->d22);
+    if (!(area2 > 1e-20 * longest2 * longest2))
+      return scree_fail(error, SCREE_BAD_MESH,
+                        "particle: triangle %zu has no area (%g m2, longest edge %g m)", f,
+                        0.5 * sqrt(area2), sqrt(longest2));
+    face->inverse = 1 / area2;
+    face->normal = vec3_scale(n, 1 / sqrt(area2));
+  }
+  return SCREE_OK;
+}
+
+static int compare_halves(const void *a, const void *b) {
+  const half_edge *x = a, *y = b;
+  if (x->low != y->low) return x->low < y->low ? -1 : 1;
+  if (x->high != y->high) return x->high < y->high ? -1 : 1;
+  return x->face < y->face ? -1 : x->face > y->face;
+}
+
+static void list_halves(const scree_mesh *mesh, half_edge *halves) {
+  for (size_t f = 0; f < mesh->triangle_count; f++)
+    for (int e = 0; e < 3; e++) {
+      uint32_t a = mesh->triangles[3 * f + (size_t)e],
+               b = mesh->triangles[3 * f + (size_t)((e + 1) % 3)];
+      halves[3 * f + (size_t)e] =
+          (half_edge){a < b ? a : b, a < b ? b : a, (uint32_t)f, (uint8_t)e, (uint8_t)(a > b)};
+    }
+  qsort(halves, 3 * mesh->triangle_count, sizeof *halves, compare_halves);
+}
+
+/* Signed angle between the normals of two faces over an edge: positive where convex. */
+static double turn_over(const scree_particle *p, const half_edge *a, const half_edge *b) {
+  vec3 n1 = p->faces[a->face].normal, n2 = p->faces[b->face].normal;
+  vec3 along = vec3_unit(vec3_sub(position_of(&p->mesh, a->high), position_of(&p->mesh, a->low)));
+  double sine = vec3_dot(vec3_cross(n1, n2), along);
+  if (a->reversed) sine = -sine;
+  return atan2(sine, vec3_dot(n1, n2));
+}
+
+static scree_status pair_halves(extraction *x, bool may_be_open, scree_error *error) {
+  scree_particle *p = x->particle;
+  size_t half_count = 3 * p->mesh.triangle_count;
+  for (size_t i = 0; i < half_count;) {
+    const half_edge *a = &x->halves[i], *b = a;
+    size_t same = 1;
+    while (i + same < half_count && a[same].low == a->low && a[same].high == a->high) same++;
+    if (same > 2)
+      return scree_fail(error, SCREE_BAD_MESH,
+                        "particle: the edge between vertices %u and %u belongs to %zu triangles",
+                        a->low, a->high, same);
+    if (same == 1 && !may_be_open)
+      return scree_fail(error, SCREE_BAD_MESH,
+                        "particle: the mesh is open at the edge between vertices %u and %u of "
+                        "triangle %u",
+                        a->low, a->high, a->face);
+    if (same == 2) {
+      b = a + 1;
+      if (a->reversed == b->reversed)
+        return scree_fail(error, SCREE_BAD_MESH,
+                          "particle: triangles %u and %u are wound against each other", a->face,
+                          b->face);
+      if (vec3_dot(p->faces[a->face].normal, p->faces[b->face].normal) < fold_cosine)
+        return scree_fail(error, SCREE_BAD_MESH,
+                          "particle: triangles %u and %u fold back on each other (normals over 150 "
+                          "degrees apart)",
+                          a->face, b->face);
+    }
+    mesh_edge *edge = &x->edges[x->edge_count++];
+    *edge = (mesh_edge){a->low, a->high, a->face, b->face, same == 2 ? turn_over(p, a, b) : 3.0};
+    vec3 sum = vec3_add(p->faces[a->face].normal, p->faces[b->face].normal);
+    p->face_signs[a->face].edge[a->place] = p->face_signs[b->face].edge[b->place] = sum;
+    i += same;
+  }
+  return SCREE_OK;
+}
+
+static scree_status make_corner_signs(scree_particle *p, scree_error *error) {
+  const scree_mesh *mesh = &p->mesh;
+  vec3 *sums = scree_alloc_zero(mesh->vertex_count, sizeof *sums);
+  if (!sums) return scree_fail_memory(error, mesh->vertex_count * sizeof *sums, "pseudonormals");
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t f = 0; f < mesh->triangle_count; f++)
+      for (int c = 0; c < 3; c++) {
+        const uint32_t *t = &mesh->triangles[3 * f];
+        if (pass == 1) {
+          p->face_signs[f].corner[c] = sums[t[c]];
+          continue;
+        }
+        vec3 at = position_of(mesh, t[c]), u = vec3_sub(position_of(mesh, t[(c + 1) % 3]), at),
+             v = vec3_sub(position_of(mesh, t[(c + 2) % 3]), at);
+        double angle = atan2(vec3_norm(vec3_cross(u, v)), vec3_dot(u, v));
+        sums[t[c]] = vec3_mad(sums[t[c]], p->faces[f].normal, angle);
+      }
+  scree_free(sums);
+  return SCREE_OK;
+}
+
+static void count_bends(extraction *x) {
+  for (size_t e = 0; e < x->edge_count; e++) {
+    const mesh_edge *edge = &x->edges[e];
+    if (fabs(edge->turn) <= flat_angle) continue;
+    const uint32_t ends[2] = {edge->low, edge->high};
+    for (int i = 0; i < 2; i++) {
+      vertex_bends *bends = &x->bends[ends[i]];
+      if (bends->bent < 2) bends->edge[bends->bent] = (uint32_t)e;
+      bends->bent++;
+      bends->convex += edge->turn > 0;
+    }
+  }
+}
+
+static vec3 direction_from(const extraction *x, uint32_t edge_index, uint32_t vertex) {
+  const mesh_edge *edge = &x->edges[edge_index];
+  uint32_t other = edge->low == vertex ? edge->high : edge->low;
+  const scree_mesh *mesh = &x->particle->mesh;
+  return vec3_unit(vec3_sub(position_of(mesh, other), position_of(mesh, vertex)));
+}
+
+/* Whether the vertex lies inside a straight edge. */
+static bool is_straight(const extraction *x, uint32_t vertex) {
+  const vertex_bends *bends = &x->bends[vertex];
+  if (bends->bent != 2 || bends->convex != 2) return false;
+  vec3 u = direction_from(x, bends->edge[0], vertex), v = direction_from(x, bends->edge[1], vertex);
+  return vec3_dot(u, v) < 0 && vec3_norm(vec3_cross(u, v)) < flat_angle;
+}
+
+static bool is_corner(const extraction *x, uint32_t vertex) {
+  return x->bends[vertex].convex > 0 && !is_straight(x, vertex);
+}
+
+/* Follows a straight edge from `vertex` on; returns where it ends. */
+static uint32_t follow(extraction *x, uint32_t edge_index, uint32_t vertex) {
+  size_t first = edge_index;
+  while (is_straight(x, vertex)) {
+    const vertex_bends *bends = &x->bends[vertex];
+    uint32_t next = bends->edge[0] == edge_index ? bends->edge[1] : bends->edge[0];
+    if (next == first) break;
+    x->visited[next] = true;
+    vertex = x->edges[next].low == vertex ? x->edges[next].high : x->edges[next].low;
+    edge_index = next;
+  }
+  return vertex;
+}
+
+static void make_points_and_edges(extraction *x) {
+  scree_particle *p = x->particle;
+  const scree_mesh *mesh = &p->mesh;
+  for (uint32_t v = 0; v < mesh->vertex_count; v++)
+    if (is_corner(x, v)) {
+      p->points[p->point_count] = position_of(mesh, v);
+      p->point_radii[p->point_count++] = p->measures.rounding;
+    }
+  for (uint32_t e = 0; e < x->edge_count; e++) {
+    const mesh_edge *edge = &x->edges[e];
+    if (edge->turn <= sharp_angle || x->visited[e]) continue;
+    x->visited[e] = true;
+    uint32_t start = follow(x, e, edge->low), end = follow(x, e, edge->high);
+    p->edges[p->edge_count++] =
+        (scree_edge){position_of(mesh, start), position_of(mesh, end), p->faces[edge->face1].normal,
+                     p->faces[edge->face2].normal};
+  }
+}
+
+scree_status scree_particle_extract_features(scree_particle *p, bool may_be_open,
+                                             scree_error *error) {
+  const scree_mesh *mesh = &p->mesh;
+  scree_status status = check_indices(mesh, error);
+  if (status) return status;
+  extraction x = {.particle = p};
+  status = SCREE_OUT_OF_MEMORY;
+  size_t halves = 3 * mesh->triangle_count;
+  p->face_count = mesh->triangle_count;
+  SCREE_ALLOC_OR(p->faces, p->face_count, error, done);
+  SCREE_ALLOC_OR(p->face_signs, p->face_count, error, done);
+  SCREE_ALLOC_OR(p->points, mesh->vertex_count, error, done);
+  SCREE_ALLOC_OR(p->point_radii, mesh->vertex_count, error, done);
+  SCREE_ALLOC_OR(p->edges, halves, error, done);
+  SCREE_ALLOC_OR(x.halves, halves, error, done);
+  SCREE_ALLOC_OR(x.edges, halves, error, done);
+  SCREE_ALLOC_OR(x.bends, mesh->vertex_count, error, done);
+  SCREE_ALLOC_OR(x.visited, halves, error, done);
+  memset(x.bends, 0, mesh->vertex_count * sizeof *x.bends);
+  memset(x.visited, 0, halves * sizeof *x.visited);
+  status = make_faces(p, error);
+  if (status) goto done;
+  list_halves(mesh, x.halves);
+  status = pair_halves(&x, may_be_open, error);
+  if (status) goto done;
+  status = make_corner_signs(p, error);
+  if (status) goto done;
+  count_bends(&x);
+  make_points_and_edges(&x);
+done:
+  scree_free(x.halves);
+  scree_free(x.edges);
+  scree_free(x.bends);
+  scree_free(x.visited);
+  return status;
+}
+
+static void box_items(const scree_particle *p, int what, scree_box *boxes) {
+  if (what == 0)
+    for (size_t f = 0; f < p->face_count; f++) {
+      const scree_face *face = &p->faces[f];
+      vec3 b = vec3_add(face->corner, face->along1), c = vec3_add(face->corner, face->along2);
+      boxes[f] = scree_box_join(scree_box_of(face->corner, b), (scree_box){c, c});
+    }
+  else if (what == 1)
+    for (size_t e = 0; e < p->edge_count; e++)
+      boxes[e] = scree_box_of(p->edges[e].start, p->edges[e].end);
+  else
+    for (size_t i = 0; i < p->point_count; i++)
+      boxes[i] = scree_box_grown((scree_box){p->points[i], p->points[i]}, p->point_radii[i]);
+}
+
+scree_status scree_particle_build_trees(scree_particle *p, scree_error *error) {
+  size_t most = p->face_count > p->edge_count ? p->face_count : p->edge_count;
+  if (p->point_count > most) most = p->point_count;
+  scree_box *boxes = scree_alloc(most, sizeof *boxes);
+  if (!boxes) return scree_fail_memory(error, most * sizeof *boxes, "boxes of contact features");
+  const size_t counts[3] = {p->face_count, p->edge_count, p->point_count};
+  scree_tree *trees[3] = {&p->face_tree, &p->edge_tree, &p->point_tree};
+  scree_status status = SCREE_OK;
+  bool any = false;
+  for (int what = 0; what < 3 && status == SCREE_OK; what++) {
+    if (counts[what] == 0) continue;
+    box_items(p, what, boxes);
+    status = scree_tree_build(boxes, counts[what], trees[what], error);
+    if (status) break;
+    scree_box box = trees[what]->nodes[0].box;
+    if (what == 0) box = scree_box_grown(box, p->measures.rounding);
+    p->box = any ? scree_box_join(p->box, box) : box;
+    any = true;
+  }
+  scree_free(boxes);
+  return status;
+}

@@ -1,0 +1,249 @@
+/* Making particles. A mesh is moved into its principal frame first, so that everything the physics
+ * reads is in one frame. The rounding is 0.002 of the size: small against the shape, large against
+ * resting overlaps (micrometres), so that resting contacts see separated surfaces whose closest
+ * points and normals are exact. */
+#include "particle/particle.h"
+
+#include "base/alloc.h"
+#include "particle/closest.h"
+#include "particle/mass.h"
+
+#include <string.h>
+
+static const double pi = 3.14159265358979323846;
+static const double default_rounding = 0.002; /* of the size */
+
+scree_particle_options scree_default_particle_options(void) {
+  return (scree_particle_options){.rounding = 0};
+}
+
+void scree_particle_retain(scree_particle *particle) {
+  atomic_fetch_add(&particle->reference_count, 1);
+}
+
+void scree_particle_free(scree_particle *p) {
+  if (!p || atomic_fetch_sub(&p->reference_count, 1) > 1) return;
+  scree_mesh_free(&p->mesh);
+  scree_free(p->faces);
+  scree_free(p->face_signs);
+  scree_free(p->points);
+  scree_free(p->point_radii);
+  scree_free(p->edges);
+  scree_tree_free(&p->face_tree);
+  scree_tree_free(&p->edge_tree);
+  scree_tree_free(&p->point_tree);
+  scree_free(p);
+}
+
+static scree_particle *new_particle(scree_particle_kind kind, scree_error *error) {
+  scree_particle *p = scree_alloc_zero(1, sizeof *p);
+  if (!p) {
+    scree_fail_memory(error, sizeof *p, "a particle");
+    return NULL;
+  }
+  atomic_init(&p->reference_count, 1);
+  p->measures.kind = kind;
+  p->measures.orientation[0] = 1;
+  return p;
+}
+
+static void set_solid(scree_particle_measures *m, const scree_solid *solid) {
+  vec3 moments;
+  quat q;
+  scree_solid_principal(solid, &moments, &q);
+  m->volume = solid->volume;
+  m->size = cbrt(6 * solid->volume / pi);
+  vec3_store(m->centre, solid->centre);
+  vec3_store(m->inertia, moments);
+  const double orientation[4] = {q.w, q.x, q.y, q.z};
+  memcpy(m->orientation, orientation, sizeof orientation);
+}
+
+static quat orientation_of(const scree_particle_measures *m) {
+  return (quat){m->orientation[0], m->orientation[1], m->orientation[2], m->orientation[3]};
+}
+
+/* From the coordinates it was made from into its own frame. */
+static vec3 into_frame(const scree_particle_measures *m, const double *position) {
+  mat3 r = quat_to_mat3(orientation_of(m));
+  return mat3_tmul_vec(&r, vec3_sub(vec3_load(position), vec3_load(m->centre)));
+}
+
+static void set_bounding_radius(scree_particle *p) {
+  double r = 0;
+  for (size_t i = 0; i < p->mesh.vertex_count; i++)
+    r = fmax(r, vec3_norm(vec3_load(&p->mesh.positions[3 * i])) + p->measures.rounding);
+  for (size_t i = 0; i < p->point_count; i++)
+    r = fmax(r, vec3_norm(p->points[i]) + p->point_radii[i]);
+  p->measures.bounding_radius = r;
+}
+
+/* Least distance through the solid from a face's middle against its normal. At most about a
+ * thousand faces are tried, evenly chosen: the cost is the square of the count. */
+static double thinnest_wall(const scree_particle *p) {
+  double best = INFINITY;
+  size_t stride = p->face_count / 1000 + 1;
+  for (size_t f = 0; f < p->face_count; f += stride) {
+    const scree_face *face = &p->faces[f];
+    vec3 middle = vec3_mad(face->corner, vec3_add(face->along1, face->along2), 1.0 / 3);
+    double depth = scree_ray_depth(p, middle, vec3_neg(face->normal), f);
+    best = fmin(best, depth);
+  }
+  return best;
+}
+
+static void set_counts(scree_particle *p) {
+  p->measures.triangle_count = p->mesh.triangle_count;
+  p->measures.point_count = p->point_count;
+  p->measures.edge_count = p->edge_count;
+}
+
+static scree_status finish_mesh(scree_particle *p, scree_error *error) {
+  scree_status status = scree_particle_build_trees(p, error);
+  if (status) return status;
+  set_bounding_radius(p);
+  p->measures.thickness = thinnest_wall(p);
+  set_counts(p);
+  return SCREE_OK;
+}
+
+static scree_status make_mesh_particle(scree_particle *p, double rounding, scree_error *error) {
+  scree_solid solid = scree_solid_of_mesh(&p->mesh);
+  if (!(solid.volume > 0 && isfinite(solid.volume)))
+    return scree_fail(error, SCREE_BAD_MESH,
+                      "particle: the mesh encloses a volume of %g m3: turned inside out?",
+                      solid.volume);
+  set_solid(&p->measures, &solid);
+  p->measures.rounding = rounding > 0 ? rounding : default_rounding * p->measures.size;
+  for (size_t v = 0; v < p->mesh.vertex_count; v++) {
+    double *position = &p->mesh.positions[3 * v];
+    vec3_store(position, into_frame(&p->measures, position));
+  }
+  scree_status status = scree_particle_extract_features(p, false, error);
+  return status ? status : finish_mesh(p, error);
+}
+
+scree_status scree_particle_from_mesh(const scree_mesh *mesh, const scree_particle_options *options,
+                                      scree_particle **particle, scree_error *error) {
+  double rounding = options ? options->rounding : 0;
+  if (!(rounding >= 0 && isfinite(rounding)))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "particle: rounding %g m; at least 0", rounding);
+  scree_particle *p = new_particle(SCREE_PARTICLE_MESH, error);
+  if (!p) return SCREE_OUT_OF_MEMORY;
+  scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
+  /* first as it stands, so that messages name what is wrong before the volume is asked for */
+  if (!status) {
+    status = scree_particle_extract_features(p, false, error);
+    scree_free(p->faces);
+    scree_free(p->face_signs);
+    scree_free(p->points);
+    scree_free(p->point_radii);
+    scree_free(p->edges);
+    p->faces = NULL, p->face_signs = NULL, p->points = NULL, p->point_radii = NULL;
+    p->edges = NULL, p->point_count = p->edge_count = 0;
+  }
+  if (!status) status = make_mesh_particle(p, rounding, error);
+  if (status) {
+    scree_particle_free(p);
+    return status;
+  }
+  *particle = p;
+  return SCREE_OK;
+}
+
+scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
+                                    scree_particle **particle, scree_error *error) {
+  scree_particle *p = new_particle(SCREE_PARTICLE_MESH, error);
+  if (!p) return SCREE_OUT_OF_MEMORY;
+  p->measures.rounding = rounding;
+  scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
+  if (!status) status = scree_particle_extract_features(p, true, error);
+  if (!status) status = finish_mesh(p, error);
+  if (status) {
+    scree_particle_free(p);
+    return status;
+  }
+  *particle = p;
+  return SCREE_OK;
+}
+
+scree_status scree_particle_sphere(double radius, scree_particle **particle, scree_error *error) {
+  if (!(radius > 0 && isfinite(radius)))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "particle: sphere of radius %g m; above 0",
+                      radius);
+  const double centre[3] = {0};
+  scree_status status = scree_particle_clump(centre, &radius, 1, NULL, particle, error);
+  if (!status) (*particle)->measures.kind = SCREE_PARTICLE_SPHERE;
+  return status;
+}
+
+static scree_solid solid_of_clump(const double *centres, const double *radii, size_t count) {
+  if (count > 1) return scree_solid_of_spheres(centres, radii, count);
+  double v = 4 * pi / 3 * radii[0] * radii[0] * radii[0], c = v * radii[0] * radii[0] / 5;
+  return (scree_solid){v, vec3_load(centres), {{{c, 0, 0}, {0, c, 0}, {0, 0, c}}}};
+}
+
+static scree_status fill_clump(scree_particle *p, const double *centres, const double *radii,
+                               size_t count, scree_error *error) {
+  SCREE_ALLOC_OR(p->points, count, error, out_of_memory);
+  SCREE_ALLOC_OR(p->point_radii, count, error, out_of_memory);
+  p->point_count = count;
+  double thinnest = INFINITY;
+  for (size_t i = 0; i < count; i++) {
+    p->points[i] = into_frame(&p->measures, &centres[3 * i]);
+    p->point_radii[i] = radii[i];
+    thinnest = fmin(thinnest, 2 * radii[i]);
+  }
+  p->measures.thickness = thinnest;
+  set_bounding_radius(p);
+  set_counts(p);
+  return scree_particle_build_trees(p, error);
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_particle_clump(const double *centres, const double *radii, size_t count,
+                                  const scree_particle *like, scree_particle **particle,
+                                  scree_error *error) {
+  if (count == 0 || count > UINT32_MAX / 8)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "particle: a clump of %zu spheres; 1 to %u", count,
+                      UINT32_MAX / 8);
+  for (size_t i = 0; i < count; i++)
+    if (!(radii[i] > 0 &&
+          isfinite(radii[i] + centres[3 * i] + centres[3 * i + 1] + centres[3 * i + 2])))
+      return scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "particle: sphere %zu of the clump has radius %g m at %g %g %g", i,
+                        radii[i], centres[3 * i], centres[3 * i + 1], centres[3 * i + 2]);
+  scree_particle *p = new_particle(SCREE_PARTICLE_CLUMP, error);
+  if (!p) return SCREE_OUT_OF_MEMORY;
+  if (like) {
+    p->measures = like->measures;
+    p->measures.kind = SCREE_PARTICLE_CLUMP;
+    p->measures.rounding = 0;
+  } else {
+    scree_solid solid = solid_of_clump(centres, radii, count);
+    set_solid(&p->measures, &solid);
+  }
+  scree_status status = p->measures.volume > 0 ? fill_clump(p, centres, radii, count, error)
+                                               : scree_fail_memory(error, count, "a clump");
+  if (status) {
+    scree_particle_free(p);
+    return status;
+  }
+  *particle = p;
+  return SCREE_OK;
+}
+
+void scree_particle_measure(const scree_particle *particle, scree_particle_measures *measures) {
+  *measures = particle->measures;
+}
+
+const scree_mesh *scree_particle_mesh(const scree_particle *particle) {
+  return &particle->mesh;
+}
+
+void scree_particle_point(const scree_particle *particle, size_t index, double centre[3],
+                          double *radius) {
+  vec3_store(centre, particle->points[index]);
+  *radius = particle->point_radii[index];
+}

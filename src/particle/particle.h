@@ -1,0 +1,55 @@
+/* What a particle knows: its contact features in its own frame. The world reads these directly. */
+#ifndef SCREE_PARTICLE_PARTICLE_H
+#define SCREE_PARTICLE_PARTICLE_H
+
+#include "particle/tree.h"
+
+#include <stdatomic.h>
+
+/* A face for closest-point queries. The outward side at its own inside, edges and corners is given
+ * by `normal` and by the angle-weighted pseudonormals (Baerentzen and Aanaes 2005). */
+typedef struct scree_face {
+  vec3 corner, along1, along2;   /* corner 0; corners 1 and 2 relative to it */
+  vec3 normal;                   /* unit */
+  double d11, d12, d22, inverse; /* dot products of along1, along2; 1/(d11 d22 - d12^2) */
+} scree_face;
+typedef struct scree_face_signs {
+  vec3 edge[3];   /* over the edges 01, 12, 20 */
+  vec3 corner[3]; /* at the corners */
+} scree_face_signs;
+
+/* A straight convex edge. */
+typedef struct scree_edge {
+  vec3 start, end;
+  vec3 normal1, normal2; /* of its two faces */
+} scree_edge;
+
+struct scree_particle {
+  atomic_int reference_count;
+  scree_particle_measures measures;
+  scree_mesh mesh; /* in the particle's frame */
+  scree_face *faces;
+  scree_face_signs *face_signs;
+  size_t face_count;
+  vec3 *points;
+  double *point_radii;
+  size_t point_count;
+  scree_edge *edges;
+  size_t edge_count;
+  scree_tree face_tree, edge_tree, point_tree;
+  scree_box box; /* of everything, rounding included */
+};
+
+void scree_particle_retain(scree_particle *particle);
+
+/* The surface alone, in the mesh's own coordinates, without mass: for walls. May be open. */
+scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
+                                    scree_particle **particle, scree_error *error);
+
+/* features.c: fills faces, signs, points and edges from particle->mesh. */
+scree_status scree_particle_extract_features(scree_particle *particle, bool may_be_open,
+                                             scree_error *error);
+/* Trees and the box over what was extracted. */
+scree_status scree_particle_build_trees(scree_particle *particle, scree_error *error);
+
+#endif

@@ -1,0 +1,57 @@
+/* A binary tree of axis-aligned boxes over a fixed set of boxed items, for closest-point and
+ * overlap queries. Nodes are stored parent first; the two children of a node lie side by side. */
+#ifndef SCREE_PARTICLE_TREE_H
+#define SCREE_PARTICLE_TREE_H
+
+#include "base/error.h"
+#include "base/vec.h"
+
+typedef struct scree_box {
+  vec3 low, high;
+} scree_box;
+
+typedef struct scree_tree_node {
+  scree_box box;
+  uint32_t first; /* leaf: first place in order; else the left child */
+  uint32_t count; /* leaf: items; 0 for an inner node */
+} scree_tree_node;
+
+typedef struct scree_tree {
+  scree_tree_node *nodes; /* nodes[0] is the root; NULL for no items */
+  uint32_t *order;        /* items in leaf order */
+  size_t item_count;
+} scree_tree;
+
+/* Median splits of 2^32 items are at most 32 deep, and a walk keeps at most two entries a level. */
+enum { SCREE_TREE_LEAF = 2, SCREE_TREE_STACK = 72 };
+
+/* Over item_count boxes; split at the median of the longest side of the centres, ties by index. */
+scree_status scree_tree_build(const scree_box *boxes, size_t item_count, scree_tree *tree,
+                              scree_error *error);
+void scree_tree_free(scree_tree *tree);
+
+/* Squared distance from p to the box, 0 inside. */
+static inline double scree_box_distance2(const scree_box *box, vec3 p) {
+  double x = p.x < box->low.x ? box->low.x - p.x : p.x > box->high.x ? p.x - box->high.x : 0;
+  double y = p.y < box->low.y ? box->low.y - p.y : p.y > box->high.y ? p.y - box->high.y : 0;
+  double z = p.z < box->low.z ? box->low.z - p.z : p.z > box->high.z ? p.z - box->high.z : 0;
+  return x * x + y * y + z * z;
+}
+static inline scree_box scree_box_of(vec3 a, vec3 b) {
+  return (scree_box){vec3_min(a, b), vec3_max(a, b)};
+}
+static inline scree_box scree_box_join(scree_box a, scree_box b) {
+  return (scree_box){vec3_min(a.low, b.low), vec3_max(a.high, b.high)};
+}
+static inline scree_box scree_box_grown(scree_box a, double r) {
+  vec3 d = {r, r, r};
+  return (scree_box){vec3_sub(a.low, d), vec3_add(a.high, d)};
+}
+static inline bool scree_box_meets(const scree_box *a, const scree_box *b) {
+  return a->low.x <= b->high.x && b->low.x <= a->high.x && a->low.y <= b->high.y &&
+         b->low.y <= a->high.y && a->low.z <= b->high.z && b->low.z <= a->high.z;
+}
+/* The box of `box` after x -> rotation x + shift. */
+scree_box scree_box_moved(const scree_box *box, const mat3 *rotation, vec3 shift);
+
+#endif

@@ -1,0 +1,276 @@
+/* The broad phase: which bodies' bounding boxes, grown by a margin, overlap.
+ *
+ * Bodies are binned by centre into cubic cells as wide as the largest grown box, so that partners
+ * lie in the 27 cells around. The cells are visited through a sorted list of (cell, body). The list
+ * of pairs stays valid until some body's path since it was made exceeds half the margin. Old and
+ * new lists are both sorted, so pairs that stay keep their memory in one merge. */
+#include "world/world.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/progress.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double margin_share = 0.1; /* of the mean body size: rebuilds against extra pairs */
+
+typedef struct cell_entry {
+  int32_t x, y, z;
+  uint32_t body;
+} cell_entry;
+
+struct scree_broad {
+  scree_box *boxes; /* grown, by body */
+  cell_entry *cells;
+  uint32_t *bucket_begin; /* by hash */
+  size_t capacity, bucket_count;
+  double margin;
+};
+
+void scree_broad_free(scree_world *world) {
+  if (!world->broad) return;
+  scree_free(world->broad->boxes);
+  scree_free(world->broad->cells);
+  scree_free(world->broad->bucket_begin);
+  scree_free(world->broad);
+}
+
+static scree_status reserve(scree_world *world, scree_error *error) {
+  if (!world->broad) world->broad = scree_alloc_zero(1, sizeof *world->broad);
+  scree_broad *broad = world->broad;
+  if (!broad) return scree_fail_memory(error, sizeof *broad, "the broad phase");
+  size_t capacity = world->bodies.capacity;
+  if (broad->capacity >= capacity) return SCREE_OK;
+  size_t buckets = 64;
+  while (buckets < 2 * capacity) buckets *= 2;
+  void *boxes = scree_resize(broad->boxes, capacity, sizeof *broad->boxes);
+  if (boxes) broad->boxes = boxes;
+  void *cells = scree_resize(broad->cells, 2 * capacity, sizeof *broad->cells);
+  if (cells) broad->cells = cells;
+  void *begin = scree_resize(broad->bucket_begin, buckets + 1, sizeof *broad->bucket_begin);
+  if (begin) broad->bucket_begin = begin;
+  if (!boxes || !cells || !begin)
+    return scree_fail_memory(error, capacity * sizeof *broad->boxes, "the broad phase");
+  broad->capacity = capacity;
+  broad->bucket_count = buckets;
+  return SCREE_OK;
+}
+
+static size_t bucket_of(const scree_broad *broad, int32_t x, int32_t y, int32_t z) {
+  uint64_t h = (uint64_t)(uint32_t)x * 0x9E3779B97F4A7C15u ^
+               (uint64_t)(uint32_t)y * 0xC2B2AE3D27D4EB4Fu ^
+               (uint64_t)(uint32_t)z * 0x165667B19E3779F9u;
+  h ^= h >> 29;
+  return (size_t)(h & (broad->bucket_count - 1));
+}
+
+/* Boxes grown by half the margin; returns the widest side. */
+static double make_boxes(scree_world *world) {
+  scree_broad *broad = world->broad;
+  const scree_bodies *bodies = &world->bodies;
+  double size = 0, widest = 0;
+  size_t present = 0;
+  for (size_t i = 0; i < bodies->count; i++)
+    if (!bodies->removed[i]) {
+      size += bodies->particle[i]->measures.size;
+      present++;
+    }
+  broad->margin = present ? margin_share * size / (double)present : 0;
+  for (size_t i = 0; i < bodies->count; i++) {
+    if (bodies->removed[i]) continue;
+    const scree_frame *frame = &bodies->frame[i];
+    scree_box box = scree_box_moved(&bodies->particle[i]->box, &frame->rotation, frame->position);
+    broad->boxes[i] = scree_box_grown(box, 0.5 * broad->margin);
+    vec3 side = vec3_sub(broad->boxes[i].high, broad->boxes[i].low);
+    widest = fmax(widest, fmax(side.x, fmax(side.y, side.z)));
+  }
+  return widest;
+}
+
+/* Counting sort of the bodies by bucket; ascending by body within one. */
+static void bin_bodies(scree_world *world, double width) {
+  scree_broad *broad = world->broad;
+  const scree_bodies *bodies = &world->bodies;
+  cell_entry *unsorted = broad->cells + broad->capacity;
+  memset(broad->bucket_begin, 0, (broad->bucket_count + 1) * sizeof *broad->bucket_begin);
+  size_t count = 0;
+  for (size_t i = 0; i < bodies->count; i++) {
+    if (bodies->removed[i]) continue;
+    vec3 c = vec3_scale(vec3_add(broad->boxes[i].low, broad->boxes[i].high), 0.5 / width);
+    cell_entry entry = {(int32_t)floor(c.x), (int32_t)floor(c.y), (int32_t)floor(c.z), (uint32_t)i};
+    unsorted[count++] = entry;
+    broad->bucket_begin[bucket_of(broad, entry.x, entry.y, entry.z) + 1]++;
+  }
+  for (size_t b = 0; b < broad->bucket_count; b++)
+    broad->bucket_begin[b + 1] += broad->bucket_begin[b];
+  for (size_t k = count; k-- > 0;) { /* backwards: begin moves from end to begin of its bucket */
+    const cell_entry *e = &unsorted[k];
+    broad->cells[--broad->bucket_begin[bucket_of(broad, e->x, e->y, e->z) + 1]] = *e;
+  }
+  /* every begin now stands one bucket too far */
+  for (size_t b = 0; b < broad->bucket_count; b++)
+    broad->bucket_begin[b] = broad->bucket_begin[b + 1];
+  broad->bucket_begin[broad->bucket_count] = (uint32_t)count;
+}
+
+static uint64_t key_of(uint32_t a, uint32_t b, bool wall) {
+  return (uint64_t)a << 32 | (wall ? 0x80000000u : 0) | b;
+}
+
+static bool push_key(scree_world *world, uint64_t key) {
+  return SCREE_PUSH(&world->keys, key);
+}
+
+/* Whether the body may come near the wall before the next rebuild. */
+static bool near_wall(const scree_world *world, size_t body, const scree_world_wall *wall) {
+  const scree_frame *frame = &world->bodies.frame[body];
+  const scree_particle *particle = world->bodies.particle[body];
+  if (wall->surface) {
+    scree_box box =
+        scree_box_moved(&wall->surface->box, &wall->frame.rotation, wall->frame.position);
+    return scree_box_meets(&world->broad->boxes[body], &box);
+  }
+  vec3 p = mat3_tmul_vec(&wall->frame.rotation, vec3_sub(frame->position, wall->frame.position));
+  vec3 closest, normal;
+  double reach = particle->measures.bounding_radius + world->broad->margin;
+  double d = scree_wall_distance(wall, p, &closest, &normal);
+  return d < reach && (d > -reach || wall->given.kind != SCREE_WALL_DISC);
+}
+
+static int compare_keys(const void *x, const void *y) {
+  uint64_t a = *(const uint64_t *)x, b = *(const uint64_t *)y;
+  return a < b ? -1 : a > b;
+}
+
+/* Partners of body a that come after it, and its walls, in ascending order. */
+static bool list_partners(scree_world *world, uint32_t a, const cell_entry *cell) {
+  const scree_broad *broad = world->broad;
+  size_t first = world->keys.count;
+  for (int n = 0; n < 27; n++) {
+    int32_t x = cell->x + n % 3 - 1, y = cell->y + n / 3 % 3 - 1, z = cell->z + n / 9 - 1;
+    size_t bucket = bucket_of(broad, x, y, z);
+    for (size_t k = broad->bucket_begin[bucket]; k < broad->bucket_begin[bucket + 1]; k++) {
+      const cell_entry *other = &broad->cells[k];
+      if (other->body <= a || other->x != x || other->y != y || other->z != z) continue;
+      if (!scree_box_meets(&broad->boxes[a], &broad->boxes[other->body])) continue;
+      if (!push_key(world, key_of(a, other->body, false))) return false;
+    }
+  }
+  for (size_t w = 0; w < world->walls.count; w++)
+    if (near_wall(world, a, &world->walls.items[w]) &&
+        !push_key(world, key_of(a, (uint32_t)w, true)))
+      return false;
+  if (world->keys.count > first + 1)
+    qsort(world->keys.items + first, world->keys.count - first, sizeof *world->keys.items,
+          compare_keys);
+  return true;
+}
+
+static bool list_keys(scree_world *world, double width) {
+  world->keys.count = 0;
+  const scree_bodies *bodies = &world->bodies;
+  for (size_t i = 0; i < bodies->count; i++) {
+    if (bodies->removed[i]) continue;
+    const scree_box *box = &world->broad->boxes[i];
+    vec3 c = vec3_scale(vec3_add(box->low, box->high), 0.5 / width);
+    cell_entry cell = {(int32_t)floor(c.x), (int32_t)floor(c.y), (int32_t)floor(c.z), 0};
+    if (!list_partners(world, (uint32_t)i, &cell)) return false;
+  }
+  return true;
+}
+
+/* The new list: pairs that were there keep their objects. Room is made before anything moves. */
+static bool merge_pairs(scree_world *world) {
+  size_t needed = world->keys.count;
+  if (!SCREE_RESERVE(&world->merged_pairs, needed) || !SCREE_RESERVE(&world->pairs, needed) ||
+      !SCREE_RESERVE(&world->spare_pairs, world->spare_pairs.count + world->pairs.count))
+    return false;
+  bool complete = true;
+  size_t old = 0, merged = 0;
+  for (size_t k = 0; k < needed; k++) {
+    uint64_t key = world->keys.items[k];
+    uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key & 0x7fffffffu;
+    bool wall = (key & 0x80000000u) != 0;
+    while (old < world->pairs.count) {
+      const scree_pair *p = world->pairs.items[old];
+      if (key_of(p->a, p->b, p->wall) >= key) break;
+      scree_pair_give_back(world, world->pairs.items[old++]);
+    }
+    scree_pair *pair = NULL;
+    if (old < world->pairs.count) {
+      scree_pair *p = world->pairs.items[old];
+      if (key_of(p->a, p->b, p->wall) == key) pair = p, old++;
+    }
+    if (!pair) pair = scree_pair_take(world, a, b, wall);
+    if (pair)
+      world->merged_pairs.items[merged++] = pair;
+    else
+      complete = false;
+  }
+  while (old < world->pairs.count) scree_pair_give_back(world, world->pairs.items[old++]);
+  scree_pair **swapped = world->pairs.items;
+  size_t capacity = world->pairs.capacity;
+  world->pairs.items = world->merged_pairs.items;
+  world->pairs.capacity = world->merged_pairs.capacity;
+  world->pairs.count = merged;
+  world->merged_pairs.items = swapped;
+  world->merged_pairs.capacity = capacity;
+  return complete;
+}
+
+/* For every body the pairs it is in, ascending: the order in which forces are summed. */
+static bool list_sides(scree_world *world) {
+  size_t bodies = world->bodies.count, pairs = world->pairs.count;
+  if (!SCREE_RESERVE(&world->sides, 2 * pairs)) return false;
+  size_t *begin = world->side_begin;
+  memset(begin, 0, (bodies + 1) * sizeof *begin);
+  for (size_t k = 0; k < pairs; k++) {
+    const scree_pair *p = world->pairs.items[k];
+    begin[p->a + 1]++;
+    if (!p->wall) begin[p->b + 1]++;
+  }
+  for (size_t i = 0; i < bodies; i++) begin[i + 1] += begin[i];
+  world->sides.count = begin[bodies];
+  for (size_t k = pairs; k-- > 0;) {
+    const scree_pair *p = world->pairs.items[k];
+    world->sides.items[--begin[p->a + 1]] = (uint32_t)(2 * k);
+    if (!p->wall) world->sides.items[--begin[p->b + 1]] = (uint32_t)(2 * k + 1);
+  }
+  for (size_t i = 0; i < bodies; i++) begin[i] = begin[i + 1];
+  begin[bodies] = world->sides.count;
+  return true;
+}
+
+static bool is_valid(const scree_world *world) {
+  if (world->pairs_stale) return false;
+  double wall_travel = 0;
+  for (size_t w = 0; w < world->walls.count; w++) {
+    const scree_world_wall *wall = &world->walls.items[w];
+    wall_travel = fmax(wall_travel, wall->path - wall->path_at_build);
+    if (vec3_norm2(wall->frame.spin) > 0) return false; /* rare: rebuilt every step */
+  }
+  const scree_bodies *bodies = &world->bodies;
+  double allowed = 0.5 * world->broad->margin - wall_travel;
+  for (size_t i = 0; i < bodies->count; i++)
+    if (!bodies->removed[i] && bodies->path[i] - world->body_path_at_build[i] > allowed)
+      return false;
+  return true;
+}
+
+scree_status scree_broad_update(scree_world *world, scree_error *error) {
+  if (is_valid(world)) return SCREE_OK;
+  scree_status status = reserve(world, error);
+  if (status) return status;
+  double widest = make_boxes(world);
+  bin_bodies(world, widest > 0 ? widest : 1);
+  if (!list_keys(world, widest > 0 ? widest : 1) || !merge_pairs(world) || !list_sides(world))
+    return scree_fail_memory(error, world->keys.count * sizeof(scree_pair), "pairs of bodies");
+  for (size_t i = 0; i < world->bodies.count; i++)
+    world->body_path_at_build[i] = world->bodies.path[i];
+  for (size_t w = 0; w < world->walls.count; w++)
+    world->walls.items[w].path_at_build = world->walls.items[w].path;
+  world->pairs_stale = false;
+  world->timings.broad_builds++;
+  return SCREE_OK;
+}

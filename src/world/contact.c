@@ -1,0 +1,176 @@
+/* A pair's step: wake what is due, find the touching features, apply the law, let the rest sleep.
+ *
+ * Sleeping is exact. The pair's `path` bounds from above how far any two points near the contact
+ * have moved relative to each other; a feature pair that is `gap` from touching cannot touch before
+ * the path has grown by gap. It is woken two steps' travel early, so that it is first seen from
+ * outside. When nothing is awake the whole pair sleeps on the sum of the two bodies' paths, which
+ * costs two loads a step.
+ *
+ * The ledger: the work of the dashpots and of the tangential forces over a step is
+ * dt/2 W.(v before + v after the kick), with W the wrench of the step. The first half is added when
+ * the wrench is known, the second at the next evaluation: a trapezoid rule along the path, of
+ * second order like the integrator. */
+#include "world/world.h"
+
+#include "base/array.h"
+
+static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
+
+static double power_of(const scree_wrench *w, const scree_frame *a, const scree_frame *b) {
+  return vec3_dot(w->force, vec3_sub(a->velocity, b->velocity)) + vec3_dot(w->torque_a, a->spin) +
+         vec3_dot(w->torque_b, b->spin);
+}
+
+static void add_work(const scree_world *world, const scree_pair *pair, scree_pair_sums *sums) {
+  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  double half = 0.5 * world->time_step;
+  sums->dashpot += half * power_of(&pair->dashpot, a, b);
+  sums->tangential += half * power_of(&pair->tangential, a, b);
+  if (pair->wall)
+    sums->wall_work += half * (vec3_dot(pair->wrench.force, b->velocity) -
+                               vec3_dot(pair->wrench.torque_b, b->spin));
+}
+
+/* Bound on the relative speed of points near the contact: all lie within the smaller body. */
+static double relative_speed(const scree_world *world, const scree_pair *pair) {
+  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  vec3 between = vec3_sub(a->position, b->position), u;
+  double radius = world->bodies.particle[pair->a]->measures.bounding_radius;
+  u = vec3_sub(a->velocity, b->velocity);
+  if (pair->wall || radius <= world->bodies.particle[pair->b]->measures.bounding_radius) {
+    u = vec3_sub(u, vec3_cross(b->spin, between));
+  } else {
+    u = vec3_sub(u, vec3_cross(a->spin, between));
+    radius = world->bodies.particle[pair->b]->measures.bounding_radius;
+  }
+  /* list reach beyond the body: under twice the skin */
+  radius += 2 * world->options.skin / world->options.smoothing * pair->smoothing;
+  return vec3_norm(u) + radius * vec3_norm(vec3_sub(a->spin, b->spin));
+}
+
+static double bodies_path(const scree_world *world, const scree_pair *pair, double *travel) {
+  const scree_bodies *bodies = &world->bodies;
+  if (pair->wall) {
+    const scree_world_wall *wall = &world->walls.items[pair->b];
+    *travel = bodies->travel[pair->a] + wall->travel;
+    return bodies->path[pair->a] + wall->path;
+  }
+  *travel = bodies->travel[pair->a] + bodies->travel[pair->b];
+  return bodies->path[pair->a] + bodies->path[pair->b];
+}
+
+static bool still_asleep(const scree_world *world, scree_pair *pair) {
+  if (!pair->asleep) return false;
+  double travel, path = bodies_path(world, pair, &travel);
+  if (path + 2 * travel < pair->wake) return true;
+  pair->path += path - pair->asleep_since;
+  pair->asleep = false;
+  return false;
+}
+
+/* a in the frame of b; velocity and spin such that a's point at q moves with velocity + spin x q.
+ */
+static scree_frame relative_frame(const scree_frame *a, const scree_frame *b) {
+  scree_frame r;
+  mat3 transposed = mat3_transpose(&b->rotation);
+  r.rotation = mat3_mul(&transposed, &a->rotation);
+  r.position = mat3_tmul_vec(&b->rotation, vec3_sub(a->position, b->position));
+  r.spin = mat3_tmul_vec(&b->rotation, vec3_sub(a->spin, b->spin));
+  vec3 velocity = vec3_sub(vec3_sub(a->velocity, b->velocity),
+                           vec3_cross(a->spin, vec3_sub(a->position, b->position)));
+  r.velocity = mat3_tmul_vec(&b->rotation, velocity);
+  return r;
+}
+
+static bool wake_items(scree_pair *pair) {
+  double due = pair->path + 2 * pair->travel, next = INFINITY;
+  if (due < pair->next_item) return true;
+  size_t kept = 0;
+  for (size_t i = 0; i < pair->sleeping.count; i++) {
+    scree_sleeper sleeper = pair->sleeping.items[i];
+    if (due < sleeper.wake) {
+      next = fmin(next, sleeper.wake);
+      pair->sleeping.items[kept++] = sleeper;
+      continue;
+    }
+    scree_item item = {.kind = sleeper.kind, .a = sleeper.a, .b = sleeper.b};
+    if (!SCREE_PUSH(&pair->active, item)) return false;
+  }
+  pair->sleeping.count = kept;
+  pair->next_item = next;
+  return true;
+}
+
+/* Evaluates the awake items; those that cannot touch soon go to sleep. */
+static bool visit_items(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                        scree_scratch *scratch) {
+  double nap = least_sleep * pair->travel;
+  size_t kept = 0;
+  /* asleep items move only after all touches are found: touches point at anchors */
+  for (size_t i = 0; i < pair->active.count; i++) {
+    scree_item *item = &pair->active.items[i];
+    double gap = scree_item_touch(world, pair, item, relative, scratch);
+    item->gap = gap > nap && gap > 0 && !item->inside ? gap : 0;
+    kept += item->gap > 0;
+  }
+  return kept > 0;
+}
+
+static bool settle_items(scree_pair *pair) {
+  size_t kept = 0;
+  for (size_t i = 0; i < pair->active.count; i++) {
+    const scree_item *item = &pair->active.items[i];
+    if (item->gap > 0) {
+      scree_sleeper sleeper = {pair->path + item->gap, item->a, item->b, item->kind};
+      if (!SCREE_PUSH(&pair->sleeping, sleeper)) return false;
+      pair->next_item = fmin(pair->next_item, sleeper.wake);
+      continue;
+    }
+    if (kept != i) pair->active.items[kept] = *item;
+    kept++;
+  }
+  pair->active.count = kept;
+  return true;
+}
+
+static void fall_asleep(const scree_world *world, scree_pair *pair) {
+  if (pair->wall && vec3_norm2(world->walls.items[pair->b].frame.spin) > 0) return;
+  double travel;
+  pair->asleep_since = bodies_path(world, pair, &travel);
+  pair->wake = pair->asleep_since + fmin(pair->next_item, pair->list_end) - pair->path;
+  pair->asleep = true;
+}
+
+static void clear_results(scree_pair *pair) {
+  pair->touching = false;
+  pair->elastic = pair->tangential_elastic = pair->overlap = 0;
+  pair->contact_count = 0;
+}
+
+void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                         scree_pair_sums *sums) {
+  if (pair->touching) add_work(world, pair, sums);
+  if (still_asleep(world, pair)) return;
+  double speed = relative_speed(world, pair);
+  pair->travel = speed * world->time_step;
+  pair->path += pair->travel;
+  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  bool good = true;
+  scree_frame relative = relative_frame(a, b);
+  if (pair->path + 2 * pair->travel >= pair->list_end) {
+    good = scree_pair_list(world, pair, &relative, scratch);
+    pair->next_item = -INFINITY;
+  }
+  good = good && wake_items(pair);
+  scratch->touches.count = 0;
+  bool some_sleep = visit_items(world, pair, &relative, scratch);
+  clear_results(pair);
+  scree_pair_apply_law(world, pair, &scratch->touches, &relative);
+  if (some_sleep) good = good && settle_items(pair);
+  if (pair->active.count == 0) fall_asleep(world, pair);
+  if (!good || scratch->out_of_memory) sums->out_of_memory = true;
+  if (!pair->touching) return;
+  add_work(world, pair, sums);
+  if (!(pair->overlap <= sums->largest_overlap)) sums->largest_overlap = pair->overlap;
+  if (!(pair->overlap <= pair->limit) && !sums->beyond_limit) sums->beyond_limit = pair;
+}

@@ -1,0 +1,150 @@
+/* Time integration: symplectic Euler (leapfrog with velocities half a step behind) for the centres;
+ * for rotation the angular momentum L in space is the variable, so that it is conserved to
+ * rounding: L += tau dt,   q_h = q exp(dt/2 I^-1 R(q)^T L),   q = q exp(dt I^-1 R(q_h)^T L), a
+ * midpoint rule in the body's frame (compare Buss 2000, "Accurate and efficient simulation of
+ * rigid-body rotations", and Dullweber et al. 1997 for the splitting it stands beside). */
+#include "world/world.h"
+
+#include "base/parallel.h"
+
+enum { BODY_BLOCK = 128 };
+
+static const double travel_share = 0.25; /* of the overlap limit: most a body may move in a step */
+
+vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, vec3 momentum) {
+  vec3 local = mat3_tmul_vec(rotation, momentum), in = bodies->inertia[i];
+  return mat3_mul_vec(rotation, (vec3){local.x / in.x, local.y / in.y, local.z / in.z});
+}
+
+static vec3 local_spin(vec3 inertia, quat q, vec3 momentum) {
+  mat3 r = quat_to_mat3(q);
+  vec3 local = mat3_tmul_vec(&r, momentum);
+  return (vec3){local.x / inertia.x, local.y / inertia.y, local.z / inertia.z};
+}
+
+/* Forces in the fixed order of the pairs. */
+static void sum_forces(scree_world *world, size_t i) {
+  vec3 force = {0, 0, 0}, torque = {0, 0, 0};
+  for (size_t k = world->side_begin[i]; k < world->side_begin[i + 1]; k++) {
+    uint32_t side = world->sides.items[k];
+    const scree_pair *pair = world->pairs.items[side >> 1];
+    if (!pair->touching) continue;
+    const scree_wrench *w = &pair->wrench;
+    force = side & 1 ? vec3_sub(force, w->force) : vec3_add(force, w->force);
+    torque = vec3_add(torque, side & 1 ? w->torque_b : w->torque_a);
+  }
+  world->bodies.force[i] = force;
+  world->bodies.torque[i] = torque;
+}
+
+/* How far the body's points may move in the coming step. */
+static double coming_travel(const scree_world *world, size_t i) {
+  const scree_bodies *b = &world->bodies;
+  const scree_frame *frame = &b->frame[i];
+  double dt = world->time_step;
+  vec3 g = vec3_load(world->options.gravity);
+  vec3 v = vec3_mad(frame->velocity, vec3_mad(g, b->force[i], 1 / b->mass[i]), dt);
+  vec3 spin = scree_spin_of(b, i, &frame->rotation, vec3_mad(b->momentum[i], b->torque[i], dt));
+  return (vec3_norm(v) + vec3_norm(spin) * b->particle[i]->measures.bounding_radius) * dt;
+}
+
+static double travel_limit(const scree_world *world, size_t i) {
+  const scree_particle_measures *m = &world->bodies.particle[i]->measures;
+  double size = world->options.size > 0 ? world->options.size : m->size;
+  double limit =
+      fmin(world->options.overlap_limit * size, fmax(0.25 * m->thickness, 4 * m->rounding));
+  return travel_share * limit;
+}
+
+typedef struct gathering {
+  scree_world *world;
+  size_t *offender; /* by block: first body beyond its limit; SIZE_MAX for none */
+} gathering;
+
+static void gather_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  gathering *g = context;
+  g->offender[block] = SIZE_MAX;
+  for (size_t i = begin; i < end; i++) {
+    if (g->world->bodies.removed[i]) continue;
+    sum_forces(g->world, i);
+    double travel = coming_travel(g->world, i);
+    g->world->bodies.travel[i] = travel;
+    if (!(travel <= travel_limit(g->world, i)) && g->offender[block] == SIZE_MAX)
+      g->offender[block] = i;
+  }
+}
+
+bool scree_world_gather(scree_world *world) {
+  gathering g = {world, world->offenders};
+  scree_parallel_for(world->bodies.count, BODY_BLOCK, gather_block, &g);
+  size_t blocks = scree_block_count(world->bodies.count, BODY_BLOCK);
+  for (size_t block = 0; block < blocks; block++) {
+    size_t i = world->offenders[block];
+    if (i == SIZE_MAX) continue;
+    double travel = world->bodies.travel[i];
+    if (isfinite(travel))
+      scree_fail(&world->failure, SCREE_DIVERGED,
+                 "world: step %llu, body %zu would move %.3g m in one step of %.3g s; at most "
+                 "%.3g m (a quarter of the overlap limit)",
+                 (unsigned long long)world->step_count, i, travel, world->time_step,
+                 travel_limit(world, i));
+    else
+      scree_fail(&world->failure, SCREE_DIVERGED,
+                 "world: step %llu, body %zu: the forces on it are not finite",
+                 (unsigned long long)world->step_count, i);
+    return false;
+  }
+  return true;
+}
+
+static void advance_body(scree_world *world, size_t i) {
+  scree_bodies *b = &world->bodies;
+  scree_frame *frame = &b->frame[i];
+  double dt = world->time_step;
+  vec3 g = vec3_load(world->options.gravity);
+  frame->velocity = vec3_mad(frame->velocity, vec3_mad(g, b->force[i], 1 / b->mass[i]), dt);
+  frame->position = vec3_mad(frame->position, frame->velocity, dt);
+  vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
+  quat q = b->orientation[i];
+  vec3 first = local_spin(b->inertia[i], q, momentum);
+  quat half = quat_mul(q, quat_from_rotation_vector(vec3_scale(first, 0.5 * dt)));
+  vec3 second = local_spin(b->inertia[i], half, momentum);
+  q = quat_unit(quat_mul(q, quat_from_rotation_vector(vec3_scale(second, dt))));
+  b->momentum[i] = momentum;
+  b->orientation[i] = q;
+  frame->rotation = quat_to_mat3(q);
+  frame->spin = scree_spin_of(b, i, &frame->rotation, momentum);
+  b->path[i] += b->travel[i];
+}
+
+static void advance_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block;
+  (void)worker;
+  scree_world *world = context;
+  for (size_t i = begin; i < end; i++)
+    if (!world->bodies.removed[i]) advance_body(world, i);
+}
+
+static void advance_wall(scree_world_wall *wall, double dt) {
+  scree_frame *frame = &wall->frame;
+  frame->position = vec3_mad(frame->position, frame->velocity, dt);
+  if (vec3_norm2(frame->spin) > 0) {
+    quat turn = quat_from_rotation_vector(vec3_scale(frame->spin, dt));
+    wall->orientation = quat_unit(quat_mul(turn, wall->orientation));
+    frame->rotation = quat_to_mat3(wall->orientation);
+  }
+  wall->travel = vec3_norm(frame->velocity) * dt;
+  wall->path += wall->travel;
+}
+
+void scree_world_advance(scree_world *world) {
+  scree_parallel_for(world->bodies.count, BODY_BLOCK, advance_block, world);
+  for (size_t w = 0; w < world->walls.count; w++)
+    advance_wall(&world->walls.items[w], world->time_step);
+  if (world->options.floor_height == -INFINITY) return;
+  for (size_t i = 0; i < world->bodies.count; i++)
+    if (!world->bodies.removed[i] &&
+        world->bodies.frame[i].position.z < world->options.floor_height)
+      scree_world_remove_body(world, i);
+}

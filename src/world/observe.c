@@ -1,0 +1,123 @@
+/* Observables. Forces belong to positions x_n, velocities run half a step behind, so the state is
+ * brought back to the last force evaluation: x_n = x - v dt, v_n = v - (F/m + g) dt/2. */
+#include "world/world.h"
+
+#include "base/file.h"
+#include "base/sum.h"
+
+typedef struct energy_sums {
+  scree_sum kinetic, rotational, potential, rotation, momentum[3], angular[3];
+  double speed;
+} energy_sums;
+
+static void add_body(const scree_world *world, size_t i, double dt, energy_sums *sums) {
+  const scree_bodies *b = &world->bodies;
+  const scree_frame *frame = &b->frame[i];
+  vec3 g = vec3_load(world->options.gravity);
+  vec3 acceleration = vec3_mad(g, b->force[i], 1 / b->mass[i]);
+  vec3 v = vec3_mad(frame->velocity, acceleration, -0.5 * dt);
+  vec3 x = vec3_mad(frame->position, frame->velocity, -dt);
+  vec3 l = vec3_mad(b->momentum[i], b->torque[i], -0.5 * dt);
+  vec3 spin = scree_spin_of(b, i, &frame->rotation, l);
+  double m = b->mass[i];
+  scree_sum_add(&sums->kinetic, 0.5 * m * vec3_norm2(v));
+  scree_sum_add(&sums->rotational, 0.5 * vec3_dot(l, spin));
+  scree_sum_add(&sums->potential, -m * vec3_dot(g, x));
+  scree_sum_add(&sums->rotation, vec3_norm(spin));
+  vec3 p = vec3_scale(v, m), about_origin = vec3_add(l, vec3_cross(x, p));
+  const double ps[3] = {p.x, p.y, p.z}, ls[3] = {about_origin.x, about_origin.y, about_origin.z};
+  for (int k = 0; k < 3; k++) {
+    scree_sum_add(&sums->momentum[k], ps[k]);
+    scree_sum_add(&sums->angular[k], ls[k]);
+  }
+  sums->speed = fmax(sums->speed, vec3_norm(v));
+}
+
+static void add_pairs(const scree_world *world, scree_observation *o) {
+  scree_sum elastic = {0};
+  size_t body_sides = 0;
+  for (size_t k = 0; k < world->pairs.count; k++) {
+    const scree_pair *pair = world->pairs.items[k];
+    if (!pair->touching) continue;
+    scree_sum_add(&elastic, pair->elastic);
+    o->pair_count++;
+    o->contact_count += pair->contact_count;
+    body_sides += pair->wall ? 1 : 2;
+  }
+  o->elastic = scree_sum_value(elastic);
+  o->coordination = o->body_count ? (double)body_sides / (double)o->body_count : 0;
+}
+
+/* Elastic energy of the tangential springs is no dissipation yet. */
+static double tangential_elastic(const scree_world *world) {
+  scree_sum sum = {0};
+  for (size_t k = 0; k < world->pairs.count; k++) {
+    const scree_pair *pair = world->pairs.items[k];
+    if (pair->touching) scree_sum_add(&sum, pair->tangential_elastic);
+  }
+  return scree_sum_value(sum);
+}
+
+void scree_world_observe(const scree_world *world, scree_observation *observation) {
+  scree_observation o = {.time = world->time, .largest_overlap = world->largest_overlap};
+  double dt = world->step_count ? world->time_step : 0;
+  energy_sums sums = {0};
+  for (size_t i = 0; i < world->bodies.count; i++) {
+    if (world->bodies.removed[i]) {
+      o.removed_count++;
+      continue;
+    }
+    o.body_count++;
+    add_body(world, i, dt, &sums);
+  }
+  add_pairs(world, &o);
+  o.kinetic = scree_sum_value(sums.kinetic);
+  o.rotational = scree_sum_value(sums.rotational);
+  o.potential = scree_sum_value(sums.potential);
+  o.mean_rotation = o.body_count ? scree_sum_value(sums.rotation) / (double)o.body_count : 0;
+  o.highest_speed = sums.speed;
+  for (int k = 0; k < 3; k++) {
+    o.momentum[k] = scree_sum_value(sums.momentum[k]);
+    o.angular_momentum[k] = scree_sum_value(sums.angular[k]);
+  }
+  o.dissipated_dashpot = -world->work_dashpot;
+  o.dissipated_friction = -world->work_tangential - tangential_elastic(world);
+  o.wall_work = world->wall_work;
+  *observation = o;
+}
+
+/* ---- hash ---- */
+
+static void mix(scree_checksum *hash, const void *bytes, size_t count) {
+  struct {
+    scree_checksum before, now;
+  } both = {*hash, scree_checksum_of(bytes, count)};
+  *hash = scree_checksum_of(&both, sizeof both);
+}
+
+scree_checksum scree_world_hash(const scree_world *world) {
+  scree_checksum hash = {0};
+  const scree_bodies *b = &world->bodies;
+  mix(&hash, &world->time, sizeof world->time);
+  mix(&hash, &world->step_count, sizeof world->step_count);
+  for (size_t i = 0; i < b->count; i++) {
+    if (b->removed[i]) continue;
+    const vec3 vectors[3] = {b->frame[i].position, b->frame[i].velocity, b->momentum[i]};
+    mix(&hash, vectors, sizeof vectors);
+    mix(&hash, &b->orientation[i], sizeof b->orientation[i]);
+  }
+  for (size_t k = 0; k < world->pairs.count; k++) {
+    const scree_pair *pair = world->pairs.items[k];
+    for (size_t i = 0; i < pair->active.count; i++) {
+      const scree_item *item = &pair->active.items[i];
+      const uint32_t names[5] = {pair->a, pair->b, item->kind, item->a, item->b};
+      mix(&hash, names, sizeof names);
+      for (int j = 0; j < SCREE_ANCHORS; j++) {
+        if (item->anchor[j].share <= 0) continue;
+        mix(&hash, &item->anchor[j].stretch, sizeof item->anchor[j].stretch);
+        mix(&hash, &item->anchor[j].share, sizeof item->anchor[j].share);
+      }
+    }
+  }
+  return hash;
+}

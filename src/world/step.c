@@ -1,0 +1,134 @@
+/* The step: pairs, forces, sums, advance. Pairs are evaluated in blocks of the sorted list; what a
+ * block adds up is combined in block order, and every body sums its pairs in list order, so the
+ * result does not depend on the threads. */
+#include "world/world.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/parallel.h"
+#include "base/progress.h"
+
+#include <string.h>
+
+enum { PAIR_BLOCK = 32 };
+
+static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  scree_world *world = context;
+  scree_pair_sums sums = {0};
+  for (size_t k = begin; k < end; k++)
+    scree_pair_evaluate(world, world->pairs.items[k], &world->scratch[worker], &sums);
+  world->sums.items[block] = sums;
+}
+
+static scree_status describe_overlap(scree_world *world, const scree_pair *pair) {
+  return scree_fail(&world->failure, SCREE_DIVERGED,
+                    "world: step %llu, body %u overlaps %s %u by %.3g m; at most %.3g m",
+                    (unsigned long long)world->step_count, pair->a, pair->wall ? "wall" : "body",
+                    pair->b, pair->overlap, pair->limit);
+}
+
+static scree_status combine_sums(scree_world *world, size_t blocks) {
+  world->largest_overlap = 0;
+  for (size_t block = 0; block < blocks; block++) {
+    const scree_pair_sums *sums = &world->sums.items[block];
+    world->work_dashpot += sums->dashpot;
+    world->work_tangential += sums->tangential;
+    world->wall_work += sums->wall_work;
+    world->largest_overlap = fmax(world->largest_overlap, sums->largest_overlap);
+    if (sums->out_of_memory)
+      return scree_fail_memory(&world->failure, 0, "contact features of a pair");
+  }
+  for (size_t block = 0; block < blocks; block++)
+    if (world->sums.items[block].beyond_limit)
+      return describe_overlap(world, world->sums.items[block].beyond_limit);
+  return SCREE_OK;
+}
+
+static scree_status reserve_blocks(scree_world *world, scree_error *error) {
+  size_t blocks = scree_block_count(world->pairs.count, PAIR_BLOCK);
+  if (!SCREE_RESERVE(&world->sums, blocks))
+    return scree_fail_memory(error, blocks * sizeof *world->sums.items, "sums");
+  int workers = scree_worker_count();
+  if (workers <= world->scratch_count) return SCREE_OK;
+  scree_scratch *scratch = scree_resize(world->scratch, (size_t)workers, sizeof *scratch);
+  if (!scratch) return scree_fail_memory(error, (size_t)workers * sizeof *scratch, "scratch");
+  memset(scratch + world->scratch_count, 0,
+         (size_t)(workers - world->scratch_count) * sizeof *scratch);
+  world->scratch = scratch;
+  world->scratch_count = workers;
+  return SCREE_OK;
+}
+
+static void sum_wall_forces(scree_world *world) {
+  for (size_t w = 0; w < world->walls.count; w++)
+    world->walls.items[w].force = world->walls.items[w].torque = (vec3){0, 0, 0};
+  for (size_t k = 0; k < world->pairs.count; k++) {
+    const scree_pair *pair = world->pairs.items[k];
+    if (!pair->wall || !pair->touching) continue;
+    scree_world_wall *wall = &world->walls.items[pair->b];
+    wall->force = vec3_sub(wall->force, pair->wrench.force);
+    wall->torque = vec3_add(wall->torque, pair->wrench.torque_b);
+  }
+}
+
+static scree_status one_step(scree_world *world) {
+  scree_timings *timings = &world->timings;
+  double start = scree_now();
+  scree_status status = scree_broad_update(world, &world->failure);
+  if (!status) status = reserve_blocks(world, &world->failure);
+  if (status) return status;
+  double after_broad = scree_now();
+  scree_parallel_for(world->pairs.count, PAIR_BLOCK, evaluate_block, world);
+  status = combine_sums(world, scree_block_count(world->pairs.count, PAIR_BLOCK));
+  double after_contacts = scree_now();
+  if (!status && !scree_world_gather(world)) status = world->failure.status;
+  if (!status) {
+    scree_world_advance(world);
+    world->time += world->time_step;
+    world->step_count++;
+  }
+  double end = scree_now();
+  timings->broad += after_broad - start;
+  timings->contacts += after_contacts - after_broad;
+  timings->bodies += end - after_contacts;
+  timings->total += end - start;
+  timings->steps++;
+  timings->pair_evaluations += world->pairs.count;
+  return status;
+}
+
+static scree_status check_time_step(scree_world *world, scree_error *error) {
+  if (!world->time_step_stale) return SCREE_OK;
+  world->time_step = scree_world_choose_time_step(world, NULL);
+  world->time_step_stale = false;
+  if (!(world->options.time_step > 0)) return SCREE_OK;
+  scree_world_options automatic = world->options;
+  world->options.time_step = 0;
+  double coarsest =
+      scree_world_choose_time_step(world, NULL) * world->options.steps_per_contact / 15;
+  world->options = automatic;
+  if (world->bodies.count == 0 || world->time_step <= coarsest * (1 + 1e-12)) return SCREE_OK;
+  world->time_step_stale = true;
+  return scree_fail(error, SCREE_BAD_ARGUMENT,
+                    "world: a time step of %.4g s is too long for these bodies: at most %.4g s "
+                    "(15 per contact)",
+                    world->time_step, coarsest);
+}
+
+scree_status scree_world_step(scree_world *world, size_t step_count, scree_error *error) {
+  if (world->diverged) {
+    if (error) *error = world->failure;
+    return world->failure.status;
+  }
+  scree_status status = check_time_step(world, error);
+  if (status) return status;
+  for (size_t k = 0; k < step_count; k++) {
+    status = one_step(world);
+    if (status == SCREE_OK) continue;
+    world->diverged = true;
+    if (error) *error = world->failure;
+    return status;
+  }
+  sum_wall_forces(world);
+  return SCREE_OK;
+}

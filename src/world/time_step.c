@@ -1,0 +1,95 @@
+/* Stiffness and time step.
+ *
+ * Rocky's rule: K = E L of each side, in series (physics of the paper's engine). The time step is a
+ * fraction of the loading half of the shortest contact: dt = (pi/2) sqrt(m/K)/N with the reduced
+ * mass m, over all pairs of
+ * kinds of body and of kind of body and wall. A hit on a corner feels an effective mass up to seven
+ * times smaller than m, which N = 15 still resolves. */
+#include "world/world.h"
+
+static const double pi = 3.14159265358979323846;
+
+double scree_pair_stiffness(const scree_world *world, size_t material_a, size_t material_b,
+                            double size) {
+  double ka = world->materials[material_a].stiffness * size,
+         kb = world->materials[material_b].stiffness * size;
+  return world->options.stiffness_factor * ka * kb / (ka + kb);
+}
+
+/* Bodies of one particle and material are one kind. */
+typedef struct body_kind {
+  const scree_particle *particle;
+  size_t material, body;
+} body_kind;
+
+enum { MOST_KINDS = 256 };
+
+static double size_of(const scree_world *world, size_t body) {
+  return world->options.size > 0 ? world->options.size
+                                 : world->bodies.particle[body]->measures.size;
+}
+
+static size_t list_kinds(const scree_world *world, body_kind *kinds) {
+  size_t count = 0;
+  const scree_bodies *bodies = &world->bodies;
+  for (size_t i = 0; i < bodies->count; i++) {
+    if (bodies->removed[i]) continue;
+    size_t k = 0;
+    while (k < count &&
+           (kinds[k].particle != bodies->particle[i] || kinds[k].material != bodies->material[i]))
+      k++;
+    if (k < count) continue;
+    if (count < MOST_KINDS) {
+      kinds[count++] = (body_kind){bodies->particle[i], bodies->material[i], i};
+      continue;
+    }
+    /* too many kinds to pair: keep the lightest per stiffness in the last place */
+    const body_kind *last = &kinds[MOST_KINDS - 1];
+    double ratio = bodies->mass[i] / size_of(world, i),
+           kept = bodies->mass[last->body] / size_of(world, last->body);
+    if (ratio < kept)
+      kinds[MOST_KINDS - 1] = (body_kind){bodies->particle[i], bodies->material[i], i};
+  }
+  return count;
+}
+
+double scree_world_choose_time_step(const scree_world *world, char reason[256]) {
+  body_kind kinds[MOST_KINDS];
+  size_t count = list_kinds(world, kinds);
+  const scree_bodies *bodies = &world->bodies;
+  double best = INFINITY, mass = 0, stiffness = 0;
+  size_t first = 0, second = 0;
+  bool wall = false;
+  for (size_t i = 0; i < count; i++) {
+    double mi = bodies->mass[kinds[i].body], li = size_of(world, kinds[i].body);
+    for (size_t j = i; j < count; j++) {
+      double mj = bodies->mass[kinds[j].body], m = mi * mj / (mi + mj);
+      double k = scree_pair_stiffness(world, kinds[i].material, kinds[j].material,
+                                      fmin(li, size_of(world, kinds[j].body)));
+      if (m / k < best)
+        best = m / k, mass = m, stiffness = k, first = kinds[i].body, second = kinds[j].body,
+        wall = false;
+    }
+    for (size_t w = 0; w < world->walls.count; w++) {
+      double k =
+          scree_pair_stiffness(world, kinds[i].material, world->walls.items[w].given.material, li);
+      if (mi / k < best)
+        best = mi / k, mass = mi, stiffness = k, first = kinds[i].body, second = w, wall = true;
+    }
+  }
+  const scree_world_options *o = &world->options;
+  if (count == 0) {
+    double dt = o->time_step > 0 ? o->time_step : 1e-5;
+    if (reason) snprintf(reason, 256, "%.4g s: there are no bodies yet", dt);
+    return dt;
+  }
+  double contact = 0.5 * pi * sqrt(best);
+  double dt = o->time_step > 0 ? o->time_step : contact / o->steps_per_contact;
+  if (reason)
+    snprintf(reason, 256,
+             "%.4g s: %s, %.3g steps per quarter period of bodies %zu and %s %zu "
+             "(m* = %.3g kg, K = %.3g N/m)",
+             dt, o->time_step > 0 ? "as given" : "automatic", contact / dt, first,
+             wall ? "wall" : "body", second, mass, stiffness);
+  return dt;
+}

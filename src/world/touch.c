@@ -1,0 +1,362 @@
+/* From features to overlaps: for one item the signed overlap, the normal, the contact point.
+ *
+ * Point and surface. The overlap is the sum of the roundings less the signed distance. While the
+ * cores are apart by more than half the roundings, the closest point is exact and its direction is
+ * kept as the reference: the way out. Deeper, only faces that look that way count (within about 80
+ * degrees), and the depth is measured from their planes; a point sideways of such a face fades out
+ * over half the roundings. Without this, plates that hit each other squarely and fast would be
+ * pushed out sideways, at corners where the nearest face is the side.
+ * In a notch up to two further faces count, those onto which the point projects and whose normals
+ * differ by 15 (weight 0) to 25 degrees (weight 1): a body in a V needs both to rest.
+ *
+ * Edge and edge. Closest points of the segments; while apart, direction and distance are theirs.
+ * Deeper, the crossing normal signed by the reference. An edge pair that lies inside at first sight
+ * counts only after it has been seen apart ("armed"). Nearly parallel edges have no crossing: their
+ * ends, which are points against faces, stand for them; the weight fades below sin = 4e-3.
+ *
+ * Cached faces: the nearest faces of a point stay the nearest while its path is under half the
+ * distance to the next one. */
+#include "world/world.h"
+
+#include "base/array.h"
+#include "particle/closest.h"
+
+static const double way_out_cosine = 0.15; /* 81 degrees: thin wedges still count */
+static const double notch_cosines[2] = {0.9659258, 0.9063078}; /* 15 and 25 degrees */
+static const double parallel_sines[2] = {1e-3, 4e-3};
+static const double crossing_cosines[2] = {0.3, 0.6}; /* crossing normal against the reference */
+
+typedef struct surface_contact {
+  vec3 closest, normal;
+  double distance, weight;
+} surface_contact;
+
+static double smooth_step(double from, double to, double x) {
+  double t = (x - from) / (to - from);
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  return t * t * (3 - 2 * t);
+}
+
+static void push_touch(scree_scratch *scratch, const scree_touch *touch) {
+  scree_touch_list *list = &scratch->touches;
+  if (!SCREE_PUSH(list, *touch)) scratch->out_of_memory = true;
+}
+
+/* A touch between spheres or rounded surfaces of radius `above` (a) and `below` (b): normal n from
+ * the point c of b, the centre of a's rounding being `distance` away along n. */
+static double add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
+                        const double values[4], scree_anchor *anchor) {
+  double distance = values[0], above = values[1], below = values[2], weight = values[3];
+  double overlap = above + below - distance, gap = -overlap - pair->smoothing;
+  if (gap >= 0) {
+    anchor->share = 0;
+    return gap;
+  }
+  scree_touch touch = {.at = vec3_mad(c, n, 0.5 * (distance - above + below)),
+                       .normal = n,
+                       .overlap = overlap,
+                       .weight = weight,
+                       .anchor = anchor};
+  if (weight > 0)
+    push_touch(scratch, &touch);
+  else
+    anchor->share = 0;
+  return gap;
+}
+
+/* ---- points against surfaces ---- */
+
+static void refresh_faces(const scree_particle *surface, vec3 p, scree_item *item, double path,
+                          double slack) {
+  scree_near near;
+  scree_closest_faces(surface, p, INFINITY, slack, &near);
+  int count = near.count < SCREE_CACHED_FACES ? near.count : SCREE_CACHED_FACES;
+  double next = near.count > count ? near.distance[count] : near.next;
+  for (int k = 0; k < count; k++) item->face[k] = near.face[k];
+  item->face_count = (uint32_t)count;
+  item->valid = path + 0.5 * (next - near.distance[0]);
+}
+
+static vec3 outward_sign(const scree_particle *surface, uint32_t face, int region) {
+  if (region == SCREE_REGION_INSIDE) return surface->faces[face].normal;
+  const scree_face_signs *signs = &surface->face_signs[face];
+  return region >= SCREE_REGION_CORNER ? signs->corner[region - SCREE_REGION_CORNER]
+                                       : signs->edge[region - SCREE_REGION_EDGE];
+}
+
+/* The nearest face that looks along `way`, and its closest point; false for none within reach. */
+static bool face_along(const scree_particle *surface, vec3 p, vec3 way, double reach,
+                       surface_contact *contact, uint32_t *found) {
+  const scree_tree_node *nodes = surface->face_tree.nodes;
+  uint32_t stack[SCREE_TREE_STACK];
+  int depth = 0;
+  double best2 = reach * reach;
+  bool any = false;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_tree_node *node = &nodes[stack[--depth]];
+    if (scree_box_distance2(&node->box, p) > best2) continue;
+    if (node->count == 0) {
+      stack[depth++] = node->first + 1;
+      stack[depth++] = node->first;
+      continue;
+    }
+    for (uint32_t k = 0; k < node->count; k++) {
+      uint32_t f = surface->face_tree.order[node->first + k];
+      const scree_face *face = &surface->faces[f];
+      if (vec3_dot(face->normal, way) < way_out_cosine) continue;
+      int region;
+      vec3 c = scree_closest_on_face(face, p, &region);
+      double d2 = vec3_norm2(vec3_sub(p, c));
+      if (d2 >= best2) continue;
+      best2 = d2;
+      contact->closest = c;
+      contact->normal = face->normal;
+      *found = f;
+      any = true;
+    }
+  }
+  return any;
+}
+
+/* Below half the roundings: depth along the reference. */
+static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
+                         const scree_pair *pair, surface_contact *contact) {
+  uint32_t face;
+  double half = 0.5 * pair->reach;
+  if (!face_along(surface, p, item->reference, 1.5 * pair->limit + pair->reach, contact, &face))
+    return false;
+  vec3 offset = vec3_sub(p, contact->closest);
+  double height = vec3_dot(offset, contact->normal);
+  contact->weight = 1;
+  if (height > 0) {
+    contact->distance = vec3_norm(offset);
+    if (contact->distance > 1e-9 * half)
+      contact->normal = vec3_scale(offset, 1 / contact->distance);
+    return true;
+  }
+  double sideways = vec3_norm(vec3_mad(offset, contact->normal, -height));
+  contact->distance = height;
+  contact->closest = vec3_mad(p, contact->normal, -height);
+  contact->weight = 1 - smooth_step(0, half, sideways);
+  return true;
+}
+
+/* Further faces of a notch, onto which the point projects. */
+static int notch_contacts(const scree_particle *surface, vec3 p, const scree_item *item,
+                          uint32_t nearest, surface_contact contacts[SCREE_ANCHORS]) {
+  int count = 1;
+  for (uint32_t k = 0; k < item->face_count && count < SCREE_ANCHORS; k++) {
+    if (k == nearest) continue;
+    const scree_face *face = &surface->faces[item->face[k]];
+    double alike = vec3_dot(face->normal, contacts[0].normal);
+    if (alike >= notch_cosines[0]) continue;
+    int region;
+    vec3 c = scree_closest_on_face(face, p, &region);
+    double d = vec3_dot(vec3_sub(p, c), face->normal);
+    if (region != SCREE_REGION_INSIDE || d <= 0) continue;
+    double weight = 1 - smooth_step(notch_cosines[1], notch_cosines[0], alike);
+    contacts[count++] = (surface_contact){c, face->normal, d, weight};
+  }
+  return count;
+}
+
+/* Contacts of the point p with the surface, the nearest first. */
+static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *item,
+                            const scree_pair *pair, surface_contact contacts[SCREE_ANCHORS]) {
+  uint32_t nearest = 0;
+  int nearest_region = 0;
+  double best2 = INFINITY;
+  for (uint32_t k = 0; k < item->face_count; k++) {
+    int region;
+    vec3 c = scree_closest_on_face(&surface->faces[item->face[k]], p, &region);
+    double d2 = vec3_norm2(vec3_sub(p, c));
+    if (d2 >= best2) continue;
+    best2 = d2;
+    nearest = k;
+    nearest_region = region;
+    contacts[0].closest = c;
+  }
+  vec3 offset = vec3_sub(p, contacts[0].closest);
+  vec3 outward = outward_sign(surface, item->face[nearest], nearest_region);
+  double d = sqrt(best2);
+  bool outside = vec3_dot(offset, outward) >= 0;
+  contacts[0].weight = 1;
+  if (!item->has_reference && !outside && surface->measures.volume > 0)
+    outside = !scree_is_inside(surface, p); /* a fold may lie: ask the whole surface */
+  bool deep = !outside || d < 0.5 * pair->reach;
+  if (deep && item->has_reference && deep_contact(surface, p, item, pair, &contacts[0])) return 1;
+  contacts[0].distance = outside ? d : -d;
+  contacts[0].normal = d > 1e-12 ? vec3_scale(offset, (outside ? 1 : -1) / d) : vec3_unit(outward);
+  if (!deep || !item->has_reference) {
+    item->reference = contacts[0].normal;
+    item->has_reference = true;
+  }
+  return deep ? 1 : notch_contacts(surface, p, item, nearest, contacts);
+}
+
+/* Gives each contact the memory of the last step whose normal is most like its own. */
+static void match_anchors(scree_item *item, const vec3 *normals, int count) {
+  scree_anchor old[SCREE_ANCHORS];
+  bool used[SCREE_ANCHORS] = {false};
+  for (int k = 0; k < SCREE_ANCHORS; k++) {
+    old[k] = item->anchor[k];
+    item->anchor[k] = (scree_anchor){0};
+  }
+  for (int j = 0; j < count; j++) {
+    int best = -1;
+    double best_dot = 0.5;
+    for (int k = 0; k < SCREE_ANCHORS; k++) {
+      if (used[k] || old[k].share <= 0) continue;
+      double dot = vec3_dot(old[k].normal, normals[j]);
+      if (dot > best_dot) best_dot = dot, best = k;
+    }
+    if (best < 0) continue;
+    used[best] = true;
+    item->anchor[j] = old[best];
+  }
+}
+
+static double touch_surface(const scree_world *world, const scree_pair *pair, scree_item *item,
+                            const scree_frame *relative, scree_scratch *scratch) {
+  bool forth = item->kind == SCREE_ITEM_POINT_FACE;
+  const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
+  const scree_particle *from = forth ? a : b, *surface = forth ? b : a;
+  uint32_t point = forth ? item->a : item->b;
+  vec3 p = from->points[point];
+  p = forth ? vec3_add(mat3_mul_vec(&relative->rotation, p), relative->position)
+            : mat3_tmul_vec(&relative->rotation, vec3_sub(p, relative->position));
+  if (item->face_count == 0 || pair->path > item->valid) {
+    refresh_faces(surface, p, item, pair->path, fmax(0.25 * pair->reach, 8 * pair->travel));
+    scratch->closest_queries++;
+  }
+  surface_contact contacts[SCREE_ANCHORS];
+  int count = surface_contacts(surface, p, item, pair, contacts);
+  vec3 at[SCREE_ANCHORS], normals[SCREE_ANCHORS];
+  for (int k = 0; k < count; k++) {
+    at[k] = contacts[k].closest;
+    normals[k] = contacts[k].normal;
+    if (forth) continue;
+    /* seen from b: from the point towards a's surface */
+    at[k] = vec3_add(mat3_mul_vec(&relative->rotation, p), relative->position);
+    normals[k] = vec3_neg(mat3_mul_vec(&relative->rotation, normals[k]));
+  }
+  match_anchors(item, normals, count);
+  double gap = INFINITY, surface_radius = surface->measures.rounding,
+         point_radius = from->point_radii[point];
+  for (int k = 0; k < count; k++) {
+    const double values[4] = {contacts[k].distance, forth ? point_radius : surface_radius,
+                              forth ? surface_radius : point_radius, contacts[k].weight};
+    gap = fmin(gap, add_touch(scratch, pair, at[k], normals[k], values, &item->anchor[k]));
+  }
+  return gap;
+}
+
+/* ---- edges against edges ---- */
+
+/* Signed distance of an armed pair below half the roundings; weight 0 where it has no say. */
+static void deep_crossing(const scree_pair *pair, scree_item *item, vec3 crossing, vec3 offset,
+                          surface_contact *contact) {
+  double toward = vec3_dot(crossing, item->reference);
+  vec3 n = toward < 0 ? vec3_neg(crossing) : crossing;
+  contact->normal = n;
+  contact->distance = vec3_dot(offset, n);
+  contact->weight *= smooth_step(crossing_cosines[0], crossing_cosines[1], fabs(toward));
+  item->inside = contact->distance < 0.5 * pair->reach;
+}
+
+static double touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
+                          const scree_frame *relative, scree_scratch *scratch) {
+  const scree_edge *ea = &world->bodies.particle[pair->a]->edges[item->a],
+                   *eb = &scree_pair_shape_b(world, pair)->edges[item->b];
+  const mat3 *r = &relative->rotation;
+  vec3 p0 = vec3_add(mat3_mul_vec(r, ea->start), relative->position),
+       p1 = vec3_add(mat3_mul_vec(r, ea->end), relative->position);
+  double s, t;
+  scree_closest_on_segments(p0, p1, eb->start, eb->end, &s, &t);
+  vec3 on_a = vec3_lerp(p0, p1, s), on_b = vec3_lerp(eb->start, eb->end, t),
+       offset = vec3_sub(on_a, on_b);
+  double d = vec3_norm(offset), far = d - pair->reach - pair->smoothing;
+  if (far >= 0 && !item->inside) {
+    item->reference = vec3_scale(offset, 1 / d);
+    item->has_reference = true;
+    item->anchor[0].share = 0;
+    return far;
+  }
+  vec3 ua = vec3_unit(vec3_sub(p1, p0)), ub = vec3_unit(vec3_sub(eb->end, eb->start)),
+       crossing = vec3_cross(ua, ub);
+  double sine = vec3_norm(crossing);
+  bool interior = s > 0 && s < 1 && t > 0 && t < 1;
+  if (!interior || sine <= parallel_sines[0]) { /* the ends are points, and speak for themselves */
+    if (d > 0.5 * pair->reach && !pair->touching) item->inside = false;
+    if (d > 0.5 * pair->reach && !item->inside) {
+      item->reference = vec3_scale(offset, 1 / d);
+      item->has_reference = true;
+    }
+    item->anchor[0].share = 0;
+    return fmin(far, 0);
+  }
+  surface_contact contact = {on_b, vec3_scale(offset, 1 / fmax(d, 1e-300)), d,
+                             smooth_step(parallel_sines[0], parallel_sines[1], sine)};
+  if (item->inside || d < 0.5 * pair->reach) {
+    if (!item->has_reference) return 0; /* not armed */
+    deep_crossing(pair, item, vec3_scale(crossing, 1 / sine), offset, &contact);
+  }
+  if (!item->inside) {
+    item->reference = contact.normal;
+    item->has_reference = true;
+  }
+  vec3 na = mat3_mul_vec(r, vec3_add(ea->normal1, ea->normal2)),
+       nb = vec3_add(eb->normal1, eb->normal2);
+  if (vec3_dot(na, contact.normal) >= 0 || vec3_dot(nb, contact.normal) <= 0) {
+    item->anchor[0].share = 0; /* seen through one of the bodies */
+    return fmin(far, 0);
+  }
+  /* near the ends their points take over */
+  double length_a = vec3_distance(p0, p1), length_b = vec3_distance(eb->start, eb->end);
+  double end = fmin(fmin(s, 1 - s) * length_a, fmin(t, 1 - t) * length_b);
+  contact.weight *= smooth_step(0, 0.1 * pair->reach, end);
+  double rounding_a = world->bodies.particle[pair->a]->measures.rounding;
+  const double values[4] = {contact.distance, rounding_a, pair->reach - rounding_a, contact.weight};
+  return add_touch(scratch, pair, contact.closest, contact.normal, values, &item->anchor[0]);
+}
+
+/* ---- spheres and analytic walls ---- */
+
+static double touch_spheres(const scree_world *world, const scree_pair *pair, scree_item *item,
+                            const scree_frame *relative, scree_scratch *scratch) {
+  const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
+  vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[item->a]), relative->position);
+  vec3 q = b->points[item->b], offset = vec3_sub(p, q);
+  double d = vec3_norm(offset);
+  vec3 n = d > 0 ? vec3_scale(offset, 1 / d) : (vec3){0, 0, 1};
+  const double values[4] = {d, a->point_radii[item->a], b->point_radii[item->b], 1};
+  return add_touch(scratch, pair, q, n, values, &item->anchor[0]);
+}
+
+static double touch_wall(const scree_world *world, const scree_pair *pair, scree_item *item,
+                         const scree_frame *relative, scree_scratch *scratch) {
+  const scree_particle *a = world->bodies.particle[pair->a];
+  vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[item->a]), relative->position);
+  vec3 c, n;
+  double d = scree_wall_distance(&world->walls.items[pair->b], p, &c, &n);
+  const double values[4] = {d, a->point_radii[item->a], 0, 1};
+  return add_touch(scratch, pair, c, n, values, &item->anchor[0]);
+}
+
+double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_item *item,
+                        const scree_frame *relative, scree_scratch *scratch) {
+  scratch->item_evaluations++;
+  switch ((scree_item_kind)item->kind) {
+  case SCREE_ITEM_POINT_FACE:
+  case SCREE_ITEM_FACE_POINT:
+    return touch_surface(world, pair, item, relative, scratch);
+  case SCREE_ITEM_EDGE_EDGE:
+    return touch_edges(world, pair, item, relative, scratch);
+  case SCREE_ITEM_POINT_POINT:
+    return touch_spheres(world, pair, item, relative, scratch);
+  case SCREE_ITEM_POINT_WALL:
+    return touch_wall(world, pair, item, relative, scratch);
+  }
+  return INFINITY;
+}

@@ -1,0 +1,58 @@
+/* Contacts for reports: every pair is evaluated once more at the present positions on a copy of its
+ * memory, so that looking changes nothing. */
+#include "world/world.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+/* The pair with arrays of its own; false when memory is out. */
+static bool copy_pair(const scree_pair *pair, scree_pair *copy) {
+  *copy = *pair;
+  copy->active.items = scree_alloc(pair->active.count, sizeof *copy->active.items);
+  copy->sleeping.items = scree_alloc(pair->sleeping.count, sizeof *copy->sleeping.items);
+  copy->active.capacity = pair->active.count;
+  copy->sleeping.capacity = pair->sleeping.count;
+  if (!copy->active.items || !copy->sleeping.items) return false;
+  if (pair->active.count)
+    memcpy(copy->active.items, pair->active.items, pair->active.count * sizeof *copy->active.items);
+  if (pair->sleeping.count)
+    memcpy(copy->sleeping.items, pair->sleeping.items,
+           pair->sleeping.count * sizeof *copy->sleeping.items);
+  return true;
+}
+
+static bool report(const scree_world *world, const scree_pair *pair, const scree_touch *touch,
+                   scree_contact_visitor *visit, void *context) {
+  const scree_frame *b = scree_pair_frame_b(world, pair);
+  scree_contact contact = {.body = pair->a,
+                           .other = pair->b,
+                           .wall = pair->wall,
+                           .overlap = touch->overlap,
+                           .share = touch->share};
+  vec3_store(contact.position, vec3_add(mat3_mul_vec(&b->rotation, touch->at), b->position));
+  vec3_store(contact.normal, mat3_mul_vec(&b->rotation, touch->normal));
+  vec3_store(contact.force, mat3_mul_vec(&b->rotation, touch->force));
+  return visit(context, &contact);
+}
+
+scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_visitor *visit,
+                                        void *context, scree_error *error) {
+  scree_scratch scratch = {0};
+  bool good = true, going = true;
+  for (size_t k = 0; k < world->pairs.count && good && going; k++) {
+    if (!world->pairs.items[k]->touching) continue;
+    scree_pair copy;
+    scree_pair_sums sums = {0};
+    good = copy_pair(world->pairs.items[k], &copy);
+    if (good) scree_pair_evaluate(world, &copy, &scratch, &sums);
+    good = good && !sums.out_of_memory;
+    for (size_t i = 0; i < scratch.touches.count && good && going && copy.touching; i++)
+      if (scratch.touches.items[i].share > 0)
+        going = report(world, &copy, &scratch.touches.items[i], visit, context);
+    scree_free(copy.active.items);
+    scree_free(copy.sleeping.items);
+  }
+  scree_free(scratch.touches.items);
+  return good ? SCREE_OK : scree_fail_memory(error, 0, "contacts");
+}

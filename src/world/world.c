@@ -1,0 +1,261 @@
+/* Making worlds and what is in them. */
+#include "world/world.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/parallel.h"
+
+#include <string.h>
+
+scree_world_options scree_default_world_options(void) {
+  return (scree_world_options){
+      .gravity = {0, 0, -9.81},
+      .law = SCREE_LAW_LINEAR,
+      .steps_per_contact = 20,
+      .stiffness_factor = 1,
+      .tangential_ratio = 1,
+      .smoothing = 4e-5,
+      .sharing = 0.1,
+      .overlap_limit = 0.04,
+      .skin = 0.02,
+      .floor_height = -INFINITY,
+  };
+}
+
+static scree_status check_range(const char *name, double value, double low, double high,
+                                scree_error *error) {
+  if (value >= low && value <= high) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT, "world: %s is %g; from %g to %g", name, value, low,
+                    high);
+}
+
+static scree_status check_options(const scree_world_options *o, scree_error *error) {
+  const struct {
+    const char *name;
+    double value, low, high;
+  } ranges[] = {
+      {"gravity x", o->gravity[0], -1e6, 1e6},
+      {"gravity y", o->gravity[1], -1e6, 1e6},
+      {"gravity z", o->gravity[2], -1e6, 1e6},
+      {"steps_per_contact", o->steps_per_contact, 15, 1e6},
+      {"time_step", o->time_step, 0, 1},
+      {"stiffness_factor", o->stiffness_factor, 1e-9, 1e9},
+      {"tangential_ratio", o->tangential_ratio, 1e-6, 1},
+      {"size", o->size, 0, 1e6},
+      {"smoothing", o->smoothing, 1e-9, 1e-2},
+      {"sharing", o->sharing, 0, 0.5},
+      {"overlap_limit", o->overlap_limit, 1e-6, 0.5},
+      {"skin", o->skin, 1e-4, 1},
+      {"floor_height", o->floor_height, -INFINITY, INFINITY},
+  };
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < sizeof ranges / sizeof *ranges && !status; i++)
+    status = check_range(ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high, error);
+  if (!status && o->law != SCREE_LAW_LINEAR && o->law != SCREE_LAW_HYSTERETIC)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: law number %d is none", (int)o->law);
+  return status;
+}
+
+scree_status scree_world_create(const scree_world_options *options, scree_world **world,
+                                scree_error *error) {
+  scree_world_options o = options ? *options : scree_default_world_options();
+  scree_status status = check_options(&o, error);
+  if (status) return status;
+  scree_world *made = scree_alloc_zero(1, sizeof *made);
+  if (!made) return scree_fail_memory(error, sizeof *made, "a world");
+  made->options = o;
+  made->pairs_stale = true;
+  made->time_step_stale = true;
+  *world = made;
+  return SCREE_OK;
+}
+
+static void free_bodies(scree_bodies *b) {
+  for (size_t i = 0; i < b->count; i++) scree_particle_free(b->particle[i]);
+  void *arrays[] = {b->frame, b->orientation, b->momentum, b->inertia,  b->force,    b->torque,
+                    b->mass,  b->travel,      b->path,     b->particle, b->material, b->removed};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) scree_free(arrays[i]);
+}
+
+void scree_world_free(scree_world *world) {
+  if (!world) return;
+  free_bodies(&world->bodies);
+  for (size_t i = 0; i < world->walls.count; i++)
+    scree_particle_free(world->walls.items[i].surface);
+  scree_free(world->walls.items);
+  for (size_t i = 0; i < world->pairs.count; i++) scree_pair_free(world->pairs.items[i]);
+  for (size_t i = 0; i < world->spare_pairs.count; i++)
+    scree_pair_free(world->spare_pairs.items[i]);
+  scree_free(world->pairs.items);
+  scree_free(world->spare_pairs.items);
+  scree_free(world->merged_pairs.items);
+  scree_free(world->keys.items);
+  scree_free(world->sides.items);
+  scree_free(world->side_begin);
+  scree_free(world->offenders);
+  scree_free(world->sums.items);
+  scree_free(world->body_path_at_build);
+  for (int i = 0; i < world->scratch_count; i++) scree_free(world->scratch[i].touches.items);
+  scree_free(world->scratch);
+  scree_broad_free(world);
+  scree_free(world);
+}
+
+void scree_world_get_options(const scree_world *world, scree_world_options *options) {
+  *options = world->options;
+}
+
+/* Every array of bodies to the new capacity; on failure all keep their content and the capacity
+ * stays, so that nothing is lost. */
+static scree_status grow_bodies(scree_world *world, scree_error *error) {
+  scree_bodies *b = &world->bodies;
+  size_t capacity = b->capacity < 64 ? 64 : 2 * b->capacity;
+  struct {
+    void **array;
+    size_t size;
+  } arrays[] = {
+      {(void **)&b->frame, sizeof *b->frame},
+      {(void **)&b->orientation, sizeof *b->orientation},
+      {(void **)&b->momentum, sizeof *b->momentum},
+      {(void **)&b->inertia, sizeof *b->inertia},
+      {(void **)&b->force, sizeof *b->force},
+      {(void **)&b->torque, sizeof *b->torque},
+      {(void **)&b->mass, sizeof *b->mass},
+      {(void **)&b->travel, sizeof *b->travel},
+      {(void **)&b->path, sizeof *b->path},
+      {(void **)&b->particle, sizeof *b->particle},
+      {(void **)&b->material, sizeof *b->material},
+      {(void **)&b->removed, sizeof *b->removed},
+      {(void **)&world->side_begin, sizeof *world->side_begin},
+      {(void **)&world->offenders, sizeof *world->offenders},
+      {(void **)&world->body_path_at_build, sizeof *world->body_path_at_build},
+  };
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+    void *moved = scree_resize(*arrays[i].array, capacity + 1, arrays[i].size);
+    if (!moved) return scree_fail_memory(error, capacity * arrays[i].size, "bodies");
+    *arrays[i].array = moved;
+  }
+  b->capacity = capacity;
+  return SCREE_OK;
+}
+
+scree_body scree_default_body(void) {
+  return (scree_body){.orientation = {1, 0, 0, 0}};
+}
+
+static bool is_finite_body(const scree_body *s) {
+  double sum = 0, length = 0;
+  for (int i = 0; i < 3; i++) sum += s->position[i] + s->velocity[i] + s->angular_velocity[i];
+  for (int i = 0; i < 4; i++) length += s->orientation[i] * s->orientation[i];
+  return isfinite(sum) && length > 0 && isfinite(length);
+}
+
+scree_status scree_world_add_body(scree_world *world, scree_particle *particle, size_t material,
+                                  const scree_body *state, size_t *index, scree_error *error) {
+  if (material >= world->material_count)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: material %zu of %zu", material,
+                      world->material_count);
+  scree_body start = state ? *state : scree_default_body();
+  if (!is_finite_body(&start))
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "world: body %zu is to be added with a state that is not finite",
+                      world->bodies.count);
+  scree_bodies *b = &world->bodies;
+  if (b->count == b->capacity) {
+    if (b->count > UINT32_MAX / 8)
+      return scree_fail(error, SCREE_LIMIT, "world: at most %u bodies", UINT32_MAX / 8);
+    scree_status status = grow_bodies(world, error);
+    if (status) return status;
+  }
+  size_t i = b->count++;
+  const scree_particle_measures *m = &particle->measures;
+  double density = world->materials[material].density;
+  b->mass[i] = density * m->volume;
+  b->inertia[i] = vec3_scale(vec3_load(m->inertia), density);
+  b->force[i] = b->torque[i] = (vec3){0, 0, 0};
+  b->travel[i] = b->path[i] = world->body_path_at_build[i] = 0;
+  b->material[i] = (uint8_t)material;
+  b->removed[i] = false;
+  b->particle[i] = particle;
+  scree_particle_retain(particle);
+  scree_world_set_body(world, i, &start);
+  world->time_step_stale = true;
+  if (index) *index = i;
+  return SCREE_OK;
+}
+
+size_t scree_world_body_count(const scree_world *world) {
+  return world->bodies.count;
+}
+
+bool scree_world_body_removed(const scree_world *world, size_t index) {
+  return world->bodies.removed[index];
+}
+
+void scree_world_get_body(const scree_world *world, size_t i, scree_body *state) {
+  const scree_frame *frame = &world->bodies.frame[i];
+  quat q = world->bodies.orientation[i];
+  vec3_store(state->position, frame->position);
+  vec3_store(state->velocity, frame->velocity);
+  vec3_store(state->angular_velocity, frame->spin);
+  const double orientation[4] = {q.w, q.x, q.y, q.z};
+  memcpy(state->orientation, orientation, sizeof orientation);
+}
+
+void scree_world_set_body(scree_world *world, size_t i, const scree_body *state) {
+  scree_bodies *b = &world->bodies;
+  const double *o = state->orientation;
+  b->orientation[i] = quat_unit((quat){o[0], o[1], o[2], o[3]});
+  scree_frame *frame = &b->frame[i];
+  frame->position = vec3_load(state->position);
+  frame->velocity = vec3_load(state->velocity);
+  frame->rotation = quat_to_mat3(b->orientation[i]);
+  vec3 local = mat3_tmul_vec(&frame->rotation, vec3_load(state->angular_velocity)),
+       in = b->inertia[i];
+  b->momentum[i] =
+      mat3_mul_vec(&frame->rotation, (vec3){in.x * local.x, in.y * local.y, in.z * local.z});
+  frame->spin = vec3_load(state->angular_velocity);
+  scree_body_forget(world, i);
+}
+
+scree_particle *scree_world_body_particle(const scree_world *world, size_t index) {
+  return world->bodies.particle[index];
+}
+
+size_t scree_world_body_material(const scree_world *world, size_t index) {
+  return world->bodies.material[index];
+}
+
+double scree_world_body_mass(const scree_world *world, size_t index) {
+  return world->bodies.mass[index];
+}
+
+void scree_world_remove_body(scree_world *world, size_t index) {
+  if (world->bodies.removed[index]) return;
+  world->bodies.removed[index] = true;
+  world->bodies.removed_count++;
+  world->pairs_stale = true;
+}
+
+double scree_world_time(const scree_world *world) {
+  return world->time;
+}
+
+uint64_t scree_world_step_count(const scree_world *world) {
+  return world->step_count;
+}
+
+double scree_world_time_step(const scree_world *world, char reason[256]) {
+  return scree_world_choose_time_step(world, reason);
+}
+
+void scree_world_timings(const scree_world *world, scree_timings *timings) {
+  *timings = world->timings;
+  for (int i = 0; i < world->scratch_count; i++) {
+    const scree_scratch *s = &world->scratch[i];
+    timings->item_evaluations += s->item_evaluations;
+    timings->closest_queries += s->closest_queries;
+    timings->list_builds += s->list_builds;
+    timings->candidates += s->candidate_seconds;
+  }
+}

@@ -1,0 +1,245 @@
+/* The world's own structures. Only src/world sees them; docs/physics.md has the equations. */
+#ifndef SCREE_WORLD_WORLD_H
+#define SCREE_WORLD_WORLD_H
+
+#include "particle/particle.h"
+
+enum { SCREE_MATERIALS = 64 };
+
+/* Pose and motion of a body or wall, as the contact code reads it. */
+typedef struct scree_frame {
+  vec3 position, velocity, spin; /* spin: angular velocity in space */
+  mat3 rotation;                 /* own axes into space */
+} scree_frame;
+
+typedef struct scree_material_pair {
+  double restitution, friction, damping_ratio; /* eta */
+  bool given;
+} scree_material_pair;
+
+typedef struct scree_world_wall {
+  scree_wall given; /* position and velocity kept up to date */
+  scree_frame frame;
+  quat orientation;
+  scree_particle *surface; /* mesh wall; else NULL */
+  double travel, path;     /* as for bodies, by translation alone */
+  double path_at_build;    /* when the pairs were made */
+  vec3 force, torque;
+} scree_world_wall;
+
+/* Bodies, one array per field; those of the same index are one body. */
+typedef struct scree_bodies {
+  scree_frame *frame;
+  quat *orientation;
+  vec3 *momentum; /* angular momentum in space, about the centre */
+  vec3 *inertia;  /* principal moments */
+  vec3 *force, *torque;
+  double *mass;
+  double *travel; /* most any of its points moved in the last step */
+  double *path;   /* sum of travel */
+  scree_particle **particle;
+  uint8_t *material;
+  bool *removed;
+  size_t count, capacity, removed_count;
+} scree_bodies;
+
+/* What a touching feature remembers: the anchored tangential spring. */
+typedef struct scree_anchor {
+  vec3 stretch; /* xi, in the frame of b */
+  vec3 normal;  /* of the last step, in the frame of b */
+  double share; /* of the last step; 0: no memory */
+} scree_anchor;
+
+typedef enum scree_item_kind {
+  SCREE_ITEM_POINT_FACE,  /* point of a, surface of b */
+  SCREE_ITEM_FACE_POINT,  /* surface of a, point of b */
+  SCREE_ITEM_EDGE_EDGE,   /* edge of a, edge of b */
+  SCREE_ITEM_POINT_POINT, /* spheres */
+  SCREE_ITEM_POINT_WALL,  /* point of a, analytic wall */
+} scree_item_kind;
+
+/* A feature pair that cannot touch before the pair's path reaches `wake`. */
+typedef struct scree_sleeper {
+  double wake;
+  uint32_t a, b;
+  uint32_t kind;
+} scree_sleeper;
+
+enum { SCREE_CACHED_FACES = 4, SCREE_ANCHORS = 3 };
+
+/* A feature pair that is evaluated every step. */
+typedef struct scree_item {
+  uint32_t kind, a, b;
+  uint32_t face_count; /* cached nearest faces */
+  uint32_t face[SCREE_CACHED_FACES];
+  double valid;   /* path up to which no other face can be nearer */
+  vec3 reference; /* the way out, kept from the last time the cores were apart */
+  double gap;     /* found in this step; 0: stay awake */
+  bool has_reference, inside;
+  scree_anchor anchor[SCREE_ANCHORS];
+} scree_item;
+
+/* Force and torques about the centres of a and b (about its position for a wall), on a and on b;
+ * the force on b is the opposite. */
+typedef struct scree_wrench {
+  vec3 force, torque_a, torque_b;
+} scree_wrench;
+
+typedef struct scree_pair {
+  uint32_t a, b;
+  bool wall;   /* b is a wall */
+  bool asleep; /* no item can touch before the bodies' paths reach `wake` */
+  bool touching;
+  double stiffness, damping, friction, restitution; /* K, C, mu, e */
+  double smoothing, reach, limit;                   /* l0; rounding of both meshes; overlap limit */
+  double travel, path;        /* of the relative motion: last step, and sum; upper bounds */
+  double wake, asleep_since;  /* on path[a] + path[b] */
+  double next_item, list_end; /* on path */
+  struct {
+    scree_item *items;
+    size_t count, capacity;
+  } active;
+  struct {
+    scree_sleeper *items;
+    size_t count, capacity;
+  } sleeping;
+  scree_wrench wrench, dashpot, tangential;
+  double elastic, tangential_elastic; /* U of all springs, and of the tangential ones */
+  double contact_time, age;           /* half period pi sqrt(m/K); since the touch began */
+  double overlap, largest;            /* m; largest m of this contact (hysteresis) */
+  size_t contact_count;
+} scree_pair;
+
+/* One touching feature, in the frame of b. */
+typedef struct scree_touch {
+  vec3 at, normal; /* normal towards a */
+  double overlap, weight, share, rate;
+  vec3 velocity; /* of a relative to b */
+  vec3 force;    /* on a */
+  scree_anchor *anchor;
+} scree_touch;
+
+typedef struct scree_touch_list {
+  scree_touch *items;
+  size_t count, capacity;
+} scree_touch_list;
+
+/* Scratch of one worker. */
+typedef struct scree_scratch {
+  scree_touch_list touches;
+  uint64_t item_evaluations, closest_queries, list_builds;
+  double candidate_seconds;
+  bool out_of_memory;
+} scree_scratch;
+
+/* What a block of pairs adds up; combined in block order. */
+typedef struct scree_pair_sums {
+  double dashpot, tangential, wall_work;
+  double largest_overlap;
+  const scree_pair *beyond_limit;
+  bool out_of_memory;
+} scree_pair_sums;
+
+typedef struct scree_broad scree_broad;
+
+struct scree_world {
+  scree_world_options options;
+  scree_material materials[SCREE_MATERIALS];
+  scree_material_pair contacts[SCREE_MATERIALS][SCREE_MATERIALS];
+  size_t material_count;
+  scree_bodies bodies;
+  struct {
+    scree_world_wall *items;
+    size_t count, capacity;
+  } walls;
+  struct {
+    scree_pair **items; /* sorted by a, then bodies before walls, then b */
+    size_t count, capacity;
+  } pairs, spare_pairs, merged_pairs;
+  struct {
+    uint64_t *items;
+    size_t count, capacity;
+  } keys; /* of the broad phase */
+  struct {
+    uint32_t *items; /* 2 * pair + (1 for the b side), grouped by body, ascending */
+    size_t count, capacity;
+  } sides;
+  size_t *side_begin; /* bodies.capacity + 1 */
+  size_t *offenders;  /* scratch of the gathering, by block */
+  scree_broad *broad;
+  struct {
+    scree_pair_sums *items;
+    size_t count, capacity;
+  } sums;
+  scree_scratch *scratch; /* one per worker */
+  int scratch_count;
+  double *body_path_at_build; /* path of each body when the pairs were made */
+  bool pairs_stale;
+  double time, time_step;
+  bool time_step_stale;
+  uint64_t step_count;
+  double work_dashpot, work_tangential, wall_work; /* done on bodies, so far */
+  double largest_overlap;
+  bool diverged;
+  scree_error failure;
+  scree_timings timings;
+};
+
+static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const scree_pair *p) {
+  return p->wall ? &w->walls.items[p->b].frame : &w->bodies.frame[p->b];
+}
+/* The shape of side b; NULL for an analytic wall. */
+static inline const scree_particle *scree_pair_shape_b(const scree_world *w, const scree_pair *p) {
+  return p->wall ? w->walls.items[p->b].surface : w->bodies.particle[p->b];
+}
+
+/* material.c: eta of the clamped linear dashpot for a restitution in (0, 1]. */
+double scree_damping_ratio(double restitution);
+
+/* time_step.c */
+double scree_world_choose_time_step(const scree_world *world, char reason[256]);
+/* K of a pair of materials at size L. */
+double scree_pair_stiffness(const scree_world *world, size_t material_a, size_t material_b,
+                            double size);
+
+/* broad.c: brings the list of pairs up to date when a body could have left its margin. */
+scree_status scree_broad_update(scree_world *world, scree_error *error);
+void scree_broad_free(scree_world *world);
+
+/* pair.c: a pair object for (a, b), set up; from the spares when there are some. */
+scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wall);
+void scree_pair_give_back(scree_world *world, scree_pair *pair);
+void scree_pair_free(scree_pair *pair);
+/* After a jump: the body's contacts start anew. */
+void scree_body_forget(scree_world *world, size_t body);
+
+/* candidates.c: which items could touch within the skin; fills sleeping, keeps active. */
+bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                     scree_scratch *scratch);
+
+/* touch.c: the touching features of one item, appended to touches; returns its gap, the way it must
+ * move before it can touch (0 or less: it does, or nearly). relative: a in the frame of b. */
+double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_item *item,
+                        const scree_frame *relative, scree_scratch *scratch);
+/* Gap of an analytic wall seen from a sphere at p (wall frame): closest point and normal. */
+double scree_wall_distance(const scree_world_wall *wall, vec3 p, vec3 *closest, vec3 *normal);
+
+/* law.c: smooth maximum, forces, memory. Fills the pair's results. */
+void scree_pair_apply_law(const scree_world *world, scree_pair *pair, scree_touch_list *touches,
+                          const scree_frame *relative);
+
+/* contact.c: the whole of a pair's step. */
+void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                         scree_pair_sums *sums);
+
+/* integrate.c */
+
+/* Sums the forces on every body; false where the step would leave the model's range, with the
+ * reason in world->failure. */
+bool scree_world_gather(scree_world *world);
+/* Kick, turn and drift of every body and wall; removal below the floor. */
+void scree_world_advance(scree_world *world);
+/* Angular velocity of body i for angular momentum `momentum` and rotation `rotation`. */
+vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, vec3 momentum);
+
+#endif
