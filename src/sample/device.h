@@ -1,0 +1,31 @@
+/* The nine devices as drawings. Synthetic: in the manner of phones and cameras of their time, after
+ * no make in particular. x is the width, y the length (cameras: the height), z points out of the
+ * front. */
+#ifndef SCREE_SAMPLE_DEVICE_H
+#define SCREE_SAMPLE_DEVICE_H
+
+#include "sample/shape.h"
+
+typedef struct scree_device {
+  const char *name, *description;
+  const scree_solid_mm *lines;
+  size_t line_count;
+} scree_device;
+
+extern const scree_device scree_feature_phones[3];
+extern const scree_device scree_cameras[3];
+extern const scree_device scree_smartphones[3];
+
+/* Words for the drawings' lines: {SLAB, JOIN, {at}, {half}, corner, fillet, .blend = ...}. */
+#define PART    .kind = SCREE_SOLID_PART
+#define SLAB    .kind = SCREE_SOLID_SLAB
+#define CAPSULE .kind = SCREE_SOLID_CAPSULE
+#define TORUS   .kind = SCREE_SOLID_TORUS
+#define JOIN    SCREE_SOLID_JOIN
+#define CUT     SCREE_SOLID_CUT
+#define KEEP    SCREE_SOLID_KEEP
+
+#define SCREE_DEVICE(name, description, lines)                                                     \
+  { name, description, lines, sizeof(lines) / sizeof *(lines) }
+
+#endif
