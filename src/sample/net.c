@@ -1,6 +1,6 @@
 /* Surface nets (Gibson 1998, "Constrained elastic surface nets") over the sparse lattice: one
  * vertex in every cell that the surface crosses, one quadrilateral around every lattice edge that
- * it crosses. The lattice is well-composed (grid.c), so the net is a closed manifold.
+ * it crosses. The lattice is well-composed (lattice.c), so the net is a closed manifold.
  *
  * Unlike Gibson's, the net is not relaxed inside its cells only: every round moves a vertex towards
  * the mean of its neighbours in the tangent plane, and then back onto the surface by a Newton step
@@ -14,7 +14,7 @@
 
 #include "base/alloc.h"
 #include "base/parallel.h"
-#include "sample/grid.h"
+#include "sample/lattice.h"
 
 #include <string.h>
 
@@ -29,7 +29,7 @@ static const double reach = 0.8;        /* steps from the cell's centre, along e
 static const double longer = 1e-3;      /* a diagonal counts as shorter only by this much */
 
 typedef struct net {
-  scree_grid grid;
+  scree_lattice lattice;
   size_t vertex_count, quad_count;
   vec3 *position, *moved, *normal;
   uint32_t (*neighbour)[6]; /* across the six faces of the cell */
@@ -44,8 +44,8 @@ static void count_block(void *context, size_t begin, size_t end, size_t task, in
   (void)task, (void)worker;
   float pad[SCREE_PAD_CORNERS];
   for (size_t b = begin; b < end; b++) {
-    scree_grid_block *block = &n->grid.blocks[b];
-    scree_grid_gather(&n->grid, block, pad);
+    scree_lattice_block *block = &n->lattice.blocks[b];
+    scree_lattice_gather(&n->lattice, block, pad);
     uint32_t vertex_count = 0;
     size_t quad_count = 0;
     for (int cell = 0; cell < SCREE_BLOCK_CELLS; cell++) {
@@ -64,17 +64,17 @@ static void count_block(void *context, size_t begin, size_t end, size_t task, in
 /* Counts of blocks become where each begins. */
 static scree_status number_blocks(net *n, double step, scree_error *error) {
   size_t vertex_count = 0, quad_count = 0;
-  for (size_t b = 0; b < n->grid.block_count; b++) {
+  for (size_t b = 0; b < n->lattice.block_count; b++) {
     size_t here = n->first_quad[b];
-    n->grid.blocks[b].first_vertex = (uint32_t)vertex_count;
+    n->lattice.blocks[b].first_vertex = (uint32_t)vertex_count;
     n->first_quad[b] = quad_count;
-    vertex_count += n->grid.blocks[b].vertex_count;
+    vertex_count += n->lattice.blocks[b].vertex_count;
     quad_count += here;
     if (quad_count > INT32_MAX / 2 || vertex_count > INT32_MAX)
       return scree_fail(error, SCREE_LIMIT, "a resolution of %g mm gives more than %d triangles",
                         step * 1e3, INT32_MAX);
   }
-  n->first_quad[n->grid.block_count] = quad_count;
+  n->first_quad[n->lattice.block_count] = quad_count;
   n->vertex_count = vertex_count;
   n->quad_count = quad_count;
   return SCREE_OK;
@@ -99,21 +99,21 @@ static vec3 crossing_mean(const float *pad, int cell) {
   return vec3_scale(sum, 1.0 / count);
 }
 
-static vec3 cell_low(const scree_grid *grid, const scree_grid_block *block, int cell) {
-  return (vec3){grid->origin.x + (block->at[0] + cell % 8) * grid->step,
-                grid->origin.y + (block->at[1] + cell / 8 % 8) * grid->step,
-                grid->origin.z + (block->at[2] + cell / 64) * grid->step};
+static vec3 cell_low(const scree_lattice *lattice, const scree_lattice_block *block, int cell) {
+  return (vec3){lattice->origin.x + (block->at[0] + cell % 8) * lattice->step,
+                lattice->origin.y + (block->at[1] + cell / 8 % 8) * lattice->step,
+                lattice->origin.z + (block->at[2] + cell / 64) * lattice->step};
 }
 
-static uint32_t vertex_of(const scree_grid *grid, int32_t i, int32_t j, int32_t k) {
+static uint32_t vertex_of(const scree_lattice *lattice, int32_t i, int32_t j, int32_t k) {
   int cell;
-  const scree_grid_block *block = scree_grid_find(grid, i, j, k, &cell);
+  const scree_lattice_block *block = scree_lattice_find(lattice, i, j, k, &cell);
   return !block || block->vertex[cell] < 0 ? NO_VERTEX
                                            : block->first_vertex + (uint32_t)block->vertex[cell];
 }
 
 /* Neighbours lie across the faces that the surface crosses. */
-static void link_cell(const net *n, const scree_grid_block *block, int cell, unsigned mask,
+static void link_cell(const net *n, const scree_lattice_block *block, int cell, unsigned mask,
                       uint32_t *neighbour) {
   static const uint8_t face_mask[6] = {0x55, 0xaa, 0x33, 0xcc, 0x0f, 0xf0};
   for (int f = 0; f < 6; f++) {
@@ -123,7 +123,7 @@ static void link_cell(const net *n, const scree_grid_block *block, int cell, uns
     at[f / 2] += f & 1 ? 1 : -1;
     neighbour[f] = on_face == 0 || on_face == face_mask[f]
                        ? NO_VERTEX
-                       : vertex_of(&n->grid, at[0], at[1], at[2]);
+                       : vertex_of(&n->lattice, at[0], at[1], at[2]);
   }
 }
 
@@ -132,14 +132,14 @@ static void place_vertices(void *context, size_t begin, size_t end, size_t task,
   (void)task, (void)worker;
   float pad[SCREE_PAD_CORNERS];
   for (size_t b = begin; b < end; b++) {
-    const scree_grid_block *block = &n->grid.blocks[b];
+    const scree_lattice_block *block = &n->lattice.blocks[b];
     if (block->vertex_count == 0) continue;
-    scree_grid_gather(&n->grid, block, pad);
+    scree_lattice_gather(&n->lattice, block, pad);
     for (int cell = 0; cell < SCREE_BLOCK_CELLS; cell++) {
       if (block->vertex[cell] < 0) continue;
       size_t v = block->first_vertex + (size_t)block->vertex[cell];
       n->position[v] =
-          vec3_mad(cell_low(&n->grid, block, cell), crossing_mean(pad, cell), n->grid.step);
+          vec3_mad(cell_low(&n->lattice, block, cell), crossing_mean(pad, cell), n->lattice.step);
       link_cell(n, block, cell, scree_pad_mask(pad, cell), n->neighbour[v]);
     }
   }
@@ -149,11 +149,11 @@ static void place_vertices(void *context, size_t begin, size_t end, size_t task,
 
 /* Distance and gradient at count points from four probes each, at the corners of a tetrahedron:
  * their mean is the distance to second order, their differences the gradient. */
-static void probe_field(const scree_grid *grid, const scree_shape_list *list, const vec3 *points,
-                        size_t count, double *distance, vec3 *gradient) {
+static void probe_field(const scree_lattice *lattice, const scree_shape_list *list,
+                        const vec3 *points, size_t count, double *distance, vec3 *gradient) {
   static const double corner[4][3] = {{1, -1, -1}, {-1, -1, 1}, {-1, 1, -1}, {1, 1, 1}};
   scree_points at;
-  double d[SCREE_SHAPE_BATCH], width = probe * grid->step;
+  double d[SCREE_SHAPE_BATCH], width = probe * lattice->step;
   for (size_t begin = 0; begin < count; begin += SCREE_SHAPE_BATCH / 4) {
     size_t batch = count - begin < SCREE_SHAPE_BATCH / 4 ? count - begin : SCREE_SHAPE_BATCH / 4;
     for (size_t i = 0; i < 4 * batch; i++) {
@@ -162,7 +162,7 @@ static void probe_field(const scree_grid *grid, const scree_shape_list *list, co
       at.y[i] = p.y + corner[i & 3][1] * width;
       at.z[i] = p.z + corner[i & 3][2] * width;
     }
-    scree_shape_distance(grid->shape, list, &at, 4 * batch, d);
+    scree_shape_distance(lattice->shape, list, &at, 4 * batch, d);
     for (size_t i = 0; i < batch; i++) {
       const double *f = d + 4 * i;
       distance[begin + i] = 0.25 * (f[0] + f[1] + f[2] + f[3]);
@@ -178,10 +178,10 @@ static double clamp(double x, double limit) {
 }
 
 /* One Newton step each for the block's vertices, kept near their cells; sets their normals. */
-static void settle_block(net *n, const scree_grid_block *block, const scree_shape_list *list) {
-  double distance[SCREE_BLOCK_CELLS], step = n->grid.step;
+static void settle_block(net *n, const scree_lattice_block *block, const scree_shape_list *list) {
+  double distance[SCREE_BLOCK_CELLS], step = n->lattice.step;
   vec3 gradient[SCREE_BLOCK_CELLS], *position = n->position + block->first_vertex;
-  probe_field(&n->grid, list, position, block->vertex_count, distance, gradient);
+  probe_field(&n->lattice, list, position, block->vertex_count, distance, gradient);
   for (int cell = 0; cell < SCREE_BLOCK_CELLS; cell++) {
     if (block->vertex[cell] < 0) continue;
     size_t v = (size_t)block->vertex[cell];
@@ -190,7 +190,7 @@ static void settle_block(net *n, const scree_grid_block *block, const scree_shap
     double move = g2 > 1e-6 ? clamp(distance[v] / sqrt(g2), newton_limit * step) : 0;
     vec3 unit = vec3_unit(g), p = vec3_mad(position[v], unit, -move);
     vec3 centre =
-        vec3_add(cell_low(&n->grid, block, cell), (vec3){0.5 * step, 0.5 * step, 0.5 * step});
+        vec3_add(cell_low(&n->lattice, block, cell), (vec3){0.5 * step, 0.5 * step, 0.5 * step});
     vec3 away = vec3_sub(p, centre);
     position[v] =
         (vec3){centre.x + clamp(away.x, reach * step), centre.y + clamp(away.y, reach * step),
@@ -204,9 +204,9 @@ static void settle(void *context, size_t begin, size_t end, size_t task, int wor
   (void)task, (void)worker;
   scree_shape_list list;
   for (size_t b = begin; b < end; b++) {
-    if (n->grid.blocks[b].vertex_count == 0) continue;
-    scree_grid_list(&n->grid, &n->grid.blocks[b], &list);
-    settle_block(n, &n->grid.blocks[b], &list);
+    if (n->lattice.blocks[b].vertex_count == 0) continue;
+    scree_lattice_list(&n->lattice, &n->lattice.blocks[b], &list);
+    settle_block(n, &n->lattice.blocks[b], &list);
   }
 }
 
@@ -228,16 +228,16 @@ static void relax(void *context, size_t begin, size_t end, size_t task, int work
 }
 
 static bool spread(net *n, scree_ticker *ticker) {
-  scree_parallel_for(n->grid.block_count, BLOCKS_PER_TASK, settle, n);
+  scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, settle, n);
   for (int round = 0; round < ROUNDS; round++) {
     scree_parallel_for(n->vertex_count, 4096, relax, n);
     vec3 *swap = n->position;
     n->position = n->moved;
     n->moved = swap;
-    scree_parallel_for(n->grid.block_count, BLOCKS_PER_TASK, settle, n);
+    scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, settle, n);
     if (!scree_tick(ticker, "meshing the shape", 0.4 + 0.5 * (round + 1) / ROUNDS)) return false;
   }
-  scree_parallel_for(n->grid.block_count, BLOCKS_PER_TASK, settle, n);
+  scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, settle, n);
   return true;
 }
 
@@ -279,9 +279,9 @@ static void make_quads(void *context, size_t begin, size_t end, size_t task, int
   float pad[SCREE_PAD_CORNERS];
   for (size_t b = begin; b < end; b++) {
     if (n->first_quad[b] == n->first_quad[b + 1]) continue;
-    const scree_grid_block *block = &n->grid.blocks[b];
+    const scree_lattice_block *block = &n->lattice.blocks[b];
     uint32_t *triangles = n->mesh.triangles + 6 * n->first_quad[b];
-    scree_grid_gather(&n->grid, block, pad);
+    scree_lattice_gather(&n->lattice, block, pad);
     for (int cell = 0; cell < SCREE_BLOCK_CELLS; cell++) {
       unsigned mask = scree_pad_mask(pad, cell), low = mask & 1;
       for (int axis = 0; axis < 3; axis++) {
@@ -295,7 +295,7 @@ static void make_quads(void *context, size_t begin, size_t end, size_t task, int
                            block->at[2] + cell / 64};
           at[u] += around[low ? q : 3 - q][0];
           at[v] += around[low ? q : 3 - q][1];
-          quad[q] = vertex_of(&n->grid, at[0], at[1], at[2]);
+          quad[q] = vertex_of(&n->lattice, at[0], at[1], at[2]);
         }
         cut_quad(n, quad, triangles);
         triangles += 6;
@@ -323,15 +323,15 @@ failed:
 
 static scree_status build(net *n, double step, scree_ticker *ticker, scree_error *error) {
   scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(n->first_quad, n->grid.block_count + 1, error, failed);
-  scree_parallel_for(n->grid.block_count, BLOCKS_PER_TASK, count_block, n);
+  SCREE_ALLOC_OR(n->first_quad, n->lattice.block_count + 1, error, failed);
+  scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, count_block, n);
   status = number_blocks(n, step, error);
   if (status == SCREE_OK) status = allocate(n, error);
   if (status != SCREE_OK) return status;
-  scree_parallel_for(n->grid.block_count, BLOCKS_PER_TASK, place_vertices, n);
+  scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, place_vertices, n);
   if (!spread(n, ticker))
     return scree_fail(error, SCREE_CANCELLED, "cancelled while meshing the shape");
-  scree_parallel_for(n->grid.block_count, BLOCKS_PER_TASK, make_quads, n);
+  scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, make_quads, n);
   for (size_t v = 0; v < n->vertex_count; v++)
     vec3_store(n->mesh.positions + 3 * v, n->position[v]);
 failed:
@@ -341,7 +341,7 @@ failed:
 scree_status scree_net_mesh(const scree_shape *shape, double step, scree_ticker *ticker,
                             scree_mesh *mesh, scree_error *error) {
   net n = {0};
-  scree_status status = scree_grid_build(shape, step, ticker, &n.grid, error);
+  scree_status status = scree_lattice_build(shape, step, ticker, &n.lattice, error);
   if (status == SCREE_OK) status = build(&n, step, ticker, error);
   if (status == SCREE_OK)
     *mesh = n.mesh;
@@ -352,6 +352,6 @@ scree_status scree_net_mesh(const scree_shape *shape, double step, scree_ticker 
   scree_free(n.normal);
   scree_free(n.neighbour);
   scree_free(n.first_quad);
-  scree_grid_free(&n.grid);
+  scree_lattice_free(&n.lattice);
   return status;
 }

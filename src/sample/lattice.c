@@ -7,7 +7,7 @@
  * shows only two opposite corners of one kind. Every cell then holds one sheet, and the net with
  * one vertex per cell is a manifold. Corners only ever become inside, so this ends; it touches
  * places where the shape is thinner or narrower than the lattice resolves, and nothing else. */
-#include "sample/grid.h"
+#include "sample/lattice.h"
 
 #include "base/alloc.h"
 #include "base/parallel.h"
@@ -23,52 +23,52 @@ enum { SITES_PER_TASK = SCREE_SHAPE_BATCH, BLOCKS_PER_TASK = 16 };
  * the sampled blocks never have a crossing. */
 static const double half_diagonal = 6.928203230275509, margin = 2;
 
-static vec3 corner_position(const scree_grid *grid, double i, double j, double k) {
-  return (vec3){grid->origin.x + i * grid->step, grid->origin.y + j * grid->step,
-                grid->origin.z + k * grid->step};
+static vec3 corner_position(const scree_lattice *lattice, double i, double j, double k) {
+  return (vec3){lattice->origin.x + i * lattice->step, lattice->origin.y + j * lattice->step,
+                lattice->origin.z + k * lattice->step};
 }
 
 /* ---- Which blocks ---- */
 
 static void classify(void *context, size_t begin, size_t end, size_t block, int worker) {
-  scree_grid *grid = context;
+  scree_lattice *lattice = context;
   (void)block, (void)worker;
   scree_shape_list list;
   scree_points centres;
   double d[SCREE_SHAPE_BATCH];
-  scree_shape_list_all(grid->shape, &list);
+  scree_shape_list_all(lattice->shape, &list);
   for (size_t s = begin; s < end; s++) {
-    size_t nx = (size_t)grid->size[0], ny = (size_t)grid->size[1];
-    vec3 c = corner_position(grid, 8.0 * (double)(s % nx) + 4, 8.0 * (double)(s / nx % ny) + 4,
+    size_t nx = (size_t)lattice->size[0], ny = (size_t)lattice->size[1];
+    vec3 c = corner_position(lattice, 8.0 * (double)(s % nx) + 4, 8.0 * (double)(s / nx % ny) + 4,
                              8.0 * (double)(s / nx / ny) + 4);
     centres.x[s - begin] = c.x;
     centres.y[s - begin] = c.y;
     centres.z[s - begin] = c.z;
   }
-  scree_shape_distance(grid->shape, &list, &centres, end - begin, d);
-  double reach = (half_diagonal + margin) * grid->step;
+  scree_shape_distance(lattice->shape, &list, &centres, end - begin, d);
+  double reach = (half_diagonal + margin) * lattice->step;
   for (size_t s = begin; s < end; s++)
-    grid->slots[s] = d[s - begin] > reach    ? SCREE_SLOT_OUTSIDE
-                     : d[s - begin] < -reach ? SCREE_SLOT_INSIDE
-                                             : 0;
+    lattice->slots[s] = d[s - begin] > reach    ? SCREE_SLOT_OUTSIDE
+                        : d[s - begin] < -reach ? SCREE_SLOT_INSIDE
+                                                : 0;
 }
 
-static scree_status make_blocks(scree_grid *grid, scree_error *error) {
-  size_t nx = (size_t)grid->size[0], ny = (size_t)grid->size[1],
-         site_count = nx * ny * (size_t)grid->size[2];
-  grid->slots = scree_alloc(site_count, sizeof *grid->slots);
-  if (!grid->slots)
-    return scree_fail_memory(error, site_count * sizeof *grid->slots, "the lattice");
-  scree_parallel_for(site_count, SITES_PER_TASK, classify, grid);
+static scree_status make_blocks(scree_lattice *lattice, scree_error *error) {
+  size_t nx = (size_t)lattice->size[0], ny = (size_t)lattice->size[1],
+         site_count = nx * ny * (size_t)lattice->size[2];
+  lattice->slots = scree_alloc(site_count, sizeof *lattice->slots);
+  if (!lattice->slots)
+    return scree_fail_memory(error, site_count * sizeof *lattice->slots, "the lattice");
+  scree_parallel_for(site_count, SITES_PER_TASK, classify, lattice);
   for (size_t s = 0; s < site_count; s++)
-    if (grid->slots[s] == 0) grid->slots[s] = (int32_t)grid->block_count++;
-  grid->blocks = scree_alloc(grid->block_count, sizeof *grid->blocks);
-  if (!grid->blocks)
-    return scree_fail_memory(error, grid->block_count * sizeof *grid->blocks,
+    if (lattice->slots[s] == 0) lattice->slots[s] = (int32_t)lattice->block_count++;
+  lattice->blocks = scree_alloc(lattice->block_count, sizeof *lattice->blocks);
+  if (!lattice->blocks)
+    return scree_fail_memory(error, lattice->block_count * sizeof *lattice->blocks,
                              "the lattice's blocks");
   for (size_t s = 0; s < site_count; s++) {
-    if (grid->slots[s] < 0) continue;
-    scree_grid_block *b = &grid->blocks[grid->slots[s]];
+    if (lattice->slots[s] < 0) continue;
+    scree_lattice_block *b = &lattice->blocks[lattice->slots[s]];
     b->at[0] = (int32_t)(8 * (s % nx));
     b->at[1] = (int32_t)(8 * (s / nx % ny));
     b->at[2] = (int32_t)(8 * (s / nx / ny));
@@ -76,55 +76,59 @@ static scree_status make_blocks(scree_grid *grid, scree_error *error) {
   return SCREE_OK;
 }
 
-void scree_grid_list(const scree_grid *grid, const scree_grid_block *block,
-                     scree_shape_list *list) {
-  vec3 centre = corner_position(grid, block->at[0] + 4, block->at[1] + 4, block->at[2] + 4);
-  scree_shape_prune(grid->shape, centre, half_diagonal * grid->step, margin * grid->step, list);
+void scree_lattice_list(const scree_lattice *lattice, const scree_lattice_block *block,
+                        scree_shape_list *list) {
+  vec3 centre = corner_position(lattice, block->at[0] + 4, block->at[1] + 4, block->at[2] + 4);
+  scree_shape_prune(lattice->shape, centre, half_diagonal * lattice->step, margin * lattice->step,
+                    list);
 }
 
 static void sample_blocks(void *context, size_t begin, size_t end, size_t task, int worker) {
-  scree_grid *grid = context;
+  scree_lattice *lattice = context;
   (void)task, (void)worker;
   scree_shape_list list;
   scree_points points;
   double d[SCREE_BLOCK_CELLS];
   for (size_t b = begin; b < end; b++) {
-    scree_grid_block *block = &grid->blocks[b];
-    scree_grid_list(grid, block, &list);
+    scree_lattice_block *block = &lattice->blocks[b];
+    scree_lattice_list(lattice, block, &list);
     for (int c = 0; c < SCREE_BLOCK_CELLS; c++) {
-      vec3 p = corner_position(grid, block->at[0] + c % 8, block->at[1] + c / 8 % 8,
+      vec3 p = corner_position(lattice, block->at[0] + c % 8, block->at[1] + c / 8 % 8,
                                block->at[2] + c / 64);
       points.x[c] = p.x;
       points.y[c] = p.y;
       points.z[c] = p.z;
     }
-    scree_shape_distance(grid->shape, &list, &points, SCREE_BLOCK_CELLS, d);
-    for (int c = 0; c < SCREE_BLOCK_CELLS; c++) block->value[c] = (float)(d[c] / grid->step);
+    scree_shape_distance(lattice->shape, &list, &points, SCREE_BLOCK_CELLS, d);
+    for (int c = 0; c < SCREE_BLOCK_CELLS; c++) block->value[c] = (float)(d[c] / lattice->step);
   }
 }
 
 /* ---- Looking up ---- */
 
-static int32_t slot_at(const scree_grid *grid, int32_t i, int32_t j, int32_t k) {
+static int32_t slot_at(const scree_lattice *lattice, int32_t i, int32_t j, int32_t k) {
   if (i < 0 || j < 0 || k < 0) return SCREE_SLOT_OUTSIDE;
   i >>= 3, j >>= 3, k >>= 3;
-  if (i >= grid->size[0] || j >= grid->size[1] || k >= grid->size[2]) return SCREE_SLOT_OUTSIDE;
-  return grid->slots[i + (size_t)grid->size[0] * ((size_t)j + (size_t)grid->size[1] * (size_t)k)];
+  if (i >= lattice->size[0] || j >= lattice->size[1] || k >= lattice->size[2])
+    return SCREE_SLOT_OUTSIDE;
+  return lattice
+      ->slots[i + (size_t)lattice->size[0] * ((size_t)j + (size_t)lattice->size[1] * (size_t)k)];
 }
 
-scree_grid_block *scree_grid_find(const scree_grid *grid, int32_t i, int32_t j, int32_t k,
-                                  int *corner) {
-  int32_t slot = slot_at(grid, i, j, k);
+scree_lattice_block *scree_lattice_find(const scree_lattice *lattice, int32_t i, int32_t j,
+                                        int32_t k, int *corner) {
+  int32_t slot = slot_at(lattice, i, j, k);
   *corner = (i & 7) + 8 * ((j & 7) + 8 * (k & 7));
-  return slot < 0 ? NULL : &grid->blocks[slot];
+  return slot < 0 ? NULL : &lattice->blocks[slot];
 }
 
-void scree_grid_gather(const scree_grid *grid, const scree_grid_block *block, float *pad) {
+void scree_lattice_gather(const scree_lattice *lattice, const scree_lattice_block *block,
+                          float *pad) {
   for (int n = 0; n < 8; n++) { /* the block and its seven neighbours above */
     int x0 = n & 1, y0 = n >> 1 & 1, z0 = n >> 2;
     int32_t slot =
-        slot_at(grid, block->at[0] + 8 * x0, block->at[1] + 8 * y0, block->at[2] + 8 * z0);
-    const float *value = slot < 0 ? NULL : grid->blocks[slot].value;
+        slot_at(lattice, block->at[0] + 8 * x0, block->at[1] + 8 * y0, block->at[2] + 8 * z0);
+    const float *value = slot < 0 ? NULL : lattice->blocks[slot].value;
     float constant = slot == SCREE_SLOT_INSIDE ? -8.0f : 8.0f;
     int nx = x0 ? 1 : 8, ny = y0 ? 1 : 8, nz = z0 ? 1 : 8;
     for (int z = 0; z < nz; z++)
@@ -135,10 +139,10 @@ void scree_grid_gather(const scree_grid *grid, const scree_grid_block *block, fl
   }
 }
 
-void scree_grid_free(scree_grid *grid) {
-  scree_free(grid->slots);
-  scree_free(grid->blocks);
-  *grid = (scree_grid){0};
+void scree_lattice_free(scree_lattice *lattice) {
+  scree_free(lattice->slots);
+  scree_free(lattice->blocks);
+  *lattice = (scree_lattice){0};
 }
 
 /* ---- Well-composed ---- */
@@ -161,7 +165,7 @@ static unsigned critical_corners(unsigned mask) {
 }
 
 typedef struct composing {
-  scree_grid *grid;
+  scree_lattice *lattice;
   const uint8_t *critical; /* per mask */
   uint8_t *flagged;        /* per block */
 } composing;
@@ -171,7 +175,7 @@ static void flag_blocks(void *context, size_t begin, size_t end, size_t task, in
   (void)task, (void)worker;
   float pad[SCREE_PAD_CORNERS];
   for (size_t b = begin; b < end; b++) {
-    scree_grid_gather(c->grid, &c->grid->blocks[b], pad);
+    scree_lattice_gather(c->lattice, &c->lattice->blocks[b], pad);
     c->flagged[b] = 0;
     for (int cell = 0; cell < SCREE_BLOCK_CELLS; cell++)
       c->flagged[b] |= c->critical[scree_pad_mask(pad, cell)] != 0;
@@ -180,54 +184,55 @@ static void flag_blocks(void *context, size_t begin, size_t end, size_t task, in
 
 /* Makes the outside corner of `candidates` that is nearest to the surface inside. False where it
  * lies outside the sampled blocks: then the shape is far too fine for the lattice. */
-static bool fill_corner(scree_grid *grid, const scree_grid_block *block, int cell, const float *pad,
-                        unsigned candidates) {
+static bool fill_corner(scree_lattice *lattice, const scree_lattice_block *block, int cell,
+                        const float *pad, unsigned candidates) {
   const float *v = pad + scree_pad_index(cell);
   int best = -1;
   for (int c = 0; c < 8; c++)
     if (candidates >> c & 1 && (best < 0 || v[scree_pad_offset(c)] < v[scree_pad_offset(best)]))
       best = c;
   int corner;
-  scree_grid_block *owner = scree_grid_find(grid, block->at[0] + cell % 8 + (best & 1),
-                                            block->at[1] + cell / 8 % 8 + (best >> 1 & 1),
-                                            block->at[2] + cell / 64 + (best >> 2), &corner);
+  scree_lattice_block *owner = scree_lattice_find(lattice, block->at[0] + cell % 8 + (best & 1),
+                                                  block->at[1] + cell / 8 % 8 + (best >> 1 & 1),
+                                                  block->at[2] + cell / 64 + (best >> 2), &corner);
   if (!owner) return false;
   owner->value[corner] = -0.25f;
   return true;
 }
 
-static bool compose_block(scree_grid *grid, const uint8_t *critical, scree_grid_block *block) {
+static bool compose_block(scree_lattice *lattice, const uint8_t *critical,
+                          scree_lattice_block *block) {
   float pad[SCREE_PAD_CORNERS];
-  scree_grid_gather(grid, block, pad);
+  scree_lattice_gather(lattice, block, pad);
   for (int cell = 0; cell < SCREE_BLOCK_CELLS;) {
     unsigned candidates = critical[scree_pad_mask(pad, cell)];
     if (!candidates) {
       cell++;
       continue;
     }
-    if (!fill_corner(grid, block, cell, pad, candidates)) return false;
-    scree_grid_gather(grid, block, pad);
+    if (!fill_corner(lattice, block, cell, pad, candidates)) return false;
+    scree_lattice_gather(lattice, block, pad);
   }
   return true;
 }
 
-static scree_status compose(scree_grid *grid, scree_error *error) {
+static scree_status compose(scree_lattice *lattice, scree_error *error) {
   uint8_t critical[256];
   for (unsigned mask = 0; mask < 256; mask++) critical[mask] = (uint8_t)critical_corners(mask);
-  uint8_t *flagged = scree_alloc(grid->block_count, 1);
-  if (!flagged) return scree_fail_memory(error, grid->block_count, "the lattice's flags");
-  composing context = {grid, critical, flagged};
+  uint8_t *flagged = scree_alloc(lattice->block_count, 1);
+  if (!flagged) return scree_fail_memory(error, lattice->block_count, "the lattice's flags");
+  composing context = {lattice, critical, flagged};
   scree_status status = SCREE_OK;
   for (bool again = true; again && status == SCREE_OK;) {
     again = false;
-    scree_parallel_for(grid->block_count, BLOCKS_PER_TASK, flag_blocks, &context);
-    for (size_t b = 0; b < grid->block_count && status == SCREE_OK; b++) {
+    scree_parallel_for(lattice->block_count, BLOCKS_PER_TASK, flag_blocks, &context);
+    for (size_t b = 0; b < lattice->block_count && status == SCREE_OK; b++) {
       if (!flagged[b]) continue;
       again = true;
-      if (!compose_block(grid, critical, &grid->blocks[b]))
+      if (!compose_block(lattice, critical, &lattice->blocks[b]))
         status = scree_fail(error, SCREE_LIMIT,
                             "a resolution of %g mm is too coarse for this sample's details",
-                            grid->step * 1e3);
+                            lattice->step * 1e3);
     }
   }
   scree_free(flagged);
@@ -236,7 +241,7 @@ static scree_status compose(scree_grid *grid, scree_error *error) {
 
 /* ---- All of it ---- */
 
-static scree_status place(const scree_shape *shape, double step, scree_grid *grid,
+static scree_status place(const scree_shape *shape, double step, scree_lattice *lattice,
                           scree_error *error) {
   vec3 extent = vec3_sub(shape->high, shape->low);
   const double lengths[3] = {extent.x, extent.y, extent.z};
@@ -249,19 +254,19 @@ static scree_status place(const scree_shape *shape, double step, scree_grid *gri
       return scree_fail(error, SCREE_LIMIT,
                         "a resolution of %g mm needs more than %zu blocks of the sample's lattice",
                         step * 1e3, BLOCK_LIMIT);
-    grid->size[a] = (int32_t)blocks;
+    lattice->size[a] = (int32_t)blocks;
   }
   /* Faces of a drawing lie at round coordinates; an odd fraction keeps the lattice off them. */
   const double gap = 2.381966;
-  grid->shape = shape;
-  grid->step = step;
-  grid->origin = vec3_sub(shape->low, (vec3){gap * step, gap * step, gap * step});
+  lattice->shape = shape;
+  lattice->step = step;
+  lattice->origin = vec3_sub(shape->low, (vec3){gap * step, gap * step, gap * step});
   return SCREE_OK;
 }
 
-scree_status scree_grid_build(const scree_shape *shape, double step, scree_ticker *ticker,
-                              scree_grid *grid, scree_error *error) {
-  scree_grid made = {0};
+scree_status scree_lattice_build(const scree_shape *shape, double step, scree_ticker *ticker,
+                                 scree_lattice *lattice, scree_error *error) {
+  scree_lattice made = {0};
   scree_status status = place(shape, step, &made, error);
   if (status == SCREE_OK) status = make_blocks(&made, error);
   if (status == SCREE_OK) {
@@ -271,8 +276,8 @@ scree_status scree_grid_build(const scree_shape *shape, double step, scree_ticke
   if (status == SCREE_OK && !scree_tick(ticker, "sampling the shape", 0.4))
     status = scree_fail(error, SCREE_CANCELLED, "cancelled while sampling the shape");
   if (status == SCREE_OK)
-    *grid = made;
+    *lattice = made;
   else
-    scree_grid_free(&made);
+    scree_lattice_free(&made);
   return status;
 }

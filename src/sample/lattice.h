@@ -1,7 +1,7 @@
 /* A shape's distance field sampled on a lattice, in blocks of 8^3 corners, kept only near the
  * surface. */
-#ifndef SCREE_SAMPLE_GRID_H
-#define SCREE_SAMPLE_GRID_H
+#ifndef SCREE_SAMPLE_LATTICE_H
+#define SCREE_SAMPLE_LATTICE_H
 
 #include "base/error.h"
 #include "base/progress.h"
@@ -16,40 +16,42 @@ enum {
 
 /* Corner (i, j, k) of the block is value[i + 8 (j + 8 k)]; cell (i, j, k) has it as its lowest
  * corner. */
-typedef struct scree_grid_block {
+typedef struct scree_lattice_block {
   int32_t at[3];         /* of its first corner, in lattice steps */
   uint32_t first_vertex; /* filled by the extraction: its vertices come one after another */
   uint32_t vertex_count; /* ... in the order of cells */
   float value[SCREE_BLOCK_CELLS];    /* distance in steps; negative inside */
   int16_t vertex[SCREE_BLOCK_CELLS]; /* of a cell, counted from first_vertex; -1: none */
-} scree_grid_block;
+} scree_lattice_block;
 
-typedef struct scree_grid {
+typedef struct scree_lattice {
   const scree_shape *shape;
   double step;     /* metres */
   vec3 origin;     /* of lattice corner (0, 0, 0) */
   int32_t size[3]; /* in blocks */
   int32_t *slots;  /* per block of the lattice: its index, or one of the two below */
-  scree_grid_block *blocks;
+  scree_lattice_block *blocks;
   size_t block_count;
-} scree_grid;
+} scree_lattice;
 
 enum { SCREE_SLOT_OUTSIDE = -1, SCREE_SLOT_INSIDE = -2 };
 
 /* Samples the shape; then no face and no cell of the lattice is ambiguous, so that the surface
  * between inside and outside corners is a manifold with one sheet per cell. SCREE_LIMIT where the
- * lattice would be too large. Free with scree_grid_free. */
-scree_status scree_grid_build(const scree_shape *shape, double step, scree_ticker *ticker,
-                              scree_grid *grid, scree_error *error);
-void scree_grid_free(scree_grid *grid);
+ * lattice would be too large. Free with scree_lattice_free. */
+scree_status scree_lattice_build(const scree_shape *shape, double step, scree_ticker *ticker,
+                                 scree_lattice *lattice, scree_error *error);
+void scree_lattice_free(scree_lattice *lattice);
 
 /* The block that owns a lattice corner, or NULL; *corner is the corner's index in it. */
-scree_grid_block *scree_grid_find(const scree_grid *grid, int32_t i, int32_t j, int32_t k,
-                                  int *corner);
+scree_lattice_block *scree_lattice_find(const scree_lattice *lattice, int32_t i, int32_t j,
+                                        int32_t k, int *corner);
 /* The 9^3 corners of the block's cells. */
-void scree_grid_gather(const scree_grid *grid, const scree_grid_block *block, float *pad);
+void scree_lattice_gather(const scree_lattice *lattice, const scree_lattice_block *block,
+                          float *pad);
 /* The solids that matter to the block's cells. */
-void scree_grid_list(const scree_grid *grid, const scree_grid_block *block, scree_shape_list *list);
+void scree_lattice_list(const scree_lattice *lattice, const scree_lattice_block *block,
+                        scree_shape_list *list);
 
 /* Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2). Its offset in a pad: */
 static inline int scree_pad_offset(int c) {
