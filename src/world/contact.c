@@ -75,10 +75,13 @@ static scree_frame relative_frame(const scree_frame *a, const scree_frame *b) {
   mat3 transposed = mat3_transpose(&b->rotation);
   r.rotation = mat3_mul(&transposed, &a->rotation);
   r.position = mat3_tmul_vec(&b->rotation, vec3_sub(a->position, b->position));
-  r.spin = mat3_tmul_vec(&b->rotation, vec3_sub(a->spin, b->spin));
-  vec3 velocity = vec3_sub(vec3_sub(a->velocity, b->velocity),
-                           vec3_cross(a->spin, vec3_sub(a->position, b->position)));
+  vec3 between = vec3_sub(a->position, b->position);
+  vec3 velocity = vec3_sub(vec3_sub(a->velocity, b->velocity), vec3_cross(a->spin, between));
+  vec3 now = vec3_sub(vec3_sub(a->velocity_now, b->velocity_now), vec3_cross(a->spin_now, between));
   r.velocity = mat3_tmul_vec(&b->rotation, velocity);
+  r.spin = mat3_tmul_vec(&b->rotation, vec3_sub(a->spin, b->spin));
+  r.velocity_now = mat3_tmul_vec(&b->rotation, now);
+  r.spin_now = mat3_tmul_vec(&b->rotation, vec3_sub(a->spin_now, b->spin_now));
   return r;
 }
 

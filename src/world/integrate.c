@@ -103,7 +103,9 @@ static void advance_body(scree_world *world, size_t i) {
   scree_frame *frame = &b->frame[i];
   double dt = world->time_step;
   vec3 g = vec3_load(world->options.gravity);
-  frame->velocity = vec3_mad(frame->velocity, vec3_mad(g, b->force[i], 1 / b->mass[i]), dt);
+  vec3 acceleration = vec3_mad(g, b->force[i], 1 / b->mass[i]);
+  frame->velocity = vec3_mad(frame->velocity, acceleration, dt);
+  frame->velocity_now = vec3_mad(frame->velocity, acceleration, 0.5 * dt);
   frame->position = vec3_mad(frame->position, frame->velocity, dt);
   vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
   quat q = b->orientation[i];
@@ -115,6 +117,8 @@ static void advance_body(scree_world *world, size_t i) {
   b->orientation[i] = q;
   frame->rotation = quat_to_mat3(q);
   frame->spin = scree_spin_of(b, i, &frame->rotation, momentum);
+  frame->spin_now =
+      scree_spin_of(b, i, &frame->rotation, vec3_mad(momentum, b->torque[i], 0.5 * dt));
   b->path[i] += b->travel[i];
 }
 

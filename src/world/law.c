@@ -147,7 +147,8 @@ void scree_pair_apply_law(const scree_world *world, scree_pair *pair, scree_touc
       continue;
     }
     touch->velocity = vec3_add(relative->velocity, vec3_cross(relative->spin, touch->at));
-    touch->rate = -vec3_dot(touch->velocity, touch->normal);
+    vec3 now = vec3_add(relative->velocity_now, vec3_cross(relative->spin_now, touch->at));
+    touch->rate = -vec3_dot(now, touch->normal);
     double elastic = touch->share * spring;
     double normal = fmax(0, elastic + touch->share * pair->damping * touch->rate);
     vec3 along = slide(world, pair, touch, normal, &pair->tangential_elastic);

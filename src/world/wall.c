@@ -4,10 +4,7 @@
  * positive on the side of the bodies. */
 #include "world/world.h"
 
-#include "base/alloc.h"
 #include "base/array.h"
-
-#include <string.h>
 
 /* The rotation that takes the z axis to `axis`, the shortest way. */
 static quat turn_to(vec3 axis) {
@@ -44,13 +41,23 @@ static scree_status check_wall(const scree_world *world, const scree_wall *wall,
   return SCREE_OK;
 }
 
+static void set_motion(scree_world_wall *wall, const double *velocity, const double *spin) {
+  for (int i = 0; i < 3; i++) {
+    wall->given.velocity[i] = velocity[i];
+    wall->given.angular_velocity[i] = spin[i];
+  }
+  wall->frame.velocity = wall->frame.velocity_now = vec3_load(velocity);
+  wall->frame.spin = wall->frame.spin_now = vec3_load(spin);
+}
+
 scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, size_t *index,
                                   scree_error *error) {
   scree_status status = check_wall(world, wall, error);
   if (status) return status;
   scree_world_wall made = {.given = *wall, .orientation = turn_to(vec3_load(wall->axis))};
-  made.frame = (scree_frame){vec3_load(wall->position), vec3_load(wall->velocity),
-                             vec3_load(wall->angular_velocity), quat_to_mat3(made.orientation)};
+  made.frame.position = vec3_load(wall->position);
+  made.frame.rotation = quat_to_mat3(made.orientation);
+  set_motion(&made, wall->velocity, wall->angular_velocity);
   if (wall->kind == SCREE_WALL_MESH) {
     status = scree_particle_surface(wall->mesh, 0, &made.surface, error);
     if (status) return status;
@@ -88,10 +95,7 @@ scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "world: wall %zu is to move with a velocity that is not finite", index);
   scree_world_wall *w = &world->walls.items[index];
-  memcpy(w->given.velocity, velocity, sizeof w->given.velocity);
-  memcpy(w->given.angular_velocity, angular_velocity, sizeof w->given.angular_velocity);
-  w->frame.velocity = vec3_load(velocity);
-  w->frame.spin = vec3_load(angular_velocity);
+  set_motion(w, velocity, angular_velocity);
   return SCREE_OK;
 }
 

@@ -215,6 +215,8 @@ void scree_world_set_body(scree_world *world, size_t i, const scree_body *state)
   b->momentum[i] =
       mat3_mul_vec(&frame->rotation, (vec3){in.x * local.x, in.y * local.y, in.z * local.z});
   frame->spin = vec3_load(state->angular_velocity);
+  frame->velocity_now = frame->velocity;
+  frame->spin_now = frame->spin;
   scree_body_forget(world, i);
 }
 

@@ -8,7 +8,8 @@ enum { SCREE_MATERIALS = 64 };
 
 /* Pose and motion of a body or wall, as the contact code reads it. */
 typedef struct scree_frame {
-  vec3 position, velocity, spin; /* spin: angular velocity in space */
+  vec3 position, velocity, spin; /* spin: angular velocity in space; both of the last drift */
+  vec3 velocity_now, spin_now;   /* half a step on, by the last forces: for the dashpots */
   mat3 rotation;                 /* own axes into space */
 } scree_frame;
 
@@ -114,7 +115,7 @@ typedef struct scree_pair {
 typedef struct scree_touch {
   vec3 at, normal; /* normal towards a */
   double overlap, weight, share, rate;
-  vec3 velocity; /* of a relative to b */
+  vec3 velocity; /* of a relative to b, in the last drift */
   vec3 force;    /* on a */
   scree_anchor *anchor;
 } scree_touch;
