@@ -308,8 +308,9 @@ typedef struct scree_distance_options {
                            every facet gets one and every vertex is one besides. 0, the default:
                            the greater vertex count of the two. */
   double hausdorff_gap; /* facets are subdivided until maximum_bound is within this fraction of
-                           maximum, in [1e-6, inf); 0, the default, takes the bound without
-                           subdividing, at no cost. */
+                           maximum, at least 1e-6, or effort is spent (four million samples and
+                           32 per facet); 0, the default, takes the bound without subdividing, at no
+                           cost. */
   bool one_way;         /* only forward; default false */
 } scree_distance_options;
 SCREE_API scree_distance_options scree_default_distance_options(void);
