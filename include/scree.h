@@ -181,7 +181,7 @@ SCREE_API scree_status scree_mesh_weld(const double *corner_positions, size_t fa
 typedef enum scree_file_format {
   SCREE_FORMAT_AUTO,      /* by the path's extension: .stl .ply .obj .off */
   SCREE_FORMAT_STL,       /* "stl": binary; positions rounded to 24 bits */
-  SCREE_FORMAT_STL_ASCII, /* "stl-ascii" */
+  SCREE_FORMAT_STL_ASCII, /* "stl-ascii": positions rounded to 24 bits */
   SCREE_FORMAT_PLY,       /* "ply": binary little endian, double */
   SCREE_FORMAT_PLY_FLOAT, /* "ply-float": binary little endian, positions rounded to 24 bits */
   SCREE_FORMAT_OBJ,       /* "obj" */
@@ -354,7 +354,7 @@ SCREE_API scree_status scree_mesh_distance_field(const scree_mesh *mesh,
 /* What can be wrong with a surface: X(NAME, "name in JSON", grave, "what it counts"). A surface
  * with a grave one cannot serve as a particle; the others are worth knowing. */
 #define SCREE_DEFECT_LIST(X)                                                                       \
-  X(BAD_COORDINATE, "bad_coordinates", true, "vertices that are not finite, or beyond 1e70 m")     \
+  X(BAD_COORDINATE, "bad_coordinates", true, "vertices that are not finite, or beyond 1e30 m")     \
   X(DEGENERATE_FACET, "degenerate_facets", true, "facets without area")                            \
   X(DUPLICATE_FACET, "duplicate_facets", true, "facets on the same three vertices as another")     \
   X(BOUNDARY_EDGE, "boundary_edges", true, "edges of one facet only: the surface is open")         \
@@ -366,7 +366,7 @@ SCREE_API scree_status scree_mesh_distance_field(const scree_mesh *mesh,
   X(CROSSING_PAIR, "crossing_pairs", true, "pairs of facets that pass through each other")         \
   X(TOUCHING_PAIR, "touching_pairs", true, "pairs of facets that touch beyond shared edges")       \
   X(OVERLAPPING_PAIR, "overlapping_pairs", true, "pairs of coplanar facets with a common area")    \
-  X(OVERLAPPING_SHELLS, "overlapping_shells", true, "pairs of shells that cross or touch")         \
+  X(OVERLAPPING_SHELLS, "overlapping_shell_pairs", true, "pairs of shells that cross or touch")    \
   X(NESTED_SHELL, "nested_shells", true, "outward shells inside the material of another")          \
   X(CAVITY, "cavities", false, "inward shells inside the material of another")                     \
   X(EXTRA_BODY, "extra_bodies", false, "closed outward shells in empty space, beyond the first")   \
@@ -418,6 +418,7 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
   X(DROP_DUPLICATE, "dropped_duplicate_facets", "duplicate facets dropped")                        \
   X(CLOSE_SEAM, "closed_seam_edges", "boundary edges closed by welding within the tolerance")      \
   X(SPLIT_T_JUNCTION, "split_t_junctions", "edges split where a vertex lay on them")               \
+  X(DROP_FIN, "dropped_fin_facets", "facets of open sheets hanging on the surface dropped")        \
   X(SPLIT_EDGE, "split_non_manifold_edges", "non-manifold edges split")                            \
   X(TURN, "turned_facets", "facets turned round to agree with their neighbours")                   \
   X(SPLIT_VERTEX, "split_non_manifold_vertices", "non-manifold vertices split")                    \
@@ -444,7 +445,7 @@ typedef struct scree_repair_options {
    * where that closes a seam, in [0, 0.01]; default 1e-4. The smallest distance that does is used,
    * never more than a quarter of a boundary edge there. */
   double seam_tolerance;
-  /* Holes of at most this many edges are filled; default 64, 0 fills none. */
+  /* Holes of at most this many edges are filled; default 128, 0 fills none. */
   size_t hole_edges;
   /* Fill larger holes as well, up to 4,096 edges; default false. */
   bool fill_large_holes;

@@ -16,6 +16,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* What reading and welding accept, m; far within the range of the exact predicates. */
+#define LARGEST_COORDINATE 1e30
+
 /* More pairs than this are not told apart: a surface that meets itself so often is no surface. */
 enum { MEETING_LIMIT = 20000000 };
 
@@ -60,7 +63,7 @@ static scree_status verify_indices(const scree_mesh *mesh, scree_error *error) {
 
 bool scree_vertex_is_bad(const double *position) {
   for (int k = 0; k < 3; k++)
-    if (!(fabs(position[k]) <= SCREE_EXACT_MAX)) return true;
+    if (!(fabs(position[k]) <= LARGEST_COORDINATE)) return true;
   return false;
 }
 
@@ -163,10 +166,8 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
     status = scree_facet_tree_build(mesh, &tree, error);
   if (status == SCREE_OK && options->intersections)
     status = count_meetings(&tree, &shells, progress, check, error);
-  if (status == SCREE_OK) {
-    if (shells.count > 1) scree_shells_wind(&shells, &tree);
-    count_kinds(&shells, check);
-  }
+  if (status == SCREE_OK && shells.count > 1) status = scree_shells_wind(&shells, &tree, error);
+  if (status == SCREE_OK) count_kinds(&shells, check);
   scree_facet_tree_free(&tree);
   scree_shells_free(&shells);
   return status;

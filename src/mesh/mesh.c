@@ -3,6 +3,7 @@
 #include "base/alloc.h"
 #include "base/parallel.h"
 
+#include <float.h>
 #include <string.h>
 
 void scree_mesh_free(scree_mesh *mesh) {
@@ -79,4 +80,22 @@ scree_status scree_mesh_verify(const scree_mesh *mesh, scree_error *error) {
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
+}
+
+/* Roundings (units in the last place of the largest coordinate) below which a height is none: each
+ * of the coordinates may be off by one from parsing and unit conversion, the cross product adds a
+ * few. */
+#define FLAT_ULPS 4.0
+
+bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle) {
+  vec3 p = scree_mesh_corner(mesh, triangle, 0), q = scree_mesh_corner(mesh, triangle, 1),
+       r = scree_mesh_corner(mesh, triangle, 2);
+  double longest2 = fmax(fmax(vec3_norm2(vec3_sub(q, p)), vec3_norm2(vec3_sub(r, q))),
+                         vec3_norm2(vec3_sub(p, r)));
+  vec3 low = vec3_min(vec3_min(p, q), r), high = vec3_max(vec3_max(p, q), r);
+  double largest = fmax(fmax(fmax(fabs(low.x), fabs(high.x)), fmax(fabs(low.y), fabs(high.y))),
+                        fmax(fabs(low.z), fabs(high.z)));
+  double twice_area = vec3_norm(vec3_triangle_normal(p, q, r)),
+         rounding = FLAT_ULPS * DBL_EPSILON * largest;
+  return twice_area <= rounding * sqrt(longest2);
 }

@@ -9,6 +9,10 @@
  * corners cannot be numbered in 32 bits. O(N), parallel. */
 scree_status scree_mesh_verify(const scree_mesh *mesh, scree_error *error);
 
+/* Whether the height of a triangle over its longest edge is not above the rounding of its
+ * coordinates: an exact zero would be lost when units are converted. */
+bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle);
+
 /* Corner k (0, 1, 2) of a triangle. */
 static inline vec3 scree_mesh_corner(const scree_mesh *mesh, size_t triangle, int k) {
   return vec3_load(mesh->positions + 3 * (size_t)mesh->triangles[3 * triangle + (size_t)k]);

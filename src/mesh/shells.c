@@ -8,10 +8,11 @@
  * every crossing a plain one and the count exact. */
 #include "mesh/shells.h"
 
-#include "base/alloc.h"
+#include "base/array.h"
 #include "base/sum.h"
 #include "mesh/predicates.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static bool takes_part(const scree_adjacency *adjacency, size_t triangle) {
@@ -52,6 +53,7 @@ static void add_facet(const scree_mesh *mesh, size_t t, scree_shell *shell, scre
     shell->first_facet = (uint32_t)t;
     shell->extreme = mesh->triangles[3 * t];
     shell->closed = true;
+    shell->outermost = SCREE_NO_SHELL;
   }
   vec3 origin = scree_mesh_corner(mesh, shell->first_facet, 0), p = scree_mesh_corner(mesh, t, 0);
   vec3 normal =
@@ -140,13 +142,29 @@ static bool ray_misses(const scree_box *box, const double *p) {
          box->high[2] < p[2];
 }
 
-static long long wind_around(const scree_shells *shells, const scree_facet_tree *tree,
-                             uint32_t own) {
+/* A facet that a ray goes through. */
+typedef struct hit {
+  uint32_t label;
+  int side;
+} hit;
+
+typedef struct hits {
+  hit *items;
+  size_t count, capacity;
+} hits;
+
+static int compare_hits(const void *a, const void *b) {
+  const hit *x = a, *y = b;
+  return (x->label > y->label) - (x->label < y->label);
+}
+
+static bool shoot(const scree_shells *shells, const scree_facet_tree *tree, uint32_t own,
+                  hits *found) {
   const scree_mesh *mesh = tree->mesh;
   const double *p = mesh->positions + 3 * (size_t)shells->items[own].extreme;
   uint32_t stack[256]; /* deeper than any tree */
   int depth = 0;
-  long long winding = 0;
+  found->count = 0;
   stack[depth++] = 0;
   while (depth > 0) {
     uint32_t index = stack[--depth];
@@ -160,15 +178,48 @@ static long long wind_around(const scree_shells *shells, const scree_facet_tree 
     for (uint32_t i = n->begin; i < n->begin + n->count; i++) {
       uint32_t label = shells->label[tree->order[i]];
       if (label == SCREE_NO_SHELL || label == own || !shells->items[label].closed) continue;
-      winding += crossing(mesh, tree->order[i], p);
+      int side = crossing(mesh, tree->order[i], p);
+      if (side && !SCREE_PUSH(found, (hit){label, side})) return false;
     }
   }
-  return winding;
+  qsort(found->items, found->count, sizeof *found->items, compare_hits);
+  return true;
 }
 
-void scree_shells_wind(scree_shells *shells, const scree_facet_tree *tree) {
-  for (size_t i = 0; i < shells->count; i++)
-    shells->items[i].around = shells->items[i].closed ? wind_around(shells, tree, (uint32_t)i) : 0;
+/* Adds up the hits of each shell; the shells around this one go to the front of found, once each.
+ */
+static void wind_around(scree_shell *shell, hits *found) {
+  size_t kept = 0;
+  shell->around = 0;
+  for (size_t i = 0; i < found->count;) {
+    long long winding = 0;
+    uint32_t label = found->items[i].label;
+    for (; i < found->count && found->items[i].label == label; i++) winding += found->items[i].side;
+    shell->around += winding;
+    if (winding) found->items[kept++].label = label;
+  }
+  shell->depth = (long long)(found->count = kept);
+}
+
+scree_status scree_shells_wind(scree_shells *shells, const scree_facet_tree *tree,
+                               scree_error *error) {
+  hits found = {0};
+  /* the depths are made first: outermost asks for those of others */
+  for (int pass = 0; pass < 2; pass++)
+    for (uint32_t i = 0; i < shells->count; i++) {
+      scree_shell *shell = &shells->items[i];
+      if (!shell->closed || (pass && shell->depth == 0)) continue;
+      if (!shoot(shells, tree, i, &found)) {
+        scree_free(found.items);
+        return scree_fail_memory(error, found.capacity * sizeof(hit), "the nesting of shells");
+      }
+      wind_around(shell, &found);
+      shell->outermost = SCREE_NO_SHELL;
+      for (size_t j = 0; pass && j < found.count; j++)
+        if (shells->items[found.items[j].label].depth == 0) shell->outermost = found.items[j].label;
+    }
+  scree_free(found.items);
+  return SCREE_OK;
 }
 
 scree_shell_kind scree_shell_kind_of(const scree_shell *shell) {

@@ -17,10 +17,12 @@ typedef struct scree_shell {
   uint32_t first_facet; /* the lowest */
   uint32_t extreme;     /* the vertex of the largest x, then y, then z */
   size_t facet_count;
-  bool closed;      /* every edge is used equally often both ways */
-  double area;      /* m^2 */
-  double volume;    /* m^3, signed; about first_facet's first corner where the shell is open */
-  long long around; /* the winding number of the other closed shells around it */
+  bool closed;        /* every edge is used equally often both ways */
+  double area;        /* m^2 */
+  double volume;      /* m^3, signed; about first_facet's first corner where the shell is open */
+  long long around;   /* the winding number of the other closed shells around it */
+  long long depth;    /* how many other closed shells it lies in */
+  uint32_t outermost; /* of these, the one that lies in none; SCREE_NO_SHELL: it lies in none */
 } scree_shell;
 
 #define SCREE_NO_SHELL UINT32_MAX
@@ -31,14 +33,15 @@ typedef struct scree_shells {
   size_t count;
 } scree_shells;
 
-/* Finds the facets connected through shared edges; `around` is left 0. O(N). */
+/* Finds the facets connected through shared edges; as if no shell lay in another. O(N). */
 scree_status scree_shells_find(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                scree_shells *shells, scree_error *error);
 void scree_shells_free(scree_shells *shells);
 
-/* Fills `around` of the closed shells by shooting a ray from the extreme vertex of each: exact
- * where shells neither cross nor touch. O(log N + crossings) each. */
-void scree_shells_wind(scree_shells *shells, const scree_facet_tree *tree);
+/* Fills `around`, `depth` and `outermost` of the closed shells by shooting a ray from the extreme
+ * vertex of each: exact where shells neither cross nor touch. O(log N + crossings) each. */
+scree_status scree_shells_wind(scree_shells *shells, const scree_facet_tree *tree,
+                               scree_error *error);
 
 scree_shell_kind scree_shell_kind_of(const scree_shell *shell);
 

@@ -11,14 +11,8 @@
 #include "mesh/adjacency.h"
 #include "mesh/mesh.h"
 
-#include <float.h>
 #include <stdlib.h>
 #include <string.h>
-
-/* Roundings (units in the last place of the largest coordinate) below which a height is none: each
- * of the coordinates may be off by one from parsing and unit conversion, the cross product adds a
- * few. */
-#define FLAT_ULPS 4.0
 
 typedef struct counter {
   const scree_mesh *mesh;
@@ -30,23 +24,10 @@ static bool takes_part(const counter *c, size_t triangle) {
   return c->adjacency.ring[3 * triangle] != SCREE_NO_HALF_EDGE;
 }
 
-static bool is_flat(const scree_mesh *mesh, size_t triangle) {
-  vec3 p = scree_mesh_corner(mesh, triangle, 0), q = scree_mesh_corner(mesh, triangle, 1),
-       r = scree_mesh_corner(mesh, triangle, 2);
-  double longest2 = fmax(fmax(vec3_norm2(vec3_sub(q, p)), vec3_norm2(vec3_sub(r, q))),
-                         vec3_norm2(vec3_sub(p, r)));
-  vec3 low = vec3_min(vec3_min(p, q), r), high = vec3_max(vec3_max(p, q), r);
-  double largest = fmax(fmax(fmax(fabs(low.x), fabs(high.x)), fmax(fabs(low.y), fabs(high.y))),
-                        fmax(fabs(low.z), fabs(high.z)));
-  double twice_area = vec3_norm(vec3_triangle_normal(p, q, r)),
-         rounding = FLAT_ULPS * DBL_EPSILON * largest;
-  return twice_area <= rounding * sqrt(longest2);
-}
-
 static void count_facets(counter *c) {
   for (size_t t = 0; t < c->mesh->triangle_count; t++) {
     c->found.facet_count += takes_part(c, t);
-    c->found.degenerate_facet_count += !takes_part(c, t) || is_flat(c->mesh, t);
+    c->found.degenerate_facet_count += !takes_part(c, t) || scree_facet_is_flat(c->mesh, t);
   }
 }
 

@@ -1,0 +1,308 @@
+/* The whole of a repair: check, do what the defects found ask for, check again, until nothing is
+ * wrong or nothing more can be done.
+ *
+ * A round begins with the cheap check (no self-intersections). While that finds something, the
+ * stages for what it found run, in an order in which each finds what it needs: duplicates and flat
+ * facets go, seams and T-junctions close, fins go, the winding is made to agree, edges of many
+ * facets are sorted out by it, open scraps go, holes are filled, and vertices with several fans are
+ * split last, because filling joins fans. Once the surface is closed and manifold, shells are put
+ * in order. Then the exact check looks for facets that meet; those of one shell are cut out with
+ * their neighbourhood, wider each time, and the round starts over.
+ *
+ * Every round ends with a weld, so vertices and facets are always in canonical order and the result
+ * does not depend on the order of the input. Nothing is called repaired that the check has not
+ * passed. */
+#include "mesh/repair.h"
+#include "base/alloc.h"
+#include "mesh/check.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  ROUNDS = 24,   /* in all; three or four are usual */
+  CUT_ROUNDS = 4 /* of these with cutting */
+};
+
+static const struct {
+  const char *name, *text;
+} actions[] = {
+#define ACTION_ROW(name, key, text) {key, text},
+    SCREE_REPAIR_LIST(ACTION_ROW)
+#undef ACTION_ROW
+};
+
+const char *scree_repair_action_name(scree_repair_action action) {
+  return (unsigned)action < SCREE_REPAIR_ACTION_COUNT ? actions[action].name : "unknown";
+}
+
+const char *scree_repair_action_text(scree_repair_action action) {
+  return (unsigned)action < SCREE_REPAIR_ACTION_COUNT ? actions[action].text : "unknown";
+}
+
+scree_repair_options scree_default_repair_options(void) {
+  return (scree_repair_options){.seam_tolerance = 1e-4,
+                                .hole_edges = 128,
+                                .debris_share = 0.01,
+                                .cut_intersections = true,
+                                .intersections = true};
+}
+
+static scree_status verify_options(const scree_repair_options *o, scree_error *error) {
+  if (!(o->seam_tolerance >= 0 && o->seam_tolerance <= 0.01))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "seam_tolerance is %g; the range is [0, 0.01]",
+                      o->seam_tolerance);
+  if (!(o->debris_share >= 0 && o->debris_share < 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "debris_share is %g; the range is [0, 1)",
+                      o->debris_share);
+  return SCREE_OK;
+}
+
+/* ---- Welding ---- */
+
+static void measure_box(scree_repair *r) {
+  vec3 low = {DBL_MAX, DBL_MAX, DBL_MAX}, high = vec3_neg(low);
+  for (size_t v = 0; v < r->mesh.vertex_count; v++) {
+    low = vec3_min(low, vec3_load(r->mesh.positions + 3 * v));
+    high = vec3_max(high, vec3_load(r->mesh.positions + 3 * v));
+  }
+  r->diagonal = r->mesh.vertex_count ? vec3_distance(low, high) : 0;
+  vec3 far = vec3_max(vec3_neg(low), high);
+  r->largest = fmax(far.x, fmax(far.y, far.z));
+}
+
+/* Replaces the mesh under repair by `mesh` welded exactly and put in canonical order; facets with
+ * bad coordinates are left out. mesh may be r->mesh. */
+static scree_status weld(scree_repair *r, const scree_mesh *mesh, size_t *bad, size_t *collapsed,
+                         scree_error *error) {
+  scree_mesh welded;
+  double *corners = NULL;
+  size_t count = 0;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(corners, 9 * mesh->triangle_count, error, done);
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    bool good = true;
+    for (size_t k = 0; k < 3; k++) {
+      const double *p = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k];
+      good = good && !scree_vertex_is_bad(p);
+      memcpy(corners + 9 * count + 3 * k, p, 3 * sizeof *p);
+    }
+    count += good;
+  }
+  *bad = mesh->triangle_count - count;
+  status = scree_mesh_weld(corners, count, 0, &welded, collapsed, error);
+  if (status != SCREE_OK) goto done;
+  scree_mesh_free(&r->mesh);
+  r->mesh = welded;
+  r->vertex_capacity = welded.vertex_count;
+  r->triangle_capacity = welded.triangle_count;
+  measure_box(r);
+done:
+  scree_free(corners);
+  return status;
+}
+
+/* ---- Duplicates ---- */
+
+typedef struct corner_key {
+  uint32_t low, middle, high, facet;
+} corner_key;
+
+static int compare_corner_keys(const void *a, const void *b) {
+  const corner_key *x = a, *y = b;
+  if (x->low != y->low) return x->low < y->low ? -1 : 1;
+  if (x->middle != y->middle) return x->middle < y->middle ? -1 : 1;
+  if (x->high != y->high) return x->high < y->high ? -1 : 1;
+  return (x->facet > y->facet) - (x->facet < y->facet);
+}
+
+static corner_key key_of(const scree_mesh *mesh, size_t t) {
+  const uint32_t *c = mesh->triangles + 3 * t;
+  uint32_t low = c[0] < c[1] ? c[0] : c[1], high = c[0] < c[1] ? c[1] : c[0], middle = c[2];
+  if (middle < low) {
+    uint32_t keep = low;
+    low = middle, middle = keep;
+  } else if (middle > high) {
+    uint32_t keep = high;
+    high = middle, middle = keep;
+  }
+  return (corner_key){low, middle, high, (uint32_t)t};
+}
+
+scree_status scree_repair_duplicates(scree_repair *r, scree_error *error) {
+  size_t count = r->mesh.triangle_count;
+  corner_key *keys = NULL;
+  bool *marked = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(keys, count, error, done);
+  SCREE_ALLOC_OR(marked, count, error, done);
+  memset(marked, 0, count);
+  for (size_t t = 0; t < count; t++) keys[t] = key_of(&r->mesh, t);
+  qsort(keys, count, sizeof *keys, compare_corner_keys);
+  for (size_t i = 1; i < count; i++)
+    if (keys[i].low == keys[i - 1].low && keys[i].middle == keys[i - 1].middle &&
+        keys[i].high == keys[i - 1].high)
+      marked[keys[i].facet] = true;
+  r->report.done[SCREE_REPAIR_DROP_DUPLICATE] += scree_repair_remove(r, marked);
+  status = SCREE_OK;
+done:
+  scree_free(keys);
+  scree_free(marked);
+  return status;
+}
+
+/* ---- Rounds ---- */
+
+static scree_status check_now(const scree_repair *r, bool intersections, scree_check *check,
+                              scree_error *error) {
+  scree_check_options options = {.intersections = intersections};
+  return scree_mesh_check(&r->mesh, &options, r->progress, check, error);
+}
+
+static bool surface_is_sound(const scree_check *check) {
+  for (int i = SCREE_DEFECT_BAD_COORDINATE; i <= SCREE_DEFECT_INCONSISTENT_EDGE; i++)
+    if (check->defects[i]) return false;
+  return true;
+}
+
+static scree_status mend_open(scree_repair *r, scree_error *error) {
+  const scree_repair_options *o = r->options;
+  size_t edge_limit = o->fill_large_holes ? SIZE_MAX : o->hole_edges;
+  scree_status status = scree_repair_scraps(r, error);
+  if (status == SCREE_OK) status = scree_repair_holes(r, edge_limit, error);
+  return status;
+}
+
+static scree_status mend_surface(scree_repair *r, const scree_check *check, scree_error *error) {
+  const size_t *defect = check->defects;
+  bool open = defect[SCREE_DEFECT_BOUNDARY_EDGE] > 0;
+  bool crowded = defect[SCREE_DEFECT_NON_MANIFOLD_EDGE] > 0;
+  bool dented = defect[SCREE_DEFECT_DEGENERATE_FACET] > 0;
+  scree_status status = SCREE_OK;
+  if (defect[SCREE_DEFECT_DUPLICATE_FACET]) status = scree_repair_duplicates(r, error);
+  if (status == SCREE_OK && dented) status = scree_repair_flat(r, error);
+  if (status == SCREE_OK && (open || dented)) status = scree_repair_seams(r, error);
+  if (status == SCREE_OK && (open || dented)) status = scree_repair_t_junctions(r, error);
+  if (status == SCREE_OK && crowded) status = scree_repair_fins(r, error);
+  if (status == SCREE_OK && (crowded || defect[SCREE_DEFECT_INCONSISTENT_EDGE]))
+    status = scree_repair_winding(r, error);
+  if (status == SCREE_OK && crowded) status = scree_repair_edges(r, error);
+  if (status == SCREE_OK && open) status = mend_open(r, error);
+  if (status == SCREE_OK && !open && defect[SCREE_DEFECT_NON_MANIFOLD_VERTEX])
+    status = scree_repair_vertices(r, error);
+  return status;
+}
+
+static size_t actions_done(const scree_repair *r) {
+  size_t sum = 0;
+  for (int i = 0; i < SCREE_REPAIR_ACTION_COUNT; i++) sum += r->report.done[i];
+  return sum;
+}
+
+/* One step on a mesh with the given cheap check; *settled where there is nothing left to do. */
+static scree_status step(scree_repair *r, const scree_check *check, int *cuts, bool *settled,
+                         scree_error *error) {
+  size_t before = actions_done(r), cut_count = 0;
+  scree_status status;
+  *settled = false;
+  if (!surface_is_sound(check)) {
+    status = mend_surface(r, check, error);
+    *settled = status == SCREE_OK && actions_done(r) == before;
+    return status;
+  }
+  status = scree_repair_shells(r, error);
+  if (status != SCREE_OK || actions_done(r) != before) return status;
+  *settled = true;
+  if (!r->options->intersections || !r->options->cut_intersections || r->untangled ||
+      *cuts >= CUT_ROUNDS)
+    return SCREE_OK;
+  status = scree_repair_cut(r, ++*cuts, &cut_count, error);
+  *settled = cut_count == 0;
+  return status;
+}
+
+static scree_status run_rounds(scree_repair *r, scree_error *error) {
+  int cuts = 0;
+  size_t bad, collapsed;
+  scree_status status = SCREE_OK;
+  for (int round = 0; round < ROUNDS && status == SCREE_OK; round++) {
+    bool settled;
+    status = check_now(r, false, &r->report.after, error);
+    if (status != SCREE_OK || r->mesh.triangle_count == 0) return status;
+    status = step(r, &r->report.after, &cuts, &settled, error);
+    if (status != SCREE_OK || settled) break;
+    status = weld(r, &r->mesh, &bad, &collapsed, error);
+    r->report.done[SCREE_REPAIR_DROP_DEGENERATE] += status == SCREE_OK ? collapsed : 0;
+  }
+  return status;
+}
+
+/* Everything after the first check, which found what r->report.before says. */
+static scree_status mend(scree_repair *r, const scree_mesh *mesh, scree_error *error) {
+  size_t *done = r->report.done, collapsed = 0;
+  size_t used =
+      r->report.before.vertex_count - r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX];
+  scree_status status = weld(r, mesh, &done[SCREE_REPAIR_DROP_BAD], &collapsed, error);
+  if (status != SCREE_OK) return status;
+  done[SCREE_REPAIR_DROP_DEGENERATE] = collapsed;
+  if (!done[SCREE_REPAIR_DROP_BAD] && !collapsed && used > r->mesh.vertex_count)
+    done[SCREE_REPAIR_WELD] = used - r->mesh.vertex_count;
+  r->untangled = r->report.before.usable;
+  if (!r->report.before.usable || r->report.before.shell_count > 1) status = run_rounds(r, error);
+  if (status != SCREE_OK) return status;
+  if (actions_done(r) > 0) return check_now(r, r->options->intersections, &r->report.after, error);
+  /* the same facets as before, without unused vertices */
+  r->report.after = r->report.before;
+  r->report.after.vertex_count = r->mesh.vertex_count;
+  r->report.after.defects[SCREE_DEFECT_UNUSED_VERTEX] = 0;
+  return SCREE_OK;
+}
+
+/* mesh with its check known. */
+static scree_status repair_checked(const scree_mesh *mesh, const scree_check *before,
+                                   const scree_repair_options *options,
+                                   const scree_progress *progress, scree_mesh *repaired,
+                                   scree_repair_report *report, scree_error *error) {
+  scree_repair r = {.options = options, .progress = progress};
+  r.report.before = *before;
+  scree_status status = mend(&r, mesh, error);
+  if (status == SCREE_OK || status == SCREE_BAD_MESH)
+    if (report) *report = r.report;
+  if (status == SCREE_OK && !r.report.after.usable)
+    status = scree_fail(error, SCREE_BAD_MESH, "The mesh cannot be repaired; what remains is %s",
+                        r.report.after.verdict);
+  if (status == SCREE_OK)
+    *repaired = r.mesh;
+  else
+    scree_mesh_free(&r.mesh);
+  return status;
+}
+
+scree_status scree_mesh_repair(const scree_mesh *mesh, const scree_repair_options *options,
+                               const scree_progress *progress, scree_mesh *repaired,
+                               scree_repair_report *report, scree_error *error) {
+  scree_repair_options chosen = options ? *options : scree_default_repair_options();
+  scree_check_options how = {.intersections = chosen.intersections};
+  scree_check before;
+  scree_status status = verify_options(&chosen, error);
+  if (status == SCREE_OK) status = scree_mesh_check(mesh, &how, progress, &before, error);
+  if (status != SCREE_OK) return status;
+  return repair_checked(mesh, &before, &chosen, progress, repaired, report, error);
+}
+
+scree_status scree_mesh_prepare(const scree_mesh *mesh, const scree_repair_options *options,
+                                const scree_progress *progress, scree_mesh *ready,
+                                scree_repair_report *report, scree_error *error) {
+  scree_repair_report made = {.seam_distance = 0};
+  if (options) return scree_mesh_repair(mesh, options, progress, ready, report, error);
+  scree_status status = scree_mesh_check(mesh, NULL, progress, &made.before, error);
+  if (status != SCREE_OK) return status;
+  made.after = made.before;
+  if (!made.before.usable)
+    status = scree_fail(error, SCREE_BAD_MESH, "The mesh is %s", made.before.verdict);
+  else
+    status = scree_mesh_copy(mesh, ready, error);
+  if (report && (status == SCREE_OK || status == SCREE_BAD_MESH)) *report = made;
+  return status;
+}

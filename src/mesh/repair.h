@@ -1,0 +1,59 @@
+/* The stages of a repair, in the order of scree_repair_action; each works on one mesh in place,
+ * counts what it does, and leaves a mesh of valid indices and finite coordinates. The public
+ * interface is in scree.h, section 2.4; repair.c tells the whole. */
+#ifndef SCREE_MESH_REPAIR_H
+#define SCREE_MESH_REPAIR_H
+
+#include "mesh/adjacency.h"
+#include "mesh/intersect.h"
+#include "mesh/mesh.h"
+#include "mesh/shells.h"
+
+typedef struct scree_repair {
+  scree_mesh mesh; /* owned */
+  size_t vertex_capacity, triangle_capacity;
+  const scree_repair_options *options;
+  const scree_progress *progress;
+  double diagonal; /* of the bounding box, m */
+  double largest;  /* coordinate, m */
+  bool untangled;  /* the surface is known to meet itself nowhere */
+  scree_repair_report report;
+} scree_repair;
+
+/* ---- repair_edit.c: changes to the mesh ---- */
+
+/* Room for more; false when memory is out. */
+bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *index);
+bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c);
+/* Removes the facets marked; returns how many. */
+size_t scree_repair_remove(scree_repair *r, const bool *marked);
+/* Removes facets that name a vertex twice; returns how many. */
+size_t scree_repair_remove_collapsed(scree_repair *r);
+/* The sentence for a stage that ran out of memory. */
+scree_status scree_repair_no_memory(scree_error *error);
+
+/* ---- The stages ---- */
+
+/* repair.c: facets on the same three vertices as another. */
+scree_status scree_repair_duplicates(scree_repair *r, scree_error *error);
+/* repair_seams.c: facets without area; boundary vertices close to each other; boundary vertices on
+ * boundary edges. */
+scree_status scree_repair_flat(scree_repair *r, scree_error *error);
+scree_status scree_repair_seams(scree_repair *r, scree_error *error);
+scree_status scree_repair_t_junctions(scree_repair *r, scree_error *error);
+/* repair_manifold.c: open sheets hanging on edges of three or more facets; such edges; winding;
+ * vertices with several fans. */
+scree_status scree_repair_fins(scree_repair *r, scree_error *error);
+scree_status scree_repair_edges(scree_repair *r, scree_error *error);
+scree_status scree_repair_winding(scree_repair *r, scree_error *error);
+scree_status scree_repair_vertices(scree_repair *r, scree_error *error);
+/* repair_holes.c */
+scree_status scree_repair_holes(scree_repair *r, size_t edge_limit, scree_error *error);
+/* repair_shells.c: open debris; then closed debris, nesting and outside. */
+scree_status scree_repair_scraps(scree_repair *r, scree_error *error);
+scree_status scree_repair_shells(scree_repair *r, scree_error *error);
+/* Cuts out facets that meet others of their shell, with `rings` rings of neighbours; *cut_count 0
+ * where nothing could be cut. */
+scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error);
+
+#endif

@@ -1,0 +1,339 @@
+/* Filling holes: the boundary loops are found, and each is triangulated with the vertices it has.
+ *
+ * Loops follow boundary half-edges; where a loop comes back to a vertex it has been at, the part
+ * between is a loop of its own. Up to EXACT_EDGES edges, the triangulation is the best of all by
+ * dynamic programming over diagonals (Barequet and Sharir, CAGD 12 (1995)), by Liepa's measure
+ * ("Filling holes in meshes", SGP 2003): the smallest worst angle between neighbouring facets,
+ * those round the hole included, then the smallest area. Diagonals that are edges already are
+ * forbidden: a third facet there would not be a surface. Larger loops are cut ear by ear, the
+ * flattest and smallest first. */
+#include "base/alloc.h"
+#include "base/array.h"
+#include "mesh/repair.h"
+
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  EXACT_EDGES = 160, /* n^3 / 6 steps: 0.1 s */
+  MOST_EDGES = 4096,
+};
+
+typedef struct loop {
+  const scree_repair *r;
+  const scree_adjacency *adjacency;
+  uint32_t *vertex;    /* in the direction in which the filling runs along the hole */
+  uint32_t *half_edge; /* i: the facet's half-edge from vertex[i + 1] to vertex[i] */
+  size_t count;
+} loop;
+
+static vec3 at(const loop *l, size_t i) {
+  return vec3_load(l->r->mesh.positions + 3 * (size_t)l->vertex[i]);
+}
+
+static vec3 normal_of(const loop *l, size_t i, size_t j, size_t k) {
+  return vec3_unit(vec3_triangle_normal(at(l, i), at(l, j), at(l, k)));
+}
+
+/* The unit normal of the facet across the loop's edge i. */
+static vec3 normal_across(const loop *l, size_t i) {
+  size_t t = l->half_edge[i] / 3;
+  const scree_mesh *m = &l->r->mesh;
+  return vec3_unit(vec3_triangle_normal(scree_mesh_corner(m, t, 0), scree_mesh_corner(m, t, 1),
+                                        scree_mesh_corner(m, t, 2)));
+}
+
+/* Whether the mesh has an edge between the two: edges are sorted by lower, then higher vertex. */
+static bool edge_exists(const loop *l, size_t i, size_t j) {
+  uint32_t a = l->vertex[i], b = l->vertex[j];
+  uint64_t want = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+  size_t low = 0, high = l->adjacency->edge_count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    uint32_t h = l->adjacency->edges[middle];
+    uint32_t u = scree_half_edge_from(&l->r->mesh, h), v = scree_half_edge_to(&l->r->mesh, h);
+    uint64_t key = u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
+    if (key == want) return true;
+    if (key < want)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return false;
+}
+
+/* ---- The best triangulation ---- */
+
+/* The cost of a filling: 1 - cosine of its worst angle, then its area. */
+typedef struct cost {
+  double bend, area;
+} cost;
+
+static bool cheaper(cost a, cost b) {
+  /* angles alike within rounding are alike */
+  if (fabs(a.bend - b.bend) > 1e-9) return a.bend < b.bend;
+  return a.area < b.area;
+}
+
+typedef struct cell {
+  cost cost;
+  uint32_t apex; /* of the triangle on diagonal (i, k); 0: none is possible */
+} cell;
+
+static double bend_between(vec3 a, vec3 b) {
+  return 1 - vec3_dot(a, b);
+}
+
+/* The normal of what lies beyond side (i, j) of a new triangle: a chosen triangle, or the mesh. */
+static vec3 beyond(const loop *l, const cell *table, size_t i, size_t j) {
+  if (j == i + 1) return normal_across(l, i);
+  return normal_of(l, i, table[i * l->count + j].apex, j);
+}
+
+static cost cost_of(const loop *l, const cell *table, size_t i, size_t j, size_t k) {
+  size_t n = l->count;
+  const cell *left = &table[i * n + j], *right = &table[j * n + k];
+  vec3 doubled = vec3_triangle_normal(at(l, i), at(l, j), at(l, k));
+  vec3 normal = vec3_unit(doubled);
+  cost c = {fmax(left->cost.bend, right->cost.bend),
+            left->cost.area + right->cost.area + 0.5 * vec3_norm(doubled)};
+  c.bend = fmax(c.bend, bend_between(normal, beyond(l, table, i, j)));
+  c.bend = fmax(c.bend, bend_between(normal, beyond(l, table, j, k)));
+  if (i == 0 && k == n - 1) c.bend = fmax(c.bend, bend_between(normal, normal_across(l, n - 1)));
+  return c;
+}
+
+static bool possible(const loop *l, const cell *table, size_t i, size_t j) {
+  return j == i + 1 || table[i * l->count + j].apex != 0;
+}
+
+static void best_apex(const loop *l, cell *table, size_t i, size_t k) {
+  cell *best = &table[i * l->count + k];
+  *best = (cell){{DBL_MAX, DBL_MAX}, 0};
+  bool closing = i == 0 && k == l->count - 1; /* that side is the loop's own edge */
+  if (!closing && edge_exists(l, i, k)) return;
+  for (size_t j = i + 1; j < k; j++) {
+    if (!possible(l, table, i, j) || !possible(l, table, j, k)) continue;
+    cost c = cost_of(l, table, i, j, k);
+    if (best->apex == 0 || cheaper(c, best->cost)) *best = (cell){c, (uint32_t)j};
+  }
+}
+
+static bool add_filling(scree_repair *r, const loop *l, const cell *table) {
+  uint32_t stack[2 * EXACT_EDGES][2];
+  size_t depth = 0;
+  stack[depth][0] = 0, stack[depth++][1] = (uint32_t)l->count - 1;
+  while (depth > 0) {
+    uint32_t i = stack[--depth][0], k = stack[depth][1];
+    if (k == i + 1) continue;
+    uint32_t j = table[i * l->count + k].apex;
+    if (!scree_repair_add_facet(r, l->vertex[i], l->vertex[j], l->vertex[k])) return false;
+    stack[depth][0] = i, stack[depth++][1] = j;
+    stack[depth][0] = j, stack[depth++][1] = k;
+  }
+  return true;
+}
+
+static scree_status fill_best(scree_repair *r, const loop *l, bool *filled, scree_error *error) {
+  size_t n = l->count;
+  cell *table = NULL;
+  scree_status status = SCREE_OK;
+  SCREE_ALLOC_OR(table, n * n, error, out_of_memory);
+  memset(table, 0, n * n * sizeof *table);
+  for (size_t span = 2; span < n; span++)
+    for (size_t i = 0; i + span < n; i++) best_apex(l, table, i, i + span);
+  *filled = table[n - 1].apex != 0;
+  if (*filled && !add_filling(r, l, table)) status = scree_repair_no_memory(error);
+  scree_free(table);
+  return status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* ---- Ear by ear ---- */
+
+/* How bad it is to cut the ear at b: its bend against the facets it meets, weighed by area. */
+static double ear_cost(const loop *l, const uint32_t *next, const uint32_t *previous,
+                       const vec3 *across, uint32_t b) {
+  uint32_t a = previous[b], c = next[b];
+  vec3 doubled = vec3_triangle_normal(at(l, a), at(l, b), at(l, c));
+  vec3 normal = vec3_unit(doubled);
+  double bend = fmax(bend_between(normal, across[a]), bend_between(normal, across[b]));
+  return (bend + 0.01) * vec3_norm2(vec3_sub(at(l, c), at(l, a)));
+}
+
+typedef struct ears {
+  uint32_t *next, *previous;
+  vec3 *across; /* i: normal of what lies beyond the side from i to next[i] */
+  double *cost;
+} ears;
+
+static scree_status alloc_ears(ears *e, size_t n, scree_error *error) {
+  SCREE_ALLOC_OR(e->next, n, error, out_of_memory);
+  SCREE_ALLOC_OR(e->previous, n, error, out_of_memory);
+  SCREE_ALLOC_OR(e->across, n, error, out_of_memory);
+  SCREE_ALLOC_OR(e->cost, n, error, out_of_memory);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static void free_ears(ears *e) {
+  scree_free(e->next);
+  scree_free(e->previous);
+  scree_free(e->across);
+  scree_free(e->cost);
+}
+
+static uint32_t cheapest_ear(const loop *l, const ears *e, uint32_t start, size_t left) {
+  uint32_t best = UINT32_MAX, b = start;
+  for (size_t i = 0; i < left; i++, b = e->next[b]) {
+    if (best != UINT32_MAX && e->cost[b] >= e->cost[best]) continue;
+    if (left > 3 && edge_exists(l, e->previous[b], e->next[b])) continue;
+    best = b;
+  }
+  return best;
+}
+
+/* O(n^2) and a search per ear considered; nothing is added where no ear can be cut. */
+static scree_status fill_by_ears(scree_repair *r, const loop *l, bool *filled, scree_error *error) {
+  size_t n = l->count, first_facet = r->mesh.triangle_count;
+  ears e = {0};
+  uint32_t b = 0;
+  scree_status status = alloc_ears(&e, n, error);
+  if (status != SCREE_OK) goto done;
+  for (uint32_t i = 0; i < n; i++) {
+    e.next[i] = i + 1 < n ? i + 1 : 0;
+    e.previous[i] = i ? i - 1 : (uint32_t)n - 1;
+    e.across[i] = normal_across(l, i);
+  }
+  for (uint32_t i = 0; i < n; i++) e.cost[i] = ear_cost(l, e.next, e.previous, e.across, i);
+  for (size_t left = n; left >= 3; left--) {
+    uint32_t ear = cheapest_ear(l, &e, b, left);
+    if (ear == UINT32_MAX) {
+      r->mesh.triangle_count = first_facet;
+      goto done;
+    }
+    uint32_t a = e.previous[ear], c = e.next[ear];
+    if (!scree_repair_add_facet(r, l->vertex[a], l->vertex[ear], l->vertex[c])) {
+      status = scree_repair_no_memory(error);
+      goto done;
+    }
+    e.across[a] = normal_of(l, a, ear, c);
+    e.next[a] = c;
+    e.previous[c] = b = a;
+    e.cost[a] = ear_cost(l, e.next, e.previous, e.across, a);
+    e.cost[c] = ear_cost(l, e.next, e.previous, e.across, c);
+  }
+  *filled = true;
+done:
+  free_ears(&e);
+  return status;
+}
+
+/* ---- Loops ---- */
+
+/* All boundary half-edges as chains: follow[h] is the boundary half-edge that starts where h ends,
+ * found by turning round that vertex through the facets of h's fan. */
+static uint32_t follow(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t h) {
+  uint32_t g = scree_half_edge_next(h);
+  for (size_t turns = 0; turns < 3 * mesh->triangle_count; turns++) {
+    uint32_t other = adjacency->ring[g];
+    if (other == g) return g;
+    /* only plain edges with agreeing winding can be turned through */
+    if (adjacency->ring[other] != g || mesh->triangles[other] == mesh->triangles[g]) break;
+    g = scree_half_edge_next(other);
+  }
+  return SCREE_NO_HALF_EDGE;
+}
+
+typedef struct chain {
+  uint32_t *items;
+  size_t count, capacity;
+} chain;
+
+/* One loop of half-edges, in the order of the boundary (against the filling's). */
+static scree_status fill_loop(scree_repair *r, const scree_adjacency *adjacency,
+                              const uint32_t *half_edges, size_t count, size_t edge_limit,
+                              scree_error *error) {
+  loop l = {.r = r, .adjacency = adjacency, .count = count};
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  bool filled = false;
+  size_t before = r->mesh.triangle_count;
+  if (count < 3 || count > edge_limit || count > MOST_EDGES) return SCREE_OK;
+  if (count == 3 && half_edges[0] / 3 == half_edges[1] / 3) return SCREE_OK; /* a lone facet */
+  SCREE_ALLOC_OR(l.vertex, count, error, done);
+  SCREE_ALLOC_OR(l.half_edge, count, error, done);
+  for (size_t i = 0; i < count; i++) {
+    /* the filling runs backwards: from the end of each half-edge to its start */
+    uint32_t h = half_edges[count - 1 - i];
+    l.vertex[i] = scree_half_edge_to(&r->mesh, h);
+    l.half_edge[i] = h;
+  }
+  status =
+      count <= EXACT_EDGES ? fill_best(r, &l, &filled, error) : fill_by_ears(r, &l, &filled, error);
+  if (filled) {
+    r->report.done[SCREE_REPAIR_FILL_HOLE]++;
+    r->report.done[SCREE_REPAIR_FILL_FACET] += r->mesh.triangle_count - before;
+  }
+done:
+  scree_free(l.vertex);
+  scree_free(l.half_edge);
+  return status;
+}
+
+/* Walks the loop from `start`, filling each part that closes on itself. place[v] is 1 + the
+ * position of v in the chain, or 0. */
+static scree_status walk(scree_repair *r, const scree_adjacency *adjacency, uint32_t start,
+                         bool *seen, uint32_t *place, chain *c, size_t edge_limit,
+                         scree_error *error) {
+  scree_status status = SCREE_OK;
+  c->count = 0;
+  for (uint32_t h = start; status == SCREE_OK && h != SCREE_NO_HALF_EDGE && !seen[h];
+       h = follow(&r->mesh, adjacency, h)) {
+    seen[h] = true;
+    if (c->count == 0) place[r->mesh.triangles[h]] = 1;
+    if (!SCREE_PUSH(c, h)) return scree_repair_no_memory(error);
+    uint32_t end = scree_half_edge_to(&r->mesh, h);
+    if (!place[end]) {
+      place[end] = (uint32_t)c->count + 1;
+      continue;
+    }
+    size_t from = place[end] - 1;
+    status = fill_loop(r, adjacency, c->items + from, c->count - from, edge_limit, error);
+    for (size_t i = from + 1; i < c->count; i++) place[r->mesh.triangles[c->items[i]]] = 0;
+    c->count = from;
+  }
+  for (size_t i = 0; i < c->count; i++) {
+    place[r->mesh.triangles[c->items[i]]] = 0;
+    place[scree_half_edge_to(&r->mesh, c->items[i])] = 0;
+  }
+  place[r->mesh.triangles[start]] = 0;
+  return status;
+}
+
+scree_status scree_repair_holes(scree_repair *r, size_t edge_limit, scree_error *error) {
+  scree_adjacency adjacency = {0};
+  bool *seen = NULL;
+  uint32_t *place = NULL;
+  chain c = {0};
+  size_t half_edge_count = 3 * r->mesh.triangle_count;
+  scree_status status = scree_adjacency_build(&r->mesh, &adjacency, error);
+  if (status != SCREE_OK) return status;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(seen, half_edge_count, error, done);
+  SCREE_ALLOC_OR(place, r->mesh.vertex_count, error, done);
+  memset(seen, 0, half_edge_count);
+  memset(place, 0, r->mesh.vertex_count * sizeof *place);
+  status = SCREE_OK;
+  for (uint32_t h = 0; h < half_edge_count && status == SCREE_OK; h++)
+    if (adjacency.ring[h] == h && !seen[h])
+      status = walk(r, &adjacency, h, seen, place, &c, edge_limit, error);
+done:
+  scree_free(seen);
+  scree_free(place);
+  scree_free(c.items);
+  scree_adjacency_free(&adjacency);
+  return status;
+}

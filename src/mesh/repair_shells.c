@@ -1,0 +1,282 @@
+/* Shells: scraps and debris dropped, the rest turned outside out, what lies inside material
+ * dropped, and facets cut out where a shell meets itself.
+ *
+ * A shell with nothing around it bounds material, whatever its winding was: an outermost shell that
+ * is inward is turned, and all shells within it are, so that a scan that is inside out as a whole
+ * keeps its cavities. An inward shell that then still has no material around it is turned alone. An
+ * outward shell within material adds nothing to the union and is dropped; an inward one is a cavity
+ * and stays. None of this is done to a shell that meets another: what is inside what has no answer
+ * there. */
+#include "base/alloc.h"
+#include "mesh/repair.h"
+
+#include <string.h>
+
+enum {
+  MEETING_LIMIT = 4000000, /* more, and cutting is hopeless */
+  TURNS = 64,              /* depth of shells in shells that is set right */
+};
+
+/* No more than this share of the area is cut out: beyond it, it is no local repair. */
+#define CUT_SHARE 0.05
+
+typedef struct nest {
+  scree_adjacency adjacency;
+  scree_shells shells;
+  scree_facet_tree tree; /* empty where there is one shell */
+  bool *tangled;         /* by shell: it meets another */
+  bool *drop;            /* by shell */
+  double largest_area;
+} nest;
+
+static void free_nest(nest *n) {
+  scree_adjacency_free(&n->adjacency);
+  scree_shells_free(&n->shells);
+  scree_facet_tree_free(&n->tree);
+  scree_free(n->tangled);
+  scree_free(n->drop);
+}
+
+static scree_status find_nest(const scree_repair *r, nest *n, scree_error *error) {
+  *n = (nest){0};
+  scree_status status = scree_adjacency_build(&r->mesh, &n->adjacency, error);
+  if (status == SCREE_OK) status = scree_shells_find(&r->mesh, &n->adjacency, &n->shells, error);
+  if (status == SCREE_OK && n->shells.count > 1)
+    status = scree_facet_tree_build(&r->mesh, &n->tree, error);
+  if (status != SCREE_OK) goto failed;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(n->tangled, n->shells.count, error, failed);
+  SCREE_ALLOC_OR(n->drop, n->shells.count, error, failed);
+  memset(n->tangled, 0, n->shells.count);
+  memset(n->drop, 0, n->shells.count);
+  for (size_t i = 0; i < n->shells.count; i++)
+    n->largest_area = fmax(n->largest_area, n->shells.items[i].area);
+  return SCREE_OK;
+failed:
+  free_nest(n);
+  return status;
+}
+
+/* Removes the facets of the shells marked. */
+static scree_status drop_shells(scree_repair *r, const nest *n, scree_error *error) {
+  bool *marked = NULL;
+  SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, out_of_memory);
+  for (size_t t = 0; t < r->mesh.triangle_count; t++)
+    marked[t] = n->shells.label[t] != SCREE_NO_SHELL && n->drop[n->shells.label[t]];
+  scree_repair_remove(r, marked);
+  scree_free(marked);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_repair_scraps(scree_repair *r, scree_error *error) {
+  nest n;
+  scree_status status = find_nest(r, &n, error);
+  if (status != SCREE_OK) return status;
+  size_t count = 0;
+  for (size_t i = 0; i < n.shells.count; i++) {
+    const scree_shell *s = &n.shells.items[i];
+    n.drop[i] = !s->closed && s->area < r->options->debris_share * n.largest_area;
+    count += n.drop[i];
+  }
+  if (count) status = drop_shells(r, &n, error);
+  if (status == SCREE_OK) r->report.done[SCREE_REPAIR_DROP_DEBRIS] += count;
+  free_nest(&n);
+  return status;
+}
+
+/* ---- Outside out ---- */
+
+static void turn_shells(scree_repair *r, nest *n, const bool *turn) {
+  for (size_t t = 0; t < r->mesh.triangle_count; t++) {
+    uint32_t label = n->shells.label[t];
+    if (label == SCREE_NO_SHELL || !turn[label]) continue;
+    uint32_t *corner = r->mesh.triangles + 3 * t, keep = corner[1];
+    corner[1] = corner[2];
+    corner[2] = keep;
+  }
+  for (size_t i = 0; i < n->shells.count; i++) {
+    if (!turn[i]) continue;
+    n->shells.items[i].volume = -n->shells.items[i].volume;
+    r->report.done[SCREE_REPAIR_INVERT_SHELL]++;
+  }
+}
+
+static void mark_tangled(const scree_meetings *found, nest *n) {
+  for (size_t i = 0; i < found->count; i++) {
+    uint32_t a = n->shells.label[found->items[i].first],
+             b = n->shells.label[found->items[i].second];
+    if (a != b) n->tangled[a] = n->tangled[b] = true;
+  }
+}
+
+static scree_status find_tangled(const scree_repair *r, nest *n, scree_error *error) {
+  scree_meetings found;
+  if (!r->options->intersections || r->untangled || n->shells.count < 2) return SCREE_OK;
+  scree_status status = scree_facet_meetings(&n->tree, MEETING_LIMIT, r->progress, &found, error);
+  if (status != SCREE_OK) return status;
+  if (found.truncated)
+    memset(n->tangled, true, n->shells.count);
+  else
+    mark_tangled(&found, n);
+  scree_free(found.items);
+  return SCREE_OK;
+}
+
+static scree_status wind_shells(nest *n, scree_error *error) {
+  return n->shells.count > 1 ? scree_shells_wind(&n->shells, &n->tree, error) : SCREE_OK;
+}
+
+/* Marks inward outermost shells with all that lies in them; true where there are any. */
+static bool mark_inverted_nests(const nest *n, bool *turn) {
+  bool any = false;
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    const scree_shell *out = s->outermost == SCREE_NO_SHELL ? s : &n->shells.items[s->outermost];
+    bool outer_tangled = n->tangled[out - n->shells.items];
+    turn[i] = s->closed && !n->tangled[i] && !outer_tangled && out->volume < 0;
+    any |= turn[i];
+  }
+  return any;
+}
+
+static bool mark_inverted(const nest *n, bool *turn) {
+  bool any = false;
+  long long least = 0;
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    turn[i] = scree_shell_kind_of(s) == SCREE_SHELL_INSIDE_OUT && !n->tangled[i];
+    if (turn[i] && (!any || s->depth < least)) least = s->depth;
+    any |= turn[i];
+  }
+  /* the outer ones first: turning them may make cavities of the others */
+  for (size_t i = 0; i < n->shells.count; i++)
+    turn[i] = turn[i] && n->shells.items[i].depth == least;
+  return any;
+}
+
+static scree_status turn_outward(scree_repair *r, nest *n, scree_error *error) {
+  bool *turn = NULL;
+  SCREE_ALLOC_OR(turn, n->shells.count, error, out_of_memory);
+  scree_status status = wind_shells(n, error);
+  if (status == SCREE_OK && mark_inverted_nests(n, turn)) {
+    turn_shells(r, n, turn);
+    status = wind_shells(n, error);
+  }
+  for (int i = 0; i < TURNS && status == SCREE_OK && mark_inverted(n, turn); i++) {
+    turn_shells(r, n, turn);
+    status = wind_shells(n, error);
+  }
+  scree_free(turn);
+  return status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* ---- What stays ---- */
+
+static size_t largest_shell(const nest *n) {
+  size_t largest = 0;
+  for (size_t i = 0; i < n->shells.count; i++)
+    if (n->shells.items[i].area > n->shells.items[largest].area) largest = i;
+  return largest;
+}
+
+static void judge_shells(scree_repair *r, nest *n) {
+  const scree_repair_options *o = r->options;
+  size_t *done = r->report.done, largest = largest_shell(n);
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    scree_shell_kind kind = scree_shell_kind_of(s);
+    bool cavity = kind == SCREE_SHELL_CAVITY && !n->tangled[i];
+    bool of_largest = cavity && s->depth == 1 && s->outermost == largest;
+    if (cavity && o->drop_cavities) {
+      n->drop[i] = true;
+      done[SCREE_REPAIR_DROP_CAVITY]++;
+    } else if (kind == SCREE_SHELL_NESTED && !n->tangled[i]) {
+      n->drop[i] = true;
+      done[SCREE_REPAIR_DROP_NESTED]++;
+    } else if ((!cavity && s->area < o->debris_share * n->largest_area) ||
+               (o->keep_largest && i != largest && !of_largest)) {
+      n->drop[i] = true;
+      done[SCREE_REPAIR_DROP_DEBRIS]++;
+    }
+  }
+}
+
+scree_status scree_repair_shells(scree_repair *r, scree_error *error) {
+  nest n;
+  scree_status status = find_nest(r, &n, error);
+  if (status != SCREE_OK) return status;
+  status = find_tangled(r, &n, error);
+  if (status == SCREE_OK) status = turn_outward(r, &n, error);
+  if (status == SCREE_OK) {
+    judge_shells(r, &n);
+    status = drop_shells(r, &n, error);
+  }
+  free_nest(&n);
+  return status;
+}
+
+/* ---- Cutting ---- */
+
+static double facet_area(const scree_mesh *mesh, size_t t) {
+  return 0.5 * vec3_norm(vec3_triangle_normal(scree_mesh_corner(mesh, t, 0),
+                                              scree_mesh_corner(mesh, t, 1),
+                                              scree_mesh_corner(mesh, t, 2)));
+}
+
+/* Marks the facets that have a vertex with a marked one. */
+static void grow_marks(const scree_mesh *mesh, bool *marked, bool *vertex) {
+  memset(vertex, 0, mesh->vertex_count);
+  for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+    if (marked[c / 3]) vertex[mesh->triangles[c]] = true;
+  for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+    if (vertex[mesh->triangles[c]]) marked[c / 3] = true;
+}
+
+static void mark_meetings(const scree_meetings *found, const scree_shells *shells, bool *marked) {
+  for (size_t i = 0; i < found->count; i++) {
+    const scree_meeting *m = &found->items[i];
+    if (shells->label[m->first] == shells->label[m->second])
+      marked[m->first] = marked[m->second] = true;
+  }
+}
+
+/* The share of the area that is marked. */
+static double marked_share(const scree_mesh *mesh, const bool *marked) {
+  double cut = 0, all = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    double area = facet_area(mesh, t);
+    all += area;
+    if (marked[t]) cut += area;
+  }
+  return all > 0 ? cut / all : 1;
+}
+
+scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error) {
+  nest n;
+  scree_meetings found = {0};
+  bool *marked = NULL, *vertex = NULL;
+  *cut_count = 0;
+  scree_status status = find_nest(r, &n, error);
+  if (status != SCREE_OK) return status;
+  status = scree_mesh_meetings(&r->mesh, MEETING_LIMIT, r->progress, &found, error);
+  if (status != SCREE_OK || found.truncated || found.count == 0) goto done;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, done);
+  SCREE_ALLOC_OR(vertex, r->mesh.vertex_count, error, done);
+  status = SCREE_OK;
+  memset(marked, 0, r->mesh.triangle_count);
+  mark_meetings(&found, &n.shells, marked);
+  for (int i = 0; i < rings; i++) grow_marks(&r->mesh, marked, vertex);
+  if (marked_share(&r->mesh, marked) <= CUT_SHARE) *cut_count = scree_repair_remove(r, marked);
+  r->report.done[SCREE_REPAIR_CUT_INTERSECTION] += *cut_count;
+done:
+  scree_free(found.items);
+  scree_free(marked);
+  scree_free(vertex);
+  free_nest(&n);
+  return status;
+}

@@ -1,0 +1,451 @@
+/* Repair: a defect planted in a clean surface and repaired gives back the clean surface's measures;
+ * the order of the facets, a move, a turn or a scale changes nothing; what is sound stays as it is.
+ */
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "base/vec.h"
+#include "support/check.h"
+#include "support/shapes.h"
+
+typedef struct outcome {
+  scree_mesh mesh;
+  scree_repair_report report;
+  scree_measures measures;
+} outcome;
+
+static outcome repair_with(const scree_mesh *mesh, const scree_repair_options *options) {
+  outcome o;
+  scree_error error;
+  CHECK_OK(scree_mesh_repair(mesh, options, NULL, &o.mesh, &o.report, &error), error);
+  CHECK_OK(scree_mesh_measure(&o.mesh, &o.measures, &error), error);
+  /* what is called repaired passes the check, asked again */
+  scree_check check;
+  CHECK_OK(scree_mesh_check(&o.mesh, NULL, NULL, &check, &error), error);
+  assert_true(check.usable && o.report.after.usable);
+  assert_string_equal(check.verdict, o.report.after.verdict);
+  return o;
+}
+
+static outcome repair(const scree_mesh *mesh) {
+  return repair_with(mesh, NULL);
+}
+
+static void free_outcome(outcome *o) {
+  scree_mesh_free(&o->mesh);
+}
+
+static scree_measures measures_of(const scree_mesh *mesh) {
+  scree_measures m;
+  scree_error error;
+  CHECK_OK(scree_mesh_measure(mesh, &m, &error), error);
+  return m;
+}
+
+/* The same surface: area and volume within the tolerance, relative. */
+static void expect_same(const outcome *o, const scree_measures *clean, double tolerance) {
+  CHECK_NEAR(o->measures.area, clean->area, tolerance * clean->area);
+  CHECK_NEAR(o->measures.volume, clean->volume, tolerance * clean->volume);
+}
+
+static void expect_same_mesh(const scree_mesh *a, const scree_mesh *b) {
+  assert_int_equal(a->vertex_count, b->vertex_count);
+  assert_int_equal(a->triangle_count, b->triangle_count);
+  assert_memory_equal(a->positions, b->positions, 24 * a->vertex_count);
+  assert_memory_equal(a->triangles, b->triangles, 12 * a->triangle_count);
+}
+
+static size_t sum_of_actions(const scree_repair_report *report) {
+  size_t sum = 0;
+  for (int i = 0; i < SCREE_REPAIR_ACTION_COUNT; i++) sum += report->done[i];
+  return sum;
+}
+
+/* A rough closed body without symmetry. */
+static scree_mesh body(void) {
+  scree_mesh mesh = shape_icosphere(1, 3);
+  scree_rng rng = {.seed = 51};
+  shape_shake(&mesh, 0.01, &rng);
+  return mesh;
+}
+
+static void shuffle(scree_mesh *mesh, scree_rng *rng) {
+  for (size_t t = mesh->triangle_count; t > 1; t--) {
+    size_t other = scree_rng_below(rng, t), turn = scree_rng_below(rng, 3);
+    uint32_t *a = mesh->triangles + 3 * (t - 1), *b = mesh->triangles + 3 * other;
+    uint32_t keep[3] = {a[0], a[1], a[2]};
+    memcpy(a, b, sizeof keep);
+    for (size_t k = 0; k < 3; k++) b[k] = keep[(k + turn) % 3];
+  }
+}
+
+static void append_facet(scree_mesh *mesh, uint32_t a, uint32_t b, uint32_t c) {
+  /* the shapes leave no room: a new array of the library's allocator */
+  uint32_t *more = scree_alloc(3 * (mesh->triangle_count + 1), sizeof *more);
+  assert_non_null(more);
+  memcpy(more, mesh->triangles, 12 * mesh->triangle_count);
+  more[3 * mesh->triangle_count] = a;
+  more[3 * mesh->triangle_count + 1] = b;
+  more[3 * mesh->triangle_count + 2] = c;
+  scree_free(mesh->triangles);
+  mesh->triangles = more;
+  mesh->triangle_count++;
+}
+
+static void sound_stays(void **state) {
+  (void)state;
+  scree_mesh mesh = body();
+  scree_rng rng = {.seed = 52};
+  outcome first = repair(&mesh);
+  assert_true(first.report.before.usable);
+  assert_int_equal(sum_of_actions(&first.report), 0);
+  shuffle(&mesh, &rng);
+  outcome again = repair(&mesh);
+  expect_same_mesh(&first.mesh, &again.mesh);
+  free_outcome(&again);
+  again = repair(&first.mesh);
+  expect_same_mesh(&first.mesh, &again.mesh);
+  free_outcome(&again);
+  free_outcome(&first);
+  scree_mesh_free(&mesh);
+}
+
+/* ---- Defects ---- */
+
+static void turned_and_doubled(void **state) {
+  (void)state;
+  scree_mesh mesh = body();
+  scree_measures clean = measures_of(&mesh);
+  for (size_t t = 0; t < mesh.triangle_count; t += 7) shape_flip(&mesh, t);
+  for (uint32_t t = 0; t < 90; t += 9) {
+    const uint32_t *c = mesh.triangles + 3 * (size_t)t;
+    append_facet(&mesh, c[0], t % 2 ? c[1] : c[2], t % 2 ? c[2] : c[1]);
+  }
+  append_facet(&mesh, 5, 5, 9);
+  outcome o = repair(&mesh);
+  expect_same(&o, &clean, 1e-12);
+  assert_int_equal(o.report.done[SCREE_REPAIR_DROP_DUPLICATE], 10);
+  assert_int_equal(o.report.done[SCREE_REPAIR_DROP_DEGENERATE], 1);
+  assert_in_range(o.report.done[SCREE_REPAIR_TURN], 80, 200);
+  free_outcome(&o);
+  /* the whole of it inside out */
+  for (size_t t = 0; t < mesh.triangle_count; t++) shape_flip(&mesh, t);
+  o = repair(&mesh);
+  expect_same(&o, &clean, 1e-12);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+}
+
+static void loose_facets(void **state) {
+  (void)state;
+  scree_mesh mesh = body(), loose = shape_make(3 * mesh.triangle_count, mesh.triangle_count);
+  scree_measures clean = measures_of(&mesh);
+  scree_rng rng = {.seed = 53};
+  for (int variant = 0; variant < 3; variant++) {
+    for (size_t c = 0; c < 3 * mesh.triangle_count; c++) {
+      for (size_t k = 0; k < 3; k++)
+        loose.positions[3 * c + k] = mesh.positions[3 * (size_t)mesh.triangles[c] + k];
+      loose.triangles[c] = (uint32_t)c;
+    }
+    /* exact, then within rounding, then within the tolerance */
+    double noise = variant == 0 ? 0 : variant == 1 ? 1e-9 : 1e-5;
+    shape_shake(&loose, noise, &rng);
+    outcome o = repair(&loose);
+    expect_same(&o, &clean, 1e-4);
+    assert_int_equal(o.report.done[variant ? SCREE_REPAIR_CLOSE_SEAM : SCREE_REPAIR_WELD],
+                     variant ? 3 * mesh.triangle_count
+                             : 3 * mesh.triangle_count - mesh.vertex_count);
+    free_outcome(&o);
+  }
+  scree_mesh_free(&loose);
+  scree_mesh_free(&mesh);
+}
+
+static void holes(void **state) {
+  (void)state;
+  scree_mesh mesh = shape_grid_box(2, 2, 2, 8);
+  scree_measures clean = measures_of(&mesh);
+  scree_rng rng = {.seed = 54};
+  shuffle(&mesh, &rng);
+  mesh.triangle_count -= 12; /* facets missing here and there */
+  outcome o = repair(&mesh);
+  CHECK_NEAR(o.measures.volume, clean.volume, 0.02 * clean.volume);
+  assert_in_range(o.report.done[SCREE_REPAIR_FILL_FACET], 12, 12);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+  /* a hole in a flat face is filled flat, with what is asked for; larger ones are refused */
+  mesh = shape_grid_box(2, 2, 2, 8);
+  size_t kept = 0;
+  for (size_t t = 0; t < mesh.triangle_count; t++) {
+    double top = 0;
+    for (int k = 0; k < 3; k++) top += mesh.positions[3 * (size_t)mesh.triangles[3 * t + k] + 2];
+    if (top == 6) continue;
+    memmove(mesh.triangles + 3 * kept++, mesh.triangles + 3 * t, 12);
+  }
+  mesh.triangle_count = kept;
+  o = repair(&mesh);
+  expect_same(&o, &clean, 1e-12);
+  assert_int_equal(o.report.done[SCREE_REPAIR_FILL_HOLE], 1);
+  assert_int_equal(o.report.done[SCREE_REPAIR_FILL_FACET], 30);
+  free_outcome(&o);
+  scree_repair_options options = scree_default_repair_options();
+  options.hole_edges = 31;
+  scree_error error;
+  scree_mesh none = {0};
+  assert_int_equal(scree_mesh_repair(&mesh, &options, NULL, &none, NULL, &error), SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "32 boundary edges, 1 hole"));
+  assert_null(none.positions);
+  options.fill_large_holes = true;
+  o = repair_with(&mesh, &options);
+  expect_same(&o, &clean, 1e-12);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+}
+
+/* More edges than are triangulated exactly: cut ear by ear. */
+static void large_hole(void **state) {
+  (void)state;
+  scree_mesh mesh = shape_icosphere(1, 5);
+  scree_measures clean = measures_of(&mesh);
+  size_t kept = 0;
+  for (size_t t = 0; t < mesh.triangle_count; t++) {
+    if (mesh.positions[3 * (size_t)mesh.triangles[3 * t] + 2] > 0.4) continue;
+    memmove(mesh.triangles + 3 * kept++, mesh.triangles + 3 * t, 12);
+  }
+  mesh.triangle_count = kept;
+  scree_repair_options options = scree_default_repair_options();
+  options.fill_large_holes = true;
+  outcome o = repair_with(&mesh, &options);
+  assert_true(o.report.done[SCREE_REPAIR_FILL_FACET] > 158);
+  /* a cap of height 0.6 is missing: pi h^2 (3 - h) / 3 */
+  CHECK_NEAR(o.measures.volume, clean.volume - 0.905, 0.1);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+}
+
+static void t_junctions(void **state) {
+  (void)state;
+  scree_mesh fine = shape_grid_box(1, 1, 1, 6), coarse = shape_box(1, 1, 1);
+  scree_mesh mesh = shape_join(&fine, &coarse);
+  size_t kept = 0;
+  for (size_t t = 0; t < mesh.triangle_count; t++) {
+    bool top = true;
+    for (int k = 0; k < 3; k++)
+      top = top && mesh.positions[3 * (size_t)mesh.triangles[3 * t + k] + 2] == 1;
+    if (top != (t < fine.triangle_count)) continue;
+    memmove(mesh.triangles + 3 * kept++, mesh.triangles + 3 * t, 12);
+  }
+  mesh.triangle_count = kept;
+  scree_rng rng = {.seed = 55};
+  for (int n = 0; n < 4; n++) {
+    outcome o = repair(&mesh);
+    CHECK_NEAR(o.measures.volume, pow(8, n), 1e-9 * pow(8, n));
+    assert_int_equal(o.report.done[SCREE_REPAIR_SPLIT_T_JUNCTION], 20);
+    free_outcome(&o);
+    quat q = scree_rng_rotation(&rng);
+    mat3 turn = quat_to_mat3(q);
+    for (int i = 0; i < 9; i++) turn.m[i / 3][i % 3] *= 2;
+    shape_transform(&mesh, &turn, (vec3){0.3, -0.1, 0.7});
+  }
+  scree_mesh_free(&mesh);
+  scree_mesh_free(&fine);
+  scree_mesh_free(&coarse);
+}
+
+/* Boxes that share an edge, or a corner, come apart and keep their volumes but for a hair. */
+static void touching_boxes(void **state) {
+  (void)state;
+  for (int corner = 0; corner < 2; corner++) {
+    scree_mesh a = shape_grid_box(1, 1, 1, 3), b = shape_grid_box(1, 1, 1, 3);
+    shape_move(&b, (vec3){1, 1, corner ? 1 : 0});
+    scree_mesh mesh = shape_join(&a, &b);
+    outcome o = repair(&mesh);
+    CHECK_NEAR(o.measures.volume, 2, 1e-3);
+    assert_int_equal(o.report.after.defects[SCREE_DEFECT_EXTRA_BODY], 1);
+    assert_int_equal(o.report.done[SCREE_REPAIR_SPLIT_EDGE], corner ? 0 : 3);
+    if (corner) assert_int_equal(o.report.done[SCREE_REPAIR_SPLIT_VERTEX], 1);
+    free_outcome(&o);
+    scree_mesh_free(&mesh);
+    scree_mesh_free(&a);
+    scree_mesh_free(&b);
+  }
+}
+
+static void fins(void **state) {
+  (void)state;
+  scree_mesh mesh = body();
+  scree_measures clean = measures_of(&mesh);
+  mesh.positions = scree_resize(mesh.positions, 3 * (mesh.vertex_count + 1), sizeof(double));
+  assert_non_null(mesh.positions);
+  memcpy(mesh.positions + 3 * mesh.vertex_count++, (double[]){3, 2, 1}, 24);
+  const uint32_t *c = mesh.triangles + 30;
+  append_facet(&mesh, c[0], c[1], (uint32_t)mesh.vertex_count - 1);
+  outcome o = repair(&mesh);
+  expect_same(&o, &clean, 1e-12);
+  assert_int_equal(o.report.done[SCREE_REPAIR_DROP_FIN], 1);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+}
+
+static void debris_and_cavities(void **state) {
+  (void)state;
+  scree_mesh outer = shape_grid_box(4, 4, 4, 4), cavity = shape_icosphere(0.15, 2);
+  scree_mesh speck = shape_icosphere(0.05, 1);
+  for (size_t t = 0; t < cavity.triangle_count; t++) shape_flip(&cavity, t);
+  double hollow = -measures_of(&cavity).volume;
+  shape_move(&cavity, (vec3){2, 2, 2});
+  shape_move(&speck, (vec3){5, 1, 1});
+  scree_mesh two = shape_join(&outer, &cavity), mesh = shape_join(&two, &speck);
+  outcome o = repair(&mesh);
+  CHECK_NEAR(o.measures.volume, 64 - hollow, 1e-9);
+  assert_int_equal(o.report.done[SCREE_REPAIR_DROP_DEBRIS], 1);
+  free_outcome(&o);
+  /* inside out as a whole, the cavity stays one */
+  for (size_t t = 0; t < mesh.triangle_count; t++) shape_flip(&mesh, t);
+  o = repair(&mesh);
+  CHECK_NEAR(o.measures.volume, 64 - hollow, 1e-9);
+  assert_int_equal(o.report.done[SCREE_REPAIR_INVERT_SHELL], 3);
+  assert_int_equal(o.report.after.defects[SCREE_DEFECT_CAVITY], 1);
+  free_outcome(&o);
+  scree_repair_options options = scree_default_repair_options();
+  options.debris_share = 0;
+  o = repair_with(&mesh, &options);
+  assert_int_equal(o.report.after.defects[SCREE_DEFECT_EXTRA_BODY], 1);
+  free_outcome(&o);
+  options.keep_largest = options.drop_cavities = true;
+  o = repair_with(&mesh, &options);
+  CHECK_NEAR(o.measures.volume, 64, 1e-9);
+  assert_int_equal(o.report.after.shell_count, 1);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+  scree_mesh_free(&two);
+  scree_mesh_free(&outer);
+  scree_mesh_free(&cavity);
+  scree_mesh_free(&speck);
+}
+
+static void nested_is_swallowed(void **state) {
+  (void)state;
+  scree_mesh outer = shape_grid_box(4, 4, 4, 4), inner = shape_box(1, 1, 1);
+  shape_move(&inner, (vec3){1.2, 1.3, 1.4});
+  scree_mesh mesh = shape_join(&outer, &inner);
+  outcome o = repair(&mesh);
+  CHECK_NEAR(o.measures.volume, 64, 1e-9);
+  assert_int_equal(o.report.done[SCREE_REPAIR_DROP_NESTED], 1);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+  /* overlapping ones are refused by name */
+  shape_move(&inner, (vec3){2.4, 0, 0});
+  mesh = shape_join(&outer, &inner);
+  scree_error error;
+  scree_mesh none;
+  assert_int_equal(scree_mesh_repair(&mesh, NULL, NULL, &none, NULL, &error), SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "1 overlapping shell pair"));
+  scree_mesh_free(&mesh);
+  scree_mesh_free(&outer);
+  scree_mesh_free(&inner);
+}
+
+/* A vertex pulled through the other side of its own surface. */
+static void spike(void **state) {
+  (void)state;
+  scree_mesh mesh = shape_icosphere(1, 4);
+  scree_measures clean = measures_of(&mesh);
+  vec3 p = vec3_load(mesh.positions + 3 * 40);
+  vec3_store(mesh.positions + 3 * 40, vec3_scale(p, -1.3));
+  outcome o = repair(&mesh);
+  assert_true(o.report.before.defects[SCREE_DEFECT_CROSSING_PAIR] > 0);
+  assert_true(o.report.done[SCREE_REPAIR_CUT_INTERSECTION] > 0);
+  expect_same(&o, &clean, 0.01);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+}
+
+/* ---- Invariance ---- */
+
+static void same_whatever_order(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 56};
+  int repaired = 0;
+  for (int n = 0; n < 150; n++) {
+    scree_mesh mesh = shape_random_tangle(&rng), first, again;
+    scree_error error;
+    scree_status status = scree_mesh_repair(&mesh, NULL, NULL, &first, NULL, &error);
+    shuffle(&mesh, &rng);
+    assert_int_equal(scree_mesh_repair(&mesh, NULL, NULL, &again, NULL, &error), status);
+    if (status == SCREE_OK) {
+      expect_same_mesh(&first, &again);
+      scree_mesh_free(&first);
+      scree_mesh_free(&again);
+      repaired++;
+    }
+    scree_mesh_free(&mesh);
+  }
+  print_message("%d of 150 tangles repaired\n", repaired);
+}
+
+static void moved_turned_scaled(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 57};
+  scree_mesh mesh = body();
+  for (size_t t = 0; t < mesh.triangle_count; t += 11) shape_flip(&mesh, t);
+  mesh.triangle_count -= 5;
+  outcome first = repair(&mesh);
+  for (int n = 0; n < 6; n++) {
+    mat3 turn = quat_to_mat3(scree_rng_rotation(&rng));
+    double scale = pow(10, 3 - n);
+    for (int i = 0; i < 9; i++) turn.m[i / 3][i % 3] *= scale;
+    scree_mesh moved;
+    scree_error error;
+    CHECK_OK(scree_mesh_copy(&mesh, &moved, &error), error);
+    shape_transform(&moved, &turn, vec3_scale(scree_rng_direction(&rng), 10 * scale));
+    outcome o = repair(&moved);
+    for (int i = 0; i < SCREE_REPAIR_ACTION_COUNT; i++)
+      assert_int_equal(o.report.done[i], first.report.done[i]);
+    CHECK_NEAR(o.measures.area, first.measures.area * scale * scale, 1e-9 * o.measures.area);
+    CHECK_NEAR(o.measures.volume, first.measures.volume * pow(scale, 3), 1e-9 * o.measures.volume);
+    free_outcome(&o);
+    scree_mesh_free(&moved);
+  }
+  free_outcome(&first);
+  scree_mesh_free(&mesh);
+}
+
+static void prepare(void **state) {
+  (void)state;
+  scree_error error;
+  scree_repair_report report;
+  scree_repair_options options = scree_default_repair_options();
+  scree_mesh mesh = body(), ready;
+  CHECK_OK(scree_mesh_prepare(&mesh, NULL, NULL, &ready, &report, &error), error);
+  assert_true(report.before.usable && report.after.usable);
+  scree_mesh_free(&ready);
+  mesh.triangle_count--;
+  assert_int_equal(scree_mesh_prepare(&mesh, NULL, NULL, &ready, &report, &error), SCREE_BAD_MESH);
+  assert_string_equal(error.message,
+                      "The mesh is not usable as a particle: 3 boundary edges, 1 hole");
+  CHECK_OK(scree_mesh_prepare(&mesh, &options, NULL, &ready, &report, &error), error);
+  assert_int_equal(report.done[SCREE_REPAIR_FILL_HOLE], 1);
+  scree_mesh_free(&ready);
+  options.seam_tolerance = NAN;
+  assert_int_equal(scree_mesh_prepare(&mesh, &options, NULL, &ready, &report, &error),
+                   SCREE_BAD_ARGUMENT);
+  scree_mesh_free(&mesh);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(sound_stays),
+                                     cmocka_unit_test(turned_and_doubled),
+                                     cmocka_unit_test(loose_facets),
+                                     cmocka_unit_test(holes),
+                                     cmocka_unit_test(large_hole),
+                                     cmocka_unit_test(t_junctions),
+                                     cmocka_unit_test(touching_boxes),
+                                     cmocka_unit_test(fins),
+                                     cmocka_unit_test(debris_and_cavities),
+                                     cmocka_unit_test(nested_is_swallowed),
+                                     cmocka_unit_test(spike),
+                                     cmocka_unit_test(same_whatever_order),
+                                     cmocka_unit_test(moved_turned_scaled),
+                                     cmocka_unit_test(prepare)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
