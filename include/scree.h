@@ -181,7 +181,7 @@ SCREE_API scree_status scree_mesh_weld(const double *corner_positions, size_t fa
 typedef enum scree_file_format {
   SCREE_FORMAT_AUTO,      /* by the path's extension: .stl .ply .obj .off */
   SCREE_FORMAT_STL,       /* "stl": binary; positions rounded to 24 bits */
-  SCREE_FORMAT_STL_ASCII, /* "stl-ascii": positions rounded to 24 bits */
+  SCREE_FORMAT_STL_ASCII, /* "stl-ascii" */
   SCREE_FORMAT_PLY,       /* "ply": binary little endian, double */
   SCREE_FORMAT_PLY_FLOAT, /* "ply-float": binary little endian, positions rounded to 24 bits */
   SCREE_FORMAT_OBJ,       /* "obj" */

@@ -52,15 +52,36 @@ static void fetch_scaled(const void *context, size_t first, size_t count, double
   for (size_t i = 0; i < 3 * count; i++) out[i] = p[i] * scaled->unit_m;
 }
 
-scree_status scree_reading_weld(scree_reading *r, const double *positions, size_t position_count,
+static scree_status weld_source(scree_reading *r, const double *positions, size_t position_count,
                                 const uint32_t *triangles, size_t triangle_count) {
-  if (triangle_count == 0)
-    return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets", r->scan->format);
   scaled_positions scaled = {positions, r->options->unit_m};
   scree_corner_source source = {fetch_scaled, &scaled, position_count, triangles, triangle_count};
   r->scan->facet_count = triangle_count;
   return scree_weld_corners(&source, r->options->weld_tolerance, &r->scan->mesh,
                             &r->scan->degenerate_count, NULL, r->error);
+}
+
+scree_status scree_reading_weld(scree_reading *r, const double *corner_positions,
+                                size_t triangle_count) {
+  if (triangle_count == 0)
+    return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets", r->scan->format);
+  return weld_source(r, corner_positions, 3 * triangle_count, NULL, triangle_count);
+}
+
+scree_status scree_reading_weld_faces(scree_reading *r, const double *positions,
+                                      size_t position_count, scree_face_list *faces) {
+  r->scan->solid_count = 1;
+  size_t face_count = faces->triangles.count + faces->polygons.count + faces->lost_count;
+  if (face_count == 0)
+    return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets (%zu vertices)",
+                              r->scan->format, position_count);
+  scree_status status = scree_face_list_triangulate(faces, positions, r->name, r->error);
+  if (status != SCREE_OK) return status;
+  status =
+      weld_source(r, positions, position_count, faces->triangles.items, faces->triangles.count / 3);
+  r->scan->facet_count += faces->lost_count;
+  r->scan->degenerate_count += faces->lost_count;
+  return status;
 }
 
 /* ---- sniffing ---- */
@@ -111,6 +132,29 @@ static bool has_stl_length(const unsigned char *bytes, size_t byte_count) {
   return byte_count == STL_HEADER + (size_t)count * STL_FACET;
 }
 
+/* The first word behind lines of comment. */
+static scree_token first_word(scree_text text) {
+  for (;;) {
+    scree_text_skip_space(&text);
+    if (text.p == text.end || *text.p != '#') return scree_text_next(&text);
+    scree_text_skip_line(&text);
+  }
+}
+
+static bool looks_like_off(scree_text text) {
+  return scree_is_off_word(first_word(text));
+}
+
+/* OBJ has no mark: its first statement tells. */
+static bool looks_like_obj(scree_text text) {
+  static const char *const words[] = {"v", "vt",     "vn",     "vp", "f", "o",
+                                      "g", "mtllib", "usemtl", "s",  "l", "p"};
+  scree_token word = first_word(text);
+  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
+    if (scree_token_is(word, words[i])) return true;
+  return false;
+}
+
 static bool begins_with(const scree_text *t, const char *word) {
   size_t length = strlen(word);
   return (size_t)(t->end - t->p) >= length && scree_token_is((scree_token){t->p, length}, word);
@@ -147,10 +191,15 @@ static scree_status read_binary_or_fail(scree_reading *r) {
 
 static scree_status read_any(scree_reading *r) {
   if (r->byte_count == 0) return scree_reading_fail(r, SCREE_BAD_FILE, "the file is empty");
+  scree_text text = scree_reading_text(r), start = text;
+  if (scree_token_is(scree_text_next(&start), "ply")) return scree_read_ply(r);
   if (has_stl_length(r->bytes, r->byte_count)) return scree_read_stl_binary(r);
   if (!looks_like_text(r->bytes, r->byte_count)) return read_binary_or_fail(r);
-  scree_text text = scree_reading_text(r), start = text;
-  if (scree_token_is(scree_text_next(&start), "solid")) return scree_read_stl_ascii(r);
+  start = text;
+  scree_token word = scree_text_next(&start);
+  if (scree_token_is(word, "solid")) return scree_read_stl_ascii(r);
+  if (looks_like_off(text)) return scree_read_off(r);
+  if (looks_like_obj(text)) return scree_read_obj(r);
   return fail_text(r, text);
 }
 

@@ -3,6 +3,7 @@
 #define SCREE_MESH_READ_H
 
 #include "base/alloc.h"
+#include "mesh/polygon.h"
 #include "mesh/text.h"
 
 /* One file being read. */
@@ -21,15 +22,21 @@ scree_text scree_reading_text(const scree_reading *r);
 /* The readers. Each fills scan->mesh, format and counts. */
 scree_status scree_read_stl_binary(scree_reading *r);
 scree_status scree_read_stl_ascii(scree_reading *r);
+scree_status scree_read_ply(scree_reading *r);
+scree_status scree_read_obj(scree_reading *r);
+scree_status scree_read_off(scree_reading *r);
+/* Whether the word begins an OFF file. */
+bool scree_is_off_word(scree_token word);
 
 /* "NAME: no facets" and its like: the sentence is for the whole file. */
 scree_status scree_reading_fail(const scree_reading *r, scree_status status, const char *format,
                                 ...) __attribute__((format(printf, 3, 4)));
 
-/* Welds loose positions in file units into scan->mesh: the end of every reader but binary STL's.
- * With triangles NULL, each three positions are one; triangle_count counts what the file gives,
- * also `lost` ones that had fewer than three corners from the start. */
-scree_status scree_reading_weld(scree_reading *r, const double *positions, size_t position_count,
-                                const uint32_t *triangles, size_t triangle_count);
+/* Welds loose triangles in file units into scan->mesh: the end of a reader. */
+scree_status scree_reading_weld(scree_reading *r, const double *corner_positions,
+                                size_t triangle_count);
+/* The same for indexed faces, which are cut into triangles first. */
+scree_status scree_reading_weld_faces(scree_reading *r, const double *positions,
+                                      size_t position_count, scree_face_list *faces);
 
 #endif

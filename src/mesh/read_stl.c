@@ -181,8 +181,7 @@ scree_status scree_read_stl_ascii(scree_reading *r) {
   scree_text text = scree_reading_text(r);
   corner_list corners = {0};
   scree_status status = read_solids(r, &text, &corners);
-  if (status == SCREE_OK)
-    status = scree_reading_weld(r, corners.items, corners.count / 3, NULL, corners.count / 9);
+  if (status == SCREE_OK) status = scree_reading_weld(r, corners.items, corners.count / 9);
   scree_free(corners.items);
   return status;
 }

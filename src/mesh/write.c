@@ -112,7 +112,7 @@ static void write_stl_ascii(const writing *w) {
     fputs("outer loop\n", w->stream);
     for (int k = 0; k < 3; k++) {
       fputs("vertex", w->stream);
-      print_vec3(w->stream, corners[k], true);
+      print_vec3(w->stream, corners[k], false);
     }
     fputs("endloop\nendfacet\n", w->stream);
   }
@@ -189,8 +189,7 @@ static scree_status check_mesh(const scree_mesh *mesh, const char *path,
   if (!(o->unit_m >= 1e-12 && o->unit_m <= 1e12))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "the unit is %g m; it must lie in [1e-12, 1e12] m",
                       o->unit_m);
-  bool narrow = o->format == SCREE_FORMAT_STL || o->format == SCREE_FORMAT_STL_ASCII ||
-                o->format == SCREE_FORMAT_PLY_FLOAT;
+  bool narrow = o->format == SCREE_FORMAT_STL || o->format == SCREE_FORMAT_PLY_FLOAT;
   double limit = narrow ? (double)FLT_MAX * o->unit_m : SCREE_COORDINATE_LIMIT;
   if (limit > SCREE_COORDINATE_LIMIT) limit = SCREE_COORDINATE_LIMIT;
   for (size_t i = 0; i < 3 * mesh->vertex_count; i++)

@@ -8,7 +8,7 @@
 
 typedef struct scree_device {
   const char *name, *description;
-  const scree_solid_mm *lines;
+  const scree_piece_mm *lines;
   size_t line_count;
 } scree_device;
 
@@ -17,13 +17,13 @@ extern const scree_device scree_cameras[3];
 extern const scree_device scree_smartphones[3];
 
 /* Words for the drawings' lines: {SLAB, JOIN, {at}, {half}, corner, fillet, .blend = ...}. */
-#define PART    .kind = SCREE_SOLID_PART
-#define SLAB    .kind = SCREE_SOLID_SLAB
-#define CAPSULE .kind = SCREE_SOLID_CAPSULE
-#define TORUS   .kind = SCREE_SOLID_TORUS
-#define JOIN    SCREE_SOLID_JOIN
-#define CUT     SCREE_SOLID_CUT
-#define KEEP    SCREE_SOLID_KEEP
+#define PART    .kind = SCREE_PIECE_PART
+#define SLAB    .kind = SCREE_PIECE_SLAB
+#define CAPSULE .kind = SCREE_PIECE_CAPSULE
+#define TORUS   .kind = SCREE_PIECE_TORUS
+#define JOIN    SCREE_PIECE_JOIN
+#define CUT     SCREE_PIECE_CUT
+#define KEEP    SCREE_PIECE_KEEP
 
 #define SCREE_DEVICE(name, description, lines)                                                     \
   { name, description, lines, sizeof(lines) / sizeof *(lines) }

@@ -2,7 +2,7 @@
 #include "sample/device.h"
 
 /* A compact with its lens out, in three stages. */
-static const scree_solid_mm compact[] = {
+static const scree_piece_mm compact[] = {
     {PART, JOIN, {0, 0, 0}},
     {SLAB, JOIN, {0, 0, 0}, {48, 28.5, 10.5}, 7, 2.5},
     {SLAB, JOIN, {-40, -1, 9}, {4.5, 22, 4.2}, 4, 2, .blend = 5}, /* grip */
@@ -73,7 +73,7 @@ static const scree_solid_mm compact[] = {
 };
 
 /* A boxy camera with a finder, a deep grip and its lens retracted. */
-static const scree_solid_mm finder[] = {
+static const scree_piece_mm finder[] = {
     {PART, JOIN, {0, 0, 0}},
     {SLAB, JOIN, {0, 0, 0}, {53, 33, 15}, 5, 3},
     {SLAB, JOIN, {-41, -2, 13}, {11, 29, 9}, 9, 6, .blend = 7},    /* grip */
@@ -149,7 +149,7 @@ static const scree_solid_mm finder[] = {
 };
 
 /* A bridge camera with a long zoom. */
-static const scree_solid_mm bridge[] = {
+static const scree_piece_mm bridge[] = {
     {PART, JOIN, {0, 0, 0}},
     {SLAB, JOIN, {0, 0, 0}, {56, 34, 15}, 9, 5},
     {SLAB, JOIN, {-45, -3, 18}, {12, 30, 14}, 11, 8, .blend = 9}, /* grip */

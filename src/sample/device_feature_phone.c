@@ -2,7 +2,7 @@
 #include "sample/device.h"
 
 /* A clamshell, open at 160 degrees: the hinge's axis is the x axis. */
-static const scree_solid_mm clamshell[] = {
+static const scree_piece_mm clamshell[] = {
     {PART, JOIN, {0, 0, 0}},
     {SLAB, JOIN, {0, -47.5, -2.5}, {24.5, 46, 5.5}, 9, 2.2},
     {SLAB, CUT, {0, 0, 0}, {6.2, 6.2, 13.5}, 6.2, 0.4, .blend = 0.6, .turn_deg = {0, 90, 0}},
@@ -72,7 +72,7 @@ static const scree_solid_mm clamshell[] = {
 };
 
 /* A slider, half open: the upper half is pushed up by 36 mm. */
-static const scree_solid_mm slider[] = {
+static const scree_piece_mm slider[] = {
     {PART, JOIN, {0, 0, 0}},
     {SLAB, JOIN, {0, 0, 0}, {25, 51, 5.4}, 8, 1.8},
     {SLAB, CUT, {0, -31.5, 5.4}, {22, 16.8, 0.7}, 3, 0.3, .blend = 0.5},
@@ -135,7 +135,7 @@ static const scree_solid_mm slider[] = {
 };
 
 /* A bar with a stub antenna. */
-static const scree_solid_mm bar[] = {
+static const scree_piece_mm bar[] = {
     {PART, JOIN, {0, 0, 0}},
     {SLAB, JOIN, {0, 0, 0}, {25, 60, 9.8}, 11, 4},
     {SLAB, KEEP, {0, 0, -590.4}, {600, 600, 80}, 600, 0.5, .blend = 2, .turn_deg = {0, 90, 0}},

@@ -2,7 +2,7 @@
 #include "sample/device.h"
 
 /* Flat sides, a square camera bump with three lenses. */
-static const scree_solid_mm flat[] = {
+static const scree_piece_mm flat[] = {
     {PART, JOIN, {0, 0, 0}},
     {SLAB, JOIN, {0, 0, 0}, {35.8, 73.4, 3.9}, 10.5, 1},
     {SLAB, CUT, {0, 70.8, 3.9}, {5, 0.7, 0.6}, 0.6, 0.2, .blend = 0.4}, /* earpiece */
@@ -49,7 +49,7 @@ static const scree_solid_mm flat[] = {
 };
 
 /* Round long edges and a camera bar across the back. */
-static const scree_solid_mm barred[] = {
+static const scree_piece_mm barred[] = {
     {PART, JOIN, {0, 0, 0}},
     {SLAB, JOIN, {0, 0, 0}, {38, 81, 4.4}, 9, 4},
     {SLAB, JOIN, {0, 48, -4.6}, {37.8, 11.5, 2.2}, 5, 1.6, .blend = 1.5}, /* camera bar */
@@ -71,7 +71,7 @@ static const scree_solid_mm barred[] = {
 };
 
 /* A smaller one with a home key, bent by 14 degrees as in a shredder's feed. */
-static const scree_solid_mm bent[] = {
+static const scree_piece_mm bent[] = {
     {PART, JOIN, {0, 0, 0}, .bend_length = 60, .bend_deg = 14},
     {SLAB, JOIN, {0, 0, 0}, {33.5, 69, 3.6}, 9.5, 2.2},
     {SLAB, CUT, {0, -59.5, 3.8}, {5.6, 5.6, 0.7}, 5.6, 0.3, .blend = 0.6}, /* home key */

@@ -6,7 +6,7 @@
 #include "sample/device.h"
 #include "sample/net.h"
 #include "sample/scanner.h"
-#include "sample/solid.h"
+#include "sample/test_solid.h"
 
 #include <string.h>
 
@@ -54,7 +54,7 @@ scree_sample_options scree_default_sample_options(void) {
 
 /* ---- Making ---- */
 
-static scree_status make_shape(const scree_solid_mm *lines, size_t line_count, double resolution,
+static scree_status make_shape(const scree_piece_mm *lines, size_t line_count, double resolution,
                                scree_ticker *ticker, scree_mesh *mesh, scree_error *error) {
   scree_shape *shape = scree_alloc(1, sizeof *shape);
   if (!shape) return scree_fail_memory(error, sizeof *shape, "a sample's shape");
@@ -94,17 +94,17 @@ static int icosphere_level(double resolution) {
 
 static scree_status make_solid(size_t index, double resolution, scree_ticker *ticker,
                                scree_mesh *mesh, scree_error *error) {
-  static const scree_solid_mm ball[] = {{.kind = SCREE_SOLID_PART},
-                                        {.kind = SCREE_SOLID_CAPSULE, .half = {25, 25, 0}}};
+  static const scree_piece_mm ball[] = {{.kind = SCREE_PIECE_PART},
+                                        {.kind = SCREE_PIECE_CAPSULE, .half = {25, 25, 0}}};
   switch (index) {
   case 0:
     return make_shape(ball, 2, resolution, ticker, mesh, error);
   case 1:
-    return scree_solid_box(box_edge, (size_t)ceil(box_edge / resolution - 1e-6), mesh, error);
+    return scree_sample_box(box_edge, (size_t)ceil(box_edge / resolution - 1e-6), mesh, error);
   case 2:
-    return scree_solid_box(box_edge, 1, mesh, error);
+    return scree_sample_box(box_edge, 1, mesh, error);
   default:
-    return scree_solid_icosphere(sphere_radius, icosphere_level(resolution), mesh, error);
+    return scree_sample_icosphere(sphere_radius, icosphere_level(resolution), mesh, error);
   }
 }
 
@@ -142,7 +142,7 @@ scree_status scree_sample_make(const char *name, const scree_sample_options *opt
   scree_status status = check(options, error);
   if (status != SCREE_OK) return status;
   int level = level_in_name(name);
-  if (level >= 0) return scree_solid_icosphere(sphere_radius, level, mesh, error);
+  if (level >= 0) return scree_sample_icosphere(sphere_radius, level, mesh, error);
   scree_ticker ticker = {.progress = progress};
   for (size_t i = 0; i < scree_sample_count(); i++) {
     if (strcmp(name, scree_sample_name(i)) != 0) continue;

@@ -41,7 +41,7 @@ static mat3 turn_of(vec3 deg, bool *turned) {
   return mat3_mul(&z, &yx);
 }
 
-static bool add_part(scree_shape *shape, const scree_solid_mm *line) {
+static bool add_part(scree_shape *shape, const scree_piece_mm *line) {
   if (shape->part_count == SCREE_SHAPE_PARTS) return false;
   scree_part *part = &shape->parts[shape->part_count++];
   *part = (scree_part){.op = line->op, .blend = line->blend * MM, .stretch = 1};
@@ -70,11 +70,11 @@ static vec3 bend_forward(const scree_part *part, vec3 p) {
 
 /* Grows the shape's box by the box of one solid (its corners, and for a bent part the points
  * between them). */
-static void grow_box(scree_shape *shape, const scree_solid *solid) {
+static void grow_box(scree_shape *shape, const scree_piece *solid) {
   const scree_part *part = &shape->parts[solid->part];
   vec3 h = solid->half;
-  if (solid->kind == SCREE_SOLID_TORUS) h = (vec3){h.x + h.y, h.x + h.y, h.y};
-  if (solid->kind == SCREE_SOLID_CAPSULE) h = (vec3){h.x, h.x, h.z + h.x};
+  if (solid->kind == SCREE_PIECE_TORUS) h = (vec3){h.x + h.y, h.x + h.y, h.y};
+  if (solid->kind == SCREE_PIECE_CAPSULE) h = (vec3){h.x, h.x, h.z + h.x};
   double open = fabs(solid->taper) * h.z;
   h.x += open;
   h.y += open;
@@ -89,7 +89,7 @@ static void grow_box(scree_shape *shape, const scree_solid *solid) {
 }
 
 /* Puts copy i of a ring where it belongs: in the plane of the solid's own x and y. */
-static void place_on_ring(const scree_solid_mm *line, int i, scree_solid *solid) {
+static void place_on_ring(const scree_piece_mm *line, int i, scree_piece *solid) {
   mat3 spin = axis_turn(2, 360.0 * i / line->ring_copies * DEGREE);
   vec3 arm = {line->ring_radius * MM, 0, 0};
   solid->turn = mat3_mul(&solid->turn, &spin);
@@ -97,13 +97,13 @@ static void place_on_ring(const scree_solid_mm *line, int i, scree_solid *solid)
   solid->at = vec3_add(solid->at, mat3_mul_vec(&solid->turn, arm));
 }
 
-static bool add_solid(scree_shape *shape, const scree_solid_mm *line) {
+static bool add_solid(scree_shape *shape, const scree_piece_mm *line) {
   int nx = line->copies_x > 1 ? line->copies_x : 1, ny = line->copies_y > 1 ? line->copies_y : 1;
   if (line->ring_copies > 1) nx = line->ring_copies;
   for (int i = 0; i < nx * ny; i++) {
-    if (shape->solid_count == SCREE_SHAPE_SOLIDS || shape->part_count == 0) return false;
-    scree_solid *solid = &shape->solids[shape->solid_count++];
-    *solid = (scree_solid){.kind = line->kind,
+    if (shape->solid_count == SCREE_SHAPE_PIECES || shape->part_count == 0) return false;
+    scree_piece *solid = &shape->solids[shape->solid_count++];
+    *solid = (scree_piece){.kind = line->kind,
                            .op = line->op,
                            .part = (uint16_t)(shape->part_count - 1),
                            .half = vec3_scale(line->half, MM),
@@ -118,17 +118,17 @@ static bool add_solid(scree_shape *shape, const scree_solid_mm *line) {
     solid->at = vec3_scale(vec3_add(line->at, offset), MM);
     if (line->ring_copies > 1) place_on_ring(line, i, solid);
     shape->blend_max = max2(shape->blend_max, solid->blend);
-    if (solid->op == SCREE_SOLID_JOIN) grow_box(shape, solid);
+    if (solid->op == SCREE_PIECE_JOIN) grow_box(shape, solid);
   }
   return true;
 }
 
-bool scree_shape_build(const scree_solid_mm *lines, size_t line_count, scree_shape *shape) {
+bool scree_shape_build(const scree_piece_mm *lines, size_t line_count, scree_shape *shape) {
   memset(shape, 0, sizeof *shape);
   shape->low = (vec3){FAR_AWAY, FAR_AWAY, FAR_AWAY};
   shape->high = vec3_neg(shape->low);
   for (size_t i = 0; i < line_count; i++) {
-    bool added = lines[i].kind == SCREE_SOLID_PART ? add_part(shape, &lines[i])
+    bool added = lines[i].kind == SCREE_PIECE_PART ? add_part(shape, &lines[i])
                                                    : add_solid(shape, &lines[i]);
     if (!added) return false;
   }
@@ -186,7 +186,7 @@ static void into_part(const scree_part *part, const scree_points *from, size_t c
 
 /* ---- Distances ---- */
 
-static void slab_distance(const scree_solid *s, const scree_points *p, size_t count, double *d) {
+static void slab_distance(const scree_piece *s, const scree_points *p, size_t count, double *d) {
   double r = s->corner, f = s->fillet, inner_x = s->half.x - r, inner_y = s->half.y - r,
          inner_z = s->half.z - f, taper = s->taper, cosine = s->taper_cosine;
   for (size_t i = 0; i < count; i++) {
@@ -199,7 +199,7 @@ static void slab_distance(const scree_solid *s, const scree_points *p, size_t co
   }
 }
 
-static void capsule_distance(const scree_solid *s, const scree_points *p, size_t count, double *d) {
+static void capsule_distance(const scree_piece *s, const scree_points *p, size_t count, double *d) {
   double h = s->half.z, r = s->half.x;
   for (size_t i = 0; i < count; i++) {
     double x = p->x[i], y = p->y[i], z = max2(fabs(p->z[i]) - h, 0);
@@ -207,27 +207,27 @@ static void capsule_distance(const scree_solid *s, const scree_points *p, size_t
   }
 }
 
-static void torus_distance(const scree_solid *s, const scree_points *p, size_t count, double *d) {
+static void torus_distance(const scree_piece *s, const scree_points *p, size_t count, double *d) {
   for (size_t i = 0; i < count; i++) {
     double x = p->x[i], y = p->y[i], z = p->z[i], q = sqrt(x * x + y * y) - s->half.x;
     d[i] = sqrt(q * q + z * z) - s->half.y;
   }
 }
 
-static void solid_distance(const scree_solid *solid, const scree_points *points, size_t count,
+static void solid_distance(const scree_piece *solid, const scree_points *points, size_t count,
                            scree_points *scratch, double *d) {
   into_frame(solid->at, &solid->turn, solid->turned, points, count, scratch);
-  if (solid->kind == SCREE_SOLID_CAPSULE)
+  if (solid->kind == SCREE_PIECE_CAPSULE)
     capsule_distance(solid, scratch, count, d);
-  else if (solid->kind == SCREE_SOLID_TORUS)
+  else if (solid->kind == SCREE_PIECE_TORUS)
     torus_distance(solid, scratch, count, d);
   else
     slab_distance(solid, scratch, count, d);
 }
 
 /* a := a op b. sign turns the smooth minimum into the smooth maximum: max(a, b) = -min(-a, -b). */
-static void combine(scree_solid_op op, double blend, size_t count, const double *b, double *a) {
-  double sign_a = op == SCREE_SOLID_JOIN ? 1 : -1, sign_b = op == SCREE_SOLID_KEEP ? -1 : 1;
+static void combine(scree_piece_op op, double blend, size_t count, const double *b, double *a) {
+  double sign_a = op == SCREE_PIECE_JOIN ? 1 : -1, sign_b = op == SCREE_PIECE_KEEP ? -1 : 1;
   if (blend <= 0) {
     for (size_t i = 0; i < count; i++) a[i] = sign_a * min2(sign_a * a[i], sign_b * b[i]);
     return;
@@ -250,7 +250,7 @@ void scree_shape_distance(const scree_shape *shape, const scree_shape_list *list
     into_part(part, points, count, &local);
     for (size_t i = 0; i < count; i++) of_part[i] = FAR_AWAY;
     for (; at < list->count && shape->solids[list->solids[at]].part == part_index; at++) {
-      const scree_solid *solid = &shape->solids[list->solids[at]];
+      const scree_piece *solid = &shape->solids[list->solids[at]];
       solid_distance(solid, &local, count, &scratch, of_solid);
       combine(solid->op, solid->blend, count, of_solid, of_part);
     }
@@ -282,7 +282,7 @@ void scree_shape_prune(const scree_shape *shape, vec3 centre, double radius, dou
   point.z[0] = centre.z;
   list->count = 0;
   for (size_t i = shape->solid_count; i-- > 0;) {
-    const scree_solid *solid = &shape->solids[i];
+    const scree_piece *solid = &shape->solids[i];
     const scree_part *part = &shape->parts[solid->part];
     if (solid->part != part_now) {
       into_part(part, &point, 1, &local);
@@ -291,7 +291,7 @@ void scree_shape_prune(const scree_shape *shape, vec3 centre, double radius, dou
     part_now = solid->part;
     double d, limit = (margin + solid->blend) * part->stretch;
     solid_distance(solid, &local, 1, &scratch, &d);
-    if (solid->op == SCREE_SOLID_KEEP ? d < -limit : d > limit) continue;
+    if (solid->op == SCREE_PIECE_KEEP ? d < -limit : d > limit) continue;
     margin += solid->blend;
     list->solids[list->count++] = (uint16_t)i;
   }

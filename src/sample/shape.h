@@ -10,26 +10,26 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum { SCREE_SHAPE_SOLIDS = 320, SCREE_SHAPE_PARTS = 16, SCREE_SHAPE_BATCH = 512 };
+enum { SCREE_SHAPE_PIECES = 320, SCREE_SHAPE_PARTS = 16, SCREE_SHAPE_BATCH = 512 };
 
-typedef enum scree_solid_kind {
-  SCREE_SOLID_PART,    /* not a solid: what follows belongs to a new part with its own frame */
-  SCREE_SOLID_SLAB,    /* a rounded rectangle, extruded along z; its edges filleted */
-  SCREE_SOLID_CAPSULE, /* half.z long along z, radius half.x; a ball where half.z is 0 */
-  SCREE_SOLID_TORUS,   /* about z: ring radius half.x, wire radius half.y */
-} scree_solid_kind;
+typedef enum scree_piece_kind {
+  SCREE_PIECE_PART,    /* not a solid: what follows belongs to a new part with its own frame */
+  SCREE_PIECE_SLAB,    /* a rounded rectangle, extruded along z; its edges filleted */
+  SCREE_PIECE_CAPSULE, /* half.z long along z, radius half.x; a ball where half.z is 0 */
+  SCREE_PIECE_TORUS,   /* about z: ring radius half.x, wire radius half.y */
+} scree_piece_kind;
 
-typedef enum scree_solid_op {
-  SCREE_SOLID_JOIN, /* add material */
-  SCREE_SOLID_CUT,  /* take it away */
-  SCREE_SOLID_KEEP, /* keep what lies inside this solid */
-} scree_solid_op;
+typedef enum scree_piece_op {
+  SCREE_PIECE_JOIN, /* add material */
+  SCREE_PIECE_CUT,  /* take it away */
+  SCREE_PIECE_KEEP, /* keep what lies inside this solid */
+} scree_piece_op;
 
 /* One line of a drawing: lengths in millimetres, angles in degrees. A slab with corner == half.x ==
  * half.y is a cylinder. */
-typedef struct scree_solid_mm {
-  scree_solid_kind kind;
-  scree_solid_op op;
+typedef struct scree_piece_mm {
+  scree_piece_kind kind;
+  scree_piece_op op;
   vec3 at, half;           /* centre; half sizes */
   double corner;           /* radius of the slab's corners in the xy plane */
   double fillet;           /* radius of the edges at its ends */
@@ -42,21 +42,21 @@ typedef struct scree_solid_mm {
                               its own x ... */
   double ring_radius;      /* ... of this radius */
   double bend_length, bend_deg; /* PART: bent about x by bend_deg over this length in y */
-} scree_solid_mm;
+} scree_piece_mm;
 
 /* The same, in metres and ready to evaluate. */
-typedef struct scree_solid {
-  scree_solid_kind kind;
-  scree_solid_op op;
+typedef struct scree_piece {
+  scree_piece_kind kind;
+  scree_piece_op op;
   bool turned;
   uint16_t part;
   vec3 at, half;
   double corner, fillet, taper, taper_cosine, blend;
   mat3 turn; /* local = transpose(turn) (p - at) */
-} scree_solid;
+} scree_piece;
 
 typedef struct scree_part {
-  scree_solid_op op;
+  scree_piece_op op;
   bool turned, bent;
   double blend, stretch; /* how much local lengths may exceed true ones: 1, or more where bent */
   vec3 at;
@@ -65,7 +65,7 @@ typedef struct scree_part {
 } scree_part;
 
 typedef struct scree_shape {
-  scree_solid solids[SCREE_SHAPE_SOLIDS];
+  scree_piece solids[SCREE_SHAPE_PIECES];
   scree_part parts[SCREE_SHAPE_PARTS];
   size_t solid_count, part_count;
   double blend_max;
@@ -75,12 +75,12 @@ typedef struct scree_shape {
 /* The solids of a shape that matter in some region, in order. */
 typedef struct scree_shape_list {
   size_t count;
-  uint16_t solids[SCREE_SHAPE_SOLIDS];
+  uint16_t solids[SCREE_SHAPE_PIECES];
 } scree_shape_list;
 
 /* Builds a shape from a drawing of line_count lines; false where it holds more solids or parts than
  * a shape can (a mistake in the drawing, not in anybody's data). */
-bool scree_shape_build(const scree_solid_mm *lines, size_t line_count, scree_shape *shape);
+bool scree_shape_build(const scree_piece_mm *lines, size_t line_count, scree_shape *shape);
 
 /* All solids. */
 void scree_shape_list_all(const scree_shape *shape, scree_shape_list *list);

@@ -1,4 +1,4 @@
-#include "sample/solid.h"
+#include "sample/test_solid.h"
 
 #include "base/alloc.h"
 #include "base/vec.h"
@@ -29,7 +29,7 @@ static size_t box_vertex(size_t n, size_t i, size_t j, size_t k) {
   return full + 4 * n * (k - 1) + rim;
 }
 
-scree_status scree_solid_box(double edge, size_t cells, scree_mesh *mesh, scree_error *error) {
+scree_status scree_sample_box(double edge, size_t cells, scree_mesh *mesh, scree_error *error) {
   size_t n = cells;
   scree_status status = allocate(2 * (n + 1) * (n + 1) + 4 * n * (n - 1), 12 * n * n, mesh, error);
   if (status != SCREE_OK) return status;
@@ -114,7 +114,8 @@ static void icosahedron(double radius, scree_mesh *mesh) {
   mesh->triangle_count = 20;
 }
 
-scree_status scree_solid_icosphere(double radius, int level, scree_mesh *mesh, scree_error *error) {
+scree_status scree_sample_icosphere(double radius, int level, scree_mesh *mesh,
+                                    scree_error *error) {
   size_t triangle_count = (size_t)20 << (2 * level), slot_count = 64;
   scree_mesh made;
   midpoints table = {0};
