@@ -793,7 +793,7 @@ typedef struct scree_particle_measures {
   double orientation[4];  /* w x y z, turns the particle's axes into those coordinates */
   double inertia[3];      /* m5, principal moments for density 1, ascending for a mesh */
   double bounding_radius; /* m, about the centre of mass, rounding included */
-  double thickness;       /* m, the thinnest wall: least distance through the solid from a face */
+  double thickness;       /* m, the thinnest wall: 1 % of the surface has less solid behind it */
   double rounding;        /* m */
   size_t triangle_count;  /* of the mesh; 0 for spheres and clumps */
   size_t point_count;     /* contact features: corners of the mesh, or spheres */
@@ -850,7 +850,7 @@ typedef struct scree_world_options {
   double size;             /* m, the L of K = E L; 0 (default): each pair its smaller body's */
   double smoothing;        /* l0 over L; default 4e-5, 2 um at 50 mm: overlaps this close share */
   double sharing;          /* kappa, in [0, 0.5]; default 0.1: deeper contacts share more widely */
-  double overlap_limit;    /* over L; default 0.04, 2 mm at 50 mm, or a quarter of the thinnest
+  double overlap_limit;    /* over L; default 0.04, 2 mm at 50 mm, or half the thinnest
                               wall where less: beyond it the run stops with SCREE_DIVERGED */
   double skin;             /* over L; default 0.02: reach of the candidate lists. Speed only */
   double floor_height;     /* m; bodies whose centre falls below are removed; default -infinity */

@@ -150,7 +150,7 @@ double scree_ray_depth(const scree_particle *particle, vec3 p, vec3 direction, s
   for (size_t f = 0; f < particle->face_count; f++) {
     const scree_face *face = &particle->faces[f];
     double slope = vec3_dot(face->normal, direction);
-    if (f == skip_face || slope < 0.2) continue; /* only walls that stand across */
+    if (f == skip_face || slope < 0.8) continue; /* only walls that stand across */
     double s = vec3_dot(vec3_sub(face->corner, p), face->normal) / slope;
     if (!(s > 0 && s < best)) continue;
     vec3 hit = vec3_mad(p, direction, s), w = vec3_sub(hit, face->corner);

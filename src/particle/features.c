@@ -21,7 +21,8 @@
 static const double flat_angle = 2e-5;             /* rad; sagitta 0.05 um over 10 mm; above the
                                                       noise of single-precision coordinates */
 static const double sharp_angle = 0.5 * 0.0174533; /* rad; design value, see above */
-static const double fold_cosine = -0.8660254;      /* normals over 150 degrees apart */
+static const double cone_slack = 0.06;        /* rad; how far bodies may turn while a list holds */
+static const double fold_cosine = -0.8660254; /* normals over 150 degrees apart */
 
 typedef struct half_edge {
   uint32_t low, high; /* vertices, low < high */
@@ -239,9 +240,10 @@ static void make_points_and_edges(extraction *x) {
     if (edge->turn <= sharp_angle || x->visited[e]) continue;
     x->visited[e] = true;
     uint32_t start = follow(x, e, edge->low), end = follow(x, e, edge->high);
-    p->edges[p->edge_count++] =
-        (scree_edge){position_of(mesh, start), position_of(mesh, end), p->faces[edge->face1].normal,
-                     p->faces[edge->face2].normal};
+    double half = fmin(0.5 * edge->turn + cone_slack, 1.57);
+    vec3 sum = vec3_add(p->faces[edge->face1].normal, p->faces[edge->face2].normal);
+    p->edges[p->edge_count++] = (scree_edge){position_of(mesh, start), position_of(mesh, end),
+                                             vec3_unit(sum), cos(half), sin(half)};
   }
 }
 

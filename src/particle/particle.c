@@ -8,6 +8,7 @@
 #include "particle/closest.h"
 #include "particle/mass.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
@@ -78,18 +79,36 @@ static void set_bounding_radius(scree_particle *p) {
   p->measures.bounding_radius = r;
 }
 
-/* Least distance through the solid from a face's middle against its normal. At most about a
- * thousand faces are tried, evenly chosen: the cost is the square of the count. */
-static double thinnest_wall(const scree_particle *p) {
-  double best = INFINITY;
-  size_t stride = p->face_count / 1000 + 1;
+typedef struct wall_sample {
+  double depth, area;
+} wall_sample;
+
+static int compare_walls(const void *a, const void *b) {
+  const wall_sample *x = a, *y = b;
+  return x->depth < y->depth ? -1 : x->depth > y->depth;
+}
+
+/* Distance through the solid from a face's middle against its normal, to a wall that faces away:
+ * the depth that 1 % of the surface stays below (single rays graze corners and notches). About a
+ * thousand faces are tried at most, evenly chosen: the cost is the square of the count. */
+static scree_status measure_thickness(scree_particle *p, scree_error *error) {
+  size_t stride = p->face_count / 1000 + 1, count = 0;
+  wall_sample *walls = scree_alloc(p->face_count, sizeof *walls);
+  if (!walls) return scree_fail_memory(error, p->face_count * sizeof *walls, "wall depths");
+  double total = 0, below = 0;
   for (size_t f = 0; f < p->face_count; f += stride) {
     const scree_face *face = &p->faces[f];
     vec3 middle = vec3_mad(face->corner, vec3_add(face->along1, face->along2), 1.0 / 3);
-    double depth = scree_ray_depth(p, middle, vec3_neg(face->normal), f);
-    best = fmin(best, depth);
+    double area = 0.5 / sqrt(face->inverse);
+    walls[count++] = (wall_sample){scree_ray_depth(p, middle, vec3_neg(face->normal), f), area};
+    total += area;
   }
-  return best;
+  qsort(walls, count, sizeof *walls, compare_walls);
+  size_t k = 0;
+  while (k + 1 < count && (below += walls[k].area) < 0.01 * total) k++;
+  p->measures.thickness = walls[k].depth;
+  scree_free(walls);
+  return SCREE_OK;
 }
 
 static void set_counts(scree_particle *p) {
@@ -102,9 +121,8 @@ static scree_status finish_mesh(scree_particle *p, scree_error *error) {
   scree_status status = scree_particle_build_trees(p, error);
   if (status) return status;
   set_bounding_radius(p);
-  p->measures.thickness = thinnest_wall(p);
   set_counts(p);
-  return SCREE_OK;
+  return measure_thickness(p, error);
 }
 
 static scree_status make_mesh_particle(scree_particle *p, double rounding, scree_error *error) {

@@ -3,13 +3,16 @@
  * features that are awake already stay so with their memory. The list holds until the path reaches
  * list_end.
  *
- * Points are found through the other side's bounding box and the closest-point query; edges through
- * both edge trees at once, in the frame of b. */
+ * Points are found through both trees and the closest-point query, edges through both edge trees,
+ * in the frame of b; edges that face away from each other are left out. */
 #include "world/world.h"
 
 #include "base/array.h"
 #include "base/progress.h"
 #include "particle/closest.h"
+
+static const double fast_steps = 40; /* a list of fast bodies should last this many steps, */
+static const double fast_skins = 3;  /* but not reach farther than this many skins */
 
 typedef struct listing {
   const scree_world *world;
@@ -43,10 +46,6 @@ static vec3 into_b(const listing *l, vec3 p) {
   return vec3_add(mat3_mul_vec(&l->relative->rotation, p), l->relative->position);
 }
 
-static vec3 into_a(const listing *l, vec3 p) {
-  return mat3_tmul_vec(&l->relative->rotation, vec3_sub(p, l->relative->position));
-}
-
 static void list_wall_points(listing *l) {
   const scree_world_wall *wall = &l->world->walls.items[l->pair->b];
   for (uint32_t i = 0; i < l->a->point_count; i++) {
@@ -56,24 +55,71 @@ static void list_wall_points(listing *l) {
   }
 }
 
-/* The points of `from` against the surface of `to`; `forth`: from is a. */
+/* The points of one side against the surface of the other. */
+typedef struct point_listing {
+  listing *list;
+  const scree_particle *from, *to;
+  bool forth;    /* from is a */
+  mat3 rotation; /* from's frame into to's */
+  vec3 shift;
+} point_listing;
+
+static void list_point(const point_listing *pl, uint32_t i) {
+  listing *l = pl->list;
+  vec3 p = vec3_add(mat3_mul_vec(&pl->rotation, pl->from->points[i]), pl->shift);
+  double touch = pl->from->point_radii[i] + pl->to->measures.rounding + l->pair->smoothing;
+  scree_near near;
+  scree_closest_faces(pl->to, p, l->skin + touch, 0, &near);
+  l->scratch->closest_queries++;
+  if (near.count == 0) return;
+  double gap = near.distance[0] - touch;
+  if (pl->forth)
+    put_to_sleep(l, SCREE_ITEM_POINT_FACE, i, near.face[0], gap);
+  else
+    put_to_sleep(l, SCREE_ITEM_FACE_POINT, near.face[0], i, gap);
+}
+
+/* Whether the box of any leaf meets the box. */
+static bool meets_boxes(const scree_tree *tree, const scree_box *box) {
+  const scree_tree_node *nodes = tree->nodes;
+  uint32_t stack[SCREE_TREE_STACK];
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_tree_node *node = &nodes[stack[--depth]];
+    if (!scree_box_meets(&node->box, box)) continue;
+    if (node->count) return true;
+    stack[depth++] = node->first;
+    stack[depth++] = node->first + 1;
+  }
+  return false;
+}
+
 static void list_surface_points(listing *l, const scree_particle *from, const scree_particle *to,
                                 bool forth) {
-  double far = l->skin + l->pair->smoothing + to->measures.rounding;
-  for (uint32_t i = 0; i < from->point_count; i++) {
-    vec3 p = forth ? into_b(l, from->points[i]) : into_a(l, from->points[i]);
-    double reach = far + from->point_radii[i];
-    if (scree_box_distance2(&to->face_tree.nodes[0].box, p) > reach * reach) continue;
-    scree_near near;
-    scree_closest_faces(to, p, reach, 0, &near);
-    l->scratch->closest_queries++;
-    if (near.count == 0) continue;
-    double gap =
-        near.distance[0] - from->point_radii[i] - to->measures.rounding - l->pair->smoothing;
-    if (forth)
-      put_to_sleep(l, SCREE_ITEM_POINT_FACE, i, near.face[0], gap);
-    else
-      put_to_sleep(l, SCREE_ITEM_FACE_POINT, near.face[0], i, gap);
+  const scree_frame *r = l->relative;
+  point_listing pl = {l, from, to, forth, r->rotation, r->position};
+  if (!forth) {
+    pl.rotation = mat3_transpose(&r->rotation);
+    pl.shift = vec3_neg(mat3_mul_vec(&pl.rotation, r->position));
+  }
+  double far = l->skin + l->pair->smoothing + to->measures.rounding; /* boxes hold the radii */
+  const scree_tree_node *nodes = from->point_tree.nodes;
+  uint32_t stack[SCREE_TREE_STACK];
+  int depth = 0;
+  if (from->point_count) stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_tree_node *node = &nodes[stack[--depth]];
+    scree_box box = scree_box_moved(&node->box, &pl.rotation, pl.shift);
+    box = scree_box_grown(box, far);
+    if (!meets_boxes(&to->face_tree, &box)) continue;
+    if (node->count == 0) {
+      stack[depth++] = node->first + 1;
+      stack[depth++] = node->first;
+      continue;
+    }
+    for (uint32_t k = 0; k < node->count; k++)
+      list_point(&pl, from->point_tree.order[node->first + k]);
   }
 }
 
@@ -87,53 +133,80 @@ static void list_sphere_pairs(listing *l) {
   }
 }
 
-static void list_edge_pair(listing *l, uint32_t i, uint32_t j) {
-  const scree_edge *ea = &l->a->edges[i], *eb = &l->b->edges[j];
-  vec3 p0 = into_b(l, ea->start), p1 = into_b(l, ea->end);
-  double s, t;
-  scree_closest_on_segments(p0, p1, eb->start, eb->end, &s, &t);
-  double d = vec3_distance(vec3_lerp(p0, p1, s), vec3_lerp(eb->start, eb->end, t));
-  put_to_sleep(l, SCREE_ITEM_EDGE_EDGE, i, j, d - l->pair->reach - l->pair->smoothing);
+/* Edges can touch only along a direction that is outward for one and inward for the other: their
+ * cones of normals, one of them reversed, must meet. */
+static bool face_each_other(const scree_edge *ea, vec3 outward_a, const scree_edge *eb) {
+  return -vec3_dot(outward_a, eb->outward) >= ea->cosine * eb->cosine - ea->sine * eb->sine;
 }
 
-static void list_leaf_edges(listing *l, const scree_tree_node *na, const scree_tree_node *nb) {
-  for (uint32_t i = 0; i < na->count; i++)
-    for (uint32_t j = 0; j < nb->count; j++)
-      list_edge_pair(l, l->a->edge_tree.order[na->first + i], l->b->edge_tree.order[nb->first + j]);
-}
-
-static double extent_of(const scree_box *box) {
-  vec3 side = vec3_sub(box->high, box->low);
-  return side.x + side.y + side.z;
+/* One edge of a against the edges of b. */
+static void list_edge(listing *l, uint32_t i) {
+  const scree_edge *ea = &l->a->edges[i];
+  vec3 p0 = into_b(l, ea->start), p1 = into_b(l, ea->end),
+       outward = mat3_mul_vec(&l->relative->rotation, ea->outward);
+  double touch = l->pair->reach + l->pair->smoothing;
+  scree_box box = scree_box_grown(scree_box_of(p0, p1), l->skin + touch);
+  const scree_tree *tree = &l->b->edge_tree;
+  uint32_t stack[SCREE_TREE_STACK];
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+    if (!scree_box_meets(&node->box, &box)) continue;
+    if (node->count == 0) {
+      stack[depth++] = node->first + 1;
+      stack[depth++] = node->first;
+      continue;
+    }
+    for (uint32_t k = 0; k < node->count; k++) {
+      uint32_t j = tree->order[node->first + k];
+      const scree_edge *eb = &l->b->edges[j];
+      if (!face_each_other(ea, outward, eb)) continue;
+      double s, t;
+      scree_closest_on_segments(p0, p1, eb->start, eb->end, &s, &t);
+      double d = vec3_distance(vec3_lerp(p0, p1, s), vec3_lerp(eb->start, eb->end, t));
+      put_to_sleep(l, SCREE_ITEM_EDGE_EDGE, i, j, d - touch);
+    }
+  }
 }
 
 static void list_edges(listing *l) {
   if (l->a->edge_count == 0 || l->b->edge_count == 0) return;
-  struct {
-    uint32_t a, b;
-  } stack[2 * SCREE_TREE_STACK];
-  const scree_tree_node *nodes_a = l->a->edge_tree.nodes, *nodes_b = l->b->edge_tree.nodes;
+  const scree_tree *tree = &l->a->edge_tree;
   double far = l->skin + l->pair->reach + l->pair->smoothing;
+  uint32_t stack[SCREE_TREE_STACK];
   int depth = 0;
-  stack[depth].a = 0;
-  stack[depth++].b = 0;
+  stack[depth++] = 0;
   while (depth > 0) {
-    depth--;
-    uint32_t ia = stack[depth].a, ib = stack[depth].b;
-    const scree_tree_node *na = &nodes_a[ia], *nb = &nodes_b[ib];
-    scree_box moved = scree_box_moved(&na->box, &l->relative->rotation, l->relative->position);
-    moved = scree_box_grown(moved, far);
-    if (!scree_box_meets(&moved, &nb->box)) continue;
-    if (na->count && nb->count) {
-      list_leaf_edges(l, na, nb);
+    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+    scree_box box = scree_box_moved(&node->box, &l->relative->rotation, l->relative->position);
+    box = scree_box_grown(box, far);
+    if (!meets_boxes(&l->b->edge_tree, &box)) continue;
+    if (node->count == 0) {
+      stack[depth++] = node->first + 1;
+      stack[depth++] = node->first;
       continue;
     }
-    bool split_a = na->count == 0 && (nb->count || extent_of(&na->box) >= extent_of(&nb->box));
-    for (uint32_t child = 0; child < 2; child++) {
-      stack[depth].a = split_a ? na->first + child : ia;
-      stack[depth++].b = split_a ? ib : nb->first + child;
-    }
+    for (uint32_t k = 0; k < node->count; k++) list_edge(l, tree->order[node->first + k]);
   }
+}
+
+static double box_gap(const scree_box *a, const scree_box *b) {
+  double x = fmax(a->low.x - b->high.x, b->low.x - a->high.x),
+         y = fmax(a->low.y - b->high.y, b->low.y - a->high.y),
+         z = fmax(a->low.z - b->high.z, b->low.z - a->high.z);
+  return fmax(x, fmax(y, z));
+}
+
+/* The shapes are at least this far apart: the larger gap of the two boxes in either frame. Boxes
+ * hold the roundings. */
+static double least_distance(const listing *l) {
+  const scree_frame *r = l->relative;
+  scree_box moved = scree_box_moved(&l->a->box, &r->rotation, r->position);
+  double gap = box_gap(&moved, &l->b->box);
+  mat3 back = mat3_transpose(&r->rotation);
+  moved = scree_box_moved(&l->b->box, &back, vec3_neg(mat3_mul_vec(&back, r->position)));
+  return fmax(gap, box_gap(&moved, &l->a->box)) - l->pair->smoothing;
 }
 
 bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_frame *relative,
@@ -145,8 +218,14 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
                .b = scree_pair_shape_b(world, pair),
                .relative = relative,
                .scratch = scratch,
-               .skin = world->options.skin / world->options.smoothing * pair->smoothing};
+               .skin = scree_pair_skin(world, pair)};
+  l.skin = fmax(l.skin, fmin(fast_steps * pair->travel, fast_skins * l.skin));
   pair->sleeping.count = 0;
+  double apart = l.b ? least_distance(&l) : 0;
+  if (apart > l.skin) {
+    pair->list_end = pair->path + apart;
+    return true;
+  }
   if (!l.b) {
     list_wall_points(&l);
   } else {

@@ -43,8 +43,7 @@ static double relative_speed(const scree_world *world, const scree_pair *pair) {
     u = vec3_sub(u, vec3_cross(a->spin, between));
     radius = world->bodies.particle[pair->b]->measures.bounding_radius;
   }
-  /* list reach beyond the body: under twice the skin */
-  radius += 2 * world->options.skin / world->options.smoothing * pair->smoothing;
+  radius += 4 * scree_pair_skin(world, pair); /* the lists' reach beyond the body */
   return vec3_norm(u) + radius * vec3_norm(vec3_sub(a->spin, b->spin));
 }
 

@@ -52,7 +52,7 @@ static double travel_limit(const scree_world *world, size_t i) {
   const scree_particle_measures *m = &world->bodies.particle[i]->measures;
   double size = world->options.size > 0 ? world->options.size : m->size;
   double limit =
-      fmin(world->options.overlap_limit * size, fmax(0.25 * m->thickness, 4 * m->rounding));
+      fmin(world->options.overlap_limit * size, fmax(0.5 * m->thickness, 4 * m->rounding));
   return travel_share * limit;
 }
 

@@ -12,7 +12,7 @@ static double size_of(const scree_world *world, const scree_particle *particle) 
 static double thickness_limit(const scree_particle *particle) {
   /* rays grazing a notch find walls thinner than they are: never below four roundings */
   const scree_particle_measures *m = &particle->measures;
-  return fmax(0.25 * m->thickness, 4 * m->rounding);
+  return fmax(0.5 * m->thickness, 4 * m->rounding);
 }
 
 static void set_up(scree_world *world, scree_pair *pair) {

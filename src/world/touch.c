@@ -306,8 +306,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
     item->reference = contact.normal;
     item->has_reference = true;
   }
-  vec3 na = mat3_mul_vec(r, vec3_add(ea->normal1, ea->normal2)),
-       nb = vec3_add(eb->normal1, eb->normal2);
+  vec3 na = mat3_mul_vec(r, ea->outward), nb = eb->outward;
   if (vec3_dot(na, contact.normal) >= 0 || vec3_dot(nb, contact.normal) <= 0) {
     item->anchor[0].share = 0; /* seen through one of the bodies */
     return fmin(far, 0);

@@ -214,6 +214,11 @@ void scree_pair_free(scree_pair *pair);
 /* After a jump: the body's contacts start anew. */
 void scree_body_forget(scree_world *world, size_t body);
 
+/* Reach of the lists of slow pairs, m. */
+static inline double scree_pair_skin(const scree_world *w, const scree_pair *p) {
+  return w->options.skin / w->options.smoothing * p->smoothing;
+}
+
 /* candidates.c: which items could touch within the skin; fills sleeping, keeps active. */
 bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                      scree_scratch *scratch);
