@@ -141,7 +141,7 @@ int main(int argc, char **argv) {
   for (int i = 2; status == SCREE_OK && i < argc; i++) {
     status = judge(&scan.mesh, surface, argv[i], &error);
     if (status == SCREE_OK) continue;
-    fprintf(stderr, "%s: %s\n", argv[i], error.message); /* one bad level is no reason to stop */
+    fprintf(stderr, "%s\n", error.message); /* one bad level is no reason to stop */
     status = SCREE_OK;
   }
   if (status != SCREE_OK) fprintf(stderr, "%s\n", error.message);
