@@ -20,19 +20,23 @@
 
 #define NO_VERTEX UINT32_MAX
 
-enum { BLOCKS_PER_TASK = 16, ROUNDS = 8 };
+enum { BLOCKS_PER_TASK = 16, ROUNDS = 8, HOLD_PASSES = 8 };
 
 static const double pull = 0.6;         /* of the way to the neighbours' mean, each round */
 static const double probe = 1e-3;       /* steps; half the width of the gradient's differences */
 static const double newton_limit = 0.5; /* steps; the longest move onto the surface */
 static const double reach = 0.8;        /* steps from the cell's centre, along each axis */
-static const double longer = 1e-3;      /* a diagonal counts as shorter only by this much */
+static const double upright = 0.1;  /* least cosine between a triangle and its vertices' normals */
+static const double flattest = 0.1; /* least height of a triangle over its longest side */
+static const double longer = 1e-3;  /* a diagonal counts as shorter only by this much */
 
 typedef struct net {
   scree_lattice lattice;
   size_t vertex_count, quad_count;
   vec3 *position, *moved, *normal;
   uint32_t (*neighbour)[6]; /* across the six faces of the cell */
+  uint8_t *fallen;          /* per triangle */
+  uint8_t *held;            /* per vertex: 1 where it stays at its cell's crossings */
   size_t *first_quad;       /* per block, and the total */
   scree_mesh mesh;
 } net;
@@ -253,7 +257,7 @@ static double standing(const net *n, uint32_t a, uint32_t b, uint32_t c, uint32_
     vec3 face = vec3_unit(vec3_triangle_normal(p, q, r));
     for (int i = 0; i < 3; i++) {
       double cosine = vec3_dot(face, n->normal[corner[t][i]]);
-      if (cosine < worst) worst = cosine;
+      if (cosine < worst && !n->held[corner[t][i]]) worst = cosine;
     }
   }
   return worst;
@@ -304,6 +308,67 @@ static void make_quads(void *context, size_t begin, size_t end, size_t task, int
   }
 }
 
+/* ---- Where the shape is finer than the lattice ---- */
+
+/* There the field has no one nearest surface, and vertices that follow it may fold the net or meet.
+ * Triangles that fall over or are too flat hold their vertices at the mean of their cells'
+ * crossings, where Gibson puts them; after each pass the net is looked at again. At a resolution
+ * that suits the shape there are none. */
+static void find_fallen(void *context, size_t begin, size_t end, size_t task, int worker) {
+  net *n = context;
+  (void)task, (void)worker;
+  for (size_t t = begin; t < end; t++) {
+    const uint32_t *corner = n->mesh.triangles + 3 * t;
+    vec3 p[3], normal;
+    double longest = 0, worst = 1;
+    for (int i = 0; i < 3; i++) p[i] = n->position[corner[i]];
+    normal = vec3_triangle_normal(p[0], p[1], p[2]);
+    double size = vec3_norm(normal);
+    for (int i = 0; i < 3; i++) {
+      double side = vec3_norm2(vec3_sub(p[(i + 1) % 3], p[i]));
+      double cosine = vec3_dot(normal, n->normal[corner[i]]);
+      if (side > longest) longest = side;
+      if (cosine < worst * size && !n->held[corner[i]]) worst = size > 0 ? cosine / size : 0;
+    }
+    n->fallen[t] = worst < upright || size < flattest * longest;
+  }
+}
+
+static void hold_vertices(void *context, size_t begin, size_t end, size_t task, int worker) {
+  net *n = context;
+  (void)task, (void)worker;
+  float pad[SCREE_PAD_CORNERS];
+  for (size_t b = begin; b < end; b++) {
+    const scree_lattice_block *block = &n->lattice.blocks[b];
+    if (block->vertex_count == 0 || !memchr(n->held + block->first_vertex, 1, block->vertex_count))
+      continue;
+    scree_lattice_gather(&n->lattice, block, pad);
+    for (int cell = 0; cell < SCREE_BLOCK_CELLS; cell++) {
+      size_t v = block->first_vertex + (size_t)block->vertex[cell];
+      if (block->vertex[cell] >= 0 && n->held[v])
+        n->position[v] =
+            vec3_mad(cell_low(&n->lattice, block, cell), crossing_mean(pad, cell), n->lattice.step);
+    }
+  }
+}
+
+/* Makes the triangles, and again until none has fallen or all that have are held. */
+static void make_triangles(net *n) {
+  bool again = true;
+  for (int pass = 0; again && pass <= HOLD_PASSES; pass++) {
+    again = false;
+    scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, make_quads, n);
+    scree_parallel_for(n->mesh.triangle_count, 4096, find_fallen, n);
+    for (size_t t = 0; t < n->mesh.triangle_count; t++) {
+      const uint32_t *corner = n->mesh.triangles + 3 * t;
+      if (!n->fallen[t]) continue;
+      again |= !(n->held[corner[0]] && n->held[corner[1]] && n->held[corner[2]]);
+      for (int i = 0; i < 3; i++) n->held[corner[i]] = 1;
+    }
+    if (again) scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, hold_vertices, n);
+  }
+}
+
 /* ---- All of it ---- */
 
 static scree_status allocate(net *n, scree_error *error) {
@@ -312,8 +377,11 @@ static scree_status allocate(net *n, scree_error *error) {
   SCREE_ALLOC_OR(n->moved, n->vertex_count, error, failed);
   SCREE_ALLOC_OR(n->normal, n->vertex_count, error, failed);
   SCREE_ALLOC_OR(n->neighbour, n->vertex_count, error, failed);
+  SCREE_ALLOC_OR(n->held, n->vertex_count, error, failed);
+  SCREE_ALLOC_OR(n->fallen, 2 * n->quad_count, error, failed);
   SCREE_ALLOC_OR(n->mesh.positions, 3 * n->vertex_count, error, failed);
   SCREE_ALLOC_OR(n->mesh.triangles, 6 * n->quad_count, error, failed);
+  memset(n->held, 0, n->vertex_count);
   n->mesh.vertex_count = n->vertex_count;
   n->mesh.triangle_count = 2 * n->quad_count;
   status = SCREE_OK;
@@ -331,7 +399,7 @@ static scree_status build(net *n, double step, scree_ticker *ticker, scree_error
   scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, place_vertices, n);
   if (!spread(n, ticker))
     return scree_fail(error, SCREE_CANCELLED, "cancelled while meshing the shape");
-  scree_parallel_for(n->lattice.block_count, BLOCKS_PER_TASK, make_quads, n);
+  make_triangles(n);
   for (size_t v = 0; v < n->vertex_count; v++)
     vec3_store(n->mesh.positions + 3 * v, n->position[v]);
 failed:
@@ -351,6 +419,8 @@ scree_status scree_net_mesh(const scree_shape *shape, double step, scree_ticker 
   scree_free(n.moved);
   scree_free(n.normal);
   scree_free(n.neighbour);
+  scree_free(n.held);
+  scree_free(n.fallen);
   scree_free(n.first_quad);
   scree_lattice_free(&n.lattice);
   return status;

@@ -101,17 +101,19 @@ static bool add_solid(scree_shape *shape, const scree_piece_mm *line) {
   int nx = line->copies_x > 1 ? line->copies_x : 1, ny = line->copies_y > 1 ? line->copies_y : 1;
   if (line->ring_copies > 1) nx = line->ring_copies;
   for (int i = 0; i < nx * ny; i++) {
-    if (shape->solid_count == SCREE_SHAPE_PIECES || shape->part_count == 0) return false;
-    scree_piece *solid = &shape->solids[shape->solid_count++];
-    *solid = (scree_piece){.kind = line->kind,
-                           .op = line->op,
-                           .part = (uint16_t)(shape->part_count - 1),
-                           .half = vec3_scale(line->half, MM),
-                           .corner = line->corner * MM,
-                           .fillet = line->fillet * MM,
-                           .taper = line->taper,
-                           .taper_cosine = 1 / sqrt(1 + line->taper * line->taper),
-                           .blend = line->blend * MM};
+    if (shape->piece_count == SCREE_SHAPE_PIECES || shape->part_count == 0) return false;
+    scree_piece *solid = &shape->pieces[shape->piece_count++];
+    *solid = (scree_piece){
+        .kind = line->kind,
+        .op = line->op,
+        .part = (uint16_t)(shape->part_count - 1),
+        .half = vec3_scale(line->half, MM),
+        .corner = line->corner * MM,
+        .fillet = line->fillet * MM,
+        .taper = line->taper,
+        .taper_cosine = 1 / sqrt(1 + line->taper * line->taper),
+        .scale = 1 / sqrt(1 + fabs(line->taper) / sqrt(1 + line->taper * line->taper)),
+        .blend = line->blend * MM};
     vec3 offset = {(i % nx - 0.5 * (nx - 1)) * line->pitch_x,
                    (i / nx - 0.5 * (ny - 1)) * line->pitch_y, 0};
     solid->turn = turn_of(line->turn_deg, &solid->turned);
@@ -136,7 +138,7 @@ bool scree_shape_build(const scree_piece_mm *lines, size_t line_count, scree_sha
   double swell = 0.25 * shape->blend_max;
   shape->low = vec3_sub(shape->low, (vec3){swell, swell, swell});
   shape->high = vec3_add(shape->high, (vec3){swell, swell, swell});
-  return shape->solid_count > 0;
+  return shape->piece_count > 0;
 }
 
 /* ---- Into the frames ---- */
@@ -188,14 +190,14 @@ static void into_part(const scree_part *part, const scree_points *from, size_t c
 
 static void slab_distance(const scree_piece *s, const scree_points *p, size_t count, double *d) {
   double r = s->corner, f = s->fillet, inner_x = s->half.x - r, inner_y = s->half.y - r,
-         inner_z = s->half.z - f, taper = s->taper, cosine = s->taper_cosine;
+         inner_z = s->half.z - f, taper = s->taper, cosine = s->taper_cosine, scale = s->scale;
   for (size_t i = 0; i < count; i++) {
     double ax = fabs(p->x[i]) - inner_x, ay = fabs(p->y[i]) - inner_y;
     double px = max2(ax, 0), py = max2(ay, 0);
     double side = sqrt(px * px + py * py) + min2(max2(ax, ay), 0) - r;
     double u = (side - taper * p->z[i]) * cosine + f, v = fabs(p->z[i]) - inner_z;
     double pu = max2(u, 0), pv = max2(v, 0);
-    d[i] = min2(max2(u, v), 0) + sqrt(pu * pu + pv * pv) - f;
+    d[i] = (min2(max2(u, v), 0) + sqrt(pu * pu + pv * pv) - f) * scale;
   }
 }
 
@@ -245,12 +247,12 @@ void scree_shape_distance(const scree_shape *shape, const scree_shape_list *list
   double of_part[SCREE_SHAPE_BATCH], of_solid[SCREE_SHAPE_BATCH];
   for (size_t i = 0; i < count; i++) distance[i] = FAR_AWAY;
   for (size_t at = 0; at < list->count;) {
-    uint16_t part_index = shape->solids[list->solids[at]].part;
+    uint16_t part_index = shape->pieces[list->pieces[at]].part;
     const scree_part *part = &shape->parts[part_index];
     into_part(part, points, count, &local);
     for (size_t i = 0; i < count; i++) of_part[i] = FAR_AWAY;
-    for (; at < list->count && shape->solids[list->solids[at]].part == part_index; at++) {
-      const scree_piece *solid = &shape->solids[list->solids[at]];
+    for (; at < list->count && shape->pieces[list->pieces[at]].part == part_index; at++) {
+      const scree_piece *solid = &shape->pieces[list->pieces[at]];
       solid_distance(solid, &local, count, &scratch, of_solid);
       combine(solid->op, solid->blend, count, of_solid, of_part);
     }
@@ -263,8 +265,8 @@ void scree_shape_distance(const scree_shape *shape, const scree_shape_list *list
 /* ---- Pruning ---- */
 
 void scree_shape_list_all(const scree_shape *shape, scree_shape_list *list) {
-  list->count = shape->solid_count;
-  for (size_t i = 0; i < shape->solid_count; i++) list->solids[i] = (uint16_t)i;
+  list->count = shape->piece_count;
+  for (size_t i = 0; i < shape->piece_count; i++) list->pieces[i] = (uint16_t)i;
 }
 
 /* A solid farther than the margin from the whole ball adds nothing there and takes nothing away;
@@ -281,8 +283,8 @@ void scree_shape_prune(const scree_shape *shape, vec3 centre, double radius, dou
   point.y[0] = centre.y;
   point.z[0] = centre.z;
   list->count = 0;
-  for (size_t i = shape->solid_count; i-- > 0;) {
-    const scree_piece *solid = &shape->solids[i];
+  for (size_t i = shape->piece_count; i-- > 0;) {
+    const scree_piece *solid = &shape->pieces[i];
     const scree_part *part = &shape->parts[solid->part];
     if (solid->part != part_now) {
       into_part(part, &point, 1, &local);
@@ -293,11 +295,11 @@ void scree_shape_prune(const scree_shape *shape, vec3 centre, double radius, dou
     solid_distance(solid, &local, 1, &scratch, &d);
     if (solid->op == SCREE_PIECE_KEEP ? d < -limit : d > limit) continue;
     margin += solid->blend;
-    list->solids[list->count++] = (uint16_t)i;
+    list->pieces[list->count++] = (uint16_t)i;
   }
   for (size_t a = 0, b = list->count; a + 1 < b; a++) {
-    uint16_t swap = list->solids[a];
-    list->solids[a] = list->solids[--b];
-    list->solids[b] = swap;
+    uint16_t swap = list->pieces[a];
+    list->pieces[a] = list->pieces[--b];
+    list->pieces[b] = swap;
   }
 }

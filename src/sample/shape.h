@@ -1,4 +1,4 @@
-/* Shapes as signed distance fields: few kinds of rounded solids, joined, cut and blended in the
+/* Shapes as signed distance fields: few kinds of rounded pieces, joined, cut and blended in the
  * order of a drawing. Negative inside. Every function here is a lower bound of the distance
  * (1-Lipschitz), which is what block skipping and pruning stand on. */
 #ifndef SCREE_SAMPLE_SHAPE_H
@@ -51,7 +51,7 @@ typedef struct scree_piece {
   bool turned;
   uint16_t part;
   vec3 at, half;
-  double corner, fillet, taper, taper_cosine, blend;
+  double corner, fillet, taper, taper_cosine, scale, blend;
   mat3 turn; /* local = transpose(turn) (p - at) */
 } scree_piece;
 
@@ -65,31 +65,31 @@ typedef struct scree_part {
 } scree_part;
 
 typedef struct scree_shape {
-  scree_piece solids[SCREE_SHAPE_PIECES];
+  scree_piece pieces[SCREE_SHAPE_PIECES];
   scree_part parts[SCREE_SHAPE_PARTS];
-  size_t solid_count, part_count;
+  size_t piece_count, part_count;
   double blend_max;
   vec3 low, high; /* a box that holds the shape */
 } scree_shape;
 
-/* The solids of a shape that matter in some region, in order. */
+/* The pieces of a shape that matter in some region, in order. */
 typedef struct scree_shape_list {
   size_t count;
-  uint16_t solids[SCREE_SHAPE_PIECES];
+  uint16_t pieces[SCREE_SHAPE_PIECES];
 } scree_shape_list;
 
-/* Builds a shape from a drawing of line_count lines; false where it holds more solids or parts than
+/* Builds a shape from a drawing of line_count lines; false where it holds more pieces or parts than
  * a shape can (a mistake in the drawing, not in anybody's data). */
 bool scree_shape_build(const scree_piece_mm *lines, size_t line_count, scree_shape *shape);
 
-/* All solids. */
+/* All pieces. */
 void scree_shape_list_all(const scree_shape *shape, scree_shape_list *list);
-/* The solids that can touch the surface in the ball around centre. Within it the pruned field has
+/* The pieces that can touch the surface in the ball around centre. Within it the pruned field has
  * the sign of the whole one, and its value wherever that is below `band`. */
 void scree_shape_prune(const scree_shape *shape, vec3 centre, double radius, double band,
                        scree_shape_list *list);
 
-/* The field of the listed solids at count points (at most SCREE_SHAPE_BATCH). */
+/* The field of the listed pieces at count points (at most SCREE_SHAPE_BATCH). */
 typedef struct scree_points {
   double x[SCREE_SHAPE_BATCH], y[SCREE_SHAPE_BATCH], z[SCREE_SHAPE_BATCH];
 } scree_points;
