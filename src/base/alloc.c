@@ -1,12 +1,15 @@
 /* Each block carries its raw pointer and size in the 64 bytes before it, so that use can be counted
- * with any allocator behind the hook. */
+ * with any allocator behind the hook. Large blocks ask for huge pages: touching 100 MB for the
+ * first time costs 25,000 page faults otherwise, more than welding a scan. */
+#define _DEFAULT_SOURCE
 #include "base/alloc.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
-enum { ALIGNMENT = 64 };
+enum { ALIGNMENT = 64, HUGE_PAGE = 1 << 21 };
 
 typedef struct header {
   void *raw;
@@ -60,6 +63,18 @@ static bool reserve(size_t size) {
   return true;
 }
 
+/* Only advice: it may be refused, and the part of the block that is no whole page stays as it is.
+ */
+static void advise_huge_pages(void *raw, size_t size) {
+#ifdef MADV_HUGEPAGE
+  uintptr_t begin = ((uintptr_t)raw + HUGE_PAGE - 1) & ~(uintptr_t)(HUGE_PAGE - 1),
+            end = ((uintptr_t)raw + size) & ~(uintptr_t)(HUGE_PAGE - 1);
+  if (begin < end) (void)madvise((void *)begin, end - begin, MADV_HUGEPAGE);
+#else
+  (void)raw, (void)size;
+#endif
+}
+
 static header *header_of(void *block) {
   return (header *)((char *)block - ALIGNMENT);
 }
@@ -79,6 +94,7 @@ void *scree_alloc(size_t count, size_t size) {
     return NULL;
   }
   atomic_fetch_add(&allocation_count, 1);
+  if (padded >= HUGE_PAGE) advise_huge_pages(raw, padded);
   uintptr_t address = (uintptr_t)raw + ALIGNMENT;
   size_t shift = (size_t)(-address & (ALIGNMENT - 1));
   char *block = (char *)raw + ALIGNMENT + shift;

@@ -1,0 +1,7 @@
+/* Reading of whatever calls itself STL. */
+#include "fuzz/reading.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
+  fuzz_parse(data, size, 0);
+  return 0;
+}
