@@ -306,7 +306,8 @@ typedef struct scree_distance {
 typedef struct scree_distance_options {
   size_t sample_count;  /* points to spread over each surface in proportion to area, as Metro does;
                            every facet gets one and every vertex is one besides. 0, the default:
-                           the greater vertex count of the two. */
+                           the greater vertex count of the two, at
+                            least 10,000. */
   double hausdorff_gap; /* facets are subdivided until maximum_bound is within this fraction of
                            maximum, at least 1e-6, or effort is spent (four million samples and
                            32 per facet); 0, the default, takes the bound without subdividing, at no
@@ -1259,6 +1260,42 @@ SCREE_API scree_status scree_choice_csv_write(const scree_choice_report *report,
 SCREE_API scree_status scree_choice_curve_csv_write(const scree_choice_entry *entry,
                                                     const char *path, bool overwrite,
                                                     scree_error *error);
+
+/* ---- 9.4 Measures and distances: tables, JSON ---- */
+
+/* One measured scan. Texts are borrowed. */
+typedef struct scree_measure_entry {
+  const char *file, *format; /* as given; as read */
+  scree_checksum checksum;
+  double unit_m; /* metres per unit of the file */
+  scree_measures measures;
+  scree_topology topology;
+} scree_measure_entry;
+
+/* One array, an object per entry: every field of measures and topology by its name, in SI units
+ * (docs/formats.md). command_line is provenance; NULL: unknown. "-" is stdout. */
+SCREE_API scree_status scree_measure_json_write(const scree_measure_entry *entries,
+                                                size_t entry_count, const char *command_line,
+                                                const char *path, bool overwrite,
+                                                scree_error *error);
+/* The same as rows; arrays as columns NAME_1, NAME_2 and so on. */
+SCREE_API scree_status scree_measure_csv_write(const scree_measure_entry *entries,
+                                               size_t entry_count, const char *path, bool overwrite,
+                                               scree_error *error);
+
+/* The distance between two scans. */
+typedef struct scree_distance_entry {
+  const char *file[2];
+  scree_checksum checksum[2];
+  double unit_m[2];
+  scree_distance_options options;
+  scree_distance distance;
+} scree_distance_entry;
+
+/* One object with `forward` (from file 0 to file 1), `backward` and the Hausdorff distance, m. */
+SCREE_API scree_status scree_distance_json_write(const scree_distance_entry *entry,
+                                                 const char *command_line, const char *path,
+                                                 bool overwrite, scree_error *error);
 
 #ifdef __cplusplus
 }

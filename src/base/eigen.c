@@ -35,11 +35,14 @@ static int largest_component(const double row[3]) {
   return largest;
 }
 
+/* Adding 0 makes the zero of either sign a positive one. */
 void scree_frame_canonical(mat3 *axes) {
-  for (int i = 0; i < 2; i++)
-    if (axes->m[i][largest_component(axes->m[i])] < 0)
-      for (int k = 0; k < 3; k++) axes->m[i][k] = -axes->m[i][k];
-  vec3_store(axes->m[2], vec3_cross(vec3_load(axes->m[0]), vec3_load(axes->m[1])));
+  for (int i = 0; i < 2; i++) {
+    double sign = axes->m[i][largest_component(axes->m[i])] < 0 ? -1 : 1;
+    for (int k = 0; k < 3; k++) axes->m[i][k] = sign * axes->m[i][k] + 0.0;
+  }
+  vec3 third = vec3_cross(vec3_load(axes->m[0]), vec3_load(axes->m[1]));
+  vec3_store(axes->m[2], vec3_add(third, (vec3){0, 0, 0}));
 }
 
 void scree_eigen_symmetric(const mat3 *matrix, double values[3], mat3 *axes) {

@@ -164,9 +164,9 @@ static void set_mass(scree_measures *m, vec3 origin, double diagonal, const doub
   }
   vec3_store(m->centroid, vec3_add(origin, vec3_load(offset)));
   double trace = about[0] + about[1] + about[2];
-  mat3 inertia = {{{trace - about[0], -about[3], -about[4]},
-                   {-about[3], trace - about[1], -about[5]},
-                   {-about[4], -about[5], trace - about[2]}}};
+  mat3 inertia = {{{trace - about[0], 0 - about[3], 0 - about[4]},
+                   {0 - about[3], trace - about[1], 0 - about[5]},
+                   {0 - about[4], 0 - about[5], trace - about[2]}}};
   mat3 axes;
   scree_eigen_symmetric(&inertia, m->principal_moments, &axes);
   memcpy(m->inertia, inertia.m, sizeof m->inertia);

@@ -1,0 +1,192 @@
+/* scree measure: sizes, mass properties and topology of scans. */
+#include "cli/args.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct measure_arguments {
+  double unit, weld;
+  bool json, csv;
+} measure_arguments;
+
+static const measure_arguments defaults = {.unit = 1e-3};
+
+static const cli_option options[] = {
+    {"unit", 'u', CLI_UNIT, offsetof(measure_arguments, unit), "UNIT",
+     "The files' unit of length, which the text is given in, too. Default: mm.", 0, 0, NULL},
+    {"weld", 0, CLI_REAL, offsetof(measure_arguments, weld), "SHARE",
+     "Unite vertices closer than this share of the bounding box diagonal. Default: 0, only equal "
+     "ones.",
+     0, 0.1, NULL},
+    {"json", 0, CLI_FLAG, offsetof(measure_arguments, json), NULL,
+     "JSON: one array, an object per file, in SI units.", 0, 0, NULL},
+    {"csv", 0, CLI_FLAG, offsetof(measure_arguments, csv), NULL,
+     "CSV: one row per file, in SI units.", 0, 0, NULL},
+};
+
+/* ---- Text ---- */
+
+static void print_three(const char *label, const double *values, double unit, const char *name,
+                        const char *note) {
+  printf("  %-22s %.7g x %.7g x %.7g %s%s\n", label, values[0] / unit, values[1] / unit,
+         values[2] / unit, name, note);
+}
+
+static void print_measures(const scree_measures *m, double unit) {
+  const char *name = cli_unit_name(unit);
+  double cube = unit * unit * unit;
+  printf("  %-22s %.9g %s2\n", "area S", m->area / unit / unit, name);
+  printf("  %-22s %.9g %s3\n", "volume V", m->volume / cube, name);
+  printf("  %-22s %.7g, %.7g, %.7g %s\n", "centroid", m->centroid[0] / unit, m->centroid[1] / unit,
+         m->centroid[2] / unit, name);
+  print_three("dimensions x, y, z", m->dimensions, unit, name, "");
+  print_three("oriented dimensions", m->oriented_dimensions, unit, name, "");
+  printf("  %-22s %.7g %s\n", "equivalent diameter", m->equivalent_diameter / unit, name);
+  printf("  %-22s %.5f\n", "sphericity", m->sphericity);
+  printf("  %-22s %.5f\n", "convexity", m->convexity);
+  printf("  %-22s %.6g, %.6g, %.6g %s5 (times density)\n", "principal moments",
+         m->principal_moments[0] / cube / unit / unit, m->principal_moments[1] / cube / unit / unit,
+         m->principal_moments[2] / cube / unit / unit, name);
+  for (int i = 0; i < 3; i++)
+    printf("  %-22s %+.6f %+.6f %+.6f\n", i ? "" : "principal axes", m->principal_axes[i][0],
+           m->principal_axes[i][1], m->principal_axes[i][2]);
+}
+
+static const char *ending(size_t count) {
+  return count == 1 ? "" : "s";
+}
+
+static void print_count(size_t count, const char *what) {
+  if (count) printf("; %zu %s%s", count, what, ending(count));
+}
+
+static void print_topology(const scree_topology *t) {
+  printf("  %zu facet%s, %zu vertices, %zu edges in %zu shell%s", t->facet_count,
+         ending(t->facet_count), t->vertex_count, t->edge_count, t->shell_count,
+         ending(t->shell_count));
+  if (t->genus >= 0) printf(", genus %lld", t->genus);
+  printf("\n  %s, %s, %s", t->closed ? "closed" : "open", t->manifold ? "manifold" : "not manifold",
+         t->oriented ? "consistently wound" : "not consistently wound");
+  if (!t->closed)
+    printf("; %zu boundary edge%s round %zu hole%s", t->boundary_edge_count,
+           ending(t->boundary_edge_count), t->boundary_count, ending(t->boundary_count));
+  print_count(t->non_manifold_edge_count, "non-manifold edge");
+  if (t->non_manifold_vertex_count)
+    printf("; %zu non-manifold vert%s", t->non_manifold_vertex_count,
+           t->non_manifold_vertex_count == 1 ? "ex" : "ices");
+  print_count(t->inconsistent_edge_count, "inconsistent edge");
+  print_count(t->degenerate_facet_count, "degenerate facet");
+  print_count(t->duplicate_facet_count, "duplicate facet");
+  print_count(t->inward_shell_count, "shell");
+  puts(t->inward_shell_count ? " wound inward" : "");
+}
+
+static void warn(const scree_measure_entry *entry) {
+  const scree_measures *m = &entry->measures;
+  if (!m->closed && entry->topology.closed)
+    fprintf(stderr,
+            "scree: %s: warning: the facets are not wound consistently, so they enclose no volume; "
+            "volume, centroid, moments and what follows from them mean little\n",
+            entry->file);
+  else if (!m->closed)
+    fprintf(stderr,
+            "scree: %s: warning: the surface is not closed; volume, centroid, moments and what "
+            "follows from them are a stand-in, with every hole closed by a cone\n",
+            entry->file);
+  else if (m->inward)
+    fprintf(stderr, "scree: %s: warning: the surface is inside out: its volume is negative\n",
+            entry->file);
+}
+
+/* ---- The work ---- */
+
+static scree_status measure_file(const cli_call *call, const char *file, scree_measure_entry *entry,
+                                 char format[32], scree_error *error) {
+  const measure_arguments *arguments = call->options;
+  scree_read_options read = scree_default_read_options();
+  scree_scan scan;
+  read.unit_m = arguments->unit;
+  read.weld_tolerance = arguments->weld;
+  scree_status status = scree_scan_read(file, &read, &scan, error);
+  if (status != SCREE_OK) return status;
+  memcpy(format, scan.format, sizeof scan.format);
+  *entry = (scree_measure_entry){
+      .file = file, .format = format, .checksum = scan.checksum, .unit_m = arguments->unit};
+  status = scree_mesh_measure(&scan.mesh, &entry->measures, error);
+  if (status == SCREE_OK) status = scree_mesh_topology(&scan.mesh, &entry->topology, error);
+  if (status == SCREE_OK) entry->topology.degenerate_facet_count += scan.degenerate_count;
+  scree_scan_free(&scan);
+  if (status == SCREE_OK) return status;
+  char sentence[sizeof error->message];
+  memcpy(sentence, error->message, sizeof sentence);
+  snprintf(error->message, sizeof error->message, "%.300s: %.700s", file, sentence);
+  return status;
+}
+
+static void print_entry(const scree_measure_entry *entry) {
+  printf("%s (%s, lengths in %s)\n", entry->file, entry->format, cli_unit_name(entry->unit_m));
+  print_topology(&entry->topology);
+  print_measures(&entry->measures, entry->unit_m);
+}
+
+static scree_status write_tables(const cli_call *call, const scree_measure_entry *entries,
+                                 size_t count, scree_error *error) {
+  const measure_arguments *arguments = call->options;
+  if (arguments->json)
+    return scree_measure_json_write(entries, count, call->command_line, "-", false, error);
+  if (arguments->csv) return scree_measure_csv_write(entries, count, "-", false, error);
+  return SCREE_OK;
+}
+
+/* A file that cannot be measured is told on stderr; the others are measured all the same. */
+static int run(const cli_call *call) {
+  const measure_arguments *arguments = call->options;
+  if (arguments->json && arguments->csv)
+    return cli_misuse(call->verb, "--json and --csv exclude each other");
+  scree_measure_entry *entries = calloc(call->input_count, sizeof *entries);
+  char(*formats)[32] = calloc(call->input_count, sizeof *formats);
+  scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory for the table of measures"};
+  size_t count = 0;
+  int code = entries && formats ? 0 : cli_fail(&error);
+  for (size_t i = 0; i < call->input_count && entries && formats; i++) {
+    if (measure_file(call, call->inputs[i], &entries[count], formats[count], &error) != SCREE_OK) {
+      code = cli_fail(&error);
+      continue;
+    }
+    if (!arguments->json && !arguments->csv) {
+      if (count) putchar('\n');
+      print_entry(&entries[count]);
+      fflush(stdout);
+    }
+    if (!call->quiet) warn(&entries[count]);
+    count++;
+  }
+  if (entries && formats && write_tables(call, entries, count, &error) != SCREE_OK)
+    code = cli_fail(&error);
+  free(entries);
+  free(formats);
+  return code;
+}
+
+const cli_verb cli_verb_measure = {
+    .name = "measure",
+    .summary = "area, volume, inertia, dimensions and topology of scans",
+    .inputs = "FILE...",
+    .description =
+        "Measures each scan: area, volume, centroid, principal moments of inertia (of unit "
+        "density), dimensions along the axes and of the least-volume box found, the diameter of "
+        "the sphere of equal volume, sphericity (Wadell), convexity (volume over that of the "
+        "convex hull), and how its facets hang together. Integrals are exact for the polyhedron. "
+        "Where the surface is not closed, a warning says so. - is standard input.\n\n"
+        "Text is in the file's unit; JSON and CSV are in SI units.",
+    .examples = "scree measure phone.stl\n"
+                "scree measure --unit m --csv stones/*.ply\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 1,
+    .input_maximum = SIZE_MAX,
+    .run = run,
+};

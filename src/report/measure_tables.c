@@ -1,0 +1,233 @@
+/* Measures, topology and distances as JSON and CSV. One table of fields serves both; all values are
+ * SI, and every object carries what is needed to run it again. */
+#include "base/file.h"
+#include "report/csv.h"
+#include "report/json.h"
+
+#include <inttypes.h>
+
+typedef enum kind { REAL, COUNT, SIGNED, FLAG } kind;
+
+/* A field of scree_measure_entry: count values (1, 3, or 9 as three rows of three). */
+typedef struct field {
+  const char *name;
+  kind kind;
+  size_t offset;
+  int count;
+} field;
+
+#define M(name, kind, count)                                                                       \
+  { #name, kind, offsetof(scree_measure_entry, measures) + offsetof(scree_measures, name), count }
+#define T(name, kind)                                                                              \
+  { #name, kind, offsetof(scree_measure_entry, topology) + offsetof(scree_topology, name), 1 }
+
+static const field measure_fields[] = {
+    M(area, REAL, 1),
+    M(volume, REAL, 1),
+    M(closed, FLAG, 1),
+    M(inward, FLAG, 1),
+    M(centroid, REAL, 3),
+    M(inertia, REAL, 9),
+    M(principal_moments, REAL, 3),
+    M(principal_axes, REAL, 9),
+    M(equivalent_diameter, REAL, 1),
+    M(sphericity, REAL, 1),
+    M(convexity, REAL, 1),
+    M(dimensions, REAL, 3),
+    M(box_min, REAL, 3),
+    M(box_max, REAL, 3),
+    M(oriented_dimensions, REAL, 3),
+    M(oriented_axes, REAL, 9),
+    M(oriented_center, REAL, 3),
+    M(hull_area, REAL, 1),
+    M(hull_volume, REAL, 1),
+};
+
+static const field topology_fields[] = {
+    T(facet_count, COUNT),
+    T(vertex_count, COUNT),
+    T(unused_vertex_count, COUNT),
+    T(edge_count, COUNT),
+    T(shell_count, COUNT),
+    T(inward_shell_count, COUNT),
+    T(boundary_edge_count, COUNT),
+    T(boundary_count, COUNT),
+    T(non_manifold_edge_count, COUNT),
+    T(non_manifold_vertex_count, COUNT),
+    T(inconsistent_edge_count, COUNT),
+    T(degenerate_facet_count, COUNT),
+    T(duplicate_facet_count, COUNT),
+    T(euler_characteristic, SIGNED),
+    T(genus, SIGNED),
+    T(closed, FLAG),
+    T(manifold, FLAG),
+    T(oriented, FLAG),
+};
+#undef M
+#undef T
+
+enum {
+  MEASURE_FIELDS = sizeof measure_fields / sizeof *measure_fields,
+  TOPOLOGY_FIELDS = sizeof topology_fields / sizeof *topology_fields
+};
+
+static const void *value_of(const scree_measure_entry *entry, const field *f) {
+  return (const char *)entry + f->offset;
+}
+
+static void checksum_text(const scree_checksum *checksum, char text[40]) {
+  snprintf(text, 40, "%016" PRIx64 "%016" PRIx64, checksum->high, checksum->low);
+}
+
+/* ---- JSON ---- */
+
+static void json_reals(scree_json *json, const char *key, const double *values, int count) {
+  scree_json_row_array(json, key);
+  for (int i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
+  scree_json_end(json);
+}
+
+static void json_field(scree_json *json, const scree_measure_entry *entry, const field *f) {
+  const void *value = value_of(entry, f);
+  if (f->kind == COUNT) {
+    scree_json_count(json, f->name, *(const size_t *)value);
+  } else if (f->kind == SIGNED) {
+    scree_json_number(json, f->name, (double)*(const long long *)value);
+  } else if (f->kind == FLAG) {
+    scree_json_bool(json, f->name, *(const bool *)value);
+  } else if (f->count == 1) {
+    scree_json_number(json, f->name, *(const double *)value);
+  } else if (f->count == 3) {
+    json_reals(json, f->name, value, 3);
+  } else {
+    scree_json_row_array(json, f->name);
+    for (int i = 0; i < 3; i++) json_reals(json, NULL, (const double *)value + (size_t)(3 * i), 3);
+    scree_json_end(json);
+  }
+}
+
+static void json_provenance(scree_json *json, const char *command_line) {
+  scree_json_text(json, "version", scree_version());
+  scree_json_text(json, "command", command_line);
+}
+
+static void json_entry(scree_json *json, const scree_measure_entry *entry,
+                       const char *command_line) {
+  char checksum[40];
+  checksum_text(&entry->checksum, checksum);
+  scree_json_object(json, NULL);
+  scree_json_text(json, "file", entry->file);
+  scree_json_text(json, "format", entry->format);
+  scree_json_text(json, "checksum", checksum);
+  scree_json_number(json, "unit_m", entry->unit_m);
+  for (int i = 0; i < MEASURE_FIELDS; i++) json_field(json, entry, &measure_fields[i]);
+  scree_json_object(json, "topology");
+  for (int i = 0; i < TOPOLOGY_FIELDS; i++) json_field(json, entry, &topology_fields[i]);
+  scree_json_end(json);
+  json_provenance(json, command_line);
+  scree_json_end(json);
+}
+
+scree_status scree_measure_json_write(const scree_measure_entry *entries, size_t entry_count,
+                                      const char *command_line, const char *path, bool overwrite,
+                                      scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  scree_json json = scree_json_start(output.stream);
+  scree_json_array(&json, NULL);
+  for (size_t i = 0; i < entry_count; i++) json_entry(&json, &entries[i], command_line);
+  scree_json_end(&json);
+  return scree_output_commit(&output, error);
+}
+
+static void json_deviation(scree_json *json, const char *key, const scree_deviation *d) {
+  scree_json_object(json, key);
+  scree_json_number(json, "mean", d->mean);
+  scree_json_number(json, "rms", d->rms);
+  scree_json_number(json, "maximum", d->maximum);
+  scree_json_number(json, "maximum_bound", d->maximum_bound);
+  json_reals(json, "at", d->at, 3);
+  scree_json_count(json, "sample_count", d->sample_count);
+  scree_json_end(json);
+}
+
+scree_status scree_distance_json_write(const scree_distance_entry *entry, const char *command_line,
+                                       const char *path, bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  scree_json json = scree_json_start(output.stream);
+  scree_json_object(&json, NULL);
+  scree_json_array(&json, "files");
+  for (int i = 0; i < 2; i++) {
+    char checksum[40];
+    checksum_text(&entry->checksum[i], checksum);
+    scree_json_row_object(&json, NULL);
+    scree_json_text(&json, "file", entry->file[i]);
+    scree_json_text(&json, "checksum", checksum);
+    scree_json_number(&json, "unit_m", entry->unit_m[i]);
+    scree_json_end(&json);
+  }
+  scree_json_end(&json);
+  json_deviation(&json, "forward", &entry->distance.forward);
+  if (!entry->options.one_way) json_deviation(&json, "backward", &entry->distance.backward);
+  scree_json_number(&json, "hausdorff", entry->distance.hausdorff);
+  scree_json_number(&json, "hausdorff_bound", entry->distance.hausdorff_bound);
+  scree_json_row_object(&json, "options");
+  scree_json_count(&json, "sample_count", entry->options.sample_count);
+  scree_json_number(&json, "hausdorff_gap", entry->options.hausdorff_gap);
+  scree_json_bool(&json, "one_way", entry->options.one_way);
+  scree_json_end(&json);
+  json_provenance(&json, command_line);
+  scree_json_end(&json);
+  return scree_output_commit(&output, error);
+}
+
+/* ---- CSV ---- */
+
+static void csv_header(FILE *stream, const field *fields, int field_count, const char *prefix) {
+  for (int i = 0; i < field_count; i++)
+    for (int k = 0; k < fields[i].count; k++)
+      if (fields[i].count == 1)
+        fprintf(stream, ",%s%s", prefix, fields[i].name);
+      else
+        fprintf(stream, ",%s%s_%d", prefix, fields[i].name, k + 1);
+}
+
+static void csv_fields(FILE *stream, const scree_measure_entry *entry, const field *fields,
+                       int field_count) {
+  for (int i = 0; i < field_count; i++)
+    for (int k = 0; k < fields[i].count; k++) {
+      const void *value = value_of(entry, &fields[i]);
+      putc(',', stream);
+      if (fields[i].kind == REAL)
+        scree_csv_number(stream, ((const double *)value)[k]);
+      else if (fields[i].kind == COUNT)
+        fprintf(stream, "%zu", *(const size_t *)value);
+      else if (fields[i].kind == SIGNED)
+        fprintf(stream, "%lld", *(const long long *)value);
+      else
+        fputs(*(const bool *)value ? "true" : "false", stream);
+    }
+}
+
+scree_status scree_measure_csv_write(const scree_measure_entry *entries, size_t entry_count,
+                                     const char *path, bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  fputs("file,unit_m", output.stream);
+  csv_header(output.stream, measure_fields, MEASURE_FIELDS, "");
+  csv_header(output.stream, topology_fields, TOPOLOGY_FIELDS, "topology_");
+  putc('\n', output.stream);
+  for (size_t i = 0; i < entry_count; i++) {
+    scree_csv_text(output.stream, entries[i].file);
+    putc(',', output.stream);
+    scree_csv_number(output.stream, entries[i].unit_m);
+    csv_fields(output.stream, &entries[i], measure_fields, MEASURE_FIELDS);
+    csv_fields(output.stream, &entries[i], topology_fields, TOPOLOGY_FIELDS);
+    putc('\n', output.stream);
+  }
+  return scree_output_commit(&output, error);
+}

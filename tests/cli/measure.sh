@@ -1,0 +1,41 @@
+# a box of 3 x 2 x 1 and its inner half, as OFF
+cat >box.off <<END
+OFF
+8 6 0
+0 0 0
+3 0 0
+3 2 0
+0 2 0
+0 0 1
+3 0 1
+3 2 1
+0 2 1
+4 3 2 1 0
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+END
+sed '$d' box.off | sed 's/^8 6 0/8 5 0/' >open.off
+sed 's/^4 3 2 1 0/4 0 1 2 3/' box.off >unlike.off
+awk 'NR > 2 && NF == 3 { print $1, $2, $3 + 1; next } { print }' box.off >moved.off
+echo "solid nothing" >broken.stl
+digits='s/"checksum": "[0-9a-f]*"/"checksum": "..."/; s/\(-\?[0-9]*\.[0-9]\{10\}\)[0-9]*/\1/g'
+
+run measure box.off
+run measure --unit m open.off
+run measure unlike.off
+run measure broken.stl box.off | tail -n 3
+echo "exit code of a set with a broken file:"
+"$SCREE" measure -q broken.stl box.off >/dev/null 2>&1 || echo $?
+run measure --json box.off | grep -v '"version"' | sed "$digits"
+run measure --csv --unit m box.off moved.off | cut -d, -f1-10
+run measure - <box.off | head -n 2
+run measure
+run measure --json --csv box.off
+run distance box.off moved.off
+run distance --gap 0.001 --one-way box.off moved.off
+run distance --json box.off moved.off | grep -v '"version"' | sed "$digits"
+run distance box.off
+run distance box.off broken.stl
