@@ -491,6 +491,23 @@ SCREE_API scree_status scree_mesh_prepare(const scree_mesh *mesh,
                                           const scree_progress *progress, scree_mesh *ready,
                                           scree_repair_report *report, scree_error *error);
 
+/* What became of one file, for scree_check_json_write. */
+typedef struct scree_check_entry {
+  const char *file;       /* as given */
+  const scree_scan *scan; /* NULL where it could not be read: then only `failure` is told */
+  double unit_m;          /* metres per unit of the file */
+  const scree_check *check;
+  const scree_repair_report *repair; /* NULL where none was tried */
+  const char *output;                /* the file written; NULL: none */
+  const char *failure;               /* why there is no result; NULL: there is one */
+} scree_check_entry;
+
+/* One array with an object per entry: file, checksum, counts of every defect, verdict, what was
+ * done. docs/formats.md has every field. command_line may be NULL; path "-" is stdout. */
+SCREE_API scree_status scree_check_json_write(const scree_check_entry *entries, size_t entry_count,
+                                              const char *command_line, const char *path,
+                                              bool overwrite, scree_error *error);
+
 /* ==== 3. Decimation: the curve =================================================================
  */
 

@@ -251,11 +251,9 @@ static scree_status mend(scree_repair *r, const scree_mesh *mesh, scree_error *e
   r->untangled = r->report.before.usable;
   if (!r->report.before.usable || r->report.before.shell_count > 1) status = run_rounds(r, error);
   if (status != SCREE_OK) return status;
-  if (actions_done(r) > 0) return check_now(r, r->options->intersections, &r->report.after, error);
-  /* the same facets as before, without unused vertices */
-  r->report.after = r->report.before;
-  r->report.after.vertex_count = r->mesh.vertex_count;
-  r->report.after.defects[SCREE_DEFECT_UNUSED_VERTEX] = 0;
+  if (actions_done(r) > 0 || r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX])
+    return check_now(r, r->options->intersections, &r->report.after, error);
+  r->report.after = r->report.before; /* of the same facets */
   return SCREE_OK;
 }
 

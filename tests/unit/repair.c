@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "base/vec.h"
+#include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/shapes.h"
 
@@ -432,6 +433,44 @@ static void prepare(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* ---- Memory ---- */
+
+static scree_status call_check(void *context, scree_error *error) {
+  scree_check check;
+  return scree_mesh_check(context, NULL, NULL, &check, error);
+}
+
+static scree_status call_prepare(void *context, scree_error *error) {
+  scree_repair_options options = scree_default_repair_options();
+  scree_mesh ready = {0};
+  scree_status status = scree_mesh_prepare(context, &options, NULL, &ready, NULL, error);
+  scree_mesh_free(&ready);
+  return status;
+}
+
+/* A mesh with some of everything, so that every stage runs. */
+static void out_of_memory(void **state) {
+  (void)state;
+  scree_mesh ball = shape_icosphere(1, 3), box = shape_grid_box(1, 1, 1, 2);
+  vec3 p = vec3_load(ball.positions + 3 * 7);
+  vec3_store(ball.positions + 3 * 7, vec3_scale(p, -1.2));
+  shape_move(&box, (vec3){3, 0, 0});
+  scree_mesh two = shape_join(&ball, &box);
+  shape_move(&box, (vec3){1, 1, 0});
+  scree_mesh mesh = shape_join(&two, &box);
+  shape_flip(&mesh, 3);
+  const uint32_t *c = mesh.triangles + 3 * (size_t)1290;
+  append_facet(&mesh, c[0], c[1], c[2]);
+  append_facet(&mesh, c[0], c[1], 3);
+  mesh.triangles[6] = mesh.triangles[7];
+  assert_true(check_allocation_failures(call_check, &mesh) > 10);
+  assert_true(check_allocation_failures(call_prepare, &mesh) > 50);
+  scree_mesh_free(&mesh);
+  scree_mesh_free(&two);
+  scree_mesh_free(&ball);
+  scree_mesh_free(&box);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(sound_stays),
                                      cmocka_unit_test(turned_and_doubled),
@@ -446,6 +485,7 @@ int main(void) {
                                      cmocka_unit_test(spike),
                                      cmocka_unit_test(same_whatever_order),
                                      cmocka_unit_test(moved_turned_scaled),
-                                     cmocka_unit_test(prepare)};
+                                     cmocka_unit_test(prepare),
+                                     cmocka_unit_test(out_of_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

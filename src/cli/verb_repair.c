@@ -1,0 +1,174 @@
+/* scree repair: a surface that can serve as a particle of one that cannot, or a refusal. */
+#include "cli/args.h"
+#include "cli/surface.h"
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct repair_arguments {
+  const char *output;
+  double unit, seam_tolerance, debris_share;
+  size_t hole_edges;
+  bool large_holes, drop_cavities, largest, no_cut, fast, json, force;
+} repair_arguments;
+
+#define AT(field) offsetof(repair_arguments, field)
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, AT(output), "FILE",
+     "Where the repaired surface goes: .stl, .ply, .obj or .off.", 0, 0, NULL},
+    {"unit", 'u', CLI_UNIT, AT(unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
+     NULL},
+    {"seam", 0, CLI_REAL, AT(seam_tolerance), "SHARE",
+     "Boundary vertices no farther apart than this share of the bounding box diagonal may be "
+     "united to close a seam. Default: 1e-4.",
+     0, 0.01, NULL},
+    {"holes", 0, CLI_COUNT, AT(hole_edges), "EDGES",
+     "Fill holes of at most this many edges; 0 fills none. Default: 128.", 0, 4096, NULL},
+    {"large-holes", 0, CLI_FLAG, AT(large_holes), NULL, "Fill holes of up to 4096 edges.", 0, 0,
+     NULL},
+    {"debris", 0, CLI_REAL, AT(debris_share), "SHARE",
+     "Drop shells with less than this share of the largest shell's area; cavities are kept. "
+     "Default: 0.01.",
+     0, 0.999, NULL},
+    {"largest", 0, CLI_FLAG, AT(largest), NULL, "Keep only the largest shell and its cavities.", 0,
+     0, NULL},
+    {"drop-cavities", 0, CLI_FLAG, AT(drop_cavities), NULL, "Fill cavities: drop their shells.", 0,
+     0, NULL},
+    {"no-cut", 0, CLI_FLAG, AT(no_cut), NULL,
+     "Refuse a surface that meets itself instead of cutting the place out and filling the hole.", 0,
+     0, NULL},
+    {"fast", 0, CLI_FLAG, AT(fast), NULL,
+     "Do not look for self-intersections: the result may have some.", 0, 0, NULL},
+    {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
+    {"force", 'f', CLI_FLAG, AT(force), NULL, "Overwrite an existing file.", 0, 0, NULL},
+};
+
+static const repair_arguments defaults = {
+    .unit = 1e-3, .seam_tolerance = 1e-4, .debris_share = 0.01, .hole_edges = 128};
+
+static scree_repair_options options_of(const repair_arguments *a) {
+  scree_repair_options o = scree_default_repair_options();
+  o.seam_tolerance = a->seam_tolerance;
+  o.debris_share = a->debris_share;
+  o.hole_edges = a->hole_edges;
+  o.fill_large_holes = a->large_holes;
+  o.drop_cavities = a->drop_cavities;
+  o.keep_largest = a->largest;
+  o.cut_intersections = !a->no_cut;
+  o.intersections = !a->fast;
+  return o;
+}
+
+/* A file of single precision may not hold what was repaired in double: read it again and check. */
+static scree_status verify_written(const cli_call *call, scree_error *error) {
+  const repair_arguments *a = call->options;
+  scree_read_options read = scree_default_read_options();
+  scree_check_options how = {.intersections = !a->fast};
+  scree_scan scan;
+  scree_check check;
+  read.unit_m = a->unit;
+  scree_status status = scree_scan_read(a->output, &read, &scan, error);
+  if (status != SCREE_OK) return status;
+  status = scree_mesh_check(&scan.mesh, &how, call->progress, &check, error);
+  scree_scan_free(&scan);
+  if (status != SCREE_OK || check.usable) return status;
+  error->status = SCREE_BAD_MESH;
+  snprintf(error->message, sizeof error->message,
+           "%.300s: rounded to the file's precision, the surface is %.500s; try .ply or .obj",
+           a->output, check.verdict);
+  return SCREE_BAD_MESH;
+}
+
+static scree_status write_result(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
+  const repair_arguments *a = call->options;
+  scree_write_options write = scree_default_write_options();
+  const char *dot = strrchr(a->output, '.');
+  write.unit_m = a->unit;
+  write.overwrite = a->force;
+  write.comment = call->command_line;
+  scree_status status = scree_mesh_write(mesh, a->output, &write, error);
+  if (status != SCREE_OK || !dot || strcmp(dot, ".stl") != 0) return status;
+  status = verify_written(call, error);
+  if (status != SCREE_OK) remove(a->output);
+  return status;
+}
+
+static void print_text(const cli_call *call, const scree_scan *scan,
+                       const scree_repair_report *report) {
+  printf("%s: %s\n", call->inputs[0], report->before.verdict);
+  if (scan->degenerate_count)
+    printf("%10zu facets with coinciding corners left out on reading\n", scan->degenerate_count);
+  cli_print_repair(stdout, report);
+  printf("%s: %s\n", report->after.usable ? "repaired" : "left", report->after.verdict);
+  if (!call->quiet) cli_print_check(stdout, &report->after);
+}
+
+static int tell(const cli_call *call, const scree_scan *scan, const scree_repair_report *report,
+                const scree_error *failure) {
+  const repair_arguments *a = call->options;
+  scree_error error;
+  int code = failure->status == SCREE_OK ? 0 : 1;
+  if (!a->json) {
+    print_text(call, scan, report);
+  } else {
+    scree_check_entry entry = {.file = call->inputs[0],
+                               .scan = scan,
+                               .unit_m = a->unit,
+                               .check = &report->before,
+                               .repair = report,
+                               .output = code ? NULL : a->output,
+                               .failure = code ? failure->message : NULL};
+    if (scree_check_json_write(&entry, 1, call->command_line, "-", false, &error) != SCREE_OK)
+      code = cli_fail(&error);
+  }
+  if (failure->status != SCREE_OK) cli_fail(failure);
+  return code;
+}
+
+static int run(const cli_call *call) {
+  const repair_arguments *a = call->options;
+  scree_repair_options how = options_of(a);
+  scree_read_options read = scree_default_read_options();
+  scree_repair_report report;
+  scree_scan scan;
+  scree_mesh repaired = {0};
+  scree_error error = {.status = SCREE_OK};
+  if (!a->output) return cli_misuse(call->verb, "say with -o where the result is to go");
+  read.unit_m = a->unit;
+  if (scree_scan_read(call->inputs[0], &read, &scan, &error) != SCREE_OK) return cli_fail(&error);
+  scree_status status =
+      scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
+  int code;
+  if (status != SCREE_OK && status != SCREE_BAD_MESH) {
+    code = cli_fail(&error);
+  } else {
+    if (status == SCREE_OK) write_result(call, &repaired, &error);
+    code = tell(call, &scan, &report, &error);
+  }
+  scree_mesh_free(&repaired);
+  scree_scan_free(&scan);
+  return code;
+}
+
+const cli_verb cli_verb_repair = {
+    .name = "repair",
+    .summary = "make a scan a closed surface that can serve as a particle, or say why not",
+    .inputs = "FILE",
+    .description =
+        "Welds, drops duplicate and degenerate facets, closes seams, splits T-junctions and "
+        "non-manifold edges and vertices, turns facets to agree and shells outward, fills small "
+        "holes, drops debris, and cuts out places where a shell meets itself. Prints what was done "
+        "with counts. The result passes `scree check`, or nothing is written and what remains is "
+        "said. Shells that overlap are not united: that is refused.\n\n"
+        "Exit code 0 where the result was written, 1 otherwise.",
+    .examples = "scree repair scan.stl -o closed.stl\n"
+                "scree repair scan.ply -o closed.ply --large-holes --largest\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof(repair_arguments),
+    .input_minimum = 1,
+    .input_maximum = 1,
+    .run = run,
+};

@@ -1,0 +1,40 @@
+cat > open.off <<'END'
+OFF
+5 6 0
+0 0 0
+10 0 0
+0 10 0
+0 0 10
+10 10 10
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 4
+3 1 4 3
+3 1 2 4
+END
+cat > solid.off <<'END'
+OFF
+4 4 0
+0 0 0
+10 0 0
+0 10 0
+0 0 10
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+END
+run check open.off
+run check -q solid.off open.off
+run check --fast solid.off
+run check --json solid.off | grep -v '"version"'
+run check nosuch.stl
+run check 2>&1
+run repair open.off
+run repair open.off -o closed.off
+run check -q closed.off
+run repair open.off -o closed.off
+run repair -q open.off -o closed.off -f --holes 2
+run repair -f --json open.off -o closed.stl | grep -v '"version"'
+ls
