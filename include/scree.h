@@ -661,6 +661,9 @@ SCREE_API double scree_choice_grid_rp(const scree_choice_options *options, size_
 /* How many of them lie in [rp_min, rp_max], the ends included (to 1e-9 relative). */
 SCREE_API size_t scree_choice_grid_count(const scree_choice_options *options);
 
+/* rp Nm, truncated, the count that an Rp asks for; 1e-3 of 762,000 is 762, however 1e-3 rounds. */
+SCREE_API size_t scree_choice_target(double rp, size_t triangle_count);
+
 /* A level at a given Rp: the first level whose count is not above rp Nm, truncated; where the mesh
  * cannot be reduced so far, the last level, and `reached` is false. */
 typedef struct scree_choice_level {
@@ -737,12 +740,45 @@ typedef struct scree_set_choice {
   double paper_spread, robust_spread; /* largest over smallest Rp chosen by the objects alone */
 } scree_set_choice;
 
+/* Chooses from the curve of one object. scan is the mesh that the curve was built from; it may be
+ * NULL without shape_errors and distances. options NULL means the defaults, progress may be NULL.
+ * Errors: SCREE_BAD_MESH where the scan has no area, SCREE_BAD_ARGUMENT, SCREE_OUT_OF_MEMORY,
+ * SCREE_CANCELLED. Cost: one pass over the levels, some ms for 400,000 of them. */
+SCREE_API scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
+                                    const scree_choice_options *options,
+                                    const scree_progress *progress, scree_choice *choice,
+                                    scree_error *error);
+
 SCREE_API void scree_choice_free(scree_choice *choice);
 SCREE_API void scree_set_choice_free(scree_set_choice *set);
 
 /* The set's choice. All objects must have been chosen with the same options. */
 SCREE_API scree_status scree_choose_set(const scree_choice *choices, size_t count,
                                         scree_set_choice *set, scree_error *error);
+
+/* Many objects at once, as many as there are threads, each from its mesh to its choice. The two
+ * functions are called from any thread, several at a time for different objects. */
+typedef struct scree_choice_job {
+  size_t count;
+  scree_simplify_options simplify;
+  scree_choice_options options;
+  /* Gives the mesh of object `index`, which is freed for it; may be called twice for an object
+   * where curves need more than 2 GiB together. */
+  scree_status (*load)(void *context, size_t index, const scree_progress *progress,
+                       scree_mesh *mesh, scree_error *error);
+  /* Gets each object's curve once all choices are made, to rebuild levels from; NULL: not wanted.
+   */
+  scree_status (*done)(void *context, size_t index, const scree_curve *curve,
+                       const scree_choice *choice, const scree_set_choice *set, scree_error *error);
+  void *context;
+} scree_choice_job;
+
+/* Fills choices (job->count of them) and *set. Where objects fail the first one's error is
+ * reported and all outputs are as freed. progress->report is called from any thread, by one at a
+ * time. The result does not depend on the number of threads. */
+SCREE_API scree_status scree_choose_each(const scree_choice_job *job,
+                                         const scree_progress *progress, scree_choice *choices,
+                                         scree_set_choice *set, scree_error *error);
 
 /* ==== 5. Built-in samples ======================================================================
  */

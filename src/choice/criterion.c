@@ -55,7 +55,7 @@ size_t scree_choice_grid_count(const scree_choice_options *options) {
   return log_grid_count(options->rp_min, options->rp_max, options->per_decade);
 }
 
-size_t scree_level_target(double rp, size_t triangle_count) {
+size_t scree_choice_target(double rp, size_t triangle_count) {
   return (size_t)(rp * (double)triangle_count * (1 + TARGET_SLACK));
 }
 
@@ -133,7 +133,7 @@ static void keep_best(const pass *p, double error, scree_pick *best) {
 /* Fills the levels, from the finest down, whose target the pass has reached. */
 static size_t fill_levels(const pass *p, scree_choice_level *levels, size_t left, bool last) {
   while (left) {
-    size_t target = scree_level_target(levels[left - 1].rp, (size_t)p->triangle_count);
+    size_t target = scree_choice_target(levels[left - 1].rp, (size_t)p->triangle_count);
     if (p->row.triangle_count > target && !last) break;
     record_level(p, &levels[--left], target);
   }

@@ -21,9 +21,6 @@ typedef struct scree_level_table {
 /* The first level whose count is not above target, or the last. O(log count). */
 size_t scree_level_find(const scree_level_table *table, size_t target);
 
-/* floor(rp Nm), where rounding of rp alone does not cost a triangle. */
-size_t scree_level_target(double rp, size_t triangle_count);
-
 /* Fills *choice (grid, trace, picks, noise) from the table; errors other than area and volume are
  * NaN. O(levels). SCREE_BAD_MESH where the scan has no area, SCREE_BAD_ARGUMENT for bad options. */
 scree_status scree_choice_from_table(const scree_level_table *table,

@@ -169,7 +169,7 @@ scree_status scree_choice_figure_write(const scree_choice_report *report, const 
   }
   if (status == SCREE_OK) {
     snprintf(note, sizeof note, "scree %s, method %s, w = %g, reference area: %s", scree_version(),
-             report->method == SCREE_METHOD_QECD ? "qecd" : "volume", report->options->weight,
+             scree_method_name(report->method), report->options->weight,
              report->options->reference == SCREE_REFERENCE_SMOOTH ? "free of noise" : "the scan's");
     scree_figure figure = {.panels = panels,
                            .panel_count = 2,

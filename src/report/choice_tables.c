@@ -7,9 +7,6 @@
 #include <inttypes.h>
 #include <math.h>
 
-static const char *method_name(scree_method method) {
-  return method == SCREE_METHOD_QECD ? "qecd" : "volume";
-}
 static const char *reference_name(scree_reference reference) {
   return reference == SCREE_REFERENCE_SMOOTH ? "smooth" : "scan";
 }
@@ -78,7 +75,7 @@ static void json_noise(scree_json *json, const scree_choice *choice) {
 static void json_options(scree_json *json, const scree_choice_report *report) {
   const scree_choice_options *o = report->options;
   scree_json_row_object(json, "options");
-  scree_json_text(json, "method", method_name(report->method));
+  scree_json_text(json, "method", scree_method_name(report->method));
   scree_json_bool(json, "paper", report->paper);
   scree_json_number(json, "weight", o->weight);
   scree_json_number(json, "rp_min", o->rp_min);

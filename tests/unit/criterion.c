@@ -48,9 +48,10 @@ static void grid_is_the_stated_formula(void **state) {
 
 static void targets_truncate_but_not_by_rounding(void **state) {
   (void)state;
-  assert_int_equal(scree_level_target(1e-5, 762008), 7);
-  assert_int_equal(scree_level_target(1e-3, 762000), 762);
-  for (size_t k = 1; k < 3000; k++) assert_int_equal(scree_level_target((double)k / 3000, 3000), k);
+  assert_int_equal(scree_choice_target(1e-5, 762008), 7);
+  assert_int_equal(scree_choice_target(1e-3, 762000), 762);
+  for (size_t k = 1; k < 3000; k++)
+    assert_int_equal(scree_choice_target((double)k / 3000, 3000), k);
 }
 
 /* Ten levels done by hand: Nm = 100, Sm = 2, rp on the grid 0.1 and 1, w = 1. */

@@ -1,0 +1,169 @@
+/* Many objects: one worker each, so that the decimations, which are mostly serial, run beside each
+ * other. Nothing an object gives depends on the others until the set's choice, so the result does
+ * not depend on the number of workers. The first failing object, by index, is the one reported.
+ *
+ * The set's choice is known only when all curves are; to write meshes by it, the curves are kept,
+ * up to KEEP_BYTES in all. What does not fit is decimated a second time. */
+#include "base/alloc.h"
+#include "base/parallel.h"
+
+#include <stdatomic.h>
+
+static const size_t KEEP_BYTES = (size_t)2 << 30;
+enum { KEPT_BYTES_PER_TRIANGLE = 64 }; /* record and mesh */
+
+/* Parts of an object's time, measured on 400,000 triangles. */
+static const double LOAD_PART = 0.3, CURVE_PART = 0.6, CHOICE_PART = 0.1;
+
+typedef struct object {
+  struct batch *batch;
+  size_t index;
+  scree_mesh mesh;
+  scree_curve *curve;
+  scree_status status;
+  scree_error error;
+  double base, part;       /* of the stage under way */
+  _Atomic double fraction; /* done, of this object */
+} object;
+
+typedef struct batch {
+  const scree_choice_job *job;
+  const scree_progress *progress;
+  scree_choice *choices;
+  const scree_set_choice *set; /* NULL in the first round */
+  object *objects;
+  atomic_flag reporting;
+  atomic_bool cancelled;
+  atomic_size_t first_failed, kept_bytes;
+} batch;
+
+/* Progress of one object inside the whole; any worker may come here, one at a time goes on. */
+static bool report(void *context, const char *phase, double fraction) {
+  (void)phase;
+  object *o = context;
+  batch *b = o->batch;
+  double mine = o->base + o->part * fraction;
+  if (mine > atomic_load(&o->fraction)) atomic_store(&o->fraction, mine);
+  if (b->progress && b->progress->report && !atomic_flag_test_and_set(&b->reporting)) {
+    double sum = 0;
+    for (size_t i = 0; i < b->job->count; i++) sum += atomic_load(&b->objects[i].fraction);
+    const char *text = b->set ? "writing" : "decimating and choosing";
+    if (!b->progress->report(b->progress->context, text, sum / (double)b->job->count))
+      atomic_store(&b->cancelled, true);
+    atomic_flag_clear(&b->reporting);
+  }
+  return !atomic_load(&b->cancelled) && atomic_load(&b->first_failed) > o->index;
+}
+
+static scree_progress enter_stage(object *o, double base, double part) {
+  o->base = base;
+  o->part = part;
+  return (scree_progress){report, o};
+}
+
+static void let_go(object *o) {
+  scree_curve_free(o->curve);
+  o->curve = NULL;
+  scree_mesh_free(&o->mesh);
+}
+
+static scree_status load_and_decimate(object *o) {
+  const scree_choice_job *job = o->batch->job;
+  scree_progress progress = enter_stage(o, 0, LOAD_PART);
+  scree_status status = job->load(job->context, o->index, &progress, &o->mesh, &o->error);
+  if (status != SCREE_OK) return status;
+  progress = enter_stage(o, LOAD_PART, CURVE_PART);
+  return scree_curve_build(&o->mesh, &job->simplify, &progress, &o->curve, &o->error);
+}
+
+static scree_status choose_object(object *o) {
+  batch *b = o->batch;
+  scree_status status = load_and_decimate(o);
+  if (status != SCREE_OK) return status;
+  scree_progress progress = enter_stage(o, LOAD_PART + CURVE_PART, CHOICE_PART);
+  status = scree_choose(o->curve, &o->mesh, &b->job->options, &progress, &b->choices[o->index],
+                        &o->error);
+  size_t bytes = KEPT_BYTES_PER_TRIANGLE * o->mesh.triangle_count;
+  bool fits = atomic_fetch_add(&b->kept_bytes, bytes) + bytes <= KEEP_BYTES || b->job->count == 1;
+  if (!b->job->done || !fits) let_go(o);
+  return status;
+}
+
+static scree_status finish_object(object *o) {
+  batch *b = o->batch;
+  scree_status status = SCREE_OK;
+  if (!o->curve) status = load_and_decimate(o);
+  if (status == SCREE_OK)
+    status =
+        b->job->done(b->job->context, o->index, o->curve, &b->choices[o->index], b->set, &o->error);
+  let_go(o);
+  return status;
+}
+
+static void work(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block;
+  (void)worker;
+  batch *b = context;
+  for (size_t i = begin; i < end; i++) {
+    object *o = &b->objects[i];
+    if (!report(o, "", 0)) {
+      o->status = SCREE_CANCELLED;
+      continue;
+    }
+    o->status = b->set ? finish_object(o) : choose_object(o);
+    atomic_store(&o->fraction, 1);
+    size_t first = atomic_load(&b->first_failed);
+    while (o->status != SCREE_OK && o->index < first)
+      if (atomic_compare_exchange_weak(&b->first_failed, &first, o->index)) break;
+    if (o->status != SCREE_OK) let_go(o);
+  }
+}
+
+static scree_status run_round(batch *b, scree_error *error) {
+  for (size_t i = 0; i < b->job->count; i++) atomic_store(&b->objects[i].fraction, 0);
+  scree_parallel_for(b->job->count, 1, work, b);
+  size_t failed = atomic_load(&b->first_failed);
+  if (failed == SIZE_MAX) return SCREE_OK;
+  object *o = &b->objects[failed];
+  if (atomic_load(&b->cancelled) || o->status == SCREE_CANCELLED)
+    return scree_fail(error, SCREE_CANCELLED, "cancelled while choosing");
+  if (error) *error = o->error;
+  return o->status;
+}
+
+static void free_batch(batch *b, bool failed) {
+  for (size_t i = 0; i < b->job->count; i++) {
+    let_go(&b->objects[i]);
+    if (failed) scree_choice_free(&b->choices[i]);
+  }
+  scree_free(b->objects);
+}
+
+scree_status scree_choose_each(const scree_choice_job *job, const scree_progress *progress,
+                               scree_choice *choices, scree_set_choice *set, scree_error *error) {
+  if (job->count == 0) return scree_fail(error, SCREE_BAD_ARGUMENT, "no object to choose for");
+  batch b = {.job = job,
+             .progress = progress,
+             .choices = choices,
+             .objects = scree_alloc_zero(job->count, sizeof *b.objects)};
+  if (!b.objects)
+    return scree_fail_memory(error, job->count * sizeof *b.objects, "the list of objects");
+  atomic_flag_clear(&b.reporting);
+  atomic_init(&b.first_failed, SIZE_MAX);
+  for (size_t i = 0; i < job->count; i++) {
+    b.objects[i].batch = &b;
+    b.objects[i].index = i;
+    choices[i] = (scree_choice){0};
+  }
+  scree_set_choice chosen = {0};
+  scree_status status = run_round(&b, error);
+  if (status == SCREE_OK) status = scree_choose_set(choices, job->count, &chosen, error);
+  b.set = &chosen;
+  if (status == SCREE_OK && job->done) status = run_round(&b, error);
+  free_batch(&b, status != SCREE_OK);
+  if (status == SCREE_OK)
+    *set = chosen;
+  else
+    scree_set_choice_free(&chosen);
+  return status;
+}

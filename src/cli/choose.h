@@ -1,0 +1,56 @@
+/* What the files of the verb `choose` share. */
+#ifndef SCREE_CLI_CHOOSE_H
+#define SCREE_CLI_CHOOSE_H
+
+#include "cli/args.h"
+#include "cli/input.h"
+
+enum { CHOOSE_NAME_BYTES = 128, CHOOSE_NOTE_BYTES = 256, CHOOSE_PATH_BYTES = 4096 };
+
+typedef struct choose_arguments {
+  const char *output, *grid;
+  double unit, weight, resolution, noise;
+  size_t seed;
+  int method, reference;
+  bool samples, paper, errors, distances, json, csv, no_repair, overwrite;
+} choose_arguments;
+
+/* One object from its word on the command line to its files. */
+typedef struct choose_object {
+  const char *word;
+  char name[CHOOSE_NAME_BYTES]; /* unique among the objects */
+  char format[32];
+  char note[CHOOSE_NOTE_BYTES]; /* what was repaired or is wrong; "" for nothing */
+  char mesh_path[CHOOSE_PATH_BYTES];
+  scree_checksum checksum;
+} choose_object;
+
+typedef struct choose_run {
+  const cli_call *call;
+  const choose_arguments *arguments;
+  choose_object *objects;
+  scree_choice *choices;
+  size_t count;
+  scree_set_choice set;
+  scree_choice_options options;
+  scree_simplify_options simplify;
+} choose_run;
+
+/* The choice that meshes are written by. */
+const scree_pick *choose_default_pick(const choose_run *run, const scree_choice *choice);
+double choose_set_rp(const choose_run *run);
+
+/* The table and what to do, for people, on stdout. */
+void choose_print(const choose_run *run);
+
+/* Refuses early where a file that will be written exists; makes the folder. */
+scree_status choose_prepare_folder(const choose_run *run, scree_error *error);
+/* The meshes of one object. */
+scree_status choose_write_meshes(const choose_run *run, size_t index, const scree_curve *curve,
+                                 const scree_choice *choice, const scree_set_choice *set,
+                                 scree_error *error);
+/* Everything else: curves, figure, tables. */
+scree_status choose_write_reports(const choose_run *run, const scree_choice_report *report,
+                                  scree_error *error);
+
+#endif

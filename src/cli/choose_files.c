@@ -1,0 +1,128 @@
+/* The files of `choose -o DIR`:
+ *
+ *   NAME.stl             the chosen mesh of each object
+ *   set/NAME.stl         its mesh at the set's Rp, where there are several objects
+ *   NAME.curve.csv       its dense curve
+ *   choice.json, choice.csv
+ *   figure.png, .svg, .pdf, .csv, .gnuplot */
+#include "cli/choose.h"
+
+#include <errno.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static const char *const FIGURES[] = {"figure.png", "figure.svg", "figure.pdf", "figure.csv",
+                                      "figure.gnuplot"};
+enum { FIGURE_COUNT = 5 };
+
+static scree_status fail(scree_error *error, scree_status status, const char *path,
+                         const char *reason) {
+  error->status = status;
+  snprintf(error->message, sizeof error->message, "%.700s: %s", path, reason);
+  return status;
+}
+
+/* DIR/before name after */
+static scree_status join(const choose_run *run, const char *before, const char *name,
+                         const char *after, char path[CHOOSE_PATH_BYTES], scree_error *error) {
+  int length =
+      snprintf(path, CHOOSE_PATH_BYTES, "%s/%s%s%s", run->arguments->output, before, name, after);
+  if (length < CHOOSE_PATH_BYTES) return SCREE_OK;
+  return fail(error, SCREE_LIMIT, run->arguments->output, "the path is too long");
+}
+
+static scree_status make_folder(const char *path, scree_error *error) {
+  char part[CHOOSE_PATH_BYTES];
+  snprintf(part, sizeof part, "%s", path);
+  for (char *c = part + 1; *c; c++) {
+    if (*c != '/') continue;
+    *c = 0;
+    mkdir(part, 0777);
+    *c = '/';
+  }
+  struct stat info;
+  if (mkdir(part, 0777) != 0 && errno != EEXIST)
+    return fail(error, SCREE_IO, path, strerror(errno));
+  if (stat(part, &info) != 0 || !S_ISDIR(info.st_mode))
+    return fail(error, SCREE_IO, path, "is a file, not a folder");
+  return SCREE_OK;
+}
+
+static scree_status refuse_existing(const choose_run *run, const char *before, const char *name,
+                                    const char *after, scree_error *error) {
+  char path[CHOOSE_PATH_BYTES];
+  struct stat info;
+  scree_status status = join(run, before, name, after, path, error);
+  if (status != SCREE_OK || run->arguments->overwrite || stat(path, &info) != 0) return status;
+  return fail(error, SCREE_EXISTS, path, "exists already; -f overwrites");
+}
+
+scree_status choose_prepare_folder(const choose_run *run, scree_error *error) {
+  scree_status status = make_folder(run->arguments->output, error);
+  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
+    status = refuse_existing(run, "", FIGURES[i], "", error);
+  if (status == SCREE_OK) status = refuse_existing(run, "", "choice.json", "", error);
+  if (status == SCREE_OK) status = refuse_existing(run, "", "choice.csv", "", error);
+  for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
+    const char *name = run->objects[i].name;
+    status = refuse_existing(run, "", name, ".stl", error);
+    if (status == SCREE_OK) status = refuse_existing(run, "", name, ".curve.csv", error);
+    if (status == SCREE_OK && run->count > 1)
+      status = refuse_existing(run, "set/", name, ".stl", error);
+  }
+  char path[CHOOSE_PATH_BYTES];
+  if (status == SCREE_OK && run->count > 1) {
+    status = join(run, "set", "", "", path, error);
+    if (status == SCREE_OK) status = make_folder(path, error);
+  }
+  return status;
+}
+
+static scree_status write_level(const choose_run *run, const scree_curve *curve, size_t level_index,
+                                const char *path, scree_error *error) {
+  scree_mesh mesh;
+  scree_status status = scree_curve_mesh(curve, level_index, &mesh, error);
+  if (status != SCREE_OK) return status;
+  scree_write_options options = scree_default_write_options();
+  options.unit_m = run->arguments->unit;
+  options.overwrite = run->arguments->overwrite;
+  status = scree_mesh_write(&mesh, path, &options, error);
+  scree_mesh_free(&mesh);
+  return status;
+}
+
+scree_status choose_write_meshes(const choose_run *run, size_t index, const scree_curve *curve,
+                                 const scree_choice *choice, const scree_set_choice *set,
+                                 scree_error *error) {
+  choose_object *object = &run->objects[index];
+  size_t level = choose_default_pick(run, choice)->level_index;
+  scree_status status = join(run, "", object->name, ".stl", object->mesh_path, error);
+  if (status == SCREE_OK) status = write_level(run, curve, level, object->mesh_path, error);
+  if (status != SCREE_OK || run->count < 2) return status;
+  char path[CHOOSE_PATH_BYTES];
+  double rp = run->arguments->paper ? set->paper_rp : set->robust_rp;
+  level = scree_curve_find(curve, scree_choice_target(rp, choice->triangle_count));
+  status = join(run, "set/", object->name, ".stl", path, error);
+  return status == SCREE_OK ? write_level(run, curve, level, path, error) : status;
+}
+
+scree_status choose_write_reports(const choose_run *run, const scree_choice_report *report,
+                                  scree_error *error) {
+  bool overwrite = run->arguments->overwrite;
+  char path[CHOOSE_PATH_BYTES];
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
+    status = join(run, "", run->objects[i].name, ".curve.csv", path, error);
+    if (status == SCREE_OK)
+      status = scree_choice_curve_csv_write(&report->entries[i], path, overwrite, error);
+  }
+  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++) {
+    status = join(run, "", FIGURES[i], "", path, error);
+    if (status == SCREE_OK) status = scree_choice_figure_write(report, path, overwrite, error);
+  }
+  if (status == SCREE_OK) status = join(run, "", "choice.csv", "", path, error);
+  if (status == SCREE_OK) status = scree_choice_csv_write(report, path, overwrite, error);
+  if (status == SCREE_OK) status = join(run, "", "choice.json", "", path, error);
+  if (status == SCREE_OK) status = scree_choice_json_write(report, path, overwrite, error);
+  return status;
+}

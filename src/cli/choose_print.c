@@ -1,0 +1,204 @@
+/* The answer for people: one row per object, one for the set, and what to do. Nine objects fit a
+ * screen of 80 x 24. */
+#include "cli/choose.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Above this ratio of counts two choices are said to differ. */
+static const double NOTABLE_RATIO = 1.5;
+/* The paper's scans have some 760,000 triangles; beyond this factor from it, or between objects,
+ * the dependence on resolution is said. */
+static const double PAPER_COUNT = 762008, NOTABLE_RESOLUTION = 3;
+
+/* The paper's coarsest levels; a floor above is worth a word. */
+enum { PAPER_FLOOR = 8 };
+
+static double ratio(double a, double b) {
+  return a > b ? a / b : b / a;
+}
+
+/* 0.00123 as 1.2e-3 */
+static const char *rp_text(double rp, char buffer[16]) {
+  int exponent = (int)floor(log10(rp) + 1e-9);
+  double digits = rp / pow(10, exponent);
+  if (digits >= 9.95) {
+    digits /= 10;
+    exponent++;
+  }
+  if (exponent >= -1)
+    snprintf(buffer, 16, "%.2f", rp);
+  else
+    snprintf(buffer, 16, "%.1fe%d", digits, exponent);
+  return buffer;
+}
+
+static const char *percent_text(double fraction, char buffer[16]) {
+  double percent = 100 * fraction;
+  snprintf(buffer, 16,
+           percent < 0.095  ? "%.3f %%"
+           : percent < 9.95 ? "%.2f %%"
+                            : "%.0f %%",
+           percent);
+  return buffer;
+}
+
+static void print_row(const choose_run *run, size_t index) {
+  const scree_choice *c = &run->choices[index];
+  char scan[32], n1[32], n2[32], rp1[16], rp2[16], e1[16], e2[16], noise[16];
+  bool accident = c->paper.eps_s < 0.1 * c->levels[c->best[SCREE_ERROR_AREA]].worst_eps_s;
+  printf("%-13.13s%10s%9s |%8s%8s%9s%c|%8s%8s%9s\n", run->objects[index].name,
+         cli_count_text(c->triangle_count, scan),
+         c->noise.found ? percent_text(c->noise.fraction, noise) : "-", rp_text(c->paper.rp, rp1),
+         cli_count_text(c->paper.triangle_count, n1), percent_text(c->paper.eps_s, e1),
+         accident ? '*' : ' ', rp_text(c->robust.rp, rp2),
+         cli_count_text(c->robust.triangle_count, n2), percent_text(c->robust.eps_s, e2));
+}
+
+static void print_table(const choose_run *run) {
+  char rp1[16], rp2[16];
+  const char *reference =
+      run->options.reference == SCREE_REFERENCE_SMOOTH ? ", area free of noise" : "";
+  printf("Ip = eps_s + %s Nr/Nm, method %s%s\n", run->options.weight == 1 ? "1" : "w",
+         scree_method_name(run->simplify.method), reference);
+  printf("%34s%-26s| %s\n", "", run->arguments->paper ? "| paper (default)" : "| paper's grid",
+         run->arguments->paper ? "robust" : "robust (default)");
+  printf("%-13s%10s%9s |%8s%8s%9s |%8s%8s%9s\n", "object", "triangles", "noise", "Rp", "Nr",
+         "eps_s", "Rp", "Nr", "worst");
+  for (size_t i = 0; i < run->count; i++) print_row(run, i);
+  if (run->count > 1)
+    printf("%-33s|%8s%18s|%8s\n", "the set (least mean Ip)", rp_text(run->set.paper_rp, rp1), "",
+           rp_text(run->set.robust_rp, rp2));
+}
+
+/* The range of counts and errors at the set's Rp. */
+static void print_set_advice(const choose_run *run) {
+  size_t least = SIZE_MAX, most = 0;
+  double worst = 0, rp = choose_set_rp(run);
+  for (size_t i = 0; i < run->count; i++) {
+    const scree_choice *c = &run->choices[i];
+    size_t k = 0;
+    while (k + 1 < c->trace_count && c->trace[k].rp < rp * (1 - 1e-9)) k++;
+    if (c->trace[k].triangle_count < least) least = c->trace[k].triangle_count;
+    if (c->trace[k].triangle_count > most) most = c->trace[k].triangle_count;
+    worst = fmax(worst, c->trace[k].worst_eps_s);
+  }
+  char rp_buffer[16], low[32], high[32], percent[16];
+  printf("Use Rp = %s for the set: %s to %s triangles, area within %s of the scans'.\n",
+         rp_text(rp, rp_buffer), cli_count_text(least, low), cli_count_text(most, high),
+         percent_text(worst, percent));
+}
+
+static void print_advice(const choose_run *run) {
+  const scree_choice *c = &run->choices[0];
+  char count[32], rp[16], percent[16];
+  if (run->count > 1) {
+    print_set_advice(run);
+    return;
+  }
+  const scree_pick *pick = choose_default_pick(run, c);
+  printf("Use %s triangles (Rp = %s): area within %s of the scan's.\n",
+         cli_count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
+         percent_text(run->arguments->paper ? pick->level_eps_s : pick->eps_s, percent));
+}
+
+static void print_accidents(const choose_run *run) {
+  size_t accidents = 0, differ = 0;
+  for (size_t i = 0; i < run->count; i++) {
+    const scree_choice *c = &run->choices[i];
+    accidents += c->paper.eps_s < 0.1 * c->levels[c->best[SCREE_ERROR_AREA]].worst_eps_s;
+    differ +=
+        ratio((double)c->paper.triangle_count, (double)c->robust.triangle_count) > NOTABLE_RATIO;
+  }
+  if (accidents)
+    puts("* by accident: the area crosses the scan's there; finer meshes are further off.");
+  else if (differ)
+    printf("Grid and robust choice differ by more than %.1f times for %zu of %zu.\n", NOTABLE_RATIO,
+           differ, run->count);
+}
+
+static void print_noise(const choose_run *run) {
+  size_t moved = 0;
+  double most = 0;
+  for (size_t i = 0; i < run->count; i++) {
+    const scree_choice *c = &run->choices[i];
+    if (!c->noise.found) continue;
+    most = fmax(most, c->noise.fraction);
+    moved +=
+        ratio((double)c->smooth.triangle_count, (double)c->robust.triangle_count) > NOTABLE_RATIO;
+  }
+  char percent[16], rp[16];
+  if (moved && run->options.reference == SCREE_REFERENCE_SCAN)
+    printf("Scan noise adds up to %s of area and misleads eps_s: --reference smooth takes it\n"
+           "out and gives Rp = %s.\n",
+           percent_text(most, percent),
+           rp_text(run->count > 1 ? run->set.smooth_rp : run->choices[0].smooth.rp, rp));
+}
+
+static void print_resolution(const choose_run *run) {
+  double least = INFINITY, most = 0, growth = 0;
+  for (size_t i = 0; i < run->count; i++) {
+    const scree_choice *c = &run->choices[i];
+    least = fmin(least, (double)c->triangle_count);
+    most = fmax(most, (double)c->triangle_count);
+    growth += (double)c->finer_count / (double)c->robust.triangle_count / (double)run->count;
+  }
+  if (ratio(most, least) > NOTABLE_RESOLUTION || ratio(least, PAPER_COUNT) > NOTABLE_RESOLUTION ||
+      ratio(most, PAPER_COUNT) > NOTABLE_RESOLUTION)
+    printf(
+        "Nr depends on the scan's resolution: at half the spacing it would be %.1f times this.\n",
+        growth);
+}
+
+static void print_floor(const choose_run *run) {
+  size_t index = run->count;
+  for (size_t i = 0; i < run->count; i++)
+    if (!run->choices[i].levels[0].reached && run->choices[i].floor_count > PAPER_FLOOR &&
+        (index == run->count || run->choices[i].floor_count > run->choices[index].floor_count))
+      index = i;
+  char count[32], rp[16];
+  if (index < run->count)
+    printf("Rp = %s was not reached by all: %s stops at %s triangles.\n",
+           rp_text(run->options.rp_min, rp), run->objects[index].name,
+           cli_count_text(run->choices[index].floor_count, count));
+}
+
+static void print_notes(const choose_run *run) {
+  for (size_t i = 0; i < run->count; i++)
+    if (run->objects[i].note[0]) printf("%s: %s\n", run->objects[i].name, run->objects[i].note);
+}
+
+/* Where other errors were asked for: the grid's choice by each. */
+static void print_other_errors(const choose_run *run) {
+  if (!run->options.shape_errors && !run->options.distances) return;
+  printf("\nRp of the least error + Nr/Nm on the grid, by other errors than area:\n%-13s",
+         "object");
+  for (int e = 1; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    printf("%14s", scree_shape_error_name((scree_shape_error)e));
+  putchar('\n');
+  for (size_t i = 0; i < run->count; i++) {
+    const scree_choice *c = &run->choices[i];
+    printf("%-13.13s", run->objects[i].name);
+    for (int e = 1; e < SCREE_SHAPE_ERROR_COUNT; e++) {
+      char rp[16];
+      bool known = c->best[e] < c->level_count;
+      printf("%14s", known ? rp_text(c->levels[c->best[e]].rp, rp) : "-");
+    }
+    putchar('\n');
+  }
+}
+
+void choose_print(const choose_run *run) {
+  print_table(run);
+  putchar('\n');
+  print_advice(run);
+  print_accidents(run);
+  print_noise(run);
+  print_resolution(run);
+  print_floor(run);
+  print_notes(run);
+  if (run->arguments->output)
+    printf("In %s: %s, *.curve.csv, figure.png, choice.json\n", run->arguments->output,
+           run->count > 1 ? "*.stl (each by its own choice), set/*.stl" : "*.stl");
+  print_other_errors(run);
+}

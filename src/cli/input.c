@@ -1,0 +1,50 @@
+#include "cli/input.h"
+
+#include <string.h>
+
+static const char SAMPLE_PREFIX[] = "sample:";
+
+bool cli_is_sample(const char *word, const char **name) {
+  size_t length = sizeof SAMPLE_PREFIX - 1;
+  if (strncmp(word, SAMPLE_PREFIX, length) != 0) return false;
+  if (name) *name = word + length;
+  return true;
+}
+
+scree_status cli_load(const char *word, const cli_input_options *options,
+                      const scree_progress *progress, scree_scan *scan, scree_error *error) {
+  const char *name;
+  if (!cli_is_sample(word, &name)) return scree_scan_read(word, &options->read, scan, error);
+  scree_scan made = {.format = "sample", .solid_count = 1};
+  scree_status status = scree_sample_make(name, &options->sample, progress, &made.mesh, error);
+  if (status != SCREE_OK) return status;
+  made.facet_count = made.mesh.triangle_count;
+  *scan = made;
+  return SCREE_OK;
+}
+
+void cli_short_name(const char *word, char *buffer, size_t size) {
+  const char *name;
+  if (!strcmp(word, "-")) word = "stdin";
+  if (cli_is_sample(word, &name)) {
+    snprintf(buffer, size, "%s", name);
+    return;
+  }
+  const char *slash = strrchr(word, '/');
+  snprintf(buffer, size, "%s", slash ? slash + 1 : word);
+  char *dot = strrchr(buffer, '.');
+  if (dot && dot != buffer) *dot = 0;
+  if (!buffer[0]) snprintf(buffer, size, "scan");
+}
+
+const char *cli_count_text(size_t count, char buffer[32]) {
+  char digits[24];
+  int length = snprintf(digits, sizeof digits, "%zu", count);
+  char *out = buffer;
+  for (int i = 0; i < length; i++) {
+    if (i && (length - i) % 3 == 0) *out++ = ',';
+    *out++ = digits[i];
+  }
+  *out = 0;
+  return buffer;
+}

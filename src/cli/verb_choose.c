@@ -1,0 +1,281 @@
+#include "cli/choose.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { METHOD_UNSET = -1 };
+
+static const choose_arguments defaults = {.grid = "1e-5:1e-1:9",
+                                          .unit = 1e-3,
+                                          .weight = 1,
+                                          .resolution = 0.27e-3,
+                                          .noise = 0.02e-3,
+                                          .seed = 1,
+                                          .method = METHOD_UNSET};
+
+#define AT(field) offsetof(choose_arguments, field)
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+     "Write the chosen meshes, the curves, the figure and the tables into DIR.", 0, 0, NULL},
+    {"samples", 0, CLI_FLAG, AT(samples), NULL, "Choose for the nine built-in devices.", 0, 0,
+     NULL},
+    {"paper", 'p', CLI_FLAG, AT(paper), NULL,
+     "Do exactly what the paper did: method qecd, its grid, plain Ip; meshes by its choice.", 0, 0,
+     NULL},
+    {"method", 'm', CLI_CHOICE, AT(method), "NAME",
+     "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume.", 0, 0,
+     "volume|qecd"},
+    {"weight", 'w', CLI_REAL, AT(weight), "W",
+     "Weight of the penalty: Ip = eps_s + W Nr/Nm. Default: 1, as the paper.", 1e-9, 1e9, NULL},
+    {"grid", 'g', CLI_TEXT, AT(grid), "MIN:MAX:N",
+     "Grid of Rp: from MIN to MAX with N points per factor of ten. Default: 1e-5:1e-1:9.", 0, 0,
+     NULL},
+    {"reference", 'r', CLI_CHOICE, AT(reference), "AREA",
+     "Area that eps_s is measured against: scan (the paper's) or smooth (past the scanner's "
+     "noise, measured on the curve). Default: scan.",
+     0, 0, "scan|smooth"},
+    {"errors", 'e', CLI_FLAG, AT(errors), NULL,
+     "Also inertia and principal dimensions at every grid level.", 0, 0, NULL},
+    {"distance", 'd', CLI_FLAG, AT(distances), NULL,
+     "Also Hausdorff and mean distance to the scan at every grid level (slow).", 0, 0, NULL},
+    {"unit", 'u', CLI_UNIT, AT(unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
+     NULL},
+    {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,
+     "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
+    {"resolution", 0, CLI_LENGTH, AT(resolution), "LENGTH",
+     "Spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3, NULL},
+    {"noise", 0, CLI_LENGTH, AT(noise), "LENGTH",
+     "Scanner noise of built-in samples. Default: 0.02mm.", 0, 2e-3, NULL},
+    {"seed", 0, CLI_COUNT, AT(seed), "N", "Seed of that noise. Default: 1.", 0, 1e15, NULL},
+    {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
+    {"csv", 0, CLI_FLAG, AT(csv), NULL, "Print CSV instead of text: a row per grid level.", 0, 0,
+     NULL},
+    {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
+};
+
+const scree_pick *choose_default_pick(const choose_run *run, const scree_choice *choice) {
+  return run->arguments->paper ? &choice->paper : &choice->robust;
+}
+
+double choose_set_rp(const choose_run *run) {
+  return run->arguments->paper ? run->set.paper_rp : run->set.robust_rp;
+}
+
+/* "1e-5:1e-1:9" */
+static bool parse_grid(const char *text, scree_choice_options *o) {
+  char part[3][32] = {"", "", ""};
+  for (int i = 0; i < 3; i++) {
+    size_t length = strcspn(text, ":");
+    if (length == 0 || length >= sizeof part[0]) return false;
+    memcpy(part[i], text, length);
+    text += length;
+    if (*text != (i < 2 ? ':' : 0)) return false;
+    text += i < 2;
+  }
+  double count;
+  if (!cli_real_from_text(part[0], &o->rp_min) || !cli_real_from_text(part[1], &o->rp_max) ||
+      !cli_real_from_text(part[2], &count))
+    return false;
+  if (!(count >= 1 && count <= 1000) || count != (double)(int)count) return false;
+  o->per_decade = (int)count;
+  return o->rp_min >= 1e-12 && o->rp_min <= o->rp_max && o->rp_max <= 1;
+}
+
+static bool name_taken(const choose_run *run, size_t before, const char *name) {
+  for (size_t k = 0; k < before; k++)
+    if (!strcmp(run->objects[k].name, name)) return true;
+  return false;
+}
+
+/* Files of the same name in several folders become name, name-2, name-3. */
+static void name_objects(choose_run *run) {
+  for (size_t i = 0; i < run->count; i++) {
+    char *name = run->objects[i].name, plain[CHOOSE_NAME_BYTES - 24];
+    cli_short_name(run->objects[i].word, plain, sizeof plain);
+    snprintf(name, CHOOSE_NAME_BYTES, "%s", plain);
+    for (size_t n = 2; name_taken(run, i, name); n++)
+      snprintf(name, CHOOSE_NAME_BYTES, "%s-%zu", plain, n);
+  }
+}
+
+static bool list_objects(choose_run *run) {
+  static char sample_words[SCREE_SAMPLE_DEVICES][32];
+  size_t samples = run->arguments->samples ? SCREE_SAMPLE_DEVICES : 0;
+  run->count = samples + run->call->input_count;
+  run->objects = calloc(run->count, sizeof *run->objects);
+  run->choices = calloc(run->count, sizeof *run->choices);
+  if (!run->objects || !run->choices) return false;
+  for (size_t i = 0; i < samples; i++) {
+    snprintf(sample_words[i], sizeof sample_words[i], "sample:%s", scree_sample_name(i));
+    run->objects[i].word = sample_words[i];
+  }
+  for (size_t i = 0; i < run->call->input_count; i++)
+    run->objects[samples + i].word = run->call->inputs[i];
+  name_objects(run);
+  return true;
+}
+
+/* Errors without a file in them get the object's word in front. */
+static scree_status name_in_error(const choose_object *object, scree_error *error) {
+  if (error->status == SCREE_CANCELLED || strstr(error->message, object->word))
+    return error->status;
+  char message[sizeof error->message];
+  memcpy(message, error->message, sizeof message);
+  snprintf(error->message, sizeof error->message, "%.300s: %.700s", object->word, message);
+  return error->status;
+}
+
+static void note_repair(choose_object *object, const scree_repair_report *report) {
+  size_t used = 0;
+  if (report->before.usable) return;
+  for (int a = 0; a < SCREE_REPAIR_ACTION_COUNT; a++) {
+    if (!report->done[a] || used + 1 >= sizeof object->note) continue;
+    used += (size_t)snprintf(object->note + used, sizeof object->note - used, "%s%zu %s",
+                             used ? ", " : "repaired: ", report->done[a],
+                             scree_repair_action_text((scree_repair_action)a));
+  }
+}
+
+static scree_status load(void *context, size_t index, const scree_progress *progress,
+                         scree_mesh *mesh, scree_error *error) {
+  const choose_run *run = context;
+  choose_object *object = &run->objects[index];
+  cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
+  input.read.unit_m = run->arguments->unit;
+  input.sample.resolution = run->arguments->resolution;
+  input.sample.noise = run->arguments->noise;
+  input.sample.seed = run->arguments->seed;
+  scree_scan scan;
+  scree_status status = cli_load(object->word, &input, progress, &scan, error);
+  if (status != SCREE_OK) return name_in_error(object, error);
+  memcpy(object->format, scan.format, sizeof object->format);
+  object->checksum = scan.checksum;
+  if (cli_is_sample(object->word, NULL)) { /* made closed and manifold: nothing to check */
+    *mesh = scan.mesh;
+    return SCREE_OK;
+  }
+  scree_repair_options repair = scree_default_repair_options();
+  scree_repair_report report;
+  status = scree_mesh_prepare(&scan.mesh, run->arguments->no_repair ? NULL : &repair, progress,
+                              mesh, &report, error);
+  scree_scan_free(&scan);
+  if (status != SCREE_OK) return name_in_error(object, error);
+  note_repair(object, &report);
+  return SCREE_OK;
+}
+
+static scree_status done(void *context, size_t index, const scree_curve *curve,
+                         const scree_choice *choice, const scree_set_choice *set,
+                         scree_error *error) {
+  return choose_write_meshes(context, index, curve, choice, set, error);
+}
+
+static scree_status write_output(const choose_run *run, scree_error *error) {
+  const choose_arguments *a = run->arguments;
+  scree_choice_entry *entries = calloc(run->count, sizeof *entries);
+  if (!entries) {
+    *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the report"};
+    return SCREE_OUT_OF_MEMORY;
+  }
+  for (size_t i = 0; i < run->count; i++) {
+    const choose_object *o = &run->objects[i];
+    bool is_sample = cli_is_sample(o->word, NULL);
+    entries[i] = (scree_choice_entry){o->name,
+                                      o->word,
+                                      o->format,
+                                      o->checksum,
+                                      is_sample ? 1 : a->unit,
+                                      is_sample,
+                                      a->resolution,
+                                      a->noise,
+                                      a->seed,
+                                      o->note[0] ? o->note : NULL,
+                                      o->mesh_path[0] ? o->mesh_path : NULL,
+                                      &run->choices[i]};
+  }
+  scree_choice_report report = {entries,
+                                run->count,
+                                &run->set,
+                                &run->options,
+                                run->simplify.method,
+                                a->paper,
+                                run->call->command_line};
+  scree_status status = SCREE_OK;
+  if (a->output) status = choose_write_reports(run, &report, error);
+  if (status == SCREE_OK && a->json)
+    status = scree_choice_json_write(&report, "-", false, error);
+  else if (status == SCREE_OK && a->csv)
+    status = scree_choice_csv_write(&report, "-", false, error);
+  else if (status == SCREE_OK)
+    choose_print(run);
+  free(entries);
+  return status;
+}
+
+static int run_choose(const cli_call *call) {
+  const choose_arguments *a = call->options;
+  choose_run run = {.call = call, .arguments = a, .options = scree_default_choice_options()};
+  scree_error error = {SCREE_OK, ""};
+  if (call->input_count == 0 && !a->samples)
+    return cli_misuse(call->verb, "no scan given: name files, or sample:fp-1 and the like for "
+                                  "built-in samples, or --samples for all nine");
+  if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
+  if (a->paper &&
+      (a->method == SCREE_METHOD_VOLUME || a->weight != 1 || a->reference != SCREE_REFERENCE_SCAN))
+    return cli_misuse(call->verb, "--paper is method qecd, weight 1 and the scan's area");
+  if (!parse_grid(a->grid, &run.options))
+    return cli_misuse(call->verb,
+                      "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole "
+                      "N from 1 to 1000",
+                      a->grid);
+  run.options.weight = a->weight;
+  run.options.reference = (scree_reference)a->reference;
+  run.options.shape_errors = a->errors;
+  run.options.distances = a->distances;
+  run.simplify = scree_default_simplify_options();
+  if (a->method != METHOD_UNSET) run.simplify.method = (scree_method)a->method;
+  if (a->paper) run.simplify.method = SCREE_METHOD_QECD;
+  scree_status status = SCREE_OK;
+  if (!list_objects(&run)) {
+    error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the list of scans"};
+    status = error.status;
+  }
+  if (status == SCREE_OK && a->output) status = choose_prepare_folder(&run, &error);
+  scree_choice_job job = {run.count, run.simplify, run.options, load, a->output ? done : NULL,
+                          &run};
+  if (status == SCREE_OK)
+    status = scree_choose_each(&job, call->progress, run.choices, &run.set, &error);
+  if (status == SCREE_OK) status = write_output(&run, &error);
+  for (size_t i = 0; run.choices && i < run.count; i++) scree_choice_free(&run.choices[i]);
+  scree_set_choice_free(&run.set);
+  free(run.choices);
+  free(run.objects);
+  return status == SCREE_OK ? 0 : cli_fail(&error);
+}
+
+const cli_verb cli_verb_choose = {
+    .name = "choose",
+    .summary = "find the triangle count to use, and write that mesh",
+    .inputs = "[FILE...] [--samples]",
+    .description =
+        "Decimates each scan once, through every triangle count, and chooses the count that "
+        "balances the error of the surface area against the number of triangles:\n\n"
+        "Ip = eps_s + W Nr/Nm, eps_s = |S - Sm|/Sm (Katagiri and Koyanaka 2020), with Rp = "
+        "Nr/Nm.\n\n"
+        "The paper's choice is the least Ip on a logarithmic grid of Rp. The robust choice, the "
+        "default, takes the worst error at a count or any finer one, over every count, so that an "
+        "area that is right by accident does not count. Several scans also get one Rp for all.\n\n"
+        "Scans that are no closed surface are repaired first. sample:NAME stands for a built-in "
+        "sample. Nothing is written without -o.",
+    .examples = "scree choose phone.stl -o phone\n"
+                "scree choose *.stl -o devices --errors\n"
+                "scree choose --samples --paper\n"
+                "scree choose sample:fp-1 sample:dc-1 --noise 0mm --json",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 0,
+    .input_maximum = SIZE_MAX,
+    .run = run_choose,
+};

@@ -1,0 +1,17 @@
+# Counts and errors follow the decimation's details, so numbers are shown as N.
+shape() { sed 's/[0-9][0-9.,]*\(e-[0-9]*\)*/N/g; s/N %\*/N % /; s/  */ /g'; }
+run choose 2>&1 | sed -n 2p
+run choose --grid 1e-5 sample:icosphere-3 2>&1 | sed -n 2p
+run choose --json --csv sample:icosphere-3 2>&1 | sed -n 2p
+run choose --paper --method volume sample:icosphere-3 2>&1 | sed -n 2p
+run choose sample:nonsense 2>&1 | cut -c 1-40
+run choose missing.stl
+"$SCREE" choose sample:icosphere-4 sample:icosphere-5 --errors -o out | shape
+ls out out/set
+run choose sample:icosphere-4 sample:icosphere-5 -o out
+"$SCREE" choose sample:icosphere-4 --paper --json >a.json
+OMP_NUM_THREADS=1 "$SCREE" choose sample:icosphere-4 --paper --json >b.json
+cmp a.json b.json && grep -c '"rp"' a.json
+"$SCREE" choose sample:icosphere-4 --csv | wc -l
+cp out/icosphere-4.stl again.stl
+"$SCREE" choose again.stl --no-repair --json | grep '"unit_m"'
