@@ -1169,6 +1169,61 @@ SCREE_API scree_status scree_experiment_set(scree_experiment *experiment, const 
  * values. */
 SCREE_API void scree_experiment_print(const scree_experiment *experiment, FILE *stream);
 
+/* ---- 8.3 One run of the experiment ---- */
+
+typedef enum scree_phase {
+  SCREE_PHASE_PACK,   /* layers of particles are filled in at the top of the cylinder */
+  SCREE_PHASE_SETTLE, /* they come to rest */
+  SCREE_PHASE_LIFT,   /* the cylinder rises */
+  SCREE_PHASE_HOLD,   /* until still */
+  SCREE_PHASE_DONE,
+} scree_phase;
+
+SCREE_API const char *scree_phase_name(scree_phase phase);
+
+/* A run: its world, walls and the schedule of filling and phases. */
+typedef struct scree_run scree_run;
+
+/* One of the shapes that a run mixes. */
+typedef struct scree_run_shape {
+  scree_particle *particle; /* borrowed until the run is created; the world keeps its own reference */
+  double density_factor;    /* 1, or volume of the scan over that of the particle (mass_from: scan) */
+} scree_run_shape;
+
+/* The particles take the shapes in equal shares, shuffled by the seed; positions and orientations are
+ * random, bounding spheres never overlap. Layers follow each other so that all are in after pack_time; a
+ * cylinder too narrow for the largest particle, or a layer that would have to enter faster than the
+ * contact law allows, is refused here with the pack_time that would do. At most 60 shapes. */
+SCREE_API scree_status scree_run_create(const scree_experiment *experiment,
+                                        const scree_run_shape *shapes, size_t shape_count,
+                                        scree_run **run, scree_error *error);
+SCREE_API void scree_run_free(scree_run *run);
+
+/* Advances by at most step_count time steps; stops earlier where a phase ends. SCREE_DIVERGED as
+ * scree_world_step. The result does not depend on how a run is cut into calls. */
+SCREE_API scree_status scree_run_advance(scree_run *run, size_t step_count, scree_error *error);
+SCREE_API scree_phase scree_run_phase(const scree_run *run);
+/* The fraction of the simulated time done, by the longest schedule: phases may end early. */
+SCREE_API double scree_run_fraction(const scree_run *run);
+/* The world, for observing and frames; not to be changed. */
+SCREE_API scree_world *scree_run_world(scree_run *run);
+SCREE_API const scree_experiment *scree_run_experiment(const scree_run *run);
+/* m: the height of the cylinder's lower end above the disc. */
+SCREE_API double scree_run_cylinder_height(const scree_run *run);
+
+/* What a run gives beyond the heap's shape. */
+typedef struct scree_run_result {
+  scree_repose repose;
+  size_t left_count;       /* particles that fell off the disc */
+  double packing_fraction; /* solid volume over the volume under the height field */
+  double coordination;     /* mean number of touching neighbours */
+  double particle_size;    /* m: mean equal-volume sphere diameter */
+} scree_run_result;
+
+/* Measures the heap as it stands now (scree_height_field, scree_repose_measure). */
+SCREE_API scree_status scree_run_measure(const scree_run *run, scree_run_result *result,
+                                         scree_error *error);
+
 /* ==== 9. Reports: figures, pictures, files for other programs ================================= */
 
 /* ---- 9.1 Pictures ---- */
