@@ -1186,14 +1186,16 @@ typedef struct scree_run scree_run;
 
 /* One of the shapes that a run mixes. */
 typedef struct scree_run_shape {
-  scree_particle *particle; /* borrowed until the run is created; the world keeps its own reference */
-  double density_factor;    /* 1, or volume of the scan over that of the particle (mass_from: scan) */
+  scree_particle
+      *particle;         /* borrowed until the run is created; the world keeps its own reference */
+  double density_factor; /* 1, or volume of the scan over that of the particle (mass_from: scan) */
 } scree_run_shape;
 
-/* The particles take the shapes in equal shares, shuffled by the seed; positions and orientations are
- * random, bounding spheres never overlap. Layers follow each other so that all are in after pack_time; a
- * cylinder too narrow for the largest particle, or a layer that would have to enter faster than the
- * contact law allows, is refused here with the pack_time that would do. At most 60 shapes. */
+/* The particles take the shapes in equal shares, shuffled by the seed; positions and orientations
+ * are random, bounding spheres never overlap. Layers follow each other so that all are in after
+ * pack_time; a cylinder too narrow for the largest particle, or a layer that would have to enter
+ * faster than the contact law allows, is refused here with the pack_time that would do. At most 60
+ * shapes. */
 SCREE_API scree_status scree_run_create(const scree_experiment *experiment,
                                         const scree_run_shape *shapes, size_t shape_count,
                                         scree_run **run, scree_error *error);
