@@ -63,42 +63,43 @@ static bool reserve(size_t size) {
   return true;
 }
 
-/* Only advice: it may be refused, and the part of the block that is no whole page stays as it is.
- */
-static void advise_huge_pages(void *raw, size_t size) {
-#ifdef MADV_HUGEPAGE
-  uintptr_t begin = ((uintptr_t)raw + HUGE_PAGE - 1) & ~(uintptr_t)(HUGE_PAGE - 1),
-            end = ((uintptr_t)raw + size) & ~(uintptr_t)(HUGE_PAGE - 1);
-  if (begin < end) (void)madvise((void *)begin, end - begin, MADV_HUGEPAGE);
-#else
-  (void)raw, (void)size;
-#endif
-}
-
 static header *header_of(void *block) {
   return (header *)((char *)block - ALIGNMENT);
 }
 
-static bool padded_size(size_t count, size_t size, size_t *bytes, size_t *padded) {
-  return !__builtin_mul_overflow(count, size, bytes) &&
-         !__builtin_add_overflow(*bytes, (size_t)(2 * ALIGNMENT), padded) &&
-         *padded <= (size_t)PTRDIFF_MAX;
+/* What is counted for a block of count * size bytes. */
+static bool counted_size(size_t count, size_t size, size_t *counted) {
+  size_t bytes;
+  return !__builtin_mul_overflow(count, size, &bytes) &&
+         !__builtin_add_overflow(bytes, (size_t)(2 * ALIGNMENT), counted) &&
+         *counted <= (size_t)PTRDIFF_MAX - HUGE_PAGE;
+}
+
+/* Only advice: it may be refused. */
+static void advise_huge_pages(void *block, size_t size) {
+#ifdef MADV_HUGEPAGE
+  (void)madvise(block, size, MADV_HUGEPAGE);
+#else
+  (void)block, (void)size;
+#endif
 }
 
 void *scree_alloc(size_t count, size_t size) {
-  size_t bytes, padded;
-  if (!padded_size(count, size, &bytes, &padded) || !reserve(padded)) return NULL;
-  void *raw = hook(hook_context, NULL, padded);
+  size_t counted;
+  if (!counted_size(count, size, &counted) || !reserve(counted)) return NULL;
+  /* a large block begins on a huge page; what that leaves before it is never touched */
+  size_t alignment = counted >= 2 * (size_t)HUGE_PAGE ? HUGE_PAGE : ALIGNMENT;
+  void *raw = hook(hook_context, NULL, counted - ALIGNMENT + alignment);
   if (!raw) {
-    atomic_fetch_sub(&used_bytes, padded);
+    atomic_fetch_sub(&used_bytes, counted);
     return NULL;
   }
   atomic_fetch_add(&allocation_count, 1);
-  if (padded >= HUGE_PAGE) advise_huge_pages(raw, padded);
   uintptr_t address = (uintptr_t)raw + ALIGNMENT;
-  size_t shift = (size_t)(-address & (ALIGNMENT - 1));
+  size_t shift = (size_t)(-address & (alignment - 1));
   char *block = (char *)raw + ALIGNMENT + shift;
-  *header_of(block) = (header){raw, padded};
+  *header_of(block) = (header){raw, counted};
+  if (alignment == HUGE_PAGE) advise_huge_pages(block, counted - 2 * (size_t)ALIGNMENT);
   return block;
 }
 

@@ -84,8 +84,12 @@ static bool distinct_reserve(distinct *d, size_t extra) {
   return slot_count == d->slot_count || slots_allocate(d, slot_count);
 }
 
+/* Equal bits are equal values here, where no -0 is left; one comparison, as it is mostly true. */
 static bool same_position(const double *a, const double *b) {
-  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+  uint64_t x[3], y[3];
+  memcpy(x, a, sizeof x);
+  memcpy(y, b, sizeof y);
+  return ((x[0] ^ y[0]) | (x[1] ^ y[1]) | (x[2] ^ y[2])) == 0;
 }
 
 static uint32_t distinct_number(distinct *d, const double *p, uint64_t hash) {
@@ -100,17 +104,33 @@ static uint32_t distinct_number(distinct *d, const double *p, uint64_t hash) {
   return number;
 }
 
-/* Hashes a batch and asks for its table lines ahead of use; false at a coordinate out of range. */
-static bool prepare_batch(const distinct *d, double *p, size_t count, uint64_t *hashes) {
-  bool in_range = true;
-  for (size_t i = 0; i < 3 * count; i++) {
-    p[i] += 0.0;                                      /* -0 becomes 0 */
-    in_range &= fabs(p[i]) <= SCREE_COORDINATE_LIMIT; /* false for NaN */
+/* Whether all coordinates are finite and within the limit. As integers, the sizes of doubles are in
+ * order, NaN above all: a bit survives in the sign where one is too large. */
+static bool in_range(const double *p, size_t count) {
+  const double limit = SCREE_COORDINATE_LIMIT;
+  uint64_t limit_bits, too_large = 0;
+  memcpy(&limit_bits, &limit, sizeof limit);
+  for (size_t i = 0; i < count; i++) {
+    uint64_t bits;
+    memcpy(&bits, p + i, sizeof bits);
+    too_large |= limit_bits - (bits & INT64_MAX);
   }
-  if (!in_range) return false;
+  return too_large >> 63 == 0;
+}
+
+/* Hashes a batch, and asks for what its look-up will touch ahead of use: the table, then the
+ * positions it names. False at a coordinate out of range. */
+static bool prepare_batch(const distinct *d, double *p, size_t count, uint64_t *hashes) {
+  for (size_t i = 0; i < 3 * count; i++) p[i] += 0.0; /* -0 becomes 0 */
+  if (!in_range(p, 3 * count)) return false;
+  size_t mask = d->slot_count - 1;
   for (size_t i = 0; i < count; i++) {
     hashes[i] = hash_position(p + 3 * i, d->seed);
-    __builtin_prefetch(d->slots + (hashes[i] & (d->slot_count - 1)));
+    __builtin_prefetch(d->slots + (hashes[i] & mask));
+  }
+  for (size_t i = 0; i < count; i++) {
+    uint32_t number = d->slots[hashes[i] & mask];
+    if (number != EMPTY) __builtin_prefetch(d->positions + 3 * (size_t)(number - 1));
   }
   return true;
 }
