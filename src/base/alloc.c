@@ -71,7 +71,7 @@ static header *header_of(void *block) {
 static bool counted_size(size_t count, size_t size, size_t *counted) {
   size_t bytes;
   return !__builtin_mul_overflow(count, size, &bytes) &&
-         !__builtin_add_overflow(bytes, (size_t)(2 * ALIGNMENT), counted) &&
+         !__builtin_add_overflow(bytes, 2 * (size_t)ALIGNMENT, counted) &&
          *counted <= (size_t)PTRDIFF_MAX - HUGE_PAGE;
 }
 

@@ -128,8 +128,9 @@ static void skip_to_data(scree_text *t, bool lone_cr) {
 }
 
 scree_status scree_ply_header_read(scree_text *t, scree_ply_header *h) {
-  scree_token word = scree_text_next(t); /* `ply` */
+  scree_text_next(t); /* `ply` */
   bool lone_cr = t->end - t->p >= 2 && t->p[0] == '\r' && t->p[1] != '\n', has_format = false;
+  scree_token word;
   for (;;) {
     word = scree_text_next(t);
     scree_status status = SCREE_OK;

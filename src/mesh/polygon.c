@@ -190,7 +190,7 @@ scree_status scree_face_list_triangulate(scree_face_list *list, const double *po
     triangle_count += count - 2;
     if (count > most) most = count;
   }
-  if (triangle_count == 0) return SCREE_OK;
+  if (most < 4) return SCREE_OK;
   scree_index_list *out = &list->triangles;
   ring r = {0};
   scree_status status = SCREE_OK;

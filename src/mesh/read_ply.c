@@ -106,7 +106,7 @@ static const scree_ply_property *properties_of(const ply *p) {
 }
 
 static scree_status read_coordinate(ply *p, const scree_ply_property *property) {
-  double value;
+  double value = 0;
   const char *at = value_start(p);
   scree_status status = next_value(p, property->type, &value);
   if (status != SCREE_OK) return status;
@@ -132,13 +132,13 @@ static scree_status add_corner(ply *p, double value, const char *at) {
 }
 
 static scree_status read_list(ply *p, const scree_ply_property *property) {
-  double count, value;
+  double count = 0, value = 0;
   const char *at = value_start(p);
   scree_status status = next_value(p, property->count_type, &count);
   if (status != SCREE_OK) return status;
   size_t least = is_ascii(p) ? 2 : scree_ply_type_size(property->type);
-  double room = (double)((size_t)(p->text.end - p->text.p) / least + is_ascii(p));
-  if (!(count >= 0 && count <= room && count == floor(count))) {
+  size_t room = (size_t)(p->text.end - p->text.p) / least + is_ascii(p);
+  if (!(count >= 0 && count <= (double)room && count == floor(count))) {
     p->text.p = at;
     return fail_at(p, "a list of %.0f values does not fit the rest of the file", count);
   }

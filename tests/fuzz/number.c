@@ -17,6 +17,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   for (char *p = text; *p; p++)
     if (*p == 'd' || *p == 'D') *p = 'e'; /* Fortran's exponent is not strtod's */
   double expected = strtod(text, NULL);
-  FUZZ_CHECK(memcmp(&got, &expected, sizeof got) == 0);
+  uint64_t got_bits, expected_bits;
+  memcpy(&got_bits, &got, sizeof got);
+  memcpy(&expected_bits, &expected, sizeof expected);
+  FUZZ_CHECK(got_bits == expected_bits);
   return 0;
 }

@@ -55,7 +55,8 @@ static void expect_error(const char *part) {
   scree_scan scan = {0};
   scree_error error = {0};
   scree_status status = scree_scan_parse(file, file_size, "made", NULL, &scan, &error);
-  if (status == SCREE_OK || !strstr(error.message, part) || strncmp(error.message, "made: ", 6)) {
+  if (status == SCREE_OK || !strstr(error.message, part) ||
+      strncmp(error.message, "made: ", 6) != 0) {
     print_error("%d: '%s'; expected '%s'\n", status, error.message, part);
     fail();
   }

@@ -26,7 +26,7 @@ static const float tetrahedron[4][9] = {{0, 0, 0, 0, 1, 0, 1, 0, 0},
 /* A binary STL of a unit tetrahedron whose header begins with the text. */
 static void make_binary(const char *header, uint32_t count) {
   unsigned char start[84] = {0};
-  memcpy(start, header, strlen(header));
+  for (size_t i = 0; header[i]; i++) start[i] = (unsigned char)header[i];
   memcpy(start + 80, &count, 4);
   file.count = 0;
   put(start, sizeof start);
@@ -60,7 +60,8 @@ static void expect_error(scree_status status, const char *part) {
   scree_scan scan = {0};
   scree_error error = {0};
   scree_status got = parse(&scan, &error);
-  if (got != status || !strstr(error.message, part) || strncmp(error.message, "made.stl: ", 10)) {
+  if (got != status || !strstr(error.message, part) ||
+      strncmp(error.message, "made.stl: ", 10) != 0) {
     print_error("status %d, '%s'; expected %d with '%s'\n", got, error.message, status, part);
     fail();
   }
