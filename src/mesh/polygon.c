@@ -194,9 +194,11 @@ scree_status scree_face_list_triangulate(scree_face_list *list, const double *po
   scree_index_list *out = &list->triangles;
   ring r = {0};
   scree_status status = SCREE_OK;
-  if (!SCREE_RESERVE(out, out->count + 3 * triangle_count) || !ring_reserve(&r, most))
-    status = scree_fail_memory(error, 3 * triangle_count * sizeof *out->items,
-                               "the triangles of polygons");
+  if (!SCREE_RESERVE(out, out->count + 3 * triangle_count) || !ring_reserve(&r, most)) {
+    ring_free(&r);
+    return scree_fail_memory(error, 3 * triangle_count * sizeof *out->items,
+                             "the triangles of polygons");
+  }
   for (size_t at = 0; at < polygons->count && status == SCREE_OK;) {
     size_t count = polygons->items[at];
     if (ring_begin(&r, positions, polygons->items + at + 1, count) == 0)
