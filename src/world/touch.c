@@ -265,6 +265,15 @@ static void deep_crossing(const scree_pair *pair, scree_item *item, vec3 crossin
   item->inside = contact->distance < 0.5 * pair->reach;
 }
 
+/* Whether edges that claim to have crossed deeply have: a closest point lies in the other body. The
+ * claim is stale when the edges went around each other instead. */
+static bool is_crossed(const scree_particle *a, const scree_particle *b, vec3 on_a, vec3 on_b,
+                       const scree_frame *relative) {
+  if (!(a->measures.volume > 0 && b->measures.volume > 0)) return true; /* open walls cannot tell */
+  if (scree_is_inside(b, on_a)) return true;
+  return scree_is_inside(a, mat3_tmul_vec(&relative->rotation, vec3_sub(on_b, relative->position)));
+}
+
 static double touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
                           const scree_frame *relative, scree_scratch *scratch) {
   const scree_edge *ea = &world->bodies.particle[pair->a]->edges[item->a],
@@ -301,6 +310,13 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
   if (item->inside || d < 0.5 * pair->reach) {
     if (!item->has_reference) return 0; /* not armed */
     deep_crossing(pair, item, vec3_scale(crossing, 1 / sine), offset, &contact);
+    if (contact.distance < -pair->limit &&
+        !is_crossed(world->bodies.particle[pair->a], scree_pair_shape_b(world, pair), on_a, on_b,
+                    relative)) {
+      item->inside = false;
+      item->anchor[0].share = 0;
+      return fmin(far, 0);
+    }
   }
   if (!item->inside) {
     item->reference = contact.normal;

@@ -1,0 +1,291 @@
+/* Oracles of the contact law: the force is the slope of the energy; lists and sleeping change
+ * nothing; threads change nothing; a warm step allocates nothing; what leaves the model's range
+ * stops. */
+#include "support/law.h"
+
+#include "base/alloc.h"
+#include "base/rng.h"
+#include "support/shapes.h"
+#include "support/solids.h"
+
+static scree_particle *particle_of(scree_mesh mesh) {
+  scree_error error;
+  scree_particle *particle = NULL;
+  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
+  scree_mesh_free(&mesh);
+  return particle;
+}
+
+static scree_world *elastic_world(double skin) {
+  scree_error error;
+  scree_world_options o = scree_default_world_options();
+  o.gravity[2] = 0;
+  o.skin = skin;
+  scree_world *world = NULL;
+  CHECK_OK(scree_world_create(&o, &world, &error), error);
+  scree_material m = scree_default_material();
+  m.restitution = 1;
+  m.friction = 0;
+  CHECK_OK(scree_world_add_material(world, &m, NULL, &error), error);
+  return world;
+}
+
+/* The pair's energy, and the force on body 0, at these poses (both at rest). */
+static double energy_at(scree_world *world, const scree_body *a, const scree_body *b,
+                        double force[3]) {
+  scree_world_set_body(world, 0, a);
+  scree_world_set_body(world, 1, b);
+  law_step(world, 1);
+  scree_observation o;
+  scree_world_observe(world, &o);
+  scree_body after;
+  scree_world_get_body(world, 0, &after);
+  double dt = scree_world_time_step(world, NULL), mass = scree_world_body_mass(world, 0);
+  for (int k = 0; k < 3; k++) force[k] = mass * after.velocity[k] / dt;
+  return o.elastic;
+}
+
+/* Moves b towards a along z until the energy is that of an overlap of about `depth`; false when the
+ * two miss each other. */
+static bool bring_together(scree_world *world, scree_body *a, scree_body *b, double depth) {
+  double force[3], high = 0.25, low = 0;
+  double stiffness = 0.5e8 * 0.03, target = 0.5 * stiffness * depth * depth;
+  if (energy_at(world, a, b, force) > 0) return false;
+  for (double z = high; z > 0; z -= 2e-4) { /* first touch from outside */
+    b->position[2] = z;
+    if (energy_at(world, a, b, force) > 0) {
+      low = z;
+      high = z + 2e-4;
+      break;
+    }
+  }
+  if (low == 0) return false;
+  for (int i = 0; i < 40; i++) {
+    b->position[2] = 0.5 * (low + high);
+    if (energy_at(world, a, b, force) > target)
+      low = b->position[2];
+    else
+      high = b->position[2];
+  }
+  return true;
+}
+
+static void turn_at_random(scree_rng *rng, scree_body *body) {
+  quat q = scree_rng_rotation(rng);
+  const double orientation[4] = {q.w, q.x, q.y, q.z};
+  memcpy(body->orientation, orientation, sizeof orientation);
+}
+
+static void force_is_the_slope_of_the_energy(void **state) {
+  (void)state;
+  scree_particle *shapes[] = {
+      particle_of(shape_box(0.06, 0.04, 0.02)), particle_of(shape_icosphere(0.02, 1)),
+      particle_of(solid_tray(0.06, 0.04, 0.02, 0.004)), particle_of(solid_hook(0.05, 0.012, 0.02))};
+  scree_rng rng = {.seed = 11};
+  double worst = 0;
+  int tried = 0;
+  for (int i = 0; i < 40; i++) {
+    scree_world *world = elastic_world(0.02);
+    scree_body a = scree_default_body(), b = a;
+    turn_at_random(&rng, &a);
+    turn_at_random(&rng, &b);
+    b.position[0] = 0.01 * (2 * scree_rng_uniform(&rng) - 1);
+    b.position[2] = 0.25;
+    law_body(world, shapes[i % 4], a);
+    law_body(world, shapes[(i / 4) % 4], b);
+    if (bring_together(world, &a, &b, 5e-6 + 1e-5 * scree_rng_uniform(&rng))) {
+      double force[3], size = 0, off = 0, unused[3];
+      energy_at(world, &a, &b, force);
+      const double h = 2e-9;
+      for (int k = 0; k < 3; k++) {
+        scree_body up = a, down = a;
+        up.position[k] += h;
+        down.position[k] -= h;
+        double slope =
+            (energy_at(world, &up, &b, unused) - energy_at(world, &down, &b, unused)) / (2 * h);
+        size += force[k] * force[k];
+        off += (force[k] + slope) * (force[k] + slope);
+      }
+      worst = fmax(worst, sqrt(off / size));
+      tried++;
+    }
+    scree_world_free(world);
+  }
+  assert_true(tried > 25);
+  LAW_BELOW("-", "force against the slope of the energy, relative", worst, 0.01);
+  for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
+}
+
+/* Two bodies tumble into each other; at many moments a fresh world with lists over everything gives
+ * the same energy. */
+static void lists_change_nothing(void **state) {
+  (void)state;
+  scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)),
+                              particle_of(shape_icosphere(0.02, 2)),
+                              particle_of(solid_tray(0.06, 0.04, 0.02, 0.004))};
+  scree_rng rng = {.seed = 12};
+  double worst = 0;
+  size_t compared = 0;
+  for (int i = 0; i < 60; i++) {
+    scree_world *world = elastic_world(0.02), *fresh = elastic_world(1);
+    scree_body body[2];
+    for (int k = 0; k < 2; k++) {
+      body[k] = scree_default_body();
+      turn_at_random(&rng, &body[k]);
+      body[k].position[2] = k ? -0.035 : 0.035;
+      body[k].position[0] = 0.005 * scree_rng_uniform(&rng);
+      body[k].velocity[2] = k ? 0.2 : -0.2;
+      vec3_store(body[k].angular_velocity, vec3_scale(scree_rng_direction(&rng), 5));
+      law_body(world, shapes[(i + k * (i / 3)) % 3], body[k]);
+      law_body(fresh, shapes[(i + k * (i / 3)) % 3], body[k]);
+    }
+    for (int step = 0; step < 12000; step++) {
+      scree_observation o;
+      scree_world_get_body(world, 0, &body[0]);
+      scree_world_get_body(world, 1, &body[1]);
+      law_step(world, 1);
+      if (step % 200 && scree_world_step_count(world) % 3) continue;
+      scree_world_observe(world, &o);
+      if (step % 200 && o.pair_count == 0) continue;
+      double unused[3], elastic = energy_at(fresh, &body[0], &body[1], unused);
+      worst = fmax(worst, fabs(elastic - o.elastic) / fmax(elastic, 1e-9));
+      compared += o.pair_count;
+    }
+    scree_world_free(world);
+    scree_world_free(fresh);
+  }
+  print_message("%zu moments in contact\n", compared);
+  assert_true(compared > 500);
+  LAW_BELOW("-", "energy with lists and sleep against a fresh world", worst, 1e-6);
+  for (int i = 0; i < 3; i++) scree_particle_free(shapes[i]);
+}
+
+static scree_world *heap_of(scree_particle **shapes, size_t kinds, int count) {
+  law_setup setup = law_default();
+  setup.gravity = 9.81;
+  setup.steps_per_contact = 20;
+  scree_world *world = law_world(&setup);
+  law_floor(world);
+  scree_rng rng = {.seed = 13};
+  for (int i = 0; i < count; i++) {
+    scree_body body = scree_default_body();
+    turn_at_random(&rng, &body);
+    body.position[0] = 0.08 * (i % 3);
+    body.position[1] = 0.08 * (i / 3 % 3);
+    body.position[2] = 0.06 + 0.08 * (i / 9);
+    body.velocity[2] = -2;
+    law_body(world, shapes[(size_t)i % kinds], body);
+  }
+  return world;
+}
+
+static void threads_change_nothing(void **state) {
+  (void)state;
+  scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)),
+                              particle_of(shape_icosphere(0.02, 2)),
+                              particle_of(solid_tray(0.06, 0.04, 0.02, 0.004)), law_sphere(0.02)};
+  scree_checksum first = {0};
+  const int threads[] = {1, 2, 3, 8};
+  for (int i = 0; i < 4; i++) {
+    scree_set_threads(threads[i]);
+    scree_world *world = heap_of(shapes, 4, 80);
+    law_step(world, 16000);
+    scree_observation o;
+    scree_world_observe(world, &o);
+    print_message("%zu pairs touch at %.3f s\n", o.pair_count, o.time);
+    assert_true(o.pair_count > 0);
+    scree_checksum hash = scree_world_hash(world);
+    if (i == 0) first = hash;
+    assert_true(hash.high == first.high && hash.low == first.low);
+    scree_world_free(world);
+  }
+  scree_set_threads(0);
+  for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
+}
+
+static void warm_steps_allocate_nothing(void **state) {
+  (void)state;
+  scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)), law_sphere(0.02)};
+  scree_world *world = heap_of(shapes, 2, 18);
+  law_step(world, 40000);
+  size_t before = scree_allocation_count();
+  law_step(world, 2000);
+  assert_int_equal(scree_allocation_count(), before);
+  scree_world_free(world);
+  for (int i = 0; i < 2; i++) scree_particle_free(shapes[i]);
+}
+
+static void what_leaves_the_range_stops(void **state) {
+  (void)state;
+  scree_particle *box = particle_of(shape_box(0.06, 0.04, 0.02));
+  law_setup setup = law_default();
+  for (int fast = 0; fast < 2; fast++) {
+    scree_world *world = law_world(&setup);
+    law_floor(world);
+    scree_body body = scree_default_body();
+    body.position[2] = 0.2;
+    body.velocity[2] = fast ? -500 : -30;
+    law_body(world, box, body);
+    scree_error error;
+    scree_status status = scree_world_step(world, 20000, &error);
+    assert_int_equal(status, SCREE_DIVERGED);
+    print_message("%s\n", error.message);
+    assert_non_null(strstr(error.message, fast ? "would move" : "overlaps wall 0"));
+    scree_body after;
+    scree_world_get_body(world, 0, &after);
+    assert_true(isfinite(after.position[2]));
+    assert_int_equal(scree_world_step(world, 1, NULL), SCREE_DIVERGED);
+    scree_world_free(world);
+  }
+  scree_particle_free(box);
+}
+
+static void unusable_meshes_are_refused(void **state) {
+  (void)state;
+  scree_error error;
+  scree_particle *particle = NULL;
+  scree_mesh box = shape_box(1, 1, 1);
+  shape_flip(&box, 3);
+  assert_int_equal(scree_particle_from_mesh(&box, NULL, &particle, &error), SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "wound against each other"));
+  scree_mesh_free(&box);
+  scree_mesh sheet = shape_sheet(0, 3);
+  assert_int_equal(scree_particle_from_mesh(&sheet, NULL, &particle, &error), SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "open"));
+  scree_mesh_free(&sheet);
+  scree_mesh inside_out = shape_box(1, 1, 1);
+  for (size_t t = 0; t < inside_out.triangle_count; t++) shape_flip(&inside_out, t);
+  assert_int_equal(scree_particle_from_mesh(&inside_out, NULL, &particle, &error), SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "inside out"));
+  scree_mesh_free(&inside_out);
+  assert_null(particle);
+}
+
+static void features_follow_the_shape(void **state) {
+  (void)state;
+  for (size_t n = 1; n < 6; n++) {
+    scree_particle *box = particle_of(n == 1 ? shape_box(3, 2, 1) : shape_grid_box(3, 2, 1, n));
+    scree_particle_measures m;
+    scree_particle_measure(box, &m);
+    assert_int_equal(m.point_count, 8);
+    assert_int_equal(m.edge_count, 12);
+    CHECK_NEAR(m.volume, 6, 1e-12);
+    CHECK_NEAR(m.inertia[0], 6 * (2 * 2 + 1 * 1) / 12.0, 1e-12);
+    CHECK_NEAR(m.inertia[2], 6 * (3 * 3 + 2 * 2) / 12.0, 1e-12);
+    CHECK_NEAR(m.thickness, 1, 1e-9);
+    scree_particle_free(box);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(features_follow_the_shape),
+      cmocka_unit_test(unusable_meshes_are_refused),
+      cmocka_unit_test(force_is_the_slope_of_the_energy),
+      cmocka_unit_test(lists_change_nothing),
+      cmocka_unit_test(threads_change_nothing),
+      cmocka_unit_test(warm_steps_allocate_nothing),
+      cmocka_unit_test(what_leaves_the_range_stops),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
