@@ -189,10 +189,12 @@ scree_status scree_repair_seams(scree_repair *r, scree_error *error) {
   for (int step = 0; step < SEAM_STEPS && status == SCREE_OK; step++) {
     rim b;
     status = find_rim(r, &b, error);
-    if (status != SCREE_OK || b.edge_count == 0) break;
+    if (status != SCREE_OK) break;
+    bool closed = b.edge_count == 0;
     double distance = tolerance * r->diagonal * pow(10, step + 1 - SEAM_STEPS);
-    status = try_distance(r, &b, distance, corners, error);
+    if (!closed) status = try_distance(r, &b, distance, corners, error);
     free_rim(&b);
+    if (closed) break;
   }
   scree_free(corners);
   return status;

@@ -182,7 +182,7 @@ static bool shoot(const scree_shells *shells, const scree_facet_tree *tree, uint
       if (side && !SCREE_PUSH(found, (hit){label, side})) return false;
     }
   }
-  qsort(found->items, found->count, sizeof *found->items, compare_hits);
+  if (found->count) qsort(found->items, found->count, sizeof *found->items, compare_hits);
   return true;
 }
 
