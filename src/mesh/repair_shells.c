@@ -17,8 +17,8 @@ enum {
   TURNS = 64,              /* depth of shells in shells that is set right */
 };
 
-/* No more than this share of the area is cut out: beyond it, it is no local repair. */
-#define CUT_SHARE 0.05
+/* No more than this share of the facets is cut out: beyond it, it is no local repair. */
+#define CUT_SHARE 0.1
 
 typedef struct nest {
   scree_adjacency adjacency;
@@ -221,12 +221,6 @@ scree_status scree_repair_shells(scree_repair *r, scree_error *error) {
 
 /* ---- Cutting ---- */
 
-static double facet_area(const scree_mesh *mesh, size_t t) {
-  return 0.5 * vec3_norm(vec3_triangle_normal(scree_mesh_corner(mesh, t, 0),
-                                              scree_mesh_corner(mesh, t, 1),
-                                              scree_mesh_corner(mesh, t, 2)));
-}
-
 /* Marks the facets that have a vertex with a marked one. */
 static void grow_marks(const scree_mesh *mesh, bool *marked, bool *vertex) {
   memset(vertex, 0, mesh->vertex_count);
@@ -244,15 +238,12 @@ static void mark_meetings(const scree_meetings *found, const scree_shells *shell
   }
 }
 
-/* The share of the area that is marked. */
+/* The share of the facets that is marked: areas would say little, facets that cross are often long.
+ */
 static double marked_share(const scree_mesh *mesh, const bool *marked) {
-  double cut = 0, all = 0;
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    double area = facet_area(mesh, t);
-    all += area;
-    if (marked[t]) cut += area;
-  }
-  return all > 0 ? cut / all : 1;
+  size_t count = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t++) count += marked[t];
+  return (double)count / (double)mesh->triangle_count;
 }
 
 scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error) {

@@ -3,7 +3,8 @@
  * The winding number of a closed surface around a point is the signed number of its facets that a
  * ray from the point leaves through, less those it enters through. Rays run along +x from a
  * shell's extreme vertex, so they meet no facet of its own. A ray may run through an edge or a
- * vertex of another shell; it is thought to be displaced by (0, e, e^2) with e infinitely small
+ * vertex of another shell, or start on one; it is thought to be displaced by (-e^3, e, e^2) with e
+ * infinitely small
  * ("simulation of simplicity", Edelsbrunner and Muecke, ACM Trans. Graph. 9 (1990)), which makes
  * every crossing a plain one and the count exact. */
 #include "mesh/shells.h"
@@ -134,7 +135,7 @@ static int crossing(const scree_mesh *mesh, uint32_t facet, const double *p) {
   if (!side || displaced_side(corner[1], corner[2], p) != side ||
       displaced_side(corner[2], corner[0], p) != side)
     return 0;
-  return scree_orient3(corner[0], corner[1], corner[2], p) == -side ? side : 0;
+  return scree_orient3(corner[0], corner[1], corner[2], p) == side ? 0 : side;
 }
 
 static bool ray_misses(const scree_box *box, const double *p) {
