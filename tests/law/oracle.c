@@ -189,7 +189,7 @@ static void threads_change_nothing(void **state) {
   for (int i = 0; i < 4; i++) {
     scree_set_threads(threads[i]);
     scree_world *world = heap_of(shapes, 4, 80);
-    law_step(world, 16000);
+    law_step(world, 5000);
     scree_observation o;
     scree_world_observe(world, &o);
     print_message("%zu pairs touch at %.3f s\n", o.pair_count, o.time);
