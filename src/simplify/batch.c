@@ -1,14 +1,17 @@
 /* Batches: the many collapses of the fine levels, in parallel and yet in one order.
  *
- * A pass evaluates every edge, keeps the cheapest of each vertex, and takes of these, in the order
- * of cost, all below a threshold that are independent of those taken before. Independent means: the
- * closed stars share no vertex that either collapse moves or removes, no triangle beyond the one's
- * ring belongs to the other's, and no vertex is apex of both. Then no collapse changes what another
- * one was checked against, they can be done in any order, and every prefix of the pass, which the
+ * A pass evaluates every edge, keeps the cheapest of each vertex, and sets a threshold of cost.
+ * Then follow rounds: of the candidates below the threshold, in the order of cost, all are taken
+ * that are independent of those taken before; what is left over is evaluated again for the next
+ * round. Independent means: no end of the one edge is a neighbour of an end of the other, and no
+ * vertex is apex of both. Then no triangle is in both rings, neither changes what the other was
+ * checked against but for folds over a common edge of the two rings, which are looked at for both
+ * as they will be. So they can be done in any order, and every prefix of the round, which the
  * record holds in the order of cost, is a valid surface: a level.
  *
  * Everything parallel handles its items by themselves; the only shared writes are the grid's sets
- * of directions, which grow by OR. So the result does not depend on the number of threads. */
+ * of directions and the vertices' flags, which grow by OR. So the result does not depend on the
+ * number of threads. */
 #include "simplify/decimate.h"
 
 #include "base/parallel.h"
@@ -18,74 +21,83 @@
 /* What a pass takes: candidates up to this share of all, if below SPREAD times the cost at the
  * share LOW_SHARE. The threshold rises from pass to pass as in a greedy order, and features wait
  * until what is flat is gone. */
-#define HIGH_SHARE 0.5
-#define LOW_SHARE  0.25
+#define HIGH_SHARE 0.6
+#define LOW_SHARE  0.3
 #define SPREAD     8.0
+enum { ROUNDS = 2 };
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
-/* Grid cells per mean edge, and the share of triangles left at which the grid is built anew. */
+/* Mean edges per grid cell, and the share of triangles left at which the grid is built anew. */
 #define EDGES_PER_CELL 3.0
 #define REGRID_BELOW   0.6
 
 enum { VERTEX_BLOCK = 1024, CHOSEN_BLOCK = 256, BINS = 1 << 16 };
 
-enum { TOUCHED = 1, ENDPOINT = 2, APEX = 4 };
+enum { TOUCHED = 1, APEX = 2 };
 enum { REFUSED, CERTAIN, UNCERTAIN };
 
 typedef struct item {
   uint32_t key, vertex; /* key: the leading bits of the cost */
 } item;
 
+/* A collapse that was taken; its ring is in pass.edges from first_edge on. */
+typedef struct taken {
+  uint32_t half_edge, first_edge;
+  uint16_t a_count, count;
+  uint8_t verdict;
+  bool folds; /* over an edge that it has in common with another one taken */
+  float error;
+} taken;
+
 typedef struct pass {
   scree_decimator *d;
   uint32_t *best;     /* per vertex: half-edge of its cheapest edge, or NONE */
   double *cost;       /* per vertex: of that */
   uint8_t *marks;     /* per vertex */
+  uint32_t *chosen;   /* per vertex: the index of the collapse it is an end of, or NONE */
   item *items, *swap; /* candidates in order */
-  uint32_t *chosen;   /* per vertex; the collapse that takes it, for exact tests */
   size_t item_count;
-  uint32_t *taken; /* half-edges chosen, in order of cost */
-  size_t taken_count;
+  uint32_t limit; /* the threshold, as a key */
+  taken *taken;   /* in the order of cost */
   scree_change *changes;
-  float *errors;
-  uint8_t *verdicts;
+  size_t taken_count, room;
+  uint32_t *edges; /* the rings */
+  size_t edge_count;
   uint32_t *uncertain;
   size_t uncertain_count;
+  uint32_t *bins;
 } pass;
 
 static void pass_free(pass *p) {
   scree_free(p->best);
   scree_free(p->cost);
   scree_free(p->marks);
+  scree_free(p->chosen);
   scree_free(p->items);
   scree_free(p->swap);
-  scree_free(p->chosen);
   scree_free(p->taken);
   scree_free(p->changes);
-  scree_free(p->errors);
-  scree_free(p->verdicts);
+  scree_free(p->edges);
   scree_free(p->uncertain);
-}
-
-/* Independent collapses take at least four vertices each (two ends, and apexes or links shared by
- * few): a third of the vertices is room enough. */
-static size_t taken_room(size_t vertex_count) {
-  return vertex_count / 3 + 1;
+  scree_free(p->bins);
 }
 
 static scree_status pass_allocate(pass *p) {
   scree_error *error = p->d->error;
-  size_t n = p->d->s.vertex_count, room = taken_room(n);
-  size_t triangles = p->d->s.triangle_count, scratch = n > triangles ? n : (triangles + 1) / 2;
+  size_t n = p->d->s.vertex_count, triangles = p->d->s.triangle_count;
+  size_t scratch = n > triangles / 2 ? n : triangles / 2 + 1;
+  p->room = n / 6 + 1; /* more wait for the next round */
   SCREE_ALLOC_OR(p->best, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->cost, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->marks, n, error, out_of_memory);
+  SCREE_ALLOC_OR(p->chosen, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->items, scratch, error, out_of_memory);
   SCREE_ALLOC_OR(p->swap, scratch, error, out_of_memory);
-  SCREE_ALLOC_OR(p->taken, room, error, out_of_memory);
-  SCREE_ALLOC_OR(p->changes, room, error, out_of_memory);
-  SCREE_ALLOC_OR(p->errors, room, error, out_of_memory);
-  SCREE_ALLOC_OR(p->verdicts, room, error, out_of_memory);
+  SCREE_ALLOC_OR(p->taken, p->room, error, out_of_memory);
+  SCREE_ALLOC_OR(p->changes, p->room, error, out_of_memory);
+  SCREE_ALLOC_OR(p->uncertain, p->room, error, out_of_memory);
+  SCREE_ALLOC_OR(p->edges, triangles + SCREE_RING_MAX, error, out_of_memory);
+  SCREE_ALLOC_OR(p->bins, BINS, error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -94,9 +106,15 @@ out_of_memory:
 static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   scree_decimator *d = ((pass *)context)->d;
-  for (size_t v = begin; v < end; v++)
-    if (d->s.outgoing[v] != SCREE_NONE && d->s.flags[v] & SCREE_VERTEX_DIRTY)
-      d->coster->sum(&d->s, (uint32_t)v);
+  for (size_t v = begin; v < end; v++) {
+    if (d->s.outgoing[v] == SCREE_NONE || !(d->s.flags[v] & SCREE_VERTEX_STALE)) continue;
+    d->coster->sum(&d->s, (uint32_t)v);
+    d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
+  }
+}
+
+static void refresh_sums(pass *p) {
+  if (!p->d->coster->merge) scree_parallel_for(p->d->s.vertex_count, VERTEX_BLOCK, sum_block, p);
 }
 
 /* Whether edge h is to be looked at from vertex v, and may be. */
@@ -105,7 +123,7 @@ static bool open_to_collapse(scree_halfmesh *s, uint32_t v, uint32_t h) {
   if (twin != SCREE_NONE && other < v) return false; /* looked at from there */
   if (s->flags[other] & SCREE_VERTEX_LOCKED) return false;
   if (!s->refused[h]) return true;
-  if (!((s->flags[v] | s->flags[other]) & SCREE_VERTEX_DIRTY)) return false;
+  if (!((s->flags[v] | s->flags[other]) & SCREE_VERTEX_CHANGED)) return false;
   s->refused[h] = 0;
   return true;
 }
@@ -140,6 +158,13 @@ static uint32_t key_of(double cost) {
   return (uint32_t)(bits >> 31);
 }
 
+static double cost_of_key(uint32_t key) {
+  uint64_t bits = (uint64_t)key << 31;
+  double cost;
+  memcpy(&cost, &bits, sizeof cost);
+  return cost;
+}
+
 /* The cost below which `share` of all candidates lie, to a bin of 1/32 of itself. */
 static uint32_t key_at(const uint32_t *bins, size_t count, double share) {
   size_t wanted = (size_t)(share * (double)count), sum = 0;
@@ -150,11 +175,51 @@ static uint32_t key_at(const uint32_t *bins, size_t count, double share) {
   return UINT32_MAX;
 }
 
-static double cost_of_key(uint32_t key) {
-  uint64_t bits = (uint64_t)key << 31;
-  double cost;
-  memcpy(&cost, &bits, sizeof cost);
-  return cost;
+/* Sets the threshold and lists the candidates below it. */
+static void list_candidates(pass *p) {
+  const scree_halfmesh *s = &p->d->s;
+  size_t count = 0;
+  memset(p->bins, 0, BINS * sizeof *p->bins);
+  for (size_t v = 0; v < s->vertex_count; v++) {
+    if (p->best[v] == SCREE_NONE) continue;
+    p->bins[key_of(p->cost[v]) >> 16]++;
+    count++;
+  }
+  uint32_t high = key_at(p->bins, count, HIGH_SHARE), low = key_at(p->bins, count, LOW_SHARE);
+  uint32_t spread = key_of(fmin(SPREAD * cost_of_key(low), 1e300));
+  p->limit = high < spread ? high : spread;
+  p->item_count = 0;
+  for (size_t v = 0; v < s->vertex_count; v++) {
+    if (p->best[v] == SCREE_NONE) continue;
+    uint32_t key = key_of(p->cost[v]);
+    if (key <= p->limit) p->items[p->item_count++] = (item){key, (uint32_t)v};
+  }
+}
+
+static void reconsider_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  pass *p = context;
+  scree_halfmesh *s = &p->d->s;
+  for (size_t i = begin; i < end; i++) {
+    uint32_t v = p->items[i].vertex, h = p->best[v];
+    p->items[i].key = UINT32_MAX;
+    if (s->outgoing[v] == SCREE_NONE || s->from[h] != v || s->refused[h]) continue;
+    if ((s->flags[v] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_CHANGED) {
+      scree_candidate candidate;
+      p->d->coster->evaluate(s, h, &candidate);
+      p->cost[v] = candidate.error <= p->d->error_limit ? candidate.cost : INFINITY;
+    }
+    p->items[i].key = key_of(p->cost[v]);
+  }
+}
+
+/* Keeps the candidates of the last round that are still there and below the threshold. */
+static void relist_candidates(pass *p) {
+  size_t count = 0;
+  scree_parallel_for(p->item_count, VERTEX_BLOCK, reconsider_block, p);
+  for (size_t i = 0; i < p->item_count; i++)
+    if (p->items[i].key <= p->limit) p->items[count++] = p->items[i];
+  p->item_count = count;
 }
 
 static void sort_items(pass *p) {
@@ -181,88 +246,50 @@ static void sort_items(pass *p) {
   }
 }
 
-/* Lists the candidates below the threshold, in the order of cost. */
-static scree_status order_candidates(pass *p) {
-  scree_halfmesh *s = &p->d->s;
-  uint32_t *bins = scree_alloc_zero(BINS, sizeof *bins);
-  if (!bins) return scree_fail_memory(p->d->error, BINS * sizeof *bins, "bins");
-  size_t count = 0;
-  for (size_t v = 0; v < s->vertex_count; v++) {
-    if (p->best[v] == SCREE_NONE) continue;
-    bins[key_of(p->cost[v]) >> 16]++;
-    count++;
-  }
-  uint32_t high = key_at(bins, count, HIGH_SHARE), low = key_at(bins, count, LOW_SHARE);
-  scree_free(bins);
-  uint32_t spread = key_of(fmin(SPREAD * cost_of_key(low), 1e300));
-  uint32_t limit = high < spread ? high : spread;
-  p->item_count = 0;
-  for (size_t v = 0; v < s->vertex_count; v++) {
-    if (p->best[v] == SCREE_NONE) continue;
-    uint32_t key = key_of(p->cost[v]);
-    if (key <= limit) p->items[p->item_count++] = (item){key, (uint32_t)v};
-  }
-  sort_items(p);
-  return SCREE_OK;
-}
-
-/* Whether ring r is independent of those taken; if so marks it. */
-static bool take(pass *p, const scree_ring *r) {
+static void mark_ring(pass *p, const scree_ring *r) {
   const scree_halfmesh *s = &p->d->s;
-  uint8_t *marks = p->marks;
-  if (marks[r->c] & APEX || (r->d != SCREE_NONE && marks[r->d] & APEX)) return false;
   for (uint32_t i = 0; i < r->count; i++) {
-    uint32_t beyond = s->twin[r->edge[i]];
-    if (beyond != SCREE_NONE && marks[s->from[scree_previous(beyond)]] & ENDPOINT) return false;
+    p->marks[s->from[r->edge[i]]] |= TOUCHED;
+    p->marks[scree_to(s, r->edge[i])] |= TOUCHED;
   }
-  for (uint32_t i = 0; i < r->count; i++) {
-    marks[s->from[r->edge[i]]] |= TOUCHED;
-    marks[scree_to(s, r->edge[i])] |= TOUCHED;
-  }
-  marks[r->a] |= TOUCHED | ENDPOINT;
-  marks[r->b] |= TOUCHED | ENDPOINT;
-  marks[r->c] |= TOUCHED | APEX;
-  if (r->d != SCREE_NONE) marks[r->d] |= TOUCHED | APEX;
-  return true;
+  p->marks[r->a] |= TOUCHED;
+  p->marks[r->b] |= TOUCHED;
+  p->marks[r->c] |= APEX;
+  if (r->d != SCREE_NONE) p->marks[r->d] |= APEX;
+  p->chosen[r->a] = p->chosen[r->b] = (uint32_t)p->taken_count;
 }
 
 static void choose_independent(pass *p) {
   scree_halfmesh *s = &p->d->s;
-  size_t room = taken_room(s->vertex_count);
   memset(p->marks, 0, s->vertex_count);
-  p->taken_count = 0;
-  for (size_t i = 0; i < p->item_count && p->taken_count < room; i++) {
+  memset(p->chosen, 0xff, s->vertex_count * sizeof *p->chosen);
+  p->taken_count = p->edge_count = 0;
+  for (size_t i = 0; i < p->item_count && p->taken_count < p->room; i++) {
     uint32_t v = p->items[i].vertex, h = p->best[v];
     if ((p->marks[v] | p->marks[scree_to(s, h)]) & TOUCHED) continue;
-    scree_ring ring;
-    if (!scree_ring_gather(s, h, &ring) || !scree_collapse_keeps_topology(s, &ring)) {
+    scree_ring ring = {.edge = p->edges + p->edge_count};
+    scree_ring_name(s, h, &ring);
+    if (p->marks[ring.c] & APEX || (ring.d != SCREE_NONE && p->marks[ring.d] & APEX)) continue;
+    if (!scree_ring_gather(s, h, &ring)) {
       s->refused[h] = 1;
       continue;
     }
-    if (take(p, &ring)) p->taken[p->taken_count++] = h;
+    mark_ring(p, &ring);
+    p->taken[p->taken_count++] = (taken){.half_edge = h,
+                                         .first_edge = (uint32_t)p->edge_count,
+                                         .a_count = (uint16_t)ring.a_count,
+                                         .count = (uint16_t)ring.count};
+    p->edge_count += ring.count;
   }
 }
 
-static void check_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  pass *p = context;
-  scree_decimator *d = p->d;
-  for (size_t i = begin; i < end; i++) {
-    scree_ring ring;
-    scree_candidate candidate;
-    scree_ring_gather(&d->s, p->taken[i], &ring);
-    d->coster->evaluate(&d->s, p->taken[i], &candidate);
-    p->changes[i].target = candidate.target;
-    p->errors[i] = (float)candidate.error;
-    bool sound = scree_collapse_check(&d->s, &ring, &p->changes[i]);
-    p->verdicts[i] = sound ? UNCERTAIN : REFUSED;
-    if (sound) scree_grid_enter_ring(&d->grid, &d->s, &ring, candidate.target);
-  }
+static scree_ring ring_of(const pass *p, const taken *t) {
+  scree_ring ring = {.edge = p->edges + t->first_edge, .a_count = t->a_count, .count = t->count};
+  scree_ring_name(&p->d->s, t->half_edge, &ring);
+  return ring;
 }
 
-/* The ring again, with its box. */
-static void gather_with_box(const scree_halfmesh *s, uint32_t h, vec3 target, scree_ring *r) {
-  scree_ring_gather(s, h, r);
+static void set_box(const scree_halfmesh *s, vec3 target, scree_ring *r) {
   r->low = vec3_min(target, vec3_min(s->position[r->a], s->position[r->b]));
   r->high = vec3_max(target, vec3_max(s->position[r->a], s->position[r->b]));
   for (uint32_t i = 0; i < r->count; i++) {
@@ -272,15 +299,54 @@ static void gather_with_box(const scree_halfmesh *s, uint32_t h, vec3 target, sc
   }
 }
 
+static void check_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  pass *p = context;
+  scree_decimator *d = p->d;
+  for (size_t i = begin; i < end; i++) {
+    taken *t = &p->taken[i];
+    scree_ring ring = ring_of(p, t);
+    scree_candidate candidate;
+    d->coster->evaluate(&d->s, t->half_edge, &candidate);
+    p->changes[i].target = candidate.target;
+    t->error = (float)candidate.error;
+    bool sound = scree_collapse_keeps_topology(&d->s, &ring) &&
+                 scree_collapse_check(&d->s, &ring, &p->changes[i]);
+    t->verdict = sound ? UNCERTAIN : REFUSED;
+    if (sound) scree_grid_enter_ring(&d->grid, &d->s, &ring, candidate.target);
+  }
+}
+
+/* Whether a fold comes to be over an edge between this ring and that of another collapse, both
+ * done. With one done, scree_collapse_check of either has looked. */
+static bool folds_with_others(const pass *p, const scree_ring *r, vec3 target) {
+  const scree_halfmesh *s = &p->d->s;
+  for (uint32_t i = 0; i < r->count; i++) {
+    uint32_t beyond = s->twin[r->edge[i]];
+    if (beyond == SCREE_NONE) continue;
+    uint32_t other = p->chosen[s->from[scree_previous(beyond)]];
+    if (other == SCREE_NONE) continue;
+    vec3 p1 = s->position[s->from[r->edge[i]]], p2 = s->position[scree_to(s, r->edge[i])];
+    if (scree_folded(vec3_triangle_normal(target, p1, p2),
+                     vec3_triangle_normal(p->changes[other].target, p2, p1)))
+      return true;
+  }
+  return false;
+}
+
 static void certify_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
   for (size_t i = begin; i < end; i++) {
-    if (p->verdicts[i] == REFUSED) continue;
-    scree_ring ring;
-    gather_with_box(&d->s, p->taken[i], p->changes[i].target, &ring);
-    if (scree_grid_certifies(&d->grid, &ring)) p->verdicts[i] = CERTAIN;
+    taken *t = &p->taken[i];
+    if (t->verdict == REFUSED) continue;
+    scree_ring ring = ring_of(p, t);
+    vec3 target = p->changes[i].target;
+    t->folds = folds_with_others(p, &ring, target);
+    if (!d->s.closed) continue;
+    set_box(&d->s, target, &ring);
+    if (scree_grid_certifies(&d->grid, &d->s, &ring, target)) t->verdict = CERTAIN;
   }
 }
 
@@ -290,47 +356,41 @@ static void search_block(void *context, size_t begin, size_t end, size_t block, 
   scree_decimator *d = p->d;
   scree_planned planned = {p->chosen, p->changes};
   for (size_t k = begin; k < end; k++) {
-    uint32_t i = p->uncertain[k];
-    scree_ring ring;
-    gather_with_box(&d->s, p->taken[i], p->changes[i].target, &ring);
-    p->verdicts[i] = scree_grid_clear(&d->grid, &d->s, &ring, p->changes[i].target, &planned)
-                         ? CERTAIN
-                         : REFUSED;
+    taken *t = &p->taken[p->uncertain[k]];
+    vec3 target = p->changes[p->uncertain[k]].target;
+    scree_ring ring = ring_of(p, t);
+    set_box(&d->s, target, &ring);
+    bool clear = scree_grid_clear(&d->grid, &d->s, &ring, target, &planned);
+    t->verdict = clear ? CERTAIN : REFUSED;
   }
 }
 
 /* Exact tests for those that the directions did not settle. */
 static scree_status search_uncertain(pass *p) {
   scree_decimator *d = p->d;
-  size_t n = d->s.vertex_count;
-  p->uncertain_count = 0;
-  for (size_t i = 0; i < p->taken_count; i++)
-    p->uncertain_count += d->s.closed ? p->verdicts[i] == UNCERTAIN : p->verdicts[i] != REFUSED;
-  if (p->uncertain_count == 0) return SCREE_OK;
-  SCREE_ALLOC_OR(p->uncertain, p->uncertain_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(p->chosen, n, d->error, out_of_memory);
-  memset(p->chosen, 0xff, n * sizeof *p->chosen);
   p->uncertain_count = 0;
   for (uint32_t i = 0; i < p->taken_count; i++) {
-    if (p->verdicts[i] == REFUSED) continue;
-    p->chosen[d->s.from[p->taken[i]]] = p->chosen[scree_to(&d->s, p->taken[i])] = i;
-    if (d->s.closed && p->verdicts[i] == CERTAIN) continue;
-    scree_ring ring;
-    gather_with_box(&d->s, p->taken[i], p->changes[i].target, &ring);
+    taken *t = &p->taken[i];
+    if (t->folds) t->verdict = REFUSED;
+    if (t->verdict != UNCERTAIN) continue;
+    scree_ring ring = ring_of(p, t);
+    set_box(&d->s, p->changes[i].target, &ring);
     scree_grid_mark(&d->grid, ring.low, ring.high);
     p->uncertain[p->uncertain_count++] = i;
   }
+  if (p->uncertain_count == 0) return SCREE_OK;
   scree_planned planned = {p->chosen, p->changes};
-  if (!scree_grid_list_all(&d->grid, &d->s, &planned, true)) {
-    scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
-    goto out_of_memory;
-  }
-  scree_parallel_for(p->uncertain_count, CHOSEN_BLOCK, search_block, p);
-  memset(d->grid.head, 0xff, d->grid.cell_count * sizeof *d->grid.head);
-  d->grid.count = d->grid.large_count = 0;
+  if (!scree_grid_list_all(&d->grid, &d->s, &planned, true))
+    return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
+  scree_parallel_for(p->uncertain_count, CHOSEN_BLOCK / 4, search_block, p);
+  scree_grid_clear_lists(&d->grid);
   return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
+}
+
+static void set_flag(scree_halfmesh *s, uint32_t v) {
+  const uint8_t flag = SCREE_VERTEX_STALE | SCREE_VERTEX_CHANGED;
+  if ((__atomic_load_n(&s->flags[v], __ATOMIC_RELAXED) & flag) != flag)
+    __atomic_fetch_or(&s->flags[v], flag, __ATOMIC_RELAXED);
 }
 
 static void apply_block(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -338,16 +398,14 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
   pass *p = context;
   scree_decimator *d = p->d;
   for (size_t i = begin; i < end; i++) {
-    scree_ring ring;
-    if (p->verdicts[i] != CERTAIN) continue;
-    scree_ring_gather(&d->s, p->taken[i], &ring);
+    if (p->taken[i].verdict != CERTAIN) continue;
+    scree_ring ring = ring_of(p, &p->taken[i]);
     scree_collapse_apply(&d->s, &ring, p->changes[i].target);
     if (d->coster->merge) d->coster->merge(&d->s, ring.a, ring.b);
-    __atomic_fetch_or(&d->s.flags[ring.a], SCREE_VERTEX_DIRTY, __ATOMIC_RELAXED);
+    set_flag(&d->s, ring.a);
     for (uint32_t k = 0; k < ring.count; k++) {
-      __atomic_fetch_or(&d->s.flags[d->s.from[ring.edge[k]]], SCREE_VERTEX_DIRTY, __ATOMIC_RELAXED);
-      __atomic_fetch_or(&d->s.flags[scree_to(&d->s, ring.edge[k])], SCREE_VERTEX_DIRTY,
-                        __ATOMIC_RELAXED);
+      set_flag(&d->s, d->s.from[ring.edge[k]]);
+      set_flag(&d->s, scree_to(&d->s, ring.edge[k]));
     }
   }
 }
@@ -357,17 +415,17 @@ static size_t apply(pass *p) {
   scree_decimator *d = p->d;
   size_t before = d->record.count;
   for (size_t i = 0; i < p->taken_count; i++) {
-    uint32_t h = p->taken[i], twin = d->s.twin[h];
-    if (p->verdicts[i] != CERTAIN) {
+    uint32_t h = p->taken[i].half_edge;
+    if (p->taken[i].verdict != CERTAIN) {
       d->s.refused[h] = 1;
       continue;
     }
-    scree_ring ends = {.half_edge = h, .a = d->s.from[h], .b = scree_to(&d->s, h)};
-    scree_record_add(d, &ends, &p->changes[i], p->errors[i]);
+    scree_ring ends;
+    scree_ring_name(&d->s, h, &ends);
+    scree_record_add(d, &ends, &p->changes[i], (double)p->taken[i].error);
     d->s.live_vertex_count--;
-    d->s.live_triangle_count -= twin == SCREE_NONE ? 1 : 2;
+    d->s.live_triangle_count -= ends.d == SCREE_NONE ? 1 : 2;
   }
-  for (size_t v = 0; v < d->s.vertex_count; v++) d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_DIRTY;
   scree_parallel_for(p->taken_count, CHOSEN_BLOCK, apply_block, p);
   return d->record.count - before;
 }
@@ -381,35 +439,45 @@ static scree_status prepare_grid(scree_decimator *d) {
   return status;
 }
 
-static scree_status run_pass(scree_decimator *d, size_t *done) {
-  pass p = {.d = d};
-  scree_status status = pass_allocate(&p);
-  if (status == SCREE_OK) status = prepare_grid(d);
-  if (status != SCREE_OK) goto finished;
-  if (!d->coster->merge) scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, sum_block, &p);
-  scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, evaluate_block, &p);
-  status = order_candidates(&p);
-  if (status != SCREE_OK) goto finished;
-  choose_independent(&p);
-  scree_parallel_for(p.taken_count, CHOSEN_BLOCK, check_block, &p);
-  if (d->s.closed) scree_parallel_for(p.taken_count, CHOSEN_BLOCK, certify_block, &p);
-  status = search_uncertain(&p);
-  if (status != SCREE_OK) goto finished;
-  *done = apply(&p);
+static scree_status run_round(pass *p, size_t *done) {
+  sort_items(p);
+  choose_independent(p);
+  scree_parallel_for(p->taken_count, CHOSEN_BLOCK, check_block, p);
+  scree_parallel_for(p->taken_count, CHOSEN_BLOCK, certify_block, p);
+  scree_status status = search_uncertain(p);
+  if (status == SCREE_OK) *done += apply(p);
+  return status;
+}
+
+static scree_status run_pass(pass *p, size_t *done) {
+  scree_decimator *d = p->d;
+  scree_status status = prepare_grid(d);
+  if (status != SCREE_OK) return status;
+  refresh_sums(p);
+  scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, evaluate_block, p);
+  for (size_t v = 0; v < d->s.vertex_count; v++) d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_CHANGED;
+  list_candidates(p);
+  *done = 0;
+  for (int round = 0; round < ROUNDS && status == SCREE_OK; round++) {
+    if (round > 0) {
+      refresh_sums(p);
+      relist_candidates(p);
+    }
+    status = run_round(p, done);
+  }
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count)
-    scree_halfmesh_compact(&d->s, (uint32_t *)p.items, (uint32_t *)p.swap);
-finished:
-  pass_free(&p);
+    scree_halfmesh_compact(&d->s, (uint32_t *)p->items, (uint32_t *)p->swap);
   return status;
 }
 
 scree_status scree_decimate_in_batches(scree_decimator *d) {
+  pass p = {.d = d};
   size_t done = 1;
-  while (done > 0 && d->s.live_triangle_count > SCREE_GREEDY_COUNT &&
-         d->s.live_triangle_count > d->options.stop_count) {
-    if (!scree_decimate_tick(d)) return SCREE_CANCELLED;
-    scree_status status = run_pass(d, &done);
-    if (status != SCREE_OK) return status;
-  }
-  return SCREE_OK;
+  scree_status status = SCREE_OK;
+  if (d->s.live_triangle_count > SCREE_GREEDY_COUNT) status = pass_allocate(&p);
+  while (status == SCREE_OK && done > 0 && d->s.live_triangle_count > SCREE_GREEDY_COUNT &&
+         d->s.live_triangle_count > d->options.stop_count)
+    status = scree_decimate_tick(d) ? run_pass(&p, &done) : SCREE_CANCELLED;
+  pass_free(&p);
+  return status;
 }

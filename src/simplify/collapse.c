@@ -15,8 +15,6 @@
 #define FLIP 0.1
 /* Smallest 2 area / longest edge^2 of a new triangle, unless one was as bad before. */
 #define SLIVER 2e-3
-/* Cosine of 149 degrees: a fold, with a degree to spare for coordinates rounded to float. */
-#define FOLD (-0.857)
 
 static bool push(scree_ring *r, uint32_t h) {
   if (r->count == SCREE_RING_MAX) return false;
@@ -51,14 +49,19 @@ static bool push_turning_right(const scree_halfmesh *s, scree_ring *r, uint32_t 
   return true;
 }
 
-bool scree_ring_gather(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
+void scree_ring_name(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
   uint32_t twin = s->twin[h];
-  bool open;
   r->half_edge = h;
   r->a = s->from[h];
   r->b = scree_to(s, h);
   r->c = s->from[scree_previous(h)];
   r->d = twin == SCREE_NONE ? SCREE_NONE : s->from[scree_previous(twin)];
+}
+
+bool scree_ring_gather(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
+  uint32_t twin = s->twin[h];
+  bool open;
+  scree_ring_name(s, h, r);
   r->count = 0;
   uint32_t at_d = twin == SCREE_NONE ? SCREE_NONE : scree_next(twin); /* a -> d */
   if (!push_turning_left(s, r, h, at_d, &open)) return false;
@@ -107,11 +110,6 @@ bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *r)
 static inline double squared_shape(vec3 n, vec3 e1, vec3 e2, vec3 e3) {
   double l2 = fmax(vec3_norm2(e1), fmax(vec3_norm2(e2), vec3_norm2(e3)));
   return l2 > 0 ? vec3_norm2(n) / (l2 * l2) : 0;
-}
-
-static inline bool folded(vec3 n, vec3 m) {
-  double dot = vec3_dot(n, m);
-  return dot < 0 && dot * dot > FOLD * FOLD * vec3_norm2(n) * vec3_norm2(m);
 }
 
 static vec3 normal_of(const scree_halfmesh *s, uint32_t h) {
@@ -170,22 +168,22 @@ static bool folds_do_not_grow(const scree_halfmesh *s, const scree_ring *r, cons
   for (uint32_t i = 0; i < r->count; i++) {
     uint32_t j = i + 1 == r->count ? 0 : i + 1, beyond = s->twin[r->edge[i]];
     if (scree_to(s, r->edge[i]) == s->from[r->edge[j]] && i != j)
-      after += folded(around->after[i], around->after[j]);
+      after += scree_folded(around->after[i], around->after[j]);
     if (beyond == SCREE_NONE) continue;
     vec3 n = normal_of(s, beyond);
-    after += folded(around->after[i], n);
-    before += folded(around->before[i], n);
+    after += scree_folded(around->after[i], n);
+    before += scree_folded(around->before[i], n);
   }
   if (after <= before) return true;
   vec3 n1 = normal_of(s, r->half_edge);
   for (uint32_t i = 0; i < r->count; i++) { /* rare: the spokes as they are now */
     uint32_t spoke = s->twin[scree_previous(r->edge[i])];
     if (spoke == SCREE_NONE) continue;
-    before += folded(around->before[i], normal_of(s, spoke));
+    before += scree_folded(around->before[i], normal_of(s, spoke));
   }
   if (r->d != SCREE_NONE) {
     vec3 n2 = normal_of(s, s->twin[r->half_edge]);
-    before += folded(n1, n2);
+    before += scree_folded(n1, n2);
   }
   return after <= before;
 }

@@ -14,7 +14,7 @@ enum { SCREE_RING_MAX = 256 };
 typedef struct scree_ring {
   uint32_t half_edge, a, b, c, d; /* d NONE: the edge is boundary */
   uint32_t a_count, count;
-  uint32_t edge[SCREE_RING_MAX];
+  uint32_t *edge; /* the caller's room for SCREE_RING_MAX */
   vec3 low, high; /* box of all corners, old and new; set by scree_collapse_check */
 } scree_ring;
 
@@ -23,8 +23,18 @@ typedef struct scree_change {
   double area, volume; /* change of them, unit box */
 } scree_change;
 
-/* False: more than SCREE_RING_MAX triangles. */
+/* Fills the ring; ring->edge must have room for SCREE_RING_MAX. False: more triangles than that. */
 bool scree_ring_gather(const scree_halfmesh *s, uint32_t half_edge, scree_ring *ring);
+
+/* Ends and apexes of the ring from its half-edge. */
+void scree_ring_name(const scree_halfmesh *s, uint32_t half_edge, scree_ring *ring);
+
+/* Whether the doubled area vectors make a fold of more than 149 degrees. */
+static inline bool scree_folded(vec3 n, vec3 m) {
+  const double fold = -0.857; /* its cosine: a degree to spare for coordinates rounded to float */
+  double dot = vec3_dot(n, m);
+  return dot < 0 && dot * dot > fold * fold * vec3_norm2(n) * vec3_norm2(m);
+}
 
 /* Whether the surface stays a manifold (link condition) if the edge is collapsed. */
 bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *ring);

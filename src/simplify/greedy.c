@@ -125,6 +125,7 @@ static scree_status prepare_grid(scree_decimator *d) {
   if (status != SCREE_OK) return status;
   if (!scree_grid_list_all(g, &d->s, NULL, false))
     return scree_fail_memory(d->error, g->capacity * sizeof *g->items, "grid lists");
+  scree_grid_enter_directions(g, &d->s);
   return SCREE_OK;
 }
 
@@ -183,6 +184,7 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   if (!d->coster->merge)
     for (size_t i = 0; i < count; i++) d->coster->sum(s, around[i]);
   for (size_t i = 0; i < count; i++) update_vertex(q, around[i]);
+  scree_grid_enter_ring(&d->grid, s, r, change->target);
   for (uint32_t i = 0; i < r->count; i++)
     if (!scree_grid_list_triangle(&d->grid, s, r->edge[i] / 3))
       return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
@@ -192,7 +194,8 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
 static scree_status try_cheapest(queue *q) {
   scree_decimator *d = q->d;
   uint32_t h = q->heap[0];
-  scree_ring ring;
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring ring = {.edge = edges};
   scree_candidate candidate;
   scree_change change;
   leave(q, h);
@@ -203,7 +206,9 @@ static scree_status try_cheapest(queue *q) {
   if (!scree_collapse_check(&d->s, &ring, &change)) return SCREE_OK;
   scree_status status = prepare_grid(d);
   if (status != SCREE_OK) return status;
-  if (!scree_grid_clear(&d->grid, &d->s, &ring, change.target, NULL)) return SCREE_OK;
+  if (!(d->s.closed && scree_grid_certifies(&d->grid, &d->s, &ring, change.target)) &&
+      !scree_grid_clear(&d->grid, &d->s, &ring, change.target, NULL))
+    return SCREE_OK;
   return collapse(q, &ring, &change, candidate.error);
 }
 

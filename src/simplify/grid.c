@@ -155,21 +155,26 @@ void scree_grid_enter_directions(scree_grid *g, const scree_halfmesh *s) {
   scree_parallel_for(s->triangle_count, BLOCK, enter_block, &work);
 }
 
-void scree_grid_enter_ring(scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
-                           vec3 target) {
+static uint64_t ring_averse_to(const scree_halfmesh *s, const scree_ring *r, vec3 target) {
   uint64_t averse = 0;
   for (uint32_t i = 0; i < r->count; i++)
     averse |= averse_to(vec3_triangle_normal(target, s->position[s->from[r->edge[i]]],
                                              s->position[scree_to(s, r->edge[i])]));
-  enter(g, r->low, r->high, averse);
+  return averse;
 }
 
-bool scree_grid_certifies(const scree_grid *g, const scree_ring *r) {
+void scree_grid_enter_ring(scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
+                           vec3 target) {
+  enter(g, r->low, r->high, ring_averse_to(s, r, target));
+}
+
+bool scree_grid_certifies(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
+                          vec3 target) {
   cells c = cells_of(g, r->low, r->high);
-  if (count_cells(&c) > CELLS_MAX) return false;
   uint64_t averse = g->averse_all;
+  if (averse == ALL_AVERSE || count_cells(&c) > CELLS_MAX) return false;
   FOR_CELLS(g, c, cell) averse |= __atomic_load_n(&g->averse[cell], __ATOMIC_RELAXED);
-  return averse != ALL_AVERSE;
+  return averse != ALL_AVERSE && (averse | ring_averse_to(s, r, target)) != ALL_AVERSE;
 }
 
 void scree_grid_mark(scree_grid *g, vec3 low, vec3 high) {
@@ -194,6 +199,11 @@ static bool list(scree_grid *g, vec3 low, vec3 high, uint32_t triangle, bool mar
     g->head[cell] = (uint32_t)(g->count - 1);
   }
   return true;
+}
+
+void scree_grid_clear_lists(scree_grid *g) {
+  memset(g->head, 0xff, g->cell_count * sizeof *g->head);
+  g->count = g->large_count = 0;
 }
 
 static void triangle_box(const scree_halfmesh *s, uint32_t t, vec3 *low, vec3 *high) {
@@ -241,7 +251,8 @@ typedef struct corners {
   vec3 at[3];
 } corners;
 
-#define MOVED (SCREE_NONE - 2)
+#define MOVED       (SCREE_NONE - 2)
+#define MOVED_OTHER (SCREE_NONE - 3)
 
 static corners corners_of(const scree_halfmesh *s, uint32_t t) {
   corners c;
@@ -274,39 +285,43 @@ typedef struct search {
   const scree_halfmesh *s;
   const scree_ring *ring;
   const scree_planned *planned;
-  vec3 target;
-  uint32_t self;     /* index of this collapse among the planned, or NONE */
-  int before, after; /* triangles met by the ring as it is, and as it will be */
+  uint32_t self;                 /* index of this collapse among the planned, or NONE */
+  int before, after;             /* triangles met by the ring as it is, and as it will be */
+  corners moved[SCREE_RING_MAX]; /* the ring as it will be */
 } search;
 
-static corners ring_triangle(const search *q, uint32_t i, bool moved) {
+static corners ring_triangle(const search *q, uint32_t i) {
   const scree_halfmesh *s = q->s;
   uint32_t e = q->ring->edge[i], v1 = s->from[e], v2 = scree_to(s, e);
   uint32_t v0 = s->from[scree_previous(e)];
-  return (corners){{moved ? MOVED : s->origin[v0], s->origin[v1], s->origin[v2]},
-                   {moved ? q->target : s->position[v0], s->position[v1], s->position[v2]}};
+  return (corners){{s->origin[v0], s->origin[v1], s->origin[v2]},
+                   {s->position[v0], s->position[v1], s->position[v2]}};
 }
 
-/* How many of the ring's triangles meet c. */
-static int count_met(const search *q, const corners *c, bool moved) {
+static int count_met_before(const search *q, const corners *c) {
   int met = 0;
   for (uint32_t i = 0; i < q->ring->count; i++) {
-    corners own = ring_triangle(q, i, moved);
+    corners own = ring_triangle(q, i);
     met += meet(&own, c);
   }
+  return met;
+}
+
+static int count_met_after(const search *q, const corners *c) {
+  int met = 0;
+  for (uint32_t i = 0; i < q->ring->count; i++) met += meet(&q->moved[i], c);
   return met;
 }
 
 static void search_triangle(search *q, uint32_t t) {
   const scree_halfmesh *s = q->s;
   const uint32_t *from = s->from + 3 * (size_t)t;
-  if (from[0] == SCREE_NONE) return;
   for (int i = 0; i < 3; i++)
     if (from[i] == q->ring->a || from[i] == q->ring->b) return;
   corners c = corners_of(s, t);
-  int after = count_met(q, &c, true);
+  int after = count_met_after(q, &c);
   if (after > 0) {
-    q->before += count_met(q, &c, false);
+    q->before += count_met_before(q, &c);
     q->after += after;
   }
   uint32_t chosen = planned_for(s, t, q->planned);
@@ -315,49 +330,71 @@ static void search_triangle(search *q, uint32_t t) {
   for (size_t i = 0; i < 3; i++)
     if (q->planned->chosen[from[i]] == chosen) {
       c.at[i] = q->planned->changes[chosen].target;
-      c.name[i] = SCREE_NONE - 3;
+      c.name[i] = MOVED_OTHER;
       moved++;
     }
-  if (moved == 1) q->after += count_met(q, &c, true);
+  if (moved == 1) q->after += count_met_after(q, &c);
 }
 
-/* Triangles of the ring that meet each other beside their common vertex, and edge. */
-static int count_own(const search *q, bool moved) {
+/* Triangles of the ring that will meet each other beside their common corner and edges. */
+static int count_own(const search *q) {
   int met = 0;
-  for (uint32_t i = 0; i < q->ring->count; i++) {
-    corners first = ring_triangle(q, i, moved);
-    for (uint32_t j = i + 1; j < q->ring->count; j++) {
-      corners second = ring_triangle(q, j, moved);
-      met += meet(&first, &second);
-    }
-  }
+  for (uint32_t i = 0; i < q->ring->count; i++)
+    for (uint32_t j = i + 1; j < q->ring->count; j++) met += meet(&q->moved[i], &q->moved[j]);
   return met;
+}
+
+static void search_begin(search *q, vec3 target) {
+  const scree_ring *r = q->ring;
+  for (uint32_t i = 0; i < r->count; i++) {
+    q->moved[i] = ring_triangle(q, i);
+    q->moved[i].name[0] = MOVED;
+    q->moved[i].at[0] = target;
+  }
+  /* a fan that faces one direction is a graph over it */
+  if (ring_averse_to(q->s, r, target) != ALL_AVERSE) return;
+  q->after = count_own(q);
+  if (q->after == 0) return;
+  for (uint32_t i = 0; i < r->count; i++)
+    for (uint32_t j = i + 1; j < r->count; j++) {
+      corners x = ring_triangle(q, i), y = ring_triangle(q, j);
+      q->before += meet(&x, &y);
+    }
+}
+
+/* The box of triangle t and what it will become; false: the triangle is gone. */
+static bool box_with_plan(const search *q, uint32_t t, vec3 *low, vec3 *high) {
+  if (q->s->from[3 * (size_t)t] == SCREE_NONE) return false;
+  triangle_box(q->s, t, low, high);
+  uint32_t chosen = planned_for(q->s, t, q->planned);
+  if (chosen != SCREE_NONE) {
+    *low = vec3_min(*low, q->planned->changes[chosen].target);
+    *high = vec3_max(*high, q->planned->changes[chosen].target);
+  }
+  return true;
 }
 
 bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
                       vec3 target, const scree_planned *planned) {
-  search q = {s, r, planned, target, planned ? planned->chosen[r->a] : SCREE_NONE, 0, 0};
+  search q;
+  q.s = s;
+  q.ring = r;
+  q.planned = planned;
+  q.self = planned ? planned->chosen[r->a] : SCREE_NONE;
+  q.before = q.after = 0;
+  search_begin(&q, target);
   cells c = cells_of(g, r->low, r->high);
-  q.after = count_own(&q, true);
-  if (q.after > 0) q.before = count_own(&q, false);
-  if (q.after > q.before) return false;
-  for (size_t i = 0; i < g->large_count; i++) search_triangle(&q, g->large[i]);
+  for (size_t i = 0; i < g->large_count; i++)
+    if (s->from[3 * (size_t)g->large[i]] != SCREE_NONE) search_triangle(&q, g->large[i]);
   FOR_CELLS(g, c, cell) {
+    if (q.after > q.before) return false;
     for (uint32_t i = g->head[cell]; i < MARKED; i = g->items[i].next) {
       uint32_t t = g->items[i].triangle;
       vec3 low, high;
-      if (s->from[3 * (size_t)t] == SCREE_NONE) continue;
-      triangle_box(s, t, &low, &high);
-      uint32_t chosen = planned_for(s, t, planned);
-      if (chosen != SCREE_NONE) {
-        low = vec3_min(low, planned->changes[chosen].target);
-        high = vec3_max(high, planned->changes[chosen].target);
-      }
-      if (low.x > r->high.x || low.y > r->high.y || low.z > r->high.z || high.x < r->low.x ||
-          high.y < r->low.y || high.z < r->low.z)
+      if (!box_with_plan(&q, t, &low, &high) || low.x > r->high.x || low.y > r->high.y ||
+          low.z > r->high.z || high.x < r->low.x || high.y < r->low.y || high.z < r->low.z)
         continue;
       search_triangle(&q, t);
-      if (q.after > q.before) return false;
     }
   }
   return q.after <= q.before;

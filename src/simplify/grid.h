@@ -51,8 +51,9 @@ void scree_grid_enter_directions(scree_grid *grid, const scree_halfmesh *s);
 /* Enters those of the ring's triangles as they will be, over the ring's box. Thread-safe. */
 void scree_grid_enter_ring(scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                            vec3 target);
-/* True: the collapse cannot make the surface meet itself. */
-bool scree_grid_certifies(const scree_grid *grid, const scree_ring *ring);
+/* True: the collapse cannot make the surface, which is closed, meet itself. */
+bool scree_grid_certifies(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
+                          vec3 target);
 
 /* Marks the cells of a box; then enters into the lists all triangles, and what they will become,
  * that touch a marked cell (all cells if none is marked). False: out of memory. */
@@ -61,7 +62,10 @@ bool scree_grid_list_all(scree_grid *grid, const scree_halfmesh *s, const scree_
                          bool marked_only);
 bool scree_grid_list_triangle(scree_grid *grid, const scree_halfmesh *s, uint32_t triangle);
 
-/* Exact: true if the triangles around target meet no more others than those around the edge do. */
+void scree_grid_clear_lists(scree_grid *grid);
+
+/* Exact, for a grid with lists: true if the triangles around target meet no more others than those
+ * around the edge do. */
 bool scree_grid_clear(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                       vec3 target, const scree_planned *planned);
 

@@ -15,7 +15,9 @@
 
 #define SCREE_NONE UINT32_MAX
 
-enum { SCREE_VERTEX_LOCKED = 1, SCREE_VERTEX_DIRTY = 2 };
+/* LOCKED: never moves. STALE: its sums are. CHANGED: its triangles changed since all edges were
+ * evaluated. */
+enum { SCREE_VERTEX_LOCKED = 1, SCREE_VERTEX_STALE = 2, SCREE_VERTEX_CHANGED = 4 };
 
 typedef struct scree_halfmesh {
   vec3 *position;     /* of vertices, in the unit box */
