@@ -141,7 +141,8 @@ static void volume_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_c
   if (!(energy > 0)) energy = 0;
   out->target = vec3_add(p, y);
   out->error = energy / trace;
-  out->cost = energy + TIE * trace * length2;
+  double around = h[AREA] - vec3_norm(n1) - vec3_norm(n2);
+  out->cost = (energy + TIE * trace * length2) / sqrt(around);
 }
 
 const scree_coster scree_volume_coster = {volume_sum, volume_evaluate, NULL};
