@@ -1,0 +1,179 @@
+/* scree curve: the table of levels. */
+#include "cli/args.h"
+
+#include <math.h>
+
+typedef struct curve_arguments {
+  double unit, from, to;
+  size_t per_decade, samples;
+  int method;
+  bool distance, csv;
+} curve_arguments;
+
+static const cli_option options[] = {
+    {"method", 'm', CLI_CHOICE, offsetof(curve_arguments, method), "METHOD",
+     "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
+     "Default: volume.",
+     0, 0, "volume|qecd"},
+    {"from", 0, CLI_REAL, offsetof(curve_arguments, from), "RP",
+     "The coarsest Rp of the table. Default: 1e-5.", 1e-9, 1, NULL},
+    {"to", 0, CLI_REAL, offsetof(curve_arguments, to), "RP",
+     "The finest Rp of the table. Default: 1e-1.", 1e-9, 1, NULL},
+    {"per-decade", 0, CLI_COUNT, offsetof(curve_arguments, per_decade), "N",
+     "Levels per decade of Rp. Default: 9.", 1, 1000, NULL},
+    {"distance", 0, CLI_FLAG, offsetof(curve_arguments, distance), NULL,
+     "Add mean and greatest distance to the scan, both ways: mean and maximum from the scan to the "
+     "level, the same back, and the Hausdorff distance.",
+     0, 0, NULL},
+    {"samples", 0, CLI_COUNT, offsetof(curve_arguments, samples), "N",
+     "Points per surface for --distance; every vertex is one besides. Default: the scan's vertex "
+     "count.",
+     0, 268435456, NULL},
+    {"csv", 0, CLI_FLAG, offsetof(curve_arguments, csv), NULL,
+     "Comma-separated values in SI units, full digits.", 0, 0, NULL},
+    {"unit", 'u', CLI_UNIT, offsetof(curve_arguments, unit), "UNIT",
+     "Unit of the coordinates in the file: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
+};
+
+static const curve_arguments defaults = {1e-3, 1e-5, 1e-1, 9, 0, 0, false, false};
+
+/* What the rows need. */
+typedef struct table {
+  const cli_call *call;
+  const curve_arguments *arguments;
+  scree_curve *curve;
+  scree_replay *replay;
+  scree_surface *scan;
+  scree_level first;
+  scree_error error;
+} table;
+
+static void print_header(const table *t) {
+  bool distance = t->arguments->distance;
+  if (t->arguments->csv) {
+    printf("triangle_count,rp,area,volume,eps_s,eps_v,ip,quadric_error%s\n",
+           distance ? ",forward_mean,forward_max,backward_mean,backward_max,hausdorff" : "");
+    return;
+  }
+  printf("%9s %9s %10s %10s %9s %9s %9s %9s%s\n", "triangles", "Rp", "S (cm2)", "V (cm3)", "eps_s",
+         "eps_v", "Ip", "Q (mm)",
+         distance ? "  mean (mm)  max (mm) mean back  max back Hausdorff" : "");
+}
+
+static void print_row(const table *t, const scree_level *level, const scree_distance *d) {
+  double eps_s = fabs(level->area - t->first.area) / t->first.area;
+  double eps_v =
+      t->first.volume != 0 ? fabs(level->volume - t->first.volume) / fabs(t->first.volume) : 0;
+  bool csv = t->arguments->csv;
+  printf(csv ? "%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.9g"
+             : "%9zu %9.3g %10.4g %10.4g %9.3g %9.2g %9.4g %9.3g",
+         level->triangle_count, level->rp, level->area * (csv ? 1 : 1e4),
+         level->volume * (csv ? 1 : 1e6), eps_s, eps_v, eps_s + level->rp,
+         level->quadric_error * (csv ? 1 : 1e3));
+  if (d) {
+    double scale = csv ? 1 : 1e3;
+    printf(csv ? ",%.9g,%.9g,%.9g,%.9g,%.9g" : "  %9.4g %9.4g %9.4g %9.4g %9.4g",
+           d->forward.mean * scale, d->forward.maximum * scale, d->backward.mean * scale,
+           d->backward.maximum * scale, d->hausdorff * scale);
+  }
+  putchar('\n');
+}
+
+static scree_status measure_distance(table *t, size_t index, scree_distance *distance) {
+  scree_distance_options settings = scree_default_distance_options();
+  const scree_mesh *mesh;
+  scree_surface *surface = NULL;
+  settings.sample_count = t->arguments->samples;
+  scree_status status = scree_replay_step(t->replay, index, &mesh, &t->error);
+  if (status == SCREE_OK) status = scree_surface_create(mesh, &surface, &t->error);
+  if (status == SCREE_OK)
+    status =
+        scree_surface_distance(t->scan, surface, &settings, t->call->progress, distance, &t->error);
+  scree_surface_free(surface);
+  return status;
+}
+
+/* Rows from fine to coarse on the grid of Rp, each level once. */
+static scree_status print_rows(table *t) {
+  const curve_arguments *arguments = t->arguments;
+  double top = log10(arguments->to), steps = (double)arguments->per_decade;
+  size_t rows = (size_t)floor((top - log10(arguments->from)) * steps + 1e-9) + 1;
+  size_t last = SIZE_MAX;
+  for (size_t i = 0; i < rows; i++) {
+    double rp = pow(10, top - (double)i / steps);
+    size_t target = (size_t)(rp * (double)t->first.triangle_count * (1 + 1e-12));
+    size_t index = scree_curve_find(t->curve, target);
+    scree_level level;
+    scree_distance distance;
+    if (index == last) continue;
+    last = index;
+    scree_curve_level(t->curve, index, &level);
+    scree_status status = SCREE_OK;
+    if (arguments->distance) status = measure_distance(t, index, &distance);
+    if (status != SCREE_OK) return status;
+    print_row(t, &level, arguments->distance ? &distance : NULL);
+  }
+  return SCREE_OK;
+}
+
+static void print_facts(const table *t) {
+  scree_curve_facts facts = scree_curve_get_facts(t->curve);
+  if (t->call->quiet || t->arguments->csv) return;
+  printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles; coordinates in %s\n",
+         t->call->inputs[0], facts.triangle_count, facts.shell_count,
+         facts.shell_count == 1 ? "" : "s", scree_method_name(facts.method), facts.floor_count,
+         cli_unit_name(t->arguments->unit));
+  if (!facts.closed)
+    printf("not closed: %zu boundary edges; V and eps_v mean nothing\n", facts.boundary_edge_count);
+  if (facts.locked_vertex_count > 0)
+    printf("%zu vertices at non-manifold places stay where they are\n", facts.locked_vertex_count);
+}
+
+static int run(const cli_call *call) {
+  table t = {.call = call, .arguments = call->options};
+  scree_read_options read = scree_default_read_options();
+  scree_simplify_options settings = scree_default_simplify_options();
+  scree_scan scan = {0};
+  if (t.arguments->from > t.arguments->to)
+    return cli_misuse(call->verb, "--from %g is above --to %g", t.arguments->from, t.arguments->to);
+  read.unit_m = t.arguments->unit;
+  settings.method = (scree_method)t.arguments->method;
+  scree_status status = scree_scan_read(call->inputs[0], &read, &scan, &t.error);
+  if (status == SCREE_OK)
+    status = scree_curve_build(&scan.mesh, &settings, call->progress, &t.curve, &t.error);
+  if (status == SCREE_OK && t.arguments->distance) {
+    status = scree_surface_create(&scan.mesh, &t.scan, &t.error);
+    if (status == SCREE_OK) status = scree_replay_start(t.curve, &t.replay, &t.error);
+  }
+  if (status == SCREE_OK) {
+    scree_curve_level(t.curve, 0, &t.first);
+    print_facts(&t);
+    print_header(&t);
+    status = print_rows(&t);
+  }
+  scree_replay_free(t.replay);
+  scree_surface_free(t.scan);
+  scree_curve_free(t.curve);
+  scree_scan_free(&scan);
+  return status == SCREE_OK ? 0 : cli_fail(&t.error);
+}
+
+const cli_verb cli_verb_curve = {
+    .name = "curve",
+    .summary = "print area, volume and errors at every level of decimation",
+    .inputs = "FILE",
+    .description =
+        "Decimates a scan once and prints, on a logarithmic grid of the percentage reduction Rp = "
+        "N/Nm: the triangle count, Rp, the area S, the volume V, eps_s = |S - Sm|/Sm, eps_v alike, "
+        "the criterion Ip = eps_s + Rp of Katagiri and Koyanaka (2020), and the quadric error.",
+    .examples = "scree curve phone.stl\n"
+                "scree curve phone.stl --distance --csv > phone.csv\n"
+                "scree curve phone.stl -m qecd --per-decade 20\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 1,
+    .input_maximum = 1,
+    .run = run,
+};

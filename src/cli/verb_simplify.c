@@ -1,0 +1,139 @@
+/* scree simplify: one level of the decimation as a file. */
+#include "cli/args.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef struct simplify_arguments {
+  const char *output;
+  double rp, error, unit;
+  size_t count;
+  int method;
+  bool force;
+} simplify_arguments;
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, offsetof(simplify_arguments, output), "FILE",
+     "The file to write: .stl, .ply, .obj or .off by its extension; - writes a binary STL to "
+     "stdout.",
+     0, 0, NULL},
+    {"reduction", 'r', CLI_REAL, offsetof(simplify_arguments, rp), "RP",
+     "Keep this share of the triangles, as in 1e-3: the first level with at most RP times the "
+     "scan's count, rounded down. A closed surface has an even count.",
+     1e-12, 1, NULL},
+    {"count", 'n', CLI_COUNT, offsetof(simplify_arguments, count), "COUNT",
+     "Keep at most this many triangles.", 1, 4294967295.0, NULL},
+    {"error", 'e', CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
+     "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the quadric "
+     "error, an estimate, not a bound.",
+     0, 1e12, NULL},
+    {"method", 'm', CLI_CHOICE, offsetof(simplify_arguments, method), "METHOD",
+     "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
+     "Default: volume.",
+     0, 0, "volume|qecd"},
+    {"unit", 'u', CLI_UNIT, offsetof(simplify_arguments, unit), "UNIT",
+     "Unit of the coordinates in the files: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
+    {"force", 'f', CLI_FLAG, offsetof(simplify_arguments, force), NULL,
+     "Overwrite an existing file.", 0, 0, NULL},
+};
+
+static const simplify_arguments defaults = {NULL, 0, 0, 1e-3, 0, 0, false};
+
+static void say(const cli_call *call, const scree_curve *curve, size_t index) {
+  scree_level first, level;
+  scree_curve_facts facts = scree_curve_get_facts(curve);
+  scree_curve_level(curve, 0, &first);
+  scree_curve_level(curve, index, &level);
+  if (call->quiet) return;
+  fprintf(stderr,
+          "%s: %zu -> %zu triangles (Rp %.3g), method %s, eps_s %.3g, eps_v %.3g, quadric error "
+          "%.3g mm, coordinates in %s\n",
+          call->inputs[0], first.triangle_count, level.triangle_count, level.rp,
+          scree_method_name(facts.method), (level.area - first.area) / first.area,
+          first.volume != 0 ? (level.volume - first.volume) / fabs(first.volume) : 0,
+          level.quadric_error * 1e3,
+          cli_unit_name(((const simplify_arguments *)call->options)->unit));
+  if (!facts.closed)
+    fprintf(stderr, "%s: not closed: %zu boundary edges; the volume means nothing\n",
+            call->inputs[0], facts.boundary_edge_count);
+  if (facts.locked_vertex_count > 0)
+    fprintf(stderr, "%s: %zu vertices at non-manifold places stay where they are\n",
+            call->inputs[0], facts.locked_vertex_count);
+}
+
+static scree_status write_level(const cli_call *call, const scree_curve *curve, size_t index,
+                                scree_error *error) {
+  const simplify_arguments *arguments = call->options;
+  scree_write_options write = scree_default_write_options();
+  scree_mesh mesh = {0};
+  write.overwrite = arguments->force;
+  write.unit_m = arguments->unit;
+  write.comment = call->command_line;
+  if (!strcmp(arguments->output, "-")) write.format = SCREE_FORMAT_STL;
+  scree_status status = scree_curve_mesh(curve, index, &mesh, error);
+  if (status == SCREE_OK) status = scree_mesh_write(&mesh, arguments->output, &write, error);
+  scree_mesh_free(&mesh);
+  return status;
+}
+
+static scree_status simplify(const cli_call *call, scree_error *error) {
+  const simplify_arguments *arguments = call->options;
+  scree_read_options read = scree_default_read_options();
+  scree_simplify_options simplify_options = scree_default_simplify_options();
+  scree_scan scan = {0};
+  scree_curve *curve = NULL;
+  read.unit_m = arguments->unit;
+  scree_status status = scree_scan_read(call->inputs[0], &read, &scan, error);
+  if (status != SCREE_OK) return status;
+  size_t target = arguments->count;
+  if (arguments->rp > 0) target = (size_t)(arguments->rp * (double)scan.mesh.triangle_count);
+  simplify_options.method = (scree_method)arguments->method;
+  simplify_options.stop_count = target;
+  simplify_options.error_limit = arguments->error;
+  status = scree_curve_build(&scan.mesh, &simplify_options, call->progress, &curve, error);
+  if (status == SCREE_OK) {
+    size_t index = scree_curve_find(curve, target);
+    scree_level level;
+    scree_curve_level(curve, index, &level);
+    status = write_level(call, curve, index, error);
+    if (status == SCREE_OK) say(call, curve, index);
+    if (status == SCREE_OK && level.triangle_count > target && !(arguments->error > 0))
+      fprintf(stderr, "%s: %zu triangles is the lowest count that could be reached\n",
+              call->inputs[0], level.triangle_count);
+  }
+  scree_curve_free(curve);
+  scree_scan_free(&scan);
+  return status;
+}
+
+static int run(const cli_call *call) {
+  const simplify_arguments *arguments = call->options;
+  scree_error error;
+  if (!arguments->output) return cli_misuse(call->verb, "-o FILE is missing");
+  if (arguments->rp > 0 && arguments->count > 0)
+    return cli_misuse(call->verb, "-r and -n exclude each other");
+  if (!(arguments->rp > 0) && arguments->count == 0 && !(arguments->error > 0))
+    return cli_misuse(call->verb, "one of -r RP, -n COUNT or -e LENGTH is needed");
+  return simplify(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
+}
+
+const cli_verb cli_verb_simplify = {
+    .name = "simplify",
+    .summary = "write a scan with fewer triangles",
+    .inputs = "FILE",
+    .description =
+        "Decimates a scan by edge collapses and writes the level asked for. What was closed, "
+        "manifold and outward stays so; no facet is flipped, folded over or driven through "
+        "another. The same file gives the same bits, whatever the order of its facets and the "
+        "number of threads.",
+    .examples = "scree simplify phone.stl -r 1e-3 -o phone_762.stl\n"
+                "scree simplify phone.stl -n 500 -m qecd -o phone_500.ply\n"
+                "scree simplify phone.stl -e 0.1mm -o phone_fine.stl\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 1,
+    .input_maximum = 1,
+    .run = run,
+};
