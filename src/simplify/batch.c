@@ -31,6 +31,8 @@ enum { ROUNDS = 2 };
 #define EDGES_PER_CELL 3.0
 #define REGRID_BELOW   0.6
 
+/* Candidates lie at random in memory: how far ahead they are asked for. */
+enum { AHEAD = 16 };
 enum { VERTEX_BLOCK = 1024, CHOSEN_BLOCK = 256, BINS = 1 << 16 };
 
 enum { TOUCHED = 1, APEX = 2 };
@@ -63,6 +65,7 @@ typedef struct pass {
   size_t taken_count, room;
   uint32_t *edges; /* the rings */
   size_t edge_count;
+  uint32_t *order; /* of taken: as their vertices lie in memory, for the parallel parts */
   uint32_t *uncertain;
   size_t uncertain_count;
   uint32_t *bins;
@@ -78,6 +81,7 @@ static void pass_free(pass *p) {
   scree_free(p->taken);
   scree_free(p->changes);
   scree_free(p->edges);
+  scree_free(p->order);
   scree_free(p->uncertain);
   scree_free(p->bins);
 }
@@ -95,6 +99,7 @@ static scree_status pass_allocate(pass *p) {
   SCREE_ALLOC_OR(p->swap, scratch, error, out_of_memory);
   SCREE_ALLOC_OR(p->taken, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->changes, p->room, error, out_of_memory);
+  SCREE_ALLOC_OR(p->order, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->uncertain, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->edges, triangles + SCREE_RING_MAX, error, out_of_memory);
   SCREE_ALLOC_OR(p->bins, BINS, error, out_of_memory);
@@ -222,6 +227,23 @@ static void relist_candidates(pass *p) {
   p->item_count = count;
 }
 
+/* Items of equal key by the rest of their cost, where few are equal. Where many are (a regular grid
+ * on a flat) the rest is rounding, and the order of the vertices serves as well. */
+static void refine_order(pass *p) {
+  enum { FEW = 16 };
+  for (size_t begin = 0, end; begin < p->item_count; begin = end) {
+    for (end = begin + 1; end < p->item_count && p->items[end].key == p->items[begin].key;) end++;
+    if (end - begin > FEW) continue;
+    for (size_t i = begin + 1; i < end; i++) {
+      item moved = p->items[i];
+      size_t j = i;
+      for (; j > begin && p->cost[p->items[j - 1].vertex] > p->cost[moved.vertex]; j--)
+        p->items[j] = p->items[j - 1];
+      p->items[j] = moved;
+    }
+  }
+}
+
 static void sort_items(pass *p) {
   enum { DIGIT = 11, RADIX = 1 << DIGIT };
   for (int shift = 0; shift < 32; shift += DIGIT) {
@@ -235,15 +257,7 @@ static void sort_items(pass *p) {
     p->items = p->swap;
     p->swap = other;
   }
-  for (size_t i = 1; i < p->item_count; i++) { /* equal keys, by the rest of the cost */
-    item moved = p->items[i];
-    size_t j = i;
-    for (; j > 0 && p->items[j - 1].key == moved.key &&
-           p->cost[p->items[j - 1].vertex] > p->cost[moved.vertex];
-         j--)
-      p->items[j] = p->items[j - 1];
-    p->items[j] = moved;
-  }
+  refine_order(p);
 }
 
 static void mark_ring(pass *p, const scree_ring *r) {
@@ -266,7 +280,13 @@ static void choose_independent(pass *p) {
   p->taken_count = p->edge_count = 0;
   for (size_t i = 0; i < p->item_count && p->taken_count < p->room; i++) {
     uint32_t v = p->items[i].vertex, h = p->best[v];
-    if ((p->marks[v] | p->marks[scree_to(s, h)]) & TOUCHED) continue;
+    if (i + AHEAD < p->item_count) {
+      __builtin_prefetch(&p->best[p->items[i + AHEAD].vertex]);
+      uint32_t soon = p->best[p->items[i + AHEAD / 2].vertex];
+      __builtin_prefetch(&s->from[soon]);
+      __builtin_prefetch(&s->twin[soon]);
+    }
+    if (p->marks[v] & TOUCHED || p->marks[scree_to(s, h)] & TOUCHED) continue;
     scree_ring ring = {.edge = p->edges + p->edge_count};
     scree_ring_name(s, h, &ring);
     if (p->marks[ring.c] & APEX || (ring.d != SCREE_NONE && p->marks[ring.d] & APEX)) continue;
@@ -280,6 +300,11 @@ static void choose_independent(pass *p) {
                                          .a_count = (uint16_t)ring.a_count,
                                          .count = (uint16_t)ring.count};
     p->edge_count += ring.count;
+  }
+  size_t count = 0;
+  for (size_t v = 0; v < s->vertex_count; v++) {
+    uint32_t i = p->chosen[v];
+    if (i != SCREE_NONE && s->from[p->taken[i].half_edge] == v) p->order[count++] = i;
   }
 }
 
@@ -303,7 +328,8 @@ static void check_block(void *context, size_t begin, size_t end, size_t block, i
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t k = begin; k < end; k++) {
+    uint32_t i = p->order[k];
     taken *t = &p->taken[i];
     scree_ring ring = ring_of(p, t);
     scree_candidate candidate;
@@ -338,7 +364,8 @@ static void certify_block(void *context, size_t begin, size_t end, size_t block,
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t k = begin; k < end; k++) {
+    uint32_t i = p->order[k];
     taken *t = &p->taken[i];
     if (t->verdict == REFUSED) continue;
     scree_ring ring = ring_of(p, t);
@@ -397,15 +424,16 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
-  for (size_t i = begin; i < end; i++) {
+  for (size_t k = begin; k < end; k++) {
+    uint32_t i = p->order[k];
     if (p->taken[i].verdict != CERTAIN) continue;
     scree_ring ring = ring_of(p, &p->taken[i]);
     scree_collapse_apply(&d->s, &ring, p->changes[i].target);
     if (d->coster->merge) d->coster->merge(&d->s, ring.a, ring.b);
     set_flag(&d->s, ring.a);
-    for (uint32_t k = 0; k < ring.count; k++) {
-      set_flag(&d->s, d->s.from[ring.edge[k]]);
-      set_flag(&d->s, scree_to(&d->s, ring.edge[k]));
+    for (uint32_t e = 0; e < ring.count; e++) {
+      set_flag(&d->s, d->s.from[ring.edge[e]]);
+      set_flag(&d->s, scree_to(&d->s, ring.edge[e]));
     }
   }
 }
