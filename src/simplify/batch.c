@@ -28,7 +28,7 @@ enum { ROUNDS = 2 };
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
 /* Mean edges per grid cell, and the share of triangles left at which the grid is built anew. */
-#define EDGES_PER_CELL 3.0
+#define EDGES_PER_CELL 2.0
 #define REGRID_BELOW   0.6
 
 /* Candidates lie at random in memory: how far ahead they are asked for. */

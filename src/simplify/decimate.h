@@ -35,7 +35,7 @@ void scree_record_add(scree_decimator *d, const scree_ring *ring, const scree_ch
                       double error);
 
 /* Where the batches end and single collapses begin, in triangles. */
-enum { SCREE_GREEDY_COUNT = 20000 };
+enum { SCREE_GREEDY_COUNT = 10000 };
 
 /* Passes of many independent collapses, while there are more than SCREE_GREEDY_COUNT triangles. */
 scree_status scree_decimate_in_batches(scree_decimator *d);

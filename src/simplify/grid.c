@@ -52,6 +52,14 @@ static cells cells_of(const scree_grid *g, vec3 low, vec3 high) {
        cell_along(high.z, g->low.z, k, g->size[2])}};
 }
 
+static size_t cell_of(const scree_grid *g, vec3 at) {
+  double k = g->cells_per_length;
+  uint32_t x = cell_along(at.x, g->low.x, k, g->size[0]);
+  uint32_t y = cell_along(at.y, g->low.y, k, g->size[1]);
+  uint32_t z = cell_along(at.z, g->low.z, k, g->size[2]);
+  return ((size_t)z * g->size[1] + y) * g->size[0] + x;
+}
+
 static size_t count_cells(const cells *c) {
   size_t count = 1;
   for (int i = 0; i < 3; i++) count *= (size_t)(c->high[i] - c->low[i]) + 1;
@@ -287,7 +295,8 @@ typedef struct search {
   const scree_planned *planned;
   uint32_t self;                 /* index of this collapse among the planned, or NONE */
   int before, after;             /* triangles met by the ring as it is, and as it will be */
-  corners moved[SCREE_RING_MAX]; /* the ring as it will be */
+  corners moved[SCREE_RING_MAX]; /* the ring as it will be, and its triangles' boxes */
+  vec3 low[SCREE_RING_MAX], high[SCREE_RING_MAX];
 } search;
 
 static corners ring_triangle(const search *q, uint32_t i) {
@@ -308,8 +317,13 @@ static int count_met_before(const search *q, const corners *c) {
 }
 
 static int count_met_after(const search *q, const corners *c) {
+  vec3 low = vec3_min(c->at[0], vec3_min(c->at[1], c->at[2]));
+  vec3 high = vec3_max(c->at[0], vec3_max(c->at[1], c->at[2]));
   int met = 0;
-  for (uint32_t i = 0; i < q->ring->count; i++) met += meet(&q->moved[i], c);
+  for (uint32_t i = 0; i < q->ring->count; i++)
+    if (low.x <= q->high[i].x && low.y <= q->high[i].y && low.z <= q->high[i].z &&
+        high.x >= q->low[i].x && high.y >= q->low[i].y && high.z >= q->low[i].z)
+      met += meet(&q->moved[i], c);
   return met;
 }
 
@@ -350,6 +364,9 @@ static void search_begin(search *q, vec3 target) {
     q->moved[i] = ring_triangle(q, i);
     q->moved[i].name[0] = MOVED;
     q->moved[i].at[0] = target;
+    const vec3 *at = q->moved[i].at;
+    q->low[i] = vec3_min(at[0], vec3_min(at[1], at[2]));
+    q->high[i] = vec3_max(at[0], vec3_max(at[1], at[2]));
   }
   /* a fan that faces one direction is a graph over it */
   if (ring_averse_to(q->s, r, target) != ALL_AVERSE) return;
@@ -394,7 +411,9 @@ bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_
       if (!box_with_plan(&q, t, &low, &high) || low.x > r->high.x || low.y > r->high.y ||
           low.z > r->high.z || high.x < r->low.x || high.y < r->low.y || high.z < r->low.z)
         continue;
-      search_triangle(&q, t);
+      /* it is listed in several cells: the first that both boxes have decides */
+      size_t first = cell_of(g, vec3_max(low, r->low));
+      if (first == cell) search_triangle(&q, t);
     }
   }
   return q.after <= q.before;
