@@ -170,35 +170,58 @@ static double cost_of_key(uint32_t key) {
   return cost;
 }
 
-/* The cost below which `share` of all candidates lie, to a bin of 1/32 of itself. */
-static uint32_t key_at(const uint32_t *bins, size_t count, double share) {
-  size_t wanted = (size_t)(share * (double)count), sum = 0;
+/* The bin that holds the item of this rank, and how many lie in the bins before. */
+static uint32_t bin_at(const uint32_t *bins, size_t rank, size_t *before) {
+  size_t sum = 0;
   for (uint32_t bin = 0; bin < BINS; bin++) {
+    if (sum + bins[bin] > rank) {
+      *before = sum;
+      return bin;
+    }
     sum += bins[bin];
-    if (sum > wanted) return bin << 16 | 0xffff;
   }
-  return UINT32_MAX;
+  *before = sum;
+  return BINS - 1;
+}
+
+static void count_bins(pass *p, int high) {
+  memset(p->bins, 0, BINS * sizeof *p->bins);
+  for (size_t i = 0; i < p->item_count; i++) {
+    uint32_t key = p->items[i].key;
+    if (high < 0)
+      p->bins[key >> 16]++;
+    else if (key >> 16 == (uint32_t)high)
+      p->bins[key & 0xffff]++;
+  }
+}
+
+/* The key of the item of this rank: its upper half by one count, its lower half by another. A
+ * coarser answer would depend on the scale of the scan. */
+static uint32_t key_at(pass *p, size_t rank) {
+  size_t before, none;
+  count_bins(p, -1);
+  uint32_t high = bin_at(p->bins, rank, &before);
+  count_bins(p, (int)high);
+  return high << 16 | bin_at(p->bins, rank - before, &none);
 }
 
 /* Sets the threshold and lists the candidates below it. */
 static void list_candidates(pass *p) {
   const scree_halfmesh *s = &p->d->s;
   size_t count = 0;
-  memset(p->bins, 0, BINS * sizeof *p->bins);
-  for (size_t v = 0; v < s->vertex_count; v++) {
-    if (p->best[v] == SCREE_NONE) continue;
-    p->bins[key_of(p->cost[v]) >> 16]++;
-    count++;
-  }
-  uint32_t high = key_at(p->bins, count, HIGH_SHARE), low = key_at(p->bins, count, LOW_SHARE);
+  p->item_count = 0;
+  for (size_t v = 0; v < s->vertex_count; v++)
+    if (p->best[v] != SCREE_NONE)
+      p->items[p->item_count++] = (item){key_of(p->cost[v]), (uint32_t)v};
+  if (p->item_count == 0) return;
+  double share = (double)p->item_count;
+  uint32_t high = key_at(p, (size_t)(HIGH_SHARE * share));
+  uint32_t low = key_at(p, (size_t)(LOW_SHARE * share));
   uint32_t spread = key_of(fmin(SPREAD * cost_of_key(low), 1e300));
   p->limit = high < spread ? high : spread;
-  p->item_count = 0;
-  for (size_t v = 0; v < s->vertex_count; v++) {
-    if (p->best[v] == SCREE_NONE) continue;
-    uint32_t key = key_of(p->cost[v]);
-    if (key <= p->limit) p->items[p->item_count++] = (item){key, (uint32_t)v};
-  }
+  for (size_t i = 0; i < p->item_count; i++)
+    if (p->items[i].key <= p->limit) p->items[count++] = p->items[i];
+  p->item_count = count;
 }
 
 static void reconsider_block(void *context, size_t begin, size_t end, size_t block, int worker) {

@@ -134,7 +134,7 @@ static void cut_at_stop(scree_decimator *d) {
   d->record.count = i;
 }
 
-static void record_shrink(scree_record *r) {
+static scree_status record_shrink(scree_record *r, scree_error *error) {
   struct {
     void **block;
     size_t size;
@@ -144,9 +144,11 @@ static void record_shrink(scree_record *r) {
       {(void **)&r->volume, sizeof *r->volume},     {(void **)&r->error, sizeof *r->error}};
   for (size_t i = 0; i < sizeof fields / sizeof *fields; i++) {
     void *moved = scree_resize(*fields[i].block, r->count, fields[i].size);
-    if (moved) *fields[i].block = moved;
+    if (!moved) return scree_fail_memory(error, r->count * fields[i].size, "the record");
+    *fields[i].block = moved;
   }
   r->capacity = r->count;
+  return SCREE_OK;
 }
 
 static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -203,7 +205,8 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   if (status == SCREE_OK) status = decimate(&d);
   if (status != SCREE_OK) goto finished;
   cut_at_stop(&d);
-  record_shrink(&d.record);
+  status = record_shrink(&d.record, error);
+  if (status != SCREE_OK) goto finished;
   made->record = d.record;
   d.record = (scree_record){0};
   status = accumulate(made, area, volume, d.s.scale, error);

@@ -1,4 +1,5 @@
 #include "base/vec.h"
+#include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/shapes.h"
 
@@ -84,6 +85,200 @@ static void a_box_goes_to_its_twelve_triangles(void **state) {
   }
 }
 
+/* A number that any difference in the record changes. */
+static uint64_t fingerprint(const scree_curve *curve) {
+  uint64_t hash = scree_curve_level_count(curve);
+  for (size_t i = 0; i < scree_curve_level_count(curve); i++) {
+    scree_level level;
+    uint64_t bits;
+    scree_curve_level(curve, i, &level);
+    memcpy(&bits, &level.area, sizeof bits);
+    hash = hash * UINT64_C(6364136223846793005) + bits;
+  }
+  return hash;
+}
+
+static scree_mesh bumpy_sphere(int level, uint64_t seed) {
+  scree_rng rng = {.seed = seed};
+  scree_mesh mesh = shape_icosphere(0.03, level);
+  shape_shake(&mesh, 0.03 * 0.2 / (double)(1 << level), &rng);
+  return mesh;
+}
+
+static scree_mesh weld_shuffled(const scree_mesh *mesh, scree_rng *rng) {
+  double *corners = malloc(9 * mesh->triangle_count * sizeof *corners);
+  uint32_t *order = malloc(mesh->triangle_count * sizeof *order);
+  scree_mesh welded;
+  scree_error error;
+  for (uint32_t t = 0; t < mesh->triangle_count; t++) order[t] = t;
+  for (size_t t = mesh->triangle_count - 1; rng && t > 0; t--) {
+    size_t other = scree_rng_below(rng, (uint32_t)t + 1);
+    uint32_t swapped = order[t];
+    order[t] = order[other];
+    order[other] = swapped;
+  }
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    size_t turn = rng ? scree_rng_below(rng, 3) : 0;
+    for (size_t i = 0; i < 3; i++) {
+      size_t v = mesh->triangles[3 * (size_t)order[t] + (i + turn) % 3];
+      memcpy(corners + 9 * t + 3 * i, mesh->positions + 3 * v, 3 * sizeof *corners);
+    }
+  }
+  CHECK_OK(scree_mesh_weld(corners, mesh->triangle_count, 0, &welded, NULL, &error), error);
+  free(corners);
+  free(order);
+  return welded;
+}
+
+static void the_same_bits_for_any_threads_and_facet_order(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 11};
+  scree_mesh mesh = bumpy_sphere(6, 5), plain = weld_shuffled(&mesh, NULL);
+  for (int m = 0; m < 2; m++) {
+    scree_set_threads(1);
+    scree_curve *curve = build(&plain, methods[m]);
+    uint64_t expected = fingerprint(curve);
+    scree_curve_free(curve);
+    for (int threads = 2; threads <= 8; threads += 1 + threads / 3 * 4) {
+      scree_set_threads(threads);
+      scree_mesh shuffled = weld_shuffled(&mesh, &rng);
+      curve = build(&shuffled, methods[m]);
+      assert_true(fingerprint(curve) == expected);
+      scree_curve_free(curve);
+      scree_mesh_free(&shuffled);
+    }
+    scree_set_threads(0);
+  }
+  scree_mesh_free(&plain);
+  scree_mesh_free(&mesh);
+}
+
+static void batches_keep_every_promise(void **state) {
+  (void)state;
+  for (int m = 0; m < 2; m++) {
+    scree_mesh mesh = bumpy_sphere(6, 9); /* 81,920 triangles: most of them go in batches */
+    scree_curve *curve = build(&mesh, methods[m]);
+    scree_replay *replay = NULL;
+    scree_error error;
+    scree_level first, level;
+    scree_curve_level(curve, 0, &first);
+    CHECK_OK(scree_replay_start(curve, &replay, &error), error);
+    for (size_t i = 0; i < scree_curve_level_count(curve); i += 997) {
+      const scree_mesh *now;
+      CHECK_OK(scree_replay_step(replay, i, &now, &error), error);
+      check_level(curve, i, now);
+      scree_curve_level(curve, i, &level);
+      if (m == 0) CHECK_NEAR(level.volume, first.volume, 1e-12 * first.volume);
+    }
+    scree_replay_free(replay);
+    scree_curve_free(curve);
+    scree_mesh_free(&mesh);
+  }
+}
+
+static void moving_scaling_turning_change_rounding_only(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 2};
+  for (int m = 0; m < 2; m++) {
+    scree_mesh mesh = bumpy_sphere(5, 4), other = bumpy_sphere(5, 4);
+    mat3 turn = quat_to_mat3(scree_rng_rotation(&rng));
+    for (int i = 0; i < 9; i++) turn.m[i / 3][i % 3] *= 7;
+    shape_transform(&other, &turn, (vec3){0.5, -2, 1});
+    scree_curve *a = build(&mesh, methods[m]), *b = build(&other, methods[m]);
+    for (size_t count = 16000; count > 100; count /= 2) {
+      scree_level level_a, level_b;
+      scree_curve_level(a, scree_curve_find(a, count), &level_a);
+      scree_curve_level(b, scree_curve_find(b, count), &level_b);
+      CHECK_NEAR(level_b.area / 49, level_a.area, 1e-6 * level_a.area);
+    }
+    scree_curve_free(a);
+    scree_curve_free(b);
+    scree_mesh_free(&mesh);
+    scree_mesh_free(&other);
+  }
+}
+
+/* Open sheets, several shells, and tangles with edges of every kind: no crash, levels as recorded,
+ * no more faults than at the start. */
+static void any_mesh_is_taken(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 8};
+  for (int round = 0; round < 300; round++) {
+    scree_mesh mesh;
+    if (round == 0) {
+      scree_mesh low = shape_sheet(0, 12), high = shape_icosphere(1, 2);
+      shape_move(&high, (vec3){0, 0, 5});
+      mesh = shape_join(&low, &high);
+      scree_mesh_free(&low);
+      scree_mesh_free(&high);
+    } else {
+      mesh = shape_random_tangle(&rng);
+    }
+    for (int m = 0; m < 2; m++) {
+      scree_simplify_options options = scree_default_simplify_options();
+      scree_curve *curve = NULL;
+      scree_error error;
+      scree_topology before, after;
+      scree_mesh last;
+      options.method = methods[m];
+      if (scree_curve_build(&mesh, &options, NULL, &curve, &error) != SCREE_OK) continue;
+      size_t end = scree_curve_level_count(curve) - 1;
+      scree_level level;
+      scree_curve_level(curve, end, &level);
+      CHECK_OK(scree_curve_mesh(curve, end, &last, &error), error);
+      CHECK_OK(scree_mesh_topology(&mesh, &before, &error), error);
+      CHECK_OK(scree_mesh_topology(&last, &after, &error), error);
+      if (before.degenerate_facet_count == 0) {
+        assert_int_equal(last.triangle_count, level.triangle_count);
+        assert_true(after.non_manifold_edge_count <= before.non_manifold_edge_count);
+        assert_true(after.degenerate_facet_count == 0);
+      }
+      if (round == 0) assert_true(level.triangle_count <= 6 && after.shell_count == 2);
+      scree_mesh_free(&last);
+      scree_curve_free(curve);
+    }
+    scree_mesh_free(&mesh);
+  }
+}
+
+static void limits_stop_the_run(void **state) {
+  (void)state;
+  scree_mesh mesh = bumpy_sphere(4, 1);
+  scree_simplify_options options = {.stop_count = 1001};
+  scree_curve *curve = NULL;
+  scree_error error;
+  CHECK_OK(scree_curve_build(&mesh, &options, NULL, &curve, &error), error);
+  assert_int_equal(scree_curve_get_facts(curve).floor_count, 1000);
+  scree_curve_free(curve);
+  options = (scree_simplify_options){.error_limit = 1e-4};
+  CHECK_OK(scree_curve_build(&mesh, &options, NULL, &curve, &error), error);
+  scree_level last;
+  scree_curve_level(curve, scree_curve_level_count(curve) - 1, &last);
+  assert_true(last.quadric_error <= 1e-4 && last.triangle_count > 8 && last.triangle_count < 5120);
+  scree_curve_free(curve);
+  scree_mesh_free(&mesh);
+}
+
+static scree_status build_and_rebuild(void *context, scree_error *error) {
+  scree_simplify_options options = {.stop_count = ((scree_mesh *)context)->triangle_count / 2};
+  scree_curve *curve = NULL;
+  scree_mesh mesh;
+  scree_status status = scree_curve_build(context, &options, NULL, &curve, error);
+  if (status == SCREE_OK) status = scree_curve_mesh(curve, 3, &mesh, error);
+  if (status == SCREE_OK) scree_mesh_free(&mesh);
+  scree_curve_free(curve);
+  return status;
+}
+
+static void failing_memory_is_told(void **state) {
+  (void)state;
+  scree_mesh small = shape_icosphere(1, 1), large = bumpy_sphere(5, 1);
+  check_allocation_failures(build_and_rebuild, &small);
+  check_allocation_failures(build_and_rebuild, &large);
+  scree_mesh_free(&small);
+  scree_mesh_free(&large);
+}
+
 static void bad_input_is_refused_with_a_sentence(void **state) {
   (void)state;
   scree_mesh mesh = shape_box(1, 1, 1);
@@ -109,6 +304,12 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_level_is_sound_and_as_recorded),
       cmocka_unit_test(a_box_goes_to_its_twelve_triangles),
+      cmocka_unit_test(the_same_bits_for_any_threads_and_facet_order),
+      cmocka_unit_test(batches_keep_every_promise),
+      cmocka_unit_test(moving_scaling_turning_change_rounding_only),
+      cmocka_unit_test(any_mesh_is_taken),
+      cmocka_unit_test(limits_stop_the_run),
+      cmocka_unit_test(failing_memory_is_told),
       cmocka_unit_test(bad_input_is_refused_with_a_sentence),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
