@@ -10,11 +10,17 @@ typedef struct scree_candidate {
   double error; /* mean square move of the surface, in units of the box squared */
 } scree_candidate;
 
+enum { SCREE_FALLBACK_COUNT = 3 };
+
 typedef struct scree_coster {
   /* Fills s->sums[v] from the triangles around v. Volume: after every change of them; qecd: once at
    * the start. */
   void (*sum)(scree_halfmesh *s, uint32_t v);
   void (*evaluate)(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *candidate);
+  /* The same for another place, where the best is not allowed: fallback in [0,
+   * SCREE_FALLBACK_COUNT), the middle and the ends of the edge, as near as the method lets. */
+  void (*fall_back)(const scree_halfmesh *s, uint32_t half_edge, int fallback,
+                    scree_candidate *candidate);
   /* What the sums of the survivor are after the collapse; qecd only. */
   void (*merge)(scree_halfmesh *s, uint32_t survivor, uint32_t gone);
 } scree_coster;

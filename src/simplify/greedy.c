@@ -1,13 +1,16 @@
-/* One by one: the coarse levels, always the cheapest collapse next. A binary heap holds every edge
- * by its owner half-edge; after a collapse the edges whose cost it changed are moved in place, so
- * that no entry is ever stale or missing. Equal costs are ordered by the vertices' numbers in the
- * mesh given. An edge that is refused leaves the heap until something around it changes. */
+/* One by one: the coarse levels, always the cheapest collapse next. A binary
+ * heap holds every edge by its owner half-edge; after a collapse the edges
+ * whose cost it changed are moved in place, so that no entry is ever stale or
+ * missing. Equal costs are ordered by the vertices' numbers in the mesh given.
+ * Where the best place is refused, the cheapest allowed of a few others takes
+ * its turn at its own cost; an edge without any leaves the heap until something
+ * around it changes. */
 #include "simplify/decimate.h"
 
 #include <string.h>
 
-/* Cells per mean edge of the grid for exact tests, and when it is built anew: half the triangles
- * gone, or so many entries stale. */
+/* Cells per mean edge of the grid for exact tests, and when it is built anew:
+ * half the triangles gone, or so many entries stale. */
 #define EDGES_PER_CELL 1.5
 #define REGRID_BELOW   0.5
 #define STALE_FACTOR   12
@@ -18,7 +21,8 @@ typedef struct queue {
   uint32_t *place; /* per half-edge: its place in the heap, or NONE */
   uint32_t *heap;  /* half-edges */
   size_t heap_count;
-  uint32_t *stamp; /* per vertex: the collapse that last touched it */
+  uint8_t *fallback; /* per half-edge: 0 is the best place, else 1 + k */
+  uint32_t *stamp;   /* per vertex: the collapse that last touched it */
   uint32_t now;
   size_t since_tick;
 } queue;
@@ -75,25 +79,32 @@ static uint32_t owner(const scree_halfmesh *s, uint32_t h) {
   return twin != SCREE_NONE && scree_to(s, h) < s->from[h] ? twin : h;
 }
 
+/* Gives edge h its place in the heap by this candidate, or takes it out. */
+static void enqueue(queue *q, uint32_t h, const scree_candidate *candidate) {
+  if (!(candidate->cost < INFINITY) || candidate->error > q->d->error_limit) {
+    leave(q, h);
+    return;
+  }
+  q->cost[h] = candidate->cost;
+  if (q->place[h] == SCREE_NONE) put(q, q->heap_count++, h);
+  sift_up(q, q->place[h]);
+  sift_down(q, q->place[h]);
+}
+
 static void evaluate(queue *q, uint32_t h) {
   scree_halfmesh *s = &q->d->s;
   scree_candidate candidate = {.cost = INFINITY};
   if (!((s->flags[s->from[h]] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_LOCKED))
     q->d->coster->evaluate(s, h, &candidate);
-  if (!(candidate.cost < INFINITY) || candidate.error > q->d->error_limit) {
-    leave(q, h);
-    return;
-  }
-  q->cost[h] = candidate.cost;
-  if (q->place[h] == SCREE_NONE) put(q, q->heap_count++, h);
-  sift_up(q, q->place[h]);
-  sift_down(q, q->place[h]);
+  q->fallback[h] = 0;
+  enqueue(q, h, &candidate);
 }
 
 static void queue_free(queue *q) {
   scree_free(q->cost);
   scree_free(q->place);
   scree_free(q->heap);
+  scree_free(q->fallback);
   scree_free(q->stamp);
 }
 
@@ -104,6 +115,7 @@ static scree_status queue_fill(queue *q) {
   SCREE_ALLOC_OR(q->cost, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->place, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->heap, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->fallback, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->stamp, s->vertex_count, d->error, out_of_memory);
   memset(q->place, 0xff, half_edges * sizeof *q->place);
   memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
@@ -191,25 +203,54 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   return SCREE_OK;
 }
 
+/* Whether the ring may be collapsed to change->target; *status tells of failed
+ * memory. */
+static bool allowed(scree_decimator *d, scree_ring *ring, scree_change *change,
+                    scree_status *status) {
+  if (!scree_collapse_check(&d->s, ring, change)) return false;
+  *status = prepare_grid(d);
+  if (*status != SCREE_OK) return false;
+  return (d->s.closed && scree_grid_certifies(&d->grid, &d->s, ring, change->target)) ||
+         scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL);
+}
+
+/* Puts the edge back with the cheapest other place that is allowed, if there is
+ * one. */
+static scree_status try_fallbacks(queue *q, scree_ring *ring) {
+  scree_decimator *d = q->d;
+  uint32_t h = ring->half_edge;
+  scree_candidate best = {.cost = INFINITY}, candidate;
+  scree_status status = SCREE_OK;
+  for (int k = 0; k < SCREE_FALLBACK_COUNT && status == SCREE_OK; k++) {
+    scree_change change;
+    d->coster->fall_back(&d->s, h, k, &candidate);
+    change.target = candidate.target;
+    if (!(candidate.cost < best.cost) || !allowed(d, ring, &change, &status)) continue;
+    best = candidate;
+    q->fallback[h] = (uint8_t)(1 + k);
+  }
+  if (best.cost < INFINITY) enqueue(q, h, &best);
+  return status;
+}
+
 static scree_status try_cheapest(queue *q) {
   scree_decimator *d = q->d;
-  uint32_t h = q->heap[0];
-  uint32_t edges[SCREE_RING_MAX];
+  uint32_t h = q->heap[0], edges[SCREE_RING_MAX];
   scree_ring ring = {.edge = edges};
   scree_candidate candidate;
   scree_change change;
+  scree_status status = SCREE_OK;
   leave(q, h);
   if (!scree_ring_gather(&d->s, h, &ring) || !scree_collapse_keeps_topology(&d->s, &ring))
     return SCREE_OK;
-  d->coster->evaluate(&d->s, h, &candidate);
+  if (q->fallback[h] > 0)
+    d->coster->fall_back(&d->s, h, q->fallback[h] - 1, &candidate);
+  else
+    d->coster->evaluate(&d->s, h, &candidate);
   change.target = candidate.target;
-  if (!scree_collapse_check(&d->s, &ring, &change)) return SCREE_OK;
-  scree_status status = prepare_grid(d);
-  if (status != SCREE_OK) return status;
-  if (!(d->s.closed && scree_grid_certifies(&d->grid, &d->s, &ring, change.target)) &&
-      !scree_grid_clear(&d->grid, &d->s, &ring, change.target, NULL))
-    return SCREE_OK;
-  return collapse(q, &ring, &change, candidate.error);
+  if (allowed(d, &ring, &change, &status)) return collapse(q, &ring, &change, candidate.error);
+  if (status != SCREE_OK || q->fallback[h] > 0) return status;
+  return try_fallbacks(q, &ring);
 }
 
 scree_status scree_decimate_one_by_one(scree_decimator *d) {

@@ -1,25 +1,28 @@
-/* Method `qecd`: quadric edge collapse decimation as MeshLab 2025 does it with its defaults, after
- * Garland and Heckbert, "Surface simplification using quadric error metrics" (SIGGRAPH 1997).
+/* Method `qecd`: quadric edge collapse decimation as MeshLab 2025 does it with
+ * its defaults, after Garland and Heckbert, "Surface simplification using
+ * quadric error metrics" (SIGGRAPH 1997).
  *
- * The quadric of a triangle is the squared distance to its plane times twice its area; of a vertex,
- * the sum over its triangles, and after a collapse the sum of both ends'. A boundary edge adds the
- * plane through it, upright on its triangle, with weight BOUNDARY. The vertex goes to the middle of
- * the edge if that costs nothing, else to the minimiser of the quadric (where it is singular, to
- * the minimiser nearest to the middle). The order is error / min(q, 0.3), q the worst
- * (2 area / longest edge^2) among the new triangles.
+ * The quadric of a triangle is the squared distance to its plane times twice
+ * its area; of a vertex, the sum over its triangles, and after a collapse the
+ * sum of both ends'. A boundary edge adds the plane through it, upright on its
+ * triangle, with weight BOUNDARY. The vertex goes to the middle of the edge if
+ * that costs nothing, else to the minimiser of the quadric (where it is
+ * singular, to the minimiser nearest to the middle). The order is error /
+ * min(q, 0.3), q the worst (2 area / longest edge^2) among the new triangles.
  *
- * Differs: quadrics live in the unit box in double; every edge stays in the queue (MeshLab's loses
- * about two thirds of them on updates). */
+ * Differs: quadrics live in the unit box in double; every edge stays in the
+ * queue (MeshLab's loses about two thirds of them on updates). */
 #include "simplify/cost.h"
 
 #include <string.h>
 
-/* MeshLab's QualityThr and BoundaryQuadricWeight, and the error below which the middle is taken. */
+/* MeshLab's QualityThr and BoundaryQuadricWeight, and the error below which the
+ * middle is taken. */
 #define QUALITY      0.3
 #define BOUNDARY     0.5
 #define MIDDLE_ERROR 2e-15
-/* Pull to the middle relative to the trace: decides singular quadrics only; a second step from
- * where the first one ended removes its bias elsewhere. */
+/* Pull to the middle relative to the trace: decides singular quadrics only; a
+ * second step from where the first one ended removes its bias elsewhere. */
 #define PULL 1e-8
 #define TIE  1e-12
 
@@ -90,7 +93,8 @@ static vec3 minimise(const double *q, vec3 m, double pull) {
   return vec3_add(m, (vec3){x, y, z});
 }
 
-/* The worst shape among the triangles of v's fan, those with `other` apart, once v lies at x. */
+/* The worst shape among the triangles of v's fan, those with `other` apart,
+ * once v lies at x. */
 static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other, vec3 x,
                             double worst) {
   uint32_t first = s->outgoing[v], g = first;
@@ -107,21 +111,13 @@ static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other,
   return worst;
 }
 
-static void qecd_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
+/* Cost and error of the place x; the cost stays infinite where a triangle would
+ * have no area. */
+static void answer(const scree_halfmesh *s, uint32_t half_edge, const double *q, vec3 x,
+                   scree_candidate *out) {
   uint32_t a = s->from[half_edge], b = scree_to(s, half_edge);
-  double q[10];
-  for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
-  vec3 x = vec3_scale(vec3_add(s->position[a], s->position[b]), 0.5);
   double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
   *out = (scree_candidate){.cost = INFINITY};
-  if (error > MIDDLE_ERROR && trace > 0) {
-    vec3 best = minimise(q, minimise(q, x, PULL * trace), PULL * trace);
-    double least = value(q, best);
-    if (least < error) {
-      x = best;
-      error = least;
-    }
-  }
   if (!(error > 0)) error = 0; /* rounding may take it below */
   double worst = worst_quality(s, a, b, x, QUALITY * QUALITY);
   worst = worst_quality(s, b, a, x, worst);
@@ -132,4 +128,26 @@ static void qecd_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_can
   out->cost = (error + TIE * trace * length2) / sqrt(worst);
 }
 
-const scree_coster scree_qecd_coster = {qecd_sum, qecd_evaluate, qecd_merge};
+static void qecd_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
+  uint32_t a = s->from[half_edge], b = scree_to(s, half_edge);
+  double q[10];
+  for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
+  vec3 x = vec3_scale(vec3_add(s->position[a], s->position[b]), 0.5);
+  double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
+  if (error > MIDDLE_ERROR && trace > 0) {
+    vec3 best = minimise(q, minimise(q, x, PULL * trace), PULL * trace);
+    if (value(q, best) < error) x = best;
+  }
+  answer(s, half_edge, q, x, out);
+}
+
+static void qecd_fall_back(const scree_halfmesh *s, uint32_t half_edge, int fallback,
+                           scree_candidate *out) {
+  static const double along[SCREE_FALLBACK_COUNT] = {0.5, 0, 1};
+  uint32_t a = s->from[half_edge], b = scree_to(s, half_edge);
+  double q[10];
+  for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
+  answer(s, half_edge, q, vec3_lerp(s->position[a], s->position[b], along[fallback]), out);
+}
+
+const scree_coster scree_qecd_coster = {qecd_sum, qecd_evaluate, qecd_fall_back, qecd_merge};
