@@ -1,13 +1,13 @@
 /* A scanner's noise makes the surface rough at the scale of its spacing, and roughness is area:
  * height noise of slope g adds g^2 / 2 to each unit. Decimation smooths it within the first factor
- * of ten or so, long before the shape changes, so that S(N) falls, rests on a plateau, and then
+ * of ten or two, long before the shape changes, so that S(N) falls, rests on a plateau, and then
  * moves again as the shape goes. The rest is an area free of noise, measured on the object itself.
  *
- * The plateau is sought in ln N: among windows of WINDOW points (half a decade) the one in which S
- * varies least, from the scan down to the last count that can still carry a shape. A curve without
- * noise is flattest at the scan itself, because its error falls like 1/N; so noise is found only
- * where an inner window is the flattest, and where the area lost on the way to it is DROP_RATIO
- * times what the window itself varies. */
+ * The plateau is sought in ln N: among windows of WINDOW steps (half a decade) whose middle lies
+ * LEAST_FRACTION below the scan's area, the one in which S varies least, from the scan down to the
+ * last count that can still carry a shape. It counts where the area lost on the way to it is
+ * DROP_RATIO times what the window itself varies: a shape whose error falls like 1/N has 0.8 there.
+ * (The windows above are left out because correlated noise leaves S flat at the scan's end too.) */
 #include "choice/noise.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@ enum {
   DECADES = 3,         /* the plateau begins well above Rp = 1e-3: coarser is shape */
   SMALLEST_COUNT = 100 /* triangles; below, area says nothing of roughness */
 };
-static const double DROP_RATIO = 3;
+static const double DROP_RATIO = 4;
 /* Less noise than this changes no choice on the paper's grid. */
 static const double LEAST_FRACTION = 5e-4;
 
@@ -57,17 +57,18 @@ scree_noise scree_noise_find(const scree_level_table *table) {
   size_t count = take_samples(table, samples);
   if (count <= WINDOW) return none;
   size_t flattest = 0;
-  double least = window_range(samples);
-  for (size_t begin = 1; begin + WINDOW < count; begin++) {
+  double least = INFINITY;
+  for (size_t begin = 0; begin + WINDOW < count; begin++) {
     double range = window_range(&samples[begin]);
-    if (range < least) {
+    double lost = scan.area - samples[begin + WINDOW / 2].area;
+    if (lost >= LEAST_FRACTION * scan.area && range < least) {
       least = range;
       flattest = begin;
     }
   }
   const sample *middle = &samples[flattest + WINDOW / 2];
   double drop = scan.area - middle->area;
-  if (flattest == 0 || drop < DROP_RATIO * least || drop < LEAST_FRACTION * scan.area) return none;
+  if (!(drop >= DROP_RATIO * least)) return none; /* also where no window lies low enough */
   const sample *start = &samples[flattest];
   return (scree_noise){true, middle->area, drop / middle->area, start->level_index,
                        start->triangle_count};

@@ -35,11 +35,7 @@ static const char *rp_text(double rp, char buffer[16]) {
 
 static const char *percent_text(double fraction, char buffer[16]) {
   double percent = 100 * fraction;
-  snprintf(buffer, 16,
-           percent < 0.095  ? "%.3f %%"
-           : percent < 9.95 ? "%.2f %%"
-                            : "%.0f %%",
-           percent);
+  snprintf(buffer, 16, percent < 0.095 ? "%.3f%%" : percent < 9.95 ? "%.2f%%" : "%.0f%%", percent);
   return buffer;
 }
 
@@ -47,7 +43,7 @@ static void print_row(const choose_run *run, size_t index) {
   const scree_choice *c = &run->choices[index];
   char scan[32], n1[32], n2[32], rp1[16], rp2[16], e1[16], e2[16], noise[16];
   bool accident = c->paper.eps_s < 0.1 * c->levels[c->best[SCREE_ERROR_AREA]].worst_eps_s;
-  printf("%-13.13s%10s%9s |%8s%8s%9s%c|%8s%8s%9s\n", run->objects[index].name,
+  printf("%-12.12s%10s%7s |%7s%7s%8s%c|%7s%7s%8s\n", run->objects[index].name,
          cli_count_text(c->triangle_count, scan),
          c->noise.found ? percent_text(c->noise.fraction, noise) : "-", rp_text(c->paper.rp, rp1),
          cli_count_text(c->paper.triangle_count, n1), percent_text(c->paper.eps_s, e1),
@@ -61,13 +57,13 @@ static void print_table(const choose_run *run) {
       run->options.reference == SCREE_REFERENCE_SMOOTH ? ", area free of noise" : "";
   printf("Ip = eps_s + %s Nr/Nm, method %s%s\n", run->options.weight == 1 ? "1" : "w",
          scree_method_name(run->simplify.method), reference);
-  printf("%34s%-26s| %s\n", "", run->arguments->paper ? "| paper (default)" : "| paper's grid",
+  printf("%30s%-24s| %s\n", "", run->arguments->paper ? "| paper (default)" : "| paper's grid",
          run->arguments->paper ? "robust" : "robust (default)");
-  printf("%-13s%10s%9s |%8s%8s%9s |%8s%8s%9s\n", "object", "triangles", "noise", "Rp", "Nr",
+  printf("%-12s%10s%7s |%7s%7s%8s |%7s%7s%8s\n", "object", "triangles", "noise", "Rp", "Nr",
          "eps_s", "Rp", "Nr", "worst");
   for (size_t i = 0; i < run->count; i++) print_row(run, i);
   if (run->count > 1)
-    printf("%-33s|%8s%18s|%8s\n", "the set (least mean Ip)", rp_text(run->set.paper_rp, rp1), "",
+    printf("%-30s|%7s%16s|%7s\n", "the set (least mean Ip)", rp_text(run->set.paper_rp, rp1), "",
            rp_text(run->set.robust_rp, rp2));
 }
 
@@ -84,9 +80,8 @@ static void print_set_advice(const choose_run *run) {
     worst = fmax(worst, c->trace[k].worst_eps_s);
   }
   char rp_buffer[16], low[32], high[32], percent[16];
-  printf("Use Rp = %s for the set: %s to %s triangles, area within %s of the scans'.\n",
-         rp_text(rp, rp_buffer), cli_count_text(least, low), cli_count_text(most, high),
-         percent_text(worst, percent));
+  printf("Use Rp = %s for the set: %s to %s triangles, area within %s.\n", rp_text(rp, rp_buffer),
+         cli_count_text(least, low), cli_count_text(most, high), percent_text(worst, percent));
 }
 
 static void print_advice(const choose_run *run) {
@@ -199,6 +194,6 @@ void choose_print(const choose_run *run) {
   print_notes(run);
   if (run->arguments->output)
     printf("In %s: %s, *.curve.csv, figure.png, choice.json\n", run->arguments->output,
-           run->count > 1 ? "*.stl (each by its own choice), set/*.stl" : "*.stl");
+           run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl");
   print_other_errors(run);
 }
