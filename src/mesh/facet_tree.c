@@ -84,7 +84,7 @@ static size_t partition(scree_facet_tree *t, size_t begin, size_t end, int axis,
 
 /* A pivot near the median: the median of up to 1023 middles taken at even steps. */
 static double middle_value(const scree_facet_tree *t, size_t begin, size_t end, int axis) {
-  double sample[1023];
+  double sample[1023] = {0};
   size_t count = end - begin < 1023 ? end - begin : 1023;
   for (size_t i = 0; i < count; i++) {
     double value = along(t, t->order[begin + (end - begin) * i / count], axis);
