@@ -459,7 +459,8 @@ static void out_of_memory(void **state) {
   shape_move(&box, (vec3){1, 1, 0});
   scree_mesh mesh = shape_join(&two, &box);
   shape_flip(&mesh, 3);
-  const uint32_t *c = mesh.triangles + 3 * (size_t)1290;
+  uint32_t c[3];
+  memcpy(c, mesh.triangles + 3 * (size_t)1290, sizeof c);
   append_facet(&mesh, c[0], c[1], c[2]);
   append_facet(&mesh, c[0], c[1], 3);
   mesh.triangles[6] = mesh.triangles[7];
