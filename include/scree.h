@@ -110,10 +110,10 @@ SCREE_API scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy,
 
 /* ---- 2.1 Reading and writing ---- */
 
-/* How a scan is read. Files carry no unit: it is stated here, never guessed. */
+/* How a scan is read. Most files carry no unit: it is stated here, never guessed. */
 typedef struct scree_read_options {
   /* Metres per unit of the file, in [1e-12, 1e12]; default 1e-3 (millimetres, as scanners write).
-   */
+   * 3MF and glTF state their own unit, and this one is not used. */
   double unit_m;
   /* Vertices closer than this share of the bounding box diagonal become one: 0 (the default: only
    * equal positions) or in [1e-12, 0.1]. See scree_mesh_weld. */
@@ -129,7 +129,7 @@ typedef struct scree_scan {
   scree_mesh mesh;         /* metres; vertices and triangles in canonical order (scree_mesh_weld) */
   scree_checksum checksum; /* of the file's bytes */
   size_t byte_count;
-  char format[32];         /* for example "STL binary", "PLY binary little endian" */
+  char format[32];         /* for example "STL binary", "3MF, inch" (with the unit it states) */
   size_t facet_count;      /* triangles in the file; a polygon counts as its triangles */
   size_t degenerate_count; /* of these, dropped because two corners coincide */
   size_t solid_count;      /* `solid`s of an ASCII STL; else 1 */
@@ -142,11 +142,14 @@ SCREE_API void scree_scan_free(scree_scan *scan);
 /* Reads and welds a scan. path "-" is standard input. The format is found by content, not by name:
  * STL (binary, also with colours or a header that begins with `solid`; ASCII), PLY (ASCII, both
  * byte orders, polygons, triangle strips), OBJ (polygons, v/vt/vn, negative indices), OFF (also
- * with colours, normals, texture coordinates). options NULL means the defaults.
+ * with colours, normals, texture coordinates); in a build with assimp also 3MF and glTF (binary;
+ * text with embedded data), imported in a child process with limits on memory and time
+ * (docs/formats.md). options NULL means the defaults.
  *
  * Sizes in the file are believed only where its length allows them, so memory stays within a fixed
- * multiple of the file's length. Errors: SCREE_IO; SCREE_LIMIT above max_bytes or 2^32 - 2
- * vertices; SCREE_UNSUPPORTED for a format known but not read; SCREE_BAD_FILE with the line or
+ * multiple of the file's length (of its triangles for 3MF and glTF). Errors: SCREE_IO, also where
+ * no child process can be made; SCREE_LIMIT above max_bytes or 2^32 - 2 vertices, or above a limit
+ * of the child; SCREE_UNSUPPORTED for a format known but not read; SCREE_BAD_FILE with the line or
  * byte, the value and the limit; SCREE_BAD_MESH where every facet is degenerate;
  * SCREE_OUT_OF_MEMORY. Free *scan with scree_scan_free. */
 SCREE_API scree_status scree_scan_read(const char *path, const scree_read_options *options,

@@ -37,6 +37,9 @@ void scree_set_allocator(scree_reallocate *reallocate, void *context) {
 void scree_set_memory_limit(size_t byte_count) {
   atomic_store(&limit_bytes, byte_count);
 }
+size_t scree_memory_limit(void) {
+  return atomic_load(&limit_bytes);
+}
 size_t scree_memory_used(void) {
   return atomic_load(&used_bytes);
 }

@@ -21,6 +21,9 @@ char *scree_strdup(const char *text);
  */
 size_t scree_allocation_count(void);
 
+/* What scree_set_memory_limit set. */
+size_t scree_memory_limit(void);
+
 /* Allocates a typed array and jumps to `label` on failure after filling `error`: the pattern of
  * every function with several arrays. */
 #define SCREE_ALLOC_OR(pointer, count, error, label)                                               \

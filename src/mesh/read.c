@@ -54,7 +54,7 @@ static void fetch_scaled(const void *context, size_t first, size_t count, double
 
 static scree_status weld_source(scree_reading *r, const double *positions, size_t position_count,
                                 const uint32_t *triangles, size_t triangle_count) {
-  scaled_positions scaled = {positions, r->options->unit_m};
+  scaled_positions scaled = {positions, r->unit_m};
   scree_corner_source source = {fetch_scaled, &scaled, position_count, triangles, triangle_count};
   r->scan->facet_count = triangle_count;
   return scree_weld_corners(&source, r->options->weld_tolerance, &r->scan->mesh,
@@ -102,7 +102,6 @@ static const mark foreign_marks[] = {
     {"\x28\xb5\x2f\xfd", 4, "is compressed with zstd; decompress it first"},
     {"7z\xbc\xaf", 4, "is a 7z archive; unpack it first"},
     {"Rar!", 4, "is a RAR archive; unpack it first"},
-    {"PK\x03\x04", 4, "is a zip archive (3MF is one); scree reads STL, PLY, OBJ and OFF"},
     {"\x89PNG", 4, "is a PNG picture, not a mesh"},
     {"\xff\xd8\xff", 3, "is a JPEG picture, not a mesh"},
     {"%PDF", 4, "is a PDF document, not a mesh"},
@@ -112,7 +111,6 @@ static const mark foreign_marks[] = {
     {"\xff\xfe", 2, "is text in UTF-16; save it as UTF-8"},
     {"\xfe\xff", 2, "is text in UTF-16; save it as UTF-8"},
     {"ISO-10303-21", 12, "is a STEP model; export it as STL"},
-    {"glTF", 4, "is a glTF model; scree reads STL, PLY, OBJ and OFF"},
 };
 
 /* Free of control characters other than white space, as far as one looks. */
@@ -155,6 +153,20 @@ static bool looks_like_obj(scree_text text) {
   return false;
 }
 
+/* JSON with the one member that glTF demands. */
+static bool looks_like_gltf(scree_text text) {
+  static const char word[] = "\"asset\"";
+  scree_text_skip_space(&text);
+  if (text.p == text.end || *text.p != '{') return false;
+  const size_t length = sizeof word - 1;
+  for (const char *p = text.p; (size_t)(text.end - p) >= length; p++) {
+    p = memchr(p, '"', (size_t)(text.end - p) - length + 1);
+    if (!p) return false;
+    if (!memcmp(p, word, length)) return true;
+  }
+  return false;
+}
+
 static bool begins_with(const scree_text *t, const char *word) {
   size_t length = strlen(word);
   return (size_t)(t->end - t->p) >= length && scree_token_is((scree_token){t->p, length}, word);
@@ -176,10 +188,16 @@ static scree_status fail_text(scree_reading *r, scree_text text) {
                             scree_text_quote(&text, text.p, quote));
 }
 
+static bool starts_with(const scree_reading *r, const char *bytes, size_t count) {
+  return r->byte_count >= count && !memcmp(r->bytes, bytes, count);
+}
+
 static scree_status read_binary_or_fail(scree_reading *r) {
+  if (starts_with(r, "PK\x03\x04", 4)) return scree_read_import(r, SCREE_IMPORT_3MF);
+  if (starts_with(r, "glTF", 4)) return scree_read_import(r, SCREE_IMPORT_GLB);
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++) {
     const mark *m = &foreign_marks[i];
-    if (r->byte_count >= m->length && !memcmp(r->bytes, m->bytes, m->length))
+    if (starts_with(r, m->bytes, m->length))
       return scree_reading_fail(r, SCREE_BAD_FILE, "%s", m->advice);
   }
   if (r->byte_count < STL_HEADER)
@@ -200,6 +218,7 @@ static scree_status read_any(scree_reading *r) {
   if (scree_token_is(word, "solid")) return scree_read_stl_ascii(r);
   if (looks_like_off(text)) return scree_read_off(r);
   if (looks_like_obj(text)) return scree_read_obj(r);
+  if (looks_like_gltf(text)) return scree_read_import(r, SCREE_IMPORT_GLTF);
   return fail_text(r, text);
 }
 
@@ -219,7 +238,7 @@ scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *
   scree_status status = check_options(&used, error);
   if (status != SCREE_OK) return status;
   scree_scan made = {.byte_count = byte_count};
-  scree_reading r = {name, bytes, byte_count, &used, &made, error};
+  scree_reading r = {name, bytes, byte_count, &used, used.unit_m, &made, error};
   status = read_any(&r);
   if (status == SCREE_OK && made.mesh.triangle_count == 0)
     status = scree_reading_fail(&r, SCREE_BAD_MESH,

@@ -12,6 +12,7 @@ typedef struct scree_reading {
   const unsigned char *bytes;
   size_t byte_count;
   const scree_read_options *options;
+  double unit_m;    /* metres per unit: of the options, unless the file states its own */
   scree_scan *scan; /* filled; its mesh is freed by the caller on failure */
   scree_error *error;
 } scree_reading;
@@ -25,6 +26,13 @@ scree_status scree_read_stl_ascii(scree_reading *r);
 scree_status scree_read_ply(scree_reading *r);
 scree_status scree_read_obj(scree_reading *r);
 scree_status scree_read_off(scree_reading *r);
+/* Formats read through assimp; a build without it answers SCREE_UNSUPPORTED. */
+typedef enum scree_import_format {
+  SCREE_IMPORT_3MF,
+  SCREE_IMPORT_GLB,
+  SCREE_IMPORT_GLTF
+} scree_import_format;
+scree_status scree_read_import(scree_reading *r, scree_import_format format);
 /* Whether the word begins an OFF file. */
 bool scree_is_off_word(scree_token word);
 

@@ -1,0 +1,341 @@
+/* 3MF and glTF through assimp's C interface, in a child process under limits (base/child.h): assimp
+ * reads forty formats, and hostile files break it. The child answers a record and then the corners
+ * of all triangles; nothing it says is believed before it is checked.
+ *
+ * The import is raw: assimp only cuts polygons into triangles; node transforms are applied here in
+ * double precision, mirrored nodes are turned outward again, an instance counts each time it is
+ * placed, and welding is scree's. assimp holds coordinates in single precision.
+ *
+ * Units: glTF is in metres by its specification; 3MF names one in its root element (3MF Core 1.3,
+ * 3.4), which assimp 5.2 does not pass on, so the child looks into the archive itself. */
+#include "mesh/read.h"
+
+#ifdef SCREE_WITH_ASSIMP
+#include "base/child.h"
+#include "mesh/zip.h"
+
+#include <assimp/cimport.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+enum {
+  PEEK_BYTES = 1 << 16,
+  MOST_TRIANGLES = 1 << 26,
+  CHUNK_TRIANGLES = 512,
+  PROCESSOR_S = 120,
+  WALL_S = 240,
+};
+static const size_t MOST_MEMORY = (size_t)4 << 30;
+static const double MOST_SIZE_M = 1e30;
+
+static const struct {
+  const char *name, *hint;
+} formats[] = {
+    [SCREE_IMPORT_3MF] = {"3MF", "3mf"},
+    [SCREE_IMPORT_GLB] = {"glTF binary", "glb"},
+    [SCREE_IMPORT_GLTF] = {"glTF text", "gltf"},
+};
+
+/* What the child answers before the corners. */
+typedef struct answer {
+  uint64_t triangle_count;
+  double unit_m;
+  int64_t status;
+  char unit_name[16];
+  char message[256];
+} answer;
+
+typedef struct import {
+  const unsigned char *bytes;
+  size_t byte_count;
+  scree_import_format format;
+} import;
+
+/* ---- in the child: the unit of a 3MF ---- */
+
+/* Behind the next `mark`, or NULL. */
+static const char *behind(const char *text, const char *mark) {
+  const char *found = strstr(text, mark);
+  return found ? found + strlen(mark) : NULL;
+}
+
+/* The attributes of the root element, behind its name, which ends in `model`. */
+static const char *find_root_attributes(const char *text) {
+  while (text && (text = strchr(text, '<'))) {
+    if (text[1] == '?')
+      text = behind(text, "?>");
+    else if (!strncmp(text, "<!--", 4))
+      text = behind(text, "-->");
+    else {
+      size_t length = strcspn(text, " \t\r\n/>");
+      return length >= 6 && !memcmp(text + length - 5, "model", 5) ? text + length : NULL;
+    }
+  }
+  return NULL;
+}
+
+/* The value of attribute `unit` goes to name, "millimeter" where there is none; false where the
+ * element does not end. */
+static bool read_unit_name(const char *p, char name[16]) {
+  snprintf(name, 16, "millimeter");
+  for (;;) {
+    p += strspn(p, " \t\r\n");
+    if (*p == '>' || *p == '/') return true;
+    const char *word = p;
+    size_t length = strcspn(p, "= \t\r\n>");
+    p += length;
+    p += strspn(p, " \t\r\n");
+    if (length == 0 || *p++ != '=') return false;
+    p += strspn(p, " \t\r\n");
+    char quote[2] = {*p, 0};
+    if (*quote != '"' && *quote != '\'') return false;
+    size_t value_length = strcspn(++p, quote);
+    if (p[value_length] != *quote) return false;
+    if (length == 4 && !memcmp(word, "unit", 4))
+      snprintf(name, 16, "%.*s", value_length < 16 ? (int)value_length : 15, p);
+    p += value_length + 1;
+  }
+}
+
+static void find_3mf_unit(const import *im, answer *a) {
+  static const struct {
+    const char *name;
+    double unit_m;
+  } units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2},
+               {"inch", 0.0254}, {"foot", 0.3048},     {"meter", 1}};
+  static char text[PEEK_BYTES + 1];
+  scree_zip_member model;
+  a->status = SCREE_BAD_FILE;
+  if (!scree_zip_find(im->bytes, im->byte_count, "3D/3dmodel.model", &model)) {
+    snprintf(
+        a->message, sizeof a->message,
+        "is a zip archive in which 3D/3dmodel.model is not found: cut off, damaged, or no 3MF");
+    return;
+  }
+  text[scree_zip_peek(&model, text, PEEK_BYTES)] = 0;
+  const char *attributes = find_root_attributes(text);
+  if (!attributes || !read_unit_name(attributes, a->unit_name)) {
+    snprintf(a->message, sizeof a->message,
+             "as 3MF: 3D/3dmodel.model does not begin with an XML element <model ...>");
+    return;
+  }
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    if (!strcmp(units[i].name, a->unit_name)) {
+      a->unit_m = units[i].unit_m;
+      a->status = SCREE_OK;
+      return;
+    }
+  snprintf(a->message, sizeof a->message,
+           "as 3MF: the unit is '%s'; it should be micron, millimeter, centimeter, inch, foot or "
+           "meter",
+           a->unit_name);
+}
+
+/* ---- in the child: the scene ---- */
+
+typedef struct placement {
+  double m[3][4]; /* rows: p becomes m[.][0..2] p + m[.][3] */
+} placement;
+
+static placement place_in(const placement *outer, const struct aiMatrix4x4 *t) {
+  const double in[3][4] = {
+      {t->a1, t->a2, t->a3, t->a4}, {t->b1, t->b2, t->b3, t->b4}, {t->c1, t->c2, t->c3, t->c4}};
+  placement p;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 4; j++) {
+      p.m[i][j] = j == 3 ? outer->m[i][3] : 0;
+      for (int k = 0; k < 3; k++) p.m[i][j] += outer->m[i][k] * in[k][j];
+    }
+  return p;
+}
+
+static bool is_mirrored(const placement *p) {
+  const double(*m)[4] = p->m;
+  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
+         0;
+}
+
+/* The walk over all placed meshes: once to count, once to write. */
+typedef struct walk {
+  const struct aiScene *scene;
+  int output; /* negative: only count */
+  bool is_valid, is_written;
+  uint64_t triangle_count;
+  size_t chunk_count;
+  double chunk[CHUNK_TRIANGLES][3][3];
+} walk;
+
+static void flush_chunk(walk *w) {
+  size_t byte_count = w->chunk_count * sizeof *w->chunk;
+  w->is_written = w->is_written && scree_child_write(w->output, w->chunk, byte_count);
+  w->chunk_count = 0;
+}
+
+static void walk_face(walk *w, const struct aiMesh *mesh, const struct aiFace *face,
+                      const placement *p, bool mirrored) {
+  if (w->output >= 0 && w->chunk_count == CHUNK_TRIANGLES) flush_chunk(w);
+  for (int c = 0; c < 3; c++) {
+    unsigned index = face->mIndices[mirrored ? 2 - c : c];
+    if (index >= mesh->mNumVertices) {
+      w->is_valid = false;
+      return;
+    }
+    struct aiVector3D v = mesh->mVertices[index];
+    for (int i = 0; i < 3 && w->output >= 0; i++)
+      w->chunk[w->chunk_count][c][i] =
+          p->m[i][0] * v.x + p->m[i][1] * v.y + p->m[i][2] * v.z + p->m[i][3];
+  }
+  w->chunk_count++;
+  w->triangle_count++;
+}
+
+static void walk_node(walk *w, const struct aiNode *node, const placement *outer) {
+  placement p = place_in(outer, &node->mTransformation);
+  bool mirrored = is_mirrored(&p);
+  for (unsigned i = 0; i < node->mNumMeshes && w->is_valid; i++) {
+    if (node->mMeshes[i] >= w->scene->mNumMeshes) w->is_valid = false;
+    if (!w->is_valid || w->triangle_count > MOST_TRIANGLES) return;
+    const struct aiMesh *mesh = w->scene->mMeshes[node->mMeshes[i]];
+    for (unsigned f = 0; f < mesh->mNumFaces && w->is_valid; f++)
+      if (mesh->mFaces[f].mNumIndices == 3) /* points and lines have no surface */
+        walk_face(w, mesh, &mesh->mFaces[f], &p, mirrored);
+  }
+  for (unsigned i = 0; i < node->mNumChildren && w->is_valid; i++)
+    walk_node(w, node->mChildren[i], &p);
+}
+
+static void walk_scene(walk *w, const struct aiScene *scene, int output) {
+  static const placement identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+  w->scene = scene;
+  w->output = output;
+  w->is_valid = w->is_written = true;
+  w->triangle_count = w->chunk_count = 0;
+  if (scene->mRootNode) walk_node(w, scene->mRootNode, &identity);
+}
+
+static void explain_refusal(const import *im, answer *a) {
+  const char *reason = aiGetErrorString();
+  bool is_memory = strstr(reason, "bad_alloc") != NULL;
+  a->status = is_memory ? SCREE_LIMIT : SCREE_BAD_FILE;
+  snprintf(a->message, sizeof a->message,
+           is_memory ? "as %s: reading it takes more memory than it is given"
+                     : "as %s: assimp refuses it: %.180s",
+           formats[im->format].name, *reason ? reason : "no reason given");
+}
+
+/* A child's work. */
+static bool import_in_child(void *context, int output) {
+  static walk w;
+  const import *im = context;
+  answer a = {.unit_m = 1, .unit_name = "meter"};
+  const struct aiScene *scene = NULL;
+  if (im->format == SCREE_IMPORT_3MF) find_3mf_unit(im, &a);
+  if (a.status == SCREE_OK) {
+    scene = aiImportFileFromMemory((const char *)im->bytes, (unsigned)im->byte_count,
+                                   aiProcess_Triangulate, formats[im->format].hint);
+    if (!scene) explain_refusal(im, &a);
+  }
+  if (scene) {
+    walk_scene(&w, scene, -1);
+    a.triangle_count = w.triangle_count;
+    if (!w.is_valid || w.triangle_count > MOST_TRIANGLES) {
+      a.status = w.is_valid ? SCREE_LIMIT : SCREE_BAD_FILE;
+      snprintf(a.message, sizeof a.message,
+               w.is_valid ? "as %s: more than %d triangles with all instances"
+                          : "as %s: a face names a vertex that is not there",
+               formats[im->format].name, MOST_TRIANGLES);
+    }
+  }
+  if (!scree_child_write(output, &a, sizeof a)) return false;
+  if (a.status != SCREE_OK) return true;
+  walk_scene(&w, scene, output);
+  flush_chunk(&w);
+  return w.is_written;
+}
+
+/* ---- in the parent ---- */
+
+/* One printable line, whatever the file put into it. */
+static void make_printable(char *text, size_t size) {
+  text[size - 1] = 0;
+  for (; *text; text++)
+    if (*text < ' ' || *text > '~') *text = *text == '\n' || *text == '\t' ? ' ' : '?';
+}
+
+static scree_status check_corners(scree_reading *r, const double *corners, size_t triangle_count) {
+  double most = MOST_SIZE_M / r->unit_m;
+  for (size_t i = 0; i < 9 * triangle_count; i++)
+    if (!(fabs(corners[i]) <= most))
+      return scree_reading_fail(
+          r, SCREE_BAD_FILE,
+          "triangle %zu of %zu has a coordinate %g; coordinates must be finite and at most %g m "
+          "in size",
+          i / 9 + 1, triangle_count, corners[i], MOST_SIZE_M);
+  return SCREE_OK;
+}
+
+static scree_status take_answer(scree_reading *r, scree_import_format format,
+                                scree_child_answer *raw) {
+  answer a;
+  if (raw->count < sizeof a)
+    return scree_reading_fail(r, SCREE_BAD_FILE, "as %s: no answer from the child process",
+                              formats[format].name);
+  memcpy(&a, raw->items, sizeof a);
+  make_printable(a.message, sizeof a.message);
+  make_printable(a.unit_name, sizeof a.unit_name);
+  if (a.status != SCREE_OK)
+    return scree_reading_fail(r, a.status == SCREE_LIMIT ? SCREE_LIMIT : SCREE_BAD_FILE, "%s",
+                              a.message);
+  size_t corner_bytes = raw->count - sizeof a;
+  if (a.triangle_count > MOST_TRIANGLES || corner_bytes != a.triangle_count * 9 * sizeof(double) ||
+      !(a.unit_m >= 1e-6 && a.unit_m <= 1))
+    return scree_reading_fail(r, SCREE_BAD_FILE, "as %s: the child process contradicts itself",
+                              formats[format].name);
+  r->unit_m = a.unit_m;
+  r->scan->solid_count = 1;
+  snprintf(r->scan->format, sizeof r->scan->format, "%s, %s", formats[format].name, a.unit_name);
+  const double *corners = (const double *)(const void *)(raw->items + sizeof a);
+  scree_status status = check_corners(r, corners, a.triangle_count);
+  return status == SCREE_OK ? scree_reading_weld(r, corners, a.triangle_count) : status;
+}
+
+scree_status scree_read_import(scree_reading *r, scree_import_format format) {
+  _Static_assert(sizeof(answer) % sizeof(double) == 0, "the corners behind it are aligned");
+  if (r->byte_count > UINT_MAX)
+    return scree_reading_fail(r, SCREE_LIMIT, "%zu bytes; %s is read up to %u", r->byte_count,
+                              formats[format].name, UINT_MAX);
+  size_t memory = scree_memory_limit();
+  scree_child_limits limits = {
+      .memory_bytes = memory && memory < MOST_MEMORY ? memory : MOST_MEMORY,
+      .processor_s = PROCESSOR_S,
+      .wall_s = WALL_S,
+      .output_bytes = sizeof(answer) + (size_t)MOST_TRIANGLES * 9 * sizeof(double),
+  };
+import im = {r->bytes, r->byte_count, format };
+  char what[512];
+  snprintf(what, sizeof what, "%.400s: reading it as %s", r->name, formats[format].name);
+  scree_child_answer raw = {0};
+  scree_status status = scree_child_run(import_in_child, &im, &limits, what, &raw, r->error);
+  if (status == SCREE_OK) status = take_answer(r, format, &raw);
+  scree_free(raw.items);
+  return status;
+}
+
+#else
+scree_status scree_read_import(scree_reading *r, scree_import_format format) {
+  static const char *const sentences[] = {
+      [SCREE_IMPORT_3MF] = "is a zip archive (3MF is one)",
+      [SCREE_IMPORT_GLB] = "is a glTF model",
+      [SCREE_IMPORT_GLTF] = "is a glTF model",
+  };
+  return scree_reading_fail(
+      r, SCREE_UNSUPPORTED,
+      "%s; this build of scree reads STL, PLY, OBJ and OFF, and 3MF and glTF only with assimp",
+      sentences[format]);
+}
+#endif

@@ -1,0 +1,300 @@
+/* 3MF and glTF: small files made here, their units and placements, and what hostile ones cost. In a
+ * build without assimp: the refusal by name. */
+#include "base/rng.h"
+#include "support/alloc_fail.h"
+#include "support/check.h"
+
+static unsigned char file[40000];
+static size_t file_size;
+
+static void put(const void *bytes, size_t count) {
+  assert_true(file_size + count <= sizeof file);
+  memcpy(file + file_size, bytes, count);
+  file_size += count;
+}
+static void put_text(const char *text) {
+  put(text, strlen(text));
+}
+static void put_little(uint32_t value, size_t byte_count) {
+  for (size_t i = 0; i < byte_count; i++) put(&(unsigned char){(value >> 8 * i) & 255}, 1);
+}
+static void set32(size_t at, uint32_t value) {
+  for (size_t i = 0; i < 4; i++) file[at + i] = (value >> 8 * i) & 255;
+}
+
+/* ---- a zip of stored members ---- */
+
+static uint32_t crc_of(const char *text) {
+  uint32_t crc = UINT32_MAX;
+  for (; *text; text++) {
+    crc ^= (unsigned char)*text;
+    for (int k = 0; k < 8; k++) crc = crc >> 1 ^ (0xedb88320u & (0 - (crc & 1)));
+  }
+  return ~crc;
+}
+
+static void put_member_fields(const char *name, const char *content) {
+  uint32_t size = (uint32_t)strlen(content);
+  put_little(20, 2), put_little(0, 2), put_little(0, 2), put_little(0, 2), put_little(33, 2);
+  put_little(crc_of(content), 4), put_little(size, 4), put_little(size, 4);
+  put_little((uint32_t)strlen(name), 2), put_little(0, 2);
+}
+
+static void make_zip(const char *const (*members)[2], size_t count) {
+  uint32_t starts[8];
+  file_size = 0;
+  for (size_t i = 0; i < count; i++) {
+    starts[i] = (uint32_t)file_size;
+    put_text("PK\3\4"), put_member_fields(members[i][0], members[i][1]);
+    put_text(members[i][0]), put_text(members[i][1]);
+  }
+  uint32_t directory = (uint32_t)file_size;
+  for (size_t i = 0; i < count; i++) {
+    put_text("PK\1\2"), put_little(20, 2), put_member_fields(members[i][0], members[i][1]);
+    put_little(0, 2), put_little(0, 2), put_little(0, 2), put_little(0, 4);
+    put_little(starts[i], 4), put_text(members[i][0]);
+  }
+  uint32_t length = (uint32_t)file_size - directory;
+  put_text("PK\5\6"), put_little(0, 4), put_little((uint32_t)count, 2);
+  put_little((uint32_t)count, 2), put_little(length, 4), put_little(directory, 4), put_little(0, 2);
+}
+
+/* ---- cubes ---- */
+
+static const int cube[12][3] = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}, {0, 1, 5}, {0, 5, 4},
+                                {1, 2, 6}, {1, 6, 5}, {2, 3, 7}, {2, 7, 6}, {3, 0, 4}, {3, 4, 7}};
+static double corner(int v, int axis) {
+  return axis == 0 ? v % 4 == 1 || v % 4 == 2 : axis == 1 ? v % 4 >= 2 : v >= 4;
+}
+
+/* attributes for <model>, and what is built. */
+static void make_3mf(const char *attributes, const char *build) {
+  char model[6000];
+  int n = snprintf(model, sizeof model,
+                   "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!-- <model unit=\"foot\"> -->\n"
+                   "<model%s xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\">"
+                   "<resources><object id=\"1\" type=\"model\"><mesh><vertices>",
+                   attributes);
+  for (int v = 0; v < 8; v++)
+    n += snprintf(model + n, sizeof model - (size_t)n, "<vertex x=\"%g\" y=\"%g\" z=\"%g\"/>",
+                  corner(v, 0), corner(v, 1), corner(v, 2));
+  n += snprintf(model + n, sizeof model - (size_t)n, "</vertices><triangles>");
+  for (int t = 0; t < 12; t++)
+    n += snprintf(model + n, sizeof model - (size_t)n, "<triangle v1=\"%d\" v2=\"%d\" v3=\"%d\"/>",
+                  cube[t][0], cube[t][1], cube[t][2]);
+  snprintf(model + n, sizeof model - (size_t)n,
+           "</triangles></mesh></object></resources><build>%s</build></model>", build);
+  const char *const members[][2] = {
+      {"[Content_Types].xml",
+       "<?xml version=\"1.0\"?><Types "
+       "xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>"},
+      {"_rels/.rels",
+       "<?xml version=\"1.0\"?><Relationships "
+       "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+       "Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+       "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"},
+      {"3D/3dmodel.model", model}};
+  make_zip(members, 3);
+}
+
+/* The JSON of a cube whose data has `count` indices, placed by `node`. */
+static const char *gltf_json(long count, const char *node, const char *uri) {
+  static char json[2000];
+  snprintf(json, sizeof json,
+           "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
+           "\"nodes\":[{\"mesh\":0%s}],\"meshes\":[{\"primitives\":[{\"attributes\":{"
+           "\"POSITION\":0},\"indices\":1}]}],\"buffers\":[{%s\"byteLength\":168}],"
+           "\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,\"byteLength\":96},"
+           "{\"buffer\":0,\"byteOffset\":96,\"byteLength\":72}],\"accessors\":["
+           "{\"bufferView\":0,\"componentType\":5126,\"count\":8,\"type\":\"VEC3\","
+           "\"min\":[0,0,0],\"max\":[1,1,1]},{\"bufferView\":1,\"componentType\":5123,"
+           "\"count\":%ld,\"type\":\"SCALAR\"}]}",
+           node, uri, count);
+  return json;
+}
+
+static void put_cube_data(void) {
+  for (int v = 0; v < 8; v++)
+    for (int i = 0; i < 3; i++) put(&(float){(float)corner(v, i)}, 4);
+  for (int t = 0; t < 12; t++)
+    for (int c = 0; c < 3; c++) put_little((uint32_t)cube[t][c], 2);
+}
+
+static void make_glb(long index_count, const char *node) {
+  const char *json = gltf_json(index_count, node, "");
+  size_t length = strlen(json), padding = (4 - length % 4) % 4;
+  file_size = 0;
+  put_text("glTF"), put_little(2, 4), put_little(0, 4);
+  put_little((uint32_t)(length + padding), 4), put_text("JSON"), put_text(json);
+  for (size_t i = 0; i < padding; i++) put_text(" ");
+  put_little(168, 4), put("BIN\0", 4), put_cube_data();
+  set32(8, (uint32_t)file_size);
+}
+
+static void make_gltf(const char *uri) {
+  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  char data[168], text[400] = "\"uri\":\"data:application/octet-stream;base64,";
+  file_size = 0;
+  put_cube_data();
+  memcpy(data, file, sizeof data);
+  size_t n = strlen(text);
+  for (size_t i = 0; i < sizeof data; i += 3) {
+    const unsigned char *b = (const unsigned char *)data + i;
+    uint32_t bits = (uint32_t)b[0] << 16 | (uint32_t)b[1] << 8 | b[2];
+    for (int k = 18; k >= 0; k -= 6) text[n++] = digits[bits >> k & 63];
+  }
+  snprintf(text + n, sizeof text - n, "\",");
+  file_size = 0;
+  put_text(gltf_json(36, "", uri ? uri : text));
+}
+
+/* ---- checks ---- */
+
+static scree_status parse(scree_scan *scan, scree_error *error) {
+  /* a unit that must not matter: the files state their own */
+  scree_read_options options = {.unit_m = 17};
+  *error = (scree_error){0};
+  return scree_scan_parse(file, file_size, "made", &options, scan, error);
+}
+
+static bool has_assimp(void) {
+  scree_scan scan = {0};
+  scree_error error;
+  make_3mf("", "<item objectid=\"1\"/>");
+  scree_status status = parse(&scan, &error);
+  scree_scan_free(&scan);
+  return status != SCREE_UNSUPPORTED;
+}
+
+/* count cubes whose least corner and volume are these. */
+static void expect_cubes(const char *format, size_t count, double x, double volume) {
+  scree_scan scan = {0};
+  scree_error error;
+  scree_measures m;
+  CHECK_OK(parse(&scan, &error), error);
+  assert_string_equal(scan.format, format);
+  assert_int_equal(scan.facet_count, 12 * count);
+  assert_int_equal(scan.mesh.vertex_count, 8 * count);
+  CHECK_NEAR(scan.mesh.positions[0], x, 1e-6 * fabs(x));
+  CHECK_OK(scree_mesh_measure(&scan.mesh, &m, &error), error);
+  CHECK_NEAR(m.volume, volume, 1e-5 * volume);
+  scree_scan_free(&scan);
+}
+
+static void expect_error(scree_status status, const char *part) {
+  scree_scan scan = {0};
+  scree_error error;
+  scree_status found = parse(&scan, &error);
+  if (found != status || !strstr(error.message, part) || strncmp(error.message, "made: ", 6) != 0)
+    fail_msg("%s: '%s', expected '%s'", scree_status_text(found), error.message, part);
+  assert_null(scan.mesh.positions);
+}
+
+static void refused_by_name(void **state) {
+  (void)state;
+  if (has_assimp()) skip();
+  expect_error(SCREE_UNSUPPORTED, "is a zip archive (3MF is one)");
+  make_glb(36, "");
+  expect_error(SCREE_UNSUPPORTED, "is a glTF model");
+  make_gltf(NULL);
+  expect_error(SCREE_UNSUPPORTED, "is a glTF model");
+}
+
+static void reads_3mf(void **state) {
+  (void)state;
+  if (!has_assimp()) skip();
+  static const char item[] = "<item objectid=\"1\" transform=\"1 0 0 0 1 0 0 0 1 10 0 0\"/>";
+  expect_cubes("3MF, millimeter", 1, 0, 1e-9);
+  make_3mf(" unit='inch'", item);
+  expect_cubes("3MF, inch", 1, 0.254, 0.0254 * 0.0254 * 0.0254);
+  make_3mf(" xml:lang = \"en\"  unit = \"micron\" ", item);
+  expect_cubes("3MF, micron", 1, 1e-5, 1e-18);
+  make_3mf(" unit=\"meter\"", "<item objectid=\"1\"/><item objectid=\"1\" transform=\"-1 0 0 0 1 0 "
+                              "0 0 1 -10 0 0\"/>"); /* mirrored: still outward */
+  expect_cubes("3MF, meter", 2, -11, 2);
+}
+
+static void reads_gltf(void **state) {
+  (void)state;
+  if (!has_assimp()) skip();
+  make_glb(36, "");
+  expect_cubes("glTF binary, meter", 1, 0, 1);
+  make_glb(36, ",\"scale\":[2,2,2],\"translation\":[5,0,0]");
+  expect_cubes("glTF binary, meter", 1, 5, 8);
+  make_gltf(NULL);
+  expect_cubes("glTF text, meter", 1, 0, 1);
+}
+
+static void hostile_3mf(void **state) {
+  (void)state;
+  if (!has_assimp()) skip();
+  size_t whole = file_size;
+  for (size_t cut = 4; cut < whole; cut += 1 + whole / 20) {
+    file_size = cut;
+    expect_error(SCREE_BAD_FILE, "3D/3dmodel.model is not found: cut off, damaged, or no 3MF");
+  }
+  make_3mf(" unit=\"furlong\"", "");
+  expect_error(SCREE_BAD_FILE, "the unit is 'furlong'; it should be micron");
+  make_3mf("", "");
+  expect_error(SCREE_BAD_FILE, "");
+  const char *const other[][2] = {{"word/document.xml", "<a/>"}};
+  make_zip(other, 1);
+  expect_error(SCREE_BAD_FILE, "or no 3MF");
+  const char *const no_xml[][2] = {{"3D/3dmodel.model", "model"}};
+  make_zip(no_xml, 1);
+  expect_error(SCREE_BAD_FILE, "does not begin with an XML element");
+}
+
+static void hostile_gltf(void **state) {
+  (void)state;
+  if (!has_assimp()) skip();
+  make_glb(4000000000, ""); /* indices that the buffer has no room for */
+  expect_error(SCREE_BAD_FILE, "out of range");
+  make_glb(36, "");
+  for (size_t i = 12; i < file_size; i++) file[i] = (unsigned char)(i * 181);
+  expect_error(SCREE_BAD_FILE, "glTF binary");
+  make_gltf("\"uri\":\"/etc/passwd\",");
+  expect_error(SCREE_BAD_FILE, "glTF text");
+}
+
+/* Whatever is wrong, it is a result or one sentence. */
+static void damaged_anywhere(void **state) {
+  (void)state;
+  if (!has_assimp()) skip();
+  scree_rng rng = {3, 0, 0};
+  for (int round = 0; round < 200; round++) {
+    if (round % 2)
+      make_3mf("", "<item objectid=\"1\"/>");
+    else
+      make_glb(36, "");
+    for (int i = 0; i < 4; i++)
+      file[4 + scree_rng_below(&rng, file_size - 4)] = (unsigned char)scree_rng_below(&rng, 256);
+    scree_scan scan = {0};
+    scree_error error;
+    if (parse(&scan, &error) != SCREE_OK && (!error.message[0] || strchr(error.message, '\n')))
+      fail_msg("'%s'", error.message);
+    scree_scan_free(&scan);
+  }
+}
+
+static scree_status parse_once(void *context, scree_error *error) {
+  (void)context;
+  scree_scan scan = {0};
+  scree_status status = parse(&scan, error);
+  scree_scan_free(&scan);
+  return status;
+}
+static void allocations(void **state) {
+  (void)state;
+  if (!has_assimp()) skip();
+  assert_true(check_allocation_failures(parse_once, NULL) > 5);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(refused_by_name), cmocka_unit_test(reads_3mf),
+      cmocka_unit_test(reads_gltf),      cmocka_unit_test(hostile_3mf),
+      cmocka_unit_test(hostile_gltf),    cmocka_unit_test(damaged_anywhere),
+      cmocka_unit_test(allocations)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
