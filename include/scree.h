@@ -1050,6 +1050,18 @@ SCREE_API void scree_world_timings(const scree_world *world, scree_timings *timi
 /* Names the state: every bit of positions, velocities, contact memory and time. */
 SCREE_API scree_checksum scree_world_hash(const scree_world *world);
 
+/* Writes a checkpoint (docs/formats.md): everything in the world, its particles included, so that
+ * the file stands alone; timings are not in it. It is complete under its name or not there ("-" is
+ * stdout). Without overwrite an existing file is refused with SCREE_EXISTS. Needs memory for the
+ * file's size: about 100 bytes a triangle of each particle, 500 a body, 1 to 3 KB a pair. */
+SCREE_API scree_status scree_world_save(const scree_world *world, const char *path, bool overwrite,
+                                        scree_error *error);
+/* Reads a checkpoint ("-" is stdin); free *world with scree_world_free. Every later step has the
+ * same bits as in the world that was saved, for any number of threads. Particles are the world's
+ * own (scree_world_body_particle); a removed body keeps its. SCREE_BAD_FILE, with file and reason,
+ * for what is no checkpoint, is of another version, is cut short or has a bit changed anywhere. */
+SCREE_API scree_status scree_world_load(const char *path, scree_world **world, scree_error *error);
+
 /* ==== 8. Pile: filling, lifting, angle of repose, studies ======================================
  */
 

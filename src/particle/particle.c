@@ -252,6 +252,40 @@ scree_status scree_particle_clump(const double *centres, const double *radii, si
   return SCREE_OK;
 }
 
+static scree_status restore(scree_particle *p, const scree_mesh *mesh, const double *centres,
+                            const double *radii, size_t count, scree_error *error) {
+  if (p->measures.kind == SCREE_PARTICLE_MESH) {
+    scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
+    if (!status) status = scree_particle_extract_features(p, false, error);
+    if (status) return status;
+  } else {
+    SCREE_ALLOC_OR(p->points, count, error, out_of_memory);
+    SCREE_ALLOC_OR(p->point_radii, count, error, out_of_memory);
+    p->point_count = count;
+    for (size_t i = 0; i < count; i++) p->points[i] = vec3_load(&centres[3 * i]);
+    for (size_t i = 0; i < count; i++) p->point_radii[i] = radii[i];
+  }
+  set_counts(p);
+  return scree_particle_build_trees(p, error);
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_particle_restore(const scree_particle_measures *measures, const scree_mesh *mesh,
+                                    const double *centres, const double *radii, size_t count,
+                                    scree_particle **particle, scree_error *error) {
+  scree_particle *p = new_particle(measures->kind, error);
+  if (!p) return SCREE_OUT_OF_MEMORY;
+  p->measures = *measures;
+  scree_status status = restore(p, mesh, centres, radii, count, error);
+  if (status) {
+    scree_particle_free(p);
+    return status;
+  }
+  *particle = p;
+  return SCREE_OK;
+}
+
 void scree_particle_measure(const scree_particle *particle, scree_particle_measures *measures) {
   *measures = particle->measures;
 }

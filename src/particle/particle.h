@@ -47,6 +47,12 @@ void scree_particle_retain(scree_particle *particle);
 scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
                                     scree_particle **particle, scree_error *error);
 
+/* The same particle again, to the last bit, from its measures and its mesh, or its `count` spheres,
+ * all in its own frame: features and trees follow from these. */
+scree_status scree_particle_restore(const scree_particle_measures *measures, const scree_mesh *mesh,
+                                    const double *centres, const double *radii, size_t count,
+                                    scree_particle **particle, scree_error *error);
+
 /* features.c: fills faces, signs, points and edges from particle->mesh. */
 scree_status scree_particle_extract_features(scree_particle *particle, bool may_be_open,
                                              scree_error *error);

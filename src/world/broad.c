@@ -274,3 +274,14 @@ scree_status scree_broad_update(scree_world *world, scree_error *error) {
   world->timings.broad_builds++;
   return SCREE_OK;
 }
+
+double scree_broad_margin(const scree_world *world) {
+  return world->broad ? world->broad->margin : 0;
+}
+
+scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error) {
+  scree_status status = reserve(world, error);
+  if (status) return status;
+  world->broad->margin = margin;
+  return list_sides(world) ? SCREE_OK : scree_fail_memory(error, 0, "pairs of bodies");
+}

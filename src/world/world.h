@@ -206,6 +206,9 @@ double scree_pair_stiffness(const scree_world *world, size_t material_a, size_t 
 /* broad.c: brings the list of pairs up to date when a body could have left its margin. */
 scree_status scree_broad_update(scree_world *world, scree_error *error);
 void scree_broad_free(scree_world *world);
+/* For checkpoints: the margin of the present list of pairs, and a list that was loaded. */
+double scree_broad_margin(const scree_world *world);
+scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error);
 
 /* pair.c: a pair object for (a, b), set up; from the spares when there are some. */
 scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wall);
@@ -247,5 +250,11 @@ bool scree_world_gather(scree_world *world);
 void scree_world_advance(scree_world *world);
 /* Angular velocity of body i for angular momentum `momentum` and rotation `rotation`. */
 vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, vec3 momentum);
+
+/* save.c: a checkpoint's bytes, free with scree_free; and back, `name` for messages. */
+scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, size_t *byte_count,
+                              scree_error *error);
+scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
+                                scree_world **world, scree_error *error);
 
 #endif

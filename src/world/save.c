@@ -1,0 +1,711 @@
+/* Checkpoints. All of the world's state goes through one list of fields per record (base/codec.h),
+ * which serves saving and loading alike. What follows from other state is made anew: features and
+ * trees of particles, the sides of pairs by body; scratch and timings start empty.
+ *
+ * The file: a header of 40 bytes (magic, version, byte order, length, XXH3-128 of the rest), then
+ * options, materials, particles, walls, bodies, pairs, counters. A length and a checksum find
+ * accidents; counts, indices and kinds are checked besides, so that no file whatever leads outside
+ * an array. Bodies, walls and materials are added through the public functions, with their checks,
+ * before the saved bits replace what these set up. */
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/codec.h"
+#include "base/file.h"
+#include "world/world.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const unsigned char magic[8] = {'s', 'c', 'r', 'e', 'e', 'W', 'L', 'D'};
+enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
+
+/* Whoever changes these records must add the fields below, and raise VERSION. */
+_Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 248 && sizeof(scree_anchor) == 56 &&
+                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 440 &&
+                                       sizeof(scree_frame) == 192),
+               "a field was added: add it to the checkpoint");
+
+/* ---- field lists ---- */
+
+static void code_quat(scree_codec *c, quat *q) {
+  scree_code_real(c, &q->w);
+  scree_code_real(c, &q->x);
+  scree_code_real(c, &q->y);
+  scree_code_real(c, &q->z);
+}
+
+static void code_frame(scree_codec *c, scree_frame *f) {
+  vec3 *vectors[] = {&f->position, &f->velocity, &f->spin, &f->velocity_now, &f->spin_now};
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
+  for (int i = 0; i < 3; i++) scree_code_reals(c, f->rotation.m[i], 3);
+}
+
+static void code_options(scree_codec *c, scree_world_options *o) {
+  uint32_t law = (uint32_t)o->law;
+  scree_code_reals(c, o->gravity, 3);
+  scree_code_u32(c, &law);
+  o->law = (scree_law)law;
+  double *reals[] = {&o->steps_per_contact, &o->time_step,     &o->stiffness_factor,
+                     &o->tangential_ratio,  &o->size,          &o->smoothing,
+                     &o->sharing,           &o->overlap_limit, &o->skin,
+                     &o->floor_height};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+}
+
+static void code_material(scree_codec *c, scree_material *m) {
+  scree_code_real(c, &m->stiffness);
+  scree_code_real(c, &m->density);
+  scree_code_real(c, &m->restitution);
+  scree_code_real(c, &m->friction);
+}
+
+static void code_contact(scree_codec *c, scree_material_pair *p) {
+  scree_code_real(c, &p->restitution);
+  scree_code_real(c, &p->friction);
+  scree_code_real(c, &p->damping_ratio);
+  scree_code_bool(c, &p->given);
+}
+
+static void code_measures(scree_codec *c, scree_particle_measures *m) {
+  uint32_t kind = (uint32_t)m->kind;
+  scree_code_u32(c, &kind);
+  if (kind > SCREE_PARTICLE_CLUMP) c->failed = true;
+  m->kind = (scree_particle_kind)kind;
+  scree_code_real(c, &m->volume);
+  scree_code_real(c, &m->size);
+  scree_code_reals(c, m->centre, 3);
+  scree_code_reals(c, m->orientation, 4);
+  scree_code_reals(c, m->inertia, 3);
+  scree_code_real(c, &m->bounding_radius);
+  scree_code_real(c, &m->thickness);
+  scree_code_real(c, &m->rounding);
+}
+
+/* When loading, *mesh is filled and is to be freed, whatever comes. */
+static void code_mesh(scree_codec *c, scree_mesh *mesh) {
+  scree_code_count(c, &mesh->vertex_count, 3 * sizeof(double));
+  scree_code_count(c, &mesh->triangle_count, 3 * sizeof(uint32_t));
+  if (c->loading) {
+    mesh->positions = scree_alloc(3 * mesh->vertex_count, sizeof *mesh->positions);
+    mesh->triangles = scree_alloc(3 * mesh->triangle_count, sizeof *mesh->triangles);
+    if (!mesh->positions || !mesh->triangles) {
+      c->out_of_memory = true;
+      return;
+    }
+    memset(mesh->triangles, 0, 3 * mesh->triangle_count * sizeof *mesh->triangles);
+  }
+  scree_code_reals(c, mesh->positions, 3 * mesh->vertex_count);
+  for (size_t i = 0; i < 3 * mesh->triangle_count; i++) scree_code_u32(c, &mesh->triangles[i]);
+}
+
+static void code_given_wall(scree_codec *c, scree_wall *w) {
+  uint32_t kind = (uint32_t)w->kind, material = (uint32_t)w->material;
+  scree_code_u32(c, &kind);
+  scree_code_u32(c, &material);
+  if (kind > SCREE_WALL_MESH) c->failed = true;
+  w->kind = (scree_wall_kind)kind;
+  w->material = material;
+  scree_code_reals(c, w->position, 3);
+  scree_code_reals(c, w->axis, 3);
+  scree_code_real(c, &w->radius);
+  scree_code_real(c, &w->length);
+  scree_code_reals(c, w->velocity, 3);
+  scree_code_reals(c, w->angular_velocity, 3);
+}
+
+static void code_wall_state(scree_codec *c, scree_world_wall *w) {
+  code_frame(c, &w->frame);
+  code_quat(c, &w->orientation);
+  scree_code_real(c, &w->travel);
+  scree_code_real(c, &w->path);
+  scree_code_real(c, &w->path_at_build);
+  scree_code_vec3(c, &w->force);
+  scree_code_vec3(c, &w->torque);
+}
+
+static void code_anchor(scree_codec *c, scree_anchor *a) {
+  scree_code_vec3(c, &a->stretch);
+  scree_code_vec3(c, &a->normal);
+  scree_code_real(c, &a->share);
+}
+
+static void code_item(scree_codec *c, scree_item *i) {
+  scree_code_u32(c, &i->kind);
+  scree_code_u32(c, &i->a);
+  scree_code_u32(c, &i->b);
+  scree_code_u32(c, &i->face_count);
+  for (int k = 0; k < SCREE_CACHED_FACES; k++) scree_code_u32(c, &i->face[k]);
+  scree_code_real(c, &i->valid);
+  scree_code_vec3(c, &i->reference);
+  scree_code_real(c, &i->gap);
+  scree_code_bool(c, &i->has_reference);
+  scree_code_bool(c, &i->inside);
+  for (int k = 0; k < SCREE_ANCHORS; k++) code_anchor(c, &i->anchor[k]);
+}
+
+static void code_sleeper(scree_codec *c, scree_sleeper *s) {
+  scree_code_real(c, &s->wake);
+  scree_code_u32(c, &s->a);
+  scree_code_u32(c, &s->b);
+  scree_code_u32(c, &s->kind);
+}
+
+static void code_wrench(scree_codec *c, scree_wrench *w) {
+  scree_code_vec3(c, &w->force);
+  scree_code_vec3(c, &w->torque_a);
+  scree_code_vec3(c, &w->torque_b);
+}
+
+static void code_pair_name(scree_codec *c, scree_pair *p) {
+  scree_code_u32(c, &p->a);
+  scree_code_u32(c, &p->b);
+  scree_code_bool(c, &p->wall);
+}
+
+static void code_pair_state(scree_codec *c, scree_pair *p) {
+  scree_code_bool(c, &p->asleep);
+  scree_code_bool(c, &p->touching);
+  double *reals[] = {
+      &p->stiffness,    &p->damping,   &p->friction, &p->restitution, &p->smoothing,
+      &p->reach,        &p->limit,     &p->travel,   &p->path,        &p->wake,
+      &p->asleep_since, &p->next_item, &p->list_end, &p->elastic,     &p->tangential_elastic,
+      &p->contact_time, &p->age,       &p->overlap,  &p->largest};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  code_wrench(c, &p->wrench);
+  code_wrench(c, &p->dashpot);
+  code_wrench(c, &p->tangential);
+  uint64_t contacts = p->contact_count;
+  scree_code_u64(c, &contacts);
+  p->contact_count = (size_t)contacts;
+  scree_code_count(c, &p->active.count, 242);
+  scree_code_count(c, &p->sleeping.count, 20);
+}
+
+/* Body i as it lies in the arrays. */
+typedef struct body_record {
+  scree_frame frame;
+  quat orientation;
+  vec3 momentum, inertia, force, torque;
+  double mass, travel, path, path_at_build;
+  bool removed;
+} body_record;
+
+static void code_body(scree_codec *c, body_record *b) {
+  code_frame(c, &b->frame);
+  code_quat(c, &b->orientation);
+  vec3 *vectors[] = {&b->momentum, &b->inertia, &b->force, &b->torque};
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
+  scree_code_real(c, &b->mass);
+  scree_code_real(c, &b->travel);
+  scree_code_real(c, &b->path);
+  scree_code_real(c, &b->path_at_build);
+  scree_code_bool(c, &b->removed);
+}
+
+/* What the world counts, and how it ended. */
+typedef struct tail_record {
+  double time, time_step, work_dashpot, work_tangential, wall_work, largest_overlap, margin;
+  uint64_t step_count;
+  bool pairs_stale, time_step_stale, diverged;
+  uint32_t failure;
+  char message[sizeof((scree_error *)0)->message];
+} tail_record;
+
+static void code_tail(scree_codec *c, tail_record *t) {
+  double *reals[] = {&t->time,      &t->time_step,       &t->work_dashpot, &t->work_tangential,
+                     &t->wall_work, &t->largest_overlap, &t->margin};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  scree_code_u64(c, &t->step_count);
+  scree_code_bool(c, &t->pairs_stale);
+  scree_code_bool(c, &t->time_step_stale);
+  scree_code_bool(c, &t->diverged);
+  scree_code_u32(c, &t->failure);
+  scree_code_bytes(c, t->message, sizeof t->message);
+  if (t->failure >= SCREE_STATUS_COUNT || (t->diverged && !t->failure)) c->failed = true;
+  t->message[sizeof t->message - 1] = 0;
+}
+
+/* ---- saving ---- */
+
+static void save_particle(scree_codec *c, const scree_particle *p) {
+  scree_particle_measures measures = p->measures;
+  code_measures(c, &measures);
+  scree_mesh mesh = p->mesh; /* saving only reads it */
+  if (measures.kind == SCREE_PARTICLE_MESH) {
+    code_mesh(c, &mesh);
+    return;
+  }
+  size_t count = p->point_count;
+  scree_code_count(c, &count, 4 * sizeof(double));
+  for (size_t i = 0; i < count; i++) {
+    vec3 centre = p->points[i];
+    double radius = p->point_radii[i];
+    scree_code_vec3(c, &centre);
+    scree_code_real(c, &radius);
+  }
+}
+
+typedef struct owner {
+  const scree_particle *particle;
+  size_t body;
+} owner;
+
+static int compare_owners(const void *x, const void *y) {
+  const owner *a = x, *b = y;
+  if (a->particle != b->particle) return (uintptr_t)a->particle < (uintptr_t)b->particle ? -1 : 1;
+  return a->body < b->body ? -1 : a->body > b->body;
+}
+
+/* The particles in the order in which bodies first use them, then each body's number: the order of
+ * addresses does not show. */
+static void save_particles(scree_codec *c, const scree_world *world) {
+  size_t count = world->bodies.count, used = 0;
+  owner *owners = scree_alloc(count, sizeof *owners);
+  size_t *first = scree_alloc(count, sizeof *first);
+  uint32_t *number = scree_alloc(count, sizeof *number);
+  if (!owners || !first || !number) {
+    c->out_of_memory = true;
+    goto done;
+  }
+  for (size_t i = 0; i < count; i++) owners[i] = (owner){world->bodies.particle[i], i};
+  qsort(owners, count, sizeof *owners, compare_owners);
+  for (size_t i = 0; i < count; i++) {
+    bool same = i > 0 && owners[i].particle == owners[i - 1].particle;
+    first[owners[i].body] = same ? first[owners[i - 1].body] : owners[i].body;
+  }
+  for (size_t i = 0; i < count; i++)
+    number[i] = first[i] == i ? (uint32_t)used++ : number[first[i]];
+  scree_code_count(c, &used, 1);
+  for (size_t i = 0; i < count; i++)
+    if (first[i] == i) save_particle(c, world->bodies.particle[i]);
+  scree_code_count(c, &count, 1);
+  for (size_t i = 0; i < count; i++) {
+    scree_code_u32(c, &number[i]);
+    uint8_t material = world->bodies.material[i];
+    scree_code_u8(c, &material);
+  }
+done:
+  scree_free(owners);
+  scree_free(first);
+  scree_free(number);
+}
+
+static void save_setup(scree_codec *c, const scree_world *world) {
+  scree_world_options options = world->options;
+  code_options(c, &options);
+  size_t count = world->material_count;
+  scree_code_count(c, &count, 1);
+  for (size_t i = 0; i < count; i++) {
+    scree_material material = world->materials[i];
+    code_material(c, &material);
+  }
+  for (size_t i = 0; i < count; i++)
+    for (size_t j = 0; j <= i; j++) {
+      scree_material_pair contact = world->contacts[i][j];
+      code_contact(c, &contact);
+    }
+  count = world->walls.count;
+  scree_code_count(c, &count, 1);
+  for (size_t w = 0; w < count; w++) {
+    scree_world_wall wall = world->walls.items[w];
+    code_given_wall(c, &wall.given);
+    scree_mesh mesh = wall.surface ? wall.surface->mesh : (scree_mesh){0};
+    if (wall.given.kind == SCREE_WALL_MESH) code_mesh(c, &mesh);
+    code_wall_state(c, &wall);
+  }
+}
+
+static void save_bodies(scree_codec *c, const scree_world *world) {
+  const scree_bodies *b = &world->bodies;
+  for (size_t i = 0; i < b->count; i++) {
+    body_record record = {.frame = b->frame[i],
+                          .orientation = b->orientation[i],
+                          .momentum = b->momentum[i],
+                          .inertia = b->inertia[i],
+                          .force = b->force[i],
+                          .torque = b->torque[i],
+                          .mass = b->mass[i],
+                          .travel = b->travel[i],
+                          .path = b->path[i],
+                          .path_at_build = world->body_path_at_build[i],
+                          .removed = b->removed[i]};
+    code_body(c, &record);
+  }
+}
+
+static void save_pairs(scree_codec *c, const scree_world *world) {
+  size_t count = world->pairs.count;
+  scree_code_count(c, &count, 1);
+  for (size_t k = 0; k < count; k++) {
+    scree_pair pair = *world->pairs.items[k]; /* its lists are only read */
+    code_pair_name(c, &pair);
+    code_pair_state(c, &pair);
+    for (size_t i = 0; i < pair.active.count; i++) code_item(c, &pair.active.items[i]);
+    for (size_t i = 0; i < pair.sleeping.count; i++) code_sleeper(c, &pair.sleeping.items[i]);
+  }
+}
+
+static void save_tail(scree_codec *c, const scree_world *world) {
+  tail_record tail = {.time = world->time,
+                      .time_step = world->time_step,
+                      .work_dashpot = world->work_dashpot,
+                      .work_tangential = world->work_tangential,
+                      .wall_work = world->wall_work,
+                      .largest_overlap = world->largest_overlap,
+                      .margin = scree_broad_margin(world),
+                      .step_count = world->step_count,
+                      .pairs_stale = world->pairs_stale,
+                      .time_step_stale = world->time_step_stale,
+                      .diverged = world->diverged,
+                      .failure = world->diverged ? (uint32_t)world->failure.status : 0};
+  if (world->diverged) snprintf(tail.message, sizeof tail.message, "%s", world->failure.message);
+  code_tail(c, &tail);
+}
+
+static void code_header(scree_codec *c, unsigned char head[8], uint32_t version_order[2],
+                        uint64_t length_sum[3]) {
+  scree_code_bytes(c, head, sizeof magic);
+  for (int i = 0; i < 2; i++) scree_code_u32(c, &version_order[i]);
+  for (int i = 0; i < 3; i++) scree_code_u64(c, &length_sum[i]);
+}
+
+scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, size_t *byte_count,
+                              scree_error *error) {
+  scree_codec c = {0}, header = {0};
+  unsigned char head[sizeof magic];
+  uint32_t version_order[2] = {VERSION, BYTE_ORDER_MARK};
+  uint64_t length_sum[3] = {0};
+  memcpy(head, magic, sizeof magic);
+  code_header(&c, head, version_order, length_sum); /* its room */
+  save_setup(&c, world);
+  save_particles(&c, world);
+  save_bodies(&c, world);
+  save_pairs(&c, world);
+  save_tail(&c, world);
+  if (scree_codec_good(&c)) {
+    scree_checksum sum = scree_checksum_of(c.bytes + HEADER, c.count - HEADER);
+    length_sum[0] = c.count - HEADER;
+    memcpy(&length_sum[1], &sum, sizeof sum);
+    code_header(&header, head, version_order, length_sum);
+  }
+  if (!scree_codec_good(&c) || !scree_codec_good(&header)) {
+    scree_free(c.bytes);
+    scree_free(header.bytes);
+    return scree_fail_memory(error, c.count, "a checkpoint");
+  }
+  memcpy(c.bytes, header.bytes, HEADER);
+  scree_free(header.bytes);
+  *bytes = c.bytes;
+  *byte_count = c.count;
+  return SCREE_OK;
+}
+
+scree_status scree_world_save(const scree_world *world, const char *path, bool overwrite,
+                              scree_error *error) {
+  unsigned char *bytes;
+  size_t count;
+  scree_output output;
+  scree_status status = scree_world_pack(world, &bytes, &count, error);
+  if (status) return status;
+  status = scree_output_open(path, overwrite, &output, error);
+  if (!status) {
+    fwrite(bytes, 1, count, output.stream); /* a failure shows in the commit */
+    status = scree_output_commit(&output, error);
+  }
+  scree_free(bytes);
+  return status;
+}
+
+/* ---- loading ---- */
+
+/* A file being loaded; `error` is filled by the first public function that refused something. */
+typedef struct loader {
+  scree_codec codec;
+  scree_world *world;
+  scree_particle **particles;
+  size_t particle_count;
+  scree_error error;
+} loader;
+
+static bool good(const loader *l) {
+  return scree_codec_good(&l->codec) && l->error.status == SCREE_OK;
+}
+
+static void load_setup(loader *l) {
+  scree_codec *c = &l->codec;
+  scree_world_options options = {0};
+  size_t count = 0;
+  code_options(c, &options);
+  if (good(l)) scree_world_create(&options, &l->world, &l->error);
+  scree_code_count(c, &count, 4 * sizeof(double));
+  for (size_t i = 0; i < count && good(l); i++) {
+    scree_material material = {0};
+    code_material(c, &material);
+    if (good(l)) scree_world_add_material(l->world, &material, NULL, &l->error);
+  }
+  for (size_t i = 0; i < count && good(l); i++)
+    for (size_t j = 0; j <= i; j++) {
+      code_contact(c, &l->world->contacts[i][j]);
+      l->world->contacts[j][i] = l->world->contacts[i][j];
+    }
+  scree_code_count(c, &count, 64);
+  for (size_t w = 0; w < count && good(l); w++) {
+    scree_wall given = {0};
+    scree_mesh mesh = {0};
+    code_given_wall(c, &given);
+    if (given.kind == SCREE_WALL_MESH) code_mesh(c, &mesh);
+    given.mesh = &mesh;
+    if (good(l)) scree_world_add_wall(l->world, &given, NULL, &l->error);
+    if (good(l)) code_wall_state(c, &l->world->walls.items[w]);
+    scree_mesh_free(&mesh);
+  }
+}
+
+static void load_clump(loader *l, const scree_particle_measures *measures,
+                       scree_particle **particle) {
+  scree_codec *c = &l->codec;
+  size_t count = 0;
+  scree_code_count(c, &count, 4 * sizeof(double));
+  double *centres = scree_alloc(3 * count, sizeof *centres);
+  double *radii = scree_alloc(count, sizeof *radii);
+  if (!centres || !radii || count == 0)
+    *(count ? &c->out_of_memory : &c->failed) = true;
+  else
+    for (size_t i = 0; i < count; i++) {
+      scree_code_reals(c, &centres[3 * i], 3);
+      scree_code_real(c, &radii[i]);
+      vec3 centre = vec3_load(&centres[3 * i]);
+      if (!(isfinite(vec3_norm(centre)) && radii[i] > 0 && isfinite(radii[i]))) c->failed = true;
+    }
+  if (good(l)) scree_particle_restore(measures, NULL, centres, radii, count, particle, &l->error);
+  scree_free(centres);
+  scree_free(radii);
+}
+
+static void load_particle(loader *l, scree_particle **particle) {
+  scree_particle_measures measures = {0};
+  code_measures(&l->codec, &measures);
+  if (measures.kind != SCREE_PARTICLE_MESH) {
+    load_clump(l, &measures, particle);
+    return;
+  }
+  scree_mesh mesh = {0};
+  code_mesh(&l->codec, &mesh);
+  if (good(l)) scree_particle_restore(&measures, &mesh, NULL, NULL, 0, particle, &l->error);
+  scree_mesh_free(&mesh);
+}
+
+/* The particles, and the bodies that have them, still at the origin. */
+static void load_particles(loader *l) {
+  scree_codec *c = &l->codec;
+  scree_code_count(c, &l->particle_count, 100);
+  l->particles = scree_alloc_zero(l->particle_count, sizeof *l->particles);
+  if (!l->particles) c->out_of_memory = true;
+  for (size_t i = 0; i < l->particle_count && good(l); i++) load_particle(l, &l->particles[i]);
+  size_t count = 0;
+  scree_code_count(c, &count, 5);
+  for (size_t i = 0; i < count && good(l); i++) {
+    uint32_t number = 0;
+    uint8_t material = 0;
+    scree_code_u32(c, &number);
+    scree_code_u8(c, &material);
+    if (number >= l->particle_count) c->failed = true;
+    if (good(l))
+      scree_world_add_body(l->world, l->particles[number], material, NULL, NULL, &l->error);
+  }
+}
+
+static void load_bodies(loader *l) {
+  scree_bodies *b = &l->world->bodies;
+  for (size_t i = 0; i < b->count && good(l); i++) {
+    body_record record = {0};
+    code_body(&l->codec, &record);
+    if (!isfinite(vec3_norm(record.frame.position))) l->codec.failed = true;
+    b->frame[i] = record.frame;
+    b->orientation[i] = record.orientation;
+    b->momentum[i] = record.momentum;
+    b->inertia[i] = record.inertia;
+    b->force[i] = record.force;
+    b->torque[i] = record.torque;
+    b->mass[i] = record.mass;
+    b->travel[i] = record.travel;
+    b->path[i] = record.path;
+    b->removed[i] = record.removed;
+    b->removed_count += record.removed;
+    l->world->body_path_at_build[i] = record.path_at_build;
+  }
+}
+
+/* Whether a feature pair names features that are there. */
+static bool names_features(const loader *l, const scree_pair *pair, uint32_t kind, uint32_t a,
+                           uint32_t b) {
+  const scree_particle *of_a = l->world->bodies.particle[pair->a],
+                       *of_b = scree_pair_shape_b(l->world, pair);
+  if (kind == SCREE_ITEM_POINT_WALL) return !of_b && a < of_a->point_count;
+  if (!of_b) return false;
+  switch (kind) {
+  case SCREE_ITEM_POINT_FACE:
+    return of_b->face_count > 0 && a < of_a->point_count;
+  case SCREE_ITEM_FACE_POINT:
+    return of_a->face_count > 0 && b < of_b->point_count;
+  case SCREE_ITEM_EDGE_EDGE:
+    return a < of_a->edge_count && b < of_b->edge_count;
+  case SCREE_ITEM_POINT_POINT:
+    return a < of_a->point_count && b < of_b->point_count;
+  default:
+    return false;
+  }
+}
+
+static bool is_item(const loader *l, const scree_pair *pair, const scree_item *item) {
+  if (item->face_count > SCREE_CACHED_FACES) return false;
+  if (!names_features(l, pair, item->kind, item->a, item->b)) return false;
+  const scree_particle *surface = item->kind == SCREE_ITEM_FACE_POINT
+                                      ? l->world->bodies.particle[pair->a]
+                                      : scree_pair_shape_b(l->world, pair);
+  for (uint32_t k = 0; k < item->face_count; k++)
+    if (!surface || item->face[k] >= surface->face_count) return false;
+  return true;
+}
+
+static void load_items(loader *l, scree_pair *pair) {
+  size_t active = pair->active.count, sleeping = pair->sleeping.count;
+  pair->active.count = pair->sleeping.count = 0;
+  if (!good(l)) return;
+  if (!SCREE_RESERVE(&pair->active, active) || !SCREE_RESERVE(&pair->sleeping, sleeping))
+    l->codec.out_of_memory = true;
+  for (size_t i = 0; i < active && good(l); i++) {
+    scree_item item = {0};
+    code_item(&l->codec, &item);
+    if (!is_item(l, pair, &item)) l->codec.failed = true;
+    pair->active.items[pair->active.count++] = item;
+  }
+  for (size_t i = 0; i < sleeping && good(l); i++) {
+    scree_sleeper s = {0};
+    code_sleeper(&l->codec, &s);
+    if (!names_features(l, pair, s.kind, s.a, s.b)) l->codec.failed = true;
+    pair->sleeping.items[pair->sleeping.count++] = s;
+  }
+}
+
+/* Pairs come sorted by a, bodies before walls, then b, and none twice. */
+static bool follows(const scree_pair *last, const scree_pair *next) {
+  if (!last) return true;
+  if (last->a != next->a) return last->a < next->a;
+  if (last->wall != next->wall) return next->wall;
+  return last->b < next->b;
+}
+
+static void load_pairs(loader *l) {
+  scree_world *world = l->world;
+  size_t count = 0;
+  scree_code_count(&l->codec, &count, 256);
+  if (!SCREE_RESERVE(&world->pairs, count)) l->codec.out_of_memory = true;
+  for (size_t k = 0; k < count && good(l); k++) {
+    scree_pair name = {0};
+    code_pair_name(&l->codec, &name);
+    bool known =
+        name.a < world->bodies.count &&
+        (name.wall ? name.b < world->walls.count : name.a < name.b && name.b < world->bodies.count);
+    if (!known || !follows(k ? world->pairs.items[k - 1] : NULL, &name)) l->codec.failed = true;
+    if (!good(l)) return;
+    scree_pair *pair = scree_pair_take(world, name.a, name.b, name.wall);
+    if (!pair) {
+      l->codec.out_of_memory = true;
+      return;
+    }
+    world->pairs.items[world->pairs.count++] = pair;
+    code_pair_state(&l->codec, pair);
+    load_items(l, pair);
+  }
+}
+
+static void load_tail(loader *l) {
+  scree_world *world = l->world;
+  tail_record tail = {0};
+  code_tail(&l->codec, &tail);
+  if (l->codec.position != l->codec.count) l->codec.failed = true;
+  if (!good(l) || scree_broad_restore(world, tail.margin, &l->error)) return;
+  world->time = tail.time;
+  world->time_step = tail.time_step;
+  world->work_dashpot = tail.work_dashpot;
+  world->work_tangential = tail.work_tangential;
+  world->wall_work = tail.wall_work;
+  world->largest_overlap = tail.largest_overlap;
+  world->step_count = tail.step_count;
+  world->pairs_stale = tail.pairs_stale;
+  world->time_step_stale = tail.time_step_stale;
+  world->diverged = tail.diverged;
+  world->failure.status = (scree_status)tail.failure;
+  memcpy(world->failure.message, tail.message, sizeof tail.message);
+}
+
+/* Reads and checks the header; leaves the codec at the rest. */
+static scree_status check_header(scree_codec *c, const char *name, scree_error *error) {
+  unsigned char head[sizeof magic] = {0};
+  uint32_t version_order[2] = {0};
+  uint64_t length_sum[3] = {0};
+  code_header(c, head, version_order, length_sum);
+  if (c->count < sizeof magic || memcmp(head, magic, sizeof magic) != 0)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: no checkpoint of a scree world", name);
+  if (c->failed)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: %zu bytes, shorter than the %d of a header", name,
+                      c->count, HEADER);
+  if (version_order[1] != BYTE_ORDER_MARK)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: byte order mark 0x%08x instead of 0x%08x", name,
+                      version_order[1], BYTE_ORDER_MARK);
+  if (version_order[0] != VERSION)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: checkpoint version %u; this program reads %d",
+                      name, version_order[0], VERSION);
+  size_t length = c->count - HEADER;
+  if (length_sum[0] != length)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: %zu bytes follow the header, which announces %llu: cut short?", name,
+                      length, (unsigned long long)length_sum[0]);
+  scree_checksum sum = scree_checksum_of(c->source + HEADER, length);
+  if (memcmp(&length_sum[1], &sum, sizeof sum) != 0)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: the checksum does not fit: the file is damaged",
+                      name);
+  return SCREE_OK;
+}
+
+static scree_status finish(loader *l, const char *name, scree_error *error) {
+  if (l->codec.out_of_memory || l->error.status == SCREE_OUT_OF_MEMORY)
+    return scree_fail_memory(error, l->codec.count, "a checkpoint's world");
+  if (l->error.status)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: byte %zu: %.900s", name, l->codec.position,
+                      l->error.message);
+  if (l->codec.failed)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: byte %zu: a value that no world has, or too few bytes", name,
+                      l->codec.position);
+  return SCREE_OK;
+}
+
+scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
+                                scree_world **world, scree_error *error) {
+  loader l = {.codec = {.source = bytes, .count = byte_count, .loading = true}};
+  scree_status status = check_header(&l.codec, name, error);
+  if (status) return status;
+  void (*const stages[])(loader *) = {load_setup, load_particles, load_bodies, load_pairs,
+                                      load_tail};
+  for (size_t i = 0; i < sizeof stages / sizeof *stages && good(&l); i++) stages[i](&l);
+  for (size_t i = 0; l.particles && i < l.particle_count; i++) scree_particle_free(l.particles[i]);
+  scree_free(l.particles);
+  status = finish(&l, name, error);
+  if (status)
+    scree_world_free(l.world);
+  else
+    *world = l.world;
+  return status;
+}
+
+scree_status scree_world_load(const char *path, scree_world **world, scree_error *error) {
+  char *bytes;
+  size_t count;
+  scree_status status = scree_file_read(path, 0, &bytes, &count, error);
+  if (status) return status;
+  status = scree_world_unpack((const unsigned char *)bytes, count, path, world, error);
+  scree_free(bytes);
+  return status;
+}

@@ -1,0 +1,230 @@
+/* Checkpoints: the same bits after loading, refusal of everything that is not whole. */
+#include "base/alloc.h"
+#include "base/file.h"
+#include "base/rng.h"
+#include "support/check.h"
+#include "support/mixed.h"
+#include "world/world.h"
+
+#include <unistd.h>
+
+typedef struct packed {
+  unsigned char *bytes;
+  size_t count;
+} packed;
+
+static void step(scree_world *world, size_t count) {
+  scree_error error;
+  CHECK_OK(scree_world_step(world, count, &error), error);
+}
+
+static packed pack(const scree_world *world) {
+  scree_error error;
+  packed p = {0};
+  CHECK_OK(scree_world_pack(world, &p.bytes, &p.count, &error), error);
+  return p;
+}
+
+static scree_world *unpack(packed p) {
+  scree_error error;
+  scree_world *world = NULL;
+  CHECK_OK(scree_world_unpack(p.bytes, p.count, "memory", &world, &error), error);
+  return world;
+}
+
+static void assert_same(const scree_world *a, const scree_world *b) {
+  scree_checksum x = scree_world_hash(a), y = scree_world_hash(b);
+  assert_true(x.high == y.high && x.low == y.low);
+  scree_observation o, p;
+  memset(&o, 0, sizeof o);
+  memset(&p, 0, sizeof p);
+  scree_world_observe(a, &o);
+  scree_world_observe(b, &p);
+  assert_memory_equal(&o, &p, sizeof o);
+}
+
+/* Saved at many moments, in the air, in impact and piled up; what was loaded packs to the same
+ * bytes and goes on with the same bits, on another number of threads. */
+static void continues(scree_law law, int rounds) {
+  scree_world *world = mixed_world(law);
+  for (int round = 0; round < rounds; round++) {
+    packed p = pack(world);
+    scree_world *loaded = unpack(p);
+    packed again = pack(loaded);
+    assert_int_equal(p.count, again.count);
+    assert_memory_equal(p.bytes, again.bytes, p.count);
+    scree_set_threads(1 + round % 2);
+    step(loaded, 150);
+    scree_set_threads(0);
+    step(world, 150);
+    assert_same(world, loaded);
+    scree_world_free(loaded);
+    scree_free(p.bytes);
+    scree_free(again.bytes);
+  }
+  scree_observation o;
+  scree_world_observe(world, &o);
+  assert_true(o.contact_count > 2);
+  scree_world_free(world);
+}
+
+static void continues_linear(void **state) {
+  (void)state;
+  continues(SCREE_LAW_LINEAR, 12);
+}
+
+static void continues_hysteretic(void **state) {
+  (void)state;
+  continues(SCREE_LAW_HYSTERETIC, 6);
+}
+
+/* Changes made between save and load's continuation: both worlds take them alike. */
+static void takes_changes(void **state) {
+  (void)state;
+  scree_error error;
+  scree_world *worlds[2] = {mixed_world(SCREE_LAW_LINEAR)};
+  step(worlds[0], 500);
+  scree_world_remove_body(worlds[0], 3);
+  packed p = pack(worlds[0]);
+  worlds[1] = unpack(p);
+  const double up[3] = {0, 0, 0.3}, still[3] = {0};
+  for (int i = 0; i < 2; i++) {
+    scree_body body = scree_default_body();
+    body.position[2] = 0.4;
+    scree_particle *particle = scree_world_body_particle(worlds[i], 5);
+    CHECK_OK(scree_world_add_body(worlds[i], particle, 1, &body, NULL, &error), error);
+    CHECK_OK(scree_world_set_wall_velocity(worlds[i], 1, up, still, &error), error);
+    step(worlds[i], 500);
+  }
+  assert_same(worlds[0], worlds[1]);
+  scree_world_free(worlds[0]);
+  scree_world_free(worlds[1]);
+  scree_free(p.bytes);
+}
+
+/* A diverged world is saved too and says what it said. */
+static void keeps_failure(void **state) {
+  (void)state;
+  scree_error error, again;
+  scree_world *world = mixed_world(SCREE_LAW_LINEAR);
+  step(world, 100);
+  scree_body body;
+  scree_world_get_body(world, 2, &body);
+  body.velocity[0] = 1e4;
+  scree_world_set_body(world, 2, &body);
+  assert_int_equal(scree_world_step(world, 1, &error), SCREE_DIVERGED);
+  packed p = pack(world);
+  scree_world *loaded = unpack(p);
+  assert_int_equal(scree_world_step(loaded, 1, &again), SCREE_DIVERGED);
+  assert_string_equal(error.message, again.message);
+  scree_world_free(world);
+  scree_world_free(loaded);
+  scree_free(p.bytes);
+}
+
+static void refuse(const unsigned char *bytes, size_t count) {
+  scree_error error = {0};
+  scree_world *world = NULL;
+  assert_int_equal(scree_world_unpack(bytes, count, "damaged", &world, &error), SCREE_BAD_FILE);
+  assert_null(world);
+  assert_non_null(strstr(error.message, "damaged"));
+  assert_null(strchr(error.message, '\n'));
+}
+
+/* Every bit of the header, and bits all over the rest; every length up to the header and many
+ * beyond it; bytes too many. Copies have their exact size, for the address sanitizer. */
+static void refuses_damage(void **state) {
+  (void)state;
+  scree_world *world = mixed_world(SCREE_LAW_LINEAR);
+  step(world, 600);
+  packed p = pack(world);
+  size_t stride = p.count / 600 + 1;
+  for (size_t at = 0; at < p.count; at += at < 40 ? 1 : stride)
+    for (int bit = 0; bit < 8; bit += at < 40 ? 1 : 5) {
+      p.bytes[at] ^= (unsigned char)(1u << bit);
+      refuse(p.bytes, p.count);
+      p.bytes[at] ^= (unsigned char)(1u << bit);
+    }
+  for (size_t count = 0; count < p.count; count += count < 64 ? 1 : stride) {
+    unsigned char *cut = scree_alloc(count, 1);
+    if (count) memcpy(cut, p.bytes, count);
+    refuse(cut, count);
+    scree_free(cut);
+  }
+  unsigned char *more = scree_alloc(p.count + 1, 1);
+  memcpy(more, p.bytes, p.count);
+  more[p.count] = 0;
+  refuse(more, p.count + 1);
+  refuse((const unsigned char *)"solid cube\nfacet normal 0 0 1\nouter loop\n", 41);
+  scree_free(more);
+  scree_free(p.bytes);
+  scree_world_free(world);
+}
+
+/* The length and the checksum made to fit again: forged files must be refused or give a world that
+ * can be stepped and freed. */
+static void survives_forgery(void **state) {
+  (void)state;
+  scree_world *world = mixed_world(SCREE_LAW_LINEAR);
+  step(world, 600);
+  packed p = pack(world);
+  scree_rng rng = {.seed = 5};
+  size_t refused = 0;
+  for (int n = 0; n < 200; n++) {
+    packed forged = {scree_alloc(p.count, 1), p.count};
+    memcpy(forged.bytes, p.bytes, p.count);
+    size_t at = 40 + scree_rng_below(&rng, n % 2 ? 400 : p.count - 40);
+    for (size_t k = at; k < at + 4 && k < p.count; k++)
+      forged.bytes[k] = n % 3 ? (unsigned char)scree_rng_below(&rng, 256) : 255;
+    scree_checksum sum = scree_checksum_of(forged.bytes + 40, p.count - 40);
+    for (size_t k = 0; k < 8; k++) {
+      forged.bytes[24 + k] = (unsigned char)(sum.high >> 8 * k);
+      forged.bytes[32 + k] = (unsigned char)(sum.low >> 8 * k);
+    }
+    scree_error error;
+    scree_world *loaded = NULL;
+    if (scree_world_unpack(forged.bytes, forged.count, "forged", &loaded, &error) == SCREE_OK)
+      scree_world_hash(loaded);
+    else
+      refused++;
+    scree_world_free(loaded);
+    scree_free(forged.bytes);
+  }
+  assert_true(refused > 20);
+  scree_free(p.bytes);
+  scree_world_free(world);
+}
+
+/* Through files: refused when there, replaced when asked, and nothing left beside it. */
+static void files(void **state) {
+  (void)state;
+  scree_error error;
+  char folder[] = "/tmp/scree-save-XXXXXX", path[64];
+  assert_non_null(mkdtemp(folder));
+  snprintf(path, sizeof path, "%s/w.scree", folder);
+  scree_world *world = mixed_world(SCREE_LAW_LINEAR), *loaded = NULL;
+  assert_int_equal(scree_world_load(path, &loaded, &error), SCREE_IO);
+  CHECK_OK(scree_world_save(world, path, false, &error), error);
+  assert_int_equal(scree_world_save(world, path, false, &error), SCREE_EXISTS);
+  step(world, 50);
+  CHECK_OK(scree_world_save(world, path, true, &error), error);
+  CHECK_OK(scree_world_load(path, &loaded, &error), error);
+  assert_same(world, loaded);
+  scree_world_free(world);
+  scree_world_free(loaded);
+  assert_int_equal(unlink(path), 0);
+  assert_int_equal(rmdir(folder), 0);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(continues_linear),
+      cmocka_unit_test(continues_hysteretic),
+      cmocka_unit_test(takes_changes),
+      cmocka_unit_test(keeps_failure),
+      cmocka_unit_test(refuses_damage),
+      cmocka_unit_test(survives_forgery),
+      cmocka_unit_test(files),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
