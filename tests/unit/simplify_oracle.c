@@ -1,0 +1,628 @@
+/* The greedy stage against a slow decimator, collapse by collapse.
+ *
+ * The oracle knows a list of triangles and nothing else: stars, quadrics, costs, places, the link
+ * condition, flips, slivers, folds and intersections are computed from it anew for every edge at
+ * every collapse, by other formulas than the engine's (sums over triangles instead of sums per
+ * vertex, a system of Lagrange's multipliers instead of a frame, planes of the first mesh instead
+ * of accumulated quadrics, all pairs of triangles instead of a grid).
+ *
+ * For every collapse of the engine's record it asks: was this collapse allowed, is its place the
+ * one of least cost, are its error and its changes of area and volume right, and was every edge
+ * of lower cost not allowed? Where the engine and the oracle differ by rounding the engine's place
+ * is taken over, so that errors do not add up. What an edge may do next after a refusal is part of
+ * the rules: it waits, at the cost of its cheapest allowed other place or out of the race, until a
+ * triangle at one of its ends changes. */
+#include "mesh/intersect.h"
+#include "simplify/decimate.h"
+#include "support/check.h"
+#include "support/shapes.h"
+
+/* What the rules name (docs/decimation.md). */
+#define FLIP_COSINE  0.1
+#define SLIVER_SHAPE 2e-3
+#define FOLD_COSINE  (-0.857)
+#define REACH_EDGES  4.0
+#define VOLUME_PULL  1e-6
+#define VOLUME_TIE   1e-9
+#define QECD_PULL    1e-8
+#define QECD_TIE     1e-12
+#define QECD_SHAPE   0.3
+#define QECD_MIDDLE  2e-15
+
+enum { BEST = 0, FALLBACK = 1, OUT = 4, STATES = 7, IN_DOUBT = 8 };
+
+typedef struct oracle {
+  size_t vertex_count, triangle_count;
+  vec3 *position;
+  uint32_t *triangle;
+  bool qecd;
+  vec3 *plane; /* of the first mesh's triangles: unit normal */
+  double *offset, *weight;
+  size_t plane_count;
+  uint16_t *share; /* vertex_count * plane_count: how often the plane counts at the vertex */
+  uint8_t *state;  /* vertex_count^2, lower vertex first */
+  size_t compared, decided; /* collapses, and those with no rival within rounding */
+} oracle;
+
+typedef struct place {
+  vec3 target;
+  double cost, error, slack; /* slack: what rounding may change in the cost */
+  vec3 other; /* where the rule between two places is within rounding: the other, else target */
+} place;
+
+static vec3 corner(const oracle *o, size_t t, size_t i) {
+  return o->position[o->triangle[3 * t + i]];
+}
+
+static bool has(const oracle *o, size_t t, uint32_t v) {
+  const uint32_t *c = o->triangle + 3 * t;
+  return c[0] == v || c[1] == v || c[2] == v;
+}
+
+static vec3 area_vector(const oracle *o, size_t t) {
+  return vec3_triangle_normal(corner(o, t, 0), corner(o, t, 1), corner(o, t, 2));
+}
+
+/* Solves the n x n system in place, with pivots. */
+static void solve(double m[4][5], int n) {
+  for (int i = 0; i < n; i++) {
+    int pivot = i;
+    for (int r = i + 1; r < n; r++)
+      if (fabs(m[r][i]) > fabs(m[pivot][i])) pivot = r;
+    for (int c = 0; c <= n; c++) {
+      double swapped = m[i][c];
+      m[i][c] = m[pivot][c];
+      m[pivot][c] = swapped;
+    }
+    for (int r = 0; r < n; r++) {
+      if (r == i) continue;
+      double f = m[r][i] / m[i][i];
+      for (int c = i; c <= n; c++) m[r][c] -= f * m[i][c];
+    }
+  }
+  for (int i = 0; i < n; i++) m[i][n] /= m[i][i];
+}
+
+static void add_square(double m[4][5], vec3 n, double rhs, double w) {
+  double v[4] = {n.x, n.y, n.z, rhs};
+  for (int i = 0; i < 3; i++) {
+    for (int j = 0; j < 3; j++) m[i][j] += w * v[i] * v[j];
+    m[i][4] += w * v[i] * v[3];
+  }
+}
+
+/* ---- Method volume ---- */
+
+/* The sum of the squared tetrahedra that the triangles of the edge sweep, each once. */
+static double swept(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
+  double energy = 0;
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (!has(o, t, a) && !has(o, t, b)) continue;
+    double tetrahedron = vec3_dot(area_vector(o, t), vec3_sub(x, corner(o, t, 0)));
+    energy += tetrahedron * tetrahedron;
+  }
+  return energy;
+}
+
+/* fallback < 0: the best place. */
+static place volume_place(const oracle *o, uint32_t a, uint32_t b, int fallback) {
+  static const double along[SCREE_FALLBACK_COUNT] = {0.5, 0, 1};
+  place p = {.cost = INFINITY};
+  vec3 pa = o->position[a], e = vec3_sub(o->position[b], pa), sum = {0, 0, 0};
+  vec3 y = vec3_scale(e, fallback < 0 ? 0.5 : along[fallback]);
+  double squares = 0, lengths = 0, level = 0, h[4][5] = {{0}};
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (!has(o, t, a) && !has(o, t, b)) continue;
+    vec3 n = area_vector(o, t);
+    double d = vec3_dot(n, vec3_sub(corner(o, t, 0), pa));
+    squares += vec3_norm2(n);
+    lengths += vec3_norm(n);
+    sum = vec3_add(sum, n);
+    level += d;
+    add_square(h, n, d, 1);
+  }
+  double norm = vec3_norm(sum), pull = VOLUME_PULL * squares;
+  if (!(norm > 0 && squares > 0 && lengths > 0)) return p;
+  vec3 n = vec3_scale(sum, 1 / norm);
+  level /= norm;
+  y = vec3_mad(y, n, level - vec3_dot(n, y));
+  for (int step = 0; step < 3 && fallback < 0; step++) {
+    double before[3] = {y.x, y.y, y.z}, m[4][5], unit[3] = {n.x, n.y, n.z};
+    memcpy(m, h, sizeof m);
+    for (int i = 0; i < 3; i++) {
+      m[i][i] += pull;
+      m[i][4] += pull * before[i];
+      m[i][3] = m[3][i] = unit[i] * squares; /* scaled as the rest */
+    }
+    m[3][3] = 0;
+    m[3][4] = level * squares;
+    solve(m, 4);
+    y = (vec3){m[0][4], m[1][4], m[2][4]};
+  }
+  double length2 = vec3_norm2(e);
+  if (vec3_norm(vec3_mad(y, e, -0.5)) > REACH_EDGES * sqrt(length2)) return p;
+  p.target = p.other = vec3_add(pa, y);
+  double energy = swept(o, a, b, p.target);
+  p.error = energy / squares;
+  p.cost = (energy + VOLUME_TIE * squares * length2) / sqrt(lengths);
+  p.slack = 1e-6 * p.cost + 1e-13 * squares * length2 / sqrt(lengths);
+  return p;
+}
+
+/* ---- Method qecd ---- */
+
+static double plane_error(const oracle *o, uint32_t a, uint32_t b, vec3 x, double *trace) {
+  double error = 0;
+  *trace = 0;
+  for (size_t t = 0; t < o->plane_count; t++) {
+    double w = o->weight[t] * (o->share[a * o->plane_count + t] + o->share[b * o->plane_count + t]);
+    double d = vec3_dot(o->plane[t], x) + o->offset[t];
+    error += w * d * d;
+    *trace += w;
+  }
+  return error;
+}
+
+static vec3 plane_minimum(const oracle *o, uint32_t a, uint32_t b, vec3 from, double pull) {
+  double m[4][5] = {{0}};
+  for (size_t t = 0; t < o->plane_count; t++) {
+    double w = o->weight[t] * (o->share[a * o->plane_count + t] + o->share[b * o->plane_count + t]);
+    if (w > 0) add_square(m, o->plane[t], -(vec3_dot(o->plane[t], from) + o->offset[t]), w);
+  }
+  for (int i = 0; i < 3; i++) {
+    m[i][3] = m[i][4];
+    m[i][i] += pull;
+  }
+  double three[4][5];
+  memcpy(three, m, sizeof three);
+  solve(three, 3);
+  return vec3_add(from, (vec3){three[0][3], three[1][3], three[2][3]});
+}
+
+/* 2 area / longest edge^2 with the ends of the edge at x, or as they are where they are no ends. */
+static double shape_at(const oracle *o, size_t t, uint32_t a, uint32_t b, const vec3 *x) {
+  vec3 p[3];
+  for (size_t i = 0; i < 3; i++) {
+    uint32_t v = o->triangle[3 * t + i];
+    p[i] = x && (v == a || v == b) ? *x : o->position[v];
+  }
+  double longest = fmax(vec3_norm2(vec3_sub(p[1], p[0])),
+                        fmax(vec3_norm2(vec3_sub(p[2], p[1])), vec3_norm2(vec3_sub(p[0], p[2]))));
+  return longest > 0 ? vec3_norm(vec3_triangle_normal(p[0], p[1], p[2])) / longest : 0;
+}
+
+static place qecd_place(const oracle *o, uint32_t a, uint32_t b, int fallback) {
+  static const double along[SCREE_FALLBACK_COUNT] = {0.5, 0, 1};
+  place p = {.cost = INFINITY};
+  vec3 pa = o->position[a], pb = o->position[b], middle = vec3_scale(vec3_add(pa, pb), 0.5);
+  double trace, error, worst = QECD_SHAPE;
+  p.target = p.other = fallback < 0 ? middle : vec3_lerp(pa, pb, along[fallback]);
+  error = plane_error(o, a, b, p.target, &trace);
+  if (fallback < 0 && trace > 0) {
+    vec3 x = plane_minimum(o, a, b, middle, QECD_PULL * trace);
+    x = plane_minimum(o, a, b, x, QECD_PULL * trace);
+    double least = plane_error(o, a, b, x, &trace), doubt = 1e-15 * trace;
+    if (error > QECD_MIDDLE && least < error) {
+      if (error < QECD_MIDDLE + doubt || least > error - doubt)
+        p.other = p.target;
+      else
+        p.other = x;
+      p.target = x;
+      error = least;
+    } else if (error > QECD_MIDDLE - doubt) {
+      p.other = x;
+    }
+  }
+  for (size_t t = 0; t < o->triangle_count; t++)
+    if (has(o, t, a) != has(o, t, b)) worst = fmin(worst, shape_at(o, t, a, b, &p.target));
+  if (!(worst > 0)) return p;
+  double length2 = vec3_norm2(vec3_sub(pb, pa));
+  p.error = trace > 0 ? error / trace : 0;
+  p.cost = (error + QECD_TIE * trace * length2) / worst;
+  p.slack = 1e-6 * p.cost + 2e-15 * trace / worst;
+  return p;
+}
+
+static place place_of(const oracle *o, uint32_t a, uint32_t b, int fallback) {
+  return o->qecd ? qecd_place(o, a, b, fallback) : volume_place(o, a, b, fallback);
+}
+
+/* ---- What a collapse must not do ---- */
+
+/* Exactly the two apexes are neighbours of both ends, and at least three triangles stay. */
+static bool links_agree(const oracle *o, uint32_t a, uint32_t b) {
+  size_t common = 0, staying = 0;
+  uint8_t *next_to = calloc(o->vertex_count, 1);
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    bool at_a = has(o, t, a), at_b = has(o, t, b);
+    staying += at_a != at_b;
+    for (size_t i = 0; i < 3; i++) {
+      next_to[o->triangle[3 * t + i]] |= at_a ? 1 : 0;
+      next_to[o->triangle[3 * t + i]] |= at_b ? 2 : 0;
+    }
+  }
+  for (uint32_t v = 0; v < o->vertex_count; v++) common += v != a && v != b && next_to[v] == 3;
+  free(next_to);
+  return common == 2 && staying >= 3;
+}
+
+/* The mesh with the edge collapsed; triangles keep their numbers, those that go become 0 0 0. */
+static oracle collapsed(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
+  oracle n = *o;
+  n.position = malloc(o->vertex_count * sizeof *n.position);
+  n.triangle = malloc(3 * o->triangle_count * sizeof *n.triangle);
+  memcpy(n.position, o->position, o->vertex_count * sizeof *n.position);
+  n.position[a] = x;
+  for (size_t t = 0; t < o->triangle_count; t++)
+    for (size_t i = 0; i < 3; i++) {
+      uint32_t v = o->triangle[3 * t + i];
+      n.triangle[3 * t + i] = has(o, t, a) && has(o, t, b) ? 0 : v == b ? a : v;
+    }
+  return n;
+}
+
+static bool gone(const oracle *o, size_t t) {
+  return o->triangle[3 * t] == o->triangle[3 * t + 1];
+}
+
+static bool is_folded(vec3 n, vec3 m) {
+  return vec3_dot(n, m) < FOLD_COSINE * vec3_norm(n) * vec3_norm(m);
+}
+
+/* Edges with a fold, over all pairs of triangles that share one, of which one is `touched`. */
+static int folds(const oracle *o, const bool *touched) {
+  int count = 0;
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (gone(o, t) || !touched[t]) continue;
+    for (size_t u = 0; u < o->triangle_count; u++) {
+      if (u == t || gone(o, u) || (touched[u] && u < t)) continue;
+      int shared = 0;
+      for (size_t i = 0; i < 3; i++) shared += has(o, u, o->triangle[3 * t + i]);
+      if (shared == 2) count += is_folded(area_vector(o, t), area_vector(o, u));
+    }
+  }
+  return count;
+}
+
+/* Pairs that meet beyond what they share, of which one is touched. */
+static int meetings(const oracle *o, const bool *touched) {
+  int count = 0;
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (gone(o, t) || !touched[t]) continue;
+    for (size_t u = 0; u < o->triangle_count; u++) {
+      if (u == t || gone(o, u) || (touched[u] && u < t)) continue;
+      count += scree_triangles_meet(&o->position[0].x, o->triangle + 3 * t, o->triangle + 3 * u) !=
+               SCREE_MEET_NOT;
+    }
+  }
+  return count;
+}
+
+static bool triangles_stay_sound(const oracle *o, const oracle *after, uint32_t a, uint32_t b) {
+  double worst_before = 1, worst_after = 1;
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (!has(o, t, a) && !has(o, t, b)) continue;
+    worst_before = fmin(worst_before, shape_at(o, t, a, b, NULL));
+    if (gone(after, t)) continue;
+    vec3 n = area_vector(o, t), m = area_vector(after, t);
+    if (!(vec3_dot(n, m) > FLIP_COSINE * vec3_norm(n) * vec3_norm(m))) return false;
+    worst_after = fmin(worst_after, shape_at(after, t, a, b, NULL));
+  }
+  return worst_after >= SLIVER_SHAPE || worst_after >= worst_before;
+}
+
+static bool may_collapse(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
+  if (!links_agree(o, a, b)) return false;
+  oracle after = collapsed(o, a, b, x);
+  bool ok = triangles_stay_sound(o, &after, a, b);
+  if (ok) {
+    bool *touched = calloc(o->triangle_count, sizeof *touched);
+    for (size_t t = 0; t < o->triangle_count; t++) touched[t] = has(o, t, a) || has(o, t, b);
+    ok = folds(&after, touched) <= folds(o, touched) &&
+         meetings(&after, touched) <= meetings(o, touched);
+    free(touched);
+  }
+  free(after.position);
+  free(after.triangle);
+  return ok;
+}
+
+/* ---- The order ---- */
+
+static uint8_t *state_of(oracle *o, uint32_t a, uint32_t b) {
+  return &o->state[a < b ? a * o->vertex_count + b : b * o->vertex_count + a];
+}
+
+/* The edge's cost as it waits; INFINITY: out. */
+static place waiting(oracle *o, uint32_t a, uint32_t b) {
+  int state = *state_of(o, a, b) & STATES;
+  return state == OUT ? (place){.cost = INFINITY} : place_of(o, a, b, state - FALLBACK);
+}
+
+/* What becomes of an edge whose turn came and which is not allowed. */
+static void refuse(oracle *o, uint32_t a, uint32_t b) {
+  uint8_t *state = state_of(o, a, b), next = OUT;
+  double least = INFINITY;
+  for (int k = 0; k < SCREE_FALLBACK_COUNT && (*state & STATES) == BEST; k++) {
+    place p = place_of(o, a, b, k);
+    if (!(p.cost < least) || !may_collapse(o, a, b, p.target)) continue;
+    least = p.cost;
+    next = (uint8_t)(FALLBACK + k);
+  }
+  *state = (uint8_t)((*state & IN_DOUBT) | next);
+}
+
+/* Every edge once, as the lower and the higher end of a triangle's side. */
+static bool next_edge(const oracle *o, size_t *side, uint32_t *a, uint32_t *b) {
+  while (*side < 3 * o->triangle_count) {
+    size_t h = (*side)++;
+    *a = o->triangle[h];
+    *b = o->triangle[h % 3 == 2 ? h - 2 : h + 1];
+    if (*a < *b) return true;
+  }
+  return false;
+}
+
+/* The engine collapses (a, b) next, to x; checks that no edge should have come before. */
+static bool check_turn(oracle *o, uint32_t a, uint32_t b, vec3 x, place *chosen) {
+  *chosen = waiting(o, a, b);
+  if (chosen->cost < INFINITY && !may_collapse(o, a, b, x) &&
+      !may_collapse(o, a, b, chosen->target))
+    *chosen = (place){.cost = INFINITY};
+  double off = vec3_norm(vec3_sub(x, chosen->target));
+  if (!(chosen->cost < INFINITY) ||
+      (off > 1e-6 && !(vec3_norm(vec3_sub(x, chosen->other)) <= 1e-6))) {
+    refuse(o, a, b); /* the best place was refused in between: one of the others */
+    *chosen = waiting(o, a, b);
+  }
+  if (!(chosen->cost < INFINITY)) return false;
+  bool alone = true;
+  size_t side = 0;
+  uint32_t c, d;
+  while (next_edge(o, &side, &c, &d)) {
+    if (c == a && d == b) continue;
+    for (;;) { /* until its turn is not now, or it is out */
+      place p = waiting(o, c, d);
+      if (!(p.cost < INFINITY) || p.cost > chosen->cost + p.slack + chosen->slack) break;
+      if (p.cost >= chosen->cost - p.slack - chosen->slack) {
+        *state_of(o, c, d) |= IN_DOUBT; /* whether its turn came is rounding's to say */
+        alone = false;
+        break;
+      }
+      if (may_collapse(o, c, d, p.target)) {
+        if (*state_of(o, c, d) & IN_DOUBT) break;
+        print_error("edge (%u, %u) has cost %.9g and is allowed\n", c, d, p.cost);
+        return false;
+      }
+      refuse(o, c, d);
+    }
+  }
+  o->decided += alone;
+  return true;
+}
+
+static void apply(oracle *o, uint32_t a, uint32_t b, vec3 x) {
+  oracle after = collapsed(o, a, b, x);
+  size_t kept = 0;
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (gone(&after, t)) continue;
+    memmove(after.triangle + 3 * kept++, after.triangle + 3 * t, 3 * sizeof *after.triangle);
+  }
+  free(o->position);
+  free(o->triangle);
+  o->position = after.position;
+  o->triangle = after.triangle;
+  o->triangle_count = kept;
+  for (size_t t = 0; o->qecd && t < o->plane_count; t++)
+    o->share[a * o->plane_count + t] =
+        (uint16_t)(o->share[a * o->plane_count + t] + o->share[b * o->plane_count + t]);
+  /* all edges at the ends of the triangles that changed start anew */
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (!has(o, t, a)) continue;
+    for (size_t i = 0; i < 3; i++)
+      for (uint32_t v = 0; v < o->vertex_count; v++) *state_of(o, o->triangle[3 * t + i], v) = BEST;
+  }
+}
+
+static void measure(const oracle *o, double *area, double *volume) {
+  *area = *volume = 0;
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    *area += 0.5 * vec3_norm(area_vector(o, t));
+    *volume += vec3_dot(corner(o, t, 0), area_vector(o, t)) / 6;
+  }
+}
+
+/* ---- Running both ---- */
+
+static oracle oracle_of(const scree_mesh *mesh, const scree_halfmesh *s, bool qecd) {
+  size_t n = mesh->vertex_count, m = mesh->triangle_count;
+  oracle o = {.vertex_count = n, .triangle_count = m, .plane_count = m, .qecd = qecd};
+  o.position = malloc(n * sizeof *o.position);
+  o.triangle = malloc(3 * m * sizeof *o.triangle);
+  o.plane = malloc(m * sizeof *o.plane);
+  o.offset = malloc(m * sizeof *o.offset);
+  o.weight = malloc(m * sizeof *o.weight);
+  o.share = calloc(n * m, sizeof *o.share);
+  o.state = calloc(n * n, 1);
+  memcpy(o.triangle, mesh->triangles, 3 * m * sizeof *o.triangle);
+  for (size_t v = 0; v < n; v++)
+    o.position[v] =
+        vec3_scale(vec3_sub(vec3_load(mesh->positions + 3 * v), s->centre), 1 / s->scale);
+  for (size_t t = 0; t < m; t++) {
+    vec3 normal = area_vector(&o, t);
+    o.weight[t] = vec3_norm(normal);
+    o.plane[t] = vec3_scale(normal, 1 / o.weight[t]);
+    o.offset[t] = -vec3_dot(o.plane[t], corner(&o, t, 0));
+    for (size_t i = 0; i < 3; i++) o.share[o.triangle[3 * t + i] * m + t] = 1;
+  }
+  return o;
+}
+
+static void oracle_free(oracle *o) {
+  free(o->position);
+  free(o->triangle);
+  free(o->plane);
+  free(o->offset);
+  free(o->weight);
+  free(o->share);
+  free(o->state);
+}
+
+static void record_make(scree_record *r, size_t capacity) {
+  r->capacity = capacity;
+  r->kept = malloc(capacity * sizeof *r->kept);
+  r->gone = malloc(capacity * sizeof *r->gone);
+  r->position = malloc(capacity * sizeof *r->position);
+  r->area = malloc(capacity * sizeof *r->area);
+  r->volume = malloc(capacity * sizeof *r->volume);
+  r->error = malloc(capacity * sizeof *r->error);
+}
+
+static void record_free(scree_record *r) {
+  free(r->kept);
+  free(r->gone);
+  free(r->position);
+  free(r->area);
+  free(r->volume);
+  free(r->error);
+}
+
+/* One collapse of the record: everything about it. */
+static void check_collapse(oracle *o, const scree_decimator *d, size_t i) {
+  const scree_record *r = &d->record;
+  uint32_t a = r->kept[i], b = r->gone[i];
+  vec3 x = vec3_scale(vec3_sub(r->position[i], d->s.centre), 1 / d->s.scale);
+  double area, volume, area_after, volume_after;
+  place chosen;
+  if (!check_turn(o, a, b, x, &chosen))
+    fail_msg("collapse %zu, (%u, %u), at %zu triangles", i, a, b, o->triangle_count);
+  double off = fmin(vec3_norm(vec3_sub(x, chosen.target)), vec3_norm(vec3_sub(x, chosen.other)));
+  if (!(off <= 1e-6) || !may_collapse(o, a, b, x))
+    fail_msg("collapse %zu, (%u, %u): placed %g beside the best, or not allowed", i, a, b, off);
+  CHECK_NEAR((double)r->error[i], chosen.error, 1e-5 * chosen.error + 1e-14);
+  measure(o, &area, &volume);
+  apply(o, a, b, x);
+  measure(o, &area_after, &volume_after);
+  CHECK_NEAR(r->area[i], area_after - area, 1e-12);
+  CHECK_NEAR(r->volume[i], volume_after - volume, 1e-12);
+  if (!o->qecd) CHECK_NEAR(volume_after, volume, 1e-12);
+  o->compared++;
+}
+
+/* After the last collapse nothing that waits is allowed. */
+static void check_floor(oracle *o) {
+  size_t side = 0;
+  uint32_t a, b;
+  while (next_edge(o, &side, &a, &b))
+    for (;;) {
+      place p = waiting(o, a, b);
+      if (!(p.cost < INFINITY)) break;
+      if (may_collapse(o, a, b, p.target) && !(*state_of(o, a, b) & IN_DOUBT))
+        fail_msg("edge (%u, %u) could still go at %zu triangles", a, b, o->triangle_count);
+      if (*state_of(o, a, b) & IN_DOUBT) break;
+      refuse(o, a, b);
+    }
+}
+
+/* On a surface that meets itself from the start the engine refuses a little more than it must, so
+ * the shapes here do not. */
+static bool is_clean(const oracle *o) {
+  bool *touched = malloc(o->triangle_count * sizeof *touched);
+  for (size_t t = 0; t < o->triangle_count; t++) touched[t] = true;
+  bool clean = meetings(o, touched) == 0;
+  free(touched);
+  return clean;
+}
+
+static void compare(const scree_mesh *mesh, bool qecd, size_t *compared, size_t *decided) {
+  scree_error error;
+  scree_decimator d = {.coster = qecd ? &scree_qecd_coster : &scree_volume_coster,
+                       .options = scree_default_simplify_options(),
+                       .error_limit = INFINITY,
+                       .error = &error};
+  CHECK_OK(scree_halfmesh_build(mesh, &d.s, &error), error);
+  assert_true(d.s.closed && mesh->triangle_count < SCREE_GREEDY_COUNT);
+  d.first_triangle_count = mesh->triangle_count;
+  record_make(&d.record, mesh->vertex_count);
+  for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
+  CHECK_OK(scree_decimate_one_by_one(&d), error);
+  oracle o = oracle_of(mesh, &d.s, qecd);
+  assert_true(is_clean(&o));
+  for (size_t i = 0; i < d.record.count; i++) check_collapse(&o, &d, i);
+  assert_int_equal(o.triangle_count, d.s.live_triangle_count);
+  check_floor(&o);
+  *compared += o.compared;
+  *decided += o.decided;
+  oracle_free(&o);
+  record_free(&d.record);
+  scree_halfmesh_free(&d.s);
+  scree_grid_free(&d.grid);
+}
+
+/* Two noisy plates, one close above the other: only the test for intersections keeps them apart. */
+static scree_mesh two_plates(scree_rng *rng) {
+  scree_mesh low = shape_grid_box(0.1, 0.05, 0.02, 4), high = shape_grid_box(0.1, 0.05, 0.02, 3);
+  shape_move(&high, (vec3){0.01, 0.01, 0.0205});
+  shape_shake(&low, 1.5e-4, rng);
+  shape_shake(&high, 1.5e-4, rng);
+  scree_mesh both = shape_join(&low, &high);
+  scree_mesh_free(&low);
+  scree_mesh_free(&high);
+  return both;
+}
+
+enum { SHAPE_COUNT = 8, NOISY_FROM = 2 };
+static const double noise[SHAPE_COUNT] = {0, 0, 1e-3, 5e-4, 1e-4, 4e-4, 0, 2e-3};
+static const int rounds[SHAPE_COUNT] = {1, 1, 3, 3, 3, 3, 3, 20};
+
+static scree_mesh shape(int which, scree_rng *rng) {
+  scree_mesh mesh;
+  switch (which) {
+  case 0:
+    mesh = shape_grid_box(0.1, 0.05, 0.02, 4);
+    break;
+  case 1:
+  case 2:
+    mesh = shape_icosphere(0.02, 2);
+    break;
+  case 3:
+    mesh = shape_torus(0.03, 0.01, 16, 8);
+    break;
+  case 4:
+    mesh = shape_grid_box(0.1, 0.05, 0.004, 5);
+    break;
+  case 5:
+    mesh = shape_torus(0.03, 0.004, 20, 5);
+    break;
+  case 6:
+    mesh = two_plates(rng);
+    break;
+  default:
+    mesh = shape_icosphere(0.02, 1);
+  }
+  if (noise[which] > 0) shape_shake(&mesh, noise[which], rng);
+  return mesh;
+}
+
+static void every_collapse_is_the_oracles(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 21};
+  for (int which = 0; which < SHAPE_COUNT; which++)
+    for (int qecd = 0; qecd < 2; qecd++) {
+      size_t compared = 0, decided = 0;
+      for (int round = 0; round < rounds[which]; round++) {
+        scree_mesh mesh = shape(which, &rng);
+        compare(&mesh, qecd, &compared, &decided);
+        scree_mesh_free(&mesh);
+      }
+      print_message("shape %d, %s: %zu collapses, %zu without a rival within rounding\n", which,
+                    qecd ? "qecd" : "volume", compared, decided);
+      /* on noisy shapes rounding decides next to nothing */
+      if (which >= NOISY_FROM) assert_true(decided > compared * 9 / 10);
+    }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(every_collapse_is_the_oracles)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
