@@ -64,7 +64,10 @@ static const expectation files[] = {
 static void every_file(void **state) {
   (void)state;
   const char *folder = scan_data_folder();
-  if (!folder) skip();
+  if (!folder) {
+    skip();
+    return; /* for the compiler: skip does not come back */
+  }
   for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
     const expectation *e = &files[i];
     char path[1000];
