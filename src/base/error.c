@@ -27,11 +27,6 @@ scree_status scree_fail(scree_error *error, scree_status status, const char *for
   return status;
 }
 
-scree_status scree_fail_memory(scree_error *error, size_t byte_count, const char *what) {
-  return scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory: %zu bytes for %s", byte_count,
-                    what);
-}
-
 #ifdef SCREE_ASSERTIONS
 void scree_assert_failed(const char *condition, const char *file, int line) {
   fprintf(stderr, "%s:%d: assertion failed: %s\n", file, line, condition);

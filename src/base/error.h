@@ -10,7 +10,11 @@ scree_status scree_fail(scree_error *error, scree_status status, const char *for
     __attribute__((format(printf, 3, 4)));
 
 /* The one sentence for a failed allocation of byte_count bytes needed for `what`. */
-scree_status scree_fail_memory(scree_error *error, size_t byte_count, const char *what);
+static inline scree_status scree_fail_memory(scree_error *error, size_t byte_count,
+                                             const char *what) {
+  scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory: %zu bytes for %s", byte_count, what);
+  return SCREE_OUT_OF_MEMORY; /* in sight of the compiler and of static analysis */
+}
 
 #ifdef SCREE_ASSERTIONS
 void scree_assert_failed(const char *condition, const char *file, int line);

@@ -46,7 +46,7 @@ static void lead(scree_json *json, const char *key) {
   fputs(": ", json->stream);
 }
 
-static void open(scree_json *json, const char *key, char opening, bool one_line) {
+static void open_value(scree_json *json, const char *key, char opening, bool one_line) {
   SCREE_ASSERT(json->depth < SCREE_JSON_DEPTH);
   lead(json, key);
   putc(opening, json->stream);
@@ -58,16 +58,16 @@ static void open(scree_json *json, const char *key, char opening, bool one_line)
 }
 
 void scree_json_object(scree_json *json, const char *key) {
-  open(json, key, '{', false);
+  open_value(json, key, '{', false);
 }
 void scree_json_array(scree_json *json, const char *key) {
-  open(json, key, '[', false);
+  open_value(json, key, '[', false);
 }
 void scree_json_row_object(scree_json *json, const char *key) {
-  open(json, key, '{', true);
+  open_value(json, key, '{', true);
 }
 void scree_json_row_array(scree_json *json, const char *key) {
-  open(json, key, '[', true);
+  open_value(json, key, '[', true);
 }
 
 void scree_json_end(scree_json *json) {

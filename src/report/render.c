@@ -24,6 +24,7 @@ static const double ground_size = 30;     /* half width of the floor */
 static const double ground_fade = 2.4;    /* distance over which the floor goes into the white */
 static const double edge_width_px = 0.9;  /* full width of a drawn edge */
 static const double edge_darkness = 0.75; /* how much of the colour an edge takes away */
+static const size_t most_cells = 10000;
 enum { ROWS_PER_BLOCK = 4, BAND_ROWS = 32, CAPTION_PX = 34, GAP_PX = 6 };
 
 typedef struct camera {
@@ -336,7 +337,9 @@ static scree_status check_options(const scree_render_options *o, size_t cell_cou
   if (o->samples < 1 || o->samples > 65536)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%zu samples a pixel: must be 1 to 65536",
                       o->samples);
-  if (cell_count < 1) return scree_fail(error, SCREE_BAD_ARGUMENT, "a picture of nothing");
+  if (cell_count < 1 || cell_count > most_cells || o->columns > most_cells)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%zu views in %zu columns: must be 1 to %zu",
+                      cell_count, o->columns, most_cells);
   return SCREE_OK;
 }
 

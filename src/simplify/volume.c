@@ -69,7 +69,7 @@ static inline vec3 multiply(const double *h, vec3 v) {
 static void volume_sum(scree_halfmesh *s, uint32_t v) {
   double h[10] = {0};
   vec3 p = s->position[v];
-  uint32_t first = s->outgoing[v], g = first, last = first;
+  uint32_t first = s->outgoing[v], g = first;
   vec3 e1 = vec3_sub(s->position[scree_to(s, g)], p);
   if (s->twin[g] == SCREE_NONE) add_boundary(h, e1, 1);
   do {
@@ -81,10 +81,8 @@ static void volume_sum(scree_halfmesh *s, uint32_t v) {
     h[NZ] += n.z;
     h[AREA] += vec3_norm(n);
     e1 = e2;
-    last = g;
     g = scree_turn(s, g);
   } while (g != SCREE_NONE && g != first);
-  (void)last;
   if (g == SCREE_NONE) add_boundary(h, e1, 1);
   memcpy(s->sums[v], h, sizeof h);
 }
