@@ -396,7 +396,7 @@ static void certify_block(void *context, size_t begin, size_t end, size_t block,
     t->folds = folds_with_others(p, &ring, target);
     if (!d->s.closed) continue;
     set_box(&d->s, target, &ring);
-    if (scree_grid_certifies(&d->grid, &d->s, &ring, target)) t->verdict = CERTAIN;
+    if (scree_grid_certifies_entered(&d->grid, &ring)) t->verdict = CERTAIN;
   }
 }
 

@@ -21,12 +21,21 @@ static const double directions[DIRECTIONS][3] = {
     {2, 1, -1}, {2, -1, 1}, {-2, 1, 1}, {1, 2, 1},  {1, 2, -1}, {1, -2, 1}, {-1, 2, 1},
     {1, 1, 2},  {1, 1, -2}, {1, -1, 2}, {-1, 1, 2}};
 
+/* Bit `bit` if not dot > margin, without a branch: margin - dot is negative, also where it is tiny,
+ * exactly if dot is greater. */
+static inline uint64_t averse_bit(double dot, double margin, int bit) {
+  double short_of = margin - dot;
+  uint64_t bits;
+  memcpy(&bits, &short_of, sizeof bits);
+  return (~bits >> 63) << bit;
+}
+
 static uint64_t averse_to(vec3 n) {
   double margin = FACING * (fabs(n.x) + fabs(n.y) + fabs(n.z));
   uint64_t bits = 0;
   for (int k = 0; k < DIRECTIONS; k++) {
     double dot = n.x * directions[k][0] + n.y * directions[k][1] + n.z * directions[k][2];
-    bits |= (uint64_t) !(dot > margin) << k | (uint64_t) !(-dot > margin) << (k + DIRECTIONS);
+    bits |= averse_bit(dot, margin, k) | averse_bit(-dot, margin, k + DIRECTIONS);
   }
   return bits;
 }
@@ -176,13 +185,23 @@ void scree_grid_enter_ring(scree_grid *g, const scree_halfmesh *s, const scree_r
   enter(g, r->low, r->high, ring_averse_to(s, r, target));
 }
 
+/* Directions that not all triangles in the cells of a box face. */
+static uint64_t averse_in(const scree_grid *g, vec3 low, vec3 high) {
+  cells c = cells_of(g, low, high);
+  uint64_t averse = g->averse_all;
+  if (averse == ALL_AVERSE || count_cells(&c) > CELLS_MAX) return ALL_AVERSE;
+  FOR_CELLS(g, c, cell) averse |= __atomic_load_n(&g->averse[cell], __ATOMIC_RELAXED);
+  return averse;
+}
+
 bool scree_grid_certifies(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
                           vec3 target) {
-  cells c = cells_of(g, r->low, r->high);
-  uint64_t averse = g->averse_all;
-  if (averse == ALL_AVERSE || count_cells(&c) > CELLS_MAX) return false;
-  FOR_CELLS(g, c, cell) averse |= __atomic_load_n(&g->averse[cell], __ATOMIC_RELAXED);
+  uint64_t averse = averse_in(g, r->low, r->high);
   return averse != ALL_AVERSE && (averse | ring_averse_to(s, r, target)) != ALL_AVERSE;
+}
+
+bool scree_grid_certifies_entered(const scree_grid *g, const scree_ring *r) {
+  return averse_in(g, r->low, r->high) != ALL_AVERSE;
 }
 
 void scree_grid_mark(scree_grid *g, vec3 low, vec3 high) {

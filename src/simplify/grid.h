@@ -54,6 +54,8 @@ void scree_grid_enter_ring(scree_grid *grid, const scree_halfmesh *s, const scre
 /* True: the collapse cannot make the surface, which is closed, meet itself. */
 bool scree_grid_certifies(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                           vec3 target);
+/* The same for a ring that was entered: its new triangles are among those in the cells. */
+bool scree_grid_certifies_entered(const scree_grid *grid, const scree_ring *ring);
 
 /* Marks the cells of a box; then enters into the lists all triangles, and what they will become,
  * that touch a marked cell (all cells if none is marked). False: out of memory. */
