@@ -21,21 +21,12 @@ static const double directions[DIRECTIONS][3] = {
     {2, 1, -1}, {2, -1, 1}, {-2, 1, 1}, {1, 2, 1},  {1, 2, -1}, {1, -2, 1}, {-1, 2, 1},
     {1, 1, 2},  {1, 1, -2}, {1, -1, 2}, {-1, 1, 2}};
 
-/* Bit `bit` if not dot > margin, without a branch: margin - dot is negative, also where it is tiny,
- * exactly if dot is greater. */
-static inline uint64_t averse_bit(double dot, double margin, int bit) {
-  double short_of = margin - dot;
-  uint64_t bits;
-  memcpy(&bits, &short_of, sizeof bits);
-  return (~bits >> 63) << bit;
-}
-
 static uint64_t averse_to(vec3 n) {
   double margin = FACING * (fabs(n.x) + fabs(n.y) + fabs(n.z));
   uint64_t bits = 0;
   for (int k = 0; k < DIRECTIONS; k++) {
     double dot = n.x * directions[k][0] + n.y * directions[k][1] + n.z * directions[k][2];
-    bits |= averse_bit(dot, margin, k) | averse_bit(-dot, margin, k + DIRECTIONS);
+    bits |= (uint64_t) !(dot > margin) << k | (uint64_t) !(-dot > margin) << (k + DIRECTIONS);
   }
   return bits;
 }
@@ -209,6 +200,25 @@ void scree_grid_mark(scree_grid *g, vec3 low, vec3 high) {
   FOR_CELLS(g, c, cell) g->head[cell] = MARKED;
 }
 
+/* A box in steps of a fraction of a cell: boxes that are apart in steps are apart. */
+static scree_grid_box coarse_box(const scree_grid *g, vec3 low, vec3 high) {
+  enum { STEPS_PER_CELL = 32 }; /* at most 1025 cells along an axis */
+  double k = g->cells_per_length * STEPS_PER_CELL;
+  const double from[3] = {g->low.x, g->low.y, g->low.z};
+  const double l[3] = {low.x, low.y, low.z}, h[3] = {high.x, high.y, high.z};
+  scree_grid_box box;
+  for (int i = 0; i < 3; i++) {
+    box.low[i] = (uint16_t)cell_along(l[i], from[i], k, g->size[i] * STEPS_PER_CELL);
+    box.high[i] = (uint16_t)cell_along(h[i], from[i], k, g->size[i] * STEPS_PER_CELL);
+  }
+  return box;
+}
+
+static bool apart(const scree_grid_box *a, const scree_grid_box *b) {
+  return a->low[0] > b->high[0] || a->low[1] > b->high[1] || a->low[2] > b->high[2] ||
+         a->high[0] < b->low[0] || a->high[1] < b->low[1] || a->high[2] < b->low[2];
+}
+
 static bool list(scree_grid *g, vec3 low, vec3 high, uint32_t triangle, bool marked_only) {
   cells c = cells_of(g, low, high);
   if (count_cells(&c) > CELLS_MAX) {
@@ -218,10 +228,11 @@ static bool list(scree_grid *g, vec3 low, vec3 high, uint32_t triangle, bool mar
     g->large[g->large_count++] = triangle;
     return true;
   }
+  scree_grid_box box = coarse_box(g, low, high);
   FOR_CELLS(g, c, cell) {
     uint32_t head = g->head[cell];
     if (marked_only && head == SCREE_NONE) continue;
-    scree_grid_node node = {triangle, head == MARKED ? SCREE_NONE : head};
+    scree_grid_node node = {triangle, head == MARKED ? SCREE_NONE : head, box};
     if (!SCREE_PUSH(g, node)) return false;
     g->head[cell] = (uint32_t)(g->count - 1);
   }
@@ -256,20 +267,58 @@ static uint32_t planned_for(const scree_halfmesh *s, uint32_t t, const scree_pla
   return SCREE_NONE;
 }
 
-bool scree_grid_list_all(scree_grid *g, const scree_halfmesh *s, const scree_planned *planned,
-                         bool marked_only) {
-  for (uint32_t t = 0; t < s->triangle_count; t++) {
-    if (s->from[3 * (size_t)t] == SCREE_NONE) continue;
-    vec3 low, high;
-    triangle_box(s, t, &low, &high);
-    uint32_t chosen = planned_for(s, t, planned);
-    if (chosen != SCREE_NONE) {
-      low = vec3_min(low, planned->changes[chosen].target);
-      high = vec3_max(high, planned->changes[chosen].target);
-    }
-    if (!list(g, low, high, t, marked_only)) return false;
+/* The box of triangle t and what it will become; false: the triangle is gone. */
+static bool box_with_plan(const scree_halfmesh *s, uint32_t t, const scree_planned *planned,
+                          vec3 *low, vec3 *high) {
+  if (s->from[3 * (size_t)t] == SCREE_NONE) return false;
+  triangle_box(s, t, low, high);
+  uint32_t chosen = planned_for(s, t, planned);
+  if (chosen != SCREE_NONE) {
+    *low = vec3_min(*low, planned->changes[chosen].target);
+    *high = vec3_max(*high, planned->changes[chosen].target);
   }
   return true;
+}
+
+typedef struct wanting {
+  const scree_grid *grid;
+  const scree_halfmesh *s;
+  const scree_planned *planned;
+  uint8_t *wanted; /* per triangle: it touches a marked cell */
+} wanting;
+
+static bool touches_marked(const scree_grid *g, vec3 low, vec3 high) {
+  cells c = cells_of(g, low, high);
+  if (count_cells(&c) > CELLS_MAX) return true;
+  FOR_CELLS(g, c, cell) if (g->head[cell] == MARKED) return true;
+  return false;
+}
+
+static void want_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const wanting *w = context;
+  vec3 low, high;
+  for (size_t t = begin; t < end; t++)
+    w->wanted[t] = box_with_plan(w->s, (uint32_t)t, w->planned, &low, &high) &&
+                   touches_marked(w->grid, low, high);
+}
+
+bool scree_grid_list_all(scree_grid *g, const scree_halfmesh *s, const scree_planned *planned,
+                         bool marked_only) {
+  wanting w = {g, s, planned, NULL};
+  bool listed = true;
+  if (marked_only) { /* few are: find them in parallel */
+    w.wanted = scree_alloc(s->triangle_count, 1);
+    if (!w.wanted) return false;
+    scree_parallel_for(s->triangle_count, BLOCK, want_block, &w);
+  }
+  for (uint32_t t = 0; t < s->triangle_count && listed; t++) {
+    vec3 low, high;
+    if (w.wanted && !w.wanted[t]) continue;
+    if (box_with_plan(s, t, planned, &low, &high)) listed = list(g, low, high, t, marked_only);
+  }
+  scree_free(w.wanted);
+  return listed;
 }
 
 /* A triangle with corners named by mesh vertex; the moved vertex has the name MOVED. */
@@ -398,18 +447,6 @@ static void search_begin(search *q, vec3 target) {
     }
 }
 
-/* The box of triangle t and what it will become; false: the triangle is gone. */
-static bool box_with_plan(const search *q, uint32_t t, vec3 *low, vec3 *high) {
-  if (q->s->from[3 * (size_t)t] == SCREE_NONE) return false;
-  triangle_box(q->s, t, low, high);
-  uint32_t chosen = planned_for(q->s, t, q->planned);
-  if (chosen != SCREE_NONE) {
-    *low = vec3_min(*low, q->planned->changes[chosen].target);
-    *high = vec3_max(*high, q->planned->changes[chosen].target);
-  }
-  return true;
-}
-
 bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
                       vec3 target, const scree_planned *planned) {
   search q;
@@ -420,6 +457,7 @@ bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_
   q.before = q.after = 0;
   search_begin(&q, target);
   cells c = cells_of(g, r->low, r->high);
+  scree_grid_box box = coarse_box(g, r->low, r->high);
   for (size_t i = 0; i < g->large_count; i++)
     if (s->from[3 * (size_t)g->large[i]] != SCREE_NONE) search_triangle(&q, g->large[i]);
   FOR_CELLS(g, c, cell) {
@@ -427,7 +465,9 @@ bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_
     for (uint32_t i = g->head[cell]; i < MARKED; i = g->items[i].next) {
       uint32_t t = g->items[i].triangle;
       vec3 low, high;
-      if (!box_with_plan(&q, t, &low, &high) || low.x > r->high.x || low.y > r->high.y ||
+      /* in a batch the boxes listed hold until its collapses are done */
+      if (planned && apart(&g->items[i].box, &box)) continue;
+      if (!box_with_plan(s, t, planned, &low, &high) || low.x > r->high.x || low.y > r->high.y ||
           low.z > r->high.z || high.x < r->low.x || high.y < r->low.y || high.z < r->low.z)
         continue;
       /* it is listed in several cells: the first that both boxes have decides */

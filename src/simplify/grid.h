@@ -14,8 +14,13 @@
 
 #include "simplify/collapse.h"
 
+typedef struct scree_grid_box {
+  uint16_t low[3], high[3];
+} scree_grid_box;
+
 typedef struct scree_grid_node {
   uint32_t triangle, next;
+  scree_grid_box box; /* of the triangle as it was listed, in fractions of cells */
 } scree_grid_node;
 
 typedef struct scree_grid {
