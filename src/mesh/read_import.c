@@ -252,7 +252,7 @@ static bool import_in_child(void *context, int output) {
     }
   }
   if (!scree_child_write(output, &a, sizeof a)) return false;
-  if (a.status != SCREE_OK) return true;
+  if (!scene || a.status != SCREE_OK) return true;
   walk_scene(&w, scene, output);
   flush_chunk(&w);
   return w.is_written;
