@@ -16,7 +16,7 @@ const char *scree_status_text(scree_status status) {
   return (unsigned)status < SCREE_STATUS_COUNT ? texts[status] : "unknown status";
 }
 
-scree_status scree_fail(scree_error *error, scree_status status, const char *format, ...) {
+scree_status scree_fail_text(scree_error *error, scree_status status, const char *format, ...) {
   if (error) {
     error->status = status;
     va_list arguments;

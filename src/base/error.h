@@ -5,15 +5,23 @@
 #include "scree.h"
 
 /* Fills *error (may be NULL) with status and a printf-formatted sentence; returns status, so that
- * `return scree_fail(error, SCREE_BAD_FILE, "...", ...)` is the whole handling. */
-scree_status scree_fail(scree_error *error, scree_status status, const char *format, ...)
+ * `return scree_fail(error, SCREE_BAD_FILE, "...", ...)` is the whole handling. A macro, so that
+ * the status is in sight of the compiler and of static analysis. */
+#define scree_fail(error, status, ...)                                                             \
+  scree_status_after(scree_fail_text((error), (status), __VA_ARGS__), (status))
+
+scree_status scree_fail_text(scree_error *error, scree_status status, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+static inline scree_status scree_status_after(scree_status told, scree_status status) {
+  (void)told;
+  return status;
+}
 
 /* The one sentence for a failed allocation of byte_count bytes needed for `what`. */
 static inline scree_status scree_fail_memory(scree_error *error, size_t byte_count,
                                              const char *what) {
   scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory: %zu bytes for %s", byte_count, what);
-  return SCREE_OUT_OF_MEMORY; /* in sight of the compiler and of static analysis */
+  return SCREE_OUT_OF_MEMORY;
 }
 
 #ifdef SCREE_ASSERTIONS

@@ -485,6 +485,10 @@ static bool segment_meets(const scree_bvh_node *node, const double *p, const dou
   return enter <= leave * (1 + 1e-12);
 }
 
+static bool same_point(const double *a, const double *b) {
+  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 /* +1 or -1: crosses, with or against the normal; 0: does not (nor does a facet shrunk to a point);
  * 2: touches. */
 static int cross_triangle(const double *corners, const double *p, const double *q) {
@@ -495,7 +499,7 @@ static int cross_triangle(const double *corners, const double *p, const double *
   bool out = (s > 0 || t > 0 || u > 0) && (s < 0 || t < 0 || u < 0);
   if (out) return 0;
   if (s != 0 && t != 0 && u != 0 && start != 0 && end != 0) return end;
-  return memcmp(a, b, 3 * sizeof *a) == 0 && memcmp(b, c, 3 * sizeof *b) == 0 ? 0 : 2;
+  return same_point(a, b) && same_point(b, c) ? 0 : 2;
 }
 
 bool scree_bvh_crossings(const scree_bvh *bvh, vec3 p, vec3 q, size_t *count, int *balance) {

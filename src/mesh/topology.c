@@ -75,7 +75,7 @@ static scree_status count_duplicates(counter *c, scree_error *error) {
     do {
       uint32_t apex = mesh->triangles[scree_half_edge_previous(h)];
       if (apex > scree_half_edge_from(mesh, h) && apex > scree_half_edge_to(mesh, h))
-        third[count++] = apex;
+        third[count++] = apex; /* NOLINT(clang-analyzer-core.NullDereference): a ring has facets */
       h = c->adjacency.ring[h];
     } while (h != first);
     if (count > 2) qsort(third, count, sizeof *third, compare_vertices);
