@@ -28,8 +28,10 @@ static bool give_up(void *context, int output) {
 }
 static bool spin(void *context, int output) {
   volatile unsigned *at = context;
+  volatile bool forever = true;
   (void)output;
-  for (;;) ++*at;
+  while (forever) ++*at;
+  return true;
 }
 static bool sleep_on(void *context, int output) {
   (void)context;
