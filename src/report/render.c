@@ -23,6 +23,7 @@ static const double self_offset = 2e-4;   /* start of secondary rays above the s
 static const double ground_size = 30;     /* half width of the floor */
 static const double ground_fade = 2.4;    /* distance over which the floor goes into the white */
 static const double edge_width_px = 0.9;  /* full width of a drawn edge */
+static const double least_edge_px = 5;    /* shorter edges are not drawn */
 static const double edge_darkness = 0.75; /* how much of the colour an edge takes away */
 static const size_t most_cells = 10000;
 enum { ROWS_PER_BLOCK = 4, BAND_ROWS = 32, CAPTION_PX = 34, GAP_PX = 6 };
@@ -167,7 +168,8 @@ static vec3 surface_color(const view *v, const scree_ray_hit *hit) {
   return scree_viridis(range > 0 ? (value - low) / range : 0);
 }
 
-/* How far the hit lies from the nearest edge of its triangle, in pixels. */
+/* How far the hit lies from the nearest edge of its triangle, in pixels; infinite where the
+ * triangle is too small in the picture for its edges to be told apart. */
 static double edge_distance_px(const view *v, const scree_ray_hit *hit) {
   const scree_render_item *item = &v->cell->items[hit->item];
   const uint32_t *corner = item->mesh->triangles + 3 * (size_t)hit->triangle;
@@ -176,12 +178,14 @@ static double edge_distance_px(const view *v, const scree_ray_hit *hit) {
     p[i] = vec3_scale(vec3_load(item->mesh->positions + 3 * (size_t)corner[i]), v->scale);
   double area2 = vec3_norm(vec3_triangle_normal(p[0], p[1], p[2]));
   double weight[3] = {1 - (double)hit->u - (double)hit->v, (double)hit->u, (double)hit->v};
-  double nearest = INFINITY;
+  double nearest = INFINITY, longest = 0;
   for (int i = 0; i < 3; i++) {
     double side = vec3_distance(p[(i + 1) % 3], p[(i + 2) % 3]);
     nearest = fmin(nearest, weight[i] * area2 / (side > 0 ? side : 1));
+    longest = fmax(longest, side);
   }
-  return nearest / ((double)hit->t * v->camera.pixel_angle);
+  double pixel = (double)hit->t * v->camera.pixel_angle;
+  return longest < least_edge_px * pixel ? INFINITY : nearest / pixel;
 }
 
 static void tangent_frame(vec3 n, vec3 *a, vec3 *b) {
