@@ -23,7 +23,7 @@ static const double self_offset = 2e-4;   /* start of secondary rays above the s
 static const double ground_size = 30;     /* half width of the floor */
 static const double ground_fade = 2.4;    /* distance over which the floor goes into the white */
 static const double edge_width_px = 0.9;  /* full width of a drawn edge */
-static const double least_edge_px = 5;    /* shorter edges are not drawn */
+static const double full_edge_px = 14;    /* triangles this long get edges in full */
 static const double edge_darkness = 0.75; /* how much of the colour an edge takes away */
 static const size_t most_cells = 10000;
 enum { ROWS_PER_BLOCK = 4, BAND_ROWS = 32, CAPTION_PX = 34, GAP_PX = 6 };
@@ -168,9 +168,9 @@ static vec3 surface_color(const view *v, const scree_ray_hit *hit) {
   return scree_viridis(range > 0 ? (value - low) / range : 0);
 }
 
-/* How far the hit lies from the nearest edge of its triangle, in pixels; infinite where the
- * triangle is too small in the picture for its edges to be told apart. */
-static double edge_distance_px(const view *v, const scree_ray_hit *hit) {
+/* How dark the edges of the hit's triangle make it, 0 to 1: full within half a line's width of an
+ * edge, fading out for triangles so small in the picture that their edges would cover them. */
+static double edge_ink(const view *v, const scree_ray_hit *hit) {
   const scree_render_item *item = &v->cell->items[hit->item];
   const uint32_t *corner = item->mesh->triangles + 3 * (size_t)hit->triangle;
   vec3 p[3];
@@ -178,14 +178,14 @@ static double edge_distance_px(const view *v, const scree_ray_hit *hit) {
     p[i] = vec3_scale(vec3_load(item->mesh->positions + 3 * (size_t)corner[i]), v->scale);
   double area2 = vec3_norm(vec3_triangle_normal(p[0], p[1], p[2]));
   double weight[3] = {1 - (double)hit->u - (double)hit->v, (double)hit->u, (double)hit->v};
-  double nearest = INFINITY, longest = 0;
+  double nearest = INFINITY, longest = 0, pixel = (double)hit->t * v->camera.pixel_angle;
   for (int i = 0; i < 3; i++) {
     double side = vec3_distance(p[(i + 1) % 3], p[(i + 2) % 3]);
     nearest = fmin(nearest, weight[i] * area2 / (side > 0 ? side : 1));
     longest = fmax(longest, side);
   }
-  double pixel = (double)hit->t * v->camera.pixel_angle;
-  return longest < least_edge_px * pixel ? INFINITY : nearest / pixel;
+  if (nearest >= 0.5 * edge_width_px * pixel) return 0;
+  return fmin(1, fmax(0, longest / (full_edge_px * pixel) - 0.25));
 }
 
 static void tangent_frame(vec3 n, vec3 *a, vec3 *b) {
@@ -243,9 +243,7 @@ static vec3 trace(const view *v, vec3 direction, scree_rng *rng) {
       vec3_unit((vec3){(double)hit.normal[0], (double)hit.normal[1], (double)hit.normal[2]});
   if (vec3_dot(normal, direction) > 0) normal = vec3_neg(normal);
   vec3 color = surface_color(v, &hit);
-  double kept = 1;
-  if (v->options->edges && edge_distance_px(v, &hit) < 0.5 * edge_width_px)
-    kept = 1 - edge_darkness;
+  double kept = v->options->edges ? 1 - edge_darkness * edge_ink(v, &hit) : 1;
   return vec3_scale(color, kept * irradiance(v, point, normal, rng));
 }
 
@@ -262,7 +260,7 @@ static vec3 trace_wire(const view *v, vec3 direction) {
     travelled += (double)hit.t;
     scree_ray_hit seen = hit;
     seen.t = (float)travelled;
-    if (edge_distance_px(v, &seen) < 0.5 * edge_width_px)
+    if (edge_ink(v, &seen) > 0)
       return layer == 0 ? (vec3){0.05, 0.05, 0.06} : (vec3){0.45, 0.47, 0.5};
     start = vec3_mad(start, direction, (double)hit.t + self_offset);
     travelled += self_offset;
