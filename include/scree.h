@@ -79,12 +79,14 @@ SCREE_API void scree_reset_memory_peak(void);
 SCREE_API void scree_set_threads(int thread_count);
 SCREE_API int scree_threads(void);
 
-/* Progress of long work. report is called a few times a second at most, from the calling thread,
- * with the phase in a few words and the fraction done in [0, 1]; answering false cancels the work,
- * which then returns SCREE_CANCELLED. */
+/* Progress of long work. report is called from the calling thread, with the phase in a few words
+ * and the fraction done in [0, 1]; answering false cancels the work, which then returns
+ * SCREE_CANCELLED. interval is the least time between two reports, in seconds; the first and the
+ * last come always, and with 0 each one does. */
 typedef struct scree_progress {
   bool (*report)(void *context, const char *phase, double fraction);
   void *context;
+  double interval;
 } scree_progress;
 
 /* 128 bits that name a file's content: XXH3-128, as `xxhsum -H2` prints it. */

@@ -2,8 +2,6 @@
 
 #include <time.h>
 
-static const double report_interval = 0.1; /* s */
-
 double scree_now(void) {
   struct timespec t;
   clock_gettime(CLOCK_MONOTONIC, &t);
@@ -14,7 +12,7 @@ bool scree_tick(scree_ticker *ticker, const char *phase, double fraction) {
   const scree_progress *progress = ticker->progress;
   if (!progress || !progress->report) return true;
   double now = scree_now();
-  if (fraction > 0 && fraction < 1 && now - ticker->last_report < report_interval) return true;
+  if (fraction > 0 && fraction < 1 && now - ticker->last_report < progress->interval) return true;
   ticker->last_report = now;
   return progress->report(progress->context, phase, fraction);
 }

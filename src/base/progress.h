@@ -9,7 +9,8 @@ typedef struct scree_ticker {
   double last_report;             /* seconds, monotonic clock */
 } scree_ticker;
 
-/* Reports at most ten times a second (always when fraction is 0 or 1); false means cancel. */
+/* Reports when the progress's interval is over (always when fraction is 0 or 1); false means
+ * cancel. */
 bool scree_tick(scree_ticker *ticker, const char *phase, double fraction);
 
 /* Seconds on the monotonic clock: for timers and reports, never for results. */

@@ -58,7 +58,7 @@ static bool report(void *context, const char *phase, double fraction) {
 static scree_progress enter_stage(object *o, double base, double part) {
   o->base = base;
   o->part = part;
-  return (scree_progress){report, o};
+  return (scree_progress){report, o, o->batch->progress ? o->batch->progress->interval : 0};
 }
 
 static void let_go(object *o) {

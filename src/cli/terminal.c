@@ -61,7 +61,7 @@ static bool report(void *context, const char *phase, double fraction) {
 }
 
 const scree_progress *cli_terminal_start(bool show) {
-  static const scree_progress progress = {report, NULL};
+  static const scree_progress progress = {report, NULL, 0.1};
   struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);

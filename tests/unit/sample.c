@@ -319,12 +319,13 @@ static bool refuse(void *context, const char *phase, double fraction) {
 static void cancelling_leaves_nothing(void **state) {
   (void)state;
   int calls = 0;
-  scree_progress progress = {refuse, &calls};
+  scree_progress progress = {refuse, &calls, 0};
   scree_sample_options options = {0.5e-3, 0, 1};
   scree_mesh mesh = {0};
   scree_error error;
   size_t used = scree_memory_used();
   assert_int_equal(scree_sample_make("sp-1", &options, &progress, &mesh, &error), SCREE_CANCELLED);
+  assert_int_equal(calls, 2);
   assert_null(mesh.positions);
   assert_int_equal(scree_memory_used(), used);
 }
