@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct repair_arguments {
   const char *output;
@@ -60,6 +61,13 @@ static scree_repair_options options_of(const repair_arguments *a) {
   return o;
 }
 
+/* Whether single precision holds every coordinate, so that reading the file gives the same bits. */
+static bool fits_single(const scree_mesh *mesh, double unit) {
+  for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+    if ((double)(float)(mesh->positions[i] / unit) * unit != mesh->positions[i]) return false;
+  return true;
+}
+
 /* A file of single precision may not hold what was repaired in double: read it again and check. */
 static scree_status verify_written(const cli_call *call, scree_error *error) {
   const repair_arguments *a = call->options;
@@ -88,7 +96,8 @@ static scree_status write_result(const cli_call *call, const scree_mesh *mesh, s
   write.overwrite = a->force;
   write.comment = call->command_line;
   scree_status status = scree_mesh_write(mesh, a->output, &write, error);
-  if (status != SCREE_OK || !dot || strcmp(dot, ".stl") != 0) return status;
+  if (status != SCREE_OK || !dot || strcasecmp(dot, ".stl") != 0) return status;
+  if (fits_single(mesh, a->unit)) return status;
   status = verify_written(call, error);
   if (status != SCREE_OK) remove(a->output);
   return status;

@@ -12,6 +12,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/intersect.h"
 #include "mesh/shells.h"
+#include "mesh/topology.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -69,7 +70,6 @@ bool scree_vertex_is_bad(const double *position) {
 
 static void take_topology(const scree_topology *t, scree_check *check) {
   size_t *defect = check->defects;
-  check->shell_count = t->shell_count;
   defect[SCREE_DEFECT_DEGENERATE_FACET] = t->degenerate_facet_count;
   defect[SCREE_DEFECT_DUPLICATE_FACET] = t->duplicate_facet_count;
   defect[SCREE_DEFECT_BOUNDARY_EDGE] = t->boundary_edge_count;
@@ -155,13 +155,14 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
   scree_adjacency adjacency = {0};
   scree_shells shells = {0};
   scree_facet_tree tree = {0};
-  scree_status status = scree_mesh_topology(mesh, &topology, error);
+  scree_status status = scree_adjacency_build(mesh, &adjacency, error);
   if (status != SCREE_OK) return status;
-  take_topology(&topology, check);
-  if (mesh->triangle_count == 0) return SCREE_OK;
-  status = scree_adjacency_build(mesh, &adjacency, error);
+  status = scree_topology_count(mesh, &adjacency, false, &topology, error);
+  if (status == SCREE_OK) take_topology(&topology, check);
   if (status == SCREE_OK) status = scree_shells_find(mesh, &adjacency, &shells, error);
   scree_adjacency_free(&adjacency);
+  check->shell_count = shells.count;
+  if (mesh->triangle_count == 0) return status;
   if (status == SCREE_OK && (options->intersections || shells.count > 1))
     status = scree_facet_tree_build(mesh, &tree, error);
   if (status == SCREE_OK && options->intersections)

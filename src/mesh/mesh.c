@@ -87,15 +87,26 @@ out_of_memory:
  * few. */
 #define FLAT_ULPS 4.0
 
+/* Above this, squares of areas have not lost bits to underflow. */
+#define LEAST_SQUARE 1e-200
+
+static double larger(double a, double b) {
+  return a > b ? a : b;
+}
+
 bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle) {
-  vec3 p = scree_mesh_corner(mesh, triangle, 0), q = scree_mesh_corner(mesh, triangle, 1),
-       r = scree_mesh_corner(mesh, triangle, 2);
-  double longest2 = fmax(fmax(vec3_norm2(vec3_sub(q, p)), vec3_norm2(vec3_sub(r, q))),
-                         vec3_norm2(vec3_sub(p, r)));
-  vec3 low = vec3_min(vec3_min(p, q), r), high = vec3_max(vec3_max(p, q), r);
-  double largest = fmax(fmax(fmax(fabs(low.x), fabs(high.x)), fmax(fabs(low.y), fabs(high.y))),
-                        fmax(fabs(low.z), fabs(high.z)));
-  double twice_area = vec3_norm(vec3_triangle_normal(p, q, r)),
-         rounding = FLAT_ULPS * DBL_EPSILON * largest;
-  return twice_area <= rounding * sqrt(longest2);
+  vec3 corner[3];
+  double largest = 0, longest2 = 0;
+  for (int k = 0; k < 3; k++) {
+    vec3 p = corner[k] = scree_mesh_corner(mesh, triangle, k);
+    largest = larger(larger(largest, fabs(p.x)), larger(fabs(p.y), fabs(p.z)));
+  }
+  for (int k = 0; k < 3; k++)
+    longest2 = larger(longest2, vec3_norm2(vec3_sub(corner[(k + 1) % 3], corner[k])));
+  vec3 normal = vec3_triangle_normal(corner[0], corner[1], corner[2]);
+  double rounding = FLAT_ULPS * DBL_EPSILON * largest;
+  /* nearly all facets are far from flat, and need no root */
+  double square = vec3_norm2(normal);
+  if (square > LEAST_SQUARE && square > 2 * rounding * rounding * longest2) return false;
+  return vec3_norm(normal) <= rounding * sqrt(longest2);
 }

@@ -72,6 +72,40 @@ static void measure_box(scree_repair *r) {
   r->largest = fmax(far.x, fmax(far.y, far.z));
 }
 
+static bool is_before(const double *a, const double *b) {
+  for (int k = 0; k < 3; k++)
+    if (a[k] != b[k]) return a[k] < b[k];
+  return false;
+}
+
+/* Whether vertices are distinct and sorted, no zero is negative, no coordinate is bad. */
+static bool vertices_are_canonical(const scree_mesh *mesh) {
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    const double *p = mesh->positions + 3 * v;
+    if (scree_vertex_is_bad(p) || (v && !is_before(p - 3, p))) return false;
+    for (int k = 0; k < 3; k++)
+      if (p[k] == 0 && signbit(p[k])) return false;
+  }
+  return true;
+}
+
+static bool triangles_are_canonical(const scree_mesh *mesh) {
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    const uint32_t *c = mesh->triangles + 3 * t, *before = t ? c - 3 : c;
+    if (c[1] <= c[0] || c[2] <= c[0] || c[1] == c[2]) return false;
+    if (t && (c[0] != before[0]   ? c[0] < before[0]
+              : c[1] != before[1] ? c[1] < before[1]
+                                  : c[2] < before[2]))
+      return false;
+  }
+  return true;
+}
+
+/* Whether welding would give back the same bits; every vertex must be known to be in use. */
+static bool is_canonical(const scree_mesh *mesh) {
+  return vertices_are_canonical(mesh) && triangles_are_canonical(mesh);
+}
+
 /* Replaces the mesh under repair by `mesh` welded exactly and put in canonical order; facets with
  * bad coordinates are left out. mesh may be r->mesh. */
 static scree_status weld(scree_repair *r, const scree_mesh *mesh, size_t *bad, size_t *collapsed,
@@ -101,6 +135,16 @@ static scree_status weld(scree_repair *r, const scree_mesh *mesh, size_t *bad, s
 done:
   scree_free(corners);
   return status;
+}
+
+/* A mesh that is in canonical order already, as every reader gives it. */
+static scree_status take_copy(scree_repair *r, const scree_mesh *mesh, scree_error *error) {
+  scree_status status = scree_mesh_copy(mesh, &r->mesh, error);
+  if (status != SCREE_OK) return status;
+  r->vertex_capacity = mesh->vertex_count;
+  r->triangle_capacity = mesh->triangle_count;
+  measure_box(r);
+  return SCREE_OK;
 }
 
 /* ---- Duplicates ---- */
@@ -241,9 +285,13 @@ static scree_status run_rounds(scree_repair *r, scree_error *error) {
 /* Everything after the first check, which found what r->report.before says. */
 static scree_status mend(scree_repair *r, const scree_mesh *mesh, scree_error *error) {
   size_t *done = r->report.done, collapsed = 0;
-  size_t used =
-      r->report.before.vertex_count - r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX];
-  scree_status status = weld(r, mesh, &done[SCREE_REPAIR_DROP_BAD], &collapsed, error);
+  size_t unused = r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX];
+  size_t used = r->report.before.vertex_count - unused;
+  scree_status status;
+  if (unused || !is_canonical(mesh))
+    status = weld(r, mesh, &done[SCREE_REPAIR_DROP_BAD], &collapsed, error);
+  else
+    status = take_copy(r, mesh, error);
   if (status != SCREE_OK) return status;
   done[SCREE_REPAIR_DROP_DEGENERATE] = collapsed;
   if (!done[SCREE_REPAIR_DROP_BAD] && !collapsed && used > r->mesh.vertex_count)

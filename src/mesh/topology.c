@@ -6,9 +6,9 @@
  * counts only if that holds as well. A facet is flat where its height over its longest edge is not
  * above the rounding of its coordinates: an exact zero would be lost when units are converted. The
  * genus g follows from Euler-Poincare, V - E + F = 2 (shells - g). */
+#include "mesh/topology.h"
 #include "base/array.h"
 #include "base/sum.h"
-#include "mesh/adjacency.h"
 #include "mesh/mesh.h"
 
 #include <stdlib.h>
@@ -16,12 +16,12 @@
 
 typedef struct counter {
   const scree_mesh *mesh;
-  scree_adjacency adjacency;
+  const scree_adjacency *adjacency;
   scree_topology found;
 } counter;
 
 static bool takes_part(const counter *c, size_t triangle) {
-  return c->adjacency.ring[3 * triangle] != SCREE_NO_HALF_EDGE;
+  return c->adjacency->ring[3 * triangle] != SCREE_NO_HALF_EDGE;
 }
 
 static void count_facets(counter *c) {
@@ -32,12 +32,12 @@ static void count_facets(counter *c) {
 }
 
 static void count_edges(counter *c) {
-  const uint32_t *ring = c->adjacency.ring;
+  const uint32_t *ring = c->adjacency->ring;
   scree_topology *found = &c->found;
-  found->edge_count = c->adjacency.edge_count;
+  found->edge_count = c->adjacency->edge_count;
   found->oriented = true;
-  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
-    uint32_t first = c->adjacency.edges[e], second = ring[first];
+  for (size_t e = 0; e < c->adjacency->edge_count; e++) {
+    uint32_t first = c->adjacency->edges[e], second = ring[first];
     uint32_t from = scree_half_edge_from(c->mesh, first);
     if (second == first) {
       found->boundary_edge_count++;
@@ -66,17 +66,17 @@ static scree_status count_duplicates(counter *c, scree_error *error) {
   const scree_mesh *mesh = c->mesh;
   uint32_t *third = NULL;
   size_t capacity = 0;
-  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
-    uint32_t first = c->adjacency.edges[e];
-    if (c->adjacency.ring[first] == first) continue;
-    size_t facets = scree_edge_facet_count(&c->adjacency, first), count = 0;
+  for (size_t e = 0; e < c->adjacency->edge_count; e++) {
+    uint32_t first = c->adjacency->edges[e];
+    if (c->adjacency->ring[first] == first) continue;
+    size_t facets = scree_edge_facet_count(c->adjacency, first), count = 0;
     if (!scree_array_reserve((void **)&third, &capacity, facets, sizeof *third)) goto out_of_memory;
     uint32_t h = first;
     do {
       uint32_t apex = mesh->triangles[scree_half_edge_previous(h)];
       if (apex > scree_half_edge_from(mesh, h) && apex > scree_half_edge_to(mesh, h))
         third[count++] = apex; /* NOLINT(clang-analyzer-core.NullDereference): a ring has facets */
-      h = c->adjacency.ring[h];
+      h = c->adjacency->ring[h];
     } while (h != first);
     if (count > 2) qsort(third, count, sizeof *third, compare_vertices);
     for (size_t i = 1; i < count; i++) c->found.duplicate_facet_count += third[i] == third[i - 1];
@@ -88,9 +88,27 @@ out_of_memory:
   return scree_fail_memory(error, capacity * sizeof *third, "facets at an edge");
 }
 
+/* Turns round the vertex of corner start through edges of two facets and marks the corners passed;
+ * false, with none marked, where an edge of another kind is in the way. */
+static bool walk_fan(const counter *c, uint32_t start, bool *reached) {
+  const uint32_t *ring = c->adjacency->ring, *corners = c->mesh->triangles;
+  uint32_t vertex = corners[start], corner = start;
+  do {
+    uint32_t h = ring[corner];
+    if (h == corner || ring[h] != corner || corners[h] == vertex) {
+      for (uint32_t back = start; back != corner; back = scree_half_edge_next(ring[back]))
+        reached[back] = false;
+      return false;
+    }
+    reached[corner] = true;
+    corner = scree_half_edge_next(h);
+  } while (corner != start);
+  return true;
+}
+
 /* Floods the fan of corner start round its vertex; corners are marked as they are reached. */
 static void flood_fan(const counter *c, uint32_t start, bool *reached, uint32_t *stack) {
-  const uint32_t *ring = c->adjacency.ring, *corners = c->mesh->triangles;
+  const uint32_t *ring = c->adjacency->ring, *corners = c->mesh->triangles;
   uint32_t vertex = corners[start];
   size_t depth = 0;
   stack[depth++] = start;
@@ -119,7 +137,7 @@ static scree_status count_vertices(counter *c, scree_error *error) {
   memset(valence, 0, mesh->vertex_count * sizeof *valence);
   uint32_t largest = 0;
   for (size_t corner = 0; corner < corner_count; corner++)
-    if (c->adjacency.ring[corner] != SCREE_NO_HALF_EDGE) {
+    if (c->adjacency->ring[corner] != SCREE_NO_HALF_EDGE) {
       uint32_t now = ++valence[mesh->triangles[corner]];
       if (now > largest) largest = now;
     }
@@ -129,8 +147,8 @@ static scree_status count_vertices(counter *c, scree_error *error) {
   memset(reached, 0, corner_count * sizeof *reached);
   memset(fans, 0, mesh->vertex_count * sizeof *fans);
   for (uint32_t corner = 0; corner < corner_count; corner++) {
-    if (c->adjacency.ring[corner] == SCREE_NO_HALF_EDGE || reached[corner]) continue;
-    flood_fan(c, corner, reached, stack);
+    if (c->adjacency->ring[corner] == SCREE_NO_HALF_EDGE || reached[corner]) continue;
+    if (!walk_fan(c, corner, reached)) flood_fan(c, corner, reached, stack);
     uint8_t *at = &fans[mesh->triangles[corner]];
     if (*at < 2) c->found.non_manifold_vertex_count += ++*at == 2;
   }
@@ -157,9 +175,9 @@ static void count_inward(counter *c, uint32_t *parent, scree_sum *volume) {
         vec3_triangle_normal(p, scree_mesh_corner(mesh, t, 1), scree_mesh_corner(mesh, t, 2));
     scree_sum_add(&volume[root], vec3_dot(vec3_sub(p, origin), normal));
   }
-  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
-    uint32_t h = c->adjacency.edges[e];
-    if (c->adjacency.ring[h] == h) volume[scree_find_root(parent, h / 3)].sum = NAN;
+  for (size_t e = 0; e < c->adjacency->edge_count; e++) {
+    uint32_t h = c->adjacency->edges[e];
+    if (c->adjacency->ring[h] == h) volume[scree_find_root(parent, h / 3)].sum = NAN;
   }
   for (size_t t = 0; t < mesh->triangle_count; t++)
     if (takes_part(c, t) && parent[t] == t) {
@@ -176,9 +194,9 @@ static scree_status count_shells(counter *c, scree_error *error) {
   SCREE_ALLOC_OR(parent, triangle_count, error, done);
   SCREE_ALLOC_OR(volume, triangle_count, error, done);
   for (uint32_t t = 0; t < triangle_count; t++) parent[t] = t;
-  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
-    uint32_t first = c->adjacency.edges[e];
-    for (uint32_t h = c->adjacency.ring[first]; h != first; h = c->adjacency.ring[h])
+  for (size_t e = 0; e < c->adjacency->edge_count; e++) {
+    uint32_t first = c->adjacency->edges[e];
+    for (uint32_t h = c->adjacency->ring[first]; h != first; h = c->adjacency->ring[h])
       scree_join(parent, first / 3, h / 3);
   }
   count_inward(c, parent, volume);
@@ -196,9 +214,9 @@ static scree_status count_boundaries(counter *c, scree_error *error) {
   if (c->found.closed) return SCREE_OK;
   SCREE_ALLOC_OR(parent, c->mesh->vertex_count, error, out_of_memory);
   for (size_t v = 0; v < c->mesh->vertex_count; v++) parent[v] = none;
-  for (size_t e = 0; e < c->adjacency.edge_count; e++) {
-    uint32_t h = c->adjacency.edges[e];
-    if (c->adjacency.ring[h] != h) continue;
+  for (size_t e = 0; e < c->adjacency->edge_count; e++) {
+    uint32_t h = c->adjacency->edges[e];
+    if (c->adjacency->ring[h] != h) continue;
     uint32_t ends[2] = {scree_half_edge_from(c->mesh, h), scree_half_edge_to(c->mesh, h)};
     for (int i = 0; i < 2; i++)
       if (parent[ends[i]] == none) {
@@ -224,22 +242,29 @@ static void conclude(scree_topology *found) {
                      : -1;
 }
 
-scree_status scree_mesh_topology(const scree_mesh *mesh, scree_topology *topology,
-                                 scree_error *error) {
-  counter c = {.mesh = mesh};
-  scree_status status = scree_mesh_verify(mesh, error);
-  if (status != SCREE_OK) return status;
-  status = scree_adjacency_build(mesh, &c.adjacency, error);
-  if (status != SCREE_OK) return status;
+scree_status scree_topology_count(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                  bool with_shells, scree_topology *topology, scree_error *error) {
+  counter c = {.mesh = mesh, .adjacency = adjacency};
   count_facets(&c);
   count_edges(&c);
-  status = count_duplicates(&c, error);
+  scree_status status = count_duplicates(&c, error);
   if (status == SCREE_OK) status = count_vertices(&c, error);
-  if (status == SCREE_OK) status = count_shells(&c, error);
+  if (status == SCREE_OK && with_shells) status = count_shells(&c, error);
   if (status == SCREE_OK) status = count_boundaries(&c, error);
-  scree_adjacency_free(&c.adjacency);
   if (status != SCREE_OK) return status;
   conclude(&c.found);
   *topology = c.found;
   return SCREE_OK;
+}
+
+scree_status scree_mesh_topology(const scree_mesh *mesh, scree_topology *topology,
+                                 scree_error *error) {
+  scree_adjacency adjacency;
+  scree_status status = scree_mesh_verify(mesh, error);
+  if (status != SCREE_OK) return status;
+  status = scree_adjacency_build(mesh, &adjacency, error);
+  if (status != SCREE_OK) return status;
+  status = scree_topology_count(mesh, &adjacency, true, topology, error);
+  scree_adjacency_free(&adjacency);
+  return status;
 }

@@ -43,6 +43,27 @@ static vec3 file_position(const writing *w, uint32_t vertex) {
   return (vec3){p.x / w->unit_m, p.y / w->unit_m, p.z / w->unit_m};
 }
 
+/* Bytes on their way to the stream: a call of fwrite for each facet would cost more than the facet.
+ */
+typedef struct batch {
+  FILE *stream;
+  size_t count;
+  unsigned char bytes[1 << 14];
+} batch;
+
+static void batch_flush(batch *b) {
+  fwrite(b->bytes, 1, b->count, b->stream);
+  b->count = 0;
+}
+
+/* Where the next `count` bytes go. */
+static unsigned char *batch_take(batch *b, size_t count) {
+  if (b->count + count > sizeof b->bytes) batch_flush(b);
+  unsigned char *out = b->bytes + b->count;
+  b->count += count;
+  return out;
+}
+
 static unsigned char *put_u32(unsigned char *out, uint32_t value) {
   for (int i = 0; i < 4; i++) *out++ = (unsigned char)(value >> 8 * i);
   return out;
@@ -90,17 +111,18 @@ static vec3 facet_of(const writing *w, size_t t, vec3 corners[3]) {
 
 static void write_stl(const writing *w) {
   unsigned char header[STL_HEADER_BYTES + 4] = {0};
+  batch b = {.stream = w->stream};
   size_t length = strlen(w->provenance);
   memcpy(header, w->provenance, length < STL_HEADER_BYTES ? length : STL_HEADER_BYTES);
   put_u32(header + STL_HEADER_BYTES, (uint32_t)w->mesh->triangle_count);
   fwrite(header, 1, sizeof header, w->stream);
   for (size_t t = 0; t < w->mesh->triangle_count; t++) {
-    unsigned char facet[STL_FACET_BYTES] = {0};
     vec3 corners[3], normal = facet_of(w, t, corners);
-    unsigned char *out = put_float_vec3(facet, normal);
+    unsigned char *out = put_float_vec3(batch_take(&b, STL_FACET_BYTES), normal);
     for (int k = 0; k < 3; k++) out = put_float_vec3(out, corners[k]);
-    fwrite(facet, 1, sizeof facet, w->stream);
+    out[0] = out[1] = 0; /* attribute bytes */
   }
+  batch_flush(&b);
 }
 
 static void write_stl_ascii(const writing *w) {
@@ -126,20 +148,20 @@ static void write_ply(const writing *w, bool narrow) {
           "property %s x\nproperty %s y\nproperty %s z\nelement face %zu\n"
           "property list uchar int vertex_indices\nend_header\n",
           w->provenance, w->mesh->vertex_count, type, type, type, w->mesh->triangle_count);
+  batch b = {.stream = w->stream};
   for (size_t v = 0; v < w->mesh->vertex_count; v++) {
-    unsigned char bytes[24], *out = bytes;
     vec3 p = file_position(w, (uint32_t)v);
     if (narrow)
-      out = put_float_vec3(out, p);
+      put_float_vec3(batch_take(&b, 12), p);
     else
-      out = put_double(put_double(put_double(out, p.x), p.y), p.z);
-    fwrite(bytes, 1, (size_t)(out - bytes), w->stream);
+      put_double(put_double(put_double(batch_take(&b, 24), p.x), p.y), p.z);
   }
   for (size_t t = 0; t < w->mesh->triangle_count; t++) {
-    unsigned char face[PLY_FACE_BYTES] = {3}, *out = face + 1;
+    unsigned char *out = batch_take(&b, PLY_FACE_BYTES);
+    *out++ = 3;
     for (size_t k = 0; k < 3; k++) out = put_u32(out, w->mesh->triangles[3 * t + k]);
-    fwrite(face, 1, sizeof face, w->stream);
   }
+  batch_flush(&b);
 }
 
 static void write_obj(const writing *w) {
