@@ -963,6 +963,9 @@ SCREE_API scree_status scree_world_add_wall(scree_world *world, const scree_wall
 SCREE_API size_t scree_world_wall_count(const scree_world *world);
 /* The wall as it stands now; its mesh, if any, is the world's. */
 SCREE_API void scree_world_get_wall(const scree_world *world, size_t index, scree_wall *wall);
+/* How its own frame is turned now (w x y z): the mesh's axes into space. */
+SCREE_API void scree_world_wall_orientation(const scree_world *world, size_t index,
+                                            double orientation[4]);
 SCREE_API scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
                                                      const double velocity[3],
                                                      const double angular_velocity[3],
@@ -1336,10 +1339,48 @@ SCREE_API scree_status scree_vtp_write(const scree_vtk_data *data, const char *p
                                        scree_error *error);
 
 /* Writes the collection of a series: file i is valid at time times[i]. The names are written as
- * given, relative to the .pvd file. */
+ * given, relative to the collection. A path that ends in .series becomes ParaView's own JSON (as in
+ * pile.vtp.series beside pile_0.vtp, pile_1.vtp), every other one a .pvd. */
 SCREE_API scree_status scree_pvd_write(const char *const *files, const double *times,
                                        size_t file_count, const char *path, bool overwrite,
                                        scree_error *error);
+
+/* What of a world goes into one .vtp file; every file carries the world's time. Bodies removed are
+ * left out. A shape is one scree_particle; shapes are numbered in the order of their first body,
+ * removed ones included, so that a number keeps its meaning through a series. */
+typedef enum scree_world_view {
+  /* The triangles of every body in its place; spheres, also those of clumps, as 320 triangles each.
+   * Per triangle: body, shape, material; speed (m/s), angular_speed (rad/s). */
+  SCREE_VIEW_SURFACES,
+  /* One point a body, at its centre of mass. Per point: body, shape, material; orientation (w x y
+   * z, the particle's axes into space), velocity (m/s), angular_velocity (rad/s, in space), mass
+   * (kg), size (m, diameter of the sphere of equal volume). */
+  SCREE_VIEW_POINTS,
+  /* The force network: one line per touching pair, from the body's centre of mass to the other's,
+   * or for a wall to the place of contact. Per line, of all touching features together: body,
+   * other, wall (0 or 1), feature_count; force on `body` (N), normal_force and tangential_force (N,
+   * its parts along and across the features' normals, summed as vectors), place (m, mean of the
+   * features, weighted by their force), overlap (m, the largest). */
+  SCREE_VIEW_CONTACTS,
+  /* The walls as triangles, planes and endless cylinders cut off where the bodies end. Per
+   * triangle: wall, kind (a scree_wall_kind). */
+  SCREE_VIEW_WALLS,
+  SCREE_VIEW_COUNT,
+} scree_world_view;
+
+/* "surfaces", "points", "contacts" or "walls"; NULL beyond. */
+SCREE_API const char *scree_world_view_name(scree_world_view view);
+
+/* Writes one view of the world as it stands; "-" is stdout. Contacts are evaluated afresh
+ * (scree_world_visit_contacts), so a loaded checkpoint shows them too. Fails with SCREE_IO,
+ * SCREE_EXISTS, SCREE_OUT_OF_MEMORY, SCREE_LIMIT above 2^32 - 1 points, SCREE_BAD_ARGUMENT. Cost:
+ * about 60 bytes a triangle in the file, the same again in memory. */
+SCREE_API scree_status scree_world_vtp_write(const scree_world *world, scree_world_view view,
+                                             const char *path, bool overwrite, scree_error *error);
+
+/* The particle of `shape`, numbered as above, borrowed; NULL beyond the last. Cost: one pass over
+ * the bodies. */
+SCREE_API scree_particle *scree_world_shape(const scree_world *world, size_t shape);
 
 /* ---- 9.3 The choice: figure, tables, JSON ---- */
 

@@ -1,6 +1,7 @@
 /* VTK XML PolyData with raw appended data: each array is a 64-bit byte count followed by its bytes,
  * at the offset that its element names. The byte order is stated, so nothing is swapped. */
 #include "base/file.h"
+#include "report/json.h"
 
 #include <math.h>
 #include <string.h>
@@ -149,20 +150,50 @@ scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool 
   return scree_output_commit(&output, error);
 }
 
+static bool ends_with(const char *text, const char *ending) {
+  size_t length = strlen(text), tail = strlen(ending);
+  return length >= tail && !strcmp(text + length - tail, ending);
+}
+
+/* ParaView's file series 1.0: names and times as JSON. */
+static void write_series(FILE *stream, const char *const *files, const double *times,
+                         size_t file_count) {
+  scree_json json = scree_json_start(stream);
+  scree_json_object(&json, NULL);
+  scree_json_text(&json, "file-series-version", "1.0");
+  scree_json_array(&json, "files");
+  for (size_t i = 0; i < file_count; i++) {
+    scree_json_row_object(&json, NULL);
+    scree_json_text(&json, "name", files[i]);
+    scree_json_number(&json, "time", times[i]);
+    scree_json_end(&json);
+  }
+  scree_json_end(&json);
+  scree_json_end(&json);
+}
+
+static void write_collection(FILE *stream, const char *const *files, const double *times,
+                             size_t file_count) {
+  fprintf(stream,
+          "<?xml version=\"1.0\"?>\n<!-- scree %s -->\n"
+          "<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n",
+          scree_version());
+  for (size_t i = 0; i < file_count; i++) {
+    fprintf(stream, "    <DataSet timestep=\"%.17g\" file=\"", times[i]);
+    write_escaped(stream, files[i]);
+    fputs("\"/>\n", stream);
+  }
+  fputs("  </Collection>\n</VTKFile>\n", stream);
+}
+
 scree_status scree_pvd_write(const char *const *files, const double *times, size_t file_count,
                              const char *path, bool overwrite, scree_error *error) {
   scree_output output;
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
-  fprintf(output.stream,
-          "<?xml version=\"1.0\"?>\n<!-- scree %s -->\n"
-          "<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n",
-          scree_version());
-  for (size_t i = 0; i < file_count; i++) {
-    fprintf(output.stream, "    <DataSet timestep=\"%.17g\" file=\"", times[i]);
-    write_escaped(output.stream, files[i]);
-    fputs("\"/>\n", output.stream);
-  }
-  fputs("  </Collection>\n</VTKFile>\n", output.stream);
+  if (ends_with(path, ".series"))
+    write_series(output.stream, files, times, file_count);
+  else
+    write_collection(output.stream, files, times, file_count);
   return scree_output_commit(&output, error);
 }

@@ -84,6 +84,11 @@ void scree_world_get_wall(const scree_world *world, size_t index, scree_wall *wa
   vec3_store(wall->axis, (vec3){r->m[0][2], r->m[1][2], r->m[2][2]});
 }
 
+void scree_world_wall_orientation(const scree_world *world, size_t index, double orientation[4]) {
+  quat q = world->walls.items[index].orientation;
+  orientation[0] = q.w, orientation[1] = q.x, orientation[2] = q.y, orientation[3] = q.z;
+}
+
 scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
                                            const double velocity[3],
                                            const double angular_velocity[3], scree_error *error) {
