@@ -597,6 +597,18 @@ SCREE_API size_t scree_curve_find(const scree_curve *curve, size_t target_triang
 SCREE_API scree_status scree_curve_mesh(const scree_curve *curve, size_t level_index,
                                         scree_mesh *mesh, scree_error *error);
 
+/* One edge collapse of the record: what makes level index + 1 of level index. Where `gone` stood,
+ * `kept` stands afterwards; triangles that name one vertex twice are no more. */
+typedef struct scree_collapse {
+  uint32_t kept, gone;     /* vertices of the mesh given */
+  uint32_t triangle_count; /* that go: 2, or 1 at a boundary */
+  double position[3];      /* of kept afterwards, m */
+} scree_collapse;
+
+/* index must be below the level count less one. O(1). */
+SCREE_API void scree_curve_collapse(const scree_curve *curve, size_t index,
+                                    scree_collapse *collapse);
+
 /* Goes through many levels, from fine to coarse, in one sweep: O(Nm) for all steps together and the
  * size of each level for its step. */
 typedef struct scree_replay scree_replay;
@@ -607,6 +619,9 @@ SCREE_API void scree_replay_free(scree_replay *replay);
  * changes with the next step. */
 SCREE_API scree_status scree_replay_step(scree_replay *replay, size_t level_index,
                                          const scree_mesh **mesh, scree_error *error);
+/* For every vertex of the mesh given its index in the level's mesh, UINT32_MAX where the level has
+ * it no more. Belongs to the replay, of use after a step and changed by the next. */
+SCREE_API const uint32_t *scree_replay_numbering(const scree_replay *replay);
 
 /* ==== 4. The choice ============================================================================
  */
@@ -1464,6 +1479,17 @@ typedef struct scree_distance_entry {
 SCREE_API scree_status scree_distance_json_write(const scree_distance_entry *entry,
                                                  const char *command_line, const char *path,
                                                  bool overwrite, scree_error *error);
+
+/* ---- 9.5 The report: one page for a browser ---- */
+
+/* What the report shows of one object in 3D, in at most byte_limit bytes (but at least a level of
+ * 2,000 triangles and what follows from it): the scan, or where that is too large the finest level
+ * that fits; a fine level and the collapses that lead from it to the last; the dense curve;
+ * measures of the scan and the choices. docs/formats.md has the fields. Cost: O(N log N), some
+ * 0.5 s for 762,008 triangles, half of it for the convex hull. */
+SCREE_API scree_status scree_levels_write(const scree_curve *curve, const scree_choice *choice,
+                                          size_t byte_limit, const char *path, bool overwrite,
+                                          scree_error *error);
 
 #ifdef __cplusplus
 }

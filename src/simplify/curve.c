@@ -254,6 +254,18 @@ size_t scree_curve_find(const scree_curve *curve, size_t target) {
   return low;
 }
 
+void scree_curve_collapse(const scree_curve *curve, size_t index, scree_collapse *collapse) {
+  const scree_record *r = &curve->record;
+  *collapse = (scree_collapse){.kept = r->kept[index] & ~SCREE_ONE_TRIANGLE,
+                               .gone = r->gone[index],
+                               .triangle_count = r->kept[index] & SCREE_ONE_TRIANGLE ? 1 : 2};
+  vec3_store(collapse->position, r->position[index]);
+}
+
+const uint32_t *scree_replay_numbering(const scree_replay *replay) {
+  return replay->number;
+}
+
 void scree_replay_free(scree_replay *replay) {
   if (!replay) return;
   scree_free(replay->root);

@@ -1,0 +1,12 @@
+/* The file of levels that the report shows (docs/formats.md): written by scree_levels_write, put
+ * into the page as it is, read by web/src/levels.js. */
+#ifndef SCREE_REPORT_LEVELS_H
+#define SCREE_REPORT_LEVELS_H
+
+#include "base/error.h"
+
+/* Whether the bytes are such a file, whole; name goes into the sentence where not. */
+scree_status scree_levels_check(const char *bytes, size_t byte_count, const char *name,
+                                scree_error *error);
+
+#endif
