@@ -1491,6 +1491,72 @@ SCREE_API scree_status scree_levels_write(const scree_curve *curve, const scree_
                                           size_t byte_limit, const char *path, bool overwrite,
                                           scree_error *error);
 
+/* ==== 10. Studies: many runs, and what they say ================================================
+ */
+
+/* ---- 10.1 Statistics ---- */
+
+/* Mean and spread of a few values. NaN where there are too few: one value has a mean and nothing
+ * else. */
+typedef struct scree_summary {
+  size_t count; /* values that are numbers; NaN are left out */
+  double mean;
+  double sd;                  /* with count - 1 */
+  double cv;                  /* coefficient of variation: sd / |mean| */
+  double mean_low, mean_high; /* confidence interval of the mean: Student's t */
+  double sd_low, sd_high;     /* and of the standard deviation: chi-square */
+} scree_summary;
+
+/* confidence in (0, 1), for example 0.95: of normally distributed values. */
+SCREE_API scree_summary scree_summarise(const double *values, size_t count, double confidence);
+
+/* Two means compared: are they the same but for `margin`, are they different, or cannot this be
+ * told? Equivalence is shown by two one-sided tests (Schuirmann 1987) with Welch's degrees of
+ * freedom: the 1 - 2 alpha interval of the difference lies within (-margin, margin). */
+typedef struct scree_comparison {
+  double difference;    /* mean of a less mean of b */
+  double low, high;     /* its 1 - 2 alpha interval */
+  double degrees;       /* Welch and Satterthwaite */
+  double p_equivalence; /* the larger of the two one-sided p */
+  double p_difference;  /* two-sided Welch test of equal means */
+  bool equivalent;      /* p_equivalence < alpha */
+  bool different;       /* p_difference < alpha, and not equivalent */
+  size_t count_needed;  /* values a side at which equivalence would be shown, if means and spread
+                           stayed as they are; 0: never (|difference| >= margin), or not known */
+} scree_comparison;
+
+/* Both need two values at least; with fewer all is NaN and false. */
+SCREE_API scree_comparison scree_compare(const scree_summary *a, const scree_summary *b,
+                                         double margin, double alpha);
+
+/* y = factor x^exponent, by least squares on logarithms. */
+typedef struct scree_power_law {
+  size_t count;                       /* points with x and y above zero */
+  double factor, exponent;            /* */
+  double exponent_low, exponent_high; /* confidence interval, Student's t; NaN with two points */
+  double r2;                          /* of the logarithms */
+} scree_power_law;
+
+/* SCREE_BAD_ARGUMENT with fewer than two different x above zero. */
+SCREE_API scree_status scree_fit_power(const double *x, const double *y, size_t count,
+                                       double confidence, scree_power_law *fit, scree_error *error);
+
+enum { SCREE_POLYNOMIAL_DEGREE = 4 };
+
+/* y = sum of coefficient[k] x^k, by least squares (Householder). */
+typedef struct scree_polynomial {
+  size_t count;
+  int degree;
+  double coefficient[SCREE_POLYNOMIAL_DEGREE + 1];
+  double rms, r2; /* misfit in units of y, and 1 - residual / total sum of squares */
+} scree_polynomial;
+
+/* degree 0 to SCREE_POLYNOMIAL_DEGREE; SCREE_BAD_ARGUMENT with fewer than degree + 1 different x.
+ */
+SCREE_API scree_status scree_fit_polynomial(const double *x, const double *y, size_t count,
+                                            int degree, scree_polynomial *fit, scree_error *error);
+SCREE_API double scree_polynomial_value(const scree_polynomial *fit, double x);
+
 #ifdef __cplusplus
 }
 #endif

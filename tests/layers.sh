@@ -5,7 +5,7 @@
 set -eu
 root=$1
 compiler=$2
-layers="base mesh simplify choice sample particle world pile report"
+layers="base mesh simplify choice sample particle world pile study report"
 failed=0
 complain() {
   echo "$1"
