@@ -9,8 +9,8 @@ enum { CHOOSE_NAME_BYTES = 128, CHOOSE_NOTE_BYTES = 256, CHOOSE_PATH_BYTES = 409
 
 typedef struct choose_arguments {
   const char *output, *grid;
-  double unit, weight, resolution, noise;
-  size_t seed;
+  cli_source source;
+  double weight;
   int method, reference;
   bool samples, paper, errors, distances, json, csv, no_repair, overwrite;
 } choose_arguments;

@@ -84,7 +84,7 @@ static scree_status write_level(const choose_run *run, const scree_curve *curve,
   scree_status status = scree_curve_mesh(curve, level_index, &mesh, error);
   if (status != SCREE_OK) return status;
   scree_write_options options = scree_default_write_options();
-  options.unit_m = run->arguments->unit;
+  options.unit_m = run->arguments->source.unit;
   options.overwrite = run->arguments->overwrite;
   status = scree_mesh_write(&mesh, path, &options, error);
   scree_mesh_free(&mesh);

@@ -23,6 +23,19 @@ scree_status cli_load(const char *word, const cli_input_options *options,
   return SCREE_OK;
 }
 
+cli_input_options cli_source_options(const cli_source *source) {
+  cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
+  input.read.unit_m = source->unit;
+  input.sample.resolution = source->resolution;
+  input.sample.noise = source->noise;
+  input.sample.seed = source->seed;
+  return input;
+}
+
+double cli_source_unit(const char *word, const cli_source *source) {
+  return cli_is_sample(word, NULL) ? 1 : source->unit;
+}
+
 void cli_short_name(const char *word, char *buffer, size_t size) {
   const char *name;
   if (!strcmp(word, "-")) word = "stdin";

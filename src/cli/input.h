@@ -2,12 +2,38 @@
 #ifndef SCREE_CLI_INPUT_H
 #define SCREE_CLI_INPUT_H
 
-#include "scree.h"
+#include "cli/args.h"
 
 typedef struct cli_input_options {
   scree_read_options read;
   scree_sample_options sample;
 } cli_input_options;
+
+/* The options that every verb with surfaces as input has, as a member of its struct. */
+typedef struct cli_source {
+  double unit;              /* m per unit of the files */
+  double resolution, noise; /* m; of samples */
+  size_t seed;
+} cli_source;
+
+#define CLI_SOURCE_DEFAULTS                                                                        \
+  { 1e-3, 0.27e-3, 0.02e-3, 1 }
+
+/* Their rows in the option table of a verb whose struct `type` has the member `source`. */
+#define CLI_SAMPLE_OPTIONS(type, source)                                                           \
+  CLI_SAMPLE_OPTION(type, source, resolution, CLI_LENGTH, "LENGTH",                                \
+                    "Spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3),               \
+      CLI_SAMPLE_OPTION(type, source, noise, CLI_LENGTH, "LENGTH",                                 \
+                        "Scanner noise of built-in samples. Default: 0.02mm.", 0, 2e-3),           \
+      CLI_SAMPLE_OPTION(type, source, seed, CLI_COUNT, "N", "Seed of that noise. Default: 1.", 0,  \
+                        1e15)
+#define CLI_SAMPLE_OPTION(type, source, field, kind, value, help, minimum, maximum)                \
+  { #field, 0, kind, offsetof(type, source.field), value, help, minimum, maximum, NULL }
+
+cli_input_options cli_source_options(const cli_source *source);
+
+/* Metres per unit of what the word names: 1 for a sample. */
+double cli_source_unit(const char *word, const cli_source *source);
 
 /* Whether the word names a built-in sample; then *name (may be NULL) is its name. */
 bool cli_is_sample(const char *word, const char **name);

@@ -1,25 +1,26 @@
 /* scree check: what is wrong with a scan, and whether it can serve as a particle. */
-#include "cli/args.h"
+#include "cli/input.h"
 #include "cli/surface.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct check_arguments {
-  double unit;
+  cli_source source;
   bool fast, json;
 } check_arguments;
 
 static const cli_option options[] = {
-    {"unit", 'u', CLI_UNIT, offsetof(check_arguments, unit), "UNIT",
+    {"unit", 'u', CLI_UNIT, offsetof(check_arguments, source.unit), "UNIT",
      "The files' unit of length. Default: mm.", 0, 0, NULL},
     {"fast", 0, CLI_FLAG, offsetof(check_arguments, fast), NULL,
      "Do not look for self-intersections.", 0, 0, NULL},
+    CLI_SAMPLE_OPTIONS(check_arguments, source),
     {"json", 0, CLI_FLAG, offsetof(check_arguments, json), NULL, "Print JSON instead of text.", 0,
      0, NULL},
 };
 
-static const check_arguments defaults = {.unit = 1e-3};
+static const check_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
 /* One file and all that is known of it. */
 typedef struct checked {
@@ -31,11 +32,10 @@ typedef struct checked {
 
 static scree_status check_one(const cli_call *call, const char *path, checked *c) {
   const check_arguments *arguments = call->options;
-  scree_read_options read = scree_default_read_options();
+  cli_input_options input = cli_source_options(&arguments->source);
   scree_check_options how = scree_default_check_options();
-  read.unit_m = arguments->unit;
   how.intersections = !arguments->fast;
-  scree_status status = scree_scan_read(path, &read, &c->scan, &c->error);
+  scree_status status = cli_load(path, &input, call->progress, &c->scan, &c->error);
   if (status != SCREE_OK) return status;
   c->read = true;
   status = scree_mesh_check(&c->scan.mesh, &how, call->progress, &c->check, &c->error);
@@ -66,7 +66,7 @@ static scree_status print_json(const cli_call *call, const checked *all) {
     bool failed = c->error.status != SCREE_OK;
     entries[i] = (scree_check_entry){.file = call->inputs[i],
                                      .scan = c->read ? &c->scan : NULL,
-                                     .unit_m = arguments->unit,
+                                     .unit_m = cli_source_unit(call->inputs[i], &arguments->source),
                                      .check = failed ? NULL : &c->check,
                                      .failure = failed ? c->error.message : NULL};
   }
@@ -104,7 +104,7 @@ static int run(const cli_call *call) {
 const cli_verb cli_verb_check = {
     .name = "check",
     .summary = "say what is wrong with a scan, and whether it can serve as a particle",
-    .inputs = "FILE...",
+    .inputs = "FILE...|sample:NAME...",
     .description =
         "Counts what is wrong with each surface (holes, non-manifold edges and vertices, facets "
         "wound unlike, inside-out shells, duplicate and degenerate facets, facets that cross, "

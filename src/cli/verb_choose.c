@@ -5,13 +5,8 @@
 
 enum { METHOD_UNSET = -1 };
 
-static const choose_arguments defaults = {.grid = "1e-5:1e-1:9",
-                                          .unit = 1e-3,
-                                          .weight = 1,
-                                          .resolution = 0.27e-3,
-                                          .noise = 0.02e-3,
-                                          .seed = 1,
-                                          .method = METHOD_UNSET};
+static const choose_arguments defaults = {
+    .grid = "1e-5:1e-1:9", .source = CLI_SOURCE_DEFAULTS, .weight = 1, .method = METHOD_UNSET};
 
 #define AT(field) offsetof(choose_arguments, field)
 static const cli_option options[] = {
@@ -38,15 +33,11 @@ static const cli_option options[] = {
      "Also inertia and principal dimensions at every grid level.", 0, 0, NULL},
     {"distance", 'd', CLI_FLAG, AT(distances), NULL,
      "Also Hausdorff and mean distance to the scan at every grid level (slow).", 0, 0, NULL},
-    {"unit", 'u', CLI_UNIT, AT(unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
-     NULL},
+    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
+     0, NULL},
     {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,
      "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
-    {"resolution", 0, CLI_LENGTH, AT(resolution), "LENGTH",
-     "Spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3, NULL},
-    {"noise", 0, CLI_LENGTH, AT(noise), "LENGTH",
-     "Scanner noise of built-in samples. Default: 0.02mm.", 0, 2e-3, NULL},
-    {"seed", 0, CLI_COUNT, AT(seed), "N", "Seed of that noise. Default: 1.", 0, 1e15, NULL},
+    CLI_SAMPLE_OPTIONS(choose_arguments, source),
     {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
     {"csv", 0, CLI_FLAG, AT(csv), NULL, "Print CSV instead of text: a row per grid level.", 0, 0,
      NULL},
@@ -140,11 +131,7 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
                          scree_mesh *mesh, scree_error *error) {
   const choose_run *run = context;
   choose_object *object = &run->objects[index];
-  cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
-  input.read.unit_m = run->arguments->unit;
-  input.sample.resolution = run->arguments->resolution;
-  input.sample.noise = run->arguments->noise;
-  input.sample.seed = run->arguments->seed;
+  cli_input_options input = cli_source_options(&run->arguments->source);
   scree_scan scan;
   scree_status status = cli_load(object->word, &input, progress, &scan, error);
   if (status != SCREE_OK) return name_in_error(object, error);
@@ -184,11 +171,11 @@ static scree_status write_output(const choose_run *run, scree_error *error) {
                                       o->word,
                                       o->format,
                                       o->checksum,
-                                      is_sample ? 1 : a->unit,
+                                      cli_source_unit(o->word, &a->source),
                                       is_sample,
-                                      a->resolution,
-                                      a->noise,
-                                      a->seed,
+                                      a->source.resolution,
+                                      a->source.noise,
+                                      a->source.seed,
                                       o->note[0] ? o->note : NULL,
                                       o->mesh_path[0] ? o->mesh_path : NULL,
                                       &run->choices[i]};

@@ -1,10 +1,11 @@
 /* scree curve: the table of levels. */
-#include "cli/args.h"
+#include "cli/input.h"
 
 #include <math.h>
 
 typedef struct curve_arguments {
-  double unit, from, to;
+  cli_source source;
+  double from, to;
   size_t per_decade, samples;
   int method;
   bool distance, csv;
@@ -31,11 +32,13 @@ static const cli_option options[] = {
      0, 268435456, NULL},
     {"csv", 0, CLI_FLAG, offsetof(curve_arguments, csv), NULL,
      "Comma-separated values in SI units, full digits.", 0, 0, NULL},
-    {"unit", 'u', CLI_UNIT, offsetof(curve_arguments, unit), "UNIT",
+    {"unit", 'u', CLI_UNIT, offsetof(curve_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the file: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
+    CLI_SAMPLE_OPTIONS(curve_arguments, source),
 };
 
-static const curve_arguments defaults = {1e-3, 1e-5, 1e-1, 9, 0, 0, false, false};
+static const curve_arguments defaults = {
+    .source = CLI_SOURCE_DEFAULTS, .from = 1e-5, .to = 1e-1, .per_decade = 9};
 
 /* What the rows need. */
 typedef struct table {
@@ -122,7 +125,7 @@ static void print_facts(const table *t) {
   printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles; coordinates in %s\n",
          t->call->inputs[0], facts.triangle_count, facts.shell_count,
          facts.shell_count == 1 ? "" : "s", scree_method_name(facts.method), facts.floor_count,
-         cli_unit_name(t->arguments->unit));
+         cli_unit_name(t->arguments->source.unit));
   if (!facts.closed)
     printf("not closed: %zu boundary edges; V and eps_v mean nothing\n", facts.boundary_edge_count);
   if (facts.locked_vertex_count > 0)
@@ -131,14 +134,13 @@ static void print_facts(const table *t) {
 
 static int run(const cli_call *call) {
   table t = {.call = call, .arguments = call->options};
-  scree_read_options read = scree_default_read_options();
+  cli_input_options input = cli_source_options(&t.arguments->source);
   scree_simplify_options settings = scree_default_simplify_options();
   scree_scan scan = {0};
   if (t.arguments->from > t.arguments->to)
     return cli_misuse(call->verb, "--from %g is above --to %g", t.arguments->from, t.arguments->to);
-  read.unit_m = t.arguments->unit;
   settings.method = (scree_method)t.arguments->method;
-  scree_status status = scree_scan_read(call->inputs[0], &read, &scan, &t.error);
+  scree_status status = cli_load(call->inputs[0], &input, call->progress, &scan, &t.error);
   if (status == SCREE_OK)
     status = scree_curve_build(&scan.mesh, &settings, call->progress, &t.curve, &t.error);
   if (status == SCREE_OK && t.arguments->distance) {
@@ -161,7 +163,7 @@ static int run(const cli_call *call) {
 const cli_verb cli_verb_curve = {
     .name = "curve",
     .summary = "print area, volume and errors at every level of decimation",
-    .inputs = "FILE",
+    .inputs = "FILE|sample:NAME",
     .description =
         "Decimates a scan once and prints, on a logarithmic grid of the percentage reduction Rp = "
         "N/Nm: the triangle count, Rp, the area S, the volume V, eps_s = |S - Sm|/Sm, eps_v alike, "

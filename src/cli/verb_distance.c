@@ -1,18 +1,19 @@
 /* scree distance: how far two surfaces are apart. */
-#include "cli/args.h"
+#include "cli/input.h"
 
 #include <stdio.h>
 
 typedef struct distance_arguments {
-  double unit, gap;
+  cli_source source;
+  double gap;
   size_t samples;
   bool json, one_way;
 } distance_arguments;
 
-static const distance_arguments defaults = {.unit = 1e-3};
+static const distance_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
 static const cli_option options[] = {
-    {"unit", 'u', CLI_UNIT, offsetof(distance_arguments, unit), "UNIT",
+    {"unit", 'u', CLI_UNIT, offsetof(distance_arguments, source.unit), "UNIT",
      "The files' unit of length, which the text is given in, too. Default: mm.", 0, 0, NULL},
     {"samples", 'n', CLI_COUNT, offsetof(distance_arguments, samples), "N",
      "Points spread over each surface, besides one per facet and every vertex. Default: the "
@@ -24,17 +25,17 @@ static const cli_option options[] = {
      1e-6, 1e6, NULL},
     {"one-way", '1', CLI_FLAG, offsetof(distance_arguments, one_way), NULL,
      "Only from A to B, not back.", 0, 0, NULL},
+    CLI_SAMPLE_OPTIONS(distance_arguments, source),
     {"json", 0, CLI_FLAG, offsetof(distance_arguments, json), NULL, "JSON: one object, in metres.",
      0, 0, NULL},
 };
 
 static scree_status read_two(const cli_call *call, scree_scan scans[2], scree_error *error) {
   const distance_arguments *arguments = call->options;
-  scree_read_options read = scree_default_read_options();
-  read.unit_m = arguments->unit;
-  scree_status status = scree_scan_read(call->inputs[0], &read, &scans[0], error);
+  cli_input_options input = cli_source_options(&arguments->source);
+  scree_status status = cli_load(call->inputs[0], &input, call->progress, &scans[0], error);
   if (status != SCREE_OK) return status;
-  status = scree_scan_read(call->inputs[1], &read, &scans[1], error);
+  status = cli_load(call->inputs[1], &input, call->progress, &scans[1], error);
   if (status != SCREE_OK) scree_scan_free(&scans[0]);
   return status;
 }
@@ -46,8 +47,7 @@ static void print_way(const char *from, const char *to, const scree_deviation *d
          d->at[1] / unit, d->at[2] / unit);
 }
 
-static void print_text(const scree_distance_entry *entry) {
-  double unit = entry->unit_m[0];
+static void print_text(const scree_distance_entry *entry, double unit) {
   const scree_distance *d = &entry->distance;
   print_way(entry->file[0], entry->file[1], &d->forward, unit);
   if (!entry->options.one_way) print_way(entry->file[1], entry->file[0], &d->backward, unit);
@@ -63,7 +63,8 @@ static int run(const cli_call *call) {
   if (read_two(call, scans, &error) != SCREE_OK) return cli_fail(&error);
   scree_distance_entry entry = {.file = {call->inputs[0], call->inputs[1]},
                                 .checksum = {scans[0].checksum, scans[1].checksum},
-                                .unit_m = {arguments->unit, arguments->unit},
+                                .unit_m = {cli_source_unit(call->inputs[0], &arguments->source),
+                                           cli_source_unit(call->inputs[1], &arguments->source)},
                                 .options = scree_default_distance_options()};
   entry.options.sample_count = arguments->samples;
   entry.options.hausdorff_gap = arguments->gap;
@@ -75,7 +76,7 @@ static int run(const cli_call *call) {
   if (status == SCREE_OK && arguments->json)
     status = scree_distance_json_write(&entry, call->command_line, "-", false, &error);
   else if (status == SCREE_OK)
-    print_text(&entry);
+    print_text(&entry, arguments->source.unit);
   return status == SCREE_OK ? 0 : cli_fail(&error);
 }
 
@@ -86,7 +87,9 @@ const cli_verb cli_verb_distance = {
     .description =
         "Measures how far the points of A lie from the surface of B, and back: mean and root mean "
         "square over the area, the largest found, and a bound that no point exceeds. As Metro "
-        "does, but nothing is random: the same files give the same digits.",
+        "does, but nothing is random: the same files give the same digits. sample:NAME stands for "
+        "a "
+        "built-in sample.",
     .examples = "scree distance scan.stl simplified.stl\n"
                 "scree distance --gap 0.001 --json scan.stl simplified.stl\n",
     .options = options,

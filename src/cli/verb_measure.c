@@ -1,24 +1,26 @@
 /* scree measure: sizes, mass properties and topology of scans. */
-#include "cli/args.h"
+#include "cli/input.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 typedef struct measure_arguments {
-  double unit, weld;
+  cli_source source;
+  double weld;
   bool json, csv;
 } measure_arguments;
 
-static const measure_arguments defaults = {.unit = 1e-3};
+static const measure_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
 static const cli_option options[] = {
-    {"unit", 'u', CLI_UNIT, offsetof(measure_arguments, unit), "UNIT",
+    {"unit", 'u', CLI_UNIT, offsetof(measure_arguments, source.unit), "UNIT",
      "The files' unit of length, which the text is given in, too. Default: mm.", 0, 0, NULL},
     {"weld", 0, CLI_REAL, offsetof(measure_arguments, weld), "SHARE",
      "Unite vertices closer than this share of the bounding box diagonal. Default: 0, only equal "
      "ones.",
      0, 0.1, NULL},
+    CLI_SAMPLE_OPTIONS(measure_arguments, source),
     {"json", 0, CLI_FLAG, offsetof(measure_arguments, json), NULL,
      "JSON: one array, an object per file, in SI units.", 0, 0, NULL},
     {"csv", 0, CLI_FLAG, offsetof(measure_arguments, csv), NULL,
@@ -104,15 +106,16 @@ static void warn(const scree_measure_entry *entry) {
 static scree_status measure_file(const cli_call *call, const char *file, scree_measure_entry *entry,
                                  char format[32], scree_error *error) {
   const measure_arguments *arguments = call->options;
-  scree_read_options read = scree_default_read_options();
+  cli_input_options input = cli_source_options(&arguments->source);
   scree_scan scan;
-  read.unit_m = arguments->unit;
-  read.weld_tolerance = arguments->weld;
-  scree_status status = scree_scan_read(file, &read, &scan, error);
+  input.read.weld_tolerance = arguments->weld;
+  scree_status status = cli_load(file, &input, call->progress, &scan, error);
   if (status != SCREE_OK) return status;
   memcpy(format, scan.format, sizeof scan.format);
-  *entry = (scree_measure_entry){
-      .file = file, .format = format, .checksum = scan.checksum, .unit_m = arguments->unit};
+  *entry = (scree_measure_entry){.file = file,
+                                 .format = format,
+                                 .checksum = scan.checksum,
+                                 .unit_m = cli_source_unit(file, &arguments->source)};
   status = scree_mesh_measure(&scan.mesh, &entry->measures, error);
   if (status == SCREE_OK) status = scree_mesh_topology(&scan.mesh, &entry->topology, error);
   if (status == SCREE_OK) entry->topology.degenerate_facet_count += scan.degenerate_count;
@@ -124,10 +127,10 @@ static scree_status measure_file(const cli_call *call, const char *file, scree_m
   return status;
 }
 
-static void print_entry(const scree_measure_entry *entry) {
-  printf("%s (%s, lengths in %s)\n", entry->file, entry->format, cli_unit_name(entry->unit_m));
+static void print_entry(const scree_measure_entry *entry, double unit) {
+  printf("%s (%s, lengths in %s)\n", entry->file, entry->format, cli_unit_name(unit));
   print_topology(&entry->topology);
-  print_measures(&entry->measures, entry->unit_m);
+  print_measures(&entry->measures, unit);
 }
 
 static scree_status write_tables(const cli_call *call, const scree_measure_entry *entries,
@@ -156,7 +159,7 @@ static int run(const cli_call *call) {
     }
     if (!arguments->json && !arguments->csv) {
       if (count) putchar('\n');
-      print_entry(&entries[count]);
+      print_entry(&entries[count], arguments->source.unit);
       fflush(stdout);
     }
     if (!call->quiet) warn(&entries[count]);
@@ -172,7 +175,7 @@ static int run(const cli_call *call) {
 const cli_verb cli_verb_measure = {
     .name = "measure",
     .summary = "area, volume, inertia, dimensions and topology of scans",
-    .inputs = "FILE...",
+    .inputs = "FILE...|sample:NAME...",
     .description =
         "Measures each scan: area, volume, centroid, principal moments of inertia (of unit "
         "density), dimensions along the axes and of the least-volume box found, the diameter of "

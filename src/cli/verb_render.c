@@ -1,4 +1,3 @@
-#include "cli/args.h"
 #include "cli/input.h"
 
 #include <math.h>
@@ -7,13 +6,17 @@
 
 typedef struct render_arguments {
   const char *output, *size, *reference;
-  double unit, azimuth_deg, elevation_deg;
+  cli_source source;
+  double azimuth_deg, elevation_deg;
   size_t samples, columns;
   bool edges, wire, no_ground, no_captions, overwrite;
 } render_arguments;
 
-static const render_arguments defaults = {
-    .size = "1200x900", .unit = 1e-3, .azimuth_deg = 35, .elevation_deg = 25, .samples = 24};
+static const render_arguments defaults = {.size = "1200x900",
+                                          .source = CLI_SOURCE_DEFAULTS,
+                                          .azimuth_deg = 35,
+                                          .elevation_deg = 25,
+                                          .samples = 24};
 
 #define AT(field) offsetof(render_arguments, field)
 static const cli_option options[] = {
@@ -35,8 +38,9 @@ static const cli_option options[] = {
     {"no-ground", 0, CLI_FLAG, AT(no_ground), NULL, "No floor and no shadow on it.", 0, 0, NULL},
     {"no-captions", 0, CLI_FLAG, AT(no_captions), NULL,
      "No file name and triangle count below each view.", 0, 0, NULL},
-    {"unit", 'u', CLI_UNIT, AT(unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
-     NULL},
+    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
+     0, NULL},
+    CLI_SAMPLE_OPTIONS(render_arguments, source),
     {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
 };
 
@@ -71,15 +75,9 @@ static bool allocate_picture(picture *p, size_t count) {
   return p->scans && p->distances && p->items && p->cells && p->captions;
 }
 
-static cli_input_options input_options(double unit) {
-  cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
-  input.read.unit_m = unit;
-  return input;
-}
-
-static scree_status read_one(picture *p, size_t i, const char *word, double unit,
+static scree_status read_one(picture *p, size_t i, const char *word, const cli_source *source,
                              const scree_progress *progress, scree_error *error) {
-  cli_input_options input = input_options(unit);
+  cli_input_options input = cli_source_options(source);
   scree_status status = cli_load(word, &input, progress, &p->scans[i], error);
   if (status != SCREE_OK) return status;
   char name[96], count[32];
@@ -92,9 +90,9 @@ static scree_status read_one(picture *p, size_t i, const char *word, double unit
 }
 
 /* Distances of every vertex of every mesh to the reference, and their largest. */
-static scree_status measure_distances(picture *p, const char *word, double unit, double *largest,
-                                      scree_error *error) {
-  cli_input_options input = input_options(unit);
+static scree_status measure_distances(picture *p, const char *word, const cli_source *source,
+                                      double *largest, scree_error *error) {
+  cli_input_options input = cli_source_options(source);
   scree_scan reference;
   scree_status status = cli_load(word, &input, NULL, &reference, error);
   if (status != SCREE_OK) return status;
@@ -135,15 +133,15 @@ static int run(const cli_call *call) {
   scree_image image = {0};
   scree_status status = allocate_picture(&p, call->input_count) ? SCREE_OK : SCREE_OUT_OF_MEMORY;
   for (size_t i = 0; status == SCREE_OK && i < p.count; i++) {
-    status = read_one(&p, i, call->inputs[i], arguments->unit, call->progress, &error);
+    status = read_one(&p, i, call->inputs[i], &arguments->source, call->progress, &error);
     if (arguments->no_captions) p.cells[i].caption = NULL;
   }
   if (status == SCREE_OK && arguments->reference) {
     render.value_maximum = 0;
     render.value_label = "distance / mm";
     render.value_scale = 1e3;
-    status =
-        measure_distances(&p, arguments->reference, arguments->unit, &render.value_maximum, &error);
+    status = measure_distances(&p, arguments->reference, &arguments->source, &render.value_maximum,
+                               &error);
   }
   if (status == SCREE_OK)
     status = scree_render(p.cells, p.count, &render, call->progress, &image, &error);

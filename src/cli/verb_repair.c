@@ -1,5 +1,5 @@
 /* scree repair: a surface that can serve as a particle of one that cannot, or a refusal. */
-#include "cli/args.h"
+#include "cli/input.h"
 #include "cli/surface.h"
 
 #include <stdio.h>
@@ -8,7 +8,8 @@
 
 typedef struct repair_arguments {
   const char *output;
-  double unit, seam_tolerance, debris_share;
+  cli_source source;
+  double seam_tolerance, debris_share;
   size_t hole_edges;
   bool large_holes, drop_cavities, largest, no_cut, fast, json, force;
 } repair_arguments;
@@ -18,8 +19,8 @@ typedef struct repair_arguments {
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "FILE",
      "Where the repaired surface goes: .stl, .ply, .obj or .off.", 0, 0, NULL},
-    {"unit", 'u', CLI_UNIT, AT(unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
-     NULL},
+    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
+     0, NULL},
     {"seam", 0, CLI_REAL, AT(seam_tolerance), "SHARE",
      "Boundary vertices no farther apart than this share of the bounding box diagonal may be "
      "united to close a seam. Default: 1e-4.",
@@ -41,12 +42,13 @@ static const cli_option options[] = {
      0, NULL},
     {"fast", 0, CLI_FLAG, AT(fast), NULL,
      "Do not look for self-intersections: the result may have some.", 0, 0, NULL},
+    CLI_SAMPLE_OPTIONS(repair_arguments, source),
     {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
     {"force", 'f', CLI_FLAG, AT(force), NULL, "Overwrite an existing file.", 0, 0, NULL},
 };
 
 static const repair_arguments defaults = {
-    .unit = 1e-3, .seam_tolerance = 1e-4, .debris_share = 0.01, .hole_edges = 128};
+    .source = CLI_SOURCE_DEFAULTS, .seam_tolerance = 1e-4, .debris_share = 0.01, .hole_edges = 128};
 
 static scree_repair_options options_of(const repair_arguments *a) {
   scree_repair_options o = scree_default_repair_options();
@@ -75,7 +77,7 @@ static scree_status verify_written(const cli_call *call, scree_error *error) {
   scree_check_options how = {.intersections = !a->fast};
   scree_scan scan;
   scree_check check;
-  read.unit_m = a->unit;
+  read.unit_m = a->source.unit;
   scree_status status = scree_scan_read(a->output, &read, &scan, error);
   if (status != SCREE_OK) return status;
   status = scree_mesh_check(&scan.mesh, &how, call->progress, &check, error);
@@ -92,12 +94,12 @@ static scree_status write_result(const cli_call *call, const scree_mesh *mesh, s
   const repair_arguments *a = call->options;
   scree_write_options write = scree_default_write_options();
   const char *dot = strrchr(a->output, '.');
-  write.unit_m = a->unit;
+  write.unit_m = a->source.unit;
   write.overwrite = a->force;
   write.comment = call->command_line;
   scree_status status = scree_mesh_write(mesh, a->output, &write, error);
   if (status != SCREE_OK || !dot || strcasecmp(dot, ".stl") != 0) return status;
-  if (fits_single(mesh, a->unit)) return status;
+  if (fits_single(mesh, a->source.unit)) return status;
   status = verify_written(call, error);
   if (status != SCREE_OK) remove(a->output);
   return status;
@@ -123,7 +125,7 @@ static int tell(const cli_call *call, const scree_scan *scan, const scree_repair
   } else {
     scree_check_entry entry = {.file = call->inputs[0],
                                .scan = scan,
-                               .unit_m = a->unit,
+                               .unit_m = cli_source_unit(call->inputs[0], &a->source),
                                .check = &report->before,
                                .repair = report,
                                .output = code ? NULL : a->output,
@@ -138,14 +140,14 @@ static int tell(const cli_call *call, const scree_scan *scan, const scree_repair
 static int run(const cli_call *call) {
   const repair_arguments *a = call->options;
   scree_repair_options how = options_of(a);
-  scree_read_options read = scree_default_read_options();
+  cli_input_options input = cli_source_options(&a->source);
   scree_repair_report report;
   scree_scan scan;
   scree_mesh repaired = {0};
   scree_error error = {.status = SCREE_OK};
   if (!a->output) return cli_misuse(call->verb, "say with -o where the result is to go");
-  read.unit_m = a->unit;
-  if (scree_scan_read(call->inputs[0], &read, &scan, &error) != SCREE_OK) return cli_fail(&error);
+  if (cli_load(call->inputs[0], &input, call->progress, &scan, &error) != SCREE_OK)
+    return cli_fail(&error);
   scree_status status =
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
   int code;
@@ -163,7 +165,7 @@ static int run(const cli_call *call) {
 const cli_verb cli_verb_repair = {
     .name = "repair",
     .summary = "make a scan a closed surface that can serve as a particle, or say why not",
-    .inputs = "FILE",
+    .inputs = "FILE|sample:NAME",
     .description =
         "Welds, drops duplicate and degenerate facets, closes seams, splits T-junctions and "
         "non-manifold edges and vertices, turns facets to agree and shells outward, fills small "

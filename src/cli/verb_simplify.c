@@ -1,12 +1,13 @@
 /* scree simplify: one level of the decimation as a file. */
-#include "cli/args.h"
+#include "cli/input.h"
 
 #include <math.h>
 #include <string.h>
 
 typedef struct simplify_arguments {
   const char *output;
-  double rp, error, unit;
+  cli_source source;
+  double rp, error;
   size_t count;
   int method;
   bool force;
@@ -31,13 +32,14 @@ static const cli_option options[] = {
      "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
      "Default: volume.",
      0, 0, "volume|qecd"},
-    {"unit", 'u', CLI_UNIT, offsetof(simplify_arguments, unit), "UNIT",
+    {"unit", 'u', CLI_UNIT, offsetof(simplify_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the files: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
+    CLI_SAMPLE_OPTIONS(simplify_arguments, source),
     {"force", 'f', CLI_FLAG, offsetof(simplify_arguments, force), NULL,
      "Overwrite an existing file.", 0, 0, NULL},
 };
 
-static const simplify_arguments defaults = {NULL, 0, 0, 1e-3, 0, 0, false};
+static const simplify_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
 static void say(const cli_call *call, const scree_curve *curve, size_t index) {
   scree_level first, level;
@@ -52,7 +54,7 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index) {
           scree_method_name(facts.method), (level.area - first.area) / first.area,
           first.volume != 0 ? (level.volume - first.volume) / fabs(first.volume) : 0,
           level.quadric_error * 1e3,
-          cli_unit_name(((const simplify_arguments *)call->options)->unit));
+          cli_unit_name(((const simplify_arguments *)call->options)->source.unit));
   if (!facts.closed)
     fprintf(stderr, "%s: not closed: %zu boundary edges; the volume means nothing\n",
             call->inputs[0], facts.boundary_edge_count);
@@ -67,7 +69,7 @@ static scree_status write_level(const cli_call *call, const scree_curve *curve, 
   scree_write_options write = scree_default_write_options();
   scree_mesh mesh = {0};
   write.overwrite = arguments->force;
-  write.unit_m = arguments->unit;
+  write.unit_m = arguments->source.unit;
   write.comment = call->command_line;
   if (!strcmp(arguments->output, "-")) write.format = SCREE_FORMAT_STL;
   scree_status status = scree_curve_mesh(curve, index, &mesh, error);
@@ -78,15 +80,14 @@ static scree_status write_level(const cli_call *call, const scree_curve *curve, 
 
 static scree_status simplify(const cli_call *call, scree_error *error) {
   const simplify_arguments *arguments = call->options;
-  scree_read_options read = scree_default_read_options();
+  cli_input_options input = cli_source_options(&arguments->source);
   scree_simplify_options simplify_options = scree_default_simplify_options();
   scree_scan scan = {0};
   scree_curve *curve = NULL;
-  read.unit_m = arguments->unit;
-  scree_status status = scree_scan_read(call->inputs[0], &read, &scan, error);
+  scree_status status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
   if (status != SCREE_OK) return status;
   size_t target = arguments->count;
-  if (arguments->rp > 0) target = (size_t)(arguments->rp * (double)scan.mesh.triangle_count);
+  if (arguments->rp > 0) target = scree_choice_target(arguments->rp, scan.mesh.triangle_count);
   simplify_options.method = (scree_method)arguments->method;
   simplify_options.stop_count = target;
   simplify_options.error_limit = arguments->error;
@@ -120,7 +121,7 @@ static int run(const cli_call *call) {
 const cli_verb cli_verb_simplify = {
     .name = "simplify",
     .summary = "write a scan with fewer triangles",
-    .inputs = "FILE",
+    .inputs = "FILE|sample:NAME",
     .description =
         "Decimates a scan by edge collapses and writes the level asked for. What was closed, "
         "manifold and outward stays so; no facet is flipped, folded over or driven through "

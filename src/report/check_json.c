@@ -39,9 +39,10 @@ static void json_entry(scree_json *json, const scree_check_entry *entry, const c
   scree_json_text(json, "file", entry->file);
   if (entry->scan) {
     char checksum[40];
-    snprintf(checksum, sizeof checksum, "%016" PRIx64 "%016" PRIx64, entry->scan->checksum.high,
-             entry->scan->checksum.low);
-    scree_json_text(json, "checksum", checksum);
+    scree_checksum sum = entry->scan->checksum;
+    bool known = sum.high || sum.low; /* a sample has no bytes */
+    snprintf(checksum, sizeof checksum, "%016" PRIx64 "%016" PRIx64, sum.high, sum.low);
+    scree_json_text(json, "checksum", known ? checksum : NULL);
     scree_json_text(json, "format", entry->scan->format);
     scree_json_number(json, "unit_m", entry->unit_m);
     scree_json_count(json, "facet_count", entry->scan->facet_count);

@@ -75,8 +75,11 @@ static const void *value_of(const scree_measure_entry *entry, const field *f) {
   return (const char *)entry + f->offset;
 }
 
-static void checksum_text(const scree_checksum *checksum, char text[40]) {
+/* NULL for a sample, which has no bytes. */
+static const char *checksum_text(const scree_checksum *checksum, char text[40]) {
+  if (!checksum->high && !checksum->low) return NULL;
   snprintf(text, 40, "%016" PRIx64 "%016" PRIx64, checksum->high, checksum->low);
+  return text;
 }
 
 /* ---- JSON ---- */
@@ -114,11 +117,10 @@ static void json_provenance(scree_json *json, const char *command_line) {
 static void json_entry(scree_json *json, const scree_measure_entry *entry,
                        const char *command_line) {
   char checksum[40];
-  checksum_text(&entry->checksum, checksum);
   scree_json_object(json, NULL);
   scree_json_text(json, "file", entry->file);
   scree_json_text(json, "format", entry->format);
-  scree_json_text(json, "checksum", checksum);
+  scree_json_text(json, "checksum", checksum_text(&entry->checksum, checksum));
   scree_json_number(json, "unit_m", entry->unit_m);
   for (int i = 0; i < MEASURE_FIELDS; i++) json_field(json, entry, &measure_fields[i]);
   scree_json_object(json, "topology");
@@ -162,10 +164,9 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
   scree_json_array(&json, "files");
   for (int i = 0; i < 2; i++) {
     char checksum[40];
-    checksum_text(&entry->checksum[i], checksum);
     scree_json_row_object(&json, NULL);
     scree_json_text(&json, "file", entry->file[i]);
-    scree_json_text(&json, "checksum", checksum);
+    scree_json_text(&json, "checksum", checksum_text(&entry->checksum[i], checksum));
     scree_json_number(&json, "unit_m", entry->unit_m[i]);
     scree_json_end(&json);
   }
