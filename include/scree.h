@@ -1444,6 +1444,31 @@ SCREE_API scree_status scree_choice_curve_csv_write(const scree_choice_entry *en
                                                     const char *path, bool overwrite,
                                                     scree_error *error);
 
+/* One level of the table of a curve. */
+typedef struct scree_curve_row {
+  scree_level level;
+  double eps_s, eps_v, ip; /* |S - Sm|/Sm, |V - Vm|/|Vm| (0 where Vm is), eps_s + Rp */
+  scree_distance distance; /* forward: from the scan to the level; read where distances is true */
+} scree_curve_row;
+
+/* A table of levels of one curve. Texts are borrowed. */
+typedef struct scree_curve_entry {
+  const char *file, *format; /* as given; as read */
+  scree_checksum checksum;   /* of the file's bytes; zero for samples */
+  double unit_m;             /* metres per unit of the file */
+  scree_curve_facts facts;
+  double area, volume; /* of the scan, m2 and m3 */
+  const scree_curve_row *rows;
+  size_t row_count;
+  bool distances;
+} scree_curve_entry;
+
+/* One object, the rows in `levels` (docs/formats.md); SI units. command_line NULL: unknown. "-" is
+ * stdout. */
+SCREE_API scree_status scree_curve_json_write(const scree_curve_entry *entry,
+                                              const char *command_line, const char *path,
+                                              bool overwrite, scree_error *error);
+
 /* ---- 9.4 Measures and distances: tables, JSON ---- */
 
 /* One measured scan. Texts are borrowed. */

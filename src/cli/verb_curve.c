@@ -2,13 +2,14 @@
 #include "cli/input.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 typedef struct curve_arguments {
   cli_source source;
   double from, to;
   size_t per_decade, samples;
   int method;
-  bool distance, csv;
+  bool distance, csv, json;
 } curve_arguments;
 
 static const cli_option options[] = {
@@ -32,6 +33,8 @@ static const cli_option options[] = {
      0, 268435456, NULL},
     {"csv", 0, CLI_FLAG, offsetof(curve_arguments, csv), NULL,
      "Comma-separated values in SI units, full digits.", 0, 0, NULL},
+    {"json", 0, CLI_FLAG, offsetof(curve_arguments, json), NULL,
+     "JSON in SI units: one object with the levels in an array.", 0, 0, NULL},
     {"unit", 'u', CLI_UNIT, offsetof(curve_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the file: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(curve_arguments, source),
@@ -48,11 +51,14 @@ typedef struct table {
   scree_replay *replay;
   scree_surface *scan;
   scree_level first;
+  scree_curve_row *rows;
+  size_t row_count;
   scree_error error;
 } table;
 
 static void print_header(const table *t) {
   bool distance = t->arguments->distance;
+  if (t->arguments->json) return;
   if (t->arguments->csv) {
     printf("triangle_count,rp,area,volume,eps_s,eps_v,ip,quadric_error%s\n",
            distance ? ",forward_mean,forward_max,backward_mean,backward_max,hausdorff" : "");
@@ -63,17 +69,16 @@ static void print_header(const table *t) {
          distance ? "  mean (mm)  max (mm) mean back  max back Hausdorff" : "");
 }
 
-static void print_row(const table *t, const scree_level *level, const scree_distance *d) {
-  double eps_s = fabs(level->area - t->first.area) / t->first.area;
-  double eps_v =
-      t->first.volume != 0 ? fabs(level->volume - t->first.volume) / fabs(t->first.volume) : 0;
+static void print_row(const table *t, const scree_curve_row *row) {
+  const scree_level *level = &row->level;
+  const scree_distance *d = &row->distance;
   bool csv = t->arguments->csv;
   printf(csv ? "%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.9g"
              : "%9zu %9.3g %10.4g %10.4g %9.3g %9.2g %9.4g %9.3g",
          level->triangle_count, level->rp, level->area * (csv ? 1 : 1e4),
-         level->volume * (csv ? 1 : 1e6), eps_s, eps_v, eps_s + level->rp,
+         level->volume * (csv ? 1 : 1e6), row->eps_s, row->eps_v, row->ip,
          level->quadric_error * (csv ? 1 : 1e3));
-  if (d) {
+  if (t->arguments->distance) {
     double scale = csv ? 1 : 1e3;
     printf(csv ? ",%.9g,%.9g,%.9g,%.9g,%.9g" : "  %9.4g %9.4g %9.4g %9.4g %9.4g",
            d->forward.mean * scale, d->forward.maximum * scale, d->backward.mean * scale,
@@ -96,32 +101,57 @@ static scree_status measure_distance(table *t, size_t index, scree_distance *dis
   return status;
 }
 
-/* Rows from fine to coarse on the grid of Rp, each level once. */
-static scree_status print_rows(table *t) {
+static scree_status make_row(table *t, size_t index, scree_curve_row *row) {
+  double whole = fabs(t->first.volume);
+  scree_curve_level(t->curve, index, &row->level);
+  row->eps_s = fabs(row->level.area - t->first.area) / t->first.area;
+  row->eps_v = whole > 0 ? fabs(row->level.volume - t->first.volume) / whole : 0;
+  row->ip = row->eps_s + row->level.rp;
+  return t->arguments->distance ? measure_distance(t, index, &row->distance) : SCREE_OK;
+}
+
+/* Rows from fine to coarse on the grid of Rp, each level once; text and CSV as they come. */
+static scree_status make_rows(table *t) {
   const curve_arguments *arguments = t->arguments;
   double top = log10(arguments->to), steps = (double)arguments->per_decade;
   size_t rows = (size_t)floor((top - log10(arguments->from)) * steps + 1e-9) + 1;
   size_t last = SIZE_MAX;
+  t->rows = calloc(rows, sizeof *t->rows);
+  if (!t->rows) {
+    t->error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the table"};
+    return SCREE_OUT_OF_MEMORY;
+  }
   for (size_t i = 0; i < rows; i++) {
     double rp = pow(10, top - (double)i / steps);
     size_t target = (size_t)(rp * (double)t->first.triangle_count * (1 + 1e-12));
     size_t index = scree_curve_find(t->curve, target);
-    scree_level level;
-    scree_distance distance;
     if (index == last) continue;
     last = index;
-    scree_curve_level(t->curve, index, &level);
-    scree_status status = SCREE_OK;
-    if (arguments->distance) status = measure_distance(t, index, &distance);
+    scree_status status = make_row(t, index, &t->rows[t->row_count]);
     if (status != SCREE_OK) return status;
-    print_row(t, &level, arguments->distance ? &distance : NULL);
+    if (!arguments->json) print_row(t, &t->rows[t->row_count]);
+    t->row_count++;
   }
   return SCREE_OK;
 }
 
+static scree_status write_json(table *t, const scree_scan *scan) {
+  scree_curve_entry entry = {.file = t->call->inputs[0],
+                             .format = scan->format,
+                             .checksum = scan->checksum,
+                             .unit_m = cli_source_unit(t->call->inputs[0], &t->arguments->source),
+                             .facts = scree_curve_get_facts(t->curve),
+                             .area = t->first.area,
+                             .volume = t->first.volume,
+                             .rows = t->rows,
+                             .row_count = t->row_count,
+                             .distances = t->arguments->distance};
+  return scree_curve_json_write(&entry, t->call->command_line, "-", false, &t->error);
+}
+
 static void print_facts(const table *t) {
   scree_curve_facts facts = scree_curve_get_facts(t->curve);
-  if (t->call->quiet || t->arguments->csv) return;
+  if (t->call->quiet || t->arguments->csv || t->arguments->json) return;
   printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles; coordinates in %s\n",
          t->call->inputs[0], facts.triangle_count, facts.shell_count,
          facts.shell_count == 1 ? "" : "s", scree_method_name(facts.method), facts.floor_count,
@@ -139,6 +169,8 @@ static int run(const cli_call *call) {
   scree_scan scan = {0};
   if (t.arguments->from > t.arguments->to)
     return cli_misuse(call->verb, "--from %g is above --to %g", t.arguments->from, t.arguments->to);
+  if (t.arguments->csv && t.arguments->json)
+    return cli_misuse(call->verb, "--json and --csv exclude each other");
   settings.method = (scree_method)t.arguments->method;
   scree_status status = cli_load(call->inputs[0], &input, call->progress, &scan, &t.error);
   if (status == SCREE_OK)
@@ -151,8 +183,10 @@ static int run(const cli_call *call) {
     scree_curve_level(t.curve, 0, &t.first);
     print_facts(&t);
     print_header(&t);
-    status = print_rows(&t);
+    status = make_rows(&t);
   }
+  if (status == SCREE_OK && t.arguments->json) status = write_json(&t, &scan);
+  free(t.rows);
   scree_replay_free(t.replay);
   scree_surface_free(t.scan);
   scree_curve_free(t.curve);

@@ -185,6 +185,55 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
   return scree_output_commit(&output, error);
 }
 
+static void json_row(scree_json *json, const scree_curve_row *row, bool distances) {
+  scree_json_row_object(json, NULL);
+  scree_json_count(json, "triangle_count", row->level.triangle_count);
+  scree_json_number(json, "rp", row->level.rp);
+  scree_json_number(json, "area", row->level.area);
+  scree_json_number(json, "volume", row->level.volume);
+  scree_json_number(json, "eps_s", row->eps_s);
+  scree_json_number(json, "eps_v", row->eps_v);
+  scree_json_number(json, "ip", row->ip);
+  scree_json_number(json, "quadric_error", row->level.quadric_error);
+  if (distances) {
+    scree_json_number(json, "forward_mean", row->distance.forward.mean);
+    scree_json_number(json, "forward_maximum", row->distance.forward.maximum);
+    scree_json_number(json, "backward_mean", row->distance.backward.mean);
+    scree_json_number(json, "backward_maximum", row->distance.backward.maximum);
+    scree_json_number(json, "hausdorff", row->distance.hausdorff);
+  }
+  scree_json_end(json);
+}
+
+scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *command_line,
+                                    const char *path, bool overwrite, scree_error *error) {
+  scree_output output;
+  char checksum[40];
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  scree_json json = scree_json_start(output.stream);
+  scree_json_object(&json, NULL);
+  scree_json_text(&json, "file", entry->file);
+  scree_json_text(&json, "format", entry->format);
+  scree_json_text(&json, "checksum", checksum_text(&entry->checksum, checksum));
+  scree_json_number(&json, "unit_m", entry->unit_m);
+  scree_json_text(&json, "method", scree_method_name(entry->facts.method));
+  scree_json_count(&json, "triangle_count", entry->facts.triangle_count);
+  scree_json_number(&json, "area", entry->area);
+  scree_json_number(&json, "volume", entry->volume);
+  scree_json_bool(&json, "closed", entry->facts.closed);
+  scree_json_count(&json, "shell_count", entry->facts.shell_count);
+  scree_json_count(&json, "boundary_edge_count", entry->facts.boundary_edge_count);
+  scree_json_count(&json, "locked_vertex_count", entry->facts.locked_vertex_count);
+  scree_json_count(&json, "floor_triangle_count", entry->facts.floor_count);
+  scree_json_array(&json, "levels");
+  for (size_t i = 0; i < entry->row_count; i++) json_row(&json, &entry->rows[i], entry->distances);
+  scree_json_end(&json);
+  json_provenance(&json, command_line);
+  scree_json_end(&json);
+  return scree_output_commit(&output, error);
+}
+
 /* ---- CSV ---- */
 
 static void csv_header(FILE *stream, const field *fields, int field_count, const char *prefix) {

@@ -1,0 +1,71 @@
+"""Runs the verbs with --json and compares the fields they print with the tables of docs/formats.md: each field
+printed must be in the verb's table or in the common one, and each field in a table must be printed.
+usage: json_fields.py PROGRAM FORMATS.MD"""
+import itertools
+import json
+import os
+import re
+import subprocess
+import sys
+import tempfile
+
+program, document = sys.argv[1], open(sys.argv[2], encoding="utf-8").read()
+os.chdir(tempfile.mkdtemp())
+with open("open.off", "w") as file:  # a tetrahedron without one facet: repair has something to do
+    file.write("OFF 4 3 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 2 1\n3 0 1 3\n3 0 3 2\n")
+BALL, SOLID = "sample:icosphere-3", "sample:box-12"
+VERBS = {  # heading: calls that together print every field
+    "scree choose": [["choose", BALL, "open.off", "--errors", "--distance"]],
+    "scree curve": [["curve", BALL, "--distance", "--per-decade", "1"]],
+    "scree measure": [["measure", SOLID]],
+    "scree distance": [["distance", SOLID, BALL, "--samples", "100"]],
+    "scree check and scree repair": [["check", SOLID, "missing.stl"], ["repair", "open.off", "-o", "r.stl"]],
+}
+
+
+def expand(text):
+    """a.{b,c} to a.b and a.c"""
+    parts = [p[1:-1].split(",") if p.startswith("{") else [p] for p in re.split(r"(\{[^}]*\})", text)]
+    return {"".join(words) for words in itertools.product(*parts)}
+
+
+def documented(text):
+    """First column of the tables."""
+    fields = set()
+    for row in re.findall(r"^\| (`.*?) \|", text, re.MULTILINE):
+        for name in re.findall(r"`([^`]+)`", row):
+            fields |= expand(name)
+    return fields
+
+
+def printed(value, path=""):
+    if isinstance(value, dict):
+        for key, inner in value.items():
+            yield from printed(inner, f"{path}.{key}" if path else key)
+    elif isinstance(value, list) and any(isinstance(inner, dict) for inner in value):
+        for inner in value:
+            yield from printed(inner, path + "[]")
+    else:
+        yield path
+
+
+section = document.split("\n## JSON\n")[1].split("\n## ")[0].split("\n### ")
+tables = {part.split("\n")[0]: documented(part) for part in section[1:]}
+common, failed = documented(section[0]), False
+assert len(common) == 6
+for heading, calls in VERBS.items():
+    found = set()
+    for call in calls:
+        output = subprocess.run([program, call[0], "--json", "-q", *call[1:]], stdout=subprocess.PIPE,
+                                stderr=subprocess.DEVNULL, check=False).stdout
+        data = json.loads(output)
+        for one in data if isinstance(data, list) else [data]:
+            found |= set(printed(one))
+    for field in sorted(found - tables[heading] - common):
+        print(f"{heading}: {field} is printed, but not in the table")
+        failed = True
+    for field in sorted(tables[heading] - found):
+        print(f"{heading}: {field} is in the table, but not printed")
+        failed = True
+    print(f"{heading}: {len(found)} fields")
+sys.exit(failed)
