@@ -1180,8 +1180,10 @@ typedef struct scree_experiment {
   int contact_law;            /* 0 linear, 1 hysteretic */
   double steps_per_contact;   /* N of the time step */
   double stiffness_factor;    /* multiplies all stiffnesses */
-  double frame_interval;      /* s between frames written; 0: none */
+  double frame_interval;      /* s between frames written; 0: none but the last */
   double checkpoint_interval; /* s of wall-clock time between checkpoints */
+  double series_interval;     /* s between the points of the series (scree_run_point) */
+  double angle_interval;      /* s between those that have angles; 0: only the last */
   double height_cell;         /* m: cells of the height field; 0: a tenth of the particle size */
   size_t sector_count;
   double band_low, band_high;
@@ -1197,9 +1199,27 @@ SCREE_API void scree_experiment_free(scree_experiment *experiment);
  * failure. */
 SCREE_API scree_status scree_experiment_read(const char *path, scree_experiment *experiment,
                                              scree_error *error);
+/* The same from bytes in memory; name stands for the file in errors. */
+SCREE_API scree_status scree_experiment_parse(const char *text, size_t byte_count, const char *name,
+                                              scree_experiment *experiment, scree_error *error);
+/* An own copy. */
+SCREE_API scree_status scree_experiment_copy(const scree_experiment *experiment,
+                                             scree_experiment *copy, scree_error *error);
 /* Sets one field from text, as `cylinder.diameter` to "0.3". */
 SCREE_API scree_status scree_experiment_set(scree_experiment *experiment, const char *key,
                                             const char *value, scree_error *error);
+/* What single ranges cannot say, such as a disc smaller than the cylinder; reading checks it too.
+ */
+SCREE_API scree_status scree_experiment_check(const scree_experiment *experiment,
+                                              scree_error *error);
+/* The keys of all fields in the order of the file, NULL past the last; unit and meaning of a key
+ * ("" for a pure number; the words "one|two" of a choice), NULL for an unknown one. */
+SCREE_API const char *scree_experiment_key(size_t index);
+SCREE_API const char *scree_experiment_unit(const char *key);
+SCREE_API const char *scree_experiment_comment(const char *key);
+/* A field as text that scree_experiment_set reads back, into buffer; false for an unknown key. */
+SCREE_API bool scree_experiment_get(const scree_experiment *experiment, const char *key,
+                                    char *buffer, size_t size);
 /* Writes the whole experiment as YAML with units and comments; reading it back gives the same
  * values. */
 SCREE_API void scree_experiment_print(const scree_experiment *experiment, FILE *stream);
@@ -1221,16 +1241,16 @@ typedef struct scree_run scree_run;
 
 /* One of the shapes that a run mixes. */
 typedef struct scree_run_shape {
-  scree_particle
-      *particle;         /* borrowed until the run is created; the world keeps its own reference */
+  scree_particle *particle; /* borrowed until the run is created; the run keeps its own reference */
   double density_factor; /* 1, or volume of the scan over that of the particle (mass_from: scan) */
+  const char *name;      /* for reports, copied; NULL: none */
 } scree_run_shape;
 
 /* The particles take the shapes in equal shares, shuffled by the seed; positions and orientations
- * are random, bounding spheres never overlap. Layers follow each other so that all are in after
- * pack_time; a cylinder too narrow for the largest particle, or a layer that would have to enter
- * faster than the contact law allows, is refused here with the pack_time that would do. At most 60
- * shapes. */
+ * are random, and their bounding boxes never overlap (src/pile/fill.c). Layers follow each other so
+ * that all are in after pack_time; a cylinder too narrow for the largest particle, or a layer that
+ * would have to enter faster than the contact law allows, is refused here with the pack_time that
+ * would do. At most 60 shapes. */
 SCREE_API scree_status scree_run_create(const scree_experiment *experiment,
                                         const scree_run_shape *shapes, size_t shape_count,
                                         scree_run **run, scree_error *error);
@@ -1245,21 +1265,145 @@ SCREE_API double scree_run_fraction(const scree_run *run);
 /* The world, for observing and frames; not to be changed. */
 SCREE_API scree_world *scree_run_world(scree_run *run);
 SCREE_API const scree_experiment *scree_run_experiment(const scree_run *run);
+SCREE_API size_t scree_run_shape_count(const scree_run *run);
+/* Particle and name belong to the run. */
+SCREE_API void scree_run_get_shape(const scree_run *run, size_t index, scree_run_shape *shape);
+/* The shape of body `index` of the world. */
+SCREE_API size_t scree_run_body_shape(const scree_run *run, size_t index);
 /* m: the height of the cylinder's lower end above the disc. */
 SCREE_API double scree_run_cylinder_height(const scree_run *run);
+
+/* The state at one moment: a point is recorded at every output.series_interval of simulated time,
+ * and one where the run ends. */
+typedef struct scree_run_point {
+  double time; /* s */
+  scree_phase phase;
+  size_t body_count;      /* in the world: entered, and not fallen off */
+  double kinetic;         /* J, of translation and rotation */
+  double mean_rotation;   /* rad/s: mean of |omega| over the bodies, the paper's Fig. 7 */
+  double highest_speed;   /* m/s */
+  double largest_overlap; /* m, in that step */
+  double coordination;    /* mean number of touching bodies and walls */
+  double cylinder_height; /* m */
+  double sector_deg, cone_deg, silhouette_deg, height; /* of the heap, m; at every
+                                                          output.angle_interval while lifting and
+                                                          holding, and at the end; else NaN */
+} scree_run_point;
+
+/* The series so far, the run's own; valid until the next call that advances it. */
+SCREE_API const scree_run_point *scree_run_series(const scree_run *run, size_t *count);
+
+/* What the run cost so far, all its pieces between interruptions together. */
+typedef struct scree_run_costs {
+  double time_step; /* s */
+  uint64_t step_count;
+  uint64_t particle_steps;  /* sum over the steps of the bodies in the world */
+  double wall_seconds;      /* in scree_run_advance, on the clock */
+  double processor_seconds; /* and of all threads of the process meanwhile */
+  size_t piece_count;       /* 1, and one more for every resume */
+  double largest_overlap;   /* m, of all points of the series */
+} scree_run_costs;
+SCREE_API void scree_run_get_costs(const scree_run *run, scree_run_costs *costs);
 
 /* What a run gives beyond the heap's shape. */
 typedef struct scree_run_result {
   scree_repose repose;
-  size_t left_count;       /* particles that fell off the disc */
+  size_t body_count;       /* particles on the disc */
+  size_t left_count;       /* particles that fell off it */
   double packing_fraction; /* solid volume over the volume under the height field */
-  double coordination;     /* mean number of touching neighbours */
+  double coordination;     /* mean number of touching neighbours, walls included */
   double particle_size;    /* m: mean equal-volume sphere diameter */
+  double kinetic;          /* J: what is left of motion */
+  double time;             /* s, simulated */
+  bool still;              /* less than phases.still_energy a particle */
 } scree_run_result;
 
 /* Measures the heap as it stands now (scree_height_field, scree_repose_measure). */
 SCREE_API scree_status scree_run_measure(const scree_run *run, scree_run_result *result,
                                          scree_error *error);
+/* The same with other settings: of `measure`, only the fields of its group "measure" are used. */
+SCREE_API scree_status scree_run_measure_with(const scree_run *run, const scree_experiment *measure,
+                                              scree_run_result *result, scree_error *error);
+
+/* ---- 8.4 Runs on disk ---- */
+
+/* Writes a checkpoint: experiment, shapes, world, series; it stands alone (docs/formats.md).
+ * Complete under its name or not there. */
+SCREE_API scree_status scree_run_save(const scree_run *run, const char *path, bool overwrite,
+                                      scree_error *error);
+/* Writes a frame: the same without the contacts, a fraction of the size; it can be measured and
+ * drawn, not continued. */
+SCREE_API scree_status scree_run_save_frame(const scree_run *run, const char *path, bool overwrite,
+                                            scree_error *error);
+/* Reads either. From a checkpoint every later step has the same bits as in the run saved; a frame
+ * is refused by scree_run_advance with SCREE_UNSUPPORTED. SCREE_BAD_FILE, with file and reason, for
+ * anything else. */
+SCREE_API scree_status scree_run_load(const char *path, scree_run **run, scree_error *error);
+SCREE_API bool scree_run_is_frame(const scree_run *run);
+
+/* How a whole run goes on, for a watcher. */
+typedef struct scree_run_state {
+  const scree_run *run;
+  scree_run_point now;     /* without angles */
+  double fraction;         /* of the simulated time, by the longest schedule */
+  double steps_per_second; /* over the last seconds on the clock; NaN at first */
+  double seconds_left;     /* on the clock, at that speed; NaN at first */
+} scree_run_state;
+
+typedef struct scree_run_job {
+  const scree_experiment *experiment;
+  const scree_run_shape *shapes; /* 1 to 60 */
+  size_t shape_count;
+  /* Gets checkpoint.scree every output.checkpoint_interval, when the run is cancelled and when it
+   * is done; frame-NNNN.scree at every output.frame_interval, NNNN counting from 0000; and
+   * last.scree, a frame, at the end. Made if need be. NULL: nothing is written. */
+  const char *folder;
+  /* Go on from the folder's checkpoint.scree where there is one; one of another experiment or of
+   * other shapes is refused with SCREE_BAD_ARGUMENT, one that cannot be read with SCREE_BAD_FILE.
+   * Without resume a folder that has one is refused with SCREE_EXISTS, unless overwrite. */
+  bool resume, overwrite;
+  /* Called a few times a second; false cancels: the checkpoint is written, and the answer is
+   * SCREE_CANCELLED. NULL: none. */
+  bool (*watch)(void *context, const scree_run_state *state);
+  /* Called after a frame was due, also without folder; time is run's. NULL: none. */
+  scree_status (*frame)(void *context, scree_run *run, size_t frame_index, scree_error *error);
+  void *context;
+} scree_run_job;
+
+/* One run from its beginning, or its checkpoint, to its end; *run is then in SCREE_PHASE_DONE: ask
+ * it for result, series and costs, and free it. A failed run (SCREE_DIVERGED) leaves its last
+ * checkpoint. The same experiment and shapes give the same bits, however often it was interrupted
+ * and on any number of threads; the costs alone differ. */
+SCREE_API scree_status scree_run_complete(const scree_run_job *job, scree_run **run,
+                                          scree_error *error);
+
+/* ---- 8.5 Shapes for a run ---- */
+
+typedef struct scree_grain_options {
+  double rp;       /* percentage reduction in (0, 1]; default 1: the scan as it is */
+  bool sphere;     /* the sphere of the scan's volume instead, whatever the Rp; default false */
+  int mass_rule;   /* a scree_mass_rule; default SCREE_MASS_FROM_MESH */
+  double rounding; /* m, see scree_particle_options; default 0 */
+} scree_grain_options;
+SCREE_API scree_grain_options scree_default_grain_options(void);
+
+/* A shape and what was made of it. */
+typedef struct scree_grain {
+  scree_run_shape run; /* its particle belongs to this struct; name is NULL */
+  size_t scan_triangle_count, triangle_count; /* of a sphere: 0 */
+  double rp_reached;                          /* triangle_count / scan_triangle_count */
+  double scan_volume, volume;                 /* m3; of the particle before the density factor */
+} scree_grain;
+SCREE_API void scree_grain_free(scree_grain *grain);
+
+/* A particle of a scan at one Rp. scan must be closed (scree_mesh_prepare); curve is that of the
+ * scan, used where rp < 1 and not a sphere, so that many levels cost one decimation; NULL builds
+ * one for the call. The level is the first with at most rp Nm triangles, truncated
+ * (scree_choice_target), or the last where the scan cannot be reduced so far. */
+SCREE_API scree_status scree_grain_make(const scree_mesh *scan, const scree_curve *curve,
+                                        const scree_grain_options *options,
+                                        const scree_progress *progress, scree_grain *grain,
+                                        scree_error *error);
 
 /* ==== 9. Reports: figures, pictures, files for other programs ================================= */
 

@@ -64,6 +64,10 @@ static const field fields[] = {
      "of simulated time; 0: only the last [s]"},
     {"output.checkpoint_interval", FIELD_REAL, AT(checkpoint_interval), 1, 1e6, "s",
      "of wall-clock time: what a crash costs at most [s]"},
+    {"output.series_interval", FIELD_REAL, AT(series_interval), 1e-5, 1e4, "s",
+     "of simulated time between the points of the series [s]"},
+    {"output.angle_interval", FIELD_REAL, AT(angle_interval), 0, 1e5, "s",
+     "between points with angles, while lifting and holding; 0: only the last [s]"},
     {"measure.cell", FIELD_REAL, AT(height_cell), 0, 1, "m",
      "of the height field; 0: a tenth of the particle size [s]"},
     {"measure.sectors", FIELD_COUNT, AT(sector_count), 1, 3600, "", "azimuth sectors [s]"},
@@ -98,6 +102,8 @@ static const scree_experiment paper = {
     .steps_per_contact = 20,
     .stiffness_factor = 1,
     .checkpoint_interval = 60,
+    .series_interval = 0.05,
+    .angle_interval = 0.5,
     .sector_count = 36,
     .band_low = 0.2,
     .band_high = 0.8,
@@ -236,7 +242,6 @@ static const field *find_field(const char *key) {
   return NULL;
 }
 
-/* What single ranges cannot say. */
 static scree_status check_together(const scree_experiment *e, const char *where,
                                    scree_error *error) {
   if (e->band_low >= e->band_high)
@@ -248,6 +253,22 @@ static scree_status check_together(const scree_experiment *e, const char *where,
                       "%s: disc.diameter %g m must not be below cylinder.diameter %g m", where,
                       e->disc_diameter, e->cylinder_diameter);
   return SCREE_OK;
+}
+
+scree_status scree_experiment_check(const scree_experiment *experiment, scree_error *error) {
+  return check_together(experiment, "experiment", error);
+}
+
+const char *scree_experiment_key(size_t index) {
+  return index < FIELD_COUNT_ALL ? fields[index].key : NULL;
+}
+const char *scree_experiment_unit(const char *key) {
+  const field *f = find_field(key);
+  return f ? f->unit : NULL;
+}
+const char *scree_experiment_comment(const char *key) {
+  const field *f = find_field(key);
+  return f ? f->comment : NULL;
 }
 
 scree_status scree_experiment_set(scree_experiment *experiment, const char *key, const char *value,
@@ -328,55 +349,84 @@ static scree_status read_root(const char *path, const scree_yaml *root, scree_ex
   return status == SCREE_OK ? check_together(e, path, error) : status;
 }
 
+/* The tree over a copy; *experiment changes only where all of it is good. */
+static scree_status apply_root(const char *name, const scree_yaml *root,
+                               scree_experiment *experiment, scree_error *error) {
+  scree_experiment changed = *experiment;
+  scree_status status = read_root(name, root, &changed, error);
+  bool own = changed.preset != experiment->preset;
+  if (status != SCREE_OK) {
+    if (own) scree_experiment_free(&changed);
+    return status;
+  }
+  if (own) scree_experiment_free(experiment);
+  *experiment = changed;
+  return SCREE_OK;
+}
+
 scree_status scree_experiment_read(const char *path, scree_experiment *experiment,
                                    scree_error *error) {
   scree_yaml root;
   scree_status status = scree_yaml_read(path, &root, error);
   if (status != SCREE_OK) return status;
-  scree_experiment changed = *experiment;
-  status = read_root(path, &root, &changed, error);
+  status = apply_root(strcmp(path, "-") != 0 ? path : "standard input", &root, experiment, error);
   scree_yaml_free(&root);
-  if (status != SCREE_OK) {
-    if (changed.preset != experiment->preset) scree_experiment_free(&changed);
-    return status;
-  }
-  if (changed.preset != experiment->preset) scree_experiment_free(experiment);
-  *experiment = changed;
+  return status;
+}
+
+scree_status scree_experiment_parse(const char *text, size_t byte_count, const char *name,
+                                    scree_experiment *experiment, scree_error *error) {
+  scree_yaml root;
+  scree_status status = scree_yaml_parse(text, byte_count, name, &root, error);
+  if (status != SCREE_OK) return status;
+  status = apply_root(name, &root, experiment, error);
+  scree_yaml_free(&root);
+  return status;
+}
+
+scree_status scree_experiment_copy(const scree_experiment *experiment, scree_experiment *copy,
+                                   scree_error *error) {
+  char *preset = scree_strdup(experiment->preset);
+  if (!preset) return scree_fail_memory(error, 0, "a preset's name");
+  *copy = *experiment;
+  copy->preset = preset;
   return SCREE_OK;
 }
 
-/* The shortest of %.15g to %.17g that reads back as the same number. */
-static void print_real(FILE *stream, double value) {
-  char text[40];
+/* The shortest of %.6g to %.17g that reads back as the same number. */
+static void real_text(double value, char *buffer, size_t size) {
   for (int digits = 6; digits <= 17; digits++) {
-    snprintf(text, sizeof text, "%.*g", digits, value);
-    if (strtod(text, NULL) == value) break;
+    snprintf(buffer, size, "%.*g", digits, value);
+    if (strtod(buffer, NULL) == value) break;
   }
-  fputs(text, stream);
 }
 
-static void print_value(FILE *stream, const field *f, const scree_experiment *e) {
-  const void *value = (const char *)e + f->offset;
+bool scree_experiment_get(const scree_experiment *experiment, const char *key, char *buffer,
+                          size_t size) {
+  const field *f = find_field(key);
+  if (!f) return false;
+  const void *value = (const char *)experiment + f->offset;
   switch (f->kind) {
   case FIELD_FLAG:
-    fputs(*(const bool *)value ? "true" : "false", stream);
+    snprintf(buffer, size, "%s", *(const bool *)value ? "true" : "false");
     break;
   case FIELD_WORD: {
     const char *word = f->unit;
     for (int i = *(const int *)value; i > 0; i--) word += strcspn(word, "|") + 1;
-    fprintf(stream, "%.*s", (int)strcspn(word, "|"), word);
+    snprintf(buffer, size, "%.*s", (int)strcspn(word, "|"), word);
     break;
   }
   case FIELD_SEED:
-    fprintf(stream, "%llu", (unsigned long long)*(const uint64_t *)value);
+    snprintf(buffer, size, "%llu", (unsigned long long)*(const uint64_t *)value);
     break;
   case FIELD_COUNT:
-    fprintf(stream, "%zu", *(const size_t *)value);
+    snprintf(buffer, size, "%zu", *(const size_t *)value);
     break;
   case FIELD_REAL:
-    print_real(stream, *(const double *)value);
+    real_text(*(const double *)value, buffer, size);
     break;
   }
+  return true;
 }
 
 void scree_experiment_print(const scree_experiment *experiment, FILE *stream) {
@@ -395,8 +445,9 @@ void scree_experiment_print(const scree_experiment *experiment, FILE *stream) {
       fprintf(stream, "%.*s:\n", (int)length, f->key);
     group = f->key;
     group_length = length;
-    fprintf(stream, "%s%s: ", length ? "  " : "", name);
-    print_value(stream, f, experiment);
-    fprintf(stream, "  # %s%s%s\n", f->unit, *f->unit ? "; " : "", f->comment);
+    char value[64];
+    scree_experiment_get(experiment, f->key, value, sizeof value);
+    fprintf(stream, "%s%s: %s  # %s%s%s\n", length ? "  " : "", name, value, f->unit,
+            *f->unit ? "; " : "", f->comment);
   }
 }

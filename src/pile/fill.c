@@ -1,3 +1,6 @@
+/* Random sequential addition of oriented boxes in a cylinder. Spheres and boxes both bound a
+ * particle: it is enough that either pair is apart, which places round particles by their spheres
+ * and long ones by their boxes. */
 #include "pile/fill.h"
 
 #include "base/rng.h"
@@ -6,39 +9,100 @@
 enum { ORDER_STREAM = 1, FIRST_LAYER_STREAM = 16 };
 enum { TRIES = 400 };
 
-static bool touches(vec3 p, double radius, const scree_placement *other, double clearance) {
-  double reach = radius + other->radius + clearance;
-  return vec3_norm2(vec3_sub(p, other->position)) < reach * reach;
+/* Added to the projections: cross products of parallel axes vanish, and must not separate. */
+static const double parallel_slack = 1e-9;
+
+bool scree_oriented_boxes_apart(const scree_oriented_box *a, const scree_oriented_box *b) {
+  const double ha[3] = {a->half.x, a->half.y, a->half.z};
+  const double hb[3] = {b->half.x, b->half.y, b->half.z};
+  vec3 between = vec3_sub(b->centre, a->centre);
+  vec3 in_a = mat3_tmul_vec(&a->axes, between);
+  const double t[3] = {in_a.x, in_a.y, in_a.z};
+  mat3 at = mat3_transpose(&a->axes), r = mat3_mul(&at, &b->axes);
+  double m[3][3];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) m[i][j] = fabs(r.m[i][j]) + parallel_slack;
+  for (int i = 0; i < 3; i++) {
+    double reach_a = ha[i] + hb[0] * m[i][0] + hb[1] * m[i][1] + hb[2] * m[i][2];
+    if (fabs(t[i]) > reach_a) return true;
+    double along_b = t[0] * r.m[0][i] + t[1] * r.m[1][i] + t[2] * r.m[2][i];
+    double reach_b = hb[i] + ha[0] * m[0][i] + ha[1] * m[1][i] + ha[2] * m[2][i];
+    if (fabs(along_b) > reach_b) return true;
+  }
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      double along = t[i2] * r.m[i1][j] - t[i1] * r.m[i2][j];
+      double reach = ha[i1] * m[i2][j] + ha[i2] * m[i1][j] + hb[j1] * m[i][j2] + hb[j2] * m[i][j1];
+      if (fabs(along) > reach) return true;
+    }
+  return false;
 }
 
-static bool is_free(const scree_fill_layer *layer, vec3 p, double radius,
+void scree_placement_settle(scree_placement *p) {
+  p->box.axes = quat_to_mat3(p->orientation);
+  p->box.half = p->half;
+  p->box.centre = vec3_add(p->position, mat3_mul_vec(&p->box.axes, p->box_centre));
+}
+
+bool scree_placements_apart(const scree_placement *a, const scree_placement *b) {
+  double reach = a->radius + b->radius;
+  return vec3_norm2(vec3_sub(a->position, b->position)) > reach * reach ||
+         scree_oriented_boxes_apart(&a->box, &b->box);
+}
+
+static bool is_free(const scree_fill_layer *layer, const scree_placement *p,
                     const scree_placement *placed, size_t placed_count) {
   for (size_t i = placed_count; i-- > 0;)
-    if (touches(p, radius, &placed[i], layer->clearance)) return false;
+    if (!scree_placements_apart(p, &placed[i])) return false;
   for (size_t i = layer->present_count; i-- > 0;)
-    if (touches(p, radius, &layer->present[i], layer->clearance)) return false;
+    if (!scree_placements_apart(p, &layer->present[i])) return false;
   return true;
 }
 
-/* A uniform point of the disc in which the particle's centre may lie. */
-static vec3 random_point(const scree_fill_layer *layer, double radius, scree_rng *rng) {
-  double room = layer->cylinder_radius - radius - layer->clearance;
-  double r = room * sqrt(scree_rng_uniform(rng)), a = 6.283185307179586 * scree_rng_uniform(rng);
-  return (vec3){r * cos(a), r * sin(a), layer->bottom + radius};
+/* Half the extent of the box along space's z. */
+static double half_height(const scree_oriented_box *box) {
+  return fabs(box->axes.m[2][0]) * box->half.x + fabs(box->axes.m[2][1]) * box->half.y +
+         fabs(box->axes.m[2][2]) * box->half.z;
+}
+
+static bool is_inside(const scree_oriented_box *box, double radius) {
+  for (int corner = 0; corner < 8; corner++) {
+    vec3 local = {corner & 1 ? box->half.x : -box->half.x, corner & 2 ? box->half.y : -box->half.y,
+                  corner & 4 ? box->half.z : -box->half.z};
+    vec3 p = vec3_add(box->centre, mat3_mul_vec(&box->axes, local));
+    if (p.x * p.x + p.y * p.y > radius * radius) return false;
+  }
+  return true;
+}
+
+/* A random orientation, and a random place of the box's centre in the layer; false where the box
+ * leaves the layer or the cylinder. */
+static bool try_place(const scree_fill_layer *layer, scree_placement *p, scree_rng *rng) {
+  p->orientation = scree_rng_rotation(rng);
+  p->position = (vec3){0, 0, 0};
+  scree_placement_settle(p);
+  double r = layer->cylinder_radius * sqrt(scree_rng_uniform(rng));
+  double a = 6.283185307179586 * scree_rng_uniform(rng), share = scree_rng_uniform(rng);
+  bool by_sphere = p->half.x >= p->radius && p->half.y >= p->radius && p->half.z >= p->radius;
+  double extent = by_sphere ? p->radius : half_height(&p->box);
+  if (2 * extent > layer->height) return false;
+  vec3 centre = {r * cos(a), r * sin(a),
+                 layer->bottom + extent + share * (layer->height - 2 * extent)};
+  p->position = vec3_sub(centre, p->box.centre);
+  p->box.centre = centre;
+  if (hypot(p->position.x, p->position.y) + p->radius <= layer->cylinder_radius) return true;
+  return is_inside(&p->box, layer->cylinder_radius);
 }
 
 size_t scree_fill_place(const scree_fill_layer *layer, scree_placement *placements, size_t count) {
   scree_rng rng = {.seed = layer->seed, .stream = FIRST_LAYER_STREAM + layer->layer_index};
   for (size_t i = 0; i < count; i++) {
-    scree_placement *p = &placements[i];
-    if (p->radius + layer->clearance > layer->cylinder_radius) return i;
     bool found = false;
-    for (int try = 0; try < TRIES && !found; try++) {
-      p->position = random_point(layer, p->radius, &rng);
-      found = is_free(layer, p->position, p->radius, placements, i);
-    }
+    for (int try = 0; try < TRIES && !found; try++)
+      found =
+          try_place(layer, &placements[i], &rng) && is_free(layer, &placements[i], placements, i);
     if (!found) return i;
-    p->orientation = scree_rng_rotation(&rng);
   }
   return count;
 }

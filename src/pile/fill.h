@@ -5,26 +5,46 @@
 #include "base/error.h"
 #include "base/vec.h"
 
-/* A particle to place: the radius of its bounding sphere about its centre. */
+#include <stdbool.h>
+#include <stdint.h>
+
+/* A box in space: half its sides along its own axes, the columns of `axes`. */
+typedef struct scree_oriented_box {
+  vec3 centre, half;
+  mat3 axes;
+} scree_oriented_box;
+
+/* Whether a plane lies between the boxes: the fifteen candidates of the separating axis theorem
+ * (Gottschalk, Lin, Manocha 1996). Boxes that touch, or nearly, are not apart. */
+bool scree_oriented_boxes_apart(const scree_oriented_box *a, const scree_oriented_box *b);
+
+/* A particle to place: its extents in its own frame (with whatever is to be kept free around it)
+ * are read, its place is written. */
 typedef struct scree_placement {
+  double radius;         /* of the bounding sphere about the particle's centre */
+  vec3 box_centre, half; /* bounding box along the particle's axes */
   vec3 position;
   quat orientation;
-  double radius;
+  scree_oriented_box box; /* of the box in that place: scree_placement_settle */
 } scree_placement;
+
+/* Fills `box` from position and orientation. */
+void scree_placement_settle(scree_placement *placement);
+
+/* Whether the two cannot touch: their spheres or their boxes are apart. */
+bool scree_placements_apart(const scree_placement *a, const scree_placement *b);
 
 typedef struct scree_fill_layer {
   uint64_t seed, layer_index;     /* name the layer's random numbers */
   double cylinder_radius;         /* m, inside */
-  double bottom;                  /* m: the lowest height of the layer */
-  double clearance;               /* m kept between bounding spheres and to the wall */
-  const scree_placement *present; /* bodies that must not be touched */
+  double bottom, height;          /* m: all lie within */
+  const scree_placement *present; /* settled bodies that must not be touched */
   size_t present_count;
 } scree_fill_layer;
 
-/* Places as many of the particles as fit into one layer of single particles, in their order, by
- * random sequential addition of bounding spheres: a particle that finds no place in so many tries
- * ends the layer. placements[i].radius is read, position and orientation are written; returns how
- * many were placed. */
+/* Places as many of the particles as fit into the layer, in their order, by random sequential
+ * addition: uniform positions and orientations until one is free; a particle that finds none in
+ * so many tries ends the layer. Returns how many were placed. */
 size_t scree_fill_place(const scree_fill_layer *layer, scree_placement *placements, size_t count);
 
 /* Item i of the order in which count particles take shape_count shapes in equal shares, shuffled:

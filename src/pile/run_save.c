@@ -1,0 +1,364 @@
+/* Checkpoints and frames of a run. One format: a header of 40 bytes (magic, version, byte order,
+ * length, XXH3-128 of the rest), the experiment as its own YAML, the shapes (as a packed world with
+ * one body of each: the gallery), the world, where the run stands, and the series. A frame's world
+ * is made anew with the bodies alone, without what contacts remember; what follows from contacts is
+ * kept as numbers. The plan of filling follows from experiment and shapes, and is made again. */
+#include "pile/run.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/codec.h"
+#include "base/file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const unsigned char magic[8] = {'s', 'c', 'r', 'e', 'e', 'R', 'U', 'N'};
+enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304, HEADER = 40, POINT_BYTES = 92 };
+
+/* ---- field lists ---- */
+
+static void code_point(scree_codec *c, scree_run_point *p) {
+  uint32_t phase = (uint32_t)p->phase;
+  uint64_t bodies = p->body_count;
+  scree_code_u32(c, &phase);
+  if (phase > SCREE_PHASE_DONE) c->failed = true;
+  p->phase = (scree_phase)phase;
+  scree_code_u64(c, &bodies);
+  p->body_count = (size_t)bodies;
+  double *reals[] = {&p->time,
+                     &p->kinetic,
+                     &p->mean_rotation,
+                     &p->highest_speed,
+                     &p->largest_overlap,
+                     &p->coordination,
+                     &p->cylinder_height,
+                     &p->sector_deg,
+                     &p->cone_deg,
+                     &p->silhouette_deg,
+                     &p->height};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+}
+
+static void code_state(scree_codec *c, scree_run *run) {
+  uint32_t phase = (uint32_t)run->phase;
+  uint64_t counts[4] = {run->entered_count, run->layer_count, run->particle_steps,
+                        run->piece_count};
+  scree_code_u32(c, &phase);
+  if (phase > SCREE_PHASE_DONE) c->failed = true;
+  run->phase = (scree_phase)phase;
+  for (int i = 0; i < 4; i++) scree_code_u64(c, &counts[i]);
+  run->entered_count = (size_t)counts[0];
+  run->layer_count = (size_t)counts[1];
+  run->particle_steps = counts[2];
+  run->piece_count = (size_t)counts[3];
+  double *reals[] = {&run->phase_start,       &run->still_since, &run->wall_seconds,
+                     &run->processor_seconds, &run->frame_time,  &run->frame_coordination,
+                     &run->frame_kinetic};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  scree_code_bool(c, &run->is_frame);
+}
+
+static void code_header(scree_codec *c, unsigned char head[8], uint32_t version_order[2],
+                        uint64_t length_sum[3]) {
+  scree_code_bytes(c, head, sizeof magic);
+  for (int i = 0; i < 2; i++) scree_code_u32(c, &version_order[i]);
+  for (int i = 0; i < 3; i++) scree_code_u64(c, &length_sum[i]);
+}
+
+/* ---- saving ---- */
+
+static void save_block(scree_codec *c, void *bytes, size_t count) {
+  size_t length = count;
+  scree_code_count(c, &length, 1);
+  scree_code_bytes(c, bytes, count);
+}
+
+static scree_status save_experiment(scree_codec *c, const scree_run *run, scree_error *error) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *stream = open_memstream(&text, &length);
+  if (!stream) return scree_fail_memory(error, 0, "an experiment's text");
+  scree_experiment_print(&run->experiment, stream);
+  bool good = fclose(stream) == 0;
+  if (good) save_block(c, text, length);
+  free(text);
+  return good ? SCREE_OK : scree_fail_memory(error, 0, "an experiment's text");
+}
+
+static scree_status save_world(scree_codec *c, const scree_world *world, scree_error *error) {
+  unsigned char *bytes;
+  size_t count;
+  scree_status status = scree_world_pack(world, &bytes, &count, error);
+  if (status != SCREE_OK) return status;
+  save_block(c, bytes, count);
+  scree_free(bytes);
+  return SCREE_OK;
+}
+
+/* A world with the same bodies and walls, and no contacts. */
+static scree_status strip_world(const scree_run *run, scree_world **world, scree_error *error) {
+  scree_status status = scree_run_make_world(run, scree_run_cylinder_height(run),
+                                             scree_world_time_step(run->world, NULL), world, error);
+  for (size_t i = 0; status == SCREE_OK && i < run->entered_count; i++) {
+    scree_body body;
+    size_t index;
+    scree_world_get_body(run->world, i, &body);
+    status = scree_world_add_body(*world, scree_world_body_particle(run->world, i),
+                                  scree_world_body_material(run->world, i), &body, &index, error);
+    if (status == SCREE_OK && scree_world_body_removed(run->world, i))
+      scree_world_remove_body(*world, i);
+    if (status != SCREE_OK) scree_world_free(*world);
+  }
+  return status;
+}
+
+static scree_status save_shapes(scree_codec *c, const scree_run *run, scree_error *error) {
+  size_t count = run->shape_count;
+  scree_code_count(c, &count, 16);
+  for (size_t i = 0; i < count; i++) {
+    double factor = run->shapes[i].density_factor;
+    scree_code_real(c, &factor);
+    save_block(c, run->names[i], strlen(run->names[i]));
+  }
+  return save_world(c, run->gallery, error);
+}
+
+static scree_status save_rest(scree_codec *c, const scree_run *run, bool as_frame,
+                              scree_error *error) {
+  scree_world *world = run->world;
+  scree_status status = as_frame ? strip_world(run, &world, error) : SCREE_OK;
+  if (status != SCREE_OK) return status;
+  status = save_world(c, world, error);
+  if (as_frame) scree_world_free(world);
+  if (status != SCREE_OK) return status;
+  scree_run_point now = scree_run_point_now(run);
+  scree_run state = *run; /* a shallow copy: only its plain fields are written */
+  state.is_frame = as_frame;
+  state.frame_time = now.time;
+  state.frame_coordination = now.coordination;
+  state.frame_kinetic = now.kinetic;
+  code_state(c, &state);
+  size_t count = run->series.count;
+  scree_code_count(c, &count, POINT_BYTES);
+  for (size_t i = 0; i < count; i++) code_point(c, &run->series.items[i]);
+  return SCREE_OK;
+}
+
+/* Puts the header in front, which had its room. */
+static void seal(scree_codec *c) {
+  unsigned char head[sizeof magic];
+  uint32_t version_order[2] = {VERSION, BYTE_ORDER_MARK};
+  scree_checksum sum = scree_checksum_of(c->bytes + HEADER, c->count - HEADER);
+  uint64_t length_sum[3] = {c->count - HEADER, sum.high, sum.low};
+  scree_codec header = {0};
+  memcpy(head, magic, sizeof magic);
+  code_header(&header, head, version_order, length_sum);
+  if (scree_codec_good(&header)) memcpy(c->bytes, header.bytes, HEADER);
+  c->out_of_memory |= header.out_of_memory;
+  scree_free(header.bytes);
+}
+
+static scree_status pack(const scree_run *run, bool as_frame, scree_codec *c, scree_error *error) {
+  unsigned char room[HEADER] = {0};
+  scree_code_bytes(c, room, HEADER);
+  scree_status status = save_experiment(c, run, error);
+  if (status == SCREE_OK) status = save_shapes(c, run, error);
+  if (status == SCREE_OK) status = save_rest(c, run, as_frame, error);
+  if (status == SCREE_OK && scree_codec_good(c)) seal(c);
+  if (status == SCREE_OK && !scree_codec_good(c))
+    status = scree_fail_memory(error, c->count, "a checkpoint");
+  return status;
+}
+
+static scree_status save(const scree_run *run, bool as_frame, const char *path, bool overwrite,
+                         scree_error *error) {
+  scree_codec c = {0};
+  scree_output output;
+  scree_status status = pack(run, as_frame, &c, error);
+  if (status == SCREE_OK) status = scree_output_open(path, overwrite, &output, error);
+  if (status == SCREE_OK) {
+    fwrite(c.bytes, 1, c.count, output.stream);
+    status = scree_output_commit(&output, error);
+  }
+  scree_free(c.bytes);
+  return status;
+}
+
+scree_status scree_run_save(const scree_run *run, const char *path, bool overwrite,
+                            scree_error *error) {
+  if (run->is_frame)
+    return scree_fail(error, SCREE_UNSUPPORTED, "%s: a frame cannot become a checkpoint", path);
+  return save(run, false, path, overwrite, error);
+}
+
+scree_status scree_run_save_frame(const scree_run *run, const char *path, bool overwrite,
+                                  scree_error *error) {
+  return save(run, true, path, overwrite, error);
+}
+
+/* ---- loading ---- */
+
+enum { MOST_SHAPES = 60 };
+
+typedef struct loader {
+  scree_codec codec;
+  const char *name;
+  scree_error *error;
+  scree_experiment experiment;
+  scree_run_shape shapes[MOST_SHAPES];
+  char *names[MOST_SHAPES];
+  size_t shape_count;
+  scree_world *gallery, *world;
+  scree_run *run;
+} loader;
+
+/* The bytes of a block, in place; NULL where they run out. */
+static const unsigned char *load_block(loader *l, size_t *count) {
+  scree_code_count(&l->codec, count, 1);
+  if (!scree_codec_good(&l->codec)) return NULL;
+  const unsigned char *bytes = l->codec.source + l->codec.position;
+  l->codec.position += *count;
+  return bytes;
+}
+
+static scree_status fail_here(const loader *l) {
+  if (l->codec.out_of_memory) return scree_fail_memory(l->error, l->codec.count, "a checkpoint");
+  return scree_fail(l->error, SCREE_BAD_FILE,
+                    "%s: byte %zu: a value that no run has, or too few bytes", l->name,
+                    l->codec.position);
+}
+
+static scree_status load_experiment(loader *l) {
+  size_t count;
+  scree_status status = scree_experiment_preset("paper", &l->experiment, l->error);
+  const unsigned char *text = load_block(l, &count);
+  if (status != SCREE_OK) return status;
+  if (!text) return fail_here(l);
+  return scree_experiment_parse((const char *)text, count, l->name, &l->experiment, l->error);
+}
+
+static scree_status load_world(loader *l, scree_world **world) {
+  size_t count;
+  const unsigned char *bytes = load_block(l, &count);
+  if (!bytes) return fail_here(l);
+  return scree_world_unpack(bytes, count, l->name, world, l->error);
+}
+
+static scree_status load_shapes(loader *l) {
+  scree_code_count(&l->codec, &l->shape_count, 16);
+  if (!scree_codec_good(&l->codec) || l->shape_count > MOST_SHAPES) {
+    l->shape_count = 0;
+    return fail_here(l);
+  }
+  for (size_t i = 0; i < l->shape_count; i++) {
+    size_t length;
+    scree_code_real(&l->codec, &l->shapes[i].density_factor);
+    const unsigned char *text = load_block(l, &length);
+    char *name = text ? scree_alloc(length + 1, 1) : NULL;
+    if (!name) return fail_here(l);
+    memcpy(name, text, length);
+    name[length] = 0;
+    l->shapes[i].name = l->names[i] = name;
+  }
+  scree_status status = load_world(l, &l->gallery);
+  if (status != SCREE_OK) return status;
+  if (scree_world_body_count(l->gallery) != l->shape_count) return fail_here(l);
+  for (size_t i = 0; i < l->shape_count; i++)
+    l->shapes[i].particle = scree_world_body_particle(l->gallery, i);
+  return SCREE_OK;
+}
+
+/* Shapes that are in the world are taken from there, so that a shape stays one particle however
+ * often a run is loaded. The order follows from the seed. */
+static scree_status adopt_particles(loader *l) {
+  size_t bodies = scree_world_body_count(l->world), count = l->experiment.particle_count;
+  if (l->shape_count < 1 || bodies > count || scree_world_wall_count(l->world) != 2)
+    return fail_here(l);
+  uint32_t *order = scree_alloc(count, sizeof *order);
+  if (!order) return scree_fail_memory(l->error, count * sizeof *order, "an order");
+  scree_fill_order(l->experiment.seed, l->shape_count, order, count);
+  for (size_t i = 0; i < bodies; i++)
+    l->shapes[order[i]].particle = scree_world_body_particle(l->world, i);
+  scree_free(order);
+  return SCREE_OK;
+}
+
+static scree_status load_state(loader *l) {
+  scree_run *run = l->run;
+  size_t count = 0;
+  code_state(&l->codec, run);
+  scree_code_count(&l->codec, &count, POINT_BYTES);
+  if (scree_codec_good(&l->codec) && !SCREE_RESERVE(&run->series, count))
+    l->codec.out_of_memory = true;
+  for (size_t i = 0; scree_codec_good(&l->codec) && i < count; i++) {
+    scree_run_point *point = &run->series.items[run->series.count++];
+    *point = (scree_run_point){0};
+    code_point(&l->codec, point);
+  }
+  if (l->codec.position != l->codec.count ||
+      run->entered_count != scree_world_body_count(run->world))
+    l->codec.failed = true;
+  return scree_codec_good(&l->codec) ? SCREE_OK : fail_here(l);
+}
+
+static scree_status check_header(loader *l) {
+  scree_codec *c = &l->codec;
+  unsigned char head[sizeof magic] = {0};
+  uint32_t version_order[2] = {0};
+  uint64_t length_sum[3] = {0};
+  code_header(c, head, version_order, length_sum);
+  if (c->count < sizeof magic || memcmp(head, magic, sizeof magic) != 0)
+    return scree_fail(l->error, SCREE_BAD_FILE, "%s: no checkpoint or frame of a scree run",
+                      l->name);
+  if (c->failed)
+    return scree_fail(l->error, SCREE_BAD_FILE, "%s: %zu bytes, shorter than the %d of a header",
+                      l->name, c->count, HEADER);
+  if (version_order[1] != BYTE_ORDER_MARK || version_order[0] != VERSION)
+    return scree_fail(l->error, SCREE_BAD_FILE, "%s: version %u; this program reads %d", l->name,
+                      version_order[0], VERSION);
+  if (length_sum[0] != c->count - HEADER)
+    return scree_fail(l->error, SCREE_BAD_FILE,
+                      "%s: %zu bytes follow the header, which announces %llu: cut short?", l->name,
+                      c->count - HEADER, (unsigned long long)length_sum[0]);
+  scree_checksum sum = scree_checksum_of(c->source + HEADER, c->count - HEADER);
+  if (sum.high != length_sum[1] || sum.low != length_sum[2])
+    return scree_fail(l->error, SCREE_BAD_FILE,
+                      "%s: the checksum does not fit: the file is damaged", l->name);
+  return SCREE_OK;
+}
+
+static scree_status load(loader *l) {
+  scree_status status = check_header(l);
+  if (status == SCREE_OK) status = load_experiment(l);
+  if (status == SCREE_OK) status = load_shapes(l);
+  if (status == SCREE_OK) status = load_world(l, &l->world);
+  if (status == SCREE_OK) status = adopt_particles(l);
+  if (status == SCREE_OK)
+    status = scree_run_plan(&l->experiment, l->shapes, l->shape_count, &l->run, l->error);
+  if (status != SCREE_OK) return status;
+  l->run->world = l->world;
+  l->world = NULL;
+  return load_state(l);
+}
+
+scree_status scree_run_load(const char *path, scree_run **run, scree_error *error) {
+  char *bytes;
+  size_t count;
+  scree_status status = scree_file_read(path, 0, &bytes, &count, error);
+  if (status != SCREE_OK) return status;
+  loader l = {.codec = {.source = (unsigned char *)bytes, .count = count, .loading = true},
+              .name = strcmp(path, "-") != 0 ? path : "standard input",
+              .error = error};
+  status = load(&l);
+  for (size_t i = 0; i < l.shape_count; i++) scree_free(l.names[i]);
+  scree_world_free(l.world);
+  scree_world_free(l.gallery);
+  scree_experiment_free(&l.experiment);
+  scree_free(bytes);
+  if (status == SCREE_OK)
+    *run = l.run;
+  else
+    scree_run_free(l.run);
+  return status;
+}
