@@ -88,6 +88,13 @@ static double make_boxes(scree_world *world) {
   return widest;
 }
 
+/* Bodies far out share the last cells: clamping keeps neighbours neighbours. */
+static int32_t cell_of(double place) {
+  const double last = 1 << 30;
+  place = floor(place);
+  return (int32_t)(place > -last ? fmin(place, last) : -last);
+}
+
 /* Counting sort of the bodies by bucket; ascending by body within one. */
 static void bin_bodies(scree_world *world, double width) {
   scree_broad *broad = world->broad;
@@ -98,7 +105,7 @@ static void bin_bodies(scree_world *world, double width) {
   for (size_t i = 0; i < bodies->count; i++) {
     if (bodies->removed[i]) continue;
     vec3 c = vec3_scale(vec3_add(broad->boxes[i].low, broad->boxes[i].high), 0.5 / width);
-    cell_entry entry = {(int32_t)floor(c.x), (int32_t)floor(c.y), (int32_t)floor(c.z), (uint32_t)i};
+    cell_entry entry = {cell_of(c.x), cell_of(c.y), cell_of(c.z), (uint32_t)i};
     unsorted[count++] = entry;
     broad->bucket_begin[bucket_of(broad, entry.x, entry.y, entry.z) + 1]++;
   }
@@ -174,7 +181,7 @@ static bool list_keys(scree_world *world, double width) {
     if (bodies->removed[i]) continue;
     const scree_box *box = &world->broad->boxes[i];
     vec3 c = vec3_scale(vec3_add(box->low, box->high), 0.5 / width);
-    cell_entry cell = {(int32_t)floor(c.x), (int32_t)floor(c.y), (int32_t)floor(c.z), 0};
+    cell_entry cell = {cell_of(c.x), cell_of(c.y), cell_of(c.z), 0};
     if (!list_partners(world, (uint32_t)i, &cell)) return false;
   }
   return true;
