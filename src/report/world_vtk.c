@@ -232,6 +232,7 @@ typedef struct pair_line {
 typedef struct pair_list {
   pair_line *items;
   size_t count, capacity;
+  bool failed; /* memory ran out */
 } pair_list;
 
 /* The features of a pair follow each other. */
@@ -239,8 +240,10 @@ static bool add_feature(void *context, const scree_contact *c) {
   pair_list *list = context;
   pair_line *p = list->count ? &list->items[list->count - 1] : NULL;
   if (!p || p->body != c->body || p->other != c->other || p->wall != c->wall) {
-    if (!SCREE_PUSH(list, (pair_line){.body = c->body, .other = c->other, .wall = c->wall}))
+    if (!SCREE_PUSH(list, (pair_line){.body = c->body, .other = c->other, .wall = c->wall})) {
+      list->failed = true;
       return false;
+    }
     p = &list->items[list->count - 1];
   }
   vec3 force = vec3_load(c->force), n = vec3_load(c->normal);
@@ -307,6 +310,8 @@ static scree_status make_contacts(const scree_world *world, sheet *s, uint32_t *
   line_arrays arrays;
   scree_status status = scree_world_visit_contacts(world, add_feature, &pairs, error);
   size_t count = pairs.count;
+  if (status == SCREE_OK && pairs.failed)
+    status = scree_fail_memory(error, count * sizeof *pairs.items, "the contacts of a world");
   if (status == SCREE_OK && 2 * count > UINT32_MAX) status = too_many(error, 2 * count);
   if (status == SCREE_OK) {
     *lines = scree_alloc(count, 2 * sizeof **lines);

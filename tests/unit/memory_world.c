@@ -1,0 +1,251 @@
+/* Memory running out in particles, worlds, checkpoints and runs: every public call refuses with a
+ * sentence, leaks nothing and leaves no file half-written. tests/allocations.sh keeps the list. */
+#include "support/alloc_fail.h"
+#include "support/check.h"
+#include "support/shapes.h"
+
+#include <unistd.h>
+
+static char file[] = "/tmp/scree-memory-XXXXXX";
+
+/* ---- Particles ---- */
+
+static scree_status make_particles(void *context, scree_error *error) {
+  static const double centres[6] = {0, 0, 0, 0.01, 0, 0}, radii[2] = {0.01, 0.008};
+  scree_particle *made[4] = {NULL};
+  scree_status status = scree_particle_from_mesh(context, NULL, &made[0], error);
+  if (status == SCREE_OK) status = scree_particle_sphere(0.01, &made[1], error);
+  if (status == SCREE_OK) status = scree_particle_clump(centres, radii, 2, NULL, &made[2], error);
+  if (status == SCREE_OK)
+    status = scree_particle_clump(centres, radii, 2, made[0], &made[3], error);
+  for (int i = 0; i < 4; i++) scree_particle_free(made[i]);
+  return status;
+}
+
+static void particles(void **state) {
+  (void)state;
+  scree_mesh box = shape_box(0.04, 0.03, 0.012);
+  check_allocation_failures(make_particles, &box);
+  scree_mesh_free(&box);
+}
+
+/* ---- Worlds ---- */
+
+static scree_status add_walls(scree_world *world, scree_mesh *mesh, scree_error *error) {
+  static const double up[3] = {0, 0, 0.1}, still[3] = {0, 0, 0};
+  const scree_wall walls[] = {{.kind = SCREE_WALL_PLANE, .axis = {0, 0, 1}},
+                              {.kind = SCREE_WALL_CYLINDER, .axis = {0, 0, 1}, .radius = 0.1},
+                              {.kind = SCREE_WALL_MESH,
+                               .axis = {0, 0, 1},
+                               .position = {-0.05, -0.05, -0.011},
+                               .mesh = mesh}};
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < sizeof walls / sizeof *walls && status == SCREE_OK; i++)
+    status = scree_world_add_wall(world, &walls[i], NULL, error);
+  if (status == SCREE_OK) status = scree_world_set_wall_velocity(world, 1, up, still, error);
+  return status;
+}
+
+/* Two boxes on the floor and two above them. */
+static scree_status add_bodies(scree_world *world, scree_particle *particle, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (int i = 0; i < 4 && status == SCREE_OK; i++) {
+    scree_body body = scree_default_body();
+    body.position[0] = 0.05 * (i % 2);
+    body.position[2] = i < 2 ? 0.0059 : 0.019;
+    body.velocity[2] = i < 2 ? 0 : -0.5;
+    status = scree_world_add_body(world, particle, 0, &body, NULL, error);
+  }
+  return status;
+}
+
+typedef struct parts {
+  scree_mesh shape, plate;
+  scree_particle *particle;
+} parts;
+
+static scree_status make_world(parts *p, scree_world **world, scree_error *error) {
+  scree_world_options options = scree_default_world_options();
+  scree_material material = scree_default_material();
+  options.stiffness_factor = 0.01;
+  scree_status status = scree_world_create(&options, world, error);
+  for (int i = 0; i < 2 && status == SCREE_OK; i++)
+    status = scree_world_add_material(*world, &material, NULL, error);
+  if (status == SCREE_OK) status = scree_world_set_contact(*world, 0, 1, 0.5, 0.2, error);
+  if (status == SCREE_OK) status = add_walls(*world, &p->plate, error);
+  if (status == SCREE_OK) status = add_bodies(*world, p->particle, error);
+  return status;
+}
+
+static bool count_contact(void *context, const scree_contact *contact) {
+  (void)contact;
+  ++*(size_t *)context;
+  return true;
+}
+
+static scree_status build_world(void *context, scree_error *error) {
+  scree_world *world = NULL;
+  scree_status status = scree_world_create(NULL, &world, error);
+  if (status == SCREE_OK)
+    status = scree_world_add_material(world, &(scree_material){1e8, 2000, 0.3, 0.5}, NULL, error);
+  if (status == SCREE_OK)
+    status = scree_world_add_wall(world, &(scree_wall){.kind = SCREE_WALL_PLANE, .axis = {0, 0, 1}},
+                                  NULL, error);
+  if (status == SCREE_OK) status = scree_world_set_contact(world, 0, 0, 0.5, 0.2, error);
+  if (status == SCREE_OK)
+    status = scree_world_set_wall_velocity(world, 0, (double[3]){0}, (double[3]){0}, error);
+  if (status == SCREE_OK)
+    status = scree_world_add_body(world, ((parts *)context)->particle, 0, NULL, NULL, error);
+  scree_world_free(world);
+  return status;
+}
+
+static scree_status step_world(void *context, scree_error *error) {
+  scree_world *world = NULL;
+  size_t contacts = 0;
+  scree_status status = make_world(context, &world, error);
+  if (status == SCREE_OK) status = scree_world_step(world, 60, error);
+  if (status == SCREE_OK)
+    status = scree_world_visit_contacts(world, count_contact, &contacts, error);
+  if (status == SCREE_OK) assert_true(contacts > 0);
+  scree_world_free(world);
+  return status;
+}
+
+static scree_status save_world(void *context, scree_error *error) {
+  return scree_world_save(context, file, true, error);
+}
+
+static scree_status load_world(void *context, scree_error *error) {
+  (void)context;
+  scree_world *world = NULL;
+  scree_status status = scree_world_load(file, &world, error);
+  scree_world_free(world);
+  return status;
+}
+
+static scree_status write_world_vtk(void *context, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (int view = 0; view < SCREE_VIEW_COUNT && status == SCREE_OK; view++)
+    status = scree_world_vtp_write(context, (scree_world_view)view, file, true, error);
+  return status;
+}
+
+static void worlds(void **state) {
+  (void)state;
+  scree_error error;
+  scree_world *world = NULL;
+  parts p = {.shape = shape_box(0.04, 0.03, 0.012), .plate = shape_box(0.1, 0.1, 0.01)};
+  CHECK_OK(scree_particle_from_mesh(&p.shape, NULL, &p.particle, &error), error);
+  check_allocation_failures(build_world, &p);
+  check_allocation_failures(step_world, &p);
+  CHECK_OK(make_world(&p, &world, &error), error);
+  CHECK_OK(scree_world_step(world, 60, &error), error);
+  check_allocation_failures(write_world_vtk, world);
+  check_allocation_failures(save_world, world);
+  check_allocation_failures(load_world, NULL);
+  scree_world_free(world);
+  scree_particle_free(p.particle);
+  scree_mesh_free(&p.shape);
+  scree_mesh_free(&p.plate);
+}
+
+/* ---- Experiments and runs ---- */
+
+static scree_status make_experiment(void *context, scree_error *error) {
+  scree_experiment experiment = {0};
+  scree_status status = scree_experiment_preset("paper", &experiment, error);
+  if (status == SCREE_OK) status = scree_experiment_read(context, &experiment, error);
+  if (status == SCREE_OK) status = scree_experiment_set(&experiment, "particles", "6", error);
+  scree_experiment_free(&experiment);
+  return status;
+}
+
+static void experiments(void **state) {
+  (void)state;
+  FILE *stream = fopen(file, "w");
+  assert_non_null(stream);
+  fputs("preset: small\nparticles: 12\ncylinder: {diameter: 0.25}\nphases:\n  pack_time: 4\n",
+        stream);
+  fclose(stream);
+  check_allocation_failures(make_experiment, file);
+}
+
+static scree_status run_shortly(void *context, scree_error *error) {
+  scree_experiment experiment = {0};
+  scree_run *run = NULL;
+  scree_run_result result;
+  scree_run_shape shape = {.particle = context, .density_factor = 1};
+  scree_status status = scree_experiment_preset("paper", &experiment, error);
+  experiment.particle_count = 8;
+  experiment.cylinder_diameter = 0.08;
+  experiment.disc_diameter = 0.3;
+  experiment.pack_time = 0.1;
+  experiment.settle_time = 0.01;
+  experiment.drop_height = 0.01;
+  if (status == SCREE_OK) status = scree_run_create(&experiment, &shape, 1, &run, error);
+  for (int i = 0; i < 3 && status == SCREE_OK; i++) status = scree_run_advance(run, 300, error);
+  if (status == SCREE_OK) status = scree_run_measure(run, &result, error);
+  scree_run_free(run);
+  scree_experiment_free(&experiment);
+  return status;
+}
+
+static scree_status measure_heap(void *context, scree_error *error) {
+  (void)context;
+  const scree_repose_options options = scree_default_repose_options();
+  scree_height_field field = {0};
+  scree_repose repose;
+  scree_status status = scree_height_field_create(0, 0, 0.5, 0.02, &field, error);
+  for (size_t i = 0; status == SCREE_OK && i < field.rows * field.columns; i++) {
+    double x = (double)(i % field.columns) - 24.5, y = (double)(i / field.columns) - 24.5;
+    field.height[i] = fmax(0, 0.2 - 0.01 * hypot(x, y));
+  }
+  if (status == SCREE_OK) status = scree_repose_measure(&field, &options, &repose, error);
+  scree_height_field_free(&field);
+  return status;
+}
+
+static void runs(void **state) {
+  (void)state;
+  scree_error error;
+  scree_particle *ball = NULL;
+  CHECK_OK(scree_particle_sphere(0.01, &ball, &error), error);
+  check_allocation_failures(run_shortly, ball);
+  check_allocation_failures(measure_heap, NULL);
+  scree_particle_free(ball);
+}
+
+static scree_status fit(void *context, scree_error *error) {
+  static const double x[] = {1, 2, 4, 8, 16}, y[] = {1, 0.7, 0.52, 0.37, 0.26};
+  (void)context;
+  scree_power_law power;
+  scree_polynomial polynomial;
+  scree_status status = scree_fit_power(x, y, 5, 0.95, &power, error);
+  if (status == SCREE_OK) status = scree_fit_polynomial(x, y, 5, 2, &polynomial, error);
+  return status;
+}
+
+static void fits(void **state) {
+  (void)state;
+  check_allocation_failures(fit, NULL);
+}
+
+static int make_file(void **state) {
+  (void)state;
+  int fd = mkstemp(file);
+  return fd < 0 ? -1 : close(fd);
+}
+
+static int remove_file(void **state) {
+  (void)state;
+  return unlink(file);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(particles), cmocka_unit_test(worlds), cmocka_unit_test(experiments),
+      cmocka_unit_test(runs),      cmocka_unit_test(fits),
+  };
+  return cmocka_run_group_tests(tests, make_file, remove_file);
+}
