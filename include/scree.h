@@ -555,9 +555,10 @@ typedef struct scree_curve scree_curve;
  * file does not matter at all. It does not depend on the number of threads.
  *
  * The mesh is borrowed until scree_curve_free and must not change before.
- * Fails with SCREE_BAD_MESH on a mesh without triangles, with an index out of range, a triangle that
- * names a vertex twice, a coordinate that is not finite or an extent of zero; SCREE_BAD_ARGUMENT; SCREE_OUT_OF_MEMORY;
- * SCREE_CANCELLED. Cost: O(N log N) time, about 150 bytes per triangle. */
+ * Fails with SCREE_BAD_MESH on a mesh without triangles, with an index out of range, a triangle
+ * that names a vertex twice, a coordinate that is not finite or an extent of zero;
+ * SCREE_BAD_ARGUMENT; SCREE_OUT_OF_MEMORY; SCREE_CANCELLED. Cost: O(N log N) time, about 150 bytes
+ * per triangle. */
 SCREE_API scree_status scree_curve_build(const scree_mesh *mesh,
                                          const scree_simplify_options *options,
                                          const scree_progress *progress, scree_curve **curve,
