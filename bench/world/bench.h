@@ -1,0 +1,36 @@
+/* What the bench of the world is made of. Everything goes through the public interface. */
+#ifndef BENCH_WORLD_H
+#define BENCH_WORLD_H
+
+#include "scree.h"
+
+enum { MOST_SHAPES = SCREE_SAMPLE_DEVICES };
+
+/* The shapes of a scene. */
+typedef struct shape_set {
+  scree_particle *items[MOST_SHAPES];
+  size_t count;
+} shape_set;
+
+/* Ends the program with the error's sentence where status is one. */
+void need(scree_status status, const scree_error *error);
+
+/* shapes.c: "devices" (the nine samples at `triangles`), "boxes" (100 x 50 x 15 mm) or "tray" (the
+ * box with a recess, 28 triangles, each cut in four until there are `triangles`). */
+void make_shapes(const char *kind, size_t triangles, shape_set *set);
+void free_shapes(shape_set *set);
+
+/* scene.c */
+
+/* Fills `count` bodies into a cylinder of 0.4 m on a disc of 3 m and lets them come to rest. */
+scree_world *fill_scene(const shape_set *shapes, size_t count, uint64_t seed);
+/* The same scene with other shapes of the same kinds in the same places, at rest again. */
+scree_world *refit_scene(const scree_world *from, const shape_set *before, const shape_set *after);
+/* `copies` of the scene above each other in the same cylinder, at rest where `settle` is set. */
+scree_world *stack_scene(const scree_world *from, size_t copies, bool settle);
+/* The scene after its cylinder has risen by `height`, at full stiffness. */
+scree_world *lift_scene(const scree_world *from, double height);
+/* The scene with the time step given, or 0: automatic. */
+scree_world *retime_scene(const scree_world *from, double time_step);
+
+#endif

@@ -1,0 +1,193 @@
+/* Scenes. Bodies enter slowly under a tenth of gravity with a third of the stiffness, which takes
+ * nearly two times longer steps; then they settle under full gravity, and last at full stiffness,
+ * so that what is measured is the paper's contact. */
+#include "bench.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static const double soft = 0.3;               /* stiffness while a scene is made */
+static const double entry_speed = 3;          /* m/s, about */
+static const double soft_time = 0.5;          /* s at rest, soft */
+static const double hard_time = 0.15;         /* s at rest, at full stiffness */
+static const double lift_speed = 0.1;         /* m/s, the paper's */
+static const double flowing_hard_time = 0.02; /* s of the lift at full stiffness before measuring */
+
+/* How a world is to be made again. */
+typedef struct remake {
+  double stiffness_factor, time_step, gravity;
+  const shape_set *before, *after; /* NULL: the shapes stay */
+  size_t copies;
+  double pitch; /* of the copies */
+} remake;
+
+static void advance(scree_world *world, double time) {
+  scree_error error;
+  double end = scree_world_time(world) + time;
+  while (scree_world_time(world) < end) need(scree_world_step(world, 50, &error), &error);
+}
+
+static void turn(const double q[4], const double v[3], double result[3]) {
+  double t[3] = {2 * (q[2] * v[2] - q[3] * v[1]), 2 * (q[3] * v[0] - q[1] * v[2]),
+                 2 * (q[1] * v[1] - q[2] * v[0])};
+  result[0] = v[0] + q[0] * t[0] + q[2] * t[2] - q[3] * t[1];
+  result[1] = v[1] + q[0] * t[1] + q[3] * t[0] - q[1] * t[2];
+  result[2] = v[2] + q[0] * t[2] + q[1] * t[1] - q[2] * t[0];
+}
+
+static void multiply(const double a[4], const double b[4], double result[4]) {
+  result[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
+  result[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
+  result[2] = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
+  result[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
+}
+
+/* The state that puts particle `after` where `before` was, by the frame both were made in. */
+static void refit_body(const scree_particle *before, const scree_particle *after,
+                       scree_body *state) {
+  scree_particle_measures from, to;
+  scree_particle_measure(before, &from);
+  scree_particle_measure(after, &to);
+  const double back[4] = {from.orientation[0], -from.orientation[1], -from.orientation[2],
+                          -from.orientation[3]};
+  double shape[4], shift[3], offset[3];
+  multiply(state->orientation, back, shape);
+  for (int k = 0; k < 3; k++) offset[k] = to.centre[k] - from.centre[k];
+  turn(shape, offset, shift);
+  for (int k = 0; k < 3; k++) state->position[k] += shift[k];
+  multiply(shape, to.orientation, state->orientation);
+}
+
+static scree_particle *replacement(const remake *how, scree_particle *particle, scree_body *state) {
+  if (!how->before) return particle;
+  scree_particle_measures mine, other;
+  scree_particle_measure(particle, &mine);
+  for (size_t i = 0; i < how->before->count; i++) {
+    scree_particle_measure(how->before->items[i], &other);
+    if (other.volume != mine.volume) continue;
+    refit_body(particle, how->after->items[i], state);
+    return how->after->items[i];
+  }
+  fprintf(stderr, "bench_world: the scene has other shapes than it was made from\n");
+  exit(1);
+}
+
+/* Materials: one of bodies, one of walls, as the paper has them. */
+static scree_world *make_again(const scree_world *from, const remake *how) {
+  scree_error error;
+  scree_world_options options = scree_default_world_options();
+  options.stiffness_factor = how->stiffness_factor;
+  options.time_step = how->time_step;
+  options.gravity[2] = -how->gravity;
+  options.floor_height = -0.5;
+  scree_world *world;
+  need(scree_world_create(&options, &world, &error), &error);
+  scree_material bodies = scree_default_material(), walls = scree_default_wall_material();
+  need(scree_world_add_material(world, &bodies, NULL, &error), &error);
+  need(scree_world_add_material(world, &walls, NULL, &error), &error);
+  for (size_t w = 0; w < scree_world_wall_count(from); w++) {
+    scree_wall wall;
+    scree_world_get_wall(from, w, &wall);
+    wall.material = 1;
+    need(scree_world_add_wall(world, &wall, NULL, &error), &error);
+  }
+  for (size_t c = 0; c < (how->copies ? how->copies : 1); c++)
+    for (size_t i = 0; i < scree_world_body_count(from); i++) {
+      scree_body state;
+      if (scree_world_body_removed(from, i)) continue;
+      scree_world_get_body(from, i, &state);
+      scree_particle *particle = replacement(how, scree_world_body_particle(from, i), &state);
+      state.position[2] += (double)c * how->pitch;
+      need(scree_world_add_body(world, particle, 0, &state, NULL, &error), &error);
+    }
+  return world;
+}
+
+/* Made again, run for some time, and once more into the next. */
+static scree_world *stage(scree_world *from, remake how, double time) {
+  scree_world *world = make_again(from, &how);
+  scree_world_free(from);
+  advance(world, time);
+  return world;
+}
+
+/* To rest at full stiffness. */
+static scree_world *settle(scree_world *world) {
+  world = stage(world, (remake){.stiffness_factor = soft, .gravity = 9.81}, soft_time);
+  return stage(world, (remake){.stiffness_factor = 1, .gravity = 9.81}, hard_time);
+}
+
+scree_world *fill_scene(const shape_set *shapes, size_t count, uint64_t seed) {
+  scree_error error;
+  scree_experiment e;
+  need(scree_experiment_preset("paper", &e, &error), &error);
+  e.particle_count = count;
+  e.seed = seed;
+  e.stiffness_factor = soft;
+  e.gravity = 0.981;
+  e.settle_time = 0.2;
+  scree_run_shape list[MOST_SHAPES];
+  double radius = 0;
+  for (size_t i = 0; i < shapes->count; i++) {
+    scree_particle_measures m;
+    scree_particle_measure(shapes->items[i], &m);
+    radius = fmax(radius, m.bounding_radius);
+    list[i] = (scree_run_shape){shapes->items[i], 1};
+  }
+  /* a layer holds about half of what its area would */
+  double layers = (double)count / (0.5 * 0.04 / (radius * radius)) + 1;
+  e.pack_time = 2.1 * radius * layers / entry_speed;
+  scree_run *run;
+  need(scree_run_create(&e, list, shapes->count, &run, &error), &error);
+  while (scree_run_phase(run) < SCREE_PHASE_LIFT)
+    need(scree_run_advance(run, 1000, &error), &error);
+  scree_world *world =
+      make_again(scree_run_world(run), &(remake){.stiffness_factor = soft, .gravity = 9.81});
+  scree_run_free(run);
+  scree_experiment_free(&e);
+  return settle(world);
+}
+
+scree_world *refit_scene(const scree_world *from, const shape_set *before, const shape_set *after) {
+  /* shapes that stand in each other by some tenths of a millimetre are let apart gently */
+  scree_world *world = make_again(from, &(remake){.stiffness_factor = 0.1 * soft,
+                                                  .gravity = 0.981,
+                                                  .before = before,
+                                                  .after = after});
+  advance(world, 0.1);
+  return settle(world);
+}
+
+static double height_of(const scree_world *world) {
+  double top = 0;
+  for (size_t i = 0; i < scree_world_body_count(world); i++) {
+    scree_body state;
+    scree_particle_measures m;
+    scree_world_get_body(world, i, &state);
+    scree_particle_measure(scree_world_body_particle(world, i), &m);
+    top = fmax(top, state.position[2] + m.bounding_radius);
+  }
+  return top;
+}
+
+scree_world *stack_scene(const scree_world *from, size_t copies, bool settled) {
+  remake how = {.stiffness_factor = 1, .gravity = 9.81, .copies = copies, .pitch = height_of(from)};
+  scree_world *world = make_again(from, &how);
+  return settled ? settle(world) : world;
+}
+
+scree_world *lift_scene(const scree_world *from, double height) {
+  scree_error error;
+  const double up[3] = {0, 0, lift_speed}, still[3] = {0, 0, 0};
+  scree_world *world = make_again(from, &(remake){.stiffness_factor = soft, .gravity = 9.81});
+  need(scree_world_set_wall_velocity(world, 1, up, still, &error), &error);
+  advance(world, height / lift_speed);
+  return stage(world, (remake){.stiffness_factor = 1, .gravity = 9.81}, flowing_hard_time);
+}
+
+scree_world *retime_scene(const scree_world *from, double time_step) {
+  remake how = {.stiffness_factor = 1, .gravity = 9.81, .time_step = time_step};
+  scree_world *world = make_again(from, &how);
+  advance(world, hard_time);
+  return world;
+}

@@ -1,0 +1,155 @@
+/* The speed of scree's world:
+ *
+ *   bench_world fill KIND TRIANGLES COUNT OUT      a scene at rest in a cylinder of 0.4 m
+ *   bench_world refit KIND FROM TRIANGLES IN OUT   the same with KIND at TRIANGLES instead of FROM
+ *   bench_world stack COPIES SETTLE IN OUT         copies above each other, SETTLE 1: at rest
+ *   bench_world lift HEIGHT IN OUT                 after the cylinder has risen by HEIGHT m
+ *   bench_world retime DT IN OUT                   with time step DT s
+ *   bench_world time THREADS SECONDS IN            measures, after a tenth of the time to warm up
+ *   bench_world hash THREADS STEPS IN              prints the hash of the state after these steps
+ *
+ * IN and OUT are checkpoints. `time` prints one CSV line: bodies, triangles of the first body, time
+ * step, steps, wall s, CPU s, particle-steps per second of wall clock, the same per second of CPU
+ * time, shares of broad, lists, contacts (without lists) and bodies in %, touching pairs a body,
+ * contacts a body, evaluated items a body and step, lists built per 1000 bodies and steps, kinetic
+ * energy J, largest overlap m, peak memory bytes. */
+#include "bench.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <time.h>
+
+static double seconds(clockid_t clock) {
+  struct timespec now;
+  clock_gettime(clock, &now);
+  return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
+
+static scree_world *load(const char *path) {
+  scree_error error;
+  scree_world *world;
+  need(scree_world_load(path, &world, &error), &error);
+  return world;
+}
+
+static int save(scree_world *world, const char *path) {
+  scree_error error;
+  need(scree_world_save(world, path, true, &error), &error);
+  scree_world_free(world);
+  return 0;
+}
+
+static int fill(char **a) {
+  shape_set shapes;
+  make_shapes(a[0], strtoul(a[1], NULL, 10), &shapes);
+  int status = save(fill_scene(&shapes, strtoul(a[2], NULL, 10), 1), a[3]);
+  free_shapes(&shapes);
+  return status;
+}
+
+static int refit(char **a) {
+  shape_set before, after;
+  make_shapes(a[0], strtoul(a[1], NULL, 10), &before);
+  make_shapes(a[0], strtoul(a[2], NULL, 10), &after);
+  scree_world *from = load(a[3]);
+  int status = save(refit_scene(from, &before, &after), a[4]);
+  scree_world_free(from);
+  free_shapes(&before);
+  free_shapes(&after);
+  return status;
+}
+
+static int stack(char **a) {
+  scree_world *from = load(a[2]);
+  int status = save(stack_scene(from, strtoul(a[0], NULL, 10), a[1][0] == '1'), a[3]);
+  scree_world_free(from);
+  return status;
+}
+
+static int lift(char **a) {
+  scree_world *from = load(a[1]);
+  int status = save(lift_scene(from, strtod(a[0], NULL)), a[2]);
+  scree_world_free(from);
+  return status;
+}
+
+static int retime(char **a) {
+  scree_world *from = load(a[1]);
+  int status = save(retime_scene(from, strtod(a[0], NULL)), a[2]);
+  scree_world_free(from);
+  return status;
+}
+
+static void print_line(const scree_world *world, const scree_timings *before, double wall,
+                       double cpu) {
+  scree_timings t;
+  scree_observation o;
+  scree_particle_measures m;
+  struct rusage usage;
+  scree_world_timings(world, &t);
+  scree_world_observe(world, &o);
+  scree_particle_measure(scree_world_body_particle(world, 0), &m);
+  getrusage(RUSAGE_SELF, &usage);
+  double steps = (double)(t.steps - before->steps), n = (double)o.body_count,
+         total = t.total - before->total, lists = t.candidates - before->candidates;
+  printf("%zu,%zu,%.4g,%.0f,%.3f,%.3f,%.0f,%.0f,", o.body_count, m.triangle_count,
+         scree_world_time_step(world, NULL), steps, wall, cpu, n * steps / wall, n * steps / cpu);
+  printf("%.1f,%.1f,%.1f,%.1f,", 100 * (t.broad - before->broad) / total, 100 * lists / total,
+         100 * (t.contacts - before->contacts - lists) / total,
+         100 * (t.bodies - before->bodies) / total);
+  printf("%.2f,%.2f,%.2f,%.3f,%.3g,%.3g,%ld\n", (double)o.pair_count / n,
+         (double)o.contact_count / n,
+         (double)(t.item_evaluations - before->item_evaluations) / (n * steps),
+         1000 * (double)(t.list_builds - before->list_builds) / (n * steps),
+         o.kinetic + o.rotational, o.largest_overlap, usage.ru_maxrss * 1024);
+}
+
+static int measure(char **a) {
+  scree_error error;
+  scree_set_threads(atoi(a[0]));
+  double wanted = strtod(a[1], NULL), warm = 0.1 * wanted;
+  scree_world *world = load(a[2]);
+  scree_timings before;
+  for (double start = seconds(CLOCK_MONOTONIC); seconds(CLOCK_MONOTONIC) - start < warm;)
+    need(scree_world_step(world, 10, &error), &error);
+  scree_world_timings(world, &before);
+  double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
+  while (seconds(CLOCK_MONOTONIC) - wall < wanted)
+    need(scree_world_step(world, 10, &error), &error);
+  print_line(world, &before, seconds(CLOCK_MONOTONIC) - wall,
+             seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu);
+  scree_world_free(world);
+  return 0;
+}
+
+static int hash(char **a) {
+  scree_error error;
+  scree_set_threads(atoi(a[0]));
+  scree_world *world = load(a[2]);
+  need(scree_world_step(world, strtoul(a[1], NULL, 10), &error), &error);
+  scree_checksum sum = scree_world_hash(world);
+  printf("%016llx%016llx\n", (unsigned long long)sum.high, (unsigned long long)sum.low);
+  scree_world_free(world);
+  return 0;
+}
+
+int main(int argc, char **argv) {
+  static const struct {
+    const char *name;
+    int argument_count;
+    int (*run)(char **arguments);
+  } commands[] = {{"fill", 4, fill}, {"refit", 5, refit},   {"stack", 4, stack},
+                  {"lift", 3, lift}, {"retime", 3, retime}, {"time", 3, measure},
+                  {"hash", 3, hash}};
+  for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
+    if (argc == commands[i].argument_count + 2 && strcmp(argv[1], commands[i].name) == 0)
+      return commands[i].run(argv + 2);
+  fprintf(stderr,
+          "usage: %s fill KIND TRIANGLES COUNT OUT | refit KIND FROM TRIANGLES IN OUT | "
+          "stack COPIES SETTLE IN OUT | lift HEIGHT IN OUT | retime DT IN OUT | "
+          "time THREADS SECONDS IN | hash THREADS STEPS IN\n",
+          argv[0]);
+  return 2;
+}
