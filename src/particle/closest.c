@@ -1,8 +1,7 @@
 /* Closest points.
  *
  * Point to triangle: barycentric coordinates of the projection, then the regions of Ericson (2005,
- * 5.1.5). Segment to segment: Ericson 5.1.9 with clamping. Point to surface: depth-first through
- * the box tree, nearer child first. */
+ * 5.1.5). Point to surface: depth-first through the box tree, nearer child first. */
 #include "particle/closest.h"
 
 static vec3 on_edge(vec3 from, vec3 along, vec3 p, double *s) {
@@ -12,8 +11,7 @@ static vec3 on_edge(vec3 from, vec3 along, vec3 p, double *s) {
   return vec3_mad(from, along, *s);
 }
 
-/* The closest point when the projection is outside: the nearest of the three edges. */
-static vec3 on_border(const scree_face *face, vec3 p, int *region) {
+vec3 scree_closest_on_border(const scree_face *face, vec3 p, int *region) {
   vec3 from[3] = {face->corner, vec3_add(face->corner, face->along1),
                   vec3_add(face->corner, face->along2)};
   vec3 along[3] = {face->along1, vec3_sub(face->along2, face->along1), vec3_neg(face->along2)};
@@ -31,39 +29,6 @@ static vec3 on_border(const scree_face *face, vec3 p, int *region) {
                        : (int)SCREE_REGION_EDGE + e;
   }
   return closest;
-}
-
-vec3 scree_closest_on_face(const scree_face *face, vec3 p, int *region) {
-  vec3 w = vec3_sub(p, face->corner);
-  double d1 = vec3_dot(w, face->along1), d2 = vec3_dot(w, face->along2);
-  double u = (face->d22 * d1 - face->d12 * d2) * face->inverse,
-         v = (face->d11 * d2 - face->d12 * d1) * face->inverse;
-  if (u >= 0 && v >= 0 && u + v <= 1) {
-    *region = SCREE_REGION_INSIDE;
-    return vec3_mad(p, face->normal, -vec3_dot(w, face->normal));
-  }
-  return on_border(face, p, region);
-}
-
-static double clamp01(double x) {
-  return x < 0 ? 0 : x > 1 ? 1 : x;
-}
-
-void scree_closest_on_segments(vec3 p0, vec3 p1, vec3 q0, vec3 q1, double *s, double *t) {
-  vec3 u = vec3_sub(p1, p0), v = vec3_sub(q1, q0), w = vec3_sub(p0, q0);
-  double a = vec3_dot(u, u), e = vec3_dot(v, v), f = vec3_dot(v, w), c = vec3_dot(u, w),
-         b = vec3_dot(u, v), denominator = a * e - b * b;
-  double ss = denominator > 1e-14 * a * e ? clamp01((b * f - c * e) / denominator) : 0;
-  double tt = (b * ss + f) / e;
-  if (tt < 0) {
-    tt = 0;
-    ss = clamp01(-c / a);
-  } else if (tt > 1) {
-    tt = 1;
-    ss = clamp01((b - c) / a);
-  }
-  *s = ss;
-  *t = tt;
 }
 
 /* Keeps the nearest, ascending; what falls off the end bounds `next`. */

@@ -11,11 +11,43 @@ typedef enum scree_region {
   SCREE_REGION_CORNER = SCREE_REGION_EDGE + 3,
 } scree_region;
 
-/* Closest point of the face to p, with its region. */
-vec3 scree_closest_on_face(const scree_face *face, vec3 p, int *region);
+/* The closest point when the projection is outside: the nearest of the three edges. */
+vec3 scree_closest_on_border(const scree_face *face, vec3 p, int *region);
 
-/* Closest points at start + s (end - start) on both segments, s and t in [0, 1]. */
-void scree_closest_on_segments(vec3 p0, vec3 p1, vec3 q0, vec3 q1, double *s, double *t);
+/* Closest point of the face to p, with its region. */
+static inline vec3 scree_closest_on_face(const scree_face *face, vec3 p, int *region) {
+  vec3 w = vec3_sub(p, face->corner);
+  double d1 = vec3_dot(w, face->along1), d2 = vec3_dot(w, face->along2);
+  double u = (face->d22 * d1 - face->d12 * d2) * face->inverse,
+         v = (face->d11 * d2 - face->d12 * d1) * face->inverse;
+  if (u >= 0 && v >= 0 && u + v <= 1) {
+    *region = SCREE_REGION_INSIDE;
+    return vec3_mad(p, face->normal, -vec3_dot(w, face->normal));
+  }
+  return scree_closest_on_border(face, p, region);
+}
+
+static inline double scree_clamped(double x, double high) {
+  return x < 0 ? 0 : x > high ? high : x;
+}
+
+/* Closest points p + s u and q + t v of two segments along unit vectors, s in [0, length_p] and t
+ * in [0, length_q]: Ericson (2005, 5.1.9) with clamping. */
+static inline void scree_closest_on_segments(vec3 p, vec3 u, double length_p, vec3 q, vec3 v,
+                                             double length_q, double *s, double *t) {
+  vec3 w = vec3_sub(p, q);
+  double f = vec3_dot(v, w), c = vec3_dot(u, w), b = vec3_dot(u, v), sine2 = 1 - b * b;
+  double ss = sine2 > 1e-14 ? scree_clamped((b * f - c) / sine2, length_p) : 0, tt = b * ss + f;
+  if (tt < 0) {
+    tt = 0;
+    ss = scree_clamped(-c, length_p);
+  } else if (tt > length_q) {
+    tt = length_q;
+    ss = scree_clamped(b * length_q - c, length_p);
+  }
+  *s = ss;
+  *t = tt;
+}
 
 enum { SCREE_NEAR_FACES = 6 };
 

@@ -239,11 +239,12 @@ static void make_points_and_edges(extraction *x) {
     const mesh_edge *edge = &x->edges[e];
     if (edge->turn <= sharp_angle || x->visited[e]) continue;
     x->visited[e] = true;
-    uint32_t start = follow(x, e, edge->low), end = follow(x, e, edge->high);
+    vec3 start = position_of(mesh, follow(x, e, edge->low)),
+         end = position_of(mesh, follow(x, e, edge->high)), along = vec3_sub(end, start);
     double half = fmin(0.5 * edge->turn + cone_slack, 1.57);
     vec3 sum = vec3_add(p->faces[edge->face1].normal, p->faces[edge->face2].normal);
-    p->edges[p->edge_count++] = (scree_edge){position_of(mesh, start), position_of(mesh, end),
-                                             vec3_unit(sum), cos(half), sin(half)};
+    p->edges[p->edge_count++] = (scree_edge){
+        start, end, vec3_unit(along), vec3_norm(along), vec3_unit(sum), cos(half), sin(half)};
   }
 }
 

@@ -21,6 +21,8 @@ typedef struct scree_face_signs {
 /* A straight convex edge. */
 typedef struct scree_edge {
   vec3 start, end;
+  vec3 along; /* unit, from start to end */
+  double length;
   vec3 outward;        /* unit, between the normals of its two faces */
   double cosine, sine; /* of half the angle between them, widened (features.c) */
 } scree_edge;

@@ -143,6 +143,7 @@ static bool face_each_other(const scree_edge *ea, vec3 outward_a, const scree_ed
 static void list_edge(listing *l, uint32_t i) {
   const scree_edge *ea = &l->a->edges[i];
   vec3 p0 = into_b(l, ea->start), p1 = into_b(l, ea->end),
+       along = mat3_mul_vec(&l->relative->rotation, ea->along),
        outward = mat3_mul_vec(&l->relative->rotation, ea->outward);
   double touch = l->pair->reach + l->pair->smoothing;
   scree_box box = scree_box_grown(scree_box_of(p0, p1), l->skin + touch);
@@ -163,8 +164,8 @@ static void list_edge(listing *l, uint32_t i) {
       const scree_edge *eb = &l->b->edges[j];
       if (!face_each_other(ea, outward, eb)) continue;
       double s, t;
-      scree_closest_on_segments(p0, p1, eb->start, eb->end, &s, &t);
-      double d = vec3_distance(vec3_lerp(p0, p1, s), vec3_lerp(eb->start, eb->end, t));
+      scree_closest_on_segments(p0, along, ea->length, eb->start, eb->along, eb->length, &s, &t);
+      double d = vec3_distance(vec3_mad(p0, along, s), vec3_mad(eb->start, eb->along, t));
       put_to_sleep(l, SCREE_ITEM_EDGE_EDGE, i, j, d - touch);
     }
   }

@@ -16,35 +16,22 @@
 
 static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
 
-static double power_of(const scree_wrench *w, const scree_frame *a, const scree_frame *b) {
-  return vec3_dot(w->force, vec3_sub(a->velocity, b->velocity)) + vec3_dot(w->torque_a, a->spin) +
-         vec3_dot(w->torque_b, b->spin);
+static double wall_power(const scree_pair *pair, const scree_frame *wall) {
+  return vec3_dot(pair->wrench.force, wall->velocity) - vec3_dot(pair->wrench.torque_b, wall->spin);
 }
 
-static void add_work(const scree_world *world, const scree_pair *pair, scree_pair_sums *sums) {
+/* The second half: the loads of the last evaluation with the velocities after their kick. With
+ * torques M - arm x F on a and -M on b, the power is F.(va - vb - wa x arm) + M.(wa - wb). */
+static void add_later_work(const scree_world *world, const scree_pair *pair,
+                           scree_pair_sums *sums) {
   const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  vec3 u = vec3_sub(vec3_sub(a->velocity, b->velocity), vec3_cross(a->spin, pair->arm)),
+       spin = vec3_sub(a->spin, b->spin);
+  const scree_load *d = &pair->dashpot, *t = &pair->tangential;
   double half = 0.5 * world->time_step;
-  sums->dashpot += half * power_of(&pair->dashpot, a, b);
-  sums->tangential += half * power_of(&pair->tangential, a, b);
-  if (pair->wall)
-    sums->wall_work += half * (vec3_dot(pair->wrench.force, b->velocity) -
-                               vec3_dot(pair->wrench.torque_b, b->spin));
-}
-
-/* Bound on the relative speed of points near the contact: all lie within the smaller body. */
-static double relative_speed(const scree_world *world, const scree_pair *pair) {
-  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
-  vec3 between = vec3_sub(a->position, b->position), u;
-  double radius = world->bodies.particle[pair->a]->measures.bounding_radius;
-  u = vec3_sub(a->velocity, b->velocity);
-  if (pair->wall || radius <= world->bodies.particle[pair->b]->measures.bounding_radius) {
-    u = vec3_sub(u, vec3_cross(b->spin, between));
-  } else {
-    u = vec3_sub(u, vec3_cross(a->spin, between));
-    radius = world->bodies.particle[pair->b]->measures.bounding_radius;
-  }
-  radius += 4 * scree_pair_skin(world, pair); /* the lists' reach beyond the body */
-  return vec3_norm(u) + radius * vec3_norm(vec3_sub(a->spin, b->spin));
+  sums->dashpot += half * (vec3_dot(d->force, u) + vec3_dot(d->moment, spin));
+  sums->tangential += half * (vec3_dot(t->force, u) + vec3_dot(t->moment, spin));
+  if (pair->wall) sums->wall_work += half * wall_power(pair, b);
 }
 
 static double bodies_path(const scree_world *world, const scree_pair *pair, double *travel) {
@@ -67,21 +54,29 @@ static bool still_asleep(const scree_world *world, scree_pair *pair) {
   return false;
 }
 
-/* a in the frame of b; velocity and spin such that a's point at q moves with velocity + spin x q.
- */
-static scree_frame relative_frame(const scree_frame *a, const scree_frame *b) {
-  scree_frame r;
-  mat3 transposed = mat3_transpose(&b->rotation);
-  r.rotation = mat3_mul(&transposed, &a->rotation);
-  r.position = mat3_tmul_vec(&b->rotation, vec3_sub(a->position, b->position));
-  vec3 between = vec3_sub(a->position, b->position);
-  vec3 velocity = vec3_sub(vec3_sub(a->velocity, b->velocity), vec3_cross(a->spin, between));
-  vec3 now = vec3_sub(vec3_sub(a->velocity_now, b->velocity_now), vec3_cross(a->spin_now, between));
-  r.velocity = mat3_tmul_vec(&b->rotation, velocity);
-  r.spin = mat3_tmul_vec(&b->rotation, vec3_sub(a->spin, b->spin));
-  r.velocity_now = mat3_tmul_vec(&b->rotation, now);
-  r.spin_now = mat3_tmul_vec(&b->rotation, vec3_sub(a->spin_now, b->spin_now));
-  return r;
+/* a in the frame of b, its velocity and spin such that a's point at q moves with velocity + spin x
+ * q. Answers a bound on the relative speed of points near the contact: all lie within the smaller
+ * body or little beyond. */
+static double relate(const scree_world *world, const scree_pair *pair,
+                     scree_frame *restrict relative) {
+  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  double radius_a = world->bodies.particle[pair->a]->measures.bounding_radius,
+         radius_b =
+             pair->wall ? INFINITY : world->bodies.particle[pair->b]->measures.bounding_radius;
+  vec3 between = vec3_sub(a->position, b->position), slip = vec3_sub(a->velocity, b->velocity),
+       spin = vec3_sub(a->spin, b->spin), at_b = vec3_sub(slip, vec3_cross(a->spin, between)),
+       at_a = vec3_sub(slip, vec3_cross(b->spin, between)),
+       now = vec3_sub(vec3_sub(a->velocity_now, b->velocity_now), vec3_cross(a->spin_now, between));
+  mat3 back = mat3_transpose(&b->rotation);
+  relative->rotation = mat3_mul(&back, &a->rotation);
+  relative->position = mat3_mul_vec(&back, between);
+  relative->velocity = mat3_mul_vec(&back, at_b);
+  relative->spin = mat3_mul_vec(&back, spin);
+  relative->velocity_now = mat3_mul_vec(&back, now);
+  relative->spin_now = mat3_mul_vec(&back, vec3_sub(a->spin_now, b->spin_now));
+  bool about_a = radius_a <= radius_b;
+  double radius = (about_a ? radius_a : radius_b) + 4 * scree_pair_skin(world, pair);
+  return vec3_norm(about_a ? at_a : at_b) + radius * vec3_norm(spin);
 }
 
 static bool wake_items(scree_pair *pair) {
@@ -151,14 +146,13 @@ static void clear_results(scree_pair *pair) {
 
 void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                          scree_pair_sums *sums) {
-  if (pair->touching) add_work(world, pair, sums);
+  if (pair->touching) add_later_work(world, pair, sums);
   if (still_asleep(world, pair)) return;
-  double speed = relative_speed(world, pair);
+  scree_frame relative;
+  double speed = relate(world, pair, &relative);
   pair->travel = speed * world->time_step;
   pair->path += pair->travel;
-  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
   bool good = true;
-  scree_frame relative = relative_frame(a, b);
   if (pair->path + 2 * pair->travel >= pair->list_end) {
     good = scree_pair_list(world, pair, &relative, scratch);
     pair->next_item = -INFINITY;
@@ -167,12 +161,15 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   scratch->touches.count = 0;
   bool some_sleep = visit_items(world, pair, &relative, scratch);
   clear_results(pair);
-  scree_pair_apply_law(world, pair, &scratch->touches, &relative);
+  scree_powers powers = scree_pair_apply_law(world, pair, &scratch->touches, &relative);
   if (some_sleep) good = good && settle_items(pair);
   if (pair->active.count == 0) fall_asleep(world, pair);
   if (!good || scratch->out_of_memory) sums->out_of_memory = true;
   if (!pair->touching) return;
-  add_work(world, pair, sums);
+  double half = 0.5 * world->time_step;
+  sums->dashpot += half * powers.dashpot;
+  sums->tangential += half * powers.tangential;
+  if (pair->wall) sums->wall_work += half * wall_power(pair, scree_pair_frame_b(world, pair));
   if (!(pair->overlap <= sums->largest_overlap)) sums->largest_overlap = pair->overlap;
   if (!(pair->overlap <= pair->limit) && !sums->beyond_limit) sums->beyond_limit = pair;
 }

@@ -13,16 +13,68 @@
  */
 #include "world/world.h"
 
-enum { NEWTON_STEPS = 30 };
+enum { NEWTON_STEPS = 30, CLOSED_ROUNDS = 3 };
 
-typedef struct smooth_maximum {
-  double value, cutoff, denominator; /* m, t, S (1 - kappa) + kappa l */
-} smooth_maximum;
+/* Closed form. With h the highest overlap, d_i = h - o_i, x = h - t and k = kappa/(1 - kappa), the
+ * features of a set all count where x > d_i, and the equation of the set is the quadratic
+ *   (W - k2) x2 - 2 (D1 - k c) x + D2 - c2 = 0,   c = l0 + k (h + l0),
+ * with W, D1, D2 the sums of w, w d, w d2. A set that its own root names is the solution, which is
+ * unique. Features at rest lie close together, so that the first or second set is the one. False
+ * when no set was found. */
+static bool solve_closed(const scree_touch *touches, size_t count, double l0, double k,
+                         double highest, double *x, double *sum) {
+  double c = l0 + k * (highest + l0), reach = INFINITY;
+  for (int round = 0; round < CLOSED_ROUNDS; round++) {
+    double weight = 0, first = 0, second = 0, farthest = 0, next = INFINITY;
+    for (size_t i = 0; i < count; i++) {
+      double d = highest - touches[i].overlap, w = touches[i].weight;
+      if (d >= reach) {
+        next = fmin(next, d);
+        continue;
+      }
+      weight += w;
+      first += w * d;
+      second += w * d * d;
+      farthest = fmax(farthest, d);
+    }
+    double a = weight - k * k, b = first - k * c, e = c * c - second, square = b * b + a * e;
+    if (!(square >= 0)) {
+      reach = farthest; /* far features spoil the quadratic: leave the farthest out */
+      continue;
+    }
+    double root = sqrt(square);
+    *x = b > 0 ? (b + root) / a : e / (root - b);
+    if (farthest < *x && next >= *x && *x > 0) {
+      *sum = weight * *x - first;
+      return true;
+    }
+    reach = *x > 0 ? *x : farthest;
+  }
+  return false;
+}
 
-/* False when the pair does not touch. Newton from below the root, where the function is positive,
- * falling and convex: every step stays on that side. */
-static bool solve(const scree_touch *touches, size_t count, double l0, double kappa,
-                  smooth_maximum *result) {
+/* Newton from below the root, where the function is positive, falling and convex: every step stays
+ * on that side. */
+static void solve_by_steps(const scree_touch *touches, size_t count, double l0, double k, double *t,
+                           double *sum) {
+  for (int step = 0; step < NEWTON_STEPS; step++) {
+    double square = 0, l = l0 + k * (*t + l0);
+    *sum = 0;
+    for (size_t i = 0; i < count; i++) {
+      double above = touches[i].overlap - *t;
+      if (above <= 0) continue;
+      double weighted = touches[i].weight * above;
+      *sum += weighted;
+      square += weighted * above;
+    }
+    double change = (square - l * l) / (2 * (*sum + l * k));
+    *t += change;
+    if (!(fabs(change) > 1e-15 * (l + fabs(*t)))) break;
+  }
+}
+
+bool scree_solve_smooth_maximum(const scree_touch *touches, size_t count, double l0, double kappa,
+                                scree_smooth_maximum *result) {
   double highest = -l0, weight = 1, at_zero = 0;
   for (size_t i = 0; i < count; i++) {
     double o = touches[i].overlap, above = o + l0;
@@ -30,42 +82,33 @@ static bool solve(const scree_touch *touches, size_t count, double l0, double ka
     if (o > highest) highest = o, weight = touches[i].weight;
   }
   if (!(at_zero > l0 * l0)) return false;
-  double k = kappa / (1 - kappa);
-  double t = highest - (l0 + k * (highest + l0)) / sqrt(weight);
-  if (t < -l0) t = -l0;
-  double sum = 0;
-  for (int step = 0; step < NEWTON_STEPS; step++) {
-    double square = 0, l = l0 + k * (t + l0);
-    sum = 0;
-    for (size_t i = 0; i < count; i++) {
-      double above = touches[i].overlap - t;
-      if (above <= 0) continue;
-      double weighted = touches[i].weight * above;
-      sum += weighted;
-      square += weighted * above;
-    }
-    double change = (square - l * l) / (2 * (sum + l * k));
-    t += change;
-    if (!(fabs(change) > 1e-15 * (l + fabs(t)))) break;
+  double k = kappa / (1 - kappa), x, t, sum = 0;
+  if (solve_closed(touches, count, l0, k, highest, &x, &sum)) {
+    t = highest - x;
+  } else {
+    t = fmax(-l0, highest - (l0 + k * (highest + l0)) / sqrt(weight));
+    solve_by_steps(touches, count, l0, k, &t, &sum);
   }
   double m = (t + l0) / (1 - kappa), l = l0 + kappa * m;
-  *result = (smooth_maximum){m, t, sum * (1 - kappa) + kappa * l};
+  *result = (scree_smooth_maximum){m, t, sum * (1 - kappa) + kappa * l};
   return m > 0;
 }
 
-static void solve_one(const scree_touch *touch, double l0, double kappa, smooth_maximum *result) {
+static void solve_one(const scree_touch *touch, double l0, double kappa,
+                      scree_smooth_maximum *result) {
   double l = l0 + kappa * touch->overlap;
-  *result = (smooth_maximum){touch->overlap, touch->overlap - l, l};
+  *result = (scree_smooth_maximum){touch->overlap, touch->overlap - l, l};
 }
 
 static bool find_overlap(const scree_world *world, const scree_pair *pair,
-                         const scree_touch_list *touches, smooth_maximum *result) {
+                         const scree_touch_list *touches, scree_smooth_maximum *result) {
   if (touches->count == 1 && touches->items[0].weight == 1) {
     if (!(touches->items[0].overlap > 0)) return false;
     solve_one(&touches->items[0], pair->smoothing, world->options.sharing, result);
     return true;
   }
-  return solve(touches->items, touches->count, pair->smoothing, world->options.sharing, result);
+  return scree_solve_smooth_maximum(touches->items, touches->count, pair->smoothing,
+                                    world->options.sharing, result);
 }
 
 /* The spring's force at overlap m, and the energy that comes back from it. */
@@ -88,84 +131,123 @@ static double lasting(const scree_pair *pair) {
   return age < 1.5 ? 0 : age > 3 ? 1 : (age - 1.5) / 1.5;
 }
 
-/* Stretches the spring by the last drift, and answers the tangential force. */
-static vec3 slide(const scree_world *world, const scree_pair *pair, scree_touch *touch,
+/* What all touches of the pair share in sliding. */
+typedef struct slider {
+  double stiffness, damping, friction, time_step; /* k_t over share, c_t over share, mu, dt */
+} slider;
+
+static slider make_slider(const scree_world *world, const scree_pair *pair) {
+  double ratio = world->options.tangential_ratio;
+  return (slider){pair->stiffness * ratio, lasting(pair) * pair->damping * sqrt(ratio),
+                  pair->friction, world->time_step};
+}
+
+/* Stretches the spring by the last drift `v` along the surface, and answers the tangential force.
+ */
+static vec3 slide(const slider *law, scree_anchor *anchor, double s, vec3 n, vec3 v,
                   double normal_force, double *energy) {
-  scree_anchor *anchor = touch->anchor;
-  double ratio = world->options.tangential_ratio, s = touch->share;
-  vec3 n = touch->normal;
-  vec3 v = vec3_mad(touch->velocity, n, -vec3_dot(touch->velocity, n));
   vec3 xi = {0, 0, 0};
   if (anchor->share > 0) {
-    xi = vec3_mad(anchor->stretch, v, world->time_step);
+    xi = vec3_mad(anchor->stretch, v, law->time_step);
     xi = vec3_mad(xi, n, -vec3_dot(xi, n));
     if (s > anchor->share) xi = vec3_scale(xi, anchor->share / s);
   }
-  double k = pair->stiffness * ratio * s, c = lasting(pair) * pair->damping * sqrt(ratio) * s;
-  double most = pair->friction * normal_force, stretch = vec3_norm(xi);
-  if (k * stretch > most) xi = vec3_scale(xi, most / (k * stretch));
+  double k = law->stiffness * s, c = law->damping * s, most = law->friction * normal_force;
+  double length2 = vec3_norm2(xi);
+  if (k * k * length2 > most * most) {
+    xi = vec3_scale(xi, most / (k * sqrt(length2)));
+    length2 = vec3_norm2(xi);
+  }
   vec3 force = vec3_mad(vec3_scale(xi, -k), v, -c);
-  double size = vec3_norm(force);
-  if (size > most) force = vec3_scale(force, most / size);
+  double size2 = vec3_norm2(force);
+  if (size2 > most * most) force = vec3_scale(force, most / sqrt(size2));
   anchor->stretch = xi;
-  *energy += 0.5 * k * vec3_norm2(xi);
+  *energy += 0.5 * k * length2;
   return force;
 }
 
-static void add_force(scree_wrench *sum, vec3 at, vec3 force) {
-  sum->force = vec3_add(sum->force, force);
-  sum->torque_b = vec3_add(sum->torque_b, vec3_cross(at, force));
+/* Forces on a and their moments about the origin of b, in its frame: normal ones, the dashpots'
+ * part of them, tangential ones; and the power of the latter two in the last drift. */
+typedef struct load_sums {
+  scree_load normal, dashpot, tangential;
+  double dashpot_power, tangential_power;
+} load_sums;
+
+static void add_load(scree_load *load, vec3 direction, vec3 arm, double size) {
+  load->force = vec3_mad(load->force, direction, size);
+  load->moment = vec3_mad(load->moment, arm, size);
 }
 
-/* From sums about the origin of b, in its frame, to wrenches about both centres in space. */
-static void finish(scree_wrench *sum, const scree_frame *relative, const mat3 *rotation_b) {
-  vec3 about_a = vec3_sub(sum->torque_b, vec3_cross(relative->position, sum->force));
-  sum->force = mat3_mul_vec(rotation_b, sum->force);
-  sum->torque_a = mat3_mul_vec(rotation_b, about_a);
-  sum->torque_b = vec3_neg(mat3_mul_vec(rotation_b, sum->torque_b));
+/* One touching feature: its forces, added to the sums. */
+static void press(const scree_pair *pair, const slider *law, double spring, scree_touch *touch,
+                  const scree_frame *relative, double *energy, load_sums *sums) {
+  vec3 n = touch->normal, arm = vec3_cross(touch->at, n);
+  vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, touch->at));
+  double approach = vec3_dot(v, n);
+  v = vec3_mad(v, n, -approach);
+  /* n.(v + spin x at) of the dashpots' moment */
+  double rate = -(vec3_dot(relative->velocity_now, n) + vec3_dot(relative->spin_now, arm));
+  double elastic = touch->share * spring;
+  double normal = fmax(0, elastic + touch->share * pair->damping * rate),
+         dashpot = normal - elastic;
+  vec3 along = slide(law, touch->anchor, touch->share, n, v, normal, energy);
+  touch->force = vec3_mad(along, n, normal);
+  touch->anchor->normal = n;
+  touch->anchor->share = touch->share;
+  add_load(&sums->normal, n, arm, normal);
+  add_load(&sums->dashpot, n, arm, dashpot);
+  sums->dashpot_power += dashpot * approach;
+  sums->tangential.force = vec3_add(sums->tangential.force, along);
+  sums->tangential.moment = vec3_add(sums->tangential.moment, vec3_cross(touch->at, along));
+  sums->tangential_power += vec3_dot(along, v);
 }
 
-void scree_pair_apply_law(const scree_world *world, scree_pair *pair, scree_touch_list *touches,
-                          const scree_frame *relative) {
-  smooth_maximum maximum;
+/* Into space. */
+static scree_load turned(const scree_load *load, const mat3 *rotation) {
+  return (scree_load){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
+}
+
+static void store_loads(const scree_world *world, scree_pair *pair, const load_sums *sums) {
+  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  scree_load normal = turned(&sums->normal, &b->rotation);
+  pair->dashpot = turned(&sums->dashpot, &b->rotation);
+  pair->tangential = turned(&sums->tangential, &b->rotation);
+  pair->arm = vec3_sub(a->position, b->position);
+  vec3 force = vec3_add(normal.force, pair->tangential.force),
+       moment = vec3_add(normal.moment, pair->tangential.moment);
+  pair->wrench =
+      (scree_wrench){force, vec3_sub(moment, vec3_cross(pair->arm, force)), vec3_neg(moment)};
+}
+
+scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
+                                  scree_touch_list *touches, const scree_frame *relative) {
+  scree_smooth_maximum maximum;
   if (touches->count == 0 || !find_overlap(world, pair, touches, &maximum)) {
     for (size_t i = 0; i < touches->count; i++) touches->items[i].anchor->share = 0;
     pair->largest = pair->age = 0;
-    return;
+    return (scree_powers){0, 0};
   }
   pair->touching = true;
   pair->age += world->time_step;
   pair->overlap = maximum.value;
-  double spring = spring_force(world, pair, maximum.value);
-  scree_wrench sum = {0}, dashpot = {0}, tangential = {0};
+  double spring = spring_force(world, pair, maximum.value), energy = 0;
+  slider law = make_slider(world, pair);
+  load_sums sums = {0};
+  size_t contacts = 0;
   for (size_t i = 0; i < touches->count; i++) {
     scree_touch *touch = &touches->items[i];
     double above = touch->overlap - maximum.cutoff;
     touch->share = above > 0 ? touch->weight * above / maximum.denominator : 0;
-    if (touch->share <= 0) {
+    if (touch->share > 0) {
+      press(pair, &law, spring, touch, relative, &energy, &sums);
+      contacts++;
+    } else {
       touch->anchor->share = 0;
-      continue;
     }
-    touch->velocity = vec3_add(relative->velocity, vec3_cross(relative->spin, touch->at));
-    vec3 now = vec3_add(relative->velocity_now, vec3_cross(relative->spin_now, touch->at));
-    touch->rate = -vec3_dot(now, touch->normal);
-    double elastic = touch->share * spring;
-    double normal = fmax(0, elastic + touch->share * pair->damping * touch->rate);
-    vec3 along = slide(world, pair, touch, normal, &pair->tangential_elastic);
-    touch->force = vec3_mad(along, touch->normal, normal);
-    touch->anchor->normal = touch->normal;
-    touch->anchor->share = touch->share;
-    pair->contact_count++;
-    add_force(&sum, touch->at, touch->force);
-    add_force(&dashpot, touch->at, vec3_scale(touch->normal, normal - elastic));
-    add_force(&tangential, touch->at, along);
   }
-  const mat3 *rotation_b = &scree_pair_frame_b(world, pair)->rotation;
-  finish(&sum, relative, rotation_b);
-  finish(&dashpot, relative, rotation_b);
-  finish(&tangential, relative, rotation_b);
-  pair->elastic += pair->tangential_elastic;
-  pair->wrench = sum;
-  pair->dashpot = dashpot;
-  pair->tangential = tangential;
+  pair->contact_count = contacts;
+  pair->tangential_elastic = energy;
+  pair->elastic += energy;
+  store_loads(world, pair, &sums);
+  return (scree_powers){sums.dashpot_power, sums.tangential_power};
 }

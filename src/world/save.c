@@ -17,11 +17,11 @@
 #include <string.h>
 
 static const unsigned char magic[8] = {'s', 'c', 'r', 'e', 'e', 'W', 'L', 'D'};
-enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
+enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
 
 /* Whoever changes these records must add the fields below, and raise VERSION. */
 _Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 248 && sizeof(scree_anchor) == 56 &&
-                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 440 &&
+                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 416 &&
                                        sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
@@ -156,6 +156,11 @@ static void code_wrench(scree_codec *c, scree_wrench *w) {
   scree_code_vec3(c, &w->torque_b);
 }
 
+static void code_load(scree_codec *c, scree_load *l) {
+  scree_code_vec3(c, &l->force);
+  scree_code_vec3(c, &l->moment);
+}
+
 static void code_pair_name(scree_codec *c, scree_pair *p) {
   scree_code_u32(c, &p->a);
   scree_code_u32(c, &p->b);
@@ -172,8 +177,9 @@ static void code_pair_state(scree_codec *c, scree_pair *p) {
       &p->contact_time, &p->age,       &p->overlap,  &p->largest};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   code_wrench(c, &p->wrench);
-  code_wrench(c, &p->dashpot);
-  code_wrench(c, &p->tangential);
+  code_load(c, &p->dashpot);
+  code_load(c, &p->tangential);
+  scree_code_vec3(c, &p->arm);
   uint64_t contacts = p->contact_count;
   scree_code_u64(c, &contacts);
   p->contact_count = (size_t)contacts;

@@ -37,30 +37,27 @@ static double smooth_step(double from, double to, double x) {
   return t * t * (3 - 2 * t);
 }
 
-static void push_touch(scree_scratch *scratch, const scree_touch *touch) {
-  scree_touch_list *list = &scratch->touches;
-  if (!SCREE_PUSH(list, *touch)) scratch->out_of_memory = true;
-}
-
 /* A touch between spheres or rounded surfaces of radius `above` (a) and `below` (b): normal n from
  * the point c of b, the centre of a's rounding being `distance` away along n. */
 static double add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
                         const double values[4], scree_anchor *anchor) {
   double distance = values[0], above = values[1], below = values[2], weight = values[3];
   double overlap = above + below - distance, gap = -overlap - pair->smoothing;
-  if (gap >= 0) {
+  if (gap >= 0 || !(weight > 0)) {
     anchor->share = 0;
     return gap;
   }
-  scree_touch touch = {.at = vec3_mad(c, n, 0.5 * (distance - above + below)),
-                       .normal = n,
-                       .overlap = overlap,
-                       .weight = weight,
-                       .anchor = anchor};
-  if (weight > 0)
-    push_touch(scratch, &touch);
-  else
-    anchor->share = 0;
+  scree_touch_list *list = &scratch->touches;
+  if (!SCREE_RESERVE(list, list->count + 1)) {
+    scratch->out_of_memory = true;
+    return gap;
+  }
+  scree_touch *touch = &list->items[list->count++];
+  touch->at = vec3_mad(c, n, 0.5 * (distance - above + below));
+  touch->normal = n;
+  touch->overlap = overlap;
+  touch->weight = weight;
+  touch->anchor = anchor;
   return gap;
 }
 
@@ -197,6 +194,11 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
 
 /* Gives each contact the memory of the last step whose normal is most like its own. */
 static void match_anchors(scree_item *item, const vec3 *normals, int count) {
+  scree_anchor *first = &item->anchor[0];
+  if (count == 1 && !(item->anchor[1].share > 0 || item->anchor[2].share > 0)) { /* mostly */
+    if (first->share > 0 && !(vec3_dot(first->normal, normals[0]) > 0.5)) first->share = 0;
+    return;
+  }
   scree_anchor old[SCREE_ANCHORS];
   bool used[SCREE_ANCHORS] = {false};
   for (int k = 0; k < SCREE_ANCHORS; k++) {
@@ -279,12 +281,11 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
   const scree_edge *ea = &world->bodies.particle[pair->a]->edges[item->a],
                    *eb = &scree_pair_shape_b(world, pair)->edges[item->b];
   const mat3 *r = &relative->rotation;
-  vec3 p0 = vec3_add(mat3_mul_vec(r, ea->start), relative->position),
-       p1 = vec3_add(mat3_mul_vec(r, ea->end), relative->position);
+  vec3 p = vec3_add(mat3_mul_vec(r, ea->start), relative->position),
+       ua = mat3_mul_vec(r, ea->along), ub = eb->along;
   double s, t;
-  scree_closest_on_segments(p0, p1, eb->start, eb->end, &s, &t);
-  vec3 on_a = vec3_lerp(p0, p1, s), on_b = vec3_lerp(eb->start, eb->end, t),
-       offset = vec3_sub(on_a, on_b);
+  scree_closest_on_segments(p, ua, ea->length, eb->start, ub, eb->length, &s, &t);
+  vec3 on_a = vec3_mad(p, ua, s), on_b = vec3_mad(eb->start, ub, t), offset = vec3_sub(on_a, on_b);
   double d = vec3_norm(offset), far = d - pair->reach - pair->smoothing;
   if (far >= 0 && !item->inside) {
     item->reference = vec3_scale(offset, 1 / d);
@@ -292,10 +293,9 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
     item->anchor[0].share = 0;
     return far;
   }
-  vec3 ua = vec3_unit(vec3_sub(p1, p0)), ub = vec3_unit(vec3_sub(eb->end, eb->start)),
-       crossing = vec3_cross(ua, ub);
+  vec3 crossing = vec3_cross(ua, ub);
   double sine = vec3_norm(crossing);
-  bool interior = s > 0 && s < 1 && t > 0 && t < 1;
+  bool interior = s > 0 && s < ea->length && t > 0 && t < eb->length;
   if (!interior || sine <= parallel_sines[0]) { /* the ends are points, and speak for themselves */
     if (d > 0.5 * pair->reach && !pair->touching) item->inside = false;
     if (d > 0.5 * pair->reach && !item->inside) {
@@ -328,8 +328,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
     return fmin(far, 0);
   }
   /* near the ends their points take over */
-  double length_a = vec3_distance(p0, p1), length_b = vec3_distance(eb->start, eb->end);
-  double end = fmin(fmin(s, 1 - s) * length_a, fmin(t, 1 - t) * length_b);
+  double end = fmin(fmin(s, ea->length - s), fmin(t, eb->length - t));
   contact.weight *= smooth_step(0, 0.1 * pair->reach, end);
   double rounding_a = world->bodies.particle[pair->a]->measures.rounding;
   const double values[4] = {contact.distance, rounding_a, pair->reach - rounding_a, contact.weight};

@@ -86,6 +86,11 @@ typedef struct scree_wrench {
   vec3 force, torque_a, torque_b;
 } scree_wrench;
 
+/* Force on a and its moment about the centre of b. */
+typedef struct scree_load {
+  vec3 force, moment;
+} scree_load;
+
 typedef struct scree_pair {
   uint32_t a, b;
   bool wall;   /* b is a wall */
@@ -104,7 +109,9 @@ typedef struct scree_pair {
     scree_sleeper *items;
     size_t count, capacity;
   } sleeping;
-  scree_wrench wrench, dashpot, tangential;
+  scree_wrench wrench;
+  scree_load dashpot, tangential;     /* parts of it, for the ledger */
+  vec3 arm;                           /* from b to a when they were made */
   double elastic, tangential_elastic; /* U of all springs, and of the tangential ones */
   double contact_time, age;           /* half period pi sqrt(m/K); since the touch began */
   double overlap, largest;            /* m; largest m of this contact (hysteresis) */
@@ -114,9 +121,8 @@ typedef struct scree_pair {
 /* One touching feature, in the frame of b. */
 typedef struct scree_touch {
   vec3 at, normal; /* normal towards a */
-  double overlap, weight, share, rate;
-  vec3 velocity; /* of a relative to b, in the last drift */
-  vec3 force;    /* on a */
+  double overlap, weight, share;
+  vec3 force; /* on a */
   scree_anchor *anchor;
 } scree_touch;
 
@@ -233,9 +239,21 @@ double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_
 /* Gap of an analytic wall seen from a sphere at p (wall frame): closest point and normal. */
 double scree_wall_distance(const scree_world_wall *wall, vec3 p, vec3 *closest, vec3 *normal);
 
+/* The smooth maximum m of overlaps, t, and the denominator of the shares (law.c). */
+typedef struct scree_smooth_maximum {
+  double value, cutoff, denominator;
+} scree_smooth_maximum;
+/* law.c: from the overlaps and weights of touches; false when the pair does not touch. */
+bool scree_solve_smooth_maximum(const scree_touch *touches, size_t count, double l0, double kappa,
+                                scree_smooth_maximum *result);
+
+/* Power of the dashpots and of the tangential forces with the velocities of the last drift. */
+typedef struct scree_powers {
+  double dashpot, tangential;
+} scree_powers;
 /* law.c: smooth maximum, forces, memory. Fills the pair's results. */
-void scree_pair_apply_law(const scree_world *world, scree_pair *pair, scree_touch_list *touches,
-                          const scree_frame *relative);
+scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
+                                  scree_touch_list *touches, const scree_frame *relative);
 
 /* contact.c: the whole of a pair's step. */
 void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
