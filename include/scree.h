@@ -1542,6 +1542,13 @@ SCREE_API scree_status scree_world_vtp_write(const scree_world *world, scree_wor
  * the bodies. */
 SCREE_API scree_particle *scree_world_shape(const scree_world *world, size_t shape);
 
+/* Writes a mesh with fields: per triangle `area` (m2) and, where reference is not NULL, `distance`
+ * (m, of its centroid from the reference's surface); per vertex `area` (a third of the triangles
+ * around) and `distance`. The positions are in metres. "-" is stdout. Errors as scree_mesh_measure
+ * and scree_vtp_write. */
+SCREE_API scree_status scree_mesh_vtp_write(const scree_mesh *mesh, const scree_mesh *reference,
+                                            const char *path, bool overwrite, scree_error *error);
+
 /* ---- 9.3 The choice: figure, tables, JSON ---- */
 
 /* One object of a choice, with all that is needed to run it again. Texts are borrowed. */
@@ -1726,6 +1733,55 @@ typedef struct scree_polynomial {
 SCREE_API scree_status scree_fit_polynomial(const double *x, const double *y, size_t count,
                                             int degree, scree_polynomial *fit, scree_error *error);
 SCREE_API double scree_polynomial_value(const scree_polynomial *fit, double x);
+
+/* ---- 9.6 Files for DEM codes ---- */
+
+/* How a particle's mesh is put before it is written. */
+typedef struct scree_export_options {
+  double density; /* kg/m3, > 0; default 2000 (not in the paper) */
+  double unit_m;  /* metres per unit of the mesh file; default 1e-3 */
+  bool centre;    /* origin to the centre of mass; default false */
+  bool principal; /* axes also along the principal axes of inertia, moments ascending: the x axis
+                     is the long one; implies centre; default false */
+  bool overwrite; /* default false */
+  const char *source; /* the input as given, for provenance; NULL: unknown. Borrowed, as are */
+  const char *command_line;
+  scree_checksum checksum; /* of the input; zero: none */
+} scree_export_options;
+
+SCREE_API scree_export_options scree_default_export_options(void);
+
+/* Where the mesh went and what it weighs there, SI. */
+typedef struct scree_exported {
+  double rotation[3][3];   /* a point p of the mesh given is at rotation p + translation */
+  double translation[3];   /* m */
+  double mass;             /* kg */
+  double inertia[3][3];    /* kg m2, about the centre of mass, along the axes of the file */
+  double bounding_radius;  /* m, about the centre of mass */
+  scree_measures measures; /* of the mesh as it lies in the file, before rounding */
+} scree_exported;
+
+/* Writes the mesh, put as asked, to mesh_path (format by its ending) and what a DEM code needs to
+ * know of it as JSON to json_path (docs/formats.md; NULL: not wanted). *exported may be NULL.
+ * Fails with SCREE_BAD_MESH where the mesh is not closed or inside out: it would have no mass; with
+ * SCREE_EXISTS before anything is written; else as scree_mesh_write. */
+SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
+                                             const scree_export_options *options,
+                                             const char *mesh_path, const char *json_path,
+                                             scree_exported *exported, scree_error *error);
+
+/* Writes a world for other programs into a folder, made if need be:
+ *
+ *   pile.json      time, gravity, shapes, bodies, walls (docs/formats.md), SI
+ *   bodies.csv     the bodies as rows
+ *   shape-K.stl    the mesh of shape K (scree_world_shape) in the particle's frame, in unit_m
+ *   wall-K.stl     the mesh of wall K in its own frame, in unit_m
+ *
+ * A body of shape K lies where its quaternion turns shape-K.stl and its position moves it. Of the
+ * options unit_m, overwrite and the provenance count. */
+SCREE_API scree_status scree_world_export(const scree_world *world,
+                                          const scree_export_options *options, const char *folder,
+                                          scree_error *error);
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,7 @@
 """Runs the verbs with --json and compares the fields they print with the tables of docs/formats.md: each field
 printed must be in the verb's table or in the common one, and each field in a table must be printed.
-usage: json_fields.py PROGRAM FORMATS.MD"""
+`scree export` writes its JSON as files.
+usage: json_fields.py PROGRAM FORMATS.MD WORLD_WRITER"""
 import itertools
 import json
 import os
@@ -9,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 
-program, document = sys.argv[1], open(sys.argv[2], encoding="utf-8").read()
+program, world_writer, document = sys.argv[1], sys.argv[3], open(sys.argv[2], encoding="utf-8").read()
 os.chdir(tempfile.mkdtemp())
 with open("open.off", "w") as file:  # a tetrahedron without one facet: repair has something to do
     file.write("OFF 4 3 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 2 1\n3 0 1 3\n3 0 3 2\n")
@@ -42,11 +43,25 @@ def printed(value, path=""):
     if isinstance(value, dict):
         for key, inner in value.items():
             yield from printed(inner, f"{path}.{key}" if path else key)
-    elif isinstance(value, list) and any(isinstance(inner, dict) for inner in value):
+    elif isinstance(value, list) and all(isinstance(inner, dict) for inner in value):
         for inner in value:
             yield from printed(inner, path + "[]")
     else:
         yield path
+
+
+def fields_of(text):
+    data = json.loads(text)
+    return {field for one in (data if isinstance(data, list) else [data]) for field in printed(one)}
+
+
+def compare(heading, found):
+    for field in sorted(found - tables[heading] - common):
+        print(f"{heading}: {field} is printed, but not in the table")
+    for field in sorted(tables[heading] - found):
+        print(f"{heading}: {field} is in the table, but not printed")
+    print(f"{heading}: {len(found)} fields")
+    return found - common != tables[heading] - common
 
 
 section = document.split("\n## JSON\n")[1].split("\n## ")[0].split("\n### ")
@@ -56,16 +71,12 @@ assert len(common) == 6
 for heading, calls in VERBS.items():
     found = set()
     for call in calls:
-        output = subprocess.run([program, call[0], "--json", "-q", *call[1:]], stdout=subprocess.PIPE,
-                                stderr=subprocess.DEVNULL, check=False).stdout
-        data = json.loads(output)
-        for one in data if isinstance(data, list) else [data]:
-            found |= set(printed(one))
-    for field in sorted(found - tables[heading] - common):
-        print(f"{heading}: {field} is printed, but not in the table")
-        failed = True
-    for field in sorted(tables[heading] - found):
-        print(f"{heading}: {field} is in the table, but not printed")
-        failed = True
-    print(f"{heading}: {len(found)} fields")
+        found |= fields_of(subprocess.run([program, call[0], "--json", "-q", *call[1:]], stdout=subprocess.PIPE,
+                                          stderr=subprocess.DEVNULL, check=False).stdout)
+    failed |= compare(heading, found)
+subprocess.run([program, "export", SOLID, "-o", "solid.stl", "-q"], check=True)
+failed |= compare("scree export of a surface", fields_of(open("solid.json", "rb").read()))
+subprocess.run([world_writer, "."], stdout=subprocess.DEVNULL, check=True)
+subprocess.run([program, "export", "world.scree", "-o", "pile"], check=True)
+failed |= compare("scree export of a checkpoint", fields_of(open("pile/pile.json", "rb").read()))
 sys.exit(failed)

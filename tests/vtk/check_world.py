@@ -144,4 +144,64 @@ assert abs(max(heights) - min(heights) - 0.06912) < 1e-9
 series = json.load(open(f"{folder}/pile.vtp.series"))
 assert series == {"file-series-version": "1.0", "files": [
     {"name": "surfaces.vtp", "time": 0}, {"name": "points.vtp", "time": told["time"]}]}
-print("VTK", vtk.vtkVersion.GetVTKVersion(), "reads bodies, contacts and walls of a world")
+
+# ---- the verb on a checkpoint: the same files, and a folder with everything
+program = sys.argv[2]
+
+
+def export(*words):
+    subprocess.run([program, "export", *words, "-q"], check=True, cwd=folder)
+
+
+for view in "surfaces", "points", "contacts", "walls":
+    export("world.scree", "--view", view, "-o", f"again-{view}.vtp")
+    assert open(f"{folder}/again-{view}.vtp", "rb").read() == open(f"{folder}/{view}.vtp", "rb").read(), view
+export("world.scree", "--to", "cm", "-o", "pile")
+pile = json.load(open(f"{folder}/pile/pile.json"))
+assert pile["time"] == told["time"] and pile["gravity"] == [0, 0, -9.81] and pile["unit_m"] == 0.01
+for body, one in zip(bodies, pile["bodies"], strict=True):
+    assert body.items() <= one.items()
+assert [b["shape"] for b in pile["bodies"]] == [0, 0, 2, 1]
+assert [(s["shape"], s["kind"], s["mesh_file"], len(s["spheres"])) for s in pile["shapes"]] == [
+    (0, "mesh", "shape-0.stl", 0), (1, "sphere", None, 1), (2, "clump", None, 2)]
+side = 0.06912
+assert near(pile["shapes"][0]["inertia_per_density"], [side**5 / 6] * 3, 1e-15)
+assert abs(pile["shapes"][0]["volume"] - side**3) < 1e-15 and pile["shapes"][1]["spheres"] == [
+    {"centre": [0, 0, 0], "radius": 0.03}]
+assert [(w["kind"], w["mesh_file"]) for w in pile["walls"]] == [
+    ("plane", None), ("disc", None), ("cylinder", None), ("cylinder", None), ("mesh", "wall-4.stl")]
+assert pile["walls"][4]["orientation"] == told["mesh_wall_orientation"]
+rows = [line.split(",") for line in open(f"{folder}/pile/bodies.csv").read().splitlines()]
+assert rows[0][:8] == ["body", "shape", "material", "mass", "x", "y", "z", "qw"] and len(rows) == 5
+for row, body in zip(rows[1:], bodies):
+    assert [float(v) for v in row[3:]] == [body["mass"], *body["position"], *body["orientation"],
+                                           *body["velocity"], *body["angular_velocity"]]
+reader = vtk.vtkSTLReader()
+reader.SetFileName(f"{folder}/pile/shape-0.stl")
+reader.Update()
+assert near(reader.GetOutput().GetBounds(), [b * s for s in [side / 0.01] for b in [-0.5, 0.5] * 3], 1e-6)
+
+# ---- a mesh with its areas and its distances from another
+export("sample:box-12", "--reference", "sample:icosphere-3", "-o", "box.vtp")
+reader = vtk.vtkXMLPolyDataReader()
+reader.SetFileName(f"{folder}/box.vtp")
+reader.Update()
+box = reader.GetOutput()
+export("sample:icosphere-3", "-o", "ball.vtp")
+reader = vtk.vtkXMLPolyDataReader()
+reader.SetFileName(f"{folder}/ball.vtp")
+reader.Update()
+distance = vtk.vtkImplicitPolyDataDistance()
+distance.SetInput(reader.GetOutput())
+assert reader.GetOutput().GetCellData().GetNumberOfArrays() == 1
+on_cells, on_points = table(box.GetCellData()), table(box.GetPointData())
+for k in range(box.GetNumberOfCells()):
+    cell = box.GetCell(k)
+    assert abs(on_cells["area"][k][0] - cell.ComputeArea()) < 1e-15
+    corners = [box.GetPoint(cell.GetPointId(i)) for i in range(3)]
+    centroid = [sum(c[i] for c in corners) / 3 for i in range(3)]
+    assert abs(on_cells["distance"][k][0] - abs(distance.EvaluateFunction(centroid))) < 1e-9
+for k in range(box.GetNumberOfPoints()):
+    assert abs(on_points["distance"][k][0] - abs(distance.EvaluateFunction(box.GetPoint(k)))) < 1e-9
+assert abs(sum(a[0] for a in on_points["area"]) - 6 * side**2) < 1e-15
+print("VTK", vtk.vtkVersion.GetVTKVersion(), "reads bodies, contacts and walls of a world, and a mesh with fields")

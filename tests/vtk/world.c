@@ -134,6 +134,8 @@ int main(int argc, char **argv) {
   char path[512];
   snprintf(path, sizeof path, "%s/pile.vtp.series", argv[1]);
   must(scree_pvd_write(files, times, 2, path, false, &error), &error);
+  snprintf(path, sizeof path, "%s/world.scree", argv[1]);
+  must(scree_world_save(world, path, false, &error), &error);
   printf("{\"time\": %.17g, \"bodies\": [\n", scree_world_time(world));
   print_bodies(world);
   puts("], \"contacts\": [");

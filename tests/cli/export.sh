@@ -1,0 +1,18 @@
+run export sample:box-12 --to cm --density 1000 -o box.stl
+grep -E '"(mass|unit_m|density|volume)"' box.json
+run export sample:box-12 -o box.stl
+run export sample:box-12 -o box.ply -f --principal -q
+run export sample:icosphere-1 --reference sample:icosphere-2 -o ball.vtp
+run export sample:icosphere-1 -o ball.vtp
+ls
+run export sample:box-12
+run export sample:box-12 -o box.txt
+run export sample:box-12 -o box.vtp --centre
+run export sample:box-12 -o box.stl --view points
+run export sample:box-12 -o box.stl --reference ball.vtp
+run export ball.vtp -o x.stl
+printf 'OFF 4 3 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 2 1\n3 0 1 3\n3 0 3 2\n' >open.off
+run export open.off -o x.stl
+printf 'screeWLD and nothing more' >cut.scree
+run export cut.scree -o pile
+run export cut.scree -o pile.stl
