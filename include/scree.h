@@ -1406,6 +1406,65 @@ SCREE_API scree_status scree_grain_make(const scree_mesh *scan, const scree_curv
                                         const scree_progress *progress, scree_grain *grain,
                                         scree_error *error);
 
+/* ---- 8.4 Pouring shapes into a container ---- */
+
+/* Any shapes, poured layer by layer from above into a box or a cylinder: the plain way to see and
+ * test the physics. */
+typedef struct scree_pour scree_pour;
+
+typedef enum scree_container {
+  SCREE_CONTAINER_CYLINDER, /* a floor and an endless cylinder about the z axis */
+  SCREE_CONTAINER_BOX,      /* a floor and four endless walls, the z axis in the middle */
+} scree_container;
+
+/* One of the shapes, and how many of it. The particle is borrowed until the pour is created. */
+typedef struct scree_pour_shape {
+  scree_particle *particle;
+  size_t count;
+} scree_pour_shape;
+
+typedef struct scree_pour_options {
+  scree_world_options world; /* default as scree_default_world_options; gravity must point down */
+  scree_material particles;  /* default scree_default_material: the paper's */
+  scree_material walls;      /* default scree_default_wall_material; its friction holds against the
+                                particles, whatever theirs is */
+  scree_container container; /* default cylinder */
+  double width;              /* m, inside: diameter, or side along x; 0 (default): so that the heap
+                                will be about as high as wide, and three particles fit abreast where
+                                there are enough */
+  double depth;              /* m, side of a box along y; 0 (default): the width */
+  double drop_height;        /* m from the floor to the first layer; default 0.05 */
+  double entry_speed;        /* m/s, downwards; default 1 */
+  uint64_t seed;             /* of order, places and orientations; default 1 */
+} scree_pour_options;
+SCREE_API scree_pour_options scree_default_pour_options(void);
+
+/* The shapes enter well mixed, turned at random, in layers of a square grid whose cells hold the
+ * largest particle however it is turned; each layer enters above all that is there, as soon as the
+ * one before has fallen out of the way. SCREE_BAD_ARGUMENT for no particles, options out of range,
+ * or a container narrower than the largest particle. */
+SCREE_API scree_status scree_pour_create(const scree_pour_shape *shapes, size_t shape_count,
+                                         const scree_pour_options *options, scree_pour **pour,
+                                         scree_error *error);
+SCREE_API void scree_pour_free(scree_pour *pour);
+/* As scree_world_step, letting in layers when they are due: the same bits however a pour is cut
+ * into calls. */
+SCREE_API scree_status scree_pour_advance(scree_pour *pour, size_t step_count, scree_error *error);
+/* For observing, frames and checkpoints; body i is the i-th to have entered. */
+SCREE_API scree_world *scree_pour_world(scree_pour *pour);
+/* The options with every default filled in. */
+SCREE_API void scree_pour_get_options(const scree_pour *pour, scree_pour_options *options);
+/* All particles, and those that have entered. */
+SCREE_API size_t scree_pour_particle_count(const scree_pour *pour);
+SCREE_API size_t scree_pour_entered_count(const scree_pour *pour);
+/* Which of the shapes body `index` is. */
+SCREE_API size_t scree_pour_shape_of(const scree_pour *pour, size_t index);
+/* s: when the last layer enters. */
+SCREE_API double scree_pour_filling_time(const scree_pour *pour);
+/* J: kinetic and potential energy that the particles brought with them, zero on the floor; what the
+ * ledger of the world must come to. */
+SCREE_API double scree_pour_entered_energy(const scree_pour *pour);
+
 /* ==== 9. Reports: figures, pictures, files for other programs ================================= */
 
 /* ---- 9.1 Pictures ---- */

@@ -7,7 +7,6 @@
  *   figure.png, .svg, .pdf, .csv, .gnuplot */
 #include "cli/choose.h"
 
-#include <errno.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -31,23 +30,6 @@ static scree_status join(const choose_run *run, const char *before, const char *
   return fail(error, SCREE_LIMIT, run->arguments->output, "the path is too long");
 }
 
-static scree_status make_folder(const char *path, scree_error *error) {
-  char part[CHOOSE_PATH_BYTES];
-  snprintf(part, sizeof part, "%s", path);
-  for (char *c = part + 1; *c; c++) {
-    if (*c != '/') continue;
-    *c = 0;
-    mkdir(part, 0777);
-    *c = '/';
-  }
-  struct stat info;
-  if (mkdir(part, 0777) != 0 && errno != EEXIST)
-    return fail(error, SCREE_IO, path, strerror(errno));
-  if (stat(part, &info) != 0 || !S_ISDIR(info.st_mode))
-    return fail(error, SCREE_IO, path, "is a file, not a folder");
-  return SCREE_OK;
-}
-
 static scree_status refuse_existing(const choose_run *run, const char *before, const char *name,
                                     const char *after, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
@@ -58,7 +40,7 @@ static scree_status refuse_existing(const choose_run *run, const char *before, c
 }
 
 scree_status choose_prepare_folder(const choose_run *run, scree_error *error) {
-  scree_status status = make_folder(run->arguments->output, error);
+  scree_status status = cli_make_folder(run->arguments->output, error);
   for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
     status = refuse_existing(run, "", FIGURES[i], "", error);
   if (status == SCREE_OK) status = refuse_existing(run, "", "choice.json", "", error);
@@ -73,7 +55,7 @@ scree_status choose_prepare_folder(const choose_run *run, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
   if (status == SCREE_OK && run->count > 1) {
     status = join(run, "set", "", "", path, error);
-    if (status == SCREE_OK) status = make_folder(path, error);
+    if (status == SCREE_OK) status = cli_make_folder(path, error);
   }
   return status;
 }

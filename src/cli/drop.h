@@ -1,0 +1,67 @@
+/* What the files of the verb `drop` share. */
+#ifndef SCREE_CLI_DROP_H
+#define SCREE_CLI_DROP_H
+
+#include "cli/args.h"
+
+enum { DROP_PATH_BYTES = 4096 };
+
+typedef struct drop_arguments {
+  const char *output, *picture;
+  double rp, unit, resolution, noise;
+  size_t triangles, seed, number, samples;
+  double width, depth, drop_height, speed;
+  double time, still, frame_interval;
+  double young, young_wall, density, restitution, friction, friction_wall;
+  double steps_per_contact, stiffness_factor;
+  int container, law;
+  bool no_repair, no_picture, overwrite;
+} drop_arguments;
+
+/* One word of the command line. */
+typedef struct drop_shape {
+  const char *word;
+  char name[DROP_PATH_BYTES]; /* the word without its count */
+  size_t count;               /* particles */
+  size_t source_triangles;    /* before decimation; 0 for spheres */
+  double diameter;            /* m; 0 where it is no sphere */
+  scree_particle *particle;
+} drop_shape;
+
+typedef struct drop_run {
+  const cli_call *call;
+  const drop_arguments *arguments;
+  drop_shape *shapes;
+  size_t shape_count;
+  scree_mesh ball; /* what spheres are drawn with, radius 1 */
+  scree_pour *pour;
+  struct {
+    char **files; /* names relative to the folder */
+    double *times;
+    size_t count, capacity;
+  } frames;
+  FILE *series; /* series.csv; NULL before it is open */
+} drop_run;
+
+/* drop_shapes.c: reads the words; 0, or the exit code after saying why. */
+int drop_read_words(drop_run *run);
+/* Loads, repairs, decimates: every shape gets its particle. */
+scree_status drop_make_particles(drop_run *run, scree_error *error);
+
+/* drop_output.c: an earlier drop in the folder is refused where nothing may be overwritten. */
+scree_status drop_refuse_existing(const drop_run *run, scree_error *error);
+/* The folder and the table. */
+scree_status drop_open_output(drop_run *run, scree_error *error);
+/* One frame of the state as it is, and a line of series.csv. */
+scree_status drop_write_frame(drop_run *run, scree_error *error);
+scree_status drop_write_line(drop_run *run, scree_error *error);
+/* The collection of frames; closes series.csv. */
+scree_status drop_close_output(drop_run *run, scree_error *error);
+/* drop.png; nothing where the build has no ray tracer. */
+scree_status drop_write_picture(drop_run *run, scree_error *error);
+void drop_free_output(drop_run *run);
+
+/* Fills *error; returns its status. */
+scree_status drop_no_memory(scree_error *error);
+
+#endif

@@ -1,0 +1,306 @@
+/* What `scree drop` writes: frames for ParaView, a table over time, a picture. */
+#include "cli/drop.h"
+#include "cli/input.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* A colour per shape, told apart also by those who see few colours (Okabe and Ito 2008), linear. */
+static const float palette[][3] = {
+    {0.00f, 0.17f, 0.45f}, {0.79f, 0.35f, 0.00f}, {0.00f, 0.34f, 0.17f}, {0.60f, 0.19f, 0.38f},
+    {0.09f, 0.46f, 0.81f}, {0.67f, 0.11f, 0.00f}, {0.87f, 0.78f, 0.05f}, {0.20f, 0.20f, 0.20f}};
+
+static scree_status make_path(const drop_run *run, const char *name, char path[DROP_PATH_BYTES],
+                              scree_error *error) {
+  int length = snprintf(path, DROP_PATH_BYTES, "%s/%s", run->arguments->output, name);
+  if (length < DROP_PATH_BYTES) return SCREE_OK;
+  *error = (scree_error){SCREE_BAD_ARGUMENT, "the folder's name is too long"};
+  return error->status;
+}
+
+static scree_status fail(scree_error *error, scree_status status, const char *path,
+                         const char *reason) {
+  error->status = status;
+  snprintf(error->message, sizeof error->message, "%.900s: %s", path, reason);
+  return status;
+}
+
+scree_status drop_refuse_existing(const drop_run *run, scree_error *error) {
+  char path[DROP_PATH_BYTES];
+  scree_status status = make_path(run, "series.csv", path, error);
+  if (status != SCREE_OK || run->arguments->overwrite || access(path, F_OK) != 0) return status;
+  return fail(error, SCREE_EXISTS, path, "exists already; -f overwrites");
+}
+
+scree_status drop_open_output(drop_run *run, scree_error *error) {
+  char path[DROP_PATH_BYTES];
+  scree_status status = make_path(run, "series.csv", path, error);
+  if (status != SCREE_OK) return status;
+  status = cli_make_folder(run->arguments->output, error);
+  if (status != SCREE_OK) return status;
+  run->series = fopen(path, run->arguments->overwrite ? "w" : "wx");
+  if (!run->series) return fail(error, SCREE_IO, path, strerror(errno));
+  fprintf(run->series,
+          "# scree %s, %s\ntime_s,steps,bodies,kinetic_J,rotational_J,potential_J,elastic_J,"
+          "dissipated_dashpot_J,dissipated_friction_J,entered_J,ledger_J,touching_pairs,contacts,"
+          "coordination,largest_overlap_m,highest_speed_m_s,mean_rotation_rad_s\n",
+          scree_version(), run->call->command_line);
+  return SCREE_OK;
+}
+
+scree_status drop_write_line(drop_run *run, scree_error *error) {
+  scree_observation o;
+  const scree_world *world = scree_pour_world(run->pour);
+  double entered = scree_pour_entered_energy(run->pour);
+  scree_world_observe(world, &o);
+  double ledger = o.kinetic + o.rotational + o.potential + o.elastic + o.dissipated_dashpot +
+                  o.dissipated_friction - o.wall_work - entered;
+  int length =
+      fprintf(run->series,
+              "%.9g,%llu,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.3g,%zu,%zu,%.5g,%.5g,%.5g,%.5g\n",
+              o.time, (unsigned long long)scree_world_step_count(world), o.body_count, o.kinetic,
+              o.rotational, o.potential, o.elastic, o.dissipated_dashpot, o.dissipated_friction,
+              entered, ledger, o.pair_count, o.contact_count, o.coordination, o.largest_overlap,
+              o.highest_speed, o.mean_rotation);
+  if (length > 0 && fflush(run->series) == 0) return SCREE_OK;
+  *error = (scree_error){SCREE_IO, "series.csv: cannot write"};
+  return SCREE_IO;
+}
+
+/* ---- frames ---- */
+
+/* The surface that body `index` is drawn with; `ball` scaled for one point of spheres and clumps.
+ */
+typedef struct surface {
+  const scree_mesh *mesh;
+  double centre[3], scale;
+} surface;
+
+static surface surface_of(const drop_run *run, const scree_particle *particle, size_t point) {
+  const scree_mesh *mesh = scree_particle_mesh(particle);
+  surface s = {mesh, {0, 0, 0}, 1};
+  if (mesh->triangle_count) return s;
+  s.mesh = &run->ball;
+  scree_particle_point(particle, point, s.centre, &s.scale);
+  return s;
+}
+
+static size_t surface_count(const scree_particle *particle) {
+  scree_particle_measures m;
+  scree_particle_measure(particle, &m);
+  return m.triangle_count ? 1 : m.point_count;
+}
+
+/* p turned by the body's unit quaternion and moved: p + 2 w (u x p) + 2 u x (u x p). */
+static void into_space(const scree_body *body, const double p[3], double out[3]) {
+  const double *q = body->orientation, *u = q + 1;
+  double t[3];
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    t[i] = 2 * (u[j] * p[k] - u[k] * p[j]);
+  }
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    out[i] = p[i] + q[0] * t[i] + u[j] * t[k] - u[k] * t[j] + body->position[i];
+  }
+}
+
+/* All surfaces of the present bodies in space, and what each triangle belongs to. */
+typedef struct frame {
+  double *points;
+  uint32_t *triangles;
+  int64_t *bodies, *shapes;
+  float *speeds;
+  size_t point_count, triangle_count;
+} frame;
+
+static void free_frame(frame *f) {
+  free(f->points);
+  free(f->triangles);
+  free(f->bodies);
+  free(f->shapes);
+  free(f->speeds);
+}
+
+static void append(const drop_run *run, size_t body, const surface *s, frame *f) {
+  scree_body state;
+  scree_world_get_body(scree_pour_world(run->pour), body, &state);
+  const double *v = state.velocity;
+  float speed = (float)sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+  size_t first = f->point_count;
+  for (size_t i = 0; i < s->mesh->vertex_count; i++) {
+    double local[3];
+    for (int k = 0; k < 3; k++)
+      local[k] = s->centre[k] + s->scale * s->mesh->positions[3 * i + (size_t)k];
+    into_space(&state, local, &f->points[3 * f->point_count++]);
+  }
+  for (size_t t = 0; t < s->mesh->triangle_count; t++) {
+    for (size_t k = 0; k < 3; k++)
+      f->triangles[3 * f->triangle_count + k] = (uint32_t)first + s->mesh->triangles[3 * t + k];
+    f->bodies[f->triangle_count] = (int64_t)body;
+    f->shapes[f->triangle_count] = (int64_t)scree_pour_shape_of(run->pour, body);
+    f->speeds[f->triangle_count++] = speed;
+  }
+}
+
+/* Twice over the bodies: counting, then filling. */
+static scree_status make_frame(const drop_run *run, frame *f, scree_error *error) {
+  scree_world *world = scree_pour_world(run->pour);
+  for (int filling = 0; filling < 2; filling++) {
+    size_t points = 0, triangles = 0;
+    for (size_t i = 0; i < scree_pour_entered_count(run->pour); i++) {
+      const scree_particle *particle = scree_world_body_particle(world, i);
+      for (size_t k = 0; k < surface_count(particle); k++) {
+        surface s = surface_of(run, particle, k);
+        points += s.mesh->vertex_count;
+        triangles += s.mesh->triangle_count;
+        if (filling) append(run, i, &s, f);
+      }
+    }
+    if (filling) break;
+    if (points > UINT32_MAX) {
+      *error = (scree_error){SCREE_LIMIT, "a frame would have more than 2^32 points"};
+      return error->status;
+    }
+    f->points = malloc(24 * points + 1);
+    f->triangles = malloc(12 * triangles + 1);
+    f->bodies = malloc(8 * triangles + 1);
+    f->shapes = malloc(8 * triangles + 1);
+    f->speeds = malloc(4 * triangles + 1);
+    if (!f->points || !f->triangles || !f->bodies || !f->shapes || !f->speeds)
+      return drop_no_memory(error);
+  }
+  return SCREE_OK;
+}
+
+static scree_status note_frame(drop_run *run, const char *name, double time, scree_error *error) {
+  if (run->frames.count == run->frames.capacity) {
+    size_t capacity = 2 * run->frames.capacity + 64;
+    char **files = realloc(run->frames.files, capacity * sizeof *files);
+    if (files) run->frames.files = files;
+    double *times = realloc(run->frames.times, capacity * sizeof *times);
+    if (times) run->frames.times = times;
+    if (!files || !times) return drop_no_memory(error);
+    run->frames.capacity = capacity;
+  }
+  char *copy = malloc(strlen(name) + 1);
+  if (!copy) return drop_no_memory(error);
+  strcpy(copy, name);
+  run->frames.files[run->frames.count] = copy;
+  run->frames.times[run->frames.count++] = time;
+  return SCREE_OK;
+}
+
+scree_status drop_write_frame(drop_run *run, scree_error *error) {
+  char name[48], path[DROP_PATH_BYTES];
+  frame f = {0};
+  double time = scree_world_time(scree_pour_world(run->pour));
+  snprintf(name, sizeof name, "frame-%06zu.vtp", run->frames.count);
+  scree_status status = make_path(run, name, path, error);
+  if (status == SCREE_OK) status = make_frame(run, &f, error);
+  const scree_vtk_array arrays[] = {{"body", SCREE_VTK_INT64, 1, f.bodies},
+                                    {"shape", SCREE_VTK_INT64, 1, f.shapes},
+                                    {"speed", SCREE_VTK_FLOAT32, 1, f.speeds}};
+  scree_vtk_data data = {.points = f.points,
+                         .point_count = f.point_count,
+                         .triangles = f.triangles,
+                         .cell_count = f.triangle_count,
+                         .cell_arrays = arrays,
+                         .cell_array_count = 3,
+                         .time = time};
+  if (status == SCREE_OK) status = scree_vtp_write(&data, path, run->arguments->overwrite, error);
+  free_frame(&f);
+  return status == SCREE_OK ? note_frame(run, name, time, error) : status;
+}
+
+scree_status drop_close_output(drop_run *run, scree_error *error) {
+  char path[DROP_PATH_BYTES];
+  scree_status status = make_path(run, "drop.pvd", path, error);
+  if (status == SCREE_OK && run->frames.count)
+    status = scree_pvd_write((const char *const *)run->frames.files, run->frames.times,
+                             run->frames.count, path, run->arguments->overwrite, error);
+  bool good = !run->series || fclose(run->series) == 0;
+  run->series = NULL;
+  if (status != SCREE_OK || good) return status;
+  *error = (scree_error){SCREE_IO, "series.csv: cannot write"};
+  return SCREE_IO;
+}
+
+void drop_free_output(drop_run *run) {
+  for (size_t i = 0; i < run->frames.count; i++) free(run->frames.files[i]);
+  free(run->frames.files);
+  free(run->frames.times);
+  if (run->series) fclose(run->series);
+}
+
+/* ---- the picture ---- */
+
+static size_t count_surfaces(const drop_run *run) {
+  size_t count = 0;
+  for (size_t i = 0; i < scree_pour_entered_count(run->pour); i++)
+    count += surface_count(scree_world_body_particle(scree_pour_world(run->pour), i));
+  return count;
+}
+
+/* Spheres are drawn by scaled copies of the ball, one a shape and point, kept in `balls`. */
+static scree_status scale_ball(const drop_run *run, double scale, scree_mesh *ball,
+                               scree_error *error) {
+  scree_status status = scree_mesh_copy(&run->ball, ball, error);
+  for (size_t i = 0; status == SCREE_OK && i < 3 * ball->vertex_count; i++)
+    ball->positions[i] *= scale;
+  return status;
+}
+
+static scree_status list_items(const drop_run *run, scree_render_item *items, scree_mesh *balls,
+                               scree_error *error) {
+  size_t count = 0;
+  scree_world *world = scree_pour_world(run->pour);
+  for (size_t i = 0; i < scree_pour_entered_count(run->pour); i++) {
+    const scree_particle *particle = scree_world_body_particle(world, i);
+    scree_body state;
+    scree_world_get_body(world, i, &state);
+    for (size_t k = 0; k < surface_count(particle); k++) {
+      surface s = surface_of(run, particle, k);
+      scree_render_item *item = &items[count];
+      item->mesh = s.mesh;
+      if (s.mesh == &run->ball) {
+        scree_status status = scale_ball(run, s.scale, &balls[count], error);
+        if (status != SCREE_OK) return status;
+        item->mesh = &balls[count];
+      }
+      into_space(&state, s.centre, item->position);
+      memcpy(item->quaternion, state.orientation, sizeof item->quaternion);
+      size_t colour = scree_pour_shape_of(run->pour, i) % (sizeof palette / sizeof *palette);
+      memcpy(item->color, palette[colour], sizeof item->color);
+      count++;
+    }
+  }
+  return SCREE_OK;
+}
+
+scree_status drop_write_picture(drop_run *run, scree_error *error) {
+  char path[DROP_PATH_BYTES];
+  size_t count = count_surfaces(run);
+  scree_render_item *items = calloc(count + 1, sizeof *items);
+  scree_mesh *balls = calloc(count + 1, sizeof *balls);
+  scree_image image = {0};
+  scree_status status = items && balls ? SCREE_OK : drop_no_memory(error);
+  if (status == SCREE_OK) status = make_path(run, "drop.png", path, error);
+  if (status == SCREE_OK) status = list_items(run, items, balls, error);
+  if (status == SCREE_OK) {
+    scree_render_options options = scree_default_render_options();
+    options.samples = run->arguments->samples;
+    scree_render_cell cell = {items, count, NULL};
+    status = scree_render(&cell, 1, &options, run->call->progress, &image, error);
+  }
+  if (status == SCREE_OK)
+    status = scree_image_write_png(&image, path, run->arguments->overwrite, error);
+  for (size_t i = 0; balls && i < count; i++) scree_mesh_free(&balls[i]);
+  scree_image_free(&image);
+  free(balls);
+  free(items);
+  return status;
+}

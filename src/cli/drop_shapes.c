@@ -1,0 +1,167 @@
+/* The shapes of `scree drop`: words to particles. */
+#include "cli/drop.h"
+#include "cli/input.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LARGE_SCAN = 2000 }; /* triangles above which a shape is decimated without being asked */
+
+static const char sphere_prefix[] = "sphere:";
+
+scree_status drop_no_memory(scree_error *error) {
+  *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory"};
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* "phone.stl=30": the name, and the count behind the last '='. */
+static int read_count(const drop_run *run, drop_shape *shape) {
+  const char *equals = strrchr(shape->word, '='), *digits = equals ? equals + 1 : "";
+  bool counted = *digits && digits[strspn(digits, "0123456789")] == 0;
+  size_t length = counted ? (size_t)(equals - shape->word) : strlen(shape->word);
+  shape->count = run->arguments->number;
+  if (length == 0 || length >= sizeof shape->name)
+    return cli_misuse(run->call->verb, "'%.40s': not a name", shape->word);
+  memcpy(shape->name, shape->word, length);
+  shape->name[length] = 0;
+  if (!counted) return 0;
+  double count = strtod(digits, NULL);
+  if (!(count >= 1 && count <= 1e7))
+    return cli_misuse(run->call->verb, "%s: a count is from 1 to 10000000", shape->word);
+  shape->count = (size_t)count;
+  return 0;
+}
+
+static int read_sphere(const drop_run *run, drop_shape *shape) {
+  size_t skip = sizeof sphere_prefix - 1;
+  if (strncmp(shape->name, sphere_prefix, skip) != 0) return 0;
+  const char *text = shape->name + skip;
+  char number[32];
+  size_t length = strspn(text, "0123456789.eE+-");
+  double value = 0, unit = 0;
+  if (length < sizeof number) {
+    memcpy(number, text, length);
+    number[length] = 0;
+    if (!cli_real_from_text(number, &value)) value = 0;
+  }
+  if (!(value > 0) || !cli_unit_from_text(text + length, &unit))
+    return cli_misuse(run->call->verb, "%s: not a sphere such as sphere:40mm", shape->word);
+  shape->diameter = value * unit;
+  return 0;
+}
+
+int drop_read_words(drop_run *run) {
+  for (size_t i = 0; i < run->shape_count; i++) {
+    drop_shape *shape = &run->shapes[i];
+    shape->word = run->call->inputs[i];
+    int code = read_count(run, shape);
+    if (code == 0) code = read_sphere(run, shape);
+    if (code) return code;
+  }
+  return 0;
+}
+
+/* Errors without the file in them get it in front. */
+static scree_status name_in_error(const drop_shape *shape, scree_error *error) {
+  if (error->status == SCREE_CANCELLED || strstr(error->message, shape->name)) return error->status;
+  char message[sizeof error->message];
+  memcpy(message, error->message, sizeof message);
+  snprintf(error->message, sizeof error->message, "%.300s: %.700s", shape->name, message);
+  return error->status;
+}
+
+static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mesh,
+                         scree_error *error) {
+  const drop_arguments *a = run->arguments;
+  cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
+  input.read.unit_m = a->unit;
+  input.sample.resolution = a->resolution;
+  input.sample.noise = a->noise;
+  scree_scan scan;
+  scree_status status = cli_load(shape->name, &input, run->call->progress, &scan, error);
+  if (status != SCREE_OK) return status;
+  if (cli_is_sample(shape->name, NULL)) { /* made closed and manifold: nothing to check */
+    *mesh = scan.mesh;
+    return SCREE_OK;
+  }
+  scree_repair_options repair = scree_default_repair_options();
+  scree_repair_report report;
+  status = scree_mesh_prepare(&scan.mesh, a->no_repair ? NULL : &repair, run->call->progress, mesh,
+                              &report, error);
+  scree_scan_free(&scan);
+  if (status == SCREE_OK && !report.before.usable && !run->call->quiet)
+    fprintf(stderr, "%s: repaired: it was %s\n", shape->name, report.before.verdict);
+  return status;
+}
+
+/* The level asked for; of a large scan, where none is asked for, the one that `choose` chooses. */
+static scree_status pick_level(const drop_run *run, const scree_curve *curve,
+                               const scree_mesh *mesh, size_t *level, scree_error *error) {
+  const drop_arguments *a = run->arguments;
+  if (a->rp > 0 || a->triangles) {
+    size_t target = a->rp > 0 ? scree_choice_target(a->rp, mesh->triangle_count) : a->triangles;
+    *level = scree_curve_find(curve, target);
+    return SCREE_OK;
+  }
+  scree_choice choice;
+  scree_status status = scree_choose(curve, mesh, NULL, run->call->progress, &choice, error);
+  if (status != SCREE_OK) return status;
+  *level = choice.robust.level_index;
+  scree_choice_free(&choice);
+  return SCREE_OK;
+}
+
+static scree_status decimate(const drop_run *run, scree_mesh *mesh, scree_error *error) {
+  const drop_arguments *a = run->arguments;
+  bool asked = a->rp > 0 || a->triangles;
+  if (!asked && mesh->triangle_count <= LARGE_SCAN) return SCREE_OK;
+  if (a->triangles && mesh->triangle_count <= a->triangles) return SCREE_OK;
+  scree_simplify_options options = scree_default_simplify_options();
+  scree_curve *curve = NULL;
+  scree_mesh level_mesh;
+  size_t level;
+  scree_status status = scree_curve_build(mesh, &options, run->call->progress, &curve, error);
+  if (status == SCREE_OK) status = pick_level(run, curve, mesh, &level, error);
+  if (status == SCREE_OK) status = scree_curve_mesh(curve, level, &level_mesh, error);
+  scree_curve_free(curve);
+  if (status != SCREE_OK) return status;
+  scree_mesh_free(mesh);
+  *mesh = level_mesh;
+  return SCREE_OK;
+}
+
+static void say_shape(const drop_run *run, const drop_shape *shape) {
+  scree_particle_measures m;
+  scree_particle_measure(shape->particle, &m);
+  if (run->call->quiet) return;
+  if (shape->diameter > 0) {
+    printf("%-24s %6zu  sphere of %.4g mm\n", shape->name, shape->count, 1e3 * shape->diameter);
+    return;
+  }
+  printf("%-24s %6zu  %zu triangles", shape->name, shape->count, m.triangle_count);
+  if (m.triangle_count < shape->source_triangles) printf(" of %zu", shape->source_triangles);
+  printf(", size %.3g mm, %.4g g, thinnest wall %.2g mm\n", 1e3 * m.size,
+         1e3 * m.volume * run->arguments->density, 1e3 * m.thickness);
+}
+
+static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_error *error) {
+  if (shape->diameter > 0)
+    return scree_particle_sphere(0.5 * shape->diameter, &shape->particle, error);
+  scree_mesh mesh;
+  scree_status status = load(run, shape, &mesh, error);
+  if (status != SCREE_OK) return name_in_error(shape, error);
+  shape->source_triangles = mesh.triangle_count;
+  status = decimate(run, &mesh, error);
+  if (status == SCREE_OK) status = scree_particle_from_mesh(&mesh, NULL, &shape->particle, error);
+  scree_mesh_free(&mesh);
+  return status == SCREE_OK ? SCREE_OK : name_in_error(shape, error);
+}
+
+scree_status drop_make_particles(drop_run *run, scree_error *error) {
+  for (size_t i = 0; i < run->shape_count; i++) {
+    scree_status status = make_particle(run, &run->shapes[i], error);
+    if (status != SCREE_OK) return status;
+    say_shape(run, &run->shapes[i]);
+  }
+  return SCREE_OK;
+}

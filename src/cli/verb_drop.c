@@ -1,0 +1,321 @@
+/* scree drop: pour shapes into a container, watch them come to rest. */
+#include "cli/drop.h"
+#include "cli/terminal.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+enum { CHUNK = 25 };                      /* steps between looks at the clock and at Ctrl-C */
+static const double still_time = 0.05;    /* s below the still energy before it counts */
+static const double line_interval = 0.01; /* s between lines of series.csv */
+
+static const drop_arguments defaults = {.output = "drop",
+                                        .unit = 1e-3,
+                                        .resolution = 0.27e-3,
+                                        .noise = 0.02e-3,
+                                        .number = 30,
+                                        .seed = 1,
+                                        .samples = 24,
+                                        .drop_height = 0.05,
+                                        .speed = 1,
+                                        .time = 2,
+                                        .still = 1e-8,
+                                        .frame_interval = 0.02,
+                                        .young = 1e8,
+                                        .young_wall = 1e11,
+                                        .density = 2000,
+                                        .restitution = 0.3,
+                                        .friction = 0.5,
+                                        .friction_wall = 0.5,
+                                        .steps_per_contact = 20,
+                                        .stiffness_factor = 1};
+
+#define AT(field) offsetof(drop_arguments, field)
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+     "The folder for drop.pvd, frame-*.vtp, series.csv and drop.png, made if need be. Default: "
+     "drop.",
+     0, 0, NULL},
+    {"container", 'c', CLI_CHOICE, AT(container), "KIND", "cylinder or box. Default: cylinder.", 0,
+     0, "cylinder|box"},
+    {"width", 'w', CLI_LENGTH, AT(width), "LENGTH",
+     "Diameter of the cylinder or side of the box, inside, as in 300mm. Default: about the height "
+     "the heap will have, and room for three abreast.",
+     0, 1e6, NULL},
+    {"depth", 0, CLI_LENGTH, AT(depth), "LENGTH", "The box's other side. Default: the width.", 0,
+     1e6, NULL},
+    {"number", 'N', CLI_COUNT, AT(number), "COUNT",
+     "Particles of a shape without =COUNT. Default: 30.", 1, 10000000, NULL},
+    {"count", 'n', CLI_COUNT, AT(triangles), "COUNT",
+     "Decimate every shape to at most this many triangles. Default: shapes of more than 2000 are "
+     "decimated to what `scree choose` chooses for them.",
+     4, 4294967295.0, NULL},
+    {"reduction", 'r', CLI_REAL, AT(rp), "RP",
+     "Decimate every shape to this share of its triangles, as in 1e-3.", 1e-12, 1, NULL},
+    {"time", 't', CLI_REAL, AT(time), "S",
+     "Seconds simulated after the last layer entered, at most. Default: 2.", 0, 1e6, NULL},
+    {"still", 0, CLI_REAL, AT(still), "J",
+     "End early when the mean kinetic energy of a particle stays below this; 0: never. Default: "
+     "1e-8 J.",
+     0, 1e6, NULL},
+    {"frames", 0, CLI_REAL, AT(frame_interval), "S",
+     "Simulated seconds between frames; 0 writes none. Default: 0.02.", 0, 1e6, NULL},
+    {"drop-height", 0, CLI_LENGTH, AT(drop_height), "LENGTH",
+     "From the floor to the first layer. Later ones enter above what is there. Default: 50mm.", 0,
+     1e3, NULL},
+    {"speed", 0, CLI_REAL, AT(speed), "M/S", "Speed of entering, downwards. Default: 1 m/s.", 0,
+     100, NULL},
+    {"density", 0, CLI_REAL, AT(density), "KG/M3", "Default: 2000 kg/m3.", 1e-6, 1e6, NULL},
+    {"young", 0, CLI_REAL, AT(young), "PA",
+     "Young's modulus of the particles: stiffness of a contact over particle size. Default: 1e8.",
+     1, 1e14, NULL},
+    {"young-wall", 0, CLI_REAL, AT(young_wall), "PA", "The walls'. Default: 1e11.", 1, 1e16, NULL},
+    {"restitution", 0, CLI_REAL, AT(restitution), "E", "From 0.01 to 1. Default: 0.3.", 0.01, 1,
+     NULL},
+    {"friction", 0, CLI_REAL, AT(friction), "MU", "Between particles. Default: 0.5.", 0, 100, NULL},
+    {"friction-wall", 0, CLI_REAL, AT(friction_wall), "MU", "Against walls. Default: 0.5.", 0, 100,
+     NULL},
+    {"law", 0, CLI_CHOICE, AT(law), "LAW",
+     "linear (spring, dashpot, slider) or hysteretic (Walton and Braun). Default: linear.", 0, 0,
+     "linear|hysteretic"},
+    {"steps-per-contact", 0, CLI_REAL, AT(steps_per_contact), "N",
+     "Time steps in a quarter period of the fastest contact. Default: 20; 40 for energies to 2 %.",
+     15, 1e6, NULL},
+    {"stiffness-factor", 0, CLI_REAL, AT(stiffness_factor), "X",
+     "Multiplies all stiffnesses: 0.01 is 10 times faster, with 100 times the overlaps at rest. "
+     "Default: 1.",
+     1e-9, 1e9, NULL},
+    {"seed", 0, CLI_COUNT, AT(seed), "N", "Another seed, another pour. Default: 1.", 0,
+     9007199254740992.0, NULL},
+    {"unit", 'u', CLI_UNIT, AT(unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
+     NULL},
+    {"resolution", 0, CLI_LENGTH, AT(resolution), "LENGTH",
+     "Vertex spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3, NULL},
+    {"noise", 0, CLI_LENGTH, AT(noise), "LENGTH",
+     "Scanner's noise of built-in samples; at most a quarter of the resolution. Default: 0.02mm.",
+     0, 1, NULL},
+    {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,
+     "Refuse files that cannot serve as they are, instead of repairing them.", 0, 0, NULL},
+    {"no-picture", 0, CLI_FLAG, AT(no_picture), NULL, "Do not render drop.png.", 0, 0, NULL},
+    {"samples", 0, CLI_COUNT, AT(samples), "N", "Rays a pixel of drop.png. Default: 24.", 1, 65536,
+     NULL},
+    {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite the files of an earlier drop.", 0, 0,
+     NULL},
+};
+
+static double now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static scree_status create_pour(drop_run *run, scree_error *error) {
+  const drop_arguments *a = run->arguments;
+  scree_pour_options o = scree_default_pour_options();
+  o.world.law = (scree_law)a->law;
+  o.world.steps_per_contact = a->steps_per_contact;
+  o.world.stiffness_factor = a->stiffness_factor;
+  o.particles = (scree_material){a->young, a->density, a->restitution, a->friction};
+  o.walls = (scree_material){a->young_wall, a->density, a->restitution, a->friction_wall};
+  o.container = (scree_container)a->container;
+  o.width = a->width;
+  o.depth = a->depth;
+  o.drop_height = a->drop_height;
+  o.entry_speed = a->speed;
+  o.seed = a->seed;
+  scree_pour_shape *shapes = calloc(run->shape_count, sizeof *shapes);
+  if (!shapes) return drop_no_memory(error);
+  for (size_t i = 0; i < run->shape_count; i++)
+    shapes[i] = (scree_pour_shape){run->shapes[i].particle, run->shapes[i].count};
+  scree_status status = scree_pour_create(shapes, run->shape_count, &o, &run->pour, error);
+  free(shapes);
+  return status;
+}
+
+static void say_pour(const drop_run *run) {
+  scree_pour_options o;
+  if (run->call->quiet) return;
+  scree_pour_get_options(run->pour, &o);
+  if (o.container == SCREE_CONTAINER_BOX)
+    printf("%zu particles into a box of %.4g x %.4g mm\n", scree_pour_particle_count(run->pour),
+           1e3 * o.width, 1e3 * o.depth);
+  else
+    printf("%zu particles into a cylinder of %.4g mm\n", scree_pour_particle_count(run->pour),
+           1e3 * o.width);
+  printf("time step %.4g us, %g steps per quarter period of the fastest contact\n",
+         1e6 * scree_world_time_step(scree_pour_world(run->pour), NULL), o.world.steps_per_contact);
+  fflush(stdout);
+}
+
+/* ---- the run ---- */
+
+typedef struct schedule {
+  double next_frame, next_line, end, still_since, last_report;
+} schedule;
+
+static scree_status write_due(drop_run *run, schedule *s, double time, scree_error *error) {
+  scree_status status = SCREE_OK;
+  double interval = run->arguments->frame_interval;
+  if (interval > 0 && time >= s->next_frame) {
+    status = drop_write_frame(run, error);
+    while (s->next_frame <= time) s->next_frame += interval;
+  }
+  if (status == SCREE_OK && time >= s->next_line) {
+    status = drop_write_line(run, error);
+    while (s->next_line <= time) s->next_line += line_interval;
+  }
+  return status;
+}
+
+/* Whether all has been still for a while. */
+static bool is_still(const drop_run *run, schedule *s, double time) {
+  size_t count = scree_pour_particle_count(run->pour);
+  if (scree_pour_entered_count(run->pour) < count) return false;
+  scree_observation o;
+  scree_world_observe(scree_pour_world(run->pour), &o);
+  if (!(o.kinetic + o.rotational < run->arguments->still * (double)count) || o.pair_count == 0) {
+    s->still_since = NAN;
+    return false;
+  }
+  if (isnan(s->still_since)) s->still_since = time;
+  return time - s->still_since >= still_time;
+}
+
+/* Draws the progress; false after Ctrl-C. */
+static bool report(const drop_run *run, schedule *s, double time) {
+  const scree_progress *p = run->call->progress;
+  if (now() - s->last_report < p->interval) return !cli_interrupted();
+  s->last_report = now();
+  bool all = scree_pour_entered_count(run->pour) == scree_pour_particle_count(run->pour);
+  return p->report(p->context, all ? "settling, at most" : "pouring", time / s->end);
+}
+
+static scree_status simulate(drop_run *run, bool *still, scree_error *error) {
+  schedule s = {.still_since = NAN,
+                .end = scree_pour_filling_time(run->pour) + run->arguments->time};
+  double time = 0;
+  scree_status status = SCREE_OK;
+  while (status == SCREE_OK && time < s.end && !*still) {
+    status = write_due(run, &s, time, error);
+    if (status == SCREE_OK) status = scree_pour_advance(run->pour, CHUNK, error);
+    if (status != SCREE_OK) break;
+    time = scree_world_time(scree_pour_world(run->pour));
+    *still = is_still(run, &s, time);
+    if (report(run, &s, time)) continue;
+    *error = (scree_error){SCREE_CANCELLED, "stopped"};
+    status = SCREE_CANCELLED;
+  }
+  scree_error ignored; /* what there is is written in any case, and the first error is told */
+  scree_error *told = status == SCREE_OK ? error : &ignored;
+  scree_status closing = drop_write_line(run, told);
+  if (closing == SCREE_OK && run->arguments->frame_interval > 0 && status != SCREE_CANCELLED)
+    closing = drop_write_frame(run, told);
+  if (closing == SCREE_OK) closing = drop_close_output(run, told);
+  return status == SCREE_OK ? closing : status;
+}
+
+static void print_summary(const drop_run *run, bool still, double seconds) {
+  scree_observation o;
+  const scree_world *world = scree_pour_world(run->pour);
+  double entered = scree_pour_entered_energy(run->pour);
+  unsigned long long steps = scree_world_step_count(world);
+  scree_world_observe(world, &o);
+  double sum = o.kinetic + o.rotational + o.potential + o.elastic + o.dissipated_dashpot +
+               o.dissipated_friction - o.wall_work;
+  printf("%s after %.4g s, %llu steps; %zu of %zu particles are in\n", still ? "still" : "stopped",
+         o.time, steps, scree_pour_entered_count(run->pour), scree_pour_particle_count(run->pour));
+  printf("contacts          %zu in %zu touching pairs, %.3g neighbours a particle\n",
+         o.contact_count, o.pair_count, o.coordination);
+  printf("largest overlap   %.4g um\n", 1e6 * o.largest_overlap);
+  printf("highest speed     %.3g m/s\n", o.highest_speed);
+  printf("energy            %.5g J came in; kinetic %.3g, potential %.5g, elastic %.3g, lost to "
+         "dashpots %.5g, to friction %.5g; unaccounted %.2g of what came in\n",
+         entered, o.kinetic + o.rotational, o.potential, o.elastic, o.dissipated_dashpot + 0.0,
+         o.dissipated_friction + 0.0, entered > 0 ? (sum - entered) / entered : 0);
+  fflush(stdout);
+  if (run->call->quiet) return;
+  fprintf(stderr, "%.1f s of computing: %.3g steps/s, %.3g particle-steps/s\n", seconds,
+          (double)steps / seconds, (double)steps * (double)o.body_count / seconds);
+  if (run->arguments->stiffness_factor != 1)
+    fprintf(stderr, "stiffness times %g: overlaps are larger by its inverse\n",
+            run->arguments->stiffness_factor);
+}
+
+/* What spheres are drawn with. */
+static scree_status make_ball(scree_mesh *ball, scree_error *error) {
+  scree_status status = scree_sample_make("icosphere-2", NULL, NULL, ball, error);
+  if (status != SCREE_OK) return status;
+  const double *p = ball->positions;
+  double radius = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+  for (size_t i = 0; i < 3 * ball->vertex_count; i++) ball->positions[i] /= radius;
+  return SCREE_OK;
+}
+
+static scree_status pour(drop_run *run, scree_error *error) {
+  bool still = false;
+  scree_status status = drop_refuse_existing(run, error);
+  if (status == SCREE_OK) status = drop_make_particles(run, error);
+  if (status == SCREE_OK) status = make_ball(&run->ball, error);
+  if (status == SCREE_OK) status = create_pour(run, error);
+  if (status == SCREE_OK) status = drop_open_output(run, error);
+  if (status != SCREE_OK) return status;
+  say_pour(run);
+  double start = now();
+  status = simulate(run, &still, error);
+  if (status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED) {
+    cli_terminal_end();
+    print_summary(run, still, now() - start);
+  }
+  if (status != SCREE_OK || run->arguments->no_picture) return status;
+  status = drop_write_picture(run, error);
+  if (status != SCREE_UNSUPPORTED) return status;
+  fprintf(stderr, "no picture: %s\n", error->message);
+  return SCREE_OK;
+}
+
+static int run(const cli_call *call) {
+  drop_run run = {.call = call, .arguments = call->options, .shape_count = call->input_count};
+  if (run.arguments->rp > 0 && run.arguments->triangles)
+    return cli_misuse(call->verb, "-r and -n exclude each other");
+  if (run.arguments->noise > 0.25 * run.arguments->resolution)
+    return cli_misuse(call->verb, "--noise %g mm: at most a quarter of the resolution, %g mm",
+                      1e3 * run.arguments->noise, 0.25e3 * run.arguments->resolution);
+  scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory"};
+  run.shapes = calloc(run.shape_count, sizeof *run.shapes);
+  if (!run.shapes) return cli_fail(&error);
+  int code = drop_read_words(&run);
+  if (code == 0 && pour(&run, &error) != SCREE_OK) code = cli_fail(&error);
+  scree_pour_free(run.pour);
+  for (size_t i = 0; i < run.shape_count; i++) scree_particle_free(run.shapes[i].particle);
+  free(run.shapes);
+  scree_mesh_free(&run.ball);
+  drop_free_output(&run);
+  return code;
+}
+
+const cli_verb cli_verb_drop = {
+    .name = "drop",
+    .summary = "pour shapes into a container and watch them come to rest",
+    .inputs = "SHAPE[=COUNT]...",
+    .description =
+        "Simulates rigid particles falling into a cylinder or a box, layer by layer, until they "
+        "are still. A SHAPE is a mesh file, sample:NAME, or sphere:DIAMETER with its unit, as in "
+        "sphere:40mm; =COUNT says how many. Files are checked, repaired where need be, and "
+        "decimated.\n\n"
+        "Writes into DIR: drop.pvd with frame-*.vtp (surfaces; body, shape and speed by triangle) "
+        "for ParaView; series.csv with energies, contacts and overlaps over time; drop.png. The "
+        "same options give the same bits for any number of threads. Ctrl-C stops: what was "
+        "written stays, and drop.pvd lists it.",
+    .examples = "scree drop phone.stl=50\n"
+                "scree drop sample:fp-1=20 sample:dc-2=20 -n 100 -c box -w 300mm -o mixed\n"
+                "scree drop sphere:40mm=200 --frames 0.01 --seed 2\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 1,
+    .input_maximum = 60,
+    .run = run,
+};
