@@ -1406,7 +1406,7 @@ SCREE_API scree_status scree_grain_make(const scree_mesh *scan, const scree_curv
                                         const scree_progress *progress, scree_grain *grain,
                                         scree_error *error);
 
-/* ---- 8.4 Pouring shapes into a container ---- */
+/* ---- 8.6 Pouring shapes into a container ---- */
 
 /* Any shapes, poured layer by layer from above into a box or a cylinder: the plain way to see and
  * test the physics. */

@@ -72,6 +72,57 @@ scree_status drop_write_line(drop_run *run, scree_error *error) {
 
 /* ---- frames ---- */
 
+static scree_status note_frame(drop_run *run, const char *name, double time, scree_error *error) {
+  if (run->frames.count == run->frames.capacity) {
+    size_t capacity = 2 * run->frames.capacity + 64;
+    char **files = realloc(run->frames.files, capacity * sizeof *files);
+    if (files) run->frames.files = files;
+    double *times = realloc(run->frames.times, capacity * sizeof *times);
+    if (times) run->frames.times = times;
+    if (!files || !times) return drop_no_memory(error);
+    run->frames.capacity = capacity;
+  }
+  char *copy = malloc(strlen(name) + 1);
+  if (!copy) return drop_no_memory(error);
+  strcpy(copy, name);
+  run->frames.files[run->frames.count] = copy;
+  run->frames.times[run->frames.count++] = time;
+  return SCREE_OK;
+}
+
+scree_status drop_write_frame(drop_run *run, scree_error *error) {
+  char name[48], path[DROP_PATH_BYTES];
+  const scree_world *world = scree_pour_world(run->pour);
+  snprintf(name, sizeof name, "frame-%06zu.vtp", run->frames.count);
+  scree_status status = make_path(run, name, path, error);
+  if (status == SCREE_OK)
+    status =
+        scree_world_vtp_write(world, SCREE_VIEW_SURFACES, path, run->arguments->overwrite, error);
+  return status == SCREE_OK ? note_frame(run, name, scree_world_time(world), error) : status;
+}
+
+scree_status drop_close_output(drop_run *run, scree_error *error) {
+  char path[DROP_PATH_BYTES];
+  scree_status status = make_path(run, "drop.pvd", path, error);
+  if (status == SCREE_OK && run->frames.count)
+    status = scree_pvd_write((const char *const *)run->frames.files, run->frames.times,
+                             run->frames.count, path, run->arguments->overwrite, error);
+  bool good = !run->series || fclose(run->series) == 0;
+  run->series = NULL;
+  if (status != SCREE_OK || good) return status;
+  *error = (scree_error){SCREE_IO, "series.csv: cannot write"};
+  return SCREE_IO;
+}
+
+void drop_free_output(drop_run *run) {
+  for (size_t i = 0; i < run->frames.count; i++) free(run->frames.files[i]);
+  free(run->frames.files);
+  free(run->frames.times);
+  if (run->series) fclose(run->series);
+}
+
+/* ---- the picture ---- */
+
 /* The surface that body `index` is drawn with; `ball` scaled for one point of spheres and clumps.
  */
 typedef struct surface {
@@ -107,136 +158,6 @@ static void into_space(const scree_body *body, const double p[3], double out[3])
     out[i] = p[i] + q[0] * t[i] + u[j] * t[k] - u[k] * t[j] + body->position[i];
   }
 }
-
-/* All surfaces of the present bodies in space, and what each triangle belongs to. */
-typedef struct frame {
-  double *points;
-  uint32_t *triangles;
-  int64_t *bodies, *shapes;
-  float *speeds;
-  size_t point_count, triangle_count;
-} frame;
-
-static void free_frame(frame *f) {
-  free(f->points);
-  free(f->triangles);
-  free(f->bodies);
-  free(f->shapes);
-  free(f->speeds);
-}
-
-static void append(const drop_run *run, size_t body, const surface *s, frame *f) {
-  scree_body state;
-  scree_world_get_body(scree_pour_world(run->pour), body, &state);
-  const double *v = state.velocity;
-  float speed = (float)sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-  size_t first = f->point_count;
-  for (size_t i = 0; i < s->mesh->vertex_count; i++) {
-    double local[3];
-    for (int k = 0; k < 3; k++)
-      local[k] = s->centre[k] + s->scale * s->mesh->positions[3 * i + (size_t)k];
-    into_space(&state, local, &f->points[3 * f->point_count++]);
-  }
-  for (size_t t = 0; t < s->mesh->triangle_count; t++) {
-    for (size_t k = 0; k < 3; k++)
-      f->triangles[3 * f->triangle_count + k] = (uint32_t)first + s->mesh->triangles[3 * t + k];
-    f->bodies[f->triangle_count] = (int64_t)body;
-    f->shapes[f->triangle_count] = (int64_t)scree_pour_shape_of(run->pour, body);
-    f->speeds[f->triangle_count++] = speed;
-  }
-}
-
-/* Twice over the bodies: counting, then filling. */
-static scree_status make_frame(const drop_run *run, frame *f, scree_error *error) {
-  scree_world *world = scree_pour_world(run->pour);
-  for (int filling = 0; filling < 2; filling++) {
-    size_t points = 0, triangles = 0;
-    for (size_t i = 0; i < scree_pour_entered_count(run->pour); i++) {
-      const scree_particle *particle = scree_world_body_particle(world, i);
-      for (size_t k = 0; k < surface_count(particle); k++) {
-        surface s = surface_of(run, particle, k);
-        points += s.mesh->vertex_count;
-        triangles += s.mesh->triangle_count;
-        if (filling) append(run, i, &s, f);
-      }
-    }
-    if (filling) break;
-    if (points > UINT32_MAX) {
-      *error = (scree_error){SCREE_LIMIT, "a frame would have more than 2^32 points"};
-      return error->status;
-    }
-    f->points = malloc(24 * points + 1);
-    f->triangles = malloc(12 * triangles + 1);
-    f->bodies = malloc(8 * triangles + 1);
-    f->shapes = malloc(8 * triangles + 1);
-    f->speeds = malloc(4 * triangles + 1);
-    if (!f->points || !f->triangles || !f->bodies || !f->shapes || !f->speeds)
-      return drop_no_memory(error);
-  }
-  return SCREE_OK;
-}
-
-static scree_status note_frame(drop_run *run, const char *name, double time, scree_error *error) {
-  if (run->frames.count == run->frames.capacity) {
-    size_t capacity = 2 * run->frames.capacity + 64;
-    char **files = realloc(run->frames.files, capacity * sizeof *files);
-    if (files) run->frames.files = files;
-    double *times = realloc(run->frames.times, capacity * sizeof *times);
-    if (times) run->frames.times = times;
-    if (!files || !times) return drop_no_memory(error);
-    run->frames.capacity = capacity;
-  }
-  char *copy = malloc(strlen(name) + 1);
-  if (!copy) return drop_no_memory(error);
-  strcpy(copy, name);
-  run->frames.files[run->frames.count] = copy;
-  run->frames.times[run->frames.count++] = time;
-  return SCREE_OK;
-}
-
-scree_status drop_write_frame(drop_run *run, scree_error *error) {
-  char name[48], path[DROP_PATH_BYTES];
-  frame f = {0};
-  double time = scree_world_time(scree_pour_world(run->pour));
-  snprintf(name, sizeof name, "frame-%06zu.vtp", run->frames.count);
-  scree_status status = make_path(run, name, path, error);
-  if (status == SCREE_OK) status = make_frame(run, &f, error);
-  const scree_vtk_array arrays[] = {{"body", SCREE_VTK_INT64, 1, f.bodies},
-                                    {"shape", SCREE_VTK_INT64, 1, f.shapes},
-                                    {"speed", SCREE_VTK_FLOAT32, 1, f.speeds}};
-  scree_vtk_data data = {.points = f.points,
-                         .point_count = f.point_count,
-                         .triangles = f.triangles,
-                         .cell_count = f.triangle_count,
-                         .cell_arrays = arrays,
-                         .cell_array_count = 3,
-                         .time = time};
-  if (status == SCREE_OK) status = scree_vtp_write(&data, path, run->arguments->overwrite, error);
-  free_frame(&f);
-  return status == SCREE_OK ? note_frame(run, name, time, error) : status;
-}
-
-scree_status drop_close_output(drop_run *run, scree_error *error) {
-  char path[DROP_PATH_BYTES];
-  scree_status status = make_path(run, "drop.pvd", path, error);
-  if (status == SCREE_OK && run->frames.count)
-    status = scree_pvd_write((const char *const *)run->frames.files, run->frames.times,
-                             run->frames.count, path, run->arguments->overwrite, error);
-  bool good = !run->series || fclose(run->series) == 0;
-  run->series = NULL;
-  if (status != SCREE_OK || good) return status;
-  *error = (scree_error){SCREE_IO, "series.csv: cannot write"};
-  return SCREE_IO;
-}
-
-void drop_free_output(drop_run *run) {
-  for (size_t i = 0; i < run->frames.count; i++) free(run->frames.files[i]);
-  free(run->frames.files);
-  free(run->frames.times);
-  if (run->series) fclose(run->series);
-}
-
-/* ---- the picture ---- */
 
 static size_t count_surfaces(const drop_run *run) {
   size_t count = 0;

@@ -304,7 +304,7 @@ const cli_verb cli_verb_drop = {
         "are still. A SHAPE is a mesh file, sample:NAME, or sphere:DIAMETER with its unit, as in "
         "sphere:40mm; =COUNT says how many. Files are checked, repaired where need be, and "
         "decimated.\n\n"
-        "Writes into DIR: drop.pvd with frame-*.vtp (surfaces; body, shape and speed by triangle) "
+        "Writes into DIR: drop.pvd with frame-*.vtp (surfaces; body, shape and speeds by triangle) "
         "for ParaView; series.csv with energies, contacts and overlaps over time; drop.png. The "
         "same options give the same bits for any number of threads. Ctrl-C stops: what was "
         "written stays, and drop.pvd lists it.",

@@ -1,5 +1,6 @@
 /* Pouring: every particle enters once, inside the container, clear of the others; any cut into
  * calls and any number of threads give the same bits. */
+#include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/shapes.h"
 
@@ -125,11 +126,29 @@ static void what_cannot_be_poured_is_refused(void **state) {
   scree_particle_free(box);
 }
 
+static scree_status pour_all(void *context, scree_error *error) {
+  const scree_pour_shape shape = {context, 3};
+  scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0);
+  scree_pour *pour = NULL;
+  scree_status status = scree_pour_create(&shape, 1, &o, &pour, error);
+  if (status == SCREE_OK) status = scree_pour_advance(pour, 10, error);
+  scree_pour_free(pour);
+  return status;
+}
+
+static void memory_running_out_is_told(void **state) {
+  (void)state;
+  scree_particle *box = box_particle(0.05, 0.03, 0.02);
+  check_allocation_failures(pour_all, box);
+  scree_particle_free(box);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(all_enter_apart_from_each_other),
       cmocka_unit_test(cuts_and_threads_change_nothing),
       cmocka_unit_test(what_cannot_be_poured_is_refused),
+      cmocka_unit_test(memory_running_out_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
