@@ -395,10 +395,12 @@ typedef struct scree_check {
   size_t shell_count; /* sets of facets connected through shared edges */
   size_t defects[SCREE_DEFECT_COUNT];
   bool intersections_known; /* the exact test was made; else the pairs above are 0 */
-  bool volume_known;        /* false: open, crossing or inside-out shells leave it unsaid */
-  double volume;            /* of the union of the shells, less the cavities, m^3 */
-  bool usable;              /* as a particle: no grave defect was found */
-  char verdict[512];        /* the same in one sentence, with the reasons */
+  bool volume_known;        /* false: open or inside-out shells leave it unsaid, and so does a
+                               check without the exact test */
+  double volume;     /* where the winding number is positive: of the union of the shells, less
+                                   the cavities, m^3 */
+  bool usable;       /* as a particle: no grave defect was found */
+  char verdict[512]; /* the same in one sentence, with the reasons */
 } scree_check;
 
 typedef struct scree_check_options {

@@ -4,7 +4,8 @@
  * The volume of a solid is that where the winding number is positive. Where no facets meet, each
  * shell bounds one region against one other: outward shells in empty space add their volume, inward
  * ones in material take theirs away, and shells in material that are no cavities change nothing.
- * Anything else (open, crossing, touching or inside-out shells) leaves the volume unknown. */
+ * Where facets meet it is counted piece by piece (mesh/union_volume.c). Open or inside-out shells
+ * leave the volume unknown. */
 #include "mesh/check.h"
 
 #include "base/alloc.h"
@@ -13,6 +14,7 @@
 #include "mesh/intersect.h"
 #include "mesh/shells.h"
 #include "mesh/topology.h"
+#include "mesh/union_volume.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -104,9 +106,15 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-static scree_status count_meetings(const scree_facet_tree *tree, const scree_shells *shells,
-                                   const scree_progress *progress, scree_check *check,
-                                   scree_error *error) {
+static bool all_closed(const scree_shells *shells) {
+  for (size_t i = 0; i < shells->count; i++)
+    if (!shells->items[i].closed) return false;
+  return true;
+}
+
+static scree_status count_meetings(const scree_facet_tree *tree, const scree_adjacency *adjacency,
+                                   const scree_shells *shells, const scree_progress *progress,
+                                   scree_check *check, scree_error *error) {
   scree_meetings found;
   scree_status status = scree_facet_meetings(tree, MEETING_LIMIT, progress, &found, error);
   if (status != SCREE_OK) return status;
@@ -123,6 +131,9 @@ static scree_status count_meetings(const scree_facet_tree *tree, const scree_she
   }
   status =
       count_shell_pairs(&found, shells, &check->defects[SCREE_DEFECT_OVERLAPPING_SHELLS], error);
+  if (status == SCREE_OK && found.count && all_closed(shells))
+    status =
+        scree_union_volume(tree, adjacency, &found, &check->volume, &check->volume_known, error);
   scree_free(found.items);
   return status;
 }
@@ -143,9 +154,12 @@ static void count_kinds(const scree_shells *shells, scree_check *check) {
   defect[SCREE_DEFECT_EXTRA_BODY] = bodies > 1 ? bodies - 1 : 0;
   bool met = defect[SCREE_DEFECT_CROSSING_PAIR] || defect[SCREE_DEFECT_TOUCHING_PAIR] ||
              defect[SCREE_DEFECT_OVERLAPPING_PAIR];
-  check->volume_known = check->intersections_known && !met && shells->count &&
-                        !kinds[SCREE_SHELL_OPEN] && !kinds[SCREE_SHELL_INSIDE_OUT];
-  check->volume = check->volume_known ? scree_sum_value(volume) : 0;
+  if (!met) {
+    check->volume_known = check->intersections_known && shells->count && !kinds[SCREE_SHELL_OPEN];
+    check->volume = scree_sum_value(volume);
+  }
+  if (kinds[SCREE_SHELL_INSIDE_OUT]) check->volume_known = false;
+  if (!check->volume_known) check->volume = 0;
 }
 
 static scree_status examine(const scree_mesh *mesh, const scree_check_options *options,
@@ -160,15 +174,16 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
   status = scree_topology_count(mesh, &adjacency, false, &topology, error);
   if (status == SCREE_OK) take_topology(&topology, check);
   if (status == SCREE_OK) status = scree_shells_find(mesh, &adjacency, &shells, error);
-  scree_adjacency_free(&adjacency);
   check->shell_count = shells.count;
-  if (mesh->triangle_count == 0) return status;
+  if (status != SCREE_OK || mesh->triangle_count == 0) goto done;
   if (status == SCREE_OK && (options->intersections || shells.count > 1))
     status = scree_facet_tree_build(mesh, &tree, error);
   if (status == SCREE_OK && options->intersections)
-    status = count_meetings(&tree, &shells, progress, check, error);
+    status = count_meetings(&tree, &adjacency, &shells, progress, check, error);
   if (status == SCREE_OK && shells.count > 1) status = scree_shells_wind(&shells, &tree, error);
   if (status == SCREE_OK) count_kinds(&shells, check);
+done:
+  scree_adjacency_free(&adjacency);
   scree_facet_tree_free(&tree);
   scree_shells_free(&shells);
   return status;

@@ -22,16 +22,17 @@ static faults look_at(const scree_mesh *mesh) {
   return f;
 }
 
-static void compare(const faults *given, const faults *level) {
+static void compare(const faults *given, const faults *level, bool exact) {
   const scree_topology *a = &given->topology, *b = &level->topology;
   if (a->closed && a->manifold && a->oriented && !a->inward_shell_count)
     FUZZ_CHECK(b->closed && b->manifold && b->oriented && b->shell_count == a->shell_count);
   FUZZ_CHECK(b->non_manifold_edge_count <= a->non_manifold_edge_count);
-  FUZZ_CHECK(b->degenerate_facet_count <= a->degenerate_facet_count);
+  if (exact) FUZZ_CHECK(b->degenerate_facet_count <= a->degenerate_facet_count);
   if (!given->meetings) FUZZ_CHECK(!level->meetings);
 }
 
-static void check_levels(const scree_curve *curve, const scree_mesh *mesh) {
+/* exact: far from the origin, positions are rounded, and facets may become flat by it. */
+static void check_levels(const scree_curve *curve, const scree_mesh *mesh, bool exact) {
   const faults given = look_at(mesh);
   size_t count = scree_curve_level_count(curve);
   scree_level first, level;
@@ -46,7 +47,7 @@ static void check_levels(const scree_curve *curve, const scree_mesh *mesh) {
     FUZZ_CHECK(scree_curve_mesh(curve, index, &made, &error) == SCREE_OK);
     FUZZ_CHECK(made.triangle_count == level.triangle_count);
     const faults left = look_at(&made);
-    compare(&given, &left);
+    compare(&given, &left, exact);
     scree_mesh_free(&made);
   }
 }
@@ -67,7 +68,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   scree_status status = scree_curve_build(&in.mesh, &options, NULL, &curve, &error);
   FUZZ_CHECK(status == SCREE_OK || status == SCREE_BAD_MESH);
   FUZZ_CHECK(status == SCREE_OK || (error.message[0] && !curve));
-  if (status == SCREE_OK) check_levels(curve, &in.mesh);
+  if (status == SCREE_OK) check_levels(curve, &in.mesh, data[1] % 4 != 1);
   scree_curve_free(curve);
   FUZZ_CHECK(scree_memory_used() == used);
   return 0;
