@@ -101,6 +101,27 @@ static void warn(const scree_measure_entry *entry) {
             entry->file);
 }
 
+/* Shells are measured one by one and added up: said where their union has another volume. */
+static scree_status warn_of_shells(const cli_call *call, const scree_mesh *mesh,
+                                   const scree_measure_entry *entry, scree_error *error) {
+  double volume = fabs(entry->measures.volume), cube = pow(entry->unit_m, 3);
+  scree_check check;
+  if (call->quiet || !entry->measures.closed || entry->topology.shell_count < 2) return SCREE_OK;
+  scree_status status = scree_mesh_check(mesh, NULL, call->progress, &check, error);
+  if (status != SCREE_OK) return status;
+  if (!check.volume_known)
+    fprintf(stderr,
+            "scree: %s: warning: it cannot be told how the shells lie in each other; volume, "
+            "centroid and moments count each by itself\n",
+            entry->file);
+  else if (fabs(check.volume - volume) > 1e-9 * volume)
+    fprintf(stderr,
+            "scree: %s: warning: shells lie in each other or overlap: their union has a volume of "
+            "%.9g %s3; volume, centroid and moments count what they share more than once\n",
+            entry->file, check.volume / cube, cli_unit_name(entry->unit_m));
+  return SCREE_OK;
+}
+
 /* ---- The work ---- */
 
 static scree_status measure_file(const cli_call *call, const char *file, scree_measure_entry *entry,
@@ -118,6 +139,7 @@ static scree_status measure_file(const cli_call *call, const char *file, scree_m
                                  .unit_m = cli_source_unit(file, &arguments->source)};
   status = scree_mesh_measure(&scan.mesh, &entry->measures, error);
   if (status == SCREE_OK) status = scree_mesh_topology(&scan.mesh, &entry->topology, error);
+  if (status == SCREE_OK) status = warn_of_shells(call, &scan.mesh, entry, error);
   if (status == SCREE_OK) entry->topology.degenerate_facet_count += scan.degenerate_count;
   scree_scan_free(&scan);
   if (status == SCREE_OK) return status;

@@ -108,11 +108,13 @@ static void nesting(void **state) {
   }
   scree_check check = nest(1, false, (vec3){3.4, 1.3, 1.3});
   assert_int_equal(check.defects[SCREE_DEFECT_OVERLAPPING_SHELLS], 1);
-  assert_true(check.defects[SCREE_DEFECT_CROSSING_PAIR] > 0 && !check.volume_known);
+  assert_true(check.defects[SCREE_DEFECT_CROSSING_PAIR] > 0 && check.volume_known);
+  CHECK_NEAR(check.volume, 64.4, 1e-12);
   check = nest(1, false, (vec3){4, 1, 1}); /* face on face */
   assert_int_equal(check.defects[SCREE_DEFECT_OVERLAPPING_SHELLS], 1);
   assert_int_equal(check.defects[SCREE_DEFECT_CROSSING_PAIR], 0);
-  assert_true(check.defects[SCREE_DEFECT_OVERLAPPING_PAIR] > 0 && !check.volume_known);
+  assert_true(check.defects[SCREE_DEFECT_OVERLAPPING_PAIR] > 0 && check.volume_known);
+  CHECK_NEAR(check.volume, 65, 1e-12);
 }
 
 /* Boxes in boxes, alternately wound: material, cavity, material... */
