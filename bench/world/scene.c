@@ -117,6 +117,22 @@ static scree_world *settle(scree_world *world) {
   return stage(world, (remake){.stiffness_factor = 1, .gravity = 9.81}, hard_time);
 }
 
+/* A run refuses layers that would enter faster than 8 m/s: the shortest time it takes is lengthened
+ * to our speed. */
+static scree_run *create_run(scree_experiment *e, const scree_run_shape *shapes, size_t count) {
+  scree_error error;
+  scree_run *run = NULL;
+  e->pack_time = 0.1;
+  while (scree_run_create(e, shapes, count, &run, &error) == SCREE_BAD_ARGUMENT &&
+         e->pack_time < 1e3)
+    e->pack_time *= 1.2;
+  scree_run_free(run);
+  run = NULL;
+  e->pack_time *= 8 / entry_speed;
+  need(scree_run_create(e, shapes, count, &run, &error), &error);
+  return run;
+}
+
 scree_world *fill_scene(const shape_set *shapes, size_t count, uint64_t seed) {
   scree_error error;
   scree_experiment e;
@@ -127,18 +143,9 @@ scree_world *fill_scene(const shape_set *shapes, size_t count, uint64_t seed) {
   e.gravity = 0.981;
   e.settle_time = 0.2;
   scree_run_shape list[MOST_SHAPES];
-  double radius = 0;
-  for (size_t i = 0; i < shapes->count; i++) {
-    scree_particle_measures m;
-    scree_particle_measure(shapes->items[i], &m);
-    radius = fmax(radius, m.bounding_radius);
-    list[i] = (scree_run_shape){shapes->items[i], 1};
-  }
-  /* a layer holds about half of what its area would */
-  double layers = (double)count / (0.5 * 0.04 / (radius * radius)) + 1;
-  e.pack_time = 2.1 * radius * layers / entry_speed;
-  scree_run *run;
-  need(scree_run_create(&e, list, shapes->count, &run, &error), &error);
+  for (size_t i = 0; i < shapes->count; i++)
+    list[i] = (scree_run_shape){.particle = shapes->items[i], .density_factor = 1};
+  scree_run *run = create_run(&e, list, shapes->count);
   while (scree_run_phase(run) < SCREE_PHASE_LIFT)
     need(scree_run_advance(run, 1000, &error), &error);
   scree_world *world =

@@ -94,6 +94,14 @@ static inline mat3 mat3_mul(const mat3 *a, const mat3 *b) {
       c.m[i][j] = a->m[i][0] * b->m[0][j] + a->m[i][1] * b->m[1][j] + a->m[i][2] * b->m[2][j];
   return c;
 }
+/* transpose(a) b */
+static inline mat3 mat3_tmul(const mat3 *a, const mat3 *b) {
+  mat3 c;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      c.m[i][j] = a->m[0][i] * b->m[0][j] + a->m[1][i] * b->m[1][j] + a->m[2][i] * b->m[2][j];
+  return c;
+}
 static inline mat3 mat3_transpose(const mat3 *a) {
   mat3 c;
   for (int i = 0; i < 3; i++)
@@ -112,9 +120,12 @@ static inline quat quat_unit(quat q) {
 }
 /* The rotation by the angle |r| about r. */
 static inline quat quat_from_rotation_vector(vec3 r) {
-  double angle2 = vec3_norm2(r), angle = sqrt(angle2), half = 0.5 * angle;
-  /* sin(half)/angle, by its series where the quotient loses digits */
-  double s = angle < 1e-4 ? 0.5 - angle2 / 48 : sin(half) / angle;
+  double angle2 = vec3_norm2(r);
+  if (angle2 < 1e-8) { /* both series are exact to rounding */
+    double s = 0.5 - angle2 / 48;
+    return (quat){1 - angle2 / 8, r.x * s, r.y * s, r.z * s};
+  }
+  double angle = sqrt(angle2), half = 0.5 * angle, s = sin(half) / angle;
   return (quat){cos(half), r.x * s, r.y * s, r.z * s};
 }
 static inline mat3 quat_to_mat3(quat q) {

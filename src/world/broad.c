@@ -226,10 +226,14 @@ static bool merge_pairs(scree_world *world) {
   return complete;
 }
 
-/* For every body the pairs it is in, ascending: the order in which forces are summed. */
+/* The pairs' slots, and for every body the pairs it is in, ascending: the order in which forces are
+ * summed. */
 static bool list_sides(scree_world *world) {
   size_t bodies = world->bodies.count, pairs = world->pairs.count;
-  if (!SCREE_RESERVE(&world->sides, 2 * pairs)) return false;
+  if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->slots, pairs))
+    return false;
+  world->slots.count = pairs;
+  for (size_t k = 0; k < pairs; k++) world->slots.items[k] = scree_pair_slot(world->pairs.items[k]);
   size_t *begin = world->side_begin;
   memset(begin, 0, (bodies + 1) * sizeof *begin);
   for (size_t k = 0; k < pairs; k++) {

@@ -3,8 +3,8 @@
  * Sleeping is exact. The pair's `path` bounds from above how far any two points near the contact
  * have moved relative to each other; a feature pair that is `gap` from touching cannot touch before
  * the path has grown by gap. It is woken two steps' travel early, so that it is first seen from
- * outside. When nothing is awake the whole pair sleeps on the sum of the two bodies' paths, which
- * costs two loads a step.
+ * outside. When nothing is awake the whole pair sleeps on the sum of the two bodies' paths; the
+ * step asks that of the pair's slot, so that sleeping pairs are not touched at all.
  *
  * The ledger: the work of the dashpots and of the tangential forces over a step is
  * dt/2 W.(v before + v after the kick), with W the wrench of the step. The first half is added when
@@ -34,24 +34,15 @@ static void add_later_work(const scree_world *world, const scree_pair *pair,
   if (pair->wall) sums->wall_work += half * wall_power(pair, b);
 }
 
-static double bodies_path(const scree_world *world, const scree_pair *pair, double *travel) {
-  const scree_bodies *bodies = &world->bodies;
-  if (pair->wall) {
-    const scree_world_wall *wall = &world->walls.items[pair->b];
-    *travel = bodies->travel[pair->a] + wall->travel;
-    return bodies->path[pair->a] + wall->path;
-  }
-  *travel = bodies->travel[pair->a] + bodies->travel[pair->b];
-  return bodies->path[pair->a] + bodies->path[pair->b];
+static double bodies_path(const scree_world *world, const scree_pair *pair) {
+  const double *path = world->bodies.path;
+  return path[pair->a] + (pair->wall ? world->walls.items[pair->b].path : path[pair->b]);
 }
 
-static bool still_asleep(const scree_world *world, scree_pair *pair) {
-  if (!pair->asleep) return false;
-  double travel, path = bodies_path(world, pair, &travel);
-  if (path + 2 * travel < pair->wake) return true;
-  pair->path += path - pair->asleep_since;
+static void wake_up(const scree_world *world, scree_pair *pair) {
+  if (!pair->asleep) return;
+  pair->path += bodies_path(world, pair) - pair->asleep_since;
   pair->asleep = false;
-  return false;
 }
 
 /* a in the frame of b, its velocity and spin such that a's point at q moves with velocity + spin x
@@ -67,13 +58,13 @@ static double relate(const scree_world *world, const scree_pair *pair,
        spin = vec3_sub(a->spin, b->spin), at_b = vec3_sub(slip, vec3_cross(a->spin, between)),
        at_a = vec3_sub(slip, vec3_cross(b->spin, between)),
        now = vec3_sub(vec3_sub(a->velocity_now, b->velocity_now), vec3_cross(a->spin_now, between));
-  mat3 back = mat3_transpose(&b->rotation);
-  relative->rotation = mat3_mul(&back, &a->rotation);
-  relative->position = mat3_mul_vec(&back, between);
-  relative->velocity = mat3_mul_vec(&back, at_b);
-  relative->spin = mat3_mul_vec(&back, spin);
-  relative->velocity_now = mat3_mul_vec(&back, now);
-  relative->spin_now = mat3_mul_vec(&back, vec3_sub(a->spin_now, b->spin_now));
+  const mat3 *turned = &b->rotation;
+  relative->rotation = mat3_tmul(turned, &a->rotation);
+  relative->position = mat3_tmul_vec(turned, between);
+  relative->velocity = mat3_tmul_vec(turned, at_b);
+  relative->spin = mat3_tmul_vec(turned, spin);
+  relative->velocity_now = mat3_tmul_vec(turned, now);
+  relative->spin_now = mat3_tmul_vec(turned, vec3_sub(a->spin_now, b->spin_now));
   bool about_a = radius_a <= radius_b;
   double radius = (about_a ? radius_a : radius_b) + 4 * scree_pair_skin(world, pair);
   return vec3_norm(about_a ? at_a : at_b) + radius * vec3_norm(spin);
@@ -132,8 +123,7 @@ static bool settle_items(scree_pair *pair) {
 
 static void fall_asleep(const scree_world *world, scree_pair *pair) {
   if (pair->wall && vec3_norm2(world->walls.items[pair->b].frame.spin) > 0) return;
-  double travel;
-  pair->asleep_since = bodies_path(world, pair, &travel);
+  pair->asleep_since = bodies_path(world, pair);
   pair->wake = pair->asleep_since + fmin(pair->next_item, pair->list_end) - pair->path;
   pair->asleep = true;
 }
@@ -147,7 +137,7 @@ static void clear_results(scree_pair *pair) {
 void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                          scree_pair_sums *sums) {
   if (pair->touching) add_later_work(world, pair, sums);
-  if (still_asleep(world, pair)) return;
+  wake_up(world, pair);
   scree_frame relative;
   double speed = relate(world, pair, &relative);
   pair->travel = speed * world->time_step;

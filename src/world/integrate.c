@@ -11,15 +11,14 @@ enum { BODY_BLOCK = 128 };
 
 static const double travel_share = 0.25; /* of the overlap limit: most a body may move in a step */
 
-vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, vec3 momentum) {
-  vec3 local = mat3_tmul_vec(rotation, momentum), in = bodies->inertia[i];
-  return mat3_mul_vec(rotation, (vec3){local.x / in.x, local.y / in.y, local.z / in.z});
+/* I^-1 R^T momentum: angular velocity in the body's frame. */
+static vec3 local_spin(vec3 inertia, const mat3 *rotation, vec3 momentum) {
+  vec3 local = mat3_tmul_vec(rotation, momentum);
+  return (vec3){local.x / inertia.x, local.y / inertia.y, local.z / inertia.z};
 }
 
-static vec3 local_spin(vec3 inertia, quat q, vec3 momentum) {
-  mat3 r = quat_to_mat3(q);
-  vec3 local = mat3_tmul_vec(&r, momentum);
-  return (vec3){local.x / inertia.x, local.y / inertia.y, local.z / inertia.z};
+vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, vec3 momentum) {
+  return mat3_mul_vec(rotation, local_spin(bodies->inertia[i], rotation, momentum));
 }
 
 /* Forces in the fixed order of the pairs. */
@@ -27,6 +26,7 @@ static void sum_forces(scree_world *world, size_t i) {
   vec3 force = {0, 0, 0}, torque = {0, 0, 0};
   for (size_t k = world->side_begin[i]; k < world->side_begin[i + 1]; k++) {
     uint32_t side = world->sides.items[k];
+    if (world->slots.items[side >> 1].wake != -INFINITY) continue; /* asleep */
     const scree_pair *pair = world->pairs.items[side >> 1];
     if (!pair->touching) continue;
     const scree_wrench *w = &pair->wrench;
@@ -37,15 +37,16 @@ static void sum_forces(scree_world *world, size_t i) {
   world->bodies.torque[i] = torque;
 }
 
-/* How far the body's points may move in the coming step. */
-static double coming_travel(const scree_world *world, size_t i) {
-  const scree_bodies *b = &world->bodies;
+/* How far the body's points may move in the coming step; the spin in it is kept for the step. */
+static double coming_travel(scree_world *world, size_t i) {
+  scree_bodies *b = &world->bodies;
   const scree_frame *frame = &b->frame[i];
   double dt = world->time_step;
   vec3 g = vec3_load(world->options.gravity);
   vec3 v = vec3_mad(frame->velocity, vec3_mad(g, b->force[i], 1 / b->mass[i]), dt);
-  vec3 spin = scree_spin_of(b, i, &frame->rotation, vec3_mad(b->momentum[i], b->torque[i], dt));
-  return (vec3_norm(v) + vec3_norm(spin) * b->particle[i]->measures.bounding_radius) * dt;
+  vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
+  b->turn[i] = local_spin(b->inertia[i], &frame->rotation, momentum);
+  return (vec3_norm(v) + vec3_norm(b->turn[i]) * b->particle[i]->measures.bounding_radius) * dt;
 }
 
 static double travel_limit(const scree_world *world, size_t i) {
@@ -109,17 +110,18 @@ static void advance_body(scree_world *world, size_t i) {
   frame->position = vec3_mad(frame->position, frame->velocity, dt);
   vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
   quat q = b->orientation[i];
-  vec3 first = local_spin(b->inertia[i], q, momentum);
-  quat half = quat_mul(q, quat_from_rotation_vector(vec3_scale(first, 0.5 * dt)));
-  vec3 second = local_spin(b->inertia[i], half, momentum);
-  q = quat_unit(quat_mul(q, quat_from_rotation_vector(vec3_scale(second, dt))));
+  quat half = quat_mul(q, quat_from_rotation_vector(vec3_scale(b->turn[i], 0.5 * dt)));
+  mat3 rotation = quat_to_mat3(half);
+  vec3 turn = local_spin(b->inertia[i], &rotation, momentum);
+  q = quat_unit(quat_mul(q, quat_from_rotation_vector(vec3_scale(turn, dt))));
+  rotation = quat_to_mat3(q);
   b->momentum[i] = momentum;
   b->orientation[i] = q;
-  frame->rotation = quat_to_mat3(q);
-  frame->spin = scree_spin_of(b, i, &frame->rotation, momentum);
-  frame->spin_now =
-      scree_spin_of(b, i, &frame->rotation, vec3_mad(momentum, b->torque[i], 0.5 * dt));
+  frame->rotation = rotation;
+  frame->spin = scree_spin_of(b, i, &rotation, momentum);
+  frame->spin_now = scree_spin_of(b, i, &rotation, vec3_mad(momentum, b->torque[i], 0.5 * dt));
   b->path[i] += b->travel[i];
+  b->due[i] = scree_body_due(b, i);
 }
 
 static void advance_block(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -140,6 +142,7 @@ static void advance_wall(scree_world_wall *wall, double dt) {
   }
   wall->travel = vec3_norm(frame->velocity) * dt;
   wall->path += wall->travel;
+  wall->due = wall->path + 2 * wall->travel;
 }
 
 void scree_world_advance(scree_world *world) {

@@ -29,13 +29,13 @@ static bool solve_closed(const scree_touch *touches, size_t count, double l0, do
     for (size_t i = 0; i < count; i++) {
       double d = highest - touches[i].overlap, w = touches[i].weight;
       if (d >= reach) {
-        next = fmin(next, d);
+        next = d < next ? d : next;
         continue;
       }
       weight += w;
       first += w * d;
       second += w * d * d;
-      farthest = fmax(farthest, d);
+      farthest = d > farthest ? d : farthest;
     }
     double a = weight - k * k, b = first - k * c, e = c * c - second, square = b * b + a * e;
     if (!(square >= 0)) {
@@ -188,8 +188,9 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
   /* n.(v + spin x at) of the dashpots' moment */
   double rate = -(vec3_dot(relative->velocity_now, n) + vec3_dot(relative->spin_now, arm));
   double elastic = touch->share * spring;
-  double normal = fmax(0, elastic + touch->share * pair->damping * rate),
-         dashpot = normal - elastic;
+  double normal = elastic + touch->share * pair->damping * rate;
+  if (!(normal > 0)) normal = 0;
+  double dashpot = normal - elastic;
   vec3 along = slide(law, touch->anchor, touch->share, n, v, normal, energy);
   touch->force = vec3_mad(along, n, normal);
   touch->anchor->normal = n;
@@ -232,7 +233,9 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   pair->overlap = maximum.value;
   double spring = spring_force(world, pair, maximum.value), energy = 0;
   slider law = make_slider(world, pair);
-  load_sums sums = {0};
+  load_sums sums;
+  sums.normal = sums.dashpot = sums.tangential = (scree_load){{0, 0, 0}, {0, 0, 0}};
+  sums.dashpot_power = sums.tangential_power = 0;
   size_t contacts = 0;
   for (size_t i = 0; i < touches->count; i++) {
     scree_touch *touch = &touches->items[i];

@@ -15,8 +15,16 @@ enum { PAIR_BLOCK = 32 };
 static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   scree_world *world = context;
   scree_pair_sums sums = {0};
-  for (size_t k = begin; k < end; k++)
-    scree_pair_evaluate(world, world->pairs.items[k], &world->scratch[worker], &sums);
+  const double *due = world->bodies.due;
+  for (size_t k = begin; k < end; k++) {
+    scree_slot *slot = &world->slots.items[k];
+    double due_b = slot->b & SCREE_SLOT_WALL ? world->walls.items[slot->b & ~SCREE_SLOT_WALL].due
+                                             : due[slot->b];
+    if (due[slot->a] + due_b < slot->wake) continue;
+    scree_pair *pair = world->pairs.items[k];
+    scree_pair_evaluate(world, pair, &world->scratch[worker], &sums);
+    slot->wake = pair->asleep ? pair->wake : -INFINITY;
+  }
   world->sums.items[block] = sums;
 }
 

@@ -244,14 +244,15 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
     normals[k] = vec3_neg(mat3_mul_vec(&relative->rotation, normals[k]));
   }
   match_anchors(item, normals, count);
-  double gap = INFINITY, surface_radius = surface->measures.rounding,
+  double least = INFINITY, surface_radius = surface->measures.rounding,
          point_radius = from->point_radii[point];
   for (int k = 0; k < count; k++) {
     const double values[4] = {contacts[k].distance, forth ? point_radius : surface_radius,
                               forth ? surface_radius : point_radius, contacts[k].weight};
-    gap = fmin(gap, add_touch(scratch, pair, at[k], normals[k], values, &item->anchor[k]));
+    double gap = add_touch(scratch, pair, at[k], normals[k], values, &item->anchor[k]);
+    if (gap < least) least = gap;
   }
-  return gap;
+  return least;
 }
 
 /* ---- edges against edges ---- */
@@ -328,7 +329,8 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
     return fmin(far, 0);
   }
   /* near the ends their points take over */
-  double end = fmin(fmin(s, ea->length - s), fmin(t, eb->length - t));
+  double end_a = s < ea->length - s ? s : ea->length - s,
+         end_b = t < eb->length - t ? t : eb->length - t, end = end_a < end_b ? end_a : end_b;
   contact.weight *= smooth_step(0, 0.1 * pair->reach, end);
   double rounding_a = world->bodies.particle[pair->a]->measures.rounding;
   const double values[4] = {contact.distance, rounding_a, pair->reach - rounding_a, contact.weight};

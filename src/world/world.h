@@ -22,9 +22,9 @@ typedef struct scree_world_wall {
   scree_wall given; /* position and velocity kept up to date */
   scree_frame frame;
   quat orientation;
-  scree_particle *surface; /* mesh wall; else NULL */
-  double travel, path;     /* as for bodies, by translation alone */
-  double path_at_build;    /* when the pairs were made */
+  scree_particle *surface;  /* mesh wall; else NULL */
+  double travel, path, due; /* as for bodies, by translation alone */
+  double path_at_build;     /* when the pairs were made */
   vec3 force, torque;
 } scree_world_wall;
 
@@ -38,6 +38,8 @@ typedef struct scree_bodies {
   double *mass;
   double *travel; /* most any of its points moved in the last step */
   double *path;   /* sum of travel */
+  double *due;    /* path + 2 travel: pairs that sleep until then are looked at */
+  vec3 *turn;     /* angular velocity in the body's own frame after the coming kick (scratch) */
   scree_particle **particle;
   uint8_t *material;
   bool *removed;
@@ -147,6 +149,13 @@ typedef struct scree_pair_sums {
   bool out_of_memory;
 } scree_pair_sums;
 
+/* What the step reads of every pair, in the order of the pairs. */
+typedef struct scree_slot {
+  double wake; /* of the pair while it is asleep; -infinity while it is awake */
+  uint32_t a, b;
+} scree_slot;
+#define SCREE_SLOT_WALL 0x80000000u /* set in b: it is a wall */
+
 typedef struct scree_broad scree_broad;
 
 struct scree_world {
@@ -163,6 +172,10 @@ struct scree_world {
     scree_pair **items; /* sorted by a, then bodies before walls, then b */
     size_t count, capacity;
   } pairs, spare_pairs, merged_pairs;
+  struct {
+    scree_slot *items;
+    size_t count, capacity;
+  } slots; /* of pairs */
   struct {
     uint64_t *items;
     size_t count, capacity;
@@ -192,6 +205,13 @@ struct scree_world {
   scree_timings timings;
 };
 
+static inline scree_slot scree_pair_slot(const scree_pair *p) {
+  return (scree_slot){p->asleep ? p->wake : -INFINITY, p->a,
+                      p->b | (p->wall ? SCREE_SLOT_WALL : 0)};
+}
+static inline double scree_body_due(const scree_bodies *bodies, size_t i) {
+  return bodies->path[i] + 2 * bodies->travel[i];
+}
 static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const scree_pair *p) {
   return p->wall ? &w->walls.items[p->b].frame : &w->bodies.frame[p->b];
 }
