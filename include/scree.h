@@ -1720,6 +1720,9 @@ SCREE_API scree_status scree_distance_json_write(const scree_distance_entry *ent
 
 /* ---- 9.5 The report: one page for a browser ---- */
 
+/* Of all objects of one page together, so that it stays below 6 MB. */
+enum { SCREE_LEVELS_BYTES = 3750000 };
+
 /* What the report shows of one object in 3D, in at most byte_limit bytes (but at least a level of
  * 2,000 triangles and what follows from it): the scan, or where that is too large the finest level
  * that fits; a fine level and the collapses that lead from it to the last; the dense curve;
@@ -1727,6 +1730,79 @@ SCREE_API scree_status scree_distance_json_write(const scree_distance_entry *ent
  * 0.5 s for 762,008 triangles, half of it for the convex hull. */
 SCREE_API scree_status scree_levels_write(const scree_curve *curve, const scree_choice *choice,
                                           size_t byte_limit, const char *path, bool overwrite,
+                                          scree_error *error);
+
+/* A text, whole or not at all; "-" is stdout. */
+SCREE_API scree_status scree_text_write(const char *text, const char *path, bool overwrite,
+                                        scree_error *error);
+
+/* When some work began, by three clocks, in seconds. */
+typedef struct scree_work_start {
+  double calendar, elapsed, processor; /* since 1970; of no meaning alone; of all threads */
+} scree_work_start;
+
+SCREE_API scree_work_start scree_work_started(void);
+
+/* JSON: version, command, when the work began and how long it took until now, on what machine and
+ * how many threads. Kept apart from results, which do not change from run to run. */
+SCREE_API scree_status scree_provenance_write(const scree_work_start *start,
+                                              const char *command_line, const char *path,
+                                              bool overwrite, scree_error *error);
+
+/* Makes one page of folders with results (docs/formats.md): of a choice, choice.json with
+ * choice.txt, provenance.json and levels/NAME.levels. The page is complete in itself, asks nothing
+ * of any network, and shows texts from files as text. Fails with SCREE_BAD_FILE where a folder
+ * holds no results or a damaged file. Cost: that of reading and writing. */
+SCREE_API scree_status scree_page_write(const char *const *folders, size_t folder_count,
+                                        const char *path, bool overwrite, scree_error *error);
+
+/* ---- 9.6 Files for DEM codes ---- */
+
+/* How a particle's mesh is put before it is written. */
+typedef struct scree_export_options {
+  double density; /* kg/m3, > 0; default 2000 (not in the paper) */
+  double unit_m;  /* metres per unit of the mesh file; default 1e-3 */
+  bool centre;    /* origin to the centre of mass; default false */
+  bool principal; /* axes also along the principal axes of inertia, moments ascending: the x axis
+                     is the long one; implies centre; default false */
+  bool overwrite; /* default false */
+  const char *source; /* the input as given, for provenance; NULL: unknown. Borrowed, as are */
+  const char *command_line;
+  scree_checksum checksum; /* of the input; zero: none */
+} scree_export_options;
+
+SCREE_API scree_export_options scree_default_export_options(void);
+
+/* Where the mesh went and what it weighs there, SI. */
+typedef struct scree_exported {
+  double rotation[3][3];   /* a point p of the mesh given is at rotation p + translation */
+  double translation[3];   /* m */
+  double mass;             /* kg */
+  double inertia[3][3];    /* kg m2, about the centre of mass, along the axes of the file */
+  double bounding_radius;  /* m, about the centre of mass */
+  scree_measures measures; /* of the mesh as it lies in the file, before rounding */
+} scree_exported;
+
+/* Writes the mesh, put as asked, to mesh_path (format by its ending) and what a DEM code needs to
+ * know of it as JSON to json_path (docs/formats.md; NULL: not wanted). *exported may be NULL.
+ * Fails with SCREE_BAD_MESH where the mesh is not closed or inside out: it would have no mass; with
+ * SCREE_EXISTS before anything is written; else as scree_mesh_write. */
+SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
+                                             const scree_export_options *options,
+                                             const char *mesh_path, const char *json_path,
+                                             scree_exported *exported, scree_error *error);
+
+/* Writes a world for other programs into a folder, made if need be:
+ *
+ *   pile.json      time, gravity, shapes, bodies, walls (docs/formats.md), SI
+ *   bodies.csv     the bodies as rows
+ *   shape-K.stl    the mesh of shape K (scree_world_shape) in the particle's frame, in unit_m
+ *   wall-K.stl     the mesh of wall K in its own frame, in unit_m
+ *
+ * A body of shape K lies where its quaternion turns shape-K.stl and its position moves it. Of the
+ * options unit_m, overwrite and the provenance count. */
+SCREE_API scree_status scree_world_export(const scree_world *world,
+                                          const scree_export_options *options, const char *folder,
                                           scree_error *error);
 
 /* ==== 10. Studies: many runs, and what they say ================================================
@@ -1794,55 +1870,6 @@ typedef struct scree_polynomial {
 SCREE_API scree_status scree_fit_polynomial(const double *x, const double *y, size_t count,
                                             int degree, scree_polynomial *fit, scree_error *error);
 SCREE_API double scree_polynomial_value(const scree_polynomial *fit, double x);
-
-/* ---- 9.6 Files for DEM codes ---- */
-
-/* How a particle's mesh is put before it is written. */
-typedef struct scree_export_options {
-  double density; /* kg/m3, > 0; default 2000 (not in the paper) */
-  double unit_m;  /* metres per unit of the mesh file; default 1e-3 */
-  bool centre;    /* origin to the centre of mass; default false */
-  bool principal; /* axes also along the principal axes of inertia, moments ascending: the x axis
-                     is the long one; implies centre; default false */
-  bool overwrite; /* default false */
-  const char *source; /* the input as given, for provenance; NULL: unknown. Borrowed, as are */
-  const char *command_line;
-  scree_checksum checksum; /* of the input; zero: none */
-} scree_export_options;
-
-SCREE_API scree_export_options scree_default_export_options(void);
-
-/* Where the mesh went and what it weighs there, SI. */
-typedef struct scree_exported {
-  double rotation[3][3];   /* a point p of the mesh given is at rotation p + translation */
-  double translation[3];   /* m */
-  double mass;             /* kg */
-  double inertia[3][3];    /* kg m2, about the centre of mass, along the axes of the file */
-  double bounding_radius;  /* m, about the centre of mass */
-  scree_measures measures; /* of the mesh as it lies in the file, before rounding */
-} scree_exported;
-
-/* Writes the mesh, put as asked, to mesh_path (format by its ending) and what a DEM code needs to
- * know of it as JSON to json_path (docs/formats.md; NULL: not wanted). *exported may be NULL.
- * Fails with SCREE_BAD_MESH where the mesh is not closed or inside out: it would have no mass; with
- * SCREE_EXISTS before anything is written; else as scree_mesh_write. */
-SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
-                                             const scree_export_options *options,
-                                             const char *mesh_path, const char *json_path,
-                                             scree_exported *exported, scree_error *error);
-
-/* Writes a world for other programs into a folder, made if need be:
- *
- *   pile.json      time, gravity, shapes, bodies, walls (docs/formats.md), SI
- *   bodies.csv     the bodies as rows
- *   shape-K.stl    the mesh of shape K (scree_world_shape) in the particle's frame, in unit_m
- *   wall-K.stl     the mesh of wall K in its own frame, in unit_m
- *
- * A body of shape K lies where its quaternion turns shape-K.stl and its position moves it. Of the
- * options unit_m, overwrite and the provenance count. */
-SCREE_API scree_status scree_world_export(const scree_world *world,
-                                          const scree_export_options *options, const char *folder,
-                                          scree_error *error);
 
 #ifdef __cplusplus
 }

@@ -7,3 +7,4 @@ folder=$2
 "$program" choose --samples -o "$folder" -f
 echo
 echo "results: $folder/ (the curves as CSV, the chosen meshes as STL, the figure as PNG and SVG)"
+echo "report:  $folder/report.html (open it in a browser)"

@@ -34,22 +34,23 @@ typedef struct choose_run {
   scree_set_choice set;
   scree_choice_options options;
   scree_simplify_options simplify;
+  scree_work_start start;
 } choose_run;
 
 /* The choice that meshes are written by. */
 const scree_pick *choose_default_pick(const choose_run *run, const scree_choice *choice);
 double choose_set_rp(const choose_run *run);
 
-/* The table and what to do, for people, on stdout. */
-void choose_print(const choose_run *run);
+/* The table and what to do, for people. */
+void choose_print(FILE *out, const choose_run *run);
 
 /* Refuses early where a file that will be written exists; makes the folder. */
 scree_status choose_prepare_folder(const choose_run *run, scree_error *error);
-/* The meshes of one object. */
+/* The meshes of one object, and its levels for the report. */
 scree_status choose_write_meshes(const choose_run *run, size_t index, const scree_curve *curve,
                                  const scree_choice *choice, const scree_set_choice *set,
                                  scree_error *error);
-/* Everything else: curves, figure, tables. */
+/* Everything else: curves, figure, tables, the page. */
 scree_status choose_write_reports(const choose_run *run, const scree_choice_report *report,
                                   scree_error *error);
 

@@ -3,16 +3,24 @@
  *   NAME.stl             the chosen mesh of each object
  *   set/NAME.stl         its mesh at the set's Rp, where there are several objects
  *   NAME.curve.csv       its dense curve
+ *   choice.txt           what is printed
  *   choice.json, choice.csv
- *   figure.png, .svg, .pdf, .csv, .gnuplot */
+ *   figure.png, .svg, .pdf, .csv, .gnuplot
+ *   provenance.json      when, where, how long
+ *   levels/NAME.levels   what the report shows of each object in 3D
+ *   report.html          all of it as one page, as `scree report DIR` makes it */
 #include "cli/choose.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 static const char *const FIGURES[] = {"figure.png", "figure.svg", "figure.pdf", "figure.csv",
                                       "figure.gnuplot"};
 enum { FIGURE_COUNT = 5 };
+static const char *const SINGLE_FILES[] = {"choice.json", "choice.csv", "choice.txt",
+                                           "provenance.json", "report.html"};
+enum { SINGLE_FILE_COUNT = 5 };
 
 static scree_status fail(scree_error *error, scree_status status, const char *path,
                          const char *reason) {
@@ -39,24 +47,28 @@ static scree_status refuse_existing(const choose_run *run, const char *before, c
   return fail(error, SCREE_EXISTS, path, "exists already; -f overwrites");
 }
 
+static scree_status make_subfolder(const choose_run *run, const char *name, scree_error *error) {
+  char path[CHOOSE_PATH_BYTES];
+  scree_status status = join(run, name, "", "", path, error);
+  return status == SCREE_OK ? cli_make_folder(path, error) : status;
+}
+
 scree_status choose_prepare_folder(const choose_run *run, scree_error *error) {
   scree_status status = cli_make_folder(run->arguments->output, error);
   for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
     status = refuse_existing(run, "", FIGURES[i], "", error);
-  if (status == SCREE_OK) status = refuse_existing(run, "", "choice.json", "", error);
-  if (status == SCREE_OK) status = refuse_existing(run, "", "choice.csv", "", error);
+  for (int i = 0; i < SINGLE_FILE_COUNT && status == SCREE_OK; i++)
+    status = refuse_existing(run, "", SINGLE_FILES[i], "", error);
   for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
     const char *name = run->objects[i].name;
     status = refuse_existing(run, "", name, ".stl", error);
     if (status == SCREE_OK) status = refuse_existing(run, "", name, ".curve.csv", error);
+    if (status == SCREE_OK) status = refuse_existing(run, "levels/", name, ".levels", error);
     if (status == SCREE_OK && run->count > 1)
       status = refuse_existing(run, "set/", name, ".stl", error);
   }
-  char path[CHOOSE_PATH_BYTES];
-  if (status == SCREE_OK && run->count > 1) {
-    status = join(run, "set", "", "", path, error);
-    if (status == SCREE_OK) status = cli_make_folder(path, error);
-  }
+  if (status == SCREE_OK) status = make_subfolder(run, "levels", error);
+  if (status == SCREE_OK && run->count > 1) status = make_subfolder(run, "set", error);
   return status;
 }
 
@@ -80,12 +92,46 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
   size_t level = choose_default_pick(run, choice)->level_index;
   scree_status status = join(run, "", object->name, ".stl", object->mesh_path, error);
   if (status == SCREE_OK) status = write_level(run, curve, level, object->mesh_path, error);
-  if (status != SCREE_OK || run->count < 2) return status;
   char path[CHOOSE_PATH_BYTES];
+  if (status == SCREE_OK) status = join(run, "levels/", object->name, ".levels", path, error);
+  if (status == SCREE_OK)
+    status = scree_levels_write(curve, choice, SCREE_LEVELS_BYTES / run->count, path,
+                                run->arguments->overwrite, error);
+  if (status != SCREE_OK || run->count < 2) return status;
   double rp = run->arguments->paper ? set->paper_rp : set->robust_rp;
   level = scree_curve_find(curve, scree_choice_target(rp, choice->triangle_count));
   status = join(run, "set/", object->name, ".stl", path, error);
   return status == SCREE_OK ? write_level(run, curve, level, path, error) : status;
+}
+
+/* choice.txt: what choose_print says. */
+static scree_status write_text(const choose_run *run, scree_error *error) {
+  char *text = NULL, path[CHOOSE_PATH_BYTES];
+  size_t size;
+  scree_status status = join(run, "", "choice.txt", "", path, error);
+  if (status != SCREE_OK) return status;
+  FILE *stream = open_memstream(&text, &size);
+  if (stream) choose_print(stream, run);
+  if (!stream || fclose(stream) != 0)
+    status = fail(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
+  else
+    status = scree_text_write(text, path, run->arguments->overwrite, error);
+  free(text);
+  return status;
+}
+
+/* What is made of the other files, so the last. */
+static scree_status write_page(const choose_run *run, scree_error *error) {
+  char path[CHOOSE_PATH_BYTES];
+  bool overwrite = run->arguments->overwrite;
+  scree_status status = write_text(run, error);
+  if (status == SCREE_OK) status = join(run, "", "provenance.json", "", path, error);
+  if (status == SCREE_OK)
+    status = scree_provenance_write(&run->start, run->call->command_line, path, overwrite, error);
+  if (status == SCREE_OK) status = join(run, "", "report.html", "", path, error);
+  if (status == SCREE_OK)
+    status = scree_page_write(&run->arguments->output, 1, path, overwrite, error);
+  return status;
 }
 
 scree_status choose_write_reports(const choose_run *run, const scree_choice_report *report,
@@ -106,5 +152,6 @@ scree_status choose_write_reports(const choose_run *run, const scree_choice_repo
   if (status == SCREE_OK) status = scree_choice_csv_write(report, path, overwrite, error);
   if (status == SCREE_OK) status = join(run, "", "choice.json", "", path, error);
   if (status == SCREE_OK) status = scree_choice_json_write(report, path, overwrite, error);
+  if (status == SCREE_OK) status = write_page(run, error);
   return status;
 }

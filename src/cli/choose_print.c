@@ -39,36 +39,37 @@ static const char *percent_text(double fraction, char buffer[16]) {
   return buffer;
 }
 
-static void print_row(const choose_run *run, size_t index) {
+static void print_row(FILE *out, const choose_run *run, size_t index) {
   const scree_choice *c = &run->choices[index];
   char scan[32], n1[32], n2[32], rp1[16], rp2[16], e1[16], e2[16], noise[16];
   bool accident = c->paper.eps_s < 0.1 * c->levels[c->best[SCREE_ERROR_AREA]].worst_eps_s;
-  printf("%-12.12s%10s%7s |%7s%7s%8s%c|%7s%7s%8s\n", run->objects[index].name,
-         cli_count_text(c->triangle_count, scan),
-         c->noise.found ? percent_text(c->noise.fraction, noise) : "-", rp_text(c->paper.rp, rp1),
-         cli_count_text(c->paper.triangle_count, n1), percent_text(c->paper.eps_s, e1),
-         accident ? '*' : ' ', rp_text(c->robust.rp, rp2),
-         cli_count_text(c->robust.triangle_count, n2), percent_text(c->robust.eps_s, e2));
+  fprintf(out, "%-12.12s%10s%7s |%7s%7s%8s%c|%7s%7s%8s\n", run->objects[index].name,
+          cli_count_text(c->triangle_count, scan),
+          c->noise.found ? percent_text(c->noise.fraction, noise) : "-", rp_text(c->paper.rp, rp1),
+          cli_count_text(c->paper.triangle_count, n1), percent_text(c->paper.eps_s, e1),
+          accident ? '*' : ' ', rp_text(c->robust.rp, rp2),
+          cli_count_text(c->robust.triangle_count, n2), percent_text(c->robust.eps_s, e2));
 }
 
-static void print_table(const choose_run *run) {
+static void print_table(FILE *out, const choose_run *run) {
   char rp1[16], rp2[16];
   const char *reference =
       run->options.reference == SCREE_REFERENCE_SMOOTH ? ", area free of noise" : "";
-  printf("Ip = eps_s + %s Nr/Nm, method %s%s\n", run->options.weight == 1 ? "1" : "w",
-         scree_method_name(run->simplify.method), reference);
-  printf("%30s%-24s| %s\n", "", run->arguments->paper ? "| paper (default)" : "| paper's grid",
-         run->arguments->paper ? "robust" : "robust (default)");
-  printf("%-12s%10s%7s |%7s%7s%8s |%7s%7s%8s\n", "object", "triangles", "noise", "Rp", "Nr",
-         "eps_s", "Rp", "Nr", "worst");
-  for (size_t i = 0; i < run->count; i++) print_row(run, i);
+  fprintf(out, "Ip = eps_s + %s Nr/Nm, method %s%s\n", run->options.weight == 1 ? "1" : "w",
+          scree_method_name(run->simplify.method), reference);
+  fprintf(out, "%30s%-24s| %s\n", "",
+          run->arguments->paper ? "| paper (default)" : "| paper's grid",
+          run->arguments->paper ? "robust" : "robust (default)");
+  fprintf(out, "%-12s%10s%7s |%7s%7s%8s |%7s%7s%8s\n", "object", "triangles", "noise", "Rp", "Nr",
+          "eps_s", "Rp", "Nr", "worst");
+  for (size_t i = 0; i < run->count; i++) print_row(out, run, i);
   if (run->count > 1)
-    printf("%-30s|%7s%16s|%7s\n", "the set (least mean Ip)", rp_text(run->set.paper_rp, rp1), "",
-           rp_text(run->set.robust_rp, rp2));
+    fprintf(out, "%-30s|%7s%16s|%7s\n", "the set (least mean Ip)", rp_text(run->set.paper_rp, rp1),
+            "", rp_text(run->set.robust_rp, rp2));
 }
 
 /* The range of counts and errors at the set's Rp. */
-static void print_set_advice(const choose_run *run) {
+static void print_set_advice(FILE *out, const choose_run *run) {
   size_t least = SIZE_MAX, most = 0;
   double worst = 0, rp = choose_set_rp(run);
   for (size_t i = 0; i < run->count; i++) {
@@ -80,24 +81,25 @@ static void print_set_advice(const choose_run *run) {
     worst = fmax(worst, c->trace[k].worst_eps_s);
   }
   char rp_buffer[16], low[32], high[32], percent[16];
-  printf("Use Rp = %s for the set: %s to %s triangles, area within %s.\n", rp_text(rp, rp_buffer),
-         cli_count_text(least, low), cli_count_text(most, high), percent_text(worst, percent));
+  fprintf(out, "Use Rp = %s for the set: %s to %s triangles, area within %s.\n",
+          rp_text(rp, rp_buffer), cli_count_text(least, low), cli_count_text(most, high),
+          percent_text(worst, percent));
 }
 
-static void print_advice(const choose_run *run) {
+static void print_advice(FILE *out, const choose_run *run) {
   const scree_choice *c = &run->choices[0];
   char count[32], rp[16], percent[16];
   if (run->count > 1) {
-    print_set_advice(run);
+    print_set_advice(out, run);
     return;
   }
   const scree_pick *pick = choose_default_pick(run, c);
-  printf("Use %s triangles (Rp = %s): area within %s of the scan's.\n",
-         cli_count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
-         percent_text(run->arguments->paper ? pick->level_eps_s : pick->eps_s, percent));
+  fprintf(out, "Use %s triangles (Rp = %s): area within %s of the scan's.\n",
+          cli_count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
+          percent_text(run->arguments->paper ? pick->level_eps_s : pick->eps_s, percent));
 }
 
-static void print_accidents(const choose_run *run) {
+static void print_accidents(FILE *out, const choose_run *run) {
   size_t accidents = 0, differ = 0;
   for (size_t i = 0; i < run->count; i++) {
     const scree_choice *c = &run->choices[i];
@@ -106,13 +108,13 @@ static void print_accidents(const choose_run *run) {
         ratio((double)c->paper.triangle_count, (double)c->robust.triangle_count) > NOTABLE_RATIO;
   }
   if (accidents)
-    puts("* by accident: the area crosses the scan's there; finer meshes are further off.");
+    fputs("* by accident: the area crosses the scan's there; finer meshes are further off.\n", out);
   else if (differ)
-    printf("Grid and robust choice differ by more than %.1f times for %zu of %zu.\n", NOTABLE_RATIO,
-           differ, run->count);
+    fprintf(out, "Grid and robust choice differ by more than %.1f times for %zu of %zu.\n",
+            NOTABLE_RATIO, differ, run->count);
 }
 
-static void print_noise(const choose_run *run) {
+static void print_noise(FILE *out, const choose_run *run) {
   size_t moved = 0;
   double most = 0;
   for (size_t i = 0; i < run->count; i++) {
@@ -124,13 +126,14 @@ static void print_noise(const choose_run *run) {
   }
   char percent[16], rp[16];
   if (moved && run->options.reference == SCREE_REFERENCE_SCAN)
-    printf("Scan noise adds up to %s of area and misleads eps_s: --reference smooth takes it\n"
-           "out and gives Rp = %s.\n",
-           percent_text(most, percent),
-           rp_text(run->count > 1 ? run->set.smooth_rp : run->choices[0].smooth.rp, rp));
+    fprintf(out,
+            "Scan noise adds up to %s of area and misleads eps_s: --reference smooth takes it\n"
+            "out and gives Rp = %s.\n",
+            percent_text(most, percent),
+            rp_text(run->count > 1 ? run->set.smooth_rp : run->choices[0].smooth.rp, rp));
 }
 
-static void print_resolution(const choose_run *run) {
+static void print_resolution(FILE *out, const choose_run *run) {
   double least = INFINITY, most = 0, growth = 0;
   for (size_t i = 0; i < run->count; i++) {
     const scree_choice *c = &run->choices[i];
@@ -140,12 +143,13 @@ static void print_resolution(const choose_run *run) {
   }
   if (ratio(most, least) > NOTABLE_RESOLUTION || ratio(least, PAPER_COUNT) > NOTABLE_RESOLUTION ||
       ratio(most, PAPER_COUNT) > NOTABLE_RESOLUTION)
-    printf(
+    fprintf(
+        out,
         "Nr depends on the scan's resolution: at half the spacing it would be %.1f times this.\n",
         growth);
 }
 
-static void print_floor(const choose_run *run) {
+static void print_floor(FILE *out, const choose_run *run) {
   size_t index = run->count;
   for (size_t i = 0; i < run->count; i++)
     if (!run->choices[i].levels[0].reached && run->choices[i].floor_count > PAPER_FLOOR &&
@@ -153,47 +157,48 @@ static void print_floor(const choose_run *run) {
       index = i;
   char count[32], rp[16];
   if (index < run->count)
-    printf("Rp = %s was not reached by all: %s stops at %s triangles.\n",
-           rp_text(run->options.rp_min, rp), run->objects[index].name,
-           cli_count_text(run->choices[index].floor_count, count));
+    fprintf(out, "Rp = %s was not reached by all: %s stops at %s triangles.\n",
+            rp_text(run->options.rp_min, rp), run->objects[index].name,
+            cli_count_text(run->choices[index].floor_count, count));
 }
 
-static void print_notes(const choose_run *run) {
+static void print_notes(FILE *out, const choose_run *run) {
   for (size_t i = 0; i < run->count; i++)
-    if (run->objects[i].note[0]) printf("%s: %s\n", run->objects[i].name, run->objects[i].note);
+    if (run->objects[i].note[0])
+      fprintf(out, "%s: %s\n", run->objects[i].name, run->objects[i].note);
 }
 
 /* Where other errors were asked for: the grid's choice by each. */
-static void print_other_errors(const choose_run *run) {
+static void print_other_errors(FILE *out, const choose_run *run) {
   if (!run->options.shape_errors && !run->options.distances) return;
-  printf("\nRp of the least error + Nr/Nm on the grid, by other errors than area:\n%-13s",
-         "object");
+  fprintf(out, "\nRp of the least error + Nr/Nm on the grid, by other errors than area:\n%-13s",
+          "object");
   for (int e = 1; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    printf("%14s", scree_shape_error_name((scree_shape_error)e));
-  putchar('\n');
+    fprintf(out, "%14s", scree_shape_error_name((scree_shape_error)e));
+  putc('\n', out);
   for (size_t i = 0; i < run->count; i++) {
     const scree_choice *c = &run->choices[i];
-    printf("%-13.13s", run->objects[i].name);
+    fprintf(out, "%-13.13s", run->objects[i].name);
     for (int e = 1; e < SCREE_SHAPE_ERROR_COUNT; e++) {
       char rp[16];
       bool known = c->best[e] < c->level_count;
-      printf("%14s", known ? rp_text(c->levels[c->best[e]].rp, rp) : "-");
+      fprintf(out, "%14s", known ? rp_text(c->levels[c->best[e]].rp, rp) : "-");
     }
-    putchar('\n');
+    putc('\n', out);
   }
 }
 
-void choose_print(const choose_run *run) {
-  print_table(run);
-  putchar('\n');
-  print_advice(run);
-  print_accidents(run);
-  print_noise(run);
-  print_resolution(run);
-  print_floor(run);
-  print_notes(run);
+void choose_print(FILE *out, const choose_run *run) {
+  print_table(out, run);
+  putc('\n', out);
+  print_advice(out, run);
+  print_accidents(out, run);
+  print_noise(out, run);
+  print_resolution(out, run);
+  print_floor(out, run);
+  print_notes(out, run);
   if (run->arguments->output)
-    printf("In %s: %s, *.curve.csv, figure.png, choice.json\n", run->arguments->output,
-           run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl");
-  print_other_errors(run);
+    fprintf(out, "In %s: report.html, %s, figure.png, choice.json\n", run->arguments->output,
+            run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl");
+  print_other_errors(out, run);
 }

@@ -11,7 +11,8 @@ static const choose_arguments defaults = {
 #define AT(field) offsetof(choose_arguments, field)
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "DIR",
-     "Write the chosen meshes, the curves, the figure and the tables into DIR.", 0, 0, NULL},
+     "Write the chosen meshes, the curves, the figure, the tables and report.html into DIR.", 0, 0,
+     NULL},
     {"samples", 0, CLI_FLAG, AT(samples), NULL, "Choose for the nine built-in devices.", 0, 0,
      NULL},
     {"paper", 'p', CLI_FLAG, AT(paper), NULL,
@@ -194,14 +195,17 @@ static scree_status write_output(const choose_run *run, scree_error *error) {
   else if (status == SCREE_OK && a->csv)
     status = scree_choice_csv_write(&report, "-", false, error);
   else if (status == SCREE_OK)
-    choose_print(run);
+    choose_print(stdout, run);
   free(entries);
   return status;
 }
 
 static int run_choose(const cli_call *call) {
   const choose_arguments *a = call->options;
-  choose_run run = {.call = call, .arguments = a, .options = scree_default_choice_options()};
+  choose_run run = {.call = call,
+                    .arguments = a,
+                    .options = scree_default_choice_options(),
+                    .start = scree_work_started()};
   scree_error error = {SCREE_OK, ""};
   if (call->input_count == 0 && !a->samples)
     return cli_misuse(call->verb, "no scan given: name files, or sample:fp-1 and the like for "

@@ -14,6 +14,7 @@
 
 #include <math.h>
 #include <meshoptimizer.h>
+#include <pthread.h>
 #include <string.h>
 
 static const char magic[] = "screeLVL";
@@ -81,6 +82,12 @@ static void put_u32(packing *p, size_t value) {
 static void put_buffer(packing *p, unsigned char *bytes, size_t count) {
   put_u32(p, count);
   scree_code_bytes(&p->out, bytes, count);
+}
+
+/* The versions that the JavaScript reads; a setting of the library as a whole. */
+static void set_versions(void) {
+  meshopt_encodeVertexVersion(0);
+  meshopt_encodeIndexVersion(1);
 }
 
 static scree_status put_vertices(packing *p, const void *vertices, size_t count, size_t size) {
@@ -304,8 +311,10 @@ static scree_status write_file(packing *p, const char *path, bool overwrite) {
 scree_status scree_levels_write(const scree_curve *curve, const scree_choice *choice,
                                 size_t byte_limit, const char *path, bool overwrite,
                                 scree_error *error) {
+  static pthread_once_t versions = PTHREAD_ONCE_INIT;
   packing p = {.curve = curve, .error = error};
   scree_mesh scan;
+  pthread_once(&versions, set_versions);
   scree_status status = scree_curve_mesh(curve, 0, &scan, error);
   if (status != SCREE_OK) return status;
   status = pack(&p, &scan, choice, byte_limit);

@@ -1,0 +1,50 @@
+#include "cli/args.h"
+
+#include <string.h>
+
+typedef struct report_arguments {
+  const char *output;
+  bool overwrite;
+} report_arguments;
+
+static const report_arguments defaults = {.output = "report.html"};
+
+#define AT(field) offsetof(report_arguments, field)
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, AT(output), "FILE",
+     "The page to write; - is stdout. Default: report.html.", 0, 0, NULL},
+    {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
+};
+
+static int run(const cli_call *call) {
+  const report_arguments *a = call->options;
+  scree_error error;
+  if (scree_page_write(call->inputs, call->input_count, a->output, a->overwrite, &error) !=
+      SCREE_OK)
+    return cli_fail(&error);
+  if (!call->quiet && strcmp(a->output, "-") != 0)
+    printf("%s: open it in any browser; it needs no network\n", a->output);
+  return 0;
+}
+
+const cli_verb cli_verb_report = {
+    .name = "report",
+    .summary = "one page to look at, turn and send",
+    .inputs = "DIR...",
+    .description =
+        "Makes one self-contained HTML page of the folders that scree choose -o writes: the "
+        "answer, the curve with a slider that shows the mesh at every level beside the scan, the "
+        "tables, and how it was made. It opens by double-click, also from a mail, and asks nothing "
+        "of any network.\n\n"
+        "scree choose -o DIR already leaves such a page as DIR/report.html; this verb makes one "
+        "of several folders, or makes it again.",
+    .examples = "  scree choose --samples -o devices\n"
+                "  scree report devices phones -o both.html\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 1,
+    .input_maximum = 1000,
+    .run = run,
+};

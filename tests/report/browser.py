@@ -1,0 +1,128 @@
+"""A headless Chromium through chromedriver's W3C WebDriver protocol: only Python's own library is needed."""
+import base64
+import json
+import os
+import shutil
+import socket
+import subprocess
+import time
+import urllib.error
+import urllib.request
+
+ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
+
+
+def missing():
+    """What is not installed, or None."""
+    for program in ("chromium", "chromedriver"):
+        if not shutil.which(program):
+            return program
+    return None
+
+
+class Browser:
+    def __init__(self, webgl=True, script=True):
+        with socket.socket() as probe:
+            probe.bind(("127.0.0.1", 0))
+            port = probe.getsockname()[1]
+        self.driver = subprocess.Popen(["chromedriver", f"--port={port}"], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+        self.base = f"http://127.0.0.1:{port}"
+        arguments = ["--headless=new", "--no-sandbox", "--disable-dev-shm-usage", "--hide-scrollbars",
+                     "--disable-background-networking", "--no-first-run", "--window-size=1200,900"]
+        if webgl:
+            arguments += ["--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--ignore-gpu-blocklist"]
+        else:
+            arguments += ["--disable-gpu", "--disable-3d-apis"]
+        preferences = {} if script else {"profile.managed_default_content_settings.javascript": 2}
+        try:
+            self.wait_for_driver()
+            answer = self.call("POST", "/session", {"capabilities": {"alwaysMatch": {
+                "goog:chromeOptions": {"args": arguments, "prefs": preferences},
+                "goog:loggingPrefs": {"browser": "ALL", "performance": "ALL"}}}})
+        except BaseException:
+            self.driver.kill()
+            raise
+        self.session = f"/session/{answer['sessionId']}"
+
+    def wait_for_driver(self):
+        for _ in range(200):
+            try:
+                self.call("GET", "/status")
+                return
+            except (urllib.error.URLError, ConnectionError):
+                time.sleep(0.1)
+        raise RuntimeError("chromedriver does not answer")
+
+    def call(self, method, path, body=None):
+        data = None if body is None else json.dumps(body).encode()
+        request = urllib.request.Request(self.base + path, data, {"Content-Type": "application/json"}, method=method)
+        try:
+            with urllib.request.urlopen(request, timeout=300) as reply:
+                return json.load(reply)["value"]
+        except urllib.error.HTTPError as error:
+            raise RuntimeError(json.load(error)["value"]["message"].splitlines()[0]) from None
+
+    def ask(self, method, path, body=None):
+        return self.call(method, self.session + path, body)
+
+    def open(self, file):
+        self.ask("POST", "/url", {"url": "file://" + os.path.abspath(file)})
+
+    def run(self, script, *arguments):
+        return self.ask("POST", "/execute/sync", {"script": script, "args": list(arguments)})
+
+    def wait(self, condition, seconds=120):
+        """Until the JavaScript expression is true."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            if self.run(f"return Boolean({condition})"):
+                return
+            time.sleep(0.05)
+        raise AssertionError(f"never became true: {condition}")
+
+    def text(self, selector):
+        return self.run("return document.querySelector(arguments[0])?.innerText ?? null", selector)
+
+    def keys(self, selector, text):
+        found = self.ask("POST", "/element", {"using": "css selector", "value": selector})
+        self.ask("POST", f"/element/{found[ELEMENT]}/value", {"text": text})
+
+    def log(self, kind):
+        return self.ask("POST", "/se/log", {"type": kind})
+
+    def devtools(self, command, **parameters):
+        return self.ask("POST", "/goog/cdp/execute", {"cmd": command, "params": parameters})
+
+    def look(self, width=1200, height=900, dark=False):
+        """From a window of this size, with this preference."""
+        self.devtools("Emulation.setDeviceMetricsOverride", width=width, height=height, deviceScaleFactor=1, mobile=False)
+        self.devtools("Emulation.setEmulatedMedia", features=[
+            {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
+
+    def screenshot(self, path, whole=True):
+        picture = self.devtools("Page.captureScreenshot", captureBeyondViewport=whole, **(
+            {"clip": {**self.size(), "x": 0, "y": 0, "scale": 1}} if whole else {}))
+        with open(path, "wb") as out:
+            out.write(base64.b64decode(picture["data"]))
+
+    def size(self):
+        return self.run("return {width: innerWidth, height: document.documentElement.scrollHeight}")
+
+    def print_pdf(self, path):
+        page = self.devtools("Page.printToPDF", printBackground=True, paperWidth=8.27, paperHeight=11.69)
+        with open(path, "wb") as out:
+            out.write(base64.b64decode(page["data"]))
+
+    def close(self):
+        try:
+            self.ask("DELETE", "")
+        finally:
+            self.driver.terminate()
+            self.driver.wait()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()

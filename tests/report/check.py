@@ -1,0 +1,201 @@
+#!/usr/bin/python3
+"""Loads reports in a headless Chromium, moves the slider, reads what is shown. usage: check.py PROGRAM [KEEP]
+Screenshots and the printed page go to the folder KEEP, where given. Exits 77 where no Chromium is installed."""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from browser import Browser, missing  # noqa: E402
+
+HOSTILE = "<script>alert(1)<'&\" --><b>"  # a file's name
+
+
+def check(condition, what):
+    if not condition:
+        raise AssertionError(what)
+
+
+def scree(*words, folder):
+    done = subprocess.run([PROGRAM, *words], cwd=folder, capture_output=True, text=True, check=False)
+    check(done.returncode == 0, f"scree {' '.join(words)}: {done.stderr}")
+    return done.stdout
+
+
+def ready(browser, page):
+    browser.open(page)
+    browser.wait("document.body.dataset.ready")
+    check(browser.run("return document.body.dataset.ready") == "true", browser.text("#wait"))
+
+
+def no_complaints(browser, what):
+    """Nothing on the console, and no address asked for but the file's own."""
+    said = [entry["message"] for entry in browser.log("browser") if entry["level"] == "SEVERE"]
+    check(not said, f"{what}: the console says {said}")
+    asked = [line["message"] for line in browser.log("performance") if '"Network.requestWillBeSent"' in line["message"]]
+    check(not any('"url":"http' in line for line in asked), f"{what}: asked a network for something")
+
+
+def shown(browser):
+    return int(browser.run("return document.body.dataset.shownTriangles"))
+
+
+def painted(browser, view):
+    """Colours in a 3D view: the picture is drawn onto a small canvas and read."""
+    return browser.run("""
+      const view = document.querySelectorAll('.view canvas')[arguments[0]];
+      const copy = document.createElement('canvas');
+      copy.width = copy.height = 64;
+      const context = copy.getContext('2d');
+      context.drawImage(view, 0, 0, 64, 64);
+      const { data } = context.getImageData(0, 0, 64, 64);
+      const colors = new Set();
+      let covered = 0;
+      for (let i = 0; i < data.length; i += 4) {
+        if (data[i + 3] > 128) covered++, colors.add(data[i] << 16 | data[i + 1] << 8 | data[i + 2]);
+      }
+      return { covered, colors: colors.size, sum: data.reduce((a, b) => a + b, 0) };""", view)
+
+
+def slide(browser, row):
+    browser.run("const s = document.querySelector('.slider'); s.value = arguments[0];"
+                "s.dispatchEvent(new Event('input'))", row)
+    browser.wait("document.querySelector('.level-text').innerText.startsWith("
+                 "Number(document.body.dataset.shownTriangles).toLocaleString('en'))")
+
+
+def slider_drives_the_mesh(browser):
+    start, picture = shown(browser), painted(browser, 1)
+    check(f"{start:,} of" in browser.text(".answer"), "the slider does not begin at the answer")
+    check(picture["covered"] > 400 and picture["colors"] > 5, f"no mesh to be seen: {picture}")
+    slide(browser, 0)
+    coarse = painted(browser, 1)
+    check(shown(browser) < start and coarse["sum"] != picture["sum"], "the slider does not change the mesh")
+    last = int(browser.run("return document.querySelector('.slider').max"))
+    before = shown(browser)
+    for row in range(last // 4, last + 1, last // 4):
+        slide(browser, row)
+        check(shown(browser) > before, "levels do not grow along the slider")
+        before = shown(browser)
+    browser.keys(".slider", "\ue012")  # arrow left
+    browser.wait(f"Number(document.body.dataset.shownTriangles) < {before}")
+    browser.run("[...document.querySelectorAll('button')].find(b => b.innerText === 'Chosen').click()")
+    browser.wait(f"document.body.dataset.shownTriangles == {start}")
+
+
+def views_obey(browser):
+    before = painted(browser, 1), painted(browser, 0)
+    browser.keys(".view + .view canvas", "\ue012\ue012\ue013")
+    check(painted(browser, 1)["sum"] != before[0]["sum"], "arrow keys do not turn the view")
+    check(painted(browser, 0)["sum"] != before[1]["sum"], "the scan does not turn with the level")
+    wired = painted(browser, 1)
+    browser.run("document.querySelector('[data-key=wire]').click()")
+    check(painted(browser, 1)["sum"] != wired["sum"], "edges cannot be switched off")
+    browser.run("document.querySelector('[data-key=colored]').click()")
+    browser.wait("document.body.dataset.largestDistance")
+    far = []
+    for row in (0, 150):
+        slide(browser, row)
+        browser.wait("document.body.dataset.largestDistance")
+        far.append(float(browser.run("return document.body.dataset.largestDistance")))
+    check(far[0] > 3 * far[1], f"coarse levels are not further off: {far} mm")
+    check(browser.run("return document.querySelector('.scale').innerText.includes('mm')"), "no scale to the colours")
+
+
+def tables_are_saved(browser):
+    saved = browser.run("""
+      const texts = [];
+      const make = URL.createObjectURL;
+      URL.createObjectURL = (blob) => (texts.push(blob.text()), make.call(URL, blob));
+      const click = HTMLAnchorElement.prototype.click;
+      HTMLAnchorElement.prototype.click = () => {};
+      document.querySelectorAll('button.save').forEach((button) => button.click());
+      HTMLAnchorElement.prototype.click = click;
+      URL.createObjectURL = make;
+      return Promise.all(texts);""")
+    check(len(saved) == browser.run("return document.querySelectorAll('table:not(.u-legend)').length + 1"), "a table without CSV")
+    for text in saved:
+        rows = text.split("\r\n")
+        check(len(rows) > 2 and rows[-1] == "", "CSV without rows")
+    check(any(row.startswith('"robust') for text in saved for row in text.split("\r\n")), "no candidates in the CSV")
+
+
+def pictures(browser, name, **how):
+    """The page from another window: nothing sticks out; screenshot and print where asked for."""
+    browser.look(**how)
+    browser.wait(f"innerWidth == {how.get('width', 1200)}")
+    time.sleep(0.4)  # the curve is drawn anew a little after the size has changed
+    wide = browser.run("return document.documentElement.scrollWidth - innerWidth")
+    check(wide <= 0, f"{name}: the page is {wide} pixels wider than the window")
+    if KEEP:
+        browser.screenshot(os.path.join(KEEP, f"{name}.png"))
+        browser.print_pdf(os.path.join(KEEP, f"{name}.pdf"))
+
+
+def one_object(browser, folder):
+    scree("choose", "sample:dc-1", "--resolution", "1.5mm", "-o", "one", folder=folder)
+    page = os.path.join(folder, "one", "report.html")
+    scree("report", "one", "-o", "again.html", folder=folder)
+    with open(page, "rb") as a, open(os.path.join(folder, "again.html"), "rb") as b:
+        check(a.read() == b.read(), "report makes another page than choose")
+    ready(browser, page)
+    slider_drives_the_mesh(browser)
+    views_obey(browser)
+    tables_are_saved(browser)
+    no_complaints(browser, "one object")
+    pictures(browser, "light")
+    pictures(browser, "phone", width=390, height=844)
+    pictures(browser, "dark", width=800, dark=True)
+    browser.look()
+    return page
+
+
+def several_objects(browser, folder):
+    scree("sample", "icosphere-5", "-o", "ball.stl", folder=folder)
+    shutil.move(os.path.join(folder, "ball.stl"), os.path.join(folder, HOSTILE + ".stl"))
+    scree("choose", HOSTILE + ".stl", "sample:fp-1", "--resolution", "1.5mm", "-o", "two", folder=folder)
+    ready(browser, os.path.join(folder, "two", "report.html"))
+    check(HOSTILE in browser.text("main"), "the hostile name is not shown as it is")
+    check(browser.run("return document.querySelectorAll('b').length") == 0, "a name became markup")
+    check(shown(browser) > 0, "no mesh for the hostile name")
+    first = browser.text(".object-name")
+    browser.run("document.querySelectorAll('.objects button')[1].click()")
+    check(browser.text(".object-name") not in (first, None), "the second object cannot be picked")
+    no_complaints(browser, "two objects")
+    pictures(browser, "two")
+    scree("report", "one", "two", "-o", "both.html", folder=folder)
+    ready(browser, os.path.join(folder, "both.html"))
+    check(browser.text("main").count("How this was made") == 2, "a page of two folders lacks one")
+
+
+def what_is_missing_is_said(page):
+    with Browser(webgl=False) as browser:
+        ready(browser, page)
+        text = browser.text("main")
+        check("shows no WebGL" in text and "Candidate levels" in text, "nothing is said where WebGL is missing")
+        pictures(browser, "no-webgl", width=600)
+    with Browser(script=False) as browser:
+        browser.open(page)
+        check("Use " in browser.text("body"), "nothing is said where JavaScript is off")
+
+
+def main():
+    what = missing()
+    if what:
+        print(f"skipped: no {what} installed")
+        return 77
+    with tempfile.TemporaryDirectory() as folder:
+        with Browser() as browser:
+            page = one_object(browser, folder)
+            several_objects(browser, folder)
+        what_is_missing_is_said(page)
+    return 0
+
+
+PROGRAM = os.path.abspath(sys.argv[1])
+KEEP = sys.argv[2] if len(sys.argv) > 2 else None
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,102 @@
+// Curves on logarithmic axes through uPlot, with marks, and redrawn for print in dark on white.
+import uPlot from 'uplot';
+import 'uplot/dist/uPlot.min.css';
+
+let printing = false;
+const charts = new Set();
+
+const color = (name) => (printing ? { '--ink': '#1c1c22', '--rule': '#d9d9de' }[name] : getComputedStyle(document.body).getPropertyValue(name).trim());
+const ink = () => color('--ink');
+const rule = () => color('--rule');
+
+// Okabe and Ito's, on light and on dark paper.
+const dark = matchMedia('(prefers-color-scheme: dark)');
+const shade = (light, other) => () => (dark.matches && !printing ? other : light);
+export const palette = [shade('#0072b2', '#56b4e9'), shade('#d55e00', '#e69f00'), shade('#009e73', '#1fc79a'), shade('#b0578d', '#e3a0c6')];
+
+const isPower = (v) => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
+const raised = (n) => [...String(n)].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c])).join('');
+const power = (v) => (isPower(v) ? `10${raised(Math.round(Math.log10(v)))}` : '');
+
+export class Chart {
+  // yLeast: lower end of the axis, where data go below. series: [{label, values, color, dash, width, text(v)}]; marks(): [{x, color, dash, label}]; pick(index): a click.
+  constructor(host, { x, series, marks, pick, yLabel, yLeast, logY = true, logX = true }) {
+    Object.assign(this, { host, x, series, marks, pick, yLabel, yLeast, logX, logY });
+    charts.add(this);
+    this.draw();
+  }
+
+  draw() {
+    const { host, x, series } = this;
+    host.replaceChildren();
+    const axis = (label, log) => ({
+      label, stroke: ink, ticks: { stroke: rule }, labelSize: 24,
+      grid: { stroke: rule, width: 1, ...(log ? { filter: (_, at) => at.map((v) => (isPower(v) ? v : null)) } : {}) },
+      ...(log ? { values: (_, at) => at.map(power) } : {}),
+    });
+    const options = {
+      width: Math.max(260, host.clientWidth), height: 340,
+      cursor: { drag: { x: false, y: false } },
+      scales: { x: { time: false, distr: this.logX ? 3 : 1 }, y: { distr: this.logY ? 3 : 1, ...(this.yLeast ? { range: (_, low, high) => uPlot.rangeLog(Math.max(low, this.yLeast), high, 10, true) } : {}) } },
+      axes: [axis(x.label, this.logX), { ...axis(this.yLabel, this.logY), size: 56 }],
+      series: [{ label: x.label, value: (_, v) => (v === null ? '' : x.text(v)) }, ...series.map((s) => ({
+        label: s.label, stroke: s.color, width: s.width ?? 1.5, dash: s.dash, spanGaps: true, points: { show: s.points ?? false },
+        value: (_, v) => (v === null ? '' : s.text(v)),
+      }))],
+      hooks: { draw: [(plot) => this.drawMarks(plot)] },
+    };
+    const positive = (v) => (v > 0 || !this.logY ? v : null);
+    this.plot = new uPlot(options, [x.values, ...series.map((s) => s.values.map(positive))], host);
+    this.plot.over.addEventListener('click', () => {
+      if (this.plot.cursor.idx !== null && this.plot.cursor.idx !== undefined) this.pick?.(this.plot.cursor.idx);
+    });
+  }
+
+  drawMarks(plot) {
+    const { ctx, bbox } = plot;
+    for (const mark of this.marks?.() ?? []) {
+      const at = Math.round(plot.valToPos(mark.x, 'x', true));
+      if (!(at >= bbox.left && at <= bbox.left + bbox.width)) continue;
+      ctx.save();
+      ctx.strokeStyle = ctx.fillStyle = (mark.color ?? ink)();
+      ctx.lineWidth = 2 * devicePixelRatio;
+      ctx.setLineDash((mark.dash ?? []).map((d) => d * devicePixelRatio));
+      ctx.beginPath();
+      ctx.moveTo(at, bbox.top);
+      ctx.lineTo(at, bbox.top + bbox.height);
+      ctx.stroke();
+      if (mark.label) {
+        const right = at > bbox.left + bbox.width / 2;
+        ctx.font = `${12 * devicePixelRatio}px system-ui, sans-serif`;
+        ctx.textAlign = right ? 'right' : 'left';
+        ctx.fillText(mark.label, at + (right ? -6 : 6) * devicePixelRatio, bbox.top + 14 * devicePixelRatio);
+      }
+      ctx.restore();
+    }
+  }
+
+  redraw() {
+    this.plot.redraw(false);
+  }
+
+  remove() {
+    charts.delete(this);
+    this.plot.destroy();
+  }
+}
+
+const drawAll = () => charts.forEach((chart) => chart.draw());
+addEventListener('beforeprint', () => {
+  printing = true;
+  drawAll();
+});
+addEventListener('afterprint', () => {
+  printing = false;
+  drawAll();
+});
+let resizing;
+addEventListener('resize', () => {
+  clearTimeout(resizing);
+  resizing = setTimeout(drawAll, 150);
+});
+dark.addEventListener('change', drawAll);

@@ -1,0 +1,361 @@
+// The section of one choice: answer, table of the objects, and for the object picked its curve, its mesh at every
+// level beside the scan, and the tables.
+import { Chart, palette } from './chart.js';
+import { Tree, distanceField } from './distance.js';
+import { Levels } from './levels.js';
+import { element, number, percent, rpText, saveButton, table, whole } from './text.js';
+import { View, link, mostEdgeTriangles, rampColor } from './view.js';
+
+const mm = 1000;
+const shownSamples = 24000; // small triangles that carry the distance colours
+
+const pickOf = (object) => object[object.default];
+const worstError = (object) => (object.default === 'paper' ? object.paper.level_eps_s : object.robust.eps_s);
+
+// 1, 2 or 5 times a power of ten, not below x.
+function roundUp(x) {
+  if (!(x > 0)) return 1;
+  const power = 10 ** Math.floor(Math.log10(x));
+  return [1, 2, 5, 10].map((f) => f * power).find((f) => f >= x * (1 - 1e-9));
+}
+
+// The curve in the file is a selection of levels: the chosen ones are put between.
+function addPicks(trace, object) {
+  for (const key of ['robust', 'paper', 'smooth', 'plain']) {
+    const { triangle_count: count, area, volume, level_eps_s: error, eps_s: worst } = object[key];
+    const at = trace.findIndex((row) => row.count >= count);
+    if (at < 0 || trace[at].count === count) continue;
+    trace.splice(at, 0, { count, area, volume, error, worst: key === 'robust' ? worst : Math.max(error, trace[at].worst) });
+  }
+}
+
+export class ChoiceSection {
+  constructor(host, folder) {
+    this.objects = folder.choice.filter((entry) => !entry.set);
+    this.set = folder.choice.find((entry) => entry.set);
+    this.ids = new Map(folder.levels);
+    this.levels = new Map();
+    this.state = { object: 0, row: 0, wire: true, only: false, colored: false };
+    this.host = host;
+    this.tellAnswer();
+    if (this.objects.length > 1) this.tellObjects();
+    this.build();
+    this.select(0);
+  }
+
+  levelsOf(index) {
+    const object = this.objects[index];
+    const { name } = object;
+    if (!this.levels.has(name)) {
+      const levels = this.ids.has(name) ? new Levels(this.ids.get(name)) : null;
+      if (levels) addPicks(levels.trace, object);
+      this.levels.set(name, levels);
+    }
+    return this.levels.get(name);
+  }
+
+  // ---- what was asked, and the answer ----
+
+  tellAnswer() {
+    const { objects, set, host } = this;
+    const { options } = objects[0];
+    const many = objects.length > 1;
+    element('h1', many ? `How many triangles do these ${objects.length} scans need?` : `How many triangles does ${objects[0].name} need?`, host);
+    element('p', many ? this.setAnswer(set) : this.ownAnswer(objects[0]), host, { class: 'answer' });
+    const rule = options.paper
+      ? `the least Ip on a grid of ${options.per_decade} counts per factor of ten, as the paper has it`
+      : 'the least Ip over every level, with the worst error at a level or any finer one, so that an area that is right by accident does not count';
+    element('p', `Asked: the count that balances the error of the surface area against the number of triangles, Ip = eps_s + ${options.weight === 1 ? '' : `${number(options.weight)} `}Nr/Nm with eps_s = |S − Sm|/Sm${options.reference === 'smooth' ? ', Sm free of scan noise' : ''} (Katagiri and Koyanaka 2020). Chosen: ${rule}. Nr of the scan's Nm triangles are kept; Rp = Nr/Nm. Decimation: ${options.method}.`, host, { class: 'soft' });
+  }
+
+  ownAnswer(object) {
+    const pick = pickOf(object);
+    return `Use ${whole(pick.triangle_count)} of the scan's ${whole(object.triangle_count)} triangles (Rp = ${rpText(pick.triangle_count / object.triangle_count)}): the area stays within ${percent(worstError(object))} of the scan's.`;
+  }
+
+  setAnswer(set) {
+    const { rp } = set[this.objects[0].default];
+    const counts = [], errors = [];
+    this.objects.forEach((object, i) => {
+      const row = this.levelsOf(i)?.trace.findLast(({ count }) => count <= rp * object.triangle_count * (1 + 1e-9));
+      if (!row) return;
+      counts.push(row.count);
+      errors.push(row.worst);
+    });
+    const range = counts.length ? `: ${whole(Math.min(...counts))} to ${whole(Math.max(...counts))} triangles, area within ${percent(Math.max(...errors))} of the scans'` : '';
+    return `Use Rp = ${rpText(rp)} for all ${this.objects.length}${range}. Each object's own choice is below.`;
+  }
+
+  tellObjects() {
+    const { host } = this;
+    const columns = [
+      { head: 'object', value: (o) => o.name },
+      { head: 'scan triangles', value: (o) => o.triangle_count, text: (o) => whole(o.triangle_count) },
+      { head: 'scan noise in area', value: (o) => (o.noise.found ? o.noise.fraction : null), text: (o) => (o.noise.found ? percent(o.noise.fraction) : '–') },
+      ...[['robust', 'worst error'], ['paper', 'error']].flatMap(([key, error]) => [
+        { head: `${key}: triangles`, value: (o) => o[key].triangle_count, text: (o) => whole(o[key].triangle_count) },
+        { head: `${key}: Rp`, value: (o) => o[key].rp, text: (o) => rpText(o[key].rp) },
+        { head: `${key}: ${error}`, value: (o) => o[key].eps_s, text: (o) => percent(o[key].eps_s) },
+      ]),
+    ];
+    element('h2', 'The choice for each', host);
+    table(host, columns, this.objects, 'choice.csv', 'Objects and the triangles chosen for each');
+    element('h2', 'Look at', host);
+    const group = element('div', null, host, { role: 'group', 'aria-label': 'Objects', class: 'objects' });
+    this.buttons = this.objects.map((object, i) => {
+      const button = element('button', object.name, group, { type: 'button' });
+      button.addEventListener('click', () => this.select(i));
+      return button;
+    });
+  }
+
+  // ---- the object picked ----
+
+  build() {
+    const { host } = this;
+    this.title = element('h2', null, host, { class: 'object-name' });
+    this.answer = element('p', null, host);
+    this.curve = element('div', null, host);
+    this.chartHost = element('div', null, this.curve, { class: 'chart' });
+    const label = element('label', 'Level: move along the curve, or click into it', this.curve, { class: 'soft' });
+    this.slider = element('input', null, label, { type: 'range', min: 0, max: 1, step: 1, class: 'slider' });
+    this.slider.addEventListener('input', () => this.moveTo(Number(this.slider.value)));
+    this.jumps = element('div', null, this.curve, { class: 'controls' });
+    this.levelText = element('p', null, this.curve, { class: 'level-text' });
+    this.missing = element('p', 'No levels of this object are in this page: it shows tables only.', host, { hidden: '' });
+    this.buildViews();
+    this.tables = element('div', null, host);
+  }
+
+  buildViews() {
+    this.viewsHost = element('div', null, this.curve);
+    const pair = element('div', null, this.viewsHost, { class: 'views' });
+    const cell = () => {
+      const box = element('figure', null, pair, { class: 'view' });
+      return [element('div', null, box), element('figcaption', null, box)];
+    };
+    const [scanHost, scanLabel] = cell();
+    const [levelHost, levelLabel] = cell();
+    Object.assign(this, { scanLabel, levelLabel });
+    try {
+      this.scanView = new View(scanHost, 'The scan in 3D');
+      this.levelView = new View(levelHost, 'The level under the slider in 3D');
+      link(this.scanView, this.levelView);
+    } catch {
+      this.scanView = this.levelView = null;
+      pair.remove();
+      element('p', 'This browser shows no WebGL, so the 3D views of the scan and of its levels, with edges and distance colours, are left out here. The curve, the slider\'s figures and all tables are complete.', this.viewsHost, { class: 'no-webgl', role: 'note' });
+      return;
+    }
+    const controls = element('div', null, this.viewsHost, { class: 'controls' });
+    const check = (text, key) => {
+      const label = element('label', null, controls);
+      const box = element('input', null, label, { type: 'checkbox', 'data-key': key });
+      box.checked = this.state[key];
+      label.append(` ${text}`);
+      box.addEventListener('change', () => {
+        this.state[key] = box.checked;
+        this.showLevel(0);
+      });
+    };
+    check('edges', 'wire');
+    check('only edges', 'only');
+    check('colour by distance to the scan', 'colored');
+    const home = element('button', 'Turn back', controls, { type: 'button' });
+    home.addEventListener('click', () => this.levelView.home());
+    this.scale = element('span', null, controls, { class: 'scale', hidden: '' });
+    element('span', '0', this.scale);
+    const bar = element('canvas', null, this.scale, { width: 128, height: 12, class: 'scale-bar', role: 'img', 'aria-label': 'colour scale' });
+    const context = bar.getContext('2d');
+    for (let i = 0; i < 128; i++) {
+      context.fillStyle = `rgb(${rampColor(i / 127)})`;
+      context.fillRect(i, 0, 1, 12);
+    }
+    this.scaleHigh = element('span', null, this.scale);
+    element('p', 'Turn with mouse or finger, or with the arrow keys once a view has the focus; plus and minus move nearer and away.', this.viewsHost, { class: 'soft hint' });
+  }
+
+  select(index) {
+    this.state.object = index;
+    const object = this.objects[index];
+    const levels = this.levelsOf(index);
+    this.buttons?.forEach((button, i) => button.setAttribute('aria-pressed', String(i === index)));
+    this.title.textContent = object.name;
+    this.title.hidden = this.objects.length === 1;
+    this.answer.textContent = `${this.objects.length > 1 ? this.ownAnswer(object) : ''} ${object.note ? `Note: ${object.note}.` : ''}`.trim();
+    this.chart?.remove();
+    this.chart = null;
+    this.curve.hidden = !levels;
+    this.missing.hidden = Boolean(levels);
+    this.tables.replaceChildren();
+    if (levels) {
+      this.slider.max = levels.trace.length - 1;
+      this.drawCurve(object, levels);
+      this.offerJumps(object, levels);
+      this.tellScan(object, levels);
+      this.moveTo(this.rowOf(levels, pickOf(object).triangle_count), true);
+    }
+    this.tellTables(object, levels);
+  }
+
+  rowOf(levels, count) {
+    const at = levels.trace.findIndex((row) => row.count >= count);
+    return at < 0 ? levels.trace.length - 1 : at;
+  }
+
+  drawCurve(object, levels) {
+    const { weight } = object.options;
+    const rp = levels.trace.map(({ count }) => count / object.triangle_count);
+    const ip = (error) => levels.trace.map((row, i) => row[error] + weight * rp[i]);
+    const text = (v) => number(v, 3);
+    this.chart = new Chart(this.chartHost, {
+      x: { label: 'Rp = Nr/Nm', values: rp, text: (v) => v.toExponential(2) },
+      yLabel: 'eps_s, Ip',
+      yLeast: 10 ** (Math.floor(Math.log10(Math.min(...ip('error')))) - 1), // eps_s itself falls to zero
+      series: [
+        { label: 'eps_s', values: levels.trace.map((row) => row.error), color: palette[0], width: 1, text },
+        { label: 'Ip', values: ip('error'), color: palette[1], dash: [6, 3], text },
+        { label: 'Ip, worst eps_s so far', values: ip('worst'), color: palette[2], width: 2.5, text },
+      ],
+      marks: () => [
+        { x: pickOf(object).triangle_count / object.triangle_count, color: palette[3], dash: [6, 5], label: 'chosen' },
+        { x: rp[this.state.row] },
+      ],
+      pick: (row) => this.moveTo(row),
+    });
+  }
+
+  offerJumps(object, levels) {
+    this.jumps.replaceChildren();
+    const jump = (text, row) => element('button', text, this.jumps, { type: 'button' }).addEventListener('click', () => this.moveTo(row()));
+    jump('Chosen', () => this.rowOf(levels, pickOf(object).triangle_count));
+    for (const [text, factor] of [['Half the triangles', 0.5], ['Twice the triangles', 2]]) {
+      jump(text, () => {
+        const wanted = levels.trace[this.state.row].count * factor;
+        const row = this.rowOf(levels, wanted);
+        return factor < 1 && levels.trace[row].count > wanted && row > 0 ? row - 1 : row;
+      });
+    }
+    jump('Finest', () => levels.trace.length - 1);
+  }
+
+  tellScan(object, levels) {
+    if (!this.scanView) return;
+    const shown = levels.shownScanCount;
+    this.scanLabel.textContent = shown === levels.scanCount
+      ? `The scan: ${whole(shown)} triangles`
+      : `The scan has ${whole(levels.scanCount)} triangles; shown is its level of ${whole(shown)}, the finest that fits into this page`;
+    this.scanView.show(levels.scan(), levels, {});
+  }
+
+  moveTo(row, atOnce = false) {
+    this.state.row = row;
+    this.slider.value = row;
+    const levels = this.levelsOf(this.state.object);
+    this.steps = levels.stepsTo(levels.trace[row].count);
+    this.tellLevel(levels);
+    this.chart.redraw();
+    if (atOnce) return this.showLevel(0);
+    this.frame ??= requestAnimationFrame(() => {
+      this.frame = null;
+      this.showLevel(150);
+    });
+    return undefined;
+  }
+
+  tellLevel(levels) {
+    const object = this.objects[this.state.object];
+    const row = levels.trace[this.state.row];
+    const rp = row.count / object.triangle_count;
+    const volume = Math.abs(row.volume - object.volume) / Math.abs(object.volume);
+    this.levelText.textContent = `${whole(row.count)} triangles, Rp = ${number(rp, 3)}: area ${number(row.area * mm * mm, 5)} mm², off by eps_s = ${percent(row.error)}; Ip = ${number(row.error + object.options.weight * rp, 3)}, with the worst eps_s so far ${number(row.worst + object.options.weight * rp, 3)}; volume off by ${percent(volume)}.`;
+    this.slider.setAttribute('aria-valuetext', `${row.count} triangles`);
+  }
+
+  // The mesh at once; the distances, which take longer, when the slider has rested for `wait` ms.
+  showLevel(wait) {
+    if (!this.levelView) return;
+    const levels = this.levelsOf(this.state.object);
+    const row = levels.trace[this.state.row];
+    const mesh = levels.level(this.steps);
+    const shown = mesh.triangles.length / 3;
+    const { wire, only, colored } = this.state;
+    const edges = shown <= mostEdgeTriangles;
+    const options = { wire: wire && edges, only: only && edges };
+    const notes = [`${whole(shown)} triangles`];
+    if (row.count > shown) notes.push('the finest level that fits into this page');
+    if ((wire || only) && !edges) notes.push(`edges are drawn up to ${whole(mostEdgeTriangles)}`);
+    this.scale.hidden = !colored;
+    this.levelView.show(mesh, levels, options);
+    this.levelLabel.textContent = `This level: ${notes.join('; ')}`;
+    document.body.dataset.shownTriangles = shown;
+    delete document.body.dataset.largestDistance;
+    clearTimeout(this.coloring);
+    if (!colored) return;
+    if (!levels.tree) this.levelLabel.textContent = `This level: ${notes.join('; ')}; measuring distances ...`;
+    this.coloring = setTimeout(() => this.colorLevel(levels, mesh, options, notes), levels.tree ? wait : 30);
+  }
+
+  colorLevel(levels, mesh, options, notes) {
+    levels.tree ??= new Tree(levels.scan());
+    const field = distanceField(mesh, levels.tree, shownSamples);
+    const largest = field.largest * levels.step * mm;
+    // a few far points must not take the colours from all others
+    const range = roundUp(Float32Array.from(field.distances).sort()[Math.floor(0.98 * field.distances.length)] * levels.step * mm);
+    this.levelView.show(mesh, levels, { ...options, field, range: range / mm / levels.step });
+    this.scaleHigh.textContent = `${number(range)} mm${largest > range ? ' and more' : ''}`;
+    const to = levels.shownScanCount === levels.scanCount ? 'the scan' : 'the scan as shown';
+    this.levelLabel.textContent = `This level: ${notes.join('; ')}; distance to ${to}: mean ${number(field.mean * levels.step * mm, 2)} mm, largest found ${number(largest, 2)} mm`;
+    document.body.dataset.largestDistance = largest;
+  }
+
+  // ---- tables ----
+
+  tellTables(object, levels) {
+    const { tables: host } = this;
+    element('h2', 'Candidate levels', host);
+    const names = { paper: 'paper: least Ip on the grid', robust: 'robust: least Ip, worst eps_s so far', smooth: 'robust, free of scan noise', plain: 'least Ip of all levels' };
+    const keys = ['paper', 'robust', 'smooth', 'plain'];
+    const rows = [
+      { name: 'scan', pick: { triangle_count: object.triangle_count, area: object.area, volume: object.volume, level_eps_s: 0 }, measures: levels?.measures[0] },
+      ...keys.map((key, i) => ({ name: `${names[key]}${key === object.default ? ' (chosen)' : ''}${key === 'plain' && object.plain_is_accident ? ' (an accident)' : ''}`, pick: object[key], measures: levels?.measures[i + 1] })),
+    ];
+    const scan = levels?.measures[0];
+    const value = (head, get, digits = 4) => ({ head, value: get, text: (row) => number(get(row), digits) });
+    const measured = (head, get, digits) => value(head, (row) => (row.measures ? get(row.measures) : null), digits);
+    const moments = (m) => [m.moment_1, m.moment_2, m.moment_3];
+    const difference = (m) => Math.hypot(...moments(m).map((x, i) => x - moments(scan)[i])) / Math.hypot(...moments(scan));
+    const columns = [
+      { head: 'level', value: (row) => row.name },
+      { head: 'triangles', value: (row) => row.pick.triangle_count, text: (row) => whole(row.pick.triangle_count) },
+      value('Rp', (row) => row.pick.triangle_count / object.triangle_count, 3),
+      value('Ip', (row) => row.pick.ip, 3),
+      value('eps_s', (row) => row.pick.level_eps_s, 3),
+      value('area / mm²', (row) => row.pick.area * mm ** 2, 6),
+      value('volume / mm³', (row) => row.pick.volume * mm ** 3, 6),
+      { head: 'volume error', value: (row) => Math.abs(row.pick.volume - object.volume) / Math.abs(object.volume), text: (row) => percent(Math.abs(row.pick.volume - object.volume) / Math.abs(object.volume)) },
+      ...['length', 'width', 'height'].map((key) => measured(`${key} / mm`, (m) => m[key] * mm)),
+      measured('inertia error', (m) => difference(m), 2),
+      measured('sphericity', (m) => m.sphericity),
+      measured('convexity', (m) => m.convexity),
+    ];
+    table(host, columns, rows, `${object.name}-candidates.csv`, `Measures of ${object.name} at the candidate levels`);
+    element('p', 'Length, width and height are of the smallest box around; the inertia error is that of the three principal moments together.', host, { class: 'soft' });
+    const more = element('details', null, host);
+    element('summary', 'Every level of the grid', more);
+    const errors = [...new Set(object.levels.flatMap((level) => Object.keys(level.errors)))];
+    table(more, [
+      { head: 'Rp', value: (l) => l.rp, text: (l) => rpText(l.rp) },
+      { head: 'triangles', value: (l) => l.triangle_count, text: (l) => whole(l.triangle_count) },
+      { head: 'reached', value: (l) => l.reached, text: (l) => (l.reached ? 'yes' : 'no') },
+      { head: 'area / m2', value: (l) => l.area, text: (l) => number(l.area, 6) },
+      { head: 'volume / m3', value: (l) => l.volume, text: (l) => number(l.volume, 6) },
+      ...['eps_s', 'ip', 'worst_eps_s', 'robust_ip'].map((key) => ({ head: key, value: (l) => l[key], text: (l) => number(l[key], 3) })),
+      ...errors.filter((key) => key !== 'area').map((key) => ({ head: `error: ${key}`, value: (l) => l.errors[key], text: (l) => number(l.errors[key], 3) })),
+    ], object.levels, `${object.name}-grid.csv`, `Levels of the grid of ${object.name}`);
+    if (levels) {
+      const rows = () => [['triangles', 'rp', 'area_m2', 'volume_m3', 'eps_s', 'worst_eps_s'], ...levels.trace.map((r) => [r.count, r.count / object.triangle_count, r.area, r.volume, r.error, r.worst])];
+      saveButton(host, 'Save the curve as CSV', `${object.name}-curve.csv`, rows);
+    }
+  }
+}

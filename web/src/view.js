@@ -1,0 +1,165 @@
+// A 3D view of a mesh that is turned with mouse, finger or arrow keys. Flat shading, so that facets are seen.
+import {
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, LineBasicMaterial, LineSegments, Mesh,
+  MeshStandardMaterial, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
+} from 'three';
+import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
+
+export const mostEdgeTriangles = 60000; // edges of finer meshes would hide them
+
+// viridis at nine points
+const ramp = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129],
+  [92, 200, 99], [170, 220, 50], [253, 231, 37]];
+
+export function rampColor(t) {
+  const x = Math.min(1, Math.max(0, t)) * (ramp.length - 1);
+  const i = Math.min(ramp.length - 2, Math.floor(x));
+  return ramp[i].map((c, k) => Math.round(c + (ramp[i + 1][k] - c) * (x - i)));
+}
+
+function surface(mesh, field, range) {
+  const geometry = new BufferGeometry();
+  if (!field) {
+    geometry.setAttribute('position', new BufferAttribute(mesh.points, 3));
+    geometry.setIndex(new BufferAttribute(mesh.triangles, 1));
+    return geometry;
+  }
+  geometry.setAttribute('position', new BufferAttribute(field.points, 3));
+  const table = Array.from({ length: 256 }, (_, i) => {
+    const [r, g, b] = rampColor(i / 255);
+    return new Color().setRGB(r / 255, g / 255, b / 255, 'srgb').toArray();
+  });
+  const colors = new Float32Array(field.points.length);
+  for (let v = 0; v < field.distances.length; v++) {
+    const t = range > 0 ? Math.min(255, Math.round((255 * field.distances[v]) / range)) : 0;
+    colors.set(table[t], 3 * v);
+  }
+  geometry.setAttribute('color', new BufferAttribute(colors, 3));
+  return geometry;
+}
+
+function edges(mesh) {
+  const { points, triangles } = mesh;
+  const count = points.length / 3, seen = new Set(), pairs = [];
+  for (let i = 0; i < triangles.length; i++) {
+    const a = triangles[i], b = triangles[i % 3 === 2 ? i - 2 : i + 1];
+    const key = a < b ? a * count + b : b * count + a;
+    if (seen.has(key)) continue;
+    seen.add(key);
+    pairs.push(a, b);
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(points, 3));
+  geometry.setIndex(new BufferAttribute(Uint32Array.from(pairs), 1));
+  return geometry;
+}
+
+export class View {
+  constructor(host, label) {
+    this.host = host;
+    this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
+    const canvas = this.renderer.domElement;
+    canvas.setAttribute('role', 'img');
+    canvas.setAttribute('aria-label', `${label}. Arrow keys turn it, plus and minus move nearer and away, 0 turns it back.`);
+    canvas.tabIndex = 0;
+    host.append(canvas);
+    this.scene = new Scene();
+    this.camera = new PerspectiveCamera(25, 1, 0.01, 200);
+    this.camera.up.set(0, 0, 1);
+    this.scene.add(new AmbientLight(0xffffff, 1.3));
+    for (const [strength, x, y, z] of [[2.2, -0.6, 0.5, 1], [0.6, 1, -0.3, 0.4]]) {
+      const light = new DirectionalLight(0xffffff, strength);
+      light.position.set(x, y, z);
+      this.camera.add(light);
+    }
+    this.scene.add(this.camera);
+    this.controls = new OrbitControls(this.camera, canvas);
+    this.controls.addEventListener('change', () => this.draw());
+    canvas.addEventListener('keydown', (event) => this.key(event));
+    this.home();
+    new ResizeObserver(() => this.resize()).observe(host);
+  }
+
+  home() {
+    this.camera.position.set(2.35, -2.7, 1.75);
+    this.controls.target.set(0, 0, 0);
+    this.controls.update();
+  }
+
+  key(event) {
+    const turns = { ArrowLeft: [0, -0.15], ArrowRight: [0, 0.15], ArrowUp: [-0.12, 0], ArrowDown: [0.12, 0] };
+    const nearer = { '+': 0.9, '=': 0.9, '-': 1 / 0.9 };
+    if (event.key === '0') {
+      this.home();
+    } else if (turns[event.key] || nearer[event.key]) {
+      // three's spherical angles are about y; ours are about z
+      const offset = this.camera.position.clone().sub(this.controls.target);
+      const sphere = new Spherical().setFromVector3(new Vector3(offset.x, offset.z, -offset.y));
+      const [polar, around] = turns[event.key] ?? [0, 0];
+      sphere.phi = Math.min(Math.PI - 0.02, Math.max(0.02, sphere.phi + polar));
+      sphere.theta += around;
+      sphere.radius *= nearer[event.key] ?? 1;
+      const moved = new Vector3().setFromSpherical(sphere);
+      this.camera.position.set(moved.x, -moved.z, moved.y).add(this.controls.target);
+      this.controls.update();
+    } else {
+      return;
+    }
+    event.preventDefault();
+  }
+
+  resize() {
+    const { clientWidth: width, clientHeight: height } = this.host;
+    if (!width || !height) return;
+    this.renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
+    this.renderer.setSize(width, height);
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw();
+  }
+
+  // frame: {centre, size} in the mesh's units; field: distances to show as colours up to range, or null.
+  show(mesh, frame, { wire = false, only = false, field = null, range = 1 }) {
+    for (const part of this.parts ?? []) {
+      this.scene.remove(part);
+      part.geometry.dispose();
+      part.material.dispose();
+    }
+    this.parts = [];
+    if (!only)
+      this.parts.push(new Mesh(surface(mesh, field, range), new MeshStandardMaterial({
+        color: field ? 0xffffff : 0x7d9cc0, vertexColors: Boolean(field), flatShading: true, roughness: 0.8,
+        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+      })));
+    if (wire || only) {
+      const dense = mesh.triangles.length / 3;
+      this.parts.push(new LineSegments(edges(mesh), new LineBasicMaterial({
+        color: only ? 0x4477aa : 0x101018, transparent: true, opacity: dense < 5000 ? 0.9 : dense < 20000 ? 0.5 : 0.25,
+      })));
+    }
+    for (const part of this.parts) {
+      part.scale.setScalar(2 / frame.size);
+      part.position.set(...frame.centre).multiplyScalar(-2 / frame.size);
+      this.scene.add(part);
+    }
+    this.draw();
+  }
+
+  draw() {
+    this.renderer.render(this.scene, this.camera);
+    this.onDraw?.(this);
+  }
+
+  follow(other) {
+    this.camera.position.copy(other.camera.position);
+    this.camera.quaternion.copy(other.camera.quaternion);
+    this.controls.target.copy(other.controls.target);
+    this.renderer.render(this.scene, this.camera);
+  }
+}
+
+// Turning one turns the other.
+export function link(a, b) {
+  a.onDraw = (view) => b.follow(view);
+  b.onDraw = (view) => a.follow(view);
+}
