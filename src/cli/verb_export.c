@@ -2,6 +2,7 @@
 #include "cli/input.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct export_arguments {
@@ -18,7 +19,9 @@ static const export_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .densit
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "OUT",
      "What to write (required). Of a surface: .stl, .ply, .obj or .off, with a .json of the same "
-     "name beside it, or .vtp. Of a checkpoint: .vtp, or a folder.",
+     "name beside it, or .vtp. Of a checkpoint: .vtp, or a folder. Of several: .pvd or "
+     ".vtp.series, "
+     "with a .vtp each beside it.",
      0, 0, NULL},
     {"to", 't', CLI_UNIT, AT(to), "UNIT",
      "Unit of the meshes written. Default: the input's; mm for samples and checkpoints.", 0, 0,
@@ -46,15 +49,18 @@ static bool ends_with(const char *path, const char *ending) {
   return dot && !strcmp(dot, ending);
 }
 
+typedef enum input_kind { SURFACE, WORLD, RUN } input_kind;
+
 /* By content. */
-static bool is_checkpoint(const char *word) {
+static input_kind kind_of(const char *word) {
   char magic[8] = "";
-  if (!strcmp(word, "-") || cli_is_sample(word, NULL)) return false;
+  if (!strcmp(word, "-") || cli_is_sample(word, NULL)) return SURFACE;
   FILE *file = fopen(word, "rb");
-  if (!file) return false;
+  if (!file) return SURFACE;
   size_t count = fread(magic, 1, sizeof magic, file);
   fclose(file);
-  return count == sizeof magic && !memcmp(magic, "screeWLD", sizeof magic);
+  if (count < sizeof magic) return SURFACE;
+  return !memcmp(magic, "screeWLD", 8) ? WORLD : !memcmp(magic, "screeRUN", 8) ? RUN : SURFACE;
 }
 
 static scree_export_options export_options(const cli_call *call) {
@@ -140,28 +146,130 @@ static scree_status export_surface(const cli_call *call, scree_error *error) {
 
 /* ---- Checkpoints ---- */
 
+/* A world, or the run that it belongs to. */
+typedef struct checkpoint {
+  scree_run *run; /* NULL: a world of its own */
+  scree_world *world;
+} checkpoint;
+
+static scree_status load_checkpoint(const char *word, checkpoint *c, scree_error *error) {
+  *c = (checkpoint){0};
+  if (kind_of(word) == WORLD) return scree_world_load(word, &c->world, error);
+  scree_status status = scree_run_load(word, &c->run, error);
+  if (status == SCREE_OK) c->world = scree_run_world(c->run);
+  return status;
+}
+
+static void free_checkpoint(checkpoint *c) {
+  if (c->run)
+    scree_run_free(c->run);
+  else
+    scree_world_free(c->world);
+}
+
+static scree_status write_view(const cli_call *call, const checkpoint *c, const char *word,
+                               const char *path, scree_error *error) {
+  const export_arguments *a = call->options;
+  if (a->view != SCREE_VIEW_CONTACTS || !c->run || !scree_run_is_frame(c->run))
+    return scree_world_vtp_write(c->world, (scree_world_view)a->view, path, a->overwrite, error);
+  error->status = SCREE_UNSUPPORTED;
+  snprintf(error->message, sizeof error->message,
+           "%.900s: a frame holds no contacts; a checkpoint does", word);
+  return error->status;
+}
+
 static scree_status export_world(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   scree_export_options o = export_options(call);
-  scree_world *world;
-  scree_status status = scree_world_load(call->inputs[0], &world, error);
+  checkpoint c;
+  scree_status status = load_checkpoint(call->inputs[0], &c, error);
   if (status != SCREE_OK) return status;
   if (ends_with(a->output, ".vtp"))
-    status =
-        scree_world_vtp_write(world, (scree_world_view)a->view, a->output, a->overwrite, error);
+    status = write_view(call, &c, call->inputs[0], a->output, error);
   else
-    status = scree_world_export(world, &o, a->output, error);
-  scree_world_free(world);
+    status = scree_world_export(c.world, &o, a->output, error);
+  free_checkpoint(&c);
   return status;
+}
+
+enum { NAME_BYTES = 4096 };
+
+/* File `index` of a series: pile-0000.vtp beside pile.pvd or pile.vtp.series. */
+static scree_status name_file(const char *output, size_t index, char name[NAME_BYTES],
+                              scree_error *error) {
+  const char *end = strrchr(output, '.');
+  if (end - output > 4 && !strncmp(end - 4, ".vtp", 4)) end -= 4;
+  int length = snprintf(name, NAME_BYTES, "%.*s-%04zu.vtp", (int)(end - output), output, index);
+  if (length < NAME_BYTES) return SCREE_OK;
+  *error = (scree_error){SCREE_LIMIT, "the output's name is too long"};
+  return SCREE_LIMIT;
+}
+
+static scree_status write_frame(const cli_call *call, size_t index, char name[NAME_BYTES],
+                                double *time, scree_error *error) {
+  const export_arguments *a = call->options;
+  checkpoint c;
+  scree_status status = name_file(a->output, index, name, error);
+  if (status == SCREE_OK) status = load_checkpoint(call->inputs[index], &c, error);
+  if (status != SCREE_OK) return status;
+  *time = scree_world_time(c.world);
+  status = write_view(call, &c, call->inputs[index], name, error);
+  free_checkpoint(&c);
+  return status;
+}
+
+/* A .vtp per input, and the list of them with their times. */
+static scree_status export_series(const cli_call *call, scree_error *error) {
+  const export_arguments *a = call->options;
+  size_t count = call->input_count;
+  char(*paths)[NAME_BYTES] = calloc(count, sizeof *paths);
+  const char **names = calloc(count, sizeof *names);
+  double *times = calloc(count, sizeof *times);
+  scree_status status = paths && names && times ? SCREE_OK : SCREE_OUT_OF_MEMORY;
+  if (status != SCREE_OK) *error = (scree_error){status, "out of memory for the list of files"};
+  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
+    status = write_frame(call, i, paths[i], &times[i], error);
+    const char *slash = strrchr(paths[i], '/');
+    names[i] = slash ? slash + 1 : paths[i];
+  }
+  if (status == SCREE_OK)
+    status = scree_pvd_write(names, times, count, a->output, a->overwrite, error);
+  free(paths);
+  free(names);
+  free(times);
+  return status;
+}
+
+static bool is_series(const char *path) {
+  return ends_with(path, ".pvd") || ends_with(path, ".series");
+}
+
+/* 0, or 2 after telling which inputs do not go with the output. */
+static int check_inputs(const cli_call *call, bool world) {
+  const export_arguments *a = call->options;
+  bool series = is_series(a->output);
+  if (call->input_count > 1 && !series)
+    return cli_misuse(call->verb, "-o %s: several inputs go into a .pvd or .vtp.series only",
+                      a->output);
+  if (series && !world)
+    return cli_misuse(call->verb, "-o %s: a series is of checkpoints; %s is none", a->output,
+                      call->inputs[0]);
+  for (size_t i = 1; i < call->input_count; i++)
+    if (kind_of(call->inputs[i]) == SURFACE)
+      return cli_misuse(call->verb, "-o %s: a series is of checkpoints; %s is none", a->output,
+                        call->inputs[i]);
+  return 0;
 }
 
 /* 0, or 2 after telling what does not go together. */
 static int check_call(const cli_call *call, bool world) {
   static const char *const endings[] = {".stl", ".ply", ".obj", ".off", ".vtp"};
   const export_arguments *a = call->options;
-  bool vtp = ends_with(a->output, ".vtp"), known = false;
+  bool series = is_series(a->output), vtp = ends_with(a->output, ".vtp") || series, known = false;
   for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
     known = known || ends_with(a->output, endings[i]);
+  int code = check_inputs(call, world);
+  if (code) return code;
   if (!world && !known)
     return cli_misuse(call->verb, "-o %s: of a surface, .stl, .ply, .obj, .off or .vtp is written",
                       a->output);
@@ -181,36 +289,42 @@ static int check_call(const cli_call *call, bool world) {
 static int run(const cli_call *call) {
   const export_arguments *a = call->options;
   scree_error error;
+  scree_status status;
   if (!a->output) return cli_misuse(call->verb, "say with -o what to write");
-  bool world = is_checkpoint(call->inputs[0]);
+  bool world = kind_of(call->inputs[0]) != SURFACE;
   int code = check_call(call, world);
   if (code) return code;
-  scree_status status = world ? export_world(call, &error) : export_surface(call, &error);
+  if (is_series(a->output))
+    status = export_series(call, &error);
+  else
+    status = world ? export_world(call, &error) : export_surface(call, &error);
   return status == SCREE_OK ? 0 : cli_fail(&error);
 }
 
 const cli_verb cli_verb_export = {
     .name = "export",
     .summary = "write a mesh or a pile for other programs",
-    .inputs = "FILE|sample:NAME|CHECKPOINT",
+    .inputs = "FILE|sample:NAME|CHECKPOINT...",
     .description =
         "For DEM codes: a particle's mesh in the unit asked, with its centre of mass at the origin "
         "and its principal axes along x, y and z when asked, and mass, centre and inertia in a "
         "JSON beside it. The surface must be closed.\n\n"
         "For ParaView: a surface as .vtp with the area of every triangle, and with --reference its "
         "distance to another surface; lengths in metres.\n\n"
-        "A checkpoint of a simulation becomes .vtp, as the view asked; or a folder: pile.json and "
+        "A checkpoint or frame of a simulation becomes .vtp, as the view asked; or a folder: "
+        "pile.json and "
         "bodies.csv with every body's position, quaternion and velocities, and an STL per shape in "
         "the frame that the quaternions turn. docs/formats.md has every field.",
     .examples = "scree export result/phone.stl --principal --to m --density 1800 -o phone-dem.stl\n"
                 "scree export result/phone.stl --reference phone.stl -o phone.vtp\n"
-                "scree export drop/end.scree --view contacts -o contacts.vtp\n"
-                "scree export drop/end.scree --to m -o pile\n",
+                "scree export repose/checkpoint.scree --view contacts -o contacts.vtp\n"
+                "scree export repose/last.scree --to m -o pile\n"
+                "scree export repose/frame-*.scree -o heap.pvd\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,
     .options_size = sizeof defaults,
     .input_minimum = 1,
-    .input_maximum = 1,
+    .input_maximum = SIZE_MAX,
     .run = run,
 };

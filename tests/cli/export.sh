@@ -16,3 +16,6 @@ run export open.off -o x.stl
 printf 'screeWLD and nothing more' >cut.scree
 run export cut.scree -o pile
 run export cut.scree -o pile.stl
+run export cut.scree cut.scree -o pile
+run export sample:box-12 -o all.pvd
+run export cut.scree sample:box-12 -o all.pvd

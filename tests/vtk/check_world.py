@@ -5,6 +5,7 @@ import math
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree as tree
 
 try:
     import vtk
@@ -180,6 +181,18 @@ reader = vtk.vtkSTLReader()
 reader.SetFileName(f"{folder}/pile/shape-0.stl")
 reader.Update()
 assert near(reader.GetOutput().GetBounds(), [b * s for s in [side / 0.01] for b in [-0.5, 0.5] * 3], 1e-6)
+export("run.scree", "-o", "run.vtp", "--view", "points")
+export("frame.scree", "world.scree", "-o", "all.pvd", "--view", "points")
+assert open(f"{folder}/all-0000.vtp", "rb").read() == open(f"{folder}/run.vtp", "rb").read()
+assert open(f"{folder}/all-0001.vtp", "rb").read() == open(f"{folder}/points.vtp", "rb").read()
+sets = tree.parse(f"{folder}/all.pvd").getroot().findall("Collection/DataSet")
+assert [s.get("file") for s in sets] == ["all-0000.vtp", "all-0001.vtp"]
+assert float(sets[1].get("timestep")) == told["time"] != float(sets[0].get("timestep"))
+export("world.scree", "-o", "one.vtp.series", "--view", "walls")
+assert json.load(open(f"{folder}/one.vtp.series"))["files"] == [{"name": "one-0000.vtp", "time": told["time"]}]
+refused = subprocess.run([program, "export", "frame.scree", "--view", "contacts", "-o", "no.vtp"], cwd=folder,
+                         stderr=subprocess.PIPE, text=True)
+assert refused.returncode == 1 and "holds no contacts" in refused.stderr
 
 # ---- a mesh with its areas and its distances from another
 export("sample:box-12", "--reference", "sample:icosphere-3", "-o", "box.vtp")
