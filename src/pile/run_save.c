@@ -110,6 +110,7 @@ static scree_status strip_world(const scree_run *run, scree_world **world, scree
       scree_world_remove_body(*world, i);
     if (status != SCREE_OK) scree_world_free(*world);
   }
+  if (status == SCREE_OK) (*world)->time = run->world->time; /* what is drawn of it says so */
   return status;
 }
 
