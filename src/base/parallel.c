@@ -13,7 +13,7 @@ void scree_set_threads(int thread_count) {
 
 int scree_threads(void) {
   int requested = atomic_load(&requested_threads);
-  return requested > 0 ? requested : omp_get_num_procs();
+  return requested > 0 ? requested : omp_get_max_threads();
 }
 
 int scree_worker_count(void) {

@@ -34,6 +34,8 @@ enum { ROUNDS = 2 };
 /* Candidates lie at random in memory: how far ahead they are asked for. */
 enum { AHEAD = 16 };
 enum { VERTEX_BLOCK = 1024, CHOSEN_BLOCK = 256, BINS = 1 << 16 };
+/* Edges evaluated in one call; parts in which the candidates of a round are chosen. */
+enum { SIDE_BY_SIDE = 64, CHOICE_PARTS = 8 };
 
 enum { TOUCHED = 1, APEX = 2 };
 enum { REFUSED, CERTAIN, UNCERTAIN };
@@ -45,15 +47,20 @@ typedef struct item {
 /* A collapse that was taken; its ring is in pass.edges from first_edge on. */
 typedef struct taken {
   uint32_t half_edge, first_edge;
+  uint32_t place; /* in the record */
   uint16_t a_count, count;
   uint8_t verdict;
+  bool open;  /* a boundary edge: one triangle goes */
+  bool steep; /* as scree_around has it */
   bool folds; /* over an edge that it has in common with another one taken */
   float error;
+  scree_grid_box box;
 } taken;
 
 typedef struct pass {
   scree_decimator *d;
   uint32_t *best;     /* per vertex: half-edge of its cheapest edge, or NONE */
+  uint32_t *other;    /* per vertex: the other end of that */
   double *cost;       /* per vertex: of that */
   uint8_t *marks;     /* per vertex */
   uint32_t *chosen;   /* per vertex: the index of the collapse it is an end of, or NONE */
@@ -63,7 +70,9 @@ typedef struct pass {
   taken *taken;   /* in the order of cost */
   scree_change *changes;
   size_t taken_count, room;
-  uint32_t *edges; /* the rings */
+  size_t next_item;              /* to be looked at by choose_some */
+  size_t check_begin, check_end; /* taken ones to be checked meanwhile */
+  uint32_t *edges;               /* the rings */
   size_t edge_count;
   uint32_t *order; /* of taken: as their vertices lie in memory, for the parallel parts */
   uint32_t *uncertain;
@@ -73,6 +82,7 @@ typedef struct pass {
 
 static void pass_free(pass *p) {
   scree_free(p->best);
+  scree_free(p->other);
   scree_free(p->cost);
   scree_free(p->marks);
   scree_free(p->chosen);
@@ -92,6 +102,7 @@ static scree_status pass_allocate(pass *p) {
   size_t scratch = n > triangles / 2 ? n : triangles / 2 + 1;
   p->room = n / 6 + 1; /* more wait for the next round */
   SCREE_ALLOC_OR(p->best, n, error, out_of_memory);
+  SCREE_ALLOC_OR(p->other, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->cost, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->marks, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->chosen, n, error, out_of_memory);
@@ -133,10 +144,30 @@ static bool open_to_collapse(scree_halfmesh *s, uint32_t v, uint32_t h) {
   return true;
 }
 
+/* Edges that wait for their evaluation. */
+typedef struct waiting {
+  uint32_t edge[SIDE_BY_SIDE];
+  uint32_t count;
+} waiting;
+
+static void evaluate_waiting(pass *p, waiting *w) {
+  const scree_halfmesh *s = &p->d->s;
+  scree_candidate candidates[SIDE_BY_SIDE];
+  p->d->coster->evaluate(s, w->edge, w->count, candidates);
+  for (uint32_t i = 0; i < w->count; i++) {
+    uint32_t v = s->from[w->edge[i]];
+    if (!(candidates[i].cost < p->cost[v] && candidates[i].error <= p->d->error_limit)) continue;
+    p->cost[v] = candidates[i].cost;
+    p->best[v] = w->edge[i];
+  }
+  w->count = 0;
+}
+
 static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
+  waiting w = {.count = 0};
   for (size_t v = begin; v < end; v++) {
     p->best[v] = SCREE_NONE;
     p->cost[v] = INFINITY;
@@ -144,16 +175,15 @@ static void evaluate_block(void *context, size_t begin, size_t end, size_t block
     uint32_t first = s->outgoing[v], h = first;
     do {
       if (open_to_collapse(s, (uint32_t)v, h)) {
-        scree_candidate candidate;
-        p->d->coster->evaluate(s, h, &candidate);
-        if (candidate.cost < p->cost[v] && candidate.error <= p->d->error_limit) {
-          p->cost[v] = candidate.cost;
-          p->best[v] = h;
-        }
+        w.edge[w.count++] = h;
+        if (w.count == SIDE_BY_SIDE) evaluate_waiting(p, &w);
       }
       h = scree_turn(s, h);
     } while (h != SCREE_NONE && h != first);
   }
+  evaluate_waiting(p, &w);
+  for (size_t v = begin; v < end; v++)
+    if (p->best[v] != SCREE_NONE) p->other[v] = scree_to(s, p->best[v]);
 }
 
 /* The leading 32 bits below the sign: monotone in the cost. */
@@ -224,21 +254,34 @@ static void list_candidates(pass *p) {
   p->item_count = count;
 }
 
+static void reconsider_waiting(pass *p, waiting *w) {
+  const scree_halfmesh *s = &p->d->s;
+  scree_candidate candidates[SIDE_BY_SIDE];
+  p->d->coster->evaluate(s, w->edge, w->count, candidates);
+  for (uint32_t i = 0; i < w->count; i++)
+    p->cost[s->from[w->edge[i]]] =
+        candidates[i].error <= p->d->error_limit ? candidates[i].cost : INFINITY;
+  w->count = 0;
+}
+
 static void reconsider_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
+  waiting w = {.count = 0};
   for (size_t i = begin; i < end; i++) {
     uint32_t v = p->items[i].vertex, h = p->best[v];
-    p->items[i].key = UINT32_MAX;
-    if (s->outgoing[v] == SCREE_NONE || s->from[h] != v || s->refused[h]) continue;
-    if ((s->flags[v] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_CHANGED) {
-      scree_candidate candidate;
-      p->d->coster->evaluate(s, h, &candidate);
-      p->cost[v] = candidate.error <= p->d->error_limit ? candidate.cost : INFINITY;
+    if (s->outgoing[v] == SCREE_NONE || s->from[h] != v || s->refused[h]) {
+      p->cost[v] = INFINITY;
+      continue;
     }
-    p->items[i].key = key_of(p->cost[v]);
+    p->other[v] = scree_to(s, h);
+    if (!((s->flags[v] | s->flags[p->other[v]]) & SCREE_VERTEX_CHANGED)) continue;
+    w.edge[w.count++] = h;
+    if (w.count == SIDE_BY_SIDE) reconsider_waiting(p, &w);
   }
+  reconsider_waiting(p, &w);
+  for (size_t i = begin; i < end; i++) p->items[i].key = key_of(p->cost[p->items[i].vertex]);
 }
 
 /* Keeps the candidates of the last round that are still there and below the threshold. */
@@ -296,39 +339,63 @@ static void mark_ring(pass *p, const scree_ring *r) {
   p->chosen[r->a] = p->chosen[r->b] = (uint32_t)p->taken_count;
 }
 
-static void choose_independent(pass *p) {
+/* Lists the collapses taken from `begin` on as their vertices lie in memory, roughly. */
+static void order_by_place(pass *p, size_t begin) {
+  enum { BUCKETS = 1024 };
+  const scree_halfmesh *s = &p->d->s;
+  uint32_t start[BUCKETS + 1] = {0};
+  int shift = 0;
+  while (s->vertex_count >> shift > BUCKETS) shift++;
+  for (size_t i = begin; i < p->taken_count; i++)
+    start[(s->from[p->taken[i].half_edge] >> shift) + 1]++;
+  start[0] = (uint32_t)begin;
+  for (int k = 0; k < BUCKETS; k++) start[k + 1] += start[k];
+  for (size_t i = begin; i < p->taken_count; i++)
+    p->order[start[s->from[p->taken[i].half_edge] >> shift]++] = (uint32_t)i;
+}
+
+/* Takes the edge of item i if it is independent of those taken. */
+static void try_item(pass *p, size_t i) {
   scree_halfmesh *s = &p->d->s;
-  memset(p->marks, 0, s->vertex_count);
-  memset(p->chosen, 0xff, s->vertex_count * sizeof *p->chosen);
-  p->taken_count = p->edge_count = 0;
-  for (size_t i = 0; i < p->item_count && p->taken_count < p->room; i++) {
-    uint32_t v = p->items[i].vertex, h = p->best[v];
+  uint32_t v = p->items[i].vertex, h = p->best[v];
+  if (p->marks[v] & TOUCHED || p->marks[p->other[v]] & TOUCHED) return;
+  scree_ring ring = {.edge = p->edges + p->edge_count};
+  scree_ring_name(s, h, &ring);
+  if (p->marks[ring.c] & APEX || (ring.d != SCREE_NONE && p->marks[ring.d] & APEX)) return;
+  if (!scree_ring_gather(s, h, &ring)) {
+    s->refused[h] = 1;
+    return;
+  }
+  mark_ring(p, &ring);
+  p->taken[p->taken_count++] = (taken){.half_edge = h,
+                                       .first_edge = (uint32_t)p->edge_count,
+                                       .a_count = (uint16_t)ring.a_count,
+                                       .count = (uint16_t)ring.count,
+                                       .open = ring.d == SCREE_NONE};
+  p->edge_count += ring.count;
+}
+
+/* Goes through the next items in the order of cost. */
+static void choose_some(pass *p) {
+  const scree_halfmesh *s = &p->d->s;
+  size_t end = p->next_item + p->item_count / CHOICE_PARTS + 1, begin = p->taken_count;
+  if (end > p->item_count) end = p->item_count;
+  for (; p->next_item < end && p->taken_count < p->room; p->next_item++) {
+    size_t i = p->next_item;
     if (i + AHEAD < p->item_count) {
-      __builtin_prefetch(&p->best[p->items[i + AHEAD].vertex]);
-      uint32_t soon = p->best[p->items[i + AHEAD / 2].vertex];
-      __builtin_prefetch(&s->from[soon]);
-      __builtin_prefetch(&s->twin[soon]);
+      uint32_t v = p->items[i + AHEAD].vertex;
+      __builtin_prefetch(&p->best[v]);
+      __builtin_prefetch(&p->other[v]);
+      v = p->items[i + AHEAD / 2].vertex;
+      if (!(p->marks[v] & TOUCHED)) {
+        __builtin_prefetch(&s->from[p->best[v]]);
+        __builtin_prefetch(&s->twin[p->best[v]]);
+      }
     }
-    if (p->marks[v] & TOUCHED || p->marks[scree_to(s, h)] & TOUCHED) continue;
-    scree_ring ring = {.edge = p->edges + p->edge_count};
-    scree_ring_name(s, h, &ring);
-    if (p->marks[ring.c] & APEX || (ring.d != SCREE_NONE && p->marks[ring.d] & APEX)) continue;
-    if (!scree_ring_gather(s, h, &ring)) {
-      s->refused[h] = 1;
-      continue;
-    }
-    mark_ring(p, &ring);
-    p->taken[p->taken_count++] = (taken){.half_edge = h,
-                                         .first_edge = (uint32_t)p->edge_count,
-                                         .a_count = (uint16_t)ring.a_count,
-                                         .count = (uint16_t)ring.count};
-    p->edge_count += ring.count;
+    try_item(p, i);
   }
-  size_t count = 0;
-  for (size_t v = 0; v < s->vertex_count; v++) {
-    uint32_t i = p->chosen[v];
-    if (i != SCREE_NONE && s->from[p->taken[i].half_edge] == v) p->order[count++] = i;
-  }
+  if (p->taken_count == p->room) p->next_item = p->item_count;
+  order_by_place(p, begin);
 }
 
 static scree_ring ring_of(const pass *p, const taken *t) {
@@ -347,23 +414,57 @@ static void set_box(const scree_halfmesh *s, vec3 target, scree_ring *r) {
   }
 }
 
-static void check_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  pass *p = context;
+static void check_one(pass *p, uint32_t index, const scree_candidate *candidate) {
   scree_decimator *d = p->d;
-  for (size_t k = begin; k < end; k++) {
-    uint32_t i = p->order[k];
-    taken *t = &p->taken[i];
-    scree_ring ring = ring_of(p, t);
-    scree_candidate candidate;
-    d->coster->evaluate(&d->s, t->half_edge, &candidate);
-    p->changes[i].target = candidate.target;
-    t->error = (float)candidate.error;
-    bool sound = scree_collapse_keeps_topology(&d->s, &ring) &&
-                 scree_collapse_check(&d->s, &ring, &p->changes[i]);
-    t->verdict = sound ? UNCERTAIN : REFUSED;
-    if (sound) scree_grid_enter_ring(&d->grid, &d->s, &ring, candidate.target);
+  taken *t = &p->taken[index];
+  scree_change *change = &p->changes[index];
+  scree_ring ring = ring_of(p, t);
+  scree_around around;
+  change->target = candidate->target;
+  t->error = (float)candidate->error;
+  bool sound = scree_collapse_keeps_topology(&d->s, &ring) &&
+               scree_collapse_check(&d->s, &ring, change, &around);
+  t->verdict = sound ? UNCERTAIN : REFUSED;
+  if (!sound) return;
+  t->steep = around.steep;
+  t->box = scree_grid_enter_ring(&d->grid, &ring, &around);
+}
+
+static void check_some(pass *p, size_t begin, size_t end) {
+  uint32_t edges[SIDE_BY_SIDE];
+  scree_candidate candidates[SIDE_BY_SIDE];
+  while (begin < end) {
+    size_t count = end - begin < SIDE_BY_SIDE ? end - begin : SIDE_BY_SIDE;
+    for (size_t k = 0; k < count; k++) edges[k] = p->taken[p->order[begin + k]].half_edge;
+    p->d->coster->evaluate(&p->d->s, edges, count, candidates);
+    for (size_t k = 0; k < count; k++) check_one(p, p->order[begin + k], &candidates[k]);
+    begin += count;
   }
+}
+
+/* One worker chooses, the others check what was chosen before. */
+static void choose_and_check_block(void *context, size_t begin, size_t end, size_t block,
+                                   int worker) {
+  (void)end, (void)block, (void)worker;
+  pass *p = context;
+  if (begin == 0) {
+    if (p->next_item < p->item_count) choose_some(p);
+    return;
+  }
+  size_t first = p->check_begin + (begin - 1) * CHOSEN_BLOCK, last = first + CHOSEN_BLOCK;
+  check_some(p, first, last < p->check_end ? last : p->check_end);
+}
+
+static void choose_and_check(pass *p) {
+  memset(p->marks, 0, p->d->s.vertex_count);
+  memset(p->chosen, 0xff, p->d->s.vertex_count * sizeof *p->chosen);
+  p->taken_count = p->edge_count = p->next_item = p->check_begin = p->check_end = 0;
+  do {
+    size_t checks = scree_block_count(p->check_end - p->check_begin, CHOSEN_BLOCK);
+    scree_parallel_for(1 + checks, 1, choose_and_check_block, p);
+    p->check_begin = p->check_end;
+    p->check_end = p->taken_count;
+  } while (p->check_begin < p->check_end || p->next_item < p->item_count);
 }
 
 /* Whether a fold comes to be over an edge between this ring and that of another collapse, both
@@ -391,12 +492,11 @@ static void certify_block(void *context, size_t begin, size_t end, size_t block,
     uint32_t i = p->order[k];
     taken *t = &p->taken[i];
     if (t->verdict == REFUSED) continue;
-    scree_ring ring = ring_of(p, t);
-    vec3 target = p->changes[i].target;
-    t->folds = folds_with_others(p, &ring, target);
-    if (!d->s.closed) continue;
-    set_box(&d->s, target, &ring);
-    if (scree_grid_certifies_entered(&d->grid, &ring)) t->verdict = CERTAIN;
+    if (t->steep) { /* else not even the other's turn of at most 84 degrees makes a fold */
+      scree_ring ring = ring_of(p, t);
+      t->folds = folds_with_others(p, &ring, p->changes[i].target);
+    }
+    if (d->s.closed && scree_grid_certifies_entered(&d->grid, &t->box)) t->verdict = CERTAIN;
   }
 }
 
@@ -418,6 +518,7 @@ static void search_block(void *context, size_t begin, size_t end, size_t block, 
 /* Exact tests for those that the directions did not settle. */
 static scree_status search_uncertain(pass *p) {
   scree_decimator *d = p->d;
+  bool listed = true;
   p->uncertain_count = 0;
   for (uint32_t i = 0; i < p->taken_count; i++) {
     taken *t = &p->taken[i];
@@ -425,15 +526,15 @@ static scree_status search_uncertain(pass *p) {
     if (t->verdict != UNCERTAIN) continue;
     scree_ring ring = ring_of(p, t);
     set_box(&d->s, p->changes[i].target, &ring);
-    scree_grid_mark(&d->grid, ring.low, ring.high);
+    listed &= scree_grid_mark(&d->grid, ring.low, ring.high);
     p->uncertain[p->uncertain_count++] = i;
   }
   if (p->uncertain_count == 0) return SCREE_OK;
   scree_planned planned = {p->chosen, p->changes};
-  if (!scree_grid_list_all(&d->grid, &d->s, &planned, true))
-    return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
+  if (!listed || !scree_grid_list_marked(&d->grid, &d->s, &planned))
+    return scree_fail_memory(d->error, d->grid.near_capacity * sizeof *d->grid.near, "grid lists");
   scree_parallel_for(p->uncertain_count, CHOSEN_BLOCK / 4, search_block, p);
-  scree_grid_clear_lists(&d->grid);
+  scree_grid_unmark(&d->grid);
   return SCREE_OK;
 }
 
@@ -449,8 +550,12 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
   scree_decimator *d = p->d;
   for (size_t k = begin; k < end; k++) {
     uint32_t i = p->order[k];
-    if (p->taken[i].verdict != CERTAIN) continue;
+    if (p->taken[i].verdict != CERTAIN) {
+      d->s.refused[p->taken[i].half_edge] = 1;
+      continue;
+    }
     scree_ring ring = ring_of(p, &p->taken[i]);
+    scree_record_write(d, p->taken[i].place, &ring, &p->changes[i], (double)p->taken[i].error);
     scree_collapse_apply(&d->s, &ring, p->changes[i].target);
     if (d->coster->merge) d->coster->merge(&d->s, ring.a, ring.b);
     set_flag(&d->s, ring.a);
@@ -461,24 +566,20 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
   }
 }
 
-/* Writes the record in the order of cost, then does it all. Returns how many. */
+/* Does it all; the record keeps the order of cost. Returns how many. */
 static size_t apply(pass *p) {
   scree_decimator *d = p->d;
-  size_t before = d->record.count;
+  size_t count = 0, open = 0;
   for (size_t i = 0; i < p->taken_count; i++) {
-    uint32_t h = p->taken[i].half_edge;
-    if (p->taken[i].verdict != CERTAIN) {
-      d->s.refused[h] = 1;
-      continue;
-    }
-    scree_ring ends;
-    scree_ring_name(&d->s, h, &ends);
-    scree_record_add(d, &ends, &p->changes[i], (double)p->taken[i].error);
-    d->s.live_vertex_count--;
-    d->s.live_triangle_count -= ends.d == SCREE_NONE ? 1 : 2;
+    if (p->taken[i].verdict != CERTAIN) continue;
+    p->taken[i].place = (uint32_t)(d->record.count + count++);
+    open += p->taken[i].open;
   }
   scree_parallel_for(p->taken_count, CHOSEN_BLOCK, apply_block, p);
-  return d->record.count - before;
+  d->record.count += count;
+  d->s.live_vertex_count -= count;
+  d->s.live_triangle_count -= 2 * count - open;
+  return count;
 }
 
 static scree_status prepare_grid(scree_decimator *d) {
@@ -492,8 +593,7 @@ static scree_status prepare_grid(scree_decimator *d) {
 
 static scree_status run_round(pass *p, size_t *done) {
   sort_items(p);
-  choose_independent(p);
-  scree_parallel_for(p->taken_count, CHOSEN_BLOCK, check_block, p);
+  choose_and_check(p);
   scree_parallel_for(p->taken_count, CHOSEN_BLOCK, certify_block, p);
   scree_status status = search_uncertain(p);
   if (status == SCREE_OK) *done += apply(p);

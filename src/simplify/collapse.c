@@ -11,6 +11,8 @@
  *             grow: spokes and the edges to the triangles beyond. */
 #include "simplify/collapse.h"
 
+#include "base/lanes.h"
+
 /* Cosine of the largest turn of a triangle's normal in one collapse (84 degrees). */
 #define FLIP 0.1
 /* Smallest 2 area / longest edge^2 of a new triangle, unless one was as bad before. */
@@ -107,90 +109,174 @@ bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *r)
   return true;
 }
 
-static inline double squared_shape(vec3 n, vec3 e1, vec3 e2, vec3 e3) {
-  double l2 = fmax(vec3_norm2(e1), fmax(vec3_norm2(e2), vec3_norm2(e3)));
-  return l2 > 0 ? vec3_norm2(n) / (l2 * l2) : 0;
-}
-
 static vec3 normal_of(const scree_halfmesh *s, uint32_t h) {
   return vec3_triangle_normal(s->position[s->from[h]], s->position[scree_to(s, h)],
                               s->position[s->from[scree_previous(h)]]);
 }
 
-/* What the check keeps of each triangle of the ring. */
-typedef struct sides {
-  vec3 before[SCREE_RING_MAX], after[SCREE_RING_MAX];
-} sides;
+/* The square of 2 area / longest edge^2, of a triangle with doubled area vector n. */
+static double squared_shape(vec3 n, vec3 e1, vec3 e2, vec3 e3) {
+  double l1 = vec3_norm2(e1), l2 = vec3_norm2(e2), l3 = vec3_norm2(e3);
+  double l = l1 > l2 ? l1 : l2;
+  l = l3 > l ? l3 : l;
+  return l > 0 ? vec3_norm2(n) / (l * l) : 0;
+}
 
-static bool check_triangles(const scree_halfmesh *s, scree_ring *r, scree_change *change,
-                            sides *around) {
-  vec3 pa = s->position[r->a], pb = s->position[r->b], x = change->target;
-  double worst_before = 1, worst_after = 1, area = 0, volume = 0;
-  r->low = vec3_min(vec3_min(pa, pb), x);
-  r->high = vec3_max(vec3_max(pa, pb), x);
-  for (uint32_t i = 0; i < r->count; i++) {
-    vec3 p = i < r->a_count ? pa : pb;
-    vec3 p1 = s->position[s->from[r->edge[i]]], p2 = s->position[scree_to(s, r->edge[i])];
+/* The ring's triangles side by side, one per lane. */
+enum { LANES = 16 };
+
+typedef struct lanes {
+  double p[3][LANES];                             /* the end they have now */
+  double p1[3][LANES], p2[3][LANES], q[3][LANES]; /* the edge across; the corner beyond it */
+  double n[3][LANES], m[3][LANES];                /* doubled area vectors before and after */
+  double n2[LANES], m2[LANES], turn[LANES];       /* their squares and product */
+  double shape_before[LANES], shape_after[LANES]; /* squared_shape */
+  double area[LANES], volume[LANES];              /* doubled, times six: change of them */
+  double b2[LANES], n_b[LANES], m_b[LANES];       /* with the triangle beyond: square, products */
+} lanes;
+
+static inline vec3 lane(double v[3][LANES], int i) {
+  return (vec3){v[0][i], v[1][i], v[2][i]};
+}
+
+static inline void set_lane(double v[3][LANES], int i, vec3 p) {
+  v[0][i] = p.x;
+  v[1][i] = p.y;
+  v[2][i] = p.z;
+}
+
+static void gather(const scree_halfmesh *s, const scree_ring *r, uint32_t index, lanes *l, int i) {
+  uint32_t h = r->edge[index], beyond = s->twin[h];
+  vec3 p1 = s->position[s->from[h]];
+  set_lane(l->p, i, s->position[index < r->a_count ? r->a : r->b]);
+  set_lane(l->p1, i, p1);
+  set_lane(l->p2, i, s->position[scree_to(s, h)]);
+  set_lane(l->q, i, beyond == SCREE_NONE ? p1 : s->position[s->from[scree_previous(beyond)]]);
+}
+
+SCREE_LANES static void compare_lanes(lanes *l, vec3 x, int count) {
+  for (int i = 0; i < count; i++) {
+    vec3 p = lane(l->p, i), p1 = lane(l->p1, i), p2 = lane(l->p2, i);
     vec3 e = vec3_sub(p2, p1), d1 = vec3_sub(p1, p), d2 = vec3_sub(p2, p);
     vec3 f1 = vec3_sub(p1, x), f2 = vec3_sub(p2, x);
     vec3 n = vec3_cross(d1, d2), m = vec3_cross(f1, f2);
-    double dot = vec3_dot(n, m), n2 = vec3_norm2(n), m2 = vec3_norm2(m);
-    if (n2 > 0 && (!(dot > 0) || !(dot * dot > FLIP * FLIP * n2 * m2))) return false;
-    if (!(m2 > 0)) return false;
-    worst_before = fmin(worst_before, squared_shape(n, e, d1, d2));
-    worst_after = fmin(worst_after, squared_shape(m, e, f1, f2));
-    area += sqrt(m2) - sqrt(n2);
-    volume += vec3_dot(n, vec3_sub(x, p));
-    r->low = vec3_min(r->low, vec3_min(p1, p2));
-    r->high = vec3_max(r->high, vec3_max(p1, p2));
-    around->before[i] = n;
-    around->after[i] = m;
+    vec3 b = vec3_triangle_normal(p2, p1, lane(l->q, i));
+    double n2 = vec3_norm2(n), m2 = vec3_norm2(m), e2 = vec3_norm2(e);
+    double d12 = vec3_norm2(d1), d22 = vec3_norm2(d2), f12 = vec3_norm2(f1), f22 = vec3_norm2(f2);
+    double before = e2 > d12 ? e2 : d12, after = e2 > f12 ? e2 : f12;
+    before = before > d22 ? before : d22;
+    after = after > f22 ? after : f22;
+    l->shape_before[i] = n2 / (before * before);
+    l->shape_after[i] = m2 / (after * after);
+    l->area[i] = sqrt(m2) - sqrt(n2);
+    l->volume[i] = vec3_dot(n, vec3_sub(x, p));
+    l->turn[i] = vec3_dot(n, m);
+    l->n2[i] = n2;
+    l->m2[i] = m2;
+    l->b2[i] = vec3_norm2(b);
+    l->n_b[i] = vec3_dot(n, b);
+    l->m_b[i] = vec3_dot(m, b);
+    set_lane(l->n, i, n);
+    set_lane(l->m, i, m);
   }
-  vec3 n1 = normal_of(s, r->half_edge), n2 = {0, 0, 0};
-  worst_before =
-      fmin(worst_before, squared_shape(n1, vec3_sub(pb, pa), vec3_sub(s->position[r->c], pa),
-                                       vec3_sub(s->position[r->c], pb)));
-  if (r->d != SCREE_NONE) {
-    n2 = normal_of(s, s->twin[r->half_edge]);
-    worst_before =
-        fmin(worst_before, squared_shape(n2, vec3_sub(pb, pa), vec3_sub(s->position[r->d], pa),
-                                         vec3_sub(s->position[r->d], pb)));
+}
+
+static inline bool folded(double dot, double n2, double m2) {
+  return dot < 0 && dot * dot > SCREE_FOLD * SCREE_FOLD * n2 * m2;
+}
+
+/* What is summed up over the ring. */
+typedef struct tally {
+  double area, volume, shape_before, shape_after;
+  int folds_before, folds_after; /* over the edges across */
+} tally;
+
+/* Where nothing can be said (no area, no longest edge) the shape is the worst. */
+static inline double worse_shape(double worst, double shape) {
+  return shape >= worst ? worst : shape > 0 ? shape : 0;
+}
+
+static bool take_lane(const lanes *l, int i, tally *sum, bool *steep) {
+  double n2 = l->n2[i], m2 = l->m2[i], turn = l->turn[i], m_b = l->m_b[i];
+  if (n2 > 0 && (!(turn > 0) || !(turn * turn > FLIP * FLIP * n2 * m2))) return false;
+  if (!(m2 > 0)) return false;
+  sum->shape_before = worse_shape(sum->shape_before, l->shape_before[i]);
+  sum->shape_after = worse_shape(sum->shape_after, l->shape_after[i]);
+  sum->area += l->area[i];
+  sum->volume += l->volume[i];
+  sum->folds_before += folded(l->n_b[i], n2, l->b2[i]);
+  sum->folds_after += folded(m_b, m2, l->b2[i]);
+  *steep |= !(m_b > 0 && m_b * m_b > 0.25 * m2 * l->b2[i]);
+  return true;
+}
+
+static bool check_triangles(const scree_halfmesh *s, scree_ring *r, vec3 x, tally *sum,
+                            scree_around *around) {
+  lanes l;
+  r->low = vec3_min(vec3_min(s->position[r->a], s->position[r->b]), x);
+  r->high = vec3_max(vec3_max(s->position[r->a], s->position[r->b]), x);
+  for (uint32_t begin = 0; begin < r->count; begin += LANES) {
+    uint32_t filled = r->count - begin < LANES ? r->count - begin : LANES;
+    uint32_t width = (filled + 3) & ~UINT32_C(3); /* whole vectors */
+    for (uint32_t i = 0; i < width; i++) gather(s, r, begin + (i < filled ? i : 0), &l, (int)i);
+    compare_lanes(&l, x, (int)width);
+    for (int i = 0; i < (int)filled; i++) {
+      if (!take_lane(&l, i, sum, &around->steep)) return false;
+      vec3 p1 = lane(l.p1, i), p2 = lane(l.p2, i);
+      r->low = vec3_min(r->low, vec3_min(p1, p2));
+      r->high = vec3_max(r->high, vec3_max(p1, p2));
+      around->before[begin + (uint32_t)i] = lane(l.n, i);
+      around->after[begin + (uint32_t)i] = lane(l.m, i);
+    }
   }
-  change->area = 0.5 * (area - vec3_norm(n1) - vec3_norm(n2));
-  change->volume = (volume + vec3_dot(vec3_add(n1, n2), vec3_sub(x, pa))) / 6;
-  return worst_after >= SLIVER * SLIVER || worst_after >= worst_before;
+  return true;
+}
+
+/* The triangles that go: the edge's own. */
+static void take_gone(const scree_halfmesh *s, const scree_ring *r, vec3 x, tally *sum) {
+  vec3 pa = s->position[r->a], pb = s->position[r->b], e = vec3_sub(pb, pa);
+  uint32_t apex[2] = {r->c, r->d};
+  for (int k = 0; k < 2 && apex[k] != SCREE_NONE; k++) {
+    vec3 p = s->position[apex[k]];
+    vec3 n = normal_of(s, k == 0 ? r->half_edge : s->twin[r->half_edge]);
+    sum->shape_before =
+        worse_shape(sum->shape_before, squared_shape(n, e, vec3_sub(p, pa), vec3_sub(p, pb)));
+    sum->area -= vec3_norm(n);
+    sum->volume += vec3_dot(n, vec3_sub(x, pa));
+  }
 }
 
 /* Folds around before and after the collapse. An edge between two triangles of the ring is there
  * before and after; the edges to c and d change partners. */
-static bool folds_do_not_grow(const scree_halfmesh *s, const scree_ring *r, const sides *around) {
-  int before = 0, after = 0;
+static bool folds_do_not_grow(const scree_halfmesh *s, const scree_ring *r,
+                              const scree_around *around, const tally *sum) {
+  int before = sum->folds_before, after = sum->folds_after;
   for (uint32_t i = 0; i < r->count; i++) {
-    uint32_t j = i + 1 == r->count ? 0 : i + 1, beyond = s->twin[r->edge[i]];
+    uint32_t j = i + 1 == r->count ? 0 : i + 1;
     if (scree_to(s, r->edge[i]) == s->from[r->edge[j]] && i != j)
       after += scree_folded(around->after[i], around->after[j]);
-    if (beyond == SCREE_NONE) continue;
-    vec3 n = normal_of(s, beyond);
-    after += scree_folded(around->after[i], n);
-    before += scree_folded(around->before[i], n);
   }
   if (after <= before) return true;
-  vec3 n1 = normal_of(s, r->half_edge);
   for (uint32_t i = 0; i < r->count; i++) { /* rare: the spokes as they are now */
     uint32_t spoke = s->twin[scree_previous(r->edge[i])];
     if (spoke == SCREE_NONE) continue;
     before += scree_folded(around->before[i], normal_of(s, spoke));
   }
-  if (r->d != SCREE_NONE) {
-    vec3 n2 = normal_of(s, s->twin[r->half_edge]);
-    before += scree_folded(n1, n2);
-  }
+  if (r->d != SCREE_NONE)
+    before += scree_folded(normal_of(s, r->half_edge), normal_of(s, s->twin[r->half_edge]));
   return after <= before;
 }
 
-bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change) {
-  sides around;
-  return check_triangles(s, ring, change, &around) && folds_do_not_grow(s, ring, &around);
+bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change,
+                          scree_around *around) {
+  tally sum = {.shape_before = 1, .shape_after = 1};
+  around->steep = false;
+  if (!check_triangles(s, ring, change->target, &sum, around)) return false;
+  take_gone(s, ring, change->target, &sum);
+  change->area = 0.5 * sum.area;
+  change->volume = sum.volume / 6;
+  if (!(sum.shape_after >= SLIVER * SLIVER || sum.shape_after >= sum.shape_before)) return false;
+  return folds_do_not_grow(s, ring, around, &sum);
 }
 
 /* Joins the neighbours across the two other sides of the triangle of h, which goes. The apex may

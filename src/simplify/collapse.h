@@ -29,19 +29,29 @@ bool scree_ring_gather(const scree_halfmesh *s, uint32_t half_edge, scree_ring *
 /* Ends and apexes of the ring from its half-edge. */
 void scree_ring_name(const scree_halfmesh *s, uint32_t half_edge, scree_ring *ring);
 
-/* Whether the doubled area vectors make a fold of more than 149 degrees. */
+/* Cosine of a fold, 149 degrees: one to spare for coordinates rounded to float. */
+#define SCREE_FOLD (-0.857)
+
+/* Whether the doubled area vectors make a fold. */
 static inline bool scree_folded(vec3 n, vec3 m) {
-  const double fold = -0.857; /* its cosine: a degree to spare for coordinates rounded to float */
   double dot = vec3_dot(n, m);
-  return dot < 0 && dot * dot > fold * fold * vec3_norm2(n) * vec3_norm2(m);
+  return dot < 0 && dot * dot > SCREE_FOLD * SCREE_FOLD * vec3_norm2(n) * vec3_norm2(m);
 }
 
 /* Whether the surface stays a manifold (link condition) if the edge is collapsed. */
 bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *ring);
 
+/* The doubled area vectors of the ring's triangles. */
+typedef struct scree_around {
+  vec3 before[SCREE_RING_MAX], after[SCREE_RING_MAX];
+  bool steep; /* some new triangle is at more than 60 degrees to its neighbour outside the ring */
+} scree_around;
+
 /* Whether the triangles around change->target would be sound: none flipped, degenerate, a sliver
- * worse than those before, no more folds than before. Fills the rest of change and the box. */
-bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change);
+ * worse than those before, no more folds than before. Fills the rest of change, the box, and
+ * *around; what they hold is complete only where the answer is true. */
+bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change,
+                          scree_around *around);
 
 /* Collapses: a moves to target, b goes, with the triangles at the edge. Touches only triangles of
  * the two fans and the outgoing half-edges of a, b, c and d. */

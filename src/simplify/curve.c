@@ -61,10 +61,9 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-void scree_record_add(scree_decimator *d, const scree_ring *ring, const scree_change *change,
-                      double error) {
+void scree_record_write(scree_decimator *d, size_t i, const scree_ring *ring,
+                        const scree_change *change, double error) {
   scree_record *r = &d->record;
-  size_t i = r->count++;
   bool one = d->s.twin[ring->half_edge] == SCREE_NONE;
   r->kept[i] = d->s.origin[ring->a] | (one ? SCREE_ONE_TRIANGLE : 0);
   r->gone[i] = d->s.origin[ring->b];

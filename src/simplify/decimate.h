@@ -30,9 +30,10 @@ typedef struct scree_decimator {
   scree_error *error;
 } scree_decimator;
 
-/* Adds one collapse to the record (its capacity was reserved: the number of vertices). */
-void scree_record_add(scree_decimator *d, const scree_ring *ring, const scree_change *change,
-                      double error);
+/* Writes one collapse to its place in the record (room was reserved for as many as there are
+ * vertices), before it is done. The count is the caller's. */
+void scree_record_write(scree_decimator *d, size_t place, const scree_ring *ring,
+                        const scree_change *change, double error);
 
 /* Where the batches end and single collapses begin, in triangles. */
 enum { SCREE_GREEDY_COUNT = 10000 };

@@ -15,6 +15,9 @@
 #define REGRID_BELOW   0.5
 #define STALE_FACTOR   12
 
+/* Edges evaluated in one call. */
+enum { SIDE_BY_SIDE = 32 };
+
 typedef struct queue {
   scree_decimator *d;
   double *cost;    /* per half-edge */
@@ -25,6 +28,8 @@ typedef struct queue {
   uint32_t *stamp;   /* per vertex: the collapse that last touched it */
   uint32_t now;
   size_t since_tick;
+  uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
+  size_t waiting_count;
 } queue;
 
 static bool before(const queue *q, uint32_t g, uint32_t h) {
@@ -91,13 +96,24 @@ static void enqueue(queue *q, uint32_t h, const scree_candidate *candidate) {
   sift_down(q, q->place[h]);
 }
 
-static void evaluate(queue *q, uint32_t h) {
+/* Gives those waiting their places. */
+static void evaluate_waiting(queue *q) {
   scree_halfmesh *s = &q->d->s;
-  scree_candidate candidate = {.cost = INFINITY};
-  if (!((s->flags[s->from[h]] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_LOCKED))
-    q->d->coster->evaluate(s, h, &candidate);
-  q->fallback[h] = 0;
-  enqueue(q, h, &candidate);
+  scree_candidate candidates[SIDE_BY_SIDE];
+  q->d->coster->evaluate(s, q->waiting, q->waiting_count, candidates);
+  for (size_t i = 0; i < q->waiting_count; i++) {
+    uint32_t h = q->waiting[i];
+    if ((s->flags[s->from[h]] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_LOCKED)
+      candidates[i].cost = INFINITY;
+    q->fallback[h] = 0;
+    enqueue(q, h, &candidates[i]);
+  }
+  q->waiting_count = 0;
+}
+
+static void evaluate(queue *q, uint32_t h) {
+  q->waiting[q->waiting_count++] = h;
+  if (q->waiting_count == SIDE_BY_SIDE) evaluate_waiting(q);
 }
 
 static void queue_free(queue *q) {
@@ -123,6 +139,7 @@ static scree_status queue_fill(queue *q) {
     if (s->outgoing[v] != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
   for (uint32_t h = 0; h < half_edges; h++)
     if (s->from[h] != SCREE_NONE && owner(s, h) == h) evaluate(q, h);
+  evaluate_waiting(q);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -135,7 +152,7 @@ static scree_status prepare_grid(scree_decimator *d) {
     return SCREE_OK;
   scree_status status = scree_grid_shape(g, &d->s, EDGES_PER_CELL, d->error);
   if (status != SCREE_OK) return status;
-  if (!scree_grid_list_all(g, &d->s, NULL, false))
+  if (!scree_grid_list_all(g, &d->s))
     return scree_fail_memory(d->error, g->capacity * sizeof *g->items, "grid lists");
   scree_grid_enter_directions(g, &d->s);
   return SCREE_OK;
@@ -173,12 +190,12 @@ static void update_vertex(queue *q, uint32_t v) {
 }
 
 static scree_status collapse(queue *q, const scree_ring *r, const scree_change *change,
-                             double error) {
+                             const scree_around *geometry, double error) {
   scree_decimator *d = q->d;
   scree_halfmesh *s = &d->s;
   uint32_t around[2 * SCREE_RING_MAX + 1];
   size_t count = 0;
-  scree_record_add(d, r, change, error);
+  scree_record_write(d, d->record.count++, r, change, error);
   s->live_vertex_count--;
   s->live_triangle_count -= s->twin[r->half_edge] == SCREE_NONE ? 1 : 2;
   forget(q, r);
@@ -196,7 +213,8 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   if (!d->coster->merge)
     for (size_t i = 0; i < count; i++) d->coster->sum(s, around[i]);
   for (size_t i = 0; i < count; i++) update_vertex(q, around[i]);
-  scree_grid_enter_ring(&d->grid, s, r, change->target);
+  evaluate_waiting(q);
+  scree_grid_enter_ring(&d->grid, r, geometry);
   for (uint32_t i = 0; i < r->count; i++)
     if (!scree_grid_list_triangle(&d->grid, s, r->edge[i] / 3))
       return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
@@ -206,11 +224,11 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
 /* Whether the ring may be collapsed to change->target; *status tells of failed
  * memory. */
 static bool allowed(scree_decimator *d, scree_ring *ring, scree_change *change,
-                    scree_status *status) {
-  if (!scree_collapse_check(&d->s, ring, change)) return false;
+                    scree_around *around, scree_status *status) {
+  if (!scree_collapse_check(&d->s, ring, change, around)) return false;
   *status = prepare_grid(d);
   if (*status != SCREE_OK) return false;
-  return (d->s.closed && scree_grid_certifies(&d->grid, &d->s, ring, change->target)) ||
+  return (d->s.closed && scree_grid_certifies(&d->grid, ring, around)) ||
          scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL);
 }
 
@@ -223,9 +241,10 @@ static scree_status try_fallbacks(queue *q, scree_ring *ring) {
   scree_status status = SCREE_OK;
   for (int k = 0; k < SCREE_FALLBACK_COUNT && status == SCREE_OK; k++) {
     scree_change change;
+    scree_around around;
     d->coster->fall_back(&d->s, h, k, &candidate);
     change.target = candidate.target;
-    if (!(candidate.cost < best.cost) || !allowed(d, ring, &change, &status)) continue;
+    if (!(candidate.cost < best.cost) || !allowed(d, ring, &change, &around, &status)) continue;
     best = candidate;
     q->fallback[h] = (uint8_t)(1 + k);
   }
@@ -239,6 +258,7 @@ static scree_status try_cheapest(queue *q) {
   scree_ring ring = {.edge = edges};
   scree_candidate candidate;
   scree_change change;
+  scree_around around;
   scree_status status = SCREE_OK;
   leave(q, h);
   if (!scree_ring_gather(&d->s, h, &ring) || !scree_collapse_keeps_topology(&d->s, &ring))
@@ -246,9 +266,10 @@ static scree_status try_cheapest(queue *q) {
   if (q->fallback[h] > 0)
     d->coster->fall_back(&d->s, h, q->fallback[h] - 1, &candidate);
   else
-    d->coster->evaluate(&d->s, h, &candidate);
+    d->coster->evaluate(&d->s, &h, 1, &candidate);
   change.target = candidate.target;
-  if (allowed(d, &ring, &change, &status)) return collapse(q, &ring, &change, candidate.error);
+  if (allowed(d, &ring, &change, &around, &status))
+    return collapse(q, &ring, &change, &around, candidate.error);
   if (status != SCREE_OK || q->fallback[h] > 0) return status;
   return try_fallbacks(q, &ring);
 }

@@ -14,6 +14,7 @@
 
 #include "simplify/collapse.h"
 
+/* In cells or fractions of cells, inclusive. */
 typedef struct scree_grid_box {
   uint16_t low[3], high[3];
 } scree_grid_box;
@@ -23,7 +24,15 @@ typedef struct scree_grid_node {
   scree_grid_box box; /* of the triangle as it was listed, in fractions of cells */
 } scree_grid_node;
 
+/* A triangle near an uncertain collapse of a batch, as it is and as it will be. */
+typedef struct scree_grid_near {
+  uint32_t triangle;
+  scree_grid_box box; /* in fractions of cells */
+  uint64_t averse;
+} scree_grid_near;
+
 typedef struct scree_grid {
+  uint64_t *averse_of; /* by direction of a normal: what faces it, see grid.c */
   vec3 low;
   double cells_per_length;
   uint32_t size[3];
@@ -33,6 +42,12 @@ typedef struct scree_grid {
   uint32_t *head;         /* per cell: its list */
   scree_grid_node *items; /* the lists' nodes (an array as base/array.h has it) */
   size_t count, capacity;
+  uint32_t *marked; /* cells; head of a marked cell is its index here */
+  size_t marked_count, marked_capacity;
+  uint32_t *start; /* marked cell k has near[start[k + 1]] up to near[start[k + 2]] */
+  size_t start_capacity;
+  scree_grid_near *near;
+  size_t near_capacity;
   uint32_t *large; /* triangles too large for lists */
   size_t large_count, large_capacity;
   size_t built_for; /* live triangles when it was built */
@@ -53,26 +68,29 @@ void scree_grid_free(scree_grid *grid);
 
 /* Enters the directions of all triangles, in parallel. */
 void scree_grid_enter_directions(scree_grid *grid, const scree_halfmesh *s);
-/* Enters those of the ring's triangles as they will be, over the ring's box. Thread-safe. */
-void scree_grid_enter_ring(scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
-                           vec3 target);
+/* Enters those of the ring's triangles as they will be (ring->low, high and around are set), over
+ * the ring's box, which is returned. Thread-safe. */
+scree_grid_box scree_grid_enter_ring(scree_grid *grid, const scree_ring *ring,
+                                     const scree_around *around);
 /* True: the collapse cannot make the surface, which is closed, meet itself. */
-bool scree_grid_certifies(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
-                          vec3 target);
+bool scree_grid_certifies(const scree_grid *grid, const scree_ring *ring,
+                          const scree_around *around);
 /* The same for a ring that was entered: its new triangles are among those in the cells. */
-bool scree_grid_certifies_entered(const scree_grid *grid, const scree_ring *ring);
+bool scree_grid_certifies_entered(const scree_grid *grid, const scree_grid_box *box);
 
-/* Marks the cells of a box; then enters into the lists all triangles, and what they will become,
- * that touch a marked cell (all cells if none is marked). False: out of memory. */
-void scree_grid_mark(scree_grid *grid, vec3 low, vec3 high);
-bool scree_grid_list_all(scree_grid *grid, const scree_halfmesh *s, const scree_planned *planned,
-                         bool marked_only);
+/* One by one: lists all triangles, or one that has changed. False: out of memory. */
+bool scree_grid_list_all(scree_grid *grid, const scree_halfmesh *s);
 bool scree_grid_list_triangle(scree_grid *grid, const scree_halfmesh *s, uint32_t triangle);
 
-void scree_grid_clear_lists(scree_grid *grid);
+/* In a batch: marks the cells of a box; lists all triangles, and what they will become, in the
+ * marked cells, in parallel; forgets both. The first two: false when out of memory. */
+bool scree_grid_mark(scree_grid *grid, vec3 low, vec3 high);
+bool scree_grid_list_marked(scree_grid *grid, const scree_halfmesh *s,
+                            const scree_planned *planned);
+void scree_grid_unmark(scree_grid *grid);
 
-/* Exact, for a grid with lists: true if the triangles around target meet no more others than those
- * around the edge do. */
+/* Exact: true if the triangles around target meet no more others than those around the edge do.
+ * With `planned` among the marked cells, which hold the ring's box, else among the lists. */
 bool scree_grid_clear(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                       vec3 target, const scree_planned *planned);
 

@@ -128,7 +128,7 @@ static void answer(const scree_halfmesh *s, uint32_t half_edge, const double *q,
   out->cost = (error + TIE * trace * length2) / sqrt(worst);
 }
 
-static void qecd_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
+static void evaluate_one(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
   uint32_t a = s->from[half_edge], b = scree_to(s, half_edge);
   double q[10];
   for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
@@ -139,6 +139,11 @@ static void qecd_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_can
     if (value(q, best) < error) x = best;
   }
   answer(s, half_edge, q, x, out);
+}
+
+static void qecd_evaluate(const scree_halfmesh *s, const uint32_t *half_edges, size_t count,
+                          scree_candidate *out) {
+  for (size_t i = 0; i < count; i++) evaluate_one(s, half_edges[i], &out[i]);
 }
 
 static void qecd_fall_back(const scree_halfmesh *s, uint32_t half_edge, int fallback,

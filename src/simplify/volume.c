@@ -22,6 +22,7 @@
  * Differs from theirs: flat fans leave E singular; instead of their ladder of
  * further constraints a small pull towards the middle of the edge decides there
  * (PULL). */
+#include "base/lanes.h"
 #include "simplify/cost.h"
 
 #include <string.h>
@@ -87,6 +88,51 @@ static void volume_sum(scree_halfmesh *s, uint32_t v) {
   memcpy(s->sums[v], h, sizeof h);
 }
 
+/* Edges are evaluated side by side, one per lane: E(y) = y.H y - 2 g.y + k and the plane n.y = d,
+ * y from the edge's first end. What one lane needs is gathered first. */
+enum { LANES = 32 };
+
+typedef struct lanes {
+  double h[6][LANES], hb[6][LANES]; /* both ends' H, and that of the second */
+  double n[3][LANES], nb[3][LANES]; /* N the same */
+  double area[LANES];               /* doubled, of both fans */
+  double e[3][LANES];               /* to the second end */
+  double c[3][LANES], d[3][LANES];  /* to the apexes; on a boundary d is 0 */
+  double along[LANES];              /* where the vertex is asked for; see solve */
+  double y[3][LANES], cost[LANES], energy[LANES];
+  double excess[LANES], trace[LANES], around[LANES];
+} lanes;
+
+static inline vec3 lane(double v[3][LANES], int i) {
+  return (vec3){v[0][i], v[1][i], v[2][i]};
+}
+
+static inline void set_lane(double v[3][LANES], int i, vec3 p) {
+  v[0][i] = p.x;
+  v[1][i] = p.y;
+  v[2][i] = p.z;
+}
+
+static void gather(const scree_halfmesh *s, uint32_t half_edge, lanes *q, int i) {
+  uint32_t a = s->from[half_edge], b = scree_to(s, half_edge), twin = s->twin[half_edge];
+  const double *ha = s->sums[a], *hb = s->sums[b];
+  vec3 p = s->position[a], e = vec3_sub(s->position[b], p), to_d = {0, 0, 0};
+  double h[6];
+  for (int k = 0; k < 6; k++) h[k] = ha[k] + hb[k];
+  if (twin != SCREE_NONE)
+    to_d = vec3_sub(s->position[s->from[scree_previous(twin)]], p);
+  else
+    add_boundary(h, e, -1);
+  for (int k = 0; k < 6; k++) q->h[k][i] = h[k];
+  for (int k = 0; k < 6; k++) q->hb[k][i] = hb[k];
+  for (int k = 0; k < 3; k++) q->n[k][i] = ha[NX + k] + hb[NX + k];
+  for (int k = 0; k < 3; k++) q->nb[k][i] = hb[NX + k];
+  q->area[i] = ha[AREA] + hb[AREA];
+  set_lane(q->e, i, e);
+  set_lane(q->c, i, vec3_sub(s->position[s->from[scree_previous(half_edge)]], p));
+  set_lane(q->d, i, to_d);
+}
+
 /* Two unit vectors that span the plane across the unit vector n (Duff and
  * others 2017). */
 static inline void frame(vec3 n, vec3 *u, vec3 *w) {
@@ -117,70 +163,82 @@ static inline vec3 minimise_on_plane(const double *h, vec3 g, vec3 n, double d, 
   return vec3_mad(y, n, d - vec3_dot(n, y)); /* back onto the plane, past rounding */
 }
 
-/* E(y) = y.H y - 2 g.y + k and the plane n.y = d of an edge, y from its first
- * end. */
-typedef struct problem {
-  double h[10];
-  vec3 p, e, g, n; /* n a unit vector */
-  double k, d, trace, around;
-  bool sound;
-} problem;
+static inline vec3 drop_on_plane(vec3 y, vec3 n, double d) {
+  for (int step = 0; step < 2; step++) y = vec3_mad(y, n, d - vec3_dot(n, y));
+  return y;
+}
 
-static inline problem pose(const scree_halfmesh *s, uint32_t half_edge) {
-  uint32_t a = s->from[half_edge], b = scree_to(s, half_edge), twin = s->twin[half_edge];
-  const double *ha = s->sums[a], *hb = s->sums[b];
-  problem q = {.p = s->position[a]};
-  vec3 e = q.e = vec3_sub(s->position[b], q.p);
-  vec3 to_c = vec3_sub(s->position[s->from[scree_previous(half_edge)]], q.p);
-  vec3 n1 = vec3_cross(e, to_c), n2 = {0, 0, 0};
-  for (int i = 0; i < 10; i++) q.h[i] = ha[i] + hb[i];
-  add_outer(q.h, n1, -1);
-  if (twin != SCREE_NONE) {
-    vec3 to_d = vec3_sub(s->position[s->from[scree_previous(twin)]], q.p);
-    n2 = vec3_cross(to_d, e);
-    add_outer(q.h, n2, -1);
-  } else {
-    add_boundary(q.h, e, -1);
+/* Solves and judges every lane. best: at the minimum; else on the plane, as near as may be to the
+ * point `along` the edge. */
+SCREE_LANES_INLINE void solve_lanes(lanes *q, bool best, int count) {
+  for (int i = 0; i < count; i++) {
+    vec3 e = lane(q->e, i), n1 = vec3_cross(e, lane(q->c, i)), n2 = vec3_cross(lane(q->d, i), e);
+    double h[6], hb[6];
+    for (int k = 0; k < 6; k++) {
+      h[k] = q->h[k][i];
+      hb[k] = q->hb[k][i];
+    }
+    add_outer(h, n1, -1);
+    add_outer(h, n2, -1);
+    vec3 n = vec3_sub(vec3_sub(lane(q->n, i), n1), n2), g = multiply(hb, e), y;
+    double norm = vec3_norm(n), trace = h[HXX] + h[HYY] + h[HZZ], k = vec3_dot(e, g);
+    double around = q->area[i] - vec3_norm(n1) - vec3_norm(n2);
+    n = vec3_scale(n, 1 / norm);
+    double d = vec3_dot(lane(q->nb, i), e) / norm;
+    y = best ? minimise_on_plane(h, g, n, d, vec3_scale(e, 0.5), PULL * trace)
+             : drop_on_plane(vec3_scale(e, q->along[i]), n, d);
+    double length2 = vec3_norm2(e), off2 = vec3_norm2(vec3_mad(y, e, -0.5));
+    double energy = vec3_dot(y, multiply(h, y)) - 2 * vec3_dot(g, y) + k;
+    energy = energy > 0 ? energy : 0;
+    double cost = (energy + TIE * trace * length2) / sqrt(around);
+    q->excess[i] = off2 - REACH * REACH * length2;
+    q->trace[i] = trace;
+    q->around[i] = around;
+    q->energy[i] = energy;
+    q->cost[i] = cost;
+    set_lane(q->y, i, y);
   }
-  vec3 n = {q.h[NX] - n1.x - n2.x, q.h[NY] - n1.y - n2.y, q.h[NZ] - n1.z - n2.z};
-  double norm = vec3_norm(n);
-  q.g = multiply(hb, e);
-  q.k = vec3_dot(e, q.g);
-  q.trace = q.h[HXX] + q.h[HYY] + q.h[HZZ];
-  q.around = q.h[AREA] - vec3_norm(n1) - vec3_norm(n2);
-  q.sound = norm > 0 && q.trace > 0 && q.around > 0;
-  if (!q.sound) return q;
-  q.n = vec3_scale(n, 1 / norm);
-  q.d = (hb[NX] * e.x + hb[NY] * e.y + hb[NZ] * e.z) / norm;
-  return q;
 }
 
-static inline void answer(const problem *q, vec3 y, scree_candidate *out) {
-  double length2 = vec3_norm2(q->e), off2 = vec3_norm2(vec3_mad(y, q->e, -0.5));
-  if (!(off2 <= REACH * REACH * length2)) return;
-  double energy = vec3_dot(y, multiply(q->h, y)) - 2 * vec3_dot(q->g, y) + q->k;
-  if (!(energy > 0)) energy = 0;
-  out->target = vec3_add(q->p, y);
-  out->error = energy / q->trace;
-  out->cost = (energy + TIE * q->trace * length2) / sqrt(q->around);
+SCREE_LANES static void solve_best(lanes *q, int count) {
+  solve_lanes(q, true, count);
 }
 
-static void volume_evaluate(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
-  problem q = pose(s, half_edge);
-  *out = (scree_candidate){.cost = INFINITY};
-  if (!q.sound) return;
-  answer(&q, minimise_on_plane(q.h, q.g, q.n, q.d, vec3_scale(q.e, 0.5), PULL * q.trace), out);
+static void solve_along(lanes *q) {
+  solve_lanes(q, false, 1);
+}
+
+/* Apart from solve_lanes, which has no branches for the compiler's sake. */
+static scree_candidate answer(const scree_halfmesh *s, uint32_t half_edge, lanes *q, int i) {
+  /* false also where the normals cancel and nothing is a number */
+  if (!(q->excess[i] <= 0 && q->trace[i] > 0 && q->around[i] > 0))
+    return (scree_candidate){.cost = INFINITY};
+  vec3 p = s->position[s->from[half_edge]];
+  return (scree_candidate){q->cost[i], vec3_add(p, lane(q->y, i)), q->energy[i] / q->trace[i]};
+}
+
+static void volume_evaluate(const scree_halfmesh *s, const uint32_t *half_edges, size_t count,
+                            scree_candidate *out) {
+  lanes q;
+  for (size_t begin = 0; begin < count; begin += LANES) {
+    int filled = count - begin < LANES ? (int)(count - begin) : LANES;
+    int width = (filled + 3) & ~3; /* whole vectors */
+    for (int i = 0; i < width; i++)
+      gather(s, half_edges[begin + (size_t)(i < filled ? i : 0)], &q, i);
+    solve_best(&q, width);
+    for (int i = 0; i < filled; i++)
+      out[begin + (size_t)i] = answer(s, half_edges[begin + (size_t)i], &q, i);
+  }
 }
 
 static void volume_fall_back(const scree_halfmesh *s, uint32_t half_edge, int fallback,
                              scree_candidate *out) {
   static const double along[SCREE_FALLBACK_COUNT] = {0.5, 0, 1};
-  problem q = pose(s, half_edge);
-  *out = (scree_candidate){.cost = INFINITY};
-  if (!q.sound) return;
-  vec3 y = vec3_scale(q.e, along[fallback]);
-  for (int step = 0; step < 2; step++) y = vec3_mad(y, q.n, q.d - vec3_dot(q.n, y));
-  answer(&q, y, out);
+  lanes q;
+  gather(s, half_edge, &q, 0);
+  q.along[0] = along[fallback];
+  solve_along(&q);
+  *out = answer(s, half_edge, &q, 0);
 }
 
 const scree_coster scree_volume_coster = {volume_sum, volume_evaluate, volume_fall_back, NULL};

@@ -1,0 +1,455 @@
+/* Triangles by cell, and the exact search among them.
+ *
+ * One by one, every triangle is in a linked list of each cell it touches, and listed again when it
+ * changes. In a batch only the cells about the uncertain collapses are of interest: they are
+ * marked, and the triangles that touch them, or will, are laid out cell after cell with their boxes
+ * and directions. The search then asks for the certificate once more, for the box of the ring alone
+ * instead of all its cells; only where that fails are pairs of triangles tested. */
+#include "simplify/grid_cells.h"
+
+#include "base/array.h"
+#include "base/parallel.h"
+#include "mesh/intersect.h"
+
+#include <string.h>
+
+enum { BLOCK = 2048 };
+
+/* A box in steps of a fraction of a cell: boxes that are apart in steps are apart. */
+enum { STEPS_PER_CELL = 32 }; /* at most 1025 cells along an axis */
+
+static scree_grid_box coarse_box(const scree_grid *g, vec3 low, vec3 high) {
+  double k = g->cells_per_length * STEPS_PER_CELL;
+  const double from[3] = {g->low.x, g->low.y, g->low.z};
+  const double l[3] = {low.x, low.y, low.z}, h[3] = {high.x, high.y, high.z};
+  scree_grid_box box;
+  for (int i = 0; i < 3; i++) {
+    box.low[i] = (uint16_t)scree_cell_along(l[i], from[i], k, g->size[i] * STEPS_PER_CELL);
+    box.high[i] = (uint16_t)scree_cell_along(h[i], from[i], k, g->size[i] * STEPS_PER_CELL);
+  }
+  return box;
+}
+
+static bool apart(const scree_grid_box *a, const scree_grid_box *b) {
+  return a->low[0] > b->high[0] || a->low[1] > b->high[1] || a->low[2] > b->high[2] ||
+         a->high[0] < b->low[0] || a->high[1] < b->low[1] || a->high[2] < b->low[2];
+}
+
+static bool list_large(scree_grid *g, uint32_t triangle) {
+  if (!scree_array_reserve((void **)&g->large, &g->large_capacity, g->large_count + 1,
+                           sizeof *g->large))
+    return false;
+  g->large[g->large_count++] = triangle;
+  return true;
+}
+
+static bool list(scree_grid *g, vec3 low, vec3 high, uint32_t triangle) {
+  scree_grid_box c = scree_cells_of(g, low, high);
+  if (scree_count_cells(&c) > SCREE_CELLS_MAX) return list_large(g, triangle);
+  scree_grid_box box = coarse_box(g, low, high);
+  SCREE_FOR_CELLS(g, c, cell) {
+    scree_grid_node node = {triangle, g->head[cell], box};
+    if (!SCREE_PUSH(g, node)) return false;
+    g->head[cell] = (uint32_t)(g->count - 1);
+  }
+  return true;
+}
+
+static void triangle_box(const scree_halfmesh *s, uint32_t t, vec3 *low, vec3 *high) {
+  const uint32_t *from = s->from + 3 * (size_t)t;
+  vec3 p0 = s->position[from[0]], p1 = s->position[from[1]], p2 = s->position[from[2]];
+  *low = vec3_min(p0, vec3_min(p1, p2));
+  *high = vec3_max(p0, vec3_max(p1, p2));
+}
+
+bool scree_grid_list_triangle(scree_grid *g, const scree_halfmesh *s, uint32_t t) {
+  vec3 low, high;
+  triangle_box(s, t, &low, &high);
+  return list(g, low, high, t);
+}
+
+/* The planned collapse that changes triangle t, or NONE. */
+static uint32_t planned_for(const scree_halfmesh *s, uint32_t t, const scree_planned *planned) {
+  if (!planned) return SCREE_NONE;
+  for (size_t i = 0; i < 3; i++) {
+    uint32_t chosen = planned->chosen[s->from[3 * (size_t)t + i]];
+    if (chosen != SCREE_NONE) return chosen;
+  }
+  return SCREE_NONE;
+}
+
+/* The box of triangle t and what it will become; false: the triangle is gone. */
+static bool box_with_plan(const scree_halfmesh *s, uint32_t t, const scree_planned *planned,
+                          vec3 *low, vec3 *high) {
+  if (s->from[3 * (size_t)t] == SCREE_NONE) return false;
+  triangle_box(s, t, low, high);
+  uint32_t chosen = planned_for(s, t, planned);
+  if (chosen != SCREE_NONE) {
+    *low = vec3_min(*low, planned->changes[chosen].target);
+    *high = vec3_max(*high, planned->changes[chosen].target);
+  }
+  return true;
+}
+
+bool scree_grid_list_all(scree_grid *g, const scree_halfmesh *s) {
+  for (uint32_t t = 0; t < s->triangle_count; t++)
+    if (s->from[3 * (size_t)t] != SCREE_NONE && !scree_grid_list_triangle(g, s, t)) return false;
+  return true;
+}
+
+/* ---- The marked cells of a batch ---- */
+
+bool scree_grid_mark(scree_grid *g, vec3 low, vec3 high) {
+  scree_grid_box c = scree_cells_of(g, low, high);
+  SCREE_FOR_CELLS(g, c, cell) {
+    if (g->head[cell] != SCREE_NONE) continue;
+    if (!scree_array_reserve((void **)&g->marked, &g->marked_capacity, g->marked_count + 1,
+                             sizeof *g->marked))
+      return false;
+    g->head[cell] = (uint32_t)g->marked_count;
+    g->marked[g->marked_count++] = (uint32_t)cell;
+  }
+  return true;
+}
+
+void scree_grid_unmark(scree_grid *g) {
+  for (size_t i = 0; i < g->marked_count; i++) g->head[g->marked[i]] = SCREE_NONE;
+  g->marked_count = g->large_count = 0;
+}
+
+enum { FAR, NEAR, LARGE };
+
+typedef struct listing {
+  scree_grid *grid;
+  const scree_halfmesh *s;
+  const scree_planned *planned;
+  uint8_t *where; /* per triangle: whether it touches a marked cell */
+} listing;
+
+static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const listing *l = context;
+  scree_grid *g = l->grid;
+  vec3 low, high;
+  for (size_t t = begin; t < end; t++) {
+    l->where[t] = FAR;
+    if (!box_with_plan(l->s, (uint32_t)t, l->planned, &low, &high)) continue;
+    scree_grid_box c = scree_cells_of(g, low, high);
+    if (scree_count_cells(&c) > SCREE_CELLS_MAX) {
+      l->where[t] = LARGE;
+      continue;
+    }
+    SCREE_FOR_CELLS(g, c, cell) {
+      if (g->head[cell] == SCREE_NONE) continue;
+      l->where[t] = NEAR;
+      __atomic_fetch_add(&g->start[g->head[cell] + 1], 1, __ATOMIC_RELAXED);
+    }
+  }
+}
+
+/* Directions that triangle t does not face, now or as it will be. */
+static uint64_t averse_with_plan(const listing *l, uint32_t t) {
+  const uint32_t *from = l->s->from + 3 * (size_t)t;
+  uint32_t chosen = planned_for(l->s, t, l->planned);
+  vec3 at[3];
+  for (int i = 0; i < 3; i++) at[i] = l->s->position[from[i]];
+  uint64_t averse = scree_averse_to(l->grid, vec3_triangle_normal(at[0], at[1], at[2]));
+  if (chosen == SCREE_NONE) return averse;
+  int moved = 0;
+  for (int i = 0; i < 3; i++)
+    if (l->planned->chosen[from[i]] == chosen) {
+      at[i] = l->planned->changes[chosen].target;
+      moved++;
+    }
+  if (moved == 1) averse |= scree_averse_to(l->grid, vec3_triangle_normal(at[0], at[1], at[2]));
+  return averse;
+}
+
+/* Fills from the end of each cell's part to its beginning; in what order does not matter. */
+static void fill_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const listing *l = context;
+  scree_grid *g = l->grid;
+  vec3 low, high;
+  for (size_t t = begin; t < end; t++) {
+    if (l->where[t] != NEAR) continue;
+    box_with_plan(l->s, (uint32_t)t, l->planned, &low, &high);
+    scree_grid_near near = {(uint32_t)t, coarse_box(g, low, high),
+                            averse_with_plan(l, (uint32_t)t)};
+    scree_grid_box c = scree_cells_of(g, low, high);
+    SCREE_FOR_CELLS(g, c, cell)
+    if (g->head[cell] != SCREE_NONE)
+      g->near[__atomic_sub_fetch(&g->start[g->head[cell] + 1], 1, __ATOMIC_RELAXED)] = near;
+  }
+}
+
+/* After count_block start[k + 1] is the count of cell k; before fill_block it is the end of its
+ * part; after that its beginning, and the next cell's is its end. */
+bool scree_grid_list_marked(scree_grid *g, const scree_halfmesh *s, const scree_planned *planned) {
+  listing l = {g, s, planned, scree_alloc(s->triangle_count, 1)};
+  bool listed = l.where && scree_array_reserve((void **)&g->start, &g->start_capacity,
+                                               g->marked_count + 2, sizeof *g->start);
+  if (listed) {
+    size_t sum = 0;
+    memset(g->start, 0, (g->marked_count + 2) * sizeof *g->start);
+    scree_parallel_for(s->triangle_count, BLOCK, count_block, &l);
+    for (size_t k = 1; k <= g->marked_count + 1; k++) g->start[k] = (uint32_t)(sum += g->start[k]);
+    listed = sum < UINT32_MAX &&
+             scree_array_reserve((void **)&g->near, &g->near_capacity, sum + 1, sizeof *g->near);
+  }
+  if (listed) {
+    scree_parallel_for(s->triangle_count, BLOCK, fill_block, &l);
+    for (uint32_t t = 0; t < s->triangle_count && listed; t++)
+      if (l.where[t] == LARGE) listed = list_large(g, t);
+  }
+  scree_free(l.where);
+  return listed;
+}
+
+/* ---- Pairs of triangles ---- */
+
+/* A triangle with corners named by mesh vertex; the moved vertex has the name MOVED. */
+typedef struct corners {
+  uint32_t name[3];
+  vec3 at[3];
+} corners;
+
+#define MOVED       (SCREE_NONE - 2)
+#define MOVED_OTHER (SCREE_NONE - 3)
+
+static corners corners_of(const scree_halfmesh *s, uint32_t t) {
+  corners c;
+  for (size_t i = 0; i < 3; i++) {
+    uint32_t v = s->from[3 * (size_t)t + i];
+    c.name[i] = s->origin[v];
+    c.at[i] = s->position[v];
+  }
+  return c;
+}
+
+static bool meet(const corners *x, const corners *y) {
+  for (int axis = 0; axis < 3; axis++) {
+    const double *a = &x->at[0].x + axis, *b = &y->at[0].x + axis;
+    if (fmax(a[0], fmax(a[3], a[6])) < fmin(b[0], fmin(b[3], b[6])) ||
+        fmax(b[0], fmax(b[3], b[6])) < fmin(a[0], fmin(a[3], a[6])))
+      return false;
+  }
+  vec3 at[6];
+  uint32_t t[3] = {0, 1, 2}, u[3] = {3, 4, 5};
+  memcpy(at, x->at, sizeof x->at);
+  memcpy(at + 3, y->at, sizeof y->at);
+  for (uint32_t i = 0; i < 3; i++)
+    for (uint32_t j = 0; j < 3; j++)
+      if (x->name[i] == y->name[j]) u[j] = t[i];
+  return scree_triangles_meet(&at[0].x, t, u) != SCREE_MEET_NOT;
+}
+
+/* A plane with the error of a side's sign: |n.(x - at)| above error |x - at| is past rounding. */
+typedef struct plane {
+  vec3 at, n;
+  double error;
+} plane;
+
+static double size_of(vec3 v) {
+  return fabs(v.x) + fabs(v.y) + fabs(v.z);
+}
+
+static plane plane_of(const vec3 *at) {
+  vec3 e1 = vec3_sub(at[1], at[0]), e2 = vec3_sub(at[2], at[0]);
+  return (plane){at[0], vec3_cross(e1, e2), 1e-14 * size_of(e1) * size_of(e2)};
+}
+
+/* 0: not sure. */
+static int side_of(const plane *p, vec3 x) {
+  vec3 d = vec3_sub(x, p->at);
+  double dot = vec3_dot(p->n, d), error = p->error * size_of(d);
+  return dot > error ? 1 : dot < -error ? -1 : 0;
+}
+
+typedef struct search {
+  const scree_grid *grid;
+  const scree_halfmesh *s;
+  const scree_ring *ring;
+  const scree_planned *planned;
+  uint32_t self;                 /* index of this collapse among the planned, or NONE */
+  int before, after;             /* triangles met by the ring as it is, and as it will be */
+  uint64_t averse;               /* to the triangles of the ring as it will be */
+  corners moved[SCREE_RING_MAX]; /* the ring as it will be, and its triangles' boxes */
+  vec3 low[SCREE_RING_MAX], high[SCREE_RING_MAX];
+  plane plane[SCREE_RING_MAX];
+} search;
+
+static corners ring_triangle(const search *q, uint32_t i) {
+  const scree_halfmesh *s = q->s;
+  uint32_t e = q->ring->edge[i], v1 = s->from[e], v2 = scree_to(s, e);
+  uint32_t v0 = s->from[scree_previous(e)];
+  return (corners){{s->origin[v0], s->origin[v1], s->origin[v2]},
+                   {s->position[v0], s->position[v1], s->position[v2]}};
+}
+
+static int count_met_before(const search *q, const corners *c) {
+  int met = 0;
+  for (uint32_t i = 0; i < q->ring->count; i++) {
+    corners own = ring_triangle(q, i);
+    met += meet(&own, c);
+  }
+  return met;
+}
+
+static bool has_name(const corners *c, uint32_t name) {
+  return c->name[0] == name || c->name[1] == name || c->name[2] == name;
+}
+
+/* All corners of x but those that y has too are surely on one side of the plane, y's. */
+static bool beside(const corners *x, const corners *y, const plane *of_y) {
+  int side = 0;
+  for (int i = 0; i < 3; i++) {
+    if (has_name(y, x->name[i])) continue;
+    int at = side_of(of_y, x->at[i]);
+    if (at == 0 || at == -side) return false;
+    side = at;
+  }
+  return side != 0;
+}
+
+static int count_met_after(const search *q, const corners *c) {
+  vec3 low = vec3_min(c->at[0], vec3_min(c->at[1], c->at[2]));
+  vec3 high = vec3_max(c->at[0], vec3_max(c->at[1], c->at[2]));
+  plane of_c = plane_of(c->at);
+  int met = 0;
+  for (uint32_t i = 0; i < q->ring->count; i++) {
+    const corners *m = &q->moved[i];
+    if (low.x > q->high[i].x || low.y > q->high[i].y || low.z > q->high[i].z ||
+        high.x < q->low[i].x || high.y < q->low[i].y || high.z < q->low[i].z ||
+        beside(m, c, &of_c) || beside(c, m, &q->plane[i]))
+      continue;
+    met += meet(m, c);
+  }
+  return met;
+}
+
+static void search_triangle(search *q, uint32_t t) {
+  const scree_halfmesh *s = q->s;
+  const uint32_t *from = s->from + 3 * (size_t)t;
+  for (int i = 0; i < 3; i++)
+    if (from[i] == q->ring->a || from[i] == q->ring->b) return;
+  corners c = corners_of(s, t);
+  int after = count_met_after(q, &c);
+  if (after > 0) {
+    q->before += count_met_before(q, &c);
+    q->after += after;
+  }
+  uint32_t chosen = planned_for(s, t, q->planned);
+  if (chosen == SCREE_NONE || chosen == q->self) return;
+  int moved = 0;
+  for (size_t i = 0; i < 3; i++)
+    if (q->planned->chosen[from[i]] == chosen) {
+      c.at[i] = q->planned->changes[chosen].target;
+      c.name[i] = MOVED_OTHER;
+      moved++;
+    }
+  if (moved == 1) q->after += count_met_after(q, &c);
+}
+
+/* Triangles of the ring that will meet each other beside their common corner and edges. */
+static int count_own(const search *q) {
+  int met = 0;
+  for (uint32_t i = 0; i < q->ring->count; i++)
+    for (uint32_t j = i + 1; j < q->ring->count; j++) met += meet(&q->moved[i], &q->moved[j]);
+  return met;
+}
+
+static void search_begin(search *q, vec3 target) {
+  const scree_ring *r = q->ring;
+  for (uint32_t i = 0; i < r->count; i++) {
+    q->moved[i] = ring_triangle(q, i);
+    q->moved[i].name[0] = MOVED;
+    q->moved[i].at[0] = target;
+    const vec3 *at = q->moved[i].at;
+    q->low[i] = vec3_min(at[0], vec3_min(at[1], at[2]));
+    q->high[i] = vec3_max(at[0], vec3_max(at[1], at[2]));
+    q->plane[i] = plane_of(at);
+    q->averse |= scree_averse_to(q->grid, q->plane[i].n);
+  }
+  /* a fan that faces one direction is a graph over it */
+  if (q->averse != SCREE_ALL_AVERSE) return;
+  q->after = count_own(q);
+  if (q->after == 0) return;
+  for (uint32_t i = 0; i < r->count; i++)
+    for (uint32_t j = i + 1; j < r->count; j++) {
+      corners x = ring_triangle(q, i), y = ring_triangle(q, j);
+      q->before += meet(&x, &y);
+    }
+}
+
+/* Whether `cell`, at the place x, y, z, is the first that both boxes of fractions of cells have. */
+static bool is_first(const scree_grid_box *a, const scree_grid_box *b, const uint32_t *place) {
+  for (int i = 0; i < 3; i++) {
+    uint32_t low = a->low[i] > b->low[i] ? a->low[i] : b->low[i];
+    if (low / STEPS_PER_CELL != place[i]) return false;
+  }
+  return true;
+}
+
+/* Leaves out the directions that some triangle about the ring does not face; false: none is left.
+ * Of a batch only. */
+static bool narrow(search *q, const scree_grid_box *c, const scree_grid_box *box) {
+  const scree_grid *g = q->grid;
+  if (g->large_count) return false;
+  SCREE_FOR_CELLS(g, *c, cell) {
+    uint32_t k = g->head[cell];
+    for (uint32_t i = g->start[k + 1]; i < g->start[k + 2]; i++)
+      if (!apart(&g->near[i].box, box)) q->averse |= g->near[i].averse;
+    if (q->averse == SCREE_ALL_AVERSE) return false;
+  }
+  return true;
+}
+
+static void search_marked(search *q, const scree_grid_box *c, const scree_grid_box *box) {
+  const scree_grid *g = q->grid;
+  SCREE_FOR_CELLS(g, *c, cell) {
+    uint32_t k = g->head[cell], place[3] = {(uint32_t)(cell % g->size[0]), y_, z_};
+    for (uint32_t i = g->start[k + 1]; i < g->start[k + 2]; i++)
+      if (!apart(&g->near[i].box, box) && is_first(&g->near[i].box, box, place))
+        search_triangle(q, g->near[i].triangle);
+  }
+}
+
+static void search_lists(search *q, const scree_grid_box *c, const scree_grid_box *box) {
+  const scree_grid *g = q->grid;
+  const scree_ring *r = q->ring;
+  vec3 low, high;
+  SCREE_FOR_CELLS(g, *c, cell)
+  for (uint32_t i = g->head[cell]; i != SCREE_NONE; i = g->items[i].next) {
+    uint32_t t = g->items[i].triangle;
+    /* a triangle may have shrunk since it was listed */
+    if (apart(&g->items[i].box, box) || !box_with_plan(q->s, t, NULL, &low, &high) ||
+        low.x > r->high.x || low.y > r->high.y || low.z > r->high.z || high.x < r->low.x ||
+        high.y < r->low.y || high.z < r->low.z)
+      continue;
+    /* it is listed in several cells: the first that both boxes have decides */
+    if (scree_cell_of(g, vec3_max(low, r->low)) == cell) search_triangle(q, t);
+  }
+}
+
+bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
+                      vec3 target, const scree_planned *planned) {
+  search q;
+  q.grid = g;
+  q.s = s;
+  q.ring = r;
+  q.planned = planned;
+  q.self = planned ? planned->chosen[r->a] : SCREE_NONE;
+  q.before = q.after = 0;
+  q.averse = 0;
+  search_begin(&q, target);
+  scree_grid_box c = scree_cells_of(g, r->low, r->high), box = coarse_box(g, r->low, r->high);
+  if (planned && s->closed && narrow(&q, &c, &box)) return true;
+  for (size_t i = 0; i < g->large_count; i++)
+    if (s->from[3 * (size_t)g->large[i]] != SCREE_NONE) search_triangle(&q, g->large[i]);
+  if (planned)
+    search_marked(&q, &c, &box);
+  else
+    search_lists(&q, &c, &box);
+  return q.after <= q.before;
+}
