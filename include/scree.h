@@ -959,8 +959,9 @@ SCREE_API scree_status scree_world_set_contact(scree_world *world, size_t materi
 
 typedef enum scree_wall_kind {
   SCREE_WALL_PLANE,    /* through position, solid behind, normal along axis */
-  SCREE_WALL_DISC,     /* the plane cut off at radius; bodies meet it with their points only */
-  SCREE_WALL_CYLINDER, /* seen from inside; from position along axis over length (0: endless) */
+  SCREE_WALL_DISC,     /* the plane cut off at radius, a sheet met from both sides */
+  SCREE_WALL_CYLINDER, /* a sheet; from position along axis over length (0: endless). The rims of
+                          discs and cylinders are met by points only */
   SCREE_WALL_MESH,     /* any consistently wound triangles, also open; outside is in front */
 } scree_wall_kind;
 
@@ -1033,7 +1034,8 @@ SCREE_API double scree_world_time_step(const scree_world *world, char reason[256
 typedef struct scree_observation {
   double time;                                    /* s */
   double kinetic, rotational, potential, elastic; /* J; potential of gravity, zero at the origin */
-  double dissipated_dashpot, dissipated_friction; /* J since the start */
+  double dissipated_dashpot,
+      dissipated_friction;                 /* J since the start; hysteresis counts as dashpot */
   double wall_work;                        /* J done on bodies by moving walls since the start */
   double momentum[3], angular_momentum[3]; /* N s; N m s about the origin */
   double mean_rotation;                    /* rad/s, mean of |omega| (the paper's Fig. 7) */

@@ -141,8 +141,7 @@ static bool near_wall(const scree_world *world, size_t body, const scree_world_w
   vec3 p = mat3_tmul_vec(&wall->frame.rotation, vec3_sub(frame->position, wall->frame.position));
   vec3 closest, normal;
   double reach = particle->measures.bounding_radius + world->broad->margin;
-  double d = scree_wall_distance(wall, p, &closest, &normal);
-  return d < reach && (d > -reach || wall->given.kind != SCREE_WALL_DISC);
+  return scree_wall_distance(wall, p, scree_wall_side(wall, p), &closest, &normal) < reach;
 }
 
 static int compare_keys(const void *x, const void *y) {

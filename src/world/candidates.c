@@ -49,8 +49,8 @@ static vec3 into_b(const listing *l, vec3 p) {
 static void list_wall_points(listing *l) {
   const scree_world_wall *wall = &l->world->walls.items[l->pair->b];
   for (uint32_t i = 0; i < l->a->point_count; i++) {
-    vec3 closest, normal;
-    double d = scree_wall_distance(wall, into_b(l, l->a->points[i]), &closest, &normal);
+    vec3 closest, normal, p = into_b(l, l->a->points[i]);
+    double d = scree_wall_distance(wall, p, scree_wall_side(wall, p), &closest, &normal);
     put_to_sleep(l, SCREE_ITEM_POINT_WALL, i, 0, d - l->a->point_radii[i] - l->pair->smoothing);
   }
 }

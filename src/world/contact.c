@@ -134,6 +134,13 @@ static void clear_results(scree_pair *pair) {
   pair->contact_count = 0;
 }
 
+/* What goes lost when the hysteretic spring is loaded beyond its largest overlap so far: it takes
+ * K m^2/2 and gives back e^2 of that. */
+static double hysteresis_loss(const scree_pair *pair, double before) {
+  double e2 = pair->restitution * pair->restitution;
+  return 0.5 * pair->stiffness * (1 - e2) * (pair->largest * pair->largest - before * before);
+}
+
 void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                          scree_pair_sums *sums) {
   if (pair->touching) add_later_work(world, pair, sums);
@@ -151,6 +158,7 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   scratch->touches.count = 0;
   bool some_sleep = visit_items(world, pair, &relative, scratch);
   clear_results(pair);
+  double largest = pair->largest;
   scree_powers powers = scree_pair_apply_law(world, pair, &scratch->touches, &relative);
   if (some_sleep) good = good && settle_items(pair);
   if (pair->active.count == 0) fall_asleep(world, pair);
@@ -159,6 +167,7 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   double half = 0.5 * world->time_step;
   sums->dashpot += half * powers.dashpot;
   sums->tangential += half * powers.tangential;
+  if (pair->largest > largest) sums->dashpot -= hysteresis_loss(pair, largest);
   if (pair->wall) sums->wall_work += half * wall_power(pair, scree_pair_frame_b(world, pair));
   if (!(pair->overlap <= sums->largest_overlap)) sums->largest_overlap = pair->overlap;
   if (!(pair->overlap <= pair->limit) && !sums->beyond_limit) sums->beyond_limit = pair;

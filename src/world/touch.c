@@ -354,8 +354,16 @@ static double touch_wall(const scree_world *world, const scree_pair *pair, scree
                          const scree_frame *relative, scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a];
   vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[item->a]), relative->position);
+  const scree_world_wall *wall = &world->walls.items[pair->b];
   vec3 c, n;
-  double d = scree_wall_distance(&world->walls.items[pair->b], p, &c, &n);
+  double side = scree_wall_side(wall, p), d = scree_wall_distance(wall, p, side, &c, &n);
+  bool apart = d > a->point_radii[item->a] + pair->smoothing;
+  if (!apart) { /* the side where it was last seen clear; in front at first sight */
+    side = item->has_reference ? item->reference.x : 1;
+    d = scree_wall_distance(wall, p, side, &c, &n);
+  }
+  item->reference.x = side;
+  item->has_reference = true;
   const double values[4] = {d, a->point_radii[item->a], 0, 1};
   return add_touch(scratch, pair, c, n, values, &item->anchor[0]);
 }

@@ -1,7 +1,8 @@
 /* Walls: where they are, how they move, how far a point is from them.
  *
  * A wall's frame has its origin in `position` and its z axis along `axis`. Distances are signed,
- * positive on the side of the bodies. */
+ * positive on the side of the bodies. A plane is solid behind; discs and cylinders are sheets, met
+ * from either side: a point belongs to the side where it was last seen clear of the sheet. */
 #include "world/world.h"
 
 #include "base/array.h"
@@ -110,28 +111,38 @@ void scree_world_wall_force(const scree_world *world, size_t index, double force
   vec3_store(torque, world->walls.items[index].torque);
 }
 
-static double cylinder_distance(const scree_wall *wall, vec3 p, vec3 *closest, vec3 *normal) {
+double scree_wall_side(const scree_world_wall *wall, vec3 p) {
+  const scree_wall *given = &wall->given;
+  if (given->kind == SCREE_WALL_DISC) return p.z >= 0 ? 1 : -1;
+  if (given->kind == SCREE_WALL_CYLINDER)
+    return p.x * p.x + p.y * p.y <= given->radius * given->radius ? 1 : -1;
+  return 1;
+}
+
+static double cylinder_distance(const scree_wall *wall, vec3 p, double side, vec3 *closest,
+                                vec3 *normal) {
   double rho = sqrt(p.x * p.x + p.y * p.y);
   vec3 outward = rho > 0 ? (vec3){p.x / rho, p.y / rho, 0} : (vec3){1, 0, 0};
   double z = p.z;
   if (wall->length > 0) z = z < 0 ? 0 : z > wall->length ? wall->length : z;
   *closest = (vec3){outward.x * wall->radius, outward.y * wall->radius, z};
-  *normal = vec3_neg(outward);
-  if (z == p.z) return wall->radius - rho;
+  *normal = vec3_scale(outward, -side);
+  if (z == p.z) return side * (wall->radius - rho);
   vec3 away = vec3_sub(p, *closest); /* past the rim */
   double d = vec3_norm(away);
   *normal = vec3_scale(away, 1 / d);
   return d;
 }
 
-double scree_wall_distance(const scree_world_wall *wall, vec3 p, vec3 *closest, vec3 *normal) {
+double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
+                           vec3 *normal) {
   const scree_wall *given = &wall->given;
-  if (given->kind == SCREE_WALL_CYLINDER) return cylinder_distance(given, p, closest, normal);
+  if (given->kind == SCREE_WALL_CYLINDER) return cylinder_distance(given, p, side, closest, normal);
   *closest = (vec3){p.x, p.y, 0};
-  *normal = (vec3){0, 0, 1};
+  *normal = (vec3){0, 0, side};
   if (given->kind == SCREE_WALL_PLANE) return p.z;
   double rho = sqrt(p.x * p.x + p.y * p.y);
-  if (rho <= given->radius) return p.z;
+  if (rho <= given->radius) return side * p.z;
   *closest = (vec3){p.x / rho * given->radius, p.y / rho * given->radius, 0};
   vec3 away = vec3_sub(p, *closest);
   double d = vec3_norm(away);

@@ -256,8 +256,12 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
  * move before it can touch (0 or less: it does, or nearly). relative: a in the frame of b. */
 double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_item *item,
                         const scree_frame *relative, scree_scratch *scratch);
-/* Gap of an analytic wall seen from a sphere at p (wall frame): closest point and normal. */
-double scree_wall_distance(const scree_world_wall *wall, vec3 p, vec3 *closest, vec3 *normal);
+/* Which side of an analytic wall p (wall frame) is on: 1 in front of the plane or disc, inside the
+ * cylinder; -1 for the other side of a disc or cylinder. */
+double scree_wall_side(const scree_world_wall *wall, vec3 p);
+/* Signed distance of p (wall frame) on that side, with the closest point and the normal. */
+double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
+                           vec3 *normal);
 
 /* The smooth maximum m of overlaps, t, and the denominator of the shares (law.c). */
 typedef struct scree_smooth_maximum {
