@@ -89,6 +89,9 @@ typedef struct scree_progress {
   double interval;
 } scree_progress;
 
+/* Creates the folder and its parents; an existing folder is fine. */
+SCREE_API scree_status scree_folder_create(const char *path, scree_error *error);
+
 /* 128 bits that name a file's content: XXH3-128, as `xxhsum -H2` prints it. */
 typedef struct scree_checksum {
   uint64_t high, low;
@@ -1249,6 +1252,7 @@ typedef struct scree_run_shape {
   scree_particle *particle; /* borrowed until the run is created; the run keeps its own reference */
   double density_factor; /* 1, or volume of the scan over that of the particle (mass_from: scan) */
   const char *name;      /* for reports, copied; NULL: none */
+  const char *source;    /* where it came from: file, checksum, Rp; copied; NULL: unknown */
 } scree_run_shape;
 
 /* The particles take the shapes in equal shares, shuffled by the seed; positions and orientations
@@ -1269,6 +1273,7 @@ SCREE_API scree_phase scree_run_phase(const scree_run *run);
 SCREE_API double scree_run_fraction(const scree_run *run);
 /* The world, for observing and frames; not to be changed. */
 SCREE_API scree_world *scree_run_world(scree_run *run);
+SCREE_API const scree_world *scree_run_view(const scree_run *run);
 SCREE_API const scree_experiment *scree_run_experiment(const scree_run *run);
 SCREE_API size_t scree_run_shape_count(const scree_run *run);
 /* Particle and name belong to the run. */
@@ -1499,6 +1504,8 @@ typedef struct scree_render_options {
   bool edges;           /* draw the triangles' edges; default false */
   bool wire;            /* only the edges, seen through; default false */
   bool ground;          /* a white floor under the lowest point, with shadows; default true */
+  double focus[3], focus_radius; /* m: this sphere fills the picture; radius 0 (default): all bodies
+                                    do */
   double value_minimum, value_maximum; /* of the colour map; default 0 and 1 */
   double value_scale;      /* what the values are multiplied by in the bar's labels; default 1 */
   const char *value_label; /* beside the scale bar, for example "distance / mm"; NULL: no bar */
@@ -1872,6 +1879,31 @@ typedef struct scree_polynomial {
 SCREE_API scree_status scree_fit_polynomial(const double *x, const double *y, size_t count,
                                             int degree, scree_polynomial *fit, scree_error *error);
 SCREE_API double scree_polynomial_value(const scree_polynomial *fit, double x);
+
+/* ---- 9.6 Heaps: JSON, CSV, pictures ---- */
+
+/* A run and what was measured of it. Texts are borrowed. */
+typedef struct scree_heap_entry {
+  const scree_run *run;
+  const scree_run_result *result;
+  const char *file;                /* the frame measured; NULL: the run itself, as it ended */
+  const scree_experiment *measure; /* the settings of the measurement; NULL: the run's own */
+  const char *command_line;        /* NULL: unknown */
+} scree_heap_entry;
+
+/* One object: version, command, experiment, shapes, the heap three ways, costs, and the series as
+ * columns (docs/formats.md). "-" is stdout. */
+SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *path,
+                                             bool overwrite, scree_error *error);
+/* The series, one row a point. "-" is stdout. */
+SCREE_API scree_status scree_series_csv_write(const scree_run *run, const char *path,
+                                              bool overwrite, scree_error *error);
+
+/* The particles of a run as they stand, each shape in its colour, seen as options say; a focus of
+ * radius 0 is put on the heap, strays may lie outside. Errors as scree_render. */
+SCREE_API scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
+                                         const scree_progress *progress, scree_image *image,
+                                         scree_error *error);
 
 #ifdef __cplusplus
 }

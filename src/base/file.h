@@ -25,9 +25,6 @@ scree_status scree_output_commit(scree_output *output, scree_error *error);
 /* Closes and removes the temporary file. */
 void scree_output_discard(scree_output *output);
 
-/* Creates the folder and its parents; an existing folder is fine. */
-scree_status scree_folder_create(const char *path, scree_error *error);
-
 scree_checksum scree_checksum_of(const void *bytes, size_t byte_count);
 
 #endif

@@ -54,6 +54,17 @@ static void draw(const char *phase, double fraction) {
   terminal.drawn = true;
 }
 
+void cli_terminal_line(const char *text) {
+  if (!terminal.show) return;
+  fprintf(stderr, "\r%-78.78s", text);
+  fflush(stderr);
+  terminal.drawn = true;
+}
+
+void cli_terminal_seconds(char *text, size_t size, double seconds) {
+  format_seconds(text, size, seconds);
+}
+
 static bool report(void *context, const char *phase, double fraction) {
   (void)context;
   if (terminal.show) draw(phase, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction);

@@ -7,6 +7,10 @@
 /* A progress that draws one line on stderr (when show is set) and cancels after Ctrl-C or SIGTERM.
  */
 const scree_progress *cli_terminal_start(bool show);
+/* One's own line in the same place, when show was set. */
+void cli_terminal_line(const char *text);
+/* "42 s", "7 min", "3.2 h"; "..." where seconds is not finite. */
+void cli_terminal_seconds(char *text, size_t size, double seconds);
 /* Clears the line. */
 void cli_terminal_end(void);
 /* Whether Ctrl-C or SIGTERM came; with true, cli_terminal_reraise ends the program as the signal

@@ -62,7 +62,7 @@ static const field fields[] = {
     {"gravity", FIELD_REAL, AT(gravity), 0, 1e3, "m/s2", "downwards"},
     {"output.frame_interval", FIELD_REAL, AT(frame_interval), 0, 1e5, "s",
      "of simulated time; 0: only the last [s]"},
-    {"output.checkpoint_interval", FIELD_REAL, AT(checkpoint_interval), 1, 1e6, "s",
+    {"output.checkpoint_interval", FIELD_REAL, AT(checkpoint_interval), 0.01, 1e6, "s",
      "of wall-clock time: what a crash costs at most [s]"},
     {"output.series_interval", FIELD_REAL, AT(series_interval), 1e-5, 1e4, "s",
      "of simulated time between the points of the series [s]"},

@@ -144,13 +144,16 @@ static scree_status allocate(scree_run *run, const scree_experiment *experiment,
   if (status != SCREE_OK) return status;
   status = SCREE_OUT_OF_MEMORY;
   run->shape_count = shape_count;
-  run->names = scree_alloc_zero(shape_count, sizeof *run->names);
+  run->names = scree_alloc_zero(2 * shape_count, sizeof *run->names);
   if (!run->names) return scree_fail_memory(error, shape_count, "the shapes' names");
   SCREE_ALLOC_OR(run->shapes, shape_count, error, done);
   for (size_t i = 0; i < shape_count; i++) {
     run->shapes[i] = shapes[i];
-    run->shapes[i].name = run->names[i] = scree_strdup(shapes[i].name ? shapes[i].name : "");
-    if (!run->names[i]) return scree_fail_memory(error, 0, "a shape's name");
+    run->shapes[i].name = run->names[2 * i] = scree_strdup(shapes[i].name ? shapes[i].name : "");
+    run->shapes[i].source = run->names[2 * i + 1] =
+        scree_strdup(shapes[i].source ? shapes[i].source : "");
+    if (!run->names[2 * i] || !run->names[2 * i + 1])
+      return scree_fail_memory(error, 0, "a shape's name");
   }
   SCREE_ALLOC_OR(run->extents, shape_count, error, done);
   SCREE_ALLOC_OR(run->materials, shape_count, error, done);
@@ -206,7 +209,7 @@ void scree_run_free(scree_run *run) {
   scree_world_free(run->world);
   scree_world_free(run->gallery);
   scree_experiment_free(&run->experiment);
-  for (size_t i = 0; run->names && i < run->shape_count; i++) scree_free(run->names[i]);
+  for (size_t i = 0; run->names && i < 2 * run->shape_count; i++) scree_free(run->names[i]);
   scree_free(run->names);
   scree_free(run->shapes);
   scree_free(run->extents);
@@ -347,6 +350,9 @@ scree_phase scree_run_phase(const scree_run *run) {
   return run->phase;
 }
 scree_world *scree_run_world(scree_run *run) {
+  return run->world;
+}
+const scree_world *scree_run_view(const scree_run *run) {
   return run->world;
 }
 const scree_experiment *scree_run_experiment(const scree_run *run) {

@@ -116,11 +116,11 @@ static scree_status strip_world(const scree_run *run, scree_world **world, scree
 
 static scree_status save_shapes(scree_codec *c, const scree_run *run, scree_error *error) {
   size_t count = run->shape_count;
-  scree_code_count(c, &count, 16);
+  scree_code_count(c, &count, 24);
   for (size_t i = 0; i < count; i++) {
     double factor = run->shapes[i].density_factor;
     scree_code_real(c, &factor);
-    save_block(c, run->names[i], strlen(run->names[i]));
+    for (size_t k = 2 * i; k < 2 * i + 2; k++) save_block(c, run->names[k], strlen(run->names[k]));
   }
   return save_world(c, run->gallery, error);
 }
@@ -208,7 +208,7 @@ typedef struct loader {
   scree_error *error;
   scree_experiment experiment;
   scree_run_shape shapes[MOST_SHAPES];
-  char *names[MOST_SHAPES];
+  char *names[2 * MOST_SHAPES];
   size_t shape_count;
   scree_world *gallery, *world;
   scree_run *run;
@@ -246,21 +246,28 @@ static scree_status load_world(loader *l, scree_world **world) {
   return scree_world_unpack(bytes, count, l->name, world, l->error);
 }
 
+/* A block as a string; NULL where it cannot be had. */
+static char *load_text(loader *l) {
+  size_t length;
+  const unsigned char *text = load_block(l, &length);
+  char *copy = text ? scree_alloc(length + 1, 1) : NULL;
+  if (!copy) return NULL;
+  memcpy(copy, text, length);
+  copy[length] = 0;
+  return copy;
+}
+
 static scree_status load_shapes(loader *l) {
-  scree_code_count(&l->codec, &l->shape_count, 16);
+  scree_code_count(&l->codec, &l->shape_count, 24);
   if (!scree_codec_good(&l->codec) || l->shape_count > MOST_SHAPES) {
     l->shape_count = 0;
     return fail_here(l);
   }
   for (size_t i = 0; i < l->shape_count; i++) {
-    size_t length;
     scree_code_real(&l->codec, &l->shapes[i].density_factor);
-    const unsigned char *text = load_block(l, &length);
-    char *name = text ? scree_alloc(length + 1, 1) : NULL;
-    if (!name) return fail_here(l);
-    memcpy(name, text, length);
-    name[length] = 0;
-    l->shapes[i].name = l->names[i] = name;
+    l->shapes[i].name = l->names[2 * i] = load_text(l);
+    l->shapes[i].source = l->names[2 * i + 1] = load_text(l);
+    if (!l->names[2 * i] || !l->names[2 * i + 1]) return fail_here(l);
   }
   scree_status status = load_world(l, &l->gallery);
   if (status != SCREE_OK) return status;
@@ -352,7 +359,7 @@ scree_status scree_run_load(const char *path, scree_run **run, scree_error *erro
               .name = strcmp(path, "-") != 0 ? path : "standard input",
               .error = error};
   status = load(&l);
-  for (size_t i = 0; i < l.shape_count; i++) scree_free(l.names[i]);
+  for (size_t i = 0; i < 2 * l.shape_count; i++) scree_free(l.names[i]);
   scree_world_free(l.world);
   scree_world_free(l.gallery);
   scree_experiment_free(&l.experiment);

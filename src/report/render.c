@@ -74,6 +74,14 @@ static vec3 item_point(const scree_render_item *item, const mat3 *rotation, size
   return vec3_add(mat3_mul_vec(rotation, p), vec3_load(item->position));
 }
 
+/* The sphere to fill the picture, where one is asked for; the floor stays under all bodies. */
+static void frame_focus(view *v, double lowest) {
+  const scree_render_options *o = v->options;
+  v->centre = vec3_load(o->focus);
+  v->scale = 1 / o->focus_radius;
+  v->floor_z = (lowest - v->centre.z) * v->scale - 1e-3;
+}
+
 static void frame_bodies(view *v) {
   vec3 low = {INFINITY, INFINITY, INFINITY}, high = {-INFINITY, -INFINITY, -INFINITY};
   for (size_t i = 0; i < v->cell->item_count; i++) {
@@ -90,6 +98,7 @@ static void frame_bodies(view *v) {
   v->centre = empty ? (vec3){0, 0, 0} : vec3_lerp(low, high, 0.5);
   v->scale = empty || half == 0 ? 1 : 1 / half;
   v->floor_z = empty ? -0.5 : (low.z - v->centre.z) * v->scale - 1e-3;
+  if (!empty && v->options->focus_radius > 0) frame_focus(v, low.z);
 }
 
 static scree_status add_item(view *v, const scree_render_item *item, scree_error *error) {
@@ -137,7 +146,9 @@ static void place_camera(view *v) {
   double half_height = tan(0.5 * field_of_view);
   double half_width = half_height * (double)v->width / (double)v->height;
   double distance = 0;
-  for (size_t i = 0; i < v->cell->item_count; i++) {
+  bool all = !(v->options->focus_radius > 0);
+  if (!all) distance = frame_margin / fmin(half_width, half_height);
+  for (size_t i = 0; all && i < v->cell->item_count; i++) {
     const scree_render_item *item = &v->cell->items[i];
     mat3 rotation = quat_to_mat3(item_rotation(item));
     for (size_t j = 0; j < item->mesh->vertex_count; j++) {
@@ -336,6 +347,10 @@ static scree_status check_options(const scree_render_options *o, size_t cell_cou
   if (o->width < 64 || o->height < 64 || o->width > 20000 || o->height > 20000)
     return scree_fail(error, SCREE_BAD_ARGUMENT,
                       "picture size %zu x %zu: each side must be 64 to 20000", o->width, o->height);
+  if (!(o->focus_radius >= 0 && isfinite(o->focus_radius)) ||
+      !isfinite(vec3_norm(vec3_load(o->focus))))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "a focus of radius %g m: must not be below 0",
+                      o->focus_radius);
   if (o->samples < 1 || o->samples > 65536)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%zu samples a pixel: must be 1 to 65536",
                       o->samples);

@@ -1,0 +1,251 @@
+#include "cli/grains.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+bool cli_parse_levels(const char *text, cli_grain_options *options) {
+  options->rp_count = 0;
+  while (*text) {
+    char word[32];
+    size_t length = strcspn(text, ",");
+    double value;
+    if (length == 0 || length >= sizeof word || options->rp_count == CLI_MOST_LEVELS) return false;
+    memcpy(word, text, length);
+    word[length] = 0;
+    if (!cli_real_from_text(word, &value) || !(value > 0 && value <= 1)) return false;
+    for (size_t i = 0; i < options->rp_count; i++)
+      if (options->rp[i] == value) return false;
+    options->rp[options->rp_count++] = value;
+    text += length;
+    if (*text == ',' && !*++text) return false;
+  }
+  return options->rp_count > 0;
+}
+
+static size_t level_count(const cli_grain_options *o) {
+  if (o->rp_count) return o->rp_count + o->spheres;
+  return 1; /* spheres alone, or as given */
+}
+
+static bool is_sphere_level(const cli_grain_options *o, size_t level) {
+  return o->spheres && level == o->rp_count;
+}
+
+void cli_level_name(const cli_grain_options *o, size_t level, char *buffer, size_t size) {
+  if (is_sphere_level(o, level))
+    snprintf(buffer, size, "spheres");
+  else if (o->rp_count)
+    snprintf(buffer, size, "rp-%g", o->rp[level]);
+  else
+    snprintf(buffer, size, "as-given");
+}
+
+void cli_grains_free(cli_grains *g) {
+  for (size_t i = 0; g->grains && i < g->shape_count * g->level_count; i++)
+    scree_grain_free(&g->grains[i]);
+  free(g->grains);
+  free(g->shapes);
+  free(g->texts);
+  *g = (cli_grains){0};
+}
+
+typedef struct maker {
+  const cli_grain_options *options;
+  const scree_progress *progress;
+  cli_grains *grains;
+  scree_error *error;
+} maker;
+
+static scree_status fail(scree_error *error, scree_status status, const char *word,
+                         const char *what) {
+  error->status = status;
+  snprintf(error->message, sizeof error->message, "%.300s: %.600s", word, what);
+  return status;
+}
+
+/* Errors without a file in them get the word in front. */
+static scree_status name_in_error(const char *word, scree_error *error) {
+  if (error->status == SCREE_CANCELLED || strstr(error->message, word)) return error->status;
+  char message[sizeof error->message];
+  memcpy(message, error->message, sizeof message);
+  return fail(error, error->status, word, message);
+}
+
+/* Name and source of a grain, and the grain among the run's shapes. */
+static void describe(const maker *m, const char *word, const scree_scan *scan, size_t index) {
+  cli_grains *g = m->grains;
+  const scree_grain *grain = &g->grains[index];
+  char *name = g->texts[2 * index], *source = g->texts[2 * index + 1], level[32];
+  cli_level_name(m->options, index / g->shape_count, level, sizeof level);
+  cli_short_name(word, name, 64);
+  int used = snprintf(source, sizeof *g->texts, "%.180s", word);
+  if (scan && (scan->checksum.high || scan->checksum.low))
+    used += snprintf(source + used, sizeof *g->texts - (size_t)used, ", %016" PRIx64 "%016" PRIx64,
+                     scan->checksum.high, scan->checksum.low);
+  if (scan)
+    snprintf(source + used, sizeof *g->texts - (size_t)used, ", %zu triangles, %s, %s",
+             grain->scan_triangle_count, level,
+             scree_method_name((scree_method)m->options->method));
+  g->shapes[index] = grain->run;
+  g->shapes[index].name = name;
+  g->shapes[index].source = source;
+}
+
+/* ---- scans ---- */
+
+static double smallest_rp(const cli_grain_options *o) {
+  double least = 1;
+  for (size_t i = 0; i < o->rp_count; i++) least = fmin(least, o->rp[i]);
+  return least;
+}
+
+static scree_status make_levels(const maker *m, size_t shape, const char *word,
+                                const scree_scan *scan, const scree_mesh *mesh) {
+  const cli_grain_options *o = m->options;
+  scree_curve *curve = NULL;
+  scree_status status = SCREE_OK;
+  if (smallest_rp(o) < 1) {
+    scree_simplify_options simplify = scree_default_simplify_options();
+    simplify.method = (scree_method)o->method;
+    simplify.stop_count = scree_choice_target(smallest_rp(o), mesh->triangle_count);
+    status = scree_curve_build(mesh, &simplify, m->progress, &curve, m->error);
+  }
+  for (size_t level = 0; status == SCREE_OK && level < m->grains->level_count; level++) {
+    scree_grain_options grain = scree_default_grain_options();
+    size_t index = level * m->grains->shape_count + shape;
+    grain.sphere = is_sphere_level(o, level);
+    if (o->rp_count && !grain.sphere) grain.rp = o->rp[level];
+    grain.mass_rule = o->mass_rule;
+    if (!grain.sphere && (double)mesh->triangle_count * grain.rp > CLI_LARGEST_GRAIN) {
+      char what[160];
+      snprintf(what, sizeof what,
+               "%.0f triangles are too many for a particle (at most %d): give --rp, or decimate "
+               "first (scree choose, scree simplify)",
+               (double)mesh->triangle_count * grain.rp, CLI_LARGEST_GRAIN);
+      status = fail(m->error, SCREE_LIMIT, word, what);
+      break;
+    }
+    status =
+        scree_grain_make(mesh, curve, &grain, m->progress, &m->grains->grains[index], m->error);
+    if (status == SCREE_OK) describe(m, word, scan, index);
+  }
+  scree_curve_free(curve);
+  return status;
+}
+
+static scree_status make_from_scan(const maker *m, size_t shape, const char *word) {
+  cli_input_options input = cli_source_options(&m->options->source);
+  scree_repair_options repair = scree_default_repair_options();
+  scree_scan scan;
+  scree_mesh ready = {0};
+  scree_status status = cli_load(word, &input, m->progress, &scan, m->error);
+  if (status != SCREE_OK) return name_in_error(word, m->error);
+  bool sample = cli_is_sample(word, NULL); /* made closed and manifold: nothing to check */
+  if (!sample)
+    status = scree_mesh_prepare(&scan.mesh, m->options->no_repair ? NULL : &repair, m->progress,
+                                &ready, NULL, m->error);
+  if (status == SCREE_OK) status = make_levels(m, shape, word, &scan, sample ? &scan.mesh : &ready);
+  scree_mesh_free(&ready);
+  scree_scan_free(&scan);
+  return status == SCREE_OK ? status : name_in_error(word, m->error);
+}
+
+/* ---- clumps ---- */
+
+typedef struct spheres {
+  double *centres, *radii;
+  size_t count, capacity;
+} spheres;
+
+static bool push_sphere(spheres *s, const double row[4]) {
+  if (s->count == s->capacity) {
+    size_t capacity = s->capacity ? 2 * s->capacity : 64;
+    double *centres = realloc(s->centres, 3 * capacity * sizeof *centres);
+    if (centres) s->centres = centres;
+    double *radii = realloc(s->radii, capacity * sizeof *radii);
+    if (radii) s->radii = radii;
+    if (!centres || !radii) return false;
+    s->capacity = capacity;
+  }
+  memcpy(s->centres + 3 * s->count, row, 3 * sizeof *row);
+  s->radii[s->count++] = row[3];
+  return true;
+}
+
+/* Lines of x, y, z, radius; a first line of words and lines that begin with # are passed over. */
+static scree_status read_spheres(const char *path, double unit, spheres *s, scree_error *error) {
+  FILE *stream = fopen(path, "r");
+  if (!stream) return fail(error, SCREE_IO, path, "cannot open");
+  char line[512], what[160];
+  size_t number = 0;
+  scree_status status = SCREE_OK;
+  while (status == SCREE_OK && fgets(line, sizeof line, stream)) {
+    double row[4];
+    char rest[2];
+    number++;
+    if (line[0] == '#' || line[strspn(line, " \t\r\n")] == 0) continue;
+    for (char *c = line; *c; c++)
+      if (*c == ',' || *c == ';') *c = ' ';
+    int found = sscanf(line, "%lf %lf %lf %lf %1s", &row[0], &row[1], &row[2], &row[3], rest);
+    if (found <= 0 && number == 1) continue;
+    if (found != 4) {
+      snprintf(what, sizeof what, "line %zu: must be x, y, z, radius of a sphere", number);
+      status = fail(error, SCREE_BAD_FILE, path, what);
+      break;
+    }
+    for (int k = 0; k < 4; k++) row[k] *= unit;
+    if (!push_sphere(s, row)) status = fail(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
+  }
+  fclose(stream);
+  if (status == SCREE_OK && s->count == 0) status = fail(error, SCREE_BAD_FILE, path, "no spheres");
+  return status;
+}
+
+static scree_status make_from_clump(const maker *m, size_t shape, const char *word) {
+  spheres s = {0};
+  scree_status status = read_spheres(word, m->options->source.unit, &s, m->error);
+  for (size_t level = 0; status == SCREE_OK && level < m->grains->level_count; level++) {
+    size_t index = level * m->grains->shape_count + shape;
+    scree_grain *grain = &m->grains->grains[index];
+    scree_particle_measures measures;
+    status =
+        scree_particle_clump(s.centres, s.radii, s.count, NULL, &grain->run.particle, m->error);
+    if (status != SCREE_OK) break;
+    scree_particle_measure(grain->run.particle, &measures);
+    grain->run.density_factor = 1;
+    grain->scan_volume = grain->volume = measures.volume;
+    if (is_sphere_level(m->options, level)) {
+      scree_particle_free(grain->run.particle);
+      status = scree_particle_sphere(0.5 * measures.size, &grain->run.particle, m->error);
+    }
+    if (status == SCREE_OK) describe(m, word, NULL, index);
+  }
+  free(s.centres);
+  free(s.radii);
+  return status == SCREE_OK ? status : name_in_error(word, m->error);
+}
+
+static bool ends_in_csv(const char *word) {
+  const char *dot = strrchr(word, '.');
+  return dot && !strcmp(dot, ".csv");
+}
+
+scree_status cli_make_grains(const char *const *words, size_t count,
+                             const cli_grain_options *options, const scree_progress *progress,
+                             cli_grains *grains, scree_error *error) {
+  size_t levels = level_count(options), all = levels * count;
+  *grains =
+      (cli_grains){count, levels, calloc(all, sizeof *grains->grains),
+                   calloc(all, sizeof *grains->shapes), calloc(2 * all, sizeof *grains->texts)};
+  maker m = {options, progress, grains, error};
+  scree_status status = SCREE_OK;
+  if (!grains->grains || !grains->shapes || !grains->texts)
+    status = fail(error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
+  for (size_t i = 0; status == SCREE_OK && i < count; i++)
+    status =
+        ends_in_csv(words[i]) ? make_from_clump(&m, i, words[i]) : make_from_scan(&m, i, words[i]);
+  if (status != SCREE_OK) cli_grains_free(grains);
+  return status;
+}

@@ -1,0 +1,150 @@
+/* scree pile: a frame or a checkpoint, measured again. */
+#include "cli/heap.h"
+
+#include <string.h>
+
+typedef struct pile_arguments {
+  const char *cell, *sectors, *band_low, *band_high; /* in the order of `settings` */
+  const char *picture, *size, *csv;
+  double azimuth_deg, elevation_deg, width;
+  size_t samples;
+  int vtp_view;
+  const char *vtp;
+  bool json, force;
+} pile_arguments;
+
+static const pile_arguments defaults = {.size = "1200x900",
+                                        .azimuth_deg = 35,
+                                        .elevation_deg = 18,
+                                        .samples = 24,
+                                        .vtp_view = SCREE_VIEW_SURFACES};
+
+static const struct {
+  const char *option, *field;
+  size_t offset;
+} settings[] = {
+    {"cell", "measure.cell", offsetof(pile_arguments, cell)},
+    {"sectors", "measure.sectors", offsetof(pile_arguments, sectors)},
+    {"band-low", "measure.band_low", offsetof(pile_arguments, band_low)},
+    {"band-high", "measure.band_high", offsetof(pile_arguments, band_high)},
+};
+enum { SETTING_COUNT = sizeof settings / sizeof *settings };
+
+#define AT(field) offsetof(pile_arguments, field)
+static const cli_option options[] = {
+    {"cell", 0, CLI_TEXT, AT(cell), "M",
+     "Side of the height field's cells; 0: a tenth of the particle size. Default: the run's.", 0, 0,
+     NULL},
+    {"sectors", 0, CLI_TEXT, AT(sectors), "N", "Azimuth sectors. Default: the run's.", 0, 0, NULL},
+    {"band-low", 0, CLI_TEXT, AT(band_low), "SHARE",
+     "The flank begins at this share of the heap's height. Default: the run's.", 0, 0, NULL},
+    {"band-high", 0, CLI_TEXT, AT(band_high), "SHARE", "And ends at this one. Default: the run's.",
+     0, 0, NULL},
+    {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text: as result.json of repose.",
+     0, 0, NULL},
+    {"csv", 0, CLI_TEXT, AT(csv), "FILE", "Write the series up to the frame; - is stdout.", 0, 0,
+     NULL},
+    {"picture", 'o', CLI_TEXT, AT(picture), "FILE", "Write a picture of the heap, a PNG.", 0, 0,
+     NULL},
+    {"size", 's', CLI_TEXT, AT(size), "WxH", "Of the picture, in pixels. Default: 1200x900.", 0, 0,
+     NULL},
+    {"azimuth", 'a', CLI_REAL, AT(azimuth_deg), "DEG",
+     "The camera's angle about the vertical. Default: 35.", -360, 360, NULL},
+    {"elevation", 'e', CLI_REAL, AT(elevation_deg), "DEG",
+     "The camera's angle above the horizontal. Default: 18.", -90, 90, NULL},
+    {"width", 'w', CLI_LENGTH, AT(width), "LENGTH",
+     "Half of what the picture shows, about the middle of the heap; default: the heap.", 0, 1e4,
+     NULL},
+    {"samples", 'n', CLI_COUNT, AT(samples), "N", "Rays a pixel. Default: 24.", 1, 65536, NULL},
+    {"vtp", 0, CLI_TEXT, AT(vtp), "FILE", "Write the particles for ParaView, a .vtp.", 0, 0, NULL},
+    {"view", 0, CLI_CHOICE, AT(vtp_view), "VIEW",
+     "What goes into it (a frame has no contacts, a checkpoint has). Default: surfaces.", 0, 0,
+     "surfaces|points|contacts|walls"},
+    {"force", 'f', CLI_FLAG, AT(force), NULL, "Overwrite existing files.", 0, 0, NULL},
+};
+#undef AT
+
+/* The run's settings with those that were given; 0, or the exit code. */
+static int read_settings(const cli_call *call, const scree_run *run, scree_experiment *measure,
+                         scree_error *error) {
+  if (scree_experiment_copy(scree_run_experiment(run), measure, error) != SCREE_OK)
+    return cli_fail(error);
+  for (int i = 0; i < SETTING_COUNT; i++) {
+    const char *text;
+    memcpy(&text, (const char *)call->options + settings[i].offset, sizeof text);
+    if (text && scree_experiment_set(measure, settings[i].field, text, error) != SCREE_OK)
+      return cli_misuse(call->verb, "--%s: %s", settings[i].option, error->message);
+  }
+  return scree_experiment_check(measure, error) == SCREE_OK ? 0 : cli_fail(error);
+}
+
+static int write_picture(const cli_call *call, const scree_run *run, const scree_run_result *result,
+                         scree_error *error) {
+  const pile_arguments *a = call->options;
+  scree_render_options render = scree_default_render_options();
+  if (!cli_parse_size(a->size, &render))
+    return cli_misuse(call->verb, "--size %s: not a size such as 1200x900", a->size);
+  render.azimuth_deg = a->azimuth_deg;
+  render.elevation_deg = a->elevation_deg;
+  render.samples = a->samples;
+  if (a->width > 0) {
+    render.focus_radius = a->width;
+    render.focus[0] = result->repose.axis[0];
+    render.focus[1] = result->repose.axis[1];
+    render.focus[2] = 0.35 * result->repose.peak;
+  }
+  return cli_write_picture(run, &render, a->picture, a->force, call->progress, error) == SCREE_OK
+             ? 0
+             : cli_fail(error);
+}
+
+static int measure(const cli_call *call, scree_run *run, scree_error *error) {
+  const pile_arguments *a = call->options;
+  scree_experiment settings_used = {0};
+  scree_run_result result;
+  int code = read_settings(call, run, &settings_used, error);
+  if (code == 0 && scree_run_measure_with(run, &settings_used, &result, error) != SCREE_OK)
+    code = cli_fail(error);
+  scree_heap_entry entry = {run, &result, call->inputs[0], &settings_used, call->command_line};
+  if (code == 0 && a->json && scree_heap_json_write(&entry, "-", true, error) != SCREE_OK)
+    code = cli_fail(error);
+  if (code == 0 && !a->json) cli_print_heap(stdout, run, &result);
+  if (code == 0 && a->csv && scree_series_csv_write(run, a->csv, a->force, error) != SCREE_OK)
+    code = cli_fail(error);
+  if (code == 0 && a->vtp &&
+      scree_world_vtp_write(scree_run_view(run), (scree_world_view)a->vtp_view, a->vtp, a->force,
+                            error) != SCREE_OK)
+    code = cli_fail(error);
+  if (code == 0 && a->picture) code = write_picture(call, run, &result, error);
+  scree_experiment_free(&settings_used);
+  return code;
+}
+
+static int run(const cli_call *call) {
+  scree_run *loaded;
+  scree_error error;
+  if (scree_run_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
+  int code = measure(call, loaded, &error);
+  scree_run_free(loaded);
+  return code;
+}
+
+const cli_verb cli_verb_pile = {
+    .name = "pile",
+    .summary = "measure a heap of `scree repose` again, draw it",
+    .inputs = "FRAME",
+    .description =
+        "Measures a frame or a checkpoint that `scree repose` wrote, with the run's settings or "
+        "with others: angle of repose three ways with its spread, height, base radius, run-out, "
+        "packing fraction and coordination number. - is stdin.",
+    .examples = "scree pile heap/last.scree\n"
+                "scree pile heap/last.scree --band-low 0.1 --band-high 0.9 --json\n"
+                "scree pile heap/frame-0012.scree -o frame.png --elevation 5\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 1,
+    .input_maximum = 1,
+    .run = run,
+};

@@ -1,0 +1,464 @@
+/* scree repose: the angle-of-repose experiment. */
+#include "cli/grains.h"
+#include "cli/heap.h"
+#include "cli/terminal.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Every field of the experiment as an option: X(option, field, VALUE, help). */
+#define SETTINGS(X)                                                                                \
+  X(PARTICLES, "particles", "particles", "N",                                                      \
+    "How many particles, in equal shares of the shapes.")                                          \
+  X(SEED, "seed", "seed", "N", "Of positions, orientations and order.")                            \
+  X(DENSITY, "density", "density", "KG/M3", "Of the particles.")                                   \
+  X(MASS_FROM, "mass-from", "mass_from", "WHAT",                                                   \
+    "mesh: mass by each decimated mesh's own volume, as a simulator that reads the mesh has it; "  \
+    "scan: by the scan's at every level.")                                                         \
+  X(CYLINDER, "cylinder", "cylinder.diameter", "M", "Inner diameter of the cylinder.")             \
+  X(DISC, "disc", "disc.diameter", "M", "Diameter of the bottom disc.")                            \
+  X(PACK_TIME, "pack-time", "phases.pack_time", "S", "While the particles are filled in.")         \
+  X(SETTLE_TIME, "settle-time", "phases.settle_time", "S", "While they come to rest.")             \
+  X(LIFT_SPEED, "lift-speed", "phases.lift_speed", "M/S", "Of the cylinder.")                      \
+  X(LIFT_TIME, "lift-time", "phases.lift_time", "S", "How long it rises.")                         \
+  X(HOLD_TIME, "hold-time", "phases.hold_time", "S", "After the lift, at most, until still.")      \
+  X(STOP_WHEN_STILL, "stop-when-still", "phases.stop_when_still", "BOOL",                          \
+    "true: phases end early when still.")                                                          \
+  X(STILL_ENERGY, "still-energy", "phases.still_energy", "J",                                      \
+    "Kinetic energy a particle: less is still.")                                                   \
+  X(DROP_HEIGHT, "drop-height", "phases.drop_height", "M",                                         \
+    "From the heap's top to the inlet, at least.")                                                 \
+  X(YOUNG, "young", "contact.young_particle", "PA", "Young's modulus of the particles.")           \
+  X(YOUNG_WALL, "young-wall", "contact.young_wall", "PA", "Young's modulus of the walls.")         \
+  X(POISSON, "poisson", "contact.poisson", "NU",                                                   \
+    "Poisson's ratio (the linear law does not use it).")                                           \
+  X(RESTITUTION, "restitution", "contact.restitution", "E", "Of every contact.")                   \
+  X(FRICTION, "friction", "contact.friction_particle", "MU", "Particle on particle.")              \
+  X(FRICTION_WALL, "friction-wall", "contact.friction_wall", "MU", "Particle on wall.")            \
+  X(LAW, "law", "contact.law", "NAME", "linear or hysteretic.")                                    \
+  X(STEPS, "steps", "contact.steps", "N",                                                          \
+    "Time steps in a quarter of a contact's period, at least 15.")                                 \
+  X(STIFFNESS, "stiffness", "contact.stiffness_factor", "F",                                       \
+    "Multiplies every stiffness; 0.2 is 2.2 times faster, with overlaps 5 times deeper.")          \
+  X(GRAVITY, "gravity", "gravity", "M/S2", "Downwards.")                                           \
+  X(FRAMES, "frames", "output.frame_interval", "S",                                                \
+    "Simulated time between frames; 0: only the last.")                                            \
+  X(CHECKPOINT, "checkpoint", "output.checkpoint_interval", "S",                                   \
+    "Clock time between checkpoints.")                                                             \
+  X(SERIES, "series", "output.series_interval", "S",                                               \
+    "Simulated time between points of the series.")                                                \
+  X(ANGLES, "angles", "output.angle_interval", "S", "And between those with angles.")              \
+  X(CELL, "cell", "measure.cell", "M", "Of the height field; 0: a tenth of the particle size.")    \
+  X(SECTORS, "sectors", "measure.sectors", "N", "Azimuth sectors.")                                \
+  X(BAND_LOW, "band-low", "measure.band_low", "SHARE",                                             \
+    "The flank begins at this share of the height.")                                               \
+  X(BAND_HIGH, "band-high", "measure.band_high", "SHARE", "And ends at this one.")
+
+enum {
+#define PLACE(id, option, field, value, help) SETTING_##id,
+  SETTINGS(PLACE)
+#undef PLACE
+      SETTING_COUNT
+};
+
+static const struct {
+  const char *option, *field;
+} settings[] = {
+#define NAMES(id, option, field, value, help) {option, field},
+    SETTINGS(NAMES)
+#undef NAMES
+};
+
+enum { VTP_UNSET = -1, VTP_NONE, VTP_ALL = SCREE_VIEW_COUNT + 1 };
+
+typedef struct repose_arguments {
+  const char *config, *preset, *output, *rp;
+  const char *settings[SETTING_COUNT];
+  cli_source source;
+  int method, vtp;
+  bool samples, spheres, no_repair, resume, force, print_config, json, no_picture;
+} repose_arguments;
+
+static const repose_arguments defaults = {
+    .preset = "demo", .source = CLI_SOURCE_DEFAULTS, .vtp = VTP_UNSET};
+
+#define AT(field) offsetof(repose_arguments, field)
+static const cli_option options[] = {
+    {"config", 'c', CLI_TEXT, AT(config), "FILE",
+     "An experiment in YAML, as --print-config writes it; - is stdin.", 0, 0, NULL},
+    {"preset", 'p', CLI_TEXT, AT(preset), "NAME",
+     "What the file and the options change: paper, small or demo (the default).", 0, 0, NULL},
+    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+     "A folder, made if need be, for checkpoints, frames, result.json, series.csv, "
+     "experiment.yaml and heap.png; with several runs, a folder in it for each.",
+     0, 0, NULL},
+    {"print-config", 0, CLI_FLAG, AT(print_config), NULL,
+     "Print the experiment as it would be run, with units and comments, and stop.", 0, 0, NULL},
+    {"samples", 0, CLI_FLAG, AT(samples), NULL, "The nine built-in devices as shapes.", 0, 0, NULL},
+    {"rp", 'r', CLI_TEXT, AT(rp), "LIST",
+     "Decimate the scans first, as 1e-3, or 1e-5,1e-4,1e-3 for a run at each.", 0, 0, NULL},
+    {"spheres", 0, CLI_FLAG, AT(spheres), NULL,
+     "A run with spheres of the shapes' volumes: alone, or after those of --rp.", 0, 0, NULL},
+    {"method", 'm', CLI_CHOICE, AT(method), "NAME",
+     "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume.", 0, 0,
+     "volume|qecd"},
+    {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,
+     "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
+    {"resume", 0, CLI_FLAG, AT(resume), NULL,
+     "Go on from the checkpoint in DIR where there is one; without SHAPE, with what is in it.", 0,
+     0, NULL},
+    {"force", 'f', CLI_FLAG, AT(force), NULL, "Begin anew in a folder with an earlier run.", 0, 0,
+     NULL},
+    {"vtp", 0, CLI_CHOICE, AT(vtp), "VIEW",
+     "What of each frame becomes a .vtp file for ParaView. Default: surfaces.", 0, 0,
+     "none|surfaces|points|contacts|walls|all"},
+    {"json", 0, CLI_FLAG, AT(json), NULL, "Print result.json instead of text.", 0, 0, NULL},
+    {"no-picture", 0, CLI_FLAG, AT(no_picture), NULL, "Do not write heap.png.", 0, 0, NULL},
+    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
+     0, NULL},
+    CLI_SAMPLE_OPTION(repose_arguments, source, resolution, CLI_LENGTH, "LENGTH",
+                      "Spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3),
+    CLI_SAMPLE_OPTION(repose_arguments, source, noise, CLI_LENGTH, "LENGTH",
+                      "Scanner noise of built-in samples. Default: 0.02mm.", 0, 2e-3),
+    {"sample-seed", 0, CLI_COUNT, AT(source.seed), "N", "Seed of that noise. Default: 1.", 0, 1e15,
+     NULL},
+#define OPTION(id, option, field, value, help)                                                     \
+  {option, 0, CLI_TEXT, AT(settings) + SETTING_##id * sizeof(const char *), value, help,           \
+   0,      0, NULL},
+    SETTINGS(OPTION)
+#undef OPTION
+};
+#undef AT
+
+/* One call: its experiment and its runs. */
+typedef struct repose {
+  const cli_call *call;
+  const repose_arguments *arguments;
+  scree_experiment experiment;
+  cli_grain_options grain_options;
+  cli_grains grains;
+  scree_run **runs; /* of each level, once done */
+  scree_run_result *results;
+  scree_error error;
+} repose;
+
+/* ---- the experiment ---- */
+
+/* 0, or the exit code after saying why. */
+static int read_experiment(repose *r) {
+  const repose_arguments *a = r->arguments;
+  if (scree_experiment_preset(a->preset, &r->experiment, &r->error) != SCREE_OK)
+    return cli_misuse(r->call->verb, "--preset %s: must be paper, small or demo", a->preset);
+  if (a->config && scree_experiment_read(a->config, &r->experiment, &r->error) != SCREE_OK)
+    return cli_fail(&r->error);
+  for (int i = 0; i < SETTING_COUNT; i++)
+    if (a->settings[i] && scree_experiment_set(&r->experiment, settings[i].field, a->settings[i],
+                                               &r->error) != SCREE_OK)
+      return cli_misuse(r->call->verb, "--%s: %s", settings[i].option, r->error.message);
+  return scree_experiment_check(&r->experiment, &r->error) == SCREE_OK ? 0 : cli_fail(&r->error);
+}
+
+/* ---- one run ---- */
+
+typedef struct one_run {
+  repose *all;
+  size_t level;
+  bool alone; /* no shapes were given: the checkpoint has them */
+  char name[32], folder[4096];
+  size_t vtp_frames;
+} one_run;
+
+static bool watch(void *context, const scree_run_state *state) {
+  (void)context;
+  char left[32], line[160];
+  cli_terminal_seconds(left, sizeof left, state->seconds_left);
+  snprintf(line, sizeof line, "%s %.2f s  %.0f %%  %zu in  %.0f steps/s  %.2g J  %s left",
+           scree_phase_name(state->now.phase), state->now.time, 100 * state->fraction,
+           state->now.body_count, isnan(state->steps_per_second) ? 0 : state->steps_per_second,
+           state->now.kinetic, left);
+  cli_terminal_line(line);
+  return !cli_interrupted();
+}
+
+static scree_status write_views(const one_run *o, scree_run *run, const char *stem,
+                                scree_error *error) {
+  int vtp = o->all->arguments->vtp == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->vtp;
+  for (int view = 0; view < SCREE_VIEW_COUNT; view++) {
+    char path[4200];
+    if (vtp != VTP_ALL && vtp != view + 1) continue;
+    snprintf(path, sizeof path, "%s/%s-%s.vtp", o->folder, stem,
+             scree_world_view_name((scree_world_view)view));
+    scree_status status =
+        scree_world_vtp_write(scree_run_world(run), (scree_world_view)view, path, true, error);
+    if (status != SCREE_OK) return status;
+  }
+  return SCREE_OK;
+}
+
+static scree_status on_frame(void *context, scree_run *run, size_t index, scree_error *error) {
+  one_run *o = context;
+  char stem[32];
+  if (!o->folder[0]) return SCREE_OK;
+  snprintf(stem, sizeof stem, "frame-%04zu", index);
+  o->vtp_frames = index + 1;
+  return write_views(o, run, stem, error);
+}
+
+static scree_status write_text(const char *path, bool overwrite, const scree_experiment *experiment,
+                               scree_error *error) {
+  FILE *stream = fopen(path, overwrite ? "w" : "wx");
+  bool good = stream != NULL;
+  if (stream) {
+    scree_experiment_print(experiment, stream);
+    good = !ferror(stream);
+    good = fclose(stream) == 0 && good;
+  }
+  if (good) return SCREE_OK;
+  error->status = SCREE_IO;
+  snprintf(error->message, sizeof error->message, "%.900s: %s", path,
+           errno == EEXIST ? "exists already: --resume goes on, -f begins anew" : strerror(errno));
+  return SCREE_IO;
+}
+
+/* The collection of the frames, for each view that was written. */
+static scree_status write_collections(const one_run *o, const scree_run *run, scree_error *error) {
+  double interval = scree_run_experiment(run)->frame_interval;
+  scree_run_costs costs;
+  scree_run_get_costs(run, &costs);
+  size_t count = 0;
+  scree_status status = SCREE_OK;
+  int vtp = o->all->arguments->vtp == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->vtp;
+  if (!(interval > 0) || vtp == VTP_NONE) return SCREE_OK;
+  while ((double)count * interval <= scree_world_time(scree_run_view(run))) count++;
+  double *times = malloc(count * sizeof *times);
+  const char **files = malloc(count * sizeof *files);
+  char(*names)[48] = malloc(count * sizeof *names);
+  for (int view = 0; status == SCREE_OK && times && files && names && view < SCREE_VIEW_COUNT;
+       view++) {
+    char path[4200];
+    if (vtp != VTP_ALL && vtp != view + 1) continue;
+    const char *kind = scree_world_view_name((scree_world_view)view);
+    for (size_t i = 0; i < count; i++) {
+      times[i] = (double)i * interval;
+      snprintf(names[i], sizeof *names, "frame-%04zu-%s.vtp", i, kind);
+      files[i] = names[i];
+    }
+    snprintf(path, sizeof path, "%s/%s.vtp.series", o->folder, kind);
+    status = scree_pvd_write(files, times, count, path, true, error);
+  }
+  free(times);
+  free(files);
+  free(names);
+  return status;
+}
+
+static scree_status write_picture(const one_run *o, const scree_run *run, scree_error *error) {
+  scree_render_options render = scree_default_render_options();
+  char path[4200];
+  if (o->all->arguments->no_picture) return SCREE_OK;
+  render.elevation_deg = 18;
+  snprintf(path, sizeof path, "%s/heap.png", o->folder);
+  scree_status status = cli_write_picture(run, &render, path, true, o->all->call->progress, error);
+  return status == SCREE_UNSUPPORTED ? SCREE_OK : status; /* a build without a ray tracer */
+}
+
+static scree_status write_results(const one_run *o, scree_run *run, const scree_run_result *result,
+                                  scree_error *error) {
+  scree_heap_entry entry = {
+      .run = run, .result = result, .command_line = o->all->call->command_line};
+  char path[4200];
+  if (o->all->arguments->json) {
+    scree_status status = scree_heap_json_write(&entry, "-", true, error);
+    if (status != SCREE_OK) return status;
+  }
+  if (!o->folder[0]) return SCREE_OK;
+  snprintf(path, sizeof path, "%s/result.json", o->folder);
+  scree_status status = scree_heap_json_write(&entry, path, true, error);
+  snprintf(path, sizeof path, "%s/series.csv", o->folder);
+  if (status == SCREE_OK) status = scree_series_csv_write(run, path, true, error);
+  if (status == SCREE_OK) status = write_collections(o, run, error);
+  if (status == SCREE_OK && o->all->arguments->vtp > VTP_NONE)
+    status = write_views(o, run, "last", error);
+  return status == SCREE_OK ? write_picture(o, run, error) : status;
+}
+
+static void print_result(const one_run *o, const scree_run *run, const scree_run_result *result) {
+  const scree_experiment *e = scree_run_experiment(run);
+  size_t shapes = scree_run_shape_count(run);
+  printf("%s%s%zu particles of %zu shape%s, seed %llu, preset %s\n",
+         o->all->grains.level_count > 1 ? o->name : "", o->all->grains.level_count > 1 ? ": " : "",
+         e->particle_count, shapes, shapes == 1 ? "" : "s", (unsigned long long)e->seed, e->preset);
+  cli_print_heap(stdout, run, result);
+  cli_print_costs(stdout, run);
+  if (o->folder[0])
+    printf("  files             %s/ (result.json, series.csv%s, last.scree)\n", o->folder,
+           o->all->arguments->no_picture ? "" : ", heap.png");
+  fflush(stdout);
+}
+
+static scree_status prepare_folder(one_run *o) {
+  repose *r = o->all;
+  const repose_arguments *a = r->arguments;
+  char path[4200];
+  if (!a->output || o->alone) return SCREE_OK;
+  scree_status status = scree_folder_create(o->folder, &r->error);
+  snprintf(path, sizeof path, "%s/experiment.yaml", o->folder);
+  return status == SCREE_OK ? write_text(path, a->force || a->resume, &r->experiment, &r->error)
+                            : status;
+}
+
+static scree_status run_level(repose *r, size_t level, bool alone) {
+  one_run o = {.all = r, .level = level, .alone = alone};
+  const repose_arguments *a = r->arguments;
+  cli_level_name(&r->grain_options, level, o.name, sizeof o.name);
+  if (a->output && r->grains.level_count > 1)
+    snprintf(o.folder, sizeof o.folder, "%s/%s", a->output, o.name);
+  else if (a->output)
+    snprintf(o.folder, sizeof o.folder, "%s", a->output);
+  scree_run_job job = {.experiment = alone ? NULL : &r->experiment,
+                       .shapes = alone ? NULL : r->grains.shapes + level * r->grains.shape_count,
+                       .shape_count = r->grains.shape_count,
+                       .folder = a->output ? o.folder : NULL,
+                       .resume = a->resume,
+                       .overwrite = a->force,
+                       .watch = watch,
+                       .frame = on_frame,
+                       .context = &o};
+  scree_status status = prepare_folder(&o);
+  if (status == SCREE_OK) status = scree_run_complete(&job, &r->runs[level], &r->error);
+  cli_terminal_end();
+  if (status != SCREE_OK) return status;
+  status = scree_run_measure(r->runs[level], &r->results[level], &r->error);
+  if (status == SCREE_OK) status = write_results(&o, r->runs[level], &r->results[level], &r->error);
+  cli_terminal_end();
+  if (status == SCREE_OK && !a->json) print_result(&o, r->runs[level], &r->results[level]);
+  return status;
+}
+
+/* ---- all runs ---- */
+
+static void print_table(const repose *r) {
+  printf("\n%-12s %10s %8s %8s %8s %8s %8s %8s\n", "run", "triangles", "sectors", "cone", "outline",
+         "height", "neighb.", "time");
+  for (size_t level = 0; level < r->grains.level_count; level++) {
+    const scree_repose *h = &r->results[level].repose;
+    char name[32];
+    double triangles = 0;
+    scree_run_costs costs;
+    cli_level_name(&r->grain_options, level, name, sizeof name);
+    for (size_t i = 0; i < r->grains.shape_count; i++)
+      triangles += (double)r->grains.grains[level * r->grains.shape_count + i].triangle_count;
+    scree_run_get_costs(r->runs[level], &costs);
+    printf("%-12s %10.0f", name, triangles / (double)r->grains.shape_count);
+    if (h->heap)
+      printf(" %4.1f deg %4.1f deg %4.1f deg", h->sector_deg, h->cone_deg, h->silhouette_deg);
+    else
+      printf(" %26s", "no heap");
+    printf(" %5.0f mm %8.2f %6.0f s\n", 1e3 * h->height, r->results[level].coordination,
+           costs.wall_seconds);
+  }
+}
+
+static scree_status run_all(repose *r, const char *const *words, size_t word_count) {
+  bool alone = word_count == 0;
+  scree_status status = SCREE_OK;
+  if (alone)
+    r->grains.level_count = 1;
+  else
+    status = cli_make_grains(words, word_count, &r->grain_options, r->call->progress, &r->grains,
+                             &r->error);
+  cli_terminal_end();
+  size_t levels = r->grains.level_count;
+  if (status != SCREE_OK) return status;
+  r->runs = calloc(levels, sizeof *r->runs);
+  r->results = calloc(levels, sizeof *r->results);
+  if (!r->runs || !r->results) {
+    r->error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory"};
+    return SCREE_OUT_OF_MEMORY;
+  }
+  for (size_t level = 0; status == SCREE_OK && level < levels; level++)
+    status = run_level(r, level, alone);
+  if (status == SCREE_OK && levels > 1 && !r->arguments->json) print_table(r);
+  return status;
+}
+
+static int check_words(repose *r, size_t word_count) {
+  const repose_arguments *a = r->arguments;
+  if (word_count == 0 && !(a->resume && a->output))
+    return cli_misuse(r->call->verb, "needs a SHAPE, or --samples, or --resume with -o DIR");
+  if (a->resume && !a->output) return cli_misuse(r->call->verb, "--resume needs -o DIR");
+  if (a->rp && !cli_parse_levels(a->rp, &r->grain_options))
+    return cli_misuse(r->call->verb,
+                      "--rp %s: must be up to %d different numbers in (0, 1], as 1e-4,1e-3", a->rp,
+                      CLI_MOST_LEVELS);
+  return 0;
+}
+
+static int run(const cli_call *call) {
+  const repose_arguments *a = call->options;
+  static char sample_words[SCREE_SAMPLE_DEVICES][32];
+  repose r = {.call = call,
+              .arguments = a,
+              .grain_options = {.source = a->source,
+                                .method = a->method,
+                                .no_repair = a->no_repair,
+                                .spheres = a->spheres}};
+  size_t samples = a->samples ? SCREE_SAMPLE_DEVICES : 0, count = samples + call->input_count;
+  const char **words = malloc((count + 1) * sizeof *words);
+  int code = words ? read_experiment(&r) : 1;
+  if (code == 0 && a->print_config) {
+    scree_experiment_print(&r.experiment, stdout);
+    goto done;
+  }
+  if (code == 0) code = check_words(&r, count);
+  if (code) goto done;
+  for (size_t i = 0; i < samples; i++) {
+    snprintf(sample_words[i], sizeof sample_words[i], "sample:%s", scree_sample_name(i));
+    words[i] = sample_words[i];
+  }
+  for (size_t i = 0; i < call->input_count; i++) words[samples + i] = call->inputs[i];
+  r.grain_options.mass_rule = r.experiment.mass_rule;
+  if (run_all(&r, words, count) != SCREE_OK) {
+    code = cli_fail(&r.error);
+    if (r.error.status == SCREE_CANCELLED && a->output)
+      fputs("scree: the same call with --resume goes on from there\n", stderr);
+  }
+done:
+  for (size_t i = 0; r.runs && i < r.grains.level_count; i++) scree_run_free(r.runs[i]);
+  free(r.runs);
+  free(r.results);
+  cli_grains_free(&r.grains);
+  scree_experiment_free(&r.experiment);
+  free(words);
+  return code;
+}
+
+const cli_verb cli_verb_repose = {
+    .name = "repose",
+    .summary = "pour a heap and measure its angle of repose",
+    .inputs = "SHAPE...",
+    .description =
+        "Runs the experiment of Katagiri and Koyanaka (2020): particles of the shapes fall into a "
+        "cylinder, come to rest, the cylinder is raised, and the heap is measured three ways. A "
+        "SHAPE is a scan, sample:NAME, or NAME.csv with the spheres of a clump (x, y, z, radius a "
+        "line). The preset paper is the paper's protocol (1197 particles: hours); small has 360 "
+        "particles and softer contacts (its heap scatters more); demo, the default, shows a heap "
+        "in about a minute and no number should be taken from it. Everything can be changed by a "
+        "YAML file and by options, which have the last word. With -o the run writes checkpoints: "
+        "after Ctrl-C, or a crash, --resume goes on with the same bits. The same seed gives the "
+        "same heap on any number of threads. \"No heap\" is a result: spheres give it.",
+    .examples = "scree repose phone_762.stl -o heap\n"
+                "scree repose --samples --rp 1e-4,1e-3 --spheres -p small -o levels\n"
+                "scree repose --resume -o heap\n"
+                "scree repose -p paper --friction 0.4 --print-config > experiment.yaml\n"
+                "scree repose -c experiment.yaml --samples --rp 1e-3 -o night\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 0,
+    .input_maximum = 60,
+    .run = run,
+};

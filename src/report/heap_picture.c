@@ -1,0 +1,123 @@
+/* A picture of a heap: the world's bodies as items of the ray tracer. */
+#include "base/alloc.h"
+#include "base/vec.h"
+
+#include <string.h>
+
+static const double room = 0.85; /* of the heap's radius: a picture is wider than high */
+enum { SPHERE_LEVEL = 3, COLOURS = 9 };
+
+/* Linear RGB, told apart also by lightness. */
+static const float palette[COLOURS][3] = {
+    {0.27f, 0.46f, 0.73f}, {0.85f, 0.38f, 0.17f}, {0.30f, 0.60f, 0.33f},
+    {0.84f, 0.65f, 0.22f}, {0.52f, 0.30f, 0.60f}, {0.38f, 0.71f, 0.76f},
+    {0.71f, 0.22f, 0.27f}, {0.60f, 0.60f, 0.62f}, {0.85f, 0.79f, 0.65f},
+};
+
+typedef struct scene {
+  scree_mesh *meshes; /* own, of shapes made of spheres; else empty */
+  size_t shape_count;
+  scree_render_item *items;
+  size_t item_count;
+} scene;
+
+/* The spheres of one particle as one mesh. */
+static scree_status mesh_of_spheres(const scree_particle *particle, size_t sphere_count,
+                                    const scree_mesh *unit, scree_mesh *mesh, scree_error *error) {
+  size_t vertices = sphere_count * unit->vertex_count,
+         triangles = sphere_count * unit->triangle_count;
+  scree_mesh made = {scree_alloc(3 * vertices, sizeof *made.positions),
+                     scree_alloc(3 * triangles, sizeof *made.triangles), vertices, triangles};
+  if (!made.positions || !made.triangles) {
+    scree_mesh_free(&made);
+    return scree_fail_memory(error, 24 * vertices, "the spheres of a picture");
+  }
+  for (size_t k = 0; k < sphere_count; k++) {
+    double centre[3], radius;
+    scree_particle_point(particle, k, centre, &radius);
+    for (size_t v = 0; v < unit->vertex_count; v++) {
+      vec3 direction = vec3_unit(vec3_load(unit->positions + 3 * v));
+      vec3_store(made.positions + 3 * (k * unit->vertex_count + v),
+                 vec3_mad(vec3_load(centre), direction, radius));
+    }
+    for (size_t i = 0; i < 3 * unit->triangle_count; i++)
+      made.triangles[3 * k * unit->triangle_count + i] =
+          unit->triangles[i] + (uint32_t)(k * unit->vertex_count);
+  }
+  *mesh = made;
+  return SCREE_OK;
+}
+
+static scree_status make_spheres(const scree_run *run, scene *s, scree_error *error) {
+  scree_mesh unit = {0};
+  char name[] = "icosphere-0";
+  name[sizeof name - 2] = (char)('0' + SPHERE_LEVEL);
+  scree_status status = scree_sample_make(name, NULL, NULL, &unit, error);
+  for (size_t i = 0; status == SCREE_OK && i < s->shape_count; i++) {
+    scree_run_shape shape;
+    scree_particle_measures m;
+    scree_run_get_shape(run, i, &shape);
+    scree_particle_measure(shape.particle, &m);
+    if (m.kind != SCREE_PARTICLE_MESH)
+      status = mesh_of_spheres(shape.particle, m.point_count, &unit, &s->meshes[i], error);
+  }
+  scree_mesh_free(&unit);
+  return status;
+}
+
+static void add_bodies(const scree_run *run, scene *s) {
+  const scree_world *world = scree_run_view(run);
+  for (size_t i = 0; i < scree_world_body_count(world); i++) {
+    if (scree_world_body_removed(world, i)) continue;
+    size_t shape = scree_run_body_shape(run, i);
+    scree_body body;
+    scree_world_get_body(world, i, &body);
+    scree_render_item *item = &s->items[s->item_count++];
+    *item =
+        (scree_render_item){.mesh = s->meshes[shape].triangle_count
+                                        ? &s->meshes[shape]
+                                        : scree_particle_mesh(scree_world_body_particle(world, i))};
+    memcpy(item->position, body.position, sizeof item->position);
+    memcpy(item->quaternion, body.orientation, sizeof item->quaternion);
+    memcpy(item->color, palette[shape % COLOURS], sizeof item->color);
+  }
+}
+
+/* The heap in the middle: as wide as its base, or as most of the bodies lie where there is none. */
+static void focus_on_heap(const scree_run *run, scree_render_options *o) {
+  scree_run_result result;
+  if (scree_run_measure(run, &result, NULL) != SCREE_OK) return;
+  const scree_repose *r = &result.repose;
+  double radius =
+      r->heap && isfinite(r->base_radius) ? fmin(r->base_radius, r->run_out) : 0.6 * r->run_out;
+  o->focus[0] = r->axis[0];
+  o->focus[1] = r->axis[1];
+  o->focus[2] = 0.35 * r->peak;
+  o->focus_radius = room * fmax(radius, 0.6 * r->peak);
+}
+
+scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
+                               const scree_progress *progress, scree_image *image,
+                               scree_error *error) {
+  size_t bodies = scree_world_body_count(scree_run_view(run));
+  scree_render_options o = *options;
+  scene s = {.shape_count = scree_run_shape_count(run)};
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  s.meshes = scree_alloc_zero(s.shape_count, sizeof *s.meshes);
+  s.items = scree_alloc_zero(bodies, sizeof *s.items);
+  if (!s.meshes || !s.items) {
+    scree_fail_memory(error, bodies * sizeof *s.items, "a picture's bodies");
+    goto done;
+  }
+  if (!(o.focus_radius > 0)) focus_on_heap(run, &o);
+  status = make_spheres(run, &s, error);
+  if (status != SCREE_OK) goto done;
+  add_bodies(run, &s);
+  scree_render_cell cell = {s.items, s.item_count, NULL};
+  status = scree_render(&cell, 1, &o, progress, image, error);
+done:
+  for (size_t i = 0; s.meshes && i < s.shape_count; i++) scree_mesh_free(&s.meshes[i]);
+  scree_free(s.meshes);
+  scree_free(s.items);
+  return status;
+}

@@ -1,0 +1,70 @@
+run repose
+run repose --resume box.off
+run repose --rp 2 box.off
+run repose --lift-speed 99 box.off
+run repose -p tiny box.off
+"$SCREE" repose --print-config -p demo --friction 0.4 --seed 7 >printed.yaml
+grep -n "friction_particle: 0.4\|^seed: 7\|^preset: demo" printed.yaml
+"$SCREE" repose -c printed.yaml --print-config >again.yaml
+cmp printed.yaml again.yaml && echo the same
+printf 'particles: 10\nphases:\n  lift_speed: fast\n' >broken.yaml
+run repose -c broken.yaml --print-config
+printf 'particles: 10\nphases: {lift_sped: 1}\n' >broken.yaml
+run repose -c broken.yaml --print-config
+printf 'particles: [1\nseed: 3\n' >broken.yaml
+run repose -c broken.yaml --print-config
+cat >box.off <<'END'
+OFF
+8 6 0
+0 0 0
+20 0 0
+20 12 0
+0 12 0
+0 0 6
+20 0 6
+20 12 6
+0 12 6
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+END
+printf 'x,y,z,r\n0,0,0,5\n8,0,0,5\n' >pair.csv
+printf '0,0,0\n' >bad.csv
+"$SCREE" repose -p demo --particles 12 --cylinder 0.08 --disc 0.3 --pack-time 0.1 --settle-time 0.05 \
+  --lift-speed 1 --lift-time 0.08 --hold-time 0.02 --drop-height 0.01 --young 1e7 --stiffness 1 --series 0.01 \
+  --stop-when-still false --print-config >small.yaml
+small="-c small.yaml --no-picture -j 1"
+run repose $small bad.csv
+run repose $small sample:box --resolution 0.2mm
+"$SCREE" repose $small box.off pair.csv -o whole --frames 0.1 >text || echo failed
+sed -n 1,2p text
+grep -c "particles  *12 on the disc" text
+ls whole
+run repose $small box.off pair.csv -o whole
+run repose $small box.off pair.csv -o whole --resume --friction 0.3
+printf broken >whole/checkpoint.scree
+run repose $small box.off pair.csv -o whole --resume
+
+# killed outright, then gone on with
+"$SCREE" repose $small --settle-time 100 --checkpoint 0.05 box.off pair.csv -o cut >/dev/null 2>&1 &
+victim=$!
+for i in 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20; do
+  [ -f cut/checkpoint.scree ] && break
+  sleep 0.5
+done
+kill -9 $victim
+wait $victim 2>/dev/null
+"$SCREE" pile cut/checkpoint.scree | head -1 | grep -c "after"
+
+run repose $small --spheres box.off | grep -v cost | head -3
+"$SCREE" pile whole/last.scree >measured || echo failed
+tail -n +2 text | grep -v "cost\|files" | diff - measured && echo the same measurement
+run pile whole/last.scree --band-low 0.9
+run pile box.off
+run pile nothing.scree
+"$SCREE" pile whole/frame-0001.scree --csv series.csv --vtp frame.vtp >/dev/null || echo failed
+head -1 series.csv
+"$SCREE" pile whole/last.scree --json | grep -c '"heap"\|"mean_rotation"\|"packing_fraction"\|"preset"'
