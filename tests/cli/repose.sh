@@ -38,7 +38,7 @@ printf '0,0,0\n' >bad.csv
   --stop-when-still false --print-config >small.yaml
 small="-c small.yaml --no-picture -j 1"
 run repose $small bad.csv
-run repose $small sample:box --resolution 0.2mm
+run repose $small sample:box --resolution 0.5mm
 "$SCREE" repose $small box.off pair.csv -o whole --frames 0.1 >text || echo failed
 sed -n 1,2p text
 grep -c "particles  *12 on the disc" text
