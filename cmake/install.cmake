@@ -38,3 +38,14 @@ if(SCDOC)
   install(FILES ${CMAKE_BINARY_DIR}/scree.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
           RENAME scree)
 endif()
+
+# The Python module, over the shared library. Debian's Python looks into lib/python3.N/dist-packages below
+# /usr/local, and into lib/python3/dist-packages below /usr.
+find_program(SCREE_PYTHON python3 PATHS /usr/bin NO_DEFAULT_PATH)
+if(SCREE_PYTHON)
+  execute_process(COMMAND ${SCREE_PYTHON} -c "import sys; print('%d.%d' % sys.version_info[:2])"
+                  OUTPUT_VARIABLE python_version OUTPUT_STRIP_TRAILING_WHITESPACE)
+endif()
+set(SCREE_PYTHON_DIR lib/python${python_version}/dist-packages CACHE STRING "Where the Python module is installed")
+install(DIRECTORY python/scree DESTINATION ${SCREE_PYTHON_DIR} FILES_MATCHING PATTERN "*.py")
+install(FILES VERSION DESTINATION ${SCREE_PYTHON_DIR}/scree)

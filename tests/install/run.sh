@@ -27,4 +27,8 @@ cmake -S "$here" -B "$folder/cmake" -DCMAKE_PREFIX_PATH="$folder/prefix" -DCMAKE
   >"$folder/log" && cmake --build "$folder/cmake" >>"$folder/log" || { cat "$folder/log"; exit 1; }
 expect cmake "$("$folder/cmake/consumer")"
 expect program "$("$folder/prefix/bin/scree" version | sed 's/scree //')"
+if [ -x /usr/bin/python3 ]; then
+  module=$(dirname "$(dirname "$(find "$folder/prefix" -path '*/scree/__init__.py')")")
+  expect python "$(env -u SCREE_LIBRARY PYTHONPATH="$module" /usr/bin/python3 -c 'import scree; print(scree.version())')"
+fi
 [ -s "$folder/prefix/share/man/man1/scree.1" ] || { echo "no man page installed"; exit 1; }

@@ -1,0 +1,55 @@
+"""From a scan to a pile for other programs, in Python: chooses the triangle count of a device, drops some of these
+particles into a tube, and writes the pile for ParaView and as a folder that examples/pile_to_lammps.py,
+pile_to_liggghts.py and pile_to_yade.py read.
+
+    python3 examples/pile.py FOLDER [SCAN] [COUNT]      SCAN: a file in mm, or sample:NAME"""
+import pathlib
+import random
+import sys
+
+import scree
+
+
+def random_orientation(rng):
+    q = [rng.gauss(0, 1) for _ in range(4)]
+    norm = sum(x * x for x in q) ** 0.5
+    return [x / norm for x in q]
+
+
+def main(folder, scan_name="sample:fp-3", count="6"):
+    folder, rng = pathlib.Path(folder), random.Random(1)
+    folder.mkdir(parents=True, exist_ok=True)
+    options = {"resolution": 2e-3, "noise": 0.2e-3} if scan_name.startswith("sample:") else {}
+    scan = scree.load(scan_name, **options)
+    choice = scan.choose()
+    mesh = choice.mesh()
+    print(f"{scan_name}: {choice.robust.triangle_count} of {scan.triangle_count} triangles, "
+          f"eps_s {choice.robust.eps_s:.3g}")
+
+    world = scree.World()
+    plastic, steel = world.add_material(density=1500), world.add_material(wall=True)
+    particle = scree.Particle(mesh)
+    reach = particle.measure().bounding_radius
+    world.add_wall("plane", steel)
+    world.add_wall("cylinder", steel, radius=1.2 * reach)
+    for i in range(int(count)):
+        world.add_body(particle, plastic, position=(0, 0, (1.1 + 2.05 * i) * reach),
+                       orientation=random_orientation(rng), velocity=(0, 0, -1))
+
+    files, times = [], []
+    for frame in range(int(count) + 4):
+        for view in "surfaces", "points", "contacts":
+            world.write_vtp(folder / f"{view}-{frame:04}.vtp", view, overwrite=True)
+        files.append(f"surfaces-{frame:04}.vtp")
+        times.append(world.time)
+        world.run(0.1)
+    scree.write_pvd(folder / "pile.pvd", files, times, overwrite=True)
+    world.write_vtp(folder / "walls.vtp", "walls", overwrite=True)
+    world.export(folder / "pile", unit="m", overwrite=True)
+    state = world.observe()
+    print(f"{state.body_count} particles after {world.time:.2f} s: {state.coordination:.2f} neighbours each, "
+          f"{state.kinetic + state.rotational:.2g} J left of motion")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,26 @@
+"""scree: triangle counts for DEM particles from 3D scans, over the shared library by ctypes.
+
+    import scree
+    scan = scree.load("phone.stl")              # or "sample:fp-1"
+    choice = scan.choose()
+    choice.robust.triangle_count, choice.robust.rp
+    choice.mesh().write("particle.stl")
+
+SI units: metres, kilograms, seconds, radians. Tables are numpy arrays where numpy is installed, memoryviews and
+lists where it is not. What the library refuses is a scree.Error with one sentence and a `status`. Long work takes
+`progress`, a function of (phase, fraction) that cancels by returning False; Ctrl-C works anyway."""
+from ._library import Error, lib as _lib
+from ._mesh import Choice, Curve, Mesh, load, sample, samples
+from ._world import Particle, Run, World, write_pvd
+
+__all__ = ["Choice", "Curve", "Error", "Mesh", "Particle", "Run", "World", "load", "sample", "samples", "set_threads",
+           "version", "write_pvd"]
+
+
+def version():
+    return _lib["version"]().decode()
+
+
+def set_threads(count):
+    """Threads of parallel work; 0: one per processor. Results do not depend on it."""
+    _lib["set_threads"](count)

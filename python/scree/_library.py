@@ -1,0 +1,403 @@
+"""The shared library: where it lies, its structs as ctypes, its functions with their types.
+
+The structs follow include/scree.h field by field; tests/python/layout.py has a C compiler say every size and
+offset and compares."""
+import ctypes
+import ctypes.util
+import os
+import pathlib
+from ctypes import (CFUNCTYPE, POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_int, c_longlong, c_size_t,
+                    c_uint32, c_uint64, c_void_p)
+
+double3, double4, double33 = c_double * 3, c_double * 4, c_double * 3 * 3
+
+STATUSES = ("OK", "BAD_ARGUMENT", "BAD_FILE", "BAD_MESH", "IO", "OUT_OF_MEMORY", "LIMIT", "CANCELLED", "EXISTS",
+            "UNSUPPORTED", "NO_BACKEND", "DIVERGED")
+METHODS = ("volume", "qecd")
+REFERENCES = ("scan", "smooth")
+SHAPE_ERRORS = ("area", "volume", "hausdorff", "mean_distance", "inertia", "size")
+PARTICLE_KINDS = ("mesh", "sphere", "clump")
+LAWS = ("linear", "hysteretic")
+WALL_KINDS = ("plane", "disc", "cylinder", "mesh")
+VIEWS = ("surfaces", "points", "contacts", "walls")
+DEFECT_COUNT, REPAIR_ACTION_COUNT = 17, 17
+
+
+class scree_error(Structure):
+    _fields_ = [("status", c_int), ("message", c_char * 1024)]
+
+
+class scree_checksum(Structure):
+    _fields_ = [("high", c_uint64), ("low", c_uint64)]
+
+
+REPORT = CFUNCTYPE(c_bool, c_void_p, c_char_p, c_double)
+
+
+class scree_progress(Structure):
+    _fields_ = [("report", REPORT), ("context", c_void_p), ("interval", c_double)]
+
+
+class scree_mesh(Structure):
+    _fields_ = [("positions", POINTER(c_double)), ("triangles", POINTER(c_uint32)), ("vertex_count", c_size_t),
+                ("triangle_count", c_size_t)]
+
+
+class scree_read_options(Structure):
+    _fields_ = [("unit_m", c_double), ("weld_tolerance", c_double), ("max_bytes", c_size_t)]
+
+
+class scree_scan(Structure):
+    _fields_ = [("mesh", scree_mesh), ("checksum", scree_checksum), ("byte_count", c_size_t), ("format", c_char * 32),
+                ("facet_count", c_size_t), ("degenerate_count", c_size_t), ("solid_count", c_size_t),
+                ("ignored_byte_count", c_size_t)]
+
+
+class scree_write_options(Structure):
+    _fields_ = [("format", c_int), ("unit_m", c_double), ("overwrite", c_bool), ("comment", c_char_p)]
+
+
+class scree_measures(Structure):
+    _fields_ = [("closed", c_bool), ("inward", c_bool), ("area", c_double), ("volume", c_double),
+                ("centroid", double3), ("inertia", double33), ("principal_moments", double3),
+                ("principal_axes", double33), ("equivalent_diameter", c_double), ("sphericity", c_double),
+                ("box_min", double3), ("box_max", double3), ("dimensions", double3),
+                ("oriented_dimensions", double3), ("oriented_axes", double33), ("oriented_center", double3),
+                ("hull_area", c_double), ("hull_volume", c_double), ("convexity", c_double)]
+
+
+class scree_topology(Structure):
+    _fields_ = [(name, c_size_t) for name in (
+        "vertex_count", "unused_vertex_count", "edge_count", "facet_count", "shell_count", "inward_shell_count",
+        "boundary_edge_count", "boundary_count", "non_manifold_edge_count", "non_manifold_vertex_count",
+        "inconsistent_edge_count", "degenerate_facet_count", "duplicate_facet_count")] + [
+        ("euler_characteristic", c_longlong), ("genus", c_longlong), ("closed", c_bool), ("manifold", c_bool),
+        ("oriented", c_bool)]
+
+
+class scree_deviation(Structure):
+    _fields_ = [("mean", c_double), ("rms", c_double), ("maximum", c_double), ("maximum_bound", c_double),
+                ("at", double3), ("sample_count", c_size_t)]
+
+
+class scree_distance(Structure):
+    _fields_ = [("forward", scree_deviation), ("backward", scree_deviation), ("hausdorff", c_double),
+                ("hausdorff_bound", c_double)]
+
+
+class scree_distance_options(Structure):
+    _fields_ = [("sample_count", c_size_t), ("hausdorff_gap", c_double), ("one_way", c_bool)]
+
+
+class scree_check(Structure):
+    _fields_ = [("triangle_count", c_size_t), ("vertex_count", c_size_t), ("shell_count", c_size_t),
+                ("defects", c_size_t * DEFECT_COUNT), ("intersections_known", c_bool), ("volume_known", c_bool),
+                ("volume", c_double), ("usable", c_bool), ("verdict", c_char * 512)]
+
+
+class scree_repair_report(Structure):
+    _fields_ = [("done", c_size_t * REPAIR_ACTION_COUNT), ("seam_distance", c_double), ("before", scree_check),
+                ("after", scree_check)]
+
+
+class scree_simplify_options(Structure):
+    _fields_ = [("method", c_int), ("stop_count", c_size_t), ("error_limit", c_double)]
+
+
+class scree_curve_facts(Structure):
+    _fields_ = [("method", c_int), ("triangle_count", c_size_t), ("floor_count", c_size_t),
+                ("shell_count", c_size_t), ("boundary_edge_count", c_size_t), ("locked_vertex_count", c_size_t),
+                ("closed", c_bool)]
+
+
+class scree_level(Structure):
+    _fields_ = [("triangle_count", c_size_t), ("rp", c_double), ("area", c_double), ("volume", c_double),
+                ("quadric_error", c_double)]
+
+
+class scree_choice_options(Structure):
+    _fields_ = [("weight", c_double), ("rp_min", c_double), ("rp_max", c_double), ("per_decade", c_int),
+                ("reference", c_int), ("shape_errors", c_bool), ("distances", c_bool)]
+
+
+class scree_choice_level(Structure):
+    _fields_ = [("rp", c_double), ("level_index", c_size_t), ("triangle_count", c_size_t), ("rp_reached", c_double),
+                ("reached", c_bool), ("area", c_double), ("volume", c_double), ("eps_s", c_double),
+                ("ip", c_double), ("worst_eps_s", c_double), ("robust_ip", c_double), ("smooth_ip", c_double),
+                ("errors", c_double * len(SHAPE_ERRORS))]
+
+
+class scree_pick(Structure):
+    _fields_ = [("rp", c_double), ("level_index", c_size_t), ("triangle_count", c_size_t), ("area", c_double),
+                ("volume", c_double), ("eps_s", c_double), ("ip", c_double), ("level_eps_s", c_double)]
+
+
+class scree_noise(Structure):
+    _fields_ = [("found", c_bool), ("area", c_double), ("fraction", c_double), ("level_index", c_size_t),
+                ("triangle_count", c_size_t)]
+
+
+class scree_choice(Structure):
+    _fields_ = [("triangle_count", c_size_t), ("floor_count", c_size_t), ("area", c_double), ("volume", c_double),
+                ("reference_area", c_double), ("noise", scree_noise), ("levels", POINTER(scree_choice_level)),
+                ("level_count", c_size_t), ("trace", POINTER(scree_choice_level)), ("trace_count", c_size_t),
+                ("paper", scree_pick), ("robust", scree_pick), ("plain", scree_pick), ("plain_is_accident", c_bool),
+                ("smooth", scree_pick), ("finer_count", c_size_t), ("best", c_size_t * len(SHAPE_ERRORS))]
+
+
+class scree_sample_options(Structure):
+    _fields_ = [("resolution", c_double), ("noise", c_double), ("seed", c_uint64)]
+
+
+class scree_particle_options(Structure):
+    _fields_ = [("rounding", c_double)]
+
+
+class scree_particle_measures(Structure):
+    _fields_ = [("kind", c_int), ("volume", c_double), ("size", c_double), ("centre", double3),
+                ("orientation", double4), ("inertia", double3), ("bounding_radius", c_double),
+                ("thickness", c_double), ("rounding", c_double), ("triangle_count", c_size_t),
+                ("point_count", c_size_t), ("edge_count", c_size_t)]
+
+
+class scree_world_options(Structure):
+    _fields_ = [("gravity", double3), ("law", c_int)] + [(name, c_double) for name in (
+        "steps_per_contact", "time_step", "stiffness_factor", "tangential_ratio", "size", "smoothing", "sharing",
+        "overlap_limit", "skin", "floor_height")]
+
+
+class scree_material(Structure):
+    _fields_ = [("stiffness", c_double), ("density", c_double), ("restitution", c_double), ("friction", c_double)]
+
+
+class scree_wall(Structure):
+    _fields_ = [("kind", c_int), ("material", c_size_t), ("position", double3), ("axis", double3),
+                ("radius", c_double), ("length", c_double), ("mesh", POINTER(scree_mesh)), ("velocity", double3),
+                ("angular_velocity", double3)]
+
+
+class scree_body(Structure):
+    _fields_ = [("position", double3), ("orientation", double4), ("velocity", double3),
+                ("angular_velocity", double3)]
+
+
+class scree_observation(Structure):
+    _fields_ = [(name, c_double) for name in (
+        "time", "kinetic", "rotational", "potential", "elastic", "dissipated_dashpot", "dissipated_friction",
+        "wall_work")] + [("momentum", double3), ("angular_momentum", double3)] + [(name, c_double) for name in (
+            "mean_rotation", "largest_overlap", "highest_speed", "coordination")] + [(name, c_size_t) for name in (
+                "body_count", "removed_count", "pair_count", "contact_count")]
+
+
+class scree_contact(Structure):
+    _fields_ = [("body", c_size_t), ("other", c_size_t), ("wall", c_bool), ("position", double3),
+                ("normal", double3), ("force", double3), ("overlap", c_double), ("share", c_double)]
+
+
+class scree_export_options(Structure):
+    _fields_ = [("density", c_double), ("unit_m", c_double), ("centre", c_bool), ("principal", c_bool),
+                ("overwrite", c_bool), ("source", c_char_p), ("command_line", c_char_p),
+                ("checksum", scree_checksum)]
+
+
+class scree_exported(Structure):
+    _fields_ = [("rotation", double33), ("translation", double3), ("mass", c_double), ("inertia", double33),
+                ("bounding_radius", c_double), ("measures", scree_measures)]
+
+
+class scree_repose(Structure):
+    _fields_ = [("heap", c_bool), ("reason", c_char * 128), ("sector_deg", c_double), ("sector_sd_deg", c_double),
+                ("sector_count", c_size_t), ("cone_deg", c_double), ("cone_rms", c_double), ("cone_apex", double3),
+                ("silhouette_deg", c_double), ("silhouette_sd_deg", c_double), ("flank_count", c_size_t),
+                ("axis", c_double * 2), ("height", c_double), ("peak", c_double), ("base_radius", c_double),
+                ("run_out", c_double), ("envelope_volume", c_double)]
+
+
+class scree_run_result(Structure):
+    _fields_ = [("repose", scree_repose), ("body_count", c_size_t), ("left_count", c_size_t),
+                ("packing_fraction", c_double), ("coordination", c_double), ("particle_size", c_double),
+                ("kinetic", c_double), ("time", c_double), ("still", c_bool)]
+
+
+class scree_run_point(Structure):
+    _fields_ = [("time", c_double), ("phase", c_int), ("body_count", c_size_t)] + [(name, c_double) for name in (
+        "kinetic", "mean_rotation", "highest_speed", "largest_overlap", "coordination", "cylinder_height",
+        "sector_deg", "cone_deg", "silhouette_deg", "height")]
+
+
+VISITOR = CFUNCTYPE(c_bool, c_void_p, POINTER(scree_contact))
+
+_E, _H, _P = POINTER(scree_error), c_void_p, POINTER(scree_progress)  # error, opaque handle, progress
+_M, _HH, _S = POINTER(scree_mesh), POINTER(c_void_p), c_char_p
+_FALLIBLE = {  # argument types before the error
+    "scan_read": (_S, POINTER(scree_read_options), POINTER(scree_scan)),
+    "mesh_weld": (POINTER(c_double), c_size_t, c_double, _M, POINTER(c_size_t)),
+    "mesh_copy": (_M, _M),
+    "mesh_write": (_M, _S, POINTER(scree_write_options)),
+    "mesh_measure": (_M, POINTER(scree_measures)),
+    "mesh_topology": (_M, POINTER(scree_topology)),
+    "mesh_distance": (_M, _M, POINTER(scree_distance_options), _P, POINTER(scree_distance)),
+    "mesh_distance_field": (_M, _M, POINTER(c_double)),
+    "mesh_check": (_M, c_void_p, _P, POINTER(scree_check)),
+    "mesh_repair": (_M, c_void_p, _P, _M, POINTER(scree_repair_report)),
+    "mesh_vtp_write": (_M, _M, _S, c_bool),
+    "particle_export": (_M, POINTER(scree_export_options), _S, _S, POINTER(scree_exported)),
+    "curve_build": (_M, POINTER(scree_simplify_options), _P, _HH),
+    "curve_mesh": (_H, c_size_t, _M),
+    "choose": (_H, _M, POINTER(scree_choice_options), _P, POINTER(scree_choice)),
+    "sample_make": (_S, POINTER(scree_sample_options), _P, _M),
+    "particle_from_mesh": (_M, POINTER(scree_particle_options), _HH),
+    "particle_sphere": (c_double, _HH),
+    "particle_clump": (POINTER(c_double), POINTER(c_double), c_size_t, _H, _HH),
+    "world_create": (POINTER(scree_world_options), _HH),
+    "world_add_material": (_H, POINTER(scree_material), POINTER(c_size_t)),
+    "world_set_contact": (_H, c_size_t, c_size_t, c_double, c_double),
+    "world_add_wall": (_H, POINTER(scree_wall), POINTER(c_size_t)),
+    "world_set_wall_velocity": (_H, c_size_t, double3, double3),
+    "world_add_body": (_H, _H, c_size_t, POINTER(scree_body), POINTER(c_size_t)),
+    "world_step": (_H, c_size_t),
+    "world_visit_contacts": (_H, VISITOR, c_void_p),
+    "world_save": (_H, _S, c_bool),
+    "world_load": (_S, _HH),
+    "world_vtp_write": (_H, c_int, _S, c_bool),
+    "world_export": (_H, POINTER(scree_export_options), _S),
+    "pvd_write": (POINTER(_S), POINTER(c_double), c_size_t, _S, c_bool),
+    "run_load": (_S, _HH),
+    "run_measure": (_H, POINTER(scree_run_result)),
+}
+_PLAIN = {  # result, argument types
+    "version": (_S, ()),
+    "set_threads": (None, (c_int,)),
+    "threads": (c_int, ()),
+    "mesh_free": (None, (_M,)),
+    "scan_free": (None, (POINTER(scree_scan),)),
+    "default_read_options": (scree_read_options, ()),
+    "default_write_options": (scree_write_options, ()),
+    "default_distance_options": (scree_distance_options, ()),
+    "default_simplify_options": (scree_simplify_options, ()),
+    "default_choice_options": (scree_choice_options, ()),
+    "default_sample_options": (scree_sample_options, ()),
+    "default_particle_options": (scree_particle_options, ()),
+    "default_world_options": (scree_world_options, ()),
+    "default_material": (scree_material, ()),
+    "default_wall_material": (scree_material, ()),
+    "default_body": (scree_body, ()),
+    "default_export_options": (scree_export_options, ()),
+    "defect_name": (_S, (c_int,)),
+    "repair_action_name": (_S, (c_int,)),
+    "curve_free": (None, (_H,)),
+    "curve_get_facts": (scree_curve_facts, (_H,)),
+    "curve_level_count": (c_size_t, (_H,)),
+    "curve_level": (None, (_H, c_size_t, POINTER(scree_level))),
+    "curve_find": (c_size_t, (_H, c_size_t)),
+    "choice_target": (c_size_t, (c_double, c_size_t)),
+    "choice_free": (None, (POINTER(scree_choice),)),
+    "sample_count": (c_size_t, ()),
+    "sample_name": (_S, (c_size_t,)),
+    "sample_description": (_S, (c_size_t,)),
+    "particle_free": (None, (_H,)),
+    "particle_measure": (None, (_H, POINTER(scree_particle_measures))),
+    "particle_mesh": (_M, (_H,)),
+    "world_free": (None, (_H,)),
+    "world_get_wall": (None, (_H, c_size_t, POINTER(scree_wall))),
+    "world_wall_count": (c_size_t, (_H,)),
+    "world_wall_force": (None, (_H, c_size_t, double3, double3)),
+    "world_body_count": (c_size_t, (_H,)),
+    "world_body_removed": (c_bool, (_H, c_size_t)),
+    "world_get_body": (None, (_H, c_size_t, POINTER(scree_body))),
+    "world_set_body": (None, (_H, c_size_t, POINTER(scree_body))),
+    "world_body_mass": (c_double, (_H, c_size_t)),
+    "world_body_material": (c_size_t, (_H, c_size_t)),
+    "world_remove_body": (None, (_H, c_size_t)),
+    "world_time": (c_double, (_H,)),
+    "world_step_count": (c_uint64, (_H,)),
+    "world_time_step": (c_double, (_H, c_char_p)),
+    "world_observe": (None, (_H, POINTER(scree_observation))),
+    "world_hash": (scree_checksum, (_H,)),
+    "run_free": (None, (_H,)),
+    "run_world": (_H, (_H,)),
+    "run_phase": (c_int, (_H,)),
+    "run_is_frame": (c_bool, (_H,)),
+    "run_series": (POINTER(scree_run_point), (_H, POINTER(c_size_t))),
+    "phase_name": (_S, (c_int,)),
+}
+
+
+class Error(Exception):
+    """What the library refused: the sentence, and `status`, such as "BAD_FILE"."""
+
+    def __init__(self, status, message):
+        super().__init__(message)
+        self.status = status
+
+
+def _candidates():
+    """SCREE_LIBRARY; beside an installed module (PREFIX/lib/python3/dist-packages/scree and the like); the system's."""
+    named = os.environ.get("SCREE_LIBRARY")
+    if named:
+        yield named
+        return
+    version = (pathlib.Path(__file__).parent / "VERSION")
+    name = "libscree.so." + version.read_text().split(".")[0] if version.exists() else "libscree.so"
+    for folder in pathlib.Path(__file__).resolve().parents:
+        for library in [folder / name, *sorted(folder.glob(f"lib*/{name}")), *sorted(folder.glob(f"lib*/*/{name}"))]:
+            if library.exists():
+                yield str(library)
+    found = ctypes.util.find_library("scree")
+    if found:
+        yield found
+
+
+def _load():
+    for path in _candidates():
+        try:
+            return ctypes.CDLL(path)
+        except OSError as problem:
+            raise ImportError(f"scree: cannot load {path}: {problem}") from problem
+    raise ImportError("scree: libscree.so was not found; install scree, or name the file in SCREE_LIBRARY")
+
+
+_library = _load()
+lib = {}
+for _name, (_result, _arguments) in _PLAIN.items():
+    lib[_name] = getattr(_library, "scree_" + _name)
+    lib[_name].restype, lib[_name].argtypes = _result, _arguments
+for _name, _arguments in _FALLIBLE.items():
+    lib[_name] = getattr(_library, "scree_" + _name)
+    lib[_name].restype, lib[_name].argtypes = c_int, (*_arguments, _E)
+
+_version_file = pathlib.Path(__file__).parent / "VERSION"
+if _version_file.exists() and _version_file.read_text().strip() != lib["version"]().decode():
+    raise ImportError(f"scree: the module is of version {_version_file.read_text().strip()}, the library of "
+                      f"{lib['version']().decode()}")
+
+
+def call(name, *arguments):
+    """A fallible function; raises Error."""
+    error = scree_error()
+    if lib[name](*arguments, ctypes.byref(error)) != 0:
+        raise Error(STATUSES[error.status], error.message.decode(errors="replace"))
+
+
+class Progress:
+    """Passes progress to `report(phase, fraction)`, which cancels by returning False; lets Ctrl-C through. Used as
+    `with Progress(report) as p: call(..., p, ...)`."""
+
+    def __init__(self, report):
+        self.report, self.problem = report, None
+
+    def __enter__(self):
+        self.struct = scree_progress(REPORT(self._tell), None, 0.2)
+        return ctypes.byref(self.struct)
+
+    def _tell(self, _context, phase, fraction):
+        try:
+            return self.report is None or self.report(phase.decode(), fraction) is not False
+        except BaseException as problem:  # must not pass through C
+            self.problem = problem
+            return False
+
+    def __exit__(self, kind, value, trace):
+        if self.problem is not None:
+            raise self.problem
+        return False

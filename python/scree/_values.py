@@ -1,0 +1,98 @@
+"""Between C values and Python's: numpy arrays where numpy is there, memoryviews and lists where it is not."""
+import ctypes
+import types
+
+try:
+    import numpy
+except ImportError:
+    numpy = None
+
+UNITS = {"m": 1, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "km": 1e3, "inch": 0.0254, "in": 0.0254, "ft": 0.3048}
+
+
+def metres(unit):
+    """"mm" to 1e-3; a number is one already."""
+    if isinstance(unit, str):
+        if unit not in UNITS:
+            raise ValueError(f"'{unit}' is no unit of length ({', '.join(UNITS)})")
+        return UNITS[unit]
+    return float(unit)
+
+
+def index_of(word, words, what):
+    if word not in words:
+        raise ValueError(f"{what} '{word}' is none of {', '.join(words)}")
+    return words.index(word)
+
+
+def table(pointer, rows, columns, owner):
+    """rows x columns values at a C pointer, without copying: a numpy array, or a 2-D memoryview. Read only; keeps
+    owner alive."""
+    if rows == 0:
+        return numpy.zeros((0, columns)) if numpy else []
+    kind = pointer._type_
+    block = ctypes.cast(pointer, ctypes.POINTER(kind * (rows * columns))).contents
+    block.owner = owner
+    if numpy:
+        values = numpy.frombuffer(block, dtype=kind).reshape(rows, columns)
+        values.flags.writeable = False
+        return values
+    letter = "d" if kind is ctypes.c_double else "I"
+    return memoryview(block).cast("B").cast(letter, (rows, columns)).toreadonly()
+
+
+def column(values):
+    """A list of numbers as a numpy array where there is numpy."""
+    return numpy.array(values) if numpy else list(values)
+
+
+def c_array(kind, values, width=None):
+    """A C array of nested sequences or of a numpy array, flattened; and its rows, where width is given."""
+    if numpy is not None:
+        dtype = numpy.float64 if kind is ctypes.c_double else numpy.uint32
+        flat = numpy.ascontiguousarray(values, dtype=dtype)
+        if width and (flat.ndim != 2 or flat.shape[1] != width):
+            raise ValueError(f"expected rows of {width} values, got an array of shape {flat.shape}")
+        rows = len(flat)
+        flat = flat.reshape(-1)
+        block = (kind * max(1, len(flat)))()
+        ctypes.memmove(block, flat.ctypes.data, flat.nbytes)
+        return block, rows
+    rows = [list(row) for row in values] if width else [list(values)]
+    if width and any(len(row) != width for row in rows):
+        raise ValueError(f"expected rows of {width} values")
+    flat = [value for row in rows for value in row]
+    return (kind * max(1, len(flat)))(*flat), len(rows) if width else len(flat)
+
+
+def from_struct(struct, words=()):
+    """A C struct as a namespace: arrays as numpy arrays or lists, text as str, enums as the words given by field."""
+    words = dict(words)
+    result = {}
+    for name, kind in struct._fields_:
+        value = getattr(struct, name)
+        if name in words:
+            value = words[name][value]
+        elif isinstance(value, bytes):
+            value = value.decode(errors="replace")
+        elif isinstance(value, ctypes.Structure):
+            value = from_struct(value)
+        elif isinstance(value, ctypes.Array):
+            value = [list(row) if isinstance(row, ctypes.Array) else row for row in value]
+            value = column(value)
+        elif isinstance(value, ctypes._Pointer):
+            continue
+        result[name] = value
+    return types.SimpleNamespace(**result)
+
+
+def set_fields(struct, values, what):
+    """Options by keyword; an unknown one is an error that lists them."""
+    known = dict(struct._fields_)
+    for name, value in values.items():
+        if name not in known:
+            raise TypeError(f"{what} has no option '{name}'; there are {', '.join(known)}")
+        if isinstance(getattr(struct, name), ctypes.Array):
+            value = known[name](*value)
+        setattr(struct, name, value)
+    return struct

@@ -1,0 +1,230 @@
+"""The Python module against closed forms, its own C library's facts, and refusals. Run with numpy and, by
+SCREE_TEST_WITHOUT_NUMPY, without.
+usage: module.py WORLD_WRITER (tests/vtk/world.c, which also writes the checkpoint of a run)"""
+import gc
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+if os.environ.get("SCREE_TEST_WITHOUT_NUMPY"):
+    sys.modules["numpy"] = None  # import numpy fails
+import scree
+from scree import _values
+
+WORLD_WRITER = sys.argv.pop(1)
+os.chdir(tempfile.mkdtemp())
+SIDE = 0.06912  # of the sample box
+
+
+def tetrahedron():
+    return scree.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])
+
+
+class Meshes(unittest.TestCase):
+    def test_numpy_is_as_asked(self):
+        self.assertEqual(_values.numpy is None, bool(os.environ.get("SCREE_TEST_WITHOUT_NUMPY")) or
+                         _values.numpy is None)
+        if os.environ.get("SCREE_TEST_WITHOUT_NUMPY"):
+            self.assertIsNone(_values.numpy)
+
+    def test_tables(self):
+        mesh = tetrahedron()
+        self.assertEqual((mesh.vertex_count, mesh.triangle_count), (4, 4))
+        self.assertEqual([list(p) for p in mesh.positions.tolist()][3], [0, 0, 1])
+        self.assertEqual(mesh.triangles[1, 2], 3)
+        with self.assertRaises((ValueError, TypeError)):
+            mesh.positions[0, 0] = 1
+        positions = tetrahedron().positions  # the table keeps its mesh alive
+        gc.collect()
+        self.assertEqual(positions[3, 2], 1)
+
+    def test_measures(self):
+        m = tetrahedron().measure()
+        self.assertTrue(m.closed)
+        self.assertAlmostEqual(m.volume, 1 / 6, 14)
+        self.assertAlmostEqual(m.area, 1.5 + math.sqrt(3) / 2, 14)
+        self.assertAlmostEqual(list(m.centroid)[0], 0.25, 14)
+        t = tetrahedron().topology()
+        self.assertEqual((t.edge_count, t.genus, t.manifold), (6, 0, True))
+
+    def test_weld(self):
+        corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0], [0, 1, 0], [1, 0, 0]]
+        self.assertEqual(scree.Mesh(corners, [[0, 1, 2], [3, 4, 5]], weld=True).vertex_count, 3)
+
+    def test_files(self):
+        tetrahedron().write("t.stl")
+        mesh = scree.load("t.stl")
+        self.assertEqual((mesh.format, mesh.source, mesh.triangle_count), ("STL binary", "t.stl", 4))
+        self.assertNotEqual(mesh.checksum.high, 0)
+        self.assertAlmostEqual(scree.load("t.stl", unit="m").measure().volume, 1e9 / 6, 0)
+        with self.assertRaises(scree.Error) as refused:
+            tetrahedron().write("t.stl")
+        self.assertEqual(refused.exception.status, "EXISTS")
+        tetrahedron().write("t.stl", overwrite=True)
+        with open("bad.stl", "w") as file:
+            file.write("solid nothing")
+        with self.assertRaisesRegex(scree.Error, "bad.stl: .*cut off") as refused:
+            scree.load("bad.stl")
+        self.assertEqual(refused.exception.status, "BAD_FILE")
+        with self.assertRaisesRegex(ValueError, "no unit of length"):
+            scree.load("t.stl", unit="furlong")
+
+    def test_refusals(self):
+        with self.assertRaisesRegex(ValueError, "beyond the 3"):
+            scree.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 3]])
+        with self.assertRaisesRegex(TypeError, "there are resolution, noise, seed"):
+            scree.sample("fp-1", resolutoin=1e-3)
+        with self.assertRaisesRegex(scree.Error, "no sample"):
+            scree.load("sample:fp-9")
+        with self.assertRaises(ValueError):
+            tetrahedron().curve(method="best")
+
+    def test_check_and_repair(self):
+        open_mesh = scree.Mesh(tetrahedron().positions.tolist(), tetrahedron().triangles.tolist()[:3])
+        check = open_mesh.check()
+        self.assertFalse(check.usable)
+        self.assertEqual((check.defects["boundary_edges"], check.volume), (3, None))
+        repaired, report = open_mesh.repair()
+        self.assertEqual((report.done["filled_holes"], report.after.usable), (1, True))
+        self.assertAlmostEqual(repaired.measure().volume, 1 / 6, 12)
+
+    def test_distance(self):
+        ball, fine = scree.load("sample:icosphere-2"), scree.load("sample:icosphere-4")
+        d = fine.distance(ball, sample_count=1000)
+        self.assertGreater(d.hausdorff, 0)
+        self.assertGreaterEqual(d.hausdorff_bound, d.hausdorff)
+        field = list(fine.distance_field(ball))
+        self.assertEqual(len(field), fine.vertex_count)
+        self.assertLessEqual(max(field), d.forward.maximum * (1 + 1e-12))
+
+    def test_export(self):
+        box = scree.load("sample:box-12")
+        e = box.export("box.stl", "box.json", unit="m", principal=True, density=1000)
+        self.assertAlmostEqual(e.mass, 1000 * SIDE**3, 12)
+        self.assertAlmostEqual(e.inertia[0][0], e.mass * SIDE**2 / 6, 12)
+        self.assertTrue(os.path.exists("box.json"))
+        box.write_vtp("box.vtp", reference=box)
+
+
+class Curves(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scan = scree.sample("fp-1", resolution=2e-3, noise=0.2e-3)
+
+    def test_curve(self):
+        curve = self.scan.curve()
+        self.assertEqual(curve[0].triangle_count, self.scan.triangle_count)
+        self.assertEqual(curve[-1].triangle_count, curve.facts.floor_count)
+        self.assertEqual(curve.facts.method, "volume")
+        index = curve.find(100)
+        mesh = curve.mesh(index)
+        self.assertEqual(mesh.triangle_count, curve[index].triangle_count)
+        self.assertAlmostEqual(mesh.measure().volume / self.scan.measure().volume, 1, 12)
+        with self.assertRaises(IndexError):
+            curve[len(curve)]
+        del curve.source_mesh  # the record holds its mesh by itself
+        gc.collect()
+        self.assertLessEqual(self.scan.simplify(count=50, method="qecd").triangle_count, 50)
+
+    def test_choice(self):
+        choice = self.scan.choose(shape_errors=True)
+        self.assertEqual(len(choice.levels), 37)
+        least = min(choice.levels, key=lambda level: level.ip)
+        self.assertEqual(choice.paper.triangle_count, least.triangle_count)
+        self.assertEqual(choice.mesh().triangle_count, choice.robust.triangle_count)
+        self.assertEqual(set(choice.best), {"area", "volume", "inertia", "size"})
+        self.assertGreater(len(choice.trace), 200)
+
+    def test_progress(self):
+        phases = []
+        self.scan.curve(progress=lambda phase, fraction: phases.append(fraction))
+        self.assertTrue(phases and all(0 <= fraction <= 1 for fraction in phases))
+        with self.assertRaises(scree.Error) as refused:
+            self.scan.curve(progress=lambda phase, fraction: False)
+        self.assertEqual(refused.exception.status, "CANCELLED")
+        with self.assertRaises(ZeroDivisionError):
+            self.scan.curve(progress=lambda phase, fraction: 1 / 0)
+
+
+class Worlds(unittest.TestCase):
+    def world(self):
+        world = scree.World(stiffness_factor=0.1)
+        soft, hard = world.add_material(density=1000), world.add_material(wall=True)
+        world.add_wall("plane", hard)
+        self.box = scree.Particle(scree.load("sample:box-12"))
+        ball = scree.Particle.sphere(0.03)
+        world.add_body(self.box, soft, position=(0, 0, SIDE / 2 + 1e-3))
+        world.add_body(ball, soft, position=(0.2, 0, 0.5), velocity=(0, 0, 0.5), angular_velocity=(0, 1, 0))
+        return world
+
+    def test_fall(self):
+        world = self.world()
+        world.step(100)
+        t = world.time
+        self.assertAlmostEqual(t, 100 * world.time_step, 12)
+        ball = world.body(1)
+        self.assertAlmostEqual(ball.position[2], 0.5 + 0.5 * t - 9.81 * t * t / 2, 5)
+        self.assertAlmostEqual(ball.mass, 1000 * 4 / 3 * math.pi * 0.03**3, 12)
+        world.run(0.1)
+        self.assertGreaterEqual(world.time, t + 0.1 - 1e-12)
+        contacts = world.contacts()
+        self.assertTrue(contacts and all(k.wall and k.body == 0 for k in contacts))
+        self.assertAlmostEqual(world.observe().time, world.time, 3)
+        self.assertEqual(len(world.positions()), 2)
+        force, _ = world.wall_force(0)
+        self.assertLess(force[2], 0)
+
+    def test_checkpoint_and_files(self):
+        world = self.world()
+        world.step(200)
+        world.save("w.scree", overwrite=True)
+        again = scree.World.load("w.scree")
+        world.step(50)
+        again.step(50)
+        self.assertEqual(world.hash, again.hash)
+        for view in "surfaces", "points", "contacts", "walls":
+            world.write_vtp(view + ".vtp", view, overwrite=True)
+        scree.write_pvd("w.pvd", ["surfaces.vtp"], [world.time], overwrite=True)
+        world.export("pile", overwrite=True)
+        self.assertTrue(os.path.exists("pile/shape-0.stl"))
+
+    def test_bodies(self):
+        world = self.world()
+        world.set_body(1, velocity=(1, 2, 3))
+        self.assertEqual(list(world.body(1).velocity), [1, 2, 3])
+        world.remove_body(0)
+        self.assertEqual(world.live(), [1])
+        with self.assertRaises(IndexError):
+            world.body(2)
+        measures = self.box.measure()
+        self.assertEqual(measures.kind, "mesh")
+        self.assertAlmostEqual(measures.volume, SIDE**3, 12)
+        self.assertEqual(self.box.mesh().triangle_count, 12)
+        clump = scree.Particle.clump([[0, 0, 0], [0.01, 0, 0]], [0.02, 0.02])
+        self.assertEqual(clump.measure().point_count, 2)
+        with self.assertRaises(ValueError):
+            scree.Particle.clump([[0, 0, 0]], [1, 2])
+        with self.assertRaises(TypeError):
+            world.add_wall("plane", 1, colour="red")
+
+    def test_results(self):
+        with self.assertRaises(scree.Error):
+            scree.Run("missing.scree")
+        os.mkdir("run")
+        subprocess.run([WORLD_WRITER, "run"], check=True, stdout=subprocess.DEVNULL)
+        run = scree.Run("run/run.scree")
+        world = run.world
+        self.assertEqual((run.phase, run.is_frame), ("packing", False))
+        self.assertFalse(run.measure().repose.heap)
+        self.assertEqual([point.phase for point in run.series()], ["packing"] * len(run.series()))
+        self.assertEqual(scree.Run("run/frame.scree").world.time, world.time)
+        del run  # its world keeps it
+        gc.collect()
+        self.assertGreater(len(world), 0)
+
+
+if __name__ == "__main__":
+    unittest.main()
