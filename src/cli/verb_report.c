@@ -32,10 +32,11 @@ const cli_verb cli_verb_report = {
     .summary = "one page to look at, turn and send",
     .inputs = "DIR...",
     .description =
-        "Makes one self-contained HTML page of the folders that scree choose -o writes: the "
-        "answer, the curve with a slider that shows the mesh at every level beside the scan, the "
-        "tables, and how it was made. It opens by double-click, also from a mail, and asks nothing "
-        "of any network.\n\n"
+        "Makes one self-contained HTML page of the folders that scree choose -o and scree study "
+        "write. Of a choice: the answer, the curve with a slider that shows the mesh at every "
+        "level beside the scan, the tables. Of a study: angle of repose, its spread, rotation and "
+        "computation time with their curves and tables. And how each was made. It opens by "
+        "double-click, also from a mail, and asks nothing of any network.\n\n"
         "scree choose -o DIR already leaves such a page as DIR/report.html; this verb makes one "
         "of several folders, or makes it again.",
     .examples = "  scree choose --samples -o devices\n"

@@ -195,10 +195,14 @@ static scree_status put_folder(page *p, const char *folder) {
   scree_json json = scree_json_start(p->stream);
   scree_json_text(&json, NULL, folder);
   scree_status status = put_member(p, folder, "choice.json", "choice", &found);
+  if (status == SCREE_OK) status = put_member(p, folder, "study.json", "study", &found);
   if (status == SCREE_OK) status = put_member(p, folder, "provenance.json", "provenance", NULL);
   if (status == SCREE_OK && !found)
-    status = scree_fail(p->error, SCREE_BAD_FILE,
-                        "%s: holds no choice.json: `scree choose -o` makes such a folder", folder);
+    status = scree_fail(
+        p->error, SCREE_BAD_FILE,
+        "%s: holds no results: neither choice.json of `scree choose -o` nor study.json of "
+        "`scree study`",
+        folder);
   if (status != SCREE_OK) return status;
   status = list_levels(folder, &names, p->error);
   if (status == SCREE_OK) put_levels_index(p, &names);

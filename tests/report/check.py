@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Loads reports in a headless Chromium, moves the slider, reads what is shown. usage: check.py PROGRAM [KEEP]
 Screenshots and the printed page go to the folder KEEP, where given. Exits 77 where no Chromium is installed."""
+import json
 import os
 import shutil
 import subprocess
@@ -171,6 +172,51 @@ def several_objects(browser, folder):
     check(browser.text("main").count("How this was made") == 2, "a page of two folders lacks one")
 
 
+def summary(mean, sd):
+    return {"count": 8, "mean": mean, "mean_low": mean - sd, "mean_high": mean + sd, "sd": sd, "sd_low": sd / 2,
+            "sd_high": 2 * sd, "cv": sd / mean}
+
+
+def made_up_study():
+    """A study.json (docs/formats.md) with numbers that no run gave."""
+    points = [{
+        "label": f"shapes {shapes}, rp {rp}", "rp": rp, "shapes": shapes, "heap_count": 8, "triangle_count": 100 * i,
+        "runs": {"done": 8, "failed": 1, "running": 0, "leased": 0, "waiting": 1},
+        **{key: summary(30 + i, 1) for key in ("angle_deg", "seconds", "height", "run_out", "coordination",
+                                              "packing_fraction", "left", "peak_rotation")},
+        "rotation": {"time": [0, 1, 2], "mean": [0, 5 + i, 1], "low": [0, 4, 0], "high": [1, 9, 2]},
+    } for shapes in ("a", "b") for i, rp in enumerate(("spheres", "1e-4", "1e-3", "scan"))]
+    families = [{
+        "label": f"shapes {shapes}", "finest": "scan", "converged": shapes == "a",
+        "converged_from": "1e-3" if shapes == "a" else None,
+        "against_finest": [{"rp": "1e-3", "difference": 0.2, "low": -0.5, "high": 0.9, "equivalent": shapes == "a",
+                            "different": False, "count_needed": 12}],
+        "time_law": {"count": 3, "factor": 100, "exponent": 0.5, "exponent_low": None, "exponent_high": None,
+                     "r2": 0.9},
+    } for shapes in ("a", "b")]
+    return {"version": "0", "name": HOSTILE, "design": "grid", "method": "volume", "angle": "sector", "seed": 1,
+            "replicates": 8, "margin_deg": 1, "confidence": 0.95, "workers": 2, "seconds_spent": 10,
+            "seconds_left": 0, "mixed_versions": False, "points": points, "families": families,
+            "runs": {"done": 64, "failed": 8, "running": 0, "leased": 0, "waiting": 8},
+            "failures": [{"label": "shapes a, rp scan", "replicate": 3, "reason": HOSTILE}]}
+
+
+def a_study(browser, folder):
+    os.mkdir(os.path.join(folder, "study"))
+    with open(os.path.join(folder, "study", "study.json"), "w", encoding="utf-8") as out:
+        json.dump(made_up_study(), out)
+    scree("report", "study", "-o", "study.html", folder=folder)
+    ready(browser, os.path.join(folder, "study.html"))
+    text = browser.text("main")
+    for part in (f"Study {HOSTILE}", "shapes a: from Rp = 1.0e-3 on", "64 of 80 runs", "Angle of repose against Rp",
+                 "coefficient of variation", "Rotational velocity", "Computation time", "cannot be told yet"):
+        check(part in text, f"the study does not say: {part}")
+    check(browser.run("return document.querySelectorAll('.uplot canvas').length") == 4, "a curve is missing")
+    check(browser.run("return document.querySelectorAll('b').length") == 0, "a text became markup")
+    no_complaints(browser, "study")
+    pictures(browser, "study")
+
+
 def what_is_missing_is_said(page):
     with Browser(webgl=False) as browser:
         ready(browser, page)
@@ -191,6 +237,7 @@ def main():
         with Browser() as browser:
             page = one_object(browser, folder)
             several_objects(browser, folder)
+            a_study(browser, folder)
         what_is_missing_is_said(page)
     return 0
 

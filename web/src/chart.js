@@ -19,7 +19,8 @@ const raised = (n) => [...String(n)].map((c) => (c === '-' ? '⁻' : '⁰¹²³�
 const power = (v) => (isPower(v) ? `10${raised(Math.round(Math.log10(v)))}` : '');
 
 export class Chart {
-  // yLeast: lower end of the axis, where data go below. series: [{label, values, color, dash, width, text(v)}]; marks(): [{x, color, dash, label}]; pick(index): a click.
+  // yLeast: lower end of the axis, where data go below. series: [{label, values, color, dash, width, text(v),
+  // low, high: ends of error bars, points: bool}]; marks(): [{x, color, dash, label}]; pick(index): a click.
   constructor(host, { x, series, marks, pick, yLabel, yLeast, logY = true, logX = true }) {
     Object.assign(this, { host, x, series, marks, pick, yLabel, yLeast, logX, logY });
     charts.add(this);
@@ -37,19 +38,51 @@ export class Chart {
     const options = {
       width: Math.max(260, host.clientWidth), height: 340,
       cursor: { drag: { x: false, y: false } },
-      scales: { x: { time: false, distr: this.logX ? 3 : 1 }, y: { distr: this.logY ? 3 : 1, ...(this.yLeast ? { range: (_, low, high) => uPlot.rangeLog(Math.max(low, this.yLeast), high, 10, true) } : {}) } },
+      scales: { x: { time: false, distr: this.logX ? 3 : 1 }, y: { distr: this.logY ? 3 : 1, ...(this.logY ? {} : { range: () => this.span() }), ...(this.yLeast ? { range: (_, low, high) => uPlot.rangeLog(Math.max(low, this.yLeast), high, 10, true) } : {}) } },
       axes: [axis(x.label, this.logX), { ...axis(this.yLabel, this.logY), size: 56 }],
       series: [{ label: x.label, value: (_, v) => (v === null ? '' : x.text(v)) }, ...series.map((s) => ({
         label: s.label, stroke: s.color, width: s.width ?? 1.5, dash: s.dash, spanGaps: true, points: { show: s.points ?? false },
         value: (_, v) => (v === null ? '' : s.text(v)),
       }))],
-      hooks: { draw: [(plot) => this.drawMarks(plot)] },
+      hooks: { draw: [(plot) => this.drawBars(plot), (plot) => this.drawMarks(plot)] },
     };
     const positive = (v) => (v > 0 || !this.logY ? v : null);
     this.plot = new uPlot(options, [x.values, ...series.map((s) => s.values.map(positive))], host);
     this.plot.over.addEventListener('click', () => {
       if (this.plot.cursor.idx !== null && this.plot.cursor.idx !== undefined) this.pick?.(this.plot.cursor.idx);
     });
+  }
+
+  // The values with their bars, where the axis is linear.
+  span() {
+    const all = this.series.flatMap((s) => [s.values, s.low ?? [], s.high ?? []].flat()).filter((v) => v !== null && Number.isFinite(v));
+    const low = Math.min(...all), high = Math.max(...all), room = (high - low || Math.abs(high) || 1) * 0.08;
+    return low >= 0 ? [Math.max(0, low - room), high + room] : [low - room, high + room];
+  }
+
+  drawBars(plot) {
+    const { ctx } = plot;
+    const cap = 4 * devicePixelRatio;
+    for (const s of this.series) {
+      if (!s.low) continue;
+      ctx.save();
+      ctx.strokeStyle = s.color();
+      ctx.lineWidth = 1.5 * devicePixelRatio;
+      ctx.beginPath();
+      this.x.values.forEach((x, i) => {
+        if (!Number.isFinite(s.low[i] ?? NaN) || !Number.isFinite(s.high[i] ?? NaN) || (this.logX && !(x > 0))) return;
+        const at = plot.valToPos(x, 'x', true);
+        const [from, to] = [s.low[i], s.high[i]].map((v) => plot.valToPos(v, 'y', true));
+        ctx.moveTo(at, from);
+        ctx.lineTo(at, to);
+        for (const end of [from, to]) {
+          ctx.moveTo(at - cap, end);
+          ctx.lineTo(at + cap, end);
+        }
+      });
+      ctx.stroke();
+      ctx.restore();
+    }
   }
 
   drawMarks(plot) {

@@ -2,6 +2,7 @@
 import './page.css';
 import { ChoiceSection } from './choice.js';
 import { decoderReady } from './levels.js';
+import { StudySection } from './study.js';
 import { element, number, table } from './text.js';
 
 const data = JSON.parse(document.getElementById('data').textContent);
@@ -21,6 +22,10 @@ function provenanceRows(folder) {
   add('results', folder.folder);
   add('scree', run.version ?? first?.version);
   add('command', run.command ?? first?.command);
+  if (folder.study) {
+    add('study', `${folder.study.name}: design ${folder.study.design}, decimation ${folder.study.method}, seed ${folder.study.seed}`);
+    add('runs made by', `scree ${folder.study.version}, ${folder.study.workers} workers, ${number(folder.study.seconds_spent, 3)} s of processor time`);
+  }
   add('started', run.started);
   if (run.elapsed_s !== undefined) add('time', `${number(run.elapsed_s, 3)} s, ${number(run.processor_s, 3)} s of processor time, ${run.threads} threads`);
   if (run.processor) add('machine', `${run.processor}, ${run.processors} processors; ${run.system}`);
@@ -34,6 +39,7 @@ async function fill() {
   for (const folder of data.folders) {
     const host = element('section', null, page);
     if (folder.choice) new ChoiceSection(host, folder);
+    if (folder.study) new StudySection(host, folder.study);
     element('h2', 'How this was made', host);
     table(host, [{ head: 'what', value: (row) => row.what }, { head: 'value', value: (row) => row.value }],
       provenanceRows(folder), 'provenance.csv', 'Version, command, inputs, machine and times').classList.add('texts');

@@ -1,0 +1,143 @@
+// The section of a study (study.json, docs/formats.md): what the runs say, each curve with its spread, the tables.
+import { Chart, palette } from './chart.js';
+import { element, number, rpText, table, whole } from './text.js';
+
+// Rp as a number: the scan itself is 1, spheres have none.
+const rpOf = (point) => (point.rp === 'scan' ? 1 : point.rp === 'spheres' ? NaN : Number(point.rp));
+const familyOf = (point) => point.label.split(', ').filter((part) => !part.startsWith('rp ')).join(', ');
+const known = (x) => x !== null && x !== undefined && Number.isFinite(x);
+const rpName = (rp) => (Number(rp) > 0 ? `Rp = ${rpText(Number(rp))}` : `the ${rp}`);
+
+export class StudySection {
+  constructor(host, study) {
+    Object.assign(this, { host, study });
+    this.families = new Map();
+    for (const point of study.points) {
+      const family = familyOf(point);
+      if (!this.families.has(family)) this.families.set(family, []);
+      this.families.get(family).push(point);
+    }
+    for (const points of this.families.values()) points.sort((a, b) => rpOf(a) - rpOf(b));
+    this.tell();
+    this.drawAngles();
+    this.drawRotation();
+    this.drawTimes();
+    this.tellTables();
+  }
+
+  tell() {
+    const { host, study } = this;
+    const { runs } = study;
+    const all = runs.done + runs.failed + runs.running + runs.leased + runs.waiting;
+    element('h1', `Study ${study.name}: how many triangles does the heap need?`, host);
+    const answers = study.families.map((f) => {
+      const what = f.label ? `${f.label}: ` : '';
+      return f.converged
+        ? `${what}from ${rpName(f.converged_from)} on the angle of repose is that of ${rpName(f.finest)}, within ${number(study.margin_deg)}°.`
+        : `${what}the runs done do not show at any level that the angle of repose is that of ${rpName(f.finest)} within ${number(study.margin_deg)}°.`;
+    });
+    element('p', answers.join(' ') || 'No level can be compared with a finer one yet.', host, { class: 'answer' });
+    element('p', `${whole(runs.done)} of ${whole(all)} runs are done${runs.failed ? `, ${whole(runs.failed)} failed` : ''}; ${whole(study.replicates)} replicates a point. Intervals are of ${number(100 * study.confidence)} % confidence; bars are standard deviations. Angle measured: ${study.angle}.${study.mixed_versions ? ' The runs come from different versions of scree.' : ''}`, host, { class: 'soft' });
+  }
+
+  // One chart against Rp: a series for each family. get(point): {value, low, high} or null.
+  againstRp(title, yLabel, get, { logY = false, extra = () => [] } = {}) {
+    const xs = [...new Set([...this.families.values()].flat().map(rpOf).filter((x) => x > 0))].sort((a, b) => a - b);
+    const text = (v) => number(v, 4);
+    const series = [...this.families].map(([name, points], i) => {
+      const at = xs.map((x) => points.find((point) => rpOf(point) === x)).map((point) => (point ? get(point) : null));
+      const column = (key) => at.map((v) => (v && known(v[key]) ? v[key] : null));
+      return {
+        label: name || title, values: column('value'), color: palette[i % palette.length], width: 2, points: true, text,
+        ...(at.some((v) => v && known(v.low)) ? { low: column('low'), high: column('high') } : {}),
+      };
+    });
+    const all = [...series, ...extra(xs)];
+    if (!xs.length || !series.some((s) => s.values.some(known))) return;
+    element('h2', title, this.host);
+    new Chart(element('div', null, this.host, { class: 'chart' }), {
+      x: { label: 'Rp', values: xs, text: (v) => v.toExponential(1) }, yLabel, logY, series: all,
+    });
+  }
+
+  drawAngles() {
+    this.againstRp('Angle of repose against Rp', 'angle / °', ({ angle_deg: a }) => (known(a.mean)
+      ? { value: a.mean, low: known(a.sd) ? a.mean - a.sd : null, high: known(a.sd) ? a.mean + a.sd : null } : null));
+    for (const [name, points] of this.families) {
+      const spheres = points.find((point) => point.rp === 'spheres' && known(point.angle_deg.mean));
+      if (spheres) element('p', `${name ? `${name}: ` : ''}spheres of the same volumes, which have no Rp: ${number(spheres.angle_deg.mean)} ± ${number(spheres.angle_deg.sd)}°.`, this.host, { class: 'soft' });
+    }
+    this.againstRp('Its coefficient of variation against Rp', 'CV / %', ({ angle_deg: a }) => (known(a.cv)
+      ? { value: 100 * a.cv, low: known(a.sd_low) ? (100 * a.sd_low) / Math.abs(a.mean) : null, high: known(a.sd_high) ? (100 * a.sd_high) / Math.abs(a.mean) : null } : null));
+  }
+
+  drawRotation() {
+    const drawn = this.study.points.filter((point) => point.rotation.time.length > 1).slice(0, 8);
+    if (!drawn.length) return;
+    element('h2', 'Rotational velocity against time', this.host);
+    const times = [...new Set(drawn.flatMap((point) => point.rotation.time))].sort((a, b) => a - b);
+    const dashes = [undefined, [6, 3], [2, 2]];
+    new Chart(element('div', null, this.host, { class: 'chart' }), {
+      x: { label: 'time / s', values: times, text: (v) => number(v, 4) }, yLabel: 'mean |ω| / (rad/s)', logX: false, logY: false,
+      series: drawn.map((point, i) => {
+        const at = new Map(point.rotation.time.map((t, k) => [t, point.rotation.mean[k]]));
+        return { label: point.label || point.rp, values: times.map((t) => at.get(t) ?? null), color: palette[i % palette.length], dash: dashes[Math.floor(i / palette.length)], text: (v) => number(v, 3) };
+      }),
+    });
+    if (this.study.points.length > drawn.length) element('p', `The first ${drawn.length} points are drawn.`, this.host, { class: 'soft' });
+  }
+
+  drawTimes() {
+    const { study } = this;
+    const laws = study.families.filter((f) => f.time_law.count && known(f.time_law.exponent));
+    const extra = (xs) => laws.map((f, i) => ({
+      label: `${f.label ? `${f.label}: ` : ''}fit, Rp^${number(f.time_law.exponent, 2)}`, values: xs.map((x) => f.time_law.factor * x ** f.time_law.exponent),
+      color: palette[(i + this.families.size) % palette.length], dash: [6, 4], text: (v) => number(v, 3),
+    }));
+    this.againstRp('Computation time of a run against Rp', 'time / s', ({ seconds: s }) => (known(s.mean)
+      ? { value: s.mean, low: known(s.sd) && s.sd < s.mean ? s.mean - s.sd : null, high: known(s.sd) && s.sd < s.mean ? s.mean + s.sd : null } : null), { logY: true, extra });
+    for (const f of laws) {
+      const { exponent, exponent_low: low, exponent_high: high, r2, factor } = f.time_law;
+      element('p', `${f.label ? `${f.label}: ` : ''}time = ${number(factor, 3)} s Rp^${number(exponent, 3)}${known(low) ? ` (exponent ${number(low, 3)} to ${number(high, 3)})` : ''}, R² of the logarithms ${number(r2, 3)}.`, this.host, { class: 'soft' });
+    }
+  }
+
+  tellTables() {
+    const { host, study } = this;
+    const summary = (key, head, digits = 4) => [
+      { head, value: (p) => p[key].mean, text: (p) => number(p[key].mean, digits) },
+      { head: `${head}: sd`, value: (p) => p[key].sd, text: (p) => number(p[key].sd, 3) },
+    ];
+    element('h2', 'Every point', host);
+    table(host, [
+      { head: 'point', value: (p) => p.label || p.rp },
+      { head: 'shapes', value: (p) => p.shapes },
+      { head: 'Rp', value: (p) => p.rp },
+      { head: 'triangles', value: (p) => p.triangle_count, text: (p) => (known(p.triangle_count) ? whole(Math.round(p.triangle_count)) : '–') },
+      { head: 'runs done', value: (p) => p.runs.done },
+      { head: 'failed', value: (p) => p.runs.failed },
+      ...summary('angle_deg', 'angle / °'),
+      { head: 'angle: CV', value: (p) => p.angle_deg.cv, text: (p) => (known(p.angle_deg.cv) ? `${number(100 * p.angle_deg.cv, 2)} %` : '–') },
+      ...summary('height', 'height / m'), ...summary('packing_fraction', 'packing'), ...summary('coordination', 'coordination'), ...summary('seconds', 'time / s', 3),
+    ], study.points, `${study.name}-points.csv`, 'Results at every point of the study');
+    const compared = study.families.flatMap((f) => f.against_finest.map((c) => ({ ...c, family: f.label, finest: f.finest })));
+    if (compared.length) {
+      element('h2', 'Against the finest level', host);
+      table(host, [
+        { head: 'level', value: (c) => `${c.family ? `${c.family}: ` : ''}${c.rp}` },
+        { head: 'finest', value: (c) => c.finest },
+        { head: 'difference / °', value: (c) => c.difference, text: (c) => number(c.difference, 3) },
+        { head: 'low', value: (c) => c.low, text: (c) => number(c.low, 3) },
+        { head: 'high', value: (c) => c.high, text: (c) => number(c.high, 3) },
+        { head: 'verdict', value: (c) => (c.equivalent ? 'the same within the margin' : c.different ? 'different' : 'cannot be told yet') },
+        { head: 'runs needed', value: (c) => c.count_needed, text: (c) => (c.count_needed ? whole(c.count_needed) : '–') },
+      ], compared, `${study.name}-comparisons.csv`, 'Each level against the finest');
+    }
+    if (study.failures.length) {
+      element('h2', 'Runs that failed', host);
+      table(host, [
+        { head: 'point', value: (f) => f.label }, { head: 'replicate', value: (f) => f.replicate }, { head: 'reason', value: (f) => f.reason },
+      ], study.failures, `${study.name}-failures.csv`, 'Runs that failed').classList.add('texts');
+    }
+  }
+}
