@@ -17,8 +17,10 @@ scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy, scree_err
   scree_mesh made = {.vertex_count = mesh->vertex_count, .triangle_count = mesh->triangle_count};
   SCREE_ALLOC_OR(made.positions, 3 * mesh->vertex_count, error, out_of_memory);
   SCREE_ALLOC_OR(made.triangles, 3 * mesh->triangle_count, error, out_of_memory);
-  memcpy(made.positions, mesh->positions, 3 * mesh->vertex_count * sizeof *made.positions);
-  memcpy(made.triangles, mesh->triangles, 3 * mesh->triangle_count * sizeof *made.triangles);
+  if (mesh->vertex_count) /* an empty mesh may have no arrays */
+    memcpy(made.positions, mesh->positions, 3 * mesh->vertex_count * sizeof *made.positions);
+  if (mesh->triangle_count)
+    memcpy(made.triangles, mesh->triangles, 3 * mesh->triangle_count * sizeof *made.triangles);
   *copy = made;
   return SCREE_OK;
 out_of_memory:

@@ -167,6 +167,43 @@ static bool looks_like_gltf(scree_text text) {
   return false;
 }
 
+/* The name of the root element of an XML file; empty where there is none. */
+static scree_token xml_root(scree_text text) {
+  scree_text_skip_space(&text);
+  while (text.p < text.end && *text.p == '<') {
+    const char *close = memchr(text.p, '>', (size_t)(text.end - text.p));
+    if (!close) break;
+    bool is_comment = close - text.p >= 3 && !memcmp(text.p, "<!--", 4);
+    while (is_comment && close && memcmp(close - 2, "--", 2) != 0)
+      close = memchr(close + 1, '>', (size_t)(text.end - close - 1));
+    if (!close) break;
+    if (text.p[1] != '?' && text.p[1] != '!') {
+      const char *begin = text.p + 1, *end = begin;
+      while (end < close && *end != ' ' && *end != '\t' && *end != '\r' && *end != '\n') end++;
+      return (scree_token){begin, (size_t)(end - begin)};
+    }
+    text.p = close + 1;
+    scree_text_skip_space(&text);
+  }
+  return (scree_token){text.end, 0};
+}
+
+/* XML formats that assimp reads, by their root. */
+static bool find_xml_format(scree_text text, scree_import_format *format) {
+  static const struct {
+    const char *root;
+    scree_import_format format;
+  } known[] = {
+      {"collada", SCREE_IMPORT_COLLADA}, {"x3d", SCREE_IMPORT_X3D}, {"amf", SCREE_IMPORT_AMF}};
+  scree_token root = xml_root(text);
+  for (size_t i = 0; i < sizeof known / sizeof *known; i++)
+    if (scree_token_is(root, known[i].root)) {
+      *format = known[i].format;
+      return true;
+    }
+  return false;
+}
+
 static bool begins_with(const scree_text *t, const char *word) {
   size_t length = strlen(word);
   return (size_t)(t->end - t->p) >= length && scree_token_is((scree_token){t->p, length}, word);
@@ -192,9 +229,19 @@ static bool starts_with(const scree_reading *r, const char *bytes, size_t count)
   return r->byte_count >= count && !memcmp(r->bytes, bytes, count);
 }
 
+/* A main chunk of the file's own length. */
+static bool looks_like_3ds(const scree_reading *r) {
+  const unsigned char *b = r->bytes;
+  return r->byte_count > 16 && b[0] == 0x4d && b[1] == 0x4d &&
+         ((uint32_t)b[2] | (uint32_t)b[3] << 8 | (uint32_t)b[4] << 16 | (uint32_t)b[5] << 24) ==
+             r->byte_count;
+}
+
 static scree_status read_binary_or_fail(scree_reading *r) {
   if (starts_with(r, "PK\x03\x04", 4)) return scree_read_import(r, SCREE_IMPORT_3MF);
   if (starts_with(r, "glTF", 4)) return scree_read_import(r, SCREE_IMPORT_GLB);
+  if (starts_with(r, "Kaydara FBX Binary", 18)) return scree_read_import(r, SCREE_IMPORT_FBX);
+  if (looks_like_3ds(r)) return scree_read_import(r, SCREE_IMPORT_3DS);
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++) {
     const mark *m = &foreign_marks[i];
     if (starts_with(r, m->bytes, m->length))
@@ -219,6 +266,10 @@ static scree_status read_any(scree_reading *r) {
   if (looks_like_off(text)) return scree_read_off(r);
   if (looks_like_obj(text)) return scree_read_obj(r);
   if (looks_like_gltf(text)) return scree_read_import(r, SCREE_IMPORT_GLTF);
+  scree_import_format format;
+  if (find_xml_format(text, &format)) return scree_read_import(r, format);
+  scree_text_skip_space(&text);
+  if (begins_with(&text, "; fbx")) return scree_read_import(r, SCREE_IMPORT_FBX);
   return fail_text(r, text);
 }
 

@@ -30,10 +30,15 @@ scree_status scree_read_off(scree_reading *r);
 typedef enum scree_import_format {
   SCREE_IMPORT_3MF,
   SCREE_IMPORT_GLB,
-  SCREE_IMPORT_GLTF
+  SCREE_IMPORT_GLTF,
+  SCREE_IMPORT_COLLADA,
+  SCREE_IMPORT_X3D,
+  SCREE_IMPORT_AMF,
+  SCREE_IMPORT_FBX,
+  SCREE_IMPORT_3DS
 } scree_import_format;
 scree_status scree_read_import(scree_reading *r, scree_import_format format);
-/* Whether the word begins an OFF file. */
+/* Whether the word begins an OFF file, also of a kind that is refused. */
 bool scree_is_off_word(scree_token word);
 
 /* "NAME: no facets" and its like: the sentence is for the whole file. */

@@ -1,13 +1,15 @@
-/* 3MF and glTF through assimp's C interface, in a child process under limits (base/child.h): assimp
- * reads forty formats, and hostile files break it. The child answers a record and then the corners
- * of all triangles; nothing it says is believed before it is checked.
+/* 3MF, glTF and others through assimp's C interface, in a child process under limits
+ * (base/child.h): assimp reads forty formats, and hostile files break it. The child answers a
+ * record and then the corners of all triangles; nothing it says is believed before it is checked.
  *
  * The import is raw: assimp only cuts polygons into triangles; node transforms are applied here in
  * double precision, mirrored nodes are turned outward again, an instance counts each time it is
  * placed, and welding is scree's. assimp holds coordinates in single precision.
  *
- * Units: glTF is in metres by its specification; 3MF names one in its root element (3MF Core 1.3,
- * 3.4), which assimp 5.2 does not pass on, so the child looks into the archive itself. */
+ * Units: glTF and X3D are in metres by their specifications; assimp brings COLLADA to metres. 3MF
+ * and AMF name one in their root element (3MF Core 1.3, 3.4; ISO/ASTM 52915), which assimp 5.2 does
+ * not pass on, so the child looks into the file itself. FBX tells how many centimetres a unit has.
+ * 3DS has none. */
 #include "mesh/read.h"
 
 #ifdef SCREE_WITH_ASSIMP
@@ -20,6 +22,7 @@
 #include <limits.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 enum {
   PEEK_BYTES = 1 << 16,
@@ -31,12 +34,21 @@ enum {
 static const size_t MOST_MEMORY = (size_t)4 << 30;
 static const double MOST_SIZE_M = 1e30;
 
+/* Where the unit of length comes from. */
+typedef enum unit_source { UNIT_METRE, UNIT_IN_ROOT, UNIT_IN_SCENE, UNIT_ASKED } unit_source;
+
 static const struct {
   const char *name, *hint;
+  unit_source unit;
 } formats[] = {
-    [SCREE_IMPORT_3MF] = {"3MF", "3mf"},
-    [SCREE_IMPORT_GLB] = {"glTF binary", "glb"},
-    [SCREE_IMPORT_GLTF] = {"glTF text", "gltf"},
+    [SCREE_IMPORT_3MF] = {"3MF", "3mf", UNIT_IN_ROOT},
+    [SCREE_IMPORT_GLB] = {"glTF binary", "glb", UNIT_METRE},
+    [SCREE_IMPORT_GLTF] = {"glTF text", "gltf", UNIT_METRE},
+    [SCREE_IMPORT_COLLADA] = {"COLLADA", "dae", UNIT_METRE},
+    [SCREE_IMPORT_X3D] = {"X3D", "x3d", UNIT_METRE},
+    [SCREE_IMPORT_AMF] = {"AMF", "amf", UNIT_IN_ROOT},
+    [SCREE_IMPORT_FBX] = {"FBX", "fbx", UNIT_IN_SCENE},
+    [SCREE_IMPORT_3DS] = {"3DS", "3ds", UNIT_ASKED},
 };
 
 /* What the child answers before the corners. */
@@ -44,6 +56,7 @@ typedef struct answer {
   uint64_t triangle_count;
   double unit_m;
   int64_t status;
+  int64_t is_split; /* names parts in other files of its archive */
   char unit_name[16];
   char message[256];
 } answer;
@@ -54,7 +67,7 @@ typedef struct import {
   scree_import_format format;
 } import;
 
-/* ---- in the child: the unit of a 3MF ---- */
+/* ---- in the child: the unit of a 3MF or AMF ---- */
 
 /* Behind the next `mark`, or NULL. */
 static const char *behind(const char *text, const char *mark) {
@@ -62,16 +75,16 @@ static const char *behind(const char *text, const char *mark) {
   return found ? found + strlen(mark) : NULL;
 }
 
-/* The attributes of the root element, behind its name, which ends in `model`. */
-static const char *find_root_attributes(const char *text) {
+/* The attributes of the root element, behind its name, which ends in `name`. */
+static const char *find_root_attributes(const char *text, const char *name) {
   while (text && (text = strchr(text, '<'))) {
     if (text[1] == '?')
       text = behind(text, "?>");
     else if (!strncmp(text, "<!--", 4))
       text = behind(text, "-->");
     else {
-      size_t length = strcspn(text, " \t\r\n/>");
-      return length >= 6 && !memcmp(text + length - 5, "model", 5) ? text + length : NULL;
+      size_t length = strcspn(text, " \t\r\n/>"), tail = strlen(name);
+      return length > tail && !strncasecmp(text + length - tail, name, tail) ? text + length : NULL;
     }
   }
   return NULL;
@@ -100,26 +113,41 @@ static bool read_unit_name(const char *p, char name[16]) {
   }
 }
 
-static void find_3mf_unit(const import *im, answer *a) {
-  static const struct {
-    const char *name;
-    double unit_m;
-  } units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2},
-               {"inch", 0.0254}, {"foot", 0.3048},     {"meter", 1}};
-  static char text[PEEK_BYTES + 1];
+/* The start of what holds the root element, ended by a zero; false after filling the answer. */
+static bool peek_root(const import *im, char text[PEEK_BYTES + 1], answer *a) {
+  size_t count = im->byte_count < PEEK_BYTES ? im->byte_count : PEEK_BYTES;
   scree_zip_member model;
-  a->status = SCREE_BAD_FILE;
-  if (!scree_zip_find(im->bytes, im->byte_count, "3D/3dmodel.model", &model)) {
+  if (im->format != SCREE_IMPORT_3MF) {
+    memcpy(text, im->bytes, count);
+  } else if (scree_zip_find(im->bytes, im->byte_count, "3D/3dmodel.model", &model)) {
+    count = scree_zip_peek(&model, text, PEEK_BYTES);
+  } else {
+    a->status = SCREE_BAD_FILE;
     snprintf(
         a->message, sizeof a->message,
         "is a zip archive in which 3D/3dmodel.model is not found: cut off, damaged, or no 3MF");
-    return;
+    return false;
   }
-  text[scree_zip_peek(&model, text, PEEK_BYTES)] = 0;
-  const char *attributes = find_root_attributes(text);
+  text[count] = 0;
+  return true;
+}
+
+static void find_root_unit(const import *im, answer *a) {
+  static const struct {
+    const char *name;
+    double unit_m;
+  } units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2}, {"inch", 0.0254},
+               {"foot", 0.3048}, {"feet", 0.3048},     {"meter", 1}};
+  static char text[PEEK_BYTES + 1];
+  const char *name = formats[im->format].name,
+             *root = im->format == SCREE_IMPORT_3MF ? "model" : "amf";
+  if (!peek_root(im, text, a)) return;
+  a->status = SCREE_BAD_FILE;
+  a->is_split = strstr(text, ":path=") != NULL;
+  const char *attributes = find_root_attributes(text, root);
   if (!attributes || !read_unit_name(attributes, a->unit_name)) {
-    snprintf(a->message, sizeof a->message,
-             "as 3MF: 3D/3dmodel.model does not begin with an XML element <model ...>");
+    snprintf(a->message, sizeof a->message, "as %s: %s does not begin with an XML element <%s ...>",
+             name, im->format == SCREE_IMPORT_3MF ? "3D/3dmodel.model" : "it", root);
     return;
   }
   for (size_t i = 0; i < sizeof units / sizeof *units; i++)
@@ -129,9 +157,9 @@ static void find_3mf_unit(const import *im, answer *a) {
       return;
     }
   snprintf(a->message, sizeof a->message,
-           "as 3MF: the unit is '%s'; it should be micron, millimeter, centimeter, inch, foot or "
+           "as %s: the unit is '%s'; it should be micron, millimeter, centimeter, inch, foot or "
            "meter",
-           a->unit_name);
+           name, a->unit_name);
 }
 
 /* ---- in the child: the scene ---- */
@@ -218,6 +246,20 @@ static void walk_scene(walk *w, const struct aiScene *scene, int output) {
   if (scene->mRootNode) walk_node(w, scene->mRootNode, &identity);
 }
 
+/* An FBX's centimetres per unit; 1 where it does not say. */
+static void find_scene_unit(const struct aiScene *scene, answer *a) {
+  const struct aiMetadata *data = scene->mMetaData;
+  double factor = 1;
+  for (unsigned i = 0; data && i < data->mNumProperties; i++) {
+    const struct aiMetadataEntry *value = &data->mValues[i];
+    if (strcmp(data->mKeys[i].data, "UnitScaleFactor") != 0) continue;
+    if (value->mType == AI_DOUBLE) factor = *(const double *)value->mData;
+    if (value->mType == AI_FLOAT) factor = (double)*(const float *)value->mData;
+  }
+  a->unit_m = 0.01 * factor;
+  snprintf(a->unit_name, sizeof a->unit_name, "%.6g m", a->unit_m);
+}
+
 static void explain_refusal(const import *im, answer *a) {
   const char *reason = aiGetErrorString();
   bool is_memory = strstr(reason, "bad_alloc") != NULL;
@@ -234,15 +276,23 @@ static bool import_in_child(void *context, int output) {
   const import *im = context;
   answer a = {.unit_m = 1, .unit_name = "meter"};
   const struct aiScene *scene = NULL;
-  if (im->format == SCREE_IMPORT_3MF) find_3mf_unit(im, &a);
+  if (formats[im->format].unit == UNIT_IN_ROOT) find_root_unit(im, &a);
   if (a.status == SCREE_OK) {
     scene = aiImportFileFromMemory((const char *)im->bytes, (unsigned)im->byte_count,
                                    aiProcess_Triangulate, formats[im->format].hint);
     if (!scene) explain_refusal(im, &a);
   }
   if (scene) {
+    if (formats[im->format].unit == UNIT_IN_SCENE) find_scene_unit(scene, &a);
     walk_scene(&w, scene, -1);
     a.triangle_count = w.triangle_count;
+    if (a.triangle_count == 0 && a.is_split) {
+      a.status = SCREE_BAD_FILE;
+      snprintf(a.message, sizeof a.message,
+               "as %s: its parts lie in several files of the archive, which is not read; save it "
+               "as one",
+               formats[im->format].name);
+    }
     if (!w.is_valid || w.triangle_count > MOST_TRIANGLES) {
       a.status = w.is_valid ? SCREE_LIMIT : SCREE_BAD_FILE;
       snprintf(a.message, sizeof a.message,
@@ -293,12 +343,16 @@ static scree_status take_answer(scree_reading *r, scree_import_format format,
                               a.message);
   size_t corner_bytes = raw->count - sizeof a;
   if (a.triangle_count > MOST_TRIANGLES || corner_bytes != a.triangle_count * 9 * sizeof(double) ||
-      !(a.unit_m >= 1e-6 && a.unit_m <= 1))
+      !(a.unit_m >= 1e-9 && a.unit_m <= 1e6))
     return scree_reading_fail(r, SCREE_BAD_FILE, "as %s: the child process contradicts itself",
                               formats[format].name);
-  r->unit_m = a.unit_m;
   r->scan->solid_count = 1;
-  snprintf(r->scan->format, sizeof r->scan->format, "%s, %s", formats[format].name, a.unit_name);
+  if (formats[format].unit == UNIT_ASKED) {
+    snprintf(r->scan->format, sizeof r->scan->format, "%s", formats[format].name);
+  } else {
+    r->unit_m = a.unit_m;
+    snprintf(r->scan->format, sizeof r->scan->format, "%s, %s", formats[format].name, a.unit_name);
+  }
   const double *corners = (const double *)(const void *)(raw->items + sizeof a);
   scree_status status = check_corners(r, corners, a.triangle_count);
   return status == SCREE_OK ? scree_reading_weld(r, corners, a.triangle_count) : status;
@@ -332,10 +386,15 @@ scree_status scree_read_import(scree_reading *r, scree_import_format format) {
       [SCREE_IMPORT_3MF] = "is a zip archive (3MF is one)",
       [SCREE_IMPORT_GLB] = "is a glTF model",
       [SCREE_IMPORT_GLTF] = "is a glTF model",
+      [SCREE_IMPORT_COLLADA] = "is a COLLADA model",
+      [SCREE_IMPORT_X3D] = "is an X3D model",
+      [SCREE_IMPORT_AMF] = "is an AMF model",
+      [SCREE_IMPORT_FBX] = "is an FBX model",
+      [SCREE_IMPORT_3DS] = "is a 3DS model",
   };
   return scree_reading_fail(
       r, SCREE_UNSUPPORTED,
-      "%s; this build of scree reads STL, PLY, OBJ and OFF, and 3MF and glTF only with assimp",
+      "%s; this build of scree reads STL, PLY, OBJ and OFF, and other formats only with assimp",
       sentences[format]);
 }
 #endif

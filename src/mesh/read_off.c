@@ -18,12 +18,29 @@ static void skip_comments(scree_text *t) {
   }
 }
 
+/* [ST][C][N][4][n]OFF: texture coordinates, colours, normals; a fourth coordinate; any number of
+ * them, which only its small letter tells from N. Otherwise letters of either case will do. */
+typedef struct off_word {
+  bool known, has_other_dimension;
+} off_word;
+
+static off_word parse_word(scree_token word) {
+  const char *p = word.begin, *end = p + word.length;
+  off_word w = {false, false};
+  if (word.length < 3 || !scree_token_is((scree_token){end - 3, 3}, "off")) return w;
+  end -= 3;
+  bool small = *end == 'o';
+  if (end - p >= 2 && scree_token_is((scree_token){p, 2}, "st")) p += 2;
+  if (p < end && (*p == 'C' || *p == 'c')) p++;
+  if (p < end && (*p == 'N' || (small && *p == 'n'))) p++;
+  if (p < end && *p == '4') w.has_other_dimension = true, p++;
+  if (p < end && *p == 'n') w.has_other_dimension = true, p++;
+  w.known = p == end;
+  return w;
+}
+
 bool scree_is_off_word(scree_token word) {
-  static const char *const words[] = {"off",   "coff",   "noff",   "cnoff",
-                                      "stoff", "stcoff", "stnoff", "stcnoff"};
-  for (size_t i = 0; i < sizeof words / sizeof *words; i++)
-    if (scree_token_is(word, words[i])) return true;
-  return false;
+  return parse_word(word).known;
 }
 
 typedef struct off {
@@ -43,7 +60,12 @@ static scree_status read_count(scree_text *t, const char *what, int64_t least_by
 
 static scree_status read_header(scree_text *t, off *o) {
   skip_comments(t);
-  scree_text_next(t); /* the word by which the file was known */
+  scree_token word = scree_text_next(t);
+  if (parse_word(word).has_other_dimension)
+    return scree_fail(t->error, SCREE_UNSUPPORTED,
+                      "%s: the header %.*s says that vertices have more or fewer than three "
+                      "coordinates; such an OFF is not read",
+                      t->name, (int)word.length, word.begin);
   scree_text probe = *t;
   scree_text_skip_blanks(&probe);
   if (scree_token_is(scree_text_next(&probe), "binary"))

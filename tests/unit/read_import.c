@@ -1,5 +1,5 @@
-/* 3MF and glTF: small files made here, their units and placements, and what hostile ones cost. In a
- * build without assimp: the refusal by name. */
+/* 3MF, glTF and the rest: small files made here, their units and placements, and what hostile ones
+ * cost. In a build without assimp: the refusal by name. */
 #include "base/rng.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
@@ -148,6 +148,111 @@ static void make_gltf(const char *uri) {
   put_text(gltf_json(36, "", uri ? uri : text));
 }
 
+/* ---- the other formats ---- */
+
+/* Every coordinate of the cube's corners between separators. */
+static void put_corners(const char *before, const char *between, const char *after) {
+  for (int v = 0; v < 8; v++)
+    for (int i = 0; i < 3; i++) {
+      char number[16];
+      snprintf(number, sizeof number, "%g", corner(v, i));
+      put_text(i ? between : before), put_text(number), put_text(i == 2 ? after : "");
+    }
+}
+
+static void put_faces(const char *before, const char *between, const char *after, bool fbx) {
+  for (int t = 0; t < 12; t++)
+    for (int c = 0; c < 3; c++) {
+      char number[16];
+      snprintf(number, sizeof number, "%d", fbx && c == 2 ? -1 - cube[t][c] : cube[t][c]);
+      put_text(c ? between : before), put_text(number), put_text(c == 2 ? after : "");
+    }
+}
+
+static void make_x3d(void) {
+  file_size = 0;
+  put_text("<?xml version=\"1.0\"?>\n<!-- <amf> -->\n<!DOCTYPE X3D>\n<X3D version=\"3.0\"><Scene>"
+           "<Shape><IndexedFaceSet coordIndex=\"");
+  put_faces("", " ", " -1 ", false);
+  put_text("\"><Coordinate point=\"");
+  put_corners("", " ", " ");
+  put_text("\"/></IndexedFaceSet></Shape></Scene></X3D>\n");
+}
+
+static void make_amf(const char *attributes) {
+  file_size = 0;
+  put_text("<?xml version=\"1.0\"?>\n<amf"), put_text(attributes);
+  put_text("><object id=\"0\"><mesh><vertices>");
+  for (int v = 0; v < 8; v++) {
+    char text[160];
+    snprintf(text, sizeof text,
+             "<vertex><coordinates><x>%g</x><y>%g</y><z>%g</z></coordinates></vertex>",
+             corner(v, 0), corner(v, 1), corner(v, 2));
+    put_text(text);
+  }
+  put_text("</vertices><volume>");
+  for (int t = 0; t < 12; t++) {
+    char text[160];
+    snprintf(text, sizeof text, "<triangle><v1>%d</v1><v2>%d</v2><v3>%d</v3></triangle>",
+             cube[t][0], cube[t][1], cube[t][2]);
+    put_text(text);
+  }
+  put_text("</volume></mesh></object></amf>\n");
+}
+
+static void make_collada(void) {
+  file_size = 0;
+  put_text("<?xml version=\"1.0\"?>\n<COLLADA version=\"1.4.1\"><asset><unit meter=\"0.01\"/>"
+           "<up_axis>Z_UP</up_axis></asset><library_geometries><geometry id=\"g\"><mesh>"
+           "<source id=\"p\"><float_array id=\"a\" count=\"24\">");
+  put_corners("", " ", " ");
+  put_text("</float_array><technique_common><accessor source=\"#a\" count=\"8\" stride=\"3\">"
+           "<param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/>"
+           "<param name=\"Z\" type=\"float\"/></accessor></technique_common></source>"
+           "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>"
+           "<triangles count=\"12\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>");
+  put_faces("", " ", " ", false);
+  put_text("</p></triangles></mesh></geometry></library_geometries><library_visual_scenes>"
+           "<visual_scene id=\"s\"><node id=\"n\"><instance_geometry url=\"#g\"/></node>"
+           "</visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/>"
+           "</scene></COLLADA>\n");
+}
+
+static void make_fbx(void) {
+  file_size = 0;
+  put_text("; FBX 7.3.0 project file\nFBXHeaderExtension:  {\n FBXVersion: 7300\n}\n"
+           "GlobalSettings:  {\n Version: 1000\n Properties70:  {\n"
+           "  P: \"UnitScaleFactor\", \"double\", \"Number\", \"\",2.54\n }\n}\nObjects:  {\n"
+           " Geometry: 1, \"Geometry::cube\", \"Mesh\" {\n  Vertices: *24 {\n   a: ");
+  put_corners("", ",", ",");
+  file_size--; /* the last comma */
+  put_text("\n  }\n  PolygonVertexIndex: *36 {\n   a: ");
+  put_faces("", ",", ",", true);
+  file_size--;
+  put_text("\n  }\n }\n Model: 2, \"Model::cube\", \"Mesh\" {\n  Version: 232\n }\n}\n"
+           "Connections:  {\n C: \"OO\",2,0\n C: \"OO\",1,2\n}\n");
+}
+
+/* Chunks of a number, a length with their head, and content. */
+static void put_chunk(uint32_t number, uint32_t content) {
+  put_little(number, 2), put_little(6 + content, 4);
+}
+
+static void make_3ds(void) {
+  const uint32_t vertices = 2 + 8 * 12, faces = 2 + 12 * 8, mesh = 12 + vertices + faces;
+  file_size = 0;
+  put_chunk(0x4d4d, 17 + 6 + mesh), put_chunk(0x3d3d, 11 + 6 + mesh);
+  put_chunk(0x4000, 5 + 6 + mesh), put("cube", 5);
+  put_chunk(0x4100, mesh), put_chunk(0x4110, vertices), put_little(8, 2);
+  for (int v = 0; v < 8; v++)
+    for (int i = 0; i < 3; i++) put(&(float){(float)corner(v, i)}, 4);
+  put_chunk(0x4120, faces), put_little(12, 2);
+  for (int t = 0; t < 12; t++) {
+    for (int c = 0; c < 3; c++) put_little((uint32_t)cube[t][c], 2);
+    put_little(0, 2);
+  }
+}
+
 /* ---- checks ---- */
 
 static scree_status parse(scree_scan *scan, scree_error *error) {
@@ -198,6 +303,16 @@ static void refused_by_name(void **state) {
   expect_error(SCREE_UNSUPPORTED, "is a glTF model");
   make_gltf(NULL);
   expect_error(SCREE_UNSUPPORTED, "is a glTF model");
+  make_amf("");
+  expect_error(SCREE_UNSUPPORTED, "is an AMF model");
+  make_x3d();
+  expect_error(SCREE_UNSUPPORTED, "is an X3D model");
+  make_collada();
+  expect_error(SCREE_UNSUPPORTED, "is a COLLADA model");
+  make_fbx();
+  expect_error(SCREE_UNSUPPORTED, "is an FBX model");
+  make_3ds();
+  expect_error(SCREE_UNSUPPORTED, "is a 3DS model");
 }
 
 static void reads_3mf(void **state) {
@@ -225,6 +340,27 @@ static void reads_gltf(void **state) {
   expect_cubes("glTF text, meter", 1, 0, 1);
 }
 
+static void reads_others(void **state) {
+  (void)state;
+  if (!has_assimp()) skip();
+  make_x3d();
+  expect_cubes("X3D, meter", 1, 0, 1);
+  make_amf("");
+  expect_cubes("AMF, millimeter", 1, 0, 1e-9);
+  make_amf(" unit=\"inch\" version=\"1.1\"");
+  expect_cubes("AMF, inch", 1, 0, 0.0254 * 0.0254 * 0.0254);
+  make_amf(" unit=\"yard\"");
+  expect_error(SCREE_BAD_FILE, "as AMF: the unit is 'yard'");
+  make_collada();
+  expect_cubes("COLLADA, meter", 1, 0, 1e-6);
+  make_fbx();
+  expect_cubes("FBX, 0.0254 m", 1, 0, 0.0254 * 0.0254 * 0.0254);
+  make_3ds();
+  expect_cubes("3DS", 1, 0, 17.0 * 17 * 17); /* carries no unit: the one asked for */
+  file_size--;
+  expect_error(SCREE_BAD_FILE, "");
+}
+
 static void hostile_3mf(void **state) {
   (void)state;
   if (!has_assimp()) skip();
@@ -236,6 +372,8 @@ static void hostile_3mf(void **state) {
   make_3mf(" unit=\"furlong\"", "");
   expect_error(SCREE_BAD_FILE, "the unit is 'furlong'; it should be micron");
   make_3mf("", "");
+  expect_error(SCREE_BAD_FILE, "");
+  make_3mf("", "<item objectid=\"7\" p:path=\"/3D/Objects/other.model\"/>");
   expect_error(SCREE_BAD_FILE, "");
   const char *const other[][2] = {{"word/document.xml", "<a/>"}};
   make_zip(other, 1);
@@ -292,9 +430,9 @@ static void allocations(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(refused_by_name), cmocka_unit_test(reads_3mf),
-      cmocka_unit_test(reads_gltf),      cmocka_unit_test(hostile_3mf),
-      cmocka_unit_test(hostile_gltf),    cmocka_unit_test(damaged_anywhere),
-      cmocka_unit_test(allocations)};
+      cmocka_unit_test(refused_by_name),  cmocka_unit_test(reads_3mf),
+      cmocka_unit_test(reads_gltf),       cmocka_unit_test(reads_others),
+      cmocka_unit_test(hostile_3mf),      cmocka_unit_test(hostile_gltf),
+      cmocka_unit_test(damaged_anywhere), cmocka_unit_test(allocations)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
