@@ -430,6 +430,7 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
   X(CLOSE_SEAM, "closed_seam_edges", "boundary edges closed by welding within the tolerance")      \
   X(SPLIT_T_JUNCTION, "split_t_junctions", "edges split where a vertex lay on them")               \
   X(DROP_FIN, "dropped_fin_facets", "facets of open sheets hanging on the surface dropped")        \
+  X(DROP_MEMBRANE, "dropped_membrane_facets", "facets of sheets within the surface dropped")       \
   X(SPLIT_EDGE, "split_non_manifold_edges", "non-manifold edges split")                            \
   X(TURN, "turned_facets", "facets turned round to agree with their neighbours")                   \
   X(SPLIT_VERTEX, "split_non_manifold_vertices", "non-manifold vertices split")                    \

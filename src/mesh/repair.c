@@ -3,11 +3,11 @@
  *
  * A round begins with the cheap check (no self-intersections). While that finds something, the
  * stages for what it found run, in an order in which each finds what it needs: duplicates and flat
- * facets go, seams and T-junctions close, fins go, the winding is made to agree, edges of many
- * facets are sorted out by it, open scraps go, holes are filled, and vertices with several fans are
- * split last, because filling joins fans. Once the surface is closed and manifold, shells are put
- * in order. Then the exact check looks for facets that meet; those of one shell are cut out with
- * their neighbourhood, wider each time, and the round starts over.
+ * facets go, seams and T-junctions close, fins and membranes go, the winding is made to agree,
+ * edges of many facets are sorted out by it, open scraps go, holes are filled, and vertices with
+ * several fans are split last, because filling joins fans. Once the surface is closed and manifold,
+ * shells are put in order. Then the exact check looks for facets that meet; those of one shell are
+ * cut out with their neighbourhood, wider each time, and the round starts over.
  *
  * Every round ends with a weld, so vertices and facets are always in canonical order and the result
  * does not depend on the order of the input. Nothing is called repaired that the check has not
@@ -229,6 +229,7 @@ static scree_status mend_surface(scree_repair *r, const scree_check *check, scre
   if (status == SCREE_OK && (open || dented)) status = scree_repair_seams(r, error);
   if (status == SCREE_OK && (open || dented)) status = scree_repair_t_junctions(r, error);
   if (status == SCREE_OK && crowded) status = scree_repair_fins(r, error);
+  if (status == SCREE_OK && crowded) status = scree_repair_membranes(r, error);
   if (status == SCREE_OK && (crowded || defect[SCREE_DEFECT_INCONSISTENT_EDGE]))
     status = scree_repair_winding(r, error);
   if (status == SCREE_OK && crowded) status = scree_repair_edges(r, error);

@@ -32,6 +32,21 @@ size_t scree_repair_remove_collapsed(scree_repair *r);
 /* The sentence for a stage that ran out of memory. */
 scree_status scree_repair_no_memory(scree_error *error);
 
+/* ---- repair_manifold.c: facets round an edge ---- */
+
+enum { SCREE_EDGE_FACETS = 64 }; /* more at one edge are not sorted out */
+
+typedef struct scree_spoke {
+  uint32_t half_edge;
+  double angle; /* counter-clockwise about the edge from its lower to its higher vertex */
+  bool along;   /* runs that way */
+} scree_spoke;
+
+/* The `count` facets round the edge of half-edge first, by angle; false where they do not run half
+ * and half either way. A facet running along has its outer side towards larger angles. */
+bool scree_repair_spokes(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t first,
+                         scree_spoke *spokes, int count);
+
 /* ---- The stages ---- */
 
 /* repair.c: facets on the same three vertices as another. */
@@ -44,6 +59,8 @@ scree_status scree_repair_t_junctions(scree_repair *r, scree_error *error);
 /* repair_manifold.c: open sheets hanging on edges of three or more facets; such edges; winding;
  * vertices with several fans. */
 scree_status scree_repair_fins(scree_repair *r, scree_error *error);
+/* repair_membrane.c: sheets within the outside surface, where edges have 3, 5, ... facets. */
+scree_status scree_repair_membranes(scree_repair *r, scree_error *error);
 scree_status scree_repair_edges(scree_repair *r, scree_error *error);
 scree_status scree_repair_winding(scree_repair *r, scree_error *error);
 scree_status scree_repair_vertices(scree_repair *r, scree_error *error);

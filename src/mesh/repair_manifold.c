@@ -27,8 +27,6 @@
 #define DRAW_BACK_EDGE       1e-4
 #define DRAW_BACK_COORDINATE 1e-6
 
-enum { FACETS_PER_EDGE = 64 }; /* more at one edge are not sorted out: it opens */
-
 #define NO_HALF_EDGE SCREE_NO_HALF_EDGE
 
 static size_t ring_size(const scree_adjacency *adjacency, uint32_t h) {
@@ -87,21 +85,14 @@ done:
 
 /* ---- Pairing the facets at edges ---- */
 
-typedef struct spoke {
-  uint32_t half_edge;
-  double angle;
-  bool along; /* runs the way the edge's axis points */
-} spoke;
-
 static int compare_spokes(const void *a, const void *b) {
-  const spoke *x = a, *y = b;
+  const scree_spoke *x = a, *y = b;
   if (x->angle != y->angle) return x->angle < y->angle ? -1 : 1;
   return (x->half_edge > y->half_edge) - (x->half_edge < y->half_edge);
 }
 
-/* Facets round the edge by angle; false where they are not half and half. */
-static bool collect_spokes(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t first,
-                           spoke *spokes, int count) {
+bool scree_repair_spokes(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t first,
+                         scree_spoke *spokes, int count) {
   uint32_t low = scree_half_edge_from(mesh, first), high = scree_half_edge_to(mesh, first);
   vec3 origin = vec3_load(mesh->positions + 3 * (size_t)low);
   vec3 axis = vec3_unit(vec3_sub(vec3_load(mesh->positions + 3 * (size_t)high), origin));
@@ -113,8 +104,8 @@ static bool collect_spokes(const scree_mesh *mesh, const scree_adjacency *adjace
     vec3 arm = vec3_sub(vec3_load(mesh->positions + 3 * (size_t)apex), origin);
     arm = vec3_mad(arm, axis, -vec3_dot(arm, axis));
     if (i == 0) u = vec3_unit(arm), v = vec3_cross(axis, u);
-    spokes[i] = (spoke){h, i == 0 ? 0 : atan2(vec3_dot(arm, v), vec3_dot(arm, u)),
-                        scree_half_edge_from(mesh, h) == low};
+    spokes[i] = (scree_spoke){h, i == 0 ? 0 : atan2(vec3_dot(arm, v), vec3_dot(arm, u)),
+                              scree_half_edge_from(mesh, h) == low};
     along += spokes[i].along;
   }
   qsort(spokes, (size_t)count, sizeof *spokes, compare_spokes);
@@ -123,7 +114,7 @@ static bool collect_spokes(const scree_mesh *mesh, const scree_adjacency *adjace
 
 /* Angles grow counter-clockwise about the axis. A facet running against the axis has its outer side
  * towards smaller angles, so material follows it, up to a facet that runs along the axis. */
-static bool pair_spokes(const spoke *spokes, int count, uint32_t *twin) {
+static bool pair_spokes(const scree_spoke *spokes, int count, uint32_t *twin) {
   for (int i = 0; i < count; i++)
     if (spokes[i].along == spokes[(i + 1) % count].along) return false;
   for (int i = 0; i < count; i++) {
@@ -143,7 +134,7 @@ static size_t pair_edges(const scree_mesh *mesh, const scree_adjacency *adjacenc
   for (size_t h = 0; h < 3 * mesh->triangle_count; h++) twin[h] = NO_HALF_EDGE;
   for (size_t e = 0; e < adjacency->edge_count; e++) {
     uint32_t h = adjacency->edges[e], g = adjacency->ring[h];
-    spoke spokes[FACETS_PER_EDGE];
+    scree_spoke spokes[SCREE_EDGE_FACETS];
     if (g == h) continue;
     if (adjacency->ring[g] == h) {
       twin[h] = g, twin[g] = h;
@@ -152,7 +143,7 @@ static size_t pair_edges(const scree_mesh *mesh, const scree_adjacency *adjacenc
     split++;
     loose[scree_half_edge_from(mesh, h)] = loose[scree_half_edge_to(mesh, h)] = true;
     size_t count = scree_edge_facet_count(adjacency, h);
-    if (count <= FACETS_PER_EDGE && collect_spokes(mesh, adjacency, h, spokes, (int)count))
+    if (count <= SCREE_EDGE_FACETS && scree_repair_spokes(mesh, adjacency, h, spokes, (int)count))
       pair_spokes(spokes, (int)count, twin);
   }
   return split;

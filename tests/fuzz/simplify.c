@@ -31,7 +31,8 @@ static void compare(const faults *given, const faults *level, bool exact) {
   if (!given->meetings) FUZZ_CHECK(!level->meetings);
 }
 
-/* exact: far from the origin, positions are rounded, and facets may become flat by it. */
+/* exact: not far from the origin, where positions round, nor of many magnitudes: facets may become
+ * flat by rounding alone. */
 static void check_levels(const scree_curve *curve, const scree_mesh *mesh, bool exact) {
   const faults given = look_at(mesh);
   size_t count = scree_curve_level_count(curve);
@@ -68,7 +69,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   scree_status status = scree_curve_build(&in.mesh, &options, NULL, &curve, &error);
   FUZZ_CHECK(status == SCREE_OK || status == SCREE_BAD_MESH);
   FUZZ_CHECK(status == SCREE_OK || (error.message[0] && !curve));
-  if (status == SCREE_OK) check_levels(curve, &in.mesh, data[1] % 4 != 1);
+  if (status == SCREE_OK) check_levels(curve, &in.mesh, data[1] % 2 == 0);
   scree_curve_free(curve);
   FUZZ_CHECK(scree_memory_used() == used);
   return 0;

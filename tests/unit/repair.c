@@ -287,6 +287,43 @@ static void fins(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* Two boxes glued with one wall between them, and a ball with a disc across it, each turned: what
+ * stays is the outside. */
+static void membranes(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 57};
+  for (int round = 0; round < 20; round++) {
+    scree_mesh mesh = shape_grid_box(2, 1, 1, 2);
+    scree_measures clean = measures_of(&mesh);
+    uint32_t rim[8], rim_count = 0, centre = UINT32_MAX;
+    /* the loop of vertices at x = 1, in order of angle, and a fan from the middle of the wall */
+    for (uint32_t v = 0; v < mesh.vertex_count; v++)
+      if (mesh.positions[3 * v] == 1) rim[rim_count++] = v;
+    assert_int_equal(rim_count, 8);
+    for (int i = 0; i < 8; i++)
+      for (int j = i + 1; j < 8; j++) {
+        const double *p = mesh.positions + 3 * rim[i], *q = mesh.positions + 3 * rim[j];
+        if (atan2(p[2] - 0.5, p[1] - 0.5) <= atan2(q[2] - 0.5, q[1] - 0.5)) continue;
+        uint32_t keep = rim[i];
+        rim[i] = rim[j], rim[j] = keep;
+      }
+    scree_mesh dot = shape_make(1, 0), both = shape_join(&mesh, &dot);
+    centre = (uint32_t)mesh.vertex_count;
+    memcpy(both.positions + 3 * centre, (double[3]){1.2, 0.5, 0.5}, 24);
+    for (int i = 0; i < 8; i++) append_facet(&both, rim[i], rim[(i + 1) % 8], centre);
+    mat3 turn = quat_to_mat3(scree_rng_rotation(&rng));
+    shape_transform(&both, &turn, (vec3){1, 2, 3});
+    outcome o = repair(&both);
+    expect_same(&o, &clean, 1e-12);
+    assert_int_equal(o.report.done[SCREE_REPAIR_DROP_MEMBRANE], 8);
+    assert_int_equal(o.report.before.defects[SCREE_DEFECT_NON_MANIFOLD_EDGE], 8);
+    free_outcome(&o);
+    scree_mesh_free(&mesh);
+    scree_mesh_free(&dot);
+    scree_mesh_free(&both);
+  }
+}
+
 static void debris_and_cavities(void **state) {
   (void)state;
   scree_mesh outer = shape_grid_box(4, 4, 4, 4), cavity = shape_icosphere(0.15, 2);
@@ -481,6 +518,7 @@ int main(void) {
                                      cmocka_unit_test(t_junctions),
                                      cmocka_unit_test(touching_boxes),
                                      cmocka_unit_test(fins),
+                                     cmocka_unit_test(membranes),
                                      cmocka_unit_test(debris_and_cavities),
                                      cmocka_unit_test(nested_is_swallowed),
                                      cmocka_unit_test(spike),
