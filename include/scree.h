@@ -1906,6 +1906,124 @@ SCREE_API scree_status scree_run_picture(const scree_run *run, const scree_rende
                                          const scree_progress *progress, scree_image *image,
                                          scree_error *error);
 
+
+/* ---- 9.6 Files for DEM codes ---- */
+
+/* How a particle's mesh is put before it is written. */
+typedef struct scree_export_options {
+  double density; /* kg/m3, > 0; default 2000 (not in the paper) */
+  double unit_m;  /* metres per unit of the mesh file; default 1e-3 */
+  bool centre;    /* origin to the centre of mass; default false */
+  bool principal; /* axes also along the principal axes of inertia, moments ascending: the x axis
+                     is the long one; implies centre; default false */
+  bool overwrite; /* default false */
+  const char *source; /* the input as given, for provenance; NULL: unknown. Borrowed, as are */
+  const char *command_line;
+  scree_checksum checksum; /* of the input; zero: none */
+} scree_export_options;
+
+SCREE_API scree_export_options scree_default_export_options(void);
+
+/* Where the mesh went and what it weighs there, SI. */
+typedef struct scree_exported {
+  double rotation[3][3];   /* a point p of the mesh given is at rotation p + translation */
+  double translation[3];   /* m */
+  double mass;             /* kg */
+  double inertia[3][3];    /* kg m2, about the centre of mass, along the axes of the file */
+  double bounding_radius;  /* m, about the centre of mass */
+  scree_measures measures; /* of the mesh as it lies in the file, before rounding */
+} scree_exported;
+
+/* Writes the mesh, put as asked, to mesh_path (format by its ending) and what a DEM code needs to
+ * know of it as JSON to json_path (docs/formats.md; NULL: not wanted). *exported may be NULL.
+ * Fails with SCREE_BAD_MESH where the mesh is not closed or inside out: it would have no mass; with
+ * SCREE_EXISTS before anything is written; else as scree_mesh_write. */
+SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
+                                             const scree_export_options *options,
+                                             const char *mesh_path, const char *json_path,
+                                             scree_exported *exported, scree_error *error);
+
+/* Writes a world for other programs into a folder, made if need be:
+ *
+ *   pile.json      time, gravity, shapes, bodies, walls (docs/formats.md), SI
+ *   bodies.csv     the bodies as rows
+ *   shape-K.stl    the mesh of shape K (scree_world_shape) in the particle's frame, in unit_m
+ *   wall-K.stl     the mesh of wall K in its own frame, in unit_m
+ *
+ * A body of shape K lies where its quaternion turns shape-K.stl and its position moves it. Of the
+ * options unit_m, overwrite and the provenance count. */
+SCREE_API scree_status scree_world_export(const scree_world *world,
+                                          const scree_export_options *options, const char *folder,
+                                          scree_error *error);
+
+/* ---- 10.2 A study: points, replicates, runs ---- */
+
+/* A study's file (docs/repose.md, "Many runs") and the runs that follow from it: at every point of
+ * a design, as many replicates as wanted, each with its own seed. */
+typedef struct scree_study scree_study;
+
+/* Reads the file and makes the plan; touches no shape. Errors name file, line, column, key, value
+ * and limit. Free with scree_study_free. */
+SCREE_API scree_status scree_study_read(const char *path, scree_study **study, scree_error *error);
+SCREE_API void scree_study_free(scree_study *study);
+
+/* A run of the plan. Texts belong to the study. */
+typedef struct scree_study_run {
+  size_t point, replicate;
+  uint64_t seed;
+  const char *label;  /* the point's factors and values, "rp 0.001, contact.friction 0.3" */
+  const char *rp;     /* a number, "scan" or "spheres" */
+  const char *shapes; /* names, joined by + */
+  const char *key;    /* names the run by what its numbers follow from; NULL before
+                         scree_study_prepare */
+} scree_study_run;
+
+/* Runs are numbered so that every point has its first replicate before any has its second. */
+SCREE_API size_t scree_study_run_count(const scree_study *study);
+SCREE_API scree_status scree_study_get_run(const scree_study *study, size_t index,
+                                           scree_study_run *run, scree_error *error);
+
+/* ---- 10.3 Working on a study ---- */
+
+/* How this process takes part. Any number of processes on any machines that share the folder may
+ * work on it at the same time; none of them is special, and any may be killed. */
+typedef struct scree_study_options {
+  double lease_s; /* a run whose worker has given no sign of life for so long is taken over;
+                     default 300. On the same machine a dead process is seen at once. */
+  double poll_s;  /* pause before looking again where others hold all that is left; default 1 */
+  bool wait;      /* stay until every run has ended, to take over what others leave; default true:
+                     else return when nothing is to be taken */
+  bool retry_failed;  /* at the start, failed runs wait again, their reasons kept; default false */
+  size_t run_limit;   /* at most so many runs by this process; 0 (default): no limit */
+  const char *worker; /* a name for the table; NULL: made from machine and process */
+} scree_study_options;
+SCREE_API scree_study_options scree_default_study_options(void);
+
+/* Opens the folder for the study, making it where need be, and puts a copy of the file there. A
+ * folder that belongs to other shapes under the same names is refused. */
+SCREE_API scree_status scree_study_open(scree_study *study, const char *folder, scree_error *error);
+/* The study of a folder, from the copy of its file: for status and analysis. */
+SCREE_API scree_status scree_study_open_folder(const char *folder, scree_study **study,
+                                               scree_error *error);
+
+/* Makes what the runs need and the folder does not have yet: each shape is read, checked, repaired
+ * where need be, decimated once, and its levels written to FOLDER/shapes. */
+SCREE_API scree_status scree_study_prepare(scree_study *study, const scree_study_options *options,
+                                           const scree_progress *progress, scree_error *error);
+
+/* Takes runs, one after the other, and works on each to its end. A run that fails is recorded with
+ * its reason and the next is taken. SCREE_CANCELLED leaves a checkpoint and gives the run back.
+ * Needs scree_study_prepare. *completed (may be NULL): runs ended here. */
+SCREE_API scree_status scree_study_work(scree_study *study, const scree_study_options *options,
+                                        const scree_progress *progress, size_t *completed,
+                                        scree_error *error);
+
+/* Brings FOLDER/study.sqlite up to date: the plan, the state of every run, the results of those
+ * that ended. One process writes at a time; with wait false, another one at work is not waited for.
+ * All that is in the database comes from files in the folder: one that is damaged may be deleted,
+ * and is made again. */
+SCREE_API scree_status scree_study_collect(scree_study *study, bool wait, scree_error *error);
+
 #ifdef __cplusplus
 }
 #endif

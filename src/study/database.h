@@ -1,0 +1,29 @@
+/* study.sqlite: opened, checked, and asked. */
+#ifndef SCREE_STUDY_DATABASE_H
+#define SCREE_STUDY_DATABASE_H
+
+#include "study/study.h"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+typedef struct scree_database {
+  struct sqlite3 *handle;
+  char *path;
+} scree_database;
+
+/* Opens FOLDER/study.sqlite; for writing it is made where it is not there. SCREE_BAD_FILE where it
+ * is no database of a study, or a damaged one. Close with scree_database_close. */
+scree_status scree_database_open(const scree_study *study, bool writing, scree_database *database,
+                                 scree_error *error);
+void scree_database_close(scree_database *database);
+
+scree_status scree_database_run(scree_database *database, const char *sql, scree_error *error);
+/* Free with sqlite3_finalize. */
+scree_status scree_database_prepare(scree_database *database, const char *sql,
+                                    struct sqlite3_stmt **statement, scree_error *error);
+/* One step of a statement: *row whether it gave a row. */
+scree_status scree_database_step(scree_database *database, struct sqlite3_stmt *statement,
+                                 bool *row, scree_error *error);
+
+#endif

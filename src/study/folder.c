@@ -1,0 +1,93 @@
+/* A study's folder:
+ *
+ *   study.yaml      the file as last given
+ *   shapes/         NAME.yaml: what was found; NAME-LEVEL.ply: the particles' surfaces, in metres
+ *   leases/         who works on what
+ *   runs/KEY/       checkpoint while a run is on, last frame after it
+ *   results/        KEY.yaml: a run that ended
+ *   study.sqlite    all of it as tables
+ */
+#include "base/file.h"
+#include "study/study.h"
+
+#include <string.h>
+#include <sys/stat.h>
+
+scree_study_options scree_default_study_options(void) {
+  return (scree_study_options){.lease_s = 300, .poll_s = 1, .wait = true};
+}
+
+char *scree_study_path(const scree_study *study, const char *kind, const char *name,
+                       const char *ending) {
+  size_t size = strlen(study->folder) + strlen(kind) + strlen(name) + strlen(ending) + 3;
+  char *path = scree_alloc(size, 1);
+  if (path)
+    snprintf(path, size, "%s/%s%s%s%s", study->folder, kind, *kind && *name ? "/" : "", name,
+             ending);
+  return path;
+}
+
+static scree_status make_folders(const scree_study *study, scree_error *error) {
+  static const char *const kinds[] = {"shapes", "leases", "runs", "results"};
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < sizeof kinds / sizeof *kinds; i++) {
+    char *path = scree_study_path(study, kinds[i], "", "");
+    if (!path) return scree_fail_memory(error, 0, "a path");
+    status = scree_folder_create(path, error);
+    scree_free(path);
+  }
+  return status;
+}
+
+/* Writes the copy where it is not the same already, so that a folder in use is left alone. */
+static scree_status keep_copy(const scree_study *study, scree_error *error) {
+  char *path = scree_study_path(study, "", "study.yaml", ""), *old = NULL;
+  size_t size = 0;
+  struct stat info;
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  scree_status status = SCREE_OK;
+  bool same = stat(path, &info) == 0 && scree_file_read(path, 0, &old, &size, NULL) == SCREE_OK &&
+              size == study->text_size && !memcmp(old, study->text, size);
+  scree_free(old);
+  if (!same) {
+    scree_output output;
+    status = scree_output_open(path, true, &output, error);
+    if (status == SCREE_OK) {
+      fwrite(study->text, 1, study->text_size, output.stream);
+      status = scree_output_commit(&output, error);
+    }
+  }
+  scree_free(path);
+  return status;
+}
+
+scree_status scree_study_open(scree_study *study, const char *folder, scree_error *error) {
+  char *copy = scree_strdup(folder);
+  if (!copy) return scree_fail_memory(error, strlen(folder), "a path");
+  scree_free(study->folder);
+  study->folder = copy;
+  scree_status status = make_folders(study, error);
+  return status == SCREE_OK ? keep_copy(study, error) : status;
+}
+
+scree_status scree_study_open_folder(const char *folder, scree_study **study, scree_error *error) {
+  size_t size = strlen(folder) + 16;
+  char *path = scree_alloc(size, 1);
+  struct stat info;
+  if (!path) return scree_fail_memory(error, size, "a path");
+  snprintf(path, size, "%s/study.yaml", folder);
+  scree_study *made = NULL;
+  scree_status status =
+      stat(path, &info) == 0
+          ? scree_study_read(path, &made, error)
+          : scree_fail(error, SCREE_IO, "%s: is no folder of a study: no study.yaml in it", folder);
+  scree_free(path);
+  if (status == SCREE_OK && !(made->folder = scree_strdup(folder)))
+    status = scree_fail_memory(error, size, "a path");
+  if (status == SCREE_OK) status = scree_study_know_shapes(made, error);
+  if (status == SCREE_OK)
+    *study = made;
+  else
+    scree_study_free(made);
+  return status;
+}

@@ -1,0 +1,609 @@
+/* The study's file, strictly: every key is known, every value in its range, every error has line
+ * and column. Values of the experiment are tried on a copy at once, so that no run meets one that
+ * cannot be. */
+#include "base/array.h"
+#include "base/file.h"
+#include "pile/yaml.h"
+#include "study/design.h"
+#include "study/study.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LARGEST_FILE = 1 << 20, MOST_REPLICATES = 100000, MOST_SHAPES = 60 };
+static const double most_points = 1e6;
+
+typedef struct reader {
+  scree_study *study;
+  const char *name; /* of the file */
+  scree_error *error;
+} reader;
+
+static scree_status fail_at(const reader *r, const scree_yaml *node, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static scree_status fail_at(const reader *r, const scree_yaml *node, const char *format, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return scree_fail(r->error, SCREE_BAD_FILE, "%s, line %zu, column %zu: %s", r->name, node->line,
+                    node->column, text);
+}
+
+const char *scree_arena_text(scree_arena *arena, const char *text) {
+  size_t size = strlen(text) + 1;
+  char *copy = scree_arena_take(arena, size, 1);
+  if (copy) memcpy(copy, text, size);
+  return copy;
+}
+
+static scree_status fail_memory(const reader *r) {
+  return scree_fail_memory(r->error, 0, r->name);
+}
+
+/* ---- values ---- */
+
+static scree_status need_scalar(const reader *r, const scree_yaml *node) {
+  if (node->kind == SCREE_YAML_SCALAR) return SCREE_OK;
+  return fail_at(r, node, "%s: must be one value", node->key ? node->key : "an item");
+}
+
+static scree_status read_real(const reader *r, const scree_yaml *node, double low, double high,
+                              double *value) {
+  scree_status status = need_scalar(r, node);
+  if (status != SCREE_OK) return status;
+  char *end;
+  double real = strtod(node->text, &end);
+  if (!*node->text || *end || !isfinite(real))
+    return fail_at(r, node, "%s: '%s': must be a number", node->key, node->text);
+  if (real < low || real > high)
+    return fail_at(r, node, "%s: '%s': must be %g to %g", node->key, node->text, low, high);
+  *value = real;
+  return SCREE_OK;
+}
+
+static scree_status read_count(const reader *r, const scree_yaml *node, double low, double high,
+                               uint64_t *value) {
+  scree_status status = need_scalar(r, node);
+  if (status != SCREE_OK) return status;
+  char *end;
+  errno = 0;
+  unsigned long long whole = strtoull(node->text, &end, 10);
+  if (*node->text < '0' || *node->text > '9' || *end || errno)
+    return fail_at(r, node, "%s: '%s': must be a whole number", node->key, node->text);
+  if ((double)whole < low || (double)whole > high)
+    return fail_at(r, node, "%s: '%s': must be %g to %g", node->key, node->text, low, high);
+  *value = whole;
+  return SCREE_OK;
+}
+
+/* The index of the node's word among "one|two|three". */
+static scree_status read_word(const reader *r, const scree_yaml *node, const char *words,
+                              int *index) {
+  scree_status status = need_scalar(r, node);
+  if (status != SCREE_OK) return status;
+  size_t length = strlen(node->text);
+  int i = 0;
+  for (const char *word = words;; i++) {
+    size_t word_length = strcspn(word, "|");
+    if (word_length == length && !strncmp(word, node->text, length)) {
+      *index = i;
+      return SCREE_OK;
+    }
+    if (!word[word_length]) break;
+    word += word_length + 1;
+  }
+  return fail_at(r, node, "%s: '%s': must be one of %s", node->key, node->text, words);
+}
+
+/* ---- base ---- */
+
+/* An error of the experiment, which knows no place, with the node's. */
+static scree_status place_error(const reader *r, const scree_yaml *node, scree_status status,
+                                const scree_error *error) {
+  if (status == SCREE_OK || status == SCREE_OUT_OF_MEMORY) {
+    if (status != SCREE_OK && r->error) *r->error = *error;
+    return status;
+  }
+  return fail_at(r, node, "%.400s", error->message);
+}
+
+static scree_status set_base(const reader *r, const char *key, const scree_yaml *node) {
+  scree_error error;
+  scree_status status = need_scalar(r, node);
+  if (status != SCREE_OK) return status;
+  return place_error(r, node, scree_study_set(&r->study->base, key, node->text, &error), &error);
+}
+
+static scree_status read_base(const reader *r, const scree_yaml *base) {
+  if (base->kind != SCREE_YAML_MAPPING)
+    return fail_at(r, base, "base: must be `key: value` lines of an experiment");
+  const scree_yaml *preset = scree_yaml_find(base, "preset");
+  scree_error error;
+  if (preset) {
+    scree_experiment made;
+    scree_status status = need_scalar(r, preset);
+    if (status == SCREE_OK)
+      status = place_error(r, preset, scree_experiment_preset(preset->text, &made, &error), &error);
+    if (status != SCREE_OK) return status;
+    scree_experiment_free(&r->study->base);
+    r->study->base = made;
+  }
+  for (size_t i = 0; i < base->item_count; i++) {
+    const scree_yaml *item = &base->items[i];
+    scree_status status = SCREE_OK;
+    if (item == preset) continue;
+    if (item->kind != SCREE_YAML_MAPPING) status = set_base(r, item->key, item);
+    for (size_t k = 0; status == SCREE_OK && k < item->item_count; k++) {
+      char key[128];
+      snprintf(key, sizeof key, "%s.%s", item->key, item->items[k].key);
+      status = set_base(r, key, &item->items[k]);
+    }
+    if (status != SCREE_OK) return status;
+  }
+  return place_error(r, base, scree_experiment_check(&r->study->base, &error), &error);
+}
+
+/* ---- shapes ---- */
+
+static void short_name(const char *word, char *buffer, size_t size) {
+  const char *slash = strrchr(word, '/');
+  snprintf(buffer, size, "%s", !strncmp(word, "sample:", 7) ? word + 7 : slash ? slash + 1 : word);
+  char *dot = strrchr(buffer, '.');
+  if (dot && dot != buffer) *dot = 0;
+  for (char *c = buffer; *c; c++)
+    if ((unsigned char)*c <= ' ' || strchr("'\"/\\+,", *c)) *c = '_';
+}
+
+static bool name_taken(const scree_study *study, const char *name) {
+  for (size_t i = 0; i < study->shape_count; i++)
+    if (!strcmp(study->shapes[i].name, name)) return true;
+  return false;
+}
+
+/* A relative path stands beside the study's file. */
+static const char *resolve(const reader *r, const char *word) {
+  const char *slash = strrchr(r->study->path, '/');
+  if (word[0] == '/' || !slash) return scree_arena_text(&r->study->arena, word);
+  size_t folder = (size_t)(slash - r->study->path) + 1, size = folder + strlen(word) + 1;
+  char *path = scree_arena_take(&r->study->arena, size, 1);
+  if (path) snprintf(path, size, "%.*s%s", (int)folder, r->study->path, word);
+  return path;
+}
+
+static bool known_sample(const char *name) {
+  for (size_t i = 0; i < scree_sample_count(); i++)
+    if (!strcmp(scree_sample_name(i), name)) return true;
+  return !strncmp(name, "icosphere-", 10);
+}
+
+/* The index of the shape of this word, a new one where it is not there yet. */
+static scree_status find_shape(const reader *r, const scree_yaml *node, size_t *index) {
+  scree_study *study = r->study;
+  scree_status status = need_scalar(r, node);
+  if (status != SCREE_OK) return status;
+  for (*index = 0; *index < study->shape_count; ++*index)
+    if (!strcmp(study->shapes[*index].word, node->text)) return SCREE_OK;
+  if (study->shape_count == MOST_SHAPES)
+    return fail_at(r, node, "more than %d shapes", MOST_SHAPES);
+  bool is_sample = !strncmp(node->text, "sample:", 7);
+  if (!*node->text || (is_sample && !known_sample(node->text + 7)))
+    return fail_at(r, node, "no built-in sample '%s'", node->text);
+  char plain[64], name[96];
+  short_name(node->text, plain, sizeof plain);
+  snprintf(name, sizeof name, "%s", plain);
+  for (int n = 2; name_taken(study, name); n++) snprintf(name, sizeof name, "%s-%d", plain, n);
+  scree_study_shape shape = {.word = scree_arena_text(&study->arena, node->text),
+                             .path = is_sample ? NULL : resolve(r, node->text),
+                             .name = scree_arena_text(&study->arena, name)};
+  if (!shape.word || !shape.name || (!is_sample && !shape.path)) return fail_memory(r);
+  study->shapes[study->shape_count++] = shape;
+  return SCREE_OK;
+}
+
+/* One set: a word or a list of words. */
+static scree_status read_set(const reader *r, const scree_yaml *node, size_t *index) {
+  scree_study *study = r->study;
+  bool list = node->kind == SCREE_YAML_SEQUENCE;
+  size_t count = list ? node->item_count : 1;
+  if (node->kind == SCREE_YAML_MAPPING || count == 0)
+    return fail_at(r, node, "shapes: must be files or sample:NAME");
+  size_t *shapes = scree_arena_take(&study->arena, count, sizeof *shapes), size = 1;
+  if (!shapes) return fail_memory(r);
+  for (size_t i = 0; i < count; i++) {
+    scree_status status = find_shape(r, list ? &node->items[i] : node, &shapes[i]);
+    if (status != SCREE_OK) return status;
+    for (size_t j = 0; j < i; j++)
+      if (shapes[j] == shapes[i])
+        return fail_at(r, &node->items[i], "the shape '%s' stands here twice", node->items[i].text);
+    size += strlen(study->shapes[shapes[i]].name) + 1;
+  }
+  char *label = scree_arena_take(&study->arena, size, 1), *end = label;
+  if (!label) return fail_memory(r);
+  for (size_t i = 0; i < count; i++)
+    end += snprintf(end, size - (size_t)(end - label), "%s%s", i ? "+" : "",
+                    study->shapes[shapes[i]].name);
+  *index = study->set_count;
+  study->sets[study->set_count++] = (scree_shape_set){label, shapes, count};
+  return SCREE_OK;
+}
+
+/* ---- factors ---- */
+
+static bool is_rp(const char *text) {
+  char *end;
+  if (!strcmp(text, "spheres") || !strcmp(text, "scan")) return true;
+  double rp = strtod(text, &end);
+  return *text && !*end && rp > 0 && rp <= 1;
+}
+
+/* Tries a value on a copy of the base. */
+static scree_status try_value(const reader *r, const scree_yaml *node, const char *key,
+                              const char *text) {
+  if (!strcmp(key, "rp")) {
+    if (is_rp(text)) return SCREE_OK;
+    return fail_at(r, node, "rp: '%s': must be a number above 0 and at most 1, scan or spheres",
+                   text);
+  }
+  scree_error error;
+  scree_experiment copy = r->study->base;
+  return place_error(r, node, scree_study_set(&copy, key, text, &error), &error);
+}
+
+static scree_status read_levels(const reader *r, const scree_yaml *node, scree_factor *f) {
+  scree_arena *arena = &r->study->arena;
+  f->levels = scree_arena_take(arena, node->item_count, sizeof *f->levels);
+  bool sets = !strcmp(f->key, "shapes");
+  if (sets) f->sets = scree_arena_take(arena, node->item_count, sizeof *f->sets);
+  if (!f->levels || (sets && !f->sets)) return fail_memory(r);
+  if (node->item_count == 0) return fail_at(r, node, "%s: needs at least one level", f->key);
+  for (size_t i = 0; i < node->item_count; i++) {
+    const scree_yaml *item = &node->items[i];
+    scree_status status = sets ? read_set(r, item, &f->sets[i]) : need_scalar(r, item);
+    if (status == SCREE_OK && !sets) status = try_value(r, item, f->key, item->text);
+    if (status != SCREE_OK) return status;
+    f->levels[i] = sets ? r->study->sets[f->sets[i]].label : scree_arena_text(arena, item->text);
+    if (!f->levels[i]) return fail_memory(r);
+    for (size_t j = 0; j < i; j++)
+      if (!strcmp(f->levels[j], f->levels[i]))
+        return fail_at(r, item, "%s: the level '%s' stands here twice", f->key, f->levels[i]);
+    f->level_count++;
+  }
+  return SCREE_OK;
+}
+
+/* The number as text that the key takes: whole where it must be. */
+static scree_status level_text(const reader *r, const scree_yaml *node, const char *key,
+                               double value, const char **text) {
+  char number[40];
+  scree_error *kept = r->error;
+  reader quiet = {r->study, r->name, NULL};
+  snprintf(number, sizeof number, "%.9g", value);
+  if (try_value(&quiet, node, key, number) != SCREE_OK)
+    snprintf(number, sizeof number, "%.0f", value);
+  reader loud = {r->study, r->name, kept};
+  scree_status status = try_value(&loud, node, key, number);
+  if (status != SCREE_OK) return status;
+  *text = scree_arena_text(&r->study->arena, number);
+  return *text ? SCREE_OK : fail_memory(r);
+}
+
+static double at_fraction(const scree_factor *f, double u) {
+  return f->logarithmic ? f->from * pow(f->to / f->from, u) : f->from + u * (f->to - f->from);
+}
+
+static scree_status check_range(const reader *r, const scree_yaml *node, scree_factor *f,
+                                size_t levels) {
+  const char *text;
+  if (!strcmp(f->key, "shapes")) return fail_at(r, node, "shapes: must be a list, not a range");
+  if (!(f->from < f->to)) return fail_at(r, node, "%s: from must be below to", f->key);
+  if (f->logarithmic && !(f->from > 0))
+    return fail_at(r, node, "%s: from %g: must be above 0 on a log scale", f->key, f->from);
+  scree_status status = level_text(r, node, f->key, f->from, &text);
+  if (status == SCREE_OK) status = level_text(r, node, f->key, f->to, &text);
+  if (status != SCREE_OK || r->study->design != SCREE_DESIGN_GRID) return status;
+  if (levels == 0) return fail_at(r, node, "%s: a range in a grid needs levels: N", f->key);
+  f->levels = scree_arena_take(&r->study->arena, levels, sizeof *f->levels);
+  if (!f->levels) return fail_memory(r);
+  for (size_t i = 0; status == SCREE_OK && i < levels; i++)
+    status = level_text(r, node, f->key, at_fraction(f, (double)i / (double)(levels - 1)),
+                        &f->levels[i]);
+  f->level_count = levels;
+  return status;
+}
+
+/* {from: A, to: B, scale: linear|log, levels: N} */
+static scree_status read_range(const reader *r, const scree_yaml *node, scree_factor *f) {
+  int scale = 0;
+  uint64_t levels = 0;
+  bool from = false, to = false;
+  f->range = true;
+  for (size_t i = 0; i < node->item_count; i++) {
+    const scree_yaml *item = &node->items[i];
+    scree_status status;
+    if (!strcmp(item->key, "from")) {
+      status = read_real(r, item, -1e300, 1e300, &f->from);
+      from = true;
+    } else if (!strcmp(item->key, "to")) {
+      status = read_real(r, item, -1e300, 1e300, &f->to);
+      to = true;
+    } else if (!strcmp(item->key, "scale")) {
+      status = read_word(r, item, "linear|log", &scale);
+    } else if (!strcmp(item->key, "levels")) {
+      status = read_count(r, item, 2, 10000, &levels);
+    } else {
+      status = fail_at(r, item, "%s: no field '%s' in a range; there are from, to, scale, levels",
+                       f->key, item->key);
+    }
+    if (status != SCREE_OK) return status;
+  }
+  if (!from || !to) return fail_at(r, node, "%s: a range needs from and to", f->key);
+  f->logarithmic = scale == 1;
+  return check_range(r, node, f, (size_t)levels);
+}
+
+static scree_status add_factor(const reader *r, const char *key, const scree_yaml *node) {
+  scree_study *study = r->study;
+  scree_factor f = {
+      .key = scree_arena_text(&study->arena, key), .line = node->line, .column = node->column};
+  if (!f.key) return fail_memory(r);
+  if (!strcmp(key, "seed"))
+    return fail_at(r, node, "seed is no factor: `replicates: N` counts it up");
+  scree_status status = node->kind == SCREE_YAML_SEQUENCE  ? read_levels(r, node, &f)
+                        : node->kind == SCREE_YAML_MAPPING ? read_range(r, node, &f)
+                                                           : fail_at(r, node,
+                                                                     "%s: must be a list of levels "
+                                                                     "or {from: A, to: B}",
+                                                                     key);
+  if (status == SCREE_OK) study->factors[study->factor_count++] = f;
+  return status;
+}
+
+static bool is_range(const scree_yaml *node) {
+  return node->kind == SCREE_YAML_MAPPING &&
+         (scree_yaml_find(node, "from") || scree_yaml_find(node, "to"));
+}
+
+/* A mapping that is no range is a group of keys, as in an experiment. */
+static scree_status read_factors(const reader *r, const scree_yaml *node) {
+  if (node->kind != SCREE_YAML_MAPPING)
+    return fail_at(r, node, "factors: must be `key: [levels]` lines");
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
+    const scree_yaml *item = &node->items[i];
+    if (item->kind != SCREE_YAML_MAPPING || is_range(item)) {
+      status = add_factor(r, item->key, item);
+      continue;
+    }
+    for (size_t k = 0; status == SCREE_OK && k < item->item_count; k++) {
+      char key[128];
+      snprintf(key, sizeof key, "%s.%s", item->key, item->items[k].key);
+      status = add_factor(r, key, &item->items[k]);
+    }
+  }
+  return status;
+}
+
+/* ---- the other keys ---- */
+
+static scree_status read_sample(const reader *r, const scree_yaml *node) {
+  scree_sample_options *o = &r->study->sample;
+  if (node->kind != SCREE_YAML_MAPPING)
+    return fail_at(r, node, "sample: must be {resolution: M, noise: M, seed: N}");
+  for (size_t i = 0; i < node->item_count; i++) {
+    const scree_yaml *item = &node->items[i];
+    scree_status status;
+    if (!strcmp(item->key, "resolution"))
+      status = read_real(r, item, 0.02e-3, 5e-3, &o->resolution);
+    else if (!strcmp(item->key, "noise"))
+      status = read_real(r, item, 0, 1.25e-3, &o->noise);
+    else if (!strcmp(item->key, "seed"))
+      status = read_count(r, item, 0, 1.9e19, &o->seed);
+    else
+      status =
+          fail_at(r, item, "no field '%s' in sample; there are resolution, noise, seed", item->key);
+    if (status != SCREE_OK) return status;
+  }
+  return SCREE_OK;
+}
+
+static scree_status read_analysis(const reader *r, const scree_yaml *node) {
+  static const char *const angles[] = {"sector", "cone", "silhouette"};
+  if (node->kind != SCREE_YAML_MAPPING)
+    return fail_at(r, node, "analysis: must be {angle: WAY, margin_deg: D, confidence: C}");
+  for (size_t i = 0; i < node->item_count; i++) {
+    const scree_yaml *item = &node->items[i];
+    scree_status status;
+    int way = 0;
+    if (!strcmp(item->key, "angle")) {
+      status = read_word(r, item, "sector|cone|silhouette", &way);
+      r->study->analysis_angle = angles[way];
+    } else if (!strcmp(item->key, "margin_deg")) {
+      status = read_real(r, item, 1e-6, 90, &r->study->margin_deg);
+    } else if (!strcmp(item->key, "confidence")) {
+      status = read_real(r, item, 0.5, 0.9999, &r->study->confidence);
+    } else {
+      status = fail_at(
+          r, item, "no field '%s' in analysis; there are angle, margin_deg, confidence", item->key);
+    }
+    if (status != SCREE_OK) return status;
+  }
+  return SCREE_OK;
+}
+
+static scree_status read_unit(const reader *r, const scree_yaml *node) {
+  static const double metres[] = {1, 1e-3, 1e-2, 1e-6, 0.0254};
+  int unit = 0;
+  scree_status status = read_word(r, node, "m|mm|cm|um|inch", &unit);
+  r->study->unit_m = metres[unit];
+  return status;
+}
+
+static scree_status read_plain(const reader *r, const scree_yaml *item) {
+  scree_study *study = r->study;
+  scree_status status;
+  uint64_t count = 0;
+  int word = 0;
+  if (!strcmp(item->key, "name")) {
+    status = need_scalar(r, item);
+    if (status == SCREE_OK && !(study->name = scree_arena_text(&study->arena, item->text)))
+      status = fail_memory(r);
+  } else if (!strcmp(item->key, "seed")) {
+    status = read_count(r, item, 0, 1.8e19, &study->seed);
+  } else if (!strcmp(item->key, "replicates")) {
+    status = read_count(r, item, 1, MOST_REPLICATES, &count);
+    study->replicate_count = (size_t)count;
+  } else if (!strcmp(item->key, "attempts")) {
+    status = read_count(r, item, 1, 1000, &count);
+    study->attempt_limit = (size_t)count;
+  } else if (!strcmp(item->key, "points")) {
+    status = read_count(r, item, 1, most_points, &count);
+    study->wanted_points = (size_t)count;
+  } else if (!strcmp(item->key, "design")) {
+    status = read_word(r, item, "grid|latin|sobol", &word);
+    study->design = (scree_design)word;
+  } else if (!strcmp(item->key, "method")) {
+    status = read_word(r, item, "volume|qecd", &word);
+    study->method = (scree_method)word;
+  } else if (!strcmp(item->key, "unit")) {
+    status = read_unit(r, item);
+  } else if (!strcmp(item->key, "sample")) {
+    status = read_sample(r, item);
+  } else if (!strcmp(item->key, "analysis")) {
+    status = read_analysis(r, item);
+  } else {
+    status =
+        fail_at(r, item,
+                "no field '%s' in a study; there are name, seed, replicates, attempts, shapes, "
+                "unit, sample, method, base, factors, design, points, analysis",
+                item->key);
+  }
+  return status;
+}
+
+static bool is_late(const char *key) {
+  return !strcmp(key, "base") || !strcmp(key, "factors") || !strcmp(key, "shapes");
+}
+
+/* What only the whole can say. */
+static scree_status check_whole(const reader *r, const scree_yaml *root) {
+  scree_study *study = r->study;
+  double points = 1;
+  bool varied = false;
+  for (size_t i = 0; i < study->factor_count; i++) {
+    varied = varied || !strcmp(study->factors[i].key, "shapes");
+    points *= (double)study->factors[i].level_count;
+  }
+  if (varied == (scree_yaml_find(root, "shapes") != NULL))
+    return fail_at(r, root,
+                   varied ? "shapes stands both by itself and as a factor"
+                          : "needs shapes: [FILE or sample:NAME, ...]");
+  if (study->design == SCREE_DESIGN_GRID && study->wanted_points)
+    return fail_at(r, scree_yaml_find(root, "points"),
+                   "points belongs to design latin or sobol; a grid has as many as its levels");
+  if (study->design == SCREE_DESIGN_GRID && points > most_points)
+    return fail_at(r, root, "the grid has %.3g points; at most %g", points, most_points);
+  if (study->design == SCREE_DESIGN_GRID) return SCREE_OK;
+  if (!study->wanted_points)
+    return fail_at(r, scree_yaml_find(root, "design"), "this design needs points: N");
+  if (study->factor_count == 0)
+    return fail_at(r, scree_yaml_find(root, "design"), "this design needs factors");
+  if (study->design == SCREE_DESIGN_SOBOL && study->factor_count > SCREE_SOBOL_DIMENSIONS)
+    return fail_at(r, scree_yaml_find(root, "design"), "sobol takes at most %d factors, not %zu",
+                   SCREE_SOBOL_DIMENSIONS, study->factor_count);
+  return SCREE_OK;
+}
+
+static size_t count_items(const scree_yaml *node) {
+  size_t count = 1;
+  for (size_t i = 0; i < node->item_count; i++) count += count_items(&node->items[i]);
+  return count;
+}
+
+static scree_status read_root(const reader *r, const scree_yaml *root) {
+  scree_study *study = r->study;
+  if (root->kind != SCREE_YAML_MAPPING) return fail_at(r, root, "a study is `key: value` lines");
+  size_t most = count_items(root); /* factors, sets: no more than there are nodes */
+  study->factors = scree_arena_take(&study->arena, most, sizeof *study->factors);
+  study->sets = scree_arena_take(&study->arena, most, sizeof *study->sets);
+  study->shapes = scree_arena_take(&study->arena, MOST_SHAPES, sizeof *study->shapes);
+  if (!study->factors || !study->sets || !study->shapes) return fail_memory(r);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < root->item_count; i++)
+    if (!is_late(root->items[i].key)) status = read_plain(r, &root->items[i]);
+  const scree_yaml *base = scree_yaml_find(root, "base"), *shapes = scree_yaml_find(root, "shapes");
+  const scree_yaml *factors = scree_yaml_find(root, "factors");
+  size_t set;
+  if (status == SCREE_OK && base) status = read_base(r, base);
+  if (status == SCREE_OK && !scree_yaml_find(root, "seed")) study->seed = study->base.seed;
+  if (status == SCREE_OK && shapes) status = read_set(r, shapes, &set);
+  if (status == SCREE_OK && factors) status = read_factors(r, factors);
+  return status == SCREE_OK ? check_whole(r, root) : status;
+}
+
+static scree_status start(scree_study *study, const char *path, scree_error *error) {
+  scree_status status = scree_experiment_preset("paper", &study->base, error);
+  if (status != SCREE_OK) return status;
+  study->path = scree_arena_text(&study->arena, path);
+  const char *slash = strrchr(path, '/');
+  char name[96];
+  snprintf(name, sizeof name, "%s", slash ? slash + 1 : path);
+  char *dot = strrchr(name, '.');
+  if (dot && dot != name) *dot = 0;
+  study->name = scree_arena_text(&study->arena, name);
+  if (!study->path || !study->name) return scree_fail_memory(error, strlen(path), path);
+  study->replicate_count = 10;
+  study->attempt_limit = 5;
+  study->unit_m = 1e-3;
+  study->sample = scree_default_sample_options();
+  study->analysis_angle = "sector";
+  study->margin_deg = 2;
+  study->confidence = 0.95;
+  return SCREE_OK;
+}
+
+static scree_status read_text(scree_study *study, const char *path, scree_error *error) {
+  char *bytes;
+  size_t count;
+  scree_status status = scree_file_read(path, LARGEST_FILE, &bytes, &count, error);
+  if (status != SCREE_OK) return status;
+  char *text = scree_arena_take(&study->arena, count + 1, 1);
+  if (text) memcpy(text, bytes, count + 1);
+  scree_free(bytes);
+  if (!text) return scree_fail_memory(error, count, path);
+  study->text = text;
+  study->text_size = count;
+  return SCREE_OK;
+}
+
+scree_status scree_study_read(const char *path, scree_study **study, scree_error *error) {
+  scree_study *made = scree_alloc_zero(1, sizeof *made);
+  if (!made) return scree_fail_memory(error, sizeof *made, "a study");
+  scree_yaml root = {0};
+  reader r = {made, path, error};
+  scree_status status = start(made, path, error);
+  if (status == SCREE_OK) status = read_text(made, path, error);
+  if (status == SCREE_OK)
+    status = scree_yaml_parse(made->text, made->text_size, path, &root, error);
+  if (status == SCREE_OK) status = read_root(&r, &root);
+  if (status == SCREE_OK) status = scree_study_make_points(made, error);
+  scree_yaml_free(&root);
+  if (status == SCREE_OK)
+    *study = made;
+  else
+    scree_study_free(made);
+  return status;
+}
+
+void scree_study_free(scree_study *study) {
+  if (!study) return;
+  scree_experiment_free(&study->base);
+  scree_free(study->folder);
+  scree_free(study->keys);
+  scree_arena_free(&study->arena);
+  scree_free(study);
+}

@@ -1,0 +1,26 @@
+/* The result of one run as a file: what the database is made from. */
+#ifndef SCREE_STUDY_RECORD_H
+#define SCREE_STUDY_RECORD_H
+
+#include "study/study.h"
+
+typedef struct scree_record {
+  bool failed;
+  char reason[512];
+  char worker[160], machine[160], version[32];
+  double started, ended; /* s since 1970 */
+  double triangle_count; /* mean over the particles; 0 for spheres */
+  scree_run_costs costs;
+  scree_run_result result;
+  char hash[40]; /* of the final state of the world */
+  scree_run_point *series;
+  size_t series_count;
+} scree_record;
+
+/* FOLDER/results/KEY.yaml, which is JSON too. */
+scree_status scree_record_write(const scree_record *record, const char *path, scree_error *error);
+/* SCREE_BAD_FILE for what is no record. Free with scree_record_free. */
+scree_status scree_record_read(const char *path, scree_record *record, scree_error *error);
+void scree_record_free(scree_record *record);
+
+#endif

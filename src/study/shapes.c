@@ -1,0 +1,378 @@
+/* From words to particles. A shape is read, checked, repaired and decimated once for all runs; its
+ * levels go to files which every worker, the one that made them too, reads back: all have the same
+ * bits. One process makes a shape, under a lease; the others wait for it. */
+#include "base/file.h"
+#include "base/progress.h"
+#include "pile/yaml.h"
+#include "study/lease.h"
+#include "study/study.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+
+static const double pi = 3.14159265358979324;
+
+static bool exists(const char *path) {
+  struct stat info;
+  return path && stat(path, &info) == 0;
+}
+
+/* ---- what is known ---- */
+
+static void format_checksum(scree_checksum sum, char text[40]) {
+  snprintf(text, 40, "%016llx%016llx", (unsigned long long)sum.high, (unsigned long long)sum.low);
+}
+
+static bool number_of(const scree_yaml *root, const char *key, double *value) {
+  const scree_yaml *node = scree_yaml_find(root, key);
+  char *end;
+  if (!node || node->kind != SCREE_YAML_SCALAR) return false;
+  *value = strtod(node->text, &end);
+  return *node->text && !*end;
+}
+
+static bool take_facts(const scree_yaml *root, scree_study_shape *shape) {
+  const scree_yaml *word = scree_yaml_find(root, "source"),
+                   *sum = scree_yaml_find(root, "checksum");
+  double count;
+  char high[20];
+  bool good = word && sum && word->kind == SCREE_YAML_SCALAR && sum->kind == SCREE_YAML_SCALAR &&
+              strlen(sum->text) == 32 && number_of(root, "triangle_count", &count) &&
+              number_of(root, "area", &shape->area) && number_of(root, "volume", &shape->volume) &&
+              number_of(root, "paper_rp", &shape->paper_rp) &&
+              number_of(root, "robust_rp", &shape->robust_rp);
+  if (!good) return false;
+  shape->triangle_count = (uint64_t)count;
+  snprintf(high, sizeof high, "%.16s", sum->text);
+  shape->checksum = (scree_checksum){strtoull(high, NULL, 16), strtoull(sum->text + 16, NULL, 16)};
+  return true;
+}
+
+/* Reads NAME.yaml where there is one. */
+static scree_status know_shape(const scree_study *study, scree_study_shape *shape,
+                               scree_error *error) {
+  char *path = scree_study_path(study, "shapes", shape->name, ".yaml");
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  scree_status status = SCREE_OK;
+  if (!shape->known && exists(path)) {
+    scree_yaml root;
+    status = scree_yaml_read(path, &root, error);
+    if (status == SCREE_OK) {
+      shape->known = root.kind == SCREE_YAML_MAPPING && take_facts(&root, shape);
+      const scree_yaml *word = shape->known ? scree_yaml_find(&root, "source") : NULL;
+      if (!word)
+        status = scree_fail(error, SCREE_BAD_FILE,
+                            "%s: is damaged; delete it and its shape is made again", path);
+      else if (strcmp(word->text, shape->word) != 0)
+        status =
+            scree_fail(error, SCREE_BAD_ARGUMENT, "%s: is of '%s', not of '%s': use another folder",
+                       path, word->text, shape->word);
+      scree_yaml_free(&root);
+    }
+  }
+  scree_free(path);
+  return status;
+}
+
+scree_status scree_study_know_shapes(scree_study *study, scree_error *error) {
+  bool all = true;
+  for (size_t i = 0; i < study->shape_count; i++) {
+    scree_status status = know_shape(study, &study->shapes[i], error);
+    if (status != SCREE_OK) return status;
+    all = all && study->shapes[i].known;
+  }
+  return all ? scree_study_make_keys(study, error) : SCREE_OK;
+}
+
+/* ---- levels ---- */
+
+/* The file of a shape at an Rp text; NULL when memory is out. */
+static char *level_path(const scree_study *study, const scree_study_shape *shape, const char *rp) {
+  char ending[64];
+  if (!strcmp(rp, "scan"))
+    snprintf(ending, sizeof ending, "-scan.ply");
+  else
+    snprintf(ending, sizeof ending, "-rp%.9g.ply", strtod(rp, NULL));
+  return scree_study_path(study, "shapes", shape->name, ending);
+}
+
+static bool uses(const scree_study *study, size_t point, size_t shape) {
+  const scree_shape_set *set = &study->sets[study->points[point].set];
+  for (size_t i = 0; i < set->count; i++)
+    if (set->shapes[i] == shape) return true;
+  return false;
+}
+
+/* Whether everything that any run wants of the shape is there. */
+static scree_status is_complete(const scree_study *study, size_t shape, bool *complete,
+                                scree_error *error) {
+  *complete = study->shapes[shape].known;
+  for (size_t p = 0; *complete && p < study->point_count; p++) {
+    if (!uses(study, p, shape) || !strcmp(study->points[p].rp, "spheres")) continue;
+    char *path = level_path(study, &study->shapes[shape], study->points[p].rp);
+    if (!path) return scree_fail_memory(error, 0, "a path");
+    *complete = exists(path);
+    scree_free(path);
+  }
+  return SCREE_OK;
+}
+
+/* ---- making a shape ---- */
+
+/* Progress that also keeps the lease. */
+typedef struct keeper {
+  const scree_progress *progress;
+  scree_lease *lease;
+  double interval;
+  const char *name;
+} keeper;
+
+static bool keep(void *context, const char *phase, double fraction) {
+  keeper *k = context;
+  bool kept;
+  char text[160];
+  if (scree_now() - k->lease->last_renewal > k->interval)
+    scree_lease_renew(k->lease, "making a shape", &kept, NULL);
+  snprintf(text, sizeof text, "%s: %s", k->name, phase);
+  return !k->progress || !k->progress->report ||
+         k->progress->report(k->progress->context, text, fraction);
+}
+
+static scree_status read_sample(const scree_study *study, const scree_study_shape *shape,
+                                const scree_progress *progress, scree_mesh *mesh,
+                                scree_checksum *sum, scree_error *error) {
+  char text[256];
+  int size =
+      snprintf(text, sizeof text, "%s %.17g %.17g %llu", shape->word, study->sample.resolution,
+               study->sample.noise, (unsigned long long)study->sample.seed);
+  *sum = scree_checksum_of(text, (size_t)size);
+  return scree_sample_make(shape->word + 7, &study->sample, progress, mesh, error);
+}
+
+static scree_status read_scan(const scree_study *study, const scree_study_shape *shape,
+                              const scree_progress *progress, scree_mesh *mesh, scree_checksum *sum,
+                              scree_error *error) {
+  scree_read_options read = scree_default_read_options();
+  scree_repair_options repair = scree_default_repair_options();
+  scree_repair_report report;
+  scree_scan scan;
+  read.unit_m = study->unit_m;
+  scree_status status = scree_scan_read(shape->path, &read, &scan, error);
+  if (status != SCREE_OK) return status;
+  *sum = scan.checksum;
+  status = scree_mesh_prepare(&scan.mesh, &repair, progress, mesh, &report, error);
+  scree_scan_free(&scan);
+  return status;
+}
+
+static scree_status write_level(const scree_study *study, const scree_study_shape *shape,
+                                const char *rp, const scree_curve *curve, scree_error *error) {
+  scree_mesh mesh;
+  char *path = level_path(study, shape, rp);
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  scree_status status = SCREE_OK;
+  if (!exists(path)) {
+    scree_level first;
+    scree_curve_level(curve, 0, &first);
+    size_t level = 0;
+    if (strcmp(rp, "scan") != 0)
+      level = scree_curve_find(curve, scree_choice_target(strtod(rp, NULL), first.triangle_count));
+    status = scree_curve_mesh(curve, level, &mesh, error);
+    if (status == SCREE_OK) {
+      scree_write_options o = scree_default_write_options();
+      o.unit_m = 1;
+      o.overwrite = true;
+      status = scree_mesh_write(&mesh, path, &o, error);
+      scree_mesh_free(&mesh);
+    }
+  }
+  scree_free(path);
+  return status;
+}
+
+static scree_status write_facts(const scree_study *study, const scree_study_shape *shape,
+                                scree_error *error) {
+  char *path = scree_study_path(study, "shapes", shape->name, ".yaml"), sum[40];
+  scree_output output;
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  scree_status status = scree_output_open(path, true, &output, error);
+  scree_free(path);
+  if (status != SCREE_OK) return status;
+  format_checksum(shape->checksum, sum);
+  fputs("source: '", output.stream);
+  for (const char *c = shape->word; *c; c++) fprintf(output.stream, *c == '\'' ? "''" : "%c", *c);
+  fprintf(output.stream,
+          "'\nchecksum: '%s'\ntriangle_count: %llu\narea: %.17g\nvolume: %.17g\npaper_rp: "
+          "%.17g\nrobust_rp: %.17g\n",
+          sum, (unsigned long long)shape->triangle_count, shape->area, shape->volume,
+          shape->paper_rp, shape->robust_rp);
+  return scree_output_commit(&output, error);
+}
+
+static scree_status decimate(const scree_study *study, size_t index, const scree_mesh *mesh,
+                             const scree_progress *progress, scree_study_shape *made,
+                             scree_error *error) {
+  scree_simplify_options simplify = scree_default_simplify_options();
+  scree_curve *curve;
+  scree_choice choice = {0};
+  simplify.method = study->method;
+  scree_status status = scree_curve_build(mesh, &simplify, progress, &curve, error);
+  if (status != SCREE_OK) return status;
+  status = scree_choose(curve, mesh, NULL, progress, &choice, error);
+  if (status == SCREE_OK) {
+    made->triangle_count = choice.triangle_count;
+    made->area = choice.area;
+    made->volume = choice.volume;
+    made->paper_rp = choice.paper.rp;
+    made->robust_rp = choice.robust.rp;
+    if (!(made->volume > 0))
+      status = scree_fail(error, SCREE_BAD_MESH, "%s: the volume is %g m3: not an outward surface",
+                          made->word, made->volume);
+  }
+  for (size_t p = 0; status == SCREE_OK && p < study->point_count; p++)
+    if (uses(study, p, index) && strcmp(study->points[p].rp, "spheres") != 0)
+      status = write_level(study, made, study->points[p].rp, curve, error);
+  scree_choice_free(&choice);
+  scree_curve_free(curve);
+  return status;
+}
+
+/* Reads, decimates, writes; the facts last, for they say that all is there. */
+static scree_status make_shape(const scree_study *study, size_t index,
+                               const scree_progress *progress, scree_error *error) {
+  scree_study_shape made = study->shapes[index];
+  scree_checksum sum;
+  scree_mesh mesh;
+  scree_status status = made.path ? read_scan(study, &made, progress, &mesh, &sum, error)
+                                  : read_sample(study, &made, progress, &mesh, &sum, error);
+  if (status != SCREE_OK) {
+    if (error && status != SCREE_CANCELLED && !strstr(error->message, made.word)) {
+      scree_error inner = *error;
+      return scree_fail(error, status, "%.200s: %.700s", made.word, inner.message);
+    }
+    return status;
+  }
+  if (made.known && (made.checksum.high != sum.high || made.checksum.low != sum.low))
+    status = scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "%s: has changed since the study began: use another folder", made.word);
+  made.checksum = sum;
+  if (status == SCREE_OK) status = decimate(study, index, &mesh, progress, &made, error);
+  scree_mesh_free(&mesh);
+  return status == SCREE_OK ? write_facts(study, &made, error) : status;
+}
+
+static scree_status pause_for(const scree_study_options *options, const scree_progress *progress,
+                              const char *what, scree_error *error) {
+  struct timespec pause = {(time_t)options->poll_s,
+                           (long)(1e9 * (options->poll_s - floor(options->poll_s)))};
+  nanosleep(&pause, NULL);
+  if (progress && progress->report && !progress->report(progress->context, what, 0))
+    return scree_fail(error, SCREE_CANCELLED, "cancelled");
+  return SCREE_OK;
+}
+
+/* Makes the shape, or waits until somebody else has. */
+static scree_status prepare_shape(scree_study *study, size_t index,
+                                  const scree_study_options *options,
+                                  const scree_progress *progress, scree_error *error) {
+  scree_study_shape *shape = &study->shapes[index];
+  char name[160], worker[SCREE_LEASE_NAME];
+  snprintf(name, sizeof name, "shape-%s", shape->name);
+  scree_lease_default_worker(worker);
+  char *folder = scree_study_path(study, "leases", "", "");
+  if (!folder) return scree_fail_memory(error, 0, "a path");
+  scree_status status = SCREE_OK;
+  for (bool complete = false; status == SCREE_OK;) {
+    bool taken;
+    scree_lease lease;
+    status = know_shape(study, shape, error);
+    if (status == SCREE_OK) status = is_complete(study, index, &complete, error);
+    if (status != SCREE_OK || complete) break;
+    status = scree_lease_take(folder, name, options->lease_s, worker, &taken, &lease, error);
+    if (status != SCREE_OK) break;
+    if (!taken) {
+      status = pause_for(options, progress, "another process makes the shapes", error);
+      continue;
+    }
+    keeper k = {progress, &lease, fmin(5, 0.2 * options->lease_s), shape->name};
+    scree_progress keeping = {keep, &k, progress ? progress->interval : 0.2};
+    status = make_shape(study, index, &keeping, error);
+    scree_lease_release(&lease);
+  }
+  scree_free(folder);
+  return status;
+}
+
+/* A file that is not the one the study began with must not be taken for it. */
+static scree_status check_unchanged(const scree_study_shape *shape, scree_error *error) {
+  char *bytes;
+  size_t count;
+  if (!shape->path || !exists(shape->path)) return SCREE_OK; /* the levels are all that is needed */
+  scree_status status = scree_file_read(shape->path, 0, &bytes, &count, error);
+  if (status != SCREE_OK) return status;
+  scree_checksum sum = scree_checksum_of(bytes, count);
+  scree_free(bytes);
+  if (sum.high == shape->checksum.high && sum.low == shape->checksum.low) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT,
+                    "%s: has changed since the study began: use another folder", shape->path);
+}
+
+scree_status scree_study_prepare(scree_study *study, const scree_study_options *options,
+                                 const scree_progress *progress, scree_error *error) {
+  for (size_t i = 0; i < study->shape_count; i++) {
+    scree_status status = know_shape(study, &study->shapes[i], error);
+    if (status == SCREE_OK && study->shapes[i].known)
+      status = check_unchanged(&study->shapes[i], error);
+    if (status == SCREE_OK) status = prepare_shape(study, i, options, progress, error);
+    if (status != SCREE_OK) return status;
+  }
+  return scree_study_make_keys(study, error);
+}
+
+/* ---- particles ---- */
+
+static scree_status make_particle(const scree_study *study, const scree_study_shape *shape,
+                                  const char *rp, scree_particle **particle, scree_error *error) {
+  if (!strcmp(rp, "spheres"))
+    return scree_particle_sphere(cbrt(0.75 * shape->volume / pi), particle, error);
+  scree_read_options read = scree_default_read_options();
+  scree_scan scan;
+  char *path = level_path(study, shape, rp);
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  read.unit_m = 1;
+  scree_status status = scree_scan_read(path, &read, &scan, error);
+  scree_free(path);
+  if (status != SCREE_OK) return status;
+  status = scree_particle_from_mesh(&scan.mesh, NULL, particle, error);
+  scree_scan_free(&scan);
+  if (status == SCREE_OK || !error) return status;
+  scree_error inner = *error;
+  return scree_fail(error, status, "%s at rp %s: %.700s", shape->name, rp, inner.message);
+}
+
+scree_status scree_study_make_shapes(const scree_study *study, size_t point, int mass_rule,
+                                     scree_run_shape *shapes, double *triangle_count,
+                                     scree_error *error) {
+  const scree_shape_set *set = &study->sets[study->points[point].set];
+  *triangle_count = 0;
+  for (size_t i = 0; i < set->count; i++) {
+    const scree_study_shape *shape = &study->shapes[set->shapes[i]];
+    scree_particle *particle;
+    scree_particle_measures m;
+    scree_status status = make_particle(study, shape, study->points[point].rp, &particle, error);
+    if (status != SCREE_OK) {
+      while (i-- > 0) scree_particle_free(shapes[i].particle);
+      return status;
+    }
+    scree_particle_measure(particle, &m);
+    *triangle_count += (double)m.triangle_count / (double)set->count;
+    shapes[i] = (scree_run_shape){
+        .particle = particle,
+        .density_factor = mass_rule == SCREE_MASS_FROM_SCAN ? shape->volume / m.volume : 1,
+        .name = shape->name};
+  }
+  return SCREE_OK;
+}

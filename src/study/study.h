@@ -1,0 +1,112 @@
+/* A study: what its file says, the points and runs that follow from it, and its folder. */
+#ifndef SCREE_STUDY_STUDY_H
+#define SCREE_STUDY_STUDY_H
+
+#include "base/arena.h"
+
+enum { SCREE_RUN_KEY_BYTES = 24 };
+
+typedef struct scree_factor {
+  const char *key; /* of the experiment, or "rp", "shapes", "contact.friction" */
+  size_t line, column;
+  bool range, logarithmic; /* from `from` to `to`; else levels */
+  double from, to;
+  const char **levels; /* texts as in the file; of "shapes" the sets' labels */
+  size_t *sets;        /* of "shapes": index of each level's set; else NULL */
+  size_t level_count;
+} scree_factor;
+
+/* A shape by its word in the file, and what scree_study_prepare found. */
+typedef struct scree_study_shape {
+  const char *word;        /* path or sample:NAME */
+  const char *path;        /* where the file is: relative to the study's file; NULL for samples */
+  const char *name;        /* short and unique; also of its files */
+  bool known;              /* what follows has been read from the folder */
+  scree_checksum checksum; /* of the file; of a sample: of its name and options */
+  uint64_t triangle_count;
+  double area, volume; /* m2, m3 */
+  double paper_rp, robust_rp;
+} scree_study_shape;
+
+/* Shapes that a run mixes. */
+typedef struct scree_shape_set {
+  const char *label;
+  size_t *shapes;
+  size_t count;
+} scree_shape_set;
+
+typedef struct scree_study_point {
+  const char **values; /* a text per factor */
+  size_t set;          /* of shapes */
+  const char *rp;      /* "spheres", "scan" or a number */
+  const char *label;   /* the factors' values; "" where there are no factors */
+} scree_study_point;
+
+typedef enum scree_design {
+  SCREE_DESIGN_GRID,
+  SCREE_DESIGN_LATIN,
+  SCREE_DESIGN_SOBOL
+} scree_design;
+
+struct scree_study {
+  scree_arena arena; /* all texts and arrays of the plan */
+  const char *path;  /* of its file, for errors */
+  const char *text;  /* the file's */
+  size_t text_size;
+  char *folder; /* NULL before scree_study_open */
+  const char *name;
+  scree_experiment base; /* preset owned */
+  uint64_t seed;
+  size_t replicate_count, attempt_limit;
+  scree_method method;
+  double unit_m;
+  scree_sample_options sample;
+  scree_design design;
+  size_t wanted_points;       /* of a design that is no grid */
+  const char *analysis_angle; /* "sector", "cone" or "silhouette" */
+  double margin_deg, confidence;
+  scree_study_shape *shapes;
+  size_t shape_count;
+  scree_shape_set *sets;
+  size_t set_count;
+  scree_factor *factors;
+  size_t factor_count;
+  scree_study_point *points;
+  size_t point_count;
+  char (*keys)[SCREE_RUN_KEY_BYTES]; /* of every run; NULL before all shapes are known */
+};
+
+static inline size_t scree_study_run_point(const scree_study *study, size_t run) {
+  return run % study->point_count;
+}
+static inline size_t scree_study_run_replicate(const scree_study *study, size_t run) {
+  return run / study->point_count;
+}
+
+/* Copies into the arena; NULL when memory is out. */
+const char *scree_arena_text(scree_arena *arena, const char *text);
+
+/* points.c: the design's points with their labels; all values have been checked. */
+scree_status scree_study_make_points(scree_study *study, scree_error *error);
+/* Sets a factor's key, which may be one of ours, in an experiment. */
+scree_status scree_study_set(scree_experiment *experiment, const char *key, const char *value,
+                             scree_error *error);
+/* The experiment of a point with the seed of a replicate. Free with scree_experiment_free. */
+scree_status scree_study_experiment(const scree_study *study, size_t run,
+                                    scree_experiment *experiment, scree_error *error);
+/* Names every run by its content; all shapes must be known. */
+scree_status scree_study_make_keys(scree_study *study, scree_error *error);
+
+/* shapes.c: reads what the folder has on the shapes; where it has all, names the runs too. */
+scree_status scree_study_know_shapes(scree_study *study, scree_error *error);
+/* The particles of a point's shapes with their density factors, in the order of its set; free each
+ * particle. triangle_count: mean over the shapes. */
+scree_status scree_study_make_shapes(const scree_study *study, size_t point, int mass_rule,
+                                     scree_run_shape *shapes, double *triangle_count,
+                                     scree_error *error);
+
+/* folder.c: FOLDER/KIND/NAME ENDING, to be freed with scree_free; NULL when memory is out. */
+char *scree_study_path(const scree_study *study, const char *kind, const char *name,
+                       const char *ending);
+
+#endif

@@ -1,0 +1,348 @@
+/* Working on runs. A run is taken by its lease, worked on from its last checkpoint, and ends with a
+ * record. What is the run's fault (its shapes, its numbers, a run that diverges) is recorded and
+ * the next run taken; what is the machine's (no memory, no disk) ends the work and leaves the run
+ * to others. A run in which several workers died one after the other is a failed one: whatever
+ * kills them is in it. */
+#include "base/file.h"
+#include "base/progress.h"
+#include "study/lease.h"
+#include "study/record.h"
+
+#include <errno.h>
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MOST_SHAPES = 60, RETRIES_KEPT = 1000 };
+
+typedef struct work {
+  scree_study *study;
+  const scree_study_options *options;
+  const scree_progress *progress;
+  char worker[SCREE_LEASE_NAME], machine[160];
+  char *leases; /* folder */
+  size_t first; /* run to look at first: all before it have ended */
+  /* the run at hand */
+  size_t run;
+  scree_lease lease;
+  bool lost;      /* somebody else has it now */
+  bool cancelled; /* from outside */
+  scree_status renewal;
+  scree_error renewal_error;
+} work;
+
+static bool exists(const char *path) {
+  struct stat info;
+  return stat(path, &info) == 0;
+}
+
+static double now_since_1970(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_REALTIME, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static void describe_machine(char machine[160]) {
+  char host[64] = "unknown", line[160];
+  if (gethostname(host, sizeof host) != 0) snprintf(host, sizeof host, "unknown");
+  host[sizeof host - 1] = 0;
+  snprintf(machine, 160, "%s", host);
+  FILE *stream = fopen("/proc/cpuinfo", "r");
+  while (stream && fgets(line, sizeof line, stream)) {
+    if (strncmp(line, "model name", 10) != 0) continue;
+    const char *name = strchr(line, ':');
+    line[strcspn(line, "\n")] = 0;
+    if (name) snprintf(machine, 160, "%s,%.80s", host, name + 1);
+    break;
+  }
+  if (stream) fclose(stream);
+}
+
+static char *run_file(const work *w, const char *kind, const char *ending, scree_error *error) {
+  char *path = scree_study_path(w->study, kind, w->study->keys[w->run], ending);
+  if (!path) scree_fail_memory(error, 0, "a path");
+  return path;
+}
+
+/* Whether the run has a record. One that cannot be read is put aside, and the run waits again. */
+static scree_status has_ended(const work *w, bool *ended, scree_error *error) {
+  char *path = run_file(w, "results", ".yaml", error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  *ended = exists(path);
+  scree_free(path);
+  return SCREE_OK;
+}
+
+/* ---- one run ---- */
+
+static bool watch(void *context, const scree_run_state *state) {
+  work *w = context;
+  char note[SCREE_LEASE_NOTE], phase[200];
+  double interval = fmin(5, 0.2 * w->options->lease_s);
+  if (scree_now() - w->lease.last_renewal > interval) {
+    bool kept = true;
+    snprintf(note, sizeof note, "running %.4f %s", state->fraction,
+             scree_phase_name(state->now.phase));
+    w->renewal = scree_lease_renew(&w->lease, note, &kept, &w->renewal_error);
+    w->lost = !kept;
+  }
+  snprintf(phase, sizeof phase, "run %zu: %s", w->run + 1, scree_phase_name(state->now.phase));
+  if (w->progress && w->progress->report)
+    w->cancelled = !w->progress->report(w->progress->context, phase, state->fraction);
+  return !w->cancelled && !w->lost && w->renewal == SCREE_OK;
+}
+
+static scree_status fill_record(scree_run *run, scree_record *record, scree_error *error) {
+  size_t count;
+  const scree_run_point *series = scree_run_series(run, &count);
+  scree_checksum hash = scree_world_hash(scree_run_world(run));
+  scree_run_get_costs(run, &record->costs);
+  snprintf(record->hash, sizeof record->hash, "%016llx%016llx", (unsigned long long)hash.high,
+           (unsigned long long)hash.low);
+  record->series = scree_alloc(count, sizeof *record->series);
+  if (!record->series) return scree_fail_memory(error, count * sizeof *series, "a series");
+  if (count) memcpy(record->series, series, count * sizeof *series);
+  record->series_count = count;
+  return scree_run_measure(run, &record->result, error);
+}
+
+/* Simulates; a checkpoint that cannot be read is thrown away once. */
+static scree_status simulate(work *w, const scree_experiment *e, const scree_run_shape *shapes,
+                             scree_record *record, scree_error *error) {
+  char *folder = run_file(w, "runs", "", error);
+  if (!folder) return SCREE_OUT_OF_MEMORY;
+  scree_run *run = NULL;
+  scree_run_job job = {
+      .experiment = e,
+      .shapes = shapes,
+      .shape_count =
+          w->study->sets[w->study->points[scree_study_run_point(w->study, w->run)].set].count,
+      .folder = folder,
+      .resume = true,
+      .watch = watch,
+      .context = w};
+  scree_error own;
+  scree_status status = scree_run_complete(&job, &run, &own);
+  if (status == SCREE_BAD_FILE) {
+    job.resume = false;
+    job.overwrite = true;
+    status = scree_run_complete(&job, &run, &own);
+  }
+  if (status == SCREE_OK)
+    status = fill_record(run, record, error);
+  else if (error)
+    *error = own;
+  scree_run_free(run);
+  scree_free(folder);
+  return status;
+}
+
+static scree_status make_and_simulate(work *w, scree_record *record, scree_error *error) {
+  scree_run_shape shapes[MOST_SHAPES];
+  scree_experiment e;
+  size_t point = scree_study_run_point(w->study, w->run);
+  size_t count = w->study->sets[w->study->points[point].set].count;
+  scree_status status = scree_study_experiment(w->study, w->run, &e, error);
+  if (status != SCREE_OK) return status;
+  status =
+      scree_study_make_shapes(w->study, point, e.mass_rule, shapes, &record->triangle_count, error);
+  if (status == SCREE_OK) {
+    status = simulate(w, &e, shapes, record, error);
+    for (size_t i = 0; i < count; i++) scree_particle_free(shapes[i].particle);
+  }
+  scree_experiment_free(&e);
+  return status;
+}
+
+/* What says that another run would fare no better here. */
+static bool is_machines_fault(scree_status status) {
+  return status == SCREE_IO || status == SCREE_OUT_OF_MEMORY || status == SCREE_CANCELLED;
+}
+
+static scree_status write_record(const work *w, const scree_record *record, scree_error *error) {
+  char *path = run_file(w, "results", ".yaml", error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  scree_status status = scree_record_write(record, path, error);
+  scree_free(path);
+  char *checkpoint = status == SCREE_OK ? run_file(w, "runs", "/checkpoint.scree", NULL) : NULL;
+  if (checkpoint) unlink(checkpoint); /* the last frame stays */
+  scree_free(checkpoint);
+  return status;
+}
+
+static void record_failure(scree_record *record, const char *reason) {
+  scree_record_free(record);
+  record->failed = true;
+  record->result.repose = (scree_repose){.sector_deg = NAN,
+                                         .sector_sd_deg = NAN,
+                                         .cone_deg = NAN,
+                                         .silhouette_deg = NAN,
+                                         .silhouette_sd_deg = NAN};
+  snprintf(record->reason, sizeof record->reason, "%.500s", reason);
+}
+
+/* Works on w->run, whose lease is ours. */
+static scree_status do_run(work *w, scree_error *error) {
+  scree_record record = {.started = now_since_1970()};
+  scree_error reason = {0};
+  char last[SCREE_LEASE_NAME] = "", name[64];
+  snprintf(record.worker, sizeof record.worker, "%s", w->worker);
+  snprintf(record.machine, sizeof record.machine, "%s", w->machine);
+  snprintf(record.version, sizeof record.version, "%s", scree_version());
+  snprintf(name, sizeof name, "run-%s", w->study->keys[w->run]);
+  w->lost = w->cancelled = false;
+  w->renewal = SCREE_OK;
+  scree_status status = SCREE_LIMIT;
+  size_t deaths = scree_lease_deaths(w->leases, name, last);
+  if (deaths >= w->study->attempt_limit)
+    scree_fail(&reason, status, "%zu workers died in it, the last one was %s", deaths, last);
+  else
+    status = make_and_simulate(w, &record, &reason);
+  record.ended = now_since_1970();
+  if (w->lost || is_machines_fault(status)) {
+    scree_record_free(&record);
+    if (w->lost) return SCREE_OK; /* whoever has it now goes on */
+    if (w->renewal != SCREE_OK) reason = w->renewal_error;
+    if (error) *error = reason;
+    return w->renewal != SCREE_OK ? w->renewal : status;
+  }
+  if (status != SCREE_OK) record_failure(&record, reason.message);
+  status = write_record(w, &record, error);
+  scree_record_free(&record);
+  if (status == SCREE_OK) scree_lease_forget_deaths(w->leases, name);
+  return status;
+}
+
+/* ---- many runs ---- */
+
+/* Takes the first run that waits; *taken false where all have ended or are in good hands; *open
+ * counts those that have not ended. */
+static scree_status take_run(work *w, bool *taken, size_t *open, scree_error *error) {
+  size_t count = scree_study_run_count(w->study);
+  *taken = false;
+  *open = 0;
+  for (size_t i = w->first; i < count && !*taken; i++) {
+    bool ended;
+    char name[64];
+    w->run = i;
+    scree_status status = has_ended(w, &ended, error);
+    if (status != SCREE_OK) return status;
+    if (ended && *open == 0) w->first = i + 1;
+    if (ended) continue;
+    ++*open;
+    snprintf(name, sizeof name, "run-%s", w->study->keys[i]);
+    status =
+        scree_lease_take(w->leases, name, w->options->lease_s, w->worker, taken, &w->lease, error);
+    if (status != SCREE_OK) return status;
+    if (!*taken) continue;
+    /* it may have ended between the look and the lease */
+    status = has_ended(w, &ended, error);
+    if (status != SCREE_OK || ended) {
+      scree_lease_release(&w->lease);
+      *taken = false;
+    }
+    if (status != SCREE_OK) return status;
+  }
+  return SCREE_OK;
+}
+
+static scree_status pause_work(const work *w, scree_error *error) {
+  double whole = floor(w->options->poll_s);
+  struct timespec pause = {(time_t)whole, (long)(1e9 * (w->options->poll_s - whole))};
+  nanosleep(&pause, NULL);
+  const scree_progress *p = w->progress;
+  if (p && p->report && !p->report(p->context, "others work on what is left", 0))
+    return scree_fail(error, SCREE_CANCELLED, "cancelled");
+  return SCREE_OK;
+}
+
+/* Records of failures are moved aside: KEY.failed-N. */
+static scree_status reopen_failed(work *w, scree_error *error) {
+  for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
+    char *path = run_file(w, "results", ".yaml", error);
+    if (!path) return SCREE_OUT_OF_MEMORY;
+    scree_record record;
+    bool failed = false;
+    if (exists(path) && scree_record_read(path, &record, NULL) == SCREE_OK) {
+      failed = record.failed;
+      scree_record_free(&record);
+    }
+    for (int n = 1; failed && n < RETRIES_KEPT; n++) {
+      char ending[32];
+      snprintf(ending, sizeof ending, ".failed-%d", n);
+      char *aside = run_file(w, "results", ending, error);
+      if (!aside) {
+        scree_free(path);
+        return SCREE_OUT_OF_MEMORY;
+      }
+      bool there = exists(aside);
+      if (!there) rename(path, aside);
+      scree_free(aside);
+      if (!there) break;
+    }
+    scree_free(path);
+  }
+  return SCREE_OK;
+}
+
+/* A record that cannot be read is no result: the run waits again. */
+static scree_status put_broken_aside(work *w, scree_error *error) {
+  for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
+    char *path = run_file(w, "results", ".yaml", error);
+    char *aside = path ? run_file(w, "results", ".broken", error) : NULL;
+    if (aside && exists(path)) {
+      scree_record record;
+      scree_status status = scree_record_read(path, &record, NULL);
+      if (status == SCREE_OK) scree_record_free(&record);
+      if (status == SCREE_BAD_FILE) rename(path, aside);
+    }
+    bool good = aside != NULL;
+    scree_free(path);
+    scree_free(aside);
+    if (!good) return SCREE_OUT_OF_MEMORY;
+  }
+  return SCREE_OK;
+}
+
+static scree_status work_on(work *w, size_t *completed, scree_error *error) {
+  for (;;) {
+    bool taken;
+    size_t open;
+    if (w->options->run_limit && *completed >= w->options->run_limit) return SCREE_OK;
+    scree_status status = take_run(w, &taken, &open, error);
+    if (status != SCREE_OK) return status;
+    if (taken) {
+      status = do_run(w, error);
+      scree_lease_release(&w->lease);
+      if (status == SCREE_OK) ++*completed;
+    } else {
+      if (open == 0 || !w->options->wait) return SCREE_OK;
+      status = pause_work(w, error);
+    }
+    if (status != SCREE_OK) return status;
+  }
+}
+
+scree_status scree_study_work(scree_study *study, const scree_study_options *options,
+                              const scree_progress *progress, size_t *completed,
+                              scree_error *error) {
+  work w = {.study = study, .options = options, .progress = progress};
+  size_t done = 0;
+  if (!study->keys)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "a study must be prepared before work on it");
+  if (options->worker)
+    snprintf(w.worker, sizeof w.worker, "%s", options->worker);
+  else
+    scree_lease_default_worker(w.worker);
+  describe_machine(w.machine);
+  w.leases = scree_study_path(study, "leases", "", "");
+  if (!w.leases) return scree_fail_memory(error, 0, "a path");
+  scree_status status = put_broken_aside(&w, error);
+  if (status == SCREE_OK && options->retry_failed) status = reopen_failed(&w, error);
+  if (status == SCREE_OK) status = work_on(&w, &done, error);
+  scree_free(w.leases);
+  if (completed) *completed = done;
+  return status;
+}
