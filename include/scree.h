@@ -1988,13 +1988,12 @@ SCREE_API scree_status scree_study_get_run(const scree_study *study, size_t inde
 /* How this process takes part. Any number of processes on any machines that share the folder may
  * work on it at the same time; none of them is special, and any may be killed. */
 typedef struct scree_study_options {
-  double lease_s; /* a run whose worker has given no sign of life for so long is taken over;
-                     default 300. On the same machine a dead process is seen at once. */
-  double poll_s;  /* pause before looking again where others hold all that is left; default 1 */
-  bool wait;      /* stay until every run has ended, to take over what others leave; default true:
-                     else return when nothing is to be taken */
-  bool retry_failed;  /* at the start, failed runs wait again, their reasons kept; default false */
-  size_t run_limit;   /* at most so many runs by this process; 0 (default): no limit */
+  double lease_s;   /* a run whose worker has given no sign of life for so long is taken over;
+                       default 300. On the same machine a dead process is seen at once. */
+  double poll_s;    /* pause before looking again where others hold all that is left; default 1 */
+  bool wait;        /* stay until every run has ended, to take over what others leave; default true:
+                       else return when nothing is to be taken */
+  size_t run_limit; /* at most so many runs by this process; 0 (default): no limit */
   const char *worker; /* a name for the table; NULL: made from machine and process */
 } scree_study_options;
 SCREE_API scree_study_options scree_default_study_options(void);
@@ -2011,6 +2010,9 @@ SCREE_API scree_status scree_study_open_folder(const char *folder, scree_study *
 SCREE_API scree_status scree_study_prepare(scree_study *study, const scree_study_options *options,
                                            const scree_progress *progress, scree_error *error);
 
+/* Lets the runs that failed wait again; their reasons are kept. Needs scree_study_prepare. */
+SCREE_API scree_status scree_study_reopen(scree_study *study, scree_error *error);
+
 /* Takes runs, one after the other, and works on each to its end. A run that fails is recorded with
  * its reason and the next is taken. SCREE_CANCELLED leaves a checkpoint and gives the run back.
  * Needs scree_study_prepare. *completed (may be NULL): runs ended here. */
@@ -2023,6 +2025,113 @@ SCREE_API scree_status scree_study_work(scree_study *study, const scree_study_op
  * All that is in the database comes from files in the folder: one that is damaged may be deleted,
  * and is made again. */
 SCREE_API scree_status scree_study_collect(scree_study *study, bool wait, scree_error *error);
+
+/* ---- 10.4 What a study says ---- */
+
+typedef struct scree_study_counts {
+  size_t waiting, leased, running, done, failed; /* runs */
+} scree_study_counts;
+
+/* One point of the design. Texts belong to the result. */
+typedef struct scree_point_result {
+  const char *label, *rp, *shapes;
+  double rp_value; /* 1 for the scan, NaN for spheres */
+  scree_study_counts counts;
+  size_t heap_count;           /* runs done that have an angle */
+  double triangle_count;       /* mean over the particles; 0 for spheres */
+  scree_summary angle_deg;     /* of repose, by the study's way, of the runs with a heap */
+  scree_summary seconds;       /* processor time of a run */
+  scree_summary height;        /* m */
+  scree_summary run_out;       /* m */
+  scree_summary coordination;  /* */
+  scree_summary packing;       /* fraction */
+  scree_summary left;          /* share of the particles that fell off the disc */
+  scree_summary peak_rotation; /* rad/s: the greatest mean rotation after the lift began */
+  /* Mean over the replicates of the particles' mean |omega|, against the time since the cylinder
+   * began to rise, with one standard deviation either way. A run that ended still counts with its
+   * last value, another one no longer. */
+  size_t series_count;
+  double *time, *rotation, *rotation_low, *rotation_high; /* s, rad/s */
+} scree_point_result;
+
+typedef enum scree_in_range {
+  SCREE_IN_RANGE_UNKNOWN,
+  SCREE_IN_RANGE_YES,
+  SCREE_IN_RANGE_NO
+} scree_in_range;
+
+/* Points that differ in rp only. */
+typedef struct scree_family_result {
+  const char *label;             /* what they have in common; "" where rp is the only factor */
+  size_t *levels;                /* indices of points, Rp rising, spheres left out */
+  scree_comparison *comparisons; /* of each level with the finest; the last one is not used */
+  size_t level_count;
+  size_t spheres; /* index of the point with spheres; SIZE_MAX: none */
+  /* The angle has converged from this level on: it and every finer one are equivalent to the finest
+   * within the margin, tested from fine to coarse until one fails, so that the error rate of the
+   * whole is that of one test. level_count - 1: only the finest itself, which says nothing. */
+  size_t converged_from;
+  bool converged;                                 /* at least one other level is equivalent */
+  double paper_low, paper_high, paper_mean;       /* Rp chosen by Ip on the grid, of the shapes */
+  double robust_low, robust_high, robust_mean;    /* by the robust criterion; means are geometric */
+  scree_in_range paper_in_range, robust_in_range; /* whether even the lowest of them lies at or
+                                                     above the Rp converged from */
+  scree_power_law time_law;    /* seconds against Rp, all runs; count 0: too few levels */
+  scree_polynomial time_curve; /* the paper's fourth order; count 0: too few levels */
+} scree_family_result;
+
+typedef struct scree_failure {
+  const char *label, *reason;
+  size_t replicate;
+} scree_failure;
+
+typedef struct scree_study_result {
+  const char *name, *design, *method, *angle, *version;
+  size_t replicate_count, point_count, factor_count;
+  uint64_t seed;
+  double margin_deg, confidence;
+  scree_study_counts counts;
+  size_t worker_count;  /* at work now */
+  double seconds_spent; /* processor time of the runs done */
+  double
+      seconds_left; /* on the clock with as many workers as now (none: with one); NaN: not known */
+  bool mixed_versions; /* runs were made by different versions of scree */
+  scree_point_result *points;
+  scree_family_result *families; /* those with two Rp or more */
+  size_t family_count;
+  scree_failure *failures;
+  size_t failure_count;
+  void *memory; /* private */
+} scree_study_result;
+
+/* From the database (scree_study_collect). Free with scree_study_result_free. */
+SCREE_API scree_status scree_study_analyse(const scree_study *study, scree_study_result *result,
+                                           scree_error *error);
+SCREE_API void scree_study_result_free(scree_study_result *result);
+
+/* ---- 10.5 Reports of a study ---- */
+
+/* docs/formats.md has every field. "-" is stdout. */
+SCREE_API scree_status scree_study_json_write(const scree_study_result *result, const char *path,
+                                              bool overwrite, scree_error *error);
+/* One row per point. */
+SCREE_API scree_status scree_study_csv_write(const scree_study_result *result, const char *path,
+                                             bool overwrite, scree_error *error);
+/* After the paper's Figs. 5, 7 and 8, by the path's ending as scree_choice_figure_write: angle with
+ * standard deviation, and coefficient of variation, against Rp; mean rotation against time;
+ * processor time of a run against Rp with both fits. SCREE_UNSUPPORTED where the study has nothing
+ * to draw. */
+SCREE_API scree_status scree_study_angle_figure(const scree_study_result *result, const char *path,
+                                                bool overwrite, scree_error *error);
+SCREE_API scree_status scree_study_rotation_figure(const scree_study_result *result,
+                                                   const char *path, bool overwrite,
+                                                   scree_error *error);
+SCREE_API scree_status scree_study_time_figure(const scree_study_result *result, const char *path,
+                                               bool overwrite, scree_error *error);
+/* All of these into a folder: study.json, points.csv, and angle, rotation and time as .png, .svg,
+ * .pdf, .csv and .gnuplot; what is there is overwritten. */
+SCREE_API scree_status scree_study_report_write(const scree_study_result *result,
+                                                const char *folder, scree_error *error);
 
 #ifdef __cplusplus
 }

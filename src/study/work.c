@@ -317,12 +317,21 @@ static scree_status work_on(work *w, size_t *completed, scree_error *error) {
       status = do_run(w, error);
       scree_lease_release(&w->lease);
       if (status == SCREE_OK) ++*completed;
+      /* for those who look; what is wrong with the database is told at the end */
+      if (status == SCREE_OK) scree_study_collect(w->study, false, NULL);
     } else {
       if (open == 0 || !w->options->wait) return SCREE_OK;
       status = pause_work(w, error);
     }
     if (status != SCREE_OK) return status;
   }
+}
+
+scree_status scree_study_reopen(scree_study *study, scree_error *error) {
+  work w = {.study = study};
+  if (!study->keys)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "a study must be prepared before work on it");
+  return reopen_failed(&w, error);
 }
 
 scree_status scree_study_work(scree_study *study, const scree_study_options *options,
@@ -340,7 +349,6 @@ scree_status scree_study_work(scree_study *study, const scree_study_options *opt
   w.leases = scree_study_path(study, "leases", "", "");
   if (!w.leases) return scree_fail_memory(error, 0, "a path");
   scree_status status = put_broken_aside(&w, error);
-  if (status == SCREE_OK && options->retry_failed) status = reopen_failed(&w, error);
   if (status == SCREE_OK) status = work_on(&w, &done, error);
   scree_free(w.leases);
   if (completed) *completed = done;

@@ -1,0 +1,113 @@
+/* Workers as processes: the program itself again, with --worker. They share nothing but the folder,
+ * so that the death of one harms no other. */
+#include "cli/study.h"
+#include "cli/terminal.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <time.h>
+
+enum { MOST_JOBS = 1024, LOOK_NS = 200000000, LOOKS_A_COLLECT = 25 };
+
+extern char **environ;
+
+size_t study_rank(void) {
+  static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK",
+                                      "SLURM_PROCID"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    const char *text = getenv(names[i]);
+    if (text && *text) return (size_t)strtoull(text, NULL, 10);
+  }
+  return 0;
+}
+
+typedef struct pool {
+  const cli_call *call;
+  const char *folder;
+  char threads[24], lease[40];
+  pid_t workers[MOST_JOBS];
+  size_t alive, replaced;
+  int result;
+} pool;
+
+static bool start_worker(pool *p, size_t slot) {
+  const study_arguments *a = p->call->options;
+  /* spawn takes no const words, and changes none */
+  union {
+    const char *fixed[16];
+    char *words[16];
+  } line = {{"scree", "study", "-o", p->folder, "--worker", "--quiet", "--threads", p->threads,
+             "--lease", p->lease}};
+  size_t count = 10;
+  if (a->no_wait) line.fixed[count++] = "--no-wait";
+  line.fixed[count++] = "--";
+  line.fixed[count++] = p->call->inputs[0];
+  int code = posix_spawn(&p->workers[slot], "/proc/self/exe", NULL, NULL, line.words, environ);
+  if (code != 0) {
+    fprintf(stderr, "scree: cannot start a worker: %s\n", strerror(code));
+    p->workers[slot] = 0;
+    p->result = 1;
+    return false;
+  }
+  p->alive++;
+  return true;
+}
+
+static void bury(pool *p, size_t slot, int status, size_t jobs) {
+  pid_t pid = p->workers[slot];
+  p->workers[slot] = 0;
+  p->alive--;
+  if (cli_interrupted()) return;
+  if (WIFEXITED(status)) {
+    if (WEXITSTATUS(status) != 0) p->result = 1; /* it has told why */
+    return;
+  }
+  fprintf(stderr, "scree: worker %ld was killed (signal %d); another one takes its place\n",
+          (long)pid, WTERMSIG(status));
+  if (p->replaced++ < 10 * jobs)
+    start_worker(p, slot);
+  else
+    p->result = 1;
+}
+
+static void look_around(pool *p, scree_study *study, bool collect) {
+  double fraction = 0;
+  scree_study_result result;
+  if (!collect) return;
+  if (scree_study_collect(study, false, NULL) == SCREE_OK &&
+      scree_study_analyse(study, &result, NULL) == SCREE_OK) {
+    size_t count = scree_study_run_count(study);
+    fraction = (double)(result.counts.done + result.counts.failed) / (double)count;
+    scree_study_result_free(&result);
+  }
+  p->call->progress->report(p->call->progress->context, "runs", fraction);
+}
+
+int study_run_jobs(const cli_call *call, scree_study *study, const char *folder, size_t jobs) {
+  const study_arguments *a = call->options;
+  pool p = {.call = call, .folder = folder};
+  if (jobs > MOST_JOBS) jobs = MOST_JOBS;
+  int threads = scree_threads() / (int)jobs;
+  snprintf(p.threads, sizeof p.threads, "%d", threads > 1 ? threads : 1);
+  snprintf(p.lease, sizeof p.lease, "%.9g", a->lease);
+  for (size_t i = 0; i < jobs; i++)
+    if (!start_worker(&p, i)) break;
+  for (size_t look = 1; p.alive > 0; look++) {
+    struct timespec pause = {0, LOOK_NS};
+    nanosleep(&pause, NULL);
+    for (size_t i = 0; i < jobs; i++) {
+      int status;
+      if (p.workers[i] > 0 && waitpid(p.workers[i], &status, WNOHANG) == p.workers[i])
+        bury(&p, i, status, jobs);
+    }
+    if (cli_interrupted() && look % 5 == 0) /* sent to this process alone: pass it on */
+      for (size_t i = 0; i < jobs; i++)
+        if (p.workers[i] > 0) kill(p.workers[i], SIGTERM);
+    look_around(&p, study, look % LOOKS_A_COLLECT == 0);
+  }
+  return p.result;
+}

@@ -1,0 +1,152 @@
+#include "cli/study.h"
+
+#include <math.h>
+#include <string.h>
+
+static void print_seconds(FILE *stream, double seconds) {
+  if (!isfinite(seconds))
+    fputs("unknown", stream);
+  else if (seconds < 120)
+    fprintf(stream, "%.0f s", seconds);
+  else if (seconds < 7200)
+    fprintf(stream, "%.0f min", seconds / 60);
+  else
+    fprintf(stream, "%.1f h", seconds / 3600);
+}
+
+static void print_counts(FILE *stream, const scree_study_result *r) {
+  const scree_study_counts *c = &r->counts;
+  fprintf(stream, "%s: %zu point%s x %zu replicate%s, %zu runs: %zu done", r->name, r->point_count,
+          r->point_count == 1 ? "" : "s", r->replicate_count, r->replicate_count == 1 ? "" : "s",
+          r->point_count * r->replicate_count, c->done);
+  if (c->failed) fprintf(stream, ", %zu failed", c->failed);
+  if (c->running) fprintf(stream, ", %zu running", c->running);
+  if (c->leased) fprintf(stream, ", %zu leased", c->leased);
+  if (c->waiting) fprintf(stream, ", %zu waiting", c->waiting);
+  fputs("\n", stream);
+  if (c->waiting + c->leased + c->running == 0) return;
+  fprintf(stream, "%zu worker%s now; left: ", r->worker_count, r->worker_count == 1 ? "" : "s");
+  print_seconds(stream, r->seconds_left);
+  fputs(r->worker_count ? "\n" : " with one\n", stream);
+}
+
+/* The finest's comparison with itself says nothing. */
+static const scree_comparison *find_comparison(const scree_study_result *r, size_t point,
+                                               bool *finest) {
+  *finest = false;
+  for (size_t f = 0; f < r->family_count; f++)
+    for (size_t k = 0; k < r->families[f].level_count; k++) {
+      if (r->families[f].levels[k] != point) continue;
+      *finest = k + 1 == r->families[f].level_count;
+      return *finest ? NULL : &r->families[f].comparisons[k];
+    }
+  return NULL;
+}
+
+static void print_comparison(FILE *stream, const scree_study_result *r, size_t point) {
+  bool finest;
+  const scree_comparison *c = find_comparison(r, point, &finest);
+  if (finest) fputs("  finest", stream);
+  if (!c) return;
+  if (isnan(c->low)) {
+    fputs("  -", stream);
+    return;
+  }
+  fprintf(stream, "  %s %+.1f",
+          c->equivalent  ? "same"
+          : c->different ? "differs"
+                         : "open",
+          c->difference);
+}
+
+static void print_point(FILE *stream, const scree_study_result *r, size_t index, int width) {
+  const scree_point_result *p = &r->points[index];
+  const scree_summary *a = &p->angle_deg;
+  const char *label = p->label[0] ? p->label : p->shapes;
+  if (!strncmp(label, "rp ", 3) && r->factor_count == 1) label += 3;
+  fprintf(stream, "%-*.*s %9.0f %3zu/%-3zu", width, width, label, p->triangle_count, p->counts.done,
+          r->replicate_count);
+  if (p->counts.done && !p->heap_count)
+    fprintf(stream, " %-38s", " no heap");
+  else if (a->count < 2)
+    fprintf(stream, " %6.2f %31s", a->mean, "");
+  else
+    fprintf(stream, " %6.2f [%6.2f, %6.2f] %6.2f %6.1f %%", a->mean, a->mean_low, a->mean_high,
+            a->sd, 100 * a->cv);
+  fprintf(stream, " %9.4g", p->seconds.mean);
+  print_comparison(stream, r, index);
+  fputs("\n", stream);
+}
+
+static void print_table(FILE *stream, const scree_study_result *r) {
+  int width = 7;
+  bool only_rp = r->factor_count == 1 && !strncmp(r->points[0].label, "rp ", 3);
+  for (size_t i = 0; i < r->point_count; i++) {
+    const scree_point_result *p = &r->points[i];
+    int length = (int)strlen(p->label[0] ? p->label : p->shapes) - (only_rp ? 3 : 0);
+    if (length > width) width = length < 48 ? length : 48;
+  }
+  fprintf(stream, "%-*s %9s %7s %6s %-16s %6s %8s %9s  %s\n", width, only_rp ? "Rp" : "point",
+          "triangles", "runs", "angle", "  interval", "SD", "CV", "time (s)",
+          r->family_count ? "against finest" : "");
+  for (size_t i = 0; i < r->point_count; i++) print_point(stream, r, i, width);
+}
+
+static const char *range_text(scree_in_range in) {
+  return in == SCREE_IN_RANGE_YES  ? "within the converged range"
+         : in == SCREE_IN_RANGE_NO ? "below the converged range"
+                                   : "not to be judged: no converged range";
+}
+
+static void print_pick(FILE *stream, const char *what, const double rp[3], scree_in_range in) {
+  fprintf(stream, "Rp chosen by %s: %.2g", what, rp[1]);
+  if (rp[0] < rp[2]) fprintf(stream, " (%.2g to %.2g over the shapes)", rp[0], rp[2]);
+  fprintf(stream, ", %s\n", range_text(in));
+}
+
+static void print_needed(FILE *stream, const scree_study_result *r, const scree_family_result *f) {
+  for (size_t k = 0; k + 1 < f->level_count; k++) {
+    const scree_comparison *c = &f->comparisons[k];
+    if (!isnan(c->low) && !c->equivalent && !c->different && c->count_needed)
+      fprintf(stream,
+              "Rp %s is open: with this spread about %zu replicates would show it the same\n",
+              r->points[f->levels[k]].rp, c->count_needed);
+  }
+}
+
+static void print_family(FILE *stream, const scree_study_result *r, const scree_family_result *f) {
+  const char *finest = r->points[f->levels[f->level_count - 1]].rp;
+  if (f->label[0]) fprintf(stream, "%s:\n", f->label);
+  if (f->converged)
+    fprintf(stream,
+            "the angle has converged from Rp %s on: same as at %s within %g degrees (%g %% "
+            "confidence)\n",
+            r->points[f->levels[f->converged_from]].rp, finest, r->margin_deg, 100 * r->confidence);
+  else
+    fprintf(stream, "convergence of the angle within %g degrees is not shown (%g %% confidence)\n",
+            r->margin_deg, 100 * r->confidence);
+  print_needed(stream, r, f);
+  const double paper[] = {f->paper_low, f->paper_mean, f->paper_high},
+               robust[] = {f->robust_low, f->robust_mean, f->robust_high};
+  print_pick(stream, "Ip", paper, f->paper_in_range);
+  print_pick(stream, "the robust criterion", robust, f->robust_in_range);
+  if (!f->time_law.count) return;
+  fprintf(stream, "time of a run ~ Rp^%.3f", f->time_law.exponent);
+  if (!isnan(f->time_law.exponent_low))
+    fprintf(stream, " [%.3f, %.3f]", f->time_law.exponent_low, f->time_law.exponent_high);
+  if (f->time_curve.count) fprintf(stream, "; fourth order fits to %.3g s", f->time_curve.rms);
+  fputs("\n", stream);
+}
+
+void study_print(FILE *stream, const scree_study_result *r) {
+  print_counts(stream, r);
+  fprintf(stream, "angle by %s, degrees; intervals of %g %%; time of the processor\n", r->angle,
+          100 * r->confidence);
+  print_table(stream, r);
+  for (size_t f = 0; f < r->family_count; f++) print_family(stream, r, &r->families[f]);
+  if (r->mixed_versions) fputs("the runs were made by different versions of scree\n", stream);
+  for (size_t i = 0; i < r->failure_count && i < 5; i++)
+    fprintf(stream, "failed: %s, replicate %zu: %s\n", r->failures[i].label,
+            r->failures[i].replicate, r->failures[i].reason);
+  if (r->failure_count > 5) fprintf(stream, "and %zu more\n", r->failure_count - 5);
+}

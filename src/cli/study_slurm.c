@@ -1,0 +1,82 @@
+/* A Slurm job array whose tasks are workers in the shared folder. A task that dies or is pre-empted
+ * is queued again and goes on. */
+#define _XOPEN_SOURCE 700 /* realpath */
+#include "cli/study.h"
+
+#include <errno.h>
+#include <limits.h>
+#include <spawn.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+
+extern char **environ;
+
+/* In single quotes, for a shell. */
+static void write_quoted(FILE *stream, const char *text) {
+  putc('\'', stream);
+  for (; *text; text++) fprintf(stream, *text == '\'' ? "'\\''" : "%c", *text);
+  putc('\'', stream);
+}
+
+static bool write_script(const char *path, const char *study, const char *folder, size_t tasks,
+                         double lease) {
+  char program[PATH_MAX];
+  FILE *stream = fopen(path, "w");
+  if (!stream) return false;
+  if (!realpath("/proc/self/exe", program)) snprintf(program, sizeof program, "scree");
+  fprintf(stream,
+          "#!/bin/sh\n"
+          "# scree %s: workers of a study; more of them, here or elsewhere, may join at any time.\n"
+          "#SBATCH --job-name=scree-study\n"
+          "#SBATCH --array=0-%zu\n"
+          "#SBATCH --ntasks=1\n"
+          "#SBATCH --cpus-per-task=1\n"
+          "#SBATCH --requeue\n"
+          "#SBATCH --open-mode=append\n"
+          "#SBATCH --signal=B:TERM@60\n"
+          "#SBATCH --output=%s/slurm-%%A_%%a.out\n"
+          "exec ",
+          scree_version(), tasks - 1, folder);
+  write_quoted(stream, program);
+  fputs(" study -o ", stream);
+  write_quoted(stream, folder);
+  fprintf(stream, " --worker --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ", lease);
+  write_quoted(stream, study);
+  putc('\n', stream);
+  bool good = !ferror(stream);
+  return fclose(stream) == 0 && good;
+}
+
+static int submit(const char *script) {
+  union {
+    const char *fixed[3];
+    char *words[3];
+  } line = {{"sbatch", script}};
+  pid_t pid;
+  int status;
+  int code = posix_spawnp(&pid, "sbatch", NULL, NULL, line.words, environ);
+  if (code == 0 && waitpid(pid, &status, 0) == pid && WIFEXITED(status) && WEXITSTATUS(status) == 0)
+    return 0;
+  fprintf(stderr, "scree: %s could not be submitted: %s\n", script,
+          code ? strerror(code) : "sbatch failed");
+  return 1;
+}
+
+int study_run_slurm(const cli_call *call, const scree_study *study, const char *folder) {
+  const study_arguments *a = call->options;
+  char file[PATH_MAX], full[PATH_MAX], script[PATH_MAX + 16];
+  size_t runs = scree_study_run_count(study), tasks = a->tasks ? a->tasks : runs;
+  if (!realpath(call->inputs[0], file) || !realpath(folder, full)) {
+    fprintf(stderr, "scree: %s: %s\n", folder, strerror(errno));
+    return 1;
+  }
+  snprintf(script, sizeof script, "%s/study.sbatch", full);
+  if (!write_script(script, file, full, tasks < runs ? tasks : runs, a->lease)) {
+    fprintf(stderr, "scree: %s: cannot write: %s\n", script, strerror(errno));
+    return 1;
+  }
+  if (!a->dry_run) return submit(script);
+  printf("%s: not submitted; `sbatch %s` does\n", script, script);
+  return 0;
+}

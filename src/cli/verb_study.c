@@ -1,0 +1,182 @@
+/* scree study: many runs. */
+#include "cli/study.h"
+#include "cli/terminal.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#define AT(field) offsetof(study_arguments, field)
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+     "Folder of the study. Default: the file's name without its ending, in the present folder.", 0,
+     0, NULL},
+    {"jobs", 0, CLI_COUNT, AT(jobs), "N",
+     "Runs at the same time, each in a process of its own. Default: one per processor, at most one "
+     "per run.",
+     0, 1024, NULL},
+    {"lease", 0, CLI_REAL, AT(lease), "SECONDS",
+     "A run whose worker on another machine gave no sign of life for so long is taken over. "
+     "Default: 300.",
+     5, 1e6, NULL},
+    {"keep-failed", 0, CLI_FLAG, AT(keep_failed), NULL,
+     "Leave runs that failed before as they are; else they are tried once more.", 0, 0, NULL},
+    {"worker", 0, CLI_FLAG, AT(worker), NULL,
+     "Only work on runs, in this process, and print nothing: for more workers, here or on other "
+     "machines that share the folder.",
+     0, 0, NULL},
+    {"no-wait", 0, CLI_FLAG, AT(no_wait), NULL, "Do not wait for runs that others are at work on.",
+     0, 0, NULL},
+    {"slurm", 0, CLI_FLAG, AT(slurm), NULL,
+     "Prepare the shapes, write DIR/study.sbatch, a job array of workers, and submit it.", 0, 0,
+     NULL},
+    {"tasks", 0, CLI_COUNT, AT(tasks), "N", "Tasks of that array. Default: one per run.", 1, 100000,
+     NULL},
+    {"dry-run", 0, CLI_FLAG, AT(dry_run), NULL,
+     "With --slurm: write it, do not submit it. Else: read the file and list the runs.", 0, 0,
+     NULL},
+    {"json", 0, CLI_FLAG, AT(json), NULL, "Print the results as JSON.", 0, 0, NULL},
+    {"csv", 0, CLI_FLAG, AT(csv), NULL, "Print the results as CSV, a row per point.", 0, 0, NULL},
+};
+static const study_arguments defaults = {.lease = 300};
+
+static const char *default_folder(const char *path, char *buffer, size_t size) {
+  const char *slash = strrchr(path, '/');
+  snprintf(buffer, size, "%s", slash ? slash + 1 : path);
+  char *dot = strrchr(buffer, '.');
+  if (dot && dot != buffer)
+    *dot = 0;
+  else
+    snprintf(buffer, size, "study");
+  return buffer;
+}
+
+/* Prints, and with `files` writes tables and figures to the folder. */
+static scree_status report(const cli_call *call, const scree_study *study, const char *folder,
+                           bool files, bool *failed, scree_error *error) {
+  const study_arguments *a = call->options;
+  scree_study_result result;
+  scree_status status = scree_study_analyse(study, &result, error);
+  if (status != SCREE_OK) return status;
+  *failed = result.counts.failed > 0;
+  if (files) status = scree_study_report_write(&result, folder, error);
+  if (status == SCREE_OK && a->json) status = scree_study_json_write(&result, "-", true, error);
+  if (status == SCREE_OK && a->csv) status = scree_study_csv_write(&result, "-", true, error);
+  if (status == SCREE_OK && !a->json && !a->csv) study_print(stdout, &result);
+  scree_study_result_free(&result);
+  return status;
+}
+
+static int show_status(const cli_call *call) {
+  scree_study *study = NULL;
+  scree_error error;
+  bool failed = false;
+  if (call->input_count != 2) return cli_misuse(call->verb, "status needs the study's folder");
+  scree_status status = scree_study_open_folder(call->inputs[1], &study, &error);
+  if (status == SCREE_OK) status = scree_study_collect(study, true, &error);
+  if (status == SCREE_OK) status = report(call, study, call->inputs[1], false, &failed, &error);
+  scree_study_free(study);
+  return status == SCREE_OK ? 0 : cli_fail(&error);
+}
+
+static int list_runs(const scree_study *study) {
+  scree_error error;
+  for (size_t i = 0; i < scree_study_run_count(study); i++) {
+    scree_study_run run;
+    if (scree_study_get_run(study, i, &run, &error) != SCREE_OK) return cli_fail(&error);
+    printf("%6zu  point %zu  replicate %zu  seed %llu  %s%s%s\n", i, run.point, run.replicate,
+           (unsigned long long)run.seed, run.shapes, run.label[0] ? ": " : "", run.label);
+  }
+  return 0;
+}
+
+static scree_study_options work_options(const study_arguments *a) {
+  scree_study_options o = scree_default_study_options();
+  o.lease_s = a->lease;
+  o.wait = !a->no_wait;
+  return o;
+}
+
+/* Works in this process, or in several. */
+static int work(const cli_call *call, scree_study *study, const char *folder, bool worker,
+                scree_error *error) {
+  const study_arguments *a = call->options;
+  scree_study_options o = work_options(a);
+  size_t runs = scree_study_run_count(study);
+  size_t jobs = a->jobs ? a->jobs : (size_t)scree_threads();
+  if (jobs > runs) jobs = runs;
+  if (!worker && !a->keep_failed && scree_study_reopen(study, error) != SCREE_OK)
+    return cli_fail(error);
+  if (worker || jobs == 1 || getenv("OMPI_COMM_WORLD_RANK") || getenv("PMI_RANK")) {
+    scree_status status = scree_study_work(study, &o, call->progress, NULL, error);
+    return status == SCREE_OK ? 0 : cli_fail(error);
+  }
+  return study_run_jobs(call, study, folder, jobs);
+}
+
+static int run_study(const cli_call *call, scree_study *study, const char *folder,
+                     scree_error *error) {
+  const study_arguments *a = call->options;
+  bool worker = a->worker || study_rank() > 0, failed = false;
+  scree_study_options o = work_options(a);
+  scree_status status = scree_study_open(study, folder, error);
+  if (status == SCREE_OK) status = scree_study_prepare(study, &o, call->progress, error);
+  if (status != SCREE_OK) return cli_fail(error);
+  if (a->slurm) return study_run_slurm(call, study, folder);
+  int code = work(call, study, folder, worker, error);
+  if (worker) return code;
+  scree_error late; /* what happened first is what is told */
+  cli_terminal_end();
+  status = scree_study_collect(study, true, &late);
+  if (status == SCREE_OK) status = report(call, study, folder, code == 0, &failed, &late);
+  if (status != SCREE_OK) return cli_fail(&late);
+  return code == 0 && failed ? 1 : code;
+}
+
+static int run(const cli_call *call) {
+  const study_arguments *a = call->options;
+  scree_study *study = NULL;
+  scree_error error;
+  char folder[256];
+  if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
+  if (a->slurm && a->worker)
+    return cli_misuse(call->verb, "--slurm and --worker exclude each other");
+  if (!strcmp(call->inputs[0], "status")) return show_status(call);
+  if (call->input_count > 1)
+    return cli_misuse(call->verb, "one study at a time; '%s' is one too many", call->inputs[1]);
+  if (scree_study_read(call->inputs[0], &study, &error) != SCREE_OK) return cli_fail(&error);
+  int code = a->dry_run && !a->slurm
+                 ? list_runs(study)
+                 : run_study(call, study,
+                             a->output ? a->output
+                                       : default_folder(call->inputs[0], folder, sizeof folder),
+                             &error);
+  scree_study_free(study);
+  return code;
+}
+
+const cli_verb cli_verb_study = {
+    .name = "study",
+    .summary = "run an experiment many times and say what follows",
+    .inputs = "STUDY.yaml | status DIR",
+    .description =
+        "Runs the angle-of-repose experiment at every point of a design, several times each: "
+        "shapes, Rp levels (also spheres), friction, lift speed or any other field of the "
+        "experiment, on a full grid or a space-filling design. The folder holds everything; the "
+        "same command goes on where it was interrupted, and any number of processes and machines "
+        "that share the folder work on it together. Results go to DIR/study.sqlite, tables and "
+        "figures beside it. docs/repose.md describes the file and the statistics.\n"
+        "\n"
+        "`scree study status DIR` shows how far it is, and what is known so far. Under mpirun or "
+        "srun every rank is a worker.",
+    .examples = "scree study repose.yaml -o repose --jobs 4\n"
+                "scree study status repose\n"
+                "scree study repose.yaml -o repose --slurm --dry-run\n"
+                "mpirun -n 16 scree study repose.yaml -o repose\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .defaults = &defaults,
+    .options_size = sizeof defaults,
+    .input_minimum = 1,
+    .input_maximum = 2,
+    .run = run,
+};

@@ -1,0 +1,211 @@
+/* What a study says as JSON and CSV. */
+#include "base/file.h"
+#include "report/csv.h"
+#include "report/json.h"
+
+#include <math.h>
+#include <string.h>
+
+static void put_summary(scree_json *json, const char *key, const scree_summary *s) {
+  scree_json_row_object(json, key);
+  scree_json_count(json, "count", s->count);
+  scree_json_number(json, "mean", s->mean);
+  scree_json_number(json, "mean_low", s->mean_low);
+  scree_json_number(json, "mean_high", s->mean_high);
+  scree_json_number(json, "sd", s->sd);
+  scree_json_number(json, "sd_low", s->sd_low);
+  scree_json_number(json, "sd_high", s->sd_high);
+  scree_json_number(json, "cv", s->cv);
+  scree_json_end(json);
+}
+
+static void put_counts(scree_json *json, const scree_study_counts *c) {
+  scree_json_row_object(json, "runs");
+  scree_json_count(json, "done", c->done);
+  scree_json_count(json, "failed", c->failed);
+  scree_json_count(json, "running", c->running);
+  scree_json_count(json, "leased", c->leased);
+  scree_json_count(json, "waiting", c->waiting);
+  scree_json_end(json);
+}
+
+static void put_list(scree_json *json, const char *key, const double *values, size_t count) {
+  scree_json_row_array(json, key);
+  for (size_t i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
+  scree_json_end(json);
+}
+
+static void put_point(scree_json *json, const scree_point_result *p) {
+  scree_json_object(json, NULL);
+  scree_json_text(json, "label", p->label);
+  scree_json_text(json, "rp", p->rp);
+  scree_json_text(json, "shapes", p->shapes);
+  put_counts(json, &p->counts);
+  scree_json_count(json, "heap_count", p->heap_count);
+  scree_json_number(json, "triangle_count", p->triangle_count);
+  put_summary(json, "angle_deg", &p->angle_deg);
+  put_summary(json, "seconds", &p->seconds);
+  put_summary(json, "height", &p->height);
+  put_summary(json, "run_out", &p->run_out);
+  put_summary(json, "coordination", &p->coordination);
+  put_summary(json, "packing_fraction", &p->packing);
+  put_summary(json, "left", &p->left);
+  put_summary(json, "peak_rotation", &p->peak_rotation);
+  scree_json_object(json, "rotation");
+  put_list(json, "time", p->time, p->series_count);
+  put_list(json, "mean", p->rotation, p->series_count);
+  put_list(json, "low", p->rotation_low, p->series_count);
+  put_list(json, "high", p->rotation_high, p->series_count);
+  scree_json_end(json);
+  scree_json_end(json);
+}
+
+static void put_comparison(scree_json *json, const scree_study_result *r, size_t point,
+                           const scree_comparison *c) {
+  scree_json_row_object(json, NULL);
+  scree_json_text(json, "rp", r->points[point].rp);
+  scree_json_number(json, "difference", c->difference);
+  scree_json_number(json, "low", c->low);
+  scree_json_number(json, "high", c->high);
+  scree_json_number(json, "degrees", c->degrees);
+  scree_json_number(json, "p_equivalence", c->p_equivalence);
+  scree_json_number(json, "p_difference", c->p_difference);
+  scree_json_bool(json, "equivalent", c->equivalent);
+  scree_json_bool(json, "different", c->different);
+  scree_json_count(json, "count_needed", c->count_needed);
+  scree_json_end(json);
+}
+
+static void put_pick(scree_json *json, const char *key, const double rp[3], scree_in_range in) {
+  scree_json_row_object(json, key);
+  scree_json_number(json, "low", rp[0]);
+  scree_json_number(json, "mean", rp[1]);
+  scree_json_number(json, "high", rp[2]);
+  scree_json_text(json, "in_converged_range",
+                  in == SCREE_IN_RANGE_YES  ? "yes"
+                  : in == SCREE_IN_RANGE_NO ? "no"
+                                            : "unknown");
+  scree_json_end(json);
+}
+
+static void put_family(scree_json *json, const scree_study_result *r,
+                       const scree_family_result *f) {
+  const double paper[] = {f->paper_low, f->paper_mean, f->paper_high},
+               robust[] = {f->robust_low, f->robust_mean, f->robust_high};
+  scree_json_object(json, NULL);
+  scree_json_text(json, "label", f->label);
+  scree_json_text(json, "finest", r->points[f->levels[f->level_count - 1]].rp);
+  scree_json_bool(json, "converged", f->converged);
+  scree_json_text(json, "converged_from",
+                  f->converged ? r->points[f->levels[f->converged_from]].rp : NULL);
+  put_pick(json, "chosen_by_ip", paper, f->paper_in_range);
+  put_pick(json, "chosen_by_robust", robust, f->robust_in_range);
+  scree_json_array(json, "against_finest");
+  for (size_t k = 0; k + 1 < f->level_count; k++)
+    put_comparison(json, r, f->levels[k], &f->comparisons[k]);
+  scree_json_end(json);
+  scree_json_row_object(json, "time_law");
+  scree_json_count(json, "count", f->time_law.count);
+  scree_json_number(json, "factor", f->time_law.count ? f->time_law.factor : NAN);
+  scree_json_number(json, "exponent", f->time_law.count ? f->time_law.exponent : NAN);
+  scree_json_number(json, "exponent_low", f->time_law.count ? f->time_law.exponent_low : NAN);
+  scree_json_number(json, "exponent_high", f->time_law.count ? f->time_law.exponent_high : NAN);
+  scree_json_number(json, "r2", f->time_law.count ? f->time_law.r2 : NAN);
+  scree_json_end(json);
+  scree_json_object(json, "time_polynomial");
+  scree_json_count(json, "count", f->time_curve.count);
+  put_list(json, "coefficients", f->time_curve.coefficient,
+           f->time_curve.count ? (size_t)f->time_curve.degree + 1 : 0);
+  scree_json_number(json, "rms", f->time_curve.count ? f->time_curve.rms : NAN);
+  scree_json_number(json, "r2", f->time_curve.count ? f->time_curve.r2 : NAN);
+  scree_json_end(json);
+  scree_json_end(json);
+}
+
+static void put_result(scree_json *json, const scree_study_result *r) {
+  scree_json_object(json, NULL);
+  scree_json_text(json, "version", r->version);
+  scree_json_text(json, "name", r->name);
+  scree_json_text(json, "design", r->design);
+  scree_json_text(json, "method", r->method);
+  scree_json_text(json, "angle", r->angle);
+  scree_json_count(json, "seed", r->seed);
+  scree_json_count(json, "replicates", r->replicate_count);
+  scree_json_number(json, "margin_deg", r->margin_deg);
+  scree_json_number(json, "confidence", r->confidence);
+  put_counts(json, &r->counts);
+  scree_json_count(json, "workers", r->worker_count);
+  scree_json_number(json, "seconds_spent", r->seconds_spent);
+  scree_json_number(json, "seconds_left", r->seconds_left);
+  scree_json_bool(json, "mixed_versions", r->mixed_versions);
+  scree_json_array(json, "points");
+  for (size_t i = 0; i < r->point_count; i++) put_point(json, &r->points[i]);
+  scree_json_end(json);
+  scree_json_array(json, "families");
+  for (size_t i = 0; i < r->family_count; i++) put_family(json, r, &r->families[i]);
+  scree_json_end(json);
+  scree_json_array(json, "failures");
+  for (size_t i = 0; i < r->failure_count; i++) {
+    scree_json_row_object(json, NULL);
+    scree_json_text(json, "label", r->failures[i].label);
+    scree_json_count(json, "replicate", r->failures[i].replicate);
+    scree_json_text(json, "reason", r->failures[i].reason);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+  scree_json_end(json);
+}
+
+scree_status scree_study_json_write(const scree_study_result *result, const char *path,
+                                    bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  scree_json json = scree_json_start(output.stream);
+  put_result(&json, result);
+  return scree_output_commit(&output, error);
+}
+
+/* ---- CSV ---- */
+
+static void csv_summary(FILE *stream, const scree_summary *s) {
+  const double values[] = {s->mean, s->mean_low, s->mean_high, s->sd, s->sd_low, s->sd_high, s->cv};
+  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+    putc(',', stream);
+    scree_csv_number(stream, values[i]);
+  }
+}
+
+scree_status scree_study_csv_write(const scree_study_result *result, const char *path,
+                                   bool overwrite, scree_error *error) {
+  static const char *const names[] = {"angle_deg", "seconds",      "height",
+                                      "run_out",   "coordination", "packing_fraction",
+                                      "left",      "peak_rotation"};
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  FILE *stream = output.stream;
+  fputs("label,rp,shapes,done,failed,waiting,heap_count,triangle_count", stream);
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    fprintf(stream, ",%s,%s_low,%s_high,%s_sd,%s_sd_low,%s_sd_high,%s_cv", names[i], names[i],
+            names[i], names[i], names[i], names[i], names[i]);
+  putc('\n', stream);
+  for (size_t i = 0; i < result->point_count; i++) {
+    const scree_point_result *p = &result->points[i];
+    const scree_summary *summaries[] = {&p->angle_deg, &p->seconds,      &p->height,
+                                        &p->run_out,   &p->coordination, &p->packing,
+                                        &p->left,      &p->peak_rotation};
+    scree_csv_text(stream, p->label);
+    putc(',', stream);
+    scree_csv_text(stream, p->rp);
+    putc(',', stream);
+    scree_csv_text(stream, p->shapes);
+    fprintf(stream, ",%zu,%zu,%zu,%zu,", p->counts.done, p->counts.failed,
+            p->counts.waiting + p->counts.leased + p->counts.running, p->heap_count);
+    scree_csv_number(stream, p->triangle_count);
+    for (size_t k = 0; k < sizeof summaries / sizeof *summaries; k++)
+      csv_summary(stream, summaries[k]);
+    putc('\n', stream);
+  }
+  return scree_output_commit(&output, error);
+}

@@ -1,0 +1,452 @@
+/* From the database to what a study says: every point's statistics; where the angle has converged;
+ * time against Rp. docs/repose.md has the reasons. */
+#include "base/array.h"
+#include "study/database.h"
+
+#include <math.h>
+#include <sqlite3.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A run's row. */
+typedef struct row {
+  size_t point, replicate;
+  char key[SCREE_RUN_KEY_BYTES], state[12], version[32];
+  const char *reason;
+  double angle, seconds, wall, height, run_out, coordination, packing, left, triangles, fraction;
+  double peak_rotation;
+  bool still;
+  double *time, *rotation; /* since the lift began */
+  size_t series_count;
+} row;
+
+typedef struct analysis {
+  const scree_study *study;
+  scree_arena *arena;
+  scree_database database;
+  row *rows;
+  size_t row_count;
+  scree_study_result *result;
+  scree_error *error;
+} analysis;
+
+static scree_status no_memory(const analysis *a) {
+  return scree_fail_memory(a->error, 0, "the analysis of a study");
+}
+
+static void *take(const analysis *a, size_t count, size_t size) {
+  void *block = scree_arena_take(a->arena, count ? count : 1, size);
+  if (block) memset(block, 0, count * size);
+  return block;
+}
+
+/* ---- reading ---- */
+
+static double real_of(sqlite3_stmt *s, int column) {
+  return sqlite3_column_type(s, column) == SQLITE_NULL ? NAN : sqlite3_column_double(s, column);
+}
+static void text_of(sqlite3_stmt *s, int column, char *text, size_t size) {
+  const unsigned char *found = sqlite3_column_text(s, column);
+  snprintf(text, size, "%s", found ? (const char *)found : "");
+}
+
+static scree_status read_row(analysis *a, sqlite3_stmt *s, row *r) {
+  const unsigned char *reason = sqlite3_column_text(s, 4);
+  r->point = (size_t)sqlite3_column_int64(s, 0);
+  r->replicate = (size_t)sqlite3_column_int64(s, 1);
+  text_of(s, 2, r->key, sizeof r->key);
+  text_of(s, 3, r->state, sizeof r->state);
+  r->reason = scree_arena_text(a->arena, reason ? (const char *)reason : "");
+  text_of(s, 5, r->version, sizeof r->version);
+  r->angle = real_of(s, 6);
+  r->seconds = real_of(s, 7);
+  r->wall = real_of(s, 8);
+  r->height = real_of(s, 9);
+  r->run_out = real_of(s, 10);
+  r->coordination = real_of(s, 11);
+  r->packing = real_of(s, 12);
+  double bodies = real_of(s, 13), left = real_of(s, 14);
+  r->left = left / (bodies + left);
+  r->triangles = real_of(s, 15);
+  r->still = sqlite3_column_int64(s, 16) != 0;
+  r->fraction = real_of(s, 17);
+  r->peak_rotation = NAN;
+  return r->reason ? SCREE_OK : no_memory(a);
+}
+
+static scree_status read_rows(analysis *a) {
+  char sql[512];
+  sqlite3_stmt *s;
+  bool more;
+  size_t most = scree_study_run_count(a->study);
+  a->rows = take(a, most, sizeof *a->rows);
+  if (!a->rows) return no_memory(a);
+  snprintf(sql, sizeof sql,
+           "SELECT point, replicate, key, state, reason, version, %s_deg, processor_seconds, "
+           "wall_seconds, height, run_out, coordination, packing_fraction, body_count, left_count, "
+           "triangle_count, still, fraction FROM run WHERE planned = 1 ORDER BY run",
+           a->study->analysis_angle);
+  scree_status status = scree_database_prepare(&a->database, sql, &s, a->error);
+  if (status != SCREE_OK) return status;
+  for (;;) {
+    status = scree_database_step(&a->database, s, &more, a->error);
+    if (status != SCREE_OK || !more || a->row_count == most) break;
+    row *r = &a->rows[a->row_count];
+    status = read_row(a, s, r);
+    if (status != SCREE_OK) break;
+    if (r->point < a->study->point_count) a->row_count++;
+  }
+  sqlite3_finalize(s);
+  return status;
+}
+
+/* The series since the lift began; a run without one has none. */
+static scree_status read_series(analysis *a, row *r, sqlite3_stmt *s) {
+  struct {
+    double *items;
+    size_t count, capacity;
+  } list = {0};
+  double start = NAN;
+  bool more = true;
+  sqlite3_bind_text(s, 1, r->key, -1, SQLITE_STATIC);
+  scree_status status = SCREE_OK;
+  while (status == SCREE_OK) {
+    status = scree_database_step(&a->database, s, &more, a->error);
+    if (status != SCREE_OK || !more) break;
+    const unsigned char *phase = sqlite3_column_text(s, 2);
+    bool early = phase && (!strcmp((const char *)phase, "packing") ||
+                           !strcmp((const char *)phase, "settling"));
+    if (isnan(start) && !early) start = real_of(s, 0);
+    if (!SCREE_PUSH(&list, real_of(s, 0)) || !SCREE_PUSH(&list, real_of(s, 1)))
+      status = no_memory(a);
+  }
+  sqlite3_reset(s);
+  r->series_count = list.count / 2;
+  r->time = take(a, r->series_count, sizeof *r->time);
+  r->rotation = take(a, r->series_count, sizeof *r->rotation);
+  if (status == SCREE_OK && (!r->time || !r->rotation)) status = no_memory(a);
+  for (size_t i = 0; status == SCREE_OK && i < r->series_count; i++) {
+    r->time[i] = list.items[2 * i] - start;
+    r->rotation[i] = list.items[2 * i + 1];
+    if (r->time[i] >= 0) r->peak_rotation = fmax(r->peak_rotation, r->rotation[i]);
+  }
+  if (isnan(start)) r->series_count = 0;
+  scree_free(list.items);
+  return status;
+}
+
+static scree_status read_all_series(analysis *a) {
+  sqlite3_stmt *s;
+  scree_status status = scree_database_prepare(
+      &a->database, "SELECT time, mean_rotation, phase FROM series WHERE key = ?1 ORDER BY time",
+      &s, a->error);
+  if (status != SCREE_OK) return status;
+  for (size_t i = 0; status == SCREE_OK && i < a->row_count; i++)
+    if (!strcmp(a->rows[i].state, "done")) status = read_series(a, &a->rows[i], s);
+  sqlite3_finalize(s);
+  return status;
+}
+
+/* ---- points ---- */
+
+static void count_state(scree_study_counts *counts, const char *state) {
+  counts->waiting += !strcmp(state, "waiting");
+  counts->leased += !strcmp(state, "leased");
+  counts->running += !strcmp(state, "running");
+  counts->done += !strcmp(state, "done");
+  counts->failed += !strcmp(state, "failed");
+}
+
+/* Summary of one field over the point's finished runs. */
+static scree_summary summarise(const analysis *a, size_t point, size_t offset, double *scratch) {
+  size_t count = 0;
+  for (size_t i = 0; i < a->row_count; i++)
+    if (a->rows[i].point == point && !strcmp(a->rows[i].state, "done"))
+      scratch[count++] = *(const double *)(const void *)((const char *)&a->rows[i] + offset);
+  return scree_summarise(scratch, count, a->study->confidence);
+}
+
+/* The value of a run's series at a time: between its points by a straight line; after its end the
+ * last one if the run came to rest; else NaN. */
+static double series_at(const row *r, double time) {
+  size_t n = r->series_count;
+  if (n == 0 || time < r->time[0]) return NAN;
+  if (time > r->time[n - 1]) return r->still ? r->rotation[n - 1] : NAN;
+  size_t low = 0, high = n - 1;
+  while (high - low > 1) {
+    size_t middle = (low + high) / 2;
+    if (r->time[middle] <= time)
+      low = middle;
+    else
+      high = middle;
+  }
+  double span = r->time[high] - r->time[low];
+  double u = span > 0 ? (time - r->time[low]) / span : 0;
+  return r->rotation[low] + u * (r->rotation[high] - r->rotation[low]);
+}
+
+static scree_status average_rotation(const analysis *a, size_t point, scree_point_result *p,
+                                     double *scratch) {
+  double start = INFINITY, end = -INFINITY, step = INFINITY;
+  for (size_t i = 0; i < a->row_count; i++) {
+    const row *r = &a->rows[i];
+    if (r->point != point || r->series_count < 2) continue;
+    start = fmin(start, r->time[0]);
+    end = fmax(end, r->time[r->series_count - 1]);
+    step = fmin(step, (r->time[r->series_count - 1] - r->time[0]) / (double)(r->series_count - 1));
+  }
+  if (!(end > start) || !(step > 0)) return SCREE_OK;
+  /* a multiple of the step from the lift on, so that zero is one of the times */
+  double first = ceil(start / step) * step;
+  size_t count = (size_t)floor((end - first) / step) + 1;
+  double **all[] = {&p->time, &p->rotation, &p->rotation_low, &p->rotation_high};
+  for (int k = 0; k < 4; k++)
+    if (!(*all[k] = take(a, count, sizeof(double)))) return no_memory(a);
+  for (size_t t = 0; t < count; t++) {
+    size_t n = 0;
+    p->time[t] = first + step * (double)t;
+    for (size_t i = 0; i < a->row_count; i++)
+      if (a->rows[i].point == point) scratch[n++] = series_at(&a->rows[i], p->time[t]);
+    scree_summary s = scree_summarise(scratch, n, 0.95);
+    double sd = isnan(s.sd) ? 0 : s.sd;
+    p->rotation[t] = s.mean;
+    p->rotation_low[t] = fmax(0, s.mean - sd);
+    p->rotation_high[t] = s.mean + sd;
+  }
+  p->series_count = count;
+  return SCREE_OK;
+}
+
+static scree_status make_point(const analysis *a, size_t index, double *scratch) {
+  const scree_study_point *point = &a->study->points[index];
+  scree_point_result *p = &a->result->points[index];
+  bool spheres = !strcmp(point->rp, "spheres");
+  p->label = scree_arena_text(a->arena, point->label);
+  p->rp = scree_arena_text(a->arena, point->rp);
+  p->shapes = scree_arena_text(a->arena, a->study->sets[point->set].label);
+  if (!p->label || !p->rp || !p->shapes) return no_memory(a);
+  p->rp_value = spheres ? NAN : !strcmp(point->rp, "scan") ? 1 : strtod(point->rp, NULL);
+  for (size_t i = 0; i < a->row_count; i++)
+    if (a->rows[i].point == index) count_state(&p->counts, a->rows[i].state);
+  p->triangle_count = summarise(a, index, offsetof(row, triangles), scratch).mean;
+  p->angle_deg = summarise(a, index, offsetof(row, angle), scratch);
+  p->heap_count = p->angle_deg.count;
+  p->seconds = summarise(a, index, offsetof(row, seconds), scratch);
+  p->height = summarise(a, index, offsetof(row, height), scratch);
+  p->run_out = summarise(a, index, offsetof(row, run_out), scratch);
+  p->coordination = summarise(a, index, offsetof(row, coordination), scratch);
+  p->packing = summarise(a, index, offsetof(row, packing), scratch);
+  p->left = summarise(a, index, offsetof(row, left), scratch);
+  p->peak_rotation = summarise(a, index, offsetof(row, peak_rotation), scratch);
+  return average_rotation(a, index, p, scratch);
+}
+
+/* ---- families ---- */
+
+static size_t rp_factor(const scree_study *study) {
+  for (size_t f = 0; f < study->factor_count; f++)
+    if (!strcmp(study->factors[f].key, "rp")) return f;
+  return SIZE_MAX;
+}
+
+static bool same_family(const scree_study *study, size_t a, size_t b) {
+  for (size_t f = 0; f < study->factor_count; f++)
+    if (strcmp(study->factors[f].key, "rp") != 0 &&
+        strcmp(study->points[a].values[f], study->points[b].values[f]) != 0)
+      return false;
+  return true;
+}
+
+static const char *family_label(const analysis *a, size_t point) {
+  char text[512] = "";
+  size_t used = 0;
+  for (size_t f = 0; f < a->study->factor_count && used < sizeof text; f++)
+    if (strcmp(a->study->factors[f].key, "rp") != 0)
+      used += (size_t)snprintf(text + used, sizeof text - used, "%s%s %s", used ? ", " : "",
+                               a->study->factors[f].key, a->study->points[point].values[f]);
+  return scree_arena_text(a->arena, text);
+}
+
+/* Levels by rising Rp, spheres apart. */
+static void gather_levels(const analysis *a, size_t first, scree_family_result *family) {
+  const scree_point_result *points = a->result->points;
+  family->spheres = SIZE_MAX;
+  for (size_t p = first; p < a->study->point_count; p++) {
+    if (!same_family(a->study, first, p)) continue;
+    if (isnan(points[p].rp_value)) {
+      family->spheres = p;
+      continue;
+    }
+    size_t at = family->level_count++;
+    for (; at > 0 && points[family->levels[at - 1]].rp_value > points[p].rp_value; at--)
+      family->levels[at] = family->levels[at - 1];
+    family->levels[at] = p;
+  }
+}
+
+static void test_convergence(const analysis *a, scree_family_result *family) {
+  const scree_point_result *points = a->result->points;
+  double alpha = 1 - a->study->confidence;
+  size_t finest = family->level_count - 1;
+  const scree_summary *reference = &points[family->levels[finest]].angle_deg;
+  for (size_t i = 0; i < finest; i++)
+    family->comparisons[i] =
+        scree_compare(&points[family->levels[i]].angle_deg, reference, a->study->margin_deg, alpha);
+  family->converged_from = finest;
+  while (family->converged_from > 0 && family->comparisons[family->converged_from - 1].equivalent)
+    family->converged_from--;
+  family->converged = family->converged_from < finest;
+}
+
+/* Least, largest and geometric mean of the shapes' chosen Rp. */
+static void gather_picks(const analysis *a, size_t point, scree_family_result *family) {
+  const scree_shape_set *set = &a->study->sets[a->study->points[point].set];
+  double paper = 0, robust = 0;
+  family->paper_low = family->robust_low = INFINITY;
+  for (size_t i = 0; i < set->count; i++) {
+    const scree_study_shape *shape = &a->study->shapes[set->shapes[i]];
+    family->paper_low = fmin(family->paper_low, shape->paper_rp);
+    family->paper_high = fmax(family->paper_high, shape->paper_rp);
+    family->robust_low = fmin(family->robust_low, shape->robust_rp);
+    family->robust_high = fmax(family->robust_high, shape->robust_rp);
+    paper += log(shape->paper_rp) / (double)set->count;
+    robust += log(shape->robust_rp) / (double)set->count;
+  }
+  family->paper_mean = exp(paper);
+  family->robust_mean = exp(robust);
+}
+
+/* A tenth of a per mille is forgiven: grids are written with few digits. */
+static scree_in_range in_range(const analysis *a, const scree_family_result *family, double low) {
+  if (!family->converged || !(low > 0)) return SCREE_IN_RANGE_UNKNOWN;
+  double from = a->result->points[family->levels[family->converged_from]].rp_value;
+  return low >= from * (1 - 1e-4) ? SCREE_IN_RANGE_YES : SCREE_IN_RANGE_NO;
+}
+
+static scree_status fit_time(const analysis *a, scree_family_result *family) {
+  double *x = take(a, a->row_count, sizeof *x), *y = take(a, a->row_count, sizeof *y);
+  size_t count = 0;
+  if (!x || !y) return no_memory(a);
+  for (size_t i = 0; i < a->row_count; i++)
+    for (size_t k = 0; k < family->level_count; k++)
+      if (a->rows[i].point == family->levels[k] && a->rows[i].seconds > 0) {
+        x[count] = a->result->points[family->levels[k]].rp_value;
+        y[count++] = a->rows[i].seconds;
+      }
+  /* too few levels yet: counts stay 0 */
+  scree_fit_power(x, y, count, a->study->confidence, &family->time_law, NULL);
+  scree_fit_polynomial(x, y, count, SCREE_POLYNOMIAL_DEGREE, &family->time_curve, NULL);
+  return SCREE_OK;
+}
+
+static scree_status make_family(const analysis *a, size_t first, scree_family_result *family) {
+  family->levels = take(a, a->study->point_count, sizeof *family->levels);
+  family->comparisons = take(a, a->study->point_count, sizeof *family->comparisons);
+  family->label = family_label(a, first);
+  if (!family->levels || !family->comparisons || !family->label) return no_memory(a);
+  gather_levels(a, first, family);
+  if (family->level_count < 2) return SCREE_OK;
+  test_convergence(a, family);
+  gather_picks(a, first, family);
+  family->paper_in_range = in_range(a, family, family->paper_low);
+  family->robust_in_range = in_range(a, family, family->robust_low);
+  return fit_time(a, family);
+}
+
+static scree_status make_families(analysis *a) {
+  scree_study_result *r = a->result;
+  if (rp_factor(a->study) == SIZE_MAX || a->study->design != SCREE_DESIGN_GRID) return SCREE_OK;
+  r->families = take(a, a->study->point_count, sizeof *r->families);
+  if (!r->families) return no_memory(a);
+  for (size_t p = 0; p < a->study->point_count; p++) {
+    bool seen = false;
+    for (size_t q = 0; q < p && !seen; q++) seen = same_family(a->study, p, q);
+    if (seen) continue;
+    scree_family_result family = {0};
+    scree_status status = make_family(a, p, &family);
+    if (status != SCREE_OK) return status;
+    if (family.level_count >= 2) r->families[r->family_count++] = family;
+  }
+  return SCREE_OK;
+}
+
+/* ---- the whole ---- */
+
+static scree_status make_whole(analysis *a) {
+  scree_study_result *r = a->result;
+  double wall = 0, left = 0;
+  const char *version = NULL;
+  r->failures = take(a, a->row_count, sizeof *r->failures);
+  if (!r->failures) return no_memory(a);
+  for (size_t i = 0; i < a->row_count; i++) {
+    const row *w = &a->rows[i];
+    count_state(&r->counts, w->state);
+    if (!strcmp(w->state, "failed"))
+      r->failures[r->failure_count++] =
+          (scree_failure){r->points[w->point].label, w->reason, w->replicate};
+    if (!strcmp(w->state, "waiting")) left += 1;
+    if (!strcmp(w->state, "leased")) left += 1;
+    if (!strcmp(w->state, "running")) left += isnan(w->fraction) ? 1 : 1 - w->fraction;
+    if (strcmp(w->state, "done") != 0) continue;
+    wall += w->wall;
+    r->seconds_spent += w->seconds;
+    if (version && strcmp(version, w->version) != 0) r->mixed_versions = true;
+    version = w->version;
+  }
+  r->worker_count = r->counts.leased + r->counts.running;
+  double workers = r->worker_count > 0 ? (double)r->worker_count : 1;
+  r->seconds_left = left == 0        ? 0
+                    : r->counts.done ? left * wall / (double)r->counts.done / workers
+                                     : NAN;
+  return SCREE_OK;
+}
+
+static scree_status make_result(analysis *a) {
+  static const char *const designs[] = {"grid", "latin", "sobol"};
+  const scree_study *s = a->study;
+  scree_study_result *r = a->result;
+  r->name = scree_arena_text(a->arena, s->name);
+  r->design = designs[s->design];
+  r->method = scree_method_name(s->method);
+  r->angle = scree_arena_text(a->arena, s->analysis_angle);
+  r->version = scree_version();
+  r->replicate_count = s->replicate_count;
+  r->point_count = s->point_count;
+  r->factor_count = s->factor_count;
+  r->seed = s->seed;
+  r->margin_deg = s->margin_deg;
+  r->confidence = s->confidence;
+  r->points = take(a, s->point_count, sizeof *r->points);
+  double *scratch = take(a, scree_study_run_count(s), sizeof *scratch);
+  if (!r->name || !r->angle || !r->points || !scratch) return no_memory(a);
+  scree_status status = read_rows(a);
+  if (status == SCREE_OK) status = read_all_series(a);
+  for (size_t p = 0; status == SCREE_OK && p < s->point_count; p++)
+    status = make_point(a, p, scratch);
+  if (status == SCREE_OK) status = make_families(a);
+  if (status == SCREE_OK) status = make_whole(a);
+  return status;
+}
+
+scree_status scree_study_analyse(const scree_study *study, scree_study_result *result,
+                                 scree_error *error) {
+  scree_study_result made = {.memory = scree_alloc_zero(1, sizeof(scree_arena))};
+  if (!made.memory) return scree_fail_memory(error, sizeof(scree_arena), "the analysis of a study");
+  analysis a = {.study = study, .arena = made.memory, .result = &made, .error = error};
+  scree_status status = scree_database_open(study, false, &a.database, error);
+  if (status == SCREE_OK) {
+    status = make_result(&a);
+    scree_database_close(&a.database);
+  }
+  if (status == SCREE_OK)
+    *result = made;
+  else
+    scree_study_result_free(&made);
+  return status;
+}
+
+void scree_study_result_free(scree_study_result *result) {
+  if (result->memory) scree_arena_free(result->memory);
+  scree_free(result->memory);
+  *result = (scree_study_result){0};
+}
