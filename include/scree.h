@@ -1091,7 +1091,7 @@ SCREE_API scree_status scree_world_save(const scree_world *world, const char *pa
  * for what is no checkpoint, is of another version, is cut short or has a bit changed anywhere. */
 SCREE_API scree_status scree_world_load(const char *path, scree_world **world, scree_error *error);
 
-/* ==== 8. Pile: filling, lifting, angle of repose, studies ======================================
+/* ==== 8. Pile: filling, lifting, angle of repose ===========================================
  */
 
 /* ---- 8.1 Measuring a heap ---- */
@@ -1766,6 +1766,7 @@ SCREE_API scree_status scree_provenance_write(const scree_work_start *start,
 SCREE_API scree_status scree_page_write(const char *const *folders, size_t folder_count,
                                         const char *path, bool overwrite, scree_error *error);
 
+
 /* ---- 9.6 Files for DEM codes ---- */
 
 /* How a particle's mesh is put before it is written. */
@@ -1955,6 +1956,7 @@ SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
 SCREE_API scree_status scree_world_export(const scree_world *world,
                                           const scree_export_options *options, const char *folder,
                                           scree_error *error);
+
 
 /* ---- 10.2 A study: points, replicates, runs ---- */
 
