@@ -166,7 +166,8 @@ const cli_verb cli_verb_study = {
         "that share the folder work on it together. Results go to DIR/study.sqlite, tables and "
         "figures beside it. docs/repose.md describes the file and the statistics.\n"
         "\n"
-        "`scree study status DIR` shows how far it is, and what is known so far. Under mpirun or "
+        "With the word status and its folder it shows how far a study is and what is known so far. "
+        "Under mpirun or "
         "srun every rank is a worker.",
     .examples = "scree study repose.yaml -o repose --jobs 4\n"
                 "scree study status repose\n"
