@@ -1766,7 +1766,6 @@ SCREE_API scree_status scree_provenance_write(const scree_work_start *start,
 SCREE_API scree_status scree_page_write(const char *const *folders, size_t folder_count,
                                         const char *path, bool overwrite, scree_error *error);
 
-
 /* ---- 9.6 Files for DEM codes ---- */
 
 /* How a particle's mesh is put before it is written. */
@@ -1956,6 +1955,7 @@ SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
 SCREE_API scree_status scree_world_export(const scree_world *world,
                                           const scree_export_options *options, const char *folder,
                                           scree_error *error);
+
 
 
 /* ---- 10.2 A study: points, replicates, runs ---- */
