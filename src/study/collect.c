@@ -156,7 +156,7 @@ static scree_status put_points(writer *w) {
 
 /* ---- runs ---- */
 
-static scree_status put_result(writer *w, const char *key, const scree_record *r) {
+static scree_status put_result(writer *w, const char *key, const scree_study_record *r) {
   static const char sql[] =
       "UPDATE run SET state = ?2, reason = ?3, worker = ?4, machine = ?5, version = ?6, started = "
       "?7, ended = ?8, triangle_count = ?9, time_step = ?10, step_count = ?11, particle_steps = "
@@ -208,7 +208,7 @@ static scree_status put_result(writer *w, const char *key, const scree_record *r
   return status;
 }
 
-static scree_status put_series(writer *w, const char *key, const scree_record *r) {
+static scree_status put_series(writer *w, const char *key, const scree_study_record *r) {
   sqlite3_stmt *s;
   scree_status status = make(w,
                              "INSERT OR REPLACE INTO series VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, "
@@ -231,7 +231,8 @@ static scree_status put_series(writer *w, const char *key, const scree_record *r
   return status;
 }
 
-static scree_status put_failure(writer *w, const char *key, int number, const scree_record *r) {
+static scree_status put_failure(writer *w, const char *key, int number,
+                                const scree_study_record *r) {
   sqlite3_stmt *s;
   scree_status status = make(w, "INSERT OR REPLACE INTO failure VALUES(?1, ?2, ?3, ?4, ?5)", &s);
   if (status != SCREE_OK) return status;
@@ -251,14 +252,14 @@ static scree_status put_failures(writer *w, const char *key) {
   for (int n = 1; status == SCREE_OK; n++) {
     char ending[32];
     struct stat info;
-    scree_record record;
+    scree_study_record record;
     snprintf(ending, sizeof ending, ".failed-%d", n);
     char *path = scree_study_path(w->study, "results", key, ending);
     if (!path) return scree_fail_memory(w->error, 0, "a path");
     bool there = stat(path, &info) == 0;
-    if (there && scree_record_read(path, &record, NULL) == SCREE_OK) {
+    if (there && scree_study_record_read(path, &record, NULL) == SCREE_OK) {
       status = put_failure(w, key, n, &record);
-      scree_record_free(&record);
+      scree_study_record_free(&record);
     }
     scree_free(path);
     if (!there) break;
@@ -308,11 +309,11 @@ static bool in_already(writer *w, const char *key, sqlite3_stmt *ask, double end
 
 static scree_status put_record(writer *w, const char *key, sqlite3_stmt *ask, bool *found) {
   struct stat info;
-  scree_record record;
+  scree_study_record record;
   char *path = scree_study_path(w->study, "results", key, ".yaml");
   if (!path) return scree_fail_memory(w->error, 0, "a path");
   *found = stat(path, &info) == 0;
-  scree_status status = *found ? scree_record_read(path, &record, w->error) : SCREE_OK;
+  scree_status status = *found ? scree_study_record_read(path, &record, w->error) : SCREE_OK;
   scree_free(path);
   if (status == SCREE_BAD_FILE) { /* the next worker puts it aside */
     *found = false;
@@ -324,7 +325,7 @@ static scree_status put_record(writer *w, const char *key, sqlite3_stmt *ask, bo
     if (status == SCREE_OK && !record.failed) status = put_series(w, key, &record);
     if (status == SCREE_OK) status = put_failures(w, key);
   }
-  scree_record_free(&record);
+  scree_study_record_free(&record);
   return status;
 }
 

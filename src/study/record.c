@@ -17,7 +17,7 @@ typedef struct field {
 } field;
 
 #define AT(key, kind, member)                                                                      \
-  { key, kind, offsetof(scree_record, member), sizeof(((scree_record *)0)->member) }
+  { key, kind, offsetof(scree_study_record, member), sizeof(((scree_study_record *)0)->member) }
 
 static const field fields[] = {
     AT("failed", FLAG, failed),
@@ -78,7 +78,7 @@ static const struct {
 };
 enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
-void scree_record_free(scree_record *record) {
+void scree_study_record_free(scree_study_record *record) {
   scree_free(record->series);
   record->series = NULL;
   record->series_count = 0;
@@ -108,7 +108,7 @@ static void write_text(FILE *stream, const char *text) {
   putc('"', stream);
 }
 
-static void write_field(FILE *stream, const field *f, const scree_record *record) {
+static void write_field(FILE *stream, const field *f, const scree_study_record *record) {
   const void *value = (const char *)record + f->offset;
   switch (f->kind) {
   case REAL:
@@ -129,7 +129,7 @@ static void write_field(FILE *stream, const field *f, const scree_record *record
   }
 }
 
-static void write_series(FILE *stream, const scree_record *record) {
+static void write_series(FILE *stream, const scree_study_record *record) {
   fputs(" \"phase\": [", stream);
   for (size_t i = 0; i < record->series_count; i++)
     fprintf(stream, "%s%d", i ? ", " : "", (int)record->series[i].phase);
@@ -147,7 +147,8 @@ static void write_series(FILE *stream, const scree_record *record) {
   }
 }
 
-scree_status scree_record_write(const scree_record *record, const char *path, scree_error *error) {
+scree_status scree_study_record_write(const scree_study_record *record, const char *path,
+                                      scree_error *error) {
   scree_output output;
   scree_status status = scree_output_open(path, true, &output, error);
   if (status != SCREE_OK) return status;
@@ -180,7 +181,7 @@ static bool parse_whole(const char *text, unsigned long long *value) {
   return *text >= '0' && *text <= '9' && !*end;
 }
 
-static bool parse_field(const field *f, const char *text, scree_record *record) {
+static bool parse_field(const field *f, const char *text, scree_study_record *record) {
   void *value = (char *)record + f->offset;
   unsigned long long whole;
   switch (f->kind) {
@@ -204,8 +205,8 @@ static bool parse_field(const field *f, const char *text, scree_record *record) 
   return false;
 }
 
-static scree_status read_fields(const char *path, const scree_yaml *root, scree_record *record,
-                                scree_error *error) {
+static scree_status read_fields(const char *path, const scree_yaml *root,
+                                scree_study_record *record, scree_error *error) {
   for (int i = 0; i < FIELD_COUNT; i++) {
     const scree_yaml *node = scree_yaml_find(root, fields[i].key);
     if (!node || node->kind != SCREE_YAML_SCALAR || !parse_field(&fields[i], node->text, record))
@@ -224,7 +225,7 @@ static const scree_yaml *find_list(const scree_yaml *root, const char *name, siz
   return list;
 }
 
-static bool read_columns(const scree_yaml *root, scree_record *record) {
+static bool read_columns(const scree_yaml *root, scree_study_record *record) {
   size_t count = record->series_count;
   const scree_yaml *phase = find_list(root, "phase", count),
                    *bodies = find_list(root, "bodies", count);
@@ -248,12 +249,13 @@ static bool read_columns(const scree_yaml *root, scree_record *record) {
   return good;
 }
 
-scree_status scree_record_read(const char *path, scree_record *record, scree_error *error) {
+scree_status scree_study_record_read(const char *path, scree_study_record *record,
+                                     scree_error *error) {
   enum { LARGEST_RECORD = 256 << 20 };
   char *bytes;
   size_t byte_count;
   scree_yaml root;
-  scree_record made = {0};
+  scree_study_record made = {0};
   scree_status status = scree_file_read(path, LARGEST_RECORD, &bytes, &byte_count, error);
   if (status != SCREE_OK) return status;
   status = scree_yaml_parse(bytes, byte_count, path, &root, error);
@@ -275,6 +277,6 @@ scree_status scree_record_read(const char *path, scree_record *record, scree_err
   if (status == SCREE_OK)
     *record = made;
   else
-    scree_record_free(&made);
+    scree_study_record_free(&made);
   return status;
 }

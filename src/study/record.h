@@ -4,7 +4,7 @@
 
 #include "study/study.h"
 
-typedef struct scree_record {
+typedef struct scree_study_record {
   bool failed;
   char reason[512];
   char worker[160], machine[160], version[32];
@@ -15,12 +15,14 @@ typedef struct scree_record {
   char hash[40]; /* of the final state of the world */
   scree_run_point *series;
   size_t series_count;
-} scree_record;
+} scree_study_record;
 
 /* FOLDER/results/KEY.yaml, which is JSON too. */
-scree_status scree_record_write(const scree_record *record, const char *path, scree_error *error);
-/* SCREE_BAD_FILE for what is no record. Free with scree_record_free. */
-scree_status scree_record_read(const char *path, scree_record *record, scree_error *error);
-void scree_record_free(scree_record *record);
+scree_status scree_study_record_write(const scree_study_record *record, const char *path,
+                                      scree_error *error);
+/* SCREE_BAD_FILE for what is no record. Free with scree_study_record_free. */
+scree_status scree_study_record_read(const char *path, scree_study_record *record,
+                                     scree_error *error);
+void scree_study_record_free(scree_study_record *record);
 
 #endif

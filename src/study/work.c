@@ -94,7 +94,7 @@ static bool watch(void *context, const scree_run_state *state) {
   return !w->cancelled && !w->lost && w->renewal == SCREE_OK;
 }
 
-static scree_status fill_record(scree_run *run, scree_record *record, scree_error *error) {
+static scree_status fill_record(scree_run *run, scree_study_record *record, scree_error *error) {
   size_t count;
   const scree_run_point *series = scree_run_series(run, &count);
   scree_checksum hash = scree_world_hash(scree_run_world(run));
@@ -110,7 +110,7 @@ static scree_status fill_record(scree_run *run, scree_record *record, scree_erro
 
 /* Simulates; a checkpoint that cannot be read is thrown away once. */
 static scree_status simulate(work *w, const scree_experiment *e, const scree_run_shape *shapes,
-                             scree_record *record, scree_error *error) {
+                             scree_study_record *record, scree_error *error) {
   char *folder = run_file(w, "runs", "", error);
   if (!folder) return SCREE_OUT_OF_MEMORY;
   scree_run *run = NULL;
@@ -139,7 +139,7 @@ static scree_status simulate(work *w, const scree_experiment *e, const scree_run
   return status;
 }
 
-static scree_status make_and_simulate(work *w, scree_record *record, scree_error *error) {
+static scree_status make_and_simulate(work *w, scree_study_record *record, scree_error *error) {
   scree_run_shape shapes[MOST_SHAPES];
   scree_experiment e;
   size_t point = scree_study_run_point(w->study, w->run);
@@ -161,10 +161,11 @@ static bool is_machines_fault(scree_status status) {
   return status == SCREE_IO || status == SCREE_OUT_OF_MEMORY || status == SCREE_CANCELLED;
 }
 
-static scree_status write_record(const work *w, const scree_record *record, scree_error *error) {
+static scree_status write_record(const work *w, const scree_study_record *record,
+                                 scree_error *error) {
   char *path = run_file(w, "results", ".yaml", error);
   if (!path) return SCREE_OUT_OF_MEMORY;
-  scree_status status = scree_record_write(record, path, error);
+  scree_status status = scree_study_record_write(record, path, error);
   scree_free(path);
   char *checkpoint = status == SCREE_OK ? run_file(w, "runs", "/checkpoint.scree", NULL) : NULL;
   if (checkpoint) unlink(checkpoint); /* the last frame stays */
@@ -172,8 +173,8 @@ static scree_status write_record(const work *w, const scree_record *record, scre
   return status;
 }
 
-static void record_failure(scree_record *record, const char *reason) {
-  scree_record_free(record);
+static void record_failure(scree_study_record *record, const char *reason) {
+  scree_study_record_free(record);
   record->failed = true;
   record->result.repose = (scree_repose){.sector_deg = NAN,
                                          .sector_sd_deg = NAN,
@@ -185,7 +186,7 @@ static void record_failure(scree_record *record, const char *reason) {
 
 /* Works on w->run, whose lease is ours. */
 static scree_status do_run(work *w, scree_error *error) {
-  scree_record record = {.started = now_since_1970()};
+  scree_study_record record = {.started = now_since_1970()};
   scree_error reason = {0};
   char last[SCREE_LEASE_NAME] = "", name[64];
   snprintf(record.worker, sizeof record.worker, "%s", w->worker);
@@ -202,7 +203,7 @@ static scree_status do_run(work *w, scree_error *error) {
     status = make_and_simulate(w, &record, &reason);
   record.ended = now_since_1970();
   if (w->lost || is_machines_fault(status)) {
-    scree_record_free(&record);
+    scree_study_record_free(&record);
     if (w->lost) return SCREE_OK; /* whoever has it now goes on */
     if (w->renewal != SCREE_OK) reason = w->renewal_error;
     if (error) *error = reason;
@@ -210,7 +211,7 @@ static scree_status do_run(work *w, scree_error *error) {
   }
   if (status != SCREE_OK) record_failure(&record, reason.message);
   status = write_record(w, &record, error);
-  scree_record_free(&record);
+  scree_study_record_free(&record);
   if (status == SCREE_OK) scree_lease_forget_deaths(w->leases, name);
   return status;
 }
@@ -263,11 +264,11 @@ static scree_status reopen_failed(work *w, scree_error *error) {
   for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
     char *path = run_file(w, "results", ".yaml", error);
     if (!path) return SCREE_OUT_OF_MEMORY;
-    scree_record record;
+    scree_study_record record;
     bool failed = false;
-    if (exists(path) && scree_record_read(path, &record, NULL) == SCREE_OK) {
+    if (exists(path) && scree_study_record_read(path, &record, NULL) == SCREE_OK) {
       failed = record.failed;
-      scree_record_free(&record);
+      scree_study_record_free(&record);
     }
     for (int n = 1; failed && n < RETRIES_KEPT; n++) {
       char ending[32];
@@ -293,9 +294,9 @@ static scree_status put_broken_aside(work *w, scree_error *error) {
     char *path = run_file(w, "results", ".yaml", error);
     char *aside = path ? run_file(w, "results", ".broken", error) : NULL;
     if (aside && exists(path)) {
-      scree_record record;
-      scree_status status = scree_record_read(path, &record, NULL);
-      if (status == SCREE_OK) scree_record_free(&record);
+      scree_study_record record;
+      scree_status status = scree_study_record_read(path, &record, NULL);
+      if (status == SCREE_OK) scree_study_record_free(&record);
       if (status == SCREE_BAD_FILE) rename(path, aside);
     }
     bool good = aside != NULL;
