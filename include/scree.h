@@ -1091,7 +1091,7 @@ SCREE_API scree_status scree_world_save(const scree_world *world, const char *pa
  * for what is no checkpoint, is of another version, is cut short or has a bit changed anywhere. */
 SCREE_API scree_status scree_world_load(const char *path, scree_world **world, scree_error *error);
 
-/* ==== 8. Pile: filling, lifting, angle of repose ===========================================
+/* ==== 8. Pile: filling, lifting, angle of repose, studies ======================================
  */
 
 /* ---- 8.1 Measuring a heap ---- */
@@ -1815,6 +1815,31 @@ SCREE_API scree_status scree_world_export(const scree_world *world,
                                           const scree_export_options *options, const char *folder,
                                           scree_error *error);
 
+/* ---- 9.6 Heaps: JSON, CSV, pictures ---- */
+
+/* A run and what was measured of it. Texts are borrowed. */
+typedef struct scree_heap_entry {
+  const scree_run *run;
+  const scree_run_result *result;
+  const char *file;                /* the frame measured; NULL: the run itself, as it ended */
+  const scree_experiment *measure; /* the settings of the measurement; NULL: the run's own */
+  const char *command_line;        /* NULL: unknown */
+} scree_heap_entry;
+
+/* One object: version, command, experiment, shapes, the heap three ways, costs, and the series as
+ * columns (docs/formats.md). "-" is stdout. */
+SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *path,
+                                             bool overwrite, scree_error *error);
+/* The series, one row a point. "-" is stdout. */
+SCREE_API scree_status scree_series_csv_write(const scree_run *run, const char *path,
+                                              bool overwrite, scree_error *error);
+
+/* The particles of a run as they stand, each shape in its colour, seen as options say; a focus of
+ * radius 0 is put on the heap, strays may lie outside. Errors as scree_render. */
+SCREE_API scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
+                                         const scree_progress *progress, scree_image *image,
+                                         scree_error *error);
+
 /* ==== 10. Studies: many runs, and what they say ================================================
  */
 
@@ -1880,83 +1905,6 @@ typedef struct scree_polynomial {
 SCREE_API scree_status scree_fit_polynomial(const double *x, const double *y, size_t count,
                                             int degree, scree_polynomial *fit, scree_error *error);
 SCREE_API double scree_polynomial_value(const scree_polynomial *fit, double x);
-
-/* ---- 9.6 Heaps: JSON, CSV, pictures ---- */
-
-/* A run and what was measured of it. Texts are borrowed. */
-typedef struct scree_heap_entry {
-  const scree_run *run;
-  const scree_run_result *result;
-  const char *file;                /* the frame measured; NULL: the run itself, as it ended */
-  const scree_experiment *measure; /* the settings of the measurement; NULL: the run's own */
-  const char *command_line;        /* NULL: unknown */
-} scree_heap_entry;
-
-/* One object: version, command, experiment, shapes, the heap three ways, costs, and the series as
- * columns (docs/formats.md). "-" is stdout. */
-SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *path,
-                                             bool overwrite, scree_error *error);
-/* The series, one row a point. "-" is stdout. */
-SCREE_API scree_status scree_series_csv_write(const scree_run *run, const char *path,
-                                              bool overwrite, scree_error *error);
-
-/* The particles of a run as they stand, each shape in its colour, seen as options say; a focus of
- * radius 0 is put on the heap, strays may lie outside. Errors as scree_render. */
-SCREE_API scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
-                                         const scree_progress *progress, scree_image *image,
-                                         scree_error *error);
-
-
-/* ---- 9.6 Files for DEM codes ---- */
-
-/* How a particle's mesh is put before it is written. */
-typedef struct scree_export_options {
-  double density; /* kg/m3, > 0; default 2000 (not in the paper) */
-  double unit_m;  /* metres per unit of the mesh file; default 1e-3 */
-  bool centre;    /* origin to the centre of mass; default false */
-  bool principal; /* axes also along the principal axes of inertia, moments ascending: the x axis
-                     is the long one; implies centre; default false */
-  bool overwrite; /* default false */
-  const char *source; /* the input as given, for provenance; NULL: unknown. Borrowed, as are */
-  const char *command_line;
-  scree_checksum checksum; /* of the input; zero: none */
-} scree_export_options;
-
-SCREE_API scree_export_options scree_default_export_options(void);
-
-/* Where the mesh went and what it weighs there, SI. */
-typedef struct scree_exported {
-  double rotation[3][3];   /* a point p of the mesh given is at rotation p + translation */
-  double translation[3];   /* m */
-  double mass;             /* kg */
-  double inertia[3][3];    /* kg m2, about the centre of mass, along the axes of the file */
-  double bounding_radius;  /* m, about the centre of mass */
-  scree_measures measures; /* of the mesh as it lies in the file, before rounding */
-} scree_exported;
-
-/* Writes the mesh, put as asked, to mesh_path (format by its ending) and what a DEM code needs to
- * know of it as JSON to json_path (docs/formats.md; NULL: not wanted). *exported may be NULL.
- * Fails with SCREE_BAD_MESH where the mesh is not closed or inside out: it would have no mass; with
- * SCREE_EXISTS before anything is written; else as scree_mesh_write. */
-SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
-                                             const scree_export_options *options,
-                                             const char *mesh_path, const char *json_path,
-                                             scree_exported *exported, scree_error *error);
-
-/* Writes a world for other programs into a folder, made if need be:
- *
- *   pile.json      time, gravity, shapes, bodies, walls (docs/formats.md), SI
- *   bodies.csv     the bodies as rows
- *   shape-K.stl    the mesh of shape K (scree_world_shape) in the particle's frame, in unit_m
- *   wall-K.stl     the mesh of wall K in its own frame, in unit_m
- *
- * A body of shape K lies where its quaternion turns shape-K.stl and its position moves it. Of the
- * options unit_m, overwrite and the provenance count. */
-SCREE_API scree_status scree_world_export(const scree_world *world,
-                                          const scree_export_options *options, const char *folder,
-                                          scree_error *error);
-
-
 
 /* ---- 10.2 A study: points, replicates, runs ---- */
 
