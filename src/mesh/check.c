@@ -11,6 +11,7 @@
 #include "base/alloc.h"
 #include "base/sum.h"
 #include "mesh/adjacency.h"
+#include "mesh/apart.h"
 #include "mesh/intersect.h"
 #include "mesh/shells.h"
 #include "mesh/topology.h"
@@ -24,6 +25,8 @@
 
 /* More pairs than this are not told apart: a surface that meets itself so often is no surface. */
 enum { MEETING_LIMIT = 20000000 };
+/* Fewer facets are looked at as they are. */
+enum { PROOF_FACETS = 2000 };
 
 static const struct {
   const char *name, *text;
@@ -176,9 +179,14 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
   if (status == SCREE_OK) status = scree_shells_find(mesh, &adjacency, &shells, error);
   check->shell_count = shells.count;
   if (status != SCREE_OK || mesh->triangle_count == 0) goto done;
-  if (status == SCREE_OK && (options->intersections || shells.count > 1))
+  bool clear = false; /* the tree is dear: a clean scan of one shell does without */
+  if (status == SCREE_OK && options->intersections && shells.count == 1 &&
+      mesh->triangle_count >= PROOF_FACETS)
+    status = scree_facets_apart(mesh, &clear, error);
+  check->intersections_known = clear;
+  if (status == SCREE_OK && ((options->intersections && !clear) || shells.count > 1))
     status = scree_facet_tree_build(mesh, &tree, error);
-  if (status == SCREE_OK && options->intersections)
+  if (status == SCREE_OK && options->intersections && !clear)
     status = count_meetings(&tree, &adjacency, &shells, progress, check, error);
   if (status == SCREE_OK && shells.count > 1) status = scree_shells_wind(&shells, &tree, error);
   if (status == SCREE_OK) count_kinds(&shells, check);

@@ -1,0 +1,218 @@
+/* Facets of a scan are of one size, so that a grid of cells sees each a few times: all pairs in a
+ * cell whose boxes touch are tested, each pair in the first cell that both have. Nearly always one
+ * facet's plane has the other, but for what they share, surely on one side; the rest is tested
+ * exactly. */
+#include "mesh/apart.h"
+
+#include "base/alloc.h"
+#include "base/parallel.h"
+#include "mesh/intersect.h"
+
+#include <stdatomic.h>
+#include <string.h>
+
+/* Cell size in mean facet sizes; cells per facet at most; entries per facet, cells of one facet and
+ * facets in one cell beyond which the grid is no good. */
+#define SIZES_PER_CELL 1.5
+enum { CELLS_PER_FACET = 2, ENTRIES_PER_FACET = 8, CELLS_MAX = 64, CROWD = 192 };
+enum { FACET_BLOCK = 4096, CELL_BLOCK = 2048, SAMPLE_STEP = 16 };
+
+typedef struct prover {
+  const scree_mesh *mesh;
+  vec3 low;
+  double per_length;
+  uint32_t size[3];
+  uint32_t *start, *items; /* of cells: facets items[start[c]] up to items[start[c + 1]] */
+  atomic_bool failed;
+} prover;
+
+/* A facet of a cell. */
+typedef struct facet {
+  vec3 low, high, at[3], n;
+  double error; /* |n.(x - at[0])| above error |x - at[0]| is past rounding */
+  const uint32_t *corner;
+  uint8_t begins; /* bit k: its first cell along axis k is this one */
+} facet;
+
+typedef struct span {
+  uint32_t low[3], high[3]; /* inclusive */
+} span;
+
+static double size_of(vec3 v) {
+  return fabs(v.x) + fabs(v.y) + fabs(v.z);
+}
+
+static void facet_box(const scree_mesh *mesh, size_t t, vec3 *low, vec3 *high) {
+  vec3 p = scree_mesh_corner(mesh, t, 0), q = scree_mesh_corner(mesh, t, 1),
+       r = scree_mesh_corner(mesh, t, 2);
+  *low = vec3_min(p, vec3_min(q, r));
+  *high = vec3_max(p, vec3_max(q, r));
+}
+
+static uint32_t along(double x, double low, double per_length, uint32_t size) {
+  double c = (x - low) * per_length;
+  return !(c > 0) ? 0 : c >= (double)size ? size - 1 : (uint32_t)c;
+}
+
+static span span_of(const prover *p, vec3 low, vec3 high) {
+  const double l[3] = {low.x, low.y, low.z}, h[3] = {high.x, high.y, high.z};
+  const double from[3] = {p->low.x, p->low.y, p->low.z};
+  span s;
+  for (int k = 0; k < 3; k++) {
+    s.low[k] = along(l[k], from[k], p->per_length, p->size[k]);
+    s.high[k] = along(h[k], from[k], p->per_length, p->size[k]);
+  }
+  return s;
+}
+
+#define FOR_SPAN(p, s, cell)                                                                       \
+  for (uint32_t z_ = (s).low[2]; z_ <= (s).high[2]; z_++)                                          \
+    for (uint32_t y_ = (s).low[1]; y_ <= (s).high[1]; y_++)                                        \
+      for (size_t cell = ((size_t)z_ * (p)->size[1] + y_) * (p)->size[0] + (s).low[0],             \
+                  end_ = cell + (s).high[0] - (s).low[0];                                          \
+           cell <= end_; cell++)
+
+/* False: a surface without extent. */
+static bool shape(prover *p, size_t *cell_count) {
+  const scree_mesh *mesh = p->mesh;
+  vec3 high = p->low = vec3_load(mesh->positions), a, b;
+  for (size_t v = 1; v < mesh->vertex_count; v++) {
+    p->low = vec3_min(p->low, vec3_load(mesh->positions + 3 * v));
+    high = vec3_max(high, vec3_load(mesh->positions + 3 * v));
+  }
+  double sum = 0;
+  size_t samples = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t += SAMPLE_STEP, samples++) {
+    facet_box(mesh, t, &a, &b);
+    sum += fmax(b.x - a.x, fmax(b.y - a.y, b.z - a.z));
+  }
+  vec3 extent = vec3_sub(high, p->low);
+  double cell = SIZES_PER_CELL * sum / (double)samples, n;
+  if (!(cell > 0 && cell < INFINITY)) return false;
+  for (;; cell *= 1.25) {
+    n = (floor(extent.x / cell) + 1) * (floor(extent.y / cell) + 1) * (floor(extent.z / cell) + 1);
+    if (n <= CELLS_PER_FACET * (double)mesh->triangle_count) break;
+  }
+  p->per_length = 1 / cell;
+  p->size[0] = (uint32_t)(extent.x / cell) + 1;
+  p->size[1] = (uint32_t)(extent.y / cell) + 1;
+  p->size[2] = (uint32_t)(extent.z / cell) + 1;
+  *cell_count = (size_t)p->size[0] * p->size[1] * p->size[2];
+  return true;
+}
+
+/* Counts, for cell c in start[c]. */
+static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  prover *p = context;
+  vec3 low, high;
+  for (size_t t = begin; t < end; t++) {
+    facet_box(p->mesh, t, &low, &high);
+    span s = span_of(p, low, high);
+    size_t cells = 1;
+    for (int k = 0; k < 3; k++) cells *= (size_t)(s.high[k] - s.low[k]) + 1;
+    if (cells > CELLS_MAX) {
+      atomic_store(&p->failed, true);
+      return;
+    }
+    FOR_SPAN(p, s, cell) __atomic_fetch_add(&p->start[cell], 1, __ATOMIC_RELAXED);
+  }
+}
+
+/* From the end of each cell's part to its beginning; the order within a cell does not matter. */
+static void fill_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  prover *p = context;
+  vec3 low, high;
+  for (size_t t = begin; t < end; t++) {
+    facet_box(p->mesh, t, &low, &high);
+    span s = span_of(p, low, high);
+    FOR_SPAN(p, s, cell)
+    p->items[__atomic_sub_fetch(&p->start[cell], 1, __ATOMIC_RELAXED)] = (uint32_t)t;
+  }
+}
+
+static void load(const prover *p, uint32_t t, const uint32_t place[3], facet *f) {
+  f->corner = p->mesh->triangles + 3 * (size_t)t;
+  for (int k = 0; k < 3; k++) f->at[k] = scree_mesh_corner(p->mesh, t, k);
+  f->low = vec3_min(f->at[0], vec3_min(f->at[1], f->at[2]));
+  f->high = vec3_max(f->at[0], vec3_max(f->at[1], f->at[2]));
+  vec3 e1 = vec3_sub(f->at[1], f->at[0]), e2 = vec3_sub(f->at[2], f->at[0]);
+  f->n = vec3_cross(e1, e2);
+  f->error = 1e-14 * size_of(e1) * size_of(e2);
+  span s = span_of(p, f->low, f->low);
+  f->begins =
+      (uint8_t)((s.low[0] == place[0]) | (s.low[1] == place[1]) << 1 | (s.low[2] == place[2]) << 2);
+}
+
+/* All corners of g but those that f has too are surely on one side of f's plane. */
+static bool beside(const facet *f, const facet *g) {
+  int side = 0;
+  for (int k = 0; k < 3; k++) {
+    uint32_t c = g->corner[k];
+    if (c == f->corner[0] || c == f->corner[1] || c == f->corner[2]) continue;
+    vec3 d = vec3_sub(g->at[k], f->at[0]);
+    double dot = vec3_dot(f->n, d), error = f->error * size_of(d);
+    int at = dot > error ? 1 : dot < -error ? -1 : 0;
+    if (at == 0 || at == -side) return false;
+    side = at;
+  }
+  return side != 0;
+}
+
+static bool boxes_apart(const facet *f, const facet *g) {
+  return f->low.x > g->high.x || g->low.x > f->high.x || f->low.y > g->high.y ||
+         g->low.y > f->high.y || f->low.z > g->high.z || g->low.z > f->high.z;
+}
+
+static bool cell_is_clear(const prover *p, size_t cell, facet *facets) {
+  size_t begin = p->start[cell], count = p->start[cell + 1] - begin;
+  uint32_t place[3] = {(uint32_t)(cell % p->size[0]), (uint32_t)(cell / p->size[0] % p->size[1]),
+                       (uint32_t)(cell / p->size[0] / p->size[1])};
+  if (count > CROWD) return false;
+  for (size_t i = 0; i < count; i++) load(p, p->items[begin + i], place, &facets[i]);
+  for (size_t i = 0; i < count; i++)
+    for (size_t j = 0; j < i; j++) {
+      const facet *f = &facets[i], *g = &facets[j];
+      if ((f->begins | g->begins) != 7 || boxes_apart(f, g)) continue;
+      if (beside(f, g) || beside(g, f)) continue;
+      if (scree_triangles_meet(p->mesh->positions, f->corner, g->corner) != SCREE_MEET_NOT)
+        return false;
+    }
+  return true;
+}
+
+static void cell_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  prover *p = context;
+  facet facets[CROWD];
+  for (size_t cell = begin; cell < end; cell++) {
+    if (p->start[cell + 1] - p->start[cell] < 2) continue;
+    if (atomic_load_explicit(&p->failed, memory_order_relaxed)) return;
+    if (!cell_is_clear(p, cell, facets)) atomic_store(&p->failed, true);
+  }
+}
+
+scree_status scree_facets_apart(const scree_mesh *mesh, bool *apart, scree_error *error) {
+  prover p = {.mesh = mesh};
+  size_t cell_count, sum = 0, facets = mesh->triangle_count;
+  *apart = false;
+  if (facets == 0 || !shape(&p, &cell_count)) return SCREE_OK;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(p.start, cell_count + 1, error, done);
+  memset(p.start, 0, (cell_count + 1) * sizeof *p.start);
+  scree_parallel_for(facets, FACET_BLOCK, count_block, &p);
+  for (size_t c = 0; c <= cell_count; c++) p.start[c] = (uint32_t)(sum += p.start[c]);
+  status = SCREE_OK;
+  if (p.failed || sum > ENTRIES_PER_FACET * facets || sum > UINT32_MAX) goto done;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(p.items, sum, error, done);
+  status = SCREE_OK;
+  scree_parallel_for(facets, FACET_BLOCK, fill_block, &p);
+  scree_parallel_for(cell_count, CELL_BLOCK, cell_block, &p);
+  *apart = !p.failed;
+done:
+  scree_free(p.items);
+  scree_free(p.start);
+  return status;
+}
