@@ -24,7 +24,7 @@
 #define HIGH_SHARE 0.6
 #define LOW_SHARE  0.3
 #define SPREAD     8.0
-enum { ROUNDS = 2 };
+enum { ROUNDS = 4 };
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
 /* Mean edges per grid cell, and the share of triangles left at which the grid is built anew. */
