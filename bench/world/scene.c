@@ -19,6 +19,7 @@ typedef struct remake {
   const shape_set *before, *after; /* NULL: the shapes stay */
   size_t copies;
   double pitch; /* of the copies */
+  bool lifting; /* the cylinder rises */
 } remake;
 
 static void advance(scree_world *world, double time) {
@@ -89,6 +90,7 @@ static scree_world *make_again(const scree_world *from, const remake *how) {
     scree_wall wall;
     scree_world_get_wall(from, w, &wall);
     wall.material = 1;
+    wall.velocity[2] = how->lifting && wall.kind == SCREE_WALL_CYLINDER ? lift_speed : 0;
     need(scree_world_add_wall(world, &wall, NULL, &error), &error);
   }
   for (size_t c = 0; c < (how->copies ? how->copies : 1); c++)
@@ -171,8 +173,14 @@ static double height_of(const scree_world *world) {
     scree_body state;
     scree_particle_measures m;
     scree_world_get_body(world, i, &state);
-    scree_particle_measure(scree_world_body_particle(world, i), &m);
-    top = fmax(top, state.position[2] + m.bounding_radius);
+    scree_particle *particle = scree_world_body_particle(world, i);
+    scree_particle_measure(particle, &m);
+    for (size_t k = 0; k < m.point_count; k++) {
+      double centre[3], radius, at[3];
+      scree_particle_point(particle, k, centre, &radius);
+      turn(state.orientation, centre, at);
+      top = fmax(top, state.position[2] + at[2] + 2 * radius);
+    }
   }
   return top;
 }
@@ -184,12 +192,11 @@ scree_world *stack_scene(const scree_world *from, size_t copies, bool settled) {
 }
 
 scree_world *lift_scene(const scree_world *from, double height) {
-  scree_error error;
-  const double up[3] = {0, 0, lift_speed}, still[3] = {0, 0, 0};
-  scree_world *world = make_again(from, &(remake){.stiffness_factor = soft, .gravity = 9.81});
-  need(scree_world_set_wall_velocity(world, 1, up, still, &error), &error);
+  remake how = {.stiffness_factor = soft, .gravity = 9.81, .lifting = true};
+  scree_world *world = make_again(from, &how);
   advance(world, height / lift_speed);
-  return stage(world, (remake){.stiffness_factor = 1, .gravity = 9.81}, flowing_hard_time);
+  how.stiffness_factor = 1;
+  return stage(world, how, flowing_hard_time);
 }
 
 scree_world *retime_scene(const scree_world *from, double time_step) {

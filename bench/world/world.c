@@ -5,6 +5,7 @@
  *   bench_world stack COPIES SETTLE IN OUT         copies above each other, SETTLE 1: at rest
  *   bench_world lift HEIGHT IN OUT                 after the cylinder has risen by HEIGHT m
  *   bench_world retime DT IN OUT                   with time step DT s
+ *   bench_world dump IN OUT                        the scene as text, for the peers (print_scene)
  *   bench_world time THREADS SECONDS IN            measures, after a tenth of the time to warm up
  *   bench_world hash THREADS STEPS IN              prints the hash of the state after these steps
  *
@@ -82,6 +83,58 @@ static int retime(char **a) {
   return status;
 }
 
+/* First line: radius of the cylinder, friction, restitution, number of shapes, number of bodies.
+ * Shapes: mass, three moments of inertia, vertices, triangles; then these. Bodies: shape, position,
+ * orientation w x y z. */
+static void print_scene(const scree_world *world, FILE *out) {
+  scree_particle *shapes[MOST_SHAPES];
+  size_t bodies = scree_world_body_count(world), count = 0, index[MOST_SHAPES];
+  for (size_t i = 0; i < bodies; i++) {
+    size_t k = 0;
+    while (k < count && shapes[k] != scree_world_body_particle(world, i)) k++;
+    if (k < count || count == MOST_SHAPES) continue;
+    index[count] = i;
+    shapes[count++] = scree_world_body_particle(world, i);
+  }
+  scree_material material = scree_default_material();
+  fprintf(out, "0.2 %g %g %zu %zu\n", material.friction, material.restitution, count, bodies);
+  for (size_t k = 0; k < count; k++) {
+    const scree_mesh *mesh = scree_particle_mesh(shapes[k]);
+    scree_particle_measures m;
+    scree_particle_measure(shapes[k], &m);
+    double mass = scree_world_body_mass(world, index[k]), density = mass / m.volume;
+    fprintf(out, "%.17g %.17g %.17g %.17g %zu %zu\n", mass, density * m.inertia[0],
+            density * m.inertia[1], density * m.inertia[2], mesh->vertex_count,
+            mesh->triangle_count);
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+      fprintf(out, "%.9g %.9g %.9g\n", mesh->positions[3 * v], mesh->positions[3 * v + 1],
+              mesh->positions[3 * v + 2]);
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+      fprintf(out, "%u %u %u\n", mesh->triangles[3 * t], mesh->triangles[3 * t + 1],
+              mesh->triangles[3 * t + 2]);
+  }
+  for (size_t i = 0; i < bodies; i++) {
+    scree_body b;
+    size_t k = 0;
+    scree_world_get_body(world, i, &b);
+    while (k + 1 < count && shapes[k] != scree_world_body_particle(world, i)) k++;
+    fprintf(out, "%zu %.9g %.9g %.9g %.9g %.9g %.9g %.9g\n", k, b.position[0], b.position[1],
+            b.position[2], b.orientation[0], b.orientation[1], b.orientation[2], b.orientation[3]);
+  }
+}
+
+static int dump(char **a) {
+  scree_world *world = load(a[0]);
+  FILE *out = fopen(a[1], "w");
+  if (!out) {
+    perror(a[1]);
+    return 1;
+  }
+  print_scene(world, out);
+  scree_world_free(world);
+  return fclose(out) ? 1 : 0;
+}
+
 static void print_line(const scree_world *world, const scree_timings *before, double wall,
                        double cpu) {
   scree_timings t;
@@ -142,14 +195,14 @@ int main(int argc, char **argv) {
     int (*run)(char **arguments);
   } commands[] = {{"fill", 4, fill}, {"refit", 5, refit},   {"stack", 4, stack},
                   {"lift", 3, lift}, {"retime", 3, retime}, {"time", 3, measure},
-                  {"hash", 3, hash}};
+                  {"hash", 3, hash}, {"dump", 2, dump}};
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
     if (argc == commands[i].argument_count + 2 && strcmp(argv[1], commands[i].name) == 0)
       return commands[i].run(argv + 2);
   fprintf(stderr,
           "usage: %s fill KIND TRIANGLES COUNT OUT | refit KIND FROM TRIANGLES IN OUT | "
           "stack COPIES SETTLE IN OUT | lift HEIGHT IN OUT | retime DT IN OUT | "
-          "time THREADS SECONDS IN | hash THREADS STEPS IN\n",
+          "time THREADS SECONDS IN | hash THREADS STEPS IN | dump IN OUT\n",
           argv[0]);
   return 2;
 }

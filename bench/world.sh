@@ -1,0 +1,117 @@
+#!/bin/bash
+# The speed of scree's world: particle-steps per second on settled and flowing piles, against triangle
+# count, body count, threads, and beside the engines that Debian packages.
+#
+#   bench/world.sh [SECONDS]        each measurement takes SECONDS (default 5), three times; the median counts
+#
+# Scenes are made once, as checkpoints in the build folder (about 20 minutes on one core); delete
+# build/bench/work/world to make them again, which a new version of checkpoints asks for. A scene is
+# poured, settled and stacked by bench_world. Writes results/world.md and results/world.json. Peers, each
+# left out by name where it is not installed: apt-get install libode-dev libbullet-dev.
+set -euo pipefail
+. "$(dirname "$0")/lib.sh"
+cmake -S "$root" --preset release -B "$build" -DSCREE_BENCH=ON -DBUILD_TESTING=OFF >/dev/null
+cmake --build "$build" --target bench_world ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null
+seconds=${1:-5}
+scenes=$work/world
+mkdir -p "$scenes"
+rows=$scenes/rows
+: >"$rows"
+
+# make NAME ARGUMENT...: the scene NAME by bench_world ARGUMENT... NAME, unless it is there.
+make_scene() {
+  local out=$scenes/$1.scree
+  shift
+  [ -s "$out" ] || "$bin/bench_world" "${@//@/$scenes/}" "$out" >&2
+}
+# median THREADS SCENE: the line of the median run, by CPU time for one thread, else by wall clock.
+median() {
+  local i
+  for i in 1 2 3; do "$bin/bench_world" time "$1" "$seconds" "$scenes/$2.scree"; done |
+    sort -t, -k$([ "$1" = 1 ] && echo 8 || echo 7),7n | sed -n 2p
+}
+# measure LABEL THREADS SCENE BAR: a row; BAR is what its rate should be at least, or empty.
+measure() {
+  [ -s "$scenes/$3.scree" ] || return 0
+  echo "$1,$2,${4:-},$(median "$2" "$3")" >>"$rows"
+  tail -1 "$rows" | cut -d, -f1,10,11 >&2
+}
+# rate LABEL COLUMN: of the row's numbers.
+rate() { awk -F, -v l="$1" -v c="$2" '$1 == l { print $c }' "$rows"; }
+
+make_scene boxes200 fill boxes 12 200
+make_scene boxes200t retime 1e-5 @boxes200.scree
+make_scene boxes1000 stack 5 1 @boxes200.scree
+make_scene boxes1000t retime 1e-5 @boxes1000.scree
+for n in 28 448; do
+  make_scene tray$n fill tray $n 200
+  make_scene tray${n}t retime 1e-5 @tray$n.scree
+done
+make_scene devices133 fill devices 760 133
+make_scene devices stack 9 1 @devices133.scree
+make_scene flowing lift 0.25 @devices.scree
+for n in 100 300 1500; do
+  make_scene devices133_$n refit devices 760 $n @devices133.scree
+  make_scene devices_$n stack 9 1 @devices133_$n.scree
+done
+make_scene devices12000 stack 10 1 @devices.scree
+make_scene devices100000 stack 84 0 @devices_100.scree
+
+measure "1197 devices at rest" 1 devices 500000
+measure "1197 devices flowing" 1 flowing 260000
+measure "1197 devices at rest, two threads" 2 devices
+for n in 100 300 1500; do measure "1197 devices of $n triangles" 1 devices_$n; done
+measure "11970 devices at rest" 1 devices12000
+measure "100548 devices of 100 triangles" 1 devices100000
+measure "200 boxes" 1 boxes200t 1200000
+measure "1000 boxes" 1 boxes1000t 1000000
+measure "200 trays of 28 triangles" 1 tray28t 460000
+measure "200 trays of 448 triangles" 1 tray448t 200000
+
+# The same scene twice side by side, against one alone, by wall clock.
+side_by_side() {
+  "$bin/bench_world" time 1 "$seconds" "$scenes/devices.scree" >"$scenes/first" &
+  "$bin/bench_world" time 1 "$seconds" "$scenes/devices.scree" >"$scenes/second"
+  wait
+  cat "$scenes/first" "$scenes/second" | awk -F, '{ sum += $7 } END { print sum }'
+}
+one=$("$bin/bench_world" time 1 "$seconds" "$scenes/devices.scree" | cut -d, -f7)
+two=$(side_by_side)
+
+# ratio NAME A B BAR: A over B.
+ratio() {
+  awk -v n="$1" -v a="$2" -v b="$3" -v bar="$4" 'BEGIN { if (b > 0) printf "| %s | %.2f | %s |\n", n, a / b, bar }'
+}
+command="bench/world.sh $seconds"
+md=$results/world.md
+{
+  echo '# Speed of the world'
+  echo
+  provenance "$command" | sed 's/^# /    /'
+  echo
+  echo 'Rates are particle-steps per second of CPU time (with two threads: of wall clock). Shares are of the'
+  echo 'time of a step. Pairs and contacts touch, items are evaluated, each per body.'
+  echo
+  echo '| scene | rate | bar | triangles | step (us) | lists % | contacts % | bodies % | pairs | contacts | items | overlap (um) | memory (MiB) |'
+  echo '|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|'
+  awk -F, '{ printf "| %s | %.3g | %s | %d | %.1f | %s | %s | %s | %s | %s | %s | %.1f | %.0f |\n", $1,
+    ($2 == 1 ? $11 : $10), $3, $5, 1e6 * $6, $13, $14, $15, $16, $17, $18, 1e6 * $21, $22 / 1048576 }' "$rows"
+  echo
+  echo '| ratio | measured | bar |'
+  echo '|---|--:|--:|'
+  rest=$(rate "1197 devices at rest" 11)
+  ratio "two threads over one" "$(rate "1197 devices at rest, two threads" 10)" "$(rate "1197 devices at rest" 10)" "at least 1.7"
+  ratio "two runs side by side over one" "$two" "$one" "at least 1.95"
+  ratio "cost at 1500 triangles over 100" "$(rate "1197 devices of 100 triangles" 11)" "$(rate "1197 devices of 1500 triangles" 11)" "at most 2"
+  ratio "rate at 11970 bodies over 1197" "$(rate "11970 devices at rest" 11)" "$rest" "at least 0.8"
+} >"$md.part"
+mv "$md.part" "$md"
+
+{
+  printf '{"command": "%s", "commit": "%s", "machine": "%s", "processors": %s, "side_by_side": %s, "rows": [' "$command" \
+    "$(git -C "$root" rev-parse --short HEAD)" "$(lscpu | sed -n 's/^Model name: *//p' | head -1)" "$(nproc)" \
+    "$(awk -v a="$two" -v b="$one" 'BEGIN { printf "%.3f", a / b }')"
+  awk -F, '{ printf "%s\n{\"scene\": \"%s\", \"threads\": %s, \"bodies\": %s, \"triangles\": %s, \"time_step_s\": %s, \"steps\": %s, \"wall_s\": %s, \"cpu_s\": %s, \"rate_wall\": %s, \"rate_cpu\": %s, \"broad_percent\": %s, \"lists_percent\": %s, \"contacts_percent\": %s, \"bodies_percent\": %s, \"pairs_per_body\": %s, \"contacts_per_body\": %s, \"items_per_body\": %s, \"lists_per_1000_body_steps\": %s, \"kinetic_J\": %s, \"overlap_m\": %s, \"peak_bytes\": %s}", (NR > 1 ? "," : ""), $1, $2, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22 }' "$rows"
+  echo ']}'
+} >"$results/world.json"
+echo "$md"
