@@ -82,7 +82,8 @@ static bool wake_items(scree_pair *pair) {
       continue;
     }
     scree_item item = {.kind = sleeper.kind, .a = sleeper.a, .b = sleeper.b};
-    if (!SCREE_PUSH(&pair->active, item)) return false;
+    if (!scree_pair_reserve_items(pair, pair->active.count + 1)) return false;
+    pair->active.items[pair->active.count++] = item;
   }
   pair->sleeping.count = kept;
   pair->next_item = next;

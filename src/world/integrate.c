@@ -21,6 +21,14 @@ vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, v
   return mat3_mul_vec(rotation, local_spin(bodies->inertia[i], rotation, momentum));
 }
 
+/* Asks for the forces on body i. */
+static void fetch_forces(const scree_world *world, size_t i) {
+  for (size_t k = world->side_begin[i]; k < world->side_begin[i + 1]; k++) {
+    size_t pair = world->sides.items[k] >> 1;
+    if (world->slots.items[pair].wake == -INFINITY) scree_prefetch(world->pairs.items[pair], 128);
+  }
+}
+
 /* Forces in the fixed order of the pairs. */
 static void sum_forces(scree_world *world, size_t i) {
   vec3 force = {0, 0, 0}, torque = {0, 0, 0};
@@ -67,6 +75,7 @@ static void gather_block(void *context, size_t begin, size_t end, size_t block, 
   gathering *g = context;
   g->offender[block] = SIZE_MAX;
   for (size_t i = begin; i < end; i++) {
+    if (i + 2 < end) fetch_forces(g->world, i + 2);
     if (g->world->bodies.removed[i]) continue;
     sum_forces(g->world, i);
     double travel = coming_travel(g->world, i);

@@ -51,10 +51,24 @@ static void forget(scree_pair *pair) {
   pair->contact_count = 0;
 }
 
+/* As many again as there are, from 64 to 8192 (4 MB), into the spares. */
+static bool make_spares(scree_world *world) {
+  size_t total = 0;
+  for (size_t i = 0; i < world->slabs.count; i++) total += world->slabs.items[i].count;
+  size_t count = total < 64 ? 64 : total > 8192 ? 8192 : total;
+  if (!SCREE_RESERVE(&world->slabs, world->slabs.count + 1) ||
+      !SCREE_RESERVE(&world->spare_pairs, world->spare_pairs.count + count))
+    return false;
+  scree_pair *pairs = scree_alloc_zero(count, sizeof *pairs);
+  if (!pairs) return false;
+  world->slabs.items[world->slabs.count++] = (scree_pair_slab){pairs, count};
+  for (size_t i = count; i-- > 0;) world->spare_pairs.items[world->spare_pairs.count++] = &pairs[i];
+  return true;
+}
+
 scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wall) {
-  scree_pair *pair = world->spare_pairs.count ? world->spare_pairs.items[--world->spare_pairs.count]
-                                              : scree_alloc_zero(1, sizeof *pair);
-  if (!pair) return NULL;
+  if (world->spare_pairs.count == 0 && !make_spares(world)) return NULL;
+  scree_pair *pair = world->spare_pairs.items[--world->spare_pairs.count];
   pair->a = a;
   pair->b = b;
   pair->wall = wall;
@@ -63,15 +77,32 @@ scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wal
   return pair;
 }
 
+/* A pair that finds no room among the spares stays with its slab. */
 void scree_pair_give_back(scree_world *world, scree_pair *pair) {
-  if (!SCREE_PUSH(&world->spare_pairs, pair)) scree_pair_free(pair);
+  (void)SCREE_PUSH(&world->spare_pairs, pair);
 }
 
-void scree_pair_free(scree_pair *pair) {
-  if (!pair) return;
-  scree_free(pair->active.items);
-  scree_free(pair->sleeping.items);
-  scree_free(pair);
+bool scree_pair_reserve_items(scree_pair *pair, size_t needed) {
+  if (needed <= pair->active.capacity) return true;
+  size_t grown = pair->active.capacity < 2 ? 2 : 2 * pair->active.capacity;
+  if (grown < needed) grown = needed;
+  void *moved = scree_resize(pair->active.items, grown, sizeof *pair->active.items);
+  if (!moved) return false;
+  pair->active.items = moved;
+  pair->active.capacity = grown;
+  return true;
+}
+
+void scree_pairs_free(scree_world *world) {
+  for (size_t s = 0; s < world->slabs.count; s++) {
+    scree_pair_slab *slab = &world->slabs.items[s];
+    for (size_t i = 0; i < slab->count; i++) {
+      scree_free(slab->pairs[i].active.items);
+      scree_free(slab->pairs[i].sleeping.items);
+    }
+    scree_free(slab->pairs);
+  }
+  scree_free(world->slabs.items);
 }
 
 void scree_body_forget(scree_world *world, size_t body) {

@@ -583,7 +583,7 @@ static void load_items(loader *l, scree_pair *pair) {
   size_t active = pair->active.count, sleeping = pair->sleeping.count;
   pair->active.count = pair->sleeping.count = 0;
   if (!good(l)) return;
-  if (!SCREE_RESERVE(&pair->active, active) || !SCREE_RESERVE(&pair->sleeping, sleeping))
+  if (!scree_pair_reserve_items(pair, active) || !SCREE_RESERVE(&pair->sleeping, sleeping))
     l->codec.out_of_memory = true;
   for (size_t i = 0; i < active && good(l); i++) {
     scree_item item = {0};

@@ -10,20 +10,39 @@
 
 #include <string.h>
 
-enum { PAIR_BLOCK = 32 };
+enum { PAIR_BLOCK = 128 };
+
+static double slot_due(const scree_world *world, const scree_slot *slot) {
+  const double *due = world->bodies.due;
+  return due[slot->a] + (slot->b & SCREE_SLOT_WALL
+                             ? world->walls.items[slot->b & ~SCREE_SLOT_WALL].due
+                             : due[slot->b]);
+}
+
+/* The pair and what its evaluation reads first. */
+static void fetch_pair(const scree_world *world, size_t k) {
+  const scree_slot *slot = &world->slots.items[k];
+  scree_prefetch(world->pairs.items[k], sizeof(scree_pair));
+  if (!(slot->b & SCREE_SLOT_WALL))
+    scree_prefetch(&world->bodies.frame[slot->b], sizeof(scree_frame));
+}
 
 static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   scree_world *world = context;
   scree_pair_sums sums = {0};
-  const double *due = world->bodies.due;
-  for (size_t k = begin; k < end; k++) {
-    scree_slot *slot = &world->slots.items[k];
-    double due_b = slot->b & SCREE_SLOT_WALL ? world->walls.items[slot->b & ~SCREE_SLOT_WALL].due
-                                             : due[slot->b];
-    if (due[slot->a] + due_b < slot->wake) continue;
-    scree_pair *pair = world->pairs.items[k];
+  size_t awake[PAIR_BLOCK], count = 0;
+  for (size_t k = begin; k < end; k++)
+    if (slot_due(world, &world->slots.items[k]) >= world->slots.items[k].wake) awake[count++] = k;
+  for (size_t i = 0; i < 3 && i < count; i++) fetch_pair(world, awake[i]);
+  for (size_t i = 0; i < count; i++) {
+    scree_pair *pair = world->pairs.items[awake[i]];
+    if (i + 3 < count) fetch_pair(world, awake[i + 3]);
+    if (i + 1 < count) {
+      const scree_pair *next = world->pairs.items[awake[i + 1]];
+      scree_prefetch(next->active.items, next->active.count * sizeof(scree_item));
+    }
     scree_pair_evaluate(world, pair, &world->scratch[worker], &sums);
-    slot->wake = pair->asleep ? pair->wake : -INFINITY;
+    world->slots.items[awake[i]].wake = pair->asleep ? pair->wake : -INFINITY;
   }
   world->sums.items[block] = sums;
 }

@@ -84,9 +84,7 @@ void scree_world_free(scree_world *world) {
   for (size_t i = 0; i < world->walls.count; i++)
     scree_particle_free(world->walls.items[i].surface);
   scree_free(world->walls.items);
-  for (size_t i = 0; i < world->pairs.count; i++) scree_pair_free(world->pairs.items[i]);
-  for (size_t i = 0; i < world->spare_pairs.count; i++)
-    scree_pair_free(world->spare_pairs.items[i]);
+  scree_pairs_free(world);
   scree_free(world->pairs.items);
   scree_free(world->spare_pairs.items);
   scree_free(world->merged_pairs.items);

@@ -98,6 +98,7 @@ typedef struct scree_pair {
   bool wall;   /* b is a wall */
   bool asleep; /* no item can touch before the bodies' paths reach `wake` */
   bool touching;
+  scree_wrench wrench; /* here: the bodies read it with what is above */
   double stiffness, damping, friction, restitution; /* K, C, mu, e */
   double smoothing, reach, limit;                   /* l0; rounding of both meshes; overlap limit */
   double travel, path;        /* of the relative motion: last step, and sum; upper bounds */
@@ -111,14 +112,19 @@ typedef struct scree_pair {
     scree_sleeper *items;
     size_t count, capacity;
   } sleeping;
-  scree_wrench wrench;
-  scree_load dashpot, tangential;     /* parts of it, for the ledger */
+  scree_load dashpot, tangential;     /* parts of the wrench, for the ledger */
   vec3 arm;                           /* from b to a when they were made */
   double elastic, tangential_elastic; /* U of all springs, and of the tangential ones */
   double contact_time, age;           /* half period pi sqrt(m/K); since the touch began */
   double overlap, largest;            /* m; largest m of this contact (hysteresis) */
   size_t contact_count;
 } scree_pair;
+
+/* Pairs lie together: a step goes through many of them, and every page counts. */
+typedef struct scree_pair_slab {
+  scree_pair *pairs;
+  size_t count;
+} scree_pair_slab;
 
 /* One touching feature, in the frame of b. */
 typedef struct scree_touch {
@@ -173,6 +179,10 @@ struct scree_world {
     size_t count, capacity;
   } pairs, spare_pairs, merged_pairs;
   struct {
+    scree_pair_slab *items; /* the pairs themselves */
+    size_t count, capacity;
+  } slabs;
+  struct {
     scree_slot *items;
     size_t count, capacity;
   } slots; /* of pairs */
@@ -205,6 +215,10 @@ struct scree_world {
   scree_timings timings;
 };
 
+/* Asks for `size` bytes from `start` ahead of their use: pairs lie anywhere in memory. */
+static inline void scree_prefetch(const void *start, size_t size) {
+  for (size_t at = 0; at < size; at += 64) __builtin_prefetch((const char *)start + at);
+}
 static inline scree_slot scree_pair_slot(const scree_pair *p) {
   return (scree_slot){p->asleep ? p->wake : -INFINITY, p->a,
                       p->b | (p->wall ? SCREE_SLOT_WALL : 0)};
@@ -239,7 +253,11 @@ scree_status scree_broad_restore(scree_world *world, double margin, scree_error 
 /* pair.c: a pair object for (a, b), set up; from the spares when there are some. */
 scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wall);
 void scree_pair_give_back(scree_world *world, scree_pair *pair);
-void scree_pair_free(scree_pair *pair);
+/* All of the world's pairs with their arrays. */
+void scree_pairs_free(scree_world *world);
+/* Room for active items, by doubling from two: most pairs have no more, and they lie close
+ * together. */
+bool scree_pair_reserve_items(scree_pair *pair, size_t needed);
 /* After a jump: the body's contacts start anew. */
 void scree_body_forget(scree_world *world, size_t body);
 
