@@ -10,6 +10,7 @@ static const double soft = 0.3;               /* stiffness while a scene is made
 static const double entry_speed = 3;          /* m/s, about */
 static const double soft_time = 0.5;          /* s at rest, soft */
 static const double hard_time = 0.15;         /* s at rest, at full stiffness */
+static const double stack_time = 0.3;         /* s at rest after stacking */
 static const double lift_speed = 0.1;         /* m/s, the paper's */
 static const double flowing_hard_time = 0.02; /* s of the lift at full stiffness before measuring */
 
@@ -188,7 +189,9 @@ static double height_of(const scree_world *world) {
 scree_world *stack_scene(const scree_world *from, size_t copies, bool settled) {
   remake how = {.stiffness_factor = 1, .gravity = 9.81, .copies = copies, .pitch = height_of(from)};
   scree_world *world = make_again(from, &how);
-  return settled ? settle(world) : world;
+  /* the copies fall onto each other: at full stiffness, or thin walls would be pressed too deep */
+  if (settled) advance(world, stack_time);
+  return world;
 }
 
 scree_world *lift_scene(const scree_world *from, double height) {

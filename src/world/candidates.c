@@ -68,15 +68,15 @@ static void list_point(const point_listing *pl, uint32_t i) {
   listing *l = pl->list;
   vec3 p = vec3_add(mat3_mul_vec(&pl->rotation, pl->from->points[i]), pl->shift);
   double touch = pl->from->point_radii[i] + pl->to->measures.rounding + l->pair->smoothing;
-  scree_near near;
-  scree_closest_faces(pl->to, p, l->skin + touch, 0, &near);
+  uint32_t face;
+  double distance = scree_nearest_face(pl->to, p, l->skin + touch, &face);
   l->scratch->closest_queries++;
-  if (near.count == 0) return;
-  double gap = near.distance[0] - touch;
+  if (!(distance < INFINITY)) return;
+  double gap = distance - touch;
   if (pl->forth)
-    put_to_sleep(l, SCREE_ITEM_POINT_FACE, i, near.face[0], gap);
+    put_to_sleep(l, SCREE_ITEM_POINT_FACE, i, face, gap);
   else
-    put_to_sleep(l, SCREE_ITEM_FACE_POINT, near.face[0], i, gap);
+    put_to_sleep(l, SCREE_ITEM_FACE_POINT, face, i, gap);
 }
 
 /* Whether the box of any leaf meets the box. */
