@@ -4,7 +4,7 @@
 #include "scree.h"
 
 #include <math.h>
-#include <string.h>
+#include <stdlib.h>
 
 static void must(scree_status status, const scree_error *error) {
   if (status == SCREE_OK) return;
