@@ -1,21 +1,25 @@
 #include "cli/input.h"
+#include "cli/render_refine.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_LEVELS = 32 };
+
 typedef struct render_arguments {
-  const char *output, *size, *reference;
+  const char *output, *size, *reference, *levels;
   cli_source source;
   double azimuth_deg, elevation_deg;
   size_t samples, columns;
+  int view, color_by;
   bool edges, wire, no_ground, no_captions, overwrite;
 } render_arguments;
 
 static const render_arguments defaults = {.size = "1200x900",
                                           .source = CLI_SOURCE_DEFAULTS,
-                                          .azimuth_deg = 35,
-                                          .elevation_deg = 25,
+                                          .azimuth_deg = NAN, /* the view's */
+                                          .elevation_deg = NAN,
                                           .samples = 24};
 
 #define AT(field) offsetof(render_arguments, field)
@@ -23,18 +27,28 @@ static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "FILE", "The PNG to write (required); - is stdout.", 0, 0,
      NULL},
     {"size", 's', CLI_TEXT, AT(size), "WxH", "Size in pixels. Default: 1200x900.", 0, 0, NULL},
+    {"view", 'v', CLI_CHOICE, AT(view), "SIDE",
+     "Seen from: oblique, front (against -y), back, left, right, top or bottom. Default: oblique.",
+     0, 0, "oblique|front|back|left|right|top|bottom"},
     {"azimuth", 'a', CLI_REAL, AT(azimuth_deg), "DEG",
-     "The camera's angle about the vertical. Default: 35.", -360, 360, NULL},
+     "The camera's angle about the vertical. Default: the view's; 35 of oblique.", -360, 360, NULL},
     {"elevation", 'e', CLI_REAL, AT(elevation_deg), "DEG",
-     "The camera's angle above the horizontal. Default: 25.", -90, 90, NULL},
+     "The camera's angle above the horizontal. Default: the view's; 25 of oblique.", -90, 90, NULL},
     {"samples", 'n', CLI_COUNT, AT(samples), "N",
      "Rays a pixel: more is smoother and slower. Default: 24.", 1, 65536, NULL},
     {"columns", 'c', CLI_COUNT, AT(columns), "N",
      "Columns of views. Default: what makes them largest.", 1, 1000, NULL},
     {"edges", 0, CLI_FLAG, AT(edges), NULL, "Draw the edges of the triangles.", 0, 0, NULL},
     {"wire", 0, CLI_FLAG, AT(wire), NULL, "Draw only the edges.", 0, 0, NULL},
+    {"levels", 'l', CLI_TEXT, AT(levels), "RP,...",
+     "Of one surface: also its levels at these Rp (0 < RP <= 1) by the decimation of choose.", 0, 0,
+     NULL},
+    {"color-by", 0, CLI_CHOICE, AT(color_by), "WHAT",
+     "plain, or distance: to the first surface, or to the one of --reference, with a scale bar; "
+     "all over the triangles, or with --edges and --wire between their corners. Default: plain.",
+     0, 0, "plain|distance"},
     {"reference", 'r', CLI_TEXT, AT(reference), "FILE",
-     "Colour by the distance to the surface in FILE, with a scale bar.", 0, 0, NULL},
+     "Colour by the distance to the surface in FILE.", 0, 0, NULL},
     {"no-ground", 0, CLI_FLAG, AT(no_ground), NULL, "No floor and no shadow on it.", 0, 0, NULL},
     {"no-captions", 0, CLI_FLAG, AT(no_captions), NULL,
      "No file name and triangle count below each view.", 0, 0, NULL},
@@ -75,78 +89,171 @@ static bool allocate_picture(picture *p, size_t count) {
   return p->scans && p->distances && p->items && p->cells && p->captions;
 }
 
-static scree_status read_one(picture *p, size_t i, const char *word, const cli_source *source,
-                             const scree_progress *progress, scree_error *error) {
-  cli_input_options input = cli_source_options(source);
-  scree_status status = cli_load(word, &input, progress, &p->scans[i], error);
-  if (status != SCREE_OK) return status;
+static scree_status fail_memory(scree_error *error) {
+  *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the picture"};
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* rp 0: the surface as it was given. */
+static void put_cell(picture *p, size_t i, const char *word, double rp) {
   char name[96], count[32];
   cli_short_name(word, name, sizeof name);
+  if (rp > 0) snprintf(name, sizeof name, "Rp = %g", rp);
   snprintf(p->captions[i], sizeof p->captions[i], "%s: %s triangles", name,
            cli_count_text(p->scans[i].mesh.triangle_count, count));
   p->items[i] = (scree_render_item){.mesh = &p->scans[i].mesh, .color = {0.34f, 0.46f, 0.60f}};
   p->cells[i] = (scree_render_cell){&p->items[i], 1, p->captions[i]};
+}
+
+static scree_status read_one(picture *p, size_t i, const char *word, const cli_source *source,
+                             const scree_progress *progress, scree_error *error) {
+  cli_input_options input = cli_source_options(source);
+  scree_status status = cli_load(word, &input, progress, &p->scans[i], error);
+  if (status == SCREE_OK) put_cell(p, i, word, 0);
+  return status;
+}
+
+/* Levels of the first surface become the surfaces behind it. */
+static scree_status make_levels(picture *p, const double *rp, const char *word,
+                                const scree_progress *progress, scree_error *error) {
+  scree_curve *curve = NULL;
+  scree_simplify_options simplify = scree_default_simplify_options();
+  const scree_mesh *scan = &p->scans[0].mesh;
+  scree_status status = scree_curve_build(scan, &simplify, progress, &curve, error);
+  for (size_t i = 1; i < p->count && status == SCREE_OK; i++) {
+    size_t target = scree_choice_target(rp[i - 1], scan->triangle_count);
+    status = scree_curve_mesh(curve, scree_curve_find(curve, target), &p->scans[i].mesh, error);
+    if (status == SCREE_OK) put_cell(p, i, word, rp[i - 1]);
+  }
+  scree_curve_free(curve);
+  return status;
+}
+
+static int by_size(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* The end of the colour map: a few far points must not take the colours from all others, so the
+ * distance that 98 of 100 vertices stay below, rounded up to 1, 2 or 5 times a power of ten. */
+static double colour_range(const picture *p, const scree_mesh *reference, double *values) {
+  size_t count = 0;
+  for (size_t i = 0; i < p->count; i++)
+    for (size_t j = 0; p->items[i].mesh != reference && j < p->scans[i].mesh.vertex_count; j += 7)
+      values[count++] = p->distances[i][j];
+  if (!count) return 1e-3;
+  qsort(values, count, sizeof *values, by_size);
+  double at = values[(size_t)(0.98 * (double)count)];
+  if (!(at > 0)) return 1e-3;
+  double power = pow(10, floor(log10(at))), digits = at / power;
+  return power * (digits <= 1 ? 1 : digits <= 2 ? 2 : digits <= 5 ? 5 : 10);
+}
+
+/* Distances of every vertex of every mesh to the reference, and the end of their colours. */
+static scree_status measure_distances(picture *p, const scree_mesh *reference, bool refine,
+                                      double *range, scree_error *error) {
+  size_t vertex_count = 0;
+  for (size_t i = 0; i < p->count; i++) {
+    scree_mesh *mesh = &p->scans[i].mesh;
+    if (refine && mesh != reference && !render_refine(mesh)) return fail_memory(error);
+    p->distances[i] = malloc(mesh->vertex_count * sizeof(double) + 1);
+    if (!p->distances[i]) return fail_memory(error);
+    scree_status status = scree_mesh_distance_field(mesh, reference, p->distances[i], error);
+    if (status != SCREE_OK) return status;
+    p->items[i].vertex_values = p->distances[i];
+    vertex_count += mesh->vertex_count;
+  }
+  double *values = malloc((vertex_count + 1) * sizeof *values);
+  if (!values) return fail_memory(error);
+  *range = colour_range(p, reference, values);
+  free(values);
   return SCREE_OK;
 }
 
-/* Distances of every vertex of every mesh to the reference, and their largest. */
-static scree_status measure_distances(picture *p, const char *word, const cli_source *source,
-                                      double *largest, scree_error *error) {
-  cli_input_options input = cli_source_options(source);
+static scree_status color_by_distance(picture *p, const cli_call *call,
+                                      scree_render_options *render, scree_error *error) {
+  const render_arguments *a = call->options;
+  bool refine = !a->edges && !a->wire;
+  render->value_label = "distance / mm";
+  render->value_scale = 1e3;
+  if (!a->reference)
+    return measure_distances(p, &p->scans[0].mesh, refine, &render->value_maximum, error);
+  cli_input_options input = cli_source_options(&a->source);
   scree_scan reference;
-  scree_status status = cli_load(word, &input, NULL, &reference, error);
+  scree_status status = cli_load(a->reference, &input, call->progress, &reference, error);
   if (status != SCREE_OK) return status;
-  for (size_t i = 0; status == SCREE_OK && i < p->count; i++) {
-    size_t count = p->scans[i].mesh.vertex_count;
-    p->distances[i] = malloc(count * sizeof(double) + 1);
-    if (!p->distances[i]) {
-      *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the distances"};
-      status = SCREE_OUT_OF_MEMORY;
-      break;
-    }
-    status = scree_mesh_distance_field(&p->scans[i].mesh, &reference.mesh, p->distances[i], error);
-    p->items[i].vertex_values = p->distances[i];
-    for (size_t j = 0; status == SCREE_OK && j < count; j++)
-      *largest = fmax(*largest, p->distances[i][j]);
-  }
+  status = measure_distances(p, &reference.mesh, refine, &render->value_maximum, error);
   scree_scan_free(&reference);
   return status;
 }
 
-static int run(const cli_call *call) {
-  const render_arguments *arguments = call->options;
-  scree_render_options render = scree_default_render_options();
-  char rest;
-  if (!arguments->output) return cli_misuse(call->verb, "needs an output file: -o FILE.png");
-  if (sscanf(arguments->size, "%zux%zu%c", &render.width, &render.height, &rest) != 2)
-    return cli_misuse(call->verb, "--size %s: not a size such as 1200x900", arguments->size);
-  render.azimuth_deg = arguments->azimuth_deg;
-  render.elevation_deg = arguments->elevation_deg;
-  render.samples = arguments->samples;
-  render.columns = arguments->columns;
-  render.edges = arguments->edges;
-  render.wire = arguments->wire;
-  render.ground = !arguments->no_ground;
+/* "1e-1,1e-2" to numbers; their count, or 0 where one is none in (0, 1]. */
+static size_t parse_levels(const char *text, double rp[MOST_LEVELS]) {
+  size_t count = 0;
+  for (;;) {
+    char word[32];
+    size_t length = strcspn(text, ",");
+    if (length >= sizeof word || count == MOST_LEVELS) return 0;
+    memcpy(word, text, length);
+    word[length] = 0;
+    if (!cli_real_from_text(word, &rp[count]) || !(rp[count] > 0 && rp[count] <= 1)) return 0;
+    count++;
+    if (!text[length]) return count;
+    text += length + 1;
+  }
+}
 
+static void set_options(const render_arguments *a, scree_render_options *render) {
+  static const double views[][2] = {{35, 25}, {0, 0},  {180, 0}, {270, 0},
+                                    {90, 0},  {0, 90}, {0, -90}};
+  render->azimuth_deg = isnan(a->azimuth_deg) ? views[a->view][0] : a->azimuth_deg;
+  render->elevation_deg = isnan(a->elevation_deg) ? views[a->view][1] : a->elevation_deg;
+  render->samples = a->samples;
+  render->columns = a->columns;
+  render->edges = a->edges;
+  render->wire = a->wire;
+  render->ground = !a->no_ground;
+}
+
+static scree_status make_picture(const cli_call *call, const double *rp, size_t level_count,
+                                 picture *p, scree_error *error) {
+  const render_arguments *a = call->options;
+  if (!allocate_picture(p, call->input_count + level_count)) return fail_memory(error);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < call->input_count; i++)
+    status = read_one(p, i, call->inputs[i], &a->source, call->progress, error);
+  if (status == SCREE_OK && level_count)
+    status = make_levels(p, rp, call->inputs[0], call->progress, error);
+  for (size_t i = 0; a->no_captions && i < p->count; i++) p->cells[i].caption = NULL;
+  return status;
+}
+
+static int run(const cli_call *call) {
+  const render_arguments *a = call->options;
+  scree_render_options render = scree_default_render_options();
+  double rp[MOST_LEVELS];
+  size_t level_count = a->levels ? parse_levels(a->levels, rp) : 0;
+  char rest;
+  if (!a->output) return cli_misuse(call->verb, "needs an output file: -o FILE.png");
+  if (sscanf(a->size, "%zux%zu%c", &render.width, &render.height, &rest) != 2)
+    return cli_misuse(call->verb, "--size %s: not a size such as 1200x900", a->size);
+  if (a->levels && !level_count)
+    return cli_misuse(call->verb,
+                      "--levels %s: must be at most %d numbers above 0 and up to 1, "
+                      "with commas between",
+                      a->levels, MOST_LEVELS);
+  if (a->levels && call->input_count != 1)
+    return cli_misuse(call->verb, "--levels takes one surface, not %zu", call->input_count);
+  set_options(a, &render);
   picture p;
-  scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory"};
+  scree_error error;
   scree_image image = {0};
-  scree_status status = allocate_picture(&p, call->input_count) ? SCREE_OK : SCREE_OUT_OF_MEMORY;
-  for (size_t i = 0; status == SCREE_OK && i < p.count; i++) {
-    status = read_one(&p, i, call->inputs[i], &arguments->source, call->progress, &error);
-    if (arguments->no_captions) p.cells[i].caption = NULL;
-  }
-  if (status == SCREE_OK && arguments->reference) {
-    render.value_maximum = 0;
-    render.value_label = "distance / mm";
-    render.value_scale = 1e3;
-    status = measure_distances(&p, arguments->reference, &arguments->source, &render.value_maximum,
-                               &error);
-  }
+  scree_status status = make_picture(call, rp, level_count, &p, &error);
+  if (status == SCREE_OK && (a->reference || a->color_by))
+    status = color_by_distance(&p, call, &render, &error);
   if (status == SCREE_OK)
     status = scree_render(p.cells, p.count, &render, call->progress, &image, &error);
-  if (status == SCREE_OK)
-    status = scree_image_write_png(&image, arguments->output, arguments->overwrite, &error);
+  if (status == SCREE_OK) status = scree_image_write_png(&image, a->output, a->overwrite, &error);
   scree_image_free(&image);
   free_picture(&p);
   return status == SCREE_OK ? 0 : cli_fail(&error);
@@ -161,7 +268,9 @@ const cli_verb cli_verb_render = {
         "triangle count: for example a scan and its levels side by side.",
     .examples = "  scree render scan.stl -o scan.png\n"
                 "  scree render scan.stl level-*.stl -o levels.png --size 1800x500 --edges\n"
-                "  scree render level.stl --reference scan.stl -o error.png\n",
+                "  scree render scan.stl --levels 1e-1,1e-2,1e-3,1e-4,1e-5 --edges -o row.png "
+                "--size 2400x400\n"
+                "  scree render scan.stl --levels 1e-3 --color-by distance -o error.png\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,

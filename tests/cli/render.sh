@@ -1,12 +1,19 @@
 run render sample:icosphere-2
 run render sample:icosphere-2 -o a.png --size 64
 run render none.stl -o a.png
+run render sample:icosphere-2 -o a.png --view under
+run render sample:icosphere-2 -o a.png --levels 0.5,2
+run render sample:icosphere-2 sample:box -o a.png --levels 0.5
 ls
 if "$SCREE" render sample:icosphere-2 -o no.png --size 64x64 -n 1 2>&1 | grep -q "no ray tracer"; then
   # a build without Embree: the rest as it would be
   printf '\211PNG' >a.png
 else
   "$SCREE" render sample:icosphere-2 sample:icosphere-0 -o a.png --size 128x64 -n 1 --edges --reference sample:icosphere-3
+  "$SCREE" render sample:icosphere-3 -o b.png --size 192x64 -n 1 --levels 0.1,0.02 --color-by distance --view top
+  "$SCREE" render sample:icosphere-3 -o c.png --size 192x64 -n 1 --levels 0.1,0.02 --color-by distance --view left
+  cmp -s b.png c.png && echo "the view does not count"
+  rm b.png c.png
   rm no.png
 fi
 ls
