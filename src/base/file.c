@@ -146,8 +146,9 @@ scree_status scree_output_commit(scree_output *output, scree_error *error) {
     reason = errno;
   }
   scree_status status = SCREE_OK;
-  if (!written)
-    status = scree_fail(error, SCREE_IO, "%s: cannot write: %s", output->path, strerror(reason));
+  if (!written) /* an earlier write that failed left only the stream's mark */
+    status = scree_fail(error, SCREE_IO, "%s: cannot write: %s", output->path,
+                        reason ? strerror(reason) : "the disk is full, or a limit is reached");
   scree_output_discard(output);
   return status;
 }

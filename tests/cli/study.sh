@@ -1,0 +1,75 @@
+cat >tiny.yaml <<'YAML'
+name: tiny
+replicates: 2
+shapes: [sample:icosphere-1]
+base:
+  preset: demo
+  particles: 8
+  cylinder: {diameter: 0.4}
+  phases: {pack_time: 0.3, settle_time: 0.05, lift_speed: 1, lift_time: 0.3, hold_time: 0.05}
+factors:
+  contact.friction: [0.2, 0.5]
+  rp: [spheres]
+YAML
+hashes() { sqlite3 "$1/study.sqlite" "SELECT run, state, hash FROM run ORDER BY run"; }
+run study tiny.yaml --dry-run
+# the whole; times are the machine's
+run study tiny.yaml -o whole --jobs 2 2>&1 | sed 's/  *[0-9.e-]*$//'
+ls whole
+hashes whole >whole.txt
+# a worker killed in the middle, two processes after it, then a look at it
+"$SCREE" study tiny.yaml -o parts --worker --no-wait &
+worker=$!
+while kill -0 $worker 2>/dev/null && ! ls parts/leases/run-* >/dev/null 2>&1; do sleep 0.02; done
+kill -9 $worker 2>/dev/null
+wait $worker 2>/dev/null
+"$SCREE" study tiny.yaml -o parts --worker &
+second=$!
+run study tiny.yaml -o parts --jobs 1 >/dev/null
+wait $second || echo "the second worker failed"
+hashes parts | cmp - whole.txt
+run study status parts --csv | cut -d, -f1-8
+run study status parts --json | sed -n '/"runs"/{p;q}'
+# a job array, whose task runs without Slurm too
+run study tiny.yaml -o array --slurm --dry-run --tasks 3 | sed 's/[^ `]*\(study.sbatch\)/\1/g'
+grep -c '^#SBATCH' array/study.sbatch
+grep array= array/study.sbatch
+sh array/study.sbatch
+"$SCREE" study status array >/dev/null
+hashes array | cmp - whole.txt
+# ranks as workers, one of them killed; the same command ends it
+if command -v mpirun >/dev/null; then
+  ranks() {
+    OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 \
+      mpirun --oversubscribe -n 2 "$SCREE" study tiny.yaml -o ranks "$@" >ranks.txt 2>&1
+  }
+  ranks &
+  job=$!
+  while kill -0 $job 2>/dev/null && ! ls ranks/leases/run-* >/dev/null 2>&1; do sleep 0.02; done
+  rank=$(sed -n 3p ranks/leases/run-* 2>/dev/null | head -1)
+  [ -z "$rank" ] || kill -9 "$rank" 2>/dev/null
+  wait $job 2>/dev/null
+  ranks || cat ranks.txt
+  hashes ranks | cmp - whole.txt
+fi
+# what is wrong is said
+printf 'shapes: [sample:box]\nfactors: {rp: [7]}\n' >bad.yaml
+run study bad.yaml
+run study missing.yaml
+run study status nowhere
+run study status 2>&1 | sed -n 2p
+run study tiny.yaml other.yaml 2>&1 | sed -n 2p
+run study tiny.yaml --json --csv 2>&1 | sed -n 2p
+echo "no database" >whole/study.sqlite
+run study tiny.yaml -o whole
+rm whole/study.sqlite
+run study tiny.yaml -o whole --csv | cut -d, -f1-4
+# no room for a record
+(
+  ulimit -f 4
+  trap '' XFSZ
+  "$SCREE" study tiny.yaml -o full --jobs 1 >full.txt 2>&1
+)
+head -1 full.txt | sed 's/[0-9a-f]\{16\}/KEY/; s/[a-z]*\.scree/FILE/'
+"$SCREE" study tiny.yaml -o full >/dev/null
+hashes full | cmp - whole.txt
