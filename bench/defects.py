@@ -93,6 +93,9 @@ def generated():
         [t for t in box(10.0, 1) if all(p[2] == 10 for p in t)]
     yield "fin of 2 facets", s + [(s[5][0], s[5][1], (20.0, 20.0, 20.0)), (s[5][1], (20.0, 21.0, 20.0),
                                                                          (20.0, 20.0, 20.0))]
+    half = box(10.0, origin=(10, 0, 0))
+    wall = [t for t in half if all(p[0] == 10 for p in t)]
+    yield "two boxes glued, one wall between", box(10.0) + [t for t in half if t not in wall]
     yield "two boxes sharing an edge", box(10.0) + box(10.0, origin=(10, 10, 0))
     yield "two boxes sharing a corner", box(10.0) + box(10.0, origin=(10, 10, 10))
     yield "two boxes face on face, alike", box(10.0) + box(10.0, origin=(10, 0, 0))
@@ -129,7 +132,11 @@ def defects_of(report):
         text = report["failure"].split(": ", 1)[-1]
         return "not read: " + (text if len(text) < 90 else text[:87] + "...")
     found = {k: n for k, n in report["check"]["defects"].items() if n}
-    return ", ".join(f"{n} {k.replace('_', ' ')}" for k, n in found.items()) or "none"
+    text = ", ".join(f"{n} {k.replace('_', ' ')}" for k, n in found.items()) or "none"
+    if "overlapping_shell_pairs" in found or "nested_shells" in found:
+        volume = report["check"].get("volume")
+        text += f"; the union has {volume * 1e9:.6g} mm3" if volume else "; the union's volume is unknown"
+    return text
 
 
 def by_scree(path, folder):

@@ -240,7 +240,9 @@ static bool add_feature(void *context, const scree_contact *c) {
   pair_list *list = context;
   pair_line *p = list->count ? &list->items[list->count - 1] : NULL;
   if (!p || p->body != c->body || p->other != c->other || p->wall != c->wall) {
-    if (!SCREE_PUSH(list, (pair_line){.body = c->body, .other = c->other, .wall = c->wall})) {
+    const pair_line first = {.body = c->body, .other = c->other, .wall = c->wall};
+    /* NOLINTNEXTLINE(clang-analyzer-core.NullDereference): room was made */
+    if (!SCREE_PUSH(list, first)) {
       list->failed = true;
       return false;
     }
