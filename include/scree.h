@@ -884,7 +884,9 @@ typedef struct scree_particle_measures {
 /* A closed mesh, metres. Coplanar and collinear subdivisions do not change the features, so neither
  * the forces. Fails with SCREE_BAD_MESH, naming the first offending triangle or edge, for a mesh
  * that is open, non-manifold, inconsistently wound, folded (two faces closer than 30 degrees to
- * back to back over an edge) or without positive volume. options may be NULL. Cost n log n. */
+ * back to back over an edge) or without positive volume, and with the verdict of scree_mesh_check
+ * for every other that it finds unusable: surfaces that cross or touch themselves, shells inside
+ * out or inside others. options may be NULL. Cost n log n. */
 SCREE_API scree_status scree_particle_from_mesh(const scree_mesh *mesh,
                                                 const scree_particle_options *options,
                                                 scree_particle **particle, scree_error *error);
@@ -1090,6 +1092,15 @@ SCREE_API scree_status scree_world_save(const scree_world *world, const char *pa
  * own (scree_world_body_particle); a removed body keeps its. SCREE_BAD_FILE, with file and reason,
  * for what is no checkpoint, is of another version, is cut short or has a bit changed anywhere. */
 SCREE_API scree_status scree_world_load(const char *path, scree_world **world, scree_error *error);
+
+/* For runs that may leave the model's range: from now on a checkpoint of the state is kept in
+ * memory every step_interval steps, and where scree_world_step comes to SCREE_DIVERGED the last one
+ * is written to path, replacing what is there, and named in the message. Loaded, it runs into the
+ * same failure with the same bits: a world to look closely at what happened. path NULL: no longer.
+ * Not part of checkpoints. Cost: a checkpoint's memory, and the time of making one (about 10 ms for
+ * a thousand bodies) every interval. */
+SCREE_API scree_status scree_world_keep(scree_world *world, const char *path,
+                                        uint64_t step_interval, scree_error *error);
 
 /* ==== 8. Pile: filling, lifting, angle of repose, studies ======================================
  */

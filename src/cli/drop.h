@@ -52,6 +52,8 @@ scree_status drop_make_particles(drop_run *run, scree_error *error);
 scree_status drop_refuse_existing(const drop_run *run, scree_error *error);
 /* The folder and the table. */
 scree_status drop_open_output(drop_run *run, scree_error *error);
+/* A pour that fails shall leave the state before it. */
+scree_status drop_keep_state(drop_run *run, scree_error *error);
 /* One frame of the state as it is, and a line of series.csv. */
 scree_status drop_write_frame(drop_run *run, scree_error *error);
 scree_status drop_write_line(drop_run *run, scree_error *error);

@@ -51,6 +51,14 @@ scree_status drop_open_output(drop_run *run, scree_error *error) {
   return SCREE_OK;
 }
 
+scree_status drop_keep_state(drop_run *run, scree_error *error) {
+  enum { KEEP_STEPS = 2000 };
+  char path[DROP_PATH_BYTES];
+  scree_status status = make_path(run, "before-failure.world", path, error);
+  if (status != SCREE_OK) return status;
+  return scree_world_keep(scree_pour_world(run->pour), path, KEEP_STEPS, error);
+}
+
 scree_status drop_write_line(drop_run *run, scree_error *error) {
   scree_observation o;
   const scree_world *world = scree_pour_world(run->pour);

@@ -260,6 +260,7 @@ static scree_status pour(drop_run *run, scree_error *error) {
   if (status == SCREE_OK) status = make_ball(&run->ball, error);
   if (status == SCREE_OK) status = create_pour(run, error);
   if (status == SCREE_OK) status = drop_open_output(run, error);
+  if (status == SCREE_OK) status = drop_keep_state(run, error);
   if (status != SCREE_OK) return status;
   say_pour(run);
   double start = now();
@@ -307,7 +308,9 @@ const cli_verb cli_verb_drop = {
         "Writes into DIR: drop.pvd with frame-*.vtp (surfaces; body, shape and speeds by triangle) "
         "for ParaView; series.csv with energies, contacts and overlaps over time; drop.png. The "
         "same options give the same bits for any number of threads. Ctrl-C stops: what was "
-        "written stays, and drop.pvd lists it.",
+        "written stays, and drop.pvd lists it. A pour that leaves the range of the contact law "
+        "stops "
+        "with step, body and cause, and leaves the state shortly before in before-failure.world.",
     .examples = "scree drop phone.stl=50\n"
                 "scree drop sample:fp-1=20 sample:dc-2=20 -n 100 -c box -w 300mm -o mixed\n"
                 "scree drop sphere:40mm=200 --frames 0.01 --seed 2\n",

@@ -141,6 +141,14 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
   return status ? status : finish_mesh(p, error);
 }
 
+/* What the features' extraction does not see: surfaces that meet themselves, shells in shells. */
+static scree_status check_surface(const scree_mesh *mesh, scree_error *error) {
+  scree_check check;
+  scree_status status = scree_mesh_check(mesh, NULL, NULL, &check, error);
+  if (status || check.usable) return status;
+  return scree_fail(error, SCREE_BAD_MESH, "particle: the mesh is %s", check.verdict);
+}
+
 scree_status scree_particle_from_mesh(const scree_mesh *mesh, const scree_particle_options *options,
                                       scree_particle **particle, scree_error *error) {
   double rounding = options ? options->rounding : 0;
@@ -160,6 +168,7 @@ scree_status scree_particle_from_mesh(const scree_mesh *mesh, const scree_partic
     p->faces = NULL, p->face_signs = NULL, p->points = NULL, p->point_radii = NULL;
     p->edges = NULL, p->point_count = p->edge_count = 0;
   }
+  if (!status) status = check_surface(mesh, error);
   if (!status) status = make_mesh_particle(p, rounding, error);
   if (status) {
     scree_particle_free(p);

@@ -406,18 +406,22 @@ scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, s
   return SCREE_OK;
 }
 
+scree_status scree_checkpoint_write(const unsigned char *bytes, size_t byte_count, const char *path,
+                                    bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status) return status;
+  fwrite(bytes, 1, byte_count, output.stream); /* a failure shows in the commit */
+  return scree_output_commit(&output, error);
+}
+
 scree_status scree_world_save(const scree_world *world, const char *path, bool overwrite,
                               scree_error *error) {
   unsigned char *bytes;
   size_t count;
-  scree_output output;
   scree_status status = scree_world_pack(world, &bytes, &count, error);
   if (status) return status;
-  status = scree_output_open(path, overwrite, &output, error);
-  if (!status) {
-    fwrite(bytes, 1, count, output.stream); /* a failure shows in the commit */
-    status = scree_output_commit(&output, error);
-  }
+  status = scree_checkpoint_write(bytes, count, path, overwrite, error);
   scree_free(bytes);
   return status;
 }

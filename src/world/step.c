@@ -150,9 +150,12 @@ scree_status scree_world_step(scree_world *world, size_t step_count, scree_error
   scree_status status = check_time_step(world, error);
   if (status) return status;
   for (size_t k = 0; k < step_count; k++) {
+    status = scree_world_keep_state(world, error);
+    if (status) return status;
     status = one_step(world);
     if (status == SCREE_OK) continue;
     world->diverged = true;
+    scree_world_write_kept(world);
     if (error) *error = world->failure;
     return status;
   }

@@ -98,6 +98,8 @@ void scree_world_free(scree_world *world) {
   for (int i = 0; i < world->scratch_count; i++) scree_free(world->scratch[i].touches.items);
   scree_free(world->scratch);
   scree_broad_free(world);
+  scree_free(world->kept.path);
+  scree_free(world->kept.bytes);
   scree_free(world);
 }
 

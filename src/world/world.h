@@ -212,6 +212,12 @@ struct scree_world {
   double largest_overlap;
   bool diverged;
   scree_error failure;
+  struct { /* scree_world_keep; path NULL: nothing is kept */
+    char *path;
+    uint64_t interval, step; /* steps; of the state that `bytes` hold */
+    unsigned char *bytes;    /* a checkpoint; NULL before the first */
+    size_t byte_count;
+  } kept;
   scree_timings timings;
 };
 
@@ -314,7 +320,15 @@ vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, v
 /* save.c: a checkpoint's bytes, free with scree_free; and back, `name` for messages. */
 scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, size_t *byte_count,
                               scree_error *error);
+/* Writes these bytes, whole or not at all. */
+scree_status scree_checkpoint_write(const unsigned char *bytes, size_t byte_count, const char *path,
+                                    bool overwrite, scree_error *error);
 scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
                                 scree_world **world, scree_error *error);
+
+/* keep.c: packs the state when the interval is over; after a failure writes what was packed last,
+ * and says so in world->failure. */
+scree_status scree_world_keep_state(scree_world *world, scree_error *error);
+void scree_world_write_kept(scree_world *world);
 
 #endif

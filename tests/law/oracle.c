@@ -259,6 +259,19 @@ static void unusable_meshes_are_refused(void **state) {
   assert_non_null(strstr(error.message, "inside out"));
   scree_mesh_free(&inside_out);
   assert_null(particle);
+  /* closed, manifold and of positive volume, but a box in a box, and two that cross */
+  for (int crossing = 0; crossing < 2; crossing++) {
+    scree_mesh one = shape_box(1, 1, 1), other = shape_box(0.5, 0.5, 0.5);
+    shape_move(&other, crossing ? (vec3){0.7, 0.2, 0.3} : (vec3){0.2, 0.2, 0.2});
+    scree_mesh both = shape_join(&one, &other);
+    assert_int_equal(scree_particle_from_mesh(&both, NULL, &particle, &error), SCREE_BAD_MESH);
+    print_message("%s\n", error.message);
+    assert_non_null(strstr(error.message, crossing ? "crossing" : "nested shell"));
+    scree_mesh_free(&one);
+    scree_mesh_free(&other);
+    scree_mesh_free(&both);
+  }
+  assert_null(particle);
 }
 
 static void features_follow_the_shape(void **state) {

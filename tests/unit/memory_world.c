@@ -104,6 +104,7 @@ static scree_status step_world(void *context, scree_error *error) {
   scree_world *world = NULL;
   size_t contacts = 0;
   scree_status status = make_world(context, &world, error);
+  if (status == SCREE_OK) status = scree_world_keep(world, file, 25, error);
   if (status == SCREE_OK) status = scree_world_step(world, 60, error);
   if (status == SCREE_OK)
     status = scree_world_visit_contacts(world, count_contact, &contacts, error);

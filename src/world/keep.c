@@ -1,0 +1,50 @@
+/* The last good state of a run that fails: a checkpoint in memory, made anew every so many steps
+ * and written when a step leaves the model's range. It is older than the failure, since the failing
+ * step has already changed the contacts' memory; being exact, it leads there again. */
+#include "world/world.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+scree_status scree_world_keep(scree_world *world, const char *path, uint64_t step_interval,
+                              scree_error *error) {
+  if (path && step_interval == 0)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: a state kept every 0 steps; at least 1");
+  char *copy = path ? scree_strdup(path) : NULL;
+  if (path && !copy) return scree_fail_memory(error, strlen(path), "a file name");
+  scree_free(world->kept.path);
+  scree_free(world->kept.bytes);
+  memset(&world->kept, 0, sizeof world->kept);
+  world->kept.path = copy;
+  world->kept.interval = step_interval;
+  return SCREE_OK;
+}
+
+scree_status scree_world_keep_state(scree_world *world, scree_error *error) {
+  if (!world->kept.path) return SCREE_OK;
+  bool due = !world->kept.bytes || world->step_count - world->kept.step >= world->kept.interval;
+  if (!due) return SCREE_OK;
+  unsigned char *bytes;
+  size_t count;
+  scree_status status = scree_world_pack(world, &bytes, &count, error);
+  if (status) return status;
+  scree_free(world->kept.bytes);
+  world->kept.bytes = bytes;
+  world->kept.byte_count = count;
+  world->kept.step = world->step_count;
+  return SCREE_OK;
+}
+
+void scree_world_write_kept(scree_world *world) {
+  if (!world->kept.bytes || world->failure.status != SCREE_DIVERGED) return;
+  scree_error error;
+  char *message = world->failure.message;
+  size_t used = strlen(message), left = sizeof world->failure.message - used;
+  if (scree_checkpoint_write(world->kept.bytes, world->kept.byte_count, world->kept.path, true,
+                             &error) == SCREE_OK)
+    snprintf(message + used, left, "; the state of step %llu is in %s",
+             (unsigned long long)world->kept.step, world->kept.path);
+  else
+    snprintf(message + used, left, "; its checkpoint could not be written: %.300s", error.message);
+}
