@@ -1,0 +1,123 @@
+/* L5 to L8 on what the decimation makes: samples and scans from 1500 down to 8 triangles. Without
+ * arguments a part of it; with `full` every shape and number of triangles, 60 hits each.
+ *
+ * Every shape is scaled to 50 mm, the size of the paper's devices, so that speeds mean the same. */
+#include "support/law.h"
+
+#include "support/hits.h"
+#include "support/shapes.h"
+
+static const size_t counts[] = {1500, 760, 300, 100, 12, 8};
+enum { COUNTS = sizeof counts / sizeof *counts };
+static bool full;
+
+/* Of 50 mm size, about the origin's scale: units do not matter. */
+static void scale_to_size(scree_mesh *mesh) {
+  double area, volume;
+  scree_error error;
+  CHECK_OK(scree_mesh_area_volume(mesh, &area, &volume, &error), error);
+  double factor = 0.05 / cbrt(6 * volume / 3.14159265358979);
+  for (size_t i = 0; i < 3 * mesh->vertex_count; i++) mesh->positions[i] *= factor;
+}
+
+static scree_mesh sample_mesh(const char *name) {
+  scree_error error;
+  scree_mesh mesh;
+  scree_sample_options o = scree_default_sample_options();
+  o.resolution = 1.5e-3;
+  o.noise = 0;
+  CHECK_OK(scree_sample_make(name, &o, NULL, &mesh, &error), error);
+  return mesh;
+}
+
+static scree_mesh scan_mesh(const char *folder, const char *name) {
+  char path[512];
+  scree_error error;
+  scree_scan scan;
+  scree_mesh mesh;
+  scree_repair_options repair = scree_default_repair_options();
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  CHECK_OK(scree_scan_read(path, NULL, &scan, &error), error);
+  CHECK_OK(scree_mesh_prepare(&scan.mesh, &repair, NULL, &mesh, NULL, &error), error);
+  scree_scan_free(&scan);
+  return mesh;
+}
+
+typedef struct tally {
+  double mean, worst, highest;
+  law_outcome out;
+} tally;
+
+static void hit_many(scree_particle *particle, int hits, int tries, tally *t) {
+  const quat none = {1, 0, 0, 0};
+  const law_meeting meeting = {"", particle, particle, none, none, 0.02, 3.1, 0};
+  *t = (tally){0};
+  for (int i = 0; i < hits; i++) {
+    double ratio = law_random_hit(particle, 20, (uint64_t)i, false);
+    t->mean += ratio / hits;
+    t->worst = fmax(t->worst, fabs(ratio - 1));
+    if (i % 2 == 0) t->highest = fmax(t->highest, law_random_hit(particle, 20, (uint64_t)i, true));
+  }
+  for (int i = 0; i < tries; i++) {
+    law_meet(&meeting, 7.7, (uint64_t)i, &t->out);
+    law_meet(&meeting, 15.4, (uint64_t)i, &t->out);
+  }
+}
+
+static void check_level(const char *name, size_t count, const scree_mesh *mesh) {
+  scree_error error;
+  scree_particle *particle = NULL;
+  char what[96];
+  tally t;
+  snprintf(what, sizeof what, "%s at %zu", name, count);
+  if (scree_particle_from_mesh(mesh, NULL, &particle, &error) != SCREE_OK)
+    fail_msg("%s: %s", what, error.message);
+  hit_many(particle, full ? 60 : 30, full ? 60 : 8, &t);
+  print_message("%s triangles\n", what);
+  LAW_NEAR("L6", "mean energy ratio of undamped hits", t.mean, 1, 0.005);
+  LAW_BELOW("L6", "worst", t.worst, 0.12);
+  LAW_BELOW("L7", "damped: highest energy over that at the start", t.highest, 1.002);
+  LAW_NEAR("L8", "passed through at 7.7 and 15.4 m/s", (double)t.out.through, 0, 0);
+  LAW_NEAR("L8", "stuck", (double)t.out.stuck, 0, 0);
+  LAW_NEAR("L8", "stopped beyond the overlap limit", (double)t.out.stopped, 0, 0);
+  scree_particle_free(particle);
+}
+
+/* Levels `first`, first + step ... of the table of counts. */
+static void check_shape(const char *name, scree_mesh mesh, size_t first, size_t step) {
+  scree_error error;
+  scree_curve *curve = NULL;
+  scree_simplify_options o = scree_default_simplify_options();
+  scale_to_size(&mesh);
+  CHECK_OK(scree_curve_build(&mesh, &o, NULL, &curve, &error), error);
+  for (size_t i = full ? 0 : first; i < COUNTS; i += full ? 1 : step) {
+    scree_mesh level;
+    CHECK_OK(scree_curve_mesh(curve, scree_curve_find(curve, counts[i]), &level, &error), error);
+    check_level(name, level.triangle_count, &level);
+    scree_mesh_free(&level);
+  }
+  scree_curve_free(curve);
+  scree_mesh_free(&mesh);
+}
+
+static void samples(void **state) {
+  (void)state;
+  static const char *const names[] = {"fp-1", "dc-2", "sp-3", "fp-2", "dc-1", "sp-1"};
+  for (size_t i = 0; i < (full ? 6 : 3); i++) check_shape(names[i], sample_mesh(names[i]), i, 3);
+}
+
+static void scans(void **state) {
+  (void)state;
+  static const char *const names[] = {"rock_chrono4.obj", "ycb_power_drill.obj", "stone_E22.ply",
+                                      "imu_adis16480.stl", "stone_073ac.ply"};
+  const char *folder = scan_data_folder();
+  if (!folder) skip();
+  for (size_t i = 0; i < (full ? 5 : 2); i++)
+    check_shape(names[i], scan_mesh(folder, names[i]), 1 + i, 3);
+}
+
+int main(int argument_count, char **arguments) {
+  full = argument_count > 1 && strcmp(arguments[1], "full") == 0;
+  const struct CMUnitTest tests[] = {cmocka_unit_test(samples), cmocka_unit_test(scans)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
