@@ -123,7 +123,11 @@ static scree_status make_levels(picture *p, const double *rp, const char *word,
   for (size_t i = 1; i < p->count && status == SCREE_OK; i++) {
     size_t target = scree_choice_target(rp[i - 1], scan->triangle_count);
     status = scree_curve_mesh(curve, scree_curve_find(curve, target), &p->scans[i].mesh, error);
-    if (status == SCREE_OK) put_cell(p, i, word, rp[i - 1]);
+    if (status != SCREE_OK) break;
+    put_cell(p, i, word, rp[i - 1]);
+    if (p->scans[i].mesh.triangle_count <= target) continue;
+    size_t used = strlen(p->captions[i]);
+    snprintf(p->captions[i] + used, sizeof p->captions[i] - used, ", not fewer");
   }
   scree_curve_free(curve);
   return status;
