@@ -197,6 +197,7 @@ static inline double worse_shape(double worst, double shape) {
 }
 
 static bool take_lane(const lanes *l, int i, tally *sum, bool *steep) {
+  /* compare_lanes has set it: NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
   double n2 = l->n2[i], m2 = l->m2[i], turn = l->turn[i], m_b = l->m_b[i];
   if (n2 > 0 && (!(turn > 0) || !(turn * turn > FLIP * FLIP * n2 * m2))) return false;
   if (!(m2 > 0)) return false;

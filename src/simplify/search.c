@@ -123,18 +123,45 @@ typedef struct listing {
   scree_grid *grid;
   const scree_halfmesh *s;
   const scree_planned *planned;
-  uint8_t *where; /* per triangle: whether it touches a marked cell */
+  uint8_t *where;        /* per triangle: whether it touches a marked cell */
+  scree_grid_box *place; /* per vertex */
 } listing;
+
+/* The cells that a vertex is in now and will be in. */
+static void place_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const listing *l = context;
+  for (size_t v = begin; v < end; v++) {
+    if (l->s->outgoing[v] == SCREE_NONE) continue;
+    vec3 now = l->s->position[v];
+    uint32_t chosen = l->planned->chosen[v];
+    vec3 then = chosen == SCREE_NONE ? now : l->planned->changes[chosen].target;
+    l->place[v] = scree_cells_of(l->grid, vec3_min(now, then), vec3_max(now, then));
+  }
+}
+
+static scree_grid_box join(scree_grid_box a, const scree_grid_box *b) {
+  for (int i = 0; i < 3; i++) {
+    a.low[i] = a.low[i] < b->low[i] ? a.low[i] : b->low[i];
+    a.high[i] = a.high[i] > b->high[i] ? a.high[i] : b->high[i];
+  }
+  return a;
+}
+
+/* The cells of triangle t and what it will become. */
+static scree_grid_box cells_with_plan(const listing *l, size_t t) {
+  const uint32_t *from = l->s->from + 3 * t;
+  return join(join(l->place[from[0]], &l->place[from[1]]), &l->place[from[2]]);
+}
 
 static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const listing *l = context;
   scree_grid *g = l->grid;
-  vec3 low, high;
   for (size_t t = begin; t < end; t++) {
     l->where[t] = FAR;
-    if (!box_with_plan(l->s, (uint32_t)t, l->planned, &low, &high)) continue;
-    scree_grid_box c = scree_cells_of(g, low, high);
+    if (l->s->from[3 * t] == SCREE_NONE) continue;
+    scree_grid_box c = cells_with_plan(l, t);
     if (scree_count_cells(&c) > SCREE_CELLS_MAX) {
       l->where[t] = LARGE;
       continue;
@@ -176,7 +203,7 @@ static void fill_block(void *context, size_t begin, size_t end, size_t block, in
     box_with_plan(l->s, (uint32_t)t, l->planned, &low, &high);
     scree_grid_near near = {(uint32_t)t, coarse_box(g, low, high),
                             averse_with_plan(l, (uint32_t)t)};
-    scree_grid_box c = scree_cells_of(g, low, high);
+    scree_grid_box c = cells_with_plan(l, t);
     SCREE_FOR_CELLS(g, c, cell)
     if (g->head[cell] != SCREE_NONE)
       g->near[__atomic_sub_fetch(&g->start[g->head[cell] + 1], 1, __ATOMIC_RELAXED)] = near;
@@ -186,12 +213,15 @@ static void fill_block(void *context, size_t begin, size_t end, size_t block, in
 /* After count_block start[k + 1] is the count of cell k; before fill_block it is the end of its
  * part; after that its beginning, and the next cell's is its end. */
 bool scree_grid_list_marked(scree_grid *g, const scree_halfmesh *s, const scree_planned *planned) {
-  listing l = {g, s, planned, scree_alloc(s->triangle_count, 1)};
-  bool listed = l.where && scree_array_reserve((void **)&g->start, &g->start_capacity,
-                                               g->marked_count + 2, sizeof *g->start);
+  listing l = {g, s, planned, scree_alloc(s->triangle_count, 1),
+               scree_alloc(s->vertex_count, sizeof *l.place)};
+  bool listed = l.where && l.place &&
+                scree_array_reserve((void **)&g->start, &g->start_capacity, g->marked_count + 2,
+                                    sizeof *g->start);
   if (listed) {
     size_t sum = 0;
     memset(g->start, 0, (g->marked_count + 2) * sizeof *g->start);
+    scree_parallel_for(s->vertex_count, BLOCK, place_block, &l);
     scree_parallel_for(s->triangle_count, BLOCK, count_block, &l);
     for (size_t k = 1; k <= g->marked_count + 1; k++) g->start[k] = (uint32_t)(sum += g->start[k]);
     listed = sum < UINT32_MAX &&
@@ -203,6 +233,7 @@ bool scree_grid_list_marked(scree_grid *g, const scree_halfmesh *s, const scree_
       if (l.where[t] == LARGE) listed = list_large(g, t);
   }
   scree_free(l.where);
+  scree_free(l.place);
   return listed;
 }
 
