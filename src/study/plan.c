@@ -421,7 +421,7 @@ static scree_status read_analysis(const reader *r, const scree_yaml *node) {
     int way = 0;
     if (!strcmp(item->key, "angle")) {
       status = read_word(r, item, "sector|cone|silhouette", &way);
-      if (status == SCREE_OK) r->study->analysis_angle = angles[way];
+      if (way >= 0 && way < 3) r->study->analysis_angle = angles[way];
     } else if (!strcmp(item->key, "margin_deg")) {
       status = read_real(r, item, 1e-6, 90, &r->study->margin_deg);
     } else if (!strcmp(item->key, "confidence")) {
@@ -439,7 +439,7 @@ static scree_status read_unit(const reader *r, const scree_yaml *node) {
   static const double metres[] = {1, 1e-3, 1e-2, 1e-6, 0.0254};
   int unit = 0;
   scree_status status = read_word(r, node, "m|mm|cm|um|inch", &unit);
-  if (status == SCREE_OK) r->study->unit_m = metres[unit];
+  if (unit >= 0 && unit < 5) r->study->unit_m = metres[unit];
   return status;
 }
 
