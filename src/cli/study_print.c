@@ -75,6 +75,8 @@ static void print_point(FILE *stream, const scree_study_result *r, size_t index,
             a->sd, 100 * a->cv);
   fprintf(stream, " %9.4g", p->seconds.mean);
   print_comparison(stream, r, index);
+  if (p->heap_count && p->heap_count < p->counts.done)
+    fprintf(stream, "  (%zu without heap)", p->counts.done - p->heap_count);
   fputs("\n", stream);
 }
 

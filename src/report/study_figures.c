@@ -176,14 +176,12 @@ scree_status scree_study_rotation_figure(const scree_study_result *result, const
     d.series[d.series_count++] = (scree_series){.label = label_of(point->label, point->shapes),
                                                 .x = point->time,
                                                 .y = point->rotation,
-                                                .low = point->rotation_low,
-                                                .high = point->rotation_high,
                                                 .count = point->series_count,
                                                 .style = (int)p,
                                                 .draw = SCREE_DRAW_LINE};
   }
   if (d.series_count == 0) return nothing_to_draw(path, "no run is done", error);
-  scree_panel panel = {"rotational velocity, mean over the particles and the replicates",
+  scree_panel panel = {"rotational velocity of the particles",
                        {"time since the cylinder began to rise (s)", SCREE_SCALE_LINEAR, 0, 0},
                        {"mean |\u03c9| (rad/s)", SCREE_SCALE_LINEAR, 0, 0},
                        d.series,
