@@ -1192,9 +1192,10 @@ typedef struct scree_experiment {
   double hold_time;                        /* s: at most, until still */
   double still_energy;                     /* J of kinetic energy a particle: less is still */
   bool stop_when_still;                    /* end a phase early when still */
-  double drop_height;                      /* m between the heap and the layer being filled in */
-  double gravity;                          /* m/s2 */
-  double young_particle, young_wall;       /* Pa */
+  int inlet; /* 0 "top": above where the packed heap will end; 1 "heap": as near as drop_height */
+  double drop_height;                /* m between the heap and the layer being filled in */
+  double gravity;                    /* m/s2 */
+  double young_particle, young_wall; /* Pa */
   double poisson;
   double restitution, friction_particle, friction_wall;
   int contact_law;            /* 0 linear, 1 hysteretic */

@@ -28,6 +28,8 @@
     "true: phases end early when still.")                                                          \
   X(STILL_ENERGY, "still-energy", "phases.still_energy", "J",                                      \
     "Kinetic energy a particle: less is still.")                                                   \
+  X(INLET, "inlet", "phases.inlet", "WHERE",                                                       \
+    "top: particles fall from above where the packed heap will end; heap: from near the heap.")    \
   X(DROP_HEIGHT, "drop-height", "phases.drop_height", "M",                                         \
     "From the heap's top to the inlet, at least.")                                                 \
   X(YOUNG, "young", "contact.young_particle", "PA", "Young's modulus of the particles.")           \

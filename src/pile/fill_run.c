@@ -2,7 +2,8 @@
  * other in a slab one and a half particles thick; layers follow at equal intervals so that all are
  * in after pack_time, and enter with the speed that takes a layer out of the way before the next:
  * the paper's inlet at the top of the cylinder. The inlet lies above where the packed heap will
- * end, and rises with the heap if that comes too near. */
+ * end, and rises with the heap if that comes too near; or, by phases.inlet, it begins near the disc
+ * and only rises with the heap, so that nothing hits harder than it must. */
 #include "pile/run.h"
 
 static const double loose_packing = 0.30;  /* solid fraction that sets the height of the inlet */
@@ -121,7 +122,8 @@ static scree_status add_placed(scree_run *run, const scree_placement *p, scree_e
 }
 
 scree_status scree_run_enter_layer(scree_run *run, scree_error *error) {
-  double bottom = fmax(run->inlet_height, heap_height(run) + run->experiment.drop_height);
+  double bottom = heap_height(run) + run->experiment.drop_height;
+  if (run->experiment.inlet == 0) bottom = fmax(bottom, run->inlet_height);
   size_t left = list_waiting(run), present = list_present(run, bottom);
   scree_fill_layer layer = layer_at(run, bottom, present);
   size_t placed = scree_fill_place(&layer, run->placements, left);
