@@ -20,6 +20,8 @@ VERBS = {  # heading: calls that together print every field
     "scree curve": [["curve", BALL, "--distance", "--per-decade", "1"]],
     "scree measure": [["measure", SOLID]],
     "scree distance": [["distance", SOLID, BALL, "--samples", "100"]],
+    "scree repose and scree pile": [["repose", SOLID, "--particles", "2", "--pack-time", "0.02", "--settle-time",
+                                     "0.01", "--lift-time", "0.01", "--hold-time", "0.01", "-j", "1"]],
     "scree check and scree repair": [["check", SOLID, "missing.stl"], ["repair", "open.off", "-o", "r.stl"]],
 }
 
