@@ -139,16 +139,16 @@ static void make_small(scree_experiment *e) {
 }
 
 static void make_demo(scree_experiment *e) {
-  e->particle_count = 120;
+  e->particle_count = 180;
   e->cylinder_diameter = 0.3;
   e->disc_diameter = 1.6;
   e->pack_time = 3;
   e->settle_time = 0.6;
   e->lift_speed = 0.2;
   e->lift_time = 3;
-  e->hold_time = 2;
+  e->hold_time = 1.5;
   e->stiffness_factor = 0.4;
-  e->still_energy = 1e-5;
+  e->still_energy = 1e-4;
   e->stop_when_still = true;
   e->inlet = 1;
   e->drop_height = 0.03;
