@@ -2,7 +2,10 @@
 # The speed of scree's world: particle-steps per second on settled and flowing piles, against triangle
 # count, body count, threads, and beside the engines that Debian packages.
 #
-#   bench/world.sh [SECONDS]        each measurement takes SECONDS (default 5), three times; the median counts
+#   bench/world.sh [SECONDS [PATTERN]]
+#
+# Each measurement takes SECONDS (default 5), three times; the median counts. With PATTERN (an extended
+# regular expression) only scenes whose name matches are made and measured.
 #
 # Scenes are made once, as checkpoints in the build folder (about 20 minutes on one core); delete
 # build/bench/work/world to make them again, which a new version of checkpoints asks for. A scene is
@@ -11,8 +14,9 @@
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"
 cmake -S "$root" --preset release -B "$build" -DSCREE_BENCH=ON -DBUILD_TESTING=OFF >/dev/null
-cmake --build "$build" --target bench_world ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null
+cmake --build "$build" ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null
 seconds=${1:-5}
+pattern=${2:-.}
 scenes=$work/world
 mkdir -p "$scenes"
 rows=$scenes/rows
@@ -21,6 +25,7 @@ rows=$scenes/rows
 # make NAME ARGUMENT...: the scene NAME by bench_world ARGUMENT... NAME, unless it is there.
 make_scene() {
   local out=$scenes/$1.scree
+  [[ $1 =~ $pattern ]] || return 0
   shift
   [ -s "$out" ] || "$bin/bench_world" "${@//@/$scenes/}" "$out" >&2
 }
@@ -32,7 +37,7 @@ median() {
 }
 # measure LABEL THREADS SCENE BAR: a row; BAR is what its rate should be at least, or empty.
 measure() {
-  [ -s "$scenes/$3.scree" ] || return 0
+  [[ $3 =~ $pattern ]] && [ -s "$scenes/$3.scree" ] || return 0
   echo "$1,$2,${4:-},$(median "$2" "$3")" >>"$rows"
   tail -1 "$rows" | cut -d, -f1,10,11 >&2
 }
@@ -57,6 +62,7 @@ done
 make_scene devices12000 stack 10 1 @devices.scree
 make_scene devices100000 stack 84 0 @devices_100.scree
 
+measure "133 devices at rest" 1 devices133 500000
 measure "1197 devices at rest" 1 devices 500000
 measure "1197 devices flowing" 1 flowing 260000
 measure "1197 devices at rest, two threads" 2 devices
@@ -70,19 +76,37 @@ measure "200 trays of 448 triangles" 1 tray448t 200000
 
 # The same scene twice side by side, against one alone, by wall clock.
 side_by_side() {
-  "$bin/bench_world" time 1 "$seconds" "$scenes/devices.scree" >"$scenes/first" &
-  "$bin/bench_world" time 1 "$seconds" "$scenes/devices.scree" >"$scenes/second"
+  "$bin/bench_world" time 1 "$seconds" "$1" >"$scenes/first" &
+  "$bin/bench_world" time 1 "$seconds" "$1" >"$scenes/second"
   wait
   cat "$scenes/first" "$scenes/second" | awk -F, '{ sum += $7 } END { print sum }'
 }
-one=$("$bin/bench_world" time 1 "$seconds" "$scenes/devices.scree" | cut -d, -f7)
-two=$(side_by_side)
+one=0 two=0
+for scene in devices devices133 boxes200t; do
+  [ -s "$scenes/$scene.scree" ] || continue
+  one=$("$bin/bench_world" time 1 "$seconds" "$scenes/$scene.scree" | cut -d, -f7)
+  two=$(side_by_side "$scenes/$scene.scree")
+  break
+done
+
+# Peers on dumped scenes, 2 ms steps: rate, and simulated seconds per second.
+peers=$scenes/peers
+: >"$peers"
+for scene in boxes200t boxes1000t tray28t tray448t; do
+  [[ $scene =~ $pattern ]] && [ -s "$scenes/$scene.scree" ] || continue
+  "$bin/bench_world" dump "$scenes/$scene.scree" "$scenes/$scene.txt"
+  for peer in ode bullet; do
+    [ -x "$bin/peer_$peer" ] || continue
+    echo "$scene,$("$bin/peer_$peer" "$scenes/$scene.txt" "$seconds")" >>"$peers"
+  done
+done
 
 # ratio NAME A B BAR: A over B.
 ratio() {
+  [ -n "$2" ] && [ -n "$3" ] || return 0
   awk -v n="$1" -v a="$2" -v b="$3" -v bar="$4" 'BEGIN { if (b > 0) printf "| %s | %.2f | %s |\n", n, a / b, bar }'
 }
-command="bench/world.sh $seconds"
+command="bench/world.sh $seconds${2:+ '$2'}"
 md=$results/world.md
 {
   echo '# Speed of the world'
@@ -104,6 +128,13 @@ md=$results/world.md
   ratio "two runs side by side over one" "$two" "$one" "at least 1.95"
   ratio "cost at 1500 triangles over 100" "$(rate "1197 devices of 100 triangles" 11)" "$(rate "1197 devices of 1500 triangles" 11)" "at most 2"
   ratio "rate at 11970 bodies over 1197" "$(rate "11970 devices at rest" 11)" "$rest" "at least 0.8"
+  echo
+  echo 'Peers from the same state, steps of 2 ms: impulse engines, whose step is another kind of step. scree at'
+  echo '1e-5 s makes 1e-5 times its rate over the bodies: 200 boxes at 1e6/s are 0.05 simulated seconds per second.'
+  echo
+  echo '| scene | engine | bodies | rate | simulated s per CPU s |'
+  echo '|---|---|--:|--:|--:|'
+  awk -F, '{ printf "| %s | %s | %d | %.3g | %.3g |\n", $1, $2, $3, $7, $8 }' "$peers"
 } >"$md.part"
 mv "$md.part" "$md"
 
