@@ -14,7 +14,10 @@
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"
 cmake -S "$root" --preset release -B "$build" -DSCREE_BENCH=ON -DBUILD_TESTING=OFF >/dev/null
-cmake --build "$build" ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null
+for target in bench_world peer_ode peer_bullet; do # a peer that is not installed is no target
+  cmake --build "$build" --target $target ${SCREE_BENCH_JOBS:+-j "$SCREE_BENCH_JOBS"} >/dev/null 2>&1 ||
+    echo "$target is left out" >&2
+done
 seconds=${1:-5}
 pattern=${2:-.}
 scenes=$work/world
