@@ -1920,7 +1920,7 @@ SCREE_API double scree_polynomial_value(const scree_polynomial *fit, double x);
 
 /* ---- 10.2 A study: points, replicates, runs ---- */
 
-/* A study's file (docs/repose.md, "Many runs") and the runs that follow from it: at every point of
+/* A study's file (docs/study.md) and the runs that follow from it: at every point of
  * a design, as many replicates as wanted, each with its own seed. */
 typedef struct scree_study scree_study;
 

@@ -164,7 +164,7 @@ const cli_verb cli_verb_study = {
         "experiment, on a full grid or a space-filling design. The folder holds everything; the "
         "same command goes on where it was interrupted, and any number of processes and machines "
         "that share the folder work on it together. Results go to DIR/study.sqlite, tables and "
-        "figures beside it. docs/repose.md describes the file and the statistics.\n"
+        "figures beside it. docs/study.md describes the file and the statistics.\n"
         "\n"
         "With the word status and its folder it shows how far a study is and what is known so far. "
         "Under mpirun or "
