@@ -229,6 +229,8 @@ static bool merge_pairs(scree_world *world) {
  * summed. */
 static bool list_sides(scree_world *world) {
   size_t bodies = world->bodies.count, pairs = world->pairs.count;
+  world->sides.count = 0;
+  if (bodies == 0) return true; /* there are no arrays yet */
   if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->slots, pairs))
     return false;
   world->slots.count = pairs;
@@ -269,7 +271,7 @@ static bool is_valid(const scree_world *world) {
 }
 
 scree_status scree_broad_update(scree_world *world, scree_error *error) {
-  if (is_valid(world)) return SCREE_OK;
+  if (world->bodies.count == 0 || is_valid(world)) return SCREE_OK;
   scree_status status = reserve(world, error);
   if (status) return status;
   double widest = make_boxes(world);

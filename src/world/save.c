@@ -534,7 +534,8 @@ static void load_bodies(loader *l) {
   for (size_t i = 0; i < b->count && good(l); i++) {
     body_record record = {0};
     code_body(&l->codec, &record);
-    if (!isfinite(vec3_norm(record.frame.position))) l->codec.failed = true;
+    vec3 at = record.frame.position; /* its norm may overflow */
+    if (!isfinite(at.x) || !isfinite(at.y) || !isfinite(at.z)) l->codec.failed = true;
     b->frame[i] = record.frame;
     b->orientation[i] = record.orientation;
     b->momentum[i] = record.momentum;
