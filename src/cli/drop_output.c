@@ -90,9 +90,10 @@ static scree_status note_frame(drop_run *run, const char *name, double time, scr
     if (!files || !times) return drop_no_memory(error);
     run->frames.capacity = capacity;
   }
-  char *copy = malloc(strlen(name) + 1);
+  size_t size = strlen(name) + 1;
+  char *copy = malloc(size);
   if (!copy) return drop_no_memory(error);
-  strcpy(copy, name);
+  memcpy(copy, name, size);
   run->frames.files[run->frames.count] = copy;
   run->frames.times[run->frames.count++] = time;
   return SCREE_OK;
@@ -216,8 +217,12 @@ scree_status drop_write_picture(drop_run *run, scree_error *error) {
   scree_render_item *items = calloc(count + 1, sizeof *items);
   scree_mesh *balls = calloc(count + 1, sizeof *balls);
   scree_image image = {0};
-  scree_status status = items && balls ? SCREE_OK : drop_no_memory(error);
-  if (status == SCREE_OK) status = make_path(run, "drop.png", path, error);
+  if (!items || !balls) {
+    free(items);
+    free(balls);
+    return drop_no_memory(error);
+  }
+  scree_status status = make_path(run, "drop.png", path, error);
   if (status == SCREE_OK) status = list_items(run, items, balls, error);
   if (status == SCREE_OK) {
     scree_render_options options = scree_default_render_options();
@@ -227,7 +232,7 @@ scree_status drop_write_picture(drop_run *run, scree_error *error) {
   }
   if (status == SCREE_OK)
     status = scree_image_write_png(&image, path, run->arguments->overwrite, error);
-  for (size_t i = 0; balls && i < count; i++) scree_mesh_free(&balls[i]);
+  for (size_t i = 0; i < count; i++) scree_mesh_free(&balls[i]);
   scree_image_free(&image);
   free(balls);
   free(items);

@@ -59,7 +59,7 @@ scree_status cli_make_folder(const char *path, scree_error *error) {
   if (strlen(path) >= sizeof part || !*path) {
     reason = "no name for a folder";
   } else {
-    strcpy(part, path);
+    memcpy(part, path, strlen(path) + 1);
     for (char *c = part + 1; *c; c++) {
       if (*c != '/') continue;
       *c = 0;

@@ -264,7 +264,8 @@ static void plan(scree_pour *pour) {
   double g = -pour->options.world.gravity[2], v = pour->options.entry_speed,
          fall = layer_spacing * pour->pitch, time = (sqrt(v * v + 2 * g * fall) - v) / g;
   pour->layer_steps = (uint64_t)ceil(time / pour->time_step);
-  pour->layers = (pour->count + pour->cell_count - 1) / pour->cell_count;
+  size_t cells = pour->cell_count > 0 ? pour->cell_count : 1;
+  pour->layers = (pour->count + cells - 1) / cells;
 }
 
 static scree_status allocate(scree_pour *pour, const scree_pour_shape *shapes, scree_error *error) {
