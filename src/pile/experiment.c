@@ -119,7 +119,7 @@ static const struct {
     {"small",
      "360 particles in a cylinder of 0.3 m on a disc of 2 m, contacts 2.5 times softer, filled in "
      "from near the heap, phases end when still: a smaller heap, whose angle scatters more"},
-    {"demo", "120 particles in a cylinder of 0.3 m lifted at 0.2 m/s, contacts 2.5 times softer, "
+    {"demo", "180 particles in a cylinder of 0.3 m lifted at 0.2 m/s, contacts 2.5 times softer, "
              "filled in "
              "from near the heap, phases end when still: it shows a heap; take no number from it"},
 };
