@@ -13,4 +13,20 @@ assert "of 1280 triangles" in said and "2 particles after" in said, said
 pile = json.loads((folder / "pile/pile.json").read_text())
 assert len(pile["bodies"]) == 2 and (folder / "pile/shape-0.stl").exists()
 assert (folder / "pile.pvd").exists() and (folder / "contacts-0005.vtp").exists()
+
+# the importers' files; the programs themselves were run by hand (docs/formats.md)
+subprocess.run([sys.executable, examples / "pile_to_lammps.py", folder / "pile", folder / "lammps"], check=True)
+data = (folder / "lammps/pile.data").read_text().splitlines()
+assert data[2] == "2 atoms" and data[3] == "2 bodies", data[:6]
+shape = pile["shapes"][0]
+vertex_count = shape["triangle_count"] // 2 + 2
+first = data.index("Bodies") + 2
+value_count = 6 + 3 * vertex_count + 2 * (3 * vertex_count - 6) + 4 * shape["triangle_count"] + 1
+assert data[first] == f"1 3 {value_count}", data[first]
+assert data[first + 1] == f"{vertex_count} {3 * vertex_count - 6} {shape['triangle_count']}"
+coarse = "import sys; sys.path.insert(0, sys.argv[1]); import pile_to_liggghts as m; m.LATTICE = 7; m.main(*sys.argv[2:])"
+subprocess.run([sys.executable, "-c", coarse, examples, folder / "pile", folder / "liggghts"], check=True)
+spheres = [[float(x) for x in line.split()] for line in (folder / "liggghts/clump-0.txt").read_text().splitlines()]
+assert spheres and all(sum(x * x for x in s[:3]) ** 0.5 + s[3] <= shape["bounding_radius"] for s in spheres)
+assert (folder / "liggghts/in.pile").read_text().count("insert/pack") == 2
 print(said)
