@@ -1846,6 +1846,12 @@ SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, cons
 SCREE_API scree_status scree_series_csv_write(const scree_run *run, const char *path,
                                               bool overwrite, scree_error *error);
 
+/* The bodies of a world as they stand, each shape in its colour; walls are not drawn. Errors as
+ * scree_render. */
+SCREE_API scree_status scree_world_picture(const scree_world *world,
+                                           const scree_render_options *options,
+                                           const scree_progress *progress, scree_image *image,
+                                           scree_error *error);
 /* The particles of a run as they stand, each shape in its colour, seen as options say; a focus of
  * radius 0 is put on the heap, strays may lie outside. Errors as scree_render. */
 SCREE_API scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,

@@ -33,7 +33,6 @@ typedef struct drop_run {
   const drop_arguments *arguments;
   drop_shape *shapes;
   size_t shape_count;
-  scree_mesh ball; /* what spheres are drawn with, radius 1 */
   scree_pour *pour;
   struct {
     char **files; /* names relative to the folder */

@@ -8,11 +8,6 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A colour per shape, told apart also by those who see few colours (Okabe and Ito 2008), linear. */
-static const float palette[][3] = {
-    {0.00f, 0.17f, 0.45f}, {0.79f, 0.35f, 0.00f}, {0.00f, 0.34f, 0.17f}, {0.60f, 0.19f, 0.38f},
-    {0.09f, 0.46f, 0.81f}, {0.67f, 0.11f, 0.00f}, {0.87f, 0.78f, 0.05f}, {0.20f, 0.20f, 0.20f}};
-
 static scree_status make_path(const drop_run *run, const char *name, char path[DROP_PATH_BYTES],
                               scree_error *error) {
   int length = snprintf(path, DROP_PATH_BYTES, "%s/%s", run->arguments->output, name);
@@ -90,10 +85,8 @@ static scree_status note_frame(drop_run *run, const char *name, double time, scr
     if (!files || !times) return drop_no_memory(error);
     run->frames.capacity = capacity;
   }
-  size_t size = strlen(name) + 1;
-  char *copy = malloc(size);
+  char *copy = strdup(name);
   if (!copy) return drop_no_memory(error);
-  memcpy(copy, name, size);
   run->frames.files[run->frames.count] = copy;
   run->frames.times[run->frames.count++] = time;
   return SCREE_OK;
@@ -130,111 +123,17 @@ void drop_free_output(drop_run *run) {
   if (run->series) fclose(run->series);
 }
 
-/* ---- the picture ---- */
-
-/* The surface that body `index` is drawn with; `ball` scaled for one point of spheres and clumps.
- */
-typedef struct surface {
-  const scree_mesh *mesh;
-  double centre[3], scale;
-} surface;
-
-static surface surface_of(const drop_run *run, const scree_particle *particle, size_t point) {
-  const scree_mesh *mesh = scree_particle_mesh(particle);
-  surface s = {mesh, {0, 0, 0}, 1};
-  if (mesh->triangle_count) return s;
-  s.mesh = &run->ball;
-  scree_particle_point(particle, point, s.centre, &s.scale);
-  return s;
-}
-
-static size_t surface_count(const scree_particle *particle) {
-  scree_particle_measures m;
-  scree_particle_measure(particle, &m);
-  return m.triangle_count ? 1 : m.point_count;
-}
-
-/* p turned by the body's unit quaternion and moved: p + 2 w (u x p) + 2 u x (u x p). */
-static void into_space(const scree_body *body, const double p[3], double out[3]) {
-  const double *q = body->orientation, *u = q + 1;
-  double t[3];
-  for (int i = 0; i < 3; i++) {
-    int j = (i + 1) % 3, k = (i + 2) % 3;
-    t[i] = 2 * (u[j] * p[k] - u[k] * p[j]);
-  }
-  for (int i = 0; i < 3; i++) {
-    int j = (i + 1) % 3, k = (i + 2) % 3;
-    out[i] = p[i] + q[0] * t[i] + u[j] * t[k] - u[k] * t[j] + body->position[i];
-  }
-}
-
-static size_t count_surfaces(const drop_run *run) {
-  size_t count = 0;
-  for (size_t i = 0; i < scree_pour_entered_count(run->pour); i++)
-    count += surface_count(scree_world_body_particle(scree_pour_world(run->pour), i));
-  return count;
-}
-
-/* Spheres are drawn by scaled copies of the ball, one a shape and point, kept in `balls`. */
-static scree_status scale_ball(const drop_run *run, double scale, scree_mesh *ball,
-                               scree_error *error) {
-  scree_status status = scree_mesh_copy(&run->ball, ball, error);
-  for (size_t i = 0; status == SCREE_OK && i < 3 * ball->vertex_count; i++)
-    ball->positions[i] *= scale;
-  return status;
-}
-
-static scree_status list_items(const drop_run *run, scree_render_item *items, scree_mesh *balls,
-                               scree_error *error) {
-  size_t count = 0;
-  scree_world *world = scree_pour_world(run->pour);
-  for (size_t i = 0; i < scree_pour_entered_count(run->pour); i++) {
-    const scree_particle *particle = scree_world_body_particle(world, i);
-    scree_body state;
-    scree_world_get_body(world, i, &state);
-    for (size_t k = 0; k < surface_count(particle); k++) {
-      surface s = surface_of(run, particle, k);
-      scree_render_item *item = &items[count];
-      item->mesh = s.mesh;
-      if (s.mesh == &run->ball) {
-        scree_status status = scale_ball(run, s.scale, &balls[count], error);
-        if (status != SCREE_OK) return status;
-        item->mesh = &balls[count];
-      }
-      into_space(&state, s.centre, item->position);
-      memcpy(item->quaternion, state.orientation, sizeof item->quaternion);
-      size_t colour = scree_pour_shape_of(run->pour, i) % (sizeof palette / sizeof *palette);
-      memcpy(item->color, palette[colour], sizeof item->color);
-      count++;
-    }
-  }
-  return SCREE_OK;
-}
-
 scree_status drop_write_picture(drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
-  size_t count = count_surfaces(run);
-  scree_render_item *items = calloc(count + 1, sizeof *items);
-  scree_mesh *balls = calloc(count + 1, sizeof *balls);
-  scree_image image = {0};
-  if (!items || !balls) {
-    free(items);
-    free(balls);
-    return drop_no_memory(error);
-  }
   scree_status status = make_path(run, "drop.png", path, error);
-  if (status == SCREE_OK) status = list_items(run, items, balls, error);
-  if (status == SCREE_OK) {
-    scree_render_options options = scree_default_render_options();
-    options.samples = run->arguments->samples;
-    scree_render_cell cell = {items, count, NULL};
-    status = scree_render(&cell, 1, &options, run->call->progress, &image, error);
-  }
+  if (status != SCREE_OK) return status;
+  scree_image image = {0};
+  scree_render_options options = scree_default_render_options();
+  options.samples = run->arguments->samples;
+  status = scree_world_picture(scree_pour_world(run->pour), &options, run->call->progress, &image,
+                               error);
   if (status == SCREE_OK)
     status = scree_image_write_png(&image, path, run->arguments->overwrite, error);
-  for (size_t i = 0; i < count; i++) scree_mesh_free(&balls[i]);
   scree_image_free(&image);
-  free(balls);
-  free(items);
   return status;
 }

@@ -243,21 +243,10 @@ static void print_summary(const drop_run *run, bool still, double seconds) {
             run->arguments->stiffness_factor);
 }
 
-/* What spheres are drawn with. */
-static scree_status make_ball(scree_mesh *ball, scree_error *error) {
-  scree_status status = scree_sample_make("icosphere-2", NULL, NULL, ball, error);
-  if (status != SCREE_OK) return status;
-  const double *p = ball->positions;
-  double radius = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-  for (size_t i = 0; i < 3 * ball->vertex_count; i++) ball->positions[i] /= radius;
-  return SCREE_OK;
-}
-
 static scree_status pour(drop_run *run, scree_error *error) {
   bool still = false;
   scree_status status = drop_refuse_existing(run, error);
   if (status == SCREE_OK) status = drop_make_particles(run, error);
-  if (status == SCREE_OK) status = make_ball(&run->ball, error);
   if (status == SCREE_OK) status = create_pour(run, error);
   if (status == SCREE_OK) status = drop_open_output(run, error);
   if (status == SCREE_OK) status = drop_keep_state(run, error);
@@ -291,7 +280,6 @@ static int run(const cli_call *call) {
   scree_pour_free(run.pour);
   for (size_t i = 0; i < run.shape_count; i++) scree_particle_free(run.shapes[i].particle);
   free(run.shapes);
-  scree_mesh_free(&run.ball);
   drop_free_output(&run);
   return code;
 }

@@ -1,6 +1,7 @@
-/* A picture of a heap: the world's bodies as items of the ray tracer. */
+/* Pictures of worlds and heaps: the bodies as items of the ray tracer. */
 #include "base/alloc.h"
 #include "base/vec.h"
+#include "report/shapes.h"
 
 #include <string.h>
 
@@ -15,8 +16,8 @@ static const float palette[COLOURS][3] = {
 };
 
 typedef struct scene {
+  scree_shapes shapes;
   scree_mesh *meshes; /* own, of shapes made of spheres; else empty */
-  size_t shape_count;
   scree_render_item *items;
   size_t item_count;
 } scene;
@@ -48,39 +49,61 @@ static scree_status mesh_of_spheres(const scree_particle *particle, size_t spher
   return SCREE_OK;
 }
 
-static scree_status make_spheres(const scree_run *run, scene *s, scree_error *error) {
+static scree_status make_spheres(scene *s, scree_error *error) {
   scree_mesh unit = {0};
   char name[] = "icosphere-0";
   name[sizeof name - 2] = (char)('0' + SPHERE_LEVEL);
   scree_status status = scree_sample_make(name, NULL, NULL, &unit, error);
-  for (size_t i = 0; status == SCREE_OK && i < s->shape_count; i++) {
-    scree_run_shape shape;
+  for (size_t i = 0; status == SCREE_OK && i < s->shapes.count; i++) {
     scree_particle_measures m;
-    scree_run_get_shape(run, i, &shape);
-    scree_particle_measure(shape.particle, &m);
+    scree_particle_measure(s->shapes.particles[i], &m);
     if (m.kind != SCREE_PARTICLE_MESH)
-      status = mesh_of_spheres(shape.particle, m.point_count, &unit, &s->meshes[i], error);
+      status = mesh_of_spheres(s->shapes.particles[i], m.point_count, &unit, &s->meshes[i], error);
   }
   scree_mesh_free(&unit);
   return status;
 }
 
-static void add_bodies(const scree_run *run, scene *s) {
-  const scree_world *world = scree_run_view(run);
+static void add_bodies(const scree_world *world, scene *s) {
   for (size_t i = 0; i < scree_world_body_count(world); i++) {
     if (scree_world_body_removed(world, i)) continue;
-    size_t shape = scree_run_body_shape(run, i);
+    size_t shape = s->shapes.of_body[i];
     scree_body body;
     scree_world_get_body(world, i, &body);
     scree_render_item *item = &s->items[s->item_count++];
-    *item =
-        (scree_render_item){.mesh = s->meshes[shape].triangle_count
-                                        ? &s->meshes[shape]
-                                        : scree_particle_mesh(scree_world_body_particle(world, i))};
+    *item = (scree_render_item){.mesh = s->meshes[shape].triangle_count
+                                            ? &s->meshes[shape]
+                                            : scree_particle_mesh(s->shapes.particles[shape])};
     memcpy(item->position, body.position, sizeof item->position);
     memcpy(item->quaternion, body.orientation, sizeof item->quaternion);
     memcpy(item->color, palette[shape % COLOURS], sizeof item->color);
   }
+}
+
+scree_status scree_world_picture(const scree_world *world, const scree_render_options *options,
+                                 const scree_progress *progress, scree_image *image,
+                                 scree_error *error) {
+  size_t bodies = scree_world_body_count(world);
+  scene s = {0};
+  scree_status status = scree_shapes_find(world, &s.shapes, error);
+  if (status != SCREE_OK) return status;
+  s.meshes = scree_alloc_zero(s.shapes.count, sizeof *s.meshes);
+  s.items = scree_alloc_zero(bodies, sizeof *s.items);
+  if (!s.meshes || !s.items) {
+    status = scree_fail_memory(error, bodies * sizeof *s.items, "a picture's bodies");
+    goto done;
+  }
+  status = make_spheres(&s, error);
+  if (status != SCREE_OK) goto done;
+  add_bodies(world, &s);
+  scree_render_cell cell = {s.items, s.item_count, NULL};
+  status = scree_render(&cell, 1, options, progress, image, error);
+done:
+  for (size_t i = 0; s.meshes && i < s.shapes.count; i++) scree_mesh_free(&s.meshes[i]);
+  scree_free(s.meshes);
+  scree_free(s.items);
+  scree_shapes_free(&s.shapes);
+  return status;
 }
 
 /* The heap in the middle: as wide as its base, or as most of the bodies lie where there is none. */
@@ -99,25 +122,7 @@ static void focus_on_heap(const scree_run *run, scree_render_options *o) {
 scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
                                const scree_progress *progress, scree_image *image,
                                scree_error *error) {
-  size_t bodies = scree_world_body_count(scree_run_view(run));
   scree_render_options o = *options;
-  scene s = {.shape_count = scree_run_shape_count(run)};
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  s.meshes = scree_alloc_zero(s.shape_count, sizeof *s.meshes);
-  s.items = scree_alloc_zero(bodies, sizeof *s.items);
-  if (!s.meshes || !s.items) {
-    scree_fail_memory(error, bodies * sizeof *s.items, "a picture's bodies");
-    goto done;
-  }
   if (!(o.focus_radius > 0)) focus_on_heap(run, &o);
-  status = make_spheres(run, &s, error);
-  if (status != SCREE_OK) goto done;
-  add_bodies(run, &s);
-  scree_render_cell cell = {s.items, s.item_count, NULL};
-  status = scree_render(&cell, 1, &o, progress, image, error);
-done:
-  for (size_t i = 0; s.meshes && i < s.shape_count; i++) scree_mesh_free(&s.meshes[i]);
-  scree_free(s.meshes);
-  scree_free(s.items);
-  return status;
+  return scree_world_picture(scree_run_view(run), &o, progress, image, error);
 }
