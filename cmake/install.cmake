@@ -15,7 +15,6 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/screeConfigVersion.cmake CO
 install(FILES ${CMAKE_BINARY_DIR}/screeConfig.cmake ${CMAKE_BINARY_DIR}/screeConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
 
-list(JOIN OpenMP_C_LIBRARIES " " SCREE_OPENMP_LIBS)
 if(embree_FOUND)
   set(SCREE_EMBREE_LIBS -lembree3)
 endif()
