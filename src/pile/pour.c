@@ -137,11 +137,10 @@ static scree_status make_cells(scree_pour *pour, scree_error *error) {
       fill_grid(pour, nx - 1, ny - 1, NULL) > fill_grid(pour, nx, ny, NULL))
     nx--, ny--;
   size_t count = fill_grid(pour, nx, ny, NULL);
-  if (count == 0) nx = ny = count = 1;
+  if (count == 0) nx = ny = count = 1; /* in the middle */
   SCREE_ALLOC_OR(pour->cells, count, error, out_of_memory);
   SCREE_ALLOC_OR(pour->cell_order, count, error, out_of_memory);
   pour->cell_count = fill_grid(pour, nx, ny, pour->cells);
-  if (pour->cell_count == 0) pour->cells[pour->cell_count++] = (vec3){0, 0, 0}; /* in the middle */
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
