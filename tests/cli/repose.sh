@@ -4,7 +4,7 @@ run repose --rp 2 box.off
 run repose --lift-speed 99 box.off
 run repose -p tiny box.off
 "$SCREE" repose --print-config -p demo --friction 0.4 --seed 7 >printed.yaml
-grep -n "friction_particle: 0.4\|^seed: 7\|^preset: demo" printed.yaml
+grep "friction_particle: 0.4\|^seed: 7\|^preset: demo" printed.yaml
 "$SCREE" repose -c printed.yaml --print-config >again.yaml
 cmp printed.yaml again.yaml && echo the same
 printf 'particles: 10\nphases:\n  lift_speed: fast\n' >broken.yaml
@@ -40,7 +40,9 @@ small="-c small.yaml --no-picture -j 1"
 run repose $small bad.csv
 run repose $small sample:box --resolution 0.5mm
 "$SCREE" repose $small box.off pair.csv -o whole --frames 0.1 >text || echo failed
-sed -n 1,2p text
+# what is left of motion differs between compilers, and with it whether that is still
+rest() { sed 's/ still.*//; s/ moving.*//'; }
+sed -n 1,2p text | rest
 grep -c "particles  *12 on the disc" text
 ls whole
 run repose $small box.off pair.csv -o whole
@@ -59,7 +61,7 @@ kill -9 $victim
 wait $victim 2>/dev/null
 "$SCREE" pile cut/checkpoint.scree | head -1 | grep -c "after"
 
-run repose $small --spheres box.off | grep -v cost | head -3
+run repose $small --spheres box.off | grep -v cost | head -3 | rest
 "$SCREE" pile whole/last.scree >measured || echo failed
 tail -n +2 text | grep -v "cost\|files" | diff - measured && echo the same measurement
 run pile whole/last.scree --band-low 0.9
@@ -67,4 +69,4 @@ run pile box.off
 run pile nothing.scree
 "$SCREE" pile whole/frame-0001.scree --csv series.csv --vtp frame.vtp >/dev/null || echo failed
 head -1 series.csv
-"$SCREE" pile whole/last.scree --json | grep -c '"heap"\|"mean_rotation"\|"packing_fraction"\|"preset"'
+"$SCREE" pile whole/last.scree --json | grep -o '"heap"\|"mean_rotation"\|"packing_fraction"\|"preset"' | sort -u
