@@ -357,10 +357,16 @@ static double touch_wall(const scree_world *world, const scree_pair *pair, scree
   const scree_world_wall *wall = &world->walls.items[pair->b];
   vec3 c, n;
   double side = scree_wall_side(wall, p), d = scree_wall_distance(wall, p, side, &c, &n);
-  bool apart = d > a->point_radii[item->a] + pair->smoothing;
-  if (!apart) { /* the side where it was last seen clear; in front at first sight */
-    side = item->has_reference ? item->reference.x : 1;
-    d = scree_wall_distance(wall, p, side, &c, &n);
+  double own = side, clear = a->point_radii[item->a] + pair->smoothing + 0.25 * pair->limit;
+  if (item->has_reference)
+    own = item->reference.x; /* evaluated a step ago: through the sheet it cannot have come */
+  else if (d < clear)
+    own =
+        scree_wall_side(wall, relative->position); /* the step that woke it may have taken it in */
+  if (own != side) {
+    vec3 c_own, n_own;
+    double d_own = scree_wall_distance(wall, p, own, &c_own, &n_own);
+    if (d_own < 0) side = own, d = d_own, c = c_own, n = n_own; /* else it is past the rim */
   }
   item->reference.x = side;
   item->has_reference = true;

@@ -109,6 +109,10 @@ void law_meet(const law_meeting *m, double speed, uint64_t number, law_outcome *
   }
   out->stopped += stopped;
   if (stopped) print_message("try %zu: %s\n", (size_t)number, error.message);
+  if (stopped) { /* in the middle of a hit: nothing is told about its end */
+    scree_world_free(world);
+    return;
+  }
   out->stuck += touched && o.pair_count > 0;
   out->through += corners_inside(world, a, b) + corners_inside(world, b, a) > 0;
   scree_world_get_body(world, a, &up);
