@@ -234,11 +234,15 @@ static scree_status write_collections(const one_run *o, const scree_run *run, sc
   int vtp = o->all->arguments->vtp == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->vtp;
   if (!(interval > 0) || vtp == VTP_NONE) return SCREE_OK;
   while ((double)count * interval <= scree_world_time(scree_run_view(run))) count++;
+  if (count == 0) return SCREE_OK;
   double *times = malloc(count * sizeof *times);
   const char **files = malloc(count * sizeof *files);
   char(*names)[48] = malloc(count * sizeof *names);
-  for (int view = 0; status == SCREE_OK && times && files && names && view < SCREE_VIEW_COUNT;
-       view++) {
+  if (!times || !files || !names) {
+    *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the list of frames"};
+    status = error->status;
+  }
+  for (int view = 0; status == SCREE_OK && view < SCREE_VIEW_COUNT; view++) {
     char path[4200];
     if (vtp != VTP_ALL && vtp != view + 1) continue;
     const char *kind = scree_world_view_name((scree_world_view)view);
