@@ -23,6 +23,9 @@ scree_status scree_fail_text(scree_error *error, scree_status status, const char
     va_start(arguments, format);
     vsnprintf(error->message, sizeof error->message, format, arguments);
     va_end(arguments);
+    /* names and values from files come in as they are: one line, nothing a terminal obeys */
+    for (char *c = error->message; *c; c++)
+      if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
   }
   return status;
 }

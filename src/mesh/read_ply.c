@@ -102,7 +102,8 @@ static const char *value_start(ply *p) {
 /* ---- rows ---- */
 
 static const scree_ply_property *properties_of(const ply *p) {
-  return p->header.properties.items + p->element->first_property;
+  const scree_ply_property *all = p->header.properties.items;
+  return all ? all + p->element->first_property : NULL; /* no element has any */
 }
 
 static scree_status read_coordinate(ply *p, const scree_ply_property *property) {
