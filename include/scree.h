@@ -187,25 +187,28 @@ SCREE_API scree_status scree_mesh_weld(const double *corner_positions, size_t fa
 
 /* Formats that are written. */
 typedef enum scree_file_format {
-  SCREE_FORMAT_AUTO,      /* by the path's extension: .stl .ply .obj .off */
+  SCREE_FORMAT_AUTO,      /* by the path's extension: .stl .ply .obj .off .3mf */
   SCREE_FORMAT_STL,       /* "stl": binary; positions rounded to 24 bits */
   SCREE_FORMAT_STL_ASCII, /* "stl-ascii" */
   SCREE_FORMAT_PLY,       /* "ply": binary little endian, double */
   SCREE_FORMAT_PLY_FLOAT, /* "ply-float": binary little endian, positions rounded to 24 bits */
   SCREE_FORMAT_OBJ,       /* "obj" */
   SCREE_FORMAT_OFF,       /* "off" */
+  SCREE_FORMAT_3MF,       /* "3mf": not compressed; says its unit, metre where 3MF has no such unit */
   SCREE_FILE_FORMAT_COUNT,
 } scree_file_format;
 
 /* The format's name as in the comments above ("auto" for SCREE_FORMAT_AUTO). */
 SCREE_API const char *scree_file_format_name(scree_file_format format);
+/* The format that a path's extension asks for, in any case of letters; SCREE_FORMAT_AUTO: none. */
+SCREE_API scree_file_format scree_file_format_of(const char *path);
 
 typedef struct scree_write_options {
   scree_file_format format; /* default SCREE_FORMAT_AUTO */
   double unit_m;            /* metres per unit of the file, in [1e-12, 1e12]; default 1e-3 */
   bool overwrite;           /* default false: an existing file is refused */
-  /* One line of provenance, put after scree's version where the format has comments (PLY, OBJ, OFF;
-   * its first 40 bytes in the header of a binary STL); NULL for none. Borrowed. */
+  /* One line of provenance, put after scree's version where the format has comments (PLY, OBJ, OFF,
+   * 3MF; its first 40 bytes in the header of a binary STL); NULL for none. Borrowed. */
   const char *comment;
 } scree_write_options;
 

@@ -61,7 +61,7 @@ class Mesh:
         return f"<scree.Mesh of {self.triangle_count} triangles from {self.source or 'memory'}>"
 
     def write(self, path, unit="mm", overwrite=False, comment=None):
-        """STL, PLY, OBJ or OFF by the path's ending."""
+        """STL, PLY, OBJ, OFF or 3MF by the path's ending."""
         options = lib["default_write_options"]()
         options.unit_m, options.overwrite = metres(unit), overwrite
         options.comment = comment.encode() if comment else None

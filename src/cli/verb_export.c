@@ -18,7 +18,8 @@ static const export_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .densit
 #define AT(field) offsetof(export_arguments, field)
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "OUT",
-     "What to write (required). Of a surface: .stl, .ply, .obj or .off, with a .json of the same "
+     "What to write (required). Of a surface: .stl, .ply, .obj, .off or .3mf, with a .json of the "
+     "same "
      "name beside it, or .vtp. Of a checkpoint: .vtp, or a folder. Of several: .pvd or "
      ".vtp.series, "
      "with a .vtp each beside it.",
@@ -44,9 +45,9 @@ static const cli_option options[] = {
     {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
 
-static bool ends_with(const char *path, const char *ending) {
+static bool has_extension(const char *path, const char *extension) {
   const char *dot = strrchr(path, '.');
-  return dot && !strcmp(dot, ending);
+  return dot && !strcmp(dot, extension);
 }
 
 typedef enum input_kind { SURFACE, WORLD, RUN } input_kind;
@@ -134,8 +135,8 @@ static scree_status export_surface(const cli_call *call, scree_error *error) {
   scree_scan scan;
   scree_status status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
   if (status != SCREE_OK) return status;
-  status = ends_with(a->output, ".vtp") ? write_vtp(call, &scan.mesh, error)
-                                        : write_mesh(call, &scan, error);
+  status = has_extension(a->output, ".vtp") ? write_vtp(call, &scan.mesh, error)
+                                            : write_mesh(call, &scan, error);
   scree_scan_free(&scan);
   if (status != SCREE_BAD_MESH) return status;
   char sentence[sizeof error->message]; /* about a mesh without a name */
@@ -184,7 +185,7 @@ static scree_status export_world(const cli_call *call, scree_error *error) {
   checkpoint c;
   scree_status status = load_checkpoint(call->inputs[0], &c, error);
   if (status != SCREE_OK) return status;
-  if (ends_with(a->output, ".vtp"))
+  if (has_extension(a->output, ".vtp"))
     status = write_view(call, &c, call->inputs[0], a->output, error);
   else
     status = scree_world_export(c.world, &o, a->output, error);
@@ -241,7 +242,7 @@ static scree_status export_series(const cli_call *call, scree_error *error) {
 }
 
 static bool is_series(const char *path) {
-  return ends_with(path, ".pvd") || ends_with(path, ".series");
+  return has_extension(path, ".pvd") || has_extension(path, ".series");
 }
 
 /* 0, or 2 after telling which inputs do not go with the output. */
@@ -263,15 +264,14 @@ static int check_inputs(const cli_call *call, bool world) {
 
 /* 0, or 2 after telling what does not go together. */
 static int check_call(const cli_call *call, bool world) {
-  static const char *const endings[] = {".stl", ".ply", ".obj", ".off", ".vtp"};
   const export_arguments *a = call->options;
-  bool series = is_series(a->output), vtp = ends_with(a->output, ".vtp") || series, known = false;
-  for (size_t i = 0; i < sizeof endings / sizeof *endings; i++)
-    known = known || ends_with(a->output, endings[i]);
+  bool series = is_series(a->output), vtp = has_extension(a->output, ".vtp") || series;
+  bool known = vtp || scree_file_format_of(a->output) != SCREE_FORMAT_AUTO;
   int code = check_inputs(call, world);
   if (code) return code;
   if (!world && !known)
-    return cli_misuse(call->verb, "-o %s: of a surface, .stl, .ply, .obj, .off or .vtp is written",
+    return cli_misuse(call->verb,
+                      "-o %s: of a surface, .stl, .ply, .obj, .off, .3mf or .vtp is written",
                       a->output);
   if (world && known && !vtp)
     return cli_misuse(

@@ -4,7 +4,6 @@
 
 #include <stdio.h>
 #include <string.h>
-#include <strings.h>
 
 typedef struct repair_arguments {
   const char *output;
@@ -18,7 +17,7 @@ typedef struct repair_arguments {
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "FILE",
-     "Where the repaired surface goes: .stl, .ply, .obj or .off.", 0, 0, NULL},
+     "Where the repaired surface goes: .stl, .ply, .obj, .off or .3mf.", 0, 0, NULL},
     {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
      0, NULL},
     {"seam", 0, CLI_REAL, AT(seam_tolerance), "SHARE",
@@ -93,12 +92,11 @@ static scree_status verify_written(const cli_call *call, scree_error *error) {
 static scree_status write_result(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
   const repair_arguments *a = call->options;
   scree_write_options write = scree_default_write_options();
-  const char *dot = strrchr(a->output, '.');
   write.unit_m = a->source.unit;
   write.overwrite = a->force;
   write.comment = call->command_line;
   scree_status status = scree_mesh_write(mesh, a->output, &write, error);
-  if (status != SCREE_OK || !dot || strcasecmp(dot, ".stl") != 0) return status;
+  if (status != SCREE_OK || scree_file_format_of(a->output) != SCREE_FORMAT_STL) return status;
   if (fits_single(mesh, a->source.unit)) return status;
   status = verify_written(call, error);
   if (status != SCREE_OK) remove(a->output);

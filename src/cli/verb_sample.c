@@ -15,7 +15,8 @@ typedef struct sample_arguments {
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, offsetof(sample_arguments, output), "PATH",
      "A folder, made if need be, that gets NAME.stl for every sample; or, for one sample, a file "
-     "(.stl, .ply, .obj, .off), or - for a binary STL on stdout. Default: the current folder.",
+     "(.stl, .ply, .obj, .off, .3mf), or - for a binary STL on stdout. Default: the current "
+     "folder.",
      0, 0, NULL},
     {"resolution", 0, CLI_LENGTH, offsetof(sample_arguments, resolution), "LENGTH",
      "Spacing of the mesh's vertices, with its unit, from 0.02mm to 5mm. Default: 0.27mm, the "
@@ -42,12 +43,7 @@ static void list_samples(void) {
 
 /* A folder, or a file whose name says its format. */
 static bool names_file(const char *path) {
-  static const char *const extensions[] = {".stl", ".ply", ".obj", ".off"};
-  const char *dot = strrchr(path, '.');
-  if (!strcmp(path, "-")) return true;
-  for (size_t i = 0; dot && i < sizeof extensions / sizeof *extensions; i++)
-    if (!strcmp(dot, extensions[i])) return true;
-  return false;
+  return !strcmp(path, "-") || scree_file_format_of(path) != SCREE_FORMAT_AUTO;
 }
 
 /* Makes the folder and its parents; 0, or the exit code. */

@@ -15,7 +15,7 @@ typedef struct simplify_arguments {
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, offsetof(simplify_arguments, output), "FILE",
-     "The file to write: .stl, .ply, .obj or .off by its extension; - writes a binary STL to "
+     "The file to write: .stl, .ply, .obj, .off or .3mf by its extension; - writes a binary STL to "
      "stdout.",
      0, 0, NULL},
     {"reduction", 'r', CLI_REAL, offsetof(simplify_arguments, rp), "RP",

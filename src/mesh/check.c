@@ -9,6 +9,7 @@
 #include "mesh/check.h"
 
 #include "base/alloc.h"
+#include "base/ending.h"
 #include "base/sum.h"
 #include "mesh/adjacency.h"
 #include "mesh/apart.h"
@@ -213,21 +214,16 @@ static void add_text(text *t, const char *words) {
   *t->at = 0;
 }
 
-static bool ends_with(const char *word, const char *end) {
-  size_t length = strlen(word), end_length = strlen(end);
-  return length >= end_length && strcmp(word + length - end_length, end) == 0;
-}
-
 /* "1 non manifold edge", "12 boundary edges". */
 static void add_count(text *t, size_t count, const char *name) {
   char words[96];
   snprintf(words, sizeof words, "%zu %s", count, name);
   size_t length = strlen(words);
-  if (count == 1 && ends_with(words, "vertices"))
+  if (count == 1 && scree_ends_with(words, "vertices"))
     memcpy(words + length - 4, "x", 2);
-  else if (count == 1 && (ends_with(words, "cavities") || ends_with(words, "bodies")))
+  else if (count == 1 && (scree_ends_with(words, "cavities") || scree_ends_with(words, "bodies")))
     memcpy(words + length - 3, "y", 2);
-  else if (count == 1 && ends_with(words, "s"))
+  else if (count == 1 && scree_ends_with(words, "s"))
     words[length - 1] = 0;
   for (char *c = words; *c; c++)
     if (*c == '_') *c = ' ';

@@ -270,6 +270,14 @@ static void explain_refusal(const import *im, answer *a) {
            formats[im->format].name, *reason ? reason : "no reason given");
 }
 
+static void explain_split(const import *im, answer *a) {
+  a->status = SCREE_BAD_FILE;
+  snprintf(
+      a->message, sizeof a->message,
+      "as %s: its parts lie in several files of the archive, which is not read; save it as one",
+      formats[im->format].name);
+}
+
 /* A child's work. */
 static bool import_in_child(void *context, int output) {
   static walk w;
@@ -286,13 +294,6 @@ static bool import_in_child(void *context, int output) {
     if (formats[im->format].unit == UNIT_IN_SCENE) find_scene_unit(scene, &a);
     walk_scene(&w, scene, -1);
     a.triangle_count = w.triangle_count;
-    if (a.triangle_count == 0 && a.is_split) {
-      a.status = SCREE_BAD_FILE;
-      snprintf(a.message, sizeof a.message,
-               "as %s: its parts lie in several files of the archive, which is not read; save it "
-               "as one",
-               formats[im->format].name);
-    }
     if (!w.is_valid || w.triangle_count > MOST_TRIANGLES) {
       a.status = w.is_valid ? SCREE_LIMIT : SCREE_BAD_FILE;
       snprintf(a.message, sizeof a.message,
@@ -301,6 +302,7 @@ static bool import_in_child(void *context, int output) {
                formats[im->format].name, MOST_TRIANGLES);
     }
   }
+  if (a.is_split && (!scene || a.triangle_count == 0)) explain_split(im, &a);
   if (!scree_child_write(output, &a, sizeof a)) return false;
   if (!scene || a.status != SCREE_OK) return true;
   walk_scene(&w, scene, output);

@@ -1,9 +1,10 @@
 /* Writers. Each puts the version and one line of provenance where its format has room, and goes
  * through scree_output, so that a file appears whole or not at all. Text numbers are the shortest
  * that read back to the same bits. */
+#include "mesh/write.h"
+
 #include "base/file.h"
 #include "base/number.h"
-#include "base/vec.h"
 #include "mesh/weld.h"
 
 #include <float.h>
@@ -11,7 +12,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { LINE_SIZE = 256, STL_HEADER_BYTES = 80, STL_FACET_BYTES = 50, PLY_FACE_BYTES = 13 };
+enum { STL_HEADER_BYTES = 80, STL_FACET_BYTES = 50, PLY_FACE_BYTES = 13 };
 
 scree_write_options scree_default_write_options(void) {
   return (scree_write_options){.format = SCREE_FORMAT_AUTO, .unit_m = 1e-3};
@@ -23,24 +24,21 @@ static const struct {
     [SCREE_FORMAT_AUTO] = {"auto", NULL},           [SCREE_FORMAT_STL] = {"stl", ".stl"},
     [SCREE_FORMAT_STL_ASCII] = {"stl-ascii", NULL}, [SCREE_FORMAT_PLY] = {"ply", ".ply"},
     [SCREE_FORMAT_PLY_FLOAT] = {"ply-float", NULL}, [SCREE_FORMAT_OBJ] = {"obj", ".obj"},
-    [SCREE_FORMAT_OFF] = {"off", ".off"},
+    [SCREE_FORMAT_OFF] = {"off", ".off"},           [SCREE_FORMAT_3MF] = {"3mf", ".3mf"},
 };
 
 const char *scree_file_format_name(scree_file_format format) {
   return (unsigned)format < SCREE_FILE_FORMAT_COUNT ? formats[format].name : "unknown";
 }
 
-/* A mesh on its way into a stream. */
-typedef struct writing {
-  const scree_mesh *mesh;
-  FILE *stream;
-  double unit_m;
-  char provenance[LINE_SIZE]; /* one line, printable */
-} writing;
-
-static vec3 file_position(const writing *w, uint32_t vertex) {
-  vec3 p = vec3_load(w->mesh->positions + 3 * (size_t)vertex);
-  return (vec3){p.x / w->unit_m, p.y / w->unit_m, p.z / w->unit_m};
+scree_file_format scree_file_format_of(const char *path) {
+  size_t length = strlen(path);
+  for (int f = 1; f < SCREE_FILE_FORMAT_COUNT; f++) {
+    size_t tail = formats[f].extension ? strlen(formats[f].extension) : SIZE_MAX;
+    if (tail < length && !strcasecmp(path + length - tail, formats[f].extension))
+      return (scree_file_format)f;
+  }
+  return SCREE_FORMAT_AUTO;
 }
 
 /* Bytes on their way to the stream: a call of fwrite for each facet would cost more than the facet.
@@ -102,14 +100,15 @@ static void print_vec3(FILE *stream, vec3 v, bool narrow) {
 }
 
 /* Corner positions of triangle t in file units, and its unit normal; zero where it has none. */
-static vec3 facet_of(const writing *w, size_t t, vec3 corners[3]) {
-  for (size_t k = 0; k < 3; k++) corners[k] = file_position(w, w->mesh->triangles[3 * t + k]);
+static vec3 facet_of(const scree_writing *w, size_t t, vec3 corners[3]) {
+  for (size_t k = 0; k < 3; k++)
+    corners[k] = scree_writing_position(w, w->mesh->triangles[3 * t + k]);
   vec3 u = vec3_sub(corners[1], corners[0]), v = vec3_sub(corners[2], corners[0]);
   /* unit edges first: the product of tiny ones would underflow */
   return vec3_unit(vec3_cross(vec3_unit(u), vec3_unit(v)));
 }
 
-static void write_stl(const writing *w) {
+static void write_stl(const scree_writing *w) {
   unsigned char header[STL_HEADER_BYTES + 4] = {0};
   batch b = {.stream = w->stream};
   size_t length = strlen(w->provenance);
@@ -125,7 +124,7 @@ static void write_stl(const writing *w) {
   batch_flush(&b);
 }
 
-static void write_stl_ascii(const writing *w) {
+static void write_stl_ascii(const scree_writing *w) {
   fprintf(w->stream, "solid %s\n", w->provenance);
   for (size_t t = 0; t < w->mesh->triangle_count; t++) {
     vec3 corners[3], normal = facet_of(w, t, corners);
@@ -141,7 +140,7 @@ static void write_stl_ascii(const writing *w) {
   fputs("endsolid\n", w->stream);
 }
 
-static void write_ply(const writing *w, bool narrow) {
+static void write_ply(const scree_writing *w, bool narrow) {
   const char *type = narrow ? "float" : "double";
   fprintf(w->stream,
           "ply\nformat binary_little_endian 1.0\ncomment %s\nelement vertex %zu\n"
@@ -150,7 +149,7 @@ static void write_ply(const writing *w, bool narrow) {
           w->provenance, w->mesh->vertex_count, type, type, type, w->mesh->triangle_count);
   batch b = {.stream = w->stream};
   for (size_t v = 0; v < w->mesh->vertex_count; v++) {
-    vec3 p = file_position(w, (uint32_t)v);
+    vec3 p = scree_writing_position(w, (uint32_t)v);
     if (narrow)
       put_float_vec3(batch_take(&b, 12), p);
     else
@@ -164,11 +163,11 @@ static void write_ply(const writing *w, bool narrow) {
   batch_flush(&b);
 }
 
-static void write_obj(const writing *w) {
+static void write_obj(const scree_writing *w) {
   fprintf(w->stream, "# %s\n", w->provenance);
   for (size_t v = 0; v < w->mesh->vertex_count; v++) {
     fputc('v', w->stream);
-    print_vec3(w->stream, file_position(w, (uint32_t)v), false);
+    print_vec3(w->stream, scree_writing_position(w, (uint32_t)v), false);
   }
   for (size_t t = 0; t < w->mesh->triangle_count; t++) {
     const uint32_t *v = w->mesh->triangles + 3 * t;
@@ -176,11 +175,11 @@ static void write_obj(const writing *w) {
   }
 }
 
-static void write_off(const writing *w) {
+static void write_off(const scree_writing *w) {
   fprintf(w->stream, "OFF\n# %s\n%zu %zu 0\n", w->provenance, w->mesh->vertex_count,
           w->mesh->triangle_count);
   for (size_t v = 0; v < w->mesh->vertex_count; v++)
-    print_vec3(w->stream, file_position(w, (uint32_t)v), false);
+    print_vec3(w->stream, scree_writing_position(w, (uint32_t)v), false);
   for (size_t t = 0; t < w->mesh->triangle_count; t++) {
     const uint32_t *v = w->mesh->triangles + 3 * t;
     fprintf(w->stream, "3 %u %u %u\n", v[0], v[1], v[2]);
@@ -191,18 +190,26 @@ static scree_status find_format(const char *path, scree_file_format *format, scr
   if ((unsigned)*format >= SCREE_FILE_FORMAT_COUNT)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: format number %d is unknown", path,
                       (int)*format);
+  if (*format == SCREE_FORMAT_AUTO) *format = scree_file_format_of(path);
   if (*format != SCREE_FORMAT_AUTO) return SCREE_OK;
-  size_t length = strlen(path);
-  for (int f = 1; f < SCREE_FILE_FORMAT_COUNT; f++) {
-    size_t tail = formats[f].extension ? strlen(formats[f].extension) : SIZE_MAX;
-    if (tail < length && !strcasecmp(path + length - tail, formats[f].extension)) {
-      *format = (scree_file_format)f;
-      return SCREE_OK;
-    }
-  }
   return scree_fail(error, SCREE_BAD_ARGUMENT,
-                    "%s: no format given, and the name does not end in .stl, .ply, .obj or .off",
+                    "%s: no format given, and the name does not end in .stl, .ply, .obj, .off or "
+                    ".3mf",
                     strcmp(path, "-") != 0 ? path : "standard output");
+}
+
+static size_t count_limit_of(scree_file_format format) {
+  switch (format) {
+  case SCREE_FORMAT_OFF:
+  case SCREE_FORMAT_OBJ:
+    return SIZE_MAX;
+  case SCREE_FORMAT_STL:
+    return UINT32_MAX;
+  case SCREE_FORMAT_3MF:
+    return SCREE_3MF_LIMIT;
+  default:
+    return INT32_MAX;
+  }
 }
 
 /* Whether the mesh and the options can be written in this format at all. */
@@ -224,16 +231,14 @@ static scree_status check_mesh(const scree_mesh *mesh, const char *path,
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "%s: triangle %zu has vertex %u, but there are %zu vertices", path, i / 3,
                         mesh->triangles[i], mesh->vertex_count);
-  size_t count_limit = o->format == SCREE_FORMAT_OFF || o->format == SCREE_FORMAT_OBJ ? SIZE_MAX
-                       : o->format == SCREE_FORMAT_STL                                ? UINT32_MAX
-                                                                                      : INT32_MAX;
+  size_t count_limit = count_limit_of(o->format);
   if (mesh->triangle_count > count_limit || mesh->vertex_count > count_limit)
     return scree_fail(error, SCREE_LIMIT, "%s: %zu triangles, more than the format's limit of %zu",
                       path, mesh->triangle_count, count_limit);
   return SCREE_OK;
 }
 
-static void make_provenance(writing *w, const char *comment) {
+static void make_provenance(scree_writing *w, const char *comment) {
   char unit[SCREE_NUMBER_SIZE];
   scree_number_format(w->unit_m, unit);
   snprintf(w->provenance, sizeof w->provenance, "scree %s, unit %s m%s%s", scree_version(), unit,
@@ -242,7 +247,7 @@ static void make_provenance(writing *w, const char *comment) {
     if ((unsigned char)*p < ' ' || *p == 127) *p = ' ';
 }
 
-static void write_body(const writing *w, scree_file_format format) {
+static void write_body(const scree_writing *w, scree_file_format format) {
   switch (format) {
   case SCREE_FORMAT_STL:
     write_stl(w);
@@ -256,6 +261,9 @@ static void write_body(const writing *w, scree_file_format format) {
     break;
   case SCREE_FORMAT_OBJ:
     write_obj(w);
+    break;
+  case SCREE_FORMAT_3MF:
+    scree_write_3mf(w);
     break;
   default:
     write_off(w);
@@ -271,7 +279,8 @@ scree_status scree_mesh_write(const scree_mesh *mesh, const char *path,
   scree_output output;
   if (status == SCREE_OK) status = scree_output_open(path, used.overwrite, &output, error);
   if (status != SCREE_OK) return status;
-  writing w = {.mesh = mesh, .stream = output.stream, .unit_m = used.unit_m};
+  if (used.format == SCREE_FORMAT_3MF) scree_3mf_unit(&used.unit_m);
+  scree_writing w = {.mesh = mesh, .stream = output.stream, .unit_m = used.unit_m};
   make_provenance(&w, used.comment);
   write_body(&w, used.format);
   return scree_output_commit(&output, error);

@@ -1,5 +1,6 @@
 /* VTK XML PolyData with raw appended data: each array is a 64-bit byte count followed by its bytes,
  * at the offset that its element names. The byte order is stated, so nothing is swapped. */
+#include "base/ending.h"
 #include "base/file.h"
 #include "report/json.h"
 
@@ -150,11 +151,6 @@ scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool 
   return scree_output_commit(&output, error);
 }
 
-static bool ends_with(const char *text, const char *ending) {
-  size_t length = strlen(text), tail = strlen(ending);
-  return length >= tail && !strcmp(text + length - tail, ending);
-}
-
 /* ParaView's file series 1.0: names and times as JSON. */
 static void write_series(FILE *stream, const char *const *files, const double *times,
                          size_t file_count) {
@@ -191,7 +187,7 @@ scree_status scree_pvd_write(const char *const *files, const double *times, size
   scree_output output;
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
-  if (ends_with(path, ".series"))
+  if (scree_ends_with(path, ".series"))
     write_series(output.stream, files, times, file_count);
   else
     write_collection(output.stream, files, times, file_count);

@@ -8,6 +8,8 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
+import zipfile
 
 if os.environ.get("SCREE_TEST_WITHOUT_NUMPY"):
     sys.modules["numpy"] = None  # import numpy fails
@@ -71,6 +73,23 @@ class Meshes(unittest.TestCase):
         self.assertEqual(refused.exception.status, "BAD_FILE")
         with self.assertRaisesRegex(ValueError, "no unit of length"):
             scree.load("t.stl", unit="furlong")
+
+    def test_3mf(self):
+        """The archive by Python's zip and XML: every bit of the positions, the unit, the triangles."""
+        mesh = scree.Mesh([[0.1, 0, 0], [1 / 3, 0, 1e-9], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+        for unit, name, scale in (("mm", "millimeter", 1e-3), ("m", "meter", 1)):
+            mesh.write("t.3mf", unit=unit, overwrite=True, comment="a <b> & c")
+            with zipfile.ZipFile("t.3mf") as archive:
+                self.assertIsNone(archive.testzip())
+                self.assertEqual(archive.namelist(), ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"])
+                model = xml.etree.ElementTree.fromstring(archive.read("3D/3dmodel.model"))
+            space = "{http://schemas.microsoft.com/3dmanufacturing/core/2015/02}"
+            self.assertEqual(model.get("unit"), name)
+            self.assertTrue(model.find(space + "metadata").text.endswith("a <b> & c"))
+            vertices = [[float(v.get(k)) for k in "xyz"] for v in model.iter(space + "vertex")]
+            triangles = [[int(t.get(k)) for k in ("v1", "v2", "v3")] for t in model.iter(space + "triangle")]
+            self.assertEqual(vertices, [[x / scale for x in p] for p in mesh.positions.tolist()])
+            self.assertEqual(triangles, mesh.triangles.tolist())
 
     def test_refusals(self):
         with self.assertRaisesRegex(ValueError, "beyond the 3"):

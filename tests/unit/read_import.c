@@ -67,6 +67,15 @@ static double corner(int v, int axis) {
   return axis == 0 ? v % 4 == 1 || v % 4 == 2 : axis == 1 ? v % 4 >= 2 : v >= 4;
 }
 
+static const char types_part[] =
+    "<?xml version=\"1.0\"?><Types "
+    "xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>";
+static const char relations_part[] =
+    "<?xml version=\"1.0\"?><Relationships "
+    "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
+    "Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
+    "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+
 /* attributes for <model>, and what is built. */
 static void make_3mf(const char *attributes, const char *build) {
   char model[6000];
@@ -84,16 +93,9 @@ static void make_3mf(const char *attributes, const char *build) {
                   cube[t][0], cube[t][1], cube[t][2]);
   snprintf(model + n, sizeof model - (size_t)n,
            "</triangles></mesh></object></resources><build>%s</build></model>", build);
-  const char *const members[][2] = {
-      {"[Content_Types].xml",
-       "<?xml version=\"1.0\"?><Types "
-       "xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>"},
-      {"_rels/.rels",
-       "<?xml version=\"1.0\"?><Relationships "
-       "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\"><Relationship "
-       "Target=\"/3D/3dmodel.model\" Id=\"rel0\" "
-       "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>"},
-      {"3D/3dmodel.model", model}};
+  const char *const members[][2] = {{"[Content_Types].xml", types_part},
+                                    {"_rels/.rels", relations_part},
+                                    {"3D/3dmodel.model", model}};
   make_zip(members, 3);
 }
 
@@ -329,6 +331,57 @@ static void reads_3mf(void **state) {
   expect_cubes("3MF, meter", 2, -11, 2);
 }
 
+/* Objects made of others, each with its place; then the same with the others in a file of their
+ * own, as slicers save it. */
+static void parts_of_3mf(void **state) {
+  (void)state;
+  if (!has_assimp()) skip();
+  static const char open_model[] =
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"centimeter\" "
+      "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
+      "xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\"><resources>";
+  static const char corner_object[] =
+      "<object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/>"
+      "<vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/>"
+      "<vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles>"
+      "<triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/>"
+      "<triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/>"
+      "</triangles></mesh></object>";
+  char text[3000];
+  for (int split = 0; split < 2; split++) {
+    const char *path = split ? " p:path=\"/3D/Objects/one.model\"" : "";
+    snprintf(text, sizeof text,
+             "%s%s<object id=\"2\" type=\"model\"><components><component objectid=\"1\"%s/>"
+             "<component objectid=\"1\"%s transform=\"2 0 0 0 2 0 0 0 2 5 0 0\"/></components>"
+             "</object></resources><build><item objectid=\"2\" "
+             "transform=\"1 0 0 0 1 0 0 0 1 0 0 7\"/></build></model>",
+             open_model, split ? "" : corner_object, path, path);
+    char other[3000];
+    snprintf(other, sizeof other, "%s%s</resources><build/></model>", open_model, corner_object);
+    const char *const members[][2] = {{"[Content_Types].xml", types_part},
+                                      {"_rels/.rels", relations_part},
+                                      {"3D/3dmodel.model", text},
+                                      {"3D/Objects/one.model", other}};
+    make_zip(members, split ? 4 : 3);
+    if (split) {
+      expect_error(SCREE_BAD_FILE, "its parts lie in several files of the archive, which is not "
+                                   "read; save it as one");
+      continue;
+    }
+    scree_scan scan = {0};
+    scree_error error;
+    scree_measures m;
+    CHECK_OK(parse(&scan, &error), error);
+    assert_int_equal(scan.facet_count, 8);
+    CHECK_OK(scree_mesh_measure(&scan.mesh, &m, &error), error);
+    CHECK_NEAR(m.volume, 1.5e-6, 1e-12);
+    CHECK_NEAR(m.box_min[0], 0, 1e-9);
+    CHECK_NEAR(m.box_max[0], 0.07, 1e-9);
+    CHECK_NEAR(m.box_min[2], 0.07, 1e-9);
+    scree_scan_free(&scan);
+  }
+}
+
 static void reads_gltf(void **state) {
   (void)state;
   if (!has_assimp()) skip();
@@ -374,7 +427,7 @@ static void hostile_3mf(void **state) {
   make_3mf("", "");
   expect_error(SCREE_BAD_FILE, "");
   make_3mf("", "<item objectid=\"7\" p:path=\"/3D/Objects/other.model\"/>");
-  expect_error(SCREE_BAD_FILE, "");
+  expect_error(SCREE_BAD_FILE, "its parts lie in several files of the archive");
   const char *const other[][2] = {{"word/document.xml", "<a/>"}};
   make_zip(other, 1);
   expect_error(SCREE_BAD_FILE, "or no 3MF");
@@ -430,9 +483,10 @@ static void allocations(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(refused_by_name),  cmocka_unit_test(reads_3mf),
-      cmocka_unit_test(reads_gltf),       cmocka_unit_test(reads_others),
-      cmocka_unit_test(hostile_3mf),      cmocka_unit_test(hostile_gltf),
-      cmocka_unit_test(damaged_anywhere), cmocka_unit_test(allocations)};
+      cmocka_unit_test(refused_by_name), cmocka_unit_test(reads_3mf),
+      cmocka_unit_test(parts_of_3mf),    cmocka_unit_test(reads_gltf),
+      cmocka_unit_test(reads_others),    cmocka_unit_test(hostile_3mf),
+      cmocka_unit_test(hostile_gltf),    cmocka_unit_test(damaged_anywhere),
+      cmocka_unit_test(allocations)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
