@@ -3,23 +3,21 @@
  * A facet that meets others is cut in its plane: by the segments in which the others pass through
  * it, and by the edges of those that lie in its plane. What is left of it are convex cells that
  * nothing passes through, so the winding number is the same all over either side of a cell. It is
- * counted at a point drawn in the cell, along the axis nearest to the facet's normal: facets are
- * told to contain the point, seen along that axis, by exact predicates, and to lie before or behind
- * it by plain arithmetic. Facets that lie in the cell's plane are known from the search for
- * meetings and count together. A cell bounds the union where the winding number is positive on one
- * side only; of cells on top of each other the one of the lowest facet counts. Facets that meet
- * nothing are asked one for all that hang together.
+ * counted at a point drawn in the cell (mesh/winding.c). Facets that lie in the cell's plane are
+ * known from the search for meetings and count together. A cell bounds the union where the winding
+ * number is positive on one side only; of cells on top of each other the one of the lowest facet
+ * counts. Facets that meet nothing are asked one for all that hang together.
  *
  * The volume is the sum of the cones over these cells (measure.c). Cuts are moved by the rounding
  * of coordinates over the sine of the angle at which facets cross; where that is no longer small,
- * it is said that the volume is not known. The order of two sheets is never left to rounding: where
- * they lie that close, exact predicates tell it, or nobody. */
+ * it is said that the volume is not known. */
 #include "mesh/union_volume.h"
 
 #include "base/array.h"
 #include "base/parallel.h"
 #include "base/rng.h"
 #include "base/sum.h"
+#include "mesh/winding.h"
 
 #include <stdatomic.h>
 #include <string.h>
@@ -29,7 +27,6 @@ enum {
   MOST_CELLS = 20000,     /* of one facet */
   MOST_PARTNERS = 100000, /* of one facet */
   ATTEMPTS = 16,          /* sample points in a cell; one in general position is all but sure */
-  STACK = 256,
 };
 
 /* Below this share of its facet's area a cell is rounding. */
@@ -40,12 +37,8 @@ enum {
 #define LEAST_CUT 1e-12
 /* Facets that cross at a smaller angle than this (its sine) are not cut. */
 #define LEAST_SINE 1e-6
-/* Heights that differ by less than this share of the largest coordinate may be in either order. */
-#define HEIGHT_ROUNDING 1e-13
-
-typedef struct point {
-  double x, y;
-} point;
+typedef scree_seen point;
+typedef scree_view view;
 
 typedef struct cell {
   uint32_t begin, count; /* of points */
@@ -72,147 +65,10 @@ typedef struct work {
   size_t cut_count, asked_count;
   double *pieces; /* six times the volume of the cones over the piece that asked[] speaks for */
   vec3 origin;
-  double rounding; /* of heights over flat ground, m */
+  scree_winding winding;
   scree_sum *sums; /* per block */
   atomic_bool unknown, failed;
 } work;
-
-/* ---- Along an axis ---- */
-
-/* A facet seen along an axis: its corners, and the two coordinates that are seen. */
-typedef struct view {
-  const double *corner[3];
-  int axis, u, v; /* u, v: the other two, so that (u, v, axis) turns right-handed */
-  int side;       /* +1: the facet's normal points along the axis */
-} view;
-
-static const double *corner_of(const scree_mesh *mesh, uint32_t facet, int k) {
-  return mesh->positions + 3 * (size_t)mesh->triangles[3 * (size_t)facet + (size_t)k];
-}
-
-static int seen_side(const view *f) {
-  double p[3][2];
-  for (int k = 0; k < 3; k++) p[k][0] = f->corner[k][f->u], p[k][1] = f->corner[k][f->v];
-  return scree_orient2(p[0], p[1], p[2]);
-}
-
-static view view_of(const scree_mesh *mesh, uint32_t facet) {
-  view f = {.axis = 0};
-  for (int k = 0; k < 3; k++) f.corner[k] = corner_of(mesh, facet, k);
-  vec3 n =
-      vec3_triangle_normal(vec3_load(f.corner[0]), vec3_load(f.corner[1]), vec3_load(f.corner[2]));
-  double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
-  f.axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-  f.u = (f.axis + 1) % 3;
-  f.v = (f.axis + 2) % 3;
-  f.side = seen_side(&f);
-  return f;
-}
-
-/* How far along the axis the facet's plane lies at (x, y). */
-static double height_at(const view *f, point p) {
-  const double *a = f->corner[0], *b = f->corner[1], *c = f->corner[2];
-  double bx = b[f->u] - a[f->u], by = b[f->v] - a[f->v], cx = c[f->u] - a[f->u],
-         cy = c[f->v] - a[f->v], px = p.x - a[f->u], py = p.y - a[f->v];
-  double det = bx * cy - by * cx, s = (px * cy - py * cx) / det, t = (bx * py - by * px) / det;
-  return a[f->axis] + s * (b[f->axis] - a[f->axis]) + t * (c[f->axis] - a[f->axis]);
-}
-
-/* ---- Winding numbers on both sides of a point of a facet ---- */
-
-typedef struct sides {
-  int above, below; /* along the axis */
-  bool owner;       /* no lower facet of the same plane covers the point */
-} sides;
-
-/* +1 or -1: the facet covers (x, y) as seen along f's axis, its normal along or against it; 0: it
- * does not; 2: the point lies on its rim. */
-static int covers(const view *f, const scree_mesh *mesh, uint32_t facet, point p) {
-  double seen[3][2];
-  const double at[2] = {p.x, p.y};
-  for (int k = 0; k < 3; k++) {
-    const double *c = corner_of(mesh, facet, k);
-    seen[k][0] = c[f->u], seen[k][1] = c[f->v];
-  }
-  int s[3];
-  for (int k = 0; k < 3; k++) s[k] = scree_orient2(seen[k], seen[(k + 1) % 3], at);
-  bool left = s[0] >= 0 && s[1] >= 0 && s[2] >= 0, right = s[0] <= 0 && s[1] <= 0 && s[2] <= 0;
-  if (!left && !right) return 0;
-  if (s[0] && s[1] && s[2]) return s[0];
-  /* a facet seen edge on covers nothing, but may hide behind its rim */
-  return scree_orient2(seen[0], seen[1], seen[2]) ? 2 : 0;
-}
-
-static bool in_plane(const work *w, uint32_t facet, uint32_t other) {
-  if (facet == other) return true;
-  for (uint32_t i = w->first[facet]; i < w->first[facet + 1]; i++)
-    if (w->partners[i] == (other << 1 | 1)) return true;
-  return false;
-}
-
-/* +1, -1: all corners of u lie above, below the plane of t (or in it), as its normal points; 0:
- * they lie on both sides. */
-static int side_of(const view *t, const view *u) {
-  int above = 0, below = 0;
-  for (int k = 0; k < 3; k++) {
-    int side = scree_orient3(t->corner[0], t->corner[1], t->corner[2], u->corner[k]);
-    above += side > 0;
-    below += side < 0;
-  }
-  return above && below ? 0 : above ? 1 : -1;
-}
-
-/* Whether g, which covers p like f, lies above it along the axis: +1, -1; 0: nobody can tell.
- * g_side is that of its normal along the axis. */
-static int order_at(const work *w, const view *f, const view *g, int g_side, point p) {
-  double height = height_at(f, p), other = height_at(g, p);
-  vec3 n = vec3_triangle_normal(vec3_load(g->corner[0]), vec3_load(g->corner[1]),
-                                vec3_load(g->corner[2]));
-  double upright = fabs(f->axis == 0 ? n.x : f->axis == 1 ? n.y : n.z);
-  double rounding = w->rounding * (1 + vec3_norm(n) / upright);
-  if (other > height + rounding) return 1;
-  if (other < height - rounding) return -1;
-  int side = side_of(f, g);
-  return side ? side * f->side : -side_of(g, f) * g_side;
-}
-
-/* False where the point lies on a rim, or the order of two sheets cannot be told. */
-static bool look(const work *w, uint32_t facet, const view *f, point p, sides *found) {
-  uint32_t stack[STACK];
-  int depth = 0, in = 0;
-  *found = (sides){.owner = true};
-  stack[depth++] = 0;
-  while (depth > 0) {
-    uint32_t index = stack[--depth];
-    const scree_facet_node *n = &w->tree->nodes.items[index];
-    if (n->bounds.low[f->u] > p.x || n->bounds.high[f->u] < p.x || n->bounds.low[f->v] > p.y ||
-        n->bounds.high[f->v] < p.y)
-      continue;
-    if (!scree_facet_node_is_leaf(n)) {
-      stack[depth++] = n->right;
-      stack[depth++] = index + 1;
-      continue;
-    }
-    for (uint32_t i = n->begin; i < n->begin + n->count; i++) {
-      uint32_t other = w->tree->order[i];
-      int side = covers(f, w->mesh, other, p);
-      if (side == 2) return false;
-      if (!side) continue;
-      view g = *f;
-      for (int k = 0; k < 3; k++) g.corner[k] = corner_of(w->mesh, other, k);
-      if (in_plane(w, facet, other)) {
-        in += side;
-        if (other < facet) found->owner = false;
-        continue;
-      }
-      int order = order_at(w, f, &g, side, p);
-      if (!order) return false;
-      if (order > 0) found->above += side;
-    }
-  }
-  found->below = found->above + in;
-  return true;
-}
 
 /* ---- Cutting ---- */
 
@@ -281,10 +137,6 @@ static bool cut_by_segment(slicer *s, const view *f, point a, point b, double le
   return true;
 }
 
-static point seen(const view *f, const double *p) {
-  return (point){p[f->u], p[f->v]};
-}
-
 /* Where the edge from p to q, on different sides of f's plane, goes through it. */
 static point pierce(const view *f, const double *p, const double *q) {
   vec3 a = vec3_load(f->corner[0]);
@@ -301,8 +153,8 @@ static bool grazes(const view *f, const view *g) {
                                 vec3_load(f->corner[2]));
   vec3 m = vec3_triangle_normal(vec3_load(g->corner[0]), vec3_load(g->corner[1]),
                                 vec3_load(g->corner[2]));
-  return vec3_norm(vec3_cross(n, m)) < LEAST_SINE * vec3_norm(n) * vec3_norm(m) && !side_of(f, g) &&
-         !side_of(g, f);
+  return vec3_norm(vec3_cross(n, m)) < LEAST_SINE * vec3_norm(n) * vec3_norm(m) &&
+         !scree_view_side_of(f, g) && !scree_view_side_of(g, f);
 }
 
 /* Cuts by the part that facet `other` has in f's plane. */
@@ -313,18 +165,20 @@ static bool cut_by_facet(work *w, slicer *s, const view *f, uint32_t other, doub
   point ends[6];
   int count = 0;
   for (int k = 0; k < 3; k++) {
-    c[k] = corner_of(w->mesh, other, k);
+    c[k] = w->mesh->positions + 3 * (size_t)w->mesh->triangles[3 * (size_t)other + (size_t)k];
     side[k] = scree_orient3(f->corner[0], f->corner[1], f->corner[2], c[k]);
   }
   if (!side[0] && !side[1] && !side[2]) {
     for (int k = 0; k < 3; k++)
-      if (!cut_by_segment(s, f, seen(f, c[k]), seen(f, c[(k + 1) % 3]), least)) return false;
+      if (!cut_by_segment(s, f, scree_view_point(f, c[k]), scree_view_point(f, c[(k + 1) % 3]),
+                          least))
+        return false;
     return true;
   }
   if (grazes(f, &g)) atomic_store(&w->unknown, true);
   for (int k = 0; k < 3; k++) {
     int next = (k + 1) % 3;
-    if (!side[k]) ends[count++] = seen(f, c[k]);
+    if (!side[k]) ends[count++] = scree_view_point(f, c[k]);
     if (side[k] * side[next] < 0) ends[count++] = pierce(f, c[k], c[next]);
   }
   return count < 2 || cut_by_segment(s, f, ends[0], ends[1], least);
@@ -333,7 +187,7 @@ static bool cut_by_facet(work *w, slicer *s, const view *f, uint32_t other, doub
 static bool cut_facet(work *w, slicer *s, uint32_t facet, const view *f) {
   double size = 0;
   for (int k = 0; k < 3; k++) {
-    point p = seen(f, f->corner[k]), q = seen(f, f->corner[(k + 1) % 3]);
+    point p = scree_view_point(f, f->corner[k]), q = scree_view_point(f, f->corner[(k + 1) % 3]);
     size = fmax(size, hypot(q.x - p.x, q.y - p.y));
   }
   if (!start_cells(s, f)) return false;
@@ -367,8 +221,8 @@ static point draw(const slicer *s, cell c, scree_rng *rng) {
 static int role_of(work *w, const slicer *s, uint32_t facet, const view *f, cell c) {
   scree_rng rng = {.seed = facet, .stream = c.begin};
   for (int attempt = 0; attempt < ATTEMPTS; attempt++) {
-    sides found;
-    if (!look(w, facet, f, draw(s, c, &rng), &found)) continue;
+    scree_sides found;
+    if (!scree_winding_look(&w->winding, facet, f, draw(s, c, &rng), &found)) continue;
     if (found.above < 0 || found.below < 0) break;
     return found.owner ? f->side * ((found.below > 0) - (found.above > 0)) : 0;
   }
@@ -378,7 +232,7 @@ static int role_of(work *w, const slicer *s, uint32_t facet, const view *f, cell
 
 static vec3 lift(const view *f, point p) {
   double q[3];
-  q[f->u] = p.x, q[f->v] = p.y, q[f->axis] = height_at(f, p);
+  q[f->u] = p.x, q[f->v] = p.y, q[f->axis] = scree_view_height(f, p);
   return vec3_load(q);
 }
 
@@ -395,7 +249,7 @@ static double cone_over(const work *w, const slicer *s, const view *f, cell c) {
 }
 
 static bool add_cut(work *w, slicer *s, uint32_t facet, scree_sum *sum) {
-  view f = view_of(w->mesh, facet);
+  view f = scree_view_of(w->mesh, facet);
   if (!f.side) return true; /* no area */
   if (!cut_facet(w, s, facet, &f)) return false;
   double least = LEAST_CELL * area_of(s, (cell){0, 3});
@@ -410,7 +264,7 @@ static bool add_cut(work *w, slicer *s, uint32_t facet, scree_sum *sum) {
 
 static bool add_piece(work *w, slicer *s, size_t asked, scree_sum *sum) {
   uint32_t facet = w->asked[asked];
-  view f = view_of(w->mesh, facet);
+  view f = scree_view_of(w->mesh, facet);
   if (!f.side || w->pieces[asked] == 0) return true;
   if (!start_cells(s, &f)) return false;
   scree_sum_add(sum, role_of(w, s, facet, &f, s->cells.items[0]) * w->pieces[asked]);
@@ -521,12 +375,11 @@ scree_status scree_union_volume(const scree_facet_tree *tree, const scree_adjace
   work w = {.tree = tree,
             .mesh = tree->mesh,
             .origin = vec3_lerp(vec3_load(box->low), vec3_load(box->high), 0.5)};
-  for (int k = 0; k < 3; k++)
-    w.rounding = fmax(w.rounding, HEIGHT_ROUNDING * fmax(-box->low[k], box->high[k]));
   scree_sum sum = {0};
   scree_status status = list_partners(&w, found, error);
   if (status == SCREE_OK) status = list_asked(&w, adjacency, error);
   if (status != SCREE_OK) goto done;
+  w.winding = (scree_winding){tree, NULL, w.first, w.partners, scree_winding_rounding(tree)};
   status = SCREE_OUT_OF_MEMORY;
   size_t blocks = scree_block_count(w.asked_count, FACET_BLOCK);
   SCREE_ALLOC_OR(w.sums, blocks, error, done);
