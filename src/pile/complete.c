@@ -116,6 +116,16 @@ static void tune_chunk(work *w, double seconds) {
   if (seconds > 2 * chunk_seconds && w->chunk > 1) w->chunk /= 2;
 }
 
+/* The state before the step that left the model's range; --resume would only come back to it. */
+static scree_status keep_last_good(const work *w, scree_error *error) {
+  scree_error saving;
+  size_t length = strlen(error->message);
+  if (w->job->folder && save_as(w, "stopped.scree", false, &saving) == SCREE_OK)
+    snprintf(error->message + length, sizeof error->message - length,
+             "; %s/stopped.scree has the state before", w->job->folder);
+  return error->status;
+}
+
 static scree_status go_on(work *w, scree_error *error) {
   while (scree_run_phase(w->run) != SCREE_PHASE_DONE) {
     scree_status status = write_frames(w, error);
@@ -123,6 +133,7 @@ static scree_status go_on(work *w, scree_error *error) {
     double start = scree_now();
     size_t steps = steps_to_frame(w);
     status = scree_run_advance(w->run, steps, error);
+    if (status == SCREE_DIVERGED) return keep_last_good(w, error);
     if (status != SCREE_OK) return status;
     if (steps == w->chunk) tune_chunk(w, scree_now() - start);
     bool more = watch(w, false);

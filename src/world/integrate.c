@@ -9,7 +9,8 @@
 
 enum { BODY_BLOCK = 128 };
 
-static const double travel_share = 0.25; /* of the overlap limit: most a body may move in a step */
+/* Most a body may move in a step, of the overlap limit or half its thinnest wall. */
+static const double travel_share = 0.25;
 
 /* I^-1 R^T momentum: angular velocity in the body's frame. */
 static vec3 local_spin(vec3 inertia, const mat3 *rotation, vec3 momentum) {
@@ -58,11 +59,9 @@ static double coming_travel(scree_world *world, size_t i) {
 }
 
 static double travel_limit(const scree_world *world, size_t i) {
-  const scree_particle_measures *m = &world->bodies.particle[i]->measures;
-  double size = world->options.size > 0 ? world->options.size : m->size;
-  double limit =
-      fmin(world->options.overlap_limit * size, fmax(0.5 * m->thickness, 4 * m->rounding));
-  return travel_share * limit;
+  const scree_particle *particle = world->bodies.particle[i];
+  double size = world->options.size > 0 ? world->options.size : particle->measures.size;
+  return travel_share * fmin(world->options.overlap_limit * size, scree_thin_overlap(particle));
 }
 
 typedef struct gathering {
@@ -96,7 +95,7 @@ bool scree_world_gather(scree_world *world) {
     if (isfinite(travel))
       scree_fail(&world->failure, SCREE_DIVERGED,
                  "world: step %llu, body %zu would move %.3g m in one step of %.3g s; at most "
-                 "%.3g m (a quarter of the overlap limit)",
+                 "%.3g m (a quarter of the overlap limit or of half its thinnest wall)",
                  (unsigned long long)world->step_count, i, travel, world->time_step,
                  travel_limit(world, i));
     else

@@ -9,7 +9,7 @@ static double size_of(const scree_world *world, const scree_particle *particle) 
   return world->options.size > 0 ? world->options.size : particle->measures.size;
 }
 
-static double thickness_limit(const scree_particle *particle) {
+double scree_thin_overlap(const scree_particle *particle) {
   /* rays grazing a notch find walls thinner than they are: never below four roundings */
   const scree_particle_measures *m = &particle->measures;
   return fmax(0.5 * m->thickness, 4 * m->rounding);
@@ -18,7 +18,7 @@ static double thickness_limit(const scree_particle *particle) {
 static void set_up(scree_world *world, scree_pair *pair) {
   const scree_bodies *bodies = &world->bodies;
   const scree_particle *a = bodies->particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  double size = size_of(world, a), mass = bodies->mass[pair->a], limit = thickness_limit(a);
+  double size = size_of(world, a), mass = bodies->mass[pair->a], thin = scree_thin_overlap(a);
   size_t material_a = bodies->material[pair->a], material_b;
   if (pair->wall) {
     material_b = world->walls.items[pair->b].given.material;
@@ -26,7 +26,7 @@ static void set_up(scree_world *world, scree_pair *pair) {
     material_b = bodies->material[pair->b];
     size = fmin(size, size_of(world, b));
     mass = mass * bodies->mass[pair->b] / (mass + bodies->mass[pair->b]);
-    limit = fmin(limit, thickness_limit(b));
+    thin = fmin(thin, scree_thin_overlap(b));
   }
   const scree_material_pair *contact = &world->contacts[material_a][material_b];
   pair->stiffness = scree_pair_stiffness(world, material_a, material_b, size);
@@ -37,7 +37,8 @@ static void set_up(scree_world *world, scree_pair *pair) {
   pair->friction = contact->friction;
   pair->restitution = contact->restitution;
   pair->smoothing = world->options.smoothing * size;
-  pair->limit = fmin(world->options.overlap_limit * size, limit);
+  pair->limit = world->options.overlap_limit * size;
+  pair->thin = fmin(pair->limit, thin);
   pair->reach =
       (a->face_count ? a->measures.rounding : 0) + (b && b->face_count ? b->measures.rounding : 0);
 }

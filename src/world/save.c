@@ -17,11 +17,11 @@
 #include <string.h>
 
 static const unsigned char magic[8] = {'s', 'c', 'r', 'e', 'e', 'W', 'L', 'D'};
-enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
+enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
 
 /* Whoever changes these records must add the fields below, and raise VERSION. */
 _Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 248 && sizeof(scree_anchor) == 56 &&
-                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 416 &&
+                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 424 &&
                                        sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
@@ -170,11 +170,11 @@ static void code_pair_name(scree_codec *c, scree_pair *p) {
 static void code_pair_state(scree_codec *c, scree_pair *p) {
   scree_code_bool(c, &p->asleep);
   scree_code_bool(c, &p->touching);
-  double *reals[] = {
-      &p->stiffness,    &p->damping,   &p->friction, &p->restitution, &p->smoothing,
-      &p->reach,        &p->limit,     &p->travel,   &p->path,        &p->wake,
-      &p->asleep_since, &p->next_item, &p->list_end, &p->elastic,     &p->tangential_elastic,
-      &p->contact_time, &p->age,       &p->overlap,  &p->largest};
+  double *reals[] = {&p->stiffness,    &p->damping,  &p->friction, &p->restitution,
+                     &p->smoothing,    &p->reach,    &p->limit,    &p->thin,
+                     &p->travel,       &p->path,     &p->wake,     &p->asleep_since,
+                     &p->next_item,    &p->list_end, &p->elastic,  &p->tangential_elastic,
+                     &p->contact_time, &p->age,      &p->overlap,  &p->largest};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   code_wrench(c, &p->wrench);
   code_load(c, &p->dashpot);

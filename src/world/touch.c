@@ -5,14 +5,17 @@
  * kept as the reference: the way out. Deeper, only faces that look that way count (within about 80
  * degrees), and the depth is measured from their planes; a point sideways of such a face fades out
  * over half the roundings. Without this, plates that hit each other squarely and fast would be
- * pushed out sideways, at corners where the nearest face is the side.
- * In a notch up to two further faces count, those onto which the point projects and whose normals
- * differ by 15 (weight 0) to 25 degrees (weight 1): a body in a V needs both to rest.
+ * pushed out sideways, at corners where the nearest face is the side. A point that has come out on
+ * the other side of a thin wall is held to the side it came from in the same way. In a notch up to
+ * two further faces count, those onto which the point projects and whose normals differ by 15
+ * (weight 0) to 25 degrees (weight 1): a body in a V needs both to rest.
  *
  * Edge and edge. Closest points of the segments; while apart, direction and distance are theirs.
  * Deeper, the crossing normal signed by the reference. An edge pair that lies inside at first sight
- * counts only after it has been seen apart ("armed"). Nearly parallel edges have no crossing: their
- * ends, which are points against faces, stand for them; the weight fades below sin = 4e-3.
+ * counts only after it has been seen apart ("armed"), and only while the crossing normal is one of
+ * both edges: edges that slid around a corner inside each other would claim any depth. Nearly
+ * parallel edges have no crossing: their ends, which are points against faces, stand for them; the
+ * weight fades below sin = 4e-3.
  *
  * Cached faces: the nearest faces of a point stay the nearest while its path is under half the
  * distance to the next one. */
@@ -24,6 +27,8 @@
 static const double way_out_cosine = 0.15; /* 81 degrees: thin wedges still count */
 static const double notch_cosines[2] = {0.9659258, 0.9063078}; /* 15 and 25 degrees */
 static const double parallel_sines[2] = {1e-3, 4e-3};
+static const double beyond_cosines[2] = {0.8660254, 0.9659258}; /* 30 and 15 degrees */
+static const double beyond_sines[2] = {0.5, 0.2588190};
 static const double crossing_cosines[2] = {0.3, 0.6}; /* crossing normal against the reference */
 
 typedef struct surface_contact {
@@ -81,8 +86,9 @@ static vec3 outward_sign(const scree_particle *surface, uint32_t face, int regio
                                        : signs->edge[region - SCREE_REGION_EDGE];
 }
 
-/* The nearest face that looks along `way`, and its closest point; false for none within reach. */
-static bool face_along(const scree_particle *surface, vec3 p, vec3 way, double reach,
+/* The nearest face that looks along `way`, and its closest point; false for none within reach. With
+ * `behind`, p must not be in front of it. */
+static bool face_along(const scree_particle *surface, vec3 p, vec3 way, double reach, bool behind,
                        surface_contact *contact, uint32_t *found) {
   const scree_tree_node *nodes = surface->face_tree.nodes;
   uint32_t stack[SCREE_TREE_STACK];
@@ -105,7 +111,7 @@ static bool face_along(const scree_particle *surface, vec3 p, vec3 way, double r
       int region;
       vec3 c = scree_closest_on_face(face, p, &region);
       double d2 = vec3_norm2(vec3_sub(p, c));
-      if (d2 >= best2) continue;
+      if (d2 >= best2 || (behind && vec3_dot(vec3_sub(p, c), face->normal) > 0)) continue;
       best2 = d2;
       contact->closest = c;
       contact->normal = face->normal;
@@ -116,13 +122,12 @@ static bool face_along(const scree_particle *surface, vec3 p, vec3 way, double r
   return any;
 }
 
-/* Below half the roundings: depth along the reference. */
+/* Below half the roundings, or through a wall: depth along the reference. */
 static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
-                         const scree_pair *pair, surface_contact *contact) {
+                         const scree_pair *pair, bool pierced, surface_contact *contact) {
   uint32_t face;
-  double half = 0.5 * pair->reach;
-  if (!face_along(surface, p, item->reference, 1.5 * pair->limit + pair->reach, contact, &face))
-    return false;
+  double half = 0.5 * pair->reach, reach = 1.5 * pair->limit + pair->reach;
+  if (!face_along(surface, p, item->reference, reach, pierced, contact, &face)) return false;
   vec3 offset = vec3_sub(p, contact->closest);
   double height = vec3_dot(offset, contact->normal);
   contact->weight = 1;
@@ -178,11 +183,20 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   vec3 outward = outward_sign(surface, item->face[nearest], nearest_region);
   double d = sqrt(best2);
   bool outside = vec3_dot(offset, outward) >= 0;
-  contacts[0].weight = 1;
   if (!item->has_reference && !outside && surface->measures.volume > 0)
     outside = !scree_is_inside(surface, p); /* a fold may lie: ask the whole surface */
   bool deep = !outside || d < 0.5 * pair->reach;
-  if (deep && item->has_reference && deep_contact(surface, p, item, pair, &contacts[0])) return 1;
+  /* out on the other side of a wall that is thinner than the overlap: held while it is behind it */
+  bool pierced = !deep && item->inside && vec3_dot(outward, item->reference) < 0;
+  if ((deep || pierced) && item->has_reference &&
+      deep_contact(surface, p, item, pair, pierced, &contacts[0]) &&
+      (deep || contacts[0].weight > 0)) {
+    item->inside = contacts[0].weight > 0;
+    return 1;
+  }
+  item->inside = false;
+  if (pierced) contacts[0].closest = vec3_sub(p, offset);
+  contacts[0].weight = 1;
   contacts[0].distance = outside ? d : -d;
   contacts[0].normal = d > 1e-12 ? vec3_scale(offset, (outside ? 1 : -1) / d) : vec3_unit(outward);
   if (!deep || !item->has_reference) {
@@ -257,6 +271,14 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
 
 /* ---- edges against edges ---- */
 
+/* How far a direction with this cosine from the edge's outward one is a normal of the edge: 1
+ * between those of its two faces and 15 degrees beyond, 0 from 30 degrees beyond. */
+static double normal_share(const scree_edge *edge, double cosine) {
+  double none = edge->cosine * beyond_cosines[0] - edge->sine * beyond_sines[0],
+         full = edge->cosine * beyond_cosines[1] - edge->sine * beyond_sines[1];
+  return smooth_step(none, full, cosine);
+}
+
 /* Signed distance of an armed pair below half the roundings; weight 0 where it has no say. */
 static void deep_crossing(const scree_pair *pair, scree_item *item, vec3 crossing, vec3 offset,
                           surface_contact *contact) {
@@ -311,7 +333,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
   if (item->inside || d < 0.5 * pair->reach) {
     if (!item->has_reference) return 0; /* not armed */
     deep_crossing(pair, item, vec3_scale(crossing, 1 / sine), offset, &contact);
-    if (contact.distance < -pair->limit &&
+    if (contact.distance < -pair->thin &&
         !is_crossed(world->bodies.particle[pair->a], scree_pair_shape_b(world, pair), on_a, on_b,
                     relative)) {
       item->inside = false;
@@ -323,11 +345,13 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
     item->reference = contact.normal;
     item->has_reference = true;
   }
-  vec3 na = mat3_mul_vec(r, ea->outward), nb = eb->outward;
-  if (vec3_dot(na, contact.normal) >= 0 || vec3_dot(nb, contact.normal) <= 0) {
+  double out_a = -vec3_dot(mat3_mul_vec(r, ea->outward), contact.normal),
+         out_b = vec3_dot(eb->outward, contact.normal);
+  if (out_a <= 0 || out_b <= 0) {
     item->anchor[0].share = 0; /* seen through one of the bodies */
     return fmin(far, 0);
   }
+  if (item->inside) contact.weight *= normal_share(ea, out_a) * normal_share(eb, out_b);
   /* near the ends their points take over */
   double end_a = s < ea->length - s ? s : ea->length - s,
          end_b = t < eb->length - t ? t : eb->length - t, end = end_a < end_b ? end_a : end_b;
@@ -357,7 +381,7 @@ static double touch_wall(const scree_world *world, const scree_pair *pair, scree
   const scree_world_wall *wall = &world->walls.items[pair->b];
   vec3 c, n;
   double side = scree_wall_side(wall, p), d = scree_wall_distance(wall, p, side, &c, &n);
-  double own = side, clear = a->point_radii[item->a] + pair->smoothing + 0.25 * pair->limit;
+  double own = side, clear = a->point_radii[item->a] + pair->smoothing + 0.25 * pair->thin;
   if (item->has_reference)
     own = item->reference.x; /* evaluated a step ago: through the sheet it cannot have come */
   else if (d < clear)

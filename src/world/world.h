@@ -101,6 +101,7 @@ typedef struct scree_pair {
   scree_wrench wrench; /* here: the bodies read it with what is above */
   double stiffness, damping, friction, restitution; /* K, C, mu, e */
   double smoothing, reach, limit;                   /* l0; rounding of both meshes; overlap limit */
+  double thin;                /* the limit, or half the thinnest wall of the bodies where less */
   double travel, path;        /* of the relative motion: last step, and sum; upper bounds */
   double wake, asleep_since;  /* on path[a] + path[b] */
   double next_item, list_end; /* on path */
@@ -142,6 +143,8 @@ typedef struct scree_touch_list {
 /* Scratch of one worker. */
 typedef struct scree_scratch {
   scree_touch_list touches;
+  double
+      allowed; /* overlap of the pair: its limit, or less at a thin wall that is nearly pierced */
   uint64_t item_evaluations, closest_queries, list_builds;
   double candidate_seconds;
   bool out_of_memory;
@@ -257,6 +260,8 @@ double scree_broad_margin(const scree_world *world);
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error);
 
 /* pair.c: a pair object for (a, b), set up; from the spares when there are some. */
+/* Half the particle's thinnest wall, m. */
+double scree_thin_overlap(const scree_particle *particle);
 scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wall);
 void scree_pair_give_back(scree_world *world, scree_pair *pair);
 /* All of the world's pairs with their arrays. */

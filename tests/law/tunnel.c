@@ -60,7 +60,32 @@ static void nothing_passes_or_sticks(void **state) {
   for (size_t i = 0; i < sizeof all / sizeof *all; i++) scree_particle_free(all[i]);
 }
 
+/* Walls thinner than the overlap: a corner that has come out on their other side must be pushed
+ * back the way it came. */
+static void a_thin_wall_is_not_pierced(void **state) {
+  (void)state;
+  const quat none = {1, 0, 0, 0},
+             on_corner = quat_from_rotation_vector((vec3){45 * degree, 35 * degree, 0}),
+             open_down = quat_from_rotation_vector((vec3){180 * degree, 0, 0});
+  scree_particle *cube = particle_of(shape_box(0.04, 0.04, 0.04)),
+                 *tray = particle_of(solid_tray(0.1, 0.06, 0.015, 0.0006));
+  const law_meeting meetings[] = {
+      {"corner into a thin tray", cube, tray, on_corner, none, 0.003, 0.3, 0},
+      {"corner onto a thin tray's bottom", cube, tray, on_corner, open_down, 0.003, 0.3, 0},
+  };
+  for (size_t i = 0; i < sizeof meetings / sizeof *meetings; i++) {
+    law_outcome out = {0};
+    for (uint64_t k = 0; k < TRIES; k++) law_meet(&meetings[i], 6, k, &out);
+    LAW_NEAR("L8", meetings[i].name, (double)out.through, 0, 0);
+    LAW_NEAR("L8", "stuck", (double)out.stuck, 0, 0);
+    LAW_NEAR("L8", "stopped beyond the overlap limit", (double)out.stopped, 0, 0);
+  }
+  scree_particle_free(cube);
+  scree_particle_free(tray);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_passes_or_sticks)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_passes_or_sticks),
+                                     cmocka_unit_test(a_thin_wall_is_not_pierced)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
