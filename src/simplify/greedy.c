@@ -4,7 +4,13 @@
  * missing. Equal costs are ordered by the vertices' numbers in the mesh given.
  * Where the best place is refused, the cheapest allowed of a few others takes
  * its turn at its own cost; an edge without any leaves the heap until something
- * around it changes. */
+ * around it changes.
+ *
+ * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
+ * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
+ * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
+ * began with: within STAND_OFF times sqrt(area / triangles), the size of the level's triangles. */
+#include "mesh/bvh.h"
 #include "simplify/decimate.h"
 
 #include <string.h>
@@ -14,6 +20,9 @@
 #define EDGES_PER_CELL 1.5
 #define REGRID_BELOW   0.5
 #define STALE_FACTOR   12
+
+/* A tetrahedron of a sphere's volume has 0.57, an octahedron 0.37. */
+#define STAND_OFF 0.5
 
 /* Edges evaluated in one call. */
 enum { SIDE_BY_SIDE = 32 };
@@ -28,6 +37,8 @@ typedef struct queue {
   uint32_t *stamp;   /* per vertex: the collapse that last touched it */
   uint32_t now;
   size_t since_tick;
+  scree_bvh start; /* the surface that this stage began with, and its area */
+  double start_area;
   uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
   size_t waiting_count;
 } queue;
@@ -122,6 +133,40 @@ static void queue_free(queue *q) {
   scree_free(q->heap);
   scree_free(q->fallback);
   scree_free(q->stamp);
+  scree_bvh_free(&q->start);
+}
+
+/* Keeps the surface as it is now. */
+static scree_status keep_start(queue *q) {
+  scree_halfmesh *s = &q->d->s;
+  scree_mesh mesh = {.positions = &s->position[0].x, .vertex_count = s->vertex_count};
+  SCREE_ALLOC_OR(mesh.triangles, 3 * s->live_triangle_count, q->d->error, out_of_memory);
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    const uint32_t *from = s->from + 3 * t;
+    if (from[0] == SCREE_NONE) continue;
+    memcpy(mesh.triangles + 3 * mesh.triangle_count++, from, 3 * sizeof *from);
+    q->start_area += 0.5 * vec3_norm(vec3_triangle_normal(
+                               s->position[from[0]], s->position[from[1]], s->position[from[2]]));
+  }
+  scree_status status = scree_bvh_build(&mesh, &q->start, q->d->error);
+  scree_free(mesh.triangles);
+  return status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* Whether a vertex at x is near enough to where the surface was for a level with so many triangles.
+ */
+static bool stays_near(const queue *q, size_t triangle_count, vec3 x) {
+  double size2 = q->start_area / (double)triangle_count;
+  return scree_bvh_closest(&q->start, x, &(scree_bvh_hit){STAND_OFF * STAND_OFF * size2, x, 0});
+}
+
+static void enter_all(queue *q) {
+  const scree_halfmesh *s = &q->d->s;
+  for (uint32_t h = 0; h < 3 * s->triangle_count; h++)
+    if (s->from[h] != SCREE_NONE && owner(s, h) == h) evaluate(q, h);
+  evaluate_waiting(q);
 }
 
 static scree_status queue_fill(queue *q) {
@@ -137,10 +182,8 @@ static scree_status queue_fill(queue *q) {
   memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->outgoing[v] != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
-  for (uint32_t h = 0; h < half_edges; h++)
-    if (s->from[h] != SCREE_NONE && owner(s, h) == h) evaluate(q, h);
-  evaluate_waiting(q);
-  return SCREE_OK;
+  enter_all(q);
+  return keep_start(q);
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
@@ -223,9 +266,12 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
 
 /* Whether the ring may be collapsed to change->target; *status tells of failed
  * memory. */
-static bool allowed(scree_decimator *d, scree_ring *ring, scree_change *change,
-                    scree_around *around, scree_status *status) {
-  if (!scree_collapse_check(&d->s, ring, change, around)) return false;
+static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_around *around,
+                    scree_status *status) {
+  scree_decimator *d = q->d;
+  size_t after = d->s.live_triangle_count - (ring->d == SCREE_NONE ? 1 : 2);
+  if (!scree_collapse_check(&d->s, ring, change, around) || !stays_near(q, after, change->target))
+    return false;
   *status = prepare_grid(d);
   if (*status != SCREE_OK) return false;
   return (d->s.closed && scree_grid_certifies(&d->grid, ring, around)) ||
@@ -244,7 +290,7 @@ static scree_status try_fallbacks(queue *q, scree_ring *ring) {
     scree_around around;
     d->coster->fall_back(&d->s, h, k, &candidate);
     change.target = candidate.target;
-    if (!(candidate.cost < best.cost) || !allowed(d, ring, &change, &around, &status)) continue;
+    if (!(candidate.cost < best.cost) || !allowed(q, ring, &change, &around, &status)) continue;
     best = candidate;
     q->fallback[h] = (uint8_t)(1 + k);
   }
@@ -268,7 +314,7 @@ static scree_status try_cheapest(queue *q) {
   else
     d->coster->evaluate(&d->s, &h, 1, &candidate);
   change.target = candidate.target;
-  if (allowed(d, &ring, &change, &around, &status))
+  if (allowed(q, &ring, &change, &around, &status))
     return collapse(q, &ring, &change, &around, candidate.error);
   if (status != SCREE_OK || q->fallback[h] > 0) return status;
   return try_fallbacks(q, &ring);
@@ -278,8 +324,14 @@ scree_status scree_decimate_one_by_one(scree_decimator *d) {
   queue q = {.d = d};
   scree_grid_free(&d->grid);
   scree_status status = queue_fill(&q);
-  while (status == SCREE_OK && q.heap_count > 0 &&
-         d->s.live_triangle_count > d->options.stop_count) {
+  size_t entered_at = d->record.count;
+  while (status == SCREE_OK && d->s.live_triangle_count > d->options.stop_count) {
+    if (q.heap_count == 0) { /* what was too far off before may be near enough now */
+      if (d->record.count == entered_at) break;
+      entered_at = d->record.count;
+      enter_all(&q);
+      if (q.heap_count == 0) break;
+    }
     if (q.since_tick++ % 1024 == 0 && !scree_decimate_tick(d)) status = SCREE_CANCELLED;
     if (status == SCREE_OK) status = try_cheapest(&q);
   }

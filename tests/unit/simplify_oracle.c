@@ -12,6 +12,7 @@
  * is taken over, so that errors do not add up. What an edge may do next after a refusal is part of
  * the rules: it waits, at the cost of its cheapest allowed other place or out of the race, until a
  * triangle at one of its ends changes. */
+#include "mesh/bvh.h"
 #include "mesh/intersect.h"
 #include "simplify/decimate.h"
 #include "support/check.h"
@@ -22,6 +23,7 @@
 #define SLIVER_SHAPE 2e-3
 #define FOLD_COSINE  (-0.857)
 #define REACH_EDGES  4.0
+#define STAND_OFF    0.5
 #define VOLUME_PULL  1e-6
 #define VOLUME_TIE   1e-9
 #define QECD_PULL    1e-8
@@ -41,6 +43,8 @@ typedef struct oracle {
   size_t plane_count;
   uint16_t *share; /* vertex_count * plane_count: how often the plane counts at the vertex */
   uint8_t *state;  /* vertex_count^2, lower vertex first */
+  double *start;   /* corners of the first mesh's triangles, 9 each, and their area */
+  double start_area;
   size_t compared, decided; /* collapses, and those with no rival within rounding */
 } oracle;
 
@@ -311,8 +315,17 @@ static bool triangles_stay_sound(const oracle *o, const oracle *after, uint32_t 
   return worst_after >= SLIVER_SHAPE || worst_after >= worst_before;
 }
 
+/* Not far from the first mesh for a level of two triangles less. */
+static bool stays_near(const oracle *o, vec3 x) {
+  double least = INFINITY, size2 = o->start_area / (double)(o->triangle_count - 2);
+  vec3 point;
+  for (size_t t = 0; t < o->plane_count; t++)
+    least = fmin(least, scree_triangle_closest(o->start + 9 * t, x, &point));
+  return least < STAND_OFF * STAND_OFF * size2;
+}
+
 static bool may_collapse(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
-  if (!links_agree(o, a, b)) return false;
+  if (!links_agree(o, a, b) || !stays_near(o, x)) return false;
   oracle after = collapsed(o, a, b, x);
   bool ok = triangles_stay_sound(o, &after, a, b);
   if (ok) {
@@ -361,6 +374,24 @@ static bool next_edge(const oracle *o, size_t *side, uint32_t *a, uint32_t *b) {
     if (*a < *b) return true;
   }
   return false;
+}
+
+/* Refuses what waits and is not allowed; false where something is, in spite of rounding. */
+static bool nothing_waits(oracle *o) {
+  size_t side = 0;
+  uint32_t a, b;
+  while (next_edge(o, &side, &a, &b))
+    for (;;) {
+      place p = waiting(o, a, b);
+      if (!(p.cost < INFINITY) || *state_of(o, a, b) & IN_DOUBT) break;
+      if (may_collapse(o, a, b, p.target)) return false;
+      refuse(o, a, b);
+    }
+  return true;
+}
+
+static void start_anew(oracle *o) {
+  memset(o->state, BEST, o->vertex_count * o->vertex_count);
 }
 
 /* The engine collapses (a, b) next, to x; checks that no edge should have come before. */
@@ -444,6 +475,7 @@ static oracle oracle_of(const scree_mesh *mesh, const scree_halfmesh *s, bool qe
   o.weight = malloc(m * sizeof *o.weight);
   o.share = calloc(n * m, sizeof *o.share);
   o.state = calloc(n * n, 1);
+  o.start = malloc(9 * m * sizeof *o.start);
   memcpy(o.triangle, mesh->triangles, 3 * m * sizeof *o.triangle);
   for (size_t v = 0; v < n; v++)
     o.position[v] =
@@ -453,7 +485,11 @@ static oracle oracle_of(const scree_mesh *mesh, const scree_halfmesh *s, bool qe
     o.weight[t] = vec3_norm(normal);
     o.plane[t] = vec3_scale(normal, 1 / o.weight[t]);
     o.offset[t] = -vec3_dot(o.plane[t], corner(&o, t, 0));
-    for (size_t i = 0; i < 3; i++) o.share[o.triangle[3 * t + i] * m + t] = 1;
+    o.start_area += 0.5 * o.weight[t];
+    for (size_t i = 0; i < 3; i++) {
+      o.share[o.triangle[3 * t + i] * m + t] = 1;
+      vec3_store(o.start + 9 * t + 3 * i, corner(&o, t, i));
+    }
   }
   return o;
 }
@@ -466,6 +502,7 @@ static void oracle_free(oracle *o) {
   free(o->weight);
   free(o->share);
   free(o->state);
+  free(o->start);
 }
 
 static void record_make(scree_record *r, size_t capacity) {
@@ -494,8 +531,12 @@ static void check_collapse(oracle *o, const scree_decimator *d, size_t i) {
   vec3 x = vec3_scale(vec3_sub(r->position[i], d->s.centre), 1 / d->s.scale);
   double area, volume, area_after, volume_after;
   place chosen;
-  if (!check_turn(o, a, b, x, &chosen))
-    fail_msg("collapse %zu, (%u, %u), at %zu triangles", i, a, b, o->triangle_count);
+  bool in_turn = check_turn(o, a, b, x, &chosen);
+  if (!in_turn && nothing_waits(o)) { /* all edges are looked at once more */
+    start_anew(o);
+    in_turn = check_turn(o, a, b, x, &chosen);
+  }
+  if (!in_turn) fail_msg("collapse %zu, (%u, %u), at %zu triangles", i, a, b, o->triangle_count);
   double off = fmin(vec3_norm(vec3_sub(x, chosen.target)), vec3_norm(vec3_sub(x, chosen.other)));
   if (!(off <= 1e-6) || !may_collapse(o, a, b, x))
     fail_msg("collapse %zu, (%u, %u): placed %g beside the best, or not allowed", i, a, b, off);
@@ -509,19 +550,12 @@ static void check_collapse(oracle *o, const scree_decimator *d, size_t i) {
   o->compared++;
 }
 
-/* After the last collapse nothing that waits is allowed. */
+/* After the last collapse nothing is allowed. */
 static void check_floor(oracle *o) {
-  size_t side = 0;
-  uint32_t a, b;
-  while (next_edge(o, &side, &a, &b))
-    for (;;) {
-      place p = waiting(o, a, b);
-      if (!(p.cost < INFINITY)) break;
-      if (may_collapse(o, a, b, p.target) && !(*state_of(o, a, b) & IN_DOUBT))
-        fail_msg("edge (%u, %u) could still go at %zu triangles", a, b, o->triangle_count);
-      if (*state_of(o, a, b) & IN_DOUBT) break;
-      refuse(o, a, b);
-    }
+  for (int round = 0; round < 2; round++) {
+    if (!nothing_waits(o)) fail_msg("an edge could still go at %zu triangles", o->triangle_count);
+    start_anew(o);
+  }
 }
 
 /* On a surface that meets itself from the start the engine refuses a little more than it must, so
