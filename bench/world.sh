@@ -8,7 +8,7 @@
 # regular expression) only scenes whose name matches are made and measured.
 #
 # Scenes are made once, as checkpoints in the build folder (about 20 minutes on one core); delete
-# build/bench/work/world to make them again, which a new version of checkpoints asks for. A scene is
+# work/world there to make them again, which a new version of checkpoints asks for. A scene is
 # poured, settled and stacked by bench_world. Writes results/world.md and results/world.json. Peers, each
 # left out by name where it is not installed: apt-get install libode-dev libbullet-dev.
 set -euo pipefail
@@ -49,21 +49,21 @@ rate() { awk -F, -v l="$1" -v c="$2" '$1 == l { print $c }' "$rows"; }
 
 make_scene boxes200 fill boxes 12 200
 make_scene boxes200t retime 1e-5 @boxes200.scree
-make_scene boxes1000 stack 5 1 @boxes200.scree
+make_scene boxes1000 stack 5 @boxes200.scree
 make_scene boxes1000t retime 1e-5 @boxes1000.scree
 for n in 28 448; do
   make_scene tray$n fill tray $n 200
   make_scene tray${n}t retime 1e-5 @tray$n.scree
 done
 make_scene devices133 fill devices 760 133
-make_scene devices stack 9 1 @devices133.scree
+make_scene devices stack 9 @devices133.scree
 make_scene flowing lift 0.25 @devices.scree
 for n in 100 300 1500; do
   make_scene devices133_$n refit devices 760 $n @devices133.scree
-  make_scene devices_$n stack 9 1 @devices133_$n.scree
+  make_scene devices_$n shelve 9 0.05 @devices133_$n.scree
 done
-make_scene devices12000 stack 10 1 @devices.scree
-make_scene devices100000 stack 84 0 @devices_100.scree
+make_scene devices12000 shelve 10 0.05 @devices.scree
+make_scene devices100000 shelve 84 0 @devices_100.scree
 
 measure "133 devices at rest" 1 devices133 500000
 measure "1197 devices at rest" 1 devices 500000

@@ -26,8 +26,11 @@ void free_shapes(shape_set *set);
 scree_world *fill_scene(const shape_set *shapes, size_t count, uint64_t seed);
 /* The same scene with other shapes of the same kinds in the same places, at rest again. */
 scree_world *refit_scene(const scree_world *from, const shape_set *before, const shape_set *after);
-/* `copies` of the scene above each other in the same cylinder, at rest where `settle` is set. */
-scree_world *stack_scene(const scree_world *from, size_t copies, bool settle);
+/* `copies` of the scene above each other in the same cylinder, sunk into each other and at rest. */
+scree_world *stack_scene(const scree_world *from, size_t copies);
+/* `copies` of the scene above each other, each on a floor of its own, after `time` s: many bodies
+ * at rest without the hours that a column of them takes to settle. */
+scree_world *shelve_scene(const scree_world *from, size_t copies, double time);
 /* The scene after its cylinder has risen by `height`, at full stiffness. */
 scree_world *lift_scene(const scree_world *from, double height);
 /* The scene with the time step given, or 0: automatic. */

@@ -10,7 +10,8 @@ static const double soft = 0.3;               /* stiffness while a scene is made
 static const double entry_speed = 3;          /* m/s, about */
 static const double soft_time = 0.5;          /* s at rest, soft */
 static const double hard_time = 0.15;         /* s at rest, at full stiffness */
-static const double stack_time = 0.3;         /* s at rest after stacking */
+static const double gentle_time = 1;          /* s of copies sinking onto each other, g / 10 */
+static const double stack_time = 0.3;         /* s at rest after that */
 static const double lift_speed = 0.1;         /* m/s, the paper's */
 static const double flowing_hard_time = 0.02; /* s of the lift at full stiffness before measuring */
 
@@ -20,6 +21,7 @@ typedef struct remake {
   const shape_set *before, *after; /* NULL: the shapes stay */
   size_t copies;
   double pitch; /* of the copies */
+  bool shelves; /* each copy on a disc of its own, in an endless cylinder */
   bool lifting; /* the cylinder rises */
 } remake;
 
@@ -92,7 +94,10 @@ static scree_world *make_again(const scree_world *from, const remake *how) {
     scree_world_get_wall(from, w, &wall);
     wall.material = 1;
     wall.velocity[2] = how->lifting && wall.kind == SCREE_WALL_CYLINDER ? lift_speed : 0;
-    need(scree_world_add_wall(world, &wall, NULL, &error), &error);
+    if (how->shelves && wall.kind == SCREE_WALL_CYLINDER) wall.length = 0;
+    size_t count = how->shelves && wall.kind == SCREE_WALL_DISC ? how->copies : 1;
+    for (size_t c = 0; c < count; c++, wall.position[2] += how->pitch)
+      need(scree_world_add_wall(world, &wall, NULL, &error), &error);
   }
   for (size_t c = 0; c < (how->copies ? how->copies : 1); c++)
     for (size_t i = 0; i < scree_world_body_count(from); i++) {
@@ -186,11 +191,24 @@ static double height_of(const scree_world *world) {
   return top;
 }
 
-scree_world *stack_scene(const scree_world *from, size_t copies, bool settled) {
-  remake how = {.stiffness_factor = 1, .gravity = 9.81, .copies = copies, .pitch = height_of(from)};
+/* Falls through the gaps between copies add up to the top: under full gravity they end at 2 m/s and
+ * press thin walls too deep. */
+scree_world *stack_scene(const scree_world *from, size_t copies) {
+  remake how = {
+      .stiffness_factor = 1, .gravity = 0.981, .copies = copies, .pitch = height_of(from)};
   scree_world *world = make_again(from, &how);
-  /* the copies fall onto each other: at full stiffness, or thin walls would be pressed too deep */
-  if (settled) advance(world, stack_time);
+  advance(world, gentle_time);
+  return stage(world, (remake){.stiffness_factor = 1, .gravity = 9.81}, stack_time);
+}
+
+scree_world *shelve_scene(const scree_world *from, size_t copies, double time) {
+  remake how = {.stiffness_factor = 1,
+                .gravity = 9.81,
+                .copies = copies,
+                .pitch = height_of(from),
+                .shelves = true};
+  scree_world *world = make_again(from, &how);
+  advance(world, time);
   return world;
 }
 

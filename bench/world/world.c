@@ -2,7 +2,8 @@
  *
  *   bench_world fill KIND TRIANGLES COUNT OUT      a scene at rest in a cylinder of 0.4 m
  *   bench_world refit KIND FROM TRIANGLES IN OUT   the same with KIND at TRIANGLES instead of FROM
- *   bench_world stack COPIES SETTLE IN OUT         copies above each other, SETTLE 1: at rest
+ *   bench_world stack COPIES IN OUT                copies sunk onto each other, at rest
+ *   bench_world shelve COPIES SECONDS IN OUT       copies above each other, each on its own floor
  *   bench_world lift HEIGHT IN OUT                 after the cylinder has risen by HEIGHT m
  *   bench_world retime DT IN OUT                   with time step DT s
  *   bench_world dump IN OUT                        the scene as text, for the peers (print_scene)
@@ -63,8 +64,15 @@ static int refit(char **a) {
 }
 
 static int stack(char **a) {
+  scree_world *from = load(a[1]);
+  int status = save(stack_scene(from, strtoul(a[0], NULL, 10)), a[2]);
+  scree_world_free(from);
+  return status;
+}
+
+static int shelve(char **a) {
   scree_world *from = load(a[2]);
-  int status = save(stack_scene(from, strtoul(a[0], NULL, 10), a[1][0] == '1'), a[3]);
+  int status = save(shelve_scene(from, strtoul(a[0], NULL, 10), strtod(a[1], NULL)), a[3]);
   scree_world_free(from);
   return status;
 }
@@ -193,15 +201,16 @@ int main(int argc, char **argv) {
     const char *name;
     int argument_count;
     int (*run)(char **arguments);
-  } commands[] = {{"fill", 4, fill}, {"refit", 5, refit},   {"stack", 4, stack},
-                  {"lift", 3, lift}, {"retime", 3, retime}, {"time", 3, measure},
-                  {"hash", 3, hash}, {"dump", 2, dump}};
+  } commands[] = {{"fill", 4, fill},     {"refit", 5, refit}, {"stack", 3, stack},
+                  {"shelve", 4, shelve}, {"lift", 3, lift},   {"retime", 3, retime},
+                  {"time", 3, measure},  {"hash", 3, hash},   {"dump", 2, dump}};
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
     if (argc == commands[i].argument_count + 2 && strcmp(argv[1], commands[i].name) == 0)
       return commands[i].run(argv + 2);
   fprintf(stderr,
           "usage: %s fill KIND TRIANGLES COUNT OUT | refit KIND FROM TRIANGLES IN OUT | "
-          "stack COPIES SETTLE IN OUT | lift HEIGHT IN OUT | retime DT IN OUT | "
+          "stack COPIES IN OUT | shelve COPIES SECONDS IN OUT | lift HEIGHT IN OUT | retime DT IN "
+          "OUT | "
           "time THREADS SECONDS IN | hash THREADS STEPS IN | dump IN OUT\n",
           argv[0]);
   return 2;

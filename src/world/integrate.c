@@ -10,7 +10,7 @@
 enum { BODY_BLOCK = 128 };
 
 /* Most a body may move in a step, of the overlap limit or half its thinnest wall. */
-static const double travel_share = 0.25;
+static const double travel_share = 0.5;
 
 /* I^-1 R^T momentum: angular velocity in the body's frame. */
 static vec3 local_spin(vec3 inertia, const mat3 *rotation, vec3 momentum) {
@@ -95,7 +95,7 @@ bool scree_world_gather(scree_world *world) {
     if (isfinite(travel))
       scree_fail(&world->failure, SCREE_DIVERGED,
                  "world: step %llu, body %zu would move %.3g m in one step of %.3g s; at most "
-                 "%.3g m (a quarter of the overlap limit or of half its thinnest wall)",
+                 "%.3g m (half the overlap limit or a quarter of its thinnest wall)",
                  (unsigned long long)world->step_count, i, travel, world->time_step,
                  travel_limit(world, i));
     else
