@@ -97,6 +97,12 @@ typedef struct scree_checksum {
   uint64_t high, low;
 } scree_checksum;
 
+enum { SCREE_CHECKSUM_TEXT = 33 }; /* characters with the final zero */
+
+/* Puts the 32 hexadecimal digits into text. Returns text; NULL for a checksum of zero, which stands
+ * for none (a sample has no bytes). */
+SCREE_API const char *scree_checksum_text(scree_checksum checksum, char text[SCREE_CHECKSUM_TEXT]);
+
 /* ==== 2. Meshes and scans ======================================================================
  */
 

@@ -190,8 +190,9 @@ static int hash(char **a) {
   scree_set_threads(atoi(a[0]));
   scree_world *world = load(a[2]);
   need(scree_world_step(world, strtoul(a[1], NULL, 10), &error), &error);
-  scree_checksum sum = scree_world_hash(world);
-  printf("%016llx%016llx\n", (unsigned long long)sum.high, (unsigned long long)sum.low);
+  char text[SCREE_CHECKSUM_TEXT];
+  scree_checksum_text(scree_world_hash(world), text);
+  puts(text);
   scree_world_free(world);
   return 0;
 }

@@ -2,6 +2,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -189,4 +190,9 @@ scree_status scree_folder_create(const char *path, scree_error *error) {
 scree_checksum scree_checksum_of(const void *bytes, size_t byte_count) {
   XXH128_hash_t hash = XXH3_128bits(bytes, byte_count);
   return (scree_checksum){hash.high64, hash.low64};
+}
+
+const char *scree_checksum_text(scree_checksum checksum, char text[SCREE_CHECKSUM_TEXT]) {
+  snprintf(text, SCREE_CHECKSUM_TEXT, "%016" PRIx64 "%016" PRIx64, checksum.high, checksum.low);
+  return checksum.high || checksum.low ? text : NULL;
 }

@@ -71,6 +71,13 @@ static inline vec3 vec3_min(vec3 a, vec3 b) {
 static inline vec3 vec3_max(vec3 a, vec3 b) {
   return (vec3){a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y, a.z > b.z ? a.z : b.z};
 }
+/* Two unit vectors that with the unit vector n make a right-handed frame (u, w, n): Duff and others
+ * (2017). */
+static inline void vec3_frame(vec3 n, vec3 *u, vec3 *w) {
+  double sign = copysign(1, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
+  *u = (vec3){1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
+  *w = (vec3){b, sign + n.y * n.y * a, -n.y};
+}
 /* Twice the area vector of the triangle a, b, c. */
 static inline vec3 vec3_triangle_normal(vec3 a, vec3 b, vec3 c) {
   return vec3_cross(vec3_sub(b, a), vec3_sub(c, a));

@@ -1,6 +1,5 @@
 #include "cli/grains.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,12 +77,12 @@ static void describe(const maker *m, const char *word, const scree_scan *scan, s
   cli_grains *g = m->grains;
   const scree_grain *grain = &g->grains[index];
   char *name = g->texts[2 * index], *source = g->texts[2 * index + 1], level[32];
+  char checksum[SCREE_CHECKSUM_TEXT];
   cli_level_name(m->options, index / g->shape_count, level, sizeof level);
   cli_short_name(word, name, 64);
   int used = snprintf(source, sizeof *g->texts, "%.180s", word);
-  if (scan && (scan->checksum.high || scan->checksum.low))
-    used += snprintf(source + used, sizeof *g->texts - (size_t)used, ", %016" PRIx64 "%016" PRIx64,
-                     scan->checksum.high, scan->checksum.low);
+  if (scan && scree_checksum_text(scan->checksum, checksum))
+    used += snprintf(source + used, sizeof *g->texts - (size_t)used, ", %s", checksum);
   if (scan)
     snprintf(source + used, sizeof *g->texts - (size_t)used, ", %zu triangles, %s, %s",
              grain->scan_triangle_count, level,

@@ -99,16 +99,10 @@ static point2 best_side(const point2 *outline, size_t n) {
   return best;
 }
 
-static vec3 across(vec3 w) {
-  vec3 helper = fabs(w.x) <= fabs(w.y) && fabs(w.x) <= fabs(w.z) ? (vec3){1, 0, 0}
-                : fabs(w.y) <= fabs(w.z)                         ? (vec3){0, 1, 0}
-                                                                 : (vec3){0, 0, 1};
-  return vec3_unit(vec3_cross(w, helper));
-}
-
 /* Keeps direction w; turns the other two into those of the least rectangle. */
 static mat3 fit_about(fitter *f, vec3 w) {
-  vec3 u = across(w), v = vec3_cross(w, u);
+  vec3 u, v;
+  vec3_frame(w, &u, &v);
   for (size_t i = 0; i < f->hull->point_count; i++)
     f->projected[i] = (point2){vec3_dot(f->hull->points[i], u), vec3_dot(f->hull->points[i], v)};
   size_t n = hull2(f->projected, f->hull->point_count, f->outline);

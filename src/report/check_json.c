@@ -2,8 +2,6 @@
 #include "base/file.h"
 #include "report/json.h"
 
-#include <inttypes.h>
-
 static void json_check(scree_json *json, const char *key, const scree_check *check) {
   scree_json_object(json, key);
   scree_json_bool(json, "usable", check->usable);
@@ -38,11 +36,8 @@ static void json_entry(scree_json *json, const scree_check_entry *entry, const c
   scree_json_text(json, "command", command_line);
   scree_json_text(json, "file", entry->file);
   if (entry->scan) {
-    char checksum[40];
-    scree_checksum sum = entry->scan->checksum;
-    bool known = sum.high || sum.low; /* a sample has no bytes */
-    snprintf(checksum, sizeof checksum, "%016" PRIx64 "%016" PRIx64, sum.high, sum.low);
-    scree_json_text(json, "checksum", known ? checksum : NULL);
+    char checksum[SCREE_CHECKSUM_TEXT];
+    scree_json_text(json, "checksum", scree_checksum_text(entry->scan->checksum, checksum));
     scree_json_text(json, "format", entry->scan->format);
     scree_json_number(json, "unit_m", entry->unit_m);
     scree_json_count(json, "facet_count", entry->scan->facet_count);

@@ -4,7 +4,6 @@
 #include "report/csv.h"
 #include "report/json.h"
 
-#include <inttypes.h>
 #include <math.h>
 
 static const char *reference_name(scree_reference reference) {
@@ -86,12 +85,10 @@ static void json_options(scree_json *json, const scree_choice_report *report) {
 }
 
 static void json_source(scree_json *json, const scree_choice_entry *entry) {
-  char checksum[40];
-  snprintf(checksum, sizeof checksum, "%016" PRIx64 "%016" PRIx64, entry->checksum.high,
-           entry->checksum.low);
+  char checksum[SCREE_CHECKSUM_TEXT];
   scree_json_text(json, "name", entry->name);
   scree_json_text(json, "format", entry->format);
-  scree_json_text(json, "checksum", entry->is_sample ? NULL : checksum);
+  scree_json_text(json, "checksum", scree_checksum_text(entry->checksum, checksum));
   scree_json_number(json, "unit_m", entry->unit_m);
   if (entry->is_sample) {
     scree_json_row_object(json, "sample");

@@ -4,8 +4,6 @@
 #include "report/csv.h"
 #include "report/json.h"
 
-#include <inttypes.h>
-
 typedef enum kind { REAL, COUNT, SIGNED, FLAG } kind;
 
 /* A field of scree_measure_entry: count values (1, 3, or 9 as three rows of three). */
@@ -75,13 +73,6 @@ static const void *value_of(const scree_measure_entry *entry, const field *f) {
   return (const char *)entry + f->offset;
 }
 
-/* NULL for a sample, which has no bytes. */
-static const char *checksum_text(const scree_checksum *checksum, char text[40]) {
-  if (!checksum->high && !checksum->low) return NULL;
-  snprintf(text, 40, "%016" PRIx64 "%016" PRIx64, checksum->high, checksum->low);
-  return text;
-}
-
 /* ---- JSON ---- */
 
 static void json_reals(scree_json *json, const char *key, const double *values, int count) {
@@ -116,11 +107,11 @@ static void json_provenance(scree_json *json, const char *command_line) {
 
 static void json_entry(scree_json *json, const scree_measure_entry *entry,
                        const char *command_line) {
-  char checksum[40];
+  char checksum[SCREE_CHECKSUM_TEXT];
   scree_json_object(json, NULL);
   scree_json_text(json, "file", entry->file);
   scree_json_text(json, "format", entry->format);
-  scree_json_text(json, "checksum", checksum_text(&entry->checksum, checksum));
+  scree_json_text(json, "checksum", scree_checksum_text(entry->checksum, checksum));
   scree_json_number(json, "unit_m", entry->unit_m);
   for (int i = 0; i < MEASURE_FIELDS; i++) json_field(json, entry, &measure_fields[i]);
   scree_json_object(json, "topology");
@@ -163,10 +154,10 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
   scree_json_object(&json, NULL);
   scree_json_array(&json, "files");
   for (int i = 0; i < 2; i++) {
-    char checksum[40];
+    char checksum[SCREE_CHECKSUM_TEXT];
     scree_json_row_object(&json, NULL);
     scree_json_text(&json, "file", entry->file[i]);
-    scree_json_text(&json, "checksum", checksum_text(&entry->checksum[i], checksum));
+    scree_json_text(&json, "checksum", scree_checksum_text(entry->checksum[i], checksum));
     scree_json_number(&json, "unit_m", entry->unit_m[i]);
     scree_json_end(&json);
   }
@@ -208,14 +199,14 @@ static void json_row(scree_json *json, const scree_curve_row *row, bool distance
 scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error) {
   scree_output output;
-  char checksum[40];
+  char checksum[SCREE_CHECKSUM_TEXT];
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
   scree_json json = scree_json_start(output.stream);
   scree_json_object(&json, NULL);
   scree_json_text(&json, "file", entry->file);
   scree_json_text(&json, "format", entry->format);
-  scree_json_text(&json, "checksum", checksum_text(&entry->checksum, checksum));
+  scree_json_text(&json, "checksum", scree_checksum_text(entry->checksum, checksum));
   scree_json_number(&json, "unit_m", entry->unit_m);
   scree_json_text(&json, "method", scree_method_name(entry->facts.method));
   scree_json_count(&json, "triangle_count", entry->facts.triangle_count);

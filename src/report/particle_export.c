@@ -5,7 +5,6 @@
 #include "base/vec.h"
 #include "report/json.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -75,11 +74,9 @@ static void json_matrix(scree_json *json, const char *key, const double values[3
 }
 
 void scree_export_json_provenance(scree_json *json, const scree_export_options *options) {
-  const scree_checksum *sum = &options->checksum;
-  char checksum[40];
-  snprintf(checksum, sizeof checksum, "%016" PRIx64 "%016" PRIx64, sum->high, sum->low);
+  char checksum[SCREE_CHECKSUM_TEXT];
   scree_json_text(json, "file", options->source);
-  scree_json_text(json, "checksum", sum->high || sum->low ? checksum : NULL);
+  scree_json_text(json, "checksum", scree_checksum_text(options->checksum, checksum));
   scree_json_text(json, "version", scree_version());
   scree_json_text(json, "command", options->command_line);
 }

@@ -199,12 +199,6 @@ static double edge_ink(const view *v, const scree_ray_hit *hit) {
   return fmin(1, fmax(0, longest / (full_edge_px * pixel) - 0.25));
 }
 
-static void tangent_frame(vec3 n, vec3 *a, vec3 *b) {
-  vec3 helper = fabs(n.x) < 0.7 ? (vec3){1, 0, 0} : (vec3){0, 1, 0};
-  *a = vec3_unit(vec3_cross(n, helper));
-  *b = vec3_cross(n, *a);
-}
-
 static vec3 disc_sample(scree_rng *rng, double radius) {
   double r = radius * sqrt(scree_rng_uniform(rng)), a = 6.283185307179586 * scree_rng_uniform(rng);
   return (vec3){r * cos(a), r * sin(a), 0};
@@ -219,13 +213,13 @@ static bool blocked(const view *v, vec3 from, vec3 direction) {
 /* Light from the lamp and the sky that reaches a surface point. */
 static double irradiance(const view *v, vec3 point, vec3 normal, scree_rng *rng) {
   vec3 a, b, start = vec3_mad(point, normal, self_offset), d = disc_sample(rng, lamp_radius);
-  tangent_frame(v->lamp, &a, &b);
+  vec3_frame(v->lamp, &a, &b);
   vec3 to_lamp = vec3_unit(vec3_add(v->lamp, vec3_add(vec3_scale(a, d.x), vec3_scale(b, d.y))));
   double cosine = vec3_dot(normal, to_lamp), light = 0;
   if (cosine > 0 && !blocked(v, start, to_lamp)) light += lamp_power * cosine;
   d = disc_sample(rng, 1);
   double lift = sqrt(fmax(0, 1 - d.x * d.x - d.y * d.y));
-  tangent_frame(normal, &a, &b);
+  vec3_frame(normal, &a, &b);
   vec3 to_sky =
       vec3_add(vec3_scale(normal, lift), vec3_add(vec3_scale(a, d.x), vec3_scale(b, d.y)));
   if (!blocked(v, start, to_sky)) light += sky_power;

@@ -133,14 +133,6 @@ static void gather(const scree_halfmesh *s, uint32_t half_edge, lanes *q, int i)
   set_lane(q->d, i, to_d);
 }
 
-/* Two unit vectors that span the plane across the unit vector n (Duff and
- * others 2017). */
-static inline void frame(vec3 n, vec3 *u, vec3 *w) {
-  double sign = copysign(1, n.z), a = -1 / (sign + n.z), b = n.x * n.y * a;
-  *u = (vec3){1 + sign * n.x * n.x * a, sign * b, -sign * n.x};
-  *w = (vec3){b, sign + n.y * n.y * a, -n.y};
-}
-
 /* Minimises y.H y - 2 g.y over the plane n.y = d, n a unit vector, from the
  * point nearest to `middle`: y moves by proximal steps, each minimising that
  * plus pull |y - y_before|^2. Where the surface decides, the step's error
@@ -149,7 +141,7 @@ static inline void frame(vec3 n, vec3 *u, vec3 *w) {
 static inline vec3 minimise_on_plane(const double *h, vec3 g, vec3 n, double d, vec3 middle,
                                      double pull) {
   vec3 u, w, y = vec3_mad(middle, n, d - vec3_dot(n, middle));
-  frame(n, &u, &w);
+  vec3_frame(n, &u, &w);
   vec3 hu = multiply(h, u), hw = multiply(h, w), r = vec3_sub(g, multiply(h, y));
   double uu = vec3_dot(u, hu), uw = vec3_dot(u, hw), ww = vec3_dot(w, hw);
   double ru = vec3_dot(u, r), rw = vec3_dot(w, r);

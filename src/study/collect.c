@@ -87,10 +87,9 @@ static scree_status put_shapes(writer *w) {
   if (status != SCREE_OK) return status;
   for (size_t i = 0; status == SCREE_OK && i < w->study->shape_count; i++) {
     const scree_study_shape *shape = &w->study->shapes[i];
-    char sum[40];
+    char sum[SCREE_CHECKSUM_TEXT];
     if (!shape->known) continue;
-    snprintf(sum, sizeof sum, "%016llx%016llx", (unsigned long long)shape->checksum.high,
-             (unsigned long long)shape->checksum.low);
+    scree_checksum_text(shape->checksum, sum);
     bind_text(statement, 1, shape->name);
     bind_text(statement, 2, shape->word);
     bind_text(statement, 3, sum);

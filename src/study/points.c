@@ -156,8 +156,9 @@ static void write_identity(const scree_study *study, const scree_study_point *po
   const scree_shape_set *set = &study->sets[point->set];
   for (size_t i = 0; i < set->count; i++) {
     const scree_study_shape *shape = &study->shapes[set->shapes[i]];
-    fprintf(stream, "shape=%016llx%016llx\n", (unsigned long long)shape->checksum.high,
-            (unsigned long long)shape->checksum.low);
+    char sum[SCREE_CHECKSUM_TEXT];
+    scree_checksum_text(shape->checksum, sum);
+    fprintf(stream, "shape=%s\n", sum);
   }
 }
 

@@ -22,10 +22,6 @@ static bool exists(const char *path) {
 
 /* ---- what is known ---- */
 
-static void format_checksum(scree_checksum sum, char text[40]) {
-  snprintf(text, 40, "%016llx%016llx", (unsigned long long)sum.high, (unsigned long long)sum.low);
-}
-
 static bool number_of(const scree_yaml *root, const char *key, double *value) {
   const scree_yaml *node = scree_yaml_find(root, key);
   char *end;
@@ -201,7 +197,7 @@ static scree_status write_facts(const scree_study *study, const scree_study_shap
   scree_status status = scree_output_open(path, true, &output, error);
   scree_free(path);
   if (status != SCREE_OK) return status;
-  format_checksum(shape->checksum, sum);
+  scree_checksum_text(shape->checksum, sum);
   fputs("source: '", output.stream);
   for (const char *c = shape->word; *c; c++) fprintf(output.stream, *c == '\'' ? "''" : "%c", *c);
   fprintf(output.stream,
