@@ -1393,6 +1393,9 @@ typedef struct scree_run_job {
    * is done; frame-NNNN.scree at every output.frame_interval, NNNN counting from 0000; and
    * last.scree, a frame, at the end. Made if need be. NULL: nothing is written. */
   const char *folder;
+  /* Also motion.scree: where every body was, at some 240 moments of the longest schedule
+   * (scree_motion_read). What an interrupted run wrote of it stays. */
+  bool motion;
   /* Go on from the folder's checkpoint.scree where there is one; one of another experiment or of
    * other shapes is refused with SCREE_BAD_ARGUMENT, one that cannot be read with SCREE_BAD_FILE.
    * Without resume a folder that has one is refused with SCREE_EXISTS, unless overwrite. */
@@ -1404,6 +1407,21 @@ typedef struct scree_run_job {
   scree_status (*frame)(void *context, scree_run *run, size_t frame_index, scree_error *error);
   void *context;
 } scree_run_job;
+
+/* Where every body of a run was at moments of its time. */
+typedef struct scree_motion {
+  size_t frame_count, body_count;
+  double *time;            /* s, of each frame, rising */
+  double *cylinder_height; /* m, likewise */
+  float *poses; /* of body b in frame f the 7 from 7 (f body_count + b): position, m, and quaternion
+                   w x y z (within 2e-5 rad); NaN where the body is not in the world */
+} scree_motion;
+
+/* Reads motion.scree of a run's folder; a frame at its end that was not written whole is left out.
+ * SCREE_BAD_FILE for anything else. */
+SCREE_API scree_status scree_motion_read(const char *path, scree_motion *motion,
+                                         scree_error *error);
+SCREE_API void scree_motion_free(scree_motion *motion);
 
 /* One run from its beginning, or its checkpoint, to its end; *run is then in SCREE_PHASE_DONE: ask
  * it for result, series and costs, and free it. A failed run (SCREE_DIVERGED) leaves its last
@@ -2015,7 +2033,8 @@ typedef struct scree_study_counts {
 /* One point of the design. Texts belong to the result. */
 typedef struct scree_point_result {
   const char *label, *rp, *shapes;
-  double rp_value; /* 1 for the scan, NaN for spheres */
+  const char *pile; /* key of its first run done: the heap to look at; NULL: none yet */
+  double rp_value;  /* 1 for the scan, NaN for spheres */
   scree_study_counts counts;
   size_t heap_count;           /* runs done that have an angle */
   double triangle_count;       /* mean over the particles; 0 for spheres */

@@ -32,15 +32,17 @@ const cli_verb cli_verb_report = {
     .summary = "one page to look at, turn and send",
     .inputs = "DIR...",
     .description =
-        "Makes one self-contained HTML page of the folders that scree choose -o and scree study "
-        "write. Of a choice: the answer, the curve with a slider that shows the mesh at every "
-        "level beside the scan, the tables. Of a study: angle of repose, its spread, rotation and "
-        "computation time with their curves and tables. And how each was made. It opens by "
-        "double-click, also from a mail, and asks nothing of any network.\n\n"
-        "scree choose -o DIR already leaves such a page as DIR/report.html; this verb makes one "
-        "of several folders, or makes it again.",
-    .examples = "  scree choose --samples -o devices\n"
-                "  scree report devices phones -o both.html\n",
+        "Makes one self-contained HTML page of the folders that scree choose -o, scree repose -o "
+        "and scree study write. Of a choice: the answer, the curve with a slider that shows the "
+        "mesh at every level beside the scan, the tables. Of a heap: its angles, and the particles "
+        "in 3D to turn around and play through time beside the curves. Of a study: angle of "
+        "repose, its spread, rotation and computation time with their curves and tables, and a "
+        "heap of each point. And how each was made. It opens by double-click, also from a mail, "
+        "and asks nothing of any network.\n\n"
+        "These verbs already leave such a page as DIR/report.html; this one makes it of several "
+        "folders, or makes it again.",
+    .examples = "scree choose --samples -o devices\n"
+                "scree report devices heap -o both.html\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,

@@ -94,7 +94,8 @@ static const cli_option options[] = {
      "What the file and the options change: paper, small or demo (the default).", 0, 0, NULL},
     {"output", 'o', CLI_TEXT, AT(output), "DIR",
      "A folder, made if need be, for checkpoints, frames, result.json, series.csv, "
-     "experiment.yaml and heap.png; with several runs, a folder in it for each.",
+     "experiment.yaml, heap.png and report.html; with several runs, a folder in it for each, and "
+     "one report.html.",
      0, 0, NULL},
     {"print-config", 0, CLI_FLAG, AT(print_config), NULL,
      "Print the experiment as it would be run, with units and comments, and stop.", 0, 0, NULL},
@@ -138,6 +139,7 @@ static const cli_option options[] = {
 typedef struct repose {
   const cli_call *call;
   const repose_arguments *arguments;
+  scree_work_start start;
   scree_experiment experiment;
   cli_grain_options grain_options;
   cli_grains grains;
@@ -270,6 +272,48 @@ static scree_status write_picture(const one_run *o, const scree_run *run, scree_
   return status == SCREE_UNSUPPORTED ? SCREE_OK : status; /* a build without a ray tracer */
 }
 
+static void print_result(FILE *stream, const one_run *o, const scree_run *run,
+                         const scree_run_result *result) {
+  const scree_experiment *e = scree_run_experiment(run);
+  size_t shapes = scree_run_shape_count(run);
+  fprintf(stream, "%s%s%zu particles of %zu shape%s, seed %llu, preset %s\n",
+          o->all->grains.level_count > 1 ? o->name : "", o->all->grains.level_count > 1 ? ": " : "",
+          e->particle_count, shapes, shapes == 1 ? "" : "s", (unsigned long long)e->seed,
+          e->preset);
+  cli_print_heap(stream, run, result);
+  cli_print_costs(stream, run);
+}
+
+/* result.txt: what is printed. */
+static scree_status write_text_result(const one_run *o, const scree_run *run,
+                                      const scree_run_result *result, scree_error *error) {
+  char *text = NULL, path[4200];
+  size_t size;
+  FILE *stream = open_memstream(&text, &size);
+  snprintf(path, sizeof path, "%s/result.txt", o->folder);
+  if (stream) print_result(stream, o, run, result);
+  if (!stream || fclose(stream) != 0) {
+    free(text);
+    *error = (scree_error){SCREE_OUT_OF_MEMORY, "result.txt: out of memory"};
+    return error->status;
+  }
+  scree_status status = scree_text_write(text, path, true, error);
+  free(text);
+  return status;
+}
+
+/* What is made of the other files, so the last. */
+static scree_status write_page(const one_run *o, scree_error *error) {
+  char path[4200];
+  const char *folder = o->folder;
+  snprintf(path, sizeof path, "%s/provenance.json", folder);
+  scree_status status =
+      scree_provenance_write(&o->all->start, o->all->call->command_line, path, true, error);
+  snprintf(path, sizeof path, "%s/report.html", folder);
+  bool common = o->all->grains.level_count > 1; /* one page of all levels, at the end */
+  return status == SCREE_OK && !common ? scree_page_write(&folder, 1, path, true, error) : status;
+}
+
 static scree_status write_results(const one_run *o, scree_run *run, const scree_run_result *result,
                                   scree_error *error) {
   scree_heap_entry entry = {
@@ -287,21 +331,9 @@ static scree_status write_results(const one_run *o, scree_run *run, const scree_
   if (status == SCREE_OK) status = write_collections(o, run, error);
   if (status == SCREE_OK && o->all->arguments->vtp > VTP_NONE)
     status = write_views(o, run, "last", error);
-  return status == SCREE_OK ? write_picture(o, run, error) : status;
-}
-
-static void print_result(const one_run *o, const scree_run *run, const scree_run_result *result) {
-  const scree_experiment *e = scree_run_experiment(run);
-  size_t shapes = scree_run_shape_count(run);
-  printf("%s%s%zu particles of %zu shape%s, seed %llu, preset %s\n",
-         o->all->grains.level_count > 1 ? o->name : "", o->all->grains.level_count > 1 ? ": " : "",
-         e->particle_count, shapes, shapes == 1 ? "" : "s", (unsigned long long)e->seed, e->preset);
-  cli_print_heap(stdout, run, result);
-  cli_print_costs(stdout, run);
-  if (o->folder[0])
-    printf("  files             %s/ (result.json, series.csv%s, last.scree)\n", o->folder,
-           o->all->arguments->no_picture ? "" : ", heap.png");
-  fflush(stdout);
+  if (status == SCREE_OK) status = write_picture(o, run, error);
+  if (status == SCREE_OK) status = write_text_result(o, run, result, error);
+  return status == SCREE_OK ? write_page(o, error) : status;
 }
 
 static scree_status prepare_folder(one_run *o) {
@@ -327,6 +359,7 @@ static scree_status run_level(repose *r, size_t level, bool alone) {
                        .shapes = alone ? NULL : r->grains.shapes + level * r->grains.shape_count,
                        .shape_count = r->grains.shape_count,
                        .folder = a->output ? o.folder : NULL,
+                       .motion = true,
                        .resume = a->resume,
                        .overwrite = a->force,
                        .watch = watch,
@@ -339,7 +372,13 @@ static scree_status run_level(repose *r, size_t level, bool alone) {
   status = scree_run_measure(r->runs[level], &r->results[level], &r->error);
   if (status == SCREE_OK) status = write_results(&o, r->runs[level], &r->results[level], &r->error);
   cli_terminal_end();
-  if (status == SCREE_OK && !a->json) print_result(&o, r->runs[level], &r->results[level]);
+  if (status == SCREE_OK && !a->json) {
+    print_result(stdout, &o, r->runs[level], &r->results[level]);
+    if (o.folder[0])
+      printf("  look at           %s/report.html; result.json and series.csv lie in %s\n",
+             a->output, o.folder);
+    fflush(stdout);
+  }
   return status;
 }
 
@@ -367,6 +406,14 @@ static void print_table(const repose *r) {
   }
 }
 
+/* Of all levels, the one report. */
+static scree_status write_common_page(repose *r) {
+  const char *folder = r->arguments->output;
+  char path[4200];
+  snprintf(path, sizeof path, "%.4100s/report.html", folder);
+  return scree_page_write(&folder, 1, path, true, &r->error);
+}
+
 static scree_status run_all(repose *r, const char *const *words, size_t word_count) {
   bool alone = word_count == 0;
   scree_status status = SCREE_OK;
@@ -387,7 +434,7 @@ static scree_status run_all(repose *r, const char *const *words, size_t word_cou
   for (size_t level = 0; status == SCREE_OK && level < levels; level++)
     status = run_level(r, level, alone);
   if (status == SCREE_OK && levels > 1 && !r->arguments->json) print_table(r);
-  return status;
+  return status == SCREE_OK && levels > 1 && r->arguments->output ? write_common_page(r) : status;
 }
 
 static int check_words(repose *r, size_t word_count) {
@@ -407,6 +454,7 @@ static int run(const cli_call *call) {
   static char sample_words[SCREE_SAMPLE_DEVICES][32];
   repose r = {.call = call,
               .arguments = a,
+              .start = scree_work_started(),
               .grain_options = {.source = a->source,
                                 .method = a->method,
                                 .no_repair = a->no_repair,

@@ -50,6 +50,15 @@ static const char *default_folder(const char *path, char *buffer, size_t size) {
   return buffer;
 }
 
+/* Tables, figures and the page of them. */
+static scree_status write_files(const scree_study_result *result, const char *folder,
+                                scree_error *error) {
+  char path[4200];
+  snprintf(path, sizeof path, "%.4100s/report.html", folder);
+  scree_status status = scree_study_report_write(result, folder, error);
+  return status == SCREE_OK ? scree_page_write(&folder, 1, path, true, error) : status;
+}
+
 /* Prints, and with `files` writes tables and figures to the folder. */
 static scree_status report(const cli_call *call, const scree_study *study, const char *folder,
                            bool files, bool *failed, scree_error *error) {
@@ -58,7 +67,7 @@ static scree_status report(const cli_call *call, const scree_study *study, const
   scree_status status = scree_study_analyse(study, &result, error);
   if (status != SCREE_OK) return status;
   *failed = result.counts.failed > 0;
-  if (files) status = scree_study_report_write(&result, folder, error);
+  if (files) status = write_files(&result, folder, error);
   if (status == SCREE_OK && a->json) status = scree_study_json_write(&result, "-", true, error);
   if (status == SCREE_OK && a->csv) status = scree_study_csv_write(&result, "-", true, error);
   if (status == SCREE_OK && !a->json && !a->csv) study_print(stdout, &result);
@@ -163,8 +172,8 @@ const cli_verb cli_verb_study = {
         "shapes, Rp levels (also spheres), friction, lift speed or any other field of the "
         "experiment, on a full grid or a space-filling design. The folder holds everything; the "
         "same command goes on where it was interrupted, and any number of processes and machines "
-        "that share the folder work on it together. Results go to DIR/study.sqlite, tables and "
-        "figures beside it. docs/study.md describes the file and the statistics.\n"
+        "that share the folder work on it together. Results go to DIR/study.sqlite, tables, "
+        "figures and report.html beside it. docs/study.md describes the file and the statistics.\n"
         "\n"
         "With the word status and its folder it shows how far a study is and what is known so far. "
         "Under mpirun or "

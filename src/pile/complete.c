@@ -1,6 +1,7 @@
 /* A whole run in a folder: chunks of steps, and between them frames, checkpoints and the watcher.
  * Frames fall on the first step at or past their time, whatever the chunks, so an interrupted run
  * writes the same frames as an uninterrupted one. */
+#include "pile/motion.h"
 #include "pile/run.h"
 
 #include "base/alloc.h"
@@ -14,10 +15,12 @@ static const double chunk_seconds = 0.1; /* of the clock, between looks at it */
 static const double watch_seconds = 0.2; /* between calls of the watcher */
 static const double speed_seconds = 5;   /* the speed shown is over about as long */
 enum { FIRST_CHUNK = 20, LONGEST_CHUNK = 100000 };
+enum { MOTION_FRAMES = 240 }; /* of the longest schedule: enough to be played, some 4 MB */
 
 typedef struct work {
   const scree_run_job *job;
   scree_run *run;
+  scree_motion_file motion;
   size_t frame_count;                           /* frames due so far */
   size_t chunk;                                 /* steps */
   double last_checkpoint, last_watch;           /* on the clock */
@@ -73,10 +76,27 @@ static scree_status write_frames(work *w, scree_error *error) {
   return status;
 }
 
-/* As many steps as stay before the next frame, or one. */
+static scree_status open_motion(work *w, bool go_on, scree_error *error) {
+  const scree_experiment *e = &w->run->experiment;
+  double schedule = e->pack_time + e->settle_time + e->lift_time + e->hold_time;
+  char *path = path_in(w, "motion.scree", error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  scree_status status = scree_motion_open(&w->motion, path, schedule / MOTION_FRAMES, go_on,
+                                          scree_world_time(w->run->world), error);
+  scree_free(path);
+  return status;
+}
+
+static scree_status put_motion(work *w, bool last, scree_error *error) {
+  bool due = scree_world_time(w->run->world) >= scree_motion_next(&w->motion);
+  return due || last ? scree_motion_put(&w->motion, w->run, error) : SCREE_OK;
+}
+
+/* As many steps as stay before the next frame of either kind, or one. */
 static size_t steps_to_frame(const work *w) {
   double dt = scree_world_time_step(w->run->world, NULL);
-  double until = floor((next_frame(w) - scree_world_time(w->run->world)) / dt) - 1;
+  double next = fmin(next_frame(w), scree_motion_next(&w->motion));
+  double until = floor((next - scree_world_time(w->run->world)) / dt) - 1;
   if (until >= (double)w->chunk) return w->chunk;
   return until > 1 ? (size_t)until : 1;
 }
@@ -129,6 +149,7 @@ static scree_status keep_last_good(const work *w, scree_error *error) {
 static scree_status go_on(work *w, scree_error *error) {
   while (scree_run_phase(w->run) != SCREE_PHASE_DONE) {
     scree_status status = write_frames(w, error);
+    if (status == SCREE_OK) status = put_motion(w, false, error);
     if (status != SCREE_OK) return status;
     double start = scree_now();
     size_t steps = steps_to_frame(w);
@@ -146,6 +167,7 @@ static scree_status go_on(work *w, scree_error *error) {
                         w->job->folder ? "; the checkpoint is written" : "");
   }
   scree_status status = write_frames(w, error);
+  if (status == SCREE_OK) status = put_motion(w, true, error);
   if (status == SCREE_OK) status = save_as(w, "last.scree", true, error);
   if (status == SCREE_OK) status = checkpoint(w, error);
   watch(w, true);
@@ -220,16 +242,22 @@ done:
   return status;
 }
 
+static scree_status begin(work *w, scree_error *error) {
+  const scree_run_job *job = w->job;
+  if (!job->experiment)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no checkpoint to go on from",
+                      job->folder ? job->folder : "no folder");
+  return scree_run_create(job->experiment, job->shapes, job->shape_count, &w->run, error);
+}
+
 static scree_status prepare(work *w, scree_error *error) {
   const scree_run_job *job = w->job;
   scree_status status = SCREE_OK;
   if (job->folder) status = scree_folder_create(job->folder, error);
   if (job->folder && status == SCREE_OK) status = find_checkpoint(w, error);
-  if (status != SCREE_OK || w->run) return status;
-  if (!job->experiment)
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no checkpoint to go on from",
-                      job->folder ? job->folder : "no folder");
-  return scree_run_create(job->experiment, job->shapes, job->shape_count, &w->run, error);
+  bool go_on = w->run != NULL;
+  if (status == SCREE_OK && !go_on) status = begin(w, error);
+  return status == SCREE_OK && job->folder && job->motion ? open_motion(w, go_on, error) : status;
 }
 
 scree_status scree_run_complete(const scree_run_job *job, scree_run **run, scree_error *error) {
@@ -246,6 +274,7 @@ scree_status scree_run_complete(const scree_run_job *job, scree_run **run, scree
     w.speed_at_fraction = scree_run_fraction(w.run);
     status = go_on(&w, error);
   }
+  scree_motion_close(&w.motion);
   if (status == SCREE_OK)
     *run = w.run;
   else

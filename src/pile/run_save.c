@@ -251,6 +251,7 @@ static char *load_text(loader *l) {
   size_t length;
   const unsigned char *text = load_block(l, &length);
   char *copy = text ? scree_alloc(length + 1, 1) : NULL;
+  if (text && !copy) l->codec.out_of_memory = true;
   if (!copy) return NULL;
   memcpy(copy, text, length);
   copy[length] = 0;

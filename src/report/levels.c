@@ -9,12 +9,10 @@
 #include "report/levels.h"
 
 #include "base/alloc.h"
-#include "base/codec.h"
 #include "base/file.h"
+#include "report/pack.h"
 
 #include <math.h>
-#include <meshoptimizer.h>
-#include <pthread.h>
 #include <string.h>
 
 static const char magic[] = "screeLVL";
@@ -30,110 +28,24 @@ static const size_t most_base_triangles =
 static const double retry_margin = 0.97;
 enum { MOST_TRIES = 6 };
 
-typedef struct packing {
-  scree_codec out;
-  double low[3], step; /* m: position = low + step * (integers up to 65535) */
+typedef struct levels {
+  scree_packing pack;
   const scree_curve *curve;
-  scree_error *error;
-} packing;
-
-typedef struct grid_point {
-  uint16_t x[3], extra;
-} grid_point;
+} levels;
 
 /* ---- the grid ---- */
 
-static void stretch(const double *p, double low[3], double high[3]) {
-  for (int k = 0; k < 3; k++) {
-    low[k] = fmin(low[k], p[k]);
-    high[k] = fmax(high[k], p[k]);
-  }
-}
-
 /* Holds the scan and every place that a collapse puts a vertex to. */
-static void find_grid(packing *p, const scree_mesh *scan) {
+static void find_grid(levels *l, const scree_mesh *scan) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-  for (size_t v = 0; v < scan->vertex_count; v++) stretch(scan->positions + 3 * v, low, high);
-  for (size_t i = 0; i + 1 < scree_curve_level_count(p->curve); i++) {
+  for (size_t v = 0; v < scan->vertex_count; v++)
+    scree_pack_stretch(scan->positions + 3 * v, low, high);
+  for (size_t i = 0; i + 1 < scree_curve_level_count(l->curve); i++) {
     scree_collapse collapse;
-    scree_curve_collapse(p->curve, i, &collapse);
-    stretch(collapse.position, low, high);
+    scree_curve_collapse(l->curve, i, &collapse);
+    scree_pack_stretch(collapse.position, low, high);
   }
-  memcpy(p->low, low, sizeof low);
-  p->step = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2])) / 65535;
-}
-
-static grid_point on_grid(const packing *p, const double *position) {
-  grid_point g = {.extra = 0};
-  for (int k = 0; k < 3; k++) {
-    double cell = p->step > 0 ? (position[k] - p->low[k]) / p->step + 0.5 : 0;
-    g.x[k] = cell <= 0 ? 0 : cell >= 65535 ? 65535 : (uint16_t)cell;
-  }
-  return g;
-}
-
-/* ---- buffers through the codecs ---- */
-
-static void put_u32(packing *p, size_t value) {
-  uint32_t narrow = (uint32_t)value;
-  scree_code_u32(&p->out, &narrow);
-}
-
-static void put_buffer(packing *p, unsigned char *bytes, size_t count) {
-  put_u32(p, count);
-  scree_code_bytes(&p->out, bytes, count);
-}
-
-/* The versions that the JavaScript reads; a setting of the library as a whole. */
-static void set_versions(void) {
-  meshopt_encodeVertexVersion(0);
-  meshopt_encodeIndexVersion(1);
-}
-
-static scree_status put_vertices(packing *p, const void *vertices, size_t count, size_t size) {
-  size_t bound = meshopt_encodeVertexBufferBound(count, size);
-  unsigned char *bytes = scree_alloc(bound, 1);
-  if (!bytes) return scree_fail_memory(p->error, bound, "packed vertices");
-  put_buffer(p, bytes, meshopt_encodeVertexBuffer(bytes, bound, vertices, count, size));
-  scree_free(bytes);
-  return SCREE_OK;
-}
-
-static scree_status put_indices(packing *p, const uint32_t *indices, size_t count,
-                                size_t vertex_count) {
-  size_t bound = meshopt_encodeIndexBufferBound(count, vertex_count);
-  unsigned char *bytes = scree_alloc(bound, 1);
-  if (!bytes) return scree_fail_memory(p->error, bound, "packed triangles");
-  put_buffer(p, bytes, meshopt_encodeIndexBuffer(bytes, bound, indices, count));
-  scree_free(bytes);
-  return SCREE_OK;
-}
-
-/* A mesh in an order that packs well; place (vertex_count, may be NULL) gets each vertex's index in
- * it. The counts, then vertices, then triangles. */
-static scree_status put_mesh(packing *p, const scree_mesh *mesh, uint32_t *place) {
-  size_t corner_count = 3 * mesh->triangle_count, vertex_count = mesh->vertex_count;
-  uint32_t *order = NULL, *corners = NULL;
-  grid_point *points = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(order, vertex_count, p->error, done);
-  SCREE_ALLOC_OR(corners, corner_count, p->error, done);
-  SCREE_ALLOC_OR(points, vertex_count, p->error, done);
-  meshopt_optimizeVertexCache(corners, mesh->triangles, corner_count, vertex_count);
-  size_t used = meshopt_optimizeVertexFetchRemap(order, corners, corner_count, vertex_count);
-  meshopt_remapIndexBuffer(corners, corners, corner_count, order);
-  for (size_t v = 0; v < vertex_count; v++)
-    if (order[v] != UINT32_MAX) points[order[v]] = on_grid(p, mesh->positions + 3 * v);
-  if (place) memcpy(place, order, vertex_count * sizeof *place);
-  put_u32(p, used);
-  put_u32(p, mesh->triangle_count);
-  status = put_vertices(p, points, used, sizeof *points);
-  if (status == SCREE_OK) status = put_indices(p, corners, corner_count, used);
-done:
-  scree_free(order);
-  scree_free(corners);
-  scree_free(points);
-  return status;
+  scree_pack_grid(&l->pack, low, high);
 }
 
 /* ---- the parts ---- */
@@ -141,30 +53,31 @@ done:
 /* Collapses from base_level on, in the vertices of the packed base: pairs of kept and gone, and the
  * steps on the grid. number: of the given mesh's vertices in the base; place: of these in the
  * file. */
-static scree_status put_collapses(packing *p, size_t base_level, const scree_mesh *base,
+static scree_status put_collapses(levels *l, size_t base_level, const scree_mesh *base,
                                   const uint32_t *number, const uint32_t *place) {
-  size_t count = scree_curve_level_count(p->curve) - 1 - base_level;
+  size_t count = scree_curve_level_count(l->curve) - 1 - base_level;
   uint32_t *pairs = NULL;
-  grid_point *moves = NULL, *now = NULL;
+  scree_grid_point *moves = NULL, *now = NULL;
   scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(pairs, 2 * count + 1, p->error, done);
-  SCREE_ALLOC_OR(moves, count + 1, p->error, done);
-  SCREE_ALLOC_OR(now, base->vertex_count, p->error, done);
-  for (size_t v = 0; v < base->vertex_count; v++) now[v] = on_grid(p, base->positions + 3 * v);
+  SCREE_ALLOC_OR(pairs, 2 * count + 1, l->pack.error, done);
+  SCREE_ALLOC_OR(moves, count + 1, l->pack.error, done);
+  SCREE_ALLOC_OR(now, base->vertex_count, l->pack.error, done);
+  for (size_t v = 0; v < base->vertex_count; v++)
+    now[v] = scree_pack_point(&l->pack, base->positions + 3 * v);
   for (size_t i = 0; i < count; i++) {
     scree_collapse c;
-    scree_curve_collapse(p->curve, base_level + i, &c);
+    scree_curve_collapse(l->curve, base_level + i, &c);
     uint32_t kept = number[c.kept];
-    grid_point to = on_grid(p, c.position);
+    scree_grid_point to = scree_pack_point(&l->pack, c.position);
     for (int k = 0; k < 3; k++) moves[i].x[k] = (uint16_t)(to.x[k] - now[kept].x[k]);
     moves[i].extra = (uint16_t)c.triangle_count;
     now[kept] = to;
     pairs[2 * i] = place[kept];
     pairs[2 * i + 1] = place[number[c.gone]];
   }
-  put_u32(p, count);
-  status = put_vertices(p, pairs, count, 2 * sizeof *pairs);
-  if (status == SCREE_OK) status = put_vertices(p, moves, count, sizeof *moves);
+  scree_pack_u32(&l->pack, count);
+  status = scree_pack_vertices(&l->pack, pairs, count, 2 * sizeof *pairs);
+  if (status == SCREE_OK) status = scree_pack_vertices(&l->pack, moves, count, sizeof *moves);
 done:
   scree_free(pairs);
   scree_free(moves);
@@ -172,21 +85,21 @@ done:
   return status;
 }
 
-static scree_status put_levels(packing *p, size_t base_level) {
+static scree_status put_levels(levels *l, size_t base_level) {
   scree_replay *replay = NULL;
   const scree_mesh *base;
   uint32_t *place = NULL;
-  scree_status status = scree_replay_start(p->curve, &replay, p->error);
-  if (status == SCREE_OK) status = scree_replay_step(replay, base_level, &base, p->error);
+  scree_status status = scree_replay_start(l->curve, &replay, l->pack.error);
+  if (status == SCREE_OK) status = scree_replay_step(replay, base_level, &base, l->pack.error);
   if (status != SCREE_OK) goto done;
   place = scree_alloc(base->vertex_count, sizeof *place);
   if (!place) {
-    status = scree_fail_memory(p->error, base->vertex_count * sizeof *place, "packed levels");
+    status = scree_fail_memory(l->pack.error, base->vertex_count * sizeof *place, "packed levels");
     goto done;
   }
-  status = put_mesh(p, base, place);
+  status = scree_pack_mesh(&l->pack, base, place);
   if (status == SCREE_OK)
-    status = put_collapses(p, base_level, base, scree_replay_numbering(replay), place);
+    status = put_collapses(l, base_level, base, scree_replay_numbering(replay), place);
 done:
   scree_free(place);
   scree_replay_free(replay);
@@ -194,55 +107,56 @@ done:
 }
 
 /* The scan where it fits into room bytes, else the finest level that does. */
-static scree_status put_scan(packing *p, const scree_mesh *scan, size_t room) {
-  size_t start = p->out.count, target = scan->triangle_count;
+static scree_status put_scan(levels *l, const scree_mesh *scan, size_t room) {
+  size_t start = l->pack.out.count, target = scan->triangle_count;
   if ((double)target * bytes_per_scan_triangle > 1.3 * (double)room)
     target = (size_t)((double)room / bytes_per_scan_triangle);
   for (int i = 0;; i++) {
     scree_mesh level = {0};
     scree_status status = SCREE_OK;
     if (target >= scan->triangle_count) {
-      status = put_mesh(p, scan, NULL);
+      status = scree_pack_mesh(&l->pack, scan, NULL);
     } else {
-      status = scree_curve_mesh(p->curve, scree_curve_find(p->curve, target), &level, p->error);
-      if (status == SCREE_OK) status = put_mesh(p, &level, NULL);
+      status =
+          scree_curve_mesh(l->curve, scree_curve_find(l->curve, target), &level, l->pack.error);
+      if (status == SCREE_OK) status = scree_pack_mesh(&l->pack, &level, NULL);
       scree_mesh_free(&level);
     }
-    size_t used = p->out.count - start;
+    size_t used = l->pack.out.count - start;
     if (status != SCREE_OK || used <= room || i == MOST_TRIES) return status;
-    p->out.count = start;
+    l->pack.out.count = start;
     target = (size_t)(retry_margin * (double)target * (double)room / (double)used);
   }
 }
 
 /* The dense curve: rows of triangle count, area, volume, eps_s, worst eps_s, from coarse to fine,
  * without rows that repeat a level. */
-static void put_trace(packing *p, const scree_choice *choice) {
+static void put_trace(levels *l, const scree_choice *choice) {
   size_t count = 0;
   for (int counting = 1; counting >= 0; counting--) {
-    if (!counting) put_u32(p, count);
+    if (!counting) scree_pack_u32(&l->pack, count);
     for (size_t i = 0; i < choice->trace_count; i++) {
-      const scree_choice_level *l = &choice->trace[i];
-      if (i > 0 && l->level_index == choice->trace[i - 1].level_index) continue;
+      const scree_choice_level *at = &choice->trace[i];
+      if (i > 0 && at->level_index == choice->trace[i - 1].level_index) continue;
       count++;
       if (counting) continue;
-      double row[] = {(double)l->triangle_count, l->area, l->volume, l->eps_s, l->worst_eps_s};
-      scree_code_reals(&p->out, row, sizeof row / sizeof *row);
+      double row[] = {(double)at->triangle_count, at->area, at->volume, at->eps_s, at->worst_eps_s};
+      scree_code_reals(&l->pack.out, row, sizeof row / sizeof *row);
     }
   }
 }
 
 /* Measures of the scan and of the four choices, in the order paper, robust, smooth, plain. */
-static scree_status put_measures(packing *p, const scree_mesh *scan, const scree_choice *choice) {
+static scree_status put_measures(levels *l, const scree_mesh *scan, const scree_choice *choice) {
   const scree_pick *picks[] = {&choice->paper, &choice->robust, &choice->smooth, &choice->plain};
   enum { PICKS = sizeof picks / sizeof *picks };
-  put_u32(p, PICKS + 1);
+  scree_pack_u32(&l->pack, PICKS + 1);
   for (int i = -1; i < PICKS; i++) {
     scree_mesh level = {0};
     scree_measures m;
     scree_status status = SCREE_OK;
-    if (i >= 0) status = scree_curve_mesh(p->curve, picks[i]->level_index, &level, p->error);
-    if (status == SCREE_OK) status = scree_mesh_measure(i >= 0 ? &level : scan, &m, p->error);
+    if (i >= 0) status = scree_curve_mesh(l->curve, picks[i]->level_index, &level, l->pack.error);
+    if (status == SCREE_OK) status = scree_mesh_measure(i >= 0 ? &level : scan, &m, l->pack.error);
     double row[] = {(double)(i >= 0 ? level.triangle_count : scan->triangle_count),
                     m.area,
                     m.volume,
@@ -256,39 +170,39 @@ static scree_status put_measures(packing *p, const scree_mesh *scan, const scree
                     m.convexity};
     scree_mesh_free(&level);
     if (status != SCREE_OK) return status;
-    scree_code_reals(&p->out, row, sizeof row / sizeof *row);
+    scree_code_reals(&l->pack.out, row, sizeof row / sizeof *row);
   }
   return SCREE_OK;
 }
 
-static scree_status pack(packing *p, const scree_mesh *scan, const scree_choice *choice,
+static scree_status pack(levels *l, const scree_mesh *scan, const scree_choice *choice,
                          size_t byte_limit) {
   double base = levels_share * (double)byte_limit / bytes_per_base_triangle;
   base = fmin(fmax(base, (double)least_base_triangles), (double)most_base_triangles);
-  find_grid(p, scan);
-  scree_code_reals(&p->out, p->low, 3);
-  scree_code_real(&p->out, &p->step);
-  put_u32(p, scan->triangle_count);
-  put_trace(p, choice);
-  scree_status status = put_measures(p, scan, choice);
-  if (status == SCREE_OK) status = put_levels(p, scree_curve_find(p->curve, (size_t)base));
-  size_t room = byte_limit > p->out.count ? byte_limit - p->out.count : 0;
-  if (status == SCREE_OK) status = put_scan(p, scan, room);
-  if (status == SCREE_OK && !scree_codec_good(&p->out))
-    status = scree_fail_memory(p->error, p->out.count, "packed levels");
+  find_grid(l, scan);
+  scree_code_reals(&l->pack.out, l->pack.low, 3);
+  scree_code_real(&l->pack.out, &l->pack.step);
+  scree_pack_u32(&l->pack, scan->triangle_count);
+  put_trace(l, choice);
+  scree_status status = put_measures(l, scan, choice);
+  if (status == SCREE_OK) status = put_levels(l, scree_curve_find(l->curve, (size_t)base));
+  size_t room = byte_limit > l->pack.out.count ? byte_limit - l->pack.out.count : 0;
+  if (status == SCREE_OK) status = put_scan(l, scan, room);
+  if (status == SCREE_OK && !scree_codec_good(&l->pack.out))
+    status = scree_fail_memory(l->pack.error, l->pack.out.count, "packed levels");
   return status;
 }
 
 /* ---- the file ---- */
 
-static scree_status write_file(packing *p, const char *path, bool overwrite) {
+static scree_status write_file(levels *l, const char *path, bool overwrite) {
   scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, p->error);
+  scree_status status = scree_output_open(path, overwrite, &output, l->pack.error);
   if (status != SCREE_OK) return status;
   scree_codec header = {0};
-  scree_checksum sum = scree_checksum_of(p->out.bytes, p->out.count);
+  scree_checksum sum = scree_checksum_of(l->pack.out.bytes, l->pack.out.count);
   uint32_t version = VERSION, mark = BYTE_ORDER_MARK;
-  uint64_t length = p->out.count;
+  uint64_t length = l->pack.out.count;
   char text[8];
   memcpy(text, magic, sizeof text);
   scree_code_bytes(&header, text, sizeof text);
@@ -300,27 +214,25 @@ static scree_status write_file(packing *p, const char *path, bool overwrite) {
   if (header.out_of_memory) {
     scree_output_discard(&output);
     scree_free(header.bytes);
-    return scree_fail_memory(p->error, HEADER_BYTES, "a header");
+    return scree_fail_memory(l->pack.error, HEADER_BYTES, "a header");
   }
   fwrite(header.bytes, 1, header.count, output.stream);
-  fwrite(p->out.bytes, 1, p->out.count, output.stream);
+  fwrite(l->pack.out.bytes, 1, l->pack.out.count, output.stream);
   scree_free(header.bytes);
-  return scree_output_commit(&output, p->error);
+  return scree_output_commit(&output, l->pack.error);
 }
 
 scree_status scree_levels_write(const scree_curve *curve, const scree_choice *choice,
                                 size_t byte_limit, const char *path, bool overwrite,
                                 scree_error *error) {
-  static pthread_once_t versions = PTHREAD_ONCE_INIT;
-  packing p = {.curve = curve, .error = error};
+  levels l = {.curve = curve, .pack = {.error = error}};
   scree_mesh scan;
-  pthread_once(&versions, set_versions);
   scree_status status = scree_curve_mesh(curve, 0, &scan, error);
   if (status != SCREE_OK) return status;
-  status = pack(&p, &scan, choice, byte_limit);
+  status = pack(&l, &scan, choice, byte_limit);
   scree_mesh_free(&scan);
-  if (status == SCREE_OK) status = write_file(&p, path, overwrite);
-  scree_free(p.out.bytes);
+  if (status == SCREE_OK) status = write_file(&l, path, overwrite);
+  scree_free(l.pack.out.bytes);
   return status;
 }
 

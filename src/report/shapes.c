@@ -2,6 +2,7 @@
 #include "report/shapes.h"
 
 #include "base/alloc.h"
+#include "base/vec.h"
 
 void scree_shapes_free(scree_shapes *shapes) {
   scree_free(shapes->particles);
@@ -48,4 +49,46 @@ scree_particle *scree_world_shape(const scree_world *world, size_t shape) {
   scree_particle *particle = shape < shapes.count ? shapes.particles[shape] : NULL;
   scree_shapes_free(&shapes);
   return particle;
+}
+
+/* ---- spheres as meshes ---- */
+
+/* The spheres of one particle as one mesh. */
+static scree_status mesh_of_spheres(const scree_particle *particle, size_t sphere_count,
+                                    const scree_mesh *unit, scree_mesh *mesh, scree_error *error) {
+  size_t vertices = sphere_count * unit->vertex_count,
+         triangles = sphere_count * unit->triangle_count;
+  scree_mesh made = {scree_alloc(3 * vertices, sizeof *made.positions),
+                     scree_alloc(3 * triangles, sizeof *made.triangles), vertices, triangles};
+  if (!made.positions || !made.triangles) {
+    scree_mesh_free(&made);
+    return scree_fail_memory(error, 24 * vertices, "the spheres of a picture");
+  }
+  for (size_t k = 0; k < sphere_count; k++) {
+    double centre[3], radius;
+    scree_particle_point(particle, k, centre, &radius);
+    for (size_t v = 0; v < unit->vertex_count; v++) {
+      vec3 direction = vec3_unit(vec3_load(unit->positions + 3 * v));
+      vec3_store(made.positions + 3 * (k * unit->vertex_count + v),
+                 vec3_mad(vec3_load(centre), direction, radius));
+    }
+    for (size_t i = 0; i < 3 * unit->triangle_count; i++)
+      made.triangles[3 * k * unit->triangle_count + i] =
+          unit->triangles[i] + (uint32_t)(k * unit->vertex_count);
+  }
+  *mesh = made;
+  return SCREE_OK;
+}
+
+scree_status scree_spheres_mesh(const scree_particle *particle, int level, scree_mesh *mesh,
+                                scree_error *error) {
+  scree_mesh unit = {0};
+  scree_particle_measures m;
+  char name[16];
+  snprintf(name, sizeof name, "icosphere-%d", level);
+  scree_particle_measure(particle, &m);
+  scree_status status = scree_sample_make(name, NULL, NULL, &unit, error);
+  if (status == SCREE_OK) status = mesh_of_spheres(particle, m.point_count, &unit, mesh, error);
+  scree_mesh_free(&unit);
+  return status;
 }

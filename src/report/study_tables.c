@@ -40,6 +40,7 @@ static void put_point(scree_json *json, const scree_point_result *p) {
   scree_json_text(json, "label", p->label);
   scree_json_text(json, "rp", p->rp);
   scree_json_text(json, "shapes", p->shapes);
+  scree_json_text(json, "pile", p->pile);
   put_counts(json, &p->counts);
   scree_json_count(json, "heap_count", p->heap_count);
   scree_json_number(json, "triangle_count", p->triangle_count);

@@ -1,8 +1,8 @@
 /* Pictures of worlds and heaps: the bodies as items of the ray tracer. */
 #include "base/alloc.h"
-#include "base/vec.h"
 #include "report/shapes.h"
 
+#include <math.h>
 #include <string.h>
 
 static const double room = 0.85; /* of the heap's radius: a picture is wider than high */
@@ -22,45 +22,14 @@ typedef struct scene {
   size_t item_count;
 } scene;
 
-/* The spheres of one particle as one mesh. */
-static scree_status mesh_of_spheres(const scree_particle *particle, size_t sphere_count,
-                                    const scree_mesh *unit, scree_mesh *mesh, scree_error *error) {
-  size_t vertices = sphere_count * unit->vertex_count,
-         triangles = sphere_count * unit->triangle_count;
-  scree_mesh made = {scree_alloc(3 * vertices, sizeof *made.positions),
-                     scree_alloc(3 * triangles, sizeof *made.triangles), vertices, triangles};
-  if (!made.positions || !made.triangles) {
-    scree_mesh_free(&made);
-    return scree_fail_memory(error, 24 * vertices, "the spheres of a picture");
-  }
-  for (size_t k = 0; k < sphere_count; k++) {
-    double centre[3], radius;
-    scree_particle_point(particle, k, centre, &radius);
-    for (size_t v = 0; v < unit->vertex_count; v++) {
-      vec3 direction = vec3_unit(vec3_load(unit->positions + 3 * v));
-      vec3_store(made.positions + 3 * (k * unit->vertex_count + v),
-                 vec3_mad(vec3_load(centre), direction, radius));
-    }
-    for (size_t i = 0; i < 3 * unit->triangle_count; i++)
-      made.triangles[3 * k * unit->triangle_count + i] =
-          unit->triangles[i] + (uint32_t)(k * unit->vertex_count);
-  }
-  *mesh = made;
-  return SCREE_OK;
-}
-
 static scree_status make_spheres(scene *s, scree_error *error) {
-  scree_mesh unit = {0};
-  char name[] = "icosphere-0";
-  name[sizeof name - 2] = (char)('0' + SPHERE_LEVEL);
-  scree_status status = scree_sample_make(name, NULL, NULL, &unit, error);
+  scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < s->shapes.count; i++) {
     scree_particle_measures m;
     scree_particle_measure(s->shapes.particles[i], &m);
     if (m.kind != SCREE_PARTICLE_MESH)
-      status = mesh_of_spheres(s->shapes.particles[i], m.point_count, &unit, &s->meshes[i], error);
+      status = scree_spheres_mesh(s->shapes.particles[i], SPHERE_LEVEL, &s->meshes[i], error);
   }
-  scree_mesh_free(&unit);
   return status;
 }
 

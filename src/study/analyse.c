@@ -226,8 +226,14 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
   p->shapes = scree_arena_text(a->arena, a->study->sets[point->set].label);
   if (!p->label || !p->rp || !p->shapes) return no_memory(a);
   p->rp_value = spheres ? NAN : !strcmp(point->rp, "scan") ? 1 : strtod(point->rp, NULL);
-  for (size_t i = 0; i < a->row_count; i++)
-    if (a->rows[i].point == index) count_state(&p->counts, a->rows[i].state);
+  for (size_t i = 0; i < a->row_count; i++) { /* rows of low replicates come first */
+    const row *r = &a->rows[i];
+    if (r->point != index) continue;
+    count_state(&p->counts, r->state);
+    if (p->pile || strcmp(r->state, "done") != 0) continue;
+    p->pile = scree_arena_text(a->arena, r->key);
+    if (!p->pile) return no_memory(a);
+  }
   p->triangle_count = summarise(a, index, offsetof(row, triangles), scratch).mean;
   p->angle_deg = summarise(a, index, offsetof(row, angle), scratch);
   p->heap_count = p->angle_deg.count;

@@ -97,10 +97,8 @@ static bool watch(void *context, const scree_run_state *state) {
 static scree_status fill_record(scree_run *run, scree_study_record *record, scree_error *error) {
   size_t count;
   const scree_run_point *series = scree_run_series(run, &count);
-  scree_checksum hash = scree_world_hash(scree_run_world(run));
   scree_run_get_costs(run, &record->costs);
-  snprintf(record->hash, sizeof record->hash, "%016llx%016llx", (unsigned long long)hash.high,
-           (unsigned long long)hash.low);
+  scree_checksum_text(scree_world_hash(scree_run_world(run)), record->hash);
   record->series = scree_alloc(count, sizeof *record->series);
   if (!record->series) return scree_fail_memory(error, count * sizeof *series, "a series");
   if (count) memcpy(record->series, series, count * sizeof *series);
@@ -121,6 +119,7 @@ static scree_status simulate(work *w, const scree_experiment *e, const scree_run
           w->study->sets[w->study->points[scree_study_run_point(w->study, w->run)].set].count,
       .folder = folder,
       .resume = true,
+      .motion = scree_study_run_replicate(w->study, w->run) == 0, /* one of each point to look at */
       .watch = watch,
       .context = w};
   scree_error own;

@@ -5,7 +5,13 @@ run report one -o one/report.html
 "$SCREE" report one -o - | head -n 1
 rm one/report.html
 run report one -o one/report.html -q && cmp one/report.html report.html
-grep -c 'id="levels-0"' report.html
+grep -c 'id="part-' report.html
+# levels that an earlier choice left are no part of the page
+cp report.html kept.html
+cp one/levels/icosphere-4.levels one/levels/stale.levels
+run report one -q -f
+cmp report.html kept.html && echo the same
+rm one/levels/stale.levels
 grep -o "default-src 'none'" report.html
 mkdir empty
 run report empty -o x.html

@@ -129,8 +129,11 @@ def pictures(browser, name, **how):
     browser.look(**how)
     browser.wait(f"innerWidth == {how.get('width', 1200)}")
     time.sleep(0.4)  # the curve is drawn anew a little after the size has changed
-    wide = browser.run("return document.documentElement.scrollWidth - innerWidth")
-    check(wide <= 0, f"{name}: the page is {wide} pixels wider than the window")
+    try:
+        browser.wait("document.documentElement.scrollWidth <= innerWidth", 10)
+    except AssertionError:
+        wide = browser.run("return document.documentElement.scrollWidth - innerWidth")
+        raise AssertionError(f"{name}: the page is {wide} pixels wider than the window") from None
     if KEEP:
         browser.screenshot(os.path.join(KEEP, f"{name}.png"))
         browser.print_pdf(os.path.join(KEEP, f"{name}.pdf"))
@@ -170,6 +173,95 @@ def several_objects(browser, folder):
     scree("report", "one", "two", "-o", "both.html", folder=folder)
     ready(browser, os.path.join(folder, "both.html"))
     check(browser.text("main").count("How this was made") == 2, "a page of two folders lacks one")
+
+
+def seek(browser, moment):
+    browser.run("const s = document.querySelector('.time'); s.value = arguments[0]; s.dispatchEvent(new Event('input'))", moment)
+    return float(browser.run("return document.body.dataset.shownTime")), int(browser.run("return document.body.dataset.shownBodies"))
+
+
+def a_heap(browser, folder):
+    scree("repose", "sample:fp-1", "sample:sp-1", "--resolution", "3mm", "-r", "1e-2", "--particles", "24", "--pack-time", "1", "--cylinder", "0.2", "--angles", "0.1",
+          "--settle-time", "0.2", "--lift-time", "1.5", "--hold-time", "0.3", "--drop-height", "0.05", "-o", "heap", folder=folder)
+    page = os.path.join(folder, "heap", "report.html")
+    with open(os.path.join(folder, "heap", "result.json"), encoding="utf-8") as file:
+        result = json.load(file)
+    ready(browser, page)
+    text = browser.text("main")
+    for part in ("A heap of 24 particles of 2 shapes", "fp-1", "Angle against time", "Kinetic energy against time",
+                 "Rotational velocity against time", "How this was made", "--particles 24"):
+        check(part in text, f"the heap does not say: {part}")
+    end, count = float(browser.run("return document.body.dataset.shownTime")), int(browser.run("return document.body.dataset.shownBodies"))
+    check(abs(end - result["result"]["time"]) < 1e-9 and count == result["result"]["body_count"], "the page does not begin at the end")
+    last = painted(browser, 0)
+    check(last["covered"] > 300 and last["colors"] > 5, f"no heap to be seen: {last}")
+    check(browser.run("return document.querySelectorAll('body > img').length") == 0, "the picture is shown beside the 3D view")
+    start = seek(browser, 0)
+    check(start[0] == 0 and start[1] < count and "filling" in browser.text(".level-text"), f"the slider does not go to the start: {start}")
+    check(painted(browser, 0)["sum"] != last["sum"], "the slider does not change the view")
+    before = -1
+    for moment in range(0, int(browser.run("return document.querySelector('.time').max")) + 1, 20):
+        time_then, _ = seek(browser, moment)
+        check(time_then > before, "time does not grow along the slider")
+        before = time_then
+    browser.keys(".time", "\ue012")  # arrow left
+    browser.wait(f"Number(document.body.dataset.shownTime) != {before}")
+    browser.run("document.querySelectorAll('.chart .u-over')[0].dispatchEvent(new MouseEvent('click'))")
+    turned = painted(browser, 0)
+    browser.keys(".pile canvas", "\ue012\ue012")
+    check(painted(browser, 0)["sum"] != turned["sum"], "arrow keys do not turn the heap")
+    seek(browser, 0)
+    browser.keys(".pile canvas", " ")  # plays
+    browser.wait("document.querySelector('.play').innerText === 'Pause'")
+    browser.wait("Number(document.body.dataset.shownTime) > 0.2")
+    browser.keys(".pile canvas", " ")
+    browser.wait("document.querySelector('.play').innerText === 'Play'")
+    stopped = browser.run("return document.body.dataset.shownTime")
+    time.sleep(0.3)
+    check(browser.run("return document.body.dataset.shownTime") == stopped, "it does not stop")
+    browser.run("document.querySelector('select').value = '4'; document.querySelector('select').dispatchEvent(new Event('change'))")
+    browser.run("document.querySelector('.play').click()")
+    browser.wait(f"Number(document.body.dataset.shownTime) == {end}")
+    check(browser.text(".play") == "Play", "it does not end")
+    seek(browser, 0)
+    browser.run("dispatchEvent(new Event('beforeprint'))")
+    check(float(browser.run("return document.body.dataset.shownTime")) == end, "print does not show the end")
+    browser.run("dispatchEvent(new Event('afterprint'))")
+    no_complaints(browser, "a heap")
+    pictures(browser, "heap")
+    pictures(browser, "heap-phone", width=390, height=844)
+    pictures(browser, "heap-dark", width=800, dark=True)
+    browser.look()
+    browser.devtools("Emulation.setEmulatedMedia", features=[{"name": "prefers-reduced-motion", "value": "reduce"}])
+    seek(browser, 0)
+    browser.run("document.querySelector('.play').click()")
+    browser.wait("Number(document.body.dataset.shownTime) > 0")
+    moments = browser.run("return [document.querySelector('.time').value, document.body.dataset.shownTime]")
+    browser.run("document.querySelector('.play').click()")
+    check(seek(browser, int(moments[0]))[0] == float(moments[1]), "with less motion wanted it plays between moments")
+    browser.devtools("Emulation.setEmulatedMedia", features=[])
+    scree("repose", "sample:fp-1", "--resolution", "3mm", "-r", "1e-2", "--spheres", "--particles", "8", "--pack-time", "0.2",
+          "--settle-time", "0.1", "--lift-time", "0.3", "--hold-time", "0.1", "--drop-height", "0.05", "--no-picture", "-o", "levels", folder=folder)
+    ready(browser, os.path.join(folder, "levels", "report.html"))
+    check(browser.text("main").count("Angle against time") <= 2 and browser.text("main").count("How this was made") == 2, "a page of two levels lacks one")
+    return page
+
+
+def a_real_study(browser, folder):
+    with open(os.path.join(folder, "small.yaml"), "w", encoding="utf-8") as file:
+        file.write("name: small\nshapes: [sample:fp-1]\nsample: {resolution: 3e-3}\nreplicates: 2\nfactors: {rp: [spheres, 1e-2]}\n"
+                   "base: {preset: demo, particles: 8, phases: {pack_time: 0.2, settle_time: 0.1, lift_time: 0.3, hold_time: 0.1, drop_height: 0.05}}\n")
+    scree("study", "small.yaml", "-o", "real", "--jobs", "1", folder=folder)
+    ready(browser, os.path.join(folder, "real", "report.html"))
+    check("A heap of each point" in browser.text("main"), "the study shows no heap")
+    check(browser.run("return document.querySelectorAll('.points button').length") == 2, "not a heap of each point")
+    first = painted(browser, 0)
+    browser.run("document.querySelectorAll('.points button')[0].click()")
+    check(painted(browser, 0)["sum"] != first["sum"], "another point shows the same heap")
+    seek(browser, 10)
+    check(0 < float(browser.run("return document.body.dataset.shownTime")) < 0.5, "the study's heap has no motion")
+    no_complaints(browser, "a real study")
+    pictures(browser, "real-study")
 
 
 def summary(mean, sd):
@@ -217,15 +309,21 @@ def a_study(browser, folder):
     pictures(browser, "study")
 
 
-def what_is_missing_is_said(page):
+def what_is_missing_is_said(page, heap):
     with Browser(webgl=False) as browser:
         ready(browser, page)
         text = browser.text("main")
         check("shows no WebGL" in text and "Candidate levels" in text, "nothing is said where WebGL is missing")
         pictures(browser, "no-webgl", width=600)
+        ready(browser, heap)
+        check("shows no WebGL" in browser.text("main"), "nothing is said where WebGL is missing")
+        check(browser.run("const i = document.querySelector('.pile img'); return i.complete && i.naturalWidth > 100"), "no picture stands in for the heap")
+        pictures(browser, "heap-no-webgl", width=600)
     with Browser(script=False) as browser:
         browser.open(page)
         check("Use " in browser.text("body"), "nothing is said where JavaScript is off")
+        browser.open(heap)
+        check("24 particles of 2 shapes" in browser.text("body"), "nothing is said of a heap where JavaScript is off")
 
 
 def main():
@@ -238,7 +336,9 @@ def main():
             page = one_object(browser, folder)
             several_objects(browser, folder)
             a_study(browser, folder)
-        what_is_missing_is_said(page)
+            heap = a_heap(browser, folder)
+            a_real_study(browser, folder)
+        what_is_missing_is_said(page, heap)
     return 0
 
 

@@ -1,7 +1,8 @@
 // Fills the page from the data in it. Everything that comes from files is set as text.
 import './page.css';
 import { ChoiceSection } from './choice.js';
-import { decoderReady } from './levels.js';
+import { HeapSection } from './heap.js';
+import { decoderReady } from './packed.js';
 import { StudySection } from './study.js';
 import { element, number, table } from './text.js';
 
@@ -18,18 +19,19 @@ function provenanceRows(folder) {
   const rows = [];
   const add = (what, value) => value !== null && value !== undefined && rows.push({ what, value: String(value) });
   const first = folder.choice?.[0];
-  const run = folder.provenance ?? {};
+  const run = folder.provenance ?? folder.heap ?? {};
   add('results', folder.folder);
   add('scree', run.version ?? first?.version);
   add('command', run.command ?? first?.command);
   if (folder.study) {
     add('study', `${folder.study.name}: design ${folder.study.design}, decimation ${folder.study.method}, seed ${folder.study.seed}`);
-    add('runs made by', `scree ${folder.study.version}, ${folder.study.workers} workers, ${number(folder.study.seconds_spent, 3)} s of processor time`);
+    add('runs made by', `scree ${folder.study.version}, ${folder.study.workers ? `${folder.study.workers} workers at work, ` : ''}${number(folder.study.seconds_spent, 3)} s of processor time`);
   }
   add('started', run.started);
   if (run.elapsed_s !== undefined) add('time', `${number(run.elapsed_s, 3)} s, ${number(run.processor_s, 3)} s of processor time, ${run.threads} threads`);
   if (run.processor) add('machine', `${run.processor}, ${run.processors} processors; ${run.system}`);
   for (const object of folder.choice?.filter((entry) => !entry.set) ?? []) add(`input ${object.name}`, originOf(object));
+  for (const shape of folder.heap?.shapes ?? []) add(`shape ${shape.name}`, shape.source);
   add('page made by', `scree ${data.version}`);
   return rows;
 }
@@ -39,12 +41,14 @@ async function fill() {
   for (const folder of data.folders) {
     const host = element('section', null, page);
     if (folder.choice) new ChoiceSection(host, folder);
-    if (folder.study) new StudySection(host, folder.study);
+    if (folder.heap) new HeapSection(host, folder);
+    if (folder.study) new StudySection(host, folder);
     element('h2', 'How this was made', host);
     table(host, [{ head: 'what', value: (row) => row.what }, { head: 'value', value: (row) => row.value }],
       provenanceRows(folder), 'provenance.csv', 'Version, command, inputs, machine and times').classList.add('texts');
   }
   const objects = data.folders.flatMap((folder) => folder.choice?.filter((entry) => !entry.set) ?? []);
+  document.querySelectorAll('body > img').forEach((picture) => picture.remove()); // of heaps shown in 3D
   if (objects.length === 1) document.title = `${objects[0].name}: scree report`;
 }
 

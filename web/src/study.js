@@ -1,5 +1,6 @@
 // The section of a study (study.json, docs/formats.md): what the runs say, each curve with its spread, the tables.
 import { Chart, palette } from './chart.js';
+import { Pile, PilePlayer } from './pile.js';
 import { element, number, rpText, table, whole } from './text.js';
 
 // Rp as a number: the scan itself is 1, spheres have none.
@@ -9,8 +10,8 @@ const known = (x) => x !== null && x !== undefined && Number.isFinite(x);
 const rpName = (rp) => (Number(rp) > 0 ? `Rp = ${rpText(Number(rp))}` : `the ${rp}`);
 
 export class StudySection {
-  constructor(host, study) {
-    Object.assign(this, { host, study });
+  constructor(host, { study, piles }) {
+    Object.assign(this, { host, study, piles: new Map(piles) });
     this.families = new Map();
     for (const point of study.points) {
       const family = familyOf(point);
@@ -22,7 +23,31 @@ export class StudySection {
     this.drawAngles();
     this.drawRotation();
     this.drawTimes();
+    this.showPiles();
     this.tellTables();
+  }
+
+  // One heap of each point.
+  showPiles() {
+    const points = this.study.points.filter((point) => this.piles.has(point.pile));
+    if (!points.length) return;
+    element('h2', 'A heap of each point', this.host);
+    const group = element('div', null, this.host, { role: 'group', 'aria-label': 'Points', class: 'points' });
+    const player = new PilePlayer(element('div', null, this.host), { label: 'The heap of the point in 3D' });
+    if (!player.view) {
+      group.remove();
+      return;
+    }
+    const pick = (index) => {
+      buttons.forEach((button, i) => button.setAttribute('aria-pressed', String(i === index)));
+      player.show(new Pile(this.piles.get(points[index].pile)));
+    };
+    const buttons = points.map((point, i) => {
+      const button = element('button', point.label || rpName(point.rp), group, { type: 'button' });
+      button.addEventListener('click', () => pick(i));
+      return button;
+    });
+    pick(points.length - 1);
   }
 
   tell() {

@@ -118,14 +118,21 @@ export class View {
     this.draw();
   }
 
-  // frame: {centre, size} in the mesh's units; field: distances to show as colours up to range, or null.
-  show(mesh, frame, { wire = false, only = false, field = null, range = 1 }) {
+  clear() {
     for (const part of this.parts ?? []) {
       this.scene.remove(part);
-      part.geometry.dispose();
-      part.material.dispose();
+      part.traverse((each) => {
+        each.geometry?.dispose();
+        each.material?.dispose();
+        if (each.isInstancedMesh) each.dispose();
+      });
     }
     this.parts = [];
+  }
+
+  // frame: {centre, size} in the mesh's units; field: distances to show as colours up to range, or null.
+  show(mesh, frame, { wire = false, only = false, field = null, range = 1 }) {
+    this.clear();
     if (!only)
       this.parts.push(new Mesh(surface(mesh, field, range), new MeshStandardMaterial({
         color: field ? 0xffffff : 0x7d9cc0, vertexColors: Boolean(field), flatShading: true, roughness: 0.8,

@@ -1,0 +1,27 @@
+/* The motion of a run on disk (docs/formats.md): frames are appended while it goes on, each with
+ * its own checksum, so that a run that was killed leaves whole ones. */
+#ifndef SCREE_PILE_MOTION_H
+#define SCREE_PILE_MOTION_H
+
+#include "base/error.h"
+
+typedef struct scree_motion_file {
+  FILE *stream; /* NULL: nothing is recorded */
+  char *path;
+  double interval; /* s, of simulated time */
+  size_t count;    /* frames due so far */
+  double last;     /* s, time of the last frame written */
+} scree_motion_file;
+
+/* Opens path for a run that stands at `time`. Frames that an earlier piece of the run wrote up to
+ * then stay; where go_on is false, or they cannot be read, the file begins anew. */
+scree_status scree_motion_open(scree_motion_file *file, const char *path, double interval,
+                               bool go_on, double time, scree_error *error);
+/* s: when the next frame is due; infinity where nothing is recorded. */
+double scree_motion_next(const scree_motion_file *file);
+/* Appends the run as it stands, unless that is written already. */
+scree_status scree_motion_put(scree_motion_file *file, const scree_run *run, scree_error *error);
+/* Does nothing for one that was never opened. */
+void scree_motion_close(scree_motion_file *file);
+
+#endif

@@ -1,0 +1,267 @@
+/* A pile packed for the page. Of every body all moments stand together, so that a body at rest
+ * costs next to nothing; a motion that does not fit loses every second frame until it does. A
+ * browser draws all bodies many times a second: shapes are decimated until all together have as
+ * many triangles as it can take. */
+#include "report/pile_pack.h"
+
+#include "base/alloc.h"
+#include "report/pack.h"
+#include "report/shapes.h"
+
+#include <math.h>
+#include <string.h>
+#include <sys/stat.h>
+
+enum {
+  MOST_DRAWN = 500000,     /* triangles of all bodies together */
+  MOST_SHAPE = 4000,       /* of one shape */
+  LEAST_SHAPE = 80,        /* below, a device is not known again */
+  SPHERE_LEVEL = 2,        /* icosphere: 320 triangles */
+  COARSE_SPHERE_LEVEL = 1, /* in clumps, and where there are many */
+  PATH_BYTES = 4096
+};
+static const double one = 32767; /* of a quaternion's component */
+
+typedef struct pile {
+  scree_packing pack;
+  scree_run *run;
+  scree_motion motion; /* at least one frame */
+} pile;
+
+/* position on the grid, whether it is there, quaternion */
+typedef struct moment {
+  scree_grid_point at;
+  int16_t q[4];
+} moment;
+
+/* ---- what is in the folder ---- */
+
+/* The last frame alone. */
+static scree_status still(pile *p) {
+  const scree_world *world = scree_run_view(p->run);
+  size_t bodies = scree_world_body_count(world);
+  scree_motion *m = &p->motion;
+  *m = (scree_motion){.frame_count = 1, .body_count = bodies};
+  m->time = scree_alloc(1, sizeof *m->time);
+  m->cylinder_height = scree_alloc(1, sizeof *m->cylinder_height);
+  m->poses = scree_alloc(bodies, 7 * sizeof *m->poses);
+  if (!m->time || !m->cylinder_height || !m->poses)
+    return scree_fail_memory(p->pack.error, bodies * 7 * sizeof *m->poses, "a pile");
+  m->time[0] = scree_world_time(world);
+  m->cylinder_height[0] = scree_run_cylinder_height(p->run);
+  for (size_t b = 0; b < bodies; b++) {
+    scree_body body;
+    scree_world_get_body(world, b, &body);
+    bool there = !scree_world_body_removed(world, b);
+    for (int k = 0; k < 7; k++)
+      m->poses[7 * b + (size_t)k] =
+          there ? (float)(k < 3 ? body.position[k] : body.orientation[k - 3]) : NAN;
+  }
+  return SCREE_OK;
+}
+
+/* Whether the motion ends with the run's last frame: else it is of another run. */
+static bool is_of_run(const scree_motion *m, const scree_run *run) {
+  const scree_world *world = scree_run_view(run);
+  if (m->frame_count == 0 || m->body_count != scree_world_body_count(world)) return false;
+  size_t last = m->frame_count - 1;
+  if (m->time[last] != scree_world_time(world)) return false;
+  for (size_t b = 0; b < m->body_count; b++) {
+    const float *pose = m->poses + 7 * (last * m->body_count + b);
+    scree_body body;
+    scree_world_get_body(world, b, &body);
+    for (int k = 0; k < 3 && !scree_world_body_removed(world, b); k++)
+      if (pose[k] != (float)body.position[k]) return false;
+  }
+  return true;
+}
+
+static bool find(const char *folder, const char *name, char path[PATH_BYTES]) {
+  struct stat info;
+  int length = snprintf(path, PATH_BYTES, "%s/%s", folder, name);
+  return length < PATH_BYTES && stat(path, &info) == 0;
+}
+
+static scree_status load(pile *p, const char *folder, bool *found) {
+  char path[PATH_BYTES];
+  *found = find(folder, "last.scree", path);
+  if (!*found) return SCREE_OK;
+  scree_status status = scree_run_load(path, &p->run, p->pack.error);
+  if (status != SCREE_OK) return status;
+  if (find(folder, "motion.scree", path)) {
+    status = scree_motion_read(path, &p->motion, p->pack.error);
+    if (status != SCREE_OK || is_of_run(&p->motion, p->run)) return status;
+    scree_motion_free(&p->motion);
+  }
+  return still(p);
+}
+
+/* ---- shapes ---- */
+
+/* The surface that is drawn of a shape: its own, or a level of about `target` triangles. */
+static scree_status drawn_surface(pile *p, scree_particle *particle, size_t target,
+                                  scree_mesh *mesh) {
+  scree_particle_measures m;
+  scree_particle_measure(particle, &m);
+  if (m.kind != SCREE_PARTICLE_MESH)
+    return scree_spheres_mesh(
+        particle, m.point_count == 1 && target >= 320 ? SPHERE_LEVEL : COARSE_SPHERE_LEVEL, mesh,
+        p->pack.error);
+  const scree_mesh *own = scree_particle_mesh(particle);
+  if (own->triangle_count <= target) return scree_mesh_copy(own, mesh, p->pack.error);
+  scree_simplify_options options = scree_default_simplify_options();
+  scree_curve *curve = NULL;
+  options.stop_count = target;
+  scree_status status = scree_curve_build(own, &options, NULL, &curve, p->pack.error);
+  if (status == SCREE_OK)
+    status = scree_curve_mesh(curve, scree_curve_find(curve, target), mesh, p->pack.error);
+  scree_curve_free(curve);
+  return status;
+}
+
+static void put_name(scree_packing *p, const char *name) {
+  char text[64];
+  snprintf(text, sizeof text, "%s", name ? name : "");
+  scree_pack_u32(p, strlen(text));
+  scree_code_bytes(&p->out, text, strlen(text));
+}
+
+static void put_grid(scree_packing *p) {
+  scree_code_reals(&p->out, p->low, 3);
+  scree_code_real(&p->out, &p->step);
+}
+
+static scree_status put_shapes(pile *p) {
+  size_t shapes = scree_run_shape_count(p->run), bodies = p->motion.body_count;
+  size_t target = MOST_DRAWN / (bodies ? bodies : 1);
+  target = target < LEAST_SHAPE ? LEAST_SHAPE : target > MOST_SHAPE ? MOST_SHAPE : target;
+  scree_pack_u32(&p->pack, shapes);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < shapes; i++) {
+    scree_run_shape shape;
+    scree_particle_measures m;
+    scree_mesh mesh = {0};
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    scree_run_get_shape(p->run, i, &shape);
+    scree_particle_measure(shape.particle, &m);
+    status = drawn_surface(p, shape.particle, target, &mesh);
+    for (size_t v = 0; v < mesh.vertex_count; v++)
+      scree_pack_stretch(mesh.positions + 3 * v, low, high);
+    scree_pack_grid(&p->pack, low, high);
+    put_name(&p->pack, shape.name);
+    scree_pack_u32(&p->pack, m.triangle_count);
+    put_grid(&p->pack);
+    if (status == SCREE_OK) status = scree_pack_mesh(&p->pack, &mesh, NULL);
+    scree_mesh_free(&mesh);
+  }
+  return status;
+}
+
+static scree_status put_bodies(pile *p) {
+  size_t bodies = p->motion.body_count;
+  uint32_t *shape = scree_alloc(bodies, sizeof *shape);
+  if (!shape) return scree_fail_memory(p->pack.error, bodies * sizeof *shape, "a pile");
+  for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)scree_run_body_shape(p->run, b);
+  scree_pack_u32(&p->pack, bodies);
+  scree_status status = scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape);
+  scree_free(shape);
+  return status;
+}
+
+/* ---- motion ---- */
+
+/* The frame at place k of those kept: every stride-th, and the last. */
+static size_t frame_at(const scree_motion *m, size_t stride, size_t k) {
+  size_t frame = k * stride;
+  return frame < m->frame_count ? frame : m->frame_count - 1;
+}
+
+static void find_grid(pile *p) {
+  const scree_motion *m = &p->motion;
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t i = 0; i < m->frame_count * m->body_count; i++) {
+    const float *pose = m->poses + 7 * i;
+    double position[3] = {(double)pose[0], (double)pose[1], (double)pose[2]};
+    if (!isnan(position[0])) scree_pack_stretch(position, low, high);
+  }
+  if (low[0] > high[0]) memset(low, 0, sizeof low), memset(high, 0, sizeof high);
+  scree_pack_grid(&p->pack, low, high);
+}
+
+/* One body's moments. Signs of quaternions are chosen so that they change little from one to the
+ * next; while a body is not there it repeats what it was, or will be. */
+static void fill_track(const pile *p, size_t body, size_t stride, size_t count, moment *track) {
+  const scree_motion *m = &p->motion;
+  size_t first = count;
+  for (size_t k = 0; k < count; k++) {
+    const float *pose = m->poses + 7 * (frame_at(m, stride, k) * m->body_count + body);
+    track[k] = k ? track[k - 1] : (moment){0};
+    track[k].at.extra = 0;
+    if (isnan(pose[0])) continue;
+    double position[3] = {(double)pose[0], (double)pose[1], (double)pose[2]}, same = 0;
+    track[k].at = scree_pack_point(&p->pack, position);
+    track[k].at.extra = 1;
+    for (int i = 0; i < 4; i++) same += (double)pose[3 + i] * track[k].q[i];
+    for (int i = 0; i < 4; i++)
+      track[k].q[i] = (int16_t)lrint((same < 0 ? -one : one) * (double)pose[3 + i]);
+    if (first == count) first = k;
+  }
+  for (size_t k = 0; first < count && k < first; k++) {
+    track[k] = track[first];
+    track[k].at.extra = 0;
+  }
+}
+
+static scree_status put_motion(pile *p, size_t stride) {
+  const scree_motion *m = &p->motion;
+  size_t count = (m->frame_count - 2 + stride) / stride + 1; /* of one frame: 1 */
+  scree_pack_u32(&p->pack, count);
+  for (size_t k = 0; k < count; k++)
+    scree_code_real(&p->pack.out, &m->time[frame_at(m, stride, k)]);
+  for (size_t k = 0; k < count; k++)
+    scree_code_real(&p->pack.out, &m->cylinder_height[frame_at(m, stride, k)]);
+  moment *tracks = scree_alloc(count * m->body_count, sizeof *tracks);
+  if (!tracks)
+    return scree_fail_memory(p->pack.error, count * m->body_count * sizeof *tracks, "a motion");
+  for (size_t b = 0; b < m->body_count; b++) fill_track(p, b, stride, count, tracks + b * count);
+  scree_status status =
+      scree_pack_vertices(&p->pack, tracks, count * m->body_count, sizeof *tracks);
+  scree_free(tracks);
+  return status;
+}
+
+static scree_status pack(pile *p, size_t byte_limit) {
+  const scree_experiment *e = scree_run_experiment(p->run);
+  double radii[2] = {0.5 * e->disc_diameter, 0.5 * e->cylinder_diameter};
+  scree_code_reals(&p->pack.out, radii, 2);
+  scree_status status = put_shapes(p);
+  if (status == SCREE_OK) status = put_bodies(p);
+  find_grid(p);
+  put_grid(&p->pack);
+  size_t start = p->pack.out.count;
+  for (size_t stride = 1; status == SCREE_OK; stride *= 2) {
+    p->pack.out.count = start;
+    status = put_motion(p, stride);
+    if (p->pack.out.count <= byte_limit || stride >= p->motion.frame_count) break;
+  }
+  if (status == SCREE_OK && !scree_codec_good(&p->pack.out))
+    status = scree_fail_memory(p->pack.error, p->pack.out.count, "a packed pile");
+  return status;
+}
+
+scree_status scree_pile_pack(const char *folder, size_t byte_limit, unsigned char **bytes,
+                             size_t *byte_count, scree_error *error) {
+  pile p = {.pack = {.error = error}};
+  bool found = false;
+  scree_status status = load(&p, folder, &found);
+  if (status == SCREE_OK && found) status = pack(&p, byte_limit);
+  scree_motion_free(&p.motion);
+  scree_run_free(p.run);
+  if (status == SCREE_OK) {
+    *bytes = p.pack.out.bytes;
+    *byte_count = p.pack.out.count;
+  } else {
+    scree_free(p.pack.out.bytes);
+  }
+  return status;
+}

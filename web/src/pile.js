@@ -1,0 +1,271 @@
+// A pile (docs/formats.md): its shapes, and where its bodies were at moments of the run; and the 3D view that plays
+// it. Between two moments bodies go straight and turn evenly.
+import {
+  BufferAttribute, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh, Matrix4,
+  Mesh, MeshBasicMaterial, MeshStandardMaterial, Quaternion, Vector3,
+} from 'three';
+import { Reader, decodeMesh, decodeVertices } from './packed.js';
+import { element, number, whole } from './text.js';
+import { View } from './view.js';
+
+const shapeColors = ['#4575b4', '#d9612c', '#4c9954', '#d6a638', '#855099', '#61b5c2', '#b53845', '#99999e', '#d9c9a6'];
+export const shapeColor = (shape) => shapeColors[shape % shapeColors.length];
+
+export class Pile {
+  constructor(id) {
+    const reader = new Reader(id);
+    [this.discRadius, this.cylinderRadius] = reader.reals(2);
+    this.shapes = Array.from({ length: reader.u32() }, () => {
+      const name = reader.text();
+      const triangleCount = reader.u32();
+      const grid = { low: reader.reals(3), step: reader.real() };
+      const mesh = decodeMesh(reader.mesh());
+      for (let i = 0; i < mesh.points.length; i++) mesh.points[i] = grid.low[i % 3] + grid.step * mesh.points[i];
+      return { name, triangleCount, mesh };
+    });
+    this.bodyCount = reader.u32();
+    this.shapeOf = new Uint32Array(decodeVertices(reader.buffer(), this.bodyCount, 4));
+    this.low = reader.reals(3);
+    this.step = reader.real();
+    const count = reader.u32();
+    this.times = reader.reals(count);
+    this.cylinder = reader.reals(count);
+    const tracks = decodeVertices(reader.buffer(), this.bodyCount * count, 16);
+    this.places = new Uint16Array(tracks);
+    this.turns = new Int16Array(tracks);
+  }
+
+  get end() {
+    return this.times[this.times.length - 1];
+  }
+
+  // The moment at or before a time, and how far it is to the next one, from 0 to 1.
+  momentAt(time) {
+    const { times } = this;
+    let low = 0, high = times.length - 1;
+    while (low < high) {
+      const middle = (low + high + 1) >> 1;
+      if (times[middle] <= time) low = middle;
+      else high = middle - 1;
+    }
+    const next = Math.min(low + 1, times.length - 1);
+    const part = next > low ? (time - times[low]) / (times[next] - times[low]) : 0;
+    return { moment: low, next, part: Math.min(1, Math.max(0, part)) };
+  }
+
+  cylinderAt({ moment, next, part }) {
+    return this.cylinder[moment] + part * (this.cylinder[next] - this.cylinder[moment]);
+  }
+
+  // Position and quaternion of a body; false where it is not there.
+  pose(body, { moment, next, part }, position, quaternion) {
+    const { places, turns, times } = this;
+    const a = 8 * (body * times.length + moment);
+    if (!places[a + 3]) return false;
+    const b = places[8 * (body * times.length + next) + 3] ? 8 * (body * times.length + next) : a;
+    const mix = (k, from) => from[a + k] + part * (from[b + k] - from[a + k]);
+    position.set(...[0, 1, 2].map((k) => this.low[k] + this.step * mix(k, places)));
+    quaternion.set(mix(5, turns), mix(6, turns), mix(7, turns), mix(4, turns)).normalize();
+    return true;
+  }
+
+  // What the picture is fitted to: most bodies at the end, and the cylinder.
+  frame() {
+    const position = new Vector3(), turn = new Quaternion(), far = [], high = [];
+    const last = this.momentAt(this.end);
+    for (let i = 0; i < this.bodyCount; i++) {
+      if (!this.pose(i, last, position, turn)) continue;
+      far.push(Math.hypot(position.x, position.y));
+      high.push(position.z);
+    }
+    const most = (list) => (list.length ? list.sort((a, b) => a - b)[Math.floor(0.95 * (list.length - 1))] : 0);
+    const height = most(high);
+    return { size: 2 * Math.max(1.15 * most(far), height, 1.3 * this.cylinderRadius), height };
+  }
+
+  highest() {
+    let top = 0;
+    for (let i = 0; i < this.places.length; i += 8) if (this.places[i + 3] && this.places[i + 2] > top) top = this.places[i + 2];
+    return this.low[2] + this.step * top;
+  }
+}
+
+function geometryOf(mesh) {
+  const geometry = new BufferGeometry();
+  geometry.setAttribute('position', new BufferAttribute(mesh.points, 3));
+  geometry.setIndex(new BufferAttribute(mesh.triangles, 1));
+  return geometry;
+}
+
+// Draws a pile at any time. Throws where there is no WebGL.
+export class PileView extends View {
+  constructor(host, label) {
+    super(host, label);
+    this.home();
+  }
+
+  home() {
+    this.camera.position.set(2.2, -3.4, 1.5);
+    this.controls.target.set(0, 0, 0);
+    this.controls.update();
+  }
+
+  set(pile) {
+    this.clear();
+    this.pile = pile;
+    const { size, height } = pile.frame();
+    const group = new Group();
+    group.scale.setScalar(2 / size);
+    group.position.z = (-0.45 * height * 2) / size;
+    const floor = new Mesh(new CircleGeometry(pile.discRadius, 96), new MeshStandardMaterial({ color: 0x9a9aa2, roughness: 1, transparent: true, opacity: 0.5, side: DoubleSide }));
+    floor.position.z = -0.0005;
+    const length = Math.max(2 * pile.cylinderRadius, pile.highest());
+    this.wall = new Mesh(new CylinderGeometry(pile.cylinderRadius, pile.cylinderRadius, length, 64, 1, true).rotateX(Math.PI / 2).translate(0, 0, length / 2),
+      new MeshBasicMaterial({ color: 0x8899bb, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }));
+    group.add(floor, this.wall);
+    this.instances = pile.shapes.map((shape, k) => {
+      const bodies = [];
+      pile.shapeOf.forEach((of, body) => of === k && bodies.push(body));
+      const drawn = new InstancedMesh(geometryOf(shape.mesh), new MeshStandardMaterial({ color: new Color(shapeColor(k)), flatShading: true, roughness: 0.8 }), bodies.length);
+      drawn.frustumCulled = false;
+      group.add(drawn);
+      return { drawn, bodies };
+    });
+    this.parts.push(group);
+    this.scene.add(group);
+  }
+
+  showTime(time) {
+    const { pile } = this;
+    const at = pile.momentAt(time);
+    const position = new Vector3(), turn = new Quaternion(), one = new Vector3(1, 1, 1), matrix = new Matrix4();
+    let count = 0;
+    for (const { drawn, bodies } of this.instances) {
+      let there = 0;
+      for (const body of bodies) {
+        if (!pile.pose(body, at, position, turn)) continue;
+        drawn.setMatrixAt(there++, matrix.compose(position, turn, one));
+      }
+      drawn.count = there;
+      drawn.instanceMatrix.needsUpdate = true;
+      count += there;
+    }
+    this.wall.position.z = pile.cylinderAt(at);
+    this.draw();
+    return count;
+  }
+}
+
+const speeds = [0.1, 0.25, 0.5, 1, 2, 4];
+const calm = matchMedia('(prefers-reduced-motion: reduce)');
+const calmPause = 500; // ms between moments where less motion is wanted
+
+// View, slider of time and buttons. onTime(time) follows; told(time) says what goes on then; picture: an <img> shown
+// where there is no WebGL.
+export class PilePlayer {
+  constructor(host, { onTime = () => {}, told = () => '', picture = null, label = 'The pile in 3D' } = {}) {
+    Object.assign(this, { host, onTime, told, time: 0, speed: 1, playing: false });
+    this.box = element('div', null, host, { class: 'pile' });
+    const figure = element('figure', null, this.box, { class: 'view' });
+    const viewHost = element('div', null, figure);
+    this.caption = element('figcaption', null, figure);
+    try {
+      this.view = new PileView(viewHost, label);
+    } catch {
+      this.view = null;
+      figure.remove();
+      element('p', `This browser shows no WebGL, so the pile in 3D, to turn around and play, is left out here.${picture ? ' A picture of its end stands in for it.' : ''} The curves and all tables are complete.`, this.box, { class: 'no-webgl', role: 'note' });
+      if (picture) this.box.append(picture);
+      return;
+    }
+    picture?.remove();
+    this.build();
+    this.box.addEventListener('keydown', (event) => {
+      if (event.key !== ' ' || event.target.tagName === 'BUTTON' || event.target.tagName === 'SELECT') return;
+      event.preventDefault();
+      this.toggle();
+    });
+    addEventListener('beforeprint', () => this.goTo(this.pile.end));
+  }
+
+  build() {
+    const controls = element('div', null, this.box, { class: 'controls' });
+    this.button = element('button', 'Play', controls, { type: 'button', class: 'play' });
+    this.button.addEventListener('click', () => this.toggle());
+    const label = element('label', 'Speed ', controls);
+    const choice = element('select', null, label);
+    speeds.forEach((speed) => element('option', `${speed} ×`, choice, { value: speed, ...(speed === 1 ? { selected: '' } : {}) }));
+    choice.addEventListener('change', () => {
+      this.speed = Number(choice.value);
+    });
+    element('button', 'Turn back', controls, { type: 'button' }).addEventListener('click', () => this.view.home());
+    const sliderLabel = element('label', 'Time', this.box, { class: 'soft' });
+    this.slider = element('input', null, sliderLabel, { type: 'range', min: 0, step: 1, class: 'slider time' });
+    this.slider.addEventListener('input', () => {
+      this.stop();
+      this.goTo(this.pile.times[Number(this.slider.value)]);
+    });
+    this.text = element('p', null, this.box, { class: 'level-text', 'aria-live': 'off' });
+    element('p', 'Space plays and stops; on the time slider the arrow keys go from moment to moment. Turn with mouse or finger, or with the arrow keys once the view has the focus; plus and minus move nearer and away.', this.box, { class: 'soft hint' });
+  }
+
+  show(pile) {
+    if (!this.view) return;
+    this.stop();
+    this.pile = pile;
+    const single = pile.times.length < 2;
+    this.button.disabled = this.slider.disabled = single;
+    this.slider.max = pile.times.length - 1;
+    this.view.set(pile);
+    const drawn = pile.shapes.filter(({ mesh, triangleCount }) => triangleCount > mesh.triangles.length / 3);
+    this.note = drawn.length ? `; drawn with up to ${whole(Math.max(...drawn.map(({ mesh }) => mesh.triangles.length / 3)))} triangles a particle, simulated with up to ${whole(Math.max(...pile.shapes.map((s) => s.triangleCount)))}` : '';
+    if (single) this.note += '; only its end was recorded';
+    this.goTo(pile.end);
+  }
+
+  goTo(time) {
+    if (!this.view) return;
+    this.time = time;
+    const count = this.view.showTime(time);
+    this.slider.value = this.pile.momentAt(time).moment;
+    this.slider.setAttribute('aria-valuetext', `${number(time, 3)} seconds`);
+    const said = this.told(time);
+    this.text.textContent = `${time.toFixed(2)} s of ${this.pile.end.toFixed(2)} s${said ? `: ${said}` : ''}`;
+    this.caption.textContent = `${whole(count)} particles${this.note}`;
+    Object.assign(document.body.dataset, { shownTime: time, shownBodies: count });
+    this.onTime(time);
+  }
+
+  toggle() {
+    if (this.playing) this.stop();
+    else this.play();
+  }
+
+  play() {
+    if (!this.pile || this.pile.times.length < 2) return;
+    this.playing = true;
+    this.button.textContent = 'Pause';
+    if (this.time >= this.pile.end) this.goTo(this.pile.times[0]);
+    let before = performance.now();
+    const next = (now) => {
+      if (!this.playing) return;
+      if (calm.matches) {
+        if (now - before >= calmPause) {
+          before = now;
+          this.goTo(this.pile.times[this.pile.momentAt(this.time).next]);
+        }
+      } else {
+        this.goTo(Math.min(this.pile.end, this.time + (this.speed * Math.min(250, now - before)) / 1000));
+        before = now;
+      }
+      if (this.time >= this.pile.end) this.stop();
+      else requestAnimationFrame(next);
+    };
+    requestAnimationFrame(next);
+  }
+
+  stop() {
+    this.playing = false;
+    if (this.button) this.button.textContent = 'Play';
+  }
+}
