@@ -123,10 +123,10 @@ static scree_status run_round(batch *b, scree_error *error) {
   for (size_t i = 0; i < b->job->count; i++) atomic_store(&b->objects[i].fraction, 0);
   scree_parallel_for(b->job->count, 1, work, b);
   size_t failed = atomic_load(&b->first_failed);
+  if (atomic_load(&b->cancelled)) /* perhaps before an object began: none failed then */
+    return scree_fail(error, SCREE_CANCELLED, "cancelled while choosing");
   if (failed == SIZE_MAX) return SCREE_OK;
   object *o = &b->objects[failed];
-  if (atomic_load(&b->cancelled) || o->status == SCREE_CANCELLED)
-    return scree_fail(error, SCREE_CANCELLED, "cancelled while choosing");
   if (error) *error = o->error;
   return o->status;
 }
