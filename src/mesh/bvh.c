@@ -8,7 +8,6 @@
 #include "base/alloc.h"
 #include "base/parallel.h"
 #include "mesh/mesh.h"
-#include "mesh/predicates.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -20,8 +19,7 @@ enum {
   SUBTREES = 64,       /* parts built in parallel: fixed, so that the tree is */
   BALANCED_DEPTH = 48, /* below this, halves: bounds the depth and so the stack */
   STACK = 96,          /* > BALANCED_DEPTH + log2(2^32) */
-  PRIMITIVE_BLOCK = 1 << 14,
-  DIRECTIONS = 8
+  PRIMITIVE_BLOCK = 1 << 14
 };
 
 /* A triangle while building. Twice the centre is low + high. */
@@ -424,124 +422,4 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
     if (near2 < hit->distance2) stack[depth].node = near, stack[depth++].distance2 = near2;
   }
   return found;
-}
-
-/* ---- Overlaps ---- */
-
-static bool corners_overlap(const double *corners, const double *low, const double *high) {
-  for (int k = 0; k < 3; k++) {
-    double least = fmin(fmin(corners[k], corners[3 + k]), corners[6 + k]),
-           most = fmax(fmax(corners[k], corners[3 + k]), corners[6 + k]);
-    if (least > high[k] || most < low[k]) return false;
-  }
-  return true;
-}
-
-static bool node_overlaps(const scree_bvh_node *node, const double *low, const double *high) {
-  for (int k = 0; k < 3; k++)
-    if (node->low[k] > high[k] || node->high[k] < low[k]) return false;
-  return true;
-}
-
-bool scree_bvh_overlap(const scree_bvh *bvh, vec3 low, vec3 high, scree_bvh_visit *visit,
-                       void *context) {
-  const double from[3] = {low.x, low.y, low.z}, to[3] = {high.x, high.y, high.z};
-  uint32_t stack[STACK];
-  int depth = 0;
-  if (bvh->node_count) stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_bvh_node *node = &bvh->nodes[stack[--depth]];
-    if (!node_overlaps(node, from, to)) continue;
-    if (!node->count) {
-      stack[depth++] = node->first + 1;
-      stack[depth++] = node->first;
-      continue;
-    }
-    for (uint32_t i = node->first; i < node->first + node->count; i++)
-      if (corners_overlap(bvh->corners + 9 * (size_t)i, from, to) && !visit(context, bvh->order[i]))
-        return false;
-  }
-  return true;
-}
-
-/* ---- Crossings ---- */
-
-/* Whether the segment comes near the node's box: the slab test, widened by far more than its
- * rounding. */
-static bool segment_meets(const scree_bvh_node *node, const double *p, const double *q,
-                          double slack) {
-  double enter = 0, leave = 1;
-  for (int k = 0; k < 3; k++) {
-    double along = q[k] - p[k], low = node->low[k] - slack - p[k],
-           high = node->high[k] + slack - p[k];
-    if (along == 0) {
-      if (low > 0 || high < 0) return false;
-      continue;
-    }
-    double first = low / along, second = high / along;
-    enter = fmax(enter, fmin(first, second));
-    leave = fmin(leave, fmax(first, second));
-  }
-  return enter <= leave * (1 + 1e-12);
-}
-
-static bool same_point(const double *a, const double *b) {
-  return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
-}
-
-/* +1 or -1: crosses, with or against the normal; 0: does not (nor does a facet shrunk to a point);
- * 2: touches. */
-static int cross_triangle(const double *corners, const double *p, const double *q) {
-  const double *a = corners, *b = corners + 3, *c = corners + 6;
-  int start = scree_orient3(a, b, c, p), end = scree_orient3(a, b, c, q);
-  if (start == end && start != 0) return 0;
-  int s = scree_orient3(p, q, a, b), t = scree_orient3(p, q, b, c), u = scree_orient3(p, q, c, a);
-  bool out = (s > 0 || t > 0 || u > 0) && (s < 0 || t < 0 || u < 0);
-  if (out) return 0;
-  if (s != 0 && t != 0 && u != 0 && start != 0 && end != 0) return end;
-  return same_point(a, b) && same_point(b, c) ? 0 : 2;
-}
-
-bool scree_bvh_crossings(const scree_bvh *bvh, vec3 p, vec3 q, size_t *count, int *balance) {
-  const double from[3] = {p.x, p.y, p.z}, to[3] = {q.x, q.y, q.z};
-  uint32_t stack[STACK];
-  int depth = 0, net = 0;
-  size_t crossings = 0;
-  double slack = 1e-12 * (vec3_norm(p) + vec3_norm(q));
-  if (bvh->node_count) stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_bvh_node *node = &bvh->nodes[stack[--depth]];
-    if (!segment_meets(node, from, to, slack)) continue;
-    if (!node->count) {
-      stack[depth++] = node->first + 1;
-      stack[depth++] = node->first;
-      continue;
-    }
-    for (uint32_t i = node->first; i < node->first + node->count; i++) {
-      int crossed = cross_triangle(bvh->corners + 9 * (size_t)i, from, to);
-      if (crossed == 2) return false;
-      crossings += crossed != 0;
-      net += crossed;
-    }
-  }
-  *count = crossings;
-  *balance = net;
-  return true;
-}
-
-bool scree_bvh_winding(const scree_bvh *bvh, vec3 p, int *winding) {
-  /* no plane of a designed object holds these */
-  static const vec3 direction[DIRECTIONS] = {{0.617, 0.541, 0.572},   {-0.523, 0.631, 0.573},
-                                             {0.557, -0.607, 0.567},  {0.593, 0.569, -0.571},
-                                             {-0.601, -0.547, 0.583}, {-0.563, 0.599, -0.569},
-                                             {0.587, -0.577, -0.568}, {-0.571, -0.593, -0.567}};
-  size_t count = 0;
-  *winding = 0;
-  if (bvh->node_count == 0) return true;
-  const scree_bvh_node *root = &bvh->nodes[0];
-  vec3 size = vec3_sub(vec3_load(root->high), vec3_load(root->low));
-  double reach = 2 * (vec3_norm(size) + sqrt(box_distance2(root, p)));
-  for (int i = 0; i < DIRECTIONS; i++)
-    if (scree_bvh_crossings(bvh, p, vec3_mad(p, direction[i], reach), &count, winding)) return true;
-  return false;
 }

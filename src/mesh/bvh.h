@@ -42,20 +42,4 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit);
  * points are fine. */
 double scree_triangle_closest(const double corners[9], vec3 p, vec3 *point);
 
-/* Calls visit for the triangle of every leaf box that overlaps (or touches) the given box, or
- * rather for those of its triangles whose own bounds do. Stops and answers false when visit does.
- */
-typedef bool scree_bvh_visit(void *context, uint32_t triangle);
-bool scree_bvh_overlap(const scree_bvh *bvh, vec3 low, vec3 high, scree_bvh_visit *visit,
-                       void *context);
-
-/* How often the segment from p to q crosses the surface, and the crossings outward less those
- * inward. Exact (predicates.h). False where it touches an edge, a vertex or an end touches the
- * surface: then ask again with another q. */
-bool scree_bvh_crossings(const scree_bvh *bvh, vec3 p, vec3 q, size_t *count, int *balance);
-
-/* How often a closed surface winds around p: 1 inside, 0 outside, exact. False where p lies on the
- * surface (or hits an edge in eight directions). */
-bool scree_bvh_winding(const scree_bvh *bvh, vec3 p, int *winding);
-
 #endif

@@ -292,10 +292,3 @@ bool scree_boxes_apart(const double *positions, const uint32_t t[3], const uint3
   }
   return false;
 }
-
-bool scree_triangle_is_flat(const double *positions, const uint32_t t[3]) {
-  const double *corners[3];
-  for (int i = 0; i < 3; i++) corners[i] = positions + 3 * (size_t)t[i];
-  int axis;
-  return projection_of(corners, &axis) == 0;
-}

@@ -27,9 +27,6 @@ scree_meet scree_triangles_meet(const double *positions, const uint32_t t[3], co
 /* Whether the bounding boxes of two triangles have no point in common. */
 bool scree_boxes_apart(const double *positions, const uint32_t t[3], const uint32_t u[3]);
 
-/* True where all three corners lie on one line (or coincide), exactly. */
-bool scree_triangle_is_flat(const double *positions, const uint32_t t[3]);
-
 /* A pair of facets that meet where they should not; first < second. */
 typedef struct scree_meeting {
   uint32_t first, second;

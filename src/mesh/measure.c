@@ -93,16 +93,6 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-scree_status scree_mesh_integrate_area_volume(const scree_mesh *mesh, vec3 origin, double *area,
-                                              double *volume, scree_error *error) {
-  double integrals[2];
-  scree_status status = integrate(mesh, origin, 2, integrals, error);
-  if (status != SCREE_OK) return status;
-  *area = integrals[AREA];
-  *volume = integrals[VOLUME];
-  return SCREE_OK;
-}
-
 void scree_mesh_bounds(const scree_mesh *mesh, vec3 *low, vec3 *high) {
   *low = (vec3){INFINITY, INFINITY, INFINITY};
   *high = vec3_neg(*low);

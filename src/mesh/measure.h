@@ -7,10 +7,6 @@
 /* Bounds of the corners of all triangles; of nothing (infinite, reversed) without triangles. */
 void scree_mesh_bounds(const scree_mesh *mesh, vec3 *low, vec3 *high);
 
-/* Area, and volume of the cones from origin over all triangles, in one pass. */
-scree_status scree_mesh_integrate_area_volume(const scree_mesh *mesh, vec3 origin, double *area,
-                                              double *volume, scree_error *error);
-
 /* Whether every edge is used equally often in both directions: the surface has no boundary, and its
  * volume depends on no origin. O(N) without memory: the sum over all half-edges of a 128-bit hash
  * of the vertex pair, positive one way and negative the other, is zero; a miss has odds of 2^-128.

@@ -27,8 +27,6 @@ bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *
 bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c);
 /* Removes the facets marked; returns how many. */
 size_t scree_repair_remove(scree_repair *r, const bool *marked);
-/* Removes facets that name a vertex twice; returns how many. */
-size_t scree_repair_remove_collapsed(scree_repair *r);
 /* The sentence for a stage that ran out of memory. */
 scree_status scree_repair_no_memory(scree_error *error);
 

@@ -1,26 +1,16 @@
 /* Changes to the mesh under repair. */
-#include "base/alloc.h"
+#include "base/array.h"
 #include "mesh/repair.h"
 
 #include <string.h>
-
-static bool grow(void **items, size_t *capacity, size_t needed, size_t size) {
-  if (needed <= *capacity) return true;
-  size_t more = *capacity + *capacity / 2 + 64;
-  if (more < needed) more = needed;
-  void *moved = scree_resize(*items, more, size);
-  if (!moved) return false;
-  *items = moved;
-  *capacity = more;
-  return true;
-}
 
 bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *index) {
   scree_mesh *m = &r->mesh;
   double copy[3] = {position[0], position[1], position[2]}; /* may lie in the array that moves */
   void *items = m->positions;
   if (m->vertex_count >= UINT32_MAX - 1) return false;
-  bool room = grow(&items, &r->vertex_capacity, m->vertex_count + 1, 3 * sizeof(double));
+  bool room =
+      scree_array_reserve(&items, &r->vertex_capacity, m->vertex_count + 1, 3 * sizeof(double));
   m->positions = items;
   if (!room) return false;
   memcpy(m->positions + 3 * m->vertex_count, copy, sizeof copy);
@@ -32,7 +22,8 @@ bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c)
   scree_mesh *m = &r->mesh;
   void *items = m->triangles;
   if (m->triangle_count >= (UINT32_MAX - 1) / 3) return false;
-  bool room = grow(&items, &r->triangle_capacity, m->triangle_count + 1, 3 * sizeof(uint32_t));
+  bool room = scree_array_reserve(&items, &r->triangle_capacity, m->triangle_count + 1,
+                                  3 * sizeof(uint32_t));
   m->triangles = items;
   if (!room) return false;
   uint32_t *corner = m->triangles + 3 * m->triangle_count++;
@@ -47,18 +38,6 @@ size_t scree_repair_remove(scree_repair *r, const bool *marked) {
     if (marked[t]) continue;
     if (kept != t) memcpy(m->triangles + 3 * kept, m->triangles + 3 * t, 3 * sizeof(uint32_t));
     kept++;
-  }
-  m->triangle_count = kept;
-  return before - kept;
-}
-
-size_t scree_repair_remove_collapsed(scree_repair *r) {
-  scree_mesh *m = &r->mesh;
-  size_t kept = 0, before = m->triangle_count;
-  for (size_t t = 0; t < before; t++) {
-    const uint32_t *c = m->triangles + 3 * t;
-    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) continue;
-    memmove(m->triangles + 3 * kept++, c, 3 * sizeof(uint32_t));
   }
   m->triangle_count = kept;
   return before - kept;

@@ -33,17 +33,24 @@ static void memory_is_aligned_and_counted(void **state) {
   scree_free(block);
 }
 
-static void arena_allocates_nothing_once_warm(void **state) {
+static void arena_gives_blocks_of_its_own(void **state) {
   (void)state;
+  enum { BLOCKS = 2000 };
+  static unsigned char *blocks[BLOCKS];
   scree_arena arena = {0};
-  size_t after_warm_up = 0;
-  for (int round = 0; round < 3; round++) {
-    for (int i = 0; i < 100; i++) assert_non_null(scree_arena_take(&arena, 1000 + (size_t)i, 8));
-    scree_arena_reset(&arena);
-    if (round == 0) after_warm_up = scree_allocation_count();
+  size_t before = scree_memory_used();
+  for (size_t i = 0; i < BLOCKS; i++) { /* some larger than a chunk */
+    blocks[i] = scree_arena_take(&arena, i % 500 ? i % 97 : 300000, 1);
+    assert_non_null(blocks[i]);
+    assert_int_equal((uintptr_t)blocks[i] % 64, 0);
+    memset(blocks[i], (int)(i % 251), i % 500 ? i % 97 : 300000);
   }
-  assert_int_equal(scree_allocation_count(), after_warm_up);
+  for (size_t i = 0; i < BLOCKS; i++)
+    for (size_t k = 0; k < (i % 500 ? i % 97 : 300000); k++)
+      assert_int_equal(blocks[i][k], i % 251);
+  assert_null(scree_arena_take(&arena, SIZE_MAX / 2, 3));
   scree_arena_free(&arena);
+  assert_int_equal(scree_memory_used(), before);
 }
 
 static void block_sum(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -129,7 +136,7 @@ static void files_are_whole_or_absent(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(memory_is_aligned_and_counted),
-      cmocka_unit_test(arena_allocates_nothing_once_warm),
+      cmocka_unit_test(arena_gives_blocks_of_its_own),
       cmocka_unit_test(blocks_do_not_depend_on_threads),
       cmocka_unit_test(compensated_sum_is_exact_where_plain_is_not),
       cmocka_unit_test(random_numbers_have_the_moments_they_claim),

@@ -192,113 +192,12 @@ static void test_threads(void **state) {
 
 /* ---- Overlaps ---- */
 
-static bool mark(void *context, uint32_t triangle) {
-  ((unsigned char *)context)[triangle]++;
-  return true;
-}
-static bool stop(void *context, uint32_t triangle) {
-  *(uint32_t *)context = triangle;
-  return false;
-}
-
-static void test_overlap(void **state) {
-  (void)state;
-  scree_rng rng = {.seed = 23};
-  for (int i = 0; i < 1000; i++) {
-    scree_mesh mesh = random_surface(&rng, i % 4);
-    scree_bvh bvh = build(&mesh);
-    unsigned char marks[2000] = {0};
-    vec3 p = random_point(&rng, 1), q = random_point(&rng, 1), low = vec3_min(p, q),
-         high = vec3_max(p, q);
-    size_t expected = 0;
-    assert_true(scree_bvh_overlap(&bvh, low, high, mark, marks));
-    for (size_t t = 0; t < mesh.triangle_count; t++) {
-      vec3 a = scree_mesh_corner(&mesh, t, 0), b = scree_mesh_corner(&mesh, t, 1),
-           c = scree_mesh_corner(&mesh, t, 2);
-      vec3 from = vec3_min(vec3_min(a, b), c), to = vec3_max(vec3_max(a, b), c);
-      bool meets = from.x <= high.x && to.x >= low.x && from.y <= high.y && to.y >= low.y &&
-                   from.z <= high.z && to.z >= low.z;
-      assert_int_equal(marks[t], meets);
-      expected += meets;
-    }
-    uint32_t last = 0;
-    assert_int_equal(scree_bvh_overlap(&bvh, low, high, stop, &last), expected == 0);
-    scree_bvh_free(&bvh);
-    scree_mesh_free(&mesh);
-  }
-}
-
-/* ---- Crossings ---- */
-
-static void test_winding_known(void **state) {
-  (void)state;
-  scree_rng rng = {.seed = 24};
-  scree_mesh torus = shape_torus(2, 1, 40, 30), box = shape_grid_box(1, 1, 1, 4);
-  scree_bvh torus_bvh = build(&torus), box_bvh = build(&box);
-  for (int i = 0; i < 5000; i++) {
-    vec3 p = random_point(&rng, 1.5);
-    int winding;
-    double ring = hypot(p.x, p.y) - 2, r = hypot(ring, p.z);
-    if (fabs(r - 1) > 0.05) {
-      assert_true(scree_bvh_winding(&torus_bvh, p, &winding));
-      assert_int_equal(winding, r < 1);
-    }
-    /* grid points of the box: rays meet edges and vertices all the time */
-    vec3 g = {(double)scree_rng_below(&rng, 9) / 8, (double)scree_rng_below(&rng, 9) / 8,
-              (double)scree_rng_below(&rng, 9) / 8};
-    bool on = g.x == 0 || g.y == 0 || g.z == 0 || g.x == 1 || g.y == 1 || g.z == 1;
-    assert_int_equal(scree_bvh_winding(&box_bvh, g, &winding), !on);
-    if (!on) assert_int_equal(winding, 1);
-  }
-  scree_bvh_free(&torus_bvh);
-  scree_bvh_free(&box_bvh);
-  scree_mesh_free(&torus);
-  scree_mesh_free(&box);
-}
-
-/* Moeller-Trumbore for segments in general position. */
-static int brute_crossing(const scree_mesh *mesh, size_t t, vec3 p, vec3 q) {
-  vec3 a = scree_mesh_corner(mesh, t, 0), e = vec3_sub(scree_mesh_corner(mesh, t, 1), a),
-       f = vec3_sub(scree_mesh_corner(mesh, t, 2), a), d = vec3_sub(q, p), s = vec3_sub(p, a),
-       h = vec3_cross(d, f), g = vec3_cross(s, e);
-  double det = vec3_dot(e, h);
-  if (det == 0) return 0;
-  double u = vec3_dot(s, h) / det, v = vec3_dot(d, g) / det, along = vec3_dot(f, g) / det;
-  if (u < 0 || v < 0 || u + v > 1 || along < 0 || along > 1) return 0;
-  return vec3_dot(d, vec3_cross(e, f)) > 0 ? 1 : -1;
-}
-
-static void test_crossings(void **state) {
-  (void)state;
-  scree_rng rng = {.seed = 25};
-  size_t total = 0;
-  for (int i = 0; i < 4000; i++) {
-    scree_mesh mesh = random_surface(&rng, i % 4);
-    scree_bvh bvh = build(&mesh);
-    vec3 p = random_point(&rng, 2), q = random_point(&rng, 2);
-    size_t count, expected = 0;
-    int balance, expected_balance = 0;
-    assert_true(scree_bvh_crossings(&bvh, p, q, &count, &balance));
-    for (size_t t = 0; t < mesh.triangle_count; t++) {
-      int crossed = brute_crossing(&mesh, t, p, q);
-      expected += crossed != 0;
-      expected_balance += crossed;
-    }
-    assert_int_equal(count, expected);
-    assert_int_equal(balance, expected_balance);
-    total += count;
-    scree_bvh_free(&bvh);
-    scree_mesh_free(&mesh);
-  }
-  assert_true(total > 300);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_triangle),  cmocka_unit_test(test_closest),
-      cmocka_unit_test(test_structure), cmocka_unit_test(test_threads),
-      cmocka_unit_test(test_overlap),   cmocka_unit_test(test_winding_known),
-      cmocka_unit_test(test_crossings),
+      cmocka_unit_test(test_triangle),
+      cmocka_unit_test(test_closest),
+      cmocka_unit_test(test_structure),
+      cmocka_unit_test(test_threads),
   };
   scree_set_threads(
       1); /* thousands of tiny trees: waking threads would take longer than the work */
