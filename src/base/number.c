@@ -10,7 +10,7 @@
  *    between the two candidates. */
 #include "base/number.h"
 
-#include <stdbool.h>
+#include <math.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -279,6 +279,14 @@ const char *scree_number_parse(const char *begin, const char *end, double *value
   return behind;
 }
 
+bool scree_number_read(const char *text, double *value) {
+  const char *end = text + strlen(text);
+  double read;
+  if (scree_number_parse(text, end, &read) != end || !isfinite(read)) return false;
+  *value = read;
+  return true;
+}
+
 /* ---- writing ---- */
 
 /* printf's text with a decimal point for whatever the locale put there. */
@@ -298,11 +306,15 @@ static size_t make_neutral(char *text) {
   return length;
 }
 
+size_t scree_number_format_digits(double value, int digits, char text[SCREE_NUMBER_SIZE]) {
+  snprintf(text, SCREE_NUMBER_SIZE, "%.*g", digits, value);
+  return make_neutral(text);
+}
+
 size_t scree_number_format(double value, char text[SCREE_NUMBER_SIZE]) {
   size_t length = 0;
   for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, SCREE_NUMBER_SIZE, "%.*g", digits, value);
-    length = make_neutral(text);
+    length = scree_number_format_digits(value, digits, text);
     double back = 0;
     scree_number_parse(text, text + length, &back);
     if (back == value) break;
@@ -313,8 +325,7 @@ size_t scree_number_format(double value, char text[SCREE_NUMBER_SIZE]) {
 size_t scree_number_format_float(float value, char text[SCREE_NUMBER_SIZE]) {
   size_t length = 0;
   for (int digits = 6; digits <= 9; digits++) {
-    snprintf(text, SCREE_NUMBER_SIZE, "%.*g", digits, (double)value);
-    length = make_neutral(text);
+    length = scree_number_format_digits((double)value, digits, text);
     double back = 0;
     scree_number_parse(text, text + length, &back);
     if ((float)back == value) break;

@@ -3,6 +3,7 @@
 #ifndef SCREE_BASE_NUMBER_H
 #define SCREE_BASE_NUMBER_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Reads [+-] digits [. digits] [e|E|d|D [+-] digits] at `begin`, never beyond `end`, correctly
@@ -11,11 +12,16 @@
  * (nan, inf) and hexadecimal are no numbers here. */
 const char *scree_number_parse(const char *begin, const char *end, double *value);
 
+/* All of text as one finite number; false where it is anything else. */
+bool scree_number_read(const char *text, double *value);
+
 enum { SCREE_NUMBER_SIZE = 32 };
 /* Writes a finite value with the fewest of 15, 16 or 17 digits that scree_number_parse reads back
  * to the same bits; answers the length. */
 size_t scree_number_format(double value, char text[SCREE_NUMBER_SIZE]);
 /* The same with 6 to 9 digits for a float. */
 size_t scree_number_format_float(float value, char text[SCREE_NUMBER_SIZE]);
+/* What printf makes of %.*g, digits at most 17; answers the length. */
+size_t scree_number_format_digits(double value, int digits, char text[SCREE_NUMBER_SIZE]);
 
 #endif

@@ -1,10 +1,10 @@
 /* The experiment's fields in one table: key, unit, range, what it is and where the default comes
  * from. The table reads YAML, sets single fields and prints the commented file. */
 #include "base/alloc.h"
+#include "base/number.h"
 #include "pile/yaml.h"
 
 #include <errno.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -230,9 +230,9 @@ static bool set_field(const field *f, const char *text, scree_experiment *e, cha
     return true;
   }
   case FIELD_REAL: {
-    double real = strtod(text, &end);
+    double real;
     snprintf(reason, size, "must be a number");
-    if (!*text || *end || !isfinite(real)) return false;
+    if (!scree_number_read(text, &real)) return false;
     snprintf(reason, size, "must be %g to %g%s%s", f->minimum, f->maximum, *f->unit ? " " : "",
              f->unit);
     if (real < f->minimum || real > f->maximum) return false;
@@ -402,10 +402,13 @@ scree_status scree_experiment_copy(const scree_experiment *experiment, scree_exp
 
 /* The shortest of %.6g to %.17g that reads back as the same number. */
 static void real_text(double value, char *buffer, size_t size) {
+  char text[SCREE_NUMBER_SIZE];
+  double back;
   for (int digits = 6; digits <= 17; digits++) {
-    snprintf(buffer, size, "%.*g", digits, value);
-    if (strtod(buffer, NULL) == value) break;
+    scree_number_format_digits(value, digits, text);
+    if (scree_number_read(text, &back) && back == value) break;
   }
+  snprintf(buffer, size, "%s", text);
 }
 
 bool scree_experiment_get(const scree_experiment *experiment, const char *key, char *buffer,

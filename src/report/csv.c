@@ -1,15 +1,9 @@
 #include "report/csv.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "base/number.h"
 
-void scree_shortest_double(double value, char *buffer) {
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(buffer, 32, "%.*g", digits, value);
-    if (strtod(buffer, NULL) == value) return;
-  }
-}
+#include <math.h>
+#include <string.h>
 
 void scree_csv_text(FILE *stream, const char *text) {
   if (!text[strcspn(text, ",\"\r\n")]) {
@@ -26,7 +20,7 @@ void scree_csv_text(FILE *stream, const char *text) {
 
 void scree_csv_number(FILE *stream, double value) {
   if (!isfinite(value)) return;
-  char buffer[32];
-  scree_shortest_double(value, buffer);
+  char buffer[SCREE_NUMBER_SIZE];
+  scree_number_format(value, buffer);
   fputs(buffer, stream);
 }

@@ -8,7 +8,5 @@
 void scree_csv_text(FILE *stream, const char *text);
 /* The shortest form that reads back the same; nothing for NaN and infinities. */
 void scree_csv_number(FILE *stream, double value);
-/* The shortest decimal form that reads back as the same double, into buffer of 32 bytes. */
-void scree_shortest_double(double value, char *buffer);
 
 #endif

@@ -1,9 +1,9 @@
 /* Heaps as JSON and CSV. */
 #include "base/file.h"
+#include "base/number.h"
 #include "report/csv.h"
 #include "report/json.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 /* ---- JSON ---- */
@@ -14,14 +14,15 @@ static void json_experiment(scree_json *json, const scree_experiment *e) {
   scree_json_text(json, "preset", e->preset);
   for (size_t i = 0; scree_experiment_key(i); i++) {
     const char *key = scree_experiment_key(i);
-    char text[64], *end;
+    char text[64];
+    double value;
     scree_experiment_get(e, key, text, sizeof text);
-    double value = strtod(text, &end);
+    bool number = scree_number_read(text, &value);
     if (!strcmp(text, "true") || !strcmp(text, "false"))
       scree_json_bool(json, key, text[0] == 't');
-    else if (*end == 0 && strcmp(key, "seed") != 0)
+    else if (number && strcmp(key, "seed") != 0)
       scree_json_number(json, key, value);
-    else if (*end == 0)
+    else if (number)
       scree_json_count(json, key, e->seed);
     else
       scree_json_text(json, key, text);

@@ -1,6 +1,6 @@
 #include "report/json.h"
 
-#include "report/csv.h"
+#include "base/number.h"
 #include "report/utf8.h"
 
 #include <math.h>
@@ -88,9 +88,9 @@ void scree_json_text(scree_json *json, const char *key, const char *text) {
 }
 
 void scree_json_number(scree_json *json, const char *key, double value) {
-  char buffer[32] = "null";
+  char buffer[SCREE_NUMBER_SIZE] = "null";
   lead(json, key);
-  if (isfinite(value)) scree_shortest_double(value, buffer);
+  if (isfinite(value)) scree_number_format(value, buffer);
   fputs(buffer, json->stream);
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/alloc.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "report/csv.h"
 #include "report/text.h"
 
@@ -98,10 +99,12 @@ static void write_script_axis(FILE *stream, char name, const scree_axis *axis) {
   write_quoted(stream, axis->label ? axis->label : "");
   fprintf(stream, "\n%s logscale %c\n", axis->scale == SCREE_SCALE_LOG ? "set" : "unset", name);
   if (axis->scale == SCREE_SCALE_LOG) fprintf(stream, "set format %c \"10^{%%L}\"\n", name);
-  if (axis->minimum != 0 || axis->maximum != 0)
-    fprintf(stream, "set %crange [%.17g:%.17g]\n", name, axis->minimum, axis->maximum);
-  else
-    fprintf(stream, "set %crange [*:*]\n", name);
+  char low[SCREE_NUMBER_SIZE] = "*", high[SCREE_NUMBER_SIZE] = "*";
+  if (axis->minimum != 0 || axis->maximum != 0) {
+    scree_number_format(axis->minimum, low);
+    scree_number_format(axis->maximum, high);
+  }
+  fprintf(stream, "set %crange [%s:%s]\n", name, low, high);
 }
 
 static void write_script_series(FILE *stream, const char *data, size_t panel, size_t index,

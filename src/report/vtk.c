@@ -2,6 +2,7 @@
  * at the offset that its element names. The byte order is stated, so nothing is swapped. */
 #include "base/ending.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "report/json.h"
 
 #include <math.h>
@@ -112,11 +113,13 @@ static void write_header(writer *w, const scree_vtk_data *data, const cells *c) 
           "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"%s\" header_type=\"UInt64\">\n"
           "  <PolyData>\n",
           scree_version(), little ? "LittleEndian" : "BigEndian");
+  char time[SCREE_NUMBER_SIZE];
+  scree_number_format(data->time, time);
   if (!isnan(data->time))
     fprintf(w->stream,
             "    <FieldData>\n      <DataArray type=\"Float64\" Name=\"TimeValue\" "
-            "NumberOfTuples=\"1\" format=\"ascii\">%.17g</DataArray>\n    </FieldData>\n",
-            data->time);
+            "NumberOfTuples=\"1\" format=\"ascii\">%s</DataArray>\n    </FieldData>\n",
+            time);
   const char *kinds[] = {"Verts", "Lines", "Strips", "Polys"};
   fprintf(w->stream, "    <Piece NumberOfPoints=\"%zu\"", data->point_count);
   for (int i = 0; i < 4; i++)
@@ -175,7 +178,9 @@ static void write_collection(FILE *stream, const char *const *files, const doubl
           "<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n",
           scree_version());
   for (size_t i = 0; i < file_count; i++) {
-    fprintf(stream, "    <DataSet timestep=\"%.17g\" file=\"", times[i]);
+    char time[SCREE_NUMBER_SIZE];
+    scree_number_format(times[i], time);
+    fprintf(stream, "    <DataSet timestep=\"%s\" file=\"", time);
     write_escaped(stream, files[i]);
     fputs("\"/>\n", stream);
   }

@@ -1,6 +1,7 @@
 /* From the database to what a study says: every point's statistics; where the angle has converged;
  * time against Rp. docs/study.md has the reasons. */
 #include "base/array.h"
+#include "base/number.h"
 #include "study/database.h"
 
 #include <math.h>
@@ -220,12 +221,12 @@ static scree_status average_rotation(const analysis *a, size_t point, scree_poin
 static scree_status make_point(const analysis *a, size_t index, double *scratch) {
   const scree_study_point *point = &a->study->points[index];
   scree_point_result *p = &a->result->points[index];
-  bool spheres = !strcmp(point->rp, "spheres");
   p->label = scree_arena_text(a->arena, point->label);
   p->rp = scree_arena_text(a->arena, point->rp);
   p->shapes = scree_arena_text(a->arena, a->study->sets[point->set].label);
   if (!p->label || !p->rp || !p->shapes) return no_memory(a);
-  p->rp_value = spheres ? NAN : !strcmp(point->rp, "scan") ? 1 : strtod(point->rp, NULL);
+  p->rp_value = !strcmp(point->rp, "scan") ? 1 : NAN;
+  scree_number_read(point->rp, &p->rp_value);
   for (size_t i = 0; i < a->row_count; i++) { /* rows of low replicates come first */
     const row *r = &a->rows[i];
     if (r->point != index) continue;

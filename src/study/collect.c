@@ -1,5 +1,6 @@
 /* From the folder's files to the database. One process collects at a time, under a lease; each time
  * the plan is written anew and records that are not in yet are added, in one transaction. */
+#include "base/number.h"
 #include "base/progress.h"
 #include "study/database.h"
 #include "study/lease.h"
@@ -52,10 +53,11 @@ static void bind_whole(sqlite3_stmt *statement, int column, uint64_t value) {
 static scree_status put_facts(writer *w) {
   const scree_study *s = w->study;
   static const char *const designs[] = {"grid", "latin", "sobol"};
-  char seed[32], margin[32], confidence[32], points[32], replicates[32];
+  char seed[32], margin[SCREE_NUMBER_SIZE], confidence[SCREE_NUMBER_SIZE], points[32],
+      replicates[32];
   snprintf(seed, sizeof seed, "%llu", (unsigned long long)s->seed);
-  snprintf(margin, sizeof margin, "%.9g", s->margin_deg);
-  snprintf(confidence, sizeof confidence, "%.9g", s->confidence);
+  scree_number_format_digits(s->margin_deg, 9, margin);
+  scree_number_format_digits(s->confidence, 9, confidence);
   snprintf(points, sizeof points, "%zu", s->point_count);
   snprintf(replicates, sizeof replicates, "%zu", s->replicate_count);
   const char *facts[][2] = {{"name", s->name},
@@ -277,7 +279,7 @@ static scree_status put_state(writer *w, const char *key, sqlite3_stmt *update) 
   if (view.held && view.alive) {
     bool running = !strncmp(view.note, "running ", 8);
     state = running ? "running" : "leased";
-    if (running) fraction = strtod(view.note + 8, NULL);
+    if (running) scree_number_parse(view.note + 8, view.note + strlen(view.note), &fraction);
   }
   bind_text(update, 1, key);
   bind_text(update, 2, state);

@@ -3,6 +3,7 @@
  * cannot be. */
 #include "base/array.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "pile/yaml.h"
 #include "study/design.h"
 #include "study/study.h"
@@ -56,9 +57,8 @@ static scree_status read_real(const reader *r, const scree_yaml *node, double lo
                               double *value) {
   scree_status status = need_scalar(r, node);
   if (status != SCREE_OK) return status;
-  char *end;
-  double real = strtod(node->text, &end);
-  if (!*node->text || *end || !isfinite(real))
+  double real;
+  if (!scree_number_read(node->text, &real))
     return fail_at(r, node, "%s: '%s': must be a number", node->key, node->text);
   if (real < low || real > high)
     return fail_at(r, node, "%s: '%s': must be %g to %g", node->key, node->text, low, high);
@@ -235,10 +235,9 @@ static scree_status read_set(const reader *r, const scree_yaml *node, size_t *in
 /* ---- factors ---- */
 
 static bool is_rp(const char *text) {
-  char *end;
+  double rp;
   if (!strcmp(text, "spheres") || !strcmp(text, "scan")) return true;
-  double rp = strtod(text, &end);
-  return *text && !*end && rp > 0 && rp <= 1;
+  return scree_number_read(text, &rp) && rp > 0 && rp <= 1;
 }
 
 /* Tries a value on a copy of the base. */
@@ -279,10 +278,10 @@ static scree_status read_levels(const reader *r, const scree_yaml *node, scree_f
 /* The number as text that the key takes: whole where it must be. */
 static scree_status level_text(const reader *r, const scree_yaml *node, const char *key,
                                double value, const char **text) {
-  char number[40];
+  char number[SCREE_NUMBER_SIZE];
   scree_error *kept = r->error;
   reader quiet = {r->study, r->name, NULL};
-  snprintf(number, sizeof number, "%.9g", value);
+  scree_number_format_digits(value, 9, number);
   if (try_value(&quiet, node, key, number) != SCREE_OK)
     snprintf(number, sizeof number, "%.0f", value);
   reader loud = {r->study, r->name, kept};

@@ -3,6 +3,7 @@
  * replicate's number: one run can be repeated by `seed` alone, more replicates leave the earlier
  * ones as they were, and the same seeds at all points only matter before the first contact. */
 #include "base/file.h"
+#include "base/number.h"
 #include "study/design.h"
 #include "study/study.h"
 
@@ -28,9 +29,9 @@ static const char *value_at(scree_study *study, const scree_factor *f, double u)
   if (!f->range) return f->levels[(size_t)(u * (double)f->level_count)];
   double value =
       f->logarithmic ? f->from * pow(f->to / f->from, u) : f->from + u * (f->to - f->from);
-  char text[40];
+  char text[SCREE_NUMBER_SIZE];
   scree_experiment copy = study->base;
-  snprintf(text, sizeof text, "%.9g", value);
+  scree_number_format_digits(value, 9, text);
   if (strcmp(f->key, "rp") != 0 && scree_study_set(&copy, f->key, text, NULL) != SCREE_OK)
     snprintf(text, sizeof text, "%.0f", value);
   return scree_arena_text(&study->arena, text);
@@ -146,13 +147,13 @@ scree_status scree_study_experiment(const scree_study *study, size_t run,
 static void write_identity(const scree_study *study, const scree_study_point *point,
                            const scree_experiment *e, FILE *stream) {
   const char *key;
-  char value[64];
+  char value[64], unit[SCREE_NUMBER_SIZE];
   for (size_t i = 0; (key = scree_experiment_key(i)); i++)
     if (strncmp(key, "output.frame", 12) != 0 && strncmp(key, "output.checkpoint", 17) != 0 &&
         scree_experiment_get(e, key, value, sizeof value))
       fprintf(stream, "%s=%s\n", key, value);
-  fprintf(stream, "rp=%s\nmethod=%s\nunit=%.9g\n", point->rp, scree_method_name(study->method),
-          study->unit_m);
+  scree_number_format_digits(study->unit_m, 9, unit);
+  fprintf(stream, "rp=%s\nmethod=%s\nunit=%s\n", point->rp, scree_method_name(study->method), unit);
   const scree_shape_set *set = &study->sets[point->set];
   for (size_t i = 0; i < set->count; i++) {
     const scree_study_shape *shape = &study->shapes[set->shapes[i]];

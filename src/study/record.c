@@ -166,13 +166,11 @@ scree_status scree_study_record_write(const scree_study_record *record, const ch
 /* ---- reading ---- */
 
 static bool parse_real(const char *text, double *value) {
-  char *end;
   if (!strcmp(text, "null")) {
     *value = NAN;
     return true;
   }
-  *value = strtod(text, &end);
-  return *text && !*end;
+  return scree_number_read(text, value);
 }
 
 static bool parse_whole(const char *text, unsigned long long *value) {

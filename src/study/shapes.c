@@ -2,6 +2,7 @@
  * levels go to files which every worker, the one that made them too, reads back: all have the same
  * bits. One process makes a shape, under a lease; the others wait for it. */
 #include "base/file.h"
+#include "base/number.h"
 #include "base/progress.h"
 #include "pile/yaml.h"
 #include "study/lease.h"
@@ -24,10 +25,7 @@ static bool exists(const char *path) {
 
 static bool number_of(const scree_yaml *root, const char *key, double *value) {
   const scree_yaml *node = scree_yaml_find(root, key);
-  char *end;
-  if (!node || node->kind != SCREE_YAML_SCALAR) return false;
-  *value = strtod(node->text, &end);
-  return *node->text && !*end;
+  return node && node->kind == SCREE_YAML_SCALAR && scree_number_read(node->text, value);
 }
 
 static bool take_facts(const scree_yaml *root, scree_study_shape *shape) {
@@ -85,13 +83,22 @@ scree_status scree_study_know_shapes(scree_study *study, scree_error *error) {
 
 /* ---- levels ---- */
 
+/* Of a text that the plan has found to be a number. */
+static double rp_of(const char *text) {
+  double rp = NAN;
+  scree_number_read(text, &rp);
+  return rp;
+}
+
 /* The file of a shape at an Rp text; NULL when memory is out. */
 static char *level_path(const scree_study *study, const scree_study_shape *shape, const char *rp) {
-  char ending[64];
+  char ending[64], number[SCREE_NUMBER_SIZE];
   if (!strcmp(rp, "scan"))
     snprintf(ending, sizeof ending, "-scan.ply");
-  else
-    snprintf(ending, sizeof ending, "-rp%.9g.ply", strtod(rp, NULL));
+  else {
+    scree_number_format_digits(rp_of(rp), 9, number);
+    snprintf(ending, sizeof ending, "-rp%s.ply", number);
+  }
   return scree_study_path(study, "shapes", shape->name, ending);
 }
 
@@ -140,10 +147,11 @@ static bool keep(void *context, const char *phase, double fraction) {
 static scree_status read_sample(const scree_study *study, const scree_study_shape *shape,
                                 const scree_progress *progress, scree_mesh *mesh,
                                 scree_checksum *sum, scree_error *error) {
-  char text[256];
-  int size =
-      snprintf(text, sizeof text, "%s %.17g %.17g %llu", shape->word, study->sample.resolution,
-               study->sample.noise, (unsigned long long)study->sample.seed);
+  char text[256], resolution[SCREE_NUMBER_SIZE], noise[SCREE_NUMBER_SIZE];
+  scree_number_format_digits(study->sample.resolution, 17, resolution);
+  scree_number_format_digits(study->sample.noise, 17, noise);
+  int size = snprintf(text, sizeof text, "%s %s %s %llu", shape->word, resolution, noise,
+                      (unsigned long long)study->sample.seed);
   *sum = scree_checksum_of(text, (size_t)size);
   return scree_sample_make(shape->word + 7, &study->sample, progress, mesh, error);
 }
@@ -175,7 +183,7 @@ static scree_status write_level(const scree_study *study, const scree_study_shap
     scree_curve_level(curve, 0, &first);
     size_t level = 0;
     if (strcmp(rp, "scan") != 0)
-      level = scree_curve_find(curve, scree_choice_target(strtod(rp, NULL), first.triangle_count));
+      level = scree_curve_find(curve, scree_choice_target(rp_of(rp), first.triangle_count));
     status = scree_curve_mesh(curve, level, &mesh, error);
     if (status == SCREE_OK) {
       scree_write_options o = scree_default_write_options();
@@ -192,6 +200,13 @@ static scree_status write_level(const scree_study *study, const scree_study_shap
 static scree_status write_facts(const scree_study *study, const scree_study_shape *shape,
                                 scree_error *error) {
   char *path = scree_study_path(study, "shapes", shape->name, ".yaml"), sum[40];
+  const struct {
+    const char *key;
+    double value;
+  } facts[] = {{"area", shape->area},
+               {"volume", shape->volume},
+               {"paper_rp", shape->paper_rp},
+               {"robust_rp", shape->robust_rp}};
   scree_output output;
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_status status = scree_output_open(path, true, &output, error);
@@ -200,11 +215,13 @@ static scree_status write_facts(const scree_study *study, const scree_study_shap
   scree_checksum_text(shape->checksum, sum);
   fputs("source: '", output.stream);
   for (const char *c = shape->word; *c; c++) fprintf(output.stream, *c == '\'' ? "''" : "%c", *c);
-  fprintf(output.stream,
-          "'\nchecksum: '%s'\ntriangle_count: %llu\narea: %.17g\nvolume: %.17g\npaper_rp: "
-          "%.17g\nrobust_rp: %.17g\n",
-          sum, (unsigned long long)shape->triangle_count, shape->area, shape->volume,
-          shape->paper_rp, shape->robust_rp);
+  fprintf(output.stream, "'\nchecksum: '%s'\ntriangle_count: %llu\n", sum,
+          (unsigned long long)shape->triangle_count);
+  for (size_t i = 0; i < sizeof facts / sizeof *facts; i++) {
+    char number[SCREE_NUMBER_SIZE];
+    scree_number_format(facts[i].value, number);
+    fprintf(output.stream, "%s: %s\n", facts[i].key, number);
+  }
   return scree_output_commit(&output, error);
 }
 

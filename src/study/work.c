@@ -4,6 +4,7 @@
  * to others. A run in which several workers died one after the other is a failed one: whatever
  * kills them is in it. */
 #include "base/file.h"
+#include "base/number.h"
 #include "base/progress.h"
 #include "study/lease.h"
 #include "study/record.h"
@@ -79,12 +80,12 @@ static scree_status has_ended(const work *w, bool *ended, scree_error *error) {
 
 static bool watch(void *context, const scree_run_state *state) {
   work *w = context;
-  char note[SCREE_LEASE_NOTE], phase[200];
+  char note[SCREE_LEASE_NOTE], phase[200], fraction[SCREE_NUMBER_SIZE];
   double interval = fmin(5, 0.2 * w->options->lease_s);
   if (scree_now() - w->lease.last_renewal > interval) {
     bool kept = true;
-    snprintf(note, sizeof note, "running %.4f %s", state->fraction,
-             scree_phase_name(state->now.phase));
+    scree_number_format_digits(state->fraction, 4, fraction);
+    snprintf(note, sizeof note, "running %s %s", fraction, scree_phase_name(state->now.phase));
     w->renewal = scree_lease_renew(&w->lease, note, &kept, &w->renewal_error);
     w->lost = !kept;
   }

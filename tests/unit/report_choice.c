@@ -4,6 +4,7 @@
 #include "base/file.h"
 #include "base/rng.h"
 #include "choice/criterion.h"
+#include "base/number.h"
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/plot.h"
@@ -156,19 +157,19 @@ static void json_is_valid_whatever_the_texts(void **state) {
 static void numbers_read_back_the_same(void **state) {
   (void)state;
   scree_rng rng = {6, 6, 0};
-  char buffer[32];
+  char buffer[SCREE_NUMBER_SIZE];
   for (int trial = 0; trial < 20000; trial++) {
     uint64_t bits = scree_rng_next(&rng);
     double x;
     memcpy(&x, &bits, 8);
     if (!isfinite(x)) continue;
-    scree_shortest_double(x, buffer);
+    scree_number_format(x, buffer);
     assert_true(strtod(buffer, NULL) == x);
     assert_true(number(buffer) && !*number(buffer));
   }
-  scree_shortest_double(0.1, buffer);
+  scree_number_format(0.1, buffer);
   assert_string_equal(buffer, "0.1");
-  scree_shortest_double(1e-5, buffer);
+  scree_number_format(1e-5, buffer);
   assert_string_equal(buffer, "1e-05");
 }
 
