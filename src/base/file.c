@@ -8,7 +8,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-enum { STREAM_START_BYTES = 1 << 20 };
+enum { STREAM_START_BYTES = 1 << 20, TEMPORARY_NAMES = 1000 };
 
 /* Reads a stream of unknown length, doubling. */
 static scree_status read_stream(int fd, const char *name, size_t max_bytes, char **bytes,
@@ -96,6 +96,18 @@ scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, s
   return status;
 }
 
+/* A new file beside path under a name that nobody else has: another machine that shares the folder
+ * may have a process of the same number, and a killed one may have left its file. */
+static int create_beside(const char *path, char *name, size_t size) {
+  int fd = -1;
+  for (int attempt = 0; attempt < TEMPORARY_NAMES; attempt++) {
+    snprintf(name, size, "%s.%ld-%d.part", path, (long)getpid(), attempt);
+    fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (fd >= 0 || errno != EEXIST) break;
+  }
+  return fd;
+}
+
 scree_status scree_output_open(const char *path, bool overwrite, scree_output *output,
                                scree_error *error) {
   if (!strcmp(path, "-")) {
@@ -103,46 +115,51 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
     return SCREE_OK;
   }
   struct stat info;
-  if (!overwrite && stat(path, &info) == 0)
+  bool exists = stat(path, &info) == 0;
+  bool direct = exists && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+  if (exists && !overwrite && !direct)
     return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
   size_t size = strlen(path) + 32;
-  scree_output opened = {NULL, scree_strdup(path), scree_alloc(size, 1)};
+  scree_output opened = {NULL, scree_strdup(path), direct ? NULL : scree_alloc(size, 1)};
   int fd = -1;
-  if (!opened.path || !opened.temporary_path) {
-    scree_fail_memory(error, size, "a file name");
-    goto fail;
-  }
-  snprintf(opened.temporary_path, size, "%s.%ld.part", path, (long)getpid());
-  fd = open(opened.temporary_path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  scree_status status = SCREE_OK;
+  if (!opened.path || (!direct && !opened.temporary_path))
+    status = scree_fail_memory(error, size, "a file name");
+  else
+    fd = direct ? open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY)
+                : create_beside(path, opened.temporary_path, size);
   opened.stream = fd >= 0 ? fdopen(fd, "wb") : NULL;
-  if (!opened.stream) {
-    scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
-    goto fail;
+  if (status == SCREE_OK && !opened.stream)
+    status = scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
+  if (status == SCREE_OK) {
+    *output = opened;
+    return SCREE_OK;
   }
-  *output = opened;
-  return SCREE_OK;
-fail:
-  if (fd >= 0) close(fd);
+  if (fd >= 0) {
+    close(fd);
+    if (!direct) unlink(opened.temporary_path);
+  }
   scree_free(opened.path);
   scree_free(opened.temporary_path);
-  return error ? error->status : SCREE_IO;
+  return status;
 }
 
 scree_status scree_output_commit(scree_output *output, scree_error *error) {
-  if (!output->temporary_path) {
+  if (!output->path) {
     if (fflush(output->stream) == 0 && !ferror(output->stream)) return SCREE_OK;
     return scree_fail(error, SCREE_IO, "standard output: cannot write: %s", strerror(errno));
   }
   errno = 0;
-  bool written =
-      fflush(output->stream) == 0 && !ferror(output->stream) && fsync(fileno(output->stream)) == 0;
+  bool direct = !output->temporary_path;
+  bool written = fflush(output->stream) == 0 && !ferror(output->stream) &&
+                 (direct || fsync(fileno(output->stream)) == 0);
   int reason = errno;
   if (fclose(output->stream) != 0 && written) {
     written = false;
     reason = errno;
   }
   output->stream = NULL;
-  if (written && rename(output->temporary_path, output->path) != 0) {
+  if (written && !direct && rename(output->temporary_path, output->path) != 0) {
     written = false;
     reason = errno;
   }
@@ -155,10 +172,8 @@ scree_status scree_output_commit(scree_output *output, scree_error *error) {
 }
 
 void scree_output_discard(scree_output *output) {
-  if (output->temporary_path) {
-    if (output->stream) fclose(output->stream);
-    unlink(output->temporary_path);
-  }
+  if (output->path && output->stream) fclose(output->stream);
+  if (output->temporary_path) unlink(output->temporary_path);
   scree_free(output->path);
   scree_free(output->temporary_path);
   *output = (scree_output){0};
@@ -170,6 +185,7 @@ static bool folder_exists(const char *path) {
 }
 
 scree_status scree_folder_create(const char *path, scree_error *error) {
+  if (!*path) return scree_fail(error, SCREE_BAD_ARGUMENT, "a folder's name is empty");
   char *partial = scree_strdup(path);
   if (!partial) return scree_fail_memory(error, strlen(path), "a folder name");
   scree_status status = SCREE_OK;
@@ -178,8 +194,8 @@ scree_status scree_folder_create(const char *path, scree_error *error) {
     char kept = *end;
     *end = 0;
     if (mkdir(partial, 0777) != 0 && !folder_exists(partial))
-      status =
-          scree_fail(error, SCREE_IO, "%s: cannot create the folder: %s", partial, strerror(errno));
+      status = scree_fail(error, SCREE_IO, "%s: cannot create the folder: %s", partial,
+                          errno == EEXIST ? "a file has that name" : strerror(errno));
     *end = kept;
     if (!kept) break;
   }

@@ -1,5 +1,6 @@
 /* Whole files in, whole files out. Nothing half-written: output goes to a temporary name beside the
- * target and is renamed when complete and on disk. */
+ * target and is renamed when complete and on disk. A target that is no file (a device, a pipe) is
+ * written to as it stands. */
 #ifndef SCREE_BASE_FILE_H
 #define SCREE_BASE_FILE_H
 
@@ -13,7 +14,8 @@ scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, s
 /* A file being written. */
 typedef struct scree_output {
   FILE *stream;
-  char *path, *temporary_path; /* temporary_path NULL: the stream is stdout */
+  char *path;           /* NULL: the stream is stdout */
+  char *temporary_path; /* NULL: path is no file and written to directly */
 } scree_output;
 
 /* Opens path for writing ("-" is stdout). Without overwrite an existing file is refused with

@@ -17,8 +17,8 @@ const cli_option cli_common_options[] = {
      "Show progress even where stderr is not a terminal.", 0, 0, NULL},
     {"quiet", 'q', CLI_FLAG, offsetof(cli_common, quiet), NULL, "Only results and errors.", 0, 0,
      NULL},
-    {"verbose", 'v', CLI_FLAG, offsetof(cli_common, verbose), NULL, "Say more on stderr.", 0, 0,
-     NULL},
+    {"verbose", 'v', CLI_FLAG, offsetof(cli_common, verbose), NULL,
+     "Say at the end what it cost, on stderr: time, processor time, memory.", 0, 0, NULL},
     {"help", 'h', CLI_FLAG, offsetof(cli_common, help), NULL, "Show this help.", 0, 0, NULL},
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;

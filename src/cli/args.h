@@ -50,7 +50,8 @@ typedef struct cli_call {
   const void *options; /* the verb's struct, filled */
   const char *const *inputs;
   size_t input_count;
-  bool quiet, verbose;
+  bool quiet;
+  size_t max_memory;              /* bytes; 0: no limit */
   const scree_progress *progress; /* draws on stderr where that is a terminal; Ctrl-C cancels */
   const char *command_line;       /* for provenance, words quoted where needed */
 } cli_call;

@@ -50,11 +50,11 @@ static scree_status refuse_existing(const choose_run *run, const char *before, c
 static scree_status make_subfolder(const choose_run *run, const char *name, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
   scree_status status = join(run, name, "", "", path, error);
-  return status == SCREE_OK ? cli_make_folder(path, error) : status;
+  return status == SCREE_OK ? scree_folder_create(path, error) : status;
 }
 
 scree_status choose_prepare_folder(const choose_run *run, scree_error *error) {
-  scree_status status = cli_make_folder(run->arguments->output, error);
+  scree_status status = scree_folder_create(run->arguments->output, error);
   for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
     status = refuse_existing(run, "", FIGURES[i], "", error);
   for (int i = 0; i < SINGLE_FILE_COUNT && status == SCREE_OK; i++)

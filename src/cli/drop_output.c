@@ -34,7 +34,7 @@ scree_status drop_open_output(drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
   scree_status status = make_path(run, "series.csv", path, error);
   if (status != SCREE_OK) return status;
-  status = cli_make_folder(run->arguments->output, error);
+  status = scree_folder_create(run->arguments->output, error);
   if (status != SCREE_OK) return status;
   run->series = fopen(path, run->arguments->overwrite ? "w" : "wx");
   if (!run->series) return fail(error, SCREE_IO, path, strerror(errno));

@@ -1,8 +1,6 @@
 #include "cli/input.h"
 
-#include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char SAMPLE_PREFIX[] = "sample:";
 
@@ -50,31 +48,6 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
   char *dot = strrchr(buffer, '.');
   if (dot && dot != buffer) *dot = 0;
   if (!buffer[0]) snprintf(buffer, size, "scan");
-}
-
-scree_status cli_make_folder(const char *path, scree_error *error) {
-  char part[4096];
-  struct stat info;
-  const char *reason = NULL;
-  if (strlen(path) >= sizeof part || !*path) {
-    reason = "no name for a folder";
-  } else {
-    memcpy(part, path, strlen(path) + 1);
-    for (char *c = part + 1; *c; c++) {
-      if (*c != '/') continue;
-      *c = 0;
-      mkdir(part, 0777);
-      *c = '/';
-    }
-    if (mkdir(part, 0777) != 0 && errno != EEXIST)
-      reason = strerror(errno);
-    else if (stat(part, &info) != 0 || !S_ISDIR(info.st_mode))
-      reason = "is a file, not a folder";
-  }
-  if (!reason) return SCREE_OK;
-  error->status = SCREE_IO;
-  snprintf(error->message, sizeof error->message, "%.700s: %s", path, reason);
-  return SCREE_IO;
 }
 
 const char *cli_count_text(size_t count, char buffer[32]) {

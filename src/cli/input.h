@@ -46,9 +46,6 @@ scree_status cli_load(const char *word, const cli_input_options *options,
 /* The word without folders and ending, or the sample's name, into buffer; "stdin" for "-". */
 void cli_short_name(const char *word, char *buffer, size_t size);
 
-/* Makes the folder and its parents; fails where one cannot be made or is a file. */
-scree_status cli_make_folder(const char *path, scree_error *error);
-
 /* 12345678 as 12,345,678 */
 const char *cli_count_text(size_t count, char buffer[32]);
 

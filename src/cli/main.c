@@ -1,6 +1,7 @@
 #include "cli/args.h"
 #include "cli/terminal.h"
 
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -52,7 +53,17 @@ static int help(int word_count, char **words) {
   return 0;
 }
 
+/* What it cost, on stderr. */
+static void tell_costs(const scree_work_start *start) {
+  scree_work_start now = scree_work_started();
+  fprintf(stderr,
+          "scree %s: %.1f s, %.1f s of processor time on up to %d threads, %.0f MB at most\n",
+          scree_version(), now.elapsed - start->elapsed, now.processor - start->processor,
+          scree_threads(), (double)scree_memory_peak() / 1e6);
+}
+
 static int run(const cli_verb *verb, int argc, char **argv) {
+  const scree_work_start start = scree_work_started();
   _Alignas(max_align_t) unsigned char options[CLI_OPTIONS_BYTES];
   cli_common common = {0};
   memcpy(options, verb->defaults, verb->options_size);
@@ -78,23 +89,27 @@ static int run(const cli_verb *verb, int argc, char **argv) {
                    inputs,
                    input_count,
                    common.quiet,
-                   common.verbose,
+                   common.max_memory,
                    cli_terminal_start(show),
                    command_line};
   result = verb->run(&call);
   cli_terminal_end();
+  if (common.verbose) tell_costs(&start);
   if (cli_interrupted()) cli_terminal_reraise();
-  if (fflush(stdout) != 0 || ferror(stdout)) {
-    perror("scree: cannot write to standard output");
-    result = 1;
-  }
 done:
   free(command_line);
   free(inputs);
   return result;
 }
 
-int main(int argc, char **argv) {
+/* A standard stream that came closed would be the number of the first file opened, and what is
+ * printed would land in it. Reading /dev/null fails where it is written to, as it should. */
+static void fill_standard_streams(void) {
+  for (int fd = 0; fd < 3; fd++)
+    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd ? O_RDONLY : O_WRONLY) != fd) _exit(1);
+}
+
+static int act(int argc, char **argv) {
   if (argc < 2) {
     cli_print_overview(stderr);
     return 2;
@@ -109,4 +124,12 @@ int main(int argc, char **argv) {
   const cli_verb *verb = cli_find_verb(word);
   if (!verb) return cli_misuse(NULL, "unknown verb '%s'", word);
   return run(verb, argc, argv);
+}
+
+int main(int argc, char **argv) {
+  fill_standard_streams();
+  int result = act(argc, argv);
+  if (result != 0 || (fflush(stdout) == 0 && !ferror(stdout))) return result;
+  perror("scree: cannot write to standard output");
+  return 1;
 }

@@ -28,9 +28,10 @@ size_t study_rank(void) {
 typedef struct pool {
   const cli_call *call;
   const char *folder;
-  char threads[24], lease[40];
+  char threads[24], lease[40], memory[24];
   pid_t workers[MOST_JOBS];
   size_t alive, replaced;
+  bool told; /* the workers, to end */
   int result;
 } pool;
 
@@ -44,6 +45,10 @@ static bool start_worker(pool *p, size_t slot) {
              "--lease", p->lease}};
   size_t count = 10;
   if (a->no_wait) line.fixed[count++] = "--no-wait";
+  if (p->call->max_memory) {
+    line.fixed[count++] = "--max-memory";
+    line.fixed[count++] = p->memory;
+  }
   line.fixed[count++] = "--";
   line.fixed[count++] = p->call->inputs[0];
   int code = posix_spawn(&p->workers[slot], "/proc/self/exe", NULL, NULL, line.words, environ);
@@ -74,6 +79,14 @@ static void bury(pool *p, size_t slot, int status, size_t jobs) {
     p->result = 1;
 }
 
+/* A signal sent to this process alone is passed on, once: the second one would end a worker that is
+ * still writing its checkpoint. */
+static void pass_on(pool *p, size_t jobs) {
+  for (size_t i = 0; i < jobs; i++)
+    if (p->workers[i] > 0) kill(p->workers[i], SIGTERM);
+  p->told = true;
+}
+
 static void look_around(pool *p, scree_study *study, bool collect) {
   double fraction = 0;
   scree_study_result result;
@@ -94,6 +107,7 @@ int study_run_jobs(const cli_call *call, scree_study *study, const char *folder,
   int threads = scree_threads() / (int)jobs;
   snprintf(p.threads, sizeof p.threads, "%d", threads > 1 ? threads : 1);
   snprintf(p.lease, sizeof p.lease, "%.9g", a->lease);
+  snprintf(p.memory, sizeof p.memory, "%zu", call->max_memory);
   for (size_t i = 0; i < jobs; i++)
     if (!start_worker(&p, i)) break;
   for (size_t look = 1; p.alive > 0; look++) {
@@ -104,9 +118,7 @@ int study_run_jobs(const cli_call *call, scree_study *study, const char *folder,
       if (p.workers[i] > 0 && waitpid(p.workers[i], &status, WNOHANG) == p.workers[i])
         bury(&p, i, status, jobs);
     }
-    if (cli_interrupted() && look % 5 == 0) /* sent to this process alone: pass it on */
-      for (size_t i = 0; i < jobs; i++)
-        if (p.workers[i] > 0) kill(p.workers[i], SIGTERM);
+    if (cli_interrupted() && !p.told && look % 5 == 0) pass_on(&p, jobs);
     look_around(&p, study, look % LOOKS_A_COLLECT == 0);
   }
   return p.result;

@@ -19,8 +19,9 @@ static void write_quoted(FILE *stream, const char *text) {
   putc('\'', stream);
 }
 
-static bool write_script(const char *path, const char *study, const char *folder, size_t tasks,
-                         double lease) {
+static bool write_script(const cli_call *call, const char *path, const char *study,
+                         const char *folder, size_t tasks) {
+  const study_arguments *a = call->options;
   char program[PATH_MAX];
   FILE *stream = fopen(path, "w");
   if (!stream) return false;
@@ -35,13 +36,15 @@ static bool write_script(const char *path, const char *study, const char *folder
           "#SBATCH --requeue\n"
           "#SBATCH --open-mode=append\n"
           "#SBATCH --signal=B:TERM@60\n"
-          "#SBATCH --output=%s/slurm-%%A_%%a.out\n"
-          "exec ",
-          scree_version(), tasks - 1, folder);
+          "#SBATCH --output=",
+          scree_version(), tasks - 1);
+  write_quoted(stream, folder);
+  fputs("/slurm-%A_%a.out\nexec ", stream);
   write_quoted(stream, program);
   fputs(" study -o ", stream);
   write_quoted(stream, folder);
-  fprintf(stream, " --worker --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ", lease);
+  if (call->max_memory) fprintf(stream, " --max-memory %zu", call->max_memory);
+  fprintf(stream, " --worker --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ", a->lease);
   write_quoted(stream, study);
   putc('\n', stream);
   bool good = !ferror(stream);
@@ -72,7 +75,7 @@ int study_run_slurm(const cli_call *call, const scree_study *study, const char *
     return 1;
   }
   snprintf(script, sizeof script, "%s/study.sbatch", full);
-  if (!write_script(script, file, full, tasks < runs ? tasks : runs, a->lease)) {
+  if (!write_script(call, script, file, full, tasks < runs ? tasks : runs)) {
     fprintf(stderr, "scree: %s: cannot write: %s\n", script, strerror(errno));
     return 1;
   }

@@ -73,10 +73,12 @@ static bool report(void *context, const char *phase, double fraction) {
 
 const scree_progress *cli_terminal_start(bool show) {
   static const scree_progress progress = {report, NULL, 0.1};
-  struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND};
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND}, before;
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
+  if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* else: nohup */
+    sigaction(SIGHUP, &action, NULL);
   terminal.show = show;
   return &progress;
 }

@@ -4,8 +4,8 @@
 
 #include "scree.h"
 
-/* A progress that draws one line on stderr (when show is set) and cancels after Ctrl-C or SIGTERM.
- */
+/* A progress that draws one line on stderr (when show is set) and cancels after Ctrl-C, SIGTERM, or
+ * a terminal that goes away (SIGHUP, unless ignored). */
 const scree_progress *cli_terminal_start(bool show);
 /* One's own line in the same place, when show was set. */
 void cli_terminal_line(const char *text);
@@ -13,7 +13,7 @@ void cli_terminal_line(const char *text);
 void cli_terminal_seconds(char *text, size_t size, double seconds);
 /* Clears the line. */
 void cli_terminal_end(void);
-/* Whether Ctrl-C or SIGTERM came; with true, cli_terminal_reraise ends the program as the signal
+/* Whether one of these came; with true, cli_terminal_reraise ends the program as the signal
  * would have done, so that the shell sees it. */
 bool cli_interrupted(void);
 void cli_terminal_reraise(void);

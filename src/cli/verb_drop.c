@@ -160,7 +160,7 @@ static scree_status write_due(drop_run *run, schedule *s, double time, scree_err
   double interval = run->arguments->frame_interval;
   if (interval > 0 && time >= s->next_frame) {
     status = drop_write_frame(run, error);
-    while (s->next_frame <= time) s->next_frame += interval;
+    s->next_frame = interval * (floor(time / interval) + 1);
   }
   if (status == SCREE_OK && time >= s->next_line) {
     status = drop_write_line(run, error);
