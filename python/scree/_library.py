@@ -6,7 +6,7 @@ import ctypes
 import ctypes.util
 import os
 import pathlib
-from ctypes import (CFUNCTYPE, POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_int, c_longlong, c_size_t,
+from ctypes import (CFUNCTYPE, POINTER, Structure, c_bool, c_char, c_char_p, c_double, c_float, c_int, c_longlong, c_size_t,
                     c_uint32, c_uint64, c_void_p)
 
 double3, double4, double33 = c_double * 3, c_double * 4, c_double * 3 * 3
@@ -225,6 +225,54 @@ class scree_run_point(Structure):
         "sector_deg", "cone_deg", "silhouette_deg", "height")]
 
 
+class scree_run_shape(Structure):
+    _fields_ = [("particle", c_void_p), ("density_factor", c_double), ("name", c_char_p), ("source", c_char_p)]
+
+
+class scree_run_costs(Structure):
+    _fields_ = [("time_step", c_double), ("step_count", c_uint64), ("particle_steps", c_uint64),
+                ("wall_seconds", c_double), ("processor_seconds", c_double), ("piece_count", c_size_t),
+                ("largest_overlap", c_double)]
+
+
+class scree_run_state(Structure):
+    _fields_ = [("run", c_void_p), ("now", scree_run_point), ("fraction", c_double),
+                ("steps_per_second", c_double), ("seconds_left", c_double)]
+
+
+class scree_experiment(Structure):
+    _fields_ = [("preset", c_void_p), ("particle_count", c_size_t), ("seed", c_uint64), ("density", c_double),
+                ("mass_rule", c_int)] + [(name, c_double) for name in (
+                    "cylinder_diameter", "disc_diameter", "pack_time", "settle_time", "lift_speed", "lift_time",
+                    "hold_time", "still_energy")] + [
+        ("stop_when_still", c_bool), ("inlet", c_int)] + [(name, c_double) for name in (
+            "drop_height", "gravity", "young_particle", "young_wall", "poisson", "restitution",
+            "friction_particle", "friction_wall")] + [("contact_law", c_int)] + [(name, c_double) for name in (
+                "steps_per_contact", "stiffness_factor", "frame_interval", "checkpoint_interval",
+                "series_interval", "angle_interval", "height_cell")] + [
+        ("sector_count", c_size_t), ("band_low", c_double), ("band_high", c_double)]
+
+
+WATCH = CFUNCTYPE(c_bool, c_void_p, POINTER(scree_run_state))
+FRAME = CFUNCTYPE(c_int, c_void_p, c_void_p, c_size_t, c_void_p)
+
+
+class scree_run_job(Structure):
+    _fields_ = [("experiment", POINTER(scree_experiment)), ("shapes", POINTER(scree_run_shape)),
+                ("shape_count", c_size_t), ("folder", c_char_p), ("motion", c_bool), ("resume", c_bool),
+                ("overwrite", c_bool), ("watch", WATCH), ("frame", FRAME), ("context", c_void_p)]
+
+
+class scree_motion(Structure):
+    _fields_ = [("frame_count", c_size_t), ("body_count", c_size_t), ("time", POINTER(c_double)),
+                ("cylinder_height", POINTER(c_double)), ("poses", POINTER(c_float))]
+
+
+class scree_heap_entry(Structure):
+    _fields_ = [("run", c_void_p), ("result", POINTER(scree_run_result)), ("file", c_char_p),
+                ("measure", POINTER(scree_experiment)), ("command_line", c_char_p)]
+
+
 VISITOR = CFUNCTYPE(c_bool, c_void_p, POINTER(scree_contact))
 
 _E, _H, _P = POINTER(scree_error), c_void_p, POINTER(scree_progress)  # error, opaque handle, progress
@@ -264,6 +312,14 @@ _FALLIBLE = {  # argument types before the error
     "pvd_write": (POINTER(_S), POINTER(c_double), c_size_t, _S, c_bool),
     "run_load": (_S, _HH),
     "run_measure": (_H, POINTER(scree_run_result)),
+    "run_complete": (POINTER(scree_run_job), _HH),
+    "motion_read": (_S, POINTER(scree_motion)),
+    "experiment_preset": (_S, POINTER(scree_experiment)),
+    "experiment_read": (_S, POINTER(scree_experiment)),
+    "experiment_set": (POINTER(scree_experiment), _S, _S),
+    "experiment_check": (POINTER(scree_experiment),),
+    "heap_json_write": (POINTER(scree_heap_entry), _S, c_bool),
+    "page_write": (POINTER(_S), c_size_t, _S, c_bool),
 }
 _PLAIN = {  # result, argument types
     "version": (_S, ()),
@@ -314,6 +370,14 @@ _PLAIN = {  # result, argument types
     "world_time_step": (c_double, (_H, c_char_p)),
     "world_observe": (None, (_H, POINTER(scree_observation))),
     "world_hash": (scree_checksum, (_H,)),
+    "experiment_free": (None, (POINTER(scree_experiment),)),
+    "experiment_key": (_S, (c_size_t,)),
+    "experiment_get": (c_bool, (POINTER(scree_experiment), _S, c_char_p, c_size_t)),
+    "motion_free": (None, (POINTER(scree_motion),)),
+    "run_shape_count": (c_size_t, (_H,)),
+    "run_get_shape": (None, (_H, c_size_t, POINTER(scree_run_shape))),
+    "run_body_shape": (c_size_t, (_H, c_size_t)),
+    "run_get_costs": (None, (_H, POINTER(scree_run_costs))),
     "run_free": (None, (_H,)),
     "run_world": (_H, (_H,)),
     "run_phase": (c_int, (_H,)),

@@ -37,7 +37,7 @@ def table(pointer, rows, columns, owner):
         values = numpy.frombuffer(block, dtype=kind).reshape(rows, columns)
         values.flags.writeable = False
         return values
-    letter = "d" if kind is ctypes.c_double else "I"
+    letter = {ctypes.c_double: "d", ctypes.c_float: "f"}.get(kind, "I")
     return memoryview(block).cast("B").cast(letter, (rows, columns)).toreadonly()
 
 

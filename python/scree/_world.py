@@ -1,4 +1,4 @@
-"""Particles, worlds, and the results of runs."""
+"""Particles and worlds."""
 import ctypes
 import os
 import weakref
@@ -198,42 +198,6 @@ class World:
         options = lib["default_export_options"]()
         options.unit_m, options.overwrite = metres(unit), overwrite
         call("world_export", self._handle, options, os.fsencode(folder))
-
-
-class _Owner:
-    pass
-
-
-class Run:
-    """A run of the angle-of-repose experiment as it stands in a checkpoint or frame."""
-
-    def __init__(self, path):
-        handle = ctypes.c_void_p()
-        call("run_load", os.fsencode(path), handle)
-        self._handle = handle
-        self._owner = _Owner()  # the run is freed when neither it nor its world is in use
-        weakref.finalize(self._owner, lib["run_free"], handle)
-        self.world = World.__new__(World)
-        self.world._handle = ctypes.c_void_p(lib["run_world"](handle))
-        self.world._owner = self._owner
-
-    is_frame = property(lambda self: lib["run_is_frame"](self._handle))
-    phase = property(lambda self: lib["phase_name"](lib["run_phase"](self._handle)).decode())
-
-    def measure(self):
-        """The heap: repose (angles in degrees, NaN where there is none), packing_fraction, coordination, ..."""
-        result = c.scree_run_result()
-        call("run_measure", self._handle, result)
-        return from_struct(result)
-
-    def series(self):
-        """The state over time, a point each: time, kinetic, mean_rotation, ..."""
-        count = ctypes.c_size_t()
-        points = lib["run_series"](self._handle, count)
-        found = [from_struct(points[i]) for i in range(count.value)]
-        for point in found:
-            point.phase = lib["phase_name"](point.phase).decode()
-        return found
 
 
 def write_pvd(path, files, times, overwrite=False):

@@ -29,4 +29,17 @@ subprocess.run([sys.executable, "-c", coarse, examples, folder / "pile", folder 
 spheres = [[float(x) for x in line.split()] for line in (folder / "liggghts/clump-0.txt").read_text().splitlines()]
 assert spheres and all(sum(x * x for x in s[:3]) ** 0.5 + s[3] <= shape["bounding_radius"] for s in spheres)
 assert (folder / "liggghts/in.pile").read_text().count("insert/pack") == 2
+
+# a heap, with fewer particles and shorter phases than the example takes by itself
+short = ("import sys; sys.path.insert(0, sys.argv[1]); import heap; heap.main(sys.argv[2], fields={'particles': 6, "
+         "'phases.pack_time': 0.3, 'phases.settle_time': 0.1, 'phases.lift_time': 0.2, 'phases.hold_time': 0.1}, triangles=40)")
+for _ in range(2):  # the second time from what the first one left
+    heap_said = subprocess.run([sys.executable, "-c", short, examples, folder / "heap"], check=True, stdout=subprocess.PIPE,
+                               text=True).stdout
+    assert "no heap: " in heap_said and "6 particles after" in heap_said and "highest centre" in heap_said, heap_said
+assert "screeMOV" in (folder / "heap/motion.scree").read_bytes()[:8].decode()
+result = json.loads((folder / "heap/result.json").read_text())
+assert [shape["name"] for shape in result["shapes"]] == ["fp-1", "sp-1"] and result["result"]["body_count"] == 6
+assert "part-0" in (folder / "heap/report.html").read_text()
 print(said)
+print(heap_said)

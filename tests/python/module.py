@@ -245,5 +245,59 @@ class Worlds(unittest.TestCase):
         self.assertGreater(len(world), 0)
 
 
+class Experiments(unittest.TestCase):
+    FIELDS = {"particles": 8, "cylinder.diameter": 0.2, "disc.diameter": 0.6, "phases.pack_time": 0.3, "phases.lift_time": 0.2,
+              "phases.settle_time": 0.1, "phases.hold_time": 0.1, "phases.lift_speed": 1, "phases.drop_height": 0.03}
+
+    def experiment(self):
+        return scree.Experiment("demo", self.FIELDS)
+
+    def test_fields(self):
+        e = self.experiment()
+        self.assertEqual((e["particles"], e["cylinder.diameter"], e["phases.inlet"], e["phases.stop_when_still"]), (8, 0.2, "heap", True))
+        e["contact.friction_particle"] = 0.25
+        e["phases.stop_when_still"] = False
+        self.assertEqual((e["contact.friction_particle"], e["phases.stop_when_still"]), (0.25, False))
+        self.assertIn("measure.band_low", e.keys())
+        with self.assertRaises(KeyError):
+            e["nothing"]
+        with self.assertRaisesRegex(scree.Error, "must be"):
+            e["contact.friction_particle"] = -1
+        with open("more.yaml", "w", encoding="utf-8") as file:
+            file.write("particles: 9\n")
+        self.assertEqual(scree.Experiment("small", path="more.yaml")["particles"], 9)
+
+    def test_run(self):
+        scan = scree.sample("fp-1", resolution=4e-3, noise=0)
+        shapes = {"phone": scan.simplify(count=40), "ball": scree.Particle.sphere(0.02)}
+        seen = []
+        with self.assertRaises(scree.Error) as refused:
+            scree.repose(shapes, self.experiment(), folder="heap", progress=lambda phase, fraction: seen.append(fraction) or False)
+        self.assertEqual(refused.exception.status, "CANCELLED")
+        with self.assertRaises(ZeroDivisionError):
+            scree.repose(shapes, self.experiment(), folder="heap", resume=True, progress=lambda phase, fraction: 1 / 0)
+        run = scree.repose(shapes, self.experiment(), folder="heap", resume=True)
+        whole = scree.repose(shapes, self.experiment())
+        self.assertEqual((run.phase, run.world.hash), ("done", whole.world.hash))
+        self.assertEqual(run.costs().piece_count, 3)
+        self.assertEqual([name for name, _ in run.shapes()], ["phone", "ball"])
+        self.assertEqual(sorted(run.body_shapes()), [0] * 4 + [1] * 4)
+        motion = scree.Motion("heap")
+        self.assertEqual((len(motion), motion.body_count), (len(motion.time), 8))
+        self.assertEqual(motion.time[len(motion) - 1], run.world.time)
+        last = motion.poses[len(motion) - 1]
+        for body in run.world.live():
+            for k in range(3):
+                self.assertAlmostEqual(last[body][k], run.world.body(body).position[k], 6)
+        run.write_json("heap/result.json")
+        scree.report("heap", "heap.html")
+        self.assertGreater(os.path.getsize("heap.html"), 600000)
+        self.assertEqual(scree.Run("heap/last.scree").series()[-1].time, run.series()[-1].time)
+        with self.assertRaises(scree.Error):
+            scree.Motion("heap/last.scree")
+        with self.assertRaises(scree.Error):
+            scree.repose([], self.experiment())
+
+
 if __name__ == "__main__":
     unittest.main()
