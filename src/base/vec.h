@@ -125,6 +125,16 @@ static inline quat quat_unit(quat q) {
   double n = sqrt(q.w * q.w + q.x * q.x + q.y * q.y + q.z * q.z);
   return n > 0 ? (quat){q.w / n, q.x / n, q.y / n, q.z / n} : (quat){1, 0, 0, 0};
 }
+static inline quat quat_conjugate(quat q) {
+  return (quat){q.w, -q.x, -q.y, -q.z};
+}
+/* At least how far the rotation from p to q moves a point at distance 1, 2 sin(angle/2): a little
+ * more for large angles, exact for small ones. */
+static inline double quat_chord(quat p, quat q) {
+  double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;
+  double w = q.w - sign * p.w, x = q.x - sign * p.x, y = q.y - sign * p.y, z = q.z - sign * p.z;
+  return 2 * sqrt(w * w + x * x + y * y + z * z);
+}
 /* The rotation by the angle |r| about r. */
 static inline quat quat_from_rotation_vector(vec3 r) {
   double angle2 = vec3_norm2(r);

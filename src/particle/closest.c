@@ -96,16 +96,16 @@ void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, d
     near->next = fmin(near->next, near->distance[--near->count]);
 }
 
-double scree_nearest_face(const scree_particle *particle, vec3 p, double reach, uint32_t *face) {
+/* Below one node, nearer child first: distance and face of what is nearer than *best2. */
+static void nearest_below(const scree_particle *particle, uint32_t start, vec3 p, double *best2,
+                          uint32_t *face) {
   const scree_tree *tree = &particle->face_tree;
   const scree_tree_node *nodes = tree->nodes;
   tree_entry stack[SCREE_TREE_STACK];
   int depth = 0;
-  double best2 = reach * reach;
-  bool found = false;
-  tree_entry entry = {0, scree_box_distance2(&nodes[0].box, p)};
+  tree_entry entry = {start, scree_box_distance2(&nodes[start].box, p)};
   for (;;) {
-    if (entry.distance2 < best2) {
+    if (entry.distance2 < *best2) {
       const scree_tree_node *node = &nodes[entry.node];
       if (node->count == 0) { /* on with the nearer child */
         uint32_t left = node->first;
@@ -113,7 +113,7 @@ double scree_nearest_face(const scree_particle *particle, vec3 p, double reach, 
                dr = scree_box_distance2(&nodes[left + 1].box, p);
         bool left_first = dl <= dr;
         double nearer = left_first ? dl : dr, farther = left_first ? dr : dl;
-        if (farther < best2) stack[depth++] = (tree_entry){left + left_first, farther};
+        if (farther < *best2) stack[depth++] = (tree_entry){left + left_first, farther};
         entry = (tree_entry){left + !left_first, nearer};
         continue;
       }
@@ -121,16 +121,21 @@ double scree_nearest_face(const scree_particle *particle, vec3 p, double reach, 
         uint32_t f = tree->order[node->first + k];
         int region;
         double d2 = vec3_norm2(vec3_sub(p, scree_closest_on_face(&particle->faces[f], p, &region)));
-        if (d2 >= best2) continue;
-        best2 = d2;
+        if (d2 >= *best2) continue;
+        *best2 = d2;
         *face = f;
-        found = true;
       }
     }
-    if (depth == 0) break;
+    if (depth == 0) return;
     entry = stack[--depth];
   }
-  return found ? sqrt(best2) : INFINITY;
+}
+
+double scree_nearest_face(const scree_particle *particle, const uint32_t *nodes, int node_count,
+                          vec3 p, double reach, uint32_t *face) {
+  double best2 = reach * reach;
+  for (int i = 0; i < node_count; i++) nearest_below(particle, nodes[i], p, &best2, face);
+  return best2 < reach * reach ? sqrt(best2) : INFINITY;
 }
 
 bool scree_is_inside(const scree_particle *particle, vec3 p) {

@@ -64,8 +64,10 @@ typedef struct scree_near {
 void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, double slack,
                          scree_near *near);
 
-/* The nearest face closer than `reach`, and its distance; INFINITY for none. */
-double scree_nearest_face(const scree_particle *particle, vec3 p, double reach, uint32_t *face);
+/* The nearest face below these nodes of the face tree that is closer than `reach`, and its
+ * distance; INFINITY for none. */
+double scree_nearest_face(const scree_particle *particle, const uint32_t *nodes, int node_count,
+                          vec3 p, double reach, uint32_t *face);
 
 /* Whether p is inside a closed surface, by its winding number (van Oosterom and Strackee 1983). */
 bool scree_is_inside(const scree_particle *particle, vec3 p);

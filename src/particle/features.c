@@ -244,7 +244,7 @@ static void make_points_and_edges(extraction *x) {
     double half = fmin(0.5 * edge->turn + cone_slack, 1.57);
     vec3 sum = vec3_add(p->faces[edge->face1].normal, p->faces[edge->face2].normal);
     p->edges[p->edge_count++] = (scree_edge){
-        start, end, vec3_unit(along), vec3_norm(along), vec3_unit(sum), cos(half), sin(half)};
+        start, end, vec3_unit(along), vec3_norm(along), {vec3_unit(sum), cos(half), sin(half)}, 0};
   }
 }
 
@@ -300,6 +300,15 @@ static void box_items(const scree_particle *p, int what, scree_box *boxes) {
       boxes[i] = scree_box_grown((scree_box){p->points[i], p->points[i]}, p->point_radii[i]);
 }
 
+static scree_status add_edge_cones(scree_particle *p, scree_error *error) {
+  scree_cone *cones = scree_alloc(p->edge_count, sizeof *cones);
+  if (!cones) return scree_fail_memory(error, p->edge_count * sizeof *cones, "cones of edges");
+  for (size_t e = 0; e < p->edge_count; e++) cones[e] = p->edges[e].normals;
+  scree_status status = scree_tree_add_cones(&p->edge_tree, cones, error);
+  scree_free(cones);
+  return status;
+}
+
 scree_status scree_particle_build_trees(scree_particle *p, scree_error *error) {
   size_t most = p->face_count > p->edge_count ? p->face_count : p->edge_count;
   if (p->point_count > most) most = p->point_count;
@@ -320,5 +329,5 @@ scree_status scree_particle_build_trees(scree_particle *p, scree_error *error) {
     any = true;
   }
   scree_free(boxes);
-  return status;
+  return status ? status : add_edge_cones(p, error);
 }

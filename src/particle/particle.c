@@ -13,6 +13,8 @@
 
 static const double pi = 3.14159265358979323846;
 static const double default_rounding = 0.002; /* of the size */
+static const double rim_slack = 0.3;          /* cosine; of contacts from a sheet's own side */
+enum { RIM_SIDES = 720 };
 
 scree_particle_options scree_default_particle_options(void) {
   return (scree_particle_options){.rounding = 0};
@@ -192,6 +194,50 @@ scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
   }
   *particle = p;
   return SCREE_OK;
+}
+
+/* A sheet's end is met from below and from both of its faces, a little more than half around: what
+ * lies flat on the sheet and reaches beyond it presses on the rim squarely to either. */
+static scree_edge rim_edge(vec3 start, vec3 end, vec3 outward) {
+  vec3 along = vec3_sub(end, start);
+  return (scree_edge){.start = start,
+                      .end = end,
+                      .along = vec3_unit(along),
+                      .length = vec3_norm(along),
+                      .normals = {outward, -rim_slack, sqrt(1 - rim_slack * rim_slack)},
+                      .facing = -rim_slack};
+}
+
+static void add_circle(scree_particle *p, const scree_circle *circle) {
+  for (int k = 0; k < RIM_SIDES; k++) {
+    vec3 at[2], way = {0, 0, 0};
+    for (int end = 0; end < 2; end++) {
+      double angle = 2 * pi * ((k + end) % RIM_SIDES) / RIM_SIDES, c = cos(angle), s = sin(angle);
+      at[end] = (vec3){circle->radius * c, circle->radius * s, circle->height};
+      way = vec3_add(way, (vec3){circle->radial * c, circle->radial * s, circle->axial});
+    }
+    p->points[p->point_count] = at[0];
+    p->point_radii[p->point_count++] = 0;
+    p->edges[p->edge_count++] = rim_edge(at[0], at[1], vec3_unit(way));
+  }
+}
+
+scree_status scree_particle_circles(const scree_circle *circles, size_t count,
+                                    scree_particle **particle, scree_error *error) {
+  scree_particle *p = new_particle(SCREE_PARTICLE_MESH, error);
+  if (!p) return SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(p->points, count * RIM_SIDES, error, out_of_memory);
+  SCREE_ALLOC_OR(p->point_radii, count * RIM_SIDES, error, out_of_memory);
+  SCREE_ALLOC_OR(p->edges, count * RIM_SIDES, error, out_of_memory);
+  for (size_t i = 0; i < count; i++) add_circle(p, &circles[i]);
+  set_bounding_radius(p);
+  set_counts(p);
+  if (scree_particle_build_trees(p, error) != SCREE_OK) goto out_of_memory;
+  *particle = p;
+  return SCREE_OK;
+out_of_memory:
+  scree_particle_free(p);
+  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_particle_sphere(double radius, scree_particle **particle, scree_error *error) {

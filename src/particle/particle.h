@@ -23,8 +23,8 @@ typedef struct scree_edge {
   vec3 start, end;
   vec3 along; /* unit, from start to end */
   double length;
-  vec3 outward;        /* unit, between the normals of its two faces */
-  double cosine, sine; /* of half the angle between them, widened (features.c) */
+  scree_cone normals; /* from one face's to the other's, widened (features.c) */
+  double facing;      /* least cosine of a contact's normal with their axis */
 } scree_edge;
 
 struct scree_particle {
@@ -47,6 +47,17 @@ void scree_particle_retain(scree_particle *particle);
 
 /* The surface alone, in the mesh's own coordinates, without mass: for walls. May be open. */
 scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
+                                    scree_particle **particle, scree_error *error);
+
+/* A circle about the z axis, where a round sheet ends. */
+typedef struct scree_circle {
+  double radius, height;
+  double radial, axial; /* unit: away from the sheet */
+} scree_circle;
+
+/* Circles as points and edges without faces, for the rims of walls: polygons of half a degree,
+ * which are within 1e-5 of the radius. */
+scree_status scree_particle_circles(const scree_circle *circles, size_t count,
                                     scree_particle **particle, scree_error *error);
 
 /* The same particle again, to the last bit, from its measures and its mesh, or its `count` spheres,

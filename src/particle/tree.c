@@ -3,6 +3,8 @@
 
 #include "base/alloc.h"
 
+static const double pi = 3.14159265358979323846;
+
 typedef struct tree_builder {
   const scree_box *boxes;
   scree_tree *tree;
@@ -90,7 +92,42 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+/* The least cone about both (up to rounding, for which it is widened). */
+static scree_cone join_cones(const scree_cone *a, const scree_cone *b) {
+  double wide_a = acos(a->cosine), wide_b = acos(b->cosine),
+         between = acos(fmax(-1, fmin(1, vec3_dot(a->axis, b->axis))));
+  if (between + wide_b <= wide_a) return *a;
+  if (between + wide_a <= wide_b) return *b;
+  double wide = fmin(0.5 * (between + wide_a + wide_b) + 1e-7, pi), turn = wide - wide_a;
+  vec3 aside = vec3_unit(vec3_mad(b->axis, a->axis, -vec3_dot(a->axis, b->axis)));
+  if (!(vec3_norm2(aside) > 0)) wide = pi; /* the same axis, or opposite ones */
+  return (scree_cone){vec3_unit(vec3_mad(vec3_scale(a->axis, cos(turn)), aside, sin(turn))),
+                      cos(wide), fmax(sin(wide), 0)};
+}
+
+scree_status scree_tree_add_cones(scree_tree *tree, const scree_cone *items, scree_error *error) {
+  size_t count = tree->item_count;
+  if (count == 0) return SCREE_OK;
+  size_t node_count = 1; /* children come in twos, after their parent */
+  for (size_t i = 0; i < node_count; i++) node_count += tree->nodes[i].count ? 0 : 2;
+  SCREE_ALLOC_OR(tree->cones, node_count, error, out_of_memory);
+  for (size_t i = node_count; i-- > 0;) {
+    const scree_tree_node *node = &tree->nodes[i];
+    if (node->count == 0) {
+      tree->cones[i] = join_cones(&tree->cones[node->first], &tree->cones[node->first + 1]);
+      continue;
+    }
+    tree->cones[i] = items[tree->order[node->first]];
+    for (uint32_t k = 1; k < node->count; k++)
+      tree->cones[i] = join_cones(&tree->cones[i], &items[tree->order[node->first + k]]);
+  }
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
 void scree_tree_free(scree_tree *tree) {
+  scree_free(tree->cones);
   scree_free(tree->nodes);
   scree_free(tree->order);
   *tree = (scree_tree){0};

@@ -133,7 +133,7 @@ static bool push_key(scree_world *world, uint64_t key) {
 static bool near_wall(const scree_world *world, size_t body, const scree_world_wall *wall) {
   const scree_frame *frame = &world->bodies.frame[body];
   const scree_particle *particle = world->bodies.particle[body];
-  if (wall->surface) {
+  if (!scree_wall_is_analytic(wall)) {
     scree_box box =
         scree_box_moved(&wall->surface->box, &wall->frame.rotation, wall->frame.position);
     return scree_box_meets(&world->broad->boxes[body], &box);

@@ -17,27 +17,42 @@ static const double fast_skins = 3;  /* but not reach farther than this many ski
 typedef struct listing {
   const scree_world *world;
   scree_pair *pair;
-  const scree_particle *a, *b; /* b NULL: analytic wall */
+  const scree_particle *a, *b; /* b: of an analytic wall its rims, or NULL */
   const scree_frame *relative;
   scree_scratch *scratch;
   double skin;
+  uint64_t awake[4]; /* mark_awake */
   bool failed;
 } listing;
 
-static bool is_awake(const scree_pair *pair, uint32_t kind, uint32_t a, uint32_t b) {
-  for (size_t i = 0; i < pair->active.count; i++) {
-    const scree_item *item = &pair->active.items[i];
-    if (item->kind != kind) continue;
-    bool same_a = item->a == a, same_b = item->b == b;
-    if (kind == SCREE_ITEM_POINT_FACE || kind == SCREE_ITEM_POINT_WALL) same_b = true;
-    if (kind == SCREE_ITEM_FACE_POINT) same_a = true;
-    if (same_a && same_b) return true;
+/* What tells one item from another: the cached face is not part of it. */
+static uint64_t name_of(uint32_t kind, uint32_t a, uint32_t b) {
+  if (kind == SCREE_ITEM_POINT_FACE || kind == SCREE_ITEM_POINT_WALL) b = 0;
+  if (kind == SCREE_ITEM_FACE_POINT) a = 0;
+  return (((uint64_t)a << 32 | b) + kind) * 0x9E3779B97F4A7C15u;
+}
+
+/* One bit for each awake item's name: most names are not among them. */
+static void mark_awake(listing *l) {
+  for (size_t i = 0; i < l->pair->active.count; i++) {
+    const scree_item *item = &l->pair->active.items[i];
+    uint64_t bit = name_of(item->kind, item->a, item->b) >> 56;
+    l->awake[bit >> 6] |= (uint64_t)1 << (bit & 63);
+  }
+}
+
+static bool is_awake(const listing *l, uint32_t kind, uint32_t a, uint32_t b) {
+  uint64_t name = name_of(kind, a, b), bit = name >> 56;
+  if (!(l->awake[bit >> 6] >> (bit & 63) & 1)) return false;
+  for (size_t i = 0; i < l->pair->active.count; i++) {
+    const scree_item *item = &l->pair->active.items[i];
+    if (item->kind == kind && name_of(kind, item->a, item->b) == name) return true;
   }
   return false;
 }
 
 static void put_to_sleep(listing *l, scree_item_kind kind, uint32_t a, uint32_t b, double gap) {
-  if (gap > l->skin || is_awake(l->pair, kind, a, b)) return;
+  if (gap > l->skin || is_awake(l, kind, a, b)) return;
   scree_sleeper sleeper = {l->pair->path + gap, a, b, kind};
   if (!SCREE_PUSH(&l->pair->sleeping, sleeper)) l->failed = true;
 }
@@ -50,8 +65,47 @@ static void list_wall_points(listing *l) {
   const scree_world_wall *wall = &l->world->walls.items[l->pair->b];
   for (uint32_t i = 0; i < l->a->point_count; i++) {
     vec3 closest, normal, p = into_b(l, l->a->points[i]);
-    double d = scree_wall_distance(wall, p, scree_wall_side(wall, p), &closest, &normal);
+    double side = scree_wall_side(wall, p);
+    if (scree_pair_is_new(l->pair))
+      side = scree_wall_first_side(wall, p, l->relative->position,
+                                   scree_pair_clearance(l->pair, l->a, i));
+    double d = scree_wall_distance(wall, p, side, &closest, &normal);
     put_to_sleep(l, SCREE_ITEM_POINT_WALL, i, 0, d - l->a->point_radii[i] - l->pair->smoothing);
+  }
+}
+
+/* Nodes of the other side's tree under which everything lies that can be near the present node. A
+ * walk down one tree takes the other's along, a level at a time. */
+enum { FRONT_SIZE = 48 };
+typedef struct front {
+  uint32_t nodes[FRONT_SIZE];
+  int count;
+} front;
+
+/* What the other tree's nodes must meet: a box, and for edges a cone of outward directions. */
+typedef struct sieve {
+  const scree_tree *tree;
+  scree_box box;
+  const scree_cone *cone; /* reversed; NULL: any direction */
+} sieve;
+
+static bool passes(const sieve *s, uint32_t node) {
+  return scree_box_meets(&s->tree->nodes[node].box, &s->box) &&
+         (!s->cone || scree_cones_meet(s->cone, &s->tree->cones[node]));
+}
+
+/* The front one level farther down where there is room. */
+static void refine(const sieve *s, const front *from, front *to) {
+  to->count = 0;
+  for (int i = 0; i < from->count; i++) {
+    uint32_t node = from->nodes[i], child = s->tree->nodes[node].first;
+    bool split = !s->tree->nodes[node].count && to->count + from->count - i < FRONT_SIZE;
+    if (!split) {
+      if (passes(s, node)) to->nodes[to->count++] = node;
+      continue;
+    }
+    if (passes(s, child)) to->nodes[to->count++] = child;
+    if (passes(s, child + 1)) to->nodes[to->count++] = child + 1;
   }
 }
 
@@ -62,65 +116,52 @@ typedef struct point_listing {
   bool forth;    /* from is a */
   mat3 rotation; /* from's frame into to's */
   vec3 shift;
+  double far;
 } point_listing;
 
-static void list_point(const point_listing *pl, uint32_t i) {
+static void list_point(const point_listing *pl, uint32_t i, const front *near) {
   listing *l = pl->list;
   vec3 p = vec3_add(mat3_mul_vec(&pl->rotation, pl->from->points[i]), pl->shift);
   double touch = pl->from->point_radii[i] + pl->to->measures.rounding + l->pair->smoothing;
   uint32_t face;
-  double distance = scree_nearest_face(pl->to, p, l->skin + touch, &face);
+  double distance = scree_nearest_face(pl->to, near->nodes, near->count, p, l->skin + touch, &face);
   l->scratch->closest_queries++;
   if (!(distance < INFINITY)) return;
   double gap = distance - touch;
+  if (gap > 0 && scree_pair_is_new(l->pair) && pl->to->measures.volume > 0 &&
+      scree_is_inside(pl->to, p))
+    gap = 0; /* made or moved there: nothing was seen from outside */
   if (pl->forth)
     put_to_sleep(l, SCREE_ITEM_POINT_FACE, i, face, gap);
   else
     put_to_sleep(l, SCREE_ITEM_FACE_POINT, face, i, gap);
 }
 
-/* Whether the box of any leaf meets the box. */
-static bool meets_boxes(const scree_tree *tree, const scree_box *box) {
-  const scree_tree_node *nodes = tree->nodes;
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &nodes[stack[--depth]];
-    if (!scree_box_meets(&node->box, box)) continue;
-    if (node->count) return true;
-    stack[depth++] = node->first;
-    stack[depth++] = node->first + 1;
-  }
-  return false;
+static void list_points_below(const point_listing *pl, uint32_t index, const front *above) {
+  const scree_tree_node *node = &pl->from->point_tree.nodes[index];
+  scree_box box = scree_box_moved(&node->box, &pl->rotation, pl->shift);
+  sieve s = {&pl->to->face_tree, scree_box_grown(box, pl->far), NULL};
+  front here;
+  refine(&s, above, &here);
+  if (here.count == 0) return;
+  for (uint32_t k = 0; k < node->count; k++)
+    list_point(pl, pl->from->point_tree.order[node->first + k], &here);
+  if (node->count) return;
+  list_points_below(pl, node->first, &here);
+  list_points_below(pl, node->first + 1, &here);
 }
 
 static void list_surface_points(listing *l, const scree_particle *from, const scree_particle *to,
                                 bool forth) {
   const scree_frame *r = l->relative;
-  point_listing pl = {l, from, to, forth, r->rotation, r->position};
+  point_listing pl = {l, from, to, forth, r->rotation, r->position, 0};
   if (!forth) {
     pl.rotation = mat3_transpose(&r->rotation);
     pl.shift = vec3_neg(mat3_mul_vec(&pl.rotation, r->position));
   }
-  double far = l->skin + l->pair->smoothing + to->measures.rounding; /* boxes hold the radii */
-  const scree_tree_node *nodes = from->point_tree.nodes;
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0;
-  if (from->point_count) stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &nodes[stack[--depth]];
-    scree_box box = scree_box_moved(&node->box, &pl.rotation, pl.shift);
-    box = scree_box_grown(box, far);
-    if (!meets_boxes(&to->face_tree, &box)) continue;
-    if (node->count == 0) {
-      stack[depth++] = node->first + 1;
-      stack[depth++] = node->first;
-      continue;
-    }
-    for (uint32_t k = 0; k < node->count; k++)
-      list_point(&pl, from->point_tree.order[node->first + k]);
-  }
+  pl.far = l->skin + l->pair->smoothing + to->measures.rounding; /* boxes hold the radii */
+  const front whole = {.nodes = {0}, .count = 1};
+  if (from->point_count) list_points_below(&pl, 0, &whole);
 }
 
 static void list_sphere_pairs(listing *l) {
@@ -133,63 +174,60 @@ static void list_sphere_pairs(listing *l) {
   }
 }
 
-/* Edges can touch only along a direction that is outward for one and inward for the other: their
- * cones of normals, one of them reversed, must meet. */
-static bool face_each_other(const scree_edge *ea, vec3 outward_a, const scree_edge *eb) {
-  return -vec3_dot(outward_a, eb->outward) >= ea->cosine * eb->cosine - ea->sine * eb->sine;
-}
-
-/* One edge of a against the edges of b. */
-static void list_edge(listing *l, uint32_t i) {
+/* One edge of a against the edges of b. Edges can touch only along a direction that is outward for
+ * one and inward for the other: their cones of normals, one of them reversed, must meet. */
+static void list_edge(listing *l, uint32_t i, const front *above) {
   const scree_edge *ea = &l->a->edges[i];
-  vec3 p0 = into_b(l, ea->start), p1 = into_b(l, ea->end),
-       along = mat3_mul_vec(&l->relative->rotation, ea->along),
-       outward = mat3_mul_vec(&l->relative->rotation, ea->outward);
+  const mat3 *r = &l->relative->rotation;
+  vec3 p0 = into_b(l, ea->start), p1 = into_b(l, ea->end), along = mat3_mul_vec(r, ea->along);
+  scree_cone cone = scree_cone_opposite(&ea->normals, r);
   double touch = l->pair->reach + l->pair->smoothing;
-  scree_box box = scree_box_grown(scree_box_of(p0, p1), l->skin + touch);
-  const scree_tree *tree = &l->b->edge_tree;
-  uint32_t stack[SCREE_TREE_STACK];
+  sieve s = {&l->b->edge_tree, scree_box_grown(scree_box_of(p0, p1), l->skin + touch), &cone};
+  uint32_t stack[FRONT_SIZE + SCREE_TREE_STACK];
   int depth = 0;
-  stack[depth++] = 0;
+  for (int k = above->count; k-- > 0;) stack[depth++] = above->nodes[k];
   while (depth > 0) {
-    const scree_tree_node *node = &tree->nodes[stack[--depth]];
-    if (!scree_box_meets(&node->box, &box)) continue;
+    uint32_t index = stack[--depth];
+    const scree_tree_node *node = &s.tree->nodes[index];
+    if (!passes(&s, index)) continue;
     if (node->count == 0) {
       stack[depth++] = node->first + 1;
       stack[depth++] = node->first;
       continue;
     }
     for (uint32_t k = 0; k < node->count; k++) {
-      uint32_t j = tree->order[node->first + k];
+      uint32_t j = s.tree->order[node->first + k];
       const scree_edge *eb = &l->b->edges[j];
-      if (!face_each_other(ea, outward, eb)) continue;
-      double s, t;
-      scree_closest_on_segments(p0, along, ea->length, eb->start, eb->along, eb->length, &s, &t);
-      double d = vec3_distance(vec3_mad(p0, along, s), vec3_mad(eb->start, eb->along, t));
+      if (!scree_cones_meet(&cone, &eb->normals)) continue;
+      double s_a, s_b;
+      scree_closest_on_segments(p0, along, ea->length, eb->start, eb->along, eb->length, &s_a,
+                                &s_b);
+      double d = vec3_distance(vec3_mad(p0, along, s_a), vec3_mad(eb->start, eb->along, s_b));
       put_to_sleep(l, SCREE_ITEM_EDGE_EDGE, i, j, d - touch);
     }
   }
 }
 
-static void list_edges(listing *l) {
-  if (l->a->edge_count == 0 || l->b->edge_count == 0) return;
+static void list_edges_below(listing *l, uint32_t index, const front *above) {
   const scree_tree *tree = &l->a->edge_tree;
+  const scree_tree_node *node = &tree->nodes[index];
+  const scree_frame *r = l->relative;
+  scree_box box = scree_box_moved(&node->box, &r->rotation, r->position);
+  scree_cone cone = scree_cone_opposite(&tree->cones[index], &r->rotation);
   double far = l->skin + l->pair->reach + l->pair->smoothing;
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &tree->nodes[stack[--depth]];
-    scree_box box = scree_box_moved(&node->box, &l->relative->rotation, l->relative->position);
-    box = scree_box_grown(box, far);
-    if (!meets_boxes(&l->b->edge_tree, &box)) continue;
-    if (node->count == 0) {
-      stack[depth++] = node->first + 1;
-      stack[depth++] = node->first;
-      continue;
-    }
-    for (uint32_t k = 0; k < node->count; k++) list_edge(l, tree->order[node->first + k]);
-  }
+  sieve s = {&l->b->edge_tree, scree_box_grown(box, far), &cone};
+  front here;
+  refine(&s, above, &here);
+  if (here.count == 0) return;
+  for (uint32_t k = 0; k < node->count; k++) list_edge(l, tree->order[node->first + k], &here);
+  if (node->count) return;
+  list_edges_below(l, node->first, &here);
+  list_edges_below(l, node->first + 1, &here);
+}
+
+static void list_edges(listing *l) {
+  const front whole = {.nodes = {0}, .count = 1};
+  if (l->a->edge_count > 0 && l->b->edge_count > 0) list_edges_below(l, 0, &whole);
 }
 
 static double box_gap(const scree_box *a, const scree_box *b) {
@@ -210,6 +248,30 @@ static double least_distance(const listing *l) {
   return fmax(gap, box_gap(&moved, &l->a->box)) - l->pair->smoothing;
 }
 
+/* A ball around the part of either box that is within the skin of the other box, and room to move
+ * by the skin: all that can touch while the list holds. In the frame in which the boxes' common
+ * part is smaller. None where the smaller body is no larger. */
+static void set_region(listing *l) {
+  const scree_frame *r = l->relative;
+  scree_pair *pair = l->pair;
+  double far = l->skin + pair->smoothing, best = INFINITY;
+  mat3 back = mat3_transpose(&r->rotation);
+  vec3 shift = vec3_neg(mat3_mul_vec(&back, r->position));
+  for (int of_a = 0; of_a < 2; of_a++) {
+    scree_box other = of_a ? scree_box_moved(&l->b->box, &back, shift)
+                           : scree_box_moved(&l->a->box, &r->rotation, r->position);
+    const scree_box *own = of_a ? &l->a->box : &l->b->box;
+    vec3 low = vec3_max(own->low, other.low), high = vec3_min(own->high, other.high);
+    vec3 centre = vec3_scale(vec3_add(low, high), 0.5), side = vec3_sub(high, low);
+    double radius = 0.5 * vec3_norm(vec3_add(side, (vec3){2 * far, 2 * far, 2 * far})) + l->skin;
+    if (radius >= best) continue;
+    best = radius;
+    pair->region = of_a ? into_b(l, centre) : centre;
+  }
+  double smaller = fmin(l->a->measures.bounding_radius, l->b->measures.bounding_radius);
+  pair->region_radius = best < smaller ? best : 0;
+}
+
 bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                      scree_scratch *scratch) {
   double started = scree_now();
@@ -221,19 +283,22 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
                .scratch = scratch,
                .skin = scree_pair_skin(world, pair)};
   l.skin = fmax(l.skin, fmin(fast_steps * pair->travel, fast_skins * l.skin));
+  mark_awake(&l);
   pair->sleeping.count = 0;
-  double apart = l.b ? least_distance(&l) : 0;
+  bool analytic = pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b]);
+  double apart = analytic ? 0 : least_distance(&l);
+  pair->region_radius = 0;
   if (apart > l.skin) {
     pair->list_end = pair->path + apart;
     return true;
   }
-  if (!l.b) {
-    list_wall_points(&l);
-  } else {
+  if (!pair->wall) set_region(&l);
+  if (analytic) list_wall_points(&l);
+  if (l.b) {
     if (l.b->face_count) list_surface_points(&l, l.a, l.b, true);
     if (l.a->face_count) list_surface_points(&l, l.b, l.a, false);
-    if (l.a->face_count && l.b->face_count) list_edges(&l);
-    if (!l.a->face_count && !l.b->face_count) list_sphere_pairs(&l);
+    list_edges(&l);
+    if (!pair->wall && !l.a->face_count && !l.b->face_count) list_sphere_pairs(&l);
   }
   pair->list_end = pair->path + l.skin;
   scratch->list_builds++;

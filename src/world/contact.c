@@ -2,9 +2,12 @@
  *
  * Sleeping is exact. The pair's `path` bounds from above how far any two points near the contact
  * have moved relative to each other; a feature pair that is `gap` from touching cannot touch before
- * the path has grown by gap. It is woken two steps' travel early, so that it is first seen from
- * outside. When nothing is awake the whole pair sleeps on the sum of the two bodies' paths; the
- * step asks that of the pair's slot, so that sleeping pairs are not touched at all.
+ * the path has grown by gap. Near the contact is a ball (scree_pair_list): what lies outside it
+ * by e is e farther from touching too, and as the bodies turn by less than a radian while the list
+ * holds, its faster motion does not make up for that. A feature pair is woken two steps' travel
+ * early, so that it is first seen from outside. When nothing is awake the whole pair sleeps on the
+ * sum of the two bodies' paths; the step asks that of the pair's slot, so that sleeping pairs are
+ * not touched at all.
  *
  * The ledger: the work of the dashpots and of the tangential forces over a step is
  * dt/2 W.(v before + v after the kick), with W the wrench of the step. The first half is added when
@@ -39,24 +42,45 @@ static double bodies_path(const scree_world *world, const scree_pair *pair) {
   return path[pair->a] + (pair->wall ? world->walls.items[pair->b].path : path[pair->b]);
 }
 
-static void wake_up(const scree_world *world, scree_pair *pair) {
-  if (!pair->asleep) return;
-  pair->path += bodies_path(world, pair) - pair->asleep_since;
-  pair->asleep = false;
+static quat turned(const scree_world *world, const scree_pair *pair) {
+  quat b =
+      pair->wall ? world->walls.items[pair->b].orientation : world->bodies.orientation[pair->b];
+  return quat_mul(quat_conjugate(b), world->bodies.orientation[pair->a]);
+}
+
+/* A ball in the frame of b around all points whose motion counts: the list's region, else the
+ * smaller body and a little beyond, with a at `at`. */
+static double moving_ball(const scree_world *world, const scree_pair *pair, vec3 at, vec3 *centre) {
+  *centre = pair->region;
+  if (pair->region_radius > 0) return pair->region_radius;
+  double a = world->bodies.particle[pair->a]->measures.bounding_radius,
+         b = pair->wall ? INFINITY : world->bodies.particle[pair->b]->measures.bounding_radius;
+  *centre = a <= b ? at : (vec3){0, 0, 0};
+  return (a <= b ? a : b) + 4 * scree_pair_skin(world, pair);
+}
+
+/* How far the bodies' points have moved relative to each other since the pair fell asleep. The sum
+ * of the bodies' paths is a bound, but bodies that fly together hardly move relative to each other:
+ * the net motion is another, and as good, since nothing can have touched in between. */
+static double slept_path(const scree_world *world, const scree_pair *pair,
+                         const scree_frame *relative) {
+  vec3 centre;
+  double radius = moving_ball(world, pair, pair->asleep_at, &centre);
+  mat3 then = quat_to_mat3(pair->asleep_turned);
+  vec3 of_a = mat3_tmul_vec(&then, vec3_sub(centre, pair->asleep_at)),
+       now = vec3_add(mat3_mul_vec(&relative->rotation, of_a), relative->position);
+  double net =
+      vec3_distance(now, centre) + radius * quat_chord(pair->asleep_turned, turned(world, pair));
+  return fmin(net, bodies_path(world, pair) - pair->asleep_since);
 }
 
 /* a in the frame of b, its velocity and spin such that a's point at q moves with velocity + spin x
- * q. Answers a bound on the relative speed of points near the contact: all lie within the smaller
- * body or little beyond. */
+ * q. Answers a bound on the relative speed of the points that count. */
 static double relate(const scree_world *world, const scree_pair *pair,
                      scree_frame *restrict relative) {
   const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
-  double radius_a = world->bodies.particle[pair->a]->measures.bounding_radius,
-         radius_b =
-             pair->wall ? INFINITY : world->bodies.particle[pair->b]->measures.bounding_radius;
   vec3 between = vec3_sub(a->position, b->position), slip = vec3_sub(a->velocity, b->velocity),
        spin = vec3_sub(a->spin, b->spin), at_b = vec3_sub(slip, vec3_cross(a->spin, between)),
-       at_a = vec3_sub(slip, vec3_cross(b->spin, between)),
        now = vec3_sub(vec3_sub(a->velocity_now, b->velocity_now), vec3_cross(a->spin_now, between));
   const mat3 *turned = &b->rotation;
   relative->rotation = mat3_tmul(turned, &a->rotation);
@@ -65,9 +89,10 @@ static double relate(const scree_world *world, const scree_pair *pair,
   relative->spin = mat3_tmul_vec(turned, spin);
   relative->velocity_now = mat3_tmul_vec(turned, now);
   relative->spin_now = mat3_tmul_vec(turned, vec3_sub(a->spin_now, b->spin_now));
-  bool about_a = radius_a <= radius_b;
-  double radius = (about_a ? radius_a : radius_b) + 4 * scree_pair_skin(world, pair);
-  return vec3_norm(about_a ? at_a : at_b) + radius * vec3_norm(spin);
+  vec3 centre;
+  double radius = moving_ball(world, pair, relative->position, &centre);
+  vec3 there = vec3_add(relative->velocity, vec3_cross(relative->spin, centre));
+  return vec3_norm(there) + radius * vec3_norm(spin);
 }
 
 static bool wake_items(scree_pair *pair) {
@@ -122,10 +147,12 @@ static bool settle_items(scree_pair *pair) {
   return true;
 }
 
-static void fall_asleep(const scree_world *world, scree_pair *pair) {
+static void fall_asleep(const scree_world *world, scree_pair *pair, const scree_frame *relative) {
   if (pair->wall && vec3_norm2(world->walls.items[pair->b].frame.spin) > 0) return;
   pair->asleep_since = bodies_path(world, pair);
   pair->wake = pair->asleep_since + fmin(pair->next_item, pair->list_end) - pair->path;
+  pair->asleep_at = relative->position;
+  pair->asleep_turned = turned(world, pair);
   pair->asleep = true;
 }
 
@@ -145,11 +172,10 @@ static double hysteresis_loss(const scree_pair *pair, double before) {
 void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                          scree_pair_sums *sums) {
   if (pair->touching) add_later_work(world, pair, sums);
-  wake_up(world, pair);
   scree_frame relative;
-  double speed = relate(world, pair, &relative);
-  pair->travel = speed * world->time_step;
-  pair->path += pair->travel;
+  pair->travel = relate(world, pair, &relative) * world->time_step;
+  pair->path += pair->asleep ? slept_path(world, pair, &relative) : pair->travel;
+  pair->asleep = false;
   bool good = true;
   if (pair->path + 2 * pair->travel >= pair->list_end) {
     good = scree_pair_list(world, pair, &relative, scratch);
@@ -162,7 +188,7 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   double largest = pair->largest;
   scree_powers powers = scree_pair_apply_law(world, pair, &scratch->touches, &relative);
   if (some_sleep) good = good && settle_items(pair);
-  if (pair->active.count == 0) fall_asleep(world, pair);
+  if (pair->active.count == 0) fall_asleep(world, pair, &relative);
   if (!good || scratch->out_of_memory) sums->out_of_memory = true;
   if (!pair->touching) return;
   double half = 0.5 * world->time_step;

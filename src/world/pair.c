@@ -46,7 +46,7 @@ static void set_up(scree_world *world, scree_pair *pair) {
 static void forget(scree_pair *pair) {
   pair->active.count = pair->sleeping.count = 0;
   pair->asleep = pair->touching = false;
-  pair->path = 0;
+  pair->path = pair->region_radius = 0;
   pair->next_item = pair->list_end = -INFINITY;
   pair->elastic = pair->overlap = pair->largest = pair->age = 0;
   pair->contact_count = 0;

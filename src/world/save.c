@@ -17,11 +17,11 @@
 #include <string.h>
 
 static const unsigned char magic[8] = {'s', 'c', 'r', 'e', 'e', 'W', 'L', 'D'};
-enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
+enum { VERSION = 4, OLDEST_VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
 
 /* Whoever changes these records must add the fields below, and raise VERSION. */
 _Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 248 && sizeof(scree_anchor) == 56 &&
-                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 424 &&
+                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 512 &&
                                        sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
@@ -187,6 +187,14 @@ static void code_pair_state(scree_codec *c, scree_pair *p) {
   scree_code_count(c, &p->sleeping.count, 20);
 }
 
+/* What pairs have since version 4. */
+static void code_pair_motion(scree_codec *c, scree_pair *p) {
+  scree_code_vec3(c, &p->asleep_at);
+  code_quat(c, &p->asleep_turned);
+  scree_code_vec3(c, &p->region);
+  scree_code_real(c, &p->region_radius);
+}
+
 /* Body i as it lies in the arrays. */
 typedef struct body_record {
   scree_frame frame;
@@ -315,7 +323,7 @@ static void save_setup(scree_codec *c, const scree_world *world) {
   for (size_t w = 0; w < count; w++) {
     scree_world_wall wall = world->walls.items[w];
     code_given_wall(c, &wall.given);
-    scree_mesh mesh = wall.surface ? wall.surface->mesh : (scree_mesh){0};
+    scree_mesh mesh = scree_wall_is_analytic(&wall) ? (scree_mesh){0} : wall.surface->mesh;
     if (wall.given.kind == SCREE_WALL_MESH) code_mesh(c, &mesh);
     code_wall_state(c, &wall);
   }
@@ -346,6 +354,7 @@ static void save_pairs(scree_codec *c, const scree_world *world) {
     scree_pair pair = *world->pairs.items[k]; /* its lists are only read */
     code_pair_name(c, &pair);
     code_pair_state(c, &pair);
+    code_pair_motion(c, &pair);
     for (size_t i = 0; i < pair.active.count; i++) code_item(c, &pair.active.items[i]);
     for (size_t i = 0; i < pair.sleeping.count; i++) code_sleeper(c, &pair.sleeping.items[i]);
   }
@@ -434,6 +443,7 @@ typedef struct loader {
   scree_world *world;
   scree_particle **particles;
   size_t particle_count;
+  uint32_t version;
   scree_error error;
 } loader;
 
@@ -557,7 +567,9 @@ static bool names_features(const loader *l, const scree_pair *pair, uint32_t kin
                            uint32_t b) {
   const scree_particle *of_a = l->world->bodies.particle[pair->a],
                        *of_b = scree_pair_shape_b(l->world, pair);
-  if (kind == SCREE_ITEM_POINT_WALL) return !of_b && a < of_a->point_count;
+  if (kind == SCREE_ITEM_POINT_WALL)
+    return pair->wall && scree_wall_is_analytic(&l->world->walls.items[pair->b]) &&
+           a < of_a->point_count;
   if (!of_b) return false;
   switch (kind) {
   case SCREE_ITEM_POINT_FACE:
@@ -615,7 +627,7 @@ static bool follows(const scree_pair *last, const scree_pair *next) {
 static void load_pairs(loader *l) {
   scree_world *world = l->world;
   size_t count = 0;
-  scree_code_count(&l->codec, &count, 256);
+  scree_code_count(&l->codec, &count, 344);
   if (!SCREE_RESERVE(&world->pairs, count)) l->codec.out_of_memory = true;
   for (size_t k = 0; k < count && good(l); k++) {
     scree_pair name = {0};
@@ -632,6 +644,12 @@ static void load_pairs(loader *l) {
     }
     world->pairs.items[world->pairs.count++] = pair;
     code_pair_state(&l->codec, pair);
+    if (l->version >= 4) {
+      code_pair_motion(&l->codec, pair);
+    } else if (pair->asleep) { /* where it fell asleep is not known: it lists its features anew */
+      pair->asleep = false;
+      pair->list_end = -INFINITY;
+    }
     load_items(l, pair);
   }
 }
@@ -657,7 +675,8 @@ static void load_tail(loader *l) {
 }
 
 /* Reads and checks the header; leaves the codec at the rest. */
-static scree_status check_header(scree_codec *c, const char *name, scree_error *error) {
+static scree_status check_header(scree_codec *c, const char *name, uint32_t *version,
+                                 scree_error *error) {
   unsigned char head[sizeof magic] = {0};
   uint32_t version_order[2] = {0};
   uint64_t length_sum[3] = {0};
@@ -670,9 +689,11 @@ static scree_status check_header(scree_codec *c, const char *name, scree_error *
   if (version_order[1] != BYTE_ORDER_MARK)
     return scree_fail(error, SCREE_BAD_FILE, "%s: byte order mark 0x%08x instead of 0x%08x", name,
                       version_order[1], BYTE_ORDER_MARK);
-  if (version_order[0] != VERSION)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: checkpoint version %u; this program reads %d",
-                      name, version_order[0], VERSION);
+  if (version_order[0] < OLDEST_VERSION || version_order[0] > VERSION)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: checkpoint version %u; this program reads %d to %d", name,
+                      version_order[0], OLDEST_VERSION, VERSION);
+  *version = version_order[0];
   size_t length = c->count - HEADER;
   if (length_sum[0] != length)
     return scree_fail(error, SCREE_BAD_FILE,
@@ -701,7 +722,7 @@ static scree_status finish(loader *l, const char *name, scree_error *error) {
 scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
                                 scree_world **world, scree_error *error) {
   loader l = {.codec = {.source = bytes, .count = byte_count, .loading = true}};
-  scree_status status = check_header(&l.codec, name, error);
+  scree_status status = check_header(&l.codec, name, &l.version, error);
   if (status) return status;
   void (*const stages[])(loader *) = {load_setup, load_particles, load_bodies, load_pairs,
                                       load_tail};

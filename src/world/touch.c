@@ -274,8 +274,9 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
 /* How far a direction with this cosine from the edge's outward one is a normal of the edge: 1
  * between those of its two faces and 15 degrees beyond, 0 from 30 degrees beyond. */
 static double normal_share(const scree_edge *edge, double cosine) {
-  double none = edge->cosine * beyond_cosines[0] - edge->sine * beyond_sines[0],
-         full = edge->cosine * beyond_cosines[1] - edge->sine * beyond_sines[1];
+  const scree_cone *n = &edge->normals;
+  double none = n->cosine * beyond_cosines[0] - n->sine * beyond_sines[0],
+         full = n->cosine * beyond_cosines[1] - n->sine * beyond_sines[1];
   return smooth_step(none, full, cosine);
 }
 
@@ -294,8 +295,8 @@ static void deep_crossing(const scree_pair *pair, scree_item *item, vec3 crossin
  * claim is stale when the edges went around each other instead. */
 static bool is_crossed(const scree_particle *a, const scree_particle *b, vec3 on_a, vec3 on_b,
                        const scree_frame *relative) {
-  if (!(a->measures.volume > 0 && b->measures.volume > 0)) return true; /* open walls cannot tell */
-  if (scree_is_inside(b, on_a)) return true;
+  if (!(a->measures.volume > 0)) return true; /* cannot tell */
+  if (b->measures.volume > 0 && scree_is_inside(b, on_a)) return true;
   return scree_is_inside(a, mat3_tmul_vec(&relative->rotation, vec3_sub(on_b, relative->position)));
 }
 
@@ -345,9 +346,9 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
     item->reference = contact.normal;
     item->has_reference = true;
   }
-  double out_a = -vec3_dot(mat3_mul_vec(r, ea->outward), contact.normal),
-         out_b = vec3_dot(eb->outward, contact.normal);
-  if (out_a <= 0 || out_b <= 0) {
+  double out_a = -vec3_dot(mat3_mul_vec(r, ea->normals.axis), contact.normal),
+         out_b = vec3_dot(eb->normals.axis, contact.normal);
+  if (out_a <= ea->facing || out_b <= eb->facing) {
     item->anchor[0].share = 0; /* seen through one of the bodies */
     return fmin(far, 0);
   }
@@ -380,13 +381,17 @@ static double touch_wall(const scree_world *world, const scree_pair *pair, scree
   vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[item->a]), relative->position);
   const scree_world_wall *wall = &world->walls.items[pair->b];
   vec3 c, n;
-  double side = scree_wall_side(wall, p), d = scree_wall_distance(wall, p, side, &c, &n);
-  double own = side, clear = a->point_radii[item->a] + pair->smoothing + 0.25 * pair->thin;
-  if (item->has_reference)
+  double side = scree_wall_side(wall, p), d = scree_wall_distance(wall, p, side, &c, &n), own;
+  if (item->has_reference) {
     own = item->reference.x; /* evaluated a step ago: through the sheet it cannot have come */
-  else if (d < clear)
+  } else if (scree_pair_is_new(pair)) {
     own =
-        scree_wall_side(wall, relative->position); /* the step that woke it may have taken it in */
+        scree_wall_first_side(wall, p, relative->position, scree_pair_clearance(pair, a, item->a));
+  } else { /* the step that woke it may have taken it in */
+    vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, p)),
+         before = vec3_mad(p, v, -2 * world->time_step);
+    own = scree_wall_spans(wall, before) ? scree_wall_side(wall, before) : side;
+  }
   if (own != side) {
     vec3 c_own, n_own;
     double d_own = scree_wall_distance(wall, p, own, &c_own, &n_own);

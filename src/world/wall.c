@@ -51,6 +51,18 @@ static void set_motion(scree_world_wall *wall, const double *velocity, const dou
   wall->frame.spin = wall->frame.spin_now = vec3_load(spin);
 }
 
+/* Where the sheet of a disc or cylinder ends. */
+static scree_status make_rims(scree_world_wall *wall, scree_error *error) {
+  const scree_wall *given = &wall->given;
+  const scree_circle edge = {given->radius, 0, 1, 0},
+                     ends[2] = {{given->radius, 0, 0, -1}, {given->radius, given->length, 0, 1}};
+  if (given->kind == SCREE_WALL_DISC)
+    return scree_particle_circles(&edge, 1, &wall->surface, error);
+  if (given->kind == SCREE_WALL_CYLINDER && given->length > 0)
+    return scree_particle_circles(ends, 2, &wall->surface, error);
+  return SCREE_OK;
+}
+
 scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, size_t *index,
                                   scree_error *error) {
   scree_status status = check_wall(world, wall, error);
@@ -61,9 +73,11 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
   set_motion(&made, wall->velocity, wall->angular_velocity);
   if (wall->kind == SCREE_WALL_MESH) {
     status = scree_particle_surface(wall->mesh, 0, &made.surface, error);
-    if (status) return status;
-    made.given.mesh = &made.surface->mesh;
+    if (!status) made.given.mesh = &made.surface->mesh;
+  } else {
+    status = make_rims(&made, error);
   }
+  if (status) return status;
   if (!SCREE_PUSH(&world->walls, made)) {
     scree_particle_free(made.surface);
     return scree_fail_memory(error, sizeof made, "a wall");
@@ -119,6 +133,14 @@ double scree_wall_side(const scree_world_wall *wall, vec3 p) {
   return 1;
 }
 
+bool scree_wall_spans(const scree_world_wall *wall, vec3 p) {
+  const scree_wall *given = &wall->given;
+  if (given->kind == SCREE_WALL_DISC) return p.x * p.x + p.y * p.y <= given->radius * given->radius;
+  if (given->kind == SCREE_WALL_CYLINDER)
+    return given->length == 0 || (p.z >= 0 && p.z <= given->length);
+  return true;
+}
+
 static double cylinder_distance(const scree_wall *wall, vec3 p, double side, vec3 *closest,
                                 vec3 *normal) {
   double rho = sqrt(p.x * p.x + p.y * p.y);
@@ -148,4 +170,12 @@ double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, ve
   double d = vec3_norm(away);
   *normal = vec3_scale(away, 1 / d);
   return d;
+}
+
+double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, double clearance) {
+  double side = scree_wall_side(wall, p), own = scree_wall_side(wall, centre);
+  if (own == side || !scree_wall_spans(wall, centre)) return side;
+  vec3 closest, normal;
+  double d = scree_wall_distance(wall, p, own, &closest, &normal);
+  return d < 0 && d > -clearance ? own : side;
 }

@@ -22,7 +22,7 @@ typedef struct scree_world_wall {
   scree_wall given; /* position and velocity kept up to date */
   scree_frame frame;
   quat orientation;
-  scree_particle *surface;  /* mesh wall; else NULL */
+  scree_particle *surface;  /* faces of a mesh wall, or rims of a disc or cylinder; NULL: none */
   double travel, path, due; /* as for bodies, by translation alone */
   double path_at_build;     /* when the pairs were made */
   vec3 force, torque;
@@ -102,8 +102,12 @@ typedef struct scree_pair {
   double stiffness, damping, friction, restitution; /* K, C, mu, e */
   double smoothing, reach, limit;                   /* l0; rounding of both meshes; overlap limit */
   double thin;                /* the limit, or half the thinnest wall of the bodies where less */
-  double travel, path;        /* of the relative motion: last step, and sum; upper bounds */
-  double wake, asleep_since;  /* on path[a] + path[b] */
+  double travel, path;       /* of the relative motion: last step, and sum; upper bounds */
+  double wake, asleep_since; /* on path[a] + path[b] */
+  vec3 asleep_at;            /* a in the frame of b when it fell asleep */
+  quat asleep_turned;
+  vec3 region; /* ball in the frame of b that holds what the list is about, until it ends */
+  double region_radius;       /* 0: none */
   double next_item, list_end; /* on path */
   struct {
     scree_item *items;
@@ -238,7 +242,10 @@ static inline double scree_body_due(const scree_bodies *bodies, size_t i) {
 static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const scree_pair *p) {
   return p->wall ? &w->walls.items[p->b].frame : &w->bodies.frame[p->b];
 }
-/* The shape of side b; NULL for an analytic wall. */
+static inline bool scree_wall_is_analytic(const scree_world_wall *wall) {
+  return wall->given.kind != SCREE_WALL_MESH;
+}
+/* The shape of side b; for an analytic wall its rims, NULL for none. */
 static inline const scree_particle *scree_pair_shape_b(const scree_world *w, const scree_pair *p) {
   return p->wall ? w->walls.items[p->b].surface : w->bodies.particle[p->b];
 }
@@ -272,6 +279,16 @@ bool scree_pair_reserve_items(scree_pair *pair, size_t needed);
 /* After a jump: the body's contacts start anew. */
 void scree_body_forget(scree_world *world, size_t body);
 
+/* Evaluated for the first time, or since a jump. */
+static inline bool scree_pair_is_new(const scree_pair *p) {
+  return p->path <= p->travel;
+}
+/* How far behind a sheet a point of a new pair may be and still belong to the body's side. */
+static inline double scree_pair_clearance(const scree_pair *p, const scree_particle *a,
+                                          uint32_t point) {
+  return a->point_radii[point] + p->smoothing + 0.25 * p->limit;
+}
+
 /* Reach of the lists of slow pairs, m. */
 static inline double scree_pair_skin(const scree_world *w, const scree_pair *p) {
   return w->options.skin / w->options.smoothing * p->smoothing;
@@ -288,6 +305,11 @@ double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_
 /* Which side of an analytic wall p (wall frame) is on: 1 in front of the plane or disc, inside the
  * cylinder; -1 for the other side of a disc or cylinder. */
 double scree_wall_side(const scree_world_wall *wall, vec3 p);
+/* Whether a disc or cylinder lies straight below, above or beside p, not past a rim. */
+bool scree_wall_spans(const scree_world_wall *wall, vec3 p);
+/* The side of a point that is seen for the first time: the centre's, where the sheet spans it and p
+ * is less than `clearance` behind; else its own. */
+double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, double clearance);
 /* Signed distance of p (wall frame) on that side, with the closest point and the normal. */
 double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
                            vec3 *normal);
