@@ -9,9 +9,6 @@
 
 enum { BODY_BLOCK = 128 };
 
-/* Most a body may move in a step, of the overlap limit or half its thinnest wall. */
-static const double travel_share = 0.5;
-
 /* I^-1 R^T momentum: angular velocity in the body's frame. */
 static vec3 local_spin(vec3 inertia, const mat3 *rotation, vec3 momentum) {
   vec3 local = mat3_tmul_vec(rotation, momentum);
@@ -46,6 +43,13 @@ static void sum_forces(scree_world *world, size_t i) {
   world->bodies.torque[i] = torque;
 }
 
+/* Most that a point of the box moves by the spin (both in the body's frame). */
+static double fastest_point(vec3 spin, const scree_box *box) {
+  double x = fmax(-box->low.x, box->high.x), y = fmax(-box->low.y, box->high.y),
+         z = fmax(-box->low.z, box->high.z), u = fabs(spin.x), v = fabs(spin.y), w = fabs(spin.z);
+  return vec3_norm((vec3){v * z + w * y, w * x + u * z, u * y + v * x});
+}
+
 /* How far the body's points may move in the coming step; the spin in it is kept for the step. */
 static double coming_travel(scree_world *world, size_t i) {
   scree_bodies *b = &world->bodies;
@@ -55,13 +59,14 @@ static double coming_travel(scree_world *world, size_t i) {
   vec3 v = vec3_mad(frame->velocity, vec3_mad(g, b->force[i], 1 / b->mass[i]), dt);
   vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
   b->turn[i] = local_spin(b->inertia[i], &frame->rotation, momentum);
-  return (vec3_norm(v) + vec3_norm(b->turn[i]) * b->particle[i]->measures.bounding_radius) * dt;
+  return (vec3_norm(v) + fastest_point(b->turn[i], &b->particle[i]->box)) * dt;
 }
 
+/* Most a body may move in a step: two that meet see each other before a thin wall is passed. */
 static double travel_limit(const scree_world *world, size_t i) {
   const scree_particle *particle = world->bodies.particle[i];
   double size = world->options.size > 0 ? world->options.size : particle->measures.size;
-  return travel_share * fmin(world->options.overlap_limit * size, scree_thin_overlap(particle));
+  return fmin(world->options.overlap_limit * size, scree_thin_overlap(particle));
 }
 
 typedef struct gathering {
@@ -95,7 +100,7 @@ bool scree_world_gather(scree_world *world) {
     if (isfinite(travel))
       scree_fail(&world->failure, SCREE_DIVERGED,
                  "world: step %llu, body %zu would move %.3g m in one step of %.3g s; at most "
-                 "%.3g m (half the overlap limit or a quarter of its thinnest wall)",
+                 "%.3g m (the overlap limit or half its thinnest wall)",
                  (unsigned long long)world->step_count, i, travel, world->time_step,
                  travel_limit(world, i));
     else

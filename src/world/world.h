@@ -147,8 +147,6 @@ typedef struct scree_touch_list {
 /* Scratch of one worker. */
 typedef struct scree_scratch {
   scree_touch_list touches;
-  double
-      allowed; /* overlap of the pair: its limit, or less at a thin wall that is nearly pierced */
   uint64_t item_evaluations, closest_queries, list_builds;
   double candidate_seconds;
   bool out_of_memory;
@@ -286,7 +284,7 @@ static inline bool scree_pair_is_new(const scree_pair *p) {
 /* How far behind a sheet a point of a new pair may be and still belong to the body's side. */
 static inline double scree_pair_clearance(const scree_pair *p, const scree_particle *a,
                                           uint32_t point) {
-  return a->point_radii[point] + p->smoothing + 0.25 * p->limit;
+  return a->point_radii[point] + p->smoothing + 0.25 * p->thin;
 }
 
 /* Reach of the lists of slow pairs, m. */
