@@ -7,6 +7,7 @@ install(TARGETS scree_shared EXPORT screeTargets
         LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(TARGETS scree_static ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES include/scree.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+install(DIRECTORY include/scree DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT screeTargets NAMESPACE scree:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
 
 configure_package_config_file(cmake/screeConfig.cmake.in ${CMAKE_BINARY_DIR}/screeConfig.cmake

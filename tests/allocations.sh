@@ -13,7 +13,7 @@ list=${2:-}
 reasons=$root/tests/allocations.txt
 
 # fallible public functions
-functions=$(tr '\n' ' ' <"$root/include/scree.h" | grep -o 'SCREE_API scree_status scree_[a-z0-9_]*(' |
+functions=$(cat "$root"/include/scree/*.h | tr '\n' ' ' | grep -o 'SCREE_API scree_status scree_[a-z0-9_]*(' |
   sed 's/.* //; s/(//' | sort -u)
 
 # "file function" for each public function called in a tested fallible_call

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Fails where a file includes a layer that stands after its own, where cli, examples or bench see more
-# than the public header (cli also sees itself), and where a header does not compile alone.
+# Fails where a file or a public header includes what stands after it, where cli, examples or bench see
+# more than the public headers (cli also sees itself), and where a header does not compile alone.
 # usage: layers.sh SOURCE_DIR C_COMPILER
 set -eu
 root=$1
@@ -11,6 +11,18 @@ complain() {
   echo "$1"
   failed=1
 }
+
+earlier=""
+for header in base mesh measure check simplify choice sample particle world pile study report; do
+  for included in $(sed -n 's/^#include "scree\/\([a-z]*\)\.h"/\1/p' "$root/include/scree/$header.h"); do
+    case " $earlier " in
+      *" $included "*) ;;
+      *) complain "include/scree/$header.h must not include scree/$included.h" ;;
+    esac
+  done
+  grep -q "scree/$header\.h" "$root/include/scree.h" || complain "include/scree.h lacks scree/$header.h"
+  earlier="$earlier $header"
+done
 
 allowed=""
 for layer in $layers; do
@@ -35,14 +47,14 @@ for folder in src/cli examples bench; do
   for file in $(find "$root/$folder" -name '*.[ch]' 2>/dev/null); do
     for included in $(sed -n 's/^ *# *include *"\([^"]*\)".*/\1/p' "$file" | sort -u); do
       case "$folder:$included" in
-        *:scree.h | src/cli:cli/* | bench:bench.h) ;;
-        *) complain "${file#"$root"/}: only scree.h is to be seen from $folder, not $included" ;;
+        *:scree.h | *:scree/*.h | src/cli:cli/* | bench:bench.h) ;;
+        *) complain "${file#"$root"/}: only the public headers are to be seen from $folder, not $included" ;;
       esac
     done
   done
 done
 
-for header in "$root"/include/scree.h $(find "$root/src" -name '*.h'); do
+for header in "$root"/include/scree.h $(find "$root/include/scree" "$root/src" -name '*.h'); do
   echo "#include \"$header\"" |
     "$compiler" -std=c17 -D_POSIX_C_SOURCE=200809L -fsyntax-only -Wall -Wextra -Werror \
       -I"$root/include" -I"$root/src" -x c - || complain "${header#"$root"/}: does not compile alone"

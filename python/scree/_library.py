@@ -1,6 +1,6 @@
 """The shared library: where it lies, its structs as ctypes, its functions with their types.
 
-The structs follow include/scree.h field by field; tests/python/layout.py has a C compiler say every size and
+The structs follow include/scree/*.h field by field; tests/python/layout.py has a C compiler say every size and
 offset and compares."""
 import ctypes
 import ctypes.util

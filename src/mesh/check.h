@@ -1,4 +1,4 @@
-/* Shared by check and repair; the interface is in scree.h, section 2.4. */
+/* Shared by check and repair; the interface is in scree/check.h. */
 #ifndef SCREE_MESH_CHECK_H
 #define SCREE_MESH_CHECK_H
 

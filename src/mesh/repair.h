@@ -1,6 +1,6 @@
 /* The stages of a repair, in the order of scree_repair_action; each works on one mesh in place,
  * counts what it does, and leaves a mesh of valid indices and finite coordinates. The public
- * interface is in scree.h, section 2.4; repair.c tells the whole. */
+ * interface is in scree/check.h; repair.c tells the whole. */
 #ifndef SCREE_MESH_REPAIR_H
 #define SCREE_MESH_REPAIR_H
 

@@ -1,4 +1,4 @@
-/* scree_mesh_topology (scree.h) for callers that need the adjacency as well. */
+/* scree_mesh_topology (scree/measure.h) for callers that need the adjacency as well. */
 #ifndef SCREE_MESH_TOPOLOGY_H
 #define SCREE_MESH_TOPOLOGY_H
 

@@ -1,4 +1,4 @@
-/* A world as VTK files: what each view holds is said in scree.h, section 9.2. A view is counted
+/* A world as VTK files: what each view holds is said in scree/report.h. A view is counted
  * first, then filled into one block per array, then written. */
 #include "base/array.h"
 #include "base/vec.h"

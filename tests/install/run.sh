@@ -23,6 +23,10 @@ expect shared "$(LD_LIBRARY_PATH=$libdir "$folder/shared")"
 "$compiler" "$here/consumer.c" -o "$folder/static" $(pc --cflags) "$libdir/libscree.a" \
   $(pc --static --libs | sed 's/-lscree//')
 expect static "$("$folder/static")"
+if command -v c++ >/dev/null; then
+  # shellcheck disable=SC2046
+  c++ -x c++ -fsyntax-only $(pc --cflags) "$here/consumer.c"
+fi
 cmake -S "$here" -B "$folder/cmake" -DCMAKE_PREFIX_PATH="$folder/prefix" -DCMAKE_C_COMPILER="$compiler" \
   >"$folder/log" && cmake --build "$folder/cmake" >>"$folder/log" || { cat "$folder/log"; exit 1; }
 expect cmake "$("$folder/cmake/consumer")"

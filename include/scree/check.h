@@ -1,0 +1,173 @@
+/* Check and repair. */
+#ifndef SCREE_CHECK_H
+#define SCREE_CHECK_H
+
+#include "scree/mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What can be wrong with a surface: X(NAME, "name in JSON", grave, "what it counts"). A surface
+ * with a grave one cannot serve as a particle; the others are worth knowing. */
+#define SCREE_DEFECT_LIST(X)                                                                       \
+  X(BAD_COORDINATE, "bad_coordinates", true, "vertices that are not finite, or beyond 1e30 m")     \
+  X(DEGENERATE_FACET, "degenerate_facets", true, "facets without area")                            \
+  X(DUPLICATE_FACET, "duplicate_facets", true, "facets on the same three vertices as another")     \
+  X(BOUNDARY_EDGE, "boundary_edges", true, "edges of one facet only: the surface is open")         \
+  X(HOLE, "holes", true, "connected sets of boundary edges")                                       \
+  X(NON_MANIFOLD_EDGE, "non_manifold_edges", true, "edges of three or more facets")                \
+  X(NON_MANIFOLD_VERTEX, "non_manifold_vertices", true, "vertices where separate fans meet")       \
+  X(INCONSISTENT_EDGE, "inconsistent_edges", true, "edges whose two facets are wound unlike")      \
+  X(INSIDE_OUT_SHELL, "inside_out_shells", true, "closed shells wound clockwise from outside")     \
+  X(CROSSING_PAIR, "crossing_pairs", true, "pairs of facets that pass through each other")         \
+  X(TOUCHING_PAIR, "touching_pairs", true, "pairs of facets that touch beyond shared edges")       \
+  X(OVERLAPPING_PAIR, "overlapping_pairs", true, "pairs of coplanar facets with a common area")    \
+  X(OVERLAPPING_SHELLS, "overlapping_shell_pairs", true, "pairs of shells that cross or touch")    \
+  X(NESTED_SHELL, "nested_shells", true, "outward shells inside the material of another")          \
+  X(CAVITY, "cavities", false, "inward shells inside the material of another")                     \
+  X(EXTRA_BODY, "extra_bodies", false, "closed outward shells in empty space, beyond the first")   \
+  X(UNUSED_VERTEX, "unused_vertices", false, "vertices of no facet")
+
+typedef enum scree_defect {
+#define SCREE_DEFECT_ENUM(name, key, grave, text) SCREE_DEFECT_##name,
+  SCREE_DEFECT_LIST(SCREE_DEFECT_ENUM)
+#undef SCREE_DEFECT_ENUM
+      SCREE_DEFECT_COUNT
+} scree_defect;
+
+/* The name in JSON, what is counted in words, and whether it is grave. */
+SCREE_API const char *scree_defect_name(scree_defect defect);
+SCREE_API const char *scree_defect_text(scree_defect defect);
+SCREE_API bool scree_defect_is_grave(scree_defect defect);
+
+typedef struct scree_check {
+  size_t triangle_count, vertex_count;
+  size_t shell_count; /* sets of facets connected through shared edges */
+  size_t defects[SCREE_DEFECT_COUNT];
+  bool intersections_known; /* the exact test was made; else the pairs above are 0 */
+  bool volume_known;        /* false: open or inside-out shells leave it unsaid, and so does a
+                               check without the exact test */
+  double volume;     /* where the winding number is positive: of the union of the shells, less
+                                   the cavities, m^3 */
+  bool usable;       /* as a particle: no grave defect was found */
+  char verdict[512]; /* the same in one sentence, with the reasons */
+} scree_check;
+
+typedef struct scree_check_options {
+  /* Find all pairs of facets that cross, touch or overlap, exactly; default true. */
+  bool intersections;
+} scree_check_options;
+SCREE_API scree_check_options scree_default_check_options(void);
+
+/* Examines a mesh of any quality. Vertices are told apart by index: weld first. Shells are nested,
+ * cavities or inside out by the winding number around them, which is counted exactly where shells
+ * are closed. options and progress may be NULL. Fails with SCREE_BAD_MESH where an index is out of
+ * range, SCREE_LIMIT above 1,431,655,764 triangles, SCREE_CANCELLED, SCREE_OUT_OF_MEMORY; a mesh
+ * without facets is examined and found unusable. Cost: see docs/defects.md. */
+SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options *options,
+                                        const scree_progress *progress, scree_check *check,
+                                        scree_error *error);
+
+/* What a repair does, in this order: X(NAME, "name in JSON", "what was counted"). */
+#define SCREE_REPAIR_LIST(X)                                                                       \
+  X(DROP_BAD, "dropped_bad_facets", "facets with coordinates that are no numbers dropped")         \
+  X(WELD, "welded_vertices", "vertices at equal positions united")                                 \
+  X(DROP_DEGENERATE, "dropped_degenerate_facets", "facets without area dropped")                   \
+  X(DROP_DUPLICATE, "dropped_duplicate_facets", "duplicate facets dropped")                        \
+  X(CLOSE_SEAM, "closed_seam_edges", "boundary edges closed by welding within the tolerance")      \
+  X(SPLIT_T_JUNCTION, "split_t_junctions", "edges split where a vertex lay on them")               \
+  X(DROP_FIN, "dropped_fin_facets", "facets of open sheets hanging on the surface dropped")        \
+  X(DROP_MEMBRANE, "dropped_membrane_facets", "facets of sheets within the surface dropped")       \
+  X(SPLIT_EDGE, "split_non_manifold_edges", "non-manifold edges split")                            \
+  X(TURN, "turned_facets", "facets turned round to agree with their neighbours")                   \
+  X(SPLIT_VERTEX, "split_non_manifold_vertices", "non-manifold vertices split")                    \
+  X(CUT_INTERSECTION, "cut_intersecting_facets", "facets cut out where the surface met itself")    \
+  X(FILL_HOLE, "filled_holes", "holes filled")                                                     \
+  X(FILL_FACET, "filling_facets", "facets added to fill them")                                     \
+  X(DROP_DEBRIS, "dropped_debris_shells", "debris shells dropped")                                 \
+  X(DROP_CAVITY, "dropped_cavities", "cavities dropped")                                           \
+  X(DROP_NESTED, "dropped_nested_shells", "shells inside the material of another dropped")         \
+  X(INVERT_SHELL, "inverted_shells", "shells turned outside out")
+
+typedef enum scree_repair_action {
+#define SCREE_REPAIR_ENUM(name, key, text) SCREE_REPAIR_##name,
+  SCREE_REPAIR_LIST(SCREE_REPAIR_ENUM)
+#undef SCREE_REPAIR_ENUM
+      SCREE_REPAIR_ACTION_COUNT
+} scree_repair_action;
+
+SCREE_API const char *scree_repair_action_name(scree_repair_action action);
+SCREE_API const char *scree_repair_action_text(scree_repair_action action);
+
+typedef struct scree_repair_options {
+  /* Boundary vertices no farther apart than this share of the bounding box diagonal may become one
+   * where that closes a seam, in [0, 0.01]; default 1e-4. The smallest distance that does is used,
+   * never more than a quarter of a boundary edge there. */
+  double seam_tolerance;
+  /* Holes of at most this many edges are filled; default 128, 0 fills none. */
+  size_t hole_edges;
+  /* Fill larger holes as well, up to 4,096 edges; default false. */
+  bool fill_large_holes;
+  /* Shells with less than this share of the area of the largest are debris, in [0, 1); default
+   * 0.01. Cavities are none. */
+  double debris_share;
+  /* Drop cavities too; default false. */
+  bool drop_cavities;
+  /* Keep only the shell of the largest area (and its cavities); default false. */
+  bool keep_largest;
+  /* Cut facets that meet others of the same shell out and fill the hole; default true. */
+  bool cut_intersections;
+  /* Test for self-intersections exactly, before and after; default true. Without, the result may
+   * have some. */
+  bool intersections;
+} scree_repair_options;
+SCREE_API scree_repair_options scree_default_repair_options(void);
+
+typedef struct scree_repair_report {
+  size_t done[SCREE_REPAIR_ACTION_COUNT];
+  double seam_distance;      /* the distance within which seams were closed, m; 0: none were */
+  scree_check before, after; /* after: of the result, or of what the failed attempt came to */
+} scree_repair_report;
+
+/* Makes a closed, manifold, consistently wound, outward surface without self-intersections of a
+ * mesh of any quality, or fails with SCREE_BAD_MESH and says what remains. Nothing is done to a
+ * mesh that needs nothing, but vertices and triangles are put in canonical order (scree_mesh_weld),
+ * so the result does not depend on the order of the facets. Shells that overlap are not united:
+ * that is refused. options and progress may be NULL; *report (may be NULL) is filled on success and
+ * on SCREE_BAD_MESH. Other errors as scree_mesh_check. */
+SCREE_API scree_status scree_mesh_repair(const scree_mesh *mesh,
+                                         const scree_repair_options *options,
+                                         const scree_progress *progress, scree_mesh *repaired,
+                                         scree_repair_report *report, scree_error *error);
+
+/* Check first, repair when asked: what every verb that needs a particle's surface calls. *ready is
+ * a copy of a mesh that passes the check, or its repair. options NULL refuses instead of repairing:
+ * SCREE_BAD_MESH with the verdict. *report (may be NULL) as for scree_mesh_repair;
+ * report->before.usable tells that nothing had to be done. */
+SCREE_API scree_status scree_mesh_prepare(const scree_mesh *mesh,
+                                          const scree_repair_options *options,
+                                          const scree_progress *progress, scree_mesh *ready,
+                                          scree_repair_report *report, scree_error *error);
+
+/* What became of one file, for scree_check_json_write. */
+typedef struct scree_check_entry {
+  const char *file;       /* as given */
+  const scree_scan *scan; /* NULL where it could not be read: then only `failure` is told */
+  double unit_m;          /* metres per unit of the file */
+  const scree_check *check;
+  const scree_repair_report *repair; /* NULL where none was tried */
+  const char *output;                /* the file written; NULL: none */
+  const char *failure;               /* why there is no result; NULL: there is one */
+} scree_check_entry;
+
+/* One array with an object per entry: file, checksum, counts of every defect, verdict, what was
+ * done. docs/formats.md has every field. command_line may be NULL; path "-" is stdout. */
+SCREE_API scree_status scree_check_json_write(const scree_check_entry *entries, size_t entry_count,
+                                              const char *command_line, const char *path,
+                                              bool overwrite, scree_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

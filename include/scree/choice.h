@@ -1,0 +1,188 @@
+/* The choice. */
+#ifndef SCREE_CHOICE_H
+#define SCREE_CHOICE_H
+
+#include "scree/simplify.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* From a curve to a triangle count. The criterion (Katagiri and Koyanaka 2020, eq. 1 and 2):
+ *
+ *   eps_s(N) = |S(N) - S_ref| / S_ref        Ip(N) = eps_s(N) + w N / Nm
+ *
+ * with S the surface area at N triangles, Nm the scan's count, S_ref the scan's area Sm and w = 1
+ * in the paper. Two choices are made from it:
+ *
+ *   paper   the least Ip on a logarithmic grid of Rp = N / Nm
+ *   robust  the least of (worst eps_s at N or any finer level) + w N / Nm, over every level: eps_s
+ *           falls to zero where S crosses S_ref by accident, the worst so far does not
+ *
+ * docs/method.md says why, with figures. */
+
+typedef enum scree_reference {
+  SCREE_REFERENCE_SCAN,   /* "scan", the default: Sm, the scan's own area, as in the paper */
+  SCREE_REFERENCE_SMOOTH, /* "smooth": the area on the plateau past the scanner's noise, measured on
+                             the curve; the scan's area where no noise is found */
+} scree_reference;
+
+/* The errors a level is reported with, each relative to the scan; area is the paper's eps_s.
+ * Lengths are relative to the diameter of the sphere of the scan's area, sqrt(Sm / pi). */
+#define SCREE_SHAPE_ERROR_LIST(X)                                                                  \
+  X(AREA, "area")           /* |S - S_ref| / S_ref */                                              \
+  X(VOLUME, "volume")       /* |V - Vm| / |Vm| */                                                  \
+  X(HAUSDORFF, "hausdorff") /* the larger of both ways */                                          \
+  X(MEAN, "mean_distance")  /* the larger of both ways */                                          \
+  X(INERTIA, "inertia")     /* Frobenius norm of the tensors' difference over the scan's */        \
+  X(SIZE, "size")           /* largest relative change of the three principal dimensions */
+
+typedef enum scree_shape_error {
+#define SCREE_SHAPE_ERROR_ENUM(name, text) SCREE_ERROR_##name,
+  SCREE_SHAPE_ERROR_LIST(SCREE_SHAPE_ERROR_ENUM)
+#undef SCREE_SHAPE_ERROR_ENUM
+      SCREE_SHAPE_ERROR_COUNT
+} scree_shape_error;
+
+/* The name above, for example "mean_distance". */
+SCREE_API const char *scree_shape_error_name(scree_shape_error which);
+
+typedef struct scree_choice_options {
+  double weight;         /* w, > 0; 1: the paper, eq. 2 */
+  double rp_min, rp_max; /* ends of the grid, 0 < rp_min <= rp_max <= 1; 1e-5, 1e-1: the paper */
+  int per_decade;        /* grid points per factor of ten, 1..1000; 9 */
+  scree_reference reference; /* S_ref of paper, robust and plain; SCREE_REFERENCE_SCAN */
+  bool shape_errors;         /* also inertia and size at every grid level, which are rebuilt */
+  bool distances;            /* also the distances at every grid level: minutes on large scans */
+} scree_choice_options;
+
+SCREE_API scree_choice_options scree_default_choice_options(void);
+
+/* Point `index` of the grid: rp_min 10^(index / per_decade); index 0 is rp_min. */
+SCREE_API double scree_choice_grid_rp(const scree_choice_options *options, size_t index);
+/* How many of them lie in [rp_min, rp_max], the ends included (to 1e-9 relative). */
+SCREE_API size_t scree_choice_grid_count(const scree_choice_options *options);
+
+/* rp Nm, truncated, the count that an Rp asks for; 1e-3 of 762,000 is 762, however 1e-3 rounds. */
+SCREE_API size_t scree_choice_target(double rp, size_t triangle_count);
+
+/* A level at a given Rp: the first level whose count is not above rp Nm, truncated; where the mesh
+ * cannot be reduced so far, the last level, and `reached` is false. */
+typedef struct scree_choice_level {
+  double rp;             /* as asked: the grid's */
+  size_t level_index;    /* in the curve */
+  size_t triangle_count; /* Nr */
+  double rp_reached;     /* Nr / Nm */
+  bool reached;
+  double area, volume;                    /* m2, m3 */
+  double eps_s, ip;                       /* eq. 1 and 2 */
+  double worst_eps_s, robust_ip;          /* the monotone envelope and its criterion */
+  double smooth_ip;                       /* robust_ip against the area free of noise, where the
+                                             levels finer than noise.level_index do not count */
+  double errors[SCREE_SHAPE_ERROR_COUNT]; /* NaN where not measured */
+} scree_choice_level;
+
+/* A chosen level. */
+typedef struct scree_pick {
+  double rp;             /* of a choice on the grid: the grid's; else Nr / Nm */
+  size_t level_index;    /* in the curve */
+  size_t triangle_count; /* Nr */
+  double area, volume;   /* m2, m3 */
+  double eps_s, ip;      /* what the choice minimised: ip = eps_s + w Nr / Nm; for a robust choice
+                            eps_s is the worst at this or any finer level */
+  double level_eps_s;    /* eq. 1 at this level alone */
+} scree_pick;
+
+/* The scanner's noise as the curve shows it: area that goes away before the shape does. */
+typedef struct scree_noise {
+  bool found;
+  double area;           /* free of noise, m2; the scan's where none was found */
+  double fraction;       /* (Sm - area) / area */
+  size_t level_index;    /* of the plateau's end nearest to the scan */
+  size_t triangle_count; /* there */
+} scree_noise;
+
+/* What is known of one object. */
+typedef struct scree_choice {
+  size_t triangle_count, floor_count; /* Nm, and the fewest triangles reached */
+  double area, volume;                /* Sm, Vm: m2, m3 */
+  double reference_area;              /* S_ref, m2 */
+  scree_noise noise;
+  scree_choice_level *levels; /* the grid, Rp rising */
+  size_t level_count;
+  scree_choice_level
+      *trace; /* the dense curve at SCREE_TRACE_PER_DECADE points per factor of ten of
+                 Rp, from rp_min to 1, rising; equal neighbours occur at the floor */
+  size_t trace_count;
+  scree_pick paper; /* least ip on the grid; ties: fewest triangles, then the Rp nearest to Nr/Nm */
+  scree_pick robust;      /* least robust_ip of all levels; ties: fewest triangles */
+  scree_pick plain;       /* least ip of all levels, for diagnosis: often an accident */
+  bool plain_is_accident; /* the error at `plain` is below a tenth of the worst at finer levels */
+  scree_pick smooth;      /* robust with the area free of noise; robust where none was found */
+  size_t finer_count;     /* what robust would choose were the scan's spacing half as large (Nm four
+                             times as large) and the shape the same: the choice follows resolution */
+  size_t best[SCREE_SHAPE_ERROR_COUNT]; /* grid index of the least error + w Nr/Nm; level_count
+                                           where that error was not measured */
+} scree_choice;
+
+enum { SCREE_TRACE_PER_DECADE = 200 };
+
+/* One choice for several objects, as the paper's 1e-3 for its nine: the Rp with the least mean of
+ * Ip over the objects. */
+typedef struct scree_set_choice {
+  size_t object_count;
+  double *ip;  /* mean over the objects at each grid Rp */
+  double *low; /* least and largest over the objects there: the scatter */
+  double *high;
+  size_t level_count;
+  double paper_rp, paper_ip;   /* least mean ip on the grid; ties: the smaller Rp, but of several
+                                  that give the same levels the one nearest to Nr/Nm */
+  double robust_rp, robust_ip; /* least mean robust_ip on the trace; ties likewise */
+  double smooth_rp, smooth_ip; /* the same against the areas free of noise */
+  double paper_spread, robust_spread; /* largest over smallest Rp chosen by the objects alone */
+} scree_set_choice;
+
+/* Chooses from the curve of one object. scan is the mesh that the curve was built from; it may be
+ * NULL without shape_errors and distances. options NULL means the defaults, progress may be NULL.
+ * Errors: SCREE_BAD_MESH where the scan has no area, SCREE_BAD_ARGUMENT, SCREE_OUT_OF_MEMORY,
+ * SCREE_CANCELLED. Cost: one pass over the levels, some ms for 400,000 of them. */
+SCREE_API scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
+                                    const scree_choice_options *options,
+                                    const scree_progress *progress, scree_choice *choice,
+                                    scree_error *error);
+
+SCREE_API void scree_choice_free(scree_choice *choice);
+SCREE_API void scree_set_choice_free(scree_set_choice *set);
+
+/* The set's choice. All objects must have been chosen with the same options. */
+SCREE_API scree_status scree_choose_set(const scree_choice *choices, size_t count,
+                                        scree_set_choice *set, scree_error *error);
+
+/* Many objects at once, as many as there are threads, each from its mesh to its choice. The two
+ * functions are called from any thread, several at a time for different objects. */
+typedef struct scree_choice_job {
+  size_t count;
+  scree_simplify_options simplify;
+  scree_choice_options options;
+  /* Gives the mesh of object `index`, which is freed for it; may be called twice for an object
+   * where curves need more than 2 GiB together. */
+  scree_status (*load)(void *context, size_t index, const scree_progress *progress,
+                       scree_mesh *mesh, scree_error *error);
+  /* Gets each object's curve once all choices are made, to rebuild levels from; NULL: not wanted.
+   */
+  scree_status (*done)(void *context, size_t index, const scree_curve *curve,
+                       const scree_choice *choice, const scree_set_choice *set, scree_error *error);
+  void *context;
+} scree_choice_job;
+
+/* Fills choices (job->count of them) and *set. Where objects fail the first one's error is
+ * reported and all outputs are as freed. progress->report is called from any thread, by one at a
+ * time. The result does not depend on the number of threads. */
+SCREE_API scree_status scree_choose_each(const scree_choice_job *job,
+                                         const scree_progress *progress, scree_choice *choices,
+                                         scree_set_choice *set, scree_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

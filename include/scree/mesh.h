@@ -1,0 +1,136 @@
+/* Meshes and scans: reading, welding, writing. */
+#ifndef SCREE_MESH_H
+#define SCREE_MESH_H
+
+#include "scree/base.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* An indexed triangle mesh. Triangle t has corners triangles[3t..3t+2]; vertex v lies at
+ * positions[3v..3v+2], in metres. Counter-clockwise from outside. */
+typedef struct scree_mesh {
+  double *positions;   /* 3 * vertex_count */
+  uint32_t *triangles; /* 3 * triangle_count */
+  size_t vertex_count;
+  size_t triangle_count;
+} scree_mesh;
+
+SCREE_API void scree_mesh_free(scree_mesh *mesh);
+SCREE_API scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy,
+                                       scree_error *error);
+
+/* ---- Reading and writing ---- */
+
+/* How a scan is read. Most files carry no unit: it is stated here, never guessed. */
+typedef struct scree_read_options {
+  /* Metres per unit of the file, in [1e-12, 1e12]; default 1e-3 (millimetres, as scanners write).
+   * 3MF and glTF state their own unit, and this one is not used. */
+  double unit_m;
+  /* Vertices closer than this share of the bounding box diagonal become one: 0 (the default: only
+   * equal positions) or in [1e-12, 0.1]. See scree_mesh_weld. */
+  double weld_tolerance;
+  /* The most bytes read from a file or stream; default 0: only memory limits. */
+  size_t max_bytes;
+} scree_read_options;
+
+SCREE_API scree_read_options scree_default_read_options(void);
+
+/* A scan: its welded surface and what the file said. */
+typedef struct scree_scan {
+  scree_mesh mesh;         /* metres; vertices and triangles in canonical order (scree_mesh_weld) */
+  scree_checksum checksum; /* of the file's bytes */
+  size_t byte_count;
+  char format[32];         /* for example "STL binary", "3MF, inch" (with the unit it states) */
+  size_t facet_count;      /* triangles in the file; a polygon counts as its triangles */
+  size_t degenerate_count; /* of these, dropped because two corners coincide */
+  size_t solid_count;      /* `solid`s of an ASCII STL; else 1 */
+  size_t
+      ignored_byte_count; /* bytes after the last facet of a binary STL, fewer than a facet has */
+} scree_scan;
+
+SCREE_API void scree_scan_free(scree_scan *scan);
+
+/* Reads and welds a scan. path "-" is standard input. The format is found by content, not by name:
+ * STL (binary, also with colours or a header that begins with `solid`; ASCII), PLY (ASCII, both
+ * byte orders, polygons, triangle strips), OBJ (polygons, v/vt/vn, negative indices), OFF (also
+ * with colours, normals, texture coordinates); in a build with assimp also 3MF, glTF (binary; text
+ * with embedded data), COLLADA, X3D, AMF, FBX and 3DS, imported in a child process with limits on
+ * memory and time (docs/formats.md). options NULL means the defaults.
+ *
+ * Sizes in the file are believed only where its length allows them, so memory stays within a fixed
+ * multiple of the file's length (of its triangles for 3MF and glTF). Errors: SCREE_IO, also where
+ * no child process can be made; SCREE_LIMIT above max_bytes or 2^32 - 2 vertices, or above a limit
+ * of the child; SCREE_UNSUPPORTED for a format known but not read; SCREE_BAD_FILE with the line or
+ * byte, the value and the limit; SCREE_BAD_MESH where every facet is degenerate;
+ * SCREE_OUT_OF_MEMORY. Free *scan with scree_scan_free. */
+SCREE_API scree_status scree_scan_read(const char *path, const scree_read_options *options,
+                                       scree_scan *scan, scree_error *error);
+/* The same for byte_count bytes in memory; name stands for the file in errors. */
+SCREE_API scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
+                                        const scree_read_options *options, scree_scan *scan,
+                                        scree_error *error);
+
+/* Makes an indexed mesh of loose triangles: triangle t has its corners at corner_positions[9t ..
+ * 9t+8], finite and at most 1e30 in size, in metres.
+ *
+ * The order is canonical, so that every order of the same facets, and every start corner, gives the
+ * same bits: vertices are sorted by x, then y, then z; each triangle starts at its smallest index,
+ * winding kept; triangles are sorted by their three indices. -0 counts as 0. Triangles of which two
+ * corners coincide are dropped and counted in *degenerate_count (may be NULL); vertices without a
+ * triangle are dropped. Duplicate triangles stay.
+ *
+ * tolerance > 0 also unites all vertices that are linked by steps no longer than tolerance times
+ * the bounding box diagonal; the first of each group, in canonical order, gives the position. The
+ * result welded again with the same distance is itself.
+ *
+ * Errors: SCREE_BAD_ARGUMENT for a coordinate or tolerance out of range; SCREE_LIMIT above 2^32 - 2
+ * vertices or 1.4e9 triangles, or where the tolerance joins so many pairs that the work would not
+ * end; SCREE_OUT_OF_MEMORY. Cost: linear in practice, n log n at worst. A mesh without triangles is
+ * a valid result. */
+SCREE_API scree_status scree_mesh_weld(const double *corner_positions, size_t facet_count,
+                                       double tolerance, scree_mesh *mesh, size_t *degenerate_count,
+                                       scree_error *error);
+
+/* Formats that are written. */
+typedef enum scree_file_format {
+  SCREE_FORMAT_AUTO,      /* by the path's extension: .stl .ply .obj .off .3mf */
+  SCREE_FORMAT_STL,       /* "stl": binary; positions rounded to 24 bits */
+  SCREE_FORMAT_STL_ASCII, /* "stl-ascii" */
+  SCREE_FORMAT_PLY,       /* "ply": binary little endian, double */
+  SCREE_FORMAT_PLY_FLOAT, /* "ply-float": binary little endian, positions rounded to 24 bits */
+  SCREE_FORMAT_OBJ,       /* "obj" */
+  SCREE_FORMAT_OFF,       /* "off" */
+  SCREE_FORMAT_3MF, /* "3mf": not compressed; says its unit, metre where 3MF has no such unit */
+  SCREE_FILE_FORMAT_COUNT,
+} scree_file_format;
+
+/* The format's name as in the comments above ("auto" for SCREE_FORMAT_AUTO). */
+SCREE_API const char *scree_file_format_name(scree_file_format format);
+/* The format that a path's extension asks for, in any case of letters; SCREE_FORMAT_AUTO: none. */
+SCREE_API scree_file_format scree_file_format_of(const char *path);
+
+typedef struct scree_write_options {
+  scree_file_format format; /* default SCREE_FORMAT_AUTO */
+  double unit_m;            /* metres per unit of the file, in [1e-12, 1e12]; default 1e-3 */
+  bool overwrite;           /* default false: an existing file is refused */
+  /* One line of provenance, put after scree's version where the format has comments (PLY, OBJ, OFF,
+   * 3MF; its first 40 bytes in the header of a binary STL); NULL for none. Borrowed. */
+  const char *comment;
+} scree_write_options;
+
+SCREE_API scree_write_options scree_default_write_options(void);
+
+/* Writes the mesh; path "-" is standard output (then format must not be AUTO). The file appears
+ * whole or not at all. Formats with text or double carry every bit of position / unit_m. options
+ * NULL means the defaults. Errors: SCREE_BAD_ARGUMENT for an unknown extension or an index or
+ * coordinate out of range, SCREE_EXISTS, SCREE_IO, SCREE_LIMIT where the format cannot hold the
+ * count. */
+SCREE_API scree_status scree_mesh_write(const scree_mesh *mesh, const char *path,
+                                        const scree_write_options *options, scree_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

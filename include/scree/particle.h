@@ -1,0 +1,78 @@
+/* Particles: rigid shapes with mass and contact features. */
+#ifndef SCREE_PARTICLE_H
+#define SCREE_PARTICLE_H
+
+#include "scree/mesh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A particle is a rigid shape with its mass properties and what contact needs: immutable once made,
+ * shared by any number of bodies and worlds. Its frame has its origin in the centre of mass and its
+ * axes along the principal axes of inertia. */
+typedef struct scree_particle scree_particle;
+
+typedef enum scree_particle_kind {
+  SCREE_PARTICLE_MESH,
+  SCREE_PARTICLE_SPHERE,
+  SCREE_PARTICLE_CLUMP,
+} scree_particle_kind;
+
+typedef struct scree_particle_options {
+  /* m; radius by which the surface is rounded for contact: two meshes touch when their surfaces are
+   * within the sum. Mass and centre come from the unrounded mesh. 0 (default): 0.002 of the size,
+   * 0.1 mm for a phone (docs/physics.md, "Rounding"). */
+  double rounding;
+} scree_particle_options;
+SCREE_API scree_particle_options scree_default_particle_options(void);
+
+/* Everything per unit of density where density enters. */
+typedef struct scree_particle_measures {
+  scree_particle_kind kind;
+  double volume;          /* m3, exact for the mesh */
+  double size;            /* m, L: the diameter of the sphere of equal volume */
+  double centre[3];       /* m, centre of mass in the coordinates the particle was made from */
+  double orientation[4];  /* w x y z, turns the particle's axes into those coordinates */
+  double inertia[3];      /* m5, principal moments for density 1, ascending for a mesh */
+  double bounding_radius; /* m, about the centre of mass, rounding included */
+  double thickness;       /* m, the thinnest wall: 1 % of the surface has less solid behind it */
+  double rounding;        /* m */
+  size_t triangle_count;  /* of the mesh; 0 for spheres and clumps */
+  size_t point_count;     /* contact features: corners of the mesh, or spheres */
+  size_t edge_count;      /* contact features: straight convex edges */
+} scree_particle_measures;
+
+/* A closed mesh, metres. Coplanar and collinear subdivisions do not change the features, so neither
+ * the forces. Fails with SCREE_BAD_MESH, naming the first offending triangle or edge, for a mesh
+ * that is open, non-manifold, inconsistently wound, folded (two faces closer than 30 degrees to
+ * back to back over an edge) or without positive volume, and with the verdict of scree_mesh_check
+ * for every other that it finds unusable: surfaces that cross or touch themselves, shells inside
+ * out or inside others. options may be NULL. Cost n log n. */
+SCREE_API scree_status scree_particle_from_mesh(const scree_mesh *mesh,
+                                                const scree_particle_options *options,
+                                                scree_particle **particle, scree_error *error);
+/* A sphere, radius in m. */
+SCREE_API scree_status scree_particle_sphere(double radius, scree_particle **particle,
+                                             scree_error *error);
+/* A rigid clump of `count` spheres, centres at 3 doubles each, metres. `like` (may be NULL) is a
+ * particle whose volume, centre and inertia the clump takes over, the usual case of a clump that
+ * stands for a mesh; without it they are those of the spheres' union, integrated to about 1e-4. */
+SCREE_API scree_status scree_particle_clump(const double *centres, const double *radii,
+                                            size_t count, const scree_particle *like,
+                                            scree_particle **particle, scree_error *error);
+/* Worlds hold their own reference: freeing before the world is legal. */
+SCREE_API void scree_particle_free(scree_particle *particle);
+
+SCREE_API void scree_particle_measure(const scree_particle *particle,
+                                      scree_particle_measures *measures);
+/* The mesh in the particle's frame, borrowed, for drawing; for spheres and clumps no triangles. */
+SCREE_API const scree_mesh *scree_particle_mesh(const scree_particle *particle);
+/* Sphere or contact point `index` in the particle's frame, with its radius. */
+SCREE_API void scree_particle_point(const scree_particle *particle, size_t index, double centre[3],
+                                    double *radius);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

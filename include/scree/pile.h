@@ -1,0 +1,417 @@
+/* Pile: filling, lifting, angle of repose, pouring. */
+#ifndef SCREE_PILE_H
+#define SCREE_PILE_H
+
+#include "scree/simplify.h"
+#include "scree/world.h"
+
+#include <stdio.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Measuring a heap ---- */
+
+/* Heights above a floor on a square grid: cell (i, j) has its centre at
+ * (x + (i + 0.5) cell, y + (j + 0.5) cell) and the height height[j * columns + i], 0 where nothing
+ * lies. */
+typedef struct scree_height_field {
+  double x, y, cell;    /* m: corner and side of a cell */
+  size_t columns, rows; /* along x and y */
+  double *height;       /* m, rows * columns */
+} scree_height_field;
+
+/* An empty field that covers [-half_width, half_width] squared about (centre_x, centre_y). */
+SCREE_API scree_status scree_height_field_create(double centre_x, double centre_y,
+                                                 double half_width, double cell,
+                                                 scree_height_field *field, scree_error *error);
+SCREE_API void scree_height_field_free(scree_height_field *field);
+/* Raises the field to the surface of a mesh turned by the unit quaternion (w, x, y, z) and moved to
+ * position, exactly at the cells' centres; a triangle that covers no centre still counts with its
+ * corners. The floor is z = floor_z. */
+SCREE_API void scree_height_field_add_mesh(scree_height_field *field, const scree_mesh *mesh,
+                                           const double position[3], const double quaternion[4],
+                                           double floor_z);
+SCREE_API void scree_height_field_add_sphere(scree_height_field *field, const double centre[3],
+                                             double radius, double floor_z);
+
+typedef struct scree_repose_options {
+  size_t sector_count;        /* azimuth sectors of way 1; default 36 */
+  size_t silhouette_count;    /* directions of way 3, over half a turn; default 18 */
+  double band_low, band_high; /* the flank is where the height is in this share of the heap's
+                                 height; default 0.2 and 0.8 */
+  double
+      particle_size; /* m: below two of it in height there is no heap; 0 (default): not checked */
+} scree_repose_options;
+
+SCREE_API scree_repose_options scree_default_repose_options(void);
+
+/* Angle of repose of a heap, three ways, and its size. Angles in degrees, NaN where there is none.
+ */
+typedef struct scree_repose {
+  bool heap; /* false: no heap to speak of, all angles NaN; `reason` says why */
+  char reason[128];
+  double sector_deg, sector_sd_deg;         /* 1: mean and SD over the sectors' flank lines */
+  size_t sector_count;                      /*    sectors that gave a line */
+  double cone_deg, cone_rms;                /* 2: least-squares cone; RMS misfit, m */
+  double cone_apex[3];                      /*    its apex, m */
+  double silhouette_deg, silhouette_sd_deg; /* 3: mean and SD over the silhouettes' flanks */
+  size_t flank_count;                       /*    flanks that gave a line */
+  double axis[2];                           /* of the heap: the height-weighted mean position, m */
+  double height;                            /* m: greatest mean height over a ring about the axis */
+  double peak;                              /* m: greatest height of all */
+  double base_radius;     /* m: where the flank line of the rings' mean heights, fitted
+                             in the band, meets the floor */
+  double run_out;         /* m: the farthest occupied cell from the axis */
+  double envelope_volume; /* m^3 under the field: packing fraction = solid over this */
+} scree_repose;
+
+/* Measures the field. The ways (docs/repose.md): 1, in each sector a straight line through the mean
+ * heights of radial bins whose height is within the band; 2, a cone h = H - m |r - r0| fitted by
+ * Gauss-Newton to the cells within the band, apex free; 3, the outline seen from the side, a line
+ * on each flank within the band. Cost: linear in the cells times the silhouettes. */
+SCREE_API scree_status scree_repose_measure(const scree_height_field *field,
+                                            const scree_repose_options *options,
+                                            scree_repose *repose, scree_error *error);
+
+/* ---- Describing an experiment ---- */
+
+typedef enum scree_mass_rule {
+  SCREE_MASS_FROM_MESH, /* density times the volume of each decimated mesh */
+  SCREE_MASS_FROM_SCAN, /* density times the volume of the scan, at every level */
+} scree_mass_rule;
+
+/* The angle-of-repose experiment of Katagiri and Koyanaka (2020), section 2.3, with everything
+ * settable. One table (src/pile/experiment.c) holds each field's key in YAML, unit, range and
+ * source; the comments here repeat the unit. Strings are owned; free with scree_experiment_free. */
+typedef struct scree_experiment {
+  char *preset; /* the name it started from */
+  size_t particle_count;
+  uint64_t seed;
+  double density;                          /* kg/m3 */
+  int mass_rule;                           /* a scree_mass_rule */
+  double cylinder_diameter, disc_diameter; /* m */
+  double pack_time, settle_time;           /* s */
+  double lift_speed;                       /* m/s */
+  double lift_time;                        /* s */
+  double hold_time;                        /* s: at most, until still */
+  double still_energy;                     /* J of kinetic energy a particle: less is still */
+  bool stop_when_still;                    /* end a phase early when still */
+  int inlet; /* 0 "top": above where the packed heap will end; 1 "heap": as near as drop_height */
+  double drop_height;                /* m between the heap and the layer being filled in */
+  double gravity;                    /* m/s2 */
+  double young_particle, young_wall; /* Pa */
+  double poisson;
+  double restitution, friction_particle, friction_wall;
+  int contact_law;            /* 0 linear, 1 hysteretic */
+  double steps_per_contact;   /* N of the time step */
+  double stiffness_factor;    /* multiplies all stiffnesses */
+  double frame_interval;      /* s between frames written; 0: none but the last */
+  double checkpoint_interval; /* s of wall-clock time between checkpoints */
+  double series_interval;     /* s between the points of the series (scree_run_point) */
+  double angle_interval;      /* s between those that have angles; 0: only the last */
+  double height_cell;         /* m: cells of the height field; 0: a tenth of the particle size */
+  size_t sector_count;
+  double band_low, band_high;
+} scree_experiment;
+
+/* The names of the presets: "paper", "small", "demo"; NULL past the last. */
+SCREE_API const char *scree_preset_name(size_t index);
+SCREE_API scree_status scree_experiment_preset(const char *name, scree_experiment *experiment,
+                                               scree_error *error);
+SCREE_API void scree_experiment_free(scree_experiment *experiment);
+/* Reads YAML (or JSON) over the values that *experiment has; `preset: NAME` first takes that
+ * preset. Errors name file, line, column, key, value and limit; *experiment is untouched on
+ * failure. */
+SCREE_API scree_status scree_experiment_read(const char *path, scree_experiment *experiment,
+                                             scree_error *error);
+/* The same from bytes in memory; name stands for the file in errors. */
+SCREE_API scree_status scree_experiment_parse(const char *text, size_t byte_count, const char *name,
+                                              scree_experiment *experiment, scree_error *error);
+/* An own copy. */
+SCREE_API scree_status scree_experiment_copy(const scree_experiment *experiment,
+                                             scree_experiment *copy, scree_error *error);
+/* Sets one field from text, as `cylinder.diameter` to "0.3". */
+SCREE_API scree_status scree_experiment_set(scree_experiment *experiment, const char *key,
+                                            const char *value, scree_error *error);
+/* What single ranges cannot say, such as a disc smaller than the cylinder; reading checks it too.
+ */
+SCREE_API scree_status scree_experiment_check(const scree_experiment *experiment,
+                                              scree_error *error);
+/* The keys of all fields in the order of the file, NULL past the last; unit and meaning of a key
+ * ("" for a pure number; the words "one|two" of a choice), NULL for an unknown one. */
+SCREE_API const char *scree_experiment_key(size_t index);
+SCREE_API const char *scree_experiment_unit(const char *key);
+SCREE_API const char *scree_experiment_comment(const char *key);
+/* A field as text that scree_experiment_set reads back, into buffer; false for an unknown key. */
+SCREE_API bool scree_experiment_get(const scree_experiment *experiment, const char *key,
+                                    char *buffer, size_t size);
+/* Writes the whole experiment as YAML with units and comments; reading it back gives the same
+ * values. */
+SCREE_API void scree_experiment_print(const scree_experiment *experiment, FILE *stream);
+
+/* ---- One run of the experiment ---- */
+
+typedef enum scree_phase {
+  SCREE_PHASE_PACK,   /* layers of particles are filled in at the top of the cylinder */
+  SCREE_PHASE_SETTLE, /* they come to rest */
+  SCREE_PHASE_LIFT,   /* the cylinder rises */
+  SCREE_PHASE_HOLD,   /* until still */
+  SCREE_PHASE_DONE,
+} scree_phase;
+
+SCREE_API const char *scree_phase_name(scree_phase phase);
+
+/* A run: its world, walls and the schedule of filling and phases. */
+typedef struct scree_run scree_run;
+
+/* One of the shapes that a run mixes. */
+typedef struct scree_run_shape {
+  scree_particle *particle; /* borrowed until the run is created; the run keeps its own reference */
+  double density_factor; /* 1, or volume of the scan over that of the particle (mass_from: scan) */
+  const char *name;      /* for reports, copied; NULL: none */
+  const char *source;    /* where it came from: file, checksum, Rp; copied; NULL: unknown */
+} scree_run_shape;
+
+/* The particles take the shapes in equal shares, shuffled by the seed; positions and orientations
+ * are random, and their bounding boxes never overlap (src/pile/fill.c). Layers follow each other so
+ * that all are in after pack_time; a cylinder too narrow for the largest particle, or a layer that
+ * would have to enter faster than the contact law allows, is refused here with the pack_time that
+ * would do. At most 60 shapes. */
+SCREE_API scree_status scree_run_create(const scree_experiment *experiment,
+                                        const scree_run_shape *shapes, size_t shape_count,
+                                        scree_run **run, scree_error *error);
+SCREE_API void scree_run_free(scree_run *run);
+
+/* Advances by at most step_count time steps; stops earlier where a phase ends. SCREE_DIVERGED as
+ * scree_world_step. The result does not depend on how a run is cut into calls. */
+SCREE_API scree_status scree_run_advance(scree_run *run, size_t step_count, scree_error *error);
+SCREE_API scree_phase scree_run_phase(const scree_run *run);
+/* The fraction of the simulated time done, by the longest schedule: phases may end early. */
+SCREE_API double scree_run_fraction(const scree_run *run);
+/* The world, for observing and frames; not to be changed. */
+SCREE_API scree_world *scree_run_world(scree_run *run);
+SCREE_API const scree_world *scree_run_view(const scree_run *run);
+SCREE_API const scree_experiment *scree_run_experiment(const scree_run *run);
+SCREE_API size_t scree_run_shape_count(const scree_run *run);
+/* Particle and name belong to the run. */
+SCREE_API void scree_run_get_shape(const scree_run *run, size_t index, scree_run_shape *shape);
+/* The shape of body `index` of the world. */
+SCREE_API size_t scree_run_body_shape(const scree_run *run, size_t index);
+/* m: the height of the cylinder's lower end above the disc. */
+SCREE_API double scree_run_cylinder_height(const scree_run *run);
+
+/* The state at one moment: a point is recorded at every output.series_interval of simulated time,
+ * and one where the run ends. */
+typedef struct scree_run_point {
+  double time; /* s */
+  scree_phase phase;
+  size_t body_count;      /* in the world: entered, and not fallen off */
+  double kinetic;         /* J, of translation and rotation */
+  double mean_rotation;   /* rad/s: mean of |omega| over the bodies, the paper's Fig. 7 */
+  double highest_speed;   /* m/s */
+  double largest_overlap; /* m, in that step */
+  double coordination;    /* mean number of touching bodies and walls */
+  double cylinder_height; /* m */
+  double sector_deg, cone_deg, silhouette_deg, height; /* of the heap, m; at every
+                                                          output.angle_interval while lifting and
+                                                          holding, and at the end; else NaN */
+} scree_run_point;
+
+/* The series so far, the run's own; valid until the next call that advances it. */
+SCREE_API const scree_run_point *scree_run_series(const scree_run *run, size_t *count);
+
+/* What the run cost so far, all its pieces between interruptions together. */
+typedef struct scree_run_costs {
+  double time_step; /* s */
+  uint64_t step_count;
+  uint64_t particle_steps;  /* sum over the steps of the bodies in the world */
+  double wall_seconds;      /* in scree_run_advance, on the clock */
+  double processor_seconds; /* and of all threads of the process meanwhile */
+  size_t piece_count;       /* 1, and one more for every resume */
+  double largest_overlap;   /* m, of all points of the series */
+} scree_run_costs;
+SCREE_API void scree_run_get_costs(const scree_run *run, scree_run_costs *costs);
+
+/* What a run gives beyond the heap's shape. */
+typedef struct scree_run_result {
+  scree_repose repose;
+  size_t body_count;       /* particles on the disc */
+  size_t left_count;       /* particles that fell off it */
+  double packing_fraction; /* solid volume over the volume under the height field */
+  double coordination;     /* mean number of touching neighbours, walls included */
+  double particle_size;    /* m: mean equal-volume sphere diameter */
+  double kinetic;          /* J: what is left of motion */
+  double time;             /* s, simulated */
+  bool still;              /* less than phases.still_energy a particle */
+} scree_run_result;
+
+/* Measures the heap as it stands now (scree_height_field, scree_repose_measure). */
+SCREE_API scree_status scree_run_measure(const scree_run *run, scree_run_result *result,
+                                         scree_error *error);
+/* The same with other settings: of `measure`, only the fields of its group "measure" are used. */
+SCREE_API scree_status scree_run_measure_with(const scree_run *run, const scree_experiment *measure,
+                                              scree_run_result *result, scree_error *error);
+
+/* ---- Runs on disk ---- */
+
+/* Writes a checkpoint: experiment, shapes, world, series; it stands alone (docs/formats.md).
+ * Complete under its name or not there. */
+SCREE_API scree_status scree_run_save(const scree_run *run, const char *path, bool overwrite,
+                                      scree_error *error);
+/* Writes a frame: the same without the contacts, a fraction of the size; it can be measured and
+ * drawn, not continued. */
+SCREE_API scree_status scree_run_save_frame(const scree_run *run, const char *path, bool overwrite,
+                                            scree_error *error);
+/* Reads either. From a checkpoint every later step has the same bits as in the run saved; a frame
+ * is refused by scree_run_advance with SCREE_UNSUPPORTED. SCREE_BAD_FILE, with file and reason, for
+ * anything else. */
+SCREE_API scree_status scree_run_load(const char *path, scree_run **run, scree_error *error);
+SCREE_API bool scree_run_is_frame(const scree_run *run);
+
+/* How a whole run goes on, for a watcher. */
+typedef struct scree_run_state {
+  const scree_run *run;
+  scree_run_point now;     /* without angles */
+  double fraction;         /* of the simulated time, by the longest schedule */
+  double steps_per_second; /* over the last seconds on the clock; NaN at first */
+  double seconds_left;     /* on the clock, at that speed; NaN at first */
+} scree_run_state;
+
+typedef struct scree_run_job {
+  const scree_experiment *experiment;
+  const scree_run_shape *shapes; /* 1 to 60 */
+  size_t shape_count;
+  /* Gets checkpoint.scree every output.checkpoint_interval, when the run is cancelled and when it
+   * is done; frame-NNNN.scree at every output.frame_interval, NNNN counting from 0000; and
+   * last.scree, a frame, at the end. Made if need be. NULL: nothing is written. */
+  const char *folder;
+  /* Also motion.scree: where every body was, at some 240 moments of the longest schedule
+   * (scree_motion_read). What an interrupted run wrote of it stays. */
+  bool motion;
+  /* Go on from the folder's checkpoint.scree where there is one; one of another experiment or of
+   * other shapes is refused with SCREE_BAD_ARGUMENT, one that cannot be read with SCREE_BAD_FILE.
+   * Without resume a folder that has one is refused with SCREE_EXISTS, unless overwrite. */
+  bool resume, overwrite;
+  /* Called a few times a second; false cancels: the checkpoint is written, and the answer is
+   * SCREE_CANCELLED. NULL: none. */
+  bool (*watch)(void *context, const scree_run_state *state);
+  /* Called after a frame was due, also without folder; time is run's. NULL: none. */
+  scree_status (*frame)(void *context, scree_run *run, size_t frame_index, scree_error *error);
+  void *context;
+} scree_run_job;
+
+/* Where every body of a run was at moments of its time. */
+typedef struct scree_motion {
+  size_t frame_count, body_count;
+  double *time;            /* s, of each frame, rising */
+  double *cylinder_height; /* m, likewise */
+  float *poses; /* of body b in frame f the 7 from 7 (f body_count + b): position, m, and quaternion
+                   w x y z (within 2e-5 rad); NaN where the body is not in the world */
+} scree_motion;
+
+/* Reads motion.scree of a run's folder; a frame at its end that was not written whole is left out.
+ * SCREE_BAD_FILE for anything else. */
+SCREE_API scree_status scree_motion_read(const char *path, scree_motion *motion,
+                                         scree_error *error);
+SCREE_API void scree_motion_free(scree_motion *motion);
+
+/* One run from its beginning, or its checkpoint, to its end; *run is then in SCREE_PHASE_DONE: ask
+ * it for result, series and costs, and free it. A failed run (SCREE_DIVERGED) leaves its last
+ * checkpoint. The same experiment and shapes give the same bits, however often it was interrupted
+ * and on any number of threads; the costs alone differ. */
+SCREE_API scree_status scree_run_complete(const scree_run_job *job, scree_run **run,
+                                          scree_error *error);
+
+/* ---- Shapes for a run ---- */
+
+typedef struct scree_grain_options {
+  double rp;       /* percentage reduction in (0, 1]; default 1: the scan as it is */
+  bool sphere;     /* the sphere of the scan's volume instead, whatever the Rp; default false */
+  int mass_rule;   /* a scree_mass_rule; default SCREE_MASS_FROM_MESH */
+  double rounding; /* m, see scree_particle_options; default 0 */
+} scree_grain_options;
+SCREE_API scree_grain_options scree_default_grain_options(void);
+
+/* A shape and what was made of it. */
+typedef struct scree_grain {
+  scree_run_shape run; /* its particle belongs to this struct; name is NULL */
+  size_t scan_triangle_count, triangle_count; /* of a sphere: 0 */
+  double rp_reached;                          /* triangle_count / scan_triangle_count */
+  double scan_volume, volume;                 /* m3; of the particle before the density factor */
+} scree_grain;
+SCREE_API void scree_grain_free(scree_grain *grain);
+
+/* A particle of a scan at one Rp. scan must be closed (scree_mesh_prepare); curve is that of the
+ * scan, used where rp < 1 and not a sphere, so that many levels cost one decimation; NULL builds
+ * one for the call. The level is the first with at most rp Nm triangles, truncated
+ * (scree_choice_target), or the last where the scan cannot be reduced so far. */
+SCREE_API scree_status scree_grain_make(const scree_mesh *scan, const scree_curve *curve,
+                                        const scree_grain_options *options,
+                                        const scree_progress *progress, scree_grain *grain,
+                                        scree_error *error);
+
+/* ---- Pouring shapes into a container ---- */
+
+/* Any shapes, poured layer by layer from above into a box or a cylinder: the plain way to see and
+ * test the physics. */
+typedef struct scree_pour scree_pour;
+
+typedef enum scree_container {
+  SCREE_CONTAINER_CYLINDER, /* a floor and an endless cylinder about the z axis */
+  SCREE_CONTAINER_BOX,      /* a floor and four endless walls, the z axis in the middle */
+} scree_container;
+
+/* One of the shapes, and how many of it. The particle is borrowed until the pour is created. */
+typedef struct scree_pour_shape {
+  scree_particle *particle;
+  size_t count;
+} scree_pour_shape;
+
+typedef struct scree_pour_options {
+  scree_world_options world; /* default as scree_default_world_options; gravity must point down */
+  scree_material particles;  /* default scree_default_material: the paper's */
+  scree_material walls;      /* default scree_default_wall_material; its friction holds against the
+                                particles, whatever theirs is */
+  scree_container container; /* default cylinder */
+  double width;              /* m, inside: diameter, or side along x; 0 (default): so that the heap
+                                will be about as high as wide, and three particles fit abreast where
+                                there are enough */
+  double depth;              /* m, side of a box along y; 0 (default): the width */
+  double drop_height;        /* m from the floor to the first layer; default 0.05 */
+  double entry_speed;        /* m/s, downwards; default 1 */
+  uint64_t seed;             /* of order, places and orientations; default 1 */
+} scree_pour_options;
+SCREE_API scree_pour_options scree_default_pour_options(void);
+
+/* The shapes enter well mixed, turned at random, in layers of a square grid whose cells hold the
+ * largest particle however it is turned; each layer enters above all that is there, as soon as the
+ * one before has fallen out of the way. SCREE_BAD_ARGUMENT for no particles, options out of range,
+ * or a container narrower than the largest particle. */
+SCREE_API scree_status scree_pour_create(const scree_pour_shape *shapes, size_t shape_count,
+                                         const scree_pour_options *options, scree_pour **pour,
+                                         scree_error *error);
+SCREE_API void scree_pour_free(scree_pour *pour);
+/* As scree_world_step, letting in layers when they are due: the same bits however a pour is cut
+ * into calls. */
+SCREE_API scree_status scree_pour_advance(scree_pour *pour, size_t step_count, scree_error *error);
+/* For observing, frames and checkpoints; body i is the i-th to have entered. */
+SCREE_API scree_world *scree_pour_world(scree_pour *pour);
+/* The options with every default filled in. */
+SCREE_API void scree_pour_get_options(const scree_pour *pour, scree_pour_options *options);
+/* All particles, and those that have entered. */
+SCREE_API size_t scree_pour_particle_count(const scree_pour *pour);
+SCREE_API size_t scree_pour_entered_count(const scree_pour *pour);
+/* Which of the shapes body `index` is. */
+SCREE_API size_t scree_pour_shape_of(const scree_pour *pour, size_t index);
+/* s: when the last layer enters. */
+SCREE_API double scree_pour_filling_time(const scree_pour *pour);
+/* J: kinetic and potential energy that the particles brought with them, zero on the floor; what the
+ * ledger of the world must come to. */
+SCREE_API double scree_pour_entered_energy(const scree_pour *pour);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

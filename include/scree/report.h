@@ -1,0 +1,385 @@
+/* Reports: figures, pictures, files for other programs. */
+#ifndef SCREE_REPORT_H
+#define SCREE_REPORT_H
+
+#include "scree/choice.h"
+#include "scree/measure.h"
+#include "scree/pile.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- Pictures ---- */
+
+/* One body in a picture. */
+typedef struct scree_render_item {
+  const scree_mesh *mesh; /* borrowed */
+  double position[3];     /* m: where the mesh's origin goes */
+  double quaternion[4];   /* w, x, y, z: applied before; 0 0 0 0 stands for no rotation */
+  const double
+      *vertex_values; /* vertex_count values for the colour map, or NULL for plain colour */
+  float color[3];     /* linear RGB in [0, 1] */
+} scree_render_item;
+
+/* One view of some bodies, framed on its own, with a caption below. */
+typedef struct scree_render_cell {
+  const scree_render_item *items;
+  size_t item_count;
+  const char *caption; /* UTF-8 text, never interpreted; NULL: none */
+} scree_render_cell;
+
+typedef struct scree_render_options {
+  size_t width, height; /* pixels of the whole picture; default 1200 x 900 */
+  size_t columns;       /* of cells; 0 (default): chosen from the shape of the picture */
+  double azimuth_deg;   /* of the camera about the vertical z; default 35 */
+  double elevation_deg; /* of the camera above the horizontal; default 25 */
+  size_t samples;       /* per pixel; default 24 */
+  bool edges;           /* draw the triangles' edges; default false */
+  bool wire;            /* only the edges, seen through; default false */
+  bool ground;          /* a white floor under the lowest point, with shadows; default true */
+  double focus[3], focus_radius; /* m: this sphere fills the picture; radius 0 (default): all bodies
+                                    do */
+  double value_minimum, value_maximum; /* of the colour map; default 0 and 1 */
+  double value_scale;      /* what the values are multiplied by in the bar's labels; default 1 */
+  const char *value_label; /* beside the scale bar, for example "distance / mm"; NULL: no bar */
+} scree_render_options;
+
+SCREE_API scree_render_options scree_default_render_options(void);
+
+/* An image of 8-bit sRGB, rows from the top. */
+typedef struct scree_image {
+  size_t width, height;
+  uint8_t *pixels; /* 3 * width * height */
+} scree_image;
+
+SCREE_API void scree_image_free(scree_image *image);
+
+/* Ray-traced, softly lit picture of the cells; the same bits for any number of threads. Needs a
+ * build with Embree, else SCREE_UNSUPPORTED. Cost: about three rays a sample. */
+SCREE_API scree_status scree_render(const scree_render_cell *cells, size_t cell_count,
+                                    const scree_render_options *options,
+                                    const scree_progress *progress, scree_image *image,
+                                    scree_error *error);
+
+/* Writes a PNG; "-" is stdout. */
+SCREE_API scree_status scree_image_write_png(const scree_image *image, const char *path,
+                                             bool overwrite, scree_error *error);
+
+/* ---- Files for ParaView ---- */
+
+typedef enum scree_vtk_type {
+  SCREE_VTK_FLOAT64,
+  SCREE_VTK_FLOAT32,
+  SCREE_VTK_INT64,
+  SCREE_VTK_UINT8
+} scree_vtk_type;
+
+/* A named array over points or cells. */
+typedef struct scree_vtk_array {
+  const char *name;
+  scree_vtk_type type;
+  size_t component_count; /* 1 for scalars, 3 for vectors, 4 for quaternions */
+  const void *values;     /* component_count values of the type per point or cell, borrowed */
+} scree_vtk_array;
+
+/* What goes into one .vtp file (VTK XML PolyData): points, and over them either triangles, line
+ * segments, or, where both are NULL, one vertex cell a point. */
+typedef struct scree_vtk_data {
+  const double *points; /* 3 * point_count, m */
+  size_t point_count;
+  const uint32_t *triangles; /* 3 * cell_count indices, or NULL */
+  const uint32_t *lines;     /* 2 * cell_count indices, or NULL */
+  size_t cell_count;         /* of triangles or lines */
+  const scree_vtk_array *point_arrays;
+  size_t point_array_count;
+  const scree_vtk_array *cell_arrays;
+  size_t cell_array_count;
+  double time; /* s, written as field data TimeValue; NaN: none */
+} scree_vtk_data;
+
+/* Writes version 1.0 XML with raw appended data, 64-bit headers: read by VTK 6 and later. */
+SCREE_API scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool overwrite,
+                                       scree_error *error);
+
+/* Writes the collection of a series: file i is valid at time times[i]. The names are written as
+ * given, relative to the collection. A path that ends in .series becomes ParaView's own JSON (as in
+ * pile.vtp.series beside pile_0.vtp, pile_1.vtp), every other one a .pvd. */
+SCREE_API scree_status scree_pvd_write(const char *const *files, const double *times,
+                                       size_t file_count, const char *path, bool overwrite,
+                                       scree_error *error);
+
+/* What of a world goes into one .vtp file; every file carries the world's time. Bodies removed are
+ * left out. A shape is one scree_particle; shapes are numbered in the order of their first body,
+ * removed ones included, so that a number keeps its meaning through a series. */
+typedef enum scree_world_view {
+  /* The triangles of every body in its place; spheres, also those of clumps, as 320 triangles each.
+   * Per triangle: body, shape, material; speed (m/s), angular_speed (rad/s). */
+  SCREE_VIEW_SURFACES,
+  /* One point a body, at its centre of mass. Per point: body, shape, material; orientation (w x y
+   * z, the particle's axes into space), velocity (m/s), angular_velocity (rad/s, in space), mass
+   * (kg), size (m, diameter of the sphere of equal volume). */
+  SCREE_VIEW_POINTS,
+  /* The force network: one line per touching pair, from the body's centre of mass to the other's,
+   * or for a wall to the place of contact. Per line, of all touching features together: body,
+   * other, wall (0 or 1), feature_count; force on `body` (N), normal_force and tangential_force (N,
+   * its parts along and across the features' normals, summed as vectors), place (m, mean of the
+   * features, weighted by their force), overlap (m, the largest). */
+  SCREE_VIEW_CONTACTS,
+  /* The walls as triangles, planes and endless cylinders cut off where the bodies end. Per
+   * triangle: wall, kind (a scree_wall_kind). */
+  SCREE_VIEW_WALLS,
+  SCREE_VIEW_COUNT,
+} scree_world_view;
+
+/* "surfaces", "points", "contacts" or "walls"; NULL beyond. */
+SCREE_API const char *scree_world_view_name(scree_world_view view);
+
+/* Writes one view of the world as it stands; "-" is stdout. Contacts are evaluated afresh
+ * (scree_world_visit_contacts), so a loaded checkpoint shows them too. Fails with SCREE_IO,
+ * SCREE_EXISTS, SCREE_OUT_OF_MEMORY, SCREE_LIMIT above 2^32 - 1 points, SCREE_BAD_ARGUMENT. Cost:
+ * about 60 bytes a triangle in the file, the same again in memory. */
+SCREE_API scree_status scree_world_vtp_write(const scree_world *world, scree_world_view view,
+                                             const char *path, bool overwrite, scree_error *error);
+
+/* The particle of `shape`, numbered as above, borrowed; NULL beyond the last. Cost: one pass over
+ * the bodies. */
+SCREE_API scree_particle *scree_world_shape(const scree_world *world, size_t shape);
+
+/* Writes a mesh with fields: per triangle `area` (m2) and, where reference is not NULL, `distance`
+ * (m, of its centroid from the reference's surface); per vertex `area` (a third of the triangles
+ * around) and `distance`. The positions are in metres. "-" is stdout. Errors as scree_mesh_measure
+ * and scree_vtp_write. */
+SCREE_API scree_status scree_mesh_vtp_write(const scree_mesh *mesh, const scree_mesh *reference,
+                                            const char *path, bool overwrite, scree_error *error);
+
+/* ---- The choice: figure, tables, JSON ---- */
+
+/* One object of a choice, with all that is needed to run it again. Texts are borrowed. */
+typedef struct scree_choice_entry {
+  const char *name;        /* short, for tables and legends */
+  const char *file;        /* as given: a path, or sample:NAME */
+  const char *format;      /* as read, for example "binary STL"; "sample" for built-in ones */
+  scree_checksum checksum; /* of the file's bytes; zero for samples */
+  double unit_m;           /* metres per unit of the file */
+  bool is_sample;          /* then resolution, noise and seed say how it was made */
+  double sample_resolution, sample_noise; /* m */
+  uint64_t sample_seed;
+  const char *note;      /* what was repaired or is wrong, in one sentence; NULL: nothing */
+  const char *mesh_file; /* where the chosen mesh was written; NULL: nowhere */
+  const scree_choice *choice;
+} scree_choice_entry;
+
+typedef struct scree_choice_report {
+  const scree_choice_entry *entries;
+  size_t entry_count;
+  const scree_set_choice *set;
+  const scree_choice_options *options;
+  scree_method method;
+  bool paper;               /* the default choice is the paper's, not the robust one */
+  const char *command_line; /* for provenance; NULL: unknown */
+} scree_choice_report;
+
+/* The paper's Fig. 4, by the path's ending (.png, .svg, .pdf; .csv and .gnuplot for its data and a
+ * script): eps_s and Ip against Rp, all objects, the choices marked. */
+SCREE_API scree_status scree_choice_figure_write(const scree_choice_report *report,
+                                                 const char *path, bool overwrite,
+                                                 scree_error *error);
+
+/* One array: an object per entry, then the set's with "set": true. Lengths in metres, areas and
+ * volumes in m2 and m3. docs/formats.md has every field. "-" is stdout. */
+SCREE_API scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
+                                               bool overwrite, scree_error *error);
+
+/* One row per object and grid Rp. "-" is stdout. */
+SCREE_API scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
+                                              bool overwrite, scree_error *error);
+
+/* The dense curve of one object: one row per point of its trace that is another level. */
+SCREE_API scree_status scree_choice_curve_csv_write(const scree_choice_entry *entry,
+                                                    const char *path, bool overwrite,
+                                                    scree_error *error);
+
+/* One level of the table of a curve. */
+typedef struct scree_curve_row {
+  scree_level level;
+  double eps_s, eps_v, ip; /* |S - Sm|/Sm, |V - Vm|/|Vm| (0 where Vm is), eps_s + Rp */
+  scree_distance distance; /* forward: from the scan to the level; read where distances is true */
+} scree_curve_row;
+
+/* A table of levels of one curve. Texts are borrowed. */
+typedef struct scree_curve_entry {
+  const char *file, *format; /* as given; as read */
+  scree_checksum checksum;   /* of the file's bytes; zero for samples */
+  double unit_m;             /* metres per unit of the file */
+  scree_curve_facts facts;
+  double area, volume; /* of the scan, m2 and m3 */
+  const scree_curve_row *rows;
+  size_t row_count;
+  bool distances;
+} scree_curve_entry;
+
+/* One object, the rows in `levels` (docs/formats.md); SI units. command_line NULL: unknown. "-" is
+ * stdout. */
+SCREE_API scree_status scree_curve_json_write(const scree_curve_entry *entry,
+                                              const char *command_line, const char *path,
+                                              bool overwrite, scree_error *error);
+
+/* ---- Measures and distances: tables, JSON ---- */
+
+/* One measured scan. Texts are borrowed. */
+typedef struct scree_measure_entry {
+  const char *file, *format; /* as given; as read */
+  scree_checksum checksum;
+  double unit_m; /* metres per unit of the file */
+  scree_measures measures;
+  scree_topology topology;
+} scree_measure_entry;
+
+/* One array, an object per entry: every field of measures and topology by its name, in SI units
+ * (docs/formats.md). command_line is provenance; NULL: unknown. "-" is stdout. */
+SCREE_API scree_status scree_measure_json_write(const scree_measure_entry *entries,
+                                                size_t entry_count, const char *command_line,
+                                                const char *path, bool overwrite,
+                                                scree_error *error);
+/* The same as rows; arrays as columns NAME_1, NAME_2 and so on. */
+SCREE_API scree_status scree_measure_csv_write(const scree_measure_entry *entries,
+                                               size_t entry_count, const char *path, bool overwrite,
+                                               scree_error *error);
+
+/* The distance between two scans. */
+typedef struct scree_distance_entry {
+  const char *file[2];
+  scree_checksum checksum[2];
+  double unit_m[2];
+  scree_distance_options options;
+  scree_distance distance;
+} scree_distance_entry;
+
+/* One object with `forward` (from file 0 to file 1), `backward` and the Hausdorff distance, m. */
+SCREE_API scree_status scree_distance_json_write(const scree_distance_entry *entry,
+                                                 const char *command_line, const char *path,
+                                                 bool overwrite, scree_error *error);
+
+/* ---- The report: one page for a browser ---- */
+
+/* Of all objects of one page together, so that it stays below 6 MB. */
+enum { SCREE_LEVELS_BYTES = 3750000 };
+
+/* What the report shows of one object in 3D, in at most byte_limit bytes (but at least a level of
+ * 2,000 triangles and what follows from it): the scan, or where that is too large the finest level
+ * that fits; a fine level and the collapses that lead from it to the last; the dense curve;
+ * measures of the scan and the choices. docs/formats.md has the fields. Cost: O(N log N), some
+ * 0.5 s for 762,008 triangles, half of it for the convex hull. */
+SCREE_API scree_status scree_levels_write(const scree_curve *curve, const scree_choice *choice,
+                                          size_t byte_limit, const char *path, bool overwrite,
+                                          scree_error *error);
+
+/* A text, whole or not at all; "-" is stdout. */
+SCREE_API scree_status scree_text_write(const char *text, const char *path, bool overwrite,
+                                        scree_error *error);
+
+/* When some work began, by three clocks, in seconds. */
+typedef struct scree_work_start {
+  double calendar, elapsed, processor; /* since 1970; of no meaning alone; of all threads */
+} scree_work_start;
+
+SCREE_API scree_work_start scree_work_started(void);
+
+/* JSON: version, command, when the work began and how long it took until now, on what machine and
+ * how many threads. Kept apart from results, which do not change from run to run. */
+SCREE_API scree_status scree_provenance_write(const scree_work_start *start,
+                                              const char *command_line, const char *path,
+                                              bool overwrite, scree_error *error);
+
+/* Makes one page of folders with results (docs/formats.md): of a choice, choice.json with
+ * choice.txt, provenance.json and levels/NAME.levels. The page is complete in itself, asks nothing
+ * of any network, and shows texts from files as text. Fails with SCREE_BAD_FILE where a folder
+ * holds no results or a damaged file. Cost: that of reading and writing. */
+SCREE_API scree_status scree_page_write(const char *const *folders, size_t folder_count,
+                                        const char *path, bool overwrite, scree_error *error);
+
+/* ---- Files for DEM codes ---- */
+
+/* How a particle's mesh is put before it is written. */
+typedef struct scree_export_options {
+  double density; /* kg/m3, > 0; default 2000 (not in the paper) */
+  double unit_m;  /* metres per unit of the mesh file; default 1e-3 */
+  bool centre;    /* origin to the centre of mass; default false */
+  bool principal; /* axes also along the principal axes of inertia, moments ascending: the x axis
+                     is the long one; implies centre; default false */
+  bool overwrite; /* default false */
+  const char *source; /* the input as given, for provenance; NULL: unknown. Borrowed, as are */
+  const char *command_line;
+  scree_checksum checksum; /* of the input; zero: none */
+} scree_export_options;
+
+SCREE_API scree_export_options scree_default_export_options(void);
+
+/* Where the mesh went and what it weighs there, SI. */
+typedef struct scree_exported {
+  double rotation[3][3];   /* a point p of the mesh given is at rotation p + translation */
+  double translation[3];   /* m */
+  double mass;             /* kg */
+  double inertia[3][3];    /* kg m2, about the centre of mass, along the axes of the file */
+  double bounding_radius;  /* m, about the centre of mass */
+  scree_measures measures; /* of the mesh as it lies in the file, before rounding */
+} scree_exported;
+
+/* Writes the mesh, put as asked, to mesh_path (format by its ending) and what a DEM code needs to
+ * know of it as JSON to json_path (docs/formats.md; NULL: not wanted). *exported may be NULL.
+ * Fails with SCREE_BAD_MESH where the mesh is not closed or inside out: it would have no mass; with
+ * SCREE_EXISTS before anything is written; else as scree_mesh_write. */
+SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
+                                             const scree_export_options *options,
+                                             const char *mesh_path, const char *json_path,
+                                             scree_exported *exported, scree_error *error);
+
+/* Writes a world for other programs into a folder, made if need be:
+ *
+ *   pile.json      time, gravity, shapes, bodies, walls (docs/formats.md), SI
+ *   bodies.csv     the bodies as rows
+ *   shape-K.stl    the mesh of shape K (scree_world_shape) in the particle's frame, in unit_m
+ *   wall-K.stl     the mesh of wall K in its own frame, in unit_m
+ *
+ * A body of shape K lies where its quaternion turns shape-K.stl and its position moves it. Of the
+ * options unit_m, overwrite and the provenance count. */
+SCREE_API scree_status scree_world_export(const scree_world *world,
+                                          const scree_export_options *options, const char *folder,
+                                          scree_error *error);
+
+/* ---- Heaps: JSON, CSV, pictures ---- */
+
+/* A run and what was measured of it. Texts are borrowed. */
+typedef struct scree_heap_entry {
+  const scree_run *run;
+  const scree_run_result *result;
+  const char *file;                /* the frame measured; NULL: the run itself, as it ended */
+  const scree_experiment *measure; /* the settings of the measurement; NULL: the run's own */
+  const char *command_line;        /* NULL: unknown */
+} scree_heap_entry;
+
+/* One object: version, command, experiment, shapes, the heap three ways, costs, and the series as
+ * columns (docs/formats.md). "-" is stdout. */
+SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *path,
+                                             bool overwrite, scree_error *error);
+/* The series, one row a point. "-" is stdout. */
+SCREE_API scree_status scree_series_csv_write(const scree_run *run, const char *path,
+                                              bool overwrite, scree_error *error);
+
+/* The bodies of a world as they stand, each shape in its colour; walls are not drawn. Errors as
+ * scree_render. */
+SCREE_API scree_status scree_world_picture(const scree_world *world,
+                                           const scree_render_options *options,
+                                           const scree_progress *progress, scree_image *image,
+                                           scree_error *error);
+/* The particles of a run as they stand, each shape in its colour, seen as options say; a focus of
+ * radius 0 is put on the heap, strays may lie outside. Errors as scree_render. */
+SCREE_API scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
+                                         const scree_progress *progress, scree_image *image,
+                                         scree_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,204 @@
+/* World: bodies, walls, contacts, time. */
+#ifndef SCREE_WORLD_H
+#define SCREE_WORLD_H
+
+#include "scree/particle.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Bodies under gravity, touching each other and walls by the law of docs/physics.md. */
+typedef struct scree_world scree_world;
+
+typedef enum scree_law {
+  SCREE_LAW_LINEAR,     /* spring, dashpot, Coulomb slider: the paper's */
+  SCREE_LAW_HYSTERETIC, /* Walton and Braun 1986: loading K, unloading K/e2, no dashpot */
+} scree_law;
+
+typedef struct scree_world_options {
+  double gravity[3];        /* m/s2; default 0 0 -9.81 */
+  scree_law law;            /* default linear (Katagiri and Koyanaka 2020) */
+  double steps_per_contact; /* N, dt = (pi/2) sqrt(m/K)/N for the lightest and stiffest pair;
+                               at least 15; default 20, 40 for energy to 2 % */
+  double time_step;         /* s; 0 (default): by steps_per_contact; else at most that of N = 15 */
+  double stiffness_factor; /* multiplies every stiffness, for speed; default 1. Overlaps grow by its
+                              inverse, the time step by its inverse root */
+  double tangential_ratio; /* tangential over normal stiffness, in (0, 1]; default 1 (Rocky) */
+  double size;             /* m, the L of K = E L; 0 (default): each pair its smaller body's */
+  double smoothing;        /* l0 over L; default 4e-5, 2 um at 50 mm: overlaps this close share */
+  double sharing;          /* kappa, in [0, 0.5]; default 0.1: deeper contacts share more widely */
+  double overlap_limit;    /* over L; default 0.04, 2 mm at 50 mm: beyond it the run stops with
+                              SCREE_DIVERGED. Walls may be thinner: a point keeps to the side that
+                              it came from */
+  double skin;             /* over L; default 0.02: reach of the candidate lists. Speed only */
+  double floor_height;     /* m; bodies whose centre falls below are removed; default -infinity */
+} scree_world_options;
+SCREE_API scree_world_options scree_default_world_options(void);
+
+typedef struct scree_material {
+  double stiffness;   /* N/m2, the E of K = E L; default 1e8; 1e11 for walls (the paper) */
+  double density;     /* kg/m3; default 2000 (not in the paper) */
+  double restitution; /* in (0, 1]; default 0.3 (the paper) */
+  double friction;    /* at least 0; default 0.5 (the paper) */
+} scree_material;
+SCREE_API scree_material scree_default_material(void);
+SCREE_API scree_material scree_default_wall_material(void);
+
+/* options may be NULL; they are copied. */
+SCREE_API scree_status scree_world_create(const scree_world_options *options, scree_world **world,
+                                          scree_error *error);
+SCREE_API void scree_world_free(scree_world *world);
+SCREE_API void scree_world_get_options(const scree_world *world, scree_world_options *options);
+
+/* Between two materials: the lower restitution and the lower friction, unless given by
+ * scree_world_set_contact. At most 64 materials. */
+SCREE_API scree_status scree_world_add_material(scree_world *world, const scree_material *material,
+                                                size_t *index, scree_error *error);
+SCREE_API scree_status scree_world_set_contact(scree_world *world, size_t material_a,
+                                               size_t material_b, double restitution,
+                                               double friction, scree_error *error);
+
+typedef enum scree_wall_kind {
+  SCREE_WALL_PLANE,    /* through position, solid behind, normal along axis */
+  SCREE_WALL_DISC,     /* the plane cut off at radius, a sheet met from both sides */
+  SCREE_WALL_CYLINDER, /* a sheet; from position along axis over length (0: endless). The rims of
+                          discs and cylinders are met by points only */
+  SCREE_WALL_MESH,     /* any consistently wound triangles, also open; outside is in front */
+} scree_wall_kind;
+
+typedef struct scree_wall {
+  scree_wall_kind kind;
+  size_t material;
+  double position[3]; /* m; for a mesh: where its origin goes */
+  double axis[3];     /* of any length; a mesh is turned so that its z axis points along it */
+  double radius;      /* m, disc and cylinder */
+  double length;      /* m, cylinder; 0: endless */
+  const scree_mesh *mesh;
+  double velocity[3];         /* m/s, prescribed; may be changed at any time */
+  double angular_velocity[3]; /* rad/s about position */
+} scree_wall;
+
+SCREE_API scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall,
+                                            size_t *index, scree_error *error);
+SCREE_API size_t scree_world_wall_count(const scree_world *world);
+/* The wall as it stands now; its mesh, if any, is the world's. */
+SCREE_API void scree_world_get_wall(const scree_world *world, size_t index, scree_wall *wall);
+/* How its own frame is turned now (w x y z): the mesh's axes into space. */
+SCREE_API void scree_world_wall_orientation(const scree_world *world, size_t index,
+                                            double orientation[4]);
+SCREE_API scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
+                                                     const double velocity[3],
+                                                     const double angular_velocity[3],
+                                                     scree_error *error);
+/* Force and torque about its position, N and N m, on the wall from all bodies in the last step. */
+SCREE_API void scree_world_wall_force(const scree_world *world, size_t index, double force[3],
+                                      double torque[3]);
+
+typedef struct scree_body {
+  double position[3];         /* m, centre of mass */
+  double orientation[4];      /* w x y z, unit; particle's axes into space */
+  double velocity[3];         /* m/s */
+  double angular_velocity[3]; /* rad/s, in space */
+} scree_body;
+
+/* A body at rest at the origin with its axes along space's. */
+SCREE_API scree_body scree_default_body(void);
+/* Bodies may be added at any time, also between steps; index counts up and stays. One that already
+ * overlaps another beyond the limit shows in the next step's status. state may be NULL. */
+SCREE_API scree_status scree_world_add_body(scree_world *world, scree_particle *particle,
+                                            size_t material, const scree_body *state, size_t *index,
+                                            scree_error *error);
+/* All ever added, removed ones included. */
+SCREE_API size_t scree_world_body_count(const scree_world *world);
+SCREE_API bool scree_world_body_removed(const scree_world *world, size_t index);
+SCREE_API void scree_world_get_body(const scree_world *world, size_t index, scree_body *state);
+SCREE_API void scree_world_set_body(scree_world *world, size_t index, const scree_body *state);
+SCREE_API scree_particle *scree_world_body_particle(const scree_world *world, size_t index);
+SCREE_API size_t scree_world_body_material(const scree_world *world, size_t index);
+SCREE_API double scree_world_body_mass(const scree_world *world, size_t index);
+/* Takes a body out; its index stays and is not used again. */
+SCREE_API void scree_world_remove_body(scree_world *world, size_t index);
+
+/* Advances by step_count steps. SCREE_DIVERGED, with step, body and cause in the message, when the
+ * run leaves the model's range: an overlap beyond the limit, a body moving more than a quarter of
+ * that limit in one step, a value that is not finite. The world then stands as after the last good
+ * step, readable, and refuses to go on. Same bits for every number of threads. Once warm, a step
+ * allocates nothing. About 1 to 2 us per body and step at rest on one core. */
+SCREE_API scree_status scree_world_step(scree_world *world, size_t step_count, scree_error *error);
+SCREE_API double scree_world_time(const scree_world *world);
+SCREE_API uint64_t scree_world_step_count(const scree_world *world);
+/* s; with what there is in the world now. The reason, when not NULL, becomes one sentence. */
+SCREE_API double scree_world_time_step(const scree_world *world, char reason[256]);
+
+/* The state of the whole, at the time of the last force evaluation; velocities are taken at the
+ * same moment (the mean of before and after the kick), so that energies balance. */
+typedef struct scree_observation {
+  double time;                                    /* s */
+  double kinetic, rotational, potential, elastic; /* J; potential of gravity, zero at the origin */
+  double dissipated_dashpot,
+      dissipated_friction;                 /* J since the start; hysteresis counts as dashpot */
+  double wall_work;                        /* J done on bodies by moving walls since the start */
+  double momentum[3], angular_momentum[3]; /* N s; N m s about the origin */
+  double mean_rotation;                    /* rad/s, mean of |omega| (the paper's Fig. 7) */
+  double largest_overlap;                  /* m, in the last step */
+  double highest_speed;                    /* m/s */
+  double coordination;                     /* mean number of touching bodies and walls */
+  size_t body_count, removed_count;
+  size_t pair_count;    /* touching pairs of bodies, and of body and wall */
+  size_t contact_count; /* touching features */
+} scree_observation;
+/* Cost one pass over the bodies. */
+SCREE_API void scree_world_observe(const scree_world *world, scree_observation *observation);
+
+/* One touching feature of the last step. */
+typedef struct scree_contact {
+  size_t body, other; /* other: a body, or with `wall` a wall */
+  bool wall;
+  double position[3];    /* m */
+  double normal[3];      /* towards `body` */
+  double force[3];       /* N, on `body`, normal and tangential */
+  double overlap, share; /* m; part of the pair's spring, at most 1/(1 - kappa) in all */
+} scree_contact;
+/* Calls for every touching feature in a fixed order, from a fresh evaluation of forces at the
+ * present positions; changes nothing. False from the callback ends it. */
+typedef bool scree_contact_visitor(void *context, const scree_contact *contact);
+SCREE_API scree_status scree_world_visit_contacts(const scree_world *world,
+                                                  scree_contact_visitor *visit, void *context,
+                                                  scree_error *error);
+
+/* Where the time went since creation: seconds of wall clock per stage, and counts. */
+typedef struct scree_timings {
+  double broad, candidates, contacts, bodies, total; /* s; candidates is part of contacts */
+  uint64_t steps, broad_builds, list_builds, item_evaluations, closest_queries, pair_evaluations;
+} scree_timings;
+SCREE_API void scree_world_timings(const scree_world *world, scree_timings *timings);
+
+/* Names the state: every bit of positions, velocities, contact memory and time. */
+SCREE_API scree_checksum scree_world_hash(const scree_world *world);
+
+/* Writes a checkpoint (docs/formats.md): everything in the world, its particles included, so that
+ * the file stands alone; timings are not in it. It is complete under its name or not there ("-" is
+ * stdout). Without overwrite an existing file is refused with SCREE_EXISTS. Needs memory for the
+ * file's size: about 100 bytes a triangle of each particle, 500 a body, 1 to 3 KB a pair. */
+SCREE_API scree_status scree_world_save(const scree_world *world, const char *path, bool overwrite,
+                                        scree_error *error);
+/* Reads a checkpoint ("-" is stdin); free *world with scree_world_free. Every later step has the
+ * same bits as in the world that was saved, for any number of threads. Particles are the world's
+ * own (scree_world_body_particle); a removed body keeps its. SCREE_BAD_FILE, with file and reason,
+ * for what is no checkpoint, is of another version, is cut short or has a bit changed anywhere. */
+SCREE_API scree_status scree_world_load(const char *path, scree_world **world, scree_error *error);
+
+/* For runs that may leave the model's range: from now on a checkpoint of the state is kept in
+ * memory every step_interval steps, and where scree_world_step comes to SCREE_DIVERGED the last one
+ * is written to path, replacing what is there, and named in the message. Loaded, it runs into the
+ * same failure with the same bits: a world to look closely at what happened. path NULL: no longer.
+ * Not part of checkpoints. Cost: a checkpoint's memory, and the time of making one (about 10 ms for
+ * a thousand bodies) every interval. */
+SCREE_API scree_status scree_world_keep(scree_world *world, const char *path,
+                                        uint64_t step_interval, scree_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
