@@ -19,7 +19,7 @@ functions=$(cat "$root"/include/scree/*.h | tr '\n' ' ' | grep -o 'SCREE_API scr
 # "file function" for each public function called in a tested fallible_call
 tested=$(for file in "$root"/tests/*/*.c; do
   grep -q check_allocation_failures "$file" || continue
-  tr '\n' ' ' <"$file" | grep -o 'check_allocation_failures([a-z0-9_]*' | sed 's/.*(//' | sort -u |
+  tr '\n' ' ' <"$file" | grep -o 'check_allocation_failures[a-z_]*([a-z0-9_]*' | sed 's/.*(//' | sort -u |
     while read -r name; do
       awk -v name="$name" '
         $0 ~ "^static scree_status " name "\\(" { inside = 1 }

@@ -41,8 +41,8 @@ typedef struct scree_repose_options {
   size_t silhouette_count;    /* directions of way 3, over half a turn; default 18 */
   double band_low, band_high; /* the flank is where the height is in this share of the heap's
                                  height; default 0.2 and 0.8 */
-  double
-      particle_size; /* m: below two of it in height there is no heap; 0 (default): not checked */
+  double particle_size; /* m: widths of bins and sectors keep to it, and a heap below two of it in
+                           height, or twelve round, gives no angle; 0 (default): not known */
 } scree_repose_options;
 
 SCREE_API scree_repose_options scree_default_repose_options(void);
@@ -50,27 +50,32 @@ SCREE_API scree_repose_options scree_default_repose_options(void);
 /* Angle of repose of a heap, three ways, and its size. Angles in degrees, NaN where there is none.
  */
 typedef struct scree_repose {
-  bool heap; /* false: no heap to speak of, all angles NaN; `reason` says why */
+  bool heap; /* false: no heap to speak of, or too small a one, all angles NaN; `reason` says why */
   char reason[128];
   double sector_deg, sector_sd_deg;         /* 1: mean and SD over the sectors' flank lines */
-  size_t sector_count;                      /*    sectors that gave a line */
+  size_t sector_count, sector_total;        /*    sectors that gave a line, of how many: fewer than
+                                                  asked for where they would be narrower than two
+                                                  particles */
   double cone_deg, cone_rms;                /* 2: least-squares cone; RMS misfit, m */
   double cone_apex[3];                      /*    its apex, m */
   double silhouette_deg, silhouette_sd_deg; /* 3: mean and SD over the silhouettes' flanks */
   size_t flank_count;                       /*    flanks that gave a line */
-  double axis[2];                           /* of the heap: the height-weighted mean position, m */
-  double height;                            /* m: greatest mean height over a ring about the axis */
-  double peak;                              /* m: greatest height of all */
-  double base_radius;     /* m: where the flank line of the rings' mean heights, fitted
-                             in the band, meets the floor */
-  double run_out;         /* m: the farthest occupied cell from the axis */
+  double spread_deg;                        /* between the largest and the least of the three */
+  double volume_deg;  /* cross-check: of the cone with the heap's volume and height of centroid */
+  double axis[2];     /* of the heap: mean position weighted by the square of the height, m */
+  double height;      /* m: mean within a particle size of the axis */
+  double peak;        /* m: greatest height of all */
+  double base_radius; /* m: where the flank line of the rings' mean heights, fitted
+                         in the band, meets the floor */
+  double run_out;     /* m: the farthest occupied cell from the axis */
   double envelope_volume; /* m^3 under the field: packing fraction = solid over this */
 } scree_repose;
 
 /* Measures the field. The ways (docs/repose.md): 1, in each sector a straight line through the mean
- * heights of radial bins whose height is within the band; 2, a cone h = H - m |r - r0| fitted by
- * Gauss-Newton to the cells within the band, apex free; 3, the outline seen from the side, a line
- * on each flank within the band. Cost: linear in the cells times the silhouettes. */
+ * heights of radial bins where the falling profile is within the band; 2, a cone h = H - m |r - r0|
+ * fitted by Gauss-Newton to the cells where it is itself within the band, apex free; 3, the outline
+ * seen from the side, a line on each flank within the band. Cost: linear in the cells times the
+ * silhouettes. */
 SCREE_API scree_status scree_repose_measure(const scree_height_field *field,
                                             const scree_repose_options *options,
                                             scree_repose *repose, scree_error *error);
@@ -237,9 +242,9 @@ SCREE_API void scree_run_get_costs(const scree_run *run, scree_run_costs *costs)
 /* What a run gives beyond the heap's shape. */
 typedef struct scree_run_result {
   scree_repose repose;
-  size_t body_count;       /* particles on the disc */
+  size_t body_count;       /* particles on the disc: their centres are above it */
   size_t left_count;       /* particles that fell off it */
-  double packing_fraction; /* solid volume over the volume under the height field */
+  double packing_fraction; /* solid volume on the disc over the volume under the height field */
   double coordination;     /* mean number of touching neighbours, walls included */
   double particle_size;    /* m: mean equal-volume sphere diameter */
   double kinetic;          /* J: what is left of motion */

@@ -207,9 +207,9 @@ class scree_exported(Structure):
 
 class scree_repose(Structure):
     _fields_ = [("heap", c_bool), ("reason", c_char * 128), ("sector_deg", c_double), ("sector_sd_deg", c_double),
-                ("sector_count", c_size_t), ("cone_deg", c_double), ("cone_rms", c_double), ("cone_apex", double3),
+                ("sector_count", c_size_t), ("sector_total", c_size_t), ("cone_deg", c_double), ("cone_rms", c_double), ("cone_apex", double3),
                 ("silhouette_deg", c_double), ("silhouette_sd_deg", c_double), ("flank_count", c_size_t),
-                ("axis", c_double * 2), ("height", c_double), ("peak", c_double), ("base_radius", c_double),
+                ("spread_deg", c_double), ("volume_deg", c_double), ("axis", c_double * 2), ("height", c_double), ("peak", c_double), ("base_radius", c_double),
                 ("run_out", c_double), ("envelope_volume", c_double)]
 
 

@@ -2,17 +2,20 @@
 
 #include <math.h>
 
-static void print_angles(FILE *stream, const scree_run *run, const scree_repose *r) {
+static void print_angles(FILE *stream, const scree_repose *r) {
   if (!r->heap) {
     fprintf(stream, "  angle of repose   none: no heap, %s\n", r->reason);
     return;
   }
   fprintf(stream, "  angle of repose   %5.1f deg  sd %4.1f   sectors (%zu of %zu)\n", r->sector_deg,
-          r->sector_sd_deg, r->sector_count, scree_run_experiment(run)->sector_count);
+          r->sector_sd_deg, r->sector_count, r->sector_total);
   fprintf(stream, "                    %5.1f deg  rms %4.1f mm  cone\n", r->cone_deg,
           1e3 * r->cone_rms);
   fprintf(stream, "                    %5.1f deg  sd %4.1f   silhouettes (%zu flanks)\n",
           r->silhouette_deg, r->silhouette_sd_deg, r->flank_count);
+  fprintf(stream,
+          "                    %5.1f deg  by volume and centroid; the three differ by %.1f\n",
+          r->volume_deg, r->spread_deg);
 }
 
 void cli_print_heap(FILE *stream, const scree_run *run, const scree_run_result *result) {
@@ -21,7 +24,7 @@ void cli_print_heap(FILE *stream, const scree_run *run, const scree_run_result *
           scree_run_phase(run) == SCREE_PHASE_DONE ? "done"
                                                    : scree_phase_name(scree_run_phase(run)),
           result->time, result->still ? "still" : "still moving", result->kinetic);
-  print_angles(stream, run, r);
+  print_angles(stream, r);
   fprintf(stream, "  height            %5.0f mm, its highest point %.0f mm\n", 1e3 * r->height,
           1e3 * r->peak);
   if (isfinite(r->base_radius))

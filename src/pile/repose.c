@@ -1,7 +1,13 @@
 /* The angle of repose of a height field, three ways that fail differently: sector lines follow the
  * flank that the eye sees, the cone uses every cell of the flank at once, and silhouettes are what
  * a camera beside the experiment would measure. A flank is where the height lies within a band of
- * the heap's own height (20 to 80 %): the toe of stray particles and the rounded top stay out. */
+ * the heap's own height (20 to 80 %): the toe of stray particles and the rounded top stay out.
+ *
+ * Which cells belong to the flank is asked of the fitted line or cone itself, never of a cell's own
+ * height nor of one sector's: on a heap a few particles high these stray from the mean surface by
+ * as much as the band is wide, and who leaves out what is too high or too low for the band fits a
+ * flank that is too flat. Everything between the flank's ends counts, gaps between particles down
+ * to the floor included. */
 #include "base/alloc.h"
 #include "base/vec.h"
 
@@ -10,11 +16,14 @@
 
 static const double degree = 57.295779513082320877;
 static const double pi = 3.14159265358979323846;
-static const double bin_cells = 2;       /* width of a radial bin, in cells */
-static const double fewest_bins = 3;     /* a line needs as many */
-static const double least_share = 0.5;   /* of sectors and flanks that must give a line */
+static const double bin_cells = 2;      /* width of a radial bin, in cells, at least */
+static const double bin_sizes = 0.25;   /* and in particle sizes */
+static const double sector_sizes = 2;   /* width of a sector in the middle of the flank, at least */
+static const double fewest_bins = 3;    /* a line needs as many */
+static const double fewest_sectors = 8; /* of that width round the heap: else it is too small */
+static const double least_share = 0.5;  /* of sectors and flanks that must give a line */
 static const double sizes_of_a_heap = 2; /* lower, in particle sizes, is a layer and not a heap */
-enum { CONE_ROUNDS = 50 };
+enum { CONE_ROUNDS = 50, CHOICES = 6 };
 
 scree_repose_options scree_default_repose_options(void) {
   return (scree_repose_options){
@@ -23,25 +32,26 @@ scree_repose_options scree_default_repose_options(void) {
 
 /* ---- straight lines ---- */
 
-/* Running sums of a least-squares line y = a + b x. */
+/* Running sums of a weighted least-squares line y = a + b x. */
 typedef struct line_fit {
-  double n, x, y, xx, xy;
+  double n, weight, x, y, xx, xy;
 } line_fit;
 
-static void line_add(line_fit *f, double x, double y) {
+static void line_add(line_fit *f, double x, double y, double weight) {
   f->n += 1;
-  f->x += x;
-  f->y += y;
-  f->xx += x * x;
-  f->xy += x * y;
+  f->weight += weight;
+  f->x += weight * x;
+  f->y += weight * y;
+  f->xx += weight * x * x;
+  f->xy += weight * x * y;
 }
 
 /* False where fewer than three points or all at one x. */
 static bool line_solve(const line_fit *f, double *intercept, double *slope) {
-  double determinant = f->n * f->xx - f->x * f->x;
-  if (f->n < fewest_bins || !(determinant > 1e-12 * f->n * f->xx)) return false;
-  *slope = (f->n * f->xy - f->x * f->y) / determinant;
-  *intercept = (f->y - *slope * f->x) / f->n;
+  double determinant = f->weight * f->xx - f->x * f->x;
+  if (f->n < fewest_bins || !(determinant > 1e-12 * f->weight * f->xx)) return false;
+  *slope = (f->weight * f->xy - f->x * f->y) / determinant;
+  *intercept = (f->y - *slope * f->x) / f->weight;
   return true;
 }
 
@@ -64,7 +74,19 @@ static double spread_sd(const spread *s) {
   return variance > 0 ? sqrt(variance) : 0;
 }
 
-/* ---- what all ways share ---- */
+/* ---- profiles ---- */
+
+/* Sums over the cells of a bin; their mean height is z / weight, at the distance r / weight. */
+typedef struct bin {
+  double weight, r, z;
+} bin;
+
+/* Mean heights against the distance from the axis in several directions; the last row, and the only
+ * one that is smooth, is the mean of all. */
+typedef struct profiles {
+  bin *bins; /* (count + 1) rows of bin_count */
+  size_t count;
+} profiles;
 
 typedef struct heap {
   const scree_height_field *field;
@@ -72,8 +94,71 @@ typedef struct heap {
   scree_repose *result;
   size_t bin_count;
   double bin_width;
-  double *sum, *cells; /* (sector_count + 1) rows of bins; the last row is the whole ring */
+  profiles sectors, outlines; /* outlines: a row for each flank */
 } heap;
+
+static bin *profile_of(const heap *h, const profiles *p, size_t row) {
+  return p->bins + row * h->bin_count;
+}
+static double bin_mean(const bin *b) {
+  return b->weight > 0 ? b->z / b->weight : 0;
+}
+
+/* Mean height within a particle size of the axis, or in the innermost bin. */
+static double top_height(const heap *h, const bin *profile) {
+  double bins = floor(h->options->particle_size / h->bin_width), weight = 0, z = 0;
+  for (size_t i = 0; i < h->bin_count && (i == 0 || (double)i < bins); i++) {
+    weight += profile[i].weight;
+    z += profile[i].z;
+  }
+  return weight > 0 ? z / weight : 0;
+}
+
+typedef struct flank {
+  double from, to;         /* m: distances from the axis */
+  double intercept, slope; /* h = intercept + slope r */
+} flank;
+
+/* The line through all bins between the flank's ends. */
+static bool fit_line(const heap *h, const bin *profile, flank *f) {
+  line_fit fit = {0};
+  for (size_t i = 0; i < h->bin_count; i++) {
+    if (profile[i].weight == 0) continue;
+    double r = profile[i].r / profile[i].weight;
+    if (r >= f->from && r <= f->to) line_add(&fit, r, bin_mean(&profile[i]), profile[i].weight);
+  }
+  return line_solve(&fit, &f->intercept, &f->slope);
+}
+
+/* The flank of a smooth profile: at first from where it falls below the band's upper end to where
+ * it falls below the lower one; then where the line itself lies in the band. */
+static bool find_flank(const heap *h, const bin *profile, double height, flank *f) {
+  double low = h->options->band_low * height, high = h->options->band_high * height;
+  size_t begin = 0, end;
+  while (begin < h->bin_count && bin_mean(&profile[begin]) > high) begin++;
+  for (end = begin; end < h->bin_count && bin_mean(&profile[end]) >= low;) end++;
+  *f = (flank){(double)begin * h->bin_width, (double)end * h->bin_width, 0, 0};
+  for (int choice = 0; choice < CHOICES; choice++) {
+    if (!fit_line(h, profile, f) || !(f->slope < 0)) return false;
+    f->from = (high - f->intercept) / f->slope;
+    f->to = (low - f->intercept) / f->slope;
+  }
+  return fit_line(h, profile, f) && f->slope < 0;
+}
+
+/* Each direction's line between the ends that the mean of all has. One that rises counts with its
+ * negative angle: without it the mean would be too steep. */
+static size_t measure_lines(const heap *h, const profiles *p, flank ends, double *mean_deg,
+                            double *sd_deg) {
+  spread angles = {0};
+  for (size_t row = 0; row < p->count; row++)
+    if (fit_line(h, profile_of(h, p, row), &ends)) spread_add(&angles, -degree * atan(ends.slope));
+  *mean_deg = spread_mean(&angles);
+  *sd_deg = spread_sd(&angles);
+  return angles.count;
+}
+
+/* ---- what all ways share ---- */
 
 static double cell_x(const scree_height_field *f, size_t i) {
   return f->x + ((double)i + 0.5) * f->cell;
@@ -82,91 +167,86 @@ static double cell_y(const scree_height_field *f, size_t j) {
   return f->y + ((double)j + 0.5) * f->cell;
 }
 
+/* The axis is weighted by the square of the height: strays far out would pull it otherwise. */
 static void measure_extent(heap *h) {
   const scree_height_field *f = h->field;
-  double volume = 0, mx = 0, my = 0, peak = 0;
+  double volume = 0, weight = 0, mx = 0, my = 0, peak = 0;
   for (size_t j = 0; j < f->rows; j++)
     for (size_t i = 0; i < f->columns; i++) {
       double z = f->height[j * f->columns + i];
       volume += z;
-      mx += z * cell_x(f, i);
-      my += z * cell_y(f, j);
+      weight += z * z;
+      mx += z * z * cell_x(f, i);
+      my += z * z * cell_y(f, j);
       peak = fmax(peak, z);
     }
   h->result->envelope_volume = volume * f->cell * f->cell;
   h->result->peak = peak;
-  h->result->axis[0] = volume > 0 ? mx / volume : 0;
-  h->result->axis[1] = volume > 0 ? my / volume : 0;
+  h->result->axis[0] = weight > 0 ? mx / weight : 0;
+  h->result->axis[1] = weight > 0 ? my / weight : 0;
 }
 
-/* Mean heights over radial bins, per sector and per ring. */
-static void fill_bins(heap *h) {
+static void add_cell(bin *b, double r, double z) {
+  b->weight += 1;
+  b->r += r;
+  b->z += z;
+}
+
+/* Sums over radial bins, in sectors and all round. */
+static void fill_sectors(heap *h, size_t count) {
   const scree_height_field *f = h->field;
-  size_t sectors = h->options->sector_count;
-  double run_out = 0;
+  h->sectors.count = count;
+  memset(h->sectors.bins, 0, (count + 1) * h->bin_count * sizeof *h->sectors.bins);
   for (size_t j = 0; j < f->rows; j++)
     for (size_t i = 0; i < f->columns; i++) {
       double dx = cell_x(f, i) - h->result->axis[0], dy = cell_y(f, j) - h->result->axis[1];
       double r = hypot(dx, dy), z = f->height[j * f->columns + i];
-      if (z > 0) run_out = fmax(run_out, r);
-      size_t bin = (size_t)(r / h->bin_width);
-      double turn = atan2(dy, dx) / (2 * pi) + 0.5;
-      size_t sector = (size_t)(turn * (double)sectors);
-      if (sector >= sectors) sector = sectors - 1;
-      if (bin >= h->bin_count) continue;
-      h->sum[sector * h->bin_count + bin] += z;
-      h->cells[sector * h->bin_count + bin] += 1;
-      h->sum[sectors * h->bin_count + bin] += z;
-      h->cells[sectors * h->bin_count + bin] += 1;
+      if (z > 0) h->result->run_out = fmax(h->result->run_out, r);
+      size_t index = (size_t)(r / h->bin_width);
+      size_t sector = (size_t)((atan2(dy, dx) / (2 * pi) + 0.5) * (double)count);
+      if (index >= h->bin_count) continue;
+      if (sector >= count) sector = count - 1;
+      add_cell(&profile_of(h, &h->sectors, sector)[index], r, z);
+      add_cell(&profile_of(h, &h->sectors, count)[index], r, z);
     }
-  h->result->run_out = run_out;
 }
 
-static double bin_radius(const heap *h, size_t bin) {
-  return ((double)bin + 0.5) * h->bin_width;
-}
-
-static bool in_band(const heap *h, double z) {
-  return z >= h->options->band_low * h->result->height &&
-         z <= h->options->band_high * h->result->height;
-}
-
-/* The line through the bins of one row that lie in the band, from the axis outwards to the first
- * bin below it: strays beyond the toe stay out. */
-static bool flank_line(const heap *h, size_t row, double *intercept, double *slope) {
-  line_fit fit = {0};
-  for (size_t bin = 0; bin < h->bin_count; bin++) {
-    double cells = h->cells[row * h->bin_count + bin];
-    if (cells == 0) continue;
-    double z = h->sum[row * h->bin_count + bin] / cells;
-    if (z < h->options->band_low * h->result->height && fit.n > 0) break;
-    if (in_band(h, z)) line_add(&fit, bin_radius(h, bin), z);
+/* A cone of this volume, with its centroid as high: tan = sqrt(pi H^3 / 3 V), H = 4 z. From the
+ * rings' means, since roughness would raise the centroid of the cells. */
+static double volume_angle(const heap *h, const bin *rings) {
+  double volume = 0, moment = 0, area = h->field->cell * h->field->cell;
+  for (size_t i = 0; i < h->bin_count; i++) {
+    double z = bin_mean(&rings[i]);
+    volume += z * rings[i].weight * area;
+    moment += 0.5 * z * z * rings[i].weight * area;
   }
-  return line_solve(&fit, intercept, slope) && *slope < 0;
-}
-
-static void measure_rings(heap *h) {
-  size_t ring = h->options->sector_count;
-  double height = 0, intercept, slope;
-  for (size_t bin = 0; bin < h->bin_count; bin++) {
-    double cells = h->cells[ring * h->bin_count + bin];
-    if (cells > 0) height = fmax(height, h->sum[ring * h->bin_count + bin] / cells);
-  }
-  h->result->height = height;
-  h->result->base_radius = flank_line(h, ring, &intercept, &slope) ? -intercept / slope : NAN;
+  double height = volume > 0 ? 4 * moment / volume : 0;
+  return height > 0 ? degree * atan(sqrt(pi * height * height * height / (3 * volume))) : NAN;
 }
 
 /* ---- way 1: sectors ---- */
 
-static void measure_sectors(heap *h) {
-  spread angles = {0};
-  for (size_t sector = 0; sector < h->options->sector_count; sector++) {
-    double intercept, slope;
-    if (flank_line(h, sector, &intercept, &slope)) spread_add(&angles, degree * atan(-slope));
-  }
-  h->result->sector_deg = spread_mean(&angles);
-  h->result->sector_sd_deg = spread_sd(&angles);
-  h->result->sector_count = angles.count;
+/* As many sectors as asked for, or as the flank has room for where they are two particles wide. */
+static size_t count_sectors(const heap *h, const flank *f) {
+  double size = h->options->particle_size;
+  if (!(size > 0)) return h->options->sector_count;
+  double room = floor(pi * (f->from + f->to) / (sector_sizes * size));
+  room = fmin(room, (double)h->options->sector_count);
+  return room > 1 ? (size_t)room : 1;
+}
+
+static void measure_sectors(heap *h, flank *f) {
+  scree_repose *r = h->result;
+  fill_sectors(h, h->options->sector_count);
+  const bin *rings = profile_of(h, &h->sectors, h->sectors.count);
+  r->height = top_height(h, rings);
+  r->volume_deg = volume_angle(h, rings);
+  r->sector_deg = r->sector_sd_deg = r->base_radius = NAN;
+  if (!find_flank(h, rings, r->height, f)) return;
+  r->base_radius = -f->intercept / f->slope;
+  r->sector_total = count_sectors(h, f);
+  fill_sectors(h, r->sector_total);
+  r->sector_count = measure_lines(h, &h->sectors, *f, &r->sector_deg, &r->sector_sd_deg);
 }
 
 /* ---- way 2: a cone ---- */
@@ -195,20 +275,21 @@ typedef struct cone {
   double x, y, apex, slope; /* h = apex - slope |r - (x, y)| */
 } cone;
 
-/* One Gauss-Newton step over the cells of the flank; returns the RMS misfit before it, NaN if it
- * fails. */
-static double improve_cone(const heap *h, double farthest, cone *c) {
+/* One Gauss-Newton step over the cells where `chooser` lies in the band; returns the RMS misfit
+ * before it, NaN if it fails. */
+static double improve_cone(const heap *h, const cone *chooser, cone *c) {
   const scree_height_field *f = h->field;
+  double low = h->options->band_low * h->result->height,
+         high = h->options->band_high * h->result->height;
   double normal[4][4] = {{0}}, gradient[4] = {0}, misfit2 = 0, cells = 0;
   for (size_t j = 0; j < f->rows; j++)
     for (size_t i = 0; i < f->columns; i++) {
-      double z = f->height[j * f->columns + i];
       double x = cell_x(f, i), y = cell_y(f, j);
-      if (!in_band(h, z) || hypot(x - h->result->axis[0], y - h->result->axis[1]) > farthest)
-        continue;
+      double level = chooser->apex - chooser->slope * hypot(x - chooser->x, y - chooser->y);
+      if (level < low || level > high) continue;
       double dx = x - c->x, dy = y - c->y, r = hypot(dx, dy), inverse = r > 0 ? 1 / r : 0;
       double row[4] = {c->slope * dx * inverse, c->slope * dy * inverse, 1, -r};
-      double misfit = z - (c->apex - c->slope * r);
+      double misfit = f->height[j * f->columns + i] - (c->apex - c->slope * r);
       for (int p = 0; p < 4; p++) {
         for (int q = 0; q <= p; q++) normal[p][q] += row[p] * row[q];
         gradient[p] += row[p] * misfit;
@@ -222,20 +303,27 @@ static double improve_cone(const heap *h, double farthest, cone *c) {
   return sqrt(misfit2 / cells);
 }
 
-/* Cells farther out than where the mean flank leaves the band are strays on the floor plate. */
-static void measure_cone(heap *h) {
+static bool close_to(const cone *a, const cone *b) {
+  return fabs(a->slope - b->slope) < 1e-9 * fabs(a->slope) &&
+         fabs(a->apex - b->apex) < 1e-9 * fabs(a->apex);
+}
+
+/* Fitted to the cells that the cone before puts on the flank, a few times over. */
+static void measure_cone(heap *h, const flank *rings) {
   scree_repose *result = h->result;
-  double intercept, slope, rms = NAN;
+  double rms = NAN;
   result->cone_deg = result->cone_rms = NAN;
-  if (!flank_line(h, h->options->sector_count, &intercept, &slope)) return;
-  double farthest = 1.15 * -intercept / slope;
-  cone c = {result->axis[0], result->axis[1], intercept, -slope};
-  for (int round = 0; round < CONE_ROUNDS; round++) {
-    cone before = c;
-    rms = improve_cone(h, farthest, &c);
-    if (isnan(rms) || !(c.slope > 0)) return;
-    if (fabs(c.slope - before.slope) < 1e-9 * c.slope && fabs(c.apex - before.apex) < 1e-9 * c.apex)
-      break;
+  if (isnan(result->base_radius)) return;
+  cone c = {result->axis[0], result->axis[1], rings->intercept, -rings->slope};
+  for (int choice = 0; choice < CHOICES; choice++) {
+    cone chooser = c;
+    for (int round = 0; round < CONE_ROUNDS; round++) {
+      cone before = c;
+      rms = improve_cone(h, &chooser, &c);
+      if (isnan(rms) || !(c.slope > 0)) return;
+      if (close_to(&c, &before)) break;
+    }
+    if (close_to(&c, &chooser)) break;
   }
   result->cone_deg = degree * atan(c.slope);
   result->cone_rms = rms;
@@ -246,79 +334,81 @@ static void measure_cone(heap *h) {
 
 /* ---- way 3: silhouettes ---- */
 
-/* Greatest heights along lines of sight, against the distance across; bin_count bins on either
- * side. */
-static void outline(const heap *h, double angle, double *profile) {
+/* Greatest heights along lines of sight, against the distance across, to either side. */
+static void fill_outline(heap *h, size_t direction) {
   const scree_height_field *f = h->field;
+  double angle = pi * (double)direction / (double)h->options->silhouette_count;
   double cx = cos(angle), cy = sin(angle);
-  memset(profile, 0, 2 * h->bin_count * sizeof *profile);
+  bin *sides[] = {profile_of(h, &h->outlines, 2 * direction),
+                  profile_of(h, &h->outlines, 2 * direction + 1)};
   for (size_t j = 0; j < f->rows; j++)
     for (size_t i = 0; i < f->columns; i++) {
       double z = f->height[j * f->columns + i];
       if (z <= 0) continue;
       double across =
           (cell_x(f, i) - h->result->axis[0]) * cx + (cell_y(f, j) - h->result->axis[1]) * cy;
-      double bin = across / h->bin_width + (double)h->bin_count;
-      if (bin < 0 || bin >= (double)(2 * h->bin_count)) continue;
-      double *value = &profile[(size_t)bin];
-      if (z > *value) *value = z;
+      size_t index = (size_t)(fabs(across) / h->bin_width);
+      if (index >= h->bin_count) continue;
+      bin *b = &sides[across < 0][index];
+      b->z = fmax(b->z, z);
     }
 }
 
-/* One flank of an outline, from its top outwards: side +1 or -1. */
-static bool outline_flank(const heap *h, const double *profile, size_t top, int side,
-                          double *angle_deg) {
-  line_fit fit = {0};
-  double peak = profile[top], intercept, slope;
-  for (size_t step = 0;; step++) {
-    if (side < 0 ? step > top : top + step >= 2 * h->bin_count) break;
-    double z = profile[side < 0 ? top - step : top + step];
-    if (z < h->options->band_low * peak) break;
-    if (z <= h->options->band_high * peak) line_add(&fit, (double)step * h->bin_width, z);
-  }
-  if (!line_solve(&fit, &intercept, &slope) || !(slope < 0)) return false;
-  *angle_deg = degree * atan(-slope);
-  return true;
-}
-
-static void measure_silhouettes(heap *h, double *profile) {
-  spread angles = {0};
-  for (size_t k = 0; k < h->options->silhouette_count; k++) {
-    outline(h, pi * (double)k / (double)h->options->silhouette_count, profile);
-    size_t top = 0;
-    for (size_t i = 0; i < 2 * h->bin_count; i++)
-      if (profile[i] > profile[top]) top = i;
-    double angle_deg;
-    for (int side = -1; side <= 1; side += 2)
-      if (outline_flank(h, profile, top, side, &angle_deg)) spread_add(&angles, angle_deg);
-  }
-  h->result->silhouette_deg = spread_mean(&angles);
-  h->result->silhouette_sd_deg = spread_sd(&angles);
-  h->result->flank_count = angles.count;
+static void measure_silhouettes(heap *h) {
+  scree_repose *r = h->result;
+  bin *mean = profile_of(h, &h->outlines, h->outlines.count);
+  flank f;
+  for (size_t k = 0; k < h->options->silhouette_count; k++) fill_outline(h, k);
+  for (size_t row = 0; row < h->outlines.count; row++)
+    for (size_t i = 0; i < h->bin_count; i++) {
+      bin *b = &profile_of(h, &h->outlines, row)[i];
+      b->weight = 1;
+      b->r = ((double)i + 0.5) * h->bin_width;
+      add_cell(&mean[i], b->r, b->z);
+    }
+  r->silhouette_deg = r->silhouette_sd_deg = NAN;
+  if (find_flank(h, mean, top_height(h, mean), &f))
+    r->flank_count = measure_lines(h, &h->outlines, f, &r->silhouette_deg, &r->silhouette_sd_deg);
 }
 
 /* ---- the verdict ---- */
 
-/* Says why there is no heap, and takes the angles back: a number there would be taken for one. */
-static void judge(heap *h) {
-  scree_repose *r = h->result;
+/* Why there is no heap to speak of, or none large enough for a number; empty where there is. */
+static void judge(const heap *h, char *reason, size_t size_of_reason) {
+  const scree_repose *r = h->result;
   double size = h->options->particle_size;
-  r->heap = false;
+  size_t flanks = 2 * h->options->silhouette_count;
+  reason[0] = 0;
   if (r->peak == 0)
-    snprintf(r->reason, sizeof r->reason, "nothing lies on the floor");
+    snprintf(reason, size_of_reason, "nothing lies on the floor");
   else if (size > 0 && r->height < sizes_of_a_heap * size)
-    snprintf(r->reason, sizeof r->reason, "%.1f mm high, less than %g particle sizes of %.1f mm",
+    snprintf(reason, size_of_reason, "%.1f mm high, less than %g particle sizes of %.1f mm",
              1e3 * r->height, sizes_of_a_heap, 1e3 * size);
-  else if ((double)r->sector_count < least_share * (double)h->options->sector_count)
-    snprintf(r->reason, sizeof r->reason, "only %zu of %zu sectors have a flank", r->sector_count,
-             h->options->sector_count);
   else if (isnan(r->cone_deg))
-    snprintf(r->reason, sizeof r->reason, "no cone fits the flank");
-  else
-    r->heap = true;
-  if (r->heap) return;
-  r->sector_deg = r->sector_sd_deg = r->cone_deg = r->cone_rms = NAN;
-  r->silhouette_deg = r->silhouette_sd_deg = NAN;
+    snprintf(reason, size_of_reason, "no cone fits the flank");
+  else if ((double)r->sector_total < fmin(fewest_sectors, (double)h->options->sector_count))
+    snprintf(reason, size_of_reason,
+             "too small: in the middle of its flank less than %g particle sizes round",
+             sector_sizes * fewest_sectors);
+  else if ((double)r->sector_count < least_share * (double)r->sector_total)
+    snprintf(reason, size_of_reason, "only %zu of %zu sectors have a flank", r->sector_count,
+             r->sector_total);
+  else if ((double)r->flank_count < least_share * (double)flanks)
+    snprintf(reason, size_of_reason, "only %zu of %zu outlines from the side have a flank",
+             r->flank_count, flanks);
+}
+
+/* Where there is no heap the angles are taken back: a number there would be taken for one. */
+static void conclude(heap *h) {
+  scree_repose *r = h->result;
+  judge(h, r->reason, sizeof r->reason);
+  r->heap = r->reason[0] == 0;
+  if (!r->heap) {
+    r->sector_deg = r->sector_sd_deg = r->cone_deg = r->cone_rms = r->volume_deg = NAN;
+    r->silhouette_deg = r->silhouette_sd_deg = NAN;
+  }
+  r->spread_deg = fmax(r->sector_deg, fmax(r->cone_deg, r->silhouette_deg)) -
+                  fmin(r->sector_deg, fmin(r->cone_deg, r->silhouette_deg));
 }
 
 static scree_status check_options(const scree_repose_options *o, scree_error *error) {
@@ -337,24 +427,25 @@ scree_status scree_repose_measure(const scree_height_field *field,
   scree_status status = check_options(options, error);
   if (status != SCREE_OK) return status;
   scree_repose result = {0};
-  heap h = {.field = field, .options = options, .result = &result};
-  h.bin_width = bin_cells * field->cell;
-  h.bin_count = (size_t)(hypot((double)field->columns, (double)field->rows) / bin_cells) + 1;
-  size_t row_count = options->sector_count + 1;
-  double *memory = scree_alloc_zero(2 * h.bin_count * (row_count + 1), sizeof *memory);
-  if (!memory)
-    return scree_fail_memory(error, 2 * h.bin_count * (row_count + 1) * sizeof *memory,
-                             "the profiles of a heap");
-  h.sum = memory;
-  h.cells = memory + h.bin_count * row_count;
+  flank rings = {0};
+  heap h = {.field = field,
+            .options = options,
+            .result = &result,
+            .outlines = {.count = 2 * options->silhouette_count}};
+  h.bin_width = fmax(bin_cells * field->cell, bin_sizes * options->particle_size);
+  h.bin_count =
+      (size_t)(hypot((double)field->columns, (double)field->rows) * field->cell / h.bin_width) + 1;
+  size_t rows = options->sector_count + 1 + h.outlines.count + 1;
+  h.sectors.bins = scree_alloc_zero(rows * h.bin_count, sizeof(bin));
+  if (!h.sectors.bins)
+    return scree_fail_memory(error, rows * h.bin_count * sizeof(bin), "the profiles of a heap");
+  h.outlines.bins = h.sectors.bins + (options->sector_count + 1) * h.bin_count;
   measure_extent(&h);
-  fill_bins(&h);
-  measure_rings(&h);
-  measure_sectors(&h);
-  measure_cone(&h);
-  measure_silhouettes(&h, memory + 2 * h.bin_count * row_count);
-  judge(&h);
-  scree_free(memory);
+  measure_sectors(&h, &rings);
+  measure_cone(&h, &rings);
+  measure_silhouettes(&h);
+  conclude(&h);
+  scree_free(h.sectors.bins);
   *repose = result;
   return SCREE_OK;
 }

@@ -180,8 +180,9 @@ scree_status scree_run_plan(const scree_experiment *experiment, const scree_run_
   if (status == SCREE_OK) {
     scree_fill_order(experiment->seed, shape_count, made->order, experiment->particle_count);
     measure_shapes(made);
-    status = scree_run_plan_filling(made, error);
+    status = scree_run_check_measure(made, experiment, error);
   }
+  if (status == SCREE_OK) status = scree_run_plan_filling(made, error);
   if (status == SCREE_OK) status = make_gallery(made, error);
   if (status == SCREE_OK)
     *run = made;

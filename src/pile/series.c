@@ -4,6 +4,8 @@
 
 #include "base/array.h"
 
+static const double coarsest_cell = 0.5; /* particle sizes: a coarser height field shows none */
+
 /* ---- the heap as it stands ---- */
 
 static void raise_body(const scree_run *run, size_t index, scree_height_field *field) {
@@ -28,17 +30,27 @@ static void raise_body(const scree_run *run, size_t index, scree_height_field *f
   }
 }
 
+/* In the world, and not on its way down beside the disc. */
+static bool is_on_disc(const scree_run *run, size_t index) {
+  scree_body body;
+  if (scree_world_body_removed(run->world, index)) return false;
+  scree_world_get_body(run->world, index, &body);
+  return body.position[2] >= 0 &&
+         hypot(body.position[0], body.position[1]) <= 0.5 * run->experiment.disc_diameter;
+}
+
+/* All that lies on the disc, with its number and solid volume. */
 static scree_status raise_bodies(const scree_run *run, double cell, scree_height_field *field,
-                                 double *solid, scree_error *error) {
+                                 size_t *count, double *solid, scree_error *error) {
   scree_status status = scree_height_field_create(
       0, 0, 0.5 * run->experiment.disc_diameter + run->layer_height, cell, field, error);
   if (status != SCREE_OK) return status;
-  *solid = 0;
   for (size_t i = 0; i < run->entered_count; i++) {
-    if (scree_world_body_removed(run->world, i)) continue;
+    if (!is_on_disc(run, i)) continue;
     scree_particle_measures m;
     scree_particle_measure(scree_world_body_particle(run->world, i), &m);
     *solid += m.volume;
+    ++*count;
     raise_body(run, i, field);
   }
   return SCREE_OK;
@@ -46,32 +58,42 @@ static scree_status raise_bodies(const scree_run *run, double cell, scree_height
 
 static void observe_motion(const scree_run *run, scree_run_result *result) {
   scree_run_point now = scree_run_point_now(run);
-  result->body_count = now.body_count;
-  result->left_count = run->entered_count - now.body_count;
   result->coordination = now.coordination;
   result->kinetic = now.kinetic;
   result->time = now.time;
   result->still = now.kinetic < run->experiment.still_energy * (double)now.body_count;
 }
 
+scree_status scree_run_check_measure(const scree_run *run, const scree_experiment *measure,
+                                     scree_error *error) {
+  double coarsest = coarsest_cell * run->size;
+  if (measure->height_cell <= coarsest) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT,
+                    "measure.cell %g m: at most half the mean particle size, %.4g m",
+                    measure->height_cell, coarsest);
+}
+
 scree_status scree_run_measure_with(const scree_run *run, const scree_experiment *measure,
                                     scree_run_result *result, scree_error *error) {
-  double cell = measure->height_cell > 0 ? measure->height_cell : 0.1 * run->size, solid;
+  double cell = measure->height_cell > 0 ? measure->height_cell : 0.1 * run->size, solid = 0;
+  scree_run_result made = {.particle_size = run->size};
   scree_height_field field;
-  scree_status status = raise_bodies(run, cell, &field, &solid, error);
+  scree_status status = scree_run_check_measure(run, measure, error);
+  if (status == SCREE_OK) status = raise_bodies(run, cell, &field, &made.body_count, &solid, error);
   if (status != SCREE_OK) return status;
   scree_repose_options o = scree_default_repose_options();
   o.sector_count = measure->sector_count;
   o.band_low = measure->band_low;
   o.band_high = measure->band_high;
   o.particle_size = run->size;
-  scree_run_result made = {.particle_size = run->size};
   status = scree_repose_measure(&field, &o, &made.repose, error);
   scree_height_field_free(&field);
   if (status != SCREE_OK) return status;
   observe_motion(run, &made);
+  made.left_count = run->entered_count - made.body_count;
+  /* plates side by side fill what is under them: there the field's own error may pass 1 */
   made.packing_fraction =
-      made.repose.envelope_volume > 0 ? solid / made.repose.envelope_volume : NAN;
+      made.repose.envelope_volume > 0 ? fmin(1, solid / made.repose.envelope_volume) : NAN;
   *result = made;
   return SCREE_OK;
 }

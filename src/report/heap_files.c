@@ -64,7 +64,6 @@ static void json_way(scree_json *json, const char *key, double deg, double sd_de
   scree_json_number(json, "angle_deg", deg);
   scree_json_number(json, "sd_deg", sd_deg);
   scree_json_count(json, "count", count);
-  scree_json_end(json);
 }
 
 static void json_result(scree_json *json, const scree_run_result *r) {
@@ -73,11 +72,16 @@ static void json_result(scree_json *json, const scree_run_result *r) {
   scree_json_bool(json, "heap", h->heap);
   scree_json_text(json, "no_heap_because", h->heap ? NULL : h->reason);
   json_way(json, "sectors", h->sector_deg, h->sector_sd_deg, h->sector_count);
+  scree_json_count(json, "total", h->sector_total);
+  scree_json_end(json);
   scree_json_row_object(json, "cone");
   scree_json_number(json, "angle_deg", h->cone_deg);
   scree_json_number(json, "rms", h->cone_rms);
   scree_json_end(json);
   json_way(json, "silhouettes", h->silhouette_deg, h->silhouette_sd_deg, h->flank_count);
+  scree_json_end(json);
+  scree_json_number(json, "spread_deg", h->spread_deg);
+  scree_json_number(json, "volume_deg", h->volume_deg);
   scree_json_number(json, "height", h->height);
   scree_json_number(json, "peak", h->peak);
   scree_json_number(json, "base_radius", h->base_radius);

@@ -22,4 +22,8 @@ typedef scree_status fallible_call(void *context, scree_error *error);
  * failed. */
 size_t check_allocation_failures(fallible_call *call, void *context);
 
+/* The same for a call of which a part only informs onlookers and may be left undone: an allocation
+ * refused may also end in success. */
+size_t check_allocation_failures_survivable(fallible_call *call, void *context);
+
 #endif
