@@ -197,8 +197,13 @@ void choose_print(FILE *out, const choose_run *run) {
   print_resolution(out, run);
   print_floor(out, run);
   print_notes(out, run);
-  if (run->arguments->output)
-    fprintf(out, "In %s: report.html, %s, figure.png, choice.json\n", run->arguments->output,
-            run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl");
+  const char *folder = run->arguments->output;
+  if (folder)
+    fprintf(
+        out,
+        "In %s: report.html, %s, figure.png, choice.json\n"
+        "With mass and inertia, for a DEM code: scree export %s/%s.stl --principal -o FILE.stl\n",
+        folder, run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl", folder,
+        run->objects[0].name);
   print_other_errors(out, run);
 }

@@ -7,26 +7,35 @@ enum { HELP_COLUMN = 26, LINE_WIDTH = 80 };
 
 /* Prints text wrapped at LINE_WIDTH, every line after the first indented. */
 static void print_wrapped(FILE *stream, const char *text, int column, int indent) {
+  int spaces = 0; /* before the next word, where it stays on the line */
   while (*text) {
     size_t length = strcspn(text, " \n");
-    if (column + (int)length > LINE_WIDTH && column > indent) {
+    if (column + spaces + (int)length > LINE_WIDTH && column > indent) {
       fprintf(stream, "\n%*s", indent, "");
       column = indent;
+      spaces = 0;
     }
-    fprintf(stream, "%.*s", (int)length, text);
-    column += (int)length;
+    if (length) column += fprintf(stream, "%*s%.*s", spaces, "", (int)length, text);
+    if (length) spaces = 0;
     text += length;
-    if (*text == ' ') {
-      if (column < LINE_WIDTH) fputc(' ', stream);
-      column++;
-      text++;
-    } else if (*text == '\n') {
+    if (*text == ' ') spaces++;
+    if (*text == '\n') {
       fprintf(stream, "\n%*s", indent, "");
       column = indent;
-      text++;
+      spaces = 0;
     }
+    text += *text != 0;
   }
   fputc('\n', stream);
+}
+
+static void print_examples(FILE *stream, const char *text) {
+  fputs("\nexamples:\n", stream);
+  while (*text) {
+    size_t length = strcspn(text, "\n");
+    fprintf(stream, "  %.*s\n", (int)length, text);
+    text += length + (text[length] != 0);
+  }
 }
 
 static void print_option(FILE *stream, const cli_option *option) {
@@ -53,7 +62,7 @@ void cli_print_help(FILE *stream, const cli_verb *verb) {
   for (size_t i = 0; i < verb->option_count; i++) print_option(stream, &verb->options[i]);
   fputs("\noptions of every verb:\n", stream);
   for (size_t i = 0; i < cli_common_option_count; i++) print_option(stream, &cli_common_options[i]);
-  if (verb->examples) fprintf(stream, "\nexamples:\n%s", verb->examples);
+  if (verb->examples) print_examples(stream, verb->examples);
 }
 
 void cli_print_overview(FILE *stream) {
@@ -100,6 +109,7 @@ void cli_print_man(FILE *stream) {
     print_scdoc_text(stream, (*verb)->description);
     fputs("\n\n", stream);
     print_scdoc_options(stream, (*verb)->options, (*verb)->option_count);
+    if ((*verb)->examples) fprintf(stream, "```\n%s\n```\n\n", (*verb)->examples);
   }
   fputs("# EXIT STATUS\n\n0 done, 1 failed (one sentence on stderr), 2 wrong usage.\n", stream);
 }

@@ -34,9 +34,9 @@ static const cli_option options[] = {
     {"density", 'd', CLI_REAL, AT(density), "RHO",
      "Density in kg/m3, for mass and inertia. Default: 2000.", 1e-6, 1e6, NULL},
     {"reference", 'r', CLI_TEXT, AT(reference), "FILE",
-     ".vtp of a surface: add the distance to the surface in FILE, or sample:NAME.", 0, 0, NULL},
+     "For .vtp of a surface: add the distance to the surface in FILE, or sample:NAME.", 0, 0, NULL},
     {"view", 'w', CLI_CHOICE, AT(view), "VIEW",
-     ".vtp of a checkpoint: surfaces (every triangle in its place), points (one per body, with "
+     "For .vtp of a checkpoint: surfaces (every triangle in its place), points (one per body, with "
      "quaternion and velocities), contacts (lines with forces) or walls. Default: surfaces.",
      0, 0, "surfaces|points|contacts|walls"},
     {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The input's unit of length. Default: mm.", 0,

@@ -27,7 +27,7 @@ static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "FILE", "The PNG to write (required); - is stdout.", 0, 0,
      NULL},
     {"size", 's', CLI_TEXT, AT(size), "WxH", "Size in pixels. Default: 1200x900.", 0, 0, NULL},
-    {"view", 'v', CLI_CHOICE, AT(view), "SIDE",
+    {"view", 0, CLI_CHOICE, AT(view), "SIDE",
      "Seen from: oblique, front (against -y), back, left, right, top or bottom. Default: oblique.",
      0, 0, "oblique|front|back|left|right|top|bottom"},
     {"azimuth", 'a', CLI_REAL, AT(azimuth_deg), "DEG",
@@ -270,11 +270,11 @@ const cli_verb cli_verb_render = {
     .description =
         "Writes one PNG with a view of each mesh, framed alike, captioned with its name and "
         "triangle count: for example a scan and its levels side by side.",
-    .examples = "  scree render scan.stl -o scan.png\n"
-                "  scree render scan.stl level-*.stl -o levels.png --size 1800x500 --edges\n"
-                "  scree render scan.stl --levels 1e-1,1e-2,1e-3,1e-4,1e-5 --edges -o row.png "
+    .examples = "scree render scan.stl -o scan.png\n"
+                "scree render scan.stl level-*.stl -o levels.png --size 1800x500 --edges\n"
+                "scree render scan.stl --levels 1e-1,1e-2,1e-3,1e-4,1e-5 --edges -o row.png "
                 "--size 2400x400\n"
-                "  scree render scan.stl --levels 1e-3 --color-by distance -o error.png\n",
+                "scree render scan.stl --levels 1e-3 --color-by distance -o error.png\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,
