@@ -16,7 +16,7 @@ scree_world_options scree_default_world_options(void) {
       .tangential_ratio = 1,
       .smoothing = 4e-5,
       .sharing = 0.1,
-      .overlap_limit = 0.04,
+      .overlap_limit = 0.1,
       .skin = 0.02,
       .floor_height = -INFINITY,
   };
