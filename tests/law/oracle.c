@@ -224,7 +224,7 @@ static void what_leaves_the_range_stops(void **state) {
     law_floor(world);
     scree_body body = scree_default_body();
     body.position[2] = 0.2;
-    body.velocity[2] = fast ? -500 : -90;
+    body.velocity[2] = fast ? -2000 : -90;
     law_body(world, box, body);
     scree_error error;
     scree_status status = scree_world_step(world, 20000, &error);
