@@ -117,10 +117,14 @@ static surface build(const body *b) {
   const size_t triangle_count = (size_t)(4 * (n[0] * n[1] + n[1] * n[2] + n[0] * n[2]));
   s.positions = malloc(3 * s.vertex_count * sizeof *s.positions);
   s.triangles = malloc(3 * triangle_count * sizeof *s.triangles);
-  if (!s.positions || !s.triangles) exit(fprintf(stderr, "out of memory\n") ? 1 : 1);
+  if (!s.positions || !s.triangles) {
+    fputs("out of memory\n", stderr);
+    exit(1);
+  }
   for (long k = 0; k <= n[2]; k++)
     for (long j = 0; j <= n[1]; j++)
-      for (long i = 0; i <= n[0]; i += (k % n[2] && j % n[1] && i == 0) ? n[0] : 1) {
+      for (long i = 0; i <= n[0];
+           i += (k > 0 && k < n[2] && j > 0 && j < n[1] && i == 0) ? n[0] : 1) {
         const uint32_t v = number(n, i, j, k);
         place(b, (const long[3]){i, j, k}, v, s.positions + 3 * (size_t)v);
       }

@@ -52,6 +52,10 @@ static scree_particle *make_box(void) {
   return particle_of(&(scree_mesh){positions, triangles, 8, 12});
 }
 
+static bool is_same(const double *p, const double *q) {
+  return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
+}
+
 /* Every triangle into four by its edges' middles; vertices that several triangles make are found
  * by their coordinates (the counts are small). */
 static void cut_in_four(scree_mesh *mesh) {
@@ -69,7 +73,7 @@ static void cut_in_four(scree_mesh *mesh) {
         p[k] =
             0.5 * (positions[3 * v[e] + (uint32_t)k] + positions[3 * v[(e + 1) % 3] + (uint32_t)k]);
       size_t found = mesh->vertex_count;
-      while (found < vertices && memcmp(positions + 3 * found, p, sizeof p) != 0) found++;
+      while (found < vertices && !is_same(positions + 3 * found, p)) found++;
       if (found == vertices) memcpy(positions + 3 * vertices++, p, sizeof p);
       middle[e] = (uint32_t)found;
     }

@@ -34,9 +34,8 @@ static bool spin(void *context, int output) {
   return true;
 }
 static bool sleep_on(void *context, int output) {
-  (void)context;
-  while (output >= 0) pause();
-  return true;
+  (void)context, (void)output;
+  for (;;) pause();
 }
 static bool close_and_sleep(void *context, int output) {
   close(output);

@@ -131,12 +131,11 @@ static double *soup(const packed *m, const scree_mesh *mesh, const file *f) {
                              f->low[k]) /
                                 f->step +
                             0.5);
-    for (int i = 1; i < 3; i++)
-      if (memcmp(c[i], c[first], sizeof c[i]) != 0) {
-        int k = 0;
-        while (k < 2 && c[i][k] == c[first][k]) k++;
-        if (c[i][k] < c[first][k]) first = i;
-      }
+    for (int i = 1; i < 3; i++) {
+      int k = 0;
+      while (k < 2 && c[i][k] == c[first][k]) k++;
+      if (c[i][k] < c[first][k]) first = i;
+    }
     for (int i = 0; i < 3; i++) memcpy(all + 9 * t + 3 * i, c[(first + i) % 3], sizeof c[0]);
   }
   qsort(all, count, 9 * sizeof *all, by_size);

@@ -109,14 +109,13 @@ static void a_plan_follows_from_its_file(void **state) {
 
 static void a_filling_design_stays_in_its_ranges(void **state) {
   (void)state;
-  const char *text =
-      "replicates: 2\nshapes: [sample:box]\ndesign: latin\npoints: 20\nfactors:\n"
-      "  particles: {from: 10, to: 30}\n"
-      "  phases.lift_speed: {from: 0.01, to: 1, scale: log}\n  rp: [1e-2, spheres]\n";
   for (int sobol = 0; sobol < 2; sobol++) {
     char changed[400];
-    snprintf(changed, sizeof changed, "%s", text);
-    if (sobol) memcpy(strstr(changed, "latin"), "sobol", 5);
+    snprintf(changed, sizeof changed,
+             "replicates: 2\nshapes: [sample:box]\ndesign: %s\npoints: 20\nfactors:\n"
+             "  particles: {from: 10, to: 30}\n"
+             "  phases.lift_speed: {from: 0.01, to: 1, scale: log}\n  rp: [1e-2, spheres]\n",
+             sobol ? "sobol" : "latin");
     scree_study *study;
     scree_error error;
     CHECK_OK(scree_study_read(file_with("fill.yaml", changed), &study, &error), error);
@@ -414,7 +413,7 @@ static void a_study_can_grow(void **state) {
   (void)state;
   char more[sizeof tiny + 8];
   snprintf(more, sizeof more, "%s", tiny);
-  memcpy(strstr(more, "replicates: 2"), "replicates: 3", 13);
+  strstr(more, "replicates: 2")[strlen("replicates: ")] = '3';
   scree_study *study = open_tiny("whole", more);
   scree_study_options o = quick();
   scree_error error;
