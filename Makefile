@@ -2,6 +2,7 @@
 #   make         build/release/bin/scree
 #   make demo    installs what is missing, builds, runs the main job on the built-in samples
 #   make test    installs what is missing, builds, runs the tests
+#   make install, make uninstall    DESTDIR=... stages below a folder
 # PRESET=asan|debug|tsan|clang for another build; DATA_DIR=... for a folder of real scans that some tests
 # read; LABELS="-LE slow" and the like are passed to ctest; JOBS=N.
 PRESET ?= release
@@ -10,7 +11,7 @@ LABELS ?=
 JOBS ?= $(shell nproc)
 DEMO_DIR ?= demo
 
-.PHONY: all build packages demo test install clean
+.PHONY: all build packages demo test install uninstall clean
 all: build
 
 packages:
@@ -33,6 +34,9 @@ test:
 
 install: build
 	@cmake --install build/$(PRESET)
+
+uninstall:
+	@tools/uninstall.sh build/$(PRESET)
 
 clean:
 	@rm -rf build

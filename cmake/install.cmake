@@ -22,6 +22,8 @@ endif()
 if(SCREE_IMPORT_LIBS)
   set(SCREE_ASSIMP_LIBS "-lassimp -lz")
 endif()
+# The prefix from where the file lies, so that an installation may be moved.
+file(RELATIVE_PATH SCREE_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
 configure_file(cmake/scree.pc.in ${CMAKE_BINARY_DIR}/scree.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/scree.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 

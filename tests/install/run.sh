@@ -1,17 +1,28 @@
 #!/bin/sh
-# Installs into an empty prefix and builds the same small program against it in the three ways that users
-# have: pkg-config, pkg-config --static, and find_package(scree).
+# Installs into an empty prefix, moves that, uninstalls the first, and builds the same small program against it
+# in the three ways that users have: pkg-config, pkg-config --static, and find_package(scree); and as C++.
 # usage: run.sh SOURCE_DIR BUILD_DIR C_COMPILER
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 build=$2
 compiler=$3
 folder=$(mktemp -d)
-trap 'rm -rf "$folder"' EXIT
-cmake --install "$build" --prefix "$folder/prefix" >"$folder/log" || { cat "$folder/log"; exit 1; }
+manifest=$build/install_manifest.txt
+[ ! -f "$manifest" ] || cp "$manifest" "$folder/manifest"
+restore() {
+  rm -f "$manifest"
+  [ ! -f "$folder/manifest" ] || cp "$folder/manifest" "$manifest"
+  rm -rf "$folder"
+}
+trap restore EXIT
+cmake --install "$build" --prefix "$folder/first" >"$folder/log" || { cat "$folder/log"; exit 1; }
+cp -R "$folder/first" "$folder/prefix" # an installation may be moved
+"$1/tools/uninstall.sh" "$build"
+left=$(find "$folder/first" ! -type d)
+[ -z "$left" ] || { echo "left after uninstalling: $left"; exit 1; }
 version=$(cat "$1/VERSION")
 libdir=$(dirname "$(find "$folder/prefix" -name scree.pc)")/..
-pc() { PKG_CONFIG_PATH="$libdir/pkgconfig" pkg-config --define-variable=prefix="$folder/prefix" "$@" scree; }
+pc() { PKG_CONFIG_PATH="$libdir/pkgconfig" pkg-config "$@" scree; }
 
 expect() {
   [ "$2" = "$version" ] || { echo "$1: printed '$2', not $version"; exit 1; }

@@ -36,6 +36,7 @@ static bool spin(void *context, int output) {
 static bool sleep_on(void *context, int output) {
   (void)context, (void)output;
   for (;;) pause();
+  return true;
 }
 static bool close_and_sleep(void *context, int output) {
   close(output);
