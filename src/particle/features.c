@@ -21,8 +21,7 @@
 static const double flat_angle = 2e-5;             /* rad; sagitta 0.05 um over 10 mm; above the
                                                       noise of single-precision coordinates */
 static const double sharp_angle = 0.5 * 0.0174533; /* rad; design value, see above */
-static const double cone_slack = 0.06;        /* rad; how far bodies may turn while a list holds */
-static const double fold_cosine = -0.8660254; /* normals over 150 degrees apart */
+static const double fold_cosine = -0.8660254;      /* normals over 150 degrees apart */
 
 typedef struct half_edge {
   uint32_t low, high; /* vertices, low < high */
@@ -241,7 +240,7 @@ static void make_points_and_edges(extraction *x) {
     x->visited[e] = true;
     vec3 start = position_of(mesh, follow(x, e, edge->low)),
          end = position_of(mesh, follow(x, e, edge->high)), along = vec3_sub(end, start);
-    double half = fmin(0.5 * edge->turn + cone_slack, 1.57);
+    double half = fmin(0.5 * edge->turn + scree_cone_slack, 1.57);
     vec3 sum = vec3_add(p->faces[edge->face1].normal, p->faces[edge->face2].normal);
     p->edges[p->edge_count++] = (scree_edge){
         start, end, vec3_unit(along), vec3_norm(along), {vec3_unit(sum), cos(half), sin(half)}, 0};

@@ -18,6 +18,10 @@ typedef struct scree_face_signs {
   vec3 corner[3]; /* at the corners */
 } scree_face_signs;
 
+/* rad; by this the cones of edges are widened: bodies may turn by it while a list of contacts
+ * holds. */
+static const double scree_cone_slack = 0.06;
+
 /* A straight convex edge. */
 typedef struct scree_edge {
   vec3 start, end;

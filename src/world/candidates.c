@@ -268,6 +268,7 @@ static void set_region(listing *l) {
     best = radius;
     pair->region = of_a ? into_b(l, centre) : centre;
   }
+  best = fmax(best, l->skin / scree_cone_slack); /* the path grows by radius times angle */
   double smaller = fmin(l->a->measures.bounding_radius, l->b->measures.bounding_radius);
   pair->region_radius = best < smaller ? best : 0;
 }

@@ -187,8 +187,8 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
   v = vec3_mad(v, n, -approach);
   /* n.(v + spin x at) of the dashpots' moment */
   double rate = -(vec3_dot(relative->velocity_now, n) + vec3_dot(relative->spin_now, arm));
-  double elastic = touch->share * spring;
-  double normal = elastic + touch->share * pair->damping * rate;
+  double share = touch->share * touch->lever, elastic = share * spring;
+  double normal = elastic + share * pair->damping * touch->lever * rate;
   if (!(normal > 0)) normal = 0;
   double dashpot = normal - elastic;
   vec3 along = slide(law, touch->anchor, touch->share, n, v, normal, energy);

@@ -33,13 +33,20 @@ static const double crossing_cosines[2] = {0.3, 0.6}; /* crossing normal against
 
 typedef struct surface_contact {
   vec3 closest, normal;
+  vec3 border; /* nearest point of the face, where the closest one is taken in its plane */
   double distance, weight;
+  double lever; /* by how much the distance grows along the normal: 1, but where two are blended */
 } surface_contact;
 
 static double smooth_step(double from, double to, double x) {
   double t = (x - from) / (to - from);
   t = t < 0 ? 0 : t > 1 ? 1 : t;
   return t * t * (3 - 2 * t);
+}
+
+static double smooth_step_slope(double from, double to, double x) {
+  double t = (x - from) / (to - from);
+  return t <= 0 || t >= 1 ? 0 : 6 * t * (1 - t) / (to - from);
 }
 
 /* A touch between spheres or rounded surfaces of radius `above` (a) and `below` (b): normal n from
@@ -60,6 +67,7 @@ static double add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, 
   scree_touch *touch = &list->items[list->count++];
   touch->at = vec3_mad(c, n, 0.5 * (distance - above + below));
   touch->normal = n;
+  touch->lever = 1;
   touch->overlap = overlap;
   touch->weight = weight;
   touch->anchor = anchor;
@@ -130,7 +138,8 @@ static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item
   if (!face_along(surface, p, item->reference, reach, pierced, contact, &face)) return false;
   vec3 offset = vec3_sub(p, contact->closest);
   double height = vec3_dot(offset, contact->normal);
-  contact->weight = 1;
+  contact->weight = contact->lever = 1;
+  contact->border = contact->closest;
   if (height > 0) {
     contact->distance = vec3_norm(offset);
     if (contact->distance > 1e-9 * half)
@@ -142,6 +151,24 @@ static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item
   contact->closest = vec3_mad(p, contact->normal, -height);
   contact->weight = 1 - smooth_step(0, half, sideways);
   return true;
+}
+
+/* A point that slides off an edge below the roundings: as the way out fades, the closest point
+ * takes over. One distance, the weighted mean of both, so that the force stays the slope of the
+ * energy. */
+static void slide_off(vec3 p, double half, const surface_contact *closest,
+                      surface_contact *contact) {
+  vec3 aside = vec3_sub(p, contact->border);
+  aside = vec3_mad(aside, contact->normal, -vec3_dot(aside, contact->normal));
+  double w = contact->weight, sideways = vec3_norm(aside),
+         fall = -smooth_step_slope(0, half, sideways) / sideways;
+  vec3 slope = vec3_add(vec3_scale(contact->normal, w), vec3_scale(closest->normal, 1 - w));
+  slope = vec3_mad(slope, aside, fall * (contact->distance - closest->distance));
+  contact->distance = w * contact->distance + (1 - w) * closest->distance;
+  contact->lever = vec3_norm(slope);
+  contact->normal = vec3_unit(slope);
+  contact->closest = vec3_mad(p, contact->normal, -contact->distance);
+  contact->weight = 1;
 }
 
 /* Further faces of a notch, onto which the point projects. */
@@ -158,7 +185,7 @@ static int notch_contacts(const scree_particle *surface, vec3 p, const scree_ite
     double d = vec3_dot(vec3_sub(p, c), face->normal);
     if (region != SCREE_REGION_INSIDE || d <= 0) continue;
     double weight = 1 - smooth_step(notch_cosines[1], notch_cosines[0], alike);
-    contacts[count++] = (surface_contact){c, face->normal, d, weight};
+    contacts[count++] = (surface_contact){c, face->normal, c, d, weight, 1};
   }
   return count;
 }
@@ -188,17 +215,19 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   bool deep = !outside || d < 0.5 * pair->reach;
   /* out on the other side of a wall that is thinner than the overlap: held while it is behind it */
   bool pierced = !deep && item->inside && vec3_dot(outward, item->reference) < 0;
+  contacts[0].weight = contacts[0].lever = 1;
+  contacts[0].distance = outside ? d : -d;
+  contacts[0].normal = d > 1e-12 ? vec3_scale(offset, (outside ? 1 : -1) / d) : vec3_unit(outward);
+  surface_contact way_out;
   if ((deep || pierced) && item->has_reference &&
-      deep_contact(surface, p, item, pair, pierced, &contacts[0]) &&
-      (deep || contacts[0].weight > 0)) {
-    item->inside = contacts[0].weight > 0;
+      deep_contact(surface, p, item, pair, pierced, &way_out) && (deep || way_out.weight > 0)) {
+    item->inside = way_out.weight > 0;
+    if (!pierced && outside && way_out.weight < 1)
+      slide_off(p, 0.5 * pair->reach, &contacts[0], &way_out);
+    contacts[0] = way_out;
     return 1;
   }
   item->inside = false;
-  if (pierced) contacts[0].closest = vec3_sub(p, offset);
-  contacts[0].weight = 1;
-  contacts[0].distance = outside ? d : -d;
-  contacts[0].normal = d > 1e-12 ? vec3_scale(offset, (outside ? 1 : -1) / d) : vec3_unit(outward);
   if (!deep || !item->has_reference) {
     item->reference = contacts[0].normal;
     item->has_reference = true;
@@ -263,7 +292,9 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
   for (int k = 0; k < count; k++) {
     const double values[4] = {contacts[k].distance, forth ? point_radius : surface_radius,
                               forth ? surface_radius : point_radius, contacts[k].weight};
+    size_t touches = scratch->touches.count;
     double gap = add_touch(scratch, pair, at[k], normals[k], values, &item->anchor[k]);
+    if (scratch->touches.count > touches) scratch->touches.items[touches].lever = contacts[k].lever;
     if (gap < least) least = gap;
   }
   return least;
@@ -329,8 +360,12 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
     item->anchor[0].share = 0;
     return fmin(far, 0);
   }
-  surface_contact contact = {on_b, vec3_scale(offset, 1 / fmax(d, 1e-300)), d,
-                             smooth_step(parallel_sines[0], parallel_sines[1], sine)};
+  surface_contact contact = {on_b,
+                             vec3_scale(offset, 1 / fmax(d, 1e-300)),
+                             on_b,
+                             d,
+                             smooth_step(parallel_sines[0], parallel_sines[1], sine),
+                             1};
   if (item->inside || d < 0.5 * pair->reach) {
     if (!item->has_reference) return 0; /* not armed */
     deep_crossing(pair, item, vec3_scale(crossing, 1 / sine), offset, &contact);

@@ -135,6 +135,7 @@ typedef struct scree_pair_slab {
 typedef struct scree_touch {
   vec3 at, normal; /* normal towards a */
   double overlap, weight, share;
+  double lever; /* how much the overlap falls as a moves along the normal */
   vec3 force; /* on a */
   scree_anchor *anchor;
 } scree_touch;

@@ -7,6 +7,9 @@
 #include "base/rng.h"
 #include "support/shapes.h"
 #include "support/solids.h"
+#include "world/world.h"
+
+#include <stdlib.h>
 
 static scree_particle *particle_of(scree_mesh mesh) {
   scree_error error;
@@ -160,6 +163,110 @@ static void lists_change_nothing(void **state) {
   for (int i = 0; i < 3; i++) scree_particle_free(shapes[i]);
 }
 
+/* Energy of a pair's contact at its bodies' frames, on a copy of its memory; its wrench too. */
+static double energy_of_copy(const scree_world *world, const scree_pair *pair,
+                             scree_wrench *wrench) {
+  scree_pair copy = *pair;
+  scree_scratch scratch = {0};
+  scree_pair_sums sums = {0};
+  copy.active.items = malloc((pair->active.count + 64) * sizeof *copy.active.items);
+  copy.sleeping.items = malloc((pair->sleeping.count + 64) * sizeof *copy.sleeping.items);
+  assert_non_null(copy.active.items);
+  assert_non_null(copy.sleeping.items);
+  memcpy(copy.active.items, pair->active.items, pair->active.count * sizeof *copy.active.items);
+  memcpy(copy.sleeping.items, pair->sleeping.items,
+         pair->sleeping.count * sizeof *copy.sleeping.items);
+  copy.active.capacity = pair->active.count + 64;
+  copy.sleeping.capacity = pair->sleeping.count + 64;
+  copy.list_end = INFINITY; /* the present list, whose room suffices */
+  scree_pair_evaluate(world, &copy, &scratch, &sums);
+  free(copy.active.items);
+  free(copy.sleeping.items);
+  scree_free(scratch.touches.items);
+  *wrench = copy.wrench;
+  return copy.elastic;
+}
+
+/* Force and torque on body 0 against central differences of the energy over its six motions. The
+ * error relative to the force; torques by the size of the bodies. */
+static double slope_error(scree_world *world, const scree_pair *pair) {
+  const double h = 1e-9, arm = 0.03;
+  scree_frame *frame = &world->bodies.frame[0];
+  const scree_frame here = *frame;
+  scree_wrench wrench, unused;
+  energy_of_copy(world, pair, &wrench);
+  double size = vec3_norm(wrench.force), worst = 0;
+  for (int k = 0; k < 6; k++) {
+    double energy[2];
+    for (int end = 0; end < 2; end++) {
+      double move = end ? h : -h;
+      vec3 axis = {k % 3 == 0 ? move : 0, k % 3 == 1 ? move : 0, k % 3 == 2 ? move : 0};
+      if (k < 3) {
+        frame->position = vec3_add(here.position, axis);
+      } else {
+        mat3 turn = quat_to_mat3(quat_from_rotation_vector(vec3_scale(axis, 1 / arm)));
+        frame->rotation = mat3_mul(&turn, &here.rotation);
+      }
+      energy[end] = energy_of_copy(world, pair, &unused);
+      *frame = here;
+    }
+    double slope = (energy[1] - energy[0]) / (2 * h);
+    vec3 load = k < 3 ? wrench.force : vec3_scale(wrench.torque_a, 1 / arm);
+    double got = k % 3 == 0 ? load.x : k % 3 == 1 ? load.y : load.z;
+    worst = fmax(worst, fabs(got + slope) / size);
+  }
+  return worst;
+}
+
+/* Bodies hit each other at 10 m/s, edges and corners far deeper than the roundings: at the moments
+ * of the hit the force is the slope of the energy, but where weights change (their slopes are left
+ * out: docs/physics.md). The same hit with lists that reach two and a half times farther
+ * takes the same course. */
+static void deep_hits(void **state) {
+  (void)state;
+  scree_particle *shapes[] = {
+      particle_of(shape_box(0.06, 0.04, 0.02)), particle_of(shape_icosphere(0.02, 1)),
+      particle_of(solid_tray(0.06, 0.04, 0.02, 0.004)), particle_of(solid_hook(0.05, 0.012, 0.02))};
+  scree_rng rng = {.seed = 14};
+  double apart = 0, deepest = 0;
+  size_t moments = 0, off = 0;
+  for (int i = 0; i < 60; i++) {
+    scree_world *world = elastic_world(0.02), *wide = elastic_world(0.05);
+    for (int k = 0; k < 2; k++) {
+      scree_body body = scree_default_body();
+      turn_at_random(&rng, &body);
+      body.position[2] = k ? -0.04 : 0.04;
+      body.position[0] = 0.01 * scree_rng_uniform(&rng);
+      body.velocity[2] = k ? 5 : -5;
+      vec3_store(body.angular_velocity, vec3_scale(scree_rng_direction(&rng), 20));
+      law_body(world, shapes[(i + k * (i / 4)) % 4], body);
+      law_body(wide, shapes[(i + k * (i / 4)) % 4], body);
+    }
+    for (int step = 0; step < 1500; step++) {
+      scree_observation o, same;
+      law_step(world, 1);
+      law_step(wide, 1);
+      scree_world_observe(world, &o);
+      scree_world_observe(wide, &same);
+      if (o.pair_count == 0) continue;
+      apart = fmax(apart, fabs(o.kinetic + o.rotational - same.kinetic - same.rotational) /
+                              (same.kinetic + same.rotational));
+      deepest = fmax(deepest, o.largest_overlap);
+      if (step % 3) continue;
+      moments++;
+      off += slope_error(world, world->pairs.items[0]) > 0.01;
+    }
+    scree_world_free(world);
+    scree_world_free(wide);
+  }
+  print_message("%zu moments, overlaps up to %.3g m\n", moments, deepest);
+  assert_true(moments > 300 && deepest > 3e-4);
+  LAW_BELOW("-", "deep hits: energy, two skins of the lists", apart, 1e-6);
+  LAW_BELOW("-", "share of moments with force off the slope by 1 %", (double)off / (double)moments,
+            0.1);
+  for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
+}
+
 static scree_world *heap_of(scree_particle **shapes, size_t kinds, int count) {
   law_setup setup = law_default();
   setup.gravity = 9.81;
@@ -188,12 +295,12 @@ static void threads_change_nothing(void **state) {
   const int threads[] = {1, 2, 3, 8};
   for (int i = 0; i < 4; i++) {
     scree_set_threads(threads[i]);
-    scree_world *world = heap_of(shapes, 4, 80);
-    law_step(world, 5000);
+    scree_world *world = heap_of(shapes, 4, 36);
+    law_step(world, 15000);
     scree_observation o;
     scree_world_observe(world, &o);
     print_message("%zu pairs touch at %.3f s\n", o.pair_count, o.time);
-    assert_true(o.pair_count > 0);
+    assert_true(o.pair_count > 10);
     scree_checksum hash = scree_world_hash(world);
     if (i == 0) first = hash;
     assert_true(hash.high == first.high && hash.low == first.low);
@@ -296,6 +403,7 @@ int main(void) {
       cmocka_unit_test(unusable_meshes_are_refused),
       cmocka_unit_test(force_is_the_slope_of_the_energy),
       cmocka_unit_test(lists_change_nothing),
+      cmocka_unit_test(deep_hits),
       cmocka_unit_test(threads_change_nothing),
       cmocka_unit_test(warm_steps_allocate_nothing),
       cmocka_unit_test(what_leaves_the_range_stops),

@@ -113,7 +113,8 @@ void law_meet(const law_meeting *m, double speed, uint64_t number, law_outcome *
     scree_world_free(world);
     return;
   }
-  out->stuck += touched && o.pair_count > 0;
+  /* bodies that slide along each other touch by less than a micrometre: they are not stuck */
+  out->stuck += touched && o.pair_count > 0 && o.largest_overlap > 1e-5;
   out->through += corners_inside(world, a, b) + corners_inside(world, b, a) > 0;
   scree_world_get_body(world, a, &up);
   scree_world_get_body(world, b, &down);
