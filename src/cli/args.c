@@ -52,7 +52,8 @@ bool cli_real_from_text(const char *text, double *value) {
 }
 
 int cli_fail(const scree_error *error) {
-  fprintf(stderr, "scree: %s\n", error->message);
+  bool spared = strstr(error->message, "not overwritten");
+  fprintf(stderr, "scree: %s%s\n", error->message, spared ? "; -f overwrites" : "");
   return 1;
 }
 
