@@ -167,20 +167,20 @@ scree_status scree_motion_put(scree_motion_file *file, const scree_run *run, scr
                     {0, 0}};
   while (f.time >= scree_motion_next(file)) file->count++;
   if (!file->stream || f.time <= file->last) return SCREE_OK;
-  scree_codec bodies = {0}, header = {0};
+  scree_codec bodies = {0}, frame = {0};
   code_bodies(&bodies, world, (size_t)f.body_count);
   f.sum = scree_checksum_of(bodies.bytes, bodies.count);
-  code_frame(&header, &f);
+  code_frame(&frame, &f);
+  scree_code_bytes(&frame, bodies.bytes, bodies.count);
   scree_status status = SCREE_OK;
-  if (!scree_codec_good(&bodies) || !scree_codec_good(&header))
+  if (!scree_codec_good(&bodies) || !scree_codec_good(&frame))
     status = scree_fail_memory(error, bodies.count, "a frame of the motion");
-  else if (fwrite(header.bytes, 1, header.count, file->stream) != header.count ||
-           fwrite(bodies.bytes, 1, bodies.count, file->stream) != bodies.count ||
+  else if (fwrite(frame.bytes, 1, frame.count, file->stream) != frame.count ||
            fflush(file->stream) != 0)
     status = fail_write(file, error);
   file->last = f.time;
   scree_free(bodies.bytes);
-  scree_free(header.bytes);
+  scree_free(frame.bytes);
   return status;
 }
 
