@@ -282,6 +282,8 @@ static scree_status put_part(page *p, const part *it) {
     if (status == SCREE_OK && it->kind == LEVELS)
       status = scree_levels_check(bytes, size, it->path, p->error);
   }
+  if (status == SCREE_OK && !packed && !bytes)
+    status = scree_fail(p->error, SCREE_IO, "%s: is no longer there", it->path);
   if (status == SCREE_OK && it->kind == PICTURE)
     fprintf(p->stream, "<img id=\"%s\" alt=\"The heap\" src=\"data:image/png;base64,", it->id);
   else if (status == SCREE_OK)
