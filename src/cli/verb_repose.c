@@ -3,10 +3,10 @@
 #include "cli/heap.h"
 #include "cli/terminal.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 /* Every field of the experiment as an option: X(option, field, VALUE, help). */
 #define SETTINGS(X)                                                                                \
@@ -168,10 +168,8 @@ static int read_experiment(repose *r) {
 
 typedef struct one_run {
   repose *all;
-  size_t level;
   bool alone; /* no shapes were given: the checkpoint has them */
   char name[32], folder[4096];
-  size_t vtp_frames;
 } one_run;
 
 static bool watch(void *context, const scree_run_state *state) {
@@ -206,24 +204,31 @@ static scree_status on_frame(void *context, scree_run *run, size_t index, scree_
   char stem[32];
   if (!o->folder[0]) return SCREE_OK;
   snprintf(stem, sizeof stem, "frame-%04zu", index);
-  o->vtp_frames = index + 1;
   return write_views(o, run, stem, error);
 }
 
-static scree_status write_text(const char *path, bool overwrite, const scree_experiment *experiment,
-                               scree_error *error) {
-  FILE *stream = fopen(path, overwrite ? "w" : "wx");
-  bool good = stream != NULL;
-  if (stream) {
-    scree_experiment_print(experiment, stream);
-    good = !ferror(stream);
-    good = fclose(stream) == 0 && good;
+/* experiment.yaml: what is run. */
+static scree_status write_experiment(const one_run *o, scree_error *error) {
+  const repose_arguments *a = o->all->arguments;
+  char path[4200], checkpoint[4200], *text = NULL;
+  size_t size;
+  snprintf(path, sizeof path, "%s/experiment.yaml", o->folder);
+  snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", o->folder);
+  /* a run that goes on, or is refused as another one's, keeps the text it began with */
+  if (a->resume && access(path, F_OK) == 0 && access(checkpoint, F_OK) == 0) return SCREE_OK;
+  FILE *stream = open_memstream(&text, &size);
+  if (stream) scree_experiment_print(&o->all->experiment, stream);
+  if (!stream || fclose(stream) != 0) {
+    free(text);
+    *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for experiment.yaml"};
+    return SCREE_OUT_OF_MEMORY;
   }
-  if (good) return SCREE_OK;
-  error->status = SCREE_IO;
-  snprintf(error->message, sizeof error->message, "%.900s: %s", path,
-           errno == EEXIST ? "exists already: --resume goes on, -f begins anew" : strerror(errno));
-  return SCREE_IO;
+  scree_status status = scree_text_write(text, path, a->force || a->resume, error);
+  free(text);
+  if (status == SCREE_EXISTS)
+    snprintf(error->message, sizeof error->message,
+             "%.900s: exists already: --resume goes on, -f begins anew", path);
+  return status;
 }
 
 /* The collection of the frames, for each view that was written. */
@@ -336,19 +341,15 @@ static scree_status write_results(const one_run *o, scree_run *run, const scree_
   return status == SCREE_OK ? write_page(o, error) : status;
 }
 
-static scree_status prepare_folder(one_run *o) {
+static scree_status prepare_folder(const one_run *o) {
   repose *r = o->all;
-  const repose_arguments *a = r->arguments;
-  char path[4200];
-  if (!a->output || o->alone) return SCREE_OK;
+  if (!r->arguments->output || o->alone) return SCREE_OK;
   scree_status status = scree_folder_create(o->folder, &r->error);
-  snprintf(path, sizeof path, "%s/experiment.yaml", o->folder);
-  return status == SCREE_OK ? write_text(path, a->force || a->resume, &r->experiment, &r->error)
-                            : status;
+  return status == SCREE_OK ? write_experiment(o, &r->error) : status;
 }
 
 static scree_status run_level(repose *r, size_t level, bool alone) {
-  one_run o = {.all = r, .level = level, .alone = alone};
+  one_run o = {.all = r, .alone = alone};
   const repose_arguments *a = r->arguments;
   cli_level_name(&r->grain_options, level, o.name, sizeof o.name);
   if (a->output && r->grains.level_count > 1)

@@ -1,9 +1,7 @@
 /* scree sample: the built-in devices and test solids as files. */
 #include "cli/args.h"
 
-#include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
 
 typedef struct sample_arguments {
   const char *output;
@@ -44,28 +42,6 @@ static void list_samples(void) {
 /* A folder, or a file whose name says its format. */
 static bool names_file(const char *path) {
   return !strcmp(path, "-") || scree_file_format_of(path) != SCREE_FORMAT_AUTO;
-}
-
-/* Makes the folder and its parents; 0, or the exit code. */
-static int make_folder(const char *path) {
-  char part[4096];
-  size_t length = strlen(path);
-  if (length >= sizeof part) {
-    fprintf(stderr, "scree: %.60s...: name too long\n", path);
-    return 1;
-  }
-  memcpy(part, path, length + 1);
-  for (size_t i = 1; i <= length; i++) {
-    if (part[i] != '/' && part[i] != 0) continue;
-    char end = part[i];
-    part[i] = 0;
-    if (mkdir(part, 0777) != 0 && errno != EEXIST) {
-      fprintf(stderr, "scree: %s: cannot make the folder: %s\n", part, strerror(errno));
-      return 1;
-    }
-    part[i] = end;
-  }
-  return 0;
 }
 
 static void print_row(FILE *stream, const char *name, const char *path, const scree_mesh *mesh) {
@@ -118,8 +94,8 @@ static int run(const cli_call *call) {
   if (to_file && count != 1)
     return cli_misuse(call->verb, "%zu samples do not fit into one file: -o takes a folder", count);
   if (!to_file) {
-    int code = make_folder(output);
-    if (code) return code;
+    scree_error error;
+    if (scree_folder_create(output, &error) != SCREE_OK) return cli_fail(&error);
   }
   for (size_t i = 0; i < count; i++) {
     const char *name = all ? scree_sample_name(i) : call->inputs[i];

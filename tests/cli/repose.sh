@@ -47,6 +47,7 @@ grep -c "particles  *12 on the disc" text
 ls whole
 run repose $small box.off pair.csv -o whole
 run repose $small box.off pair.csv -o whole --resume --friction 0.3
+grep friction_particle whole/experiment.yaml | cut -d"#" -f1
 printf broken >whole/checkpoint.scree
 run repose $small box.off pair.csv -o whole --resume
 

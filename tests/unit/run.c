@@ -312,6 +312,15 @@ static scree_status on_frame(void *context, scree_run *run, size_t index, scree_
   return SCREE_OK;
 }
 
+static scree_run_job job_of(const pot *p, const char *folder, pieces *context) {
+  return (scree_run_job){.experiment = &p->experiment,
+                         .shapes = p->shapes,
+                         .shape_count = 2,
+                         .folder = folder,
+                         .watch = watch,
+                         .context = context};
+}
+
 static void an_interrupted_run_ends_as_an_uninterrupted_one(void **state) {
   (void)state;
   pot p = make_pot();
@@ -319,14 +328,9 @@ static void an_interrupted_run_ends_as_an_uninterrupted_one(void **state) {
   scree_run *whole = run_through(&p, 1000000), *run, *last;
   scree_error error;
   pieces context = {.cancel_count = 40};
-  scree_run_job job = {.experiment = &p.experiment,
-                       .shapes = p.shapes,
-                       .shape_count = 2,
-                       .folder = in_folder("whole run"),
-                       .watch = watch,
-                       .frame = on_frame,
-                       .context = &context,
-                       .resume = true};
+  scree_run_job job = job_of(&p, in_folder("whole run"), &context);
+  job.frame = on_frame;
+  job.resume = true;
   size_t cancelled = 0;
   scree_status status;
   while ((status = scree_run_complete(&job, &run, &error)) == SCREE_CANCELLED) cancelled++;
@@ -357,12 +361,7 @@ static void a_checkpoint_of_something_else_is_refused(void **state) {
   scree_run *run;
   scree_error error;
   pieces context = {.cancel_count = 1};
-  scree_run_job job = {.experiment = &p.experiment,
-                       .shapes = p.shapes,
-                       .shape_count = 2,
-                       .folder = in_folder("other"),
-                       .watch = watch,
-                       .context = &context};
+  scree_run_job job = job_of(&p, in_folder("other"), &context);
   assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_CANCELLED);
   assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_EXISTS);
   job.resume = true;
@@ -392,13 +391,8 @@ static void a_full_disk_ends_a_run_and_keeps_its_checkpoint(void **state) {
   scree_run *run;
   scree_error error;
   pieces context = {.cancel_count = 1};
-  scree_run_job job = {.experiment = &p.experiment,
-                       .shapes = p.shapes,
-                       .shape_count = 2,
-                       .folder = in_folder("full"),
-                       .watch = watch,
-                       .context = &context,
-                       .resume = true};
+  scree_run_job job = job_of(&p, in_folder("full"), &context);
+  job.resume = true;
   assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_CANCELLED);
   struct rlimit before, little;
   struct stat one, other;
