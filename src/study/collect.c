@@ -73,12 +73,13 @@ static scree_status put_facts(writer *w) {
                             {"yaml", s->text}};
   sqlite3_stmt *statement;
   scree_status status = make(w, "INSERT OR REPLACE INTO study VALUES(?1, ?2)", &statement);
+  if (status != SCREE_OK) return status;
   for (size_t i = 0; status == SCREE_OK && i < sizeof facts / sizeof *facts; i++) {
     bind_text(statement, 1, facts[i][0]);
     bind_text(statement, 2, facts[i][1]);
     status = put(w, statement);
   }
-  if (status == SCREE_OK) sqlite3_finalize(statement);
+  sqlite3_finalize(statement);
   return status;
 }
 
