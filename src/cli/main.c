@@ -57,7 +57,7 @@ static int help(int word_count, char **words) {
 static void tell_costs(const scree_work_start *start) {
   scree_work_start now = scree_work_started();
   fprintf(stderr,
-          "scree %s: %.1f s, %.1f s of processor time on up to %d threads, %.0f MB at most\n",
+          "scree %s: %.1f s, %.1f s of processor time on up to %d threads, %.1f MB at most\n",
           scree_version(), now.elapsed - start->elapsed, now.processor - start->processor,
           scree_threads(), (double)scree_memory_peak() / 1e6);
 }

@@ -312,11 +312,11 @@ static scree_status on_frame(void *context, scree_run *run, size_t index, scree_
   return SCREE_OK;
 }
 
-static scree_run_job job_of(const pot *p, const char *folder, pieces *context) {
+static scree_run_job job_of(const pot *p, const char *into, pieces *context) {
   return (scree_run_job){.experiment = &p->experiment,
                          .shapes = p->shapes,
                          .shape_count = 2,
-                         .folder = folder,
+                         .folder = into,
                          .watch = watch,
                          .context = context};
 }
