@@ -76,9 +76,11 @@ done:
 }
 
 /* The heap in the middle: as wide as its base, or as most of the bodies lie where there is none. */
-static void focus_on_heap(const scree_run *run, scree_render_options *o) {
+static scree_status focus_on_heap(const scree_run *run, scree_render_options *o,
+                                  scree_error *error) {
   scree_run_result result;
-  if (scree_run_measure(run, &result, NULL) != SCREE_OK) return;
+  scree_status status = scree_run_measure(run, &result, error);
+  if (status != SCREE_OK) return status;
   const scree_repose *r = &result.repose;
   double radius =
       r->heap && isfinite(r->base_radius) ? fmin(r->base_radius, r->run_out) : 0.6 * r->run_out;
@@ -86,12 +88,14 @@ static void focus_on_heap(const scree_run *run, scree_render_options *o) {
   o->focus[1] = r->axis[1];
   o->focus[2] = 0.35 * r->peak;
   o->focus_radius = room * fmax(radius, 0.6 * r->peak);
+  return SCREE_OK;
 }
 
 scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
                                const scree_progress *progress, scree_image *image,
                                scree_error *error) {
   scree_render_options o = *options;
-  if (!(o.focus_radius > 0)) focus_on_heap(run, &o);
+  scree_status status = o.focus_radius > 0 ? SCREE_OK : focus_on_heap(run, &o, error);
+  if (status != SCREE_OK) return status;
   return scree_world_picture(scree_run_view(run), &o, progress, image, error);
 }

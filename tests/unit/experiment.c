@@ -1,14 +1,10 @@
 #include "base/alloc.h"
 #include "pile/yaml.h"
 #include "support/check.h"
-
-#include <unistd.h>
-
-static char folder[] = "/tmp/scree_experiment_XXXXXX";
+#include "support/folder.h"
 
 static const char *file_with(const char *text) {
-  static char path[64];
-  snprintf(path, sizeof path, "%s/e.yaml", folder);
+  const char *path = in_folder("e.yaml");
   FILE *file = fopen(path, "w");
   fputs(text, file);
   fclose(file);
@@ -27,10 +23,9 @@ static void every_preset_prints_and_reads_back_the_same(void **state) {
   for (size_t i = 0; scree_preset_name(i); i++) {
     scree_experiment e = preset(scree_preset_name(i)), back = preset("paper");
     scree_error error;
-    char path[64];
+    const char *path = in_folder("print.yaml");
     e.density = 1234.5678901234567;
     e.contact_law = 1;
-    snprintf(path, sizeof path, "%s/print.yaml", folder);
     FILE *file = fopen(path, "w");
     scree_experiment_print(&e, file);
     fclose(file);
@@ -91,56 +86,11 @@ static void errors_say_line_column_value_and_limit(void **state) {
   }
 }
 
-static size_t failing_allocation, allocation;
-static void *failing(void *context, void *block, size_t size) {
-  (void)context;
-  if (size == 0) {
-    free(block);
-    return NULL;
-  }
-  return ++allocation == failing_allocation ? NULL : realloc(block, size);
-}
-
-static void any_allocation_may_fail(void **state) {
-  (void)state;
-  const char *path = file_with("preset: demo\ncontact:\n  law: linear\nparticles: 12\n");
-  for (failing_allocation = 1;; failing_allocation++) {
-    scree_experiment e = preset("paper");
-    scree_error error;
-    size_t held = scree_memory_used();
-    allocation = 0;
-    scree_set_allocator(failing, NULL);
-    scree_status status = scree_experiment_read(path, &e, &error);
-    scree_set_allocator(NULL, NULL);
-    if (status == SCREE_OK)
-      assert_int_equal(e.particle_count, 12);
-    else {
-      assert_int_equal(status, SCREE_OUT_OF_MEMORY);
-      assert_int_equal(scree_memory_used(), held);
-    }
-    scree_experiment_free(&e);
-    if (status == SCREE_OK) break;
-  }
-  assert_true(failing_allocation > 5);
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-static int remove_folder(void **state) {
-  (void)state;
-  char command[80];
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  return system(command);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_preset_prints_and_reads_back_the_same),
       cmocka_unit_test(values_are_set_by_yaml_json_and_key),
       cmocka_unit_test(errors_say_line_column_value_and_limit),
-      cmocka_unit_test(any_allocation_may_fail),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

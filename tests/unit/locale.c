@@ -1,30 +1,27 @@
 /* A program around the library may have asked for decimal commas: what is written is the same
  * bytes, and what is read the same numbers. The locale is made for the test where none is
  * installed. */
-#define _XOPEN_SOURCE 700 /* nftw */
+#define _XOPEN_SOURCE 700 /* setenv */
 #include "base/file.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
-#include <ftw.h>
 #include <locale.h>
-#include <unistd.h>
-
-static char folder[] = "/tmp/scree-locale-XXXXXX";
 
 static const char *path_of(const char *prefix, const char *name) {
-  static char path[300];
-  snprintf(path, sizeof path, "%s/%s/%s", folder, prefix, name);
-  return path;
+  char path[300];
+  snprintf(path, sizeof path, "%s/%s", prefix, name);
+  return in_folder(path);
 }
 
 static bool set_comma(void) {
   char command[400];
   if (!setlocale(LC_ALL, "de_DE.UTF-8")) {
-    snprintf(command, sizeof command,
-             "localedef -i de_DE -f UTF-8 '%s/de_DE.UTF-8' >/dev/null 2>&1", folder);
+    snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 '%s' >/dev/null 2>&1",
+             in_folder("de_DE.UTF-8"));
     if (system(command) != 0) return false;
-    setenv("LOCPATH", folder, 1);
+    setenv("LOCPATH", in_folder(""), 1);
     if (!setlocale(LC_ALL, "de_DE.UTF-8")) return false;
   }
   char text[8];
@@ -144,21 +141,6 @@ static void commas_change_nothing(void **state) {
   scree_mesh_free(&ball);
   if (!comma) skip();
   for (size_t i = 0; i < sizeof names / sizeof *names; i++) expect_same(names[i]);
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_one(const char *path, const struct stat *info, int type, struct FTW *place) {
-  (void)info, (void)type, (void)place;
-  return remove(path);
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
 }
 
 int main(void) {

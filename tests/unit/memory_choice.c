@@ -2,18 +2,8 @@
  * sentence, leaks nothing and leaves no file half-written. tests/allocations.sh keeps the list. */
 #include "support/alloc_fail.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/shapes.h"
-
-#include <dirent.h>
-#include <unistd.h>
-
-static char folder[] = "/tmp/scree-memory-XXXXXX";
-
-static const char *path_of(const char *name) {
-  static char path[sizeof folder + 300];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
 
 /* ---- Meshes ---- */
 
@@ -168,16 +158,16 @@ static scree_status write_figure(void *context, scree_error *error) {
   static const char *const names[] = {"f.png", "f.svg", "f.pdf", "f.csv", "f.gnuplot"};
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < 5 && status == SCREE_OK; i++)
-    status = scree_choice_figure_write(context, path_of(names[i]), true, error);
+    status = scree_choice_figure_write(context, in_folder(names[i]), true, error);
   return status;
 }
 
 static scree_status write_tables(void *context, scree_error *error) {
   const scree_choice_report *report = context;
-  scree_status status = scree_choice_json_write(report, path_of("c.json"), true, error);
-  if (status == SCREE_OK) status = scree_choice_csv_write(report, path_of("c.csv"), true, error);
+  scree_status status = scree_choice_json_write(report, in_folder("c.json"), true, error);
+  if (status == SCREE_OK) status = scree_choice_csv_write(report, in_folder("c.csv"), true, error);
   if (status == SCREE_OK)
-    status = scree_choice_curve_csv_write(report->entries, path_of("d.csv"), true, error);
+    status = scree_choice_curve_csv_write(report->entries, in_folder("d.csv"), true, error);
   return status;
 }
 
@@ -201,28 +191,31 @@ static void choice_reports(void **state) {
 
 static scree_status write_measures(void *context, scree_error *error) {
   const scree_measure_entry *entry = context;
-  scree_status status = scree_measure_json_write(entry, 1, "test", path_of("m.json"), true, error);
-  if (status == SCREE_OK) status = scree_measure_csv_write(entry, 1, path_of("m.csv"), true, error);
+  scree_status status =
+      scree_measure_json_write(entry, 1, "test", in_folder("m.json"), true, error);
+  if (status == SCREE_OK)
+    status = scree_measure_csv_write(entry, 1, in_folder("m.csv"), true, error);
   return status;
 }
 
 static scree_status write_distance(void *context, scree_error *error) {
-  return scree_distance_json_write(context, "test", path_of("distance.json"), true, error);
+  return scree_distance_json_write(context, "test", in_folder("distance.json"), true, error);
 }
 
 static scree_status write_curve(void *context, scree_error *error) {
-  return scree_curve_json_write(context, "test", path_of("curve.json"), true, error);
+  return scree_curve_json_write(context, "test", in_folder("curve.json"), true, error);
 }
 
 static scree_status write_check(void *context, scree_error *error) {
-  return scree_check_json_write(context, 1, "test", path_of("check.json"), true, error);
+  return scree_check_json_write(context, 1, "test", in_folder("check.json"), true, error);
 }
 
 static scree_status write_vtk(void *context, scree_error *error) {
   static const char *const files[] = {"a.vtp", "b.vtp"};
   static const double times[] = {0, 1};
-  scree_status status = scree_vtp_write(context, path_of("a.vtp"), true, error);
-  if (status == SCREE_OK) status = scree_pvd_write(files, times, 2, path_of("a.pvd"), true, error);
+  scree_status status = scree_vtp_write(context, in_folder("a.vtp"), true, error);
+  if (status == SCREE_OK)
+    status = scree_pvd_write(files, times, 2, in_folder("a.pvd"), true, error);
   return status;
 }
 
@@ -265,7 +258,8 @@ static scree_status draw(void *context, scree_error *error) {
   options.width = options.height = 64;
   options.samples = 1;
   scree_status status = scree_render(&cell, 1, &options, NULL, &image, error);
-  if (status == SCREE_OK) status = scree_image_write_png(&image, path_of("ball.png"), true, error);
+  if (status == SCREE_OK)
+    status = scree_image_write_png(&image, in_folder("ball.png"), true, error);
   scree_image_free(&image);
   return status;
 }
@@ -278,28 +272,6 @@ static void pictures(void **state) {
   if (status != SCREE_UNSUPPORTED) check_allocation_failures(draw, &ball);
   scree_mesh_free(&ball);
   if (status == SCREE_UNSUPPORTED) skip();
-}
-
-/* Every call above succeeded last: its file is whole, and nothing else is left. */
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  DIR *listing = opendir(folder);
-  int partial = 0;
-  for (struct dirent *entry; listing && (entry = readdir(listing));) {
-    if (strstr(entry->d_name, ".part")) {
-      print_error("%s is left behind\n", entry->d_name);
-      partial++;
-    }
-    if (entry->d_name[0] != '.') unlink(path_of(entry->d_name));
-  }
-  if (listing) closedir(listing);
-  rmdir(folder);
-  return partial;
 }
 
 int main(void) {

@@ -1,31 +1,20 @@
 /* Memory running out where folders, pages and pictures of worlds are made: every public call
  * refuses with a sentence, leaks nothing and leaves no file half-written. tests/allocations.sh
  * keeps the list. */
-#define _XOPEN_SOURCE 700 /* nftw */
 #include "support/alloc_fail.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/shapes.h"
-
-#include <ftw.h>
-#include <unistd.h>
-
-static char folder[] = "/tmp/scree-memory-XXXXXX";
-
-static const char *path_of(const char *name) {
-  static char path[sizeof folder + 300];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
 
 /* ---- Texts, folders, pages ---- */
 
 static scree_status write_texts(void *context, scree_error *error) {
   const scree_work_start start = scree_work_started();
   (void)context;
-  scree_status status = scree_folder_create(path_of("a/b/c"), error);
-  if (status == SCREE_OK) status = scree_text_write("text\n", path_of("a/b/text"), true, error);
+  scree_status status = scree_folder_create(in_folder("a/b/c"), error);
+  if (status == SCREE_OK) status = scree_text_write("text\n", in_folder("a/b/text"), true, error);
   if (status == SCREE_OK)
-    status = scree_provenance_write(&start, "test", path_of("a/provenance.json"), true, error);
+    status = scree_provenance_write(&start, "test", in_folder("a/provenance.json"), true, error);
   return status;
 }
 
@@ -35,7 +24,7 @@ static void texts(void **state) {
 }
 
 static scree_status write_page(void *context, scree_error *error) {
-  return scree_page_write(context, 1, path_of("report.html"), true, error);
+  return scree_page_write(context, 1, in_folder("report.html"), true, error);
 }
 
 /* One folder with a choice, its text, provenance and two files of levels. */
@@ -49,17 +38,17 @@ static void pages(void **state) {
   scree_error error;
   char results[400];
   const char *folders[] = {results};
-  snprintf(results, sizeof results, "%s", path_of("results"));
-  CHECK_OK(scree_folder_create(path_of("results/levels"), &error), error);
-  CHECK_OK(scree_text_write("[]", path_of("results/choice.json"), false, &error), error);
-  CHECK_OK(scree_text_write("<one>", path_of("results/choice.txt"), false, &error), error);
+  snprintf(results, sizeof results, "%s", in_folder("results"));
+  CHECK_OK(scree_folder_create(in_folder("results/levels"), &error), error);
+  CHECK_OK(scree_text_write("[]", in_folder("results/choice.json"), false, &error), error);
+  CHECK_OK(scree_text_write("<one>", in_folder("results/choice.txt"), false, &error), error);
   CHECK_OK(
-      scree_provenance_write(&start, "test", path_of("results/provenance.json"), false, &error),
+      scree_provenance_write(&start, "test", in_folder("results/provenance.json"), false, &error),
       error);
   CHECK_OK(scree_curve_build(&ball, &simplify, NULL, &curve, &error), error);
   CHECK_OK(scree_choose(curve, &ball, NULL, NULL, &choice, &error), error);
   for (int i = 0; i < 2; i++) {
-    const char *path = path_of(i ? "results/levels/b.levels" : "results/levels/a.levels");
+    const char *path = in_folder(i ? "results/levels/b.levels" : "results/levels/a.levels");
     CHECK_OK(scree_levels_write(curve, &choice, 100000, path, false, &error), error);
   }
   assert_true(check_allocation_failures(write_page, folders) >= 8);
@@ -93,7 +82,7 @@ static void grains(void **state) {
 static scree_status export_world(void *context, scree_error *error) {
   scree_export_options options = scree_default_export_options();
   options.overwrite = true;
-  return scree_world_export(context, &options, path_of("pile"), error);
+  return scree_world_export(context, &options, in_folder("pile"), error);
 }
 
 static scree_status draw_world(void *context, scree_error *error) {
@@ -104,6 +93,36 @@ static scree_status draw_world(void *context, scree_error *error) {
   scree_status status = scree_world_picture(context, &options, NULL, &image, error);
   scree_image_free(&image);
   return status;
+}
+
+static scree_status draw_run(void *context, scree_error *error) {
+  scree_render_options options = scree_default_render_options();
+  scree_image image = {0};
+  options.width = options.height = 64;
+  options.samples = 1;
+  scree_status status = scree_run_picture(context, &options, NULL, &image, error);
+  scree_image_free(&image);
+  return status;
+}
+
+static void runs(void **state) {
+  (void)state;
+  scree_run_shape shape = {.density_factor = 1};
+  scree_experiment experiment;
+  scree_run *run = NULL;
+  scree_error error;
+  CHECK_OK(scree_particle_sphere(0.02, &shape.particle, &error), error);
+  CHECK_OK(scree_experiment_preset("demo", &experiment, &error), error);
+  experiment.particle_count = 4;
+  experiment.pack_time = 0.1;
+  CHECK_OK(scree_run_create(&experiment, &shape, 1, &run, &error), error);
+  CHECK_OK(scree_run_advance(run, 500, &error), error);
+  scree_status status = draw_run(run, &error);
+  if (status != SCREE_UNSUPPORTED) check_allocation_failures(draw_run, run);
+  scree_run_free(run);
+  scree_experiment_free(&experiment);
+  scree_particle_free(shape.particle);
+  if (status == SCREE_UNSUPPORTED) skip();
 }
 
 /* A box, a sphere and a clump over a plate. */
@@ -144,33 +163,10 @@ static void worlds(void **state) {
   if (status == SCREE_UNSUPPORTED) skip();
 }
 
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int partial_count;
-
-static int remove_one(const char *path, const struct stat *info, int type, struct FTW *place) {
-  (void)info, (void)type, (void)place;
-  if (strstr(path, ".part")) {
-    print_error("%s is left behind\n", path);
-    partial_count++;
-  }
-  return remove(path);
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS) || partial_count;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(texts),
-      cmocka_unit_test(pages),
-      cmocka_unit_test(grains),
-      cmocka_unit_test(worlds),
+      cmocka_unit_test(texts),  cmocka_unit_test(pages), cmocka_unit_test(grains),
+      cmocka_unit_test(worlds), cmocka_unit_test(runs),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

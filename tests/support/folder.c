@@ -1,0 +1,36 @@
+#define _XOPEN_SOURCE 700 /* nftw */
+#include "support/folder.h"
+
+#include "support/check.h"
+
+#include <ftw.h>
+
+static char folder[] = "/tmp/scree-test-XXXXXX";
+static int partial_count;
+
+int make_folder(void **state) {
+  (void)state;
+  return mkdtemp(folder) ? 0 : -1;
+}
+
+static int remove_one(const char *path, const struct stat *info, int type, struct FTW *place) {
+  (void)info, (void)type, (void)place;
+  if (strstr(path, ".part")) {
+    print_error("%s is left behind\n", path);
+    partial_count++;
+  }
+  return remove(path);
+}
+
+int remove_folder(void **state) {
+  (void)state;
+  return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS) || partial_count;
+}
+
+const char *in_folder(const char *name) {
+  static char paths[8][400];
+  static unsigned next;
+  char *path = paths[next++ % 8];
+  snprintf(path, sizeof paths[0], "%s/%s", folder, name);
+  return path;
+}

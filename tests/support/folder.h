@@ -1,0 +1,14 @@
+/* A folder of a test's own, removed with all that is in it. As setup and teardown of a group:
+ *
+ *   return cmocka_run_group_tests(tests, make_folder, remove_folder); */
+#ifndef SCREE_TEST_FOLDER_H
+#define SCREE_TEST_FOLDER_H
+
+int make_folder(void **state);
+/* Fails where a file half-written (.part) was left behind. */
+int remove_folder(void **state);
+
+/* The path of a name in the folder; good until the eighth call after it. */
+const char *in_folder(const char *name);
+
+#endif
