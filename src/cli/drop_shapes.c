@@ -1,4 +1,5 @@
 /* The shapes of `scree drop`: words to particles. */
+#include "cli/clump.h"
 #include "cli/drop.h"
 #include "cli/input.h"
 
@@ -138,6 +139,11 @@ static void say_shape(const drop_run *run, const drop_shape *shape) {
     printf("%-24s %6zu  sphere of %.4g mm\n", shape->name, shape->count, 1e3 * shape->diameter);
     return;
   }
+  if (m.kind == SCREE_PARTICLE_CLUMP) {
+    printf("%-24s %6zu  clump of %zu spheres, size %.3g mm, %.4g g\n", shape->name, shape->count,
+           m.point_count, 1e3 * m.size, 1e3 * m.volume * run->arguments->density);
+    return;
+  }
   printf("%-24s %6zu  %zu triangles", shape->name, shape->count, m.triangle_count);
   if (m.triangle_count < shape->source_triangles) printf(" of %zu", shape->source_triangles);
   printf(", size %.3g mm, %.4g g, thinnest wall %.2g mm\n", 1e3 * m.size,
@@ -147,6 +153,8 @@ static void say_shape(const drop_run *run, const drop_shape *shape) {
 static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_error *error) {
   if (shape->diameter > 0)
     return scree_particle_sphere(0.5 * shape->diameter, &shape->particle, error);
+  if (cli_is_clump(shape->name))
+    return cli_read_clump(shape->name, run->arguments->unit, &shape->particle, error);
   scree_mesh mesh;
   scree_status status = load(run, shape, &mesh, error);
   if (status != SCREE_OK) return name_in_error(shape, error);

@@ -1,5 +1,7 @@
 #include "cli/grains.h"
 
+#include "cli/clump.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -153,65 +155,14 @@ static scree_status make_from_scan(const maker *m, size_t shape, const char *wor
 
 /* ---- clumps ---- */
 
-typedef struct spheres {
-  double *centres, *radii;
-  size_t count, capacity;
-} spheres;
-
-static bool push_sphere(spheres *s, const double row[4]) {
-  if (s->count == s->capacity) {
-    size_t capacity = s->capacity ? 2 * s->capacity : 64;
-    double *centres = realloc(s->centres, 3 * capacity * sizeof *centres);
-    if (centres) s->centres = centres;
-    double *radii = realloc(s->radii, capacity * sizeof *radii);
-    if (radii) s->radii = radii;
-    if (!centres || !radii) return false;
-    s->capacity = capacity;
-  }
-  memcpy(s->centres + 3 * s->count, row, 3 * sizeof *row);
-  s->radii[s->count++] = row[3];
-  return true;
-}
-
-/* Lines of x, y, z, radius; a first line of words and lines that begin with # are passed over. */
-static scree_status read_spheres(const char *path, double unit, spheres *s, scree_error *error) {
-  FILE *stream = fopen(path, "r");
-  if (!stream) return fail(error, SCREE_IO, path, "cannot open");
-  char line[512], what[160];
-  size_t number = 0;
-  scree_status status = SCREE_OK;
-  while (status == SCREE_OK && fgets(line, sizeof line, stream)) {
-    double row[4];
-    char rest[2];
-    number++;
-    if (line[0] == '#' || line[strspn(line, " \t\r\n")] == 0) continue;
-    for (char *c = line; *c; c++)
-      if (*c == ',' || *c == ';') *c = ' ';
-    int found = sscanf(line, "%lf %lf %lf %lf %1s", &row[0], &row[1], &row[2], &row[3], rest);
-    if (found <= 0 && number == 1) continue;
-    if (found != 4) {
-      snprintf(what, sizeof what, "line %zu: must be x, y, z, radius of a sphere", number);
-      status = fail(error, SCREE_BAD_FILE, path, what);
-      break;
-    }
-    for (int k = 0; k < 4; k++) row[k] *= unit;
-    if (!push_sphere(s, row)) status = fail(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
-  }
-  fclose(stream);
-  if (status == SCREE_OK && s->count == 0) status = fail(error, SCREE_BAD_FILE, path, "no spheres");
-  return status;
-}
-
 static scree_status make_from_clump(const maker *m, size_t shape, const char *word) {
-  spheres s = {0};
-  scree_status status = read_spheres(word, m->options->source.unit, &s, m->error);
+  scree_status status = SCREE_OK;
   for (size_t level = 0; status == SCREE_OK && level < m->grains->level_count; level++) {
     size_t index = level * m->grains->shape_count + shape;
     scree_grain *grain = &m->grains->grains[index];
     scree_particle_measures measures;
-    status =
-        scree_particle_clump(s.centres, s.radii, s.count, NULL, &grain->run.particle, m->error);
-    if (status != SCREE_OK) break;
+    status = cli_read_clump(word, m->options->source.unit, &grain->run.particle, m->error);
+    if (status != SCREE_OK) return status;
     scree_particle_measure(grain->run.particle, &measures);
     grain->run.density_factor = 1;
     grain->scan_volume = grain->volume = measures.volume;
@@ -221,14 +172,7 @@ static scree_status make_from_clump(const maker *m, size_t shape, const char *wo
     }
     if (status == SCREE_OK) describe(m, word, NULL, index);
   }
-  free(s.centres);
-  free(s.radii);
   return status == SCREE_OK ? status : name_in_error(word, m->error);
-}
-
-static bool ends_in_csv(const char *word) {
-  const char *dot = strrchr(word, '.');
-  return dot && !strcmp(dot, ".csv");
 }
 
 scree_status cli_make_grains(const char *const *words, size_t count,
@@ -244,7 +188,7 @@ scree_status cli_make_grains(const char *const *words, size_t count,
     status = fail(error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
   for (size_t i = 0; status == SCREE_OK && i < count; i++)
     status =
-        ends_in_csv(words[i]) ? make_from_clump(&m, i, words[i]) : make_from_scan(&m, i, words[i]);
+        cli_is_clump(words[i]) ? make_from_clump(&m, i, words[i]) : make_from_scan(&m, i, words[i]);
   if (status != SCREE_OK) cli_grains_free(grains);
   return status;
 }

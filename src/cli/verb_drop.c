@@ -290,8 +290,9 @@ const cli_verb cli_verb_drop = {
     .inputs = "SHAPE[=COUNT]...",
     .description =
         "Simulates rigid particles falling into a cylinder or a box, layer by layer, until they "
-        "are still. A SHAPE is a mesh file, sample:NAME, or sphere:DIAMETER with its unit, as in "
-        "sphere:40mm; =COUNT says how many. Files are checked, repaired where need be, and "
+        "are still. A SHAPE is a mesh file, sample:NAME, sphere:DIAMETER with its unit, as in "
+        "sphere:40mm, or NAME.csv with the spheres of a clump (x, y, z, radius a line, in the "
+        "files' unit); =COUNT says how many. Files are checked, repaired where need be, and "
         "decimated.\n\n"
         "Writes into DIR: drop.pvd with frame-*.vtp (surfaces; body, shape and speeds by triangle) "
         "for ParaView; series.csv with energies, contacts and overlaps over time; drop.png. The "

@@ -37,3 +37,10 @@ wait $child
 echo "exit code $?"
 ls stopped | grep -c part
 grep -c "$(ls stopped/frame-*.vtp | tail -1 | sed 's/.*\///')" stopped/drop.pvd
+# clumps
+printf 'x,y,z,r\n-12,0,0,10\n12,0,0,8\n0,0,5,9\n' >clump.csv
+drop clump.csv=3 --frames 0 --no-picture --time 0 -o clumps | head -1
+printf '1,2,3,-4\n' >negative.csv
+printf '1,2,3,4,5\n' >five.csv
+run drop negative.csv -o no
+run drop five.csv -o no
