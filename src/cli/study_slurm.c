@@ -1,5 +1,6 @@
-/* A Slurm job array whose tasks are workers in the shared folder. A task that dies or is pre-empted
- * is queued again and goes on. */
+/* A Slurm job array whose tasks are workers in the shared folder. Slurm queues a task again whose
+ * node fails or which is pre-empted; the run of one that is killed is gone on with by the others.
+ */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "cli/study.h"
 

@@ -97,16 +97,15 @@ static bool add_margin(drawing *d, const scree_family_result *f) {
     low[k] = finest - d->result->margin_deg;
     high[k] = finest + d->result->margin_deg;
   }
-  d->series[d->series_count++] =
-      (scree_series){.label = "finest level and margin",
-                     .x = x,
-                     .y = y,
-                     .low = low,
-                     .high = high,
-                     .count = 2,
-                     .style = SCREE_STYLE_INK,
-                     .draw = SCREE_DRAW_BAND | SCREE_DRAW_LINE | SCREE_DRAW_DASHED |
-                             SCREE_DRAW_FAINT | SCREE_DRAW_UNFITTED};
+  d->series[d->series_count++] = (scree_series){.label = "finest level and margin",
+                                                .x = x,
+                                                .y = y,
+                                                .low = low,
+                                                .high = high,
+                                                .count = 2,
+                                                .style = SCREE_STYLE_INK,
+                                                .draw = SCREE_DRAW_BAND | SCREE_DRAW_LINE |
+                                                        SCREE_DRAW_DASHED | SCREE_DRAW_FAINT};
   return true;
 }
 

@@ -42,7 +42,7 @@ chmod 700 munge
 head -c 1024 /dev/urandom >munge/key
 chmod 600 munge/key
 munged --foreground --force --key-file="$folder/munge/key" --socket="$folder/munge.socket" --num-threads=2 \
-  --pid-file="$folder/munge/pid" --seed-file="$folder/munge/seed" --log-file="$folder/munged.log" &
+  --pid-file="$folder/munge/pid" --seed-file="$folder/munge/seed" 2>munged.log &
 daemons=$!
 cat >slurm.conf <<END
 ClusterName=scree
@@ -81,13 +81,14 @@ wait_until 60 is_idle || fail "no node becomes idle"
 
 cat >tiny.yaml <<'END'
 name: tiny
-replicates: 3
+replicates: 2
 shapes: [sample:icosphere-1]
 base:
   preset: demo
-  particles: 10
+  particles: 40
   cylinder: {diameter: 0.4}
-  phases: {pack_time: 0.4, settle_time: 0.3, lift_speed: 0.5, lift_time: 1, hold_time: 0.5, still_energy: 0}
+  contact: {steps: 60}
+  phases: {pack_time: 1, settle_time: 0.3, lift_speed: 0.5, lift_time: 0.5, hold_time: 0.2, still_energy: 0}
   output: {checkpoint_interval: 0.05}
 factors:
   contact.friction: [0.2, 0.5]
@@ -97,17 +98,18 @@ hashes() { sqlite3 "$1/study.sqlite" "SELECT run, state, hash FROM run ORDER BY 
 "$SCREE" study tiny.yaml -o whole --jobs 2 >/dev/null || fail "the study without Slurm"
 hashes whole >whole.txt
 "$SCREE" study tiny.yaml -o slurm-study --slurm --tasks 2 || fail "submitting"
-working() { grep -l '^running' slurm-study/leases/run-*; }
-wait_until 60 ls slurm-study/leases/run-* || fail "no task begins: $(squeue)"
-sleep 0.5
-lease=$(find slurm-study/leases -name 'run-*' ! -name '*.*' | head -n 1)
-victim=$(sed -n 3p "$lease" 2>/dev/null)
-[ -n "$victim" ] && kill -9 "$victim" && echo "killed one worker of $(squeue -h | wc -l) tasks"
+begun() { ls slurm-study/runs/*/checkpoint.scree; }
+wait_until 60 begun || fail "no run begins: $(squeue)"
+run=$(begun | head -n 1 | cut -d/ -f3)
+victim=$(sed -n 3p "slurm-study/leases/run-$run")
+kill -9 "$victim" || fail "no worker of the run begun to kill"
+echo "killed one worker of $(squeue -h -r | wc -l) tasks"
 is_over() { [ -z "$(squeue -h)" ]; }
 wait_until 300 is_over || fail "the array does not end: $(squeue)"
 "$SCREE" study status slurm-study >status.txt || fail "no status"
 cat status.txt
 hashes slurm-study | cmp - whole.txt || fail "other numbers than without Slurm"
 grep -q done whole.txt || fail "no run is done"
-sqlite3 slurm-study/study.sqlite "SELECT 'pieces of a run at most', max(piece_count) FROM run"
+[ "$(sqlite3 slurm-study/study.sqlite "SELECT piece_count FROM run WHERE key = '$run'")" = 2 ] ||
+  fail "the run whose worker died was not gone on with"
 echo "the same numbers"

@@ -1,4 +1,6 @@
 /* Studies: the plan, the designs, leases, records, work by several and the death of workers. */
+#include "base/alloc.h"
+#include "base/file.h"
 #include "base/rng.h"
 #include "pile/yaml.h"
 #include "study/design.h"
@@ -568,6 +570,72 @@ static void a_full_disk_ends_the_work_and_loses_nothing(void **state) {
   scree_study_free(study);
 }
 
+/* No space for the database: an error that names it, no journal of a half-written one that keeps
+ * others out, and the same call makes it once there is room. */
+static void a_full_disk_harms_no_database(void **state) {
+  (void)state;
+  scree_study *study = open_tiny("whole", tiny);
+  scree_study_result result;
+  scree_error error;
+  unlink(path_of("whole/study.sqlite"));
+  for (rlim_t room = 512; room <= 32768; room *= 4) {
+    pid_t child = fork();
+    if (child == 0) {
+      struct rlimit limit = {room, room};
+      signal(SIGXFSZ, SIG_IGN);
+      setrlimit(RLIMIT_FSIZE, &limit);
+      scree_status status = scree_study_collect(study, true, &error);
+      _exit(status == SCREE_IO && strstr(error.message, "study.sqlite") ? 0 : 1);
+    }
+    int status;
+    waitpid(child, &status, 0);
+    assert_int_equal(status, 0);
+  }
+  CHECK_OK(scree_study_collect(study, true, &error), error);
+  CHECK_OK(scree_study_analyse(study, &result, &error), error);
+  assert_int_equal(result.counts.done, 4);
+  scree_study_result_free(&result);
+  scree_study_free(study);
+}
+
+/* What a person or a disk may have done to the folder's own YAML and leases. */
+static void broken_files_of_a_folder_are_told(void **state) {
+  (void)state;
+  static const char *const shapes[] = {"", "- 1\n", "source: [1\n", "source: 'sample:box'\n",
+                                       "source: 'sample:icosphere-1'\nchecksum: '12'\n"};
+  scree_study *study = open_tiny("whole", tiny), *again = NULL;
+  scree_error error;
+  char *saved;
+  size_t size;
+  const char *facts = path_of("whole/shapes/icosphere-1.yaml");
+  CHECK_OK(scree_file_read(facts, 0, &saved, &size, &error), error);
+  for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+    file_with("whole/shapes/icosphere-1.yaml", shapes[i]);
+    assert_int_equal(scree_study_open_folder(path_of("whole"), &again, &error), SCREE_BAD_FILE);
+    assert_non_null(strstr(error.message, "icosphere-1.yaml"));
+  }
+  FILE *file = fopen(path_of("whole/shapes/icosphere-1.yaml"), "w");
+  assert_int_equal(fwrite(saved, 1, size, file), size);
+  fclose(file);
+  scree_free(saved);
+  const char *copy = path_of("whole/study.yaml");
+  CHECK_OK(scree_file_read(copy, 0, &saved, &size, &error), error);
+  assert_int_equal(truncate(copy, 75), 0); /* in the middle of a line */
+  assert_int_equal(scree_study_open_folder(path_of("whole"), &again, &error), SCREE_BAD_FILE);
+  assert_non_null(strstr(error.message, "study.yaml, line"));
+  file = fopen(path_of("whole/study.yaml"), "w");
+  assert_int_equal(fwrite(saved, 1, size, file), size);
+  fclose(file);
+  scree_free(saved);
+  /* a lease of garbage is nobody's, and expires as one of another machine does */
+  char lease[64];
+  snprintf(lease, sizeof lease, "whole/leases/run-%s", study->keys[0]);
+  file_with(lease, "\x01\x02garbage");
+  CHECK_OK(scree_study_collect(study, true, &error), error);
+  unlink(path_of(lease));
+  scree_study_free(study);
+}
+
 static void damaged_files_are_told_and_made_again(void **state) {
   (void)state;
   scree_study *study = open_tiny("full", tiny), *again;
@@ -632,6 +700,8 @@ int main(void) {
       cmocka_unit_test(several_workers_give_the_same_numbers),
       cmocka_unit_test(a_failed_run_stops_no_other),
       cmocka_unit_test(a_full_disk_ends_the_work_and_loses_nothing),
+      cmocka_unit_test(a_full_disk_harms_no_database),
+      cmocka_unit_test(broken_files_of_a_folder_are_told),
       cmocka_unit_test(damaged_files_are_told_and_made_again),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -303,7 +303,7 @@ static int remove_folder(void **state) {
   (void)state;
   char command[80];
   snprintf(command, sizeof command, "rm -r %s", folder);
-  return getenv("SCREE_KEEP") ? 0 : system(command);
+  return system(command);
 }
 
 int main(void) {
