@@ -41,8 +41,8 @@ typedef struct scree_repose_options {
   size_t silhouette_count;    /* directions of way 3, over half a turn; default 18 */
   double band_low, band_high; /* the flank is where the height is in this share of the heap's
                                  height; default 0.2 and 0.8 */
-  double particle_size; /* m: widths of bins and sectors keep to it, and a heap below two of it in
-                           height, or twelve round, gives no angle; 0 (default): not known */
+  double particle_size; /* m: widths of bins and sectors keep to it, and a heap below 1.5 of it in
+                           height, or sixteen round, gives no angle; 0 (default): not known */
 } scree_repose_options;
 
 SCREE_API scree_repose_options scree_default_repose_options(void);

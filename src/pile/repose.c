@@ -22,7 +22,7 @@ static const double sector_sizes = 2;   /* width of a sector in the middle of th
 static const double fewest_bins = 3;    /* a line needs as many */
 static const double fewest_sectors = 8; /* of that width round the heap: else it is too small */
 static const double least_share = 0.5;  /* of sectors and flanks that must give a line */
-static const double sizes_of_a_heap = 2; /* lower, in particle sizes, is a layer and not a heap */
+static const double sizes_of_a_heap = 1.5; /* lower, in particle sizes, is a layer and not a heap */
 enum { CONE_ROUNDS = 50, CHOICES = 6 };
 
 scree_repose_options scree_default_repose_options(void) {
