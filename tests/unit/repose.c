@@ -184,7 +184,7 @@ static void heaps_of_particles_give_their_angle(void **state) {
 static void what_is_too_small_gets_no_number(void **state) {
   (void)state;
   for (uint64_t seed = 1; seed <= 10; seed++) {
-    scree_repose r = measured_boxes(35, 40, seed);
+    scree_repose r = measured_boxes(35, 20, seed);
     assert_false(r.heap);
     assert_true(strstr(r.reason, "too small: in the middle of its flank") ||
                 strstr(r.reason, "less than 1.5 particle sizes"));
