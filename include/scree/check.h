@@ -83,6 +83,7 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
   X(TURN, "turned_facets", "facets turned round to agree with their neighbours")                   \
   X(SPLIT_VERTEX, "split_non_manifold_vertices", "non-manifold vertices split")                    \
   X(CUT_INTERSECTION, "cut_intersecting_facets", "facets cut out where the surface met itself")    \
+  X(MERGE_SHELL, "merged_shells", "shells that met others united with them")                       \
   X(FILL_HOLE, "filled_holes", "holes filled")                                                     \
   X(FILL_FACET, "filling_facets", "facets added to fill them")                                     \
   X(DROP_DEBRIS, "dropped_debris_shells", "debris shells dropped")                                 \
@@ -118,6 +119,13 @@ typedef struct scree_repair_options {
   bool keep_largest;
   /* Cut facets that meet others of the same shell out and fill the hole; default true. */
   bool cut_intersections;
+  /* Unite shells that cross, overlap or touch: what is kept is the surface of the space where the
+   * winding number is positive, cut along the lines where they met; default true. Refused where
+   * that number is negative somewhere. */
+  bool merge_shells;
+  /* Treat a shell that meets itself in the same way, instead of cutting the place out; space that
+   * it winds round backwards is outside; default false. */
+  bool merge_folds;
   /* Test for self-intersections exactly, before and after; default true. Without, the result may
    * have some. */
   bool intersections;
@@ -133,9 +141,9 @@ typedef struct scree_repair_report {
 /* Makes a closed, manifold, consistently wound, outward surface without self-intersections of a
  * mesh of any quality, or fails with SCREE_BAD_MESH and says what remains. Nothing is done to a
  * mesh that needs nothing, but vertices and triangles are put in canonical order (scree_mesh_weld),
- * so the result does not depend on the order of the facets. Shells that overlap are not united:
- * that is refused. options and progress may be NULL; *report (may be NULL) is filled on success and
- * on SCREE_BAD_MESH. Other errors as scree_mesh_check. */
+ * so the result does not depend on the order of the facets. options and progress may be NULL;
+ * *report (may be NULL) is filled on success and on SCREE_BAD_MESH. Other errors as
+ * scree_mesh_check. */
 SCREE_API scree_status scree_mesh_repair(const scree_mesh *mesh,
                                          const scree_repair_options *options,
                                          const scree_progress *progress, scree_mesh *repaired,

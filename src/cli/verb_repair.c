@@ -10,7 +10,7 @@ typedef struct repair_arguments {
   cli_source source;
   double seam_tolerance, debris_share;
   size_t hole_edges;
-  bool large_holes, drop_cavities, largest, no_cut, fast, json, force;
+  bool large_holes, drop_cavities, largest, no_cut, no_merge, folds, fast, json, force;
 } repair_arguments;
 
 #define AT(field) offsetof(repair_arguments, field)
@@ -39,6 +39,13 @@ static const cli_option options[] = {
     {"no-cut", 0, CLI_FLAG, AT(no_cut), NULL,
      "Refuse a surface that meets itself instead of cutting the place out and filling the hole.", 0,
      0, NULL},
+    {"no-merge", 0, CLI_FLAG, AT(no_merge), NULL,
+     "Refuse shells that cross, overlap or touch instead of merging them into one surface.", 0, 0,
+     NULL},
+    {"merge-folds", 0, CLI_FLAG, AT(folds), NULL,
+     "Where a shell meets itself, keep the outside of what it winds round instead of cutting the "
+     "place out.",
+     0, 0, NULL},
     {"fast", 0, CLI_FLAG, AT(fast), NULL,
      "Do not look for self-intersections: the result may have some.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(repair_arguments, source),
@@ -58,6 +65,8 @@ static scree_repair_options options_of(const repair_arguments *a) {
   o.drop_cavities = a->drop_cavities;
   o.keep_largest = a->largest;
   o.cut_intersections = !a->no_cut;
+  o.merge_shells = !a->no_merge;
+  o.merge_folds = a->folds;
   o.intersections = !a->fast;
   return o;
 }
@@ -167,9 +176,10 @@ const cli_verb cli_verb_repair = {
     .description =
         "Welds, drops duplicate and degenerate facets, closes seams, splits T-junctions and "
         "non-manifold edges and vertices, turns facets to agree and shells outward, fills small "
-        "holes, drops debris, and cuts out places where a shell meets itself. Prints what was done "
-        "with counts. The result passes `scree check`, or nothing is written and what remains is "
-        "said. Shells that overlap are not united: that is refused.\n\n"
+        "holes, drops debris, cuts out places where a shell meets itself, and merges shells that "
+        "cross, overlap or touch into the surface of their union. Prints what was done with "
+        "counts. The result passes `scree check`, or nothing is written and what remains is "
+        "said.\n\n"
         "Exit code 0 where the result was written, 1 otherwise.",
     .examples = "scree repair scan.stl -o closed.stl\n"
                 "scree repair scan.ply -o closed.ply --large-holes --largest\n",

@@ -7,7 +7,8 @@
  * edges of many facets are sorted out by it, open scraps go, holes are filled, and vertices with
  * several fans are split last, because filling joins fans. Once the surface is closed and manifold,
  * shells are put in order. Then the exact check looks for facets that meet; those of one shell are
- * cut out with their neighbourhood, wider each time, and the round starts over.
+ * cut out with their neighbourhood, wider each time, shells that meet each other are merged, and
+ * the round starts over.
  *
  * Every round ends with a weld, so vertices and facets are always in canonical order and the result
  * does not depend on the order of the input. Nothing is called repaired that the check has not
@@ -21,8 +22,9 @@
 #include <string.h>
 
 enum {
-  ROUNDS = 24,   /* in all; three or four are usual */
-  CUT_ROUNDS = 4 /* of these with cutting */
+  ROUNDS = 24,    /* in all; three or four are usual */
+  CUT_ROUNDS = 4, /* of these with cutting */
+  MERGE_ROUNDS = 3
 };
 
 static const struct {
@@ -46,6 +48,7 @@ scree_repair_options scree_default_repair_options(void) {
                                 .hole_edges = 128,
                                 .debris_share = 0.01,
                                 .cut_intersections = true,
+                                .merge_shells = true,
                                 .intersections = true};
 }
 
@@ -245,10 +248,31 @@ static size_t actions_done(const scree_repair *r) {
   return sum;
 }
 
+/* How often the dear stages have run. */
+typedef struct tries {
+  int cuts, merges;
+} tries;
+
+/* Facets that meet are cut out, or shells merged; *settled where neither is done. */
+static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_error *error) {
+  const scree_repair_options *o = r->options;
+  size_t cut_count = 0;
+  bool merged = false;
+  scree_status status = SCREE_OK;
+  if (o->cut_intersections && !o->merge_folds && n->cuts < CUT_ROUNDS)
+    status = scree_repair_cut(r, ++n->cuts, &cut_count, error);
+  if (status == SCREE_OK && cut_count == 0 && o->merge_shells && n->merges < MERGE_ROUNDS) {
+    n->merges++;
+    status = scree_repair_merge(r, false, &merged, error);
+  }
+  *settled = cut_count == 0 && !merged;
+  return status;
+}
+
 /* One step on a mesh with the given cheap check; *settled where there is nothing left to do. */
-static scree_status step(scree_repair *r, const scree_check *check, int *cuts, bool *settled,
+static scree_status step(scree_repair *r, const scree_check *check, tries *n, bool *settled,
                          scree_error *error) {
-  size_t before = actions_done(r), cut_count = 0;
+  size_t before = actions_done(r);
   scree_status status;
   *settled = false;
   if (!surface_is_sound(check)) {
@@ -259,23 +283,32 @@ static scree_status step(scree_repair *r, const scree_check *check, int *cuts, b
   status = scree_repair_shells(r, error);
   if (status != SCREE_OK || actions_done(r) != before) return status;
   *settled = true;
-  if (!r->options->intersections || !r->options->cut_intersections || r->untangled ||
-      *cuts >= CUT_ROUNDS)
-    return SCREE_OK;
-  status = scree_repair_cut(r, ++*cuts, &cut_count, error);
-  *settled = cut_count == 0;
-  return status;
+  if (!r->options->intersections || r->untangled) return SCREE_OK;
+  return untangle(r, n, settled, error);
+}
+
+/* Shells that are closed and overlap are merged before anything else is done: what coincides is no
+ * duplicate there, and edges of four facets are no defect. */
+static scree_status merge_early(scree_repair *r, scree_error *error) {
+  const size_t *defect = r->report.before.defects;
+  bool met = defect[SCREE_DEFECT_CROSSING_PAIR] || defect[SCREE_DEFECT_TOUCHING_PAIR] ||
+             defect[SCREE_DEFECT_OVERLAPPING_PAIR];
+  bool merged;
+  size_t bad, collapsed;
+  if (!r->options->merge_shells || !met) return SCREE_OK;
+  scree_status status = scree_repair_merge(r, true, &merged, error);
+  return status == SCREE_OK && merged ? weld(r, &r->mesh, &bad, &collapsed, error) : status;
 }
 
 static scree_status run_rounds(scree_repair *r, scree_error *error) {
-  int cuts = 0;
+  tries n = {0};
   size_t bad, collapsed;
-  scree_status status = SCREE_OK;
+  scree_status status = merge_early(r, error);
   for (int round = 0; round < ROUNDS && status == SCREE_OK; round++) {
     bool settled;
     status = check_now(r, false, &r->report.after, error);
     if (status != SCREE_OK || r->mesh.triangle_count == 0) return status;
-    status = step(r, &r->report.after, &cuts, &settled, error);
+    status = step(r, &r->report.after, &n, &settled, error);
     if (status != SCREE_OK || settled) break;
     status = weld(r, &r->mesh, &bad, &collapsed, error);
     r->report.done[SCREE_REPAIR_DROP_DEGENERATE] += status == SCREE_OK ? collapsed : 0;
@@ -317,8 +350,10 @@ static scree_status repair_checked(const scree_mesh *mesh, const scree_check *be
   if (status == SCREE_OK || status == SCREE_BAD_MESH)
     if (report) *report = r.report;
   if (status == SCREE_OK && !r.report.after.usable)
-    status = scree_fail(error, SCREE_BAD_MESH, "The mesh cannot be repaired; what remains is %s",
-                        r.report.after.verdict);
+    status =
+        scree_fail(error, SCREE_BAD_MESH, "The mesh cannot be repaired; what remains is %s%s%s",
+                   r.report.after.verdict, r.unmerged ? "; shells were not merged: " : "",
+                   r.unmerged ? r.unmerged : "");
   if (status == SCREE_OK)
     *repaired = r.mesh;
   else

@@ -14,9 +14,10 @@ typedef struct scree_repair {
   size_t vertex_capacity, triangle_capacity;
   const scree_repair_options *options;
   const scree_progress *progress;
-  double diagonal; /* of the bounding box, m */
-  double largest;  /* coordinate, m */
-  bool untangled;  /* the surface is known to meet itself nowhere */
+  double diagonal;      /* of the bounding box, m */
+  double largest;       /* coordinate, m */
+  bool untangled;       /* the surface is known to meet itself nowhere */
+  const char *unmerged; /* why shells were not merged, as the end of a sentence; NULL: no reason */
   scree_repair_report report;
 } scree_repair;
 
@@ -70,5 +71,9 @@ scree_status scree_repair_shells(scree_repair *r, scree_error *error);
 /* Cuts out facets that meet others of their shell, with `rings` rings of neighbours; *cut_count 0
  * where nothing could be cut. */
 scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error);
+/* repair_merge.c: shells that meet become one surface, where every edge is used equally often both
+ * ways; *merged is false, and r->unmerged may tell why, where they do not. `early`, before other
+ * stages: not where a shell only meets itself, unless the options say so. */
+scree_status scree_repair_merge(scree_repair *r, bool early, bool *merged, scree_error *error);
 
 #endif

@@ -35,7 +35,7 @@ enum {
 #define DOUBTFUL_CELL 1e-12
 /* A segment that a cell has less of than this share of its facet's size does not cut it. */
 #define LEAST_CUT 1e-12
-/* Facets that cross at a smaller angle than this (its sine) are not cut. */
+/* Facets that meet at a smaller angle than this (its sine) are not cut. */
 #define LEAST_SINE 1e-6
 typedef scree_seen point;
 typedef scree_view view;
@@ -147,14 +147,14 @@ static point pierce(const view *f, const double *p, const double *q) {
   return (point){p[f->u] + t * (q[f->u] - p[f->u]), p[f->v] + t * (q[f->v] - p[f->v])};
 }
 
-/* Whether the two pass through each other at so small an angle that rounding says where. */
+/* Whether the two are so nearly in one plane that rounding says where they meet, and which is the
+ * upper one. */
 static bool grazes(const view *f, const view *g) {
   vec3 n = vec3_triangle_normal(vec3_load(f->corner[0]), vec3_load(f->corner[1]),
                                 vec3_load(f->corner[2]));
   vec3 m = vec3_triangle_normal(vec3_load(g->corner[0]), vec3_load(g->corner[1]),
                                 vec3_load(g->corner[2]));
-  return vec3_norm(vec3_cross(n, m)) < LEAST_SINE * vec3_norm(n) * vec3_norm(m) &&
-         !scree_view_side_of(f, g) && !scree_view_side_of(g, f);
+  return vec3_norm(vec3_cross(n, m)) < LEAST_SINE * vec3_norm(n) * vec3_norm(m);
 }
 
 /* Cuts by the part that facet `other` has in f's plane. */

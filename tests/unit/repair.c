@@ -371,12 +371,18 @@ static void nested_is_swallowed(void **state) {
   assert_int_equal(o.report.done[SCREE_REPAIR_DROP_NESTED], 1);
   free_outcome(&o);
   scree_mesh_free(&mesh);
-  /* overlapping ones are refused by name */
+  /* overlapping ones become one, unless that is not wanted */
   shape_move(&inner, (vec3){2.4, 0, 0});
   mesh = shape_join(&outer, &inner);
+  o = repair(&mesh);
+  CHECK_NEAR(o.measures.volume, 64.6, 1e-9);
+  assert_int_equal(o.report.done[SCREE_REPAIR_MERGE_SHELL], 2);
+  free_outcome(&o);
+  scree_repair_options options = scree_default_repair_options();
+  options.merge_shells = false;
   scree_error error;
   scree_mesh none;
-  assert_int_equal(scree_mesh_repair(&mesh, NULL, NULL, &none, NULL, &error), SCREE_BAD_MESH);
+  assert_int_equal(scree_mesh_repair(&mesh, &options, NULL, &none, NULL, &error), SCREE_BAD_MESH);
   assert_non_null(strstr(error.message, "1 overlapping shell pair"));
   scree_mesh_free(&mesh);
   scree_mesh_free(&outer);
