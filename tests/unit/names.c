@@ -74,6 +74,7 @@ static void shapes(void **state) {
                                     {.particle = large, .density_factor = 1, .name = "large"}};
   CHECK_OK(scree_experiment_preset("demo", &e, &error), error);
   e.particle_count = 20;
+  e.pack_time = 0.1;
   CHECK_OK(scree_run_create(&e, mixed, 2, &run, &error), error);
   while (scree_run_phase(run) == SCREE_PHASE_PACK)
     CHECK_OK(scree_run_advance(run, 1000, &error), error);
