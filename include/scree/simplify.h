@@ -37,13 +37,15 @@ typedef struct scree_curve scree_curve;
  * cost (docs/decimation.md gives the formulas and rules).
  *
  * What holds at every level: where the mesh was closed, manifold and outward, so is the level. No
- * level has more non-manifold edges, degenerate facets, folds (neighbouring triangles whose normals
- * differ by more than 150 degrees) or self-intersections than the mesh given. A vertex on an edge
- * of three or more triangles, or where the surface touches itself in a point, stays where it is.
- * With SCREE_METHOD_VOLUME the volume of a closed mesh is kept to rounding. No level has spikes:
- * its bounding box exceeds that of the mesh given by at most half of sqrt(S / N), S the area of the
- * mesh and N the level's triangles; what would need them is refused, so that the floor may be
- * higher.
+ * level has more non-manifold edges, degenerate facets or folds (neighbouring triangles whose
+ * normals differ by more than 150 degrees) than the mesh given. Where that nowhere meets itself, no
+ * level does; where it does, collapses beside such places are refused if they add to them, but two
+ * sheets that cross and face the same way may be taken for one, so that the count may grow there. A
+ * vertex on an edge of three or more triangles, or where the surface touches itself in a point,
+ * stays where it is. With SCREE_METHOD_VOLUME the volume of a closed mesh is kept to rounding. No
+ * level has spikes: its bounding box exceeds that of the mesh given by at most half of sqrt(S / N),
+ * S the area of the mesh and N the level's triangles; what would need them is refused, so that the
+ * floor may be higher.
  *
  * The result depends on the order of vertices and triangles in the mesh only where costs are equal;
  * the readers and scree_mesh_weld put them in a canonical order, so that the order of facets in a

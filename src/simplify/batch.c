@@ -9,10 +9,14 @@
  * as they will be. So they can be done in any order, and every prefix of the round, which the
  * record holds in the order of cost, is a valid surface: a level.
  *
+ * Where the stray (stray.h) would take the whole cost above the threshold, the edge waits for the
+ * next pass, whose threshold is higher.
+ *
  * Everything parallel handles its items by themselves; the only shared writes are the grid's sets
  * of directions and the vertices' flags, which grow by OR. So the result does not depend on the
  * number of threads. */
 #include "simplify/decimate.h"
+#include "simplify/stray.h"
 
 #include "base/parallel.h"
 
@@ -38,7 +42,7 @@ enum { VERTEX_BLOCK = 1024, CHOSEN_BLOCK = 256, BINS = 1 << 16 };
 enum { SIDE_BY_SIDE = 64, CHOICE_PARTS = 8 };
 
 enum { TOUCHED = 1, APEX = 2 };
-enum { REFUSED, CERTAIN, UNCERTAIN };
+enum { REFUSED, POSTPONED, CERTAIN, UNCERTAIN };
 
 typedef struct item {
   uint32_t key, vertex; /* key: the leading bits of the cost */
@@ -67,6 +71,7 @@ typedef struct pass {
   item *items, *swap; /* candidates in order */
   size_t item_count;
   uint32_t limit; /* the threshold, as a key */
+  double dearest; /* the greatest cost below it: the threshold without the key's rounding */
   taken *taken;   /* in the order of cost */
   scree_change *changes;
   size_t taken_count, room;
@@ -138,6 +143,7 @@ static bool open_to_collapse(scree_halfmesh *s, uint32_t v, uint32_t h) {
   uint32_t other = scree_to(s, h), twin = s->twin[h];
   if (twin != SCREE_NONE && other < v) return false; /* looked at from there */
   if (s->flags[other] & SCREE_VERTEX_LOCKED) return false;
+  if (s->refused[h] == SCREE_EDGE_POSTPONED) s->refused[h] = 0;
   if (!s->refused[h]) return true;
   if (!((s->flags[v] | s->flags[other]) & SCREE_VERTEX_CHANGED)) return false;
   s->refused[h] = 0;
@@ -249,8 +255,12 @@ static void list_candidates(pass *p) {
   uint32_t low = key_at(p, (size_t)(LOW_SHARE * share));
   uint32_t spread = key_of(fmin(SPREAD * cost_of_key(low), 1e300));
   p->limit = high < spread ? high : spread;
-  for (size_t i = 0; i < p->item_count; i++)
-    if (p->items[i].key <= p->limit) p->items[count++] = p->items[i];
+  p->dearest = 0;
+  for (size_t i = 0; i < p->item_count; i++) {
+    if (p->items[i].key > p->limit) continue;
+    p->dearest = fmax(p->dearest, p->cost[p->items[i].vertex]);
+    p->items[count++] = p->items[i];
+  }
   p->item_count = count;
 }
 
@@ -363,7 +373,7 @@ static void try_item(pass *p, size_t i) {
   scree_ring_name(s, h, &ring);
   if (p->marks[ring.c] & APEX || (ring.d != SCREE_NONE && p->marks[ring.d] & APEX)) return;
   if (!scree_ring_gather(s, h, &ring)) {
-    s->refused[h] = 1;
+    s->refused[h] = SCREE_EDGE_REFUSED;
     return;
   }
   mark_ring(p, &ring);
@@ -427,6 +437,11 @@ static void check_one(pass *p, uint32_t index, const scree_candidate *candidate)
   t->verdict = sound ? UNCERTAIN : REFUSED;
   if (!sound) return;
   t->steep = around.steep;
+  if (candidate->stray > 0 &&
+      !scree_stays_within(&d->s, &ring, candidate->target, scree_stray_at(candidate, p->dearest))) {
+    t->verdict = POSTPONED;
+    return;
+  }
   t->box = scree_grid_enter_ring(&d->grid, &ring, &around);
 }
 
@@ -455,6 +470,13 @@ static void choose_and_check_block(void *context, size_t begin, size_t end, size
   check_some(p, first, last < p->check_end ? last : p->check_end);
 }
 
+/* What will not be done is no danger to others: if it were taken for one, answers would depend on
+ * which of them the grid's directions settle. */
+static void give_up(pass *p, const taken *t) {
+  const scree_halfmesh *s = &p->d->s;
+  p->chosen[s->from[t->half_edge]] = p->chosen[scree_to(s, t->half_edge)] = SCREE_NONE;
+}
+
 static void choose_and_check(pass *p) {
   memset(p->marks, 0, p->d->s.vertex_count);
   memset(p->chosen, 0xff, p->d->s.vertex_count * sizeof *p->chosen);
@@ -465,6 +487,8 @@ static void choose_and_check(pass *p) {
     p->check_begin = p->check_end;
     p->check_end = p->taken_count;
   } while (p->check_begin < p->check_end || p->next_item < p->item_count);
+  for (size_t i = 0; i < p->taken_count; i++)
+    if (p->taken[i].verdict < CERTAIN) give_up(p, &p->taken[i]);
 }
 
 /* Whether a fold comes to be over an edge between this ring and that of another collapse, both
@@ -491,7 +515,7 @@ static void certify_block(void *context, size_t begin, size_t end, size_t block,
   for (size_t k = begin; k < end; k++) {
     uint32_t i = p->order[k];
     taken *t = &p->taken[i];
-    if (t->verdict == REFUSED) continue;
+    if (t->verdict == REFUSED || t->verdict == POSTPONED) continue;
     if (t->steep) { /* else not even the other's turn of at most 84 degrees makes a fold */
       scree_ring ring = ring_of(p, t);
       t->folds = folds_with_others(p, &ring, p->changes[i].target);
@@ -522,7 +546,10 @@ static scree_status search_uncertain(pass *p) {
   p->uncertain_count = 0;
   for (uint32_t i = 0; i < p->taken_count; i++) {
     taken *t = &p->taken[i];
-    if (t->folds) t->verdict = REFUSED;
+    if (t->folds) {
+      t->verdict = REFUSED;
+      give_up(p, t);
+    }
     if (t->verdict != UNCERTAIN) continue;
     scree_ring ring = ring_of(p, t);
     set_box(&d->s, p->changes[i].target, &ring);
@@ -551,7 +578,8 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
   for (size_t k = begin; k < end; k++) {
     uint32_t i = p->order[k];
     if (p->taken[i].verdict != CERTAIN) {
-      d->s.refused[p->taken[i].half_edge] = 1;
+      d->s.refused[p->taken[i].half_edge] =
+          p->taken[i].verdict == POSTPONED ? SCREE_EDGE_POSTPONED : SCREE_EDGE_REFUSED;
       continue;
     }
     scree_ring ring = ring_of(p, &p->taken[i]);

@@ -5,10 +5,20 @@
 #include "simplify/halfmesh.h"
 
 typedef struct scree_candidate {
-  double cost;  /* the order of collapses; INFINITY: not possible */
+  double cost;  /* the order of collapses, without the stray's part; INFINITY: not possible */
   vec3 target;  /* in the unit box */
   double error; /* mean square move of the surface, in units of the box squared */
+  double stray; /* weight of the stray's (stray.h) fourth power in the cost; 0: it does not count */
 } scree_candidate;
+
+/* A stray's part in the cost below this share of the rest is not looked for. */
+#define SCREE_STRAY_SHARE 0.01
+
+/* The squared stray that makes the whole cost `whole`, or the greatest that is not looked for. */
+static inline double scree_stray_at(const scree_candidate *c, double whole) {
+  double part = whole - c->cost, least = SCREE_STRAY_SHARE * c->cost;
+  return sqrt((part > least ? part : least) / c->stray);
+}
 
 enum { SCREE_FALLBACK_COUNT = 3 };
 

@@ -6,12 +6,16 @@
  * its turn at its own cost; an edge without any leaves the heap until something
  * around it changes.
  *
+ * Costs that count the stray (cost.h) come in two steps, for it is dear to find: the edge waits at
+ * its cost without, which is not above the whole one, and when its turn comes, it waits again at
+ * the whole cost.
+ *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
  * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
- * began with: within STAND_OFF times sqrt(area / triangles), the size of the level's triangles. */
-#include "mesh/bvh.h"
+ * began with: within half of sqrt(area / triangles), the size of the level's triangles. */
 #include "simplify/decimate.h"
+#include "simplify/stray.h"
 
 #include <string.h>
 
@@ -21,11 +25,11 @@
 #define REGRID_BELOW   0.5
 #define STALE_FACTOR   12
 
-/* A tetrahedron of a sphere's volume has 0.57, an octahedron 0.37. */
-#define STAND_OFF 0.5
-
 /* Edges evaluated in one call. */
 enum { SIDE_BY_SIDE = 32 };
+
+/* An edge waits at part of its best place's cost, then at all of it, or at that of fallback k. */
+enum { IN_PART, WHOLE, FALLBACK };
 
 typedef struct queue {
   scree_decimator *d;
@@ -33,12 +37,11 @@ typedef struct queue {
   uint32_t *place; /* per half-edge: its place in the heap, or NONE */
   uint32_t *heap;  /* half-edges */
   size_t heap_count;
-  uint8_t *fallback; /* per half-edge: 0 is the best place, else 1 + k */
-  uint32_t *stamp;   /* per vertex: the collapse that last touched it */
+  uint8_t *stage;  /* per half-edge: how far it has come */
+  uint32_t *stamp; /* per vertex: the collapse that last touched it */
   uint32_t now;
   size_t since_tick;
-  scree_bvh start; /* the surface that this stage began with, and its area */
-  double start_area;
+  scree_memory memory;            /* of the surface that this stage began with */
   uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
   size_t waiting_count;
 } queue;
@@ -116,7 +119,7 @@ static void evaluate_waiting(queue *q) {
     uint32_t h = q->waiting[i];
     if ((s->flags[s->from[h]] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_LOCKED)
       candidates[i].cost = INFINITY;
-    q->fallback[h] = 0;
+    q->stage[h] = candidates[i].stray > 0 ? IN_PART : WHOLE;
     enqueue(q, h, &candidates[i]);
   }
   q->waiting_count = 0;
@@ -131,35 +134,9 @@ static void queue_free(queue *q) {
   scree_free(q->cost);
   scree_free(q->place);
   scree_free(q->heap);
-  scree_free(q->fallback);
+  scree_free(q->stage);
   scree_free(q->stamp);
-  scree_bvh_free(&q->start);
-}
-
-/* Keeps the surface as it is now. */
-static scree_status keep_start(queue *q) {
-  scree_halfmesh *s = &q->d->s;
-  scree_mesh mesh = {.positions = &s->position[0].x, .vertex_count = s->vertex_count};
-  SCREE_ALLOC_OR(mesh.triangles, 3 * s->live_triangle_count, q->d->error, out_of_memory);
-  for (size_t t = 0; t < s->triangle_count; t++) {
-    const uint32_t *from = s->from + 3 * t;
-    if (from[0] == SCREE_NONE) continue;
-    memcpy(mesh.triangles + 3 * mesh.triangle_count++, from, 3 * sizeof *from);
-    q->start_area += 0.5 * vec3_norm(vec3_triangle_normal(
-                               s->position[from[0]], s->position[from[1]], s->position[from[2]]));
-  }
-  scree_status status = scree_bvh_build(&mesh, &q->start, q->d->error);
-  scree_free(mesh.triangles);
-  return status;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
-}
-
-/* Whether a vertex at x is near enough to where the surface was for a level with so many triangles.
- */
-static bool stays_near(const queue *q, size_t triangle_count, vec3 x) {
-  double size2 = q->start_area / (double)triangle_count;
-  return scree_bvh_closest(&q->start, x, &(scree_bvh_hit){STAND_OFF * STAND_OFF * size2, x, 0});
+  scree_memory_free(&q->memory);
 }
 
 static void enter_all(queue *q) {
@@ -176,14 +153,14 @@ static scree_status queue_fill(queue *q) {
   SCREE_ALLOC_OR(q->cost, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->place, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->heap, half_edges, d->error, out_of_memory);
-  SCREE_ALLOC_OR(q->fallback, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->stage, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->stamp, s->vertex_count, d->error, out_of_memory);
   memset(q->place, 0xff, half_edges * sizeof *q->place);
   memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->outgoing[v] != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
   enter_all(q);
-  return keep_start(q);
+  return scree_memory_keep(s, &q->memory, d->error);
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
@@ -242,6 +219,7 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   s->live_vertex_count--;
   s->live_triangle_count -= s->twin[r->half_edge] == SCREE_NONE ? 1 : 2;
   forget(q, r);
+  if (!d->coster->merge) scree_memory_move(&q->memory, s, r, change->target);
   scree_collapse_apply(s, r, change->target);
   if (d->coster->merge) d->coster->merge(s, r->a, r->b);
   q->now++;
@@ -270,12 +248,20 @@ static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_arou
                     scree_status *status) {
   scree_decimator *d = q->d;
   size_t after = d->s.live_triangle_count - (ring->d == SCREE_NONE ? 1 : 2);
-  if (!scree_collapse_check(&d->s, ring, change, around) || !stays_near(q, after, change->target))
+  if (!scree_collapse_check(&d->s, ring, change, around) ||
+      !scree_memory_allows(&q->memory, after, change->target))
     return false;
   *status = prepare_grid(d);
   if (*status != SCREE_OK) return false;
   return (d->s.closed && scree_grid_certifies(&d->grid, ring, around)) ||
          scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL);
+}
+
+static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c) {
+  if (!(c->stray > 0)) return;
+  double least = scree_stray_at(c, 0);
+  double stray2 = scree_memory_stray(&q->memory, &q->d->s, ring, c->target, least);
+  c->cost += c->stray * stray2 * stray2;
 }
 
 /* Puts the edge back with the cheapest other place that is allowed, if there is
@@ -290,9 +276,10 @@ static scree_status try_fallbacks(queue *q, scree_ring *ring) {
     scree_around around;
     d->coster->fall_back(&d->s, h, k, &candidate);
     change.target = candidate.target;
+    if (candidate.cost < best.cost) add_stray(q, ring, &candidate);
     if (!(candidate.cost < best.cost) || !allowed(q, ring, &change, &around, &status)) continue;
     best = candidate;
-    q->fallback[h] = (uint8_t)(1 + k);
+    q->stage[h] = (uint8_t)(FALLBACK + k);
   }
   if (best.cost < INFINITY) enqueue(q, h, &best);
   return status;
@@ -309,14 +296,20 @@ static scree_status try_cheapest(queue *q) {
   leave(q, h);
   if (!scree_ring_gather(&d->s, h, &ring) || !scree_collapse_keeps_topology(&d->s, &ring))
     return SCREE_OK;
-  if (q->fallback[h] > 0)
-    d->coster->fall_back(&d->s, h, q->fallback[h] - 1, &candidate);
+  if (q->stage[h] >= FALLBACK)
+    d->coster->fall_back(&d->s, h, q->stage[h] - FALLBACK, &candidate);
   else
     d->coster->evaluate(&d->s, &h, 1, &candidate);
+  if (q->stage[h] == IN_PART) {
+    q->stage[h] = WHOLE;
+    add_stray(q, &ring, &candidate);
+    enqueue(q, h, &candidate);
+    return SCREE_OK;
+  }
   change.target = candidate.target;
   if (allowed(q, &ring, &change, &around, &status))
     return collapse(q, &ring, &change, &around, candidate.error);
-  if (status != SCREE_OK || q->fallback[h] > 0) return status;
+  if (status != SCREE_OK || q->stage[h] >= FALLBACK) return status;
   return try_fallbacks(q, &ring);
 }
 

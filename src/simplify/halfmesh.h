@@ -19,16 +19,20 @@
  * evaluated. */
 enum { SCREE_VERTEX_LOCKED = 1, SCREE_VERTEX_STALE = 2, SCREE_VERTEX_CHANGED = 4 };
 
+/* REFUSED: the collapse was tried and is not allowed now. POSTPONED: it costs too much for this
+ * pass. */
+enum { SCREE_EDGE_REFUSED = 1, SCREE_EDGE_POSTPONED = 2 };
+
 typedef struct scree_halfmesh {
-  vec3 *position;     /* of vertices, in the unit box */
-  uint32_t *outgoing; /* of vertices; NONE: the vertex is gone */
-  uint32_t *origin;   /* of vertices: the vertex of the mesh given */
-  uint8_t *flags;     /* of vertices: SCREE_VERTEX_... */
-  double (*sums)[10]; /* of vertices: the method's quadric, see cost.h */
-  uint32_t *from;     /* of half-edges; from[3t] NONE: the triangle is gone */
-  uint32_t *twin;     /* of half-edges */
-  uint8_t *refused;   /* of half-edges: the collapse was tried and is not allowed now */
-  size_t vertex_count, triangle_count;           /* extents of the arrays */
+  vec3 *position;                      /* of vertices, in the unit box */
+  uint32_t *outgoing;                  /* of vertices; NONE: the vertex is gone */
+  uint32_t *origin;                    /* of vertices: the vertex of the mesh given */
+  uint8_t *flags;                      /* of vertices: SCREE_VERTEX_... */
+  double (*sums)[10];                  /* of vertices: the method's quadric, see cost.h */
+  uint32_t *from;                      /* of half-edges; from[3t] NONE: the triangle is gone */
+  uint32_t *twin;                      /* of half-edges */
+  uint8_t *refused;                    /* of half-edges: 0 or SCREE_EDGE_... */
+  size_t vertex_count, triangle_count; /* extents of the arrays */
   size_t live_vertex_count, live_triangle_count; /* still there */
   vec3 centre;  /* position in metres = centre + scale * position in the box */
   double scale; /* a power of two */

@@ -19,6 +19,9 @@
  * digits far from the origin. On a boundary the squared area swept along its
  * edges joins E as in their paper.
  *
+ * The cost is (E + STRAY A D^4) / sqrt(A), A the doubled area around and D the
+ * stray (stray.h): E is a sum over the area and says little of one place far off.
+ *
  * Differs from theirs: flat fans leave E singular; instead of their ladder of
  * further constraints a small pull towards the middle of the edge decides there
  * (PULL). */
@@ -35,6 +38,9 @@ enum { STEPS = 3 };
 /* The same in the cost: orders collapses of equal cost, short edges first. Far
  * below the cost of anything that changes shape. */
 #define TIE 1e-9
+/* Weight of the stray. With D near the mean distance d, E is about A^2 d^2 over the number of
+ * triangles, so that the stray counts from about a tenth of sqrt(A) on, and soon decides. */
+#define STRAY 5.0
 /* A vertex may not go farther from the middle of its edge than this many edge
  * lengths: the plane of equal volume is ill-defined where the normals cancel.
  */
@@ -206,7 +212,10 @@ static scree_candidate answer(const scree_halfmesh *s, uint32_t half_edge, lanes
   if (!(q->excess[i] <= 0 && q->trace[i] > 0 && q->around[i] > 0))
     return (scree_candidate){.cost = INFINITY};
   vec3 p = s->position[s->from[half_edge]];
-  return (scree_candidate){q->cost[i], vec3_add(p, lane(q->y, i)), q->energy[i] / q->trace[i]};
+  return (scree_candidate){.cost = q->cost[i],
+                           .target = vec3_add(p, lane(q->y, i)),
+                           .error = q->energy[i] / q->trace[i],
+                           .stray = STRAY * sqrt(q->around[i])};
 }
 
 static void volume_evaluate(const scree_halfmesh *s, const uint32_t *half_edges, size_t count,

@@ -26,6 +26,9 @@
 #define STAND_OFF    0.5
 #define VOLUME_PULL  1e-6
 #define VOLUME_TIE   1e-9
+#define VOLUME_STRAY 5.0
+#define STRAY_SHARE  0.01
+#define EQUALLY_NEAR 1e-12
 #define QECD_PULL    1e-8
 #define QECD_TIE     1e-12
 #define QECD_SHAPE   0.3
@@ -45,12 +48,17 @@ typedef struct oracle {
   uint8_t *state;  /* vertex_count^2, lower vertex first */
   double *start;   /* corners of the first mesh's triangles, 9 each, and their area */
   double start_area;
+  vec3 *witness;    /* the first mesh's vertices */
+  uint32_t *holder; /* of each witness: the triangle that stands for it, and its squared distance */
+  double *held2;
+  double *whole; /* as state, for every place: the whole cost, or NAN where it is not known yet */
   size_t compared, decided; /* collapses, and those with no rival within rounding */
 } oracle;
 
 typedef struct place {
   vec3 target;
   double cost, error, slack; /* slack: what rounding may change in the cost */
+  double stray;              /* weight of the stray's fourth power, not in the cost yet */
   vec3 other; /* where the rule between two places is within rounding: the other, else target */
 } place;
 
@@ -150,6 +158,7 @@ static place volume_place(const oracle *o, uint32_t a, uint32_t b, int fallback)
   p.error = energy / squares;
   p.cost = (energy + VOLUME_TIE * squares * length2) / sqrt(lengths);
   p.slack = 1e-6 * p.cost + 1e-13 * squares * length2 / sqrt(lengths);
+  p.stray = VOLUME_STRAY * sqrt(lengths);
   return p;
 }
 
@@ -315,13 +324,19 @@ static bool triangles_stay_sound(const oracle *o, const oracle *after, uint32_t 
   return worst_after >= SLIVER_SHAPE || worst_after >= worst_before;
 }
 
-/* Not far from the first mesh for a level of two triangles less. */
-static bool stays_near(const oracle *o, vec3 x) {
-  double least = INFINITY, size2 = o->start_area / (double)(o->triangle_count - 2);
+/* The squared distance from the first mesh. */
+static double start_distance2(const oracle *o, vec3 x) {
+  double least = INFINITY;
   vec3 point;
   for (size_t t = 0; t < o->plane_count; t++)
     least = fmin(least, scree_triangle_closest(o->start + 9 * t, x, &point));
-  return least < STAND_OFF * STAND_OFF * size2;
+  return least;
+}
+
+/* Not far from the first mesh for a level of two triangles less. */
+static bool stays_near(const oracle *o, vec3 x) {
+  return start_distance2(o, x) <
+         STAND_OFF * STAND_OFF * o->start_area / (double)(o->triangle_count - 2);
 }
 
 static bool may_collapse(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
@@ -340,16 +355,73 @@ static bool may_collapse(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
   return ok;
 }
 
+/* ---- The stray ---- */
+
+static double triangle_distance2(const oracle *o, size_t t, vec3 p) {
+  double corners[9];
+  vec3 point;
+  for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, corner(o, t, i));
+  return scree_triangle_closest(corners, p, &point);
+}
+
+/* The squared distance of p from the triangles of a after the collapse; *nearest: the first of
+ * those that are nearest. */
+static double patch_distance2(const oracle *after, uint32_t a, vec3 p, uint32_t *nearest) {
+  double least = INFINITY;
+  for (size_t t = 0; t < after->triangle_count; t++)
+    if (!gone(after, t) && has(after, t, a)) least = fmin(least, triangle_distance2(after, t, p));
+  for (size_t t = after->triangle_count; t-- > 0;)
+    if (!gone(after, t) && has(after, t, a) &&
+        sqrt(triangle_distance2(after, t, p)) <= sqrt(least) + EQUALLY_NEAR)
+      *nearest = (uint32_t)t;
+  return least;
+}
+
+/* Squared, of the collapse of (a, b) to x. */
+static double stray2_of(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
+  oracle after = collapsed(o, a, b, x);
+  double worst = start_distance2(o, x);
+  uint32_t nearest;
+  for (size_t w = 0; w < o->vertex_count; w++) {
+    if (!has(o, o->holder[w], a) && !has(o, o->holder[w], b)) continue;
+    double distance2 = patch_distance2(&after, a, o->witness[w], &nearest);
+    if (sqrt(distance2) > sqrt(o->held2[w]) + EQUALLY_NEAR) worst = fmax(worst, distance2);
+  }
+  for (size_t t = 0; t < after.triangle_count; t++)
+    for (size_t i = 0; i < 3 && !gone(&after, t) && has(&after, t, a); i++)
+      worst = fmax(worst, start_distance2(o, vec3_lerp(x, corner(&after, t, i), 0.5)));
+  free(after.position);
+  free(after.triangle);
+  return worst;
+}
+
 /* ---- The order ---- */
 
 static uint8_t *state_of(oracle *o, uint32_t a, uint32_t b) {
   return &o->state[a < b ? a * o->vertex_count + b : b * o->vertex_count + a];
 }
 
-/* The edge's cost as it waits; INFINITY: out. */
-static place waiting(oracle *o, uint32_t a, uint32_t b) {
+/* The place with its whole cost; fallback < 0: the best. */
+static place whole_place(oracle *o, uint32_t a, uint32_t b, int fallback) {
+  place p = place_of(o, a, b, fallback);
+  if (!(p.cost < INFINITY) || !(p.stray > 0)) return p;
+  double *whole = &o->whole[4 * (size_t)(state_of(o, a, b) - o->state) + (size_t)(fallback + 1)];
+  if (isnan(*whole)) {
+    double stray2 = fmax(stray2_of(o, a, b, p.target), sqrt(STRAY_SHARE * p.cost / p.stray));
+    *whole = p.cost + p.stray * stray2 * stray2;
+  }
+  p.slack *= *whole / p.cost;
+  p.cost = *whole;
+  return p;
+}
+
+/* The edge's place as it waits; cost INFINITY: out. Where the cost without the stray is above
+ * `enough`, that is the answer. */
+static place waiting(oracle *o, uint32_t a, uint32_t b, double enough) {
   int state = *state_of(o, a, b) & STATES;
-  return state == OUT ? (place){.cost = INFINITY} : place_of(o, a, b, state - FALLBACK);
+  if (state == OUT) return (place){.cost = INFINITY};
+  place p = place_of(o, a, b, state - FALLBACK);
+  return p.cost > enough ? p : whole_place(o, a, b, state - FALLBACK);
 }
 
 /* What becomes of an edge whose turn came and which is not allowed. */
@@ -357,7 +429,7 @@ static void refuse(oracle *o, uint32_t a, uint32_t b) {
   uint8_t *state = state_of(o, a, b), next = OUT;
   double least = INFINITY;
   for (int k = 0; k < SCREE_FALLBACK_COUNT && (*state & STATES) == BEST; k++) {
-    place p = place_of(o, a, b, k);
+    place p = whole_place(o, a, b, k);
     if (!(p.cost < least) || !may_collapse(o, a, b, p.target)) continue;
     least = p.cost;
     next = (uint8_t)(FALLBACK + k);
@@ -382,7 +454,7 @@ static bool nothing_waits(oracle *o) {
   uint32_t a, b;
   while (next_edge(o, &side, &a, &b))
     for (;;) {
-      place p = waiting(o, a, b);
+      place p = waiting(o, a, b, INFINITY);
       if (!(p.cost < INFINITY) || *state_of(o, a, b) & IN_DOUBT) break;
       if (may_collapse(o, a, b, p.target)) return false;
       refuse(o, a, b);
@@ -394,28 +466,39 @@ static void start_anew(oracle *o) {
   memset(o->state, BEST, o->vertex_count * o->vertex_count);
 }
 
+static void edge_starts_anew(oracle *o, uint32_t v, uint32_t w) {
+  uint8_t *state = state_of(o, v, w);
+  *state = BEST;
+  for (size_t k = 0; k < 4; k++) o->whole[4 * (size_t)(state - o->state) + k] = NAN;
+}
+
 /* The engine collapses (a, b) next, to x; checks that no edge should have come before. */
 static bool check_turn(oracle *o, uint32_t a, uint32_t b, vec3 x, place *chosen) {
-  *chosen = waiting(o, a, b);
+  *chosen = waiting(o, a, b, INFINITY);
+  double refused_at = 0;
   if (chosen->cost < INFINITY && !may_collapse(o, a, b, x) &&
       !may_collapse(o, a, b, chosen->target))
     *chosen = (place){.cost = INFINITY};
   double off = vec3_norm(vec3_sub(x, chosen->target));
   if (!(chosen->cost < INFINITY) ||
       (off > 1e-6 && !(vec3_norm(vec3_sub(x, chosen->other)) <= 1e-6))) {
-    refuse(o, a, b); /* the best place was refused in between: one of the others */
-    *chosen = waiting(o, a, b);
+    /* the best place was refused in between: one of the others */
+    place best = waiting(o, a, b, INFINITY);
+    if (best.cost < INFINITY) refused_at = best.cost;
+    refuse(o, a, b);
+    *chosen = waiting(o, a, b, INFINITY);
   }
   if (!(chosen->cost < INFINITY)) return false;
+  double turn = fmax(chosen->cost, refused_at); /* all below it have had theirs */
   bool alone = true;
   size_t side = 0;
   uint32_t c, d;
   while (next_edge(o, &side, &c, &d)) {
     if (c == a && d == b) continue;
     for (;;) { /* until its turn is not now, or it is out */
-      place p = waiting(o, c, d);
-      if (!(p.cost < INFINITY) || p.cost > chosen->cost + p.slack + chosen->slack) break;
-      if (p.cost >= chosen->cost - p.slack - chosen->slack) {
+      place p = waiting(o, c, d, 2 * turn);
+      if (!(p.cost < INFINITY) || p.cost > turn + p.slack + chosen->slack) break;
+      if (p.cost >= turn - p.slack - chosen->slack) {
         *state_of(o, c, d) |= IN_DOUBT; /* whether its turn came is rounding's to say */
         alone = false;
         break;
@@ -435,8 +518,13 @@ static bool check_turn(oracle *o, uint32_t a, uint32_t b, vec3 x, place *chosen)
 static void apply(oracle *o, uint32_t a, uint32_t b, vec3 x) {
   oracle after = collapsed(o, a, b, x);
   size_t kept = 0;
+  for (size_t w = 0; w < o->vertex_count; w++)
+    if (has(o, o->holder[w], a) || has(o, o->holder[w], b))
+      o->held2[w] = patch_distance2(&after, a, o->witness[w], &o->holder[w]);
   for (size_t t = 0; t < o->triangle_count; t++) {
     if (gone(&after, t)) continue;
+    for (size_t w = 0; w < o->vertex_count; w++)
+      if (o->holder[w] == t) o->holder[w] = (uint32_t)kept;
     memmove(after.triangle + 3 * kept++, after.triangle + 3 * t, 3 * sizeof *after.triangle);
   }
   free(o->position);
@@ -451,7 +539,7 @@ static void apply(oracle *o, uint32_t a, uint32_t b, vec3 x) {
   for (size_t t = 0; t < o->triangle_count; t++) {
     if (!has(o, t, a)) continue;
     for (size_t i = 0; i < 3; i++)
-      for (uint32_t v = 0; v < o->vertex_count; v++) *state_of(o, o->triangle[3 * t + i], v) = BEST;
+      for (uint32_t v = 0; v < o->vertex_count; v++) edge_starts_anew(o, o->triangle[3 * t + i], v);
   }
 }
 
@@ -480,6 +568,13 @@ static oracle oracle_of(const scree_mesh *mesh, const scree_halfmesh *s, bool qe
   for (size_t v = 0; v < n; v++)
     o.position[v] =
         vec3_scale(vec3_sub(vec3_load(mesh->positions + 3 * v), s->centre), 1 / s->scale);
+  o.witness = malloc(n * sizeof *o.witness);
+  o.holder = malloc(n * sizeof *o.holder);
+  o.held2 = calloc(n, sizeof *o.held2);
+  o.whole = malloc(4 * n * n * sizeof *o.whole);
+  for (size_t i = 0; i < 4 * n * n; i++) o.whole[i] = NAN;
+  memcpy(o.witness, o.position, n * sizeof *o.witness);
+  for (size_t i = 3 * m; i-- > 0;) o.holder[o.triangle[i]] = (uint32_t)(i / 3);
   for (size_t t = 0; t < m; t++) {
     vec3 normal = area_vector(&o, t);
     o.weight[t] = vec3_norm(normal);
@@ -503,6 +598,10 @@ static void oracle_free(oracle *o) {
   free(o->share);
   free(o->state);
   free(o->start);
+  free(o->witness);
+  free(o->holder);
+  free(o->held2);
+  free(o->whole);
 }
 
 static void record_make(scree_record *r, size_t capacity) {

@@ -1,0 +1,49 @@
+/* How far a collapse takes the surface astray.
+ *
+ * One by one: the surface that the stage began with is kept, as a tree and by its vertices. Each of
+ * these, a witness, knows a triangle that stands for it now, the nearest of those that took the
+ * place of the last one, and its distance from it. The stray of a collapse is the largest of the
+ * distances of
+ *   - the witnesses of the triangles that change, from the new ones, where it grows;
+ *   - the new vertex and the middles of the new edges at it, from the surface kept.
+ * In batches, where no surface is kept: of the new vertex from the old triangles. */
+#ifndef SCREE_SIMPLIFY_STRAY_H
+#define SCREE_SIMPLIFY_STRAY_H
+
+#include "mesh/bvh.h"
+#include "simplify/collapse.h"
+
+typedef struct scree_witness {
+  vec3 at;
+  double distance2; /* from its triangle, squared */
+  uint32_t next;    /* of the same triangle, or NONE */
+} scree_witness;
+
+typedef struct scree_memory {
+  scree_bvh surface;
+  double area;
+  scree_witness *witnesses;
+  size_t count;
+  uint32_t *first; /* per triangle: its first witness, or NONE */
+} scree_memory;
+
+/* Keeps the surface as it is. */
+scree_status scree_memory_keep(const scree_halfmesh *s, scree_memory *memory, scree_error *error);
+void scree_memory_free(scree_memory *memory);
+
+/* Whether x is near enough to the surface kept for a vertex of a level of so many triangles: within
+ * half of sqrt(area / count). */
+bool scree_memory_allows(const scree_memory *memory, size_t triangle_count, vec3 x);
+
+/* The square of the stray, or `least`, also squared, where it is smaller. */
+double scree_memory_stray(const scree_memory *memory, const scree_halfmesh *s,
+                          const scree_ring *ring, vec3 target, double least);
+
+/* Gives the witnesses of the ring's triangles to those that will be there; before the collapse. */
+void scree_memory_move(scree_memory *memory, const scree_halfmesh *s, const scree_ring *ring,
+                       vec3 target);
+
+/* In batches: whether the square of the stray is at most `most`. */
+bool scree_stays_within(const scree_halfmesh *s, const scree_ring *ring, vec3 target, double most);
+
+#endif
