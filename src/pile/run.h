@@ -48,8 +48,8 @@ scree_status scree_run_make_world(const scree_run *run, double cylinder_height, 
 scree_status scree_run_plan_filling(scree_run *run, scree_error *error);
 scree_status scree_run_enter_layer(scree_run *run, scree_error *error);
 
-/* series.c: whether the settings suit the particles; the moment as it is, without angles; and the next point of the series, with angles
- * where they are due or asked for. */
+/* series.c: whether the settings suit the particles; the moment as it is, without angles; and the
+ * next point of the series, with angles where they are due or asked for. */
 scree_status scree_run_check_measure(const scree_run *run, const scree_experiment *measure,
                                      scree_error *error);
 scree_run_point scree_run_point_now(const scree_run *run);

@@ -101,7 +101,7 @@ typedef struct scree_pair {
   scree_wrench wrench; /* here: the bodies read it with what is above */
   double stiffness, damping, friction, restitution; /* K, C, mu, e */
   double smoothing, reach, limit;                   /* l0; rounding of both meshes; overlap limit */
-  double thin;                /* the limit, or half the thinnest wall of the bodies where less */
+  double thin;               /* the limit, or half the thinnest wall of the bodies where less */
   double travel, path;       /* of the relative motion: last step, and sum; upper bounds */
   double wake, asleep_since; /* on path[a] + path[b] */
   vec3 asleep_at;            /* a in the frame of b when it fell asleep */
@@ -136,7 +136,7 @@ typedef struct scree_touch {
   vec3 at, normal; /* normal towards a */
   double overlap, weight, share;
   double lever; /* how much the overlap falls as a moves along the normal */
-  vec3 force; /* on a */
+  vec3 force;   /* on a */
   scree_anchor *anchor;
 } scree_touch;
 

@@ -22,8 +22,8 @@ typedef struct law_outcome {
 } law_outcome;
 
 /* The two of the meeting hit each other head-on at this speed, try `number`. Counted in out: still
- * pressed together long after, a corner of one inside the other or the two past each other, and runs that
- * stopped. */
+ * pressed together long after, a corner of one inside the other or the two past each other, and
+ * runs that stopped. */
 void law_meet(const law_meeting *m, double speed, uint64_t number, law_outcome *out);
 
 #endif

@@ -2,9 +2,9 @@
  * own, numbers read back the same. */
 #include "base/alloc.h"
 #include "base/file.h"
+#include "base/number.h"
 #include "base/rng.h"
 #include "choice/criterion.h"
-#include "base/number.h"
 #include "report/csv.h"
 #include "report/json.h"
 #include "report/plot.h"
