@@ -31,7 +31,7 @@ export class HeapSection {
     element('h1', `A heap of ${whole(e.particles)} particles of ${shapes.length === 1 ? `one shape, ${shapes[0].name}` : `${whole(shapes.length)} shapes`}`, host);
     const ways = [['the sectors', r.sectors, r.sectors.sd_deg], ['the cone', r.cone, null], ['the silhouettes', r.silhouettes, r.silhouettes.sd_deg]];
     const angles = ways.filter(([, way]) => known(way.angle_deg)).map(([name, way, sd]) => `${number(way.angle_deg, 3)}°${known(sd) ? ` ± ${number(sd, 2)}°` : ''} by ${name}`);
-    element('p', r.heap ? `Angle of repose: ${angles.join(', ')}.` : `There is no heap: ${r.no_heap_because}.`, host, { class: 'answer' });
+    element('p', r.heap ? `Angle of repose: ${angles.join(', ')}${known(r.spread_deg) ? `; the three ways differ by ${number(r.spread_deg, 2)}°` : ''}.` : `There is no heap: ${r.no_heap_because}.`, host, { class: 'answer' });
     element('p', `${r.still ? 'Still' : 'Not yet still'} after ${number(r.time, 4)} s; ${whole(r.body_count)} particles on the disc, ${whole(r.left_count)} fell off; ${number(1000 * r.height, 3)} mm high. Preset ${e.preset}, seed ${e.seed}.${e.preset === 'demo' ? ' The preset demo shows a heap; take no number from it.' : ''}`, host, { class: 'soft' });
   }
 
@@ -108,6 +108,7 @@ export class HeapSection {
       ['angle by sectors / °', r.sectors.angle_deg], ['its standard deviation / °', r.sectors.sd_deg], ['sectors with a flank', r.sectors.count],
       ['angle by the cone / °', r.cone.angle_deg], ['its misfit, rms / mm', known(r.cone.rms) ? 1000 * r.cone.rms : null],
       ['angle by silhouettes / °', r.silhouettes.angle_deg], ['its standard deviation / °', r.silhouettes.sd_deg],
+      ['the three ways differ by / °', r.spread_deg], ['angle by volume and centroid / °', r.volume_deg],
       ['height / mm', 1000 * r.height], ['base radius / mm', known(r.base_radius) ? 1000 * r.base_radius : null], ['run-out / mm', 1000 * r.run_out],
       ['packing fraction', r.packing_fraction], ['coordination number', r.coordination], ['particle size / mm', 1000 * r.particle_size],
       ['kinetic energy left / J', r.kinetic],
