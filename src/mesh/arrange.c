@@ -28,10 +28,13 @@
 
 enum {
   ROUNDS = 16,
-  MEETING_LIMIT = 50000, /* pairs; some seconds */
-  GROWTH = 64,           /* times the facets that went in; more, and the rounds run away */
-  LEAST_LIMIT = 200000,  /* of facets, however few went in */
+  MEETING_LIMIT = 50000,    /* pairs; some seconds */
+  GROWTH = 64,              /* times the facets that went in; more, and the rounds run away */
+  LEAST_LIMIT = 20000,      /* of facets, however few went in */
+  ROUNDING_MEETINGS = 1000, /* more than twice the first and this many, and they run away, too */
 };
+
+static const char endless[] = "cutting the facets where they meet comes to no end";
 
 /* What lies nearer than this share of the bounding box diagonal touches ... */
 #define TOLERANCE 1e-12
@@ -95,6 +98,7 @@ typedef struct arranger {
   LIST(uint32_t) candidates; /* facets with such vertices */
   scree_facet_pairs pairs;
   double tolerance;
+  size_t first_met; /* pairs of facets that met in the first round */
   const char *reason;
 } arranger;
 
@@ -592,6 +596,8 @@ static scree_status run_round(arranger *a, const scree_progress *progress, bool 
   if (!make_mesh(a, &mesh)) return no_memory(error);
   scree_status status = scree_mesh_meetings(&mesh, MEETING_LIMIT, progress, &found, error);
   if (status == SCREE_OK && found.truncated) a->reason = "too many facets meet";
+  if (a->first_met == 0) a->first_met = found.count;
+  if (found.count > 2 * a->first_met + ROUNDING_MEETINGS) a->reason = endless;
   if (status == SCREE_OK && !a->reason) status = list_pairs(a, &found, error);
   bool any = found.count > 0;
   scree_free(found.items);
@@ -631,7 +637,7 @@ scree_status scree_arrange(const scree_mesh *mesh, const scree_progress *progres
   scree_status status = start(&a, mesh) ? SCREE_OK : no_memory(error);
   for (int round = 0; status == SCREE_OK && !a.reason && !done; round++) {
     if (round == ROUNDS || a.facets.count > limit || a.positions.count / 3 >= UINT32_MAX / 4)
-      a.reason = "cutting the facets where they meet comes to no end";
+      a.reason = endless;
     else
       status = run_round(&a, progress, &done, error);
     a.tolerance *= WIDENING;

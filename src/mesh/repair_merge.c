@@ -157,14 +157,23 @@ static const char *ask(const scree_winding *w, uint32_t facet, bool folds, bool 
 
 static scree_status judge_patches(merger *m, bool folds, const char **reason, scree_error *error) {
   const scree_mesh *mesh = &m->parts.mesh;
+  bool any = false;
+  if (mesh->triangle_count == 0) { /* each facet lies on one that is wound the other way */
+    *reason = "they enclose nothing";
+    return SCREE_OK;
+  }
   scree_status status = scree_adjacency_build(mesh, &m->adjacency, error);
   if (status == SCREE_OK) status = find_patches(m, error);
   if (status == SCREE_OK) status = scree_facet_tree_build(mesh, &m->tree, error);
   if (status != SCREE_OK) return status;
   scree_winding w = {
       .tree = &m->tree, .weights = m->parts.weights, .rounding = scree_winding_rounding(&m->tree)};
-  for (uint32_t t = 0; t < mesh->triangle_count && !*reason; t++)
-    if (m->patch[t] == t) *reason = ask(&w, m->speaker[t], folds, &m->keep[t]);
+  for (uint32_t t = 0; t < mesh->triangle_count && !*reason; t++) {
+    if (m->patch[t] != t) continue;
+    *reason = ask(&w, m->speaker[t], folds, &m->keep[t]);
+    any |= !*reason && m->keep[t];
+  }
+  if (!any && !*reason) *reason = "they enclose nothing";
   return SCREE_OK;
 }
 

@@ -163,6 +163,16 @@ static void refused_with_a_reason(void **state) {
   scree_mesh_free(&all);
 }
 
+/* A shell and the same inside out, which cuts it into facets of its own: all cancel. */
+static void nothing_left(void **state) {
+  (void)state;
+  scree_mesh all = join_and_free(shape_grid_box(2, 2, 2, 2), flipped(shape_grid_box(2, 2, 2, 3)));
+  scree_error error;
+  scree_mesh none;
+  assert_int_equal(scree_mesh_repair(&all, NULL, NULL, &none, NULL, &error), SCREE_BAD_MESH);
+  scree_mesh_free(&all);
+}
+
 /* A vertex pulled through the far side: what sticks out there is wound backwards, and goes. */
 static void folds(void **state) {
   (void)state;
@@ -230,6 +240,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(boxes_on_a_grid), cmocka_unit_test(bodies_anywhere),
       cmocka_unit_test(cavities_stay),   cmocka_unit_test(refused_with_a_reason),
-      cmocka_unit_test(folds),           cmocka_unit_test(is_repeatable)};
+      cmocka_unit_test(nothing_left),    cmocka_unit_test(folds),
+      cmocka_unit_test(is_repeatable)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
