@@ -166,7 +166,8 @@ static bool start(arranger *a, const scree_mesh *mesh) {
   vec3 low = {INFINITY, INFINITY, INFINITY}, high = vec3_neg(low);
   double largest = 0;
   if (!SCREE_RESERVE(&a->positions, 3 * mesh->vertex_count)) return false;
-  memcpy(a->positions.items, mesh->positions, 3 * mesh->vertex_count * sizeof(double));
+  if (a->positions.items)
+    memcpy(a->positions.items, mesh->positions, 3 * mesh->vertex_count * sizeof(double));
   a->positions.count = 3 * mesh->vertex_count;
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     const uint32_t *v = mesh->triangles + 3 * t;
@@ -260,6 +261,7 @@ static bool add_edge_segments(arranger *a, uint32_t t, const scree_site_facet *o
 static bool add_longest_segment(arranger *a, uint32_t t, const half_site *sites, int count) {
   int first = 0, second = 0;
   double most = 0;
+  if (count < 2) return true;
   for (int i = 0; i < count; i++)
     for (int j = 0; j < i; j++) {
       double length = vec3_distance(place(a, sites[i].vertex), place(a, sites[j].vertex));
@@ -311,6 +313,7 @@ static bool place_apex(arranger *a, uint32_t t) {
 /* Facets that met others in this round or an earlier one, and all at their vertices: those are
  * looked at again, for what comes within the tolerance only. */
 static bool list_candidates(arranger *a, const scree_meetings *found) {
+  if (a->facets.count == 0) return true;
   while (a->active.count < a->positions.count / 3)
     if (!SCREE_PUSH(&a->active, false)) return false;
   for (size_t i = 0; i < found->count; i++)
