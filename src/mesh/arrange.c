@@ -267,7 +267,8 @@ static bool add_longest_segment(arranger *a, uint32_t t, const half_site *sites,
       double length = vec3_distance(place(a, sites[i].vertex), place(a, sites[j].vertex));
       if (length > most) most = length, first = j, second = i;
     }
-  if (most <= a->tolerance || share_edge(sites[first].here, sites[second].here)) return true;
+  if (count < 2 || most <= a->tolerance || share_edge(sites[first].here, sites[second].here))
+    return true;
   return add_segment(a, t, sites[first].vertex, sites[second].vertex);
 }
 
@@ -313,7 +314,7 @@ static bool place_apex(arranger *a, uint32_t t) {
 /* Facets that met others in this round or an earlier one, and all at their vertices: those are
  * looked at again, for what comes within the tolerance only. */
 static bool list_candidates(arranger *a, const scree_meetings *found) {
-  if (a->facets.count == 0) return true;
+  a->candidates.count = a->triangles.count = 0;
   while (a->active.count < a->positions.count / 3)
     if (!SCREE_PUSH(&a->active, false)) return false;
   for (size_t i = 0; i < found->count; i++)
@@ -321,7 +322,6 @@ static bool list_candidates(arranger *a, const scree_meetings *found) {
       a->active.items[a->facets.items[found->items[i].first].v[k]] = true;
       a->active.items[a->facets.items[found->items[i].second].v[k]] = true;
     }
-  a->candidates.count = a->triangles.count = 0;
   for (uint32_t t = 0; t < a->facets.count; t++) {
     const uint32_t *v = a->facets.items[t].v;
     if (!a->active.items[v[0]] && !a->active.items[v[1]] && !a->active.items[v[2]]) continue;
@@ -596,6 +596,8 @@ static scree_status run_round(arranger *a, const scree_progress *progress, bool 
   scree_meetings found = {0};
   size_t old_count = a->positions.count / 3;
   sum_facets(a);
+  *done = a->facets.items == NULL; /* there are none, or all have vanished */
+  if (*done) return SCREE_OK;
   if (!make_mesh(a, &mesh)) return no_memory(error);
   scree_status status = scree_mesh_meetings(&mesh, MEETING_LIMIT, progress, &found, error);
   if (status == SCREE_OK && found.truncated) a->reason = "too many facets meet";
