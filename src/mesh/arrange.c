@@ -267,8 +267,7 @@ static bool add_longest_segment(arranger *a, uint32_t t, const half_site *sites,
       double length = vec3_distance(place(a, sites[i].vertex), place(a, sites[j].vertex));
       if (length > most) most = length, first = j, second = i;
     }
-  if (count < 2 || most <= a->tolerance || share_edge(sites[first].here, sites[second].here))
-    return true;
+  if (most <= a->tolerance || share_edge(sites[first].here, sites[second].here)) return true;
   return add_segment(a, t, sites[first].vertex, sites[second].vertex);
 }
 
