@@ -229,7 +229,7 @@ static void a_failing_run_leaves_its_last_good_state(void **state) {
   scree_wall floor = {.kind = SCREE_WALL_PLANE, .axis = {0, 0, 1}};
   scree_body body = scree_default_body();
   body.position[2] = 0.1;
-  body.velocity[2] = -20;
+  body.velocity[2] = -60;
   CHECK_OK(scree_world_create(NULL, &world, &error), error);
   CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
   CHECK_OK(scree_world_add_wall(world, &floor, NULL, &error), error);
