@@ -13,10 +13,17 @@ SCREE = os.path.abspath(sys.argv[1])
 SCANS = sys.argv[2] if len(sys.argv) > 2 else None
 
 
+# Left out of messages.
+FOLDERS = [os.path.abspath(SCANS) + "/"] if SCANS else []
+
+
 def run(*words, timeout=600):
     done = subprocess.run(words, capture_output=True, encoding="utf-8", errors="replace",
                           timeout=timeout)
-    return done.returncode, done.stdout, done.stderr
+    said = done.stderr
+    for folder in FOLDERS:
+        said = said.replace(folder, "")
+    return done.returncode, done.stdout, said
 
 
 # ---- Generated defects ----
@@ -205,6 +212,7 @@ def row(name, path, folder):
 def main():
     header = "| what | scree finds | scree repair | admesh, judged by scree check |\n|---|---|---|---|"
     with tempfile.TemporaryDirectory() as folder:
+        FOLDERS.append(folder + "/")
         print("### Generated defects\n\n" + header)
         for name, facets in generated():
             path = os.path.join(folder, "defect.stl")

@@ -41,7 +41,7 @@ csv=$results/job.csv
   n=300000
   for i in 1 2 3 4; do cp "$(body phone $n stl)" "$work/many_$i.stl"; done
   IFS=, read -r wall cpu peak _ < <(cost 3 "$bin/scree" choose -q "$work"/many_[1-4].stl)
-  IFS=, read -r one one_cpu _ _ < <(cost "$bin/scree" choose -q "$work/many_1.stl")
+  IFS=, read -r one one_cpu _ _ < <(cost 3 "$bin/scree" choose -q "$work/many_1.stl")
   awk -v OFS=, -v n=$n -v w="$wall" -v c="$cpu" -v p="$peak" -v o="$one" -v oc="$one_cpu" 'BEGIN {
     print "four files at once", 4 * n, w, c, p, "", "", "", sprintf("%.0f", p / (4 * n)), ""
     print "one of them", n, o, oc, "", "", "", "", "", "" }'

@@ -11,7 +11,7 @@ static const double entry_speed = 3;          /* m/s, about */
 static const double soft_time = 0.5;          /* s at rest, soft */
 static const double hard_time = 0.15;         /* s at rest, at full stiffness */
 static const double gentle_time = 1;          /* s of copies sinking onto each other, g / 10 */
-static const double stack_time = 0.3;         /* s at rest after that */
+static const double stack_time = 1.2;         /* s at rest after that */
 static const double lift_speed = 0.1;         /* m/s, the paper's */
 static const double flowing_hard_time = 0.02; /* s of the lift at full stiffness before measuring */
 
