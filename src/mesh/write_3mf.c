@@ -132,7 +132,7 @@ static void put_model(sink *out, const scree_writing *w) {
 /* ---- The archive (PKWARE APPNOTE 4.3) ---- */
 
 static void put_number(FILE *stream, size_t value, int byte_count) {
-  for (int i = 0; i < byte_count; i++) fputc((int)(value >> 8 * i & 255), stream);
+  for (int i = 0; i < byte_count; i++, value >>= 8) fputc((int)(value & 255), stream);
 }
 
 /* What local headers and entries of the directory share, from the version needed on. */
