@@ -263,7 +263,7 @@ static bool links_agree(const oracle *o, uint32_t a, uint32_t b) {
 static oracle collapsed(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
   oracle n = *o;
   n.position = malloc(o->vertex_count * sizeof *n.position);
-  n.triangle = malloc(3 * o->triangle_count * sizeof *n.triangle);
+  n.triangle = malloc((3 * o->triangle_count + 1) * sizeof *n.triangle);
   memcpy(n.position, o->position, o->vertex_count * sizeof *n.position);
   n.position[a] = x;
   for (size_t t = 0; t < o->triangle_count; t++)
