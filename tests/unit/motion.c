@@ -6,12 +6,10 @@
 #include "report/pile_pack.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
+#include "support/folder.h"
 
 #include <meshoptimizer.h>
 #include <unistd.h>
-
-static char folder[] = "/tmp/scree-motion-XXXXXX";
-static char path[200];
 
 /* Six spheres and six chips. */
 typedef struct pot {
@@ -54,11 +52,6 @@ static void free_pot(pot *p) {
   scree_experiment_free(&p->experiment);
 }
 
-static const char *in_folder(const char *name) {
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
-
 static bool count_down(void *context, const scree_run_state *state) {
   (void)state;
   size_t *left = context;
@@ -81,13 +74,13 @@ static void complete(const pot *p, const char *name, size_t cancel_count) {
                        .watch = count_down,
                        .context = &left};
   while ((status = scree_run_complete(&job, &run, &error)) == SCREE_CANCELLED) {
-    char file[240];
+    char file[80];
     cancelled++;
-    snprintf(file, sizeof file, "%s/%s/motion.scree", folder, name);
-    FILE *stream = fopen(file, "ab"); /* as if killed while a frame was written */
+    snprintf(file, sizeof file, "%s/motion.scree", name);
+    FILE *stream = fopen(in_folder(file), "ab"); /* as if killed while a frame was written */
     fputs("part of a frame, which is longer than its header alone", stream);
     fclose(stream);
-    in_folder(name);
+    job.folder = in_folder(name);
   }
   CHECK_OK(status, error);
   assert_int_equal(cancelled, cancel_count);
@@ -314,11 +307,9 @@ static void the_page_gets_every_frame_or_those_that_fit(void **state) {
 static void a_motion_of_another_run_is_not_shown(void **state) {
   (void)state;
   pot p = make_pot();
-  char from[240], to[240];
   p.experiment.seed = 2;
   complete(&p, "other", 0);
-  snprintf(from, sizeof from, "%s/whole/motion.scree", folder);
-  snprintf(to, sizeof to, "%s/other/motion.scree", folder);
+  const char *from = in_folder("whole/motion.scree"), *to = in_folder("other/motion.scree");
   packed own = pack("other", 1 << 20);
   assert_true(own.frame_count > 200);
   assert_int_equal(rename(from, to), 0);
@@ -352,18 +343,6 @@ static void out_of_memory_is_told(void **state) {
   (void)state;
   check_allocation_failures(read_again, (void *)(uintptr_t)in_folder("whole/motion.scree"));
   check_allocation_failures(pack_again, (void *)(uintptr_t)in_folder("whole"));
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  char command[200];
-  snprintf(command, sizeof command, "rm -r '%s'", folder);
-  return system(command);
 }
 
 int main(void) {

@@ -4,10 +4,9 @@
 #include "study/special.h"
 #include "study/study.h"
 #include "support/check.h"
+#include "support/folder.h"
 
 #include <unistd.h>
-
-static char folder[] = "/tmp/scree_answer_XXXXXX";
 
 enum { LEVELS = 5, REPLICATES = 4, SPHERES = LEVELS, POINTS = LEVELS + 1 };
 static const char *const names[POINTS] = {"1e-5", "1e-4", "3e-4", "1e-3", "2e-3", "spheres"};
@@ -93,8 +92,9 @@ static void write_text(const char *path, const char *text) {
 static scree_study *make_study(const outcome *o) {
   scree_study *study;
   scree_error error;
-  char path[128], text[400];
-  snprintf(path, sizeof path, "%s/%s.yaml", folder, o->name);
+  char yaml[80], text[400];
+  snprintf(yaml, sizeof yaml, "%s.yaml", o->name);
+  const char *path = in_folder(yaml);
   snprintf(text, sizeof text,
            "name: %s\nreplicates: %d\nshapes: [sample:box, sample:sphere]\nbase: {preset: demo}\n"
            "factors: {rp: [3e-4, spheres, 2e-3, 1e-5, 1e-3, 1e-4]}\n"
@@ -102,8 +102,7 @@ static scree_study *make_study(const outcome *o) {
            o->name, REPLICATES, o->angle);
   write_text(path, text);
   CHECK_OK(scree_study_read(path, &study, &error), error);
-  snprintf(path, sizeof path, "%s/%s", folder, o->name);
-  CHECK_OK(scree_study_open(study, path, &error), error);
+  CHECK_OK(scree_study_open(study, in_folder(o->name), &error), error);
   for (size_t i = 0; i < study->shape_count; i++) {
     study->shapes[i].known = true;
     study->shapes[i].paper_rp = o->paper_rp[i];
@@ -284,26 +283,12 @@ static void all_of_it_is_drawn_and_written(void **state) {
   (void)state;
   static const char *const files[] = {"study.json",   "points.csv",   "angle.png", "angle.csv",
                                       "rotation.svg", "rotation.csv", "time.pdf",  "time.gnuplot"};
-  char path[160];
   scree_study_result r = analyse(&plateau);
   scree_error error;
-  CHECK_OK(scree_study_report_write(&r, folder, &error), error);
-  for (size_t i = 0; i < sizeof files / sizeof *files; i++) {
-    snprintf(path, sizeof path, "%s/%s", folder, files[i]);
-    assert_int_equal(access(path, R_OK), 0);
-  }
+  CHECK_OK(scree_study_report_write(&r, in_folder("."), &error), error);
+  for (size_t i = 0; i < sizeof files / sizeof *files; i++)
+    assert_int_equal(access(in_folder(files[i]), R_OK), 0);
   scree_study_result_free(&r);
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-static int remove_folder(void **state) {
-  (void)state;
-  char command[80];
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  return system(command);
 }
 
 int main(void) {
