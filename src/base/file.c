@@ -108,6 +108,11 @@ static int create_beside(const char *path, char *name, size_t size) {
   return fd;
 }
 
+/* A device or a pipe. */
+static bool is_special(const struct stat *info) {
+  return !S_ISREG(info->st_mode) && !S_ISDIR(info->st_mode);
+}
+
 scree_status scree_output_open(const char *path, bool overwrite, scree_output *output,
                                scree_error *error) {
   if (!strcmp(path, "-")) {
@@ -115,8 +120,9 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
     return SCREE_OK;
   }
   struct stat info;
-  bool exists = stat(path, &info) == 0;
-  bool direct = exists && !S_ISREG(info.st_mode) && !S_ISDIR(info.st_mode);
+  bool exists = stat(path, &info) == 0, direct = exists && is_special(&info);
+  if (exists && S_ISDIR(info.st_mode))
+    return scree_fail(error, SCREE_IO, "%s: is a folder, not a file", path);
   if (exists && !overwrite && !direct)
     return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
   size_t size = strlen(path) + 32;
@@ -141,6 +147,20 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
   }
   scree_free(opened.path);
   scree_free(opened.temporary_path);
+  return status;
+}
+
+scree_status scree_output_check(const char *path, bool overwrite, scree_error *error) {
+  struct stat info;
+  scree_output output;
+  if (!strcmp(path, "-")) return SCREE_OK;
+  /* to open a pipe is to wait for its reader, and to close it tells the reader that it was all */
+  if (stat(path, &info) == 0 && is_special(&info)) {
+    if (access(path, W_OK) == 0) return SCREE_OK;
+    return scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
+  }
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status == SCREE_OK) scree_output_discard(&output);
   return status;
 }
 

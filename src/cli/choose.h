@@ -10,7 +10,7 @@ enum { CHOOSE_NAME_BYTES = 128, CHOOSE_NOTE_BYTES = 256, CHOOSE_PATH_BYTES = 409
 typedef struct choose_arguments {
   const char *output, *grid;
   cli_source source;
-  double weight;
+  double weight, density;
   int method, reference;
   bool samples, paper, errors, distances, json, csv, no_repair, overwrite;
 } choose_arguments;

@@ -1,7 +1,9 @@
 /* The files of `choose -o DIR`:
  *
  *   NAME.stl             the chosen mesh of each object
+ *   NAME.mass.json       its mass, centre and inertia, as `scree export` writes them
  *   set/NAME.stl         its mesh at the set's Rp, where there are several objects
+ *   set/NAME.mass.json
  *   NAME.curve.csv       its dense curve
  *   choice.txt           what is printed
  *   choice.json, choice.csv
@@ -13,7 +15,6 @@
 
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 static const char *const FIGURES[] = {"figure.png", "figure.svg", "figure.pdf", "figure.csv",
                                       "figure.gnuplot"};
@@ -38,13 +39,17 @@ static scree_status join(const choose_run *run, const char *before, const char *
   return fail(error, SCREE_LIMIT, run->arguments->output, "the path is too long");
 }
 
-static scree_status refuse_existing(const choose_run *run, const char *before, const char *name,
-                                    const char *after, scree_error *error) {
+static scree_status check_file(const choose_run *run, const char *before, const char *name,
+                               const char *after, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
-  struct stat info;
   scree_status status = join(run, before, name, after, path, error);
-  if (status != SCREE_OK || run->arguments->overwrite || stat(path, &info) != 0) return status;
-  return fail(error, SCREE_EXISTS, path, "exists already; -f overwrites");
+  return status == SCREE_OK ? scree_output_check(path, run->arguments->overwrite, error) : status;
+}
+
+static scree_status check_mesh(const choose_run *run, const char *before, const char *name,
+                               scree_error *error) {
+  scree_status status = check_file(run, before, name, ".stl", error);
+  return status == SCREE_OK ? check_file(run, before, name, ".mass.json", error) : status;
 }
 
 static scree_status make_subfolder(const choose_run *run, const char *name, scree_error *error) {
@@ -55,32 +60,42 @@ static scree_status make_subfolder(const choose_run *run, const char *name, scre
 
 scree_status choose_prepare_folder(const choose_run *run, scree_error *error) {
   scree_status status = scree_folder_create(run->arguments->output, error);
-  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
-    status = refuse_existing(run, "", FIGURES[i], "", error);
-  for (int i = 0; i < SINGLE_FILE_COUNT && status == SCREE_OK; i++)
-    status = refuse_existing(run, "", SINGLE_FILES[i], "", error);
-  for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
-    const char *name = run->objects[i].name;
-    status = refuse_existing(run, "", name, ".stl", error);
-    if (status == SCREE_OK) status = refuse_existing(run, "", name, ".curve.csv", error);
-    if (status == SCREE_OK) status = refuse_existing(run, "levels/", name, ".levels", error);
-    if (status == SCREE_OK && run->count > 1)
-      status = refuse_existing(run, "set/", name, ".stl", error);
-  }
   if (status == SCREE_OK) status = make_subfolder(run, "levels", error);
   if (status == SCREE_OK && run->count > 1) status = make_subfolder(run, "set", error);
+  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
+    status = check_file(run, "", FIGURES[i], "", error);
+  for (int i = 0; i < SINGLE_FILE_COUNT && status == SCREE_OK; i++)
+    status = check_file(run, "", SINGLE_FILES[i], "", error);
+  for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
+    const char *name = run->objects[i].name;
+    status = check_mesh(run, "", name, error);
+    if (status == SCREE_OK) status = check_file(run, "", name, ".curve.csv", error);
+    if (status == SCREE_OK) status = check_file(run, "levels/", name, ".levels", error);
+    if (status == SCREE_OK && run->count > 1) status = check_mesh(run, "set/", name, error);
+  }
   return status;
 }
 
-static scree_status write_level(const choose_run *run, const scree_curve *curve, size_t level_index,
-                                const char *path, scree_error *error) {
-  scree_mesh mesh;
-  scree_status status = scree_curve_mesh(curve, level_index, &mesh, error);
-  if (status != SCREE_OK) return status;
-  scree_write_options options = scree_default_write_options();
+/* One level of object `index` into `before`: path gets the mesh's, what it weighs lies beside it.
+ */
+static scree_status write_level(const choose_run *run, size_t index, const scree_curve *curve,
+                                size_t level_index, const char *before,
+                                char path[CHOOSE_PATH_BYTES], scree_error *error) {
+  const choose_object *object = &run->objects[index];
+  scree_export_options options = scree_default_export_options();
+  char mass_path[CHOOSE_PATH_BYTES];
+  scree_mesh mesh = {0};
+  options.density = run->arguments->density;
   options.unit_m = run->arguments->source.unit;
   options.overwrite = run->arguments->overwrite;
-  status = scree_mesh_write(&mesh, path, &options, error);
+  options.source = object->word;
+  options.command_line = run->call->command_line;
+  options.checksum = object->checksum;
+  scree_status status = join(run, before, object->name, ".stl", path, error);
+  if (status == SCREE_OK) status = join(run, before, object->name, ".mass.json", mass_path, error);
+  if (status == SCREE_OK) status = scree_curve_mesh(curve, level_index, &mesh, error);
+  if (status == SCREE_OK)
+    status = scree_particle_export(&mesh, &options, path, mass_path, NULL, error);
   scree_mesh_free(&mesh);
   return status;
 }
@@ -90,9 +105,8 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
                                  scree_error *error) {
   choose_object *object = &run->objects[index];
   size_t level = choose_default_pick(run, choice)->level_index;
-  scree_status status = join(run, "", object->name, ".stl", object->mesh_path, error);
-  if (status == SCREE_OK) status = write_level(run, curve, level, object->mesh_path, error);
   char path[CHOOSE_PATH_BYTES];
+  scree_status status = write_level(run, index, curve, level, "", object->mesh_path, error);
   if (status == SCREE_OK) status = join(run, "levels/", object->name, ".levels", path, error);
   if (status == SCREE_OK)
     status = scree_levels_write(curve, choice, SCREE_LEVELS_BYTES / run->count, path,
@@ -100,8 +114,7 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
   if (status != SCREE_OK || run->count < 2) return status;
   double rp = run->arguments->paper ? set->paper_rp : set->robust_rp;
   level = scree_curve_find(curve, scree_choice_target(rp, choice->triangle_count));
-  status = join(run, "set/", object->name, ".stl", path, error);
-  return status == SCREE_OK ? write_level(run, curve, level, path, error) : status;
+  return write_level(run, index, curve, level, "set/", path, error);
 }
 
 /* choice.txt: what choose_print says. */

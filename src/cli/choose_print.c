@@ -199,11 +199,10 @@ void choose_print(FILE *out, const choose_run *run) {
   print_notes(out, run);
   const char *folder = run->arguments->output;
   if (folder)
-    fprintf(
-        out,
-        "In %s: report.html, %s, figure.png, choice.json\n"
-        "With mass and inertia, for a DEM code: scree export %s/%s.stl --principal -o FILE.stl\n",
-        folder, run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl", folder,
-        run->objects[0].name);
+    fprintf(out,
+            "In %s: report.html, %s, figure.png, choice.json\n"
+            "*.mass.json: mass, centre, inertia at %g kg/m3. Placed otherwise: scree export\n",
+            folder, run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl",
+            run->arguments->density);
   print_other_errors(out, run);
 }

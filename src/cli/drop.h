@@ -47,9 +47,10 @@ int drop_read_words(drop_run *run);
 /* Loads, repairs, decimates: every shape gets its particle. */
 scree_status drop_make_particles(drop_run *run, scree_error *error);
 
-/* drop_output.c: an earlier drop in the folder is refused where nothing may be overwritten. */
-scree_status drop_refuse_existing(const drop_run *run, scree_error *error);
-/* The folder and the table. */
+/* drop_output.c: makes the folder; an earlier drop in it is refused where nothing may be
+ * overwritten. */
+scree_status drop_check_output(const drop_run *run, scree_error *error);
+/* The table. */
 scree_status drop_open_output(drop_run *run, scree_error *error);
 /* A pour that fails shall leave the state before it. */
 scree_status drop_keep_state(drop_run *run, scree_error *error);

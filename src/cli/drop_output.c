@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static scree_status make_path(const drop_run *run, const char *name, char path[DROP_PATH_BYTES],
                               scree_error *error) {
@@ -23,18 +22,16 @@ static scree_status fail(scree_error *error, scree_status status, const char *pa
   return status;
 }
 
-scree_status drop_refuse_existing(const drop_run *run, scree_error *error) {
+scree_status drop_check_output(const drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
   scree_status status = make_path(run, "series.csv", path, error);
-  if (status != SCREE_OK || run->arguments->overwrite || access(path, F_OK) != 0) return status;
-  return fail(error, SCREE_EXISTS, path, "exists already; -f overwrites");
+  if (status == SCREE_OK) status = scree_folder_create(run->arguments->output, error);
+  return status == SCREE_OK ? scree_output_check(path, run->arguments->overwrite, error) : status;
 }
 
 scree_status drop_open_output(drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
   scree_status status = make_path(run, "series.csv", path, error);
-  if (status != SCREE_OK) return status;
-  status = scree_folder_create(run->arguments->output, error);
   if (status != SCREE_OK) return status;
   run->series = fopen(path, run->arguments->overwrite ? "w" : "wx");
   if (!run->series) return fail(error, SCREE_IO, path, strerror(errno));

@@ -25,7 +25,7 @@ bool cli_parse_levels(const char *text, cli_grain_options *options) {
   return options->rp_count > 0;
 }
 
-static size_t level_count(const cli_grain_options *o) {
+size_t cli_level_count(const cli_grain_options *o) {
   if (o->rp_count) return o->rp_count + o->spheres;
   return 1; /* spheres alone, or as given */
 }
@@ -178,7 +178,7 @@ static scree_status make_from_clump(const maker *m, size_t shape, const char *wo
 scree_status cli_make_grains(const char *const *words, size_t count,
                              const cli_grain_options *options, const scree_progress *progress,
                              cli_grains *grains, scree_error *error) {
-  size_t levels = level_count(options), all = levels * count;
+  size_t levels = cli_level_count(options), all = levels * count;
   *grains =
       (cli_grains){count, levels, calloc(all, sizeof *grains->grains),
                    calloc(all, sizeof *grains->shapes), calloc(2 * all, sizeof *grains->texts)};

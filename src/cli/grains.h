@@ -27,6 +27,8 @@ typedef struct cli_grains {
 /* "1e-5,1e-4,1e-3" into options; false where it is none, or too long. */
 bool cli_parse_levels(const char *text, cli_grain_options *options);
 
+size_t cli_level_count(const cli_grain_options *options);
+
 /* The level in words, for folders and tables: "rp-1e-05", "spheres", "as-given". */
 void cli_level_name(const cli_grain_options *options, size_t level, char *buffer, size_t size);
 

@@ -50,6 +50,24 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
   if (!buffer[0]) snprintf(buffer, size, "scan");
 }
 
+scree_status cli_check_mesh_output(const char *path, bool overwrite, scree_error *error) {
+  if (scree_file_format_of(path) != SCREE_FORMAT_AUTO)
+    return scree_output_check(path, overwrite, error);
+  error->status = SCREE_BAD_ARGUMENT;
+  snprintf(error->message, sizeof error->message,
+           "%.900s: the name of a mesh must end in .stl, .ply, .obj, .off or .3mf", path);
+  return SCREE_BAD_ARGUMENT;
+}
+
+scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,
+                        scree_error *error) {
+  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+  int stem = (int)(dot ? (size_t)(dot - path) : strlen(path));
+  if (snprintf(buffer, size, "%.*s%s", stem, path, ending) < (int)size) return SCREE_OK;
+  *error = (scree_error){SCREE_LIMIT, "the output's name is too long"};
+  return SCREE_LIMIT;
+}
+
 const char *cli_count_text(size_t count, char buffer[32]) {
   char digits[24];
   int length = snprintf(digits, sizeof digits, "%zu", count);

@@ -5,14 +5,18 @@
 
 enum { METHOD_UNSET = -1 };
 
-static const choose_arguments defaults = {
-    .grid = "1e-5:1e-1:9", .source = CLI_SOURCE_DEFAULTS, .weight = 1, .method = METHOD_UNSET};
+static const choose_arguments defaults = {.grid = "1e-5:1e-1:9",
+                                          .source = CLI_SOURCE_DEFAULTS,
+                                          .weight = 1,
+                                          .density = 2000,
+                                          .method = METHOD_UNSET};
 
 #define AT(field) offsetof(choose_arguments, field)
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "DIR",
-     "Write the chosen meshes, the curves, the figure, the tables and report.html into DIR.", 0, 0,
-     NULL},
+     "Write the chosen meshes with mass and inertia, the curves, the figure, the tables and "
+     "report.html into DIR.",
+     0, 0, NULL},
     {"samples", 0, CLI_FLAG, AT(samples), NULL, "Choose for the nine built-in devices.", 0, 0,
      NULL},
     {"paper", 'p', CLI_FLAG, AT(paper), NULL,
@@ -34,6 +38,8 @@ static const cli_option options[] = {
      "Also inertia and principal dimensions at every grid level.", 0, 0, NULL},
     {"distance", 'd', CLI_FLAG, AT(distances), NULL,
      "Also Hausdorff and mean distance to the scan at every grid level (slow).", 0, 0, NULL},
+    {"density", 0, CLI_REAL, AT(density), "RHO",
+     "Density in kg/m3, for the mass and inertia written. Default: 2000.", 1e-6, 1e6, NULL},
     {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
      0, NULL},
     {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,

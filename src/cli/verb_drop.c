@@ -245,7 +245,7 @@ static void print_summary(const drop_run *run, bool still, double seconds) {
 
 static scree_status pour(drop_run *run, scree_error *error) {
   bool still = false;
-  scree_status status = drop_refuse_existing(run, error);
+  scree_status status = drop_check_output(run, error);
   if (status == SCREE_OK) status = drop_make_particles(run, error);
   if (status == SCREE_OK) status = create_pour(run, error);
   if (status == SCREE_OK) status = drop_open_output(run, error);

@@ -115,16 +115,10 @@ static scree_status write_mesh(const cli_call *call, const scree_scan *scan, scr
   scree_export_options o = export_options(call);
   scree_exported exported;
   char json_path[4096];
-  const char *dot = strrchr(a->output, '.');
-  int stem = (int)(dot - a->output);
-  if (snprintf(json_path, sizeof json_path, "%.*s.json", stem, a->output) >=
-      (int)sizeof json_path) {
-    *error = (scree_error){SCREE_LIMIT, "the output's name is too long"};
-    return SCREE_LIMIT;
-  }
+  scree_status status = cli_beside(a->output, ".json", json_path, sizeof json_path, error);
+  if (status != SCREE_OK) return status;
   o.checksum = scan->checksum;
-  scree_status status =
-      scree_particle_export(&scan->mesh, &o, a->output, json_path, &exported, error);
+  status = scree_particle_export(&scan->mesh, &o, a->output, json_path, &exported, error);
   if (status == SCREE_OK) say(call, &exported, json_path);
   return status;
 }
@@ -133,7 +127,8 @@ static scree_status export_surface(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   cli_input_options input = cli_source_options(&a->source);
   scree_scan scan;
-  scree_status status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
+  scree_status status = scree_output_check(a->output, a->overwrite, error);
+  if (status == SCREE_OK) status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
   if (status != SCREE_OK) return status;
   status = has_extension(a->output, ".vtp") ? write_vtp(call, &scan.mesh, error)
                                             : write_mesh(call, &scan, error);

@@ -120,9 +120,18 @@ static int measure(const cli_call *call, scree_run *run, scree_error *error) {
   return code;
 }
 
+static scree_status check_outputs(const pile_arguments *a, scree_error *error) {
+  const char *const outputs[] = {a->csv, a->vtp, a->picture};
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < 3 && status == SCREE_OK; i++)
+    if (outputs[i]) status = scree_output_check(outputs[i], a->force, error);
+  return status;
+}
+
 static int run(const cli_call *call) {
   scree_run *loaded;
   scree_error error;
+  if (check_outputs(call->options, &error) != SCREE_OK) return cli_fail(&error);
   if (scree_run_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
   int code = measure(call, loaded, &error);
   scree_run_free(loaded);

@@ -153,7 +153,8 @@ static int run(const cli_call *call) {
   scree_mesh repaired = {0};
   scree_error error = {.status = SCREE_OK};
   if (!a->output) return cli_misuse(call->verb, "say with -o where the result is to go");
-  if (cli_load(call->inputs[0], &input, call->progress, &scan, &error) != SCREE_OK)
+  if (cli_check_mesh_output(a->output, a->force, &error) != SCREE_OK ||
+      cli_load(call->inputs[0], &input, call->progress, &scan, &error) != SCREE_OK)
     return cli_fail(&error);
   scree_status status =
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);

@@ -207,6 +207,13 @@ static scree_status on_frame(void *context, scree_run *run, size_t index, scree_
   return write_views(o, run, stem, error);
 }
 
+static scree_status fail_begun(const char *path, scree_error *error) {
+  error->status = SCREE_EXISTS;
+  snprintf(error->message, sizeof error->message,
+           "%.900s: exists already: --resume goes on, -f begins anew", path);
+  return SCREE_EXISTS;
+}
+
 /* experiment.yaml: what is run. */
 static scree_status write_experiment(const one_run *o, scree_error *error) {
   const repose_arguments *a = o->all->arguments;
@@ -225,10 +232,7 @@ static scree_status write_experiment(const one_run *o, scree_error *error) {
   }
   scree_status status = scree_text_write(text, path, a->force || a->resume, error);
   free(text);
-  if (status == SCREE_EXISTS)
-    snprintf(error->message, sizeof error->message,
-             "%.900s: exists already: --resume goes on, -f begins anew", path);
-  return status;
+  return status == SCREE_EXISTS ? fail_begun(path, error) : status;
 }
 
 /* The collection of the frames, for each view that was written. */
@@ -341,21 +345,37 @@ static scree_status write_results(const one_run *o, scree_run *run, const scree_
   return status == SCREE_OK ? write_page(o, error) : status;
 }
 
-static scree_status prepare_folder(const one_run *o) {
-  repose *r = o->all;
-  if (!r->arguments->output || o->alone) return SCREE_OK;
-  scree_status status = scree_folder_create(o->folder, &r->error);
-  return status == SCREE_OK ? write_experiment(o, &r->error) : status;
+/* The run of a level: its name and folder. */
+static one_run level_run(repose *r, size_t level) {
+  one_run o = {.all = r};
+  const char *output = r->arguments->output;
+  cli_level_name(&r->grain_options, level, o.name, sizeof o.name);
+  if (output && cli_level_count(&r->grain_options) > 1)
+    snprintf(o.folder, sizeof o.folder, "%s/%s", output, o.name);
+  else if (output)
+    snprintf(o.folder, sizeof o.folder, "%s", output);
+  return o;
+}
+
+/* Whether the folders can be written to, before scans are read and decimated. */
+static scree_status check_folders(repose *r) {
+  const repose_arguments *a = r->arguments;
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < cli_level_count(&r->grain_options); i++) {
+    one_run o = level_run(r, i);
+    char path[4200];
+    snprintf(path, sizeof path, "%s/experiment.yaml", o.folder);
+    status = scree_folder_create(o.folder, &r->error);
+    if (status == SCREE_OK) status = scree_output_check(path, a->force || a->resume, &r->error);
+    if (status == SCREE_EXISTS) status = fail_begun(path, &r->error);
+  }
+  return status;
 }
 
 static scree_status run_level(repose *r, size_t level, bool alone) {
-  one_run o = {.all = r, .alone = alone};
+  one_run o = level_run(r, level);
   const repose_arguments *a = r->arguments;
-  cli_level_name(&r->grain_options, level, o.name, sizeof o.name);
-  if (a->output && r->grains.level_count > 1)
-    snprintf(o.folder, sizeof o.folder, "%s/%s", a->output, o.name);
-  else if (a->output)
-    snprintf(o.folder, sizeof o.folder, "%s", a->output);
+  o.alone = alone;
   scree_run_job job = {.experiment = alone ? NULL : &r->experiment,
                        .shapes = alone ? NULL : r->grains.shapes + level * r->grains.shape_count,
                        .shape_count = r->grains.shape_count,
@@ -366,7 +386,8 @@ static scree_status run_level(repose *r, size_t level, bool alone) {
                        .watch = watch,
                        .frame = on_frame,
                        .context = &o};
-  scree_status status = prepare_folder(&o);
+  scree_status status = SCREE_OK;
+  if (a->output && !alone) status = write_experiment(&o, &r->error);
   if (status == SCREE_OK) status = scree_run_complete(&job, &r->runs[level], &r->error);
   cli_terminal_end();
   if (status != SCREE_OK) return status;
@@ -420,7 +441,9 @@ static scree_status run_all(repose *r, const char *const *words, size_t word_cou
   scree_status status = SCREE_OK;
   if (alone)
     r->grains.level_count = 1;
-  else
+  else if (r->arguments->output)
+    status = check_folders(r);
+  if (status == SCREE_OK && !alone)
     status = cli_make_grains(words, word_count, &r->grain_options, r->call->progress, &r->grains,
                              &r->error);
   cli_terminal_end();

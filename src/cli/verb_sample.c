@@ -93,19 +93,21 @@ static int run(const cli_call *call) {
   bool to_file = names_file(output);
   if (to_file && count != 1)
     return cli_misuse(call->verb, "%zu samples do not fit into one file: -o takes a folder", count);
-  if (!to_file) {
-    scree_error error;
-    if (scree_folder_create(output, &error) != SCREE_OK) return cli_fail(&error);
-  }
-  for (size_t i = 0; i < count; i++) {
-    const char *name = all ? scree_sample_name(i) : call->inputs[i];
-    char path[4200];
-    if (to_file)
-      snprintf(path, sizeof path, "%s", output);
-    else
-      snprintf(path, sizeof path, "%s/%.64s.stl", output, name);
-    int code = make_one(call, name, path, i == 0);
-    if (code) return code;
+  scree_error error;
+  if (!to_file && scree_folder_create(output, &error) != SCREE_OK) return cli_fail(&error);
+  for (int making = 0; making < 2; making++) { /* first whether all can be written */
+    for (size_t i = 0; i < count; i++) {
+      const char *name = all ? scree_sample_name(i) : call->inputs[i];
+      char path[4200];
+      if (to_file)
+        snprintf(path, sizeof path, "%s", output);
+      else
+        snprintf(path, sizeof path, "%s/%.64s.stl", output, name);
+      if (!making && scree_output_check(path, arguments->force, &error) != SCREE_OK)
+        return cli_fail(&error);
+      int code = making ? make_one(call, name, path, i == 0) : 0;
+      if (code) return code;
+    }
   }
   return 0;
 }

@@ -4,10 +4,12 @@
 #include <math.h>
 #include <string.h>
 
+enum { PATH_BYTES = 4096 };
+
 typedef struct simplify_arguments {
   const char *output;
   cli_source source;
-  double rp, error;
+  double rp, error, density;
   size_t count;
   int method;
   bool force;
@@ -32,6 +34,10 @@ static const cli_option options[] = {
      "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
      "Default: volume.",
      0, 0, "volume|qecd"},
+    {"density", 'd', CLI_REAL, offsetof(simplify_arguments, density), "RHO",
+     "Also write mass, centre of mass and inertia of the result at this density in kg/m3 into a "
+     ".json of the same name, as export does. The surface must be closed.",
+     1e-6, 1e6, NULL},
     {"unit", 'u', CLI_UNIT, offsetof(simplify_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the files: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(simplify_arguments, source),
@@ -63,19 +69,53 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index) {
             call->inputs[0], facts.locked_vertex_count);
 }
 
-static scree_status write_level(const cli_call *call, const scree_curve *curve, size_t index,
-                                scree_error *error) {
+static scree_status write_plain(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
   const simplify_arguments *arguments = call->options;
   scree_write_options write = scree_default_write_options();
-  scree_mesh mesh = {0};
   write.overwrite = arguments->force;
   write.unit_m = arguments->source.unit;
   write.comment = call->command_line;
   if (!strcmp(arguments->output, "-")) write.format = SCREE_FORMAT_STL;
+  return scree_mesh_write(mesh, arguments->output, &write, error);
+}
+
+/* The mesh, and beside it what it weighs. */
+static scree_status write_with_mass(const cli_call *call, const scree_scan *scan,
+                                    const scree_mesh *mesh, scree_error *error) {
+  const simplify_arguments *arguments = call->options;
+  scree_export_options o = scree_default_export_options();
+  char path[PATH_BYTES];
+  o.density = arguments->density;
+  o.unit_m = arguments->source.unit;
+  o.overwrite = arguments->force;
+  o.source = call->inputs[0];
+  o.command_line = call->command_line;
+  o.checksum = scan->checksum;
+  scree_status status = cli_beside(arguments->output, ".json", path, sizeof path, error);
+  return status == SCREE_OK ? scree_particle_export(mesh, &o, arguments->output, path, NULL, error)
+                            : status;
+}
+
+static scree_status write_level(const cli_call *call, const scree_scan *scan,
+                                const scree_curve *curve, size_t index, scree_error *error) {
+  const simplify_arguments *arguments = call->options;
+  scree_mesh mesh = {0};
   scree_status status = scree_curve_mesh(curve, index, &mesh, error);
-  if (status == SCREE_OK) status = scree_mesh_write(&mesh, arguments->output, &write, error);
+  if (status == SCREE_OK)
+    status = arguments->density > 0 ? write_with_mass(call, scan, &mesh, error)
+                                    : write_plain(call, &mesh, error);
   scree_mesh_free(&mesh);
   return status;
+}
+
+/* What is to be written, before long work. */
+static scree_status check_output(const simplify_arguments *arguments, scree_error *error) {
+  char path[PATH_BYTES];
+  if (!strcmp(arguments->output, "-")) return SCREE_OK;
+  scree_status status = cli_check_mesh_output(arguments->output, arguments->force, error);
+  if (status != SCREE_OK || !(arguments->density > 0)) return status;
+  status = cli_beside(arguments->output, ".json", path, sizeof path, error);
+  return status == SCREE_OK ? scree_output_check(path, arguments->force, error) : status;
 }
 
 static scree_status simplify(const cli_call *call, scree_error *error) {
@@ -84,7 +124,8 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
   scree_simplify_options simplify_options = scree_default_simplify_options();
   scree_scan scan = {0};
   scree_curve *curve = NULL;
-  scree_status status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
+  scree_status status = check_output(arguments, error);
+  if (status == SCREE_OK) status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
   if (status != SCREE_OK) return status;
   size_t target = arguments->count;
   if (arguments->rp > 0) target = scree_choice_target(arguments->rp, scan.mesh.triangle_count);
@@ -96,7 +137,7 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
     size_t index = scree_curve_find(curve, target);
     scree_level level;
     scree_curve_level(curve, index, &level);
-    status = write_level(call, curve, index, error);
+    status = write_level(call, &scan, curve, index, error);
     if (status == SCREE_OK) say(call, curve, index);
     if (status == SCREE_OK && level.triangle_count > target && !(arguments->error > 0))
       fprintf(stderr, "%s: %zu triangles is the lowest count that could be reached\n",
@@ -115,6 +156,8 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "-r and -n exclude each other");
   if (!(arguments->rp > 0) && arguments->count == 0 && !(arguments->error > 0))
     return cli_misuse(call->verb, "one of -r RP, -n COUNT or -e LENGTH is needed");
+  if (arguments->density > 0 && !strcmp(arguments->output, "-"))
+    return cli_misuse(call->verb, "--density writes beside a file: -o - has none");
   return simplify(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
 }
 
@@ -129,6 +172,7 @@ const cli_verb cli_verb_simplify = {
         "number of threads.",
     .examples = "scree simplify phone.stl -r 1e-3 -o phone_762.stl\n"
                 "scree simplify phone.stl -n 500 -m qecd -o phone_500.ply\n"
+                "scree simplify phone.stl -r 1e-3 --density 1800 -o phone_dem.stl\n"
                 "scree simplify phone.stl -e 0.1mm -o phone_fine.stl\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,

@@ -7,7 +7,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <sys/stat.h>
 
 scree_export_options scree_default_export_options(void) {
   return (scree_export_options){.density = 2000, .unit_m = 1e-3};
@@ -21,12 +20,6 @@ scree_status scree_export_check(const scree_export_options *options, scree_error
     return scree_fail(error, SCREE_BAD_ARGUMENT, "export: unit of %g m is outside 1e-12 to 1e12",
                       options->unit_m);
   return SCREE_OK;
-}
-
-scree_status scree_export_refuse_existing(const char *path, bool overwrite, scree_error *error) {
-  struct stat info;
-  if (overwrite || !strcmp(path, "-") || stat(path, &info) != 0) return SCREE_OK;
-  return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
 }
 
 /* Its rotation and translation, from the measures of the mesh as given. */
@@ -153,9 +146,9 @@ scree_status scree_particle_export(const scree_mesh *mesh, const scree_export_op
   scree_mesh placed;
   scree_exported p;
   scree_status status = scree_export_check(&used, error);
-  if (status == SCREE_OK) status = scree_export_refuse_existing(mesh_path, used.overwrite, error);
+  if (status == SCREE_OK) status = scree_output_check(mesh_path, used.overwrite, error);
   if (status == SCREE_OK && json_path)
-    status = scree_export_refuse_existing(json_path, used.overwrite, error);
+    status = scree_output_check(json_path, used.overwrite, error);
   if (status == SCREE_OK) status = prepare(mesh, &used, &placed, &p, error);
   if (status != SCREE_OK) return status;
   status = write_mesh(&used, &placed, mesh_path, error);

@@ -6,8 +6,6 @@
 
 /* Density and unit in their ranges. */
 scree_status scree_export_check(const scree_export_options *options, scree_error *error);
-/* SCREE_EXISTS before any work where the file is there. */
-scree_status scree_export_refuse_existing(const char *path, bool overwrite, scree_error *error);
 /* file, checksum, version, command */
 void scree_export_json_provenance(scree_json *json, const scree_export_options *options);
 

@@ -204,8 +204,8 @@ scree_status scree_world_export(const scree_world *world, const scree_export_opt
   char path[PATH_BYTES];
   scree_status status = scree_export_check(&used, error);
   if (status == SCREE_OK) status = join(&e, "pile.json", path, error);
-  if (status == SCREE_OK) status = scree_export_refuse_existing(path, used.overwrite, error);
   if (status == SCREE_OK) status = scree_folder_create(folder, error);
+  if (status == SCREE_OK) status = scree_output_check(path, used.overwrite, error);
   if (status == SCREE_OK) status = scree_shapes_find(world, &e.shapes, error);
   if (status == SCREE_OK) status = write_meshes(&e, error);
   if (status == SCREE_OK) status = write_text(&e, "bodies.csv", print_csv, error);

@@ -78,6 +78,14 @@ for heading, calls in VERBS.items():
     failed |= compare(heading, found)
 subprocess.run([program, "export", SOLID, "-o", "solid.stl", "-q"], check=True)
 failed |= compare("scree export of a surface", fields_of(open("solid.json", "rb").read()))
+subprocess.run([program, "simplify", SOLID, "-n", "12", "--density", "3", "-o", "level.stl", "-q"], check=True)
+subprocess.run([program, "choose", SOLID, BALL, "--density", "3", "-o", "chosen", "-q"], check=True, stdout=subprocess.DEVNULL)
+for path in ("level.json", "chosen/box-12.mass.json", "chosen/set/icosphere-3.mass.json"):
+    text = open(path, "rb").read()
+    failed |= compare("scree export of a surface", fields_of(text))
+    weighed = json.loads(text)
+    assert weighed["density"] == 3 and abs(weighed["mass"] / (3 * weighed["volume"]) - 1) < 1e-12, path
+    assert os.path.exists(os.path.join(os.path.dirname(path), weighed["mesh_file"])), path
 subprocess.run([world_writer, "."], stdout=subprocess.DEVNULL, check=True)
 subprocess.run([program, "export", "world.scree", "-o", "pile"], check=True)
 failed |= compare("scree export of a checkpoint", fields_of(open("pile/pile.json", "rb").read()))

@@ -12,6 +12,7 @@ static scree_status write_texts(void *context, scree_error *error) {
   const scree_work_start start = scree_work_started();
   (void)context;
   scree_status status = scree_folder_create(in_folder("a/b/c"), error);
+  if (status == SCREE_OK) status = scree_output_check(in_folder("a/b/text"), true, error);
   if (status == SCREE_OK) status = scree_text_write("text\n", in_folder("a/b/text"), true, error);
   if (status == SCREE_OK)
     status = scree_provenance_write(&start, "test", in_folder("a/provenance.json"), true, error);

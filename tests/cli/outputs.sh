@@ -1,0 +1,32 @@
+# What cannot be written is said before any work: each input here is missing or broken, and only the output is told.
+echo text >file
+mkdir folder
+touch there.stl there.json there.yaml
+for output in nowhere/x.stl folder there.stl; do
+  run simplify missing.stl -n 10 -o $output
+  run repair missing.stl -o $output
+  run sample nonsense -o $output 2>&1 | sed 's|nonsense.*|nonsense|'
+done
+run simplify missing.stl -n 10 --density 1000 -o there.off
+run simplify missing.stl -n 10 --density 1000 -o - 2>&1 | sed -n 2p
+run repair missing.stl -f -o folder
+run simplify missing.stl -n 10 -o x.xyz
+run repair missing.stl -o -
+run export missing.stl -o nowhere/x.stl
+run render missing.stl -o nowhere/x.png
+run pile missing.scree --csv nowhere/x.csv
+run choose missing.stl -o file
+run choose missing.stl -o file/x
+mkdir -p old/levels && touch old/missing.mass.json
+run choose missing.stl -o old
+run drop missing.stl -o file
+touch old/series.csv
+run drop missing.stl -o old
+run repose missing.stl -o file
+touch old/experiment.yaml
+run repose missing.stl -o old
+mkdir -p old/spheres && touch old/spheres/experiment.yaml
+run repose missing.stl --rp 0.1 --spheres -o old
+printf 'name: x\nreplicates: 1\nshapes: [missing.stl]\nfactors: {rp: [1]}\n' >study.yaml
+run study study.yaml -o file
+ls -R | grep -c part
