@@ -61,6 +61,12 @@ SCREE_API scree_status scree_particle_sphere(double radius, scree_particle **par
 SCREE_API scree_status scree_particle_clump(const double *centres, const double *radii,
                                             size_t count, const scree_particle *like,
                                             scree_particle **particle, scree_error *error);
+/* The clump of a table: a sphere a line, its centre x, y, z and its radius in units of unit_m
+ * metres, between blanks, commas or semicolons; a first line of words, empty lines and lines that
+ * begin with # are passed over. At most 10,000 spheres. Errors: SCREE_BAD_FILE, naming file and
+ * line. */
+SCREE_API scree_status scree_particle_clump_read(const char *path, double unit_m,
+                                                 scree_particle **particle, scree_error *error);
 /* Worlds hold their own reference: freeing before the world is legal. */
 SCREE_API void scree_particle_free(scree_particle *particle);
 

@@ -154,7 +154,7 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
   if (shape->diameter > 0)
     return scree_particle_sphere(0.5 * shape->diameter, &shape->particle, error);
   if (cli_is_clump(shape->name))
-    return cli_read_clump(shape->name, run->arguments->unit, &shape->particle, error);
+    return scree_particle_clump_read(shape->name, run->arguments->unit, &shape->particle, error);
   scree_mesh mesh;
   scree_status status = load(run, shape, &mesh, error);
   if (status != SCREE_OK) return name_in_error(shape, error);

@@ -161,7 +161,8 @@ static scree_status make_from_clump(const maker *m, size_t shape, const char *wo
     size_t index = level * m->grains->shape_count + shape;
     scree_grain *grain = &m->grains->grains[index];
     scree_particle_measures measures;
-    status = cli_read_clump(word, m->options->source.unit, &grain->run.particle, m->error);
+    status =
+        scree_particle_clump_read(word, m->options->source.unit, &grain->run.particle, m->error);
     if (status != SCREE_OK) return status;
     scree_particle_measure(grain->run.particle, &measures);
     grain->run.density_factor = 1;

@@ -3,6 +3,7 @@
 #define SCREE_MESH_READ_H
 
 #include "base/alloc.h"
+#include "mesh/import.h"
 #include "mesh/polygon.h"
 #include "mesh/text.h"
 
@@ -27,16 +28,6 @@ scree_status scree_read_ply(scree_reading *r);
 scree_status scree_read_obj(scree_reading *r);
 scree_status scree_read_off(scree_reading *r);
 /* Formats read through assimp; a build without it answers SCREE_UNSUPPORTED. */
-typedef enum scree_import_format {
-  SCREE_IMPORT_3MF,
-  SCREE_IMPORT_GLB,
-  SCREE_IMPORT_GLTF,
-  SCREE_IMPORT_COLLADA,
-  SCREE_IMPORT_X3D,
-  SCREE_IMPORT_AMF,
-  SCREE_IMPORT_FBX,
-  SCREE_IMPORT_3DS
-} scree_import_format;
 scree_status scree_read_import(scree_reading *r, scree_import_format format);
 /* Whether the word begins an OFF file, also of a kind that is refused. */
 bool scree_is_off_word(scree_token word);

@@ -26,40 +26,11 @@
 
 enum {
   PEEK_BYTES = 1 << 16,
-  MOST_TRIANGLES = 1 << 26,
   CHUNK_TRIANGLES = 512,
   PROCESSOR_S = 120,
   WALL_S = 240,
 };
 static const size_t MOST_MEMORY = (size_t)4 << 30;
-static const double MOST_SIZE_M = 1e30;
-
-/* Where the unit of length comes from. */
-typedef enum unit_source { UNIT_METRE, UNIT_IN_ROOT, UNIT_IN_SCENE, UNIT_ASKED } unit_source;
-
-static const struct {
-  const char *name, *hint;
-  unit_source unit;
-} formats[] = {
-    [SCREE_IMPORT_3MF] = {"3MF", "3mf", UNIT_IN_ROOT},
-    [SCREE_IMPORT_GLB] = {"glTF binary", "glb", UNIT_METRE},
-    [SCREE_IMPORT_GLTF] = {"glTF text", "gltf", UNIT_METRE},
-    [SCREE_IMPORT_COLLADA] = {"COLLADA", "dae", UNIT_METRE},
-    [SCREE_IMPORT_X3D] = {"X3D", "x3d", UNIT_METRE},
-    [SCREE_IMPORT_AMF] = {"AMF", "amf", UNIT_IN_ROOT},
-    [SCREE_IMPORT_FBX] = {"FBX", "fbx", UNIT_IN_SCENE},
-    [SCREE_IMPORT_3DS] = {"3DS", "3ds", UNIT_ASKED},
-};
-
-/* What the child answers before the corners. */
-typedef struct answer {
-  uint64_t triangle_count;
-  double unit_m;
-  int64_t status;
-  int64_t is_split; /* names parts in other files of its archive */
-  char unit_name[16];
-  char message[256];
-} answer;
 
 typedef struct import {
   const unsigned char *bytes;
@@ -114,7 +85,7 @@ static bool read_unit_name(const char *p, char name[16]) {
 }
 
 /* The start of what holds the root element, ended by a zero; false after filling the answer. */
-static bool peek_root(const import *im, char text[PEEK_BYTES + 1], answer *a) {
+static bool peek_root(const import *im, char text[PEEK_BYTES + 1], scree_import_answer *a) {
   size_t count = im->byte_count < PEEK_BYTES ? im->byte_count : PEEK_BYTES;
   scree_zip_member model;
   if (im->format != SCREE_IMPORT_3MF) {
@@ -132,14 +103,14 @@ static bool peek_root(const import *im, char text[PEEK_BYTES + 1], answer *a) {
   return true;
 }
 
-static void find_root_unit(const import *im, answer *a) {
+static void find_root_unit(const import *im, scree_import_answer *a) {
   static const struct {
     const char *name;
     double unit_m;
   } units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2}, {"inch", 0.0254},
                {"foot", 0.3048}, {"feet", 0.3048},     {"meter", 1}};
   static char text[PEEK_BYTES + 1];
-  const char *name = formats[im->format].name,
+  const char *name = scree_import_kinds[im->format].name,
              *root = im->format == SCREE_IMPORT_3MF ? "model" : "amf";
   if (!peek_root(im, text, a)) return;
   a->status = SCREE_BAD_FILE;
@@ -227,7 +198,7 @@ static void walk_node(walk *w, const struct aiNode *node, const placement *outer
   bool mirrored = is_mirrored(&p);
   for (unsigned i = 0; i < node->mNumMeshes && w->is_valid; i++) {
     if (node->mMeshes[i] >= w->scene->mNumMeshes) w->is_valid = false;
-    if (!w->is_valid || w->triangle_count > MOST_TRIANGLES) return;
+    if (!w->is_valid || w->triangle_count > SCREE_IMPORT_MOST) return;
     const struct aiMesh *mesh = w->scene->mMeshes[node->mMeshes[i]];
     for (unsigned f = 0; f < mesh->mNumFaces && w->is_valid; f++)
       if (mesh->mFaces[f].mNumIndices == 3) /* points and lines have no surface */
@@ -247,7 +218,7 @@ static void walk_scene(walk *w, const struct aiScene *scene, int output) {
 }
 
 /* An FBX's centimetres per unit; 1 where it does not say. */
-static void find_scene_unit(const struct aiScene *scene, answer *a) {
+static void find_scene_unit(const struct aiScene *scene, scree_import_answer *a) {
   const struct aiMetadata *data = scene->mMetaData;
   double factor = 1;
   for (unsigned i = 0; data && i < data->mNumProperties; i++) {
@@ -260,46 +231,46 @@ static void find_scene_unit(const struct aiScene *scene, answer *a) {
   snprintf(a->unit_name, sizeof a->unit_name, "%.6g m", a->unit_m);
 }
 
-static void explain_refusal(const import *im, answer *a) {
+static void explain_refusal(const import *im, scree_import_answer *a) {
   const char *reason = aiGetErrorString();
   bool is_memory = strstr(reason, "bad_alloc") != NULL;
   a->status = is_memory ? SCREE_LIMIT : SCREE_BAD_FILE;
   snprintf(a->message, sizeof a->message,
            is_memory ? "as %s: reading it takes more memory than it is given"
                      : "as %s: assimp refuses it: %.180s",
-           formats[im->format].name, *reason ? reason : "no reason given");
+           scree_import_kinds[im->format].name, *reason ? reason : "no reason given");
 }
 
-static void explain_split(const import *im, answer *a) {
+static void explain_split(const import *im, scree_import_answer *a) {
   a->status = SCREE_BAD_FILE;
   snprintf(
       a->message, sizeof a->message,
       "as %s: its parts lie in several files of the archive, which is not read; save it as one",
-      formats[im->format].name);
+      scree_import_kinds[im->format].name);
 }
 
 /* A child's work. */
 static bool import_in_child(void *context, int output) {
   static walk w;
   const import *im = context;
-  answer a = {.unit_m = 1, .unit_name = "meter"};
+  scree_import_answer a = {.unit_m = 1, .unit_name = "meter"};
   const struct aiScene *scene = NULL;
-  if (formats[im->format].unit == UNIT_IN_ROOT) find_root_unit(im, &a);
+  if (scree_import_kinds[im->format].unit == SCREE_UNIT_IN_ROOT) find_root_unit(im, &a);
   if (a.status == SCREE_OK) {
     scene = aiImportFileFromMemory((const char *)im->bytes, (unsigned)im->byte_count,
-                                   aiProcess_Triangulate, formats[im->format].hint);
+                                   aiProcess_Triangulate, scree_import_kinds[im->format].hint);
     if (!scene) explain_refusal(im, &a);
   }
   if (scene) {
-    if (formats[im->format].unit == UNIT_IN_SCENE) find_scene_unit(scene, &a);
+    if (scree_import_kinds[im->format].unit == SCREE_UNIT_IN_SCENE) find_scene_unit(scene, &a);
     walk_scene(&w, scene, -1);
     a.triangle_count = w.triangle_count;
-    if (!w.is_valid || w.triangle_count > MOST_TRIANGLES) {
+    if (!w.is_valid || w.triangle_count > SCREE_IMPORT_MOST) {
       a.status = w.is_valid ? SCREE_LIMIT : SCREE_BAD_FILE;
       snprintf(a.message, sizeof a.message,
                w.is_valid ? "as %s: more than %d triangles with all instances"
                           : "as %s: a face names a vertex that is not there",
-               formats[im->format].name, MOST_TRIANGLES);
+               scree_import_kinds[im->format].name, SCREE_IMPORT_MOST);
     }
   }
   if (a.is_split && (!scene || a.triangle_count == 0)) explain_split(im, &a);
@@ -312,72 +283,23 @@ static bool import_in_child(void *context, int output) {
 
 /* ---- in the parent ---- */
 
-/* One printable line, whatever the file put into it. */
-static void make_printable(char *text, size_t size) {
-  text[size - 1] = 0;
-  for (; *text; text++)
-    if (*text < ' ' || *text > '~') *text = *text == '\n' || *text == '\t' ? ' ' : '?';
-}
-
-static scree_status check_corners(scree_reading *r, const double *corners, size_t triangle_count) {
-  double most = MOST_SIZE_M / r->unit_m;
-  for (size_t i = 0; i < 9 * triangle_count; i++)
-    if (!(fabs(corners[i]) <= most))
-      return scree_reading_fail(
-          r, SCREE_BAD_FILE,
-          "triangle %zu of %zu has a coordinate %g; coordinates must be finite and at most %g m "
-          "in size",
-          i / 9 + 1, triangle_count, corners[i], MOST_SIZE_M);
-  return SCREE_OK;
-}
-
-static scree_status take_answer(scree_reading *r, scree_import_format format,
-                                scree_child_answer *raw) {
-  answer a;
-  if (raw->count < sizeof a)
-    return scree_reading_fail(r, SCREE_BAD_FILE, "as %s: no answer from the child process",
-                              formats[format].name);
-  memcpy(&a, raw->items, sizeof a);
-  make_printable(a.message, sizeof a.message);
-  make_printable(a.unit_name, sizeof a.unit_name);
-  if (a.status != SCREE_OK)
-    return scree_reading_fail(r, a.status == SCREE_LIMIT ? SCREE_LIMIT : SCREE_BAD_FILE, "%s",
-                              a.message);
-  size_t corner_bytes = raw->count - sizeof a;
-  if (a.triangle_count > MOST_TRIANGLES || corner_bytes != a.triangle_count * 9 * sizeof(double) ||
-      !(a.unit_m >= 1e-9 && a.unit_m <= 1e6))
-    return scree_reading_fail(r, SCREE_BAD_FILE, "as %s: the child process contradicts itself",
-                              formats[format].name);
-  r->scan->solid_count = 1;
-  if (formats[format].unit == UNIT_ASKED) {
-    snprintf(r->scan->format, sizeof r->scan->format, "%s", formats[format].name);
-  } else {
-    r->unit_m = a.unit_m;
-    snprintf(r->scan->format, sizeof r->scan->format, "%s, %s", formats[format].name, a.unit_name);
-  }
-  const double *corners = (const double *)(const void *)(raw->items + sizeof a);
-  scree_status status = check_corners(r, corners, a.triangle_count);
-  return status == SCREE_OK ? scree_reading_weld(r, corners, a.triangle_count) : status;
-}
-
 scree_status scree_read_import(scree_reading *r, scree_import_format format) {
-  _Static_assert(sizeof(answer) % sizeof(double) == 0, "the corners behind it are aligned");
   if (r->byte_count > UINT_MAX)
     return scree_reading_fail(r, SCREE_LIMIT, "%zu bytes; %s is read up to %u", r->byte_count,
-                              formats[format].name, UINT_MAX);
+                              scree_import_kinds[format].name, UINT_MAX);
   size_t memory = scree_memory_limit();
   scree_child_limits limits = {
       .memory_bytes = memory && memory < MOST_MEMORY ? memory : MOST_MEMORY,
       .processor_s = PROCESSOR_S,
       .wall_s = WALL_S,
-      .output_bytes = sizeof(answer) + (size_t)MOST_TRIANGLES * 9 * sizeof(double),
+      .output_bytes = sizeof(scree_import_answer) + (size_t)SCREE_IMPORT_MOST * 9 * sizeof(double),
   };
 import im = {r->bytes, r->byte_count, format };
   char what[512];
-  snprintf(what, sizeof what, "%.400s: reading it as %s", r->name, formats[format].name);
+  snprintf(what, sizeof what, "%.400s: reading it as %s", r->name, scree_import_kinds[format].name);
   scree_child_answer raw = {0};
   scree_status status = scree_child_run(import_in_child, &im, &limits, what, &raw, r->error);
-  if (status == SCREE_OK) status = take_answer(r, format, &raw);
+  if (status == SCREE_OK) status = scree_import_take(r, format, raw.items, raw.count);
   scree_free(raw.items);
   return status;
 }

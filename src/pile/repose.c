@@ -22,6 +22,7 @@ static const double sector_sizes = 2;   /* width of a sector in the middle of th
 static const double fewest_bins = 3;    /* a line needs as many */
 static const double fewest_sectors = 8; /* of that width round the heap: else it is too small */
 static const double least_share = 0.5;  /* of sectors and flanks that must give a line */
+static const double largest_length = 1e30; /* m */
 static const double sizes_of_a_heap = 1.5; /* lower, in particle sizes, is a layer and not a heap */
 enum { CONE_ROUNDS = 50, CHOICES = 6 };
 
@@ -202,7 +203,7 @@ static void fill_sectors(heap *h, size_t count) {
       double dx = cell_x(f, i) - h->result->axis[0], dy = cell_y(f, j) - h->result->axis[1];
       double r = hypot(dx, dy), z = f->height[j * f->columns + i];
       if (z > 0) h->result->run_out = fmax(h->result->run_out, r);
-      size_t index = (size_t)(r / h->bin_width);
+      size_t index = (size_t)fmin(r / h->bin_width, (double)h->bin_count);
       size_t sector = (size_t)((atan2(dy, dx) / (2 * pi) + 0.5) * (double)count);
       if (index >= h->bin_count) continue;
       if (sector >= count) sector = count - 1;
@@ -347,7 +348,7 @@ static void fill_outline(heap *h, size_t direction) {
       if (z <= 0) continue;
       double across =
           (cell_x(f, i) - h->result->axis[0]) * cx + (cell_y(f, j) - h->result->axis[1]) * cy;
-      size_t index = (size_t)(fabs(across) / h->bin_width);
+      size_t index = (size_t)fmin(fabs(across) / h->bin_width, (double)h->bin_count);
       if (index >= h->bin_count) continue;
       bin *b = &sides[across < 0][index];
       b->z = fmax(b->z, z);
@@ -421,10 +422,24 @@ static scree_status check_options(const scree_repose_options *o, scree_error *er
   return SCREE_OK;
 }
 
+/* Cubes of what is accepted are still finite. */
+static scree_status check_field(const scree_height_field *f, scree_error *error) {
+  const double corner[3] = {f->x, f->y, f->cell};
+  for (size_t i = 0, count = f->columns * f->rows; i < count + 3; i++) {
+    double length = i < count ? f->height[i] : corner[i - count];
+    if (!(fabs(length) <= largest_length))
+      return scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "a height field with a height or corner of %g m; at most %g", length,
+                        largest_length);
+  }
+  return SCREE_OK;
+}
+
 scree_status scree_repose_measure(const scree_height_field *field,
                                   const scree_repose_options *options, scree_repose *repose,
                                   scree_error *error) {
   scree_status status = check_options(options, error);
+  if (status == SCREE_OK) status = check_field(field, error);
   if (status != SCREE_OK) return status;
   scree_repose result = {0};
   flank rings = {0};

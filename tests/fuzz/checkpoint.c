@@ -2,25 +2,12 @@
  * sentence, or a world that packs to bytes that load to the same world, and that can be asked,
  * stepped and freed. */
 #include "base/alloc.h"
-#include "base/file.h"
-#include "fuzz/fuzz.h"
+#include "fuzz/forge.h"
 #include "world/world.h"
 
 #include <string.h>
 
-enum { LENGTH_AT = 16, SUM_AT = 24, HEADER = 40, MOST_BYTES = 1 << 16 };
-
-static void put_u64(uint8_t *out, uint64_t value) {
-  for (int i = 0; i < 8; i++) out[i] = (uint8_t)(value >> 8 * i);
-}
-
-static void forge(const uint8_t *data, size_t size, uint8_t *forged) {
-  scree_checksum sum = scree_checksum_of(data + HEADER, size - HEADER);
-  memcpy(forged, data, size);
-  put_u64(forged + LENGTH_AT, size - HEADER);
-  put_u64(forged + SUM_AT, sum.high);
-  put_u64(forged + SUM_AT + 8, sum.low);
-}
+enum { MOST_BYTES = 1 << 16 };
 
 static void use(scree_world *world) {
   unsigned char *bytes = NULL;
@@ -45,8 +32,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   scree_world *world = NULL;
   scree_error error = {0};
   size_t used = scree_memory_used();
-  if (size < HEADER || size > MOST_BYTES) return 0;
-  forge(data, size, forged);
+  if (size < FORGE_HEADER || size > MOST_BYTES) return 0;
+  memcpy(forged, data, size);
+  forge_header(forged, size);
   scree_set_threads(1);
   scree_status status = scree_world_unpack(forged, size, "fuzz", &world, &error);
   FUZZ_CHECK(status == SCREE_OK || (status == SCREE_BAD_FILE && error.message[0] && !world));

@@ -1,21 +1,11 @@
 /* Experiment files: YAML as a tree, then as an experiment. What is accepted, printed and read again
  * is the same; what is refused leaves the experiment as it was. */
 #define _GNU_SOURCE /* memfd_create */
-#include "fuzz/fuzz.h"
+#include "fuzz/files.h"
 #include "pile/yaml.h"
 
 #include <stdio.h>
 #include <string.h>
-#include <sys/mman.h>
-#include <unistd.h>
-
-/* A file in memory under a name that can be opened. */
-static int make_file(const void *bytes, size_t count, char path[64]) {
-  int fd = memfd_create("experiment", 0);
-  FUZZ_CHECK(fd >= 0 && write(fd, bytes, count) == (ssize_t)count);
-  snprintf(path, 64, "/proc/self/fd/%d", fd);
-  return fd;
-}
 
 static char *print(const scree_experiment *experiment, size_t *size) {
   char *text = NULL;
@@ -31,7 +21,7 @@ static void read_again(const scree_experiment *experiment) {
   scree_error error;
   size_t size, size_again;
   char path[64], *text = print(experiment, &size);
-  int fd = make_file(text, size, path);
+  int fd = fuzz_file(text, size, path);
   FUZZ_CHECK(scree_experiment_preset("demo", &again, &error) == SCREE_OK);
   FUZZ_CHECK(scree_experiment_read(path, &again, &error) == SCREE_OK);
   close(fd);
@@ -64,7 +54,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   scree_status parsed = scree_yaml_parse((const char *)data, size, "fuzz", &root, &error);
   FUZZ_CHECK(parsed == SCREE_OK || parsed == SCREE_BAD_FILE);
   if (parsed == SCREE_OK) scree_yaml_free(&root);
-  int fd = make_file(data, size, path);
+  int fd = fuzz_file(data, size, path);
   FUZZ_CHECK(scree_experiment_preset("paper", &experiment, &error) == SCREE_OK);
   scree_status status = scree_experiment_read(path, &experiment, &error);
   close(fd);

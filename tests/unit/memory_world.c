@@ -12,19 +12,23 @@ static char file[] = "/tmp/scree-memory-XXXXXX";
 
 static scree_status make_particles(void *context, scree_error *error) {
   static const double centres[6] = {0, 0, 0, 0.01, 0, 0}, radii[2] = {0.01, 0.008};
-  scree_particle *made[4] = {NULL};
+  scree_particle *made[5] = {NULL};
   scree_status status = scree_particle_from_mesh(context, NULL, &made[0], error);
   if (status == SCREE_OK) status = scree_particle_sphere(0.01, &made[1], error);
   if (status == SCREE_OK) status = scree_particle_clump(centres, radii, 2, NULL, &made[2], error);
   if (status == SCREE_OK)
     status = scree_particle_clump(centres, radii, 2, made[0], &made[3], error);
-  for (int i = 0; i < 4; i++) scree_particle_free(made[i]);
+  if (status == SCREE_OK) status = scree_particle_clump_read(file, 1e-3, &made[4], error);
+  for (int i = 0; i < 5; i++) scree_particle_free(made[i]);
   return status;
 }
 
 static void particles(void **state) {
   (void)state;
   scree_mesh box = shape_box(0.04, 0.03, 0.012);
+  FILE *table = fopen(file, "w");
+  fputs("0 0 0 10\n10 0 0 8\n", table);
+  fclose(table);
   check_allocation_failures(make_particles, &box);
   scree_mesh_free(&box);
 }

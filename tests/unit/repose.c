@@ -235,6 +235,28 @@ static void surfaces_are_raised_exactly_at_the_centres(void **state) {
   assert_int_equal(scree_height_field_create(0, 0, 1, 1e-7, &field, &error), SCREE_BAD_ARGUMENT);
 }
 
+/* Not a number, infinite, or so large that cubes overflow: refused, wherever it stands. */
+static void lengths_without_end_are_refused(void **state) {
+  (void)state;
+  static const double bad[] = {NAN, INFINITY, 1e200, -1e200};
+  scree_repose_options options = scree_default_repose_options();
+  scree_height_field field;
+  scree_repose r;
+  scree_error error;
+  CHECK_OK(scree_height_field_create(0, 0, 0.5, 0.1, &field, &error), error);
+  double *places[] = {&field.height[0], &field.height[field.rows * field.columns - 1], &field.x,
+                      &field.y};
+  for (size_t p = 0; p < 4; p++)
+    for (size_t i = 0; i < 4; i++) {
+      double kept = *places[p];
+      *places[p] = bad[i];
+      assert_int_equal(scree_repose_measure(&field, &options, &r, &error), SCREE_BAD_ARGUMENT);
+      *places[p] = kept;
+    }
+  CHECK_OK(scree_repose_measure(&field, &options, &r, &error), error);
+  scree_height_field_free(&field);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(cones_give_their_angle_each_way),
@@ -243,6 +265,7 @@ int main(void) {
       cmocka_unit_test(heaps_of_particles_give_their_angle),
       cmocka_unit_test(what_is_too_small_gets_no_number),
       cmocka_unit_test(what_is_no_heap_gets_no_number),
+      cmocka_unit_test(lengths_without_end_are_refused),
       cmocka_unit_test(surfaces_are_raised_exactly_at_the_centres),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
