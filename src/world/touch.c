@@ -311,14 +311,21 @@ static double normal_share(const scree_edge *edge, double cosine) {
   return smooth_step(none, full, cosine);
 }
 
-/* Signed distance of an armed pair below half the roundings; weight 0 where it has no say. */
+/* Signed distance of an armed pair below half the roundings. Which crossing normal is the way out
+ * the reference says where it lies along them. Where it lies across it says nothing (of a corner
+ * that came in beside the edge, for one), and the normals of the faces say it; `outward` is the sum
+ * of both edges'. Where the two disagree the weight passes through 0 from one to the other. */
 static void deep_crossing(const scree_pair *pair, scree_item *item, vec3 crossing, vec3 offset,
-                          surface_contact *contact) {
-  double toward = vec3_dot(crossing, item->reference);
+                          vec3 outward, surface_contact *contact) {
+  double toward = vec3_dot(crossing, item->reference), facing = vec3_dot(crossing, outward);
+  if ((toward < 0) != (facing < 0)) {
+    double known = smooth_step(crossing_cosines[0], crossing_cosines[1], fabs(toward));
+    contact->weight *= fabs(2 * known - 1);
+    if (known < 0.5) toward = facing;
+  }
   vec3 n = toward < 0 ? vec3_neg(crossing) : crossing;
   contact->normal = n;
   contact->distance = vec3_dot(offset, n);
-  contact->weight *= smooth_step(crossing_cosines[0], crossing_cosines[1], fabs(toward));
   item->inside = contact->distance < 0.5 * pair->reach;
 }
 
@@ -368,7 +375,8 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
                              1};
   if (item->inside || d < 0.5 * pair->reach) {
     if (!item->has_reference) return 0; /* not armed */
-    deep_crossing(pair, item, vec3_scale(crossing, 1 / sine), offset, &contact);
+    vec3 outward = vec3_sub(eb->normals.axis, mat3_mul_vec(r, ea->normals.axis));
+    deep_crossing(pair, item, vec3_scale(crossing, 1 / sine), offset, outward, &contact);
     if (contact.distance < -pair->thin &&
         !is_crossed(world->bodies.particle[pair->a], scree_pair_shape_b(world, pair), on_a, on_b,
                     relative)) {
