@@ -3,12 +3,13 @@
  * Point and surface. The overlap is the sum of the roundings less the signed distance. While the
  * cores are apart by more than half the roundings, the closest point is exact and its direction is
  * kept as the reference: the way out. Deeper, only faces that look that way count (within about 80
- * degrees), and the depth is measured from their planes; a point sideways of such a face fades out
- * over half the roundings. Without this, plates that hit each other squarely and fast would be
- * pushed out sideways, at corners where the nearest face is the side. A point that has come out on
- * the other side of a thin wall is held to the side it came from in the same way. In a notch up to
- * two further faces count, those onto which the point projects and whose normals differ by 15
- * (weight 0) to 25 degrees (weight 1): a body in a V needs both to rest.
+ * degrees), and the depth is measured to the nearest of them. Without this, plates that hit each
+ * other squarely and fast would be pushed out sideways, at corners where the nearest face is the
+ * side. Where the point is sideways of all such faces, the closest point of the whole surface takes
+ * over within half the roundings: in a wedge no face that looks the way out need be above it. A
+ * point that has come out on the other side of a thin wall is held to the side it came from in the
+ * same way. In a notch up to two further faces count, those onto which the point projects and whose
+ * normals differ by 15 (weight 0) to 25 degrees (weight 1): a body in a V needs both to rest.
  *
  * Edge and edge. Closest points of the segments; while apart, direction and distance are theirs.
  * Deeper, the crossing normal signed by the reference. An edge pair that lies inside at first sight
@@ -33,7 +34,7 @@ static const double crossing_cosines[2] = {0.3, 0.6}; /* crossing normal against
 
 typedef struct surface_contact {
   vec3 closest, normal;
-  vec3 border; /* nearest point of the face, where the closest one is taken in its plane */
+  vec3 aside; /* from where the faces that look the way out end; 0 behind one of them */
   double distance, weight;
   double lever; /* by how much the distance grows along the normal: 1, but where two are blended */
 } surface_contact;
@@ -94,76 +95,88 @@ static vec3 outward_sign(const scree_particle *surface, uint32_t face, int regio
                                        : signs->edge[region - SCREE_REGION_EDGE];
 }
 
-/* The nearest face that looks along `way`, and its closest point; false for none within reach. With
- * `behind`, p must not be in front of it. */
-static bool face_along(const scree_particle *surface, vec3 p, vec3 way, double reach, bool behind,
-                       surface_contact *contact, uint32_t *found) {
+typedef struct way_out {
+  vec3 closest, normal; /* of the nearest face */
+  vec3 aside;           /* by how much p is sideways of the face behind which it is most nearly */
+} way_out;
+
+/* What of the faces that look along `way` lies within reach; false for none. With `behind`, p must
+ * not be in front of a face. */
+static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double reach, bool behind,
+                         way_out *out) {
   const scree_tree_node *nodes = surface->face_tree.nodes;
   uint32_t stack[SCREE_TREE_STACK];
   int depth = 0;
-  double best2 = reach * reach;
+  double best2 = reach * reach, least_aside2 = INFINITY;
   bool any = false;
   stack[depth++] = 0;
   while (depth > 0) {
     const scree_tree_node *node = &nodes[stack[--depth]];
-    if (scree_box_distance2(&node->box, p) > best2) continue;
+    if (scree_box_distance2(&node->box, p) > (least_aside2 > 0 ? reach * reach : best2)) continue;
     if (node->count == 0) {
       stack[depth++] = node->first + 1;
       stack[depth++] = node->first;
       continue;
     }
     for (uint32_t k = 0; k < node->count; k++) {
-      uint32_t f = surface->face_tree.order[node->first + k];
-      const scree_face *face = &surface->faces[f];
+      const scree_face *face = &surface->faces[surface->face_tree.order[node->first + k]];
       if (vec3_dot(face->normal, way) < way_out_cosine) continue;
       int region;
-      vec3 c = scree_closest_on_face(face, p, &region);
-      double d2 = vec3_norm2(vec3_sub(p, c));
-      if (d2 >= best2 || (behind && vec3_dot(vec3_sub(p, c), face->normal) > 0)) continue;
-      best2 = d2;
-      contact->closest = c;
-      contact->normal = face->normal;
-      *found = f;
-      any = true;
+      vec3 c = scree_closest_on_face(face, p, &region), offset = vec3_sub(p, c);
+      double d2 = vec3_norm2(offset), height = vec3_dot(offset, face->normal);
+      if (d2 >= reach * reach || (behind && height > 0)) continue;
+      if (d2 < best2) {
+        best2 = d2;
+        out->closest = c;
+        out->normal = face->normal;
+        any = true;
+      }
+      vec3 aside =
+          region == SCREE_REGION_INSIDE ? (vec3){0, 0, 0} : vec3_mad(offset, face->normal, -height);
+      if (height <= 0 && vec3_norm2(aside) < least_aside2) {
+        least_aside2 = vec3_norm2(aside);
+        out->aside = aside;
+      }
     }
+  }
+  if (any && !(least_aside2 < INFINITY)) { /* in front of all: sideways of the nearest */
+    vec3 offset = vec3_sub(p, out->closest);
+    out->aside = vec3_mad(offset, out->normal, -vec3_dot(offset, out->normal));
   }
   return any;
 }
 
 /* Below half the roundings, or through a wall: depth along the reference. */
 static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
-                         const scree_pair *pair, bool pierced, surface_contact *contact) {
-  uint32_t face;
+                         const scree_pair *pair, bool pierced, bool outside,
+                         surface_contact *contact) {
+  way_out out = {0};
   double half = 0.5 * pair->reach, reach = 1.5 * pair->limit + pair->reach;
-  if (!face_along(surface, p, item->reference, reach, pierced, contact, &face)) return false;
-  vec3 offset = vec3_sub(p, contact->closest);
-  double height = vec3_dot(offset, contact->normal);
+  if (!find_way_out(surface, p, item->reference, reach, pierced, &out)) return false;
+  vec3 offset = vec3_sub(p, out.closest);
+  double height = vec3_dot(offset, out.normal), distance = vec3_norm(offset);
+  bool in_front = outside && height > 0;
+  contact->closest = out.closest;
+  contact->normal = out.normal;
+  contact->aside = out.aside;
   contact->weight = contact->lever = 1;
-  contact->border = contact->closest;
-  if (height > 0) {
-    contact->distance = vec3_norm(offset);
-    if (contact->distance > 1e-9 * half)
-      contact->normal = vec3_scale(offset, 1 / contact->distance);
-    return true;
-  }
-  double sideways = vec3_norm(vec3_mad(offset, contact->normal, -height));
-  contact->distance = height;
-  contact->closest = vec3_mad(p, contact->normal, -height);
-  contact->weight = 1 - smooth_step(0, half, sideways);
+  contact->distance = in_front ? distance : outside ? height : -distance;
+  if ((in_front || !outside) && distance > 1e-9 * half)
+    contact->normal = vec3_scale(offset, 1 / contact->distance);
+  if (in_front) return true;
+  contact->closest = vec3_mad(p, contact->normal, -contact->distance);
+  contact->weight = 1 - smooth_step(0, half, vec3_norm(out.aside));
   return true;
 }
 
-/* A point that slides off an edge below the roundings: as the way out fades, the closest point
- * takes over. One distance, the weighted mean of both, so that the force stays the slope of the
- * energy. */
+/* A point sideways of the faces that look the way out: as these fade, the closest point takes over.
+ * One distance, the weighted mean of both, so that the force stays the slope of the energy. */
 static void slide_off(vec3 p, double half, const surface_contact *closest,
                       surface_contact *contact) {
-  vec3 aside = vec3_sub(p, contact->border);
-  aside = vec3_mad(aside, contact->normal, -vec3_dot(aside, contact->normal));
-  double w = contact->weight, sideways = vec3_norm(aside),
+  double w = contact->weight, sideways = vec3_norm(contact->aside),
          fall = -smooth_step_slope(0, half, sideways) / sideways;
   vec3 slope = vec3_add(vec3_scale(contact->normal, w), vec3_scale(closest->normal, 1 - w));
-  slope = vec3_mad(slope, aside, fall * (contact->distance - closest->distance));
+  slope = vec3_mad(slope, contact->aside, fall * (contact->distance - closest->distance));
   contact->distance = w * contact->distance + (1 - w) * closest->distance;
   contact->lever = vec3_norm(slope);
   contact->normal = vec3_unit(slope);
@@ -185,7 +198,7 @@ static int notch_contacts(const scree_particle *surface, vec3 p, const scree_ite
     double d = vec3_dot(vec3_sub(p, c), face->normal);
     if (region != SCREE_REGION_INSIDE || d <= 0) continue;
     double weight = 1 - smooth_step(notch_cosines[1], notch_cosines[0], alike);
-    contacts[count++] = (surface_contact){c, face->normal, c, d, weight, 1};
+    contacts[count++] = (surface_contact){c, face->normal, {0, 0, 0}, d, weight, 1};
   }
   return count;
 }
@@ -218,13 +231,12 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   contacts[0].weight = contacts[0].lever = 1;
   contacts[0].distance = outside ? d : -d;
   contacts[0].normal = d > 1e-12 ? vec3_scale(offset, (outside ? 1 : -1) / d) : vec3_unit(outward);
-  surface_contact way_out;
+  surface_contact out;
   if ((deep || pierced) && item->has_reference &&
-      deep_contact(surface, p, item, pair, pierced, &way_out) && (deep || way_out.weight > 0)) {
-    item->inside = way_out.weight > 0;
-    if (!pierced && outside && way_out.weight < 1)
-      slide_off(p, 0.5 * pair->reach, &contacts[0], &way_out);
-    contacts[0] = way_out;
+      deep_contact(surface, p, item, pair, pierced, outside, &out) && (deep || out.weight > 0)) {
+    item->inside = !outside || out.weight > 0;
+    if (out.weight < 1) slide_off(p, 0.5 * pair->reach, &contacts[0], &out);
+    contacts[0] = out;
     return 1;
   }
   item->inside = false;
@@ -369,7 +381,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
   }
   surface_contact contact = {on_b,
                              vec3_scale(offset, 1 / fmax(d, 1e-300)),
-                             on_b,
+                             {0, 0, 0},
                              d,
                              smooth_step(parallel_sines[0], parallel_sines[1], sine),
                              1};
