@@ -231,10 +231,14 @@ static bool list_sides(scree_world *world) {
   size_t bodies = world->bodies.count, pairs = world->pairs.count;
   world->sides.count = 0;
   if (bodies == 0) return true; /* there are no arrays yet */
-  if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->slots, pairs))
+  if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->slots, pairs) ||
+      !SCREE_RESERVE(&world->touching, pairs / 64 + 1))
     return false;
   world->slots.count = pairs;
-  for (size_t k = 0; k < pairs; k++) world->slots.items[k] = scree_pair_slot(world->pairs.items[k]);
+  for (size_t k = 0; k < pairs; k++) {
+    world->slots.items[k] = scree_pair_slot(world->pairs.items[k]);
+    scree_mark_touching(world, k, world->pairs.items[k]->touching);
+  }
   size_t *begin = world->side_begin;
   memset(begin, 0, (bodies + 1) * sizeof *begin);
   for (size_t k = 0; k < pairs; k++) {

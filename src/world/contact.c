@@ -23,17 +23,24 @@ static double wall_power(const scree_pair *pair, const scree_frame *wall) {
   return vec3_dot(pair->wrench.force, wall->velocity) - vec3_dot(pair->wrench.torque_b, wall->spin);
 }
 
+static double power_of(const scree_kept_load *load, vec3 velocity, vec3 spin) {
+  const float *f = load->force, *m = load->moment;
+  return f[0] * velocity.x + f[1] * velocity.y + f[2] * velocity.z + m[0] * spin.x + m[1] * spin.y +
+         m[2] * spin.z;
+}
+
 /* The second half: the loads of the last evaluation with the velocities after their kick. With
- * torques M - arm x F on a and -M on b, the power is F.(va - vb - wa x arm) + M.(wa - wb). */
+ * torques M - arm x F on a and -M on b, the power is F.(va - vb - wa x arm) + M.(wa - wb); the arm
+ * is as it was before the drift. */
 static void add_later_work(const scree_world *world, const scree_pair *pair,
                            scree_pair_sums *sums) {
   const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
-  vec3 u = vec3_sub(vec3_sub(a->velocity, b->velocity), vec3_cross(a->spin, pair->arm)),
-       spin = vec3_sub(a->spin, b->spin);
-  const scree_load *d = &pair->dashpot, *t = &pair->tangential;
+  vec3 slip = vec3_sub(a->velocity, b->velocity),
+       arm = vec3_mad(vec3_sub(a->position, b->position), slip, -world->time_step),
+       u = vec3_sub(slip, vec3_cross(a->spin, arm)), spin = vec3_sub(a->spin, b->spin);
   double half = 0.5 * world->time_step;
-  sums->dashpot += half * (vec3_dot(d->force, u) + vec3_dot(d->moment, spin));
-  sums->tangential += half * (vec3_dot(t->force, u) + vec3_dot(t->moment, spin));
+  sums->dashpot += half * power_of(&pair->dashpot, u, spin);
+  sums->tangential += half * power_of(&pair->tangential, u, spin);
   if (pair->wall) sums->wall_work += half * wall_power(pair, b);
 }
 
@@ -106,7 +113,7 @@ static bool wake_items(scree_pair *pair) {
       pair->sleeping.items[kept++] = sleeper;
       continue;
     }
-    scree_item item = {.kind = sleeper.kind, .a = sleeper.a, .b = sleeper.b};
+    scree_item item = {.kind = (uint8_t)sleeper.kind, .a = sleeper.a, .b = sleeper.b};
     if (!scree_pair_reserve_items(pair, pair->active.count + 1)) return false;
     pair->active.items[pair->active.count++] = item;
   }
@@ -140,7 +147,10 @@ static bool settle_items(scree_pair *pair) {
       pair->next_item = fmin(pair->next_item, sleeper.wake);
       continue;
     }
-    if (kept != i) pair->active.items[kept] = *item;
+    if (kept != i) {
+      pair->active.items[kept] = *item;
+      if (item->notched) pair->further[kept] = pair->further[i];
+    }
     kept++;
   }
   pair->active.count = kept;

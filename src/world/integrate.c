@@ -20,10 +20,10 @@ vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, v
 }
 
 /* Asks for the forces on body i. */
-static void fetch_forces(const scree_world *world, size_t i) {
+__attribute__((always_inline)) static inline void fetch_forces(const scree_world *world, size_t i) {
   for (size_t k = world->side_begin[i]; k < world->side_begin[i + 1]; k++) {
     size_t pair = world->sides.items[k] >> 1;
-    if (world->slots.items[pair].wake == -INFINITY) scree_prefetch(world->pairs.items[pair], 128);
+    if (scree_pair_touches(world, pair)) scree_prefetch(world->pairs.items[pair], 128);
   }
 }
 
@@ -32,10 +32,8 @@ static void sum_forces(scree_world *world, size_t i) {
   vec3 force = {0, 0, 0}, torque = {0, 0, 0};
   for (size_t k = world->side_begin[i]; k < world->side_begin[i + 1]; k++) {
     uint32_t side = world->sides.items[k];
-    if (world->slots.items[side >> 1].wake != -INFINITY) continue; /* asleep */
-    const scree_pair *pair = world->pairs.items[side >> 1];
-    if (!pair->touching) continue;
-    const scree_wrench *w = &pair->wrench;
+    if (!scree_pair_touches(world, side >> 1)) continue;
+    const scree_wrench *w = &world->pairs.items[side >> 1]->wrench;
     force = side & 1 ? vec3_sub(force, w->force) : vec3_add(force, w->force);
     torque = vec3_add(torque, side & 1 ? w->torque_b : w->torque_a);
   }

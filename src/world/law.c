@@ -208,16 +208,23 @@ static scree_load turned(const scree_load *load, const mat3 *rotation) {
   return (scree_load){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
 }
 
+static scree_kept_load kept_load(const scree_load *load) {
+  vec3 f = load->force, m = load->moment;
+  return (scree_kept_load){{(float)f.x, (float)f.y, (float)f.z},
+                           {(float)m.x, (float)m.y, (float)m.z}};
+}
+
 static void store_loads(const scree_world *world, scree_pair *pair, const load_sums *sums) {
   const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
   scree_load normal = turned(&sums->normal, &b->rotation);
-  pair->dashpot = turned(&sums->dashpot, &b->rotation);
-  pair->tangential = turned(&sums->tangential, &b->rotation);
-  pair->arm = vec3_sub(a->position, b->position);
-  vec3 force = vec3_add(normal.force, pair->tangential.force),
-       moment = vec3_add(normal.moment, pair->tangential.moment);
-  pair->wrench =
-      (scree_wrench){force, vec3_sub(moment, vec3_cross(pair->arm, force)), vec3_neg(moment)};
+  scree_load dashpot = turned(&sums->dashpot, &b->rotation);
+  scree_load tangential = turned(&sums->tangential, &b->rotation);
+  pair->dashpot = kept_load(&dashpot);
+  pair->tangential = kept_load(&tangential);
+  vec3 arm = vec3_sub(a->position, b->position);
+  vec3 force = vec3_add(normal.force, tangential.force),
+       moment = vec3_add(normal.moment, tangential.moment);
+  pair->wrench = (scree_wrench){force, vec3_sub(moment, vec3_cross(arm, force)), vec3_neg(moment)};
 }
 
 scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
@@ -236,7 +243,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   load_sums sums;
   sums.normal = sums.dashpot = sums.tangential = (scree_load){{0, 0, 0}, {0, 0, 0}};
   sums.dashpot_power = sums.tangential_power = 0;
-  size_t contacts = 0;
+  uint32_t contacts = 0;
   for (size_t i = 0; i < touches->count; i++) {
     scree_touch *touch = &touches->items[i];
     double above = touch->overlap - maximum.cutoff;

@@ -112,10 +112,11 @@ scree_checksum scree_world_hash(const scree_world *world) {
       const scree_item *item = &pair->active.items[i];
       const uint32_t names[5] = {pair->a, pair->b, item->kind, item->a, item->b};
       mix(&hash, names, sizeof names);
-      for (int j = 0; j < SCREE_ANCHORS; j++) {
-        if (item->anchor[j].share <= 0) continue;
-        mix(&hash, &item->anchor[j].stretch, sizeof item->anchor[j].stretch);
-        mix(&hash, &item->anchor[j].share, sizeof item->anchor[j].share);
+      for (int j = 0; j < (item->notched ? SCREE_ANCHORS : 1); j++) {
+        const scree_anchor *anchor = j ? &pair->further[i].anchor[j - 1] : &item->anchor;
+        if (anchor->share <= 0) continue;
+        mix(&hash, &anchor->stretch, sizeof anchor->stretch);
+        mix(&hash, &anchor->share, sizeof anchor->share);
       }
     }
   }

@@ -5,6 +5,8 @@
 #include "base/alloc.h"
 #include "base/array.h"
 
+#include <string.h>
+
 static double size_of(const scree_world *world, const scree_particle *particle) {
   return world->options.size > 0 ? world->options.size : particle->measures.size;
 }
@@ -52,6 +54,12 @@ static void forget(scree_pair *pair) {
   pair->contact_count = 0;
 }
 
+static void use_own_items(scree_pair *pair) {
+  pair->active.items = pair->own_items;
+  pair->active.capacity = SCREE_OWN_ITEMS;
+  pair->further = pair->own_further;
+}
+
 /* As many again as there are, from 64 to 8192 (4 MB), into the spares. */
 static bool make_spares(scree_world *world) {
   size_t total = 0;
@@ -62,6 +70,7 @@ static bool make_spares(scree_world *world) {
     return false;
   scree_pair *pairs = scree_alloc_zero(count, sizeof *pairs);
   if (!pairs) return false;
+  for (size_t i = 0; i < count; i++) use_own_items(&pairs[i]);
   world->slabs.items[world->slabs.count++] = (scree_pair_slab){pairs, count};
   for (size_t i = count; i-- > 0;) world->spare_pairs.items[world->spare_pairs.count++] = &pairs[i];
   return true;
@@ -85,22 +94,45 @@ void scree_pair_give_back(scree_world *world, scree_pair *pair) {
 
 bool scree_pair_reserve_items(scree_pair *pair, size_t needed) {
   if (needed <= pair->active.capacity) return true;
-  size_t grown = pair->active.capacity < 2 ? 2 : 2 * pair->active.capacity;
+  size_t grown = 2 * pair->active.capacity, count = pair->active.count;
   if (grown < needed) grown = needed;
-  void *moved = scree_resize(pair->active.items, grown, sizeof *pair->active.items);
-  if (!moved) return false;
-  pair->active.items = moved;
+  scree_item *items = scree_alloc(grown, sizeof *items + sizeof *pair->further);
+  if (!items) return false;
+  scree_further *further = (scree_further *)(items + grown);
+  memcpy(items, pair->active.items, count * sizeof *items);
+  memcpy(further, pair->further, count * sizeof *further);
+  if (pair->active.items != pair->own_items) scree_free(pair->active.items);
+  pair->active.items = items;
   pair->active.capacity = grown;
+  pair->further = further;
   return true;
+}
+
+bool scree_pair_copy(const scree_pair *pair, scree_pair *copy) {
+  size_t active = pair->active.count, sleeping = pair->sleeping.count;
+  *copy = *pair;
+  use_own_items(copy);
+  copy->sleeping.items = NULL;
+  copy->sleeping.capacity = copy->active.count = 0; /* nothing to move yet */
+  if (!scree_pair_reserve_items(copy, active) || !SCREE_RESERVE(&copy->sleeping, sleeping))
+    return false;
+  copy->active.count = active;
+  memcpy(copy->active.items, pair->active.items, active * sizeof *copy->active.items);
+  memcpy(copy->further, pair->further, active * sizeof *copy->further);
+  if (sleeping)
+    memcpy(copy->sleeping.items, pair->sleeping.items, sleeping * sizeof *copy->sleeping.items);
+  return true;
+}
+
+void scree_pair_free_lists(scree_pair *pair) {
+  if (pair->active.items != pair->own_items) scree_free(pair->active.items);
+  scree_free(pair->sleeping.items);
 }
 
 void scree_pairs_free(scree_world *world) {
   for (size_t s = 0; s < world->slabs.count; s++) {
     scree_pair_slab *slab = &world->slabs.items[s];
-    for (size_t i = 0; i < slab->count; i++) {
-      scree_free(slab->pairs[i].active.items);
-      scree_free(slab->pairs[i].sleeping.items);
-    }
+    for (size_t i = 0; i < slab->count; i++) scree_pair_free_lists(&slab->pairs[i]);
     scree_free(slab->pairs);
   }
   scree_free(world->slabs.items);

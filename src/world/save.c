@@ -17,11 +17,11 @@
 #include <string.h>
 
 static const unsigned char magic[8] = {'s', 'c', 'r', 'e', 'e', 'W', 'L', 'D'};
-enum { VERSION = 4, OLDEST_VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
+enum { VERSION = 5, OLDEST_VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
 
 /* Whoever changes these records must add the fields below, and raise VERSION. */
-_Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 248 && sizeof(scree_anchor) == 56 &&
-                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 512 &&
+_Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
+                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 960 &&
                                        sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
@@ -129,8 +129,23 @@ static void code_anchor(scree_codec *c, scree_anchor *a) {
   scree_code_real(c, &a->share);
 }
 
-static void code_item(scree_codec *c, scree_item *i) {
-  scree_code_u32(c, &i->kind);
+/* Memory that has come to nothing is saved as such: whether a world has been saved in between does
+ * not show. */
+static void code_further(scree_codec *c, scree_item *i, scree_further *further) {
+  bool any = false;
+  for (int k = 0; k < SCREE_ANCHORS - 1; k++) {
+    scree_anchor *own = &further->anchor[k], none = {0};
+    code_anchor(c, c->loading || (i->notched && own->share > 0) ? own : &none);
+    any = any || own->share > 0;
+  }
+  if (c->loading) i->notched = any;
+}
+
+static void code_item(scree_codec *c, scree_item *i, scree_further *further) {
+  uint32_t kind = i->kind;
+  scree_code_u32(c, &kind);
+  if (kind > SCREE_ITEM_POINT_WALL) c->failed = true;
+  if (c->loading) i->kind = (uint8_t)kind;
   scree_code_u32(c, &i->a);
   scree_code_u32(c, &i->b);
   scree_code_u32(c, &i->face_count);
@@ -140,7 +155,8 @@ static void code_item(scree_codec *c, scree_item *i) {
   scree_code_real(c, &i->gap);
   scree_code_bool(c, &i->has_reference);
   scree_code_bool(c, &i->inside);
-  for (int k = 0; k < SCREE_ANCHORS; k++) code_anchor(c, &i->anchor[k]);
+  code_anchor(c, &i->anchor);
+  code_further(c, i, further);
 }
 
 static void code_sleeper(scree_codec *c, scree_sleeper *s) {
@@ -156,9 +172,13 @@ static void code_wrench(scree_codec *c, scree_wrench *w) {
   scree_code_vec3(c, &w->torque_b);
 }
 
-static void code_load(scree_codec *c, scree_load *l) {
-  scree_code_vec3(c, &l->force);
-  scree_code_vec3(c, &l->moment);
+static void code_load(scree_codec *c, scree_kept_load *l) {
+  float *numbers[2] = {l->force, l->moment};
+  for (int i = 0; i < 6; i++) {
+    double number = numbers[i / 3][i % 3];
+    scree_code_real(c, &number);
+    numbers[i / 3][i % 3] = (float)number;
+  }
 }
 
 static void code_pair_name(scree_codec *c, scree_pair *p) {
@@ -167,7 +187,7 @@ static void code_pair_name(scree_codec *c, scree_pair *p) {
   scree_code_bool(c, &p->wall);
 }
 
-static void code_pair_state(scree_codec *c, scree_pair *p) {
+static void code_pair_state(scree_codec *c, scree_pair *p, uint32_t version) {
   scree_code_bool(c, &p->asleep);
   scree_code_bool(c, &p->touching);
   double *reals[] = {&p->stiffness,    &p->damping,  &p->friction, &p->restitution,
@@ -179,10 +199,11 @@ static void code_pair_state(scree_codec *c, scree_pair *p) {
   code_wrench(c, &p->wrench);
   code_load(c, &p->dashpot);
   code_load(c, &p->tangential);
-  scree_code_vec3(c, &p->arm);
+  vec3 arm = {0, 0, 0};
+  if (version < 5) scree_code_vec3(c, &arm);
   uint64_t contacts = p->contact_count;
   scree_code_u64(c, &contacts);
-  p->contact_count = (size_t)contacts;
+  p->contact_count = (uint32_t)contacts;
   scree_code_count(c, &p->active.count, 242);
   scree_code_count(c, &p->sleeping.count, 20);
 }
@@ -353,9 +374,10 @@ static void save_pairs(scree_codec *c, const scree_world *world) {
   for (size_t k = 0; k < count; k++) {
     scree_pair pair = *world->pairs.items[k]; /* its lists are only read */
     code_pair_name(c, &pair);
-    code_pair_state(c, &pair);
+    code_pair_state(c, &pair, VERSION);
     code_pair_motion(c, &pair);
-    for (size_t i = 0; i < pair.active.count; i++) code_item(c, &pair.active.items[i]);
+    for (size_t i = 0; i < pair.active.count; i++)
+      code_item(c, &pair.active.items[i], &pair.further[i]);
     for (size_t i = 0; i < pair.sleeping.count; i++) code_sleeper(c, &pair.sleeping.items[i]);
   }
 }
@@ -603,10 +625,12 @@ static void load_items(loader *l, scree_pair *pair) {
   if (!scree_pair_reserve_items(pair, active) || !SCREE_RESERVE(&pair->sleeping, sleeping))
     l->codec.out_of_memory = true;
   for (size_t i = 0; i < active && good(l); i++) {
-    scree_item item = {0};
-    code_item(&l->codec, &item);
-    if (!is_item(l, pair, &item)) l->codec.failed = true;
-    pair->active.items[pair->active.count++] = item;
+    scree_item *item = &pair->active.items[i];
+    *item = (scree_item){0};
+    pair->further[i] = (scree_further){0};
+    code_item(&l->codec, item, &pair->further[i]);
+    if (!is_item(l, pair, item)) l->codec.failed = true;
+    pair->active.count++;
   }
   for (size_t i = 0; i < sleeping && good(l); i++) {
     scree_sleeper s = {0};
@@ -643,7 +667,7 @@ static void load_pairs(loader *l) {
       return;
     }
     world->pairs.items[world->pairs.count++] = pair;
-    code_pair_state(&l->codec, pair);
+    code_pair_state(&l->codec, pair, l->version);
     if (l->version >= 4) {
       code_pair_motion(&l->codec, pair);
     } else if (pair->asleep) { /* where it fell asleep is not known: it lists its features anew */

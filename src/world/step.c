@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-enum { PAIR_BLOCK = 128 };
+enum { PAIR_BLOCK = 128 }; /* whole words of world->touching: a thread of its own writes each */
 
 static double slot_due(const scree_world *world, const scree_slot *slot) {
   const double *due = world->bodies.due;
@@ -20,29 +20,52 @@ static double slot_due(const scree_world *world, const scree_slot *slot) {
 }
 
 /* The pair and what its evaluation reads first. */
-static void fetch_pair(const scree_world *world, size_t k) {
+__attribute__((always_inline)) static inline void fetch_pair(const scree_world *world, size_t k) {
   const scree_slot *slot = &world->slots.items[k];
-  scree_prefetch(world->pairs.items[k], sizeof(scree_pair));
+  scree_prefetch(world->pairs.items[k], offsetof(scree_pair, further));
   if (!(slot->b & SCREE_SLOT_WALL))
     scree_prefetch(&world->bodies.frame[slot->b], sizeof(scree_frame));
 }
+
+/* What the items of a pair that has come read of their shapes. */
+__attribute__((always_inline)) static inline void fetch_features(const scree_world *world,
+                                                                 const scree_pair *pair) {
+  const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
+  for (size_t i = 0; i < pair->active.count; i++) {
+    const scree_item *item = &pair->active.items[i];
+    if (item->kind == SCREE_ITEM_EDGE_EDGE) {
+      scree_prefetch(&a->edges[item->a], sizeof(scree_edge));
+      scree_prefetch(&b->edges[item->b], sizeof(scree_edge));
+    } else if (item->kind == SCREE_ITEM_POINT_FACE) {
+      scree_prefetch(&a->points[item->a], 1);
+      scree_prefetch(&b->faces[item->face[0]], sizeof(scree_face));
+    } else if (item->kind == SCREE_ITEM_FACE_POINT) {
+      scree_prefetch(&b->points[item->b], 1);
+      scree_prefetch(&a->faces[item->face[0]], sizeof(scree_face));
+    }
+  }
+}
+
+enum { PAIRS_AHEAD = 4 };
 
 static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   scree_world *world = context;
   scree_pair_sums sums = {0};
   size_t awake[PAIR_BLOCK], count = 0;
+  if (end + PAIR_BLOCK <= world->pairs.count) { /* of the next block */
+    scree_prefetch(&world->slots.items[end], PAIR_BLOCK * sizeof(scree_slot));
+    scree_prefetch(&world->pairs.items[end], PAIR_BLOCK * sizeof(scree_pair *));
+  }
   for (size_t k = begin; k < end; k++)
     if (slot_due(world, &world->slots.items[k]) >= world->slots.items[k].wake) awake[count++] = k;
-  for (size_t i = 0; i < 3 && i < count; i++) fetch_pair(world, awake[i]);
+  for (size_t i = 0; i < PAIRS_AHEAD && i < count; i++) fetch_pair(world, awake[i]);
   for (size_t i = 0; i < count; i++) {
     scree_pair *pair = world->pairs.items[awake[i]];
-    if (i + 3 < count) fetch_pair(world, awake[i + 3]);
-    if (i + 1 < count) {
-      const scree_pair *next = world->pairs.items[awake[i + 1]];
-      scree_prefetch(next->active.items, next->active.count * sizeof(scree_item));
-    }
+    if (i + PAIRS_AHEAD < count) fetch_pair(world, awake[i + PAIRS_AHEAD]);
+    if (i + 1 < count) fetch_features(world, world->pairs.items[awake[i + 1]]);
     scree_pair_evaluate(world, pair, &world->scratch[worker], &sums);
     world->slots.items[awake[i]].wake = pair->asleep ? pair->wake : -INFINITY;
+    scree_mark_touching(world, awake[i], pair->touching);
   }
   world->sums.items[block] = sums;
 }

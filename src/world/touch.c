@@ -247,19 +247,25 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   return deep ? 1 : notch_contacts(surface, p, item, nearest, contacts);
 }
 
+static scree_anchor *anchor_of(const scree_pair *pair, scree_item *item, int k) {
+  return k == 0 ? &item->anchor : &pair->further[item - pair->active.items].anchor[k - 1];
+}
+
 /* Gives each contact the memory of the last step whose normal is most like its own. */
-static void match_anchors(scree_item *item, const vec3 *normals, int count) {
-  scree_anchor *first = &item->anchor[0];
-  if (count == 1 && !(item->anchor[1].share > 0 || item->anchor[2].share > 0)) { /* mostly */
+static void match_anchors(const scree_pair *pair, scree_item *item, const vec3 *normals,
+                          int count) {
+  scree_anchor *first = &item->anchor;
+  if (count == 1 && !item->notched) { /* mostly */
     if (first->share > 0 && !(vec3_dot(first->normal, normals[0]) > 0.5)) first->share = 0;
     return;
   }
-  scree_anchor old[SCREE_ANCHORS];
+  scree_anchor old[SCREE_ANCHORS] = {*first};
   bool used[SCREE_ANCHORS] = {false};
   for (int k = 0; k < SCREE_ANCHORS; k++) {
-    old[k] = item->anchor[k];
-    item->anchor[k] = (scree_anchor){0};
+    if (item->notched) old[k] = *anchor_of(pair, item, k);
+    *anchor_of(pair, item, k) = (scree_anchor){0};
   }
+  item->notched = count > 1;
   for (int j = 0; j < count; j++) {
     int best = -1;
     double best_dot = 0.5;
@@ -270,7 +276,7 @@ static void match_anchors(scree_item *item, const vec3 *normals, int count) {
     }
     if (best < 0) continue;
     used[best] = true;
-    item->anchor[j] = old[best];
+    *anchor_of(pair, item, j) = old[best];
   }
 }
 
@@ -298,14 +304,14 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
     at[k] = vec3_add(mat3_mul_vec(&relative->rotation, p), relative->position);
     normals[k] = vec3_neg(mat3_mul_vec(&relative->rotation, normals[k]));
   }
-  match_anchors(item, normals, count);
+  match_anchors(pair, item, normals, count);
   double least = INFINITY, surface_radius = surface->measures.rounding,
          point_radius = from->point_radii[point];
   for (int k = 0; k < count; k++) {
     const double values[4] = {contacts[k].distance, forth ? point_radius : surface_radius,
                               forth ? surface_radius : point_radius, contacts[k].weight};
     size_t touches = scratch->touches.count;
-    double gap = add_touch(scratch, pair, at[k], normals[k], values, &item->anchor[k]);
+    double gap = add_touch(scratch, pair, at[k], normals[k], values, anchor_of(pair, item, k));
     if (scratch->touches.count > touches) scratch->touches.items[touches].lever = contacts[k].lever;
     if (gap < least) least = gap;
   }
@@ -364,7 +370,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
   if (far >= 0 && !item->inside) {
     item->reference = vec3_scale(offset, 1 / d);
     item->has_reference = true;
-    item->anchor[0].share = 0;
+    item->anchor.share = 0;
     return far;
   }
   vec3 crossing = vec3_cross(ua, ub);
@@ -376,7 +382,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
       item->reference = vec3_scale(offset, 1 / d);
       item->has_reference = true;
     }
-    item->anchor[0].share = 0;
+    item->anchor.share = 0;
     return fmin(far, 0);
   }
   surface_contact contact = {on_b,
@@ -393,7 +399,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
         !is_crossed(world->bodies.particle[pair->a], scree_pair_shape_b(world, pair), on_a, on_b,
                     relative)) {
       item->inside = false;
-      item->anchor[0].share = 0;
+      item->anchor.share = 0;
       return fmin(far, 0);
     }
   }
@@ -404,7 +410,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
   double out_a = -vec3_dot(mat3_mul_vec(r, ea->normals.axis), contact.normal),
          out_b = vec3_dot(eb->normals.axis, contact.normal);
   if (out_a <= ea->facing || out_b <= eb->facing) {
-    item->anchor[0].share = 0; /* seen through one of the bodies */
+    item->anchor.share = 0; /* seen through one of the bodies */
     return fmin(far, 0);
   }
   if (item->inside) contact.weight *= normal_share(ea, out_a) * normal_share(eb, out_b);
@@ -414,7 +420,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
   contact.weight *= smooth_step(0, 0.1 * pair->reach, end);
   double rounding_a = world->bodies.particle[pair->a]->measures.rounding;
   const double values[4] = {contact.distance, rounding_a, pair->reach - rounding_a, contact.weight};
-  return add_touch(scratch, pair, contact.closest, contact.normal, values, &item->anchor[0]);
+  return add_touch(scratch, pair, contact.closest, contact.normal, values, &item->anchor);
 }
 
 /* ---- spheres and analytic walls ---- */
@@ -427,7 +433,7 @@ static double touch_spheres(const scree_world *world, const scree_pair *pair, sc
   double d = vec3_norm(offset);
   vec3 n = d > 0 ? vec3_scale(offset, 1 / d) : (vec3){0, 0, 1};
   const double values[4] = {d, a->point_radii[item->a], b->point_radii[item->b], 1};
-  return add_touch(scratch, pair, q, n, values, &item->anchor[0]);
+  return add_touch(scratch, pair, q, n, values, &item->anchor);
 }
 
 static double touch_wall(const scree_world *world, const scree_pair *pair, scree_item *item,
@@ -455,7 +461,7 @@ static double touch_wall(const scree_world *world, const scree_pair *pair, scree
   item->reference.x = side;
   item->has_reference = true;
   const double values[4] = {d, a->point_radii[item->a], 0, 1};
-  return add_touch(scratch, pair, c, n, values, &item->anchor[0]);
+  return add_touch(scratch, pair, c, n, values, &item->anchor);
 }
 
 double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_item *item,

@@ -4,24 +4,6 @@
 
 #include "base/alloc.h"
 
-#include <string.h>
-
-/* The pair with arrays of its own; false when memory is out. */
-static bool copy_pair(const scree_pair *pair, scree_pair *copy) {
-  *copy = *pair;
-  copy->active.items = scree_alloc(pair->active.count, sizeof *copy->active.items);
-  copy->sleeping.items = scree_alloc(pair->sleeping.count, sizeof *copy->sleeping.items);
-  copy->active.capacity = pair->active.count;
-  copy->sleeping.capacity = pair->sleeping.count;
-  if (!copy->active.items || !copy->sleeping.items) return false;
-  if (pair->active.count)
-    memcpy(copy->active.items, pair->active.items, pair->active.count * sizeof *copy->active.items);
-  if (pair->sleeping.count)
-    memcpy(copy->sleeping.items, pair->sleeping.items,
-           pair->sleeping.count * sizeof *copy->sleeping.items);
-  return true;
-}
-
 static bool report(const scree_world *world, const scree_pair *pair, const scree_touch *touch,
                    scree_contact_visitor *visit, void *context) {
   const scree_frame *b = scree_pair_frame_b(world, pair);
@@ -44,14 +26,13 @@ scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_
     if (!world->pairs.items[k]->touching) continue;
     scree_pair copy;
     scree_pair_sums sums = {0};
-    good = copy_pair(world->pairs.items[k], &copy);
+    good = scree_pair_copy(world->pairs.items[k], &copy);
     if (good) scree_pair_evaluate(world, &copy, &scratch, &sums);
     good = good && !sums.out_of_memory;
     for (size_t i = 0; i < scratch.touches.count && good && going && copy.touching; i++)
       if (scratch.touches.items[i].share > 0)
         going = report(world, &copy, &scratch.touches.items[i], visit, context);
-    scree_free(copy.active.items);
-    scree_free(copy.sleeping.items);
+    scree_pair_free_lists(&copy);
   }
   scree_free(scratch.touches.items);
   return good ? SCREE_OK : scree_fail_memory(error, 0, "contacts");

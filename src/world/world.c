@@ -89,6 +89,7 @@ void scree_world_free(scree_world *world) {
   scree_free(world->spare_pairs.items);
   scree_free(world->merged_pairs.items);
   scree_free(world->slots.items);
+  scree_free(world->touching.items);
   scree_free(world->keys.items);
   scree_free(world->sides.items);
   scree_free(world->side_begin);

@@ -70,17 +70,24 @@ typedef struct scree_sleeper {
 
 enum { SCREE_CACHED_FACES = 4, SCREE_ANCHORS = 3 };
 
-/* A feature pair that is evaluated every step. */
+/* A feature pair that is evaluated every step: two cache lines. */
 typedef struct scree_item {
-  uint32_t kind, a, b;
+  uint8_t kind;
+  bool has_reference, inside;
+  bool notched; /* it has further anchors */
+  uint32_t a, b;
   uint32_t face_count; /* cached nearest faces */
   uint32_t face[SCREE_CACHED_FACES];
   double valid;   /* path up to which no other face can be nearer */
   vec3 reference; /* the way out, kept from the last time the cores were apart */
   double gap;     /* found in this step; 0: stay awake */
-  bool has_reference, inside;
-  scree_anchor anchor[SCREE_ANCHORS];
+  scree_anchor anchor;
 } scree_item;
+
+/* The anchors of a point in a notch beyond the first: few items ever read them. */
+typedef struct scree_further {
+  scree_anchor anchor[SCREE_ANCHORS - 1];
+} scree_further;
 
 /* Force and torques about the centres of a and b (about its position for a wall), on a and on b;
  * the force on b is the opposite. */
@@ -93,36 +100,52 @@ typedef struct scree_load {
   vec3 force, moment;
 } scree_load;
 
+/* A load in space as the ledger keeps it from one step to the next: the bodies do not feel its
+ * rounding. */
+typedef struct scree_kept_load {
+  float force[3], moment[3];
+} scree_kept_load;
+
+enum { SCREE_OWN_ITEMS = 2 };
+
+/* What a step touches of a pair that is awake comes first, in five cache lines, and the items of
+ * most pairs after it. */
 typedef struct scree_pair {
-  uint32_t a, b;
+  _Alignas(64) uint32_t a;
+  uint32_t b;
   bool wall;   /* b is a wall */
   bool asleep; /* no item can touch before the bodies' paths reach `wake` */
   bool touching;
-  scree_wrench wrench; /* here: the bodies read it with what is above */
-  double stiffness, damping, friction, restitution; /* K, C, mu, e */
-  double smoothing, reach, limit;                   /* l0; rounding of both meshes; overlap limit */
+  uint32_t contact_count;
+  scree_wrench wrench;        /* here: the bodies read it with what is above */
+  double travel, path;        /* of the relative motion: last step, and sum; upper bounds */
+  double next_item, list_end; /* on path */
+  double age;                 /* since the touch began */
+  struct {
+    scree_item *items; /* own_items while they are enough */
+    size_t count, capacity;
+  } active;
+  vec3 region; /* ball in the frame of b that holds what the list is about, until it ends */
+  double region_radius;                  /* 0: none */
+  double overlap;                        /* m */
+  double largest;                        /* m of this contact (hysteresis) */
+  double stiffness, damping, friction;   /* K, C, mu */
+  double smoothing, reach, limit;        /* l0; rounding of both meshes; overlap limit */
+  double contact_time;                   /* half period pi sqrt(m/K) */
+  scree_kept_load dashpot, tangential;   /* parts of the wrench, for the ledger */
+  double elastic, tangential_elastic;    /* U of all springs, and of the tangential ones */
+  scree_item own_items[SCREE_OWN_ITEMS]; /* from here on: not always */
+  scree_further *further;                /* of the active items; own_further with own_items */
+  double restitution;                    /* e */
   double thin;               /* the limit, or half the thinnest wall of the bodies where less */
-  double travel, path;       /* of the relative motion: last step, and sum; upper bounds */
   double wake, asleep_since; /* on path[a] + path[b] */
   vec3 asleep_at;            /* a in the frame of b when it fell asleep */
   quat asleep_turned;
-  vec3 region; /* ball in the frame of b that holds what the list is about, until it ends */
-  double region_radius;       /* 0: none */
-  double next_item, list_end; /* on path */
-  struct {
-    scree_item *items;
-    size_t count, capacity;
-  } active;
   struct {
     scree_sleeper *items;
     size_t count, capacity;
   } sleeping;
-  scree_load dashpot, tangential;     /* parts of the wrench, for the ledger */
-  vec3 arm;                           /* from b to a when they were made */
-  double elastic, tangential_elastic; /* U of all springs, and of the tangential ones */
-  double contact_time, age;           /* half period pi sqrt(m/K); since the touch began */
-  double overlap, largest;            /* m; largest m of this contact (hysteresis) */
-  size_t contact_count;
+  scree_further own_further[SCREE_OWN_ITEMS];
 } scree_pair;
 
 /* Pairs lie together: a step goes through many of them, and every page counts. */
@@ -195,6 +218,10 @@ struct scree_world {
   struct {
     uint64_t *items;
     size_t count, capacity;
+  } touching; /* one bit a pair: the bodies look for their forces here */
+  struct {
+    uint64_t *items;
+    size_t count, capacity;
   } keys; /* of the broad phase */
   struct {
     uint32_t *items; /* 2 * pair + (1 for the b side), grouped by body, ascending */
@@ -227,13 +254,21 @@ struct scree_world {
   scree_timings timings;
 };
 
-/* Asks for `size` bytes from `start` ahead of their use: pairs lie anywhere in memory. */
-static inline void scree_prefetch(const void *start, size_t size) {
+/* Asks for `size` bytes from `start` ahead of their use: pairs lie anywhere in memory. A function
+ * that only prefetches must be forced inline: gcc sees no effect in it and drops calls. */
+__attribute__((always_inline)) static inline void scree_prefetch(const void *start, size_t size) {
   for (size_t at = 0; at < size; at += 64) __builtin_prefetch((const char *)start + at);
 }
 static inline scree_slot scree_pair_slot(const scree_pair *p) {
   return (scree_slot){p->asleep ? p->wake : -INFINITY, p->a,
                       p->b | (p->wall ? SCREE_SLOT_WALL : 0)};
+}
+static inline bool scree_pair_touches(const scree_world *world, size_t pair) {
+  return world->touching.items[pair / 64] >> pair % 64 & 1;
+}
+static inline void scree_mark_touching(scree_world *world, size_t pair, bool touching) {
+  uint64_t bit = (uint64_t)1 << pair % 64, *word = &world->touching.items[pair / 64];
+  *word = touching ? *word | bit : *word & ~bit;
 }
 static inline double scree_body_due(const scree_bodies *bodies, size_t i) {
   return bodies->path[i] + 2 * bodies->travel[i];
@@ -272,9 +307,11 @@ scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wal
 void scree_pair_give_back(scree_world *world, scree_pair *pair);
 /* All of the world's pairs with their arrays. */
 void scree_pairs_free(scree_world *world);
-/* Room for active items, by doubling from two: most pairs have no more, and they lie close
- * together. */
+/* Room for active items, by doubling. */
 bool scree_pair_reserve_items(scree_pair *pair, size_t needed);
+/* A pair with lists of its own, to be freed with the next; false when memory is out. */
+bool scree_pair_copy(const scree_pair *pair, scree_pair *copy);
+void scree_pair_free_lists(scree_pair *pair);
 /* After a jump: the body's contacts start anew. */
 void scree_body_forget(scree_world *world, size_t body);
 

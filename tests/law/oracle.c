@@ -166,22 +166,13 @@ static void lists_change_nothing(void **state) {
 /* Energy of a pair's contact at its bodies' frames, on a copy of its memory; its wrench too. */
 static double energy_of_copy(const scree_world *world, const scree_pair *pair,
                              scree_wrench *wrench) {
-  scree_pair copy = *pair;
+  scree_pair copy;
   scree_scratch scratch = {0};
   scree_pair_sums sums = {0};
-  copy.active.items = malloc((pair->active.count + 64) * sizeof *copy.active.items);
-  copy.sleeping.items = malloc((pair->sleeping.count + 64) * sizeof *copy.sleeping.items);
-  assert_non_null(copy.active.items);
-  assert_non_null(copy.sleeping.items);
-  memcpy(copy.active.items, pair->active.items, pair->active.count * sizeof *copy.active.items);
-  memcpy(copy.sleeping.items, pair->sleeping.items,
-         pair->sleeping.count * sizeof *copy.sleeping.items);
-  copy.active.capacity = pair->active.count + 64;
-  copy.sleeping.capacity = pair->sleeping.count + 64;
-  copy.list_end = INFINITY; /* the present list, whose room suffices */
+  assert_true(scree_pair_copy(pair, &copy));
+  copy.list_end = INFINITY; /* the present list */
   scree_pair_evaluate(world, &copy, &scratch, &sums);
-  free(copy.active.items);
-  free(copy.sleeping.items);
+  scree_pair_free_lists(&copy);
   scree_free(scratch.touches.items);
   *wrench = copy.wrench;
   return copy.elastic;
