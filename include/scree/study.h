@@ -121,7 +121,8 @@ SCREE_API scree_status scree_study_open_folder(const char *folder, scree_study *
                                                scree_error *error);
 
 /* Makes what the runs need and the folder does not have yet: each shape is read, checked, repaired
- * where need be, decimated once, and its levels written to FOLDER/shapes. */
+ * where need be, decimated once, and its levels written to FOLDER/shapes. options may be NULL: the
+ * defaults. */
 SCREE_API scree_status scree_study_prepare(scree_study *study, const scree_study_options *options,
                                            const scree_progress *progress, scree_error *error);
 
@@ -130,7 +131,8 @@ SCREE_API scree_status scree_study_reopen(scree_study *study, scree_error *error
 
 /* Takes runs, one after the other, and works on each to its end. A run that fails is recorded with
  * its reason and the next is taken. SCREE_CANCELLED leaves a checkpoint and gives the run back.
- * Needs scree_study_prepare. *completed (may be NULL): runs ended here. */
+ * Needs scree_study_prepare. options may be NULL: the defaults. *completed (may be NULL): runs ended
+ * here. */
 SCREE_API scree_status scree_study_work(scree_study *study, const scree_study_options *options,
                                         const scree_progress *progress, size_t *completed,
                                         scree_error *error);

@@ -4,6 +4,8 @@
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "cli/study.h"
 
+#include "base/file.h"
+
 #include <errno.h>
 #include <limits.h>
 #include <spawn.h>
@@ -20,12 +22,14 @@ static void write_quoted(FILE *stream, const char *text) {
   putc('\'', stream);
 }
 
-static bool write_script(const cli_call *call, const char *path, const char *study,
-                         const char *folder, size_t tasks) {
+static scree_status write_script(const cli_call *call, const char *path, const char *study,
+                                 const char *folder, size_t tasks, scree_error *error) {
   const study_arguments *a = call->options;
   char program[PATH_MAX];
-  FILE *stream = fopen(path, "w");
-  if (!stream) return false;
+  scree_output output;
+  scree_status status = scree_output_open(path, true, &output, error);
+  if (status != SCREE_OK) return status;
+  FILE *stream = output.stream;
   if (!realpath("/proc/self/exe", program)) snprintf(program, sizeof program, "scree");
   fprintf(stream,
           "#!/bin/sh\n"
@@ -48,8 +52,7 @@ static bool write_script(const cli_call *call, const char *path, const char *stu
   fprintf(stream, " --worker --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ", a->lease);
   write_quoted(stream, study);
   putc('\n', stream);
-  bool good = !ferror(stream);
-  return fclose(stream) == 0 && good;
+  return scree_output_commit(&output, error);
 }
 
 static int submit(const char *script) {
@@ -76,10 +79,9 @@ int study_run_slurm(const cli_call *call, const scree_study *study, const char *
     return 1;
   }
   snprintf(script, sizeof script, "%s/study.sbatch", full);
-  if (!write_script(call, script, file, full, tasks < runs ? tasks : runs)) {
-    fprintf(stderr, "scree: %s: cannot write: %s\n", script, strerror(errno));
-    return 1;
-  }
+  scree_error error;
+  if (write_script(call, script, file, full, tasks < runs ? tasks : runs, &error) != SCREE_OK)
+    return cli_fail(&error);
   if (!a->dry_run) return submit(script);
   printf("%s: not submitted; `sbatch %s` does\n", script, script);
   return 0;

@@ -335,6 +335,8 @@ static scree_status check_unchanged(const scree_study_shape *shape, scree_error 
 
 scree_status scree_study_prepare(scree_study *study, const scree_study_options *options,
                                  const scree_progress *progress, scree_error *error) {
+  const scree_study_options defaults = scree_default_study_options();
+  if (!options) options = &defaults;
   for (size_t i = 0; i < study->shape_count; i++) {
     scree_status status = know_shape(study, &study->shapes[i], error);
     if (status == SCREE_OK && study->shapes[i].known)

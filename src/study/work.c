@@ -338,6 +338,8 @@ scree_status scree_study_reopen(scree_study *study, scree_error *error) {
 scree_status scree_study_work(scree_study *study, const scree_study_options *options,
                               const scree_progress *progress, size_t *completed,
                               scree_error *error) {
+  const scree_study_options defaults = scree_default_study_options();
+  if (!options) options = &defaults;
   work w = {.study = study, .options = options, .progress = progress};
   size_t done = 0;
   if (!study->keys)

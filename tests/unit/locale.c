@@ -93,14 +93,13 @@ static void write_study(const char *prefix) {
   static const char text[] = "name: tiny\nreplicates: 1\nshapes: [sample:icosphere-1]\n"
                              "base: {preset: demo, particles: 8}\n"
                              "factors:\n  contact.friction: [0.2, 0.55]\n  rp: [0.5]\n";
-  const scree_study_options options = scree_default_study_options();
   scree_study *study = NULL;
   scree_study_run run;
   scree_error error;
   CHECK_OK(scree_text_write(text, path_of(prefix, "study.yaml"), true, &error), error);
   CHECK_OK(scree_study_read(path_of(prefix, "study.yaml"), &study, &error), error);
   CHECK_OK(scree_study_open(study, path_of(prefix, "study"), &error), error);
-  CHECK_OK(scree_study_prepare(study, &options, NULL, &error), error);
+  CHECK_OK(scree_study_prepare(study, NULL, NULL, &error), error);
   CHECK_OK(scree_study_get_run(study, 1, &run, &error), error);
   CHECK_OK(scree_text_write(run.key, path_of(prefix, "key"), true, &error), error);
   CHECK_OK(scree_text_write(run.label, path_of(prefix, "label"), true, &error), error);

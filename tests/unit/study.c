@@ -395,7 +395,7 @@ static void a_study_is_worked_off_and_told(void **state) {
   assert_int_equal(done, 4);
   CHECK_OK(scree_study_collect(study, true, &error), error);
   hashes_of(study, uninterrupted, sizeof uninterrupted);
-  CHECK_OK(scree_study_work(study, &o, NULL, &done, &error), error);
+  CHECK_OK(scree_study_work(study, NULL, NULL, &done, &error), error);
   assert_int_equal(done, 0); /* nothing is left */
   CHECK_OK(scree_study_open_folder(path_of("whole"), &again, &error), error);
   CHECK_OK(scree_study_analyse(again, &result, &error), error);
