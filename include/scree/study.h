@@ -131,8 +131,8 @@ SCREE_API scree_status scree_study_reopen(scree_study *study, scree_error *error
 
 /* Takes runs, one after the other, and works on each to its end. A run that fails is recorded with
  * its reason and the next is taken. SCREE_CANCELLED leaves a checkpoint and gives the run back.
- * Needs scree_study_prepare. options may be NULL: the defaults. *completed (may be NULL): runs ended
- * here. */
+ * Needs scree_study_prepare. options may be NULL: the defaults. *completed (may be NULL): runs
+ * ended here. */
 SCREE_API scree_status scree_study_work(scree_study *study, const scree_study_options *options,
                                         const scree_progress *progress, size_t *completed,
                                         scree_error *error);

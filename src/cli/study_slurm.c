@@ -4,8 +4,6 @@
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "cli/study.h"
 
-#include "base/file.h"
-
 #include <errno.h>
 #include <limits.h>
 #include <spawn.h>
@@ -22,14 +20,10 @@ static void write_quoted(FILE *stream, const char *text) {
   putc('\'', stream);
 }
 
-static scree_status write_script(const cli_call *call, const char *path, const char *study,
-                                 const char *folder, size_t tasks, scree_error *error) {
+static void write_script(FILE *stream, const cli_call *call, const char *study, const char *folder,
+                         size_t tasks) {
   const study_arguments *a = call->options;
   char program[PATH_MAX];
-  scree_output output;
-  scree_status status = scree_output_open(path, true, &output, error);
-  if (status != SCREE_OK) return status;
-  FILE *stream = output.stream;
   if (!realpath("/proc/self/exe", program)) snprintf(program, sizeof program, "scree");
   fprintf(stream,
           "#!/bin/sh\n"
@@ -52,7 +46,6 @@ static scree_status write_script(const cli_call *call, const char *path, const c
   fprintf(stream, " --worker --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ", a->lease);
   write_quoted(stream, study);
   putc('\n', stream);
-  return scree_output_commit(&output, error);
 }
 
 static int submit(const char *script) {
@@ -79,9 +72,19 @@ int study_run_slurm(const cli_call *call, const scree_study *study, const char *
     return 1;
   }
   snprintf(script, sizeof script, "%s/study.sbatch", full);
+  char *text = NULL;
+  size_t size;
   scree_error error;
-  if (write_script(call, script, file, full, tasks < runs ? tasks : runs, &error) != SCREE_OK)
-    return cli_fail(&error);
+  FILE *stream = open_memstream(&text, &size);
+  if (stream) write_script(stream, call, file, full, tasks < runs ? tasks : runs);
+  if (!stream || fclose(stream) != 0) {
+    fprintf(stderr, "scree: %s: out of memory\n", script);
+    free(text);
+    return 1;
+  }
+  scree_status status = scree_text_write(text, script, true, &error);
+  free(text);
+  if (status != SCREE_OK) return cli_fail(&error);
   if (!a->dry_run) return submit(script);
   printf("%s: not submitted; `sbatch %s` does\n", script, script);
   return 0;
