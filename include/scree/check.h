@@ -86,6 +86,8 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
   X(MERGE_SHELL, "merged_shells", "shells that met others united with them")                       \
   X(FILL_HOLE, "filled_holes", "holes filled")                                                     \
   X(FILL_FACET, "filling_facets", "facets added to fill them")                                     \
+  X(SMOOTH_HOLE, "smooth_fillings", "large holes filled smoothly, with new vertices")              \
+  X(COARSE_HOLE, "coarse_fillings", "large holes filled coarsely: smooth, they would meet it")     \
   X(DROP_DEBRIS, "dropped_debris_shells", "debris shells dropped")                                 \
   X(DROP_CAVITY, "dropped_cavities", "cavities dropped")                                           \
   X(DROP_NESTED, "dropped_nested_shells", "shells inside the material of another dropped")         \
@@ -108,8 +110,13 @@ typedef struct scree_repair_options {
   double seam_tolerance;
   /* Holes of at most this many edges are filled; default 128, 0 fills none. */
   size_t hole_edges;
-  /* Fill larger holes as well, up to 4,096 edges; default false. */
+  /* Fill larger holes as well, up to 4,096 edges; default false. Fillings of more than 32 edges get
+   * vertices as dense as those round the hole, and go on with its slope (Liepa, SGP 2003), unless
+   * the surface would then meet itself. */
   bool fill_large_holes;
+  /* Give these fillings no vertices of their own, which is right where a flat face is missing;
+   * default false. */
+  bool flat_large_holes;
   /* Shells with less than this share of the area of the largest are debris, in [0, 1); default
    * 0.01. Cavities are none. */
   double debris_share;

@@ -10,7 +10,7 @@ typedef struct repair_arguments {
   cli_source source;
   double seam_tolerance, debris_share;
   size_t hole_edges;
-  bool large_holes, drop_cavities, largest, no_cut, no_merge, folds, fast, json, force;
+  bool large_holes, flat_holes, drop_cavities, largest, no_cut, no_merge, folds, fast, json, force;
 } repair_arguments;
 
 #define AT(field) offsetof(repair_arguments, field)
@@ -26,8 +26,12 @@ static const cli_option options[] = {
      0, 0.01, NULL},
     {"holes", 0, CLI_COUNT, AT(hole_edges), "EDGES",
      "Fill holes of at most this many edges; 0 fills none. Default: 128.", 0, 4096, NULL},
-    {"large-holes", 0, CLI_FLAG, AT(large_holes), NULL, "Fill holes of up to 4096 edges.", 0, 0,
-     NULL},
+    {"large-holes", 0, CLI_FLAG, AT(large_holes), NULL,
+     "Fill holes of up to 4096 edges, those of more than 32 smoothly: with triangles as small as "
+     "round the hole, and its slope.",
+     0, 0, NULL},
+    {"flat", 0, CLI_FLAG, AT(flat_holes), NULL,
+     "With --large-holes: no new vertices in them, as where a flat face is missing.", 0, 0, NULL},
     {"debris", 0, CLI_REAL, AT(debris_share), "SHARE",
      "Drop shells with less than this share of the largest shell's area; cavities are kept. "
      "Default: 0.01.",
@@ -62,6 +66,7 @@ static scree_repair_options options_of(const repair_arguments *a) {
   o.debris_share = a->debris_share;
   o.hole_edges = a->hole_edges;
   o.fill_large_holes = a->large_holes;
+  o.flat_large_holes = a->flat_holes;
   o.drop_cavities = a->drop_cavities;
   o.keep_largest = a->largest;
   o.cut_intersections = !a->no_cut;

@@ -65,6 +65,23 @@ scree_status scree_repair_winding(scree_repair *r, scree_error *error);
 scree_status scree_repair_vertices(scree_repair *r, scree_error *error);
 /* repair_holes.c */
 scree_status scree_repair_holes(scree_repair *r, size_t edge_limit, scree_error *error);
+
+/* A hole and its filling, the mesh's facets from first_facet on, of the hole's vertices alone. */
+typedef struct scree_filling {
+  const scree_adjacency *adjacency; /* of the mesh before any hole was filled */
+  const uint32_t *vertex;           /* along the hole as the filling runs */
+  const uint32_t *half_edge;        /* i: the mesh's, from vertex[i + 1] to vertex[i] */
+  size_t count, first_facet;
+} scree_filling;
+
+/* Whether the mesh of the adjacency has an edge between two vertices. */
+bool scree_repair_edge_exists(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t a,
+                              uint32_t b);
+/* repair_fair.c: gives a filling vertices as dense as round it, and lets the surface go on
+ * smoothly; false where the filling needs no vertices, or the surface does not come out. */
+scree_status scree_repair_fair(scree_repair *r, const scree_filling *filling, bool *faired,
+                               scree_error *error);
+
 /* repair_shells.c: open debris; then closed debris, nesting and outside. */
 scree_status scree_repair_scraps(scree_repair *r, scree_error *error);
 scree_status scree_repair_shells(scree_repair *r, scree_error *error);

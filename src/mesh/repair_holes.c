@@ -6,7 +6,11 @@
  * ("Filling holes in meshes", SGP 2003): the smallest worst angle between neighbouring facets,
  * those round the hole included, then the smallest area. Diagonals that are edges already are
  * forbidden: a third facet there would not be a surface. Larger loops are cut ear by ear, the
- * flattest and smallest first. */
+ * flattest and smallest first.
+ *
+ * Where large holes are asked for, fillings of more than SMOOTH_EDGES edges are then refined and
+ * smoothed (repair_fair.c). One that then meets the surface, or another, is taken back: a surface
+ * that is coarse there is better than one that crosses itself. */
 #include "base/alloc.h"
 #include "base/array.h"
 #include "mesh/repair.h"
@@ -18,6 +22,8 @@
 enum {
   EXACT_EDGES = 160, /* n^3 / 6 steps: 0.1 s */
   MOST_EDGES = 4096,
+  SMOOTH_EDGES = 32,      /* fillings with more are made smooth */
+  MEETING_LIMIT = 100000, /* pairs: with more, it is not told apart which smooth filling meets */
 };
 
 typedef struct loop {
@@ -44,15 +50,15 @@ static vec3 normal_across(const loop *l, size_t i) {
                                         scree_mesh_corner(m, t, 2)));
 }
 
-/* Whether the mesh has an edge between the two: edges are sorted by lower, then higher vertex. */
-static bool edge_exists(const loop *l, size_t i, size_t j) {
-  uint32_t a = l->vertex[i], b = l->vertex[j];
+/* Edges are sorted by lower, then higher vertex. */
+bool scree_repair_edge_exists(const scree_mesh *mesh, const scree_adjacency *adjacency, uint32_t a,
+                              uint32_t b) {
   uint64_t want = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-  size_t low = 0, high = l->adjacency->edge_count;
+  size_t low = 0, high = adjacency->edge_count;
   while (low < high) {
     size_t middle = low + (high - low) / 2;
-    uint32_t h = l->adjacency->edges[middle];
-    uint32_t u = scree_half_edge_from(&l->r->mesh, h), v = scree_half_edge_to(&l->r->mesh, h);
+    uint32_t h = adjacency->edges[middle];
+    uint32_t u = scree_half_edge_from(mesh, h), v = scree_half_edge_to(mesh, h);
     uint64_t key = u < v ? (uint64_t)u << 32 | v : (uint64_t)v << 32 | u;
     if (key == want) return true;
     if (key < want)
@@ -61,6 +67,10 @@ static bool edge_exists(const loop *l, size_t i, size_t j) {
       high = middle;
   }
   return false;
+}
+
+static bool edge_exists(const loop *l, size_t i, size_t j) {
+  return scree_repair_edge_exists(&l->r->mesh, l->adjacency, l->vertex[i], l->vertex[j]);
 }
 
 /* ---- The best triangulation ---- */
@@ -253,15 +263,51 @@ typedef struct chain {
   size_t count, capacity;
 } chain;
 
+/* A smooth filling: the mesh's facets from begin to end, and what it was made from. */
+typedef struct smooth_filling {
+  size_t begin, end, plain_count;
+  uint32_t *plain; /* owned: three vertices a facet */
+} smooth_filling;
+
+/* The work on all holes. */
+typedef struct hole_work {
+  scree_repair *r;
+  scree_adjacency adjacency;
+  size_t edge_limit;
+  bool *seen;      /* by half-edge */
+  uint32_t *place; /* by vertex: 1 + its position in the chain, or 0 */
+  chain chain;
+  struct {
+    smooth_filling *items;
+    size_t count, capacity;
+  } smooth;
+} hole_work;
+
+static scree_status make_smooth(hole_work *w, const loop *l, size_t first, scree_error *error) {
+  scree_repair *r = w->r;
+  smooth_filling s = {.begin = first, .plain_count = r->mesh.triangle_count - first};
+  scree_filling filling = {l->adjacency, l->vertex, l->half_edge, l->count, first};
+  bool faired = false;
+  SCREE_ALLOC_OR(s.plain, 3 * s.plain_count, error, out_of_memory);
+  memcpy(s.plain, r->mesh.triangles + 3 * first, 3 * s.plain_count * sizeof *s.plain);
+  scree_status status = scree_repair_fair(r, &filling, &faired, error);
+  s.end = r->mesh.triangle_count;
+  if (status == SCREE_OK && faired && SCREE_PUSH(&w->smooth, s)) return SCREE_OK;
+  scree_free(s.plain);
+  return status == SCREE_OK && faired ? scree_repair_no_memory(error) : status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
 /* One loop of half-edges, in the order of the boundary (against the filling's). */
-static scree_status fill_loop(scree_repair *r, const scree_adjacency *adjacency,
-                              const uint32_t *half_edges, size_t count, size_t edge_limit,
+static scree_status fill_loop(hole_work *w, const uint32_t *half_edges, size_t count,
                               scree_error *error) {
-  loop l = {.r = r, .adjacency = adjacency, .count = count};
+  scree_repair *r = w->r;
+  loop l = {.r = r, .adjacency = &w->adjacency, .count = count};
   scree_status status = SCREE_OUT_OF_MEMORY;
   bool filled = false;
   size_t before = r->mesh.triangle_count;
-  if (count < 3 || count > edge_limit || count > MOST_EDGES) return SCREE_OK;
+  if (count < 3 || count > w->edge_limit || count > MOST_EDGES) return SCREE_OK;
   if (count == 3 && half_edges[0] / 3 == half_edges[1] / 3) return SCREE_OK; /* a lone facet */
   SCREE_ALLOC_OR(l.vertex, count, error, done);
   SCREE_ALLOC_OR(l.half_edge, count, error, done);
@@ -273,6 +319,9 @@ static scree_status fill_loop(scree_repair *r, const scree_adjacency *adjacency,
   }
   status =
       count <= EXACT_EDGES ? fill_best(r, &l, &filled, error) : fill_by_ears(r, &l, &filled, error);
+  if (status == SCREE_OK && filled && count > SMOOTH_EDGES && r->options->fill_large_holes &&
+      !r->options->flat_large_holes)
+    status = make_smooth(w, &l, before, error);
   if (filled) {
     r->report.done[SCREE_REPAIR_FILL_HOLE]++;
     r->report.done[SCREE_REPAIR_FILL_FACET] += r->mesh.triangle_count - before;
@@ -283,57 +332,106 @@ done:
   return status;
 }
 
-/* Walks the loop from `start`, filling each part that closes on itself. place[v] is 1 + the
- * position of v in the chain, or 0. */
-static scree_status walk(scree_repair *r, const scree_adjacency *adjacency, uint32_t start,
-                         bool *seen, uint32_t *place, chain *c, size_t edge_limit,
-                         scree_error *error) {
+/* Walks the loop from `start`, filling each part that closes on itself. */
+static scree_status walk(hole_work *w, uint32_t start, scree_error *error) {
+  const scree_repair *r = w->r;
+  chain *c = &w->chain;
   scree_status status = SCREE_OK;
   c->count = 0;
-  for (uint32_t h = start; status == SCREE_OK && h != SCREE_NO_HALF_EDGE && !seen[h];
-       h = follow(&r->mesh, adjacency, h)) {
-    seen[h] = true;
-    if (c->count == 0) place[r->mesh.triangles[h]] = 1;
+  for (uint32_t h = start; status == SCREE_OK && h != SCREE_NO_HALF_EDGE && !w->seen[h];
+       h = follow(&r->mesh, &w->adjacency, h)) {
+    w->seen[h] = true;
+    if (c->count == 0) w->place[r->mesh.triangles[h]] = 1;
     if (!SCREE_PUSH(c, h)) return scree_repair_no_memory(error);
     uint32_t end = scree_half_edge_to(&r->mesh, h);
-    if (!place[end]) {
-      place[end] = (uint32_t)c->count + 1;
+    if (!w->place[end]) {
+      w->place[end] = (uint32_t)c->count + 1;
       continue;
     }
-    size_t from = place[end] - 1;
-    status = fill_loop(r, adjacency, c->items + from, c->count - from, edge_limit, error);
-    for (size_t i = from + 1; i < c->count; i++) place[r->mesh.triangles[c->items[i]]] = 0;
+    size_t from = w->place[end] - 1;
+    status = fill_loop(w, c->items + from, c->count - from, error);
+    for (size_t i = from + 1; i < c->count; i++) w->place[r->mesh.triangles[c->items[i]]] = 0;
     c->count = from;
   }
   for (size_t i = 0; i < c->count; i++) {
-    place[r->mesh.triangles[c->items[i]]] = 0;
-    place[scree_half_edge_to(&r->mesh, c->items[i])] = 0;
+    w->place[r->mesh.triangles[c->items[i]]] = 0;
+    w->place[scree_half_edge_to(&r->mesh, c->items[i])] = 0;
   }
-  place[r->mesh.triangles[start]] = 0;
+  w->place[r->mesh.triangles[start]] = 0;
+  return status;
+}
+
+/* ---- Smooth fillings that meet something ---- */
+
+static bool meets(const smooth_filling *s, const scree_meetings *found) {
+  for (size_t i = 0; i < found->count && !found->truncated; i++)
+    if ((found->items[i].first >= s->begin && found->items[i].first < s->end) ||
+        (found->items[i].second >= s->begin && found->items[i].second < s->end))
+      return true;
+  return found->truncated;
+}
+
+static scree_status take_back(hole_work *w, const scree_meetings *found, scree_error *error) {
+  scree_repair *r = w->r;
+  size_t before = r->mesh.triangle_count, *done = r->report.done;
+  bool *marked = NULL;
+  SCREE_ALLOC_OR(marked, before, error, out_of_memory);
+  memset(marked, 0, before);
+  for (size_t i = 0; i < w->smooth.count; i++) {
+    smooth_filling *s = &w->smooth.items[i];
+    if (!meets(s, found)) {
+      s->plain_count = 0;
+      done[SCREE_REPAIR_SMOOTH_HOLE]++;
+      continue;
+    }
+    memset(marked + s->begin, true, s->end - s->begin);
+    done[SCREE_REPAIR_COARSE_HOLE]++;
+    done[SCREE_REPAIR_FILL_FACET] -= s->end - s->begin;
+    done[SCREE_REPAIR_FILL_FACET] += s->plain_count;
+  }
+  scree_repair_remove(r, marked);
+  scree_free(marked);
+  for (size_t i = 0; i < w->smooth.count; i++)
+    for (const uint32_t *v = w->smooth.items[i].plain,
+                        *end = v + 3 * w->smooth.items[i].plain_count;
+         v < end; v += 3)
+      if (!scree_repair_add_facet(r, v[0], v[1], v[2])) return scree_repair_no_memory(error);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status judge_smooth(hole_work *w, scree_error *error) {
+  scree_meetings found = {0};
+  scree_status status = SCREE_OK;
+  if (w->smooth.count == 0) return SCREE_OK;
+  if (w->r->options->intersections)
+    status = scree_mesh_meetings(&w->r->mesh, MEETING_LIMIT, w->r->progress, &found, error);
+  if (status == SCREE_OK) status = take_back(w, &found, error);
+  scree_free(found.items);
   return status;
 }
 
 scree_status scree_repair_holes(scree_repair *r, size_t edge_limit, scree_error *error) {
-  scree_adjacency adjacency = {0};
-  bool *seen = NULL;
-  uint32_t *place = NULL;
-  chain c = {0};
-  size_t half_edge_count = 3 * r->mesh.triangle_count;
-  scree_status status = scree_adjacency_build(&r->mesh, &adjacency, error);
+  hole_work w = {.r = r, .edge_limit = edge_limit};
+  size_t half_edge_count = 3 * r->mesh.triangle_count, vertex_count = r->mesh.vertex_count;
+  scree_status status = scree_adjacency_build(&r->mesh, &w.adjacency, error);
   if (status != SCREE_OK) return status;
   status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(seen, half_edge_count, error, done);
-  SCREE_ALLOC_OR(place, r->mesh.vertex_count, error, done);
-  memset(seen, 0, half_edge_count);
-  memset(place, 0, r->mesh.vertex_count * sizeof *place);
+  SCREE_ALLOC_OR(w.seen, half_edge_count, error, done);
+  SCREE_ALLOC_OR(w.place, vertex_count, error, done);
+  memset(w.seen, 0, half_edge_count);
+  memset(w.place, 0, vertex_count * sizeof *w.place);
   status = SCREE_OK;
   for (uint32_t h = 0; h < half_edge_count && status == SCREE_OK; h++)
-    if (adjacency.ring[h] == h && !seen[h])
-      status = walk(r, &adjacency, h, seen, place, &c, edge_limit, error);
+    if (w.adjacency.ring[h] == h && !w.seen[h]) status = walk(&w, h, error);
+  if (status == SCREE_OK) status = judge_smooth(&w, error);
 done:
-  scree_free(seen);
-  scree_free(place);
-  scree_free(c.items);
-  scree_adjacency_free(&adjacency);
+  for (size_t i = 0; i < w.smooth.count; i++) scree_free(w.smooth.items[i].plain);
+  scree_free(w.smooth.items);
+  scree_free(w.seen);
+  scree_free(w.place);
+  scree_free(w.chain.items);
+  scree_adjacency_free(&w.adjacency);
   return status;
 }

@@ -195,7 +195,7 @@ static void holes(void **state) {
   assert_int_equal(scree_mesh_repair(&mesh, &options, NULL, &none, NULL, &error), SCREE_BAD_MESH);
   assert_non_null(strstr(error.message, "32 boundary edges, 1 hole"));
   assert_null(none.positions);
-  options.fill_large_holes = true;
+  options.fill_large_holes = options.flat_large_holes = true;
   o = repair_with(&mesh, &options);
   expect_same(&o, &clean, 1e-12);
   free_outcome(&o);
@@ -214,7 +214,7 @@ static void large_hole(void **state) {
   }
   mesh.triangle_count = kept;
   scree_repair_options options = scree_default_repair_options();
-  options.fill_large_holes = true;
+  options.fill_large_holes = options.flat_large_holes = true;
   outcome o = repair_with(&mesh, &options);
   assert_true(o.report.done[SCREE_REPAIR_FILL_FACET] > 158);
   /* a cap of height 0.6 is missing: pi h^2 (3 - h) / 3 */
