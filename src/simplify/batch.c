@@ -31,7 +31,7 @@
 enum { ROUNDS = 4 };
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
-/* Mean edges per grid cell, and the share of triangles left at which the grid is built anew. */
+/* Mean edges per grid cell, and the share of triangles left at which it gets new cells. */
 #define EDGES_PER_CELL 2.0
 #define REGRID_BELOW   0.6
 
@@ -128,7 +128,7 @@ static void sum_block(void *context, size_t begin, size_t end, size_t block, int
   (void)block, (void)worker;
   scree_decimator *d = ((pass *)context)->d;
   for (size_t v = begin; v < end; v++) {
-    if (d->s.outgoing[v] == SCREE_NONE || !(d->s.flags[v] & SCREE_VERTEX_STALE)) continue;
+    if (d->s.vertex[v].outgoing == SCREE_NONE || !(d->s.flags[v] & SCREE_VERTEX_STALE)) continue;
     d->coster->sum(&d->s, (uint32_t)v);
     d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
   }
@@ -138,10 +138,18 @@ static void refresh_sums(pass *p) {
   if (!p->d->coster->merge) scree_parallel_for(p->d->s.vertex_count, VERTEX_BLOCK, sum_block, p);
 }
 
+/* Whether the edge between them is looked at from u rather than v: from the smaller fan, so that
+ * turning the scan, which changes numbers, changes nothing. */
+static bool looks(const scree_halfmesh *s, uint32_t u, uint32_t v) {
+  const double *a = s->sums[u], *b = s->sums[v];
+  double size_u = a[0] + a[3] + a[5], size_v = b[0] + b[3] + b[5]; /* the quadrics' traces */
+  return size_u < size_v || (size_u == size_v && u < v);
+}
+
 /* Whether edge h is to be looked at from vertex v, and may be. */
 static bool open_to_collapse(scree_halfmesh *s, uint32_t v, uint32_t h) {
-  uint32_t other = scree_to(s, h), twin = s->twin[h];
-  if (twin != SCREE_NONE && other < v) return false; /* looked at from there */
+  uint32_t other = scree_to(s, h), twin = s->half[h].twin;
+  if (twin != SCREE_NONE && !looks(s, v, other)) return false; /* looked at from there */
   if (s->flags[other] & SCREE_VERTEX_LOCKED) return false;
   if (s->refused[h] == SCREE_EDGE_POSTPONED) s->refused[h] = 0;
   if (!s->refused[h]) return true;
@@ -161,7 +169,7 @@ static void evaluate_waiting(pass *p, waiting *w) {
   scree_candidate candidates[SIDE_BY_SIDE];
   p->d->coster->evaluate(s, w->edge, w->count, candidates);
   for (uint32_t i = 0; i < w->count; i++) {
-    uint32_t v = s->from[w->edge[i]];
+    uint32_t v = s->half[w->edge[i]].from;
     if (!(candidates[i].cost < p->cost[v] && candidates[i].error <= p->d->error_limit)) continue;
     p->cost[v] = candidates[i].cost;
     p->best[v] = w->edge[i];
@@ -177,8 +185,8 @@ static void evaluate_block(void *context, size_t begin, size_t end, size_t block
   for (size_t v = begin; v < end; v++) {
     p->best[v] = SCREE_NONE;
     p->cost[v] = INFINITY;
-    if (s->outgoing[v] == SCREE_NONE || s->flags[v] & SCREE_VERTEX_LOCKED) continue;
-    uint32_t first = s->outgoing[v], h = first;
+    if (s->vertex[v].outgoing == SCREE_NONE || s->flags[v] & SCREE_VERTEX_LOCKED) continue;
+    uint32_t first = s->vertex[v].outgoing, h = first;
     do {
       if (open_to_collapse(s, (uint32_t)v, h)) {
         w.edge[w.count++] = h;
@@ -269,7 +277,7 @@ static void reconsider_waiting(pass *p, waiting *w) {
   scree_candidate candidates[SIDE_BY_SIDE];
   p->d->coster->evaluate(s, w->edge, w->count, candidates);
   for (uint32_t i = 0; i < w->count; i++)
-    p->cost[s->from[w->edge[i]]] =
+    p->cost[s->half[w->edge[i]].from] =
         candidates[i].error <= p->d->error_limit ? candidates[i].cost : INFINITY;
   w->count = 0;
 }
@@ -281,7 +289,7 @@ static void reconsider_block(void *context, size_t begin, size_t end, size_t blo
   waiting w = {.count = 0};
   for (size_t i = begin; i < end; i++) {
     uint32_t v = p->items[i].vertex, h = p->best[v];
-    if (s->outgoing[v] == SCREE_NONE || s->from[h] != v || s->refused[h]) {
+    if (s->vertex[v].outgoing == SCREE_NONE || s->half[h].from != v || s->refused[h]) {
       p->cost[v] = INFINITY;
       continue;
     }
@@ -339,7 +347,7 @@ static void sort_items(pass *p) {
 static void mark_ring(pass *p, const scree_ring *r) {
   const scree_halfmesh *s = &p->d->s;
   for (uint32_t i = 0; i < r->count; i++) {
-    p->marks[s->from[r->edge[i]]] |= TOUCHED;
+    p->marks[s->half[r->edge[i]].from] |= TOUCHED;
     p->marks[scree_to(s, r->edge[i])] |= TOUCHED;
   }
   p->marks[r->a] |= TOUCHED;
@@ -357,11 +365,11 @@ static void order_by_place(pass *p, size_t begin) {
   int shift = 0;
   while (s->vertex_count >> shift > BUCKETS) shift++;
   for (size_t i = begin; i < p->taken_count; i++)
-    start[(s->from[p->taken[i].half_edge] >> shift) + 1]++;
+    start[(s->half[p->taken[i].half_edge].from >> shift) + 1]++;
   start[0] = (uint32_t)begin;
   for (int k = 0; k < BUCKETS; k++) start[k + 1] += start[k];
   for (size_t i = begin; i < p->taken_count; i++)
-    p->order[start[s->from[p->taken[i].half_edge] >> shift]++] = (uint32_t)i;
+    p->order[start[s->half[p->taken[i].half_edge].from >> shift]++] = (uint32_t)i;
 }
 
 /* Takes the edge of item i if it is independent of those taken. */
@@ -398,8 +406,8 @@ static void choose_some(pass *p) {
       __builtin_prefetch(&p->other[v]);
       v = p->items[i + AHEAD / 2].vertex;
       if (!(p->marks[v] & TOUCHED)) {
-        __builtin_prefetch(&s->from[p->best[v]]);
-        __builtin_prefetch(&s->twin[p->best[v]]);
+        __builtin_prefetch(&s->half[p->best[v]].from);
+        __builtin_prefetch(&s->half[p->best[v]].twin);
       }
     }
     try_item(p, i);
@@ -415,10 +423,10 @@ static scree_ring ring_of(const pass *p, const taken *t) {
 }
 
 static void set_box(const scree_halfmesh *s, vec3 target, scree_ring *r) {
-  r->low = vec3_min(target, vec3_min(s->position[r->a], s->position[r->b]));
-  r->high = vec3_max(target, vec3_max(s->position[r->a], s->position[r->b]));
+  r->low = vec3_min(target, vec3_min(s->vertex[r->a].at, s->vertex[r->b].at));
+  r->high = vec3_max(target, vec3_max(s->vertex[r->a].at, s->vertex[r->b].at));
   for (uint32_t i = 0; i < r->count; i++) {
-    vec3 p = s->position[s->from[r->edge[i]]], q = s->position[scree_to(s, r->edge[i])];
+    vec3 p = s->vertex[s->half[r->edge[i]].from].at, q = s->vertex[scree_to(s, r->edge[i])].at;
     r->low = vec3_min(r->low, vec3_min(p, q));
     r->high = vec3_max(r->high, vec3_max(p, q));
   }
@@ -443,6 +451,7 @@ static void check_one(pass *p, uint32_t index, const scree_candidate *candidate)
     return;
   }
   t->box = scree_grid_enter_ring(&d->grid, &ring, &around);
+  scree_grid_widen_groups(&d->grid, &ring, &t->box);
 }
 
 static void check_some(pass *p, size_t begin, size_t end) {
@@ -474,7 +483,7 @@ static void choose_and_check_block(void *context, size_t begin, size_t end, size
  * which of them the grid's directions settle. */
 static void give_up(pass *p, const taken *t) {
   const scree_halfmesh *s = &p->d->s;
-  p->chosen[s->from[t->half_edge]] = p->chosen[scree_to(s, t->half_edge)] = SCREE_NONE;
+  p->chosen[s->half[t->half_edge].from] = p->chosen[scree_to(s, t->half_edge)] = SCREE_NONE;
 }
 
 static void choose_and_check(pass *p) {
@@ -496,11 +505,11 @@ static void choose_and_check(pass *p) {
 static bool folds_with_others(const pass *p, const scree_ring *r, vec3 target) {
   const scree_halfmesh *s = &p->d->s;
   for (uint32_t i = 0; i < r->count; i++) {
-    uint32_t beyond = s->twin[r->edge[i]];
+    uint32_t beyond = s->half[r->edge[i]].twin;
     if (beyond == SCREE_NONE) continue;
-    uint32_t other = p->chosen[s->from[scree_previous(beyond)]];
+    uint32_t other = p->chosen[s->half[scree_previous(beyond)].from];
     if (other == SCREE_NONE) continue;
-    vec3 p1 = s->position[s->from[r->edge[i]]], p2 = s->position[scree_to(s, r->edge[i])];
+    vec3 p1 = s->vertex[s->half[r->edge[i]].from].at, p2 = s->vertex[scree_to(s, r->edge[i])].at;
     if (scree_folded(vec3_triangle_normal(target, p1, p2),
                      vec3_triangle_normal(p->changes[other].target, p2, p1)))
       return true;
@@ -540,9 +549,8 @@ static void search_block(void *context, size_t begin, size_t end, size_t block, 
 }
 
 /* Exact tests for those that the directions did not settle. */
-static scree_status search_uncertain(pass *p) {
+static void search_uncertain(pass *p) {
   scree_decimator *d = p->d;
-  bool listed = true;
   p->uncertain_count = 0;
   for (uint32_t i = 0; i < p->taken_count; i++) {
     taken *t = &p->taken[i];
@@ -550,19 +558,11 @@ static scree_status search_uncertain(pass *p) {
       t->verdict = REFUSED;
       give_up(p, t);
     }
-    if (t->verdict != UNCERTAIN) continue;
-    scree_ring ring = ring_of(p, t);
-    set_box(&d->s, p->changes[i].target, &ring);
-    listed &= scree_grid_mark(&d->grid, ring.low, ring.high);
-    p->uncertain[p->uncertain_count++] = i;
+    if (t->verdict == UNCERTAIN) p->uncertain[p->uncertain_count++] = i;
   }
-  if (p->uncertain_count == 0) return SCREE_OK;
-  scree_planned planned = {p->chosen, p->changes};
-  if (!listed || !scree_grid_list_marked(&d->grid, &d->s, &planned))
-    return scree_fail_memory(d->error, d->grid.near_capacity * sizeof *d->grid.near, "grid lists");
-  scree_parallel_for(p->uncertain_count, CHOSEN_BLOCK / 4, search_block, p);
-  scree_grid_unmark(&d->grid);
-  return SCREE_OK;
+  if (p->uncertain_count == 0) return;
+  scree_grid_join_groups(&d->grid);
+  scree_parallel_for(p->uncertain_count, CHOSEN_BLOCK / 16, search_block, p);
 }
 
 static void set_flag(scree_halfmesh *s, uint32_t v) {
@@ -588,7 +588,7 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
     if (d->coster->merge) d->coster->merge(&d->s, ring.a, ring.b);
     set_flag(&d->s, ring.a);
     for (uint32_t e = 0; e < ring.count; e++) {
-      set_flag(&d->s, d->s.from[ring.edge[e]]);
+      set_flag(&d->s, d->s.half[ring.edge[e]].from);
       set_flag(&d->s, scree_to(&d->s, ring.edge[e]));
     }
   }
@@ -611,21 +611,20 @@ static size_t apply(pass *p) {
 }
 
 static scree_status prepare_grid(scree_decimator *d) {
-  if (d->grid.built_for &&
-      (double)d->s.live_triangle_count > REGRID_BELOW * (double)d->grid.built_for)
-    return SCREE_OK;
-  scree_status status = scree_grid_shape(&d->grid, &d->s, EDGES_PER_CELL, d->error);
+  scree_status status = SCREE_OK;
+  if (!d->grid.built_for ||
+      (double)d->s.live_triangle_count <= REGRID_BELOW * (double)d->grid.built_for)
+    status = scree_grid_shape(&d->grid, &d->s, EDGES_PER_CELL, d->error);
   if (status == SCREE_OK) scree_grid_enter_directions(&d->grid, &d->s);
   return status;
 }
 
-static scree_status run_round(pass *p, size_t *done) {
+static size_t run_round(pass *p) {
   sort_items(p);
   choose_and_check(p);
   scree_parallel_for(p->taken_count, CHOSEN_BLOCK, certify_block, p);
-  scree_status status = search_uncertain(p);
-  if (status == SCREE_OK) *done += apply(p);
-  return status;
+  search_uncertain(p);
+  return apply(p);
 }
 
 static scree_status run_pass(pass *p, size_t *done) {
@@ -637,16 +636,16 @@ static scree_status run_pass(pass *p, size_t *done) {
   for (size_t v = 0; v < d->s.vertex_count; v++) d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_CHANGED;
   list_candidates(p);
   *done = 0;
-  for (int round = 0; round < ROUNDS && status == SCREE_OK; round++) {
+  for (int round = 0; round < ROUNDS; round++) {
     if (round > 0) {
       refresh_sums(p);
       relist_candidates(p);
     }
-    status = run_round(p, done);
+    *done += run_round(p);
   }
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count)
     scree_halfmesh_compact(&d->s, (uint32_t *)p->items, (uint32_t *)p->swap);
-  return status;
+  return SCREE_OK;
 }
 
 scree_status scree_decimate_in_batches(scree_decimator *d) {

@@ -39,8 +39,8 @@ static bool push_turning_left(const scree_halfmesh *s, scree_ring *r, uint32_t g
 /* Triangles clockwise before g up to a boundary, listed counter-clockwise. */
 static bool push_turning_right(const scree_halfmesh *s, scree_ring *r, uint32_t g) {
   uint32_t begin = r->count;
-  while (s->twin[g] != SCREE_NONE) {
-    g = scree_next(s->twin[g]);
+  while (s->half[g].twin != SCREE_NONE) {
+    g = scree_next(s->half[g].twin);
     if (!push(r, scree_next(g))) return false;
   }
   for (uint32_t i = begin, j = r->count; i + 1 < j; i++) {
@@ -52,16 +52,16 @@ static bool push_turning_right(const scree_halfmesh *s, scree_ring *r, uint32_t 
 }
 
 void scree_ring_name(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
-  uint32_t twin = s->twin[h];
+  uint32_t twin = s->half[h].twin;
   r->half_edge = h;
-  r->a = s->from[h];
+  r->a = s->half[h].from;
   r->b = scree_to(s, h);
-  r->c = s->from[scree_previous(h)];
-  r->d = twin == SCREE_NONE ? SCREE_NONE : s->from[scree_previous(twin)];
+  r->c = s->half[scree_previous(h)].from;
+  r->d = twin == SCREE_NONE ? SCREE_NONE : s->half[scree_previous(twin)].from;
 }
 
 bool scree_ring_gather(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
-  uint32_t twin = s->twin[h];
+  uint32_t twin = s->half[h].twin;
   bool open;
   scree_ring_name(s, h, r);
   r->count = 0;
@@ -76,42 +76,44 @@ bool scree_ring_gather(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
 
 bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *r) {
   if ((s->flags[r->a] | s->flags[r->b]) & SCREE_VERTEX_LOCKED) return false;
-  if (r->count < 3 && s->twin[r->half_edge] != SCREE_NONE && !scree_on_boundary(s, r->a) &&
+  if (r->count < 3 && s->half[r->half_edge].twin != SCREE_NONE && !scree_on_boundary(s, r->a) &&
       !scree_on_boundary(s, r->b))
     return false;
   if (r->count == 0) return false;
-  uint32_t h = r->half_edge, twin = s->twin[h];
+  uint32_t h = r->half_edge, twin = s->half[h].twin;
   if (twin != SCREE_NONE && scree_on_boundary(s, r->a) && scree_on_boundary(s, r->b)) return false;
   /* a triangle that hangs on by the edge alone would leave its apex without triangles */
-  if (s->twin[scree_next(h)] == SCREE_NONE && s->twin[scree_previous(h)] == SCREE_NONE)
+  if (s->half[scree_next(h)].twin == SCREE_NONE && s->half[scree_previous(h)].twin == SCREE_NONE)
     return false;
-  if (twin != SCREE_NONE && s->twin[scree_next(twin)] == SCREE_NONE &&
-      s->twin[scree_previous(twin)] == SCREE_NONE)
+  if (twin != SCREE_NONE && s->half[scree_next(twin)].twin == SCREE_NONE &&
+      s->half[scree_previous(twin)].twin == SCREE_NONE)
     return false;
-  uint32_t origin_c = s->origin[r->c], origin_d = r->d == SCREE_NONE ? SCREE_NONE : s->origin[r->d];
+  uint32_t origin_c = s->vertex[r->c].origin,
+           origin_d = r->d == SCREE_NONE ? SCREE_NONE : s->vertex[r->d].origin;
   if (origin_c == origin_d) return false;
   /* neighbours of a beside b, c, d against those of b */
   for (uint32_t i = 0; i < 2 * r->a_count; i++) {
-    uint32_t e = r->edge[i / 2], v = i % 2 ? scree_to(s, e) : s->from[e];
+    uint32_t e = r->edge[i / 2], v = i % 2 ? scree_to(s, e) : s->half[e].from;
     if (i % 2 == 0 && i > 0 && v == scree_to(s, r->edge[i / 2 - 1])) continue;
-    uint32_t origin = s->origin[v];
+    uint32_t origin = s->vertex[v].origin;
     bool apex = origin == origin_c || origin == origin_d;
     if (apex && v != r->c && v != r->d) return false;
     if (apex) continue;
     for (uint32_t j = r->a_count; j < r->count; j++)
-      if (s->origin[s->from[r->edge[j]]] == origin || s->origin[scree_to(s, r->edge[j])] == origin)
+      if (s->vertex[s->half[r->edge[j]].from].origin == origin ||
+          s->vertex[scree_to(s, r->edge[j])].origin == origin)
         return false;
   }
   for (uint32_t j = r->a_count; j < r->count; j++) {
-    uint32_t v = s->from[r->edge[j]], origin = s->origin[v];
+    uint32_t v = s->half[r->edge[j]].from, origin = s->vertex[v].origin;
     if ((origin == origin_c || origin == origin_d) && v != r->c && v != r->d) return false;
   }
   return true;
 }
 
 static vec3 normal_of(const scree_halfmesh *s, uint32_t h) {
-  return vec3_triangle_normal(s->position[s->from[h]], s->position[scree_to(s, h)],
-                              s->position[s->from[scree_previous(h)]]);
+  return vec3_triangle_normal(s->vertex[s->half[h].from].at, s->vertex[scree_to(s, h)].at,
+                              s->vertex[s->half[scree_previous(h)].from].at);
 }
 
 /* The square of 2 area / longest edge^2, of a triangle with doubled area vector n. */
@@ -146,12 +148,12 @@ static inline void set_lane(double v[3][LANES], int i, vec3 p) {
 }
 
 static void gather(const scree_halfmesh *s, const scree_ring *r, uint32_t index, lanes *l, int i) {
-  uint32_t h = r->edge[index], beyond = s->twin[h];
-  vec3 p1 = s->position[s->from[h]];
-  set_lane(l->p, i, s->position[index < r->a_count ? r->a : r->b]);
+  uint32_t h = r->edge[index], beyond = s->half[h].twin;
+  vec3 p1 = s->vertex[s->half[h].from].at;
+  set_lane(l->p, i, s->vertex[index < r->a_count ? r->a : r->b].at);
   set_lane(l->p1, i, p1);
-  set_lane(l->p2, i, s->position[scree_to(s, h)]);
-  set_lane(l->q, i, beyond == SCREE_NONE ? p1 : s->position[s->from[scree_previous(beyond)]]);
+  set_lane(l->p2, i, s->vertex[scree_to(s, h)].at);
+  set_lane(l->q, i, beyond == SCREE_NONE ? p1 : s->vertex[s->half[scree_previous(beyond)].from].at);
 }
 
 SCREE_LANES static void compare_lanes(lanes *l, vec3 x, int count) {
@@ -214,8 +216,8 @@ static bool take_lane(const lanes *l, int i, tally *sum, bool *steep) {
 static bool check_triangles(const scree_halfmesh *s, scree_ring *r, vec3 x, tally *sum,
                             scree_around *around) {
   lanes l;
-  r->low = vec3_min(vec3_min(s->position[r->a], s->position[r->b]), x);
-  r->high = vec3_max(vec3_max(s->position[r->a], s->position[r->b]), x);
+  r->low = vec3_min(vec3_min(s->vertex[r->a].at, s->vertex[r->b].at), x);
+  r->high = vec3_max(vec3_max(s->vertex[r->a].at, s->vertex[r->b].at), x);
   for (uint32_t begin = 0; begin < r->count; begin += LANES) {
     uint32_t filled = r->count - begin < LANES ? r->count - begin : LANES;
     uint32_t width = (filled + 3) & ~UINT32_C(3); /* whole vectors */
@@ -235,11 +237,11 @@ static bool check_triangles(const scree_halfmesh *s, scree_ring *r, vec3 x, tall
 
 /* The triangles that go: the edge's own. */
 static void take_gone(const scree_halfmesh *s, const scree_ring *r, vec3 x, tally *sum) {
-  vec3 pa = s->position[r->a], pb = s->position[r->b], e = vec3_sub(pb, pa);
+  vec3 pa = s->vertex[r->a].at, pb = s->vertex[r->b].at, e = vec3_sub(pb, pa);
   uint32_t apex[2] = {r->c, r->d};
   for (int k = 0; k < 2 && apex[k] != SCREE_NONE; k++) {
-    vec3 p = s->position[apex[k]];
-    vec3 n = normal_of(s, k == 0 ? r->half_edge : s->twin[r->half_edge]);
+    vec3 p = s->vertex[apex[k]].at;
+    vec3 n = normal_of(s, k == 0 ? r->half_edge : s->half[r->half_edge].twin);
     sum->shape_before =
         worse_shape(sum->shape_before, squared_shape(n, e, vec3_sub(p, pa), vec3_sub(p, pb)));
     sum->area -= vec3_norm(n);
@@ -254,17 +256,17 @@ static bool folds_do_not_grow(const scree_halfmesh *s, const scree_ring *r,
   int before = sum->folds_before, after = sum->folds_after;
   for (uint32_t i = 0; i < r->count; i++) {
     uint32_t j = i + 1 == r->count ? 0 : i + 1;
-    if (scree_to(s, r->edge[i]) == s->from[r->edge[j]] && i != j)
+    if (scree_to(s, r->edge[i]) == s->half[r->edge[j]].from && i != j)
       after += scree_folded(around->after[i], around->after[j]);
   }
   if (after <= before) return true;
   for (uint32_t i = 0; i < r->count; i++) { /* rare: the spokes as they are now */
-    uint32_t spoke = s->twin[scree_previous(r->edge[i])];
+    uint32_t spoke = s->half[scree_previous(r->edge[i])].twin;
     if (spoke == SCREE_NONE) continue;
     before += scree_folded(around->before[i], normal_of(s, spoke));
   }
   if (r->d != SCREE_NONE)
-    before += scree_folded(normal_of(s, r->half_edge), normal_of(s, s->twin[r->half_edge]));
+    before += scree_folded(normal_of(s, r->half_edge), normal_of(s, s->half[r->half_edge].twin));
   return after <= before;
 }
 
@@ -284,22 +286,23 @@ bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_chang
  * need another outgoing half-edge. */
 static void close_gap(scree_halfmesh *s, uint32_t h) {
   uint32_t next = scree_next(h), previous = scree_previous(h);
-  uint32_t x = s->twin[next], y = s->twin[previous], apex = s->from[previous];
-  if (x != SCREE_NONE) s->twin[x] = y;
-  if (y != SCREE_NONE) s->twin[y] = x;
-  if (s->outgoing[apex] == previous) s->outgoing[apex] = x != SCREE_NONE ? x : scree_next(y);
-  for (uint32_t i = 0; i < 3; i++) s->from[h - h % 3 + i] = SCREE_NONE;
+  uint32_t x = s->half[next].twin, y = s->half[previous].twin, apex = s->half[previous].from;
+  if (x != SCREE_NONE) s->half[x].twin = y;
+  if (y != SCREE_NONE) s->half[y].twin = x;
+  if (s->vertex[apex].outgoing == previous)
+    s->vertex[apex].outgoing = x != SCREE_NONE ? x : scree_next(y);
+  for (uint32_t i = 0; i < 3; i++) s->half[h - h % 3 + i].from = SCREE_NONE;
 }
 
 void scree_collapse_apply(scree_halfmesh *s, const scree_ring *r, vec3 target) {
-  uint32_t twin = s->twin[r->half_edge];
-  for (uint32_t i = r->a_count; i < r->count; i++) s->from[scree_previous(r->edge[i])] = r->a;
+  uint32_t twin = s->half[r->half_edge].twin;
+  for (uint32_t i = r->a_count; i < r->count; i++) s->half[scree_previous(r->edge[i])].from = r->a;
   close_gap(s, r->half_edge);
   if (twin != SCREE_NONE) close_gap(s, twin);
-  s->position[r->a] = target;
-  s->outgoing[r->a] = scree_previous(r->edge[0]);
+  s->vertex[r->a].at = target;
+  s->vertex[r->a].outgoing = scree_previous(r->edge[0]);
   for (uint32_t i = 0; i < r->count; i++)
-    if (s->twin[scree_previous(r->edge[i])] == SCREE_NONE)
-      s->outgoing[r->a] = scree_previous(r->edge[i]);
-  s->outgoing[r->b] = SCREE_NONE;
+    if (s->half[scree_previous(r->edge[i])].twin == SCREE_NONE)
+      s->vertex[r->a].outgoing = scree_previous(r->edge[i]);
+  s->vertex[r->b].outgoing = SCREE_NONE;
 }

@@ -64,9 +64,9 @@ out_of_memory:
 void scree_record_write(scree_decimator *d, size_t i, const scree_ring *ring,
                         const scree_change *change, double error) {
   scree_record *r = &d->record;
-  bool one = d->s.twin[ring->half_edge] == SCREE_NONE;
-  r->kept[i] = d->s.origin[ring->a] | (one ? SCREE_ONE_TRIANGLE : 0);
-  r->gone[i] = d->s.origin[ring->b];
+  bool one = d->s.half[ring->half_edge].twin == SCREE_NONE;
+  r->kept[i] = d->s.vertex[ring->a].origin | (one ? SCREE_ONE_TRIANGLE : 0);
+  r->gone[i] = d->s.vertex[ring->b].origin;
   r->position[i] = vec3_mad(d->s.centre, change->target, d->s.scale);
   r->area[i] = change->area;
   r->volume[i] = change->volume;
@@ -87,11 +87,11 @@ void scree_curve_free(scree_curve *curve) {
 
 static void measure_surface(const scree_halfmesh *s, scree_sum *area, scree_sum *volume) {
   for (size_t t = 0; t < s->triangle_count; t++) {
-    const uint32_t *c = s->from + 3 * t;
-    vec3 p0 = s->position[c[0]], p1 = s->position[c[1]], p2 = s->position[c[2]];
-    vec3 n = vec3_triangle_normal(p0, p1, p2);
+    vec3 at[3];
+    scree_corners(s, t, at);
+    vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
     scree_sum_add(area, 0.5 * vec3_norm(n));
-    scree_sum_add(volume, vec3_dot(p0, n) / 6);
+    scree_sum_add(volume, vec3_dot(at[0], n) / 6);
   }
 }
 
@@ -154,7 +154,7 @@ static void sum_block(void *context, size_t begin, size_t end, size_t block, int
   (void)block, (void)worker;
   scree_decimator *d = context;
   for (size_t v = begin; v < end; v++)
-    if (d->s.outgoing[v] != SCREE_NONE) d->coster->sum(&d->s, (uint32_t)v);
+    if (d->s.vertex[v].outgoing != SCREE_NONE) d->coster->sum(&d->s, (uint32_t)v);
 }
 
 static scree_status decimate(scree_decimator *d) {

@@ -49,9 +49,9 @@ typedef struct queue {
 static bool before(const queue *q, uint32_t g, uint32_t h) {
   if (q->cost[g] != q->cost[h]) return q->cost[g] < q->cost[h];
   const scree_halfmesh *s = &q->d->s;
-  uint32_t ga = s->origin[s->from[g]], ha = s->origin[s->from[h]];
+  uint32_t ga = s->vertex[s->half[g].from].origin, ha = s->vertex[s->half[h].from].origin;
   if (ga != ha) return ga < ha;
-  return s->origin[scree_to(s, g)] < s->origin[scree_to(s, h)];
+  return s->vertex[scree_to(s, g)].origin < s->vertex[scree_to(s, h)].origin;
 }
 
 static void put(queue *q, size_t place, uint32_t h) {
@@ -94,8 +94,8 @@ static void leave(queue *q, uint32_t h) {
 
 /* An edge is known by the half-edge of its lower end, or its only one. */
 static uint32_t owner(const scree_halfmesh *s, uint32_t h) {
-  uint32_t twin = s->twin[h];
-  return twin != SCREE_NONE && scree_to(s, h) < s->from[h] ? twin : h;
+  uint32_t twin = s->half[h].twin;
+  return twin != SCREE_NONE && scree_to(s, h) < s->half[h].from ? twin : h;
 }
 
 /* Gives edge h its place in the heap by this candidate, or takes it out. */
@@ -117,7 +117,7 @@ static void evaluate_waiting(queue *q) {
   q->d->coster->evaluate(s, q->waiting, q->waiting_count, candidates);
   for (size_t i = 0; i < q->waiting_count; i++) {
     uint32_t h = q->waiting[i];
-    if ((s->flags[s->from[h]] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_LOCKED)
+    if ((s->flags[s->half[h].from] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_LOCKED)
       candidates[i].cost = INFINITY;
     q->stage[h] = candidates[i].stray > 0 ? IN_PART : WHOLE;
     enqueue(q, h, &candidates[i]);
@@ -142,7 +142,7 @@ static void queue_free(queue *q) {
 static void enter_all(queue *q) {
   const scree_halfmesh *s = &q->d->s;
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++)
-    if (s->from[h] != SCREE_NONE && owner(s, h) == h) evaluate(q, h);
+    if (s->half[h].from != SCREE_NONE && owner(s, h) == h) evaluate(q, h);
   evaluate_waiting(q);
 }
 
@@ -158,7 +158,7 @@ static scree_status queue_fill(queue *q) {
   memset(q->place, 0xff, half_edges * sizeof *q->place);
   memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
   for (uint32_t v = 0; v < s->vertex_count; v++)
-    if (s->outgoing[v] != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
+    if (s->vertex[v].outgoing != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
   enter_all(q);
   return scree_memory_keep(s, &q->memory, d->error);
 out_of_memory:
@@ -183,7 +183,7 @@ static void forget(queue *q, const scree_ring *r) {
   const scree_halfmesh *s = &q->d->s;
   uint32_t ends[2] = {r->a, r->b};
   for (int i = 0; i < 2; i++) {
-    uint32_t first = s->outgoing[ends[i]], h = first, last;
+    uint32_t first = s->vertex[ends[i]].outgoing, h = first, last;
     do {
       leave(q, owner(s, h));
       last = h;
@@ -196,7 +196,7 @@ static void forget(queue *q, const scree_ring *r) {
 /* Re-evaluates all edges at the vertices stamped now, once each. */
 static void update_vertex(queue *q, uint32_t v) {
   scree_halfmesh *s = &q->d->s;
-  uint32_t first = s->outgoing[v], h = first, last;
+  uint32_t first = s->vertex[v].outgoing, h = first, last;
   do {
     uint32_t other = scree_to(s, h);
     if (q->stamp[other] != q->now || other > v) evaluate(q, owner(s, h));
@@ -204,7 +204,7 @@ static void update_vertex(queue *q, uint32_t v) {
     h = scree_turn(s, h);
   } while (h != SCREE_NONE && h != first);
   if (h == SCREE_NONE) {
-    uint32_t incoming = scree_previous(last), other = s->from[incoming];
+    uint32_t incoming = scree_previous(last), other = s->half[incoming].from;
     if (q->stamp[other] != q->now || other > v) evaluate(q, incoming);
   }
 }
@@ -217,7 +217,7 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   size_t count = 0;
   scree_record_write(d, d->record.count++, r, change, error);
   s->live_vertex_count--;
-  s->live_triangle_count -= s->twin[r->half_edge] == SCREE_NONE ? 1 : 2;
+  s->live_triangle_count -= s->half[r->half_edge].twin == SCREE_NONE ? 1 : 2;
   forget(q, r);
   if (!d->coster->merge) scree_memory_move(&q->memory, s, r, change->target);
   scree_collapse_apply(s, r, change->target);
@@ -226,7 +226,7 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   around[count++] = r->a;
   q->stamp[r->a] = q->now;
   for (uint32_t i = 0; i < 2 * r->count; i++) {
-    uint32_t v = i % 2 ? scree_to(s, r->edge[i / 2]) : s->from[r->edge[i / 2]];
+    uint32_t v = i % 2 ? scree_to(s, r->edge[i / 2]) : s->half[r->edge[i / 2]].from;
     if (q->stamp[v] == q->now) continue;
     q->stamp[v] = q->now;
     around[count++] = v;

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-enum { BLOCK = 2048 };
+enum { BLOCK = 32 * SCREE_GROUP };
 /* A normal must point this much towards a direction to face it (cosine): past any rounding. */
 #define FACING 1e-6
 
@@ -55,26 +55,50 @@ void scree_grid_free(scree_grid *g) {
   scree_free(g->head);
   scree_free(g->items);
   scree_free(g->large);
-  scree_free(g->marked);
-  scree_free(g->start);
-  scree_free(g->near);
+  scree_free(g->groups);
   *g = (scree_grid){0};
+}
+
+/* Box and doubled area of a part of the surface. */
+typedef struct part {
+  vec3 low, high;
+  double doubled;
+} part;
+
+enum { PARTS = 64 };
+
+typedef struct measuring {
+  const scree_halfmesh *s;
+  part parts[PARTS];
+} measuring;
+
+static void measure_part(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  measuring *m = context;
+  part sum = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
+  for (size_t t = begin; t < end; t++) {
+    vec3 at[3];
+    if (scree_is_gone(m->s, t)) continue;
+    scree_corners(m->s, t, at);
+    sum.low = vec3_min(sum.low, vec3_min(at[0], vec3_min(at[1], at[2])));
+    sum.high = vec3_max(sum.high, vec3_max(at[0], vec3_max(at[1], at[2])));
+    sum.doubled += vec3_norm(vec3_triangle_normal(at[0], at[1], at[2]));
+  }
+  m->parts[block] = sum;
 }
 
 /* The mean edge from the area: a triangle of side e has sqrt(3)/4 e^2. */
 static double mean_edge(const scree_halfmesh *s, vec3 *low, vec3 *high) {
+  measuring m = {.s = s};
+  size_t size = s->triangle_count / PARTS + 1, count = scree_block_count(s->triangle_count, size);
+  scree_parallel_for(s->triangle_count, size, measure_part, &m);
   double doubled = 0;
-  bool first = true;
-  for (size_t t = 0; t < s->triangle_count; t++) {
-    if (s->from[3 * t] == SCREE_NONE) continue;
-    vec3 p[3];
-    for (int i = 0; i < 3; i++) {
-      p[i] = s->position[s->from[3 * t + (size_t)i]];
-      *low = first ? p[i] : vec3_min(*low, p[i]);
-      *high = first ? p[i] : vec3_max(*high, p[i]);
-      first = false;
-    }
-    doubled += vec3_norm(vec3_triangle_normal(p[0], p[1], p[2]));
+  *low = m.parts[0].low;
+  *high = m.parts[0].high;
+  for (size_t i = 0; i < count; i++) {
+    *low = vec3_min(*low, m.parts[i].low);
+    *high = vec3_max(*high, m.parts[i].high);
+    doubled += m.parts[i].doubled;
   }
   return sqrt(1.1547 * doubled / (double)s->live_triangle_count);
 }
@@ -101,10 +125,9 @@ scree_status scree_grid_shape(scree_grid *g, const scree_halfmesh *s, double edg
   g->built_for = s->live_triangle_count;
   SCREE_ALLOC_OR(g->averse_of, TILE_COUNT, error, out_of_memory);
   SCREE_ALLOC_OR(g->averse, g->cell_count, error, out_of_memory);
+  SCREE_ALLOC_OR(g->groups, 2 * scree_block_count(s->triangle_count, SCREE_GROUP), error,
+                 out_of_memory);
   fill_tiles(g->averse_of);
-  SCREE_ALLOC_OR(g->head, g->cell_count, error, out_of_memory);
-  memset(g->averse, 0, g->cell_count * sizeof *g->averse);
-  memset(g->head, 0xff, g->cell_count * sizeof *g->head);
   return SCREE_OK;
 out_of_memory:
   scree_grid_free(g);
@@ -126,23 +149,35 @@ typedef struct entering {
   const scree_halfmesh *s;
 } entering;
 
+static scree_grid_box enter_triangle(scree_grid *g, const scree_halfmesh *s, size_t t) {
+  vec3 at[3];
+  scree_corners(s, t, at);
+  scree_grid_box c = scree_cells_of(g, vec3_min(at[0], vec3_min(at[1], at[2])),
+                                    vec3_max(at[0], vec3_max(at[1], at[2])));
+  enter(g, c, scree_averse_to(g, vec3_triangle_normal(at[0], at[1], at[2])));
+  return c;
+}
+
 static void enter_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   entering *work = context;
-  const scree_halfmesh *s = work->s;
-  for (size_t t = begin; t < end; t++) {
-    if (s->from[3 * t] == SCREE_NONE) continue;
-    vec3 p0 = s->position[s->from[3 * t]], p1 = s->position[s->from[3 * t + 1]],
-         p2 = s->position[s->from[3 * t + 2]];
-    enter(
-        work->grid,
-        scree_cells_of(work->grid, vec3_min(p0, vec3_min(p1, p2)), vec3_max(p0, vec3_max(p1, p2))),
-        scree_averse_to(work->grid, vec3_triangle_normal(p0, p1, p2)));
+  for (size_t first = begin; first < end; first += SCREE_GROUP) {
+    scree_grid_box all = SCREE_NO_CELLS;
+    size_t last = first + SCREE_GROUP < end ? first + SCREE_GROUP : end;
+    for (size_t t = first; t < last; t++) {
+      if (scree_is_gone(work->s, t)) continue;
+      scree_grid_box c = enter_triangle(work->grid, work->s, t);
+      scree_join_cells(&all, &c);
+    }
+    work->grid->groups[first / SCREE_GROUP] = all;
   }
 }
 
 void scree_grid_enter_directions(scree_grid *g, const scree_halfmesh *s) {
   entering work = {g, s};
+  memset(g->averse, 0, g->cell_count * sizeof *g->averse);
+  g->averse_all = 0;
+  g->group_count = scree_block_count(s->triangle_count, SCREE_GROUP);
   scree_parallel_for(s->triangle_count, BLOCK, enter_block, &work);
 }
 

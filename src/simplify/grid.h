@@ -24,13 +24,6 @@ typedef struct scree_grid_node {
   scree_grid_box box; /* of the triangle as it was listed, in fractions of cells */
 } scree_grid_node;
 
-/* A triangle near an uncertain collapse of a batch, as it is and as it will be. */
-typedef struct scree_grid_near {
-  uint32_t triangle;
-  scree_grid_box box; /* in fractions of cells */
-  uint64_t averse;
-} scree_grid_near;
-
 typedef struct scree_grid {
   uint64_t *averse_of; /* by direction of a normal: what faces it, see grid.c */
   vec3 low;
@@ -39,15 +32,11 @@ typedef struct scree_grid {
   size_t cell_count;
   uint64_t *averse;       /* per cell: bit k set if some triangle does not face direction k */
   uint64_t averse_all;    /* the same for triangles too large to be entered cell by cell */
-  uint32_t *head;         /* per cell: its list */
+  scree_grid_box *groups; /* cells of SCREE_GROUP triangles each; then of groups joined */
+  size_t group_count;
+  uint32_t *head;         /* per cell: its list, where triangles are listed */
   scree_grid_node *items; /* the lists' nodes (an array as base/array.h has it) */
   size_t count, capacity;
-  uint32_t *marked; /* cells; head of a marked cell is its index here */
-  size_t marked_count, marked_capacity;
-  uint32_t *start; /* marked cell k has near[start[k + 1]] up to near[start[k + 2]] */
-  size_t start_capacity;
-  scree_grid_near *near;
-  size_t near_capacity;
   uint32_t *large; /* triangles too large for lists */
   size_t large_count, large_capacity;
   size_t built_for; /* live triangles when it was built */
@@ -60,13 +49,17 @@ typedef struct scree_planned {
   const scree_change *changes;
 } scree_planned;
 
+/* Triangles of a group: so many one after the other. */
+enum { SCREE_GROUP = 64 };
+
 /* Sets the cells for the surface as it is: about cells_per_edge cells per mean edge, at most a few
  * per triangle. Cells are empty: fill directions or lists as needed. */
 scree_status scree_grid_shape(scree_grid *grid, const scree_halfmesh *s, double edges_per_cell,
                               scree_error *error);
 void scree_grid_free(scree_grid *grid);
 
-/* Enters the directions of all triangles, in parallel. */
+/* Enters the directions of all triangles in place of what was there, and sets the groups; in
+ * parallel. */
 void scree_grid_enter_directions(scree_grid *grid, const scree_halfmesh *s);
 /* Enters those of the ring's triangles as they will be (ring->low, high and around are set), over
  * the ring's box, which is returned. Thread-safe. */
@@ -82,15 +75,13 @@ bool scree_grid_certifies_entered(const scree_grid *grid, const scree_grid_box *
 bool scree_grid_list_all(scree_grid *grid, const scree_halfmesh *s);
 bool scree_grid_list_triangle(scree_grid *grid, const scree_halfmesh *s, uint32_t triangle);
 
-/* In a batch: marks the cells of a box; lists all triangles, and what they will become, in the
- * marked cells, in parallel; forgets both. The first two: false when out of memory. */
-bool scree_grid_mark(scree_grid *grid, vec3 low, vec3 high);
-bool scree_grid_list_marked(scree_grid *grid, const scree_halfmesh *s,
-                            const scree_planned *planned);
-void scree_grid_unmark(scree_grid *grid);
+/* In a batch: the groups of the ring's triangles get these cells as well. Thread-safe. */
+void scree_grid_widen_groups(scree_grid *grid, const scree_ring *ring, const scree_grid_box *cells);
+/* Before searches: joins groups to larger ones. */
+void scree_grid_join_groups(scree_grid *grid);
 
 /* Exact: true if the triangles around target meet no more others than those around the edge do.
- * With `planned` among the marked cells, which hold the ring's box, else among the lists. */
+ * With `planned` among the groups, else among the lists. ring->low and high are set. */
 bool scree_grid_clear(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                       vec3 target, const scree_planned *planned);
 

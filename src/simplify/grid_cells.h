@@ -39,6 +39,15 @@ static inline size_t scree_count_cells(const scree_grid_box *c) {
   return count;
 }
 
+#define SCREE_NO_CELLS ((scree_grid_box){{UINT16_MAX, UINT16_MAX, UINT16_MAX}, {0, 0, 0}})
+
+static inline void scree_join_cells(scree_grid_box *all, const scree_grid_box *c) {
+  for (int i = 0; i < 3; i++) {
+    if (c->low[i] < all->low[i]) all->low[i] = c->low[i];
+    if (c->high[i] > all->high[i]) all->high[i] = c->high[i];
+  }
+}
+
 #define SCREE_FOR_CELLS(grid, c, cell)                                                             \
   for (uint32_t z_ = (c).low[2]; z_ <= (c).high[2]; z_++)                                          \
     for (uint32_t y_ = (c).low[1]; y_ <= (c).high[1]; y_++)                                        \

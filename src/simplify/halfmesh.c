@@ -1,18 +1,25 @@
-/* Building the half-edges: outgoing half-edges of each vertex by counting sort, twins by search
- * among them (about six). An edge is sound if it has exactly one half-edge each way; with one alone
+/* Building the half-edges: vertices and triangles in an order that keeps neighbours together
+ * (order.h), outgoing half-edges of each vertex by counting sort, twins by search among them (about
+ * six). An edge is sound if it has exactly one half-edge each way; with one alone
  * it is boundary; anything else is non-manifold or wound inconsistently: its half-edges get no twin
  * and its ends are locked. */
 #include "simplify/halfmesh.h"
 
 #include "base/parallel.h"
+#include "simplify/order.h"
 
 #include <string.h>
 
 enum { BLOCK = 4096 };
+/* Triangles from which on the order in memory is worth the time. */
+enum { ORDERED_FROM = 50000 };
+/* A flag of vertices while building. */
+enum { SEVERAL_FANS = 128 };
 
 typedef struct builder {
   const scree_mesh *mesh;
   scree_halfmesh *surface;
+  uint32_t *order;  /* vertex v of the surface is order[v] of the mesh; NULL: they are the same */
   uint32_t *start;  /* per vertex, into fan; vertex_count + 1 */
   uint32_t *fan;    /* half-edges by the vertex they leave */
   size_t fan_count; /* vertices after the cut */
@@ -20,13 +27,10 @@ typedef struct builder {
 } builder;
 
 void scree_halfmesh_free(scree_halfmesh *s) {
-  scree_free(s->position);
-  scree_free(s->outgoing);
-  scree_free(s->origin);
+  scree_free(s->vertex);
+  scree_free(s->half);
   scree_free(s->flags);
   scree_free(s->sums);
-  scree_free(s->from);
-  scree_free(s->twin);
   scree_free(s->refused);
   *s = (scree_halfmesh){0};
 }
@@ -66,14 +70,59 @@ static scree_status choose_box(scree_halfmesh *s, vec3 low, vec3 high, scree_err
   return SCREE_OK;
 }
 
-static void sort_fans(builder *b) {
+static uint32_t least_of(uint32_t a, uint32_t b, uint32_t c) {
+  uint32_t ab = a < b ? a : b;
+  return ab < c ? ab : c;
+}
+
+/* Triangles in the order of their lowest vertex; corners have the surface's numbers. rank: of the
+ * mesh's vertices in it. */
+static void place_triangles(builder *b, const uint32_t *rank) {
+  const uint32_t *corner = b->mesh->triangles;
+  size_t corner_count = 3 * b->mesh->triangle_count, vertex_count = b->mesh->vertex_count;
+  uint32_t *next = b->start;
+  memset(next, 0, (vertex_count + 1) * sizeof *next);
+  for (size_t c = 0; c < corner_count; c += 3)
+    next[least_of(rank[corner[c]], rank[corner[c + 1]], rank[corner[c + 2]]) + 1]++;
+  for (size_t v = 0; v < vertex_count; v++) next[v + 1] += next[v];
+  for (size_t c = 0; c < corner_count; c += 3) {
+    uint32_t v[3] = {rank[corner[c]], rank[corner[c + 1]], rank[corner[c + 2]]};
+    scree_half_edge *half = b->surface->half + 3 * (size_t)next[least_of(v[0], v[1], v[2])]++;
+    for (int i = 0; i < 3; i++) half[i] = (scree_half_edge){v[i], SCREE_NONE};
+  }
+}
+
+/* A large surface is put in order first: neighbours are near in memory then. */
+static scree_status place_in_order(builder *b, vec3 low, vec3 high, scree_error *error) {
   const scree_mesh *mesh = b->mesh;
-  size_t half_edges = 3 * mesh->triangle_count;
-  memset(b->start, 0, (mesh->vertex_count + 1) * sizeof *b->start);
-  for (size_t h = 0; h < half_edges; h++) b->start[mesh->triangles[h] + 1]++;
-  for (size_t v = 0; v < mesh->vertex_count; v++) b->start[v + 1] += b->start[v];
-  for (size_t h = 0; h < half_edges; h++) b->fan[b->start[mesh->triangles[h]]++] = (uint32_t)h;
-  memmove(b->start + 1, b->start, mesh->vertex_count * sizeof *b->start);
+  uint32_t *rank = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  if (mesh->triangle_count < ORDERED_FROM) {
+    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
+      b->surface->half[c] = (scree_half_edge){mesh->triangles[c], SCREE_NONE};
+    return SCREE_OK;
+  }
+  SCREE_ALLOC_OR(b->order, mesh->vertex_count, error, done);
+  status = scree_order_vertices(mesh, low, high, b->order, error);
+  if (status != SCREE_OK) goto done;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(rank, mesh->vertex_count, error, done);
+  for (uint32_t v = 0; v < mesh->vertex_count; v++) rank[b->order[v]] = v;
+  place_triangles(b, rank);
+  status = SCREE_OK;
+done:
+  scree_free(rank);
+  return status;
+}
+
+static void sort_fans(builder *b) {
+  const scree_half_edge *half = b->surface->half;
+  size_t half_edges = 3 * b->mesh->triangle_count, vertex_count = b->mesh->vertex_count;
+  memset(b->start, 0, (vertex_count + 1) * sizeof *b->start);
+  for (size_t h = 0; h < half_edges; h++) b->start[half[h].from + 1]++;
+  for (size_t v = 0; v < vertex_count; v++) b->start[v + 1] += b->start[v];
+  for (size_t h = 0; h < half_edges; h++) b->fan[b->start[half[h].from]++] = (uint32_t)h;
+  memmove(b->start + 1, b->start, vertex_count * sizeof *b->start);
   b->start[0] = 0;
 }
 
@@ -81,68 +130,107 @@ static void sort_fans(builder *b) {
 static uint32_t count_from_to(const builder *b, uint32_t u, uint32_t v, uint32_t *found) {
   uint32_t count = 0;
   for (uint32_t i = b->start[u]; i < b->start[u + 1]; i++)
-    if (b->mesh->triangles[scree_next(b->fan[i])] == v) {
+    if (scree_to(b->surface, b->fan[i]) == v) {
       *found = b->fan[i];
       count++;
     }
   return count;
 }
 
+/* Several threads may write the same byte, all the same value. */
+static void lock(scree_halfmesh *s, uint32_t v) {
+  __atomic_store_n(&s->flags[v], SCREE_VERTEX_LOCKED, __ATOMIC_RELAXED);
+}
+
+/* An edge is looked at from its lower end if a half-edge leaves from there, else from the other. */
 static void find_twins(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   builder *b = context;
   scree_halfmesh *s = b->surface;
-  for (size_t h = begin; h < end; h++) {
-    uint32_t u = b->mesh->triangles[h], v = b->mesh->triangles[scree_next((uint32_t)h)];
-    uint32_t twin = SCREE_NONE, self = SCREE_NONE;
-    uint32_t back = count_from_to(b, v, u, &twin), same = count_from_to(b, u, v, &self);
-    if (same == 1 && back <= 1 && u != v) {
-      s->twin[h] = twin;
-    } else {
-      s->twin[h] = SCREE_NONE;
-      /* several threads may write the same byte, all the same value */
-      __atomic_store_n(&s->flags[u], SCREE_VERTEX_LOCKED, __ATOMIC_RELAXED);
-      __atomic_store_n(&s->flags[v], SCREE_VERTEX_LOCKED, __ATOMIC_RELAXED);
+  for (uint32_t u = (uint32_t)begin; u < end; u++)
+    for (uint32_t i = b->start[u]; i < b->start[u + 1]; i++) {
+      uint32_t h = b->fan[i], v = scree_to(s, h), twin = SCREE_NONE, self;
+      uint32_t back = count_from_to(b, v, u, &twin);
+      if (back > 0 && v < u) continue;
+      if (back > 1 || u == v || count_from_to(b, u, v, &self) > 1) {
+        lock(s, u);
+        lock(s, v);
+      } else if (back == 1) {
+        s->half[h].twin = twin;
+        s->half[twin].twin = h;
+      }
     }
-  }
 }
 
 /* Turns clockwise from h to the boundary, or back to h. */
 static uint32_t first_of_fan(const scree_halfmesh *s, uint32_t h) {
   for (uint32_t g = h;;) {
-    if (s->twin[g] == SCREE_NONE) return g;
-    g = scree_next(s->twin[g]);
+    if (s->half[g].twin == SCREE_NONE) return g;
+    g = scree_next(s->half[g].twin);
     if (g == h) return h;
   }
 }
 
-/* Gives every fan its own vertex: from[] is set, copies of a vertex are locked. The first fan of
- * vertex v keeps the number v, further ones get numbers from vertex_count on (counted here, written
- * when there is room). */
-static void number_fans(builder *b, bool write) {
-  const scree_mesh *mesh = b->mesh;
+/* Names the half-edges of the fan that begins with `first`; answers how many they are. */
+static uint32_t name_fan(scree_halfmesh *s, uint32_t first, uint32_t number) {
+  uint32_t count = 0, g = first;
+  do {
+    s->half[g].from = number;
+    count++;
+    g = scree_turn(s, g);
+  } while (g != SCREE_NONE && g != first);
+  return count;
+}
+
+/* Gives every further fan of a vertex, where half-edges of a first fan do not reach all, a number
+ * of its own. */
+static void cut_vertex(builder *b, uint32_t v) {
   scree_halfmesh *s = b->surface;
-  size_t next_number = mesh->vertex_count;
-  for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-    uint32_t begin = b->start[v], end = b->start[v + 1], seen = 0;
-    if (write) s->outgoing[v] = SCREE_NONE;
-    for (uint32_t i = begin; i < end && seen < end - begin; i++) {
-      uint32_t h = b->fan[i];
-      if (s->from[h] != SCREE_NONE) continue;
-      uint32_t number = seen == 0 ? v : (uint32_t)next_number++;
-      uint32_t first = first_of_fan(s, h), g = first;
-      do {
-        s->from[g] = number;
-        seen++;
-        g = scree_turn(s, g);
-      } while (g != SCREE_NONE && g != first);
-      if (!write) continue;
-      s->outgoing[number] = first;
-      s->origin[number] = v;
-      if (number != v) s->flags[number] = s->flags[v] = SCREE_VERTEX_LOCKED;
-    }
+  uint32_t begin = b->start[v], end = b->start[v + 1];
+  for (uint32_t i = begin; i < end; i++) s->half[b->fan[i]].from = SCREE_NONE;
+  for (uint32_t i = begin; i < end; i++)
+    if (s->half[b->fan[i]].from == SCREE_NONE)
+      name_fan(s, first_of_fan(s, b->fan[i]), i == begin ? v : (uint32_t)b->fan_count++);
+}
+
+/* Marks the vertices of several fans. */
+static void find_cuts(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  builder *b = context;
+  scree_halfmesh *s = b->surface;
+  for (uint32_t v = (uint32_t)begin; v < end; v++) {
+    uint32_t valence = b->start[v + 1] - b->start[v];
+    if (valence > 0 && name_fan(s, first_of_fan(s, b->fan[b->start[v]]), v) < valence)
+      s->flags[v] = SCREE_VERTEX_LOCKED | SEVERAL_FANS;
   }
-  b->fan_count = next_number;
+}
+
+/* Vertex v of the mesh: its first fan keeps the number. */
+static void place_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  builder *b = context;
+  scree_halfmesh *s = b->surface;
+  for (uint32_t v = (uint32_t)begin; v < end; v++) {
+    scree_vertex *made = &s->vertex[v];
+    *made = (scree_vertex){.outgoing = SCREE_NONE, .origin = b->order ? b->order[v] : v};
+    if (b->start[v] == b->start[v + 1]) continue;
+    vec3 p = vec3_load(b->mesh->positions + 3 * (size_t)made->origin);
+    made->at = vec3_scale(vec3_sub(p, s->centre), 1 / s->scale);
+    made->outgoing = first_of_fan(s, b->fan[b->start[v]]);
+  }
+}
+
+/* The further fans' vertices, copies of v. */
+static void place_copies(builder *b, uint32_t v) {
+  scree_halfmesh *s = b->surface;
+  s->flags[v] = SCREE_VERTEX_LOCKED;
+  for (uint32_t i = b->start[v]; i < b->start[v + 1]; i++) {
+    uint32_t number = s->half[b->fan[i]].from;
+    if (number == v) continue;
+    s->vertex[number] = s->vertex[v];
+    s->vertex[number].outgoing = first_of_fan(s, b->fan[i]);
+    s->flags[number] = SCREE_VERTEX_LOCKED;
+  }
 }
 
 static uint32_t find_root(uint32_t *root, uint32_t v) {
@@ -155,15 +243,17 @@ static void count_facts(builder *b) {
   size_t boundary = 0, locked = 0, vertices = 0, joined = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++) b->root[v] = v;
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
-    boundary += s->twin[h] == SCREE_NONE;
-    uint32_t u = find_root(b->root, s->from[h]), v = find_root(b->root, scree_to(s, h));
+    uint32_t twin = s->half[h].twin;
+    boundary += twin == SCREE_NONE;
+    if (twin < h) continue;
+    uint32_t u = find_root(b->root, s->half[h].from), v = find_root(b->root, scree_to(s, h));
     if (u == v) continue;
     joined++;
     if (u < v) b->root[v] = u;
     if (v < u) b->root[u] = v;
   }
   for (size_t v = 0; v < s->vertex_count; v++) {
-    if (s->outgoing[v] == SCREE_NONE) continue;
+    if (s->vertex[v].outgoing == SCREE_NONE) continue;
     vertices++;
     locked += s->flags[v] & SCREE_VERTEX_LOCKED;
   }
@@ -175,33 +265,47 @@ static void count_facts(builder *b) {
   s->live_triangle_count = s->triangle_count;
 }
 
-static scree_status allocate_vertices(scree_halfmesh *s, size_t count, const uint8_t *flags,
-                                      size_t flag_count, scree_error *error) {
-  SCREE_ALLOC_OR(s->position, count, error, out_of_memory);
-  SCREE_ALLOC_OR(s->outgoing, count, error, out_of_memory);
-  SCREE_ALLOC_OR(s->origin, count, error, out_of_memory);
-  SCREE_ALLOC_OR(s->sums, count, error, out_of_memory);
-  uint8_t *grown = scree_alloc_zero(count, 1);
-  if (!grown) {
-    scree_fail_memory(error, count, "vertex flags");
-    goto out_of_memory;
-  }
-  memcpy(grown, flags, flag_count);
-  scree_free(s->flags);
-  s->flags = grown;
-  s->vertex_count = count;
+/* Half-edges and their twins. */
+static scree_status build_edges(builder *b, vec3 low, vec3 high, scree_error *error) {
+  const scree_mesh *mesh = b->mesh;
+  scree_halfmesh *s = b->surface;
+  size_t half_edges = 3 * mesh->triangle_count;
+  SCREE_ALLOC_OR(s->half, half_edges, error, out_of_memory);
+  SCREE_ALLOC_OR(b->start, mesh->vertex_count + 1, error, out_of_memory);
+  scree_status status = place_in_order(b, low, high, error);
+  if (status != SCREE_OK) return status;
+  SCREE_ALLOC_OR(b->fan, half_edges, error, out_of_memory);
+  SCREE_ALLOC_OR(s->flags, mesh->vertex_count, error, out_of_memory);
+  memset(s->flags, 0, mesh->vertex_count);
+  sort_fans(b);
+  scree_parallel_for(mesh->vertex_count, BLOCK, find_twins, b);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-static void place_vertices(builder *b) {
+/* Vertices, one per fan. */
+static scree_status build_vertices(builder *b, scree_error *error) {
   scree_halfmesh *s = b->surface;
-  for (size_t v = 0; v < s->vertex_count; v++) {
-    if (s->outgoing[v] == SCREE_NONE) continue;
-    vec3 p = vec3_load(b->mesh->positions + 3 * (size_t)s->origin[v]);
-    s->position[v] = vec3_scale(vec3_sub(p, s->centre), 1 / s->scale);
+  size_t given = b->mesh->vertex_count;
+  b->fan_count = given;
+  scree_parallel_for(given, BLOCK, find_cuts, b);
+  for (uint32_t v = 0; v < given; v++)
+    if (s->flags[v] & SEVERAL_FANS) cut_vertex(b, v);
+  s->vertex_count = b->fan_count;
+  SCREE_ALLOC_OR(s->vertex, s->vertex_count, error, out_of_memory);
+  uint8_t *grown = scree_resize(s->flags, s->vertex_count, 1);
+  if (!grown) {
+    scree_fail_memory(error, s->vertex_count, "vertex flags");
+    goto out_of_memory;
   }
+  s->flags = grown;
+  scree_parallel_for(given, BLOCK, place_vertices, b);
+  for (uint32_t v = 0; v < given; v++)
+    if (s->flags[v] & SEVERAL_FANS) place_copies(b, v);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surface,
@@ -211,35 +315,22 @@ scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surfac
   vec3 low = {0, 0, 0}, high = low;
   scree_status status = check_mesh(mesh, &low, &high, error);
   if (status == SCREE_OK) status = choose_box(&made, low, high, error);
-  if (status != SCREE_OK) return status;
-  size_t half_edges = 3 * mesh->triangle_count;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(made.from, half_edges, error, done);
-  SCREE_ALLOC_OR(made.twin, half_edges, error, done);
-  SCREE_ALLOC_OR(made.flags, mesh->vertex_count, error, done);
-  SCREE_ALLOC_OR(b.start, mesh->vertex_count + 1, error, done);
-  SCREE_ALLOC_OR(b.fan, half_edges, error, done);
-  memset(made.flags, 0, mesh->vertex_count);
-  memset(made.from, 0xff, half_edges * sizeof *made.from);
-  sort_fans(&b);
-  scree_parallel_for(half_edges, BLOCK, find_twins, &b);
-  number_fans(&b, false);
-  status = allocate_vertices(&made, b.fan_count, made.flags, mesh->vertex_count, error);
+  if (status == SCREE_OK) status = build_edges(&b, low, high, error);
+  if (status == SCREE_OK) status = build_vertices(&b, error);
   if (status != SCREE_OK) goto done;
-  memset(made.from, 0xff, half_edges * sizeof *made.from);
-  number_fans(&b, true);
-  place_vertices(&b);
   scree_free(b.fan);
   b.fan = NULL;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(b.root, made.vertex_count, error, done);
-  SCREE_ALLOC_OR(made.refused, half_edges, error, done);
-  memset(made.refused, 0, half_edges);
+  SCREE_ALLOC_OR(made.sums, made.vertex_count, error, done);
+  SCREE_ALLOC_OR(made.refused, 3 * mesh->triangle_count, error, done);
+  memset(made.refused, 0, 3 * mesh->triangle_count);
   count_facts(&b);
   *surface = made;
   made = (scree_halfmesh){0};
   status = SCREE_OK;
 done:
+  scree_free(b.order);
   scree_free(b.start);
   scree_free(b.fan);
   scree_free(b.root);
@@ -247,37 +338,64 @@ done:
   return status;
 }
 
-static void move_vertex(scree_halfmesh *s, size_t to, size_t v) {
-  s->position[to] = s->position[v];
-  s->outgoing[to] = s->outgoing[v];
-  s->origin[to] = s->origin[v];
-  s->flags[to] = s->flags[v];
-  memcpy(s->sums[to], s->sums[v], sizeof s->sums[v]);
+typedef struct compaction {
+  scree_halfmesh *s;
+  const uint32_t *vertex, *triangle; /* new numbers */
+} compaction;
+
+/* Entries get the new numbers where they are. */
+static void renumber_triangles(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const compaction *c = context;
+  for (size_t h = 3 * begin; h < 3 * end; h++) {
+    scree_half_edge *half = &c->s->half[h];
+    if (half->from == SCREE_NONE) continue;
+    half->from = c->vertex[half->from];
+    if (half->twin != SCREE_NONE) half->twin = 3 * c->triangle[half->twin / 3] + half->twin % 3;
+  }
+}
+
+static void renumber_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const compaction *c = context;
+  for (size_t v = begin; v < end; v++) {
+    uint32_t *h = &c->s->vertex[v].outgoing;
+    if (*h != SCREE_NONE) *h = 3 * c->triangle[*h / 3] + *h % 3;
+  }
+}
+
+static void move_all(scree_halfmesh *s) {
+  size_t triangles = 0, vertices = 0;
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    if (scree_is_gone(s, t)) continue;
+    for (size_t i = 0; i < 3 && t != triangles; i++) {
+      s->half[3 * triangles + i] = s->half[3 * t + i];
+      s->refused[3 * triangles + i] = s->refused[3 * t + i];
+    }
+    triangles++;
+  }
+  for (size_t v = 0; v < s->vertex_count; v++) {
+    if (s->vertex[v].outgoing == SCREE_NONE) continue;
+    if (v != vertices) {
+      s->vertex[vertices] = s->vertex[v];
+      s->flags[vertices] = s->flags[v];
+      memcpy(s->sums[vertices], s->sums[v], sizeof s->sums[v]);
+    }
+    vertices++;
+  }
+  s->vertex_count = s->live_vertex_count = vertices;
+  s->triangle_count = s->live_triangle_count = triangles;
 }
 
 void scree_halfmesh_compact(scree_halfmesh *s, uint32_t *vertex_scratch,
                             uint32_t *triangle_scratch) {
   uint32_t vertices = 0, triangles = 0;
   for (size_t v = 0; v < s->vertex_count; v++)
-    if (s->outgoing[v] != SCREE_NONE) vertex_scratch[v] = vertices++;
+    if (s->vertex[v].outgoing != SCREE_NONE) vertex_scratch[v] = vertices++;
   for (size_t t = 0; t < s->triangle_count; t++)
-    if (s->from[3 * t] != SCREE_NONE) triangle_scratch[t] = triangles++;
-  for (size_t t = 0; t < s->triangle_count; t++) {
-    if (s->from[3 * t] == SCREE_NONE) continue;
-    size_t to = 3 * (size_t)triangle_scratch[t];
-    for (size_t i = 0; i < 3; i++) {
-      uint32_t twin = s->twin[3 * t + i];
-      s->from[to + i] = vertex_scratch[s->from[3 * t + i]];
-      s->twin[to + i] = twin == SCREE_NONE ? twin : 3 * triangle_scratch[twin / 3] + twin % 3;
-      s->refused[to + i] = s->refused[3 * t + i];
-    }
-  }
-  for (size_t v = 0; v < s->vertex_count; v++) {
-    if (s->outgoing[v] == SCREE_NONE) continue;
-    uint32_t h = s->outgoing[v];
-    s->outgoing[v] = 3 * triangle_scratch[h / 3] + h % 3;
-    if (vertex_scratch[v] != v) move_vertex(s, vertex_scratch[v], v);
-  }
-  s->vertex_count = s->live_vertex_count = vertices;
-  s->triangle_count = s->live_triangle_count = triangles;
+    if (!scree_is_gone(s, t)) triangle_scratch[t] = triangles++;
+  compaction c = {s, vertex_scratch, triangle_scratch};
+  scree_parallel_for(s->triangle_count, BLOCK, renumber_triangles, &c);
+  scree_parallel_for(s->vertex_count, BLOCK, renumber_vertices, &c);
+  move_all(s);
 }

@@ -1,12 +1,12 @@
 /* The surface while it is decimated: half-edges in flat arrays, in a box of about unit size.
  *
- * Half-edge h = 3 t + i of triangle t goes from vertex from[h] to from[next(h)]; twin[h] is the
- * half-edge the other way in the neighbouring triangle, or NONE on a boundary. Every vertex keeps
- * one outgoing half-edge: on a boundary the one without twin, so that turning counter-clockwise
- * from it visits the whole fan. A vertex of the mesh where several fans meet, or with an edge of
- * three or more triangles, becomes one locked vertex per fan: such a vertex never moves, and the
- * copies come together again when a level is rebuilt. Hence everything here is manifold, whatever
- * the scan. */
+ * Half-edge h = 3 t + i of triangle t goes from vertex half[h].from to half[next(h)].from; its twin
+ * is the half-edge the other way in the neighbouring triangle, or NONE on a boundary. Every vertex
+ * keeps one outgoing half-edge: on a boundary the one without twin, so that turning
+ * counter-clockwise from it visits the whole fan. A vertex of the mesh where several fans meet, or
+ * with an edge of three or more triangles, becomes one locked vertex per fan: such a vertex never
+ * moves, and the copies come together again when a level is rebuilt. Hence everything here is
+ * manifold, whatever the scan. */
 #ifndef SCREE_SIMPLIFY_HALFMESH_H
 #define SCREE_SIMPLIFY_HALFMESH_H
 
@@ -23,16 +23,26 @@ enum { SCREE_VERTEX_LOCKED = 1, SCREE_VERTEX_STALE = 2, SCREE_VERTEX_CHANGED = 4
  * pass. */
 enum { SCREE_EDGE_REFUSED = 1, SCREE_EDGE_POSTPONED = 2 };
 
+/* What is asked for together lies together: the cost of decimation is that of waiting for memory.
+ */
+typedef struct scree_half_edge {
+  uint32_t from; /* NONE: the triangle is gone */
+  uint32_t twin;
+} scree_half_edge;
+
+typedef struct scree_vertex {
+  vec3 at;           /* in the unit box */
+  uint32_t outgoing; /* NONE: the vertex is gone */
+  uint32_t origin;   /* the vertex of the mesh given */
+} scree_vertex;
+
 typedef struct scree_halfmesh {
-  vec3 *position;                      /* of vertices, in the unit box */
-  uint32_t *outgoing;                  /* of vertices; NONE: the vertex is gone */
-  uint32_t *origin;                    /* of vertices: the vertex of the mesh given */
-  uint8_t *flags;                      /* of vertices: SCREE_VERTEX_... */
-  double (*sums)[10];                  /* of vertices: the method's quadric, see cost.h */
-  uint32_t *from;                      /* of half-edges; from[3t] NONE: the triangle is gone */
-  uint32_t *twin;                      /* of half-edges */
-  uint8_t *refused;                    /* of half-edges: 0 or SCREE_EDGE_... */
-  size_t vertex_count, triangle_count; /* extents of the arrays */
+  scree_vertex *vertex;
+  scree_half_edge *half;
+  uint8_t *flags;                                /* of vertices: SCREE_VERTEX_... */
+  double (*sums)[10];                            /* of vertices: the method's quadric, see cost.h */
+  uint8_t *refused;                              /* of half-edges: 0 or SCREE_EDGE_... */
+  size_t vertex_count, triangle_count;           /* extents of the arrays */
   size_t live_vertex_count, live_triangle_count; /* still there */
   vec3 centre;  /* position in metres = centre + scale * position in the box */
   double scale; /* a power of two */
@@ -47,14 +57,21 @@ static inline uint32_t scree_previous(uint32_t h) {
   return h % 3 == 0 ? h + 2 : h - 1;
 }
 static inline uint32_t scree_to(const scree_halfmesh *s, uint32_t h) {
-  return s->from[scree_next(h)];
+  return s->half[scree_next(h)].from;
 }
 /* The next outgoing half-edge of the same vertex, counter-clockwise; NONE past a boundary. */
 static inline uint32_t scree_turn(const scree_halfmesh *s, uint32_t h) {
-  return s->twin[scree_previous(h)];
+  return s->half[scree_previous(h)].twin;
 }
 static inline bool scree_on_boundary(const scree_halfmesh *s, uint32_t v) {
-  return s->twin[s->outgoing[v]] == SCREE_NONE;
+  return s->half[s->vertex[v].outgoing].twin == SCREE_NONE;
+}
+
+static inline bool scree_is_gone(const scree_halfmesh *s, size_t triangle) {
+  return s->half[3 * triangle].from == SCREE_NONE;
+}
+static inline void scree_corners(const scree_halfmesh *s, size_t triangle, vec3 at[3]) {
+  for (size_t i = 0; i < 3; i++) at[i] = s->vertex[s->half[3 * triangle + i].from].at;
 }
 
 /* Builds the surface of a mesh; what scree_curve_build says about bad meshes is checked here. */

@@ -49,20 +49,20 @@ static double value(const double *q, vec3 v) {
 }
 
 static void add_boundary(const scree_halfmesh *s, double *q, uint32_t h) {
-  vec3 p = s->position[s->from[h]], e = vec3_sub(s->position[scree_to(s, h)], p);
-  vec3 n = vec3_cross(e, vec3_sub(s->position[s->from[scree_previous(h)]], p));
+  vec3 p = s->vertex[s->half[h].from].at, e = vec3_sub(s->vertex[scree_to(s, h)].at, p);
+  vec3 n = vec3_cross(e, vec3_sub(s->vertex[s->half[scree_previous(h)].from].at, p));
   vec3 side = vec3_unit(vec3_cross(vec3_unit(e), vec3_unit(n)));
   add_plane(q, side, -vec3_dot(side, p), BOUNDARY * vec3_norm2(e));
 }
 
 static void qecd_sum(scree_halfmesh *s, uint32_t v) {
   double q[10] = {0};
-  uint32_t first = s->outgoing[v], g = first, last;
-  vec3 p = s->position[v];
-  if (s->twin[g] == SCREE_NONE) add_boundary(s, q, g);
+  uint32_t first = s->vertex[v].outgoing, g = first, last;
+  vec3 p = s->vertex[v].at;
+  if (s->half[g].twin == SCREE_NONE) add_boundary(s, q, g);
   do {
-    vec3 n = vec3_triangle_normal(p, s->position[scree_to(s, g)],
-                                  s->position[s->from[scree_previous(g)]]);
+    vec3 n = vec3_triangle_normal(p, s->vertex[scree_to(s, g)].at,
+                                  s->vertex[s->half[scree_previous(g)].from].at);
     double doubled = vec3_norm(n);
     if (doubled > 0) {
       n = vec3_scale(n, 1 / doubled);
@@ -97,11 +97,11 @@ static vec3 minimise(const double *q, vec3 m, double pull) {
  * once v lies at x. */
 static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other, vec3 x,
                             double worst) {
-  uint32_t first = s->outgoing[v], g = first;
+  uint32_t first = s->vertex[v].outgoing, g = first;
   do {
-    uint32_t c1 = scree_to(s, g), c2 = s->from[scree_previous(g)];
+    uint32_t c1 = scree_to(s, g), c2 = s->half[scree_previous(g)].from;
     if (c1 != other && c2 != other) {
-      vec3 e1 = vec3_sub(s->position[c1], x), e2 = vec3_sub(s->position[c2], x);
+      vec3 e1 = vec3_sub(s->vertex[c1].at, x), e2 = vec3_sub(s->vertex[c2].at, x);
       double l2 = fmax(fmax(vec3_norm2(e1), vec3_norm2(e2)), vec3_norm2(vec3_sub(e1, e2)));
       double doubled2 = vec3_norm2(vec3_cross(e1, e2)); /* quality squared: one root in all */
       if (!(doubled2 >= worst * l2 * l2)) worst = l2 > 0 ? doubled2 / (l2 * l2) : 0;
@@ -115,24 +115,24 @@ static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other,
  * have no area. */
 static void answer(const scree_halfmesh *s, uint32_t half_edge, const double *q, vec3 x,
                    scree_candidate *out) {
-  uint32_t a = s->from[half_edge], b = scree_to(s, half_edge);
+  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
   double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
   *out = (scree_candidate){.cost = INFINITY};
   if (!(error > 0)) error = 0; /* rounding may take it below */
   double worst = worst_quality(s, a, b, x, QUALITY * QUALITY);
   worst = worst_quality(s, b, a, x, worst);
   if (!(worst > 0)) return;
-  double length2 = vec3_norm2(vec3_sub(s->position[b], s->position[a]));
+  double length2 = vec3_norm2(vec3_sub(s->vertex[b].at, s->vertex[a].at));
   out->target = x;
   out->error = trace > 0 ? error / trace : 0;
   out->cost = (error + TIE * trace * length2) / sqrt(worst);
 }
 
 static void evaluate_one(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
-  uint32_t a = s->from[half_edge], b = scree_to(s, half_edge);
+  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
   double q[10];
   for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
-  vec3 x = vec3_scale(vec3_add(s->position[a], s->position[b]), 0.5);
+  vec3 x = vec3_scale(vec3_add(s->vertex[a].at, s->vertex[b].at), 0.5);
   double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
   if (error > MIDDLE_ERROR && trace > 0) {
     vec3 best = minimise(q, minimise(q, x, PULL * trace), PULL * trace);
@@ -149,10 +149,10 @@ static void qecd_evaluate(const scree_halfmesh *s, const uint32_t *half_edges, s
 static void qecd_fall_back(const scree_halfmesh *s, uint32_t half_edge, int fallback,
                            scree_candidate *out) {
   static const double along[SCREE_FALLBACK_COUNT] = {0.5, 0, 1};
-  uint32_t a = s->from[half_edge], b = scree_to(s, half_edge);
+  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
   double q[10];
   for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
-  answer(s, half_edge, q, vec3_lerp(s->position[a], s->position[b], along[fallback]), out);
+  answer(s, half_edge, q, vec3_lerp(s->vertex[a].at, s->vertex[b].at, along[fallback]), out);
 }
 
 const scree_coster scree_qecd_coster = {qecd_sum, qecd_evaluate, qecd_fall_back, qecd_merge};

@@ -1,10 +1,11 @@
-/* Triangles by cell, and the exact search among them.
+/* Triangles by place, and the exact search among them.
  *
  * One by one, every triangle is in a linked list of each cell it touches, and listed again when it
- * changes. In a batch only the cells about the uncertain collapses are of interest: they are
- * marked, and the triangles that touch them, or will, are laid out cell after cell with their boxes
- * and directions. The search then asks for the certificate once more, for the box of the ring alone
- * instead of all its cells; only where that fails are pairs of triangles tested. */
+ * changes. In a batch triangles come in groups that lie near each other (order.h), of which the box
+ * is known: it is set when the directions are entered and widened by every collapse that may be
+ * done. Of the few groups about an uncertain collapse all triangles are looked at. The search then
+ * asks for the certificate once more, for the box of the ring alone instead of all its cells; only
+ * where that fails are pairs of triangles tested. */
 #include "simplify/grid_cells.h"
 
 #include "base/array.h"
@@ -13,7 +14,8 @@
 
 #include <string.h>
 
-enum { BLOCK = 2048 };
+/* Groups that are asked for together first. */
+enum { GROUPS_JOINED = 64 };
 
 /* A box in steps of a fraction of a cell: boxes that are apart in steps are apart. */
 enum { STEPS_PER_CELL = 32 }; /* at most 1025 cells along an axis */
@@ -56,10 +58,10 @@ static bool list(scree_grid *g, vec3 low, vec3 high, uint32_t triangle) {
 }
 
 static void triangle_box(const scree_halfmesh *s, uint32_t t, vec3 *low, vec3 *high) {
-  const uint32_t *from = s->from + 3 * (size_t)t;
-  vec3 p0 = s->position[from[0]], p1 = s->position[from[1]], p2 = s->position[from[2]];
-  *low = vec3_min(p0, vec3_min(p1, p2));
-  *high = vec3_max(p0, vec3_max(p1, p2));
+  vec3 at[3];
+  scree_corners(s, t, at);
+  *low = vec3_min(at[0], vec3_min(at[1], at[2]));
+  *high = vec3_max(at[0], vec3_max(at[1], at[2]));
 }
 
 bool scree_grid_list_triangle(scree_grid *g, const scree_halfmesh *s, uint32_t t) {
@@ -72,7 +74,7 @@ bool scree_grid_list_triangle(scree_grid *g, const scree_halfmesh *s, uint32_t t
 static uint32_t planned_for(const scree_halfmesh *s, uint32_t t, const scree_planned *planned) {
   if (!planned) return SCREE_NONE;
   for (size_t i = 0; i < 3; i++) {
-    uint32_t chosen = planned->chosen[s->from[3 * (size_t)t + i]];
+    uint32_t chosen = planned->chosen[s->half[3 * (size_t)t + i].from];
     if (chosen != SCREE_NONE) return chosen;
   }
   return SCREE_NONE;
@@ -81,7 +83,7 @@ static uint32_t planned_for(const scree_halfmesh *s, uint32_t t, const scree_pla
 /* The box of triangle t and what it will become; false: the triangle is gone. */
 static bool box_with_plan(const scree_halfmesh *s, uint32_t t, const scree_planned *planned,
                           vec3 *low, vec3 *high) {
-  if (s->from[3 * (size_t)t] == SCREE_NONE) return false;
+  if (scree_is_gone(s, t)) return false;
   triangle_box(s, t, low, high);
   uint32_t chosen = planned_for(s, t, planned);
   if (chosen != SCREE_NONE) {
@@ -92,149 +94,50 @@ static bool box_with_plan(const scree_halfmesh *s, uint32_t t, const scree_plann
 }
 
 bool scree_grid_list_all(scree_grid *g, const scree_halfmesh *s) {
+  g->head = scree_alloc(g->cell_count, sizeof *g->head);
+  if (!g->head) return false;
+  memset(g->head, 0xff, g->cell_count * sizeof *g->head);
   for (uint32_t t = 0; t < s->triangle_count; t++)
-    if (s->from[3 * (size_t)t] != SCREE_NONE && !scree_grid_list_triangle(g, s, t)) return false;
+    if (!scree_is_gone(s, t) && !scree_grid_list_triangle(g, s, t)) return false;
   return true;
 }
 
-/* ---- The marked cells of a batch ---- */
+/* ---- The groups of a batch ---- */
 
-bool scree_grid_mark(scree_grid *g, vec3 low, vec3 high) {
-  scree_grid_box c = scree_cells_of(g, low, high);
-  SCREE_FOR_CELLS(g, c, cell) {
-    if (g->head[cell] != SCREE_NONE) continue;
-    if (!scree_array_reserve((void **)&g->marked, &g->marked_capacity, g->marked_count + 1,
-                             sizeof *g->marked))
-      return false;
-    g->head[cell] = (uint32_t)g->marked_count;
-    g->marked[g->marked_count++] = (uint32_t)cell;
-  }
-  return true;
-}
-
-void scree_grid_unmark(scree_grid *g) {
-  for (size_t i = 0; i < g->marked_count; i++) g->head[g->marked[i]] = SCREE_NONE;
-  g->marked_count = g->large_count = 0;
-}
-
-enum { FAR, NEAR, LARGE };
-
-typedef struct listing {
-  scree_grid *grid;
-  const scree_halfmesh *s;
-  const scree_planned *planned;
-  uint8_t *where;        /* per triangle: whether it touches a marked cell */
-  scree_grid_box *place; /* per vertex */
-} listing;
-
-/* The cells that a vertex is in now and will be in. */
-static void place_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  const listing *l = context;
-  for (size_t v = begin; v < end; v++) {
-    if (l->s->outgoing[v] == SCREE_NONE) continue;
-    vec3 now = l->s->position[v];
-    uint32_t chosen = l->planned->chosen[v];
-    vec3 then = chosen == SCREE_NONE ? now : l->planned->changes[chosen].target;
-    l->place[v] = scree_cells_of(l->grid, vec3_min(now, then), vec3_max(now, then));
-  }
-}
-
-static scree_grid_box join(scree_grid_box a, const scree_grid_box *b) {
+/* Several threads may widen a group: every bound moves one way. */
+static void widen(scree_grid_box *group, const scree_grid_box *box) {
   for (int i = 0; i < 3; i++) {
-    a.low[i] = a.low[i] < b->low[i] ? a.low[i] : b->low[i];
-    a.high[i] = a.high[i] > b->high[i] ? a.high[i] : b->high[i];
-  }
-  return a;
-}
-
-/* The cells of triangle t and what it will become. */
-static scree_grid_box cells_with_plan(const listing *l, size_t t) {
-  const uint32_t *from = l->s->from + 3 * t;
-  return join(join(l->place[from[0]], &l->place[from[1]]), &l->place[from[2]]);
-}
-
-static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  const listing *l = context;
-  scree_grid *g = l->grid;
-  for (size_t t = begin; t < end; t++) {
-    l->where[t] = FAR;
-    if (l->s->from[3 * t] == SCREE_NONE) continue;
-    scree_grid_box c = cells_with_plan(l, t);
-    if (scree_count_cells(&c) > SCREE_CELLS_MAX) {
-      l->where[t] = LARGE;
-      continue;
+    uint16_t low = __atomic_load_n(&group->low[i], __ATOMIC_RELAXED),
+             high = __atomic_load_n(&group->high[i], __ATOMIC_RELAXED);
+    while (box->low[i] < low &&
+           !__atomic_compare_exchange_n(&group->low[i], &low, box->low[i], true, __ATOMIC_RELAXED,
+                                        __ATOMIC_RELAXED)) {
     }
-    SCREE_FOR_CELLS(g, c, cell) {
-      if (g->head[cell] == SCREE_NONE) continue;
-      l->where[t] = NEAR;
-      __atomic_fetch_add(&g->start[g->head[cell] + 1], 1, __ATOMIC_RELAXED);
+    while (box->high[i] > high &&
+           !__atomic_compare_exchange_n(&group->high[i], &high, box->high[i], true,
+                                        __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
     }
   }
 }
 
-/* Directions that triangle t does not face, now or as it will be. */
-static uint64_t averse_with_plan(const listing *l, uint32_t t) {
-  const uint32_t *from = l->s->from + 3 * (size_t)t;
-  uint32_t chosen = planned_for(l->s, t, l->planned);
-  vec3 at[3];
-  for (int i = 0; i < 3; i++) at[i] = l->s->position[from[i]];
-  uint64_t averse = scree_averse_to(l->grid, vec3_triangle_normal(at[0], at[1], at[2]));
-  if (chosen == SCREE_NONE) return averse;
-  int moved = 0;
-  for (int i = 0; i < 3; i++)
-    if (l->planned->chosen[from[i]] == chosen) {
-      at[i] = l->planned->changes[chosen].target;
-      moved++;
-    }
-  if (moved == 1) averse |= scree_averse_to(l->grid, vec3_triangle_normal(at[0], at[1], at[2]));
-  return averse;
-}
-
-/* Fills from the end of each cell's part to its beginning; in what order does not matter. */
-static void fill_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  const listing *l = context;
-  scree_grid *g = l->grid;
-  vec3 low, high;
-  for (size_t t = begin; t < end; t++) {
-    if (l->where[t] != NEAR) continue;
-    box_with_plan(l->s, (uint32_t)t, l->planned, &low, &high);
-    scree_grid_near near = {(uint32_t)t, coarse_box(g, low, high),
-                            averse_with_plan(l, (uint32_t)t)};
-    scree_grid_box c = cells_with_plan(l, t);
-    SCREE_FOR_CELLS(g, c, cell)
-    if (g->head[cell] != SCREE_NONE)
-      g->near[__atomic_sub_fetch(&g->start[g->head[cell] + 1], 1, __ATOMIC_RELAXED)] = near;
+void scree_grid_widen_groups(scree_grid *g, const scree_ring *r, const scree_grid_box *box) {
+  uint32_t last = SCREE_NONE;
+  for (uint32_t i = 0; i < r->count; i++) {
+    uint32_t group = r->edge[i] / 3 / SCREE_GROUP;
+    if (group != last) widen(&g->groups[group], box);
+    last = group;
   }
 }
 
-/* After count_block start[k + 1] is the count of cell k; before fill_block it is the end of its
- * part; after that its beginning, and the next cell's is its end. */
-bool scree_grid_list_marked(scree_grid *g, const scree_halfmesh *s, const scree_planned *planned) {
-  listing l = {g, s, planned, scree_alloc(s->triangle_count, 1),
-               scree_alloc(s->vertex_count, sizeof *l.place)};
-  bool listed = l.where && l.place &&
-                scree_array_reserve((void **)&g->start, &g->start_capacity, g->marked_count + 2,
-                                    sizeof *g->start);
-  if (listed) {
-    size_t sum = 0;
-    memset(g->start, 0, (g->marked_count + 2) * sizeof *g->start);
-    scree_parallel_for(s->vertex_count, BLOCK, place_block, &l);
-    scree_parallel_for(s->triangle_count, BLOCK, count_block, &l);
-    for (size_t k = 1; k <= g->marked_count + 1; k++) g->start[k] = (uint32_t)(sum += g->start[k]);
-    listed = sum < UINT32_MAX &&
-             scree_array_reserve((void **)&g->near, &g->near_capacity, sum + 1, sizeof *g->near);
+void scree_grid_join_groups(scree_grid *g) {
+  size_t count = scree_block_count(g->group_count, GROUPS_JOINED);
+  for (size_t k = 0; k < count; k++) {
+    scree_grid_box all = SCREE_NO_CELLS;
+    size_t end = (k + 1) * GROUPS_JOINED;
+    if (end > g->group_count) end = g->group_count;
+    for (size_t i = k * GROUPS_JOINED; i < end; i++) scree_join_cells(&all, &g->groups[i]);
+    g->groups[g->group_count + k] = all;
   }
-  if (listed) {
-    scree_parallel_for(s->triangle_count, BLOCK, fill_block, &l);
-    for (uint32_t t = 0; t < s->triangle_count && listed; t++)
-      if (l.where[t] == LARGE) listed = list_large(g, t);
-  }
-  scree_free(l.where);
-  scree_free(l.place);
-  return listed;
 }
 
 /* ---- Pairs of triangles ---- */
@@ -251,9 +154,9 @@ typedef struct corners {
 static corners corners_of(const scree_halfmesh *s, uint32_t t) {
   corners c;
   for (size_t i = 0; i < 3; i++) {
-    uint32_t v = s->from[3 * (size_t)t + i];
-    c.name[i] = s->origin[v];
-    c.at[i] = s->position[v];
+    uint32_t v = s->half[3 * (size_t)t + i].from;
+    c.name[i] = s->vertex[v].origin;
+    c.at[i] = s->vertex[v].at;
   }
   return c;
 }
@@ -312,10 +215,10 @@ typedef struct search {
 
 static corners ring_triangle(const search *q, uint32_t i) {
   const scree_halfmesh *s = q->s;
-  uint32_t e = q->ring->edge[i], v1 = s->from[e], v2 = scree_to(s, e);
-  uint32_t v0 = s->from[scree_previous(e)];
-  return (corners){{s->origin[v0], s->origin[v1], s->origin[v2]},
-                   {s->position[v0], s->position[v1], s->position[v2]}};
+  uint32_t e = q->ring->edge[i], v1 = s->half[e].from, v2 = scree_to(s, e);
+  uint32_t v0 = s->half[scree_previous(e)].from;
+  return (corners){{s->vertex[v0].origin, s->vertex[v1].origin, s->vertex[v2].origin},
+                   {s->vertex[v0].at, s->vertex[v1].at, s->vertex[v2].at}};
 }
 
 static int count_met_before(const search *q, const corners *c) {
@@ -361,9 +264,9 @@ static int count_met_after(const search *q, const corners *c) {
 
 static void search_triangle(search *q, uint32_t t) {
   const scree_halfmesh *s = q->s;
-  const uint32_t *from = s->from + 3 * (size_t)t;
+  const scree_half_edge *half = s->half + 3 * (size_t)t;
   for (int i = 0; i < 3; i++)
-    if (from[i] == q->ring->a || from[i] == q->ring->b) return;
+    if (half[i].from == q->ring->a || half[i].from == q->ring->b) return;
   corners c = corners_of(s, t);
   int after = count_met_after(q, &c);
   if (after > 0) {
@@ -374,7 +277,7 @@ static void search_triangle(search *q, uint32_t t) {
   if (chosen == SCREE_NONE || chosen == q->self) return;
   int moved = 0;
   for (size_t i = 0; i < 3; i++)
-    if (q->planned->chosen[from[i]] == chosen) {
+    if (q->planned->chosen[half[i].from] == chosen) {
       c.at[i] = q->planned->changes[chosen].target;
       c.name[i] = MOVED_OTHER;
       moved++;
@@ -413,37 +316,68 @@ static void search_begin(search *q, vec3 target) {
     }
 }
 
-/* Whether `cell`, at the place x, y, z, is the first that both boxes of fractions of cells have. */
-static bool is_first(const scree_grid_box *a, const scree_grid_box *b, const uint32_t *place) {
-  for (int i = 0; i < 3; i++) {
-    uint32_t low = a->low[i] > b->low[i] ? a->low[i] : b->low[i];
-    if (low / STEPS_PER_CELL != place[i]) return false;
+/* Directions that triangle t does not face, now or as it will be. */
+static uint64_t averse_with_plan(const search *q, uint32_t t) {
+  const scree_half_edge *half = q->s->half + 3 * (size_t)t;
+  uint32_t chosen = planned_for(q->s, t, q->planned);
+  vec3 at[3];
+  scree_corners(q->s, t, at);
+  uint64_t averse = scree_averse_to(q->grid, vec3_triangle_normal(at[0], at[1], at[2]));
+  if (chosen == SCREE_NONE) return averse;
+  int moved = 0;
+  for (int i = 0; i < 3; i++)
+    if (q->planned->chosen[half[i].from] == chosen) {
+      at[i] = q->planned->changes[chosen].target;
+      moved++;
+    }
+  if (moved == 1) averse |= scree_averse_to(q->grid, vec3_triangle_normal(at[0], at[1], at[2]));
+  return averse;
+}
+
+static bool beyond_ring(const scree_ring *r, vec3 low, vec3 high) {
+  return low.x > r->high.x || low.y > r->high.y || low.z > r->high.z || high.x < r->low.x ||
+         high.y < r->low.y || high.z < r->low.z;
+}
+
+/* What is done with a triangle about the ring; false: no more of them is asked for. */
+typedef bool visitor(search *q, uint32_t t);
+
+static bool visit_group(search *q, size_t group, visitor *visit) {
+  size_t end = (group + 1) * SCREE_GROUP;
+  if (end > q->s->triangle_count) end = q->s->triangle_count;
+  for (size_t t = group * SCREE_GROUP; t < end; t++) {
+    vec3 low, high;
+    if (!box_with_plan(q->s, (uint32_t)t, q->planned, &low, &high) ||
+        beyond_ring(q->ring, low, high))
+      continue;
+    if (!visit(q, (uint32_t)t)) return false;
   }
   return true;
 }
 
-/* Leaves out the directions that some triangle about the ring does not face; false: none is left.
- * Of a batch only. */
-static bool narrow(search *q, const scree_grid_box *c, const scree_grid_box *box) {
+/* Visits the triangles whose box, with what they will become, touches the ring's. */
+static bool visit_near(search *q, const scree_grid_box *c, visitor *visit) {
   const scree_grid *g = q->grid;
-  if (g->large_count) return false;
-  SCREE_FOR_CELLS(g, *c, cell) {
-    uint32_t k = g->head[cell];
-    for (uint32_t i = g->start[k + 1]; i < g->start[k + 2]; i++)
-      if (!apart(&g->near[i].box, box)) q->averse |= g->near[i].averse;
-    if (q->averse == SCREE_ALL_AVERSE) return false;
+  const scree_grid_box *joined = g->groups + g->group_count;
+  for (size_t k = 0; k * GROUPS_JOINED < g->group_count; k++) {
+    if (apart(&joined[k], c)) continue;
+    size_t end = (k + 1) * GROUPS_JOINED;
+    if (end > g->group_count) end = g->group_count;
+    for (size_t i = k * GROUPS_JOINED; i < end; i++)
+      if (!apart(&g->groups[i], c) && !visit_group(q, i, visit)) return false;
   }
   return true;
 }
 
-static void search_marked(search *q, const scree_grid_box *c, const scree_grid_box *box) {
-  const scree_grid *g = q->grid;
-  SCREE_FOR_CELLS(g, *c, cell) {
-    uint32_t k = g->head[cell], place[3] = {(uint32_t)(cell % g->size[0]), y_, z_};
-    for (uint32_t i = g->start[k + 1]; i < g->start[k + 2]; i++)
-      if (!apart(&g->near[i].box, box) && is_first(&g->near[i].box, box, place))
-        search_triangle(q, g->near[i].triangle);
-  }
+/* Leaves out the directions that the triangle does not face; false: none is left. */
+static bool narrow(search *q, uint32_t t) {
+  q->averse |= averse_with_plan(q, t);
+  return q->averse != SCREE_ALL_AVERSE;
+}
+
+static bool test(search *q, uint32_t t) {
+  search_triangle(q, t);
+  return true;
 }
 
 static void search_lists(search *q, const scree_grid_box *c, const scree_grid_box *box) {
@@ -455,8 +389,7 @@ static void search_lists(search *q, const scree_grid_box *c, const scree_grid_bo
     uint32_t t = g->items[i].triangle;
     /* a triangle may have shrunk since it was listed */
     if (apart(&g->items[i].box, box) || !box_with_plan(q->s, t, NULL, &low, &high) ||
-        low.x > r->high.x || low.y > r->high.y || low.z > r->high.z || high.x < r->low.x ||
-        high.y < r->low.y || high.z < r->low.z)
+        beyond_ring(r, low, high))
       continue;
     /* it is listed in several cells: the first that both boxes have decides */
     if (scree_cell_of(g, vec3_max(low, r->low)) == cell) search_triangle(q, t);
@@ -474,13 +407,15 @@ bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_
   q.before = q.after = 0;
   q.averse = 0;
   search_begin(&q, target);
-  scree_grid_box c = scree_cells_of(g, r->low, r->high), box = coarse_box(g, r->low, r->high);
-  if (planned && s->closed && narrow(&q, &c, &box)) return true;
-  for (size_t i = 0; i < g->large_count; i++)
-    if (s->from[3 * (size_t)g->large[i]] != SCREE_NONE) search_triangle(&q, g->large[i]);
-  if (planned)
-    search_marked(&q, &c, &box);
-  else
+  scree_grid_box c = scree_cells_of(g, r->low, r->high);
+  if (planned) {
+    if (s->closed && q.averse != SCREE_ALL_AVERSE && visit_near(&q, &c, narrow)) return true;
+    visit_near(&q, &c, test);
+  } else {
+    scree_grid_box box = coarse_box(g, r->low, r->high);
+    for (size_t i = 0; i < g->large_count; i++)
+      if (!scree_is_gone(s, g->large[i])) search_triangle(&q, g->large[i]);
     search_lists(&q, &c, &box);
+  }
   return q.after <= q.before;
 }

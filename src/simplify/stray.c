@@ -32,18 +32,19 @@ static double past_rounding(double distance2) {
 /* Each vertex with the first of its triangles. */
 static void add_vertices(scree_memory *m, const scree_halfmesh *s, uint8_t *seen) {
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
-    uint32_t v = s->from[h];
+    uint32_t v = s->half[h].from;
     if (v == SCREE_NONE || seen[v]) continue;
     seen[v] = 1;
-    add_witness(m, s->position[v], h / 3);
+    add_witness(m, s->vertex[v].at, h / 3);
   }
 }
 
 scree_status scree_memory_keep(const scree_halfmesh *s, scree_memory *m, scree_error *error) {
-  scree_mesh mesh = {.positions = &s->position[0].x, .vertex_count = s->vertex_count};
+  scree_mesh mesh = {.vertex_count = s->vertex_count};
   uint8_t *seen = scree_alloc_zero(s->vertex_count, 1);
   scree_status status = SCREE_OUT_OF_MEMORY;
   *m = (scree_memory){0};
+  SCREE_ALLOC_OR(mesh.positions, 3 * s->vertex_count, error, done);
   SCREE_ALLOC_OR(mesh.triangles, 3 * s->live_triangle_count, error, done);
   SCREE_ALLOC_OR(m->witnesses, s->live_vertex_count, error, done);
   SCREE_ALLOC_OR(m->first, s->triangle_count, error, done);
@@ -52,18 +53,21 @@ scree_status scree_memory_keep(const scree_halfmesh *s, scree_memory *m, scree_e
     goto done;
   }
   for (size_t t = 0; t < s->triangle_count; t++) {
-    const uint32_t *from = s->from + 3 * t;
-    if (from[0] == SCREE_NONE) continue;
-    memcpy(mesh.triangles + 3 * mesh.triangle_count++, from, 3 * sizeof *from);
-    m->area += 0.5 * vec3_norm(vec3_triangle_normal(s->position[from[0]], s->position[from[1]],
-                                                    s->position[from[2]]));
+    vec3 at[3];
+    if (scree_is_gone(s, t)) continue;
+    scree_corners(s, t, at);
+    m->area += 0.5 * vec3_norm(vec3_triangle_normal(at[0], at[1], at[2]));
+    for (size_t i = 0; i < 3; i++)
+      mesh.triangles[3 * mesh.triangle_count + i] = s->half[3 * t + i].from;
+    mesh.triangle_count++;
   }
+  for (size_t v = 0; v < s->vertex_count; v++) vec3_store(mesh.positions + 3 * v, s->vertex[v].at);
   memset(m->first, 0xff, s->triangle_count * sizeof *m->first);
   add_vertices(m, s, seen);
   status = scree_bvh_build(&mesh, &m->surface, error);
 done:
   scree_free(seen);
-  scree_free(mesh.triangles);
+  scree_mesh_free(&mesh);
   if (status != SCREE_OK) scree_memory_free(m);
   return status;
 }
@@ -86,8 +90,8 @@ static double farther(const scree_memory *m, vec3 x, double least) {
 static void corners_at(const scree_halfmesh *s, const scree_ring *r, uint32_t i, vec3 x,
                        double *corners) {
   vec3_store(corners, x);
-  vec3_store(corners + 3, s->position[s->from[r->edge[i]]]);
-  vec3_store(corners + 6, s->position[scree_to(s, r->edge[i])]);
+  vec3_store(corners + 3, s->vertex[s->half[r->edge[i]].from].at);
+  vec3_store(corners + 6, s->vertex[scree_to(s, r->edge[i])].at);
 }
 
 static void new_corners(const scree_halfmesh *s, const scree_ring *r, vec3 target,
@@ -97,7 +101,9 @@ static void new_corners(const scree_halfmesh *s, const scree_ring *r, vec3 targe
 
 /* Triangle k of those around: the ring's, then the edge's own. */
 static uint32_t triangle_around(const scree_halfmesh *s, const scree_ring *r, uint32_t k) {
-  uint32_t h = k < r->count ? r->edge[k] : k == r->count ? r->half_edge : s->twin[r->half_edge];
+  uint32_t h = k < r->count    ? r->edge[k]
+               : k == r->count ? r->half_edge
+                               : s->half[r->half_edge].twin;
   return h / 3;
 }
 
@@ -131,7 +137,7 @@ double scree_memory_stray(const scree_memory *m, const scree_halfmesh *s, const 
     }
   worst = farther(m, target, worst);
   for (uint32_t i = 0; i < r->count; i++)
-    worst = farther(m, vec3_lerp(target, s->position[s->from[r->edge[i]]], 0.5), worst);
+    worst = farther(m, vec3_lerp(target, s->vertex[s->half[r->edge[i]].from].at, 0.5), worst);
   return worst;
 }
 
@@ -176,7 +182,7 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
 /* The squared distance of x from the segment between the ring's ends: mostly the answer, at little
  * cost. */
 static double distance_from_edge(const scree_halfmesh *s, const scree_ring *r, vec3 x) {
-  vec3 e = vec3_sub(s->position[r->b], s->position[r->a]), y = vec3_sub(x, s->position[r->a]);
+  vec3 e = vec3_sub(s->vertex[r->b].at, s->vertex[r->a].at), y = vec3_sub(x, s->vertex[r->a].at);
   double t = vec3_dot(y, e) / vec3_norm2(e);
   return vec3_norm2(vec3_mad(y, e, t > 1 ? -1 : t > 0 ? -t : 0));
 }
@@ -185,6 +191,6 @@ bool scree_stays_within(const scree_halfmesh *s, const scree_ring *r, vec3 targe
   double corners[SCREE_RING_MAX][9];
   if (distance_from_edge(s, r, target) <= most) return true;
   for (uint32_t i = 0; i < r->count; i++)
-    corners_at(s, r, i, s->position[i < r->a_count ? r->a : r->b], corners[i]);
+    corners_at(s, r, i, s->vertex[i < r->a_count ? r->a : r->b].at, corners[i]);
   return distance_from(corners, r->count, 0, target, most) <= most;
 }

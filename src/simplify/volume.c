@@ -75,12 +75,12 @@ static inline vec3 multiply(const double *h, vec3 v) {
 
 static void volume_sum(scree_halfmesh *s, uint32_t v) {
   double h[10] = {0};
-  vec3 p = s->position[v];
-  uint32_t first = s->outgoing[v], g = first;
-  vec3 e1 = vec3_sub(s->position[scree_to(s, g)], p);
-  if (s->twin[g] == SCREE_NONE) add_boundary(h, e1, 1);
+  vec3 p = s->vertex[v].at;
+  uint32_t first = s->vertex[v].outgoing, g = first;
+  vec3 e1 = vec3_sub(s->vertex[scree_to(s, g)].at, p);
+  if (s->half[g].twin == SCREE_NONE) add_boundary(h, e1, 1);
   do {
-    vec3 e2 = vec3_sub(s->position[s->from[scree_previous(g)]], p);
+    vec3 e2 = vec3_sub(s->vertex[s->half[scree_previous(g)].from].at, p);
     vec3 n = vec3_cross(e1, e2);
     add_outer(h, n, 1);
     h[NX] += n.x;
@@ -120,13 +120,13 @@ static inline void set_lane(double v[3][LANES], int i, vec3 p) {
 }
 
 static void gather(const scree_halfmesh *s, uint32_t half_edge, lanes *q, int i) {
-  uint32_t a = s->from[half_edge], b = scree_to(s, half_edge), twin = s->twin[half_edge];
+  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge), twin = s->half[half_edge].twin;
   const double *ha = s->sums[a], *hb = s->sums[b];
-  vec3 p = s->position[a], e = vec3_sub(s->position[b], p), to_d = {0, 0, 0};
+  vec3 p = s->vertex[a].at, e = vec3_sub(s->vertex[b].at, p), to_d = {0, 0, 0};
   double h[6];
   for (int k = 0; k < 6; k++) h[k] = ha[k] + hb[k];
   if (twin != SCREE_NONE)
-    to_d = vec3_sub(s->position[s->from[scree_previous(twin)]], p);
+    to_d = vec3_sub(s->vertex[s->half[scree_previous(twin)].from].at, p);
   else
     add_boundary(h, e, -1);
   for (int k = 0; k < 6; k++) q->h[k][i] = h[k];
@@ -135,7 +135,7 @@ static void gather(const scree_halfmesh *s, uint32_t half_edge, lanes *q, int i)
   for (int k = 0; k < 3; k++) q->nb[k][i] = hb[NX + k];
   q->area[i] = ha[AREA] + hb[AREA];
   set_lane(q->e, i, e);
-  set_lane(q->c, i, vec3_sub(s->position[s->from[scree_previous(half_edge)]], p));
+  set_lane(q->c, i, vec3_sub(s->vertex[s->half[scree_previous(half_edge)].from].at, p));
   set_lane(q->d, i, to_d);
 }
 
@@ -211,7 +211,7 @@ static scree_candidate answer(const scree_halfmesh *s, uint32_t half_edge, lanes
   /* false also where the normals cancel and nothing is a number */
   if (!(q->excess[i] <= 0 && q->trace[i] > 0 && q->around[i] > 0))
     return (scree_candidate){.cost = INFINITY};
-  vec3 p = s->position[s->from[half_edge]];
+  vec3 p = s->vertex[s->half[half_edge].from].at;
   return (scree_candidate){.cost = q->cost[i],
                            .target = vec3_add(p, lane(q->y, i)),
                            .error = q->energy[i] / q->trace[i],
