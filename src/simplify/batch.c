@@ -40,6 +40,8 @@ enum { AHEAD = 16 };
 enum { VERTEX_BLOCK = 1024, CHOSEN_BLOCK = 256, BINS = 1 << 16 };
 /* Edges evaluated in one call; parts in which the candidates of a round are chosen. */
 enum { SIDE_BY_SIDE = 64, CHOICE_PARTS = 8 };
+/* Rings gathered at once, and how many triangles such a ring may have. */
+enum { SIDE_BY_SIDE_WALKS = 12, WALK_MOST = 24 };
 
 enum { TOUCHED = 1, APEX = 2 };
 enum { REFUSED, POSTPONED, CERTAIN, UNCERTAIN };
@@ -60,6 +62,13 @@ typedef struct taken {
   float error;
   scree_grid_box box;
 } taken;
+
+/* Of a block of vertices: how many candidates, then how many in the blocks before; the greatest
+ * cost among them. */
+typedef struct part {
+  size_t count;
+  double dearest;
+} part;
 
 typedef struct pass {
   scree_decimator *d;
@@ -83,6 +92,7 @@ typedef struct pass {
   uint32_t *uncertain;
   size_t uncertain_count;
   uint32_t *bins;
+  part *parts;
 } pass;
 
 static void pass_free(pass *p) {
@@ -99,6 +109,7 @@ static void pass_free(pass *p) {
   scree_free(p->order);
   scree_free(p->uncertain);
   scree_free(p->bins);
+  scree_free(p->parts);
 }
 
 static scree_status pass_allocate(pass *p) {
@@ -118,7 +129,8 @@ static scree_status pass_allocate(pass *p) {
   SCREE_ALLOC_OR(p->order, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->uncertain, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->edges, triangles + SCREE_RING_MAX, error, out_of_memory);
-  SCREE_ALLOC_OR(p->bins, BINS, error, out_of_memory);
+  SCREE_ALLOC_OR(p->bins, 2 * BINS, error, out_of_memory);
+  SCREE_ALLOC_OR(p->parts, scree_block_count(n, VERTEX_BLOCK), error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -214,62 +226,84 @@ static double cost_of_key(uint32_t key) {
   return cost;
 }
 
-/* The bin that holds the item of this rank, and how many lie in the bins before. */
-static uint32_t bin_at(const uint32_t *bins, size_t rank, size_t *before) {
-  size_t sum = 0;
-  for (uint32_t bin = 0; bin < BINS; bin++) {
-    if (sum + bins[bin] > rank) {
-      *before = sum;
-      return bin;
-    }
-    sum += bins[bin];
+/* The bin that holds the item of this rank, which becomes its rank among those of the bin. */
+static uint32_t bin_at(const uint32_t *bins, size_t *rank) {
+  for (uint32_t bin = 0; bin < BINS - 1; bin++) {
+    if (bins[bin] > *rank) return bin;
+    *rank -= bins[bin];
   }
-  *before = sum;
   return BINS - 1;
 }
 
-static void count_bins(pass *p, int high) {
-  memset(p->bins, 0, BINS * sizeof *p->bins);
-  for (size_t i = 0; i < p->item_count; i++) {
-    uint32_t key = p->items[i].key;
-    if (high < 0)
-      p->bins[key >> 16]++;
-    else if (key >> 16 == (uint32_t)high)
-      p->bins[key & 0xffff]++;
+/* The keys of the items of these two ranks: the upper halves by one count, the lower ones by
+ * another. A coarser answer would depend on the scale of the scan. */
+static void keys_at(pass *p, size_t rank[2], uint32_t key[2]) {
+  uint32_t *bins[2] = {p->bins, p->bins + BINS}, high[2];
+  size_t count = p->d->s.vertex_count;
+  memset(p->bins, 0, 2 * BINS * sizeof *p->bins);
+  for (size_t v = 0; v < count; v++)
+    if (p->cost[v] < INFINITY) bins[0][key_of(p->cost[v]) >> 16]++;
+  for (int i = 0; i < 2; i++) high[i] = bin_at(bins[0], &rank[i]);
+  memset(p->bins, 0, 2 * BINS * sizeof *p->bins);
+  for (size_t v = 0; v < count; v++) {
+    uint32_t found = key_of(p->cost[v]);
+    for (int i = 0; i < 2; i++)
+      if (found >> 16 == high[i]) bins[i][found & 0xffff]++;
   }
+  for (int i = 0; i < 2; i++) key[i] = high[i] << 16 | bin_at(bins[i], &rank[i]);
 }
 
-/* The key of the item of this rank: its upper half by one count, its lower half by another. A
- * coarser answer would depend on the scale of the scan. */
-static uint32_t key_at(pass *p, size_t rank) {
-  size_t before, none;
-  count_bins(p, -1);
-  uint32_t high = bin_at(p->bins, rank, &before);
-  count_bins(p, (int)high);
-  return high << 16 | bin_at(p->bins, rank - before, &none);
+static bool is_candidate(const pass *p, size_t v) {
+  return key_of(p->cost[v]) <= p->limit;
 }
 
-/* Sets the threshold and lists the candidates below it. */
-static void list_candidates(pass *p) {
-  const scree_halfmesh *s = &p->d->s;
-  size_t count = 0;
+static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const pass *p = context;
+  part sum = {0, 0};
+  for (size_t v = begin; v < end; v++) {
+    if (!is_candidate(p, v)) continue;
+    sum.count++;
+    sum.dearest = fmax(sum.dearest, p->cost[v]);
+  }
+  p->parts[block] = sum;
+}
+
+static void list_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const pass *p = context;
+  item *next = p->items + p->parts[block].count;
+  for (size_t v = begin; v < end; v++)
+    if (is_candidate(p, v)) *next++ = (item){key_of(p->cost[v]), (uint32_t)v};
+}
+
+/* Lists the candidates in the order of vertices; answers the greatest cost among them. */
+static double list_candidates(pass *p) {
+  double dearest = 0;
+  size_t count = p->d->s.vertex_count, blocks = scree_block_count(count, VERTEX_BLOCK);
+  scree_parallel_for(count, VERTEX_BLOCK, count_block, p);
   p->item_count = 0;
-  for (size_t v = 0; v < s->vertex_count; v++)
-    if (p->best[v] != SCREE_NONE)
-      p->items[p->item_count++] = (item){key_of(p->cost[v]), (uint32_t)v};
-  if (p->item_count == 0) return;
-  double share = (double)p->item_count;
-  uint32_t high = key_at(p, (size_t)(HIGH_SHARE * share));
-  uint32_t low = key_at(p, (size_t)(LOW_SHARE * share));
-  uint32_t spread = key_of(fmin(SPREAD * cost_of_key(low), 1e300));
-  p->limit = high < spread ? high : spread;
-  p->dearest = 0;
-  for (size_t i = 0; i < p->item_count; i++) {
-    if (p->items[i].key > p->limit) continue;
-    p->dearest = fmax(p->dearest, p->cost[p->items[i].vertex]);
-    p->items[count++] = p->items[i];
+  for (size_t i = 0; i < blocks; i++) {
+    size_t before = p->item_count;
+    p->item_count += p->parts[i].count;
+    p->parts[i].count = before;
+    dearest = fmax(dearest, p->parts[i].dearest);
   }
-  p->item_count = count;
+  scree_parallel_for(count, VERTEX_BLOCK, list_block, p);
+  return dearest;
+}
+
+/* Sets the threshold. False: there is nothing to collapse. */
+static bool set_limit(pass *p) {
+  size_t count = 0, vertices = p->d->s.vertex_count;
+  uint32_t key[2];
+  for (size_t v = 0; v < vertices; v++) count += p->cost[v] < INFINITY;
+  if (count == 0) return false;
+  keys_at(p, (size_t[2]){(size_t)(HIGH_SHARE * (double)count), (size_t)(LOW_SHARE * (double)count)},
+          key);
+  uint32_t spread = key_of(fmin(SPREAD * cost_of_key(key[1]), 1e300));
+  p->limit = key[0] < spread ? key[0] : spread;
+  return true;
 }
 
 static void reconsider_waiting(pass *p, waiting *w) {
@@ -282,13 +316,15 @@ static void reconsider_waiting(pass *p, waiting *w) {
   w->count = 0;
 }
 
+/* Finds what the candidates of the last round cost now, if they are still there. */
 static void reconsider_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
   waiting w = {.count = 0};
-  for (size_t i = begin; i < end; i++) {
-    uint32_t v = p->items[i].vertex, h = p->best[v];
+  for (size_t v = begin; v < end; v++) {
+    if (!is_candidate(p, v)) continue;
+    uint32_t h = p->best[v];
     if (s->vertex[v].outgoing == SCREE_NONE || s->half[h].from != v || s->refused[h]) {
       p->cost[v] = INFINITY;
       continue;
@@ -299,16 +335,6 @@ static void reconsider_block(void *context, size_t begin, size_t end, size_t blo
     if (w.count == SIDE_BY_SIDE) reconsider_waiting(p, &w);
   }
   reconsider_waiting(p, &w);
-  for (size_t i = begin; i < end; i++) p->items[i].key = key_of(p->cost[p->items[i].vertex]);
-}
-
-/* Keeps the candidates of the last round that are still there and below the threshold. */
-static void relist_candidates(pass *p) {
-  size_t count = 0;
-  scree_parallel_for(p->item_count, VERTEX_BLOCK, reconsider_block, p);
-  for (size_t i = 0; i < p->item_count; i++)
-    if (p->items[i].key <= p->limit) p->items[count++] = p->items[i];
-  p->item_count = count;
 }
 
 /* Items of equal key by the rest of their cost, where few are equal. Where many are (a regular grid
@@ -372,20 +398,77 @@ static void order_by_place(pass *p, size_t begin) {
     p->order[start[s->half[p->taken[i].half_edge].from >> shift]++] = (uint32_t)i;
 }
 
-/* Takes the edge of item i if it is independent of those taken. */
-static void try_item(pass *p, size_t i) {
+/* A ring being gathered: the triangles around a, then around b. */
+typedef struct walk {
+  uint32_t at, stop; /* half-edges */
+  bool around_b, going;
+  scree_ring ring;
+  uint32_t edges[WALK_MOST];
+} walk;
+
+static bool may_be_taken(const pass *p, uint32_t v, scree_ring *ring) {
+  if (p->marks[v] & TOUCHED || p->marks[p->other[v]] & TOUCHED) return false;
+  scree_ring_name(&p->d->s, p->best[v], ring);
+  return !(p->marks[ring->c] & APEX) && (ring->d == SCREE_NONE || !(p->marks[ring->d] & APEX));
+}
+
+static void begin_walk(const pass *p, uint32_t v, walk *w) {
+  const scree_halfmesh *s = &p->d->s;
+  w->ring = (scree_ring){.edge = w->edges};
+  w->going = may_be_taken(p, v, &w->ring) && w->ring.d != SCREE_NONE;
+  w->around_b = false;
+  w->at = w->ring.half_edge;
+  if (w->going) w->stop = scree_next(s->half[w->at].twin);
+}
+
+/* One triangle farther. A ring that meets a boundary, or is long, is left unfinished. */
+static void step_walk(const scree_halfmesh *s, walk *w) {
+  w->at = scree_turn(s, w->at);
+  if (w->at == w->stop) {
+    if (w->around_b) {
+      w->going = false;
+      return;
+    }
+    w->ring.a_count = w->ring.count;
+    w->around_b = true;
+    w->at = s->half[w->ring.half_edge].twin;
+    w->stop = scree_next(w->ring.half_edge);
+  } else if (w->at == SCREE_NONE || w->ring.count == WALK_MOST) {
+    w->going = w->around_b = false;
+  } else {
+    w->edges[w->ring.count++] = scree_next(w->at);
+  }
+}
+
+/* Rings of several items at once: each step waits for memory, but not for those of others. */
+static void walk_together(const pass *p, const item *items, size_t count, walk *walks) {
+  const scree_halfmesh *s = &p->d->s;
+  bool going = true;
+  for (size_t i = 0; i < count; i++) begin_walk(p, items[i].vertex, &walks[i]);
+  while (going) {
+    going = false;
+    for (size_t i = 0; i < count; i++) {
+      if (walks[i].going) step_walk(s, &walks[i]);
+      going |= walks[i].going;
+    }
+  }
+}
+
+/* Takes the edge of the item if it is independent of those taken. */
+static void try_item(pass *p, const item *tried, const walk *w) {
   scree_halfmesh *s = &p->d->s;
-  uint32_t v = p->items[i].vertex, h = p->best[v];
-  if (p->marks[v] & TOUCHED || p->marks[p->other[v]] & TOUCHED) return;
   scree_ring ring = {.edge = p->edges + p->edge_count};
-  scree_ring_name(s, h, &ring);
-  if (p->marks[ring.c] & APEX || (ring.d != SCREE_NONE && p->marks[ring.d] & APEX)) return;
-  if (!scree_ring_gather(s, h, &ring)) {
-    s->refused[h] = SCREE_EDGE_REFUSED;
+  if (!may_be_taken(p, tried->vertex, &ring)) return;
+  if (w->around_b) { /* the walk went all the way */
+    ring.a_count = w->ring.a_count;
+    ring.count = w->ring.count;
+    memcpy(ring.edge, w->edges, ring.count * sizeof *ring.edge);
+  } else if (!scree_ring_gather(s, ring.half_edge, &ring)) {
+    s->refused[ring.half_edge] = SCREE_EDGE_REFUSED;
     return;
   }
   mark_ring(p, &ring);
-  p->taken[p->taken_count++] = (taken){.half_edge = h,
+  p->taken[p->taken_count++] = (taken){.half_edge = ring.half_edge,
                                        .first_edge = (uint32_t)p->edge_count,
                                        .a_count = (uint16_t)ring.a_count,
                                        .count = (uint16_t)ring.count,
@@ -393,24 +476,33 @@ static void try_item(pass *p, size_t i) {
   p->edge_count += ring.count;
 }
 
+static void ask_ahead(const pass *p, size_t i) {
+  const scree_halfmesh *s = &p->d->s;
+  if (i + 2 * AHEAD < p->item_count) {
+    uint32_t v = p->items[i + 2 * AHEAD].vertex;
+    __builtin_prefetch(&p->best[v]);
+    __builtin_prefetch(&p->other[v]);
+    __builtin_prefetch(&p->marks[v]);
+  }
+  if (i + AHEAD < p->item_count) {
+    uint32_t v = p->items[i + AHEAD].vertex;
+    if (!(p->marks[v] & TOUCHED)) __builtin_prefetch(&s->half[p->best[v]]);
+  }
+}
+
 /* Goes through the next items in the order of cost. */
 static void choose_some(pass *p) {
-  const scree_halfmesh *s = &p->d->s;
   size_t end = p->next_item + p->item_count / CHOICE_PARTS + 1, begin = p->taken_count;
+  walk walks[SIDE_BY_SIDE_WALKS];
   if (end > p->item_count) end = p->item_count;
-  for (; p->next_item < end && p->taken_count < p->room; p->next_item++) {
-    size_t i = p->next_item;
-    if (i + AHEAD < p->item_count) {
-      uint32_t v = p->items[i + AHEAD].vertex;
-      __builtin_prefetch(&p->best[v]);
-      __builtin_prefetch(&p->other[v]);
-      v = p->items[i + AHEAD / 2].vertex;
-      if (!(p->marks[v] & TOUCHED)) {
-        __builtin_prefetch(&s->half[p->best[v]].from);
-        __builtin_prefetch(&s->half[p->best[v]].twin);
-      }
-    }
-    try_item(p, i);
+  while (p->next_item < end && p->taken_count < p->room) {
+    size_t left = end - p->next_item, count = left < SIDE_BY_SIDE_WALKS ? left : SIDE_BY_SIDE_WALKS;
+    const item *items = p->items + p->next_item;
+    for (size_t i = 0; i < count; i++) ask_ahead(p, p->next_item + i);
+    walk_together(p, items, count, walks);
+    for (size_t i = 0; i < count && p->taken_count < p->room; i++)
+      try_item(p, &items[i], &walks[i]);
+    p->next_item += count;
   }
   if (p->taken_count == p->room) p->next_item = p->item_count;
   order_by_place(p, begin);
@@ -454,11 +546,41 @@ static void check_one(pass *p, uint32_t index, const scree_candidate *candidate)
   scree_grid_widen_groups(&d->grid, &ring, &t->box);
 }
 
+/* Asks for all that the checks of these collapses will touch, step by step: of many at once. */
+static void ask_for_rings(const pass *p, const uint32_t *order, size_t count) {
+  const scree_halfmesh *s = &p->d->s;
+  for (size_t k = 0; k < count; k++) __builtin_prefetch(&p->taken[order[k]]);
+  for (size_t k = 0; k < count; k++) {
+    const taken *t = &p->taken[order[k]];
+    for (uint32_t i = 0; i < t->count; i++)
+      __builtin_prefetch(&s->half[p->edges[t->first_edge + i]]);
+  }
+  for (size_t k = 0; k < count; k++) {
+    const taken *t = &p->taken[order[k]];
+    uint32_t a = s->half[t->half_edge].from, b = scree_to(s, t->half_edge);
+    __builtin_prefetch(s->sums[a]);
+    __builtin_prefetch(s->sums[b]);
+    for (uint32_t i = 0; i < t->count; i++) {
+      scree_half_edge half = s->half[p->edges[t->first_edge + i]];
+      __builtin_prefetch(&s->vertex[half.from]);
+      if (half.twin != SCREE_NONE) __builtin_prefetch(&s->half[scree_previous(half.twin)]);
+    }
+  }
+  for (size_t k = 0; k < count; k++) {
+    const taken *t = &p->taken[order[k]];
+    for (uint32_t i = 0; i < t->count; i++) {
+      uint32_t twin = s->half[p->edges[t->first_edge + i]].twin;
+      if (twin != SCREE_NONE) __builtin_prefetch(&s->vertex[s->half[scree_previous(twin)].from]);
+    }
+  }
+}
+
 static void check_some(pass *p, size_t begin, size_t end) {
   uint32_t edges[SIDE_BY_SIDE];
   scree_candidate candidates[SIDE_BY_SIDE];
   while (begin < end) {
     size_t count = end - begin < SIDE_BY_SIDE ? end - begin : SIDE_BY_SIDE;
+    ask_for_rings(p, p->order + begin, count);
     for (size_t k = 0; k < count; k++) edges[k] = p->taken[p->order[begin + k]].half_edge;
     p->d->coster->evaluate(&p->d->s, edges, count, candidates);
     for (size_t k = 0; k < count; k++) check_one(p, p->order[begin + k], &candidates[k]);
@@ -634,13 +756,15 @@ static scree_status run_pass(pass *p, size_t *done) {
   refresh_sums(p);
   scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, evaluate_block, p);
   for (size_t v = 0; v < d->s.vertex_count; v++) d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_CHANGED;
-  list_candidates(p);
   *done = 0;
+  if (!set_limit(p)) return SCREE_OK;
   for (int round = 0; round < ROUNDS; round++) {
     if (round > 0) {
       refresh_sums(p);
-      relist_candidates(p);
+      scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, reconsider_block, p);
     }
+    double dearest = list_candidates(p);
+    if (round == 0) p->dearest = dearest;
     *done += run_round(p);
   }
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count)
