@@ -150,12 +150,13 @@ static void refresh_sums(pass *p) {
   if (!p->d->coster->merge) scree_parallel_for(p->d->s.vertex_count, VERTEX_BLOCK, sum_block, p);
 }
 
-/* Whether the edge between them is looked at from u rather than v: from the smaller fan, so that
- * turning the scan, which changes numbers, changes nothing. */
+/* Whether the edge between them is looked at from u rather than v: from the larger fan, so that
+ * turning the scan, which changes numbers, changes nothing. (From the smaller fan the fine levels'
+ * mean distance is 1 to 3 % larger.) */
 static bool looks(const scree_halfmesh *s, uint32_t u, uint32_t v) {
   const double *a = s->sums[u], *b = s->sums[v];
   double size_u = a[0] + a[3] + a[5], size_v = b[0] + b[3] + b[5]; /* the quadrics' traces */
-  return size_u < size_v || (size_u == size_v && u < v);
+  return size_u > size_v || (size_u == size_v && u < v);
 }
 
 /* Whether edge h is to be looked at from vertex v, and may be. */
