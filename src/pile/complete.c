@@ -14,6 +14,8 @@
 static const double chunk_seconds = 0.1; /* of the clock, between looks at it */
 static const double watch_seconds = 0.2; /* between calls of the watcher */
 static const double speed_seconds = 5;   /* the speed shown is over about as long */
+static const char stopped_name[] = "stopped.scree";
+enum { KEEP_STEPS = 2000 }; /* between states kept: a thousandth of the time */
 enum { FIRST_CHUNK = 20, LONGEST_CHUNK = 100000 };
 enum { MOTION_FRAMES = 240 }; /* of the longest schedule: enough to be played, some 4 MB */
 
@@ -136,14 +138,25 @@ static void tune_chunk(work *w, double seconds) {
   if (seconds > 2 * chunk_seconds && w->chunk > 1) w->chunk /= 2;
 }
 
-/* The state before the step that left the model's range; --resume would only come back to it. */
-static scree_status keep_last_good(const work *w, scree_error *error) {
-  scree_error saving;
-  size_t length = strlen(error->message);
-  if (w->job->folder && save_as(w, "stopped.scree", false, &saving) == SCREE_OK)
-    snprintf(error->message + length, sizeof error->message - length,
-             "; %s/stopped.scree has the state before", w->job->folder);
-  return error->status;
+/* A run that leaves the range of the contact law leaves a state shortly before. */
+static scree_status keep_state(work *w, scree_error *error) {
+  if (!w->job->folder) return SCREE_OK;
+  char *path = path_in(w, stopped_name, error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  scree_status status =
+      scree_world_keep_all(w->run->world, path, KEEP_STEPS, scree_run_pack, w->run, error);
+  scree_free(path);
+  return status;
+}
+
+/* What an earlier try left is not of this run any more. */
+static scree_status forget_failure(const work *w, scree_error *error) {
+  if (!w->job->folder) return SCREE_OK;
+  char *path = path_in(w, stopped_name, error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  (void)remove(path); /* mostly there is none */
+  scree_free(path);
+  return SCREE_OK;
 }
 
 static scree_status go_on(work *w, scree_error *error) {
@@ -154,7 +167,6 @@ static scree_status go_on(work *w, scree_error *error) {
     double start = scree_now();
     size_t steps = steps_to_frame(w);
     status = scree_run_advance(w->run, steps, error);
-    if (status == SCREE_DIVERGED) return keep_last_good(w, error);
     if (status != SCREE_OK) return status;
     if (steps == w->chunk) tune_chunk(w, scree_now() - start);
     bool more = watch(w, false);
@@ -170,6 +182,7 @@ static scree_status go_on(work *w, scree_error *error) {
   if (status == SCREE_OK) status = put_motion(w, true, error);
   if (status == SCREE_OK) status = save_as(w, "last.scree", true, error);
   if (status == SCREE_OK) status = checkpoint(w, error);
+  if (status == SCREE_OK) status = forget_failure(w, error);
   watch(w, true);
   return status;
 }
@@ -206,6 +219,10 @@ static scree_status check_job(const scree_run_job *job, const scree_run *run, co
                               scree_error *error) {
   if (run->is_frame)
     return scree_fail(error, SCREE_BAD_FILE, "%s: is a frame, not a checkpoint", path);
+  if (run->world->diverged)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: was saved after its run had failed, and cannot go on: %.700s", path,
+                      run->world->failure.message);
   if (!job->experiment) return SCREE_OK;
   scree_status status = check_experiment(job->experiment, &run->experiment, path, error);
   if (status != SCREE_OK) return status;
@@ -272,7 +289,8 @@ scree_status scree_run_complete(const scree_run_job *job, scree_run **run, scree
   if (status == SCREE_OK) {
     w.speed_steps = scree_world_step_count(w.run->world);
     w.speed_at_fraction = scree_run_fraction(w.run);
-    status = go_on(&w, error);
+    status = keep_state(&w, error);
+    if (status == SCREE_OK) status = go_on(&w, error);
   }
   scree_motion_close(&w.motion);
   if (status == SCREE_OK)

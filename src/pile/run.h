@@ -37,6 +37,10 @@ struct scree_run {
   double frame_time, frame_coordination, frame_kinetic;
 };
 
+/* run_save.c: a checkpoint of a run, for scree_world_keep_all. */
+scree_status scree_run_pack(const void *run, unsigned char **bytes, size_t *byte_count,
+                            scree_error *error);
+
 /* run.c: a run without a world; its plan follows from experiment and shapes. */
 scree_status scree_run_plan(const scree_experiment *experiment, const scree_run_shape *shapes,
                             size_t shape_count, scree_run **run, scree_error *error);

@@ -186,6 +186,19 @@ static scree_status save(const scree_run *run, bool as_frame, const char *path, 
   return status;
 }
 
+scree_status scree_run_pack(const void *run, unsigned char **bytes, size_t *byte_count,
+                            scree_error *error) {
+  scree_codec c = {0};
+  scree_status status = pack(run, false, &c, error);
+  if (status != SCREE_OK) {
+    scree_free(c.bytes);
+    return status;
+  }
+  *bytes = c.bytes;
+  *byte_count = c.count;
+  return SCREE_OK;
+}
+
 scree_status scree_run_save(const scree_run *run, const char *path, bool overwrite,
                             scree_error *error) {
   if (run->is_frame)

@@ -7,8 +7,8 @@
 
 #include <string.h>
 
-scree_status scree_world_keep(scree_world *world, const char *path, uint64_t step_interval,
-                              scree_error *error) {
+scree_status scree_world_keep_all(scree_world *world, const char *path, uint64_t step_interval,
+                                  scree_packer *pack, const void *what, scree_error *error) {
   if (path && step_interval == 0)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: a state kept every 0 steps; at least 1");
   char *copy = path ? scree_strdup(path) : NULL;
@@ -18,7 +18,19 @@ scree_status scree_world_keep(scree_world *world, const char *path, uint64_t ste
   memset(&world->kept, 0, sizeof world->kept);
   world->kept.path = copy;
   world->kept.interval = step_interval;
+  world->kept.pack = pack;
+  world->kept.what = what;
   return SCREE_OK;
+}
+
+static scree_status pack_world(const void *world, unsigned char **bytes, size_t *byte_count,
+                               scree_error *error) {
+  return scree_world_pack(world, bytes, byte_count, error);
+}
+
+scree_status scree_world_keep(scree_world *world, const char *path, uint64_t step_interval,
+                              scree_error *error) {
+  return scree_world_keep_all(world, path, step_interval, pack_world, world, error);
 }
 
 scree_status scree_world_keep_state(scree_world *world, scree_error *error) {
@@ -27,7 +39,7 @@ scree_status scree_world_keep_state(scree_world *world, scree_error *error) {
   if (!due) return SCREE_OK;
   unsigned char *bytes;
   size_t count;
-  scree_status status = scree_world_pack(world, &bytes, &count, error);
+  scree_status status = world->kept.pack(world->kept.what, &bytes, &count, error);
   if (status) return status;
   scree_free(world->kept.bytes);
   world->kept.bytes = bytes;

@@ -193,6 +193,10 @@ typedef struct scree_slot {
 
 typedef struct scree_broad scree_broad;
 
+/* Makes a checkpoint of `what`, a world or what stands around one; the caller frees the bytes. */
+typedef scree_status scree_packer(const void *what, unsigned char **bytes, size_t *byte_count,
+                                  scree_error *error);
+
 struct scree_world {
   scree_world_options options;
   scree_material materials[SCREE_MATERIALS];
@@ -247,6 +251,8 @@ struct scree_world {
   scree_error failure;
   struct { /* scree_world_keep; path NULL: nothing is kept */
     char *path;
+    scree_packer *pack;
+    const void *what;
     uint64_t interval, step; /* steps; of the state that `bytes` hold */
     unsigned char *bytes;    /* a checkpoint; NULL before the first */
     size_t byte_count;
@@ -389,7 +395,10 @@ scree_status scree_checkpoint_write(const unsigned char *bytes, size_t byte_coun
 scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
                                 scree_world **world, scree_error *error);
 
-/* keep.c: packs the state when the interval is over; after a failure writes what was packed last,
+/* keep.c: scree_world_keep for what stands around the world, which outlives it. */
+scree_status scree_world_keep_all(scree_world *world, const char *path, uint64_t step_interval,
+                                  scree_packer *pack, const void *what, scree_error *error);
+/* Packs the state when the interval is over; after a failure writes what was packed last,
  * and says so in world->failure. */
 scree_status scree_world_keep_state(scree_world *world, scree_error *error);
 void scree_world_write_kept(scree_world *world);

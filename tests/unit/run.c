@@ -414,6 +414,67 @@ static void a_full_disk_ends_a_run_and_keeps_its_checkpoint(void **state) {
   free_pot(&p);
 }
 
+/* A run that is to fail: its particles are far too soft. */
+static pot make_soft_pot(void) {
+  pot p = make_pot();
+  p.experiment.young_particle = 2e3;
+  return p;
+}
+
+/* What a run that fails leaves is a checkpoint like any other: it can be looked at, and leads to
+ * the same failure; without the cause it goes on. */
+static void a_run_that_fails_leaves_a_state_that_goes_on(void **state) {
+  (void)state;
+  pot p = make_soft_pot();
+  scree_run *run, *loaded;
+  scree_error error, again;
+  pieces context = {0};
+  scree_run_job job = job_of(&p, in_folder("soft"), &context);
+  assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_DIVERGED);
+  const char *known = strstr(error.message, "; the state of step ");
+  assert_non_null(known);
+  assert_non_null(strstr(known, "soft/stopped.scree"));
+  CHECK_OK(scree_run_load(in_folder("soft/stopped.scree"), &loaded, &error), error);
+  uint64_t kept = scree_world_step_count(scree_run_world(loaded));
+  assert_int_equal(kept, strtoull(known + strlen("; the state of step "), NULL, 10));
+  assert_true(scree_world_body_count(scree_run_world(loaded)) > 0);
+  assert_int_equal(scree_run_advance(loaded, 1000000, &again), SCREE_DIVERGED);
+  assert_true(scree_world_step_count(scree_run_world(loaded)) > kept);
+  assert_int_equal(strncmp(again.message, error.message, (size_t)(known - error.message)), 0);
+  /* as a checkpoint it goes on as far as that; saved after the failure it is refused */
+  CHECK_OK(scree_run_save(loaded, in_folder("soft/checkpoint.scree"), true, &error), error);
+  scree_run_free(loaded);
+  job.resume = true;
+  job.folder = in_folder("soft");
+  assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_BAD_FILE);
+  assert_non_null(strstr(error.message, "was saved after its run had failed, and cannot go on: "));
+  assert_non_null(strstr(error.message, "overlaps"));
+  char stopped[4096];
+  snprintf(stopped, sizeof stopped, "%s", in_folder("soft/stopped.scree"));
+  assert_int_equal(rename(stopped, in_folder("soft/checkpoint.scree")), 0);
+  job.folder = in_folder("soft");
+  assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_DIVERGED);
+  assert_non_null(strstr(error.message, "soft/stopped.scree"));
+  free_pot(&p);
+}
+
+static void a_failed_run_says_where_its_state_could_not_be_written(void **state) {
+  (void)state;
+  pot p = make_soft_pot();
+  scree_run *run;
+  scree_error error;
+  pieces context = {0};
+  scree_run_job job = job_of(&p, in_folder("blocked"), &context);
+  assert_int_equal(mkdir(in_folder("blocked"), 0777), 0);
+  assert_int_equal(mkdir(in_folder("blocked/stopped.scree"), 0777), 0);
+  job.folder = in_folder("blocked");
+  assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_DIVERGED);
+  assert_non_null(strstr(error.message, "overlaps"));
+  assert_non_null(strstr(error.message, "its checkpoint could not be written: "));
+  assert_non_null(strstr(error.message, "blocked/stopped.scree"));
+  free_pot(&p);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_preset_takes_phones_and_long_ones),
@@ -426,6 +487,8 @@ int main(void) {
       cmocka_unit_test(an_interrupted_run_ends_as_an_uninterrupted_one),
       cmocka_unit_test(a_checkpoint_of_something_else_is_refused),
       cmocka_unit_test(a_full_disk_ends_a_run_and_keeps_its_checkpoint),
+      cmocka_unit_test(a_run_that_fails_leaves_a_state_that_goes_on),
+      cmocka_unit_test(a_failed_run_says_where_its_state_could_not_be_written),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
