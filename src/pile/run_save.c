@@ -1,20 +1,20 @@
-/* Checkpoints and frames of a run. One format: a header of 40 bytes (magic, version, byte order,
- * length, XXH3-128 of the rest), the experiment as its own YAML, the shapes (as a packed world with
- * one body of each: the gallery), the world, where the run stands, and the series. A frame's world
- * is made anew with the bodies alone, without what contacts remember; what follows from contacts is
- * kept as numbers. The plan of filling follows from experiment and shapes, and is made again. */
+/* Checkpoints and frames of a run. One format: a seal (base/seal.h), the experiment as its own
+ * YAML, the shapes (as a packed world with one body of each: the gallery), the world, where the run
+ * stands, and the series. A frame's world is made anew with the bodies alone, without what contacts
+ * remember; what follows from contacts is kept as numbers. The plan of filling follows from
+ * experiment and shapes, and is made again. */
 #include "pile/run.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
-#include "base/codec.h"
 #include "base/file.h"
+#include "base/seal.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const unsigned char magic[8] = {'s', 'c', 'r', 'e', 'e', 'R', 'U', 'N'};
-enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304, HEADER = 40, POINT_BYTES = 92 };
+static const scree_seal seal = {"screeRUN", "checkpoint or frame of a scree run", 1, 1};
+enum { POINT_BYTES = 92 };
 
 /* ---- field lists ---- */
 
@@ -59,13 +59,6 @@ static void code_state(scree_codec *c, scree_run *run) {
   scree_code_bool(c, &run->is_frame);
 }
 
-static void code_header(scree_codec *c, unsigned char head[8], uint32_t version_order[2],
-                        uint64_t length_sum[3]) {
-  scree_code_bytes(c, head, sizeof magic);
-  for (int i = 0; i < 2; i++) scree_code_u32(c, &version_order[i]);
-  for (int i = 0; i < 3; i++) scree_code_u64(c, &length_sum[i]);
-}
-
 /* ---- saving ---- */
 
 static void save_block(scree_codec *c, void *bytes, size_t count) {
@@ -84,16 +77,6 @@ static scree_status save_experiment(scree_codec *c, const scree_run *run, scree_
   if (good) save_block(c, text, length);
   free(text);
   return good ? SCREE_OK : scree_fail_memory(error, 0, "an experiment's text");
-}
-
-static scree_status save_world(scree_codec *c, const scree_world *world, scree_error *error) {
-  unsigned char *bytes;
-  size_t count;
-  scree_status status = scree_world_pack(world, &bytes, &count, error);
-  if (status != SCREE_OK) return status;
-  save_block(c, bytes, count);
-  scree_free(bytes);
-  return SCREE_OK;
 }
 
 /* A world with the same bodies and walls, and no contacts. */
@@ -122,7 +105,7 @@ static scree_status save_shapes(scree_codec *c, const scree_run *run, scree_erro
     scree_code_real(c, &factor);
     for (size_t k = 2 * i; k < 2 * i + 2; k++) save_block(c, run->names[k], strlen(run->names[k]));
   }
-  return save_world(c, run->gallery, error);
+  return scree_world_save_block(c, run->gallery, error);
 }
 
 static scree_status save_rest(scree_codec *c, const scree_run *run, bool as_frame,
@@ -130,7 +113,7 @@ static scree_status save_rest(scree_codec *c, const scree_run *run, bool as_fram
   scree_world *world = run->world;
   scree_status status = as_frame ? strip_world(run, &world, error) : SCREE_OK;
   if (status != SCREE_OK) return status;
-  status = save_world(c, world, error);
+  status = scree_world_save_block(c, world, error);
   if (as_frame) scree_world_free(world);
   if (status != SCREE_OK) return status;
   scree_run_point now = scree_run_point_now(run);
@@ -146,27 +129,12 @@ static scree_status save_rest(scree_codec *c, const scree_run *run, bool as_fram
   return SCREE_OK;
 }
 
-/* Puts the header in front, which had its room. */
-static void seal(scree_codec *c) {
-  unsigned char head[sizeof magic];
-  uint32_t version_order[2] = {VERSION, BYTE_ORDER_MARK};
-  scree_checksum sum = scree_checksum_of(c->bytes + HEADER, c->count - HEADER);
-  uint64_t length_sum[3] = {c->count - HEADER, sum.high, sum.low};
-  scree_codec header = {0};
-  memcpy(head, magic, sizeof magic);
-  code_header(&header, head, version_order, length_sum);
-  if (scree_codec_good(&header)) memcpy(c->bytes, header.bytes, HEADER);
-  c->out_of_memory |= header.out_of_memory;
-  scree_free(header.bytes);
-}
-
 static scree_status pack(const scree_run *run, bool as_frame, scree_codec *c, scree_error *error) {
-  unsigned char room[HEADER] = {0};
-  scree_code_bytes(c, room, HEADER);
+  scree_seal_begin(c);
   scree_status status = save_experiment(c, run, error);
   if (status == SCREE_OK) status = save_shapes(c, run, error);
   if (status == SCREE_OK) status = save_rest(c, run, as_frame, error);
-  if (status == SCREE_OK && scree_codec_good(c)) seal(c);
+  if (status == SCREE_OK) scree_seal_end(c, &seal);
   if (status == SCREE_OK && !scree_codec_good(c))
     status = scree_fail_memory(error, c->count, "a checkpoint");
   return status;
@@ -175,13 +143,8 @@ static scree_status pack(const scree_run *run, bool as_frame, scree_codec *c, sc
 static scree_status save(const scree_run *run, bool as_frame, const char *path, bool overwrite,
                          scree_error *error) {
   scree_codec c = {0};
-  scree_output output;
   scree_status status = pack(run, as_frame, &c, error);
-  if (status == SCREE_OK) status = scree_output_open(path, overwrite, &output, error);
-  if (status == SCREE_OK) {
-    fwrite(c.bytes, 1, c.count, output.stream);
-    status = scree_output_commit(&output, error);
-  }
+  if (status == SCREE_OK) status = scree_seal_write(c.bytes, c.count, path, overwrite, error);
   scree_free(c.bytes);
   return status;
 }
@@ -252,13 +215,6 @@ static scree_status load_experiment(loader *l) {
   return scree_experiment_parse((const char *)text, count, l->name, &l->experiment, l->error);
 }
 
-static scree_status load_world(loader *l, scree_world **world) {
-  size_t count;
-  const unsigned char *bytes = load_block(l, &count);
-  if (!bytes) return fail_here(l);
-  return scree_world_unpack(bytes, count, l->name, world, l->error);
-}
-
 /* A block as a string; NULL where it cannot be had. */
 static char *load_text(loader *l) {
   size_t length;
@@ -283,7 +239,7 @@ static scree_status load_shapes(loader *l) {
     l->shapes[i].source = l->names[2 * i + 1] = load_text(l);
     if (!l->names[2 * i] || !l->names[2 * i + 1]) return fail_here(l);
   }
-  scree_status status = load_world(l, &l->gallery);
+  scree_status status = scree_world_load_block(&l->codec, l->name, &l->gallery, l->error);
   if (status != SCREE_OK) return status;
   if (scree_world_body_count(l->gallery) != l->shape_count) return fail_here(l);
   for (size_t i = 0; i < l->shape_count; i++)
@@ -324,37 +280,12 @@ static scree_status load_state(loader *l) {
   return scree_codec_good(&l->codec) ? SCREE_OK : fail_here(l);
 }
 
-static scree_status check_header(loader *l) {
-  scree_codec *c = &l->codec;
-  unsigned char head[sizeof magic] = {0};
-  uint32_t version_order[2] = {0};
-  uint64_t length_sum[3] = {0};
-  code_header(c, head, version_order, length_sum);
-  if (c->count < sizeof magic || memcmp(head, magic, sizeof magic) != 0)
-    return scree_fail(l->error, SCREE_BAD_FILE, "%s: no checkpoint or frame of a scree run",
-                      l->name);
-  if (c->failed)
-    return scree_fail(l->error, SCREE_BAD_FILE, "%s: %zu bytes, shorter than the %d of a header",
-                      l->name, c->count, HEADER);
-  if (version_order[1] != BYTE_ORDER_MARK || version_order[0] != VERSION)
-    return scree_fail(l->error, SCREE_BAD_FILE, "%s: version %u; this program reads %d", l->name,
-                      version_order[0], VERSION);
-  if (length_sum[0] != c->count - HEADER)
-    return scree_fail(l->error, SCREE_BAD_FILE,
-                      "%s: %zu bytes follow the header, which announces %llu: cut short?", l->name,
-                      c->count - HEADER, (unsigned long long)length_sum[0]);
-  scree_checksum sum = scree_checksum_of(c->source + HEADER, c->count - HEADER);
-  if (sum.high != length_sum[1] || sum.low != length_sum[2])
-    return scree_fail(l->error, SCREE_BAD_FILE,
-                      "%s: the checksum does not fit: the file is damaged", l->name);
-  return SCREE_OK;
-}
-
 static scree_status load(loader *l) {
-  scree_status status = check_header(l);
+  uint32_t version;
+  scree_status status = scree_seal_check(&l->codec, &seal, l->name, &version, l->error);
   if (status == SCREE_OK) status = load_experiment(l);
   if (status == SCREE_OK) status = load_shapes(l);
-  if (status == SCREE_OK) status = load_world(l, &l->world);
+  if (status == SCREE_OK) status = scree_world_load_block(&l->codec, l->name, &l->world, l->error);
   if (status == SCREE_OK) status = adopt_particles(l);
   if (status == SCREE_OK)
     status = scree_run_plan(&l->experiment, l->shapes, l->shape_count, &l->run, l->error);

@@ -4,6 +4,7 @@
 #include "world/world.h"
 
 #include "base/alloc.h"
+#include "base/seal.h"
 
 #include <string.h>
 
@@ -53,8 +54,8 @@ void scree_world_write_kept(scree_world *world) {
   scree_error error;
   char *message = world->failure.message;
   size_t used = strlen(message), left = sizeof world->failure.message - used;
-  if (scree_checkpoint_write(world->kept.bytes, world->kept.byte_count, world->kept.path, true,
-                             &error) == SCREE_OK)
+  if (scree_seal_write(world->kept.bytes, world->kept.byte_count, world->kept.path, true, &error) ==
+      SCREE_OK)
     snprintf(message + used, left, "; the state of step %llu is in %s",
              (unsigned long long)world->kept.step, world->kept.path);
   else

@@ -2,24 +2,22 @@
  * which serves saving and loading alike. What follows from other state is made anew: features and
  * trees of particles, the sides of pairs by body; scratch and timings start empty.
  *
- * The file: a header of 40 bytes (magic, version, byte order, length, XXH3-128 of the rest), then
- * options, materials, particles, walls, bodies, pairs, counters. A length and a checksum find
- * accidents; counts, indices and kinds are checked besides, so that no file whatever leads outside
- * an array. Bodies, walls and materials are added through the public functions, with their checks,
- * before the saved bits replace what these set up. */
+ * The file: a seal (base/seal.h), then options, materials, particles, walls, bodies, pairs,
+ * counters. A length and a checksum find accidents; counts, indices and kinds are checked besides,
+ * so that no file whatever leads outside an array. Bodies, walls and materials are added through
+ * the public functions, with their checks, before the saved bits replace what these set up. */
 #include "base/alloc.h"
 #include "base/array.h"
-#include "base/codec.h"
 #include "base/file.h"
+#include "base/seal.h"
 #include "world/world.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const unsigned char magic[8] = {'s', 'c', 'r', 'e', 'e', 'W', 'L', 'D'};
-enum { VERSION = 5, OLDEST_VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER = 40 };
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", 3, 5};
 
-/* Whoever changes these records must add the fields below, and raise VERSION. */
+/* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
                                        sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 960 &&
                                        sizeof(scree_frame) == 192),
@@ -374,7 +372,7 @@ static void save_pairs(scree_codec *c, const scree_world *world) {
   for (size_t k = 0; k < count; k++) {
     scree_pair pair = *world->pairs.items[k]; /* its lists are only read */
     code_pair_name(c, &pair);
-    code_pair_state(c, &pair, VERSION);
+    code_pair_state(c, &pair, seal.version);
     code_pair_motion(c, &pair);
     for (size_t i = 0; i < pair.active.count; i++)
       code_item(c, &pair.active.items[i], &pair.further[i]);
@@ -399,51 +397,23 @@ static void save_tail(scree_codec *c, const scree_world *world) {
   code_tail(c, &tail);
 }
 
-static void code_header(scree_codec *c, unsigned char head[8], uint32_t version_order[2],
-                        uint64_t length_sum[3]) {
-  scree_code_bytes(c, head, sizeof magic);
-  for (int i = 0; i < 2; i++) scree_code_u32(c, &version_order[i]);
-  for (int i = 0; i < 3; i++) scree_code_u64(c, &length_sum[i]);
-}
-
 scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, size_t *byte_count,
                               scree_error *error) {
-  scree_codec c = {0}, header = {0};
-  unsigned char head[sizeof magic];
-  uint32_t version_order[2] = {VERSION, BYTE_ORDER_MARK};
-  uint64_t length_sum[3] = {0};
-  memcpy(head, magic, sizeof magic);
-  code_header(&c, head, version_order, length_sum); /* its room */
+  scree_codec c = {0};
+  scree_seal_begin(&c);
   save_setup(&c, world);
   save_particles(&c, world);
   save_bodies(&c, world);
   save_pairs(&c, world);
   save_tail(&c, world);
-  if (scree_codec_good(&c)) {
-    scree_checksum sum = scree_checksum_of(c.bytes + HEADER, c.count - HEADER);
-    length_sum[0] = c.count - HEADER;
-    memcpy(&length_sum[1], &sum, sizeof sum);
-    code_header(&header, head, version_order, length_sum);
-  }
-  if (!scree_codec_good(&c) || !scree_codec_good(&header)) {
+  scree_seal_end(&c, &seal);
+  if (!scree_codec_good(&c)) {
     scree_free(c.bytes);
-    scree_free(header.bytes);
     return scree_fail_memory(error, c.count, "a checkpoint");
   }
-  memcpy(c.bytes, header.bytes, HEADER);
-  scree_free(header.bytes);
   *bytes = c.bytes;
   *byte_count = c.count;
   return SCREE_OK;
-}
-
-scree_status scree_checkpoint_write(const unsigned char *bytes, size_t byte_count, const char *path,
-                                    bool overwrite, scree_error *error) {
-  scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status) return status;
-  fwrite(bytes, 1, byte_count, output.stream); /* a failure shows in the commit */
-  return scree_output_commit(&output, error);
 }
 
 scree_status scree_world_save(const scree_world *world, const char *path, bool overwrite,
@@ -452,7 +422,7 @@ scree_status scree_world_save(const scree_world *world, const char *path, bool o
   size_t count;
   scree_status status = scree_world_pack(world, &bytes, &count, error);
   if (status) return status;
-  status = scree_checkpoint_write(bytes, count, path, overwrite, error);
+  status = scree_seal_write(bytes, count, path, overwrite, error);
   scree_free(bytes);
   return status;
 }
@@ -698,38 +668,6 @@ static void load_tail(loader *l) {
   memcpy(world->failure.message, tail.message, sizeof tail.message);
 }
 
-/* Reads and checks the header; leaves the codec at the rest. */
-static scree_status check_header(scree_codec *c, const char *name, uint32_t *version,
-                                 scree_error *error) {
-  unsigned char head[sizeof magic] = {0};
-  uint32_t version_order[2] = {0};
-  uint64_t length_sum[3] = {0};
-  code_header(c, head, version_order, length_sum);
-  if (c->count < sizeof magic || memcmp(head, magic, sizeof magic) != 0)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: no checkpoint of a scree world", name);
-  if (c->failed)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: %zu bytes, shorter than the %d of a header", name,
-                      c->count, HEADER);
-  if (version_order[1] != BYTE_ORDER_MARK)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: byte order mark 0x%08x instead of 0x%08x", name,
-                      version_order[1], BYTE_ORDER_MARK);
-  if (version_order[0] < OLDEST_VERSION || version_order[0] > VERSION)
-    return scree_fail(error, SCREE_BAD_FILE,
-                      "%s: checkpoint version %u; this program reads %d to %d", name,
-                      version_order[0], OLDEST_VERSION, VERSION);
-  *version = version_order[0];
-  size_t length = c->count - HEADER;
-  if (length_sum[0] != length)
-    return scree_fail(error, SCREE_BAD_FILE,
-                      "%s: %zu bytes follow the header, which announces %llu: cut short?", name,
-                      length, (unsigned long long)length_sum[0]);
-  scree_checksum sum = scree_checksum_of(c->source + HEADER, length);
-  if (memcmp(&length_sum[1], &sum, sizeof sum) != 0)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: the checksum does not fit: the file is damaged",
-                      name);
-  return SCREE_OK;
-}
-
 static scree_status finish(loader *l, const char *name, scree_error *error) {
   if (l->codec.out_of_memory || l->error.status == SCREE_OUT_OF_MEMORY)
     return scree_fail_memory(error, l->codec.count, "a checkpoint's world");
@@ -746,7 +684,7 @@ static scree_status finish(loader *l, const char *name, scree_error *error) {
 scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
                                 scree_world **world, scree_error *error) {
   loader l = {.codec = {.source = bytes, .count = byte_count, .loading = true}};
-  scree_status status = check_header(&l.codec, name, &l.version, error);
+  scree_status status = scree_seal_check(&l.codec, &seal, name, &l.version, error);
   if (status) return status;
   void (*const stages[])(loader *) = {load_setup, load_particles, load_bodies, load_pairs,
                                       load_tail};
@@ -759,6 +697,29 @@ scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, c
   else
     *world = l.world;
   return status;
+}
+
+scree_status scree_world_save_block(scree_codec *codec, const scree_world *world,
+                                    scree_error *error) {
+  unsigned char *bytes;
+  size_t count;
+  scree_status status = scree_world_pack(world, &bytes, &count, error);
+  if (status) return status;
+  scree_code_count(codec, &count, 1);
+  scree_code_bytes(codec, bytes, count);
+  scree_free(bytes);
+  return SCREE_OK;
+}
+
+scree_status scree_world_load_block(scree_codec *codec, const char *name, scree_world **world,
+                                    scree_error *error) {
+  size_t count = 0;
+  scree_code_count(codec, &count, 1);
+  if (!scree_codec_good(codec))
+    return scree_fail(error, SCREE_BAD_FILE, "%s: byte %zu: too few bytes for a world", name,
+                      codec->position);
+  codec->position += count;
+  return scree_world_unpack(codec->source + codec->position - count, count, name, world, error);
 }
 
 scree_status scree_world_load(const char *path, scree_world **world, scree_error *error) {

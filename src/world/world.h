@@ -2,6 +2,7 @@
 #ifndef SCREE_WORLD_WORLD_H
 #define SCREE_WORLD_WORLD_H
 
+#include "base/codec.h"
 #include "particle/particle.h"
 
 enum { SCREE_MATERIALS = 64 };
@@ -389,9 +390,11 @@ vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, v
 /* save.c: a checkpoint's bytes, free with scree_free; and back, `name` for messages. */
 scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, size_t *byte_count,
                               scree_error *error);
-/* Writes these bytes, whole or not at all. */
-scree_status scree_checkpoint_write(const unsigned char *bytes, size_t byte_count, const char *path,
-                                    bool overwrite, scree_error *error);
+/* The same within a larger file: its count of bytes, and the bytes. */
+scree_status scree_world_save_block(scree_codec *codec, const scree_world *world,
+                                    scree_error *error);
+scree_status scree_world_load_block(scree_codec *codec, const char *name, scree_world **world,
+                                    scree_error *error);
 scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
                                 scree_world **world, scree_error *error);
 

@@ -1,0 +1,32 @@
+/* What stands before the bytes of scree's own files, so that a foreign, cut or damaged one is
+ * known: magic (8 bytes), version and byte order mark (u32), count of the bytes that follow and
+ * their XXH3-128 (u64, high half first). */
+#ifndef SCREE_BASE_SEAL_H
+#define SCREE_BASE_SEAL_H
+
+#include "base/codec.h"
+#include "base/error.h"
+
+enum { SCREE_SEAL_BYTES = 40 };
+
+/* A kind of file. */
+typedef struct scree_seal {
+  char magic[9];
+  const char *kind;         /* for messages: "checkpoint of a scree world" */
+  uint32_t oldest, version; /* that are read; that is written */
+} scree_seal;
+
+/* Saving: room for the seal in a codec that is empty, and at the end the seal. */
+void scree_seal_begin(scree_codec *codec);
+void scree_seal_end(scree_codec *codec, const scree_seal *seal);
+
+/* Loading: checks the seal and leaves the codec behind it. SCREE_BAD_FILE with `name` and reason.
+ */
+scree_status scree_seal_check(scree_codec *codec, const scree_seal *seal, const char *name,
+                              uint32_t *version, scree_error *error);
+
+/* Writes these bytes, whole or not at all. */
+scree_status scree_seal_write(const unsigned char *bytes, size_t byte_count, const char *path,
+                              bool overwrite, scree_error *error);
+
+#endif
