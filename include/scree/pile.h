@@ -408,6 +408,9 @@ SCREE_API void scree_pour_get_options(const scree_pour *pour, scree_pour_options
 /* All particles, and those that have entered. */
 SCREE_API size_t scree_pour_particle_count(const scree_pour *pour);
 SCREE_API size_t scree_pour_entered_count(const scree_pour *pour);
+/* The shapes; particles are the pour's. */
+SCREE_API size_t scree_pour_shape_count(const scree_pour *pour);
+SCREE_API scree_pour_shape scree_pour_get_shape(const scree_pour *pour, size_t index);
 /* Which of the shapes body `index` is. */
 SCREE_API size_t scree_pour_shape_of(const scree_pour *pour, size_t index);
 /* s: when the last layer enters. */
@@ -415,6 +418,22 @@ SCREE_API double scree_pour_filling_time(const scree_pour *pour);
 /* J: kinetic and potential energy that the particles brought with them, zero on the floor; what the
  * ledger of the world must come to. */
 SCREE_API double scree_pour_entered_energy(const scree_pour *pour);
+
+/* Numbers of the caller's that go into checkpoints with the pour, as where its files stand. Copied;
+ * those of before are dropped. */
+SCREE_API scree_status scree_pour_set_notes(scree_pour *pour, const double *notes, size_t count,
+                                            scree_error *error);
+SCREE_API const double *scree_pour_notes(const scree_pour *pour, size_t *count);
+
+/* Writes a checkpoint: the options, all shapes, those that have not entered too, the world and the
+ * notes. Complete under its name or not there; without overwrite an existing file is refused with
+ * SCREE_EXISTS. */
+SCREE_API scree_status scree_pour_save(const scree_pour *pour, const char *path, bool overwrite,
+                                       scree_error *error);
+/* Reads one ("-" is stdin); free *pour with scree_pour_free. It goes on with the same bits as the
+ * pour that was saved. SCREE_BAD_FILE, with file and reason, for what is no such file, is cut short
+ * or has a bit changed anywhere. */
+SCREE_API scree_status scree_pour_load(const char *path, scree_pour **pour, scree_error *error);
 
 #ifdef __cplusplus
 }

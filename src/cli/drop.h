@@ -11,11 +11,11 @@ typedef struct drop_arguments {
   double rp, unit, resolution, noise;
   size_t triangles, seed, number, samples;
   double width, depth, drop_height, speed;
-  double time, still, frame_interval;
+  double time, still, frame_interval, checkpoint_interval;
   double young, young_wall, density, restitution, friction, friction_wall;
   double steps_per_contact, stiffness_factor;
   int container, law;
-  bool no_repair, no_picture, overwrite;
+  bool no_repair, no_picture, overwrite, resume;
 } drop_arguments;
 
 /* One word of the command line. */
@@ -27,6 +27,14 @@ typedef struct drop_shape {
   double diameter;            /* m; 0 where it is no sphere */
   scree_particle *particle;
 } drop_shape;
+
+/* Where a drop is; times in s of the simulation. */
+typedef struct drop_schedule {
+  double next_frame, next_line, still_since; /* still_since: NaN while moving */
+  bool still;                                /* and so at its end */
+  double end;
+  double last_report, last_checkpoint; /* s on the clock */
+} drop_schedule;
 
 typedef struct drop_run {
   const cli_call *call;
@@ -40,6 +48,7 @@ typedef struct drop_run {
     size_t count, capacity;
   } frames;
   FILE *series; /* series.csv; NULL before it is open */
+  drop_schedule schedule;
 } drop_run;
 
 /* drop_shapes.c: reads the words; 0, or the exit code after saying why. */
@@ -63,7 +72,24 @@ scree_status drop_close_output(drop_run *run, scree_error *error);
 scree_status drop_write_picture(drop_run *run, scree_error *error);
 void drop_free_output(drop_run *run);
 
-/* Fills *error; returns its status. */
+/* One more frame in the collection, at the time given. */
+scree_status drop_note_frame(drop_run *run, double time, scree_error *error);
+/* DIR/name. */
+scree_status drop_path(const drop_run *run, const char *name, char path[DROP_PATH_BYTES],
+                       scree_error *error);
+
+/* drop_resume.c: writes checkpoint.scree. */
+scree_status drop_save(drop_run *run, scree_error *error);
+/* With --resume and a checkpoint: the pour, the schedule and the files as they were. run->pour
+ * stays NULL where there is none. */
+scree_status drop_resume(drop_run *run, scree_error *error);
+
+/* verb_drop.c */
+scree_pour_options drop_pour_options(const drop_arguments *arguments);
+const drop_arguments *drop_defaults(void);
+
+/* Fill *error; return its status. */
 scree_status drop_no_memory(scree_error *error);
+scree_status drop_no_series(scree_error *error);
 
 #endif

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-static scree_status make_path(const drop_run *run, const char *name, char path[DROP_PATH_BYTES],
-                              scree_error *error) {
+scree_status drop_path(const drop_run *run, const char *name, char path[DROP_PATH_BYTES],
+                       scree_error *error) {
   int length = snprintf(path, DROP_PATH_BYTES, "%s/%s", run->arguments->output, name);
   if (length < DROP_PATH_BYTES) return SCREE_OK;
   *error = (scree_error){SCREE_BAD_ARGUMENT, "the folder's name is too long"};
@@ -22,18 +22,33 @@ static scree_status fail(scree_error *error, scree_status status, const char *pa
   return status;
 }
 
+static bool may_replace(const drop_run *run) {
+  return run->arguments->overwrite || run->arguments->resume;
+}
+
+scree_status drop_no_series(scree_error *error) {
+  *error = (scree_error){SCREE_IO, "series.csv: cannot write"};
+  return SCREE_IO;
+}
+
 scree_status drop_check_output(const drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
-  scree_status status = make_path(run, "series.csv", path, error);
+  scree_status status = drop_path(run, "series.csv", path, error);
   if (status == SCREE_OK) status = scree_folder_create(run->arguments->output, error);
-  return status == SCREE_OK ? scree_output_check(path, run->arguments->overwrite, error) : status;
+  if (status == SCREE_OK && !run->arguments->resume)
+    status = scree_output_check(path, run->arguments->overwrite, error);
+  if (status != SCREE_EXISTS) return status;
+  return fail(error, status, path, "exists already: --resume goes on, -f begins anew");
 }
 
 scree_status drop_open_output(drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
-  scree_status status = make_path(run, "series.csv", path, error);
+  scree_status status = drop_path(run, "checkpoint.scree", path, error);
   if (status != SCREE_OK) return status;
-  run->series = fopen(path, run->arguments->overwrite ? "w" : "wx");
+  (void)remove(path); /* of an earlier drop */
+  status = drop_path(run, "series.csv", path, error);
+  if (status != SCREE_OK) return status;
+  run->series = fopen(path, may_replace(run) ? "w" : "wx");
   if (!run->series) return fail(error, SCREE_IO, path, strerror(errno));
   fprintf(run->series,
           "# scree %s, %s\ntime_s,steps,bodies,kinetic_J,rotational_J,potential_J,elastic_J,"
@@ -46,7 +61,7 @@ scree_status drop_open_output(drop_run *run, scree_error *error) {
 scree_status drop_keep_state(drop_run *run, scree_error *error) {
   enum { KEEP_STEPS = 2000 };
   char path[DROP_PATH_BYTES];
-  scree_status status = make_path(run, "before-failure.world", path, error);
+  scree_status status = drop_path(run, "before-failure.world", path, error);
   if (status != SCREE_OK) return status;
   return scree_world_keep(scree_pour_world(run->pour), path, KEEP_STEPS, error);
 }
@@ -65,14 +80,16 @@ scree_status drop_write_line(drop_run *run, scree_error *error) {
               o.rotational, o.potential, o.elastic, o.dissipated_dashpot, o.dissipated_friction,
               entered, ledger, o.pair_count, o.contact_count, o.coordination, o.largest_overlap,
               o.highest_speed, o.mean_rotation);
-  if (length > 0 && fflush(run->series) == 0) return SCREE_OK;
-  *error = (scree_error){SCREE_IO, "series.csv: cannot write"};
-  return SCREE_IO;
+  return length > 0 && fflush(run->series) == 0 ? SCREE_OK : drop_no_series(error);
 }
 
 /* ---- frames ---- */
 
-static scree_status note_frame(drop_run *run, const char *name, double time, scree_error *error) {
+static void name_frame(size_t index, char name[48]) {
+  snprintf(name, 48, "frame-%06zu.vtp", index);
+}
+
+scree_status drop_note_frame(drop_run *run, double time, scree_error *error) {
   if (run->frames.count == run->frames.capacity) {
     size_t capacity = 2 * run->frames.capacity + 64;
     char **files = realloc(run->frames.files, capacity * sizeof *files);
@@ -82,6 +99,8 @@ static scree_status note_frame(drop_run *run, const char *name, double time, scr
     if (!files || !times) return drop_no_memory(error);
     run->frames.capacity = capacity;
   }
+  char name[48];
+  name_frame(run->frames.count, name);
   char *copy = strdup(name);
   if (!copy) return drop_no_memory(error);
   run->frames.files[run->frames.count] = copy;
@@ -92,25 +111,22 @@ static scree_status note_frame(drop_run *run, const char *name, double time, scr
 scree_status drop_write_frame(drop_run *run, scree_error *error) {
   char name[48], path[DROP_PATH_BYTES];
   const scree_world *world = scree_pour_world(run->pour);
-  snprintf(name, sizeof name, "frame-%06zu.vtp", run->frames.count);
-  scree_status status = make_path(run, name, path, error);
+  name_frame(run->frames.count, name);
+  scree_status status = drop_path(run, name, path, error);
   if (status == SCREE_OK)
-    status =
-        scree_world_vtp_write(world, SCREE_VIEW_SURFACES, path, run->arguments->overwrite, error);
-  return status == SCREE_OK ? note_frame(run, name, scree_world_time(world), error) : status;
+    status = scree_world_vtp_write(world, SCREE_VIEW_SURFACES, path, may_replace(run), error);
+  return status == SCREE_OK ? drop_note_frame(run, scree_world_time(world), error) : status;
 }
 
 scree_status drop_close_output(drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
-  scree_status status = make_path(run, "drop.pvd", path, error);
+  scree_status status = drop_path(run, "drop.pvd", path, error);
   if (status == SCREE_OK && run->frames.count)
     status = scree_pvd_write((const char *const *)run->frames.files, run->frames.times,
-                             run->frames.count, path, run->arguments->overwrite, error);
+                             run->frames.count, path, may_replace(run), error);
   bool good = !run->series || fclose(run->series) == 0;
   run->series = NULL;
-  if (status != SCREE_OK || good) return status;
-  *error = (scree_error){SCREE_IO, "series.csv: cannot write"};
-  return SCREE_IO;
+  return status != SCREE_OK || good ? status : drop_no_series(error);
 }
 
 void drop_free_output(drop_run *run) {
@@ -122,15 +138,14 @@ void drop_free_output(drop_run *run) {
 
 scree_status drop_write_picture(drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
-  scree_status status = make_path(run, "drop.png", path, error);
+  scree_status status = drop_path(run, "drop.png", path, error);
   if (status != SCREE_OK) return status;
   scree_image image = {0};
   scree_render_options options = scree_default_render_options();
   options.samples = run->arguments->samples;
   status = scree_world_picture(scree_pour_world(run->pour), &options, run->call->progress, &image,
                                error);
-  if (status == SCREE_OK)
-    status = scree_image_write_png(&image, path, run->arguments->overwrite, error);
+  if (status == SCREE_OK) status = scree_image_write_png(&image, path, may_replace(run), error);
   scree_image_free(&image);
   return status;
 }

@@ -23,6 +23,7 @@ static const drop_arguments defaults = {.output = "drop",
                                         .time = 2,
                                         .still = 1e-8,
                                         .frame_interval = 0.02,
+                                        .checkpoint_interval = 60,
                                         .young = 1e8,
                                         .young_wall = 1e11,
                                         .density = 2000,
@@ -62,6 +63,12 @@ static const cli_option options[] = {
      0, 1e6, NULL},
     {"frames", 0, CLI_REAL, AT(frame_interval), "S",
      "Simulated seconds between frames; 0 writes none. Default: 0.02.", 0, 1e6, NULL},
+    {"checkpoint", 0, CLI_REAL, AT(checkpoint_interval), "S",
+     "Seconds of the clock between checkpoints. Default: 60.", 0.01, 1e6, NULL},
+    {"resume", 0, CLI_FLAG, AT(resume), NULL,
+     "Go on from DIR/checkpoint.scree where there is one: with the same call, or with -o alone and "
+     "the options that are not of the pour itself (time, still, frames, picture).",
+     0, 0, NULL},
     {"drop-height", 0, CLI_LENGTH, AT(drop_height), "LENGTH",
      "From the floor to the first layer. Later ones enter above what is there. Default: 50mm.", 0,
      1e3, NULL},
@@ -111,8 +118,11 @@ static double now(void) {
   return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-static scree_status create_pour(drop_run *run, scree_error *error) {
-  const drop_arguments *a = run->arguments;
+const drop_arguments *drop_defaults(void) {
+  return &defaults;
+}
+
+scree_pour_options drop_pour_options(const drop_arguments *a) {
   scree_pour_options o = scree_default_pour_options();
   o.world.law = (scree_law)a->law;
   o.world.steps_per_contact = a->steps_per_contact;
@@ -125,6 +135,11 @@ static scree_status create_pour(drop_run *run, scree_error *error) {
   o.drop_height = a->drop_height;
   o.entry_speed = a->speed;
   o.seed = a->seed;
+  return o;
+}
+
+static scree_status create_pour(drop_run *run, scree_error *error) {
+  scree_pour_options o = drop_pour_options(run->arguments);
   scree_pour_shape *shapes = calloc(run->shape_count, sizeof *shapes);
   if (!shapes) return drop_no_memory(error);
   for (size_t i = 0; i < run->shape_count; i++)
@@ -151,11 +166,7 @@ static void say_pour(const drop_run *run) {
 
 /* ---- the run ---- */
 
-typedef struct schedule {
-  double next_frame, next_line, end, still_since, last_report;
-} schedule;
-
-static scree_status write_due(drop_run *run, schedule *s, double time, scree_error *error) {
+static scree_status write_due(drop_run *run, drop_schedule *s, double time, scree_error *error) {
   scree_status status = SCREE_OK;
   double interval = run->arguments->frame_interval;
   if (interval > 0 && time >= s->next_frame) {
@@ -170,7 +181,7 @@ static scree_status write_due(drop_run *run, schedule *s, double time, scree_err
 }
 
 /* Whether all has been still for a while. */
-static bool is_still(const drop_run *run, schedule *s, double time) {
+static bool is_still(const drop_run *run, drop_schedule *s, double time) {
   size_t count = scree_pour_particle_count(run->pour);
   if (scree_pour_entered_count(run->pour) < count) return false;
   scree_observation o;
@@ -184,7 +195,7 @@ static bool is_still(const drop_run *run, schedule *s, double time) {
 }
 
 /* Draws the progress; false after Ctrl-C. */
-static bool report(const drop_run *run, schedule *s, double time) {
+static bool report(const drop_run *run, drop_schedule *s, double time) {
   const scree_progress *p = run->call->progress;
   if (now() - s->last_report < p->interval) return !cli_interrupted();
   s->last_report = now();
@@ -192,21 +203,32 @@ static bool report(const drop_run *run, schedule *s, double time) {
   return p->report(p->context, all ? "settling, at most" : "pouring", time / s->end);
 }
 
-static scree_status simulate(drop_run *run, bool *still, scree_error *error) {
-  schedule s = {.still_since = NAN,
-                .end = scree_pour_filling_time(run->pour) + run->arguments->time};
-  double time = 0;
+static scree_status save_in_time(drop_run *run, scree_error *error) {
+  if (now() - run->schedule.last_checkpoint < run->arguments->checkpoint_interval) return SCREE_OK;
+  run->schedule.last_checkpoint = now();
+  return drop_save(run, error);
+}
+
+static scree_status simulate(drop_run *run, scree_error *error) {
+  drop_schedule *s = &run->schedule;
+  double time = scree_world_time(scree_pour_world(run->pour));
   scree_status status = SCREE_OK;
-  while (status == SCREE_OK && time < s.end && !*still) {
-    status = write_due(run, &s, time, error);
+  s->end = scree_pour_filling_time(run->pour) + run->arguments->time;
+  s->last_checkpoint = now();
+  while (status == SCREE_OK && time < s->end && !s->still) {
+    status = write_due(run, s, time, error);
+    if (status == SCREE_OK) status = save_in_time(run, error);
     if (status == SCREE_OK) status = scree_pour_advance(run->pour, CHUNK, error);
     if (status != SCREE_OK) break;
     time = scree_world_time(scree_pour_world(run->pour));
-    *still = is_still(run, &s, time);
-    if (report(run, &s, time)) continue;
-    *error = (scree_error){SCREE_CANCELLED, "stopped"};
+    s->still = is_still(run, s, time);
+    if (report(run, s, time)) continue;
+    status = drop_save(run, error);
+    if (status != SCREE_OK) break;
+    *error = (scree_error){SCREE_CANCELLED, "stopped; the same call with --resume goes on"};
     status = SCREE_CANCELLED;
   }
+  if (status == SCREE_OK) status = drop_save(run, error);
   scree_error ignored; /* what there is is written in any case, and the first error is told */
   scree_error *told = status == SCREE_OK ? error : &ignored;
   scree_status closing = drop_write_line(run, told);
@@ -243,20 +265,26 @@ static void print_summary(const drop_run *run, bool still, double seconds) {
             run->arguments->stiffness_factor);
 }
 
-static scree_status pour(drop_run *run, scree_error *error) {
-  bool still = false;
-  scree_status status = drop_check_output(run, error);
-  if (status == SCREE_OK) status = drop_make_particles(run, error);
+/* From the beginning. */
+static scree_status begin(drop_run *run, scree_error *error) {
+  run->schedule.still_since = NAN;
+  scree_status status = drop_make_particles(run, error);
   if (status == SCREE_OK) status = create_pour(run, error);
-  if (status == SCREE_OK) status = drop_open_output(run, error);
+  return status == SCREE_OK ? drop_open_output(run, error) : status;
+}
+
+static scree_status pour(drop_run *run, scree_error *error) {
+  scree_status status = drop_check_output(run, error);
+  if (status == SCREE_OK) status = drop_resume(run, error);
+  if (status == SCREE_OK && !run->pour) status = begin(run, error);
   if (status == SCREE_OK) status = drop_keep_state(run, error);
   if (status != SCREE_OK) return status;
   say_pour(run);
   double start = now();
-  status = simulate(run, &still, error);
+  status = simulate(run, error);
   if (status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED) {
     cli_terminal_end();
-    print_summary(run, still, now() - start);
+    print_summary(run, run->schedule.still, now() - start);
   }
   if (status != SCREE_OK || run->arguments->no_picture) return status;
   status = drop_write_picture(run, error);
@@ -272,8 +300,10 @@ static int run(const cli_call *call) {
   if (run.arguments->noise > 0.25 * run.arguments->resolution)
     return cli_misuse(call->verb, "--noise %g mm: at most a quarter of the resolution, %g mm",
                       1e3 * run.arguments->noise, 0.25e3 * run.arguments->resolution);
+  if (run.shape_count == 0 && !run.arguments->resume)
+    return cli_misuse(call->verb, "needs a SHAPE, or --resume with -o DIR");
   scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory"};
-  run.shapes = calloc(run.shape_count, sizeof *run.shapes);
+  run.shapes = calloc(run.shape_count + 1, sizeof *run.shapes);
   if (!run.shapes) return cli_fail(&error);
   int code = drop_read_words(&run);
   if (code == 0 && pour(&run, &error) != SCREE_OK) code = cli_fail(&error);
@@ -297,7 +327,8 @@ const cli_verb cli_verb_drop = {
         "Writes into DIR: drop.pvd with frame-*.vtp (surfaces; body, shape and speeds by triangle) "
         "for ParaView; series.csv with energies, contacts and overlaps over time; drop.png. The "
         "same options give the same bits for any number of threads. Ctrl-C stops: what was "
-        "written stays, and drop.pvd lists it. A pour that leaves the range of the contact law "
+        "written stays, drop.pvd lists it, and --resume goes on from checkpoint.scree with the "
+        "same bits, as after a crash. A pour that leaves the range of the contact law "
         "stops "
         "with step, body and cause, and leaves the state shortly before in before-failure.world.",
     .examples = "scree drop phone.stl=50\n"
@@ -307,7 +338,7 @@ const cli_verb cli_verb_drop = {
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,
     .options_size = sizeof defaults,
-    .input_minimum = 1,
+    .input_minimum = 0,
     .input_maximum = 60,
     .run = run,
 };

@@ -3,11 +3,12 @@
  *   layer_spacing p = v t + g t^2 / 2,  p the grid's pitch, v the entry speed.
  * Which step a layer enters at follows from its number alone, so a pour can be cut into calls
  * anyhow. A cell holds the largest bounding sphere; smaller ones get a random place in theirs. */
+#include "pile/pour.h"
+
 #include "base/alloc.h"
 #include "base/rng.h"
-#include "particle/particle.h"
 
-#include <math.h>
+#include <string.h>
 
 static const double pi = 3.14159265358979323846;
 static const double cell_share = 1.02;     /* of the largest particle's diameter: the pitch */
@@ -15,21 +16,6 @@ static const double layer_spacing = 1.05;  /* pitches fallen before the next lay
 static const double loose_packing = 0.3;   /* solid fraction behind the default width */
 static const double particles_abreast = 3; /* in the default width */
 enum { ORDER_STREAM = 1, LAYER_STREAM = 16 };
-
-struct scree_pour {
-  scree_pour_options options;
-  scree_world *world;
-  size_t *shape_of;           /* by particle, in the order of entering */
-  scree_particle **particles; /* by shape; held */
-  double *radii;              /* bounding, by particle */
-  size_t shape_count, count, entered_count, layer_count;
-  double pitch, time_step, entered_energy;
-  uint64_t layer_steps; /* from one layer to the next */
-  uint64_t layers;
-  vec3 *cells; /* centres, z = 0 */
-  uint32_t *cell_order;
-  size_t cell_count;
-};
 
 scree_pour_options scree_default_pour_options(void) {
   return (scree_pour_options){.world = scree_default_world_options(),
@@ -245,19 +231,30 @@ static scree_status make_empty_world(const scree_pour *pour, const scree_world_o
   return status;
 }
 
+scree_status scree_pour_make_gallery(const scree_pour *pour, scree_world **gallery,
+                                     scree_error *error) {
+  scree_world *made;
+  scree_status status = make_empty_world(pour, &pour->options.world, &made, error);
+  if (status != SCREE_OK) return status;
+  for (size_t s = 0; s < pour->shape_count && status == SCREE_OK; s++)
+    status = scree_world_add_body(made, pour->particles[s], 0, NULL, NULL, error);
+  if (status == SCREE_OK)
+    *gallery = made;
+  else
+    scree_world_free(made);
+  return status;
+}
+
 /* One time step for the whole pour, whatever order the shapes enter in: that of a world which has
  * one of each. */
 static scree_status make_world(scree_pour *pour, scree_error *error) {
   scree_world_options o = pour->options.world;
-  scree_world *trial;
-  scree_status status = make_empty_world(pour, &o, &trial, error);
+  scree_world *gallery;
+  scree_status status = scree_pour_make_gallery(pour, &gallery, error);
   if (status != SCREE_OK) return status;
-  for (size_t s = 0; s < pour->shape_count && status == SCREE_OK; s++)
-    status = scree_world_add_body(trial, pour->particles[s], 0, NULL, NULL, error);
-  if (status == SCREE_OK) o.time_step = pour->time_step = scree_world_time_step(trial, NULL);
-  scree_world_free(trial);
-  if (status == SCREE_OK) status = make_empty_world(pour, &o, &pour->world, error);
-  return status;
+  o.time_step = pour->time_step = scree_world_time_step(gallery, NULL);
+  scree_world_free(gallery);
+  return make_empty_world(pour, &o, &pour->world, error);
 }
 
 static void plan(scree_pour *pour) {
@@ -272,8 +269,10 @@ static scree_status allocate(scree_pour *pour, const scree_pour_shape *shapes, s
   for (size_t s = 0; s < pour->shape_count; s++) pour->count += shapes[s].count;
   SCREE_ALLOC_OR(pour->shape_of, pour->count, error, out_of_memory);
   SCREE_ALLOC_OR(pour->radii, pour->count, error, out_of_memory);
+  SCREE_ALLOC_OR(pour->counts, pour->shape_count, error, out_of_memory);
   SCREE_ALLOC_OR(pour->particles, pour->shape_count, error, out_of_memory);
   for (size_t s = 0; s < pour->shape_count; s++) {
+    pour->counts[s] = shapes[s].count;
     pour->particles[s] = shapes[s].particle;
     scree_particle_retain(shapes[s].particle);
   }
@@ -314,6 +313,8 @@ void scree_pour_free(scree_pour *pour) {
   for (size_t s = 0; pour->particles && s < pour->shape_count; s++)
     scree_particle_free(pour->particles[s]);
   scree_free(pour->particles);
+  scree_free(pour->counts);
+  scree_free(pour->notes);
   scree_free(pour->shape_of);
   scree_free(pour->radii);
   scree_free(pour->cells);
@@ -351,6 +352,12 @@ size_t scree_pour_particle_count(const scree_pour *pour) {
 size_t scree_pour_entered_count(const scree_pour *pour) {
   return pour->entered_count;
 }
+size_t scree_pour_shape_count(const scree_pour *pour) {
+  return pour->shape_count;
+}
+scree_pour_shape scree_pour_get_shape(const scree_pour *pour, size_t index) {
+  return (scree_pour_shape){pour->particles[index], pour->counts[index]};
+}
 size_t scree_pour_shape_of(const scree_pour *pour, size_t index) {
   return pour->shape_of[index];
 }
@@ -359,4 +366,24 @@ double scree_pour_filling_time(const scree_pour *pour) {
 }
 double scree_pour_entered_energy(const scree_pour *pour) {
   return pour->entered_energy;
+}
+
+/* ---- the caller's notes ---- */
+
+scree_status scree_pour_set_notes(scree_pour *pour, const double *notes, size_t count,
+                                  scree_error *error) {
+  double *copy;
+  SCREE_ALLOC_OR(copy, count, error, out_of_memory);
+  if (count) memcpy(copy, notes, count * sizeof *copy);
+  scree_free(pour->notes);
+  pour->notes = copy;
+  pour->note_count = count;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+const double *scree_pour_notes(const scree_pour *pour, size_t *count) {
+  *count = pour->note_count;
+  return pour->notes;
 }

@@ -44,3 +44,38 @@ printf '1,2,3,-4\n' >negative.csv
 printf '1,2,3,4,5\n' >five.csv
 run drop negative.csv -o no
 run drop five.csv -o no
+# stopped, killed, and gone on with: the same files as those of a drop left alone
+pour="sphere:40mm=6 sample:icosphere-1=6 --time 0.3 --still 0 --frames 0.05 --no-picture --stiffness-factor 1e-2"
+"$SCREE" drop $pour -o whole -q >/dev/null
+for how in INT KILL; do
+  "$SCREE" drop $pour -o cut --checkpoint 0.01 -q >/dev/null 2>&1 &
+  child=$!
+  tries=0
+  while ! { [ -s cut/checkpoint.scree ] && [ -s cut/frame-000002.vtp ]; } && [ $tries -lt 1000 ]; do
+    sleep 0.01
+    tries=$((tries + 1))
+  done
+  kill -$how $child && echo "$how"
+  wait $child 2>/dev/null
+  [ $how = INT ] && again="" || again=$pour
+  "$SCREE" drop $again --resume -o cut --time 0.3 --still 0 --frames 0.05 --no-picture -q >/dev/null || echo failed
+  rm -f cut/*.part # half a checkpoint
+  for file in whole/*; do
+    [ "$file" != whole/checkpoint.scree ] || continue # knows how long the command was
+    sed 1,2d "$file" >left.txt # names of files, and the command
+    sed 1,2d "cut/${file#whole/}" | cmp - left.txt
+  done
+  ls whole >left.txt
+  ls cut | cmp - left.txt
+  [ $how = KILL ] || rm -r cut
+done
+# a drop that is done is done at once, or goes on for longer
+"$SCREE" drop --resume -o cut --time 0.3 --still 0 --frames 0.05 --no-picture -q | head -1 | shape
+"$SCREE" drop --resume -o cut --time 0.4 --still 0 --frames 0.05 --no-picture -q >/dev/null
+ls whole/frame* cut/frame* | wc -l
+run drop --resume -o cut --friction 0.4
+run drop $pour --seed 3 --resume -o cut
+run drop sphere:41mm=6 sphere:40mm=6 --stiffness-factor 1e-2 --resume -o cut 2>&1 | grep -v mm
+run drop --resume -o none
+head -c 300 cut/checkpoint.scree >short && mv short cut/checkpoint.scree
+run drop --resume -o cut

@@ -10,6 +10,10 @@ compare() {
     case $file in
     *.part) [ "$1" = killed ] || echo "$2: $1 left $file" ;;
     *provenance.json) [ "$(tail -c 2 "$file")" = "}" ] || echo "$2: $1 left half of $file" ;;
+    *checkpoint.scree) # stands where the other one never was: as long as its header says
+      [ "$(wc -c <"$file")" -eq $(($(od -An -tu8 -j16 -N8 "$file") + 40)) ] ||
+        echo "$2: $1 left half of $file"
+      ;;
     *report.html) [ "$(tail -c 8 "$file")" = "</html>" ] || echo "$2: $1 left half of $file" ;;
     *.pdf) [ "$(tail -c 6 "$file")" = "%%EOF" ] || echo "$2: $1 left half of $file" ;;
     *series.csv) # its last line may be half of one, or of the moment when the signal came

@@ -4,6 +4,9 @@
 #include "support/check.h"
 #include "support/shapes.h"
 
+#include <string.h>
+#include <unistd.h>
+
 static scree_particle *box_particle(double x, double y, double z) {
   scree_error error;
   scree_particle *particle = NULL;
@@ -126,6 +129,86 @@ static void what_cannot_be_poured_is_refused(void **state) {
   scree_particle_free(box);
 }
 
+static char file[64];
+
+static int make_file(void **state) {
+  (void)state;
+  snprintf(file, sizeof file, "/tmp/scree-pour-%ld", (long)getpid());
+  return 0;
+}
+static int remove_file(void **state) {
+  (void)state;
+  return remove(file);
+}
+
+/* Saved, freed and loaded again every 2000 steps, while layers enter and after. */
+static void a_pour_goes_on_with_the_same_bits(void **state) {
+  (void)state;
+  scree_error error;
+  for (int c = 0; c < 2; c++) {
+    scree_pour_options o = soft_options(c ? SCREE_CONTAINER_BOX : SCREE_CONTAINER_CYLINDER, 0.15);
+    scree_pour *whole = make_pour(&o, 9, 9), *cut = make_pour(&o, 9, 9);
+    const double notes[2] = {1.5, -0.1};
+    CHECK_OK(scree_pour_set_notes(cut, notes, 2, &error), error);
+    for (int i = 0; i < 100 && scree_pour_entered_count(cut) < 18; i++) {
+      CHECK_OK(scree_pour_advance(whole, 2000, &error), error);
+      CHECK_OK(scree_pour_advance(cut, 2000, &error), error);
+      CHECK_OK(scree_pour_save(cut, file, true, &error), error);
+      scree_pour_free(cut);
+      CHECK_OK(scree_pour_load(file, &cut, &error), error);
+      scree_checksum a = scree_world_hash(scree_pour_world(whole)),
+                     b = scree_world_hash(scree_pour_world(cut));
+      assert_true(a.high == b.high && a.low == b.low);
+      assert_true(scree_pour_entered_energy(whole) == scree_pour_entered_energy(cut));
+      assert_int_equal(scree_pour_entered_count(whole), scree_pour_entered_count(cut));
+    }
+    assert_int_equal(scree_pour_entered_count(cut), 18);
+    assert_true(scree_pour_filling_time(whole) == scree_pour_filling_time(cut));
+    size_t count;
+    const double *kept = scree_pour_notes(cut, &count);
+    assert_int_equal(count, 2);
+    assert_true(kept[0] == notes[0] && kept[1] == notes[1]);
+    assert_int_equal(scree_pour_shape_count(cut), 2);
+    assert_int_equal(scree_pour_get_shape(cut, 0).count, 9);
+    scree_pour_free(whole);
+    scree_pour_free(cut);
+  }
+}
+
+/* No cut and no flipped byte is taken for a checkpoint. */
+static void damaged_checkpoints_are_refused(void **state) {
+  (void)state;
+  static unsigned char bytes[1 << 20];
+  scree_error error;
+  scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0.1);
+  scree_pour *pour = make_pour(&o, 2, 2);
+  CHECK_OK(scree_pour_advance(pour, 100, &error), error);
+  CHECK_OK(scree_pour_save(pour, file, true, &error), error);
+  assert_int_equal(scree_pour_save(pour, file, false, &error), SCREE_EXISTS);
+  scree_pour_free(pour);
+  FILE *stream = fopen(file, "rb");
+  size_t size = fread(bytes, 1, sizeof bytes, stream);
+  fclose(stream);
+  for (size_t i = 0; i < 40; i++) {
+    size_t at = i * (size - 1) / 39, length = i & 1 ? at : size;
+    bytes[at] ^= 0x10;
+    stream = fopen(file, "wb");
+    fwrite(bytes, 1, length, stream);
+    fclose(stream);
+    bytes[at] ^= 0x10;
+    assert_int_equal(scree_pour_load(file, &pour, &error), SCREE_BAD_FILE);
+    assert_non_null(strstr(error.message, file));
+  }
+}
+
+static scree_status save_and_load(void *context, scree_error *error) {
+  scree_pour *pour = NULL;
+  scree_status status = scree_pour_save(context, file, true, error);
+  if (status == SCREE_OK) status = scree_pour_load(file, &pour, error);
+  scree_pour_free(pour);
+  return status;
+}
+
 static scree_status pour_all(void *context, scree_error *error) {
   const scree_pour_shape shape = {context, 3};
   scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0);
@@ -141,6 +224,13 @@ static void memory_running_out_is_told(void **state) {
   scree_particle *box = box_particle(0.05, 0.03, 0.02);
   check_allocation_failures(pour_all, box);
   scree_particle_free(box);
+  scree_error error;
+  scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0.1);
+  scree_pour *pour = make_pour(&o, 2, 2);
+  CHECK_OK(scree_pour_advance(pour, 100, &error), error);
+  CHECK_OK(scree_pour_save(pour, file, true, &error), error);
+  check_allocation_failures(save_and_load, pour);
+  scree_pour_free(pour);
 }
 
 int main(void) {
@@ -148,7 +238,9 @@ int main(void) {
       cmocka_unit_test(all_enter_apart_from_each_other),
       cmocka_unit_test(cuts_and_threads_change_nothing),
       cmocka_unit_test(what_cannot_be_poured_is_refused),
+      cmocka_unit_test(a_pour_goes_on_with_the_same_bits),
+      cmocka_unit_test(damaged_checkpoints_are_refused),
       cmocka_unit_test(memory_running_out_is_told),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_file, remove_file);
 }
