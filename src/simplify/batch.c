@@ -184,6 +184,10 @@ static void evaluate_waiting(pass *p, waiting *w) {
   for (uint32_t i = 0; i < w->count; i++) {
     uint32_t v = s->half[w->edge[i]].from;
     if (!(candidates[i].cost < p->cost[v] && candidates[i].error <= p->d->error_limit)) continue;
+    if (p->d->coster->shape) {
+      p->d->coster->shape(s, w->edge[i], &candidates[i]);
+      if (!(candidates[i].cost < p->cost[v])) continue;
+    }
     p->cost[v] = candidates[i].cost;
     p->best[v] = w->edge[i];
   }
@@ -311,9 +315,12 @@ static void reconsider_waiting(pass *p, waiting *w) {
   const scree_halfmesh *s = &p->d->s;
   scree_candidate candidates[SIDE_BY_SIDE];
   p->d->coster->evaluate(s, w->edge, w->count, candidates);
-  for (uint32_t i = 0; i < w->count; i++)
+  for (uint32_t i = 0; i < w->count; i++) {
+    if (p->d->coster->shape && key_of(candidates[i].cost) <= p->limit)
+      p->d->coster->shape(s, w->edge[i], &candidates[i]);
     p->cost[s->half[w->edge[i]].from] =
         candidates[i].error <= p->d->error_limit ? candidates[i].cost : INFINITY;
+  }
   w->count = 0;
 }
 

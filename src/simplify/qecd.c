@@ -79,17 +79,31 @@ static void qecd_merge(scree_halfmesh *s, uint32_t survivor, uint32_t gone) {
   for (int i = 0; i < 10; i++) s->sums[survivor][i] += s->sums[gone][i];
 }
 
-/* The minimiser of q + pull |v - m|^2, by Cholesky. */
-static vec3 minimise(const double *q, vec3 m, double pull) {
-  double l11 = sqrt(q[XX] + pull), l21 = q[XY] / l11, l31 = q[XZ] / l11;
-  double l22 = sqrt(q[YY] + pull - l21 * l21), l32 = (q[YZ] - l31 * l21) / l22;
-  double l33 = sqrt(q[ZZ] + pull - l31 * l31 - l32 * l32);
+/* L D L^T of the quadric's matrix with `pull` added to its diagonal; d is inverted. */
+typedef struct factors {
+  double l21, l31, l32, d1, d2, d3;
+} factors;
+
+static factors factorise(const double *q, double pull) {
+  factors f;
+  f.d1 = 1 / (q[XX] + pull);
+  f.l21 = q[XY] * f.d1;
+  f.l31 = q[XZ] * f.d1;
+  double m22 = q[YY] + pull - f.l21 * q[XY], m32 = q[YZ] - f.l31 * q[XY];
+  f.d2 = 1 / m22;
+  f.l32 = m32 * f.d2;
+  f.d3 = 1 / (q[ZZ] + pull - f.l31 * q[XZ] - f.l32 * m32);
+  return f;
+}
+
+/* The minimiser of q + pull |v - m|^2. */
+static vec3 minimise(const double *q, const factors *f, vec3 m) {
   /* right-hand side relative to m, where the solution is small */
   vec3 r = {-(q[XX] * m.x + q[XY] * m.y + q[XZ] * m.z + q[X]),
             -(q[XY] * m.x + q[YY] * m.y + q[YZ] * m.z + q[Y]),
             -(q[XZ] * m.x + q[YZ] * m.y + q[ZZ] * m.z + q[Z])};
-  double y1 = r.x / l11, y2 = (r.y - l21 * y1) / l22, y3 = (r.z - l31 * y1 - l32 * y2) / l33;
-  double z = y3 / l33, y = (y2 - l32 * z) / l22, x = (y1 - l21 * y - l31 * z) / l11;
+  double y2 = r.y - f->l21 * r.x, y3 = r.z - f->l31 * r.x - f->l32 * y2;
+  double z = y3 * f->d3, y = y2 * f->d2 - f->l32 * z, x = r.x * f->d1 - f->l21 * y - f->l31 * z;
   return vec3_add(m, (vec3){x, y, z});
 }
 
@@ -102,7 +116,9 @@ static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other,
     uint32_t c1 = scree_to(s, g), c2 = s->half[scree_previous(g)].from;
     if (c1 != other && c2 != other) {
       vec3 e1 = vec3_sub(s->vertex[c1].at, x), e2 = vec3_sub(s->vertex[c2].at, x);
-      double l2 = fmax(fmax(vec3_norm2(e1), vec3_norm2(e2)), vec3_norm2(vec3_sub(e1, e2)));
+      double l12 = vec3_norm2(e1), l22 = vec3_norm2(e2), l32 = vec3_norm2(vec3_sub(e1, e2));
+      double l2 = l12 > l22 ? l12 : l22;
+      l2 = l32 > l2 ? l32 : l2;
       double doubled2 = vec3_norm2(vec3_cross(e1, e2)); /* quality squared: one root in all */
       if (!(doubled2 >= worst * l2 * l2)) worst = l2 > 0 ? doubled2 / (l2 * l2) : 0;
     }
@@ -111,21 +127,25 @@ static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other,
   return worst;
 }
 
-/* Cost and error of the place x; the cost stays infinite where a triangle would
- * have no area. */
+/* Error of the place x, and its cost if no new triangle were ill-shaped. */
 static void answer(const scree_halfmesh *s, uint32_t half_edge, const double *q, vec3 x,
                    scree_candidate *out) {
   uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
   double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
-  *out = (scree_candidate){.cost = INFINITY};
   if (!(error > 0)) error = 0; /* rounding may take it below */
-  double worst = worst_quality(s, a, b, x, QUALITY * QUALITY);
-  worst = worst_quality(s, b, a, x, worst);
-  if (!(worst > 0)) return;
   double length2 = vec3_norm2(vec3_sub(s->vertex[b].at, s->vertex[a].at));
-  out->target = x;
-  out->error = trace > 0 ? error / trace : 0;
-  out->cost = (error + TIE * trace * length2) / sqrt(worst);
+  *out = (scree_candidate){.cost = (error + TIE * trace * length2) / QUALITY,
+                           .target = x,
+                           .error = trace > 0 ? error / trace : 0};
+}
+
+/* The cost is infinite where a triangle would have no area. */
+static void qecd_shape(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *c) {
+  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
+  double best = QUALITY * QUALITY, worst = worst_quality(s, a, b, c->target, best);
+  worst = worst_quality(s, b, a, c->target, worst);
+  if (worst < best) c->cost = worst > 0 ? c->cost * (QUALITY / sqrt(worst)) : INFINITY;
+  if (!(worst >= 0)) c->cost = INFINITY;
 }
 
 static void evaluate_one(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
@@ -135,7 +155,8 @@ static void evaluate_one(const scree_halfmesh *s, uint32_t half_edge, scree_cand
   vec3 x = vec3_scale(vec3_add(s->vertex[a].at, s->vertex[b].at), 0.5);
   double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
   if (error > MIDDLE_ERROR && trace > 0) {
-    vec3 best = minimise(q, minimise(q, x, PULL * trace), PULL * trace);
+    factors f = factorise(q, PULL * trace);
+    vec3 best = minimise(q, &f, minimise(q, &f, x));
     if (value(q, best) < error) x = best;
   }
   answer(s, half_edge, q, x, out);
@@ -153,6 +174,8 @@ static void qecd_fall_back(const scree_halfmesh *s, uint32_t half_edge, int fall
   double q[10];
   for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
   answer(s, half_edge, q, vec3_lerp(s->vertex[a].at, s->vertex[b].at, along[fallback]), out);
+  qecd_shape(s, half_edge, out);
 }
 
-const scree_coster scree_qecd_coster = {qecd_sum, qecd_evaluate, qecd_fall_back, qecd_merge};
+const scree_coster scree_qecd_coster = {qecd_sum, qecd_evaluate, qecd_shape, qecd_fall_back,
+                                        qecd_merge};

@@ -242,4 +242,5 @@ static void volume_fall_back(const scree_halfmesh *s, uint32_t half_edge, int fa
   *out = answer(s, half_edge, &q, 0);
 }
 
-const scree_coster scree_volume_coster = {volume_sum, volume_evaluate, volume_fall_back, NULL};
+const scree_coster scree_volume_coster = {volume_sum, volume_evaluate, NULL, volume_fall_back,
+                                          NULL};
