@@ -12,6 +12,7 @@
  *
  * Differs: quadrics live in the unit box in double; every edge stays in the
  * queue (MeshLab's loses about two thirds of them on updates). */
+#include "base/lanes.h"
 #include "simplify/cost.h"
 
 #include <string.h>
@@ -41,7 +42,7 @@ static void add_plane(double *q, vec3 n, double offset, double w) {
   q[ONE] += w * offset * offset;
 }
 
-static double value(const double *q, vec3 v) {
+SCREE_LANES_INLINE double value(const double *q, vec3 v) {
   double x = q[XX] * v.x + q[XY] * v.y + q[XZ] * v.z + 2 * q[X];
   double y = q[XY] * v.x + q[YY] * v.y + q[YZ] * v.z + 2 * q[Y];
   double z = q[XZ] * v.x + q[YZ] * v.y + q[ZZ] * v.z + 2 * q[Z];
@@ -79,12 +80,32 @@ static void qecd_merge(scree_halfmesh *s, uint32_t survivor, uint32_t gone) {
   for (int i = 0; i < 10; i++) s->sums[survivor][i] += s->sums[gone][i];
 }
 
+/* Edges are evaluated side by side, one per lane. */
+enum { LANES = 32 };
+
+typedef struct lanes {
+  double q[10][LANES]; /* of both ends */
+  double m[3][LANES];  /* the middle, or the place asked for */
+  double x[3][LANES];  /* the place chosen */
+  double length2[LANES], trace[LANES], error[LANES], cost[LANES];
+} lanes;
+
+static void gather(const scree_halfmesh *s, uint32_t half_edge, double along, lanes *l, int i) {
+  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
+  vec3 pa = s->vertex[a].at, pb = s->vertex[b].at, m = vec3_lerp(pa, pb, along);
+  for (int k = 0; k < 10; k++) l->q[k][i] = s->sums[a][k] + s->sums[b][k];
+  l->m[0][i] = m.x;
+  l->m[1][i] = m.y;
+  l->m[2][i] = m.z;
+  l->length2[i] = vec3_norm2(vec3_sub(pb, pa));
+}
+
 /* L D L^T of the quadric's matrix with `pull` added to its diagonal; d is inverted. */
 typedef struct factors {
   double l21, l31, l32, d1, d2, d3;
 } factors;
 
-static factors factorise(const double *q, double pull) {
+SCREE_LANES_INLINE factors factorise(const double *q, double pull) {
   factors f;
   f.d1 = 1 / (q[XX] + pull);
   f.l21 = q[XY] * f.d1;
@@ -97,7 +118,7 @@ static factors factorise(const double *q, double pull) {
 }
 
 /* The minimiser of q + pull |v - m|^2. */
-static vec3 minimise(const double *q, const factors *f, vec3 m) {
+SCREE_LANES_INLINE vec3 minimise(const double *q, const factors *f, vec3 m) {
   /* right-hand side relative to m, where the solution is small */
   vec3 r = {-(q[XX] * m.x + q[XY] * m.y + q[XZ] * m.z + q[X]),
             -(q[XY] * m.x + q[YY] * m.y + q[YZ] * m.z + q[Y]),
@@ -105,6 +126,48 @@ static vec3 minimise(const double *q, const factors *f, vec3 m) {
   double y2 = r.y - f->l21 * r.x, y3 = r.z - f->l31 * r.x - f->l32 * y2;
   double z = y3 * f->d3, y = y2 * f->d2 - f->l32 * z, x = r.x * f->d1 - f->l21 * y - f->l31 * z;
   return vec3_add(m, (vec3){x, y, z});
+}
+
+/* best: the minimiser, where the middle is not as good as it; else the place asked for. The cost is
+ * as if no new triangle were ill-shaped. */
+SCREE_LANES_INLINE void solve_lanes(lanes *l, bool best, int count) {
+  for (int i = 0; i < count; i++) {
+    double q[10];
+    for (int k = 0; k < 10; k++) q[k] = l->q[k][i];
+    vec3 x = {l->m[0][i], l->m[1][i], l->m[2][i]};
+    double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
+    if (best) {
+      factors f = factorise(q, PULL * trace);
+      vec3 least = minimise(q, &f, minimise(q, &f, x));
+      double least_error = value(q, least);
+      bool better = (error > MIDDLE_ERROR) & (trace > 0) & (least_error < error);
+      x.x = better ? least.x : x.x;
+      x.y = better ? least.y : x.y;
+      x.z = better ? least.z : x.z;
+      error = better ? least_error : error;
+    }
+    error = error > 0 ? error : 0; /* rounding may take it below */
+    l->cost[i] = (error + TIE * trace * l->length2[i]) / QUALITY;
+    l->trace[i] = trace;
+    l->error[i] = error;
+    l->x[0][i] = x.x;
+    l->x[1][i] = x.y;
+    l->x[2][i] = x.z;
+  }
+}
+
+SCREE_LANES static void solve_best(lanes *l, int count) {
+  solve_lanes(l, true, count);
+}
+
+static void solve_along(lanes *l) {
+  solve_lanes(l, false, 1);
+}
+
+static scree_candidate answer(const lanes *l, int i) {
+  return (scree_candidate){.cost = l->cost[i],
+                           .target = {l->x[0][i], l->x[1][i], l->x[2][i]},
+                           .error = l->trace[i] > 0 ? l->error[i] / l->trace[i] : 0};
 }
 
 /* The worst shape among the triangles of v's fan, those with `other` apart,
@@ -127,18 +190,6 @@ static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other,
   return worst;
 }
 
-/* Error of the place x, and its cost if no new triangle were ill-shaped. */
-static void answer(const scree_halfmesh *s, uint32_t half_edge, const double *q, vec3 x,
-                   scree_candidate *out) {
-  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
-  double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
-  if (!(error > 0)) error = 0; /* rounding may take it below */
-  double length2 = vec3_norm2(vec3_sub(s->vertex[b].at, s->vertex[a].at));
-  *out = (scree_candidate){.cost = (error + TIE * trace * length2) / QUALITY,
-                           .target = x,
-                           .error = trace > 0 ? error / trace : 0};
-}
-
 /* The cost is infinite where a triangle would have no area. */
 static void qecd_shape(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *c) {
   uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
@@ -148,32 +199,26 @@ static void qecd_shape(const scree_halfmesh *s, uint32_t half_edge, scree_candid
   if (!(worst >= 0)) c->cost = INFINITY;
 }
 
-static void evaluate_one(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *out) {
-  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
-  double q[10];
-  for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
-  vec3 x = vec3_scale(vec3_add(s->vertex[a].at, s->vertex[b].at), 0.5);
-  double trace = q[XX] + q[YY] + q[ZZ], error = value(q, x);
-  if (error > MIDDLE_ERROR && trace > 0) {
-    factors f = factorise(q, PULL * trace);
-    vec3 best = minimise(q, &f, minimise(q, &f, x));
-    if (value(q, best) < error) x = best;
-  }
-  answer(s, half_edge, q, x, out);
-}
-
 static void qecd_evaluate(const scree_halfmesh *s, const uint32_t *half_edges, size_t count,
                           scree_candidate *out) {
-  for (size_t i = 0; i < count; i++) evaluate_one(s, half_edges[i], &out[i]);
+  lanes l;
+  for (size_t begin = 0; begin < count; begin += LANES) {
+    int filled = count - begin < LANES ? (int)(count - begin) : LANES;
+    int width = (filled + 3) & ~3; /* whole vectors */
+    for (int i = 0; i < width; i++)
+      gather(s, half_edges[begin + (size_t)(i < filled ? i : 0)], 0.5, &l, i);
+    solve_best(&l, width);
+    for (int i = 0; i < filled; i++) out[begin + (size_t)i] = answer(&l, i);
+  }
 }
 
 static void qecd_fall_back(const scree_halfmesh *s, uint32_t half_edge, int fallback,
                            scree_candidate *out) {
   static const double along[SCREE_FALLBACK_COUNT] = {0.5, 0, 1};
-  uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
-  double q[10];
-  for (int i = 0; i < 10; i++) q[i] = s->sums[a][i] + s->sums[b][i];
-  answer(s, half_edge, q, vec3_lerp(s->vertex[a].at, s->vertex[b].at, along[fallback]), out);
+  lanes l;
+  gather(s, half_edge, along[fallback], &l, 0);
+  solve_along(&l);
+  *out = answer(&l, 0);
   qecd_shape(s, half_edge, out);
 }
 
