@@ -10,6 +10,7 @@
 
 #include "base/alloc.h"
 #include "base/ending.h"
+#include "base/parallel.h"
 #include "base/sum.h"
 #include "mesh/adjacency.h"
 #include "mesh/apart.h"
@@ -166,18 +167,50 @@ static void count_kinds(const scree_shells *shells, scree_check *check) {
   if (!check->volume_known) check->volume = 0;
 }
 
+/* Two walks over the same surface, beside each other. */
+typedef struct connection {
+  const scree_mesh *mesh;
+  const scree_adjacency *adjacency;
+  scree_topology topology;
+  scree_shells shells;
+  scree_status status[2];
+  scree_error error[2];
+} connection;
+
+static void connect(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)end, (void)block, (void)worker;
+  connection *c = context;
+  if (begin == 0)
+    c->status[0] = scree_topology_count(c->mesh, c->adjacency, false, &c->topology, &c->error[0]);
+  else
+    c->status[1] = scree_shells_find(c->mesh, c->adjacency, &c->shells, &c->error[1]);
+}
+
+/* Topology and shells. */
+static scree_status find_connection(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                    scree_check *check, scree_shells *shells, scree_error *error) {
+  connection c = {.mesh = mesh, .adjacency = adjacency};
+  scree_parallel_for(2, 1, connect, &c);
+  for (int i = 0; i < 2; i++)
+    if (c.status[i] != SCREE_OK) {
+      scree_shells_free(&c.shells);
+      if (error) *error = c.error[i];
+      return c.status[i];
+    }
+  take_topology(&c.topology, check);
+  *shells = c.shells;
+  return SCREE_OK;
+}
+
 static scree_status examine(const scree_mesh *mesh, const scree_check_options *options,
                             const scree_progress *progress, scree_check *check,
                             scree_error *error) {
-  scree_topology topology;
   scree_adjacency adjacency = {0};
   scree_shells shells = {0};
   scree_facet_tree tree = {0};
   scree_status status = scree_adjacency_build(mesh, &adjacency, error);
   if (status != SCREE_OK) return status;
-  status = scree_topology_count(mesh, &adjacency, false, &topology, error);
-  if (status == SCREE_OK) take_topology(&topology, check);
-  if (status == SCREE_OK) status = scree_shells_find(mesh, &adjacency, &shells, error);
+  status = find_connection(mesh, &adjacency, check, &shells, error);
   check->shell_count = shells.count;
   if (status != SCREE_OK || mesh->triangle_count == 0) goto done;
   bool clear = false; /* the tree is dear: a clean scan of one shell does without */

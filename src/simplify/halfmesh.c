@@ -340,7 +340,8 @@ done:
 
 typedef struct compaction {
   scree_halfmesh *s;
-  const uint32_t *vertex, *triangle; /* new numbers */
+  uint32_t *vertex, *triangle; /* new numbers */
+  size_t vertex_count, triangle_count;
 } compaction;
 
 /* Entries get the new numbers where they are. */
@@ -364,38 +365,63 @@ static void renumber_vertices(void *context, size_t begin, size_t end, size_t bl
   }
 }
 
-static void move_all(scree_halfmesh *s) {
-  size_t triangles = 0, vertices = 0;
-  for (size_t t = 0; t < s->triangle_count; t++) {
+static void number_triangles(compaction *c) {
+  for (size_t t = 0; t < c->s->triangle_count; t++)
+    if (!scree_is_gone(c->s, t)) c->triangle[t] = (uint32_t)c->triangle_count++;
+}
+
+static void number_vertices(compaction *c) {
+  for (size_t v = 0; v < c->s->vertex_count; v++)
+    if (c->s->vertex[v].outgoing != SCREE_NONE) c->vertex[v] = (uint32_t)c->vertex_count++;
+}
+
+static void move_triangles(scree_halfmesh *s) {
+  for (size_t t = 0, to = 0; t < s->triangle_count; t++) {
     if (scree_is_gone(s, t)) continue;
-    for (size_t i = 0; i < 3 && t != triangles; i++) {
-      s->half[3 * triangles + i] = s->half[3 * t + i];
-      s->refused[3 * triangles + i] = s->refused[3 * t + i];
+    for (size_t i = 0; i < 3 && t != to; i++) {
+      s->half[3 * to + i] = s->half[3 * t + i];
+      s->refused[3 * to + i] = s->refused[3 * t + i];
     }
-    triangles++;
+    to++;
   }
-  for (size_t v = 0; v < s->vertex_count; v++) {
+}
+
+static void move_vertices(scree_halfmesh *s) {
+  for (size_t v = 0, to = 0; v < s->vertex_count; v++) {
     if (s->vertex[v].outgoing == SCREE_NONE) continue;
-    if (v != vertices) {
-      s->vertex[vertices] = s->vertex[v];
-      s->flags[vertices] = s->flags[v];
-      memcpy(s->sums[vertices], s->sums[v], sizeof s->sums[v]);
+    if (v != to) {
+      s->vertex[to] = s->vertex[v];
+      s->flags[to] = s->flags[v];
+      memcpy(s->sums[to], s->sums[v], sizeof s->sums[v]);
     }
-    vertices++;
+    to++;
   }
-  s->vertex_count = s->live_vertex_count = vertices;
-  s->triangle_count = s->live_triangle_count = triangles;
+}
+
+/* Block 0: triangles, block 1: vertices. */
+static void number_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)end, (void)block, (void)worker;
+  if (begin == 0)
+    number_triangles(context);
+  else
+    number_vertices(context);
+}
+
+static void move_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)end, (void)block, (void)worker;
+  if (begin == 0)
+    move_triangles(((compaction *)context)->s);
+  else
+    move_vertices(((compaction *)context)->s);
 }
 
 void scree_halfmesh_compact(scree_halfmesh *s, uint32_t *vertex_scratch,
                             uint32_t *triangle_scratch) {
-  uint32_t vertices = 0, triangles = 0;
-  for (size_t v = 0; v < s->vertex_count; v++)
-    if (s->vertex[v].outgoing != SCREE_NONE) vertex_scratch[v] = vertices++;
-  for (size_t t = 0; t < s->triangle_count; t++)
-    if (!scree_is_gone(s, t)) triangle_scratch[t] = triangles++;
-  compaction c = {s, vertex_scratch, triangle_scratch};
+  compaction c = {.s = s, .vertex = vertex_scratch, .triangle = triangle_scratch};
+  scree_parallel_for(2, 1, number_block, &c);
   scree_parallel_for(s->triangle_count, BLOCK, renumber_triangles, &c);
   scree_parallel_for(s->vertex_count, BLOCK, renumber_vertices, &c);
-  move_all(s);
+  scree_parallel_for(2, 1, move_block, &c);
+  s->vertex_count = s->live_vertex_count = c.vertex_count;
+  s->triangle_count = s->live_triangle_count = c.triangle_count;
 }
