@@ -10,10 +10,17 @@
 
 enum { STREAM_START_BYTES = 1 << 20, TEMPORARY_NAMES = 1000 };
 
+/* What a stream may hold where no limit was given: one that never ends must not take the machine's
+ * memory with it. A buffer that doubles, and what is made of it, take several times as much. */
+static size_t stream_limit(void) {
+  long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
+  return pages > 0 && page > 0 ? (size_t)pages * (size_t)page / 8 : SIZE_MAX;
+}
+
 /* Reads a stream of unknown length, doubling. */
 static scree_status read_stream(int fd, const char *name, size_t max_bytes, char **bytes,
                                 size_t *byte_count, scree_error *error) {
-  size_t capacity = STREAM_START_BYTES, used = 0;
+  size_t capacity = STREAM_START_BYTES, used = 0, most = max_bytes ? max_bytes : stream_limit();
   char *buffer = scree_alloc(capacity, 1);
   if (!buffer) return scree_fail_memory(error, capacity, name);
   for (;;) {
@@ -36,10 +43,10 @@ static scree_status read_stream(int fd, const char *name, size_t max_bytes, char
     }
     if (got == 0) break;
     used += (size_t)got;
-    if (max_bytes && used > max_bytes) {
+    if (used > most) {
       scree_free(buffer);
-      return scree_fail(error, SCREE_LIMIT, "%s: more than the limit of %zu bytes", name,
-                        max_bytes);
+      return scree_fail(error, SCREE_LIMIT, "%s: more than the limit of %zu bytes%s", name, most,
+                        max_bytes ? "" : ", an eighth of this machine's memory");
     }
   }
   buffer[used] = 0;

@@ -28,13 +28,16 @@
 
 enum {
   ROUNDS = 16,
-  MEETING_LIMIT = 50000,    /* pairs; some seconds */
   GROWTH = 64,              /* times the facets that went in; more, and the rounds run away */
   LEAST_LIMIT = 20000,      /* of facets, however few went in */
   ROUNDING_MEETINGS = 1000, /* more than twice the first and this many, and they run away, too */
 };
 
-static const char endless[] = "cutting the facets where they meet comes to no end";
+static const char endless[] =
+    "cutting the facets where they meet comes to no end, as where parts lie on each other within "
+    "rounding; repair the parts one by one and unite them in a CAD program";
+const char scree_arrange_too_many[] =
+    "more pairs of facets meet than there are facets; repair the file's parts one by one";
 
 /* What lies nearer than this share of the bounding box diagonal touches ... */
 #define TOLERANCE 1e-12
@@ -598,8 +601,9 @@ static scree_status run_round(arranger *a, const scree_progress *progress, bool 
   *done = a->facets.items == NULL; /* there are none, or all have vanished */
   if (*done) return SCREE_OK;
   if (!make_mesh(a, &mesh)) return no_memory(error);
-  scree_status status = scree_mesh_meetings(&mesh, MEETING_LIMIT, progress, &found, error);
-  if (status == SCREE_OK && found.truncated) a->reason = "too many facets meet";
+  scree_status status =
+      scree_mesh_meetings(&mesh, scree_arrange_limit(&mesh), progress, &found, error);
+  if (status == SCREE_OK && found.truncated) a->reason = scree_arrange_too_many;
   if (a->first_met == 0) a->first_met = found.count;
   if (found.count > 2 * a->first_met + ROUNDING_MEETINGS) a->reason = endless;
   if (status == SCREE_OK && !a->reason) status = list_pairs(a, &found, error);

@@ -19,6 +19,14 @@ typedef struct scree_arrangement {
  * or why it could not be done, as the end of a sentence; the arrangement is then empty. */
 scree_status scree_arrange(const scree_mesh *mesh, const scree_progress *progress,
                            scree_arrangement *arrangement, const char **reason, scree_error *error);
+/* How many pairs of facets may meet in a mesh that is cut: as many as it has facets, so that the
+ * cost stays in proportion; some seconds' worth are always allowed. */
+static inline size_t scree_arrange_limit(const scree_mesh *mesh) {
+  const size_t least = 50000;
+  return mesh->triangle_count > least ? mesh->triangle_count : least;
+}
+extern const char scree_arrange_too_many[]; /* the reason where there are more */
+
 void scree_arrangement_free(scree_arrangement *arrangement);
 
 #endif

@@ -14,8 +14,7 @@
 #include <string.h>
 
 enum {
-  MEETING_LIMIT = 50000, /* pairs, as in mesh/arrange.c */
-  ATTEMPTS = 32,         /* sample points of a patch; one in general position is all but sure */
+  ATTEMPTS = 32, /* sample points of a patch; one in general position is all but sure */
 };
 
 typedef struct merger {
@@ -88,8 +87,8 @@ static scree_status find_tangle(scree_repair *r, tangle *t, scree_error *error) 
   t->closed = all_closed(&shells);
   t->crowded = is_crowded(&adjacency);
   if (!t->closed) goto done;
-  status = scree_mesh_meetings(&r->mesh, MEETING_LIMIT, r->progress, &found, error);
-  if (status == SCREE_OK && found.truncated) r->unmerged = "too many facets meet";
+  status = scree_mesh_meetings(&r->mesh, scree_arrange_limit(&r->mesh), r->progress, &found, error);
+  if (status == SCREE_OK && found.truncated) r->unmerged = scree_arrange_too_many;
   if (status == SCREE_OK && !found.truncated) status = count_tangled(&shells, &found, t, error);
 done:
   scree_free(found.items);

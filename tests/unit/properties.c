@@ -1,5 +1,6 @@
 /* What must not change where a scan's facets come in another order, or the scan is scaled, moved or
- * turned: from the loose facets through welding, check, measures, decimation to the choice. */
+ * turned: from the loose facets through welding, check, measures, decimation to the choice; unions
+ * of shells, and the distance between surfaces. Repair: tests/unit/repair.c. */
 #include "base/vec.h"
 #include "support/check.h"
 #include "support/shapes.h"
@@ -158,11 +159,104 @@ static void turn_and_move(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* ---- Two surfaces ---- */
+
+/* Three balls that overlap in pairs, and two rough bodies beside each other's surfaces. */
+typedef struct pair {
+  scree_check check;       /* of the balls: the volume of their union */
+  scree_measures repaired; /* of what repair makes of them */
+  scree_distance distance; /* of the rough bodies */
+} pair;
+
+static scree_mesh balls(void) {
+  scree_mesh all = shape_icosphere(0.02, 2);
+  for (int i = 1; i < 3; i++) {
+    scree_mesh ball = shape_icosphere(0.02 - 0.003 * i, 2);
+    shape_move(&ball, (vec3){0.021 * i, 0.0052 * i, -0.0031 * i});
+    scree_mesh both = shape_join(&all, &ball);
+    scree_mesh_free(&all);
+    scree_mesh_free(&ball);
+    all = both;
+  }
+  return all;
+}
+
+static pair work_on_pairs(const scree_mesh *overlapping, const scree_mesh *a, const scree_mesh *b,
+                          scree_rng *rng) {
+  pair r;
+  scree_error error;
+  scree_distance_options options = scree_default_distance_options();
+  scree_mesh mesh = weld(overlapping, rng), first = weld(a, rng), second = weld(b, rng), repaired;
+  options.hausdorff_gap = 1e-3;
+  CHECK_OK(scree_mesh_check(&mesh, NULL, NULL, &r.check, &error), error);
+  CHECK_OK(scree_mesh_repair(&mesh, NULL, NULL, &repaired, NULL, &error), error);
+  CHECK_OK(scree_mesh_measure(&repaired, &r.repaired, &error), error);
+  CHECK_OK(scree_mesh_distance(&first, &second, &options, NULL, &r.distance, &error), error);
+  scree_mesh_free(&mesh);
+  scree_mesh_free(&first);
+  scree_mesh_free(&second);
+  scree_mesh_free(&repaired);
+  return r;
+}
+
+/* bits: of the distance, nothing may change. */
+static void expect_same_pairs(const pair *a, const pair *b, double scale, bool bits) {
+  double volume = a->check.volume * pow(scale, 3), tolerance = bits ? 1e-12 : 1e-9;
+  assert_true(a->check.volume_known && b->check.volume_known);
+  CHECK_NEAR(b->check.volume, volume, tolerance * volume);
+  CHECK_NEAR(b->repaired.volume, a->repaired.volume * pow(scale, 3), tolerance * volume);
+  CHECK_NEAR(b->repaired.volume, volume, 1e-9 * volume);
+  /* of shells that cross, what counts as nested and what as another body follows from one vertex */
+  for (int i = 0; i < SCREE_DEFECT_NESTED_SHELL; i++)
+    assert_int_equal(a->check.defects[i], b->check.defects[i]);
+  double mean = a->distance.forward.mean * scale, rms = a->distance.backward.rms * scale;
+  double most = a->distance.hausdorff * scale;
+  /* turned, other points of the same facets are sampled, and the bound is within 1e-3 */
+  CHECK_NEAR(b->distance.forward.mean, mean, (bits ? 1e-12 : 1e-2) * mean);
+  CHECK_NEAR(b->distance.backward.rms, rms, (bits ? 1e-12 : 1e-2) * rms);
+  CHECK_NEAR(b->distance.hausdorff, most, (bits ? 1e-12 : 2e-3) * most);
+}
+
+/* Order of facets, scale, turn and move: the union's volume as check tells it and as repair makes
+ * it, and the distance between two surfaces. */
+static void unions_and_distances(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 64};
+  scree_mesh three = balls(), a = shape_icosphere(0.03, 3), b = shape_icosphere(0.0305, 3), *all[3];
+  all[0] = &three, all[1] = &a, all[2] = &b;
+  shape_shake(&a, 3e-4, &rng);
+  shape_shake(&b, 3e-4, &rng);
+  pair first = work_on_pairs(&three, &a, &b, NULL);
+  assert_true(first.check.defects[SCREE_DEFECT_CROSSING_PAIR] > 20);
+  for (int round = 0; round < 3; round++) {
+    pair other = work_on_pairs(&three, &a, &b, &rng);
+    expect_same_pairs(&first, &other, 1, true);
+  }
+  for (int power = -10; power <= 10; power += 10) {
+    double factor = ldexp(1, power);
+    for (int m = 0; m < 3; m++)
+      for (size_t i = 0; i < 3 * all[m]->vertex_count; i++) all[m]->positions[i] *= factor;
+    pair other = work_on_pairs(&three, &a, &b, NULL);
+    expect_same_pairs(&first, &other, factor, true);
+    for (int m = 0; m < 3; m++)
+      for (size_t i = 0; i < 3 * all[m]->vertex_count; i++) all[m]->positions[i] /= factor;
+  }
+  for (int round = 0; round < 4; round++) {
+    mat3 turn = quat_to_mat3(scree_rng_rotation(&rng));
+    vec3 offset = vec3_scale(scree_rng_direction(&rng), 0.1 * round);
+    for (int m = 0; m < 3; m++) shape_transform(all[m], &turn, offset);
+    pair other = work_on_pairs(&three, &a, &b, NULL);
+    expect_same_pairs(&first, &other, 1, false);
+  }
+  for (int m = 0; m < 3; m++) scree_mesh_free(all[m]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(order_of_facets),
       cmocka_unit_test(scale),
       cmocka_unit_test(turn_and_move),
+      cmocka_unit_test(unions_and_distances),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
