@@ -6,9 +6,9 @@
 
 #include "base/alloc.h"
 
-/* Reads all of path ("-" is stdin), refusing more than max_bytes. 0: files may have any size, a pipe
- * or device may give an eighth of the machine's memory. The bytes are followed by one 0 that is not
- * counted. Free with scree_free. */
+/* Reads all of path ("-" is stdin), refusing more than max_bytes. 0: files may have any size, a
+ * pipe or device may give an eighth of the machine's memory. The bytes are followed by one 0 that
+ * is not counted. Free with scree_free. */
 scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
                              scree_error *error);
 
