@@ -68,10 +68,11 @@ static double one_landing(scree_particle *box, scree_particle *other, double tur
 }
 
 /* The time of the first touch within a step shifts e by a percent at N = 40: the mean over four. */
-static void face_on_face(size_t n, double turn, double speed, double steps, double tolerance) {
+static void face_on_face(scree_particle *box, double turn, double speed, double steps,
+                         double tolerance) {
   double restitution = 0;
   char what[80];
-  scree_particle *box = box_of(n), *other = box_of(0);
+  scree_particle *other = box_of(0);
   scree_particle_measures m;
   scree_particle_measure(box, &m);
   for (int phase = 0; phase < 4; phase++)
@@ -79,20 +80,41 @@ static void face_on_face(size_t n, double turn, double speed, double steps, doub
   snprintf(what, sizeof what, "e: %zu triangles, turned %.0f, %g m/s, N %g", m.triangle_count,
            turn / degree, speed, steps);
   LAW_RELATIVE("L5", what, restitution, 0.3, tolerance);
-  scree_particle_free(box);
   scree_particle_free(other);
+}
+
+static void land_all_ways(scree_particle *box) {
+  for (int turned = 0; turned < 2; turned++)
+    for (int fast = 0; fast < 2; fast++) {
+      double turn = turned ? 30 * degree : 0, speed = fast ? 7 : 0.5;
+      face_on_face(box, turn, speed, 20, 0.05);
+      face_on_face(box, turn, speed, 40, 0.01);
+    }
+  scree_particle_free(box);
 }
 
 static void faces_meet_as_one_spring(void **state) {
   (void)state;
   const size_t grids[] = {0, 2, 5, UNEVEN, 12};
-  for (int i = 0; i < 5; i++)
-    for (int turned = 0; turned < 2; turned++)
-      for (int fast = 0; fast < 2; fast++) {
-        double turn = turned ? 30 * degree : 0, speed = fast ? 7 : 0.5;
-        face_on_face(grids[i], turn, speed, 20, 0.05);
-        face_on_face(grids[i], turn, speed, 40, 0.01);
-      }
+  for (int i = 0; i < 5; i++) land_all_ways(box_of(grids[i]));
+}
+
+/* The same box cut into 3072 triangles and decimated: its faces stay flat, with any triangles in
+ * them. */
+static void decimated_faces_meet_as_one_spring(void **state) {
+  (void)state;
+  const size_t counts[] = {1500, 760, 300, 100, 12};
+  scree_error error;
+  scree_mesh mesh = shape_grid_box(0.1, 0.05, 0.015, 16), level;
+  scree_curve *curve = NULL;
+  scree_simplify_options options = scree_default_simplify_options();
+  CHECK_OK(scree_curve_build(&mesh, &options, NULL, &curve, &error), error);
+  for (int i = 0; i < 5; i++) {
+    CHECK_OK(scree_curve_mesh(curve, scree_curve_find(curve, counts[i]), &level, &error), error);
+    land_all_ways(particle_of(level));
+  }
+  scree_curve_free(curve);
+  scree_mesh_free(&mesh);
 }
 
 static void undamped_hits_keep_energy(void **state) {
@@ -131,6 +153,7 @@ static void undamped_hits_keep_energy(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(faces_meet_as_one_spring),
+      cmocka_unit_test(decimated_faces_meet_as_one_spring),
       cmocka_unit_test(undamped_hits_keep_energy),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
