@@ -10,6 +10,17 @@
  * its cost without, which is not above the whole one, and when its turn comes, it waits again at
  * the whole cost.
  *
+ * The stray costs a toll, C (D / F)^6, beside what cost.h has, which counts it against the size of
+ * the triangles and so lets the rounded edges of a large body pass. C is the cost that a tenth of
+ * the edges do not exceed, and F is seven times the distance h at which ten triangles of the mean
+ * area s cost as much,
+ *
+ *     10 (2 s h)^2 / sqrt(20 s) = C,
+ *
+ * or the distance of a witness that is farther off already. Since both grow as triangles go, they
+ * are found anew whenever the triangles have come down to 0.7 of what they were; all edges are
+ * looked at once more then.
+ *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
  * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
@@ -17,6 +28,7 @@
 #include "simplify/decimate.h"
 #include "simplify/stray.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Cells per mean edge of the grid for exact tests, and when it is built anew:
@@ -24,6 +36,12 @@
 #define EDGES_PER_CELL 1.5
 #define REGRID_BELOW   0.5
 #define STALE_FACTOR   12
+
+/* The toll (see above): the distance that costs as much as C, in units of h; the rank of C among
+ * all edges; the share of triangles left at which it is found anew. */
+#define TOLL_REACH  7.0
+#define TOLL_RANK   0.1
+#define RENEW_BELOW 0.7
 
 /* Edges evaluated in one call. */
 enum { SIDE_BY_SIDE = 32 };
@@ -42,6 +60,9 @@ typedef struct queue {
   uint32_t now;
   size_t since_tick;
   scree_memory memory;            /* of the surface that this stage began with */
+  double toll;                    /* weight of the stray's sixth power in the cost */
+  size_t renew_at;                /* triangles */
+  double *sorted;                 /* scratch: costs */
   uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
   size_t waiting_count;
 } queue;
@@ -138,6 +159,7 @@ static void queue_free(queue *q) {
   scree_free(q->heap);
   scree_free(q->stage);
   scree_free(q->stamp);
+  scree_free(q->sorted);
   scree_memory_free(&q->memory);
 }
 
@@ -146,6 +168,26 @@ static void enter_all(queue *q) {
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++)
     if (s->half[h].from != SCREE_NONE && owner(s, h) == h) evaluate(q, h);
   evaluate_waiting(q);
+}
+
+static int by_value(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Enters all edges and finds the toll. */
+static void renew(queue *q) {
+  scree_decimator *d = q->d;
+  double s = q->memory.area / (double)d->s.live_triangle_count;
+  enter_all(q);
+  if (d->coster->merge || q->heap_count == 0) return;
+  for (size_t i = 0; i < q->heap_count; i++) q->sorted[i] = q->cost[q->heap[i]];
+  qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
+  double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
+  double far2 = TOLL_REACH * TOLL_REACH * cost * sqrt(20 * s) / (40 * s * s);
+  far2 = fmax(far2, scree_memory_worst(&q->memory));
+  q->toll = far2 > 0 ? cost / (far2 * far2 * far2) : 0;
+  q->renew_at = (size_t)(RENEW_BELOW * (double)d->s.live_triangle_count);
 }
 
 static scree_status queue_fill(queue *q) {
@@ -157,12 +199,14 @@ static scree_status queue_fill(queue *q) {
   SCREE_ALLOC_OR(q->heap, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->stage, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->stamp, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->sorted, half_edges, d->error, out_of_memory);
   memset(q->place, 0xff, half_edges * sizeof *q->place);
   memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
-  enter_all(q);
-  return scree_memory_keep(s, &q->memory, d->error);
+  scree_status status = scree_memory_keep(s, &q->memory, d->error);
+  if (status == SCREE_OK) renew(q);
+  return status;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
@@ -262,8 +306,9 @@ static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_arou
 static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c) {
   if (!(c->stray > 0)) return;
   double least = scree_stray_at(c, 0);
+  if (q->toll > 0) least = fmin(least, cbrt(SCREE_STRAY_SHARE * c->cost / q->toll));
   double stray2 = scree_memory_stray(&q->memory, &q->d->s, ring, c->target, least);
-  c->cost += c->stray * stray2 * stray2;
+  c->cost += (c->stray + q->toll * stray2) * stray2 * stray2;
 }
 
 /* Puts the edge back with the cheapest other place that is allowed, if there is
@@ -321,6 +366,7 @@ scree_status scree_decimate_one_by_one(scree_decimator *d) {
   scree_status status = queue_fill(&q);
   size_t entered_at = d->record.count;
   while (status == SCREE_OK && d->s.live_triangle_count > d->options.stop_count) {
+    if (d->s.live_triangle_count <= q.renew_at) renew(&q);
     if (q.heap_count == 0) { /* what was too far off before may be near enough now */
       if (d->record.count == entered_at) break;
       entered_at = d->record.count;

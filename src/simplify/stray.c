@@ -141,6 +141,12 @@ double scree_memory_stray(const scree_memory *m, const scree_halfmesh *s, const 
   return worst;
 }
 
+double scree_memory_worst(const scree_memory *m) {
+  double worst = 0;
+  for (size_t i = 0; i < m->count; i++) worst = fmax(worst, m->witnesses[i].distance2);
+  return worst;
+}
+
 /* The triangle of the ring whose new form is nearest to the witness; of equally near ones the first
  * of the mesh. */
 static uint32_t nearest_triangle(const scree_ring *r, double (*corners)[9], scree_witness *w) {

@@ -39,6 +39,9 @@ bool scree_memory_allows(const scree_memory *memory, size_t triangle_count, vec3
 double scree_memory_stray(const scree_memory *memory, const scree_halfmesh *s,
                           const scree_ring *ring, vec3 target, double least);
 
+/* The largest squared distance of a witness from its triangle. */
+double scree_memory_worst(const scree_memory *memory);
+
 /* Gives the witnesses of the ring's triangles to those that will be there; before the collapse. */
 void scree_memory_move(scree_memory *memory, const scree_halfmesh *s, const scree_ring *ring,
                        vec3 target);

@@ -28,6 +28,9 @@
 #define VOLUME_TIE   1e-9
 #define VOLUME_STRAY 5.0
 #define STRAY_SHARE  0.01
+#define TOLL_SHARE   0.1
+#define TOLL_REACH   7.0
+#define RENEW_SHARE  0.7
 #define EQUALLY_NEAR 1e-12
 #define QECD_PULL    1e-8
 #define QECD_TIE     1e-12
@@ -51,7 +54,9 @@ typedef struct oracle {
   vec3 *witness;    /* the first mesh's vertices */
   uint32_t *holder; /* of each witness: the triangle that stands for it, and its squared distance */
   double *held2;
-  double *whole; /* as state, for every place: the whole cost, or NAN where it is not known yet */
+  double toll;     /* weight of the stray's sixth power */
+  size_t renew_at; /* triangles at which it is found anew */
+  double *whole;   /* as state, for every place: the whole cost, or NAN where it is not known yet */
   size_t compared, decided; /* collapses, and those with no rival within rounding */
 } oracle;
 
@@ -407,8 +412,10 @@ static place whole_place(oracle *o, uint32_t a, uint32_t b, int fallback) {
   if (!(p.cost < INFINITY) || !(p.stray > 0)) return p;
   double *whole = &o->whole[4 * (size_t)(state_of(o, a, b) - o->state) + (size_t)(fallback + 1)];
   if (isnan(*whole)) {
-    double stray2 = fmax(stray2_of(o, a, b, p.target), sqrt(STRAY_SHARE * p.cost / p.stray));
-    *whole = p.cost + p.stray * stray2 * stray2;
+    double least = sqrt(STRAY_SHARE * p.cost / p.stray);
+    if (o->toll > 0) least = fmin(least, pow(STRAY_SHARE * p.cost / o->toll, 1.0 / 3));
+    double stray2 = fmax(stray2_of(o, a, b, p.target), least);
+    *whole = p.cost + p.stray * pow(stray2, 2) + o->toll * pow(stray2, 3);
   }
   p.slack *= *whole / p.cost;
   p.cost = *whole;
@@ -470,6 +477,36 @@ static void edge_starts_anew(oracle *o, uint32_t v, uint32_t w) {
   uint8_t *state = state_of(o, v, w);
   *state = BEST;
   for (size_t k = 0; k < 4; k++) o->whole[4 * (size_t)(state - o->state) + k] = NAN;
+}
+
+static int by_value(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* All edges start anew, and the toll is found from their costs without the stray. */
+static void renew(oracle *o) {
+  if (o->qecd || o->triangle_count > o->renew_at) return;
+  double *costs = malloc(3 * o->triangle_count * sizeof *costs), worst2 = 0;
+  size_t count = 0, side = 0;
+  uint32_t a, b;
+  start_anew(o);
+  while (next_edge(o, &side, &a, &b)) {
+    edge_starts_anew(o, a, b);
+    costs[count] = place_of(o, a, b, -1).cost;
+    count += costs[count] < INFINITY;
+  }
+  for (size_t w = 0; w < o->vertex_count; w++) worst2 = fmax(worst2, o->held2[w]);
+  qsort(costs, count, sizeof *costs, by_value);
+  if (count > 0) {
+    /* ten triangles of the mean area, each at this distance from the place, cost as much */
+    double mean = o->start_area / (double)o->triangle_count;
+    double cost = costs[(size_t)(TOLL_SHARE * (double)count)];
+    double far2 = cost * sqrt(10 * 2 * mean) / (10 * pow(2 * mean, 2));
+    o->toll = cost / pow(fmax(TOLL_REACH * TOLL_REACH * far2, worst2), 3);
+    o->renew_at = (size_t)(RENEW_SHARE * (double)o->triangle_count);
+  }
+  free(costs);
 }
 
 /* The engine collapses (a, b) next, to x; checks that no edge should have come before. */
@@ -555,7 +592,8 @@ static void measure(const oracle *o, double *area, double *volume) {
 
 static oracle oracle_of(const scree_mesh *mesh, const scree_halfmesh *s, bool qecd) {
   size_t n = mesh->vertex_count, m = mesh->triangle_count;
-  oracle o = {.vertex_count = n, .triangle_count = m, .plane_count = m, .qecd = qecd};
+  oracle o = {
+      .vertex_count = n, .triangle_count = m, .plane_count = m, .qecd = qecd, .renew_at = m};
   o.position = malloc(n * sizeof *o.position);
   o.triangle = malloc(3 * m * sizeof *o.triangle);
   o.plane = malloc(m * sizeof *o.plane);
@@ -630,6 +668,7 @@ static void check_collapse(oracle *o, const scree_decimator *d, size_t i) {
   vec3 x = vec3_scale(vec3_sub(r->position[i], d->s.centre), 1 / d->s.scale);
   double area, volume, area_after, volume_after;
   place chosen;
+  renew(o);
   bool in_turn = check_turn(o, a, b, x, &chosen);
   if (!in_turn && nothing_waits(o)) { /* all edges are looked at once more */
     start_anew(o);
