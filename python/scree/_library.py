@@ -95,6 +95,17 @@ class scree_check(Structure):
                 ("volume", c_double), ("usable", c_bool), ("verdict", c_char * 512)]
 
 
+class scree_check_options(Structure):
+    _fields_ = [("intersections", c_bool)]
+
+
+class scree_repair_options(Structure):
+    _fields_ = [("seam_tolerance", c_double), ("hole_edges", c_size_t), ("fill_large_holes", c_bool),
+                ("debris_share", c_double), ("drop_cavities", c_bool), ("keep_largest", c_bool),
+                ("cut_intersections", c_bool), ("merge_shells", c_bool), ("merge_folds", c_bool),
+                ("intersections", c_bool)]
+
+
 class scree_repair_report(Structure):
     _fields_ = [("done", c_size_t * REPAIR_ACTION_COUNT), ("seam_distance", c_double), ("before", scree_check),
                 ("after", scree_check)]
@@ -286,8 +297,8 @@ _FALLIBLE = {  # argument types before the error
     "mesh_topology": (_M, POINTER(scree_topology)),
     "mesh_distance": (_M, _M, POINTER(scree_distance_options), _P, POINTER(scree_distance)),
     "mesh_distance_field": (_M, _M, POINTER(c_double)),
-    "mesh_check": (_M, c_void_p, _P, POINTER(scree_check)),
-    "mesh_repair": (_M, c_void_p, _P, _M, POINTER(scree_repair_report)),
+    "mesh_check": (_M, POINTER(scree_check_options), _P, POINTER(scree_check)),
+    "mesh_repair": (_M, POINTER(scree_repair_options), _P, _M, POINTER(scree_repair_report)),
     "mesh_vtp_write": (_M, _M, _S, c_bool),
     "particle_export": (_M, POINTER(scree_export_options), _S, _S, POINTER(scree_exported)),
     "curve_build": (_M, POINTER(scree_simplify_options), _P, _HH),
@@ -329,6 +340,8 @@ _PLAIN = {  # result, argument types
     "scan_free": (None, (POINTER(scree_scan),)),
     "default_read_options": (scree_read_options, ()),
     "default_write_options": (scree_write_options, ()),
+    "default_check_options": (scree_check_options, ()),
+    "default_repair_options": (scree_repair_options, ()),
     "default_distance_options": (scree_distance_options, ()),
     "default_simplify_options": (scree_simplify_options, ()),
     "default_choice_options": (scree_choice_options, ()),

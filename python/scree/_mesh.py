@@ -94,18 +94,23 @@ class Mesh:
         call("mesh_topology", self._struct, topology)
         return from_struct(topology)
 
-    def check(self, progress=None):
-        """Whether it can serve as a particle: usable, verdict, defects by name, volume."""
+    def check(self, progress=None, **options):
+        """Whether it can serve as a particle: usable, verdict, defects by name, volume. Option intersections: False
+        skips the exact test, which takes most of the time."""
+        settings = set_fields(lib["default_check_options"](), options, "check")
         check = c.scree_check()
         with c.Progress(progress) as p:
-            call("mesh_check", self._struct, None, p, check)
+            call("mesh_check", self._struct, settings, p, check)
         return _check(check)
 
-    def repair(self, progress=None):
-        """A repaired mesh, and what was done: done by name, before, after."""
+    def repair(self, progress=None, **options):
+        """A repaired mesh, and what was done: done by name, before, after. Options seam_tolerance, hole_edges,
+        fill_large_holes, debris_share, drop_cavities, keep_largest, cut_intersections, merge_shells (shells that cross,
+        overlap or touch become one), merge_folds, intersections: scree_repair_options in scree/check.h."""
+        settings = set_fields(lib["default_repair_options"](), options, "repair")
         repaired, report = c.scree_mesh(), c.scree_repair_report()
         with c.Progress(progress) as p:
-            call("mesh_repair", self._struct, None, p, repaired, report)
+            call("mesh_repair", self._struct, settings, p, repaired, report)
         told = from_struct(report)
         told.before, told.after = _check(report.before), _check(report.after)
         told.done = {lib["repair_action_name"](i).decode(): n for i, n in enumerate(report.done)}

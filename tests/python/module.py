@@ -110,6 +110,23 @@ class Meshes(unittest.TestCase):
         self.assertEqual((report.done["filled_holes"], report.after.usable), (1, True))
         self.assertAlmostEqual(repaired.measure().volume, 1 / 6, 12)
 
+    def test_repair_options(self):
+        box = scree.sample("box-12")
+        twice = [p for dx in (0, 0.01) for p in ((x + dx, y + dx, z + dx) for x, y, z in box.positions.tolist())]
+        n = len(box.positions)
+        both = scree.Mesh(twice, box.triangles.tolist() + [[v + n for v in t] for t in box.triangles.tolist()])
+        self.assertGreater(both.check().defects["overlapping_shell_pairs"], 0)
+        self.assertFalse(both.check(intersections=False).intersections_known)
+        merged, report = both.repair()
+        self.assertEqual((merged.topology().shell_count, report.done["merged_shells"]), (1, 2))
+        self.assertLess(merged.measure().volume, 1.99 * box.measure().volume)
+        with self.assertRaises(scree.Error):
+            both.repair(merge_shells=False)
+        with self.assertRaises(scree.Error):
+            scree.Mesh(tetrahedron().positions.tolist(), tetrahedron().triangles.tolist()[:3]).repair(hole_edges=0)
+        with self.assertRaisesRegex(TypeError, "merge_shells"):
+            both.repair(merge=True)
+
     def test_distance(self):
         ball, fine = scree.load("sample:icosphere-2"), scree.load("sample:icosphere-4")
         d = fine.distance(ball, sample_count=1000)
