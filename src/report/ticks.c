@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 static const double TICK_SLACK = 1e-9; /* of the range: an end that is a tick is drawn */
-enum { MAJOR_STEPS_WANTED = 6, LABELLED_DECADES = 8 };
+enum { MAJOR_STEPS_WANTED = 6, LABELLED_DECADES = 8, LEAST_LABELS = 3 };
 
 static void add(scree_ticks *ticks, double value) {
   if (ticks->count >= SCREE_TICK_LIMIT) return;
@@ -22,7 +22,8 @@ static void label_log(char *label, size_t size, int digit, int exponent) {
     snprintf(label, size, "%d\u00b710^{%s%d}", digit, exponent < 0 ? "\u2212" : "", abs(exponent));
 }
 
-static void make_log(double low, double high, scree_ticks *ticks) {
+static size_t make_log(double low, double high, scree_ticks *ticks) {
+  size_t labels = 0;
   double decades = log10(high / low);
   int first = (int)floor(log10(low) - TICK_SLACK), last = (int)floor(log10(high) + TICK_SLACK);
   int step = 1 + (last - first) / LABELLED_DECADES;
@@ -34,9 +35,11 @@ static void make_log(double low, double high, scree_ticks *ticks) {
       if (value < low * (1 - TICK_SLACK) || value > high * (1 + TICK_SLACK)) continue;
       add(ticks, value);
       bool major = digit == 1 && exponent % step == 0;
-      if (major || (many_labels && (digit == 2 || digit == 5)))
-        label_log(ticks->label[ticks->count - 1], sizeof ticks->label[0], digit, exponent);
+      if (!major && !(many_labels && (digit == 2 || digit == 5))) continue;
+      label_log(ticks->label[ticks->count - 1], sizeof ticks->label[0], digit, exponent);
+      labels++;
     }
+  return labels;
 }
 
 static void make_linear(double low, double high, scree_ticks *ticks) {
@@ -60,8 +63,12 @@ static void make_linear(double low, double high, scree_ticks *ticks) {
 void scree_ticks_make(scree_scale scale, double low, double high, scree_ticks *ticks) {
   ticks->count = 0;
   if (!(low < high) || !isfinite(low) || !isfinite(high)) return;
-  if (scale == SCREE_SCALE_LOG && low > 0)
-    make_log(low, high, ticks);
-  else if (scale == SCREE_SCALE_LINEAR)
+  if (scale == SCREE_SCALE_LOG && low > 0) {
+    /* within a decade 1, 2 and 5 are too few to read a value by: even steps, as on a linear axis */
+    if (make_log(low, high, ticks) >= LEAST_LABELS || high > 10 * low) return;
+    ticks->count = 0;
     make_linear(low, high, ticks);
+  } else if (scale == SCREE_SCALE_LINEAR) {
+    make_linear(low, high, ticks);
+  }
 }

@@ -173,6 +173,12 @@ static void numbers_read_back_the_same(void **state) {
   assert_string_equal(buffer, "1e-05");
 }
 
+static size_t labels_in(const scree_ticks *t) {
+  size_t count = 0;
+  for (size_t i = 0; i < t->count; i++) count += t->label[i][0] != 0;
+  return count;
+}
+
 static void ticks_are_where_they_belong(void **state) {
   (void)state;
   scree_ticks t;
@@ -189,6 +195,12 @@ static void ticks_are_where_they_belong(void **state) {
   CHECK_NEAR(t.value[t.count - 1], 1, 1e-12);
   scree_ticks_make(SCREE_SCALE_LINEAR, -0.013, 0.021, &t);
   assert_true(t.count > 10);
+  scree_ticks_make(SCREE_SCALE_LOG, 33, 78, &t); /* a study's times */
+  assert_true(labels_in(&t) >= 4);
+  scree_ticks_make(SCREE_SCALE_LOG, 110, 190, &t); /* no 1, 2, 5 in it */
+  assert_true(labels_in(&t) >= 4);
+  scree_ticks_make(SCREE_SCALE_LOG, 3, 99, &t); /* 5, 10, 20, 50 */
+  assert_int_equal(labels_in(&t), 4);
   scree_rng rng = {8, 8, 0};
   for (int trial = 0; trial < 5000; trial++) {
     double low = exp(40 * (scree_rng_uniform(&rng) - 0.5)),
@@ -200,6 +212,7 @@ static void ticks_are_where_they_belong(void **state) {
         assert_true(t.value[i] >= low - slack && t.value[i] <= high + slack);
         assert_true(i == 0 || t.value[i] > t.value[i - 1]);
       }
+      assert_true(labels_in(&t) >= 2 || high < 1.001 * low); /* by one alone no value is read */
     }
   }
   scree_ticks_make(SCREE_SCALE_LOG, 0, 1, &t);
