@@ -401,8 +401,16 @@ SCREE_API void scree_pour_free(scree_pour *pour);
 /* As scree_world_step, letting in layers when they are due: the same bits however a pour is cut
  * into calls. */
 SCREE_API scree_status scree_pour_advance(scree_pour *pour, size_t step_count, scree_error *error);
+/* From now on where every body is goes to path (as motion.scree of a run; scree_motion_read), now
+ * and at every interval of simulated time (s, > 0). What is at path is replaced; of a pour that
+ * goes on, what comes after its time. */
+SCREE_API scree_status scree_pour_record(scree_pour *pour, const char *path, double interval,
+                                         scree_error *error);
+/* Records the present moment too: the end. */
+SCREE_API scree_status scree_pour_record_end(scree_pour *pour, scree_error *error);
 /* For observing, frames and checkpoints; body i is the i-th to have entered. */
 SCREE_API scree_world *scree_pour_world(scree_pour *pour);
+SCREE_API const scree_world *scree_pour_view(const scree_pour *pour);
 /* The options with every default filled in. */
 SCREE_API void scree_pour_get_options(const scree_pour *pour, scree_pour_options *options);
 /* All particles, and those that have entered. */

@@ -367,6 +367,31 @@ SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, cons
 SCREE_API scree_status scree_series_csv_write(const scree_run *run, const char *path,
                                               bool overwrite, scree_error *error);
 
+/* ---- Pours: JSON ---- */
+
+/* One moment of a pour. */
+typedef struct scree_pour_point {
+  scree_observation seen;
+  double entered_energy; /* J: scree_pour_entered_energy */
+} scree_pour_point;
+
+/* A pour and its moments, the last one last. Texts are borrowed. */
+typedef struct scree_pour_entry {
+  const scree_pour *pour;
+  const char *const *names;   /* of each shape, short */
+  const char *const *sources; /* where each came from; NULL: unknown */
+  const scree_pour_point *points;
+  size_t point_count; /* at least 1 */
+  bool still;
+  const char *stopped_because; /* it was interrupted, or diverged; NULL: it came to its end */
+  const char *command_line;    /* NULL: unknown */
+} scree_pour_entry;
+
+/* One object: version, command, the state at the end, options, shapes in the order of their first
+ * bodies, and the moments as columns (docs/formats.md). "-" is stdout. */
+SCREE_API scree_status scree_pour_json_write(const scree_pour_entry *entry, const char *path,
+                                             bool overwrite, scree_error *error);
+
 /* The bodies of a world as they stand, each shape in its colour; walls are not drawn. Errors as
  * scree_render. */
 SCREE_API scree_status scree_world_picture(const scree_world *world,

@@ -21,10 +21,11 @@ typedef struct drop_arguments {
 /* One word of the command line. */
 typedef struct drop_shape {
   const char *word;
-  char name[DROP_PATH_BYTES]; /* the word without its count */
-  size_t count;               /* particles */
-  size_t source_triangles;    /* before decimation; 0 for spheres */
-  double diameter;            /* m; 0 where it is no sphere */
+  char name[DROP_PATH_BYTES];  /* the word without its count */
+  char title[64], source[512]; /* for the report: short name; file, checksum, triangles */
+  size_t count;                /* particles */
+  size_t source_triangles;     /* before decimation; 0 for spheres */
+  double diameter;             /* m; 0 where it is no sphere */
   scree_particle *particle;
 } drop_shape;
 
@@ -49,6 +50,7 @@ typedef struct drop_run {
   } frames;
   FILE *series; /* series.csv; NULL before it is open */
   drop_schedule schedule;
+  scree_work_start start;
 } drop_run;
 
 /* drop_shapes.c: reads the words; 0, or the exit code after saying why. */
@@ -83,6 +85,14 @@ scree_status drop_save(drop_run *run, scree_error *error);
 /* With --resume and a checkpoint: the pour, the schedule and the files as they were. run->pour
  * stays NULL where there is none. */
 scree_status drop_resume(drop_run *run, scree_error *error);
+
+/* drop_report.c: from now on motion.scree tells where every body is, over a schedule of so many
+ * seconds. */
+scree_status drop_record(drop_run *run, double schedule, scree_error *error);
+/* What is left behind and made of it: last.world, drop.json, drop.txt (the text), provenance.json,
+ * report.html. stopped_because: NULL for a pour that came to its end. */
+scree_status drop_write_report(drop_run *run, const char *stopped_because, const char *text,
+                               scree_error *error);
 
 /* verb_drop.c */
 scree_pour_options drop_pour_options(const drop_arguments *arguments);

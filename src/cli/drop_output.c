@@ -68,7 +68,7 @@ scree_status drop_keep_state(drop_run *run, scree_error *error) {
 
 scree_status drop_write_line(drop_run *run, scree_error *error) {
   scree_observation o;
-  const scree_world *world = scree_pour_world(run->pour);
+  const scree_world *world = scree_pour_view(run->pour);
   double entered = scree_pour_entered_energy(run->pour);
   scree_world_observe(world, &o);
   double ledger = o.kinetic + o.rotational + o.potential + o.elastic + o.dissipated_dashpot +

@@ -71,6 +71,18 @@ static scree_status name_in_error(const drop_shape *shape, scree_error *error) {
   return error->status;
 }
 
+/* Where the shape came from: file, checksum, triangles before. */
+static void describe(drop_shape *shape, const scree_scan *scan) {
+  char checksum[SCREE_CHECKSUM_TEXT];
+  size_t size = sizeof shape->source;
+  cli_short_name(shape->name, shape->title, sizeof shape->title);
+  size_t used = (size_t)snprintf(shape->source, size, "%.300s", shape->name);
+  if (scan && scree_checksum_text(scan->checksum, checksum))
+    used += (size_t)snprintf(shape->source + used, size - used, ", %s", checksum);
+  if (scan)
+    snprintf(shape->source + used, size - used, ", %zu triangles", scan->mesh.triangle_count);
+}
+
 static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mesh,
                          scree_error *error) {
   const drop_arguments *a = run->arguments;
@@ -81,6 +93,7 @@ static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mes
   scree_scan scan;
   scree_status status = cli_load(shape->name, &input, run->call->progress, &scan, error);
   if (status != SCREE_OK) return status;
+  describe(shape, &scan);
   if (cli_is_sample(shape->name, NULL)) { /* made closed and manifold: nothing to check */
     *mesh = scan.mesh;
     return SCREE_OK;
@@ -151,6 +164,7 @@ static void say_shape(const drop_run *run, const drop_shape *shape) {
 }
 
 static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_error *error) {
+  describe(shape, NULL);
   if (shape->diameter > 0)
     return scree_particle_sphere(0.5 * shape->diameter, &shape->particle, error);
   if (cli_is_clump(shape->name))

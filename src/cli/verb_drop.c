@@ -36,8 +36,8 @@ static const drop_arguments defaults = {.output = "drop",
 #define AT(field) offsetof(drop_arguments, field)
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "DIR",
-     "The folder for drop.pvd, frame-*.vtp, series.csv and drop.png, made if need be. Default: "
-     "drop.",
+     "The folder for drop.pvd, frame-*.vtp, series.csv, drop.png and report.html, made if need be. "
+     "Default: drop.",
      0, 0, NULL},
     {"container", 'c', CLI_CHOICE, AT(container), "KIND", "cylinder or box. Default: cylinder.", 0,
      0, "cylinder|box"},
@@ -166,6 +166,11 @@ static void say_pour(const drop_run *run) {
 
 /* ---- the run ---- */
 
+/* s, at most */
+static double schedule_of(const drop_run *run) {
+  return scree_pour_filling_time(run->pour) + run->arguments->time;
+}
+
 static scree_status write_due(drop_run *run, drop_schedule *s, double time, scree_error *error) {
   scree_status status = SCREE_OK;
   double interval = run->arguments->frame_interval;
@@ -213,7 +218,7 @@ static scree_status simulate(drop_run *run, scree_error *error) {
   drop_schedule *s = &run->schedule;
   double time = scree_world_time(scree_pour_world(run->pour));
   scree_status status = SCREE_OK;
-  s->end = scree_pour_filling_time(run->pour) + run->arguments->time;
+  s->end = schedule_of(run);
   s->last_checkpoint = now();
   while (status == SCREE_OK && time < s->end && !s->still) {
     status = write_due(run, s, time, error);
@@ -238,31 +243,69 @@ static scree_status simulate(drop_run *run, scree_error *error) {
   return status == SCREE_OK ? closing : status;
 }
 
-static void print_summary(const drop_run *run, bool still, double seconds) {
+static void print_summary(FILE *stream, const drop_run *run, bool still) {
   scree_observation o;
-  const scree_world *world = scree_pour_world(run->pour);
+  const scree_world *world = scree_pour_view(run->pour);
   double entered = scree_pour_entered_energy(run->pour);
   unsigned long long steps = scree_world_step_count(world);
   scree_world_observe(world, &o);
   double sum = o.kinetic + o.rotational + o.potential + o.elastic + o.dissipated_dashpot +
                o.dissipated_friction - o.wall_work;
-  printf("%s after %.4g s, %llu steps; %zu of %zu particles are in\n", still ? "still" : "stopped",
-         o.time, steps, scree_pour_entered_count(run->pour), scree_pour_particle_count(run->pour));
-  printf("contacts          %zu in %zu touching pairs, %.3g neighbours a particle\n",
-         o.contact_count, o.pair_count, o.coordination);
-  printf("largest overlap   %.4g um\n", 1e6 * o.largest_overlap);
-  printf("highest speed     %.3g m/s\n", o.highest_speed);
-  printf("energy            %.5g J came in; kinetic %.3g, potential %.5g, elastic %.3g, lost to "
-         "dashpots %.5g, to friction %.5g; unaccounted %.2g of what came in\n",
-         entered, o.kinetic + o.rotational, o.potential, o.elastic, o.dissipated_dashpot + 0.0,
-         o.dissipated_friction + 0.0, entered > 0 ? (sum - entered) / entered : 0);
-  fflush(stdout);
+  fprintf(stream, "%s after %.4g s, %llu steps; %zu of %zu particles are in\n",
+          still ? "still" : "stopped", o.time, steps, scree_pour_entered_count(run->pour),
+          scree_pour_particle_count(run->pour));
+  fprintf(stream, "contacts          %zu in %zu touching pairs, %.3g neighbours a particle\n",
+          o.contact_count, o.pair_count, o.coordination);
+  fprintf(stream, "largest overlap   %.4g um\n", 1e6 * o.largest_overlap);
+  fprintf(stream, "highest speed     %.3g m/s\n", o.highest_speed);
+  fprintf(stream,
+          "energy            %.5g J came in; kinetic %.3g, potential %.5g, elastic %.3g, lost to "
+          "dashpots %.5g, to friction %.5g; unaccounted %.2g of what came in\n",
+          entered, o.kinetic + o.rotational, o.potential, o.elastic, o.dissipated_dashpot + 0.0,
+          o.dissipated_friction + 0.0, entered > 0 ? (sum - entered) / entered : 0);
+}
+
+static void print_costs(const drop_run *run, double seconds) {
+  const scree_world *world = scree_pour_view(run->pour);
+  double steps = (double)scree_world_step_count(world);
   if (run->call->quiet) return;
   fprintf(stderr, "%.1f s of computing: %.3g steps/s, %.3g particle-steps/s\n", seconds,
-          (double)steps / seconds, (double)steps * (double)o.body_count / seconds);
+          steps / seconds, steps * (double)scree_pour_entered_count(run->pour) / seconds);
   if (run->arguments->stiffness_factor != 1)
     fprintf(stderr, "stiffness times %g: overlaps are larger by its inverse\n",
             run->arguments->stiffness_factor);
+}
+
+/* Prints how the pour stands at its end and leaves it in the folder. stopped: NULL, or why it did
+ * not come to its end. */
+static scree_status tell(drop_run *run, const char *stopped, double seconds, scree_error *error) {
+  char *text = NULL;
+  size_t size;
+  FILE *stream = open_memstream(&text, &size);
+  if (stream) print_summary(stream, run, run->schedule.still);
+  if (!stream || fclose(stream) != 0) {
+    free(text);
+    return drop_no_memory(error);
+  }
+  cli_terminal_end();
+  fputs(text, stdout);
+  fflush(stdout);
+  print_costs(run, seconds);
+  scree_status status = drop_write_report(run, stopped, text, error);
+  free(text);
+  return status;
+}
+
+static bool can_be_told(scree_status status) {
+  return status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED;
+}
+
+static scree_status draw(drop_run *run, scree_error *error) {
+  if (run->arguments->no_picture) return SCREE_OK;
+  scree_status status = drop_write_picture(run, error);
+  if (status != SCREE_UNSUPPORTED) return status;
+  fprintf(stderr, "no picture: %s\n", error->message);
+  return SCREE_OK;
 }
 
 /* From the beginning. */
@@ -278,23 +321,25 @@ static scree_status pour(drop_run *run, scree_error *error) {
   if (status == SCREE_OK) status = drop_resume(run, error);
   if (status == SCREE_OK && !run->pour) status = begin(run, error);
   if (status == SCREE_OK) status = drop_keep_state(run, error);
+  if (status == SCREE_OK) status = drop_record(run, schedule_of(run), error);
   if (status != SCREE_OK) return status;
   say_pour(run);
   double start = now();
   status = simulate(run, error);
-  if (status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED) {
-    cli_terminal_end();
-    print_summary(run, run->schedule.still, now() - start);
-  }
-  if (status != SCREE_OK || run->arguments->no_picture) return status;
-  status = drop_write_picture(run, error);
-  if (status != SCREE_UNSUPPORTED) return status;
-  fprintf(stderr, "no picture: %s\n", error->message);
-  return SCREE_OK;
+  double seconds = now() - start;
+  if (status == SCREE_OK) status = draw(run, error);
+  if (!can_be_told(status)) return status;
+  scree_error later; /* what happened first is what is told */
+  scree_status told = tell(run, status == SCREE_OK ? NULL : error->message, seconds,
+                           status == SCREE_OK ? error : &later);
+  return status == SCREE_OK ? told : status;
 }
 
 static int run(const cli_call *call) {
-  drop_run run = {.call = call, .arguments = call->options, .shape_count = call->input_count};
+  drop_run run = {.call = call,
+                  .arguments = call->options,
+                  .shape_count = call->input_count,
+                  .start = scree_work_started()};
   if (run.arguments->rp > 0 && run.arguments->triangles)
     return cli_misuse(call->verb, "-r and -n exclude each other");
   if (run.arguments->noise > 0.25 * run.arguments->resolution)
@@ -324,13 +369,14 @@ const cli_verb cli_verb_drop = {
         "sphere:40mm, or NAME.csv with the spheres of a clump (x, y, z, radius a line, in the "
         "files' unit); =COUNT says how many. Files are checked, repaired where need be, and "
         "decimated.\n\n"
-        "Writes into DIR: drop.pvd with frame-*.vtp (surfaces; body, shape and speeds by triangle) "
-        "for ParaView; series.csv with energies, contacts and overlaps over time; drop.png. The "
-        "same options give the same bits for any number of threads. Ctrl-C stops: what was "
-        "written stays, drop.pvd lists it, and --resume goes on from checkpoint.scree with the "
-        "same bits, as after a crash. A pour that leaves the range of the contact law "
-        "stops "
-        "with step, body and cause, and leaves the state shortly before in before-failure.world.",
+        "Writes into DIR: report.html, which shows and plays the pour, made of drop.json, "
+        "motion.scree and last.world (a checkpoint: scree export takes it); drop.pvd with "
+        "frame-*.vtp (surfaces; body, shape and speeds by triangle) for ParaView; series.csv with "
+        "energies, contacts and overlaps over time; drop.png. The same options give the same bits "
+        "for any number of threads. Ctrl-C stops: what was written stays, drop.pvd lists it, the "
+        "report shows it, and --resume goes on from checkpoint.scree with the same bits, as after "
+        "a crash. A pour that leaves the range of the contact law stops with step, body and "
+        "cause, and leaves the state shortly before in before-failure.world.",
     .examples = "scree drop phone.stl=50\n"
                 "scree drop sample:fp-1=20 sample:dc-2=20 -n 100 -c box -w 300mm -o mixed\n"
                 "scree drop sphere:40mm=200 --frames 0.01 --seed 2\n",

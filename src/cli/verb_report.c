@@ -32,10 +32,12 @@ const cli_verb cli_verb_report = {
     .summary = "one page to look at, turn and send",
     .inputs = "DIR...",
     .description =
-        "Makes one self-contained HTML page of the folders that scree choose -o, scree repose -o "
-        "and scree study write. Of a choice: the answer, the curve with a slider that shows the "
+        "Makes one self-contained HTML page of the folders that scree choose -o, scree repose -o, "
+        "scree drop and scree study write. Of a choice: the answer, the curve with a slider that "
+        "shows the "
         "mesh at every level beside the scan, the tables. Of a heap: its angles, and the particles "
-        "in 3D to turn around and play through time beside the curves. Of a study: angle of "
+        "in 3D to turn around and play through time beside the curves; of a pour the same without "
+        "angles. Of a study: angle of "
         "repose, its spread, rotation and computation time with their curves and tables, and a "
         "heap of each point. And how each was made. It opens by double-click, also from a mail, "
         "and asks nothing of any network.\n\n"

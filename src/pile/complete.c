@@ -91,7 +91,8 @@ static scree_status open_motion(work *w, bool go_on, scree_error *error) {
 
 static scree_status put_motion(work *w, bool last, scree_error *error) {
   bool due = scree_world_time(w->run->world) >= scree_motion_next(&w->motion);
-  return due || last ? scree_motion_put(&w->motion, w->run, error) : SCREE_OK;
+  if (!due && !last) return SCREE_OK;
+  return scree_motion_put(&w->motion, w->run->world, scree_run_cylinder_height(w->run), error);
 }
 
 /* As many steps as stay before the next frame of either kind, or one. */

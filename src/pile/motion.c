@@ -159,12 +159,10 @@ static void code_bodies(scree_codec *c, const scree_world *world, size_t count) 
   }
 }
 
-scree_status scree_motion_put(scree_motion_file *file, const scree_run *run, scree_error *error) {
-  const scree_world *world = scree_run_view(run);
-  frame_header f = {scree_world_time(world),
-                    scree_run_cylinder_height(run),
-                    scree_world_body_count(world),
-                    {0, 0}};
+scree_status scree_motion_put(scree_motion_file *file, const scree_world *world,
+                              double cylinder_height, scree_error *error) {
+  frame_header f = {
+      scree_world_time(world), cylinder_height, scree_world_body_count(world), {0, 0}};
   while (f.time >= scree_motion_next(file)) file->count++;
   if (!file->stream || f.time <= file->last) return SCREE_OK;
   scree_codec bodies = {0}, frame = {0};

@@ -1,5 +1,5 @@
-/* The motion of a run on disk (docs/formats.md): frames are appended while it goes on, each with
- * its own checksum, so that a run that was killed leaves whole ones. */
+/* The motion of a run or a pour on disk (docs/formats.md): frames are appended while it goes on,
+ * each with its own checksum, so that a run that was killed leaves whole ones. */
 #ifndef SCREE_PILE_MOTION_H
 #define SCREE_PILE_MOTION_H
 
@@ -19,8 +19,9 @@ scree_status scree_motion_open(scree_motion_file *file, const char *path, double
                                bool go_on, double time, scree_error *error);
 /* s: when the next frame is due; infinity where nothing is recorded. */
 double scree_motion_next(const scree_motion_file *file);
-/* Appends the run as it stands, unless that is written already. */
-scree_status scree_motion_put(scree_motion_file *file, const scree_run *run, scree_error *error);
+/* Appends the world as it stands, unless that is written already. */
+scree_status scree_motion_put(scree_motion_file *file, const scree_world *world,
+                              double cylinder_height, scree_error *error);
 /* Does nothing for one that was never opened. */
 void scree_motion_close(scree_motion_file *file);
 

@@ -310,6 +310,7 @@ scree_status scree_pour_create(const scree_pour_shape *shapes, size_t shape_coun
 void scree_pour_free(scree_pour *pour) {
   if (!pour) return;
   scree_world_free(pour->world);
+  scree_motion_close(&pour->motion);
   for (size_t s = 0; pour->particles && s < pour->shape_count; s++)
     scree_particle_free(pour->particles[s]);
   scree_free(pour->particles);
@@ -322,17 +323,32 @@ void scree_pour_free(scree_pour *pour) {
   scree_free(pour);
 }
 
+/* ---- going on ---- */
+
+/* Steps until a moment is recorded: it falls on the first step at or past its time, however a pour
+ * is cut into calls. */
+static size_t steps_to_moment(const scree_pour *pour) {
+  double left =
+      (scree_motion_next(&pour->motion) - scree_world_time(pour->world)) / pour->time_step;
+  return left < 1e9 ? (size_t)fmax(1, floor(left) - 1) : SIZE_MAX;
+}
+
 scree_status scree_pour_advance(scree_pour *pour, size_t step_count, scree_error *error) {
   while (step_count > 0) {
-    uint64_t now = scree_world_step_count(pour->world), due = pour->layer_count * pour->layer_steps;
     scree_status status = SCREE_OK;
+    uint64_t now = scree_world_step_count(pour->world), due = pour->layer_count * pour->layer_steps;
     bool filling = pour->entered_count < pour->count;
     if (filling && now >= due) {
       status = enter_layer(pour, error);
       if (status != SCREE_OK) return status;
       continue;
     }
-    size_t steps = filling && due - now < step_count ? (size_t)(due - now) : step_count;
+    if (scree_world_time(pour->world) >= scree_motion_next(&pour->motion))
+      status = scree_motion_put(&pour->motion, pour->world, 0, error);
+    if (status != SCREE_OK) return status;
+    size_t steps = filling && due - now < step_count ? (size_t)(due - now) : step_count,
+           moment = steps_to_moment(pour);
+    if (moment < steps) steps = moment;
     status = scree_world_step(pour->world, steps, error);
     if (status != SCREE_OK) return status;
     step_count -= steps;
@@ -340,7 +356,24 @@ scree_status scree_pour_advance(scree_pour *pour, size_t step_count, scree_error
   return SCREE_OK;
 }
 
+scree_status scree_pour_record(scree_pour *pour, const char *path, double interval,
+                               scree_error *error) {
+  if (!(interval > 0))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "pour: recording every %g s; must be above 0",
+                      interval);
+  scree_motion_close(&pour->motion);
+  double time = scree_world_time(pour->world);
+  return scree_motion_open(&pour->motion, path, interval, time > 0, time, error);
+}
+
+scree_status scree_pour_record_end(scree_pour *pour, scree_error *error) {
+  return scree_motion_put(&pour->motion, pour->world, 0, error);
+}
+
 scree_world *scree_pour_world(scree_pour *pour) {
+  return pour->world;
+}
+const scree_world *scree_pour_view(const scree_pour *pour) {
   return pour->world;
 }
 void scree_pour_get_options(const scree_pour *pour, scree_pour_options *options) {

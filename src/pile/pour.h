@@ -2,6 +2,7 @@
 #ifndef SCREE_PILE_POUR_H
 #define SCREE_PILE_POUR_H
 
+#include "pile/motion.h"
 #include "world/world.h"
 
 struct scree_pour {
@@ -18,7 +19,8 @@ struct scree_pour {
   vec3 *cells; /* centres, z = 0 */
   uint32_t *cell_order;
   size_t cell_count;
-  double *notes; /* the caller's, kept with a checkpoint */
+  scree_motion_file motion; /* of no stream: nothing is recorded */
+  double *notes;            /* the caller's, kept with a checkpoint */
   size_t note_count;
 };
 

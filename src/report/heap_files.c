@@ -2,7 +2,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "report/csv.h"
-#include "report/json.h"
+#include "report/shapes.h"
 
 #include <string.h>
 
@@ -30,29 +30,15 @@ static void json_experiment(scree_json *json, const scree_experiment *e) {
   scree_json_end(json);
 }
 
-static const char *kind_name(scree_particle_kind kind) {
-  static const char *const names[] = {"mesh", "sphere", "clump"};
-  return names[kind];
-}
-
 static void json_shapes(scree_json *json, const scree_run *run) {
   scree_json_array(json, "shapes");
   for (size_t i = 0; i < scree_run_shape_count(run); i++) {
     scree_run_shape shape;
-    scree_particle_measures m;
     scree_run_get_shape(run, i, &shape);
-    scree_particle_measure(shape.particle, &m);
     scree_json_object(json, NULL);
     scree_json_text(json, "name", shape.name);
     scree_json_text(json, "source", shape.source);
-    scree_json_text(json, "kind", kind_name(m.kind));
-    scree_json_count(json, "triangle_count", m.triangle_count);
-    scree_json_count(json, "point_count", m.point_count);
-    scree_json_count(json, "edge_count", m.edge_count);
-    scree_json_number(json, "volume", m.volume);
-    scree_json_number(json, "size", m.size);
-    scree_json_number(json, "thickness", m.thickness);
-    scree_json_number(json, "rounding", m.rounding);
+    scree_shape_json(json, shape.particle);
     scree_json_number(json, "density_factor", shape.density_factor);
     scree_json_end(json);
   }

@@ -195,14 +195,12 @@ static scree_status pack(levels *l, const scree_mesh *scan, const scree_choice *
 
 /* ---- the file ---- */
 
-static scree_status write_file(levels *l, const char *path, bool overwrite) {
-  scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, l->pack.error);
-  if (status != SCREE_OK) return status;
+/* Free its bytes. */
+static scree_codec header_of(const void *bytes, size_t count) {
   scree_codec header = {0};
-  scree_checksum sum = scree_checksum_of(l->pack.out.bytes, l->pack.out.count);
+  scree_checksum sum = scree_checksum_of(bytes, count);
   uint32_t version = VERSION, mark = BYTE_ORDER_MARK;
-  uint64_t length = l->pack.out.count;
+  uint64_t length = count;
   char text[8];
   memcpy(text, magic, sizeof text);
   scree_code_bytes(&header, text, sizeof text);
@@ -211,6 +209,14 @@ static scree_status write_file(levels *l, const char *path, bool overwrite) {
   scree_code_u64(&header, &length);
   scree_code_u64(&header, &sum.high);
   scree_code_u64(&header, &sum.low);
+  return header;
+}
+
+static scree_status write_file(levels *l, const char *path, bool overwrite) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, l->pack.error);
+  if (status != SCREE_OK) return status;
+  scree_codec header = header_of(l->pack.out.bytes, l->pack.out.count);
   if (header.out_of_memory) {
     scree_output_discard(&output);
     scree_free(header.bytes);
@@ -260,4 +266,41 @@ scree_status scree_levels_check(const char *bytes, size_t byte_count, const char
     return scree_fail(error, SCREE_BAD_FILE, "%s: is damaged: %zu bytes after the header", name,
                       left);
   return SCREE_OK;
+}
+
+static void skip(scree_codec *in, size_t count) {
+  if (count > in->count - in->position)
+    in->failed = true;
+  else
+    in->position += count;
+}
+
+static uint32_t read_u32(scree_codec *in) {
+  uint32_t value = 0;
+  scree_code_u32(in, &value);
+  return value;
+}
+
+static void skip_packed(scree_codec *in, int buffer_count) {
+  for (int i = 0; i < buffer_count; i++) skip(in, read_u32(in));
+}
+
+size_t scree_levels_drop_scan(char *bytes, size_t byte_count) {
+  enum { GRID = 32, ROW = 40, MEASURE = 88, MESH_COUNTS = 8, NO_MESH = 16 };
+  scree_codec in = {.source = (const unsigned char *)bytes, .count = byte_count, .loading = true};
+  skip(&in, HEADER_BYTES + GRID + sizeof(uint32_t));
+  skip(&in, (size_t)read_u32(&in) * ROW);
+  skip(&in, (size_t)read_u32(&in) * MEASURE);
+  skip(&in, MESH_COUNTS);
+  skip_packed(&in, 2);
+  read_u32(&in); /* collapses */
+  skip_packed(&in, 2);
+  size_t start = in.position;
+  if (in.failed || byte_count - start < NO_MESH) return byte_count;
+  memset(bytes + start, 0, NO_MESH); /* no vertices, no triangles, nothing packed of either */
+  size_t left = start + NO_MESH;
+  scree_codec header = header_of(bytes + HEADER_BYTES, left - HEADER_BYTES);
+  if (scree_codec_good(&header)) memcpy(bytes, header.bytes, HEADER_BYTES);
+  scree_free(header.bytes);
+  return left;
 }

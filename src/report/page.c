@@ -1,16 +1,17 @@
 /* The report as one page: the fixed part, the results of the folders as one JSON text, the levels'
- * files as base64, the script. It asks nothing of any network, and its content security policy
- * allows nothing but the one script and the one style sheet that it names by their hashes. Texts
- * from files are escaped where they stand: in the JSON `<` as \u003c, which its strings alone can
- * hold, so that no name ends the script element it is in; the script shows texts as text only.
- * web/ holds the page's sources; page.inc is what web/build.mjs makes of them. */
+ * files and piles as base64 (page_parts.c), the script. It asks nothing of any network, and its
+ * content security policy allows nothing but the one script and the one style sheet that it names
+ * by their hashes. Texts from files are escaped where they stand: in the JSON `<` as \u003c, which
+ * its strings alone can hold, so that no name ends the script element it is in; the script shows
+ * texts as text only. web/ holds the page's sources; page.inc is what web/build.mjs makes of them.
+ */
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/file.h"
 #include "report/json.h"
 #include "report/json_check.h"
-#include "report/levels.h"
-#include "report/pile_pack.h"
+#include "report/page_parts.h"
+#include "report/shapes.h"
 
 #include <dirent.h>
 #include <stdlib.h>
@@ -21,31 +22,37 @@
 
 enum {
   MOST_RESULT_BYTES = 64 << 20,
-  MOST_PICTURE_BYTES = 1300000, /* of heap.png: where there is no WebGL */
-  LEAST_PILE_BYTES = 300000,    /* however many share the page */
+  PAGE_BYTES = 6000000, /* what mail takes; reached only where results alone have more */
+  SPARE_BYTES = 20000,  /* for what stands around the parts */
   PATH_BYTES = 4096
 };
 static const char ending[] = ".levels";
 
-/* What stands in the page as base64, behind the data that name it. */
-typedef struct part {
-  enum { LEVELS, PILE, PICTURE } kind;
-  char *path; /* of a pile: its folder */
-  char id[24];
-} part;
+/* What a folder may hold: the file, the page's name for it, what says it to readers without
+ * JavaScript, and the picture that stands in for the 3D view (NULL: none). */
+enum { CHOICE, STUDY, HEAP, POUR, RESULT_COUNT };
+static const struct {
+  const char *file, *key, *text, *picture;
+} results[RESULT_COUNT] = {{"choice.json", "choice", "choice.txt", NULL},
+                           {"study.json", "study", NULL, NULL},
+                           {"result.json", "heap", "result.txt", "heap.png"},
+                           {"drop.json", "pour", "drop.txt", "drop.png"}};
 
 typedef struct page {
   FILE *stream;
   scree_error *error;
-  struct {
-    part *items;
-    size_t count, capacity;
-  } parts;
-  size_t used_bytes, pile_count; /* of levels and pictures; piles share what is left */
+  scree_page_parts parts;
+  size_t result_bytes; /* of all JSON and texts */
 } page;
 
 static void put_all(FILE *stream, const char *const *texts) {
   for (; *texts; texts++) fputs(*texts, stream);
+}
+
+static size_t length_of(const char *const *texts) {
+  size_t length = 0;
+  for (; *texts; texts++) length += strlen(*texts);
+  return length;
 }
 
 static void put_html(FILE *stream, const char *text) {
@@ -63,20 +70,6 @@ static void put_json(FILE *stream, const char *text) {
       fputs("\\u003c", stream);
     else
       putc(*text, stream);
-  }
-}
-
-static void put_base64(FILE *stream, const char *bytes, size_t count) {
-  static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  const unsigned char *b = (const unsigned char *)bytes;
-  for (size_t i = 0; i < count; i += 3) {
-    size_t left = count - i;
-    uint32_t word = (uint32_t)b[i] << 16;
-    if (left > 1) word |= (uint32_t)b[i + 1] << 8;
-    if (left > 2) word |= b[i + 2];
-    char text[4] = {digits[word >> 18], digits[word >> 12 & 63],
-                    left > 1 ? digits[word >> 6 & 63] : '=', left > 2 ? digits[word & 63] : '='};
-    fwrite(text, 1, sizeof text, stream);
   }
 }
 
@@ -103,6 +96,7 @@ static scree_status put_member(page *p, const char *folder, const char *name, co
   if (text) *text = NULL;
   scree_status status = read_part(folder, name, path, &bytes, &size, p->error);
   if (status != SCREE_OK || !bytes) return status;
+  p->result_bytes += size;
   status = scree_json_check(bytes, size, path, p->error);
   if (status == SCREE_OK) {
     fprintf(p->stream, ",\n\"%s\": ", key);
@@ -117,34 +111,11 @@ static scree_status put_member(page *p, const char *folder, const char *name, co
 
 /* ---- parts ---- */
 
-/* Notes folder/name as a part where it exists; *added may be NULL. */
-static scree_status add_part(page *p, int kind, const char *folder, const char *name,
-                             const part **added) {
-  char path[PATH_BYTES];
-  struct stat info;
-  if (added) *added = NULL;
-  int length = snprintf(path, sizeof path, "%s/%s", folder, name);
-  if (length >= PATH_BYTES || stat(path, &info) != 0) return SCREE_OK;
-  if (kind == PICTURE && info.st_size > MOST_PICTURE_BYTES) return SCREE_OK;
-  part made = {.kind = kind, .path = scree_strdup(kind == PILE ? folder : path)};
-  snprintf(made.id, sizeof made.id, "part-%zu", p->parts.count);
-  if (!made.path || !SCREE_PUSH(&p->parts, made)) {
-    scree_free(made.path);
-    return scree_fail_memory(p->error, PATH_BYTES, "the parts of a page");
-  }
-  if (kind == PILE)
-    p->pile_count++;
-  else
-    p->used_bytes += (size_t)info.st_size;
-  if (added) *added = &p->parts.items[p->parts.count - 1];
-  return SCREE_OK;
-}
-
 /* A row [name, id] of the page's data. */
-static void put_row(scree_json *json, const char *name, const part *added) {
+static void put_row(scree_json *json, const char *name, const char *id) {
   scree_json_row_array(json, NULL);
   scree_json_text(json, NULL, name);
-  scree_json_text(json, NULL, added->id);
+  scree_json_text(json, NULL, id);
   scree_json_end(json);
 }
 
@@ -209,14 +180,14 @@ static scree_status put_levels(page *p, const char *folder, const char *choice) 
   scree_json json = scree_json_start(p->stream);
   scree_json_array(&json, NULL);
   for (size_t i = 0; i < names.count && status == SCREE_OK; i++) {
-    const part *added;
+    const char *id;
     char *name = names.items[i], file[PATH_BYTES];
     if (!is_levels(name)) continue;
     snprintf(file, sizeof file, "levels/%s", name);
     name[strlen(name) - (sizeof ending - 1)] = 0;
     if (!holds_string(choice, name)) continue;
-    status = add_part(p, LEVELS, folder, file, &added);
-    if (added) put_row(&json, name, added);
+    status = scree_page_part_add(&p->parts, SCREE_PART_LEVELS, folder, file, &id, p->error);
+    if (id) put_row(&json, name, id);
   }
   scree_json_end(&json);
   free_names(&names);
@@ -238,83 +209,61 @@ static const char *next_pile(const char *json, char key[64]) {
   return NULL;
 }
 
-/* Piles to look at: [run, id]. A heap's own has no run. */
-static scree_status put_piles(page *p, const char *folder, const char *study) {
+static scree_status put_pile(page *p, const char *folder, const char *file, const char *name,
+                             scree_json *json) {
+  const char *id;
+  scree_status status =
+      scree_page_part_add(&p->parts, SCREE_PART_PILE, folder, file, &id, p->error);
+  if (id) put_row(json, name, id);
+  return status;
+}
+
+/* Piles to look at: [run, id] of a study's points; [key, id] of a heap and of a pour. */
+static scree_status put_piles(page *p, const char *folder, const char *study, bool heap,
+                              bool pour) {
   char key[64], run[PATH_BYTES];
-  const part *added;
   scree_status status = SCREE_OK;
-  bool own = !study;
   fputs(",\n\"piles\": ", p->stream);
   scree_json json = scree_json_start(p->stream);
   scree_json_array(&json, NULL);
   while (status == SCREE_OK && study && (study = next_pile(study, key))) {
     snprintf(run, sizeof run, "%.4000s/runs/%s", folder, key);
-    status = add_part(p, PILE, run, "last.scree", &added);
-    if (added) put_row(&json, key, added);
+    status = put_pile(p, run, "last.scree", key, &json);
   }
-  if (own) {
-    status = add_part(p, PILE, folder, "last.scree", &added);
-    if (added) put_row(&json, "", added);
-  }
+  if (status == SCREE_OK && heap)
+    status = put_pile(p, folder, "last.scree", results[HEAP].key, &json);
+  if (status == SCREE_OK && pour)
+    status = put_pile(p, folder, "last.world", results[POUR].key, &json);
   scree_json_end(&json);
   return status;
 }
 
-static scree_status put_picture(page *p, const char *folder) {
-  const part *added;
-  scree_status status = add_part(p, PICTURE, folder, "heap.png", &added);
-  if (added) fprintf(p->stream, ",\n\"picture\": \"%s\"", added->id);
-  return status;
-}
-
-/* The part itself, where it stands in the page. */
-static scree_status put_part(page *p, const part *it) {
-  char *bytes = NULL;
-  unsigned char *packed = NULL;
-  size_t size = 0, all = SCREE_LEVELS_BYTES;
-  scree_status status = SCREE_OK;
-  if (it->kind == PILE) {
-    size_t share = p->used_bytes < all ? (all - p->used_bytes) / p->pile_count : 0;
-    status = scree_pile_pack(it->path, share > LEAST_PILE_BYTES ? share : LEAST_PILE_BYTES, &packed,
-                             &size, p->error);
-  } else {
-    status = scree_file_read(it->path, MOST_RESULT_BYTES, &bytes, &size, p->error);
-    if (status == SCREE_OK && it->kind == LEVELS)
-      status = scree_levels_check(bytes, size, it->path, p->error);
-  }
-  if (status == SCREE_OK && !packed && !bytes)
-    status = scree_fail(p->error, SCREE_IO, "%s: is no longer there", it->path);
-  if (status == SCREE_OK && it->kind == PICTURE)
-    fprintf(p->stream, "<img id=\"%s\" alt=\"The heap\" src=\"data:image/png;base64,", it->id);
-  else if (status == SCREE_OK)
-    fprintf(p->stream, "<script type=\"text/plain\" id=\"%s\">", it->id);
-  if (status == SCREE_OK) {
-    put_base64(p->stream, packed ? (const char *)packed : bytes, size);
-    fputs(it->kind == PICTURE ? "\">\n" : "</script>\n", p->stream);
-  }
-  scree_free(packed);
-  scree_free(bytes);
+static scree_status put_picture(page *p, const char *folder, int result) {
+  const char *id;
+  scree_status status = scree_page_part_add(&p->parts, SCREE_PART_PICTURE, folder,
+                                            results[result].picture, &id, p->error);
+  if (id) fprintf(p->stream, ",\n\"%s_picture\": \"%s\"", results[result].key, id);
   return status;
 }
 
 /* ---- the page ---- */
 
 static scree_status put_folder(page *p, const char *folder) {
-  char *choice = NULL, *study = NULL, *heap = NULL;
+  char *found[RESULT_COUNT] = {NULL};
   fputs("{\n\"folder\": ", p->stream);
   scree_json json = scree_json_start(p->stream);
   scree_json_text(&json, NULL, folder);
-  scree_status status = put_member(p, folder, "choice.json", "choice", &choice);
-  if (status == SCREE_OK) status = put_member(p, folder, "study.json", "study", &study);
-  if (status == SCREE_OK) status = put_member(p, folder, "result.json", "heap", &heap);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < RESULT_COUNT && status == SCREE_OK; i++)
+    status = put_member(p, folder, results[i].file, results[i].key, &found[i]);
   if (status == SCREE_OK) status = put_member(p, folder, "provenance.json", "provenance", NULL);
-  if (status == SCREE_OK && choice) status = put_levels(p, folder, choice);
-  if (status == SCREE_OK && (study || heap)) status = put_piles(p, folder, study);
-  if (status == SCREE_OK && heap) status = put_picture(p, folder);
+  if (status == SCREE_OK && found[CHOICE]) status = put_levels(p, folder, found[CHOICE]);
+  if (status == SCREE_OK && (found[STUDY] || found[HEAP] || found[POUR]))
+    status = put_piles(p, folder, found[STUDY], found[HEAP], found[POUR]);
+  for (int i = HEAP; i < RESULT_COUNT && status == SCREE_OK; i++)
+    if (found[i]) status = put_picture(p, folder, i);
   fputs("}", p->stream);
-  scree_free(choice);
-  scree_free(study);
-  scree_free(heap);
+  for (size_t i = 0; i < RESULT_COUNT; i++) scree_free(found[i]);
   return status;
 }
 
@@ -326,8 +275,9 @@ static bool has_file(const char *folder, const char *name) {
 }
 
 static bool has_results(const char *folder) {
-  return has_file(folder, "choice.json") || has_file(folder, "study.json") ||
-         has_file(folder, "result.json");
+  for (size_t i = 0; i < RESULT_COUNT; i++)
+    if (has_file(folder, results[i].file)) return true;
+  return false;
 }
 
 static scree_status add_name(page *p, name_list *folders, const char *path) {
@@ -355,23 +305,32 @@ static scree_status find_results(page *p, const char *folder, name_list *found) 
   if (status == SCREE_OK && found->count == before)
     status = scree_fail(p->error, SCREE_BAD_FILE,
                         "%s: holds no results: neither choice.json of `scree choose -o` nor "
-                        "result.json of `scree repose -o` nor study.json of `scree study`",
+                        "result.json of `scree repose -o` nor study.json of `scree study` nor "
+                        "drop.json of `scree drop`",
                         folder);
   return status;
 }
 
 /* What a reader without JavaScript sees. */
 static scree_status put_summaries(page *p, const name_list *folders) {
-  static const char *const names[] = {"choice.txt", "result.txt"};
   scree_status status = SCREE_OK;
-  for (size_t i = 0; i < 2 * folders->count && status == SCREE_OK; i++) {
+  for (size_t i = 0; i < RESULT_COUNT * folders->count && status == SCREE_OK; i++) {
+    const char *name = results[i % RESULT_COUNT].text;
     char *text, path[PATH_BYTES];
     size_t size;
-    status = read_part(folders->items[i / 2], names[i % 2], path, &text, &size, p->error);
-    if (status == SCREE_OK && text) put_html(p->stream, text);
+    if (!name) continue;
+    status = read_part(folders->items[i / RESULT_COUNT], name, path, &text, &size, p->error);
+    if (status == SCREE_OK && text) put_html(p->stream, text), p->result_bytes += size;
     if (status == SCREE_OK) scree_free(text);
   }
   return status;
+}
+
+static void put_colors(FILE *stream) {
+  fputs(",\n\"shapeColors\": [", stream);
+  for (size_t i = 0; i < SCREE_SHAPE_COLORS; i++)
+    fprintf(stream, "%s\"#%06x\"", i ? ", " : "", (unsigned)scree_shape_color(i));
+  fputs("]", stream);
 }
 
 static scree_status put_page(page *p, const name_list *folders) {
@@ -381,14 +340,17 @@ static scree_status put_page(page *p, const name_list *folders) {
   fputs("<script type=\"application/json\" id=\"data\">{\"version\": ", p->stream);
   scree_json json = scree_json_start(p->stream);
   scree_json_text(&json, NULL, scree_version());
+  put_colors(p->stream);
   fputs(",\n\"folders\": [", p->stream);
   for (size_t i = 0; i < folders->count && status == SCREE_OK; i++) {
     if (i > 0) fputs(",\n", p->stream);
     status = put_folder(p, folders->items[i]);
   }
   fputs("]}</script>\n", p->stream);
-  for (size_t i = 0; i < p->parts.count && status == SCREE_OK; i++)
-    status = put_part(p, &p->parts.items[i]);
+  size_t used = length_of(page_top) + length_of(page_middle) + length_of(page_script) +
+                p->result_bytes + SPARE_BYTES;
+  size_t room = used < PAGE_BYTES ? (PAGE_BYTES - used) / 4 * 3 : 0; /* as base64 */
+  if (status == SCREE_OK) status = scree_page_parts_put(&p->parts, p->stream, room, p->error);
   fputs("<script type=\"module\">", p->stream);
   put_all(p->stream, page_script);
   fputs("</script>\n</body>\n</html>\n", p->stream);
@@ -412,8 +374,7 @@ scree_status scree_page_write(const char *const *folders, size_t folder_count, c
     else
       scree_output_discard(&output);
   }
-  for (size_t i = 0; i < p.parts.count; i++) scree_free(p.parts.items[i].path);
-  scree_free(p.parts.items);
+  scree_page_parts_free(&p.parts);
   free_names(&found);
   return status;
 }

@@ -24,8 +24,11 @@ static const double one = 32767; /* of a quaternion's component */
 
 typedef struct pile {
   scree_packing pack;
-  scree_run *run;
-  scree_motion motion; /* at least one frame */
+  scree_run *run;           /* NULL: a pour's, and */
+  scree_world *poured;      /* its world */
+  const scree_world *world; /* of either */
+  scree_shapes shapes;      /* of a pour */
+  scree_motion motion;      /* at least one frame */
 } pile;
 
 /* position on the grid, whether it is there, quaternion */
@@ -34,11 +37,11 @@ typedef struct moment {
   int16_t q[4];
 } moment;
 
-/* ---- what is in the folder ---- */
+/* ---- what is on disk ---- */
 
 /* The last frame alone. */
 static scree_status still(pile *p) {
-  const scree_world *world = scree_run_view(p->run);
+  const scree_world *world = p->world;
   size_t bodies = scree_world_body_count(world);
   scree_motion *m = &p->motion;
   *m = (scree_motion){.frame_count = 1, .body_count = bodies};
@@ -48,7 +51,7 @@ static scree_status still(pile *p) {
   if (!m->time || !m->cylinder_height || !m->poses)
     return scree_fail_memory(p->pack.error, bodies * 7 * sizeof *m->poses, "a pile");
   m->time[0] = scree_world_time(world);
-  m->cylinder_height[0] = scree_run_cylinder_height(p->run);
+  m->cylinder_height[0] = p->run ? scree_run_cylinder_height(p->run) : 0;
   for (size_t b = 0; b < bodies; b++) {
     scree_body body;
     scree_world_get_body(world, b, &body);
@@ -60,9 +63,8 @@ static scree_status still(pile *p) {
   return SCREE_OK;
 }
 
-/* Whether the motion ends with the run's last frame: else it is of another run. */
-static bool is_of_run(const scree_motion *m, const scree_run *run) {
-  const scree_world *world = scree_run_view(run);
+/* Whether the motion ends with the world as it stands: else it is of another run. */
+static bool ends_with(const scree_motion *m, const scree_world *world) {
   if (m->frame_count == 0 || m->body_count != scree_world_body_count(world)) return false;
   size_t last = m->frame_count - 1;
   if (m->time[last] != scree_world_time(world)) return false;
@@ -76,24 +78,47 @@ static bool is_of_run(const scree_motion *m, const scree_run *run) {
   return true;
 }
 
-static bool find(const char *folder, const char *name, char path[PATH_BYTES]) {
-  struct stat info;
-  int length = snprintf(path, PATH_BYTES, "%s/%s", folder, name);
-  return length < PATH_BYTES && stat(path, &info) == 0;
+static scree_status load_state(pile *p, const char *path) {
+  const char *dot = strrchr(path, '.');
+  if (dot && !strcmp(dot, ".world")) {
+    scree_status status = scree_world_load(path, &p->poured, p->pack.error);
+    p->world = p->poured;
+    return status == SCREE_OK ? scree_shapes_find(p->world, &p->shapes, p->pack.error) : status;
+  }
+  scree_status status = scree_run_load(path, &p->run, p->pack.error);
+  if (status == SCREE_OK) p->world = scree_run_view(p->run);
+  return status;
 }
 
-static scree_status load(pile *p, const char *folder, bool *found) {
-  char path[PATH_BYTES];
-  *found = find(folder, "last.scree", path);
-  if (!*found) return SCREE_OK;
-  scree_status status = scree_run_load(path, &p->run, p->pack.error);
+static scree_status load(pile *p, const char *path) {
+  const char *slash = strrchr(path, '/');
+  char beside[PATH_BYTES];
+  struct stat info;
+  scree_status status = load_state(p, path);
   if (status != SCREE_OK) return status;
-  if (find(folder, "motion.scree", path)) {
-    status = scree_motion_read(path, &p->motion, p->pack.error);
-    if (status != SCREE_OK || is_of_run(&p->motion, p->run)) return status;
+  int length = snprintf(beside, sizeof beside, "%.*smotion.scree",
+                        (int)(slash ? slash + 1 - path : 0), path);
+  if (length < PATH_BYTES && stat(beside, &info) == 0) {
+    status = scree_motion_read(beside, &p->motion, p->pack.error);
+    if (status != SCREE_OK || ends_with(&p->motion, p->world)) return status;
     scree_motion_free(&p->motion);
   }
   return still(p);
+}
+
+/* ---- the container ---- */
+
+/* Radii of disc and cylinder, sides of a box along x and y; 0 where there is none. */
+static void find_container(const scree_world *world, double sizes[4]) {
+  memset(sizes, 0, 4 * sizeof *sizes);
+  for (size_t w = 0; w < scree_world_wall_count(world); w++) {
+    scree_wall wall;
+    scree_world_get_wall(world, w, &wall);
+    if (wall.kind == SCREE_WALL_DISC) sizes[0] = wall.radius;
+    if (wall.kind == SCREE_WALL_CYLINDER) sizes[1] = wall.radius;
+    for (int k = 0; wall.kind == SCREE_WALL_PLANE && k < 2; k++)
+      if (fabs(wall.axis[k]) > 0.5) sizes[2 + k] = 2 * fabs(wall.position[k]);
+  }
 }
 
 /* ---- shapes ---- */
@@ -131,18 +156,28 @@ static void put_grid(scree_packing *p) {
   scree_code_real(&p->out, &p->step);
 }
 
+/* A pour's have no names here: drop.json has them. */
+static scree_run_shape shape_of(const pile *p, size_t index) {
+  scree_run_shape shape = {0};
+  if (p->run)
+    scree_run_get_shape(p->run, index, &shape);
+  else
+    shape.particle = p->shapes.particles[index];
+  return shape;
+}
+
 static scree_status put_shapes(pile *p) {
-  size_t shapes = scree_run_shape_count(p->run), bodies = p->motion.body_count;
+  size_t shapes = p->run ? scree_run_shape_count(p->run) : p->shapes.count;
+  size_t bodies = p->motion.body_count;
   size_t target = MOST_DRAWN / (bodies ? bodies : 1);
   target = target < LEAST_SHAPE ? LEAST_SHAPE : target > MOST_SHAPE ? MOST_SHAPE : target;
   scree_pack_u32(&p->pack, shapes);
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < shapes; i++) {
-    scree_run_shape shape;
+    scree_run_shape shape = shape_of(p, i);
     scree_particle_measures m;
     scree_mesh mesh = {0};
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    scree_run_get_shape(p->run, i, &shape);
     scree_particle_measure(shape.particle, &m);
     status = drawn_surface(p, shape.particle, target, &mesh);
     for (size_t v = 0; v < mesh.vertex_count; v++)
@@ -161,7 +196,8 @@ static scree_status put_bodies(pile *p) {
   size_t bodies = p->motion.body_count;
   uint32_t *shape = scree_alloc(bodies, sizeof *shape);
   if (!shape) return scree_fail_memory(p->pack.error, bodies * sizeof *shape, "a pile");
-  for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)scree_run_body_shape(p->run, b);
+  for (size_t b = 0; b < bodies; b++)
+    shape[b] = (uint32_t)(p->run ? scree_run_body_shape(p->run, b) : p->shapes.of_body[b]);
   scree_pack_u32(&p->pack, bodies);
   scree_status status = scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape);
   scree_free(shape);
@@ -231,9 +267,9 @@ static scree_status put_motion(pile *p, size_t stride) {
 }
 
 static scree_status pack(pile *p, size_t byte_limit) {
-  const scree_experiment *e = scree_run_experiment(p->run);
-  double radii[2] = {0.5 * e->disc_diameter, 0.5 * e->cylinder_diameter};
-  scree_code_reals(&p->pack.out, radii, 2);
+  double sizes[4];
+  find_container(p->world, sizes);
+  scree_code_reals(&p->pack.out, sizes, 4);
   scree_status status = put_shapes(p);
   if (status == SCREE_OK) status = put_bodies(p);
   find_grid(p);
@@ -249,14 +285,20 @@ static scree_status pack(pile *p, size_t byte_limit) {
   return status;
 }
 
-scree_status scree_pile_pack(const char *folder, size_t byte_limit, unsigned char **bytes,
+scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char **bytes,
                              size_t *byte_count, scree_error *error) {
   pile p = {.pack = {.error = error}};
-  bool found = false;
-  scree_status status = load(&p, folder, &found);
-  if (status == SCREE_OK && found) status = pack(&p, byte_limit);
+  struct stat info;
+  if (stat(path, &info) != 0) {
+    *bytes = NULL;
+    return SCREE_OK;
+  }
+  scree_status status = load(&p, path);
+  if (status == SCREE_OK) status = pack(&p, byte_limit);
   scree_motion_free(&p.motion);
   scree_run_free(p.run);
+  scree_world_free(p.poured);
+  scree_shapes_free(&p.shapes);
   if (status == SCREE_OK) {
     *bytes = p.pack.out.bytes;
     *byte_count = p.pack.out.count;

@@ -1,13 +1,14 @@
-/* The pile of a run for the report's page: its shapes, and where its bodies were. */
+/* The pile of a run or a pour for the report's page: its shapes, and where its bodies were. */
 #ifndef SCREE_REPORT_PILE_PACK_H
 #define SCREE_REPORT_PILE_PACK_H
 
 #include "base/error.h"
 
-/* Packs last.scree of a run's folder and what motion.scree tells of it (docs/formats.md) into at
- * most byte_limit bytes, where the shapes and one frame fit, leaving out frames; *bytes is NULL
- * where the folder has no last.scree. Free it with scree_free. */
-scree_status scree_pile_pack(const char *folder, size_t byte_limit, unsigned char **bytes,
+/* Packs the last frame of a run, or the world (.world) that a pour left, and what motion.scree
+ * beside it tells of it (docs/formats.md) into at most byte_limit bytes, where the shapes and one
+ * frame fit, leaving out frames; *bytes is NULL where path does not exist. Free it with scree_free.
+ */
+scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char **bytes,
                              size_t *byte_count, scree_error *error);
 
 #endif

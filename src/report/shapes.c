@@ -4,6 +4,41 @@
 #include "base/alloc.h"
 #include "base/vec.h"
 
+#include <math.h>
+
+/* ---- how they are shown and told ---- */
+
+/* Told apart also by lightness. */
+static const uint32_t colors[SCREE_SHAPE_COLORS] = {
+    0x4575b4, 0xd9612c, 0x4c9954, 0xd6a638, 0x855099, 0x61b5c2, 0xb53845, 0x99999e, 0xd9c9a6};
+
+uint32_t scree_shape_color(size_t shape) {
+  return colors[shape % SCREE_SHAPE_COLORS];
+}
+
+void scree_shape_color_linear(size_t shape, float linear[3]) {
+  for (int k = 0; k < 3; k++) {
+    double s = (scree_shape_color(shape) >> (16 - 8 * k) & 255) / 255.0;
+    linear[k] = (float)(s <= 0.04045 ? s / 12.92 : pow((s + 0.055) / 1.055, 2.4));
+  }
+}
+
+void scree_shape_json(scree_json *json, const scree_particle *particle) {
+  static const char *const kinds[] = {"mesh", "sphere", "clump"};
+  scree_particle_measures m;
+  scree_particle_measure(particle, &m);
+  scree_json_text(json, "kind", kinds[m.kind]);
+  scree_json_count(json, "triangle_count", m.triangle_count);
+  scree_json_count(json, "point_count", m.point_count);
+  scree_json_count(json, "edge_count", m.edge_count);
+  scree_json_number(json, "volume", m.volume);
+  scree_json_number(json, "size", m.size);
+  scree_json_number(json, "thickness", m.thickness);
+  scree_json_number(json, "rounding", m.rounding);
+}
+
+/* ---- finding them ---- */
+
 void scree_shapes_free(scree_shapes *shapes) {
   scree_free(shapes->particles);
   scree_free(shapes->of_body);

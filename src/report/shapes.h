@@ -2,7 +2,7 @@
 #ifndef SCREE_REPORT_SHAPES_H
 #define SCREE_REPORT_SHAPES_H
 
-#include "base/error.h"
+#include "report/json.h"
 
 typedef struct scree_shapes {
   scree_particle **particles; /* of each shape, borrowed */
@@ -12,6 +12,16 @@ typedef struct scree_shapes {
 
 scree_status scree_shapes_find(const scree_world *world, scree_shapes *shapes, scree_error *error);
 void scree_shapes_free(scree_shapes *shapes);
+
+/* Shapes told apart by colour, in pictures and on the page: shape k has colour k modulo their
+ * number. */
+enum { SCREE_SHAPE_COLORS = 9 };
+/* As sRGB 0xrrggbb, and as linear RGB in [0, 1]. */
+uint32_t scree_shape_color(size_t shape);
+void scree_shape_color_linear(size_t shape, float linear[3]);
+
+/* kind, counts and sizes of a particle, as members of the open object (docs/formats.md). */
+void scree_shape_json(scree_json *json, const scree_particle *particle);
 
 /* The spheres of a sphere or clump, in its frame, each as an icosphere of 20 * 4^level triangles.
  */

@@ -6,14 +6,7 @@
 #include <string.h>
 
 static const double room = 0.85; /* of the heap's radius: a picture is wider than high */
-enum { SPHERE_LEVEL = 3, COLOURS = 9 };
-
-/* Linear RGB, told apart also by lightness. */
-static const float palette[COLOURS][3] = {
-    {0.27f, 0.46f, 0.73f}, {0.85f, 0.38f, 0.17f}, {0.30f, 0.60f, 0.33f},
-    {0.84f, 0.65f, 0.22f}, {0.52f, 0.30f, 0.60f}, {0.38f, 0.71f, 0.76f},
-    {0.71f, 0.22f, 0.27f}, {0.60f, 0.60f, 0.62f}, {0.85f, 0.79f, 0.65f},
-};
+enum { SPHERE_LEVEL = 3 };
 
 typedef struct scene {
   scree_shapes shapes;
@@ -33,7 +26,8 @@ static scree_status make_spheres(scene *s, scree_error *error) {
   return status;
 }
 
-static void add_bodies(const scree_world *world, scene *s) {
+/* run: where not NULL, the shapes are numbered as it has them. */
+static void add_bodies(const scree_world *world, const scree_run *run, scene *s) {
   for (size_t i = 0; i < scree_world_body_count(world); i++) {
     if (scree_world_body_removed(world, i)) continue;
     size_t shape = s->shapes.of_body[i];
@@ -45,13 +39,13 @@ static void add_bodies(const scree_world *world, scene *s) {
                                             : scree_particle_mesh(s->shapes.particles[shape])};
     memcpy(item->position, body.position, sizeof item->position);
     memcpy(item->quaternion, body.orientation, sizeof item->quaternion);
-    memcpy(item->color, palette[shape % COLOURS], sizeof item->color);
+    scree_shape_color_linear(run ? scree_run_body_shape(run, i) : shape, item->color);
   }
 }
 
-scree_status scree_world_picture(const scree_world *world, const scree_render_options *options,
-                                 const scree_progress *progress, scree_image *image,
-                                 scree_error *error) {
+static scree_status draw(const scree_world *world, const scree_run *run,
+                         const scree_render_options *options, const scree_progress *progress,
+                         scree_image *image, scree_error *error) {
   size_t bodies = scree_world_body_count(world);
   scene s = {0};
   scree_status status = scree_shapes_find(world, &s.shapes, error);
@@ -64,7 +58,7 @@ scree_status scree_world_picture(const scree_world *world, const scree_render_op
   }
   status = make_spheres(&s, error);
   if (status != SCREE_OK) goto done;
-  add_bodies(world, &s);
+  add_bodies(world, run, &s);
   scree_render_cell cell = {s.items, s.item_count, NULL};
   status = scree_render(&cell, 1, options, progress, image, error);
 done:
@@ -73,6 +67,12 @@ done:
   scree_free(s.items);
   scree_shapes_free(&s.shapes);
   return status;
+}
+
+scree_status scree_world_picture(const scree_world *world, const scree_render_options *options,
+                                 const scree_progress *progress, scree_image *image,
+                                 scree_error *error) {
+  return draw(world, NULL, options, progress, image, error);
 }
 
 /* The heap in the middle: as wide as its base, or as most of the bodies lie where there is none. */
@@ -97,5 +97,5 @@ scree_status scree_run_picture(const scree_run *run, const scree_render_options 
   scree_render_options o = *options;
   scree_status status = o.focus_radius > 0 ? SCREE_OK : focus_on_heap(run, &o, error);
   if (status != SCREE_OK) return status;
-  return scree_world_picture(scree_run_view(run), &o, progress, image, error);
+  return draw(scree_run_view(run), run, &o, progress, image, error);
 }

@@ -61,10 +61,18 @@ for how in INT KILL; do
   "$SCREE" drop $again --resume -o cut --time 0.3 --still 0 --frames 0.05 --no-picture -q >/dev/null || echo failed
   rm -f cut/*.part # half a checkpoint
   for file in whole/*; do
-    [ "$file" != whole/checkpoint.scree ] || continue # knows how long the command was
+    case $file in
+    # these know the command, or where the pour was stopped
+    whole/checkpoint.scree | whole/drop.json | whole/provenance.json | whole/motion.scree | whole/report.html) continue ;;
+    esac
     sed 1,2d "$file" >left.txt # names of files, and the command
     sed 1,2d "cut/${file#whole/}" | cmp - left.txt
   done
+  for folder in whole cut; do
+    sed -n '/"result"/,/"options"/p; /"series"/,$p' $folder/drop.json >$folder.json
+  done
+  # without shapes named a pour knows no names, but all else
+  cmp whole.json cut.json
   ls whole >left.txt
   ls cut | cmp - left.txt
   [ $how = KILL ] || rm -r cut

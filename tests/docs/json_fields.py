@@ -78,6 +78,9 @@ for heading, calls in VERBS.items():
     failed |= compare(heading, found)
 subprocess.run([program, "export", SOLID, "-o", "solid.stl", "-q"], check=True)
 failed |= compare("scree export of a surface", fields_of(open("solid.json", "rb").read()))
+subprocess.run([program, "drop", "sphere:20mm=2", "--time", "0.01", "--no-picture", "-o", "pour", "-q"], check=True,
+               stdout=subprocess.DEVNULL)
+failed |= compare("scree drop", fields_of(open("pour/drop.json", "rb").read()))
 subprocess.run([program, "simplify", SOLID, "-n", "12", "--density", "3", "-o", "level.stl", "-q"], check=True)
 subprocess.run([program, "choose", SOLID, BALL, "--density", "3", "-o", "chosen", "-q"], check=True, stdout=subprocess.DEVNULL)
 for path in ("level.json", "chosen/box-12.mass.json", "chosen/set/icosphere-3.mass.json"):

@@ -100,6 +100,30 @@ class Browser:
         self.devtools("Emulation.setEmulatedMedia", features=[
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"}])
 
+    def resting_box(self, selector):
+        """Where the element is once it has been scrolled to and nothing moves it any more."""
+        boxes = []
+        while len(boxes) < 4 or any(box != boxes[-1] for box in boxes[-4:]):
+            boxes.append(self.run("const e = document.querySelector(arguments[0]);"
+                                  "e.scrollIntoView({block: 'center', behavior: 'instant'}); const b = e.getBoundingClientRect();"
+                                  "return {x: b.x, y: b.y, width: b.width, height: b.height}", selector))
+            time.sleep(0.1)
+        return boxes[-1]
+
+    def drag_finger(self, selector, start, end, steps=8):
+        """One finger on the screen, from one place to another, as shares of the element's width and height."""
+        box = self.resting_box(selector)
+        place = [[box["x"] + box["width"] * x, box["y"] + box["height"] * y] for x, y in (start, end)]
+        for step in range(steps + 1):
+            x, y = (a + (b - a) * step / steps for a, b in zip(*place))
+            self.devtools("Input.dispatchTouchEvent", type="touchMove" if step else "touchStart",
+                          touchPoints=[{"x": x, "y": y, "id": 1}])
+            time.sleep(0.03)
+        self.devtools("Input.dispatchTouchEvent", type="touchEnd", touchPoints=[])
+
+    def fingers(self, on):
+        self.devtools("Emulation.setTouchEmulationEnabled", enabled=on, maxTouchPoints=5)
+
     def screenshot(self, path, whole=True):
         picture = self.devtools("Page.captureScreenshot", captureBeyondViewport=whole, **(
             {"clip": {**self.size(), "x": 0, "y": 0, "scale": 1}} if whole else {}))

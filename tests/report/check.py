@@ -133,6 +133,31 @@ def tables_are_saved(browser):
     check(any(row.startswith('"robust') for text in saved for row in text.split("\r\n")), "no candidates in the CSV")
 
 
+def fingers_do(browser, slider, view, shown_as):
+    """On a phone: one finger on the slider moves it, one on the 3D view turns it; the page does not scroll meanwhile."""
+    browser.look(width=390, height=844)
+    browser.fingers(True)
+    browser.wait("innerWidth == 390 && [...document.querySelectorAll('.uplot')].every((e) => e.clientWidth < 390)")
+    before = float(browser.run(f"return document.body.dataset.{shown_as}"))
+    browser.run("const s = document.querySelector(arguments[0]); s.value = 0; s.dispatchEvent(new Event('input'))", slider)
+    browser.wait(f"Number(document.body.dataset.{shown_as}) < {before}")
+    before = float(browser.run(f"return document.body.dataset.{shown_as}"))
+    browser.drag_finger(slider, (0.02, 0.5), (0.7, 0.5))
+    browser.wait(f"Number(document.body.dataset.{shown_as}) > {before}")
+    share = float(browser.run("const s = document.querySelector(arguments[0]); return s.value / s.max", slider))
+    check(0.5 < share < 0.9, f"the slider is not where the finger left it: {share}")
+    index = browser.run("return [...document.querySelectorAll('.view canvas')].indexOf(document.querySelector(arguments[0]))", view)
+    seen = painted(browser, index)
+    browser.resting_box(view)
+    top = browser.run("return scrollY")
+    browser.drag_finger(view, (0.3, 0.5), (0.8, 0.3))
+    redrawn(browser, index, seen, "a finger does not turn the view")
+    check(browser.run("return scrollY") == top, "the page scrolls under the finger that turns the view")
+    browser.fingers(False)
+    browser.look()
+    browser.wait("innerWidth == 1200")
+
+
 def pictures(browser, name, **how):
     """The page from another window: nothing sticks out; screenshot and print where asked for."""
     browser.look(**how)
@@ -158,6 +183,7 @@ def one_object(browser, folder):
     slider_drives_the_mesh(browser)
     views_obey(browser)
     tables_are_saved(browser)
+    fingers_do(browser, ".slider", ".view + .view canvas", "shownTriangles")
     no_complaints(browser, "one object")
     pictures(browser, "light")
     pictures(browser, "phone", width=390, height=844)
@@ -182,6 +208,24 @@ def several_objects(browser, folder):
     scree("report", "one", "two", "-o", "both.html", folder=folder)
     ready(browser, os.path.join(folder, "both.html"))
     check(browser.text("main").count("How this was made") == 2, "a page of two folders lacks one")
+
+
+def a_large_page(browser, folder):
+    """Folders that are too much for one page: scans, then levels are left out, and that is said."""
+    scree("choose", "sample:dc-1", "--resolution", "0.45mm", "-o", "many/1", folder=folder)
+    for i in range(2, 7):
+        shutil.copytree(os.path.join(folder, "many", "1"), os.path.join(folder, "many", str(i)))
+    os.remove(os.path.join(folder, "many", "1", "report.html"))
+    scree("report", "many", "-o", "many.html", folder=folder)
+    page = os.path.join(folder, "many.html")
+    check(os.path.getsize(page) < 6e6, f"the page has {os.path.getsize(page)} bytes")
+    ready(browser, page)
+    text = browser.text("main")
+    check("the finest that fits into this page" in text, "a scan is left out, and nothing is said")
+    check(text.count("are not in this page, which would grow too large") >= 1, "levels are left out, and nothing is said")
+    check(text.count("How this was made") == 6, "a folder is missing")
+    check(painted(browser, 0)["covered"] > 300, "no level stands in for the scan")
+    no_complaints(browser, "a large page")
 
 
 def seek(browser, moment):
@@ -239,6 +283,7 @@ def a_heap(browser, folder):
     browser.run("dispatchEvent(new Event('beforeprint'))")
     check(float(browser.run("return document.body.dataset.shownTime")) == end, "print does not show the end")
     browser.run("dispatchEvent(new Event('afterprint'))")
+    fingers_do(browser, ".time", ".pile canvas", "shownTime")
     no_complaints(browser, "a heap")
     pictures(browser, "heap")
     pictures(browser, "heap-phone", width=390, height=844)
@@ -256,6 +301,35 @@ def a_heap(browser, folder):
           "--settle-time", "0.1", "--lift-time", "0.3", "--hold-time", "0.1", "--drop-height", "0.05", "--no-picture", "-o", "levels", folder=folder)
     ready(browser, os.path.join(folder, "levels", "report.html"))
     check(browser.text("main").count("Angle against time") <= 2 and browser.text("main").count("How this was made") == 2, "a page of two levels lacks one")
+    return page
+
+
+def a_pour(browser, folder):
+    scree("drop", "sample:fp-1=5", "sphere:30mm=4", "--resolution", "3mm", "-n", "60", "-c", "box", "-w", "230mm", "--time", "0.3",
+          "--frames", "0", "-o", "pour", folder=folder)
+    page = os.path.join(folder, "pour", "report.html")
+    with open(os.path.join(folder, "pour", "drop.json"), encoding="utf-8") as file:
+        pour = json.load(file)
+    with open(os.path.join(folder, "pour", "series.csv"), encoding="utf-8") as file:
+        check(len(file.readlines()) == 2 + len(pour["series"]["time"]), "drop.json has other moments than series.csv")
+    ready(browser, page)
+    text = browser.text("main")
+    for part in ("9 particles of 2 shapes poured into a box of 230 × 230 mm", "sphere:30mm", "Where the energy went",
+                 "Energy of motion against time", "How this was made", "-c box"):
+        check(part in text, f"the pour does not say: {part}")
+    end = float(browser.run("return document.body.dataset.shownTime"))
+    check(abs(end - pour["result"]["time"]) < 1e-9, "the page does not begin at the end")
+    check(int(browser.run("return document.body.dataset.shownBodies")) == 9, "a particle is missing")
+    last = painted(browser, 0)
+    check(last["covered"] > 300 and last["colors"] > 5, f"no pour to be seen: {last}")
+    start = seek(browser, 0)
+    check(start[0] == 0 and 0 < start[1] < 9, f"the slider does not go to the start: {start}")
+    redrawn(browser, 0, last, "the slider does not change the view")
+    check(browser.run("return document.querySelectorAll('.uplot canvas').length") == 4, "a curve is missing")
+    no_complaints(browser, "a pour")
+    pictures(browser, "pour")
+    pictures(browser, "pour-phone", width=390, height=844)
+    browser.look()
     return page
 
 
@@ -321,7 +395,7 @@ def a_study(browser, folder):
     pictures(browser, "study")
 
 
-def what_is_missing_is_said(page, heap):
+def what_is_missing_is_said(page, heap, pour):
     with Browser(webgl=False) as browser:
         ready(browser, page)
         text = browser.text("main")
@@ -331,11 +405,16 @@ def what_is_missing_is_said(page, heap):
         check("shows no WebGL" in browser.text("main"), "nothing is said where WebGL is missing")
         check(browser.run("const i = document.querySelector('.pile img'); return i.complete && i.naturalWidth > 100"), "no picture stands in for the heap")
         pictures(browser, "heap-no-webgl", width=600)
+        ready(browser, pour)
+        check("shows no WebGL" in browser.text("main"), "nothing is said where WebGL is missing")
+        check(browser.run("return document.querySelectorAll('.pile img').length") == 1, "no picture stands in for the pour")
     with Browser(script=False) as browser:
         browser.open(page)
         check("Use " in browser.text("body"), "nothing is said where JavaScript is off")
         browser.open(heap)
         check("24 particles of 2 shapes" in browser.text("body"), "nothing is said of a heap where JavaScript is off")
+        browser.open(pour)
+        check("touching pairs" in browser.text("body"), "nothing is said of a pour where JavaScript is off")
 
 
 def main():
@@ -349,8 +428,10 @@ def main():
             several_objects(browser, folder)
             a_study(browser, folder)
             heap = a_heap(browser, folder)
+            pour = a_pour(browser, folder)
             a_real_study(browser, folder)
-        what_is_missing_is_said(page, heap)
+            a_large_page(browser, folder)
+        what_is_missing_is_said(page, heap, pour)
     return 0
 
 

@@ -234,12 +234,15 @@ static void skip_shape(packed *f, size_t shape) {
 static packed pack(const char *name, size_t limit) {
   packed f = {0};
   scree_error error;
-  double radii[2];
-  CHECK_OK(scree_pile_pack(in_folder(name), limit, &f.bytes, &f.size, &error), error);
+  double sizes[4];
+  char file[80];
+  snprintf(file, sizeof file, "%s/last.scree", name);
+  CHECK_OK(scree_pile_pack(in_folder(file), limit, &f.bytes, &f.size, &error), error);
   f.in = (scree_codec){.source = f.bytes, .count = f.size, .loading = true};
-  scree_code_reals(&f.in, radii, 2);
-  CHECK_NEAR(radii[0], 0.05, 1e-12);
-  CHECK_NEAR(radii[1], 0.04, 1e-12);
+  scree_code_reals(&f.in, sizes, 4);
+  CHECK_NEAR(sizes[0], 0.05, 1e-12);
+  CHECK_NEAR(sizes[1], 0.04, 1e-12);
+  assert_true(sizes[2] == 0 && sizes[3] == 0);
   assert_int_equal(u32(&f), 2);
   for (size_t i = 0; i < 2; i++) skip_shape(&f, i);
   f.body_count = u32(&f);
@@ -342,7 +345,7 @@ static scree_status pack_again(void *context, scree_error *error) {
 static void out_of_memory_is_told(void **state) {
   (void)state;
   check_allocation_failures(read_again, (void *)(uintptr_t)in_folder("whole/motion.scree"));
-  check_allocation_failures(pack_again, (void *)(uintptr_t)in_folder("whole"));
+  check_allocation_failures(pack_again, (void *)(uintptr_t)in_folder("whole/last.scree"));
 }
 
 int main(void) {

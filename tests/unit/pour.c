@@ -1,7 +1,13 @@
 /* Pouring: every particle enters once, inside the container, clear of the others; any cut into
- * calls and any number of threads give the same bits. */
+ * calls and any number of threads give the same bits; what is recorded of it is where the bodies
+ * were. */
+#include "base/alloc.h"
+#include "base/codec.h"
+#include "base/file.h"
+#include "report/pile_pack.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 #include <string.h>
@@ -109,6 +115,101 @@ static void cuts_and_threads_change_nothing(void **state) {
   scree_set_threads(0);
 }
 
+/* Steps another pour to each moment of the motion and compares; the last is that of the world
+ * saved. */
+static void check_motion(const scree_motion *m, const scree_pour_options *o) {
+  scree_error error;
+  scree_pour *beside = make_pour(o, 9, 9);
+  const scree_world *world = scree_pour_view(beside);
+  for (size_t f = 0; f < m->frame_count; f++) {
+    assert_true(scree_world_time(world) <= m->time[f]);
+    while (scree_world_time(world) < m->time[f])
+      CHECK_OK(scree_pour_advance(beside, 1, &error), error);
+    if (f + 1 < m->frame_count) /* a layer that enters at this moment is in */
+      assert_true(m->time[f] >= (double)f * 1e-3 && m->time[f] < (double)(f + 1) * 1e-3);
+    assert_true(m->time[f] == scree_world_time(world));
+    for (size_t b = 0; b < scree_world_body_count(world); b++) {
+      scree_body body;
+      scree_world_get_body(world, b, &body);
+      for (int k = 0; k < 3; k++)
+        assert_true(m->poses[7 * (f * m->body_count + b) + (size_t)k] == (float)body.position[k]);
+    }
+  }
+  scree_pour_free(beside);
+}
+
+/* Saved; a bit further, which is lost; and loaded again. */
+static scree_pour *gone_on(scree_pour *pour) {
+  scree_error error;
+  CHECK_OK(scree_pour_save(pour, in_folder("saved"), true, &error), error);
+  CHECK_OK(scree_pour_advance(pour, 300, &error), error);
+  scree_pour_free(pour);
+  CHECK_OK(scree_pour_load(in_folder("saved"), &pour, &error), error);
+  CHECK_OK(scree_pour_record(pour, in_folder("motion.scree"), 1e-3, &error), error);
+  return pour;
+}
+
+static void what_is_recorded_is_where_the_bodies_were(void **state) {
+  (void)state;
+  scree_checksum first = {0};
+  const size_t cuts[] = {4000, 77, 1, 1500}; /* the last one is saved and goes on */
+  scree_pour_options o = soft_options(SCREE_CONTAINER_BOX, 0.2);
+  o.depth = 0.25;
+  for (int c = 0; c < 4; c++) {
+    scree_error error;
+    scree_motion motion;
+    scree_pour *pour = make_pour(&o, 9, 9);
+    CHECK_OK(scree_pour_record(pour, in_folder("motion.scree"), 1e-3, &error), error);
+    for (size_t done = 0; done < 4000;) {
+      size_t steps = 4000 - done < cuts[c] ? 4000 - done : cuts[c];
+      CHECK_OK(scree_pour_advance(pour, steps, &error), error);
+      done += steps;
+      if (c == 3) pour = gone_on(pour);
+    }
+    CHECK_OK(scree_pour_record_end(pour, &error), error);
+    CHECK_OK(scree_world_save(scree_pour_view(pour), in_folder("last.world"), true, &error), error);
+    CHECK_OK(scree_motion_read(in_folder("motion.scree"), &motion, &error), error);
+    assert_true(motion.frame_count > 20 && motion.body_count == 18);
+    scree_checksum sum =
+        scree_checksum_of(motion.poses, 28 * motion.frame_count * motion.body_count);
+    if (c == 0) first = sum;
+    assert_true(sum.high == first.high && sum.low == first.low);
+    if (c == 0) check_motion(&motion, &o);
+    scree_motion_free(&motion);
+    scree_pour_free(pour);
+  }
+}
+
+/* The head of what the page gets: no disc, no cylinder, the box, two shapes; and that a motion of
+ * another pour is not taken for this one's. */
+static void the_page_gets_the_box(void **state) {
+  (void)state;
+  unsigned char *bytes = NULL, *still = NULL;
+  size_t size, still_size;
+  double sizes[4];
+  scree_error error;
+  CHECK_OK(scree_pile_pack(in_folder("last.world"), 1 << 20, &bytes, &size, &error), error);
+  scree_codec in = {.source = bytes, .count = size, .loading = true};
+  scree_code_reals(&in, sizes, 4);
+  uint32_t shapes = 0;
+  scree_code_u32(&in, &shapes);
+  assert_int_equal(shapes, 2);
+  assert_true(sizes[0] == 0 && sizes[1] == 0);
+  CHECK_NEAR(sizes[2], 0.2, 1e-12);
+  CHECK_NEAR(sizes[3], 0.25, 1e-12);
+  scree_pour_options o = soft_options(SCREE_CONTAINER_BOX, 0.1);
+  scree_pour *other = make_pour(&o, 9, 9);
+  CHECK_OK(scree_pour_record(other, in_folder("motion.scree"), 1e-3, &error), error);
+  CHECK_OK(scree_pour_advance(other, 100, &error), error);
+  scree_pour_free(other);
+  CHECK_OK(scree_pile_pack(in_folder("last.world"), 1 << 20, &still, &still_size, &error), error);
+  assert_true(still_size < size);
+  scree_free(bytes);
+  scree_free(still);
+  CHECK_OK(scree_pile_pack(in_folder("none.world"), 1 << 20, &still, &still_size, &error), error);
+  assert_null(still);
+}
+
 static void what_cannot_be_poured_is_refused(void **state) {
   (void)state;
   scree_error error;
@@ -127,18 +228,13 @@ static void what_cannot_be_poured_is_refused(void **state) {
   assert_non_null(strstr(error.message, "no particles"));
   assert_null(pour);
   scree_particle_free(box);
-}
-
-static char file[64];
-
-static int make_file(void **state) {
-  (void)state;
-  snprintf(file, sizeof file, "/tmp/scree-pour-%ld", (long)getpid());
-  return 0;
-}
-static int remove_file(void **state) {
-  (void)state;
-  return remove(file);
+  o = soft_options(SCREE_CONTAINER_BOX, 0.1);
+  pour = make_pour(&o, 1, 1);
+  assert_int_equal(scree_pour_record(pour, in_folder("x"), 0, &error), SCREE_BAD_ARGUMENT);
+  assert_int_equal(scree_pour_record(pour, in_folder("no/x"), 1, &error), SCREE_IO);
+  assert_int_equal(scree_pour_json_write(&(scree_pour_entry){.pour = pour}, "-", true, &error),
+                   SCREE_BAD_ARGUMENT);
+  scree_pour_free(pour);
 }
 
 /* Saved, freed and loaded again every 2000 steps, while layers enter and after. */
@@ -153,9 +249,9 @@ static void a_pour_goes_on_with_the_same_bits(void **state) {
     for (int i = 0; i < 100 && scree_pour_entered_count(cut) < 18; i++) {
       CHECK_OK(scree_pour_advance(whole, 2000, &error), error);
       CHECK_OK(scree_pour_advance(cut, 2000, &error), error);
-      CHECK_OK(scree_pour_save(cut, file, true, &error), error);
+      CHECK_OK(scree_pour_save(cut, in_folder("saved"), true, &error), error);
       scree_pour_free(cut);
-      CHECK_OK(scree_pour_load(file, &cut, &error), error);
+      CHECK_OK(scree_pour_load(in_folder("saved"), &cut, &error), error);
       scree_checksum a = scree_world_hash(scree_pour_world(whole)),
                      b = scree_world_hash(scree_pour_world(cut));
       assert_true(a.high == b.high && a.low == b.low);
@@ -179,6 +275,7 @@ static void a_pour_goes_on_with_the_same_bits(void **state) {
 static void damaged_checkpoints_are_refused(void **state) {
   (void)state;
   static unsigned char bytes[1 << 20];
+  const char *file = in_folder("saved");
   scree_error error;
   scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0.1);
   scree_pour *pour = make_pour(&o, 2, 2);
@@ -203,8 +300,8 @@ static void damaged_checkpoints_are_refused(void **state) {
 
 static scree_status save_and_load(void *context, scree_error *error) {
   scree_pour *pour = NULL;
-  scree_status status = scree_pour_save(context, file, true, error);
-  if (status == SCREE_OK) status = scree_pour_load(file, &pour, error);
+  scree_status status = scree_pour_save(context, in_folder("saved"), true, error);
+  if (status == SCREE_OK) status = scree_pour_load(in_folder("saved"), &pour, error);
   scree_pour_free(pour);
   return status;
 }
@@ -212,9 +309,17 @@ static scree_status save_and_load(void *context, scree_error *error) {
 static scree_status pour_all(void *context, scree_error *error) {
   const scree_pour_shape shape = {context, 3};
   scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0);
+  const char *name = "box";
+  scree_pour_point point = {.entered_energy = 0};
+  scree_pour_entry entry = {.names = &name, .points = &point, .point_count = 1};
   scree_pour *pour = NULL;
   scree_status status = scree_pour_create(&shape, 1, &o, &pour, error);
+  if (status == SCREE_OK) status = scree_pour_record(pour, in_folder("m"), 1e-4, error);
   if (status == SCREE_OK) status = scree_pour_advance(pour, 10, error);
+  if (status == SCREE_OK) status = scree_pour_record_end(pour, error);
+  if (status == SCREE_OK) scree_world_observe(scree_pour_view(pour), &point.seen);
+  entry.pour = pour;
+  if (status == SCREE_OK) status = scree_pour_json_write(&entry, in_folder("j"), true, error);
   scree_pour_free(pour);
   return status;
 }
@@ -228,7 +333,6 @@ static void memory_running_out_is_told(void **state) {
   scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0.1);
   scree_pour *pour = make_pour(&o, 2, 2);
   CHECK_OK(scree_pour_advance(pour, 100, &error), error);
-  CHECK_OK(scree_pour_save(pour, file, true, &error), error);
   check_allocation_failures(save_and_load, pour);
   scree_pour_free(pour);
 }
@@ -237,10 +341,12 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(all_enter_apart_from_each_other),
       cmocka_unit_test(cuts_and_threads_change_nothing),
+      cmocka_unit_test(what_is_recorded_is_where_the_bodies_were),
+      cmocka_unit_test(the_page_gets_the_box),
       cmocka_unit_test(what_cannot_be_poured_is_refused),
       cmocka_unit_test(a_pour_goes_on_with_the_same_bits),
       cmocka_unit_test(damaged_checkpoints_are_refused),
       cmocka_unit_test(memory_running_out_is_told),
   };
-  return cmocka_run_group_tests(tests, make_file, remove_file);
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

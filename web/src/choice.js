@@ -3,6 +3,7 @@
 import { Chart, palette } from './chart.js';
 import { Tree, distanceField } from './distance.js';
 import { Levels } from './levels.js';
+import { holds } from './packed.js';
 import { element, number, percent, rpText, saveButton, table, whole } from './text.js';
 import { View, link, mostEdgeTriangles, rampColor } from './view.js';
 
@@ -47,7 +48,7 @@ export class ChoiceSection {
     const object = this.objects[index];
     const { name } = object;
     if (!this.levels.has(name)) {
-      const levels = this.ids.has(name) ? new Levels(this.ids.get(name)) : null;
+      const levels = holds(this.ids.get(name)) ? new Levels(this.ids.get(name)) : null;
       if (levels) addPicks(levels.trace, object);
       this.levels.set(name, levels);
     }
@@ -122,7 +123,7 @@ export class ChoiceSection {
     this.slider.addEventListener('input', () => this.moveTo(Number(this.slider.value)));
     this.jumps = element('div', null, this.curve, { class: 'controls' });
     this.levelText = element('p', null, this.curve, { class: 'level-text' });
-    this.missing = element('p', 'No levels of this object are in this page: it shows tables only.', host, { hidden: '' });
+    this.missing = element('p', 'The levels of this object are not in this page, which would grow too large: it shows tables only. `scree report` of this folder alone may hold them.', host, { hidden: '' });
     this.buildViews();
     this.tables = element('div', null, host);
   }

@@ -1,28 +1,21 @@
 // The section of one heap (result.json, docs/formats.md): its angles, the pile to play, the curves beside it.
-import { Chart, palette } from './chart.js';
-import { Pile, PilePlayer, shapeColor } from './pile.js';
-import { element, number, saveButton, table, whole } from './text.js';
+import { PlayedSection, known } from './played.js';
+import { element, number, whole } from './text.js';
 
-const known = (x) => x !== null && x !== undefined && Number.isFinite(x);
 const phases = { packing: 'filling', settling: 'settling', lifting: 'the cylinder rises', holding: 'coming to rest', done: 'the end' };
 
-export class HeapSection {
+export class HeapSection extends PlayedSection {
   constructor(host, folder) {
-    const [, id] = folder.piles[0] ?? [];
-    Object.assign(this, { host, heap: folder.heap, series: folder.heap.series, charts: [] });
-    this.name = folder.folder.split('/').filter(Boolean).pop();
+    super(host, folder, folder.heap.series);
+    const id = new Map(folder.piles).get('heap');
+    this.heap = folder.heap;
     this.tell();
-    this.player = new PilePlayer(element('div', null, host), {
-      picture: document.getElementById(folder.picture),
-      label: 'The heap in 3D',
-      told: (time) => this.toldAt(time),
-      onTime: () => this.markTime(),
-    });
-    this.tellShapes();
+    this.addPlayer('The heap in 3D', folder.heap_picture);
+    this.tellShapes(this.heap.shapes.map(({ name }) => name));
     this.drawAngles();
     this.drawMotion();
     this.tellTables();
-    if (id && this.player.view) this.player.show(new Pile(id));
+    this.play(id);
   }
 
   tell() {
@@ -35,55 +28,13 @@ export class HeapSection {
     element('p', `${r.still ? 'Still' : 'Not yet still'} after ${number(r.time, 4)} s; ${whole(r.body_count)} particles on the disc, ${whole(r.left_count)} fell off; ${number(1000 * r.height, 3)} mm high. Preset ${e.preset}, seed ${e.seed}.${e.preset === 'demo' ? ' The preset demo shows a heap; take no number from it.' : ''}`, host, { class: 'soft' });
   }
 
-  tellShapes() {
-    const { shapes } = this.heap;
-    const list = element('p', null, this.player.box, { class: 'legend' });
-    shapes.forEach((shape, k) => {
-      const item = element('span', null, list);
-      const swatch = element('canvas', null, item, { width: 12, height: 12, 'aria-hidden': 'true' });
-      const context = swatch.getContext('2d');
-      context.fillStyle = shapeColor(k);
-      context.fillRect(0, 0, 12, 12);
-      item.append(` ${shape.name}`);
-    });
-  }
-
   // What the series says of a moment.
   toldAt(time) {
     const { series } = this;
-    let i = series.time.findIndex((t) => t > time + 1e-9);
-    i = i < 0 ? series.time.length - 1 : Math.max(0, i - 1);
+    const i = this.pointAt(time);
     if (i < 0) return '';
     const lift = series.cylinder_height[i];
     return `${phases[series.phase[i]] ?? series.phase[i]}${lift > 0 ? `, cylinder ${number(1000 * lift, 3)} mm up` : ''}; kinetic energy ${number(series.kinetic[i], 3)} J, mean rotation ${number(series.mean_rotation[i], 3)} rad/s`;
-  }
-
-  // Curves are drawn anew at most some twenty times a second.
-  markTime() {
-    const now = performance.now();
-    clearTimeout(this.marking);
-    if (now - (this.marked ?? 0) < 50) {
-      this.marking = setTimeout(() => this.markTime(), 60);
-      return;
-    }
-    this.marked = now;
-    this.charts.forEach((chart) => chart.redraw());
-  }
-
-  chart(title, yLabel, keys, options = {}) {
-    const { series, host } = this;
-    if (!keys.some(([, key]) => series[key].some(known))) return;
-    element('h2', title, host);
-    this.charts.push(new Chart(element('div', null, host, { class: 'chart' }), {
-      x: { label: 'time / s', values: series.time, text: (v) => number(v, 4) }, yLabel, logX: false, logY: false,
-      series: keys.map(([label, key], i) => ({ label, values: series[key], color: palette[i + (options.from ?? 0)], dash: [undefined, [6, 3], [2, 2]][i], width: 2, text: (v) => number(v, 4), points: Boolean(options.points) })),
-      marks: () => (this.player.view ? [{ x: this.player.time }] : []),
-      pick: (i) => {
-        this.player.stop();
-        this.player.goTo(Math.min(series.time[i], this.player.pile?.end ?? 0));
-      },
-      ...options,
-    }));
   }
 
   drawAngles() {
@@ -91,20 +42,14 @@ export class HeapSection {
   }
 
   drawMotion() {
-    this.chart('Kinetic energy against time', 'energy / J', [['kinetic energy', 'kinetic']], {
-      logY: true, from: 1, yLeast: 1e-8 * Math.max(...this.series.kinetic.filter(known)), // at rest it falls to nothing
-    });
+    this.fallingChart('Kinetic energy against time', 'energy / J', [['kinetic energy', 'kinetic']], { from: 1 });
     this.chart('Rotational velocity against time', 'mean |ω| / (rad/s)', [['mean |ω|', 'mean_rotation']], { from: 2 });
   }
 
   tellTables() {
-    const { host, heap, name } = this;
-    const { result: r, costs: c } = heap;
-    const rows = (title, list, file) => {
-      element('h2', title, host);
-      table(host, [{ head: 'what', value: (row) => row[0] }, { head: 'value', value: (row) => row[1], text: (row) => (typeof row[1] === 'number' ? number(row[1], 5) : row[1]) }], list, file, title);
-    };
-    rows('The heap', [
+    const { heap } = this;
+    const { result: r, costs } = heap;
+    this.values('The heap', [
       ['angle by sectors / °', r.sectors.angle_deg], ['its standard deviation / °', r.sectors.sd_deg], ['sectors with a flank', r.sectors.count],
       ['angle by the cone / °', r.cone.angle_deg], ['its misfit, rms / mm', known(r.cone.rms) ? 1000 * r.cone.rms : null],
       ['angle by silhouettes / °', r.silhouettes.angle_deg], ['its standard deviation / °', r.silhouettes.sd_deg],
@@ -112,18 +57,9 @@ export class HeapSection {
       ['height / mm', 1000 * r.height], ['base radius / mm', known(r.base_radius) ? 1000 * r.base_radius : null], ['run-out / mm', 1000 * r.run_out],
       ['packing fraction', r.packing_fraction], ['coordination number', r.coordination], ['particle size / mm', 1000 * r.particle_size],
       ['kinetic energy left / J', r.kinetic],
-    ], `${name}-heap.csv`);
-    element('h2', 'Shapes', host);
-    table(host, [
-      { head: 'shape', value: (s) => s.name }, { head: 'kind', value: (s) => s.kind }, { head: 'triangles', value: (s) => s.triangle_count, text: (s) => whole(s.triangle_count) },
-      { head: 'volume / mm³', value: (s) => s.volume * 1e9, text: (s) => number(s.volume * 1e9, 5) }, { head: 'size / mm', value: (s) => s.size * 1000, text: (s) => number(s.size * 1000, 4) },
-      { head: 'source', value: (s) => s.source },
-    ], heap.shapes, `${name}-shapes.csv`, 'Shapes').classList.add('sources');
-    const more = element('details', null, host);
-    element('summary', 'The experiment, and what it cost', more);
-    const flat = (object, before = '') => Object.entries(object).flatMap(([key, value]) => (value && typeof value === 'object' ? flat(value, `${before}${key}.`) : [[`${before}${key}`, value]]));
-    table(more, [{ head: 'field', value: (row) => row[0] }, { head: 'value', value: (row) => row[1] }], [...flat(heap.experiment), ...flat(c)], `${name}-experiment.csv`, 'The experiment');
-    const keys = Object.keys(this.series);
-    saveButton(host, 'Save the series as CSV', `${name}-series.csv`, () => [keys, ...this.series.time.map((_, i) => keys.map((key) => this.series[key][i]))]);
+    ], 'heap');
+    this.shapeTable(heap.shapes);
+    this.fields('The experiment, and what it cost', [heap.experiment, costs], 'experiment');
+    this.saveSeries();
   }
 }

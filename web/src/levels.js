@@ -25,9 +25,9 @@ export class Levels {
     const pairs = reader.buffer();
     const moves = reader.buffer();
     this.packedScan = reader.mesh();
-    this.shownScanCount = this.packedScan.triangleCount;
     this.base = decodeMesh(base);
     this.baseCount = base.triangleCount;
+    this.shownScanCount = this.packedScan.triangleCount || this.baseCount;
     this.pairs = new Uint32Array(decodeVertices(pairs, count, 8));
     this.place(new Uint16Array(decodeVertices(moves, count, 8)), count);
     this.root = new Uint32Array(base.vertexCount);
@@ -59,7 +59,9 @@ export class Levels {
     this.size = Math.hypot(...low.map((x, k) => high[k] - x)) || 1;
   }
 
+  // Where there is none in the page, the fine level.
   scan() {
+    if (!this.packedScan.triangleCount) return this.base;
     this.decodedScan ??= decodeMesh(this.packedScan);
     return this.decodedScan;
   }

@@ -3,6 +3,8 @@ import './page.css';
 import { ChoiceSection } from './choice.js';
 import { HeapSection } from './heap.js';
 import { decoderReady } from './packed.js';
+import { setShapeColors } from './pile.js';
+import { PourSection } from './pour.js';
 import { StudySection } from './study.js';
 import { element, number, table } from './text.js';
 
@@ -19,7 +21,7 @@ function provenanceRows(folder) {
   const rows = [];
   const add = (what, value) => value !== null && value !== undefined && rows.push({ what, value: String(value) });
   const first = folder.choice?.[0];
-  const run = folder.provenance ?? folder.heap ?? {};
+  const run = folder.provenance ?? folder.heap ?? folder.pour ?? {};
   add('results', folder.folder);
   add('scree', run.version ?? first?.version);
   add('command', run.command ?? first?.command);
@@ -31,24 +33,28 @@ function provenanceRows(folder) {
   if (run.elapsed_s !== undefined) add('time', `${number(run.elapsed_s, 3)} s, ${number(run.processor_s, 3)} s of processor time, ${run.threads} threads`);
   if (run.processor) add('machine', `${run.processor}, ${run.processors} processors; ${run.system}`);
   for (const object of folder.choice?.filter((entry) => !entry.set) ?? []) add(`input ${object.name}`, originOf(object));
-  for (const shape of folder.heap?.shapes ?? []) add(`shape ${shape.name}`, shape.source);
+  for (const shape of [...(folder.heap?.shapes ?? []), ...(folder.pour?.shapes ?? [])]) add(`shape ${shape.name}`, shape.source);
+  if (folder.heap) add('seed', folder.heap.experiment.seed);
+  if (folder.pour) add('seed', folder.pour.options.seed);
   add('page made by', `scree ${data.version}`);
   return rows;
 }
 
 async function fill() {
   await decoderReady;
+  setShapeColors(data.shapeColors);
   for (const folder of data.folders) {
     const host = element('section', null, page);
     if (folder.choice) new ChoiceSection(host, folder);
     if (folder.heap) new HeapSection(host, folder);
+    if (folder.pour) new PourSection(host, folder);
     if (folder.study) new StudySection(host, folder);
     element('h2', 'How this was made', host);
     table(host, [{ head: 'what', value: (row) => row.what }, { head: 'value', value: (row) => row.value }],
       provenanceRows(folder), 'provenance.csv', 'Version, command, inputs, machine and times').classList.add('texts');
   }
   const objects = data.folders.flatMap((folder) => folder.choice?.filter((entry) => !entry.set) ?? []);
-  document.querySelectorAll('body > img').forEach((picture) => picture.remove()); // of heaps shown in 3D
+  document.querySelectorAll('body > img').forEach((picture) => picture.remove()); // of piles shown in 3D
   if (objects.length === 1) document.title = `${objects[0].name}: scree report`;
 }
 

@@ -35,6 +35,9 @@ export class Reader {
   }
 }
 
+// Whether a part is in the page: what would make it too large is left out.
+export const holds = (id) => Boolean(id && document.getElementById(id));
+
 function bytesOf(id) {
   const text = atob(document.getElementById(id).textContent);
   const bytes = new Uint8Array(text.length);

@@ -8,15 +8,18 @@ import { Reader, decodeMesh, decodeVertices } from './packed.js';
 import { element, number, whole } from './text.js';
 import { View } from './view.js';
 
-const shapeColors = ['#4575b4', '#d9612c', '#4c9954', '#d6a638', '#855099', '#61b5c2', '#b53845', '#99999e', '#d9c9a6'];
+let shapeColors; // as the pictures have them
+export const setShapeColors = (colors) => {
+  shapeColors = colors;
+};
 export const shapeColor = (shape) => shapeColors[shape % shapeColors.length];
 
 export class Pile {
   constructor(id) {
     const reader = new Reader(id);
-    [this.discRadius, this.cylinderRadius] = reader.reals(2);
+    [this.discRadius, this.cylinderRadius, ...this.box] = reader.reals(4);
     this.shapes = Array.from({ length: reader.u32() }, () => {
-      const name = reader.text();
+      const name = reader.text(); // none of a pour's
       const triangleCount = reader.u32();
       const grid = { low: reader.reals(3), step: reader.real() };
       const mesh = decodeMesh(reader.mesh());
@@ -80,7 +83,12 @@ export class Pile {
     }
     const most = (list) => (list.length ? list.sort((a, b) => a - b)[Math.floor(0.95 * (list.length - 1))] : 0);
     const height = most(high);
-    return { size: 2 * Math.max(1.15 * most(far), height, 1.3 * this.cylinderRadius), height };
+    return { size: 2 * Math.max(1.15 * most(far), height, 0.65 * this.width), height };
+  }
+
+  // Across the container: what stands round the bodies from the start.
+  get width() {
+    return Math.max(2 * this.cylinderRadius, ...this.box);
   }
 
   highest() {
@@ -95,6 +103,15 @@ function geometryOf(mesh) {
   geometry.setAttribute('position', new BufferAttribute(mesh.points, 3));
   geometry.setIndex(new BufferAttribute(mesh.triangles, 1));
   return geometry;
+}
+
+// The cylinder, or the four sides of the box, standing on z = 0.
+function wallGeometry(pile) {
+  const length = Math.max(pile.width, pile.highest());
+  const box = pile.box[0] > 0;
+  const radius = box ? Math.SQRT1_2 : pile.cylinderRadius;
+  const made = new CylinderGeometry(radius, radius, length, box ? 4 : 64, 1, true, box ? Math.PI / 4 : 0).rotateX(Math.PI / 2).translate(0, 0, length / 2);
+  return box ? made.scale(...pile.box, 1) : made;
 }
 
 // Draws a pile at any time. Throws where there is no WebGL.
@@ -117,11 +134,9 @@ export class PileView extends View {
     const group = new Group();
     group.scale.setScalar(2 / size);
     group.position.z = (-0.45 * height * 2) / size;
-    const floor = new Mesh(new CircleGeometry(pile.discRadius, 96), new MeshStandardMaterial({ color: 0x9a9aa2, roughness: 1, transparent: true, opacity: 0.5, side: DoubleSide }));
+    const floor = new Mesh(new CircleGeometry(pile.discRadius || pile.width, 96), new MeshStandardMaterial({ color: 0x9a9aa2, roughness: 1, transparent: true, opacity: 0.5, side: DoubleSide }));
     floor.position.z = -0.0005;
-    const length = Math.max(2 * pile.cylinderRadius, pile.highest());
-    this.wall = new Mesh(new CylinderGeometry(pile.cylinderRadius, pile.cylinderRadius, length, 64, 1, true).rotateX(Math.PI / 2).translate(0, 0, length / 2),
-      new MeshBasicMaterial({ color: 0x8899bb, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }));
+    this.wall = new Mesh(wallGeometry(pile), new MeshBasicMaterial({ color: 0x8899bb, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }));
     group.add(floor, this.wall);
     this.instances = pile.shapes.map((shape, k) => {
       const bodies = [];
@@ -178,6 +193,7 @@ export class PilePlayer {
       if (picture) this.box.append(picture);
       return;
     }
+    this.picture = picture;
     picture?.remove();
     this.build();
     this.box.addEventListener('keydown', (event) => {
@@ -185,7 +201,7 @@ export class PilePlayer {
       event.preventDefault();
       this.toggle();
     });
-    addEventListener('beforeprint', () => this.goTo(this.pile.end));
+    addEventListener('beforeprint', () => this.pile && this.goTo(this.pile.end));
   }
 
   build() {
@@ -221,6 +237,13 @@ export class PilePlayer {
     this.note = drawn.length ? `; drawn with up to ${whole(Math.max(...drawn.map(({ mesh }) => mesh.triangles.length / 3)))} triangles a particle, simulated with up to ${whole(Math.max(...pile.shapes.map((s) => s.triangleCount)))}` : '';
     if (single) this.note += '; only its end was recorded';
     this.goTo(pile.end);
+  }
+
+  // In place of a pile that is not in the page.
+  lack() {
+    this.box.replaceChildren(element('p', 'The particles in 3D are not in this page: it would grow too large, or they were not recorded. `scree report` of this folder alone may hold them.', null, { class: 'no-webgl', role: 'note' }));
+    if (this.picture) this.box.append(this.picture);
+    this.view = null;
   }
 
   goTo(time) {

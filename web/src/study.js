@@ -1,5 +1,6 @@
 // The section of a study (study.json, docs/formats.md): what the runs say, each curve with its spread, the tables.
 import { Chart, palette } from './chart.js';
+import { holds } from './packed.js';
 import { Pile, PilePlayer } from './pile.js';
 import { element, number, rpText, table, whole } from './text.js';
 
@@ -29,9 +30,12 @@ export class StudySection {
 
   // One heap of each point.
   showPiles() {
-    const points = this.study.points.filter((point) => this.piles.has(point.pile));
-    if (!points.length) return;
+    const made = this.study.points.filter((point) => this.piles.has(point.pile));
+    const points = made.filter((point) => holds(this.piles.get(point.pile)));
+    if (!made.length) return;
     element('h2', 'A heap of each point', this.host);
+    if (points.length < made.length) element('p', `The heaps of ${whole(made.length - points.length)} points are not in this page, which would grow too large.`, this.host, { class: 'soft' });
+    if (!points.length) return;
     const group = element('div', null, this.host, { role: 'group', 'aria-label': 'Points', class: 'points' });
     const player = new PilePlayer(element('div', null, this.host), { label: 'The heap of the point in 3D' });
     if (!player.view) {

@@ -1,0 +1,39 @@
+/* What stands in the report's page as base64, behind the data that name it: levels, piles,
+ * pictures. Together they keep to a number of bytes: what does not fit is made smaller, then left
+ * out, and the script says so of an id that it does not find. */
+#ifndef SCREE_REPORT_PAGE_PARTS_H
+#define SCREE_REPORT_PAGE_PARTS_H
+
+#include "base/error.h"
+
+typedef enum scree_part_kind {
+  SCREE_PART_LEVELS,
+  SCREE_PART_PILE,
+  SCREE_PART_PICTURE, /* where there is no WebGL; at most 1.3 MB */
+} scree_part_kind;
+
+typedef struct scree_page_part {
+  scree_part_kind kind;
+  char *path;
+  char id[24];
+  char *bytes; /* of levels, once read; NULL: left out */
+  size_t size;
+  bool whole; /* of levels: with the scan */
+} scree_page_part;
+
+typedef struct scree_page_parts {
+  scree_page_part *items;
+  size_t count, capacity;
+} scree_page_parts;
+
+/* Notes folder/name where it exists; *id is then what it is called in the page, the parts' own and
+ * good until the next call, else NULL. */
+scree_status scree_page_part_add(scree_page_parts *parts, scree_part_kind kind, const char *folder,
+                                 const char *name, const char **id, scree_error *error);
+/* Writes them in at most `room` bytes before base64: levels first, the largest without their scans
+ * where they are too many; pictures; piles share what is left and lose moments. */
+scree_status scree_page_parts_put(scree_page_parts *parts, FILE *stream, size_t room,
+                                  scree_error *error);
+void scree_page_parts_free(scree_page_parts *parts);
+
+#endif
