@@ -20,7 +20,7 @@ PARTICLE_KINDS = ("mesh", "sphere", "clump")
 LAWS = ("linear", "hysteretic")
 WALL_KINDS = ("plane", "disc", "cylinder", "mesh")
 VIEWS = ("surfaces", "points", "contacts", "walls")
-DEFECT_COUNT, REPAIR_ACTION_COUNT = 17, 19
+DEFECT_COUNT, REPAIR_ACTION_COUNT = 17, 21
 
 
 class scree_error(Structure):
