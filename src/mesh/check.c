@@ -191,12 +191,13 @@ static scree_status find_connection(const scree_mesh *mesh, const scree_adjacenc
                                     scree_check *check, scree_shells *shells, scree_error *error) {
   connection c = {.mesh = mesh, .adjacency = adjacency};
   scree_parallel_for(2, 1, connect, &c);
-  for (int i = 0; i < 2; i++)
-    if (c.status[i] != SCREE_OK) {
-      scree_shells_free(&c.shells);
-      if (error) *error = c.error[i];
-      return c.status[i];
-    }
+  int failed = c.status[0] != SCREE_OK ? 0 : 1;
+  scree_status status = c.status[failed];
+  if (status != SCREE_OK) {
+    if (error) *error = c.error[failed];
+    scree_shells_free(&c.shells);
+    return status;
+  }
   take_topology(&c.topology, check);
   *shells = c.shells;
   return SCREE_OK;
