@@ -1,7 +1,8 @@
 /* Making a manifold of what the facets form: fins, non-manifold edges, winding, vertices.
  *
  * Fins. Cut at all edges of three or more facets, the mesh falls into patches. A patch that has
- * both such an edge and a boundary is a sheet hanging on the surface and is dropped.
+ * both such an edge and a boundary is a sheet hanging on the surface and is dropped, but for the
+ * largest patch of all, which is the surface.
  *
  * Edges of four or more facets, half of them running either way: facets are sorted by angle round
  * the edge, and each is joined to the neighbour across the material between them, so that bodies
@@ -54,6 +55,25 @@ static void mark_fins(const scree_mesh *mesh, const scree_adjacency *adjacency, 
   }
 }
 
+/* The root of the patch of the largest area. */
+static scree_status largest_patch(const scree_mesh *mesh, uint32_t *patch, uint32_t *largest,
+                                  scree_error *error) {
+  double *area = NULL;
+  SCREE_ALLOC_OR(area, mesh->triangle_count, error, out_of_memory);
+  memset(area, 0, mesh->triangle_count * sizeof *area);
+  *largest = 0;
+  for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    area[scree_find_root(patch, t)] +=
+        vec3_norm(vec3_triangle_normal(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1),
+                                       scree_mesh_corner(mesh, t, 2)));
+  for (uint32_t t = 0; t < mesh->triangle_count; t++)
+    if (area[t] > area[*largest]) *largest = t;
+  scree_free(area);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
 scree_status scree_repair_fins(scree_repair *r, scree_error *error) {
   scree_status status = SCREE_OUT_OF_MEMORY;
   scree_adjacency adjacency = {0};
@@ -69,12 +89,16 @@ scree_status scree_repair_fins(scree_repair *r, scree_error *error) {
   for (int round = 0; round < 16 && removed && status == SCREE_OK; round++) {
     status = scree_adjacency_build(&r->mesh, &adjacency, error);
     if (status != SCREE_OK) break;
+    uint32_t largest = 0;
     mark_fins(&r->mesh, &adjacency, patch, traits);
+    status = largest_patch(&r->mesh, patch, &largest, error);
+    scree_adjacency_free(&adjacency);
+    if (status != SCREE_OK) break;
+    traits[largest] = 0;
     for (size_t t = 0; t < r->mesh.triangle_count; t++)
       marked[t] = traits[scree_find_root(patch, (uint32_t)t)] == 3;
     removed = scree_repair_remove(r, marked);
     r->report.done[SCREE_REPAIR_DROP_FIN] += removed;
-    scree_adjacency_free(&adjacency);
   }
 done:
   scree_free(patch);

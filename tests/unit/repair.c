@@ -287,6 +287,22 @@ static void fins(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* An open surface with a fin: the fin goes, the surface stays, whose hole is filled. */
+static void fin_on_an_open_surface(void **state) {
+  (void)state;
+  scree_mesh mesh = body();
+  mesh.triangle_count -= 4;
+  size_t kept = mesh.triangle_count;
+  const uint32_t *c = mesh.triangles + 3 * (size_t)100;
+  uint32_t a = c[0], b = c[1], far = mesh.triangles[3 * (size_t)900];
+  append_facet(&mesh, a, b, far);
+  outcome o = repair(&mesh);
+  assert_int_equal(o.report.done[SCREE_REPAIR_DROP_FIN], 1);
+  assert_true(o.mesh.triangle_count >= kept);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+}
+
 /* Two boxes glued with one wall between them, and a ball with a disc across it, each turned: what
  * stays is the outside. */
 static void membranes(void **state) {
@@ -524,6 +540,7 @@ int main(void) {
                                      cmocka_unit_test(t_junctions),
                                      cmocka_unit_test(touching_boxes),
                                      cmocka_unit_test(fins),
+                                     cmocka_unit_test(fin_on_an_open_surface),
                                      cmocka_unit_test(membranes),
                                      cmocka_unit_test(debris_and_cavities),
                                      cmocka_unit_test(nested_is_swallowed),
