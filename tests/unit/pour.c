@@ -300,7 +300,9 @@ static void damaged_checkpoints_are_refused(void **state) {
 
 static scree_status save_and_load(void *context, scree_error *error) {
   scree_pour *pour = NULL;
-  scree_status status = scree_pour_save(context, in_folder("saved"), true, error);
+  const double notes[3] = {1, 2, 3};
+  scree_status status = scree_pour_set_notes(context, notes, 3, error);
+  if (status == SCREE_OK) status = scree_pour_save(context, in_folder("saved"), true, error);
   if (status == SCREE_OK) status = scree_pour_load(in_folder("saved"), &pour, error);
   scree_pour_free(pour);
   return status;
