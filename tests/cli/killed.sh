@@ -10,7 +10,13 @@ compare() {
     case $file in
     *.part) [ "$1" = killed ] || echo "$2: $1 left $file" ;;
     *provenance.json) [ "$(tail -c 2 "$file")" = "}" ] || echo "$2: $1 left half of $file" ;;
-    *checkpoint.scree) # stands where the other one never was: as long as its header says
+    *motion.scree) # grows by a frame of 160 bytes; its last may be of the moment when the signal came
+      at=$(cmp "$file" "$whole" 2>/dev/null | sed -n 's/.*differ: byte \([0-9]*\),.*/\1/p')
+      [ "${at:-999999}" -gt $(($(wc -c <"$file") - 160)) ] || echo "$2: $1 changed $file"
+      ;;
+    *drop.json) [ "$(tail -c 2 "$file")" = "}" ] || echo "$2: $1 left half of $file" ;;
+    *drop.txt) tail -n 1 "$file" | grep -q '^energy .*came in$' || echo "$2: $1 left half of $file" ;;
+    *checkpoint.scree | *last.world) # stands where the other one never was: as long as its header says
       [ "$(wc -c <"$file")" -eq $(($(od -An -tu8 -j16 -N8 "$file") + 40)) ] ||
         echo "$2: $1 left half of $file"
       ;;
