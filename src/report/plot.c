@@ -356,10 +356,14 @@ static void draw_guides(cairo_t *cr, const frame *f, const scree_panel *panel) {
     cairo_line_to(cr, guide->across ? f->x + f->width : x, guide->across ? y : f->y + f->height);
     cairo_stroke(cr);
     cairo_set_dash(cr, NULL, 0, 0);
-    /* above the frame, where no data is; a line across carries its word outside on the right end */
-    if (guide->label && !guide->across)
-      scree_text_draw(cr, guide->label, SMALL_FONT, x, f->y - 4, 0.5);
-    else if (guide->label)
+    /* above the frame, where no data is, and clear of the title; a line across carries its word
+     * on the right end */
+    if (guide->label && !guide->across) {
+      double left = x - 0.5 * scree_text_width(cr, guide->label, SMALL_FONT);
+      if (panel->title)
+        left = fmax(left, f->x + scree_text_width(cr, panel->title, FONT) + SMALL_FONT);
+      scree_text_draw(cr, guide->label, SMALL_FONT, left, f->y - 4, 0);
+    } else if (guide->label)
       scree_text_draw(cr, guide->label, SMALL_FONT, f->x + f->width - 3, y - 3, 1);
   }
 }
