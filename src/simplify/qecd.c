@@ -156,7 +156,7 @@ SCREE_LANES_INLINE void solve_lanes(lanes *l, bool best, int count) {
   }
 }
 
-SCREE_LANES static void solve_best(lanes *l, int count) {
+SCREE_LANES static void solve_best_qecd(lanes *l, int count) {
   solve_lanes(l, true, count);
 }
 
@@ -207,7 +207,7 @@ static void qecd_evaluate(const scree_halfmesh *s, const uint32_t *half_edges, s
     int width = (filled + 3) & ~3; /* whole vectors */
     for (int i = 0; i < width; i++)
       gather(s, half_edges[begin + (size_t)(i < filled ? i : 0)], 0.5, &l, i);
-    solve_best(&l, width);
+    solve_best_qecd(&l, width);
     for (int i = 0; i < filled; i++) out[begin + (size_t)i] = answer(&l, i);
   }
 }

@@ -198,7 +198,7 @@ SCREE_LANES_INLINE void solve_lanes(lanes *q, bool best, int count) {
   }
 }
 
-SCREE_LANES static void solve_best(lanes *q, int count) {
+SCREE_LANES static void solve_best_volume(lanes *q, int count) {
   solve_lanes(q, true, count);
 }
 
@@ -226,7 +226,7 @@ static void volume_evaluate(const scree_halfmesh *s, const uint32_t *half_edges,
     int width = (filled + 3) & ~3; /* whole vectors */
     for (int i = 0; i < width; i++)
       gather(s, half_edges[begin + (size_t)(i < filled ? i : 0)], &q, i);
-    solve_best(&q, width);
+    solve_best_volume(&q, width);
     for (int i = 0; i < filled; i++)
       out[begin + (size_t)i] = answer(s, half_edges[begin + (size_t)i], &q, i);
   }
