@@ -487,7 +487,7 @@ static int by_value(const void *a, const void *b) {
 /* All edges start anew, and the toll is found from their costs without the stray. */
 static void renew(oracle *o) {
   if (o->qecd || o->triangle_count > o->renew_at) return;
-  double *costs = malloc(3 * o->triangle_count * sizeof *costs), worst2 = 0;
+  double *costs = malloc((3 * o->triangle_count + 1) * sizeof *costs), worst2 = 0;
   size_t count = 0, side = 0;
   uint32_t a, b;
   start_anew(o);
