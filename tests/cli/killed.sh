@@ -45,7 +45,7 @@ try() {
     for how in killed ended; do
       [ $how = killed ] && signal=KILL || signal=TERM
       rm -rf cut && mkdir -p cut/out && cd cut || exit
-      timeout -s $signal "$(echo $((span * part / 6)) | awk '{ printf "%.3f", $1 / 1e9 }')" \
+      timeout --foreground -s $signal "$(echo $((span * part / 6)) | awk '{ printf "%.3f", $1 / 1e9 }')" \
         "$SCREE" "$@" >/dev/null 2>said
       compare $how "$name"
       cd ..
