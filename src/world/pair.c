@@ -45,13 +45,19 @@ static void set_up(scree_world *world, scree_pair *pair) {
       (a->face_count ? a->measures.rounding : 0) + (b && b->face_count ? b->measures.rounding : 0);
 }
 
+/* All memory goes, also what is read only while the pair touches or sleeps: a checkpoint holds it.
+ */
 static void forget(scree_pair *pair) {
   pair->active.count = pair->sleeping.count = 0;
   pair->asleep = pair->touching = false;
-  pair->path = pair->region_radius = 0;
+  pair->travel = pair->path = pair->region_radius = pair->wake = pair->asleep_since = 0;
   pair->next_item = pair->list_end = -INFINITY;
-  pair->elastic = pair->overlap = pair->largest = pair->age = 0;
+  pair->elastic = pair->tangential_elastic = pair->overlap = pair->largest = pair->age = 0;
   pair->contact_count = 0;
+  pair->wrench = (scree_wrench){0};
+  pair->dashpot = pair->tangential = (scree_kept_load){0};
+  pair->region = pair->asleep_at = (vec3){0};
+  pair->asleep_turned = (quat){0};
 }
 
 static void use_own_items(scree_pair *pair) {

@@ -62,8 +62,6 @@ for how in INT KILL; do
   rm -f cut/*.part # half a checkpoint
   for file in whole/*; do
     case $file in
-    # last.world may hold a vector that a touch long ended has left, and is of the same size
-    whole/last.world) [ "$(wc -c <"$file")" -eq "$(wc -c <cut/last.world)" ] || echo "another $file"; continue ;;
     # these know the command, or where the pour was stopped
     whole/checkpoint.scree | whole/drop.json | whole/provenance.json | whole/motion.scree | whole/report.html) continue ;;
     esac
