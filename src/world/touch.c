@@ -12,10 +12,11 @@
  * normals differ by 15 (weight 0) to 25 degrees (weight 1): a body in a V needs both to rest.
  *
  * Edge and edge. Closest points of the segments; while apart, direction and distance are theirs.
- * Deeper, the crossing normal signed by the reference. An edge pair that lies inside at first sight
- * counts only after it has been seen apart ("armed"), and only while the crossing normal is one of
- * both edges: edges that slid around a corner inside each other would claim any depth. Nearly
- * parallel edges have no crossing: their ends, which are points against faces, stand for them; the
+ * Deeper, the crossing normal signed by the reference, or where that lies across it by the normals
+ * of the faces. An edge pair that lies inside at first sight counts only after it has been seen
+ * apart ("armed"), and only while the crossing normal is one of both edges: edges that slid around
+ * a corner inside each other would claim any depth. Nearly parallel edges have no crossing: their
+ * ends, which are points against faces, stand for them; the
  * weight fades below sin = 4e-3.
  *
  * Cached faces: the nearest faces of a point stay the nearest while its path is under half the
@@ -95,15 +96,11 @@ static vec3 outward_sign(const scree_particle *surface, uint32_t face, int regio
                                        : signs->edge[region - SCREE_REGION_EDGE];
 }
 
-typedef struct way_out {
-  vec3 closest, normal; /* of the nearest face */
-  vec3 aside;           /* by how much p is sideways of the face behind which it is most nearly */
-} way_out;
-
-/* What of the faces that look along `way` lies within reach; false for none. With `behind`, p must
- * not be in front of a face. */
+/* Of the faces that look along `way` within reach: closest point and normal of the nearest, and by
+ * how much p is sideways of the one behind which it is most nearly; false for none. With `behind`,
+ * p must not be in front of a face. */
 static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double reach, bool behind,
-                         way_out *out) {
+                         surface_contact *out) {
   const scree_tree_node *nodes = surface->face_tree.nodes;
   uint32_t stack[SCREE_TREE_STACK];
   int depth = 0;
@@ -150,22 +147,18 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
 static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
                          const scree_pair *pair, bool pierced, bool outside,
                          surface_contact *contact) {
-  way_out out = {0};
   double half = 0.5 * pair->reach, reach = 1.5 * pair->limit + pair->reach;
-  if (!find_way_out(surface, p, item->reference, reach, pierced, &out)) return false;
-  vec3 offset = vec3_sub(p, out.closest);
-  double height = vec3_dot(offset, out.normal), distance = vec3_norm(offset);
+  if (!find_way_out(surface, p, item->reference, reach, pierced, contact)) return false;
+  vec3 offset = vec3_sub(p, contact->closest);
+  double height = vec3_dot(offset, contact->normal), distance = vec3_norm(offset);
   bool in_front = outside && height > 0;
-  contact->closest = out.closest;
-  contact->normal = out.normal;
-  contact->aside = out.aside;
   contact->weight = contact->lever = 1;
   contact->distance = in_front ? distance : outside ? height : -distance;
   if ((in_front || !outside) && distance > 1e-9 * half)
     contact->normal = vec3_scale(offset, 1 / contact->distance);
   if (in_front) return true;
   contact->closest = vec3_mad(p, contact->normal, -contact->distance);
-  contact->weight = 1 - smooth_step(0, half, vec3_norm(out.aside));
+  contact->weight = 1 - smooth_step(0, half, vec3_norm(contact->aside));
   return true;
 }
 
@@ -391,9 +384,10 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
                              d,
                              smooth_step(parallel_sines[0], parallel_sines[1], sine),
                              1};
+  vec3 axis_a = mat3_mul_vec(r, ea->normals.axis);
   if (item->inside || d < 0.5 * pair->reach) {
     if (!item->has_reference) return 0; /* not armed */
-    vec3 outward = vec3_sub(eb->normals.axis, mat3_mul_vec(r, ea->normals.axis));
+    vec3 outward = vec3_sub(eb->normals.axis, axis_a);
     deep_crossing(pair, item, vec3_scale(crossing, 1 / sine), offset, outward, &contact);
     if (contact.distance < -pair->thin &&
         !is_crossed(world->bodies.particle[pair->a], scree_pair_shape_b(world, pair), on_a, on_b,
@@ -407,7 +401,7 @@ static double touch_edges(const scree_world *world, const scree_pair *pair, scre
     item->reference = contact.normal;
     item->has_reference = true;
   }
-  double out_a = -vec3_dot(mat3_mul_vec(r, ea->normals.axis), contact.normal),
+  double out_a = -vec3_dot(axis_a, contact.normal),
          out_b = vec3_dot(eb->normals.axis, contact.normal);
   if (out_a <= ea->facing || out_b <= eb->facing) {
     item->anchor.share = 0; /* seen through one of the bodies */
