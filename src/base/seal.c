@@ -25,8 +25,8 @@ void scree_seal_begin(scree_codec *codec) {
   code_record(codec, &room);
 }
 
-void scree_seal_end(scree_codec *codec, const scree_seal *seal) {
-  if (!scree_codec_good(codec)) return;
+scree_status scree_seal_end(scree_codec *codec, const scree_seal *seal, scree_error *error) {
+  if (!scree_codec_good(codec)) return scree_fail_memory(error, codec->count, "a checkpoint");
   size_t length = codec->count - SCREE_SEAL_BYTES;
   scree_checksum sum = scree_checksum_of(codec->bytes + SCREE_SEAL_BYTES, length);
   record r = {.version_order = {seal->version, BYTE_ORDER_MARK},
@@ -34,9 +34,10 @@ void scree_seal_end(scree_codec *codec, const scree_seal *seal) {
   memcpy(r.magic, seal->magic, sizeof r.magic);
   scree_codec coded = {0};
   code_record(&coded, &r);
-  if (scree_codec_good(&coded)) memcpy(codec->bytes, coded.bytes, SCREE_SEAL_BYTES);
-  codec->out_of_memory |= coded.out_of_memory;
+  bool good = scree_codec_good(&coded);
+  if (good) memcpy(codec->bytes, coded.bytes, SCREE_SEAL_BYTES);
   scree_free(coded.bytes);
+  return good ? SCREE_OK : scree_fail_memory(error, codec->count, "a checkpoint");
 }
 
 scree_status scree_seal_check(scree_codec *codec, const scree_seal *seal, const char *name,
@@ -65,6 +66,26 @@ scree_status scree_seal_check(scree_codec *codec, const scree_seal *seal, const 
     return scree_fail(error, SCREE_BAD_FILE, "%s: the checksum does not fit: the file is damaged",
                       name);
   return SCREE_OK;
+}
+
+scree_status scree_seal_read(const char *path, const scree_seal *seal, char **bytes,
+                             scree_codec *codec, const char **name, scree_error *error) {
+  size_t count;
+  uint32_t version;
+  scree_status status = scree_file_read(path, 0, bytes, &count, error);
+  if (status != SCREE_OK) return status;
+  *codec = (scree_codec){.source = (unsigned char *)*bytes, .count = count, .loading = true};
+  *name = strcmp(path, "-") != 0 ? path : "standard input";
+  status = scree_seal_check(codec, seal, *name, &version, error);
+  if (status != SCREE_OK) scree_free(*bytes);
+  return status;
+}
+
+scree_status scree_seal_refuse(const scree_codec *codec, const scree_seal *seal, const char *name,
+                               scree_error *error) {
+  if (codec->out_of_memory) return scree_fail_memory(error, codec->count, "a checkpoint");
+  return scree_fail(error, SCREE_BAD_FILE, "%s: byte %zu: a value that no %s has, or too few bytes",
+                    name, codec->position, seal->whose);
 }
 
 scree_status scree_seal_write(const unsigned char *bytes, size_t byte_count, const char *path,

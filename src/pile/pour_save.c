@@ -5,12 +5,11 @@
 #include "pile/pour.h"
 
 #include "base/alloc.h"
-#include "base/file.h"
 #include "base/seal.h"
 
 #include <string.h>
 
-static const scree_seal seal = {"screePOU", "checkpoint of a scree pour", 1, 1};
+static const scree_seal seal = {"screePOU", "checkpoint of a scree pour", "pour", 1, 1};
 enum { MOST_SHAPES = 1 << 20 };
 
 static void code_plan(scree_codec *c, scree_pour_options *o) {
@@ -62,9 +61,7 @@ scree_status scree_pour_save(const scree_pour *pour, const char *path, bool over
   code_progress(&c, &state);
   scree_code_count(&c, &state.note_count, sizeof(double));
   scree_code_reals(&c, state.notes, state.note_count);
-  scree_seal_end(&c, &seal);
-  if (status == SCREE_OK && !scree_codec_good(&c))
-    status = scree_fail_memory(error, c.count, "a checkpoint");
+  if (status == SCREE_OK) status = scree_seal_end(&c, &seal, error);
   if (status == SCREE_OK) status = scree_seal_write(c.bytes, c.count, path, overwrite, error);
   scree_free(c.bytes);
   return status;
@@ -84,10 +81,7 @@ typedef struct loader {
 } loader;
 
 static scree_status fail_here(const loader *l) {
-  if (l->codec.out_of_memory) return scree_fail_memory(l->error, l->codec.count, "a checkpoint");
-  return scree_fail(l->error, SCREE_BAD_FILE,
-                    "%s: byte %zu: a value that no pour has, or too few bytes", l->name,
-                    l->codec.position);
+  return scree_seal_refuse(&l->codec, &seal, l->name, l->error);
 }
 
 static scree_status load_shapes(loader *l) {
@@ -156,9 +150,7 @@ static scree_status load_notes(loader *l) {
 }
 
 static scree_status load(loader *l) {
-  uint32_t version;
-  scree_status status = scree_seal_check(&l->codec, &seal, l->name, &version, l->error);
-  if (status == SCREE_OK) status = load_shapes(l);
+  scree_status status = load_shapes(l);
   if (status == SCREE_OK) status = scree_world_load_block(&l->codec, l->name, &l->world, l->error);
   if (status == SCREE_OK)
     status = scree_pour_create(l->shapes, l->shape_count, &l->options, &l->pour, l->error);
@@ -168,12 +160,9 @@ static scree_status load(loader *l) {
 
 scree_status scree_pour_load(const char *path, scree_pour **pour, scree_error *error) {
   char *bytes;
-  size_t count;
-  scree_status status = scree_file_read(path, 0, &bytes, &count, error);
+  loader l = {.error = error};
+  scree_status status = scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error);
   if (status != SCREE_OK) return status;
-  loader l = {.codec = {.source = (unsigned char *)bytes, .count = count, .loading = true},
-              .name = strcmp(path, "-") != 0 ? path : "standard input",
-              .error = error};
   status = load(&l);
   scree_free(l.shapes);
   scree_world_free(l.world);

@@ -7,13 +7,12 @@
 
 #include "base/alloc.h"
 #include "base/array.h"
-#include "base/file.h"
 #include "base/seal.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeRUN", "checkpoint or frame of a scree run", 1, 1};
+static const scree_seal seal = {"screeRUN", "checkpoint or frame of a scree run", "run", 1, 1};
 enum { POINT_BYTES = 92 };
 
 /* ---- field lists ---- */
@@ -134,10 +133,7 @@ static scree_status pack(const scree_run *run, bool as_frame, scree_codec *c, sc
   scree_status status = save_experiment(c, run, error);
   if (status == SCREE_OK) status = save_shapes(c, run, error);
   if (status == SCREE_OK) status = save_rest(c, run, as_frame, error);
-  if (status == SCREE_OK) scree_seal_end(c, &seal);
-  if (status == SCREE_OK && !scree_codec_good(c))
-    status = scree_fail_memory(error, c->count, "a checkpoint");
-  return status;
+  return status == SCREE_OK ? scree_seal_end(c, &seal, error) : status;
 }
 
 static scree_status save(const scree_run *run, bool as_frame, const char *path, bool overwrite,
@@ -200,10 +196,7 @@ static const unsigned char *load_block(loader *l, size_t *count) {
 }
 
 static scree_status fail_here(const loader *l) {
-  if (l->codec.out_of_memory) return scree_fail_memory(l->error, l->codec.count, "a checkpoint");
-  return scree_fail(l->error, SCREE_BAD_FILE,
-                    "%s: byte %zu: a value that no run has, or too few bytes", l->name,
-                    l->codec.position);
+  return scree_seal_refuse(&l->codec, &seal, l->name, l->error);
 }
 
 static scree_status load_experiment(loader *l) {
@@ -281,9 +274,7 @@ static scree_status load_state(loader *l) {
 }
 
 static scree_status load(loader *l) {
-  uint32_t version;
-  scree_status status = scree_seal_check(&l->codec, &seal, l->name, &version, l->error);
-  if (status == SCREE_OK) status = load_experiment(l);
+  scree_status status = load_experiment(l);
   if (status == SCREE_OK) status = load_shapes(l);
   if (status == SCREE_OK) status = scree_world_load_block(&l->codec, l->name, &l->world, l->error);
   if (status == SCREE_OK) status = adopt_particles(l);
@@ -297,12 +288,9 @@ static scree_status load(loader *l) {
 
 scree_status scree_run_load(const char *path, scree_run **run, scree_error *error) {
   char *bytes;
-  size_t count;
-  scree_status status = scree_file_read(path, 0, &bytes, &count, error);
+  loader l = {.error = error};
+  scree_status status = scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error);
   if (status != SCREE_OK) return status;
-  loader l = {.codec = {.source = (unsigned char *)bytes, .count = count, .loading = true},
-              .name = strcmp(path, "-") != 0 ? path : "standard input",
-              .error = error};
   status = load(&l);
   for (size_t i = 0; i < 2 * l.shape_count; i++) scree_free(l.names[i]);
   scree_world_free(l.world);

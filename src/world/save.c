@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", 3, 5};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 3, 5};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
@@ -406,10 +406,10 @@ scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, s
   save_bodies(&c, world);
   save_pairs(&c, world);
   save_tail(&c, world);
-  scree_seal_end(&c, &seal);
-  if (!scree_codec_good(&c)) {
+  scree_status status = scree_seal_end(&c, &seal, error);
+  if (status != SCREE_OK) {
     scree_free(c.bytes);
-    return scree_fail_memory(error, c.count, "a checkpoint");
+    return status;
   }
   *bytes = c.bytes;
   *byte_count = c.count;
@@ -674,11 +674,7 @@ static scree_status finish(loader *l, const char *name, scree_error *error) {
   if (l->error.status)
     return scree_fail(error, SCREE_BAD_FILE, "%s: byte %zu: %.900s", name, l->codec.position,
                       l->error.message);
-  if (l->codec.failed)
-    return scree_fail(error, SCREE_BAD_FILE,
-                      "%s: byte %zu: a value that no world has, or too few bytes", name,
-                      l->codec.position);
-  return SCREE_OK;
+  return l->codec.failed ? scree_seal_refuse(&l->codec, &seal, name, error) : SCREE_OK;
 }
 
 scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,

@@ -4,10 +4,11 @@
 #define SCREE_FUZZ_FORGE_H
 
 #include "base/file.h"
+#include "base/seal.h"
 #include "fuzz/fuzz.h"
 
-/* The header that checkpoints of worlds and of runs begin with. */
-enum { FORGE_LENGTH_AT = 16, FORGE_SUM_AT = 24, FORGE_HEADER = 40 };
+/* In the seal of checkpoints (base/seal.h). */
+enum { FORGE_LENGTH_AT = 16, FORGE_SUM_AT = 24, FORGE_HEADER = SCREE_SEAL_BYTES };
 
 static inline uint64_t forge_get(const uint8_t *in) {
   uint64_t value = 0;
