@@ -57,6 +57,21 @@ int cli_fail(const scree_error *error) {
   return 1;
 }
 
+scree_status cli_refuse(scree_error *error, scree_status status, const char *path,
+                        const char *reason) {
+  error->status = status;
+  snprintf(error->message, sizeof error->message, "%.700s: %.300s", path, reason);
+  return status;
+}
+
+scree_status cli_name_in_error(const char *word, scree_error *error) {
+  if (error->status == SCREE_CANCELLED || strstr(error->message, word)) return error->status;
+  char message[sizeof error->message];
+  memcpy(message, error->message, sizeof message);
+  snprintf(error->message, sizeof error->message, "%.300s: %.700s", word, message);
+  return error->status;
+}
+
 int cli_misuse(const cli_verb *verb, const char *format, ...) {
   va_list arguments;
   fprintf(stderr, "scree%s%s: ", verb ? " " : "", verb ? verb->name : "");

@@ -23,20 +23,13 @@ static const char *const SINGLE_FILES[] = {"choice.json", "choice.csv", "choice.
                                            "provenance.json", "report.html"};
 enum { SINGLE_FILE_COUNT = 5 };
 
-static scree_status fail(scree_error *error, scree_status status, const char *path,
-                         const char *reason) {
-  error->status = status;
-  snprintf(error->message, sizeof error->message, "%.700s: %s", path, reason);
-  return status;
-}
-
 /* DIR/before name after */
 static scree_status join(const choose_run *run, const char *before, const char *name,
                          const char *after, char path[CHOOSE_PATH_BYTES], scree_error *error) {
   int length =
       snprintf(path, CHOOSE_PATH_BYTES, "%s/%s%s%s", run->arguments->output, before, name, after);
   if (length < CHOOSE_PATH_BYTES) return SCREE_OK;
-  return fail(error, SCREE_LIMIT, run->arguments->output, "the path is too long");
+  return cli_refuse(error, SCREE_LIMIT, run->arguments->output, "the path is too long");
 }
 
 static scree_status check_file(const choose_run *run, const char *before, const char *name,
@@ -126,7 +119,7 @@ static scree_status write_text(const choose_run *run, scree_error *error) {
   FILE *stream = open_memstream(&text, &size);
   if (stream) choose_print(stream, run);
   if (!stream || fclose(stream) != 0)
-    status = fail(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
+    status = cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
   else
     status = scree_text_write(text, path, run->arguments->overwrite, error);
   free(text);

@@ -15,13 +15,6 @@ scree_status drop_path(const drop_run *run, const char *name, char path[DROP_PAT
   return error->status;
 }
 
-static scree_status fail(scree_error *error, scree_status status, const char *path,
-                         const char *reason) {
-  error->status = status;
-  snprintf(error->message, sizeof error->message, "%.900s: %s", path, reason);
-  return status;
-}
-
 static bool may_replace(const drop_run *run) {
   return run->arguments->overwrite || run->arguments->resume;
 }
@@ -36,9 +29,8 @@ scree_status drop_check_output(const drop_run *run, scree_error *error) {
   scree_status status = drop_path(run, "series.csv", path, error);
   if (status == SCREE_OK) status = scree_folder_create(run->arguments->output, error);
   if (status == SCREE_OK && !run->arguments->resume)
-    status = scree_output_check(path, run->arguments->overwrite, error);
-  if (status != SCREE_EXISTS) return status;
-  return fail(error, status, path, "exists already: --resume goes on, -f begins anew");
+    status = cli_check_begun(path, run->arguments->overwrite, error);
+  return status;
 }
 
 scree_status drop_open_output(drop_run *run, scree_error *error) {
@@ -49,7 +41,7 @@ scree_status drop_open_output(drop_run *run, scree_error *error) {
   status = drop_path(run, "series.csv", path, error);
   if (status != SCREE_OK) return status;
   run->series = fopen(path, may_replace(run) ? "w" : "wx");
-  if (!run->series) return fail(error, SCREE_IO, path, strerror(errno));
+  if (!run->series) return cli_refuse(error, SCREE_IO, path, strerror(errno));
   fprintf(run->series,
           "# scree %s, %s\ntime_s,steps,bodies,kinetic_J,rotational_J,potential_J,elastic_J,"
           "dissipated_dashpot_J,dissipated_friction_J,entered_J,ledger_J,touching_pairs,contacts,"

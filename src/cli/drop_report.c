@@ -53,11 +53,7 @@ static scree_status read_points(const drop_run *run, points *p, scree_error *err
   scree_status status = drop_path(run, "series.csv", path, error);
   if (status != SCREE_OK) return status;
   FILE *stream = fopen(path, "r");
-  if (!stream) {
-    error->status = SCREE_IO;
-    snprintf(error->message, sizeof error->message, "%.900s: %s", path, strerror(errno));
-    return SCREE_IO;
-  }
+  if (!stream) return cli_refuse(error, SCREE_IO, path, strerror(errno));
   bool room = true;
   while (room && fgets(line, sizeof line, stream))
     if (parse_line(line, &point)) room = add_point(p, &point);

@@ -28,13 +28,6 @@ scree_status drop_save(drop_run *run, scree_error *error) {
   return status == SCREE_OK ? scree_pour_save(run->pour, path, true, error) : status;
 }
 
-static scree_status refuse(const char *path, scree_status status, const char *reason,
-                           scree_error *error) {
-  error->status = status;
-  snprintf(error->message, sizeof error->message, "%.700s: %s", path, reason);
-  return status;
-}
-
 /* ---- whether it is the same pour ---- */
 
 /* What the command line says of a pour, by the names of its options. */
@@ -90,7 +83,7 @@ static scree_status check_settings(const drop_run *run, const char *path, scree_
     char reason[160];
     snprintf(reason, sizeof reason, "is of another pour: %s is %g there and %g here",
              setting_names[i], there[i], here[i]);
-    return refuse(path, SCREE_BAD_ARGUMENT, reason, error);
+    return cli_refuse(error, SCREE_BAD_ARGUMENT, path, reason);
   }
   return SCREE_OK;
 }
@@ -114,7 +107,7 @@ static scree_status check_shapes(drop_run *run, const char *path, scree_error *e
     same = shape.count == run->shapes[i].count &&
            same_particle(shape.particle, run->shapes[i].particle);
   }
-  return same ? SCREE_OK : refuse(path, SCREE_BAD_ARGUMENT, "is of other shapes", error);
+  return same ? SCREE_OK : cli_refuse(error, SCREE_BAD_ARGUMENT, path, "is of other shapes");
 }
 
 /* ---- where the files stand ---- */
@@ -126,19 +119,19 @@ static scree_status reopen_series(drop_run *run, double length, scree_error *err
   if (status != SCREE_OK) return status;
   run->series = fopen(path, "r+");
   if (!run->series || fseeko(run->series, 0, SEEK_END) != 0)
-    return refuse(path, SCREE_IO, strerror(errno), error);
+    return cli_refuse(error, SCREE_IO, path, strerror(errno));
   if (!(length >= 0 && length <= (double)ftello(run->series)))
-    return refuse(path, SCREE_BAD_FILE, "is shorter than the checkpoint knows it", error);
+    return cli_refuse(error, SCREE_BAD_FILE, path, "is shorter than the checkpoint knows it");
   if (ftruncate(fileno(run->series), (off_t)length) != 0 ||
       fseeko(run->series, (off_t)length, SEEK_SET) != 0)
-    return refuse(path, SCREE_IO, strerror(errno), error);
+    return cli_refuse(error, SCREE_IO, path, strerror(errno));
   return SCREE_OK;
 }
 
 static scree_status take_notes(drop_run *run, const char *path, scree_error *error) {
   size_t count;
   const double *notes = scree_pour_notes(run->pour, &count);
-  if (count < NOTES) return refuse(path, SCREE_BAD_FILE, "is not of scree drop", error);
+  if (count < NOTES) return cli_refuse(error, SCREE_BAD_FILE, path, "is not of scree drop");
   run->schedule.next_frame = notes[0];
   run->schedule.next_line = notes[1];
   run->schedule.still_since = notes[2];
@@ -156,7 +149,7 @@ scree_status drop_resume(drop_run *run, scree_error *error) {
   if (status != SCREE_OK) return status;
   if (access(path, F_OK) != 0)
     return run->shape_count ? SCREE_OK
-                            : refuse(path, SCREE_IO, "no checkpoint to go on from", error);
+                            : cli_refuse(error, SCREE_IO, path, "no checkpoint to go on from");
   status = scree_pour_load(path, &run->pour, error);
   if (status == SCREE_OK) status = check_settings(run, path, error);
   if (status == SCREE_OK) status = check_shapes(run, path, error);

@@ -62,15 +62,6 @@ int drop_read_words(drop_run *run) {
   return 0;
 }
 
-/* Errors without the file in them get it in front. */
-static scree_status name_in_error(const drop_shape *shape, scree_error *error) {
-  if (error->status == SCREE_CANCELLED || strstr(error->message, shape->name)) return error->status;
-  char message[sizeof error->message];
-  memcpy(message, error->message, sizeof message);
-  snprintf(error->message, sizeof error->message, "%.300s: %.700s", shape->name, message);
-  return error->status;
-}
-
 /* Where the shape came from: file, checksum, triangles before. */
 static void describe(drop_shape *shape, const scree_scan *scan) {
   char checksum[SCREE_CHECKSUM_TEXT];
@@ -171,12 +162,12 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
     return scree_particle_clump_read(shape->name, run->arguments->unit, &shape->particle, error);
   scree_mesh mesh;
   scree_status status = load(run, shape, &mesh, error);
-  if (status != SCREE_OK) return name_in_error(shape, error);
+  if (status != SCREE_OK) return cli_name_in_error(shape->name, error);
   shape->source_triangles = mesh.triangle_count;
   status = decimate(run, &mesh, error);
   if (status == SCREE_OK) status = scree_particle_from_mesh(&mesh, NULL, &shape->particle, error);
   scree_mesh_free(&mesh);
-  return status == SCREE_OK ? SCREE_OK : name_in_error(shape, error);
+  return status == SCREE_OK ? SCREE_OK : cli_name_in_error(shape->name, error);
 }
 
 scree_status drop_make_particles(drop_run *run, scree_error *error) {

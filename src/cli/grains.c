@@ -59,21 +59,6 @@ typedef struct maker {
   scree_error *error;
 } maker;
 
-static scree_status fail(scree_error *error, scree_status status, const char *word,
-                         const char *what) {
-  error->status = status;
-  snprintf(error->message, sizeof error->message, "%.300s: %.600s", word, what);
-  return status;
-}
-
-/* Errors without a file in them get the word in front. */
-static scree_status name_in_error(const char *word, scree_error *error) {
-  if (error->status == SCREE_CANCELLED || strstr(error->message, word)) return error->status;
-  char message[sizeof error->message];
-  memcpy(message, error->message, sizeof message);
-  return fail(error, error->status, word, message);
-}
-
 /* Name and source of a grain, and the grain among the run's shapes. */
 static void describe(const maker *m, const char *word, const scree_scan *scan, size_t index) {
   cli_grains *g = m->grains;
@@ -125,7 +110,7 @@ static scree_status make_levels(const maker *m, size_t shape, const char *word,
                "%.0f triangles are too many for a particle (at most %d): give --rp, or decimate "
                "first (scree choose, scree simplify)",
                (double)mesh->triangle_count * grain.rp, CLI_LARGEST_GRAIN);
-      status = fail(m->error, SCREE_LIMIT, word, what);
+      status = cli_refuse(m->error, SCREE_LIMIT, word, what);
       break;
     }
     status =
@@ -142,7 +127,7 @@ static scree_status make_from_scan(const maker *m, size_t shape, const char *wor
   scree_scan scan;
   scree_mesh ready = {0};
   scree_status status = cli_load(word, &input, m->progress, &scan, m->error);
-  if (status != SCREE_OK) return name_in_error(word, m->error);
+  if (status != SCREE_OK) return cli_name_in_error(word, m->error);
   bool sample = cli_is_sample(word, NULL); /* made closed and manifold: nothing to check */
   if (!sample)
     status = scree_mesh_prepare(&scan.mesh, m->options->no_repair ? NULL : &repair, m->progress,
@@ -150,7 +135,7 @@ static scree_status make_from_scan(const maker *m, size_t shape, const char *wor
   if (status == SCREE_OK) status = make_levels(m, shape, word, &scan, sample ? &scan.mesh : &ready);
   scree_mesh_free(&ready);
   scree_scan_free(&scan);
-  return status == SCREE_OK ? status : name_in_error(word, m->error);
+  return status == SCREE_OK ? status : cli_name_in_error(word, m->error);
 }
 
 /* ---- clumps ---- */
@@ -173,7 +158,7 @@ static scree_status make_from_clump(const maker *m, size_t shape, const char *wo
     }
     if (status == SCREE_OK) describe(m, word, NULL, index);
   }
-  return status == SCREE_OK ? status : name_in_error(word, m->error);
+  return status == SCREE_OK ? status : cli_name_in_error(word, m->error);
 }
 
 scree_status cli_make_grains(const char *const *words, size_t count,
@@ -186,7 +171,7 @@ scree_status cli_make_grains(const char *const *words, size_t count,
   maker m = {options, progress, grains, error};
   scree_status status = SCREE_OK;
   if (!grains->grains || !grains->shapes || !grains->texts)
-    status = fail(error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
+    status = cli_refuse(error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
   for (size_t i = 0; status == SCREE_OK && i < count; i++)
     status =
         cli_is_clump(words[i]) ? make_from_clump(&m, i, words[i]) : make_from_scan(&m, i, words[i]);

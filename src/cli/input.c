@@ -53,10 +53,14 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
 scree_status cli_check_mesh_output(const char *path, bool overwrite, scree_error *error) {
   if (scree_file_format_of(path) != SCREE_FORMAT_AUTO)
     return scree_output_check(path, overwrite, error);
-  error->status = SCREE_BAD_ARGUMENT;
-  snprintf(error->message, sizeof error->message,
-           "%.900s: the name of a mesh must end in .stl, .ply, .obj, .off or .3mf", path);
-  return SCREE_BAD_ARGUMENT;
+  return cli_refuse(error, SCREE_BAD_ARGUMENT, path,
+                    "the name of a mesh must end in .stl, .ply, .obj, .off or .3mf");
+}
+
+scree_status cli_check_begun(const char *path, bool overwrite, scree_error *error) {
+  scree_status status = scree_output_check(path, overwrite, error);
+  if (status != SCREE_EXISTS) return status;
+  return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
 }
 
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,

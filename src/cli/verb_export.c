@@ -168,10 +168,7 @@ static scree_status write_view(const cli_call *call, const checkpoint *c, const 
   const export_arguments *a = call->options;
   if (a->view != SCREE_VIEW_CONTACTS || !c->run || !scree_run_is_frame(c->run))
     return scree_world_vtp_write(c->world, (scree_world_view)a->view, path, a->overwrite, error);
-  error->status = SCREE_UNSUPPORTED;
-  snprintf(error->message, sizeof error->message,
-           "%.900s: a frame holds no contacts; a checkpoint does", word);
-  return error->status;
+  return cli_refuse(error, SCREE_UNSUPPORTED, word, "a frame holds no contacts; a checkpoint does");
 }
 
 static scree_status export_world(const cli_call *call, scree_error *error) {

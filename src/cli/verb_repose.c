@@ -207,13 +207,6 @@ static scree_status on_frame(void *context, scree_run *run, size_t index, scree_
   return write_views(o, run, stem, error);
 }
 
-static scree_status fail_begun(const char *path, scree_error *error) {
-  error->status = SCREE_EXISTS;
-  snprintf(error->message, sizeof error->message,
-           "%.900s: exists already: --resume goes on, -f begins anew", path);
-  return SCREE_EXISTS;
-}
-
 /* experiment.yaml: what is run. */
 static scree_status write_experiment(const one_run *o, scree_error *error) {
   const repose_arguments *a = o->all->arguments;
@@ -232,7 +225,7 @@ static scree_status write_experiment(const one_run *o, scree_error *error) {
   }
   scree_status status = scree_text_write(text, path, a->force || a->resume, error);
   free(text);
-  return status == SCREE_EXISTS ? fail_begun(path, error) : status;
+  return status;
 }
 
 /* The collection of the frames, for each view that was written. */
@@ -366,8 +359,7 @@ static scree_status check_folders(repose *r) {
     char path[4200];
     snprintf(path, sizeof path, "%s/experiment.yaml", o.folder);
     status = scree_folder_create(o.folder, &r->error);
-    if (status == SCREE_OK) status = scree_output_check(path, a->force || a->resume, &r->error);
-    if (status == SCREE_EXISTS) status = fail_begun(path, &r->error);
+    if (status == SCREE_OK) status = cli_check_begun(path, a->force || a->resume, &r->error);
   }
   return status;
 }

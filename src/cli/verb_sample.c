@@ -39,6 +39,8 @@ static void list_samples(void) {
     printf("%-10s %s\n", scree_sample_name(i), scree_sample_description(i));
 }
 
+enum { PATH_BYTES = 4200 };
+
 /* A folder, or a file whose name says its format. */
 static bool names_file(const char *path) {
   return !strcmp(path, "-") || scree_file_format_of(path) != SCREE_FORMAT_AUTO;
@@ -81,6 +83,14 @@ static int make_one(const cli_call *call, const char *name, const char *path, bo
   return status == SCREE_OK ? 0 : cli_fail(&error);
 }
 
+/* The file of a sample: the output itself, or one in the folder that it is. */
+static void name_output(const char *output, const char *name, char path[PATH_BYTES]) {
+  if (names_file(output))
+    snprintf(path, PATH_BYTES, "%s", output);
+  else
+    snprintf(path, PATH_BYTES, "%s/%.64s.stl", output, name);
+}
+
 static int run(const cli_call *call) {
   const sample_arguments *arguments = call->options;
   if (arguments->list) {
@@ -95,19 +105,17 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "%zu samples do not fit into one file: -o takes a folder", count);
   scree_error error;
   if (!to_file && scree_folder_create(output, &error) != SCREE_OK) return cli_fail(&error);
-  for (int making = 0; making < 2; making++) { /* first whether all can be written */
-    for (size_t i = 0; i < count; i++) {
-      const char *name = all ? scree_sample_name(i) : call->inputs[i];
-      char path[4200];
-      if (to_file)
-        snprintf(path, sizeof path, "%s", output);
-      else
-        snprintf(path, sizeof path, "%s/%.64s.stl", output, name);
-      if (!making && scree_output_check(path, arguments->force, &error) != SCREE_OK)
-        return cli_fail(&error);
-      int code = making ? make_one(call, name, path, i == 0) : 0;
-      if (code) return code;
-    }
+  for (size_t i = 0; i < count; i++) { /* first whether all can be written */
+    char path[PATH_BYTES];
+    name_output(output, all ? scree_sample_name(i) : call->inputs[i], path);
+    if (scree_output_check(path, arguments->force, &error) != SCREE_OK) return cli_fail(&error);
+  }
+  for (size_t i = 0; i < count; i++) {
+    const char *name = all ? scree_sample_name(i) : call->inputs[i];
+    char path[PATH_BYTES];
+    name_output(output, name, path);
+    int code = make_one(call, name, path, i == 0);
+    if (code) return code;
   }
   return 0;
 }
