@@ -19,6 +19,7 @@
 #include "simplify/stray.h"
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 
 #include <string.h>
 
@@ -484,7 +485,7 @@ static void try_item(pass *p, const item *tried, const walk *w) {
   p->edge_count += ring.count;
 }
 
-static void ask_ahead(const pass *p, size_t i) {
+SCREE_PREFETCHES void ask_ahead(const pass *p, size_t i) {
   const scree_halfmesh *s = &p->d->s;
   if (i + 2 * AHEAD < p->item_count) {
     uint32_t v = p->items[i + 2 * AHEAD].vertex;
@@ -555,7 +556,7 @@ static void check_one(pass *p, uint32_t index, const scree_candidate *candidate)
 }
 
 /* Asks for all that the checks of these collapses will touch, step by step: of many at once. */
-static void ask_for_rings(const pass *p, const uint32_t *order, size_t count) {
+SCREE_PREFETCHES void ask_for_rings(const pass *p, const uint32_t *order, size_t count) {
   const scree_halfmesh *s = &p->d->s;
   for (size_t k = 0; k < count; k++) __builtin_prefetch(&p->taken[order[k]]);
   for (size_t k = 0; k < count; k++) {

@@ -20,7 +20,7 @@ vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, v
 }
 
 /* Asks for the forces on body i. */
-__attribute__((always_inline)) static inline void fetch_forces(const scree_world *world, size_t i) {
+SCREE_PREFETCHES void fetch_forces(const scree_world *world, size_t i) {
   for (size_t k = world->side_begin[i]; k < world->side_begin[i + 1]; k++) {
     size_t pair = world->sides.items[k] >> 1;
     if (scree_pair_touches(world, pair)) scree_prefetch(world->pairs.items[pair], 128);

@@ -20,7 +20,7 @@ static double slot_due(const scree_world *world, const scree_slot *slot) {
 }
 
 /* The pair and what its evaluation reads first. */
-__attribute__((always_inline)) static inline void fetch_pair(const scree_world *world, size_t k) {
+SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
   const scree_slot *slot = &world->slots.items[k];
   scree_prefetch(world->pairs.items[k], offsetof(scree_pair, further));
   if (!(slot->b & SCREE_SLOT_WALL))
@@ -28,8 +28,7 @@ __attribute__((always_inline)) static inline void fetch_pair(const scree_world *
 }
 
 /* What the items of a pair that has come read of their shapes. */
-__attribute__((always_inline)) static inline void fetch_features(const scree_world *world,
-                                                                 const scree_pair *pair) {
+SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair *pair) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   for (size_t i = 0; i < pair->active.count; i++) {
     const scree_item *item = &pair->active.items[i];

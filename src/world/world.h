@@ -3,6 +3,7 @@
 #define SCREE_WORLD_WORLD_H
 
 #include "base/codec.h"
+#include "base/prefetch.h"
 #include "particle/particle.h"
 
 enum { SCREE_MATERIALS = 64 };
@@ -261,11 +262,6 @@ struct scree_world {
   scree_timings timings;
 };
 
-/* Asks for `size` bytes from `start` ahead of their use: pairs lie anywhere in memory. A function
- * that only prefetches must be forced inline: gcc sees no effect in it and drops calls. */
-__attribute__((always_inline)) static inline void scree_prefetch(const void *start, size_t size) {
-  for (size_t at = 0; at < size; at += 64) __builtin_prefetch((const char *)start + at);
-}
 static inline scree_slot scree_pair_slot(const scree_pair *p) {
   return (scree_slot){p->asleep ? p->wake : -INFINITY, p->a,
                       p->b | (p->wall ? SCREE_SLOT_WALL : 0)};
