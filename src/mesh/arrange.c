@@ -6,7 +6,8 @@
  * facet. Vertices within the tolerance of each other become one. Then each facet is triangulated
  * anew with its vertices and the segments between them (mesh/facet_cut.c). What a round leaves out,
  * such as segments that cross within a facet, the next one finds as facets that still meet; three
- * or four rounds are usual. Rounding moves facets a little and may make them meet anew, which is
+ * or four rounds are usual, of which later ones look at facets only that the one before cut or that
+ * met others there. Rounding moves facets a little and may make them meet anew, which is
  * why the end is told by the exact search, and why what lies within the tolerance is taken to
  * touch. Nothing says that the rounds must end; where they do not, that is answered.
  *
@@ -28,9 +29,9 @@
 
 enum {
   ROUNDS = 16,
-  GROWTH = 64,              /* times the facets that went in; more, and the rounds run away */
-  LEAST_LIMIT = 20000,      /* of facets, however few went in */
-  ROUNDING_MEETINGS = 1000, /* more than twice the first and this many, and they run away, too */
+  GROWTH = 64,             /* times the facets that went in; more, and the rounds run away */
+  LEAST_LIMIT = 20000,     /* of facets, however few went in */
+  ROUNDING_MEETINGS = 200, /* more than twice the fewest and this many, and they run away, too */
 };
 
 static const char endless[] =
@@ -54,6 +55,8 @@ static const double sweep[3] = {0.5426374801, 0.3189731846, 0.7770443526};
 typedef struct facet {
   uint32_t v[3]; /* ascending */
   int32_t weight;
+  bool settled; /* it was there in the last round and met nothing */
+  bool met;     /* it meets another */
 } facet;
 
 typedef struct edge_point {
@@ -101,7 +104,8 @@ typedef struct arranger {
   LIST(uint32_t) candidates; /* facets with such vertices */
   scree_facet_pairs pairs;
   double tolerance;
-  size_t first_met; /* pairs of facets that met in the first round */
+  size_t fewest_met; /* pairs of facets that met in a round */
+  bool first;        /* round: no facet is settled yet */
   const char *reason;
 } arranger;
 
@@ -120,8 +124,9 @@ static scree_status no_memory(scree_error *error) {
 
 /* ---- The chain ---- */
 
-static bool add_facet(arranger *a, uint32_t x, uint32_t y, uint32_t z, int32_t weight) {
-  facet f = {{x, y, z}, weight};
+static bool add_facet(arranger *a, uint32_t x, uint32_t y, uint32_t z, int32_t weight,
+                      bool settled) {
+  facet f = {{x, y, z}, weight, settled, false};
   if (x == y || y == z || z == x) return true;
   for (int i = 0; i < 3; i++) { /* three exchanges sort three */
     int k = i % 2;
@@ -148,7 +153,7 @@ static void sum_facets(arranger *a) {
   for (size_t i = 0; i < a->facets.count;) {
     facet sum = f[i];
     for (i++; i < a->facets.count && compare_facets(&sum, &f[i]) == 0; i++)
-      sum.weight += f[i].weight;
+      sum.weight += f[i].weight, sum.settled &= f[i].settled;
     if (sum.weight) f[count++] = sum;
   }
   a->facets.count = count;
@@ -174,7 +179,7 @@ static bool start(arranger *a, const scree_mesh *mesh) {
   a->positions.count = 3 * mesh->vertex_count;
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     const uint32_t *v = mesh->triangles + 3 * t;
-    if (!add_facet(a, v[0], v[1], v[2], 1)) return false;
+    if (!add_facet(a, v[0], v[1], v[2], 1, true)) return false;
     for (int k = 0; k < 3; k++) {
       vec3 p = place(a, v[k]);
       low = vec3_min(low, p), high = vec3_max(high, p);
@@ -313,17 +318,16 @@ static bool place_apex(arranger *a, uint32_t t) {
   return add_edge_point(a, v[longest], v[(longest + 1) % 3], v[(longest + 2) % 3]);
 }
 
-/* Facets that met others in this round or an earlier one, and all at their vertices: those are
- * looked at again, for what comes within the tolerance only. */
-static bool list_candidates(arranger *a, const scree_meetings *found) {
+/* Facets that are not settled, and all at their vertices: those are looked at again, for what comes
+ * within the tolerance only. */
+static bool list_candidates(arranger *a) {
   a->candidates.count = a->triangles.count = 0;
-  while (a->active.count < a->positions.count / 3)
-    if (!SCREE_PUSH(&a->active, false)) return false;
-  for (size_t i = 0; i < found->count; i++)
-    for (int k = 0; k < 3; k++) {
-      a->active.items[a->facets.items[found->items[i].first].v[k]] = true;
-      a->active.items[a->facets.items[found->items[i].second].v[k]] = true;
-    }
+  if (!SCREE_RESERVE(&a->active, a->positions.count / 3)) return false;
+  a->active.count = a->positions.count / 3;
+  memset(a->active.items, 0, a->active.count);
+  for (uint32_t t = 0; t < a->facets.count; t++)
+    for (int k = 0; k < 3; k++)
+      if (!a->facets.items[t].settled) a->active.items[a->facets.items[t].v[k]] = true;
   for (uint32_t t = 0; t < a->facets.count; t++) {
     const uint32_t *v = a->facets.items[t].v;
     if (!a->active.items[v[0]] && !a->active.items[v[1]] && !a->active.items[v[2]]) continue;
@@ -335,10 +339,10 @@ static bool list_candidates(arranger *a, const scree_meetings *found) {
 }
 
 /* Pairs of candidates that may come within the tolerance, as facets. */
-static scree_status list_pairs(arranger *a, const scree_meetings *found, scree_error *error) {
+static scree_status list_pairs(arranger *a, scree_error *error) {
   scree_facet_tree tree = {0};
   a->pairs.count = 0;
-  if (!list_candidates(a, found)) return no_memory(error);
+  if (!list_candidates(a)) return no_memory(error);
   if (a->candidates.count == 0) return SCREE_OK;
   scree_mesh part = {a->positions.items, a->triangles.items, a->positions.count / 3,
                      a->candidates.count};
@@ -545,7 +549,8 @@ static bool cut_facet(arranger *a, scree_facet_cutter *cutter, const facet *f, u
   job.inner_count = at->point - point;
   job.segment_count = at->segment - segment;
   if (a->rim.count + job.inner_count + job.segment_count == 0)
-    return add_facet(a, v[0], v[1], v[2], f->weight);
+    return add_facet(a, v[0], v[1], v[2], f->weight,
+                     !f->met && v[0] == f->v[0] && v[1] == f->v[1] && v[2] == f->v[2]);
   for (size_t i = point; i < at->point; i++)
     if (!SCREE_PUSH(&a->rim, a->facet_points.items[i].vertex)) return false;
   for (size_t i = segment; i < at->segment; i++)
@@ -565,7 +570,7 @@ static bool cut_facet(arranger *a, scree_facet_cutter *cutter, const facet *f, u
   if (!scree_facet_cut(cutter, &job, &a->pieces)) return false;
   const uint32_t *c = a->pieces.items;
   for (size_t i = 0; i < a->pieces.count; i += 3)
-    if (!add_facet(a, c[i], c[i + 1], c[i + 2], f->weight)) return false;
+    if (!add_facet(a, c[i], c[i + 1], c[i + 2], f->weight, false)) return false;
   return true;
 }
 
@@ -591,6 +596,33 @@ static scree_status cut_all(arranger *a, scree_error *error) {
 
 /* ---- Rounds ---- */
 
+/* All pairs of facets that meet. In the first round all count as settled, though nothing is known
+ * of them: only those that meet are cut. */
+static scree_status find_meetings(arranger *a, const scree_mesh *mesh,
+                                  const scree_progress *progress, scree_meetings *found,
+                                  scree_error *error) {
+  scree_facet_tree tree;
+  bool *settled = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(settled, a->facets.count, error, out_of_memory);
+  for (size_t t = 0; t < a->facets.count; t++) settled[t] = a->facets.items[t].settled;
+  status = scree_facet_tree_build(mesh, &tree, error);
+  if (status != SCREE_OK) goto done;
+  status = scree_facet_meetings_new(&tree, a->first ? NULL : settled, scree_arrange_limit(mesh),
+                                    progress, found, error);
+  scree_facet_tree_free(&tree);
+  for (size_t i = 0; status == SCREE_OK && i < found->count; i++) {
+    facet *f = &a->facets.items[found->items[i].first],
+          *g = &a->facets.items[found->items[i].second];
+    f->met = g->met = true;
+    f->settled = g->settled = false;
+  }
+done:
+  scree_free(settled);
+out_of_memory:
+  return status;
+}
+
 /* *done: nothing meets. */
 static scree_status run_round(arranger *a, const scree_progress *progress, bool *done,
                               scree_error *error) {
@@ -601,12 +633,12 @@ static scree_status run_round(arranger *a, const scree_progress *progress, bool 
   *done = a->facets.items == NULL; /* there are none, or all have vanished */
   if (*done) return SCREE_OK;
   if (!make_mesh(a, &mesh)) return no_memory(error);
-  scree_status status =
-      scree_mesh_meetings(&mesh, scree_arrange_limit(&mesh), progress, &found, error);
+  scree_status status = find_meetings(a, &mesh, progress, &found, error);
   if (status == SCREE_OK && found.truncated) a->reason = scree_arrange_too_many;
-  if (a->first_met == 0) a->first_met = found.count;
-  if (found.count > 2 * a->first_met + ROUNDING_MEETINGS) a->reason = endless;
-  if (status == SCREE_OK && !a->reason) status = list_pairs(a, &found, error);
+  if (a->first || found.count < a->fewest_met) a->fewest_met = found.count;
+  if (found.count > 2 * a->fewest_met + ROUNDING_MEETINGS) a->reason = endless;
+  a->first = false;
+  if (status == SCREE_OK && !a->reason) status = list_pairs(a, error);
   bool any = found.count > 0;
   scree_free(found.items);
   if (status != SCREE_OK || a->reason) return status;
@@ -638,7 +670,7 @@ out_of_memory:
 scree_status scree_arrange(const scree_mesh *mesh, const scree_progress *progress,
                            scree_arrangement *arrangement, const char **reason,
                            scree_error *error) {
-  arranger a = {.reason = NULL};
+  arranger a = {.first = true};
   bool done = false;
   size_t limit = GROWTH * mesh->triangle_count + LEAST_LIMIT;
   *arrangement = (scree_arrangement){0};

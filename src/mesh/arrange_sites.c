@@ -192,6 +192,26 @@ static bool is_beyond(const scree_mesh *mesh, uint32_t t, uint32_t u, double tol
   return shared < 3 && (above + shared == 3 || below + shared == 3);
 }
 
+/* Whether all corners of u that are none of t's lie beyond one edge of t as seen along t's normal,
+ * and those that are t's at its ends: what the pieces of one cut facet are to each other. */
+static bool is_beside(const scree_mesh *mesh, uint32_t t, uint32_t u, double tolerance) {
+  const uint32_t *v = mesh->triangles + 3 * (size_t)t, *w = mesh->triangles + 3 * (size_t)u;
+  vec3 p[3], n;
+  for (int k = 0; k < 3; k++) p[k] = scree_mesh_corner(mesh, t, k);
+  n = vec3_triangle_normal(p[0], p[1], p[2]);
+  for (int k = 0; k < 3; k++) {
+    int next = (k + 1) % 3, beyond = 0;
+    vec3 inward = vec3_cross(n, vec3_sub(p[next], p[k]));
+    double margin = tolerance * vec3_norm(inward);
+    for (int j = 0; j < 3; j++)
+      beyond += w[j] == v[k] || w[j] == v[next] ||
+                (w[j] != v[(k + 2) % 3] &&
+                 vec3_dot(inward, vec3_sub(scree_mesh_corner(mesh, u, j), p[k])) < -margin);
+    if (beyond == 3) return true;
+  }
+  return false;
+}
+
 static bool boxes_near(const scree_box *a, const scree_box *b, double tolerance) {
   for (int k = 0; k < 3; k++)
     if (a->low[k] > b->high[k] + tolerance || b->low[k] > a->high[k] + tolerance) return false;
@@ -218,7 +238,8 @@ static bool list_leaf(const scree_facet_tree *tree, const scree_facet_node *n, u
     if (u <= t) continue;
     scree_box other = box_of(tree->mesh, u);
     if (!boxes_near(box, &other, tolerance) || is_beyond(tree->mesh, t, u, tolerance) ||
-        is_beyond(tree->mesh, u, t, tolerance))
+        is_beyond(tree->mesh, u, t, tolerance) || is_beside(tree->mesh, t, u, tolerance) ||
+        is_beside(tree->mesh, u, t, tolerance))
       continue;
     if (!SCREE_PUSH(pairs, (scree_facet_pair){t, u})) return false;
   }

@@ -39,8 +39,8 @@ typedef struct scree_facet_pairs {
 } scree_facet_pairs;
 
 /* Appends all pairs of the tree's facets, ascending, that may come within the tolerance of each
- * other: neither lies wholly beyond the other's plane. False when memory is out. O(N log N +
- * pairs).
+ * other: neither lies wholly beyond the other's plane or one of its edges. False when memory is
+ * out. O(N log N + pairs).
  */
 bool scree_near_pairs(const scree_facet_tree *tree, double tolerance, scree_facet_pairs *pairs);
 

@@ -46,6 +46,11 @@ typedef struct scree_meetings {
 scree_status scree_facet_meetings(const scree_facet_tree *tree, size_t limit,
                                   const scree_progress *progress, scree_meetings *found,
                                   scree_error *error);
+/* The same but for pairs of which both facets are `settled` (by facet). The cost is that of looking
+ * for the others. */
+scree_status scree_facet_meetings_new(const scree_facet_tree *tree, const bool *settled,
+                                      size_t limit, const scree_progress *progress,
+                                      scree_meetings *found, scree_error *error);
 /* The same with a tree of its own; the mesh may be empty. */
 scree_status scree_mesh_meetings(const scree_mesh *mesh, size_t limit,
                                  const scree_progress *progress, scree_meetings *found,

@@ -24,6 +24,8 @@ typedef struct item {
 
 typedef struct search {
   const scree_facet_tree *tree;
+  const bool *settled; /* by facet: of two such it is known that they do not meet; NULL: of none */
+  bool *calm;          /* by node: all its facets are settled; NULL: none is */
   item *work;
   scree_meetings *found; /* per work item */
   size_t limit;
@@ -34,6 +36,7 @@ typedef struct search {
 static bool test_pair(search *s, uint32_t a, uint32_t b, scree_meetings *out) {
   const scree_mesh *mesh = s->tree->mesh;
   const uint32_t *t = mesh->triangles + 3 * (size_t)a, *u = mesh->triangles + 3 * (size_t)b;
+  if (s->settled && s->settled[a] && s->settled[b]) return true;
   if (scree_boxes_apart(mesh->positions, t, u)) return true;
   scree_meet meet = scree_triangles_meet(mesh->positions, t, u);
   if (meet == SCREE_MEET_NOT) return true;
@@ -70,9 +73,11 @@ static int divide(const scree_facet_tree *t, item pair, item parts[3]) {
   return 2;
 }
 
-static bool apart(const scree_facet_tree *t, item pair) {
-  return pair.a != pair.b &&
-         scree_facet_nodes_apart(t, &t->nodes.items[pair.a], &t->nodes.items[pair.b]);
+/* Whether nothing is to be found between the two nodes. */
+static bool apart(const search *s, item pair) {
+  const scree_facet_node *nodes = s->tree->nodes.items;
+  if (s->calm && s->calm[pair.a] && s->calm[pair.b]) return true;
+  return pair.a != pair.b && scree_facet_nodes_apart(s->tree, &nodes[pair.a], &nodes[pair.b]);
 }
 
 static bool both_leaves(const scree_facet_tree *t, item pair) {
@@ -88,7 +93,7 @@ static bool traverse(search *s, item start, scree_meetings *out) {
   stack[depth++] = start;
   while (depth > 0) {
     item pair = stack[--depth];
-    if (apart(t, pair)) continue;
+    if (apart(s, pair)) continue;
     if (both_leaves(t, pair)) {
       if (atomic_load_explicit(&s->total, memory_order_relaxed) > s->limit) return true;
       if (!test_leaves(s, &t->nodes.items[pair.a], &t->nodes.items[pair.b], out)) return false;
@@ -114,13 +119,14 @@ static size_t work_items(const scree_facet_tree *t) {
 }
 
 /* Divides the root's pair breadth first until there are enough pairs for the threads. */
-static size_t spread_work(const scree_facet_tree *t, item *work, size_t most) {
+static size_t spread_work(const search *s, item *work, size_t most) {
+  const scree_facet_tree *t = s->tree;
   size_t first = 0, count = 1;
   work[0] = (item){0, 0};
   /* pairs before `first` are done being divided: both leaves */
   while (first < count && count + 2 < most) {
     item pair = work[first], parts[3];
-    if (apart(t, pair)) {
+    if (apart(s, pair)) {
       work[first] = work[--count];
     } else if (both_leaves(t, pair)) {
       first++;
@@ -183,22 +189,43 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+/* Children come after their node. */
+static void mark_calm(search *s) {
+  for (size_t i = s->tree->nodes.count; i-- > 0;) {
+    const scree_facet_node *n = &s->tree->nodes.items[i];
+    s->calm[i] = scree_facet_node_is_leaf(n) || (s->calm[i + 1] && s->calm[n->right]);
+    for (uint32_t j = n->begin; scree_facet_node_is_leaf(n) && j < n->begin + n->count; j++)
+      s->calm[i] &= s->settled[s->tree->order[j]];
+  }
+}
+
 scree_status scree_facet_meetings(const scree_facet_tree *tree, size_t limit,
                                   const scree_progress *progress, scree_meetings *found,
                                   scree_error *error) {
-  search s = {.tree = tree, .limit = limit};
+  return scree_facet_meetings_new(tree, NULL, limit, progress, found, error);
+}
+
+scree_status scree_facet_meetings_new(const scree_facet_tree *tree, const bool *settled,
+                                      size_t limit, const scree_progress *progress,
+                                      scree_meetings *found, scree_error *error) {
+  search s = {.tree = tree, .settled = settled, .limit = limit};
   scree_status status = SCREE_OUT_OF_MEMORY;
   size_t work_count = 0, most = work_items(tree);
+  if (settled) {
+    SCREE_ALLOC_OR(s.calm, tree->nodes.count, error, done);
+    mark_calm(&s);
+  }
   SCREE_ALLOC_OR(s.work, most, error, done);
   SCREE_ALLOC_OR(s.found, most, error, done);
   memset(s.found, 0, most * sizeof *s.found);
-  work_count = spread_work(tree, s.work, most);
+  work_count = spread_work(&s, s.work, most);
   status = run(&s, work_count, progress, error);
   if (status == SCREE_OK) status = gather(&s, work_count, found, error);
 done:
   for (size_t i = 0; i < work_count; i++) scree_free(s.found[i].items);
   scree_free(s.found);
   scree_free(s.work);
+  scree_free(s.calm);
   return status;
 }
 

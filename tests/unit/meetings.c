@@ -69,6 +69,46 @@ static void soups(void **state) {
   assert_true(found_count > 1000);
 }
 
+/* Without pairs of settled facets: what is left of all pairs. */
+static void unsettled(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 32};
+  size_t left = 0, out = 0;
+  for (int n = 0; n < 40; n++) {
+    size_t triangle_count = 10 + scree_rng_below(&rng, 400), next = 0;
+    soup s = make_soup(3 * triangle_count, triangle_count);
+    scree_facet_tree tree;
+    scree_meetings all, found;
+    scree_error error;
+    bool settled[410];
+    for (size_t i = 0; i < 3 * triangle_count; i++) {
+      vec3_store(s.mesh.positions + 3 * i, vec3_scale(scree_rng_direction(&rng), 2));
+      s.mesh.triangles[i] = (uint32_t)i;
+    }
+    /* facets settled here and there, or all on one side */
+    for (size_t t = 0; t < triangle_count; t++)
+      settled[t] = n % 2 ? scree_rng_below(&rng, 10) > 0 : s.mesh.positions[9 * t] > 0.1 * n - 2;
+    CHECK_OK(scree_facet_tree_build(&s.mesh, &tree, &error), error);
+    CHECK_OK(scree_facet_meetings(&tree, SIZE_MAX, NULL, &all, &error), error);
+    CHECK_OK(scree_facet_meetings_new(&tree, settled, SIZE_MAX, NULL, &found, &error), error);
+    for (size_t i = 0; i < all.count; i++) {
+      bool known = settled[all.items[i].first] && settled[all.items[i].second];
+      out += known;
+      if (known) continue;
+      assert_true(next < found.count);
+      assert_memory_equal(&found.items[next], &all.items[i], sizeof *all.items);
+      next++;
+    }
+    assert_int_equal(next, found.count);
+    left += next;
+    scree_free(all.items);
+    scree_free(found.items);
+    scree_facet_tree_free(&tree);
+    free_soup(&s);
+  }
+  assert_true(left > 10000 && out > 10000);
+}
+
 /* A slanted, twisted tube of long slivers with fans for caps, and one spike through it. */
 static soup tube(uint32_t sides, double twist, double length) {
   soup s = make_soup(2 * (size_t)sides + 2, 4 * (size_t)sides);
@@ -132,7 +172,8 @@ static void limit_and_threads(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(soups), cmocka_unit_test(slivers),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(soups), cmocka_unit_test(unsettled),
+                                     cmocka_unit_test(slivers),
                                      cmocka_unit_test(limit_and_threads)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
