@@ -20,6 +20,7 @@
 
 #include "base/parallel.h"
 #include "base/prefetch.h"
+#include "simplify/independent.h"
 
 #include <string.h>
 
@@ -29,6 +30,9 @@
 #define HIGH_SHARE 0.6
 #define LOW_SHARE  0.3
 #define SPREAD     8.0
+/* While more than this share of the triangles is left, candidates up to this share. */
+#define FINE       0.2
+#define FINE_SHARE 0.9
 enum { ROUNDS = 4 };
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
@@ -36,25 +40,19 @@ enum { ROUNDS = 4 };
 #define EDGES_PER_CELL 2.0
 #define REGRID_BELOW   0.6
 
-/* Candidates lie at random in memory: how far ahead they are asked for. */
-enum { AHEAD = 16 };
-enum { VERTEX_BLOCK = 1024, CHOSEN_BLOCK = 256, BINS = 1 << 16 };
-/* Edges evaluated in one call; parts in which the candidates of a round are chosen. */
-enum { SIDE_BY_SIDE = 64, CHOICE_PARTS = 8 };
-/* Rings gathered at once, and how many triangles such a ring may have. */
-enum { SIDE_BY_SIDE_WALKS = 12, WALK_MOST = 24 };
+enum { VERTEX_BLOCK = SCREE_CHOICE_BLOCK, TAKEN_BLOCK = 256, BINS = 1 << 16 };
+/* Edges evaluated in one call. */
+enum { SIDE_BY_SIDE = 64 };
 
-enum { TOUCHED = 1, APEX = 2 };
 enum { REFUSED, POSTPONED, CERTAIN, UNCERTAIN };
 
 typedef struct item {
-  uint32_t key, vertex; /* key: the leading bits of the cost */
+  uint32_t key, index; /* key: the leading bits of the cost */
 } item;
 
 /* A collapse that was taken; its ring is in pass.edges from first_edge on. */
 typedef struct taken {
   uint32_t half_edge, first_edge;
-  uint32_t place; /* in the record */
   uint16_t a_count, count;
   uint8_t verdict;
   bool open;  /* a boundary edge: one triangle goes */
@@ -64,32 +62,28 @@ typedef struct taken {
   scree_grid_box box;
 } taken;
 
-/* Of a block of vertices: how many candidates, then how many in the blocks before; the greatest
- * cost among them. */
+/* Of a block of vertices: where its collapses taken begin; the greatest cost of its candidates. */
 typedef struct part {
-  size_t count;
+  size_t first;
   double dearest;
 } part;
 
 typedef struct pass {
   scree_decimator *d;
-  uint32_t *best;     /* per vertex: half-edge of its cheapest edge, or NONE */
-  uint32_t *other;    /* per vertex: the other end of that */
-  double *cost;       /* per vertex: of that */
-  uint8_t *marks;     /* per vertex */
-  uint32_t *chosen;   /* per vertex: the index of the collapse it is an end of, or NONE */
-  item *items, *swap; /* candidates in order */
-  size_t item_count;
+  uint32_t *best;        /* per vertex: half-edge of its cheapest edge, or NONE */
+  double *cost;          /* per vertex: of that */
+  uint8_t *marks;        /* per vertex: see independent.h */
+  uint32_t *chosen;      /* per vertex: the index of the collapse it is an end of, or NONE */
+  uint32_t *apex_leader; /* this and the next two: see independent.h */
+  scree_contender *contenders;
+  struct scree_choice_count *counts;
   uint32_t limit; /* the threshold, as a key */
   double dearest; /* the greatest cost below it: the threshold without the key's rounding */
-  taken *taken;   /* in the order of cost */
+  taken *taken;   /* in the order of their vertices */
   scree_change *changes;
   size_t taken_count, room;
-  size_t next_item;              /* to be looked at by choose_some */
-  size_t check_begin, check_end; /* taken ones to be checked meanwhile */
-  uint32_t *edges;               /* the rings */
-  size_t edge_count;
-  uint32_t *order; /* of taken: as their vertices lie in memory, for the parallel parts */
+  uint32_t *edges;    /* the rings */
+  item *order, *swap; /* of those that are done: in the order of cost */
   uint32_t *uncertain;
   size_t uncertain_count;
   uint32_t *bins;
@@ -98,16 +92,17 @@ typedef struct pass {
 
 static void pass_free(pass *p) {
   scree_free(p->best);
-  scree_free(p->other);
   scree_free(p->cost);
   scree_free(p->marks);
   scree_free(p->chosen);
-  scree_free(p->items);
-  scree_free(p->swap);
+  scree_free(p->apex_leader);
+  scree_free(p->contenders);
+  scree_free(p->counts);
   scree_free(p->taken);
   scree_free(p->changes);
   scree_free(p->edges);
   scree_free(p->order);
+  scree_free(p->swap);
   scree_free(p->uncertain);
   scree_free(p->bins);
   scree_free(p->parts);
@@ -116,30 +111,48 @@ static void pass_free(pass *p) {
 static scree_status pass_allocate(pass *p) {
   scree_error *error = p->d->error;
   size_t n = p->d->s.vertex_count, triangles = p->d->s.triangle_count;
-  size_t scratch = n > triangles / 2 ? n : triangles / 2 + 1;
+  size_t blocks = scree_block_count(n, VERTEX_BLOCK);
   p->room = n / 6 + 1; /* more wait for the next round */
   SCREE_ALLOC_OR(p->best, n, error, out_of_memory);
-  SCREE_ALLOC_OR(p->other, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->cost, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->marks, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->chosen, n, error, out_of_memory);
-  SCREE_ALLOC_OR(p->items, scratch, error, out_of_memory);
-  SCREE_ALLOC_OR(p->swap, scratch, error, out_of_memory);
+  SCREE_ALLOC_OR(p->apex_leader, n, error, out_of_memory);
+  SCREE_ALLOC_OR(p->contenders, blocks * VERTEX_BLOCK, error, out_of_memory);
+  SCREE_ALLOC_OR(p->counts, blocks, error, out_of_memory);
   SCREE_ALLOC_OR(p->taken, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->changes, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->order, p->room, error, out_of_memory);
+  SCREE_ALLOC_OR(p->swap, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->uncertain, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->edges, triangles + SCREE_RING_MAX, error, out_of_memory);
   SCREE_ALLOC_OR(p->bins, 2 * BINS, error, out_of_memory);
-  SCREE_ALLOC_OR(p->parts, scree_block_count(n, VERTEX_BLOCK), error, out_of_memory);
+  SCREE_ALLOC_OR(p->parts, blocks, error, out_of_memory);
+  memset(p->chosen, 0xff, n * sizeof *p->chosen);
+  memset(p->apex_leader, 0xff, n * sizeof *p->apex_leader);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+/* Asks for what lies in order: the block's vertices and most of their triangles. */
+SCREE_PREFETCHES void ask_for_block(const scree_halfmesh *s, size_t begin, size_t end, bool sums) {
+  for (size_t v = begin; v < end; v += 2) __builtin_prefetch(&s->vertex[v], 0, 2);
+  if (sums)
+    for (const char *at = (const char *)s->sums[begin]; at < (const char *)s->sums[end]; at += 64)
+      __builtin_prefetch(at, 0, 2);
+  while (begin < end && s->vertex[begin].outgoing == SCREE_NONE) begin++;
+  while (begin < end && s->vertex[end - 1].outgoing == SCREE_NONE) end--;
+  if (begin == end) return;
+  uint32_t first = s->vertex[begin].outgoing, last = s->vertex[end - 1].outgoing;
+  if (last - first > 16384) return;
+  for (uint32_t h = first; h < last; h += 8) __builtin_prefetch(&s->half[h], 0, 2);
+}
+
 static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   scree_decimator *d = ((pass *)context)->d;
+  ask_for_block(&d->s, begin, end, false);
   for (size_t v = begin; v < end; v++) {
     if (d->s.vertex[v].outgoing == SCREE_NONE || !(d->s.flags[v] & SCREE_VERTEX_STALE)) continue;
     d->coster->sum(&d->s, (uint32_t)v);
@@ -200,6 +213,7 @@ static void evaluate_block(void *context, size_t begin, size_t end, size_t block
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
   waiting w = {.count = 0};
+  ask_for_block(s, begin, end, true);
   for (size_t v = begin; v < end; v++) {
     p->best[v] = SCREE_NONE;
     p->cost[v] = INFINITY;
@@ -214,8 +228,6 @@ static void evaluate_block(void *context, size_t begin, size_t end, size_t block
     } while (h != SCREE_NONE && h != first);
   }
   evaluate_waiting(p, &w);
-  for (size_t v = begin; v < end; v++)
-    if (p->best[v] != SCREE_NONE) p->other[v] = scree_to(s, p->best[v]);
 }
 
 /* The leading 32 bits below the sign: monotone in the cost. */
@@ -263,39 +275,33 @@ static bool is_candidate(const pass *p, size_t v) {
   return key_of(p->cost[v]) <= p->limit;
 }
 
-static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
-  const pass *p = context;
-  part sum = {0, 0};
-  for (size_t v = begin; v < end; v++) {
-    if (!is_candidate(p, v)) continue;
-    sum.count++;
-    sum.dearest = fmax(sum.dearest, p->cost[v]);
-  }
-  p->parts[block] = sum;
-}
-
 static void list_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)worker;
   const pass *p = context;
-  item *next = p->items + p->parts[block].count;
-  for (size_t v = begin; v < end; v++)
-    if (is_candidate(p, v)) *next++ = (item){key_of(p->cost[v]), (uint32_t)v};
+  scree_contender *contenders = p->contenders + begin;
+  ask_for_block(&p->d->s, begin, end, false);
+  uint32_t count = 0;
+  double dearest = 0;
+  for (size_t v = begin; v < end; v++) {
+    p->marks[v] = 0;
+    p->chosen[v] = SCREE_NONE;
+    if (!is_candidate(p, v)) continue;
+    scree_ring r;
+    scree_ring_name(&p->d->s, p->best[v], &r);
+    contenders[count++] = (scree_contender){.a = r.a, .b = r.b, .c = r.c, .d = r.d};
+    dearest = p->cost[v] > dearest ? p->cost[v] : dearest;
+  }
+  p->counts[block] = (struct scree_choice_count){.left = count};
+  p->parts[block].dearest = dearest;
 }
 
-/* Lists the candidates in the order of vertices; answers the greatest cost among them. */
+/* Lists the candidates; answers the greatest cost among them. */
 static double list_candidates(pass *p) {
   double dearest = 0;
-  size_t count = p->d->s.vertex_count, blocks = scree_block_count(count, VERTEX_BLOCK);
-  scree_parallel_for(count, VERTEX_BLOCK, count_block, p);
-  p->item_count = 0;
-  for (size_t i = 0; i < blocks; i++) {
-    size_t before = p->item_count;
-    p->item_count += p->parts[i].count;
-    p->parts[i].count = before;
-    dearest = fmax(dearest, p->parts[i].dearest);
-  }
+  size_t count = p->d->s.vertex_count;
   scree_parallel_for(count, VERTEX_BLOCK, list_block, p);
+  for (size_t i = 0; i < scree_block_count(count, VERTEX_BLOCK); i++)
+    dearest = fmax(dearest, p->parts[i].dearest);
   return dearest;
 }
 
@@ -305,10 +311,11 @@ static bool set_limit(pass *p) {
   uint32_t key[2];
   for (size_t v = 0; v < vertices; v++) count += p->cost[v] < INFINITY;
   if (count == 0) return false;
-  keys_at(p, (size_t[2]){(size_t)(HIGH_SHARE * (double)count), (size_t)(LOW_SHARE * (double)count)},
-          key);
+  bool fine = (double)p->d->s.live_triangle_count > FINE * (double)p->d->first_triangle_count;
+  double high = fine ? FINE_SHARE : HIGH_SHARE;
+  keys_at(p, (size_t[2]){(size_t)(high * (double)count), (size_t)(LOW_SHARE * (double)count)}, key);
   uint32_t spread = key_of(fmin(SPREAD * cost_of_key(key[1]), 1e300));
-  p->limit = key[0] < spread ? key[0] : spread;
+  p->limit = fine || key[0] < spread ? key[0] : spread;
   return true;
 }
 
@@ -331,6 +338,7 @@ static void reconsider_block(void *context, size_t begin, size_t end, size_t blo
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
   waiting w = {.count = 0};
+  ask_for_block(s, begin, end, true);
   for (size_t v = begin; v < end; v++) {
     if (!is_candidate(p, v)) continue;
     uint32_t h = p->best[v];
@@ -338,183 +346,11 @@ static void reconsider_block(void *context, size_t begin, size_t end, size_t blo
       p->cost[v] = INFINITY;
       continue;
     }
-    p->other[v] = scree_to(s, h);
-    if (!((s->flags[v] | s->flags[p->other[v]]) & SCREE_VERTEX_CHANGED)) continue;
+    if (!((s->flags[v] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_CHANGED)) continue;
     w.edge[w.count++] = h;
     if (w.count == SIDE_BY_SIDE) reconsider_waiting(p, &w);
   }
   reconsider_waiting(p, &w);
-}
-
-/* Items of equal key by the rest of their cost, where few are equal. Where many are (a regular grid
- * on a flat) the rest is rounding, and the order of the vertices serves as well. */
-static void refine_order(pass *p) {
-  enum { FEW = 16 };
-  for (size_t begin = 0, end; begin < p->item_count; begin = end) {
-    for (end = begin + 1; end < p->item_count && p->items[end].key == p->items[begin].key;) end++;
-    if (end - begin > FEW) continue;
-    for (size_t i = begin + 1; i < end; i++) {
-      item moved = p->items[i];
-      size_t j = i;
-      for (; j > begin && p->cost[p->items[j - 1].vertex] > p->cost[moved.vertex]; j--)
-        p->items[j] = p->items[j - 1];
-      p->items[j] = moved;
-    }
-  }
-}
-
-static void sort_items(pass *p) {
-  enum { DIGIT = 11, RADIX = 1 << DIGIT };
-  for (int shift = 0; shift < 32; shift += DIGIT) {
-    size_t start[RADIX + 1] = {0};
-    for (size_t i = 0; i < p->item_count; i++)
-      start[(p->items[i].key >> shift & (RADIX - 1)) + 1]++;
-    for (int r = 0; r < RADIX; r++) start[r + 1] += start[r];
-    for (size_t i = 0; i < p->item_count; i++)
-      p->swap[start[p->items[i].key >> shift & (RADIX - 1)]++] = p->items[i];
-    item *other = p->items;
-    p->items = p->swap;
-    p->swap = other;
-  }
-  refine_order(p);
-}
-
-static void mark_ring(pass *p, const scree_ring *r) {
-  const scree_halfmesh *s = &p->d->s;
-  for (uint32_t i = 0; i < r->count; i++) {
-    p->marks[s->half[r->edge[i]].from] |= TOUCHED;
-    p->marks[scree_to(s, r->edge[i])] |= TOUCHED;
-  }
-  p->marks[r->a] |= TOUCHED;
-  p->marks[r->b] |= TOUCHED;
-  p->marks[r->c] |= APEX;
-  if (r->d != SCREE_NONE) p->marks[r->d] |= APEX;
-  p->chosen[r->a] = p->chosen[r->b] = (uint32_t)p->taken_count;
-}
-
-/* Lists the collapses taken from `begin` on as their vertices lie in memory, roughly. */
-static void order_by_place(pass *p, size_t begin) {
-  enum { BUCKETS = 1024 };
-  const scree_halfmesh *s = &p->d->s;
-  uint32_t start[BUCKETS + 1] = {0};
-  int shift = 0;
-  while (s->vertex_count >> shift > BUCKETS) shift++;
-  for (size_t i = begin; i < p->taken_count; i++)
-    start[(s->half[p->taken[i].half_edge].from >> shift) + 1]++;
-  start[0] = (uint32_t)begin;
-  for (int k = 0; k < BUCKETS; k++) start[k + 1] += start[k];
-  for (size_t i = begin; i < p->taken_count; i++)
-    p->order[start[s->half[p->taken[i].half_edge].from >> shift]++] = (uint32_t)i;
-}
-
-/* A ring being gathered: the triangles around a, then around b. */
-typedef struct walk {
-  uint32_t at, stop; /* half-edges */
-  bool around_b, going;
-  scree_ring ring;
-  uint32_t edges[WALK_MOST];
-} walk;
-
-static bool may_be_taken(const pass *p, uint32_t v, scree_ring *ring) {
-  if (p->marks[v] & TOUCHED || p->marks[p->other[v]] & TOUCHED) return false;
-  scree_ring_name(&p->d->s, p->best[v], ring);
-  return !(p->marks[ring->c] & APEX) && (ring->d == SCREE_NONE || !(p->marks[ring->d] & APEX));
-}
-
-static void begin_walk(const pass *p, uint32_t v, walk *w) {
-  const scree_halfmesh *s = &p->d->s;
-  w->ring = (scree_ring){.edge = w->edges};
-  w->going = may_be_taken(p, v, &w->ring) && w->ring.d != SCREE_NONE;
-  w->around_b = false;
-  w->at = w->ring.half_edge;
-  if (w->going) w->stop = scree_next(s->half[w->at].twin);
-}
-
-/* One triangle farther. A ring that meets a boundary, or is long, is left unfinished. */
-static void step_walk(const scree_halfmesh *s, walk *w) {
-  w->at = scree_turn(s, w->at);
-  if (w->at == w->stop) {
-    if (w->around_b) {
-      w->going = false;
-      return;
-    }
-    w->ring.a_count = w->ring.count;
-    w->around_b = true;
-    w->at = s->half[w->ring.half_edge].twin;
-    w->stop = scree_next(w->ring.half_edge);
-  } else if (w->at == SCREE_NONE || w->ring.count == WALK_MOST) {
-    w->going = w->around_b = false;
-  } else {
-    w->edges[w->ring.count++] = scree_next(w->at);
-  }
-}
-
-/* Rings of several items at once: each step waits for memory, but not for those of others. */
-static void walk_together(const pass *p, const item *items, size_t count, walk *walks) {
-  const scree_halfmesh *s = &p->d->s;
-  bool going = true;
-  for (size_t i = 0; i < count; i++) begin_walk(p, items[i].vertex, &walks[i]);
-  while (going) {
-    going = false;
-    for (size_t i = 0; i < count; i++) {
-      if (walks[i].going) step_walk(s, &walks[i]);
-      going |= walks[i].going;
-    }
-  }
-}
-
-/* Takes the edge of the item if it is independent of those taken. */
-static void try_item(pass *p, const item *tried, const walk *w) {
-  scree_halfmesh *s = &p->d->s;
-  scree_ring ring = {.edge = p->edges + p->edge_count};
-  if (!may_be_taken(p, tried->vertex, &ring)) return;
-  if (w->around_b) { /* the walk went all the way */
-    ring.a_count = w->ring.a_count;
-    ring.count = w->ring.count;
-    memcpy(ring.edge, w->edges, ring.count * sizeof *ring.edge);
-  } else if (!scree_ring_gather(s, ring.half_edge, &ring)) {
-    s->refused[ring.half_edge] = SCREE_EDGE_REFUSED;
-    return;
-  }
-  mark_ring(p, &ring);
-  p->taken[p->taken_count++] = (taken){.half_edge = ring.half_edge,
-                                       .first_edge = (uint32_t)p->edge_count,
-                                       .a_count = (uint16_t)ring.a_count,
-                                       .count = (uint16_t)ring.count,
-                                       .open = ring.d == SCREE_NONE};
-  p->edge_count += ring.count;
-}
-
-SCREE_PREFETCHES void ask_ahead(const pass *p, size_t i) {
-  const scree_halfmesh *s = &p->d->s;
-  if (i + 2 * AHEAD < p->item_count) {
-    uint32_t v = p->items[i + 2 * AHEAD].vertex;
-    __builtin_prefetch(&p->best[v]);
-    __builtin_prefetch(&p->other[v]);
-    __builtin_prefetch(&p->marks[v]);
-  }
-  if (i + AHEAD < p->item_count) {
-    uint32_t v = p->items[i + AHEAD].vertex;
-    if (!(p->marks[v] & TOUCHED)) __builtin_prefetch(&s->half[p->best[v]]);
-  }
-}
-
-/* Goes through the next items in the order of cost. */
-static void choose_some(pass *p) {
-  size_t end = p->next_item + p->item_count / CHOICE_PARTS + 1, begin = p->taken_count;
-  walk walks[SIDE_BY_SIDE_WALKS];
-  if (end > p->item_count) end = p->item_count;
-  while (p->next_item < end && p->taken_count < p->room) {
-    size_t left = end - p->next_item, count = left < SIDE_BY_SIDE_WALKS ? left : SIDE_BY_SIDE_WALKS;
-    const item *items = p->items + p->next_item;
-    for (size_t i = 0; i < count; i++) ask_ahead(p, p->next_item + i);
-    walk_together(p, items, count, walks);
-    for (size_t i = 0; i < count && p->taken_count < p->room; i++)
-      try_item(p, &items[i], &walks[i]);
-    p->next_item += count;
-  }
-  if (p->taken_count == p->room) p->next_item = p->item_count;
-  order_by_place(p, begin);
 }
 
 static scree_ring ring_of(const pass *p, const taken *t) {
@@ -556,32 +392,25 @@ static void check_one(pass *p, uint32_t index, const scree_candidate *candidate)
 }
 
 /* Asks for all that the checks of these collapses will touch, step by step: of many at once. */
-SCREE_PREFETCHES void ask_for_rings(const pass *p, const uint32_t *order, size_t count) {
+SCREE_PREFETCHES void ask_for_rings(const pass *p, const taken *t, size_t count) {
   const scree_halfmesh *s = &p->d->s;
-  for (size_t k = 0; k < count; k++) __builtin_prefetch(&p->taken[order[k]]);
   for (size_t k = 0; k < count; k++) {
-    const taken *t = &p->taken[order[k]];
-    for (uint32_t i = 0; i < t->count; i++)
-      __builtin_prefetch(&s->half[p->edges[t->first_edge + i]]);
-  }
-  for (size_t k = 0; k < count; k++) {
-    const taken *t = &p->taken[order[k]];
-    uint32_t a = s->half[t->half_edge].from, b = scree_to(s, t->half_edge);
+    uint32_t a = s->half[t[k].half_edge].from, b = scree_to(s, t[k].half_edge);
     __builtin_prefetch(s->sums[a]);
+    __builtin_prefetch(&s->sums[a][8]);
     __builtin_prefetch(s->sums[b]);
-    for (uint32_t i = 0; i < t->count; i++) {
-      scree_half_edge half = s->half[p->edges[t->first_edge + i]];
+    __builtin_prefetch(&s->sums[b][8]);
+    for (uint32_t i = 0; i < t[k].count; i++) {
+      scree_half_edge half = s->half[p->edges[t[k].first_edge + i]];
       __builtin_prefetch(&s->vertex[half.from]);
       if (half.twin != SCREE_NONE) __builtin_prefetch(&s->half[scree_previous(half.twin)]);
     }
   }
-  for (size_t k = 0; k < count; k++) {
-    const taken *t = &p->taken[order[k]];
-    for (uint32_t i = 0; i < t->count; i++) {
-      uint32_t twin = s->half[p->edges[t->first_edge + i]].twin;
+  for (size_t k = 0; k < count; k++)
+    for (uint32_t i = 0; i < t[k].count; i++) {
+      uint32_t twin = s->half[p->edges[t[k].first_edge + i]].twin;
       if (twin != SCREE_NONE) __builtin_prefetch(&s->vertex[s->half[scree_previous(twin)].from]);
     }
-  }
 }
 
 static void check_some(pass *p, size_t begin, size_t end) {
@@ -589,25 +418,32 @@ static void check_some(pass *p, size_t begin, size_t end) {
   scree_candidate candidates[SIDE_BY_SIDE];
   while (begin < end) {
     size_t count = end - begin < SIDE_BY_SIDE ? end - begin : SIDE_BY_SIDE;
-    ask_for_rings(p, p->order + begin, count);
-    for (size_t k = 0; k < count; k++) edges[k] = p->taken[p->order[begin + k]].half_edge;
+    ask_for_rings(p, p->taken + begin, count);
+    for (size_t k = 0; k < count; k++) edges[k] = p->taken[begin + k].half_edge;
     p->d->coster->evaluate(&p->d->s, edges, count, candidates);
-    for (size_t k = 0; k < count; k++) check_one(p, p->order[begin + k], &candidates[k]);
+    for (size_t k = 0; k < count; k++) check_one(p, (uint32_t)(begin + k), &candidates[k]);
     begin += count;
   }
 }
 
-/* One worker chooses, the others check what was chosen before. */
-static void choose_and_check_block(void *context, size_t begin, size_t end, size_t block,
-                                   int worker) {
-  (void)end, (void)block, (void)worker;
+static void take(pass *p, const scree_contender *c, size_t index) {
+  const scree_half_edge *half = p->d->s.half;
+  uint32_t h = p->best[c->taken];
+  p->taken[index] = (taken){.half_edge = h,
+                            .first_edge = c->first_edge,
+                            .a_count = (uint16_t)c->a_count,
+                            .count = (uint16_t)c->count,
+                            .open = half[h].twin == SCREE_NONE};
+  p->chosen[c->taken] = p->chosen[scree_to(&p->d->s, h)] = (uint32_t)index;
+}
+
+static void take_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)end, (void)worker;
   pass *p = context;
-  if (begin == 0) {
-    if (p->next_item < p->item_count) choose_some(p);
-    return;
-  }
-  size_t first = p->check_begin + (begin - 1) * CHOSEN_BLOCK, last = first + CHOSEN_BLOCK;
-  check_some(p, first, last < p->check_end ? last : p->check_end);
+  size_t first = p->parts[block].first, next = first, count = p->counts[block].taken;
+  const scree_contender *first_taken = p->contenders + begin + VERTEX_BLOCK - count;
+  for (size_t i = 0; i < count && next < p->room; i++) take(p, &first_taken[i], next++);
+  check_some(p, first, next);
 }
 
 /* What will not be done is no danger to others: if it were taken for one, answers would depend on
@@ -618,15 +454,24 @@ static void give_up(pass *p, const taken *t) {
 }
 
 static void choose_and_check(pass *p) {
-  memset(p->marks, 0, p->d->s.vertex_count);
-  memset(p->chosen, 0xff, p->d->s.vertex_count * sizeof *p->chosen);
-  p->taken_count = p->edge_count = p->next_item = p->check_begin = p->check_end = 0;
-  do {
-    size_t checks = scree_block_count(p->check_end - p->check_begin, CHOSEN_BLOCK);
-    scree_parallel_for(1 + checks, 1, choose_and_check_block, p);
-    p->check_begin = p->check_end;
-    p->check_end = p->taken_count;
-  } while (p->check_begin < p->check_end || p->next_item < p->item_count);
+  size_t vertices = p->d->s.vertex_count;
+  scree_choosing choosing = {.s = &p->d->s,
+                             .best = p->best,
+                             .cost = p->cost,
+                             .contenders = p->contenders,
+                             .counts = p->counts,
+                             .leader = p->chosen,
+                             .apex_leader = p->apex_leader,
+                             .marks = p->marks,
+                             .edges = p->edges};
+  scree_choose_independent(&choosing);
+  p->taken_count = 0;
+  for (size_t i = 0; i < scree_block_count(vertices, VERTEX_BLOCK); i++) {
+    p->parts[i].first = p->taken_count;
+    p->taken_count += p->counts[i].taken;
+    if (p->taken_count > p->room) p->taken_count = p->room;
+  }
+  scree_parallel_for(vertices, VERTEX_BLOCK, take_block, p);
   for (size_t i = 0; i < p->taken_count; i++)
     if (p->taken[i].verdict < CERTAIN) give_up(p, &p->taken[i]);
 }
@@ -652,8 +497,7 @@ static void certify_block(void *context, size_t begin, size_t end, size_t block,
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
-  for (size_t k = begin; k < end; k++) {
-    uint32_t i = p->order[k];
+  for (size_t i = begin; i < end; i++) {
     taken *t = &p->taken[i];
     if (t->verdict == REFUSED || t->verdict == POSTPONED) continue;
     if (t->steep) { /* else not even the other's turn of at most 84 degrees makes a fold */
@@ -693,7 +537,7 @@ static void search_uncertain(pass *p) {
   }
   if (p->uncertain_count == 0) return;
   scree_grid_join_groups(&d->grid);
-  scree_parallel_for(p->uncertain_count, CHOSEN_BLOCK / 16, search_block, p);
+  scree_parallel_for(p->uncertain_count, TAKEN_BLOCK / 16, search_block, p);
 }
 
 static void set_flag(scree_halfmesh *s, uint32_t v) {
@@ -702,19 +546,70 @@ static void set_flag(scree_halfmesh *s, uint32_t v) {
     __atomic_fetch_or(&s->flags[v], flag, __ATOMIC_RELAXED);
 }
 
-static void apply_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+/* Items of equal key by the rest of their cost, where few are equal. Where many are (a regular grid
+ * on a flat) the rest is rounding, and the order of the vertices serves as well. */
+static void refine_order(const pass *p, item *items, size_t count) {
+  enum { FEW = 16 };
+  const scree_half_edge *half = p->d->s.half;
+  for (size_t begin = 0, end; begin < count; begin = end) {
+    for (end = begin + 1; end < count && items[end].key == items[begin].key;) end++;
+    if (end - begin > FEW) continue;
+    for (size_t i = begin + 1; i < end; i++) {
+      item moved = items[i];
+      double cost = p->cost[half[p->taken[moved.index].half_edge].from];
+      size_t j = i;
+      for (; j > begin && p->cost[half[p->taken[items[j - 1].index].half_edge].from] > cost; j--)
+        items[j] = items[j - 1];
+      items[j] = moved;
+    }
+  }
+}
+
+/* Puts what will be done in the order of cost; answers how many. */
+static size_t sort_certain(pass *p) {
+  enum { DIGIT = 11, RADIX = 1 << DIGIT };
+  size_t count = 0;
+  for (size_t i = 0; i < p->taken_count; i++)
+    if (p->taken[i].verdict == CERTAIN)
+      p->order[count++] =
+          (item){key_of(p->cost[p->d->s.half[p->taken[i].half_edge].from]), (uint32_t)i};
+  for (int shift = 0; shift < 32; shift += DIGIT) {
+    size_t start[RADIX + 1] = {0};
+    for (size_t i = 0; i < count; i++) start[(p->order[i].key >> shift & (RADIX - 1)) + 1]++;
+    for (int r = 0; r < RADIX; r++) start[r + 1] += start[r];
+    for (size_t i = 0; i < count; i++)
+      p->swap[start[p->order[i].key >> shift & (RADIX - 1)]++] = p->order[i];
+    item *other = p->order;
+    p->order = p->swap;
+    p->swap = other;
+  }
+  refine_order(p, p->order, count);
+  return count;
+}
+
+static void record_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
   for (size_t k = begin; k < end; k++) {
-    uint32_t i = p->order[k];
+    uint32_t i = p->order[k].index;
+    scree_ring ring;
+    scree_ring_name(&d->s, p->taken[i].half_edge, &ring);
+    scree_record_write(d, d->record.count + k, &ring, &p->changes[i], (double)p->taken[i].error);
+  }
+}
+
+static void apply_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  pass *p = context;
+  scree_decimator *d = p->d;
+  for (size_t i = begin; i < end; i++) {
     if (p->taken[i].verdict != CERTAIN) {
       d->s.refused[p->taken[i].half_edge] =
           p->taken[i].verdict == POSTPONED ? SCREE_EDGE_POSTPONED : SCREE_EDGE_REFUSED;
       continue;
     }
     scree_ring ring = ring_of(p, &p->taken[i]);
-    scree_record_write(d, p->taken[i].place, &ring, &p->changes[i], (double)p->taken[i].error);
     scree_collapse_apply(&d->s, &ring, p->changes[i].target);
     if (d->coster->merge) d->coster->merge(&d->s, ring.a, ring.b);
     set_flag(&d->s, ring.a);
@@ -725,16 +620,13 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
   }
 }
 
-/* Does it all; the record keeps the order of cost. Returns how many. */
+/* Does it all; the record has it in the order of cost. Returns how many. */
 static size_t apply(pass *p) {
   scree_decimator *d = p->d;
-  size_t count = 0, open = 0;
-  for (size_t i = 0; i < p->taken_count; i++) {
-    if (p->taken[i].verdict != CERTAIN) continue;
-    p->taken[i].place = (uint32_t)(d->record.count + count++);
-    open += p->taken[i].open;
-  }
-  scree_parallel_for(p->taken_count, CHOSEN_BLOCK, apply_block, p);
+  size_t count = sort_certain(p), open = 0;
+  for (size_t k = 0; k < count; k++) open += p->taken[p->order[k].index].open;
+  scree_parallel_for(count, TAKEN_BLOCK, record_block, p);
+  scree_parallel_for(p->taken_count, TAKEN_BLOCK, apply_block, p);
   d->record.count += count;
   d->s.live_vertex_count -= count;
   d->s.live_triangle_count -= 2 * count - open;
@@ -751,9 +643,8 @@ static scree_status prepare_grid(scree_decimator *d) {
 }
 
 static size_t run_round(pass *p) {
-  sort_items(p);
   choose_and_check(p);
-  scree_parallel_for(p->taken_count, CHOSEN_BLOCK, certify_block, p);
+  scree_parallel_for(p->taken_count, TAKEN_BLOCK, certify_block, p);
   search_uncertain(p);
   return apply(p);
 }
@@ -777,7 +668,7 @@ static scree_status run_pass(pass *p, size_t *done) {
     *done += run_round(p);
   }
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count)
-    scree_halfmesh_compact(&d->s, (uint32_t *)p->items, (uint32_t *)p->swap);
+    scree_halfmesh_compact(&d->s, (uint32_t *)p->contenders, p->edges);
   return SCREE_OK;
 }
 

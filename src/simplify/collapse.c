@@ -74,6 +74,18 @@ bool scree_ring_gather(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
   return !open || push_turning_right(s, r, scree_next(h));
 }
 
+/* The corners of these edges of the ring beside c and d, as vertices of the mesh given. */
+static uint32_t list_neighbours(const scree_halfmesh *s, const scree_ring *r, uint32_t begin,
+                                uint32_t end, uint32_t *origins) {
+  uint32_t count = 0, last = SCREE_NONE;
+  for (uint32_t i = 2 * begin; i < 2 * end; i++) {
+    uint32_t e = r->edge[i / 2], v = i % 2 ? scree_to(s, e) : s->half[e].from;
+    if (v != last && v != r->c && v != r->d) origins[count++] = s->vertex[v].origin;
+    last = v;
+  }
+  return count;
+}
+
 bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *r) {
   if ((s->flags[r->a] | s->flags[r->b]) & SCREE_VERTEX_LOCKED) return false;
   if (r->count < 3 && s->half[r->half_edge].twin != SCREE_NONE && !scree_on_boundary(s, r->a) &&
@@ -91,23 +103,16 @@ bool scree_collapse_keeps_topology(const scree_halfmesh *s, const scree_ring *r)
   uint32_t origin_c = s->vertex[r->c].origin,
            origin_d = r->d == SCREE_NONE ? SCREE_NONE : s->vertex[r->d].origin;
   if (origin_c == origin_d) return false;
-  /* neighbours of a beside b, c, d against those of b */
-  for (uint32_t i = 0; i < 2 * r->a_count; i++) {
-    uint32_t e = r->edge[i / 2], v = i % 2 ? scree_to(s, e) : s->half[e].from;
-    if (i % 2 == 0 && i > 0 && v == scree_to(s, r->edge[i / 2 - 1])) continue;
-    uint32_t origin = s->vertex[v].origin;
-    bool apex = origin == origin_c || origin == origin_d;
-    if (apex && v != r->c && v != r->d) return false;
-    if (apex) continue;
-    for (uint32_t j = r->a_count; j < r->count; j++)
-      if (s->vertex[s->half[r->edge[j]].from].origin == origin ||
-          s->vertex[scree_to(s, r->edge[j])].origin == origin)
-        return false;
+  uint32_t of_a[SCREE_RING_MAX + 1], of_b[SCREE_RING_MAX + 1];
+  uint32_t a_count = list_neighbours(s, r, 0, r->a_count, of_a);
+  uint32_t b_count = list_neighbours(s, r, r->a_count, r->count, of_b);
+  for (uint32_t i = 0; i < a_count; i++) {
+    if (of_a[i] == origin_c || of_a[i] == origin_d) return false;
+    for (uint32_t j = 0; j < b_count; j++)
+      if (of_a[i] == of_b[j]) return false;
   }
-  for (uint32_t j = r->a_count; j < r->count; j++) {
-    uint32_t v = s->half[r->edge[j]].from, origin = s->vertex[v].origin;
-    if ((origin == origin_c || origin == origin_d) && v != r->c && v != r->d) return false;
-  }
+  for (uint32_t j = 0; j < b_count; j++)
+    if (of_b[j] == origin_c || of_b[j] == origin_d) return false;
   return true;
 }
 
