@@ -31,8 +31,8 @@ install(FILES ${CMAKE_BINARY_DIR}/scree.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/p
 find_program(SCDOC scdoc)
 if(SCDOC)
   add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/scree.1
-    COMMAND sh -c "$<TARGET_FILE:scree> help --man | ${SCDOC} > scree.1"
-    COMMAND sh -c "$<TARGET_FILE:scree> help --completion > scree.bash"
+    COMMAND sh -c [["$1" help --man | "$2" > scree.1]] sh $<TARGET_FILE:scree> ${SCDOC}
+    COMMAND sh -c [["$1" help --completion > scree.bash]] sh $<TARGET_FILE:scree>
     BYPRODUCTS ${CMAKE_BINARY_DIR}/scree.bash
     DEPENDS scree WORKING_DIRECTORY ${CMAKE_BINARY_DIR} VERBATIM)
   add_custom_target(man ALL DEPENDS ${CMAKE_BINARY_DIR}/scree.1)

@@ -3,7 +3,9 @@
 # more than the public headers (cli also sees itself), and where a header does not compile alone.
 # usage: layers.sh SOURCE_DIR C_COMPILER
 set -eu
-root=$1
+# From within: the names found below hold no spaces, that of the source folder may.
+cd "$1"
+root=.
 compiler=$2
 layers="base mesh simplify choice sample particle world pile study report"
 failed=0
