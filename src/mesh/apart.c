@@ -1,7 +1,10 @@
 /* Facets of a scan are of one size, so that a grid of cells sees each a few times: all pairs in a
  * cell whose boxes touch are tested, each pair in the first cell that both have. Nearly always one
  * facet's plane has the other, but for what they share, surely on one side; the rest is tested
- * exactly. */
+ * exactly. Where the surface is flat the rest would be most: there facets that share a vertex are
+ * settled by its fan. If all facets of a closed fan surely face one way along an axis, then, seen
+ * along it, each keeps to a sector of its own about the vertex, and the sectors follow each other;
+ * if they go round once, no two facets have more in common than the vertex or an edge. */
 #include "mesh/apart.h"
 
 #include "base/alloc.h"
@@ -23,8 +26,12 @@ typedef struct prover {
   double per_length;
   uint32_t size[3];
   uint32_t *start, *items; /* of cells: facets items[start[c]] up to items[start[c + 1]] */
+  const uint32_t *ring;    /* of the adjacency, or NULL */
+  uint8_t *fans;           /* per vertex: what is known of its fan */
   atomic_bool failed;
 } prover;
+
+enum { FAN_UNKNOWN, FAN_GRAPH, FAN_UNSURE, FAN_MOST = 32 };
 
 /* A facet of a cell. */
 typedef struct facet {
@@ -160,6 +167,67 @@ static bool beside(const facet *f, const facet *g) {
   return side != 0;
 }
 
+/* The edges from the vertex that half-edge h leaves, in the order of its fan; 0: it is not closed,
+ * or long. */
+static size_t list_spokes(const prover *p, uint32_t h, vec3 *spoke) {
+  const scree_mesh *mesh = p->mesh;
+  uint32_t first = h, v = mesh->triangles[h];
+  vec3 at = vec3_load(mesh->positions + 3 * (size_t)v);
+  size_t count = 0;
+  do {
+    uint32_t incoming = scree_half_edge_previous(h), twin = p->ring[incoming];
+    if (count == FAN_MOST || twin == incoming || p->ring[twin] != incoming ||
+        mesh->triangles[twin] != v)
+      return 0;
+    spoke[count++] =
+        vec3_sub(vec3_load(mesh->positions + 3 * (size_t)scree_half_edge_to(mesh, h)), at);
+    h = twin;
+  } while (h != first);
+  return count;
+}
+
+/* Whether the fan of the vertex that h leaves is a graph along an axis. */
+static bool fan_is_graph(const prover *p, uint32_t h) {
+  vec3 spoke[FAN_MOST + 1], n = {0, 0, 0};
+  size_t count = list_spokes(p, h, spoke), turns = 0;
+  if (count == 0) return false;
+  spoke[count] = spoke[0];
+  for (size_t i = 0; i < count; i++) n = vec3_add(n, vec3_cross(spoke[i], spoke[i + 1]));
+  double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
+  int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+  double sign = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
+  double a[2] = {0, 0}, b[2];
+  for (size_t i = 0; i <= count; i++) {
+    const double e[3] = {spoke[i].x, spoke[i].y, spoke[i].z};
+    b[0] = e[(axis + 1) % 3];
+    b[1] = sign > 0 ? e[(axis + 2) % 3] : -e[(axis + 2) % 3];
+    double past_rounding = 1e-14 * (fabs(a[0]) + fabs(a[1])) * (fabs(b[0]) + fabs(b[1]));
+    if (i > 0 && !(a[0] * b[1] - a[1] * b[0] > past_rounding)) return false;
+    turns += i > 0 && a[1] < 0 && b[1] >= 0;
+    a[0] = b[0];
+    a[1] = b[1];
+  }
+  return turns == 1;
+}
+
+/* Whether the fan of a vertex that both have shows that they share no more than they must. Several
+ * threads may come to the same answer for a vertex. */
+static bool in_one_graph(const prover *p, const facet *f, const facet *g) {
+  if (!p->ring) return false;
+  for (size_t k = 0; k < 3; k++) {
+    uint32_t v = f->corner[k];
+    if (v != g->corner[0] && v != g->corner[1] && v != g->corner[2]) continue;
+    uint8_t known = __atomic_load_n(&p->fans[v], __ATOMIC_RELAXED);
+    if (known == FAN_UNKNOWN) {
+      uint32_t h = (uint32_t)(f->corner + k - p->mesh->triangles);
+      known = fan_is_graph(p, h) ? FAN_GRAPH : FAN_UNSURE;
+      __atomic_store_n(&p->fans[v], known, __ATOMIC_RELAXED);
+    }
+    if (known == FAN_GRAPH) return true;
+  }
+  return false;
+}
+
 static bool boxes_apart(const facet *f, const facet *g) {
   return f->low.x > g->high.x || g->low.x > f->high.x || f->low.y > g->high.y ||
          g->low.y > f->high.y || f->low.z > g->high.z || g->low.z > f->high.z;
@@ -175,7 +243,7 @@ static bool cell_is_clear(const prover *p, size_t cell, facet *facets) {
     for (size_t j = 0; j < i; j++) {
       const facet *f = &facets[i], *g = &facets[j];
       if ((f->begins | g->begins) != 7 || boxes_apart(f, g)) continue;
-      if (beside(f, g) || beside(g, f)) continue;
+      if (beside(f, g) || beside(g, f) || in_one_graph(p, f, g)) continue;
       if (scree_triangles_meet(p->mesh->positions, f->corner, g->corner) != SCREE_MEET_NOT)
         return false;
     }
@@ -193,8 +261,9 @@ static void cell_block(void *context, size_t begin, size_t end, size_t block, in
   }
 }
 
-scree_status scree_facets_apart(const scree_mesh *mesh, bool *apart, scree_error *error) {
-  prover p = {.mesh = mesh};
+scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                bool *apart, scree_error *error) {
+  prover p = {.mesh = mesh, .ring = adjacency ? adjacency->ring : NULL};
   size_t cell_count, sum = 0, facets = mesh->triangle_count;
   *apart = false;
   if (facets == 0 || !shape(&p, &cell_count)) return SCREE_OK;
@@ -207,12 +276,18 @@ scree_status scree_facets_apart(const scree_mesh *mesh, bool *apart, scree_error
   if (p.failed || sum > ENTRIES_PER_FACET * facets || sum > UINT32_MAX) goto done;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(p.items, sum, error, done);
+  p.fans = scree_alloc_zero(mesh->vertex_count, 1);
+  if (!p.fans) {
+    scree_fail_memory(error, mesh->vertex_count, "the fans of a mesh");
+    goto done;
+  }
   status = SCREE_OK;
   scree_parallel_for(facets, FACET_BLOCK, fill_block, &p);
   scree_parallel_for(cell_count, CELL_BLOCK, cell_block, &p);
   *apart = !p.failed;
 done:
   scree_free(p.items);
+  scree_free(p.fans);
   scree_free(p.start);
   return status;
 }

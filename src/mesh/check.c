@@ -203,6 +203,12 @@ static scree_status find_connection(const scree_mesh *mesh, const scree_adjacenc
   return SCREE_OK;
 }
 
+/* The facets at every vertex hang together. */
+static bool fans_are_whole(const scree_check *check) {
+  return !check->defects[SCREE_DEFECT_NON_MANIFOLD_VERTEX] &&
+         !check->defects[SCREE_DEFECT_DEGENERATE_FACET];
+}
+
 static scree_status examine(const scree_mesh *mesh, const scree_check_options *options,
                             const scree_progress *progress, scree_check *check,
                             scree_error *error) {
@@ -217,7 +223,7 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
   bool clear = false; /* the tree is dear: a clean scan of one shell does without */
   if (status == SCREE_OK && options->intersections && shells.count == 1 &&
       mesh->triangle_count >= PROOF_FACETS)
-    status = scree_facets_apart(mesh, &clear, error);
+    status = scree_facets_apart(mesh, fans_are_whole(check) ? &adjacency : NULL, &clear, error);
   check->intersections_known = clear;
   if (status == SCREE_OK && ((options->intersections && !clear) || shells.count > 1))
     status = scree_facet_tree_build(mesh, &tree, error);
