@@ -20,10 +20,10 @@ FOLDERS = [os.path.abspath(SCANS) + "/"] if SCANS else []
 def run(*words, timeout=600):
     done = subprocess.run(words, capture_output=True, encoding="utf-8", errors="replace",
                           timeout=timeout)
-    said = done.stderr
+    out, said = done.stdout, done.stderr
     for folder in FOLDERS:
-        said = said.replace(folder, "")
-    return done.returncode, done.stdout, said
+        out, said = out.replace(folder, ""), said.replace(folder, "")
+    return done.returncode, out, said
 
 
 # ---- Generated defects ----

@@ -61,10 +61,11 @@ typedef struct scree_check_options {
 SCREE_API scree_check_options scree_default_check_options(void);
 
 /* Examines a mesh of any quality. Vertices are told apart by index: weld first. Shells are nested,
- * cavities or inside out by the winding number around them, which is counted exactly where shells
- * are closed. options and progress may be NULL. Fails with SCREE_BAD_MESH where an index is out of
- * range, SCREE_LIMIT above 1,431,655,764 triangles, SCREE_CANCELLED, SCREE_OUT_OF_MEMORY; a mesh
- * without facets is examined and found unusable. Cost: see docs/defects.md. */
+ * cavities or inside out by the winding number around them of the closed shells that they do not
+ * meet, which is counted exactly; those that cross or touch count as beside each other. options and
+ * progress may be NULL. Fails with SCREE_BAD_MESH where an index is out of range, SCREE_LIMIT above
+ * 1,431,655,764 triangles, SCREE_CANCELLED, SCREE_OUT_OF_MEMORY; a mesh without facets is examined
+ * and found unusable. Cost: see docs/defects.md. */
 SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options *options,
                                         const scree_progress *progress, scree_check *check,
                                         scree_error *error);

@@ -630,7 +630,7 @@ static scree_status run_round(arranger *a, const scree_progress *progress, bool 
   scree_meetings found = {0};
   size_t old_count = a->positions.count / 3;
   sum_facets(a);
-  *done = a->facets.items == NULL; /* there are none, or all have vanished */
+  *done = a->facets.count == 0; /* there are none, or all have cancelled */
   if (*done) return SCREE_OK;
   if (!make_mesh(a, &mesh)) return no_memory(error);
   scree_status status = find_meetings(a, &mesh, progress, &found, error);

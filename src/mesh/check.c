@@ -87,30 +87,6 @@ static void take_topology(const scree_topology *t, scree_check *check) {
   defect[SCREE_DEFECT_UNUSED_VERTEX] = t->unused_vertex_count;
 }
 
-static int compare_keys(const void *a, const void *b) {
-  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
-  return (x > y) - (x < y);
-}
-
-/* How many different pairs of shells meet. */
-static scree_status count_shell_pairs(const scree_meetings *found, const scree_shells *shells,
-                                      size_t *count, scree_error *error) {
-  uint64_t *keys = NULL;
-  size_t key_count = 0;
-  SCREE_ALLOC_OR(keys, found->count, error, out_of_memory);
-  for (size_t i = 0; i < found->count; i++) {
-    uint32_t a = shells->label[found->items[i].first], b = shells->label[found->items[i].second];
-    if (a != b) keys[key_count++] = a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
-  }
-  qsort(keys, key_count, sizeof *keys, compare_keys);
-  *count = 0;
-  for (size_t i = 0; i < key_count; i++) *count += i == 0 || keys[i] != keys[i - 1];
-  scree_free(keys);
-  return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
-}
-
 static bool all_closed(const scree_shells *shells) {
   for (size_t i = 0; i < shells->count; i++)
     if (!shells->items[i].closed) return false;
@@ -119,7 +95,8 @@ static bool all_closed(const scree_shells *shells) {
 
 static scree_status count_meetings(const scree_facet_tree *tree, const scree_adjacency *adjacency,
                                    const scree_shells *shells, const scree_progress *progress,
-                                   scree_check *check, scree_error *error) {
+                                   scree_shell_pairs *pairs, scree_check *check,
+                                   scree_error *error) {
   scree_meetings found;
   scree_status status = scree_facet_meetings(tree, MEETING_LIMIT, progress, &found, error);
   if (status != SCREE_OK) return status;
@@ -134,8 +111,8 @@ static scree_status count_meetings(const scree_facet_tree *tree, const scree_adj
                    : meet == SCREE_MEET_TOUCH ? SCREE_DEFECT_TOUCHING_PAIR
                                               : SCREE_DEFECT_OVERLAPPING_PAIR]++;
   }
-  status =
-      count_shell_pairs(&found, shells, &check->defects[SCREE_DEFECT_OVERLAPPING_SHELLS], error);
+  status = scree_shell_pairs_find(shells, &found, pairs, error);
+  check->defects[SCREE_DEFECT_OVERLAPPING_SHELLS] = pairs->count;
   if (status == SCREE_OK && found.count && all_closed(shells))
     status =
         scree_union_volume(tree, adjacency, &found, &check->volume, &check->volume_known, error);
@@ -143,11 +120,19 @@ static scree_status count_meetings(const scree_facet_tree *tree, const scree_adj
   return status;
 }
 
+/* An inward shell that meets others may be a pocket in the wall of one: where the union's volume is
+ * known, no winding number is negative, and so it is. */
+static scree_shell_kind kind_in(const scree_check *check, const scree_shell *shell) {
+  scree_shell_kind kind = scree_shell_kind_of(shell);
+  return kind == SCREE_SHELL_INSIDE_OUT && shell->met && check->volume_known ? SCREE_SHELL_CAVITY
+                                                                             : kind;
+}
+
 static void count_kinds(const scree_shells *shells, scree_check *check) {
   size_t kinds[SCREE_SHELL_INSIDE_OUT + 1] = {0};
   scree_sum volume = {0};
   for (size_t i = 0; i < shells->count; i++) {
-    scree_shell_kind kind = scree_shell_kind_of(&shells->items[i]);
+    scree_shell_kind kind = kind_in(check, &shells->items[i]);
     kinds[kind]++;
     if (kind == SCREE_SHELL_BODY || kind == SCREE_SHELL_CAVITY)
       scree_sum_add(&volume, shells->items[i].volume);
@@ -214,6 +199,7 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
                             scree_error *error) {
   scree_adjacency adjacency = {0};
   scree_shells shells = {0};
+  scree_shell_pairs pairs = {0};
   scree_facet_tree tree = {0};
   scree_status status = scree_adjacency_build(mesh, &adjacency, error);
   if (status != SCREE_OK) return status;
@@ -228,13 +214,15 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
   if (status == SCREE_OK && ((options->intersections && !clear) || shells.count > 1))
     status = scree_facet_tree_build(mesh, &tree, error);
   if (status == SCREE_OK && options->intersections && !clear)
-    status = count_meetings(&tree, &adjacency, &shells, progress, check, error);
-  if (status == SCREE_OK && shells.count > 1) status = scree_shells_wind(&shells, &tree, error);
+    status = count_meetings(&tree, &adjacency, &shells, progress, &pairs, check, error);
+  if (status == SCREE_OK && shells.count > 1)
+    status = scree_shells_wind(&shells, &pairs, &tree, error);
   if (status == SCREE_OK) count_kinds(&shells, check);
 done:
   scree_adjacency_free(&adjacency);
   scree_facet_tree_free(&tree);
   scree_shells_free(&shells);
+  scree_free(pairs.keys);
   return status;
 }
 

@@ -24,8 +24,9 @@ typedef struct nest {
   scree_adjacency adjacency;
   scree_shells shells;
   scree_facet_tree tree; /* empty where there is one shell */
-  bool *tangled;         /* by shell: it meets another */
-  bool *drop;            /* by shell */
+  scree_shell_pairs pairs;
+  bool *tangled; /* by shell: it meets another */
+  bool *drop;    /* by shell */
   double largest_area;
 } nest;
 
@@ -33,6 +34,7 @@ static void free_nest(nest *n) {
   scree_adjacency_free(&n->adjacency);
   scree_shells_free(&n->shells);
   scree_facet_tree_free(&n->tree);
+  scree_free(n->pairs.keys);
   scree_free(n->tangled);
   scree_free(n->drop);
 }
@@ -103,12 +105,9 @@ static void turn_shells(scree_repair *r, nest *n, const bool *turn) {
   }
 }
 
-static void mark_tangled(const scree_meetings *found, nest *n) {
-  for (size_t i = 0; i < found->count; i++) {
-    uint32_t a = n->shells.label[found->items[i].first],
-             b = n->shells.label[found->items[i].second];
-    if (a != b) n->tangled[a] = n->tangled[b] = true;
-  }
+static void mark_tangled(nest *n) {
+  for (size_t i = 0; i < n->pairs.count; i++)
+    n->tangled[n->pairs.keys[i] >> 32] = n->tangled[(uint32_t)n->pairs.keys[i]] = true;
 }
 
 static scree_status find_tangled(const scree_repair *r, nest *n, scree_error *error) {
@@ -116,16 +115,17 @@ static scree_status find_tangled(const scree_repair *r, nest *n, scree_error *er
   if (!r->options->intersections || r->untangled || n->shells.count < 2) return SCREE_OK;
   scree_status status = scree_facet_meetings(&n->tree, MEETING_LIMIT, r->progress, &found, error);
   if (status != SCREE_OK) return status;
+  status = scree_shell_pairs_find(&n->shells, &found, &n->pairs, error);
   if (found.truncated)
     memset(n->tangled, true, n->shells.count);
-  else
-    mark_tangled(&found, n);
+  else if (status == SCREE_OK)
+    mark_tangled(n);
   scree_free(found.items);
-  return SCREE_OK;
+  return status;
 }
 
 static scree_status wind_shells(nest *n, scree_error *error) {
-  return n->shells.count > 1 ? scree_shells_wind(&n->shells, &n->tree, error) : SCREE_OK;
+  return n->shells.count > 1 ? scree_shells_wind(&n->shells, &n->pairs, &n->tree, error) : SCREE_OK;
 }
 
 /* Marks inward outermost shells with all that lies in them; true where there are any. */

@@ -1,12 +1,12 @@
 /* Shells by union-find over edges; their nesting by winding numbers.
  *
  * The winding number of a closed surface around a point is the signed number of its facets that a
- * ray from the point leaves through, less those it enters through. Rays run along +x from a
- * shell's extreme vertex, so they meet no facet of its own. A ray may run through an edge or a
- * vertex of another shell, or start on one; it is thought to be displaced by (-e^3, e, e^2) with e
- * infinitely small
- * ("simulation of simplicity", Edelsbrunner and Muecke, ACM Trans. Graph. 9 (1990)), which makes
- * every crossing a plain one and the count exact. */
+ * ray from the point leaves through, less those it enters through. Rays run along +x from the
+ * vertex of a shell that lies farthest that way, of those that no other shell has. A ray may run
+ * through an edge or a vertex of another shell, or start on one where every vertex is shared; it is
+ * thought to be displaced by (-e^3, e, e^2) with e infinitely small ("simulation of simplicity",
+ * Edelsbrunner and Muecke, ACM Trans. Graph. 9 (1990)), which makes every crossing a plain one and
+ * the count exact. */
 #include "mesh/shells.h"
 
 #include "base/array.h"
@@ -42,17 +42,9 @@ static size_t label_shells(const scree_mesh *mesh, const scree_adjacency *adjace
   return count;
 }
 
-static bool is_farther(const scree_mesh *mesh, uint32_t v, uint32_t than) {
-  const double *p = mesh->positions + 3 * (size_t)v, *q = mesh->positions + 3 * (size_t)than;
-  for (int k = 0; k < 3; k++)
-    if (p[k] != q[k]) return p[k] > q[k];
-  return false;
-}
-
 static void add_facet(const scree_mesh *mesh, size_t t, scree_shell *shell, scree_sum *sums) {
   if (shell->facet_count++ == 0) {
     shell->first_facet = (uint32_t)t;
-    shell->extreme = mesh->triangles[3 * t];
     shell->closed = true;
     shell->outermost = SCREE_NO_SHELL;
   }
@@ -61,9 +53,6 @@ static void add_facet(const scree_mesh *mesh, size_t t, scree_shell *shell, scre
       vec3_triangle_normal(p, scree_mesh_corner(mesh, t, 1), scree_mesh_corner(mesh, t, 2));
   scree_sum_add(&sums[0], 0.5 * vec3_norm(normal));
   scree_sum_add(&sums[1], vec3_dot(vec3_sub(p, origin), normal) / 6);
-  for (int k = 0; k < 3; k++)
-    if (is_farther(mesh, mesh->triangles[3 * t + (size_t)k], shell->extreme))
-      shell->extreme = mesh->triangles[3 * t + (size_t)k];
 }
 
 static void mark_open(const scree_mesh *mesh, const scree_adjacency *adjacency,
@@ -115,6 +104,88 @@ void scree_shells_free(scree_shells *shells) {
   *shells = (scree_shells){0};
 }
 
+/* ---- Shells that meet ---- */
+
+static int compare_keys(const void *a, const void *b) {
+  uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+  return (x > y) - (x < y);
+}
+
+static uint64_t key_of(uint32_t a, uint32_t b) {
+  return a < b ? (uint64_t)a << 32 | b : (uint64_t)b << 32 | a;
+}
+
+scree_status scree_shell_pairs_find(const scree_shells *shells, const scree_meetings *found,
+                                    scree_shell_pairs *pairs, scree_error *error) {
+  uint64_t *keys = NULL;
+  size_t key_count = 0, count = 0;
+  SCREE_ALLOC_OR(keys, found->count, error, out_of_memory);
+  for (size_t i = 0; i < found->count; i++) {
+    uint32_t a = shells->label[found->items[i].first], b = shells->label[found->items[i].second];
+    if (a != b && a != SCREE_NO_SHELL && b != SCREE_NO_SHELL) keys[key_count++] = key_of(a, b);
+  }
+  qsort(keys, key_count, sizeof *keys, compare_keys);
+  for (size_t i = 0; i < key_count; i++)
+    if (i == 0 || keys[i] != keys[i - 1]) keys[count++] = keys[i];
+  *pairs = (scree_shell_pairs){keys, count};
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static bool do_meet(const scree_shell_pairs *pairs, uint32_t a, uint32_t b) {
+  uint64_t key = key_of(a, b);
+  return pairs && pairs->count &&
+         bsearch(&key, pairs->keys, pairs->count, sizeof key, compare_keys);
+}
+
+/* ---- Where rays start ---- */
+
+static bool is_farther(const scree_mesh *mesh, uint32_t v, uint32_t than) {
+  const double *p = mesh->positions + 3 * (size_t)v, *q = mesh->positions + 3 * (size_t)than;
+  for (int k = 0; k < 3; k++)
+    if (p[k] != q[k]) return p[k] > q[k];
+  return false;
+}
+
+/* By vertex: the shell that alone has it, else SCREE_NO_SHELL. */
+static void find_owners(const scree_shells *shells, const scree_mesh *mesh, uint32_t *owner) {
+  for (int pass = 0; pass < 2; pass++)
+    for (size_t c = 0; c < 3 * mesh->triangle_count; c++) {
+      uint32_t label = shells->label[c / 3], *o = &owner[mesh->triangles[c]];
+      if (label != SCREE_NO_SHELL) *o = pass == 0 || *o == label ? label : SCREE_NO_SHELL;
+    }
+}
+
+/* Of each shell's vertices the farthest along x, then y, then z; one of its own goes before one
+ * that it shares. */
+static void find_starts(const scree_shells *shells, const scree_mesh *mesh, const uint32_t *owner,
+                        uint32_t *start) {
+  for (size_t i = 0; i < shells->count; i++)
+    start[i] = mesh->triangles[3 * (size_t)shells->items[i].first_facet];
+  for (size_t c = 0; c < 3 * mesh->triangle_count; c++) {
+    uint32_t v = mesh->triangles[c], label = shells->label[c / 3];
+    if (label == SCREE_NO_SHELL) continue;
+    bool own = owner[v] == label, had = owner[start[label]] == label;
+    if (own != had ? own : is_farther(mesh, v, start[label])) start[label] = v;
+  }
+}
+
+static scree_status make_starts(const scree_shells *shells, const scree_mesh *mesh,
+                                uint32_t **start, scree_error *error) {
+  uint32_t *owner = NULL;
+  *start = NULL;
+  SCREE_ALLOC_OR(owner, mesh->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(*start, shells->count, error, out_of_memory);
+  find_owners(shells, mesh, owner);
+  find_starts(shells, mesh, owner, *start);
+  scree_free(owner);
+  return SCREE_OK;
+out_of_memory:
+  scree_free(owner);
+  return SCREE_OUT_OF_MEMORY;
+}
+
 /* ---- Winding numbers ---- */
 
 /* On which side of the line a b, seen along x, the displaced point lies; 0 only where a and b
@@ -160,9 +231,9 @@ static int compare_hits(const void *a, const void *b) {
 }
 
 static bool shoot(const scree_shells *shells, const scree_facet_tree *tree, uint32_t own,
-                  hits *found) {
+                  uint32_t start, hits *found) {
   const scree_mesh *mesh = tree->mesh;
-  const double *p = mesh->positions + 3 * (size_t)shells->items[own].extreme;
+  const double *p = mesh->positions + 3 * (size_t)start;
   uint32_t stack[256]; /* deeper than any tree */
   int depth = 0;
   found->count = 0;
@@ -187,40 +258,52 @@ static bool shoot(const scree_shells *shells, const scree_facet_tree *tree, uint
   return true;
 }
 
-/* Adds up the hits of each shell; the shells around this one go to the front of found, once each.
- */
-static void wind_around(scree_shell *shell, hits *found) {
+/* Adds up the hits of each shell that this one does not meet; the shells around it go to the front
+ * of found, once each. */
+static void wind_around(scree_shells *shells, uint32_t own, const scree_shell_pairs *pairs,
+                        hits *found) {
+  scree_shell *shell = &shells->items[own];
   size_t kept = 0;
   shell->around = 0;
   for (size_t i = 0; i < found->count;) {
     long long winding = 0;
     uint32_t label = found->items[i].label;
     for (; i < found->count && found->items[i].label == label; i++) winding += found->items[i].side;
+    if (do_meet(pairs, own, label)) continue;
     shell->around += winding;
     if (winding) found->items[kept++].label = label;
   }
   shell->depth = (long long)(found->count = kept);
 }
 
-scree_status scree_shells_wind(scree_shells *shells, const scree_facet_tree *tree,
-                               scree_error *error) {
+static void mark_met(scree_shells *shells, const scree_shell_pairs *pairs) {
+  for (size_t i = 0; pairs && i < pairs->count; i++)
+    shells->items[pairs->keys[i] >> 32].met = shells->items[(uint32_t)pairs->keys[i]].met = true;
+}
+
+scree_status scree_shells_wind(scree_shells *shells, const scree_shell_pairs *pairs,
+                               const scree_facet_tree *tree, scree_error *error) {
   hits found = {0};
+  uint32_t *start;
+  scree_status status = make_starts(shells, tree->mesh, &start, error);
+  mark_met(shells, pairs);
   /* the depths are made first: outermost asks for those of others */
   for (int pass = 0; pass < 2; pass++)
-    for (uint32_t i = 0; i < shells->count; i++) {
+    for (uint32_t i = 0; i < shells->count && status == SCREE_OK; i++) {
       scree_shell *shell = &shells->items[i];
       if (!shell->closed || (pass && shell->depth == 0)) continue;
-      if (!shoot(shells, tree, i, &found)) {
-        scree_free(found.items);
-        return scree_fail_memory(error, found.capacity * sizeof(hit), "the nesting of shells");
+      if (!shoot(shells, tree, i, start[i], &found)) {
+        status = scree_fail_memory(error, found.capacity * sizeof(hit), "the nesting of shells");
+        break;
       }
-      wind_around(shell, &found);
+      wind_around(shells, i, pairs, &found);
       shell->outermost = SCREE_NO_SHELL;
       for (size_t j = 0; pass && j < found.count; j++)
         if (shells->items[found.items[j].label].depth == 0) shell->outermost = found.items[j].label;
     }
   scree_free(found.items);
-  return SCREE_OK;
+  scree_free(start);
+  return status;
 }
 
 scree_shell_kind scree_shell_kind_of(const scree_shell *shell) {

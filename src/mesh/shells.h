@@ -3,7 +3,7 @@
 #define SCREE_MESH_SHELLS_H
 
 #include "mesh/adjacency.h"
-#include "mesh/facet_tree.h"
+#include "mesh/intersect.h"
 
 typedef enum scree_shell_kind {
   SCREE_SHELL_OPEN,       /* bounds no volume: an edge is not used equally often both ways */
@@ -15,13 +15,14 @@ typedef enum scree_shell_kind {
 
 typedef struct scree_shell {
   uint32_t first_facet; /* the lowest */
-  uint32_t extreme;     /* the vertex of the largest x, then y, then z */
   size_t facet_count;
   bool closed;        /* every edge is used equally often both ways */
+  bool met;           /* it crosses, touches or overlaps another */
   double area;        /* m^2 */
   double volume;      /* m^3, signed; about first_facet's first corner where the shell is open */
-  long long around;   /* the winding number of the other closed shells around it */
-  long long depth;    /* how many other closed shells it lies in */
+  long long around;   /* the winding number of the other closed shells around it, but for those
+                         that it meets */
+  long long depth;    /* how many of them it lies in */
   uint32_t outermost; /* of these, the one that lies in none; SCREE_NO_SHELL: it lies in none */
 } scree_shell;
 
@@ -38,10 +39,23 @@ scree_status scree_shells_find(const scree_mesh *mesh, const scree_adjacency *ad
                                scree_shells *shells, scree_error *error);
 void scree_shells_free(scree_shells *shells);
 
-/* Fills `around`, `depth` and `outermost` of the closed shells by shooting a ray from the extreme
- * vertex of each: exact where shells neither cross nor touch. O(log N + crossings) each. */
-scree_status scree_shells_wind(scree_shells *shells, const scree_facet_tree *tree,
-                               scree_error *error);
+/* Which shells meet which. */
+typedef struct scree_shell_pairs {
+  uint64_t *keys; /* ascending, each once: the lower shell << 32 | the higher */
+  size_t count;
+} scree_shell_pairs;
+
+/* Those whose facets do. Free keys with scree_free. */
+scree_status scree_shell_pairs_find(const scree_shells *shells, const scree_meetings *found,
+                                    scree_shell_pairs *pairs, scree_error *error);
+
+/* Fills `met`, and `around`, `depth` and `outermost` of the closed shells, by shooting a ray from a
+ * vertex of each that no other shell has, where there is one. A shell that meets another lies in
+ * part within it and in part without, so the two are not asked about each other: with all pairs
+ * that meet, the answer is exact and the same from whatever side. Without (NULL), that of shells
+ * that cross is the answer for one of their vertices. O(log N + crossings) each. */
+scree_status scree_shells_wind(scree_shells *shells, const scree_shell_pairs *pairs,
+                               const scree_facet_tree *tree, scree_error *error);
 
 scree_shell_kind scree_shell_kind_of(const scree_shell *shell);
 

@@ -221,3 +221,24 @@ void shape_flip(scree_mesh *mesh, size_t triangle) {
   corner[1] = corner[2];
   corner[2] = second;
 }
+
+scree_mesh shape_weld(const scree_mesh *mesh, scree_rng *rng) {
+  double *corners = malloc((9 * mesh->triangle_count + 1) * sizeof *corners);
+  uint32_t *order = malloc((mesh->triangle_count + 1) * sizeof *order);
+  scree_mesh welded;
+  if (!corners || !order) abort();
+  for (uint32_t t = 0; t < mesh->triangle_count; t++) {
+    uint32_t other = rng ? scree_rng_below(rng, t + 1) : t;
+    order[t] = order[other];
+    order[other] = t;
+  }
+  for (size_t t = 0; t < mesh->triangle_count; t++)
+    for (size_t k = 0, turn = rng ? scree_rng_below(rng, 3) : 0; k < 3; k++)
+      memcpy(corners + 9 * t + 3 * k,
+             mesh->positions + 3 * (size_t)mesh->triangles[3 * (size_t)order[t] + (k + turn) % 3],
+             3 * sizeof *corners);
+  if (scree_mesh_weld(corners, mesh->triangle_count, 0, &welded, NULL, NULL) != SCREE_OK) abort();
+  free(corners);
+  free(order);
+  return welded;
+}

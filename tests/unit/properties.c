@@ -24,33 +24,10 @@ static scree_mesh body(void) {
   return both;
 }
 
-/* Facets in an order of the rng's (NULL: as they are), welded as a reader does. */
-static scree_mesh weld(const scree_mesh *mesh, scree_rng *rng) {
-  double *corners = malloc(9 * mesh->triangle_count * sizeof *corners);
-  size_t *order = malloc(mesh->triangle_count * sizeof *order);
-  scree_mesh welded;
-  scree_error error;
-  assert_true(corners && order);
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    size_t other = rng ? scree_rng_below(rng, t + 1) : t;
-    order[t] = order[other];
-    order[other] = t;
-  }
-  for (size_t t = 0; t < mesh->triangle_count; t++)
-    for (size_t k = 0, turn = rng ? scree_rng_below(rng, 3) : 0; k < 3; k++)
-      memcpy(corners + 9 * t + 3 * k,
-             mesh->positions + 3 * (size_t)mesh->triangles[3 * order[t] + (k + turn) % 3],
-             3 * sizeof *corners);
-  CHECK_OK(scree_mesh_weld(corners, mesh->triangle_count, 0, &welded, NULL, &error), error);
-  free(corners);
-  free(order);
-  return welded;
-}
-
 static result work(const scree_mesh *loose, scree_rng *rng, scree_method method) {
   result r;
   scree_error error;
-  scree_mesh mesh = weld(loose, rng);
+  scree_mesh mesh = shape_weld(loose, rng);
   scree_simplify_options simplify = scree_default_simplify_options();
   scree_choice_options options = scree_default_choice_options();
   scree_curve *curve;
@@ -186,7 +163,8 @@ static pair work_on_pairs(const scree_mesh *overlapping, const scree_mesh *a, co
   pair r;
   scree_error error;
   scree_distance_options options = scree_default_distance_options();
-  scree_mesh mesh = weld(overlapping, rng), first = weld(a, rng), second = weld(b, rng), repaired;
+  scree_mesh mesh = shape_weld(overlapping, rng), first = shape_weld(a, rng),
+             second = shape_weld(b, rng), repaired;
   options.hausdorff_gap = 1e-3;
   CHECK_OK(scree_mesh_check(&mesh, NULL, NULL, &r.check, &error), error);
   CHECK_OK(scree_mesh_repair(&mesh, NULL, NULL, &repaired, NULL, &error), error);
@@ -206,8 +184,7 @@ static void expect_same_pairs(const pair *a, const pair *b, double scale, bool b
   CHECK_NEAR(b->check.volume, volume, tolerance * volume);
   CHECK_NEAR(b->repaired.volume, a->repaired.volume * pow(scale, 3), tolerance * volume);
   CHECK_NEAR(b->repaired.volume, volume, 1e-9 * volume);
-  /* of shells that cross, what counts as nested and what as another body follows from one vertex */
-  for (int i = 0; i < SCREE_DEFECT_NESTED_SHELL; i++)
+  for (int i = 0; i < SCREE_DEFECT_COUNT; i++)
     assert_int_equal(a->check.defects[i], b->check.defects[i]);
   double mean = a->distance.forward.mean * scale, rms = a->distance.backward.rms * scale;
   double most = a->distance.hausdorff * scale;

@@ -106,35 +106,10 @@ static scree_mesh bumpy_sphere(int level, uint64_t seed) {
   return mesh;
 }
 
-static scree_mesh weld_shuffled(const scree_mesh *mesh, scree_rng *rng) {
-  double *corners = malloc(9 * mesh->triangle_count * sizeof *corners);
-  uint32_t *order = malloc(mesh->triangle_count * sizeof *order);
-  scree_mesh welded;
-  scree_error error;
-  for (uint32_t t = 0; t < mesh->triangle_count; t++) order[t] = t;
-  for (size_t t = mesh->triangle_count - 1; rng && t > 0; t--) {
-    size_t other = scree_rng_below(rng, (uint32_t)t + 1);
-    uint32_t swapped = order[t];
-    order[t] = order[other];
-    order[other] = swapped;
-  }
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    size_t turn = rng ? scree_rng_below(rng, 3) : 0;
-    for (size_t i = 0; i < 3; i++) {
-      size_t v = mesh->triangles[3 * (size_t)order[t] + (i + turn) % 3];
-      memcpy(corners + 9 * t + 3 * i, mesh->positions + 3 * v, 3 * sizeof *corners);
-    }
-  }
-  CHECK_OK(scree_mesh_weld(corners, mesh->triangle_count, 0, &welded, NULL, &error), error);
-  free(corners);
-  free(order);
-  return welded;
-}
-
 static void the_same_bits_for_any_threads_and_facet_order(void **state) {
   (void)state;
   scree_rng rng = {.seed = 11};
-  scree_mesh mesh = bumpy_sphere(6, 5), plain = weld_shuffled(&mesh, NULL);
+  scree_mesh mesh = bumpy_sphere(6, 5), plain = shape_weld(&mesh, NULL);
   for (int m = 0; m < 2; m++) {
     scree_set_threads(1);
     scree_curve *curve = build(&plain, methods[m]);
@@ -142,7 +117,7 @@ static void the_same_bits_for_any_threads_and_facet_order(void **state) {
     scree_curve_free(curve);
     for (int threads = 2; threads <= 8; threads += 1 + threads / 3 * 4) {
       scree_set_threads(threads);
-      scree_mesh shuffled = weld_shuffled(&mesh, &rng);
+      scree_mesh shuffled = shape_weld(&mesh, &rng);
       curve = build(&shuffled, methods[m]);
       assert_true(fingerprint(curve) == expected);
       scree_curve_free(curve);
