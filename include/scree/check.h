@@ -119,11 +119,11 @@ typedef struct scree_repair_options {
    * default false. */
   bool flat_large_holes;
   /* Shells with less than this share of the area of the largest are debris, in [0, 1); default
-   * 0.01. Cavities are none. */
+   * 0.01. Cavities are none, nor are shells that are merged with what they meet. */
   double debris_share;
   /* Drop cavities too; default false. */
   bool drop_cavities;
-  /* Keep only the shell of the largest area (and its cavities); default false. */
+  /* Keep only the shell of the largest area (and its cavities), after merging; default false. */
   bool keep_largest;
   /* Cut facets that meet others of the same shell out and fill the hole; default true. */
   bool cut_intersections;

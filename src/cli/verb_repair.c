@@ -36,8 +36,8 @@ static const cli_option options[] = {
      "Drop shells with less than this share of the largest shell's area; cavities are kept. "
      "Default: 0.01.",
      0, 0.999, NULL},
-    {"largest", 0, CLI_FLAG, AT(largest), NULL, "Keep only the largest shell and its cavities.", 0,
-     0, NULL},
+    {"largest", 0, CLI_FLAG, AT(largest), NULL,
+     "Keep only the largest shell, after merging, and its cavities.", 0, 0, NULL},
     {"drop-cavities", 0, CLI_FLAG, AT(drop_cavities), NULL, "Fill cavities: drop their shells.", 0,
      0, NULL},
     {"no-cut", 0, CLI_FLAG, AT(no_cut), NULL,

@@ -266,6 +266,10 @@ static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_err
     status = scree_repair_merge(r, false, &merged, error);
   }
   *settled = cut_count == 0 && !merged;
+  if (*settled && !r->apart) { /* without the small ones, or all but the largest, it may do */
+    r->apart = true;
+    *settled = false;
+  }
   return status;
 }
 
@@ -344,7 +348,7 @@ static scree_status repair_checked(const scree_mesh *mesh, const scree_check *be
                                    const scree_repair_options *options,
                                    const scree_progress *progress, scree_mesh *repaired,
                                    scree_repair_report *report, scree_error *error) {
-  scree_repair r = {.options = options, .progress = progress};
+  scree_repair r = {.options = options, .progress = progress, .apart = !options->merge_shells};
   r.report.before = *before;
   scree_status status = mend(&r, mesh, error);
   if (status == SCREE_OK || status == SCREE_BAD_MESH)

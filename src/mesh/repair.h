@@ -17,6 +17,7 @@ typedef struct scree_repair {
   double diagonal;      /* of the bounding box, m */
   double largest;       /* coordinate, m */
   bool untangled;       /* the surface is known to meet itself nowhere */
+  bool apart;           /* shells that meet will not be merged any more: each is judged alone */
   const char *unmerged; /* why shells were not merged, as the end of a sentence; NULL: no reason */
   scree_repair_report report;
 } scree_repair;

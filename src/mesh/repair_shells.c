@@ -6,7 +6,7 @@
  * keeps its cavities. An inward shell that then still has no material around it is turned alone. An
  * outward shell within material adds nothing to the union and is dropped; an inward one is a cavity
  * and stays. None of this is done to a shell that meets another: what is inside what has no answer
- * there. */
+ * there; and while it may be merged with the other it is no debris: together they are one body. */
 #include "base/alloc.h"
 #include "mesh/repair.h"
 
@@ -191,14 +191,15 @@ static void judge_shells(scree_repair *r, nest *n) {
     scree_shell_kind kind = scree_shell_kind_of(s);
     bool cavity = kind == SCREE_SHELL_CAVITY && !n->tangled[i];
     bool of_largest = cavity && s->depth == 1 && s->outermost == largest;
+    bool waits = n->tangled[i] && !r->apart; /* it is to be merged first */
     if (cavity && o->drop_cavities) {
       n->drop[i] = true;
       done[SCREE_REPAIR_DROP_CAVITY]++;
     } else if (kind == SCREE_SHELL_NESTED && !n->tangled[i]) {
       n->drop[i] = true;
       done[SCREE_REPAIR_DROP_NESTED]++;
-    } else if ((!cavity && s->area < o->debris_share * n->largest_area) ||
-               (o->keep_largest && i != largest && !of_largest)) {
+    } else if (!waits && ((!cavity && s->area < o->debris_share * n->largest_area) ||
+                          (o->keep_largest && i != largest && !of_largest))) {
       n->drop[i] = true;
       done[SCREE_REPAIR_DROP_DEBRIS]++;
     }

@@ -405,6 +405,50 @@ static void nested_is_swallowed(void **state) {
   scree_mesh_free(&inner);
 }
 
+/* A block with a hole, a small box through its wall, one that stands alone. What meets is one body:
+ * the small box is neither debris nor dropped for the largest; alone it is both. */
+static void parts_that_meet_are_one(void **state) {
+  (void)state;
+  scree_mesh block = shape_grid_box(4, 4, 4, 4), stud = shape_box(0.4, 0.4, 0.4);
+  scree_repair_options options = scree_default_repair_options();
+  scree_error error;
+  options.debris_share = 0.05;
+  shape_move(&stud, (vec3){3.8, 1.1, 1.2});
+  scree_mesh two = shape_join(&block, &stud);
+  shape_move(&stud, (vec3){3, 0, 0});
+  scree_mesh mesh = shape_join(&two, &stud);
+  memmove(mesh.triangles, mesh.triangles + 3, 12 * --mesh.triangle_count);
+  for (int largest = 0; largest < 2; largest++) {
+    options.keep_largest = largest;
+    options.merge_shells = true;
+    outcome o = repair_with(&mesh, &options);
+    CHECK_NEAR(o.measures.volume, 64 + 0.2 * 0.16, 1e-9);
+    assert_int_equal(o.report.done[SCREE_REPAIR_MERGE_SHELL], 2);
+    assert_int_equal(o.report.done[SCREE_REPAIR_DROP_DEBRIS], 1);
+    free_outcome(&o);
+    options.merge_shells = false;
+    o = repair_with(&mesh, &options);
+    CHECK_NEAR(o.measures.volume, 64, 1e-9);
+    assert_int_equal(o.report.done[SCREE_REPAIR_DROP_DEBRIS], 2);
+    free_outcome(&o);
+  }
+  /* one that cannot be merged, since it is wound inward, goes where it is not wanted */
+  options = scree_default_repair_options();
+  for (size_t t = block.triangle_count; t < two.triangle_count; t++) shape_flip(&two, t);
+  options.debris_share = 0;
+  scree_mesh none;
+  assert_int_equal(scree_mesh_repair(&two, &options, NULL, &none, NULL, &error), SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "wound inward"));
+  options.keep_largest = true;
+  outcome o = repair_with(&two, &options);
+  CHECK_NEAR(o.measures.volume, 64, 1e-9);
+  free_outcome(&o);
+  scree_mesh_free(&mesh);
+  scree_mesh_free(&two);
+  scree_mesh_free(&block);
+  scree_mesh_free(&stud);
+}
+
 /* A vertex pulled through the other side of its own surface. */
 static void spike(void **state) {
   (void)state;
@@ -544,6 +588,7 @@ int main(void) {
                                      cmocka_unit_test(membranes),
                                      cmocka_unit_test(debris_and_cavities),
                                      cmocka_unit_test(nested_is_swallowed),
+                                     cmocka_unit_test(parts_that_meet_are_one),
                                      cmocka_unit_test(spike),
                                      cmocka_unit_test(same_whatever_order),
                                      cmocka_unit_test(moved_turned_scaled),
