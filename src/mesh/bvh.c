@@ -373,10 +373,16 @@ double scree_triangle_closest(const double corners[9], vec3 p, vec3 *point) {
   return vec3_norm2(vec3_sub(p, *point));
 }
 
+/* How far x is outside [low, high]; not by fmax, which is a call. */
+static inline double outside(double low, double high, double x) {
+  double below = low - x, above = x - high, more = below > above ? below : above;
+  return more > 0 ? more : 0;
+}
+
 static double box_distance2(const scree_bvh_node *node, vec3 p) {
-  double x = fmax(fmax(node->low[0] - p.x, p.x - node->high[0]), 0),
-         y = fmax(fmax(node->low[1] - p.y, p.y - node->high[1]), 0),
-         z = fmax(fmax(node->low[2] - p.z, p.z - node->high[2]), 0);
+  double x = outside(node->low[0], node->high[0], p.x),
+         y = outside(node->low[1], node->high[1], p.y),
+         z = outside(node->low[2], node->high[2], p.z);
   return x * x + y * y + z * z;
 }
 
@@ -422,4 +428,38 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
     if (near2 < hit->distance2) stack[depth].node = near, stack[depth++].distance2 = near2;
   }
   return found;
+}
+
+static bool within_leaf(const scree_bvh *bvh, const scree_bvh_node *leaf, vec3 p, double distance2,
+                        uint32_t *near) {
+  for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
+    vec3 point;
+    if (scree_triangle_closest(bvh->corners + 9 * (size_t)i, p, &point) > distance2) continue;
+    *near = i;
+    return true;
+  }
+  return false;
+}
+
+bool scree_bvh_within(const scree_bvh *bvh, vec3 p, double distance2, uint32_t *near) {
+  uint32_t stack[STACK];
+  int depth = 0;
+  vec3 point;
+  if (bvh->node_count == 0) return false;
+  if (scree_triangle_closest(bvh->corners + 9 * (size_t)*near, p, &point) <= distance2) return true;
+  if (box_distance2(bvh->nodes, p) <= distance2) stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_bvh_node *node = &bvh->nodes[stack[--depth]];
+    if (node->count) {
+      if (within_leaf(bvh, node, p, distance2, near)) return true;
+      continue;
+    }
+    uint32_t nearer = node->first, other = nearer + 1;
+    double near2 = box_distance2(&bvh->nodes[nearer], p),
+           other2 = box_distance2(&bvh->nodes[other], p);
+    bool swap = other2 < near2;
+    if (fmax(near2, other2) <= distance2) stack[depth++] = swap ? nearer : other;
+    if (fmin(near2, other2) <= distance2) stack[depth++] = swap ? other : nearer;
+  }
+  return false;
 }

@@ -6,7 +6,8 @@
  * the density)), at least 1, and the integral over it taken from their centroids; where m is 1, by
  * the rule 3/4 centroid + 1/12 of each corner, exact to second degree (on the noise of a scan the
  * centroid alone would see only the mean of three corners: 18 per cent too little). Corners are
- * asked once, before the facets.
+ * asked once, before the facets. Edges longer than a part's are sampled as densely, for the
+ * maximum.
  *
  * Bound. The distance from a fixed triangle is a convex function of the point, so over a part of a
  * facet it is largest at a corner of the part: the distance of the part from the other surface is
@@ -284,6 +285,19 @@ static double sweep_whole_facet(const sweep *s, const part *facet, const uint32_
   return bound;
 }
 
+/* Edges, as Metro does: where an edge crosses a hollow it is farther off than the middles of parts.
+ * For the maximum alone. Edges between two facets are seen twice, whichever way they are wound. */
+static void sweep_edges(const sweep *s, const part *facet, uint32_t near, tally *t) {
+  for (int k = 0; k < 3; k++) {
+    vec3 from = facet->corner[k], to = facet->corner[(k + 1) % 3];
+    double parts = round(vec3_distance(from, to) * sqrt(s->density));
+    for (double i = 1; i < parts; i++) {
+      vec3 at = vec3_lerp(from, to, i / parts);
+      note(t, sqrt(find_nearest(&s->to->bvh, at, &near)), at);
+    }
+  }
+}
+
 static void sweep_facets(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)worker;
   const sweep *s = context;
@@ -298,6 +312,7 @@ static void sweep_facets(void *context, size_t begin, size_t end, size_t block, 
     uint32_t near = s->vertex_near[corners[0]];
     double bound = cuts > 1 ? sweep_cut_facet(s, &facet, (size_t)cuts, area, &near, &t)
                             : sweep_whole_facet(s, &facet, corners, area, &near, &t);
+    sweep_edges(s, &facet, near, &t);
     scree_sum_add(&t.area, area);
     t.bound = fmax(t.bound, bound);
     if (s->facet_bound) s->facet_bound[i] = bound;

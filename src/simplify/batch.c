@@ -79,6 +79,7 @@ typedef struct pass {
   struct scree_choice_count *counts;
   uint32_t limit; /* the threshold, as a key */
   double dearest; /* the greatest cost below it: the threshold without the key's rounding */
+  double usual2;  /* squared stray that no collapse of this pass may exceed */
   taken *taken;   /* in the order of their vertices */
   scree_change *changes;
   size_t taken_count, room;
@@ -369,6 +370,15 @@ static void set_box(const scree_halfmesh *s, vec3 target, scree_ring *r) {
   }
 }
 
+/* Whether the collapse takes the surface too far off for this pass. */
+static bool strays(const pass *p, const scree_ring *ring, const scree_candidate *c) {
+  const scree_decimator *d = p->d;
+  double most = scree_stray_at(c, p->dearest);
+  if (!scree_memory_is_kept(&d->memory)) return !scree_stays_within(&d->s, ring, c->target, most);
+  most = fmin(most, p->usual2);
+  return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, most);
+}
+
 static void check_one(pass *p, uint32_t index, const scree_candidate *candidate) {
   scree_decimator *d = p->d;
   taken *t = &p->taken[index];
@@ -382,8 +392,7 @@ static void check_one(pass *p, uint32_t index, const scree_candidate *candidate)
   t->verdict = sound ? UNCERTAIN : REFUSED;
   if (!sound) return;
   t->steep = around.steep;
-  if (candidate->stray > 0 &&
-      !scree_stays_within(&d->s, &ring, candidate->target, scree_stray_at(candidate, p->dearest))) {
+  if (candidate->stray > 0 && strays(p, &ring, candidate)) {
     t->verdict = POSTPONED;
     return;
   }
@@ -610,6 +619,8 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
       continue;
     }
     scree_ring ring = ring_of(p, &p->taken[i]);
+    if (scree_memory_is_kept(&d->memory))
+      scree_memory_move(&d->memory, &d->s, &ring, p->changes[i].target);
     scree_collapse_apply(&d->s, &ring, p->changes[i].target);
     if (d->coster->merge) d->coster->merge(&d->s, ring.a, ring.b);
     set_flag(&d->s, ring.a);
@@ -649,9 +660,24 @@ static size_t run_round(pass *p) {
   return apply(p);
 }
 
+/* Keeps the surface when it has become small enough; finds how far collapses may take it off. */
+static scree_status prepare_memory(pass *p) {
+  scree_decimator *d = p->d;
+  scree_status status = SCREE_OK;
+  p->usual2 = INFINITY;
+  size_t kept = d->first_triangle_count > SCREE_LARGE_COUNT ? SCREE_KEPT_LATE : SCREE_KEPT_COUNT;
+  if (d->coster->merge || d->s.live_triangle_count > kept) return SCREE_OK;
+  if (!scree_memory_is_kept(&d->memory)) status = scree_memory_keep(&d->s, &d->memory, d->error);
+  if (status != SCREE_OK) return status;
+  double usual = scree_memory_usual(&d->memory);
+  if (usual > 0) p->usual2 = usual * usual;
+  return SCREE_OK;
+}
+
 static scree_status run_pass(pass *p, size_t *done) {
   scree_decimator *d = p->d;
   scree_status status = prepare_grid(d);
+  if (status == SCREE_OK) status = prepare_memory(p);
   if (status != SCREE_OK) return status;
   refresh_sums(p);
   scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, evaluate_block, p);
@@ -667,8 +693,10 @@ static scree_status run_pass(pass *p, size_t *done) {
     if (round == 0) p->dearest = dearest;
     *done += run_round(p);
   }
-  if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count)
+  if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count) {
+    if (scree_memory_is_kept(&d->memory)) scree_memory_compact(&d->memory, &d->s);
     scree_halfmesh_compact(&d->s, (uint32_t *)p->contenders, p->edges);
+  }
   return SCREE_OK;
 }
 

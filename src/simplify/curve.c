@@ -225,6 +225,7 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
 finished:
   scree_halfmesh_free(&d.s);
   scree_grid_free(&d.grid);
+  scree_memory_free(&d.memory);
   record_free(&d.record);
   if (status == SCREE_OK)
     *curve = made;

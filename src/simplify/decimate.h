@@ -5,6 +5,7 @@
 #include "base/progress.h"
 #include "simplify/cost.h"
 #include "simplify/grid.h"
+#include "simplify/stray.h"
 
 /* The collapses in their order, one array per field. Positions and measures are in metres. */
 typedef struct scree_record {
@@ -26,6 +27,7 @@ typedef struct scree_decimator {
   scree_record record;
   size_t first_triangle_count;
   scree_grid grid;
+  scree_memory memory; /* of a surface that the batches came to; nothing before */
   scree_ticker ticker;
   scree_error *error;
 } scree_decimator;
@@ -37,6 +39,10 @@ void scree_record_write(scree_decimator *d, size_t place, const scree_ring *ring
 
 /* Where the batches end and single collapses begin, in triangles. */
 enum { SCREE_GREEDY_COUNT = 10000 };
+
+/* From how many triangles on the surface is kept (stray.h); method `volume`. To look at every stray
+ * from there on takes time, so that of large scans it is kept later. */
+enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 20000, SCREE_LARGE_COUNT = 600000 };
 
 /* Passes of many independent collapses, while there are more than SCREE_GREEDY_COUNT triangles. */
 scree_status scree_decimate_in_batches(scree_decimator *d);

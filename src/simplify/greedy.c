@@ -12,21 +12,18 @@
  *
  * The stray costs a toll, C (D / F)^6, beside what cost.h has, which counts it against the size of
  * the triangles and so lets the rounded edges of a large body pass. C is the cost that a tenth of
- * the edges do not exceed, and F is seven times the distance h at which ten triangles of the mean
- * area s cost as much,
+ * the edges do not exceed, and F is scree_memory_usual. Since both grow as triangles go, they are
+ * found anew whenever the triangles have come down to 0.7 of what they were; all edges are
+ * looked at once more then. While no witness is off there is no toll.
  *
- *     10 (2 s h)^2 / sqrt(20 s) = C,
- *
- * or the distance of a witness that is farther off already. Since both grow as triangles go, they
- * are found anew whenever the triangles have come down to 0.7 of what they were; all edges are
- * looked at once more then.
+ * The whole cost of another place, where the best strays, may be less: the cheapest of the best and
+ * the few others is the edge's first choice.
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
  * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
  * began with: within half of sqrt(area / triangles), the size of the level's triangles. */
 #include "simplify/decimate.h"
-#include "simplify/stray.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -37,17 +34,20 @@
 #define REGRID_BELOW   0.5
 #define STALE_FACTOR   12
 
-/* The toll (see above): the distance that costs as much as C, in units of h; the rank of C among
- * all edges; the share of triangles left at which it is found anew. */
-#define TOLL_REACH  7.0
+/* How far an edge's whole cost is looked at, in units of that at which it waits. */
+#define LOOK_AHEAD 8.0
+
+/* The toll (see above): the rank of C among all edges; the share of triangles left at which it is
+ * found anew. */
 #define TOLL_RANK   0.1
 #define RENEW_BELOW 0.7
 
 /* Edges evaluated in one call. */
 enum { SIDE_BY_SIDE = 32 };
 
-/* An edge waits at part of its best place's cost, then at all of it, or at that of fallback k. */
-enum { IN_PART, WHOLE, FALLBACK };
+/* An edge waits at part of its best place's cost; then at the whole cost of its first choice: the
+ * best place, or other place k; where that is refused, at that of fallback k. */
+enum { IN_PART, WHOLE, OTHER, FALLBACK = OTHER + SCREE_FALLBACK_COUNT };
 
 typedef struct queue {
   scree_decimator *d;
@@ -59,7 +59,6 @@ typedef struct queue {
   uint32_t *stamp; /* per vertex: the collapse that last touched it */
   uint32_t now;
   size_t since_tick;
-  scree_memory memory;            /* of the surface that this stage began with */
   double toll;                    /* weight of the stray's sixth power in the cost */
   size_t renew_at;                /* triangles */
   double *sorted;                 /* scratch: costs */
@@ -160,7 +159,6 @@ static void queue_free(queue *q) {
   scree_free(q->stage);
   scree_free(q->stamp);
   scree_free(q->sorted);
-  scree_memory_free(&q->memory);
 }
 
 static void enter_all(queue *q) {
@@ -178,15 +176,14 @@ static int by_value(const void *a, const void *b) {
 /* Enters all edges and finds the toll. */
 static void renew(queue *q) {
   scree_decimator *d = q->d;
-  double s = q->memory.area / (double)d->s.live_triangle_count;
   enter_all(q);
   if (d->coster->merge || q->heap_count == 0) return;
   for (size_t i = 0; i < q->heap_count; i++) q->sorted[i] = q->cost[q->heap[i]];
   qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
   double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
-  double far2 = TOLL_REACH * TOLL_REACH * cost * sqrt(20 * s) / (40 * s * s);
-  far2 = fmax(far2, scree_memory_worst(&q->memory));
-  q->toll = far2 > 0 ? cost / (far2 * far2 * far2) : 0;
+  scree_memory_thin(&d->memory, &d->s);
+  double far = scree_memory_usual(&d->memory);
+  q->toll = far > 0 ? cost / pow(far, 6) : 0;
   q->renew_at = (size_t)(RENEW_BELOW * (double)d->s.live_triangle_count);
 }
 
@@ -204,7 +201,8 @@ static scree_status queue_fill(queue *q) {
   memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
-  scree_status status = scree_memory_keep(s, &q->memory, d->error);
+  scree_status status = SCREE_OK;
+  if (!scree_memory_is_kept(&d->memory)) status = scree_memory_keep(s, &d->memory, d->error);
   if (status == SCREE_OK) renew(q);
   return status;
 out_of_memory:
@@ -265,7 +263,7 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   s->live_vertex_count--;
   s->live_triangle_count -= s->half[r->half_edge].twin == SCREE_NONE ? 1 : 2;
   forget(q, r);
-  if (!d->coster->merge) scree_memory_move(&q->memory, s, r, change->target);
+  if (!d->coster->merge) scree_memory_move(&q->d->memory, s, r, change->target);
   scree_collapse_apply(s, r, change->target);
   if (d->coster->merge) d->coster->merge(s, r->a, r->b);
   q->now++;
@@ -295,7 +293,7 @@ static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_arou
   scree_decimator *d = q->d;
   size_t after = d->s.live_triangle_count - (ring->d == SCREE_NONE ? 1 : 2);
   if (!scree_collapse_check(&d->s, ring, change, around) ||
-      !scree_memory_allows(&q->memory, after, change->target))
+      !scree_memory_allows(&q->d->memory, after, change->target))
     return false;
   *status = prepare_grid(d);
   if (*status != SCREE_OK) return false;
@@ -303,29 +301,60 @@ static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_arou
          scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL);
 }
 
-static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c) {
-  if (!(c->stray > 0)) return;
-  double least = scree_stray_at(c, 0);
-  if (q->toll > 0) least = fmin(least, cbrt(SCREE_STRAY_SHARE * c->cost / q->toll));
-  double stray2 = scree_memory_stray(&q->memory, &q->d->s, ring, c->target, least);
+/* Makes the cost whole, or not less than `most` if it is not. */
+static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c, double most) {
+  if (!(c->stray > 0) || !(c->cost < most)) return;
+  double least = scree_stray_at(c, 0), enough = sqrt((most - c->cost) / c->stray);
+  if (q->toll > 0) {
+    least = fmin(least, cbrt(SCREE_STRAY_SHARE * c->cost / q->toll));
+    enough = fmin(enough, cbrt((most - c->cost) / q->toll));
+  }
+  double stray2 = scree_memory_stray(&q->d->memory, &q->d->s, ring, c->target, least, enough);
   c->cost += (c->stray + q->toll * stray2) * stray2 * stray2;
+}
+
+/* Other place k with its whole cost, if that is below `most`; else some cost that is not. */
+static scree_candidate other_place(const queue *q, const scree_ring *ring, int k, double most) {
+  scree_candidate c;
+  q->d->coster->fall_back(&q->d->s, ring->half_edge, k, &c);
+  add_stray(q, ring, &c, most);
+  return c;
+}
+
+/* Puts the edge back at the whole cost of its first choice, or at LOOK_AHEAD times that at which it
+ * waited, if it is more: most edges are evaluated anew before their turn comes at that. */
+static void choose_first(queue *q, const scree_ring *ring, scree_candidate *best) {
+  uint32_t h = ring->half_edge;
+  double most = LOOK_AHEAD * q->cost[h];
+  uint8_t stage = WHOLE;
+  add_stray(q, ring, best, most);
+  for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
+    scree_candidate c = other_place(q, ring, k, fmin(best->cost, most));
+    if (!(c.cost < best->cost)) continue;
+    *best = c;
+    stage = (uint8_t)(OTHER + k);
+  }
+  if (!(best->cost < most)) {
+    best->cost = most;
+    stage = IN_PART;
+  }
+  q->stage[h] = stage;
+  enqueue(q, h, best);
 }
 
 /* Puts the edge back with the cheapest other place that is allowed, if there is
  * one. */
 static scree_status try_fallbacks(queue *q, scree_ring *ring) {
-  scree_decimator *d = q->d;
   uint32_t h = ring->half_edge;
-  scree_candidate best = {.cost = INFINITY}, candidate;
+  scree_candidate best = {.cost = INFINITY};
   scree_status status = SCREE_OK;
   for (int k = 0; k < SCREE_FALLBACK_COUNT && status == SCREE_OK; k++) {
     scree_change change;
     scree_around around;
-    d->coster->fall_back(&d->s, h, k, &candidate);
-    change.target = candidate.target;
-    if (candidate.cost < best.cost) add_stray(q, ring, &candidate);
-    if (!(candidate.cost < best.cost) || !allowed(q, ring, &change, &around, &status)) continue;
-    best = candidate;
+    scree_candidate c = other_place(q, ring, k, best.cost);
+    change.target = c.target;
+    if (!(c.cost < best.cost) || !allowed(q, ring, &change, &around, &status)) continue;
+    best = c;
     q->stage[h] = (uint8_t)(FALLBACK + k);
   }
   if (best.cost < INFINITY) enqueue(q, h, &best);
@@ -343,20 +372,19 @@ static scree_status try_cheapest(queue *q) {
   leave(q, h);
   if (!scree_ring_gather(&d->s, h, &ring) || !scree_collapse_keeps_topology(&d->s, &ring))
     return SCREE_OK;
-  if (q->stage[h] >= FALLBACK)
-    d->coster->fall_back(&d->s, h, q->stage[h] - FALLBACK, &candidate);
+  int stage = q->stage[h];
+  if (stage >= OTHER)
+    d->coster->fall_back(&d->s, h, (stage - OTHER) % SCREE_FALLBACK_COUNT, &candidate);
   else
     d->coster->evaluate(&d->s, &h, 1, &candidate);
-  if (q->stage[h] == IN_PART) {
-    q->stage[h] = WHOLE;
-    add_stray(q, &ring, &candidate);
-    enqueue(q, h, &candidate);
+  if (stage == IN_PART) {
+    choose_first(q, &ring, &candidate);
     return SCREE_OK;
   }
   change.target = candidate.target;
   if (allowed(q, &ring, &change, &around, &status))
     return collapse(q, &ring, &change, &around, candidate.error);
-  if (status != SCREE_OK || q->stage[h] >= FALLBACK) return status;
+  if (status != SCREE_OK || stage >= FALLBACK) return status;
   return try_fallbacks(q, &ring);
 }
 

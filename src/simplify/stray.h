@@ -5,8 +5,8 @@
  * place of the last one, and its distance from it. The stray of a collapse is the largest of the
  * distances of
  *   - the witnesses of the triangles that change, from the new ones, where it grows;
- *   - the new vertex and the middles of the new edges at it, from the surface kept.
- * In batches, where no surface is kept: of the new vertex from the old triangles. */
+ *   - the new vertex and five places on every new edge, from the surface kept.
+ * In batches, as long as no surface is kept: of the new vertex from the old triangles. */
 #ifndef SCREE_SIMPLIFY_STRAY_H
 #define SCREE_SIMPLIFY_STRAY_H
 
@@ -15,7 +15,7 @@
 
 typedef struct scree_witness {
   vec3 at;
-  double distance2; /* from its triangle, squared */
+  double distance2; /* from its triangle, squared; below 0: dropped */
   uint32_t next;    /* of the same triangle, or NONE */
 } scree_witness;
 
@@ -23,24 +23,40 @@ typedef struct scree_memory {
   scree_bvh surface;
   double area;
   scree_witness *witnesses;
-  size_t count;
-  uint32_t *first; /* per triangle: its first witness, or NONE */
+  size_t count, left; /* left: not dropped */
+  uint32_t *first;    /* per triangle: its first witness, or NONE */
 } scree_memory;
 
 /* Keeps the surface as it is. */
 scree_status scree_memory_keep(const scree_halfmesh *s, scree_memory *memory, scree_error *error);
 void scree_memory_free(scree_memory *memory);
+static inline bool scree_memory_is_kept(const scree_memory *memory) {
+  return memory->first != NULL;
+}
 
 /* Whether x is near enough to the surface kept for a vertex of a level of so many triangles: within
  * half of sqrt(area / count). */
 bool scree_memory_allows(const scree_memory *memory, size_t triangle_count, vec3 x);
 
-/* The square of the stray, or `least`, also squared, where it is smaller. */
+/* The square of the stray, or `least`, where it is smaller; where it is above `most`, something
+ * above that is enough. These are squares as well. */
 double scree_memory_stray(const scree_memory *memory, const scree_halfmesh *s,
-                          const scree_ring *ring, vec3 target, double least);
+                          const scree_ring *ring, vec3 target, double least, double most);
 
-/* The largest squared distance of a witness from its triangle. */
-double scree_memory_worst(const scree_memory *memory);
+/* In batches: whether the stray is at most `most`, both squared, with one place on every edge. */
+bool scree_memory_stays_within(const scree_memory *memory, const scree_halfmesh *s,
+                               const scree_ring *ring, vec3 target, double most);
+
+/* How far off a place may be as things stand: ten times the mean distance of the witnesses, or the
+ * largest one, if that is more; 0 where none is off but for rounding. */
+double scree_memory_usual(const scree_memory *memory);
+
+/* Where there are very many witnesses for so few triangles, every second of each triangle goes, in
+ * the order of their distances; the farthest of each stays. */
+void scree_memory_thin(scree_memory *memory, const scree_halfmesh *s);
+
+/* Before scree_halfmesh_compact: the triangles get the numbers that they will have. */
+void scree_memory_compact(scree_memory *memory, const scree_halfmesh *s);
 
 /* Gives the witnesses of the ring's triangles to those that will be there; before the collapse. */
 void scree_memory_move(scree_memory *memory, const scree_halfmesh *s, const scree_ring *ring,

@@ -64,6 +64,34 @@ static void test_overhang(void **state) {
   scree_mesh_free(&b);
 }
 
+/* A square with a narrow pit along its diagonal, and two facets that bridge it: their common edge
+ * runs over it, but no middle of a part of them. The middle of the edge is farthest off, from the
+ * four walls alike: the planes x / a + y / b + z / c = 1. */
+static void test_bridged_pit(void **state) {
+  (void)state;
+  const double half_length = 0.4 * sqrt(2), half_width = 1e-3, depth = 0.05,
+               aside = half_width / sqrt(2);
+  const double positions[] = {0,           0,           0,   1,   0,           0,           1,
+                              1,           0,           0,   1,   0,           0.1,         0.1,
+                              0,           0.9,         0.9, 0,   0.5 + aside, 0.5 - aside, 0,
+                              0.5 - aside, 0.5 + aside, 0,   0.5, 0.5,         -depth};
+  const uint32_t facets[] = {0, 1, 6, 1, 2, 6, 2, 5, 6, 0, 6, 4, 0, 7, 3, 3, 7, 2,
+                             2, 7, 5, 0, 4, 7, 4, 6, 8, 6, 5, 8, 5, 7, 8, 7, 4, 8};
+  const uint32_t halves[] = {0, 1, 2, 0, 2, 3};
+  scree_mesh level = shape_make(4, 2), scan = shape_make(9, 12);
+  memcpy(level.positions, positions, 12 * sizeof *positions);
+  memcpy(level.triangles, halves, sizeof halves);
+  memcpy(scan.positions, positions, sizeof positions);
+  memcpy(scan.triangles, facets, sizeof facets);
+  scree_distance_options options = {.sample_count = 20000}; /* 200 parts of the edge */
+  scree_distance d = distance_of(&level, &scan, &options);
+  double inverse2 = pow(half_length, -2) + pow(half_width, -2) + pow(depth, -2);
+  CHECK_NEAR(d.forward.maximum, 1 / sqrt(inverse2), 1e-12);
+  CHECK_NEAR(d.forward.at[0], 0.5, 1e-12);
+  scree_mesh_free(&level);
+  scree_mesh_free(&scan);
+}
+
 static void test_icosahedra(void **state) {
   (void)state;
   /* all faces have the same distance from the centre, 0.7947 of the radius */
@@ -294,12 +322,12 @@ static void test_refusals(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plates),       cmocka_unit_test(test_overhang),
-      cmocka_unit_test(test_icosahedra),   cmocka_unit_test(test_spheres),
-      cmocka_unit_test(test_same_surface), cmocka_unit_test(test_brute_force),
-      cmocka_unit_test(test_noise_rule),   cmocka_unit_test(test_field),
-      cmocka_unit_test(test_threads),      cmocka_unit_test(test_flat_facets),
-      cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_plates),      cmocka_unit_test(test_overhang),
+      cmocka_unit_test(test_bridged_pit), cmocka_unit_test(test_icosahedra),
+      cmocka_unit_test(test_spheres),     cmocka_unit_test(test_same_surface),
+      cmocka_unit_test(test_brute_force), cmocka_unit_test(test_noise_rule),
+      cmocka_unit_test(test_field),       cmocka_unit_test(test_threads),
+      cmocka_unit_test(test_flat_facets), cmocka_unit_test(test_refusals),
   };
   scree_set_threads(1); /* many tiny trees: waking threads would take longer than the work */
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -174,6 +174,46 @@ static void moving_scaling_turning_change_rounding_only(void **state) {
   }
 }
 
+/* The same surface with its vertices and triangles in another order. */
+static scree_mesh renumbered(const scree_mesh *mesh, scree_rng *rng) {
+  scree_mesh other = shape_make(mesh->vertex_count, mesh->triangle_count);
+  uint32_t *number = malloc(mesh->vertex_count * sizeof *number);
+  for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+    uint32_t w = scree_rng_below(rng, v + 1);
+    number[v] = number[w];
+    number[w] = v;
+  }
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    memcpy(other.positions + 3 * (size_t)number[v], mesh->positions + 3 * v,
+           3 * sizeof *mesh->positions);
+  for (size_t t = 0; t < mesh->triangle_count; t++)
+    for (size_t i = 0; i < 3; i++) /* 7919 is prime */
+      other.triangles[3 * (t * 7919 % mesh->triangle_count) + i] =
+          number[mesh->triangles[3 * t + i]];
+  free(number);
+  return other;
+}
+
+/* With no two costs equal nothing is decided by numbers. */
+static void numbers_change_rounding_only(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 3};
+  scree_mesh mesh = bumpy_sphere(5, 5), other = renumbered(&mesh, &rng);
+  for (int m = 0; m < 2; m++) {
+    scree_curve *a = build(&mesh, methods[m]), *b = build(&other, methods[m]);
+    for (size_t count = 16000; count > 20; count = count * 3 / 4) {
+      scree_level level_a, level_b;
+      scree_curve_level(a, scree_curve_find(a, count), &level_a);
+      scree_curve_level(b, scree_curve_find(b, count), &level_b);
+      CHECK_NEAR(level_b.area, level_a.area, 1e-9 * level_a.area);
+    }
+    scree_curve_free(a);
+    scree_curve_free(b);
+  }
+  scree_mesh_free(&mesh);
+  scree_mesh_free(&other);
+}
+
 /* Open sheets, several shells, and tangles with edges of every kind: no crash, levels as recorded,
  * no more faults than at the start. */
 static void any_mesh_is_taken(void **state) {
@@ -209,7 +249,7 @@ static void any_mesh_is_taken(void **state) {
         assert_true(after.non_manifold_edge_count <= before.non_manifold_edge_count);
         assert_true(after.degenerate_facet_count == 0);
       }
-      if (round == 0) assert_true(level.triangle_count <= 16 && after.shell_count == 2);
+      if (round == 0) assert_true(level.triangle_count <= 20 && after.shell_count == 2);
       scree_mesh_free(&last);
       scree_curve_free(curve);
     }
@@ -283,6 +323,7 @@ int main(void) {
       cmocka_unit_test(the_same_bits_for_any_threads_and_facet_order),
       cmocka_unit_test(batches_keep_every_promise),
       cmocka_unit_test(moving_scaling_turning_change_rounding_only),
+      cmocka_unit_test(numbers_change_rounding_only),
       cmocka_unit_test(any_mesh_is_taken),
       cmocka_unit_test(limits_stop_the_run),
       cmocka_unit_test(failing_memory_is_told),

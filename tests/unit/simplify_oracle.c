@@ -29,9 +29,12 @@
 #define VOLUME_STRAY 5.0
 #define STRAY_SHARE  0.01
 #define TOLL_SHARE   0.1
-#define TOLL_REACH   7.0
+#define USUAL_MEANS  10.0
 #define RENEW_SHARE  0.7
 #define EQUALLY_NEAR 1e-12
+#define EQUAL_AREA   1e-9
+#define EQUAL_COST   1e-9
+#define EDGE_PARTS   6
 #define QECD_PULL    1e-8
 #define QECD_TIE     1e-12
 #define QECD_SHAPE   0.3
@@ -369,16 +372,20 @@ static double triangle_distance2(const oracle *o, size_t t, vec3 p) {
   return scree_triangle_closest(corners, p, &point);
 }
 
-/* The squared distance of p from the triangles of a after the collapse; *nearest: the first of
- * those that are nearest. */
+/* The squared distance of p from the triangles of a after the collapse; *nearest: of those that are
+ * nearest the largest, of the largest the first. */
 static double patch_distance2(const oracle *after, uint32_t a, vec3 p, uint32_t *nearest) {
-  double least = INFINITY;
+  double least = INFINITY, largest = -1;
   for (size_t t = 0; t < after->triangle_count; t++)
     if (!gone(after, t) && has(after, t, a)) least = fmin(least, triangle_distance2(after, t, p));
-  for (size_t t = after->triangle_count; t-- > 0;)
-    if (!gone(after, t) && has(after, t, a) &&
-        sqrt(triangle_distance2(after, t, p)) <= sqrt(least) + EQUALLY_NEAR)
-      *nearest = (uint32_t)t;
+  for (size_t t = 0; t < after->triangle_count; t++) {
+    double area2 = vec3_norm2(area_vector(after, t));
+    if (gone(after, t) || !has(after, t, a) || area2 <= (1 + EQUAL_AREA) * largest ||
+        sqrt(triangle_distance2(after, t, p)) > sqrt(least) + EQUALLY_NEAR)
+      continue;
+    largest = area2;
+    *nearest = (uint32_t)t;
+  }
   return least;
 }
 
@@ -394,7 +401,10 @@ static double stray2_of(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
   }
   for (size_t t = 0; t < after.triangle_count; t++)
     for (size_t i = 0; i < 3 && !gone(&after, t) && has(&after, t, a); i++)
-      worst = fmax(worst, start_distance2(o, vec3_lerp(x, corner(&after, t, i), 0.5)));
+      for (int part = 1; part < EDGE_PARTS; part++) {
+        vec3 at = vec3_lerp(x, corner(&after, t, i), (double)part / EDGE_PARTS);
+        worst = fmax(worst, start_distance2(o, at));
+      }
   free(after.position);
   free(after.triangle);
   return worst;
@@ -422,13 +432,27 @@ static place whole_place(oracle *o, uint32_t a, uint32_t b, int fallback) {
   return p;
 }
 
+/* The cheapest at whole cost of the best place and the others. */
+static place first_choice(oracle *o, uint32_t a, uint32_t b) {
+  place best = whole_place(o, a, b, -1);
+  for (int k = 0; k < SCREE_FALLBACK_COUNT && !o->qecd; k++) {
+    if (place_of(o, a, b, k).cost > (1 + EQUAL_COST) * best.cost) continue;
+    place p = whole_place(o, a, b, k);
+    bool equal = fabs(p.cost - best.cost) <= EQUAL_COST * best.cost;
+    if (equal) best.other = p.target;
+    if (!equal && p.cost < best.cost) best = p;
+  }
+  return best;
+}
+
 /* The edge's place as it waits; cost INFINITY: out. Where the cost without the stray is above
  * `enough`, that is the answer. */
 static place waiting(oracle *o, uint32_t a, uint32_t b, double enough) {
   int state = *state_of(o, a, b) & STATES;
   if (state == OUT) return (place){.cost = INFINITY};
   place p = place_of(o, a, b, state - FALLBACK);
-  return p.cost > enough ? p : whole_place(o, a, b, state - FALLBACK);
+  if (p.cost > enough) return p;
+  return state == BEST ? first_choice(o, a, b) : whole_place(o, a, b, state - FALLBACK);
 }
 
 /* What becomes of an edge whose turn came and which is not allowed. */
@@ -487,7 +511,7 @@ static int by_value(const void *a, const void *b) {
 /* All edges start anew, and the toll is found from their costs without the stray. */
 static void renew(oracle *o) {
   if (o->qecd || o->triangle_count > o->renew_at) return;
-  double *costs = malloc((3 * o->triangle_count + 1) * sizeof *costs), worst2 = 0;
+  double *costs = malloc((3 * o->triangle_count + 1) * sizeof *costs), worst = 0, mean = 0;
   size_t count = 0, side = 0;
   uint32_t a, b;
   start_anew(o);
@@ -496,14 +520,15 @@ static void renew(oracle *o) {
     costs[count] = place_of(o, a, b, -1).cost;
     count += costs[count] < INFINITY;
   }
-  for (size_t w = 0; w < o->vertex_count; w++) worst2 = fmax(worst2, o->held2[w]);
+  for (size_t w = 0; w < o->vertex_count; w++) {
+    worst = fmax(worst, sqrt(o->held2[w]));
+    mean += sqrt(o->held2[w]) / (double)o->vertex_count;
+  }
   qsort(costs, count, sizeof *costs, by_value);
   if (count > 0) {
-    /* ten triangles of the mean area, each at this distance from the place, cost as much */
-    double mean = o->start_area / (double)o->triangle_count;
     double cost = costs[(size_t)(TOLL_SHARE * (double)count)];
-    double far2 = cost * sqrt(10 * 2 * mean) / (10 * pow(2 * mean, 2));
-    o->toll = cost / pow(fmax(TOLL_REACH * TOLL_REACH * far2, worst2), 3);
+    double far = fmax(USUAL_MEANS * mean, worst);
+    o->toll = worst > EQUALLY_NEAR ? cost / pow(far, 6) : 0;
     o->renew_at = (size_t)(RENEW_SHARE * (double)o->triangle_count);
   }
   free(costs);
