@@ -24,9 +24,11 @@
 #include <string.h>
 
 /* How far a fan draws back: this share of the mean length of its edges, and at least this share of
- * the largest coordinate (16 roundings of single precision). */
+ * the largest coordinate (16 roundings of single precision), but never more than this share of the
+ * edges, so that the shape stays; far from the origin single precision then may not hold it. */
 #define DRAW_BACK_EDGE       1e-4
 #define DRAW_BACK_COORDINATE 1e-6
+#define DRAW_BACK_MOST       0.01
 
 #define NO_HALF_EDGE SCREE_NO_HALF_EDGE
 
@@ -200,7 +202,8 @@ typedef struct retreat {
 static vec3 retreat_from(const scree_repair *r, vec3 at, const retreat *back) {
   if (back->count == 0) return at;
   double mean = back->length / (double)back->count;
-  double step = fmax(DRAW_BACK_EDGE * mean, fmin(DRAW_BACK_COORDINATE * r->largest, 0.1 * mean));
+  double step =
+      fmax(DRAW_BACK_EDGE * mean, fmin(DRAW_BACK_COORDINATE * r->largest, DRAW_BACK_MOST * mean));
   return vec3_mad(at, vec3_unit(back->sum), step);
 }
 
