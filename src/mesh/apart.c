@@ -26,6 +26,7 @@ typedef struct prover {
   double per_length;
   uint32_t size[3];
   uint32_t *start, *items; /* of cells: facets items[start[c]] up to items[start[c + 1]] */
+  uint8_t *begins;         /* of items: bit k: the facet's first cell along axis k is this one */
   const uint32_t *ring;    /* of the adjacency, or NULL */
   uint8_t *fans;           /* per vertex: what is known of its fan */
   atomic_bool failed;
@@ -38,7 +39,7 @@ typedef struct facet {
   vec3 low, high, at[3], n;
   double error; /* |n.(x - at[0])| above error |x - at[0]| is past rounding */
   const uint32_t *corner;
-  uint8_t begins; /* bit k: its first cell along axis k is this one */
+  uint8_t begins;
 } facet;
 
 typedef struct span {
@@ -75,9 +76,12 @@ static span span_of(const prover *p, vec3 low, vec3 high) {
 #define FOR_SPAN(p, s, cell)                                                                       \
   for (uint32_t z_ = (s).low[2]; z_ <= (s).high[2]; z_++)                                          \
     for (uint32_t y_ = (s).low[1]; y_ <= (s).high[1]; y_++)                                        \
-      for (size_t cell = ((size_t)z_ * (p)->size[1] + y_) * (p)->size[0] + (s).low[0],             \
-                  end_ = cell + (s).high[0] - (s).low[0];                                          \
+      for (size_t first_ = ((size_t)z_ * (p)->size[1] + y_) * (p)->size[0] + (s).low[0],           \
+                  end_ = first_ + (s).high[0] - (s).low[0], cell = first_;                         \
            cell <= end_; cell++)
+
+/* In FOR_SPAN: bit k is set in the first cell along axis k. */
+#define BEGINS(s, cell) ((cell) == first_) | (y_ == (s).low[1]) << 1 | (z_ == (s).low[2]) << 2
 
 /* False: a surface without extent. */
 static bool shape(prover *p, size_t *cell_count) {
@@ -134,12 +138,16 @@ static void fill_block(void *context, size_t begin, size_t end, size_t block, in
   for (size_t t = begin; t < end; t++) {
     facet_box(p->mesh, t, &low, &high);
     span s = span_of(p, low, high);
-    FOR_SPAN(p, s, cell)
-    p->items[__atomic_sub_fetch(&p->start[cell], 1, __ATOMIC_RELAXED)] = (uint32_t)t;
+    FOR_SPAN(p, s, cell) {
+      uint32_t at = __atomic_sub_fetch(&p->start[cell], 1, __ATOMIC_RELAXED);
+      p->items[at] = (uint32_t)t;
+      p->begins[at] = (uint8_t)(BEGINS(s, cell));
+    }
   }
 }
 
-static void load(const prover *p, uint32_t t, const uint32_t place[3], facet *f) {
+static void load(const prover *p, size_t item, facet *f) {
+  uint32_t t = p->items[item];
   f->corner = p->mesh->triangles + 3 * (size_t)t;
   for (int k = 0; k < 3; k++) f->at[k] = scree_mesh_corner(p->mesh, t, k);
   f->low = vec3_min(f->at[0], vec3_min(f->at[1], f->at[2]));
@@ -147,9 +155,7 @@ static void load(const prover *p, uint32_t t, const uint32_t place[3], facet *f)
   vec3 e1 = vec3_sub(f->at[1], f->at[0]), e2 = vec3_sub(f->at[2], f->at[0]);
   f->n = vec3_cross(e1, e2);
   f->error = 1e-14 * size_of(e1) * size_of(e2);
-  span s = span_of(p, f->low, f->low);
-  f->begins =
-      (uint8_t)((s.low[0] == place[0]) | (s.low[1] == place[1]) << 1 | (s.low[2] == place[2]) << 2);
+  f->begins = p->begins[item];
 }
 
 /* All corners of g but those that f has too are surely on one side of f's plane. */
@@ -214,9 +220,10 @@ static bool fan_is_graph(const prover *p, uint32_t h) {
  * threads may come to the same answer for a vertex. */
 static bool in_one_graph(const prover *p, const facet *f, const facet *g) {
   if (!p->ring) return false;
+  uint32_t a = g->corner[0], b = g->corner[1], c = g->corner[2];
   for (size_t k = 0; k < 3; k++) {
     uint32_t v = f->corner[k];
-    if (v != g->corner[0] && v != g->corner[1] && v != g->corner[2]) continue;
+    if ((v != a) & (v != b) & (v != c)) continue;
     uint8_t known = __atomic_load_n(&p->fans[v], __ATOMIC_RELAXED);
     if (known == FAN_UNKNOWN) {
       uint32_t h = (uint32_t)(f->corner + k - p->mesh->triangles);
@@ -235,15 +242,13 @@ static bool boxes_apart(const facet *f, const facet *g) {
 
 static bool cell_is_clear(const prover *p, size_t cell, facet *facets) {
   size_t begin = p->start[cell], count = p->start[cell + 1] - begin;
-  uint32_t place[3] = {(uint32_t)(cell % p->size[0]), (uint32_t)(cell / p->size[0] % p->size[1]),
-                       (uint32_t)(cell / p->size[0] / p->size[1])};
   if (count > CROWD) return false;
-  for (size_t i = 0; i < count; i++) load(p, p->items[begin + i], place, &facets[i]);
+  for (size_t i = 0; i < count; i++) load(p, begin + i, &facets[i]);
   for (size_t i = 0; i < count; i++)
     for (size_t j = 0; j < i; j++) {
       const facet *f = &facets[i], *g = &facets[j];
       if ((f->begins | g->begins) != 7 || boxes_apart(f, g)) continue;
-      if (beside(f, g) || beside(g, f) || in_one_graph(p, f, g)) continue;
+      if (in_one_graph(p, f, g) || beside(f, g) || beside(g, f)) continue;
       if (scree_triangles_meet(p->mesh->positions, f->corner, g->corner) != SCREE_MEET_NOT)
         return false;
     }
@@ -276,6 +281,7 @@ scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *a
   if (p.failed || sum > ENTRIES_PER_FACET * facets || sum > UINT32_MAX) goto done;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(p.items, sum, error, done);
+  SCREE_ALLOC_OR(p.begins, sum, error, done);
   p.fans = scree_alloc_zero(mesh->vertex_count, 1);
   if (!p.fans) {
     scree_fail_memory(error, mesh->vertex_count, "the fans of a mesh");
@@ -287,6 +293,7 @@ scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *a
   *apart = !p.failed;
 done:
   scree_free(p.items);
+  scree_free(p.begins);
   scree_free(p.fans);
   scree_free(p.start);
   return status;

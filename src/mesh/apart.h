@@ -7,11 +7,12 @@
 
 /* *apart: no two facets of the verified mesh meet beyond what they share (mesh/intersect.h). Not
  * proven is not disproven: the search stops at the first pair that meets, and where facets crowd in
- * few cells of a grid or are large beside the others. Exact; cost: about 0.4 us of one core per
- * facet, on all threads, and 16 bytes per facet.
+ * few cells of a grid or are large beside the others. Exact; cost: about 0.3 us of one core per
+ * facet, on all threads, and 20 bytes per facet.
  *
  * adjacency: of the mesh, if no facet names a vertex twice and the facets at every vertex hang
- * together through its edges; else NULL. It saves exact tests where a surface is flat. */
+ * together through its edges; else NULL. It saves tests of facets that share a vertex, most where
+ * the surface is flat. */
 scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                 bool *apart, scree_error *error);
 
