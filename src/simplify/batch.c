@@ -136,24 +136,23 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-/* Asks for what lies in order: the block's vertices and most of their triangles. */
-SCREE_PREFETCHES void ask_for_block(const scree_halfmesh *s, size_t begin, size_t end, bool sums) {
-  for (size_t v = begin; v < end; v += 2) __builtin_prefetch(&s->vertex[v], 0, 2);
-  if (sums)
-    for (const char *at = (const char *)s->sums[begin]; at < (const char *)s->sums[end]; at += 64)
-      __builtin_prefetch(at, 0, 2);
+/* Asks for these vertices and most of their triangles, which lie in the same order: before a loop
+ * over them that would wait for one after the other. */
+SCREE_PREFETCHES void ask_for_block(const scree_halfmesh *s, size_t begin, size_t end) {
+  enum { MOST = 16384 }; /* half-edges; more are no block */
+  scree_prefetch(s->vertex + begin, (end - begin) * sizeof *s->vertex);
   while (begin < end && s->vertex[begin].outgoing == SCREE_NONE) begin++;
   while (begin < end && s->vertex[end - 1].outgoing == SCREE_NONE) end--;
   if (begin == end) return;
   uint32_t first = s->vertex[begin].outgoing, last = s->vertex[end - 1].outgoing;
-  if (last - first > 16384) return;
-  for (uint32_t h = first; h < last; h += 8) __builtin_prefetch(&s->half[h], 0, 2);
+  if (first < last && last - first <= MOST)
+    scree_prefetch(s->half + first, (last - first) * sizeof *s->half);
 }
 
 static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   scree_decimator *d = ((pass *)context)->d;
-  ask_for_block(&d->s, begin, end, false);
+  ask_for_block(&d->s, begin, end);
   for (size_t v = begin; v < end; v++) {
     if (d->s.vertex[v].outgoing == SCREE_NONE || !(d->s.flags[v] & SCREE_VERTEX_STALE)) continue;
     d->coster->sum(&d->s, (uint32_t)v);
@@ -214,7 +213,8 @@ static void evaluate_block(void *context, size_t begin, size_t end, size_t block
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
   waiting w = {.count = 0};
-  ask_for_block(s, begin, end, true);
+  ask_for_block(s, begin, end);
+  scree_prefetch(s->sums[begin], (end - begin) * sizeof *s->sums);
   for (size_t v = begin; v < end; v++) {
     p->best[v] = SCREE_NONE;
     p->cost[v] = INFINITY;
@@ -280,7 +280,7 @@ static void list_block(void *context, size_t begin, size_t end, size_t block, in
   (void)worker;
   const pass *p = context;
   scree_contender *contenders = p->contenders + begin;
-  ask_for_block(&p->d->s, begin, end, false);
+  ask_for_block(&p->d->s, begin, end);
   uint32_t count = 0;
   double dearest = 0;
   for (size_t v = begin; v < end; v++) {
@@ -339,7 +339,8 @@ static void reconsider_block(void *context, size_t begin, size_t end, size_t blo
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
   waiting w = {.count = 0};
-  ask_for_block(s, begin, end, true);
+  ask_for_block(s, begin, end);
+  scree_prefetch(s->sums[begin], (end - begin) * sizeof *s->sums);
   for (size_t v = begin; v < end; v++) {
     if (!is_candidate(p, v)) continue;
     uint32_t h = p->best[v];
@@ -608,11 +609,33 @@ static void record_block(void *context, size_t begin, size_t end, size_t block, 
   }
 }
 
+/* Asks for what applying these collapses will touch. */
+SCREE_PREFETCHES void ask_for_changes(const pass *p, const taken *t, size_t count) {
+  const scree_halfmesh *s = &p->d->s;
+  for (size_t k = 0; k < count; k++) {
+    __builtin_prefetch(&s->half[t[k].half_edge], 1);
+    for (uint32_t i = 0; i < t[k].count; i++)
+      __builtin_prefetch(&s->half[p->edges[t[k].first_edge + i]], 1);
+  }
+  for (size_t k = 0; k < count; k++) {
+    uint32_t h = t[k].half_edge, twin = s->half[h].twin;
+    uint32_t x = s->half[scree_next(h)].twin, y = s->half[scree_previous(h)].twin;
+    __builtin_prefetch(&s->vertex[s->half[h].from], 1);
+    __builtin_prefetch(&s->vertex[scree_to(s, h)], 1);
+    __builtin_prefetch(&s->vertex[s->half[scree_previous(h)].from], 1);
+    if (x != SCREE_NONE) __builtin_prefetch(&s->half[x], 1);
+    if (y != SCREE_NONE) __builtin_prefetch(&s->half[y], 1);
+    if (twin != SCREE_NONE) __builtin_prefetch(&s->half[twin], 1);
+  }
+}
+
 static void apply_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
   for (size_t i = begin; i < end; i++) {
+    if ((i - begin) % SIDE_BY_SIDE == 0)
+      ask_for_changes(p, p->taken + i, end - i < SIDE_BY_SIDE ? end - i : SIDE_BY_SIDE);
     if (p->taken[i].verdict != CERTAIN) {
       d->s.refused[p->taken[i].half_edge] =
           p->taken[i].verdict == POSTPONED ? SCREE_EDGE_POSTPONED : SCREE_EDGE_REFUSED;
