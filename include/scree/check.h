@@ -113,10 +113,11 @@ typedef struct scree_repair_options {
   size_t hole_edges;
   /* Fill larger holes as well, up to 4,096 edges; default false. Fillings of more than 32 edges get
    * vertices as dense as those round the hole, and go on with its slope (Liepa, SGP 2003), unless
-   * the surface would then meet itself. */
+   * the surface would then meet itself, or the rim lies in a plane and the surface comes to it
+   * steeply (docs/defects.md): then they are flat. */
   bool fill_large_holes;
-  /* Give these fillings no vertices of their own, which is right where a flat face is missing;
-   * default false. */
+  /* Give none of these fillings vertices of its own, as where flat faces with rough rims are
+   * missing; default false. */
   bool flat_large_holes;
   /* Shells with less than this share of the area of the largest are debris, in [0, 1); default
    * 0.01. Cavities are none, nor are shells that are merged with what they meet. */

@@ -31,7 +31,8 @@ static const cli_option options[] = {
      "round the hole, and its slope.",
      0, 0, NULL},
     {"flat", 0, CLI_FLAG, AT(flat_holes), NULL,
-     "With --large-holes: no new vertices in them, as where a flat face is missing.", 0, 0, NULL},
+     "With --large-holes: no new vertices in any, as where flat faces with rough rims are missing.",
+     0, 0, NULL},
     {"debris", 0, CLI_REAL, AT(debris_share), "SHARE",
      "Drop shells with less than this share of the largest shell's area; cavities are kept. "
      "Default: 0.01.",

@@ -299,6 +299,38 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+/* The mean edge's share that vertices of a plane rim may lie off the plane. */
+#define RIM_ROUGHNESS 0.25
+/* The cosine of the angle beyond which the surface does not go on over the rim (45 degrees). */
+#define RIM_BEND 0.7
+
+/* Whether the rim is plane and the surface comes to it at an edge, as where a flat face is missing
+ * or what stood on a plane was scanned: its filling is that plane. */
+static bool stands_on_plane(const loop *l) {
+  const scree_mesh *mesh = &l->r->mesh;
+  vec3 normal = {0, 0, 0}, first = vec3_load(mesh->positions + 3 * (size_t)l->vertex[0]);
+  double length = 0, along = 0, low = 0, high = 0;
+  for (size_t i = 0; i < l->count; i++) {
+    vec3 p = vec3_load(mesh->positions + 3 * (size_t)l->vertex[i]);
+    vec3 q = vec3_load(mesh->positions + 3 * (size_t)l->vertex[(i + 1) % l->count]);
+    normal = vec3_add(normal, vec3_cross(vec3_sub(p, first), vec3_sub(q, first)));
+    length += vec3_distance(p, q);
+  }
+  normal = vec3_unit(normal);
+  for (size_t i = 0; i < l->count; i++) {
+    uint32_t t = l->half_edge[i] / 3;
+    vec3 p = vec3_load(mesh->positions + 3 * (size_t)l->vertex[i]);
+    vec3 q = vec3_load(mesh->positions + 3 * (size_t)l->vertex[(i + 1) % l->count]);
+    vec3 n = vec3_triangle_normal(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1),
+                                  scree_mesh_corner(mesh, t, 2));
+    along += vec3_distance(p, q) * fabs(vec3_dot(vec3_unit(n), normal));
+    low = fmin(low, vec3_dot(vec3_sub(p, first), normal));
+    high = fmax(high, vec3_dot(vec3_sub(p, first), normal));
+  }
+  return 0.5 * (high - low) <= RIM_ROUGHNESS * length / (double)l->count &&
+         along < RIM_BEND * length;
+}
+
 /* One loop of half-edges, in the order of the boundary (against the filling's). */
 static scree_status fill_loop(hole_work *w, const uint32_t *half_edges, size_t count,
                               scree_error *error) {
@@ -320,7 +352,7 @@ static scree_status fill_loop(hole_work *w, const uint32_t *half_edges, size_t c
   status =
       count <= EXACT_EDGES ? fill_best(r, &l, &filled, error) : fill_by_ears(r, &l, &filled, error);
   if (status == SCREE_OK && filled && count > SMOOTH_EDGES && r->options->fill_large_holes &&
-      !r->options->flat_large_holes)
+      !r->options->flat_large_holes && !stands_on_plane(&l))
     status = make_smooth(w, &l, before, error);
   if (filled) {
     r->report.done[SCREE_REPAIR_FILL_HOLE]++;

@@ -113,6 +113,51 @@ static void window_in_a_face(void **state) {
   scree_mesh_free(&mesh);
 }
 
+static bool is_below_top(const double *p, double limit) {
+  return p[2] < limit;
+}
+
+/* A face is missing, however the box is turned, also where the rim is a little rough: the filling
+ * is that face. Rougher, or leaning so far inwards that it may go on, it is filled smoothly. */
+static void missing_face(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 4};
+  scree_repair_report report;
+  for (int n = 0; n < 8; n++) {
+    scree_mesh mesh = shape_grid_box(2, 2, 2, 20);
+    size_t kept = 0;
+    for (size_t t = 0; t < mesh.triangle_count; t++)
+      for (int k = 0; k < 3; k++)
+        if (is_below_top(mesh.positions + 3 * (size_t)mesh.triangles[3 * t + k], 1.999)) {
+          memmove(mesh.triangles + 3 * kept++, mesh.triangles + 3 * t, 12);
+          break;
+        }
+    mesh.triangle_count = kept;
+    bool rough = n == 6, leaning = n == 7;
+    for (size_t v = 0; v < mesh.vertex_count; v++) {
+      double *p = mesh.positions + 3 * v;
+      if (p[2] == 2 && n >= 3 && !leaning)
+        p[2] += (rough ? 0.045 : 0.015) * (2 * scree_rng_uniform(&rng) - 1);
+      /* a pyramid's stump of 33 degrees, its point far above the rim */
+      if (leaning)
+        p[0] = 1 + (p[0] - 1) * (1 + 2 - p[2]), p[1] = 1 + (p[1] - 1) * (1 + 2 - p[2]), p[2] *= 0.6;
+    }
+    scree_measures m;
+    scree_error error;
+    mat3 turn = quat_to_mat3(scree_rng_rotation(&rng));
+    if (n) shape_transform(&mesh, &turn, (vec3){3, 1, 2});
+    scree_mesh filled = fill(&mesh, false, &report);
+    CHECK_OK(scree_mesh_measure(&filled, &m, &error), error);
+    assert_int_equal(report.done[SCREE_REPAIR_SMOOTH_HOLE], rough || leaning);
+    if (!rough && !leaning) {
+      CHECK_NEAR(m.volume, 8, n < 3 ? 1e-9 : 0.06);
+      assert_int_equal(report.done[SCREE_REPAIR_FILL_FACET], 78);
+    }
+    scree_mesh_free(&filled);
+    scree_mesh_free(&mesh);
+  }
+}
+
 /* A ball stands where the smooth filling would go, above the plain one. */
 static void taken_back_where_it_meets(void **state) {
   (void)state;
@@ -160,9 +205,9 @@ static void out_of_memory(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(sphere_less_a_third), cmocka_unit_test(barrel),
-      cmocka_unit_test(window_in_a_face),    cmocka_unit_test(taken_back_where_it_meets),
-      cmocka_unit_test(out_of_memory),
+      cmocka_unit_test(sphere_less_a_third),       cmocka_unit_test(barrel),
+      cmocka_unit_test(window_in_a_face),          cmocka_unit_test(missing_face),
+      cmocka_unit_test(taken_back_where_it_meets), cmocka_unit_test(out_of_memory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
