@@ -26,6 +26,7 @@ typedef struct scree_decimator {
   double error_limit; /* mean square, unit box; INFINITY: none */
   scree_record record;
   size_t first_triangle_count;
+  size_t single_from; /* triangles: where the batches end and single collapses begin */
   scree_grid grid;
   scree_memory memory; /* of a surface that the batches came to; nothing before */
   scree_ticker ticker;
