@@ -284,6 +284,7 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
                .scratch = scratch,
                .skin = scree_pair_skin(world, pair)};
   l.skin = fmax(l.skin, fmin(fast_steps * pair->travel, fast_skins * l.skin));
+  l.skin = fmin(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
   mark_awake(&l);
   pair->sleeping.count = 0;
   bool analytic = pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b]);

@@ -60,10 +60,8 @@ static quat turned(const scree_world *world, const scree_pair *pair) {
 static double moving_ball(const scree_world *world, const scree_pair *pair, vec3 at, vec3 *centre) {
   *centre = pair->region;
   if (pair->region_radius > 0) return pair->region_radius;
-  double a = world->bodies.particle[pair->a]->measures.bounding_radius,
-         b = pair->wall ? INFINITY : world->bodies.particle[pair->b]->measures.bounding_radius;
-  *centre = a <= b ? at : (vec3){0, 0, 0};
-  return (a <= b ? a : b) + 4 * scree_pair_skin(world, pair);
+  *centre = scree_pair_smaller_is_a(world, pair) ? at : (vec3){0, 0, 0};
+  return scree_pair_radius(world, pair);
 }
 
 /* How far the bodies' points have moved relative to each other since the pair fell asleep. The sum
@@ -103,7 +101,7 @@ static double relate(const scree_world *world, const scree_pair *pair,
 }
 
 static bool wake_items(scree_pair *pair) {
-  double due = pair->path + 2 * pair->travel, next = INFINITY;
+  double due = pair->path + 2 * pair->travel + scree_pair_claim(pair), next = INFINITY;
   if (due < pair->next_item) return true;
   size_t kept = 0;
   for (size_t i = 0; i < pair->sleeping.count; i++) {
@@ -125,7 +123,7 @@ static bool wake_items(scree_pair *pair) {
 /* Evaluates the awake items; those that cannot touch soon go to sleep. */
 static bool visit_items(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                         scree_scratch *scratch) {
-  double nap = least_sleep * pair->travel;
+  double nap = least_sleep * pair->travel + scree_pair_claim(pair);
   size_t kept = 0;
   /* asleep items move only after all touches are found: touches point at anchors */
   for (size_t i = 0; i < pair->active.count; i++) {

@@ -11,14 +11,6 @@
  * same way. In a notch up to two further faces count, those onto which the point projects and whose
  * normals differ by 15 (weight 0) to 25 degrees (weight 1): a body in a V needs both to rest.
  *
- * Edge and edge. Closest points of the segments; while apart, direction and distance are theirs.
- * Deeper, the crossing normal signed by the reference, or where that lies across it by the normals
- * of the faces. An edge pair that lies inside at first sight counts only after it has been seen
- * apart ("armed"), and only while the crossing normal is one of both edges: edges that slid around
- * a corner inside each other would claim any depth. Nearly parallel edges have no crossing: their
- * ends, which are points against faces, stand for them; the
- * weight fades below sin = 4e-3.
- *
  * Cached faces: the nearest faces of a point stay the nearest while its path is under half the
  * distance to the next one. */
 #include "world/world.h"
@@ -28,10 +20,6 @@
 
 static const double way_out_cosine = 0.15; /* 81 degrees: thin wedges still count */
 static const double notch_cosines[2] = {0.9659258, 0.9063078}; /* 15 and 25 degrees */
-static const double parallel_sines[2] = {1e-3, 4e-3};
-static const double beyond_cosines[2] = {0.8660254, 0.9659258}; /* 30 and 15 degrees */
-static const double beyond_sines[2] = {0.5, 0.2588190};
-static const double crossing_cosines[2] = {0.3, 0.6}; /* crossing normal against the reference */
 
 typedef struct surface_contact {
   vec3 closest, normal;
@@ -40,21 +28,13 @@ typedef struct surface_contact {
   double lever; /* by how much the distance grows along the normal: 1, but where two are blended */
 } surface_contact;
 
-static double smooth_step(double from, double to, double x) {
-  double t = (x - from) / (to - from);
-  t = t < 0 ? 0 : t > 1 ? 1 : t;
-  return t * t * (3 - 2 * t);
-}
-
 static double smooth_step_slope(double from, double to, double x) {
   double t = (x - from) / (to - from);
   return t <= 0 || t >= 1 ? 0 : 6 * t * (1 - t) / (to - from);
 }
 
-/* A touch between spheres or rounded surfaces of radius `above` (a) and `below` (b): normal n from
- * the point c of b, the centre of a's rounding being `distance` away along n. */
-static double add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
-                        const double values[4], scree_anchor *anchor) {
+double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
+                       const double values[4], scree_anchor *anchor) {
   double distance = values[0], above = values[1], below = values[2], weight = values[3];
   double overlap = above + below - distance, gap = -overlap - pair->smoothing;
   if (gap >= 0 || !(weight > 0)) {
@@ -158,7 +138,7 @@ static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item
     contact->normal = vec3_scale(offset, 1 / contact->distance);
   if (in_front) return true;
   contact->closest = vec3_mad(p, contact->normal, -contact->distance);
-  contact->weight = 1 - smooth_step(0, half, vec3_norm(contact->aside));
+  contact->weight = 1 - scree_smooth_step(0, half, vec3_norm(contact->aside));
   return true;
 }
 
@@ -190,7 +170,7 @@ static int notch_contacts(const scree_particle *surface, vec3 p, const scree_ite
     vec3 c = scree_closest_on_face(face, p, &region);
     double d = vec3_dot(vec3_sub(p, c), face->normal);
     if (region != SCREE_REGION_INSIDE || d <= 0) continue;
-    double weight = 1 - smooth_step(notch_cosines[1], notch_cosines[0], alike);
+    double weight = 1 - scree_smooth_step(notch_cosines[1], notch_cosines[0], alike);
     contacts[count++] = (surface_contact){c, face->normal, {0, 0, 0}, d, weight, 1};
   }
   return count;
@@ -304,117 +284,12 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
     const double values[4] = {contacts[k].distance, forth ? point_radius : surface_radius,
                               forth ? surface_radius : point_radius, contacts[k].weight};
     size_t touches = scratch->touches.count;
-    double gap = add_touch(scratch, pair, at[k], normals[k], values, anchor_of(pair, item, k));
+    double gap =
+        scree_add_touch(scratch, pair, at[k], normals[k], values, anchor_of(pair, item, k));
     if (scratch->touches.count > touches) scratch->touches.items[touches].lever = contacts[k].lever;
     if (gap < least) least = gap;
   }
   return least;
-}
-
-/* ---- edges against edges ---- */
-
-/* How far a direction with this cosine from the edge's outward one is a normal of the edge: 1
- * between those of its two faces and 15 degrees beyond, 0 from 30 degrees beyond. */
-static double normal_share(const scree_edge *edge, double cosine) {
-  const scree_cone *n = &edge->normals;
-  double none = n->cosine * beyond_cosines[0] - n->sine * beyond_sines[0],
-         full = n->cosine * beyond_cosines[1] - n->sine * beyond_sines[1];
-  return smooth_step(none, full, cosine);
-}
-
-/* Signed distance of an armed pair below half the roundings. Which crossing normal is the way out
- * the reference says where it lies along them. Where it lies across it says nothing (of a corner
- * that came in beside the edge, for one), and the normals of the faces say it; `outward` is the sum
- * of both edges'. Where the two disagree the weight passes through 0 from one to the other. */
-static void deep_crossing(const scree_pair *pair, scree_item *item, vec3 crossing, vec3 offset,
-                          vec3 outward, surface_contact *contact) {
-  double toward = vec3_dot(crossing, item->reference), facing = vec3_dot(crossing, outward);
-  if ((toward < 0) != (facing < 0)) {
-    double known = smooth_step(crossing_cosines[0], crossing_cosines[1], fabs(toward));
-    contact->weight *= fabs(2 * known - 1);
-    if (known < 0.5) toward = facing;
-  }
-  vec3 n = toward < 0 ? vec3_neg(crossing) : crossing;
-  contact->normal = n;
-  contact->distance = vec3_dot(offset, n);
-  item->inside = contact->distance < 0.5 * pair->reach;
-}
-
-/* Whether edges that claim to have crossed deeply have: a closest point lies in the other body. The
- * claim is stale when the edges went around each other instead. */
-static bool is_crossed(const scree_particle *a, const scree_particle *b, vec3 on_a, vec3 on_b,
-                       const scree_frame *relative) {
-  if (!(a->measures.volume > 0)) return true; /* cannot tell */
-  if (b->measures.volume > 0 && scree_is_inside(b, on_a)) return true;
-  return scree_is_inside(a, mat3_tmul_vec(&relative->rotation, vec3_sub(on_b, relative->position)));
-}
-
-static double touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
-                          const scree_frame *relative, scree_scratch *scratch) {
-  const scree_edge *ea = &world->bodies.particle[pair->a]->edges[item->a],
-                   *eb = &scree_pair_shape_b(world, pair)->edges[item->b];
-  const mat3 *r = &relative->rotation;
-  vec3 p = vec3_add(mat3_mul_vec(r, ea->start), relative->position),
-       ua = mat3_mul_vec(r, ea->along), ub = eb->along;
-  double s, t;
-  scree_closest_on_segments(p, ua, ea->length, eb->start, ub, eb->length, &s, &t);
-  vec3 on_a = vec3_mad(p, ua, s), on_b = vec3_mad(eb->start, ub, t), offset = vec3_sub(on_a, on_b);
-  double d = vec3_norm(offset), far = d - pair->reach - pair->smoothing;
-  if (far >= 0 && !item->inside) {
-    item->reference = vec3_scale(offset, 1 / d);
-    item->has_reference = true;
-    item->anchor.share = 0;
-    return far;
-  }
-  vec3 crossing = vec3_cross(ua, ub);
-  double sine = vec3_norm(crossing);
-  bool interior = s > 0 && s < ea->length && t > 0 && t < eb->length;
-  if (!interior || sine <= parallel_sines[0]) { /* the ends are points, and speak for themselves */
-    if (d > 0.5 * pair->reach && !pair->touching) item->inside = false;
-    if (d > 0.5 * pair->reach && !item->inside) {
-      item->reference = vec3_scale(offset, 1 / d);
-      item->has_reference = true;
-    }
-    item->anchor.share = 0;
-    return fmin(far, 0);
-  }
-  surface_contact contact = {on_b,
-                             vec3_scale(offset, 1 / fmax(d, 1e-300)),
-                             {0, 0, 0},
-                             d,
-                             smooth_step(parallel_sines[0], parallel_sines[1], sine),
-                             1};
-  vec3 axis_a = mat3_mul_vec(r, ea->normals.axis);
-  if (item->inside || d < 0.5 * pair->reach) {
-    if (!item->has_reference) return 0; /* not armed */
-    vec3 outward = vec3_sub(eb->normals.axis, axis_a);
-    deep_crossing(pair, item, vec3_scale(crossing, 1 / sine), offset, outward, &contact);
-    if (contact.distance < -pair->thin &&
-        !is_crossed(world->bodies.particle[pair->a], scree_pair_shape_b(world, pair), on_a, on_b,
-                    relative)) {
-      item->inside = false;
-      item->anchor.share = 0;
-      return fmin(far, 0);
-    }
-  }
-  if (!item->inside) {
-    item->reference = contact.normal;
-    item->has_reference = true;
-  }
-  double out_a = -vec3_dot(axis_a, contact.normal),
-         out_b = vec3_dot(eb->normals.axis, contact.normal);
-  if (out_a <= ea->facing || out_b <= eb->facing) {
-    item->anchor.share = 0; /* seen through one of the bodies */
-    return fmin(far, 0);
-  }
-  if (item->inside) contact.weight *= normal_share(ea, out_a) * normal_share(eb, out_b);
-  /* near the ends their points take over */
-  double end_a = s < ea->length - s ? s : ea->length - s,
-         end_b = t < eb->length - t ? t : eb->length - t, end = end_a < end_b ? end_a : end_b;
-  contact.weight *= smooth_step(0, 0.1 * pair->reach, end);
-  double rounding_a = world->bodies.particle[pair->a]->measures.rounding;
-  const double values[4] = {contact.distance, rounding_a, pair->reach - rounding_a, contact.weight};
-  return add_touch(scratch, pair, contact.closest, contact.normal, values, &item->anchor);
 }
 
 /* ---- spheres and analytic walls ---- */
@@ -427,7 +302,7 @@ static double touch_spheres(const scree_world *world, const scree_pair *pair, sc
   double d = vec3_norm(offset);
   vec3 n = d > 0 ? vec3_scale(offset, 1 / d) : (vec3){0, 0, 1};
   const double values[4] = {d, a->point_radii[item->a], b->point_radii[item->b], 1};
-  return add_touch(scratch, pair, q, n, values, &item->anchor);
+  return scree_add_touch(scratch, pair, q, n, values, &item->anchor);
 }
 
 static double touch_wall(const scree_world *world, const scree_pair *pair, scree_item *item,
@@ -455,7 +330,7 @@ static double touch_wall(const scree_world *world, const scree_pair *pair, scree
   item->reference.x = side;
   item->has_reference = true;
   const double values[4] = {d, a->point_radii[item->a], 0, 1};
-  return add_touch(scratch, pair, c, n, values, &item->anchor);
+  return scree_add_touch(scratch, pair, c, n, values, &item->anchor);
 }
 
 double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_item *item,
@@ -466,7 +341,7 @@ double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_
   case SCREE_ITEM_FACE_POINT:
     return touch_surface(world, pair, item, relative, scratch);
   case SCREE_ITEM_EDGE_EDGE:
-    return touch_edges(world, pair, item, relative, scratch);
+    return scree_touch_edges(world, pair, item, relative, scratch);
   case SCREE_ITEM_POINT_POINT:
     return touch_spheres(world, pair, item, relative, scratch);
   case SCREE_ITEM_POINT_WALL:

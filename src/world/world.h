@@ -328,9 +328,27 @@ static inline double scree_pair_clearance(const scree_pair *p, const scree_parti
   return a->point_radii[point] + p->smoothing + 0.25 * p->thin;
 }
 
+/* How far apart, beyond the roundings, edges may lie that the last step's overlap can make count:
+ * those that come in behind a corner are tapered, and deeper than they are felt. 0 at rest. */
+static inline double scree_pair_claim(const scree_pair *p) {
+  double beyond = p->overlap - p->reach;
+  return beyond > 0 ? 2 * beyond : 0;
+}
+
 /* Reach of the lists of slow pairs, m. */
 static inline double scree_pair_skin(const scree_world *w, const scree_pair *p) {
   return w->options.skin / w->options.smoothing * p->smoothing;
+}
+
+/* The smaller body of a pair, whose motion relative to the other is measured, and a ball around it
+ * and a little beyond. */
+static inline bool scree_pair_smaller_is_a(const scree_world *w, const scree_pair *p) {
+  return p->wall || w->bodies.particle[p->a]->measures.bounding_radius <=
+                        w->bodies.particle[p->b]->measures.bounding_radius;
+}
+static inline double scree_pair_radius(const scree_world *w, const scree_pair *p) {
+  uint32_t smaller = scree_pair_smaller_is_a(w, p) ? p->a : p->b;
+  return w->bodies.particle[smaller]->measures.bounding_radius + 4 * scree_pair_skin(w, p);
 }
 
 /* candidates.c: which items could touch within the skin; fills sleeping, keeps active. */
@@ -341,6 +359,19 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
  * move before it can touch (0 or less: it does, or nearly). relative: a in the frame of b. */
 double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_item *item,
                         const scree_frame *relative, scree_scratch *scratch);
+/* A touch between spheres or rounded surfaces: normal n, towards a, from the point c of b. values:
+ * distance of the rounding's centre of a along n, roundings of a and of b, weight. The gap; nothing
+ * is appended, and the anchor forgets, where that is not below 0. */
+double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
+                       const double values[4], scree_anchor *anchor);
+/* edges.c: the same for two edges. */
+double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
+                         const scree_frame *relative, scree_scratch *scratch);
+static inline double scree_smooth_step(double from, double to, double x) {
+  double t = (x - from) / (to - from);
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  return t * t * (3 - 2 * t);
+}
 /* Which side of an analytic wall p (wall frame) is on: 1 in front of the plane or disc, inside the
  * cylinder; -1 for the other side of a disc or cylinder. */
 double scree_wall_side(const scree_world_wall *wall, vec3 p);
