@@ -105,7 +105,7 @@ typedef struct lanes {
   double e[3][LANES];               /* to the second end */
   double c[3][LANES], d[3][LANES];  /* to the apexes; on a boundary d is 0 */
   double along[LANES];              /* where the vertex is asked for; see solve */
-  double y[3][LANES], cost[LANES], energy[LANES];
+  double y[3][LANES], cost[LANES], error[LANES], stray[LANES];
   double excess[LANES], trace[LANES], around[LANES];
 } lanes;
 
@@ -188,11 +188,12 @@ SCREE_LANES_INLINE void solve_lanes(lanes *q, bool best, int count) {
     double length2 = vec3_norm2(e), off2 = vec3_norm2(vec3_mad(y, e, -0.5));
     double energy = vec3_dot(y, multiply(h, y)) - 2 * vec3_dot(g, y) + k;
     energy = energy > 0 ? energy : 0;
-    double cost = (energy + TIE * trace * length2) / sqrt(around);
+    double size = sqrt(around), cost = (energy + TIE * trace * length2) / size;
     q->excess[i] = off2 - REACH * REACH * length2;
     q->trace[i] = trace;
     q->around[i] = around;
-    q->energy[i] = energy;
+    q->error[i] = energy / trace;
+    q->stray[i] = STRAY * size;
     q->cost[i] = cost;
     set_lane(q->y, i, y);
   }
@@ -214,8 +215,8 @@ static scree_candidate answer(const scree_halfmesh *s, uint32_t half_edge, lanes
   vec3 p = s->vertex[s->half[half_edge].from].at;
   return (scree_candidate){.cost = q->cost[i],
                            .target = vec3_add(p, lane(q->y, i)),
-                           .error = q->energy[i] / q->trace[i],
-                           .stray = STRAY * sqrt(q->around[i])};
+                           .error = q->error[i],
+                           .stray = q->stray[i]};
 }
 
 static void volume_evaluate(const scree_halfmesh *s, const uint32_t *half_edges, size_t count,
