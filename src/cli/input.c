@@ -14,9 +14,13 @@ bool cli_is_sample(const char *word, const char **name) {
 scree_status cli_load(const char *word, const cli_input_options *options,
                       const scree_progress *progress, scree_scan *scan, scree_error *error) {
   const char *name;
-  if (!cli_is_sample(word, &name)) return scree_scan_read(word, &options->read, scan, error);
   scree_scan made = {.format = "sample", .solid_count = 1};
-  scree_status status = scree_sample_make(name, &options->sample, progress, &made.mesh, error);
+  scree_status status;
+  if (!cli_is_sample(word, &name)) {
+    status = scree_scan_read(word, &options->read, scan, error);
+    return status == SCREE_OK ? status : cli_name_in_error(word, error);
+  }
+  status = scree_sample_make(name, &options->sample, progress, &made.mesh, error);
   if (status != SCREE_OK) return status;
   made.facet_count = made.mesh.triangle_count;
   *scan = made;

@@ -24,5 +24,6 @@ void cli_print_repair(FILE *stream, const scree_repair_report *report) {
   if (report->seam_distance > 0)
     fprintf(stream, "%10.3g mm is the distance within which seams were closed\n",
             report->seam_distance * 1e3);
-  if (!any) fprintf(stream, "%10s had to be done\n", "nothing");
+  if (!any)
+    fprintf(stream, "%10s %s be done\n", "nothing", report->before.usable ? "had to" : "could");
 }

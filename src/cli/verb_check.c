@@ -40,7 +40,7 @@ static scree_status check_one(const cli_call *call, const char *path, checked *c
   c->read = true;
   status = scree_mesh_check(&c->scan.mesh, &how, call->progress, &c->check, &c->error);
   scree_mesh_free(&c->scan.mesh); /* the counts are enough */
-  return status;
+  return status == SCREE_OK ? status : cli_name_in_error(path, &c->error);
 }
 
 static void print_one(const cli_call *call, const char *path, const checked *c) {

@@ -166,6 +166,7 @@ static int run(const cli_call *call) {
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
   int code;
   if (status != SCREE_OK && status != SCREE_BAD_MESH) {
+    cli_name_in_error(call->inputs[0], &error);
     code = cli_fail(&error);
   } else {
     if (status == SCREE_OK) write_result(call, &repaired, &error);

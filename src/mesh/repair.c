@@ -251,7 +251,19 @@ static size_t actions_done(const scree_repair *r) {
 /* How often the dear stages have run. */
 typedef struct tries {
   int cuts, merges;
+  bool refused;      /* merging was ... */
+  size_t refused_at; /* ... when so much had been done: as long as no more is, it would be again */
 } tries;
+
+static scree_status try_merge(scree_repair *r, tries *n, bool early, bool *merged,
+                              scree_error *error) {
+  *merged = false;
+  if (n->refused && n->refused_at == actions_done(r)) return SCREE_OK;
+  scree_status status = scree_repair_merge(r, early, merged, error);
+  n->refused = r->unmerged != NULL;
+  n->refused_at = actions_done(r);
+  return status;
+}
 
 /* Facets that meet are cut out, or shells merged; *settled where neither is done. */
 static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_error *error) {
@@ -263,7 +275,7 @@ static scree_status untangle(scree_repair *r, tries *n, bool *settled, scree_err
     status = scree_repair_cut(r, ++n->cuts, &cut_count, error);
   if (status == SCREE_OK && cut_count == 0 && o->merge_shells && n->merges < MERGE_ROUNDS) {
     n->merges++;
-    status = scree_repair_merge(r, false, &merged, error);
+    status = try_merge(r, n, false, &merged, error);
   }
   *settled = cut_count == 0 && !merged;
   if (*settled && !r->apart) { /* without the small ones, or all but the largest, it may do */
@@ -293,21 +305,21 @@ static scree_status step(scree_repair *r, const scree_check *check, tries *n, bo
 
 /* Shells that are closed and overlap are merged before anything else is done: what coincides is no
  * duplicate there, and edges of four facets are no defect. */
-static scree_status merge_early(scree_repair *r, scree_error *error) {
+static scree_status merge_early(scree_repair *r, tries *n, scree_error *error) {
   const size_t *defect = r->report.before.defects;
   bool met = defect[SCREE_DEFECT_CROSSING_PAIR] || defect[SCREE_DEFECT_TOUCHING_PAIR] ||
              defect[SCREE_DEFECT_OVERLAPPING_PAIR];
   bool merged;
   size_t bad, collapsed;
   if (!r->options->merge_shells || !met) return SCREE_OK;
-  scree_status status = scree_repair_merge(r, true, &merged, error);
+  scree_status status = try_merge(r, n, true, &merged, error);
   return status == SCREE_OK && merged ? weld(r, &r->mesh, &bad, &collapsed, error) : status;
 }
 
 static scree_status run_rounds(scree_repair *r, scree_error *error) {
   tries n = {0};
   size_t bad, collapsed;
-  scree_status status = merge_early(r, error);
+  scree_status status = merge_early(r, &n, error);
   for (int round = 0; round < ROUNDS && status == SCREE_OK; round++) {
     bool settled;
     status = check_now(r, false, &r->report.after, error);
