@@ -121,8 +121,9 @@ typedef struct vertex_sort {
   uint32_t *counts; /* one per record, and one more */
   size_t count;
   spread spread;
-  double *positions; /* of the made mesh */
-  uint32_t *rank;    /* of each loose vertex */
+  size_t *block_starts; /* per block, and one more: the first bucket start at or behind it */
+  double *positions;    /* of the made mesh */
+  uint32_t *rank;       /* of each loose vertex */
 } vertex_sort;
 
 /* Fills v->scratch with the used vertices. */
@@ -148,24 +149,27 @@ static void spread_records(vertex_sort *v) {
     v->sorted[counts[bucket_of(s, v->scratch[i].x[s->axis])]++] = v->scratch[i];
 }
 
+static bool in_one_bucket(const vertex_sort *v, size_t i, size_t j) {
+  const spread *s = &v->spread;
+  return bucket_of(s, v->sorted[i].x[s->axis]) == bucket_of(s, v->sorted[j].x[s->axis]);
+}
+
 /* The first bucket start at or behind i. */
 static size_t bucket_start(const vertex_sort *v, size_t i) {
-  const spread *s = &v->spread;
   if (i == 0) return 0;
-  while (i < v->count &&
-         bucket_of(s, v->sorted[i].x[s->axis]) == bucket_of(s, v->sorted[i - 1].x[s->axis]))
-    i++;
+  while (i < v->count && in_one_bucket(v, i - 1, i)) i++;
   return i;
 }
 
-/* Sorts the buckets that start in [begin, end) and writes their vertices. */
+/* Sorts the buckets that start in a block and writes their vertices. */
 static void sort_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+  (void)worker;
   vertex_sort *v = context;
-  begin = bucket_start(v, begin);
-  end = bucket_start(v, end);
+  begin = v->block_starts[block];
+  end = v->block_starts[block + 1];
   for (size_t first = begin; first < end;) {
-    size_t next = bucket_start(v, first + 1);
+    size_t next = first + 1;
+    while (next < end && in_one_bucket(v, next - 1, next)) next++;
     if (next - first > 1)
       sort_records(v->sorted + first, v->scratch + first, v->counts + first, next - first,
                    v->spread.axis, 1);
@@ -178,18 +182,23 @@ static void sort_block(void *context, size_t begin, size_t end, size_t block, in
 }
 
 static scree_status sort_vertices(vertex_sort *v, scree_error *error) {
+  size_t blocks = scree_block_count(v->count, SORT_BLOCK);
   scree_status status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(v->sorted, v->count, error, done);
   SCREE_ALLOC_OR(v->scratch, v->count, error, done);
   SCREE_ALLOC_OR(v->counts, v->count + 2, error, done);
+  SCREE_ALLOC_OR(v->block_starts, blocks + 1, error, done);
   gather_records(v);
   if (v->count) spread_records(v);
+  for (size_t k = 0; k <= blocks; k++)
+    v->block_starts[k] = k < blocks ? bucket_start(v, k * SORT_BLOCK) : v->count;
   scree_parallel_for(v->count, SORT_BLOCK, sort_block, v);
   status = SCREE_OK;
 done:
   scree_free(v->sorted);
   scree_free(v->scratch);
   scree_free(v->counts);
+  scree_free(v->block_starts);
   return status;
 }
 
