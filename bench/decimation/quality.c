@@ -15,6 +15,8 @@
 #include <string.h>
 
 #define FOLD_DEG 150.0
+/* Points on each surface besides its vertices: small bodies would get few by default. */
+enum { SAMPLES = 400000 };
 
 typedef struct {
   uint32_t low, high, facet;
@@ -97,6 +99,7 @@ static scree_status judge(const scree_mesh *scan, const scree_surface *surface, 
   scree_scan level = {0};
   const scree_mesh *mesh = scan;
   scree_surface *level_surface = NULL;
+  scree_distance_options options = scree_default_distance_options();
   scree_distance d;
   scree_check check;
   double area[2], volume[2], worst_deg = 0;
@@ -108,8 +111,9 @@ static scree_status judge(const scree_mesh *scan, const scree_surface *surface, 
   if (status == SCREE_OK) status = area_volume(scan, &area[0], &volume[0], error);
   if (status == SCREE_OK) status = area_volume(mesh, &area[1], &volume[1], error);
   if (status == SCREE_OK) status = scree_surface_create(mesh, &level_surface, error);
+  options.sample_count = SAMPLES;
   if (status == SCREE_OK)
-    status = scree_surface_distance(surface, level_surface, NULL, NULL, &d, error);
+    status = scree_surface_distance(surface, level_surface, &options, NULL, &d, error);
   if (status == SCREE_OK) status = scree_mesh_check(mesh, NULL, NULL, &check, error);
   if (status == SCREE_OK) {
     const size_t folds = count_folds(mesh, &worst_deg);
