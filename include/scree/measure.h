@@ -102,9 +102,9 @@ typedef struct scree_distance {
 
 typedef struct scree_distance_options {
   size_t sample_count;  /* points to spread over each surface in proportion to area, as Metro does;
-                           every facet gets one and every vertex is one besides. 0, the default:
-                           the greater vertex count of the two, at
-                            least 10,000. */
+                           every facet gets one, every vertex is one besides, and edges are sampled
+                           as densely. 0, the default: the greater vertex count of the two, at least
+                           10,000. */
   double hausdorff_gap; /* facets are subdivided until maximum_bound is within this fraction of
                            maximum, at least 1e-6, or effort is spent (four million samples and
                            32 per facet); 0, the default, takes the bound without subdividing, at no
