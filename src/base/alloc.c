@@ -130,6 +130,18 @@ void scree_free(void *block) {
   hook(hook_context, found.raw, 0);
 }
 
+void scree_discard_tail(void *block, size_t size) {
+#ifdef MADV_DONTNEED
+  size_t end = header_of(block)->size - 2 * (size_t)ALIGNMENT;
+  uintptr_t mask = HUGE_PAGE - 1, address = (uintptr_t)block;
+  uintptr_t first = (address + size + mask) & ~mask, last = (address + end) & ~mask;
+  if (hook == default_reallocate && size < end && first < last)
+    (void)madvise((char *)block + (first - address), last - first, MADV_DONTNEED);
+#else
+  (void)block, (void)size;
+#endif
+}
+
 char *scree_strdup(const char *text) {
   size_t size = strlen(text) + 1;
   char *copy = scree_alloc(size, 1);

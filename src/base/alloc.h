@@ -13,6 +13,9 @@ void *scree_alloc_zero(size_t count, size_t size) __attribute__((malloc, alloc_s
 /* A block of scree_alloc, or NULL, resized keeping its content; the old block stays on failure. */
 void *scree_resize(void *block, size_t count, size_t size);
 void scree_free(void *block);
+/* Gives the system back what lies behind the first `size` bytes, where that is some megabytes: what
+ * it held is lost, but the block stays as large as it was, and counts as such. */
+void scree_discard_tail(void *block, size_t size);
 
 /* For strings and paths. */
 char *scree_strdup(const char *text);

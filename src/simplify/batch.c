@@ -697,6 +697,30 @@ static scree_status prepare_memory(pass *p) {
   return SCREE_OK;
 }
 
+/* After compacting: memory that is not needed any more. The record needs it. */
+static void discard_tails(const pass *p) {
+  const scree_halfmesh *s = &p->d->s;
+  size_t n = s->vertex_count, triangles = s->triangle_count, room = n / 6 + 1;
+  struct {
+    void *block;
+    size_t size;
+  } used[] = {{s->vertex, n * sizeof *s->vertex},
+              {s->half, 3 * triangles * sizeof *s->half},
+              {s->sums, n * sizeof *s->sums},
+              {s->refused, 3 * triangles},
+              {p->best, n * sizeof *p->best},
+              {p->cost, n * sizeof *p->cost},
+              {p->chosen, n * sizeof *p->chosen},
+              {p->contenders, (n + VERTEX_BLOCK) * sizeof *p->contenders},
+              {p->taken, room * sizeof *p->taken},
+              {p->changes, room * sizeof *p->changes},
+              {p->order, room * sizeof *p->order},
+              {p->swap, room * sizeof *p->swap},
+              {p->edges, triangles * sizeof *p->edges}};
+  for (size_t i = 0; i < sizeof used / sizeof *used; i++)
+    scree_discard_tail(used[i].block, used[i].size);
+}
+
 static scree_status run_pass(pass *p, size_t *done) {
   scree_decimator *d = p->d;
   scree_status status = prepare_grid(d);
@@ -719,6 +743,7 @@ static scree_status run_pass(pass *p, size_t *done) {
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count) {
     if (scree_memory_is_kept(&d->memory)) scree_memory_compact(&d->memory, &d->s);
     scree_halfmesh_compact(&d->s, (uint32_t *)p->contenders, p->edges);
+    discard_tails(p);
   }
   return SCREE_OK;
 }

@@ -133,8 +133,28 @@ static void files_are_whole_or_absent(void **state) {
   assert_int_equal(system(command), 0);
 }
 
+static void a_discarded_tail_can_be_used_again(void **state) {
+  (void)state;
+  const size_t size = (size_t)16 << 20, kept = (size_t)5 << 20;
+  size_t used = scree_memory_used();
+  unsigned char *block = scree_alloc(size, 1);
+  assert_non_null(block);
+  memset(block, 7, size);
+  size_t with = scree_memory_used();
+  scree_discard_tail(block, kept);
+  assert_int_equal(scree_memory_used(), with);
+  for (size_t i = 0; i < kept; i++) assert_int_equal(block[i], 7);
+  memset(block, 9, size);
+  for (size_t i = 0; i < size; i += 4096) assert_int_equal(block[i], 9);
+  scree_discard_tail(block, size);
+  assert_int_equal(block[size - 1], 9);
+  scree_free(block);
+  assert_int_equal(scree_memory_used(), used);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_discarded_tail_can_be_used_again),
       cmocka_unit_test(memory_is_aligned_and_counted),
       cmocka_unit_test(arena_gives_blocks_of_its_own),
       cmocka_unit_test(blocks_do_not_depend_on_threads),
