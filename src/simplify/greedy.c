@@ -25,6 +25,7 @@
  * began with: within half of sqrt(area / triangles), the size of the level's triangles. */
 #include "simplify/decimate.h"
 
+#include <float.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -325,7 +326,8 @@ static scree_candidate other_place(const queue *q, const scree_ring *ring, int k
  * waited, if it is more: most edges are evaluated anew before their turn comes at that. */
 static void choose_first(queue *q, const scree_ring *ring, scree_candidate *best) {
   uint32_t h = ring->half_edge;
-  double most = LOOK_AHEAD * q->cost[h];
+  /* a share of nothing would be no more */
+  double most = q->cost[h] > DBL_MIN ? LOOK_AHEAD * q->cost[h] : INFINITY;
   uint8_t stage = WHOLE;
   add_stray(q, ring, best, most);
   for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
