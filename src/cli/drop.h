@@ -74,6 +74,9 @@ scree_status drop_close_output(drop_run *run, scree_error *error);
 scree_status drop_write_picture(drop_run *run, scree_error *error);
 void drop_free_output(drop_run *run);
 
+/* What is there and what is lost, less the walls' work, J: what came in, but for the ledger's
+ * error. */
+double drop_energy(const scree_observation *observation);
 /* One more frame in the collection, at the time given. */
 scree_status drop_note_frame(drop_run *run, double time, scree_error *error);
 /* DIR/name. */

@@ -58,13 +58,17 @@ scree_status drop_keep_state(drop_run *run, scree_error *error) {
   return scree_world_keep(scree_pour_world(run->pour), path, KEEP_STEPS, error);
 }
 
+double drop_energy(const scree_observation *o) {
+  return o->kinetic + o->rotational + o->potential + o->elastic + o->dissipated_dashpot +
+         o->dissipated_friction - o->wall_work;
+}
+
 scree_status drop_write_line(drop_run *run, scree_error *error) {
   scree_observation o;
   const scree_world *world = scree_pour_view(run->pour);
   double entered = scree_pour_entered_energy(run->pour);
   scree_world_observe(world, &o);
-  double ledger = o.kinetic + o.rotational + o.potential + o.elastic + o.dissipated_dashpot +
-                  o.dissipated_friction - o.wall_work - entered;
+  double ledger = drop_energy(&o) - entered;
   int length =
       fprintf(run->series,
               "%.9g,%llu,%zu,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.3g,%zu,%zu,%.5g,%.5g,%.5g,%.5g\n",

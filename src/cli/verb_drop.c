@@ -249,8 +249,7 @@ static void print_summary(FILE *stream, const drop_run *run, bool still) {
   double entered = scree_pour_entered_energy(run->pour);
   unsigned long long steps = scree_world_step_count(world);
   scree_world_observe(world, &o);
-  double sum = o.kinetic + o.rotational + o.potential + o.elastic + o.dissipated_dashpot +
-               o.dissipated_friction - o.wall_work;
+  double sum = drop_energy(&o);
   fprintf(stream, "%s after %.4g s, %llu steps; %zu of %zu particles are in\n",
           still ? "still" : "stopped", o.time, steps, scree_pour_entered_count(run->pour),
           scree_pour_particle_count(run->pour));
