@@ -528,7 +528,8 @@ static void search_block(void *context, size_t begin, size_t end, size_t block, 
     vec3 target = p->changes[p->uncertain[k]].target;
     scree_ring ring = ring_of(p, t);
     set_box(&d->s, target, &ring);
-    bool clear = scree_grid_clear(&d->grid, &d->s, &ring, target, &planned);
+    bool clear = scree_grid_clear(&d->grid, &d->s, &ring, target, &planned) &&
+                 scree_anchors_stay(&d->anchors, &d->s, &ring, target);
     t->verdict = clear ? CERTAIN : REFUSED;
   }
 }
@@ -738,6 +739,8 @@ static scree_status run_pass(pass *p, size_t *done) {
     }
     double dearest = list_candidates(p);
     if (round == 0) p->dearest = dearest;
+    status = scree_anchors_find(&d->s, &d->anchors, d->error);
+    if (status != SCREE_OK) return status;
     *done += run_round(p);
   }
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count) {

@@ -310,4 +310,5 @@ void scree_collapse_apply(scree_halfmesh *s, const scree_ring *r, vec3 target) {
     if (s->half[scree_previous(r->edge[i])].twin == SCREE_NONE)
       s->vertex[r->a].outgoing = scree_previous(r->edge[i]);
   s->vertex[r->b].outgoing = SCREE_NONE;
+  s->flags[r->a] |= s->flags[r->b] & SCREE_VERTEX_ANCHOR;
 }

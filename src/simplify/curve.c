@@ -227,6 +227,7 @@ finished:
   scree_halfmesh_free(&d.s);
   scree_grid_free(&d.grid);
   scree_memory_free(&d.memory);
+  scree_anchors_free(&d.anchors);
   record_free(&d.record);
   if (status == SCREE_OK)
     *curve = made;

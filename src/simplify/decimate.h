@@ -3,6 +3,7 @@
 #define SCREE_SIMPLIFY_DECIMATE_H
 
 #include "base/progress.h"
+#include "simplify/anchor.h"
 #include "simplify/cost.h"
 #include "simplify/grid.h"
 #include "simplify/stray.h"
@@ -29,6 +30,7 @@ typedef struct scree_decimator {
   size_t single_from; /* triangles: where the batches end and single collapses begin */
   scree_grid grid;
   scree_memory memory; /* of a surface that the batches came to; nothing before */
+  scree_anchors anchors;
   scree_ticker ticker;
   scree_error *error;
 } scree_decimator;

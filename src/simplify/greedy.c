@@ -266,6 +266,7 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   forget(q, r);
   if (!d->coster->merge) scree_memory_move(&q->d->memory, s, r, change->target);
   scree_collapse_apply(s, r, change->target);
+  scree_anchors_follow(&d->anchors, r);
   if (d->coster->merge) d->coster->merge(s, r->a, r->b);
   q->now++;
   around[count++] = r->a;
@@ -299,7 +300,8 @@ static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_arou
   *status = prepare_grid(d);
   if (*status != SCREE_OK) return false;
   return (d->s.closed && scree_grid_certifies(&d->grid, ring, around)) ||
-         scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL);
+         (scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL) &&
+          scree_anchors_stay(&d->anchors, &d->s, ring, change->target));
 }
 
 /* Makes the cost whole, or not less than `most` if it is not. */
@@ -394,6 +396,7 @@ scree_status scree_decimate_one_by_one(scree_decimator *d) {
   queue q = {.d = d};
   scree_grid_free(&d->grid);
   scree_status status = queue_fill(&q);
+  if (status == SCREE_OK) status = scree_anchors_find(&d->s, &d->anchors, d->error);
   size_t entered_at = d->record.count;
   while (status == SCREE_OK && d->s.live_triangle_count > d->options.stop_count) {
     if (d->s.live_triangle_count <= q.renew_at) renew(&q);

@@ -256,6 +256,7 @@ static void count_facts(builder *b) {
     if (s->vertex[v].outgoing == SCREE_NONE) continue;
     vertices++;
     locked += s->flags[v] & SCREE_VERTEX_LOCKED;
+    if (b->root[v] == v) s->flags[v] |= SCREE_VERTEX_ANCHOR;
   }
   s->shell_count = vertices - joined;
   s->boundary_edge_count = boundary;

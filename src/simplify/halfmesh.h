@@ -16,8 +16,13 @@
 #define SCREE_NONE UINT32_MAX
 
 /* LOCKED: never moves. STALE: its sums are. CHANGED: its triangles changed since all edges were
- * evaluated. */
-enum { SCREE_VERTEX_LOCKED = 1, SCREE_VERTEX_STALE = 2, SCREE_VERTEX_CHANGED = 4 };
+ * evaluated. ANCHOR: it stands for its shell (anchor.h). */
+enum {
+  SCREE_VERTEX_LOCKED = 1,
+  SCREE_VERTEX_STALE = 2,
+  SCREE_VERTEX_CHANGED = 4,
+  SCREE_VERTEX_ANCHOR = 8
+};
 
 /* REFUSED: the collapse was tried and is not allowed now. POSTPONED: it costs too much for this
  * pass. */

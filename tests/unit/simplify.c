@@ -152,6 +152,54 @@ static void batches_keep_every_promise(void **state) {
   }
 }
 
+static size_t defects_of(const scree_mesh *mesh, int kind) {
+  scree_check_options options = scree_default_check_options();
+  scree_check check;
+  scree_error error;
+  CHECK_OK(scree_mesh_check(mesh, &options, NULL, &check, &error), error);
+  return check.defects[kind];
+}
+
+/* A body with small bubbles just below its surface and drops just above it, which coarse facets
+ * could leap over without meeting them. */
+static void shells_stay_in_and_beside_each_other(void **state) {
+  (void)state;
+  enum { BUBBLES = 6, DROPS = 6 };
+  for (uint64_t seed = 0; seed < 3; seed++) {
+    scree_rng rng = {.seed = seed};
+    scree_mesh mesh = bumpy_sphere(seed % 3 == 2 ? 5 : 4, 17); /* 20,480: batches too */
+    for (int i = 0; i < BUBBLES + DROPS; i++) {
+      vec3 at = vec3_unit((vec3){scree_rng_uniform(&rng) - 0.5, scree_rng_uniform(&rng) - 0.5,
+                                 scree_rng_uniform(&rng) - 0.5});
+      scree_mesh small = shape_icosphere(3e-4, 0);
+      for (size_t t = 0; i < BUBBLES && t < small.triangle_count; t++) shape_flip(&small, t);
+      shape_move(&small, vec3_scale(at, i < BUBBLES ? 0.0285 : 0.0315));
+      scree_mesh joined = shape_join(&mesh, &small);
+      scree_mesh_free(&small);
+      scree_mesh_free(&mesh);
+      mesh = joined;
+    }
+    assert_int_equal(defects_of(&mesh, SCREE_DEFECT_CAVITY), BUBBLES);
+    for (int m = 0; m < 2; m++) {
+      scree_curve *curve = build(&mesh, methods[m]);
+      scree_replay *replay = NULL;
+      scree_error error;
+      CHECK_OK(scree_replay_start(curve, &replay, &error), error);
+      size_t last = scree_curve_level_count(curve) - 1;
+      for (size_t i = last % 101; i <= last; i += last - i > 200 ? 101 : 1) {
+        const scree_mesh *now;
+        CHECK_OK(scree_replay_step(replay, i, &now, &error), error);
+        assert_int_equal(defects_of(now, SCREE_DEFECT_CAVITY), BUBBLES);
+        assert_int_equal(defects_of(now, SCREE_DEFECT_INSIDE_OUT_SHELL), 0);
+        assert_int_equal(defects_of(now, SCREE_DEFECT_NESTED_SHELL), 0);
+      }
+      scree_replay_free(replay);
+      scree_curve_free(curve);
+    }
+    scree_mesh_free(&mesh);
+  }
+}
+
 static void moving_scaling_turning_change_rounding_only(void **state) {
   (void)state;
   scree_rng rng = {.seed = 2};
@@ -322,6 +370,7 @@ int main(void) {
       cmocka_unit_test(a_box_goes_to_its_twelve_triangles),
       cmocka_unit_test(the_same_bits_for_any_threads_and_facet_order),
       cmocka_unit_test(batches_keep_every_promise),
+      cmocka_unit_test(shells_stay_in_and_beside_each_other),
       cmocka_unit_test(moving_scaling_turning_change_rounding_only),
       cmocka_unit_test(numbers_change_rounding_only),
       cmocka_unit_test(any_mesh_is_taken),

@@ -258,7 +258,7 @@ static place place_of(const oracle *o, uint32_t a, uint32_t b, int fallback) {
 /* Exactly the two apexes are neighbours of both ends, and at least three triangles stay. */
 static bool links_agree(const oracle *o, uint32_t a, uint32_t b) {
   size_t common = 0, staying = 0;
-  uint8_t *next_to = calloc(o->vertex_count, 1);
+  uint8_t *next_to = calloc(o->vertex_count + 1, 1); /* never nothing (static analysis) */
   for (size_t t = 0; t < o->triangle_count; t++) {
     bool at_a = has(o, t, a), at_b = has(o, t, b);
     staying += at_a != at_b;
@@ -760,6 +760,8 @@ static void decimator_free(scree_decimator *d) {
   record_free(&d->record);
   scree_halfmesh_free(&d->s);
   scree_grid_free(&d->grid);
+  scree_memory_free(&d->memory);
+  scree_anchors_free(&d->anchors);
 }
 
 static void compare(const scree_mesh *mesh, bool qecd, size_t *compared, size_t *decided) {
