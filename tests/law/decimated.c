@@ -83,44 +83,61 @@ static void check_level(const char *name, size_t count, const scree_mesh *mesh) 
   scree_particle_free(particle);
 }
 
-/* Levels `first`, first + step ... of the table of counts. */
-static void check_shape(const char *name, scree_mesh mesh, size_t first, size_t step) {
+/* One level of one shape: a test, so that one that fails does not hide the others. */
+typedef struct level_case {
+  const char *name;
+  bool scan;
+  size_t count;
+  char title[64];
+} level_case;
+
+static void check_case(void **state) {
+  const level_case *c = *state;
   scree_error error;
   scree_curve *curve = NULL;
+  scree_mesh level;
   scree_simplify_options o = scree_default_simplify_options();
-  scale_to_size(&mesh);
-  CHECK_OK(scree_curve_build(&mesh, &o, NULL, &curve, &error), error);
-  for (size_t i = full ? 0 : first; i < COUNTS; i += full ? 1 : step) {
-    scree_mesh level;
-    CHECK_OK(scree_curve_mesh(curve, scree_curve_find(curve, counts[i]), &level, &error), error);
-    check_level(name, level.triangle_count, &level);
-    scree_mesh_free(&level);
-  }
-  scree_curve_free(curve);
-  scree_mesh_free(&mesh);
-}
-
-static void samples(void **state) {
-  (void)state;
-  static const char *const names[] = {"fp-1", "dc-2", "sp-3", "fp-2", "dc-1", "sp-1"};
-  for (size_t i = 0; i < (full ? 6 : 3); i++) check_shape(names[i], sample_mesh(names[i]), i, 3);
-}
-
-static void scans(void **state) {
-  (void)state;
-  static const char *const names[] = {"rock_chrono4.obj", "ycb_power_drill.obj", "stone_E22.ply",
-                                      "imu_adis16480.stl", "stone_073ac.ply"};
   const char *folder = scan_data_folder();
-  if (!folder) {
+  if (c->scan && !folder) {
     skip();
     return; /* the compiler does not know that skip() never comes back */
   }
-  for (size_t i = 0; i < (full ? 5 : 2); i++)
-    check_shape(names[i], scan_mesh(folder, names[i]), 1 + i, 3);
+  scree_mesh mesh = c->scan ? scan_mesh(folder, c->name) : sample_mesh(c->name);
+  scale_to_size(&mesh);
+  CHECK_OK(scree_curve_build(&mesh, &o, NULL, &curve, &error), error);
+  CHECK_OK(scree_curve_mesh(curve, scree_curve_find(curve, c->count), &level, &error), error);
+  scree_curve_free(curve);
+  scree_mesh_free(&mesh);
+  check_level(c->name, level.triangle_count, &level);
+  scree_mesh_free(&level);
+}
+
+/* Levels `first`, first + step ... of the table of counts. */
+static size_t list_shape(const char *name, bool scan, size_t first, size_t step,
+                         level_case *cases) {
+  size_t count = 0;
+  for (size_t i = full ? 0 : first; i < COUNTS; i += full ? 1 : step) {
+    level_case *c = &cases[count++];
+    *c = (level_case){.name = name, .scan = scan, .count = counts[i]};
+    snprintf(c->title, sizeof c->title, "%s at %zu", name, counts[i]);
+  }
+  return count;
 }
 
 int main(int argument_count, char **arguments) {
+  static const char *const samples[] = {"fp-1", "dc-2", "sp-3", "fp-2", "dc-1", "sp-1"};
+  static const char *const scans[] = {"rock_chrono4.obj", "ycb_power_drill.obj", "stone_E22.ply",
+                                      "imu_adis16480.stl", "stone_073ac.ply"};
+  static level_case cases[11 * COUNTS];
+  static struct CMUnitTest tests[11 * COUNTS];
+  size_t count = 0;
   full = argument_count > 1 && strcmp(arguments[1], "full") == 0;
-  const struct CMUnitTest tests[] = {cmocka_unit_test(samples), cmocka_unit_test(scans)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  for (size_t i = 0; i < (full ? 6 : 3); i++)
+    count += list_shape(samples[i], false, i, 3, cases + count);
+  for (size_t i = 0; i < (full ? 5 : 2); i++)
+    count += list_shape(scans[i], true, 1 + i, 3, cases + count);
+  for (size_t i = 0; i < count; i++)
+    tests[i] = (struct CMUnitTest){
+        .name = cases[i].title, .test_func = check_case, .initial_state = &cases[i]};
+  return _cmocka_run_group_tests("decimated", tests, count, NULL, NULL);
 }
