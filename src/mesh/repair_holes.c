@@ -307,23 +307,17 @@ out_of_memory:
 /* Whether the rim is plane and the surface comes to it at an edge, as where a flat face is missing
  * or what stood on a plane was scanned: its filling is that plane. */
 static bool stands_on_plane(const loop *l) {
-  const scree_mesh *mesh = &l->r->mesh;
-  vec3 normal = {0, 0, 0}, first = vec3_load(mesh->positions + 3 * (size_t)l->vertex[0]);
+  vec3 normal = {0, 0, 0}, first = at(l, 0);
   double length = 0, along = 0, low = 0, high = 0;
   for (size_t i = 0; i < l->count; i++) {
-    vec3 p = vec3_load(mesh->positions + 3 * (size_t)l->vertex[i]);
-    vec3 q = vec3_load(mesh->positions + 3 * (size_t)l->vertex[(i + 1) % l->count]);
+    vec3 p = at(l, i), q = at(l, (i + 1) % l->count);
     normal = vec3_add(normal, vec3_cross(vec3_sub(p, first), vec3_sub(q, first)));
     length += vec3_distance(p, q);
   }
   normal = vec3_unit(normal);
   for (size_t i = 0; i < l->count; i++) {
-    uint32_t t = l->half_edge[i] / 3;
-    vec3 p = vec3_load(mesh->positions + 3 * (size_t)l->vertex[i]);
-    vec3 q = vec3_load(mesh->positions + 3 * (size_t)l->vertex[(i + 1) % l->count]);
-    vec3 n = vec3_triangle_normal(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1),
-                                  scree_mesh_corner(mesh, t, 2));
-    along += vec3_distance(p, q) * fabs(vec3_dot(vec3_unit(n), normal));
+    vec3 p = at(l, i), q = at(l, (i + 1) % l->count);
+    along += vec3_distance(p, q) * fabs(vec3_dot(normal_across(l, i), normal));
     low = fmin(low, vec3_dot(vec3_sub(p, first), normal));
     high = fmax(high, vec3_dot(vec3_sub(p, first), normal));
   }

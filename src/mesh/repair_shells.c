@@ -25,8 +25,8 @@ typedef struct nest {
   scree_shells shells;
   scree_facet_tree tree; /* empty where there is one shell */
   scree_shell_pairs pairs;
-  bool *tangled; /* by shell: it meets another */
-  bool *drop;    /* by shell */
+  bool all_tangled; /* there are more meetings than were looked for */
+  bool *drop;       /* by shell */
   double largest_area;
 } nest;
 
@@ -35,7 +35,6 @@ static void free_nest(nest *n) {
   scree_shells_free(&n->shells);
   scree_facet_tree_free(&n->tree);
   scree_free(n->pairs.keys);
-  scree_free(n->tangled);
   scree_free(n->drop);
 }
 
@@ -47,9 +46,7 @@ static scree_status find_nest(const scree_repair *r, nest *n, scree_error *error
     status = scree_facet_tree_build(&r->mesh, &n->tree, error);
   if (status != SCREE_OK) goto failed;
   status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(n->tangled, n->shells.count, error, failed);
   SCREE_ALLOC_OR(n->drop, n->shells.count, error, failed);
-  memset(n->tangled, 0, n->shells.count);
   memset(n->drop, 0, n->shells.count);
   for (size_t i = 0; i < n->shells.count; i++)
     n->largest_area = fmax(n->largest_area, n->shells.items[i].area);
@@ -105,21 +102,13 @@ static void turn_shells(scree_repair *r, nest *n, const bool *turn) {
   }
 }
 
-static void mark_tangled(nest *n) {
-  for (size_t i = 0; i < n->pairs.count; i++)
-    n->tangled[n->pairs.keys[i] >> 32] = n->tangled[(uint32_t)n->pairs.keys[i]] = true;
-}
-
-static scree_status find_tangled(const scree_repair *r, nest *n, scree_error *error) {
+static scree_status find_pairs(const scree_repair *r, nest *n, scree_error *error) {
   scree_meetings found;
   if (!r->options->intersections || r->untangled || n->shells.count < 2) return SCREE_OK;
   scree_status status = scree_facet_meetings(&n->tree, MEETING_LIMIT, r->progress, &found, error);
   if (status != SCREE_OK) return status;
   status = scree_shell_pairs_find(&n->shells, &found, &n->pairs, error);
-  if (found.truncated)
-    memset(n->tangled, true, n->shells.count);
-  else if (status == SCREE_OK)
-    mark_tangled(n);
+  n->all_tangled = found.truncated;
   scree_free(found.items);
   return status;
 }
@@ -128,14 +117,19 @@ static scree_status wind_shells(nest *n, scree_error *error) {
   return n->shells.count > 1 ? scree_shells_wind(&n->shells, &n->pairs, &n->tree, error) : SCREE_OK;
 }
 
+/* Whether the shell meets another; once they are wound. */
+static bool is_tangled(const nest *n, size_t shell) {
+  return n->all_tangled || n->shells.items[shell].met;
+}
+
 /* Marks inward outermost shells with all that lies in them; true where there are any. */
 static bool mark_inverted_nests(const nest *n, bool *turn) {
   bool any = false;
   for (size_t i = 0; i < n->shells.count; i++) {
     const scree_shell *s = &n->shells.items[i];
     const scree_shell *out = s->outermost == SCREE_NO_SHELL ? s : &n->shells.items[s->outermost];
-    bool outer_tangled = n->tangled[out - n->shells.items];
-    turn[i] = s->closed && !n->tangled[i] && !outer_tangled && out->volume < 0;
+    bool outer_tangled = is_tangled(n, (size_t)(out - n->shells.items));
+    turn[i] = s->closed && !is_tangled(n, i) && !outer_tangled && out->volume < 0;
     any |= turn[i];
   }
   return any;
@@ -146,7 +140,7 @@ static bool mark_inverted(const nest *n, bool *turn) {
   long long least = 0;
   for (size_t i = 0; i < n->shells.count; i++) {
     const scree_shell *s = &n->shells.items[i];
-    turn[i] = scree_shell_kind_of(s) == SCREE_SHELL_INSIDE_OUT && !n->tangled[i];
+    turn[i] = scree_shell_kind_of(s) == SCREE_SHELL_INSIDE_OUT && !is_tangled(n, i);
     if (turn[i] && (!any || s->depth < least)) least = s->depth;
     any |= turn[i];
   }
@@ -189,13 +183,13 @@ static void judge_shells(scree_repair *r, nest *n) {
   for (size_t i = 0; i < n->shells.count; i++) {
     const scree_shell *s = &n->shells.items[i];
     scree_shell_kind kind = scree_shell_kind_of(s);
-    bool cavity = kind == SCREE_SHELL_CAVITY && !n->tangled[i];
+    bool cavity = kind == SCREE_SHELL_CAVITY && !is_tangled(n, i);
     bool of_largest = cavity && s->depth == 1 && s->outermost == largest;
-    bool waits = n->tangled[i] && !r->apart; /* it is to be merged first */
+    bool waits = is_tangled(n, i) && !r->apart; /* it is to be merged first */
     if (cavity && o->drop_cavities) {
       n->drop[i] = true;
       done[SCREE_REPAIR_DROP_CAVITY]++;
-    } else if (kind == SCREE_SHELL_NESTED && !n->tangled[i]) {
+    } else if (kind == SCREE_SHELL_NESTED && !is_tangled(n, i)) {
       n->drop[i] = true;
       done[SCREE_REPAIR_DROP_NESTED]++;
     } else if (!waits && ((!cavity && s->area < o->debris_share * n->largest_area) ||
@@ -210,7 +204,7 @@ scree_status scree_repair_shells(scree_repair *r, scree_error *error) {
   nest n;
   scree_status status = find_nest(r, &n, error);
   if (status != SCREE_OK) return status;
-  status = find_tangled(r, &n, error);
+  status = find_pairs(r, &n, error);
   if (status == SCREE_OK) status = turn_outward(r, &n, error);
   if (status == SCREE_OK) {
     judge_shells(r, &n);

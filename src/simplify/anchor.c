@@ -8,7 +8,7 @@ scree_status scree_anchors_find(const scree_halfmesh *s, scree_anchors *anchors,
   if (!anchors->vertex) SCREE_ALLOC_OR(anchors->vertex, s->shell_count, error, out_of_memory);
   anchors->count = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++)
-    if (s->vertex[v].outgoing != SCREE_NONE && s->flags[v] & SCREE_VERTEX_ANCHOR)
+    if (s->flags[v] & SCREE_VERTEX_ANCHOR && s->vertex[v].outgoing != SCREE_NONE)
       anchors->vertex[anchors->count++] = v;
   return SCREE_OK;
 out_of_memory:

@@ -47,7 +47,7 @@ static void record_free(scree_record *r) {
   *r = (scree_record){0};
 }
 
-static scree_status record_allocate(scree_record *r, size_t capacity, scree_error *error) {
+scree_status scree_record_allocate(scree_record *r, size_t capacity, scree_error *error) {
   r->capacity = capacity;
   SCREE_ALLOC_OR(r->kept, capacity, error, out_of_memory);
   SCREE_ALLOC_OR(r->gone, capacity, error, out_of_memory);
@@ -59,6 +59,14 @@ static scree_status record_allocate(scree_record *r, size_t capacity, scree_erro
 out_of_memory:
   record_free(r);
   return SCREE_OUT_OF_MEMORY;
+}
+
+void scree_decimator_free(scree_decimator *d) {
+  scree_halfmesh_free(&d->s);
+  scree_grid_free(&d->grid);
+  scree_memory_free(&d->memory);
+  scree_anchors_free(&d->anchors);
+  record_free(&d->record);
 }
 
 void scree_record_write(scree_decimator *d, size_t i, const scree_ring *ring,
@@ -214,7 +222,7 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
                                     .locked_vertex_count = d.s.locked_vertex_count,
                                     .closed = d.s.closed};
   measure_surface(&d.s, &area, &volume);
-  status = record_allocate(&d.record, d.s.live_vertex_count, error);
+  status = scree_record_allocate(&d.record, d.s.live_vertex_count, error);
   if (status == SCREE_OK) status = decimate(&d);
   if (status != SCREE_OK) goto finished;
   cut_at_stop(&d);
@@ -224,11 +232,7 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   d.record = (scree_record){0};
   status = accumulate(made, area, volume, d.s.scale, error);
 finished:
-  scree_halfmesh_free(&d.s);
-  scree_grid_free(&d.grid);
-  scree_memory_free(&d.memory);
-  scree_anchors_free(&d.anchors);
-  record_free(&d.record);
+  scree_decimator_free(&d);
   if (status == SCREE_OK)
     *curve = made;
   else

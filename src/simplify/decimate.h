@@ -35,6 +35,12 @@ typedef struct scree_decimator {
   scree_error *error;
 } scree_decimator;
 
+/* The record has room for so many collapses. */
+scree_status scree_record_allocate(scree_record *record, size_t capacity, scree_error *error);
+
+/* All that it holds. */
+void scree_decimator_free(scree_decimator *d);
+
 /* Writes one collapse to its place in the record (room was reserved for as many as there are
  * vertices), before it is done. The count is the caller's. */
 void scree_record_write(scree_decimator *d, size_t place, const scree_ring *ring,

@@ -209,6 +209,21 @@ static double slope_error(scree_world *world, const scree_pair *pair) {
   return worst;
 }
 
+/* Two of four shapes at 10 m/s, alike in both worlds. */
+static void throw_at_each_other(scree_particle *const shapes[4], int i, scree_rng *rng,
+                                scree_world *world, scree_world *other) {
+  for (int k = 0; k < 2; k++) {
+    scree_body body = scree_default_body();
+    turn_at_random(rng, &body);
+    body.position[2] = k ? -0.04 : 0.04;
+    body.position[0] = 0.01 * scree_rng_uniform(rng);
+    body.velocity[2] = k ? 5 : -5;
+    vec3_store(body.angular_velocity, vec3_scale(scree_rng_direction(rng), 20));
+    law_body(world, shapes[(i + k * (i / 4)) % 4], body);
+    law_body(other, shapes[(i + k * (i / 4)) % 4], body);
+  }
+}
+
 /* Bodies hit each other at 10 m/s, edges and corners far deeper than the roundings: at the moments
  * of the hit the force is the slope of the energy, but where weights change (their slopes are left
  * out: docs/physics.md). The same hit with lists that reach two and a half times farther
@@ -223,16 +238,7 @@ static void deep_hits(void **state) {
   size_t moments = 0, off = 0;
   for (int i = 0; i < 60; i++) {
     scree_world *world = elastic_world(0.02), *wide = elastic_world(0.05);
-    for (int k = 0; k < 2; k++) {
-      scree_body body = scree_default_body();
-      turn_at_random(&rng, &body);
-      body.position[2] = k ? -0.04 : 0.04;
-      body.position[0] = 0.01 * scree_rng_uniform(&rng);
-      body.velocity[2] = k ? 5 : -5;
-      vec3_store(body.angular_velocity, vec3_scale(scree_rng_direction(&rng), 20));
-      law_body(world, shapes[(i + k * (i / 4)) % 4], body);
-      law_body(wide, shapes[(i + k * (i / 4)) % 4], body);
-    }
+    throw_at_each_other(shapes, i, &rng, world, wide);
     for (int step = 0; step < 1500; step++) {
       scree_observation o, same;
       law_step(world, 1);
@@ -293,16 +299,7 @@ static void deep_hits_by_brute_force(void **state) {
   double apart = 0, deepest = 0;
   for (int i = 0; i < 32; i++) {
     scree_world *world = elastic_world(0.02), *brute = elastic_world(0.02);
-    for (int k = 0; k < 2; k++) {
-      scree_body body = scree_default_body();
-      turn_at_random(&rng, &body);
-      body.position[2] = k ? -0.04 : 0.04;
-      body.position[0] = 0.01 * scree_rng_uniform(&rng);
-      body.velocity[2] = k ? 5 : -5;
-      vec3_store(body.angular_velocity, vec3_scale(scree_rng_direction(&rng), 20));
-      law_body(world, shapes[(i + k * (i / 4)) % 4], body);
-      law_body(brute, shapes[(i + k * (i / 4)) % 4], body);
-    }
+    throw_at_each_other(shapes, i, &rng, world, brute);
     for (int step = 0; step < 900; step++) {
       scree_observation o, same;
       if (brute->pairs.count > 0) {

@@ -672,25 +672,6 @@ static void oracle_free(oracle *o) {
   free(o->whole);
 }
 
-static void record_make(scree_record *r, size_t capacity) {
-  r->capacity = capacity;
-  r->kept = malloc(capacity * sizeof *r->kept);
-  r->gone = malloc(capacity * sizeof *r->gone);
-  r->position = malloc(capacity * sizeof *r->position);
-  r->area = malloc(capacity * sizeof *r->area);
-  r->volume = malloc(capacity * sizeof *r->volume);
-  r->error = malloc(capacity * sizeof *r->error);
-}
-
-static void record_free(scree_record *r) {
-  free(r->kept);
-  free(r->gone);
-  free(r->position);
-  free(r->area);
-  free(r->volume);
-  free(r->error);
-}
-
 /* The collapse i of the record, which is in its turn: its place, what it changes; does it. */
 static void check_deed(oracle *o, const scree_decimator *d, size_t i, const place *chosen) {
   const scree_record *r = &d->record;
@@ -751,17 +732,9 @@ static scree_decimator decimator_of(const scree_mesh *mesh, bool qecd, scree_err
                        .first_triangle_count = mesh->triangle_count,
                        .error = error};
   CHECK_OK(scree_halfmesh_build(mesh, &d.s, error), *error);
-  record_make(&d.record, mesh->vertex_count);
+  CHECK_OK(scree_record_allocate(&d.record, mesh->vertex_count, error), *error);
   for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
   return d;
-}
-
-static void decimator_free(scree_decimator *d) {
-  record_free(&d->record);
-  scree_halfmesh_free(&d->s);
-  scree_grid_free(&d->grid);
-  scree_memory_free(&d->memory);
-  scree_anchors_free(&d->anchors);
 }
 
 static void compare(const scree_mesh *mesh, bool qecd, size_t *compared, size_t *decided) {
@@ -777,7 +750,7 @@ static void compare(const scree_mesh *mesh, bool qecd, size_t *compared, size_t 
   *compared += o.compared;
   *decided += o.decided;
   oracle_free(&o);
-  decimator_free(&d);
+  scree_decimator_free(&d);
 }
 
 /* Batches down to few triangles; answers how many collapses they were. */
@@ -796,7 +769,7 @@ static size_t compare_batches(const scree_mesh *mesh, bool qecd) {
   assert_int_equal(o.triangle_count, d.s.live_triangle_count);
   size_t compared = o.compared;
   oracle_free(&o);
-  decimator_free(&d);
+  scree_decimator_free(&d);
   return compared;
 }
 

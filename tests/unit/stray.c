@@ -4,32 +4,6 @@
 #include "support/check.h"
 #include "support/shapes.h"
 
-static void record_make(scree_record *r, size_t capacity) {
-  r->capacity = capacity;
-  r->kept = malloc(capacity * sizeof *r->kept);
-  r->gone = malloc(capacity * sizeof *r->gone);
-  r->position = malloc(capacity * sizeof *r->position);
-  r->area = malloc(capacity * sizeof *r->area);
-  r->volume = malloc(capacity * sizeof *r->volume);
-  r->error = malloc(capacity * sizeof *r->error);
-}
-
-static void record_free(scree_record *r) {
-  free(r->kept);
-  free(r->gone);
-  free(r->position);
-  free(r->area);
-  free(r->volume);
-  free(r->error);
-}
-
-static void finish(scree_decimator *d) {
-  record_free(&d->record);
-  scree_memory_free(&d->memory);
-  scree_halfmesh_free(&d->s);
-  scree_grid_free(&d->grid);
-}
-
 static double distance_from(const scree_halfmesh *s, uint32_t triangle, vec3 p) {
   vec3 at[3], point;
   double corners[9];
@@ -82,14 +56,14 @@ static void witnesses_go_with_the_batches(void **state) {
                        .first_triangle_count = mesh.triangle_count,
                        .error = &error};
   CHECK_OK(scree_halfmesh_build(&mesh, &d.s, &error), error);
-  record_make(&d.record, mesh.vertex_count);
+  CHECK_OK(scree_record_allocate(&d.record, mesh.vertex_count, &error), error);
   for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
   CHECK_OK(scree_decimate_in_batches(&d), error);
   assert_true(d.s.live_triangle_count <= SCREE_GREEDY_COUNT);
   assert_int_equal(d.memory.left, mesh.vertex_count);
   check_witnesses(&d, &mean, &worst);
   CHECK_NEAR(scree_memory_usual(&d.memory), fmax(10 * mean, worst), 1e-9 * worst);
-  finish(&d);
+  scree_decimator_free(&d);
   scree_mesh_free(&mesh);
 }
 
