@@ -41,7 +41,7 @@ scree_status scree_seal_end(scree_codec *codec, const scree_seal *seal, scree_er
 }
 
 scree_status scree_seal_check(scree_codec *codec, const scree_seal *seal, const char *name,
-                              uint32_t *version, scree_error *error) {
+                              scree_error *error) {
   record r = {0};
   code_record(codec, &r);
   if (codec->count < MAGIC_BYTES || memcmp(r.magic, seal->magic, MAGIC_BYTES) != 0)
@@ -52,10 +52,9 @@ scree_status scree_seal_check(scree_codec *codec, const scree_seal *seal, const 
   if (r.version_order[1] != BYTE_ORDER_MARK)
     return scree_fail(error, SCREE_BAD_FILE, "%s: byte order mark 0x%08x instead of 0x%08x", name,
                       r.version_order[1], BYTE_ORDER_MARK);
-  *version = r.version_order[0];
-  if (*version < seal->oldest || *version > seal->version)
-    return scree_fail(error, SCREE_BAD_FILE, "%s: version %u; this program reads %u to %u", name,
-                      *version, seal->oldest, seal->version);
+  if (r.version_order[0] != seal->version)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: version %u; this program reads version %u", name,
+                      r.version_order[0], seal->version);
   size_t length = codec->count - SCREE_SEAL_BYTES;
   if (r.length_sum[0] != length)
     return scree_fail(error, SCREE_BAD_FILE,
@@ -71,12 +70,11 @@ scree_status scree_seal_check(scree_codec *codec, const scree_seal *seal, const 
 scree_status scree_seal_read(const char *path, const scree_seal *seal, char **bytes,
                              scree_codec *codec, const char **name, scree_error *error) {
   size_t count;
-  uint32_t version;
   scree_status status = scree_file_read(path, 0, bytes, &count, error);
   if (status != SCREE_OK) return status;
   *codec = (scree_codec){.source = (unsigned char *)*bytes, .count = count, .loading = true};
   *name = strcmp(path, "-") != 0 ? path : "standard input";
-  status = scree_seal_check(codec, seal, *name, &version, error);
+  status = scree_seal_check(codec, seal, *name, error);
   if (status != SCREE_OK) scree_free(*bytes);
   return status;
 }

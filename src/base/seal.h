@@ -13,7 +13,7 @@ enum { SCREE_SEAL_BYTES = 40 };
 typedef struct scree_seal {
   char magic[9];
   const char *kind, *whose; /* for messages: "checkpoint of a scree world", "world" */
-  uint32_t oldest, version; /* that are read; that is written */
+  uint32_t version;         /* that is read and written */
 } scree_seal;
 
 /* Saving: room for the seal in a codec that is empty, and at the end the seal. */
@@ -23,7 +23,7 @@ scree_status scree_seal_end(scree_codec *codec, const scree_seal *seal, scree_er
 /* Loading: checks the seal and leaves the codec behind it. SCREE_BAD_FILE with `name` and reason.
  */
 scree_status scree_seal_check(scree_codec *codec, const scree_seal *seal, const char *name,
-                              uint32_t *version, scree_error *error);
+                              scree_error *error);
 
 /* Loading a file ("-" is stdin): reads it and checks its seal. The codec stands on *bytes, free
  * with scree_free; *name is what messages call the file. */

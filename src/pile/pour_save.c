@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-static const scree_seal seal = {"screePOU", "checkpoint of a scree pour", "pour", 1, 1};
+static const scree_seal seal = {"screePOU", "checkpoint of a scree pour", "pour", 1};
 enum { MOST_SHAPES = 1 << 20 };
 
 static void code_plan(scree_codec *c, scree_pour_options *o) {

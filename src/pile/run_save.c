@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeRUN", "checkpoint or frame of a scree run", "run", 1, 1};
+static const scree_seal seal = {"screeRUN", "checkpoint or frame of a scree run", "run", 1};
 enum { POINT_BYTES = 92 };
 
 /* ---- field lists ---- */

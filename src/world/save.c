@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 3, 5};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 5};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
@@ -185,7 +185,7 @@ static void code_pair_name(scree_codec *c, scree_pair *p) {
   scree_code_bool(c, &p->wall);
 }
 
-static void code_pair_state(scree_codec *c, scree_pair *p, uint32_t version) {
+static void code_pair_state(scree_codec *c, scree_pair *p) {
   scree_code_bool(c, &p->asleep);
   scree_code_bool(c, &p->touching);
   double *reals[] = {&p->stiffness,    &p->damping,  &p->friction, &p->restitution,
@@ -197,17 +197,11 @@ static void code_pair_state(scree_codec *c, scree_pair *p, uint32_t version) {
   code_wrench(c, &p->wrench);
   code_load(c, &p->dashpot);
   code_load(c, &p->tangential);
-  vec3 arm = {0, 0, 0};
-  if (version < 5) scree_code_vec3(c, &arm);
   uint64_t contacts = p->contact_count;
   scree_code_u64(c, &contacts);
   p->contact_count = (uint32_t)contacts;
   scree_code_count(c, &p->active.count, 242);
   scree_code_count(c, &p->sleeping.count, 20);
-}
-
-/* What pairs have since version 4. */
-static void code_pair_motion(scree_codec *c, scree_pair *p) {
   scree_code_vec3(c, &p->asleep_at);
   code_quat(c, &p->asleep_turned);
   scree_code_vec3(c, &p->region);
@@ -372,8 +366,7 @@ static void save_pairs(scree_codec *c, const scree_world *world) {
   for (size_t k = 0; k < count; k++) {
     scree_pair pair = *world->pairs.items[k]; /* its lists are only read */
     code_pair_name(c, &pair);
-    code_pair_state(c, &pair, seal.version);
-    code_pair_motion(c, &pair);
+    code_pair_state(c, &pair);
     for (size_t i = 0; i < pair.active.count; i++)
       code_item(c, &pair.active.items[i], &pair.further[i]);
     for (size_t i = 0; i < pair.sleeping.count; i++) code_sleeper(c, &pair.sleeping.items[i]);
@@ -435,7 +428,6 @@ typedef struct loader {
   scree_world *world;
   scree_particle **particles;
   size_t particle_count;
-  uint32_t version;
   scree_error error;
 } loader;
 
@@ -621,7 +613,7 @@ static bool follows(const scree_pair *last, const scree_pair *next) {
 static void load_pairs(loader *l) {
   scree_world *world = l->world;
   size_t count = 0;
-  scree_code_count(&l->codec, &count, 344);
+  scree_code_count(&l->codec, &count, 451);
   if (!SCREE_RESERVE(&world->pairs, count)) l->codec.out_of_memory = true;
   for (size_t k = 0; k < count && good(l); k++) {
     scree_pair name = {0};
@@ -637,13 +629,7 @@ static void load_pairs(loader *l) {
       return;
     }
     world->pairs.items[world->pairs.count++] = pair;
-    code_pair_state(&l->codec, pair, l->version);
-    if (l->version >= 4) {
-      code_pair_motion(&l->codec, pair);
-    } else if (pair->asleep) { /* where it fell asleep is not known: it lists its features anew */
-      pair->asleep = false;
-      pair->list_end = -INFINITY;
-    }
+    code_pair_state(&l->codec, pair);
     load_items(l, pair);
   }
 }
@@ -680,7 +666,7 @@ static scree_status finish(loader *l, const char *name, scree_error *error) {
 scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
                                 scree_world **world, scree_error *error) {
   loader l = {.codec = {.source = bytes, .count = byte_count, .loading = true}};
-  scree_status status = scree_seal_check(&l.codec, &seal, name, &l.version, error);
+  scree_status status = scree_seal_check(&l.codec, &seal, name, error);
   if (status) return status;
   void (*const stages[])(loader *) = {load_setup, load_particles, load_bodies, load_pairs,
                                       load_tail};

@@ -197,6 +197,29 @@ static void refuses_damage(void **state) {
   scree_world_free(world);
 }
 
+/* Whole files of other versions: said in a sentence. The checksum is that of what follows. */
+static void refuses_other_versions(void **state) {
+  (void)state;
+  scree_world *world = mixed_world(SCREE_LAW_LINEAR);
+  packed p = pack(world);
+  const unsigned char own = p.bytes[8], others[] = {0, 3, 4, own + 1};
+  for (size_t i = 0; i < sizeof others; i++) {
+    scree_error error = {0};
+    scree_world *loaded = NULL;
+    char expected[96];
+    p.bytes[8] = others[i];
+    assert_int_equal(scree_world_unpack(p.bytes, p.count, "old", &loaded, &error), SCREE_BAD_FILE);
+    assert_null(loaded);
+    snprintf(expected, sizeof expected, "old: version %u; this program reads version %u", others[i],
+             own);
+    assert_string_equal(error.message, expected);
+  }
+  p.bytes[8] = own;
+  scree_world_free(unpack(p));
+  scree_free(p.bytes);
+  scree_world_free(world);
+}
+
 /* The length and the checksum made to fit again: forged files must be refused or give a world that
  * can be stepped and freed. */
 static void survives_forgery(void **state) {
@@ -299,6 +322,7 @@ int main(void) {
       cmocka_unit_test(pairs_taken_again_know_nothing),
       cmocka_unit_test(keeps_failure),
       cmocka_unit_test(refuses_damage),
+      cmocka_unit_test(refuses_other_versions),
       cmocka_unit_test(survives_forgery),
       cmocka_unit_test(files),
       cmocka_unit_test(a_failing_run_leaves_its_last_good_state),
