@@ -40,9 +40,9 @@ export class Chart {
       cursor: { drag: { x: false, y: false } },
       scales: { x: { time: false, distr: this.logX ? 3 : 1 }, y: { distr: this.logY ? 3 : 1, ...(this.logY ? {} : { range: () => this.span() }), ...(this.yLeast ? { range: (_, low, high) => uPlot.rangeLog(Math.max(low, this.yLeast), high, 10, true) } : {}) } },
       axes: [axis(x.label, this.logX), { ...axis(this.yLabel, this.logY), size: 56 }],
-      series: [{ label: x.label, value: (_, v) => (v === null ? '' : x.text(v)) }, ...series.map((s) => ({
+      series: [{ label: x.label, value: (_, v) => (v === null ? '' : `: ${x.text(v)}`) }, ...series.map((s) => ({
         label: s.label, stroke: s.color, width: s.width ?? 1.5, dash: s.dash, spanGaps: true, points: { show: s.points ?? false },
-        value: (_, v) => (v === null ? '' : s.text(v)),
+        value: (_, v) => (v === null ? '' : `: ${s.text(v)}`),
       }))],
       hooks: { draw: [(plot) => this.drawBars(plot), (plot) => this.drawMarks(plot)] },
     };
