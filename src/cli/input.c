@@ -61,6 +61,13 @@ scree_status cli_check_mesh_output(const char *path, bool overwrite, scree_error
                     "the name of a mesh must end in .stl, .ply, .obj, .off or .3mf");
 }
 
+scree_status cli_check_picture_output(const char *path, bool overwrite, scree_error *error) {
+  const char *dot = strrchr(path, '.');
+  if (!strcmp(path, "-") || (dot && (!strcmp(dot, ".png") || !strcmp(dot, ".PNG"))))
+    return scree_output_check(path, overwrite, error);
+  return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a picture must end in .png");
+}
+
 scree_status cli_check_begun(const char *path, bool overwrite, scree_error *error) {
   scree_status status = scree_output_check(path, overwrite, error);
   if (status != SCREE_EXISTS) return status;

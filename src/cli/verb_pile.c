@@ -1,5 +1,6 @@
 /* scree pile: a frame or a checkpoint, measured again. */
 #include "cli/heap.h"
+#include "cli/input.h"
 
 #include <string.h>
 
@@ -121,10 +122,12 @@ static int measure(const cli_call *call, scree_run *run, scree_error *error) {
 }
 
 static scree_status check_outputs(const pile_arguments *a, scree_error *error) {
-  const char *const outputs[] = {a->csv, a->vtp, a->picture};
+  const char *const outputs[] = {a->csv, a->vtp};
   scree_status status = SCREE_OK;
-  for (size_t i = 0; i < 3 && status == SCREE_OK; i++)
+  for (size_t i = 0; i < 2 && status == SCREE_OK; i++)
     if (outputs[i]) status = scree_output_check(outputs[i], a->force, error);
+  if (status == SCREE_OK && a->picture)
+    status = cli_check_picture_output(a->picture, a->force, error);
   return status;
 }
 

@@ -252,7 +252,8 @@ static int run(const cli_call *call) {
   picture p;
   scree_error error;
   scree_image image = {0};
-  if (scree_output_check(a->output, a->overwrite, &error) != SCREE_OK) return cli_fail(&error);
+  if (cli_check_picture_output(a->output, a->overwrite, &error) != SCREE_OK)
+    return cli_fail(&error);
   scree_status status = make_picture(call, rp, level_count, &p, &error);
   if (status == SCREE_OK && (a->reference || a->color_by))
     status = color_by_distance(&p, call, &render, &error);

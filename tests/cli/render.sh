@@ -20,3 +20,4 @@ ls
 head -c 4 a.png | tail -c 3
 echo
 "$SCREE" render sample:icosphere-2 -o a.png --size 64x64 -n 1 2>&1 | grep -v "no ray tracer" | head -1
+run render sample:icosphere-2 -o a.jpg --size 64x64

@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "base/vec.h"
+#include "fuzz/meshes.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/shapes.h"
@@ -543,6 +544,37 @@ static scree_status call_check(void *context, scree_error *error) {
   return scree_mesh_check(context, NULL, NULL, &check, error);
 }
 
+/* Facets over many magnitudes that split each other for ever: refused before it takes a minute. */
+static void runs_away(void **state) {
+  (void)state;
+  static const uint8_t bytes[] = {
+      3,   36,  0,   48,  0,   0,   156, 100, 0,   30,  99,  12,  27,  96,  24,  21,  92,  36,  12,
+      87,  48,  1,   80,  58,  247, 72,  68,  237, 63,  77,  230, 53,  84,  227, 42,  90,  227, 30,
+      95,  232, 18,  98,  240, 6,   99,  251, 250, 99,  5,   238, 98,  16,  226, 95,  24,  214, 90,
+      29,  203, 84,  29,  193, 77,  26,  184, 68,  19,  176, 58,  9,   169, 48,  255, 164, 36,  244,
+      160, 24,  235, 157, 12,  229, 156, 0,   226, 157, 244, 229, 160, 232, 235, 164, 220, 244, 169,
+      208, 255, 176, 198, 9,   184, 188, 19,  193, 179, 26,  203, 172, 29,  214, 166, 29,  226, 161,
+      24,  238, 158, 16,  250, 157, 5,   6,   157, 251, 18,  158, 240, 30,  161, 232, 42,  166, 227,
+      53,  172, 227, 63,  179, 230, 72,  188, 237, 80,  198, 247, 87,  255, 255, 255, 255, 255, 255,
+      255, 255, 255, 255, 208, 1,   92,  220, 12,  96,  232, 21,  99,  244, 27,  0,   2,   1,   0,
+      3,   2,   0,   4,   3,   0,   5,   4,   17,  15,  255, 39,  237, 243, 21,  39,  11,  42,  9,
+      252, 220, 12,  233, 236, 216, 3,   236, 216, 3,   248, 216, 233, 248, 216, 233, 0,   6,   5,
+      0,   7,   6,   0,   8,   7,   0,   9,   8,   0,   10,  9,   0,   11,  10,  0,   12,  11,  0,
+      13,  12,  0,   14,  13,  0,   15,  14,  236, 19,  3,   236, 238, 3,   248, 238, 233, 248, 238,
+      28,  0,   16,  15,  0,   17,  16,  0,   18};
+  static fuzz_mesh heap;
+  scree_mesh mesh;
+  scree_error error;
+  scree_repair_options options = scree_default_repair_options();
+  options.hole_edges = 9;
+  options.keep_largest = true;
+  options.debris_share = 0;
+  fuzz_mesh_decode(bytes, sizeof bytes, &heap);
+  assert_int_equal(scree_mesh_repair(&heap.mesh, &options, NULL, &mesh, NULL, &error),
+                   SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "each mending asks for more, and its 42 triangles"));
+}
+
 static scree_status call_prepare(void *context, scree_error *error) {
   scree_repair_options options = scree_default_repair_options();
   scree_mesh ready = {0};
@@ -592,6 +624,7 @@ int main(void) {
                                      cmocka_unit_test(spike),
                                      cmocka_unit_test(same_whatever_order),
                                      cmocka_unit_test(moved_turned_scaled),
+                                     cmocka_unit_test(runs_away),
                                      cmocka_unit_test(prepare),
                                      cmocka_unit_test(out_of_memory)};
   return cmocka_run_group_tests(tests, NULL, NULL);
