@@ -1,6 +1,7 @@
 /* The grid itself and the directions in it; the lists and the exact search are in search.c. */
 #include "simplify/grid_cells.h"
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 
 #include <string.h>
@@ -39,23 +40,38 @@ static vec3 tile_corner(int face, int i, int j) {
                          : (vec3){u, v, sign};
 }
 
-static void fill_tiles(uint64_t *averse_of) {
-  for (int face = 0; face < 6; face++)
-    for (int i = 0; i < SCREE_TILES; i++)
-      for (int j = 0; j < SCREE_TILES; j++)
-        averse_of[(face * SCREE_TILES + i) * SCREE_TILES + j] =
-            averse_exactly(tile_corner(face, i, j)) | averse_exactly(tile_corner(face, i + 1, j)) |
-            averse_exactly(tile_corner(face, i, j + 1)) |
-            averse_exactly(tile_corner(face, i + 1, j + 1));
+static void fill_face(uint64_t *averse_of, int face) {
+  uint64_t corner[SCREE_TILES + 1][SCREE_TILES + 1];
+  for (int i = 0; i <= SCREE_TILES; i++)
+    for (int j = 0; j <= SCREE_TILES; j++) corner[i][j] = averse_exactly(tile_corner(face, i, j));
+  for (int i = 0; i < SCREE_TILES; i++)
+    for (int j = 0; j < SCREE_TILES; j++)
+      averse_of[(face * SCREE_TILES + i) * SCREE_TILES + j] =
+          corner[i][j] | corner[i + 1][j] | corner[i][j + 1] | corner[i + 1][j + 1];
 }
 
-void scree_grid_free(scree_grid *g) {
-  scree_free(g->averse_of);
+/* The table of directions, the same for every shape. */
+static scree_status prepare_tiles(scree_grid *g, scree_error *error) {
+  if (g->averse_of) return SCREE_OK;
+  SCREE_ALLOC_OR(g->averse_of, TILE_COUNT, error, out_of_memory);
+  for (int face = 0; face < 6; face++) fill_face(g->averse_of, face);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static void free_cells(scree_grid *g) {
   scree_free(g->averse);
   scree_free(g->head);
   scree_free(g->items);
   scree_free(g->large);
   scree_free(g->groups);
+  *g = (scree_grid){.averse_of = g->averse_of};
+}
+
+void scree_grid_free(scree_grid *g) {
+  free_cells(g);
+  scree_free(g->averse_of);
   *g = (scree_grid){0};
 }
 
@@ -115,7 +131,7 @@ scree_status scree_grid_shape(scree_grid *g, const scree_halfmesh *s, double edg
         (floor(extent.x / cell) + 1) * (floor(extent.y / cell) + 1) * (floor(extent.z / cell) + 1);
     if (n <= 4.0 * (double)s->live_triangle_count + 64) break;
   }
-  scree_grid_free(g);
+  free_cells(g);
   g->low = low;
   g->cells_per_length = 1 / cell;
   g->size[0] = (uint32_t)(extent.x / cell) + 1;
@@ -123,11 +139,10 @@ scree_status scree_grid_shape(scree_grid *g, const scree_halfmesh *s, double edg
   g->size[2] = (uint32_t)(extent.z / cell) + 1;
   g->cell_count = (size_t)g->size[0] * g->size[1] * g->size[2];
   g->built_for = s->live_triangle_count;
-  SCREE_ALLOC_OR(g->averse_of, TILE_COUNT, error, out_of_memory);
+  if (prepare_tiles(g, error) != SCREE_OK) goto out_of_memory;
   SCREE_ALLOC_OR(g->averse, g->cell_count, error, out_of_memory);
   SCREE_ALLOC_OR(g->groups, 2 * scree_block_count(s->triangle_count, SCREE_GROUP), error,
                  out_of_memory);
-  fill_tiles(g->averse_of);
   return SCREE_OK;
 out_of_memory:
   scree_grid_free(g);
@@ -149,27 +164,68 @@ typedef struct entering {
   const scree_halfmesh *s;
 } entering;
 
-static scree_grid_box enter_triangle(scree_grid *g, const scree_halfmesh *s, size_t t) {
-  vec3 at[3];
-  scree_corners(s, t, at);
-  scree_grid_box c = scree_cells_of(g, vec3_min(at[0], vec3_min(at[1], at[2])),
-                                    vec3_max(at[0], vec3_max(at[1], at[2])));
-  enter(g, c, scree_averse_to(g, vec3_triangle_normal(at[0], at[1], at[2])));
-  return c;
+/* Triangles of a group side by side, one per lane. */
+typedef struct lanes {
+  double at[3][3][SCREE_GROUP]; /* corner, axis */
+  int32_t low[3][SCREE_GROUP], high[3][SCREE_GROUP];
+  int32_t tile[SCREE_GROUP]; /* of the normal, or -1: it faces no direction */
+} lanes;
+
+/* The lanes' cells and tiles, as scree_cells_of and scree_averse_to find them. */
+SCREE_LANES static void place_lanes(const scree_grid *g, lanes *l, int count) {
+  const double low[3] = {g->low.x, g->low.y, g->low.z}, k = g->cells_per_length;
+  for (int axis = 0; axis < 3; axis++) {
+    const double from = low[axis], last = (double)(g->size[axis] - 1);
+    for (int i = 0; i < count; i++) {
+      double a = l->at[0][axis][i], b = l->at[1][axis][i], c = l->at[2][axis][i];
+      double least = a < b ? a : b, most = a > b ? a : b;
+      least = ((least < c ? least : c) - from) * k;
+      most = ((most > c ? most : c) - from) * k;
+      least = least > 0 ? least : 0;
+      most = most > 0 ? most : 0;
+      l->low[axis][i] = (int32_t)(least < last ? least : last);
+      l->high[axis][i] = (int32_t)(most < last ? most : last);
+    }
+  }
+  for (int i = 0; i < count; i++) {
+    vec3 p = {l->at[0][0][i], l->at[0][1][i], l->at[0][2][i]};
+    vec3 q = {l->at[1][0][i], l->at[1][1][i], l->at[1][2][i]};
+    vec3 r = {l->at[2][0][i], l->at[2][1][i], l->at[2][2][i]};
+    l->tile[i] = scree_tile_of(vec3_triangle_normal(p, q, r));
+  }
+}
+
+static void enter_group(scree_grid *g, const scree_halfmesh *s, size_t begin, size_t end,
+                        scree_grid_box *all) {
+  lanes l;
+  int count = 0;
+  for (size_t t = begin; t < end; t++) {
+    vec3 at[3];
+    if (scree_is_gone(s, t)) continue;
+    scree_corners(s, t, at);
+    for (int k = 0; k < 3; k++) {
+      l.at[k][0][count] = at[k].x;
+      l.at[k][1][count] = at[k].y;
+      l.at[k][2][count] = at[k].z;
+    }
+    count++;
+  }
+  place_lanes(g, &l, count);
+  *all = SCREE_NO_CELLS;
+  for (int i = 0; i < count; i++) {
+    scree_grid_box c = {{(uint16_t)l.low[0][i], (uint16_t)l.low[1][i], (uint16_t)l.low[2][i]},
+                        {(uint16_t)l.high[0][i], (uint16_t)l.high[1][i], (uint16_t)l.high[2][i]}};
+    enter(g, c, scree_averse_in(g, l.tile[i]));
+    scree_join_cells(all, &c);
+  }
 }
 
 static void enter_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   entering *work = context;
   for (size_t first = begin; first < end; first += SCREE_GROUP) {
-    scree_grid_box all = SCREE_NO_CELLS;
     size_t last = first + SCREE_GROUP < end ? first + SCREE_GROUP : end;
-    for (size_t t = first; t < last; t++) {
-      if (scree_is_gone(work->s, t)) continue;
-      scree_grid_box c = enter_triangle(work->grid, work->s, t);
-      scree_join_cells(&all, &c);
-    }
-    work->grid->groups[first / SCREE_GROUP] = all;
+    enter_group(work->grid, work->s, first, last, &work->grid->groups[first / SCREE_GROUP]);
   }
 }
 

@@ -55,20 +55,31 @@ static inline void scree_join_cells(scree_grid_box *all, const scree_grid_box *c
                   end_ = cell + (c).high[0] - (c).low[0];                                          \
            cell <= end_; cell++)
 
-/* Directions that the normal n does not face, or faces by too little. */
-static inline uint64_t scree_averse_to(const scree_grid *g, vec3 n) {
+/* The tile (grid.c) of normal n; -1: there is none. Without branches, for loops over lanes. */
+static inline int32_t scree_tile_of(vec3 n) {
   double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
-  int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-  double w = axis == 0 ? n.x : axis == 1 ? n.y : n.z;
-  double u = axis == 0 ? n.y : axis == 1 ? n.z : n.x, v = axis == 0 ? n.z : axis == 1 ? n.x : n.y;
+  bool along_x = (x >= y) & (x >= z), along_y = !along_x & (y >= z);
+  double w = along_x ? n.x : along_y ? n.y : n.z;
+  double u = along_x ? n.y : along_y ? n.z : n.x, v = along_x ? n.z : along_y ? n.x : n.y;
   double scale = SCREE_TILES / 2 / fabs(w);
   u = (u * scale) + SCREE_TILES / 2;
   v = (v * scale) + SCREE_TILES / 2;
-  if (!(u >= 0 && u <= SCREE_TILES && v >= 0 && v <= SCREE_TILES))
-    return SCREE_ALL_AVERSE; /* no direction */
-  int i = u < SCREE_TILES ? (int)u : SCREE_TILES - 1,
-      j = v < SCREE_TILES ? (int)v : SCREE_TILES - 1;
-  return g->averse_of[((axis * 2 + (w < 0)) * SCREE_TILES + i) * SCREE_TILES + j];
+  bool found = (u >= 0) & (u <= SCREE_TILES) & (v >= 0) & (v <= SCREE_TILES);
+  double last = SCREE_TILES - 1, i = found ? u : 0, j = found ? v : 0;
+  i = i < last ? i : last;
+  j = j < last ? j : last;
+  int32_t face = (along_x ? 0 : along_y ? 2 : 4) + (w < 0);
+  int32_t tile = (face * SCREE_TILES + (int32_t)i) * SCREE_TILES + (int32_t)j;
+  return found ? tile : -1;
+}
+
+static inline uint64_t scree_averse_in(const scree_grid *g, int32_t tile) {
+  return tile < 0 ? SCREE_ALL_AVERSE : g->averse_of[tile];
+}
+
+/* Directions that the normal n does not face, or faces by too little. */
+static inline uint64_t scree_averse_to(const scree_grid *g, vec3 n) {
+  return scree_averse_in(g, scree_tile_of(n));
 }
 
 #endif
