@@ -19,11 +19,17 @@
  * The whole cost of another place, where the best strays, may be less: the cheapest of the best and
  * the few others is the edge's first choice.
  *
+ * First choices are most of the work. With several threads, when one is asked for, those of the next
+ * edges in the heap are found beside it, each by itself. It is forgotten where something changes
+ * around the edge before its turn comes; so the outcome is that of one thread.
+ *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
  * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
  * began with: within half of sqrt(area / triangles), the size of the level's triangles. */
 #include "simplify/decimate.h"
+
+#include "base/parallel.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -46,9 +52,26 @@
 /* Edges evaluated in one call. */
 enum { SIDE_BY_SIDE = 32 };
 
-/* An edge waits at part of its best place's cost; then at the whole cost of its first choice: the
- * best place, or other place k; where that is refused, at that of fallback k. */
-enum { IN_PART, WHOLE, OTHER, FALLBACK = OTHER + SCREE_FALLBACK_COUNT };
+/* An edge waits at part of its best place's cost, where the first choice may be known already (to
+ * entry k of those known); then at the whole cost of its first choice: the best place, or other
+ * place k; where that is refused, at that of fallback k. */
+enum {
+  IN_PART,
+  WHOLE,
+  OTHER,
+  FALLBACK = OTHER + SCREE_FALLBACK_COUNT,
+  KNOWN = FALLBACK + SCREE_FALLBACK_COUNT
+};
+
+/* First choices found at once; kept; edges of the heap looked at for them. */
+enum { AT_ONCE = 8, KEPT = 64, LOOKED_AT = 24 };
+
+typedef struct choice {
+  uint32_t half_edge;
+  uint8_t stage;
+  bool possible; /* else the edge leaves the heap */
+  scree_candidate candidate;
+} choice;
 
 typedef struct queue {
   scree_decimator *d;
@@ -65,6 +88,8 @@ typedef struct queue {
   double *sorted;                 /* scratch: costs */
   uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
   size_t waiting_count;
+  choice known[KEPT];
+  size_t known_next;
 } queue;
 
 static bool before(const queue *q, uint32_t g, uint32_t h) {
@@ -199,6 +224,7 @@ static scree_status queue_fill(queue *q) {
   SCREE_ALLOC_OR(q->stamp, s->vertex_count, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->sorted, half_edges, d->error, out_of_memory);
   memset(q->place, 0xff, half_edges * sizeof *q->place);
+  memset(q->stage, IN_PART, half_edges);
   memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
@@ -324,26 +350,70 @@ static scree_candidate other_place(const queue *q, const scree_ring *ring, int k
   return c;
 }
 
-/* Puts the edge back at the whole cost of its first choice, or at LOOK_AHEAD times that at which it
- * waited, if it is more: most edges are evaluated anew before their turn comes at that. */
-static void choose_first(queue *q, const scree_ring *ring, scree_candidate *best) {
-  uint32_t h = ring->half_edge;
+/* Finds the first choice of an edge: its whole cost, or LOOK_AHEAD times that at which the edge
+ * waits, if it is more: most edges are evaluated anew before their turn comes at that. */
+static void find_first_choice(const queue *q, choice *made) {
+  const scree_halfmesh *s = &q->d->s;
+  uint32_t h = made->half_edge, edges[SCREE_RING_MAX];
+  scree_ring ring = {.edge = edges};
+  scree_candidate *best = &made->candidate;
+  made->possible = scree_ring_gather(s, h, &ring) && scree_collapse_keeps_topology(s, &ring);
+  if (!made->possible) return;
   /* a share of nothing would be no more */
   double most = q->cost[h] > DBL_MIN ? LOOK_AHEAD * q->cost[h] : INFINITY;
-  uint8_t stage = WHOLE;
-  add_stray(q, ring, best, most);
+  made->stage = WHOLE;
+  q->d->coster->evaluate(s, &h, 1, best);
+  add_stray(q, &ring, best, most);
   for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
-    scree_candidate c = other_place(q, ring, k, fmin(best->cost, most));
+    scree_candidate c = other_place(q, &ring, k, fmin(best->cost, most));
     if (!(c.cost < best->cost)) continue;
     *best = c;
-    stage = (uint8_t)(OTHER + k);
+    made->stage = (uint8_t)(OTHER + k);
   }
   if (!(best->cost < most)) {
     best->cost = most;
-    stage = IN_PART;
+    made->stage = IN_PART;
   }
-  q->stage[h] = stage;
-  enqueue(q, h, best);
+}
+
+static void find_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  queue *q = context;
+  for (size_t i = begin; i < end; i++) find_first_choice(q, &q->known[q->known_next + i]);
+}
+
+/* Lists edges that wait for their first choice, in their order: the cheapest, and others that come
+ * soon. */
+static size_t list_next(const queue *q, uint32_t *edges) {
+  size_t places[2 * LOOKED_AT + 1] = {0}, place_count = q->heap_count > 0, count = 0;
+  for (int looked = 0; looked < LOOKED_AT && place_count > 0 && count < AT_ONCE; looked++) {
+    size_t least = 0;
+    for (size_t i = 1; i < place_count; i++)
+      if (before(q, q->heap[places[i]], q->heap[places[least]])) least = i;
+    size_t place = places[least], child = 2 * place + 1;
+    places[least] = places[--place_count];
+    if (q->stage[q->heap[place]] == IN_PART) edges[count++] = q->heap[place];
+    if (child < q->heap_count) places[place_count++] = child;
+    if (child + 1 < q->heap_count) places[place_count++] = child + 1;
+  }
+  return count;
+}
+
+/* Finds the first choice of the cheapest edge, and of some that come soon. */
+static void find_first_choices(queue *q) {
+  uint32_t edges[AT_ONCE] = {q->heap[0]};
+  size_t count = scree_worker_count() > 1 ? list_next(q, edges) : 1;
+  if (q->known_next + count > KEPT) q->known_next = 0;
+  for (size_t i = 0; i < count; i++) {
+    choice *made = &q->known[q->known_next + i];
+    uint8_t stage = (uint8_t)(KNOWN + q->known_next + i);
+    if (made->half_edge != edges[i] && q->stage[made->half_edge] == stage)
+      q->stage[made->half_edge] = IN_PART; /* its entry is needed */
+    made->half_edge = edges[i];
+    q->stage[edges[i]] = stage;
+  }
+  scree_parallel_for(count, 1, find_block, q);
+  q->known_next += count;
 }
 
 /* Puts the edge back with the cheapest other place that is allowed, if there is
@@ -373,18 +443,22 @@ static scree_status try_cheapest(queue *q) {
   scree_change change;
   scree_around around;
   scree_status status = SCREE_OK;
+  if (q->stage[h] == IN_PART) find_first_choices(q);
+  int stage = q->stage[h];
   leave(q, h);
+  if (stage >= KNOWN) {
+    const choice *known = &q->known[stage - KNOWN];
+    if (!known->possible) return SCREE_OK;
+    q->stage[h] = known->stage;
+    enqueue(q, h, &known->candidate);
+    return SCREE_OK;
+  }
   if (!scree_ring_gather(&d->s, h, &ring) || !scree_collapse_keeps_topology(&d->s, &ring))
     return SCREE_OK;
-  int stage = q->stage[h];
   if (stage >= OTHER)
     d->coster->fall_back(&d->s, h, (stage - OTHER) % SCREE_FALLBACK_COUNT, &candidate);
   else
     d->coster->evaluate(&d->s, &h, 1, &candidate);
-  if (stage == IN_PART) {
-    choose_first(q, &ring, &candidate);
-    return SCREE_OK;
-  }
   change.target = candidate.target;
   if (allowed(q, &ring, &change, &around, &status))
     return collapse(q, &ring, &change, &around, candidate.error);
