@@ -8,6 +8,7 @@
 #include "mesh/apart.h"
 
 #include "base/alloc.h"
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "mesh/intersect.h"
 
@@ -33,14 +34,29 @@ typedef struct prover {
 } prover;
 
 enum { FAN_UNKNOWN, FAN_GRAPH, FAN_UNSURE, FAN_MOST = 32 };
+enum { NO_VERTEX = UINT32_MAX };
 
 /* A facet of a cell. */
 typedef struct facet {
-  vec3 low, high, at[3], n;
+  vec3 at[3], n;
   double error; /* |n.(x - at[0])| above error |x - at[0]| is past rounding */
   const uint32_t *corner;
-  uint8_t begins;
 } facet;
+
+/* A cell's facets side by side, one per lane, for a first look at all pairs. */
+enum { LANES = 8, MOST_LANES = CROWD + LANES };
+typedef struct lanes {
+  float low[3][MOST_LANES], high[3][MOST_LANES]; /* boxes, in cells */
+  uint32_t corner[3][MOST_LANES];
+  uint32_t graph[3][MOST_LANES]; /* the corner where its fan is a graph, else NO_VERTEX */
+  uint32_t begins[MOST_LANES];
+  uint32_t near[MOST_LANES]; /* not settled by the first look */
+} lanes;
+
+typedef struct cell_facets {
+  facet facets[CROWD];
+  lanes lanes;
+} cell_facets;
 
 typedef struct span {
   uint32_t low[3], high[3]; /* inclusive */
@@ -73,15 +89,17 @@ static span span_of(const prover *p, vec3 low, vec3 high) {
   return s;
 }
 
+/* Facets come in the order of x (mesh/weld.h): so do cells, and what is asked for together lies
+ * together. */
 #define FOR_SPAN(p, s, cell)                                                                       \
-  for (uint32_t z_ = (s).low[2]; z_ <= (s).high[2]; z_++)                                          \
+  for (uint32_t x_ = (s).low[0]; x_ <= (s).high[0]; x_++)                                          \
     for (uint32_t y_ = (s).low[1]; y_ <= (s).high[1]; y_++)                                        \
-      for (size_t first_ = ((size_t)z_ * (p)->size[1] + y_) * (p)->size[0] + (s).low[0],           \
-                  end_ = first_ + (s).high[0] - (s).low[0], cell = first_;                         \
+      for (size_t first_ = ((size_t)x_ * (p)->size[1] + y_) * (p)->size[2] + (s).low[2],           \
+                  end_ = first_ + (s).high[2] - (s).low[2], cell = first_;                         \
            cell <= end_; cell++)
 
 /* In FOR_SPAN: bit k is set in the first cell along axis k. */
-#define BEGINS(s, cell) ((cell) == first_) | (y_ == (s).low[1]) << 1 | (z_ == (s).low[2]) << 2
+#define BEGINS(s, cell) (x_ == (s).low[0]) | (y_ == (s).low[1]) << 1 | ((cell) == first_) << 2
 
 /* False: a surface without extent. */
 static bool shape(prover *p, size_t *cell_count) {
@@ -146,18 +164,6 @@ static void fill_block(void *context, size_t begin, size_t end, size_t block, in
   }
 }
 
-static void load(const prover *p, size_t item, facet *f) {
-  uint32_t t = p->items[item];
-  f->corner = p->mesh->triangles + 3 * (size_t)t;
-  for (int k = 0; k < 3; k++) f->at[k] = scree_mesh_corner(p->mesh, t, k);
-  f->low = vec3_min(f->at[0], vec3_min(f->at[1], f->at[2]));
-  f->high = vec3_max(f->at[0], vec3_max(f->at[1], f->at[2]));
-  vec3 e1 = vec3_sub(f->at[1], f->at[0]), e2 = vec3_sub(f->at[2], f->at[0]);
-  f->n = vec3_cross(e1, e2);
-  f->error = 1e-14 * size_of(e1) * size_of(e2);
-  f->begins = p->begins[item];
-}
-
 /* All corners of g but those that f has too are surely on one side of f's plane. */
 static bool beside(const facet *f, const facet *g) {
   int side = 0;
@@ -216,53 +222,86 @@ static bool fan_is_graph(const prover *p, uint32_t h) {
   return turns == 1;
 }
 
-/* Whether the fan of a vertex that both have shows that they share no more than they must. Several
- * threads may come to the same answer for a vertex. */
-static bool in_one_graph(const prover *p, const facet *f, const facet *g) {
-  if (!p->ring) return false;
-  uint32_t a = g->corner[0], b = g->corner[1], c = g->corner[2];
-  for (size_t k = 0; k < 3; k++) {
-    uint32_t v = f->corner[k];
-    if ((v != a) & (v != b) & (v != c)) continue;
-    uint8_t known = __atomic_load_n(&p->fans[v], __ATOMIC_RELAXED);
-    if (known == FAN_UNKNOWN) {
-      uint32_t h = (uint32_t)(f->corner + k - p->mesh->triangles);
-      known = fan_is_graph(p, h) ? FAN_GRAPH : FAN_UNSURE;
-      __atomic_store_n(&p->fans[v], known, __ATOMIC_RELAXED);
-    }
-    if (known == FAN_GRAPH) return true;
+/* The vertex that half-edge h leaves, if its fan shows that no two of its facets share more than
+ * they must. Several threads may come to the same answer for a vertex. */
+static uint32_t graph_vertex(const prover *p, uint32_t h) {
+  uint32_t v = p->mesh->triangles[h];
+  uint8_t known = __atomic_load_n(&p->fans[v], __ATOMIC_RELAXED);
+  if (known == FAN_UNKNOWN) {
+    known = p->ring && fan_is_graph(p, h) ? FAN_GRAPH : FAN_UNSURE;
+    __atomic_store_n(&p->fans[v], known, __ATOMIC_RELAXED);
   }
-  return false;
+  return known == FAN_GRAPH ? v : NO_VERTEX;
 }
 
-static bool boxes_apart(const facet *f, const facet *g) {
-  return f->low.x > g->high.x || g->low.x > f->high.x || f->low.y > g->high.y ||
-         g->low.y > f->high.y || f->low.z > g->high.z || g->low.z > f->high.z;
+static void load(const prover *p, size_t item, facet *f, lanes *l, size_t i) {
+  size_t h = 3 * (size_t)p->items[item];
+  f->corner = p->mesh->triangles + h;
+  for (size_t k = 0; k < 3; k++) {
+    f->at[k] = vec3_load(p->mesh->positions + 3 * (size_t)f->corner[k]);
+    l->corner[k][i] = f->corner[k];
+    l->graph[k][i] = graph_vertex(p, (uint32_t)(h + k));
+  }
+  /* shifting, scaling and rounding keep the order: boxes that are apart in cells are apart */
+  vec3 low = vec3_min(f->at[0], vec3_min(f->at[1], f->at[2]));
+  vec3 high = vec3_max(f->at[0], vec3_max(f->at[1], f->at[2]));
+  low = vec3_scale(vec3_sub(low, p->low), p->per_length);
+  high = vec3_scale(vec3_sub(high, p->low), p->per_length);
+  l->low[0][i] = (float)low.x;
+  l->low[1][i] = (float)low.y;
+  l->low[2][i] = (float)low.z;
+  l->high[0][i] = (float)high.x;
+  l->high[1][i] = (float)high.y;
+  l->high[2][i] = (float)high.z;
+  l->begins[i] = p->begins[item];
+  vec3 e1 = vec3_sub(f->at[1], f->at[0]), e2 = vec3_sub(f->at[2], f->at[0]);
+  f->n = vec3_cross(e1, e2);
+  f->error = 1e-14 * size_of(e1) * size_of(e2);
 }
 
-static bool cell_is_clear(const prover *p, size_t cell, facet *facets) {
+/* Which of the first `count` facets (a multiple of LANES) facet i may meet here: this is the first
+ * cell of both, their boxes touch, and no graph has both. */
+SCREE_LANES static void look_at_pairs(lanes *l, size_t i, size_t count) {
+  const float x0 = l->low[0][i], y0 = l->low[1][i], z0 = l->low[2][i];
+  const float x1 = l->high[0][i], y1 = l->high[1][i], z1 = l->high[2][i];
+  const uint32_t a = l->graph[0][i], b = l->graph[1][i], c = l->graph[2][i], begins = l->begins[i];
+  for (size_t j = 0; j < count; j++) {
+    uint32_t u = l->corner[0][j], v = l->corner[1][j], w = l->corner[2][j];
+    uint32_t near = (l->begins[j] | begins) == 7;
+    near &= (l->low[0][j] <= x1) & (l->high[0][j] >= x0);
+    near &= (l->low[1][j] <= y1) & (l->high[1][j] >= y0);
+    near &= (l->low[2][j] <= z1) & (l->high[2][j] >= z0);
+    near &= (u != a) & (u != b) & (u != c) & (v != a) & (v != b) & (v != c);
+    near &= (w != a) & (w != b) & (w != c);
+    l->near[j] = near;
+  }
+}
+
+static bool cell_is_clear(const prover *p, size_t cell, cell_facets *c) {
   size_t begin = p->start[cell], count = p->start[cell + 1] - begin;
   if (count > CROWD) return false;
-  for (size_t i = 0; i < count; i++) load(p, begin + i, &facets[i]);
-  for (size_t i = 0; i < count; i++)
-    for (size_t j = 0; j < i; j++) {
-      const facet *f = &facets[i], *g = &facets[j];
-      if ((f->begins | g->begins) != 7 || boxes_apart(f, g)) continue;
-      if (in_one_graph(p, f, g) || beside(f, g) || beside(g, f)) continue;
+  for (size_t i = 0; i < count; i++) load(p, begin + i, &c->facets[i], &c->lanes, i);
+  for (size_t i = 1; i < count; i++) {
+    const facet *f = &c->facets[i], *g = c->facets;
+    look_at_pairs(&c->lanes, i, (i + LANES - 1) / LANES * LANES);
+    for (size_t j = 0; j < i; j++, g++) {
+      if (!c->lanes.near[j] || beside(f, g) || beside(g, f)) continue;
       if (scree_triangles_meet(p->mesh->positions, f->corner, g->corner) != SCREE_MEET_NOT)
         return false;
     }
+  }
   return true;
 }
 
 static void cell_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   prover *p = context;
-  facet facets[CROWD];
+  cell_facets facets;
+  memset(&facets.lanes, 0, sizeof facets.lanes);
   for (size_t cell = begin; cell < end; cell++) {
     if (p->start[cell + 1] - p->start[cell] < 2) continue;
     if (atomic_load_explicit(&p->failed, memory_order_relaxed)) return;
-    if (!cell_is_clear(p, cell, facets)) atomic_store(&p->failed, true);
+    if (!cell_is_clear(p, cell, &facets)) atomic_store(&p->failed, true);
   }
 }
 

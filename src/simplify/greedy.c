@@ -19,9 +19,9 @@
  * The whole cost of another place, where the best strays, may be less: the cheapest of the best and
  * the few others is the edge's first choice.
  *
- * First choices are most of the work. With several threads, when one is asked for, those of the next
- * edges in the heap are found beside it, each by itself. It is forgotten where something changes
- * around the edge before its turn comes; so the outcome is that of one thread.
+ * First choices are most of the work. With several threads, when one is asked for, those of the
+ * next edges in the heap are found beside it, each by itself. It is forgotten where something
+ * changes around the edge before its turn comes; so the outcome is that of one thread.
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
