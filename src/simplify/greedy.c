@@ -64,7 +64,7 @@ enum {
 };
 
 /* First choices found at once; kept; edges of the heap looked at for them. */
-enum { AT_ONCE = 8, KEPT = 64, LOOKED_AT = 24 };
+enum { AT_ONCE = 3, KEPT = 64, LOOKED_AT = 24 };
 
 typedef struct choice {
   uint32_t half_edge;
