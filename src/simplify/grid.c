@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { BLOCK = 32 * SCREE_GROUP };
+enum { BLOCK = 128 * SCREE_GROUP };
 /* A normal must point this much towards a direction to face it (cosine): past any rounding. */
 #define FACING 1e-6
 

@@ -50,7 +50,7 @@ typedef struct scree_planned {
 } scree_planned;
 
 /* Triangles of a group: so many one after the other. */
-enum { SCREE_GROUP = 64 };
+enum { SCREE_GROUP = 16 };
 
 /* Sets the cells for the surface as it is: about cells_per_edge cells per mean edge, at most a few
  * per triangle. Cells are empty: fill directions or lists as needed. */
