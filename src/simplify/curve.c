@@ -93,14 +93,45 @@ void scree_curve_free(scree_curve *curve) {
   scree_free(curve);
 }
 
-static void measure_surface(const scree_halfmesh *s, scree_sum *area, scree_sum *volume) {
-  for (size_t t = 0; t < s->triangle_count; t++) {
+/* Area and volume, by blocks of triangles. */
+typedef struct measuring {
+  const scree_halfmesh *s;
+  struct {
+    scree_sum area, volume;
+  } * blocks;
+} measuring;
+
+enum { MEASURE_BLOCK = 8192 };
+
+static void measure_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const measuring *m = context;
+  scree_sum area = {0}, volume = {0};
+  for (size_t t = begin; t < end; t++) {
     vec3 at[3];
-    scree_corners(s, t, at);
+    scree_corners(m->s, t, at);
     vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
-    scree_sum_add(area, 0.5 * vec3_norm(n));
-    scree_sum_add(volume, vec3_dot(at[0], n) / 6);
+    scree_sum_add(&area, 0.5 * vec3_norm(n));
+    scree_sum_add(&volume, vec3_dot(at[0], n) / 6);
   }
+  m->blocks[block].area = area;
+  m->blocks[block].volume = volume;
+}
+
+static scree_status measure_surface(const scree_halfmesh *s, scree_sum *area, scree_sum *volume,
+                                    scree_error *error) {
+  measuring m = {.s = s};
+  size_t count = scree_block_count(s->triangle_count, MEASURE_BLOCK);
+  SCREE_ALLOC_OR(m.blocks, count, error, out_of_memory);
+  scree_parallel_for(s->triangle_count, MEASURE_BLOCK, measure_block, &m);
+  for (size_t i = 0; i < count; i++) {
+    scree_sum_merge(area, m.blocks[i].area);
+    scree_sum_merge(volume, m.blocks[i].volume);
+  }
+  scree_free(m.blocks);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
 }
 
 /* Turns the changes into the levels' values, in metres. */
@@ -141,7 +172,9 @@ static void cut_at_stop(scree_decimator *d) {
   d->record.count = i;
 }
 
+/* Gives back what is worth copying the rest. */
 static scree_status record_shrink(scree_record *r, scree_error *error) {
+  if (r->count > r->capacity / 16 * 15) return SCREE_OK;
   struct {
     void **block;
     size_t size;
@@ -221,8 +254,9 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
                                     .boundary_edge_count = d.s.boundary_edge_count,
                                     .locked_vertex_count = d.s.locked_vertex_count,
                                     .closed = d.s.closed};
-  measure_surface(&d.s, &area, &volume);
-  status = scree_record_allocate(&d.record, d.s.live_vertex_count, error);
+  status = measure_surface(&d.s, &area, &volume, error);
+  if (status == SCREE_OK)
+    status = scree_record_allocate(&d.record, d.s.live_vertex_count, error);
   if (status == SCREE_OK) status = decimate(&d);
   if (status != SCREE_OK) goto finished;
   cut_at_stop(&d);

@@ -22,6 +22,7 @@ typedef struct builder {
   uint32_t *order;  /* vertex v of the surface is order[v] of the mesh; NULL: they are the same */
   uint32_t *start;  /* per vertex, into fan; vertex_count + 1 */
   uint32_t *fan;    /* half-edges by the vertex they leave */
+  uint32_t *fan_to; /* the vertices that these lead to */
   size_t fan_count; /* vertices after the cut */
   uint32_t *root;   /* union-find over vertices, for shells */
 } builder;
@@ -121,7 +122,12 @@ static void sort_fans(builder *b) {
   memset(b->start, 0, (vertex_count + 1) * sizeof *b->start);
   for (size_t h = 0; h < half_edges; h++) b->start[half[h].from + 1]++;
   for (size_t v = 0; v < vertex_count; v++) b->start[v + 1] += b->start[v];
-  for (size_t h = 0; h < half_edges; h++) b->fan[b->start[half[h].from]++] = (uint32_t)h;
+  for (size_t h = 0; h < half_edges; h += 3)
+    for (size_t i = 0; i < 3; i++) {
+      uint32_t at = b->start[half[h + i].from]++;
+      b->fan[at] = (uint32_t)(h + i);
+      b->fan_to[at] = half[i < 2 ? h + i + 1 : h].from;
+    }
   memmove(b->start + 1, b->start, vertex_count * sizeof *b->start);
   b->start[0] = 0;
 }
@@ -130,7 +136,7 @@ static void sort_fans(builder *b) {
 static uint32_t count_from_to(const builder *b, uint32_t u, uint32_t v, uint32_t *found) {
   uint32_t count = 0;
   for (uint32_t i = b->start[u]; i < b->start[u + 1]; i++)
-    if (scree_to(b->surface, b->fan[i]) == v) {
+    if (b->fan_to[i] == v) {
       *found = b->fan[i];
       count++;
     }
@@ -149,7 +155,7 @@ static void find_twins(void *context, size_t begin, size_t end, size_t block, in
   scree_halfmesh *s = b->surface;
   for (uint32_t u = (uint32_t)begin; u < end; u++)
     for (uint32_t i = b->start[u]; i < b->start[u + 1]; i++) {
-      uint32_t h = b->fan[i], v = scree_to(s, h), twin = SCREE_NONE, self;
+      uint32_t h = b->fan[i], v = b->fan_to[i], twin = SCREE_NONE, self;
       uint32_t back = count_from_to(b, v, u, &twin);
       if (back > 0 && v < u) continue;
       if (back > 1 || u == v || count_from_to(b, u, v, &self) > 1) {
@@ -276,10 +282,13 @@ static scree_status build_edges(builder *b, vec3 low, vec3 high, scree_error *er
   scree_status status = place_in_order(b, low, high, error);
   if (status != SCREE_OK) return status;
   SCREE_ALLOC_OR(b->fan, half_edges, error, out_of_memory);
+  SCREE_ALLOC_OR(b->fan_to, half_edges, error, out_of_memory);
   SCREE_ALLOC_OR(s->flags, mesh->vertex_count, error, out_of_memory);
   memset(s->flags, 0, mesh->vertex_count);
   sort_fans(b);
   scree_parallel_for(mesh->vertex_count, BLOCK, find_twins, b);
+  scree_free(b->fan_to);
+  b->fan_to = NULL;
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -334,6 +343,7 @@ done:
   scree_free(b.order);
   scree_free(b.start);
   scree_free(b.fan);
+  scree_free(b.fan_to);
   scree_free(b.root);
   scree_halfmesh_free(&made);
   return status;
