@@ -78,6 +78,7 @@ typedef struct pass {
   scree_contender *contenders;
   struct scree_choice_count *counts;
   uint32_t limit; /* the threshold, as a key */
+  uint32_t cheap; /* the cost that LOW_SHARE of the edges do not exceed, as a key */
   double dearest; /* the greatest cost below it: the threshold without the key's rounding */
   double usual2;  /* squared stray that no collapse of this pass may exceed */
   taken *taken;   /* in the order of their vertices */
@@ -279,9 +280,9 @@ static bool is_candidate(const pass *p, size_t v) {
 static void list_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)worker;
   const pass *p = context;
-  scree_contender *contenders = p->contenders + begin;
+  scree_contender *contenders = p->contenders + begin, cheap[VERTEX_BLOCK];
   ask_for_block(&p->d->s, begin, end);
-  uint32_t count = 0;
+  uint32_t count = 0, cheap_count = 0;
   double dearest = 0;
   for (size_t v = begin; v < end; v++) {
     p->marks[v] = 0;
@@ -289,10 +290,13 @@ static void list_block(void *context, size_t begin, size_t end, size_t block, in
     if (!is_candidate(p, v)) continue;
     scree_ring r;
     scree_ring_name(&p->d->s, p->best[v], &r);
-    contenders[count++] = (scree_contender){.a = r.a, .b = r.b, .c = r.c, .d = r.d};
+    scree_contender *made =
+        key_of(p->cost[v]) <= p->cheap ? &cheap[cheap_count++] : &contenders[count++];
+    *made = (scree_contender){.a = r.a, .b = r.b, .c = r.c, .d = r.d};
     dearest = p->cost[v] > dearest ? p->cost[v] : dearest;
   }
-  p->counts[block] = (struct scree_choice_count){.left = count};
+  memcpy(contenders + count, cheap, cheap_count * sizeof *cheap);
+  p->counts[block] = (struct scree_choice_count){.waiting = count, .left = cheap_count};
   p->parts[block].dearest = dearest;
 }
 
@@ -317,6 +321,7 @@ static bool set_limit(pass *p) {
   keys_at(p, (size_t[2]){(size_t)(high * (double)count), (size_t)(LOW_SHARE * (double)count)}, key);
   uint32_t spread = key_of(fmin(SPREAD * cost_of_key(key[1]), 1e300));
   p->limit = fine || key[0] < spread ? key[0] : spread;
+  p->cheap = key[1];
   return true;
 }
 

@@ -47,7 +47,7 @@ SCREE_PREFETCHES void ask_for_claims(const scree_choosing *c, const scree_conten
 static void claim_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)end, (void)worker;
   scree_choosing *c = context;
-  scree_contender *contenders = c->contenders + begin;
+  scree_contender *contenders = c->contenders + begin + c->counts[block].waiting;
   uint32_t kept = 0, count = c->counts[block].left;
   for (uint32_t i = 0; i < count; i++) {
     scree_contender e = contenders[i];
@@ -132,7 +132,7 @@ static void decide_block(void *context, size_t begin, size_t end, size_t block, 
   (void)end, (void)worker;
   scree_choosing *c = context;
   struct scree_choice_count *counts = &c->counts[block];
-  scree_contender *contenders = c->contenders + begin, leading[BLOCK];
+  scree_contender *all = c->contenders + begin, *contenders = all + counts->waiting, leading[BLOCK];
   uint32_t edges[SCREE_RING_MAX], kept = 0, count = counts->left, taken = 0;
   scree_ring r = {.edge = edges};
   for (uint32_t i = 0; i < count; i++) {
@@ -157,7 +157,7 @@ static void decide_block(void *context, size_t begin, size_t end, size_t block, 
   counts->left = kept;
   counts->just_taken = taken;
   counts->taken += taken;
-  memcpy(contenders + BLOCK - counts->taken, leading, taken * sizeof *leading);
+  memcpy(all + BLOCK - counts->taken, leading, taken * sizeof *leading);
 }
 
 static void resign(scree_choosing *c, const scree_contender *e) {
@@ -172,18 +172,18 @@ static void resign_block(void *context, size_t begin, size_t end, size_t block, 
   (void)end, (void)worker;
   scree_choosing *c = context;
   struct scree_choice_count *counts = &c->counts[block];
-  const scree_contender *contenders = c->contenders + begin;
-  for (uint32_t i = 0; i < counts->left; i++) resign(c, &contenders[i]);
+  const scree_contender *all = c->contenders + begin;
+  for (uint32_t i = 0; i < counts->left; i++) resign(c, &all[counts->waiting + i]);
   for (uint32_t i = 0; i < counts->just_taken; i++) {
     scree_ring r;
-    scree_ring_name(c->s, c->best[contenders[BLOCK - counts->taken + i].taken], &r);
+    scree_ring_name(c->s, c->best[all[BLOCK - counts->taken + i].taken], &r);
     resign(c, &(scree_contender){.a = r.a, .b = r.b, .c = r.c, .d = r.d});
   }
 }
 
-void scree_choose_independent(scree_choosing *c) {
+/* Decides among those in question. */
+static void choose_left(scree_choosing *c) {
   size_t count = c->s->vertex_count, blocks = scree_block_count(count, BLOCK);
-  c->edge_count = 0;
   for (;;) {
     size_t left = 0;
     scree_parallel_for(count, BLOCK, claim_block, c);
@@ -192,4 +192,14 @@ void scree_choose_independent(scree_choosing *c) {
     scree_parallel_for(count, BLOCK, decide_block, c);
     scree_parallel_for(count, BLOCK, resign_block, c);
   }
+}
+
+void scree_choose_independent(scree_choosing *c) {
+  c->edge_count = 0;
+  choose_left(c);
+  for (size_t k = 0; k < scree_block_count(c->s->vertex_count, BLOCK); k++) {
+    c->counts[k].left = c->counts[k].waiting;
+    c->counts[k].waiting = 0;
+  }
+  choose_left(c);
 }

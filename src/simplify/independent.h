@@ -7,7 +7,8 @@
  *
  * It is found in parallel (after Luby, "A simple parallel algorithm for the maximal independent set
  * problem", SIAM J. Comput. 15, 1986): a candidate cheaper than all that it is not independent of
- * is taken in any case, and those fall out. What is left is looked at again, a few times. */
+ * is taken in any case, and those fall out. What is left is looked at again, a few times. The dear
+ * ones wait until all is decided among the cheap ones: most are ruled out by then. */
 #ifndef SCREE_SIMPLIFY_INDEPENDENT_H
 #define SCREE_SIMPLIFY_INDEPENDENT_H
 
@@ -33,7 +34,9 @@ typedef struct scree_choosing {
   const double *cost;          /* per vertex: of that */
   scree_contender *contenders; /* those of block k from k * SCREE_CHOICE_BLOCK on; used up */
   struct scree_choice_count {
-    uint32_t left, taken; /* of a block: candidates in question, at its front; taken, at its end */
+    /* of a block: candidates that wait for those of less cost, at its front; in question, after
+     * them; taken, at its end */
+    uint32_t waiting, left, taken;
     uint32_t just_taken;
   } * counts;
   uint32_t *leader, *apex_leader; /* per vertex: scratch, NONE before and after */
@@ -42,6 +45,7 @@ typedef struct scree_choosing {
   size_t edge_count;
 } scree_choosing;
 
+/* No candidate that waits is cheaper than one in question. */
 void scree_choose_independent(scree_choosing *c);
 
 #endif

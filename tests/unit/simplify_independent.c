@@ -71,6 +71,23 @@ static void draw_candidates(choice *c, double share, uint64_t values, scree_rng 
   }
 }
 
+/* Candidates of this cost or more wait for the others. */
+static void let_wait(choice *c, double cost) {
+  scree_contender sorted[SCREE_CHOICE_BLOCK];
+  for (size_t k = 0; k < c->blocks; k++) {
+    scree_contender *block = c->choosing.contenders + k * SCREE_CHOICE_BLOCK;
+    struct scree_choice_count *count = &c->choosing.counts[k];
+    uint32_t all = count->left, placed = 0;
+    for (int cheap = 0; cheap < 2; cheap++) {
+      for (uint32_t i = 0; i < all; i++)
+        if ((c->cost[block[i].a] < cost) == cheap) sorted[placed++] = block[i];
+      if (!cheap) count->waiting = placed;
+    }
+    count->left = all - count->waiting;
+    memcpy(block, sorted, all * sizeof *sorted);
+  }
+}
+
 /* near[u n + v]: u and v are corners of one triangle, or the same. */
 static bool *find_neighbours(const scree_halfmesh *s) {
   size_t n = s->vertex_count;
@@ -164,6 +181,7 @@ static void try_mesh(const scree_mesh *mesh, scree_rng *rng) {
     prepare(mesh, &c);
     bool *taken = room(c.s.vertex_count, sizeof *taken, 0);
     draw_candidates(&c, shares[i % 3], values[i / 3], rng);
+    let_wait(&c, (double)values[i / 3] * (double)(i % 4) / 3);
     scree_choose_independent(&c.choosing);
     walk_in_order(&c, taken);
     compare(&c, taken);
