@@ -73,12 +73,14 @@ typedef struct pass {
   uint32_t *best;        /* per vertex: half-edge of its cheapest edge, or NONE */
   double *cost;          /* per vertex: of that */
   uint8_t *marks;        /* per vertex: see independent.h */
-  uint32_t *chosen;      /* per vertex: the index of the collapse it is an end of, or NONE */
+  uint32_t *chosen;      /* per vertex: the index of the collapse it is an end of, or NONE; before
+                            collapses are taken, see leader in independent.h */
   uint32_t *apex_leader; /* this and the next two: see independent.h */
   scree_contender *contenders;
   struct scree_choice_count *counts;
-  uint32_t limit; /* the threshold, as a key */
-  uint32_t cheap; /* the cost that LOW_SHARE of the edges do not exceed, as a key */
+  scree_choosing choosing; /* of the above */
+  uint32_t limit;          /* the threshold, as a key */
+  uint32_t cheap;          /* the cost that LOW_SHARE of the edges do not exceed, as a key */
   double dearest; /* the greatest cost below it: the threshold without the key's rounding */
   double usual2;  /* squared stray that no collapse of this pass may exceed */
   taken *taken;   /* in the order of their vertices */
@@ -132,6 +134,15 @@ static scree_status pass_allocate(pass *p) {
   SCREE_ALLOC_OR(p->parts, blocks, error, out_of_memory);
   memset(p->chosen, 0xff, n * sizeof *p->chosen);
   memset(p->apex_leader, 0xff, n * sizeof *p->apex_leader);
+  p->choosing = (scree_choosing){.s = &p->d->s,
+                                 .best = p->best,
+                                 .cost = p->cost,
+                                 .contenders = p->contenders,
+                                 .counts = p->counts,
+                                 .leader = p->chosen,
+                                 .apex_leader = p->apex_leader,
+                                 .marks = p->marks,
+                                 .edges = p->edges};
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -277,16 +288,14 @@ static bool is_candidate(const pass *p, size_t v) {
   return key_of(p->cost[v]) <= p->limit;
 }
 
-static void list_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
-  const pass *p = context;
+/* Of a block of vertices: lists its candidates, and enters them for the choice. */
+static void list_candidates(pass *p, size_t begin, size_t end) {
+  size_t block = begin / VERTEX_BLOCK;
   scree_contender *contenders = p->contenders + begin, cheap[VERTEX_BLOCK];
-  ask_for_block(&p->d->s, begin, end);
   uint32_t count = 0, cheap_count = 0;
   double dearest = 0;
   for (size_t v = begin; v < end; v++) {
     p->marks[v] = 0;
-    p->chosen[v] = SCREE_NONE;
     if (!is_candidate(p, v)) continue;
     scree_ring r;
     scree_ring_name(&p->d->s, p->best[v], &r);
@@ -298,16 +307,23 @@ static void list_block(void *context, size_t begin, size_t end, size_t block, in
   memcpy(contenders + count, cheap, cheap_count * sizeof *cheap);
   p->counts[block] = (struct scree_choice_count){.waiting = count, .left = cheap_count};
   p->parts[block].dearest = dearest;
+  scree_choose_enter(&p->choosing, block);
 }
 
-/* Lists the candidates; answers the greatest cost among them. */
-static double list_candidates(pass *p) {
-  double dearest = 0;
+static void list_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  pass *p = context;
+  ask_for_block(&p->d->s, begin, end);
+  list_candidates(p, begin, end);
+}
+
+/* The candidates of the first round; the greatest cost among them. */
+static void list_first(pass *p) {
   size_t count = p->d->s.vertex_count;
   scree_parallel_for(count, VERTEX_BLOCK, list_block, p);
+  p->dearest = 0;
   for (size_t i = 0; i < scree_block_count(count, VERTEX_BLOCK); i++)
-    dearest = fmax(dearest, p->parts[i].dearest);
-  return dearest;
+    p->dearest = fmax(p->dearest, p->parts[i].dearest);
 }
 
 /* Sets the threshold. False: there is nothing to collapse. */
@@ -338,7 +354,7 @@ static void reconsider_waiting(pass *p, waiting *w) {
   w->count = 0;
 }
 
-/* Finds what the candidates of the last round cost now, if they are still there. */
+/* Finds what the candidates of the last round cost now, if they are still there; lists them. */
 static void reconsider_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   pass *p = context;
@@ -358,6 +374,7 @@ static void reconsider_block(void *context, size_t begin, size_t end, size_t blo
     if (w.count == SIDE_BY_SIDE) reconsider_waiting(p, &w);
   }
   reconsider_waiting(p, &w);
+  list_candidates(p, begin, end);
 }
 
 static scree_ring ring_of(const pass *p, const taken *t) {
@@ -470,16 +487,7 @@ static void give_up(pass *p, const taken *t) {
 
 static void choose_and_check(pass *p) {
   size_t vertices = p->d->s.vertex_count;
-  scree_choosing choosing = {.s = &p->d->s,
-                             .best = p->best,
-                             .cost = p->cost,
-                             .contenders = p->contenders,
-                             .counts = p->counts,
-                             .leader = p->chosen,
-                             .apex_leader = p->apex_leader,
-                             .marks = p->marks,
-                             .edges = p->edges};
-  scree_choose_independent(&choosing);
+  scree_choose_independent(&p->choosing);
   p->taken_count = 0;
   for (size_t i = 0; i < scree_block_count(vertices, VERTEX_BLOCK); i++) {
     p->parts[i].first = p->taken_count;
@@ -642,6 +650,7 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
   for (size_t i = begin; i < end; i++) {
     if ((i - begin) % SIDE_BY_SIDE == 0)
       ask_for_changes(p, p->taken + i, end - i < SIDE_BY_SIDE ? end - i : SIDE_BY_SIDE);
+    give_up(p, &p->taken[i]);
     if (p->taken[i].verdict != CERTAIN) {
       d->s.refused[p->taken[i].half_edge] =
           p->taken[i].verdict == POSTPONED ? SCREE_EDGE_POSTPONED : SCREE_EDGE_REFUSED;
@@ -738,12 +747,12 @@ static scree_status run_pass(pass *p, size_t *done) {
   *done = 0;
   if (!set_limit(p)) return SCREE_OK;
   for (int round = 0; round < ROUNDS; round++) {
-    if (round > 0) {
+    if (round == 0) {
+      list_first(p);
+    } else {
       refresh_sums(p);
       scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, reconsider_block, p);
     }
-    double dearest = list_candidates(p);
-    if (round == 0) p->dearest = dearest;
     status = scree_anchors_find(&d->s, &d->anchors, d->error);
     if (status != SCREE_OK) return status;
     *done += run_round(p);

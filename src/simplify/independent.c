@@ -43,7 +43,20 @@ SCREE_PREFETCHES void ask_for_claims(const scree_choosing *c, const scree_conten
   if (e->d != SCREE_NONE) __builtin_prefetch(&c->apex_leader[e->d], 1);
 }
 
-/* Those in question claim their ends and apexes, the others are dropped. */
+static void claim_all(const scree_choosing *c, const scree_contender *e) {
+  claim(c, &c->leader[e->a], e->a);
+  claim(c, &c->leader[e->b], e->a);
+  claim(c, &c->apex_leader[e->c], e->a);
+  if (e->d != SCREE_NONE) claim(c, &c->apex_leader[e->d], e->a);
+}
+
+void scree_choose_enter(const scree_choosing *c, size_t block) {
+  struct scree_choice_count count = c->counts[block];
+  const scree_contender *contenders = c->contenders + block * BLOCK + count.waiting;
+  for (uint32_t i = 0; i < count.left; i++) claim_all(c, &contenders[i]);
+}
+
+/* Those still in question claim their ends and apexes, the others are dropped. */
 static void claim_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)end, (void)worker;
   scree_choosing *c = context;
@@ -54,10 +67,7 @@ static void claim_block(void *context, size_t begin, size_t end, size_t block, i
     if (i + AHEAD < count) ask_for_claims(c, &contenders[i + AHEAD]);
     if (!is_open(c, &e)) continue;
     contenders[kept++] = e;
-    claim(c, &c->leader[e.a], e.a);
-    claim(c, &c->leader[e.b], e.a);
-    claim(c, &c->apex_leader[e.c], e.a);
-    if (e.d != SCREE_NONE) claim(c, &c->apex_leader[e.d], e.a);
+    claim_all(c, &e);
   }
   c->counts[block].left = kept;
 }
@@ -181,25 +191,30 @@ static void resign_block(void *context, size_t begin, size_t end, size_t block, 
   }
 }
 
-/* Decides among those in question. */
+static bool any_left(const scree_choosing *c) {
+  for (size_t k = 0; k < scree_block_count(c->s->vertex_count, BLOCK); k++)
+    if (c->counts[k].left) return true;
+  return false;
+}
+
+/* Decides among those in question, which have claimed. */
 static void choose_left(scree_choosing *c) {
-  size_t count = c->s->vertex_count, blocks = scree_block_count(count, BLOCK);
-  for (;;) {
-    size_t left = 0;
-    scree_parallel_for(count, BLOCK, claim_block, c);
-    for (size_t k = 0; k < blocks; k++) left += c->counts[k].left;
-    if (left == 0) return;
+  size_t count = c->s->vertex_count;
+  while (any_left(c)) {
     scree_parallel_for(count, BLOCK, decide_block, c);
     scree_parallel_for(count, BLOCK, resign_block, c);
+    scree_parallel_for(count, BLOCK, claim_block, c);
   }
 }
 
 void scree_choose_independent(scree_choosing *c) {
+  size_t count = c->s->vertex_count;
   c->edge_count = 0;
   choose_left(c);
-  for (size_t k = 0; k < scree_block_count(c->s->vertex_count, BLOCK); k++) {
+  for (size_t k = 0; k < scree_block_count(count, BLOCK); k++) {
     c->counts[k].left = c->counts[k].waiting;
     c->counts[k].waiting = 0;
   }
+  scree_parallel_for(count, BLOCK, claim_block, c);
   choose_left(c);
 }

@@ -45,6 +45,8 @@ typedef struct scree_choosing {
   size_t edge_count;
 } scree_choosing;
 
+/* Enters the candidates in question of a block; thread-safe. All must be, before the choice. */
+void scree_choose_enter(const scree_choosing *c, size_t block);
 /* No candidate that waits is cheaper than one in question. */
 void scree_choose_independent(scree_choosing *c);
 

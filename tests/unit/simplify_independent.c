@@ -182,6 +182,7 @@ static void try_mesh(const scree_mesh *mesh, scree_rng *rng) {
     bool *taken = room(c.s.vertex_count, sizeof *taken, 0);
     draw_candidates(&c, shares[i % 3], values[i / 3], rng);
     let_wait(&c, (double)values[i / 3] * (double)(i % 4) / 3);
+    for (size_t k = 0; k < c.blocks; k++) scree_choose_enter(&c.choosing, k);
     scree_choose_independent(&c.choosing);
     walk_in_order(&c, taken);
     compare(&c, taken);
@@ -228,6 +229,7 @@ static void too_long_a_ring_is_refused(void **state) {
   scree_ring_name(&c.s, h, &r);
   c.choosing.contenders[0] = (scree_contender){.a = r.a, .b = r.b, .c = r.c, .d = r.d};
   c.choosing.counts[0].left = 1;
+  scree_choose_enter(&c.choosing, 0);
   scree_choose_independent(&c.choosing);
   assert_int_equal(c.choosing.counts[0].taken, 0);
   assert_int_equal(c.s.refused[h], SCREE_EDGE_REFUSED);
