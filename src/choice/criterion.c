@@ -78,18 +78,15 @@ typedef struct pass {
   double triangle_count, reference, scan_volume;
   scree_level_row row; /* at the level under the pass */
   size_t index;
-  double eps, worst, smooth_eps, smooth_worst;
+  double penalty, eps, worst, smooth_eps, smooth_worst;
   double best_finer_ip;
 } pass;
-
-static double penalty(const pass *p) {
-  return p->options->weight * (double)p->row.triangle_count / p->triangle_count;
-}
 
 /* Moves the pass to the next level: the errors there and the envelopes so far. */
 static void pass_enter(pass *p, size_t index, scree_level_row row) {
   p->index = index;
   p->row = row;
+  p->penalty = p->options->weight * (double)row.triangle_count / p->triangle_count;
   p->eps = fabs(row.area - p->reference) / p->reference;
   p->worst = fmax(p->worst, p->eps);
   p->smooth_eps = fabs(row.area - p->noise->area) / p->noise->area;
@@ -106,10 +103,10 @@ static void record_level(const pass *p, scree_choice_level *level, size_t target
   level->area = p->row.area;
   level->volume = p->row.volume;
   level->eps_s = p->eps;
-  level->ip = p->eps + penalty(p);
+  level->ip = p->eps + p->penalty;
   level->worst_eps_s = p->worst;
-  level->robust_ip = p->worst + penalty(p);
-  level->smooth_ip = p->smooth_worst + penalty(p);
+  level->robust_ip = p->worst + p->penalty;
+  level->smooth_ip = p->smooth_worst + p->penalty;
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) level->errors[e] = NAN;
   level->errors[SCREE_ERROR_AREA] = p->eps;
   level->errors[SCREE_ERROR_VOLUME] = fabs(p->row.volume - p->scan_volume) / fabs(p->scan_volume);
@@ -118,7 +115,7 @@ static void record_level(const pass *p, scree_choice_level *level, size_t target
 /* Keeps the level under the pass where its criterion is not above the best: with counts falling,
  * ties go to the fewest triangles. */
 static void keep_best(const pass *p, double error, scree_pick *best) {
-  double ip = error + penalty(p);
+  double ip = error + p->penalty;
   if (best->triangle_count && ip > best->ip) return;
   *best = (scree_pick){(double)p->row.triangle_count / p->triangle_count,
                        p->index,
@@ -130,14 +127,22 @@ static void keep_best(const pass *p, double error, scree_pick *best) {
                        p->eps};
 }
 
-/* Fills the levels, from the finest down, whose target the pass has reached. */
-static size_t fill_levels(const pass *p, scree_choice_level *levels, size_t left, bool last) {
-  while (left) {
-    size_t target = scree_choice_target(levels[left - 1].rp, (size_t)p->triangle_count);
-    if (p->row.triangle_count > target && !last) break;
-    record_level(p, &levels[--left], target);
+/* Levels yet to be filled, from the finest down. */
+typedef struct filling {
+  scree_choice_level *levels;
+  size_t left, target; /* target: triangles of the next one */
+} filling;
+
+static void aim(filling *f, double triangle_count) {
+  if (f->left) f->target = scree_choice_target(f->levels[f->left - 1].rp, (size_t)triangle_count);
+}
+
+/* Fills the levels whose target the pass has reached. */
+static void fill_levels(const pass *p, filling *f, bool last) {
+  while (f->left && (p->row.triangle_count <= f->target || last)) {
+    record_level(p, &f->levels[--f->left], f->target);
+    aim(f, p->triangle_count);
   }
-  return left;
 }
 
 static void run_pass(const scree_level_table *table, const scree_choice_options *options,
@@ -148,7 +153,10 @@ static void run_pass(const scree_level_table *table, const scree_choice_options 
             .reference = choice->reference_area,
             .scan_volume = choice->volume,
             .best_finer_ip = INFINITY};
-  size_t grid_left = choice->level_count, trace_left = choice->trace_count;
+  filling grid = {choice->levels, choice->level_count, 0};
+  filling trace = {choice->trace, choice->trace_count, 0};
+  aim(&grid, p.triangle_count);
+  aim(&trace, p.triangle_count);
   for (size_t i = 0; i < table->count; i++) {
     pass_enter(&p, i, table->row(table->context, i));
     keep_best(&p, p.eps, &choice->plain);
@@ -156,13 +164,13 @@ static void run_pass(const scree_level_table *table, const scree_choice_options 
     keep_best(&p, p.smooth_worst, &choice->smooth);
     if (choice->plain.level_index == i)
       choice->plain_is_accident = p.eps < ACCIDENT_RATIO * p.worst;
-    double finer_ip = p.worst + 0.25 * penalty(&p); /* Nm four times as large */
+    double finer_ip = p.worst + 0.25 * p.penalty; /* Nm four times as large */
     if (finer_ip <= p.best_finer_ip) {
       p.best_finer_ip = finer_ip;
       choice->finer_count = p.row.triangle_count;
     }
-    grid_left = fill_levels(&p, choice->levels, grid_left, i + 1 == table->count);
-    trace_left = fill_levels(&p, choice->trace, trace_left, i + 1 == table->count);
+    fill_levels(&p, &grid, i + 1 == table->count);
+    fill_levels(&p, &trace, i + 1 == table->count);
   }
   choice->floor_count = p.row.triangle_count;
 }

@@ -53,6 +53,7 @@ typedef struct item {
 /* A collapse that was taken; its ring is in pass.edges from first_edge on. */
 typedef struct taken {
   uint32_t half_edge, first_edge;
+  uint32_t key; /* of its cost */
   uint16_t a_count, count;
   uint8_t verdict;
   bool open;  /* a boundary edge: one triangle goes */
@@ -62,9 +63,10 @@ typedef struct taken {
   scree_grid_box box;
 } taken;
 
-/* Of a block of vertices: where its collapses taken begin; the greatest cost of its candidates. */
+/* Of a block of vertices: those with an edge that may be collapsed; where its collapses taken
+ * begin; the greatest cost of its candidates. */
 typedef struct part {
-  size_t first;
+  size_t possible, first;
   double dearest;
 } part;
 
@@ -221,7 +223,7 @@ static void evaluate_waiting(pass *p, waiting *w) {
 }
 
 static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
+  (void)worker;
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
   waiting w = {.count = 0};
@@ -241,6 +243,8 @@ static void evaluate_block(void *context, size_t begin, size_t end, size_t block
     } while (h != SCREE_NONE && h != first);
   }
   evaluate_waiting(p, &w);
+  p->parts[block].possible = 0;
+  for (size_t v = begin; v < end; v++) p->parts[block].possible += p->cost[v] < INFINITY;
 }
 
 /* The leading 32 bits below the sign: monotone in the cost. */
@@ -330,7 +334,8 @@ static void list_first(pass *p) {
 static bool set_limit(pass *p) {
   size_t count = 0, vertices = p->d->s.vertex_count;
   uint32_t key[2];
-  for (size_t v = 0; v < vertices; v++) count += p->cost[v] < INFINITY;
+  for (size_t i = 0; i < scree_block_count(vertices, VERTEX_BLOCK); i++)
+    count += p->parts[i].possible;
   if (count == 0) return false;
   bool fine = (double)p->d->s.live_triangle_count > FINE * (double)p->d->first_triangle_count;
   double high = fine ? FINE_SHARE : HIGH_SHARE;
@@ -463,6 +468,7 @@ static void take(pass *p, const scree_contender *c, size_t index) {
   uint32_t h = p->best[c->taken];
   p->taken[index] = (taken){.half_edge = h,
                             .first_edge = c->first_edge,
+                            .key = key_of(p->cost[c->taken]),
                             .a_count = (uint16_t)c->a_count,
                             .count = (uint16_t)c->count,
                             .open = half[h].twin == SCREE_NONE};
@@ -594,9 +600,7 @@ static size_t sort_certain(pass *p) {
   enum { DIGIT = 11, RADIX = 1 << DIGIT };
   size_t count = 0;
   for (size_t i = 0; i < p->taken_count; i++)
-    if (p->taken[i].verdict == CERTAIN)
-      p->order[count++] =
-          (item){key_of(p->cost[p->d->s.half[p->taken[i].half_edge].from]), (uint32_t)i};
+    if (p->taken[i].verdict == CERTAIN) p->order[count++] = (item){p->taken[i].key, (uint32_t)i};
   for (int shift = 0; shift < 32; shift += DIGIT) {
     size_t start[RADIX + 1] = {0};
     for (size_t i = 0; i < count; i++) start[(p->order[i].key >> shift & (RADIX - 1)) + 1]++;
@@ -673,7 +677,8 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
 static size_t apply(pass *p) {
   scree_decimator *d = p->d;
   size_t count = sort_certain(p), open = 0;
-  for (size_t k = 0; k < count; k++) open += p->taken[p->order[k].index].open;
+  if (!d->s.closed)
+    for (size_t k = 0; k < count; k++) open += p->taken[p->order[k].index].open;
   scree_parallel_for(count, TAKEN_BLOCK, record_block, p);
   scree_parallel_for(p->taken_count, TAKEN_BLOCK, apply_block, p);
   d->record.count += count;

@@ -255,8 +255,7 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
                                     .locked_vertex_count = d.s.locked_vertex_count,
                                     .closed = d.s.closed};
   status = measure_surface(&d.s, &area, &volume, error);
-  if (status == SCREE_OK)
-    status = scree_record_allocate(&d.record, d.s.live_vertex_count, error);
+  if (status == SCREE_OK) status = scree_record_allocate(&d.record, d.s.live_vertex_count, error);
   if (status == SCREE_OK) status = decimate(&d);
   if (status != SCREE_OK) goto finished;
   cut_at_stop(&d);

@@ -19,10 +19,11 @@ static bool goes_before(const scree_choosing *c, uint32_t u, uint32_t v) {
   return u * scatter < v * scatter;
 }
 
+/* Who sees a claim sees the cost of its candidate, which may have been found just before. */
 static void claim(const scree_choosing *c, uint32_t *leader, uint32_t v) {
-  uint32_t found = __atomic_load_n(leader, __ATOMIC_RELAXED);
+  uint32_t found = __atomic_load_n(leader, __ATOMIC_ACQUIRE);
   while (found == SCREE_NONE || goes_before(c, v, found))
-    if (__atomic_compare_exchange_n(leader, &found, v, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED))
+    if (__atomic_compare_exchange_n(leader, &found, v, true, __ATOMIC_ACQ_REL, __ATOMIC_ACQUIRE))
       return;
 }
 
