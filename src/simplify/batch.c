@@ -34,6 +34,9 @@
 #define FINE       0.2
 #define FINE_SHARE 0.9
 enum { ROUNDS = 4 };
+/* Where there are no more than SCREE_GREEDY_COUNT triangles, what is usual for the squared stray
+ * counts for so much: single collapses would look at more places, and pay a toll. */
+#define COARSE_USUAL2 0.5
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
 /* Mean edges per grid cell, and the share of triangles left at which it gets new cells. */
@@ -714,6 +717,7 @@ static scree_status prepare_memory(pass *p) {
   if (status != SCREE_OK) return status;
   double usual = scree_memory_usual(&d->memory);
   if (usual > 0) p->usual2 = usual * usual;
+  if (d->s.live_triangle_count <= SCREE_GREEDY_COUNT) p->usual2 *= COARSE_USUAL2;
   return SCREE_OK;
 }
 

@@ -244,7 +244,8 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   status = scree_halfmesh_build(mesh, &d.s, error);
   if (status != SCREE_OK) goto finished;
   d.first_triangle_count = mesh->triangle_count;
-  d.single_from = SCREE_GREEDY_COUNT;
+  bool late = d.first_triangle_count > SCREE_LARGE_COUNT && !d.coster->merge;
+  d.single_from = late ? SCREE_GREEDY_LATE : SCREE_GREEDY_COUNT;
   double limit = options->error_limit / d.s.scale;
   d.error_limit = limit > 0 ? limit * limit : INFINITY;
   made->mesh = mesh;

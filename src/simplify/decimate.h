@@ -46,14 +46,15 @@ void scree_decimator_free(scree_decimator *d);
 void scree_record_write(scree_decimator *d, size_t place, const scree_ring *ring,
                         const scree_change *change, double error);
 
-/* Where the batches end and single collapses begin, in triangles. */
-enum { SCREE_GREEDY_COUNT = 10000 };
+/* Where the batches end and single collapses begin, in triangles; method `volume` on large scans
+ * goes on in batches to the second, for it is most of what does not run in parallel. */
+enum { SCREE_GREEDY_COUNT = 10000, SCREE_GREEDY_LATE = 5000 };
 
 /* From how many triangles on the surface is kept (stray.h); method `volume`. To look at every stray
  * from there on takes time, so that of large scans it is kept later. */
 enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 20000, SCREE_LARGE_COUNT = 600000 };
 
-/* Passes of many independent collapses, while there are more than SCREE_GREEDY_COUNT triangles. */
+/* Passes of many independent collapses, while there are more than single_from triangles. */
 scree_status scree_decimate_in_batches(scree_decimator *d);
 /* One collapse after the other, always the cheapest, to the end. */
 scree_status scree_decimate_one_by_one(scree_decimator *d);
