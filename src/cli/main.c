@@ -2,6 +2,7 @@
 #include "cli/terminal.h"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -126,7 +127,17 @@ static int act(int argc, char **argv) {
   return run(verb, argc, argv);
 }
 
+/* The C library keeps freed blocks of up to 32 MB for itself once there were such: a tenth of the
+ * memory of a decimation. Large ones go back to the system at once. */
+static void give_back_large_blocks(void) {
+#ifdef M_MMAP_THRESHOLD
+  enum { LARGE = 1 << 20 };
+  (void)mallopt(M_MMAP_THRESHOLD, LARGE);
+#endif
+}
+
 int main(int argc, char **argv) {
+  give_back_large_blocks();
   fill_standard_streams();
   int result = act(argc, argv);
   if (result != 0 || (fflush(stdout) == 0 && !ferror(stdout))) return result;
