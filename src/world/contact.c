@@ -177,6 +177,13 @@ static double hysteresis_loss(const scree_pair *pair, double before) {
   return 0.5 * pair->stiffness * (1 - e2) * (pair->largest * pair->largest - before * before);
 }
 
+/* Whether a point can pass a wall of the other body between two steps: then neither sees it. A
+ * sheet knows the side of every point, and a plane has no other. */
+static bool passes_unseen(const scree_world *world, const scree_pair *pair) {
+  if (pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b])) return false;
+  return pair->active.count > 0 && !(pair->travel <= 2 * pair->thin);
+}
+
 void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                          scree_pair_sums *sums) {
   if (pair->touching) add_later_work(world, pair, sums);
@@ -190,6 +197,7 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
     pair->next_item = -INFINITY;
   }
   good = good && wake_items(pair);
+  if (passes_unseen(world, pair) && !sums->too_fast) sums->too_fast = pair;
   scratch->touches.count = 0;
   bool some_sleep = visit_items(world, pair, &relative, scratch);
   clear_results(pair);

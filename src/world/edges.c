@@ -3,16 +3,21 @@
  * Closest points of the segments; while apart, direction and distance are theirs. Deeper, the
  * crossing normal: which of the two the normals of the faces say where only one is a normal of both
  * edges, else (two blades) the reference kept from outside. A crossing counts deep down when it was
- * seen to come about from outside ("armed"), or where the pair presses that way already and deeper:
- * an edge that comes in behind a corner was last seen from the wrong side. It counts as far as its
- * normal is one of both edges: edges that slid around a corner inside each other would claim any
- * depth. Nearly parallel edges have no crossing: their ends, which are points against faces, stand
- * for them; the weight fades below sin = 4e-3.
+ * seen to come about from outside ("armed"), where only one of the two normals is one of both edges
+ * and a closest point lies in the other body as it begins, or where the pair presses that way
+ * already: an edge that comes in behind a corner was last seen from the wrong side. It counts as
+ * far as its normal is one of both edges: edges that slid around a corner inside each other would
+ * claim any depth. Nearly parallel edges have no crossing: their ends, which are points against
+ * faces, stand for them; the weight fades below sin = 4e-3.
  *
- * Ends. A crossing that was seen from outside has a weight that fades within a tenth of the
- * roundings, since the corners there take over. One that came in behind a corner, which may be
- * outside again, has an overlap that tapers to nothing, over a way as long as itself, and the force
- * is the slope of what is left. */
+ * Ends, where crossings come and go. With e the way from the nearest end to the plane of the other
+ * edge and the normal, the weight fades within a tenth of roundings and overlap. What the overlap
+ * has more than that of the corner at the end tapers over a way as long as itself: the corner goes
+ * on alone, and is pushed out by the nearer face where the crossing asks for the whole depth of the
+ * edge. Both slopes are in the force.
+ *
+ * A crossing that begins to count other than at its ends does so from nothing, or from what the
+ * pair has already: what is more is held back, until the edges are apart. */
 #include "world/world.h"
 
 #include "particle/closest.h"
@@ -21,12 +26,12 @@ static const double parallel_sines[2] = {1e-3, 4e-3};
 static const double beyond_cosines[2] = {0.8660254, 0.9659258}; /* 30 and 15 degrees */
 static const double beyond_sines[2] = {0.5, 0.2588190};
 static const double crossing_cosines[2] = {0.3, 0.6}; /* crossing normal against the reference */
-static const double beside_cosines[2] = {-0.6, -0.3}; /* the way out against the reference */
 static const double pressing_cosine = 0.2;            /* 78 degrees */
 /* of the slack of cones, and of twice that */
 static const double slack_cosines[2] = {0.9982005, 0.9928086};
 static const double slack_sines[2] = {0.0599640, 0.1197122};
-static const double end_shares[2] = {0.1, 1};
+static const double end_share = 0.1;
+static const double facing_cosine = 0.3;
 
 /* Closest points of a pair's two edges, in the frame of b. */
 typedef struct crossing {
@@ -144,48 +149,84 @@ static bool is_crossed(const scree_world *world, const scree_pair *pair,
   return scree_is_inside(a, of_a);
 }
 
-/* What is left of `overlap` at this way from the end, and how it changes with either. */
-typedef struct tapered {
-  double overlap, by_overlap, by_end;
-} tapered;
-
-static tapered taper(double overlap, double end, double reach, double tapering) {
-  double way = tapering * (end_shares[0] * reach + end_shares[1] * overlap);
-  if (end >= way || overlap <= 0) return (tapered){overlap, 1, 0};
-  double x = end / way;
-  double share = x * (2 - x), rise = 2 * (1 - x) / way;
-  return (tapered){overlap * share, share - overlap * x * rise * tapering * end_shares[1],
-                   overlap * rise};
+/* Within this of an end the weight fades. */
+static double fading_way(double overlap, double reach) {
+  return fmin(end_share * (reach + fmax(overlap, 0)), 0.5 * reach);
 }
 
-static void taper_touch(scree_touch *touch, const crossing *x, double reach, double tapering) {
-  tapered left = taper(touch->overlap, x->end, reach, tapering);
-  if (left.by_end == 0) return;
-  vec3 slope = vec3_scale(touch->normal, left.by_overlap);
-  slope = vec3_mad(slope, inward(x), -left.by_end); /* the overlap falls along it */
-  touch->overlap = left.overlap;
+/* The weight near an end, and how it falls. */
+static void fade(scree_touch *touch, const crossing *x, double reach) {
+  double way = fading_way(touch->overlap, reach), grown = end_share * (reach + touch->overlap);
+  if (x->end >= way) return;
+  double fall = touch->weight * scree_smooth_slope(0, way, x->end),
+         longer = touch->overlap > 0 && way == grown ? end_share * x->end / way : 0;
+  touch->weight *= scree_smooth_step(0, way, x->end);
+  touch->fading = vec3_scale(vec3_mad(inward(x), touch->normal, longer), -fall);
+}
+
+/* The overlap of the corner at the nearest end with the faces at the other edge that look the way
+ * out, and the way along which it falls as a moves; at most the crossing's. */
+typedef struct corner {
+  double overlap;
+  vec3 slope;
+} corner;
+
+static corner corner_at_end(const scree_frame *relative, const crossing *x,
+                            const scree_touch *touch, double reach) {
+  const scree_edge *own = x->of_a ? x->ea : x->eb, *other = x->of_a ? x->eb : x->ea;
+  vec3 at = x->at_start ? own->start : own->end;
+  if (x->of_a) at = vec3_add(mat3_mul_vec(&relative->rotation, at), relative->position);
+  vec3 away = vec3_sub(at, x->of_a ? x->on_b : x->on_a),
+       axis = x->of_a ? other->normals.axis : x->axis_a,
+       side = vec3_cross(axis, x->of_a ? x->ub : x->ua),
+       out = x->of_a ? touch->normal : vec3_neg(touch->normal);
+  const scree_cone *n = &other->normals; /* without the slack: from face to face */
+  double cosine = n->cosine * slack_cosines[0] + n->sine * slack_sines[0],
+         sine = n->sine * slack_cosines[0] - n->cosine * slack_sines[0];
+  corner least = {touch->overlap, out};
+  for (int k = 0; k < 2; k++) {
+    vec3 face = vec3_mad(vec3_scale(axis, cosine), side, k ? -sine : sine);
+    double lies = scree_smooth_step(0, facing_cosine, vec3_dot(face, out)),
+           below = reach - vec3_dot(away, face),
+           overlap = touch->overlap + lies * (below - touch->overlap);
+    if (overlap >= least.overlap) continue;
+    vec3 slope = vec3_mad(vec3_scale(out, 1 - lies), face, lies);
+    least = (corner){overlap, slope};
+  }
+  if (least.overlap < 0) return (corner){0, {0, 0, 0}};
+  return x->of_a ? least : (corner){least.overlap, vec3_neg(least.slope)};
+}
+
+/* Towards an end the overlap tapers to that of the corner there, over a way as long as what goes;
+ * the force is the slope of what is left. */
+static void taper(scree_touch *touch, const scree_frame *relative, const crossing *x,
+                  double reach) {
+  if (x->end >= end_share * reach + touch->overlap || touch->overlap <= 0) return;
+  corner c = corner_at_end(relative, x, touch, reach);
+  double excess = touch->overlap - c.overlap, way = end_share * reach + excess, t = x->end / way;
+  if (t >= 1 || excess <= 0) return;
+  double share = t * (2 - t), by_end = 2 * (1 - t) * excess / way, by_overlap = share - t * by_end;
+  vec3 slope = vec3_mad(vec3_scale(touch->normal, by_overlap), c.slope, 1 - by_overlap);
+  slope = vec3_mad(slope, inward(x), -by_end); /* the overlap falls along it */
+  touch->overlap = c.overlap + excess * share;
   touch->lever = vec3_norm(slope);
   touch->normal = vec3_unit(slope);
 }
 
-/* How far edges that are inside crossed other than along the way on which they were seen apart. */
-static double beside(const scree_item *item, vec3 normal) {
-  return 1 -
-         scree_smooth_step(beside_cosines[0], beside_cosines[1], vec3_dot(normal, item->reference));
+/* Whether of a normal and its opposite only the former is one of both edges. */
+static bool is_only_normal(const crossing *x, vec3 n) {
+  return common_share(x, n) > 0 && !(common_share(x, vec3_neg(n)) > 0);
 }
 
 /* Whether edges that were not seen to cross have: the normal from b to a is one of both only the
- * other way round, and that is the way in which the pair presses already, deeper than they do. So
- * do edges that come in behind a corner which leaves by another face. */
+ * other way round, and that is the way in which the pair presses already. So do edges that come in
+ * behind a corner which leaves by another face. */
 static bool is_met_from_behind(const scree_world *world, const scree_pair *pair,
                                const scree_item *item, const scree_frame *relative,
                                const crossing *x) {
   if (!pair->touching || !item->has_reference) return false;
   vec3 behind = vec3_scale(x->offset, -1 / x->distance);
-  double aside = beside(item, behind),
-         claimed = taper(pair->reach + x->distance, x->end, pair->reach, aside).overlap;
-  if (claimed > pair->overlap) return false;
-  if (!(common_share(x, behind) > 0) || common_share(x, vec3_neg(behind)) > 0) return false;
+  if (!is_only_normal(x, behind)) return false;
   const float *along = pair->tangential.force;
   vec3 force = vec3_sub(pair->wrench.force, (vec3){along[0], along[1], along[2]});
   force = mat3_tmul_vec(&scree_pair_frame_b(world, pair)->rotation, force);
@@ -206,42 +247,77 @@ static void leave_to_points(const scree_pair *pair, scree_item *item, const cros
   if (apart && !item->inside) keep_reference(item, vec3_scale(x->offset, 1 / x->distance));
 }
 
-/* How a crossing touches: normal towards a, signed distance, weight, and whether its overlap tapers
- * or its weight fades towards the ends. */
+/* How a crossing touches. */
 typedef struct edge_contact {
-  vec3 normal;
-  double distance, weight, tapering;
+  vec3 normal;             /* towards a */
+  double distance, weight; /* signed; but for the ends */
+  double first;            /* of its overlap, what may count when it begins to */
 } edge_contact;
+
+/* Whether edges that were not seen to cross lie across each other all the same. */
+static bool is_clear(const scree_world *world, const scree_pair *pair, const scree_item *item,
+                     const scree_frame *relative, const crossing *x, const edge_contact *c) {
+  if (!is_only_normal(x, c->normal)) return false;
+  return c->distance >= 0 ||
+         (item->crossing == SCREE_CROSSING_NONE && is_crossed(world, pair, relative, x));
+}
+
+/* What may count at once of a crossing that begins to: all where it begins at an end, where
+ * nothing is left of it, or where the pair is new. */
+static double first_overlap(const scree_pair *pair, const scree_item *item, const crossing *x) {
+  bool at_end =
+      item->crossing == SCREE_CROSSING_NONE && x->end <= end_share * pair->reach + 2 * pair->travel;
+  return at_end || scree_pair_is_new(pair) ? INFINITY : 0;
+}
+
+/* A crossing whose cores are near each other or have met: false where it does not count. */
+static bool find_deep_contact(const scree_world *world, const scree_pair *pair, scree_item *item,
+                              const scree_frame *relative, const crossing *x, bool behind,
+                              edge_contact *c) {
+  if (!item->has_reference) return false; /* not armed */
+  c->normal = way_out(item, x, &c->weight);
+  c->distance = vec3_dot(x->offset, c->normal);
+  bool apart = c->distance >= -2 * pair->travel,
+       armed = item->inside || behind ||
+               (apart && vec3_dot(c->normal, item->reference) >= -crossing_cosines[0]);
+  if (!armed && is_clear(world, pair, item, relative, x, c)) {
+    keep_reference(item, c->normal);
+    armed = true;
+  }
+  bool stale = c->distance < -pair->thin && !is_crossed(world, pair, relative, x);
+  item->inside = armed && !stale && c->distance < 0.5 * pair->reach;
+  if (!apart && !scree_pair_is_new(pair)) c->first = 0;
+  if (behind) /* what changes nothing */
+    c->first = fmax(c->first, pair->overlap * (1 - world->options.sharing) - pair->smoothing);
+  return armed && !stale;
+}
 
 /* False where the crossing does not count. */
 static bool find_contact(const scree_world *world, const scree_pair *pair, scree_item *item,
                          const scree_frame *relative, const crossing *x, edge_contact *c) {
-  double half = 0.5 * pair->reach;
   *c = (edge_contact){.normal = vec3_scale(x->offset, 1 / fmax(x->distance, 1e-300)),
-                      .distance = x->distance};
+                      .distance = x->distance,
+                      .first = first_overlap(pair, item, x)};
   c->weight = scree_smooth_step(parallel_sines[0], parallel_sines[1], x->sine) * facing_share(x);
-  bool behind = !item->inside && is_met_from_behind(world, pair, item, relative, x);
-  if (item->inside || behind || x->distance < half) {
-    if (!item->has_reference) return false; /* not armed */
-    c->normal = way_out(item, x, &c->weight);
-    c->distance = vec3_dot(x->offset, c->normal);
-    bool armed = item->inside || behind ||
-                 (c->distance >= -2 * pair->travel &&
-                  vec3_dot(c->normal, item->reference) >= -crossing_cosines[0]);
-    bool stale = c->distance < -pair->thin && !is_crossed(world, pair, relative, x);
-    item->inside = armed && !stale && c->distance < half;
-    if (!armed || stale) return false;
-  }
+  bool behind = !item->inside && is_met_from_behind(world, pair, item, relative, x),
+       deep = item->inside || behind || x->distance < 0.5 * pair->reach;
+  if (deep && !find_deep_contact(world, pair, item, relative, x, behind, c)) return false;
   if (!item->inside) keep_reference(item, c->normal);
   double out_a = -vec3_dot(x->axis_a, c->normal), out_b = vec3_dot(x->eb->normals.axis, c->normal);
   if (out_a <= x->ea->facing || out_b <= x->eb->facing) return false; /* seen through a body */
-  if (item->inside) {
-    c->weight *= common_share(x, c->normal);
-    c->tapering = beside(item, c->normal);
-  }
-  double fading = end_shares[0] * pair->reach * (1 - c->tapering) * x->sine;
-  if (fading > 0) c->weight *= scree_smooth_step(0, fading, x->end);
+  if (item->inside) c->weight *= common_share(x, c->normal);
   return true;
+}
+
+/* A crossing that begins to count in the midst of both edges does so from what `first` allows: the
+ * rest is held back. What is held falls with the overlap, so that nothing is once they are apart.
+ */
+static void hold_back(const scree_pair *pair, scree_item *item, scree_touch *touch, double first) {
+  double overlap = fmax(touch->overlap, 0);
+  bool outside = overlap <= 2 * pair->travel; /* a step ago */
+  if (item->crossing != SCREE_CROSSING_COUNTS) item->held = outside ? 0 : fmax(overlap - first, 0);
+  item->held = fmin(item->held, overlap);
+  touch->overlap -= item->held;
 }
 
 double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
@@ -257,13 +333,21 @@ double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree
     leave_to_points(pair, item, &x);
   if (!crosses || !find_contact(world, pair, item, relative, &x, &c)) {
     item->anchor.share = 0;
+    item->crossing = crosses ? SCREE_CROSSING_REFUSED : SCREE_CROSSING_NONE;
     return heard ? fmin(far, 0) : far;
   }
   double rounding = world->bodies.particle[pair->a]->measures.rounding;
   const double values[4] = {c.distance, rounding, pair->reach - rounding, c.weight};
   size_t touches = scratch->touches.count;
   double gap = scree_add_touch(scratch, pair, x.on_b, c.normal, values, &item->anchor);
-  if (scratch->touches.count > touches)
-    taper_touch(&scratch->touches.items[touches], &x, pair->reach, c.tapering);
+  if (scratch->touches.count > touches) {
+    scree_touch *touch = &scratch->touches.items[touches];
+    fade(touch, &x, pair->reach);
+    taper(touch, relative, &x, pair->reach);
+    hold_back(pair, item, touch, c.first);
+  } else {
+    item->held = 0;
+  }
+  item->crossing = SCREE_CROSSING_COUNTS;
   return gap;
 }

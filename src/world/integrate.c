@@ -60,11 +60,11 @@ static double coming_travel(scree_world *world, size_t i) {
   return (vec3_norm(v) + fastest_point(b->turn[i], &b->particle[i]->box)) * dt;
 }
 
-/* Most a body may move in a step: two that meet see each other before a thin wall is passed. */
+/* Most a body may move in a step; pairs have a limit of their own (contact.c). */
 static double travel_limit(const scree_world *world, size_t i) {
-  const scree_particle *particle = world->bodies.particle[i];
-  double size = world->options.size > 0 ? world->options.size : particle->measures.size;
-  return fmin(world->options.overlap_limit * size, scree_thin_overlap(particle));
+  double size =
+      world->options.size > 0 ? world->options.size : world->bodies.particle[i]->measures.size;
+  return world->options.overlap_limit * size;
 }
 
 typedef struct gathering {
@@ -98,7 +98,7 @@ bool scree_world_gather(scree_world *world) {
     if (isfinite(travel))
       scree_fail(&world->failure, SCREE_DIVERGED,
                  "world: step %llu, body %zu would move %.3g m in one step of %.3g s; at most "
-                 "%.3g m (the overlap limit or half its thinnest wall)",
+                 "%.3g m (the overlap limit)",
                  (unsigned long long)world->step_count, i, travel, world->time_step,
                  travel_limit(world, i));
     else

@@ -15,6 +15,8 @@
 
 enum { NEWTON_STEPS = 30, CLOSED_ROUNDS = 3 };
 
+static const double resolved_share = 0.01; /* of the roundings in a step */
+
 /* Closed form. With h the highest overlap, d_i = h - o_i, x = h - t and k = kappa/(1 - kappa), the
  * features of a set all count where x > d_i, and the equation of the set is the quadratic
  *   (W - k2) x2 - 2 (D1 - k c) x + D2 - c2 = 0,   c = l0 + k (h + l0),
@@ -203,6 +205,27 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
   sums->tangential_power += vec3_dot(along, v);
 }
 
+/* Most that a fading weight may add, in spring forces. A lone touch that fades lets go of nearly
+ * all of its overlap in the last bit of the way. No step resolves that, unless it is so short that
+ * the force moves the bodies by little of the way within it: by K m dt^2/m* = (pi dt/contact
+ * time)^2 m.
+ */
+static double most_fading(const scree_world *world, const scree_pair *pair) {
+  double turn = 3.14159265358979323846 * world->time_step / pair->contact_time;
+  return fmax(1, resolved_share * pair->reach / (pair->overlap * turn * turn));
+}
+
+/* The weight's part of the slope, with dm/dw = (o - t)^2/(2 (S (1 - kappa) + kappa l)). */
+static void fade(double spring, double by_weight, double most, scree_touch *touch,
+                 load_sums *sums) {
+  vec3 slope = vec3_scale(touch->fading, by_weight);
+  double size = vec3_norm(slope);
+  vec3 force = vec3_scale(slope, size > most ? spring * most / size : spring);
+  touch->force = vec3_add(touch->force, force);
+  sums->normal.force = vec3_add(sums->normal.force, force);
+  sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(touch->at, force));
+}
+
 /* Into space. */
 static scree_load turned(const scree_load *load, const mat3 *rotation) {
   return (scree_load){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
@@ -250,6 +273,9 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
     touch->share = above > 0 ? touch->weight * above / maximum.denominator : 0;
     if (touch->share > 0) {
       press(pair, &law, spring, touch, relative, &energy, &sums);
+      if (touch->fading.x != 0 || touch->fading.y != 0 || touch->fading.z != 0)
+        fade(spring, 0.5 * above * above / maximum.denominator, most_fading(world, pair), touch,
+             &sums);
       contacts++;
     } else {
       touch->anchor->share = 0;

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 5};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 6};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
@@ -570,8 +570,9 @@ static bool names_features(const loader *l, const scree_pair *pair, uint32_t kin
 }
 
 static bool is_item(const loader *l, const scree_pair *pair, const scree_item *item) {
-  if (item->face_count > SCREE_CACHED_FACES) return false;
   if (!names_features(l, pair, item->kind, item->a, item->b)) return false;
+  if (item->kind == SCREE_ITEM_EDGE_EDGE) return item->crossing <= SCREE_CROSSING_REFUSED;
+  if (item->face_count > SCREE_CACHED_FACES) return false;
   const scree_particle *surface = item->kind == SCREE_ITEM_FACE_POINT
                                       ? l->world->bodies.particle[pair->a]
                                       : scree_pair_shape_b(l->world, pair);

@@ -76,6 +76,15 @@ static scree_status describe_overlap(scree_world *world, const scree_pair *pair)
                     pair->b, pair->overlap, pair->limit);
 }
 
+static scree_status describe_speed(scree_world *world, const scree_pair *pair) {
+  return scree_fail(
+      &world->failure, SCREE_DIVERGED,
+      "world: step %llu, body %u moved by %.3g m past %s %u in one step of %.3g s; at "
+      "most %.3g m (the thinnest wall of the two, or twice the overlap limit)",
+      (unsigned long long)world->step_count, pair->a, pair->travel, pair->wall ? "wall" : "body",
+      pair->b, world->time_step, 2 * pair->thin);
+}
+
 static scree_status combine_sums(scree_world *world, size_t blocks) {
   world->largest_overlap = 0;
   for (size_t block = 0; block < blocks; block++) {
@@ -87,9 +96,11 @@ static scree_status combine_sums(scree_world *world, size_t blocks) {
     if (sums->out_of_memory)
       return scree_fail_memory(&world->failure, 0, "contact features of a pair");
   }
-  for (size_t block = 0; block < blocks; block++)
-    if (world->sums.items[block].beyond_limit)
-      return describe_overlap(world, world->sums.items[block].beyond_limit);
+  for (size_t block = 0; block < blocks; block++) {
+    const scree_pair_sums *sums = &world->sums.items[block];
+    if (sums->beyond_limit) return describe_overlap(world, sums->beyond_limit);
+    if (sums->too_fast) return describe_speed(world, sums->too_fast);
+  }
   return SCREE_OK;
 }
 

@@ -28,11 +28,6 @@ typedef struct surface_contact {
   double lever; /* by how much the distance grows along the normal: 1, but where two are blended */
 } surface_contact;
 
-static double smooth_step_slope(double from, double to, double x) {
-  double t = (x - from) / (to - from);
-  return t <= 0 || t >= 1 ? 0 : 6 * t * (1 - t) / (to - from);
-}
-
 double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
                        const double values[4], scree_anchor *anchor) {
   double distance = values[0], above = values[1], below = values[2], weight = values[3];
@@ -50,6 +45,7 @@ double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, v
   touch->at = vec3_mad(c, n, 0.5 * (distance - above + below));
   touch->normal = n;
   touch->lever = 1;
+  touch->fading = (vec3){0, 0, 0};
   touch->overlap = overlap;
   touch->weight = weight;
   touch->anchor = anchor;
@@ -147,7 +143,7 @@ static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item
 static void slide_off(vec3 p, double half, const surface_contact *closest,
                       surface_contact *contact) {
   double w = contact->weight, sideways = vec3_norm(contact->aside),
-         fall = -smooth_step_slope(0, half, sideways) / sideways;
+         fall = -scree_smooth_slope(0, half, sideways) / sideways;
   vec3 slope = vec3_add(vec3_scale(contact->normal, w), vec3_scale(closest->normal, 1 - w));
   slope = vec3_mad(slope, contact->aside, fall * (contact->distance - closest->distance));
   contact->distance = w * contact->distance + (1 - w) * closest->distance;

@@ -72,15 +72,28 @@ typedef struct scree_sleeper {
 
 enum { SCREE_CACHED_FACES = 4, SCREE_ANCHORS = 3 };
 
+/* Whether the closest points of two edges lie within both. */
+typedef enum scree_crossing {
+  SCREE_CROSSING_NONE,
+  SCREE_CROSSING_COUNTS,
+  SCREE_CROSSING_REFUSED, /* which way it is out is not known */
+} scree_crossing;
+
 /* A feature pair that is evaluated every step: two cache lines. */
 typedef struct scree_item {
   uint8_t kind;
   bool has_reference, inside;
   bool notched; /* it has further anchors */
   uint32_t a, b;
-  uint32_t face_count; /* cached nearest faces */
+  union {
+    uint32_t face_count; /* of a point: cached nearest faces */
+    uint32_t crossing;   /* of edges: a scree_crossing, of the last step */
+  };
   uint32_t face[SCREE_CACHED_FACES];
-  double valid;   /* path up to which no other face can be nearer */
+  union {
+    double valid; /* of a point: path up to which no other face can be nearer */
+    double held;  /* of edges: overlap that does not count (edges.c) */
+  };
   vec3 reference; /* the way out, kept from the last time the cores were apart */
   double gap;     /* found in this step; 0: stay awake */
   scree_anchor anchor;
@@ -161,6 +174,7 @@ typedef struct scree_touch {
   vec3 at, normal; /* normal towards a */
   double overlap, weight, share;
   double lever; /* how much the overlap falls as a moves along the normal */
+  vec3 fading;  /* along which the weight falls as a moves, 1/m */
   vec3 force;   /* on a */
   scree_anchor *anchor;
 } scree_touch;
@@ -182,7 +196,7 @@ typedef struct scree_scratch {
 typedef struct scree_pair_sums {
   double dashpot, tangential, wall_work;
   double largest_overlap;
-  const scree_pair *beyond_limit;
+  const scree_pair *beyond_limit, *too_fast;
   bool out_of_memory;
 } scree_pair_sums;
 
@@ -371,6 +385,10 @@ static inline double scree_smooth_step(double from, double to, double x) {
   double t = (x - from) / (to - from);
   t = t < 0 ? 0 : t > 1 ? 1 : t;
   return t * t * (3 - 2 * t);
+}
+static inline double scree_smooth_slope(double from, double to, double x) {
+  double t = (x - from) / (to - from);
+  return t <= 0 || t >= 1 ? 0 : 6 * t * (1 - t) / (to - from);
 }
 /* Which side of an analytic wall p (wall frame) is on: 1 in front of the plane or disc, inside the
  * cylinder; -1 for the other side of a disc or cylinder. */

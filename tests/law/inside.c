@@ -181,7 +181,7 @@ static void a_corner_that_wanders_inside(void **state) {
   } cases[] = {{"camera of 38 triangles", camera(), 5, INFINITY},
                {"flat octahedron", flint(0.05, 0.03, 0.012), 0, 2},
                {"wedge", solid_prism(triangle, 3, 0.08), 0, 0},
-               {"box", shape_box(0.1, 0.05, 0.015), 0, 50}};
+               {"box", shape_box(0.1, 0.05, 0.015), 0, 40}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     scree_error error;
     scree_particle *particle = NULL;
