@@ -63,8 +63,8 @@ enum {
   KNOWN = FALLBACK + SCREE_FALLBACK_COUNT
 };
 
-/* First choices found at once; kept; edges of the heap looked at for them. */
-enum { AT_ONCE = 3, KEPT = 64, LOOKED_AT = 24 };
+/* First choices found at once, at most; kept; edges of the heap looked at for them. */
+enum { AT_ONCE = 8, KEPT = 64, LOOKED_AT = 24 };
 
 typedef struct choice {
   uint32_t half_edge;
@@ -383,10 +383,10 @@ static void find_block(void *context, size_t begin, size_t end, size_t block, in
 }
 
 /* Lists edges that wait for their first choice, in their order: the cheapest, and others that come
- * soon. */
-static size_t list_next(const queue *q, uint32_t *edges) {
+ * soon. One for each worker: of more, most would be forgotten before their turn. */
+static size_t list_next(const queue *q, size_t most, uint32_t *edges) {
   size_t places[2 * LOOKED_AT + 1] = {0}, place_count = q->heap_count > 0, count = 0;
-  for (int looked = 0; looked < LOOKED_AT && place_count > 0 && count < AT_ONCE; looked++) {
+  for (int looked = 0; looked < LOOKED_AT && place_count > 0 && count < most; looked++) {
     size_t least = 0;
     for (size_t i = 1; i < place_count; i++)
       if (before(q, q->heap[places[i]], q->heap[places[least]])) least = i;
@@ -402,7 +402,8 @@ static size_t list_next(const queue *q, uint32_t *edges) {
 /* Finds the first choice of the cheapest edge, and of some that come soon. */
 static void find_first_choices(queue *q) {
   uint32_t edges[AT_ONCE] = {q->heap[0]};
-  size_t count = scree_worker_count() > 1 ? list_next(q, edges) : 1;
+  size_t workers = (size_t)scree_worker_count(), most = workers < AT_ONCE ? workers : AT_ONCE;
+  size_t count = most > 1 ? list_next(q, most, edges) : 1;
   if (q->known_next + count > KEPT) q->known_next = 0;
   for (size_t i = 0; i < count; i++) {
     choice *made = &q->known[q->known_next + i];
