@@ -213,9 +213,17 @@ static void taper(scree_touch *touch, const scree_frame *relative, const crossin
   touch->normal = vec3_unit(slope);
 }
 
+/* Whether a direction with this cosine from the edge's outward one has a share above 0. */
+static bool has_normal(const scree_edge *edge, double cosine) {
+  const scree_cone *n = &edge->normals;
+  return cosine > n->cosine * beyond_cosines[0] - n->sine * beyond_sines[0];
+}
+
 /* Whether of a normal and its opposite only the former is one of both edges. */
 static bool is_only_normal(const crossing *x, vec3 n) {
-  return common_share(x, n) > 0 && !(common_share(x, vec3_neg(n)) > 0);
+  double out_a = -vec3_dot(x->axis_a, n), out_b = vec3_dot(x->eb->normals.axis, n);
+  return has_normal(x->ea, out_a) && has_normal(x->eb, out_b) &&
+         !(has_normal(x->ea, -out_a) && has_normal(x->eb, -out_b));
 }
 
 /* Whether edges that were not seen to cross have: the normal from b to a is one of both only the
@@ -296,8 +304,8 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
 static bool find_contact(const scree_world *world, const scree_pair *pair, scree_item *item,
                          const scree_frame *relative, const crossing *x, edge_contact *c) {
   *c = (edge_contact){.normal = vec3_scale(x->offset, 1 / fmax(x->distance, 1e-300)),
-                      .distance = x->distance,
-                      .first = first_overlap(pair, item, x)};
+                      .distance = x->distance};
+  if (item->crossing != SCREE_CROSSING_COUNTS) c->first = first_overlap(pair, item, x);
   c->weight = scree_smooth_step(parallel_sines[0], parallel_sines[1], x->sine) * facing_share(x);
   bool behind = !item->inside && is_met_from_behind(world, pair, item, relative, x),
        deep = item->inside || behind || x->distance < 0.5 * pair->reach;
