@@ -107,6 +107,19 @@ typedef struct scree_collapse {
 SCREE_API void scree_curve_collapse(const scree_curve *curve, size_t index,
                                     scree_collapse *collapse);
 
+/* With method volume vertices of a coarse level also move, after the collapse that makes it and as
+ * part of the same step: one after the other, and one may move more than once. */
+typedef struct scree_vertex_move {
+  uint32_t vertex;    /* of the mesh given */
+  double position[3]; /* afterwards, m */
+} scree_vertex_move;
+
+/* How many belong to collapse `index`. O(log of the moves). */
+SCREE_API size_t scree_curve_move_count(const scree_curve *curve, size_t index);
+/* number must be below that. */
+SCREE_API void scree_curve_move(const scree_curve *curve, size_t index, size_t number,
+                                scree_vertex_move *move);
+
 /* Goes through many levels, from fine to coarse, in one sweep: O(Nm) for all steps together and the
  * size of each level for its step. */
 typedef struct scree_replay scree_replay;

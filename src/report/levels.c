@@ -21,8 +21,9 @@ enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304, HEADER_BYTES = 40 };
 /* How the limit is shared: found on scans of 80,000 to 762,008 triangles, see docs/formats.md. */
 static const double levels_share = 0.32;         /* of the bytes: base and collapses */
 static const double bytes_per_base_triangle = 8; /* with its collapses */
+static const double bytes_per_move = 8;          /* of a vertex, after them */
 static const double bytes_per_scan_triangle = 3; /* first guess */
-static const size_t least_base_triangles = 2000; /* however small the limit */
+static const size_t least_base_triangles = 500;  /* however small the limit */
 static const size_t most_base_triangles =
     150000; /* a browser redraws them while the slider moves */
 static const double retry_margin = 0.97;
@@ -44,44 +45,74 @@ static void find_grid(levels *l, const scree_mesh *scan) {
     scree_collapse collapse;
     scree_curve_collapse(l->curve, i, &collapse);
     scree_pack_stretch(collapse.position, low, high);
+    for (size_t k = 0; k < scree_curve_move_count(l->curve, i); k++) {
+      scree_vertex_move move;
+      scree_curve_move(l->curve, i, k, &move);
+      scree_pack_stretch(move.position, low, high);
+    }
   }
   scree_pack_grid(&l->pack, low, high);
 }
 
 /* ---- the parts ---- */
 
-/* Collapses from base_level on, in the vertices of the packed base: pairs of kept and gone, and the
- * steps on the grid. number: of the given mesh's vertices in the base; place: of these in the
- * file. */
+/* Pairs of kept and gone, in the vertices of the packed base, and the steps on the grid. */
+typedef struct steps {
+  levels *l;
+  const uint32_t *number; /* of the given mesh's vertices in the base */
+  const uint32_t *place;  /* of these in the file */
+  uint32_t *pairs;
+  scree_grid_point *moves, *now;
+  size_t count;
+} steps;
+
+static void put_step(steps *s, uint32_t kept, uint32_t gone, size_t triangle_count,
+                     const double *position) {
+  uint32_t v = s->number[kept];
+  scree_grid_point to = scree_pack_point(&s->l->pack, position), *move = &s->moves[s->count];
+  for (int k = 0; k < 3; k++) move->x[k] = (uint16_t)(to.x[k] - s->now[v].x[k]);
+  move->extra = (uint16_t)triangle_count;
+  s->now[v] = to;
+  s->pairs[2 * s->count] = s->place[v];
+  s->pairs[2 * s->count++ + 1] = s->place[s->number[gone]];
+}
+
+/* The moves of a collapse come before it, and its own vertex goes to where it moved at last: so the
+ * first step that leaves so many triangles makes the level. */
+static void put_collapse(steps *s, size_t index) {
+  scree_collapse c;
+  scree_curve_collapse(s->l->curve, index, &c);
+  for (size_t k = 0; k < scree_curve_move_count(s->l->curve, index); k++) {
+    scree_vertex_move move;
+    scree_curve_move(s->l->curve, index, k, &move);
+    if (move.vertex == c.kept)
+      memcpy(c.position, move.position, sizeof c.position);
+    else
+      put_step(s, move.vertex, move.vertex, 0, move.position);
+  }
+  put_step(s, c.kept, c.gone, c.triangle_count, c.position);
+}
+
+/* Collapses and moves from base_level on. */
 static scree_status put_collapses(levels *l, size_t base_level, const scree_mesh *base,
                                   const uint32_t *number, const uint32_t *place) {
-  size_t count = scree_curve_level_count(l->curve) - 1 - base_level;
-  uint32_t *pairs = NULL;
-  scree_grid_point *moves = NULL, *now = NULL;
+  size_t last = scree_curve_level_count(l->curve) - 1, count = last - base_level;
+  steps s = {.l = l, .number = number, .place = place};
   scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(pairs, 2 * count + 1, l->pack.error, done);
-  SCREE_ALLOC_OR(moves, count + 1, l->pack.error, done);
-  SCREE_ALLOC_OR(now, base->vertex_count, l->pack.error, done);
+  for (size_t i = base_level; i < last; i++) count += scree_curve_move_count(l->curve, i);
+  SCREE_ALLOC_OR(s.pairs, 2 * count + 1, l->pack.error, done);
+  SCREE_ALLOC_OR(s.moves, count + 1, l->pack.error, done);
+  SCREE_ALLOC_OR(s.now, base->vertex_count, l->pack.error, done);
   for (size_t v = 0; v < base->vertex_count; v++)
-    now[v] = scree_pack_point(&l->pack, base->positions + 3 * v);
-  for (size_t i = 0; i < count; i++) {
-    scree_collapse c;
-    scree_curve_collapse(l->curve, base_level + i, &c);
-    uint32_t kept = number[c.kept];
-    scree_grid_point to = scree_pack_point(&l->pack, c.position);
-    for (int k = 0; k < 3; k++) moves[i].x[k] = (uint16_t)(to.x[k] - now[kept].x[k]);
-    moves[i].extra = (uint16_t)c.triangle_count;
-    now[kept] = to;
-    pairs[2 * i] = place[kept];
-    pairs[2 * i + 1] = place[number[c.gone]];
-  }
-  scree_pack_u32(&l->pack, count);
-  status = scree_pack_vertices(&l->pack, pairs, count, 2 * sizeof *pairs);
-  if (status == SCREE_OK) status = scree_pack_vertices(&l->pack, moves, count, sizeof *moves);
+    s.now[v] = scree_pack_point(&l->pack, base->positions + 3 * v);
+  for (size_t i = base_level; i < last; i++) put_collapse(&s, i);
+  scree_pack_u32(&l->pack, s.count);
+  status = scree_pack_vertices(&l->pack, s.pairs, s.count, 2 * sizeof *s.pairs);
+  if (status == SCREE_OK) status = scree_pack_vertices(&l->pack, s.moves, s.count, sizeof *s.moves);
 done:
-  scree_free(pairs);
-  scree_free(moves);
-  scree_free(now);
+  scree_free(s.pairs);
+  scree_free(s.moves);
+  scree_free(s.now);
   return status;
 }
 
@@ -175,17 +206,32 @@ static scree_status put_measures(levels *l, const scree_mesh *scan, const scree_
   return SCREE_OK;
 }
 
+/* The finest level whose share of the limit holds it with the collapses and moves after it. */
+static size_t choose_base(const scree_curve *curve, double room) {
+  size_t level = scree_curve_level_count(curve) - 1;
+  double moves = 0;
+  for (; level > 0; level--) {
+    scree_level finer;
+    scree_curve_level(curve, level - 1, &finer);
+    moves += (double)scree_curve_move_count(curve, level - 1);
+    if (finer.triangle_count > most_base_triangles ||
+        (finer.triangle_count > least_base_triangles &&
+         bytes_per_base_triangle * (double)finer.triangle_count + bytes_per_move * moves > room))
+      break;
+  }
+  return level;
+}
+
 static scree_status pack(levels *l, const scree_mesh *scan, const scree_choice *choice,
                          size_t byte_limit) {
-  double base = levels_share * (double)byte_limit / bytes_per_base_triangle;
-  base = fmin(fmax(base, (double)least_base_triangles), (double)most_base_triangles);
   find_grid(l, scan);
   scree_code_reals(&l->pack.out, l->pack.low, 3);
   scree_code_real(&l->pack.out, &l->pack.step);
   scree_pack_u32(&l->pack, scan->triangle_count);
   put_trace(l, choice);
   scree_status status = put_measures(l, scan, choice);
-  if (status == SCREE_OK) status = put_levels(l, scree_curve_find(l->curve, (size_t)base));
+  if (status == SCREE_OK)
+    status = put_levels(l, choose_base(l->curve, levels_share * (double)byte_limit));
   size_t room = byte_limit > l->pack.out.count ? byte_limit - l->pack.out.count : 0;
   if (status == SCREE_OK) status = put_scan(l, scan, room);
   if (status == SCREE_OK && !scree_codec_good(&l->pack.out))

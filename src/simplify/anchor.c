@@ -44,7 +44,8 @@ static bool is_of_ring(const scree_halfmesh *s, const scree_ring *r, uint32_t v)
  * ring is closed. */
 static double turns(const scree_halfmesh *s, const scree_ring *r, vec3 target, vec3 p) {
   vec3 a = s->vertex[r->a].at, b = s->vertex[r->b].at;
-  double sum = half_angle(p, a, b, s->vertex[r->c].at);
+  double sum = 0;
+  if (r->c != SCREE_NONE) sum += half_angle(p, a, b, s->vertex[r->c].at);
   if (r->d != SCREE_NONE) sum += half_angle(p, b, a, s->vertex[r->d].at);
   for (uint32_t i = 0; i < r->count; i++) {
     vec3 from = s->vertex[s->half[r->edge[i]].from].at, to = s->vertex[scree_to(s, r->edge[i])].at;

@@ -74,6 +74,16 @@ bool scree_ring_gather(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
   return !open || push_turning_right(s, r, scree_next(h));
 }
 
+bool scree_ring_gather_fan(const scree_halfmesh *s, uint32_t v, scree_ring *r) {
+  uint32_t h = s->vertex[v].outgoing;
+  bool open;
+  *r = (scree_ring){
+      .half_edge = h, .a = v, .b = v, .c = SCREE_NONE, .d = SCREE_NONE, .edge = r->edge};
+  bool room = push(r, scree_next(h)) && push_turning_left(s, r, h, h, &open);
+  r->a_count = r->count;
+  return room && !open;
+}
+
 /* The corners of these edges of the ring beside c and d, as vertices of the mesh given. */
 static uint32_t list_neighbours(const scree_halfmesh *s, const scree_ring *r, uint32_t begin,
                                 uint32_t end, uint32_t *origins) {

@@ -26,6 +26,11 @@ typedef struct scree_change {
 /* Fills the ring; ring->edge must have room for SCREE_RING_MAX. False: more triangles than that. */
 bool scree_ring_gather(const scree_halfmesh *s, uint32_t half_edge, scree_ring *ring);
 
+/* The triangles around one vertex, as a ring of which both ends are this vertex and no triangle
+ * goes: c and d are NONE. What asks about a collapse answers for a move of the vertex then. False:
+ * the vertex is on a boundary, or there are more triangles than that. */
+bool scree_ring_gather_fan(const scree_halfmesh *s, uint32_t vertex, scree_ring *ring);
+
 /* Ends and apexes of the ring from its half-edge. */
 void scree_ring_name(const scree_halfmesh *s, uint32_t half_edge, scree_ring *ring);
 

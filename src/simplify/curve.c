@@ -4,6 +4,7 @@
  * position is the last one written; a triangle lives while its corners are three. Going through
  * the collapses backwards, the vertex that `kept` finally became is known when it is asked for, so
  * that no search is needed. */
+#include "base/array.h"
 #include "base/parallel.h"
 #include "base/sum.h"
 #include "simplify/decimate.h"
@@ -20,10 +21,10 @@ struct scree_curve {
 
 struct scree_replay {
   const scree_curve *curve;
-  size_t level;
-  uint32_t *root;   /* of the given mesh's vertices */
-  double *position; /* of the given mesh's vertices, at the level */
-  uint32_t *corner; /* triangles of the level, in the given mesh's vertices */
+  size_t level, move; /* the moves before are done */
+  uint32_t *root;     /* of the given mesh's vertices */
+  double *position;   /* of the given mesh's vertices, at the level */
+  uint32_t *corner;   /* triangles of the level, in the given mesh's vertices */
   size_t triangle_count;
   scree_mesh mesh;
   uint32_t *number; /* of the given mesh's vertices, in mesh */
@@ -44,6 +45,7 @@ static void record_free(scree_record *r) {
   scree_free(r->area);
   scree_free(r->volume);
   scree_free(r->error);
+  scree_free(r->moves.items);
   *r = (scree_record){0};
 }
 
@@ -79,6 +81,19 @@ void scree_record_write(scree_decimator *d, size_t i, const scree_ring *ring,
   r->area[i] = change->area;
   r->volume[i] = change->volume;
   r->error[i] = (float)error;
+}
+
+scree_status scree_record_move(scree_decimator *d, const scree_ring *fan,
+                               const scree_change *change) {
+  scree_record *r = &d->record;
+  size_t last = r->count - 1;
+  scree_move move = {(uint32_t)last, d->s.vertex[fan->a].origin,
+                     vec3_mad(d->s.centre, change->target, d->s.scale)};
+  if (!SCREE_PUSH(&r->moves, move))
+    return scree_fail_memory(d->error, r->moves.count * sizeof move, "the record");
+  r->area[last] += change->area;
+  r->volume[last] += change->volume;
+  return SCREE_OK;
 }
 
 bool scree_decimate_tick(scree_decimator *d) {
@@ -315,6 +330,32 @@ void scree_curve_collapse(const scree_curve *curve, size_t index, scree_collapse
   vec3_store(collapse->position, r->position[index]);
 }
 
+/* The first of the moves that does not come before collapse `index`. */
+static size_t first_move(const scree_moves *moves, size_t index) {
+  size_t low = 0, high = moves->count;
+  while (low < high) {
+    size_t middle = low + (high - low) / 2;
+    if (moves->items[middle].index < index)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+size_t scree_curve_move_count(const scree_curve *curve, size_t index) {
+  const scree_moves *moves = &curve->record.moves;
+  return first_move(moves, index + 1) - first_move(moves, index);
+}
+
+void scree_curve_move(const scree_curve *curve, size_t index, size_t number,
+                      scree_vertex_move *move) {
+  const scree_moves *moves = &curve->record.moves;
+  const scree_move *m = &moves->items[first_move(moves, index) + number];
+  move->vertex = m->vertex;
+  vec3_store(move->position, m->position);
+}
+
 const uint32_t *scree_replay_numbering(const scree_replay *replay) {
   return replay->number;
 }
@@ -354,9 +395,14 @@ static void replay_collapses(scree_replay *r, size_t level) {
   const scree_record *record = &r->curve->record;
   for (size_t i = level; i-- > r->level;)
     r->root[record->gone[i]] = r->root[record->kept[i] & ~SCREE_ONE_TRIANGLE];
-  for (size_t i = r->level; i < level; i++)
+  const scree_moves *moves = &record->moves;
+  for (size_t i = r->level; i < level; i++) {
     vec3_store(r->position + 3 * (size_t)(record->kept[i] & ~SCREE_ONE_TRIANGLE),
                record->position[i]);
+    for (; r->move < moves->count && moves->items[r->move].index == i; r->move++)
+      vec3_store(r->position + 3 * (size_t)moves->items[r->move].vertex,
+                 moves->items[r->move].position);
+  }
   size_t count = 0;
   for (size_t t = 0; t < r->triangle_count; t++) {
     uint32_t c0 = r->root[r->corner[3 * t]], c1 = r->root[r->corner[3 * t + 1]],

@@ -6,7 +6,18 @@
 #include "simplify/anchor.h"
 #include "simplify/cost.h"
 #include "simplify/grid.h"
-#include "simplify/stray.h"
+#include "simplify/relax.h"
+
+/* A vertex that moved after a collapse, which is still of the same step from level to level. */
+typedef struct scree_move {
+  uint32_t index, vertex; /* of the collapse; of the mesh given */
+  vec3 position;          /* metres */
+} scree_move;
+
+typedef struct scree_moves {
+  scree_move *items;
+  size_t count, capacity;
+} scree_moves;
 
 /* The collapses in their order, one array per field. Positions and measures are in metres. */
 typedef struct scree_record {
@@ -16,6 +27,7 @@ typedef struct scree_record {
   vec3 *position; /* where kept lies afterwards */
   double *area, *volume; /* while decimating: change of the collapse; then: the level's value */
   float *error;          /* mean square move, unit box; then: running maximum, metres */
+  scree_moves moves;     /* in their order; what they change counts with their collapse */
 } scree_record;
 
 #define SCREE_ONE_TRIANGLE UINT32_C(0x80000000)
@@ -46,6 +58,10 @@ void scree_decimator_free(scree_decimator *d);
 void scree_record_write(scree_decimator *d, size_t place, const scree_ring *ring,
                         const scree_change *change, double error);
 
+/* The same of a move of the fan's vertex, after the last collapse written. */
+scree_status scree_record_move(scree_decimator *d, const scree_ring *fan,
+                               const scree_change *change);
+
 /* Where the batches end and single collapses begin, in triangles; method `volume` on large scans
  * goes on in batches to the second, for it is most of what does not run in parallel. */
 enum { SCREE_GREEDY_COUNT = 10000, SCREE_GREEDY_LATE = 5000 };
@@ -53,6 +69,10 @@ enum { SCREE_GREEDY_COUNT = 10000, SCREE_GREEDY_LATE = 5000 };
 /* From how many triangles on the surface is kept (stray.h); method `volume`. To look at every stray
  * from there on takes time, so that of large scans it is kept later. */
 enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 20000, SCREE_LARGE_COUNT = 600000 };
+
+/* Below how many triangles vertices move after a collapse (relax.h); method `volume`; later with
+ * large scans. */
+enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 400 };
 
 /* Passes of many independent collapses, while there are more than single_from triangles. */
 scree_status scree_decimate_in_batches(scree_decimator *d);

@@ -23,6 +23,9 @@
  * next edges in the heap are found beside it, each by itself. It is forgotten where something
  * changes around the edge before its turn comes; so the outcome is that of one thread.
  *
+ * Below SCREE_RELAXED_COUNT triangles the vertices about a collapse move after it, to where the
+ * witnesses around them are nearer (relax.h); the survivor first, then its neighbours.
+ *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
  * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
@@ -48,6 +51,9 @@
  * found anew. */
 #define TOLL_RANK   0.1
 #define RENEW_BELOW 0.7
+
+/* The shortest way that a vertex is moved, of the whole step: else it stays. */
+#define LEAST_SHARE 0.25
 
 /* Edges evaluated in one call. */
 enum { SIDE_BY_SIDE = 32 };
@@ -79,12 +85,15 @@ typedef struct queue {
   uint32_t *place; /* per half-edge: its place in the heap, or NONE */
   uint32_t *heap;  /* half-edges */
   size_t heap_count;
-  uint8_t *stage;  /* per half-edge: how far it has come */
-  uint32_t *stamp; /* per vertex: the collapse that last touched it */
+  uint8_t *stage;    /* per half-edge: how far it has come */
+  uint32_t *stamp;   /* per vertex: the collapse that last touched it */
+  uint32_t *touched; /* vertices stamped now */
+  size_t touched_count;
   uint32_t now;
   size_t since_tick;
   double toll;                    /* weight of the stray's sixth power in the cost */
   size_t renew_at;                /* triangles */
+  size_t relaxed_below;           /* the same; 0: never */
   double *sorted;                 /* scratch: costs */
   uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
   size_t waiting_count;
@@ -184,6 +193,7 @@ static void queue_free(queue *q) {
   scree_free(q->heap);
   scree_free(q->stage);
   scree_free(q->stamp);
+  scree_free(q->touched);
   scree_free(q->sorted);
 }
 
@@ -222,6 +232,7 @@ static scree_status queue_fill(queue *q) {
   SCREE_ALLOC_OR(q->heap, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->stage, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->stamp, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->touched, s->vertex_count, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->sorted, half_edges, d->error, out_of_memory);
   memset(q->place, 0xff, half_edges * sizeof *q->place);
   memset(q->stage, IN_PART, half_edges);
@@ -280,12 +291,97 @@ static void update_vertex(queue *q, uint32_t v) {
   }
 }
 
+/* Whether the ring may be collapsed, or the fan's vertex moved, to change->target; *status tells of
+ * failed memory. */
+static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_around *around,
+                    scree_status *status) {
+  scree_decimator *d = q->d;
+  size_t after = d->s.live_triangle_count - (ring->c != SCREE_NONE) - (ring->d != SCREE_NONE);
+  if (!scree_collapse_check(&d->s, ring, change, around) ||
+      !scree_memory_allows(&q->d->memory, after, change->target))
+    return false;
+  *status = prepare_grid(d);
+  if (*status != SCREE_OK) return false;
+  return (d->s.closed && scree_grid_certifies(&d->grid, ring, around)) ||
+         (scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL) &&
+          scree_anchors_stay(&d->anchors, &d->s, ring, change->target));
+}
+
+static void touch(queue *q, uint32_t v) {
+  if (q->stamp[v] == q->now) return;
+  q->stamp[v] = q->now;
+  q->touched[q->touched_count++] = v;
+}
+
+/* The vertices of the ring are touched, and the grid knows its new triangles. */
+static scree_status settle(queue *q, const scree_ring *r, const scree_around *geometry) {
+  scree_decimator *d = q->d;
+  const scree_halfmesh *s = &d->s;
+  touch(q, r->a);
+  scree_grid_enter_ring(&d->grid, r, geometry);
+  for (uint32_t i = 0; i < r->count; i++) {
+    touch(q, s->half[r->edge[i]].from);
+    touch(q, scree_to(s, r->edge[i]));
+    if (!scree_grid_list_triangle(&d->grid, s, r->edge[i] / 3))
+      return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
+  }
+  return SCREE_OK;
+}
+
+/* Moves the fan's vertex to change->target. */
+static scree_status move(queue *q, const scree_ring *fan, const scree_change *change,
+                         const scree_around *geometry) {
+  scree_decimator *d = q->d;
+  scree_status status = scree_record_move(d, fan, change);
+  if (status != SCREE_OK) return status;
+  scree_memory_move(&d->memory, &d->s, fan, change->target);
+  d->s.vertex[fan->a].at = change->target;
+  return settle(q, fan, geometry);
+}
+
+static scree_status relax(queue *q, uint32_t v) {
+  scree_decimator *d = q->d;
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring fan = {.edge = edges};
+  scree_relaxation relaxation;
+  scree_change change;
+  scree_around around;
+  scree_status status = SCREE_OK;
+  if (d->s.flags[v] & SCREE_VERTEX_LOCKED || !scree_ring_gather_fan(&d->s, v, &fan) ||
+      !scree_relax_begin(&d->memory, &d->s, &fan, &relaxation))
+    return SCREE_OK;
+  for (double share = 1; share >= LEAST_SHARE && status == SCREE_OK; share *= 0.5) {
+    change.target = scree_relax_place(&relaxation, share);
+    if (scree_relax_gains(&d->memory, &d->s, &fan, change.target, &relaxation) &&
+        allowed(q, &fan, &change, &around, &status))
+      return move(q, &fan, &change, &around);
+  }
+  return status;
+}
+
+/* The vertices about the collapse, of which the first survived, have their turns: it, then the
+ * others counter-clockwise from the farthest, so that numbers decide nothing. */
+static scree_status relax_around(queue *q) {
+  const scree_vertex *vertex = q->d->s.vertex;
+  uint32_t about[2 * SCREE_RING_MAX + 1];
+  size_t count = q->touched_count, farthest = 1;
+  double most = 0;
+  scree_status status = relax(q, q->touched[0]);
+  memcpy(about, q->touched, count * sizeof *about);
+  for (size_t i = 1; i < count; i++) {
+    double distance2 = vec3_norm2(vec3_sub(vertex[about[i]].at, vertex[about[0]].at));
+    if (distance2 > most) farthest = i;
+    most = fmax(most, distance2);
+  }
+  for (size_t i = 0; i + 1 < count && status == SCREE_OK; i++)
+    status = relax(q, about[1 + (farthest - 1 + i) % (count - 1)]);
+  return status;
+}
+
 static scree_status collapse(queue *q, const scree_ring *r, const scree_change *change,
                              const scree_around *geometry, double error) {
   scree_decimator *d = q->d;
   scree_halfmesh *s = &d->s;
-  uint32_t around[2 * SCREE_RING_MAX + 1];
-  size_t count = 0;
   scree_record_write(d, d->record.count++, r, change, error);
   s->live_vertex_count--;
   s->live_triangle_count -= s->half[r->half_edge].twin == SCREE_NONE ? 1 : 2;
@@ -295,39 +391,14 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
   scree_anchors_follow(&d->anchors, r);
   if (d->coster->merge) d->coster->merge(s, r->a, r->b);
   q->now++;
-  around[count++] = r->a;
-  q->stamp[r->a] = q->now;
-  for (uint32_t i = 0; i < 2 * r->count; i++) {
-    uint32_t v = i % 2 ? scree_to(s, r->edge[i / 2]) : s->half[r->edge[i / 2]].from;
-    if (q->stamp[v] == q->now) continue;
-    q->stamp[v] = q->now;
-    around[count++] = v;
-  }
+  q->touched_count = 0;
+  scree_status status = settle(q, r, geometry);
+  if (status == SCREE_OK && s->live_triangle_count < q->relaxed_below) status = relax_around(q);
   if (!d->coster->merge)
-    for (size_t i = 0; i < count; i++) d->coster->sum(s, around[i]);
-  for (size_t i = 0; i < count; i++) update_vertex(q, around[i]);
+    for (size_t i = 0; i < q->touched_count; i++) d->coster->sum(s, q->touched[i]);
+  for (size_t i = 0; i < q->touched_count; i++) update_vertex(q, q->touched[i]);
   evaluate_waiting(q);
-  scree_grid_enter_ring(&d->grid, r, geometry);
-  for (uint32_t i = 0; i < r->count; i++)
-    if (!scree_grid_list_triangle(&d->grid, s, r->edge[i] / 3))
-      return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
-  return SCREE_OK;
-}
-
-/* Whether the ring may be collapsed to change->target; *status tells of failed
- * memory. */
-static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_around *around,
-                    scree_status *status) {
-  scree_decimator *d = q->d;
-  size_t after = d->s.live_triangle_count - (ring->d == SCREE_NONE ? 1 : 2);
-  if (!scree_collapse_check(&d->s, ring, change, around) ||
-      !scree_memory_allows(&q->d->memory, after, change->target))
-    return false;
-  *status = prepare_grid(d);
-  if (*status != SCREE_OK) return false;
-  return (d->s.closed && scree_grid_certifies(&d->grid, ring, around)) ||
-         (scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL) &&
-          scree_anchors_stay(&d->anchors, &d->s, ring, change->target));
+  return status;
 }
 
 /* Makes the cost whole, or not less than `most` if it is not. */
@@ -468,7 +539,9 @@ static scree_status try_cheapest(queue *q) {
 }
 
 scree_status scree_decimate_one_by_one(scree_decimator *d) {
+  bool large = d->first_triangle_count > SCREE_LARGE_COUNT;
   queue q = {.d = d};
+  if (!d->coster->merge) q.relaxed_below = large ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
   scree_grid_free(&d->grid);
   scree_status status = queue_fill(&q);
   if (status == SCREE_OK) status = scree_anchors_find(&d->s, &d->anchors, d->error);

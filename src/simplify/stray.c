@@ -18,8 +18,6 @@ enum { PLACES_ON_EDGE = 5 };
 /* Witnesses per triangle above which half of them are dropped, and how these are known. */
 enum { CROWD = 24 };
 #define DROPPED (-1.0)
-/* In the unit box: distances that differ by no more are the same. */
-#define ROUNDING 1e-12
 /* Squared areas that differ by no more of themselves are the same. */
 #define SAME_SIZE 1e-9
 
@@ -34,12 +32,6 @@ static void add_witness(scree_memory *m, vec3 at, uint32_t triangle) {
   m->witnesses[m->count] = (scree_witness){at, 0, m->first[triangle]};
   m->first[triangle] = (uint32_t)m->count++;
   m->left++;
-}
-
-/* The squared distance up to which others are the same as this one. */
-static double past_rounding(double distance2) {
-  double distance = sqrt(distance2) + ROUNDING;
-  return distance * distance;
 }
 
 /* Each vertex with the first of its triangles. */
@@ -108,7 +100,7 @@ static void corners_at(const scree_halfmesh *s, const scree_ring *r, uint32_t i,
   vec3_store(corners + 6, s->vertex[scree_to(s, r->edge[i])].at);
 }
 
-static void new_corners(const scree_halfmesh *s, const scree_ring *r, vec3 target,
+void scree_ring_corners(const scree_halfmesh *s, const scree_ring *r, vec3 target,
                         double (*corners)[9]) {
   for (uint32_t i = 0; i < r->count; i++) corners_at(s, r, i, target, corners[i]);
 }
@@ -122,7 +114,7 @@ static uint32_t triangle_around(const scree_halfmesh *s, const scree_ring *r, ui
 }
 
 static uint32_t count_around(const scree_ring *r) {
-  return r->count + (r->d == SCREE_NONE ? 1 : 2);
+  return r->count + (r->c != SCREE_NONE) + (r->d != SCREE_NONE);
 }
 
 /* The squared distance of p from the triangles, or something not above `enough`. */
@@ -142,11 +134,11 @@ static double distance_from(double (*corners)[9], uint32_t count, uint32_t begin
 static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
                                  const scree_ring *r, vec3 target, double worst, double most) {
   double corners[SCREE_RING_MAX][9];
-  new_corners(s, r, target, corners);
+  scree_ring_corners(s, r, target, corners);
   for (uint32_t k = 0; k < count_around(r); k++)
     for (uint32_t j = m->first[triangle_around(s, r, k)]; j != SCREE_NONE && worst <= most;) {
       const scree_witness *w = &m->witnesses[j];
-      double enough = fmax(worst, past_rounding(w->distance2));
+      double enough = fmax(worst, scree_past_rounding(w->distance2));
       double distance2 = distance_from(corners, r->count, k, w->at, enough);
       if (distance2 > enough) worst = distance2;
       j = w->next;
@@ -174,6 +166,16 @@ double scree_memory_stray(const scree_memory *m, const scree_halfmesh *s, const 
   return stray_of_edges(m, s, r, target, PLACES_ON_EDGE, worst, most);
 }
 
+double scree_memory_edges_stray(const scree_memory *m, const scree_halfmesh *s,
+                                const scree_ring *fan, vec3 x, double least) {
+  return stray_of_edges(m, s, fan, x, PLACES_ON_EDGE, least, INFINITY);
+}
+
+bool scree_memory_edges_within(const scree_memory *m, const scree_halfmesh *s,
+                               const scree_ring *fan, vec3 x, double most) {
+  return stray_of_edges(m, s, fan, x, PLACES_ON_EDGE, most, most) <= most;
+}
+
 bool scree_memory_stays_within(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
                                vec3 target, double most) {
   double worst = stray_of_edges(m, s, r, target, 1, most, most);
@@ -189,7 +191,7 @@ double scree_memory_usual(const scree_memory *m) {
     scree_sum_add(&sum, distance);
     worst = fmax(worst, distance);
   }
-  if (!(worst > ROUNDING)) return 0;
+  if (!(worst > SCREE_SAME_DISTANCE)) return 0;
   return fmax(USUAL_MEANS * scree_sum_value(sum) / (double)m->left, worst);
 }
 
@@ -239,7 +241,7 @@ static uint32_t nearest_triangle(const scree_ring *r, double (*corners)[9], cons
     distance2[i] = scree_triangle_closest(corners[i], w->at, &point);
     least = fmin(least, distance2[i]);
   }
-  double near = past_rounding(least);
+  double near = scree_past_rounding(least);
   for (uint32_t i = 0; i < r->count; i++)
     if (distance2[i] <= near && size2[i] > largest) largest = size2[i];
   for (uint32_t i = 0; i < r->count; i++)
@@ -258,7 +260,7 @@ static void new_sizes(const scree_ring *r, double (*corners)[9], double *size2) 
 void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_ring *r, vec3 target) {
   double corners[SCREE_RING_MAX][9], size2[SCREE_RING_MAX];
   uint32_t moving = SCREE_NONE;
-  new_corners(s, r, target, corners);
+  scree_ring_corners(s, r, target, corners);
   new_sizes(r, corners, size2);
   for (uint32_t k = 0; k < count_around(r); k++) {
     uint32_t *first = &m->first[triangle_around(s, r, k)];

@@ -27,6 +27,15 @@ typedef struct scree_memory {
   uint32_t *first;    /* per triangle: its first witness, or NONE */
 } scree_memory;
 
+/* In the unit box: distances that differ by no more are the same. */
+#define SCREE_SAME_DISTANCE 1e-12
+
+/* The squared distance up to which others are the same as this one. */
+static inline double scree_past_rounding(double distance2) {
+  double distance = sqrt(distance2) + SCREE_SAME_DISTANCE;
+  return distance * distance;
+}
+
 /* Keeps the surface as it is. */
 scree_status scree_memory_keep(const scree_halfmesh *s, scree_memory *memory, scree_error *error);
 void scree_memory_free(scree_memory *memory);
@@ -42,6 +51,17 @@ bool scree_memory_allows(const scree_memory *memory, size_t triangle_count, vec3
  * above that is enough. These are squares as well. */
 double scree_memory_stray(const scree_memory *memory, const scree_halfmesh *s,
                           const scree_ring *ring, vec3 target, double least, double most);
+
+/* Of a vertex at x, and of the places on the edges from there to the fan's rim: the largest squared
+ * distance from the surface kept, or `least`, where it is smaller; whether it is at most `most`. */
+double scree_memory_edges_stray(const scree_memory *memory, const scree_halfmesh *s,
+                                const scree_ring *fan, vec3 x, double least);
+bool scree_memory_edges_within(const scree_memory *memory, const scree_halfmesh *s,
+                               const scree_ring *fan, vec3 x, double most);
+
+/* The corners of the ring's triangles with their moving one, the first, at target. */
+void scree_ring_corners(const scree_halfmesh *s, const scree_ring *ring, vec3 target,
+                        double (*corners)[9]);
 
 /* In batches: whether the stray is at most `most`, both squared, with one place on every edge. */
 bool scree_memory_stays_within(const scree_memory *memory, const scree_halfmesh *s,

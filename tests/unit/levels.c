@@ -195,12 +195,20 @@ static void every_level_is_the_curves(void **state) {
     choose(&o);
     CHECK_OK(scree_levels_write(o.curve, &o.choice, 30000, path, true, &error), error);
     file f = read_levels();
-    size_t first = scree_curve_level_count(o.curve) - 1 - f.collapse_count;
+    size_t level = scree_curve_level_count(o.curve) - 1, moved = 0;
+    for (uint32_t i = 0; i < f.collapse_count; i++) level -= f.moves[4 * i + 3] > 0;
     check_same(&f, &f.scan, o.curve, scree_curve_find(o.curve, f.scan.triangle_count));
-    for (uint32_t i = 0; i <= f.collapse_count; i++) {
-      if (i % 97 == 0 || i == f.collapse_count) check_same(&f, &f.base, o.curve, first + i);
-      if (i < f.collapse_count) collapse(&f, i);
+    check_same(&f, &f.base, o.curve, level);
+    for (uint32_t i = 0; i < f.collapse_count; i++) {
+      collapse(&f, i);
+      bool is_move = f.moves[4 * i + 3] == 0; /* of the level that the next collapse makes */
+      moved += is_move;
+      level += !is_move;
+      if (!is_move && (level % 97 == 0 || i + 1 == f.collapse_count))
+        check_same(&f, &f.base, o.curve, level);
     }
+    assert_int_equal(level + 1, scree_curve_level_count(o.curve));
+    if (kind == 0 || kind == 2) assert_true(moved > 0);
     free_levels(&f);
     free_object(&o);
   }

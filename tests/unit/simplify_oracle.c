@@ -13,6 +13,10 @@
  * the rules: it waits, at the cost of its cheapest allowed other place or out of the race, until a
  * triangle at one of its ends changes.
  *
+ * After every collapse the survivor and its neighbours have their turns to move: was the move the
+ * step that the oracle finds, or half or a quarter of it, did the witnesses gain, was it allowed,
+ * and did none stay that should have moved?
+ *
  * That is asked of the greedy stage. Of the batches, all but whose turn it was: every collapse of
  * their record, done after those before it, is allowed, at the place of least cost, with the right
  * error and changes. Which of a round's candidates are taken has a test of its own
@@ -40,6 +44,9 @@
 #define EQUAL_AREA   1e-9
 #define EQUAL_COST   1e-9
 #define EDGE_PARTS   6
+#define RELAX_DAMP   0.05
+#define RELAX_GAIN   5e-3
+#define RELAX_HALVES 3
 #define QECD_PULL    1e-8
 #define QECD_TIE     1e-12
 #define QECD_SHAPE   0.3
@@ -65,6 +72,7 @@ typedef struct oracle {
   double toll;     /* weight of the stray's sixth power */
   size_t renew_at; /* triangles at which it is found anew */
   double *whole;   /* as state, for every place: the whole cost, or NAN where it is not known yet */
+  size_t moved, taken;      /* moves of the record that were checked; of these, in any order */
   size_t compared, decided; /* collapses, and those with no rival within rounding */
 } oracle;
 
@@ -415,6 +423,117 @@ static double stray2_of(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
   return worst;
 }
 
+/* ---- Moves after a collapse ---- */
+
+static oracle with_moved(const oracle *o, uint32_t v, vec3 x) {
+  oracle n = *o;
+  n.position = malloc(o->vertex_count * sizeof *n.position);
+  memcpy(n.position, o->position, o->vertex_count * sizeof *n.position);
+  n.position[v] = x;
+  return n;
+}
+
+static bool may_move(const oracle *o, uint32_t v, vec3 x) {
+  oracle after = with_moved(o, v, x);
+  bool *touched = calloc(o->triangle_count, sizeof *touched);
+  for (size_t t = 0; t < o->triangle_count; t++) touched[t] = has(o, t, v);
+  bool ok =
+      start_distance2(o, x) < STAND_OFF * STAND_OFF * o->start_area / (double)o->triangle_count &&
+      triangles_stay_sound(o, &after, v, v) && folds(&after, touched) <= folds(o, touched) &&
+      meetings(&after, touched) <= meetings(o, touched);
+  free(touched);
+  free(after.position);
+  return ok;
+}
+
+/* Of the witnesses of v's triangles, each from the triangle that it is held by now, or where it was
+ * on the surface from the nearest of v's: the sum of the
+ * squared distances, and the largest distance, also of v and of places on its edges. */
+static double off_around(const oracle *o, uint32_t v, double *worst) {
+  double sum = 0, worst2 = start_distance2(o, o->position[v]);
+  for (size_t w = 0; w < o->vertex_count; w++) {
+    if (!has(o, o->holder[w], v)) continue;
+    double distance2 = triangle_distance2(o, o->holder[w], o->witness[w]);
+    for (size_t t = 0; t < o->triangle_count && o->held2[w] <= pow(EQUALLY_NEAR, 2); t++)
+      if (has(o, t, v)) distance2 = fmin(distance2, triangle_distance2(o, t, o->witness[w]));
+    sum += distance2;
+    worst2 = fmax(worst2, distance2);
+  }
+  for (size_t t = 0; t < o->triangle_count; t++)
+    for (size_t i = 0; i < 3 && has(o, t, v); i++)
+      for (int part = 1; part < EDGE_PARTS; part++) {
+        vec3 at = vec3_lerp(o->position[v], corner(o, t, i), (double)part / EDGE_PARTS);
+        worst2 = fmax(worst2, start_distance2(o, at));
+      }
+  *worst = sqrt(worst2);
+  return sum;
+}
+
+/* The step that the witnesses ask for: of Gauss and Newton, damped, with a multiplier for the
+ * volume. *promise: how much it should take off the sum. */
+static vec3 wanted_step(const oracle *o, uint32_t v, double *promise) {
+  double m[4][5] = {{0}}, shares = 0, rhs[3];
+  vec3 sum = {0, 0, 0};
+  *promise = 0;
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (!has(o, t, v)) continue;
+    vec3 n = area_vector(o, t), at[2];
+    double corners[9];
+    for (size_t i = 0, k = 0; i < 3; i++) {
+      vec3_store(corners + 3 * i, corner(o, t, i));
+      if (o->triangle[3 * t + i] != v) at[k++] = corner(o, t, i);
+    }
+    sum = vec3_add(sum, n);
+    for (size_t w = 0; w < o->vertex_count; w++) {
+      vec3 nearest;
+      if (o->holder[w] != t) continue;
+      double distance = sqrt(scree_triangle_closest(corners, o->witness[w], &nearest));
+      if (distance <= EQUALLY_NEAR) continue;
+      double share =
+          vec3_norm(vec3_triangle_normal(nearest, at[0], at[1])) / vec3_norm(area_vector(o, t));
+      vec3 g = vec3_scale(vec3_sub(o->witness[w], nearest), share / distance);
+      add_square(m, g, distance, 1);
+      shares += share * share;
+    }
+  }
+  if (!(shares > 0)) return (vec3){0, 0, 0};
+  double unit[3] = {sum.x, sum.y, sum.z}, norm = vec3_norm(sum);
+  for (int i = 0; i < 3; i++) {
+    rhs[i] = m[i][4];
+    m[i][i] += RELAX_DAMP * shares;
+    m[i][3] = m[3][i] = unit[i] / norm * shares; /* scaled as the rest */
+  }
+  solve(m, 4);
+  for (int i = 0; i < 3; i++) *promise += rhs[i] * m[i][4];
+  return (vec3){m[0][4], m[1][4], m[2][4]};
+}
+
+/* Whether the engine was right to leave vertex v, or to move it to *x. */
+static void check_move(const oracle *o, uint32_t v, const vec3 *x) {
+  double promise, worst, share = 1;
+  vec3 step = wanted_step(o, v, &promise);
+  double sum = off_around(o, v, &worst);
+  if (promise <= (1 - 1e-6) * RELAX_GAIN * sum || !(promise > 0)) {
+    if (x) fail_msg("vertex %u moved for %g of %g", v, promise, sum);
+    return;
+  }
+  bool sure = promise > (1 + 1e-6) * RELAX_GAIN * sum;
+  for (int k = 0; k < RELAX_HALVES; k++, share /= 2) {
+    vec3 y = vec3_mad(o->position[v], step, share);
+    bool here = x && vec3_norm(vec3_sub(*x, y)) <= 1e-6;
+    oracle after = with_moved(o, v, here ? *x : y);
+    double worst_after, sum_after = off_around(&after, v, &worst_after);
+    double gain = (1 - RELAX_GAIN) * sum - sum_after, past = worst + EQUALLY_NEAR - worst_after;
+    free(after.position);
+    bool gains = gain > -1e-6 * sum && past > -EQUALLY_NEAR / 2;
+    sure &= fabs(gain) > 1e-6 * sum && fabs(past) > EQUALLY_NEAR / 2;
+    if (here && gains && may_move(o, v, *x)) return;
+    if (here || (sure && gains && may_move(o, v, y)))
+      fail_msg("vertex %u, share %g: %s", v, share, here ? "moved, not allowed" : "not moved");
+  }
+  if (x) fail_msg("vertex %u moved to no share of its step", v);
+}
+
 /* ---- The order ---- */
 
 static uint8_t *state_of(oracle *o, uint32_t a, uint32_t b) {
@@ -610,6 +729,71 @@ static void apply(oracle *o, uint32_t a, uint32_t b, vec3 x) {
   }
 }
 
+/* Vertex v moves to x: the witnesses around it are held anew, the edges around start anew. */
+static void apply_move(oracle *o, uint32_t v, vec3 x) {
+  o->position[v] = x;
+  for (size_t w = 0; w < o->vertex_count; w++)
+    if (has(o, o->holder[w], v)) o->held2[w] = patch_distance2(o, v, o->witness[w], &o->holder[w]);
+  for (size_t t = 0; t < o->triangle_count; t++)
+    for (size_t i = 0; i < 3 && has(o, t, v); i++)
+      for (uint32_t u = 0; u < o->vertex_count; u++) edge_starts_anew(o, o->triangle[3 * t + i], u);
+}
+
+/* The corner of the triangle that has the side from v to w; NONE: there is none. */
+static uint32_t beyond_side(const oracle *o, uint32_t v, uint32_t w) {
+  for (size_t h = 0; h < 3 * o->triangle_count; h++)
+    if (o->triangle[h] == v && o->triangle[h % 3 == 2 ? h - 2 : h + 1] == w)
+      return o->triangle[h % 3 == 0 ? h + 2 : h - 1];
+  return SCREE_NONE;
+}
+
+/* Vertex v has its turn to move after collapse i. */
+static void check_turn_to_move(oracle *o, const scree_decimator *d, size_t i, uint32_t v) {
+  const scree_moves *moves = &d->record.moves;
+  const scree_move *m = &moves->items[o->moved];
+  if (o->moved == moves->count || m->index != i || m->vertex != v) {
+    check_move(o, v, NULL);
+    return;
+  }
+  vec3 x = vec3_scale(vec3_sub(m->position, d->s.centre), 1 / d->s.scale);
+  check_move(o, v, &x);
+  apply_move(o, v, x);
+  o->moved++;
+}
+
+/* The neighbour of v that is farthest from it; *alone: by more than rounding. */
+static uint32_t farthest_neighbour(const oracle *o, uint32_t v, bool *alone) {
+  uint32_t farthest = v;
+  double most = 0, second = 0;
+  for (size_t h = 0; h < 3 * o->triangle_count; h++) {
+    uint32_t w = o->triangle[h];
+    if (w == v || w == farthest || !has(o, h / 3, v)) continue;
+    double distance = vec3_distance(o->position[w], o->position[v]);
+    second = fmax(second, fmin(distance, most));
+    if (distance > most) farthest = w;
+    most = fmax(most, distance);
+  }
+  *alone = second < (1 - 1e-9) * most;
+  return farthest;
+}
+
+/* The survivor of collapse i, then its neighbours, counter-clockwise from the farthest. Where two
+ * are as far, rounding decides the order, and the moves are taken over. */
+static void check_moves(oracle *o, const scree_decimator *d, size_t i) {
+  const scree_moves *moves = &d->record.moves;
+  bool alone;
+  uint32_t a = d->record.kept[i];
+  check_turn_to_move(o, d, i, a);
+  uint32_t first = farthest_neighbour(o, a, &alone), v = first;
+  for (; !alone && o->moved < moves->count && moves->items[o->moved].index == i; o->taken++)
+    check_turn_to_move(o, d, i, moves->items[o->moved].vertex);
+  if (!alone) return;
+  do {
+    check_turn_to_move(o, d, i, v);
+    v = beyond_side(o, a, v);
+  } while (v != first);
+}
+
 static void measure(const oracle *o, double *area, double *volume) {
   *area = *volume = 0;
   for (size_t t = 0; t < o->triangle_count; t++) {
@@ -672,7 +856,8 @@ static void oracle_free(oracle *o) {
   free(o->whole);
 }
 
-/* The collapse i of the record, which is in its turn: its place, what it changes; does it. */
+/* The collapse i of the record, which is in its turn: its place, what it changes with the moves
+ * after it; does it. */
 static void check_deed(oracle *o, const scree_decimator *d, size_t i, const place *chosen) {
   const scree_record *r = &d->record;
   uint32_t a = r->kept[i], b = r->gone[i];
@@ -684,6 +869,7 @@ static void check_deed(oracle *o, const scree_decimator *d, size_t i, const plac
   CHECK_NEAR((double)r->error[i], chosen->error, 1e-5 * chosen->error + 1e-14);
   measure(o, &area, &volume);
   apply(o, a, b, x);
+  if (!o->batched && !o->qecd) check_moves(o, d, i);
   measure(o, &area_after, &volume_after);
   CHECK_NEAR(r->area[i], area_after - area, 1e-12);
   CHECK_NEAR(r->volume[i], volume_after - volume, 1e-12);
@@ -737,7 +923,8 @@ static scree_decimator decimator_of(const scree_mesh *mesh, bool qecd, scree_err
   return d;
 }
 
-static void compare(const scree_mesh *mesh, bool qecd, size_t *compared, size_t *decided) {
+static void compare(const scree_mesh *mesh, bool qecd, size_t *moved, size_t *compared,
+                    size_t *decided) {
   scree_error error;
   scree_decimator d = decimator_of(mesh, qecd, &error);
   assert_true(d.s.closed);
@@ -746,7 +933,9 @@ static void compare(const scree_mesh *mesh, bool qecd, size_t *compared, size_t 
   assert_true(is_clean(&o));
   for (size_t i = 0; i < d.record.count; i++) check_collapse(&o, &d, i);
   assert_int_equal(o.triangle_count, d.s.live_triangle_count);
+  assert_int_equal(o.moved, d.record.moves.count);
   check_floor(&o);
+  *moved += o.moved - o.taken;
   *compared += o.compared;
   *decided += o.decided;
   oracle_free(&o);
@@ -823,16 +1012,18 @@ static void every_collapse_is_the_oracles(void **state) {
   scree_rng rng = {.seed = 21};
   for (int which = 0; which < SHAPE_COUNT; which++)
     for (int qecd = 0; qecd < 2; qecd++) {
-      size_t compared = 0, decided = 0;
+      size_t moved = 0, compared = 0, decided = 0;
       for (int round = 0; round < rounds[which]; round++) {
         scree_mesh mesh = shape(which, &rng);
-        compare(&mesh, qecd, &compared, &decided);
+        compare(&mesh, qecd, &moved, &compared, &decided);
         scree_mesh_free(&mesh);
       }
-      print_message("shape %d, %s: %zu collapses, %zu without a rival within rounding\n", which,
-                    qecd ? "qecd" : "volume", compared, decided);
+      print_message("shape %d, %s: %zu collapses, %zu without a rival within rounding, %zu moves\n",
+                    which, qecd ? "qecd" : "volume", compared, decided, moved);
       /* on noisy shapes rounding decides next to nothing */
       if (which >= NOISY_FROM) assert_true(decided > compared * 9 / 10);
+      if (qecd) assert_int_equal(moved, 0);
+      if (!qecd && which >= NOISY_FROM) assert_true(moved > 0);
     }
 }
 
