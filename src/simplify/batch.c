@@ -37,6 +37,9 @@ enum { ROUNDS = 4 };
 /* Where there are no more than SCREE_GREEDY_COUNT triangles, what is usual for the squared stray
  * counts for so much: single collapses would look at more places, and pay a toll. */
 #define COARSE_USUAL2 0.5
+/* Below that share, as long as no surface is kept: how far one collapse may stray, in mean moves of
+ * those of the pass before. */
+#define MOST_MOVES 4.0
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
 /* Mean edges per grid cell, and the share of triangles left at which it gets new cells. */
@@ -88,6 +91,7 @@ typedef struct pass {
   uint32_t cheap;          /* the cost that LOW_SHARE of the edges do not exceed, as a key */
   double dearest; /* the greatest cost below it: the threshold without the key's rounding */
   double usual2;  /* squared stray that no collapse of this pass may exceed */
+  double moves;   /* sum over the collapses of this pass: how far they moved the surface */
   taken *taken;   /* in the order of their vertices */
   scree_change *changes;
   size_t taken_count, room;
@@ -333,6 +337,10 @@ static void list_first(pass *p) {
     p->dearest = fmax(p->dearest, p->parts[i].dearest);
 }
 
+static bool is_fine(const scree_decimator *d) {
+  return (double)d->s.live_triangle_count > FINE * (double)d->first_triangle_count;
+}
+
 /* Sets the threshold. False: there is nothing to collapse. */
 static bool set_limit(pass *p) {
   size_t count = 0, vertices = p->d->s.vertex_count;
@@ -340,7 +348,7 @@ static bool set_limit(pass *p) {
   for (size_t i = 0; i < scree_block_count(vertices, VERTEX_BLOCK); i++)
     count += p->parts[i].possible;
   if (count == 0) return false;
-  bool fine = (double)p->d->s.live_triangle_count > FINE * (double)p->d->first_triangle_count;
+  bool fine = is_fine(p->d);
   double high = fine ? FINE_SHARE : HIGH_SHARE;
   keys_at(p, (size_t[2]){(size_t)(high * (double)count), (size_t)(LOW_SHARE * (double)count)}, key);
   uint32_t spread = key_of(fmin(SPREAD * cost_of_key(key[1]), 1e300));
@@ -404,9 +412,10 @@ static void set_box(const scree_halfmesh *s, vec3 target, scree_ring *r) {
 /* Whether the collapse takes the surface too far off for this pass. */
 static bool strays(const pass *p, const scree_ring *ring, const scree_candidate *c) {
   const scree_decimator *d = p->d;
-  double most = scree_stray_at(c, p->dearest);
-  if (!scree_memory_is_kept(&d->memory)) return !scree_stays_within(&d->s, ring, c->target, most);
-  most = fmin(most, p->usual2);
+  double most = fmin(scree_stray_at(c, p->dearest), p->usual2);
+  if (!scree_memory_is_kept(&d->memory))
+    return !scree_stays_within(&d->s, ring, c->target, most) ||
+           (p->usual2 < INFINITY && !scree_ends_stay_within(&d->s, ring, c->target, most));
   return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, most);
 }
 
@@ -680,6 +689,7 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
 static size_t apply(pass *p) {
   scree_decimator *d = p->d;
   size_t count = sort_certain(p), open = 0;
+  for (size_t k = 0; k < count; k++) p->moves += sqrt((double)p->taken[p->order[k].index].error);
   if (!d->s.closed)
     for (size_t k = 0; k < count; k++) open += p->taken[p->order[k].index].open;
   scree_parallel_for(count, TAKEN_BLOCK, record_block, p);
@@ -706,18 +716,23 @@ static size_t run_round(pass *p) {
   return apply(p);
 }
 
-/* Keeps the surface when it has become small enough; finds how far collapses may take it off. */
-static scree_status prepare_memory(pass *p) {
+/* Finds how far collapses may take the surface off; keeps it when it has become small enough. */
+static scree_status set_usual(pass *p, size_t last_count) {
   scree_decimator *d = p->d;
-  scree_status status = SCREE_OK;
-  p->usual2 = INFINITY;
+  size_t count = d->s.live_triangle_count;
   size_t kept = d->first_triangle_count > SCREE_LARGE_COUNT ? SCREE_KEPT_LATE : SCREE_KEPT_COUNT;
-  if (d->coster->merge || d->s.live_triangle_count > kept) return SCREE_OK;
-  if (!scree_memory_is_kept(&d->memory)) status = scree_memory_keep(&d->s, &d->memory, d->error);
-  if (status != SCREE_OK) return status;
-  double usual = scree_memory_usual(&d->memory);
-  if (usual > 0) p->usual2 = usual * usual;
-  if (d->s.live_triangle_count <= SCREE_GREEDY_COUNT) p->usual2 *= COARSE_USUAL2;
+  double usual = 0;
+  scree_status status = SCREE_OK;
+  if (!d->coster->merge && count <= kept) {
+    if (!scree_memory_is_kept(&d->memory)) status = scree_decimate_keep(d);
+    if (status != SCREE_OK) return status;
+    usual = scree_memory_usual(&d->memory);
+  } else if (!is_fine(d)) {
+    usual = MOST_MOVES * p->moves / (double)last_count;
+  }
+  p->usual2 = usual > 0 ? usual * usual : INFINITY;
+  if (count <= SCREE_GREEDY_COUNT) p->usual2 *= COARSE_USUAL2;
+  p->moves = 0;
   return SCREE_OK;
 }
 
@@ -748,7 +763,7 @@ static void discard_tails(const pass *p) {
 static scree_status run_pass(pass *p, size_t *done) {
   scree_decimator *d = p->d;
   scree_status status = prepare_grid(d);
-  if (status == SCREE_OK) status = prepare_memory(p);
+  if (status == SCREE_OK) status = set_usual(p, *done);
   if (status != SCREE_OK) return status;
   refresh_sums(p);
   scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, evaluate_block, p);

@@ -258,6 +258,7 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   if (!made) return scree_fail_memory(error, sizeof *made, "the curve");
   status = scree_halfmesh_build(mesh, &d.s, error);
   if (status != SCREE_OK) goto finished;
+  d.mesh = mesh;
   d.first_triangle_count = mesh->triangle_count;
   bool late = d.first_triangle_count > SCREE_LARGE_COUNT && !d.coster->merge;
   d.single_from = late ? SCREE_GREEDY_LATE : SCREE_GREEDY_COUNT;

@@ -33,6 +33,7 @@ typedef struct scree_record {
 #define SCREE_ONE_TRIANGLE UINT32_C(0x80000000)
 
 typedef struct scree_decimator {
+  const scree_mesh *mesh; /* the mesh given */
   scree_halfmesh s;
   const scree_coster *coster;
   scree_simplify_options options;
@@ -73,6 +74,9 @@ enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 20000, SCREE_LARGE_COUNT = 6
 /* Below how many triangles vertices move after a collapse (relax.h); method `volume`; later with
  * large scans. */
 enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 400 };
+
+/* Keeps the surface as it is (stray.h). */
+scree_status scree_decimate_keep(scree_decimator *d);
 
 /* Passes of many independent collapses, while there are more than single_from triangles. */
 scree_status scree_decimate_in_batches(scree_decimator *d);

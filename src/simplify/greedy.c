@@ -240,7 +240,7 @@ static scree_status queue_fill(queue *q) {
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
   scree_status status = SCREE_OK;
-  if (!scree_memory_is_kept(&d->memory)) status = scree_memory_keep(s, &d->memory, d->error);
+  if (!scree_memory_is_kept(&d->memory)) status = scree_decimate_keep(d);
   if (status == SCREE_OK) renew(q);
   return status;
 out_of_memory:

@@ -221,7 +221,7 @@ static void place_vertices(void *context, size_t begin, size_t end, size_t block
     *made = (scree_vertex){.outgoing = SCREE_NONE, .origin = b->order ? b->order[v] : v};
     if (b->start[v] == b->start[v + 1]) continue;
     vec3 p = vec3_load(b->mesh->positions + 3 * (size_t)made->origin);
-    made->at = vec3_scale(vec3_sub(p, s->centre), 1 / s->scale);
+    made->at = scree_into_box(s, p);
     made->outgoing = first_of_fan(s, b->fan[b->start[v]]);
   }
 }

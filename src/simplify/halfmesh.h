@@ -72,6 +72,11 @@ static inline bool scree_on_boundary(const scree_halfmesh *s, uint32_t v) {
   return s->half[s->vertex[v].outgoing].twin == SCREE_NONE;
 }
 
+/* A position in metres, in the box. */
+static inline vec3 scree_into_box(const scree_halfmesh *s, vec3 p) {
+  return vec3_scale(vec3_sub(p, s->centre), 1 / s->scale);
+}
+
 static inline bool scree_is_gone(const scree_halfmesh *s, size_t triangle) {
   return s->half[3 * triangle].from == SCREE_NONE;
 }

@@ -12,6 +12,8 @@
 #define STAND_OFF 0.5
 /* What is usual for the largest distance, in mean ones. */
 #define USUAL_MEANS 10.0
+/* ... less so many of those with which the scan's vertices began. */
+#define ROUGH_MEANS 5.0
 /* Of each new edge, equally far apart. Along an edge over a hollow the surface is farthest off
  * somewhere in between. */
 enum { PLACES_ON_EDGE = 5 };
@@ -20,6 +22,8 @@ enum { CROWD = 24 };
 #define DROPPED (-1.0)
 /* Squared areas that differ by no more of themselves are the same. */
 #define SAME_SIZE 1e-9
+/* Squared height over squared side of a triangle too narrow for the direction of its height. */
+#define NARROW 1e-8
 
 void scree_memory_free(scree_memory *m) {
   scree_bvh_free(&m->surface);
@@ -28,35 +32,57 @@ void scree_memory_free(scree_memory *m) {
   *m = (scree_memory){0};
 }
 
+/* The farthest of a triangle's is its first. */
+static void enlist(scree_memory *m, uint32_t j, uint32_t triangle) {
+  uint32_t *at = &m->first[triangle];
+  if (*at != SCREE_NONE && m->witnesses[*at].distance2 > m->witnesses[j].distance2)
+    at = &m->witnesses[*at].next;
+  m->witnesses[j].next = *at;
+  *at = j;
+}
+
 static void add_witness(scree_memory *m, vec3 at, uint32_t triangle) {
-  m->witnesses[m->count] = (scree_witness){at, 0, m->first[triangle]};
-  m->first[triangle] = (uint32_t)m->count++;
+  m->witnesses[m->count] = (scree_witness){.at = at};
+  enlist(m, (uint32_t)m->count++, triangle);
   m->left++;
 }
 
+static double mean_distance(const scree_memory *m) {
+  scree_sum sum = {0};
+  for (size_t i = 0; i < m->count; i++)
+    if (m->witnesses[i].distance2 != DROPPED) scree_sum_add(&sum, sqrt(m->witnesses[i].distance2));
+  return scree_sum_value(sum) / (double)m->left;
+}
+
 /* Each vertex with the first of its triangles. */
-static void add_vertices(scree_memory *m, const scree_halfmesh *s, uint8_t *seen) {
+static scree_status add_vertices(scree_memory *m, const scree_halfmesh *s, scree_error *error) {
+  uint8_t *seen = scree_alloc_zero(s->vertex_count, 1);
+  if (!seen) return scree_fail_memory(error, s->vertex_count, "the witnesses");
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
     uint32_t v = s->half[h].from;
     if (v == SCREE_NONE || seen[v]) continue;
     seen[v] = 1;
     add_witness(m, s->vertex[v].at, h / 3);
   }
+  scree_free(seen);
+  return SCREE_OK;
 }
 
-scree_status scree_memory_keep(const scree_halfmesh *s, scree_memory *m, scree_error *error) {
+static void add_placed(scree_memory *m, size_t count) {
+  for (uint32_t j = 0; j < count; j++) enlist(m, j, m->witnesses[j].next);
+  m->count = m->left = count;
+  m->roughness = mean_distance(m);
+}
+
+scree_status scree_memory_keep(const scree_halfmesh *s, scree_witness *placed, size_t placed_count,
+                               scree_memory *m, scree_error *error) {
   scree_mesh mesh = {.vertex_count = s->vertex_count};
-  uint8_t *seen = scree_alloc_zero(s->vertex_count, 1);
   scree_status status = SCREE_OUT_OF_MEMORY;
-  *m = (scree_memory){0};
+  *m = (scree_memory){.witnesses = placed};
   SCREE_ALLOC_OR(mesh.positions, 3 * s->vertex_count, error, done);
   SCREE_ALLOC_OR(mesh.triangles, 3 * s->live_triangle_count, error, done);
-  SCREE_ALLOC_OR(m->witnesses, s->live_vertex_count, error, done);
+  if (!placed) SCREE_ALLOC_OR(m->witnesses, s->live_vertex_count, error, done);
   SCREE_ALLOC_OR(m->first, s->triangle_count, error, done);
-  if (!seen) {
-    scree_fail_memory(error, s->vertex_count, "the witnesses");
-    goto done;
-  }
   for (size_t t = 0; t < s->triangle_count; t++) {
     vec3 at[3];
     if (scree_is_gone(s, t)) continue;
@@ -68,10 +94,12 @@ scree_status scree_memory_keep(const scree_halfmesh *s, scree_memory *m, scree_e
   }
   for (size_t v = 0; v < s->vertex_count; v++) vec3_store(mesh.positions + 3 * v, s->vertex[v].at);
   memset(m->first, 0xff, s->triangle_count * sizeof *m->first);
-  add_vertices(m, s, seen);
   status = scree_bvh_build(&mesh, &m->surface, error);
+  if (status == SCREE_OK && placed)
+    add_placed(m, placed_count);
+  else if (status == SCREE_OK)
+    status = add_vertices(m, s, error);
 done:
-  scree_free(seen);
   scree_mesh_free(&mesh);
   if (status != SCREE_OK) scree_memory_free(m);
   return status;
@@ -129,20 +157,44 @@ static double distance_from(double (*corners)[9], uint32_t count, uint32_t begin
   return least;
 }
 
+/* No point of triangle k of those around is farther from the new ones: its distance from one of
+ * them is largest at a corner. Of the edge's own triangles it is one at their apex, mostly. */
+static double shift(const scree_halfmesh *s, const scree_ring *r, double (*corners)[9],
+                    uint32_t k) {
+  vec3 a = s->vertex[r->a].at, b = s->vertex[r->b].at, point;
+  if (k < r->count) return sqrt(scree_triangle_closest(corners[k], k < r->a_count ? a : b, &point));
+  bool at_c = k == r->count, around_a = r->a_count > 0;
+  vec3 apex = s->vertex[at_c ? r->c : r->d].at;
+  const double *one = corners[at_c == around_a ? 0 : around_a ? r->a_count - 1 : r->count - 1];
+  double of_ends =
+      fmax(scree_triangle_closest(one, a, &point), scree_triangle_closest(one, b, &point));
+  return sqrt(fmax(of_ends, scree_triangle_closest(one, apex, &point)));
+}
+
 /* The largest squared distance of a witness of the ring's triangles from the new ones, where it
  * grows and is above `worst`; or the first that is above `most`. */
 static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
                                  const scree_ring *r, vec3 target, double worst, double most) {
   double corners[SCREE_RING_MAX][9];
   scree_ring_corners(s, r, target, corners);
-  for (uint32_t k = 0; k < count_around(r); k++)
-    for (uint32_t j = m->first[triangle_around(s, r, k)]; j != SCREE_NONE && worst <= most;) {
+  for (uint32_t k = 0; k < count_around(r); k++) {
+    uint32_t j = m->first[triangle_around(s, r, k)];
+    if (j == SCREE_NONE) continue;
+    double safe2 = 0; /* those that are no farther off now do not get beyond `worst` */
+    if (m->witnesses[j].next != SCREE_NONE && m->witnesses[j].distance2 < worst) {
+      double room = sqrt(worst) - shift(s, r, corners, k);
+      safe2 = room > 0 ? room * room : 0;
+      if (m->witnesses[j].distance2 < safe2) continue; /* it is the farthest */
+    }
+    while (j != SCREE_NONE && worst <= most) {
       const scree_witness *w = &m->witnesses[j];
+      j = w->next;
+      if (w->distance2 < safe2) continue;
       double enough = fmax(worst, scree_past_rounding(w->distance2));
       double distance2 = distance_from(corners, r->count, k, w->at, enough);
       if (distance2 > enough) worst = distance2;
-      j = w->next;
     }
+  }
   return worst;
 }
 
@@ -183,16 +235,12 @@ bool scree_memory_stays_within(const scree_memory *m, const scree_halfmesh *s, c
 }
 
 double scree_memory_usual(const scree_memory *m) {
-  scree_sum sum = {0};
   double worst = 0;
-  for (size_t i = 0; i < m->count; i++) {
-    if (m->witnesses[i].distance2 == DROPPED) continue;
-    double distance = sqrt(m->witnesses[i].distance2);
-    scree_sum_add(&sum, distance);
-    worst = fmax(worst, distance);
-  }
+  for (size_t i = 0; i < m->count; i++)
+    if (m->witnesses[i].distance2 > worst) worst = m->witnesses[i].distance2;
+  worst = sqrt(worst);
   if (!(worst > SCREE_SAME_DISTANCE)) return 0;
-  return fmax(USUAL_MEANS * scree_sum_value(sum) / (double)m->left, worst);
+  return fmax(USUAL_MEANS * mean_distance(m) - ROUGH_MEANS * m->roughness, worst);
 }
 
 /* Of the triangle's witnesses every second in the order of their distances, the largest first. */
@@ -229,55 +277,83 @@ void scree_memory_compact(scree_memory *m, const scree_halfmesh *s) {
     if (!scree_is_gone(s, t)) m->first[count++] = m->first[t];
 }
 
-/* The triangle of the ring whose new form is nearest to the witness. Equally near ones are usual,
- * for the nearest point often lies on an edge: of these the largest, so that the order of facets
- * does not decide; of equally large ones the first of the mesh. */
-static uint32_t nearest_triangle(const scree_ring *r, double (*corners)[9], const double *size2,
-                                 scree_witness *w) {
-  double distance2[SCREE_RING_MAX], least = INFINITY, largest = 0;
-  uint32_t nearest = SCREE_NONE;
-  vec3 point;
+/* The new triangles of a ring. */
+typedef struct fan {
+  vec3 target;
+  double corners[SCREE_RING_MAX][9], size2[SCREE_RING_MAX];
+  /* Unit vectors across the two edges at the target: the triangle lies where both are positive.
+   * Zero where rounding would turn them. */
+  vec3 across[SCREE_RING_MAX][2];
+} fan;
+
+static vec3 unit_across(vec3 along, vec3 e) {
+  vec3 across = vec3_mad(e, along, -vec3_dot(e, along) / vec3_norm2(along));
+  double norm2 = vec3_norm2(across);
+  return norm2 > NARROW * vec3_norm2(e) ? vec3_scale(across, 1 / sqrt(norm2)) : (vec3){0, 0, 0};
+}
+
+static void make_fan(const scree_halfmesh *s, const scree_ring *r, vec3 target, fan *f) {
+  f->target = target;
+  scree_ring_corners(s, r, target, f->corners);
   for (uint32_t i = 0; i < r->count; i++) {
-    distance2[i] = scree_triangle_closest(corners[i], w->at, &point);
-    least = fmin(least, distance2[i]);
+    vec3 p = vec3_sub(vec3_load(f->corners[i] + 3), target),
+         q = vec3_sub(vec3_load(f->corners[i] + 6), target);
+    f->size2[i] = vec3_norm2(vec3_cross(p, q));
+    f->across[i][0] = unit_across(p, q);
+    f->across[i][1] = unit_across(q, p);
+  }
+}
+
+/* Whether the triangle is farther than this from the point at `y` from the target, by its edges. */
+static bool is_beyond(const fan *f, uint32_t i, vec3 y, double reach) {
+  return vec3_dot(y, f->across[i][0]) < -reach || vec3_dot(y, f->across[i][1]) < -reach;
+}
+
+/* The triangle whose new form is nearest to the witness, looked for from triangle `begin` on.
+ * Equally near ones are usual, for the nearest point often lies on an edge: of these the largest,
+ * so that the order of facets does not decide; of equally large ones the first of the mesh. */
+static uint32_t nearest_triangle(const scree_ring *r, const fan *f, uint32_t begin,
+                                 scree_witness *w) {
+  double distance2[SCREE_RING_MAX], least = INFINITY, reach = INFINITY, largest = 0;
+  uint32_t nearest = SCREE_NONE, tried[SCREE_RING_MAX], count = 0;
+  vec3 point, y = vec3_sub(w->at, f->target);
+  for (uint32_t k = 0, i = begin; k < r->count; k++, i = i + 1 < r->count ? i + 1 : 0) {
+    if (is_beyond(f, i, y, reach)) continue;
+    distance2[count] = scree_triangle_closest(f->corners[i], w->at, &point);
+    if (distance2[count] < least) {
+      least = distance2[count];
+      reach = sqrt(least) + 2 * SCREE_SAME_DISTANCE;
+    }
+    tried[count++] = i;
   }
   double near = scree_past_rounding(least);
-  for (uint32_t i = 0; i < r->count; i++)
-    if (distance2[i] <= near && size2[i] > largest) largest = size2[i];
-  for (uint32_t i = 0; i < r->count; i++)
-    if (distance2[i] <= near && size2[i] >= (1 - SAME_SIZE) * largest && r->edge[i] / 3 < nearest)
-      nearest = r->edge[i] / 3;
+  for (uint32_t k = 0; k < count; k++)
+    if (distance2[k] <= near && f->size2[tried[k]] > largest) largest = f->size2[tried[k]];
+  for (uint32_t k = 0; k < count; k++) {
+    uint32_t triangle = r->edge[tried[k]] / 3;
+    if (distance2[k] <= near && f->size2[tried[k]] >= (1 - SAME_SIZE) * largest &&
+        triangle < nearest)
+      nearest = triangle;
+  }
   w->distance2 = least;
   return nearest;
 }
 
-static void new_sizes(const scree_ring *r, double (*corners)[9], double *size2) {
-  for (uint32_t i = 0; i < r->count; i++)
-    size2[i] = vec3_norm2(vec3_triangle_normal(vec3_load(corners[i]), vec3_load(corners[i] + 3),
-                                               vec3_load(corners[i] + 6)));
-}
-
 void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_ring *r, vec3 target) {
-  double corners[SCREE_RING_MAX][9], size2[SCREE_RING_MAX];
-  uint32_t moving = SCREE_NONE;
-  scree_ring_corners(s, r, target, corners);
-  new_sizes(r, corners, size2);
-  for (uint32_t k = 0; k < count_around(r); k++) {
+  fan f;
+  uint32_t moving[SCREE_RING_MAX + 2], around = count_around(r);
+  make_fan(s, r, target, &f);
+  for (uint32_t k = 0; k < around; k++) {
     uint32_t *first = &m->first[triangle_around(s, r, k)];
-    while (*first != SCREE_NONE) {
-      uint32_t j = *first;
-      *first = m->witnesses[j].next;
-      m->witnesses[j].next = moving;
-      moving = j;
+    moving[k] = *first;
+    *first = SCREE_NONE;
+  }
+  for (uint32_t k = 0; k < around; k++)
+    for (uint32_t j = moving[k], next; j != SCREE_NONE; j = next) {
+      scree_witness *w = &m->witnesses[j];
+      next = w->next;
+      enlist(m, j, nearest_triangle(r, &f, k < r->count ? k : 0, w));
     }
-  }
-  while (moving != SCREE_NONE) {
-    scree_witness *w = &m->witnesses[moving];
-    uint32_t j = moving, triangle = nearest_triangle(r, corners, size2, w);
-    moving = w->next;
-    w->next = m->first[triangle];
-    m->first[triangle] = j;
-  }
 }
 
 /* The squared distance of x from the segment between the ring's ends: mostly the answer, at little
@@ -286,6 +362,24 @@ static double distance_from_edge(const scree_halfmesh *s, const scree_ring *r, v
   vec3 e = vec3_sub(s->vertex[r->b].at, s->vertex[r->a].at), y = vec3_sub(x, s->vertex[r->a].at);
   double t = vec3_dot(y, e) / vec3_norm2(e);
   return vec3_norm2(vec3_mad(y, e, t > 1 ? -1 : t > 0 ? -t : 0));
+}
+
+/* Whether some new triangle, looked for from `begin` on, is that near to p. */
+static bool is_near_new(const scree_halfmesh *s, const scree_ring *r, vec3 target, uint32_t begin,
+                        vec3 p, double most) {
+  for (uint32_t k = 0; k < r->count; k++) {
+    double corners[9];
+    vec3 point;
+    corners_at(s, r, (begin + k) % r->count, target, corners);
+    if (scree_triangle_closest(corners, p, &point) <= most) return true;
+  }
+  return false;
+}
+
+bool scree_ends_stay_within(const scree_halfmesh *s, const scree_ring *r, vec3 target,
+                            double most) {
+  return is_near_new(s, r, target, 0, s->vertex[r->a].at, most) &&
+         is_near_new(s, r, target, r->a_count, s->vertex[r->b].at, most);
 }
 
 bool scree_stays_within(const scree_halfmesh *s, const scree_ring *r, vec3 target, double most) {

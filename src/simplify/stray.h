@@ -1,9 +1,9 @@
 /* How far a collapse takes the surface astray.
  *
- * One by one: the surface that the stage began with is kept, as a tree and by its vertices. Each of
- * these, a witness, knows a triangle that stands for it now, the nearest of those that took the
- * place of the last one, and its distance from it. The stray of a collapse is the largest of the
- * distances of
+ * One by one: the surface that the stage began with is kept as a tree, and vertices of the scan
+ * (keep.c). Each of these, a witness, knows a triangle that stands for it now, the nearest of those
+ * that took the place of the last one, and its distance from it. The stray of a collapse is the
+ * largest of the distances of
  *   - the witnesses of the triangles that change, from the new ones, where it grows;
  *   - the new vertex and five places on every new edge, from the surface kept.
  * In batches, as long as no surface is kept: of the new vertex from the old triangles. */
@@ -22,6 +22,7 @@ typedef struct scree_witness {
 typedef struct scree_memory {
   scree_bvh surface;
   double area;
+  double roughness; /* the mean distance with which the scan's vertices began */
   scree_witness *witnesses;
   size_t count, left; /* left: not dropped */
   uint32_t *first;    /* per triangle: its first witness, or NONE */
@@ -36,8 +37,11 @@ static inline double scree_past_rounding(double distance2) {
   return distance * distance;
 }
 
-/* Keeps the surface as it is. */
-scree_status scree_memory_keep(const scree_halfmesh *s, scree_memory *memory, scree_error *error);
+/* Keeps the surface as it is. Its witnesses are those placed, made with scree_alloc and taken over
+ * whatever the outcome: each with its distance from a triangle, whose number is in `next`. NULL:
+ * its own vertices. */
+scree_status scree_memory_keep(const scree_halfmesh *s, scree_witness *placed, size_t placed_count,
+                               scree_memory *memory, scree_error *error);
 void scree_memory_free(scree_memory *memory);
 static inline bool scree_memory_is_kept(const scree_memory *memory) {
   return memory->first != NULL;
@@ -67,8 +71,9 @@ void scree_ring_corners(const scree_halfmesh *s, const scree_ring *ring, vec3 ta
 bool scree_memory_stays_within(const scree_memory *memory, const scree_halfmesh *s,
                                const scree_ring *ring, vec3 target, double most);
 
-/* How far off a place may be as things stand: ten times the mean distance of the witnesses, or the
- * largest one, if that is more; 0 where none is off but for rounding. */
+/* How far off a place may be as things stand: ten times the mean distance of the witnesses less
+ * five times the one with which those placed began, or the largest one, if that is more; 0 where
+ * none is off but for rounding. */
 double scree_memory_usual(const scree_memory *memory);
 
 /* Where there are very many witnesses for so few triangles, every second of each triangle goes, in
@@ -82,7 +87,10 @@ void scree_memory_compact(scree_memory *memory, const scree_halfmesh *s);
 void scree_memory_move(scree_memory *memory, const scree_halfmesh *s, const scree_ring *ring,
                        vec3 target);
 
-/* In batches: whether the square of the stray is at most `most`. */
+/* In batches, before: whether the new vertex is so near to the old triangles; whether the old ends
+ * are to the new ones. Squared. */
 bool scree_stays_within(const scree_halfmesh *s, const scree_ring *ring, vec3 target, double most);
+bool scree_ends_stay_within(const scree_halfmesh *s, const scree_ring *ring, vec3 target,
+                            double most);
 
 #endif

@@ -4,6 +4,9 @@
 #include "support/check.h"
 #include "support/shapes.h"
 
+/* Docs: so many of the mean distances with which the scan's vertices began are usual noise. */
+#define ROUGH 5
+
 static double distance_from(const scree_halfmesh *s, uint32_t triangle, vec3 p) {
   vec3 at[3], point;
   double corners[9];
@@ -21,7 +24,7 @@ static void check_witnesses(const scree_decimator *d, double *mean, double *wors
   scree_error error;
   size_t seen = 0;
   bool *found = calloc(m->count, sizeof *found);
-  CHECK_OK(scree_memory_keep(s, &now, &error), error); /* the level, as a tree */
+  CHECK_OK(scree_memory_keep(s, NULL, 0, &now, &error), error); /* the level, as a tree */
   *mean = *worst = 0;
   for (uint32_t t = 0; t < s->triangle_count; t++) {
     if (scree_is_gone(s, t)) continue;
@@ -43,27 +46,152 @@ static void check_witnesses(const scree_decimator *d, double *mean, double *wors
   scree_memory_free(&now);
 }
 
-static void witnesses_go_with_the_batches(void **state) {
-  (void)state;
-  scree_rng rng = {.seed = 31};
-  scree_error error;
-  double mean, worst;
-  scree_mesh mesh = shape_icosphere(0.03, 6); /* 81,920 triangles */
-  shape_shake(&mesh, 1e-4, &rng);
-  scree_decimator d = {.coster = &scree_volume_coster,
+static scree_decimator start(const scree_mesh *mesh, scree_error *error) {
+  scree_decimator d = {.mesh = mesh,
+                       .coster = &scree_volume_coster,
                        .options = scree_default_simplify_options(),
                        .error_limit = INFINITY,
-                       .first_triangle_count = mesh.triangle_count,
-                       .error = &error};
-  CHECK_OK(scree_halfmesh_build(&mesh, &d.s, &error), error);
-  CHECK_OK(scree_record_allocate(&d.record, mesh.vertex_count, &error), error);
+                       .first_triangle_count = mesh->triangle_count,
+                       .error = error};
+  CHECK_OK(scree_halfmesh_build(mesh, &d.s, error), *error);
+  CHECK_OK(scree_record_allocate(&d.record, mesh->vertex_count, error), *error);
   for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
+  return d;
+}
+
+static scree_mesh shaken_sphere(void) { /* 81,920 triangles */
+  scree_rng rng = {.seed = 31};
+  scree_mesh mesh = shape_icosphere(0.03, 6);
+  shape_shake(&mesh, 1e-4, &rng);
+  return mesh;
+}
+
+static void witnesses_go_with_the_batches(void **state) {
+  (void)state;
+  scree_error error;
+  double mean, worst;
+  scree_mesh mesh = shaken_sphere();
+  scree_decimator d = start(&mesh, &error);
   CHECK_OK(scree_decimate_in_batches(&d), error);
   assert_true(d.s.live_triangle_count <= SCREE_GREEDY_COUNT);
   assert_int_equal(d.memory.left, mesh.vertex_count);
+  assert_true(d.memory.roughness == 0);
   check_witnesses(&d, &mean, &worst);
   CHECK_NEAR(scree_memory_usual(&d.memory), fmax(10 * mean, worst), 1e-9 * worst);
   scree_decimator_free(&d);
+  scree_mesh_free(&mesh);
+}
+
+static int by_x(const void *a, const void *b) {
+  double x = ((const vec3 *)a)->x, y = ((const vec3 *)b)->x;
+  return (x > y) - (x < y);
+}
+
+/* Every witness lies where a vertex of the mesh given does, and no two at the same. */
+static void check_places(const scree_decimator *d) {
+  const scree_memory *m = &d->memory;
+  vec3 *given = calloc(d->mesh->vertex_count, sizeof *given);
+  bool *seen = calloc(d->mesh->vertex_count, sizeof *seen);
+  for (size_t v = 0; v < d->mesh->vertex_count; v++)
+    given[v] = scree_into_box(&d->s, vec3_load(d->mesh->positions + 3 * v));
+  qsort(given, d->mesh->vertex_count, sizeof *given, by_x);
+  for (size_t j = 0; j < m->count; j++) {
+    vec3 at = m->witnesses[j].at;
+    const vec3 *found = bsearch(&at, given, d->mesh->vertex_count, sizeof at, by_x);
+    assert_non_null(found);
+    assert_true(vec3_norm(vec3_sub(*found, at)) == 0);
+    assert_false(seen[found - given]);
+    seen[found - given] = true;
+  }
+  free(given);
+  free(seen);
+}
+
+/* Kept late: of the vertices that went before some are witnesses too, at most one in a hundred not
+ * at its nearest triangle. */
+static void what_went_before_is_remembered(void **state) {
+  (void)state;
+  scree_error error;
+  double mean, worst;
+  size_t farther = 0;
+  scree_mesh mesh = shaken_sphere();
+  scree_decimator d = start(&mesh, &error);
+  d.options.stop_count = SCREE_KEPT_LATE + 1;
+  d.first_triangle_count = SCREE_LARGE_COUNT + 1;
+  CHECK_OK(scree_decimate_in_batches(&d), error);
+  assert_true(d.s.live_triangle_count < mesh.triangle_count / 3);
+  assert_false(scree_memory_is_kept(&d.memory));
+  d.first_triangle_count = mesh.triangle_count;
+  CHECK_OK(scree_decimate_keep(&d), error);
+  size_t stride = 1 + mesh.vertex_count / (2 * d.s.live_triangle_count);
+  assert_int_equal(d.memory.left, d.s.live_vertex_count + (d.record.count + stride - 1) / stride);
+  check_places(&d);
+  check_witnesses(&d, &mean, &worst);
+  CHECK_NEAR(d.memory.roughness, mean, 1e-9 * mean);
+  CHECK_NEAR(scree_memory_usual(&d.memory), fmax((10 - ROUGH) * mean, worst), 1e-9 * worst);
+  for (size_t j = 0; j < d.memory.count; j++) {
+    scree_bvh_hit hit = {.distance2 = INFINITY};
+    assert_true(scree_bvh_closest(&d.memory.surface, d.memory.witnesses[j].at, &hit));
+    farther += sqrt(d.memory.witnesses[j].distance2) > sqrt(hit.distance2) + 1e-12;
+  }
+  assert_true(farther <= d.memory.count / 100);
+  d.options.stop_count = 0;
+  CHECK_OK(scree_decimate_in_batches(&d), error);
+  check_witnesses(&d, &mean, &worst);
+  scree_decimator_free(&d);
+  scree_mesh_free(&mesh);
+}
+
+/* Of a large scan only those that are there. */
+static void few_are_remembered_of_large_scans(void **state) {
+  (void)state;
+  scree_error error;
+  double mean, worst;
+  scree_mesh mesh = shaken_sphere();
+  scree_decimator d = start(&mesh, &error);
+  CHECK_OK(scree_decimate_in_batches(&d), error);
+  scree_memory_free(&d.memory);
+  d.first_triangle_count = SCREE_LARGE_COUNT + 1;
+  CHECK_OK(scree_decimate_keep(&d), error);
+  /* the first that went besides */
+  assert_int_equal(d.memory.left, d.s.live_vertex_count + 1);
+  check_places(&d);
+  check_witnesses(&d, &mean, &worst);
+  scree_decimator_free(&d);
+  scree_mesh_free(&mesh);
+}
+
+/* Against the distance of the ends from all triangles of the surface after the collapse. */
+static void ends_are_near_or_not(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 33};
+  scree_error error;
+  size_t near_count = 0, tried = 0;
+  scree_mesh mesh = shape_icosphere(1, 2);
+  shape_shake(&mesh, 0.1, &rng);
+  for (uint32_t h = 0; h < 3 * mesh.triangle_count; h += 7) {
+    scree_halfmesh s;
+    scree_ring ring = {.edge = (uint32_t[SCREE_RING_MAX]){0}};
+    CHECK_OK(scree_halfmesh_build(&mesh, &s, &error), error);
+    assert_true(scree_ring_gather(&s, h, &ring));
+    vec3 a = s.vertex[ring.a].at, b = s.vertex[ring.b].at;
+    vec3 target = vec3_scale(vec3_add(a, b), 0.5 + 0.1 * scree_rng_uniform(&rng));
+    double most = 0.1 * scree_rng_uniform(&rng), off_a = INFINITY, off_b = INFINITY;
+    bool near = scree_ends_stay_within(&s, &ring, target, most * most);
+    uint32_t *edges = malloc(ring.count * sizeof *edges);
+    memcpy(edges, ring.edge, ring.count * sizeof *edges);
+    scree_collapse_apply(&s, &ring, target);
+    for (uint32_t i = 0; i < ring.count; i++) {
+      off_a = fmin(off_a, distance_from(&s, edges[i] / 3, a));
+      off_b = fmin(off_b, distance_from(&s, edges[i] / 3, b));
+    }
+    assert_int_equal(near, fmax(off_a, off_b) <= most);
+    near_count += near;
+    tried++;
+    free(edges);
+    scree_halfmesh_free(&s);
+  }
+  assert_in_range(near_count, tried / 10, tried - tried / 10);
   scree_mesh_free(&mesh);
 }
 
@@ -76,7 +204,7 @@ static void every_second_goes(void **state) {
   scree_halfmesh s;
   scree_mesh mesh = shape_icosphere(1, 3);
   CHECK_OK(scree_halfmesh_build(&mesh, &s, &error), error);
-  CHECK_OK(scree_memory_keep(&s, &m, &error), error);
+  CHECK_OK(scree_memory_keep(&s, NULL, 0, &m, &error), error);
   double all[642], sum = 0;
   assert_int_equal(m.count, 642);
   memset(m.first, 0xff, s.triangle_count * sizeof *m.first);
@@ -111,6 +239,9 @@ static void every_second_goes(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(witnesses_go_with_the_batches),
+                                     cmocka_unit_test(what_went_before_is_remembered),
+                                     cmocka_unit_test(few_are_remembered_of_large_scans),
+                                     cmocka_unit_test(ends_are_near_or_not),
                                      cmocka_unit_test(every_second_goes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

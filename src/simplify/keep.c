@@ -1,0 +1,120 @@
+/* What becomes of the scan's vertices when the surface is kept: each is a witness with the triangle
+ * that is nearest to it, as far as that is found by going from fan to fan, from that of the vertex
+ * which it became by collapses and on as long as there are nearer triangles. */
+#include "base/parallel.h"
+#include "simplify/decimate.h"
+
+/* So many witnesses for a triangle kept. */
+enum { CROWD = 2 };
+enum { WITNESS_BLOCK = 1024 };
+/* Squared cosines to the normal that differ from 1 by no more are 1. */
+#define ABOVE 1e-9
+
+typedef struct finding {
+  const scree_decimator *d;
+  uint32_t *place;  /* of every vertex of the mesh given: the vertex that it became */
+  uint32_t *origin; /* the vertices that are to be witnesses */
+  uint32_t *end;    /* scratch, per vertex */
+  scree_witness *witnesses;
+  size_t count;
+} finding;
+
+static void find_places(finding *f) {
+  const scree_halfmesh *s = &f->d->s;
+  const scree_record *r = &f->d->record;
+  for (uint32_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE) f->place[s->vertex[v].origin] = v;
+  for (size_t i = r->count; i-- > 0;)
+    f->place[r->gone[i]] = f->place[r->kept[i] & ~SCREE_ONE_TRIANGLE];
+}
+
+/* Lists the vertices that are there and, but of large scans, every so many of those that went, in
+ * the order in which they went, for turning the scan does not change that; sorted by their places,
+ * so that what is asked for together lies together. */
+static void list_origins(finding *f) {
+  const scree_halfmesh *s = &f->d->s;
+  const scree_record *r = &f->d->record;
+  bool large = f->d->first_triangle_count > SCREE_LARGE_COUNT;
+  size_t stride =
+      1 + (large ? r->count : f->d->mesh->vertex_count / (CROWD * s->live_triangle_count));
+  uint32_t count = 0;
+  for (uint32_t v = 0; v < s->vertex_count; v++) f->end[v] = s->vertex[v].outgoing != SCREE_NONE;
+  for (size_t i = 0; i < r->count; i += stride) f->end[f->place[r->gone[i]]]++;
+  for (uint32_t v = 0; v < s->vertex_count; v++) {
+    count += f->end[v];
+    f->end[v] = count;
+  }
+  for (size_t i = 0; i < r->count; i += stride)
+    f->origin[--f->end[f->place[r->gone[i]]]] = r->gone[i];
+  for (uint32_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE) f->origin[--f->end[v]] = s->vertex[v].origin;
+  f->count = count;
+}
+
+/* Gives w the nearest triangle at vertex v, in w->next. Whether others may be nearer still: not
+ * where what it has is as near, nor where w lies right above the triangle. */
+static bool look_around(const scree_halfmesh *s, uint32_t v, scree_witness *w) {
+  uint32_t first = s->vertex[v].outgoing, h = first;
+  bool found = false;
+  do {
+    vec3 at[3], point;
+    double corners[9];
+    scree_corners(s, h / 3, at);
+    for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, at[i]);
+    double distance2 = scree_triangle_closest(corners, w->at, &point);
+    if (distance2 < w->distance2) {
+      vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
+      double height = vec3_dot(n, vec3_sub(w->at, at[0]));
+      w->distance2 = distance2;
+      w->next = h / 3;
+      found = height * height < (1 - ABOVE) * distance2 * vec3_norm2(n);
+    }
+    h = scree_turn(s, h);
+  } while (h != SCREE_NONE && h != first);
+  return found;
+}
+
+static void look_from(const scree_halfmesh *s, uint32_t v, scree_witness *w) {
+  bool found = look_around(s, v, w);
+  while (found) {
+    uint32_t h = 3 * w->next, seen = v;
+    found = false;
+    for (uint32_t i = 0; i < 3; i++) {
+      uint32_t corner = s->half[h + i].from;
+      if (corner == seen || !look_around(s, corner, w)) continue;
+      found = true;
+      v = corner;
+    }
+  }
+}
+
+static void find_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const finding *f = context;
+  for (size_t i = begin; i < end; i++) {
+    vec3 p = vec3_load(f->d->mesh->positions + 3 * (size_t)f->origin[i]);
+    f->witnesses[i] = (scree_witness){.at = scree_into_box(&f->d->s, p), .distance2 = INFINITY};
+    look_from(&f->d->s, f->place[f->origin[i]], &f->witnesses[i]);
+  }
+}
+
+scree_status scree_decimate_keep(scree_decimator *d) {
+  const scree_halfmesh *s = &d->s;
+  finding f = {.d = d};
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  if (d->record.count == 0 || d->coster->merge) /* they are the surface's own; not asked for */
+    return scree_memory_keep(s, NULL, 0, &d->memory, d->error);
+  SCREE_ALLOC_OR(f.place, d->mesh->vertex_count, d->error, done);
+  SCREE_ALLOC_OR(f.origin, s->live_vertex_count + d->record.count, d->error, done);
+  SCREE_ALLOC_OR(f.end, s->vertex_count, d->error, done);
+  find_places(&f);
+  list_origins(&f);
+  SCREE_ALLOC_OR(f.witnesses, f.count, d->error, done);
+  scree_parallel_for(f.count, WITNESS_BLOCK, find_block, &f);
+  status = scree_memory_keep(s, f.witnesses, f.count, &d->memory, d->error);
+done:
+  scree_free(f.place);
+  scree_free(f.origin);
+  scree_free(f.end);
+  return status;
+}
