@@ -17,6 +17,7 @@ typedef struct finding {
   uint32_t *end;    /* scratch, per vertex */
   scree_witness *witnesses;
   size_t count;
+  size_t gone_count; /* of the record, how many are looked through for those that went */
 } finding;
 
 static void find_places(finding *f) {
@@ -24,7 +25,7 @@ static void find_places(finding *f) {
   const scree_record *r = &f->d->record;
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE) f->place[s->vertex[v].origin] = v;
-  for (size_t i = r->count; i-- > 0;)
+  for (size_t i = f->gone_count; i-- > 0;)
     f->place[r->gone[i]] = f->place[r->kept[i] & ~SCREE_ONE_TRIANGLE];
 }
 
@@ -34,17 +35,15 @@ static void find_places(finding *f) {
 static void list_origins(finding *f) {
   const scree_halfmesh *s = &f->d->s;
   const scree_record *r = &f->d->record;
-  bool large = f->d->first_triangle_count > SCREE_LARGE_COUNT;
-  size_t stride =
-      1 + (large ? r->count : f->d->mesh->vertex_count / (CROWD * s->live_triangle_count));
+  size_t stride = 1 + f->d->mesh->vertex_count / (CROWD * s->live_triangle_count);
   uint32_t count = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++) f->end[v] = s->vertex[v].outgoing != SCREE_NONE;
-  for (size_t i = 0; i < r->count; i += stride) f->end[f->place[r->gone[i]]]++;
+  for (size_t i = 0; i < f->gone_count; i += stride) f->end[f->place[r->gone[i]]]++;
   for (uint32_t v = 0; v < s->vertex_count; v++) {
     count += f->end[v];
     f->end[v] = count;
   }
-  for (size_t i = 0; i < r->count; i += stride)
+  for (size_t i = 0; i < f->gone_count; i += stride)
     f->origin[--f->end[f->place[r->gone[i]]]] = r->gone[i];
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE) f->origin[--f->end[v]] = s->vertex[v].origin;
@@ -104,8 +103,9 @@ scree_status scree_decimate_keep(scree_decimator *d) {
   scree_status status = SCREE_OUT_OF_MEMORY;
   if (d->record.count == 0 || d->coster->merge) /* they are the surface's own; not asked for */
     return scree_memory_keep(s, NULL, 0, &d->memory, d->error);
+  if (d->first_triangle_count <= SCREE_LARGE_COUNT) f.gone_count = d->record.count;
   SCREE_ALLOC_OR(f.place, d->mesh->vertex_count, d->error, done);
-  SCREE_ALLOC_OR(f.origin, s->live_vertex_count + d->record.count, d->error, done);
+  SCREE_ALLOC_OR(f.origin, s->live_vertex_count + f.gone_count, d->error, done);
   SCREE_ALLOC_OR(f.end, s->vertex_count, d->error, done);
   find_places(&f);
   list_origins(&f);
