@@ -720,7 +720,7 @@ static size_t run_round(pass *p) {
 static scree_status set_usual(pass *p, size_t last_count) {
   scree_decimator *d = p->d;
   size_t count = d->s.live_triangle_count;
-  size_t kept = d->first_triangle_count > SCREE_LARGE_COUNT ? SCREE_KEPT_LATE : SCREE_KEPT_COUNT;
+  size_t kept = scree_is_large(d) ? SCREE_KEPT_LATE : SCREE_KEPT_COUNT;
   double usual = 0;
   scree_status status = SCREE_OK;
   if (!d->coster->merge && count <= kept) {

@@ -260,7 +260,7 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   if (status != SCREE_OK) goto finished;
   d.mesh = mesh;
   d.first_triangle_count = mesh->triangle_count;
-  bool late = d.first_triangle_count > SCREE_LARGE_COUNT && !d.coster->merge;
+  bool late = scree_is_large(&d) && !d.coster->merge;
   d.single_from = late ? SCREE_GREEDY_LATE : SCREE_GREEDY_COUNT;
   double limit = options->error_limit / d.s.scale;
   d.error_limit = limit > 0 ? limit * limit : INFINITY;

@@ -63,13 +63,20 @@ void scree_record_write(scree_decimator *d, size_t place, const scree_ring *ring
 scree_status scree_record_move(scree_decimator *d, const scree_ring *fan,
                                const scree_change *change);
 
+/* Of large scans method `volume` looks at less, or later, for it takes time: see the counts below.
+ */
+enum { SCREE_LARGE_COUNT = 600000 };
+static inline bool scree_is_large(const scree_decimator *d) {
+  return d->first_triangle_count > SCREE_LARGE_COUNT;
+}
+
 /* Where the batches end and single collapses begin, in triangles; method `volume` on large scans
  * goes on in batches to the second, for it is most of what does not run in parallel. */
 enum { SCREE_GREEDY_COUNT = 10000, SCREE_GREEDY_LATE = 5000 };
 
 /* From how many triangles on the surface is kept (stray.h); method `volume`. To look at every stray
  * from there on takes time, so that of large scans it is kept later. */
-enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 20000, SCREE_LARGE_COUNT = 600000 };
+enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 20000 };
 
 /* Below how many triangles vertices move after a collapse (relax.h); method `volume`; later with
  * large scans. */

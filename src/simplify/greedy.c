@@ -539,9 +539,9 @@ static scree_status try_cheapest(queue *q) {
 }
 
 scree_status scree_decimate_one_by_one(scree_decimator *d) {
-  bool large = d->first_triangle_count > SCREE_LARGE_COUNT;
   queue q = {.d = d};
-  if (!d->coster->merge) q.relaxed_below = large ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
+  if (!d->coster->merge)
+    q.relaxed_below = scree_is_large(d) ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
   scree_grid_free(&d->grid);
   scree_status status = queue_fill(&q);
   if (status == SCREE_OK) status = scree_anchors_find(&d->s, &d->anchors, d->error);

@@ -103,7 +103,7 @@ scree_status scree_decimate_keep(scree_decimator *d) {
   scree_status status = SCREE_OUT_OF_MEMORY;
   if (d->record.count == 0 || d->coster->merge) /* they are the surface's own; not asked for */
     return scree_memory_keep(s, NULL, 0, &d->memory, d->error);
-  if (d->first_triangle_count <= SCREE_LARGE_COUNT) f.gone_count = d->record.count;
+  if (!scree_is_large(d)) f.gone_count = d->record.count;
   SCREE_ALLOC_OR(f.place, d->mesh->vertex_count, d->error, done);
   SCREE_ALLOC_OR(f.origin, s->live_vertex_count + f.gone_count, d->error, done);
   SCREE_ALLOC_OR(f.end, s->vertex_count, d->error, done);

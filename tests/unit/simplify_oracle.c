@@ -23,8 +23,7 @@
  * (simplify_independent.c). */
 #include "mesh/bvh.h"
 #include "mesh/intersect.h"
-#include "simplify/decimate.h"
-#include "support/check.h"
+#include "support/decimator.h"
 #include "support/shapes.h"
 
 /* What the rules name (docs/decimation.md). */
@@ -912,15 +911,7 @@ static bool is_clean(const oracle *o) {
 }
 
 static scree_decimator decimator_of(const scree_mesh *mesh, bool qecd, scree_error *error) {
-  scree_decimator d = {.coster = qecd ? &scree_qecd_coster : &scree_volume_coster,
-                       .options = scree_default_simplify_options(),
-                       .error_limit = INFINITY,
-                       .first_triangle_count = mesh->triangle_count,
-                       .error = error};
-  CHECK_OK(scree_halfmesh_build(mesh, &d.s, error), *error);
-  CHECK_OK(scree_record_allocate(&d.record, mesh->vertex_count, error), *error);
-  for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
-  return d;
+  return begin_decimation(mesh, qecd ? &scree_qecd_coster : &scree_volume_coster, error);
 }
 
 static void compare(const scree_mesh *mesh, bool qecd, size_t *moved, size_t *compared,

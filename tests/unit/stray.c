@@ -1,7 +1,6 @@
 /* The witnesses of the stray, carried through batches, against the level as it is; what thinning
  * leaves. */
-#include "simplify/decimate.h"
-#include "support/check.h"
+#include "support/decimator.h"
 #include "support/shapes.h"
 
 /* Docs: so many of the mean distances with which the scan's vertices began are usual noise. */
@@ -46,19 +45,6 @@ static void check_witnesses(const scree_decimator *d, double *mean, double *wors
   scree_memory_free(&now);
 }
 
-static scree_decimator start(const scree_mesh *mesh, scree_error *error) {
-  scree_decimator d = {.mesh = mesh,
-                       .coster = &scree_volume_coster,
-                       .options = scree_default_simplify_options(),
-                       .error_limit = INFINITY,
-                       .first_triangle_count = mesh->triangle_count,
-                       .error = error};
-  CHECK_OK(scree_halfmesh_build(mesh, &d.s, error), *error);
-  CHECK_OK(scree_record_allocate(&d.record, mesh->vertex_count, error), *error);
-  for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
-  return d;
-}
-
 static scree_mesh shaken_sphere(void) { /* 81,920 triangles */
   scree_rng rng = {.seed = 31};
   scree_mesh mesh = shape_icosphere(0.03, 6);
@@ -71,7 +57,7 @@ static void witnesses_go_with_the_batches(void **state) {
   scree_error error;
   double mean, worst;
   scree_mesh mesh = shaken_sphere();
-  scree_decimator d = start(&mesh, &error);
+  scree_decimator d = begin_decimation(&mesh, &scree_volume_coster, &error);
   CHECK_OK(scree_decimate_in_batches(&d), error);
   assert_true(d.s.live_triangle_count <= SCREE_GREEDY_COUNT);
   assert_int_equal(d.memory.left, mesh.vertex_count);
@@ -115,7 +101,7 @@ static void what_went_before_is_remembered(void **state) {
   double mean, worst;
   size_t farther = 0;
   scree_mesh mesh = shaken_sphere();
-  scree_decimator d = start(&mesh, &error);
+  scree_decimator d = begin_decimation(&mesh, &scree_volume_coster, &error);
   d.options.stop_count = SCREE_KEPT_LATE + 1;
   d.first_triangle_count = SCREE_LARGE_COUNT + 1;
   CHECK_OK(scree_decimate_in_batches(&d), error);
@@ -148,7 +134,7 @@ static void few_are_remembered_of_large_scans(void **state) {
   scree_error error;
   double mean, worst;
   scree_mesh mesh = shaken_sphere();
-  scree_decimator d = start(&mesh, &error);
+  scree_decimator d = begin_decimation(&mesh, &scree_volume_coster, &error);
   CHECK_OK(scree_decimate_in_batches(&d), error);
   scree_memory_free(&d.memory);
   d.first_triangle_count = SCREE_LARGE_COUNT + 1;

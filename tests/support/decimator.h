@@ -1,0 +1,24 @@
+/* A decimation about to begin, for tests of its stages. */
+#ifndef SCREE_TEST_DECIMATOR_H
+#define SCREE_TEST_DECIMATOR_H
+
+#include "simplify/decimate.h"
+#include "support/check.h"
+
+/* With default options and no limit of error. The mesh must stay; free with scree_decimator_free.
+ */
+static inline scree_decimator begin_decimation(const scree_mesh *mesh, const scree_coster *coster,
+                                               scree_error *error) {
+  scree_decimator d = {.mesh = mesh,
+                       .coster = coster,
+                       .options = scree_default_simplify_options(),
+                       .error_limit = INFINITY,
+                       .first_triangle_count = mesh->triangle_count,
+                       .error = error};
+  CHECK_OK(scree_halfmesh_build(mesh, &d.s, error), *error);
+  CHECK_OK(scree_record_allocate(&d.record, mesh->vertex_count, error), *error);
+  for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
+  return d;
+}
+
+#endif
