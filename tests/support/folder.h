@@ -1,6 +1,8 @@
 /* A folder of a test's own, removed with all that is in it. As setup and teardown of a group:
  *
- *   return cmocka_run_group_tests(tests, make_folder, remove_folder); */
+ *   return cmocka_run_group_tests(tests, make_folder, remove_folder);
+ *
+ * SCREE_TEST_FOLDER names another, made by hand, in which everything stays to be looked at. */
 #ifndef SCREE_TEST_FOLDER_H
 #define SCREE_TEST_FOLDER_H
 

@@ -6,6 +6,7 @@
 #include "base/rng.h"
 #include "base/sum.h"
 #include "support/check.h"
+#include "support/folder.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -105,12 +106,9 @@ static void random_numbers_have_the_moments_they_claim(void **state) {
 
 static void files_are_whole_or_absent(void **state) {
   (void)state;
-  char folder[] = "/tmp/scree_test_XXXXXX", path[64];
-  assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/a/b", folder);
   scree_error error;
-  CHECK_OK(scree_folder_create(path, &error), error);
-  snprintf(path, sizeof path, "%s/a/b/file", folder);
+  CHECK_OK(scree_folder_create(in_folder("a/b"), &error), error);
+  const char *path = in_folder("a/b/file");
   scree_output output;
   CHECK_OK(scree_output_open(path, false, &output, &error), error);
   fputs("hello", output.stream);
@@ -127,10 +125,7 @@ static void files_are_whole_or_absent(void **state) {
   assert_string_equal(bytes, "hello");
   scree_free(bytes);
   assert_int_equal(scree_file_read(path, 3, &bytes, &count, &error), SCREE_LIMIT);
-  assert_int_equal(scree_file_read(folder, 0, &bytes, &count, &error), SCREE_IO);
-  char command[96];
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  assert_int_equal(system(command), 0);
+  assert_int_equal(scree_file_read(in_folder("a"), 0, &bytes, &count, &error), SCREE_IO);
 }
 
 static void a_discarded_tail_can_be_used_again(void **state) {
@@ -162,5 +157,5 @@ int main(void) {
       cmocka_unit_test(random_numbers_have_the_moments_they_claim),
       cmocka_unit_test(files_are_whole_or_absent),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

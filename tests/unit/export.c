@@ -3,19 +3,10 @@
 #include "base/vec.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 #include <unistd.h>
-
-static char folder[] = "/tmp/scree-export-XXXXXX";
-
-static const char *at(const char *name) {
-  static char path[2][96];
-  static int turn;
-  turn = 1 - turn;
-  snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-  return path[turn];
-}
 
 /* A box of 3 x 2 x 1 cm, turned and moved away. */
 static scree_mesh turned_box(mat3 *turn, vec3 *away) {
@@ -48,7 +39,8 @@ static void principal_box(void **state) {
   o.principal = true;
   o.density = 1500;
   o.unit_m = 1;
-  CHECK_OK(scree_particle_export(&box, &o, at("box.ply"), at("box.json"), &e, &error), error);
+  CHECK_OK(scree_particle_export(&box, &o, in_folder("box.ply"), in_folder("box.json"), &e, &error),
+           error);
   double mass = 1500 * 6e-6, sides[3] = {0.03, 0.02, 0.01};
   CHECK_NEAR(e.mass, mass, 1e-12 * mass);
   CHECK_NEAR(e.bounding_radius, 0.5 * sqrt(14e-4), 1e-12);
@@ -59,7 +51,7 @@ static void principal_box(void **state) {
     for (int j = 0; j < 3; j++)
       CHECK_NEAR(e.inertia[i][j], i == j ? mass / 12 * (a * a + b * b) : 0, 1e-12 * mass * 1e-3);
   }
-  scree_mesh file = read_back(at("box.ply"), 1);
+  scree_mesh file = read_back(in_folder("box.ply"), 1);
   assert_int_equal(file.triangle_count, 12);
   for (size_t v = 0; v < box.vertex_count; v++) {
     vec3 p = vec3_load(box.positions + 3 * v), best = {0, 0, 0};
@@ -88,14 +80,14 @@ static void centre_only(void **state) {
   for (int centre = 0; centre < 2; centre++) {
     o.centre = centre;
     o.overwrite = true;
-    CHECK_OK(scree_particle_export(&box, &o, at("c.ply"), NULL, &e, &error), error);
+    CHECK_OK(scree_particle_export(&box, &o, in_folder("c.ply"), NULL, &e, &error), error);
     for (int i = 0; i < 3; i++) {
       double c = ((double *)&away)[i];
       CHECK_NEAR(e.measures.centroid[i], centre ? 0 : c, 1e-13);
       CHECK_NEAR(e.translation[i], centre ? -c : 0, 1e-13);
       for (int j = 0; j < 3; j++) assert_true(e.rotation[i][j] == (i == j));
     }
-    scree_mesh file = read_back(at("c.ply"), 1e-3);
+    scree_mesh file = read_back(in_folder("c.ply"), 1e-3);
     double low = file.positions[0];
     for (size_t v = 0; v < file.vertex_count; v++) low = fmin(low, file.positions[3 * v]);
     CHECK_NEAR(low, e.measures.box_min[0], 1e-12);
@@ -109,20 +101,24 @@ static void refusals(void **state) {
   scree_error error;
   scree_mesh box = shape_box(1, 1, 1);
   scree_export_options o = scree_default_export_options();
-  CHECK_OK(scree_particle_export(&box, &o, at("r.stl"), at("r.json"), NULL, &error), error);
-  assert_int_equal(scree_particle_export(&box, &o, at("r.stl"), NULL, NULL, &error), SCREE_EXISTS);
-  /* neither file is written where one is in the way */
-  assert_int_equal(scree_particle_export(&box, &o, at("s.stl"), at("r.json"), NULL, &error),
+  CHECK_OK(scree_particle_export(&box, &o, in_folder("r.stl"), in_folder("r.json"), NULL, &error),
+           error);
+  assert_int_equal(scree_particle_export(&box, &o, in_folder("r.stl"), NULL, NULL, &error),
                    SCREE_EXISTS);
-  assert_int_equal(access(at("s.stl"), F_OK), -1);
+  /* neither file is written where one is in the way */
+  assert_int_equal(
+      scree_particle_export(&box, &o, in_folder("s.stl"), in_folder("r.json"), NULL, &error),
+      SCREE_EXISTS);
+  assert_int_equal(access(in_folder("s.stl"), F_OK), -1);
   o.overwrite = true;
-  CHECK_OK(scree_particle_export(&box, &o, at("r.stl"), at("r.json"), NULL, &error), error);
+  CHECK_OK(scree_particle_export(&box, &o, in_folder("r.stl"), in_folder("r.json"), NULL, &error),
+           error);
   o.density = -1;
-  assert_int_equal(scree_particle_export(&box, &o, at("r.stl"), NULL, NULL, &error),
+  assert_int_equal(scree_particle_export(&box, &o, in_folder("r.stl"), NULL, NULL, &error),
                    SCREE_BAD_ARGUMENT);
   o.density = 1;
   box.triangle_count--;
-  assert_int_equal(scree_particle_export(&box, &o, at("r.stl"), NULL, NULL, &error),
+  assert_int_equal(scree_particle_export(&box, &o, in_folder("r.stl"), NULL, NULL, &error),
                    SCREE_BAD_MESH);
   assert_non_null(strstr(error.message, "not closed"));
   box.triangle_count++;
@@ -130,7 +126,7 @@ static void refusals(void **state) {
     uint32_t *c = box.triangles + 3 * t, kept = c[0];
     c[0] = c[1], c[1] = kept;
   }
-  assert_int_equal(scree_particle_export(&box, &o, at("r.stl"), NULL, NULL, &error),
+  assert_int_equal(scree_particle_export(&box, &o, in_folder("r.stl"), NULL, NULL, &error),
                    SCREE_BAD_MESH);
   assert_non_null(strstr(error.message, "inside out"));
   scree_mesh_free(&box);
@@ -140,9 +136,9 @@ static scree_status write_all(void *context, scree_error *error) {
   const scree_mesh *box = context;
   scree_export_options o = scree_default_export_options();
   o.overwrite = true;
-  scree_status status = scree_mesh_vtp_write(box, box, at("a.vtp"), true, error);
+  scree_status status = scree_mesh_vtp_write(box, box, in_folder("a.vtp"), true, error);
   if (status != SCREE_OK) return status;
-  return scree_particle_export(box, &o, at("a.stl"), at("a.json"), NULL, error);
+  return scree_particle_export(box, &o, in_folder("a.stl"), in_folder("a.json"), NULL, error);
 }
 
 static void allocations(void **state) {
@@ -152,11 +148,6 @@ static void allocations(void **state) {
   scree_mesh_free(&box);
 }
 
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(principal_box),
@@ -164,5 +155,5 @@ int main(void) {
       cmocka_unit_test(refusals),
       cmocka_unit_test(allocations),
   };
-  return cmocka_run_group_tests(tests, make_folder, NULL);
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

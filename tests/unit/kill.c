@@ -4,6 +4,7 @@
 #define _DEFAULT_SOURCE
 #include "base/file.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/mixed.h"
 
 #include <dirent.h>
@@ -13,8 +14,6 @@
 #include <unistd.h>
 
 enum { SAVES = 3 };
-
-static char folder[] = "/tmp/scree-kill-XXXXXX";
 
 /* What the child does between its first and its last traced call. */
 static int save_three_times(scree_world *world, const char *path) {
@@ -46,65 +45,54 @@ static bool kill_after(pid_t child, size_t calls, int *status) {
   return true;
 }
 
-static void empty_folder(bool also_folder) {
-  DIR *entries = opendir(folder);
-  char path[512];
+static void empty_folder(void) {
+  DIR *entries = opendir(in_folder("."));
   assert_non_null(entries);
-  for (struct dirent *entry; (entry = readdir(entries));) {
-    if (entry->d_name[0] == '.') continue;
-    snprintf(path, sizeof path, "%s/%s", folder, entry->d_name);
-    unlink(path);
-  }
+  for (struct dirent *entry; (entry = readdir(entries));)
+    if (entry->d_name[0] != '.') unlink(in_folder(entry->d_name));
   closedir(entries);
-  if (also_folder) rmdir(folder);
 }
 
 static void every_moment_leaves_a_checkpoint(void **state) {
   (void)state;
-  char path[256], first[256];
   scree_error error;
   scree_checksum hashes[SAVES + 1];
-  assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/world", folder);
-  snprintf(first, sizeof first, "%s/.first", folder);
   scree_set_threads(1); /* a fork carries no threads along */
   scree_world *world = mixed_world(SCREE_LAW_LINEAR);
-  CHECK_OK(scree_world_save(world, first, true, &error), error);
+  CHECK_OK(scree_world_save(world, in_folder(".first"), true, &error), error);
   size_t kills = 0, seen[SAVES + 1] = {0};
   for (bool killed = true; killed; kills += killed) {
     scree_world *loaded = NULL;
     int status;
-    CHECK_OK(scree_world_save(world, path, true, &error), error);
-    killed = kill_after(start_child(world, path), kills, &status);
+    CHECK_OK(scree_world_save(world, in_folder("world"), true, &error), error);
+    killed = kill_after(start_child(world, in_folder("world")), kills, &status);
     if (!killed && WEXITSTATUS(status) == 77) {
       print_message("skipped: tracing is not allowed here\n");
       break;
     }
-    CHECK_OK(scree_world_load(path, &loaded, &error), error);
+    CHECK_OK(scree_world_load(in_folder("world"), &loaded, &error), error);
     uint64_t steps = scree_world_step_count(loaded);
     assert_true(steps <= SAVES && (killed || steps == SAVES));
     scree_checksum hash = scree_world_hash(loaded);
     if (!seen[steps]++) { /* the state of so many steps, made here */
       scree_world *expected = NULL;
-      CHECK_OK(scree_world_load(first, &expected, &error), error);
+      CHECK_OK(scree_world_load(in_folder(".first"), &expected, &error), error);
       CHECK_OK(scree_world_step(expected, steps, &error), error);
       hashes[steps] = scree_world_hash(expected);
       scree_world_free(expected);
     }
     assert_true(hash.high == hashes[steps].high && hash.low == hashes[steps].low);
     scree_world_free(loaded);
-    empty_folder(false);
+    empty_folder();
   }
   print_message("%zu kills: found %zu %zu %zu %zu of the states\n", kills, seen[0], seen[1],
                 seen[2], seen[3]);
   if (kills) assert_true(seen[0] && seen[1] && seen[2] && seen[3]);
   scree_world_free(world);
-  unlink(first);
-  empty_folder(true);
   scree_set_threads(0);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_moment_leaves_a_checkpoint)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

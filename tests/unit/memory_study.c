@@ -2,20 +2,10 @@
  * sentence and leaks nothing; a study goes on afterwards. tests/allocations.sh keeps the list. */
 #include "support/alloc_fail.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 #include <unistd.h>
-
-static char folder[] = "/tmp/scree-memory-XXXXXX";
-
-/* Good until the eighth call after. */
-static const char *in_folder(const char *name) {
-  static char paths[8][128];
-  static int next;
-  char *path = paths[next++ % 8];
-  snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-  return path;
-}
 
 static void write_text(const char *path, const char *text) {
   FILE *file = fopen(path, "w");
@@ -208,7 +198,7 @@ static scree_status draw_study(void *context, scree_error *error) {
   scree_status status = scree_study_angle_figure(r, in_folder("angle.svg"), true, error);
   if (status == SCREE_OK) status = scree_study_rotation_figure(r, in_folder("w.svg"), true, error);
   if (status == SCREE_OK) status = scree_study_time_figure(r, in_folder("t.svg"), true, error);
-  if (status == SCREE_OK) status = scree_study_report_write(r, folder, error);
+  if (status == SCREE_OK) status = scree_study_report_write(r, in_folder("."), error);
   return status;
 }
 
@@ -235,16 +225,6 @@ static void studies(void **state) {
   check_allocation_failures(draw_study, &result);
   scree_study_result_free(&result);
   scree_study_free(study);
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-static int remove_folder(void **state) {
-  (void)state;
-  delete_all("");
-  return 0;
 }
 
 int main(void) {

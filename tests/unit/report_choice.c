@@ -9,17 +9,10 @@
 #include "report/json.h"
 #include "report/plot.h"
 #include "support/check.h"
+#include "support/folder.h"
 
-#include <dirent.h>
 #include <unistd.h>
 
-static char folder[200] = "/tmp/scree-report-XXXXXX";
-
-static const char *in_folder(const char *name) {
-  static char path[512];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
 static char *content(const char *path, size_t *size) {
   char *bytes;
   scree_error error;
@@ -362,7 +355,7 @@ static void plots_stand_empty_and_odd_data(void **state) {
                    SCREE_BAD_ARGUMENT);
 }
 
-/* Error bars and bands, for studies; also what `SCREE_KEEP_FIGURES` shows. */
+/* Error bars and bands, for studies; SCREE_TEST_FOLDER=DIR keeps them to look at. */
 static void bars_and_bands(void **state) {
   (void)state;
   scree_error error;
@@ -388,23 +381,6 @@ static void bars_and_bands(void **state) {
                              .guide_count = 1};
   const scree_figure figure = {.panels = &panel, .panel_count = 1};
   CHECK_OK(scree_figure_write_all(&figure, in_folder("bars"), true, &error), error);
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  const char *keep = getenv("SCREE_KEEP_FIGURES");
-  if (!keep) return mkdtemp(folder) ? 0 : 1;
-  snprintf(folder, sizeof folder, "%s", keep);
-  return 0;
-}
-static int remove_folder(void **state) {
-  (void)state;
-  if (getenv("SCREE_KEEP_FIGURES")) return 0;
-  DIR *listing = opendir(folder);
-  for (struct dirent *e; listing && (e = readdir(listing));)
-    if (e->d_name[0] != '.') unlink(in_folder(e->d_name));
-  if (listing) closedir(listing);
-  return rmdir(folder);
 }
 
 int main(void) {

@@ -1,6 +1,7 @@
 #include "base/alloc.h"
 #include "base/file.h"
 #include "support/check.h"
+#include "support/folder.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -188,30 +189,6 @@ static void the_series_has_a_point_at_every_interval(void **state) {
 }
 
 /* ---- on disk ---- */
-
-static char folder[64];
-
-static int make_folder(void **state) {
-  (void)state;
-  strcpy(folder, "/tmp/scree-run-XXXXXX");
-  return mkdtemp(folder) ? 0 : -1;
-}
-
-static int remove_folder(void **state) {
-  (void)state;
-  char command[128];
-  snprintf(command, sizeof command, "rm -rf %s", folder);
-  return system(command);
-}
-
-/* Good until the eighth call after. */
-static char *in_folder(const char *name) {
-  static char paths[8][128];
-  static int next;
-  char *path = paths[next++ % 8];
-  snprintf(path, sizeof paths[0], "%s/%s", folder, name);
-  return path;
-}
 
 /* Saved, freed and loaded again every 500 steps: in every phase, and while layers enter. */
 static void a_run_goes_on_with_the_same_bits_from_every_phase(void **state) {

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/rng.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/mixed.h"
 #include "world/world.h"
 
@@ -258,9 +259,7 @@ static void survives_forgery(void **state) {
 static void files(void **state) {
   (void)state;
   scree_error error;
-  char folder[] = "/tmp/scree-save-XXXXXX", path[64];
-  assert_non_null(mkdtemp(folder));
-  snprintf(path, sizeof path, "%s/w.scree", folder);
+  const char *path = in_folder("w.scree");
   scree_world *world = mixed_world(SCREE_LAW_LINEAR), *loaded = NULL;
   assert_int_equal(scree_world_load(path, &loaded, &error), SCREE_IO);
   CHECK_OK(scree_world_save(world, path, false, &error), error);
@@ -271,8 +270,6 @@ static void files(void **state) {
   assert_same(world, loaded);
   scree_world_free(world);
   scree_world_free(loaded);
-  assert_int_equal(unlink(path), 0);
-  assert_int_equal(rmdir(folder), 0);
 }
 
 /* A ball too fast for its floor: the run stops, and leaves a state from before which it stops in
@@ -327,5 +324,5 @@ int main(void) {
       cmocka_unit_test(files),
       cmocka_unit_test(a_failing_run_leaves_its_last_good_state),
   };
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

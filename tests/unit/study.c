@@ -7,6 +7,7 @@
 #include "study/lease.h"
 #include "study/record.h"
 #include "support/check.h"
+#include "support/folder.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -16,18 +17,8 @@
 #include <time.h>
 #include <unistd.h>
 
-static char folder[] = "/tmp/scree_study_XXXXXX";
-
-static const char *path_of(const char *name) {
-  static char path[4][128];
-  static int next;
-  next = (next + 1) % 4;
-  snprintf(path[next], sizeof path[next], "%s/%s", folder, name);
-  return path[next];
-}
-
 static const char *file_with(const char *name, const char *text) {
-  const char *path = path_of(name);
+  const char *path = in_folder(name);
   FILE *file = fopen(path, "w");
   fputs(text, file);
   fclose(file);
@@ -103,7 +94,7 @@ static void a_plan_follows_from_its_file(void **state) {
   assert_true(e.friction_particle == 0.3 && e.friction_wall == 0.3 && e.seed == 8);
   scree_experiment_free(&e);
   char beside[160];
-  snprintf(beside, sizeof beside, "%s/a.stl", folder);
+  snprintf(beside, sizeof beside, "%s", in_folder("a.stl"));
   assert_string_equal(study->shapes[2].path, beside); /* relative to the study's file */
   assert_int_equal(scree_study_get_run(study, 36, &run, &error), SCREE_BAD_ARGUMENT);
   scree_study_free(study);
@@ -196,21 +187,21 @@ static void a_lease_has_one_holder(void **state) {
   scree_lease_view view;
   scree_error error;
   bool taken, kept;
-  CHECK_OK(scree_lease_take(folder, "one", 100, "me", &taken, &lease, &error), error);
+  CHECK_OK(scree_lease_take(in_folder("."), "one", 100, "me", &taken, &lease, &error), error);
   assert_true(taken);
-  CHECK_OK(scree_lease_take(folder, "one", 100, "you", &taken, &second, &error), error);
+  CHECK_OK(scree_lease_take(in_folder("."), "one", 100, "you", &taken, &second, &error), error);
   assert_false(taken);
   CHECK_OK(scree_lease_renew(&lease, "running 0.5 lifting", &kept, &error), error);
   assert_true(kept);
-  CHECK_OK(scree_lease_look(folder, "one", 100, &view, &error), error);
+  CHECK_OK(scree_lease_look(in_folder("."), "one", 100, &view, &error), error);
   assert_true(view.held && view.alive);
   assert_string_equal(view.worker, "me");
   assert_string_equal(view.note, "running 0.5 lifting");
   scree_lease_release(&lease);
-  CHECK_OK(scree_lease_take(folder, "one", 100, "you", &taken, &second, &error), error);
+  CHECK_OK(scree_lease_take(in_folder("."), "one", 100, "you", &taken, &second, &error), error);
   assert_true(taken);
   scree_lease_release(&second);
-  assert_int_equal(scree_lease_deaths(folder, "one", NULL), 0);
+  assert_int_equal(scree_lease_deaths(in_folder("."), "one", NULL), 0);
 }
 
 /* Takes the lease in a child that dies with it. */
@@ -219,7 +210,7 @@ static void die_with(const char *name) {
   if (child == 0) {
     scree_lease lease;
     bool taken = false;
-    scree_lease_take(folder, name, 100, "victim", &taken, &lease, NULL);
+    scree_lease_take(in_folder("."), name, 100, "victim", &taken, &lease, NULL);
     raise(SIGKILL);
   }
   int status;
@@ -234,14 +225,14 @@ static void the_dead_on_this_machine_are_known_at_once(void **state) {
   bool taken;
   for (int deaths = 1; deaths <= 3; deaths++) {
     die_with("dead");
-    CHECK_OK(scree_lease_take(folder, "dead", 1000, "heir", &taken, &lease, &error), error);
+    CHECK_OK(scree_lease_take(in_folder("."), "dead", 1000, "heir", &taken, &lease, &error), error);
     assert_true(taken);
     scree_lease_release(&lease);
-    assert_int_equal(scree_lease_deaths(folder, "dead", last), deaths);
+    assert_int_equal(scree_lease_deaths(in_folder("."), "dead", last), deaths);
     assert_string_equal(last, "victim");
   }
-  scree_lease_forget_deaths(folder, "dead");
-  assert_int_equal(scree_lease_deaths(folder, "dead", NULL), 0);
+  scree_lease_forget_deaths(in_folder("."), "dead");
+  assert_int_equal(scree_lease_deaths(in_folder("."), "dead", NULL), 0);
 }
 
 /* As if written elsewhere, so many seconds ago. */
@@ -260,16 +251,16 @@ static void leases_of_other_machines_expire(void **state) {
   scree_error error;
   bool taken, kept;
   write_foreign("far", 50);
-  CHECK_OK(scree_lease_take(folder, "far", 100, "me", &taken, &lease, &error), error);
+  CHECK_OK(scree_lease_take(in_folder("."), "far", 100, "me", &taken, &lease, &error), error);
   assert_false(taken);
-  CHECK_OK(scree_lease_take(folder, "far", 20, "me", &taken, &lease, &error), error);
+  CHECK_OK(scree_lease_take(in_folder("."), "far", 20, "me", &taken, &lease, &error), error);
   assert_true(taken);
-  assert_int_equal(scree_lease_deaths(folder, "far", NULL), 1);
+  assert_int_equal(scree_lease_deaths(in_folder("."), "far", NULL), 1);
   write_foreign("far", 0); /* somebody took it from us */
   CHECK_OK(scree_lease_renew(&lease, "running", &kept, &error), error);
   assert_false(kept);
   scree_lease_release(&lease); /* must not take theirs away */
-  assert_int_equal(access(path_of("far"), F_OK), 0);
+  assert_int_equal(access(in_folder("far"), F_OK), 0);
 }
 
 /* Many processes that want the same lease again and again: never two at once. */
@@ -282,12 +273,13 @@ static void of_many_one_wins(void **state) {
       for (int i = 0; i < 100000 && held < TURNS; i++) {
         scree_lease lease;
         bool taken;
-        if (scree_lease_take(folder, "many", 100, "w", &taken, &lease, NULL) != SCREE_OK) _exit(2);
+        if (scree_lease_take(in_folder("."), "many", 100, "w", &taken, &lease, NULL) != SCREE_OK)
+          _exit(2);
         if (!taken) continue;
-        int alone = open(path_of("alone"), O_CREAT | O_EXCL | O_WRONLY, 0666);
+        int alone = open(in_folder("alone"), O_CREAT | O_EXCL | O_WRONLY, 0666);
         if (alone < 0) _exit(3);
         close(alone);
-        unlink(path_of("alone"));
+        unlink(in_folder("alone"));
         scree_lease_release(&lease);
         held++;
       }
@@ -299,7 +291,7 @@ static void of_many_one_wins(void **state) {
     assert_true(WIFEXITED(status));
     assert_int_equal(WEXITSTATUS(status), 0);
   }
-  assert_int_equal(scree_lease_deaths(folder, "many", NULL), 0);
+  assert_int_equal(scree_lease_deaths(in_folder("."), "many", NULL), 0);
 }
 
 /* ---- records ---- */
@@ -321,7 +313,7 @@ static void records_read_back_the_same_or_not_at_all(void **state) {
   record.result.repose.cone_deg = 23.456789012345678;
   record.result.repose.sector_deg = NAN;
   scree_error error;
-  const char *path = path_of("record.yaml");
+  const char *path = in_folder("record.yaml");
   CHECK_OK(scree_study_record_write(&record, path, &error), error);
   CHECK_OK(scree_study_record_read(path, &back, &error), error);
   assert_string_equal(back.reason, "a \"quoted\"\\ reason ");
@@ -356,7 +348,7 @@ static scree_study *open_tiny(const char *name, const char *text) {
   scree_error error;
   scree_study_options o = scree_default_study_options();
   CHECK_OK(scree_study_read(file_with("tiny.yaml", text), &study, &error), error);
-  CHECK_OK(scree_study_open(study, path_of(name), &error), error);
+  CHECK_OK(scree_study_open(study, in_folder(name), &error), error);
   CHECK_OK(scree_study_prepare(study, &o, NULL, &error), error);
   return study;
 }
@@ -397,14 +389,14 @@ static void a_study_is_worked_off_and_told(void **state) {
   hashes_of(study, uninterrupted, sizeof uninterrupted);
   CHECK_OK(scree_study_work(study, NULL, NULL, &done, &error), error);
   assert_int_equal(done, 0); /* nothing is left */
-  CHECK_OK(scree_study_open_folder(path_of("whole"), &again, &error), error);
+  CHECK_OK(scree_study_open_folder(in_folder("whole"), &again, &error), error);
   CHECK_OK(scree_study_analyse(again, &result, &error), error);
   assert_int_equal(result.counts.done, 4);
   assert_int_equal(result.points[1].counts.done, 2);
   assert_int_equal(result.points[1].seconds.count, 2);
   assert_true(result.seconds_left == 0 && result.seconds_spent > 0);
   assert_true(result.points[0].series_count > 2);
-  CHECK_OK(scree_study_report_write(&result, path_of("whole"), &error), error);
+  CHECK_OK(scree_study_report_write(&result, in_folder("whole"), &error), error);
   scree_study_result_free(&result);
   scree_study_free(again);
   scree_study_free(study);
@@ -577,7 +569,7 @@ static void a_full_disk_harms_no_database(void **state) {
   scree_study *study = open_tiny("whole", tiny);
   scree_study_result result;
   scree_error error;
-  unlink(path_of("whole/study.sqlite"));
+  unlink(in_folder("whole/study.sqlite"));
   for (rlim_t room = 512; room <= 32768; room *= 4) {
     pid_t child = fork();
     if (child == 0) {
@@ -607,23 +599,23 @@ static void broken_files_of_a_folder_are_told(void **state) {
   scree_error error;
   char *saved;
   size_t size;
-  const char *facts = path_of("whole/shapes/icosphere-1.yaml");
+  const char *facts = in_folder("whole/shapes/icosphere-1.yaml");
   CHECK_OK(scree_file_read(facts, 0, &saved, &size, &error), error);
   for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
     file_with("whole/shapes/icosphere-1.yaml", shapes[i]);
-    assert_int_equal(scree_study_open_folder(path_of("whole"), &again, &error), SCREE_BAD_FILE);
+    assert_int_equal(scree_study_open_folder(in_folder("whole"), &again, &error), SCREE_BAD_FILE);
     assert_non_null(strstr(error.message, "icosphere-1.yaml"));
   }
-  FILE *file = fopen(path_of("whole/shapes/icosphere-1.yaml"), "w");
+  FILE *file = fopen(in_folder("whole/shapes/icosphere-1.yaml"), "w");
   assert_int_equal(fwrite(saved, 1, size, file), size);
   fclose(file);
   scree_free(saved);
-  const char *copy = path_of("whole/study.yaml");
+  const char *copy = in_folder("whole/study.yaml");
   CHECK_OK(scree_file_read(copy, 0, &saved, &size, &error), error);
   assert_int_equal(truncate(copy, 75), 0); /* in the middle of a line */
-  assert_int_equal(scree_study_open_folder(path_of("whole"), &again, &error), SCREE_BAD_FILE);
+  assert_int_equal(scree_study_open_folder(in_folder("whole"), &again, &error), SCREE_BAD_FILE);
   assert_non_null(strstr(error.message, "study.yaml, line"));
-  file = fopen(path_of("whole/study.yaml"), "w");
+  file = fopen(in_folder("whole/study.yaml"), "w");
   assert_int_equal(fwrite(saved, 1, size, file), size);
   fclose(file);
   scree_free(saved);
@@ -632,7 +624,7 @@ static void broken_files_of_a_folder_are_told(void **state) {
   snprintf(lease, sizeof lease, "whole/leases/run-%s", study->keys[0]);
   file_with(lease, "\x01\x02garbage");
   CHECK_OK(scree_study_collect(study, true, &error), error);
-  unlink(path_of(lease));
+  unlink(in_folder(lease));
   scree_study_free(study);
 }
 
@@ -644,7 +636,7 @@ static void damaged_files_are_told_and_made_again(void **state) {
   scree_error error;
   size_t done;
   CHECK_OK(scree_study_collect(study, true, &error), error);
-  const char *database = path_of("full/study.sqlite");
+  const char *database = in_folder("full/study.sqlite");
   FILE *file = fopen(database, "r+");
   for (int i = 0; i < 5000; i++) putc(i * 37 & 0xff, file);
   fclose(file);
@@ -652,7 +644,7 @@ static void damaged_files_are_told_and_made_again(void **state) {
   assert_non_null(strstr(error.message, "delete it"));
   file_with("full/study.sqlite", "this is a text\n");
   assert_int_equal(scree_study_analyse(study, &result, &error), SCREE_BAD_FILE);
-  unlink(path_of("full/study.sqlite"));
+  unlink(in_folder("full/study.sqlite"));
   CHECK_OK(scree_study_collect(study, true, &error), error);
   /* a record cut short is no result */
   char *record = scree_study_path(study, "results", study->keys[1], ".yaml");
@@ -665,20 +657,13 @@ static void damaged_files_are_told_and_made_again(void **state) {
   assert_int_equal(result.counts.done, 4);
   scree_study_result_free(&result);
   scree_study_free(study);
-  assert_int_equal(scree_study_open_folder(path_of("nowhere"), &again, &error), SCREE_IO);
+  assert_int_equal(scree_study_open_folder(in_folder("nowhere"), &again, &error), SCREE_IO);
   assert_non_null(strstr(error.message, "is no folder of a study"));
 }
 
-static int make_folder(void **state) {
-  (void)state;
+static int begin(void **state) {
   scree_set_threads(1); /* children are forked */
-  return mkdtemp(folder) ? 0 : -1;
-}
-static int remove_folder(void **state) {
-  (void)state;
-  char command[80];
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  return system(command);
+  return make_folder(state);
 }
 
 int main(void) {
@@ -704,5 +689,5 @@ int main(void) {
       cmocka_unit_test(broken_files_of_a_folder_are_told),
       cmocka_unit_test(damaged_files_are_told_and_made_again),
   };
-  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+  return cmocka_run_group_tests(tests, begin, remove_folder);
 }

@@ -3,18 +3,11 @@
 #include "base/rng.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
+#include "support/folder.h"
 #include "support/shapes.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
-
-static char folder[] = "/tmp/scree-write-XXXXXX";
-static char path[100];
-
-static const char *path_of(const char *name) {
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
 
 /* Loose triangles with every bit of a double in use, or of a float where `narrow`. */
 static scree_mesh random_mesh(scree_rng *rng, size_t facets, double unit_m, bool narrow) {
@@ -36,8 +29,8 @@ static void check_round_trip(const scree_mesh *mesh, const scree_write_options *
   scree_scan scan = {0};
   scree_read_options read = scree_default_read_options();
   read.unit_m = options->unit_m;
-  CHECK_OK(scree_mesh_write(mesh, path_of(name), options, &error), error);
-  CHECK_OK(scree_scan_read(path_of(name), &read, &scan, &error), error);
+  CHECK_OK(scree_mesh_write(mesh, in_folder(name), options, &error), error);
+  CHECK_OK(scree_scan_read(in_folder(name), &read, &scan, &error), error);
   assert_int_equal(scan.mesh.vertex_count, mesh->vertex_count);
   assert_int_equal(scan.mesh.triangle_count, mesh->triangle_count);
   assert_memory_equal(scan.mesh.triangles, mesh->triangles, 12 * mesh->triangle_count);
@@ -84,8 +77,8 @@ static void round_trip_3mf(void **state) {
     scree_error error;
     scree_scan scan = {0};
     scree_measures before, after;
-    CHECK_OK(scree_mesh_write(&mesh, path_of("ball.3MF"), &options, &error), error);
-    scree_status status = scree_scan_read(path_of("ball.3MF"), NULL, &scan, &error);
+    CHECK_OK(scree_mesh_write(&mesh, in_folder("ball.3MF"), &options, &error), error);
+    scree_status status = scree_scan_read(in_folder("ball.3MF"), NULL, &scan, &error);
     if (status != SCREE_UNSUPPORTED) {
       CHECK_OK(status, error);
       assert_string_equal(scan.format, u == 0   ? "3MF, millimeter"
@@ -109,30 +102,30 @@ static void refusals(void **state) {
   uint32_t triangles[] = {0, 1, 2};
   scree_mesh mesh = {positions, triangles, 3, 1};
   scree_error error;
-  CHECK_OK(scree_mesh_write(&mesh, path_of("twice.off"), NULL, &error), error);
-  assert_int_equal(scree_mesh_write(&mesh, path_of("twice.off"), NULL, &error), SCREE_EXISTS);
-  assert_int_equal(scree_mesh_write(&mesh, path_of("a.step"), NULL, &error), SCREE_BAD_ARGUMENT);
+  CHECK_OK(scree_mesh_write(&mesh, in_folder("twice.off"), NULL, &error), error);
+  assert_int_equal(scree_mesh_write(&mesh, in_folder("twice.off"), NULL, &error), SCREE_EXISTS);
+  assert_int_equal(scree_mesh_write(&mesh, in_folder("a.step"), NULL, &error), SCREE_BAD_ARGUMENT);
   assert_int_equal(scree_mesh_write(&mesh, "-", NULL, &error), SCREE_BAD_ARGUMENT);
-  assert_int_equal(scree_mesh_write(&mesh, path_of("no/folder.ply"), NULL, &error), SCREE_IO);
+  assert_int_equal(scree_mesh_write(&mesh, in_folder("no/folder.ply"), NULL, &error), SCREE_IO);
   triangles[2] = 3;
-  assert_int_equal(scree_mesh_write(&mesh, path_of("b.ply"), NULL, &error), SCREE_BAD_ARGUMENT);
+  assert_int_equal(scree_mesh_write(&mesh, in_folder("b.ply"), NULL, &error), SCREE_BAD_ARGUMENT);
   triangles[2] = 2;
   positions[4] = INFINITY;
-  assert_int_equal(scree_mesh_write(&mesh, path_of("b.ply"), NULL, &error), SCREE_BAD_ARGUMENT);
+  assert_int_equal(scree_mesh_write(&mesh, in_folder("b.ply"), NULL, &error), SCREE_BAD_ARGUMENT);
   assert_non_null(strstr(error.message, "vertex 1"));
-  assert_int_not_equal(access(path_of("b.ply"), F_OK), 0);
+  assert_int_not_equal(access(in_folder("b.ply"), F_OK), 0);
   assert_string_equal(scree_file_format_name(SCREE_FORMAT_STL_ASCII), "stl-ascii");
 }
 
 static scree_status write_again(void *context, scree_error *error) {
   scree_write_options options = scree_default_write_options();
   options.overwrite = true;
-  return scree_mesh_write(context, path_of("again.stl"), &options, error);
+  return scree_mesh_write(context, in_folder("again.stl"), &options, error);
 }
 
 static scree_status read_again(void *context, scree_error *error) {
   scree_scan scan = {0};
-  scree_status status = scree_scan_read(path_of("again.stl"), context, &scan, error);
+  scree_status status = scree_scan_read(in_folder("again.stl"), context, &scan, error);
   scree_scan_free(&scan);
   return status;
 }
@@ -147,17 +140,6 @@ static void memory_runs_out(void **state) {
   options.weld_tolerance = 0.01;
   check_allocation_failures(read_again, &options);
   scree_mesh_free(&mesh);
-}
-
-static int make_folder(void **state) {
-  (void)state;
-  return mkdtemp(folder) ? 0 : -1;
-}
-static int remove_folder(void **state) {
-  (void)state;
-  char command[120];
-  snprintf(command, sizeof command, "rm -r %s", folder);
-  return system(command);
 }
 
 int main(void) {
