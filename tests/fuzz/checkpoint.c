@@ -38,6 +38,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   scree_set_threads(1);
   scree_status status = scree_world_unpack(forged, size, "fuzz", &world, &error);
   FUZZ_CHECK(status == SCREE_OK || (status == SCREE_BAD_FILE && error.message[0] && !world));
+  fuzz_taken += status == SCREE_OK;
   if (status == SCREE_OK) use(world);
   scree_world_free(world);
   FUZZ_CHECK(scree_memory_used() == used);

@@ -15,6 +15,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   close(fd);
   FUZZ_CHECK(status == SCREE_OK || (error.message[0] && !strchr(error.message, '\n')));
   FUZZ_CHECK((status == SCREE_OK) == (particle != NULL));
+  fuzz_taken += status == SCREE_OK;
   scree_particle_free(particle);
   FUZZ_CHECK(scree_memory_used() == used);
   return 0;

@@ -61,6 +61,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   /* values that do not go together are a bad argument */
   FUZZ_CHECK(status == SCREE_OK || status == SCREE_BAD_FILE || status == SCREE_BAD_ARGUMENT);
   FUZZ_CHECK(parsed == SCREE_OK || status == SCREE_BAD_FILE);
+  fuzz_taken += status == SCREE_OK;
   if (status == SCREE_OK)
     read_again(&experiment);
   else

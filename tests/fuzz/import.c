@@ -22,6 +22,7 @@ static void take(scree_import_format format, bool fitting, const uint8_t *data, 
   scree_reset_memory_peak();
   scree_status status = scree_import_take(&r, format, answer, size);
   FUZZ_CHECK(scree_memory_peak() - used <= FUZZ_BYTES_PER_BYTE * size + FUZZ_LEAST_BYTES);
+  fuzz_taken += status == SCREE_OK;
   if (status == SCREE_OK) {
     fuzz_check_mesh(&scan.mesh);
     FUZZ_CHECK(strlen(scan.format) < sizeof scan.format);

@@ -54,6 +54,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   int fd = fuzz_file(forged, size, path);
   scree_status status = scree_motion_read(path, &motion, &error);
   FUZZ_CHECK(status == SCREE_OK || (status == SCREE_BAD_FILE && error.message[0]));
+  fuzz_taken += status == SCREE_OK;
   if (status == SCREE_OK) check_motion(&motion);
   scree_motion_free(&motion);
   /* a run that goes on keeps the frames up to where it stands, at 1 s */

@@ -30,6 +30,7 @@ static inline void fuzz_parse(const uint8_t *data, size_t size, double weld_tole
   scree_set_threads(1);
   scree_status status = scree_scan_parse(data, size, "fuzz", &options, &scan, &error);
   FUZZ_CHECK(scree_memory_peak() - used <= FUZZ_BYTES_PER_BYTE * size + FUZZ_LEAST_BYTES);
+  fuzz_taken += status == SCREE_OK;
   if (status != SCREE_OK) {
     FUZZ_CHECK(error.status == status && status != SCREE_OUT_OF_MEMORY && error.message[0]);
     FUZZ_CHECK(!strchr(error.message, '\n'));

@@ -53,6 +53,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   scree_status status = scree_study_record_read(path, &record, &error);
   close(fd);
   FUZZ_CHECK(status == SCREE_OK || status == SCREE_BAD_FILE);
+  fuzz_taken += status == SCREE_OK;
   if (status == SCREE_OK) {
     check_round(&record);
     scree_study_record_free(&record);

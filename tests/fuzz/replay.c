@@ -58,6 +58,6 @@ int main(int argument_count, char **arguments) {
     bool is_folder = stat(arguments[i], &info) == 0 && S_ISDIR(info.st_mode);
     failed |= is_folder ? replay_folder(arguments[i]) : replay_file(arguments[i]);
   }
-  printf("%zu inputs replayed\n", replayed);
-  return failed || replayed == 0;
+  printf("%zu inputs replayed, %zu of them taken for whole\n", replayed, fuzz_taken);
+  return failed || fuzz_taken == 0;
 }

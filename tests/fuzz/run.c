@@ -51,6 +51,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   close(fd);
   FUZZ_CHECK(status == SCREE_OK || status == SCREE_BAD_FILE || status == SCREE_BAD_ARGUMENT);
   FUZZ_CHECK(status == SCREE_OK || (error.message[0] && !strchr(error.message, '\n') && !run));
+  fuzz_taken += status == SCREE_OK;
   if (status == SCREE_OK) use(run);
   scree_run_free(run);
   FUZZ_CHECK(scree_memory_used() == used);

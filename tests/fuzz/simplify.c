@@ -69,6 +69,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   scree_status status = scree_curve_build(&in.mesh, &options, NULL, &curve, &error);
   FUZZ_CHECK(status == SCREE_OK || status == SCREE_BAD_MESH);
   FUZZ_CHECK(status == SCREE_OK || (error.message[0] && !curve));
+  fuzz_taken += status == SCREE_OK;
   if (status == SCREE_OK) check_levels(curve, &in.mesh, data[1] % 2 == 0);
   scree_curve_free(curve);
   FUZZ_CHECK(scree_memory_used() == used);

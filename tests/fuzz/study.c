@@ -36,6 +36,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   scree_status status = scree_study_read(path, &study, &error);
   close(fd);
   FUZZ_CHECK(status == SCREE_OK || status == SCREE_BAD_FILE || status == SCREE_BAD_ARGUMENT);
+  fuzz_taken += status == SCREE_OK;
   if (status == SCREE_OK)
     look_at(study);
   else

@@ -129,16 +129,18 @@ static void look_at_leases(void) {
   if (taken) scree_lease_release(&lease);
 }
 
-static void analyse(const scree_study *study) {
+/* Whether it could be. */
+static bool analyse(const scree_study *study) {
   scree_study_result result;
   scree_error error = {0};
   scree_status status = scree_study_analyse(study, &result, &error);
   check_sentence(status, &error);
-  if (status != SCREE_OK) return;
+  if (status != SCREE_OK) return false;
   for (size_t i = 0; i < result.point_count; i++) FUZZ_CHECK(result.points[i].label);
   FUZZ_CHECK(scree_study_json_write(&result, "/dev/null", true, &error) == SCREE_OK);
   FUZZ_CHECK(scree_study_csv_write(&result, "/dev/null", true, &error) == SCREE_OK);
   scree_study_result_free(&result);
+  return true;
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
@@ -157,7 +159,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (status == SCREE_OK) {
     if (which == VALUES) fill_tables(study, data + 1, size - 1);
     if (which == LEASE || which == DEATHS) look_at_leases();
-    if (which == BYTES || which == VALUES) analyse(study);
+    bool analysed = (which == BYTES || which == VALUES) && analyse(study);
+    fuzz_taken += which == BYTES && size > 1 && analysed;
   }
   scree_study_free(study);
   FUZZ_CHECK(scree_memory_used() == used);

@@ -24,5 +24,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   FUZZ_CHECK(mesh.triangle_count + degenerate_count == facet_count);
   fuzz_check_mesh(&mesh);
   scree_mesh_free(&mesh);
+  fuzz_taken++;
   return 0;
 }
