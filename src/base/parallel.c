@@ -26,6 +26,7 @@ static const uint64_t open_bit = (uint64_t)1 << 15, inside_mask = open_bit - 1, 
 
 static struct {
   pthread_mutex_t caller; /* held by whoever runs a loop on the pool */
+  pthread_mutex_t alone;  /* scree_enter_alone */
   pthread_mutex_t lock;   /* guards sleeping, waking and the two conditions */
   pthread_cond_t wake, left;
   atomic_int sleeping;
@@ -38,6 +39,7 @@ static struct {
   void *context;
   atomic_size_t next;
 } pool = {.caller = PTHREAD_MUTEX_INITIALIZER,
+          .alone = PTHREAD_MUTEX_INITIALIZER,
           .lock = PTHREAD_MUTEX_INITIALIZER,
           .wake = PTHREAD_COND_INITIALIZER,
           .left = PTHREAD_COND_INITIALIZER};
@@ -82,6 +84,13 @@ static void pause_briefly(void) {
 #elif defined(__aarch64__)
   __asm__ volatile("yield");
 #endif
+}
+
+void scree_enter_alone(void) {
+  pthread_mutex_lock(&pool.alone);
+}
+void scree_leave_alone(void) {
+  pthread_mutex_unlock(&pool.alone);
 }
 
 static void take_blocks(int worker) {
@@ -148,6 +157,7 @@ static void *work(void *argument) {
 /* In a child of fork no thread but the one that forked goes on. */
 static void forget_threads(void) {
   pool.caller = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
+  pool.alone = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
   pool.lock = (pthread_mutex_t)PTHREAD_MUTEX_INITIALIZER;
   pool.wake = (pthread_cond_t)PTHREAD_COND_INITIALIZER;
   pool.left = (pthread_cond_t)PTHREAD_COND_INITIALIZER;

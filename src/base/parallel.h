@@ -18,6 +18,10 @@ static inline size_t scree_block_count(size_t count, size_t block_size) {
   return count / block_size + (count % block_size != 0);
 }
 
+/* Between these only one worker of all loops at a time: for what is rare and short. */
+void scree_enter_alone(void);
+void scree_leave_alone(void);
+
 /* How many workers a scree_parallel_for called here may use: the size of per-worker scratch. */
 int scree_worker_count(void);
 

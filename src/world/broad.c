@@ -187,10 +187,12 @@ static bool list_keys(scree_world *world, double width) {
 }
 
 /* The new list: pairs that were there keep their objects. Room is made before anything moves. */
-static bool merge_pairs(scree_world *world) {
+static bool merge_neighbours(scree_world *world) {
   size_t needed = world->keys.count;
-  if (!SCREE_RESERVE(&world->merged_pairs, needed) || !SCREE_RESERVE(&world->pairs, needed) ||
-      !SCREE_RESERVE(&world->spare_pairs, world->spare_pairs.count + world->pairs.count))
+  if (!SCREE_RESERVE(&world->merged_neighbours, needed) ||
+      !SCREE_RESERVE(&world->neighbours, needed) ||
+      !SCREE_RESERVE(&world->spare_neighbours,
+                     world->spare_neighbours.count + world->neighbours.count))
     return false;
   bool complete = true;
   size_t old = 0, merged = 0;
@@ -198,60 +200,63 @@ static bool merge_pairs(scree_world *world) {
     uint64_t key = world->keys.items[k];
     uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key & 0x7fffffffu;
     bool wall = (key & 0x80000000u) != 0;
-    while (old < world->pairs.count) {
-      const scree_pair *p = world->pairs.items[old];
-      if (key_of(p->a, p->b, p->wall) >= key) break;
-      scree_pair_give_back(world, world->pairs.items[old++]);
+    while (old < world->neighbours.count) {
+      const scree_neighbours *n = world->neighbours.items[old];
+      if (key_of(n->a, n->b, n->wall) >= key) break;
+      scree_neighbours_give_back(world, world->neighbours.items[old++]);
     }
-    scree_pair *pair = NULL;
-    if (old < world->pairs.count) {
-      scree_pair *p = world->pairs.items[old];
-      if (key_of(p->a, p->b, p->wall) == key) pair = p, old++;
+    scree_neighbours *both = NULL;
+    if (old < world->neighbours.count) {
+      scree_neighbours *n = world->neighbours.items[old];
+      if (key_of(n->a, n->b, n->wall) == key) both = n, old++;
     }
-    if (!pair) pair = scree_pair_take(world, a, b, wall);
-    if (pair)
-      world->merged_pairs.items[merged++] = pair;
+    if (!both) both = scree_neighbours_take(world, a, b, wall);
+    if (both)
+      world->merged_neighbours.items[merged++] = both;
     else
       complete = false;
   }
-  while (old < world->pairs.count) scree_pair_give_back(world, world->pairs.items[old++]);
-  scree_pair **swapped = world->pairs.items;
-  size_t capacity = world->pairs.capacity;
-  world->pairs.items = world->merged_pairs.items;
-  world->pairs.capacity = world->merged_pairs.capacity;
-  world->pairs.count = merged;
-  world->merged_pairs.items = swapped;
-  world->merged_pairs.capacity = capacity;
+  while (old < world->neighbours.count)
+    scree_neighbours_give_back(world, world->neighbours.items[old++]);
+  scree_neighbours **swapped = world->neighbours.items;
+  size_t capacity = world->neighbours.capacity;
+  world->neighbours.items = world->merged_neighbours.items;
+  world->neighbours.capacity = world->merged_neighbours.capacity;
+  world->neighbours.count = merged;
+  world->merged_neighbours.items = swapped;
+  world->merged_neighbours.capacity = capacity;
   return complete;
 }
 
 /* The pairs' slots, and for every body the pairs it is in, ascending: the order in which forces are
  * summed. */
 static bool list_sides(scree_world *world) {
-  size_t bodies = world->bodies.count, pairs = world->pairs.count;
+  size_t bodies = world->bodies.count, pairs = world->neighbours.count;
   world->sides.count = 0;
   if (bodies == 0) return true; /* there are no arrays yet */
   if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->slots, pairs) ||
-      !SCREE_RESERVE(&world->touching, pairs / 64 + 1))
+      !SCREE_RESERVE(&world->pairs, pairs) || !SCREE_RESERVE(&world->touching, pairs / 64 + 1))
     return false;
-  world->slots.count = pairs;
+  world->slots.count = world->pairs.count = pairs;
   for (size_t k = 0; k < pairs; k++) {
-    world->slots.items[k] = scree_pair_slot(world->pairs.items[k]);
-    scree_mark_touching(world, k, world->pairs.items[k]->touching);
+    const scree_neighbours *n = world->neighbours.items[k];
+    world->slots.items[k] = scree_slot_of(n);
+    world->pairs.items[k] = n->pair;
+    scree_mark_touching(world, k, n->pair && n->pair->touching);
   }
   size_t *begin = world->side_begin;
   memset(begin, 0, (bodies + 1) * sizeof *begin);
   for (size_t k = 0; k < pairs; k++) {
-    const scree_pair *p = world->pairs.items[k];
-    begin[p->a + 1]++;
-    if (!p->wall) begin[p->b + 1]++;
+    const scree_neighbours *n = world->neighbours.items[k];
+    begin[n->a + 1]++;
+    if (!n->wall) begin[n->b + 1]++;
   }
   for (size_t i = 0; i < bodies; i++) begin[i + 1] += begin[i];
   world->sides.count = begin[bodies];
   for (size_t k = pairs; k-- > 0;) {
-    const scree_pair *p = world->pairs.items[k];
-    world->sides.items[--begin[p->a + 1]] = (uint32_t)(2 * k);
-    if (!p->wall) world->sides.items[--begin[p->b + 1]] = (uint32_t)(2 * k + 1);
+    const scree_neighbours *n = world->neighbours.items[k];
+    world->sides.items[--begin[n->a + 1]] = (uint32_t)(2 * k);
+    if (!n->wall) world->sides.items[--begin[n->b + 1]] = (uint32_t)(2 * k + 1);
   }
   for (size_t i = 0; i < bodies; i++) begin[i] = begin[i + 1];
   begin[bodies] = world->sides.count;
@@ -280,8 +285,9 @@ scree_status scree_broad_update(scree_world *world, scree_error *error) {
   if (status) return status;
   double widest = make_boxes(world);
   bin_bodies(world, widest > 0 ? widest : 1);
-  if (!list_keys(world, widest > 0 ? widest : 1) || !merge_pairs(world) || !list_sides(world))
-    return scree_fail_memory(error, world->keys.count * sizeof(scree_pair), "pairs of bodies");
+  if (!list_keys(world, widest > 0 ? widest : 1) || !merge_neighbours(world) || !list_sides(world))
+    return scree_fail_memory(error, world->keys.count * sizeof(scree_neighbours),
+                             "pairs of bodies");
   for (size_t i = 0; i < world->bodies.count; i++)
     world->body_path_at_build[i] = world->bodies.path[i];
   for (size_t w = 0; w < world->walls.count; w++)

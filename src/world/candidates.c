@@ -54,7 +54,7 @@ static bool is_awake(const listing *l, uint32_t kind, uint32_t a, uint32_t b) {
 static void put_to_sleep(listing *l, scree_item_kind kind, uint32_t a, uint32_t b, double gap) {
   if (gap > l->skin || is_awake(l, kind, a, b)) return;
   scree_sleeper sleeper = {l->pair->path + gap, a, b, kind};
-  if (!SCREE_PUSH(&l->pair->sleeping, sleeper)) l->failed = true;
+  if (!SCREE_PUSH(&l->pair->neighbours->sleeping, sleeper)) l->failed = true;
 }
 
 static vec3 into_b(const listing *l, vec3 p) {
@@ -286,7 +286,7 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
   l.skin = fmax(l.skin, fmin(fast_steps * pair->travel, fast_skins * l.skin));
   l.skin = fmin(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
   mark_awake(&l);
-  pair->sleeping.count = 0;
+  pair->neighbours->sleeping.count = 0;
   bool analytic = pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b]);
   double apart = analytic ? 0 : least_distance(&l);
   pair->region_radius = 0;

@@ -69,14 +69,15 @@ static double moving_ball(const scree_world *world, const scree_pair *pair, vec3
  * the net motion is another, and as good, since nothing can have touched in between. */
 static double slept_path(const scree_world *world, const scree_pair *pair,
                          const scree_frame *relative) {
+  const scree_neighbours *n = pair->neighbours;
   vec3 centre;
-  double radius = moving_ball(world, pair, pair->asleep_at, &centre);
-  mat3 then = quat_to_mat3(pair->asleep_turned);
-  vec3 of_a = mat3_tmul_vec(&then, vec3_sub(centre, pair->asleep_at)),
+  double radius = moving_ball(world, pair, n->asleep_at, &centre);
+  mat3 then = quat_to_mat3(n->asleep_turned);
+  vec3 of_a = mat3_tmul_vec(&then, vec3_sub(centre, n->asleep_at)),
        now = vec3_add(mat3_mul_vec(&relative->rotation, of_a), relative->position);
   double net =
-      vec3_distance(now, centre) + radius * quat_chord(pair->asleep_turned, turned(world, pair));
-  return fmin(net, bodies_path(world, pair) - pair->asleep_since);
+      vec3_distance(now, centre) + radius * quat_chord(n->asleep_turned, turned(world, pair));
+  return fmin(net, bodies_path(world, pair) - n->asleep_since);
 }
 
 /* a in the frame of b, its velocity and spin such that a's point at q moves with velocity + spin x
@@ -103,19 +104,20 @@ static double relate(const scree_world *world, const scree_pair *pair,
 static bool wake_items(scree_pair *pair) {
   double due = pair->path + 2 * pair->travel + scree_pair_claim(pair), next = INFINITY;
   if (due < pair->next_item) return true;
+  scree_neighbours *n = pair->neighbours;
   size_t kept = 0;
-  for (size_t i = 0; i < pair->sleeping.count; i++) {
-    scree_sleeper sleeper = pair->sleeping.items[i];
+  for (size_t i = 0; i < n->sleeping.count; i++) {
+    scree_sleeper sleeper = n->sleeping.items[i];
     if (due < sleeper.wake) {
       next = fmin(next, sleeper.wake);
-      pair->sleeping.items[kept++] = sleeper;
+      n->sleeping.items[kept++] = sleeper;
       continue;
     }
     scree_item item = {.kind = (uint8_t)sleeper.kind, .a = sleeper.a, .b = sleeper.b};
     if (!scree_pair_reserve_items(pair, pair->active.count + 1)) return false;
     pair->active.items[pair->active.count++] = item;
   }
-  pair->sleeping.count = kept;
+  n->sleeping.count = kept;
   pair->next_item = next;
   return true;
 }
@@ -141,7 +143,7 @@ static bool settle_items(scree_pair *pair) {
     const scree_item *item = &pair->active.items[i];
     if (item->gap > 0) {
       scree_sleeper sleeper = {pair->path + item->gap, item->a, item->b, item->kind};
-      if (!SCREE_PUSH(&pair->sleeping, sleeper)) return false;
+      if (!SCREE_PUSH(&pair->neighbours->sleeping, sleeper)) return false;
       pair->next_item = fmin(pair->next_item, sleeper.wake);
       continue;
     }
@@ -152,15 +154,17 @@ static bool settle_items(scree_pair *pair) {
     kept++;
   }
   pair->active.count = kept;
+  scree_pair_trim_items(pair);
   return true;
 }
 
 static void fall_asleep(const scree_world *world, scree_pair *pair, const scree_frame *relative) {
   if (pair->wall && vec3_norm2(world->walls.items[pair->b].frame.spin) > 0) return;
-  pair->asleep_since = bodies_path(world, pair);
-  pair->wake = pair->asleep_since + fmin(pair->next_item, pair->list_end) - pair->path;
-  pair->asleep_at = relative->position;
-  pair->asleep_turned = turned(world, pair);
+  scree_neighbours *n = pair->neighbours;
+  n->asleep_since = bodies_path(world, pair);
+  n->wake = n->asleep_since + fmin(pair->next_item, pair->list_end) - pair->path;
+  n->asleep_at = relative->position;
+  n->asleep_turned = turned(world, pair);
   pair->asleep = true;
 }
 
@@ -197,7 +201,7 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
     pair->next_item = -INFINITY;
   }
   good = good && wake_items(pair);
-  if (passes_unseen(world, pair) && !sums->too_fast) sums->too_fast = pair;
+  if (passes_unseen(world, pair) && !sums->too_fast) sums->too_fast = pair->neighbours;
   scratch->touches.count = 0;
   bool some_sleep = visit_items(world, pair, &relative, scratch);
   clear_results(pair);
@@ -213,5 +217,5 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   if (pair->largest > largest) sums->dashpot -= hysteresis_loss(pair, largest);
   if (pair->wall) sums->wall_work += half * wall_power(pair, scree_pair_frame_b(world, pair));
   if (!(pair->overlap <= sums->largest_overlap)) sums->largest_overlap = pair->overlap;
-  if (!(pair->overlap <= pair->limit) && !sums->beyond_limit) sums->beyond_limit = pair;
+  if (!(pair->overlap <= pair->limit) && !sums->beyond_limit) sums->beyond_limit = pair->neighbours;
 }

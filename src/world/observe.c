@@ -36,9 +36,9 @@ static void add_body(const scree_world *world, size_t i, double dt, energy_sums 
 static void add_pairs(const scree_world *world, scree_observation *o) {
   scree_sum elastic = {0};
   size_t body_sides = 0;
-  for (size_t k = 0; k < world->pairs.count; k++) {
-    const scree_pair *pair = world->pairs.items[k];
-    if (!pair->touching) continue;
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    const scree_pair *pair = world->neighbours.items[k]->pair;
+    if (!pair || !pair->touching) continue;
     scree_sum_add(&elastic, pair->elastic);
     o->pair_count++;
     o->contact_count += pair->contact_count;
@@ -51,9 +51,9 @@ static void add_pairs(const scree_world *world, scree_observation *o) {
 /* Elastic energy of the tangential springs is no dissipation yet. */
 static double tangential_elastic(const scree_world *world) {
   scree_sum sum = {0};
-  for (size_t k = 0; k < world->pairs.count; k++) {
-    const scree_pair *pair = world->pairs.items[k];
-    if (pair->touching) scree_sum_add(&sum, pair->tangential_elastic);
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    const scree_pair *pair = world->neighbours.items[k]->pair;
+    if (pair && pair->touching) scree_sum_add(&sum, pair->tangential_elastic);
   }
   return scree_sum_value(sum);
 }
@@ -106,9 +106,9 @@ scree_checksum scree_world_hash(const scree_world *world) {
     mix(&hash, vectors, sizeof vectors);
     mix(&hash, &b->orientation[i], sizeof b->orientation[i]);
   }
-  for (size_t k = 0; k < world->pairs.count; k++) {
-    const scree_pair *pair = world->pairs.items[k];
-    for (size_t i = 0; i < pair->active.count; i++) {
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    const scree_pair *pair = world->neighbours.items[k]->pair;
+    for (size_t i = 0; pair && i < pair->active.count; i++) {
       const scree_item *item = &pair->active.items[i];
       const uint32_t names[5] = {pair->a, pair->b, item->kind, item->a, item->b};
       mix(&hash, names, sizeof names);

@@ -1,9 +1,10 @@
-/* Pair objects: made by the broad phase, kept while two bounding boxes are near, recycled with
- * their arrays so that a warm world allocates nothing. */
+/* Neighbours are made by the broad phase and kept while two bounding boxes are near; pairs while
+ * they are awake. Both are recycled with their arrays, so that a warm world allocates nothing. */
 #include "world/world.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
+#include "base/parallel.h"
 
 #include <string.h>
 
@@ -17,47 +18,49 @@ double scree_thin_overlap(const scree_particle *particle) {
   return fmax(0.5 * m->thickness, 4 * m->rounding);
 }
 
-static void set_up(scree_world *world, scree_pair *pair) {
+static void set_up(scree_world *world, scree_neighbours *n) {
   const scree_bodies *bodies = &world->bodies;
-  const scree_particle *a = bodies->particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  double size = size_of(world, a), mass = bodies->mass[pair->a], thin = scree_thin_overlap(a);
-  size_t material_a = bodies->material[pair->a], material_b;
-  if (pair->wall) {
-    material_b = world->walls.items[pair->b].given.material;
+  const scree_particle *a = bodies->particle[n->a], *b = scree_shape_of(world, n->b, n->wall);
+  double size = size_of(world, a), mass = bodies->mass[n->a], thin = scree_thin_overlap(a);
+  size_t material_a = bodies->material[n->a], material_b;
+  if (n->wall) {
+    material_b = world->walls.items[n->b].given.material;
   } else {
-    material_b = bodies->material[pair->b];
+    material_b = bodies->material[n->b];
     size = fmin(size, size_of(world, b));
-    mass = mass * bodies->mass[pair->b] / (mass + bodies->mass[pair->b]);
+    mass = mass * bodies->mass[n->b] / (mass + bodies->mass[n->b]);
     thin = fmin(thin, scree_thin_overlap(b));
   }
   const scree_material_pair *contact = &world->contacts[material_a][material_b];
-  pair->stiffness = scree_pair_stiffness(world, material_a, material_b, size);
-  pair->damping = world->options.law == SCREE_LAW_LINEAR
-                      ? 2 * contact->damping_ratio * sqrt(mass * pair->stiffness)
-                      : 0;
-  pair->contact_time = 3.14159265358979323846 * sqrt(mass / pair->stiffness);
-  pair->friction = contact->friction;
-  pair->restitution = contact->restitution;
-  pair->smoothing = world->options.smoothing * size;
-  pair->limit = world->options.overlap_limit * size;
-  pair->thin = fmin(pair->limit, thin);
-  pair->reach =
+  n->stiffness = scree_pair_stiffness(world, material_a, material_b, size);
+  n->damping = world->options.law == SCREE_LAW_LINEAR
+                   ? 2 * contact->damping_ratio * sqrt(mass * n->stiffness)
+                   : 0;
+  n->contact_time = 3.14159265358979323846 * sqrt(mass / n->stiffness);
+  n->friction = contact->friction;
+  n->restitution = contact->restitution;
+  n->smoothing = world->options.smoothing * size;
+  n->limit = world->options.overlap_limit * size;
+  n->thin = fmin(n->limit, thin);
+  n->reach =
       (a->face_count ? a->measures.rounding : 0) + (b && b->face_count ? b->measures.rounding : 0);
 }
 
-/* All memory goes, also what is read only while the pair touches or sleeps: a checkpoint holds it.
- */
-static void forget(scree_pair *pair) {
-  pair->active.count = pair->sleeping.count = 0;
-  pair->asleep = pair->touching = false;
-  pair->travel = pair->path = pair->region_radius = pair->wake = pair->asleep_since = 0;
-  pair->next_item = pair->list_end = -INFINITY;
-  pair->elastic = pair->tangential_elastic = pair->overlap = pair->largest = pair->age = 0;
-  pair->contact_count = 0;
-  pair->wrench = (scree_wrench){0};
-  pair->dashpot = pair->tangential = (scree_kept_load){0};
-  pair->region = pair->asleep_at = (vec3){0};
-  pair->asleep_turned = (quat){0};
+/* There is room for all. */
+static void give_pair_back(scree_world *world, scree_pair *pair) {
+  world->spare_pairs.items[world->spare_pairs.count++] = pair;
+}
+
+/* All memory goes, also what is read only while they sleep: a checkpoint holds it. */
+static void forget(scree_world *world, scree_neighbours *n) {
+  if (n->pair) give_pair_back(world, n->pair);
+  n->pair = NULL;
+  n->asleep = false;
+  n->sleeping.count = 0;
+  n->travel = n->path = n->region_radius = n->wake = n->asleep_since = 0;
+  n->next_item = n->list_end = -INFINITY;
+  n->region = n->asleep_at = (vec3){0};
+  n->asleep_turned = (quat){0};
 }
 
 static void use_own_items(scree_pair *pair) {
@@ -66,88 +69,234 @@ static void use_own_items(scree_pair *pair) {
   pair->further = pair->own_further;
 }
 
-/* As many again as there are, from 64 to 8192 (4 MB), into the spares. */
-static bool make_spares(scree_world *world) {
+/* How many to make where there are `total`: as many again, from 64 to 8192 (5 MB of pairs). */
+static size_t spares_for(size_t total) {
+  return total < 64 ? 64 : total > 8192 ? 8192 : total;
+}
+
+static bool make_spare_neighbours(scree_world *world) {
   size_t total = 0;
-  for (size_t i = 0; i < world->slabs.count; i++) total += world->slabs.items[i].count;
-  size_t count = total < 64 ? 64 : total > 8192 ? 8192 : total;
-  if (!SCREE_RESERVE(&world->slabs, world->slabs.count + 1) ||
-      !SCREE_RESERVE(&world->spare_pairs, world->spare_pairs.count + count))
+  for (size_t i = 0; i < world->neighbour_slabs.count; i++)
+    total += world->neighbour_slabs.items[i].count;
+  size_t count = spares_for(total);
+  if (!SCREE_RESERVE(&world->neighbour_slabs, world->neighbour_slabs.count + 1) ||
+      !SCREE_RESERVE(&world->spare_neighbours, world->spare_neighbours.count + count))
+    return false;
+  scree_neighbours *items = scree_alloc_zero(count, sizeof *items);
+  if (!items) return false;
+  world->neighbour_slabs.items[world->neighbour_slabs.count++] =
+      (scree_neighbour_slab){items, count};
+  for (size_t i = count; i-- > 0;)
+    world->spare_neighbours.items[world->spare_neighbours.count++] = &items[i];
+  return true;
+}
+
+static bool make_spare_pairs(scree_world *world) {
+  size_t total = 0;
+  for (size_t i = 0; i < world->pair_slabs.count; i++) total += world->pair_slabs.items[i].count;
+  size_t count = spares_for(total);
+  /* room for all: giving back needs none */
+  if (!SCREE_RESERVE(&world->pair_slabs, world->pair_slabs.count + 1) ||
+      !SCREE_RESERVE(&world->spare_pairs, total + count))
     return false;
   scree_pair *pairs = scree_alloc_zero(count, sizeof *pairs);
-  if (!pairs) return false;
-  for (size_t i = 0; i < count; i++) use_own_items(&pairs[i]);
-  world->slabs.items[world->slabs.count++] = (scree_pair_slab){pairs, count};
+  scree_further *further = scree_alloc_zero(SCREE_OWN_ITEMS * count, sizeof *further);
+  if (!pairs || !further) {
+    scree_free(pairs);
+    scree_free(further);
+    return false;
+  }
+  for (size_t i = 0; i < count; i++) {
+    pairs[i].own_further = &further[SCREE_OWN_ITEMS * i];
+    use_own_items(&pairs[i]);
+  }
+  world->pair_slabs.items[world->pair_slabs.count++] = (scree_pair_slab){pairs, further, count};
   for (size_t i = count; i-- > 0;) world->spare_pairs.items[world->spare_pairs.count++] = &pairs[i];
   return true;
 }
 
-scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wall) {
-  if (world->spare_pairs.count == 0 && !make_spares(world)) return NULL;
-  scree_pair *pair = world->spare_pairs.items[--world->spare_pairs.count];
-  pair->a = a;
-  pair->b = b;
-  pair->wall = wall;
-  forget(pair);
-  set_up(world, pair);
-  return pair;
+scree_neighbours *scree_neighbours_take(scree_world *world, uint32_t a, uint32_t b, bool wall) {
+  if (world->spare_neighbours.count == 0 && !make_spare_neighbours(world)) return NULL;
+  scree_neighbours *n = world->spare_neighbours.items[--world->spare_neighbours.count];
+  n->a = a;
+  n->b = b;
+  n->wall = wall;
+  forget(world, n);
+  set_up(world, n);
+  return n;
 }
 
-/* A pair that finds no room among the spares stays with its slab. */
-void scree_pair_give_back(scree_world *world, scree_pair *pair) {
-  (void)SCREE_PUSH(&world->spare_pairs, pair);
+/* What finds no room among the spares stays with its slab. */
+void scree_neighbours_give_back(scree_world *world, scree_neighbours *n) {
+  forget(world, n);
+  (void)SCREE_PUSH(&world->spare_neighbours, n);
+}
+
+static scree_pair *take_pair(scree_world *world) {
+  if (world->spare_pairs.count == 0 && !make_spare_pairs(world)) return NULL;
+  return world->spare_pairs.items[--world->spare_pairs.count];
+}
+
+void scree_pair_adopt_law(scree_pair *p) {
+  const scree_neighbours *n = p->neighbours;
+  p->stiffness = n->stiffness;
+  p->damping = n->damping;
+  p->friction = n->friction;
+  p->restitution = n->restitution;
+  p->smoothing = n->smoothing;
+  p->reach = n->reach;
+  p->limit = n->limit;
+  p->thin = n->thin;
+  p->contact_time = n->contact_time;
+}
+
+scree_pair *scree_pair_wake(scree_scratch *scratch, scree_neighbours *n) {
+  scree_pair *p = &scratch->pair;
+  p->own_further = scratch->further;
+  use_own_items(p);
+  p->neighbours = n;
+  p->a = n->a;
+  p->b = n->b;
+  p->wall = n->wall;
+  p->asleep = n->asleep;
+  p->touching = false;
+  p->contact_count = 0;
+  p->wrench = (scree_wrench){0};
+  p->dashpot = p->tangential = (scree_kept_load){0};
+  p->travel = n->travel;
+  p->path = n->path;
+  p->next_item = n->next_item;
+  p->list_end = n->list_end;
+  p->age = p->overlap = p->largest = p->elastic = p->tangential_elastic = 0;
+  p->active.count = 0;
+  p->region = n->region;
+  p->region_radius = n->region_radius;
+  scree_pair_adopt_law(p);
+  return p;
+}
+
+/* All but what belongs to the place itself; where the items fill an array of their own, the arrays
+ * change places. */
+static void move_pair(scree_pair *from, scree_pair *to) {
+  scree_further *own_further = to->own_further;
+  scree_item_array array = to->array;
+  bool own = from->active.items == from->own_items;
+  *to = *from;
+  to->own_further = own_further;
+  if (own) {
+    to->array = array;
+    memcpy(own_further, from->own_further, from->active.count * sizeof *own_further);
+    use_own_items(to);
+  } else {
+    from->array = array;
+    use_own_items(from);
+  }
+}
+
+static void go_back(scree_neighbours *n, const scree_pair *pair) {
+  n->asleep = pair->asleep;
+  n->travel = pair->travel;
+  n->path = pair->path;
+  n->next_item = pair->next_item;
+  n->list_end = pair->list_end;
+  n->region = pair->region;
+  n->region_radius = pair->region_radius;
+}
+
+bool scree_pair_settle(scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  scree_neighbours *n = pair->neighbours;
+  bool stays = pair->active.count > 0;
+  if (!stays) go_back(n, pair);
+  if (stays != (pair == &scratch->pair)) return true;
+  scree_enter_alone();
+  if (stays)
+    n->pair = take_pair(world);
+  else
+    give_pair_back(world, n->pair);
+  scree_leave_alone();
+  if (!stays)
+    n->pair = NULL;
+  else if (n->pair)
+    move_pair(pair, n->pair);
+  return !stays || n->pair;
 }
 
 bool scree_pair_reserve_items(scree_pair *pair, size_t needed) {
   if (needed <= pair->active.capacity) return true;
-  size_t grown = 2 * pair->active.capacity, count = pair->active.count;
-  if (grown < needed) grown = needed;
-  scree_item *items = scree_alloc(grown, sizeof *items + sizeof *pair->further);
-  if (!items) return false;
-  scree_further *further = (scree_further *)(items + grown);
-  memcpy(items, pair->active.items, count * sizeof *items);
+  scree_item *before = pair->active.items, *items = pair->array.items;
+  size_t capacity = pair->array.capacity, count = pair->active.count;
+  bool grows = needed > capacity;
+  if (grows) {
+    capacity = 2 * pair->active.capacity < needed ? needed : 2 * pair->active.capacity;
+    items = scree_alloc(capacity, sizeof *items + sizeof *pair->further);
+    if (!items) return false;
+  }
+  scree_further *further = (scree_further *)(items + capacity);
+  memcpy(items, before, count * sizeof *items);
   memcpy(further, pair->further, count * sizeof *further);
-  if (pair->active.items != pair->own_items) scree_free(pair->active.items);
+  if (grows) scree_free(pair->array.items);
+  pair->array = (scree_item_array){items, capacity};
   pair->active.items = items;
-  pair->active.capacity = grown;
+  pair->active.capacity = capacity;
   pair->further = further;
   return true;
 }
 
-bool scree_pair_copy(const scree_pair *pair, scree_pair *copy) {
-  size_t active = pair->active.count, sleeping = pair->sleeping.count;
-  *copy = *pair;
-  use_own_items(copy);
-  copy->sleeping.items = NULL;
-  copy->sleeping.capacity = copy->active.count = 0; /* nothing to move yet */
-  if (!scree_pair_reserve_items(copy, active) || !SCREE_RESERVE(&copy->sleeping, sleeping))
-    return false;
-  copy->active.count = active;
-  memcpy(copy->active.items, pair->active.items, active * sizeof *copy->active.items);
-  memcpy(copy->further, pair->further, active * sizeof *copy->further);
+void scree_pair_trim_items(scree_pair *pair) {
+  if (pair->active.items == pair->own_items || pair->active.count > SCREE_OWN_ITEMS) return;
+  memcpy(pair->own_items, pair->active.items, pair->active.count * sizeof *pair->own_items);
+  memcpy(pair->own_further, pair->further, pair->active.count * sizeof *pair->further);
+  use_own_items(pair);
+}
+
+bool scree_copy_pair(const scree_pair *pair, scree_pair_copy *copy) {
+  size_t active = pair->active.count, sleeping = pair->neighbours->sleeping.count;
+  scree_pair *p = &copy->pair;
+  scree_neighbours *n = &copy->neighbours;
+  *p = *pair;
+  *n = *pair->neighbours;
+  p->neighbours = n;
+  p->own_further = copy->further;
+  use_own_items(p);
+  p->array = (scree_item_array){0};
+  n->pair = NULL;
+  n->sleeping.items = NULL;
+  n->sleeping.capacity = p->active.count = 0; /* nothing to move yet */
+  if (!scree_pair_reserve_items(p, active) || !SCREE_RESERVE(&n->sleeping, sleeping)) return false;
+  p->active.count = active;
+  memcpy(p->active.items, pair->active.items, active * sizeof *p->active.items);
+  memcpy(p->further, pair->further, active * sizeof *p->further);
   if (sleeping)
-    memcpy(copy->sleeping.items, pair->sleeping.items, sleeping * sizeof *copy->sleeping.items);
+    memcpy(n->sleeping.items, pair->neighbours->sleeping.items,
+           sleeping * sizeof *n->sleeping.items);
   return true;
 }
 
-void scree_pair_free_lists(scree_pair *pair) {
-  if (pair->active.items != pair->own_items) scree_free(pair->active.items);
-  scree_free(pair->sleeping.items);
+void scree_free_pair_copy(scree_pair_copy *copy) {
+  scree_free(copy->pair.array.items);
+  scree_free(copy->neighbours.sleeping.items);
 }
 
 void scree_pairs_free(scree_world *world) {
-  for (size_t s = 0; s < world->slabs.count; s++) {
-    scree_pair_slab *slab = &world->slabs.items[s];
-    for (size_t i = 0; i < slab->count; i++) scree_pair_free_lists(&slab->pairs[i]);
-    scree_free(slab->pairs);
+  for (size_t s = 0; s < world->neighbour_slabs.count; s++) {
+    scree_neighbour_slab *slab = &world->neighbour_slabs.items[s];
+    for (size_t i = 0; i < slab->count; i++) scree_free(slab->items[i].sleeping.items);
+    scree_free(slab->items);
   }
-  scree_free(world->slabs.items);
+  for (size_t s = 0; s < world->pair_slabs.count; s++) {
+    scree_pair_slab *slab = &world->pair_slabs.items[s];
+    for (size_t i = 0; i < slab->count; i++) scree_free(slab->pairs[i].array.items);
+    scree_free(slab->pairs);
+    scree_free(slab->further);
+  }
+  scree_free(world->neighbour_slabs.items);
+  scree_free(world->pair_slabs.items);
 }
 
 void scree_body_forget(scree_world *world, size_t body) {
   world->pairs_stale = true;
-  for (size_t i = 0; i < world->pairs.count; i++) {
-    scree_pair *pair = world->pairs.items[i];
-    if (pair->a == body || (!pair->wall && pair->b == body)) forget(pair);
+  for (size_t i = 0; i < world->neighbours.count; i++) {
+    scree_neighbours *n = world->neighbours.items[i];
+    if (n->a == body || (!n->wall && n->b == body)) forget(world, n);
   }
 }

@@ -18,9 +18,10 @@
 static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 6};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
-_Static_assert(sizeof(void *) != 8 || (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
-                                       sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 960 &&
-                                       sizeof(scree_frame) == 192),
+_Static_assert(sizeof(void *) != 8 ||
+                   (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
+                    sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 640 &&
+                    sizeof(scree_neighbours) == 256 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
 /* ---- field lists ---- */
@@ -179,20 +180,20 @@ static void code_load(scree_codec *c, scree_kept_load *l) {
   }
 }
 
-static void code_pair_name(scree_codec *c, scree_pair *p) {
-  scree_code_u32(c, &p->a);
-  scree_code_u32(c, &p->b);
-  scree_code_bool(c, &p->wall);
+static void code_pair_name(scree_codec *c, scree_neighbours *n) {
+  scree_code_u32(c, &n->a);
+  scree_code_u32(c, &n->b);
+  scree_code_bool(c, &n->wall);
 }
 
-static void code_pair_state(scree_codec *c, scree_pair *p) {
+static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) {
   scree_code_bool(c, &p->asleep);
   scree_code_bool(c, &p->touching);
-  double *reals[] = {&p->stiffness,    &p->damping,  &p->friction, &p->restitution,
-                     &p->smoothing,    &p->reach,    &p->limit,    &p->thin,
-                     &p->travel,       &p->path,     &p->wake,     &p->asleep_since,
+  double *reals[] = {&n->stiffness,    &n->damping,  &n->friction, &n->restitution,
+                     &n->smoothing,    &n->reach,    &n->limit,    &n->thin,
+                     &p->travel,       &p->path,     &n->wake,     &n->asleep_since,
                      &p->next_item,    &p->list_end, &p->elastic,  &p->tangential_elastic,
-                     &p->contact_time, &p->age,      &p->overlap,  &p->largest};
+                     &n->contact_time, &p->age,      &p->overlap,  &p->largest};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   code_wrench(c, &p->wrench);
   code_load(c, &p->dashpot);
@@ -201,9 +202,9 @@ static void code_pair_state(scree_codec *c, scree_pair *p) {
   scree_code_u64(c, &contacts);
   p->contact_count = (uint32_t)contacts;
   scree_code_count(c, &p->active.count, 242);
-  scree_code_count(c, &p->sleeping.count, 20);
-  scree_code_vec3(c, &p->asleep_at);
-  code_quat(c, &p->asleep_turned);
+  scree_code_count(c, &n->sleeping.count, 20);
+  scree_code_vec3(c, &n->asleep_at);
+  code_quat(c, &n->asleep_turned);
   scree_code_vec3(c, &p->region);
   scree_code_real(c, &p->region_radius);
 }
@@ -363,13 +364,15 @@ static void save_bodies(scree_codec *c, const scree_world *world) {
 static void save_pairs(scree_codec *c, const scree_world *world) {
   size_t count = world->pairs.count;
   scree_code_count(c, &count, 1);
+  scree_scratch scratch = {0};
   for (size_t k = 0; k < count; k++) {
-    scree_pair pair = *world->pairs.items[k]; /* its lists are only read */
-    code_pair_name(c, &pair);
-    code_pair_state(c, &pair);
-    for (size_t i = 0; i < pair.active.count; i++)
-      code_item(c, &pair.active.items[i], &pair.further[i]);
-    for (size_t i = 0; i < pair.sleeping.count; i++) code_sleeper(c, &pair.sleeping.items[i]);
+    scree_neighbours *n = world->neighbours.items[k]; /* only read, and so are its lists */
+    scree_pair *pair = n->pair ? n->pair : scree_pair_wake(&scratch, n);
+    code_pair_name(c, n);
+    code_pair_state(c, pair, n);
+    for (size_t i = 0; i < pair->active.count; i++)
+      code_item(c, &pair->active.items[i], &pair->further[i]);
+    for (size_t i = 0; i < n->sleeping.count; i++) code_sleeper(c, &n->sleeping.items[i]);
   }
 }
 
@@ -428,6 +431,7 @@ typedef struct loader {
   scree_world *world;
   scree_particle **particles;
   size_t particle_count;
+  scree_scratch scratch; /* its pair */
   scree_error error;
 } loader;
 
@@ -582,10 +586,12 @@ static bool is_item(const loader *l, const scree_pair *pair, const scree_item *i
 }
 
 static void load_items(loader *l, scree_pair *pair) {
-  size_t active = pair->active.count, sleeping = pair->sleeping.count;
-  pair->active.count = pair->sleeping.count = 0;
+  scree_neighbours *n = pair->neighbours;
+  size_t active = pair->active.count, sleeping = n->sleeping.count;
+  pair->active.count = n->sleeping.count = 0;
+  if ((pair->asleep || pair->touching) && pair->asleep == (active > 0)) l->codec.failed = true;
   if (!good(l)) return;
-  if (!scree_pair_reserve_items(pair, active) || !SCREE_RESERVE(&pair->sleeping, sleeping))
+  if (!scree_pair_reserve_items(pair, active) || !SCREE_RESERVE(&n->sleeping, sleeping))
     l->codec.out_of_memory = true;
   for (size_t i = 0; i < active && good(l); i++) {
     scree_item *item = &pair->active.items[i];
@@ -599,12 +605,12 @@ static void load_items(loader *l, scree_pair *pair) {
     scree_sleeper s = {0};
     code_sleeper(&l->codec, &s);
     if (!names_features(l, pair, s.kind, s.a, s.b)) l->codec.failed = true;
-    pair->sleeping.items[pair->sleeping.count++] = s;
+    n->sleeping.items[n->sleeping.count++] = s;
   }
 }
 
 /* Pairs come sorted by a, bodies before walls, then b, and none twice. */
-static bool follows(const scree_pair *last, const scree_pair *next) {
+static bool follows(const scree_neighbours *last, const scree_neighbours *next) {
   if (!last) return true;
   if (last->a != next->a) return last->a < next->a;
   if (last->wall != next->wall) return next->wall;
@@ -615,23 +621,27 @@ static void load_pairs(loader *l) {
   scree_world *world = l->world;
   size_t count = 0;
   scree_code_count(&l->codec, &count, 451);
-  if (!SCREE_RESERVE(&world->pairs, count)) l->codec.out_of_memory = true;
+  if (!SCREE_RESERVE(&world->neighbours, count)) l->codec.out_of_memory = true;
   for (size_t k = 0; k < count && good(l); k++) {
-    scree_pair name = {0};
+    scree_neighbours name = {0};
     code_pair_name(&l->codec, &name);
     bool known =
         name.a < world->bodies.count &&
         (name.wall ? name.b < world->walls.count : name.a < name.b && name.b < world->bodies.count);
-    if (!known || !follows(k ? world->pairs.items[k - 1] : NULL, &name)) l->codec.failed = true;
+    if (!known || !follows(k ? world->neighbours.items[k - 1] : NULL, &name))
+      l->codec.failed = true;
     if (!good(l)) return;
-    scree_pair *pair = scree_pair_take(world, name.a, name.b, name.wall);
-    if (!pair) {
+    scree_neighbours *n = scree_neighbours_take(world, name.a, name.b, name.wall);
+    if (!n) {
       l->codec.out_of_memory = true;
       return;
     }
-    world->pairs.items[world->pairs.count++] = pair;
-    code_pair_state(&l->codec, pair);
+    world->neighbours.items[world->neighbours.count++] = n;
+    scree_pair *pair = scree_pair_wake(&l->scratch, n);
+    code_pair_state(&l->codec, pair, n);
     load_items(l, pair);
+    scree_pair_adopt_law(pair);
+    if (!scree_pair_settle(world, pair, &l->scratch)) l->codec.out_of_memory = true;
   }
 }
 
@@ -674,6 +684,7 @@ scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, c
   for (size_t i = 0; i < sizeof stages / sizeof *stages && good(&l); i++) stages[i](&l);
   for (size_t i = 0; l.particles && i < l.particle_count; i++) scree_particle_free(l.particles[i]);
   scree_free(l.particles);
+  scree_free(l.scratch.pair.array.items);
   status = finish(&l, name, error);
   if (status)
     scree_world_free(l.world);

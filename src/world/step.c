@@ -22,7 +22,11 @@ static double slot_due(const scree_world *world, const scree_slot *slot) {
 /* The pair and what its evaluation reads first. */
 SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
   const scree_slot *slot = &world->slots.items[k];
-  scree_prefetch(world->pairs.items[k], offsetof(scree_pair, further));
+  const scree_pair *pair = world->pairs.items[k];
+  if (pair)
+    scree_prefetch(pair, offsetof(scree_pair, neighbours));
+  else
+    scree_prefetch(world->neighbours.items[k], sizeof(scree_neighbours));
   if (!(slot->b & SCREE_SLOT_WALL))
     scree_prefetch(&world->bodies.frame[slot->b], sizeof(scree_frame));
 }
@@ -49,9 +53,10 @@ enum { PAIRS_AHEAD = 4 };
 
 static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   scree_world *world = context;
+  scree_scratch *scratch = &world->scratch[worker];
   scree_pair_sums sums = {0};
   size_t awake[PAIR_BLOCK], count = 0;
-  if (end + PAIR_BLOCK <= world->pairs.count) { /* of the next block */
+  if (end + PAIR_BLOCK <= world->neighbours.count) { /* of the next block */
     scree_prefetch(&world->slots.items[end], PAIR_BLOCK * sizeof(scree_slot));
     scree_prefetch(&world->pairs.items[end], PAIR_BLOCK * sizeof(scree_pair *));
   }
@@ -60,29 +65,35 @@ static void evaluate_block(void *context, size_t begin, size_t end, size_t block
   for (size_t i = 0; i < PAIRS_AHEAD && i < count; i++) fetch_pair(world, awake[i]);
   for (size_t i = 0; i < count; i++) {
     scree_pair *pair = world->pairs.items[awake[i]];
+    const scree_pair *next = i + 1 < count ? world->pairs.items[awake[i + 1]] : NULL;
     if (i + PAIRS_AHEAD < count) fetch_pair(world, awake[i + PAIRS_AHEAD]);
-    if (i + 1 < count) fetch_features(world, world->pairs.items[awake[i + 1]]);
-    scree_pair_evaluate(world, pair, &world->scratch[worker], &sums);
-    world->slots.items[awake[i]].wake = pair->asleep ? pair->wake : -INFINITY;
+    if (next) fetch_features(world, next);
+    if (!pair) pair = scree_pair_wake(scratch, world->neighbours.items[awake[i]]);
+    scree_pair_evaluate(world, pair, scratch, &sums);
+    world->slots.items[awake[i]].wake = pair->asleep ? pair->neighbours->wake : -INFINITY;
     scree_mark_touching(world, awake[i], pair->touching);
+    if (pair->active.count == 0 || pair == &scratch->pair) {
+      if (!scree_pair_settle(world, pair, scratch)) sums.out_of_memory = true;
+      world->pairs.items[awake[i]] = world->neighbours.items[awake[i]]->pair;
+    }
   }
   world->sums.items[block] = sums;
 }
 
-static scree_status describe_overlap(scree_world *world, const scree_pair *pair) {
+static scree_status describe_overlap(scree_world *world, const scree_neighbours *n) {
   return scree_fail(&world->failure, SCREE_DIVERGED,
                     "world: step %llu, body %u overlaps %s %u by %.3g m; at most %.3g m",
-                    (unsigned long long)world->step_count, pair->a, pair->wall ? "wall" : "body",
-                    pair->b, pair->overlap, pair->limit);
+                    (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,
+                    n->pair->overlap, n->limit);
 }
 
-static scree_status describe_speed(scree_world *world, const scree_pair *pair) {
+static scree_status describe_speed(scree_world *world, const scree_neighbours *n) {
   return scree_fail(
       &world->failure, SCREE_DIVERGED,
       "world: step %llu, body %u moved by %.3g m past %s %u in one step of %.3g s; at "
       "most %.3g m (the thinnest wall of the two, or twice the overlap limit)",
-      (unsigned long long)world->step_count, pair->a, pair->travel, pair->wall ? "wall" : "body",
-      pair->b, world->time_step, 2 * pair->thin);
+      (unsigned long long)world->step_count, n->a, n->pair ? n->pair->travel : n->travel,
+      n->wall ? "wall" : "body", n->b, world->time_step, 2 * n->thin);
 }
 
 static scree_status combine_sums(scree_world *world, size_t blocks) {
@@ -105,7 +116,7 @@ static scree_status combine_sums(scree_world *world, size_t blocks) {
 }
 
 static scree_status reserve_blocks(scree_world *world, scree_error *error) {
-  size_t blocks = scree_block_count(world->pairs.count, PAIR_BLOCK);
+  size_t blocks = scree_block_count(world->neighbours.count, PAIR_BLOCK);
   if (!SCREE_RESERVE(&world->sums, blocks))
     return scree_fail_memory(error, blocks * sizeof *world->sums.items, "sums");
   int workers = scree_worker_count();
@@ -122,9 +133,9 @@ static scree_status reserve_blocks(scree_world *world, scree_error *error) {
 static void sum_wall_forces(scree_world *world) {
   for (size_t w = 0; w < world->walls.count; w++)
     world->walls.items[w].force = world->walls.items[w].torque = (vec3){0, 0, 0};
-  for (size_t k = 0; k < world->pairs.count; k++) {
+  for (size_t k = 0; k < world->neighbours.count; k++) {
     const scree_pair *pair = world->pairs.items[k];
-    if (!pair->wall || !pair->touching) continue;
+    if (!pair || !pair->wall || !pair->touching) continue;
     scree_world_wall *wall = &world->walls.items[pair->b];
     wall->force = vec3_sub(wall->force, pair->wrench.force);
     wall->torque = vec3_add(wall->torque, pair->wrench.torque_b);
@@ -138,8 +149,8 @@ static scree_status one_step(scree_world *world) {
   if (!status) status = reserve_blocks(world, &world->failure);
   if (status) return status;
   double after_broad = scree_now();
-  scree_parallel_for(world->pairs.count, PAIR_BLOCK, evaluate_block, world);
-  status = combine_sums(world, scree_block_count(world->pairs.count, PAIR_BLOCK));
+  scree_parallel_for(world->neighbours.count, PAIR_BLOCK, evaluate_block, world);
+  status = combine_sums(world, scree_block_count(world->neighbours.count, PAIR_BLOCK));
   double after_contacts = scree_now();
   if (!status && !scree_world_gather(world)) status = world->failure.status;
   if (!status) {
@@ -153,7 +164,7 @@ static scree_status one_step(scree_world *world) {
   timings->bodies += end - after_contacts;
   timings->total += end - start;
   timings->steps++;
-  timings->pair_evaluations += world->pairs.count;
+  timings->pair_evaluations += world->neighbours.count;
   return status;
 }
 

@@ -22,17 +22,18 @@ scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_
                                         void *context, scree_error *error) {
   scree_scratch scratch = {0};
   bool good = true, going = true;
-  for (size_t k = 0; k < world->pairs.count && good && going; k++) {
-    if (!world->pairs.items[k]->touching) continue;
-    scree_pair copy;
+  for (size_t k = 0; k < world->neighbours.count && good && going; k++) {
+    const scree_pair *pair = world->neighbours.items[k]->pair;
+    if (!pair || !pair->touching) continue;
+    scree_pair_copy copy;
     scree_pair_sums sums = {0};
-    good = scree_pair_copy(world->pairs.items[k], &copy);
-    if (good) scree_pair_evaluate(world, &copy, &scratch, &sums);
+    good = scree_copy_pair(pair, &copy);
+    if (good) scree_pair_evaluate(world, &copy.pair, &scratch, &sums);
     good = good && !sums.out_of_memory;
-    for (size_t i = 0; i < scratch.touches.count && good && going && copy.touching; i++)
+    for (size_t i = 0; i < scratch.touches.count && good && going && copy.pair.touching; i++)
       if (scratch.touches.items[i].share > 0)
-        going = report(world, &copy, &scratch.touches.items[i], visit, context);
-    scree_pair_free_lists(&copy);
+        going = report(world, &copy.pair, &scratch.touches.items[i], visit, context);
+    scree_free_pair_copy(&copy);
   }
   scree_free(scratch.touches.items);
   return good ? SCREE_OK : scree_fail_memory(error, 0, "contacts");

@@ -123,13 +123,22 @@ typedef struct scree_kept_load {
 
 enum { SCREE_OWN_ITEMS = 2 };
 
-/* What a step touches of a pair that is awake comes first, in five cache lines, and the items of
- * most pairs after it. */
+typedef struct scree_neighbours scree_neighbours;
+
+/* Items, and then as many scree_further. */
+typedef struct scree_item_array {
+  scree_item *items;
+  size_t capacity;
+} scree_item_array;
+
+/* A pair that is awake. What every step touches comes first, in five cache lines, and the items of
+ * most pairs after it. Pairs lie together, apart from what is kept of those asleep: a step comes to
+ * one pair of neighbours in five, and each would lie on a page of its own. */
 typedef struct scree_pair {
   _Alignas(64) uint32_t a;
   uint32_t b;
   bool wall;   /* b is a wall */
-  bool asleep; /* no item can touch before the bodies' paths reach `wake` */
+  bool asleep; /* no item can touch before the bodies' paths reach neighbours->wake */
   bool touching;
   uint32_t contact_count;
   scree_wrench wrench;        /* here: the bodies read it with what is above */
@@ -143,31 +152,51 @@ typedef struct scree_pair {
   vec3 region; /* ball in the frame of b that holds what the list is about, until it ends */
   double region_radius;                  /* 0: none */
   double overlap;                        /* m */
-  double largest;                        /* m of this contact (hysteresis) */
   double stiffness, damping, friction;   /* K, C, mu */
   double smoothing, reach, limit;        /* l0; rounding of both meshes; overlap limit */
+  double thin;                           /* the limit, or half the thinnest wall where less */
   double contact_time;                   /* half period pi sqrt(m/K) */
   scree_kept_load dashpot, tangential;   /* parts of the wrench, for the ledger */
   double elastic, tangential_elastic;    /* U of all springs, and of the tangential ones */
   scree_item own_items[SCREE_OWN_ITEMS]; /* from here on: not always */
-  scree_further *further;                /* of the active items; own_further with own_items */
-  double restitution;                    /* e */
-  double thin;               /* the limit, or half the thinnest wall of the bodies where less */
+  scree_neighbours *neighbours;
+  scree_further *further; /* of the active items; own_further with own_items */
+  scree_further *own_further;
+  scree_item_array array; /* kept for when own_items are not enough */
+  double restitution;     /* e */
+  double largest;         /* m of this contact (hysteresis) */
+} scree_pair;
+
+/* Two bodies, or a body and a wall, whose boxes are near each other: what is kept of them while
+ * they are asleep. */
+struct scree_neighbours {
+  uint32_t a, b;
+  bool wall;
+  bool asleep;      /* else awake, or new */
+  scree_pair *pair; /* while they are awake; its memory counts where both have it */
+  double travel, path, next_item, list_end;
   double wake, asleep_since; /* on path[a] + path[b] */
-  vec3 asleep_at;            /* a in the frame of b when it fell asleep */
+  vec3 asleep_at;            /* a in the frame of b when they fell asleep */
   quat asleep_turned;
+  vec3 region;
+  double region_radius;
   struct {
     scree_sleeper *items;
     size_t count, capacity;
-  } sleeping;
-  scree_further own_further[SCREE_OWN_ITEMS];
-} scree_pair;
+  } sleeping; /* awake or not */
+  double stiffness, damping, friction, restitution, smoothing, reach, limit, thin, contact_time;
+};
 
-/* Pairs lie together: a step goes through many of them, and every page counts. */
+/* Both kinds lie together: a step goes through many, and every page counts. */
 typedef struct scree_pair_slab {
   scree_pair *pairs;
+  scree_further *further; /* SCREE_OWN_ITEMS a pair: few are ever used */
   size_t count;
 } scree_pair_slab;
+typedef struct scree_neighbour_slab {
+  scree_neighbours *items;
+  size_t count;
+} scree_neighbour_slab;
 
 /* One touching feature, in the frame of b. */
 typedef struct scree_touch {
@@ -187,6 +216,8 @@ typedef struct scree_touch_list {
 /* Scratch of one worker. */
 typedef struct scree_scratch {
   scree_touch_list touches;
+  scree_pair pair; /* neighbours that wake, until they stay awake */
+  scree_further further[SCREE_OWN_ITEMS];
   uint64_t item_evaluations, closest_queries, list_builds;
   double candidate_seconds;
   bool out_of_memory;
@@ -196,13 +227,13 @@ typedef struct scree_scratch {
 typedef struct scree_pair_sums {
   double dashpot, tangential, wall_work;
   double largest_overlap;
-  const scree_pair *beyond_limit, *too_fast;
+  const scree_neighbours *beyond_limit, *too_fast;
   bool out_of_memory;
 } scree_pair_sums;
 
-/* What the step reads of every pair, in the order of the pairs. */
+/* What the step reads of all neighbours, in their order. */
 typedef struct scree_slot {
-  double wake; /* of the pair while it is asleep; -infinity while it is awake */
+  double wake; /* while they are asleep; -infinity while they are awake */
   uint32_t a, b;
 } scree_slot;
 #define SCREE_SLOT_WALL 0x80000000u /* set in b: it is a wall */
@@ -224,27 +255,35 @@ struct scree_world {
     size_t count, capacity;
   } walls;
   struct {
-    scree_pair **items; /* sorted by a, then bodies before walls, then b */
+    scree_neighbours **items; /* sorted by a, then bodies before walls, then b */
     size_t count, capacity;
-  } pairs, spare_pairs, merged_pairs;
+  } neighbours, spare_neighbours, merged_neighbours;
   struct {
-    scree_pair_slab *items; /* the pairs themselves */
+    scree_neighbour_slab *items;
     size_t count, capacity;
-  } slabs;
+  } neighbour_slabs;
+  struct {
+    scree_pair **items; /* of the neighbours; NULL: asleep, or new */
+    size_t count, capacity;
+  } pairs, spare_pairs;
+  struct {
+    scree_pair_slab *items;
+    size_t count, capacity;
+  } pair_slabs;
   struct {
     scree_slot *items;
     size_t count, capacity;
-  } slots; /* of pairs */
+  } slots; /* of the neighbours */
   struct {
     uint64_t *items;
     size_t count, capacity;
-  } touching; /* one bit a pair: the bodies look for their forces here */
+  } touching; /* one bit for two neighbours: the bodies look for their forces here */
   struct {
     uint64_t *items;
     size_t count, capacity;
   } keys; /* of the broad phase */
   struct {
-    uint32_t *items; /* 2 * pair + (1 for the b side), grouped by body, ascending */
+    uint32_t *items; /* 2 * neighbours + (1 for the b side), grouped by body, ascending */
     size_t count, capacity;
   } sides;
   size_t *side_begin; /* bodies.capacity + 1 */
@@ -276,9 +315,9 @@ struct scree_world {
   scree_timings timings;
 };
 
-static inline scree_slot scree_pair_slot(const scree_pair *p) {
-  return (scree_slot){p->asleep ? p->wake : -INFINITY, p->a,
-                      p->b | (p->wall ? SCREE_SLOT_WALL : 0)};
+static inline scree_slot scree_slot_of(const scree_neighbours *n) {
+  return (scree_slot){n->asleep ? n->wake : -INFINITY, n->a,
+                      n->b | (n->wall ? SCREE_SLOT_WALL : 0)};
 }
 static inline bool scree_pair_touches(const scree_world *world, size_t pair) {
   return world->touching.items[pair / 64] >> pair % 64 & 1;
@@ -297,8 +336,11 @@ static inline bool scree_wall_is_analytic(const scree_world_wall *wall) {
   return wall->given.kind != SCREE_WALL_MESH;
 }
 /* The shape of side b; for an analytic wall its rims, NULL for none. */
+static inline const scree_particle *scree_shape_of(const scree_world *w, uint32_t b, bool wall) {
+  return wall ? w->walls.items[b].surface : w->bodies.particle[b];
+}
 static inline const scree_particle *scree_pair_shape_b(const scree_world *w, const scree_pair *p) {
-  return p->wall ? w->walls.items[p->b].surface : w->bodies.particle[p->b];
+  return scree_shape_of(w, p->b, p->wall);
 }
 
 /* material.c: eta of the clamped linear dashpot for a restitution in (0, 1]. */
@@ -317,18 +359,34 @@ void scree_broad_free(scree_world *world);
 double scree_broad_margin(const scree_world *world);
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error);
 
-/* pair.c: a pair object for (a, b), set up; from the spares when there are some. */
+/* pair.c: neighbours a and b, new and set up; from the spares when there are some. */
+scree_neighbours *scree_neighbours_take(scree_world *world, uint32_t a, uint32_t b, bool wall);
+/* With their pair, where they are awake. */
+void scree_neighbours_give_back(scree_world *world, scree_neighbours *neighbours);
+/* All of the world's neighbours and pairs with their arrays. */
+void scree_pairs_free(scree_world *world);
 /* Half the particle's thinnest wall, m. */
 double scree_thin_overlap(const scree_particle *particle);
-scree_pair *scree_pair_take(scree_world *world, uint32_t a, uint32_t b, bool wall);
-void scree_pair_give_back(scree_world *world, scree_pair *pair);
-/* All of the world's pairs with their arrays. */
-void scree_pairs_free(scree_world *world);
+/* The worker's own pair as one of neighbours that are asleep or new. */
+scree_pair *scree_pair_wake(scree_scratch *scratch, scree_neighbours *neighbours);
+/* Stiffness, damping and so on of its neighbours. */
+void scree_pair_adopt_law(scree_pair *pair);
+/* After an evaluation: a pair without awake items goes back to its neighbours, the worker's with
+ * such gets a place of its own; false when memory is out. */
+bool scree_pair_settle(scree_world *world, scree_pair *pair, scree_scratch *scratch);
 /* Room for active items, by doubling. */
 bool scree_pair_reserve_items(scree_pair *pair, size_t needed);
-/* A pair with lists of its own, to be freed with the next; false when memory is out. */
-bool scree_pair_copy(const scree_pair *pair, scree_pair *copy);
-void scree_pair_free_lists(scree_pair *pair);
+/* Few items lie with the pair again. */
+void scree_pair_trim_items(scree_pair *pair);
+/* A pair and its neighbours with lists of their own, to be freed with the next; false when memory
+ * is out. */
+typedef struct scree_pair_copy {
+  scree_pair pair;
+  scree_neighbours neighbours;
+  scree_further further[SCREE_OWN_ITEMS];
+} scree_pair_copy;
+bool scree_copy_pair(const scree_pair *pair, scree_pair_copy *copy);
+void scree_free_pair_copy(scree_pair_copy *copy);
 /* After a jump: the body's contacts start anew. */
 void scree_body_forget(scree_world *world, size_t body);
 

@@ -166,16 +166,16 @@ static void lists_change_nothing(void **state) {
 /* Energy of a pair's contact at its bodies' frames, on a copy of its memory; its wrench too. */
 static double energy_of_copy(const scree_world *world, const scree_pair *pair,
                              scree_wrench *wrench) {
-  scree_pair copy;
+  scree_pair_copy copy;
   scree_scratch scratch = {0};
   scree_pair_sums sums = {0};
-  assert_true(scree_pair_copy(pair, &copy));
-  copy.list_end = INFINITY; /* the present list */
-  scree_pair_evaluate(world, &copy, &scratch, &sums);
-  scree_pair_free_lists(&copy);
+  assert_true(scree_copy_pair(pair, &copy));
+  copy.pair.list_end = INFINITY; /* the present list */
+  scree_pair_evaluate(world, &copy.pair, &scratch, &sums);
+  scree_free_pair_copy(&copy);
   scree_free(scratch.touches.items);
-  *wrench = copy.wrench;
-  return copy.elastic;
+  *wrench = copy.pair.wrench;
+  return copy.pair.elastic;
 }
 
 /* Force and torque on body 0 against central differences of the energy over its six motions. The
@@ -251,7 +251,7 @@ static void deep_hits(void **state) {
       deepest = fmax(deepest, o.largest_overlap);
       if (step % 3) continue;
       moments++;
-      off += slope_error(world, world->pairs.items[0]) > 0.01;
+      off += slope_error(world, world->neighbours.items[0]->pair) > 0.01;
     }
     scree_world_free(world);
     scree_world_free(wide);
@@ -264,27 +264,30 @@ static void deep_hits(void **state) {
   for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
 }
 
-/* All features of both bodies among the pair's sleepers, due at once: no search, no cones. */
-static void wake_everything(const scree_world *world, scree_pair *pair) {
-  const scree_particle *a = world->bodies.particle[pair->a], *b = world->bodies.particle[pair->b];
-  size_t count = a->point_count + b->point_count + a->edge_count * b->edge_count, n = 0;
-  if (pair->list_end < INFINITY) { /* for the first time */
-    scree_sleeper *all = scree_resize(pair->sleeping.items, count, sizeof *all);
+/* All features of both bodies among the sleepers, due at once: no search, no cones. */
+static void wake_everything(const scree_world *world, scree_neighbours *n) {
+  const scree_particle *a = world->bodies.particle[n->a], *b = world->bodies.particle[n->b];
+  size_t count = a->point_count + b->point_count + a->edge_count * b->edge_count, made = 0;
+  double *list_end = n->pair ? &n->pair->list_end : &n->list_end,
+         *next_item = n->pair ? &n->pair->next_item : &n->next_item;
+  if (*list_end < INFINITY) { /* for the first time */
+    scree_sleeper *all = scree_resize(n->sleeping.items, count, sizeof *all);
     assert_non_null(all);
     for (uint32_t i = 0; i < a->point_count; i++)
-      all[n++] = (scree_sleeper){0, i, 0, SCREE_ITEM_POINT_FACE};
+      all[made++] = (scree_sleeper){0, i, 0, SCREE_ITEM_POINT_FACE};
     for (uint32_t i = 0; i < b->point_count; i++)
-      all[n++] = (scree_sleeper){0, 0, i, SCREE_ITEM_FACE_POINT};
+      all[made++] = (scree_sleeper){0, 0, i, SCREE_ITEM_FACE_POINT};
     for (uint32_t i = 0; i < a->edge_count; i++)
       for (uint32_t j = 0; j < b->edge_count; j++)
-        all[n++] = (scree_sleeper){0, i, j, SCREE_ITEM_EDGE_EDGE};
-    pair->sleeping.items = all;
-    pair->sleeping.count = pair->sleeping.capacity = n;
-    pair->active.count = 0;
-    pair->list_end = INFINITY;
+        all[made++] = (scree_sleeper){0, i, j, SCREE_ITEM_EDGE_EDGE};
+    n->sleeping.items = all;
+    n->sleeping.count = n->sleeping.capacity = made;
+    if (n->pair) n->pair->active.count = 0;
+    *list_end = INFINITY;
   }
-  for (size_t i = 0; i < pair->sleeping.count; i++) pair->sleeping.items[i].wake = -INFINITY;
-  pair->next_item = -INFINITY;
+  for (size_t i = 0; i < n->sleeping.count; i++) n->sleeping.items[i].wake = -INFINITY;
+  *next_item = -INFINITY;
+  n->asleep = false;
 }
 
 /* How far apart in energy a world and the same by brute force come, of the whole; the deepest
@@ -293,10 +296,8 @@ static double apart_from_brute(scree_world *world, scree_world *brute, int steps
   double apart = 0;
   for (int step = 0; step < steps; step++) {
     scree_observation o, same;
-    if (brute->pairs.count > 0) {
-      scree_pair *pair = brute->pairs.items[0];
-      wake_everything(brute, pair);
-      pair->asleep = false;
+    if (brute->neighbours.count > 0) {
+      wake_everything(brute, brute->neighbours.items[0]);
       brute->slots.items[0].wake = -INFINITY;
     }
     law_step(world, 1);
