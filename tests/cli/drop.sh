@@ -5,7 +5,7 @@ run drop sample:box-12 -r 0.1 -n 10 2>&1 | sed -n 2p
 run drop none.stl -o no
 run drop sphere:40mm=3 -w 30mm -o no
 run drop sphere:40mm=3 -o out --resolution 0.02mm 2>&1 | sed -n 2p
-run drop "$DATA"/none=5.stl -o no 2>&1 | sed 's|/.*/||'
+run drop none=5.stl -o no
 ls
 # numbers may differ in their last digits between compilers: only their form is compared
 shape() { sed 's/[0-9][0-9.]*\(e[-+][0-9]*\)*/N/g; s/-N/N/g; s/  */ /g'; }

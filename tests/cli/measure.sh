@@ -1,24 +1,7 @@
 # a box of 3 x 2 x 1 and its inner half, as OFF
-cat >box.off <<END
-OFF
-8 6 0
-0 0 0
-3 0 0
-3 2 0
-0 2 0
-0 0 1
-3 0 1
-3 2 1
-0 2 1
-4 3 2 1 0
-4 4 5 6 7
-4 0 1 5 4
-4 1 2 6 5
-4 2 3 7 6
-4 3 0 4 7
-END
+box 3 2 1 >box.off
 sed '$d' box.off | sed 's/^8 6 0/8 5 0/' >open.off
-sed 's/^4 3 2 1 0/4 0 1 2 3/' box.off >unlike.off
+sed 's/^4 0 3 2 1/4 0 1 2 3/' box.off >unlike.off
 awk 'NR > 2 && NF == 3 { print $1, $2, $3 + 1; next } { print }' box.off >moved.off
 echo "solid nothing" >broken.stl
 digits='s/"checksum": "[0-9a-f]*"/"checksum": "..."/; s/\(-\?[0-9]*\.[0-9]\{10\}\)[0-9]*/\1/g'

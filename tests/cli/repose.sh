@@ -13,24 +13,7 @@ printf 'particles: 10\nphases: {lift_sped: 1}\n' >broken.yaml
 run repose -c broken.yaml --print-config
 printf 'particles: [1\nseed: 3\n' >broken.yaml
 run repose -c broken.yaml --print-config
-cat >box.off <<'END'
-OFF
-8 6 0
-0 0 0
-20 0 0
-20 12 0
-0 12 0
-0 0 6
-20 0 6
-20 12 6
-0 12 6
-4 0 3 2 1
-4 4 5 6 7
-4 0 1 5 4
-4 1 2 6 5
-4 2 3 7 6
-4 3 0 4 7
-END
+box 20 12 6 >box.off
 printf 'x,y,z,r\n0,0,0,5\n8,0,0,5\n' >pair.csv
 printf '0,0,0\n' >bad.csv
 "$SCREE" repose -p demo --particles 12 --cylinder 0.08 --disc 0.3 --pack-time 0.1 --settle-time 0.05 \

@@ -1,23 +1,6 @@
 # Runs killed outright in every phase, and gone on with: what they write in the end is what an
 # uninterrupted run writes, but for the costs. A phase takes longer than the interval of checkpoints.
-cat >box.off <<'END'
-OFF
-8 6 0
-0 0 0
-20 0 0
-20 12 0
-0 12 0
-0 0 6
-20 0 6
-20 12 6
-0 12 6
-4 0 3 2 1
-4 4 5 6 7
-4 0 1 5 4
-4 1 2 6 5
-4 2 3 7 6
-4 3 0 4 7
-END
+box 20 12 6 >box.off
 cat >pot.yaml <<'END'
 particles: 12
 cylinder: {diameter: 0.08}
