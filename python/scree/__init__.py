@@ -11,10 +11,11 @@ lists where it is not. What the library refuses is a scree.Error with one senten
 `progress`, a function of (phase, fraction) that cancels by returning False; Ctrl-C works anyway."""
 from ._library import Error, lib as _lib
 from ._mesh import Choice, Curve, Mesh, load, sample, samples
+from ._pour import Pour
 from ._run import Experiment, Motion, Run, report, repose
 from ._world import Particle, World, write_pvd
 
-__all__ = ["Choice", "Curve", "Error", "Experiment", "Mesh", "Motion", "Particle", "Run", "World", "load", "report",
+__all__ = ["Choice", "Curve", "Error", "Experiment", "Mesh", "Motion", "Particle", "Pour", "Run", "World", "load", "report",
            "repose", "sample", "samples", "set_threads", "version", "write_pvd"]
 
 

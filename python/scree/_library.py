@@ -18,6 +18,7 @@ REFERENCES = ("scan", "smooth")
 SHAPE_ERRORS = ("area", "volume", "hausdorff", "mean_distance", "inertia", "size")
 PARTICLE_KINDS = ("mesh", "sphere", "clump")
 LAWS = ("linear", "hysteretic")
+CONTAINERS = ("cylinder", "box")
 WALL_KINDS = ("plane", "disc", "cylinder", "mesh")
 VIEWS = ("surfaces", "points", "contacts", "walls")
 DEFECT_COUNT, REPAIR_ACTION_COUNT = 17, 21
@@ -274,6 +275,16 @@ class scree_run_job(Structure):
                 ("overwrite", c_bool), ("watch", WATCH), ("frame", FRAME), ("context", c_void_p)]
 
 
+class scree_pour_shape(Structure):
+    _fields_ = [("particle", c_void_p), ("count", c_size_t)]
+
+
+class scree_pour_options(Structure):
+    _fields_ = [("world", scree_world_options), ("particles", scree_material), ("walls", scree_material),
+                ("container", c_int), ("width", c_double), ("depth", c_double), ("drop_height", c_double),
+                ("entry_speed", c_double), ("seed", c_uint64)]
+
+
 class scree_motion(Structure):
     _fields_ = [("frame_count", c_size_t), ("body_count", c_size_t), ("time", POINTER(c_double)),
                 ("cylinder_height", POINTER(c_double)), ("poses", POINTER(c_float))]
@@ -325,6 +336,12 @@ _FALLIBLE = {  # argument types before the error
     "run_measure": (_H, POINTER(scree_run_result)),
     "run_complete": (POINTER(scree_run_job), _HH),
     "motion_read": (_S, POINTER(scree_motion)),
+    "pour_create": (POINTER(scree_pour_shape), c_size_t, POINTER(scree_pour_options), _HH),
+    "pour_advance": (_H, c_size_t),
+    "pour_record": (_H, _S, c_double),
+    "pour_record_end": (_H,),
+    "pour_save": (_H, _S, c_bool),
+    "pour_load": (_S, _HH),
     "experiment_preset": (_S, POINTER(scree_experiment)),
     "experiment_read": (_S, POINTER(scree_experiment)),
     "experiment_set": (POINTER(scree_experiment), _S, _S),
@@ -387,6 +404,14 @@ _PLAIN = {  # result, argument types
     "experiment_key": (_S, (c_size_t,)),
     "experiment_get": (c_bool, (POINTER(scree_experiment), _S, c_char_p, c_size_t)),
     "motion_free": (None, (POINTER(scree_motion),)),
+    "default_pour_options": (scree_pour_options, ()),
+    "pour_free": (None, (_H,)),
+    "pour_world": (_H, (_H,)),
+    "pour_get_options": (None, (_H, POINTER(scree_pour_options))),
+    "pour_particle_count": (c_size_t, (_H,)),
+    "pour_shape_of": (c_size_t, (_H, c_size_t)),
+    "pour_filling_time": (c_double, (_H,)),
+    "pour_entered_energy": (c_double, (_H,)),
     "run_shape_count": (c_size_t, (_H,)),
     "run_get_shape": (None, (_H, c_size_t, POINTER(scree_run_shape))),
     "run_body_shape": (c_size_t, (_H, c_size_t)),

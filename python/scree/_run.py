@@ -7,7 +7,7 @@ import weakref
 from . import _library as c
 from ._library import call, lib
 from ._values import column, from_struct, table
-from ._world import Particle, World
+from ._world import Owner, Particle, World
 
 
 class Experiment:
@@ -53,10 +53,6 @@ class Experiment:
         call("experiment_set", self._struct, key.encode(), text.encode())
 
 
-class _Owner:
-    pass
-
-
 class Run:
     """A run of the experiment: as repose() leaves it, or as it stands in a checkpoint or frame."""
 
@@ -67,11 +63,8 @@ class Run:
 
     def _take(self, handle):
         self._handle = handle
-        self._owner = _Owner()  # the run is freed when neither it nor its world is in use
-        weakref.finalize(self._owner, lib["run_free"], handle)
-        self.world = World.__new__(World)
-        self.world._handle = ctypes.c_void_p(lib["run_world"](handle))
-        self.world._owner = self._owner
+        self._owner = Owner("run_free", handle)
+        self.world = World._within(lib["run_world"](handle), self._owner)
         return self
 
     is_frame = property(lambda self: lib["run_is_frame"](self._handle))

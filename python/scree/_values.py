@@ -87,11 +87,14 @@ def from_struct(struct, words=()):
 
 
 def set_fields(struct, values, what):
-    """Options by keyword; an unknown one is an error that lists them."""
+    """Options by keyword, those of a struct within as a dictionary; an unknown one is an error that lists them."""
     known = dict(struct._fields_)
     for name, value in values.items():
         if name not in known:
             raise TypeError(f"{what} has no option '{name}'; there are {', '.join(known)}")
+        if isinstance(getattr(struct, name), ctypes.Structure):
+            set_fields(getattr(struct, name), value, name)
+            continue
         if isinstance(getattr(struct, name), ctypes.Array):
             value = known[name](*value)
         setattr(struct, name, value)

@@ -71,6 +71,13 @@ class World:
         world._finalizer = weakref.finalize(world, lib["world_free"], world._handle)
         return world
 
+    @classmethod
+    def _within(cls, handle, owner):
+        """One that belongs to something else, which lives as long as the world is in use."""
+        world = cls.__new__(cls)
+        world._handle, world._owner = ctypes.c_void_p(handle), owner
+        return world
+
     def save(self, path, overwrite=False):
         call("world_save", self._handle, os.fsencode(path), overwrite)
 
@@ -158,9 +165,7 @@ class World:
 
     def run(self, duration):
         """Advances by a time in seconds, rounded up to whole steps."""
-        end = self.time + duration
-        while self.time < end:
-            self.step(min(1000, max(1, int((end - self.time) / self.time_step + 0.999999))))
+        advance(self, self.step, duration)
 
     time = property(lambda self: lib["world_time"](self._handle))
     step_count = property(lambda self: lib["world_step_count"](self._handle))
@@ -198,6 +203,20 @@ class World:
         options = lib["default_export_options"]()
         options.unit_m, options.overwrite = metres(unit), overwrite
         call("world_export", self._handle, options, os.fsencode(folder))
+
+
+class Owner:
+    """Of a C object: it is freed when neither the Python object nor its world is in use."""
+
+    def __init__(self, free, handle):
+        weakref.finalize(self, lib[free], handle)
+
+
+def advance(world, step, duration):
+    """step(count), in pieces between which Ctrl-C works."""
+    end = world.time + duration
+    while world.time < end:
+        step(min(1000, max(1, int((end - world.time) / world.time_step + 0.999999))))
 
 
 def write_pvd(path, files, times, overwrite=False):

@@ -262,6 +262,59 @@ class Worlds(unittest.TestCase):
         self.assertGreater(len(world), 0)
 
 
+class Pours(unittest.TestCase):
+    def pour(self, **options):
+        box, ball = scree.load("sample:box-12"), scree.Particle.sphere(0.03)
+        return scree.Pour([(box, 3), (ball, 4)], world={"stiffness_factor": 0.01}, particles={"density": 1000},
+                          **options)
+
+    def test_pour(self):
+        pour = self.pour(container="box", width=0.4, depth=0.3, seed=5)
+        options = pour.options()
+        self.assertEqual((options.container, options.width, options.depth), ("box", 0.4, 0.3))
+        self.assertEqual((options.particles.density, options.world.stiffness_factor), (1000, 0.01))
+        self.assertEqual((len(pour), [pour.shape_of(i) for i in range(7)].count(1)), (7, 4))
+        pour.record("pour.scree", 0.05)
+        pour.run(pour.filling_time + 0.2)
+        pour.end_record()
+        self.assertEqual(len(pour.world), 7)
+        seen = pour.world.observe()
+        ledger = (seen.kinetic + seen.rotational + seen.potential + seen.elastic + seen.dissipated_dashpot
+                  + seen.dissipated_friction - seen.wall_work)
+        self.assertLess(abs(ledger / pour.entered_energy - 1), 0.01)
+        for x, y, z in pour.world.positions():
+            self.assertTrue(abs(x) < 0.2 and abs(y) < 0.15 and z > 0)
+        motion = scree.Motion("pour.scree")
+        self.assertEqual((motion.body_count, motion.time[len(motion) - 1]), (7, pour.world.time))
+        world = pour.world
+        del pour  # its world keeps it
+        gc.collect()
+        self.assertEqual(len(world), 7)
+
+    def test_checkpoint(self):
+        pour = self.pour(law="hysteretic")
+        pour.step(300)
+        pour.save("p.scree")
+        again = scree.Pour.load("p.scree")
+        pour.step(300)
+        again.step(300)
+        self.assertEqual((pour.world.hash, pour.world.step_count), (again.world.hash, 600))
+        with self.assertRaises(scree.Error):
+            pour.save("p.scree")
+
+    def test_refusals(self):
+        with self.assertRaisesRegex(scree.Error, "too narrow"):
+            self.pour(width=0.05)
+        with self.assertRaisesRegex(TypeError, "particles has no option 'colour'"):
+            scree.Pour([], particles={"colour": 1})
+        with self.assertRaises(ValueError):
+            self.pour(container="bag")
+        with self.assertRaises(scree.Error):
+            scree.Pour([])
+        with self.assertRaises(IndexError):
+            self.pour().shape_of(7)
+
+
 class Experiments(unittest.TestCase):
     FIELDS = {"particles": 8, "cylinder.diameter": 0.2, "disc.diameter": 0.6, "phases.pack_time": 0.3, "phases.lift_time": 0.2,
               "phases.settle_time": 0.1, "phases.hold_time": 0.1, "phases.lift_speed": 1, "phases.drop_height": 0.03}
