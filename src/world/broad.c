@@ -228,22 +228,33 @@ static bool merge_neighbours(scree_world *world) {
   return complete;
 }
 
+static void fill_slots(scree_world *world) {
+  size_t bodies = world->bodies.count;
+  world->due.count = bodies + world->walls.count;
+  for (size_t i = 0; i < bodies; i++) scree_set_body_due(world, i);
+  for (size_t w = 0; w < world->walls.count; w++) scree_set_wall_due(world, w);
+  world->slots.count = world->pairs.count = world->neighbours.count;
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    const scree_neighbours *n = world->neighbours.items[k];
+    world->slots.items[k] = (scree_slot){n->asleep ? n->wake : -INFINITY, n->a,
+                                         n->wall ? (uint32_t)bodies + n->b : n->b};
+    world->pairs.items[k] = n->pair;
+    scree_mark_touching(world, k, n->pair && n->pair->touching);
+  }
+}
+
 /* The pairs' slots, and for every body the pairs it is in, ascending: the order in which forces are
  * summed. */
 static bool list_sides(scree_world *world) {
   size_t bodies = world->bodies.count, pairs = world->neighbours.count;
   world->sides.count = 0;
   if (bodies == 0) return true; /* there are no arrays yet */
-  if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->slots, pairs) ||
-      !SCREE_RESERVE(&world->pairs, pairs) || !SCREE_RESERVE(&world->touching, pairs / 64 + 1))
+  if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->acting, 2 * pairs) ||
+      !SCREE_RESERVE(&world->due, bodies + world->walls.count) ||
+      !SCREE_RESERVE(&world->slots, pairs) || !SCREE_RESERVE(&world->pairs, pairs) ||
+      !SCREE_RESERVE(&world->touching, pairs / 64 + 1))
     return false;
-  world->slots.count = world->pairs.count = pairs;
-  for (size_t k = 0; k < pairs; k++) {
-    const scree_neighbours *n = world->neighbours.items[k];
-    world->slots.items[k] = scree_slot_of(n);
-    world->pairs.items[k] = n->pair;
-    scree_mark_touching(world, k, n->pair && n->pair->touching);
-  }
+  fill_slots(world);
   size_t *begin = world->side_begin;
   memset(begin, 0, (bodies + 1) * sizeof *begin);
   for (size_t k = 0; k < pairs; k++) {

@@ -19,23 +19,35 @@ vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, v
   return mat3_mul_vec(rotation, local_spin(bodies->inertia[i], rotation, momentum));
 }
 
-/* Asks for the forces on body i. */
-SCREE_PREFETCHES void fetch_forces(const scree_world *world, size_t i) {
-  for (size_t k = world->side_begin[i]; k < world->side_begin[i + 1]; k++) {
-    size_t pair = world->sides.items[k] >> 1;
-    if (scree_pair_touches(world, pair)) scree_prefetch(world->pairs.items[pair], 128);
+/* Of the sides of bodies [begin, end) those that touch, and where each body's end. Without
+ * branches: which of them do is as good as random. */
+static uint32_t *list_acting(scree_world *world, size_t begin, size_t end, size_t *ends) {
+  uint32_t *acting = &world->acting.items[world->side_begin[begin]];
+  size_t count = 0, k = world->side_begin[begin];
+  for (size_t i = begin; i < end; i++) {
+    for (; k < world->side_begin[i + 1]; k++) {
+      uint32_t side = acting[count] = world->sides.items[k];
+      count += scree_pair_touches(world, side >> 1);
+    }
+    ends[i - begin] = count;
   }
+  return acting;
 }
 
-/* Forces in the fixed order of the pairs. */
-static void sum_forces(scree_world *world, size_t i) {
+enum { FORCES_AHEAD = 10 };
+
+/* Forces in the fixed order of the pairs: of the body's sides, acting[from] to acting[to]; of those
+ * up to acting[count] the next are asked for. */
+static void sum_forces(scree_world *world, size_t i, const uint32_t *acting, size_t from, size_t to,
+                       size_t count) {
   vec3 force = {0, 0, 0}, torque = {0, 0, 0};
-  for (size_t k = world->side_begin[i]; k < world->side_begin[i + 1]; k++) {
-    uint32_t side = world->sides.items[k];
-    if (!scree_pair_touches(world, side >> 1)) continue;
-    const scree_wrench *w = &world->pairs.items[side >> 1]->wrench;
-    force = side & 1 ? vec3_sub(force, w->force) : vec3_add(force, w->force);
-    torque = vec3_add(torque, side & 1 ? w->torque_b : w->torque_a);
+  for (size_t k = from; k < to; k++) {
+    if (k + FORCES_AHEAD < count)
+      scree_prefetch(world->pairs.items[acting[k + FORCES_AHEAD] >> 1], 128);
+    const scree_wrench *w = &world->pairs.items[acting[k] >> 1]->wrench;
+    bool of_b = acting[k] & 1;
+    force = vec3_mad(force, w->force, of_b ? -1 : 1);
+    torque = vec3_add(torque, of_b ? w->torque_b : w->torque_a);
   }
   world->bodies.force[i] = force;
   world->bodies.torque[i] = torque;
@@ -76,10 +88,11 @@ static void gather_block(void *context, size_t begin, size_t end, size_t block, 
   (void)worker;
   gathering *g = context;
   g->offender[block] = SIZE_MAX;
-  for (size_t i = begin; i < end; i++) {
-    if (i + 2 < end) fetch_forces(g->world, i + 2);
+  size_t ends[BODY_BLOCK], from = 0;
+  const uint32_t *acting = list_acting(g->world, begin, end, ends);
+  for (size_t i = begin; i < end; from = ends[i++ - begin]) {
     if (g->world->bodies.removed[i]) continue;
-    sum_forces(g->world, i);
+    sum_forces(g->world, i, acting, from, ends[i - begin], ends[end - begin - 1]);
     double travel = coming_travel(g->world, i);
     g->world->bodies.travel[i] = travel;
     if (!(travel <= travel_limit(g->world, i)) && g->offender[block] == SIZE_MAX)
@@ -132,7 +145,7 @@ static void advance_body(scree_world *world, size_t i) {
   frame->spin = scree_spin_of(b, i, &rotation, momentum);
   frame->spin_now = scree_spin_of(b, i, &rotation, vec3_mad(momentum, b->torque[i], 0.5 * dt));
   b->path[i] += b->travel[i];
-  b->due[i] = scree_body_due(b, i);
+  scree_set_body_due(world, i);
 }
 
 static void advance_block(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -153,13 +166,14 @@ static void advance_wall(scree_world_wall *wall, double dt) {
   }
   wall->travel = vec3_norm(frame->velocity) * dt;
   wall->path += wall->travel;
-  wall->due = wall->path + 2 * wall->travel;
 }
 
 void scree_world_advance(scree_world *world) {
   scree_parallel_for(world->bodies.count, BODY_BLOCK, advance_block, world);
-  for (size_t w = 0; w < world->walls.count; w++)
+  for (size_t w = 0; w < world->walls.count; w++) {
     advance_wall(&world->walls.items[w], world->time_step);
+    if (world->bodies.count > 0) scree_set_wall_due(world, w);
+  }
   if (world->options.floor_height == -INFINITY) return;
   for (size_t i = 0; i < world->bodies.count; i++)
     if (!world->bodies.removed[i] &&

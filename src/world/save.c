@@ -467,7 +467,6 @@ static void load_setup(loader *l) {
     if (good(l)) {
       scree_world_wall *wall = &l->world->walls.items[w];
       code_wall_state(c, wall);
-      wall->due = wall->path + 2 * wall->travel;
     }
     scree_mesh_free(&mesh);
   }
@@ -543,7 +542,6 @@ static void load_bodies(loader *l) {
     b->mass[i] = record.mass;
     b->travel[i] = record.travel;
     b->path[i] = record.path;
-    b->due[i] = scree_body_due(b, i);
     b->removed[i] = record.removed;
     b->removed_count += record.removed;
     l->world->body_path_at_build[i] = record.path_at_build;

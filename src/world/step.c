@@ -10,29 +10,42 @@
 
 #include <string.h>
 
-enum { PAIR_BLOCK = 128 }; /* whole words of world->touching: a thread of its own writes each */
+/* Slots a block: whole words of world->touching, which a thread of its own writes. Several blocks
+ * are gone through at once where there are many, for at the beginning nothing was asked for. */
+enum { PAIR_BLOCK = 128, MOST_BLOCKS = 8, LEAST_PARTS = 32 };
 
-static double slot_due(const scree_world *world, const scree_slot *slot) {
-  const double *due = world->bodies.due;
-  return due[slot->a] + (slot->b & SCREE_SLOT_WALL
-                             ? world->walls.items[slot->b & ~SCREE_SLOT_WALL].due
-                             : due[slot->b]);
+/* Who is awake or due of the neighbours [begin, end). Without branches: one in five is. */
+static size_t list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake) {
+  const double *due = world->due.items;
+  size_t count = 0;
+  for (size_t k = begin; k < end; k++) {
+    const scree_slot *slot = &world->slots.items[k];
+    awake[count] = (uint32_t)k;
+    count += due[slot->a] + due[slot->b] >= slot->wake;
+  }
+  return count;
 }
 
 /* The pair and what its evaluation reads first. */
 SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
-  const scree_slot *slot = &world->slots.items[k];
   const scree_pair *pair = world->pairs.items[k];
   if (pair)
-    scree_prefetch(pair, offsetof(scree_pair, neighbours));
+    scree_prefetch(pair, offsetof(scree_pair, own_items) + sizeof(scree_item));
   else
     scree_prefetch(world->neighbours.items[k], sizeof(scree_neighbours));
-  if (!(slot->b & SCREE_SLOT_WALL))
-    scree_prefetch(&world->bodies.frame[slot->b], sizeof(scree_frame));
+  size_t b = world->slots.items[k].b;
+  if (b < world->bodies.count) scree_prefetch(&world->bodies.frame[b], sizeof(scree_frame));
 }
 
-/* What the items of a pair that has come read of their shapes. */
+/* The items of a pair that has come, wherever they are. */
+SCREE_PREFETCHES void fetch_items(const scree_pair *pair) {
+  if (pair && pair->active.count > 1)
+    scree_prefetch(pair->active.items, pair->active.count * sizeof(scree_item));
+}
+
+/* What items that have come read of their shapes. */
 SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair *pair) {
+  if (!pair) return;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   for (size_t i = 0; i < pair->active.count; i++) {
     const scree_item *item = &pair->active.items[i];
@@ -49,35 +62,45 @@ SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair 
   }
 }
 
-enum { PAIRS_AHEAD = 4 };
+enum { PAIRS_AHEAD = 6, ITEMS_AHEAD = 3, FEATURES_AHEAD = 1 };
 
-static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+static void evaluate_at(scree_world *world, size_t k, scree_scratch *scratch,
+                        scree_pair_sums *sums) {
+  scree_pair *pair = world->pairs.items[k];
+  if (!pair) pair = scree_pair_wake(scratch, world->neighbours.items[k]);
+  scree_pair_evaluate(world, pair, scratch, sums);
+  if (pair->touching != scree_pair_touches(world, k)) scree_mark_touching(world, k, pair->touching);
+  if (pair->active.count > 0 && pair != &scratch->pair) return;
+  world->slots.items[k].wake = pair->asleep ? pair->neighbours->wake : -INFINITY;
+  if (!scree_pair_settle(world, pair, scratch)) sums->out_of_memory = true;
+  world->pairs.items[k] = world->neighbours.items[k]->pair;
+}
+
+static void evaluate_blocks(void *context, size_t begin, size_t end, size_t part, int worker) {
+  (void)part;
   scree_world *world = context;
-  scree_scratch *scratch = &world->scratch[worker];
-  scree_pair_sums sums = {0};
-  size_t awake[PAIR_BLOCK], count = 0;
-  if (end + PAIR_BLOCK <= world->neighbours.count) { /* of the next block */
-    scree_prefetch(&world->slots.items[end], PAIR_BLOCK * sizeof(scree_slot));
-    scree_prefetch(&world->pairs.items[end], PAIR_BLOCK * sizeof(scree_pair *));
-  }
-  for (size_t k = begin; k < end; k++)
-    if (slot_due(world, &world->slots.items[k]) >= world->slots.items[k].wake) awake[count++] = k;
-  for (size_t i = 0; i < PAIRS_AHEAD && i < count; i++) fetch_pair(world, awake[i]);
-  for (size_t i = 0; i < count; i++) {
-    scree_pair *pair = world->pairs.items[awake[i]];
-    const scree_pair *next = i + 1 < count ? world->pairs.items[awake[i + 1]] : NULL;
-    if (i + PAIRS_AHEAD < count) fetch_pair(world, awake[i + PAIRS_AHEAD]);
-    if (next) fetch_features(world, next);
-    if (!pair) pair = scree_pair_wake(scratch, world->neighbours.items[awake[i]]);
-    scree_pair_evaluate(world, pair, scratch, &sums);
-    world->slots.items[awake[i]].wake = pair->asleep ? pair->neighbours->wake : -INFINITY;
-    scree_mark_touching(world, awake[i], pair->touching);
-    if (pair->active.count == 0 || pair == &scratch->pair) {
-      if (!scree_pair_settle(world, pair, scratch)) sums.out_of_memory = true;
-      world->pairs.items[awake[i]] = world->neighbours.items[awake[i]]->pair;
+  scree_pair *const *pairs = world->pairs.items;
+  uint32_t awake[MOST_BLOCKS * PAIR_BLOCK];
+  size_t count = list_awake(world, begin, end, awake), i = 0;
+  for (size_t k = 0; k < PAIRS_AHEAD && k < count; k++) fetch_pair(world, awake[k]);
+  for (size_t block = begin / PAIR_BLOCK; block * PAIR_BLOCK < end; block++) {
+    scree_pair_sums sums = {0};
+    for (; i < count && awake[i] / PAIR_BLOCK == block; i++) {
+      if (i + PAIRS_AHEAD < count) fetch_pair(world, awake[i + PAIRS_AHEAD]);
+      if (i + ITEMS_AHEAD < count) fetch_items(pairs[awake[i + ITEMS_AHEAD]]);
+      if (i + FEATURES_AHEAD < count) fetch_features(world, pairs[awake[i + FEATURES_AHEAD]]);
+      evaluate_at(world, awake[i], &world->scratch[worker], &sums);
     }
+    world->sums.items[block] = sums;
   }
-  world->sums.items[block] = sums;
+}
+
+static void evaluate_pairs(scree_world *world) {
+  size_t count = world->neighbours.count,
+         blocks = scree_block_count(count, PAIR_BLOCK) / LEAST_PARTS;
+  if (blocks < 1) blocks = 1;
+  if (blocks > MOST_BLOCKS) blocks = MOST_BLOCKS;
+  scree_parallel_for(count, blocks * PAIR_BLOCK, evaluate_blocks, world);
 }
 
 static scree_status describe_overlap(scree_world *world, const scree_neighbours *n) {
@@ -149,7 +172,7 @@ static scree_status one_step(scree_world *world) {
   if (!status) status = reserve_blocks(world, &world->failure);
   if (status) return status;
   double after_broad = scree_now();
-  scree_parallel_for(world->neighbours.count, PAIR_BLOCK, evaluate_block, world);
+  evaluate_pairs(world);
   status = combine_sums(world, scree_block_count(world->neighbours.count, PAIR_BLOCK));
   double after_contacts = scree_now();
   if (!status && !scree_world_gather(world)) status = world->failure.status;

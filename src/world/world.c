@@ -74,7 +74,7 @@ static void free_bodies(scree_bodies *b) {
   for (size_t i = 0; i < b->count; i++) scree_particle_free(b->particle[i]);
   void *arrays[] = {b->frame,    b->orientation, b->momentum, b->inertia, b->force,
                     b->torque,   b->mass,        b->travel,   b->path,    b->particle,
-                    b->material, b->removed,     b->due,      b->turn};
+                    b->material, b->removed,     b->turn};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) scree_free(arrays[i]);
 }
 
@@ -91,9 +91,11 @@ void scree_world_free(scree_world *world) {
   scree_free(world->pairs.items);
   scree_free(world->spare_pairs.items);
   scree_free(world->slots.items);
+  scree_free(world->due.items);
   scree_free(world->touching.items);
   scree_free(world->keys.items);
   scree_free(world->sides.items);
+  scree_free(world->acting.items);
   scree_free(world->side_begin);
   scree_free(world->offenders);
   scree_free(world->sums.items);
@@ -131,7 +133,6 @@ static scree_status grow_bodies(scree_world *world, scree_error *error) {
       {(void **)&b->mass, sizeof *b->mass},
       {(void **)&b->travel, sizeof *b->travel},
       {(void **)&b->path, sizeof *b->path},
-      {(void **)&b->due, sizeof *b->due},
       {(void **)&b->turn, sizeof *b->turn},
       {(void **)&b->particle, sizeof *b->particle},
       {(void **)&b->material, sizeof *b->material},
@@ -183,7 +184,7 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
   b->mass[i] = density * m->volume;
   b->inertia[i] = vec3_scale(vec3_load(m->inertia), density);
   b->force[i] = b->torque[i] = (vec3){0, 0, 0};
-  b->travel[i] = b->path[i] = b->due[i] = world->body_path_at_build[i] = 0;
+  b->travel[i] = b->path[i] = world->body_path_at_build[i] = 0;
   b->material[i] = (uint8_t)material;
   b->removed[i] = false;
   b->particle[i] = particle;

@@ -24,9 +24,9 @@ typedef struct scree_world_wall {
   scree_wall given; /* position and velocity kept up to date */
   scree_frame frame;
   quat orientation;
-  scree_particle *surface;  /* faces of a mesh wall, or rims of a disc or cylinder; NULL: none */
-  double travel, path, due; /* as for bodies, by translation alone */
-  double path_at_build;     /* when the pairs were made */
+  scree_particle *surface; /* faces of a mesh wall, or rims of a disc or cylinder; NULL: none */
+  double travel, path;     /* as for bodies, by translation alone */
+  double path_at_build;    /* when the pairs were made */
   vec3 force, torque;
 } scree_world_wall;
 
@@ -40,7 +40,6 @@ typedef struct scree_bodies {
   double *mass;
   double *travel; /* most any of its points moved in the last step */
   double *path;   /* sum of travel */
-  double *due;    /* path + 2 travel: pairs that sleep until then are looked at */
   vec3 *turn;     /* angular velocity in the body's own frame after the coming kick (scratch) */
   scree_particle **particle;
   uint8_t *material;
@@ -233,10 +232,9 @@ typedef struct scree_pair_sums {
 
 /* What the step reads of all neighbours, in their order. */
 typedef struct scree_slot {
-  double wake; /* while they are asleep; -infinity while they are awake */
-  uint32_t a, b;
+  double wake;   /* while they are asleep; -infinity while they are awake */
+  uint32_t a, b; /* places in world->due */
 } scree_slot;
-#define SCREE_SLOT_WALL 0x80000000u /* set in b: it is a wall */
 
 typedef struct scree_broad scree_broad;
 
@@ -275,6 +273,10 @@ struct scree_world {
     size_t count, capacity;
   } slots; /* of the neighbours */
   struct {
+    double *items;
+    size_t count, capacity;
+  } due; /* of the bodies, then of the walls, path + 2 travel: who sleeps until then is looked at */
+  struct {
     uint64_t *items;
     size_t count, capacity;
   } touching; /* one bit for two neighbours: the bodies look for their forces here */
@@ -285,7 +287,7 @@ struct scree_world {
   struct {
     uint32_t *items; /* 2 * neighbours + (1 for the b side), grouped by body, ascending */
     size_t count, capacity;
-  } sides;
+  } sides, acting;    /* acting: scratch, those that touch */
   size_t *side_begin; /* bodies.capacity + 1 */
   size_t *offenders;  /* scratch of the gathering, by block */
   scree_broad *broad;
@@ -315,10 +317,6 @@ struct scree_world {
   scree_timings timings;
 };
 
-static inline scree_slot scree_slot_of(const scree_neighbours *n) {
-  return (scree_slot){n->asleep ? n->wake : -INFINITY, n->a,
-                      n->b | (n->wall ? SCREE_SLOT_WALL : 0)};
-}
 static inline bool scree_pair_touches(const scree_world *world, size_t pair) {
   return world->touching.items[pair / 64] >> pair % 64 & 1;
 }
@@ -326,8 +324,12 @@ static inline void scree_mark_touching(scree_world *world, size_t pair, bool tou
   uint64_t bit = (uint64_t)1 << pair % 64, *word = &world->touching.items[pair / 64];
   *word = touching ? *word | bit : *word & ~bit;
 }
-static inline double scree_body_due(const scree_bodies *bodies, size_t i) {
-  return bodies->path[i] + 2 * bodies->travel[i];
+static inline void scree_set_body_due(scree_world *world, size_t i) {
+  world->due.items[i] = world->bodies.path[i] + 2 * world->bodies.travel[i];
+}
+static inline void scree_set_wall_due(scree_world *world, size_t w) {
+  const scree_world_wall *wall = &world->walls.items[w];
+  world->due.items[world->bodies.count + w] = wall->path + 2 * wall->travel;
 }
 static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const scree_pair *p) {
   return p->wall ? &w->walls.items[p->b].frame : &w->bodies.frame[p->b];
