@@ -458,8 +458,9 @@ bool scree_bvh_within(const scree_bvh *bvh, vec3 p, double distance2, uint32_t *
     double near2 = box_distance2(&bvh->nodes[nearer], p),
            other2 = box_distance2(&bvh->nodes[other], p);
     bool swap = other2 < near2;
-    if (fmax(near2, other2) <= distance2) stack[depth++] = swap ? nearer : other;
-    if (fmin(near2, other2) <= distance2) stack[depth++] = swap ? other : nearer;
+    double least = swap ? other2 : near2, most = swap ? near2 : other2;
+    if (most <= distance2) stack[depth++] = swap ? nearer : other;
+    if (least <= distance2) stack[depth++] = swap ? other : nearer;
   }
   return false;
 }

@@ -402,22 +402,25 @@ static scree_status collapse(queue *q, const scree_ring *r, const scree_change *
 }
 
 /* Makes the cost whole, or not less than `most` if it is not. */
-static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c, double most) {
+static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c, double most,
+                      scree_hints *hints) {
   if (!(c->stray > 0) || !(c->cost < most)) return;
   double least = scree_stray_at(c, 0), enough = sqrt((most - c->cost) / c->stray);
   if (q->toll > 0) {
     least = fmin(least, cbrt(SCREE_STRAY_SHARE * c->cost / q->toll));
     enough = fmin(enough, cbrt((most - c->cost) / q->toll));
   }
-  double stray2 = scree_memory_stray(&q->d->memory, &q->d->s, ring, c->target, least, enough);
+  double stray2 =
+      scree_memory_stray(&q->d->memory, &q->d->s, ring, c->target, least, enough, hints);
   c->cost += (c->stray + q->toll * stray2) * stray2 * stray2;
 }
 
 /* Other place k with its whole cost, if that is below `most`; else some cost that is not. */
-static scree_candidate other_place(const queue *q, const scree_ring *ring, int k, double most) {
+static scree_candidate other_place(const queue *q, const scree_ring *ring, int k, double most,
+                                   scree_hints *hints) {
   scree_candidate c;
   q->d->coster->fall_back(&q->d->s, ring->half_edge, k, &c);
-  add_stray(q, ring, &c, most);
+  add_stray(q, ring, &c, most, hints);
   return c;
 }
 
@@ -433,10 +436,12 @@ static void find_first_choice(const queue *q, choice *made) {
   /* a share of nothing would be no more */
   double most = q->cost[h] > DBL_MIN ? LOOK_AHEAD * q->cost[h] : INFINITY;
   made->stage = WHOLE;
+  scree_hints hints;
+  scree_no_hints(&hints);
   q->d->coster->evaluate(s, &h, 1, best);
-  add_stray(q, &ring, best, most);
+  add_stray(q, &ring, best, most, &hints);
   for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
-    scree_candidate c = other_place(q, &ring, k, fmin(best->cost, most));
+    scree_candidate c = other_place(q, &ring, k, fmin(best->cost, most), &hints);
     if (!(c.cost < best->cost)) continue;
     *best = c;
     made->stage = (uint8_t)(OTHER + k);
@@ -493,11 +498,13 @@ static void find_first_choices(queue *q) {
 static scree_status try_fallbacks(queue *q, scree_ring *ring) {
   uint32_t h = ring->half_edge;
   scree_candidate best = {.cost = INFINITY};
+  scree_hints hints;
   scree_status status = SCREE_OK;
+  scree_no_hints(&hints);
   for (int k = 0; k < SCREE_FALLBACK_COUNT && status == SCREE_OK; k++) {
     scree_change change;
     scree_around around;
-    scree_candidate c = other_place(q, ring, k, best.cost);
+    scree_candidate c = other_place(q, ring, k, best.cost, &hints);
     change.target = c.target;
     if (!(c.cost < best.cost) || !allowed(q, ring, &change, &around, &status)) continue;
     best = c;

@@ -48,7 +48,10 @@ bool scree_relax_begin(const scree_memory *m, const scree_halfmesh *s, const scr
   double corners[SCREE_RING_MAX][9];
   vec3 sum = {0, 0, 0};
   equations q = {.shares = 0};
-  *r = (scree_relaxation){.from = s->vertex[fan->a].at};
+  r->from = s->vertex[fan->a].at;
+  r->sum = r->worst = 0;
+  r->has_edges = false;
+  scree_no_hints(&r->hints);
   scree_ring_corners(s, fan, r->from, corners);
   for (uint32_t i = 0; i < fan->count; i++)
     sum = vec3_add(sum, vec3_triangle_normal(vec3_load(corners[i]), vec3_load(corners[i] + 3),
@@ -109,10 +112,12 @@ bool scree_relax_gains(const scree_memory *m, const scree_halfmesh *s, const scr
                        vec3 x, scree_relaxation *r) {
   double worst = 0;
   if (!witnesses_gain(m, s, fan, x, r, &worst)) return false;
-  if (worst <= r->worst && scree_memory_edges_within(m, s, fan, x, r->worst)) return true;
+  if (worst <= r->worst && scree_memory_edges_within(m, s, fan, x, r->worst, &r->hints))
+    return true;
   if (r->has_edges) return false;
   double was = r->worst; /* what is as far off on the edges now is found only where it decides */
-  r->worst = scree_memory_edges_stray(m, s, fan, r->from, r->worst);
+  r->worst = scree_memory_edges_stray(m, s, fan, r->from, r->worst, &r->hints);
   r->has_edges = true;
-  return r->worst > was && worst <= r->worst && scree_memory_edges_within(m, s, fan, x, r->worst);
+  return r->worst > was && worst <= r->worst &&
+         scree_memory_edges_within(m, s, fan, x, r->worst, &r->hints);
 }

@@ -12,6 +12,7 @@ typedef struct scree_relaxation {
   double sum;   /* of the squared distances of the witnesses of the fan */
   double worst; /* the largest of these, or of the places on the edges where these were looked at */
   bool has_edges;
+  scree_hints hints;
 } scree_relaxation;
 
 /* The fan's (scree_ring_gather_fan) relaxation; false: nothing around is off, or the fan has no

@@ -14,9 +14,8 @@
 #define USUAL_MEANS 10.0
 /* ... less so many of those with which the scan's vertices began. */
 #define ROUGH_MEANS 5.0
-/* Of each new edge, equally far apart. Along an edge over a hollow the surface is farthest off
- * somewhere in between. */
-enum { PLACES_ON_EDGE = 5 };
+/* Triangles walked over towards a place before the tree is asked. */
+enum { MOST_STEPS = 8 };
 /* Witnesses per triangle above which half of them are dropped, and how these are known. */
 enum { CROWD = 24 };
 #define DROPPED (-1.0)
@@ -27,6 +26,7 @@ enum { CROWD = 24 };
 
 void scree_memory_free(scree_memory *m) {
   scree_bvh_free(&m->surface);
+  scree_free(m->beside);
   scree_free(m->witnesses);
   scree_free(m->first);
   *m = (scree_memory){0};
@@ -74,15 +74,34 @@ static void add_placed(scree_memory *m, size_t count) {
   m->roughness = mean_distance(m);
 }
 
+/* Which of the triangles kept lie beside each other. number: of the surface's triangles, their
+ * numbers in the mesh that the tree was made of; becomes those in the tree. */
+static void find_beside(scree_memory *m, const scree_halfmesh *s, uint32_t *number,
+                        uint32_t *place) {
+  for (uint32_t i = 0; i < m->surface.triangle_count; i++) place[m->surface.order[i]] = i;
+  for (size_t t = 0; t < s->triangle_count; t++)
+    if (!scree_is_gone(s, t)) number[t] = place[number[t]];
+  for (size_t h = 0; h < 3 * s->triangle_count; h++) {
+    if (scree_is_gone(s, h / 3)) continue;
+    uint32_t twin = s->half[h].twin;
+    m->beside[3 * (size_t)number[h / 3] + h % 3] =
+        twin == SCREE_NONE ? SCREE_NONE : number[twin / 3];
+  }
+}
+
 scree_status scree_memory_keep(const scree_halfmesh *s, scree_witness *placed, size_t placed_count,
                                scree_memory *m, scree_error *error) {
   scree_mesh mesh = {.vertex_count = s->vertex_count};
+  uint32_t *number = NULL, *place = NULL;
   scree_status status = SCREE_OUT_OF_MEMORY;
   *m = (scree_memory){.witnesses = placed};
   SCREE_ALLOC_OR(mesh.positions, 3 * s->vertex_count, error, done);
   SCREE_ALLOC_OR(mesh.triangles, 3 * s->live_triangle_count, error, done);
   if (!placed) SCREE_ALLOC_OR(m->witnesses, s->live_vertex_count, error, done);
   SCREE_ALLOC_OR(m->first, s->triangle_count, error, done);
+  SCREE_ALLOC_OR(m->beside, 3 * s->live_triangle_count, error, done);
+  SCREE_ALLOC_OR(number, s->triangle_count, error, done);
+  SCREE_ALLOC_OR(place, s->live_triangle_count, error, done);
   for (size_t t = 0; t < s->triangle_count; t++) {
     vec3 at[3];
     if (scree_is_gone(s, t)) continue;
@@ -90,17 +109,20 @@ scree_status scree_memory_keep(const scree_halfmesh *s, scree_witness *placed, s
     m->area += 0.5 * vec3_norm(vec3_triangle_normal(at[0], at[1], at[2]));
     for (size_t i = 0; i < 3; i++)
       mesh.triangles[3 * mesh.triangle_count + i] = s->half[3 * t + i].from;
-    mesh.triangle_count++;
+    number[t] = (uint32_t)mesh.triangle_count++;
   }
   for (size_t v = 0; v < s->vertex_count; v++) vec3_store(mesh.positions + 3 * v, s->vertex[v].at);
   memset(m->first, 0xff, s->triangle_count * sizeof *m->first);
   status = scree_bvh_build(&mesh, &m->surface, error);
+  if (status == SCREE_OK) find_beside(m, s, number, place);
   if (status == SCREE_OK && placed)
     add_placed(m, placed_count);
   else if (status == SCREE_OK)
     status = add_vertices(m, s, error);
 done:
   scree_mesh_free(&mesh);
+  scree_free(number);
+  scree_free(place);
   if (status != SCREE_OK) scree_memory_free(m);
   return status;
 }
@@ -110,14 +132,46 @@ bool scree_memory_allows(const scree_memory *m, size_t triangle_count, vec3 x) {
   return scree_bvh_closest(&m->surface, x, &(scree_bvh_hit){STAND_OFF * STAND_OFF * size2, x, 0});
 }
 
+/* The edge of the triangle beyond which x lies, by its number; 3: it lies above or below. */
+static uint32_t edge_towards(const double *corners, vec3 x) {
+  vec3 a = vec3_load(corners), ab = vec3_sub(vec3_load(corners + 3), a),
+       ac = vec3_sub(vec3_load(corners + 6), a), ax = vec3_sub(x, a), n = vec3_cross(ab, ac);
+  double v = vec3_dot(vec3_cross(ax, ac), n), w = vec3_dot(vec3_cross(ab, ax), n);
+  double u = vec3_norm2(n) - v - w;
+  if (u >= 0 && v >= 0 && w >= 0) return 3;
+  return w <= u && w <= v ? 0 : u <= v ? 1 : 2;
+}
+
+/* Whether a triangle on the way from *near towards x is within this distance, squared: mostly the
+ * answer, at less cost than to look through the tree. Then *near is that triangle. */
+static bool walk_within(const scree_memory *m, vec3 x, double most, uint32_t *near) {
+  uint32_t now = *near, last = SCREE_NONE;
+  for (int step = 0; step < MOST_STEPS && now != SCREE_NONE; step++) {
+    const double *corners = m->surface.corners + 9 * (size_t)now;
+    vec3 point;
+    if (scree_triangle_closest(corners, x, &point) <= most) {
+      *near = now;
+      return true;
+    }
+    uint32_t edge = edge_towards(corners, x),
+             next = edge < 3 ? m->beside[3 * (size_t)now + edge] : last;
+    if (next == last) break; /* back and forth over a crest */
+    last = now;
+    now = next;
+  }
+  return false;
+}
+
 /* The squared distance of x from the surface kept, if above `least`. *near: a triangle to begin
  * with, then the one found. */
 static double farther(const scree_memory *m, vec3 x, double least, uint32_t *near) {
+  if (walk_within(m, x, least, near)) return least;
   if (scree_bvh_within(&m->surface, x, least, near)) return least;
-  scree_bvh_hit hit = {.distance2 = INFINITY};
+  scree_bvh_hit hit = {.index = *near};
+  hit.distance2 = scree_triangle_closest(m->surface.corners + 9 * (size_t)*near, x, &hit.point);
   scree_bvh_closest(&m->surface, x, &hit);
   *near = hit.index;
-  return fmax(hit.distance2, least);
+  return hit.distance2 > least ? hit.distance2 : least;
 }
 
 /* The corners of the ring's triangle i, with its moving corner at x. */
@@ -198,39 +252,68 @@ static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
   return worst;
 }
 
-/* The same of the new vertex and of so many places on each new edge, from the surface kept. */
+/* The places on an edge, as shares of sixths, middles first: along an edge over a hollow the
+ * surface is farthest off somewhere in between. Each with the place before it that is next to it;
+ * -1: the target. */
+static const struct {
+  int sixths, beside;
+} places[SCREE_EDGE_PLACES] = {{3, -1}, {2, 0}, {4, 0}, {1, 1}, {5, 2}};
+
+static vec3 place_on_edge(const scree_halfmesh *s, const scree_ring *r, vec3 target, uint32_t i,
+                          uint32_t k) {
+  vec3 end = s->vertex[s->half[r->edge[i]].from].at;
+  return vec3_lerp(target, end, places[k].sixths / 6.0);
+}
+
+/* The same of the new vertex and of the first `count` places on each new edge, from the surface
+ * kept. In hints, place k of edge i has the number 1 + k * (edges) + i, the new vertex 0. */
 static double stray_of_edges(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
-                             vec3 target, int places, double worst, double most) {
-  uint32_t at_target = 0;
-  if (worst <= most) worst = farther(m, target, worst, &at_target);
-  for (uint32_t i = 0; i < r->count; i++) {
-    vec3 end = s->vertex[s->half[r->edge[i]].from].at;
-    uint32_t near = at_target;
-    for (int k = 1; k <= places && worst <= most; k++)
-      worst = farther(m, vec3_lerp(target, end, (double)k / (places + 1)), worst, &near);
+                             vec3 target, uint32_t count, double worst, double most,
+                             scree_hints *hints) {
+  uint32_t *near = hints->near, number = 1, known = hints->known;
+  if (worst > most) return worst;
+  if (hints->farthest > 0 && known > 0) {
+    uint32_t place = hints->farthest - 1;
+    vec3 x = place_on_edge(s, r, target, place % r->count, place / r->count);
+    worst = farther(m, x, worst, &near[place + 1]);
+    if (worst > most) return worst;
   }
+  if (known == 0) near[0] = 0;
+  worst = farther(m, target, worst, &near[0]);
+  for (uint32_t k = 0; k < count; k++)
+    for (uint32_t i = 0; i < r->count && worst <= most; i++, number++) {
+      if (number >= known)
+        near[number] =
+            places[k].beside < 0 ? near[0] : near[1 + (uint32_t)places[k].beside * r->count + i];
+      double found = farther(m, place_on_edge(s, r, target, i, k), worst, &near[number]);
+      if (found > worst) hints->farthest = number;
+      worst = found;
+    }
+  if (number > known) hints->known = number;
   return worst;
 }
 
 double scree_memory_stray(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
-                          vec3 target, double least, double most) {
+                          vec3 target, double least, double most, scree_hints *hints) {
   double worst = stray_of_witnesses(m, s, r, target, least, most);
-  return stray_of_edges(m, s, r, target, PLACES_ON_EDGE, worst, most);
+  return stray_of_edges(m, s, r, target, SCREE_EDGE_PLACES, worst, most, hints);
 }
 
 double scree_memory_edges_stray(const scree_memory *m, const scree_halfmesh *s,
-                                const scree_ring *fan, vec3 x, double least) {
-  return stray_of_edges(m, s, fan, x, PLACES_ON_EDGE, least, INFINITY);
+                                const scree_ring *fan, vec3 x, double least, scree_hints *hints) {
+  return stray_of_edges(m, s, fan, x, SCREE_EDGE_PLACES, least, INFINITY, hints);
 }
 
 bool scree_memory_edges_within(const scree_memory *m, const scree_halfmesh *s,
-                               const scree_ring *fan, vec3 x, double most) {
-  return stray_of_edges(m, s, fan, x, PLACES_ON_EDGE, most, most) <= most;
+                               const scree_ring *fan, vec3 x, double most, scree_hints *hints) {
+  return stray_of_edges(m, s, fan, x, SCREE_EDGE_PLACES, most, most, hints) <= most;
 }
 
 bool scree_memory_stays_within(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
                                vec3 target, double most) {
-  double worst = stray_of_edges(m, s, r, target, 1, most, most);
+  scree_hints hints;
+  scree_no_hints(&hints);
+  double worst = stray_of_edges(m, s, r, target, 1, most, most, &hints);
   return worst <= most && stray_of_witnesses(m, s, r, target, most, most) <= most;
 }
 

@@ -21,6 +21,8 @@ typedef struct scree_witness {
 
 typedef struct scree_memory {
   scree_bvh surface;
+  uint32_t
+      *beside; /* of its triangles in the tree's order: across the edge from corner k, or NONE */
   double area;
   double roughness; /* the mean distance with which the scan's vertices began */
   scree_witness *witnesses;
@@ -51,17 +53,34 @@ static inline bool scree_memory_is_kept(const scree_memory *memory) {
  * half of sqrt(area / count). */
 bool scree_memory_allows(const scree_memory *memory, size_t triangle_count, vec3 x);
 
+/* Places looked at on each new edge. */
+enum { SCREE_EDGE_PLACES = 5 };
+
+/* Of one ring, from one target to the next, for their places lie near each other: what was near to
+ * each place, and which was farthest off. It changes no answer. Begin with
+ * scree_no_hints. */
+typedef struct scree_hints {
+  uint32_t known;    /* places, the new vertex first; 0: none yet */
+  uint32_t farthest; /* place; 0: not known */
+  uint32_t near[1 + SCREE_EDGE_PLACES * SCREE_RING_MAX]; /* kept triangles, in the tree's order */
+} scree_hints;
+
+static inline void scree_no_hints(scree_hints *hints) {
+  hints->known = hints->farthest = 0;
+}
+
 /* The square of the stray, or `least`, where it is smaller; where it is above `most`, something
  * above that is enough. These are squares as well. */
 double scree_memory_stray(const scree_memory *memory, const scree_halfmesh *s,
-                          const scree_ring *ring, vec3 target, double least, double most);
+                          const scree_ring *ring, vec3 target, double least, double most,
+                          scree_hints *hints);
 
 /* Of a vertex at x, and of the places on the edges from there to the fan's rim: the largest squared
  * distance from the surface kept, or `least`, where it is smaller; whether it is at most `most`. */
 double scree_memory_edges_stray(const scree_memory *memory, const scree_halfmesh *s,
-                                const scree_ring *fan, vec3 x, double least);
+                                const scree_ring *fan, vec3 x, double least, scree_hints *hints);
 bool scree_memory_edges_within(const scree_memory *memory, const scree_halfmesh *s,
-                               const scree_ring *fan, vec3 x, double most);
+                               const scree_ring *fan, vec3 x, double most, scree_hints *hints);
 
 /* The corners of the ring's triangles with their moving one, the first, at target. */
 void scree_ring_corners(const scree_halfmesh *s, const scree_ring *ring, vec3 target,
