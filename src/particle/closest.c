@@ -4,6 +4,8 @@
  * 5.1.5). Point to surface: depth-first through the box tree, nearer child first. */
 #include "particle/closest.h"
 
+#include "base/prefetch.h"
+
 static vec3 on_edge(vec3 from, vec3 along, vec3 p, double *s) {
   double length2 = vec3_norm2(along);
   *s = length2 > 0 ? vec3_dot(vec3_sub(p, from), along) / length2 : 0;
@@ -47,9 +49,14 @@ static void insert_near(scree_near *near, uint32_t face, double distance) {
   near->face[i] = face;
 }
 
+/* Not by fmin, which is a call. */
+static double lesser(double a, double b) {
+  return a < b ? a : b;
+}
+
 static double near_bound(const scree_near *near, double reach, double slack) {
-  double bound = near->count ? fmin(reach, near->distance[0] + slack) : reach;
-  return fmin(bound, near->next);
+  double bound = near->count ? lesser(reach, near->distance[0] + slack) : reach;
+  return lesser(bound, near->next);
 }
 
 typedef struct tree_entry {
@@ -70,7 +77,7 @@ void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, d
     tree_entry entry = stack[--depth];
     double bound = near_bound(near, reach, slack);
     if (entry.distance2 > bound * bound) {
-      pruned2 = fmin(pruned2, entry.distance2);
+      pruned2 = lesser(pruned2, entry.distance2);
       continue;
     }
     const scree_tree_node *node = &nodes[entry.node];
@@ -83,17 +90,20 @@ void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, d
       stack[depth++] = left_first ? (tree_entry){left, dl} : (tree_entry){right, dr};
       continue;
     }
+    const uint32_t *faces = &particle->face_tree.order[node->first];
+    for (uint32_t k = 0; k < node->count; k++)
+      scree_prefetch(&particle->faces[faces[k]], sizeof(scree_face));
     for (uint32_t k = 0; k < node->count; k++) {
-      uint32_t face = particle->face_tree.order[node->first + k];
+      uint32_t face = faces[k];
       int region;
       vec3 c = scree_closest_on_face(&particle->faces[face], p, &region);
       insert_near(near, face, vec3_distance(p, c));
     }
   }
-  double bound = near->count ? fmin(reach, near->distance[0] + slack) : reach;
-  near->next = fmin(near->next, sqrt(pruned2));
+  double bound = near->count ? lesser(reach, near->distance[0] + slack) : reach;
+  near->next = lesser(near->next, sqrt(pruned2));
   while (near->count > 0 && near->distance[near->count - 1] > bound)
-    near->next = fmin(near->next, near->distance[--near->count]);
+    near->next = lesser(near->next, near->distance[--near->count]);
 }
 
 /* Below one node, nearer child first: distance and face of what is nearer than *best2. */

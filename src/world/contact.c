@@ -109,8 +109,9 @@ static bool wake_items(scree_pair *pair) {
   for (size_t i = 0; i < n->sleeping.count; i++) {
     scree_sleeper sleeper = n->sleeping.items[i];
     if (due < sleeper.wake) {
-      next = fmin(next, sleeper.wake);
-      n->sleeping.items[kept++] = sleeper;
+      if (sleeper.wake < next) next = sleeper.wake; /* fmin is a call */
+      if (kept < i) n->sleeping.items[kept] = sleeper;
+      kept++;
       continue;
     }
     scree_item item = {.kind = (uint8_t)sleeper.kind, .a = sleeper.a, .b = sleeper.b};

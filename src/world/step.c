@@ -37,10 +37,22 @@ SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
   if (b < world->bodies.count) scree_prefetch(&world->bodies.frame[b], sizeof(scree_frame));
 }
 
+/* Whether it is likely that items of the pair wake in the coming step. */
+static bool may_wake_items(const scree_pair *pair) {
+  return pair->path + 4 * pair->travel >= pair->next_item;
+}
+
 /* The items of a pair that has come, wherever they are. */
 SCREE_PREFETCHES void fetch_items(const scree_pair *pair) {
-  if (pair && pair->active.count > 1)
+  if (!pair) return;
+  if (pair->active.count > 1)
     scree_prefetch(pair->active.items, pair->active.count * sizeof(scree_item));
+  if (may_wake_items(pair)) scree_prefetch(&pair->neighbours->sleeping, 1);
+}
+
+SCREE_PREFETCHES void fetch_faces(const scree_particle *surface, const scree_item *item) {
+  for (uint32_t i = 0; i < item->face_count; i++)
+    scree_prefetch(&surface->faces[item->face[i]], sizeof(scree_face));
 }
 
 /* What items that have come read of their shapes. */
@@ -54,15 +66,16 @@ SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair 
       scree_prefetch(&b->edges[item->b], sizeof(scree_edge));
     } else if (item->kind == SCREE_ITEM_POINT_FACE) {
       scree_prefetch(&a->points[item->a], 1);
-      scree_prefetch(&b->faces[item->face[0]], sizeof(scree_face));
+      fetch_faces(b, item);
     } else if (item->kind == SCREE_ITEM_FACE_POINT) {
       scree_prefetch(&b->points[item->b], 1);
-      scree_prefetch(&a->faces[item->face[0]], sizeof(scree_face));
+      fetch_faces(a, item);
     }
   }
+  if (may_wake_items(pair)) scree_prefetch(pair->neighbours->sleeping.items, 256);
 }
 
-enum { PAIRS_AHEAD = 6, ITEMS_AHEAD = 3, FEATURES_AHEAD = 1 };
+enum { PAIRS_AHEAD = 8, ITEMS_AHEAD = 4, FEATURES_AHEAD = 2 };
 
 static void evaluate_at(scree_world *world, size_t k, scree_scratch *scratch,
                         scree_pair_sums *sums) {
