@@ -18,6 +18,13 @@ static const double directions[SCREE_DIRECTIONS][3] = {
     {2, 1, -1}, {2, -1, 1}, {-2, 1, 1}, {1, 2, 1},  {1, 2, -1}, {1, -2, 1}, {-1, 2, 1},
     {1, 1, 2},  {1, 1, -2}, {1, -1, 2}, {-1, 1, 2}};
 
+vec3 scree_faced_direction(uint64_t averse) {
+  int k = 0;
+  while (averse >> k & 1) k++;
+  vec3 direction = vec3_load(directions[k % SCREE_DIRECTIONS]);
+  return k < SCREE_DIRECTIONS ? direction : vec3_scale(direction, -1);
+}
+
 static uint64_t averse_exactly(vec3 n) {
   double margin = FACING * (fabs(n.x) + fabs(n.y) + fabs(n.z));
   uint64_t bits = 0;

@@ -9,6 +9,9 @@ enum { SCREE_CELLS_MAX = 4096 };
 enum { SCREE_DIRECTIONS = 25, SCREE_TILES = 32 };
 #define SCREE_ALL_AVERSE ((UINT64_C(1) << (2 * SCREE_DIRECTIONS)) - 1)
 
+/* A direction that has no bit in averse, which is not SCREE_ALL_AVERSE. */
+vec3 scree_faced_direction(uint64_t averse);
+
 static inline uint32_t scree_cell_along(double x, double low, double per_length, uint32_t size) {
   double c = (x - low) * per_length;
   if (!(c > 0)) return 0;

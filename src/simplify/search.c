@@ -293,6 +293,21 @@ static int count_own(const search *q) {
   return met;
 }
 
+/* Whether the ring as it will be, of which every triangle faces one direction, is a graph over the
+ * plane across it: closed, and once around. An open fan may overlap itself; it is not asked. */
+static bool is_graph(const search *q) {
+  vec3 direction = scree_faced_direction(q->averse), center = q->moved[0].at[0];
+  vec3 across = vec3_cross(direction, vec3_sub(q->moved[0].at[1], center));
+  uint32_t ends = 0, turns = 0;
+  for (uint32_t i = 0; i < q->ring->count; i++) {
+    const corners *m = &q->moved[i];
+    ends ^= m->name[1] ^ m->name[2];
+    turns += vec3_dot(across, vec3_sub(m->at[1], center)) < 0 &&
+             vec3_dot(across, vec3_sub(m->at[2], center)) >= 0;
+  }
+  return ends == 0 && turns == 1;
+}
+
 static void search_begin(search *q, vec3 target) {
   const scree_ring *r = q->ring;
   for (uint32_t i = 0; i < r->count; i++) {
@@ -305,8 +320,7 @@ static void search_begin(search *q, vec3 target) {
     q->plane[i] = plane_of(at);
     q->averse |= scree_averse_to(q->grid, q->plane[i].n);
   }
-  /* a fan that faces one direction is a graph over it */
-  if (q->averse != SCREE_ALL_AVERSE) return;
+  if (q->averse != SCREE_ALL_AVERSE && is_graph(q)) return;
   q->after = count_own(q);
   if (q->after == 0) return;
   for (uint32_t i = 0; i < r->count; i++)
