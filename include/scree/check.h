@@ -150,7 +150,9 @@ typedef struct scree_repair_report {
 /* Makes a closed, manifold, consistently wound, outward surface without self-intersections of a
  * mesh of any quality, or fails with SCREE_BAD_MESH and says what remains. Nothing is done to a
  * mesh that needs nothing, but vertices and triangles are put in canonical order (scree_mesh_weld),
- * so the result does not depend on the order of the facets. options and progress may be NULL;
+ * so the result does not depend on the order of the facets. repaired may be mesh itself: then one
+ * that needs nothing is not copied, and what it held is freed where it is replaced; on failure it
+ * is as it was. options and progress may be NULL;
  * *report (may be NULL) is filled on success and on SCREE_BAD_MESH. Other errors as
  * scree_mesh_check. */
 SCREE_API scree_status scree_mesh_repair(const scree_mesh *mesh,
@@ -159,9 +161,9 @@ SCREE_API scree_status scree_mesh_repair(const scree_mesh *mesh,
                                          scree_repair_report *report, scree_error *error);
 
 /* Check first, repair when asked: what every verb that needs a particle's surface calls. *ready is
- * a copy of a mesh that passes the check, or its repair. options NULL refuses instead of repairing:
- * SCREE_BAD_MESH with the verdict. *report (may be NULL) as for scree_mesh_repair;
- * report->before.usable tells that nothing had to be done. */
+ * a copy of a mesh that passes the check, or its repair; it may be mesh itself, as there. options
+ * NULL refuses instead of repairing: SCREE_BAD_MESH with the verdict. *report (may be NULL) as for
+ * scree_mesh_repair; report->before.usable tells that nothing had to be done. */
 SCREE_API scree_status scree_mesh_prepare(const scree_mesh *mesh,
                                           const scree_repair_options *options,
                                           const scree_progress *progress, scree_mesh *ready,

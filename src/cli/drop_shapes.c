@@ -91,9 +91,12 @@ static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mes
   }
   scree_repair_options repair = scree_default_repair_options();
   scree_repair_report report;
-  status = scree_mesh_prepare(&scan.mesh, a->no_repair ? NULL : &repair, run->call->progress, mesh,
-                              &report, error);
-  scree_scan_free(&scan);
+  status = scree_mesh_prepare(&scan.mesh, a->no_repair ? NULL : &repair, run->call->progress,
+                              &scan.mesh, &report, error);
+  if (status != SCREE_OK)
+    scree_scan_free(&scan);
+  else
+    *mesh = scan.mesh;
   if (status == SCREE_OK && !report.before.usable && !run->call->quiet)
     fprintf(stderr, "%s: repaired: it was %s\n", shape->name, report.before.verdict);
   return status;

@@ -151,9 +151,12 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
   scree_repair_options repair = scree_default_repair_options();
   scree_repair_report report;
   status = scree_mesh_prepare(&scan.mesh, run->arguments->no_repair ? NULL : &repair, progress,
-                              mesh, &report, error);
-  scree_scan_free(&scan);
-  if (status != SCREE_OK) return name_in_error(object, error);
+                              &scan.mesh, &report, error);
+  if (status != SCREE_OK) {
+    scree_scan_free(&scan);
+    return name_in_error(object, error);
+  }
+  *mesh = scan.mesh;
   note_repair(object, &report);
   return SCREE_OK;
 }

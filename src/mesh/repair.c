@@ -370,6 +370,12 @@ static scree_status mend(scree_repair *r, const scree_mesh *mesh, scree_error *e
   return SCREE_OK;
 }
 
+/* Whether mend would come to a copy. */
+static bool needs_nothing(const scree_mesh *mesh, const scree_check *check) {
+  return check->usable && check->shell_count == 1 && !check->defects[SCREE_DEFECT_UNUSED_VERTEX] &&
+         is_canonical(mesh);
+}
+
 /* mesh with its check known. */
 static scree_status repair_checked(const scree_mesh *mesh, const scree_check *before,
                                    const scree_repair_options *options,
@@ -397,11 +403,22 @@ scree_status scree_mesh_repair(const scree_mesh *mesh, const scree_repair_option
                                scree_repair_report *report, scree_error *error) {
   scree_repair_options chosen = options ? *options : scree_default_repair_options();
   scree_check_options how = {.intersections = chosen.intersections};
-  scree_check before;
+  scree_repair_report untouched = {.seam_distance = 0};
+  scree_check *before = &untouched.before;
   scree_status status = verify_options(&chosen, error);
-  if (status == SCREE_OK) status = scree_mesh_check(mesh, &how, progress, &before, error);
+  if (status == SCREE_OK) status = scree_mesh_check(mesh, &how, progress, before, error);
   if (status != SCREE_OK) return status;
-  return repair_checked(mesh, &before, &chosen, progress, repaired, report, error);
+  if (mesh == repaired && needs_nothing(mesh, before)) {
+    untouched.after = *before;
+    if (report) *report = untouched;
+    return SCREE_OK;
+  }
+  scree_mesh made;
+  status = repair_checked(mesh, before, &chosen, progress, &made, report, error);
+  if (status != SCREE_OK) return status;
+  if (mesh == repaired) scree_mesh_free(repaired);
+  *repaired = made;
+  return SCREE_OK;
 }
 
 scree_status scree_mesh_prepare(const scree_mesh *mesh, const scree_repair_options *options,
@@ -414,7 +431,7 @@ scree_status scree_mesh_prepare(const scree_mesh *mesh, const scree_repair_optio
   made.after = made.before;
   if (!made.before.usable)
     status = scree_fail(error, SCREE_BAD_MESH, "The mesh is %s", made.before.verdict);
-  else
+  else if (mesh != ready)
     status = scree_mesh_copy(mesh, ready, error);
   if (report && (status == SCREE_OK || status == SCREE_BAD_MESH)) *report = made;
   return status;

@@ -167,8 +167,11 @@ static scree_status read_scan(const scree_study *study, const scree_study_shape 
   scree_status status = scree_scan_read(shape->path, &read, &scan, error);
   if (status != SCREE_OK) return status;
   *sum = scan.checksum;
-  status = scree_mesh_prepare(&scan.mesh, &repair, progress, mesh, &report, error);
-  scree_scan_free(&scan);
+  status = scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, &report, error);
+  if (status != SCREE_OK)
+    scree_scan_free(&scan);
+  else
+    *mesh = scan.mesh;
   return status;
 }
 

@@ -515,6 +515,37 @@ static void moved_turned_scaled(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* What needs nothing stays; what cannot be repaired as well; the rest is replaced by what a copy
+ * would be. */
+static void prepare_in_place(scree_mesh *mesh) {
+  scree_error error;
+  scree_repair_report report;
+  scree_repair_options options = scree_default_repair_options();
+  scree_mesh made, canonical;
+  CHECK_OK(scree_mesh_repair(mesh, &options, NULL, &canonical, NULL, &error), error);
+  const double *positions = canonical.positions;
+  CHECK_OK(scree_mesh_prepare(&canonical, &options, NULL, &canonical, &report, &error), error);
+  CHECK_OK(scree_mesh_prepare(&canonical, NULL, NULL, &canonical, NULL, &error), error);
+  assert_ptr_equal(canonical.positions, positions);
+  assert_true(report.before.usable && report.after.usable);
+  for (int i = 0; i < SCREE_REPAIR_ACTION_COUNT; i++) assert_int_equal(report.done[i], 0);
+  canonical.triangle_count--;
+  CHECK_OK(scree_mesh_prepare(&canonical, &options, NULL, &made, NULL, &error), error);
+  assert_int_equal(scree_mesh_prepare(&canonical, NULL, NULL, &canonical, NULL, &error),
+                   SCREE_BAD_MESH);
+  assert_ptr_equal(canonical.positions, positions);
+  CHECK_OK(scree_mesh_prepare(&canonical, &options, NULL, &canonical, &report, &error), error);
+  assert_false(report.before.usable);
+  assert_int_equal(canonical.triangle_count, made.triangle_count);
+  assert_int_equal(canonical.vertex_count, made.vertex_count);
+  assert_memory_equal(canonical.triangles, made.triangles,
+                      3 * made.triangle_count * sizeof *made.triangles);
+  assert_memory_equal(canonical.positions, made.positions,
+                      3 * made.vertex_count * sizeof *made.positions);
+  scree_mesh_free(&canonical);
+  scree_mesh_free(&made);
+}
+
 static void prepare(void **state) {
   (void)state;
   scree_error error;
@@ -523,6 +554,7 @@ static void prepare(void **state) {
   scree_mesh mesh = body(), ready;
   CHECK_OK(scree_mesh_prepare(&mesh, NULL, NULL, &ready, &report, &error), error);
   assert_true(report.before.usable && report.after.usable);
+  prepare_in_place(&ready);
   scree_mesh_free(&ready);
   mesh.triangle_count--;
   assert_int_equal(scree_mesh_prepare(&mesh, NULL, NULL, &ready, &report, &error), SCREE_BAD_MESH);
