@@ -296,7 +296,9 @@ scree_status scree_broad_update(scree_world *world, scree_error *error) {
   if (status) return status;
   double widest = make_boxes(world);
   bin_bodies(world, widest > 0 ? widest : 1);
-  if (!list_keys(world, widest > 0 ? widest : 1) || !merge_neighbours(world) || !list_sides(world))
+  bool good = list_keys(world, widest > 0 ? widest : 1) && merge_neighbours(world);
+  if (good) scree_pairs_tidy(world);
+  if (!good || !list_sides(world))
     return scree_fail_memory(error, world->keys.count * sizeof(scree_neighbours),
                              "pairs of bodies");
   for (size_t i = 0; i < world->bodies.count; i++)

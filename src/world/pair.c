@@ -193,6 +193,51 @@ static void move_pair(scree_pair *from, scree_pair *to) {
   }
 }
 
+/* Two places change their contents, further anchors and arrays of items with them. */
+static void exchange_pairs(scree_pair *one, scree_pair *other) {
+  scree_pair kept = *one;
+  bool own = other->active.items == other->own_items;
+  *one = *other;
+  if (own) one->active.items = one->own_items;
+  own = kept.active.items == one->own_items;
+  *other = kept;
+  if (own) other->active.items = other->own_items;
+}
+
+/* Moves the pairs to the first places, in the order of their neighbours. */
+static void sort_pairs(scree_world *world) {
+  const scree_pair_slab *slabs = world->pair_slabs.items;
+  size_t slab = 0, at = 0;
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    scree_neighbours *n = world->neighbours.items[k];
+    if (!n->pair) continue;
+    if (at == slabs[slab].count) slab++, at = 0;
+    scree_pair *place = &slabs[slab].pairs[at++], *pair = n->pair;
+    if (place == pair) continue;
+    scree_neighbours *there = place->neighbours; /* of one that came, or went long ago */
+    exchange_pairs(pair, place);
+    if (there && there->pair == place) there->pair = pair;
+    n->pair = place;
+  }
+  world->spare_pairs.count = 0;
+  for (size_t s = world->pair_slabs.count; s-- > slab;)
+    for (size_t i = slabs[s].count; i-- > (s == slab ? at : 0);)
+      world->spare_pairs.items[world->spare_pairs.count++] = &slabs[s].pairs[i];
+}
+
+void scree_pairs_tidy(scree_world *world) {
+  size_t count = 0, astray = 0;
+  const scree_pair *next = NULL;
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    const scree_pair *pair = world->neighbours.items[k]->pair;
+    if (!pair) continue;
+    astray += pair != next;
+    next = pair + 1;
+    count++;
+  }
+  if (astray > count / 8 + 1) sort_pairs(world);
+}
+
 static void go_back(scree_neighbours *n, const scree_pair *pair) {
   n->asleep = pair->asleep;
   n->travel = pair->travel;

@@ -376,6 +376,8 @@ void scree_pair_adopt_law(scree_pair *pair);
 /* After an evaluation: a pair without awake items goes back to its neighbours, the worker's with
  * such gets a place of its own; false when memory is out. */
 bool scree_pair_settle(scree_world *world, scree_pair *pair, scree_scratch *scratch);
+/* Pairs lie in the order of their neighbours again, where many do not. */
+void scree_pairs_tidy(scree_world *world);
 /* Room for active items, by doubling. */
 bool scree_pair_reserve_items(scree_pair *pair, size_t needed);
 /* Few items lie with the pair again. */

@@ -423,6 +423,45 @@ static void threads_change_nothing(void **state) {
   for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
 }
 
+/* How many awake pairs there are, and how many do not lie behind the one before them. */
+static size_t count_astray(const scree_world *world, size_t *count) {
+  size_t astray = 0;
+  const scree_pair *next = NULL;
+  *count = 0;
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    const scree_pair *pair = world->neighbours.items[k]->pair;
+    if (!pair) continue;
+    assert_ptr_equal(pair->neighbours, world->neighbours.items[k]);
+    astray += pair != next;
+    next = pair + 1;
+    ++*count;
+  }
+  return astray;
+}
+
+/* Awake pairs that lie astray are brought into their order, and stay what they are. */
+static void pairs_come_into_order(void **state) {
+  (void)state;
+  scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)), law_sphere(0.02)};
+  scree_world *world = heap_of(shapes, 2, 144);
+  size_t count, most = 0, sorted = 0;
+  for (int i = 0; i < 700; i++) {
+    law_step(world, 50);
+    scree_checksum before = scree_world_hash(world);
+    sorted += count_astray(world, &count) > count / 8 + 1;
+    scree_pairs_tidy(world);
+    assert_true(count_astray(world, &count) <= count / 8 + 1);
+    if (count > most) most = count;
+    scree_checksum after = scree_world_hash(world);
+    assert_true(before.high == after.high && before.low == after.low);
+    world->pairs_stale = true; /* or the step would look for them where they were */
+  }
+  print_message("sorted %zu times, up to %zu pairs\n", sorted, most);
+  assert_true(sorted > 5 && most > 64); /* of more than one slab */
+  scree_world_free(world);
+  for (int i = 0; i < 2; i++) scree_particle_free(shapes[i]);
+}
+
 static void warm_steps_allocate_nothing(void **state) {
   (void)state;
   scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)), law_sphere(0.02)};
@@ -520,6 +559,7 @@ int main(void) {
       cmocka_unit_test(deep_hits_by_brute_force),
       cmocka_unit_test(edges_that_turn_away_do_not_count),
       cmocka_unit_test(threads_change_nothing),
+      cmocka_unit_test(pairs_come_into_order),
       cmocka_unit_test(warm_steps_allocate_nothing),
       cmocka_unit_test(what_leaves_the_range_stops),
   };
