@@ -24,7 +24,8 @@
  * changes around the edge before its turn comes; so the outcome is that of one thread.
  *
  * Below SCREE_RELAXED_COUNT triangles the vertices about a collapse move after it, to where the
- * witnesses around them are nearer (relax.h); the survivor first, then its neighbours.
+ * witnesses around them are nearer (relax.h); the survivor first, then its neighbours, each by
+ * itself; then the two of them that gain most by it take over volume from each other.
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
@@ -68,6 +69,9 @@ enum {
   FALLBACK = OTHER + SCREE_FALLBACK_COUNT,
   KNOWN = FALLBACK + SCREE_FALLBACK_COUNT
 };
+
+/* The vertices about a collapse, at most: the survivor and the corners of its ring. */
+enum { MOST_ABOUT = 2 * SCREE_RING_MAX + 1 };
 
 /* First choices found at once, at most; kept; edges of the heap looked at for them. */
 enum { AT_ONCE = 8, KEPT = 64, LOOKED_AT = 24 };
@@ -313,19 +317,54 @@ static void touch(queue *q, uint32_t v) {
   q->touched[q->touched_count++] = v;
 }
 
+/* The grid knows the ring's new triangles. */
+static scree_status list_ring(scree_decimator *d, const scree_ring *r,
+                              const scree_around *geometry) {
+  scree_grid_enter_ring(&d->grid, r, geometry);
+  for (uint32_t i = 0; i < r->count; i++)
+    if (!scree_grid_list_triangle(&d->grid, &d->s, r->edge[i] / 3))
+      return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
+  return SCREE_OK;
+}
+
 /* The vertices of the ring are touched, and the grid knows its new triangles. */
 static scree_status settle(queue *q, const scree_ring *r, const scree_around *geometry) {
-  scree_decimator *d = q->d;
-  const scree_halfmesh *s = &d->s;
+  const scree_halfmesh *s = &q->d->s;
   touch(q, r->a);
-  scree_grid_enter_ring(&d->grid, r, geometry);
   for (uint32_t i = 0; i < r->count; i++) {
     touch(q, s->half[r->edge[i]].from);
     touch(q, scree_to(s, r->edge[i]));
-    if (!scree_grid_list_triangle(&d->grid, s, r->edge[i] / 3))
-      return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
   }
-  return SCREE_OK;
+  return list_ring(q->d, r, geometry);
+}
+
+/* One or two vertices on their way to where the witnesses are nearer. */
+typedef struct moving {
+  int count;
+  uint32_t edges[2][SCREE_RING_MAX];
+  scree_ring fans[2];
+  scree_relaxation relaxations[2];
+  scree_change changes[2];
+  scree_around around[2];
+} moving;
+
+static bool gather_moving(const scree_halfmesh *s, uint32_t v, moving *m, int which) {
+  m->fans[which].edge = m->edges[which];
+  return !(s->flags[v] & SCREE_VERTEX_LOCKED) && scree_ring_gather_fan(s, v, &m->fans[which]);
+}
+
+/* Whether the first may move, and the second once the first has. */
+static bool all_allowed(queue *q, moving *m, scree_status *status) {
+  scree_decimator *d = q->d;
+  if (!allowed(q, &m->fans[0], &m->changes[0], &m->around[0], status)) return false;
+  if (m->count == 1) return true;
+  vec3 *at = &d->s.vertex[m->fans[0].a].at, from = *at;
+  *at = m->changes[0].target;
+  *status = list_ring(d, &m->fans[0], &m->around[0]);
+  bool answer =
+      *status == SCREE_OK && allowed(q, &m->fans[1], &m->changes[1], &m->around[1], status);
+  *at = from;
+  return answer;
 }
 
 /* Moves the fan's vertex to change->target. */
@@ -339,31 +378,80 @@ static scree_status move(queue *q, const scree_ring *fan, const scree_change *ch
   return settle(q, fan, geometry);
 }
 
-static scree_status relax(queue *q, uint32_t v) {
+/* Moves them by as large a share of their steps as gains and is allowed, if any. */
+static scree_status try_moving(queue *q, moving *m) {
   scree_decimator *d = q->d;
-  uint32_t edges[SCREE_RING_MAX];
-  scree_ring fan = {.edge = edges};
-  scree_relaxation relaxation;
-  scree_change change;
-  scree_around around;
   scree_status status = SCREE_OK;
-  if (d->s.flags[v] & SCREE_VERTEX_LOCKED || !scree_ring_gather_fan(&d->s, v, &fan) ||
-      !scree_relax_begin(&d->memory, &d->s, &fan, &relaxation))
-    return SCREE_OK;
+  vec3 places[2];
   for (double share = 1; share >= LEAST_SHARE && status == SCREE_OK; share *= 0.5) {
-    change.target = scree_relax_place(&relaxation, share);
-    if (scree_relax_gains(&d->memory, &d->s, &fan, change.target, &relaxation) &&
-        allowed(q, &fan, &change, &around, &status))
-      return move(q, &fan, &change, &around);
+    scree_relax_places(m->relaxations, m->count, share, places);
+    for (int i = 0; i < m->count; i++) m->changes[i].target = places[i];
+    if (!scree_relax_gains(&d->memory, &d->s, m->relaxations, m->count, places) ||
+        !all_allowed(q, m, &status))
+      continue;
+    for (int i = 0; i < m->count && status == SCREE_OK; i++)
+      status = move(q, &m->fans[i], &m->changes[i], &m->around[i]);
+    return status;
   }
   return status;
 }
 
+static scree_status relax(queue *q, uint32_t v) {
+  moving m;
+  scree_pull pull;
+  m.count = 1;
+  if (!gather_moving(&q->d->s, v, &m, 0) ||
+      !scree_pull_find(&q->d->memory, &q->d->s, &m.fans[0], &pull) ||
+      !scree_relax_alone(&pull, &m.fans[0], &m.relaxations[0]))
+    return SCREE_OK;
+  return try_moving(q, &m);
+}
+
+static bool has_corner(const scree_halfmesh *s, const scree_ring *fan, uint32_t v) {
+  for (uint32_t i = 0; i < fan->count; i++)
+    if (s->half[fan->edge[i]].from == v || scree_to(s, fan->edge[i]) == v) return true;
+  return false;
+}
+
+/* Of these vertices the two, no neighbours, that gain most by it take over volume from each other.
+ */
+static scree_status exchange(queue *q, const uint32_t *about, size_t count) {
+  const scree_halfmesh *s = &q->d->s;
+  scree_pull pulls[MOST_ABOUT], best[2];
+  double most = 0;
+  moving m;
+  m.count = 2;
+  for (size_t i = 0; i < count; i++)
+    if (!gather_moving(s, about[i], &m, 0) ||
+        !scree_pull_find(&q->d->memory, s, &m.fans[0], &pulls[i]))
+      pulls[i].n_per_n = 0;
+  uint32_t first = SCREE_NONE, second = SCREE_NONE;
+  for (size_t i = 0; i < count; i++) {
+    if (!(pulls[i].n_per_n > 0) || !gather_moving(s, about[i], &m, 0)) continue;
+    for (size_t j = i + 1; j < count; j++) {
+      if (!(pulls[j].n_per_n > 0) || has_corner(s, &m.fans[0], about[j])) continue;
+      double gain = scree_exchange_gain(&pulls[i], &pulls[j]);
+      if (!(gain > most)) continue;
+      most = gain;
+      first = about[i];
+      second = about[j];
+      best[0] = pulls[i];
+      best[1] = pulls[j];
+    }
+  }
+  if (!(most > 0)) return SCREE_OK;
+  gather_moving(s, first, &m, 0);
+  gather_moving(s, second, &m, 1);
+  scree_exchange_begin(best, m.fans, m.relaxations);
+  return try_moving(q, &m);
+}
+
 /* The vertices about the collapse, of which the first survived, have their turns: it, then the
- * others counter-clockwise from the farthest, so that numbers decide nothing. */
+ * others counter-clockwise from the farthest, so that numbers decide nothing; at last two of them
+ * together. */
 static scree_status relax_around(queue *q) {
   const scree_vertex *vertex = q->d->s.vertex;
-  uint32_t about[2 * SCREE_RING_MAX + 1];
+  uint32_t about[MOST_ABOUT];
   size_t count = q->touched_count, farthest = 1;
   double most = 0;
   scree_status status = relax(q, q->touched[0]);
@@ -375,7 +463,7 @@ static scree_status relax_around(queue *q) {
   }
   for (size_t i = 0; i + 1 < count && status == SCREE_OK; i++)
     status = relax(q, about[1 + (farthest - 1 + i) % (count - 1)]);
-  return status;
+  return status == SCREE_OK ? exchange(q, about, count) : status;
 }
 
 static scree_status collapse(queue *q, const scree_ring *r, const scree_change *change,

@@ -4,13 +4,21 @@
  * the moving corner has the share b_j, g_j the unit vector from c_j to the witness and d_j the
  * distance, a move y changes d_j by -b_j g_j.y, so that
  *
- *     sum (b_j g_j.y - d_j)^2 + DAMPING sum b_j^2 |y|^2 -> min
+ *     sum (b_j g_j.y - d_j)^2 + DAMPING sum b_j^2 |y|^2 = y.H y - 2 g.y + sum d_j^2 -> min
  *
  * Theirs keeps c_j where it is in its triangle, which hardly lets a vertex slide along the surface;
  * sliding is what brings it to an edge or a corner of the scan.
  *
- * The volume changes by N.y / 6, N the sum of the doubled area vectors of the fan, which does not
- * depend on where in it the vertex lies: in the plane across N it is kept exactly.
+ * The volume changes by n.y / 6, n the sum of the doubled area vectors of the fan, which does not
+ * depend on where in it the vertex lies. So with a pressure l,
+ *
+ *     y = H^-1 g - l H^-1 n
+ *
+ * keeps it where l = n.H^-1 g / n.H^-1 n. Each collapse keeps the volume by itself, and what it
+ * takes off here and leaves too much there stays: the pressures of two vertices differ. With the
+ * same pressure for both they keep it together, and the sum falls further, by
+ * (l_a - l_b)^2 / (1 / n_a.H_a^-1 n_a + 1 / n_b.H_b^-1 n_b). Two that are no neighbours share no
+ * triangle, so that their volumes add up exactly.
  *
  * A witness is taken to stay with its triangle, so that its distance afterwards is found at once
  * and is an upper bound, as everywhere in stray.h. */
@@ -21,10 +29,10 @@
 /* A smaller gain of the sum is none, for what it costs to look at all edges around anew. */
 #define LEAST_GAIN 5e-3
 
-/* The equations in the plane: unknowns along u and w. */
 typedef struct equations {
-  vec3 u, w;
-  double uu, uw, ww, u_rhs, w_rhs, shares;
+  double xx, xy, xz, yy, yz, zz;
+  vec3 g;
+  double shares;
 } equations;
 
 static void add_witness(equations *q, const scree_witness *witness, const double *corners) {
@@ -34,52 +42,89 @@ static void add_witness(equations *q, const scree_witness *witness, const double
   if (!(distance > SCREE_SAME_DISTANCE)) return; /* it has no direction */
   double share = vec3_dot(n, vec3_cross(vec3_sub(a, c), vec3_sub(b, c))) / vec3_norm2(n);
   vec3 g = vec3_scale(vec3_sub(witness->at, c), share / distance);
-  double u = vec3_dot(g, q->u), w = vec3_dot(g, q->w);
-  q->uu += u * u;
-  q->uw += u * w;
-  q->ww += w * w;
-  q->u_rhs += u * distance;
-  q->w_rhs += w * distance;
+  q->xx += g.x * g.x;
+  q->xy += g.x * g.y;
+  q->xz += g.x * g.z;
+  q->yy += g.y * g.y;
+  q->yz += g.y * g.z;
+  q->zz += g.z * g.z;
+  q->g = vec3_mad(q->g, g, distance);
   q->shares += share * share;
 }
 
-bool scree_relax_begin(const scree_memory *m, const scree_halfmesh *s, const scree_ring *fan,
-                       scree_relaxation *r) {
-  double corners[SCREE_RING_MAX][9];
-  vec3 sum = {0, 0, 0};
-  equations q = {.shares = 0};
-  r->from = s->vertex[fan->a].at;
-  r->sum = r->worst = 0;
-  r->has_edges = false;
-  scree_no_hints(&r->hints);
-  scree_ring_corners(s, fan, r->from, corners);
-  for (uint32_t i = 0; i < fan->count; i++)
-    sum = vec3_add(sum, vec3_triangle_normal(vec3_load(corners[i]), vec3_load(corners[i] + 3),
-                                             vec3_load(corners[i] + 6)));
-  double norm = vec3_norm(sum);
-  if (!(norm > 0)) return false;
-  r->n = vec3_scale(sum, 1 / norm);
-  vec3_frame(r->n, &q.u, &q.w);
-  for (uint32_t i = 0; i < fan->count; i++)
-    for (uint32_t j = m->first[fan->edge[i] / 3]; j != SCREE_NONE; j = m->witnesses[j].next) {
-      r->sum += m->witnesses[j].distance2;
-      r->worst = fmax(r->worst, m->witnesses[j].distance2);
-      add_witness(&q, &m->witnesses[j], corners[i]);
-    }
-  r->worst = scree_past_rounding(r->worst);
-  double uu = q.uu + DAMPING * q.shares, ww = q.ww + DAMPING * q.shares;
-  double determinant = uu * ww - q.uw * q.uw;
-  if (!(determinant > 0)) return false;
-  double u = (q.u_rhs * ww - q.w_rhs * q.uw) / determinant;
-  double w = (q.w_rhs * uu - q.u_rhs * q.uw) / determinant;
-  r->step = vec3_mad(vec3_scale(q.u, u), q.w, w);
-  return u * q.u_rhs + w * q.w_rhs > LEAST_GAIN * r->sum; /* what the equations promise */
+/* H^-1 v; the damping keeps H well away from singular. */
+static vec3 solve(const equations *q, vec3 v) {
+  vec3 x = {q->xx, q->xy, q->xz}, y = {q->xy, q->yy, q->yz}, z = {q->xz, q->yz, q->zz};
+  vec3 yz = vec3_cross(y, z), zx = vec3_cross(z, x), xy = vec3_cross(x, y);
+  vec3 sum = vec3_mad(vec3_mad(vec3_scale(yz, v.x), zx, v.y), xy, v.z);
+  return vec3_scale(sum, 1 / vec3_dot(x, yz));
 }
 
-vec3 scree_relax_place(const scree_relaxation *r, double share) {
-  vec3 x = vec3_mad(r->from, r->step, share);
-  /* back onto the plane, past rounding */
-  return vec3_mad(x, r->n, -vec3_dot(r->n, vec3_sub(x, r->from)));
+bool scree_pull_find(const scree_memory *m, const scree_halfmesh *s, const scree_ring *fan,
+                     scree_pull *p) {
+  double corners[SCREE_RING_MAX][9];
+  equations q = {.shares = 0};
+  *p = (scree_pull){.from = s->vertex[fan->a].at};
+  scree_ring_corners(s, fan, p->from, corners);
+  for (uint32_t i = 0; i < fan->count; i++) {
+    p->n = vec3_add(p->n, vec3_triangle_normal(vec3_load(corners[i]), vec3_load(corners[i] + 3),
+                                               vec3_load(corners[i] + 6)));
+    for (uint32_t j = m->first[fan->edge[i] / 3]; j != SCREE_NONE; j = m->witnesses[j].next) {
+      p->sum += m->witnesses[j].distance2;
+      p->worst = fmax(p->worst, m->witnesses[j].distance2);
+      add_witness(&q, &m->witnesses[j], corners[i]);
+    }
+  }
+  if (!(q.shares > 0)) return false;
+  q.xx += DAMPING * q.shares;
+  q.yy += DAMPING * q.shares;
+  q.zz += DAMPING * q.shares;
+  p->worst = scree_past_rounding(p->worst);
+  p->free = solve(&q, q.g);
+  p->per_n = solve(&q, p->n);
+  p->gain = vec3_dot(q.g, p->free);
+  p->n_free = vec3_dot(p->n, p->free);
+  p->n_per_n = vec3_dot(p->n, p->per_n);
+  return p->n_per_n > 0;
+}
+
+static void begin(const scree_pull *p, const scree_ring *fan, double pressure,
+                  scree_relaxation *r) {
+  r->fan = fan;
+  r->from = p->from;
+  r->n = p->n;
+  r->step = vec3_mad(p->free, p->per_n, -pressure);
+  r->sum = p->sum;
+  r->worst = p->worst;
+  r->has_edges = false;
+  scree_no_hints(&r->hints);
+}
+
+bool scree_relax_alone(const scree_pull *p, const scree_ring *fan, scree_relaxation *r) {
+  double pressure = p->n_free / p->n_per_n;
+  begin(p, fan, pressure, r);
+  return p->gain - pressure * p->n_free > LEAST_GAIN * p->sum; /* what the equations promise */
+}
+
+double scree_exchange_gain(const scree_pull *a, const scree_pull *b) {
+  double difference = a->n_free / a->n_per_n - b->n_free / b->n_per_n;
+  double gain = difference * difference / (1 / a->n_per_n + 1 / b->n_per_n);
+  return gain > LEAST_GAIN * (a->sum + b->sum) ? gain : 0;
+}
+
+void scree_exchange_begin(const scree_pull *pulls, const scree_ring *fans, scree_relaxation *r) {
+  double pressure = (pulls[0].n_free + pulls[1].n_free) / (pulls[0].n_per_n + pulls[1].n_per_n);
+  for (int i = 0; i < 2; i++) begin(&pulls[i], &fans[i], pressure, &r[i]);
+}
+
+void scree_relax_places(const scree_relaxation *r, int count, double share, vec3 *places) {
+  double volume = count == 2 ? share * vec3_dot(r[0].n, r[0].step) : 0; /* six times */
+  for (int i = 0; i < count; i++) {
+    vec3 y = vec3_scale(r[i].step, share), n = r[i].n;
+    /* back onto the plane, past rounding */
+    y = vec3_mad(y, n, ((i == 0 ? volume : -volume) - vec3_dot(n, y)) / vec3_norm2(n));
+    places[i] = vec3_add(r[i].from, y);
+  }
 }
 
 /* Afterwards, squared. A witness that lies on the surface may stand at the vertex that moves and be
@@ -94,30 +139,44 @@ static double distance2_after(double (*corners)[9], const scree_ring *fan, uint3
   return least;
 }
 
-static bool witnesses_gain(const scree_memory *m, const scree_halfmesh *s, const scree_ring *fan,
-                           vec3 x, const scree_relaxation *r, double *worst) {
-  double corners[SCREE_RING_MAX][9], sum = 0, most = (1 - LEAST_GAIN) * r->sum;
+/* Adds to the sum while it is below `most`. */
+static void add_witnesses(const scree_memory *m, const scree_halfmesh *s, const scree_ring *fan,
+                          vec3 x, double most, double *sum, double *worst) {
+  double corners[SCREE_RING_MAX][9];
   scree_ring_corners(s, fan, x, corners);
   for (uint32_t i = 0; i < fan->count; i++)
-    for (uint32_t j = m->first[fan->edge[i] / 3]; j != SCREE_NONE; j = m->witnesses[j].next) {
+    for (uint32_t j = m->first[fan->edge[i] / 3]; j != SCREE_NONE && *sum < most;
+         j = m->witnesses[j].next) {
       double distance2 = distance2_after(corners, fan, i, &m->witnesses[j]);
-      sum += distance2;
+      *sum += distance2;
       *worst = fmax(*worst, distance2);
-      if (!(sum < most)) return false;
     }
+}
+
+static double worst_of(const scree_relaxation *r, int count) {
+  return count == 2 ? fmax(r[0].worst, r[1].worst) : r[0].worst;
+}
+
+static bool edges_within(const scree_memory *m, const scree_halfmesh *s, scree_relaxation *r,
+                         int count, const vec3 *places) {
+  double worst = worst_of(r, count);
+  for (int i = 0; i < count; i++)
+    if (!scree_memory_edges_within(m, s, r[i].fan, places[i], worst, &r[i].hints)) return false;
   return true;
 }
 
-bool scree_relax_gains(const scree_memory *m, const scree_halfmesh *s, const scree_ring *fan,
-                       vec3 x, scree_relaxation *r) {
-  double worst = 0;
-  if (!witnesses_gain(m, s, fan, x, r, &worst)) return false;
-  if (worst <= r->worst && scree_memory_edges_within(m, s, fan, x, r->worst, &r->hints))
-    return true;
-  if (r->has_edges) return false;
-  double was = r->worst; /* what is as far off on the edges now is found only where it decides */
-  r->worst = scree_memory_edges_stray(m, s, fan, r->from, r->worst, &r->hints);
-  r->has_edges = true;
-  return r->worst > was && worst <= r->worst &&
-         scree_memory_edges_within(m, s, fan, x, r->worst, &r->hints);
+bool scree_relax_gains(const scree_memory *m, const scree_halfmesh *s, scree_relaxation *r,
+                       int count, const vec3 *places) {
+  double before = 0, sum = 0, worst = 0, was = worst_of(r, count);
+  for (int i = 0; i < count; i++) before += r[i].sum;
+  double most = (1 - LEAST_GAIN) * before;
+  for (int i = 0; i < count; i++) add_witnesses(m, s, r[i].fan, places[i], most, &sum, &worst);
+  if (!(sum < most)) return false;
+  if (worst <= was && edges_within(m, s, r, count, places)) return true;
+  if (r[0].has_edges) return false;
+  r[0].has_edges = true; /* what is as far off on the edges now is found only where it decides */
+  for (int i = 0; i < count; i++)
+    r[i].worst = scree_memory_edges_stray(m, s, r[i].fan, r[i].from, r[i].worst, &r[i].hints);
+  double now = worst_of(r, count);
+  return now > was && worst <= now && edges_within(m, s, r, count, places);
 }

@@ -15,7 +15,8 @@
  *
  * After every collapse the survivor and its neighbours have their turns to move: was the move the
  * step that the oracle finds, or half or a quarter of it, did the witnesses gain, was it allowed,
- * and did none stay that should have moved?
+ * and did none stay that should have moved? At last two of them that are no neighbours move
+ * together: the same is asked, and whether they were the two that gain most.
  *
  * That is asked of the greedy stage. Of the batches, all but whose turn it was: every collapse of
  * their record, done after those before it, is allowed, at the place of least cost, with the right
@@ -72,6 +73,7 @@ typedef struct oracle {
   size_t renew_at; /* triangles at which it is found anew */
   double *whole;   /* as state, for every place: the whole cost, or NAN where it is not known yet */
   size_t moved, taken;      /* moves of the record that were checked; of these, in any order */
+  size_t exchanged;         /* pairs that moved together */
   size_t compared, decided; /* collapses, and those with no rival within rounding */
 } oracle;
 
@@ -468,9 +470,11 @@ static double off_around(const oracle *o, uint32_t v, double *worst) {
   return sum;
 }
 
-/* The step that the witnesses ask for: of Gauss and Newton, damped, with a multiplier for the
- * volume. *promise: how much it should take off the sum. */
-static vec3 wanted_step(const oracle *o, uint32_t v, double *promise) {
+/* The step that the witnesses ask for where it is to change the volume by a sixth of this: of Gauss
+ * and Newton, damped, with a multiplier for the volume. *promise: how much it should take off the
+ * sum, where that is nothing; *pressure: the multiplier. False: they ask for nothing. */
+static bool step_with_volume(const oracle *o, uint32_t v, double volume, vec3 *step,
+                             double *promise, double *pressure) {
   double m[4][5] = {{0}}, shares = 0, rhs[3];
   vec3 sum = {0, 0, 0};
   *promise = 0;
@@ -495,22 +499,27 @@ static vec3 wanted_step(const oracle *o, uint32_t v, double *promise) {
       shares += share * share;
     }
   }
-  if (!(shares > 0)) return (vec3){0, 0, 0};
+  *step = (vec3){0, 0, 0};
+  if (!(shares > 0)) return false;
   double unit[3] = {sum.x, sum.y, sum.z}, norm = vec3_norm(sum);
   for (int i = 0; i < 3; i++) {
     rhs[i] = m[i][4];
     m[i][i] += RELAX_DAMP * shares;
     m[i][3] = m[3][i] = unit[i] / norm * shares; /* scaled as the rest */
   }
+  m[3][4] = volume / norm * shares;
   solve(m, 4);
   for (int i = 0; i < 3; i++) *promise += rhs[i] * m[i][4];
-  return (vec3){m[0][4], m[1][4], m[2][4]};
+  *pressure = m[3][4] * shares / norm;
+  *step = (vec3){m[0][4], m[1][4], m[2][4]};
+  return true;
 }
 
 /* Whether the engine was right to leave vertex v, or to move it to *x. */
 static void check_move(const oracle *o, uint32_t v, const vec3 *x) {
-  double promise, worst, share = 1;
-  vec3 step = wanted_step(o, v, &promise);
+  double promise, pressure, worst, share = 1;
+  vec3 step;
+  step_with_volume(o, v, 0, &step, &promise, &pressure);
   double sum = off_around(o, v, &worst);
   if (promise <= (1 - 1e-6) * RELAX_GAIN * sum || !(promise > 0)) {
     if (x) fail_msg("vertex %u moved for %g of %g", v, promise, sum);
@@ -531,6 +540,100 @@ static void check_move(const oracle *o, uint32_t v, const vec3 *x) {
       fail_msg("vertex %u, share %g: %s", v, share, here ? "moved, not allowed" : "not moved");
   }
   if (x) fail_msg("vertex %u moved to no share of its step", v);
+}
+
+/* Two vertices that take over volume from each other. */
+typedef struct pair {
+  uint32_t v[2];
+  vec3 step[2];
+  double sum, worst, gain; /* before; of the sum, by the exchange */
+} pair;
+
+static bool are_neighbours(const oracle *o, uint32_t v, uint32_t w) {
+  for (size_t t = 0; t < o->triangle_count; t++)
+    if (has(o, t, v) && has(o, t, w)) return true;
+  return false;
+}
+
+/* From how the pressures fall with the volume taken over; that which makes them the same. */
+static bool find_pair(const oracle *o, uint32_t v, uint32_t w, pair *p) {
+  double promise, at_rest[2], moved[2], unit = 1e-3, worst;
+  *p = (pair){.v = {v, w}};
+  if (v == w || are_neighbours(o, v, w)) return false;
+  for (int k = 0; k < 2; k++) {
+    if (!step_with_volume(o, p->v[k], 0, &p->step[k], &promise, &at_rest[k])) return false;
+    step_with_volume(o, p->v[k], unit, &p->step[k], &promise, &moved[k]);
+    p->sum += off_around(o, p->v[k], &worst);
+    p->worst = fmax(p->worst, worst);
+  }
+  double falls = (at_rest[0] - moved[0] + at_rest[1] - moved[1]) / unit;
+  double volume = (at_rest[0] - at_rest[1]) / falls;
+  step_with_volume(o, v, volume, &p->step[0], &promise, &moved[0]);
+  step_with_volume(o, w, -volume, &p->step[1], &promise, &moved[1]);
+  p->gain = (at_rest[0] - at_rest[1]) * volume;
+  return true;
+}
+
+/* The pair's places at this share; the first may move, then the second. */
+static bool pair_may_move(const oracle *o, const pair *p, double share, int first) {
+  uint32_t v = p->v[first], w = p->v[1 - first];
+  vec3 x = vec3_mad(o->position[v], p->step[first], share),
+       y = vec3_mad(o->position[w], p->step[1 - first], share);
+  oracle after = with_moved(o, v, x);
+  bool ok = may_move(o, v, x) && may_move(&after, w, y);
+  free(after.position);
+  return ok;
+}
+
+/* By how much more than needed the sum falls, and the farthest place is nearer. */
+static void pair_margins(const oracle *o, const pair *p, double share, double *gain, double *past) {
+  double sum = 0, worst = 0;
+  for (int k = 0; k < 2; k++) {
+    uint32_t v = p->v[k];
+    double worst_of;
+    oracle after = with_moved(o, v, vec3_mad(o->position[v], p->step[k], share));
+    sum += off_around(&after, v, &worst_of);
+    worst = fmax(worst, worst_of);
+    free(after.position);
+  }
+  *gain = (1 - RELAX_GAIN) * p->sum - sum;
+  *past = p->worst + EQUALLY_NEAR - worst;
+}
+
+/* Whether the engine was right to leave the pair, or to move it to x. */
+static void check_pair(const oracle *o, const pair *p, bool sure, const vec3 *x) {
+  double share = 1, gain, past;
+  for (int k = 0; k < RELAX_HALVES; k++, share /= 2) {
+    bool here = x != NULL;
+    for (int i = 0; i < 2 && here; i++)
+      here = vec3_distance(x[i], vec3_mad(o->position[p->v[i]], p->step[i], share)) <= 1e-6;
+    pair_margins(o, p, share, &gain, &past);
+    bool gains = gain > -1e-6 * p->sum && past > -EQUALLY_NEAR / 2;
+    sure &= fabs(gain) > 1e-6 * p->sum && fabs(past) > EQUALLY_NEAR / 2;
+    if (here && gains && pair_may_move(o, p, share, 0)) return;
+    if (here || (sure && gains && pair_may_move(o, p, share, 0) && pair_may_move(o, p, share, 1)))
+      fail_msg("vertices %u and %u, share %g: %s", p->v[0], p->v[1], share,
+               here ? "moved, not allowed" : "not moved");
+  }
+  if (x) fail_msg("vertices %u and %u moved to no share of their steps", p->v[0], p->v[1]);
+}
+
+/* The pair about vertex a that gains most, if any is worth it; *second: the gain of the next. */
+static pair best_pair(const oracle *o, uint32_t a, double *second) {
+  pair best = {.gain = 0}, p;
+  uint32_t *about = malloc(o->vertex_count * sizeof *about), count = 0;
+  *second = 0;
+  for (uint32_t v = 0; v < o->vertex_count; v++)
+    if (are_neighbours(o, v, a)) about[count++] = v; /* a as well */
+  for (uint32_t i = 0; i < count; i++)
+    for (uint32_t j = 0; j < i; j++) {
+      if (!find_pair(o, about[i], about[j], &p) || !(p.gain > (1 - 1e-6) * RELAX_GAIN * p.sum))
+        continue;
+      *second = fmax(*second, fmin(p.gain, best.gain));
+      if (p.gain > best.gain) best = p;
+    }
+  free(about);
+  return best;
 }
 
 /* ---- The order ---- */
@@ -746,18 +849,57 @@ static uint32_t beyond_side(const oracle *o, uint32_t v, uint32_t w) {
   return SCREE_NONE;
 }
 
-/* Vertex v has its turn to move after collapse i. */
-static void check_turn_to_move(oracle *o, const scree_decimator *d, size_t i, uint32_t v) {
+/* The record's next move, if it belongs to collapse i, and whether it keeps the volume by itself.
+ */
+static const scree_move *next_move(const oracle *o, const scree_decimator *d, size_t i, vec3 *x,
+                                   bool *alone) {
   const scree_moves *moves = &d->record.moves;
   const scree_move *m = &moves->items[o->moved];
-  if (o->moved == moves->count || m->index != i || m->vertex != v) {
+  if (o->moved == moves->count || m->index != i) return NULL;
+  *x = vec3_scale(vec3_sub(m->position, d->s.centre), 1 / d->s.scale);
+  vec3 step = vec3_sub(*x, o->position[m->vertex]), sum = {0, 0, 0};
+  for (size_t t = 0; t < o->triangle_count; t++)
+    if (has(o, t, m->vertex)) sum = vec3_add(sum, area_vector(o, t));
+  *alone = fabs(vec3_dot(sum, step)) <= 1e-8 * vec3_norm(sum) * vec3_norm(step);
+  return m;
+}
+
+/* Vertex v has its turn to move after collapse i. */
+static void check_turn_to_move(oracle *o, const scree_decimator *d, size_t i, uint32_t v) {
+  vec3 x;
+  bool alone;
+  const scree_move *m = next_move(o, d, i, &x, &alone);
+  if (!m || !alone || m->vertex != v) {
     check_move(o, v, NULL);
     return;
   }
-  vec3 x = vec3_scale(vec3_sub(m->position, d->s.centre), 1 / d->s.scale);
   check_move(o, v, &x);
   apply_move(o, v, x);
   o->moved++;
+}
+
+/* At last two vertices about a, which survived collapse i, move together. */
+static void check_exchange(oracle *o, const scree_decimator *d, size_t i, uint32_t a) {
+  double second;
+  bool alone;
+  vec3 x[2];
+  pair best = best_pair(o, a, &second), p;
+  bool sure = best.gain > (1 + 1e-6) * RELAX_GAIN * best.sum && second < (1 - 1e-6) * best.gain;
+  const scree_move *m = next_move(o, d, i, &x[0], &alone);
+  if (!m) {
+    if (best.gain > 0) check_pair(o, &best, sure, NULL);
+    return;
+  }
+  assert_true(o->moved + 1 < d->record.moves.count && m[1].index == i);
+  x[1] = vec3_scale(vec3_sub(m[1].position, d->s.centre), 1 / d->s.scale);
+  if (!find_pair(o, m[0].vertex, m[1].vertex, &p) || p.gain < (1 - 1e-6) * best.gain ||
+      !(best.gain > 0))
+    fail_msg("vertices %u and %u moved for %g, others for %g", m[0].vertex, m[1].vertex, p.gain,
+             best.gain);
+  check_pair(o, &p, sure, x);
+  for (int k = 0; k < 2; k++) apply_move(o, p.v[k], x[k]);
+  o->moved += 2;
+  o->exchanged++;
 }
 
 /* The neighbour of v that is farthest from it; *alone: by more than rounding. */
@@ -779,18 +921,20 @@ static uint32_t farthest_neighbour(const oracle *o, uint32_t v, bool *alone) {
 /* The survivor of collapse i, then its neighbours, counter-clockwise from the farthest. Where two
  * are as far, rounding decides the order, and the moves are taken over. */
 static void check_moves(oracle *o, const scree_decimator *d, size_t i) {
-  const scree_moves *moves = &d->record.moves;
-  bool alone;
+  bool in_order, alone;
+  vec3 x;
   uint32_t a = d->record.kept[i];
   check_turn_to_move(o, d, i, a);
-  uint32_t first = farthest_neighbour(o, a, &alone), v = first;
-  for (; !alone && o->moved < moves->count && moves->items[o->moved].index == i; o->taken++)
-    check_turn_to_move(o, d, i, moves->items[o->moved].vertex);
-  if (!alone) return;
-  do {
+  uint32_t first = farthest_neighbour(o, a, &in_order), v = first;
+  const scree_move *m;
+  for (; !in_order && (m = next_move(o, d, i, &x, &alone)) && alone; o->taken++)
+    check_turn_to_move(o, d, i, m->vertex);
+  while (in_order) {
     check_turn_to_move(o, d, i, v);
     v = beyond_side(o, a, v);
-  } while (v != first);
+    if (v == first) break;
+  }
+  check_exchange(o, d, i, a);
 }
 
 static void measure(const oracle *o, double *area, double *volume) {
@@ -914,8 +1058,8 @@ static scree_decimator decimator_of(const scree_mesh *mesh, bool qecd, scree_err
   return begin_decimation(mesh, qecd ? &scree_qecd_coster : &scree_volume_coster, error);
 }
 
-static void compare(const scree_mesh *mesh, bool qecd, size_t *moved, size_t *compared,
-                    size_t *decided) {
+static void compare(const scree_mesh *mesh, bool qecd, size_t *moved, size_t *exchanged,
+                    size_t *compared, size_t *decided) {
   scree_error error;
   scree_decimator d = decimator_of(mesh, qecd, &error);
   assert_true(d.s.closed);
@@ -927,6 +1071,7 @@ static void compare(const scree_mesh *mesh, bool qecd, size_t *moved, size_t *co
   assert_int_equal(o.moved, d.record.moves.count);
   check_floor(&o);
   *moved += o.moved - o.taken;
+  *exchanged += o.exchanged;
   *compared += o.compared;
   *decided += o.decided;
   oracle_free(&o);
@@ -1003,18 +1148,19 @@ static void every_collapse_is_the_oracles(void **state) {
   scree_rng rng = {.seed = 21};
   for (int which = 0; which < SHAPE_COUNT; which++)
     for (int qecd = 0; qecd < 2; qecd++) {
-      size_t moved = 0, compared = 0, decided = 0;
+      size_t moved = 0, exchanged = 0, compared = 0, decided = 0;
       for (int round = 0; round < rounds[which]; round++) {
         scree_mesh mesh = shape(which, &rng);
-        compare(&mesh, qecd, &moved, &compared, &decided);
+        compare(&mesh, qecd, &moved, &exchanged, &compared, &decided);
         scree_mesh_free(&mesh);
       }
-      print_message("shape %d, %s: %zu collapses, %zu without a rival within rounding, %zu moves\n",
-                    which, qecd ? "qecd" : "volume", compared, decided, moved);
+      print_message("shape %d, %s: %zu collapses, %zu without a rival within rounding, %zu moves, "
+                    "%zu pairs\n",
+                    which, qecd ? "qecd" : "volume", compared, decided, moved, exchanged);
       /* on noisy shapes rounding decides next to nothing */
       if (which >= NOISY_FROM) assert_true(decided > compared * 9 / 10);
       if (qecd) assert_int_equal(moved, 0);
-      if (!qecd && which >= NOISY_FROM) assert_true(moved > 0);
+      if (!qecd && which >= NOISY_FROM) assert_true(moved > 0 && exchanged > 0);
     }
 }
 
