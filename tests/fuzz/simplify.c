@@ -28,11 +28,11 @@ static void compare(const faults *given, const faults *level, bool exact) {
     FUZZ_CHECK(b->closed && b->manifold && b->oriented && b->shell_count == a->shell_count);
   FUZZ_CHECK(b->non_manifold_edge_count <= a->non_manifold_edge_count);
   if (exact) FUZZ_CHECK(b->degenerate_facet_count <= a->degenerate_facet_count);
-  if (!given->meetings) FUZZ_CHECK(!level->meetings);
+  if (exact && !given->meetings) FUZZ_CHECK(!level->meetings);
 }
 
 /* exact: not far from the origin, where positions round, nor of many magnitudes: facets may become
- * flat by rounding alone. */
+ * flat, or come to touch, by rounding alone. */
 static void check_levels(const scree_curve *curve, const scree_mesh *mesh, bool exact) {
   const faults given = look_at(mesh);
   size_t count = scree_curve_level_count(curve);
