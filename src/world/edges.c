@@ -139,7 +139,8 @@ static vec3 way_out(const scree_item *item, const crossing *x, double *weight) {
 }
 
 /* Whether edges that claim to have crossed deeply have: a closest point lies in the other body. The
- * claim is stale when the edges went around each other instead. */
+ * claim is stale when the edges went around each other instead. Where an edge is so sharp that the
+ * crossing's normal points back into no material, neither does. */
 static bool is_crossed(const scree_world *world, const scree_pair *pair,
                        const scree_frame *relative, const crossing *x) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
@@ -292,12 +293,20 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
     keep_reference(item, c->normal);
     armed = true;
   }
-  bool stale = c->distance < -pair->thin && !is_crossed(world, pair, relative, x);
+  /* one that counted is followed: of sharp edges the closest points need not lie in the others */
+  bool stale = item->crossing != SCREE_CROSSING_COUNTS && c->distance < -pair->thin &&
+               !is_crossed(world, pair, relative, x);
   item->inside = armed && !stale && c->distance < 0.5 * pair->reach;
   if (!apart && !scree_pair_is_new(pair)) c->first = 0;
   if (behind) /* what changes nothing */
     c->first = fmax(c->first, pair->overlap * (1 - world->options.sharing) - pair->smoothing);
   return armed && !stale;
+}
+
+/* Whether edges passed each other since the last step, over more than half the roundings. */
+static bool has_leapt(const scree_pair *pair, const scree_item *item, const edge_contact *c) {
+  return item->has_reference && c->distance < pair->travel &&
+         vec3_dot(c->normal, item->reference) < 0;
 }
 
 /* False where the crossing does not count. */
@@ -308,7 +317,7 @@ static bool find_contact(const scree_world *world, const scree_pair *pair, scree
   if (item->crossing != SCREE_CROSSING_COUNTS) c->first = first_overlap(pair, item, x);
   c->weight = scree_smooth_step(parallel_sines[0], parallel_sines[1], x->sine) * facing_share(x);
   bool behind = !item->inside && is_met_from_behind(world, pair, item, relative, x),
-       deep = item->inside || behind || x->distance < 0.5 * pair->reach;
+       deep = item->inside || behind || x->distance < 0.5 * pair->reach || has_leapt(pair, item, c);
   if (deep && !find_deep_contact(world, pair, item, relative, x, behind, c)) return false;
   if (!item->inside) keep_reference(item, c->normal);
   double out_a = -vec3_dot(x->axis_a, c->normal), out_b = vec3_dot(x->eb->normals.axis, c->normal);

@@ -15,8 +15,8 @@
 
 #include "base/rng.h"
 #include "base/vec.h"
-#include "particle/closest.h"
 #include "particle/particle.h"
+#include "support/hits.h"
 #include "support/shapes.h"
 #include "support/solids.h"
 
@@ -44,19 +44,6 @@ static scree_mesh tip(void) {
   return mesh;
 }
 
-/* How deep a point of space lies in the body, m; 0 outside. */
-static double depth_in(const scree_world *world, vec3 at) {
-  scree_body b;
-  scree_world_get_body(world, 0, &b);
-  const double *o = b.orientation;
-  mat3 r = quat_to_mat3((quat){o[0], o[1], o[2], o[3]});
-  const scree_particle *p = scree_world_body_particle(world, 0);
-  vec3 x = mat3_tmul_vec(&r, vec3_sub(at, vec3_load(b.position)));
-  const uint32_t root = 0;
-  uint32_t face;
-  return scree_is_inside(p, x) ? scree_nearest_face(p, &root, 1, x, 1, &face) : 0;
-}
-
 /* The deepest of points along the tip's edges, m. */
 static double edges_depth_in(const scree_world *world, size_t wall, vec3 at,
                              const scree_mesh *mesh) {
@@ -66,7 +53,7 @@ static double edges_depth_in(const scree_world *world, size_t wall, vec3 at,
   for (size_t k = 1; k < 4; k++) {
     vec3 edge = mat3_mul_vec(&turned, vec3_load(mesh->positions + 3 * k));
     for (int i = 1; i <= SAMPLES; i++)
-      deepest = fmax(deepest, depth_in(world, vec3_mad(at, edge, 0.4 * i / SAMPLES)));
+      deepest = fmax(deepest, law_depth_in(world, 0, vec3_mad(at, edge, 0.4 * i / SAMPLES)));
   }
   return deepest;
 }
@@ -148,7 +135,7 @@ static void wander(scree_particle *particle, uint64_t number, tally *t) {
       law_step(world, 1);
       start = vec3_mad(start, way, stride);
       scree_observation o;
-      double ledger = law_ledger(world, &o), depth = depth_in(world, start);
+      double ledger = law_ledger(world, &o), depth = law_depth_in(world, 0, start);
       if (i == 0 && !along) first = ledger;
       highest = fmax(highest, o.elastic);
       most = fmax(most, fabs(ledger - first));

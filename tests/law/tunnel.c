@@ -85,6 +85,23 @@ static void a_thin_wall_is_not_pierced(void **state) {
   scree_particle_free(tray);
 }
 
+/* Edges that a step takes past each other over more than their roundings. */
+static void crossed_edges_are_not_lost_between_steps(void **state) {
+  (void)state;
+  const quat quarter = quat_from_rotation_vector((vec3){0, 0, 90 * degree}),
+             on_edge = quat_from_rotation_vector((vec3){45 * degree, 0, 0});
+  scree_particle *bar = particle_of(shape_box(0.1, 0.012, 0.012));
+  const law_meeting meeting = {
+      "crossed edges of bars", bar, bar, quat_mul(quarter, on_edge), on_edge, 0.003, 0.2, 0};
+  law_outcome out = {.follow = true};
+  for (uint64_t k = 0; k < TRIES; k++) law_meet(&meeting, 25, k, &out);
+  LAW_NEAR("L8", "crossed edges of bars, 25 m/s: passed through", (double)out.through, 0, 0);
+  LAW_NEAR("L8", "stuck", (double)out.stuck, 0, 0);
+  LAW_NEAR("L8", "stopped beyond the overlap limit", (double)out.stopped, 0, 0);
+  LAW_BELOW("L8", "lay unfelt inside the other, m", out.unfelt, 0);
+  scree_particle_free(bar);
+}
+
 /* A cube without thin walls, so fast that it is on one side of a thin tray's bottom in one step and
  * on the other in the next, at rest itself or moving. */
 static void what_passes_a_thin_wall_between_steps_stops(void **state) {
@@ -117,6 +134,7 @@ static void what_passes_a_thin_wall_between_steps_stops(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(nothing_passes_or_sticks),
                                      cmocka_unit_test(a_thin_wall_is_not_pierced),
+                                     cmocka_unit_test(crossed_edges_are_not_lost_between_steps),
                                      cmocka_unit_test(what_passes_a_thin_wall_between_steps_stops)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

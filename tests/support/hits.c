@@ -4,6 +4,9 @@
 #include "particle/closest.h"
 #include "support/law.h"
 
+enum { EDGE_SAMPLES = 40 };
+static const double none = 1e-4; /* m; half the roundings of bodies of 50 mm */
+
 double law_random_hit(scree_particle *particle, double steps, uint64_t number, bool damped) {
   law_setup setup = law_default();
   setup.restitution = damped ? 0.3 : 1;
@@ -54,22 +57,63 @@ static void stand(scree_particle *particle, quat q, scree_body *body) {
   memcpy(body->orientation, orientation, sizeof orientation);
 }
 
-static size_t corners_inside(scree_world *world, size_t of, size_t in) {
-  scree_body a, b;
-  scree_world_get_body(world, of, &a);
-  scree_world_get_body(world, in, &b);
-  const scree_particle *pa = scree_world_body_particle(world, of),
-                       *pb = scree_world_body_particle(world, in);
-  mat3 ra = quat_to_mat3(
-           (quat){a.orientation[0], a.orientation[1], a.orientation[2], a.orientation[3]}),
-       rb = quat_to_mat3(
-           (quat){b.orientation[0], b.orientation[1], b.orientation[2], b.orientation[3]});
-  size_t inside = 0;
-  for (size_t i = 0; i < pa->point_count; i++) {
-    vec3 x = vec3_add(mat3_mul_vec(&ra, pa->points[i]), vec3_load(a.position));
-    inside += scree_is_inside(pb, mat3_tmul_vec(&rb, vec3_sub(x, vec3_load(b.position))));
+typedef struct placed {
+  mat3 rotation;
+  vec3 position;
+  const scree_particle *particle;
+} placed;
+
+static placed place_of(const scree_world *world, size_t body) {
+  scree_body b;
+  scree_world_get_body(world, body, &b);
+  const double *o = b.orientation;
+  return (placed){quat_to_mat3((quat){o[0], o[1], o[2], o[3]}), vec3_load(b.position),
+                  scree_world_body_particle(world, body)};
+}
+
+static vec3 point_of(const placed *p, vec3 x) {
+  return vec3_add(mat3_mul_vec(&p->rotation, x), p->position);
+}
+
+static double depth_in(const placed *p, vec3 at) {
+  vec3 x = mat3_tmul_vec(&p->rotation, vec3_sub(at, p->position));
+  const uint32_t root = 0;
+  uint32_t face;
+  scree_box here = {x, x};
+  if (!scree_box_meets(&here, &p->particle->box) || !scree_is_inside(p->particle, x)) return 0;
+  return scree_nearest_face(p->particle, &root, 1, x, INFINITY, &face);
+}
+
+double law_depth_in(const scree_world *world, size_t body, vec3 at) {
+  placed p = place_of(world, body);
+  return depth_in(&p, at);
+}
+
+/* The deepest of the corners, and of points along the edges, of one body in the other, m. */
+static double deepest_in(const scree_world *world, size_t of, size_t in, bool edges) {
+  placed a = place_of(world, of), b = place_of(world, in);
+  double deepest = 0;
+  for (size_t i = 0; i < a.particle->point_count; i++)
+    deepest = fmax(deepest, depth_in(&b, point_of(&a, a.particle->points[i])));
+  for (size_t i = 0; edges && i < a.particle->edge_count; i++) {
+    const scree_edge *e = &a.particle->edges[i];
+    for (int k = 1; k < EDGE_SAMPLES; k++) {
+      vec3 x = vec3_mad(e->start, e->along, e->length * k / EDGE_SAMPLES);
+      deepest = fmax(deepest, depth_in(&b, point_of(&a, x)));
+    }
   }
-  return inside;
+  return deepest;
+}
+
+static double depth_of_either(const scree_world *world, bool edges) {
+  return fmax(deepest_in(world, 0, 1, edges), deepest_in(world, 1, 0, edges));
+}
+
+/* The observation is that of the step after the one that led to this depth: it saw it. */
+static bool note_unfelt(const scree_observation *o, double depth, law_outcome *out) {
+  if (depth < none || o->largest_overlap >= 0.5 * depth) return false;
+  out->unfelt = fmax(out->unfelt, depth);
+  return true;
 }
 
 void law_meet(const law_meeting *m, double speed, uint64_t number, law_outcome *out) {
@@ -102,8 +146,11 @@ void law_meet(const law_meeting *m, double speed, uint64_t number, law_outcome *
   bool touched = false, stopped = false;
   double free_since = 0;
   while (scree_world_time(world) < last && !stopped) {
-    stopped = scree_world_step(world, 20, &error) != SCREE_OK;
+    stopped = scree_world_step(world, 19, &error) != SCREE_OK;
+    double depth = out->follow && touched ? depth_of_either(world, true) : 0;
+    stopped = stopped || scree_world_step(world, 1, &error) != SCREE_OK;
     scree_world_observe(world, &o);
+    note_unfelt(&o, depth, out);
     if (o.pair_count) touched = true, free_since = scree_world_time(world);
     if (touched && scree_world_time(world) > free_since + 0.003) break;
   }
@@ -113,9 +160,13 @@ void law_meet(const law_meeting *m, double speed, uint64_t number, law_outcome *
     scree_world_free(world);
     return;
   }
+  /* what begins to touch in the last step is felt in the next */
+  double depth = depth_of_either(world, out->follow);
+  law_step(world, 1);
+  scree_world_observe(world, &o);
   /* bodies that slide along each other touch by less than a micrometre: they are not stuck */
   out->stuck += touched && o.pair_count > 0 && o.largest_overlap > 1e-5;
-  out->through += corners_inside(world, a, b) + corners_inside(world, b, a) > 0;
+  out->through += note_unfelt(&o, depth, out);
   scree_world_get_body(world, a, &up);
   scree_world_get_body(world, b, &down);
   if (m->offset == 0 && m->shift < 0.2 * mu.size) out->through += up.position[2] < down.position[2];
