@@ -71,6 +71,12 @@ size_t scree_level_find(const scree_level_table *table, size_t target) {
   return low;
 }
 
+/* The best level so far by one error. */
+typedef struct leader {
+  size_t index;
+  double error, eps, ip;
+} leader;
+
 /* The state of the pass over the levels. */
 typedef struct pass {
   const scree_choice_options *options;
@@ -80,6 +86,7 @@ typedef struct pass {
   size_t index;
   double penalty, eps, worst, smooth_eps, smooth_worst;
   double best_finer_ip;
+  leader plain, robust, smooth;
 } pass;
 
 /* Moves the pass to the next level: the errors there and the envelopes so far. */
@@ -88,11 +95,11 @@ static void pass_enter(pass *p, size_t index, scree_level_row row) {
   p->row = row;
   p->penalty = p->options->weight * (double)row.triangle_count / p->triangle_count;
   p->eps = fabs(row.area - p->reference) / p->reference;
-  p->worst = fmax(p->worst, p->eps);
+  p->worst = p->eps > p->worst ? p->eps : p->worst;
   p->smooth_eps = fabs(row.area - p->noise->area) / p->noise->area;
   /* finer than the plateau the error is the noise itself: it must not hide the shape's behind it */
-  p->smooth_worst =
-      index <= p->noise->level_index ? p->smooth_eps : fmax(p->smooth_worst, p->smooth_eps);
+  if (index <= p->noise->level_index || p->smooth_eps > p->smooth_worst)
+    p->smooth_worst = p->smooth_eps;
 }
 
 static void record_level(const pass *p, scree_choice_level *level, size_t target) {
@@ -114,17 +121,22 @@ static void record_level(const pass *p, scree_choice_level *level, size_t target
 
 /* Keeps the level under the pass where its criterion is not above the best: with counts falling,
  * ties go to the fewest triangles. */
-static void keep_best(const pass *p, double error, scree_pick *best) {
+static void keep_best(const pass *p, double error, leader *best) {
   double ip = error + p->penalty;
-  if (best->triangle_count && ip > best->ip) return;
-  *best = (scree_pick){(double)p->row.triangle_count / p->triangle_count,
-                       p->index,
-                       p->row.triangle_count,
-                       p->row.area,
-                       p->row.volume,
-                       error,
-                       ip,
-                       p->eps};
+  if (p->index > 0 && ip > best->ip) return;
+  *best = (leader){p->index, error, p->eps, ip};
+}
+
+static scree_pick pick_of(const pass *p, const scree_level_table *table, const leader *best) {
+  scree_level_row row = table->row(table->context, best->index);
+  return (scree_pick){(double)row.triangle_count / p->triangle_count,
+                      best->index,
+                      row.triangle_count,
+                      row.area,
+                      row.volume,
+                      best->error,
+                      best->ip,
+                      best->eps};
 }
 
 /* Levels yet to be filled, from the finest down. */
@@ -159,11 +171,10 @@ static void run_pass(const scree_level_table *table, const scree_choice_options 
   aim(&trace, p.triangle_count);
   for (size_t i = 0; i < table->count; i++) {
     pass_enter(&p, i, table->row(table->context, i));
-    keep_best(&p, p.eps, &choice->plain);
-    keep_best(&p, p.worst, &choice->robust);
-    keep_best(&p, p.smooth_worst, &choice->smooth);
-    if (choice->plain.level_index == i)
-      choice->plain_is_accident = p.eps < ACCIDENT_RATIO * p.worst;
+    keep_best(&p, p.eps, &p.plain);
+    keep_best(&p, p.worst, &p.robust);
+    keep_best(&p, p.smooth_worst, &p.smooth);
+    if (p.plain.index == i) choice->plain_is_accident = p.eps < ACCIDENT_RATIO * p.worst;
     double finer_ip = p.worst + 0.25 * p.penalty; /* Nm four times as large */
     if (finer_ip <= p.best_finer_ip) {
       p.best_finer_ip = finer_ip;
@@ -173,6 +184,9 @@ static void run_pass(const scree_level_table *table, const scree_choice_options 
     fill_levels(&p, &trace, i + 1 == table->count);
   }
   choice->floor_count = p.row.triangle_count;
+  choice->plain = pick_of(&p, table, &p.plain);
+  choice->robust = pick_of(&p, table, &p.robust);
+  choice->smooth = pick_of(&p, table, &p.smooth);
 }
 
 /* How far the grid's Rp is from the one reached, in decades. */

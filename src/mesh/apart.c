@@ -17,8 +17,8 @@
 
 /* Cell size in mean facet sizes; cells per facet at most; entries per facet, cells of one facet and
  * facets in one cell beyond which the grid is no good. */
-#define SIZES_PER_CELL 2.0
-enum { CELLS_PER_FACET = 2, ENTRIES_PER_FACET = 8, CELLS_MAX = 64, CROWD = 192 };
+#define SIZES_PER_CELL 3.0
+enum { CELLS_PER_FACET = 2, ENTRIES_PER_FACET = 8, CELLS_MAX = 64, CROWD = 432 };
 enum { FACET_BLOCK = 4096, CELL_BLOCK = 2048, SAMPLE_STEP = 16 };
 
 typedef struct prover {

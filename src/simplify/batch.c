@@ -47,8 +47,8 @@ enum { ROUNDS = 4 };
 #define REGRID_BELOW   0.6
 
 enum { VERTEX_BLOCK = SCREE_CHOICE_BLOCK, TAKEN_BLOCK = 256, BINS = 1 << 16 };
-/* Edges evaluated in one call. */
-enum { SIDE_BY_SIDE = 64 };
+/* Edges evaluated in one call; how far ahead memory is asked for in a walk over all. */
+enum { SIDE_BY_SIDE = 64, AHEAD = 16 };
 
 enum { REFUSED, POSTPONED, CERTAIN, UNCERTAIN };
 
@@ -627,11 +627,29 @@ static size_t sort_certain(pass *p) {
   return count;
 }
 
+/* Asks for what writing these collapses down will read: in the order of cost they lie anywhere. */
+SCREE_PREFETCHES void ask_for_records(const pass *p, const item *order, size_t count) {
+  const scree_halfmesh *s = &p->d->s;
+  for (size_t k = 0; k < count; k++) {
+    scree_prefetch(&p->taken[order[k].index], sizeof *p->taken);
+    scree_prefetch(&p->changes[order[k].index], sizeof *p->changes);
+  }
+  for (size_t k = 0; k < count; k++)
+    scree_prefetch(&s->half[p->taken[order[k].index].half_edge / 3 * 3], 3 * sizeof *s->half);
+  for (size_t k = 0; k < count; k++) {
+    uint32_t h = p->taken[order[k].index].half_edge;
+    __builtin_prefetch(&s->vertex[s->half[h].from]);
+    __builtin_prefetch(&s->vertex[scree_to(s, h)]);
+  }
+}
+
 static void record_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
   for (size_t k = begin; k < end; k++) {
+    if ((k - begin) % SIDE_BY_SIDE == 0)
+      ask_for_records(p, p->order + k, end - k < SIDE_BY_SIDE ? end - k : SIDE_BY_SIDE);
     uint32_t i = p->order[k].index;
     scree_ring ring;
     scree_ring_name(&d->s, p->taken[i].half_edge, &ring);
@@ -689,7 +707,10 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
 static size_t apply(pass *p) {
   scree_decimator *d = p->d;
   size_t count = sort_certain(p), open = 0;
-  for (size_t k = 0; k < count; k++) p->moves += sqrt((double)p->taken[p->order[k].index].error);
+  for (size_t k = 0; k < count; k++) {
+    if (k + AHEAD < count) __builtin_prefetch(&p->taken[p->order[k + AHEAD].index].error);
+    p->moves += sqrt((double)p->taken[p->order[k].index].error);
+  }
   if (!d->s.closed)
     for (size_t k = 0; k < count; k++) open += p->taken[p->order[k].index].open;
   scree_parallel_for(count, TAKEN_BLOCK, record_block, p);

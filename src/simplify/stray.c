@@ -15,7 +15,7 @@
 /* ... less so many of those with which the scan's vertices began. */
 #define ROUGH_MEANS 5.0
 /* Triangles walked over towards a place before the tree is asked. */
-enum { MOST_STEPS = 8 };
+enum { MOST_STEPS = 32 };
 /* Witnesses per triangle above which half of them are dropped, and how these are known. */
 enum { CROWD = 24 };
 #define DROPPED (-1.0)
@@ -142,24 +142,21 @@ static uint32_t edge_towards(const double *corners, vec3 x) {
   return w <= u && w <= v ? 0 : u <= v ? 1 : 2;
 }
 
-/* Whether a triangle on the way from *near towards x is within this distance, squared: mostly the
- * answer, at less cost than to look through the tree. Then *near is that triangle. */
+/* Whether the triangle that x lies above, looked for from *near on by going towards x, is within
+ * this distance, squared: mostly the answer, at less cost than to look through the tree. Then *near
+ * is that triangle. */
 static bool walk_within(const scree_memory *m, vec3 x, double most, uint32_t *near) {
   uint32_t now = *near, last = SCREE_NONE;
-  for (int step = 0; step < MOST_STEPS && now != SCREE_NONE; step++) {
-    const double *corners = m->surface.corners + 9 * (size_t)now;
-    vec3 point;
-    if (scree_triangle_closest(corners, x, &point) <= most) {
-      *near = now;
-      return true;
-    }
-    uint32_t edge = edge_towards(corners, x),
-             next = edge < 3 ? m->beside[3 * (size_t)now + edge] : last;
-    if (next == last) break; /* back and forth over a crest */
+  vec3 point;
+  for (int step = 0; step < MOST_STEPS; step++) {
+    uint32_t edge = edge_towards(m->surface.corners + 9 * (size_t)now, x);
+    uint32_t next = edge < 3 ? m->beside[3 * (size_t)now + edge] : SCREE_NONE;
+    if (next == SCREE_NONE || next == last) break; /* here, or back and forth over a crest */
     last = now;
     now = next;
   }
-  return false;
+  *near = now;
+  return scree_triangle_closest(m->surface.corners + 9 * (size_t)now, x, &point) <= most;
 }
 
 /* The squared distance of x from the surface kept, if above `least`. *near: a triangle to begin
