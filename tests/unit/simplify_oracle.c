@@ -448,10 +448,10 @@ static bool may_move(const oracle *o, uint32_t v, vec3 x) {
 }
 
 /* Of the witnesses of v's triangles, each from the triangle that it is held by now, or where it was
- * on the surface from the nearest of v's: the sum of the
- * squared distances, and the largest distance, also of v and of places on its edges. */
+ * on the surface from the nearest of v's: the sum of the squared distances, and the largest
+ * distance, also of v and of places on its edges, if asked for. */
 static double off_around(const oracle *o, uint32_t v, double *worst) {
-  double sum = 0, worst2 = start_distance2(o, o->position[v]);
+  double sum = 0, worst2 = 0;
   for (size_t w = 0; w < o->vertex_count; w++) {
     if (!has(o, o->holder[w], v)) continue;
     double distance2 = triangle_distance2(o, o->holder[w], o->witness[w]);
@@ -460,13 +460,14 @@ static double off_around(const oracle *o, uint32_t v, double *worst) {
     sum += distance2;
     worst2 = fmax(worst2, distance2);
   }
+  if (!worst) return sum;
   for (size_t t = 0; t < o->triangle_count; t++)
     for (size_t i = 0; i < 3 && has(o, t, v); i++)
       for (int part = 1; part < EDGE_PARTS; part++) {
         vec3 at = vec3_lerp(o->position[v], corner(o, t, i), (double)part / EDGE_PARTS);
         worst2 = fmax(worst2, start_distance2(o, at));
       }
-  *worst = sqrt(worst2);
+  *worst = sqrt(fmax(worst2, start_distance2(o, o->position[v])));
   return sum;
 }
 
@@ -546,7 +547,7 @@ static void check_move(const oracle *o, uint32_t v, const vec3 *x) {
 typedef struct pair {
   uint32_t v[2];
   vec3 step[2];
-  double sum, worst, gain; /* before; of the sum, by the exchange */
+  double sum, gain; /* before; of it, by the exchange */
 } pair;
 
 static bool are_neighbours(const oracle *o, uint32_t v, uint32_t w) {
@@ -557,14 +558,13 @@ static bool are_neighbours(const oracle *o, uint32_t v, uint32_t w) {
 
 /* From how the pressures fall with the volume taken over; that which makes them the same. */
 static bool find_pair(const oracle *o, uint32_t v, uint32_t w, pair *p) {
-  double promise, at_rest[2], moved[2], unit = 1e-3, worst;
+  double promise, at_rest[2], moved[2], unit = 1e-3;
   *p = (pair){.v = {v, w}};
   if (v == w || are_neighbours(o, v, w)) return false;
   for (int k = 0; k < 2; k++) {
     if (!step_with_volume(o, p->v[k], 0, &p->step[k], &promise, &at_rest[k])) return false;
     step_with_volume(o, p->v[k], unit, &p->step[k], &promise, &moved[k]);
-    p->sum += off_around(o, p->v[k], &worst);
-    p->worst = fmax(p->worst, worst);
+    p->sum += off_around(o, p->v[k], NULL);
   }
   double falls = (at_rest[0] - moved[0] + at_rest[1] - moved[1]) / unit;
   double volume = (at_rest[0] - at_rest[1]) / falls;
@@ -585,8 +585,9 @@ static bool pair_may_move(const oracle *o, const pair *p, double share, int firs
   return ok;
 }
 
-/* By how much more than needed the sum falls, and the farthest place is nearer. */
-static void pair_margins(const oracle *o, const pair *p, double share, double *gain, double *past) {
+/* By how much more than needed the sum falls, and the farthest place is nearer than `before`. */
+static void pair_margins(const oracle *o, const pair *p, double share, double before, double *gain,
+                         double *past) {
   double sum = 0, worst = 0;
   for (int k = 0; k < 2; k++) {
     uint32_t v = p->v[k];
@@ -597,17 +598,19 @@ static void pair_margins(const oracle *o, const pair *p, double share, double *g
     free(after.position);
   }
   *gain = (1 - RELAX_GAIN) * p->sum - sum;
-  *past = p->worst + EQUALLY_NEAR - worst;
+  *past = before + EQUALLY_NEAR - worst;
 }
 
 /* Whether the engine was right to leave the pair, or to move it to x. */
 static void check_pair(const oracle *o, const pair *p, bool sure, const vec3 *x) {
-  double share = 1, gain, past;
+  double share = 1, gain, past, worst[2];
+  for (int k = 0; k < 2; k++) off_around(o, p->v[k], &worst[k]);
+  double before = fmax(worst[0], worst[1]);
   for (int k = 0; k < RELAX_HALVES; k++, share /= 2) {
     bool here = x != NULL;
     for (int i = 0; i < 2 && here; i++)
       here = vec3_distance(x[i], vec3_mad(o->position[p->v[i]], p->step[i], share)) <= 1e-6;
-    pair_margins(o, p, share, &gain, &past);
+    pair_margins(o, p, share, before, &gain, &past);
     bool gains = gain > -1e-6 * p->sum && past > -EQUALLY_NEAR / 2;
     sure &= fabs(gain) > 1e-6 * p->sum && fabs(past) > EQUALLY_NEAR / 2;
     if (here && gains && pair_may_move(o, p, share, 0)) return;
