@@ -12,7 +12,7 @@
 
 /* Slots a block: whole words of world->touching, which a thread of its own writes. Several blocks
  * are gone through at once where there are many, for at the beginning nothing was asked for. */
-enum { PAIR_BLOCK = 128, MOST_BLOCKS = 8, LEAST_PARTS = 32 };
+enum { PAIR_BLOCK = 128, MOST_BLOCKS = SCREE_SLOTS_AT_ONCE / PAIR_BLOCK, LEAST_PARTS = 32 };
 
 /* Who is awake or due of the neighbours [begin, end). Without branches: one in five is. */
 static size_t list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake) {
@@ -93,7 +93,8 @@ static void evaluate_blocks(void *context, size_t begin, size_t end, size_t part
   (void)part;
   scree_world *world = context;
   scree_pair *const *pairs = world->pairs.items;
-  uint32_t awake[MOST_BLOCKS * PAIR_BLOCK];
+  scree_scratch *scratch = &world->scratch[worker];
+  uint32_t *awake = scratch->awake;
   size_t count = list_awake(world, begin, end, awake), i = 0;
   for (size_t k = 0; k < PAIRS_AHEAD && k < count; k++) fetch_pair(world, awake[k]);
   for (size_t block = begin / PAIR_BLOCK; block * PAIR_BLOCK < end; block++) {
@@ -102,7 +103,7 @@ static void evaluate_blocks(void *context, size_t begin, size_t end, size_t part
       if (i + PAIRS_AHEAD < count) fetch_pair(world, awake[i + PAIRS_AHEAD]);
       if (i + ITEMS_AHEAD < count) fetch_items(pairs[awake[i + ITEMS_AHEAD]]);
       if (i + FEATURES_AHEAD < count) fetch_features(world, pairs[awake[i + FEATURES_AHEAD]]);
-      evaluate_at(world, awake[i], &world->scratch[worker], &sums);
+      evaluate_at(world, awake[i], scratch, &sums);
     }
     world->sums.items[block] = sums;
   }

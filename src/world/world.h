@@ -212,10 +212,13 @@ typedef struct scree_touch_list {
   size_t count, capacity;
 } scree_touch_list;
 
+enum { SCREE_SLOTS_AT_ONCE = 1024 };
+
 /* Scratch of one worker. */
 typedef struct scree_scratch {
   scree_touch_list touches;
-  scree_pair pair; /* neighbours that wake, until they stay awake */
+  uint32_t awake[SCREE_SLOTS_AT_ONCE]; /* of the slots that it goes through */
+  scree_pair pair;                     /* neighbours that wake, until they stay awake */
   scree_further further[SCREE_OWN_ITEMS];
   uint64_t item_evaluations, closest_queries, list_builds;
   double candidate_seconds;
