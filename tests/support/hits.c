@@ -162,11 +162,12 @@ void law_meet(const law_meeting *m, double speed, uint64_t number, law_outcome *
   }
   /* what begins to touch in the last step is felt in the next */
   double depth = depth_of_either(world, out->follow);
+  scree_observation next;
   law_step(world, 1);
-  scree_world_observe(world, &o);
+  scree_world_observe(world, &next);
   /* bodies that slide along each other touch by less than a micrometre: they are not stuck */
   out->stuck += touched && o.pair_count > 0 && o.largest_overlap > 1e-5;
-  out->through += note_unfelt(&o, depth, out);
+  out->through += note_unfelt(&next, depth, out);
   scree_world_get_body(world, a, &up);
   scree_world_get_body(world, b, &down);
   if (m->offset == 0 && m->shift < 0.2 * mu.size) out->through += up.position[2] < down.position[2];
