@@ -174,7 +174,7 @@ def pictures(browser, name, **how):
 
 
 def one_object(browser, folder):
-    scree("choose", "sample:dc-1", "--resolution", "1.5mm", "-o", "one", folder=folder)
+    scree("choose", "sample:sp-1", "--resolution", "1.5mm", "-o", "one", folder=folder)
     page = os.path.join(folder, "one", "report.html")
     scree("report", "one", "-o", "again.html", folder=folder)
     with open(page, "rb") as a, open(os.path.join(folder, "again.html"), "rb") as b:
