@@ -416,7 +416,8 @@ static bool strays(const pass *p, const scree_ring *ring, const scree_candidate 
   if (!scree_memory_is_kept(&d->memory))
     return !scree_stays_within(&d->s, ring, c->target, most) ||
            (p->usual2 < INFINITY && !scree_ends_stay_within(&d->s, ring, c->target, most));
-  return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, most);
+  return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target,
+                                    scree_is_close_scan(d) ? SCREE_EDGE_PLACES : 1, most);
 }
 
 static void check_one(pass *p, uint32_t index, const scree_candidate *candidate) {
@@ -744,10 +745,15 @@ static scree_status set_usual(pass *p, size_t last_count) {
   size_t kept = scree_is_large(d) ? SCREE_KEPT_LATE : SCREE_KEPT_COUNT;
   double usual = 0;
   scree_status status = SCREE_OK;
-  if (!d->coster->merge && count <= kept) {
-    if (!scree_memory_is_kept(&d->memory)) status = scree_decimate_keep(d);
-    if (status != SCREE_OK) return status;
-    usual = scree_memory_usual(&d->memory);
+  if (!d->coster->merge && scree_is_close_scan(d) && count <= SCREE_SURFACE_COUNT &&
+      !scree_memory_has_surface(&d->memory))
+    status = scree_memory_keep_surface(&d->s, &d->memory, d->error);
+  if (status == SCREE_OK && !d->coster->merge && count <= kept && !scree_memory_is_kept(&d->memory))
+    status = scree_decimate_keep(d);
+  if (status != SCREE_OK) return status;
+  if (scree_memory_is_kept(&d->memory)) {
+    usual = scree_memory_usual(&d->memory, scree_is_held_close(d));
+    if (usual > 0 && !scree_is_close_scan(d)) usual = fmax(usual, scree_memory_worst(&d->memory));
   } else if (!is_fine(d)) {
     usual = MOST_MOVES * p->moves / (double)last_count;
   }

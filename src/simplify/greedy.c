@@ -12,7 +12,8 @@
  *
  * The stray costs a toll, C (D / F)^6, beside what cost.h has, which counts it against the size of
  * the triangles and so lets the rounded edges of a large body pass. C is the cost that a tenth of
- * the edges do not exceed, and F is scree_memory_usual. Since both grow as triangles go, they are
+ * the edges do not exceed, and F is scree_memory_usual, or the largest distance of a witness, if
+ * that is more. Since both grow as triangles go, they are
  * found anew whenever the triangles have come down to 0.7 of what they were; all edges are
  * looked at once more then. While no witness is off there is no toll.
  *
@@ -221,8 +222,9 @@ static void renew(queue *q) {
   for (size_t i = 0; i < q->heap_count; i++) q->sorted[i] = q->cost[q->heap[i]];
   qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
   double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
-  scree_memory_thin(&d->memory, &d->s);
-  double far = scree_memory_usual(&d->memory);
+  scree_memory_thin(&d->memory, &d->s, scree_is_held_close(d));
+  double far = scree_memory_usual(&d->memory, scree_is_held_close(d));
+  if (far > 0) far = fmax(far, scree_memory_worst(&d->memory));
   q->toll = far > 0 ? cost / pow(far, 6) : 0;
   q->renew_at = (size_t)(RENEW_BELOW * (double)d->s.live_triangle_count);
 }

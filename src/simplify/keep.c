@@ -4,8 +4,6 @@
 #include "base/parallel.h"
 #include "simplify/decimate.h"
 
-/* So many witnesses for a triangle kept. */
-enum { CROWD = 2 };
 enum { WITNESS_BLOCK = 1024 };
 /* Squared cosines to the normal that differ from 1 by no more are 1. */
 #define ABOVE 1e-9
@@ -29,22 +27,19 @@ static void find_places(finding *f) {
     f->place[r->gone[i]] = f->place[r->kept[i] & ~SCREE_ONE_TRIANGLE];
 }
 
-/* Lists the vertices that are there and, but of large scans, every so many of those that went, in
- * the order in which they went, for turning the scan does not change that; sorted by their places,
- * so that what is asked for together lies together. */
+/* Lists the vertices that are there and, but of large scans, those that went; sorted by their
+ * places, so that what is asked for together lies together. */
 static void list_origins(finding *f) {
   const scree_halfmesh *s = &f->d->s;
   const scree_record *r = &f->d->record;
-  size_t stride = 1 + f->d->mesh->vertex_count / (CROWD * s->live_triangle_count);
   uint32_t count = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++) f->end[v] = s->vertex[v].outgoing != SCREE_NONE;
-  for (size_t i = 0; i < f->gone_count; i += stride) f->end[f->place[r->gone[i]]]++;
+  for (size_t i = 0; i < f->gone_count; i++) f->end[f->place[r->gone[i]]]++;
   for (uint32_t v = 0; v < s->vertex_count; v++) {
     count += f->end[v];
     f->end[v] = count;
   }
-  for (size_t i = 0; i < f->gone_count; i += stride)
-    f->origin[--f->end[f->place[r->gone[i]]]] = r->gone[i];
+  for (size_t i = 0; i < f->gone_count; i++) f->origin[--f->end[f->place[r->gone[i]]]] = r->gone[i];
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE) f->origin[--f->end[v]] = s->vertex[v].origin;
   f->count = count;

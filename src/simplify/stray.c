@@ -12,12 +12,15 @@
 #define STAND_OFF 0.5
 /* What is usual for the largest distance, in mean ones. */
 #define USUAL_MEANS 10.0
+/* ... and where the level is held close. */
+#define CLOSE_MEANS 9.0
 /* ... less so many of those with which the scan's vertices began. */
 #define ROUGH_MEANS 5.0
 /* Triangles walked over towards a place before the tree is asked. */
 enum { MOST_STEPS = 32 };
-/* Witnesses per triangle above which half of them are dropped, and how these are known. */
-enum { CROWD = 24 };
+/* Witnesses per triangle above which half of them are dropped, where the level is held close and
+ * else, and how these are known. */
+enum { CLOSE_CROWD = 48, CROWD = 24 };
 #define DROPPED (-1.0)
 /* Squared areas that differ by no more of themselves are the same. */
 #define SAME_SIZE 1e-9
@@ -89,16 +92,14 @@ static void find_beside(scree_memory *m, const scree_halfmesh *s, uint32_t *numb
   }
 }
 
-scree_status scree_memory_keep(const scree_halfmesh *s, scree_witness *placed, size_t placed_count,
-                               scree_memory *m, scree_error *error) {
+scree_status scree_memory_keep_surface(const scree_halfmesh *s, scree_memory *m,
+                                       scree_error *error) {
   scree_mesh mesh = {.vertex_count = s->vertex_count};
   uint32_t *number = NULL, *place = NULL;
   scree_status status = SCREE_OUT_OF_MEMORY;
-  *m = (scree_memory){.witnesses = placed};
+  *m = (scree_memory){0};
   SCREE_ALLOC_OR(mesh.positions, 3 * s->vertex_count, error, done);
   SCREE_ALLOC_OR(mesh.triangles, 3 * s->live_triangle_count, error, done);
-  if (!placed) SCREE_ALLOC_OR(m->witnesses, s->live_vertex_count, error, done);
-  SCREE_ALLOC_OR(m->first, s->triangle_count, error, done);
   SCREE_ALLOC_OR(m->beside, 3 * s->live_triangle_count, error, done);
   SCREE_ALLOC_OR(number, s->triangle_count, error, done);
   SCREE_ALLOC_OR(place, s->live_triangle_count, error, done);
@@ -112,17 +113,32 @@ scree_status scree_memory_keep(const scree_halfmesh *s, scree_witness *placed, s
     number[t] = (uint32_t)mesh.triangle_count++;
   }
   for (size_t v = 0; v < s->vertex_count; v++) vec3_store(mesh.positions + 3 * v, s->vertex[v].at);
-  memset(m->first, 0xff, s->triangle_count * sizeof *m->first);
   status = scree_bvh_build(&mesh, &m->surface, error);
   if (status == SCREE_OK) find_beside(m, s, number, place);
-  if (status == SCREE_OK && placed)
-    add_placed(m, placed_count);
-  else if (status == SCREE_OK)
-    status = add_vertices(m, s, error);
 done:
   scree_mesh_free(&mesh);
   scree_free(number);
   scree_free(place);
+  if (status != SCREE_OK) scree_memory_free(m);
+  return status;
+}
+
+scree_status scree_memory_keep(const scree_halfmesh *s, scree_witness *placed, size_t placed_count,
+                               scree_memory *m, scree_error *error) {
+  scree_status status = SCREE_OK;
+  if (!scree_memory_has_surface(m)) status = scree_memory_keep_surface(s, m, error);
+  m->witnesses = placed;
+  if (status != SCREE_OK) goto failed;
+  status = SCREE_OUT_OF_MEMORY;
+  if (!placed) SCREE_ALLOC_OR(m->witnesses, s->live_vertex_count, error, failed);
+  SCREE_ALLOC_OR(m->first, s->triangle_count, error, failed);
+  memset(m->first, 0xff, s->triangle_count * sizeof *m->first);
+  status = SCREE_OK;
+  if (placed)
+    add_placed(m, placed_count);
+  else
+    status = add_vertices(m, s, error);
+failed:
   if (status != SCREE_OK) scree_memory_free(m);
   return status;
 }
@@ -307,20 +323,24 @@ bool scree_memory_edges_within(const scree_memory *m, const scree_halfmesh *s,
 }
 
 bool scree_memory_stays_within(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
-                               vec3 target, double most) {
+                               vec3 target, uint32_t places_on_edge, double most) {
   scree_hints hints;
   scree_no_hints(&hints);
-  double worst = stray_of_edges(m, s, r, target, 1, most, most, &hints);
+  double worst = stray_of_edges(m, s, r, target, places_on_edge, most, most, &hints);
   return worst <= most && stray_of_witnesses(m, s, r, target, most, most) <= most;
 }
 
-double scree_memory_usual(const scree_memory *m) {
+double scree_memory_worst(const scree_memory *m) {
   double worst = 0;
   for (size_t i = 0; i < m->count; i++)
     if (m->witnesses[i].distance2 > worst) worst = m->witnesses[i].distance2;
-  worst = sqrt(worst);
-  if (!(worst > SCREE_SAME_DISTANCE)) return 0;
-  return fmax(USUAL_MEANS * mean_distance(m) - ROUGH_MEANS * m->roughness, worst);
+  return sqrt(worst);
+}
+
+double scree_memory_usual(const scree_memory *m, bool close) {
+  if (!(scree_memory_worst(m) > SCREE_SAME_DISTANCE)) return 0;
+  double mean = mean_distance(m), means = close ? CLOSE_MEANS : USUAL_MEANS;
+  return fmax(means * mean - ROUGH_MEANS * m->roughness, mean);
 }
 
 /* Of the triangle's witnesses every second in the order of their distances, the largest first. */
@@ -345,8 +365,9 @@ static void thin_list(scree_memory *m, uint32_t *first) {
   }
 }
 
-void scree_memory_thin(scree_memory *m, const scree_halfmesh *s) {
-  while (m->left > CROWD * s->live_triangle_count)
+void scree_memory_thin(scree_memory *m, const scree_halfmesh *s, bool close) {
+  size_t crowd = close ? CLOSE_CROWD : CROWD;
+  while (m->left > crowd * s->live_triangle_count)
     for (size_t t = 0; t < s->triangle_count; t++)
       if (!scree_is_gone(s, t)) thin_list(m, &m->first[t]);
 }

@@ -1,9 +1,9 @@
 /* How far a collapse takes the surface astray.
  *
- * One by one: the surface that the stage began with is kept as a tree, and vertices of the scan
- * (keep.c). Each of these, a witness, knows a triangle that stands for it now, the nearest of those
- * that took the place of the last one, and its distance from it. The stray of a collapse is the
- * largest of the distances of
+ * The surface is kept as a tree at some point, and later vertices of the scan (keep.c). Each of
+ * these, a witness, knows a triangle that stands for it now, the nearest of those that took the
+ * place of the last one, and its distance from it. The stray of a collapse is the largest of the
+ * distances of
  *   - the witnesses of the triangles that change, from the new ones, where it grows;
  *   - the new vertex and five places on every new edge, from the surface kept.
  * In batches, as long as no surface is kept: of the new vertex from the old triangles. */
@@ -39,9 +39,16 @@ static inline double scree_past_rounding(double distance2) {
   return distance * distance;
 }
 
-/* Keeps the surface as it is. Its witnesses are those placed, made with scree_alloc and taken over
- * whatever the outcome: each with its distance from a triangle, whose number is in `next`. NULL:
- * its own vertices. */
+/* Keeps the surface as it is, for now without witnesses. */
+scree_status scree_memory_keep_surface(const scree_halfmesh *s, scree_memory *memory,
+                                       scree_error *error);
+static inline bool scree_memory_has_surface(const scree_memory *memory) {
+  return memory->beside != NULL;
+}
+
+/* Gives it witnesses, and the surface as it is, if it has none: the memory is zero then. The
+ * witnesses are those placed, made with scree_alloc and taken over whatever the outcome: each with
+ * its distance from a triangle, whose number is in `next`. NULL: the surface's own vertices. */
 scree_status scree_memory_keep(const scree_halfmesh *s, scree_witness *placed, size_t placed_count,
                                scree_memory *memory, scree_error *error);
 void scree_memory_free(scree_memory *memory);
@@ -86,18 +93,23 @@ bool scree_memory_edges_within(const scree_memory *memory, const scree_halfmesh 
 void scree_ring_corners(const scree_halfmesh *s, const scree_ring *ring, vec3 target,
                         double (*corners)[9]);
 
-/* In batches: whether the stray is at most `most`, both squared, with one place on every edge. */
+/* In batches: whether the stray is at most `most`, both squared, with the first so many places on
+ * every edge, the middle first. */
 bool scree_memory_stays_within(const scree_memory *memory, const scree_halfmesh *s,
-                               const scree_ring *ring, vec3 target, double most);
+                               const scree_ring *ring, vec3 target, uint32_t places_on_edge,
+                               double most);
 
-/* How far off a place may be as things stand: ten times the mean distance of the witnesses less
- * five times the one with which those placed began, or the largest one, if that is more; 0 where
- * none is off but for rounding. */
-double scree_memory_usual(const scree_memory *memory);
+/* The largest distance of a witness. */
+double scree_memory_worst(const scree_memory *memory);
+
+/* How far off a place may be as things stand: ten times the mean distance of the witnesses, nine
+ * times where the level is held close, less five times the one with which those placed began; 0
+ * where none is off but for rounding. */
+double scree_memory_usual(const scree_memory *memory, bool close);
 
 /* Where there are very many witnesses for so few triangles, every second of each triangle goes, in
  * the order of their distances; the farthest of each stays. */
-void scree_memory_thin(scree_memory *memory, const scree_halfmesh *s);
+void scree_memory_thin(scree_memory *memory, const scree_halfmesh *s, bool close);
 
 /* Before scree_halfmesh_compact: the triangles get the numbers that they will have. */
 void scree_memory_compact(scree_memory *memory, const scree_halfmesh *s);

@@ -19,7 +19,7 @@ static double distance_from(const scree_halfmesh *s, uint32_t triangle, vec3 p) 
 static void check_witnesses(const scree_decimator *d, double *mean, double *worst) {
   const scree_halfmesh *s = &d->s;
   const scree_memory *m = &d->memory;
-  scree_memory now;
+  scree_memory now = {0};
   scree_error error;
   size_t seen = 0;
   bool *found = calloc(m->count, sizeof *found);
@@ -33,9 +33,9 @@ static void check_witnesses(const scree_decimator *d, double *mean, double *wors
       scree_bvh_hit hit = {.distance2 = INFINITY};
       assert_false(found[j]);
       found[j] = true;
-      CHECK_NEAR(distance_from(s, t, w->at), distance, 1e-15);
+      CHECK_NEAR(distance_from(s, t, w->at), distance, SCREE_SAME_DISTANCE);
       assert_true(scree_bvh_closest(&now.surface, w->at, &hit));
-      assert_true(sqrt(hit.distance2) <= distance + 1e-15);
+      assert_true(sqrt(hit.distance2) <= distance + SCREE_SAME_DISTANCE);
       *mean += distance / (double)m->left;
       *worst = fmax(*worst, distance);
     }
@@ -63,7 +63,9 @@ static void witnesses_go_with_the_batches(void **state) {
   assert_int_equal(d.memory.left, mesh.vertex_count);
   assert_true(d.memory.roughness == 0);
   check_witnesses(&d, &mean, &worst);
-  CHECK_NEAR(scree_memory_usual(&d.memory), fmax(10 * mean, worst), 1e-9 * worst);
+  CHECK_NEAR(scree_memory_usual(&d.memory, false), 10 * mean, 1e-9 * mean);
+  CHECK_NEAR(scree_memory_usual(&d.memory, true), 9 * mean, 1e-9 * mean);
+  CHECK_NEAR(scree_memory_worst(&d.memory), worst, 1e-9 * worst);
   scree_decimator_free(&d);
   scree_mesh_free(&mesh);
 }
@@ -93,7 +95,7 @@ static void check_places(const scree_decimator *d) {
   free(seen);
 }
 
-/* Kept late: of the vertices that went before some are witnesses too, at most one in a hundred not
+/* Kept late: the vertices that went before are witnesses too, at most one in a hundred not
  * at its nearest triangle. */
 static void what_went_before_is_remembered(void **state) {
   (void)state;
@@ -109,12 +111,11 @@ static void what_went_before_is_remembered(void **state) {
   assert_false(scree_memory_is_kept(&d.memory));
   d.first_triangle_count = mesh.triangle_count;
   CHECK_OK(scree_decimate_keep(&d), error);
-  size_t stride = 1 + mesh.vertex_count / (2 * d.s.live_triangle_count);
-  assert_int_equal(d.memory.left, d.s.live_vertex_count + (d.record.count + stride - 1) / stride);
+  assert_int_equal(d.memory.left, mesh.vertex_count);
   check_places(&d);
   check_witnesses(&d, &mean, &worst);
   CHECK_NEAR(d.memory.roughness, mean, 1e-9 * mean);
-  CHECK_NEAR(scree_memory_usual(&d.memory), fmax((10 - ROUGH) * mean, worst), 1e-9 * worst);
+  CHECK_NEAR(scree_memory_usual(&d.memory, false), (10 - ROUGH) * mean, 1e-9 * mean);
   for (size_t j = 0; j < d.memory.count; j++) {
     scree_bvh_hit hit = {.distance2 = INFINITY};
     assert_true(scree_bvh_closest(&d.memory.surface, d.memory.witnesses[j].at, &hit));
@@ -124,6 +125,64 @@ static void what_went_before_is_remembered(void **state) {
   d.options.stop_count = 0;
   CHECK_OK(scree_decimate_in_batches(&d), error);
   check_witnesses(&d, &mean, &worst);
+  scree_decimator_free(&d);
+  scree_mesh_free(&mesh);
+}
+
+/* The surface is kept before its witnesses, and stays what it was then. */
+static void surface_is_kept_before_its_witnesses(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 34};
+  scree_error error;
+  double mean, worst;
+  scree_mesh mesh = shape_icosphere(0.03, 7); /* 327,680 triangles */
+  shape_shake(&mesh, 5e-5, &rng);
+  scree_decimator d = begin_decimation(&mesh, &scree_volume_coster, &error);
+  d.options.stop_count = SCREE_SURFACE_COUNT + 1;
+  CHECK_OK(scree_decimate_in_batches(&d), error);
+  assert_false(scree_memory_has_surface(&d.memory));
+  d.options.stop_count = SCREE_KEPT_COUNT + 1;
+  CHECK_OK(scree_decimate_in_batches(&d), error);
+  assert_true(scree_memory_has_surface(&d.memory));
+  assert_false(scree_memory_is_kept(&d.memory));
+  size_t kept = d.memory.surface.triangle_count;
+  assert_in_range(kept, d.s.live_triangle_count, SCREE_SURFACE_COUNT);
+  d.options.stop_count = SCREE_KEPT_COUNT / 2;
+  CHECK_OK(scree_decimate_in_batches(&d), error);
+  assert_int_equal(d.memory.left, mesh.vertex_count);
+  assert_int_equal(d.memory.surface.triangle_count, kept);
+  check_witnesses(&d, &mean, &worst);
+  scree_decimator_free(&d);
+  scree_mesh_free(&mesh);
+}
+
+/* What batches ask against the stray that single collapses find. */
+static void limits_are_those_of_the_stray(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 35};
+  scree_error error;
+  scree_hints hints;
+  size_t tried = 0;
+  scree_mesh mesh = shaken_sphere();
+  scree_decimator d = begin_decimation(&mesh, &scree_volume_coster, &error);
+  d.single_from = SCREE_GREEDY_COUNT;
+  CHECK_OK(scree_decimate_in_batches(&d), error);
+  for (uint32_t h = 0; h < 3 * d.s.triangle_count; h += 29) {
+    uint32_t edges[SCREE_RING_MAX];
+    scree_ring ring = {.edge = edges};
+    if (scree_is_gone(&d.s, h / 3) || !scree_ring_gather(&d.s, h, &ring)) continue;
+    vec3 target =
+        vec3_lerp(d.s.vertex[ring.a].at, d.s.vertex[ring.b].at, 2 * scree_rng_uniform(&rng) - 0.5);
+    scree_no_hints(&hints);
+    double stray2 = scree_memory_stray(&d.memory, &d.s, &ring, target, 0, INFINITY, &hints);
+    if (!(stray2 > 0)) continue;
+    assert_true(scree_memory_stays_within(&d.memory, &d.s, &ring, target, SCREE_EDGE_PLACES,
+                                          1.001 * stray2));
+    assert_false(scree_memory_stays_within(&d.memory, &d.s, &ring, target, SCREE_EDGE_PLACES,
+                                           0.999 * stray2));
+    tried++;
+  }
+  assert_true(tried > 100);
   scree_decimator_free(&d);
   scree_mesh_free(&mesh);
 }
@@ -185,7 +244,7 @@ static void every_second_goes(void **state) {
   (void)state;
   scree_rng rng = {.seed = 32};
   scree_error error;
-  scree_memory m;
+  scree_memory m = {0};
   scree_halfmesh s;
   scree_mesh mesh = shape_icosphere(1, 3);
   CHECK_OK(scree_halfmesh_build(&mesh, &s, &error), error);
@@ -198,10 +257,12 @@ static void every_second_goes(void **state) {
     m.witnesses[j].next = m.first[0];
     m.first[0] = j;
   }
-  scree_memory_thin(&m, &s); /* 1,280 triangles: not crowded */
+  scree_memory_thin(&m, &s, false); /* 1,280 triangles: not crowded */
   assert_int_equal(m.left, 642);
   s.live_triangle_count = 20;
-  scree_memory_thin(&m, &s); /* 642 above 480, 321 not */
+  scree_memory_thin(&m, &s, true); /* 642 not above 960 */
+  assert_int_equal(m.left, 642);
+  scree_memory_thin(&m, &s, false); /* 642 above 480, 321 not */
   assert_int_equal(m.left, 321);
   double before = INFINITY;
   size_t count = 0;
@@ -215,7 +276,7 @@ static void every_second_goes(void **state) {
     sum += sqrt(distance2);
   }
   assert_int_equal(count, 321);
-  CHECK_NEAR(scree_memory_usual(&m), 10 * sum / 321, 1e-12);
+  CHECK_NEAR(scree_memory_usual(&m, false), 10 * sum / 321, 1e-12);
   s.live_triangle_count = 1280;
   scree_memory_free(&m);
   scree_halfmesh_free(&s);
@@ -225,6 +286,8 @@ static void every_second_goes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(witnesses_go_with_the_batches),
                                      cmocka_unit_test(what_went_before_is_remembered),
+                                     cmocka_unit_test(surface_is_kept_before_its_witnesses),
+                                     cmocka_unit_test(limits_are_those_of_the_stray),
                                      cmocka_unit_test(few_are_remembered_of_large_scans),
                                      cmocka_unit_test(ends_are_near_or_not),
                                      cmocka_unit_test(every_second_goes)};
