@@ -611,7 +611,8 @@ static scree_status find_meetings(arranger *a, const scree_mesh *mesh,
   status = scree_facet_meetings_new(&tree, a->first ? NULL : settled, scree_arrange_limit(mesh),
                                     progress, found, error);
   scree_facet_tree_free(&tree);
-  for (size_t i = 0; status == SCREE_OK && i < found->count; i++) {
+  /* of more than the limit there is the count alone */
+  for (size_t i = 0; status == SCREE_OK && !found->truncated && i < found->count; i++) {
     facet *f = &a->facets.items[found->items[i].first],
           *g = &a->facets.items[found->items[i].second];
     f->met = g->met = true;
