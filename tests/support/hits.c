@@ -5,7 +5,8 @@
 #include "support/law.h"
 
 enum { EDGE_SAMPLES = 40 };
-static const double none = 1e-4; /* m; half the roundings of bodies of 50 mm */
+/* m: so deep edges may lie unfelt, half the roundings of bodies of 50 mm; corners must not */
+static const double edges_may = 1e-4;
 
 double law_random_hit(scree_particle *particle, double steps, uint64_t number, bool damped) {
   law_setup setup = law_default();
@@ -111,7 +112,8 @@ static double depth_of_either(const scree_world *world, bool edges) {
 
 /* The observation is that of the step after the one that led to this depth: it saw it. */
 static bool note_unfelt(const scree_observation *o, double depth, law_outcome *out) {
-  if (depth < none || o->largest_overlap >= 0.5 * depth) return false;
+  double most = out->follow ? edges_may : 0;
+  if (!(depth > most) || o->largest_overlap >= 0.5 * depth) return false;
   out->unfelt = fmax(out->unfelt, depth);
   return true;
 }
