@@ -1,6 +1,7 @@
 /* Writes seeds for the targets whose files only the present program can write, so that a change of
  * their format does not leave the targets with files that all are refused at the first bytes:
  * FOLDER/checkpoint and FOLDER/run, which must be there. */
+#include "support/pot.h"
 #include "support/shapes.h"
 
 #include <stdio.h>
@@ -87,16 +88,7 @@ static void write_runs(void) {
   scree_experiment e;
   scree_run *run;
   need(scree_experiment_preset("paper", &e, &error));
-  e.particle_count = 4;
-  e.cylinder_diameter = 0.08;
-  e.disc_diameter = 0.3;
-  e.pack_time = 0.1;
-  e.settle_time = 0.05;
-  e.lift_speed = 1;
-  e.lift_time = 0.08;
-  e.hold_time = 0.02;
-  e.drop_height = 0.01;
-  e.young_particle = 1e7; /* fewer steps */
+  use_pot(&e, 4);
   need(scree_particle_sphere(0.01, &shapes[0].particle, &error));
   need(scree_run_create(&e, shapes, 2, &run, &error));
   for (int phase = SCREE_PHASE_PACK; phase <= SCREE_PHASE_DONE; phase++) {

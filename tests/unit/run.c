@@ -2,6 +2,7 @@
 #include "base/file.h"
 #include "support/check.h"
 #include "support/folder.h"
+#include "support/pot.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -85,16 +86,7 @@ typedef struct pot {
 static pot make_pot(void) {
   pot p = {.experiment = preset("paper")};
   scree_experiment *e = &p.experiment;
-  e->particle_count = 12;
-  e->cylinder_diameter = 0.08;
-  e->disc_diameter = 0.3;
-  e->pack_time = 0.1;
-  e->settle_time = 0.05;
-  e->lift_speed = 1;
-  e->lift_time = 0.08;
-  e->hold_time = 0.02;
-  e->drop_height = 0.01;
-  e->young_particle = 1e7; /* fewer steps */
+  use_pot(e, 12);
   e->series_interval = 0.01;
   e->angle_interval = 0.02;
   scree_error error;
