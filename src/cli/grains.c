@@ -88,8 +88,9 @@ static double smallest_rp(const cli_grain_options *o) {
 }
 
 static scree_status make_levels(const maker *m, size_t shape, const char *word,
-                                const scree_scan *scan, const scree_mesh *mesh) {
+                                const scree_scan *scan) {
   const cli_grain_options *o = m->options;
+  const scree_mesh *mesh = &scan->mesh;
   scree_curve *curve = NULL;
   scree_status status = SCREE_OK;
   if (smallest_rp(o) < 1) {
@@ -125,15 +126,12 @@ static scree_status make_from_scan(const maker *m, size_t shape, const char *wor
   cli_input_options input = cli_source_options(&m->options->source);
   scree_repair_options repair = scree_default_repair_options();
   scree_scan scan;
-  scree_mesh ready = {0};
   scree_status status = cli_load(word, &input, m->progress, &scan, m->error);
   if (status != SCREE_OK) return cli_name_in_error(word, m->error);
-  bool sample = cli_is_sample(word, NULL); /* made closed and manifold: nothing to check */
-  if (!sample)
+  if (!cli_is_sample(word, NULL)) /* else made closed and manifold: nothing to check */
     status = scree_mesh_prepare(&scan.mesh, m->options->no_repair ? NULL : &repair, m->progress,
-                                &ready, NULL, m->error);
-  if (status == SCREE_OK) status = make_levels(m, shape, word, &scan, sample ? &scan.mesh : &ready);
-  scree_mesh_free(&ready);
+                                &scan.mesh, NULL, m->error);
+  if (status == SCREE_OK) status = make_levels(m, shape, word, &scan);
   scree_scan_free(&scan);
   return status == SCREE_OK ? status : cli_name_in_error(word, m->error);
 }

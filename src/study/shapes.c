@@ -161,13 +161,12 @@ static scree_status read_scan(const scree_study *study, const scree_study_shape 
                               scree_error *error) {
   scree_read_options read = scree_default_read_options();
   scree_repair_options repair = scree_default_repair_options();
-  scree_repair_report report;
   scree_scan scan;
   read.unit_m = study->unit_m;
   scree_status status = scree_scan_read(shape->path, &read, &scan, error);
   if (status != SCREE_OK) return status;
   *sum = scan.checksum;
-  status = scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, &report, error);
+  status = scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, NULL, error);
   if (status != SCREE_OK)
     scree_scan_free(&scan);
   else
