@@ -5,6 +5,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -35,6 +36,17 @@ static inline const char *scan_data_folder(void) {
   if (SCREE_SCAN_DATA[0]) return SCREE_SCAN_DATA;
   print_message("skipped: no folder of real scans (configure with -DSCREE_DATA_DIR=...)\n");
   return NULL;
+}
+
+/* Path of one of them; false (with a message) where the folder lacks it: leave it out then. */
+static inline bool scan_data_path(const char *file, char *path, size_t size) {
+  snprintf(path, size, "%s/%s", SCREE_SCAN_DATA, file);
+  FILE *there = fopen(path, "rb");
+  if (there)
+    (void)fclose(there);
+  else
+    print_message("left out: %s is not in the folder of real scans\n", file);
+  return there != NULL;
 }
 
 #endif
