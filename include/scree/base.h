@@ -78,8 +78,9 @@ typedef struct scree_progress {
 SCREE_API scree_status scree_folder_create(const char *path, scree_error *error);
 
 /* Whether path could be written to now, for before long work: SCREE_EXISTS where there is a file
- * and nothing may be overwritten, SCREE_IO where the system says no. Leaves nothing behind; "-",
- * pipes and devices are not opened. */
+ * and nothing may be overwritten, SCREE_IO where the system says no, or where the file there is
+ * write-protected (mode 444; root may not either). Leaves nothing behind; "-", pipes and devices
+ * are not opened. */
 SCREE_API scree_status scree_output_check(const char *path, bool overwrite, scree_error *error);
 
 /* 128 bits that name a file's content: XXH3-128, as `xxhsum -H2` prints it. */

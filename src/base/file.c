@@ -150,6 +150,13 @@ static int create_beside(const char *path, char *name, size_t size) {
   return fd;
 }
 
+/* A file may be replaced by whoever may write to its folder; one that nobody may write to is left
+ * alone even so, and by root as well. */
+static bool is_protected(const char *path, const struct stat *info) {
+  return !(info->st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) ||
+         faccessat(AT_FDCWD, path, W_OK, AT_EACCESS) != 0;
+}
+
 /* A device or a pipe. */
 static bool is_special(const struct stat *info) {
   return !S_ISREG(info->st_mode) && !S_ISDIR(info->st_mode);
@@ -167,6 +174,8 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
     return scree_fail(error, SCREE_IO, "%s: is a folder, not a file", path);
   if (exists && !overwrite && !direct)
     return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
+  if (exists && !direct && is_protected(path, &info))
+    return scree_fail(error, SCREE_IO, "%s: is write-protected; not replaced", path);
   size_t size = strlen(path) + 32;
   scree_output opened = {NULL, scree_strdup(path), direct ? NULL : scree_alloc(size, 1)};
   int fd = -1;

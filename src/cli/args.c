@@ -163,6 +163,7 @@ static int store(const cli_verb *verb, const cli_option *option, const char *tex
     *(bool *)value = true;
     return 0;
   case CLI_TEXT:
+  case CLI_FILE:
     *(const char **)value = text;
     return 0;
   case CLI_COUNT:

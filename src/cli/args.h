@@ -7,6 +7,7 @@
 typedef enum cli_kind {
   CLI_FLAG,   /* bool: set to true */
   CLI_TEXT,   /* const char * */
+  CLI_FILE,   /* const char *: a file that is read */
   CLI_COUNT,  /* size_t in [minimum, maximum] */
   CLI_REAL,   /* double in [minimum, maximum] */
   CLI_LENGTH, /* double in metres; the value carries its unit, as in 0.27mm */

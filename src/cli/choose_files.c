@@ -12,6 +12,7 @@
  *   levels/NAME.levels   what the report shows of each object in 3D
  *   report.html          all of it as one page, as `scree report DIR` makes it */
 #include "cli/choose.h"
+#include "cli/output.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -36,7 +37,8 @@ static scree_status check_file(const choose_run *run, const char *before, const 
                                const char *after, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
   scree_status status = join(run, before, name, after, path, error);
-  return status == SCREE_OK ? scree_output_check(path, run->arguments->overwrite, error) : status;
+  return status == SCREE_OK ? cli_check_output(run->call, path, run->arguments->overwrite, error)
+                            : status;
 }
 
 static scree_status check_mesh(const choose_run *run, const char *before, const char *name,

@@ -1,6 +1,6 @@
 /* What `scree drop` writes: frames for ParaView, a table over time, a picture. */
 #include "cli/drop.h"
-#include "cli/input.h"
+#include "cli/output.h"
 
 #include <errno.h>
 #include <math.h>
@@ -24,12 +24,26 @@ scree_status drop_no_series(scree_error *error) {
   return SCREE_IO;
 }
 
+/* What is there after any drop; series.csv first, which stands for them all. */
+static const char *const FILES[] = {"series.csv",      "checkpoint.scree",
+                                    "motion.scree",    "frame-000000.vtp",
+                                    "drop.pvd",        "drop.png",
+                                    "drop.json",       "drop.txt",
+                                    "last.world",      "before-failure.world",
+                                    "provenance.json", "report.html"};
+enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
+
 scree_status drop_check_output(const drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
-  scree_status status = drop_path(run, "series.csv", path, error);
-  if (status == SCREE_OK) status = scree_folder_create(run->arguments->output, error);
-  if (status == SCREE_OK && !run->arguments->resume)
-    status = cli_check_begun(path, run->arguments->overwrite, error);
+  scree_status status = scree_folder_create(run->arguments->output, error);
+  for (size_t i = 0; i < FILE_COUNT && status == SCREE_OK && !run->arguments->resume; i++) {
+    status = drop_path(run, FILES[i], path, error);
+    if (status != SCREE_OK) break;
+    if (i == 0)
+      status = cli_check_begun(run->call, path, run->arguments->overwrite, error);
+    else
+      status = cli_check_output(run->call, path, run->arguments->overwrite, error);
+  }
   return status;
 }
 

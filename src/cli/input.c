@@ -54,35 +54,6 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
   if (!buffer[0]) snprintf(buffer, size, "scan");
 }
 
-scree_status cli_check_mesh_output(const char *path, bool overwrite, scree_error *error) {
-  if (scree_file_format_of(path) != SCREE_FORMAT_AUTO)
-    return scree_output_check(path, overwrite, error);
-  return cli_refuse(error, SCREE_BAD_ARGUMENT, path,
-                    "the name of a mesh must end in .stl, .ply, .obj, .off or .3mf");
-}
-
-scree_status cli_check_picture_output(const char *path, bool overwrite, scree_error *error) {
-  const char *dot = strrchr(path, '.');
-  if (!strcmp(path, "-") || (dot && (!strcmp(dot, ".png") || !strcmp(dot, ".PNG"))))
-    return scree_output_check(path, overwrite, error);
-  return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a picture must end in .png");
-}
-
-scree_status cli_check_begun(const char *path, bool overwrite, scree_error *error) {
-  scree_status status = scree_output_check(path, overwrite, error);
-  if (status != SCREE_EXISTS) return status;
-  return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
-}
-
-scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,
-                        scree_error *error) {
-  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-  int stem = (int)(dot ? (size_t)(dot - path) : strlen(path));
-  if (snprintf(buffer, size, "%.*s%s", stem, path, ending) < (int)size) return SCREE_OK;
-  *error = (scree_error){SCREE_LIMIT, "the output's name is too long"};
-  return SCREE_LIMIT;
-}
-
 const char *cli_count_text(size_t count, char buffer[32]) {
   char digits[24];
   int length = snprintf(digits, sizeof digits, "%zu", count);

@@ -46,21 +46,6 @@ scree_status cli_load(const char *word, const cli_input_options *options,
 /* The word without folders and ending, or the sample's name, into buffer; "stdin" for "-". */
 void cli_short_name(const char *word, char *buffer, size_t size);
 
-/* Whether a mesh can be written to the path, by its ending and as scree_output_check. */
-scree_status cli_check_mesh_output(const char *path, bool overwrite, scree_error *error);
-
-/* Whether a picture can be: it is written as PNG, so it must be called one. */
-scree_status cli_check_picture_output(const char *path, bool overwrite, scree_error *error);
-
-/* scree_output_check of a file that stands for a folder's work: where it exists, the error says
- * that --resume goes on and -f begins anew. */
-scree_status cli_check_begun(const char *path, bool overwrite, scree_error *error);
-
-/* The path with another ending, as "p.json" of "p.stl": a file beside it. SCREE_LIMIT where it does
- * not fit. */
-scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,
-                        scree_error *error);
-
 /* 12345678 as 12,345,678 */
 const char *cli_count_text(size_t count, char buffer[32]);
 

@@ -1,5 +1,6 @@
 /* scree export: meshes and piles as other programs want them. */
 #include "cli/input.h"
+#include "cli/output.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -12,6 +13,8 @@ typedef struct export_arguments {
   int view;
   bool centre, principal, overwrite;
 } export_arguments;
+
+enum { NAME_BYTES = 4096 };
 
 static const export_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .density = 2000};
 
@@ -33,7 +36,7 @@ static const cli_option options[] = {
      "And turn the principal axes of inertia along x, y and z, the long one along x.", 0, 0, NULL},
     {"density", 'd', CLI_REAL, AT(density), "RHO",
      "Density in kg/m3, for mass and inertia. Default: 2000.", 1e-6, 1e6, NULL},
-    {"reference", 'r', CLI_TEXT, AT(reference), "FILE",
+    {"reference", 'r', CLI_FILE, AT(reference), "FILE",
      "For .vtp of a surface: add the distance to the surface in FILE, or sample:NAME.", 0, 0, NULL},
     {"view", 'w', CLI_CHOICE, AT(view), "VIEW",
      "For .vtp of a checkpoint: surfaces (every triangle in its place), points (one per body, with "
@@ -110,15 +113,14 @@ static void say(const cli_call *call, const scree_exported *p, const char *json_
   printf("%s: the same with all digits, and where the mesh was\n", json_path);
 }
 
-static scree_status write_mesh(const cli_call *call, const scree_scan *scan, scree_error *error) {
+static scree_status write_mesh(const cli_call *call, const scree_scan *scan, const char *json_path,
+                               scree_error *error) {
   const export_arguments *a = call->options;
   scree_export_options o = export_options(call);
   scree_exported exported;
-  char json_path[4096];
-  scree_status status = cli_beside(a->output, ".json", json_path, sizeof json_path, error);
-  if (status != SCREE_OK) return status;
   o.checksum = scan->checksum;
-  status = scree_particle_export(&scan->mesh, &o, a->output, json_path, &exported, error);
+  scree_status status =
+      scree_particle_export(&scan->mesh, &o, a->output, json_path, &exported, error);
   if (status == SCREE_OK) say(call, &exported, json_path);
   return status;
 }
@@ -127,11 +129,15 @@ static scree_status export_surface(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   cli_input_options input = cli_source_options(&a->source);
   scree_scan scan;
-  scree_status status = scree_output_check(a->output, a->overwrite, error);
+  char json_path[NAME_BYTES];
+  bool vtp = has_extension(a->output, ".vtp");
+  scree_status status = cli_check_output(call, a->output, a->overwrite, error);
+  if (status == SCREE_OK && !vtp)
+    status = cli_beside(a->output, ".json", json_path, sizeof json_path, error);
+  if (status == SCREE_OK && !vtp) status = cli_check_output(call, json_path, a->overwrite, error);
   if (status == SCREE_OK) status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
   if (status != SCREE_OK) return status;
-  status = has_extension(a->output, ".vtp") ? write_vtp(call, &scan.mesh, error)
-                                            : write_mesh(call, &scan, error);
+  status = vtp ? write_vtp(call, &scan.mesh, error) : write_mesh(call, &scan, json_path, error);
   scree_scan_free(&scan);
   if (status != SCREE_BAD_MESH) return status;
   char sentence[sizeof error->message]; /* about a mesh without a name */
@@ -185,8 +191,6 @@ static scree_status export_world(const cli_call *call, scree_error *error) {
   return status;
 }
 
-enum { NAME_BYTES = 4096 };
-
 /* File `index` of a series: pile-0000.vtp beside pile.pvd or pile.vtp.series. */
 static scree_status name_file(const char *output, size_t index, char name[NAME_BYTES],
                               scree_error *error) {
@@ -198,12 +202,10 @@ static scree_status name_file(const char *output, size_t index, char name[NAME_B
   return SCREE_LIMIT;
 }
 
-static scree_status write_frame(const cli_call *call, size_t index, char name[NAME_BYTES],
-                                double *time, scree_error *error) {
-  const export_arguments *a = call->options;
+static scree_status write_frame(const cli_call *call, size_t index, const char *name, double *time,
+                                scree_error *error) {
   checkpoint c;
-  scree_status status = name_file(a->output, index, name, error);
-  if (status == SCREE_OK) status = load_checkpoint(call->inputs[index], &c, error);
+  scree_status status = load_checkpoint(call->inputs[index], &c, error);
   if (status != SCREE_OK) return status;
   *time = scree_world_time(c.world);
   status = write_view(call, &c, call->inputs[index], name, error);
@@ -220,6 +222,11 @@ static scree_status export_series(const cli_call *call, scree_error *error) {
   double *times = calloc(count, sizeof *times);
   scree_status status = paths && names && times ? SCREE_OK : SCREE_OUT_OF_MEMORY;
   if (status != SCREE_OK) *error = (scree_error){status, "out of memory for the list of files"};
+  if (status == SCREE_OK) status = cli_check_output(call, a->output, a->overwrite, error);
+  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
+    status = name_file(a->output, i, paths[i], error);
+    if (status == SCREE_OK) status = cli_check_output(call, paths[i], a->overwrite, error);
+  }
   for (size_t i = 0; status == SCREE_OK && i < count; i++) {
     status = write_frame(call, i, paths[i], &times[i], error);
     const char *slash = strrchr(paths[i], '/');

@@ -1,6 +1,6 @@
 /* scree pile: a frame or a checkpoint, measured again. */
 #include "cli/heap.h"
-#include "cli/input.h"
+#include "cli/output.h"
 
 #include <string.h>
 
@@ -121,20 +121,21 @@ static int measure(const cli_call *call, scree_run *run, scree_error *error) {
   return code;
 }
 
-static scree_status check_outputs(const pile_arguments *a, scree_error *error) {
+static scree_status check_outputs(const cli_call *call, scree_error *error) {
+  const pile_arguments *a = call->options;
   const char *const outputs[] = {a->csv, a->vtp};
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < 2 && status == SCREE_OK; i++)
-    if (outputs[i]) status = scree_output_check(outputs[i], a->force, error);
+    if (outputs[i]) status = cli_check_output(call, outputs[i], a->force, error);
   if (status == SCREE_OK && a->picture)
-    status = cli_check_picture_output(a->picture, a->force, error);
+    status = cli_check_picture_output(call, a->picture, a->force, error);
   return status;
 }
 
 static int run(const cli_call *call) {
   scree_run *loaded;
   scree_error error;
-  if (check_outputs(call->options, &error) != SCREE_OK) return cli_fail(&error);
+  if (check_outputs(call, &error) != SCREE_OK) return cli_fail(&error);
   if (scree_run_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
   int code = measure(call, loaded, &error);
   scree_run_free(loaded);

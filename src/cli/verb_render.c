@@ -1,4 +1,5 @@
 #include "cli/input.h"
+#include "cli/output.h"
 #include "cli/render_refine.h"
 
 #include <math.h>
@@ -47,7 +48,7 @@ static const cli_option options[] = {
      "plain, or distance: to the first surface, or to the one of --reference, with a scale bar; "
      "all over the triangles, or with --edges and --wire between their corners. Default: plain.",
      0, 0, "plain|distance"},
-    {"reference", 'r', CLI_TEXT, AT(reference), "FILE",
+    {"reference", 'r', CLI_FILE, AT(reference), "FILE",
      "Colour by the distance to the surface in FILE.", 0, 0, NULL},
     {"no-ground", 0, CLI_FLAG, AT(no_ground), NULL, "No floor and no shadow on it.", 0, 0, NULL},
     {"no-captions", 0, CLI_FLAG, AT(no_captions), NULL,
@@ -252,7 +253,7 @@ static int run(const cli_call *call) {
   picture p;
   scree_error error;
   scree_image image = {0};
-  if (cli_check_picture_output(a->output, a->overwrite, &error) != SCREE_OK)
+  if (cli_check_picture_output(call, a->output, a->overwrite, &error) != SCREE_OK)
     return cli_fail(&error);
   scree_status status = make_picture(call, rp, level_count, &p, &error);
   if (status == SCREE_OK && (a->reference || a->color_by))

@@ -1,5 +1,6 @@
 /* scree repair: a surface that can serve as a particle of one that cannot, or a refusal. */
 #include "cli/input.h"
+#include "cli/output.h"
 #include "cli/surface.h"
 
 #include <stdio.h>
@@ -159,7 +160,7 @@ static int run(const cli_call *call) {
   scree_mesh repaired = {0};
   scree_error error = {.status = SCREE_OK};
   if (!a->output) return cli_misuse(call->verb, "say with -o where the result is to go");
-  if (cli_check_mesh_output(a->output, a->force, &error) != SCREE_OK ||
+  if (cli_check_mesh_output(call, a->output, a->force, &error) != SCREE_OK ||
       cli_load(call->inputs[0], &input, call->progress, &scan, &error) != SCREE_OK)
     return cli_fail(&error);
   scree_status status =

@@ -1,4 +1,4 @@
-#include "cli/args.h"
+#include "cli/output.h"
 
 #include <string.h>
 
@@ -12,15 +12,16 @@ static const report_arguments defaults = {.output = "report.html"};
 #define AT(field) offsetof(report_arguments, field)
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, AT(output), "FILE",
-     "The page to write; - is stdout. Default: report.html.", 0, 0, NULL},
+     "The page to write, .html; - is stdout. Default: report.html.", 0, 0, NULL},
     {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
 };
 
 static int run(const cli_call *call) {
   const report_arguments *a = call->options;
   scree_error error;
-  if (scree_page_write(call->inputs, call->input_count, a->output, a->overwrite, &error) !=
-      SCREE_OK)
+  if (cli_check_page_output(call, a->output, a->overwrite, &error) != SCREE_OK ||
+      scree_page_write(call->inputs, call->input_count, a->output, a->overwrite, &error) !=
+          SCREE_OK)
     return cli_fail(&error);
   if (!call->quiet && strcmp(a->output, "-") != 0)
     printf("%s: open it in any browser; it needs no network\n", a->output);

@@ -1,6 +1,7 @@
 /* scree repose: the angle-of-repose experiment. */
 #include "cli/grains.h"
 #include "cli/heap.h"
+#include "cli/output.h"
 #include "cli/terminal.h"
 
 #include <math.h>
@@ -88,7 +89,7 @@ static const repose_arguments defaults = {
 
 #define AT(field) offsetof(repose_arguments, field)
 static const cli_option options[] = {
-    {"config", 'c', CLI_TEXT, AT(config), "FILE",
+    {"config", 'c', CLI_FILE, AT(config), "FILE",
      "An experiment in YAML, as --print-config writes it; - is stdin.", 0, 0, NULL},
     {"preset", 'p', CLI_TEXT, AT(preset), "NAME",
      "What the file and the options change: paper, small or demo (the default).", 0, 0, NULL},
@@ -350,18 +351,38 @@ static one_run level_run(repose *r, size_t level) {
   return o;
 }
 
+/* What there is after any run; experiment.yaml first, which stands for them all. */
+static const char *const FILES[] = {
+    "experiment.yaml", "checkpoint.scree", "last.scree", "motion.scree",    "result.json",
+    "result.txt",      "series.csv",       "heap.png",   "provenance.json", "report.html"};
+enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
+
+static scree_status check_folder(repose *r, const char *folder) {
+  const repose_arguments *a = r->arguments;
+  char path[4200];
+  scree_status status = scree_folder_create(folder, &r->error);
+  if (a->resume) return status;
+  for (size_t i = 0; i < FILE_COUNT && status == SCREE_OK; i++) {
+    snprintf(path, sizeof path, "%.4100s/%s", folder, FILES[i]);
+    status = i == 0 ? cli_check_begun(r->call, path, a->force, &r->error)
+                    : cli_check_output(r->call, path, a->force, &r->error);
+  }
+  return status;
+}
+
 /* Whether the folders can be written to, before scans are read and decimated. */
 static scree_status check_folders(repose *r) {
   const repose_arguments *a = r->arguments;
+  size_t levels = cli_level_count(&r->grain_options);
+  char path[4200];
   scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < cli_level_count(&r->grain_options); i++) {
+  for (size_t i = 0; status == SCREE_OK && i < levels; i++) {
     one_run o = level_run(r, i);
-    char path[4200];
-    snprintf(path, sizeof path, "%s/experiment.yaml", o.folder);
-    status = scree_folder_create(o.folder, &r->error);
-    if (status == SCREE_OK) status = cli_check_begun(path, a->force || a->resume, &r->error);
+    status = check_folder(r, o.folder);
   }
-  return status;
+  if (status != SCREE_OK || levels < 2 || a->resume) return status;
+  snprintf(path, sizeof path, "%.4100s/report.html", a->output);
+  return cli_check_output(r->call, path, a->force, &r->error);
 }
 
 static scree_status run_level(repose *r, size_t level, bool alone) {

@@ -1,5 +1,6 @@
 /* scree simplify: one level of the decimation as a file. */
 #include "cli/input.h"
+#include "cli/output.h"
 
 #include <math.h>
 #include <string.h>
@@ -109,13 +110,14 @@ static scree_status write_level(const cli_call *call, const scree_scan *scan,
 }
 
 /* What is to be written, before long work. */
-static scree_status check_output(const simplify_arguments *arguments, scree_error *error) {
+static scree_status check_output(const cli_call *call, scree_error *error) {
+  const simplify_arguments *arguments = call->options;
   char path[PATH_BYTES];
   if (!strcmp(arguments->output, "-")) return SCREE_OK;
-  scree_status status = cli_check_mesh_output(arguments->output, arguments->force, error);
+  scree_status status = cli_check_mesh_output(call, arguments->output, arguments->force, error);
   if (status != SCREE_OK || !(arguments->density > 0)) return status;
   status = cli_beside(arguments->output, ".json", path, sizeof path, error);
-  return status == SCREE_OK ? scree_output_check(path, arguments->force, error) : status;
+  return status == SCREE_OK ? cli_check_output(call, path, arguments->force, error) : status;
 }
 
 static scree_status simplify(const cli_call *call, scree_error *error) {
@@ -124,7 +126,7 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
   scree_simplify_options simplify_options = scree_default_simplify_options();
   scree_scan scan = {0};
   scree_curve *curve = NULL;
-  scree_status status = check_output(arguments, error);
+  scree_status status = check_output(call, error);
   if (status == SCREE_OK) status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
   if (status != SCREE_OK) return status;
   size_t target = arguments->count;

@@ -1,0 +1,95 @@
+#include "cli/output.h"
+#include "cli/input.h"
+
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+/* What lies behind a word of the call: of "phone.stl=30" that is no file, phone.stl. */
+static bool stat_input(const char *word, struct stat *info) {
+  char name[4096];
+  if (!strcmp(word, "-")) return fstat(STDIN_FILENO, info) == 0;
+  if (cli_is_sample(word, NULL)) return false;
+  if (stat(word, info) == 0) return true;
+  const char *equals = strrchr(word, '=');
+  if (!equals || (size_t)(equals - word) >= sizeof name) return false;
+  snprintf(name, sizeof name, "%.*s", (int)(equals - word), word);
+  return stat(name, info) == 0;
+}
+
+static bool is_file(const char *word, const struct stat *file) {
+  struct stat info;
+  return stat_input(word, &info) && info.st_dev == file->st_dev && info.st_ino == file->st_ino;
+}
+
+/* The word of the call that names this file as one to read; NULL where none does. */
+static const char *find_reader(const cli_call *call, const struct stat *file) {
+  for (size_t i = 0; i < call->input_count; i++)
+    if (is_file(call->inputs[i], file)) return call->inputs[i];
+  for (size_t i = 0; i < call->verb->option_count; i++) {
+    const cli_option *option = &call->verb->options[i];
+    const char *word;
+    if (option->kind != CLI_FILE) continue;
+    memcpy(&word, (const char *)call->options + option->offset, sizeof word);
+    if (word && is_file(word, file)) return word;
+  }
+  return NULL;
+}
+
+scree_status cli_check_output(const cli_call *call, const char *path, bool overwrite,
+                              scree_error *error) {
+  struct stat info;
+  bool is_stream = !strcmp(path, "-");
+  const char *word = NULL;
+  if (!is_stream && stat(path, &info) == 0 && S_ISREG(info.st_mode))
+    word = find_reader(call, &info);
+  if (!word) return scree_output_check(path, overwrite, error);
+  char reason[300];
+  snprintf(reason, sizeof reason, "is the input %.200s; what is read is never written over",
+           strcmp(word, "-") != 0 ? word : "on stdin");
+  return cli_refuse(error, SCREE_BAD_ARGUMENT, path, reason);
+}
+
+scree_status cli_check_mesh_output(const cli_call *call, const char *path, bool overwrite,
+                                   scree_error *error) {
+  if (scree_file_format_of(path) != SCREE_FORMAT_AUTO)
+    return cli_check_output(call, path, overwrite, error);
+  return cli_refuse(error, SCREE_BAD_ARGUMENT, path,
+                    "the name of a mesh must end in .stl, .ply, .obj, .off or .3mf");
+}
+
+static bool has_ending(const char *path, const char *ending) {
+  const char *dot = strrchr(path, '.');
+  return dot && !strcasecmp(dot, ending);
+}
+
+scree_status cli_check_picture_output(const cli_call *call, const char *path, bool overwrite,
+                                      scree_error *error) {
+  if (!strcmp(path, "-") || has_ending(path, ".png"))
+    return cli_check_output(call, path, overwrite, error);
+  return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a picture must end in .png");
+}
+
+scree_status cli_check_page_output(const cli_call *call, const char *path, bool overwrite,
+                                   scree_error *error) {
+  if (!strcmp(path, "-") || has_ending(path, ".html") || has_ending(path, ".htm"))
+    return cli_check_output(call, path, overwrite, error);
+  return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a page must end in .html");
+}
+
+scree_status cli_check_begun(const cli_call *call, const char *path, bool overwrite,
+                             scree_error *error) {
+  scree_status status = cli_check_output(call, path, overwrite, error);
+  if (status != SCREE_EXISTS) return status;
+  return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
+}
+
+scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,
+                        scree_error *error) {
+  const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
+  int stem = (int)(dot ? (size_t)(dot - path) : strlen(path));
+  if (snprintf(buffer, size, "%.*s%s", stem, path, ending) < (int)size) return SCREE_OK;
+  *error = (scree_error){SCREE_LIMIT, "the output's name is too long"};
+  return SCREE_LIMIT;
+}

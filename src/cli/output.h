@@ -1,0 +1,35 @@
+/* What a verb may write to. */
+#ifndef SCREE_CLI_OUTPUT_H
+#define SCREE_CLI_OUTPUT_H
+
+#include "cli/args.h"
+
+/* scree_output_check for a verb's output, before any work; and an input is never an output, not
+ * even where existing files may be overwritten: SCREE_BAD_ARGUMENT for a path that is a file the
+ * call reads (an input, or the value of a CLI_FILE option), by whatever name. */
+scree_status cli_check_output(const cli_call *call, const char *path, bool overwrite,
+                              scree_error *error);
+
+/* cli_check_output of a mesh: its ending must say the format. */
+scree_status cli_check_mesh_output(const cli_call *call, const char *path, bool overwrite,
+                                   scree_error *error);
+
+/* cli_check_output of a picture: it is written as PNG, so it must be called one. */
+scree_status cli_check_picture_output(const cli_call *call, const char *path, bool overwrite,
+                                      scree_error *error);
+
+/* And of a page, which must be called one: it never replaces what it is made of. */
+scree_status cli_check_page_output(const cli_call *call, const char *path, bool overwrite,
+                                   scree_error *error);
+
+/* cli_check_output of a file that stands for a folder's work: where it exists, the error says that
+ * --resume goes on and -f begins anew. */
+scree_status cli_check_begun(const cli_call *call, const char *path, bool overwrite,
+                             scree_error *error);
+
+/* The path with another ending, as "p.json" of "p.stl": a file beside it. SCREE_LIMIT where it does
+ * not fit. */
+scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,
+                        scree_error *error);
+
+#endif

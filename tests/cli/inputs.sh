@@ -1,0 +1,45 @@
+# What is read is never written over, by whatever name it goes, not even with -f; nor what is write-protected.
+"$SCREE" sample icosphere-3 -o ball.stl >/dev/null
+cp ball.stl before.stl
+ln -s ball.stl link.stl
+ln ball.stl twin.stl
+mkdir dir
+ln -s ../ball.stl dir/far.stl
+same() { cmp ball.stl before.stl && [ -L link.stl ] && ls; }
+run simplify ball.stl -n 20 -o ball.stl
+run simplify ball.stl -n 20 -f -o ball.stl
+run simplify ball.stl -n 20 -f -o ./dir/../ball.stl
+run simplify ball.stl -n 20 -f -o link.stl
+run simplify dir/far.stl -n 20 -f -o twin.stl
+run simplify - -n 20 -f -o ball.stl <ball.stl
+run repair ball.stl -f -o link.stl
+run choose ball.stl -f -o .
+run export ball.stl -f -o ball.stl
+cp ball.stl ball.vtp
+run export before.stl -r ball.vtp -f -o ball.vtp
+cp ball.stl ball.png
+run render ball.png -f -o ball.png
+run render before.stl -r ball.png --color-by distance -f -o ball.png
+cmp ball.png ball.stl
+cp ball.stl ball.json
+run simplify ball.json -n 20 --density 1000 -f -o ball.ply
+printf '0 0 0 1\n' >series.csv
+run drop series.csv=3 -f -o .
+run repose series.csv -f -o .
+"$SCREE" repose --print-config >experiment.yaml
+cp experiment.yaml yaml
+run repose -c experiment.yaml ball.stl -f -o .
+cmp experiment.yaml yaml
+run report . -f -o series.csv
+cat series.csv
+echo mine >report.html
+rm series.csv experiment.yaml
+run repose ball.stl -o .
+run drop ball.stl -o .
+cat report.html
+cp ball.stl kept.stl
+chmod 444 kept.stl
+run simplify ball.stl -n 20 -o kept.stl
+run simplify ball.stl -n 20 -f -o kept.stl
+cmp kept.stl ball.stl
+same
