@@ -44,7 +44,7 @@ typedef struct scree_scan {
   size_t byte_count;
   char format[32];         /* for example "STL binary", "3MF, inch" (with the unit it states) */
   size_t facet_count;      /* triangles in the file; a polygon counts as its triangles */
-  size_t degenerate_count; /* of these, dropped because two corners coincide */
+  size_t degenerate_count; /* of these, dropped: fewer than three different corners */
   size_t solid_count;      /* `solid`s of an ASCII STL; else 1 */
   size_t
       ignored_byte_count; /* bytes after the last facet of a binary STL, fewer than a facet has */

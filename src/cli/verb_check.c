@@ -44,11 +44,16 @@ static scree_status check_one(const cli_call *call, const char *path, checked *c
 }
 
 static void print_one(const cli_call *call, const char *path, const checked *c) {
+  const check_arguments *arguments = call->options;
   printf("%s: %s\n", path, c->check.verdict);
   if (call->quiet) return;
-  printf("%10s\n", c->scan.format);
+  printf("%10s", c->scan.format);
+  if (!cli_is_sample(path, NULL))
+    printf(", coordinates in %s", cli_unit_name(arguments->source.unit));
+  putchar('\n');
   if (c->scan.degenerate_count)
-    printf("%10zu facets with coinciding corners left out on reading\n", c->scan.degenerate_count);
+    printf("%10zu facets of fewer than three different corners left out on reading\n",
+           c->scan.degenerate_count);
   cli_print_check(stdout, &c->check);
 }
 

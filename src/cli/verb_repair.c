@@ -123,10 +123,14 @@ static void print_text(const cli_call *call, const scree_scan *scan,
                        const scree_repair_report *report) {
   printf("%s: %s\n", call->inputs[0], report->before.verdict);
   if (scan->degenerate_count)
-    printf("%10zu facets with coinciding corners left out on reading\n", scan->degenerate_count);
+    printf("%10zu facets of fewer than three different corners left out on reading\n",
+           scan->degenerate_count);
   cli_print_repair(stdout, report);
   printf("%s: %s\n", report->after.usable ? "repaired" : "left", report->after.verdict);
-  if (!call->quiet) cli_print_check(stdout, &report->after);
+  if (call->quiet) return;
+  cli_print_check(stdout, &report->after);
+  printf("coordinates in %s\n",
+         cli_unit_name(((const repair_arguments *)call->options)->source.unit));
 }
 
 static int tell(const cli_call *call, const scree_scan *scan, const scree_repair_report *report,

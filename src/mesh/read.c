@@ -71,7 +71,7 @@ scree_status scree_reading_weld(scree_reading *r, const double *corner_positions
 scree_status scree_reading_weld_faces(scree_reading *r, const double *positions,
                                       size_t position_count, scree_face_list *faces) {
   r->scan->solid_count = 1;
-  size_t face_count = faces->triangles.count + faces->polygons.count + faces->lost_count;
+  size_t face_count = faces->triangles.count + faces->polygons.count;
   if (face_count == 0)
     return scree_reading_fail(r, SCREE_BAD_FILE, "%s with no facets (%zu vertices)",
                               r->scan->format, position_count);

@@ -20,15 +20,6 @@ typedef struct obj {
   const char *highest_at; /* and where it stands: vertices may follow their faces */
 } obj;
 
-static scree_status read_vertex(scree_text *t, obj *o) {
-  if (!SCREE_RESERVE(&o->positions, o->positions.count + 3))
-    return scree_fail_memory(t->error, o->positions.capacity * sizeof(double),
-                             "the vertices of an OBJ");
-  scree_status status = scree_text_position(t, o->positions.items + o->positions.count);
-  o->positions.count += 3;
-  return status;
-}
-
 /* Skips blanks and continued line ends; false at the end of the statement. */
 static bool statement_goes_on(scree_text *t) {
   for (;;) {
@@ -38,6 +29,23 @@ static bool statement_goes_on(scree_text *t) {
     t->p++;
     scree_text_skip_line(t);
   }
+}
+
+/* All on one line: a short one is told where it stands. */
+static scree_status read_vertex(scree_text *t, obj *o) {
+  const char *at = t->p;
+  if (!SCREE_RESERVE(&o->positions, o->positions.count + 3))
+    return scree_fail_memory(t->error, o->positions.capacity * sizeof(double),
+                             "the vertices of an OBJ");
+  for (int i = 0; i < 3; i++) {
+    if (!statement_goes_on(t))
+      return scree_text_fail(t, at, "a vertex with %d coordinate%s; it needs 3", i,
+                             i == 1 ? "" : "s");
+    scree_status status = scree_text_coordinate(t, i, o->positions.items + o->positions.count);
+    if (status != SCREE_OK) return status;
+    o->positions.count++;
+  }
+  return SCREE_OK;
 }
 
 /* Reads the vertex index of a corner and skips its texture and normal indices. */
@@ -63,7 +71,6 @@ static scree_status read_corner(scree_text *t, obj *o, uint32_t *corner) {
 }
 
 static scree_status read_face(scree_text *t, obj *o) {
-  const char *at = t->p;
   o->face.count = 0;
   while (statement_goes_on(t)) {
     uint32_t corner = 0;
@@ -72,8 +79,6 @@ static scree_status read_face(scree_text *t, obj *o) {
     if (!SCREE_PUSH(&o->face, corner))
       return scree_fail_memory(t->error, o->face.capacity * sizeof corner, "a face of an OBJ");
   }
-  if (o->face.count < 3)
-    return scree_text_fail(t, at, "a face with %zu corners; it needs at least 3", o->face.count);
   if (!scree_face_list_add(&o->faces, o->face.items, o->face.count))
     return scree_fail_memory(t->error, o->faces.triangles.capacity * sizeof(uint32_t),
                              "the faces of an OBJ");

@@ -82,19 +82,24 @@ scree_status scree_text_integer(scree_text *t, const char *what, int64_t low, in
   return SCREE_OK;
 }
 
-scree_status scree_text_position(scree_text *t, double position[3]) {
+scree_status scree_text_coordinate(scree_text *t, int axis, double *value) {
   static const char *const axes[] = {"x", "y", "z"};
   char quote[SCREE_QUOTE_SIZE];
-  for (int i = 0; i < 3; i++) {
-    scree_text_skip_space(t);
-    const char *behind = whole_number(t, &position[i]);
-    if (!behind || !(fabs(position[i] * t->unit_m) <= SCREE_COORDINATE_LIMIT))
-      return scree_text_fail(t, t->p,
-                             "%s is %s; coordinates must be finite numbers, at most %g m in size",
-                             axes[i], scree_text_quote(t, t->p, quote), SCREE_COORDINATE_LIMIT);
-    t->p = behind;
-  }
+  scree_text_skip_space(t);
+  const char *behind = whole_number(t, value);
+  if (!behind || !(fabs(*value * t->unit_m) <= SCREE_COORDINATE_LIMIT))
+    return scree_text_fail(t, t->p,
+                           "%s is %s; coordinates must be finite numbers, at most %g m in size",
+                           axes[axis], scree_text_quote(t, t->p, quote), SCREE_COORDINATE_LIMIT);
+  t->p = behind;
   return SCREE_OK;
+}
+
+scree_status scree_text_position(scree_text *t, double position[3]) {
+  scree_status status = SCREE_OK;
+  for (int i = 0; i < 3 && status == SCREE_OK; i++)
+    status = scree_text_coordinate(t, i, &position[i]);
+  return status;
 }
 
 static size_t line_of(const scree_text *t, const char *at) {

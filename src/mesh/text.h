@@ -39,6 +39,8 @@ scree_status scree_text_number(scree_text *t, const char *what, double *value);
 scree_status scree_text_integer(scree_text *t, const char *what, int64_t low, int64_t high,
                                 int64_t *value);
 /* The same for three coordinates in file units, each finite and within scree's range. */
+/* Or one of its numbers; axis 0 is x. */
+scree_status scree_text_coordinate(scree_text *t, int axis, double *value);
 scree_status scree_text_position(scree_text *t, double position[3]);
 
 /* Fails with "NAME: line N: " before the sentence, N being the line of `at`. */

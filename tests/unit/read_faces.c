@@ -277,13 +277,46 @@ static void obj_broken(void **state) {
   begin("v 0 0 0\nf 99999999999999999999 1 1\n");
   expect_error("line 2: corner '99999999999999999999'");
   begin("v 0 0 0\r\nf 1 1\r\n");
-  expect_error("line 2: a face with 2 corners");
+  expect_error("no facets");
   begin("v 0 0 0\nv 0 nan 0\n");
   expect_error("line 2: y is 'nan'");
   begin("v 0 0 0\nv 0 1");
-  expect_error("line 2: z is the end of the file");
+  expect_error("line 2: a vertex with 2 coordinates; it needs 3");
+  begin("v 0 0 0\nv 1 2\nv 3 4 5\n");
+  expect_error("line 2: a vertex with 2 coordinates; it needs 3");
+  begin("v 0 0 0\nv\t # 1 2 3\n");
+  expect_error("line 2: a vertex with 0 coordinates; it needs 3");
+  begin("v 0 0 0\nv 1 2 \\\nx\n");
+  expect_error("line 3: z is 'x'");
   begin("v 0 0 0\n");
   expect_error("no facets");
+}
+
+/* Lines and points among the faces are counted and left out, alike in every format; a file of
+ * nothing else has no facets. */
+static void faces_of_two_corners(void **state) {
+  (void)state;
+  static const char *const heads[][2] = {
+      {"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+       "property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n"
+       "0 0 0\n1 0 0\n0 1 0\n",
+       "3 0 1 2\n2 0 1\n1 2\n"},
+      {"OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n2 0 1\n1 2\n"},
+      {"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "f 1 2 3\nf 1 2\nf 3\n"}};
+  for (size_t i = 0; i < 3; i++) {
+    scree_scan scan = {0};
+    scree_error error;
+    begin(heads[i][0]);
+    put_text(heads[i][1]);
+    CHECK_OK(scree_scan_parse(file, file_size, "made", NULL, &scan, &error), error);
+    assert_int_equal(scan.mesh.triangle_count, 1);
+    assert_int_equal(scan.facet_count, 3);
+    assert_int_equal(scan.degenerate_count, 2);
+    scree_scan_free(&scan);
+    begin(heads[i][0]);
+    put_text(i < 2 ? "2 0 1\n1 2\n0\n" : "f 1 2\nf 3\nf\n");
+    expect_error("with no facets (3 vertices)");
+  }
 }
 
 /* ---- OFF ---- */
@@ -398,11 +431,11 @@ static void memory_runs_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ply_in_every_style), cmocka_unit_test(ply_cut_anywhere),
-      cmocka_unit_test(ply_broken),         cmocka_unit_test(obj),
-      cmocka_unit_test(obj_broken),         cmocka_unit_test(off),
-      cmocka_unit_test(off_broken),         cmocka_unit_test(concave_polygons),
-      cmocka_unit_test(memory_runs_out),
+      cmocka_unit_test(ply_in_every_style),   cmocka_unit_test(ply_cut_anywhere),
+      cmocka_unit_test(ply_broken),           cmocka_unit_test(obj),
+      cmocka_unit_test(obj_broken),           cmocka_unit_test(off),
+      cmocka_unit_test(off_broken),           cmocka_unit_test(concave_polygons),
+      cmocka_unit_test(faces_of_two_corners), cmocka_unit_test(memory_runs_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
