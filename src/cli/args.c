@@ -11,8 +11,8 @@ const cli_option cli_common_options[] = {
      "Threads to use; 0 is one per processor, the default. The results do not depend on it.", 0,
      4096, NULL},
     {"max-memory", 0, CLI_BYTES, offsetof(cli_common, max_memory), "SIZE",
-     "Fail rather than hold more than SIZE bytes (suffixes K, M, G). Default: no limit.", 0, 0,
-     NULL},
+     "Fail rather than hold more than SIZE bytes (suffixes K, M, G); 0, the default, is no limit.",
+     0, 0, NULL},
     {"progress", 0, CLI_FLAG, offsetof(cli_common, progress), NULL,
      "Show progress even where stderr is not a terminal.", 0, 0, NULL},
     {"quiet", 'q', CLI_FLAG, offsetof(cli_common, quiet), NULL, "Only results and errors.", 0, 0,
@@ -44,11 +44,22 @@ const char *cli_unit_name(double metres) {
   return "?";
 }
 
+/* strtod for decimal numbers alone: *end is text where it begins with blanks, is hexadecimal, or
+ * spells out infinity. */
+static double parse_decimal(const char *text, const char **end) {
+  const char *digits = text + (*text == '+' || *text == '-');
+  char *behind;
+  double value = strtod(text, &behind);
+  bool decimal = *digits == '.' || (*digits >= '0' && *digits <= '9');
+  bool hexadecimal = digits[0] == '0' && (digits[1] == 'x' || digits[1] == 'X');
+  *end = decimal && !hexadecimal ? behind : text;
+  return value;
+}
+
 bool cli_real_from_text(const char *text, double *value) {
-  char *end;
-  if (!*text) return false;
-  *value = strtod(text, &end);
-  return *end == 0 && isfinite(*value);
+  const char *end;
+  *value = parse_decimal(text, &end);
+  return end != text && *end == 0 && isfinite(*value);
 }
 
 int cli_fail(const scree_error *error) {
@@ -96,8 +107,8 @@ static bool in_range(const cli_option *option, double value) {
 static int out_of_range(const cli_verb *verb, const cli_option *option, const char *text) {
   if (option->minimum == 0 && option->maximum == 0)
     return cli_misuse(verb, "--%s %s: must not be below 0", option->name, text);
-  return cli_misuse(verb, "--%s %s: outside the range %g to %g", option->name, text,
-                    option->minimum, option->maximum);
+  return cli_misuse(verb, "--%s %s: outside the range %g to %g%s", option->name, text,
+                    option->minimum, option->maximum, option->kind == CLI_LENGTH ? " m" : "");
 }
 
 static int parse_count(const cli_verb *verb, const cli_option *option, const char *text,
@@ -114,8 +125,8 @@ static int parse_count(const cli_verb *verb, const cli_option *option, const cha
 
 static int parse_bytes(const cli_verb *verb, const cli_option *option, const char *text,
                        void *value) {
-  char *end;
-  double parsed = strtod(text, &end);
+  const char *end;
+  double parsed = parse_decimal(text, &end);
   const char *suffixes = "KMG", *suffix = *end ? strchr(suffixes, *end) : NULL;
   if (end == text || !(parsed >= 0) || (*end && (!suffix || end[1])))
     return cli_misuse(verb, "--%s %s: not a size such as 500M or 4G", option->name, text);
@@ -127,8 +138,8 @@ static int parse_bytes(const cli_verb *verb, const cli_option *option, const cha
 
 static int parse_length(const cli_verb *verb, const cli_option *option, const char *text,
                         void *value) {
-  char *end;
-  double number = strtod(text, &end), metres = 0;
+  const char *end;
+  double number = parse_decimal(text, &end), metres = 0;
   if (end == text || !isfinite(number))
     return cli_misuse(verb, "--%s %s: not a length such as 0.27mm", option->name, text);
   if (!cli_unit_from_text(end, &metres) && number != 0)
