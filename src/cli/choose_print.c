@@ -10,6 +10,8 @@ static const double NOTABLE_RATIO = 1.5;
 /* The paper's scans have some 760,000 triangles; beyond this factor from it, or between objects,
  * the dependence on resolution is said. */
 static const double PAPER_COUNT = 762008, NOTABLE_RESOLUTION = 3;
+/* And it is none where the count would hardly change. */
+static const double NOTABLE_GROWTH = 0.1;
 
 /* The paper's coarsest levels; a floor above is worth a word. */
 enum { PAPER_FLOOR = 8 };
@@ -55,8 +57,9 @@ static void print_table(FILE *out, const choose_run *run) {
   char rp1[16], rp2[16];
   const char *reference =
       run->options.reference == SCREE_REFERENCE_SMOOTH ? ", area free of noise" : "";
-  fprintf(out, "Ip = eps_s + %s Nr/Nm, method %s%s\n", run->options.weight == 1 ? "1" : "w",
-          scree_method_name(run->simplify.method), reference);
+  fprintf(out, "Ip = eps_s + %s Nr/Nm, method %s%s, coordinates in %s\n",
+          run->options.weight == 1 ? "1" : "w", scree_method_name(run->simplify.method), reference,
+          cli_unit_name(run->arguments->source.unit));
   fprintf(out, "%30s%-24s| %s\n", "",
           run->arguments->paper ? "| paper (default)" : "| paper's grid",
           run->arguments->paper ? "robust" : "robust (default)");
@@ -141,8 +144,10 @@ static void print_resolution(FILE *out, const choose_run *run) {
     most = fmax(most, (double)c->triangle_count);
     growth += (double)c->finer_count / (double)c->robust.triangle_count / (double)run->count;
   }
-  if (ratio(most, least) > NOTABLE_RESOLUTION || ratio(least, PAPER_COUNT) > NOTABLE_RESOLUTION ||
-      ratio(most, PAPER_COUNT) > NOTABLE_RESOLUTION)
+  bool unlike = ratio(most, least) > NOTABLE_RESOLUTION ||
+                ratio(least, PAPER_COUNT) > NOTABLE_RESOLUTION ||
+                ratio(most, PAPER_COUNT) > NOTABLE_RESOLUTION;
+  if (unlike && fabs(growth - 1) >= NOTABLE_GROWTH)
     fprintf(
         out,
         "Nr depends on the scan's resolution: at half the spacing it would be %.1f times this.\n",

@@ -13,6 +13,18 @@ void cli_print_check(FILE *stream, const scree_check *check) {
             check->intersections_known ? "" : ": self-intersections were not looked for");
 }
 
+void cli_repair_text(const scree_repair_report *report, char *buffer, size_t size) {
+  size_t used = 0;
+  buffer[0] = 0;
+  if (report->before.usable) return;
+  for (int a = 0; a < SCREE_REPAIR_ACTION_COUNT; a++) {
+    if (!report->done[a] || used + 1 >= size) continue;
+    used += (size_t)snprintf(buffer + used, size - used, "%s%zu %s",
+                             used ? ", " : "repaired: ", report->done[a],
+                             scree_repair_action_text((scree_repair_action)a));
+  }
+}
+
 void cli_print_repair(FILE *stream, const scree_repair_report *report) {
   bool any = false;
   for (int i = 0; i < SCREE_REPAIR_ACTION_COUNT; i++) {

@@ -6,6 +6,8 @@
 
 /* The counts that are not 0, a line each, and the volume. */
 void cli_print_check(FILE *stream, const scree_check *check);
+/* "repaired: 3 holes filled, ..." of a surface that needed it, else "". */
+void cli_repair_text(const scree_repair_report *report, char *buffer, size_t size);
 /* What was done, a line each; "nothing" where nothing was. */
 void cli_print_repair(FILE *stream, const scree_repair_report *report);
 

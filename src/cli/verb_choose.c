@@ -1,4 +1,5 @@
 #include "cli/choose.h"
+#include "cli/surface.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -123,17 +124,6 @@ static scree_status name_in_error(const choose_object *object, scree_error *erro
   return error->status;
 }
 
-static void note_repair(choose_object *object, const scree_repair_report *report) {
-  size_t used = 0;
-  if (report->before.usable) return;
-  for (int a = 0; a < SCREE_REPAIR_ACTION_COUNT; a++) {
-    if (!report->done[a] || used + 1 >= sizeof object->note) continue;
-    used += (size_t)snprintf(object->note + used, sizeof object->note - used, "%s%zu %s",
-                             used ? ", " : "repaired: ", report->done[a],
-                             scree_repair_action_text((scree_repair_action)a));
-  }
-}
-
 static scree_status load(void *context, size_t index, const scree_progress *progress,
                          scree_mesh *mesh, scree_error *error) {
   const choose_run *run = context;
@@ -157,7 +147,7 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
     return name_in_error(object, error);
   }
   *mesh = scan.mesh;
-  note_repair(object, &report);
+  cli_repair_text(&report, object->note, sizeof object->note);
   return SCREE_OK;
 }
 
@@ -220,9 +210,11 @@ static int run_choose(const cli_call *call) {
     return cli_misuse(call->verb, "no scan given: name files, or sample:fp-1 and the like for "
                                   "built-in samples, or --samples for all nine");
   if (a->json && a->csv) return cli_misuse(call->verb, "--json and --csv exclude each other");
-  if (a->paper &&
-      (a->method == SCREE_METHOD_VOLUME || a->weight != 1 || a->reference != SCREE_REFERENCE_SCAN))
-    return cli_misuse(call->verb, "--paper is method qecd, weight 1 and the scan's area");
+  if (a->paper && (a->method == SCREE_METHOD_VOLUME || a->weight != 1 ||
+                   strcmp(a->grid, defaults.grid) != 0 || a->reference != SCREE_REFERENCE_SCAN))
+    return cli_misuse(call->verb,
+                      "--paper is method qecd, weight 1, the scan's area and the grid %s",
+                      defaults.grid);
   if (!parse_grid(a->grid, &run.options))
     return cli_misuse(call->verb,
                       "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole "

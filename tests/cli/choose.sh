@@ -15,3 +15,7 @@ cmp a.json b.json && grep -c '"rp"' a.json
 "$SCREE" choose sample:icosphere-4 --csv | wc -l
 cp out/icosphere-4.stl again.stl
 "$SCREE" choose again.stl --no-repair --json | grep '"unit_m"'
+# the grid is the paper's; of a box, whose count does not depend on the scan's resolution, none is said to
+run choose --paper --grid 1e-4:1:3 sample:icosphere-3 2>&1 | sed -n 2p
+box 3 2 1 >box.off
+"$SCREE" choose box.off --unit cm | shape
