@@ -1,6 +1,7 @@
 /* scree simplify: one level of the decimation as a file. */
 #include "cli/input.h"
 #include "cli/output.h"
+#include "cli/surface.h"
 
 #include <math.h>
 #include <string.h>
@@ -13,7 +14,7 @@ typedef struct simplify_arguments {
   double rp, error, density;
   size_t count;
   int method;
-  bool force;
+  bool no_repair, unchecked, force;
 } simplify_arguments;
 
 static const cli_option options[] = {
@@ -30,7 +31,7 @@ static const cli_option options[] = {
     {"error", 'e', CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
      "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the quadric "
      "error, an estimate, not a bound.",
-     0, 1e12, NULL},
+     1e-12, 1e12, NULL},
     {"method", 'm', CLI_CHOICE, offsetof(simplify_arguments, method), "METHOD",
      "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
      "Default: volume.",
@@ -41,6 +42,12 @@ static const cli_option options[] = {
      1e-6, 1e6, NULL},
     {"unit", 'u', CLI_UNIT, offsetof(simplify_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the files: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
+    {"no-repair", 0, CLI_FLAG, offsetof(simplify_arguments, no_repair), NULL,
+     "Refuse a scan that is no closed surface instead of repairing it.", 0, 0, NULL},
+    {"unchecked", 0, CLI_FLAG, offsetof(simplify_arguments, unchecked), NULL,
+     "Take the scan as it is, neither checked nor repaired: an open surface stays open, and what "
+     "meets itself may go on doing so.",
+     0, 0, NULL},
     CLI_SAMPLE_OPTIONS(simplify_arguments, source),
     {"force", 'f', CLI_FLAG, offsetof(simplify_arguments, force), NULL,
      "Overwrite an existing file.", 0, 0, NULL},
@@ -120,14 +127,34 @@ static scree_status check_output(const cli_call *call, scree_error *error) {
   return status == SCREE_OK ? cli_check_output(call, path, arguments->force, error) : status;
 }
 
-static scree_status simplify(const cli_call *call, scree_error *error) {
+/* Reads the scan and makes it what a decimation may assume it is. */
+static scree_status load(const cli_call *call, scree_scan *scan, scree_error *error) {
   const simplify_arguments *arguments = call->options;
   cli_input_options input = cli_source_options(&arguments->source);
+  scree_repair_options repair = scree_default_repair_options();
+  scree_repair_report report;
+  char note[1024];
+  scree_status status = cli_load(call->inputs[0], &input, call->progress, scan, error);
+  if (status != SCREE_OK || arguments->unchecked) return status;
+  if (cli_is_sample(call->inputs[0], NULL)) return status; /* made closed and manifold */
+  status = scree_mesh_prepare(&scan->mesh, arguments->no_repair ? NULL : &repair, call->progress,
+                              &scan->mesh, &report, error);
+  if (status != SCREE_OK) {
+    scree_scan_free(scan);
+    return cli_name_in_error(call->inputs[0], error);
+  }
+  cli_repair_text(&report, note, sizeof note);
+  if (note[0] && !call->quiet) fprintf(stderr, "%s: %s\n", call->inputs[0], note);
+  return SCREE_OK;
+}
+
+static scree_status simplify(const cli_call *call, scree_error *error) {
+  const simplify_arguments *arguments = call->options;
   scree_simplify_options simplify_options = scree_default_simplify_options();
   scree_scan scan = {0};
   scree_curve *curve = NULL;
   scree_status status = check_output(call, error);
-  if (status == SCREE_OK) status = cli_load(call->inputs[0], &input, call->progress, &scan, error);
+  if (status == SCREE_OK) status = load(call, &scan, error);
   if (status != SCREE_OK) return status;
   size_t target = arguments->count;
   if (arguments->rp > 0) target = scree_choice_target(arguments->rp, scan.mesh.triangle_count);
@@ -158,6 +185,8 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "-r and -n exclude each other");
   if (!(arguments->rp > 0) && arguments->count == 0 && !(arguments->error > 0))
     return cli_misuse(call->verb, "one of -r RP, -n COUNT or -e LENGTH is needed");
+  if (arguments->no_repair && arguments->unchecked)
+    return cli_misuse(call->verb, "--no-repair and --unchecked exclude each other");
   if (arguments->density > 0 && !strcmp(arguments->output, "-"))
     return cli_misuse(call->verb, "--density writes beside a file: -o - has none");
   return simplify(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
@@ -168,9 +197,10 @@ const cli_verb cli_verb_simplify = {
     .summary = "write a scan with fewer triangles",
     .inputs = "FILE|sample:NAME",
     .description =
-        "Decimates a scan by edge collapses and writes the level asked for. What was closed, "
-        "manifold and outward stays so; no facet is flipped, folded over or driven through "
-        "another. The same file gives the same bits, whatever the order of its facets and the "
+        "Decimates a scan by edge collapses and writes the level asked for. A scan that is no "
+        "closed surface is repaired first, which is said. What was closed, manifold and outward "
+        "stays so; no facet is flipped, folded over or driven through another. The same file gives "
+        "the same bits, whatever the order of its facets and the "
         "number of threads.",
     .examples = "scree simplify phone.stl -r 1e-3 -o phone_762.stl\n"
                 "scree simplify phone.stl -n 500 -m qecd -o phone_500.ply\n"

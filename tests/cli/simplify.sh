@@ -13,3 +13,22 @@ run simplify icosphere-4.stl -n 10 2>&1
 run simplify icosphere-4.stl -n 10 -r 0.1 -o x.stl 2>&1
 run simplify missing.stl -n 10 -o x.stl 2>&1
 run curve icosphere-4.stl --from 0.1 --to 0.01 2>&1
+# a length or a share of nothing, and one in hexadecimal
+for e in 0 -0 1e-400m 0x1mm; do run simplify icosphere-4.stl -e $e -o x.stl 2>&1 | sed -n 2p; done
+run simplify icosphere-4.stl -r 0x10 -o x.stl 2>&1 | sed -n 2p
+run simplify icosphere-4.stl -n 0x10 -o x.stl 2>&1 | sed -n 2p
+# what is no closed surface is repaired first, or refused, or taken as it is when asked; as choose does
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >lone.off
+printf 'OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 2 1 0\n' >flat.off
+box 3 2 1 | sed -e 's/^8 6 0/8 5 0/' -e '/^4 3 2 6 7/d' >hole.off
+for name in lone flat; do
+  run simplify $name.off -r 1 -o x.off
+  run choose $name.off
+  run simplify $name.off -r 1 --no-repair -o x.off
+  run simplify $name.off -r 1 --unchecked -o $name-same.off
+done
+run simplify hole.off -r 1 --no-repair -o x.off
+run simplify hole.off -r 1 --unchecked -o open.off
+run simplify hole.off -r 1 --no-repair --unchecked -o x.off 2>&1 | sed -n 2p
+run simplify hole.off -r 1 -o closed.off
+run check -q hole.off open.off closed.off
