@@ -264,9 +264,10 @@ scree_status scree_folder_create(const char *path, scree_error *error) {
     if (*end != '/' && *end != 0) continue;
     char kept = *end;
     *end = 0;
-    if (mkdir(partial, 0777) != 0 && !folder_exists(partial))
+    int reason = mkdir(partial, 0777) == 0 ? 0 : errno;
+    if (reason && !folder_exists(partial))
       status = scree_fail(error, SCREE_IO, "%s: cannot create the folder: %s", partial,
-                          errno == EEXIST ? "a file has that name" : strerror(errno));
+                          reason == EEXIST ? "a file has that name" : strerror(reason));
     *end = kept;
     if (!kept) break;
   }

@@ -1,5 +1,8 @@
 #include "cli/surface.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 void cli_print_check(FILE *stream, const scree_check *check) {
   fprintf(stream, "%10zu triangles\n%10zu vertices\n%10zu shells\n", check->triangle_count,
           check->vertex_count, check->shell_count);
@@ -38,4 +41,49 @@ void cli_print_repair(FILE *stream, const scree_repair_report *report) {
             report->seam_distance * 1e3);
   if (!any)
     fprintf(stream, "%10s %s be done\n", "nothing", report->before.usable ? "had to" : "could");
+}
+
+/* As single precision holds the coordinate in file units. */
+static double rounded(double coordinate, double unit) {
+  return (double)(float)(coordinate / unit) * unit;
+}
+
+static bool fits_single(const scree_mesh *mesh, double unit) {
+  for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+    if (rounded(mesh->positions[i], unit) != mesh->positions[i]) return false;
+  return true;
+}
+
+/* The mesh as reading it from an STL gives it. */
+static scree_status round_mesh(const scree_mesh *mesh, double unit, scree_mesh *read,
+                               scree_error *error) {
+  double *corners = malloc((9 * mesh->triangle_count + 1) * sizeof *corners);
+  if (!corners) {
+    *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the rounded surface"};
+    return SCREE_OUT_OF_MEMORY;
+  }
+  for (size_t i = 0; i < 9 * mesh->triangle_count; i++)
+    corners[i] = rounded(mesh->positions[3 * (size_t)mesh->triangles[i / 3] + i % 3], unit);
+  scree_status status = scree_mesh_weld(corners, mesh->triangle_count, 0, read, NULL, error);
+  free(corners);
+  return status;
+}
+
+scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double unit,
+                               const scree_check_options *how, const scree_progress *progress,
+                               scree_error *error) {
+  bool single = !strcmp(path, "-") || scree_file_format_of(path) == SCREE_FORMAT_STL;
+  scree_mesh read;
+  scree_check check;
+  if (!single || fits_single(mesh, unit)) return SCREE_OK;
+  scree_status status = round_mesh(mesh, unit, &read, error);
+  if (status != SCREE_OK) return status;
+  status = scree_mesh_check(&read, how, progress, &check, error);
+  scree_mesh_free(&read);
+  if (status != SCREE_OK || check.usable) return status;
+  error->status = SCREE_BAD_MESH;
+  snprintf(error->message, sizeof error->message,
+           "%.300s: rounded to the file's precision, the surface is %.500s; try .ply or .obj", path,
+           check.verdict);
+  return SCREE_BAD_MESH;
 }

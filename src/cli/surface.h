@@ -11,4 +11,11 @@ void cli_repair_text(const scree_repair_report *report, char *buffer, size_t siz
 /* What was done, a line each; "nothing" where nothing was. */
 void cli_print_repair(FILE *stream, const scree_repair_report *report);
 
+/* A file of single precision, as STL is, may not hold what is sound in double: SCREE_BAD_MESH where
+ * the mesh, read from the file that the path will name, would no longer pass the check. "-" is an
+ * STL. how may be NULL. */
+scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double unit,
+                               const scree_check_options *how, const scree_progress *progress,
+                               scree_error *error);
+
 #endif

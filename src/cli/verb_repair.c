@@ -78,45 +78,16 @@ static scree_repair_options options_of(const repair_arguments *a) {
   return o;
 }
 
-/* Whether single precision holds every coordinate, so that reading the file gives the same bits. */
-static bool fits_single(const scree_mesh *mesh, double unit) {
-  for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
-    if ((double)(float)(mesh->positions[i] / unit) * unit != mesh->positions[i]) return false;
-  return true;
-}
-
-/* A file of single precision may not hold what was repaired in double: read it again and check. */
-static scree_status verify_written(const cli_call *call, scree_error *error) {
-  const repair_arguments *a = call->options;
-  scree_read_options read = scree_default_read_options();
-  scree_check_options how = {.intersections = !a->fast};
-  scree_scan scan;
-  scree_check check;
-  read.unit_m = a->source.unit;
-  scree_status status = scree_scan_read(a->output, &read, &scan, error);
-  if (status != SCREE_OK) return status;
-  status = scree_mesh_check(&scan.mesh, &how, call->progress, &check, error);
-  scree_scan_free(&scan);
-  if (status != SCREE_OK || check.usable) return status;
-  error->status = SCREE_BAD_MESH;
-  snprintf(error->message, sizeof error->message,
-           "%.300s: rounded to the file's precision, the surface is %.500s; try .ply or .obj",
-           a->output, check.verdict);
-  return SCREE_BAD_MESH;
-}
-
 static scree_status write_result(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
   const repair_arguments *a = call->options;
   scree_write_options write = scree_default_write_options();
   write.unit_m = a->source.unit;
   write.overwrite = a->force;
   write.comment = call->command_line;
-  scree_status status = scree_mesh_write(mesh, a->output, &write, error);
-  if (status != SCREE_OK || scree_file_format_of(a->output) != SCREE_FORMAT_STL) return status;
-  if (fits_single(mesh, a->source.unit)) return status;
-  status = verify_written(call, error);
-  if (status != SCREE_OK) remove(a->output);
-  return status;
+  scree_check_options how = {.intersections = !a->fast};
+  scree_status status =
+      cli_check_rounded(mesh, a->output, a->source.unit, &how, call->progress, error);
+  return status == SCREE_OK ? scree_mesh_write(mesh, a->output, &write, error) : status;
 }
 
 static void print_text(const cli_call *call, const scree_scan *scan,

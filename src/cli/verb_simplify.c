@@ -109,6 +109,9 @@ static scree_status write_level(const cli_call *call, const scree_scan *scan,
   const simplify_arguments *arguments = call->options;
   scree_mesh mesh = {0};
   scree_status status = scree_curve_mesh(curve, index, &mesh, error);
+  if (status == SCREE_OK && !arguments->unchecked)
+    status = cli_check_rounded(&mesh, arguments->output, arguments->source.unit, NULL,
+                               call->progress, error);
   if (status == SCREE_OK)
     status = arguments->density > 0 ? write_with_mass(call, scan, &mesh, error)
                                     : write_plain(call, &mesh, error);
