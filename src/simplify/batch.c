@@ -212,19 +212,33 @@ typedef struct waiting {
   uint32_t count;
 } waiting;
 
+/* Takes edge i for its vertex if it is the cheapest so far; of equally cheap ones the first. Of
+ * those waiting the one with number *has is what the vertex has, if not lower than `begin`. */
+static void take_cheaper(pass *p, const waiting *w, uint32_t v, uint32_t i, scree_candidate *c,
+                         uint32_t *has) {
+  double most = p->cost[v];
+  if (!(c->cost < most || (c->cost == most && i < *has)) || !(c->error <= p->d->error_limit))
+    return;
+  if (p->d->coster->shape) {
+    p->d->coster->shape(&p->d->s, w->edge[i], most, c);
+    if (!(c->cost < most || (c->cost == most && i < *has))) return;
+  }
+  p->cost[v] = c->cost;
+  p->best[v] = w->edge[i];
+  *has = i;
+}
+
 static void evaluate_waiting(pass *p, waiting *w) {
   const scree_halfmesh *s = &p->d->s;
   scree_candidate candidates[SIDE_BY_SIDE];
   p->d->coster->evaluate(s, w->edge, w->count, candidates);
-  for (uint32_t i = 0; i < w->count; i++) {
-    uint32_t v = s->half[w->edge[i]].from;
-    if (!(candidates[i].cost < p->cost[v] && candidates[i].error <= p->d->error_limit)) continue;
-    if (p->d->coster->shape) {
-      p->d->coster->shape(s, w->edge[i], &candidates[i]);
-      if (!(candidates[i].cost < p->cost[v])) continue;
-    }
-    p->cost[v] = candidates[i].cost;
-    p->best[v] = w->edge[i];
+  for (uint32_t begin = 0, end; begin < w->count; begin = end) {
+    uint32_t v = s->half[w->edge[begin]].from, likely = begin, has = begin;
+    for (end = begin + 1; end < w->count && s->half[w->edge[end]].from == v; end++)
+      if (candidates[end].cost < candidates[likely].cost) likely = end;
+    take_cheaper(p, w, v, likely, &candidates[likely], &has); /* few others' shapes matter then */
+    for (uint32_t i = begin; i < end; i++)
+      if (i != likely) take_cheaper(p, w, v, i, &candidates[i], &has);
   }
   w->count = 0;
 }
@@ -363,7 +377,7 @@ static void reconsider_waiting(pass *p, waiting *w) {
   p->d->coster->evaluate(s, w->edge, w->count, candidates);
   for (uint32_t i = 0; i < w->count; i++) {
     if (p->d->coster->shape && key_of(candidates[i].cost) <= p->limit)
-      p->d->coster->shape(s, w->edge[i], &candidates[i]);
+      p->d->coster->shape(s, w->edge[i], cost_of_key(p->limit + 1), &candidates[i]);
     p->cost[s->half[w->edge[i]].from] =
         candidates[i].error <= p->d->error_limit ? candidates[i].cost : INFINITY;
   }

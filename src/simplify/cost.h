@@ -29,9 +29,10 @@ typedef struct scree_coster {
   /* Many at once: cheaper than one by one, and the same bits. Without what `shape` adds. */
   void (*evaluate)(const scree_halfmesh *s, const uint32_t *half_edges, size_t count,
                    scree_candidate *candidates);
-  /* Raises the cost by what the shape of the new triangles takes, which is dear to find; qecd only.
-   */
-  void (*shape)(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *candidate);
+  /* Raises the cost by what the shape of the new triangles takes, which is dear to find: where that
+   * is surely above `most`, to INFINITY; qecd only. */
+  void (*shape)(const scree_halfmesh *s, uint32_t half_edge, double most,
+                scree_candidate *candidate);
   /* The whole cost of another place, where the best is not allowed: fallback in [0,
    * SCREE_FALLBACK_COUNT), the middle and the ends of the edge, as near as the method lets. */
   void (*fall_back)(const scree_halfmesh *s, uint32_t half_edge, int fallback,

@@ -180,7 +180,7 @@ static void evaluate_waiting(queue *q) {
     if ((s->flags[s->half[h].from] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_LOCKED)
       candidates[i].cost = INFINITY;
     else if (q->d->coster->shape)
-      q->d->coster->shape(s, h, &candidates[i]);
+      q->d->coster->shape(s, h, INFINITY, &candidates[i]);
     q->stage[h] = candidates[i].stray > 0 ? IN_PART : WHOLE;
     enqueue(q, h, &candidates[i]);
   }

@@ -26,6 +26,8 @@
  * second step from where the first one ended removes its bias elsewhere. */
 #define PULL 1e-8
 #define TIE  1e-12
+/* Far above that of the cost. */
+#define ROUNDING 1e-9
 
 enum { XX, XY, XZ, YY, YZ, ZZ, X, Y, Z, ONE };
 
@@ -171,9 +173,9 @@ static scree_candidate answer(const lanes *l, int i) {
 }
 
 /* The worst shape among the triangles of v's fan, those with `other` apart,
- * once v lies at x. */
+ * once v lies at x; or one below `least`, if there is one. Squared. */
 static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other, vec3 x,
-                            double worst) {
+                            double worst, double least) {
   uint32_t first = s->vertex[v].outgoing, g = first;
   do {
     uint32_t c1 = scree_to(s, g), c2 = s->half[scree_previous(g)].from;
@@ -186,16 +188,18 @@ static double worst_quality(const scree_halfmesh *s, uint32_t v, uint32_t other,
       if (!(doubled2 >= worst * l2 * l2)) worst = l2 > 0 ? doubled2 / (l2 * l2) : 0;
     }
     g = scree_turn(s, g);
-  } while (g != SCREE_NONE && g != first);
+  } while (g != SCREE_NONE && g != first && !(worst < least));
   return worst;
 }
 
 /* The cost is infinite where a triangle would have no area. */
-static void qecd_shape(const scree_halfmesh *s, uint32_t half_edge, scree_candidate *c) {
+static void qecd_shape(const scree_halfmesh *s, uint32_t half_edge, double most,
+                       scree_candidate *c) {
   uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
-  double best = QUALITY * QUALITY, worst = worst_quality(s, a, b, c->target, best);
-  worst = worst_quality(s, b, a, c->target, worst);
-  if (worst < best) c->cost = worst > 0 ? c->cost * (QUALITY / sqrt(worst)) : INFINITY;
+  double root = c->cost * QUALITY / most, least = (1 - ROUNDING) * root * root;
+  double best = QUALITY * QUALITY, worst = worst_quality(s, a, b, c->target, best, least);
+  if (!(worst < least)) worst = worst_quality(s, b, a, c->target, worst, least);
+  if (worst < best) c->cost = worst > least ? c->cost * (QUALITY / sqrt(worst)) : INFINITY;
   if (!(worst >= 0)) c->cost = INFINITY;
 }
 
@@ -219,7 +223,7 @@ static void qecd_fall_back(const scree_halfmesh *s, uint32_t half_edge, int fall
   gather(s, half_edge, along[fallback], &l, 0);
   solve_along(&l);
   *out = answer(&l, 0);
-  qecd_shape(s, half_edge, out);
+  qecd_shape(s, half_edge, INFINITY, out);
 }
 
 const scree_coster scree_qecd_coster = {qecd_sum, qecd_evaluate, qecd_shape, qecd_fall_back,
