@@ -149,16 +149,26 @@ static void aim(filling *f, double triangle_count) {
   if (f->left) f->target = scree_choice_target(f->levels[f->left - 1].rp, (size_t)triangle_count);
 }
 
-/* Fills the levels whose target the pass has reached. */
-static void fill_levels(const pass *p, filling *f, bool last) {
+static void fill_reached(const pass *p, filling *f, bool last) {
   while (f->left && (p->row.triangle_count <= f->target || last)) {
     record_level(p, &f->levels[--f->left], f->target);
     aim(f, p->triangle_count);
   }
 }
 
-static void run_pass(const scree_level_table *table, const scree_choice_options *options,
-                     scree_choice *choice) {
+/* Fills the levels whose target the pass has reached: mostly none. */
+static inline void fill_levels(const pass *p, filling *f, bool last) {
+  if (p->row.triangle_count <= f->target || last) fill_reached(p, f, last);
+}
+
+static scree_status check_row(scree_level_row row, size_t index, scree_error *error) {
+  if (row.triangle_count && row.area >= 0 && row.area < INFINITY) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_MESH, "level %zu: %zu triangles of area %g m2", index,
+                    row.triangle_count, row.area);
+}
+
+static scree_status run_pass(const scree_level_table *table, const scree_choice_options *options,
+                             scree_choice *choice, scree_error *error) {
   pass p = {.options = options,
             .noise = &choice->noise,
             .triangle_count = (double)choice->triangle_count,
@@ -170,7 +180,10 @@ static void run_pass(const scree_level_table *table, const scree_choice_options 
   aim(&grid, p.triangle_count);
   aim(&trace, p.triangle_count);
   for (size_t i = 0; i < table->count; i++) {
-    pass_enter(&p, i, table->row(table->context, i));
+    scree_level_row row = table->row(table->context, i);
+    scree_status status = check_row(row, i, error);
+    if (status != SCREE_OK) return status;
+    pass_enter(&p, i, row);
     keep_best(&p, p.eps, &p.plain);
     keep_best(&p, p.worst, &p.robust);
     keep_best(&p, p.smooth_worst, &p.smooth);
@@ -187,6 +200,7 @@ static void run_pass(const scree_level_table *table, const scree_choice_options 
   choice->plain = pick_of(&p, table, &p.plain);
   choice->robust = pick_of(&p, table, &p.robust);
   choice->smooth = pick_of(&p, table, &p.smooth);
+  return SCREE_OK;
 }
 
 /* How far the grid's Rp is from the one reached, in decades. */
@@ -233,27 +247,19 @@ static scree_status check_options(const scree_choice_options *o, scree_error *er
   return SCREE_OK;
 }
 
-static scree_status check_table(const scree_level_table *table, scree_error *error) {
-  scree_level_row scan = table->row(table->context, 0);
-  if (!(scan.triangle_count && scan.area > 0 && scan.area < INFINITY))
-    return scree_fail(error, SCREE_BAD_MESH, "%zu triangles of area %g m2: no surface to judge",
-                      scan.triangle_count, scan.area);
-  for (size_t i = 1; i < table->count; i++) {
-    scree_level_row row = table->row(table->context, i);
-    if (!(row.triangle_count && row.area >= 0 && row.area < INFINITY))
-      return scree_fail(error, SCREE_BAD_MESH, "level %zu: %zu triangles of area %g m2", i,
-                        row.triangle_count, row.area);
-  }
-  return SCREE_OK;
+static scree_status check_scan(scree_level_row scan, scree_error *error) {
+  if (scan.triangle_count && scan.area > 0 && scan.area < INFINITY) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_MESH, "%zu triangles of area %g m2: no surface to judge",
+                    scan.triangle_count, scan.area);
 }
 
 scree_status scree_choice_from_table(const scree_level_table *table,
                                      const scree_choice_options *options, scree_choice *choice,
                                      scree_error *error) {
-  scree_status status = check_options(options, error);
-  if (status == SCREE_OK) status = check_table(table, error);
-  if (status != SCREE_OK) return status;
   scree_level_row scan = table->row(table->context, 0);
+  scree_status status = check_options(options, error);
+  if (status == SCREE_OK) status = check_scan(scan, error);
+  if (status != SCREE_OK) return status;
   scree_choice filled = {.triangle_count = scan.triangle_count,
                          .area = scan.area,
                          .volume = scan.volume,
@@ -274,7 +280,11 @@ scree_status scree_choice_from_table(const scree_level_table *table,
     filled.levels[i].rp = scree_choice_grid_rp(options, i);
   for (size_t i = 0; i < filled.trace_count; i++)
     filled.trace[i].rp = log_grid(options->rp_min, SCREE_TRACE_PER_DECADE, i);
-  run_pass(table, options, &filled);
+  status = run_pass(table, options, &filled, error);
+  if (status != SCREE_OK) {
+    scree_choice_free(&filled);
+    return status;
+  }
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
     filled.best[e] = best_on_grid(&filled, (scree_shape_error)e, options->weight);
   const scree_choice_level *paper = &filled.levels[filled.best[SCREE_ERROR_AREA]];

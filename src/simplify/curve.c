@@ -163,7 +163,8 @@ static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum vol
     scree_sum_add(&volume, r->volume[i]);
     r->area[i] = scree_sum_value(area) * scale * scale;
     r->volume[i] = scree_sum_value(volume) * scale * scale * scale;
-    worst = fmax(worst, sqrt((double)r->error[i]) * scale);
+    double move = sqrt((double)r->error[i]) * scale;
+    worst = move > worst ? move : worst;
     r->error[i] = (float)worst;
     all_two &= !(r->kept[i] & SCREE_ONE_TRIANGLE);
   }
