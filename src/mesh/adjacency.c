@@ -8,6 +8,7 @@
 #include "base/parallel.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 enum {
   INSERTION_LIMIT = 48,  /* pairs; above, qsort wins */
@@ -16,8 +17,9 @@ enum {
 
 typedef struct builder {
   const scree_mesh *mesh;
-  uint32_t *start; /* vertex_count + 1; bucket v is [start[v], start[v + 1]) */
-  uint64_t *pairs; /* higher vertex << 32 | half-edge */
+  uint32_t *start;  /* vertex_count + 1; bucket v is [start[v], start[v + 1]) */
+  uint32_t *second; /* the same of what the second half of the triangles puts into it */
+  uint64_t *pairs;  /* higher vertex << 32 | half-edge */
   size_t *block_edges;
   scree_adjacency *out;
 } builder;
@@ -44,27 +46,28 @@ static bool takes_part(const uint32_t *corner) {
   return corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
 }
 
-/* Counts the bucket sizes, then places the pairs; on return start[v] is where bucket v begins. */
-static void fill_buckets(builder *b) {
-  const uint32_t *corners = b->mesh->triangles;
-  size_t vertex_count = b->mesh->vertex_count, corner_count = 3 * b->mesh->triangle_count;
-  for (size_t v = 0; v <= vertex_count; v++) b->start[v] = 0;
-  for (size_t c = 0; c < corner_count; c += 3) {
-    const uint32_t *corner = corners + c;
+static void count_half(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const builder *b = context;
+  uint32_t *count = block == 0 ? b->start : b->second;
+  for (size_t c = 3 * begin; c < 3 * end; c += 3) {
+    const uint32_t *corner = b->mesh->triangles + c;
     if (!takes_part(corner)) continue;
     for (int k = 0; k < 3; k++) {
       uint32_t from = corner[k], to = corner[(k + 1) % 3];
-      b->start[from < to ? from : to]++;
+      count[from < to ? from : to]++;
     }
   }
-  uint32_t sum = 0;
-  for (size_t v = 0; v <= vertex_count; v++) {
-    uint32_t size = b->start[v];
-    b->start[v] = sum += size; /* the end of bucket v: filled from the back */
-  }
-  for (size_t c = corner_count; c > 0;) {
+}
+
+/* From the end of each part of a bucket to its beginning. */
+static void fill_half(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const builder *b = context;
+  uint32_t *place = block == 0 ? b->start : b->second;
+  for (size_t c = 3 * end; c > 3 * begin;) {
     c -= 3;
-    const uint32_t *corner = corners + c;
+    const uint32_t *corner = b->mesh->triangles + c;
     bool part = takes_part(corner);
     for (int k = 2; k >= 0; k--) {
       uint32_t from = corner[k], to = corner[(k + 1) % 3], h = (uint32_t)c + (uint32_t)k;
@@ -73,9 +76,23 @@ static void fill_buckets(builder *b) {
         continue;
       }
       uint32_t low = from < to ? from : to, high = from < to ? to : from;
-      b->pairs[--b->start[low]] = (uint64_t)high << 32 | h;
+      b->pairs[--place[low]] = (uint64_t)high << 32 | h;
     }
   }
+}
+
+/* Counts the bucket sizes, then places the pairs; on return start[v] is where bucket v begins. */
+static void fill_buckets(builder *b) {
+  size_t count = b->mesh->triangle_count, half = count / 2 + 1;
+  uint32_t sum = 0;
+  memset(b->start, 0, (b->mesh->vertex_count + 1) * sizeof *b->start);
+  memset(b->second, 0, (b->mesh->vertex_count + 1) * sizeof *b->second);
+  scree_parallel_for(count, half, count_half, b);
+  for (size_t v = 0; v <= b->mesh->vertex_count; v++) {
+    b->start[v] = sum += b->start[v];
+    b->second[v] = sum += b->second[v];
+  }
+  scree_parallel_for(count, half, fill_half, b);
 }
 
 /* Sorts the buckets of a block of vertices, links the rings, and leaves the lowest half-edge of
@@ -126,6 +143,7 @@ scree_status scree_adjacency_build(const scree_mesh *mesh, scree_adjacency *adja
   scree_status status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(made.ring, 3 * mesh->triangle_count, error, done);
   SCREE_ALLOC_OR(b.start, mesh->vertex_count + 1, error, done);
+  SCREE_ALLOC_OR(b.second, mesh->vertex_count + 1, error, done);
   SCREE_ALLOC_OR(b.pairs, 3 * mesh->triangle_count, error, done);
   SCREE_ALLOC_OR(b.block_edges, block_count, error, done);
   fill_buckets(&b);
@@ -133,6 +151,7 @@ scree_status scree_adjacency_build(const scree_mesh *mesh, scree_adjacency *adja
   status = collect_edges(&b, block_count, error);
 done:
   scree_free(b.start);
+  scree_free(b.second);
   scree_free(b.pairs);
   scree_free(b.block_edges);
   if (status == SCREE_OK)

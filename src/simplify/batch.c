@@ -20,6 +20,7 @@
 
 #include "base/parallel.h"
 #include "base/prefetch.h"
+#include "base/radix.h"
 #include "simplify/independent.h"
 
 #include <string.h>
@@ -51,10 +52,6 @@ enum { VERTEX_BLOCK = SCREE_CHOICE_BLOCK, TAKEN_BLOCK = 256, BINS = 1 << 16 };
 enum { SIDE_BY_SIDE = 64, AHEAD = 16 };
 
 enum { REFUSED, POSTPONED, CERTAIN, UNCERTAIN };
-
-typedef struct item {
-  uint32_t key, index; /* key: the leading bits of the cost */
-} item;
 
 /* A collapse that was taken; its ring is in pass.edges from first_edge on. */
 typedef struct taken {
@@ -95,11 +92,11 @@ typedef struct pass {
   taken *taken;   /* in the order of their vertices */
   scree_change *changes;
   size_t taken_count, room;
-  uint32_t *edges;    /* the rings */
-  item *order, *swap; /* of those that are done: in the order of cost */
+  uint32_t *edges;           /* the rings */
+  scree_keyed *order, *swap; /* of those that are done: in the order of cost, by its leading bits */
   uint32_t *uncertain;
   size_t uncertain_count;
-  uint32_t *bins;
+  uint32_t *bins; /* twice two sets */
   part *parts;
 } pass;
 
@@ -139,7 +136,7 @@ static scree_status pass_allocate(pass *p) {
   SCREE_ALLOC_OR(p->swap, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->uncertain, p->room, error, out_of_memory);
   SCREE_ALLOC_OR(p->edges, triangles + SCREE_RING_MAX, error, out_of_memory);
-  SCREE_ALLOC_OR(p->bins, 2 * BINS, error, out_of_memory);
+  SCREE_ALLOC_OR(p->bins, 4 * BINS, error, out_of_memory);
   SCREE_ALLOC_OR(p->parts, blocks, error, out_of_memory);
   memset(p->chosen, 0xff, n * sizeof *p->chosen);
   memset(p->apex_leader, 0xff, n * sizeof *p->apex_leader);
@@ -291,22 +288,49 @@ static uint32_t bin_at(const uint32_t *bins, size_t *rank) {
   return BINS - 1;
 }
 
+/* Counting keys: first their upper halves, then the lower halves below two upper ones. */
+typedef struct counting {
+  pass *p;
+  bool upper;
+  uint32_t high[2];
+} counting;
+
+static void count_keys(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const counting *c = context;
+  uint32_t *bins = c->p->bins + block * 2 * BINS;
+  for (size_t v = begin; v < end; v++) {
+    if (!(c->p->cost[v] < INFINITY)) continue;
+    uint32_t key = key_of(c->p->cost[v]);
+    if (c->upper) {
+      bins[key >> 16]++;
+      continue;
+    }
+    for (size_t i = 0; i < 2; i++)
+      if (key >> 16 == c->high[i]) bins[i * BINS + (key & 0xffff)]++;
+  }
+}
+
+/* Both halves of the vertices are counted in bins of their own. */
+static void count_all_keys(counting *c) {
+  pass *p = c->p;
+  size_t vertices = p->d->s.vertex_count, used = c->upper ? BINS : 2 * BINS;
+  for (size_t half = 0; half < 2; half++)
+    memset(p->bins + half * 2 * BINS, 0, used * sizeof *p->bins);
+  scree_parallel_for(vertices, vertices / 2 + 1, count_keys, c);
+  for (size_t bin = 0; bin < used; bin++) p->bins[bin] += p->bins[2 * BINS + bin];
+}
+
 /* The keys of the items of these two ranks: the upper halves by one count, the lower ones by
  * another. A coarser answer would depend on the scale of the scan. */
 static void keys_at(pass *p, size_t rank[2], uint32_t key[2]) {
-  uint32_t *bins[2] = {p->bins, p->bins + BINS}, high[2];
-  size_t count = p->d->s.vertex_count;
-  memset(p->bins, 0, 2 * BINS * sizeof *p->bins);
-  for (size_t v = 0; v < count; v++)
-    if (p->cost[v] < INFINITY) bins[0][key_of(p->cost[v]) >> 16]++;
-  for (int i = 0; i < 2; i++) high[i] = bin_at(bins[0], &rank[i]);
-  memset(p->bins, 0, 2 * BINS * sizeof *p->bins);
-  for (size_t v = 0; v < count; v++) {
-    uint32_t found = key_of(p->cost[v]);
-    for (int i = 0; i < 2; i++)
-      if (found >> 16 == high[i]) bins[i][found & 0xffff]++;
-  }
-  for (int i = 0; i < 2; i++) key[i] = high[i] << 16 | bin_at(bins[i], &rank[i]);
+  counting c = {.p = p, .upper = true};
+  count_all_keys(&c);
+  for (int i = 0; i < 2; i++) c.high[i] = bin_at(p->bins, &rank[i]);
+  c.upper = false;
+  count_all_keys(&c);
+  for (int i = 0; i < 2; i++)
+    key[i] = c.high[i] << 16 | bin_at(p->bins + (size_t)i * BINS, &rank[i]);
 }
 
 static bool is_candidate(const pass *p, size_t v) {
@@ -339,6 +363,7 @@ static void list_block(void *context, size_t begin, size_t end, size_t block, in
   (void)block, (void)worker;
   pass *p = context;
   ask_for_block(&p->d->s, begin, end);
+  for (size_t v = begin; v < end; v++) p->d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_CHANGED;
   list_candidates(p, begin, end);
 }
 
@@ -605,14 +630,14 @@ static void set_flag(scree_halfmesh *s, uint32_t v) {
 
 /* Items of equal key by the rest of their cost, where few are equal. Where many are (a regular grid
  * on a flat) the rest is rounding, and the order of the vertices serves as well. */
-static void refine_order(const pass *p, item *items, size_t count) {
+static void refine_order(const pass *p, scree_keyed *items, size_t count) {
   enum { FEW = 16 };
   const scree_half_edge *half = p->d->s.half;
   for (size_t begin = 0, end; begin < count; begin = end) {
     for (end = begin + 1; end < count && items[end].key == items[begin].key;) end++;
     if (end - begin > FEW) continue;
     for (size_t i = begin + 1; i < end; i++) {
-      item moved = items[i];
+      scree_keyed moved = items[i];
       double cost = p->cost[half[p->taken[moved.index].half_edge].from];
       size_t j = i;
       for (; j > begin && p->cost[half[p->taken[items[j - 1].index].half_edge].from] > cost; j--)
@@ -624,26 +649,21 @@ static void refine_order(const pass *p, item *items, size_t count) {
 
 /* Puts what will be done in the order of cost; answers how many. */
 static size_t sort_certain(pass *p) {
-  enum { DIGIT = 11, RADIX = 1 << DIGIT };
   size_t count = 0;
   for (size_t i = 0; i < p->taken_count; i++)
-    if (p->taken[i].verdict == CERTAIN) p->order[count++] = (item){p->taken[i].key, (uint32_t)i};
-  for (int shift = 0; shift < 32; shift += DIGIT) {
-    size_t start[RADIX + 1] = {0};
-    for (size_t i = 0; i < count; i++) start[(p->order[i].key >> shift & (RADIX - 1)) + 1]++;
-    for (int r = 0; r < RADIX; r++) start[r + 1] += start[r];
-    for (size_t i = 0; i < count; i++)
-      p->swap[start[p->order[i].key >> shift & (RADIX - 1)]++] = p->order[i];
-    item *other = p->order;
-    p->order = p->swap;
-    p->swap = other;
+    if (p->taken[i].verdict == CERTAIN)
+      p->order[count++] = (scree_keyed){p->taken[i].key, (uint32_t)i};
+  scree_keyed *sorted = scree_radix_sort(p->order, p->swap, count, 32);
+  if (sorted != p->order) {
+    p->swap = p->order;
+    p->order = sorted;
   }
   refine_order(p, p->order, count);
   return count;
 }
 
 /* Asks for what writing these collapses down will read: in the order of cost they lie anywhere. */
-SCREE_PREFETCHES void ask_for_records(const pass *p, const item *order, size_t count) {
+SCREE_PREFETCHES void ask_for_records(const pass *p, const scree_keyed *order, size_t count) {
   const scree_halfmesh *s = &p->d->s;
   for (size_t k = 0; k < count; k++) {
     scree_prefetch(&p->taken[order[k].index], sizeof *p->taken);
@@ -808,7 +828,6 @@ static scree_status run_pass(pass *p, size_t *done) {
   if (status != SCREE_OK) return status;
   refresh_sums(p);
   scree_parallel_for(d->s.vertex_count, VERTEX_BLOCK, evaluate_block, p);
-  for (size_t v = 0; v < d->s.vertex_count; v++) d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_CHANGED;
   *done = 0;
   if (!set_limit(p)) return SCREE_OK;
   for (int round = 0; round < ROUNDS; round++) {

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { BLOCK = 128 * SCREE_GROUP };
+enum { BLOCK = 128 * SCREE_GROUP, CLEAR_BLOCK = 1 << 15 };
 /* A normal must point this much towards a direction to face it (cosine): past any rounding. */
 #define FACING 1e-6
 
@@ -236,9 +236,15 @@ static void enter_block(void *context, size_t begin, size_t end, size_t block, i
   }
 }
 
+static void clear_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  scree_grid *g = context;
+  memset(g->averse + begin, 0, (end - begin) * sizeof *g->averse);
+}
+
 void scree_grid_enter_directions(scree_grid *g, const scree_halfmesh *s) {
   entering work = {g, s};
-  memset(g->averse, 0, g->cell_count * sizeof *g->averse);
+  scree_parallel_for(g->cell_count, CLEAR_BLOCK, clear_block, g);
   g->averse_all = 0;
   g->group_count = scree_block_count(s->triangle_count, SCREE_GROUP);
   scree_parallel_for(s->triangle_count, BLOCK, enter_block, &work);

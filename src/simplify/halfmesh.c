@@ -19,12 +19,15 @@ enum { SEVERAL_FANS = 128 };
 typedef struct builder {
   const scree_mesh *mesh;
   scree_halfmesh *surface;
-  uint32_t *order;  /* vertex v of the surface is order[v] of the mesh; NULL: they are the same */
-  uint32_t *start;  /* per vertex, into fan; vertex_count + 1 */
-  uint32_t *fan;    /* half-edges by the vertex they leave */
-  uint32_t *fan_to; /* the vertices that these lead to */
-  size_t fan_count; /* vertices after the cut */
-  uint32_t *root;   /* union-find over vertices, for shells */
+  uint32_t *order;   /* vertex v of the surface is order[v] of the mesh; NULL: they are the same */
+  uint32_t *start;   /* per vertex, into fan; vertex_count + 1 */
+  uint32_t *rank;    /* of the mesh's vertices in the order */
+  uint32_t *next[2]; /* per vertex: where what the first and the second half of the triangles have
+                        of it goes */
+  uint32_t *fan;     /* half-edges by the vertex they leave */
+  uint32_t *fan_to;  /* the vertices that these lead to */
+  size_t fan_count;  /* vertices after the cut */
+  uint32_t *root;    /* union-find over vertices, for shells */
 } builder;
 
 void scree_halfmesh_free(scree_halfmesh *s) {
@@ -76,60 +79,115 @@ static uint32_t least_of(uint32_t a, uint32_t b, uint32_t c) {
   return ab < c ? ab : c;
 }
 
-/* Triangles in the order of their lowest vertex; corners have the surface's numbers. rank: of the
- * mesh's vertices in it. */
-static void place_triangles(builder *b, const uint32_t *rank) {
-  const uint32_t *corner = b->mesh->triangles;
-  size_t corner_count = 3 * b->mesh->triangle_count, vertex_count = b->mesh->vertex_count;
-  uint32_t *next = b->start;
-  memset(next, 0, (vertex_count + 1) * sizeof *next);
-  for (size_t c = 0; c < corner_count; c += 3)
-    next[least_of(rank[corner[c]], rank[corner[c + 1]], rank[corner[c + 2]]) + 1]++;
-  for (size_t v = 0; v < vertex_count; v++) next[v + 1] += next[v];
-  for (size_t c = 0; c < corner_count; c += 3) {
-    uint32_t v[3] = {rank[corner[c]], rank[corner[c + 1]], rank[corner[c + 2]]};
-    scree_half_edge *half = b->surface->half + 3 * (size_t)next[least_of(v[0], v[1], v[2])]++;
-    for (int i = 0; i < 3; i++) half[i] = (scree_half_edge){v[i], SCREE_NONE};
+/* ---- Counting sorts: each half of the triangles by itself ---- */
+
+static void free_counts(builder *b) {
+  for (int half = 0; half < 2; half++) {
+    scree_free(b->next[half]);
+    b->next[half] = NULL;
   }
+}
+
+static void clear_counts(builder *b) {
+  size_t size = b->mesh->vertex_count * sizeof *b->next[0];
+  for (int half = 0; half < 2; half++) memset(b->next[half], 0, size);
+}
+
+/* Counts become places, and start where each vertex begins. */
+static void sum_counts(builder *b) {
+  uint32_t sum = 0;
+  for (size_t v = 0; v < b->mesh->vertex_count; v++) {
+    uint32_t first = b->next[0][v], second = b->next[1][v];
+    b->start[v] = b->next[0][v] = sum;
+    b->next[1][v] = sum += first;
+    sum += second;
+  }
+  b->start[b->mesh->vertex_count] = sum;
+}
+
+/* The lowest corner of a triangle of the mesh, by rank. */
+static uint32_t lowest_corner(const builder *b, size_t triangle) {
+  const uint32_t *corner = b->mesh->triangles + 3 * triangle;
+  return least_of(b->rank[corner[0]], b->rank[corner[1]], b->rank[corner[2]]);
+}
+
+static void count_triangles(void *context, size_t begin, size_t end, size_t half, int worker) {
+  (void)worker;
+  const builder *b = context;
+  for (size_t t = begin; t < end; t++) b->next[half][lowest_corner(b, t)]++;
+}
+
+static void fill_triangles(void *context, size_t begin, size_t end, size_t half, int worker) {
+  (void)worker;
+  const builder *b = context;
+  for (size_t t = begin; t < end; t++) {
+    const uint32_t *corner = b->mesh->triangles + 3 * t;
+    scree_half_edge *made = b->surface->half + 3 * (size_t)b->next[half][lowest_corner(b, t)]++;
+    for (int i = 0; i < 3; i++) made[i] = (scree_half_edge){b->rank[corner[i]], SCREE_NONE};
+  }
+}
+
+/* Triangles in the order of their lowest vertex; corners have the surface's numbers. */
+static void place_triangles(builder *b) {
+  size_t count = b->mesh->triangle_count;
+  clear_counts(b);
+  scree_parallel_for(count, count / 2 + 1, count_triangles, b);
+  sum_counts(b);
+  scree_parallel_for(count, count / 2 + 1, fill_triangles, b);
+}
+
+static void count_fans(void *context, size_t begin, size_t end, size_t half, int worker) {
+  (void)worker;
+  const builder *b = context;
+  for (size_t h = 3 * begin; h < 3 * end; h++) b->next[half][b->surface->half[h].from]++;
+}
+
+static void fill_fans(void *context, size_t begin, size_t end, size_t half, int worker) {
+  (void)worker;
+  const builder *b = context;
+  const scree_half_edge *edge = b->surface->half;
+  for (size_t h = 3 * begin; h < 3 * end; h += 3)
+    for (size_t i = 0; i < 3; i++) {
+      uint32_t at = b->next[half][edge[h + i].from]++;
+      b->fan[at] = (uint32_t)(h + i);
+      b->fan_to[at] = edge[i < 2 ? h + i + 1 : h].from;
+    }
+}
+
+/* The half-edges of each vertex. */
+static void sort_fans(builder *b) {
+  size_t count = b->mesh->triangle_count;
+  clear_counts(b);
+  scree_parallel_for(count, count / 2 + 1, count_fans, b);
+  sum_counts(b);
+  scree_parallel_for(count, count / 2 + 1, fill_fans, b);
+}
+
+static void rank_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const builder *b = context;
+  for (size_t v = begin; v < end; v++) b->rank[b->order[v]] = (uint32_t)v;
 }
 
 /* A large surface is put in order first: neighbours are near in memory then. */
 static scree_status place_in_order(builder *b, vec3 low, vec3 high, scree_error *error) {
   const scree_mesh *mesh = b->mesh;
-  uint32_t *rank = NULL;
-  scree_status status = SCREE_OUT_OF_MEMORY;
   if (mesh->triangle_count < ORDERED_FROM) {
     for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
       b->surface->half[c] = (scree_half_edge){mesh->triangles[c], SCREE_NONE};
     return SCREE_OK;
   }
-  SCREE_ALLOC_OR(b->order, mesh->vertex_count, error, done);
-  status = scree_order_vertices(mesh, low, high, b->order, error);
-  if (status != SCREE_OK) goto done;
-  status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(rank, mesh->vertex_count, error, done);
-  for (uint32_t v = 0; v < mesh->vertex_count; v++) rank[b->order[v]] = v;
-  place_triangles(b, rank);
-  status = SCREE_OK;
-done:
-  scree_free(rank);
-  return status;
-}
-
-static void sort_fans(builder *b) {
-  const scree_half_edge *half = b->surface->half;
-  size_t half_edges = 3 * b->mesh->triangle_count, vertex_count = b->mesh->vertex_count;
-  memset(b->start, 0, (vertex_count + 1) * sizeof *b->start);
-  for (size_t h = 0; h < half_edges; h++) b->start[half[h].from + 1]++;
-  for (size_t v = 0; v < vertex_count; v++) b->start[v + 1] += b->start[v];
-  for (size_t h = 0; h < half_edges; h += 3)
-    for (size_t i = 0; i < 3; i++) {
-      uint32_t at = b->start[half[h + i].from]++;
-      b->fan[at] = (uint32_t)(h + i);
-      b->fan_to[at] = half[i < 2 ? h + i + 1 : h].from;
-    }
-  memmove(b->start + 1, b->start, vertex_count * sizeof *b->start);
-  b->start[0] = 0;
+  SCREE_ALLOC_OR(b->order, mesh->vertex_count, error, out_of_memory);
+  scree_status status = scree_order_vertices(mesh, low, high, b->order, error);
+  if (status != SCREE_OK) return status;
+  SCREE_ALLOC_OR(b->rank, mesh->vertex_count, error, out_of_memory);
+  scree_parallel_for(mesh->vertex_count, BLOCK, rank_vertices, b);
+  place_triangles(b);
+  scree_free(b->rank);
+  b->rank = NULL;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
 }
 
 /* How many half-edges go from u to v, and the last of them. */
@@ -279,6 +337,8 @@ static scree_status build_edges(builder *b, vec3 low, vec3 high, scree_error *er
   size_t half_edges = 3 * mesh->triangle_count;
   SCREE_ALLOC_OR(s->half, half_edges, error, out_of_memory);
   SCREE_ALLOC_OR(b->start, mesh->vertex_count + 1, error, out_of_memory);
+  SCREE_ALLOC_OR(b->next[0], mesh->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(b->next[1], mesh->vertex_count, error, out_of_memory);
   scree_status status = place_in_order(b, low, high, error);
   if (status != SCREE_OK) return status;
   SCREE_ALLOC_OR(b->fan, half_edges, error, out_of_memory);
@@ -286,6 +346,7 @@ static scree_status build_edges(builder *b, vec3 low, vec3 high, scree_error *er
   SCREE_ALLOC_OR(s->flags, mesh->vertex_count, error, out_of_memory);
   memset(s->flags, 0, mesh->vertex_count);
   sort_fans(b);
+  free_counts(b);
   scree_parallel_for(mesh->vertex_count, BLOCK, find_twins, b);
   scree_free(b->fan_to);
   b->fan_to = NULL;
@@ -340,6 +401,8 @@ scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surfac
   made = (scree_halfmesh){0};
   status = SCREE_OK;
 done:
+  free_counts(&b);
+  scree_free(b.rank);
   scree_free(b.order);
   scree_free(b.start);
   scree_free(b.fan);

@@ -4,19 +4,15 @@
 #include "simplify/order.h"
 
 #include "base/parallel.h"
+#include "base/radix.h"
 
 enum { AXIS_BITS = 10, STEPS = 1 << AXIS_BITS, BLOCK = 1 << 14 };
-enum { DIGIT = AXIS_BITS, RADIX = 1 << DIGIT, PASSES = 3 * AXIS_BITS / DIGIT };
-
-typedef struct item {
-  uint32_t code, vertex;
-} item;
 
 typedef struct coding {
   const scree_mesh *mesh;
   vec3 low;
   double per_length;
-  item *items;
+  scree_keyed *items;
 } coding;
 
 /* Puts two zeros between the bits. */
@@ -39,21 +35,7 @@ static void code_block(void *context, size_t begin, size_t end, size_t block, in
     const double *p = c->mesh->positions + 3 * v;
     uint32_t x = step_of(p[0], c->low.x, c->per_length), y = step_of(p[1], c->low.y, c->per_length),
              z = step_of(p[2], c->low.z, c->per_length);
-    c->items[v] = (item){spread(x) | spread(y) << 1 | spread(z) << 2, (uint32_t)v};
-  }
-}
-
-static void sort_items(item *items, item *swap, size_t count) {
-  for (int pass = 0; pass < PASSES; pass++) {
-    int shift = pass * DIGIT;
-    uint32_t start[RADIX + 1] = {0};
-    for (size_t i = 0; i < count; i++) start[(items[i].code >> shift & (RADIX - 1)) + 1]++;
-    for (int r = 0; r < RADIX; r++) start[r + 1] += start[r];
-    for (size_t i = 0; i < count; i++)
-      swap[start[items[i].code >> shift & (RADIX - 1)]++] = items[i];
-    item *other = items;
-    items = swap;
-    swap = other;
+    c->items[v] = (scree_keyed){spread(x) | spread(y) << 1 | spread(z) << 2, (uint32_t)v};
   }
 }
 
@@ -62,13 +44,13 @@ scree_status scree_order_vertices(const scree_mesh *mesh, vec3 low, vec3 high, u
   size_t count = mesh->vertex_count;
   double extent = fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
   coding c = {.mesh = mesh, .low = low, .per_length = STEPS / extent};
-  item *swap = NULL;
+  scree_keyed *swap = NULL;
   scree_status status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(c.items, count, error, done);
   SCREE_ALLOC_OR(swap, count, error, done);
   scree_parallel_for(count, BLOCK, code_block, &c);
-  sort_items(c.items, swap, count); /* an odd number of passes: the outcome is in swap */
-  for (size_t i = 0; i < count; i++) order[i] = swap[i].vertex;
+  const scree_keyed *sorted = scree_radix_sort(c.items, swap, count, 3 * AXIS_BITS);
+  for (size_t i = 0; i < count; i++) order[i] = sorted[i].index;
   status = SCREE_OK;
 done:
   scree_free(c.items);

@@ -1,0 +1,56 @@
+/* Digit by digit from the lowest. For every digit the items are cut into a few slices: each counts
+ * its own, and knows from the others' counts where its items of each digit go. */
+#include "base/radix.h"
+
+#include "base/parallel.h"
+
+#include <string.h>
+
+enum { DIGIT = 11, RADIX = 1 << DIGIT, SLICES = 4 };
+/* Fewer are not worth waking anybody. */
+enum { SLICED_FROM = 4096 };
+
+typedef struct sorting {
+  const scree_keyed *from;
+  scree_keyed *to;
+  int shift;
+  uint32_t place[SLICES][RADIX]; /* counts, then where the next item of the digit goes */
+} sorting;
+
+static uint32_t digit_of(const sorting *s, size_t i) {
+  return s->from[i].key >> s->shift & (RADIX - 1);
+}
+
+static void count_slice(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  sorting *s = context;
+  memset(s->place[block], 0, sizeof s->place[block]);
+  for (size_t i = begin; i < end; i++) s->place[block][digit_of(s, i)]++;
+}
+
+static void move_slice(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  sorting *s = context;
+  for (size_t i = begin; i < end; i++) s->to[s->place[block][digit_of(s, i)]++] = s->from[i];
+}
+
+scree_keyed *scree_radix_sort(scree_keyed *items, scree_keyed *swap, size_t count, int bits) {
+  sorting s = {.from = items, .to = swap};
+  if (count == 0) return items;
+  size_t size = count < SLICED_FROM ? count : count / SLICES + 1;
+  size_t slices = scree_block_count(count, size);
+  for (; s.shift < bits; s.shift += DIGIT) {
+    uint32_t sum = 0;
+    scree_parallel_for(count, size, count_slice, &s);
+    for (size_t digit = 0; digit < RADIX; digit++)
+      for (size_t slice = 0; slice < slices; slice++) {
+        uint32_t of_digit = s.place[slice][digit];
+        s.place[slice][digit] = sum;
+        sum += of_digit;
+      }
+    scree_parallel_for(count, size, move_slice, &s);
+    s.from = s.to;
+    s.to = s.from == items ? swap : items;
+  }
+  return s.to == items ? swap : items;
+}

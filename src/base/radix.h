@@ -1,0 +1,16 @@
+/* Sorting by a number of 32 bits. */
+#ifndef SCREE_BASE_RADIX_H
+#define SCREE_BASE_RADIX_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+typedef struct scree_keyed {
+  uint32_t key, index;
+} scree_keyed;
+
+/* Sorts by key, of which only the lowest `bits` bits may be set; those of equal key keep their
+ * order. Uses both arrays, and answers the one that holds the outcome. O(count), parallel. */
+scree_keyed *scree_radix_sort(scree_keyed *items, scree_keyed *swap, size_t count, int bits);
+
+#endif
