@@ -26,10 +26,11 @@ typedef struct prover {
   vec3 low;
   double per_length;
   uint32_t size[3];
-  uint32_t *start, *items; /* of cells: facets items[start[c]] up to items[start[c + 1]] */
-  uint8_t *begins;         /* of items: bit k: the facet's first cell along axis k is this one */
-  const uint32_t *ring;    /* of the adjacency, or NULL */
-  uint8_t *fans;           /* per vertex: what is known of its fan */
+  struct facet_cells *cells; /* of the facets */
+  uint32_t *start, *items;   /* of cells: facets items[start[c]] up to items[start[c + 1]] */
+  uint8_t *begins;           /* of items: bit k: the facet's first cell along axis k is this one */
+  const uint32_t *ring;      /* of the adjacency, or NULL */
+  uint8_t *fans;             /* per vertex: what is known of its fan */
   atomic_bool failed;
 } prover;
 
@@ -89,17 +90,30 @@ static span span_of(const prover *p, vec3 low, vec3 high) {
   return s;
 }
 
+/* The cells of a facet: the first, and how many more along each axis. */
+typedef struct facet_cells {
+  uint32_t first;
+  uint8_t more[3];
+} facet_cells;
+
 /* Facets come in the order of x (mesh/weld.h): so do cells, and what is asked for together lies
  * together. */
-#define FOR_SPAN(p, s, cell)                                                                       \
-  for (uint32_t x_ = (s).low[0]; x_ <= (s).high[0]; x_++)                                          \
-    for (uint32_t y_ = (s).low[1]; y_ <= (s).high[1]; y_++)                                        \
-      for (size_t first_ = ((size_t)x_ * (p)->size[1] + y_) * (p)->size[2] + (s).low[2],           \
-                  end_ = first_ + (s).high[2] - (s).low[2], cell = first_;                         \
+static facet_cells cells_of(const prover *p, const span *s) {
+  size_t first = ((size_t)s->low[0] * p->size[1] + s->low[1]) * p->size[2] + s->low[2];
+  facet_cells c = {.first = (uint32_t)first};
+  for (int k = 0; k < 3; k++) c.more[k] = (uint8_t)(s->high[k] - s->low[k]);
+  return c;
+}
+
+#define FOR_CELLS(p, c, cell)                                                                      \
+  for (uint32_t x_ = 0; x_ <= (c).more[0]; x_++)                                                   \
+    for (uint32_t y_ = 0; y_ <= (c).more[1]; y_++)                                                 \
+      for (size_t first_ = (c).first + ((size_t)x_ * (p)->size[1] + y_) * (p)->size[2],            \
+                  end_ = first_ + (c).more[2], cell = first_;                                      \
            cell <= end_; cell++)
 
-/* In FOR_SPAN: bit k is set in the first cell along axis k. */
-#define BEGINS(s, cell) (x_ == (s).low[0]) | (y_ == (s).low[1]) << 1 | ((cell) == first_) << 2
+/* In FOR_CELLS: bit k is set in the first cell along axis k. */
+#define BEGINS(cell) (x_ == 0) | (y_ == 0) << 1 | ((cell) == first_) << 2
 
 /* False: a surface without extent. */
 static bool shape(prover *p, size_t *cell_count) {
@@ -144,7 +158,8 @@ static void count_block(void *context, size_t begin, size_t end, size_t block, i
       atomic_store(&p->failed, true);
       return;
     }
-    FOR_SPAN(p, s, cell) __atomic_fetch_add(&p->start[cell], 1, __ATOMIC_RELAXED);
+    p->cells[t] = cells_of(p, &s);
+    FOR_CELLS(p, p->cells[t], cell) __atomic_fetch_add(&p->start[cell], 1, __ATOMIC_RELAXED);
   }
 }
 
@@ -152,14 +167,11 @@ static void count_block(void *context, size_t begin, size_t end, size_t block, i
 static void fill_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   prover *p = context;
-  vec3 low, high;
   for (size_t t = begin; t < end; t++) {
-    facet_box(p->mesh, t, &low, &high);
-    span s = span_of(p, low, high);
-    FOR_SPAN(p, s, cell) {
+    FOR_CELLS(p, p->cells[t], cell) {
       uint32_t at = __atomic_sub_fetch(&p->start[cell], 1, __ATOMIC_RELAXED);
       p->items[at] = (uint32_t)t;
-      p->begins[at] = (uint8_t)(BEGINS(s, cell));
+      p->begins[at] = (uint8_t)(BEGINS(cell));
     }
   }
 }
@@ -312,6 +324,7 @@ scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *a
   *apart = false;
   if (facets == 0 || !shape(&p, &cell_count)) return SCREE_OK;
   scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(p.cells, facets, error, done);
   SCREE_ALLOC_OR(p.start, cell_count + 1, error, done);
   memset(p.start, 0, (cell_count + 1) * sizeof *p.start);
   scree_parallel_for(facets, FACET_BLOCK, count_block, &p);
@@ -328,9 +341,12 @@ scree_status scree_facets_apart(const scree_mesh *mesh, const scree_adjacency *a
   }
   status = SCREE_OK;
   scree_parallel_for(facets, FACET_BLOCK, fill_block, &p);
+  scree_free(p.cells);
+  p.cells = NULL;
   scree_parallel_for(cell_count, CELL_BLOCK, cell_block, &p);
   *apart = !p.failed;
 done:
+  scree_free(p.cells);
   scree_free(p.items);
   scree_free(p.begins);
   scree_free(p.fans);

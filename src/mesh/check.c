@@ -152,34 +152,39 @@ static void count_kinds(const scree_shells *shells, scree_check *check) {
   if (!check->volume_known) check->volume = 0;
 }
 
-/* Two walks over the same surface, beside each other. */
+/* Walks over the same surface, beside each other: shells, then the parts of the topology. */
+enum { WALKS = 1 + SCREE_TOPOLOGY_PARTS };
 typedef struct connection {
   const scree_mesh *mesh;
   const scree_adjacency *adjacency;
   scree_topology topology;
   scree_shells shells;
-  scree_status status[2];
-  scree_error error[2];
+  scree_status status[WALKS];
+  scree_error error[WALKS];
 } connection;
 
-static void connect(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)end, (void)block, (void)worker;
+static void connect(void *context, size_t begin, size_t end, size_t walk, int worker) {
+  (void)begin, (void)end, (void)worker;
   connection *c = context;
-  if (begin == 0)
-    c->status[0] = scree_topology_count(c->mesh, c->adjacency, false, &c->topology, &c->error[0]);
-  else
-    c->status[1] = scree_shells_find(c->mesh, c->adjacency, &c->shells, &c->error[1]);
+  c->status[walk] =
+      walk == 0
+          ? scree_shells_find(c->mesh, c->adjacency, &c->shells, &c->error[walk])
+          : scree_topology_count(c->mesh, c->adjacency, walk - 1, &c->topology, &c->error[walk]);
 }
 
 /* Topology and shells. */
 static scree_status find_connection(const scree_mesh *mesh, const scree_adjacency *adjacency,
                                     scree_check *check, scree_shells *shells, scree_error *error) {
   connection c = {.mesh = mesh, .adjacency = adjacency};
-  scree_parallel_for(2, 1, connect, &c);
-  int failed = c.status[0] != SCREE_OK ? 0 : 1;
-  scree_status status = c.status[failed];
+  scree_parallel_for(WALKS, 1, connect, &c);
+  scree_status status = SCREE_OK;
+  for (int walk = 0; walk < WALKS && status == SCREE_OK; walk++) {
+    status = c.status[walk];
+    if (status != SCREE_OK && error) *error = c.error[walk];
+  }
+  if (status == SCREE_OK)
+    status = scree_topology_finish(mesh, adjacency, false, &c.topology, error);
   if (status != SCREE_OK) {
-    if (error) *error = c.error[failed];
     scree_shells_free(&c.shells);
     return status;
   }

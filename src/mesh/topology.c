@@ -17,7 +17,7 @@
 typedef struct counter {
   const scree_mesh *mesh;
   const scree_adjacency *adjacency;
-  scree_topology found;
+  scree_topology *found;
 } counter;
 
 static bool takes_part(const counter *c, size_t triangle) {
@@ -25,15 +25,18 @@ static bool takes_part(const counter *c, size_t triangle) {
 }
 
 static void count_facets(counter *c) {
+  size_t facets = 0, degenerate = 0;
   for (size_t t = 0; t < c->mesh->triangle_count; t++) {
-    c->found.facet_count += takes_part(c, t);
-    c->found.degenerate_facet_count += !takes_part(c, t) || scree_facet_is_flat(c->mesh, t);
+    facets += takes_part(c, t);
+    degenerate += !takes_part(c, t) || scree_facet_is_flat(c->mesh, t);
   }
+  c->found->facet_count = facets;
+  c->found->degenerate_facet_count = degenerate;
 }
 
 static void count_edges(counter *c) {
   const uint32_t *ring = c->adjacency->ring;
-  scree_topology *found = &c->found;
+  scree_topology *found = c->found;
   found->edge_count = c->adjacency->edge_count;
   found->oriented = true;
   for (size_t e = 0; e < c->adjacency->edge_count; e++) {
@@ -79,7 +82,7 @@ static scree_status count_duplicates(counter *c, scree_error *error) {
       h = c->adjacency->ring[h];
     } while (h != first);
     if (count > 2) qsort(third, count, sizeof *third, compare_vertices);
-    for (size_t i = 1; i < count; i++) c->found.duplicate_facet_count += third[i] == third[i - 1];
+    for (size_t i = 1; i < count; i++) c->found->duplicate_facet_count += third[i] == third[i - 1];
   }
   scree_free(third);
   return SCREE_OK;
@@ -150,10 +153,12 @@ static scree_status count_vertices(counter *c, scree_error *error) {
     if (c->adjacency->ring[corner] == SCREE_NO_HALF_EDGE || reached[corner]) continue;
     if (!walk_fan(c, corner, reached)) flood_fan(c, corner, reached, stack);
     uint8_t *at = &fans[mesh->triangles[corner]];
-    if (*at < 2) c->found.non_manifold_vertex_count += ++*at == 2;
+    if (*at < 2) c->found->non_manifold_vertex_count += ++*at == 2;
   }
-  for (size_t v = 0; v < mesh->vertex_count; v++) c->found.unused_vertex_count += valence[v] == 0;
-  c->found.vertex_count = mesh->vertex_count - c->found.unused_vertex_count;
+  size_t unused = 0;
+  for (size_t v = 0; v < mesh->vertex_count; v++) unused += valence[v] == 0;
+  c->found->unused_vertex_count = unused;
+  c->found->vertex_count = mesh->vertex_count - unused;
   status = SCREE_OK;
 done:
   scree_free(valence);
@@ -181,8 +186,8 @@ static void count_inward(counter *c, uint32_t *parent, scree_sum *volume) {
   }
   for (size_t t = 0; t < mesh->triangle_count; t++)
     if (takes_part(c, t) && parent[t] == t) {
-      c->found.shell_count++;
-      c->found.inward_shell_count += scree_sum_value(volume[t]) < 0;
+      c->found->shell_count++;
+      c->found->inward_shell_count += scree_sum_value(volume[t]) < 0;
     }
 }
 
@@ -211,7 +216,7 @@ done:
 static scree_status count_boundaries(counter *c, scree_error *error) {
   const uint32_t none = UINT32_MAX;
   uint32_t *parent = NULL;
-  if (c->found.closed) return SCREE_OK;
+  if (c->found->closed) return SCREE_OK;
   SCREE_ALLOC_OR(parent, c->mesh->vertex_count, error, out_of_memory);
   for (size_t v = 0; v < c->mesh->vertex_count; v++) parent[v] = none;
   for (size_t e = 0; e < c->adjacency->edge_count; e++) {
@@ -221,11 +226,11 @@ static scree_status count_boundaries(counter *c, scree_error *error) {
     for (int i = 0; i < 2; i++)
       if (parent[ends[i]] == none) {
         parent[ends[i]] = ends[i];
-        c->found.boundary_count++;
+        c->found->boundary_count++;
       }
     if (scree_find_root(parent, ends[0]) == scree_find_root(parent, ends[1])) continue;
     scree_join(parent, ends[0], ends[1]);
-    c->found.boundary_count--;
+    c->found->boundary_count--;
   }
   scree_free(parent);
   return SCREE_OK;
@@ -243,18 +248,25 @@ static void conclude(scree_topology *found) {
 }
 
 scree_status scree_topology_count(const scree_mesh *mesh, const scree_adjacency *adjacency,
-                                  bool with_shells, scree_topology *topology, scree_error *error) {
-  counter c = {.mesh = mesh, .adjacency = adjacency};
-  count_facets(&c);
+                                  size_t part, scree_topology *topology, scree_error *error) {
+  counter c = {.mesh = mesh, .adjacency = adjacency, .found = topology};
+  if (part == 0) return count_vertices(&c, error);
+  if (part == 1) {
+    count_facets(&c);
+    return SCREE_OK;
+  }
   count_edges(&c);
-  scree_status status = count_duplicates(&c, error);
-  if (status == SCREE_OK) status = count_vertices(&c, error);
-  if (status == SCREE_OK && with_shells) status = count_shells(&c, error);
+  return count_duplicates(&c, error);
+}
+
+scree_status scree_topology_finish(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                   bool with_shells, scree_topology *topology, scree_error *error) {
+  counter c = {.mesh = mesh, .adjacency = adjacency, .found = topology};
+  scree_status status = SCREE_OK;
+  if (with_shells) status = count_shells(&c, error);
   if (status == SCREE_OK) status = count_boundaries(&c, error);
-  if (status != SCREE_OK) return status;
-  conclude(&c.found);
-  *topology = c.found;
-  return SCREE_OK;
+  if (status == SCREE_OK) conclude(topology);
+  return status;
 }
 
 scree_status scree_mesh_topology(const scree_mesh *mesh, scree_topology *topology,
@@ -264,7 +276,11 @@ scree_status scree_mesh_topology(const scree_mesh *mesh, scree_topology *topolog
   if (status != SCREE_OK) return status;
   status = scree_adjacency_build(mesh, &adjacency, error);
   if (status != SCREE_OK) return status;
-  status = scree_topology_count(mesh, &adjacency, true, topology, error);
+  scree_topology found = {0};
+  for (size_t part = 0; part < SCREE_TOPOLOGY_PARTS && status == SCREE_OK; part++)
+    status = scree_topology_count(mesh, &adjacency, part, &found, error);
+  if (status == SCREE_OK) status = scree_topology_finish(mesh, &adjacency, true, &found, error);
+  if (status == SCREE_OK) *topology = found;
   scree_adjacency_free(&adjacency);
   return status;
 }

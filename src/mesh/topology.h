@@ -4,9 +4,14 @@
 
 #include "mesh/adjacency.h"
 
-/* Counts what scree_topology says of a verified mesh; without shells, their counts stay 0 and the
- * genus means nothing. */
+/* Of a verified mesh. Counting comes in parts that may run beside each other, each filling fields
+ * of its own of a topology that is zero before. */
+enum { SCREE_TOPOLOGY_PARTS = 3 };
 scree_status scree_topology_count(const scree_mesh *mesh, const scree_adjacency *adjacency,
-                                  bool with_shells, scree_topology *topology, scree_error *error);
+                                  size_t part, scree_topology *topology, scree_error *error);
+/* Once all parts are done: the rest. Without shells, their counts stay 0 and the genus means
+ * nothing. */
+scree_status scree_topology_finish(const scree_mesh *mesh, const scree_adjacency *adjacency,
+                                   bool with_shells, scree_topology *topology, scree_error *error);
 
 #endif
