@@ -38,8 +38,7 @@ static void keys_come_in_order_and_equal_ones_stay(void **state) {
   scree_rng rng = {.seed = 7};
   for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
     for (size_t k = 0; k < sizeof bits / sizeof *bits; k++)
-      for (int threads = 1; threads <= 3; threads++)
-        check_sort(counts[i], bits[k], threads, &rng);
+      for (int threads = 1; threads <= 3; threads++) check_sort(counts[i], bits[k], threads, &rng);
 }
 
 int main(void) {
