@@ -13,6 +13,9 @@
  * Errors: a fallible call returns a scree_status. Its last parameter is a scree_error, which may be
  * NULL, filled with one sentence on failure. Outputs are untouched on failure.
  *
+ * Options: NULL stands for a struct of options whose scree_default_... function takes nothing, and
+ * for a scree_progress that nobody sees.
+ *
  * Ownership: inputs are borrowed. Whoever gets a `T **` or a filled struct frees it with T_free;
  * freeing NULL or a zeroed struct is legal.
  *

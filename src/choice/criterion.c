@@ -48,10 +48,14 @@ static size_t log_grid_count(double rp_min, double rp_max, int per_decade) {
 }
 
 double scree_choice_grid_rp(const scree_choice_options *options, size_t index) {
+  const scree_choice_options defaults = scree_default_choice_options();
+  if (!options) options = &defaults;
   return log_grid(options->rp_min, options->per_decade, index);
 }
 
 size_t scree_choice_grid_count(const scree_choice_options *options) {
+  const scree_choice_options defaults = scree_default_choice_options();
+  if (!options) options = &defaults;
   return log_grid_count(options->rp_min, options->rp_max, options->per_decade);
 }
 

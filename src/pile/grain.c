@@ -43,6 +43,8 @@ static scree_status make_particle(const scree_mesh *mesh, const scree_grain_opti
 scree_status scree_grain_make(const scree_mesh *scan, const scree_curve *curve,
                               const scree_grain_options *options, const scree_progress *progress,
                               scree_grain *grain, scree_error *error) {
+  const scree_grain_options defaults = scree_default_grain_options();
+  if (!options) options = &defaults;
   if (!(options->rp > 0 && options->rp <= 1))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "Rp %g: must be above 0 and at most 1",
                       options->rp);

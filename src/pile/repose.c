@@ -438,6 +438,8 @@ static scree_status check_field(const scree_height_field *f, scree_error *error)
 scree_status scree_repose_measure(const scree_height_field *field,
                                   const scree_repose_options *options, scree_repose *repose,
                                   scree_error *error) {
+  const scree_repose_options defaults = scree_default_repose_options();
+  if (!options) options = &defaults;
   scree_status status = check_options(options, error);
   if (status == SCREE_OK) status = check_field(field, error);
   if (status != SCREE_OK) return status;

@@ -357,6 +357,8 @@ static scree_status check_options(const scree_render_options *o, size_t cell_cou
 scree_status scree_render(const scree_render_cell *cells, size_t cell_count,
                           const scree_render_options *options, const scree_progress *progress,
                           scree_image *image, scree_error *error) {
+  const scree_render_options defaults = scree_default_render_options();
+  if (!options) options = &defaults;
   scree_status status = check_options(options, cell_count, error);
   if (status != SCREE_OK) return status;
   size_t bytes = 3 * options->width * options->height;

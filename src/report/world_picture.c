@@ -94,7 +94,7 @@ static scree_status focus_on_heap(const scree_run *run, scree_render_options *o,
 scree_status scree_run_picture(const scree_run *run, const scree_render_options *options,
                                const scree_progress *progress, scree_image *image,
                                scree_error *error) {
-  scree_render_options o = *options;
+  scree_render_options o = options ? *options : scree_default_render_options();
   scree_status status = o.focus_radius > 0 ? SCREE_OK : focus_on_heap(run, &o, error);
   if (status != SCREE_OK) return status;
   return draw(scree_run_view(run), run, &o, progress, image, error);

@@ -249,6 +249,8 @@ static scree_status refuse_collapsed(const scree_mesh *mesh, scree_error *error)
 scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_options *options,
                                const scree_progress *progress, scree_curve **curve,
                                scree_error *error) {
+  const scree_simplify_options defaults = scree_default_simplify_options();
+  if (!options) options = &defaults;
   scree_status status = check_options(options, error);
   if (status == SCREE_OK) status = refuse_collapsed(mesh, error);
   if (status != SCREE_OK) return status;
