@@ -18,13 +18,15 @@
 #include "base/array.h"
 #include "particle/closest.h"
 
-static const double way_out_cosine = 0.15; /* 81 degrees: thin wedges still count */
+static const double way_out_cosine = 0.15;     /* 81 degrees: thin wedges still count */
+static const double same_distance2 = 1 + 1e-9; /* squares of distances of one point */
 static const double notch_cosines[2] = {0.9659258, 0.9063078}; /* 15 and 25 degrees */
 
 typedef struct surface_contact {
   vec3 closest, normal;
-  vec3 aside; /* from where the faces that look the way out end; 0 behind one of them */
+  vec3 aside; /* from where the faces that look the way out end; 0 over or behind one of them */
   double distance, weight;
+  bool over;    /* the closest point is none of an edge */
   double lever; /* by how much the distance grows along the normal: 1, but where two are blended */
 } surface_contact;
 
@@ -80,7 +82,7 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
   const scree_tree_node *nodes = surface->face_tree.nodes;
   uint32_t stack[SCREE_TREE_STACK];
   int depth = 0;
-  double best2 = reach * reach, least_aside2 = INFINITY;
+  double best2 = reach * reach, best_height = 0, least_aside2 = INFINITY;
   bool any = false;
   stack[depth++] = 0;
   while (depth > 0) {
@@ -98,10 +100,13 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
       vec3 c = scree_closest_on_face(face, p, &region), offset = vec3_sub(p, c);
       double d2 = vec3_norm2(offset), height = vec3_dot(offset, face->normal);
       if (d2 >= reach * reach || (behind && height > 0)) continue;
-      if (d2 < best2) {
-        best2 = d2;
+      bool tied = any && d2 <= best2 * same_distance2 && best2 <= d2 * same_distance2;
+      if (tied ? height > best_height : d2 < best2) {
+        best2 = d2 < best2 ? d2 : best2;
+        best_height = height;
         out->closest = c;
         out->normal = face->normal;
+        out->over = region == SCREE_REGION_INSIDE;
         any = true;
       }
       vec3 aside =
@@ -119,21 +124,26 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
   return any;
 }
 
-/* Below half the roundings, or through a wall: depth along the reference. */
+/* Below half the roundings, or through a wall: depth along the reference. In front of the faces
+ * that look that way the closest point of the whole surface takes over within half the roundings
+ * too, as far as that is not the same: where a point beside an edge sinks below the plane of the
+ * face, both sides of it are `w` times 0. */
 static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
                          const scree_pair *pair, bool pierced, bool outside,
-                         surface_contact *contact) {
+                         const surface_contact *closest, surface_contact *contact) {
   double half = 0.5 * pair->reach, reach = 1.5 * pair->limit + pair->reach;
   if (!find_way_out(surface, p, item->reference, reach, pierced, contact)) return false;
   vec3 offset = vec3_sub(p, contact->closest);
   double height = vec3_dot(offset, contact->normal), distance = vec3_norm(offset);
-  bool in_front = outside && height > 0;
+  bool in_front = outside && height > 0,
+       nearest = in_front && contact->over && distance == closest->distance;
   contact->weight = contact->lever = 1;
-  contact->distance = in_front ? distance : outside ? height : -distance;
-  if ((in_front || !outside) && distance > 1e-9 * half)
+  contact->distance = nearest ? distance : outside ? height : -distance;
+  if ((nearest || !outside) && distance > 1e-9 * half)
     contact->normal = vec3_scale(offset, 1 / contact->distance);
-  if (in_front) return true;
+  if (nearest) return true;
   contact->closest = vec3_mad(p, contact->normal, -contact->distance);
+  if (in_front) contact->aside = offset;
   contact->weight = 1 - scree_smooth_step(0, half, vec3_norm(contact->aside));
   return true;
 }
@@ -167,7 +177,7 @@ static int notch_contacts(const scree_particle *surface, vec3 p, const scree_ite
     double d = vec3_dot(vec3_sub(p, c), face->normal);
     if (region != SCREE_REGION_INSIDE || d <= 0) continue;
     double weight = 1 - scree_smooth_step(notch_cosines[1], notch_cosines[0], alike);
-    contacts[count++] = (surface_contact){c, face->normal, {0, 0, 0}, d, weight, 1};
+    contacts[count++] = (surface_contact){c, face->normal, {0, 0, 0}, d, weight, true, 1};
   }
   return count;
 }
@@ -202,7 +212,8 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   contacts[0].normal = d > 1e-12 ? vec3_scale(offset, (outside ? 1 : -1) / d) : vec3_unit(outward);
   surface_contact out;
   if ((deep || pierced) && item->has_reference &&
-      deep_contact(surface, p, item, pair, pierced, outside, &out) && (deep || out.weight > 0)) {
+      deep_contact(surface, p, item, pair, pierced, outside, &contacts[0], &out) &&
+      (deep || out.weight > 0)) {
     item->inside = !outside || out.weight > 0;
     if (out.weight < 1) slide_off(p, 0.5 * pair->reach, &contacts[0], &out);
     contacts[0] = out;

@@ -190,7 +190,59 @@ static void a_corner_that_wanders_inside(void **state) {
   }
 }
 
+/* A corner goes in above the rim of a box by less than half the roundings, out over the rim and
+ * down beside it, past the plane of the face above which it was. */
+static void a_corner_sinks_beside_a_rim(void **state) {
+  (void)state;
+  enum { WAYS = 8 };
+  const double fine = 1e-7;
+  scree_error error;
+  scree_particle *box = NULL;
+  scree_mesh mesh = shape_box(0.1, 0.05, 0.015), spike = tip();
+  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &box, &error), error);
+  double change = 0, drift = 0;
+  for (int k = 0; k < WAYS; k++) {
+    double past = (8 + 4 * k) * 1e-6, height = 10e-6, in = 40e-6; /* m */
+    law_setup setup = law_default();
+    setup.restitution = 1;
+    setup.friction = 0;
+    setup.steps_per_contact = 1e5;
+    scree_world *world = law_world(&setup);
+    law_body(world, box, scree_default_body());
+    scree_wall wall = {.kind = SCREE_WALL_MESH, .material = 0, .mesh = &spike, .axis = {0, 0, 1}};
+    vec3 rim = box->box.high; /* in the body's frame, which has axes of its own */
+    wall.position[0] = rim.x - box->measures.rounding - in;
+    wall.position[2] = rim.z - box->measures.rounding + 3e-4;
+    size_t index;
+    CHECK_OK(scree_world_add_wall(world, &wall, &index, &error), error);
+    double speed = fine / scree_world_time_step(world, NULL), before = 0, first = 0, highest = 0;
+    const double still[3] = {0, 0, 0}, ways[3] = {3e-4 - height, in + past, height + 30e-6};
+    for (int leg = 0; leg < 3; leg++) {
+      const double velocity[3] = {leg == 1 ? speed : 0, 0, leg == 1 ? 0 : -speed};
+      CHECK_OK(scree_world_set_wall_velocity(world, index, velocity, still, &error), error);
+      for (double gone = 0; gone < ways[leg]; gone += fine) {
+        law_step(world, 1);
+        scree_observation o;
+        double ledger = law_ledger(world, &o);
+        if (before > 0) change = fmax(change, fabs(o.largest_overlap - before) / fine);
+        before = o.largest_overlap;
+        if (first == 0) first = ledger;
+        highest = fmax(highest, o.elastic);
+        drift = fmax(drift, highest > 0 ? fabs(ledger - first) / highest : 0);
+      }
+    }
+    assert_true(before > 4e-5); /* felt to the end */
+    scree_world_free(world);
+  }
+  LAW_BELOW("L16", "beside a rim: change of the overlap over the way", change, 3);
+  LAW_BELOW("L17", "its ledger, of the highest elastic energy", drift, ledger_share);
+  scree_particle_free(box);
+  scree_mesh_free(&mesh);
+  scree_mesh_free(&spike);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(a_corner_that_wanders_inside)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(a_corner_that_wanders_inside),
+                                     cmocka_unit_test(a_corner_sinks_beside_a_rim)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
