@@ -81,6 +81,6 @@ scree_status scree_world_set_contact(scree_world *world, size_t a, size_t b, dou
   scree_status status = check_contact(restitution, friction, error);
   if (status) return status;
   world->contacts[a][b] = world->contacts[b][a] = make_contact(restitution, friction, true);
-  world->pairs_stale = true;
+  scree_neighbours_set_up(world);
   return SCREE_OK;
 }

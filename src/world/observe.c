@@ -38,7 +38,7 @@ static void add_pairs(const scree_world *world, scree_observation *o) {
   size_t body_sides = 0;
   for (size_t k = 0; k < world->neighbours.count; k++) {
     const scree_pair *pair = world->neighbours.items[k]->pair;
-    if (!pair || !pair->touching) continue;
+    if (!pair || !pair->touching || scree_pair_is_removed(world, pair)) continue;
     scree_sum_add(&elastic, pair->elastic);
     o->pair_count++;
     o->contact_count += pair->contact_count;
@@ -53,7 +53,8 @@ static double tangential_elastic(const scree_world *world) {
   scree_sum sum = {0};
   for (size_t k = 0; k < world->neighbours.count; k++) {
     const scree_pair *pair = world->neighbours.items[k]->pair;
-    if (pair && pair->touching) scree_sum_add(&sum, pair->tangential_elastic);
+    if (pair && pair->touching && !scree_pair_is_removed(world, pair))
+      scree_sum_add(&sum, pair->tangential_elastic);
   }
   return scree_sum_value(sum);
 }

@@ -266,6 +266,21 @@ bool scree_pair_settle(scree_world *world, scree_pair *pair, scree_scratch *scra
   return !stays || n->pair;
 }
 
+void scree_neighbours_set_up(scree_world *world) {
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    scree_neighbours *n = world->neighbours.items[k];
+    set_up(world, n);
+    if (n->pair) scree_pair_adopt_law(n->pair);
+  }
+}
+
+void scree_neighbours_wake(scree_world *world, size_t wall) {
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    scree_neighbours *n = world->neighbours.items[k];
+    if (n->wall && n->b == wall && n->asleep) n->wake = -INFINITY;
+  }
+}
+
 bool scree_pair_reserve_items(scree_pair *pair, size_t needed) {
   if (needed <= pair->active.capacity) return true;
   scree_item *before = pair->active.items, *items = pair->array.items;

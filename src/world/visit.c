@@ -24,7 +24,7 @@ scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_
   bool good = true, going = true;
   for (size_t k = 0; k < world->neighbours.count && good && going; k++) {
     const scree_pair *pair = world->neighbours.items[k]->pair;
-    if (!pair || !pair->touching) continue;
+    if (!pair || !pair->touching || scree_pair_is_removed(world, pair)) continue;
     scree_pair_copy copy;
     scree_pair_sums sums = {0};
     good = scree_copy_pair(pair, &copy);

@@ -115,7 +115,9 @@ scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "world: wall %zu is to move with a velocity that is not finite", index);
   scree_world_wall *w = &world->walls.items[index];
+  bool turned = vec3_norm2(w->frame.spin) > 0;
   set_motion(w, velocity, angular_velocity);
+  if (!turned && vec3_norm2(w->frame.spin) > 0) scree_neighbours_wake(world, index);
   return SCREE_OK;
 }
 

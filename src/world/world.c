@@ -183,7 +183,6 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
   double density = world->materials[material].density;
   b->mass[i] = density * m->volume;
   b->inertia[i] = vec3_scale(vec3_load(m->inertia), density);
-  b->force[i] = b->torque[i] = (vec3){0, 0, 0};
   b->travel[i] = b->path[i] = world->body_path_at_build[i] = 0;
   b->material[i] = (uint8_t)material;
   b->removed[i] = false;
@@ -228,6 +227,7 @@ void scree_world_set_body(scree_world *world, size_t i, const scree_body *state)
   frame->spin = vec3_load(state->angular_velocity);
   frame->velocity_now = frame->velocity;
   frame->spin_now = frame->spin;
+  b->force[i] = b->torque[i] = (vec3){0, 0, 0};
   scree_body_forget(world, i);
 }
 

@@ -337,6 +337,10 @@ static inline void scree_set_wall_due(scree_world *world, size_t w) {
 static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const scree_pair *p) {
   return p->wall ? &w->walls.items[p->b].frame : &w->bodies.frame[p->b];
 }
+/* A body of it was removed since its last step. */
+static inline bool scree_pair_is_removed(const scree_world *w, const scree_pair *p) {
+  return w->bodies.removed[p->a] || (!p->wall && w->bodies.removed[p->b]);
+}
 static inline bool scree_wall_is_analytic(const scree_world_wall *wall) {
   return wall->given.kind != SCREE_WALL_MESH;
 }
@@ -366,6 +370,10 @@ scree_status scree_broad_restore(scree_world *world, double margin, scree_error 
 
 /* pair.c: neighbours a and b, new and set up; from the spares when there are some. */
 scree_neighbours *scree_neighbours_take(scree_world *world, uint32_t a, uint32_t b, bool wall);
+/* After a change of the materials: stiffness, damping and so on of all neighbours and pairs. */
+void scree_neighbours_set_up(scree_world *world);
+/* Who sleeps near this wall wakes: its turning is no part of the paths on which they sleep. */
+void scree_neighbours_wake(scree_world *world, size_t wall);
 /* With their pair, where they are awake. */
 void scree_neighbours_give_back(scree_world *world, scree_neighbours *neighbours);
 /* All of the world's neighbours and pairs with their arrays. */
