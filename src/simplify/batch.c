@@ -188,19 +188,25 @@ static void refresh_sums(pass *p) {
 static bool looks(const scree_halfmesh *s, uint32_t u, uint32_t v) {
   const double *a = s->sums[u], *b = s->sums[v];
   double size_u = a[0] + a[3] + a[5], size_v = b[0] + b[3] + b[5]; /* the quadrics' traces */
-  return size_u > size_v || (size_u == size_v && u < v);
+  return (size_u > size_v) | ((size_u == size_v) & (u < v));
 }
 
-/* Whether edge h is to be looked at from vertex v, and may be. */
-static bool open_to_collapse(scree_halfmesh *s, uint32_t v, uint32_t h) {
-  uint32_t other = scree_to(s, h), twin = s->half[h].twin;
-  if (twin != SCREE_NONE && !looks(s, v, other)) return false; /* looked at from there */
-  if (s->flags[other] & SCREE_VERTEX_LOCKED) return false;
-  if (s->refused[h] == SCREE_EDGE_POSTPONED) s->refused[h] = 0;
-  if (!s->refused[h]) return true;
-  if (!((s->flags[v] | s->flags[other]) & SCREE_VERTEX_CHANGED)) return false;
+/* Whether edge h, which was refused or had to wait, may be collapsed after all. */
+static bool reopens(scree_halfmesh *s, uint32_t v, uint32_t other, uint32_t h) {
+  if (s->refused[h] == SCREE_EDGE_REFUSED &&
+      !((s->flags[v] | s->flags[other]) & SCREE_VERTEX_CHANGED))
+    return false;
   s->refused[h] = 0;
   return true;
+}
+
+/* Whether edge h is to be looked at from vertex v, and may be. Half of them are not, at random:
+ * hence without a branch. */
+static bool open_to_collapse(scree_halfmesh *s, uint32_t v, uint32_t h) {
+  uint32_t other = scree_to(s, h);
+  bool open = (s->half[h].twin == SCREE_NONE) | looks(s, v, other);
+  open &= !(s->flags[other] & SCREE_VERTEX_LOCKED);
+  return s->refused[h] ? open && reopens(s, v, other, h) : open;
 }
 
 /* Edges that wait for their evaluation. */
@@ -253,10 +259,9 @@ static void evaluate_block(void *context, size_t begin, size_t end, size_t block
     if (s->vertex[v].outgoing == SCREE_NONE || s->flags[v] & SCREE_VERTEX_LOCKED) continue;
     uint32_t first = s->vertex[v].outgoing, h = first;
     do {
-      if (open_to_collapse(s, (uint32_t)v, h)) {
-        w.edge[w.count++] = h;
-        if (w.count == SIDE_BY_SIDE) evaluate_waiting(p, &w);
-      }
+      w.edge[w.count] = h;
+      w.count += open_to_collapse(s, (uint32_t)v, h);
+      if (w.count == SIDE_BY_SIDE) evaluate_waiting(p, &w);
       h = scree_turn(s, h);
     } while (h != SCREE_NONE && h != first);
   }
