@@ -170,11 +170,15 @@ SCREE_PREFETCHES void ask_for_block(const scree_halfmesh *s, size_t begin, size_
 static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   scree_decimator *d = ((pass *)context)->d;
+  uint32_t stale[VERTEX_BLOCK], count = 0;
   ask_for_block(&d->s, begin, end);
   for (size_t v = begin; v < end; v++) {
-    if (d->s.vertex[v].outgoing == SCREE_NONE || !(d->s.flags[v] & SCREE_VERTEX_STALE)) continue;
-    d->coster->sum(&d->s, (uint32_t)v);
-    d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
+    stale[count] = (uint32_t)v;
+    count += (d->s.vertex[v].outgoing != SCREE_NONE) & ((d->s.flags[v] & SCREE_VERTEX_STALE) != 0);
+  }
+  for (uint32_t i = 0; i < count; i++) {
+    d->coster->sum(&d->s, stale[i]);
+    d->s.flags[stale[i]] &= (uint8_t)~SCREE_VERTEX_STALE;
   }
 }
 
@@ -239,8 +243,9 @@ static void evaluate_waiting(pass *p, waiting *w) {
     uint32_t v = s->half[w->edge[begin]].from, likely = begin, has = begin;
     for (end = begin + 1; end < w->count && s->half[w->edge[end]].from == v; end++)
       if (candidates[end].cost < candidates[likely].cost) likely = end;
-    take_cheaper(p, w, v, likely, &candidates[likely], &has); /* few others' shapes matter then */
-    for (uint32_t i = begin; i < end; i++)
+    take_cheaper(p, w, v, likely, &candidates[likely], &has);
+    if (!p->d->coster->shape && candidates[likely].error <= p->d->error_limit) continue;
+    for (uint32_t i = begin; i < end; i++) /* few of their shapes matter now */
       if (i != likely) take_cheaper(p, w, v, i, &candidates[i], &has);
   }
   w->count = 0;
@@ -342,20 +347,27 @@ static bool is_candidate(const pass *p, size_t v) {
   return key_of(p->cost[v]) <= p->limit;
 }
 
-/* Of a block of vertices: lists its candidates, and enters them for the choice. */
+/* Of a block of vertices: lists its candidates, and enters them for the choice. Who is one, and who
+ * a cheap one, is as good as random: hence without branches. */
 static void list_candidates(pass *p, size_t begin, size_t end) {
   size_t block = begin / VERTEX_BLOCK;
-  scree_contender *contenders = p->contenders + begin, cheap[VERTEX_BLOCK];
-  uint32_t count = 0, cheap_count = 0;
+  scree_contender *contenders = p->contenders + begin, cheap[VERTEX_BLOCK + 1];
+  uint32_t candidates[VERTEX_BLOCK + 1], candidate_count = 0, count = 0, cheap_count = 0;
   double dearest = 0;
   for (size_t v = begin; v < end; v++) {
     p->marks[v] = 0;
-    if (!is_candidate(p, v)) continue;
+    candidates[candidate_count] = (uint32_t)v;
+    candidate_count += is_candidate(p, v);
+  }
+  for (uint32_t i = 0; i < candidate_count; i++) {
+    uint32_t v = candidates[i];
+    bool is_cheap = key_of(p->cost[v]) <= p->cheap;
     scree_ring r;
     scree_ring_name(&p->d->s, p->best[v], &r);
-    scree_contender *made =
-        key_of(p->cost[v]) <= p->cheap ? &cheap[cheap_count++] : &contenders[count++];
-    *made = (scree_contender){.a = r.a, .b = r.b, .c = r.c, .d = r.d};
+    contenders[count] = cheap[cheap_count] =
+        (scree_contender){.a = r.a, .b = r.b, .c = r.c, .d = r.d};
+    count += !is_cheap;
+    cheap_count += is_cheap;
     dearest = p->cost[v] > dearest ? p->cost[v] : dearest;
   }
   memcpy(contenders + count, cheap, cheap_count * sizeof *cheap);
@@ -420,17 +432,22 @@ static void reconsider_block(void *context, size_t begin, size_t end, size_t blo
   pass *p = context;
   scree_halfmesh *s = &p->d->s;
   waiting w = {.count = 0};
+  uint32_t candidates[VERTEX_BLOCK], count = 0;
   ask_for_block(s, begin, end);
   scree_prefetch(s->sums[begin], (end - begin) * sizeof *s->sums);
   for (size_t v = begin; v < end; v++) {
-    if (!is_candidate(p, v)) continue;
-    uint32_t h = p->best[v];
-    if (s->vertex[v].outgoing == SCREE_NONE || s->half[h].from != v || s->refused[h]) {
-      p->cost[v] = INFINITY;
-      continue;
-    }
-    if (!((s->flags[v] | s->flags[scree_to(s, h)]) & SCREE_VERTEX_CHANGED)) continue;
-    w.edge[w.count++] = h;
+    candidates[count] = (uint32_t)v;
+    count += is_candidate(p, v);
+  }
+  for (uint32_t i = 0; i < count; i++) {
+    uint32_t v = candidates[i], h = p->best[v];
+    bool gone =
+        (s->vertex[v].outgoing == SCREE_NONE) | (s->half[h].from != v) | (s->refused[h] != 0);
+    uint32_t other = gone ? v : scree_to(s, h);
+    bool changed = ((s->flags[v] | s->flags[other]) & SCREE_VERTEX_CHANGED) != 0;
+    p->cost[v] = gone ? INFINITY : p->cost[v];
+    w.edge[w.count] = h;
+    w.count += !gone & changed;
     if (w.count == SIDE_BY_SIDE) reconsider_waiting(p, &w);
   }
   reconsider_waiting(p, &w);

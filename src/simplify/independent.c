@@ -34,8 +34,9 @@ static void set_mark(scree_choosing *c, uint32_t v, uint8_t mark) {
 
 /* Whether what was taken leaves it in question. */
 static bool is_open(const scree_choosing *c, const scree_contender *e) {
-  return !(c->marks[e->a] & (TOUCHED | GONE)) && !(c->marks[e->b] & TOUCHED) &&
-         !(c->marks[e->c] & APEX) && (e->d == SCREE_NONE || !(c->marks[e->d] & APEX));
+  uint32_t d = e->d == SCREE_NONE ? e->c : e->d;
+  return !((c->marks[e->a] & (TOUCHED | GONE)) | (c->marks[e->b] & TOUCHED) |
+           ((c->marks[e->c] | c->marks[d]) & APEX));
 }
 
 SCREE_PREFETCHES void ask_for_claims(const scree_choosing *c, const scree_contender *e) {
@@ -63,12 +64,14 @@ static void claim_block(void *context, size_t begin, size_t end, size_t block, i
   scree_choosing *c = context;
   scree_contender *contenders = c->contenders + begin + c->counts[block].waiting;
   uint32_t kept = 0, count = c->counts[block].left;
-  for (uint32_t i = 0; i < count; i++) {
-    scree_contender e = contenders[i];
-    if (i + AHEAD < count) ask_for_claims(c, &contenders[i + AHEAD]);
-    if (!is_open(c, &e)) continue;
-    contenders[kept++] = e;
-    claim_all(c, &e);
+  for (uint32_t i = 0; i < count;
+       i++) { /* without branches, for who is open is as good as random */
+    contenders[kept] = contenders[i];
+    kept += is_open(c, &contenders[i]);
+  }
+  for (uint32_t i = 0; i < kept; i++) {
+    if (i + AHEAD < kept) ask_for_claims(c, &contenders[i + AHEAD]);
+    claim_all(c, &contenders[i]);
   }
   c->counts[block].left = kept;
 }
