@@ -28,6 +28,7 @@ typedef struct builder {
   uint32_t *fan_to;  /* the vertices that these lead to */
   size_t fan_count;  /* vertices after the cut */
   uint32_t *root;    /* union-find over vertices, for shells */
+  size_t joined;     /* how often two sets became one */
 } builder;
 
 void scree_halfmesh_free(scree_halfmesh *s) {
@@ -45,7 +46,10 @@ static scree_status check_mesh(const scree_mesh *mesh, vec3 *low, vec3 *high, sc
   if (mesh->triangle_count > SCREE_NONE / 3 - 1 || mesh->vertex_count > SCREE_NONE - 1)
     return scree_fail(error, SCREE_LIMIT, "%zu triangles are above decimation's limit of %u",
                       mesh->triangle_count, SCREE_NONE / 3 - 1);
+  uint32_t highest = 0; /* first, and then which: a loop without branches */
   for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
+    highest = mesh->triangles[i] > highest ? mesh->triangles[i] : highest;
+  for (size_t i = 0; highest >= mesh->vertex_count; i++)
     if (mesh->triangles[i] >= mesh->vertex_count)
       return scree_fail(error, SCREE_BAD_MESH, "triangle %zu names vertex %u of %zu", i / 3,
                         mesh->triangles[i], mesh->vertex_count);
@@ -297,36 +301,71 @@ static void place_copies(builder *b, uint32_t v) {
   }
 }
 
+/* ---- Shells: union-find by all threads, roots the lowest of their shell ---- */
+
+/* What a thread writes is an ancestor, lower than v; that another has found a lower one does no
+ * harm. */
 static uint32_t find_root(uint32_t *root, uint32_t v) {
-  while (root[v] != v) v = root[v] = root[root[v]];
-  return v;
+  for (;;) {
+    uint32_t above = __atomic_load_n(&root[v], __ATOMIC_RELAXED);
+    if (above == v) return v;
+    uint32_t next = __atomic_load_n(&root[above], __ATOMIC_RELAXED);
+    if (next != above) __atomic_store_n(&root[v], next, __ATOMIC_RELAXED);
+    v = next;
+  }
 }
 
-static void count_facts(builder *b) {
+/* Whether u and v lay in different sets. */
+static bool join(uint32_t *root, uint32_t u, uint32_t v) {
+  while ((u = find_root(root, u)) != (v = find_root(root, v))) {
+    uint32_t low = u < v ? u : v, high = u < v ? v : u, expected = high;
+    if (__atomic_compare_exchange_n(&root[high], &expected, low, false, __ATOMIC_RELAXED,
+                                    __ATOMIC_RELAXED))
+      return true;
+  }
+  return false;
+}
+
+static void add_to(size_t *sum, size_t count) {
+  __atomic_fetch_add(sum, count, __ATOMIC_RELAXED);
+}
+
+static void join_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  builder *b = context;
   scree_halfmesh *s = b->surface;
-  size_t boundary = 0, locked = 0, vertices = 0, joined = 0;
-  for (uint32_t v = 0; v < s->vertex_count; v++) b->root[v] = v;
-  for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
+  size_t boundary = 0, joined = 0;
+  for (uint32_t h = (uint32_t)(3 * begin); h < 3 * end; h++) {
     uint32_t twin = s->half[h].twin;
     boundary += twin == SCREE_NONE;
-    if (twin < h) continue;
-    uint32_t u = find_root(b->root, s->half[h].from), v = find_root(b->root, scree_to(s, h));
-    if (u == v) continue;
-    joined++;
-    if (u < v) b->root[v] = u;
-    if (v < u) b->root[u] = v;
+    if (twin > h) joined += join(b->root, s->half[h].from, scree_to(s, h));
   }
-  for (size_t v = 0; v < s->vertex_count; v++) {
+  add_to(&s->boundary_edge_count, boundary);
+  add_to(&b->joined, joined);
+}
+
+static void count_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  builder *b = context;
+  scree_halfmesh *s = b->surface;
+  size_t vertices = 0, locked = 0;
+  for (size_t v = begin; v < end; v++) {
     if (s->vertex[v].outgoing == SCREE_NONE) continue;
     vertices++;
     locked += s->flags[v] & SCREE_VERTEX_LOCKED;
     if (b->root[v] == v) s->flags[v] |= SCREE_VERTEX_ANCHOR;
   }
-  s->shell_count = vertices - joined;
-  s->boundary_edge_count = boundary;
-  s->locked_vertex_count = locked;
-  s->closed = boundary == 0;
-  s->live_vertex_count = vertices;
+  add_to(&s->live_vertex_count, vertices);
+  add_to(&s->locked_vertex_count, locked);
+}
+
+static void count_facts(builder *b) {
+  scree_halfmesh *s = b->surface;
+  for (uint32_t v = 0; v < s->vertex_count; v++) b->root[v] = v;
+  scree_parallel_for(s->triangle_count, BLOCK, join_block, b);
+  scree_parallel_for(s->vertex_count, BLOCK, count_block, b);
+  s->shell_count = s->live_vertex_count - b->joined;
+  s->closed = s->boundary_edge_count == 0;
   s->live_triangle_count = s->triangle_count;
 }
 
