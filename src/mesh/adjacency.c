@@ -142,16 +142,15 @@ scree_status scree_adjacency_build(const scree_mesh *mesh, scree_adjacency *adja
   size_t block_count = scree_block_count(mesh->vertex_count, VERTEX_BLOCK);
   scree_status status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(made.ring, 3 * mesh->triangle_count, error, done);
-  SCREE_ALLOC_OR(b.start, mesh->vertex_count + 1, error, done);
-  SCREE_ALLOC_OR(b.second, mesh->vertex_count + 1, error, done);
-  SCREE_ALLOC_OR(b.pairs, 3 * mesh->triangle_count, error, done);
+  /* one block, for a large one costs fewer page faults */
+  SCREE_ALLOC_OR(b.pairs, 3 * mesh->triangle_count + mesh->vertex_count + 1, error, done);
+  b.start = (uint32_t *)(b.pairs + 3 * mesh->triangle_count);
+  b.second = b.start + mesh->vertex_count + 1;
   SCREE_ALLOC_OR(b.block_edges, block_count, error, done);
   fill_buckets(&b);
   scree_parallel_for(mesh->vertex_count, VERTEX_BLOCK, link_block, &b);
   status = collect_edges(&b, block_count, error);
 done:
-  scree_free(b.start);
-  scree_free(b.second);
   scree_free(b.pairs);
   scree_free(b.block_edges);
   if (status == SCREE_OK)

@@ -85,13 +85,6 @@ static uint32_t least_of(uint32_t a, uint32_t b, uint32_t c) {
 
 /* ---- Counting sorts: each half of the triangles by itself ---- */
 
-static void free_counts(builder *b) {
-  for (int half = 0; half < 2; half++) {
-    scree_free(b->next[half]);
-    b->next[half] = NULL;
-  }
-}
-
 static void clear_counts(builder *b) {
   size_t size = b->mesh->vertex_count * sizeof *b->next[0];
   for (int half = 0; half < 2; half++) memset(b->next[half], 0, size);
@@ -184,11 +177,8 @@ static scree_status place_in_order(builder *b, vec3 low, vec3 high, scree_error 
   SCREE_ALLOC_OR(b->order, mesh->vertex_count, error, out_of_memory);
   scree_status status = scree_order_vertices(mesh, low, high, b->order, error);
   if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(b->rank, mesh->vertex_count, error, out_of_memory);
   scree_parallel_for(mesh->vertex_count, BLOCK, rank_vertices, b);
   place_triangles(b);
-  scree_free(b->rank);
-  b->rank = NULL;
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -375,9 +365,11 @@ static scree_status build_edges(builder *b, vec3 low, vec3 high, scree_error *er
   scree_halfmesh *s = b->surface;
   size_t half_edges = 3 * mesh->triangle_count;
   SCREE_ALLOC_OR(s->half, half_edges, error, out_of_memory);
-  SCREE_ALLOC_OR(b->start, mesh->vertex_count + 1, error, out_of_memory);
-  SCREE_ALLOC_OR(b->next[0], mesh->vertex_count, error, out_of_memory);
-  SCREE_ALLOC_OR(b->next[1], mesh->vertex_count, error, out_of_memory);
+  /* one block, for a large one costs fewer page faults */
+  SCREE_ALLOC_OR(b->start, 4 * mesh->vertex_count + 1, error, out_of_memory);
+  b->next[0] = b->start + mesh->vertex_count + 1;
+  b->next[1] = b->next[0] + mesh->vertex_count;
+  b->rank = b->next[1] + mesh->vertex_count;
   scree_status status = place_in_order(b, low, high, error);
   if (status != SCREE_OK) return status;
   SCREE_ALLOC_OR(b->fan, half_edges, error, out_of_memory);
@@ -385,7 +377,6 @@ static scree_status build_edges(builder *b, vec3 low, vec3 high, scree_error *er
   SCREE_ALLOC_OR(s->flags, mesh->vertex_count, error, out_of_memory);
   memset(s->flags, 0, mesh->vertex_count);
   sort_fans(b);
-  free_counts(b);
   scree_parallel_for(mesh->vertex_count, BLOCK, find_twins, b);
   scree_free(b->fan_to);
   b->fan_to = NULL;
@@ -440,8 +431,6 @@ scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surfac
   made = (scree_halfmesh){0};
   status = SCREE_OK;
 done:
-  free_counts(&b);
-  scree_free(b.rank);
   scree_free(b.order);
   scree_free(b.start);
   scree_free(b.fan);
