@@ -341,6 +341,32 @@ static void membranes(void **state) {
   }
 }
 
+/* A caller's mesh may hold coordinates that no reader lets in: their facets go, the holes are
+ * filled. */
+static void coordinates_that_are_no_numbers(void **state) {
+  (void)state;
+  static const double bad[] = {NAN, INFINITY, -INFINITY, 1e300};
+  scree_mesh clean = shape_icosphere(1, 3);
+  scree_measures before = measures_of(&clean);
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    scree_mesh mesh;
+    scree_error error;
+    size_t at_vertex = 0, vertex = 7 + i;
+    CHECK_OK(scree_mesh_copy(&clean, &mesh, &error), error);
+    for (size_t k = 0; k < 3 * mesh.triangle_count; k++) at_vertex += mesh.triangles[k] == vertex;
+    mesh.positions[3 * vertex + i % 3] = bad[i];
+    outcome o = repair(&mesh);
+    assert_int_equal(o.report.before.defects[SCREE_DEFECT_BAD_COORDINATE], 1);
+    assert_int_equal(o.report.done[SCREE_REPAIR_DROP_BAD], at_vertex);
+    assert_int_equal(o.report.done[SCREE_REPAIR_FILL_HOLE], 1);
+    assert_int_equal(o.mesh.vertex_count, clean.vertex_count - 1);
+    expect_same(&o, &before, 0.01);
+    free_outcome(&o);
+    scree_mesh_free(&mesh);
+  }
+  scree_mesh_free(&clean);
+}
+
 static void debris_and_cavities(void **state) {
   (void)state;
   scree_mesh outer = shape_grid_box(4, 4, 4, 4), cavity = shape_icosphere(0.15, 2);
@@ -651,6 +677,7 @@ int main(void) {
                                      cmocka_unit_test(fin_on_an_open_surface),
                                      cmocka_unit_test(membranes),
                                      cmocka_unit_test(debris_and_cavities),
+                                     cmocka_unit_test(coordinates_that_are_no_numbers),
                                      cmocka_unit_test(nested_is_swallowed),
                                      cmocka_unit_test(parts_that_meet_are_one),
                                      cmocka_unit_test(spike),
