@@ -26,7 +26,9 @@
  *
  * Below SCREE_RELAXED_COUNT triangles the vertices about a collapse move after it, to where the
  * witnesses around them are nearer (relax.h); the survivor first, then its neighbours, each by
- * itself; then the two of them that gain most by it take over volume from each other.
+ * itself; then the two of them that gain most by it take over volume from each other. A place may
+ * get farther off by it, but no farther than the farthest of the whole level was when it was last
+ * looked for, which is whenever a tenth of the triangles has gone.
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
@@ -53,6 +55,8 @@
  * found anew. */
 #define TOLL_RANK   0.1
 #define RENEW_BELOW 0.7
+/* The same for the farthest place of the level, up to which moves may put others. */
+#define FARTHEST_BELOW 0.9
 
 /* The shortest way that a vertex is moved, of the whole step: else it stays. */
 #define LEAST_SHARE 0.25
@@ -99,6 +103,8 @@ typedef struct queue {
   double toll;                    /* weight of the stray's sixth power in the cost */
   size_t renew_at;                /* triangles */
   size_t relaxed_below;           /* the same; 0: never */
+  double farthest2;               /* the squared distance of the farthest place of the level */
+  size_t farthest_at;             /* triangles: found anew */
   double *sorted;                 /* scratch: costs */
   uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
   size_t waiting_count;
@@ -385,6 +391,8 @@ static scree_status try_moving(queue *q, moving *m) {
   scree_decimator *d = q->d;
   scree_status status = SCREE_OK;
   vec3 places[2];
+  for (int i = 0; i < m->count; i++)
+    m->relaxations[i].worst = fmax(m->relaxations[i].worst, q->farthest2);
   for (double share = 1; share >= LEAST_SHARE && status == SCREE_OK; share *= 0.5) {
     scree_relax_places(m->relaxations, m->count, share, places);
     for (int i = 0; i < m->count; i++) m->changes[i].target = places[i];
@@ -448,6 +456,13 @@ static scree_status exchange(queue *q, const uint32_t *about, size_t count) {
   return try_moving(q, &m);
 }
 
+static void find_farthest(queue *q) {
+  const scree_decimator *d = q->d;
+  if (d->s.live_triangle_count > q->farthest_at) return;
+  q->farthest2 = scree_memory_farthest(&d->memory, &d->s);
+  q->farthest_at = (size_t)(FARTHEST_BELOW * (double)d->s.live_triangle_count);
+}
+
 /* The vertices about the collapse, of which the first survived, have their turns: it, then the
  * others counter-clockwise from the farthest, so that numbers decide nothing; at last two of them
  * together. */
@@ -456,6 +471,7 @@ static scree_status relax_around(queue *q) {
   uint32_t about[MOST_ABOUT];
   size_t count = q->touched_count, farthest = 1;
   double most = 0;
+  find_farthest(q);
   scree_status status = relax(q, q->touched[0]);
   memcpy(about, q->touched, count * sizeof *about);
   for (size_t i = 1; i < count; i++) {
@@ -639,6 +655,7 @@ scree_status scree_decimate_one_by_one(scree_decimator *d) {
   queue q = {.d = d};
   if (!d->coster->merge)
     q.relaxed_below = scree_is_large(d) ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
+  q.farthest_at = q.relaxed_below;
   scree_grid_free(&d->grid);
   scree_status status = queue_fill(&q);
   if (status == SCREE_OK) status = scree_anchors_find(&d->s, &d->anchors, d->error);

@@ -24,7 +24,8 @@ typedef struct scree_relaxation {
   const scree_ring *fan;
   vec3 from, n, step; /* as in the pull; the whole way */
   double sum;         /* as in the pull */
-  double worst;       /* the same, or of the places on the edges where these were looked at */
+  double worst; /* as in the pull, or of the places on the edges where these were looked at; the
+                   caller may allow more */
   bool has_edges;
   scree_hints hints;
 } scree_relaxation;
@@ -42,7 +43,7 @@ void scree_exchange_begin(const scree_pull *pulls, const scree_ring *fans,
 void scree_relax_places(const scree_relaxation *relaxations, int count, double share, vec3 *places);
 
 /* Whether with the vertices there the sum of the squared distances is smaller and no place is
- * farther off than the worst was. */
+ * farther off than the worst was, or is allowed to be. */
 bool scree_relax_gains(const scree_memory *memory, const scree_halfmesh *s,
                        scree_relaxation *relaxations, int count, const vec3 *places);
 

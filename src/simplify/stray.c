@@ -3,6 +3,7 @@
  * (Visualization 1996), have it for all vertices of the mesh given. */
 #include "simplify/stray.h"
 
+#include "base/parallel.h"
 #include "base/sum.h"
 
 #include <string.h>
@@ -22,6 +23,8 @@ enum { MOST_STEPS = 32 };
  * else, and how these are known. */
 enum { CLOSE_CROWD = 48, CROWD = 24 };
 #define DROPPED (-1.0)
+/* In which the farthest place is looked for. */
+enum { FARTHEST_BLOCKS = 16 };
 /* Squared areas that differ by no more of themselves are the same. */
 #define SAME_SIZE 1e-9
 /* Squared height over squared side of a triangle too narrow for the direction of its height. */
@@ -335,6 +338,41 @@ double scree_memory_worst(const scree_memory *m) {
   for (size_t i = 0; i < m->count; i++)
     if (m->witnesses[i].distance2 > worst) worst = m->witnesses[i].distance2;
   return sqrt(worst);
+}
+
+/* Triangles by blocks, few, for each begins anew to look for a triangle near to its first place. */
+typedef struct looking {
+  const scree_memory *m;
+  const scree_halfmesh *s;
+  double worst[FARTHEST_BLOCKS];
+} looking;
+
+static void look_at_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  looking *l = context;
+  const scree_halfmesh *s = l->s;
+  uint32_t near = 0;
+  double worst = l->worst[block];
+  for (uint32_t h = 3 * (uint32_t)begin; h < 3 * end; h++) {
+    uint32_t from = s->half[h].from, twin = s->half[h].twin;
+    if (from == SCREE_NONE) continue;
+    vec3 at = s->vertex[from].at, to = s->vertex[scree_to(s, h)].at;
+    if (s->vertex[from].outgoing == h) worst = farther(l->m, at, worst, &near);
+    for (uint32_t k = 0; k < SCREE_EDGE_PLACES && h < twin; k++)
+      worst = farther(l->m, vec3_lerp(at, to, places[k].sixths / 6.0), worst, &near);
+  }
+  l->worst[block] = worst;
+}
+
+double scree_memory_farthest(const scree_memory *m, const scree_halfmesh *s) {
+  looking l = {.m = m, .s = s};
+  double worst = 0;
+  for (size_t t = 0; t < s->triangle_count; t++)
+    if (m->first[t] != SCREE_NONE) worst = fmax(worst, m->witnesses[m->first[t]].distance2);
+  for (int i = 0; i < FARTHEST_BLOCKS; i++) l.worst[i] = worst;
+  scree_parallel_for(s->triangle_count, s->triangle_count / FARTHEST_BLOCKS + 1, look_at_block, &l);
+  for (int i = 0; i < FARTHEST_BLOCKS; i++) worst = fmax(worst, l.worst[i]);
+  return worst;
 }
 
 double scree_memory_usual(const scree_memory *m, bool close) {

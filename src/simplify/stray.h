@@ -102,6 +102,10 @@ bool scree_memory_stays_within(const scree_memory *memory, const scree_halfmesh 
 /* The largest distance of a witness. */
 double scree_memory_worst(const scree_memory *memory);
 
+/* The largest squared distance of all: of a witness, of a vertex or of a place on an edge; in
+ * parallel. */
+double scree_memory_farthest(const scree_memory *memory, const scree_halfmesh *s);
+
 /* How far off a place may be as things stand: ten times the mean distance of the witnesses, nine
  * times where the level is held close, less five times the one with which those placed began; 0
  * where none is off but for rounding. */

@@ -40,6 +40,7 @@
 #define TOLL_SHARE   0.1
 #define USUAL_MEANS  10.0
 #define RENEW_SHARE  0.7
+#define FAR_SHARE    0.9
 #define EQUALLY_NEAR 1e-12
 #define EQUAL_AREA   1e-9
 #define EQUAL_COST   1e-9
@@ -69,6 +70,8 @@ typedef struct oracle {
   vec3 *witness;    /* the first mesh's vertices */
   uint32_t *holder; /* of each witness: the triangle that stands for it, and its squared distance */
   double *held2;
+  double farthest; /* the distance of the farthest place when it was last found */
+  size_t far_at;   /* triangles at which it is found anew */
   double toll;     /* weight of the stray's sixth power */
   size_t renew_at; /* triangles at which it is found anew */
   double *whole;   /* as state, for every place: the whole cost, or NAN where it is not known yet */
@@ -522,6 +525,7 @@ static void check_move(const oracle *o, uint32_t v, const vec3 *x) {
   vec3 step;
   step_with_volume(o, v, 0, &step, &promise, &pressure);
   double sum = off_around(o, v, &worst);
+  worst = fmax(worst, o->farthest);
   if (promise <= (1 - 1e-6) * RELAX_GAIN * sum || !(promise > 0)) {
     if (x) fail_msg("vertex %u moved for %g of %g", v, promise, sum);
     return;
@@ -605,7 +609,7 @@ static void pair_margins(const oracle *o, const pair *p, double share, double be
 static void check_pair(const oracle *o, const pair *p, bool sure, const vec3 *x) {
   double share = 1, gain, past, worst[2];
   for (int k = 0; k < 2; k++) off_around(o, p->v[k], &worst[k]);
-  double before = fmax(worst[0], worst[1]);
+  double before = fmax(o->farthest, fmax(worst[0], worst[1]));
   for (int k = 0; k < RELAX_HALVES; k++, share /= 2) {
     bool here = x != NULL;
     for (int i = 0; i < 2 && here; i++)
@@ -921,12 +925,25 @@ static uint32_t farthest_neighbour(const oracle *o, uint32_t v, bool *alone) {
   return farthest;
 }
 
+/* Of all witnesses, vertices and places on edges. */
+static void find_farthest(oracle *o) {
+  double worst;
+  if (o->triangle_count > o->far_at) return;
+  o->farthest = 0;
+  o->far_at = (size_t)(FAR_SHARE * (double)o->triangle_count);
+  for (size_t h = 0; h < 3 * o->triangle_count; h++) {
+    off_around(o, o->triangle[h], &worst);
+    o->farthest = fmax(o->farthest, worst);
+  }
+}
+
 /* The survivor of collapse i, then its neighbours, counter-clockwise from the farthest. Where two
  * are as far, rounding decides the order, and the moves are taken over. */
 static void check_moves(oracle *o, const scree_decimator *d, size_t i) {
   bool in_order, alone;
   vec3 x;
   uint32_t a = d->record.kept[i];
+  find_farthest(o);
   check_turn_to_move(o, d, i, a);
   uint32_t first = farthest_neighbour(o, a, &in_order), v = first;
   const scree_move *m;
@@ -952,8 +969,12 @@ static void measure(const oracle *o, double *area, double *volume) {
 
 static oracle oracle_of(const scree_mesh *mesh, const scree_halfmesh *s, bool qecd) {
   size_t n = mesh->vertex_count, m = mesh->triangle_count;
-  oracle o = {
-      .vertex_count = n, .triangle_count = m, .plane_count = m, .qecd = qecd, .renew_at = m};
+  oracle o = {.vertex_count = n,
+              .triangle_count = m,
+              .plane_count = m,
+              .qecd = qecd,
+              .renew_at = m,
+              .far_at = m};
   o.position = malloc(n * sizeof *o.position);
   o.triangle = malloc(3 * m * sizeof *o.triangle);
   o.plane = malloc(m * sizeof *o.plane);
