@@ -27,7 +27,7 @@
 /* Against the sum of the squared shares: the fan says little of some directions. */
 #define DAMPING 0.05
 /* A smaller gain of the sum is none, for what it costs to look at all edges around anew. */
-#define LEAST_GAIN 5e-3
+#define LEAST_GAIN 1e-2
 
 typedef struct equations {
   double xx, xy, xz, yy, yz, zz;

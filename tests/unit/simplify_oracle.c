@@ -46,7 +46,7 @@
 #define EQUAL_COST   1e-9
 #define EDGE_PARTS   6
 #define RELAX_DAMP   0.05
-#define RELAX_GAIN   5e-3
+#define RELAX_GAIN   1e-2
 #define RELAX_HALVES 3
 #define QECD_PULL    1e-8
 #define QECD_TIE     1e-12
