@@ -241,8 +241,79 @@ static void a_corner_sinks_beside_a_rim(void **state) {
   scree_mesh_free(&spike);
 }
 
+/* Two thin flanges whose rims of 40 degrees cross so aslant that neither rim's closest point lies
+ * in the other: pressed in by more than half the thinnest wall they hold, since they are followed
+ * (edges.c); asked whether either lies inside they would let go. */
+static void crossed_sharp_rims_hold(void **state) {
+  (void)state;
+  const double degree = 3.14159265358979323846 / 180, slant = 40 * degree, tilt = 10 * degree,
+               thin = 0.0006, side = 0.03, out = 0.04, bevel = thin / tan(slant), stride_in = 1e-6,
+               way = 6e-4;
+  const double profile[] = {0,           0,           side, 0,    side, side - thin,
+                            out - bevel, side - thin, out,  side, 0,    side};
+  scree_error error;
+  scree_particle *flange = NULL;
+  scree_mesh mesh = solid_prism(profile, 6, 0.03);
+  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &flange, &error), error);
+  const double *o = flange->measures.orientation;
+  quat drawn = {o[0], o[1], o[2], o[3]},
+       /* rims along y and x, their bisectors 30 degrees aslant */
+      down = quat_mul(quat_from_rotation_vector((vec3){0, -tilt, 0}),
+                      quat_mul(quat_from_rotation_vector((vec3){0, 90 * degree, 0}),
+                               quat_from_rotation_vector((vec3){90 * degree, 0, 0}))),
+       up = quat_mul(quat_from_rotation_vector((vec3){-tilt, 0, 0}),
+                     quat_from_rotation_vector((vec3){0, -90 * degree, 0}));
+  vec3 turned = {-INFINITY, 0, 0}, rim = {0, 0, 0};
+  mat3 r = quat_to_mat3(drawn);
+  for (size_t e = 0; e < flange->edge_count; e++) {
+    vec3 middle = vec3_scale(vec3_add(flange->edges[e].start, flange->edges[e].end), 0.5),
+         here = mat3_mul_vec(&r, middle);
+    if (here.x > turned.x) turned = here, rim = middle;
+  }
+  law_setup setup = law_default();
+  setup.restitution = 1;
+  setup.friction = 0;
+  setup.steps_per_contact = 1e5;
+  scree_world *world = law_world(&setup);
+  scree_body body = scree_default_body();
+  quat q = quat_mul(down, drawn);
+  const double orientation[4] = {q.w, q.x, q.y, q.z};
+  memcpy(body.orientation, orientation, sizeof orientation);
+  mat3 placed = quat_to_mat3(q);
+  vec3_store(body.position, vec3_neg(mat3_mul_vec(&placed, rim)));
+  law_body(world, flange, body);
+  mat3 raised = quat_to_mat3(up);
+  for (size_t v = 0; v < mesh.vertex_count; v++) {
+    vec3 x = vec3_load(&mesh.positions[3 * v]);
+    x = vec3_sub(x, (vec3){out, side, 0.015});
+    vec3_store(&mesh.positions[3 * v], mat3_mul_vec(&raised, x));
+  }
+  scree_wall wall = {.kind = SCREE_WALL_MESH, .material = 0, .axis = {0, 0, 1}, .mesh = &mesh};
+  wall.position[2] = -2e-4;
+  size_t index;
+  CHECK_OK(scree_world_add_wall(world, &wall, &index, &error), error);
+  const double velocity[3] = {0, 0, stride_in / scree_world_time_step(world, NULL)},
+               still[3] = {0, 0, 0};
+  CHECK_OK(scree_world_set_wall_velocity(world, index, velocity, still, &error), error);
+  double most = 0, before = 0;
+  scree_observation seen;
+  for (double gone = 0; gone < way + 2e-4; gone += stride_in) {
+    law_step(world, 1);
+    scree_world_observe(world, &seen);
+    most = fmax(most, fabs(seen.largest_overlap - before));
+    before = seen.largest_overlap;
+  }
+  LAW_RELATIVE("L8", "overlap of rims that cross 0.6 mm deep (m)", before,
+               way + flange->measures.rounding, 0.02);
+  LAW_BELOW("L8", "its change over the way", most / stride_in, 2);
+  scree_world_free(world);
+  scree_particle_free(flange);
+  scree_mesh_free(&mesh);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(a_corner_that_wanders_inside),
-                                     cmocka_unit_test(a_corner_sinks_beside_a_rim)};
+                                     cmocka_unit_test(a_corner_sinks_beside_a_rim),
+                                     cmocka_unit_test(crossed_sharp_rims_hold)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
