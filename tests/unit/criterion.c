@@ -98,6 +98,21 @@ static void small_table_by_hand(void **state) {
   scree_choice_free(&c);
 }
 
+/* By accident: an error below a tenth of the worst at finer levels. */
+static void an_accident_is_below_a_tenth_of_the_worst(void **state) {
+  (void)state;
+  scree_choice_options o = scree_default_choice_options();
+  for (int i = 0; i < 2; i++) { /* 30 % off at 40 triangles; at 8, 2.9 or 3.1 % */
+    const scree_level_row rows[] = {
+        {1000, 1.0, 1}, {100, 0.98, 1}, {40, 0.7, 1}, {8, i ? 0.969 : 0.971, 1}, {4, 0.5, 1},
+    };
+    scree_choice c = choose(rows, 5, &o);
+    assert_int_equal(c.plain.triangle_count, 8);
+    assert_int_equal(c.plain_is_accident, i == 0);
+    scree_choice_free(&c);
+  }
+}
+
 static void a_lucky_crossing_does_not_fool_the_robust_choice(void **state) {
   (void)state;
   /* the shape is gone at 40 triangles (30 % off), at 8 the area is right by accident */
@@ -383,6 +398,7 @@ int main(void) {
       cmocka_unit_test(targets_truncate_but_not_by_rounding),
       cmocka_unit_test(small_table_by_hand),
       cmocka_unit_test(a_lucky_crossing_does_not_fool_the_robust_choice),
+      cmocka_unit_test(an_accident_is_below_a_tenth_of_the_worst),
       cmocka_unit_test(ties_go_to_fewer_triangles),
       cmocka_unit_test(a_floor_above_the_grid_reports_the_nearest_rp),
       cmocka_unit_test(smooth_shape_gives_the_square_root),
