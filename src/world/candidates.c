@@ -1,7 +1,7 @@
 /* Candidate lists: every pair of features of a and b that could touch before the relative motion
  * has covered `skin`. Each goes to sleep with the path at which it must be looked at first;
  * features that are awake already stay so with their memory. The list holds until the path reaches
- * list_end.
+ * list.end.
  *
  * Points are found through both trees and the closest-point query, edges through both edge trees,
  * in the frame of b; edges that face away from each other are left out. */
@@ -53,7 +53,7 @@ static bool is_awake(const listing *l, uint32_t kind, uint32_t a, uint32_t b) {
 
 static void put_to_sleep(listing *l, scree_item_kind kind, uint32_t a, uint32_t b, double gap) {
   if (gap > l->skin || is_awake(l, kind, a, b)) return;
-  scree_sleeper sleeper = {l->pair->path + gap, a, b, kind};
+  scree_sleeper sleeper = {l->pair->list.path + gap, a, b, kind};
   if (!SCREE_PUSH(&l->pair->neighbours->sleeping, sleeper)) l->failed = true;
 }
 
@@ -70,7 +70,7 @@ static void list_wall_points(listing *l) {
       side = scree_wall_first_side(wall, p, l->relative->position,
                                    scree_pair_clearance(l->pair, l->a, i));
     double d = scree_wall_distance(wall, p, side, &closest, &normal);
-    put_to_sleep(l, SCREE_ITEM_POINT_WALL, i, 0, d - l->a->point_radii[i] - l->pair->smoothing);
+    put_to_sleep(l, SCREE_ITEM_POINT_WALL, i, 0, d - l->a->point_radii[i] - l->pair->law.smoothing);
   }
 }
 
@@ -122,7 +122,7 @@ typedef struct point_listing {
 static void list_point(const point_listing *pl, uint32_t i, const front *near) {
   listing *l = pl->list;
   vec3 p = vec3_add(mat3_mul_vec(&pl->rotation, pl->from->points[i]), pl->shift);
-  double touch = pl->from->point_radii[i] + pl->to->measures.rounding + l->pair->smoothing;
+  double touch = pl->from->point_radii[i] + pl->to->measures.rounding + l->pair->law.smoothing;
   uint32_t face;
   double distance = scree_nearest_face(pl->to, near->nodes, near->count, p, l->skin + touch, &face);
   l->scratch->closest_queries++;
@@ -159,7 +159,7 @@ static void list_surface_points(listing *l, const scree_particle *from, const sc
     pl.rotation = mat3_transpose(&r->rotation);
     pl.shift = vec3_neg(mat3_mul_vec(&pl.rotation, r->position));
   }
-  pl.far = l->skin + l->pair->smoothing + to->measures.rounding; /* boxes hold the radii */
+  pl.far = l->skin + l->pair->law.smoothing + to->measures.rounding; /* boxes hold the radii */
   const front whole = {.nodes = {0}, .count = 1};
   if (from->point_count) list_points_below(&pl, 0, &whole);
 }
@@ -170,7 +170,7 @@ static void list_sphere_pairs(listing *l) {
     for (uint32_t j = 0; j < l->b->point_count; j++)
       put_to_sleep(l, SCREE_ITEM_POINT_POINT, i, j,
                    vec3_distance(p, l->b->points[j]) - l->a->point_radii[i] - l->b->point_radii[j] -
-                       l->pair->smoothing);
+                       l->pair->law.smoothing);
   }
 }
 
@@ -181,7 +181,7 @@ static void list_edge(listing *l, uint32_t i, const front *above) {
   const mat3 *r = &l->relative->rotation;
   vec3 p0 = into_b(l, ea->start), p1 = into_b(l, ea->end), along = mat3_mul_vec(r, ea->along);
   scree_cone cone = scree_cone_opposite(&ea->normals, r);
-  double touch = l->pair->reach + l->pair->smoothing;
+  double touch = l->pair->law.reach + l->pair->law.smoothing;
   sieve s = {&l->b->edge_tree, scree_box_grown(scree_box_of(p0, p1), l->skin + touch), &cone};
   uint32_t stack[FRONT_SIZE + SCREE_TREE_STACK];
   int depth = 0;
@@ -214,7 +214,7 @@ static void list_edges_below(listing *l, uint32_t index, const front *above) {
   const scree_frame *r = l->relative;
   scree_box box = scree_box_moved(&node->box, &r->rotation, r->position);
   scree_cone cone = scree_cone_opposite(&tree->cones[index], &r->rotation);
-  double far = l->skin + l->pair->reach + l->pair->smoothing;
+  double far = l->skin + l->pair->law.reach + l->pair->law.smoothing;
   sieve s = {&l->b->edge_tree, scree_box_grown(box, far), &cone};
   front here;
   refine(&s, above, &here);
@@ -245,7 +245,7 @@ static double least_distance(const listing *l) {
   double gap = box_gap(&moved, &l->b->box);
   mat3 back = mat3_transpose(&r->rotation);
   moved = scree_box_moved(&l->b->box, &back, vec3_neg(mat3_mul_vec(&back, r->position)));
-  return fmax(gap, box_gap(&moved, &l->a->box)) - l->pair->smoothing;
+  return fmax(gap, box_gap(&moved, &l->a->box)) - l->pair->law.smoothing;
 }
 
 /* A ball around the part of either box that is within the skin of the other box, and room to move
@@ -254,7 +254,7 @@ static double least_distance(const listing *l) {
 static void set_region(listing *l) {
   const scree_frame *r = l->relative;
   scree_pair *pair = l->pair;
-  double far = l->skin + pair->smoothing, best = INFINITY;
+  double far = l->skin + pair->law.smoothing, best = INFINITY;
   mat3 back = mat3_transpose(&r->rotation);
   vec3 shift = vec3_neg(mat3_mul_vec(&back, r->position));
   for (int of_a = 0; of_a < 2; of_a++) {
@@ -266,11 +266,11 @@ static void set_region(listing *l) {
     double radius = 0.5 * vec3_norm(vec3_add(side, (vec3){2 * far, 2 * far, 2 * far})) + l->skin;
     if (radius >= best) continue;
     best = radius;
-    pair->region = of_a ? into_b(l, centre) : centre;
+    pair->list.region = of_a ? into_b(l, centre) : centre;
   }
   best = fmax(best, l->skin / scree_cone_slack); /* the path grows by radius times angle */
   double smaller = fmin(l->a->measures.bounding_radius, l->b->measures.bounding_radius);
-  pair->region_radius = best < smaller ? best : 0;
+  pair->list.region_radius = best < smaller ? best : 0;
 }
 
 bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_frame *relative,
@@ -283,15 +283,15 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
                .relative = relative,
                .scratch = scratch,
                .skin = scree_pair_skin(world, pair)};
-  l.skin = fmax(l.skin, fmin(fast_steps * pair->travel, fast_skins * l.skin));
+  l.skin = fmax(l.skin, fmin(fast_steps * pair->list.travel, fast_skins * l.skin));
   l.skin = fmin(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
   mark_awake(&l);
   pair->neighbours->sleeping.count = 0;
   bool analytic = pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b]);
   double apart = analytic ? 0 : least_distance(&l);
-  pair->region_radius = 0;
+  pair->list.region_radius = 0;
   if (apart > l.skin) {
-    pair->list_end = pair->path + apart;
+    pair->list.end = pair->list.path + apart;
     return true;
   }
   if (!pair->wall) set_region(&l);
@@ -302,7 +302,7 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
     list_edges(&l);
     if (!pair->wall && !l.a->face_count && !l.b->face_count) list_sphere_pairs(&l);
   }
-  pair->list_end = pair->path + l.skin;
+  pair->list.end = pair->list.path + l.skin;
   scratch->list_builds++;
   scratch->candidate_seconds += scree_now() - started;
   return !l.failed;

@@ -58,8 +58,8 @@ static quat turned(const scree_world *world, const scree_pair *pair) {
 /* A ball in the frame of b around all points whose motion counts: the list's region, else the
  * smaller body and a little beyond, with a at `at`. */
 static double moving_ball(const scree_world *world, const scree_pair *pair, vec3 at, vec3 *centre) {
-  *centre = pair->region;
-  if (pair->region_radius > 0) return pair->region_radius;
+  *centre = pair->list.region;
+  if (pair->list.region_radius > 0) return pair->list.region_radius;
   *centre = scree_pair_smaller_is_a(world, pair) ? at : (vec3){0, 0, 0};
   return scree_pair_radius(world, pair);
 }
@@ -102,8 +102,8 @@ static double relate(const scree_world *world, const scree_pair *pair,
 }
 
 static bool wake_items(scree_pair *pair) {
-  double due = pair->path + 2 * pair->travel + scree_pair_claim(pair), next = INFINITY;
-  if (due < pair->next_item) return true;
+  double due = pair->list.path + 2 * pair->list.travel + scree_pair_claim(pair), next = INFINITY;
+  if (due < pair->list.next_item) return true;
   scree_neighbours *n = pair->neighbours;
   size_t kept = 0;
   for (size_t i = 0; i < n->sleeping.count; i++) {
@@ -119,14 +119,14 @@ static bool wake_items(scree_pair *pair) {
     pair->active.items[pair->active.count++] = item;
   }
   n->sleeping.count = kept;
-  pair->next_item = next;
+  pair->list.next_item = next;
   return true;
 }
 
 /* Evaluates the awake items; those that cannot touch soon go to sleep. */
 static bool visit_items(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                         scree_scratch *scratch) {
-  double nap = least_sleep * pair->travel + scree_pair_claim(pair);
+  double nap = least_sleep * pair->list.travel + scree_pair_claim(pair);
   size_t kept = 0;
   /* asleep items move only after all touches are found: touches point at anchors */
   for (size_t i = 0; i < pair->active.count; i++) {
@@ -143,9 +143,9 @@ static bool settle_items(scree_pair *pair) {
   for (size_t i = 0; i < pair->active.count; i++) {
     const scree_item *item = &pair->active.items[i];
     if (item->gap > 0) {
-      scree_sleeper sleeper = {pair->path + item->gap, item->a, item->b, item->kind};
+      scree_sleeper sleeper = {pair->list.path + item->gap, item->a, item->b, item->kind};
       if (!SCREE_PUSH(&pair->neighbours->sleeping, sleeper)) return false;
-      pair->next_item = fmin(pair->next_item, sleeper.wake);
+      pair->list.next_item = fmin(pair->list.next_item, sleeper.wake);
       continue;
     }
     if (kept != i) {
@@ -163,7 +163,7 @@ static void fall_asleep(const scree_world *world, scree_pair *pair, const scree_
   if (pair->wall && vec3_norm2(world->walls.items[pair->b].frame.spin) > 0) return;
   scree_neighbours *n = pair->neighbours;
   n->asleep_since = bodies_path(world, pair);
-  n->wake = n->asleep_since + fmin(pair->next_item, pair->list_end) - pair->path;
+  n->wake = n->asleep_since + fmin(pair->list.next_item, pair->list.end) - pair->list.path;
   n->asleep_at = relative->position;
   n->asleep_turned = turned(world, pair);
   pair->asleep = true;
@@ -178,28 +178,28 @@ static void clear_results(scree_pair *pair) {
 /* What goes lost when the hysteretic spring is loaded beyond its largest overlap so far: it takes
  * K m^2/2 and gives back e^2 of that. */
 static double hysteresis_loss(const scree_pair *pair, double before) {
-  double e2 = pair->restitution * pair->restitution;
-  return 0.5 * pair->stiffness * (1 - e2) * (pair->largest * pair->largest - before * before);
+  double e2 = pair->law.restitution * pair->law.restitution;
+  return 0.5 * pair->law.stiffness * (1 - e2) * (pair->largest * pair->largest - before * before);
 }
 
 /* Whether a point can pass a wall of the other body between two steps: then neither sees it. A
  * sheet knows the side of every point, and a plane has no other. */
 static bool passes_unseen(const scree_world *world, const scree_pair *pair) {
   if (pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b])) return false;
-  return pair->active.count > 0 && !(pair->travel <= 2 * pair->thin);
+  return pair->active.count > 0 && !(pair->list.travel <= 2 * pair->law.thin);
 }
 
 void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                          scree_pair_sums *sums) {
   if (pair->touching) add_later_work(world, pair, sums);
   scree_frame relative;
-  pair->travel = relate(world, pair, &relative) * world->time_step;
-  pair->path += pair->asleep ? slept_path(world, pair, &relative) : pair->travel;
+  pair->list.travel = relate(world, pair, &relative) * world->time_step;
+  pair->list.path += pair->asleep ? slept_path(world, pair, &relative) : pair->list.travel;
   pair->asleep = false;
   bool good = true;
-  if (pair->path + 2 * pair->travel >= pair->list_end) {
+  if (pair->list.path + 2 * pair->list.travel >= pair->list.end) {
     good = scree_pair_list(world, pair, &relative, scratch);
-    pair->next_item = -INFINITY;
+    pair->list.next_item = -INFINITY;
   }
   good = good && wake_items(pair);
   if (passes_unseen(world, pair) && !sums->too_fast) sums->too_fast = pair->neighbours;
@@ -218,5 +218,6 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   if (pair->largest > largest) sums->dashpot -= hysteresis_loss(pair, largest);
   if (pair->wall) sums->wall_work += half * wall_power(pair, scree_pair_frame_b(world, pair));
   if (!(pair->overlap <= sums->largest_overlap)) sums->largest_overlap = pair->overlap;
-  if (!(pair->overlap <= pair->limit) && !sums->beyond_limit) sums->beyond_limit = pair->neighbours;
+  if (!(pair->overlap <= pair->law.limit) && !sums->beyond_limit)
+    sums->beyond_limit = pair->neighbours;
 }

@@ -78,7 +78,7 @@ static bool find_crossing(const scree_world *world, const scree_pair *pair, cons
   x->on_b = vec3_mad(x->eb->start, x->ub, t);
   x->offset = vec3_sub(x->on_a, x->on_b);
   x->distance = vec3_norm(x->offset);
-  bool heard = x->distance < pair->reach + pair->smoothing + scree_pair_claim(pair);
+  bool heard = x->distance < pair->law.reach + pair->law.smoothing + scree_pair_claim(pair);
   if (!(heard || item->inside)) return false;
   vec3 across = vec3_cross(x->ua, x->ub);
   x->sine = vec3_norm(across);
@@ -251,7 +251,7 @@ static void keep_reference(scree_item *item, vec3 normal) {
 
 /* No crossing: the edges' points speak for themselves. */
 static void leave_to_points(const scree_pair *pair, scree_item *item, const crossing *x) {
-  bool apart = x->distance > 0.5 * pair->reach;
+  bool apart = x->distance > 0.5 * pair->law.reach;
   if (apart && !pair->touching) item->inside = false;
   if (apart && !item->inside) keep_reference(item, vec3_scale(x->offset, 1 / x->distance));
 }
@@ -274,8 +274,8 @@ static bool is_clear(const scree_world *world, const scree_pair *pair, const scr
 /* What may count at once of a crossing that begins to: all where it begins at an end, where
  * nothing is left of it, or where the pair is new. */
 static double first_overlap(const scree_pair *pair, const scree_item *item, const crossing *x) {
-  bool at_end =
-      item->crossing == SCREE_CROSSING_NONE && x->end <= end_share * pair->reach + 2 * pair->travel;
+  bool at_end = item->crossing == SCREE_CROSSING_NONE &&
+                x->end <= end_share * pair->law.reach + 2 * pair->list.travel;
   return at_end || scree_pair_is_new(pair) ? INFINITY : 0;
 }
 
@@ -286,7 +286,7 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
   if (!item->has_reference) return false; /* not armed */
   c->normal = way_out(item, x, &c->weight);
   c->distance = vec3_dot(x->offset, c->normal);
-  bool apart = c->distance >= -2 * pair->travel,
+  bool apart = c->distance >= -2 * pair->list.travel,
        armed = item->inside || behind ||
                (apart && vec3_dot(c->normal, item->reference) >= -crossing_cosines[0]);
   if (!armed && is_clear(world, pair, item, relative, x, c)) {
@@ -294,18 +294,18 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
     armed = true;
   }
   /* one that counted is followed: of sharp edges the closest points need not lie in the others */
-  bool stale = item->crossing != SCREE_CROSSING_COUNTS && c->distance < -pair->thin &&
+  bool stale = item->crossing != SCREE_CROSSING_COUNTS && c->distance < -pair->law.thin &&
                !is_crossed(world, pair, relative, x);
-  item->inside = armed && !stale && c->distance < 0.5 * pair->reach;
+  item->inside = armed && !stale && c->distance < 0.5 * pair->law.reach;
   if (!apart && !scree_pair_is_new(pair)) c->first = 0;
   if (behind) /* what changes nothing */
-    c->first = fmax(c->first, pair->overlap * (1 - world->options.sharing) - pair->smoothing);
+    c->first = fmax(c->first, pair->overlap * (1 - world->options.sharing) - pair->law.smoothing);
   return armed && !stale;
 }
 
 /* Whether edges passed each other since the last step, over more than half the roundings. */
 static bool has_leapt(const scree_pair *pair, const scree_item *item, const edge_contact *c) {
-  return item->has_reference && c->distance < pair->travel &&
+  return item->has_reference && c->distance < pair->list.travel &&
          vec3_dot(c->normal, item->reference) < 0;
 }
 
@@ -317,7 +317,8 @@ static bool find_contact(const scree_world *world, const scree_pair *pair, scree
   if (item->crossing != SCREE_CROSSING_COUNTS) c->first = first_overlap(pair, item, x);
   c->weight = scree_smooth_step(parallel_sines[0], parallel_sines[1], x->sine) * facing_share(x);
   bool behind = !item->inside && is_met_from_behind(world, pair, item, relative, x),
-       deep = item->inside || behind || x->distance < 0.5 * pair->reach || has_leapt(pair, item, c);
+       deep = item->inside || behind || x->distance < 0.5 * pair->law.reach ||
+              has_leapt(pair, item, c);
   if (deep && !find_deep_contact(world, pair, item, relative, x, behind, c)) return false;
   if (!item->inside) keep_reference(item, c->normal);
   double out_a = -vec3_dot(x->axis_a, c->normal), out_b = vec3_dot(x->eb->normals.axis, c->normal);
@@ -331,7 +332,7 @@ static bool find_contact(const scree_world *world, const scree_pair *pair, scree
  */
 static void hold_back(const scree_pair *pair, scree_item *item, scree_touch *touch, double first) {
   double overlap = fmax(touch->overlap, 0);
-  bool outside = overlap <= 2 * pair->travel; /* a step ago */
+  bool outside = overlap <= 2 * pair->list.travel; /* a step ago */
   if (item->crossing != SCREE_CROSSING_COUNTS) item->held = outside ? 0 : fmax(overlap - first, 0);
   item->held = fmin(item->held, overlap);
   touch->overlap -= item->held;
@@ -342,7 +343,7 @@ double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree
   crossing x;
   edge_contact c;
   bool crosses = find_crossing(world, pair, item, relative, &x);
-  double far = x.distance - pair->reach - pair->smoothing;
+  double far = x.distance - pair->law.reach - pair->law.smoothing;
   bool heard = far < scree_pair_claim(pair) || item->inside;
   if (!heard)
     keep_reference(item, vec3_scale(x.offset, 1 / x.distance));
@@ -354,13 +355,13 @@ double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree
     return heard ? fmin(far, 0) : far;
   }
   double rounding = world->bodies.particle[pair->a]->measures.rounding;
-  const double values[4] = {c.distance, rounding, pair->reach - rounding, c.weight};
+  const double values[4] = {c.distance, rounding, pair->law.reach - rounding, c.weight};
   size_t touches = scratch->touches.count;
   double gap = scree_add_touch(scratch, pair, x.on_b, c.normal, values, &item->anchor);
   if (scratch->touches.count > touches) {
     scree_touch *touch = &scratch->touches.items[touches];
-    fade(touch, &x, pair->reach);
-    taper(touch, relative, &x, pair->reach);
+    fade(touch, &x, pair->law.reach);
+    taper(touch, relative, &x, pair->law.reach);
     hold_back(pair, item, touch, c.first);
   } else {
     item->held = 0;

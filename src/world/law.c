@@ -106,22 +106,22 @@ static bool find_overlap(const scree_world *world, const scree_pair *pair,
                          const scree_touch_list *touches, scree_smooth_maximum *result) {
   if (touches->count == 1 && touches->items[0].weight == 1) {
     if (!(touches->items[0].overlap > 0)) return false;
-    solve_one(&touches->items[0], pair->smoothing, world->options.sharing, result);
+    solve_one(&touches->items[0], pair->law.smoothing, world->options.sharing, result);
     return true;
   }
-  return scree_solve_smooth_maximum(touches->items, touches->count, pair->smoothing,
+  return scree_solve_smooth_maximum(touches->items, touches->count, pair->law.smoothing,
                                     world->options.sharing, result);
 }
 
 /* The spring's force at overlap m, and the energy that comes back from it. */
 static double spring_force(const scree_world *world, scree_pair *pair, double m) {
   if (world->options.law == SCREE_LAW_LINEAR) {
-    pair->elastic = 0.5 * pair->stiffness * m * m;
-    return pair->stiffness * m;
+    pair->elastic = 0.5 * pair->law.stiffness * m * m;
+    return pair->law.stiffness * m;
   }
-  double e2 = pair->restitution * pair->restitution, unloading = pair->stiffness / e2;
+  double e2 = pair->law.restitution * pair->law.restitution, unloading = pair->law.stiffness / e2;
   pair->largest = fmax(pair->largest, m);
-  double force = fmax(0, fmin(pair->stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
+  double force = fmax(0, fmin(pair->law.stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
   pair->elastic = 0.5 * force * force / unloading;
   return force;
 }
@@ -129,7 +129,7 @@ static double spring_force(const scree_world *world, scree_pair *pair, double m)
 /* How far the contact is no impact any more, from 0 to 1: the tangential dashpot. An oblique impact
  * follows the spring and slider alone; what rests on each other is calmed. */
 static double lasting(const scree_pair *pair) {
-  double age = pair->age / pair->contact_time;
+  double age = pair->age / pair->law.contact_time;
   return age < 1.5 ? 0 : age > 3 ? 1 : (age - 1.5) / 1.5;
 }
 
@@ -140,8 +140,8 @@ typedef struct slider {
 
 static slider make_slider(const scree_world *world, const scree_pair *pair) {
   double ratio = world->options.tangential_ratio;
-  return (slider){pair->stiffness * ratio, lasting(pair) * pair->damping * sqrt(ratio),
-                  pair->friction, world->time_step};
+  return (slider){pair->law.stiffness * ratio, lasting(pair) * pair->law.damping * sqrt(ratio),
+                  pair->law.friction, world->time_step};
 }
 
 /* Stretches the spring by the last drift `v` along the surface, and answers the tangential force.
@@ -190,7 +190,7 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
   /* n.(v + spin x at) of the dashpots' moment */
   double rate = -(vec3_dot(relative->velocity_now, n) + vec3_dot(relative->spin_now, arm));
   double share = touch->share * touch->lever, elastic = share * spring;
-  double normal = elastic + share * pair->damping * touch->lever * rate;
+  double normal = elastic + share * pair->law.damping * touch->lever * rate;
   if (!(normal > 0)) normal = 0;
   double dashpot = normal - elastic;
   vec3 along = slide(law, touch->anchor, touch->share, n, v, normal, energy);
@@ -211,8 +211,8 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
  * time)^2 m.
  */
 static double most_fading(const scree_world *world, const scree_pair *pair) {
-  double turn = 3.14159265358979323846 * world->time_step / pair->contact_time;
-  return fmax(1, resolved_share * pair->reach / (pair->overlap * turn * turn));
+  double turn = 3.14159265358979323846 * world->time_step / pair->law.contact_time;
+  return fmax(1, resolved_share * pair->law.reach / (pair->overlap * turn * turn));
 }
 
 /* The weight's part of the slope, with dm/dw = (o - t)^2/(2 (S (1 - kappa) + kappa l)). */

@@ -32,17 +32,17 @@ static void set_up(scree_world *world, scree_neighbours *n) {
     thin = fmin(thin, scree_thin_overlap(b));
   }
   const scree_material_pair *contact = &world->contacts[material_a][material_b];
-  n->stiffness = scree_pair_stiffness(world, material_a, material_b, size);
-  n->damping = world->options.law == SCREE_LAW_LINEAR
-                   ? 2 * contact->damping_ratio * sqrt(mass * n->stiffness)
-                   : 0;
-  n->contact_time = 3.14159265358979323846 * sqrt(mass / n->stiffness);
-  n->friction = contact->friction;
-  n->restitution = contact->restitution;
-  n->smoothing = world->options.smoothing * size;
-  n->limit = world->options.overlap_limit * size;
-  n->thin = fmin(n->limit, thin);
-  n->reach =
+  n->law.stiffness = scree_pair_stiffness(world, material_a, material_b, size);
+  n->law.damping = world->options.law == SCREE_LAW_LINEAR
+                       ? 2 * contact->damping_ratio * sqrt(mass * n->law.stiffness)
+                       : 0;
+  n->law.contact_time = 3.14159265358979323846 * sqrt(mass / n->law.stiffness);
+  n->law.friction = contact->friction;
+  n->law.restitution = contact->restitution;
+  n->law.smoothing = world->options.smoothing * size;
+  n->law.limit = world->options.overlap_limit * size;
+  n->law.thin = fmin(n->law.limit, thin);
+  n->law.reach =
       (a->face_count ? a->measures.rounding : 0) + (b && b->face_count ? b->measures.rounding : 0);
 }
 
@@ -57,9 +57,9 @@ static void forget(scree_world *world, scree_neighbours *n) {
   n->pair = NULL;
   n->asleep = false;
   n->sleeping.count = 0;
-  n->travel = n->path = n->region_radius = n->wake = n->asleep_since = 0;
-  n->next_item = n->list_end = -INFINITY;
-  n->region = n->asleep_at = (vec3){0};
+  n->list = (scree_list_state){.next_item = -INFINITY, .end = -INFINITY};
+  n->wake = n->asleep_since = 0;
+  n->asleep_at = (vec3){0};
   n->asleep_turned = (quat){0};
 }
 
@@ -137,19 +137,6 @@ static scree_pair *take_pair(scree_world *world) {
   return world->spare_pairs.items[--world->spare_pairs.count];
 }
 
-void scree_pair_adopt_law(scree_pair *p) {
-  const scree_neighbours *n = p->neighbours;
-  p->stiffness = n->stiffness;
-  p->damping = n->damping;
-  p->friction = n->friction;
-  p->restitution = n->restitution;
-  p->smoothing = n->smoothing;
-  p->reach = n->reach;
-  p->limit = n->limit;
-  p->thin = n->thin;
-  p->contact_time = n->contact_time;
-}
-
 scree_pair *scree_pair_wake(scree_scratch *scratch, scree_neighbours *n) {
   scree_pair *p = &scratch->pair;
   p->own_further = scratch->further;
@@ -163,15 +150,10 @@ scree_pair *scree_pair_wake(scree_scratch *scratch, scree_neighbours *n) {
   p->contact_count = 0;
   p->wrench = (scree_wrench){0};
   p->dashpot = p->tangential = (scree_kept_load){0};
-  p->travel = n->travel;
-  p->path = n->path;
-  p->next_item = n->next_item;
-  p->list_end = n->list_end;
+  p->list = n->list;
+  p->law = n->law;
   p->age = p->overlap = p->largest = p->elastic = p->tangential_elastic = 0;
   p->active.count = 0;
-  p->region = n->region;
-  p->region_radius = n->region_radius;
-  scree_pair_adopt_law(p);
   return p;
 }
 
@@ -238,20 +220,13 @@ void scree_pairs_tidy(scree_world *world) {
   if (astray > count / 8 + 1) sort_pairs(world);
 }
 
-static void go_back(scree_neighbours *n, const scree_pair *pair) {
-  n->asleep = pair->asleep;
-  n->travel = pair->travel;
-  n->path = pair->path;
-  n->next_item = pair->next_item;
-  n->list_end = pair->list_end;
-  n->region = pair->region;
-  n->region_radius = pair->region_radius;
-}
-
 bool scree_pair_settle(scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   scree_neighbours *n = pair->neighbours;
   bool stays = pair->active.count > 0;
-  if (!stays) go_back(n, pair);
+  if (!stays) {
+    n->asleep = pair->asleep;
+    n->list = pair->list;
+  }
   if (stays != (pair == &scratch->pair)) return true;
   scree_enter_alone();
   if (stays)
@@ -270,7 +245,7 @@ void scree_neighbours_set_up(scree_world *world) {
   for (size_t k = 0; k < world->neighbours.count; k++) {
     scree_neighbours *n = world->neighbours.items[k];
     set_up(world, n);
-    if (n->pair) scree_pair_adopt_law(n->pair);
+    if (n->pair) n->pair->law = n->law;
   }
 }
 

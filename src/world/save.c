@@ -189,11 +189,12 @@ static void code_pair_name(scree_codec *c, scree_neighbours *n) {
 static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) {
   scree_code_bool(c, &p->asleep);
   scree_code_bool(c, &p->touching);
-  double *reals[] = {&n->stiffness,    &n->damping,  &n->friction, &n->restitution,
-                     &n->smoothing,    &n->reach,    &n->limit,    &n->thin,
-                     &p->travel,       &p->path,     &n->wake,     &n->asleep_since,
-                     &p->next_item,    &p->list_end, &p->elastic,  &p->tangential_elastic,
-                     &n->contact_time, &p->age,      &p->overlap,  &p->largest};
+  double *reals[] = {
+      &n->law.stiffness,    &n->law.damping, &n->law.friction, &n->law.restitution,
+      &n->law.smoothing,    &n->law.reach,   &n->law.limit,    &n->law.thin,
+      &p->list.travel,      &p->list.path,   &n->wake,         &n->asleep_since,
+      &p->list.next_item,   &p->list.end,    &p->elastic,      &p->tangential_elastic,
+      &n->law.contact_time, &p->age,         &p->overlap,      &p->largest};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   code_wrench(c, &p->wrench);
   code_load(c, &p->dashpot);
@@ -205,8 +206,8 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   scree_code_count(c, &n->sleeping.count, 20);
   scree_code_vec3(c, &n->asleep_at);
   code_quat(c, &n->asleep_turned);
-  scree_code_vec3(c, &p->region);
-  scree_code_real(c, &p->region_radius);
+  scree_code_vec3(c, &p->list.region);
+  scree_code_real(c, &p->list.region_radius);
 }
 
 /* Body i as it lies in the arrays. */
@@ -638,7 +639,7 @@ static void load_pairs(loader *l) {
     scree_pair *pair = scree_pair_wake(&l->scratch, n);
     code_pair_state(&l->codec, pair, n);
     load_items(l, pair);
-    scree_pair_adopt_law(pair);
+    pair->law = pair->neighbours->law;
     if (!scree_pair_settle(world, pair, &l->scratch)) l->codec.out_of_memory = true;
   }
 }

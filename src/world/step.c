@@ -39,7 +39,7 @@ SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
 
 /* Whether it is likely that items of the pair wake in the coming step. */
 static bool may_wake_items(const scree_pair *pair) {
-  return pair->path + 4 * pair->travel >= pair->next_item;
+  return pair->list.path + 4 * pair->list.travel >= pair->list.next_item;
 }
 
 /* The items of a pair that has come, wherever they are. */
@@ -121,7 +121,7 @@ static scree_status describe_overlap(scree_world *world, const scree_neighbours 
   return scree_fail(&world->failure, SCREE_DIVERGED,
                     "world: step %llu, body %u overlaps %s %u by %.3g m; at most %.3g m",
                     (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,
-                    n->pair->overlap, n->limit);
+                    n->pair->overlap, n->law.limit);
 }
 
 static scree_status describe_speed(scree_world *world, const scree_neighbours *n) {
@@ -129,8 +129,8 @@ static scree_status describe_speed(scree_world *world, const scree_neighbours *n
       &world->failure, SCREE_DIVERGED,
       "world: step %llu, body %u moved by %.3g m past %s %u in one step of %.3g s; at "
       "most %.3g m (the thinnest wall of the two, or twice the overlap limit)",
-      (unsigned long long)world->step_count, n->a, n->pair ? n->pair->travel : n->travel,
-      n->wall ? "wall" : "body", n->b, world->time_step, 2 * n->thin);
+      (unsigned long long)world->step_count, n->a, n->pair ? n->pair->list.travel : n->list.travel,
+      n->wall ? "wall" : "body", n->b, world->time_step, 2 * n->law.thin);
 }
 
 static scree_status combine_sums(scree_world *world, size_t blocks) {

@@ -33,7 +33,7 @@ typedef struct surface_contact {
 double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
                        const double values[4], scree_anchor *anchor) {
   double distance = values[0], above = values[1], below = values[2], weight = values[3];
-  double overlap = above + below - distance, gap = -overlap - pair->smoothing;
+  double overlap = above + below - distance, gap = -overlap - pair->law.smoothing;
   if (gap >= 0 || !(weight > 0)) {
     anchor->share = 0;
     return gap;
@@ -131,7 +131,7 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
 static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
                          const scree_pair *pair, bool pierced, bool outside,
                          const surface_contact *closest, surface_contact *contact) {
-  double half = 0.5 * pair->reach, reach = 1.5 * pair->limit + pair->reach;
+  double half = 0.5 * pair->law.reach, reach = 1.5 * pair->law.limit + pair->law.reach;
   if (!find_way_out(surface, p, item->reference, reach, pierced, contact)) return false;
   vec3 offset = vec3_sub(p, contact->closest);
   double height = vec3_dot(offset, contact->normal), distance = vec3_norm(offset);
@@ -204,7 +204,7 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   bool outside = vec3_dot(offset, outward) >= 0;
   if (!item->has_reference && !outside && surface->measures.volume > 0)
     outside = !scree_is_inside(surface, p); /* a fold may lie: ask the whole surface */
-  bool deep = !outside || d < 0.5 * pair->reach;
+  bool deep = !outside || d < 0.5 * pair->law.reach;
   /* out on the other side of a wall that is thinner than the overlap: held while it is behind it */
   bool pierced = !deep && item->inside && vec3_dot(outward, item->reference) < 0;
   contacts[0].weight = contacts[0].lever = 1;
@@ -215,7 +215,7 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
       deep_contact(surface, p, item, pair, pierced, outside, &contacts[0], &out) &&
       (deep || out.weight > 0)) {
     item->inside = !outside || out.weight > 0;
-    if (out.weight < 1) slide_off(p, 0.5 * pair->reach, &contacts[0], &out);
+    if (out.weight < 1) slide_off(p, 0.5 * pair->law.reach, &contacts[0], &out);
     contacts[0] = out;
     return 1;
   }
@@ -269,8 +269,9 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
   vec3 p = from->points[point];
   p = forth ? vec3_add(mat3_mul_vec(&relative->rotation, p), relative->position)
             : mat3_tmul_vec(&relative->rotation, vec3_sub(p, relative->position));
-  if (item->face_count == 0 || pair->path > item->valid) {
-    refresh_faces(surface, p, item, pair->path, fmax(0.25 * pair->reach, 8 * pair->travel));
+  if (item->face_count == 0 || pair->list.path > item->valid) {
+    refresh_faces(surface, p, item, pair->list.path,
+                  fmax(0.25 * pair->law.reach, 8 * pair->list.travel));
     scratch->closest_queries++;
   }
   surface_contact contacts[SCREE_ANCHORS];

@@ -133,6 +133,23 @@ typedef struct scree_item_array {
 /* A pair that is awake. What every step touches comes first, in five cache lines, and the items of
  * most pairs after it. Pairs lie together, apart from what is kept of those asleep: a step comes to
  * one pair of neighbours in five, and each would lie on a page of its own. */
+/* What follows of the two bodies' sizes, masses and materials. */
+typedef struct scree_pair_law {
+  double stiffness, damping, friction; /* K, C, mu */
+  double smoothing, reach, limit;      /* l0; rounding of both meshes; overlap limit */
+  double thin;                         /* the limit, or half the thinnest wall where less */
+  double contact_time;                 /* half period pi sqrt(m/K) */
+  double restitution;                  /* e */
+} scree_pair_law;
+
+/* How far the list of items lasts; the pair has it while awake, its neighbours while asleep. */
+typedef struct scree_list_state {
+  double travel, path;   /* of the relative motion: last step, and sum; upper bounds */
+  double next_item, end; /* on path */
+  vec3 region; /* ball in the frame of b that holds what the list is about, until it ends */
+  double region_radius; /* 0: none */
+} scree_list_state;
+
 typedef struct scree_pair {
   _Alignas(64) uint32_t a;
   uint32_t b;
@@ -140,21 +157,15 @@ typedef struct scree_pair {
   bool asleep; /* no item can touch before the bodies' paths reach neighbours->wake */
   bool touching;
   uint32_t contact_count;
-  scree_wrench wrench;        /* here: the bodies read it with what is above */
-  double travel, path;        /* of the relative motion: last step, and sum; upper bounds */
-  double next_item, list_end; /* on path */
-  double age;                 /* since the touch began */
+  scree_wrench wrench; /* here: the bodies read it with what is above */
+  scree_list_state list;
+  double age; /* since the touch began */
   struct {
     scree_item *items; /* own_items while they are enough */
     size_t count, capacity;
   } active;
-  vec3 region; /* ball in the frame of b that holds what the list is about, until it ends */
-  double region_radius;                  /* 0: none */
-  double overlap;                        /* m */
-  double stiffness, damping, friction;   /* K, C, mu */
-  double smoothing, reach, limit;        /* l0; rounding of both meshes; overlap limit */
-  double thin;                           /* the limit, or half the thinnest wall where less */
-  double contact_time;                   /* half period pi sqrt(m/K) */
+  double overlap; /* m */
+  scree_pair_law law;
   scree_kept_load dashpot, tangential;   /* parts of the wrench, for the ledger */
   double elastic, tangential_elastic;    /* U of all springs, and of the tangential ones */
   scree_item own_items[SCREE_OWN_ITEMS]; /* from here on: not always */
@@ -162,7 +173,6 @@ typedef struct scree_pair {
   scree_further *further; /* of the active items; own_further with own_items */
   scree_further *own_further;
   scree_item_array array; /* kept for when own_items are not enough */
-  double restitution;     /* e */
   double largest;         /* m of this contact (hysteresis) */
 } scree_pair;
 
@@ -173,17 +183,15 @@ struct scree_neighbours {
   bool wall;
   bool asleep;      /* else awake, or new */
   scree_pair *pair; /* while they are awake; its memory counts where both have it */
-  double travel, path, next_item, list_end;
+  scree_list_state list;
   double wake, asleep_since; /* on path[a] + path[b] */
   vec3 asleep_at;            /* a in the frame of b when they fell asleep */
   quat asleep_turned;
-  vec3 region;
-  double region_radius;
   struct {
     scree_sleeper *items;
     size_t count, capacity;
   } sleeping; /* awake or not */
-  double stiffness, damping, friction, restitution, smoothing, reach, limit, thin, contact_time;
+  scree_pair_law law;
 };
 
 /* Both kinds lie together: a step goes through many, and every page counts. */
@@ -382,8 +390,6 @@ void scree_pairs_free(scree_world *world);
 double scree_thin_overlap(const scree_particle *particle);
 /* The worker's own pair as one of neighbours that are asleep or new. */
 scree_pair *scree_pair_wake(scree_scratch *scratch, scree_neighbours *neighbours);
-/* Stiffness, damping and so on of its neighbours. */
-void scree_pair_adopt_law(scree_pair *pair);
 /* After an evaluation: a pair without awake items goes back to its neighbours, the worker's with
  * such gets a place of its own; false when memory is out. */
 bool scree_pair_settle(scree_world *world, scree_pair *pair, scree_scratch *scratch);
@@ -407,24 +413,24 @@ void scree_body_forget(scree_world *world, size_t body);
 
 /* Evaluated for the first time, or since a jump. */
 static inline bool scree_pair_is_new(const scree_pair *p) {
-  return p->path <= p->travel;
+  return p->list.path <= p->list.travel;
 }
 /* How far behind a sheet a point of a new pair may be and still belong to the body's side. */
 static inline double scree_pair_clearance(const scree_pair *p, const scree_particle *a,
                                           uint32_t point) {
-  return a->point_radii[point] + p->smoothing + 0.25 * p->thin;
+  return a->point_radii[point] + p->law.smoothing + 0.25 * p->law.thin;
 }
 
 /* How far apart, beyond the roundings, edges may lie that the last step's overlap can make count:
  * those that come in behind a corner are tapered, and deeper than they are felt. 0 at rest. */
 static inline double scree_pair_claim(const scree_pair *p) {
-  double beyond = p->overlap - p->reach;
+  double beyond = p->overlap - p->law.reach;
   return beyond > 0 ? 2 * beyond : 0;
 }
 
 /* Reach of the lists of slow pairs, m. */
 static inline double scree_pair_skin(const scree_world *w, const scree_pair *p) {
-  return w->options.skin / w->options.smoothing * p->smoothing;
+  return w->options.skin / w->options.smoothing * p->law.smoothing;
 }
 
 /* The smaller body of a pair, whose motion relative to the other is measured, and a ball around it

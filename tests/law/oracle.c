@@ -170,7 +170,7 @@ static double energy_of_copy(const scree_world *world, const scree_pair *pair,
   scree_scratch scratch = {0};
   scree_pair_sums sums = {0};
   assert_true(scree_copy_pair(pair, &copy));
-  copy.pair.list_end = INFINITY; /* the present list */
+  copy.pair.list.end = INFINITY; /* the present list */
   scree_pair_evaluate(world, &copy.pair, &scratch, &sums);
   scree_free_pair_copy(&copy);
   scree_free(scratch.touches.items);
@@ -268,9 +268,8 @@ static void deep_hits(void **state) {
 static void wake_everything(const scree_world *world, scree_neighbours *n) {
   const scree_particle *a = world->bodies.particle[n->a], *b = world->bodies.particle[n->b];
   size_t count = a->point_count + b->point_count + a->edge_count * b->edge_count, made = 0;
-  double *list_end = n->pair ? &n->pair->list_end : &n->list_end,
-         *next_item = n->pair ? &n->pair->next_item : &n->next_item;
-  if (*list_end < INFINITY) { /* for the first time */
+  scree_list_state *list = n->pair ? &n->pair->list : &n->list;
+  if (list->end < INFINITY) { /* for the first time */
     scree_sleeper *all = scree_resize(n->sleeping.items, count, sizeof *all);
     assert_non_null(all);
     for (uint32_t i = 0; i < a->point_count; i++)
@@ -283,10 +282,10 @@ static void wake_everything(const scree_world *world, scree_neighbours *n) {
     n->sleeping.items = all;
     n->sleeping.count = n->sleeping.capacity = made;
     if (n->pair) n->pair->active.count = 0;
-    *list_end = INFINITY;
+    list->end = INFINITY;
   }
   for (size_t i = 0; i < n->sleeping.count; i++) n->sleeping.items[i].wake = -INFINITY;
-  *next_item = -INFINITY;
+  list->next_item = -INFINITY;
   n->asleep = false;
 }
 
