@@ -8,7 +8,7 @@ run check -q sample:fp-1 $small --seed 2
 run check --json sample:box-12 | grep -E '"(file|format|checksum|unit_m)"'
 run distance sample:box-12 sample:icosphere-2 | cut -d" " -f1-3 | head -1 | cut -c1-30
 run distance --json sample:box-12 sample:box-12 | grep '"file"'
-run repair sample:icosphere-1 -o ball.off | tail -3
+run repair sample:icosphere-1 -o ball.off | tail -4
 run choose sample:icosphere-2 --json | grep -E '"(file|format|checksum|unit_m)"'
 run measure sample:nosuch
 run check sample:fp-1 --noise 0.1mm
