@@ -1,7 +1,7 @@
 /* The shapes of `scree drop`: words to particles. */
 #include "cli/clump.h"
 #include "cli/drop.h"
-#include "cli/input.h"
+#include "cli/surface.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -81,25 +81,16 @@ static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mes
   input.read.unit_m = a->unit;
   input.sample.resolution = a->resolution;
   input.sample.noise = a->noise;
+  scree_repair_report report;
   scree_scan scan;
-  scree_status status = cli_load(shape->name, &input, run->call->progress, &scan, error);
+  scree_status status = cli_load_closed(shape->name, &input, a->no_repair, run->call->progress,
+                                        &scan, &report, error);
   if (status != SCREE_OK) return status;
   describe(shape, &scan);
-  if (cli_is_sample(shape->name, NULL)) { /* made closed and manifold: nothing to check */
-    *mesh = scan.mesh;
-    return SCREE_OK;
-  }
-  scree_repair_options repair = scree_default_repair_options();
-  scree_repair_report report;
-  status = scree_mesh_prepare(&scan.mesh, a->no_repair ? NULL : &repair, run->call->progress,
-                              &scan.mesh, &report, error);
-  if (status != SCREE_OK)
-    scree_scan_free(&scan);
-  else
-    *mesh = scan.mesh;
-  if (status == SCREE_OK && !report.before.usable && !run->call->quiet)
+  *mesh = scan.mesh;
+  if (!report.before.usable && !run->call->quiet)
     fprintf(stderr, "%s: repaired: it was %s\n", shape->name, report.before.verdict);
-  return status;
+  return SCREE_OK;
 }
 
 /* The level asked for; of a large scan, where none is asked for, the one that `choose` chooses. */
@@ -165,7 +156,7 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
     return scree_particle_clump_read(shape->name, run->arguments->unit, &shape->particle, error);
   scree_mesh mesh;
   scree_status status = load(run, shape, &mesh, error);
-  if (status != SCREE_OK) return cli_name_in_error(shape->name, error);
+  if (status != SCREE_OK) return status;
   shape->source_triangles = mesh.triangle_count;
   status = decimate(run, &mesh, error);
   if (status == SCREE_OK) status = scree_particle_from_mesh(&mesh, NULL, &shape->particle, error);

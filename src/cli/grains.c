@@ -1,6 +1,7 @@
 #include "cli/grains.h"
 
 #include "cli/clump.h"
+#include "cli/surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -124,14 +125,11 @@ static scree_status make_levels(const maker *m, size_t shape, const char *word,
 
 static scree_status make_from_scan(const maker *m, size_t shape, const char *word) {
   cli_input_options input = cli_source_options(&m->options->source);
-  scree_repair_options repair = scree_default_repair_options();
   scree_scan scan;
-  scree_status status = cli_load(word, &input, m->progress, &scan, m->error);
-  if (status != SCREE_OK) return cli_name_in_error(word, m->error);
-  if (!cli_is_sample(word, NULL)) /* else made closed and manifold: nothing to check */
-    status = scree_mesh_prepare(&scan.mesh, m->options->no_repair ? NULL : &repair, m->progress,
-                                &scan.mesh, NULL, m->error);
-  if (status == SCREE_OK) status = make_levels(m, shape, word, &scan);
+  scree_status status =
+      cli_load_closed(word, &input, m->options->no_repair, m->progress, &scan, NULL, m->error);
+  if (status != SCREE_OK) return status;
+  status = make_levels(m, shape, word, &scan);
   scree_scan_free(&scan);
   return status == SCREE_OK ? status : cli_name_in_error(word, m->error);
 }

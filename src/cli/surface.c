@@ -3,6 +3,35 @@
 #include <stdlib.h>
 #include <string.h>
 
+scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
+                             const scree_progress *progress, scree_scan *scan,
+                             scree_repair_report *report, scree_error *error) {
+  scree_repair_options repair = scree_default_repair_options();
+  if (report) *report = (scree_repair_report){.before.usable = true};
+  scree_status status = cli_load(word, options, progress, scan, error);
+  if (status == SCREE_OK && !cli_is_sample(word, NULL)) {
+    status = scree_mesh_prepare(&scan->mesh, no_repair ? NULL : &repair, progress, &scan->mesh,
+                                report, error);
+    if (status != SCREE_OK) scree_scan_free(scan);
+  }
+  return status == SCREE_OK ? status : cli_name_in_error(word, error);
+}
+
+scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
+                                 const cli_soundness *how, scree_scan *scan, scree_error *error) {
+  cli_input_options input = cli_source_options(source);
+  scree_repair_report report;
+  char note[1024];
+  const char *word = call->inputs[0];
+  if (how->unchecked) return cli_load(word, &input, call->progress, scan, error);
+  scree_status status =
+      cli_load_closed(word, &input, how->no_repair, call->progress, scan, &report, error);
+  if (status != SCREE_OK) return status;
+  cli_repair_text(&report, note, sizeof note);
+  if (note[0] && !call->quiet) fprintf(stderr, "%s: %s\n", word, note);
+  return SCREE_OK;
+}
+
 void cli_print_check(FILE *stream, const scree_check *check) {
   fprintf(stream, "%10zu triangles\n%10zu vertices\n%10zu shells\n", check->triangle_count,
           check->vertex_count, check->shell_count);

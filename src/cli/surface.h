@@ -1,8 +1,37 @@
-/* What check and repair say about a surface. */
+/* Surfaces that are checked and repaired before use, and what check and repair say about one. */
 #ifndef SCREE_CLI_SURFACE_H
 #define SCREE_CLI_SURFACE_H
 
-#include "scree.h"
+#include "cli/input.h"
+
+/* cli_load, and what is no closed surface is repaired, or with no_repair refused; samples are made
+ * closed and not looked at. Errors name the word. report may be NULL. */
+scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
+                             const scree_progress *progress, scree_scan *scan,
+                             scree_repair_report *report, scree_error *error);
+
+/* How a scan comes to be what a decimation may assume, as a member of a verb's struct. */
+typedef struct cli_soundness {
+  bool no_repair, unchecked;
+} cli_soundness;
+
+/* Their rows in the option table of a verb whose struct `type` has the member `soundness`. */
+#define CLI_SOUNDNESS_OPTIONS(type)                                                                \
+  {"no-repair", 0,                                                                                 \
+   CLI_FLAG,    offsetof(type, soundness.no_repair),                                               \
+   NULL,        "Refuse a scan that is no closed surface instead of repairing it.",                \
+   0,           0,                                                                                 \
+   NULL},                                                                                          \
+  {                                                                                                \
+    "unchecked", 0, CLI_FLAG, offsetof(type, soundness.unchecked), NULL,                           \
+        "Take the scan as it is, neither checked nor repaired: an open surface stays open, and "   \
+        "what meets itself may go on doing so.",                                                   \
+        0, 0, NULL                                                                                 \
+  }
+
+/* The call's first input as the options ask; repairs are said on stderr, unless it is quiet. */
+scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
+                                 const cli_soundness *how, scree_scan *scan, scree_error *error);
 
 /* The counts that are not 0, a line each, and the volume. */
 void cli_print_check(FILE *stream, const scree_check *check);

@@ -114,38 +114,18 @@ static bool list_objects(choose_run *run) {
   return true;
 }
 
-/* Errors without a file in them get the object's word in front. */
-static scree_status name_in_error(const choose_object *object, scree_error *error) {
-  if (error->status == SCREE_CANCELLED || strstr(error->message, object->word))
-    return error->status;
-  char message[sizeof error->message];
-  memcpy(message, error->message, sizeof message);
-  snprintf(error->message, sizeof error->message, "%.300s: %.700s", object->word, message);
-  return error->status;
-}
-
 static scree_status load(void *context, size_t index, const scree_progress *progress,
                          scree_mesh *mesh, scree_error *error) {
   const choose_run *run = context;
   choose_object *object = &run->objects[index];
   cli_input_options input = cli_source_options(&run->arguments->source);
+  scree_repair_report report;
   scree_scan scan;
-  scree_status status = cli_load(object->word, &input, progress, &scan, error);
-  if (status != SCREE_OK) return name_in_error(object, error);
+  scree_status status = cli_load_closed(object->word, &input, run->arguments->no_repair, progress,
+                                        &scan, &report, error);
+  if (status != SCREE_OK) return status;
   memcpy(object->format, scan.format, sizeof object->format);
   object->checksum = scan.checksum;
-  if (cli_is_sample(object->word, NULL)) { /* made closed and manifold: nothing to check */
-    *mesh = scan.mesh;
-    return SCREE_OK;
-  }
-  scree_repair_options repair = scree_default_repair_options();
-  scree_repair_report report;
-  status = scree_mesh_prepare(&scan.mesh, run->arguments->no_repair ? NULL : &repair, progress,
-                              &scan.mesh, &report, error);
-  if (status != SCREE_OK) {
-    scree_scan_free(&scan);
-    return name_in_error(object, error);
-  }
   *mesh = scan.mesh;
   cli_repair_text(&report, object->note, sizeof object->note);
   return SCREE_OK;

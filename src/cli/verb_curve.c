@@ -1,11 +1,13 @@
 /* scree curve: the table of levels. */
 #include "cli/input.h"
+#include "cli/surface.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 typedef struct curve_arguments {
   cli_source source;
+  cli_soundness soundness;
   double from, to;
   size_t per_decade, samples;
   int method;
@@ -37,6 +39,7 @@ static const cli_option options[] = {
      "JSON in SI units: one object with the levels in an array.", 0, 0, NULL},
     {"unit", 'u', CLI_UNIT, offsetof(curve_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the file: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
+    CLI_SOUNDNESS_OPTIONS(curve_arguments),
     CLI_SAMPLE_OPTIONS(curve_arguments, source),
 };
 
@@ -164,7 +167,6 @@ static void print_facts(const table *t) {
 
 static int run(const cli_call *call) {
   table t = {.call = call, .arguments = call->options};
-  cli_input_options input = cli_source_options(&t.arguments->source);
   scree_simplify_options settings = scree_default_simplify_options();
   scree_scan scan = {0};
   if (t.arguments->from > t.arguments->to)
@@ -172,7 +174,10 @@ static int run(const cli_call *call) {
   if (t.arguments->csv && t.arguments->json)
     return cli_misuse(call->verb, "--json and --csv exclude each other");
   settings.method = (scree_method)t.arguments->method;
-  scree_status status = cli_load(call->inputs[0], &input, call->progress, &scan, &t.error);
+  if (t.arguments->soundness.no_repair && t.arguments->soundness.unchecked)
+    return cli_misuse(call->verb, "--no-repair and --unchecked exclude each other");
+  scree_status status =
+      cli_load_for_levels(call, &t.arguments->source, &t.arguments->soundness, &scan, &t.error);
   if (status == SCREE_OK)
     status = scree_curve_build(&scan.mesh, &settings, call->progress, &t.curve, &t.error);
   if (status == SCREE_OK && t.arguments->distance) {
@@ -199,7 +204,8 @@ const cli_verb cli_verb_curve = {
     .summary = "print area, volume and errors at every level of decimation",
     .inputs = "FILE|sample:NAME",
     .description =
-        "Decimates a scan once and prints, on a logarithmic grid of the percentage reduction Rp = "
+        "Decimates a scan once (repaired first where it is no closed surface, which is said) and "
+        "prints, on a logarithmic grid of the percentage reduction Rp = "
         "N/Nm: the triangle count, Rp, the area S, the volume V, eps_s = |S - Sm|/Sm, eps_v alike, "
         "the criterion Ip = eps_s + Rp of Katagiri and Koyanaka (2020), and the quadric error.",
     .examples = "scree curve phone.stl\n"

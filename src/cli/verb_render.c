@@ -1,6 +1,7 @@
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/render_refine.h"
+#include "cli/surface.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -225,10 +226,14 @@ static scree_status make_picture(const cli_call *call, const double *rp, size_t 
   const render_arguments *a = call->options;
   if (!allocate_picture(p, call->input_count + level_count)) return fail_memory(error);
   scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < call->input_count; i++)
+  if (level_count) { /* then the input is one */
+    const cli_soundness soundness = {0};
+    status = cli_load_for_levels(call, &a->source, &soundness, &p->scans[0], error);
+    if (status == SCREE_OK) put_cell(p, 0, call->inputs[0], 0);
+    if (status == SCREE_OK) status = make_levels(p, rp, call->inputs[0], call->progress, error);
+  }
+  for (size_t i = 0; status == SCREE_OK && !level_count && i < call->input_count; i++)
     status = read_one(p, i, call->inputs[i], &a->source, call->progress, error);
-  if (status == SCREE_OK && level_count)
-    status = make_levels(p, rp, call->inputs[0], call->progress, error);
   for (size_t i = 0; a->no_captions && i < p->count; i++) p->cells[i].caption = NULL;
   return status;
 }

@@ -14,7 +14,8 @@ typedef struct simplify_arguments {
   double rp, error, density;
   size_t count;
   int method;
-  bool no_repair, unchecked, force;
+  cli_soundness soundness;
+  bool force;
 } simplify_arguments;
 
 static const cli_option options[] = {
@@ -42,12 +43,7 @@ static const cli_option options[] = {
      1e-6, 1e6, NULL},
     {"unit", 'u', CLI_UNIT, offsetof(simplify_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the files: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
-    {"no-repair", 0, CLI_FLAG, offsetof(simplify_arguments, no_repair), NULL,
-     "Refuse a scan that is no closed surface instead of repairing it.", 0, 0, NULL},
-    {"unchecked", 0, CLI_FLAG, offsetof(simplify_arguments, unchecked), NULL,
-     "Take the scan as it is, neither checked nor repaired: an open surface stays open, and what "
-     "meets itself may go on doing so.",
-     0, 0, NULL},
+    CLI_SOUNDNESS_OPTIONS(simplify_arguments),
     CLI_SAMPLE_OPTIONS(simplify_arguments, source),
     {"force", 'f', CLI_FLAG, offsetof(simplify_arguments, force), NULL,
      "Overwrite an existing file.", 0, 0, NULL},
@@ -109,7 +105,7 @@ static scree_status write_level(const cli_call *call, const scree_scan *scan,
   const simplify_arguments *arguments = call->options;
   scree_mesh mesh = {0};
   scree_status status = scree_curve_mesh(curve, index, &mesh, error);
-  if (status == SCREE_OK && !arguments->unchecked)
+  if (status == SCREE_OK && !arguments->soundness.unchecked)
     status = cli_check_rounded(&mesh, arguments->output, arguments->source.unit, NULL,
                                call->progress, error);
   if (status == SCREE_OK)
@@ -130,34 +126,14 @@ static scree_status check_output(const cli_call *call, scree_error *error) {
   return status == SCREE_OK ? cli_check_output(call, path, arguments->force, error) : status;
 }
 
-/* Reads the scan and makes it what a decimation may assume it is. */
-static scree_status load(const cli_call *call, scree_scan *scan, scree_error *error) {
-  const simplify_arguments *arguments = call->options;
-  cli_input_options input = cli_source_options(&arguments->source);
-  scree_repair_options repair = scree_default_repair_options();
-  scree_repair_report report;
-  char note[1024];
-  scree_status status = cli_load(call->inputs[0], &input, call->progress, scan, error);
-  if (status != SCREE_OK || arguments->unchecked) return status;
-  if (cli_is_sample(call->inputs[0], NULL)) return status; /* made closed and manifold */
-  status = scree_mesh_prepare(&scan->mesh, arguments->no_repair ? NULL : &repair, call->progress,
-                              &scan->mesh, &report, error);
-  if (status != SCREE_OK) {
-    scree_scan_free(scan);
-    return cli_name_in_error(call->inputs[0], error);
-  }
-  cli_repair_text(&report, note, sizeof note);
-  if (note[0] && !call->quiet) fprintf(stderr, "%s: %s\n", call->inputs[0], note);
-  return SCREE_OK;
-}
-
 static scree_status simplify(const cli_call *call, scree_error *error) {
   const simplify_arguments *arguments = call->options;
   scree_simplify_options simplify_options = scree_default_simplify_options();
   scree_scan scan = {0};
   scree_curve *curve = NULL;
   scree_status status = check_output(call, error);
-  if (status == SCREE_OK) status = load(call, &scan, error);
+  if (status == SCREE_OK)
+    status = cli_load_for_levels(call, &arguments->source, &arguments->soundness, &scan, error);
   if (status != SCREE_OK) return status;
   size_t target = arguments->count;
   if (arguments->rp > 0) target = scree_choice_target(arguments->rp, scan.mesh.triangle_count);
@@ -188,7 +164,7 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "-r and -n exclude each other");
   if (!(arguments->rp > 0) && arguments->count == 0 && !(arguments->error > 0))
     return cli_misuse(call->verb, "one of -r RP, -n COUNT or -e LENGTH is needed");
-  if (arguments->no_repair && arguments->unchecked)
+  if (arguments->soundness.no_repair && arguments->soundness.unchecked)
     return cli_misuse(call->verb, "--no-repair and --unchecked exclude each other");
   if (arguments->density > 0 && !strcmp(arguments->output, "-"))
     return cli_misuse(call->verb, "--density writes beside a file: -o - has none");

@@ -40,3 +40,9 @@ run simplify thin.off -r 1 --density 1000 -o thin.stl
 run simplify thin.off -r 1 -o thin.ply
 run check -q thin.ply
 ls thin*
+# the table and the picture of levels are of the scan that simplify and choose decimate
+run curve hole.off --from 1 --to 1 2>&1
+run curve hole.off --from 1 --to 1 --unchecked
+run curve lone.off --no-repair 2>&1
+run curve hole.off --no-repair --unchecked 2>&1 | sed -n 2p
+run render hole.off --levels 1 -o levels.png 2>&1
