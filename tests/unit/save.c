@@ -221,6 +221,55 @@ static void refuses_other_versions(void **state) {
   scree_world_free(world);
 }
 
+/* The checksum made to fit again. */
+static void seal(packed forged) {
+  scree_checksum sum = scree_checksum_of(forged.bytes + 40, forged.count - 40);
+  for (size_t k = 0; k < 8; k++) {
+    forged.bytes[24 + k] = (unsigned char)(sum.high >> 8 * k);
+    forged.bytes[32 + k] = (unsigned char)(sum.low >> 8 * k);
+  }
+}
+
+/* A clump has finite centres and positive radii, whatever a file says with a checksum that fits. */
+static void refuses_clumps_that_cannot_be(void **state) {
+  (void)state;
+  const double centres[6] = {0, 0, 0, 0.0123, 0, 0}, radii[2] = {0.01, 0.00712345678};
+  const double wrong[] = {0, -0.007, NAN, INFINITY};
+  scree_world_options options = scree_default_world_options();
+  scree_world *world = NULL;
+  scree_particle *clump = NULL;
+  scree_error error;
+  CHECK_OK(scree_particle_clump(centres, radii, 2, NULL, &clump, &error), error);
+  double centre[3], radius;
+  scree_particle_point(clump, 1, centre, &radius);
+  CHECK_OK(scree_world_create(&options, &world, &error), error);
+  const scree_material plastic = scree_default_material();
+  CHECK_OK(scree_world_add_material(world, &plastic, NULL, &error), error);
+  CHECK_OK(scree_world_add_body(world, clump, 0, NULL, NULL, &error), error);
+  packed p = pack(world);
+  size_t at = 40, found = 0;
+  for (size_t k = 40; k + sizeof radius <= p.count; k++)
+    if (memcmp(p.bytes + k, &radius, sizeof radius) == 0) at = k, found++;
+  assert_int_equal(found, 1);
+  for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+    memcpy(p.bytes + at, &wrong[i], sizeof radius);
+    seal(p);
+    refuse(p.bytes, p.count);
+    if (isfinite(wrong[i])) continue;
+    memcpy(p.bytes + at, &radius, sizeof radius);
+    memcpy(p.bytes + at - sizeof radius, &wrong[i], sizeof radius); /* its centre's z */
+    seal(p);
+    refuse(p.bytes, p.count);
+    memcpy(p.bytes + at - sizeof radius, &centre[2], sizeof radius);
+  }
+  memcpy(p.bytes + at, &radius, sizeof radius);
+  seal(p);
+  scree_world_free(unpack(p));
+  scree_free(p.bytes);
+  scree_world_free(world);
+  scree_particle_free(clump);
+}
+
 /* The length and the checksum made to fit again: forged files must be refused or give a world that
  * can be stepped and freed. */
 static void survives_forgery(void **state) {
@@ -236,11 +285,7 @@ static void survives_forgery(void **state) {
     size_t at = 40 + scree_rng_below(&rng, n % 2 ? 400 : p.count - 40);
     for (size_t k = at; k < at + 4 && k < p.count; k++)
       forged.bytes[k] = n % 3 ? (unsigned char)scree_rng_below(&rng, 256) : 255;
-    scree_checksum sum = scree_checksum_of(forged.bytes + 40, p.count - 40);
-    for (size_t k = 0; k < 8; k++) {
-      forged.bytes[24 + k] = (unsigned char)(sum.high >> 8 * k);
-      forged.bytes[32 + k] = (unsigned char)(sum.low >> 8 * k);
-    }
+    seal(forged);
     scree_error error;
     scree_world *loaded = NULL;
     if (scree_world_unpack(forged.bytes, forged.count, "forged", &loaded, &error) == SCREE_OK)
@@ -320,6 +365,7 @@ int main(void) {
       cmocka_unit_test(keeps_failure),
       cmocka_unit_test(refuses_damage),
       cmocka_unit_test(refuses_other_versions),
+      cmocka_unit_test(refuses_clumps_that_cannot_be),
       cmocka_unit_test(survives_forgery),
       cmocka_unit_test(files),
       cmocka_unit_test(a_failing_run_leaves_its_last_good_state),
