@@ -166,8 +166,10 @@ scree_status cli_make_grains(const char *const *words, size_t count,
                    calloc(all, sizeof *grains->shapes), calloc(2 * all, sizeof *grains->texts)};
   maker m = {options, progress, grains, error};
   scree_status status = SCREE_OK;
-  if (!grains->grains || !grains->shapes || !grains->texts)
-    status = cli_refuse(error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
+  if (!grains->grains || !grains->shapes || !grains->texts) {
+    cli_grains_free(grains);
+    return cli_refuse(error, SCREE_OUT_OF_MEMORY, "shapes", "out of memory");
+  }
   for (size_t i = 0; status == SCREE_OK && i < count; i++)
     status =
         cli_is_clump(words[i]) ? make_from_clump(&m, i, words[i]) : make_from_scan(&m, i, words[i]);

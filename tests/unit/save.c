@@ -247,9 +247,13 @@ static void refuses_clumps_that_cannot_be(void **state) {
   CHECK_OK(scree_world_add_material(world, &plastic, NULL, &error), error);
   CHECK_OK(scree_world_add_body(world, clump, 0, NULL, NULL, &error), error);
   packed p = pack(world);
+  uint64_t bits, here;
   size_t at = 40, found = 0;
-  for (size_t k = 40; k + sizeof radius <= p.count; k++)
-    if (memcmp(p.bytes + k, &radius, sizeof radius) == 0) at = k, found++;
+  memcpy(&bits, &radius, sizeof bits);
+  for (size_t k = 40; k + sizeof here <= p.count; k++) {
+    memcpy(&here, p.bytes + k, sizeof here);
+    if (here == bits) at = k, found++;
+  }
   assert_int_equal(found, 1);
   for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
     memcpy(p.bytes + at, &wrong[i], sizeof radius);
