@@ -7,21 +7,13 @@
 #include "support/shapes.h"
 #include "support/solids.h"
 
-static scree_particle *particle_of(scree_mesh mesh) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
-}
-
 /* A cube at rest 0.5 mm from a paddle, that stands for so long and then turns. */
 static double pushed_by_a_paddle(size_t steps_before) {
   const law_setup setup = law_default();
   const double still[3] = {0, 0, 0}, turning[3] = {0, 0, 5};
   scree_error error;
   scree_world *world = law_world(&setup);
-  scree_particle *cube = particle_of(shape_box(0.02, 0.02, 0.02));
+  scree_particle *cube = shape_particle(shape_box(0.02, 0.02, 0.02));
   scree_mesh mesh = shape_box(0.1, 0.01, 0.04);
   scree_wall paddle = {.kind = SCREE_WALL_MESH, .material = 1, .axis = {0, 0, 1}, .mesh = &mesh};
   scree_body body = scree_default_body();
@@ -61,7 +53,7 @@ static void friction_may_change(void **state) {
   CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
   CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
   law_floor(world);
-  scree_particle *plate = particle_of(shape_box(0.04, 0.04, 0.01));
+  scree_particle *plate = shape_particle(shape_box(0.04, 0.04, 0.01));
   scree_body body = scree_default_body();
   scree_particle_measures m;
   scree_particle_measure(plate, &m);
@@ -169,8 +161,8 @@ static vec3 hit_in_order(scree_particle *const shapes[2], bool swapped, uint64_t
 static void the_order_of_bodies_is_no_part_of_the_law(void **state) {
   (void)state;
   enum { HITS = 30 };
-  scree_particle *shapes[2] = {particle_of(shape_box(0.05, 0.03, 0.02)),
-                               particle_of(solid_hook(0.06, 0.014, 0.02))};
+  scree_particle *shapes[2] = {shape_particle(shape_box(0.05, 0.03, 0.02)),
+                               shape_particle(solid_hook(0.06, 0.014, 0.02))};
   double worst = 0, slowed = 0;
   for (uint64_t k = 0; k < HITS; k++) {
     vec3 spin, spin_swapped, v = hit_in_order(shapes, false, k, &spin),

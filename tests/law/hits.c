@@ -6,26 +6,18 @@
 
 static const double degree = 3.14159265358979323846 / 180;
 
-static scree_particle *particle_of(scree_mesh mesh) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
-}
-
 enum { UNEVEN = 7 };
 
 /* 0: 12 triangles; else a grid of n squares a side, an uneven one for UNEVEN. */
 static scree_particle *box_of(size_t n) {
   const double size[3] = {0.1, 0.05, 0.015};
-  if (n == 0) return particle_of(shape_box(size[0], size[1], size[2]));
+  if (n == 0) return shape_particle(shape_box(size[0], size[1], size[2]));
   scree_mesh mesh = shape_grid_box(size[0], size[1], size[2], n);
   for (size_t i = 0; n == UNEVEN && i < 3 * mesh.vertex_count; i++) {
     double whole = size[i % 3];
     mesh.positions[i] = whole * pow(mesh.positions[i] / whole, 1.2 + 0.4 * (double)(i % 3));
   }
-  return particle_of(mesh);
+  return shape_particle(mesh);
 }
 
 /* The particle's axes ascend in moment: x long, z thin. Two boxes, one above the other. */
@@ -111,7 +103,7 @@ static void decimated_faces_meet_as_one_spring(void **state) {
   CHECK_OK(scree_curve_build(&mesh, &options, NULL, &curve, &error), error);
   for (int i = 0; i < 5; i++) {
     CHECK_OK(scree_curve_mesh(curve, scree_curve_find(curve, counts[i]), &level, &error), error);
-    land_all_ways(particle_of(level));
+    land_all_ways(shape_particle(level));
   }
   scree_curve_free(curve);
   scree_mesh_free(&mesh);
@@ -127,8 +119,8 @@ static void undamped_hits_keep_energy(void **state) {
       {"boxes, N 20", box_of(0), 20, 0.05},
       {"boxes of 300 triangles, N 20", box_of(5), 20, 0.05},
       {"boxes, N 40", box_of(0), 40, 0.02},
-      {"icospheres of 320, N 20", particle_of(shape_icosphere(0.025, 2)), 20, 0.05},
-      {"tori of 400, N 20", particle_of(shape_torus(0.03, 0.01, 20, 10)), 20, 0.05},
+      {"icospheres of 320, N 20", shape_particle(shape_icosphere(0.025, 2)), 20, 0.05},
+      {"tori of 400, N 20", shape_particle(shape_torus(0.03, 0.01, 20, 10)), 20, 0.05},
   };
   for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
     double mean = 0, worst = 0;

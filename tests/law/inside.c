@@ -98,14 +98,19 @@ typedef struct tally {
   double worst;                      /* of those that keep the ledger */
 } tally;
 
-static void wander(scree_particle *particle, uint64_t number, tally *t) {
-  scree_rng rng = {.seed = 11, .stream = number};
-  scree_error error;
+/* Nothing is lost in it, and a step is next to none: bodies are put where they are to be. */
+static scree_world *elastic_world(void) {
   law_setup setup = law_default();
   setup.restitution = 1;
   setup.friction = 0;
   setup.steps_per_contact = 1e5;
-  scree_world *world = law_world(&setup);
+  return law_world(&setup);
+}
+
+static void wander(scree_particle *particle, uint64_t number, tally *t) {
+  scree_rng rng = {.seed = 11, .stream = number};
+  scree_error error;
+  scree_world *world = elastic_world();
   law_body(world, particle, scree_default_body());
   /* over the middle of a random face, looking in */
   size_t f = (size_t)(scree_rng_uniform(&rng) * (double)particle->face_count);
@@ -204,11 +209,7 @@ static void a_corner_sinks_beside_a_rim(void **state) {
   double change = 0, drift = 0;
   for (int k = 0; k < WAYS; k++) {
     double past = (8 + 4 * k) * 1e-6, height = 10e-6, in = 40e-6; /* m */
-    law_setup setup = law_default();
-    setup.restitution = 1;
-    setup.friction = 0;
-    setup.steps_per_contact = 1e5;
-    scree_world *world = law_world(&setup);
+    scree_world *world = elastic_world();
     law_body(world, box, scree_default_body());
     scree_wall wall = {.kind = SCREE_WALL_MESH, .material = 0, .mesh = &spike, .axis = {0, 0, 1}};
     vec3 rim = box->box.high; /* in the body's frame, which has axes of its own */
@@ -271,11 +272,7 @@ static void crossed_sharp_rims_hold(void **state) {
          here = mat3_mul_vec(&r, middle);
     if (here.x > turned.x) turned = here, rim = middle;
   }
-  law_setup setup = law_default();
-  setup.restitution = 1;
-  setup.friction = 0;
-  setup.steps_per_contact = 1e5;
-  scree_world *world = law_world(&setup);
+  scree_world *world = elastic_world();
   scree_body body = scree_default_body();
   quat q = quat_mul(down, drawn);
   const double orientation[4] = {q.w, q.x, q.y, q.z};

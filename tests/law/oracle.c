@@ -11,14 +11,6 @@
 
 #include <stdlib.h>
 
-static scree_particle *particle_of(scree_mesh mesh) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
-}
-
 static scree_world *elastic_world(double skin) {
   scree_error error;
   scree_world_options o = scree_default_world_options();
@@ -81,9 +73,10 @@ static void turn_at_random(scree_rng *rng, scree_body *body) {
 
 static void force_is_the_slope_of_the_energy(void **state) {
   (void)state;
-  scree_particle *shapes[] = {
-      particle_of(shape_box(0.06, 0.04, 0.02)), particle_of(shape_icosphere(0.02, 1)),
-      particle_of(solid_tray(0.06, 0.04, 0.02, 0.004)), particle_of(solid_hook(0.05, 0.012, 0.02))};
+  scree_particle *shapes[] = {shape_particle(shape_box(0.06, 0.04, 0.02)),
+                              shape_particle(shape_icosphere(0.02, 1)),
+                              shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004)),
+                              shape_particle(solid_hook(0.05, 0.012, 0.02))};
   scree_rng rng = {.seed = 11};
   double worst = 0;
   int tried = 0;
@@ -123,9 +116,9 @@ static void force_is_the_slope_of_the_energy(void **state) {
  * the same energy. */
 static void lists_change_nothing(void **state) {
   (void)state;
-  scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)),
-                              particle_of(shape_icosphere(0.02, 2)),
-                              particle_of(solid_tray(0.06, 0.04, 0.02, 0.004))};
+  scree_particle *shapes[] = {shape_particle(shape_grid_box(0.06, 0.04, 0.02, 3)),
+                              shape_particle(shape_icosphere(0.02, 2)),
+                              shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004))};
   scree_rng rng = {.seed = 12};
   double worst = 0;
   size_t compared = 0;
@@ -230,9 +223,10 @@ static void throw_at_each_other(scree_particle *const shapes[4], int i, scree_rn
  * takes the same course. */
 static void deep_hits(void **state) {
   (void)state;
-  scree_particle *shapes[] = {
-      particle_of(shape_box(0.06, 0.04, 0.02)), particle_of(shape_icosphere(0.02, 1)),
-      particle_of(solid_tray(0.06, 0.04, 0.02, 0.004)), particle_of(solid_hook(0.05, 0.012, 0.02))};
+  scree_particle *shapes[] = {shape_particle(shape_box(0.06, 0.04, 0.02)),
+                              shape_particle(shape_icosphere(0.02, 1)),
+                              shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004)),
+                              shape_particle(solid_hook(0.05, 0.012, 0.02))};
   scree_rng rng = {.seed = 14};
   double apart = 0, deepest = 0;
   size_t moments = 0, off = 0;
@@ -315,9 +309,10 @@ static double apart_from_brute(scree_world *world, scree_world *brute, int steps
  * speed magnifies what that leaves. */
 static void deep_hits_by_brute_force(void **state) {
   (void)state;
-  scree_particle *shapes[] = {
-      particle_of(shape_box(0.06, 0.04, 0.02)), particle_of(solid_hook(0.05, 0.012, 0.02)),
-      particle_of(solid_tray(0.06, 0.04, 0.02, 0.004)), particle_of(shape_icosphere(0.02, 0))};
+  scree_particle *shapes[] = {shape_particle(shape_box(0.06, 0.04, 0.02)),
+                              shape_particle(solid_hook(0.05, 0.012, 0.02)),
+                              shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004)),
+                              shape_particle(shape_icosphere(0.02, 0))};
   scree_rng rng = {.seed = 15};
   double apart = 0, deepest = 0;
   for (int i = 0; i < 32; i++) {
@@ -346,7 +341,7 @@ static void edges_that_turn_away_do_not_count(void **state) {
   }
   section[2 * ARC] = -0.00025, section[2 * ARC + 1] = -0.002;
   section[2 * ARC + 2] = 0.00025, section[2 * ARC + 3] = -0.002;
-  scree_particle *bar = particle_of(solid_prism(section, ARC + 2, 0.03));
+  scree_particle *bar = shape_particle(solid_prism(section, ARC + 2, 0.03));
   scree_particle_measures m;
   scree_particle_measure(bar, &m);
   quat drawn = {m.orientation[0], m.orientation[1], m.orientation[2], m.orientation[3]},
@@ -400,9 +395,9 @@ static scree_world *heap_of(scree_particle **shapes, size_t kinds, int count) {
 
 static void threads_change_nothing(void **state) {
   (void)state;
-  scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)),
-                              particle_of(shape_icosphere(0.02, 2)),
-                              particle_of(solid_tray(0.06, 0.04, 0.02, 0.004)), law_sphere(0.02)};
+  scree_particle *shapes[] = {
+      shape_particle(shape_grid_box(0.06, 0.04, 0.02, 3)), shape_particle(shape_icosphere(0.02, 2)),
+      shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004)), law_sphere(0.02)};
   scree_checksum first = {0};
   const int threads[] = {1, 2, 3, 8};
   for (int i = 0; i < 4; i++) {
@@ -441,7 +436,8 @@ static size_t count_astray(const scree_world *world, size_t *count) {
 /* Awake pairs that lie astray are brought into their order, and stay what they are. */
 static void pairs_come_into_order(void **state) {
   (void)state;
-  scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)), law_sphere(0.02)};
+  scree_particle *shapes[] = {shape_particle(shape_grid_box(0.06, 0.04, 0.02, 3)),
+                              law_sphere(0.02)};
   scree_world *world = heap_of(shapes, 2, 144);
   size_t count, most = 0, sorted = 0;
   for (int i = 0; i < 700; i++) {
@@ -463,7 +459,8 @@ static void pairs_come_into_order(void **state) {
 
 static void warm_steps_allocate_nothing(void **state) {
   (void)state;
-  scree_particle *shapes[] = {particle_of(shape_grid_box(0.06, 0.04, 0.02, 3)), law_sphere(0.02)};
+  scree_particle *shapes[] = {shape_particle(shape_grid_box(0.06, 0.04, 0.02, 3)),
+                              law_sphere(0.02)};
   scree_world *world = heap_of(shapes, 2, 18);
   law_step(world, 40000);
   size_t before = scree_allocation_count();
@@ -475,7 +472,7 @@ static void warm_steps_allocate_nothing(void **state) {
 
 static void what_leaves_the_range_stops(void **state) {
   (void)state;
-  scree_particle *box = particle_of(shape_box(0.06, 0.04, 0.02));
+  scree_particle *box = shape_particle(shape_box(0.06, 0.04, 0.02));
   law_setup setup = law_default();
   for (int fast = 0; fast < 2; fast++) {
     scree_world *world = law_world(&setup);
@@ -535,7 +532,7 @@ static void unusable_meshes_are_refused(void **state) {
 static void features_follow_the_shape(void **state) {
   (void)state;
   for (size_t n = 1; n < 6; n++) {
-    scree_particle *box = particle_of(n == 1 ? shape_box(3, 2, 1) : shape_grid_box(3, 2, 1, n));
+    scree_particle *box = shape_particle(n == 1 ? shape_box(3, 2, 1) : shape_grid_box(3, 2, 1, n));
     scree_particle_measures m;
     scree_particle_measure(box, &m);
     assert_int_equal(m.point_count, 8);

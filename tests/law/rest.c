@@ -7,14 +7,6 @@
 
 static const double degree = 3.14159265358979323846 / 180;
 
-static scree_particle *particle_of(scree_mesh mesh) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
-}
-
 static scree_world *tilted_world(double tilt, double friction, double steps) {
   scree_error error;
   scree_world_options o = scree_default_world_options();
@@ -56,7 +48,7 @@ static void until(scree_world *world, double time) {
 static void incline(void **state) {
   (void)state;
   const double friction = 0.5;
-  scree_particle *box = particle_of(shape_grid_box(0.1, 0.05, 0.015, 4));
+  scree_particle *box = shape_particle(shape_grid_box(0.1, 0.05, 0.015, 4));
   for (int sliding = 0; sliding < 2; sliding++) {
     double tilt = atan((sliding ? 1.1 : 0.98) * friction);
     scree_world *world = tilted_world(tilt, friction, 20);
@@ -82,7 +74,7 @@ static void incline(void **state) {
 
 /* A block of 20 (b) x 30 x 60 (h) standing on its small face, tilted about y. */
 static bool topples(double tilt) {
-  scree_particle *box = particle_of(shape_box(0.02, 0.03, 0.06));
+  scree_particle *box = shape_particle(shape_box(0.02, 0.03, 0.06));
   scree_world *world = tilted_world(tilt, 2, 20);
   /* own axes ascend in moment: x is the long one; turn it upright */
   scree_body body = scree_default_body();
@@ -117,7 +109,7 @@ static void toppling(void **state) {
 static void rocking(void **state) {
   (void)state;
   const double b = 0.01, h = 0.05, start = 0.5 * atan(b / h);
-  scree_particle *box = particle_of(shape_box(0.02, 0.03, 0.1));
+  scree_particle *box = shape_particle(shape_box(0.02, 0.03, 0.1));
   scree_world *world = tilted_world(0, 2, 20);
   scree_body body = scree_default_body();
   body.orientation[0] = cos(-45 * degree + start / 2);
@@ -152,7 +144,7 @@ static void rocking(void **state) {
 
 static void stack_of_plates(void **state) {
   (void)state;
-  scree_particle *plate = particle_of(shape_grid_box(0.1, 0.05, 0.01, 3));
+  scree_particle *plate = shape_particle(shape_grid_box(0.1, 0.05, 0.01, 3));
   scree_particle_measures m;
   scree_particle_measure(plate, &m);
   scree_world *world = tilted_world(0, 0.5, 20);
@@ -187,7 +179,7 @@ static void stack_of_plates(void **state) {
  * mu m g (half diagonal). */
 static void spinning_plate(void **state) {
   (void)state;
-  scree_particle *plate = particle_of(shape_grid_box(0.1, 0.05, 0.01, 3));
+  scree_particle *plate = shape_particle(shape_grid_box(0.1, 0.05, 0.01, 3));
   scree_particle_measures m;
   scree_particle_measure(plate, &m);
   scree_world *world = tilted_world(0, 0.5, 20);
@@ -218,7 +210,7 @@ static void tray_does_not_see_its_triangles(void **state) {
   for (int i = 0; i < 4; i++) {
     scree_mesh copy;
     assert_int_equal(scree_mesh_copy(&mesh, &copy, NULL), SCREE_OK);
-    scree_particle *tray = particle_of(copy);
+    scree_particle *tray = shape_particle(copy);
     scree_world *world = tilted_world(0, 0.5, 20);
     scree_body body = scree_default_body();
     body.orientation[0] = cos(10 * degree);

@@ -10,8 +10,6 @@ static const double degree = 3.14159265358979323846 / 180;
 
 /* A plate of 100 x 60 x 15 mm, whole, in even squares, in uneven ones, and in many uneven ones. */
 static scree_particle *plate(int cut) {
-  scree_error error;
-  scree_particle *particle = NULL;
   const double size[3] = {0.1, 0.06, 0.015};
   const size_t squares[CUTS] = {1, 4, 5, 12};
   scree_mesh mesh = cut ? shape_grid_box(size[0], size[1], size[2], squares[cut])
@@ -20,18 +18,11 @@ static scree_particle *plate(int cut) {
     double whole = size[i % 3];
     mesh.positions[i] = whole * pow(mesh.positions[i] / whole, 1.2 + 0.4 * (double)(i % 3));
   }
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
+  return shape_particle(mesh);
 }
 
 static scree_particle *cube(void) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  scree_mesh mesh = shape_box(0.03, 0.03, 0.03);
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
+  return shape_particle(shape_box(0.03, 0.03, 0.03));
 }
 
 /* Force along z on `upper` at these poses, both at rest, in a world without memory of others. */

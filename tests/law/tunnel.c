@@ -11,14 +11,6 @@ enum { TRIES = 60, SQUARE_TRIES = 600 };
 
 static const double degree = 3.14159265358979323846 / 180;
 
-static scree_particle *particle_of(scree_mesh mesh) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
-}
-
 static void nothing_passes_or_sticks(void **state) {
   (void)state;
   const quat none = {1, 0, 0, 0};
@@ -28,12 +20,12 @@ static void nothing_passes_or_sticks(void **state) {
        on_corner = quat_from_rotation_vector((vec3){45 * degree, 35 * degree, 0}),
        notch_up = quat_from_rotation_vector((vec3){90 * degree, 0, 0}),
        hook_down = quat_from_rotation_vector((vec3){-90 * degree, 0, 0});
-  scree_particle *bar = particle_of(shape_box(0.1, 0.012, 0.012)),
-                 *cube = particle_of(shape_box(0.04, 0.04, 0.04)),
-                 *plate = particle_of(shape_grid_box(0.1, 0.06, 0.015, 3)),
-                 *notch = particle_of(solid_notch(0.06, 30 * degree, 0.05)),
-                 *hook = particle_of(solid_hook(0.06, 0.014, 0.02)),
-                 *stick = particle_of(shape_box(0.01, 0.08, 0.01));
+  scree_particle *bar = shape_particle(shape_box(0.1, 0.012, 0.012)),
+                 *cube = shape_particle(shape_box(0.04, 0.04, 0.04)),
+                 *plate = shape_particle(shape_grid_box(0.1, 0.06, 0.015, 3)),
+                 *notch = shape_particle(solid_notch(0.06, 30 * degree, 0.05)),
+                 *hook = shape_particle(solid_hook(0.06, 0.014, 0.02)),
+                 *stick = shape_particle(shape_box(0.01, 0.08, 0.01));
   const law_meeting meetings[] = {
       {"crossed edges of bars", bar, bar, crossed, on_edge, 0.003, 0.2, 0},
       {"crossed bars, faces", bar, bar, quarter, none, 0.003, 0.2, 0},
@@ -68,8 +60,8 @@ static void a_thin_wall_is_not_pierced(void **state) {
   const quat none = {1, 0, 0, 0},
              on_corner = quat_from_rotation_vector((vec3){45 * degree, 35 * degree, 0}),
              open_down = quat_from_rotation_vector((vec3){180 * degree, 0, 0});
-  scree_particle *cube = particle_of(shape_box(0.04, 0.04, 0.04)),
-                 *tray = particle_of(solid_tray(0.1, 0.06, 0.015, 0.0006));
+  scree_particle *cube = shape_particle(shape_box(0.04, 0.04, 0.04)),
+                 *tray = shape_particle(solid_tray(0.1, 0.06, 0.015, 0.0006));
   const law_meeting meetings[] = {
       {"corner into a thin tray", cube, tray, on_corner, none, 0.003, 0.3, 0},
       {"corner onto a thin tray's bottom", cube, tray, on_corner, open_down, 0.003, 0.3, 0},
@@ -90,7 +82,7 @@ static void crossed_edges_are_not_lost_between_steps(void **state) {
   (void)state;
   const quat quarter = quat_from_rotation_vector((vec3){0, 0, 90 * degree}),
              on_edge = quat_from_rotation_vector((vec3){45 * degree, 0, 0});
-  scree_particle *bar = particle_of(shape_box(0.1, 0.012, 0.012));
+  scree_particle *bar = shape_particle(shape_box(0.1, 0.012, 0.012));
   const law_meeting meeting = {
       "crossed edges of bars", bar, bar, quat_mul(quarter, on_edge), on_edge, 0.003, 0.2, 0};
   law_outcome out = {.follow = true};
@@ -106,8 +98,8 @@ static void crossed_edges_are_not_lost_between_steps(void **state) {
  * on the other in the next, at rest itself or moving. */
 static void what_passes_a_thin_wall_between_steps_stops(void **state) {
   (void)state;
-  scree_particle *cube = particle_of(shape_box(0.04, 0.04, 0.04)),
-                 *tray = particle_of(solid_tray(0.1, 0.06, 0.015, 0.0006));
+  scree_particle *cube = shape_particle(shape_box(0.04, 0.04, 0.04)),
+                 *tray = shape_particle(solid_tray(0.1, 0.06, 0.015, 0.0006));
   const law_setup setup = law_default();
   for (int moves = 0; moves < 2; moves++) {
     scree_world *world = law_world(&setup);

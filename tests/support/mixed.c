@@ -6,21 +6,13 @@
 
 enum { SHAPES = 6 };
 
-static scree_particle *from_mesh(scree_mesh mesh) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
-}
-
 static void make_shapes(scree_particle *shapes[SHAPES]) {
   scree_error error;
   const double centres[9] = {0, 0, 0, 0.02, 0, 0, 0.01, 0.015, 0}, radii[3] = {0.012, 0.012, 0.01};
-  shapes[0] = from_mesh(shape_box(0.04, 0.03, 0.012));
-  shapes[1] = from_mesh(solid_tray(0.045, 0.03, 0.015, 0.004));
-  shapes[2] = from_mesh(solid_hook(0.04, 0.01, 0.012));
-  shapes[3] = from_mesh(shape_icosphere(0.015, 2));
+  shapes[0] = shape_particle(shape_box(0.04, 0.03, 0.012));
+  shapes[1] = shape_particle(solid_tray(0.045, 0.03, 0.015, 0.004));
+  shapes[2] = shape_particle(solid_hook(0.04, 0.01, 0.012));
+  shapes[3] = shape_particle(shape_icosphere(0.015, 2));
   CHECK_OK(scree_particle_sphere(0.016, &shapes[4], &error), error);
   CHECK_OK(scree_particle_clump(centres, radii, 3, NULL, &shapes[5], &error), error);
 }

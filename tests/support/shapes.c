@@ -1,6 +1,7 @@
 #include "support/shapes.h"
 
 #include "base/alloc.h"
+#include "support/check.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -241,4 +242,12 @@ scree_mesh shape_weld(const scree_mesh *mesh, scree_rng *rng) {
   free(corners);
   free(order);
   return welded;
+}
+
+scree_particle *shape_particle(scree_mesh mesh) {
+  scree_error error;
+  scree_particle *particle = NULL;
+  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
+  scree_mesh_free(&mesh);
+  return particle;
 }

@@ -36,6 +36,8 @@ void shape_shake(scree_mesh *mesh, double size, scree_rng *rng);
 /* The facets as a reader hands them on, in an order and each from a corner of the rng's (NULL: as
  * they are), welded exactly. */
 scree_mesh shape_weld(const scree_mesh *mesh, scree_rng *rng);
+/* A particle of the mesh, which is freed. */
+scree_particle *shape_particle(scree_mesh mesh);
 /* Turns facet t round. */
 void shape_flip(scree_mesh *mesh, size_t triangle);
 

@@ -14,12 +14,7 @@
 #include <unistd.h>
 
 static scree_particle *box_particle(double x, double y, double z) {
-  scree_error error;
-  scree_particle *particle = NULL;
-  scree_mesh mesh = shape_box(x, y, z);
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_mesh_free(&mesh);
-  return particle;
+  return shape_particle(shape_box(x, y, z));
 }
 
 static scree_pour *make_pour(const scree_pour_options *options, size_t boxes, size_t balls) {
