@@ -15,6 +15,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/apart.h"
 #include "mesh/intersect.h"
+#include "mesh/mesh.h"
 #include "mesh/shells.h"
 #include "mesh/topology.h"
 #include "mesh/union_volume.h"
@@ -61,15 +62,11 @@ static scree_status verify_indices(const scree_mesh *mesh, scree_error *error) {
   if (mesh->triangle_count > (UINT32_MAX - 1) / 3)
     return scree_fail(error, SCREE_LIMIT, "The mesh has %zu triangles; the limit is %u",
                       mesh->triangle_count, (UINT32_MAX - 1) / 3);
-  uint32_t highest = 0; /* first, and then which: a loop without branches */
-  for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
-    highest = mesh->triangles[c] > highest ? mesh->triangles[c] : highest;
-  if (mesh->triangle_count == 0) return SCREE_OK;
-  for (size_t c = 0; highest >= mesh->vertex_count; c++)
-    if (mesh->triangles[c] >= mesh->vertex_count)
-      return scree_fail(error, SCREE_BAD_MESH,
-                        "Triangle %zu names vertex %u, but there are only %zu vertices", c / 3,
-                        mesh->triangles[c], mesh->vertex_count);
+  size_t stray = scree_mesh_stray_corner(mesh);
+  if (stray != SIZE_MAX)
+    return scree_fail(error, SCREE_BAD_MESH,
+                      "Triangle %zu names vertex %u, but there are only %zu vertices", stray / 3,
+                      mesh->triangles[stray], mesh->vertex_count);
   return SCREE_OK;
 }
 

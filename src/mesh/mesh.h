@@ -9,6 +9,18 @@
  * corners cannot be numbered in 32 bits. O(N), parallel. */
 scree_status scree_mesh_verify(const scree_mesh *mesh, scree_error *error);
 
+/* The first corner that names no vertex, or SIZE_MAX. The highest is looked for first, and then
+ * which: a loop without branches. */
+static inline size_t scree_mesh_stray_corner(const scree_mesh *mesh) {
+  size_t corner_count = 3 * mesh->triangle_count;
+  uint32_t highest = 0;
+  for (size_t c = 0; c < corner_count; c++)
+    highest = mesh->triangles[c] > highest ? mesh->triangles[c] : highest;
+  for (size_t c = 0; c < corner_count && highest >= mesh->vertex_count; c++)
+    if (mesh->triangles[c] >= mesh->vertex_count) return c;
+  return SIZE_MAX;
+}
+
 /* Whether the height of a triangle over its longest edge is not above the rounding of its
  * coordinates: an exact zero would be lost when units are converted. */
 bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle);

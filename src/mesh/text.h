@@ -38,9 +38,9 @@ scree_status scree_text_number(scree_text *t, const char *what, double *value);
 /* The same for a whole number in [low, high]. */
 scree_status scree_text_integer(scree_text *t, const char *what, int64_t low, int64_t high,
                                 int64_t *value);
-/* The same for three coordinates in file units, each finite and within scree's range. */
-/* Or one of its numbers; axis 0 is x. */
+/* The same for a coordinate in file units, finite and within scree's range; axis 0 is x. */
 scree_status scree_text_coordinate(scree_text *t, int axis, double *value);
+/* The same for three of them. */
 scree_status scree_text_position(scree_text *t, double position[3]);
 
 /* Fails with "NAME: line N: " before the sentence, N being the line of `at`. */

@@ -14,6 +14,7 @@
 #include "particle/particle.h"
 
 #include "base/alloc.h"
+#include "mesh/mesh.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -59,11 +60,11 @@ static scree_status check_indices(const scree_mesh *mesh, scree_error *error) {
   if (mesh->vertex_count > UINT32_MAX / 8 || mesh->triangle_count > UINT32_MAX / 8)
     return scree_fail(error, SCREE_LIMIT, "particle: %zu triangles; at most %u",
                       mesh->triangle_count, UINT32_MAX / 8);
-  for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
-    if (mesh->triangles[i] >= mesh->vertex_count)
-      return scree_fail(error, SCREE_BAD_MESH,
-                        "particle: triangle %zu names vertex %u of a mesh of %zu vertices", i / 3,
-                        mesh->triangles[i], mesh->vertex_count);
+  size_t stray = scree_mesh_stray_corner(mesh);
+  if (stray != SIZE_MAX)
+    return scree_fail(error, SCREE_BAD_MESH,
+                      "particle: triangle %zu names vertex %u of a mesh of %zu vertices", stray / 3,
+                      mesh->triangles[stray], mesh->vertex_count);
   for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
     if (!isfinite(mesh->positions[i]))
       return scree_fail(error, SCREE_BAD_MESH, "particle: vertex %zu has a coordinate of %g", i / 3,

@@ -6,6 +6,7 @@
 #include "simplify/halfmesh.h"
 
 #include "base/parallel.h"
+#include "mesh/mesh.h"
 #include "simplify/order.h"
 
 #include <string.h>
@@ -46,13 +47,10 @@ static scree_status check_mesh(const scree_mesh *mesh, vec3 *low, vec3 *high, sc
   if (mesh->triangle_count > SCREE_NONE / 3 - 1 || mesh->vertex_count > SCREE_NONE - 1)
     return scree_fail(error, SCREE_LIMIT, "%zu triangles are above decimation's limit of %u",
                       mesh->triangle_count, SCREE_NONE / 3 - 1);
-  uint32_t highest = 0; /* first, and then which: a loop without branches */
-  for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
-    highest = mesh->triangles[i] > highest ? mesh->triangles[i] : highest;
-  for (size_t i = 0; highest >= mesh->vertex_count; i++)
-    if (mesh->triangles[i] >= mesh->vertex_count)
-      return scree_fail(error, SCREE_BAD_MESH, "triangle %zu names vertex %u of %zu", i / 3,
-                        mesh->triangles[i], mesh->vertex_count);
+  size_t stray = scree_mesh_stray_corner(mesh);
+  if (stray != SIZE_MAX)
+    return scree_fail(error, SCREE_BAD_MESH, "triangle %zu names vertex %u of %zu", stray / 3,
+                      mesh->triangles[stray], mesh->vertex_count);
   *low = *high = vec3_load(mesh->positions);
   for (size_t v = 0; v < mesh->vertex_count; v++) {
     vec3 p = vec3_load(mesh->positions + 3 * v);
@@ -102,6 +100,15 @@ static void sum_counts(builder *b) {
   b->start[b->mesh->vertex_count] = sum;
 }
 
+/* Both count into next[half] of the builder, and go by triangles. */
+static void sort_by_vertex(builder *b, scree_block_function *count, scree_block_function *fill) {
+  size_t triangles = b->mesh->triangle_count;
+  clear_counts(b);
+  scree_parallel_for(triangles, triangles / 2 + 1, count, b);
+  sum_counts(b);
+  scree_parallel_for(triangles, triangles / 2 + 1, fill, b);
+}
+
 /* The lowest corner of a triangle of the mesh, by rank. */
 static uint32_t lowest_corner(const builder *b, size_t triangle) {
   const uint32_t *corner = b->mesh->triangles + 3 * triangle;
@@ -126,11 +133,7 @@ static void fill_triangles(void *context, size_t begin, size_t end, size_t half,
 
 /* Triangles in the order of their lowest vertex; corners have the surface's numbers. */
 static void place_triangles(builder *b) {
-  size_t count = b->mesh->triangle_count;
-  clear_counts(b);
-  scree_parallel_for(count, count / 2 + 1, count_triangles, b);
-  sum_counts(b);
-  scree_parallel_for(count, count / 2 + 1, fill_triangles, b);
+  sort_by_vertex(b, count_triangles, fill_triangles);
 }
 
 static void count_fans(void *context, size_t begin, size_t end, size_t half, int worker) {
@@ -153,11 +156,7 @@ static void fill_fans(void *context, size_t begin, size_t end, size_t half, int 
 
 /* The half-edges of each vertex. */
 static void sort_fans(builder *b) {
-  size_t count = b->mesh->triangle_count;
-  clear_counts(b);
-  scree_parallel_for(count, count / 2 + 1, count_fans, b);
-  sum_counts(b);
-  scree_parallel_for(count, count / 2 + 1, fill_fans, b);
+  sort_by_vertex(b, count_fans, fill_fans);
 }
 
 static void rank_vertices(void *context, size_t begin, size_t end, size_t block, int worker) {
