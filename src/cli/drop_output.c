@@ -34,16 +34,10 @@ static const char *const FILES[] = {"series.csv",      "checkpoint.scree",
 enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
 
 scree_status drop_check_output(const drop_run *run, scree_error *error) {
-  char path[DROP_PATH_BYTES];
-  scree_status status = scree_folder_create(run->arguments->output, error);
-  for (size_t i = 0; i < FILE_COUNT && status == SCREE_OK && !run->arguments->resume; i++) {
-    status = drop_path(run, FILES[i], path, error);
-    if (status != SCREE_OK) break;
-    if (i == 0)
-      status = cli_check_begun(run->call, path, run->arguments->overwrite, error);
-    else
-      status = cli_check_output(run->call, path, run->arguments->overwrite, error);
-  }
+  const drop_arguments *a = run->arguments;
+  scree_status status = scree_folder_create(a->output, error);
+  if (status == SCREE_OK && !a->resume)
+    status = cli_check_run_output(run->call, a->output, FILES, FILE_COUNT, a->overwrite, error);
   return status;
 }
 

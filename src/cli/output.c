@@ -78,11 +78,19 @@ scree_status cli_check_page_output(const cli_call *call, const char *path, bool 
   return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a page must end in .html");
 }
 
-scree_status cli_check_begun(const cli_call *call, const char *path, bool overwrite,
-                             scree_error *error) {
-  scree_status status = cli_check_output(call, path, overwrite, error);
-  if (status != SCREE_EXISTS) return status;
-  return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
+scree_status cli_check_run_output(const cli_call *call, const char *folder,
+                                  const char *const *files, size_t count, bool overwrite,
+                                  scree_error *error) {
+  char path[4200];
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < count && status == SCREE_OK; i++) {
+    if (snprintf(path, sizeof path, "%s/%s", folder, files[i]) >= (int)sizeof path)
+      return cli_refuse(error, SCREE_LIMIT, folder, "the folder's name is too long");
+    status = cli_check_output(call, path, overwrite, error);
+    if (status == SCREE_EXISTS && i == 0)
+      return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
+  }
+  return status;
 }
 
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,

@@ -22,10 +22,11 @@ scree_status cli_check_picture_output(const cli_call *call, const char *path, bo
 scree_status cli_check_page_output(const cli_call *call, const char *path, bool overwrite,
                                    scree_error *error);
 
-/* cli_check_output of a file that stands for a folder's work: where it exists, the error says that
- * --resume goes on and -f begins anew. */
-scree_status cli_check_begun(const cli_call *call, const char *path, bool overwrite,
-                             scree_error *error);
+/* cli_check_output of all files that a run leaves in its folder. The first stands for them all:
+ * where it exists, the error says that --resume goes on and -f begins anew. */
+scree_status cli_check_run_output(const cli_call *call, const char *folder,
+                                  const char *const *files, size_t count, bool overwrite,
+                                  scree_error *error);
 
 /* The path with another ending, as "p.json" of "p.stl": a file beside it. SCREE_LIMIT where it does
  * not fit. */

@@ -359,14 +359,9 @@ enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
 
 static scree_status check_folder(repose *r, const char *folder) {
   const repose_arguments *a = r->arguments;
-  char path[4200];
   scree_status status = scree_folder_create(folder, &r->error);
-  if (a->resume) return status;
-  for (size_t i = 0; i < FILE_COUNT && status == SCREE_OK; i++) {
-    snprintf(path, sizeof path, "%.4100s/%s", folder, FILES[i]);
-    status = i == 0 ? cli_check_begun(r->call, path, a->force, &r->error)
-                    : cli_check_output(r->call, path, a->force, &r->error);
-  }
+  if (status == SCREE_OK && !a->resume)
+    status = cli_check_run_output(r->call, folder, FILES, FILE_COUNT, a->force, &r->error);
   return status;
 }
 
