@@ -27,7 +27,6 @@ call() {
   7) "$scree" repair -f "$scan" -o "$work/repaired.stl" ;;
   esac
 }
-median() { sort -n | awk '{ v[NR] = $1 } END { print v[int((NR + 1) / 2)] }'; }
 
 times=$(mktemp)
 trap 'rm -f "$times"' EXIT

@@ -10,14 +10,10 @@ set -euo pipefail
 . "$(dirname "$0")/lib.sh"
 [ $# -gt 0 ] || set -- 762008 1500000 3000000 6000000 12000000
 
-# Median by CPU time, of three runs up to two million triangles, else of the one run.
-runs_of() { if [ "$1" -gt 2000000 ]; then echo 1; else echo 3; fi; }
-cost() {
-  local i runs=$1
-  shift
-  for ((i = 0; i < runs; i++)); do "$bin/bench_cost" "$@" || true; done |
-    sort -t, -k2,2n | sed -n "$(((runs + 1) / 2))p"
-}
+# Rounds of a measurement: in each the peer and scree run one after the other, so that both see the same
+# machine. The row has the median of each, by CPU time, and the medians of the rounds' ratios.
+rounds_of() { if [ "$1" -gt 2000000 ]; then echo 1; else echo 5; fi; }
+cost() { "$bin/bench_cost" "$@" || true; }
 
 csv=$results/job.csv
 {
@@ -26,26 +22,38 @@ csv=$results/job.csv
   for count in "$@"; do
     file=$(body phone "$count" stl)
     n=$((($(stat -c %s "$file") - 84) / 50))
-    reference=$(for _ in 1 2 3; do
-      "$bin/peer_meshoptimizer" meshopt "$file" "$work/reference" $((n / 1000)) | cut -d, -f4
-    done | sort -n | sed -n 2p)
+    for method in meshopt volume qecd; do : >"$work/rounds_$method"; done
+    for ((round = 0; round < $(rounds_of "$n"); round++)); do
+      peer=$("$bin/peer_meshoptimizer" meshopt "$file" "$work/reference" $((n / 1000)) | cut -d, -f4)
+      echo "$peer" >>"$work/rounds_meshopt"
+      for method in volume qecd; do
+        IFS=, read -r wall cpu peak status < <(cost "$bin/scree" choose -q --method "$method" "$file")
+        [ "$status" = 0 ] || echo "scree choose --method $method $file: exit $status" >&2
+        echo "$wall,$cpu,$peak,$(ratio "$wall" "$peer"),$(ratio "$cpu" "$peer")" >>"$work/rounds_$method"
+      done
+    done
     for method in volume qecd; do
-      IFS=, read -r wall cpu peak status < <(cost "$(runs_of "$n")" "$bin/scree" choose -q --method "$method" "$file")
-      [ "$status" = 0 ] || echo "scree choose --method $method $file: exit $status" >&2
+      IFS=, read -r wall cpu peak _ < <(median -t, -k2,2 <"$work/rounds_$method")
       awk -v OFS=, -v m="choose $method" -v n="$n" -v w="$wall" -v c="$cpu" -v p="$peak" \
-        -v r="$reference" 'BEGIN { print m, n, w, c, p, r, sprintf("%.2f", w / r),
-          sprintf("%.2f", c / r), sprintf("%.0f", p / n), sprintf("%.1f", 1e9 * c / (n * log(n) / log(2))) }'
+        -v r="$(median <"$work/rounds_meshopt")" -v rw="$(cut -d, -f4 "$work/rounds_$method" | median)" \
+        -v rc="$(cut -d, -f5 "$work/rounds_$method" | median)" 'BEGIN { print m, n, w, c, p, r, sprintf("%.2f", rw),
+          sprintf("%.2f", rc), sprintf("%.0f", p / n), sprintf("%.1f", 1e9 * c / (n * log(n) / log(2))) }'
     done
   done
   # Four files in one call against the sum of four calls.
   n=300000
   for i in 1 2 3 4; do cp "$(body phone $n stl)" "$work/many_$i.stl"; done
-  IFS=, read -r wall cpu peak _ < <(cost 3 "$bin/scree" choose -q "$work"/many_[1-4].stl)
-  IFS=, read -r one one_cpu _ _ < <(cost 3 "$bin/scree" choose -q "$work/many_1.stl")
+  for file in many one; do : >"$work/rounds_$file"; done
+  for round in 1 2 3; do
+    cost "$bin/scree" choose -q "$work"/many_[1-4].stl >>"$work/rounds_many"
+    cost "$bin/scree" choose -q "$work/many_1.stl" >>"$work/rounds_one"
+  done
+  IFS=, read -r wall cpu peak _ < <(median -t, -k2,2 <"$work/rounds_many")
+  IFS=, read -r one one_cpu _ _ < <(median -t, -k2,2 <"$work/rounds_one")
   awk -v OFS=, -v n=$n -v w="$wall" -v c="$cpu" -v p="$peak" -v o="$one" -v oc="$one_cpu" 'BEGIN {
     print "four files at once", 4 * n, w, c, p, "", "", "", sprintf("%.0f", p / (4 * n)), ""
     print "one of them", n, o, oc, "", "", "", "", "", "" }'
-  rm -f "$work"/many_[1-4].stl
+  rm -f "$work"/many_[1-4].stl "$work"/rounds_*
 } >"$csv.part"
 mv "$csv.part" "$csv"
 echo "$csv"

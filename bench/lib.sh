@@ -29,3 +29,9 @@ body() {
 
 # facets FILE: how many triangles scree reads from it.
 facets() { "$bin/bench_quality" "$1" - 2>/dev/null | cut -d, -f2; }
+
+# median [SORT OPTION...]: of the lines on stdin, the one whose number, or field (-t, -kN,N), is the median.
+median() { sort -g "$@" | awk '{ line[NR] = $0 } END { print line[int((NR + 1) / 2)] }'; }
+
+# ratio A B: A over B.
+ratio() { awk -v a="$1" -v b="$2" 'BEGIN { if (b > 0) printf "%.4f\n", a / b }'; }

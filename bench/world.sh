@@ -4,8 +4,8 @@
 #
 #   bench/world.sh [SECONDS [PATTERN]]
 #
-# Each measurement takes SECONDS (default 5), three times; the median counts. With PATTERN (an extended
-# regular expression) only scenes whose name matches are made and measured.
+# Each measurement takes SECONDS (default 5), three times; the median counts; ratios are of five pairs in
+# turns. With PATTERN (an extended regular expression) only scenes whose name matches are made and measured.
 #
 # Scenes are made once, as checkpoints in the build folder (about 20 minutes on one core); delete
 # work/world there to make them again, which a new version of checkpoints asks for. A scene is
@@ -32,16 +32,15 @@ make_scene() {
   shift
   [ -s "$out" ] || "$bin/bench_world" "${@//@/$scenes/}" "$out" >&2
 }
-# median THREADS SCENE: the line of the median run, by CPU time for one thread, else by wall clock.
-median() {
-  local i
-  for i in 1 2 3; do "$bin/bench_world" time "$1" "$seconds" "$scenes/$2.scree"; done |
-    sort -t, -k$([ "$1" = 1 ] && echo 8 || echo 7),7n | sed -n 2p
+# timed THREADS SCENE: the line of the median of three runs, by CPU time for one thread, else by wall clock.
+timed() {
+  local i column=$([ "$1" = 1 ] && echo 8 || echo 7)
+  for i in 1 2 3; do "$bin/bench_world" time "$1" "$seconds" "$scenes/$2.scree"; done | median -t, -k$column,$column
 }
 # measure LABEL THREADS SCENE BAR: a row; BAR is what its rate should be at least, or empty.
 measure() {
   [[ $3 =~ $pattern ]] && [ -s "$scenes/$3.scree" ] || return 0
-  echo "$1,$2,${4:-},$(median "$2" "$3")" >>"$rows"
+  echo "$1,$2,${4:-},$(timed "$2" "$3")" >>"$rows"
   tail -1 "$rows" | cut -d, -f1,10,11 >&2
 }
 # rate LABEL COLUMN: of the row's numbers.
@@ -77,20 +76,37 @@ measure "1000 boxes" 1 boxes1000t 1000000
 measure "200 trays of 28 triangles" 1 tray28t 460000
 measure "200 trays of 448 triangles" 1 tray448t 200000
 
-# The same scene twice side by side, against one alone, by wall clock.
+# Ratios are taken in turns, so that both see the same machine: ROUNDS times A and B one after the other, the
+# median of B over A counts.
+rounds=5
+# speed THREADS SCENE COLUMN: one run's rate by wall clock (7) or CPU time (8).
+speed() { "$bin/bench_world" time "$1" "$seconds" "$scenes/$2.scree" | cut -d, -f"$3"; }
+# side_by_side SCENE: the rates by wall clock of two runs at once, added up.
 side_by_side() {
-  "$bin/bench_world" time 1 "$seconds" "$1" >"$scenes/first" &
-  "$bin/bench_world" time 1 "$seconds" "$1" >"$scenes/second"
+  speed 1 "$1" 7 >"$scenes/first" &
+  speed 1 "$1" 7 >"$scenes/second"
   wait
-  cat "$scenes/first" "$scenes/second" | awk -F, '{ sum += $7 } END { print sum }'
+  cat "$scenes/first" "$scenes/second" | awk '{ sum += $1 } END { print sum }'
 }
-one=0 two=0
+# in_turns A B: the median ratio of what the command B prints over what A prints.
+in_turns() {
+  local i a b
+  for ((i = 0; i < rounds; i++)); do
+    a=$($1)
+    b=$($2)
+    ratio "$b" "$a"
+  done | median
+}
+two_threads='' two_runs='' many_bodies='' many_triangles=''
+has() { [[ $1 =~ $pattern ]] && [ -s "$scenes/$1.scree" ]; }
 for scene in devices devices133 boxes200t; do
-  [ -s "$scenes/$scene.scree" ] || continue
-  one=$("$bin/bench_world" time 1 "$seconds" "$scenes/$scene.scree" | cut -d, -f7)
-  two=$(side_by_side "$scenes/$scene.scree")
+  has $scene || continue
+  two_threads=$(in_turns "speed 1 $scene 7" "speed 2 $scene 7")
+  two_runs=$(in_turns "speed 1 $scene 7" "side_by_side $scene")
   break
 done
+if has devices && has devices12000; then many_bodies=$(in_turns 'speed 1 devices 8' 'speed 1 devices12000 8'); fi
+if has devices_100 && has devices_1500; then many_triangles=$(in_turns 'speed 1 devices_1500 8' 'speed 1 devices_100 8'); fi
 
 # Peers on dumped scenes, 2 ms steps: rate, and simulated seconds per second.
 peers=$scenes/peers
@@ -111,11 +127,8 @@ elif [ -s "$scenes/boxes200t.txt" ] && [[ boxes200t =~ $pattern ]]; then
   [ -z "$line" ] || echo "boxes200t,$line" >>"$peers"
 fi
 
-# ratio NAME A B BAR: A over B.
-ratio() {
-  [ -n "$2" ] && [ -n "$3" ] || return 0
-  awk -v n="$1" -v a="$2" -v b="$3" -v bar="$4" 'BEGIN { if (b > 0) printf "| %s | %.2f | %s |\n", n, a / b, bar }'
-}
+# ratio_row NAME RATIO BAR: a row, where the ratio was measured.
+ratio_row() { [ -z "$2" ] || printf '| %s | %.2f | %s |\n' "$1" "$2" "$3"; }
 command="bench/world.sh $seconds${2:+ '$2'}"
 md=$results/world.md
 {
@@ -124,7 +137,8 @@ md=$results/world.md
   provenance "$command" | sed 's/^# /    /'
   echo
   echo 'Rates are particle-steps per second of CPU time (with two threads: of wall clock). Shares are of the'
-  echo 'time of a step. Pairs and contacts touch, items are evaluated, each per body.'
+  echo 'time of a step. Pairs and contacts touch, items are evaluated, each per body. The ratios are medians of five pairs'
+  echo 'of runs in turns.'
   echo
   echo '| scene | rate | bar | triangles | step (us) | lists % | contacts % | bodies % | pairs | contacts | items | overlap (um) | memory (MiB) |'
   echo '|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|'
@@ -133,13 +147,13 @@ md=$results/world.md
   echo
   echo '| ratio | measured | bar |'
   echo '|---|--:|--:|'
-  rest=$(rate "1197 devices at rest" 11)
-  ratio "two threads over one" "$(rate "1197 devices at rest with two threads" 10)" "$(rate "1197 devices at rest" 10)" "at least 1.7"
-  ratio "two runs side by side over one" "$two" "$one" "at least 1.95"
-  ratio "cost at 1500 triangles over 100" "$(rate "1197 devices of 100 triangles" 11)" "$(rate "1197 devices of 1500 triangles" 11)" "at most 2"
+  ratio_row "two threads over one" "$two_threads" "at least 1.7"
+  ratio_row "two runs side by side over one" "$two_runs" "at least 1.95"
+  ratio_row "cost at 1500 triangles over 100" "$many_triangles" "at most 2"
+  ratio_row "rate at 11970 bodies over 1197" "$many_bodies" "at least 0.8"
   yade=$(awk -F, '$2 == "YADE polyhedra" { print $7 }' "$peers")
-  ratio "200 boxes over YADE's polyhedra" "$(rate "200 boxes" 11)" "$yade" ""
-  ratio "rate at 11970 bodies over 1197" "$(rate "11970 devices at rest" 11)" "$rest" "at least 0.8"
+  boxes=$(rate "200 boxes" 11)
+  [ -z "$yade" ] || [ -z "$boxes" ] || ratio_row "200 boxes over YADE's polyhedra" "$(ratio "$boxes" "$yade")" ""
   echo
   echo 'Peers from the same state, with steps of 2 ms: impulse engines, whose step is another kind of step (YADE: soft'
   echo 'contacts and steps of 1e-5 s, as here). scree at'
@@ -152,9 +166,9 @@ md=$results/world.md
 mv "$md.part" "$md"
 
 {
-  printf '{"command": "%s", "commit": "%s", "machine": "%s", "processors": %s, "side_by_side": %s, "rows": [' "$command" \
+  printf '{"command": "%s", "commit": "%s", "machine": "%s", "processors": %s, "two_threads": %s, "side_by_side": %s, "rows": [' "$command" \
     "$(git -C "$root" rev-parse --short HEAD)" "$(lscpu | sed -n 's/^Model name: *//p' | head -1)" "$(nproc)" \
-    "$(awk -v a="$two" -v b="$one" 'BEGIN { printf "%.3f", a / b }')"
+    "${two_threads:-null}" "${two_runs:-null}"
   awk -F, '{ printf "%s\n{\"scene\": \"%s\", \"threads\": %s, \"bodies\": %s, \"triangles\": %s, \"time_step_s\": %s, \"steps\": %s, \"wall_s\": %s, \"cpu_s\": %s, \"rate_wall\": %s, \"rate_cpu\": %s, \"broad_percent\": %s, \"lists_percent\": %s, \"contacts_percent\": %s, \"bodies_percent\": %s, \"pairs_per_body\": %s, \"contacts_per_body\": %s, \"items_per_body\": %s, \"lists_per_1000_body_steps\": %s, \"kinetic_J\": %s, \"overlap_m\": %s, \"peak_bytes\": %s}", (NR > 1 ? "," : ""), $1, $2, $4, $5, $6, $7, $8, $9, $10, $11, $12, $13, $14, $15, $16, $17, $18, $19, $20, $21, $22 }' "$rows"
   echo ']}'
 } >"$results/world.json"
