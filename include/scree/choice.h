@@ -76,7 +76,9 @@ typedef struct scree_choice_level {
   bool reached;
   double area, volume;                    /* m2, m3 */
   double eps_s, ip;                       /* eq. 1 and 2 */
-  double worst_eps_s, robust_ip;          /* the monotone envelope and its criterion */
+  double worst_eps_s, robust_ip;          /* the monotone envelope and its criterion; with
+                                             SCREE_REFERENCE_SMOOTH the levels finer than
+                                             noise.level_index do not count */
   double smooth_ip;                       /* robust_ip against the area free of noise, where the
                                              levels finer than noise.level_index do not count */
   double errors[SCREE_SHAPE_ERROR_COUNT]; /* NaN where not measured */
@@ -91,7 +93,14 @@ typedef struct scree_pick {
   double eps_s, ip;      /* what the choice minimised: ip = eps_s + w Nr / Nm; for a robust choice
                             eps_s is the worst at this or any finer level */
   double level_eps_s;    /* eq. 1 at this level alone */
+  /* How sharp the choice is: the coarsest and the finest level whose ip is at most SCREE_SIMILAR_IP
+   * times this one's, of the trace (of the paper's choice: of the grid) and this level itself. Not
+   * every level between need be as good. */
+  size_t fewest, most;
 } scree_pick;
+
+/* Levels up to this many times the least Ip count as about as good. */
+#define SCREE_SIMILAR_IP 1.1
 
 /* The scanner's noise as the curve shows it: area that goes away before the shape does. */
 typedef struct scree_noise {
@@ -115,17 +124,25 @@ typedef struct scree_choice {
                  Rp, from rp_min to 1, rising; equal neighbours occur at the floor */
   size_t trace_count;
   scree_pick paper; /* least ip on the grid; ties: fewest triangles, then the Rp nearest to Nr/Nm */
-  scree_pick robust;      /* least robust_ip of all levels; ties: fewest triangles */
-  scree_pick plain;       /* least ip of all levels, for diagnosis: often an accident */
-  bool plain_is_accident; /* the error at `plain` is below a tenth of the worst at finer levels */
-  scree_pick smooth;      /* robust with the area free of noise; robust where none was found */
-  size_t finer_count;     /* what robust would choose were the scan's spacing half as large (Nm four
-                             times as large) and the shape the same: the choice follows resolution */
+  scree_pick robust; /* least robust_ip of all levels; ties: fewest triangles */
+  scree_pick plain;  /* least ip of all levels, for diagnosis: often an accident */
+  /* The error there is below a tenth of the worst at finer levels. */
+  bool paper_is_accident, plain_is_accident;
+  scree_pick smooth;  /* robust with the area free of noise; robust where none was found */
+  size_t finer_count; /* what robust would choose were the scan's spacing half as large (Nm four
+                         times as large) and the shape the same: the choice follows resolution */
   size_t best[SCREE_SHAPE_ERROR_COUNT]; /* grid index of the least error + w Nr/Nm; level_count
                                            where that error was not measured */
 } scree_choice;
 
 enum { SCREE_TRACE_PER_DECADE = 200 };
+
+/* The Rp with the least mean of a criterion over several objects. */
+typedef struct scree_set_pick {
+  double rp, ip;
+  double rp_low, rp_high; /* the least and the largest Rp whose mean is at most SCREE_SIMILAR_IP
+                             times ip; not every Rp between need be as good */
+} scree_set_pick;
 
 /* One choice for several objects, as the paper's 1e-3 for its nine: the Rp with the least mean of
  * Ip over the objects. */
@@ -135,10 +152,10 @@ typedef struct scree_set_choice {
   double *low; /* least and largest over the objects there: the scatter */
   double *high;
   size_t level_count;
-  double paper_rp, paper_ip;   /* least mean ip on the grid; ties: the smaller Rp, but of several
-                                  that give the same levels the one nearest to Nr/Nm */
-  double robust_rp, robust_ip; /* least mean robust_ip on the trace; ties likewise */
-  double smooth_rp, smooth_ip; /* the same against the areas free of noise */
+  scree_set_pick paper; /* least mean ip on the grid; ties: the smaller Rp, but of several that give
+                           the same levels the one nearest to Nr/Nm */
+  scree_set_pick robust;              /* least mean robust_ip on the trace; ties likewise */
+  scree_set_pick smooth;              /* the same against the areas free of noise */
   double paper_spread, robust_spread; /* largest over smallest Rp chosen by the objects alone */
 } scree_set_choice;
 

@@ -141,7 +141,8 @@ class scree_choice_level(Structure):
 
 class scree_pick(Structure):
     _fields_ = [("rp", c_double), ("level_index", c_size_t), ("triangle_count", c_size_t), ("area", c_double),
-                ("volume", c_double), ("eps_s", c_double), ("ip", c_double), ("level_eps_s", c_double)]
+                ("volume", c_double), ("eps_s", c_double), ("ip", c_double), ("level_eps_s", c_double),
+                ("fewest", c_size_t), ("most", c_size_t)]
 
 
 class scree_noise(Structure):
@@ -153,8 +154,8 @@ class scree_choice(Structure):
     _fields_ = [("triangle_count", c_size_t), ("floor_count", c_size_t), ("area", c_double), ("volume", c_double),
                 ("reference_area", c_double), ("noise", scree_noise), ("levels", POINTER(scree_choice_level)),
                 ("level_count", c_size_t), ("trace", POINTER(scree_choice_level)), ("trace_count", c_size_t),
-                ("paper", scree_pick), ("robust", scree_pick), ("plain", scree_pick), ("plain_is_accident", c_bool),
-                ("smooth", scree_pick), ("finer_count", c_size_t), ("best", c_size_t * len(SHAPE_ERRORS))]
+                ("paper", scree_pick), ("robust", scree_pick), ("plain", scree_pick), ("paper_is_accident", c_bool),
+                ("plain_is_accident", c_bool), ("smooth", scree_pick), ("finer_count", c_size_t), ("best", c_size_t * len(SHAPE_ERRORS))]
 
 
 class scree_sample_options(Structure):

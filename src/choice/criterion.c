@@ -22,9 +22,12 @@
 static const double TARGET_SLACK = 1e-12;
 /* Slack at the ends of the grid: 1e-5 10^(36/9) may come out just above 1e-1. */
 static const double GRID_SLACK = 1e-9;
-/* The plain minimum counts as an accident where its error is below this part of the worst so far.
- */
+/* A plain minimum counts as an accident where its error is below this part of the worst so far. */
 static const double ACCIDENT_RATIO = 0.1;
+
+static bool is_accident(double error, double worst) {
+  return error < ACCIDENT_RATIO * worst;
+}
 
 scree_choice_options scree_default_choice_options(void) {
   return (scree_choice_options){1, 1e-5, 1e-1, 9, SCREE_REFERENCE_SCAN, false, false};
@@ -99,11 +102,12 @@ static void pass_enter(pass *p, size_t index, scree_level_row row) {
   p->row = row;
   p->penalty = p->options->weight * (double)row.triangle_count / p->triangle_count;
   p->eps = fabs(row.area - p->reference) / p->reference;
-  p->worst = p->eps > p->worst ? p->eps : p->worst;
   p->smooth_eps = fabs(row.area - p->noise->area) / p->noise->area;
   /* finer than the plateau the error is the noise itself: it must not hide the shape's behind it */
-  if (index <= p->noise->level_index || p->smooth_eps > p->smooth_worst)
-    p->smooth_worst = p->smooth_eps;
+  bool noisy = index <= p->noise->level_index;
+  if (noisy || p->smooth_eps > p->smooth_worst) p->smooth_worst = p->smooth_eps;
+  bool forget = noisy && p->options->reference == SCREE_REFERENCE_SMOOTH;
+  if (forget || p->eps > p->worst) p->worst = p->eps;
 }
 
 static void record_level(const pass *p, scree_choice_level *level, size_t target) {
@@ -133,14 +137,26 @@ static void keep_best(const pass *p, double error, leader *best) {
 
 static scree_pick pick_of(const pass *p, const scree_level_table *table, const leader *best) {
   scree_level_row row = table->row(table->context, best->index);
-  return (scree_pick){(double)row.triangle_count / p->triangle_count,
-                      best->index,
-                      row.triangle_count,
-                      row.area,
-                      row.volume,
-                      best->error,
-                      best->ip,
-                      best->eps};
+  return (scree_pick){.rp = (double)row.triangle_count / p->triangle_count,
+                      .level_index = best->index,
+                      .triangle_count = row.triangle_count,
+                      .area = row.area,
+                      .volume = row.volume,
+                      .eps_s = best->error,
+                      .ip = best->ip,
+                      .level_eps_s = best->eps};
+}
+
+/* How sharp a choice is, from the levels it is to be seen among. */
+static void find_similar(const scree_choice_level *levels, size_t count, scree_criterion criterion,
+                         scree_pick *pick) {
+  pick->fewest = pick->most = pick->triangle_count;
+  for (size_t i = 0; i < count; i++) {
+    size_t here = levels[i].triangle_count;
+    if (scree_level_ip(&levels[i], criterion) > SCREE_SIMILAR_IP * pick->ip) continue;
+    if (here < pick->fewest) pick->fewest = here;
+    if (here > pick->most) pick->most = here;
+  }
 }
 
 /* Levels yet to be filled, from the finest down. */
@@ -191,7 +207,7 @@ static scree_status run_pass(const scree_level_table *table, const scree_choice_
     keep_best(&p, p.eps, &p.plain);
     keep_best(&p, p.worst, &p.robust);
     keep_best(&p, p.smooth_worst, &p.smooth);
-    if (p.plain.index == i) choice->plain_is_accident = p.eps < ACCIDENT_RATIO * p.worst;
+    if (p.plain.index == i) choice->plain_is_accident = is_accident(p.eps, p.worst);
     double finer_ip = p.worst + 0.25 * p.penalty; /* Nm four times as large */
     if (finer_ip <= p.best_finer_ip) {
       p.best_finer_ip = finer_ip;
@@ -292,10 +308,19 @@ scree_status scree_choice_from_table(const scree_level_table *table,
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
     filled.best[e] = best_on_grid(&filled, (scree_shape_error)e, options->weight);
   const scree_choice_level *paper = &filled.levels[filled.best[SCREE_ERROR_AREA]];
-  filled.paper = (scree_pick){paper->rp,   paper->level_index, paper->triangle_count,
-                              paper->area, paper->volume,      paper->eps_s,
-                              paper->ip,   paper->eps_s};
-  if (smooth) filled.robust = filled.smooth;
+  filled.paper = (scree_pick){.rp = paper->rp,
+                              .level_index = paper->level_index,
+                              .triangle_count = paper->triangle_count,
+                              .area = paper->area,
+                              .volume = paper->volume,
+                              .eps_s = paper->eps_s,
+                              .ip = paper->ip,
+                              .level_eps_s = paper->eps_s};
+  filled.paper_is_accident = is_accident(paper->eps_s, paper->worst_eps_s);
+  find_similar(filled.levels, filled.level_count, SCREE_PLAIN_IP, &filled.paper);
+  find_similar(filled.trace, filled.trace_count, SCREE_PLAIN_IP, &filled.plain);
+  find_similar(filled.trace, filled.trace_count, SCREE_ROBUST_IP, &filled.robust);
+  find_similar(filled.trace, filled.trace_count, SCREE_SMOOTH_IP, &filled.smooth);
   *choice = filled;
   return SCREE_OK;
 }

@@ -27,6 +27,15 @@ scree_status scree_choice_from_table(const scree_level_table *table,
                                      const scree_choice_options *options, scree_choice *choice,
                                      scree_error *error);
 
+/* The three criteria a level is weighed by. */
+typedef enum scree_criterion { SCREE_PLAIN_IP, SCREE_ROBUST_IP, SCREE_SMOOTH_IP } scree_criterion;
+
+static inline double scree_level_ip(const scree_choice_level *level, scree_criterion criterion) {
+  return criterion == SCREE_PLAIN_IP    ? level->ip
+         : criterion == SCREE_ROBUST_IP ? level->robust_ip
+                                        : level->smooth_ip;
+}
+
 /* The grid index with the least errors[which] + w Nr/Nm (ties as for `paper`), or level_count where
  * it was not measured. */
 size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error which, double weight);

@@ -5,12 +5,6 @@
 #include "base/sum.h"
 #include "choice/criterion.h"
 
-typedef enum { PLAIN_IP, ROBUST_IP, SMOOTH_IP } criterion_kind;
-
-static double criterion_of(const scree_choice_level *level, criterion_kind kind) {
-  return kind == PLAIN_IP ? level->ip : kind == ROBUST_IP ? level->robust_ip : level->smooth_ip;
-}
-
 /* The best Rp so far. Where meshes cannot be reduced further several Rp give the same levels; then
  * the one nearest to what was reached stands for them. Other ties go to the smaller Rp. */
 typedef struct best_rp {
@@ -18,38 +12,61 @@ typedef struct best_rp {
   size_t triangle_count; /* of all objects together */
 } best_rp;
 
-/* Takes point `index` into account; the points come with Rp rising. Returns the mean there. */
-static double consider(const scree_choice *choices, size_t count, criterion_kind kind, size_t index,
-                       best_rp *best) {
-  scree_sum sum = {0, 0}, misfit = {0, 0};
-  best_rp here = {0};
-  for (size_t k = 0; k < count; k++) {
-    const scree_choice_level *level =
-        kind == PLAIN_IP ? &choices[k].levels[index] : &choices[k].trace[index];
-    scree_sum_add(&sum, criterion_of(level, kind));
+/* The points of a criterion, Rp rising: the paper's grid, or the trace. */
+typedef struct points {
+  const scree_choice *choices;
+  size_t object_count, count;
+  scree_criterion criterion;
+} points;
+
+static points points_of(const scree_choice *choices, size_t count, scree_criterion criterion) {
+  bool grid = criterion == SCREE_PLAIN_IP;
+  return (points){choices, count, grid ? choices->level_count : choices->trace_count, criterion};
+}
+
+static const scree_choice_level *level_at(const points *p, size_t object, size_t index) {
+  const scree_choice *choice = &p->choices[object];
+  return p->criterion == SCREE_PLAIN_IP ? &choice->levels[index] : &choice->trace[index];
+}
+
+static double mean_ip(const points *p, size_t index) {
+  scree_sum sum = {0, 0};
+  for (size_t k = 0; k < p->object_count; k++)
+    scree_sum_add(&sum, scree_level_ip(level_at(p, k, index), p->criterion));
+  return scree_sum_value(sum) / (double)p->object_count;
+}
+
+static void consider(const points *p, size_t index, best_rp *best) {
+  scree_sum misfit = {0, 0};
+  best_rp here = {.rp = level_at(p, 0, index)->rp, .ip = mean_ip(p, index)};
+  for (size_t k = 0; k < p->object_count; k++) {
+    const scree_choice_level *level = level_at(p, k, index);
     scree_sum_add(&misfit, fabs(log(level->rp / level->rp_reached)));
     here.triangle_count += level->triangle_count;
-    here.rp = level->rp;
   }
-  here.ip = scree_sum_value(sum) / (double)count;
   here.misfit = scree_sum_value(misfit);
   bool same = here.ip == best->ip && here.triangle_count == best->triangle_count;
   if (here.ip < best->ip || (same && here.misfit < best->misfit)) *best = here;
-  return here.ip;
 }
 
-static void best_on_trace(const scree_choice *choices, size_t count, criterion_kind kind,
-                          double *rp, double *ip) {
+static scree_set_pick pick_for_set(const scree_choice *choices, size_t count,
+                                   scree_criterion criterion) {
+  const points p = points_of(choices, count, criterion);
   best_rp best = {.ip = INFINITY};
-  for (size_t i = 0; i < choices[0].trace_count; i++) consider(choices, count, kind, i, &best);
-  *rp = best.rp;
-  *ip = best.ip;
+  for (size_t i = 0; i < p.count; i++) consider(&p, i, &best);
+  scree_set_pick pick = {best.rp, best.ip, best.rp, best.rp};
+  for (size_t i = 0; i < p.count; i++) {
+    if (mean_ip(&p, i) > SCREE_SIMILAR_IP * best.ip) continue;
+    pick.rp_low = fmin(pick.rp_low, level_at(&p, 0, i)->rp);
+    pick.rp_high = fmax(pick.rp_high, level_at(&p, 0, i)->rp);
+  }
+  return pick;
 }
 
 static void fill_grid(const scree_choice *choices, size_t count, scree_set_choice *set) {
-  best_rp best = {.ip = INFINITY};
+  const points p = points_of(choices, count, SCREE_PLAIN_IP);
   for (size_t i = 0; i < set->level_count; i++) {
-    set->ip[i] = consider(choices, count, PLAIN_IP, i, &best);
+    set->ip[i] = mean_ip(&p, i);
     set->low[i] = INFINITY;
     set->high[i] = -INFINITY;
     for (size_t k = 0; k < count; k++) {
@@ -57,8 +74,6 @@ static void fill_grid(const scree_choice *choices, size_t count, scree_set_choic
       set->high[i] = fmax(set->high[i], choices[k].levels[i].ip);
     }
   }
-  set->paper_rp = best.rp;
-  set->paper_ip = best.ip;
 }
 
 static void fill_spread(const scree_choice *choices, size_t count, scree_set_choice *set) {
@@ -99,8 +114,9 @@ scree_status scree_choose_set(const scree_choice *choices, size_t count, scree_s
   }
   fill_grid(choices, count, &filled);
   fill_spread(choices, count, &filled);
-  best_on_trace(choices, count, ROBUST_IP, &filled.robust_rp, &filled.robust_ip);
-  best_on_trace(choices, count, SMOOTH_IP, &filled.smooth_rp, &filled.smooth_ip);
+  filled.paper = pick_for_set(choices, count, SCREE_PLAIN_IP);
+  filled.robust = pick_for_set(choices, count, SCREE_ROBUST_IP);
+  filled.smooth = pick_for_set(choices, count, SCREE_SMOOTH_IP);
   *set = filled;
   return SCREE_OK;
 }

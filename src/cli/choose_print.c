@@ -44,12 +44,11 @@ static const char *percent_text(double fraction, char buffer[16]) {
 static void print_row(FILE *out, const choose_run *run, size_t index) {
   const scree_choice *c = &run->choices[index];
   char scan[32], n1[32], n2[32], rp1[16], rp2[16], e1[16], e2[16], noise[16];
-  bool accident = c->paper.eps_s < 0.1 * c->levels[c->best[SCREE_ERROR_AREA]].worst_eps_s;
   fprintf(out, "%-12.12s%10s%7s |%7s%7s%8s%c|%7s%7s%8s\n", run->objects[index].name,
           cli_count_text(c->triangle_count, scan),
           c->noise.found ? percent_text(c->noise.fraction, noise) : "-", rp_text(c->paper.rp, rp1),
           cli_count_text(c->paper.triangle_count, n1), percent_text(c->paper.eps_s, e1),
-          accident ? '*' : ' ', rp_text(c->robust.rp, rp2),
+          c->paper_is_accident ? '*' : ' ', rp_text(c->robust.rp, rp2),
           cli_count_text(c->robust.triangle_count, n2), percent_text(c->robust.eps_s, e2));
 }
 
@@ -57,8 +56,8 @@ static void print_table(FILE *out, const choose_run *run) {
   char rp1[16], rp2[16];
   const char *reference =
       run->options.reference == SCREE_REFERENCE_SMOOTH ? ", area free of noise" : "";
-  fprintf(out, "Ip = eps_s + %s Nr/Nm, method %s%s, coordinates in %s\n",
-          run->options.weight == 1 ? "1" : "w", scree_method_name(run->simplify.method), reference,
+  fprintf(out, "Ip = eps_s + %g Nr/Nm, method %s%s, coordinates in %s\n", run->options.weight,
+          scree_method_name(run->simplify.method), reference,
           cli_unit_name(run->arguments->source.unit));
   fprintf(out, "%30s%-24s| %s\n", "",
           run->arguments->paper ? "| paper (default)" : "| paper's grid",
@@ -67,8 +66,8 @@ static void print_table(FILE *out, const choose_run *run) {
           "eps_s", "Rp", "Nr", "worst");
   for (size_t i = 0; i < run->count; i++) print_row(out, run, i);
   if (run->count > 1)
-    fprintf(out, "%-30s|%7s%16s|%7s\n", "the set (least mean Ip)", rp_text(run->set.paper_rp, rp1),
-            "", rp_text(run->set.robust_rp, rp2));
+    fprintf(out, "%-30s|%7s%16s|%7s\n", "the set (least mean Ip)", rp_text(run->set.paper.rp, rp1),
+            "", rp_text(run->set.robust.rp, rp2));
 }
 
 /* The range of counts and errors at the set's Rp. */
@@ -89,6 +88,23 @@ static void print_set_advice(FILE *out, const choose_run *run) {
           percent_text(worst, percent));
 }
 
+/* How sharp the choice is. */
+static void print_similar(FILE *out, const choose_run *run) {
+  char low[32], high[32];
+  if (run->count > 1) {
+    const scree_set_pick *pick = run->arguments->paper ? &run->set.paper : &run->set.robust;
+    if (pick->rp_high > pick->rp_low)
+      fprintf(out,
+              "From Rp = %s up to %s there are levels with an Ip within a tenth of the least.\n",
+              rp_text(pick->rp_low, low), rp_text(pick->rp_high, high));
+    return;
+  }
+  const scree_pick *pick = choose_default_pick(run, &run->choices[0]);
+  if (pick->most > pick->fewest)
+    fprintf(out, "From %s up to %s triangles there are levels with an Ip within a tenth of it.\n",
+            cli_count_text(pick->fewest, low), cli_count_text(pick->most, high));
+}
+
 static void print_advice(FILE *out, const choose_run *run) {
   const scree_choice *c = &run->choices[0];
   char count[32], rp[16], percent[16];
@@ -106,7 +122,7 @@ static void print_accidents(FILE *out, const choose_run *run) {
   size_t accidents = 0, differ = 0;
   for (size_t i = 0; i < run->count; i++) {
     const scree_choice *c = &run->choices[i];
-    accidents += c->paper.eps_s < 0.1 * c->levels[c->best[SCREE_ERROR_AREA]].worst_eps_s;
+    accidents += c->paper_is_accident;
     differ +=
         ratio((double)c->paper.triangle_count, (double)c->robust.triangle_count) > NOTABLE_RATIO;
   }
@@ -133,7 +149,7 @@ static void print_noise(FILE *out, const choose_run *run) {
             "Scan noise adds up to %s of area and misleads eps_s: --reference smooth takes it\n"
             "out and gives Rp = %s.\n",
             percent_text(most, percent),
-            rp_text(run->count > 1 ? run->set.smooth_rp : run->choices[0].smooth.rp, rp));
+            rp_text(run->count > 1 ? run->set.smooth.rp : run->choices[0].smooth.rp, rp));
 }
 
 static void print_resolution(FILE *out, const choose_run *run) {
@@ -197,6 +213,7 @@ void choose_print(FILE *out, const choose_run *run) {
   print_table(out, run);
   putc('\n', out);
   print_advice(out, run);
+  print_similar(out, run);
   print_accidents(out, run);
   print_noise(out, run);
   print_resolution(out, run);

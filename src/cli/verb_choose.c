@@ -57,7 +57,7 @@ const scree_pick *choose_default_pick(const choose_run *run, const scree_choice 
 }
 
 double choose_set_rp(const choose_run *run) {
-  return run->arguments->paper ? run->set.paper_rp : run->set.robust_rp;
+  return run->arguments->paper ? run->set.paper.rp : run->set.robust.rp;
 }
 
 /* "1e-5:1e-1:9" */

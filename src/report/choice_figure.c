@@ -144,7 +144,7 @@ static scree_panel make_panel(const scree_choice_report *report, bool criterion,
 static size_t set_guide(const scree_choice_report *report, char *text, size_t size,
                         scree_guide *guide) {
   if (report->entry_count < 2 || !report->set) return 0;
-  double rp = report->paper ? report->set->paper_rp : report->set->robust_rp;
+  double rp = report->paper ? report->set->paper.rp : report->set->robust.rp;
   snprintf(text, size, "set: %.2g", rp);
   *guide = (scree_guide){text, rp, false};
   return 1;

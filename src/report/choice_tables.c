@@ -19,6 +19,8 @@ static void json_pick(scree_json *json, const char *key, const scree_pick *pick)
   scree_json_number(json, "level_eps_s", pick->level_eps_s);
   scree_json_number(json, "area", pick->area);
   scree_json_number(json, "volume", pick->volume);
+  scree_json_count(json, "similar_fewest", pick->fewest);
+  scree_json_count(json, "similar_most", pick->most);
   scree_json_end(json);
 }
 
@@ -112,6 +114,7 @@ static void json_entry(scree_json *json, const scree_choice_report *report,
   json_levels(json, choice);
   json_pick(json, "paper", &choice->paper);
   json_pick(json, "robust", &choice->robust);
+  scree_json_bool(json, "paper_is_accident", choice->paper_is_accident);
   scree_json_text(json, "default", report->paper ? "paper" : "robust");
   json_pick(json, "plain", &choice->plain);
   scree_json_bool(json, "plain_is_accident", choice->plain_is_accident);
@@ -128,10 +131,12 @@ static void json_entry(scree_json *json, const scree_choice_report *report,
   scree_json_end(json);
 }
 
-static void json_set_pick(scree_json *json, const char *key, double rp, double ip) {
+static void json_set_pick(scree_json *json, const char *key, const scree_set_pick *pick) {
   scree_json_row_object(json, key);
-  scree_json_number(json, "rp", rp);
-  scree_json_number(json, "ip", ip);
+  scree_json_number(json, "rp", pick->rp);
+  scree_json_number(json, "ip", pick->ip);
+  scree_json_number(json, "similar_rp_low", pick->rp_low);
+  scree_json_number(json, "similar_rp_high", pick->rp_high);
   scree_json_end(json);
 }
 
@@ -150,9 +155,9 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
     scree_json_end(json);
   }
   scree_json_end(json);
-  json_set_pick(json, "paper", set->paper_rp, set->paper_ip);
-  json_set_pick(json, "robust", set->robust_rp, set->robust_ip);
-  json_set_pick(json, "smooth", set->smooth_rp, set->smooth_ip);
+  json_set_pick(json, "paper", &set->paper);
+  json_set_pick(json, "robust", &set->robust);
+  json_set_pick(json, "smooth", &set->smooth);
   scree_json_number(json, "paper_spread", set->paper_spread);
   scree_json_number(json, "robust_spread", set->robust_spread);
   scree_json_text(json, "version", scree_version());

@@ -98,6 +98,33 @@ static void small_table_by_hand(void **state) {
   scree_choice_free(&c);
 }
 
+/* As good as the least to a tenth, with a worse level between or without. */
+static void similar_levels_show_how_sharp_a_choice_is(void **state) {
+  (void)state;
+  const scree_choice_options o = scree_default_choice_options();
+  for (int i = 0; i < 3; i++) { /* robust Ip at 100: .104 or .114; at 50: .110 or .114 */
+    const scree_level_row rows[] = {{1000, 1.0, 1},
+                                    {100, i == 1 ? 0.986 : 0.996, 1},
+                                    {50, i == 2 ? 0.936 : 0.94, 1},
+                                    {20, 0.918, 1},
+                                    {10, 0.85, 1}};
+    scree_choice c = choose(rows, 5, &o);
+    assert_int_equal(c.robust.triangle_count, 20);
+    CHECK_NEAR(c.robust.ip, 0.102, 1e-12);
+    assert_int_equal(c.robust.fewest, 20);
+    assert_int_equal(c.robust.most, i == 1 ? 50 : 100);
+    scree_set_choice set;
+    scree_error error;
+    CHECK_OK(scree_choose_set(&c, 1, &set, &error), error);
+    CHECK_NEAR(set.robust.rp_low / 0.02, 1, 0.02);
+    CHECK_NEAR(set.robust.rp_high / (i == 1 ? 0.1 : 1), 1,
+               0.02); /* the next finer level begins there */
+    CHECK_NEAR(set.robust.ip, 0.102, 1e-12);
+    scree_set_choice_free(&set);
+    scree_choice_free(&c);
+  }
+}
+
 /* By accident: an error below a tenth of the worst at finer levels. */
 static void an_accident_is_below_a_tenth_of_the_worst(void **state) {
   (void)state;
@@ -159,8 +186,8 @@ static void a_floor_above_the_grid_reports_the_nearest_rp(void **state) {
   scree_set_choice set;
   scree_error error;
   CHECK_OK(scree_choose_set(&c, 1, &set, &error), error);
-  CHECK_NEAR(set.paper_rp, 0.1, 1e-12);
-  CHECK_NEAR(set.robust_rp, 1, 1e-12);
+  CHECK_NEAR(set.paper.rp, 0.1, 1e-12);
+  CHECK_NEAR(set.robust.rp, 1, 1e-12);
   scree_set_choice_free(&set);
   scree_choice_free(&c);
 }
@@ -225,6 +252,15 @@ static void noise_is_found_and_taken_out(void **state) {
     assert_int_equal(d.robust.triangle_count, c.smooth.triangle_count);
     CHECK_NEAR(d.reference_area, c.noise.area, 0);
     CHECK_NEAR((double)d.paper.triangle_count, 2000, 300);
+    /* the levels that are noise do not count for the set's choice either */
+    CHECK_NEAR(d.robust.ip, c.smooth.ip, 0);
+    for (size_t i = 0; i < d.trace_count; i++)
+      CHECK_NEAR(d.trace[i].robust_ip, d.trace[i].smooth_ip, 0);
+    scree_set_choice set;
+    scree_error error;
+    CHECK_OK(scree_choose_set(&d, 1, &set, &error), error);
+    CHECK_NEAR(set.robust.rp / d.robust.rp, 1, 0.02);
+    scree_set_choice_free(&set);
     scree_choice_free(&c);
     scree_choice_free(&d);
     free(rows);
@@ -278,6 +314,14 @@ static void pass_agrees_with_the_quadratic_oracle(void **state) {
       best_grid = fmin(best_grid, c.levels[g].ip);
     }
     CHECK_NEAR(c.paper.ip, best_grid, 1e-15);
+    size_t fewest = SIZE_MAX, most = 0;
+    for (size_t g = 0; g < c.level_count; g++) {
+      if (c.levels[g].ip > 1.1 * best_grid) continue;
+      fewest = c.levels[g].triangle_count < fewest ? c.levels[g].triangle_count : fewest;
+      most = c.levels[g].triangle_count > most ? c.levels[g].triangle_count : most;
+    }
+    assert_int_equal(c.paper.fewest, fewest);
+    assert_int_equal(c.paper.most, most);
     scree_choice_free(&c);
   }
 }
@@ -307,10 +351,16 @@ static void set_takes_the_least_mean(void **state) {
     CHECK_NEAR(set.high[i], fmax(a, fmax(b, d)), 0);
     if (set.ip[i] < best) best = set.ip[i], best_rp = c[0].levels[i].rp;
   }
-  CHECK_NEAR(set.paper_rp, best_rp, 0);
+  for (size_t i = 0; i < set.level_count; i++) {
+    double rp = c[0].levels[i].rp;
+    bool similar = set.ip[i] <= 1.1 * best;
+    if (similar) assert_true(set.paper.rp_low <= rp && rp <= set.paper.rp_high);
+    if (rp == set.paper.rp_low || rp == set.paper.rp_high) assert_true(similar);
+  }
+  CHECK_NEAR(set.paper.rp, best_rp, 0);
   double least = fmin(c[0].robust.rp, fmin(c[1].robust.rp, c[2].robust.rp));
   double most = fmax(c[0].robust.rp, fmax(c[1].robust.rp, c[2].robust.rp));
-  assert_true(set.robust_rp >= least * 0.98 && set.robust_rp <= most * 1.02);
+  assert_true(set.robust.rp >= least * 0.98 && set.robust.rp <= most * 1.02);
   CHECK_NEAR(set.robust_spread, most / least, 1e-12);
   scree_set_choice_free(&set);
   o.per_decade = 3;
@@ -401,6 +451,7 @@ int main(void) {
       cmocka_unit_test(an_accident_is_below_a_tenth_of_the_worst),
       cmocka_unit_test(ties_go_to_fewer_triangles),
       cmocka_unit_test(a_floor_above_the_grid_reports_the_nearest_rp),
+      cmocka_unit_test(similar_levels_show_how_sharp_a_choice_is),
       cmocka_unit_test(smooth_shape_gives_the_square_root),
       cmocka_unit_test(noise_is_found_and_taken_out),
       cmocka_unit_test(pass_agrees_with_the_quadratic_oracle),

@@ -11,6 +11,8 @@ const mm = 1000;
 const shownSamples = 24000; // small triangles that carry the distance colours
 
 const pickOf = (object) => object[object.default];
+// How sharp a choice is: nothing where it stands alone.
+const similar = (least, most, text) => (most > least ? ` From ${text(least)} up to ${text(most)} there are levels with an Ip within a tenth of the least.` : '');
 const worstError = (object) => (object.default === 'paper' ? object.paper.level_eps_s : object.robust.eps_s);
 
 // 1, 2 or 5 times a power of ten, not below x.
@@ -71,11 +73,11 @@ export class ChoiceSection {
 
   ownAnswer(object) {
     const pick = pickOf(object);
-    return `Use ${whole(pick.triangle_count)} of the scan's ${whole(object.triangle_count)} triangles (Rp = ${rpText(pick.triangle_count / object.triangle_count)}): the area stays within ${percent(worstError(object))} of the scan's.`;
+    return `Use ${whole(pick.triangle_count)} of the scan's ${whole(object.triangle_count)} triangles (Rp = ${rpText(pick.triangle_count / object.triangle_count)}): the area stays within ${percent(worstError(object))} of the scan's.${similar(pick.similar_fewest, pick.similar_most, (n) => `${whole(n)} triangles`)}`;
   }
 
   setAnswer(set) {
-    const { rp } = set[this.objects[0].default];
+    const { rp, similar_rp_low: low, similar_rp_high: high } = set[this.objects[0].default];
     const counts = [], errors = [];
     this.objects.forEach((object, i) => {
       const row = this.levelsOf(i)?.trace.findLast(({ count }) => count <= rp * object.triangle_count * (1 + 1e-9));
@@ -84,7 +86,7 @@ export class ChoiceSection {
       errors.push(row.worst);
     });
     const range = counts.length ? `: ${whole(Math.min(...counts))} to ${whole(Math.max(...counts))} triangles, area within ${percent(Math.max(...errors))} of the scans'` : '';
-    return `Use Rp = ${rpText(rp)} for all ${this.objects.length}${range}. Each object's own choice is below.`;
+    return `Use Rp = ${rpText(rp)} for all ${this.objects.length}${range}.${similar(low, high, (v) => `Rp = ${rpText(v)}`)} Each object's own choice is below.`;
   }
 
   tellObjects() {
@@ -319,7 +321,7 @@ export class ChoiceSection {
     const keys = ['paper', 'robust', 'smooth', 'plain'];
     const rows = [
       { name: 'scan', pick: { triangle_count: object.triangle_count, area: object.area, volume: object.volume, level_eps_s: 0 }, measures: levels?.measures[0] },
-      ...keys.map((key, i) => ({ name: `${names[key]}${key === object.default ? ' (chosen)' : ''}${key === 'plain' && object.plain_is_accident ? ' (an accident)' : ''}`, pick: object[key], measures: levels?.measures[i + 1] })),
+      ...keys.map((key, i) => ({ name: `${names[key]}${key === object.default ? ' (chosen)' : ''}${object[`${key}_is_accident`] ? ' (an accident)' : ''}`, pick: object[key], measures: levels?.measures[i + 1] })),
     ];
     const scan = levels?.measures[0];
     const value = (head, get, digits = 4) => ({ head, value: get, text: (row) => number(get(row), digits) });
@@ -331,6 +333,8 @@ export class ChoiceSection {
       { head: 'triangles', value: (row) => row.pick.triangle_count, text: (row) => whole(row.pick.triangle_count) },
       value('Rp', (row) => row.pick.triangle_count / object.triangle_count, 3),
       value('Ip', (row) => row.pick.ip, 3),
+      { head: 'fewest, Ip within a tenth', value: (row) => row.pick.similar_fewest ?? null, text: (row) => (row.pick.similar_fewest ? whole(row.pick.similar_fewest) : '') },
+      { head: 'most', value: (row) => row.pick.similar_most ?? null, text: (row) => (row.pick.similar_most ? whole(row.pick.similar_most) : '') },
       value('eps_s', (row) => row.pick.level_eps_s, 3),
       value('area / mm²', (row) => row.pick.area * mm ** 2, 6),
       value('volume / mm³', (row) => row.pick.volume * mm ** 3, 6),
