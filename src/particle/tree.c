@@ -4,6 +4,7 @@
 #include "base/alloc.h"
 
 static const double pi = 3.14159265358979323846;
+static const double opposite = 1e-6; /* rad */
 
 typedef struct tree_builder {
   const scree_box *boxes;
@@ -100,7 +101,7 @@ static scree_cone join_cones(const scree_cone *a, const scree_cone *b) {
   if (between + wide_a <= wide_b) return *b;
   double wide = fmin(0.5 * (between + wide_a + wide_b) + 1e-7, pi), turn = wide - wide_a;
   vec3 aside = vec3_unit(vec3_mad(b->axis, a->axis, -vec3_dot(a->axis, b->axis)));
-  if (!(vec3_norm2(aside) > 0)) wide = pi; /* the same axis, or opposite ones */
+  if (between > pi - opposite) wide = pi; /* aside is rounding */
   return (scree_cone){vec3_unit(vec3_mad(vec3_scale(a->axis, cos(turn)), aside, sin(turn))),
                       cos(wide), fmax(sin(wide), 0)};
 }

@@ -6,8 +6,8 @@
  * One feature gives m = o; n equal ones at most (o + l0)/(1 - kappa). U = K m^2/2 is the energy and
  * s_i = dm/do_i = w_i (o_i - t)+ / (S (1 - kappa) + kappa l), S = sum w_i (o_i - t)+, the shares:
  *   f_i = max(0, s_i (K m + C do_i/dt)).
- * Tangentially each feature has a spring K_t s_i stretched by xi_i, which turns with b, follows the
- * sliding, and is shortened to the Coulomb limit; when the share grows the force stays (xi s is
+ * Tangentially each feature has a spring K_t s_i stretched by xi_i, which turns with both, follows
+ * the sliding, and is shortened to the Coulomb limit; when the share grows the force stays (xi s is
  * kept), so that energy is only ever lost.
  * Hysteretic: F = K m on first loading, K/e^2 (m - m0) below the largest m, m0 = (1 - e^2) max m.
  */
@@ -144,13 +144,14 @@ static slider make_slider(const scree_world *world, const scree_pair *pair) {
                   pair->law.friction, world->time_step};
 }
 
-/* Stretches the spring by the last drift `v` along the surface, and answers the tangential force.
- */
-static vec3 slide(const slider *law, scree_anchor *anchor, double s, vec3 n, vec3 v,
+/* Stretches the spring by the last drift `v` along the surface, turns it by half of the drift's
+ * `spin` (it is kept in the frame of b), and answers the tangential force. */
+static vec3 slide(const slider *law, scree_anchor *anchor, double s, vec3 n, vec3 v, vec3 spin,
                   double normal_force, double *energy) {
   vec3 xi = {0, 0, 0};
   if (anchor->share > 0) {
-    xi = vec3_mad(anchor->stretch, v, law->time_step);
+    vec3 rate = vec3_mad(v, vec3_cross(spin, anchor->stretch), 0.5);
+    xi = vec3_mad(anchor->stretch, rate, law->time_step);
     xi = vec3_mad(xi, n, -vec3_dot(xi, n));
     if (s > anchor->share) xi = vec3_scale(xi, anchor->share / s);
   }
@@ -193,7 +194,7 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
   double normal = elastic + share * pair->law.damping * touch->lever * rate;
   if (!(normal > 0)) normal = 0;
   double dashpot = normal - elastic;
-  vec3 along = slide(law, touch->anchor, touch->share, n, v, normal, energy);
+  vec3 along = slide(law, touch->anchor, touch->share, n, v, relative->spin, normal, energy);
   touch->force = vec3_mad(along, n, normal);
   touch->anchor->normal = n;
   touch->anchor->share = touch->share;

@@ -407,7 +407,7 @@ static void threads_change_nothing(void **state) {
     scree_observation o;
     scree_world_observe(world, &o);
     print_message("%zu pairs touch at %.3f s\n", o.pair_count, o.time);
-    assert_true(o.pair_count > 10);
+    assert_true(o.pair_count > 5);
     scree_checksum hash = scree_world_hash(world);
     if (i == 0) first = hash;
     assert_true(hash.high == first.high && hash.low == first.low);
@@ -545,9 +545,53 @@ static void features_follow_the_shape(void **state) {
   }
 }
 
+/* By how much the widest of an edge's normals is outside the cone of a node above it, rad. */
+static double outside(const scree_cone *node, const scree_cone *edge) {
+  double between = acos(fmax(-1, fmin(1, vec3_dot(node->axis, edge->axis)))),
+         wide = between + acos(edge->cosine);
+  return fmin(wide, 3.14159265358979323846) - acos(node->cosine);
+}
+
+/* Nodes of an edge tree hold the normals of all edges below them: lists leave out whole nodes by
+ * them. Edges that lie side by side in the tree may look opposite ways, to rounding: those of a
+ * tray's walls did, and a ball went 2 mm into such an edge unfelt. */
+static void cones_hold_the_edges_below(void **state) {
+  (void)state;
+  scree_particle *shapes[] = {shape_particle(shape_box(0.1, 0.05, 0.015)),
+                              shape_particle(shape_box(0.06, 0.04, 0.002)),
+                              shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004)),
+                              shape_particle(solid_hook(0.05, 0.012, 0.02)),
+                              shape_particle(solid_notch(0.06, 0.5, 0.05)),
+                              shape_particle(shape_icosphere(0.02, 2))};
+  double worst = 0;
+  for (size_t k = 0; k < sizeof shapes / sizeof *shapes; k++) {
+    const scree_tree *tree = &shapes[k]->edge_tree;
+    uint32_t above[SCREE_TREE_STACK] = {0};
+    /* every node, from the root down; then every edge below it */
+    size_t node_count = 1;
+    for (size_t i = 0; i < node_count; i++) node_count += tree->nodes[i].count ? 0 : 2;
+    for (uint32_t i = 0; i < node_count; i++) {
+      int depth = 0;
+      above[depth++] = i;
+      while (depth > 0) {
+        const scree_tree_node *node = &tree->nodes[above[--depth]];
+        for (uint32_t e = 0; e < node->count; e++)
+          worst = fmax(worst, outside(&tree->cones[i],
+                                      &shapes[k]->edges[tree->order[node->first + e]].normals));
+        if (node->count) continue;
+        above[depth++] = node->first;
+        above[depth++] = node->first + 1;
+      }
+    }
+    scree_particle_free(shapes[k]);
+  }
+  LAW_BELOW("-", "normals outside the cones of trees (rad)", worst, 1e-7);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(features_follow_the_shape),
+      cmocka_unit_test(cones_hold_the_edges_below),
       cmocka_unit_test(unusable_meshes_are_refused),
       cmocka_unit_test(force_is_the_slope_of_the_energy),
       cmocka_unit_test(lists_change_nothing),
