@@ -200,7 +200,8 @@ class Curve:
 
 
 class Choice:
-    """paper, robust, plain and smooth, each with rp, triangle_count, level_index, eps_s, ip; levels (the grid) and
+    """paper, robust, plain and smooth, each with rp, triangle_count, level_index, eps_s, ip, and fewest and most triangles with
+    an ip within a tenth of it; levels (the grid) and
     trace (the dense curve) as lists; noise; best, the grid level of the least error by name."""
 
     def __init__(self, curve, progress=None, reference="scan", **options):
