@@ -8,37 +8,51 @@
 extern "C" {
 #endif
 
-/* What can be wrong with a surface: X(NAME, "name in JSON", grave, "what it counts"). A surface
- * with a grave one cannot serve as a particle; the others are worth knowing. */
+/* What can be wrong with a surface: X(NAME, "name in JSON", grave, "what one is", "what several
+ * are"). A surface with a grave one cannot serve as a particle; the others are worth knowing. */
 #define SCREE_DEFECT_LIST(X)                                                                       \
-  X(BAD_COORDINATE, "bad_coordinates", true, "vertices that are not finite, or beyond 1e30 m")     \
-  X(DEGENERATE_FACET, "degenerate_facets", true, "facets without area")                            \
-  X(DUPLICATE_FACET, "duplicate_facets", true, "facets on the same three vertices as another")     \
-  X(BOUNDARY_EDGE, "boundary_edges", true, "edges of one facet only: the surface is open")         \
-  X(HOLE, "holes", true, "connected sets of boundary edges")                                       \
-  X(NON_MANIFOLD_EDGE, "non_manifold_edges", true, "edges of three or more facets")                \
-  X(NON_MANIFOLD_VERTEX, "non_manifold_vertices", true, "vertices where separate fans meet")       \
-  X(INCONSISTENT_EDGE, "inconsistent_edges", true, "edges whose two facets are wound unlike")      \
-  X(INSIDE_OUT_SHELL, "inside_out_shells", true, "closed shells wound clockwise from outside")     \
-  X(CROSSING_PAIR, "crossing_pairs", true, "pairs of facets that pass through each other")         \
-  X(TOUCHING_PAIR, "touching_pairs", true, "pairs of facets that touch beyond shared edges")       \
-  X(OVERLAPPING_PAIR, "overlapping_pairs", true, "pairs of coplanar facets with a common area")    \
-  X(OVERLAPPING_SHELLS, "overlapping_shell_pairs", true, "pairs of shells that cross or touch")    \
-  X(NESTED_SHELL, "nested_shells", true, "outward shells inside the material of another")          \
-  X(CAVITY, "cavities", false, "inward shells inside the material of another")                     \
-  X(EXTRA_BODY, "extra_bodies", false, "closed outward shells in empty space, beyond the first")   \
-  X(UNUSED_VERTEX, "unused_vertices", false, "vertices of no facet")
+  X(BAD_COORDINATE, "bad_coordinates", true, "vertex that is not finite, or beyond 1e30 m",        \
+    "vertices that are not finite, or beyond 1e30 m")                                              \
+  X(DEGENERATE_FACET, "degenerate_facets", true, "facet without area", "facets without area")      \
+  X(DUPLICATE_FACET, "duplicate_facets", true, "facet on the same three vertices as another",      \
+    "facets on the same three vertices as another")                                                \
+  X(BOUNDARY_EDGE, "boundary_edges", true, "edge of one facet only: the surface is open",          \
+    "edges of one facet only: the surface is open")                                                \
+  X(HOLE, "holes", true, "connected set of boundary edges", "connected sets of boundary edges")    \
+  X(NON_MANIFOLD_EDGE, "non_manifold_edges", true, "edge of three or more facets",                 \
+    "edges of three or more facets")                                                               \
+  X(NON_MANIFOLD_VERTEX, "non_manifold_vertices", true, "vertex where separate fans meet",         \
+    "vertices where separate fans meet")                                                           \
+  X(INCONSISTENT_EDGE, "inconsistent_edges", true, "edge whose two facets are wound unlike",       \
+    "edges whose two facets are wound unlike")                                                     \
+  X(INSIDE_OUT_SHELL, "inside_out_shells", true, "closed shell wound clockwise from outside",      \
+    "closed shells wound clockwise from outside")                                                  \
+  X(CROSSING_PAIR, "crossing_pairs", true, "pair of facets that pass through each other",          \
+    "pairs of facets that pass through each other")                                                \
+  X(TOUCHING_PAIR, "touching_pairs", true, "pair of facets that touch beyond shared edges",        \
+    "pairs of facets that touch beyond shared edges")                                              \
+  X(OVERLAPPING_PAIR, "overlapping_pairs", true, "pair of coplanar facets with a common area",     \
+    "pairs of coplanar facets with a common area")                                                 \
+  X(OVERLAPPING_SHELLS, "overlapping_shell_pairs", true, "pair of shells that cross or touch",     \
+    "pairs of shells that cross or touch")                                                         \
+  X(NESTED_SHELL, "nested_shells", true, "outward shell inside the material of another",           \
+    "outward shells inside the material of another")                                               \
+  X(CAVITY, "cavities", false, "inward shell inside the material of another",                      \
+    "inward shells inside the material of another")                                                \
+  X(EXTRA_BODY, "extra_bodies", false, "closed outward shell in empty space, beyond the first",    \
+    "closed outward shells in empty space, beyond the first")                                      \
+  X(UNUSED_VERTEX, "unused_vertices", false, "vertex of no facet", "vertices of no facet")
 
 typedef enum scree_defect {
-#define SCREE_DEFECT_ENUM(name, key, grave, text) SCREE_DEFECT_##name,
+#define SCREE_DEFECT_ENUM(name, key, grave, one, several) SCREE_DEFECT_##name,
   SCREE_DEFECT_LIST(SCREE_DEFECT_ENUM)
 #undef SCREE_DEFECT_ENUM
       SCREE_DEFECT_COUNT
 } scree_defect;
 
-/* The name in JSON, what is counted in words, and whether it is grave. */
+/* The name in JSON, what so many of it are in words, and whether it is grave. */
 SCREE_API const char *scree_defect_name(scree_defect defect);
-SCREE_API const char *scree_defect_text(scree_defect defect);
+SCREE_API const char *scree_defect_text(scree_defect defect, size_t count);
 SCREE_API bool scree_defect_is_grave(scree_defect defect);
 
 typedef struct scree_check {
@@ -70,39 +84,56 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
                                         const scree_progress *progress, scree_check *check,
                                         scree_error *error);
 
-/* What a repair does, in this order: X(NAME, "name in JSON", "what was counted"). */
+/* What a repair does, in this order: X(NAME, "name in JSON", "what one is", "what several
+ * are"). */
 #define SCREE_REPAIR_LIST(X)                                                                       \
-  X(DROP_BAD, "dropped_bad_facets", "facets with coordinates that are no numbers dropped")         \
-  X(WELD, "welded_vertices", "vertices at equal positions united")                                 \
-  X(DROP_DEGENERATE, "dropped_degenerate_facets", "facets without area dropped")                   \
-  X(DROP_DUPLICATE, "dropped_duplicate_facets", "duplicate facets dropped")                        \
-  X(CLOSE_SEAM, "closed_seam_edges", "boundary edges closed by welding within the tolerance")      \
-  X(SPLIT_T_JUNCTION, "split_t_junctions", "edges split where a vertex lay on them")               \
-  X(DROP_FIN, "dropped_fin_facets", "facets of open sheets hanging on the surface dropped")        \
-  X(DROP_MEMBRANE, "dropped_membrane_facets", "facets of sheets within the surface dropped")       \
-  X(SPLIT_EDGE, "split_non_manifold_edges", "non-manifold edges split")                            \
-  X(TURN, "turned_facets", "facets turned round to agree with their neighbours")                   \
-  X(SPLIT_VERTEX, "split_non_manifold_vertices", "non-manifold vertices split")                    \
-  X(CUT_INTERSECTION, "cut_intersecting_facets", "facets cut out where the surface met itself")    \
-  X(MERGE_SHELL, "merged_shells", "shells that met others united with them")                       \
-  X(FILL_HOLE, "filled_holes", "holes filled")                                                     \
-  X(FILL_FACET, "filling_facets", "facets added to fill them")                                     \
-  X(SMOOTH_HOLE, "smooth_fillings", "large holes filled smoothly, with new vertices")              \
-  X(COARSE_HOLE, "coarse_fillings", "large holes filled coarsely: smooth, they would meet it")     \
-  X(DROP_DEBRIS, "dropped_debris_shells", "debris shells dropped")                                 \
-  X(DROP_CAVITY, "dropped_cavities", "cavities dropped")                                           \
-  X(DROP_NESTED, "dropped_nested_shells", "shells inside the material of another dropped")         \
-  X(INVERT_SHELL, "inverted_shells", "shells turned outside out")
+  X(DROP_BAD, "dropped_bad_facets", "facet with coordinates that are no numbers dropped",          \
+    "facets with coordinates that are no numbers dropped")                                         \
+  X(WELD, "welded_vertices", "vertex united with another at its position",                         \
+    "vertices at equal positions united")                                                          \
+  X(DROP_DEGENERATE, "dropped_degenerate_facets", "facet without area dropped",                    \
+    "facets without area dropped")                                                                 \
+  X(DROP_DUPLICATE, "dropped_duplicate_facets", "duplicate facet dropped",                         \
+    "duplicate facets dropped")                                                                    \
+  X(CLOSE_SEAM, "closed_seam_edges", "boundary edge closed by welding within the tolerance",       \
+    "boundary edges closed by welding within the tolerance")                                       \
+  X(SPLIT_T_JUNCTION, "split_t_junctions", "edge split where a vertex lay on it",                  \
+    "edges split where a vertex lay on them")                                                      \
+  X(DROP_FIN, "dropped_fin_facets", "facet of an open sheet hanging on the surface dropped",       \
+    "facets of open sheets hanging on the surface dropped")                                        \
+  X(DROP_MEMBRANE, "dropped_membrane_facets", "facet of a sheet within the surface dropped",       \
+    "facets of sheets within the surface dropped")                                                 \
+  X(SPLIT_EDGE, "split_non_manifold_edges", "non-manifold edge split", "non-manifold edges split") \
+  X(TURN, "turned_facets", "facet turned round to agree with its neighbours",                      \
+    "facets turned round to agree with their neighbours")                                          \
+  X(SPLIT_VERTEX, "split_non_manifold_vertices", "non-manifold vertex split",                      \
+    "non-manifold vertices split")                                                                 \
+  X(CUT_INTERSECTION, "cut_intersecting_facets", "facet cut out where the surface met itself",     \
+    "facets cut out where the surface met itself")                                                 \
+  X(MERGE_SHELL, "merged_shells", "shell that met others united with them",                        \
+    "shells that met others united with them")                                                     \
+  X(FILL_HOLE, "filled_holes", "hole filled", "holes filled")                                      \
+  X(FILL_FACET, "filling_facets", "facet added to fill a hole", "facets added to fill holes")      \
+  X(SMOOTH_HOLE, "smooth_fillings", "large hole filled smoothly, with new vertices",               \
+    "large holes filled smoothly, with new vertices")                                              \
+  X(COARSE_HOLE, "coarse_fillings",                                                                \
+    "large hole filled coarsely: smooth, it would meet the surface",                               \
+    "large holes filled coarsely: smooth, they would meet the surface")                            \
+  X(DROP_DEBRIS, "dropped_debris_shells", "debris shell dropped", "debris shells dropped")         \
+  X(DROP_CAVITY, "dropped_cavities", "cavity dropped", "cavities dropped")                         \
+  X(DROP_NESTED, "dropped_nested_shells", "shell inside the material of another dropped",          \
+    "shells inside the material of another dropped")                                               \
+  X(INVERT_SHELL, "inverted_shells", "shell turned outside out", "shells turned outside out")
 
 typedef enum scree_repair_action {
-#define SCREE_REPAIR_ENUM(name, key, text) SCREE_REPAIR_##name,
+#define SCREE_REPAIR_ENUM(name, key, one, several) SCREE_REPAIR_##name,
   SCREE_REPAIR_LIST(SCREE_REPAIR_ENUM)
 #undef SCREE_REPAIR_ENUM
       SCREE_REPAIR_ACTION_COUNT
 } scree_repair_action;
 
 SCREE_API const char *scree_repair_action_name(scree_repair_action action);
-SCREE_API const char *scree_repair_action_text(scree_repair_action action);
+SCREE_API const char *scree_repair_action_text(scree_repair_action action, size_t count);
 
 typedef struct scree_repair_options {
   /* Boundary vertices no farther apart than this share of the bounding box diagonal may become one

@@ -56,6 +56,10 @@ static double parse_decimal(const char *text, const char **end) {
   return value;
 }
 
+const char *cli_plural(size_t count) {
+  return count == 1 ? "" : "s";
+}
+
 bool cli_real_from_text(const char *text, double *value) {
   const char *end;
   *value = parse_decimal(text, &end);
@@ -314,7 +318,7 @@ static int check_input_count(const cli_verb *verb, const char *const *inputs, si
     return cli_misuse(verb, "needs %zu inputs, got %zu", verb->input_minimum, count);
   if (count > verb->input_maximum)
     return cli_misuse(verb, "takes at most %zu input%s; '%s' is one too many", verb->input_maximum,
-                      verb->input_maximum == 1 ? "" : "s", inputs[verb->input_maximum]);
+                      cli_plural(verb->input_maximum), inputs[verb->input_maximum]);
   return 0;
 }
 

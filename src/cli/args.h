@@ -93,6 +93,8 @@ int cli_misuse(const cli_verb *verb, const char *format, ...) __attribute__((for
 bool cli_unit_from_text(const char *text, double *metres);
 /* 1e-3 to "mm"; "?" where it is none of ours. */
 const char *cli_unit_name(double metres);
+/* What a word of so many ends in: "" of one, else "s". */
+const char *cli_plural(size_t count);
 /* A number, all of the text; false otherwise. Not locale-dependent: the program never sets one. */
 bool cli_real_from_text(const char *text, double *value);
 

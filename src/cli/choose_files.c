@@ -13,6 +13,7 @@
  *   report.html          all of it as one page, as `scree report DIR` makes it */
 #include "cli/choose.h"
 #include "cli/output.h"
+#include "cli/surface.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -50,11 +51,11 @@ static scree_status check_mesh(const choose_run *run, const char *before, const 
 static scree_status make_subfolder(const choose_run *run, const char *name, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
   scree_status status = join(run, name, "", "", path, error);
-  return status == SCREE_OK ? scree_folder_create(path, error) : status;
+  return status == SCREE_OK ? cli_make_folder(path, error) : status;
 }
 
 scree_status choose_prepare_folder(const choose_run *run, scree_error *error) {
-  scree_status status = scree_folder_create(run->arguments->output, error);
+  scree_status status = cli_make_folder(run->arguments->output, error);
   if (status == SCREE_OK) status = make_subfolder(run, "levels", error);
   if (status == SCREE_OK && run->count > 1) status = make_subfolder(run, "set", error);
   for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
@@ -89,6 +90,8 @@ static scree_status write_level(const choose_run *run, size_t index, const scree
   scree_status status = join(run, before, object->name, ".stl", path, error);
   if (status == SCREE_OK) status = join(run, before, object->name, ".mass.json", mass_path, error);
   if (status == SCREE_OK) status = scree_curve_mesh(curve, level_index, &mesh, error);
+  if (status == SCREE_OK)
+    status = cli_check_rounded(&mesh, path, options.unit_m, NULL, NULL, error);
   if (status == SCREE_OK)
     status = scree_particle_export(&mesh, &options, path, mass_path, NULL, error);
   scree_mesh_free(&mesh);

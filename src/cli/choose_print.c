@@ -178,9 +178,9 @@ static void print_floor(FILE *out, const choose_run *run) {
       index = i;
   char count[32], rp[16];
   if (index < run->count)
-    fprintf(out, "Rp = %s was not reached by all: %s stops at %s triangles.\n",
-            rp_text(run->options.rp_min, rp), run->objects[index].name,
-            cli_count_text(run->choices[index].floor_count, count));
+    fprintf(out, "Rp = %s was not reached%s: %s stops at %s triangles.\n",
+            rp_text(run->options.rp_min, rp), run->count > 1 ? " by all" : "",
+            run->objects[index].name, cli_count_text(run->choices[index].floor_count, count));
 }
 
 static void print_notes(FILE *out, const choose_run *run) {

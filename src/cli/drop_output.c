@@ -35,7 +35,7 @@ enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
 
 scree_status drop_check_output(const drop_run *run, scree_error *error) {
   const drop_arguments *a = run->arguments;
-  scree_status status = scree_folder_create(a->output, error);
+  scree_status status = cli_make_folder(a->output, error);
   if (status == SCREE_OK && !a->resume)
     status = cli_check_run_output(run->call, a->output, FILES, FILE_COUNT, a->overwrite, error);
   return status;

@@ -5,6 +5,7 @@
 
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 enum { LARGE_SCAN = 2000 }; /* triangles above which a shape is decimated without being asked */
 
@@ -15,28 +16,42 @@ scree_status drop_no_memory(scree_error *error) {
   return SCREE_OUT_OF_MEMORY;
 }
 
-/* "phone.stl=30": the name, and the count behind the last '='. */
+static bool is_sphere(const char *name) {
+  return !strncmp(name, sphere_prefix, sizeof sphere_prefix - 1);
+}
+
+/* A shape by its name alone. */
+static bool is_known(const char *name) {
+  return cli_is_sample(name, NULL) || is_sphere(name) || access(name, F_OK) == 0;
+}
+
+/* "phone.stl=30": the name, and the count behind the last '='. A file may have a name like that. */
 static int read_count(const drop_run *run, drop_shape *shape) {
   const char *equals = strrchr(shape->word, '='), *digits = equals ? equals + 1 : "";
   bool counted = *digits && digits[strspn(digits, "0123456789")] == 0;
-  size_t length = counted ? (size_t)(equals - shape->word) : strlen(shape->word);
+  size_t length = equals ? (size_t)(equals - shape->word) : strlen(shape->word);
   shape->count = run->arguments->number;
-  if (length == 0 || length >= sizeof shape->name)
+  if (length == 0 || strlen(shape->word) >= sizeof shape->name)
     return cli_misuse(run->call->verb, "'%.40s': not a name", shape->word);
   memcpy(shape->name, shape->word, length);
   shape->name[length] = 0;
-  if (!counted) return 0;
-  double count = strtod(digits, NULL);
+  if (equals && !counted && (access(shape->word, F_OK) == 0 || !is_known(shape->name))) {
+    strcpy(shape->name, shape->word);
+    return 0;
+  }
+  if (!equals) return 0;
+  double count = counted ? strtod(digits, NULL) : 0;
   if (!(count >= 1 && count <= 1e7))
-    return cli_misuse(run->call->verb, "%s: a count is from 1 to 10000000", shape->word);
+    return cli_misuse(run->call->verb,
+                      "%s: the count behind '=' must be a whole number from 1 to 10000000",
+                      shape->word);
   shape->count = (size_t)count;
   return 0;
 }
 
 static int read_sphere(const drop_run *run, drop_shape *shape) {
-  size_t skip = sizeof sphere_prefix - 1;
-  if (strncmp(shape->name, sphere_prefix, skip) != 0) return 0;
-  const char *text = shape->name + skip;
+  if (!is_sphere(shape->name)) return 0;
+  const char *text = shape->name + sizeof sphere_prefix - 1;
   char number[32];
   size_t length = strspn(text, "0123456789.eE+-");
   double value = 0, unit = 0;
@@ -138,8 +153,9 @@ static void say_shape(const drop_run *run, const drop_shape *shape) {
     return;
   }
   if (m.kind == SCREE_PARTICLE_CLUMP) {
-    printf("%-24s %6zu  clump of %zu spheres, size %.3g mm, %.4g g\n", shape->name, shape->count,
-           m.point_count, 1e3 * m.size, 1e3 * m.volume * run->arguments->density);
+    printf("%-24s %6zu  clump of %zu sphere%s, size %.3g mm, %.4g g\n", shape->name, shape->count,
+           m.point_count, cli_plural(m.point_count), 1e3 * m.size,
+           1e3 * m.volume * run->arguments->density);
     return;
   }
   printf("%-24s %6zu  %zu triangles", shape->name, shape->count, m.triangle_count);

@@ -11,8 +11,8 @@ static void print_angles(FILE *stream, const scree_repose *r) {
           r->sector_sd_deg, r->sector_count, r->sector_total);
   fprintf(stream, "                    %5.1f deg  rms %4.1f mm  cone\n", r->cone_deg,
           1e3 * r->cone_rms);
-  fprintf(stream, "                    %5.1f deg  sd %4.1f   silhouettes (%zu flanks)\n",
-          r->silhouette_deg, r->silhouette_sd_deg, r->flank_count);
+  fprintf(stream, "                    %5.1f deg  sd %4.1f   silhouettes (%zu flank%s)\n",
+          r->silhouette_deg, r->silhouette_sd_deg, r->flank_count, cli_plural(r->flank_count));
   fprintf(stream,
           "                    %5.1f deg  by volume and centroid; the three differ by %.1f\n",
           r->volume_deg, r->spread_deg);
@@ -44,9 +44,9 @@ void cli_print_costs(FILE *stream, const scree_run *run) {
   scree_run_costs c;
   scree_run_get_costs(run, &c);
   fprintf(stream,
-          "  cost              %llu steps of %.3g us in %.0f s, %.2f us a particle and step\n",
-          (unsigned long long)c.step_count, 1e6 * c.time_step, c.wall_seconds,
-          c.particle_steps ? 1e6 * c.wall_seconds / (double)c.particle_steps : 0);
+          "  cost              %llu step%s of %.3g us in %.0f s, %.2f us a particle and step\n",
+          (unsigned long long)c.step_count, cli_plural(c.step_count), 1e6 * c.time_step,
+          c.wall_seconds, c.particle_steps ? 1e6 * c.wall_seconds / (double)c.particle_steps : 0);
 }
 
 bool cli_parse_size(const char *text, scree_render_options *options) {

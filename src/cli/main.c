@@ -1,4 +1,4 @@
-#include "cli/args.h"
+#include "cli/output.h"
 #include "cli/terminal.h"
 
 #include <fcntl.h>
@@ -94,6 +94,7 @@ static int run(const cli_verb *verb, int argc, char **argv) {
                    cli_terminal_start(show),
                    command_line};
   result = verb->run(&call);
+  if (result) cli_remove_empty_folders();
   cli_terminal_end();
   if (common.verbose) tell_costs(&start);
   if (cli_interrupted()) cli_terminal_reraise();

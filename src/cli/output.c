@@ -1,6 +1,7 @@
 #include "cli/output.h"
 #include "cli/input.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <sys/stat.h>
@@ -91,6 +92,37 @@ scree_status cli_check_run_output(const cli_call *call, const char *folder,
       return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
   }
   return status;
+}
+
+/* The folders made by this call, outer ones first. */
+static char **made_folders;
+static size_t made_count;
+
+static bool remember_folder(const char *path, size_t length) {
+  char **grown = realloc(made_folders, (made_count + 1) * sizeof *grown);
+  if (!grown) return false;
+  made_folders = grown;
+  made_folders[made_count] = strndup(path, length);
+  if (!made_folders[made_count]) return false;
+  made_count++;
+  return true;
+}
+
+scree_status cli_make_folder(const char *path, scree_error *error) {
+  struct stat info;
+  for (size_t end = 1; *path && end <= strlen(path); end++) {
+    if (path[end] && path[end] != '/') continue;
+    char *part = strndup(path, end);
+    bool missing = part && stat(part, &info) != 0;
+    free(part);
+    if (!part || (missing && !remember_folder(path, end)))
+      return cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
+  }
+  return scree_folder_create(path, error);
+}
+
+void cli_remove_empty_folders(void) {
+  for (size_t i = made_count; i-- > 0;) (void)rmdir(made_folders[i]);
 }
 
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,

@@ -28,6 +28,12 @@ scree_status cli_check_run_output(const cli_call *call, const char *folder,
                                   const char *const *files, size_t count, bool overwrite,
                                   scree_error *error);
 
+/* scree_folder_create for a verb's output; the folders made are remembered. */
+scree_status cli_make_folder(const char *path, scree_error *error);
+/* Takes away those that are still empty, the last made first: a call that fails before it has
+ * written anything leaves nothing. */
+void cli_remove_empty_folders(void);
+
 /* The path with another ending, as "p.json" of "p.stl": a file beside it. SCREE_LIMIT where it does
  * not fit. */
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,

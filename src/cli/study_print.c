@@ -17,7 +17,7 @@ static void print_seconds(FILE *stream, double seconds) {
 static void print_counts(FILE *stream, const scree_study_result *r) {
   const scree_study_counts *c = &r->counts;
   fprintf(stream, "%s: %zu point%s x %zu replicate%s, %zu runs: %zu done", r->name, r->point_count,
-          r->point_count == 1 ? "" : "s", r->replicate_count, r->replicate_count == 1 ? "" : "s",
+          cli_plural(r->point_count), r->replicate_count, cli_plural(r->replicate_count),
           r->point_count * r->replicate_count, c->done);
   if (c->failed) fprintf(stream, ", %zu failed", c->failed);
   if (c->running) fprintf(stream, ", %zu running", c->running);
@@ -25,7 +25,7 @@ static void print_counts(FILE *stream, const scree_study_result *r) {
   if (c->waiting) fprintf(stream, ", %zu waiting", c->waiting);
   fputs("\n", stream);
   if (c->waiting + c->leased + c->running == 0) return;
-  fprintf(stream, "%zu worker%s now; left: ", r->worker_count, r->worker_count == 1 ? "" : "s");
+  fprintf(stream, "%zu worker%s now; left: ", r->worker_count, cli_plural(r->worker_count));
   print_seconds(stream, r->seconds_left);
   fputs(r->worker_count ? "\n" : " with one\n", stream);
 }
@@ -111,8 +111,8 @@ static void print_needed(FILE *stream, const scree_study_result *r, const scree_
     const scree_comparison *c = &f->comparisons[k];
     if (!isnan(c->low) && !c->equivalent && !c->different && c->count_needed)
       fprintf(stream,
-              "Rp %s is open: with this spread about %zu replicates would show it the same\n",
-              r->points[f->levels[k]].rp, c->count_needed);
+              "Rp %s is open: with this spread about %zu replicate%s would show it the same\n",
+              r->points[f->levels[k]].rp, c->count_needed, cli_plural(c->count_needed));
   }
 }
 

@@ -32,12 +32,20 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
   return SCREE_OK;
 }
 
+void cli_print_left_out(FILE *stream, size_t count) {
+  if (count)
+    fprintf(stream, "%10zu facet%s of fewer than three different corners left out on reading\n",
+            count, cli_plural(count));
+}
+
 void cli_print_check(FILE *stream, const scree_check *check) {
-  fprintf(stream, "%10zu triangles\n%10zu vertices\n%10zu shells\n", check->triangle_count,
-          check->vertex_count, check->shell_count);
+  fprintf(stream, "%10zu triangle%s\n%10zu vertices\n%10zu shell%s\n", check->triangle_count,
+          cli_plural(check->triangle_count), check->vertex_count, check->shell_count,
+          cli_plural(check->shell_count));
   for (int i = 0; i < SCREE_DEFECT_COUNT; i++)
     if (check->defects[i])
-      fprintf(stream, "%10zu %s\n", check->defects[i], scree_defect_text((scree_defect)i));
+      fprintf(stream, "%10zu %s\n", check->defects[i],
+              scree_defect_text((scree_defect)i, check->defects[i]));
   if (check->volume_known)
     fprintf(stream, "%10.6g cm3 volume\n", check->volume * 1e6);
   else
@@ -53,7 +61,7 @@ void cli_repair_text(const scree_repair_report *report, char *buffer, size_t siz
     if (!report->done[a] || used + 1 >= size) continue;
     used += (size_t)snprintf(buffer + used, size - used, "%s%zu %s",
                              used ? ", " : "repaired: ", report->done[a],
-                             scree_repair_action_text((scree_repair_action)a));
+                             scree_repair_action_text((scree_repair_action)a, report->done[a]));
   }
 }
 
@@ -63,7 +71,7 @@ void cli_print_repair(FILE *stream, const scree_repair_report *report) {
     if (!report->done[i]) continue;
     any = true;
     fprintf(stream, "%10zu %s\n", report->done[i],
-            scree_repair_action_text((scree_repair_action)i));
+            scree_repair_action_text((scree_repair_action)i, report->done[i]));
   }
   if (report->seam_distance > 0)
     fprintf(stream, "%10.3g mm is the distance within which seams were closed\n",
@@ -112,7 +120,9 @@ scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double 
   if (status != SCREE_OK || check.usable) return status;
   error->status = SCREE_BAD_MESH;
   snprintf(error->message, sizeof error->message,
-           "%.300s: rounded to the file's precision, the surface is %.500s; try .ply or .obj", path,
-           check.verdict);
+           "%.300s: rounded to the file's precision, the surface is %.500s; a .ply or .obj, as "
+           "`scree simplify` "
+           "writes, would hold it",
+           path, check.verdict);
   return SCREE_BAD_MESH;
 }

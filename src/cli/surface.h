@@ -33,6 +33,8 @@ typedef struct cli_soundness {
 scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
                                  const cli_soundness *how, scree_scan *scan, scree_error *error);
 
+/* The facets that reading left out, where there were any. */
+void cli_print_left_out(FILE *stream, size_t count);
 /* The counts that are not 0, a line each, and the volume. */
 void cli_print_check(FILE *stream, const scree_check *check);
 /* "repaired: 3 holes filled, ..." of a surface that needed it, else "". */

@@ -51,9 +51,7 @@ static void print_one(const cli_call *call, const char *path, const checked *c) 
   if (!cli_is_sample(path, NULL))
     printf(", coordinates in %s", cli_unit_name(arguments->source.unit));
   putchar('\n');
-  if (c->scan.degenerate_count)
-    printf("%10zu facets of fewer than three different corners left out on reading\n",
-           c->scan.degenerate_count);
+  cli_print_left_out(stdout, c->scan.degenerate_count);
   cli_print_check(stdout, &c->check);
 }
 

@@ -156,13 +156,15 @@ static void print_facts(const table *t) {
   scree_curve_facts facts = scree_curve_get_facts(t->curve);
   if (t->call->quiet || t->arguments->csv || t->arguments->json) return;
   printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles; coordinates in %s\n",
-         t->call->inputs[0], facts.triangle_count, facts.shell_count,
-         facts.shell_count == 1 ? "" : "s", scree_method_name(facts.method), facts.floor_count,
+         t->call->inputs[0], facts.triangle_count, facts.shell_count, cli_plural(facts.shell_count),
+         scree_method_name(facts.method), facts.floor_count,
          cli_unit_name(t->arguments->source.unit));
   if (!facts.closed)
-    printf("not closed: %zu boundary edges; V and eps_v mean nothing\n", facts.boundary_edge_count);
+    printf("not closed: %zu boundary edge%s; V and eps_v mean nothing\n", facts.boundary_edge_count,
+           cli_plural(facts.boundary_edge_count));
   if (facts.locked_vertex_count > 0)
-    printf("%zu vertices at non-manifold places stay where they are\n", facts.locked_vertex_count);
+    printf("non-manifold places: %zu of the vertices stay where they are\n",
+           facts.locked_vertex_count);
 }
 
 static int run(const cli_call *call) {

@@ -152,13 +152,13 @@ static scree_status create_pour(drop_run *run, scree_error *error) {
 static void say_pour(const drop_run *run) {
   scree_pour_options o;
   if (run->call->quiet) return;
+  size_t count = scree_pour_particle_count(run->pour);
   scree_pour_get_options(run->pour, &o);
   if (o.container == SCREE_CONTAINER_BOX)
-    printf("%zu particles into a box of %.4g x %.4g mm\n", scree_pour_particle_count(run->pour),
-           1e3 * o.width, 1e3 * o.depth);
+    printf("%zu particle%s into a box of %.4g x %.4g mm\n", count, cli_plural(count), 1e3 * o.width,
+           1e3 * o.depth);
   else
-    printf("%zu particles into a cylinder of %.4g mm\n", scree_pour_particle_count(run->pour),
-           1e3 * o.width);
+    printf("%zu particle%s into a cylinder of %.4g mm\n", count, cli_plural(count), 1e3 * o.width);
   printf("time step %.4g us, %g steps per quarter period of the fastest contact\n",
          1e6 * scree_world_time_step(scree_pour_world(run->pour), NULL), o.world.steps_per_contact);
   fflush(stdout);
@@ -250,11 +250,12 @@ static void print_summary(FILE *stream, const drop_run *run, bool still) {
   unsigned long long steps = scree_world_step_count(world);
   scree_world_observe(world, &o);
   double sum = drop_energy(&o);
-  fprintf(stream, "%s after %.4g s, %llu steps; %zu of %zu particles are in\n",
-          still ? "still" : "stopped", o.time, steps, scree_pour_entered_count(run->pour),
-          scree_pour_particle_count(run->pour));
-  fprintf(stream, "contacts          %zu in %zu touching pairs, %.3g neighbours a particle\n",
-          o.contact_count, o.pair_count, o.coordination);
+  size_t count = scree_pour_particle_count(run->pour);
+  fprintf(stream, "%s after %.4g s, %llu step%s; %zu of %zu particle%s %s in\n",
+          still ? "still" : "stopped", o.time, steps, cli_plural(steps),
+          scree_pour_entered_count(run->pour), count, cli_plural(count), count == 1 ? "is" : "are");
+  fprintf(stream, "contacts          %zu in %zu touching pair%s, %.3g neighbours a particle\n",
+          o.contact_count, o.pair_count, cli_plural(o.pair_count), o.coordination);
   fprintf(stream, "largest overlap   %.4g um\n", 1e6 * o.largest_overlap);
   fprintf(stream, "highest speed     %.3g m/s\n", o.highest_speed);
   fprintf(stream,

@@ -55,24 +55,20 @@ static void print_measures(const scree_measures *m, double unit) {
            m->principal_axes[i][1], m->principal_axes[i][2]);
 }
 
-static const char *ending(size_t count) {
-  return count == 1 ? "" : "s";
-}
-
 static void print_count(size_t count, const char *what) {
-  if (count) printf("; %zu %s%s", count, what, ending(count));
+  if (count) printf("; %zu %s%s", count, what, cli_plural(count));
 }
 
 static void print_topology(const scree_topology *t) {
   printf("  %zu facet%s, %zu vertices, %zu edges in %zu shell%s", t->facet_count,
-         ending(t->facet_count), t->vertex_count, t->edge_count, t->shell_count,
-         ending(t->shell_count));
+         cli_plural(t->facet_count), t->vertex_count, t->edge_count, t->shell_count,
+         cli_plural(t->shell_count));
   if (t->genus >= 0) printf(", genus %lld", t->genus);
   printf("\n  %s, %s, %s", t->closed ? "closed" : "open", t->manifold ? "manifold" : "not manifold",
          t->oriented ? "consistently wound" : "not consistently wound");
   if (!t->closed)
     printf("; %zu boundary edge%s round %zu hole%s", t->boundary_edge_count,
-           ending(t->boundary_edge_count), t->boundary_count, ending(t->boundary_count));
+           cli_plural(t->boundary_edge_count), t->boundary_count, cli_plural(t->boundary_count));
   print_count(t->non_manifold_edge_count, "non-manifold edge");
   if (t->non_manifold_vertex_count)
     printf("; %zu non-manifold vert%s", t->non_manifold_vertex_count,

@@ -91,13 +91,13 @@ static scree_status write_result(const cli_call *call, const scree_mesh *mesh, s
 }
 
 static void print_text(const cli_call *call, const scree_scan *scan,
-                       const scree_repair_report *report) {
+                       const scree_repair_report *report, bool written) {
+  bool sound = report->after.usable;
   printf("%s: %s\n", call->inputs[0], report->before.verdict);
-  if (scan->degenerate_count)
-    printf("%10zu facets of fewer than three different corners left out on reading\n",
-           scan->degenerate_count);
+  cli_print_left_out(stdout, scan->degenerate_count);
   cli_print_repair(stdout, report);
-  printf("%s: %s\n", report->after.usable ? "repaired" : "left", report->after.verdict);
+  if (sound && !written) return; /* why not is the error's to say */
+  printf("%s: %s\n", sound ? "repaired" : "left", report->after.verdict);
   if (call->quiet) return;
   cli_print_check(stdout, &report->after);
   printf("coordinates in %s\n",
@@ -110,7 +110,7 @@ static int tell(const cli_call *call, const scree_scan *scan, const scree_repair
   scree_error error;
   int code = failure->status == SCREE_OK ? 0 : 1;
   if (!a->json) {
-    print_text(call, scan, report);
+    print_text(call, scan, report, code == 0);
   } else {
     scree_check_entry entry = {.file = call->inputs[0],
                                .scan = scan,
@@ -141,8 +141,8 @@ static int run(const cli_call *call) {
   scree_status status =
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
   int code;
+  if (status != SCREE_OK) cli_name_in_error(call->inputs[0], &error);
   if (status != SCREE_OK && status != SCREE_BAD_MESH) {
-    cli_name_in_error(call->inputs[0], &error);
     code = cli_fail(&error);
   } else {
     if (status == SCREE_OK) write_result(call, &repaired, &error);

@@ -279,10 +279,10 @@ static void print_result(FILE *stream, const one_run *o, const scree_run *run,
                          const scree_run_result *result) {
   const scree_experiment *e = scree_run_experiment(run);
   size_t shapes = scree_run_shape_count(run);
-  fprintf(stream, "%s%s%zu particles of %zu shape%s, seed %llu, preset %s\n",
+  fprintf(stream, "%s%s%zu particle%s of %zu shape%s, seed %llu, preset %s\n",
           o->all->grains.level_count > 1 ? o->name : "", o->all->grains.level_count > 1 ? ": " : "",
-          e->particle_count, shapes, shapes == 1 ? "" : "s", (unsigned long long)e->seed,
-          e->preset);
+          e->particle_count, cli_plural(e->particle_count), shapes, cli_plural(shapes),
+          (unsigned long long)e->seed, e->preset);
   cli_print_heap(stream, run, result);
   cli_print_costs(stream, run);
 }
@@ -359,7 +359,7 @@ enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
 
 static scree_status check_folder(repose *r, const char *folder) {
   const repose_arguments *a = r->arguments;
-  scree_status status = scree_folder_create(folder, &r->error);
+  scree_status status = cli_make_folder(folder, &r->error);
   if (status == SCREE_OK && !a->resume)
     status = cli_check_run_output(r->call, folder, FILES, FILE_COUNT, a->force, &r->error);
   return status;

@@ -1,5 +1,5 @@
 /* scree sample: the built-in devices and test solids as files. */
-#include "cli/args.h"
+#include "cli/output.h"
 
 #include <string.h>
 
@@ -104,7 +104,7 @@ static int run(const cli_call *call) {
   if (to_file && count != 1)
     return cli_misuse(call->verb, "%zu samples do not fit into one file: -o takes a folder", count);
   scree_error error;
-  if (!to_file && scree_folder_create(output, &error) != SCREE_OK) return cli_fail(&error);
+  if (!to_file && cli_make_folder(output, &error) != SCREE_OK) return cli_fail(&error);
   for (size_t i = 0; i < count; i++) { /* first whether all can be written */
     char path[PATH_BYTES];
     name_output(output, all ? scree_sample_name(i) : call->inputs[i], path);

@@ -66,10 +66,10 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index) {
           level.quadric_error * 1e3,
           cli_unit_name(((const simplify_arguments *)call->options)->source.unit));
   if (!facts.closed)
-    fprintf(stderr, "%s: not closed: %zu boundary edges; the volume means nothing\n",
-            call->inputs[0], facts.boundary_edge_count);
+    fprintf(stderr, "%s: not closed: %zu boundary edge%s; the volume means nothing\n",
+            call->inputs[0], facts.boundary_edge_count, cli_plural(facts.boundary_edge_count));
   if (facts.locked_vertex_count > 0)
-    fprintf(stderr, "%s: %zu vertices at non-manifold places stay where they are\n",
+    fprintf(stderr, "%s: non-manifold places: %zu of the vertices stay where they are\n",
             call->inputs[0], facts.locked_vertex_count);
 }
 

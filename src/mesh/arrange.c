@@ -119,7 +119,7 @@ static vec3 place(const arranger *a, uint32_t v) {
 
 static scree_status no_memory(scree_error *error) {
   return scree_fail(error, SCREE_OUT_OF_MEMORY,
-                    "Out of memory while cutting facets where they meet");
+                    "out of memory while cutting facets where they meet");
 }
 
 /* ---- The chain ---- */

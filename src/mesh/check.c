@@ -32,10 +32,10 @@ enum { MEETING_LIMIT = 20000000 };
 enum { PROOF_FACETS = 2000 };
 
 static const struct {
-  const char *name, *text;
+  const char *name, *one, *several;
   bool grave;
 } defects[] = {
-#define DEFECT_ROW(name, key, grave, text) {key, text, grave},
+#define DEFECT_ROW(name, key, grave, one, several) {key, one, several, grave},
     SCREE_DEFECT_LIST(DEFECT_ROW)
 #undef DEFECT_ROW
 };
@@ -44,8 +44,9 @@ const char *scree_defect_name(scree_defect defect) {
   return (unsigned)defect < SCREE_DEFECT_COUNT ? defects[defect].name : "unknown";
 }
 
-const char *scree_defect_text(scree_defect defect) {
-  return (unsigned)defect < SCREE_DEFECT_COUNT ? defects[defect].text : "unknown";
+const char *scree_defect_text(scree_defect defect, size_t count) {
+  if ((unsigned)defect >= SCREE_DEFECT_COUNT) return "unknown";
+  return count == 1 ? defects[defect].one : defects[defect].several;
 }
 
 bool scree_defect_is_grave(scree_defect defect) {
@@ -60,12 +61,12 @@ scree_check_options scree_default_check_options(void) {
 
 static scree_status verify_indices(const scree_mesh *mesh, scree_error *error) {
   if (mesh->triangle_count > (UINT32_MAX - 1) / 3)
-    return scree_fail(error, SCREE_LIMIT, "The mesh has %zu triangles; the limit is %u",
+    return scree_fail(error, SCREE_LIMIT, "the mesh has %zu triangles; the limit is %u",
                       mesh->triangle_count, (UINT32_MAX - 1) / 3);
   size_t stray = scree_mesh_stray_corner(mesh);
   if (stray != SIZE_MAX)
     return scree_fail(error, SCREE_BAD_MESH,
-                      "Triangle %zu names vertex %u, but there are only %zu vertices", stray / 3,
+                      "triangle %zu names vertex %u, but there are only %zu vertices", stray / 3,
                       mesh->triangles[stray], mesh->vertex_count);
   return SCREE_OK;
 }

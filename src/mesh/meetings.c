@@ -153,7 +153,7 @@ static scree_status run(search *s, size_t work_count, const scree_progress *prog
                        s);
     double done = (double)(i + TICK_ITEMS) / (double)work_count;
     if (!scree_tick(&ticker, "self-intersections", done < 1 ? done : 1))
-      status = scree_fail(error, SCREE_CANCELLED, "Cancelled while looking for self-intersections");
+      status = scree_fail(error, SCREE_CANCELLED, "cancelled while looking for self-intersections");
     if (atomic_load(&s->failed))
       status = scree_fail_memory(error, sizeof(scree_meeting), "self-intersections");
   }

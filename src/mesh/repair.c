@@ -30,9 +30,9 @@ enum {
 };
 
 static const struct {
-  const char *name, *text;
+  const char *name, *one, *several;
 } actions[] = {
-#define ACTION_ROW(name, key, text) {key, text},
+#define ACTION_ROW(name, key, one, several) {key, one, several},
     SCREE_REPAIR_LIST(ACTION_ROW)
 #undef ACTION_ROW
 };
@@ -41,8 +41,9 @@ const char *scree_repair_action_name(scree_repair_action action) {
   return (unsigned)action < SCREE_REPAIR_ACTION_COUNT ? actions[action].name : "unknown";
 }
 
-const char *scree_repair_action_text(scree_repair_action action) {
-  return (unsigned)action < SCREE_REPAIR_ACTION_COUNT ? actions[action].text : "unknown";
+const char *scree_repair_action_text(scree_repair_action action, size_t count) {
+  if ((unsigned)action >= SCREE_REPAIR_ACTION_COUNT) return "unknown";
+  return count == 1 ? actions[action].one : actions[action].several;
 }
 
 scree_repair_options scree_default_repair_options(void) {
@@ -325,7 +326,7 @@ static scree_status verify_growth(const scree_repair *r, size_t came_in, scree_e
   if (r->mesh.triangle_count <= limit) return SCREE_OK;
   return scree_fail(
       error, SCREE_BAD_MESH,
-      "The mesh cannot be repaired: each mending asks for more, and its %zu triangles "
+      "the mesh cannot be repaired: each mending asks for more, and its %zu triangles "
       "have become %zu; at most %zu are tried",
       came_in, r->mesh.triangle_count, limit);
 }
@@ -388,7 +389,7 @@ static scree_status repair_checked(const scree_mesh *mesh, const scree_check *be
     if (report) *report = r.report;
   if (status == SCREE_OK && !r.report.after.usable)
     status =
-        scree_fail(error, SCREE_BAD_MESH, "The mesh cannot be repaired; what remains is %s%s%s",
+        scree_fail(error, SCREE_BAD_MESH, "the mesh cannot be repaired; what remains is %s%s%s",
                    r.report.after.verdict, r.unmerged ? "; shells were not merged: " : "",
                    r.unmerged ? r.unmerged : "");
   if (status == SCREE_OK)
@@ -430,7 +431,7 @@ scree_status scree_mesh_prepare(const scree_mesh *mesh, const scree_repair_optio
   if (status != SCREE_OK) return status;
   made.after = made.before;
   if (!made.before.usable)
-    status = scree_fail(error, SCREE_BAD_MESH, "The mesh is %s", made.before.verdict);
+    status = scree_fail(error, SCREE_BAD_MESH, "the mesh is %s", made.before.verdict);
   else if (mesh != ready)
     status = scree_mesh_copy(mesh, ready, error);
   if (report && (status == SCREE_OK || status == SCREE_BAD_MESH)) *report = made;

@@ -44,5 +44,5 @@ size_t scree_repair_remove(scree_repair *r, const bool *marked) {
 }
 
 scree_status scree_repair_no_memory(scree_error *error) {
-  return scree_fail(error, SCREE_OUT_OF_MEMORY, "Out of memory while repairing");
+  return scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory while repairing");
 }

@@ -158,9 +158,11 @@ scree_status scree_image_scale_bar(scree_image *image, const scree_render_option
   return draw_on(image, draw_scale_bar, options, error);
 }
 
-static cairo_status_t write_bytes(void *closure, const unsigned char *data, unsigned int length) {
-  return fwrite(data, 1, length, closure) == length ? CAIRO_STATUS_SUCCESS
-                                                    : CAIRO_STATUS_WRITE_ERROR;
+/* Never fails: a write that does leaves its mark on the stream, and scree_output_commit, which
+ * knows the reason, finds it. */
+static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsigned count) {
+  (void)fwrite(bytes, 1, count, stream);
+  return CAIRO_STATUS_SUCCESS;
 }
 
 scree_status scree_image_write_png(const scree_image *image, const char *path, bool overwrite,
@@ -170,12 +172,13 @@ scree_status scree_image_write_png(const scree_image *image, const char *path, b
   scree_output output;
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status == SCREE_OK) {
-    if (cairo_surface_write_to_png_stream(surface, write_bytes, output.stream) ==
-        CAIRO_STATUS_SUCCESS) {
+    cairo_status_t drawn = cairo_surface_write_to_png_stream(surface, to_stream, output.stream);
+    if (drawn == CAIRO_STATUS_SUCCESS) {
       status = scree_output_commit(&output, error);
     } else {
       scree_output_discard(&output);
-      status = scree_fail(error, SCREE_IO, "%s: cannot write the picture", path);
+      status =
+          scree_fail(error, SCREE_IO, "%s: cannot draw: %s", path, cairo_status_to_string(drawn));
     }
   }
   cairo_surface_destroy(surface);

@@ -1,6 +1,11 @@
 run drop 2>&1 | sed -n 2p
 run drop sphere:40 -o no 2>&1 | sed -n 2p
 run drop sphere:40mm=0 -o no 2>&1 | sed -n 2p
+# what stands behind '=' of a shape that is there is a count; a file may be called so all the same
+for count in -3 3.5 1e3 x ''; do run drop "sphere:40mm=$count" -o no 2>&1 | sed -n 2p; done
+run drop no=body.off -o no
+box 1 1 1 >a && cp a a=b && run drop a=c -o no 2>&1 | sed -n 2p
+run drop a=b -o named --time 0.01 --frames 0 --no-picture -N 1 -q >/dev/null && ls named | grep -c report && rm -r a a=b named
 run drop sample:box-12 -r 0.1 -n 10 2>&1 | sed -n 2p
 run drop none.stl -o no
 run drop sphere:40mm=3 -w 30mm -o no

@@ -30,3 +30,10 @@ run repose missing.stl --rp 0.1 --spheres -o old
 printf 'name: x\nreplicates: 1\nshapes: [missing.stl]\nfactors: {rp: [1]}\n' >study.yaml
 run study study.yaml -o file
 ls -R | grep -c part
+# what fails before anything was written leaves no folder, only those that were there
+mkdir kept
+for words in 'choose missing.stl' 'drop missing.stl' 'drop --resume' 'repose missing.stl' 'sample nonsense'; do
+  run $words -o new 2>&1 | cut -c -60
+  for folder in new/a/b kept kept/c/; do "$SCREE" $words -o $folder 2>/dev/null; done
+  ls -d new* kept kept/* 2>/dev/null
+done

@@ -240,7 +240,7 @@ static void refused(void **state) {
   scree_mesh box = shape_box(1, 1, 1), empty = {0};
   box.triangles[5] = 8;
   assert_int_equal(scree_mesh_check(&box, NULL, NULL, &check, &error), SCREE_BAD_MESH);
-  assert_string_equal(error.message, "Triangle 1 names vertex 8, but there are only 8 vertices");
+  assert_string_equal(error.message, "triangle 1 names vertex 8, but there are only 8 vertices");
   scree_mesh_free(&box);
   check = check_of(&empty);
   assert_false(check.usable);

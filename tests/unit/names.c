@@ -6,17 +6,32 @@
 static void defects(void **state) {
   (void)state;
   static const bool grave[] = {
-#define GRAVE(name, key, is_grave, text) is_grave,
+#define GRAVE(name, key, is_grave, one, several) is_grave,
       SCREE_DEFECT_LIST(GRAVE)
 #undef GRAVE
   };
   for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
     assert_int_equal(scree_defect_is_grave((scree_defect)i), grave[i]);
-    assert_true(*scree_defect_text((scree_defect)i));
+    assert_string_not_equal(scree_defect_text((scree_defect)i, 1),
+                            scree_defect_text((scree_defect)i, 2));
+    assert_string_equal(scree_defect_text((scree_defect)i, 0),
+                        scree_defect_text((scree_defect)i, 2));
     for (int j = 0; j < i; j++)
       assert_string_not_equal(scree_defect_name((scree_defect)i),
                               scree_defect_name((scree_defect)j));
   }
+}
+
+static void repairs(void **state) {
+  (void)state;
+  for (int i = 0; i < SCREE_REPAIR_ACTION_COUNT; i++) {
+    assert_string_not_equal(scree_repair_action_text((scree_repair_action)i, 1),
+                            scree_repair_action_text((scree_repair_action)i, 2));
+    for (int j = 0; j < i; j++)
+      assert_string_not_equal(scree_repair_action_name((scree_repair_action)i),
+                              scree_repair_action_name((scree_repair_action)j));
+  }
+  assert_string_equal(scree_repair_action_text(SCREE_REPAIR_ACTION_COUNT, 1), "unknown");
 }
 
 static void statuses(void **state) {
@@ -96,7 +111,8 @@ static void shapes(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(defects), cmocka_unit_test(statuses),
-                                     cmocka_unit_test(experiments), cmocka_unit_test(shapes)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(defects), cmocka_unit_test(repairs),
+                                     cmocka_unit_test(statuses), cmocka_unit_test(experiments),
+                                     cmocka_unit_test(shapes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -585,7 +585,7 @@ static void prepare(void **state) {
   mesh.triangle_count--;
   assert_int_equal(scree_mesh_prepare(&mesh, NULL, NULL, &ready, &report, &error), SCREE_BAD_MESH);
   assert_string_equal(error.message,
-                      "The mesh is not usable as a particle: 3 boundary edges, 1 hole");
+                      "the mesh is not usable as a particle: 3 boundary edges, 1 hole");
   CHECK_OK(scree_mesh_prepare(&mesh, &options, NULL, &ready, &report, &error), error);
   assert_int_equal(report.done[SCREE_REPAIR_FILL_HOLE], 1);
   scree_mesh_free(&ready);
