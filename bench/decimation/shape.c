@@ -184,13 +184,21 @@ static int write_ply(const surface *s, FILE *file) {
 }
 
 int main(int argc, char **argv) {
-  if (argc != 4) {
+  const struct {
+    const char *name;
+    body body;
+  } kinds[] = {{"phone", {.size = {100, 50, 15}, .radius = 4, .noise = 0.02}},
+               {"clean", {.size = {100, 50, 15}, .radius = 4}},
+               {"cube", {.size = {50, 50, 50}}},
+               {"turned", {.size = {50, 50, 50}, .turned = 1}}};
+  const size_t kind_count = sizeof kinds / sizeof *kinds;
+  size_t kind = 0;
+  while (argc == 4 && kind < kind_count && strcmp(argv[1], kinds[kind].name)) kind++;
+  if (argc != 4 || kind == kind_count) {
     fprintf(stderr, "usage: %s phone|clean|cube|turned COUNT OUT.stl|OUT.ply\n", argv[0]);
     return 2;
   }
-  body b = {.size = {100, 50, 15}, .radius = 4, .noise = strcmp(argv[1], "phone") ? 0 : 0.02};
-  if (!strcmp(argv[1], "cube") || !strcmp(argv[1], "turned"))
-    b = (body){.size = {50, 50, 50}, .turned = argv[1][0] == 't'};
+  body b = kinds[kind].body;
   choose_cells(&b, strtol(argv[2], NULL, 10));
   surface s = build(&b);
   FILE *file = fopen(argv[3], "wb");
