@@ -127,6 +127,22 @@ static int parse_count(const cli_verb *verb, const cli_option *option, const cha
   return 0;
 }
 
+/* As scree_render takes. */
+static bool read_side(const char **text, size_t *side) {
+  enum { LEAST = 64, MOST = 20000 };
+  *side = 0;
+  for (; **text >= '0' && **text <= '9' && *side <= MOST; ++*text)
+    *side = 10 * *side + (size_t)(**text - '0');
+  return *side >= LEAST && *side <= MOST;
+}
+
+int cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t *height) {
+  const char *at = text;
+  if (read_side(&at, width) && *at++ == 'x' && read_side(&at, height) && !*at) return 0;
+  return cli_misuse(verb, "--size %s: not a size such as 1200x900, each side from 64 to 20000",
+                    text);
+}
+
 static int parse_bytes(const cli_verb *verb, const cli_option *option, const char *text,
                        void *value) {
   const char *end;
@@ -147,7 +163,7 @@ static int parse_length(const cli_verb *verb, const cli_option *option, const ch
   if (end == text || !isfinite(number))
     return cli_misuse(verb, "--%s %s: not a length such as 0.27mm", option->name, text);
   if (!cli_unit_from_text(end, &metres) && number != 0)
-    return cli_misuse(verb, "--%s %s: needs a unit (m, cm, mm, um, inch), as in %.*smm",
+    return cli_misuse(verb, "--%s %s: needs a unit (m, cm, mm, um, km, inch, ft), as in %.*smm",
                       option->name, text, (int)(end - text), text);
   if (!in_range(option, number * metres)) return out_of_range(verb, option, text);
   *(double *)value = number * metres;

@@ -93,6 +93,9 @@ int cli_misuse(const cli_verb *verb, const char *format, ...) __attribute__((for
 bool cli_unit_from_text(const char *text, double *metres);
 /* 1e-3 to "mm"; "?" where it is none of ours. */
 const char *cli_unit_name(double metres);
+/* --size: "1200x900" to the pixels across and down of a picture. 0, or 2 after telling what is
+ * wrong. */
+int cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t *height);
 /* What a word of so many ends in: "" of one, else "s". */
 const char *cli_plural(size_t count);
 /* A number, all of the text; false otherwise. Not locale-dependent: the program never sets one. */

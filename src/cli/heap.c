@@ -49,11 +49,6 @@ void cli_print_costs(FILE *stream, const scree_run *run) {
           c.wall_seconds, c.particle_steps ? 1e6 * c.wall_seconds / (double)c.particle_steps : 0);
 }
 
-bool cli_parse_size(const char *text, scree_render_options *options) {
-  char rest;
-  return sscanf(text, "%zux%zu%c", &options->width, &options->height, &rest) == 2;
-}
-
 scree_status cli_write_picture(const scree_run *run, const scree_render_options *options,
                                const char *path, bool overwrite, const scree_progress *progress,
                                scree_error *error) {

@@ -8,8 +8,6 @@
 void cli_print_heap(FILE *stream, const scree_run *run, const scree_run_result *result);
 void cli_print_costs(FILE *stream, const scree_run *run);
 
-/* "1200x900" and the camera into options; false where it is no size. */
-bool cli_parse_size(const char *text, scree_render_options *options);
 scree_status cli_write_picture(const scree_run *run, const scree_render_options *options,
                                const char *path, bool overwrite, const scree_progress *progress,
                                scree_error *error);

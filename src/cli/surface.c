@@ -3,17 +3,31 @@
 #include <stdlib.h>
 #include <string.h>
 
+/* By the mean of the holes that are left, of which the largest is at least that. */
+void cli_hint_at_holes(const scree_repair_report *report, const scree_repair_options *options,
+                       scree_error *error) {
+  size_t holes = report->after.defects[SCREE_DEFECT_HOLE], used = strlen(error->message);
+  size_t edges = report->after.defects[SCREE_DEFECT_BOUNDARY_EDGE];
+  if (error->status != SCREE_BAD_MESH || options->fill_large_holes || holes == 0) return;
+  if (edges / holes > options->hole_edges)
+    snprintf(error->message + used, sizeof error->message - used,
+             "; `scree repair --large-holes` fills those of more than %zu edges",
+             options->hole_edges);
+}
+
 scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
                              const scree_progress *progress, scree_scan *scan,
                              scree_repair_report *report, scree_error *error) {
   scree_repair_options repair = scree_default_repair_options();
-  if (report) *report = (scree_repair_report){.before.usable = true};
+  scree_repair_report made = {.before.usable = true};
   scree_status status = cli_load(word, options, progress, scan, error);
   if (status == SCREE_OK && !cli_is_sample(word, NULL)) {
     status = scree_mesh_prepare(&scan->mesh, no_repair ? NULL : &repair, progress, &scan->mesh,
-                                report, error);
+                                &made, error);
+    if (status != SCREE_OK && !no_repair) cli_hint_at_holes(&made, &repair, error);
     if (status != SCREE_OK) scree_scan_free(scan);
   }
+  if (report) *report = made;
   return status == SCREE_OK ? status : cli_name_in_error(word, error);
 }
 

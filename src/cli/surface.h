@@ -33,6 +33,10 @@ typedef struct cli_soundness {
 scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
                                  const cli_soundness *how, scree_scan *scan, scree_error *error);
 
+/* Where the repair failed for holes that it may not fill: what would, at the end of the error. */
+void cli_hint_at_holes(const scree_repair_report *report, const scree_repair_options *options,
+                       scree_error *error);
+
 /* The facets that reading left out, where there were any. */
 void cli_print_left_out(FILE *stream, size_t count);
 /* The counts that are not 0, a line each, and the volume. */

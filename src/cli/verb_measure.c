@@ -35,13 +35,24 @@ static void print_three(const char *label, const double *values, double unit, co
          values[2] / unit, name, note);
 }
 
+/* What is rounding beside the largest that it may be counts as zero, which has no sign. */
+static double tidy(double value, double largest) {
+  return fabs(value) < 1e-14 * largest ? 0 : value;
+}
+
+static void print_axis(const char *label, const double axis[3]) {
+  printf("  %-22s", label);
+  for (int i = 0; i < 3; i++) printf(" %+.6f", fabs(axis[i]) < 5e-7 ? 0 : axis[i]);
+  putchar('\n');
+}
+
 static void print_measures(const scree_measures *m, double unit) {
   const char *name = cli_unit_name(unit);
-  double cube = unit * unit * unit;
+  double cube = unit * unit * unit, size = m->oriented_dimensions[0];
   printf("  %-22s %.9g %s2\n", "area S", m->area / unit / unit, name);
   printf("  %-22s %.9g %s3\n", "volume V", m->volume / cube, name);
-  printf("  %-22s %.7g, %.7g, %.7g %s\n", "centroid", m->centroid[0] / unit, m->centroid[1] / unit,
-         m->centroid[2] / unit, name);
+  printf("  %-22s %.7g, %.7g, %.7g %s\n", "centroid", tidy(m->centroid[0], size) / unit,
+         tidy(m->centroid[1], size) / unit, tidy(m->centroid[2], size) / unit, name);
   print_three("dimensions x, y, z", m->dimensions, unit, name, "");
   print_three("oriented dimensions", m->oriented_dimensions, unit, name, "");
   printf("  %-22s %.7g %s\n", "equivalent diameter", m->equivalent_diameter / unit, name);
@@ -50,9 +61,7 @@ static void print_measures(const scree_measures *m, double unit) {
   printf("  %-22s %.6g, %.6g, %.6g %s5 (times density)\n", "principal moments",
          m->principal_moments[0] / cube / unit / unit, m->principal_moments[1] / cube / unit / unit,
          m->principal_moments[2] / cube / unit / unit, name);
-  for (int i = 0; i < 3; i++)
-    printf("  %-22s %+.6f %+.6f %+.6f\n", i ? "" : "principal axes", m->principal_axes[i][0],
-           m->principal_axes[i][1], m->principal_axes[i][2]);
+  for (int i = 0; i < 3; i++) print_axis(i ? "" : "principal axes", m->principal_axes[i]);
 }
 
 static void print_count(size_t count, const char *what) {

@@ -80,11 +80,8 @@ static int read_settings(const cli_call *call, const scree_run *run, scree_exper
 }
 
 static int write_picture(const cli_call *call, const scree_run *run, const scree_run_result *result,
-                         scree_error *error) {
+                         scree_render_options render, scree_error *error) {
   const pile_arguments *a = call->options;
-  scree_render_options render = scree_default_render_options();
-  if (!cli_parse_size(a->size, &render))
-    return cli_misuse(call->verb, "--size %s: not a size such as 1200x900", a->size);
   render.azimuth_deg = a->azimuth_deg;
   render.elevation_deg = a->elevation_deg;
   render.samples = a->samples;
@@ -99,7 +96,8 @@ static int write_picture(const cli_call *call, const scree_run *run, const scree
              : cli_fail(error);
 }
 
-static int measure(const cli_call *call, scree_run *run, scree_error *error) {
+static int measure(const cli_call *call, scree_run *run, const scree_render_options *render,
+                   scree_error *error) {
   const pile_arguments *a = call->options;
   scree_experiment settings_used = {0};
   scree_run_result result;
@@ -116,7 +114,7 @@ static int measure(const cli_call *call, scree_run *run, scree_error *error) {
       scree_world_vtp_write(scree_run_view(run), (scree_world_view)a->vtp_view, a->vtp, a->force,
                             error) != SCREE_OK)
     code = cli_fail(error);
-  if (code == 0 && a->picture) code = write_picture(call, run, &result, error);
+  if (code == 0 && a->picture) code = write_picture(call, run, &result, *render, error);
   scree_experiment_free(&settings_used);
   return code;
 }
@@ -133,11 +131,15 @@ static scree_status check_outputs(const cli_call *call, scree_error *error) {
 }
 
 static int run(const cli_call *call) {
+  const pile_arguments *a = call->options;
+  scree_render_options render = scree_default_render_options();
   scree_run *loaded;
   scree_error error;
+  int code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
+  if (code) return code;
   if (check_outputs(call, &error) != SCREE_OK) return cli_fail(&error);
   if (scree_run_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
-  int code = measure(call, loaded, &error);
+  code = measure(call, loaded, &render, &error);
   scree_run_free(loaded);
   return code;
 }

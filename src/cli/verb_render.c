@@ -243,10 +243,9 @@ static int run(const cli_call *call) {
   scree_render_options render = scree_default_render_options();
   double rp[MOST_LEVELS];
   size_t level_count = a->levels ? parse_levels(a->levels, rp) : 0;
-  char rest;
   if (!a->output) return cli_misuse(call->verb, "needs an output file: -o FILE.png");
-  if (sscanf(a->size, "%zux%zu%c", &render.width, &render.height, &rest) != 2)
-    return cli_misuse(call->verb, "--size %s: not a size such as 1200x900", a->size);
+  int code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
+  if (code) return code;
   if (a->levels && !level_count)
     return cli_misuse(call->verb,
                       "--levels %s: must be at most %d numbers above 0 and up to 1, "

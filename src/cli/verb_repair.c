@@ -130,7 +130,7 @@ static int run(const cli_call *call) {
   const repair_arguments *a = call->options;
   scree_repair_options how = options_of(a);
   cli_input_options input = cli_source_options(&a->source);
-  scree_repair_report report;
+  scree_repair_report report = {.seam_distance = 0};
   scree_scan scan;
   scree_mesh repaired = {0};
   scree_error error = {.status = SCREE_OK};
@@ -141,6 +141,7 @@ static int run(const cli_call *call) {
   scree_status status =
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
   int code;
+  if (status == SCREE_BAD_MESH) cli_hint_at_holes(&report, &how, &error);
   if (status != SCREE_OK) cli_name_in_error(call->inputs[0], &error);
   if (status != SCREE_OK && status != SCREE_BAD_MESH) {
     code = cli_fail(&error);

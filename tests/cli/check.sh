@@ -38,3 +38,12 @@ run repair open.off -o closed.off
 run repair -q open.off -o closed.off -f --holes 2
 run repair -f --json open.off -o closed.stl | grep -v '"version"'
 ls
+# a hole too large to be filled unasked: what would fill it is said, and does
+"$SCREE" sample icosphere-5 -o ball.off -q >/dev/null
+awk '/^[OF#]/ { next } !n { n = $1; next } v < n { z[v++] = $3; points = points $0 "\n"; next }
+  z[$2] < 1 || z[$3] < 1 || z[$4] < 1 { faces = faces $0 "\n"; k++ }
+  END { printf "OFF\n%d %d 0\n%s%s", n, k, points, faces }' ball.off >bowl.off
+run repair -q bowl.off -o full.off
+run choose bowl.off
+run repair -q bowl.off -o full.off --large-holes | tail -1
+run choose bowl.off --no-repair

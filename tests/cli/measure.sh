@@ -13,6 +13,10 @@ run measure broken.stl box.off | tail -n 3
 echo "exit code of a set with a broken file:"
 "$SCREE" measure -q broken.stl box.off >/dev/null 2>&1 || echo $?
 run measure --json box.off | grep -v '"version"' | sed "$digits"
+# what is rounding is shown as zero
+run measure sample:icosphere-2 sample:icosphere-3 | grep centroid
+awk 'NR > 2 && NF == 3 { print $2, -$1, $3; next } { print }' box.off >turned.off
+run measure turned.off | grep -A 2 axes
 run measure --csv --unit m box.off moved.off | cut -d, -f1-10
 run measure - <box.off | head -n 2
 run measure
