@@ -5,7 +5,7 @@
 #define SCREE_MESH_BVH_H
 
 #include "base/error.h"
-#include "base/vec.h"
+#include "mesh/closest.h"
 
 /* Children of an inner node (count 0) are nodes first and first + 1; a leaf holds the triangles
  * first to first + count - 1 in tree order. */
@@ -42,9 +42,5 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit);
  * point: the first triangle that is near enough will do. *near, in tree order, is looked at first,
  * and is that triangle afterwards, if there is one. */
 bool scree_bvh_within(const scree_bvh *bvh, vec3 p, double distance2, uint32_t *near);
-
-/* The distance of p from one triangle, squared; *point is the nearest point. Flat triangles and
- * points are fine. */
-double scree_triangle_closest(const double corners[9], vec3 p, vec3 *point);
 
 #endif

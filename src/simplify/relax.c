@@ -24,6 +24,8 @@
  * and is an upper bound, as everywhere in stray.h. */
 #include "simplify/relax.h"
 
+#include "base/lanes.h"
+
 /* Against the sum of the squared shares: the fan says little of some directions. */
 #define DAMPING 0.05
 /* A smaller gain of the sum is none, for what it costs to look at all edges around anew. */
@@ -35,21 +37,46 @@ typedef struct equations {
   double shares;
 } equations;
 
-static void add_witness(equations *q, const scree_witness *witness, const double *corners) {
-  vec3 c, a = vec3_load(corners + 3), b = vec3_load(corners + 6);
+/* What the witnesses of one triangle say, side by side: g and the share of each. */
+typedef struct sayings {
+  double g[3][SCREE_POINTS], share[SCREE_POINTS];
+} sayings;
+
+SCREE_LANES static void say_lanes(const double *corners, const scree_points *p, sayings *out,
+                                  int count) {
+  vec3 a = vec3_load(corners + 3), b = vec3_load(corners + 6);
   vec3 n = vec3_triangle_normal(vec3_load(corners), a, b);
-  double distance = sqrt(scree_triangle_closest(corners, witness->at, &c));
-  if (!(distance > SCREE_SAME_DISTANCE)) return; /* it has no direction */
-  double share = vec3_dot(n, vec3_cross(vec3_sub(a, c), vec3_sub(b, c))) / vec3_norm2(n);
-  vec3 g = vec3_scale(vec3_sub(witness->at, c), share / distance);
-  q->xx += g.x * g.x;
-  q->xy += g.x * g.y;
-  q->xz += g.x * g.z;
-  q->yy += g.y * g.y;
-  q->yz += g.y * g.z;
-  q->zz += g.z * g.z;
-  q->g = vec3_mad(q->g, g, distance);
-  q->shares += share * share;
+  double n2 = vec3_norm2(n);
+  for (int i = 0; i < count; i++) {
+    vec3 at = {p->at[0][i], p->at[1][i], p->at[2][i]};
+    vec3 c = {p->nearest[0][i], p->nearest[1][i], p->nearest[2][i]};
+    double share = vec3_dot(n, vec3_cross(vec3_sub(a, c), vec3_sub(b, c))) / n2;
+    vec3 g = vec3_scale(vec3_sub(at, c), share / sqrt(p->distance2[i]));
+    out->g[0][i] = g.x;
+    out->g[1][i] = g.y;
+    out->g[2][i] = g.z;
+    out->share[i] = share;
+  }
+}
+
+static void add_points(equations *q, const double *corners, scree_points *points) {
+  sayings said;
+  scree_points_closest(corners, points);
+  say_lanes(corners, points, &said, points->count);
+  for (int i = 0; i < points->count; i++) {
+    double distance = sqrt(points->distance2[i]), share = said.share[i];
+    vec3 g = {said.g[0][i], said.g[1][i], said.g[2][i]};
+    if (!(distance > SCREE_SAME_DISTANCE)) continue; /* it has no direction */
+    q->xx += g.x * g.x;
+    q->xy += g.x * g.y;
+    q->xz += g.x * g.z;
+    q->yy += g.y * g.y;
+    q->yz += g.y * g.z;
+    q->zz += g.z * g.z;
+    q->g = vec3_mad(q->g, g, distance);
+    q->shares += share * share;
+  }
+  points->count = 0;
 }
 
 /* H^-1 v; the damping keeps H well away from singular. */
@@ -64,6 +91,8 @@ bool scree_pull_find(const scree_memory *m, const scree_halfmesh *s, const scree
                      scree_pull *p) {
   double corners[SCREE_RING_MAX][9];
   equations q = {.shares = 0};
+  scree_points points;
+  points.count = 0;
   *p = (scree_pull){.from = s->vertex[fan->a].at};
   scree_ring_corners(s, fan, p->from, corners);
   for (uint32_t i = 0; i < fan->count; i++) {
@@ -72,8 +101,10 @@ bool scree_pull_find(const scree_memory *m, const scree_halfmesh *s, const scree
     for (uint32_t j = m->first[fan->edge[i] / 3]; j != SCREE_NONE; j = m->witnesses[j].next) {
       p->sum += m->witnesses[j].distance2;
       p->worst = fmax(p->worst, m->witnesses[j].distance2);
-      add_witness(&q, &m->witnesses[j], corners[i]);
+      scree_points_add(&points, m->witnesses[j].at);
+      if (points.count == SCREE_POINTS) add_points(&q, corners[i], &points);
     }
+    if (points.count > 0) add_points(&q, corners[i], &points);
   }
   if (!(q.shares > 0)) return false;
   q.xx += DAMPING * q.shares;

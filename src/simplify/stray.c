@@ -27,8 +27,6 @@ enum { CLOSE_CROWD = 48, CROWD = 24 };
 enum { FARTHEST_BLOCKS = 16 };
 /* Squared areas that differ by no more of themselves are the same. */
 #define SAME_SIZE 1e-9
-/* Squared height over squared side of a triangle too narrow for the direction of its height. */
-#define NARROW 1e-8
 
 void scree_memory_free(scree_memory *m) {
   scree_bvh_free(&m->surface);
@@ -215,15 +213,12 @@ static uint32_t count_around(const scree_ring *r) {
   return r->count + (r->c != SCREE_NONE) + (r->d != SCREE_NONE);
 }
 
-/* The squared distance of p from the triangles, or something not above `enough`. */
-static double distance_from(double (*corners)[9], uint32_t count, uint32_t begin, vec3 p,
-                            double enough) {
-  double least = INFINITY;
-  vec3 point;
-  for (uint32_t i = 0; i < count && least > enough; i++) {
-    double distance2 = scree_triangle_closest(corners[(begin + i) % count], p, &point);
-    if (distance2 < least) least = distance2;
-  }
+/* The least of the squared distances of p from these triangles. */
+static double distance2_from(const scree_four *fours, size_t four_count, vec3 p) {
+  double distance2[SCREE_RING_MAX], least = INFINITY;
+  scree_fours_closest(fours, four_count, p, distance2);
+  for (size_t i = 0; i < SCREE_FOUR * four_count; i++)
+    if (distance2[i] < least) least = distance2[i];
   return least;
 }
 
@@ -241,12 +236,37 @@ static double shift(const scree_halfmesh *s, const scree_ring *r, double (*corne
   return sqrt(fmax(of_ends, scree_triangle_closest(one, apex, &point)));
 }
 
+/* Witnesses of one triangle side by side. */
+typedef struct witness_crowd {
+  scree_points points;
+  double before[SCREE_POINTS]; /* their squared distances now */
+} witness_crowd;
+
+/* Takes the next witnesses from j on, but for those nearer than `safe2`; answers what is left. */
+static uint32_t gather_crowd(const scree_memory *m, uint32_t j, double safe2, witness_crowd *c) {
+  c->points.count = 0;
+  while (j != SCREE_NONE && c->points.count < SCREE_POINTS) {
+    const scree_witness *w = &m->witnesses[j];
+    j = w->next;
+    if (w->distance2 < safe2) continue;
+    c->before[c->points.count] = w->distance2;
+    scree_points_add(&c->points, w->at);
+  }
+  return j;
+}
+
 /* The largest squared distance of a witness of the ring's triangles from the new ones, where it
- * grows and is above `worst`; or the first that is above `most`. */
+ * grows and is above `worst`; or the first that is above `most`. The triangle whose place the
+ * witness's own had is mostly near enough. */
 static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
                                  const scree_ring *r, vec3 target, double worst, double most) {
   double corners[SCREE_RING_MAX][9];
+  scree_four fours[SCREE_RING_MAX / SCREE_FOUR];
+  size_t four_count = scree_four_count(r->count);
+  witness_crowd c;
+  if (worst > most) return worst;
   scree_ring_corners(s, r, target, corners);
+  scree_fours_fill(corners, r->count, fours);
   for (uint32_t k = 0; k < count_around(r); k++) {
     uint32_t j = m->first[triangle_around(s, r, k)];
     if (j == SCREE_NONE) continue;
@@ -256,13 +276,17 @@ static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
       safe2 = room > 0 ? room * room : 0;
       if (m->witnesses[j].distance2 < safe2) continue; /* it is the farthest */
     }
-    while (j != SCREE_NONE && worst <= most) {
-      const scree_witness *w = &m->witnesses[j];
-      j = w->next;
-      if (w->distance2 < safe2) continue;
-      double enough = fmax(worst, scree_past_rounding(w->distance2));
-      double distance2 = distance_from(corners, r->count, k, w->at, enough);
-      if (distance2 > enough) worst = distance2;
+    while (j != SCREE_NONE) {
+      j = gather_crowd(m, j, safe2, &c);
+      scree_points_closest(corners[k % r->count], &c.points);
+      for (int i = 0; i < c.points.count; i++) {
+        double near = c.points.distance2[i];
+        if (near <= worst || near <= scree_past_rounding(c.before[i])) continue;
+        double distance2 = distance2_from(
+            fours, four_count, (vec3){c.points.at[0][i], c.points.at[1][i], c.points.at[2][i]});
+        if (distance2 > fmax(worst, scree_past_rounding(c.before[i]))) worst = distance2;
+        if (worst > most) return worst;
+      }
     }
   }
   return worst;
@@ -418,70 +442,41 @@ void scree_memory_compact(scree_memory *m, const scree_halfmesh *s) {
 
 /* The new triangles of a ring. */
 typedef struct fan {
-  vec3 target;
-  double corners[SCREE_RING_MAX][9], size2[SCREE_RING_MAX];
-  /* Unit vectors across the two edges at the target: the triangle lies where both are positive.
-   * Zero where rounding would turn them. */
-  vec3 across[SCREE_RING_MAX][2];
+  scree_four fours[SCREE_RING_MAX / SCREE_FOUR];
+  size_t four_count;
 } fan;
 
-static vec3 unit_across(vec3 along, vec3 e) {
-  vec3 across = vec3_mad(e, along, -vec3_dot(e, along) / vec3_norm2(along));
-  double norm2 = vec3_norm2(across);
-  return norm2 > NARROW * vec3_norm2(e) ? vec3_scale(across, 1 / sqrt(norm2)) : (vec3){0, 0, 0};
+static double size2_of(const fan *f, uint32_t i) {
+  return f->fours[i / SCREE_FOUR].n2[i % SCREE_FOUR];
 }
 
-static void make_fan(const scree_halfmesh *s, const scree_ring *r, vec3 target, fan *f) {
-  f->target = target;
-  scree_ring_corners(s, r, target, f->corners);
-  for (uint32_t i = 0; i < r->count; i++) {
-    vec3 p = vec3_sub(vec3_load(f->corners[i] + 3), target),
-         q = vec3_sub(vec3_load(f->corners[i] + 6), target);
-    f->size2[i] = vec3_norm2(vec3_cross(p, q));
-    f->across[i][0] = unit_across(p, q);
-    f->across[i][1] = unit_across(q, p);
-  }
-}
-
-/* Whether the triangle is farther than this from the point at `y` from the target, by its edges. */
-static bool is_beyond(const fan *f, uint32_t i, vec3 y, double reach) {
-  return vec3_dot(y, f->across[i][0]) < -reach || vec3_dot(y, f->across[i][1]) < -reach;
-}
-
-/* The triangle whose new form is nearest to the witness, looked for from triangle `begin` on.
- * Equally near ones are usual, for the nearest point often lies on an edge: of these the largest,
- * so that the order of facets does not decide; of equally large ones the first of the mesh. */
-static uint32_t nearest_triangle(const scree_ring *r, const fan *f, uint32_t begin,
-                                 scree_witness *w) {
-  double distance2[SCREE_RING_MAX], least = INFINITY, reach = INFINITY, largest = 0;
-  uint32_t nearest = SCREE_NONE, tried[SCREE_RING_MAX], count = 0;
-  vec3 point, y = vec3_sub(w->at, f->target);
-  for (uint32_t k = 0, i = begin; k < r->count; k++, i = i + 1 < r->count ? i + 1 : 0) {
-    if (is_beyond(f, i, y, reach)) continue;
-    distance2[count] = scree_triangle_closest(f->corners[i], w->at, &point);
-    if (distance2[count] < least) {
-      least = distance2[count];
-      reach = sqrt(least) + 2 * SCREE_SAME_DISTANCE;
-    }
-    tried[count++] = i;
-  }
+/* The triangle whose new form is nearest to the witness. Equally near ones are usual, for the
+ * nearest point often lies on an edge: of these the largest, so that the order of facets does not
+ * decide; of equally large ones the first of the mesh. */
+static uint32_t nearest_triangle(const scree_ring *r, const fan *f, scree_witness *w) {
+  double distance2[SCREE_RING_MAX], least = INFINITY, largest = 0;
+  uint32_t nearest = SCREE_NONE;
+  scree_fours_closest(f->fours, f->four_count, w->at, distance2);
+  for (uint32_t i = 0; i < r->count; i++)
+    if (distance2[i] < least) least = distance2[i];
   double near = scree_past_rounding(least);
-  for (uint32_t k = 0; k < count; k++)
-    if (distance2[k] <= near && f->size2[tried[k]] > largest) largest = f->size2[tried[k]];
-  for (uint32_t k = 0; k < count; k++) {
-    uint32_t triangle = r->edge[tried[k]] / 3;
-    if (distance2[k] <= near && f->size2[tried[k]] >= (1 - SAME_SIZE) * largest &&
-        triangle < nearest)
-      nearest = triangle;
-  }
+  for (uint32_t i = 0; i < r->count; i++)
+    if (distance2[i] <= near && size2_of(f, i) > largest) largest = size2_of(f, i);
+  for (uint32_t i = 0; i < r->count; i++)
+    if (distance2[i] <= near && size2_of(f, i) >= (1 - SAME_SIZE) * largest &&
+        r->edge[i] / 3 < nearest)
+      nearest = r->edge[i] / 3;
   w->distance2 = least;
   return nearest;
 }
 
 void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_ring *r, vec3 target) {
   fan f;
+  double corners[SCREE_RING_MAX][9];
   uint32_t moving[SCREE_RING_MAX + 2], around = count_around(r);
-  make_fan(s, r, target, &f);
+  scree_ring_corners(s, r, target, corners);
+  scree_fours_fill(corners, r->count, f.fours);
+  f.four_count = scree_four_count(r->count);
   for (uint32_t k = 0; k < around; k++) {
     uint32_t *first = &m->first[triangle_around(s, r, k)];
     moving[k] = *first;
@@ -491,7 +486,7 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
     for (uint32_t j = moving[k], next; j != SCREE_NONE; j = next) {
       scree_witness *w = &m->witnesses[j];
       next = w->next;
-      enlist(m, j, nearest_triangle(r, &f, k < r->count ? k : 0, w));
+      enlist(m, j, nearest_triangle(r, &f, w));
     }
 }
 
@@ -522,9 +517,12 @@ bool scree_ends_stay_within(const scree_halfmesh *s, const scree_ring *r, vec3 t
 }
 
 bool scree_stays_within(const scree_halfmesh *s, const scree_ring *r, vec3 target, double most) {
-  double corners[SCREE_RING_MAX][9];
+  double corners[9];
   if (distance_from_edge(s, r, target) <= most) return true;
-  for (uint32_t i = 0; i < r->count; i++)
-    corners_at(s, r, i, s->vertex[i < r->a_count ? r->a : r->b].at, corners[i]);
-  return distance_from(corners, r->count, 0, target, most) <= most;
+  for (uint32_t i = 0; i < r->count; i++) {
+    vec3 point;
+    corners_at(s, r, i, s->vertex[i < r->a_count ? r->a : r->b].at, corners);
+    if (scree_triangle_closest(corners, target, &point) <= most) return true;
+  }
+  return false;
 }
