@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const cli_option cli_common_options[] = {
     {"threads", 'j', CLI_COUNT, offsetof(cli_common, threads), "N",
@@ -286,12 +287,19 @@ static const char *closest_option(const cli_verb *verb, const char *name) {
   return best;
 }
 
+/* "-dash.stl" may be meant as the file of that name. */
+static const char *file_hint(const char *word, char *buffer, size_t size) {
+  buffer[0] = 0;
+  if (access(word, F_OK) == 0) snprintf(buffer, size, "; the file of that name is ./%.200s", word);
+  return buffer;
+}
+
 static int unknown_option(const cli_verb *verb, const char *word, size_t name_length) {
-  char name[64];
+  char name[64], hint[256];
   snprintf(name, sizeof name, "%.*s", (int)name_length, word + 2);
   const char *meant = closest_option(verb, name);
   if (meant) return cli_misuse(verb, "unknown option '--%s'; did you mean '--%s'?", name, meant);
-  return cli_misuse(verb, "unknown option '--%s'", name);
+  return cli_misuse(verb, "unknown option '--%s'%s", name, file_hint(word, hint, sizeof hint));
 }
 
 static int parse_long(parser *p, const char *word) {
@@ -312,9 +320,12 @@ static int parse_long(parser *p, const char *word) {
 
 /* -qv, -n100, -n 100 */
 static int parse_letters(parser *p, const char *word) {
+  char hint[256];
   for (const char *letter = word + 1; *letter; letter++) {
     found_option found = find_option(p, NULL, 0, *letter);
-    if (!found.option) return cli_misuse(p->verb, "unknown option '-%c' in '%s'", *letter, word);
+    if (!found.option)
+      return cli_misuse(p->verb, "unknown option '-%c' in '%s'%s", *letter, word,
+                        file_hint(word, hint, sizeof hint));
     if (found.option->kind == CLI_FLAG) {
       store(p->verb, found.option, NULL, found.base);
       continue;

@@ -44,8 +44,8 @@ static const char *percent_text(double fraction, char buffer[16]) {
 static void print_row(FILE *out, const choose_run *run, size_t index) {
   const scree_choice *c = &run->choices[index];
   char scan[32], n1[32], n2[32], rp1[16], rp2[16], e1[16], e2[16], noise[16];
-  fprintf(out, "%-12.12s%10s%7s |%7s%7s%8s%c|%7s%7s%8s\n", run->objects[index].name,
-          cli_count_text(c->triangle_count, scan),
+  cli_print_cell(out, run->objects[index].name, 12, 12);
+  fprintf(out, "%10s%7s |%7s%7s%8s%c|%7s%7s%8s\n", cli_count_text(c->triangle_count, scan),
           c->noise.found ? percent_text(c->noise.fraction, noise) : "-", rp_text(c->paper.rp, rp1),
           cli_count_text(c->paper.triangle_count, n1), percent_text(c->paper.eps_s, e1),
           c->paper_is_accident ? '*' : ' ', rp_text(c->robust.rp, rp2),
@@ -83,8 +83,9 @@ static void print_set_advice(FILE *out, const choose_run *run) {
     worst = fmax(worst, c->trace[k].worst_eps_s);
   }
   char rp_buffer[16], low[32], high[32], percent[16];
-  fprintf(out, "Use Rp = %s for the set: %s to %s triangles, area within %s.\n",
-          rp_text(rp, rp_buffer), cli_count_text(least, low), cli_count_text(most, high),
+  fprintf(out, "Use Rp = %s for the set: %s%s%s triangles%s, area within %s.\n",
+          rp_text(rp, rp_buffer), cli_count_text(least, low), least < most ? " to " : "",
+          least < most ? cli_count_text(most, high) : "", least < most ? "" : " each",
           percent_text(worst, percent));
 }
 
@@ -199,7 +200,7 @@ static void print_other_errors(FILE *out, const choose_run *run) {
   putc('\n', out);
   for (size_t i = 0; i < run->count; i++) {
     const scree_choice *c = &run->choices[i];
-    fprintf(out, "%-13.13s", run->objects[i].name);
+    cli_print_cell(out, run->objects[i].name, 13, 13);
     for (int e = 1; e < SCREE_SHAPE_ERROR_COUNT; e++) {
       char rp[16];
       bool known = c->best[e] < c->level_count;

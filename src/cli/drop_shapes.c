@@ -148,17 +148,17 @@ static void say_shape(const drop_run *run, const drop_shape *shape) {
   scree_particle_measures m;
   scree_particle_measure(shape->particle, &m);
   if (run->call->quiet) return;
+  cli_print_cell(stdout, shape->name, 24, SIZE_MAX);
   if (shape->diameter > 0) {
-    printf("%-24s %6zu  sphere of %.4g mm\n", shape->name, shape->count, 1e3 * shape->diameter);
+    printf(" %6zu  sphere of %.4g mm\n", shape->count, 1e3 * shape->diameter);
     return;
   }
   if (m.kind == SCREE_PARTICLE_CLUMP) {
-    printf("%-24s %6zu  clump of %zu sphere%s, size %.3g mm, %.4g g\n", shape->name, shape->count,
-           m.point_count, cli_plural(m.point_count), 1e3 * m.size,
-           1e3 * m.volume * run->arguments->density);
+    printf(" %6zu  clump of %zu sphere%s, size %.3g mm, %.4g g\n", shape->count, m.point_count,
+           cli_plural(m.point_count), 1e3 * m.size, 1e3 * m.volume * run->arguments->density);
     return;
   }
-  printf("%-24s %6zu  %zu triangles", shape->name, shape->count, m.triangle_count);
+  printf(" %6zu  %zu triangles", shape->count, m.triangle_count);
   if (m.triangle_count < shape->source_triangles) printf(" of %zu", shape->source_triangles);
   printf(", size %.3g mm, %.4g g, thinnest wall %.2g mm\n", 1e3 * m.size,
          1e3 * m.volume * run->arguments->density, 1e3 * m.thickness);

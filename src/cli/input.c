@@ -52,6 +52,24 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
   char *dot = strrchr(buffer, '.');
   if (dot && dot != buffer) *dot = 0;
   if (!buffer[0]) snprintf(buffer, size, "scan");
+  for (char *c = buffer; *c; c++)
+    if ((unsigned char)*c < ' ' || *c == 127) *c = '_'; /* a name goes into tables and file names */
+}
+
+static size_t character_length(const char *text) {
+  size_t length = 1;
+  while (((unsigned char)text[length] & 0xc0) == 0x80) length++;
+  return length;
+}
+
+void cli_print_cell(FILE *stream, const char *text, size_t least, size_t most) {
+  size_t count = 0;
+  for (; *text && count < most; count++) {
+    size_t length = character_length(text);
+    fprintf(stream, "%.*s", (int)length, text);
+    text += length;
+  }
+  for (; count < least; count++) putc(' ', stream);
 }
 
 const char *cli_count_text(size_t count, char buffer[32]) {

@@ -19,3 +19,12 @@ cp out/icosphere-4.stl again.stl
 run choose --paper --grid 1e-4:1:3 sample:icosphere-3 2>&1 | sed -n 2p
 box 3 2 1 >box.off
 "$SCREE" choose box.off --unit cm | shape
+# names of many kinds keep to their column; control characters, which a table or a file name cannot bear, do not stay
+"$SCREE" sample icosphere-2 -o plain.stl -q >/dev/null
+lines=$(printf 'two\nlines.stl')
+for name in 'sp a ce' 'ünï-☃-ünï-☃' "${lines%.stl}" -dash; do cp plain.stl "./$name.stl"; done
+run choose -o named -- 'sp a ce.stl' 'ünï-☃-ünï-☃.stl' "$lines" -dash.stl
+ls named | grep lines
+run check -dash.stl 2>&1 | sed -n 2p
+mv ./-dash.stl ./--dash.stl
+run check --dash.stl 2>&1 | sed -n 2p
