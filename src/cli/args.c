@@ -80,8 +80,16 @@ scree_status cli_refuse(scree_error *error, scree_status status, const char *pat
   return status;
 }
 
+/* Where messages name a file: "NAME: why", "out of memory: so many bytes for NAME". */
+static bool names(const char *message, const char *word) {
+  size_t length = strlen(word), all = strlen(message);
+  return !strncmp(message, word, length) || (all > length && message[all - length - 1] == ' ' &&
+                                             !strcmp(message + all - length, word));
+}
+
 scree_status cli_name_in_error(const char *word, scree_error *error) {
-  if (error->status == SCREE_CANCELLED || strstr(error->message, word)) return error->status;
+  if (!strcmp(word, "-")) word = "standard input";
+  if (error->status == SCREE_CANCELLED || names(error->message, word)) return error->status;
   char message[sizeof error->message];
   memcpy(message, error->message, sizeof message);
   snprintf(error->message, sizeof error->message, "%.300s: %.700s", word, message);
@@ -339,6 +347,9 @@ static int parse_letters(parser *p, const char *word) {
 }
 
 static int check_input_count(const cli_verb *verb, const char *const *inputs, size_t count) {
+  size_t streams = 0;
+  for (size_t i = 0; i < count; i++) streams += !strcmp(inputs[i], "-");
+  if (streams > 1) return cli_misuse(verb, "'-' is given twice; standard input can be read once");
   if (count < verb->input_minimum && verb->input_minimum == 1)
     return cli_misuse(verb, "needs at least one input");
   if (count < verb->input_minimum)

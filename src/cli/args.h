@@ -84,7 +84,8 @@ int cli_fail(const scree_error *error);
 /* "path: reason" as an error of that status, which it returns. */
 scree_status cli_refuse(scree_error *error, scree_status status, const char *path,
                         const char *reason);
-/* Puts the word in front of an error that does not name it; returns the error's status. */
+/* Puts the word, "standard input" for "-", in front of an error that does not name it; returns the
+ * error's status. */
 scree_status cli_name_in_error(const char *word, scree_error *error);
 /* Says what is wrong with the call on stderr and how to get help; returns the exit code 2. */
 int cli_misuse(const cli_verb *verb, const char *format, ...) __attribute__((format(printf, 2, 3)));

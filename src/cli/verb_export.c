@@ -139,11 +139,7 @@ static scree_status export_surface(const cli_call *call, scree_error *error) {
   if (status != SCREE_OK) return status;
   status = vtp ? write_vtp(call, &scan.mesh, error) : write_mesh(call, &scan, json_path, error);
   scree_scan_free(&scan);
-  if (status != SCREE_BAD_MESH) return status;
-  char sentence[sizeof error->message]; /* about a mesh without a name */
-  memcpy(sentence, error->message, sizeof sentence);
-  snprintf(error->message, sizeof error->message, "%.300s: %.700s", call->inputs[0], sentence);
-  return status;
+  return status == SCREE_BAD_MESH ? cli_name_in_error(call->inputs[0], error) : status;
 }
 
 /* ---- Checkpoints ---- */

@@ -147,11 +147,7 @@ static scree_status measure_file(const cli_call *call, const char *file, scree_m
   if (status == SCREE_OK) status = warn_of_shells(call, &scan.mesh, entry, error);
   if (status == SCREE_OK) entry->topology.degenerate_facet_count += scan.degenerate_count;
   scree_scan_free(&scan);
-  if (status == SCREE_OK) return status;
-  char sentence[sizeof error->message];
-  memcpy(sentence, error->message, sizeof sentence);
-  snprintf(error->message, sizeof error->message, "%.300s: %.700s", file, sentence);
-  return status;
+  return status == SCREE_OK ? status : cli_name_in_error(file, error);
 }
 
 static void print_entry(const scree_measure_entry *entry, double unit) {

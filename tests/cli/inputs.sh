@@ -43,3 +43,13 @@ run simplify ball.stl -n 20 -o kept.stl
 run simplify ball.stl -n 20 -f -o kept.stl
 cmp kept.stl ball.stl
 same
+# an error names its file once, whatever the name
+printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >e
+for verb in 'check -q' 'repair -o r.ply -q' 'simplify --no-repair -n 4 -o s.ply' 'choose --no-repair' 'export -o x.ply'; do
+  run $verb e
+  run $verb - <e
+done
+for verb in check measure choose; do
+  run $verb - </dev/null
+  run $verb - - <e 2>&1 | sed -n 2p
+done
