@@ -186,6 +186,10 @@ static double series_at(const row *r, double time) {
   return r->rotation[low] + u * (r->rotation[high] - r->rotation[low]);
 }
 
+/* Times at which runs are averaged: a run saves some thousands, a damaged record may ask for any
+ * number. */
+static const double MOST_TIMES = 100000;
+
 static scree_status average_rotation(const analysis *a, size_t point, scree_point_result *p,
                                      double *scratch) {
   double start = INFINITY, end = -INFINITY, step = INFINITY;
@@ -196,9 +200,12 @@ static scree_status average_rotation(const analysis *a, size_t point, scree_poin
     end = fmax(end, r->time[r->series_count - 1]);
     step = fmin(step, (r->time[r->series_count - 1] - r->time[0]) / (double)(r->series_count - 1));
   }
-  if (!(end > start) || !(step > 0)) return SCREE_OK;
+  if (!(end > start) || !(end - start < INFINITY)) return SCREE_OK;
+  step = fmax(step, (end - start) / MOST_TIMES);
+  if (!(step > 0)) return SCREE_OK;
   /* a multiple of the step from the lift on, so that zero is one of the times */
   double first = ceil(start / step) * step;
+  if (!(first <= end)) return SCREE_OK;
   size_t count = (size_t)floor((end - first) / step) + 1;
   double **all[] = {&p->time, &p->rotation, &p->rotation_low, &p->rotation_high};
   for (int k = 0; k < 4; k++)
