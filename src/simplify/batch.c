@@ -865,7 +865,7 @@ static scree_status run_pass(pass *p, size_t *done) {
     *done += run_round(p);
   }
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count) {
-    if (scree_memory_is_kept(&d->memory)) scree_memory_compact(&d->memory, &d->s);
+    if (scree_memory_has_surface(&d->memory)) scree_memory_compact(&d->memory, &d->s);
     scree_halfmesh_compact(&d->s, (uint32_t *)p->contenders, p->edges);
     discard_tails(p);
   }

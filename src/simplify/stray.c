@@ -25,12 +25,14 @@ enum { CLOSE_CROWD = 48, CROWD = 24 };
 #define DROPPED (-1.0)
 /* In which the farthest place is looked for. */
 enum { FARTHEST_BLOCKS = 16 };
+enum { WAY_BLOCK = 4096 };
 /* Squared areas that differ by no more of themselves are the same. */
 #define SAME_SIZE 1e-9
 
 void scree_memory_free(scree_memory *m) {
   scree_bvh_free(&m->surface);
-  scree_free(m->beside);
+  scree_free(m->ways);
+  scree_free(m->near);
   scree_free(m->witnesses);
   scree_free(m->first);
   *m = (scree_memory){0};
@@ -78,8 +80,9 @@ static void add_placed(scree_memory *m, size_t count) {
   m->roughness = mean_distance(m);
 }
 
-/* Which of the triangles kept lie beside each other. number: of the surface's triangles, their
- * numbers in the mesh that the tree was made of; becomes those in the tree. */
+/* Which of the triangles kept lie beside each other, and at the level's vertices, which are theirs.
+ * number: of the surface's triangles, their numbers in the mesh that the tree was made of; becomes
+ * those in the tree. */
 static void find_beside(scree_memory *m, const scree_halfmesh *s, uint32_t *number,
                         uint32_t *place) {
   for (uint32_t i = 0; i < m->surface.triangle_count; i++) place[m->surface.order[i]] = i;
@@ -88,8 +91,29 @@ static void find_beside(scree_memory *m, const scree_halfmesh *s, uint32_t *numb
   for (size_t h = 0; h < 3 * s->triangle_count; h++) {
     if (scree_is_gone(s, h / 3)) continue;
     uint32_t twin = s->half[h].twin;
-    m->beside[3 * (size_t)number[h / 3] + h % 3] =
-        twin == SCREE_NONE ? SCREE_NONE : number[twin / 3];
+    m->ways[number[h / 3]].beside[h % 3] = twin == SCREE_NONE ? SCREE_NONE : number[twin / 3];
+    m->near[s->half[h].from] = number[h / 3];
+  }
+}
+
+static void set_share(float *share, vec3 per_length, vec3 a) {
+  share[0] = (float)per_length.x;
+  share[1] = (float)per_length.y;
+  share[2] = (float)per_length.z;
+  share[3] = (float)-vec3_dot(per_length, a);
+}
+
+/* The shares, linear in the place: those of its foot on the triangle's plane. */
+static void way_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  scree_memory *m = context;
+  for (size_t i = begin; i < end; i++) {
+    const double *corners = m->surface.corners + 9 * i;
+    vec3 a = vec3_load(corners), ab = vec3_sub(vec3_load(corners + 3), a),
+         ac = vec3_sub(vec3_load(corners + 6), a), n = vec3_cross(ab, ac);
+    double n2 = vec3_norm2(n);
+    set_share(m->ways[i].second, vec3_scale(vec3_cross(ac, n), 1 / n2), a);
+    set_share(m->ways[i].third, vec3_scale(vec3_cross(n, ab), 1 / n2), a);
   }
 }
 
@@ -101,7 +125,7 @@ scree_status scree_memory_keep_surface(const scree_halfmesh *s, scree_memory *m,
   *m = (scree_memory){0};
   SCREE_ALLOC_OR(mesh.positions, 3 * s->vertex_count, error, done);
   SCREE_ALLOC_OR(mesh.triangles, 3 * s->live_triangle_count, error, done);
-  SCREE_ALLOC_OR(m->beside, 3 * s->live_triangle_count, error, done);
+  SCREE_ALLOC_OR(m->near, s->vertex_count, error, done);
   SCREE_ALLOC_OR(number, s->triangle_count, error, done);
   SCREE_ALLOC_OR(place, s->live_triangle_count, error, done);
   for (size_t t = 0; t < s->triangle_count; t++) {
@@ -115,7 +139,12 @@ scree_status scree_memory_keep_surface(const scree_halfmesh *s, scree_memory *m,
   }
   for (size_t v = 0; v < s->vertex_count; v++) vec3_store(mesh.positions + 3 * v, s->vertex[v].at);
   status = scree_bvh_build(&mesh, &m->surface, error);
-  if (status == SCREE_OK) find_beside(m, s, number, place);
+  if (status != SCREE_OK) goto done;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(m->ways, s->live_triangle_count, error, done);
+  find_beside(m, s, number, place);
+  scree_parallel_for(m->surface.triangle_count, WAY_BLOCK, way_block, m);
+  status = SCREE_OK;
 done:
   scree_mesh_free(&mesh);
   scree_free(number);
@@ -149,31 +178,33 @@ bool scree_memory_allows(const scree_memory *m, size_t triangle_count, vec3 x) {
   return scree_bvh_closest(&m->surface, x, &(scree_bvh_hit){STAND_OFF * STAND_OFF * size2, x, 0});
 }
 
-/* The edge of the triangle beyond which x lies, by its number; 3: it lies above or below. */
-static uint32_t edge_towards(const double *corners, vec3 x) {
-  vec3 a = vec3_load(corners), ab = vec3_sub(vec3_load(corners + 3), a),
-       ac = vec3_sub(vec3_load(corners + 6), a), ax = vec3_sub(x, a), n = vec3_cross(ab, ac);
-  double v = vec3_dot(vec3_cross(ax, ac), n), w = vec3_dot(vec3_cross(ab, ax), n);
-  double u = vec3_norm2(n) - v - w;
-  if (u >= 0 && v >= 0 && w >= 0) return 3;
-  return w <= u && w <= v ? 0 : u <= v ? 1 : 2;
-}
-
-/* Whether the triangle that x lies above, looked for from *near on by going towards x, is within
- * this distance, squared: mostly the answer, at less cost than to look through the tree. Then *near
- * is that triangle. */
-static bool walk_within(const scree_memory *m, vec3 x, double most, uint32_t *near) {
-  uint32_t now = *near, last = SCREE_NONE;
-  vec3 point;
+/* Of the triangles kept the one that x lies above, or one near to it, looked for from `now` on by
+ * going over the edge beyond which x lies farthest. */
+static uint32_t walk_towards(const scree_memory *m, vec3 x, uint32_t now) {
+  float at[3] = {(float)x.x, (float)x.y, (float)x.z};
+  uint32_t last = SCREE_NONE;
   for (int step = 0; step < MOST_STEPS; step++) {
-    uint32_t edge = edge_towards(m->surface.corners + 9 * (size_t)now, x);
-    uint32_t next = edge < 3 ? m->beside[3 * (size_t)now + edge] : SCREE_NONE;
+    const scree_way *way = &m->ways[now];
+    const float *p = way->second, *q = way->third;
+    float second = p[0] * at[0] + p[1] * at[1] + p[2] * at[2] + p[3];
+    float third = q[0] * at[0] + q[1] * at[1] + q[2] * at[2] + q[3], first = 1 - second - third;
+    if ((first >= 0) & (second >= 0) & (third >= 0)) break;
+    int edge = third <= first && third <= second ? 0 : first <= second ? 1 : 2;
+    uint32_t next = way->beside[edge];
     if (next == SCREE_NONE || next == last) break; /* here, or back and forth over a crest */
     last = now;
     now = next;
   }
-  *near = now;
-  return scree_triangle_closest(m->surface.corners + 9 * (size_t)now, x, &point) <= most;
+  return now;
+}
+
+/* Whether the triangle that x lies above, looked for from *near on, is within this distance,
+ * squared: mostly the answer, at less cost than to look through the tree. Then *near is that
+ * triangle. */
+static bool walk_within(const scree_memory *m, vec3 x, double most, uint32_t *near) {
+  vec3 point;
+  *near = walk_towards(m, x, *near);
+  return scree_triangle_closest(m->surface.corners + 9 * (size_t)*near, x, &point) <= most;
 }
 
 /* The squared distance of x from the surface kept, if above `least`. *near: a triangle to begin
@@ -318,7 +349,7 @@ static double stray_of_edges(const scree_memory *m, const scree_halfmesh *s, con
     worst = farther(m, x, worst, &near[place + 1]);
     if (worst > most) return worst;
   }
-  if (known == 0) near[0] = 0;
+  if (known == 0) near[0] = m->near[r->a];
   worst = farther(m, target, worst, &near[0]);
   for (uint32_t k = 0; k < count; k++)
     for (uint32_t i = 0; i < r->count && worst <= most; i++, number++) {
@@ -364,7 +395,7 @@ double scree_memory_worst(const scree_memory *m) {
   return sqrt(worst);
 }
 
-/* Triangles by blocks, few, for each begins anew to look for a triangle near to its first place. */
+/* Triangles by blocks. */
 typedef struct looking {
   const scree_memory *m;
   const scree_halfmesh *s;
@@ -375,12 +406,12 @@ static void look_at_block(void *context, size_t begin, size_t end, size_t block,
   (void)worker;
   looking *l = context;
   const scree_halfmesh *s = l->s;
-  uint32_t near = 0;
   double worst = l->worst[block];
   for (uint32_t h = 3 * (uint32_t)begin; h < 3 * end; h++) {
     uint32_t from = s->half[h].from, twin = s->half[h].twin;
     if (from == SCREE_NONE) continue;
     vec3 at = s->vertex[from].at, to = s->vertex[scree_to(s, h)].at;
+    uint32_t near = l->m->near[from];
     if (s->vertex[from].outgoing == h) worst = farther(l->m, at, worst, &near);
     for (uint32_t k = 0; k < SCREE_EDGE_PLACES && h < twin; k++)
       worst = farther(l->m, vec3_lerp(at, to, places[k].sixths / 6.0), worst, &near);
@@ -435,9 +466,11 @@ void scree_memory_thin(scree_memory *m, const scree_halfmesh *s, bool close) {
 }
 
 void scree_memory_compact(scree_memory *m, const scree_halfmesh *s) {
-  size_t count = 0;
-  for (size_t t = 0; t < s->triangle_count; t++)
-    if (!scree_is_gone(s, t)) m->first[count++] = m->first[t];
+  size_t triangles = 0, vertices = 0;
+  for (size_t t = 0; t < s->triangle_count && m->first; t++)
+    if (!scree_is_gone(s, t)) m->first[triangles++] = m->first[t];
+  for (size_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE) m->near[vertices++] = m->near[v];
 }
 
 /* The new triangles of a ring. */
@@ -477,6 +510,7 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
   scree_ring_corners(s, r, target, corners);
   scree_fours_fill(corners, r->count, f.fours);
   f.four_count = scree_four_count(r->count);
+  m->near[r->a] = walk_towards(m, target, m->near[r->a]);
   for (uint32_t k = 0; k < around; k++) {
     uint32_t *first = &m->first[triangle_around(s, r, k)];
     moving[k] = *first;

@@ -19,10 +19,17 @@ typedef struct scree_witness {
   uint32_t next;    /* of the same triangle, or NONE */
 } scree_witness;
 
+/* From a triangle of the surface kept on towards a place. In single precision: it only tells where
+ * to look. */
+typedef struct scree_way {
+  float second[4], third[4]; /* shares of these corners at a place x: second[0..2].x + second[3] */
+  uint32_t beside[3];        /* triangles across the edge from corner k, or NONE */
+} scree_way;
+
 typedef struct scree_memory {
   scree_bvh surface;
-  uint32_t
-      *beside; /* of its triangles in the tree's order: across the edge from corner k, or NONE */
+  scree_way *ways; /* of its triangles, in the tree's order */
+  uint32_t *near;  /* per vertex of the level: a triangle kept near it, in the tree's order */
   double area;
   double roughness; /* the mean distance with which the scan's vertices began */
   scree_witness *witnesses;
@@ -43,7 +50,7 @@ static inline double scree_past_rounding(double distance2) {
 scree_status scree_memory_keep_surface(const scree_halfmesh *s, scree_memory *memory,
                                        scree_error *error);
 static inline bool scree_memory_has_surface(const scree_memory *memory) {
-  return memory->beside != NULL;
+  return memory->ways != NULL;
 }
 
 /* Gives it witnesses, and the surface as it is, if it has none: the memory is zero then. The
@@ -64,8 +71,7 @@ bool scree_memory_allows(const scree_memory *memory, size_t triangle_count, vec3
 enum { SCREE_EDGE_PLACES = 5 };
 
 /* Of one ring, from one target to the next, for their places lie near each other: what was near to
- * each place, and which was farthest off. It changes no answer. Begin with
- * scree_no_hints. */
+ * each place, and which was farthest off. It changes no answer. Begin with scree_no_hints. */
 typedef struct scree_hints {
   uint32_t known;    /* places, the new vertex first; 0: none yet */
   uint32_t farthest; /* place; 0: not known */
@@ -115,7 +121,7 @@ double scree_memory_usual(const scree_memory *memory, bool close);
  * the order of their distances; the farthest of each stays. */
 void scree_memory_thin(scree_memory *memory, const scree_halfmesh *s, bool close);
 
-/* Before scree_halfmesh_compact: the triangles get the numbers that they will have. */
+/* Before scree_halfmesh_compact: triangles and vertices get the numbers that they will have. */
 void scree_memory_compact(scree_memory *memory, const scree_halfmesh *s);
 
 /* Gives the witnesses of the ring's triangles to those that will be there; before the collapse. */
