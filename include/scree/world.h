@@ -121,10 +121,12 @@ SCREE_API double scree_world_body_mass(const scree_world *world, size_t index);
 SCREE_API void scree_world_remove_body(scree_world *world, size_t index);
 
 /* Advances by step_count steps. SCREE_DIVERGED, with step, body and cause in the message, when the
- * run leaves the model's range: an overlap beyond the limit, a body moving more than a quarter of
- * that limit in one step, a value that is not finite. The world then stands as after the last good
- * step, readable, and refuses to go on. Same bits for every number of threads. Once warm, a step
- * allocates nothing. About 1 to 2 us per body and step at rest on one core. */
+ * run leaves the model's range: an overlap beyond the limit, a body moving more than that in one
+ * step or two past each other by more than the thinner's thinnest wall, an edge that lies half the
+ * limit deep in another body and is not pushed out, a value that is not finite. The world then
+ * stands as after the last good step, readable, and refuses to go on. Same bits for every number of
+ * threads. Once warm, a step allocates nothing. About 1 to 2 us per body and step at rest on one
+ * core. */
 SCREE_API scree_status scree_world_step(scree_world *world, size_t step_count, scree_error *error);
 SCREE_API double scree_world_time(const scree_world *world);
 SCREE_API uint64_t scree_world_step_count(const scree_world *world);

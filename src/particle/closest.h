@@ -27,6 +27,14 @@ static inline vec3 scree_closest_on_face(const scree_face *face, vec3 p, int *re
   return scree_closest_on_border(face, p, region);
 }
 
+/* Whose dot product with the way from the closest point tells the side: above 0 outside. */
+static inline vec3 scree_outward(const scree_particle *surface, uint32_t face, int region) {
+  if (region == SCREE_REGION_INSIDE) return surface->faces[face].normal;
+  const scree_face_signs *signs = &surface->face_signs[face];
+  return region >= SCREE_REGION_CORNER ? signs->corner[region - SCREE_REGION_CORNER]
+                                       : signs->edge[region - SCREE_REGION_EDGE];
+}
+
 static inline double scree_clamped(double x, double high) {
   return x < 0 ? 0 : x > high ? high : x;
 }

@@ -11,8 +11,8 @@
 #include "base/progress.h"
 #include "particle/closest.h"
 
-static const double fast_steps = 40; /* a list of fast bodies should last this many steps, */
-static const double fast_skins = 3;  /* but not reach farther than this many skins */
+static const double fast_skins =
+    3; /* no list of fast bodies reaches farther than this many skins */
 
 typedef struct listing {
   const scree_world *world;
@@ -283,7 +283,7 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
                .relative = relative,
                .scratch = scratch,
                .skin = scree_pair_skin(world, pair)};
-  l.skin = fmax(l.skin, fmin(fast_steps * pair->list.travel, fast_skins * l.skin));
+  l.skin = fmax(l.skin, fmin(SCREE_FAST_STEPS * pair->list.travel, fast_skins * l.skin));
   l.skin = fmin(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
   mark_awake(&l);
   pair->neighbours->sleeping.count = 0;

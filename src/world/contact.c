@@ -18,6 +18,10 @@
 #include "base/array.h"
 
 static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
+/* What lies so deep in the other body, of the overlap limit and of half the thinnest wall, */
+static const double deep_shares[2] = {0.5, 0.75};
+static const double felt_share = 1.0 / 3; /* and overlaps by less than this of it is unfelt */
+enum { WATCH_EVERY = 8 };                 /* lists of slow pairs */
 
 static double wall_power(const scree_pair *pair, const scree_frame *wall) {
   return vec3_dot(pair->wrench.force, wall->velocity) - vec3_dot(pair->wrench.torque_b, wall->spin);
@@ -189,6 +193,22 @@ static bool passes_unseen(const scree_world *world, const scree_pair *pair) {
   return pair->active.count > 0 && !(pair->list.travel <= 2 * pair->law.thin);
 }
 
+/* When a list is over: whether an edge lies deep inside the other body unfelt. Of slow pairs, which
+ * take their turns, as deep as a thin wall lets it: they have passed through it. Fast hits come out
+ * again of so little. */
+static void watch(const scree_world *world, const scree_pair *pair, const scree_frame *relative,
+                  scree_pair_sums *sums) {
+  bool fast = scree_pair_is_fast(world, pair),
+       turn = (world->step_count + pair->a + pair->b) % WATCH_EVERY == 0;
+  if (pair->active.count == 0 || !(fast || turn)) return;
+  double deep = deep_shares[0] * pair->law.limit, thin = deep_shares[1] * pair->law.thin,
+         least = fmax(fast ? deep : fmin(deep, thin), pair->overlap / felt_share),
+         depth = scree_pair_depth(world, pair, relative, least);
+  if (!(depth > sums->unfelt_depth)) return;
+  sums->unfelt = pair->neighbours;
+  sums->unfelt_depth = depth;
+}
+
 void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                          scree_pair_sums *sums) {
   if (pair->touching) add_later_work(world, pair, sums);
@@ -198,6 +218,7 @@ void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   pair->asleep = false;
   bool good = true;
   if (pair->list.path + 2 * pair->list.travel >= pair->list.end) {
+    watch(world, pair, &relative, sums);
     good = scree_pair_list(world, pair, &relative, scratch);
     pair->list.next_item = -INFINITY;
   }

@@ -133,6 +133,16 @@ static scree_status describe_speed(scree_world *world, const scree_neighbours *n
       n->wall ? "wall" : "body", n->b, world->time_step, 2 * n->law.thin);
 }
 
+static scree_status describe_unfelt(scree_world *world, const scree_pair_sums *sums) {
+  const scree_neighbours *n = sums->unfelt;
+  return scree_fail(
+      &world->failure, SCREE_DIVERGED,
+      "world: step %llu, an edge of body %u or %s %u lies %.3g m deep in the other and is "
+      "not pushed out: they met too fast or with edges too sharp for the contact law",
+      (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,
+      sums->unfelt_depth);
+}
+
 static scree_status combine_sums(scree_world *world, size_t blocks) {
   world->largest_overlap = 0;
   for (size_t block = 0; block < blocks; block++) {
@@ -148,6 +158,7 @@ static scree_status combine_sums(scree_world *world, size_t blocks) {
     const scree_pair_sums *sums = &world->sums.items[block];
     if (sums->beyond_limit) return describe_overlap(world, sums->beyond_limit);
     if (sums->too_fast) return describe_speed(world, sums->too_fast);
+    if (sums->unfelt) return describe_unfelt(world, sums);
   }
   return SCREE_OK;
 }

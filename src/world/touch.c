@@ -67,13 +67,6 @@ static void refresh_faces(const scree_particle *surface, vec3 p, scree_item *ite
   item->valid = path + 0.5 * (next - near.distance[0]);
 }
 
-static vec3 outward_sign(const scree_particle *surface, uint32_t face, int region) {
-  if (region == SCREE_REGION_INSIDE) return surface->faces[face].normal;
-  const scree_face_signs *signs = &surface->face_signs[face];
-  return region >= SCREE_REGION_CORNER ? signs->corner[region - SCREE_REGION_CORNER]
-                                       : signs->edge[region - SCREE_REGION_EDGE];
-}
-
 /* Of the faces that look along `way` within reach: closest point and normal of the nearest, and by
  * how much p is sideways of the one behind which it is most nearly; false for none. With `behind`,
  * p must not be in front of a face. */
@@ -199,7 +192,7 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
     contacts[0].closest = c;
   }
   vec3 offset = vec3_sub(p, contacts[0].closest);
-  vec3 outward = outward_sign(surface, item->face[nearest], nearest_region);
+  vec3 outward = scree_outward(surface, item->face[nearest], nearest_region);
   double d = sqrt(best2);
   bool outside = vec3_dot(offset, outward) >= 0;
   if (!item->has_reference && !outside && surface->measures.volume > 0)

@@ -237,7 +237,8 @@ typedef struct scree_scratch {
 typedef struct scree_pair_sums {
   double dashpot, tangential, wall_work;
   double largest_overlap;
-  const scree_neighbours *beyond_limit, *too_fast;
+  const scree_neighbours *beyond_limit, *too_fast, *unfelt;
+  double unfelt_depth; /* of that one */
   bool out_of_memory;
 } scree_pair_sums;
 
@@ -433,6 +434,14 @@ static inline double scree_pair_skin(const scree_world *w, const scree_pair *p) 
   return w->options.skin / w->options.smoothing * p->law.smoothing;
 }
 
+/* A list of fast bodies should last this many steps. */
+enum { SCREE_FAST_STEPS = 40 };
+
+/* Whether one that reaches no farther than the skin would not. */
+static inline bool scree_pair_is_fast(const scree_world *w, const scree_pair *p) {
+  return SCREE_FAST_STEPS * p->list.travel > scree_pair_skin(w, p);
+}
+
 /* The smaller body of a pair, whose motion relative to the other is measured, and a ball around it
  * and a little beyond. */
 static inline bool scree_pair_smaller_is_a(const scree_world *w, const scree_pair *p) {
@@ -480,6 +489,11 @@ double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, 
 /* Signed distance of p (wall frame) on that side, with the closest point and the normal. */
 double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
                            vec3 *normal);
+
+/* watch.c: how deep an edge of either body lies inside the other's unrounded surface, where that is
+ * more than `least`, m; else 0. */
+double scree_pair_depth(const scree_world *world, const scree_pair *pair,
+                        const scree_frame *relative, double least);
 
 /* The smooth maximum m of overlaps, t, and the denominator of the shares (law.c). */
 typedef struct scree_smooth_maximum {

@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/rng.h"
+#include "particle/closest.h"
 #include "support/shapes.h"
 #include "support/solids.h"
 #include "world/world.h"
@@ -545,6 +546,61 @@ static void features_follow_the_shape(void **state) {
   }
 }
 
+/* The deepest of many points along the edges of `from` in `to`, which stands `relative` to it. */
+static double sampled_depth(const scree_particle *from, const scree_particle *to,
+                            const mat3 *rotation, vec3 shift) {
+  enum { SAMPLES = 400 };
+  const uint32_t root = 0;
+  double deepest = 0;
+  for (size_t i = 0; i < from->edge_count; i++)
+    for (int k = 0; k <= SAMPLES; k++) {
+      const scree_edge *e = &from->edges[i];
+      vec3 x = vec3_mad(e->start, e->along, e->length * k / SAMPLES);
+      x = vec3_add(mat3_mul_vec(rotation, x), shift);
+      scree_box here = {x, x};
+      uint32_t face;
+      if (!scree_box_meets(&here, &to->box) || !scree_is_inside(to, x)) continue;
+      deepest = fmax(deepest, scree_nearest_face(to, &root, 1, x, INFINITY, &face));
+    }
+  return deepest;
+}
+
+/* The watch against samples: nothing is deeper than it says, and it misses nothing that is deeper
+ * than what it was asked for by more than an eighth. */
+static void depth_of_edges(void **state) {
+  (void)state;
+  scree_particle *shapes[] = {shape_particle(shape_box(0.06, 0.04, 0.02)),
+                              shape_particle(solid_hook(0.05, 0.012, 0.02)),
+                              shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004)),
+                              shape_particle(shape_icosphere(0.02, 1))};
+  scree_world *world = elastic_world(0.02);
+  scree_rng rng = {.seed = 23};
+  size_t deep = 0, missed = 0, apart = 0;
+  double beyond = 0;
+  for (uint32_t i = 0; i < 4; i++) law_body(world, shapes[i], scree_default_body());
+  for (int k = 0; k < 400; k++) {
+    const double least = 2e-4 * (1 + k % 5);
+    scree_pair pair = {.a = (uint32_t)k % 4, .b = (uint32_t)k / 4 % 4};
+    const scree_particle *a = shapes[pair.a], *b = shapes[pair.b];
+    scree_frame relative = {.rotation = quat_to_mat3(scree_rng_rotation(&rng))};
+    relative.position = vec3_scale(scree_rng_direction(&rng), 0.045 * scree_rng_uniform(&rng));
+    mat3 back = mat3_transpose(&relative.rotation);
+    double sampled =
+        fmax(sampled_depth(a, b, &relative.rotation, relative.position),
+             sampled_depth(b, a, &back, vec3_neg(mat3_mul_vec(&back, relative.position))));
+    double depth = scree_pair_depth(world, &pair, &relative, least);
+    deep += depth > 0;
+    apart += sampled == 0;
+    missed += depth * 1.125 < sampled && sampled > 1.125 * least;
+    if (depth > 0) beyond = fmax(beyond, depth - sampled);
+  }
+  assert_true(deep > 100 && apart > 10);
+  LAW_NEAR("-", "edges deep in the other body that the watch misses", (double)missed, 0, 0);
+  LAW_BELOW("-", "deeper than samples are (m)", beyond, 1e-4); /* half the way between two */
+  scree_world_free(world);
+  for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
+}
+
 /* By how much the widest of an edge's normals is outside the cone of a node above it, rad. */
 static double outside(const scree_cone *node, const scree_cone *edge) {
   double between = acos(fmax(-1, fmin(1, vec3_dot(node->axis, edge->axis)))),
@@ -602,6 +658,7 @@ int main(void) {
       cmocka_unit_test(pairs_come_into_order),
       cmocka_unit_test(warm_steps_allocate_nothing),
       cmocka_unit_test(what_leaves_the_range_stops),
+      cmocka_unit_test(depth_of_edges),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
