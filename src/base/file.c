@@ -170,6 +170,8 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
   }
   struct stat info;
   bool exists = stat(path, &info) == 0, direct = exists && is_special(&info);
+  if (!exists && !overwrite && lstat(path, &info) == 0) /* a link that leads nowhere */
+    return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
   if (exists && S_ISDIR(info.st_mode))
     return scree_fail(error, SCREE_IO, "%s: is a folder, not a file", path);
   if (exists && !overwrite && !direct)

@@ -118,8 +118,13 @@ static bool in_range(const cli_option *option, double value) {
 }
 
 static int out_of_range(const cli_verb *verb, const cli_option *option, const char *text) {
-  if (option->minimum == 0 && option->maximum == 0)
-    return cli_misuse(verb, "--%s %s: must not be below 0", option->name, text);
+  bool open = option->minimum == 0 && option->maximum == 0;
+  if (option->kind == CLI_COUNT && open)
+    return cli_misuse(verb, "--%s %s: too large", option->name, text);
+  if (open) return cli_misuse(verb, "--%s %s: must not be below 0", option->name, text);
+  if (option->kind == CLI_COUNT)
+    return cli_misuse(verb, "--%s %s: outside the range %.0f to %.0f", option->name, text,
+                      option->minimum, option->maximum);
   return cli_misuse(verb, "--%s %s: outside the range %g to %g%s", option->name, text,
                     option->minimum, option->maximum, option->kind == CLI_LENGTH ? " m" : "");
 }
@@ -129,9 +134,9 @@ static int parse_count(const cli_verb *verb, const cli_option *option, const cha
   char *end;
   errno = 0;
   unsigned long long parsed = strtoull(text, &end, 10);
-  if (*text < '0' || *text > '9' || *end || errno)
+  if (*text < '0' || *text > '9' || *end)
     return cli_misuse(verb, "--%s %s: not a whole number", option->name, text);
-  if (!in_range(option, (double)parsed)) return out_of_range(verb, option, text);
+  if (errno || !in_range(option, (double)parsed)) return out_of_range(verb, option, text);
   *(size_t *)value = (size_t)parsed;
   return 0;
 }
@@ -204,6 +209,8 @@ static int store(const cli_verb *verb, const cli_option *option, const char *tex
     return 0;
   case CLI_TEXT:
   case CLI_FILE:
+    if (!*text)
+      return cli_misuse(verb, "--%s: the value %s is empty", option->name, option->value_name);
     *(const char **)value = text;
     return 0;
   case CLI_COUNT:
@@ -348,7 +355,10 @@ static int parse_letters(parser *p, const char *word) {
 
 static int check_input_count(const cli_verb *verb, const char *const *inputs, size_t count) {
   size_t streams = 0;
-  for (size_t i = 0; i < count; i++) streams += !strcmp(inputs[i], "-");
+  for (size_t i = 0; i < count; i++) {
+    if (!*inputs[i]) return cli_misuse(verb, "input %zu of %zu has an empty name", i + 1, count);
+    streams += !strcmp(inputs[i], "-");
+  }
   if (streams > 1) return cli_misuse(verb, "'-' is given twice; standard input can be read once");
   if (count < verb->input_minimum && verb->input_minimum == 1)
     return cli_misuse(verb, "needs at least one input");

@@ -37,3 +37,7 @@ for words in 'choose missing.stl' 'drop missing.stl' 'drop --resume' 'repose mis
   for folder in new/a/b kept kept/c/; do "$SCREE" $words -o $folder 2>/dev/null; done
   ls -d new* kept kept/* 2>/dev/null
 done
+# nor is a link that leads nowhere replaced unasked
+ln -s nowhere.off dangling.off
+run sample box-12 -o dangling.off
+[ -L dangling.off ] && run sample box-12 -o dangling.off -f -q
