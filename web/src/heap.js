@@ -1,6 +1,6 @@
 // The section of one heap (result.json, docs/formats.md): its angles, the pile to play, the curves beside it.
 import { PlayedSection, known } from './played.js';
-import { element, number, whole } from './text.js';
+import { counted, element, number, whole } from './text.js';
 
 const phases = { packing: 'filling', settling: 'settling', lifting: 'the cylinder rises', holding: 'coming to rest', done: 'the end' };
 
@@ -21,11 +21,11 @@ export class HeapSection extends PlayedSection {
   tell() {
     const { host, heap } = this;
     const { result: r, experiment: e, shapes } = heap;
-    element('h1', `A heap of ${whole(e.particles)} particles of ${shapes.length === 1 ? `one shape, ${shapes[0].name}` : `${whole(shapes.length)} shapes`}`, host);
+    element('h1', `A heap of ${counted(e.particles, 'particle')} of ${shapes.length === 1 ? `one shape, ${shapes[0].name}` : `${whole(shapes.length)} shapes`}`, host);
     const ways = [['the sectors', r.sectors, r.sectors.sd_deg], ['the cone', r.cone, null], ['the silhouettes', r.silhouettes, r.silhouettes.sd_deg]];
     const angles = ways.filter(([, way]) => known(way.angle_deg)).map(([name, way, sd]) => `${number(way.angle_deg, 3)}°${known(sd) ? ` ± ${number(sd, 2)}°` : ''} by ${name}`);
     element('p', r.heap ? `Angle of repose: ${angles.join(', ')}${known(r.spread_deg) ? `; the three ways differ by ${number(r.spread_deg, 2)}°` : ''}.` : `There is no heap: ${r.no_heap_because}.`, host, { class: 'answer' });
-    element('p', `${r.still ? 'Still' : 'Not yet still'} after ${number(r.time, 4)} s; ${whole(r.body_count)} particles on the disc, ${whole(r.left_count)} fell off; ${number(1000 * r.height, 3)} mm high. Preset ${e.preset}, seed ${e.seed}.${e.preset === 'demo' ? ' The preset demo shows a heap; take no number from it.' : ''}`, host, { class: 'soft' });
+    element('p', `${r.still ? 'Still' : 'Not yet still'} after ${number(r.time, 4)} s; ${counted(r.body_count, 'particle')} on the disc, ${whole(r.left_count)} fell off; ${number(1000 * r.height, 3)} mm high. Preset ${e.preset}, seed ${e.seed}.${e.preset === 'demo' ? ' The preset demo shows a heap; take no number from it.' : ''}`, host, { class: 'soft' });
   }
 
   // What the series says of a moment.

@@ -5,7 +5,7 @@ import {
   Mesh, MeshBasicMaterial, MeshStandardMaterial, Quaternion, Vector3,
 } from 'three';
 import { Reader, decodeMesh, decodeVertices } from './packed.js';
-import { element, number, whole } from './text.js';
+import { counted, element, number, whole } from './text.js';
 import { View } from './view.js';
 
 let shapeColors; // as the pictures have them
@@ -254,7 +254,7 @@ export class PilePlayer {
     this.slider.setAttribute('aria-valuetext', `${number(time, 3)} seconds`);
     const said = this.told(time);
     this.text.textContent = `${time.toFixed(2)} s of ${this.pile.end.toFixed(2)} s${said ? `: ${said}` : ''}`;
-    this.caption.textContent = `${whole(count)} particles${this.note}`;
+    this.caption.textContent = `${counted(count, 'particle')}${this.note}`;
     Object.assign(document.body.dataset, { shownTime: time, shownBodies: count });
     this.onTime(time);
   }

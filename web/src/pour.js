@@ -1,6 +1,6 @@
 // The section of one pour (drop.json, docs/formats.md): the particles to play, the curves beside them.
 import { PlayedSection, known } from './played.js';
-import { element, number, whole } from './text.js';
+import { counted, element, number, whole } from './text.js';
 
 export class PourSection extends PlayedSection {
   constructor(host, folder) {
@@ -20,11 +20,11 @@ export class PourSection extends PlayedSection {
     const { result: r, options: o, shapes } = pour;
     const mm = (x) => number(1000 * x, 4);
     const container = o.container === 'box' ? `a box of ${mm(o.width)} × ${mm(o.depth)} mm` : `a cylinder of ${mm(o.width)} mm`;
-    element('h1', `${whole(r.particle_count)} particles of ${shapes.length === 1 ? `one shape, ${shapes[0].name},` : `${whole(shapes.length)} shapes`} poured into ${container}`, host);
+    element('h1', `${counted(r.particle_count, 'particle')} of ${shapes.length === 1 ? `one shape, ${shapes[0].name},` : `${whole(shapes.length)} shapes`} poured into ${container}`, host);
     const end = r.stopped_because ? `Stopped after ${number(r.time, 4)} s: ${r.stopped_because}` : `${r.still ? 'Still' : 'Not yet still'} after ${number(r.time, 4)} s`;
     element('p', `${end}; each particle touches ${number(r.coordination, 3)} others or walls, the largest overlap is ${number(1e6 * r.largest_overlap, 3)} µm.`, host, { class: 'answer' });
     const lost = this.unaccounted();
-    element('p', `${whole(r.entered_count)} of ${whole(r.particle_count)} particles are in, ${whole(r.contact_count)} contacts in ${whole(r.pair_count)} touching pairs. ${number(r.entered_energy, 4)} J came in${known(lost) ? `, of which ${number(100 * lost, 2)} % are not accounted for at the end` : ''}. Seed ${o.seed}.${o.stiffness_factor === 1 ? '' : ` All stiffnesses times ${number(o.stiffness_factor)}: overlaps are larger by its inverse.`}`, host, { class: 'soft' });
+    element('p', `${whole(r.entered_count)} of ${counted(r.particle_count, 'particle')} ${r.particle_count === 1 ? 'is' : 'are'} in, ${counted(r.contact_count, 'contact')} in ${counted(r.pair_count, 'touching pair')}. ${number(r.entered_energy, 4)} J came in${known(lost) ? `, of which ${number(100 * lost, 2)} % are not accounted for at the end` : ''}. Seed ${o.seed}.${o.stiffness_factor === 1 ? '' : ` All stiffnesses times ${number(o.stiffness_factor)}: overlaps are larger by its inverse.`}`, host, { class: 'soft' });
   }
 
   // Energies of the end, all together, against what came in: the share that is missing or too much.

@@ -2,7 +2,7 @@
 import { Chart, palette } from './chart.js';
 import { holds } from './packed.js';
 import { Pile, PilePlayer } from './pile.js';
-import { element, number, rpText, table, whole } from './text.js';
+import { counted, element, number, rpText, table, whole } from './text.js';
 
 // Rp as a number: the scan itself is 1, spheres have none.
 const rpOf = (point) => (point.rp === 'scan' ? 1 : point.rp === 'spheres' ? NaN : Number(point.rp));
@@ -60,13 +60,13 @@ export class StudySection {
     const all = runs.done + runs.failed + runs.running + runs.leased + runs.waiting;
     element('h1', `Study ${study.name}: how many triangles does the heap need?`, host);
     const answers = study.families.map((f) => {
-      const what = f.label ? `${f.label}: ` : '';
+      const what = f.label ? `${f.label}: ` : '', start = f.label ? ['from', 'the'] : ['From', 'The'];
       return f.converged
-        ? `${what}from ${rpName(f.converged_from)} on the angle of repose is that of ${rpName(f.finest)}, within ${number(study.margin_deg)}°.`
-        : `${what}the runs done do not show at any level that the angle of repose is that of ${rpName(f.finest)} within ${number(study.margin_deg)}°.`;
+        ? `${what}${start[0]} ${rpName(f.converged_from)} on the angle of repose is that of ${rpName(f.finest)}, within ${number(study.margin_deg)}°.`
+        : `${what}${start[1]} runs done do not show at any level that the angle of repose is that of ${rpName(f.finest)} within ${number(study.margin_deg)}°.`;
     });
     element('p', answers.join(' ') || 'No level can be compared with a finer one yet.', host, { class: 'answer' });
-    element('p', `${whole(runs.done)} of ${whole(all)} runs are done${runs.failed ? `, ${whole(runs.failed)} failed` : ''}; ${whole(study.replicates)} replicates a point. Intervals are of ${number(100 * study.confidence)} % confidence; bars are standard deviations. Angle measured: ${study.angle}.${study.mixed_versions ? ' The runs come from different versions of scree.' : ''}`, host, { class: 'soft' });
+    element('p', `${whole(runs.done)} of ${counted(all, 'run')} ${all === 1 ? 'is' : 'are'} done${runs.failed ? `, ${whole(runs.failed)} failed` : ''}; ${counted(study.replicates, 'replicate')} a point. Intervals are of ${number(100 * study.confidence)} % confidence; bars are standard deviations. Angle measured: ${study.angle}.${study.mixed_versions ? ' The runs come from different versions of scree.' : ''}`, host, { class: 'soft' });
   }
 
   // One chart against Rp: a series for each family. get(point): {value, low, high} or null.

@@ -1,5 +1,7 @@
 // Numbers as people read them, elements from text, tables that can be saved.
 
+// 1 particle, 2 particles
+export const counted = (n, word) => `${whole(n)} ${word}${n === 1 ? '' : 's'}`;
 export const whole = (n) => (n === null || n === undefined ? '–' : Number(n).toLocaleString('en'));
 
 // A few digits, without zeros at the end: 0.00123, 12.3, 1.2e-7.
