@@ -38,7 +38,7 @@ scree_simplify_options scree_default_simplify_options(void) {
   return (scree_simplify_options){.method = SCREE_METHOD_VOLUME};
 }
 
-static void record_free(scree_record *r) {
+void scree_record_free(scree_record *r) {
   scree_free(r->kept);
   scree_free(r->gone);
   scree_free(r->position);
@@ -59,7 +59,7 @@ scree_status scree_record_allocate(scree_record *r, size_t capacity, scree_error
   SCREE_ALLOC_OR(r->error, capacity, error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
-  record_free(r);
+  scree_record_free(r);
   return SCREE_OUT_OF_MEMORY;
 }
 
@@ -68,7 +68,7 @@ void scree_decimator_free(scree_decimator *d) {
   scree_grid_free(&d->grid);
   scree_memory_free(&d->memory);
   scree_anchors_free(&d->anchors);
-  record_free(&d->record);
+  scree_record_free(&d->record);
 }
 
 void scree_record_write(scree_decimator *d, size_t i, const scree_ring *ring,
@@ -103,7 +103,7 @@ bool scree_decimate_tick(scree_decimator *d) {
 
 void scree_curve_free(scree_curve *curve) {
   if (!curve) return;
-  record_free(&curve->record);
+  scree_record_free(&curve->record);
   scree_free(curve->counts);
   scree_free(curve);
 }

@@ -51,6 +51,8 @@ typedef struct scree_decimator {
 /* The record has room for so many collapses. */
 scree_status scree_record_allocate(scree_record *record, size_t capacity, scree_error *error);
 
+void scree_record_free(scree_record *record);
+
 /* All that it holds. */
 void scree_decimator_free(scree_decimator *d);
 

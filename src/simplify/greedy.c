@@ -25,16 +25,14 @@
  * changes around the edge before its turn comes; so the outcome is that of one thread.
  *
  * Below SCREE_RELAXED_COUNT triangles the vertices about a collapse move after it, to where the
- * witnesses around them are nearer (relax.h); the survivor first, then its neighbours, each by
- * itself; then the two of them that gain most by it take over volume from each other. A place may
- * get farther off by it, but no farther than the farthest of the whole level was when it was last
- * looked for, which is whenever a tenth of the triangles has gone.
+ * witnesses around them are nearer (step.c). Below SCREE_AHEAD_COUNT not the cheapest collapse is
+ * done, but of the cheapest few that are allowed the one after which the level is best (ahead.h).
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
  * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
  * began with: within half of sqrt(area / triangles), the size of the level's triangles. */
-#include "simplify/decimate.h"
+#include "simplify/ahead.h"
 
 #include "base/parallel.h"
 
@@ -42,24 +40,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Cells per mean edge of the grid for exact tests, and when it is built anew:
- * half the triangles gone, or so many entries stale. */
-#define EDGES_PER_CELL 1.5
-#define REGRID_BELOW   0.5
-#define STALE_FACTOR   12
-
 /* How far an edge's whole cost is looked at, in units of that at which it waits. */
-#define LOOK_AHEAD 8.0
+#define LOOKED_UP_TO 8.0
 
 /* The toll (see above): the rank of C among all edges; the share of triangles left at which it is
  * found anew. */
 #define TOLL_RANK   0.1
 #define RENEW_BELOW 0.7
-/* The same for the farthest place of the level, up to which moves may put others. */
-#define FARTHEST_BELOW 0.9
-
-/* The shortest way that a vertex is moved, of the whole step: else it stays. */
-#define LEAST_SHARE 0.25
 
 /* Edges evaluated in one call. */
 enum { SIDE_BY_SIDE = 32 };
@@ -74,9 +61,6 @@ enum {
   FALLBACK = OTHER + SCREE_FALLBACK_COUNT,
   KNOWN = FALLBACK + SCREE_FALLBACK_COUNT
 };
-
-/* The vertices about a collapse, at most: the survivor and the corners of its ring. */
-enum { MOST_ABOUT = 2 * SCREE_RING_MAX + 1 };
 
 /* First choices found at once, at most; kept; edges of the heap looked at for them. */
 enum { AT_ONCE = 8, KEPT = 64, LOOKED_AT = 24 };
@@ -94,22 +78,17 @@ typedef struct queue {
   uint32_t *place; /* per half-edge: its place in the heap, or NONE */
   uint32_t *heap;  /* half-edges */
   size_t heap_count;
-  uint8_t *stage;    /* per half-edge: how far it has come */
-  uint32_t *stamp;   /* per vertex: the collapse that last touched it */
-  uint32_t *touched; /* vertices stamped now */
-  size_t touched_count;
-  uint32_t now;
+  uint8_t *stage; /* per half-edge: how far it has come */
+  scree_step step;
   size_t since_tick;
   double toll;                    /* weight of the stray's sixth power in the cost */
   size_t renew_at;                /* triangles */
-  size_t relaxed_below;           /* the same; 0: never */
-  double farthest2;               /* the squared distance of the farthest place of the level */
-  size_t farthest_at;             /* triangles: found anew */
   double *sorted;                 /* scratch: costs */
   uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
   size_t waiting_count;
   choice known[KEPT];
   size_t known_next;
+  scree_offer *offers; /* SCREE_OFFER_COUNT */
 } queue;
 
 static bool before(const queue *q, uint32_t g, uint32_t h) {
@@ -176,6 +155,12 @@ static void enqueue(queue *q, uint32_t h, const scree_candidate *candidate) {
   sift_down(q, q->place[h]);
 }
 
+/* Gives edge h, which left, its place at the cost that it has. */
+static void enter(queue *q, uint32_t h) {
+  put(q, q->heap_count++, h);
+  sift_up(q, q->place[h]);
+}
+
 /* Gives those waiting their places. */
 static void evaluate_waiting(queue *q) {
   scree_halfmesh *s = &q->d->s;
@@ -203,9 +188,10 @@ static void queue_free(queue *q) {
   scree_free(q->place);
   scree_free(q->heap);
   scree_free(q->stage);
-  scree_free(q->stamp);
-  scree_free(q->touched);
+  scree_free(q->step.stamp);
+  scree_free(q->step.touched);
   scree_free(q->sorted);
+  scree_free(q->offers);
 }
 
 static void enter_all(queue *q) {
@@ -243,12 +229,13 @@ static scree_status queue_fill(queue *q) {
   SCREE_ALLOC_OR(q->place, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->heap, half_edges, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->stage, half_edges, d->error, out_of_memory);
-  SCREE_ALLOC_OR(q->stamp, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(q->touched, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->step.stamp, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->step.touched, s->vertex_count, d->error, out_of_memory);
   SCREE_ALLOC_OR(q->sorted, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->offers, SCREE_OFFER_COUNT, d->error, out_of_memory);
   memset(q->place, 0xff, half_edges * sizeof *q->place);
   memset(q->stage, IN_PART, half_edges);
-  memset(q->stamp, 0, s->vertex_count * sizeof *q->stamp);
+  memset(q->step.stamp, 0, s->vertex_count * sizeof *q->step.stamp);
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
   scree_status status = SCREE_OK;
@@ -257,19 +244,6 @@ static scree_status queue_fill(queue *q) {
   return status;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
-}
-
-static scree_status prepare_grid(scree_decimator *d) {
-  scree_grid *g = &d->grid;
-  if (g->built_for && (double)d->s.live_triangle_count > REGRID_BELOW * (double)g->built_for &&
-      g->count < STALE_FACTOR * g->built_for + 1000)
-    return SCREE_OK;
-  scree_status status = scree_grid_shape(g, &d->s, EDGES_PER_CELL, d->error);
-  if (status != SCREE_OK) return status;
-  if (!scree_grid_list_all(g, &d->s))
-    return scree_fail_memory(d->error, g->capacity * sizeof *g->items, "grid lists");
-  scree_grid_enter_directions(g, &d->s);
-  return SCREE_OK;
 }
 
 /* Takes the ring's edges that vanish or change owner out of the heap. */
@@ -293,218 +267,23 @@ static void update_vertex(queue *q, uint32_t v) {
   uint32_t first = s->vertex[v].outgoing, h = first, last;
   do {
     uint32_t other = scree_to(s, h);
-    if (q->stamp[other] != q->now || other > v) evaluate(q, owner(s, h));
+    if (q->step.stamp[other] != q->step.now || other > v) evaluate(q, owner(s, h));
     last = h;
     h = scree_turn(s, h);
   } while (h != SCREE_NONE && h != first);
   if (h == SCREE_NONE) {
     uint32_t incoming = scree_previous(last), other = s->half[incoming].from;
-    if (q->stamp[other] != q->now || other > v) evaluate(q, incoming);
+    if (q->step.stamp[other] != q->step.now || other > v) evaluate(q, incoming);
   }
 }
 
-/* Whether the ring may be collapsed, or the fan's vertex moved, to change->target; *status tells of
- * failed memory. */
-static bool allowed(queue *q, scree_ring *ring, scree_change *change, scree_around *around,
-                    scree_status *status) {
-  scree_decimator *d = q->d;
-  size_t after = d->s.live_triangle_count - (ring->c != SCREE_NONE) - (ring->d != SCREE_NONE);
-  if (!scree_collapse_check(&d->s, ring, change, around) ||
-      !scree_memory_allows(&q->d->memory, after, change->target))
-    return false;
-  *status = prepare_grid(d);
-  if (*status != SCREE_OK) return false;
-  return (d->s.closed && scree_grid_certifies(&d->grid, ring, around)) ||
-         (scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL) &&
-          scree_anchors_stay(&d->anchors, &d->s, ring, change->target));
-}
-
-static void touch(queue *q, uint32_t v) {
-  if (q->stamp[v] == q->now) return;
-  q->stamp[v] = q->now;
-  q->touched[q->touched_count++] = v;
-}
-
-/* The grid knows the ring's new triangles. */
-static scree_status list_ring(scree_decimator *d, const scree_ring *r,
-                              const scree_around *geometry) {
-  scree_grid_enter_ring(&d->grid, r, geometry);
-  for (uint32_t i = 0; i < r->count; i++)
-    if (!scree_grid_list_triangle(&d->grid, &d->s, r->edge[i] / 3))
-      return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
-  return SCREE_OK;
-}
-
-/* The vertices of the ring are touched, and the grid knows its new triangles. */
-static scree_status settle(queue *q, const scree_ring *r, const scree_around *geometry) {
-  const scree_halfmesh *s = &q->d->s;
-  touch(q, r->a);
-  for (uint32_t i = 0; i < r->count; i++) {
-    touch(q, s->half[r->edge[i]].from);
-    touch(q, scree_to(s, r->edge[i]));
-  }
-  return list_ring(q->d, r, geometry);
-}
-
-/* One or two vertices on their way to where the witnesses are nearer. */
-typedef struct moving {
-  int count;
-  uint32_t edges[2][SCREE_RING_MAX];
-  scree_ring fans[2];
-  scree_relaxation relaxations[2];
-  scree_change changes[2];
-  scree_around around[2];
-} moving;
-
-static bool gather_moving(const scree_halfmesh *s, uint32_t v, moving *m, int which) {
-  m->fans[which].edge = m->edges[which];
-  return !(s->flags[v] & SCREE_VERTEX_LOCKED) && scree_ring_gather_fan(s, v, &m->fans[which]);
-}
-
-/* Whether the first may move, and the second once the first has. */
-static bool all_allowed(queue *q, moving *m, scree_status *status) {
-  scree_decimator *d = q->d;
-  if (!allowed(q, &m->fans[0], &m->changes[0], &m->around[0], status)) return false;
-  if (m->count == 1) return true;
-  vec3 *at = &d->s.vertex[m->fans[0].a].at, from = *at;
-  *at = m->changes[0].target;
-  *status = list_ring(d, &m->fans[0], &m->around[0]);
-  bool answer =
-      *status == SCREE_OK && allowed(q, &m->fans[1], &m->changes[1], &m->around[1], status);
-  *at = from;
-  return answer;
-}
-
-/* Moves the fan's vertex to change->target. */
-static scree_status move(queue *q, const scree_ring *fan, const scree_change *change,
-                         const scree_around *geometry) {
-  scree_decimator *d = q->d;
-  scree_status status = scree_record_move(d, fan, change);
-  if (status != SCREE_OK) return status;
-  scree_memory_move(&d->memory, &d->s, fan, change->target);
-  d->s.vertex[fan->a].at = change->target;
-  return settle(q, fan, geometry);
-}
-
-/* Moves them by as large a share of their steps as gains and is allowed, if any. */
-static scree_status try_moving(queue *q, moving *m) {
-  scree_decimator *d = q->d;
-  scree_status status = SCREE_OK;
-  vec3 places[2];
-  for (int i = 0; i < m->count; i++)
-    m->relaxations[i].worst = fmax(m->relaxations[i].worst, q->farthest2);
-  for (double share = 1; share >= LEAST_SHARE && status == SCREE_OK; share *= 0.5) {
-    scree_relax_places(m->relaxations, m->count, share, places);
-    for (int i = 0; i < m->count; i++) m->changes[i].target = places[i];
-    if (!scree_relax_gains(&d->memory, &d->s, m->relaxations, m->count, places) ||
-        !all_allowed(q, m, &status))
-      continue;
-    for (int i = 0; i < m->count && status == SCREE_OK; i++)
-      status = move(q, &m->fans[i], &m->changes[i], &m->around[i]);
-    return status;
-  }
-  return status;
-}
-
-static scree_status relax(queue *q, uint32_t v) {
-  moving m;
-  scree_pull pull;
-  m.count = 1;
-  if (!gather_moving(&q->d->s, v, &m, 0) ||
-      !scree_pull_find(&q->d->memory, &q->d->s, &m.fans[0], &pull) ||
-      !scree_relax_alone(&pull, &m.fans[0], &m.relaxations[0]))
-    return SCREE_OK;
-  return try_moving(q, &m);
-}
-
-static bool has_corner(const scree_halfmesh *s, const scree_ring *fan, uint32_t v) {
-  for (uint32_t i = 0; i < fan->count; i++)
-    if (s->half[fan->edge[i]].from == v || scree_to(s, fan->edge[i]) == v) return true;
-  return false;
-}
-
-/* Of these vertices the two, no neighbours, that gain most by it take over volume from each other.
- */
-static scree_status exchange(queue *q, const uint32_t *about, size_t count) {
-  const scree_halfmesh *s = &q->d->s;
-  scree_pull pulls[MOST_ABOUT], best[2];
-  double most = 0;
-  moving m;
-  m.count = 2;
-  for (size_t i = 0; i < count; i++)
-    if (!gather_moving(s, about[i], &m, 0) ||
-        !scree_pull_find(&q->d->memory, s, &m.fans[0], &pulls[i]))
-      pulls[i].n_per_n = 0;
-  uint32_t first = SCREE_NONE, second = SCREE_NONE;
-  for (size_t i = 0; i < count; i++) {
-    if (!(pulls[i].n_per_n > 0) || !gather_moving(s, about[i], &m, 0)) continue;
-    for (size_t j = i + 1; j < count; j++) {
-      if (!(pulls[j].n_per_n > 0) || has_corner(s, &m.fans[0], about[j])) continue;
-      double gain = scree_exchange_gain(&pulls[i], &pulls[j]);
-      if (!(gain > most)) continue;
-      most = gain;
-      first = about[i];
-      second = about[j];
-      best[0] = pulls[i];
-      best[1] = pulls[j];
-    }
-  }
-  if (!(most > 0)) return SCREE_OK;
-  gather_moving(s, first, &m, 0);
-  gather_moving(s, second, &m, 1);
-  scree_exchange_begin(best, m.fans, m.relaxations);
-  return try_moving(q, &m);
-}
-
-static void find_farthest(queue *q) {
-  const scree_decimator *d = q->d;
-  if (d->s.live_triangle_count > q->farthest_at) return;
-  q->farthest2 = scree_memory_farthest(&d->memory, &d->s);
-  q->farthest_at = (size_t)(FARTHEST_BELOW * (double)d->s.live_triangle_count);
-}
-
-/* The vertices about the collapse, of which the first survived, have their turns: it, then the
- * others counter-clockwise from the farthest, so that numbers decide nothing; at last two of them
- * together. */
-static scree_status relax_around(queue *q) {
-  const scree_vertex *vertex = q->d->s.vertex;
-  uint32_t about[MOST_ABOUT];
-  size_t count = q->touched_count, farthest = 1;
-  double most = 0;
-  find_farthest(q);
-  scree_status status = relax(q, q->touched[0]);
-  memcpy(about, q->touched, count * sizeof *about);
-  for (size_t i = 1; i < count; i++) {
-    double distance2 = vec3_norm2(vec3_sub(vertex[about[i]].at, vertex[about[0]].at));
-    if (distance2 > most) farthest = i;
-    most = fmax(most, distance2);
-  }
-  for (size_t i = 0; i + 1 < count && status == SCREE_OK; i++)
-    status = relax(q, about[1 + (farthest - 1 + i) % (count - 1)]);
-  return status == SCREE_OK ? exchange(q, about, count) : status;
-}
-
-static scree_status collapse(queue *q, const scree_ring *r, const scree_change *change,
-                             const scree_around *geometry, double error) {
-  scree_decimator *d = q->d;
-  scree_halfmesh *s = &d->s;
-  scree_record_write(d, d->record.count++, r, change, error);
-  s->live_vertex_count--;
-  s->live_triangle_count -= s->half[r->half_edge].twin == SCREE_NONE ? 1 : 2;
-  forget(q, r);
-  if (!d->coster->merge) scree_memory_move(&q->d->memory, s, r, change->target);
-  scree_collapse_apply(s, r, change->target);
-  scree_anchors_follow(&d->anchors, r);
-  if (d->coster->merge) d->coster->merge(s, r->a, r->b);
-  q->now++;
-  q->touched_count = 0;
-  scree_status status = settle(q, r, geometry);
-  if (status == SCREE_OK && s->live_triangle_count < q->relaxed_below) status = relax_around(q);
-  if (!d->coster->merge)
-    for (size_t i = 0; i < q->touched_count; i++) d->coster->sum(s, q->touched[i]);
-  for (size_t i = 0; i < q->touched_count; i++) update_vertex(q, q->touched[i]);
+/* After a collapse: all edges that it may concern get their places anew. */
+static void update(queue *q) {
+  const scree_step *step = &q->step;
+  if (!q->d->coster->merge)
+    for (size_t i = 0; i < step->touched_count; i++) q->d->coster->sum(&q->d->s, step->touched[i]);
+  for (size_t i = 0; i < step->touched_count; i++) update_vertex(q, step->touched[i]);
   evaluate_waiting(q);
-  return status;
 }
 
 /* Makes the cost whole, or not less than `most` if it is not. */
@@ -530,7 +309,7 @@ static scree_candidate other_place(const queue *q, const scree_ring *ring, int k
   return c;
 }
 
-/* Finds the first choice of an edge: its whole cost, or LOOK_AHEAD times that at which the edge
+/* Finds the first choice of an edge: its whole cost, or LOOKED_UP_TO times that at which the edge
  * waits, if it is more: most edges are evaluated anew before their turn comes at that. */
 static void find_first_choice(const queue *q, choice *made) {
   const scree_halfmesh *s = &q->d->s;
@@ -540,7 +319,7 @@ static void find_first_choice(const queue *q, choice *made) {
   made->possible = scree_ring_gather(s, h, &ring) && scree_collapse_keeps_topology(s, &ring);
   if (!made->possible) return;
   /* a share of nothing would be no more */
-  double most = q->cost[h] > DBL_MIN ? LOOK_AHEAD * q->cost[h] : INFINITY;
+  double most = q->cost[h] > DBL_MIN ? LOOKED_UP_TO * q->cost[h] : INFINITY;
   made->stage = WHOLE;
   scree_hints hints;
   scree_no_hints(&hints);
@@ -612,7 +391,8 @@ static scree_status try_fallbacks(queue *q, scree_ring *ring) {
     scree_around around;
     scree_candidate c = other_place(q, ring, k, best.cost, &hints);
     change.target = c.target;
-    if (!(c.cost < best.cost) || !allowed(q, ring, &change, &around, &status)) continue;
+    if (!(c.cost < best.cost) || !scree_step_allows(&q->step, ring, &change, &around, &status))
+      continue;
     best = c;
     q->stage[h] = (uint8_t)(FALLBACK + k);
   }
@@ -620,14 +400,15 @@ static scree_status try_fallbacks(queue *q, scree_ring *ring) {
   return status;
 }
 
-static scree_status try_cheapest(queue *q) {
+/* The cheapest edge has its turn: its collapse is offered where it is allowed, else the edge is put
+ * back, or out. */
+static scree_status try_cheapest(queue *q, scree_offer *offer, bool *offered) {
   scree_decimator *d = q->d;
-  uint32_t h = q->heap[0], edges[SCREE_RING_MAX];
-  scree_ring ring = {.edge = edges};
+  uint32_t h = q->heap[0];
+  scree_ring *ring = &offer->ring;
   scree_candidate candidate;
-  scree_change change;
-  scree_around around;
   scree_status status = SCREE_OK;
+  *offered = false;
   if (q->stage[h] == IN_PART) find_first_choices(q);
   int stage = q->stage[h];
   leave(q, h);
@@ -638,39 +419,105 @@ static scree_status try_cheapest(queue *q) {
     enqueue(q, h, &known->candidate);
     return SCREE_OK;
   }
-  if (!scree_ring_gather(&d->s, h, &ring) || !scree_collapse_keeps_topology(&d->s, &ring))
+  ring->edge = offer->edges;
+  if (!scree_ring_gather(&d->s, h, ring) || !scree_collapse_keeps_topology(&d->s, ring))
     return SCREE_OK;
   if (stage >= OTHER)
     d->coster->fall_back(&d->s, h, (stage - OTHER) % SCREE_FALLBACK_COUNT, &candidate);
   else
     d->coster->evaluate(&d->s, &h, 1, &candidate);
-  change.target = candidate.target;
-  if (allowed(q, &ring, &change, &around, &status))
-    return collapse(q, &ring, &change, &around, candidate.error);
-  if (status != SCREE_OK || stage >= FALLBACK) return status;
-  return try_fallbacks(q, &ring);
+  offer->change.target = candidate.target;
+  offer->error = candidate.error;
+  *offered = scree_step_allows(&q->step, ring, &offer->change, &offer->around, &status);
+  if (*offered || status != SCREE_OK || stage >= FALLBACK) return status;
+  return try_fallbacks(q, ring);
+}
+
+static scree_status collapse_cheapest(queue *q) {
+  bool offered;
+  scree_offer *offer = q->offers;
+  scree_status status = try_cheapest(q, offer, &offered);
+  if (!offered) return status;
+  forget(q, &offer->ring);
+  status =
+      scree_step_collapse(&q->step, &offer->ring, &offer->change, &offer->around, offer->error);
+  update(q);
+  return status;
+}
+
+/* Of the cheapest collapses that are allowed, the one after which the level is best. */
+static scree_status collapse_best(queue *q, scree_ahead *ahead) {
+  size_t count = 0;
+  bool offered;
+  scree_status status = SCREE_OK;
+  while (status == SCREE_OK && count < SCREE_OFFER_COUNT && q->heap_count > 0) {
+    status = try_cheapest(q, &q->offers[count], &offered);
+    count += offered;
+  }
+  if (status != SCREE_OK || count == 0) return status;
+  for (size_t i = 0; i < count; i++) enter(q, q->offers[i].ring.half_edge);
+  size_t best = scree_ahead_find(ahead, &q->step, q->offers, count);
+  forget(q, &q->offers[best].ring);
+  status = scree_ahead_take(ahead, best, &q->step);
+  update(q);
+  return status;
+}
+
+/* Down to so many triangles, or the floor. */
+static scree_status run(queue *q, size_t until, scree_ahead *ahead) {
+  scree_decimator *d = q->d;
+  scree_status status = SCREE_OK;
+  size_t entered_at = d->record.count;
+  while (status == SCREE_OK && d->s.live_triangle_count > until) {
+    if (d->s.live_triangle_count <= q->renew_at) renew(q);
+    if (q->heap_count == 0) { /* what was too far off before may be near enough now */
+      if (d->record.count == entered_at) break;
+      entered_at = d->record.count;
+      enter_all(q);
+      if (q->heap_count == 0) break;
+    }
+    if (q->since_tick++ % 1024 == 0 && !scree_decimate_tick(d)) return SCREE_CANCELLED;
+    status = ahead ? collapse_best(q, ahead) : collapse_cheapest(q);
+  }
+  return status;
+}
+
+static scree_status begin(scree_decimator *d, queue *q) {
+  *q = (queue){.d = d, .step = {.d = d}};
+  if (!d->coster->merge)
+    q->step.relaxed_below = scree_is_large(d) ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
+  q->step.farthest_at = q->step.relaxed_below;
+  scree_grid_free(&d->grid);
+  scree_status status = queue_fill(q);
+  return status == SCREE_OK ? scree_anchors_find(&d->s, &d->anchors, d->error) : status;
+}
+
+/* The last triangles of method `volume`, with a look ahead. */
+static scree_status end_with_care(scree_decimator *d) {
+  queue q;
+  scree_ahead ahead = {.count = 0};
+  scree_status status = scree_ahead_prepare(d);
+  if (status != SCREE_OK) return status;
+  status = begin(d, &q);
+  if (status == SCREE_OK) status = scree_grid_look_at_all(&d->grid, d->error);
+  if (status == SCREE_OK) status = scree_ahead_begin(&ahead, d);
+  if (status == SCREE_OK) status = run(&q, d->options.stop_count, &ahead);
+  scree_ahead_free(&ahead);
+  queue_free(&q);
+  return status;
 }
 
 scree_status scree_decimate_one_by_one(scree_decimator *d) {
-  queue q = {.d = d};
-  if (!d->coster->merge)
-    q.relaxed_below = scree_is_large(d) ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
-  q.farthest_at = q.relaxed_below;
-  scree_grid_free(&d->grid);
-  scree_status status = queue_fill(&q);
-  if (status == SCREE_OK) status = scree_anchors_find(&d->s, &d->anchors, d->error);
-  size_t entered_at = d->record.count;
-  while (status == SCREE_OK && d->s.live_triangle_count > d->options.stop_count) {
-    if (d->s.live_triangle_count <= q.renew_at) renew(&q);
-    if (q.heap_count == 0) { /* what was too far off before may be near enough now */
-      if (d->record.count == entered_at) break;
-      entered_at = d->record.count;
-      enter_all(&q);
-      if (q.heap_count == 0) break;
-    }
-    if (q.since_tick++ % 1024 == 0 && !scree_decimate_tick(d)) status = SCREE_CANCELLED;
-    if (status == SCREE_OK) status = try_cheapest(&q);
+  queue q;
+  size_t until = d->options.stop_count, ahead = 0;
+  scree_status status = SCREE_OK;
+  if (!d->coster->merge) ahead = scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT;
+  if (until < ahead) until = ahead;
+  if (d->s.live_triangle_count > until) {
+    status = begin(d, &q);
+    if (status == SCREE_OK) status = run(&q, until, NULL);
+    queue_free(&q);
   }
-  queue_free(&q);
+  if (status == SCREE_OK && d->s.live_triangle_count <= ahead) status = end_with_care(d);
   return status;
 }

@@ -250,6 +250,12 @@ void scree_grid_enter_directions(scree_grid *g, const scree_halfmesh *s) {
   scree_parallel_for(s->triangle_count, BLOCK, enter_block, &work);
 }
 
+scree_status scree_grid_look_at_all(scree_grid *g, scree_error *error) {
+  free_cells(g);
+  g->few = true;
+  return prepare_tiles(g, error);
+}
+
 static uint64_t ring_averse_to(const scree_grid *g, const scree_ring *r, const vec3 *normals) {
   uint64_t averse = 0;
   for (uint32_t i = 0; i < r->count; i++) averse |= scree_averse_to(g, normals[i]);

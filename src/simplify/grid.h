@@ -40,6 +40,7 @@ typedef struct scree_grid {
   uint32_t *large; /* triangles too large for lists */
   size_t large_count, large_capacity;
   size_t built_for; /* live triangles when it was built */
+  bool few;         /* nothing is entered or listed: searches look at all triangles */
 } scree_grid;
 
 /* What other collapses of the same pass will do: chosen[v] is NONE or the index of the collapse
@@ -57,6 +58,8 @@ enum { SCREE_GROUP = 16 };
 scree_status scree_grid_shape(scree_grid *grid, const scree_halfmesh *s, double edges_per_cell,
                               scree_error *error);
 void scree_grid_free(scree_grid *grid);
+/* For so few triangles that searches may look at them all, in place of the cells. */
+scree_status scree_grid_look_at_all(scree_grid *grid, scree_error *error);
 
 /* Enters the directions of all triangles in place of what was there, and sets the groups; in
  * parallel. */

@@ -410,6 +410,13 @@ static void search_lists(search *q, const scree_grid_box *c, const scree_grid_bo
   }
 }
 
+static void search_all(search *q) {
+  vec3 low, high;
+  for (uint32_t t = 0; t < q->s->triangle_count; t++)
+    if (box_with_plan(q->s, t, NULL, &low, &high) && !beyond_ring(q->ring, low, high))
+      search_triangle(q, t);
+}
+
 bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
                       vec3 target, const scree_planned *planned) {
   search q;
@@ -421,6 +428,10 @@ bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_
   q.before = q.after = 0;
   q.averse = 0;
   search_begin(&q, target);
+  if (g->few) {
+    search_all(&q);
+    return q.after <= q.before;
+  }
   scree_grid_box c = scree_cells_of(g, r->low, r->high);
   if (planned) {
     if (s->closed && q.averse != SCREE_ALL_AVERSE && visit_near(&q, &c, narrow)) return true;

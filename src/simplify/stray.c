@@ -53,7 +53,7 @@ static void add_witness(scree_memory *m, vec3 at, uint32_t triangle) {
   m->left++;
 }
 
-static double mean_distance(const scree_memory *m) {
+double scree_memory_mean(const scree_memory *m) {
   scree_sum sum = {0};
   for (size_t i = 0; i < m->count; i++)
     if (m->witnesses[i].distance2 != DROPPED) scree_sum_add(&sum, sqrt(m->witnesses[i].distance2));
@@ -77,7 +77,7 @@ static scree_status add_vertices(scree_memory *m, const scree_halfmesh *s, scree
 static void add_placed(scree_memory *m, size_t count) {
   for (uint32_t j = 0; j < count; j++) enlist(m, j, m->witnesses[j].next);
   m->count = m->left = count;
-  m->roughness = mean_distance(m);
+  m->roughness = scree_memory_mean(m);
 }
 
 /* Which of the triangles kept lie beside each other, and at the level's vertices, which are theirs.
@@ -432,7 +432,7 @@ double scree_memory_farthest(const scree_memory *m, const scree_halfmesh *s) {
 
 double scree_memory_usual(const scree_memory *m, bool close) {
   if (!(scree_memory_worst(m) > SCREE_SAME_DISTANCE)) return 0;
-  double mean = mean_distance(m), means = close ? CLOSE_MEANS : USUAL_MEANS;
+  double mean = scree_memory_mean(m), means = close ? CLOSE_MEANS : USUAL_MEANS;
   return fmax(means * mean - ROUGH_MEANS * m->roughness, mean);
 }
 
@@ -463,6 +463,25 @@ void scree_memory_thin(scree_memory *m, const scree_halfmesh *s, bool close) {
   while (m->left > crowd * s->live_triangle_count)
     for (size_t t = 0; t < s->triangle_count; t++)
       if (!scree_is_gone(s, t)) thin_list(m, &m->first[t]);
+}
+
+scree_status scree_memory_squeeze(scree_memory *m, const scree_halfmesh *s, scree_error *error) {
+  scree_witness *kept;
+  uint32_t count = 0;
+  SCREE_ALLOC_OR(kept, m->left, error, out_of_memory);
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    if (scree_is_gone(s, t)) continue;
+    for (uint32_t *j = &m->first[t]; *j != SCREE_NONE; j = &kept[count++].next) {
+      kept[count] = m->witnesses[*j];
+      *j = count;
+    }
+  }
+  scree_free(m->witnesses);
+  m->witnesses = kept;
+  m->count = count;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_memory_compact(scree_memory *m, const scree_halfmesh *s) {

@@ -105,7 +105,8 @@ bool scree_memory_stays_within(const scree_memory *memory, const scree_halfmesh 
                                const scree_ring *ring, vec3 target, uint32_t places_on_edge,
                                double most);
 
-/* The largest distance of a witness. */
+/* The mean distance of the witnesses, and the largest. */
+double scree_memory_mean(const scree_memory *memory);
 double scree_memory_worst(const scree_memory *memory);
 
 /* The largest squared distance of all: of a witness, of a vertex or of a place on an edge; in
@@ -120,6 +121,10 @@ double scree_memory_usual(const scree_memory *memory, bool close);
 /* Where there are very many witnesses for so few triangles, every second of each triangle goes, in
  * the order of their distances; the farthest of each stays. */
 void scree_memory_thin(scree_memory *memory, const scree_halfmesh *s, bool close);
+
+/* Forgets the witnesses that were dropped; those of a triangle lie side by side then. */
+scree_status scree_memory_squeeze(scree_memory *memory, const scree_halfmesh *s,
+                                  scree_error *error);
 
 /* Before scree_halfmesh_compact: triangles and vertices get the numbers that they will have. */
 void scree_memory_compact(scree_memory *memory, const scree_halfmesh *s);

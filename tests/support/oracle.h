@@ -38,8 +38,10 @@ typedef struct oracle {
   double toll;     /* weight of the stray's sixth power */
   size_t renew_at; /* triangles at which it is found anew */
   double *whole;   /* as state, for every place: the whole cost, or NAN where it is not known yet */
-  size_t moved, taken;      /* moves of the record that were checked; of these, in any order */
-  size_t exchanged;         /* pairs that moved together */
+  size_t moved, taken; /* moves of the record that were checked; of these, in any order */
+  size_t exchanged;    /* pairs that moved together */
+  bool looks_ahead;
+  size_t weighed;           /* choices of which every offer was done */
   size_t compared, decided; /* collapses, and those with no rival within rounding */
 } oracle;
 
@@ -77,6 +79,11 @@ double oracle_patch_distance2(const oracle *after, uint32_t a, vec3 p, uint32_t 
 /* Squared, of the collapse of (a, b) to x. */
 double oracle_stray2_of(const oracle *o, uint32_t a, uint32_t b, vec3 x);
 
+/* Does it; of the witnesses around, which triangle holds them. */
+void oracle_apply(oracle *o, uint32_t a, uint32_t b, vec3 x);
+/* The same of a move. */
+void oracle_apply_move(oracle *o, uint32_t v, vec3 x);
+
 /* ---- Moves after a collapse: oracle_move.c ---- */
 
 /* Two vertices that take over volume from each other. */
@@ -98,5 +105,23 @@ bool oracle_find_pair(const oracle *o, uint32_t v, uint32_t w, pair *p);
 void oracle_check_pair(const oracle *o, const pair *p, bool sure, const vec3 *x);
 /* The pair about vertex a that gains most, if any is worth it; *second: the gain of the next. */
 pair oracle_best_pair(const oracle *o, uint32_t a, double *second);
+/* The corner of the triangle that has the side from v to w; NONE: there is none. */
+uint32_t oracle_beyond_side(const oracle *o, uint32_t v, uint32_t w);
+/* The neighbour of v that is farthest from it; *alone: by more than rounding. */
+uint32_t oracle_farthest_neighbour(const oracle *o, uint32_t v, bool *alone);
+/* Finds the farthest place of the level anew, if it is time. */
+void oracle_renew_farthest(oracle *o);
+/* What the engine should do: where vertex v moves, if it does; where the two move that gain most
+ * about a. *sure becomes false where rounding decides. */
+bool oracle_find_move(const oracle *o, uint32_t v, vec3 *x, bool *sure);
+bool oracle_find_exchange(const oracle *o, uint32_t a, pair *p, vec3 *x, bool *sure);
+
+/* ---- Looking ahead: oracle_ahead.c ---- */
+
+/* The distance of the farthest of all witnesses, vertices and places on edges. */
+double oracle_farthest(const oracle *o);
+/* The mean distance of the witnesses times the root of that, once (a, b) has collapsed to x and the
+ * vertices about it have moved. */
+double oracle_score_after(const oracle *o, uint32_t a, uint32_t b, vec3 x, bool *sure);
 
 #endif

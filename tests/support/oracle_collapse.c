@@ -355,3 +355,31 @@ double oracle_stray2_of(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
   free(after.triangle);
   return worst;
 }
+
+/* ---- Doing it ---- */
+
+void oracle_apply(oracle *o, uint32_t a, uint32_t b, vec3 x) {
+  oracle after = oracle_collapsed(o, a, b, x);
+  size_t kept = 0;
+  for (size_t w = 0; w < o->vertex_count; w++)
+    if (oracle_has(o, o->holder[w], a) || oracle_has(o, o->holder[w], b))
+      o->held2[w] = oracle_patch_distance2(&after, a, o->witness[w], &o->holder[w]);
+  for (size_t t = 0; t < o->triangle_count; t++) {
+    if (oracle_gone(&after, t)) continue;
+    for (size_t w = 0; w < o->vertex_count; w++)
+      if (o->holder[w] == t) o->holder[w] = (uint32_t)kept;
+    memmove(after.triangle + 3 * kept++, after.triangle + 3 * t, 3 * sizeof *after.triangle);
+  }
+  free(o->position);
+  free(o->triangle);
+  o->position = after.position;
+  o->triangle = after.triangle;
+  o->triangle_count = kept;
+}
+
+void oracle_apply_move(oracle *o, uint32_t v, vec3 x) {
+  o->position[v] = x;
+  for (size_t w = 0; w < o->vertex_count; w++)
+    if (oracle_has(o, o->holder[w], v))
+      o->held2[w] = oracle_patch_distance2(o, v, o->witness[w], &o->holder[w]);
+}

@@ -2,11 +2,13 @@
 #include "support/oracle.h"
 
 #include "mesh/bvh.h"
+#include "simplify/halfmesh.h"
 #include "support/check.h"
 
 /* What the rules name (docs/decimation.md). */
 #define RELAX_DAMP   0.05
 #define RELAX_HALVES 3
+#define FAR_SHARE    0.9
 
 static oracle with_moved(const oracle *o, uint32_t v, vec3 x) {
   oracle n = *o;
@@ -209,4 +211,71 @@ pair oracle_best_pair(const oracle *o, uint32_t a, double *second) {
     }
   free(about);
   return best;
+}
+
+uint32_t oracle_beyond_side(const oracle *o, uint32_t v, uint32_t w) {
+  for (size_t h = 0; h < 3 * o->triangle_count; h++)
+    if (o->triangle[h] == v && o->triangle[h % 3 == 2 ? h - 2 : h + 1] == w)
+      return o->triangle[h % 3 == 0 ? h + 2 : h - 1];
+  return SCREE_NONE;
+}
+
+uint32_t oracle_farthest_neighbour(const oracle *o, uint32_t v, bool *alone) {
+  uint32_t farthest = v;
+  double most = 0, second = 0;
+  for (size_t h = 0; h < 3 * o->triangle_count; h++) {
+    uint32_t w = o->triangle[h];
+    if (w == v || w == farthest || !oracle_has(o, h / 3, v)) continue;
+    double distance = vec3_distance(o->position[w], o->position[v]);
+    second = fmax(second, fmin(distance, most));
+    if (distance > most) farthest = w;
+    most = fmax(most, distance);
+  }
+  *alone = second < (1 - 1e-9) * most;
+  return farthest;
+}
+
+void oracle_renew_farthest(oracle *o) {
+  if (o->triangle_count > o->far_at) return;
+  o->farthest = oracle_farthest(o);
+  o->far_at = (size_t)(FAR_SHARE * (double)o->triangle_count);
+}
+
+bool oracle_find_move(const oracle *o, uint32_t v, vec3 *x, bool *sure) {
+  double promise, pressure, worst, share = 1;
+  vec3 step;
+  step_with_volume(o, v, 0, &step, &promise, &pressure);
+  double sum = oracle_off_around(o, v, &worst), least = RELAX_GAIN * sum;
+  worst = fmax(worst, o->farthest);
+  if (!(promise > 0)) return false;
+  *sure &= fabs(promise - least) > 1e-6 * sum;
+  for (int k = 0; k < RELAX_HALVES && promise > least; k++, share /= 2) {
+    *x = vec3_mad(o->position[v], step, share);
+    oracle after = with_moved(o, v, *x);
+    double worst_after, gain = sum - least - oracle_off_around(&after, v, &worst_after);
+    double past = worst + EQUALLY_NEAR - worst_after;
+    free(after.position);
+    *sure &= fabs(gain) > 1e-6 * sum && fabs(past) > EQUALLY_NEAR / 2;
+    if (gain > 0 && past > 0 && may_move(o, v, *x)) return true;
+  }
+  return false;
+}
+
+bool oracle_find_exchange(const oracle *o, uint32_t a, pair *p, vec3 *x, bool *sure) {
+  double second, share = 1, gain, past, worst[2];
+  *p = oracle_best_pair(o, a, &second);
+  if (!(p->gain > 0)) return false;
+  *sure &= p->gain > (1 + 1e-6) * RELAX_GAIN * p->sum && second < (1 - 1e-6) * p->gain;
+  for (int k = 0; k < 2; k++) oracle_off_around(o, p->v[k], &worst[k]);
+  double before = fmax(o->farthest, fmax(worst[0], worst[1]));
+  for (int k = 0; k < RELAX_HALVES; k++, share /= 2) {
+    pair_margins(o, p, share, before, &gain, &past);
+    *sure &= fabs(gain) > 1e-6 * p->sum && fabs(past) > EQUALLY_NEAR / 2;
+    if (!(gain > 0 && past > 0)) continue;
+    bool one = pair_may_move(o, p, share, 0), other = pair_may_move(o, p, share, 1);
+    *sure &= one == other; /* which of them is first is the engine's to say */
+    for (int i = 0; i < 2; i++) x[i] = vec3_mad(o->position[p->v[i]], p->step[i], share);
+    if (one) return true;
+  }
+  return false;
 }

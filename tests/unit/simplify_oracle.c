@@ -32,7 +32,7 @@
 #define TOLL_SHARE  0.1
 #define USUAL_MEANS 10.0
 #define RENEW_SHARE 0.7
-#define FAR_SHARE   0.9
+#define AHEAD_COUNT 160
 #define EQUAL_COST  1e-9
 
 /* ---- The order ---- */
@@ -202,51 +202,24 @@ static bool check_turn(oracle *o, uint32_t a, uint32_t b, vec3 x, place *chosen)
   return true;
 }
 
-static void apply(oracle *o, uint32_t a, uint32_t b, vec3 x) {
-  oracle after = oracle_collapsed(o, a, b, x);
-  size_t kept = 0;
-  for (size_t w = 0; w < o->vertex_count; w++)
-    if (oracle_has(o, o->holder[w], a) || oracle_has(o, o->holder[w], b))
-      o->held2[w] = oracle_patch_distance2(&after, a, o->witness[w], &o->holder[w]);
-  for (size_t t = 0; t < o->triangle_count; t++) {
-    if (oracle_gone(&after, t)) continue;
-    for (size_t w = 0; w < o->vertex_count; w++)
-      if (o->holder[w] == t) o->holder[w] = (uint32_t)kept;
-    memmove(after.triangle + 3 * kept++, after.triangle + 3 * t, 3 * sizeof *after.triangle);
-  }
-  free(o->position);
-  free(o->triangle);
-  o->position = after.position;
-  o->triangle = after.triangle;
-  o->triangle_count = kept;
-  for (size_t t = 0; o->qecd && t < o->plane_count; t++)
-    o->share[a * o->plane_count + t] =
-        (uint16_t)(o->share[a * o->plane_count + t] + o->share[b * o->plane_count + t]);
-  /* all edges at the ends of the triangles that changed start anew */
-  for (size_t t = 0; t < o->triangle_count; t++) {
-    if (!oracle_has(o, t, a)) continue;
-    for (size_t i = 0; i < 3; i++)
-      for (uint32_t v = 0; v < o->vertex_count; v++) edge_starts_anew(o, o->triangle[3 * t + i], v);
-  }
-}
-
-/* Vertex v moves to x: the witnesses around it are held anew, the edges around start anew. */
-static void apply_move(oracle *o, uint32_t v, vec3 x) {
-  o->position[v] = x;
-  for (size_t w = 0; w < o->vertex_count; w++)
-    if (oracle_has(o, o->holder[w], v))
-      o->held2[w] = oracle_patch_distance2(o, v, o->witness[w], &o->holder[w]);
+/* All edges at the ends of the triangles around v start anew. */
+static void edges_start_anew(oracle *o, uint32_t v) {
   for (size_t t = 0; t < o->triangle_count; t++)
     for (size_t i = 0; i < 3 && oracle_has(o, t, v); i++)
       for (uint32_t u = 0; u < o->vertex_count; u++) edge_starts_anew(o, o->triangle[3 * t + i], u);
 }
 
-/* The corner of the triangle that has the side from v to w; NONE: there is none. */
-static uint32_t beyond_side(const oracle *o, uint32_t v, uint32_t w) {
-  for (size_t h = 0; h < 3 * o->triangle_count; h++)
-    if (o->triangle[h] == v && o->triangle[h % 3 == 2 ? h - 2 : h + 1] == w)
-      return o->triangle[h % 3 == 0 ? h + 2 : h - 1];
-  return SCREE_NONE;
+static void apply(oracle *o, uint32_t a, uint32_t b, vec3 x) {
+  oracle_apply(o, a, b, x);
+  for (size_t t = 0; o->qecd && t < o->plane_count; t++)
+    o->share[a * o->plane_count + t] =
+        (uint16_t)(o->share[a * o->plane_count + t] + o->share[b * o->plane_count + t]);
+  edges_start_anew(o, a);
+}
+
+static void apply_move(oracle *o, uint32_t v, vec3 x) {
+  oracle_apply_move(o, v, x);
+  edges_start_anew(o, v);
 }
 
 /* The record's next move, if it belongs to collapse i, and whether it keeps the volume by itself.
@@ -302,52 +275,102 @@ static void check_exchange(oracle *o, const scree_decimator *d, size_t i, uint32
   o->exchanged++;
 }
 
-/* The neighbour of v that is farthest from it; *alone: by more than rounding. */
-static uint32_t farthest_neighbour(const oracle *o, uint32_t v, bool *alone) {
-  uint32_t farthest = v;
-  double most = 0, second = 0;
-  for (size_t h = 0; h < 3 * o->triangle_count; h++) {
-    uint32_t w = o->triangle[h];
-    if (w == v || w == farthest || !oracle_has(o, h / 3, v)) continue;
-    double distance = vec3_distance(o->position[w], o->position[v]);
-    second = fmax(second, fmin(distance, most));
-    if (distance > most) farthest = w;
-    most = fmax(most, distance);
-  }
-  *alone = second < (1 - 1e-9) * most;
-  return farthest;
-}
-
-/* Of all witnesses, vertices and places on edges. */
-static void find_farthest(oracle *o) {
-  double worst;
-  if (o->triangle_count > o->far_at) return;
-  o->farthest = 0;
-  o->far_at = (size_t)(FAR_SHARE * (double)o->triangle_count);
-  for (size_t h = 0; h < 3 * o->triangle_count; h++) {
-    oracle_off_around(o, o->triangle[h], &worst);
-    o->farthest = fmax(o->farthest, worst);
-  }
-}
-
 /* The survivor of collapse i, then its neighbours, counter-clockwise from the farthest. Where two
  * are as far, rounding decides the order, and the moves are taken over. */
 static void check_moves(oracle *o, const scree_decimator *d, size_t i) {
   bool in_order, alone;
   vec3 x;
   uint32_t a = d->record.kept[i];
-  find_farthest(o);
+  oracle_renew_farthest(o);
   check_turn_to_move(o, d, i, a);
-  uint32_t first = farthest_neighbour(o, a, &in_order), v = first;
+  uint32_t first = oracle_farthest_neighbour(o, a, &in_order), v = first;
   const scree_move *m;
   for (; !in_order && (m = next_move(o, d, i, &x, &alone)) && alone; o->taken++)
     check_turn_to_move(o, d, i, m->vertex);
   while (in_order) {
     check_turn_to_move(o, d, i, v);
-    v = beyond_side(o, a, v);
+    v = oracle_beyond_side(o, a, v);
     if (v == first) break;
   }
   check_exchange(o, d, i, a);
+}
+
+/* ---- Looking ahead ---- */
+
+enum { OFFER_COUNT = 4, WEIGHED_EVERY = 3 };
+
+typedef struct offer {
+  uint32_t a, b;
+  place p;
+} offer;
+
+static bool is_offered(const offer *offers, size_t count, uint32_t a, uint32_t b) {
+  for (size_t i = 0; i < count; i++)
+    if (offers[i].a == a && offers[i].b == b) return true;
+  return false;
+}
+
+/* The edge that waits at the least cost and is not among the offers. */
+static offer cheapest(oracle *o, const offer *offers, size_t count) {
+  offer least = {.p.cost = INFINITY};
+  size_t side = 0;
+  uint32_t a, b;
+  while (next_edge(o, &side, &a, &b)) {
+    if (is_offered(offers, count, a, b)) continue;
+    place p = waiting(o, a, b, least.p.cost);
+    if (p.cost < least.p.cost) least = (offer){a, b, p};
+  }
+  return least;
+}
+
+/* The cheapest that are allowed; what is cheaper and is not is refused. *next: what waits at the
+ * least cost then. */
+static size_t find_offers(oracle *o, offer *offers, offer *next) {
+  size_t count = 0;
+  for (;;) {
+    *next = cheapest(o, offers, count);
+    if (!(next->p.cost < INFINITY) || count == OFFER_COUNT) return count;
+    if (oracle_may_collapse(o, next->a, next->b, next->p.target))
+      offers[count++] = *next;
+    else
+      refuse(o, next->a, next->b);
+  }
+}
+
+/* Whether none of the others would have made a better level. */
+static void weigh(oracle *o, const offer *offers, size_t count, uint32_t a, uint32_t b) {
+  double score[OFFER_COUNT], chosen = INFINITY;
+  bool sure[OFFER_COUNT], all = true;
+  for (size_t i = 0; i < count; i++) {
+    score[i] = oracle_score_after(o, offers[i].a, offers[i].b, offers[i].p.target, &sure[i]);
+    all &= sure[i];
+    if (offers[i].a == a && offers[i].b == b && sure[i]) chosen = score[i];
+  }
+  for (size_t i = 0; i < count && chosen < INFINITY; i++)
+    if (sure[i] && score[i] < (1 - 1e-6) * chosen)
+      fail_msg("collapse of (%u, %u) for %.9g, that of (%u, %u) makes %.9g", a, b, chosen,
+               offers[i].a, offers[i].b, score[i]);
+  o->weighed += all;
+}
+
+/* The engine collapses (a, b) next, to x: one of the offers, and the best of them. */
+static bool check_choice(oracle *o, uint32_t a, uint32_t b, vec3 x, place *chosen) {
+  offer offers[OFFER_COUNT], next;
+  size_t count = find_offers(o, offers, &next);
+  if (count == 0) return false;
+  const place *last = &offers[count - 1].p;
+  bool clear = next.p.cost - last->cost > next.p.slack + last->slack;
+  o->decided += clear;
+  for (size_t i = 0; i < count; i++) {
+    *chosen = offers[i].p;
+    if (offers[i].a != a || offers[i].b != b ||
+        fmin(vec3_distance(x, chosen->target), vec3_distance(x, chosen->other)) > 1e-6)
+      continue;
+    if (clear && o->compared % WEIGHED_EVERY == 0) weigh(o, offers, count, a, b);
+    return true;
+  }
+  *chosen = waiting(o, a, b, INFINITY); /* as cheap, but for rounding */
+  return chosen->cost <= last->cost + last->slack + chosen->slack;
 }
 
 static void measure(const oracle *o, double *area, double *volume) {
@@ -443,11 +466,17 @@ static void check_collapse(oracle *o, const scree_decimator *d, size_t i) {
   uint32_t a = r->kept[i], b = r->gone[i];
   vec3 x = vec3_scale(vec3_sub(r->position[i], d->s.centre), 1 / d->s.scale);
   place chosen;
+  if (!o->qecd && !o->looks_ahead && o->triangle_count <= AHEAD_COUNT) {
+    o->looks_ahead = true;
+    o->renew_at = o->far_at = o->triangle_count;
+  }
   renew(o);
-  bool in_turn = check_turn(o, a, b, x, &chosen);
+  bool (*check)(oracle *, uint32_t, uint32_t, vec3, place *) =
+      o->looks_ahead ? check_choice : check_turn;
+  bool in_turn = check(o, a, b, x, &chosen);
   if (!in_turn && nothing_waits(o)) { /* all edges are looked at once more */
     start_anew(o);
-    in_turn = check_turn(o, a, b, x, &chosen);
+    in_turn = check(o, a, b, x, &chosen);
   }
   if (!in_turn) fail_msg("collapse %zu, (%u, %u), at %zu triangles", i, a, b, o->triangle_count);
   check_deed(o, d, i, &chosen);
@@ -475,8 +504,11 @@ static scree_decimator decimator_of(const scree_mesh *mesh, bool qecd, scree_err
   return begin_decimation(mesh, qecd ? &scree_qecd_coster : &scree_volume_coster, error);
 }
 
-static void compare(const scree_mesh *mesh, bool qecd, size_t *moved, size_t *exchanged,
-                    size_t *compared, size_t *decided) {
+typedef struct totals {
+  size_t moved, exchanged, compared, decided, weighed;
+} totals;
+
+static void compare(const scree_mesh *mesh, bool qecd, totals *sum) {
   scree_error error;
   scree_decimator d = decimator_of(mesh, qecd, &error);
   assert_true(d.s.closed);
@@ -487,10 +519,11 @@ static void compare(const scree_mesh *mesh, bool qecd, size_t *moved, size_t *ex
   assert_int_equal(o.triangle_count, d.s.live_triangle_count);
   assert_int_equal(o.moved, d.record.moves.count);
   check_floor(&o);
-  *moved += o.moved - o.taken;
-  *exchanged += o.exchanged;
-  *compared += o.compared;
-  *decided += o.decided;
+  sum->moved += o.moved - o.taken;
+  sum->exchanged += o.exchanged;
+  sum->compared += o.compared;
+  sum->decided += o.decided;
+  sum->weighed += o.weighed;
   oracle_free(&o);
   scree_decimator_free(&d);
 }
@@ -565,19 +598,21 @@ static void every_collapse_is_the_oracles(void **state) {
   scree_rng rng = {.seed = 21};
   for (int which = 0; which < SHAPE_COUNT; which++)
     for (int qecd = 0; qecd < 2; qecd++) {
-      size_t moved = 0, exchanged = 0, compared = 0, decided = 0;
+      totals sum = {0};
       for (int round = 0; round < rounds[which]; round++) {
         scree_mesh mesh = shape(which, &rng);
-        compare(&mesh, qecd, &moved, &exchanged, &compared, &decided);
+        compare(&mesh, qecd, &sum);
         scree_mesh_free(&mesh);
       }
       print_message("shape %d, %s: %zu collapses, %zu without a rival within rounding, %zu moves, "
-                    "%zu pairs\n",
-                    which, qecd ? "qecd" : "volume", compared, decided, moved, exchanged);
+                    "%zu pairs, %zu choices\n",
+                    which, qecd ? "qecd" : "volume", sum.compared, sum.decided, sum.moved,
+                    sum.exchanged, sum.weighed);
       /* on noisy shapes rounding decides next to nothing */
-      if (which >= NOISY_FROM) assert_true(decided > compared * 9 / 10);
-      if (qecd) assert_int_equal(moved, 0);
-      if (!qecd && which >= NOISY_FROM) assert_true(moved > 0 && exchanged > 0);
+      if (which >= NOISY_FROM) assert_true(sum.decided > sum.compared * 9 / 10);
+      if (qecd) assert_int_equal(sum.moved, 0);
+      if (!qecd && which >= NOISY_FROM)
+        assert_true(sum.moved > 0 && sum.exchanged > 0 && sum.weighed > 0);
     }
 }
 

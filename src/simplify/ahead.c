@@ -1,0 +1,192 @@
+/* A level is the better the smaller its witnesses' mean distance times the root of the distance of
+ * its farthest place is. */
+#include "simplify/ahead.h"
+
+#include "base/array.h"
+#include "base/parallel.h"
+
+#include <string.h>
+
+/* Scores that differ by no more of themselves are the same: the cheaper collapse is taken. */
+#define SAME_SCORE 1e-9
+
+scree_status scree_ahead_prepare(scree_decimator *d) {
+  uint32_t *vertices = NULL, *triangles = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(vertices, d->s.vertex_count, d->error, done);
+  SCREE_ALLOC_OR(triangles, d->s.triangle_count, d->error, done);
+  status = SCREE_OK;
+  if (scree_memory_is_kept(&d->memory)) status = scree_memory_squeeze(&d->memory, &d->s, d->error);
+  if (status != SCREE_OK) goto done;
+  if (scree_memory_has_surface(&d->memory)) scree_memory_compact(&d->memory, &d->s);
+  scree_halfmesh_compact(&d->s, vertices, triangles);
+done:
+  scree_free(vertices);
+  scree_free(triangles);
+  return status;
+}
+
+static scree_status trial_begin(scree_trial *t, const scree_decimator *d) {
+  const scree_halfmesh *s = &d->s;
+  scree_moves *moves = &t->d.record.moves;
+  SCREE_ALLOC_OR(t->d.s.half, 3 * s->triangle_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.s.vertex, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.s.flags, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.memory.first, s->triangle_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.memory.near, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.memory.witnesses, d->memory.count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.anchors.vertex, d->anchors.count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->step.stamp, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->step.touched, s->vertex_count, d->error, out_of_memory);
+  if (!SCREE_RESERVE(moves, SCREE_MOST_ABOUT + 2))
+    return scree_fail_memory(d->error, (SCREE_MOST_ABOUT + 2) * sizeof *moves->items, "moves");
+  return scree_record_allocate(&t->d.record, 1, d->error);
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_ahead_begin(scree_ahead *a, const scree_decimator *d) {
+  scree_status status = SCREE_OK;
+  *a = (scree_ahead){.count = 0};
+  for (int i = 0; i < SCREE_OFFER_COUNT && status == SCREE_OK; i++)
+    status = trial_begin(&a->trials[i], d);
+  return status;
+}
+
+void scree_ahead_free(scree_ahead *a) {
+  for (int i = 0; i < SCREE_OFFER_COUNT; i++) {
+    scree_trial *t = &a->trials[i];
+    scree_free(t->d.s.half);
+    scree_free(t->d.s.vertex);
+    scree_free(t->d.s.flags);
+    scree_free(t->d.memory.first);
+    scree_free(t->d.memory.near);
+    scree_free(t->d.memory.witnesses);
+    scree_free(t->d.anchors.vertex);
+    scree_free(t->step.stamp);
+    scree_free(t->step.touched);
+    scree_record_free(&t->d.record);
+  }
+}
+
+/* All of the surface that a step changes. */
+static void copy_surface(scree_decimator *to, const scree_decimator *from) {
+  scree_halfmesh own = to->s;
+  size_t triangles = from->s.triangle_count, vertices = from->s.vertex_count;
+  to->s = from->s;
+  to->s.half = own.half;
+  to->s.vertex = own.vertex;
+  to->s.flags = own.flags;
+  memcpy(to->s.half, from->s.half, 3 * triangles * sizeof *to->s.half);
+  memcpy(to->s.vertex, from->s.vertex, vertices * sizeof *to->s.vertex);
+  memcpy(to->s.flags, from->s.flags, vertices * sizeof *to->s.flags);
+  scree_memory held = to->memory;
+  to->memory = from->memory;
+  to->memory.first = held.first;
+  to->memory.near = held.near;
+  to->memory.witnesses = held.witnesses;
+  memcpy(held.first, from->memory.first, triangles * sizeof *held.first);
+  memcpy(held.near, from->memory.near, vertices * sizeof *held.near);
+  memcpy(held.witnesses, from->memory.witnesses, from->memory.count * sizeof *held.witnesses);
+  to->anchors.count = from->anchors.count;
+  if (from->anchors.count > 0)
+    memcpy(to->anchors.vertex, from->anchors.vertex,
+           from->anchors.count * sizeof *to->anchors.vertex);
+}
+
+static void start(scree_trial *t, const scree_step *from) {
+  const scree_decimator *d = from->d;
+  copy_surface(&t->d, d);
+  t->d.mesh = d->mesh;
+  t->d.coster = d->coster;
+  t->d.options = d->options;
+  t->d.error_limit = d->error_limit;
+  t->d.first_triangle_count = d->first_triangle_count;
+  t->d.grid = d->grid;
+  t->d.record.count = t->d.record.moves.count = 0;
+  t->step.d = &t->d;
+  t->step.now = 0;
+  t->step.relaxed_below = from->relaxed_below;
+  t->step.farthest2 = from->farthest2;
+  t->step.farthest_at = from->farthest_at;
+  memset(t->step.stamp, 0, d->s.vertex_count * sizeof *t->step.stamp);
+}
+
+static double score(double mean, double farthest) {
+  return fmax(mean, SCREE_SAME_DISTANCE) * sqrt(fmax(farthest, SCREE_SAME_DISTANCE));
+}
+
+static void try_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  scree_ahead *a = context;
+  for (size_t i = begin; i < end; i++) {
+    scree_trial *t = &a->trials[i];
+    const scree_offer *offer = &a->offers[i];
+    start(t, a->from);
+    t->status =
+        scree_step_collapse(&t->step, &offer->ring, &offer->change, &offer->around, offer->error);
+    t->mean = scree_memory_mean(&t->d.memory);
+    t->bound = score(t->mean, scree_memory_worst(&t->d.memory));
+    t->score = INFINITY;
+  }
+}
+
+/* To find the farthest place takes half as long as the trial: only where it may decide. */
+static void find_scores(scree_ahead *a, size_t count) {
+  double least = INFINITY;
+  for (;;) {
+    scree_trial *next = NULL;
+    for (size_t i = 0; i < count; i++) {
+      scree_trial *t = &a->trials[i];
+      if (!(t->score < INFINITY) && (!next || t->bound < next->bound)) next = t;
+    }
+    if (!next || next->bound > least) return;
+    next->score = score(next->mean, sqrt(scree_memory_farthest(&next->d.memory, &next->d.s)));
+    least = fmin(least, next->score);
+  }
+}
+
+size_t scree_ahead_find(scree_ahead *a, const scree_step *step, scree_offer *offers, size_t count) {
+  size_t best = 0;
+  a->from = step;
+  a->offers = offers;
+  scree_parallel_for(count, 1, try_block, a);
+  find_scores(a, count);
+  for (size_t i = 1; i < count; i++)
+    if (a->trials[i].score < (1 - SAME_SCORE) * a->trials[best].score) best = i;
+  return best;
+}
+
+/* The trial's one collapse and its moves. */
+static scree_status take_record(scree_decimator *d, const scree_record *from) {
+  scree_record *r = &d->record;
+  size_t last = r->count++;
+  r->kept[last] = from->kept[0];
+  r->gone[last] = from->gone[0];
+  r->position[last] = from->position[0];
+  r->area[last] = from->area[0];
+  r->volume[last] = from->volume[0];
+  r->error[last] = from->error[0];
+  for (size_t i = 0; i < from->moves.count; i++) {
+    scree_move move = from->moves.items[i];
+    move.index = (uint32_t)last;
+    if (!SCREE_PUSH(&r->moves, move))
+      return scree_fail_memory(d->error, r->moves.count * sizeof move, "the record");
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_ahead_take(scree_ahead *a, size_t which, scree_step *step) {
+  const scree_trial *t = &a->trials[which];
+  if (t->status != SCREE_OK) return t->status;
+  copy_surface(step->d, &t->d);
+  step->farthest2 = t->step.farthest2;
+  step->farthest_at = t->step.farthest_at;
+  step->now++;
+  step->touched_count = t->step.touched_count;
+  for (size_t i = 0; i < t->step.touched_count; i++) {
+    step->touched[i] = t->step.touched[i];
+    step->stamp[step->touched[i]] = step->now;
+  }
+  return take_record(step->d, &t->d.record);
+}

@@ -1,0 +1,233 @@
+/* What a single collapse does to the surface, what may not be done, and how the vertices about it
+ * move: the survivor first, then its neighbours, each by itself; then the two of them that gain
+ * most by it take over volume from each other. A place may get farther off by it, but no farther
+ * than the farthest of the whole level was when it was last looked for, which is whenever a tenth
+ * of the triangles has gone. */
+#include "simplify/step.h"
+
+#include <string.h>
+
+/* Cells per mean edge of the grid for exact tests, and when it is built anew:
+ * half the triangles gone, or so many entries stale. */
+#define EDGES_PER_CELL 1.5
+#define REGRID_BELOW   0.5
+#define STALE_FACTOR   12
+
+/* The share of triangles left at which the farthest place of the level is found anew. */
+#define FARTHEST_BELOW 0.9
+
+/* The shortest way that a vertex is moved, of the whole step: else it stays. */
+#define LEAST_SHARE 0.25
+
+static scree_status prepare_grid(scree_decimator *d) {
+  scree_grid *g = &d->grid;
+  if (g->few) return SCREE_OK;
+  if (g->built_for && (double)d->s.live_triangle_count > REGRID_BELOW * (double)g->built_for &&
+      g->count < STALE_FACTOR * g->built_for + 1000)
+    return SCREE_OK;
+  scree_status status = scree_grid_shape(g, &d->s, EDGES_PER_CELL, d->error);
+  if (status != SCREE_OK) return status;
+  if (!scree_grid_list_all(g, &d->s))
+    return scree_fail_memory(d->error, g->capacity * sizeof *g->items, "grid lists");
+  scree_grid_enter_directions(g, &d->s);
+  return SCREE_OK;
+}
+
+bool scree_step_allows(scree_step *q, scree_ring *ring, scree_change *change, scree_around *around,
+                       scree_status *status) {
+  scree_decimator *d = q->d;
+  size_t after = d->s.live_triangle_count - (ring->c != SCREE_NONE) - (ring->d != SCREE_NONE);
+  if (!scree_collapse_check(&d->s, ring, change, around) ||
+      !scree_memory_allows(&q->d->memory, after, change->target))
+    return false;
+  *status = prepare_grid(d);
+  if (*status != SCREE_OK) return false;
+  return (d->s.closed && !d->grid.few && scree_grid_certifies(&d->grid, ring, around)) ||
+         (scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL) &&
+          scree_anchors_stay(&d->anchors, &d->s, ring, change->target));
+}
+
+static void touch(scree_step *q, uint32_t v) {
+  if (q->stamp[v] == q->now) return;
+  q->stamp[v] = q->now;
+  q->touched[q->touched_count++] = v;
+}
+
+/* The grid knows the ring's new triangles. */
+static scree_status list_ring(scree_decimator *d, const scree_ring *r,
+                              const scree_around *geometry) {
+  if (d->grid.few) return SCREE_OK;
+  scree_grid_enter_ring(&d->grid, r, geometry);
+  for (uint32_t i = 0; i < r->count; i++)
+    if (!scree_grid_list_triangle(&d->grid, &d->s, r->edge[i] / 3))
+      return scree_fail_memory(d->error, d->grid.capacity * sizeof *d->grid.items, "grid lists");
+  return SCREE_OK;
+}
+
+/* The vertices of the ring are touched, and the grid knows its new triangles. */
+static scree_status settle(scree_step *q, const scree_ring *r, const scree_around *geometry) {
+  const scree_halfmesh *s = &q->d->s;
+  touch(q, r->a);
+  for (uint32_t i = 0; i < r->count; i++) {
+    touch(q, s->half[r->edge[i]].from);
+    touch(q, scree_to(s, r->edge[i]));
+  }
+  return list_ring(q->d, r, geometry);
+}
+
+/* One or two vertices on their way to where the witnesses are nearer. */
+typedef struct moving {
+  int count;
+  uint32_t edges[2][SCREE_RING_MAX];
+  scree_ring fans[2];
+  scree_relaxation relaxations[2];
+  scree_change changes[2];
+  scree_around around[2];
+} moving;
+
+static bool gather_moving(const scree_halfmesh *s, uint32_t v, moving *m, int which) {
+  m->fans[which].edge = m->edges[which];
+  return !(s->flags[v] & SCREE_VERTEX_LOCKED) && scree_ring_gather_fan(s, v, &m->fans[which]);
+}
+
+/* Whether the first may move, and the second once the first has. */
+static bool all_allowed(scree_step *q, moving *m, scree_status *status) {
+  scree_decimator *d = q->d;
+  if (!scree_step_allows(q, &m->fans[0], &m->changes[0], &m->around[0], status)) return false;
+  if (m->count == 1) return true;
+  vec3 *at = &d->s.vertex[m->fans[0].a].at, from = *at;
+  *at = m->changes[0].target;
+  *status = list_ring(d, &m->fans[0], &m->around[0]);
+  bool answer = *status == SCREE_OK &&
+                scree_step_allows(q, &m->fans[1], &m->changes[1], &m->around[1], status);
+  *at = from;
+  return answer;
+}
+
+/* Moves the fan's vertex to change->target. */
+static scree_status move(scree_step *q, const scree_ring *fan, const scree_change *change,
+                         const scree_around *geometry) {
+  scree_decimator *d = q->d;
+  scree_status status = scree_record_move(d, fan, change);
+  if (status != SCREE_OK) return status;
+  scree_memory_move(&d->memory, &d->s, fan, change->target);
+  d->s.vertex[fan->a].at = change->target;
+  return settle(q, fan, geometry);
+}
+
+/* Moves them by as large a share of their steps as gains and is allowed, if any. */
+static scree_status try_moving(scree_step *q, moving *m) {
+  scree_decimator *d = q->d;
+  scree_status status = SCREE_OK;
+  vec3 places[2];
+  for (int i = 0; i < m->count; i++) /* relax.c has set it */
+    /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage) */
+    m->relaxations[i].worst = fmax(m->relaxations[i].worst, q->farthest2);
+  for (double share = 1; share >= LEAST_SHARE && status == SCREE_OK; share *= 0.5) {
+    scree_relax_places(m->relaxations, m->count, share, places);
+    for (int i = 0; i < m->count; i++) m->changes[i].target = places[i];
+    if (!scree_relax_gains(&d->memory, &d->s, m->relaxations, m->count, places) ||
+        !all_allowed(q, m, &status))
+      continue;
+    for (int i = 0; i < m->count && status == SCREE_OK; i++)
+      status = move(q, &m->fans[i], &m->changes[i], &m->around[i]);
+    return status;
+  }
+  return status;
+}
+
+static scree_status relax(scree_step *q, uint32_t v) {
+  moving m;
+  scree_pull pull;
+  m.count = 1;
+  if (!gather_moving(&q->d->s, v, &m, 0) ||
+      !scree_pull_find(&q->d->memory, &q->d->s, &m.fans[0], &pull) ||
+      !scree_relax_alone(&pull, &m.fans[0], &m.relaxations[0]))
+    return SCREE_OK;
+  return try_moving(q, &m);
+}
+
+static bool has_corner(const scree_halfmesh *s, const scree_ring *fan, uint32_t v) {
+  for (uint32_t i = 0; i < fan->count; i++)
+    if (s->half[fan->edge[i]].from == v || scree_to(s, fan->edge[i]) == v) return true;
+  return false;
+}
+
+/* Of these vertices the two, no neighbours, that gain most by it take over volume from each other.
+ */
+static scree_status exchange(scree_step *q, const uint32_t *about, size_t count) {
+  const scree_halfmesh *s = &q->d->s;
+  scree_pull pulls[SCREE_MOST_ABOUT], best[2];
+  double most = 0;
+  moving m;
+  m.count = 2;
+  for (size_t i = 0; i < count; i++)
+    if (!gather_moving(s, about[i], &m, 0) ||
+        !scree_pull_find(&q->d->memory, s, &m.fans[0], &pulls[i]))
+      pulls[i].n_per_n = 0;
+  uint32_t first = SCREE_NONE, second = SCREE_NONE;
+  for (size_t i = 0; i < count; i++) {
+    if (!(pulls[i].n_per_n > 0) || !gather_moving(s, about[i], &m, 0)) continue;
+    for (size_t j = i + 1; j < count; j++) {
+      if (!(pulls[j].n_per_n > 0) || has_corner(s, &m.fans[0], about[j])) continue;
+      double gain = scree_exchange_gain(&pulls[i], &pulls[j]);
+      if (!(gain > most)) continue;
+      most = gain;
+      first = about[i];
+      second = about[j];
+      best[0] = pulls[i];
+      best[1] = pulls[j];
+    }
+  }
+  if (!(most > 0)) return SCREE_OK;
+  gather_moving(s, first, &m, 0);
+  gather_moving(s, second, &m, 1);
+  scree_exchange_begin(best, m.fans, m.relaxations);
+  return try_moving(q, &m);
+}
+
+static void find_farthest(scree_step *q) {
+  const scree_decimator *d = q->d;
+  if (d->s.live_triangle_count > q->farthest_at) return;
+  q->farthest2 = scree_memory_farthest(&d->memory, &d->s);
+  q->farthest_at = (size_t)(FARTHEST_BELOW * (double)d->s.live_triangle_count);
+}
+
+/* The vertices about the collapse, of which the first survived, have their turns: it, then the
+ * others counter-clockwise from the farthest, so that numbers decide nothing; at last two of them
+ * together. */
+static scree_status relax_around(scree_step *q) {
+  const scree_vertex *vertex = q->d->s.vertex;
+  uint32_t about[SCREE_MOST_ABOUT];
+  size_t count = q->touched_count, farthest = 1;
+  double most = 0;
+  find_farthest(q);
+  scree_status status = relax(q, q->touched[0]);
+  memcpy(about, q->touched, count * sizeof *about);
+  for (size_t i = 1; i < count; i++) {
+    double distance2 = vec3_norm2(vec3_sub(vertex[about[i]].at, vertex[about[0]].at));
+    if (distance2 > most) farthest = i;
+    most = fmax(most, distance2);
+  }
+  for (size_t i = 0; i + 1 < count && status == SCREE_OK; i++)
+    status = relax(q, about[1 + (farthest - 1 + i) % (count - 1)]);
+  return status == SCREE_OK ? exchange(q, about, count) : status;
+}
+
+scree_status scree_step_collapse(scree_step *q, const scree_ring *r, const scree_change *change,
+                                 const scree_around *geometry, double error) {
+  scree_decimator *d = q->d;
+  scree_halfmesh *s = &d->s;
+  scree_record_write(d, d->record.count++, r, change, error);
+  s->live_vertex_count--;
+  s->live_triangle_count -= s->half[r->half_edge].twin == SCREE_NONE ? 1 : 2;
+  if (!d->coster->merge) scree_memory_move(&d->memory, s, r, change->target);
+  scree_collapse_apply(s, r, change->target);
+  scree_anchors_follow(&d->anchors, r);
+  if (d->coster->merge) d->coster->merge(s, r->a, r->b);
+  q->now++;
+  q->touched_count = 0;
+  scree_status status = settle(q, r, geometry);
+  if (status == SCREE_OK && s->live_triangle_count < q->relaxed_below) status = relax_around(q);
+  return status;
+}

@@ -1,0 +1,32 @@
+/* One collapse of those done one by one, with the moves after it (relax.h). */
+#ifndef SCREE_SIMPLIFY_STEP_H
+#define SCREE_SIMPLIFY_STEP_H
+
+#include "simplify/decimate.h"
+
+/* The vertices about a collapse, at most: the survivor and the corners of its ring. */
+enum { SCREE_MOST_ABOUT = 2 * SCREE_RING_MAX + 1 };
+
+typedef struct scree_step {
+  scree_decimator *d;
+  uint32_t *stamp;   /* per vertex: the collapse that last touched it */
+  uint32_t *touched; /* vertices stamped now */
+  size_t touched_count;
+  uint32_t now;
+  size_t relaxed_below; /* triangles: from there on vertices move; 0: never */
+  double farthest2;     /* the squared distance of the farthest place of the level */
+  size_t farthest_at;   /* triangles: found anew */
+} scree_step;
+
+/* Whether the ring may be collapsed, or the fan's vertex moved, to change->target; *status tells of
+ * failed memory. */
+bool scree_step_allows(scree_step *step, scree_ring *ring, scree_change *change,
+                       scree_around *around, scree_status *status);
+
+/* Writes the collapse to the record and does it, with the moves after it; it was allowed. Every
+ * vertex of which triangles changed is among those touched. */
+scree_status scree_step_collapse(scree_step *step, const scree_ring *ring,
+                                 const scree_change *change, const scree_around *around,
+                                 double error);
+
+#endif
