@@ -1,5 +1,9 @@
 #include "base/rng.h"
 
+#include "base/error.h"
+
+#include <string.h>
+
 static const double two_pi = 6.283185307179586476925286766559;
 
 uint64_t scree_rng_bits(uint64_t seed, uint64_t stream, uint64_t counter) {
@@ -32,6 +36,18 @@ uint64_t scree_rng_below(scree_rng *rng, uint64_t bound) {
   for (;;) {
     uint64_t bits = scree_rng_next(rng);
     if (bits >= threshold) return bits % bound;
+  }
+}
+
+void scree_rng_shuffle(scree_rng *rng, void *items, size_t count, size_t size) {
+  unsigned char kept[16], *bytes = items;
+  SCREE_ASSERT(size <= sizeof kept);
+  for (size_t i = count; i > 1; i--) {
+    unsigned char *last = bytes + (i - 1) * size;
+    unsigned char *chosen = bytes + (size_t)scree_rng_below(rng, i) * size;
+    memcpy(kept, last, size);
+    memcpy(last, chosen, size);
+    memcpy(chosen, kept, size);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/vec.h"
 
+#include <stddef.h>
 #include <stdint.h>
 
 /* A cursor for sequential use; copy it to replay. */
@@ -20,6 +21,9 @@ uint64_t scree_rng_next(scree_rng *rng);
 double scree_rng_uniform(scree_rng *rng);
 /* Uniform integer in [0, bound), bound > 0, without bias. */
 uint64_t scree_rng_below(scree_rng *rng, uint64_t bound);
+/* Puts count items of size bytes, at most 16, into an order of which all are equally likely
+ * (Durstenfeld 1964, algorithm 235). */
+void scree_rng_shuffle(scree_rng *rng, void *items, size_t count, size_t size);
 /* Standard normal. */
 double scree_rng_normal(scree_rng *rng);
 /* Uniform on the rotation group (Shoemake 1992). */

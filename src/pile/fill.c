@@ -110,10 +110,5 @@ size_t scree_fill_place(const scree_fill_layer *layer, scree_placement *placemen
 void scree_fill_order(uint64_t seed, size_t shape_count, uint32_t *order, size_t count) {
   scree_rng rng = {.seed = seed, .stream = ORDER_STREAM};
   for (size_t i = 0; i < count; i++) order[i] = (uint32_t)(i % shape_count);
-  for (size_t i = count; i > 1; i--) {
-    size_t j = scree_rng_below(&rng, i);
-    uint32_t swapped = order[i - 1];
-    order[i - 1] = order[j];
-    order[j] = swapped;
-  }
+  scree_rng_shuffle(&rng, order, count, sizeof *order);
 }

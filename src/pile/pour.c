@@ -56,11 +56,7 @@ static void mix_shapes(scree_pour *pour, const scree_pour_shape *shapes) {
   size_t k = 0;
   for (size_t s = 0; s < pour->shape_count; s++)
     for (size_t i = 0; i < shapes[s].count; i++) pour->shape_of[k++] = s;
-  for (size_t i = pour->count; i > 1; i--) {
-    size_t j = scree_rng_below(&rng, i), swapped = pour->shape_of[i - 1];
-    pour->shape_of[i - 1] = pour->shape_of[j];
-    pour->shape_of[j] = swapped;
-  }
+  scree_rng_shuffle(&rng, pour->shape_of, pour->count, sizeof *pour->shape_of);
 }
 
 /* Radii, pitch and, where none is given, the width. */
@@ -160,12 +156,7 @@ static double top_of(const scree_pour *pour) {
 
 static void shuffle_cells(scree_pour *pour, scree_rng *rng) {
   for (size_t i = 0; i < pour->cell_count; i++) pour->cell_order[i] = (uint32_t)i;
-  for (size_t i = pour->cell_count; i > 1; i--) {
-    size_t j = scree_rng_below(rng, i);
-    uint32_t swapped = pour->cell_order[i - 1];
-    pour->cell_order[i - 1] = pour->cell_order[j];
-    pour->cell_order[j] = swapped;
-  }
+  scree_rng_shuffle(rng, pour->cell_order, pour->cell_count, sizeof *pour->cell_order);
 }
 
 static scree_status enter_layer(scree_pour *pour, scree_error *error) {

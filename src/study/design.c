@@ -12,11 +12,7 @@ void scree_design_latin(uint64_t seed, size_t point_count, size_t dimension_coun
   for (size_t d = 0; d < dimension_count; d++) {
     scree_rng rng = {seed, LATIN_STREAM + d, 0};
     for (size_t i = 0; i < point_count; i++) order[i] = i;
-    for (size_t i = point_count; i > 1; i--) {
-      size_t j = (size_t)scree_rng_below(&rng, i), kept = order[i - 1];
-      order[i - 1] = order[j];
-      order[j] = kept;
-    }
+    scree_rng_shuffle(&rng, order, point_count, sizeof *order);
     for (size_t i = 0; i < point_count; i++)
       unit[i * dimension_count + d] =
           ((double)order[i] + scree_rng_uniform(&rng)) / (double)point_count;

@@ -104,6 +104,30 @@ static void random_numbers_have_the_moments_they_claim(void **state) {
   for (int i = 0; i < 9; i++) CHECK_NEAR(one.m[i / 3][i % 3], i % 4 == 0, 1e-15);
 }
 
+static void a_shuffle_gives_every_order_alike(void **state) {
+  (void)state;
+  enum { ITEMS = 4, ORDERS = 24, TRIES = 24000 };
+  size_t seen[256] = {0}, orders = 0;
+  scree_rng rng = {.seed = 11};
+  for (int t = 0; t < TRIES; t++) {
+    double items[ITEMS] = {0, 1, 2, 3};
+    unsigned taken = 0, order = 0;
+    scree_rng_shuffle(&rng, items, ITEMS, sizeof *items);
+    for (int i = 0; i < ITEMS; i++) {
+      taken |= 1u << (unsigned)items[i];
+      order = 4 * order + (unsigned)items[i];
+    }
+    assert_int_equal(taken, 15);
+    seen[order]++;
+  }
+  for (int i = 0; i < 256; i++) {
+    if (!seen[i]) continue;
+    orders++;
+    assert_in_range(seen[i], TRIES / ORDERS - 160, TRIES / ORDERS + 160); /* 5 SD */
+  }
+  assert_int_equal(orders, ORDERS);
+}
+
 static void files_are_whole_or_absent(void **state) {
   (void)state;
   scree_error error;
@@ -155,6 +179,7 @@ int main(void) {
       cmocka_unit_test(blocks_do_not_depend_on_threads),
       cmocka_unit_test(compensated_sum_is_exact_where_plain_is_not),
       cmocka_unit_test(random_numbers_have_the_moments_they_claim),
+      cmocka_unit_test(a_shuffle_gives_every_order_alike),
       cmocka_unit_test(files_are_whole_or_absent),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);

@@ -3,6 +3,7 @@
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/pot.h"
+#include "support/shapes.h"
 
 #include <signal.h>
 #include <stdlib.h>
@@ -13,21 +14,7 @@
 
 /* A box by its sides, m. */
 static scree_particle *box(double x, double y, double z) {
-  static const uint32_t faces[] = {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
-                                   2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5};
-  double corners[24];
-  uint32_t triangles[36];
-  for (int i = 0; i < 8; i++) {
-    corners[3 * i] = i & 1 ? x : 0;
-    corners[3 * i + 1] = i & 2 ? y : 0;
-    corners[3 * i + 2] = i & 4 ? z : 0;
-  }
-  memcpy(triangles, faces, sizeof faces);
-  scree_mesh mesh = {corners, triangles, 8, 12};
-  scree_particle *particle;
-  scree_error error;
-  CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  return particle;
+  return shape_particle(shape_box(x, y, z));
 }
 
 static scree_experiment preset(const char *name) {
