@@ -4,6 +4,7 @@
 #include "simplify/stray.h"
 
 #include "base/parallel.h"
+#include "base/prefetch.h"
 #include "base/sum.h"
 
 #include <string.h>
@@ -186,6 +187,8 @@ static uint32_t walk_towards(const scree_memory *m, vec3 x, uint32_t now) {
   for (int step = 0; step < MOST_STEPS; step++) {
     const scree_way *way = &m->ways[now];
     const float *p = way->second, *q = way->third;
+    for (int k = 0; k < 3; k++)
+      if (way->beside[k] != SCREE_NONE) __builtin_prefetch(&m->ways[way->beside[k]]);
     float second = p[0] * at[0] + p[1] * at[1] + p[2] * at[2] + p[3];
     float third = q[0] * at[0] + q[1] * at[1] + q[2] * at[2] + q[3], first = 1 - second - third;
     if ((first >= 0) & (second >= 0) & (third >= 0)) break;
@@ -194,6 +197,9 @@ static uint32_t walk_towards(const scree_memory *m, vec3 x, uint32_t now) {
     if (next == SCREE_NONE || next == last) break; /* here, or back and forth over a crest */
     last = now;
     now = next;
+    const double *corners = m->surface.corners + 9 * (size_t)now;
+    __builtin_prefetch(corners);
+    __builtin_prefetch(corners + 8);
   }
   return now;
 }
@@ -267,6 +273,27 @@ static double shift(const scree_halfmesh *s, const scree_ring *r, double (*corne
   return sqrt(fmax(of_ends, scree_triangle_closest(one, apex, &point)));
 }
 
+/* Asks for the witnesses of the triangles around: along all lists at once, for each tells only
+ * where its next one is. */
+SCREE_PREFETCHES void ask_for_witnesses(const scree_memory *m, const scree_halfmesh *s,
+                                        const scree_ring *r) {
+  uint32_t at[SCREE_RING_MAX + 3], count = 0, around = count_around(r);
+  for (uint32_t k = 0; k < around; k++) {
+    at[count] = m->first[triangle_around(s, r, k)];
+    count += at[count] != SCREE_NONE;
+  }
+  while (count > 0) {
+    uint32_t left = 0;
+    for (uint32_t i = 0; i < count; i++) {
+      at[left] = m->witnesses[at[i]].next;
+      if (at[left] == SCREE_NONE) continue;
+      __builtin_prefetch(&m->witnesses[at[left]]);
+      left++;
+    }
+    count = left;
+  }
+}
+
 /* Witnesses of one triangle side by side. */
 typedef struct witness_crowd {
   scree_points points;
@@ -296,6 +323,7 @@ static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
   size_t four_count = scree_four_count(r->count);
   witness_crowd c;
   if (worst > most) return worst;
+  ask_for_witnesses(m, s, r);
   scree_ring_corners(s, r, target, corners);
   scree_fours_fill(corners, r->count, fours);
   for (uint32_t k = 0; k < count_around(r); k++) {
@@ -529,6 +557,7 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
   scree_ring_corners(s, r, target, corners);
   scree_fours_fill(corners, r->count, f.fours);
   f.four_count = scree_four_count(r->count);
+  ask_for_witnesses(m, s, r);
   m->near[r->a] = walk_towards(m, target, m->near[r->a]);
   for (uint32_t k = 0; k < around; k++) {
     uint32_t *first = &m->first[triangle_around(s, r, k)];
