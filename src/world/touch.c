@@ -117,43 +117,64 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
   return any;
 }
 
-/* Below half the roundings, or through a wall: depth along the reference. In front of the faces
- * that look that way the closest point of the whole surface takes over within half the roundings
- * too, as far as that is not the same: where a point beside an edge sinks below the plane of the
- * face, both sides of it are `w` times 0. */
-static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
-                         const scree_pair *pair, bool pierced, bool outside,
-                         const surface_contact *closest, surface_contact *contact) {
-  double half = 0.5 * pair->law.reach, reach = 1.5 * pair->law.limit + pair->law.reach;
-  if (!find_way_out(surface, p, item->reference, reach, pierced, contact)) return false;
-  vec3 offset = vec3_sub(p, contact->closest);
-  double height = vec3_dot(offset, contact->normal), distance = vec3_norm(offset);
-  bool in_front = outside && height > 0,
-       nearest = in_front && contact->over && distance == closest->distance;
-  contact->weight = contact->lever = 1;
-  contact->distance = nearest ? distance : outside ? height : -distance;
-  if ((nearest || !outside) && distance > 1e-9 * half)
-    contact->normal = vec3_scale(offset, 1 / contact->distance);
-  if (nearest) return true;
-  contact->closest = vec3_mad(p, contact->normal, -contact->distance);
-  if (in_front) contact->aside = offset;
-  contact->weight = 1 - scree_smooth_step(0, half, vec3_norm(contact->aside));
-  return true;
-}
-
-/* A point sideways of the faces that look the way out: as these fade, the closest point takes over.
- * One distance, the weighted mean of both, so that the force stays the slope of the energy. */
-static void slide_off(vec3 p, double half, const surface_contact *closest,
+/* As the weight of a contact fades the other takes over. One distance, the weighted mean of both,
+ * so that the force stays the slope of the energy; the weight changes by `change` along `aside`. */
+static void pass_over(vec3 p, double change, const surface_contact *other,
                       surface_contact *contact) {
-  double w = contact->weight, sideways = vec3_norm(contact->aside),
-         fall = -scree_smooth_slope(0, half, sideways) / sideways;
-  vec3 slope = vec3_add(vec3_scale(contact->normal, w), vec3_scale(closest->normal, 1 - w));
-  slope = vec3_mad(slope, contact->aside, fall * (contact->distance - closest->distance));
-  contact->distance = w * contact->distance + (1 - w) * closest->distance;
+  double w = contact->weight, sideways = vec3_norm(contact->aside);
+  vec3 slope = vec3_add(vec3_scale(contact->normal, w * contact->lever),
+                        vec3_scale(other->normal, (1 - w) * other->lever));
+  slope =
+      vec3_mad(slope, contact->aside, change / sideways * (contact->distance - other->distance));
+  contact->distance = w * contact->distance + (1 - w) * other->distance;
   contact->lever = vec3_norm(slope);
   contact->normal = vec3_unit(slope);
   contact->closest = vec3_mad(p, contact->normal, -contact->distance);
   contact->weight = 1;
+}
+
+/* Within half the roundings from the faces that look the way out what is sideways of them passes to
+ * the closest point of the whole surface. */
+static void slide_off(vec3 p, double half, const surface_contact *closest,
+                      surface_contact *contact) {
+  pass_over(p, -scree_smooth_slope(0, half, vec3_norm(contact->aside)), closest, contact);
+}
+
+/* Below half the roundings, or through a wall: depth along the reference. In front of the faces
+ * that look that way the closest point of the whole surface takes over within half the roundings
+ * too, as far as that is not the same: where a point beside an edge sinks below the plane of the
+ * face, both sides of it are `w` times 0. So does it inside, in the wall of a recess, as far again:
+ * further on the depth is that to the faces, which are its floor's border. */
+static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
+                         const scree_pair *pair, bool pierced, bool outside,
+                         surface_contact *closest, surface_contact *contact) {
+  double half = 0.5 * pair->law.reach, reach = 1.5 * pair->law.limit + pair->law.reach;
+  if (!find_way_out(surface, p, item->reference, reach, pierced, contact)) return false;
+  vec3 offset = vec3_sub(p, contact->closest);
+  double height = vec3_dot(offset, contact->normal), distance = vec3_norm(offset);
+  bool in_front = height > 0,
+       nearest = outside && in_front && contact->over && distance == closest->distance,
+       along = in_front && (outside || distance < 2 * half);
+  if (along && !outside) {
+    surface_contact border = {.normal = vec3_scale(offset, -1 / distance), .aside = contact->aside};
+    border.distance = -distance;
+    border.lever = 1;
+    border.weight = 1 - scree_smooth_step(0, half, vec3_norm(border.aside));
+    if (border.weight < 1) slide_off(p, half, closest, &border);
+    border.aside = offset;
+    border.weight = scree_smooth_step(half, 2 * half, distance);
+    pass_over(p, scree_smooth_slope(half, 2 * half, distance), closest, &border);
+    *closest = border;
+  }
+  contact->weight = contact->lever = 1;
+  contact->distance = nearest ? distance : outside || along ? height : -distance;
+  if ((nearest || !(outside || along)) && distance > 1e-9 * half)
+    contact->normal = vec3_scale(offset, 1 / contact->distance);
+  if (nearest) return true;
+  contact->closest = vec3_mad(p, contact->normal, -contact->distance);
+  if (along) contact->aside = offset;
+  contact->weight = 1 - scree_smooth_step(0, half, vec3_norm(contact->aside));
+  return true;
 }
 
 /* Further faces of a notch, onto which the point projects. */
