@@ -1,4 +1,5 @@
 #include "cli/args.h"
+#include "cli/terminal.h"
 
 #include <errno.h>
 #include <math.h>
@@ -69,6 +70,7 @@ bool cli_real_from_text(const char *text, double *value) {
 
 int cli_fail(const scree_error *error) {
   bool spared = strstr(error->message, "not overwritten");
+  cli_terminal_end();
   fprintf(stderr, "scree: %s%s\n", error->message, spared ? "; -f overwrites" : "");
   return 1;
 }

@@ -1,4 +1,5 @@
 #include "cli/surface.h"
+#include "cli/terminal.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +43,7 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
       cli_load_closed(word, &input, how->no_repair, call->progress, scan, &report, error);
   if (status != SCREE_OK) return status;
   cli_repair_text(&report, note, sizeof note);
+  cli_terminal_end();
   if (note[0] && !call->quiet) fprintf(stderr, "%s: %s\n", word, note);
   return SCREE_OK;
 }

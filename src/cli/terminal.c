@@ -3,10 +3,11 @@
 #include <math.h>
 #include <signal.h>
 #include <string.h>
+#include <sys/ioctl.h>
 #include <time.h>
 #include <unistd.h>
 
-enum { BAR_WIDTH = 24 };
+enum { BAR_WIDTH = 24, LINE_WIDTH = 78, LINE_BYTES = 128 };
 
 static volatile sig_atomic_t received_signal;
 
@@ -37,28 +38,42 @@ static void format_seconds(char *text, size_t size, double seconds) {
     snprintf(text, size, "%.1f h", seconds / 3600);
 }
 
+/* How much of a line may be written without going on to the next. */
+static int line_width(void) {
+  struct winsize size;
+  int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+  return columns > 0 && columns <= LINE_WIDTH ? columns - 1 : LINE_WIDTH;
+}
+
+static void put_line(const char *text) {
+  int width = line_width();
+  fprintf(stderr, "\r%-*.*s", width, width, text);
+  fflush(stderr);
+  terminal.drawn = true;
+}
+
 static void draw(const char *phase, double fraction) {
   if (strncmp(phase, terminal.phase, sizeof terminal.phase - 1) != 0) {
     snprintf(terminal.phase, sizeof terminal.phase, "%s", phase);
     terminal.phase_start = now();
   }
   double elapsed = now() - terminal.phase_start;
-  char left[32], bar[BAR_WIDTH + 1];
+  char left[32], bar[BAR_WIDTH + 1], line[LINE_BYTES];
   format_seconds(left, sizeof left,
                  fraction > 0.01 ? elapsed * (1 - fraction) / fraction : INFINITY);
   int full = (int)(fraction * BAR_WIDTH);
   for (int i = 0; i < BAR_WIDTH; i++) bar[i] = i < full ? '#' : '.';
   bar[BAR_WIDTH] = 0;
-  fprintf(stderr, "\r%-30.30s [%s] %3.0f %%  %s left   ", phase, bar, 100 * fraction, left);
-  fflush(stderr);
-  terminal.drawn = true;
+  if (line_width() == LINE_WIDTH)
+    snprintf(line, sizeof line, "%-30.30s [%s] %3.0f %%  %s left", phase, bar, 100 * fraction,
+             left);
+  else
+    snprintf(line, sizeof line, "%3.0f %% %s left, %s", 100 * fraction, left, phase);
+  put_line(line);
 }
 
 void cli_terminal_line(const char *text) {
-  if (!terminal.show) return;
-  fprintf(stderr, "\r%-78.78s", text);
-  fflush(stderr);
-  terminal.drawn = true;
+  if (terminal.show) put_line(text);
 }
 
 void cli_terminal_seconds(char *text, size_t size, double seconds) {
@@ -84,7 +99,7 @@ const scree_progress *cli_terminal_start(bool show) {
 }
 
 void cli_terminal_end(void) {
-  if (terminal.drawn) fprintf(stderr, "\r%78s\r", "");
+  if (terminal.drawn) fprintf(stderr, "\r%*s\r", line_width(), "");
   terminal.drawn = false;
 }
 

@@ -11,7 +11,7 @@ const scree_progress *cli_terminal_start(bool show);
 void cli_terminal_line(const char *text);
 /* "42 s", "7 min", "3.2 h"; "..." where seconds is not finite. */
 void cli_terminal_seconds(char *text, size_t size, double seconds);
-/* Clears the line. */
+/* Clears the line: before anything else is printed. */
 void cli_terminal_end(void);
 /* Whether one of these came; with true, cli_terminal_reraise ends the program as the signal
  * would have done, so that the shell sees it. */

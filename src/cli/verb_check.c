@@ -1,6 +1,7 @@
 /* scree check: what is wrong with a scan, and whether it can serve as a particle. */
 #include "cli/input.h"
 #include "cli/surface.h"
+#include "cli/terminal.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -96,6 +97,7 @@ static int run(const cli_call *call) {
       continue;
     }
     if (!c->check.usable) code = 1;
+    cli_terminal_end();
     if (!arguments->json) print_one(call, call->inputs[i], c);
   }
   if (arguments->json && print_json(call, all) != SCREE_OK) code = 1;

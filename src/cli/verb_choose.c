@@ -1,5 +1,6 @@
 #include "cli/choose.h"
 #include "cli/surface.h"
+#include "cli/terminal.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -169,6 +170,7 @@ static scree_status write_output(const choose_run *run, scree_error *error) {
                                 run->call->command_line};
   scree_status status = SCREE_OK;
   if (a->output) status = choose_write_reports(run, &report, error);
+  cli_terminal_end();
   if (status == SCREE_OK && a->json)
     status = scree_choice_json_write(&report, "-", false, error);
   else if (status == SCREE_OK && a->csv)

@@ -1,6 +1,7 @@
 /* scree curve: the table of levels. */
 #include "cli/input.h"
 #include "cli/surface.h"
+#include "cli/terminal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -76,6 +77,7 @@ static void print_row(const table *t, const scree_curve_row *row) {
   const scree_level *level = &row->level;
   const scree_distance *d = &row->distance;
   bool csv = t->arguments->csv;
+  cli_terminal_end();
   printf(csv ? "%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.9g"
              : "%9zu %9.3g %10.4g %10.4g %9.3g %9.2g %9.4g %9.3g",
          level->triangle_count, level->rp, level->area * (csv ? 1 : 1e4),
@@ -188,10 +190,12 @@ static int run(const cli_call *call) {
   }
   if (status == SCREE_OK) {
     scree_curve_level(t.curve, 0, &t.first);
+    cli_terminal_end();
     print_facts(&t);
     print_header(&t);
     status = make_rows(&t);
   }
+  cli_terminal_end();
   if (status == SCREE_OK && t.arguments->json) status = write_json(&t, &scan);
   free(t.rows);
   scree_replay_free(t.replay);

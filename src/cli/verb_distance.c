@@ -1,5 +1,6 @@
 /* scree distance: how far two surfaces are apart. */
 #include "cli/input.h"
+#include "cli/terminal.h"
 
 #include <stdio.h>
 
@@ -73,6 +74,7 @@ static int run(const cli_call *call) {
                                             call->progress, &entry.distance, &error);
   scree_scan_free(&scans[0]);
   scree_scan_free(&scans[1]);
+  cli_terminal_end();
   if (status == SCREE_OK && arguments->json)
     status = scree_distance_json_write(&entry, call->command_line, "-", false, &error);
   else if (status == SCREE_OK)

@@ -1,6 +1,7 @@
 /* scree export: meshes and piles as other programs want them. */
 #include "cli/input.h"
 #include "cli/output.h"
+#include "cli/terminal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -102,6 +103,7 @@ static double millimetres(double length) {
 
 static void say(const cli_call *call, const scree_exported *p, const char *json_path) {
   const export_arguments *a = call->options;
+  cli_terminal_end();
   if (call->quiet) return;
   printf("%s: %.6g kg at %g kg/m3, centre of mass %.4f, %.4f, %.4f mm, principal moments %.4g, "
          "%.4g, %.4g kg m2, coordinates in %s\n",

@@ -1,5 +1,6 @@
 /* scree measure: sizes, mass properties and topology of scans. */
 #include "cli/input.h"
+#include "cli/terminal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -113,6 +114,7 @@ static scree_status warn_of_shells(const cli_call *call, const scree_mesh *mesh,
   scree_check check;
   if (call->quiet || !entry->measures.closed || entry->topology.shell_count < 2) return SCREE_OK;
   scree_status status = scree_mesh_check(mesh, NULL, call->progress, &check, error);
+  cli_terminal_end();
   if (status != SCREE_OK) return status;
   if (!check.volume_known)
     fprintf(stderr,
@@ -180,6 +182,7 @@ static int run(const cli_call *call) {
       code = cli_fail(&error);
       continue;
     }
+    cli_terminal_end();
     if (!arguments->json && !arguments->csv) {
       if (count) putchar('\n');
       print_entry(&entries[count], arguments->source.unit);

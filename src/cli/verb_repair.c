@@ -2,6 +2,7 @@
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/surface.h"
+#include "cli/terminal.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -109,6 +110,7 @@ static int tell(const cli_call *call, const scree_scan *scan, const scree_repair
   const repair_arguments *a = call->options;
   scree_error error;
   int code = failure->status == SCREE_OK ? 0 : 1;
+  cli_terminal_end();
   if (!a->json) {
     print_text(call, scan, report, code == 0);
   } else {

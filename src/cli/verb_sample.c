@@ -1,5 +1,6 @@
 /* scree sample: the built-in devices and test solids as files. */
 #include "cli/output.h"
+#include "cli/terminal.h"
 
 #include <string.h>
 
@@ -75,6 +76,7 @@ static int make_one(const cli_call *call, const char *name, const char *path, bo
   if (to_stdout) write.format = SCREE_FORMAT_STL;
   scree_status status = scree_sample_make(name, &sample, call->progress, &mesh, &error);
   if (status == SCREE_OK) status = scree_mesh_write(&mesh, path, &write, &error);
+  cli_terminal_end();
   if (status == SCREE_OK && first)
     fprintf(to_stdout ? stderr : stdout, "%-10s %9s  %-24s  %7s  %7s  %s\n", "sample", "triangles",
             "size (mm)", "S (cm2)", "V (cm3)", "file");

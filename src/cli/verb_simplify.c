@@ -2,6 +2,7 @@
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/surface.h"
+#include "cli/terminal.h"
 
 #include <math.h>
 #include <string.h>
@@ -56,6 +57,7 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index) {
   scree_curve_facts facts = scree_curve_get_facts(curve);
   scree_curve_level(curve, 0, &first);
   scree_curve_level(curve, index, &level);
+  cli_terminal_end();
   if (call->quiet) return;
   fprintf(stderr,
           "%s: %zu -> %zu triangles (Rp %.3g), method %s, eps_s %.3g, eps_v %.3g, quadric error "

@@ -47,3 +47,27 @@ run curve hole.off --from 1 --to 1 --unchecked
 run curve lone.off --no-repair 2>&1
 run curve hole.off --no-repair --unchecked 2>&1 | sed -n 2p
 run render hole.off --levels 1 -o levels.png 2>&1
+# the line of progress is gone when something else is printed, and keeps to a narrow terminal
+"$SCREE" sample icosphere-7 -o fine.ply >/dev/null
+for words in "simplify fine.ply -n 100 -o none.off" "curve fine.ply --from 1e-2 --to 1e-2"; do
+  "$SCREE" $words --progress 2>&1 | tr '\r' '\n' | grep -c 'left *[^ ]'
+done
+python3 - "$SCREE" <<'PYTHON'
+import fcntl, os, pty, re, struct, sys, termios
+child, terminal = pty.fork()
+if child == 0:
+    fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack("HHHH", 24, 30, 0, 0))
+    os.execv(sys.argv[1], [sys.argv[1], "simplify", "fine.ply", "-n", "100", "-o", "narrow.off", "-q", "--progress"])
+said = b""
+while True:
+    try:
+        part = os.read(terminal, 4096)
+    except OSError:
+        break
+    if not part:
+        break
+    said += part
+os.waitpid(child, 0)
+lines = [line for line in re.split(rb"[\r\n]", said) if line.strip()]
+print("lines of progress:", "some," if lines else "none,", "longer than 29:", sum(len(line) > 29 for line in lines))
+PYTHON
