@@ -36,7 +36,7 @@ static int read_count(const drop_run *run, drop_shape *shape) {
   memcpy(shape->name, shape->word, length);
   shape->name[length] = 0;
   if (equals && !counted && (access(shape->word, F_OK) == 0 || !is_known(shape->name))) {
-    strcpy(shape->name, shape->word);
+    memcpy(shape->name, shape->word, strlen(shape->word) + 1);
     return 0;
   }
   if (!equals) return 0;
