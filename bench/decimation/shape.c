@@ -193,7 +193,7 @@ int main(int argc, char **argv) {
                {"turned", {.size = {50, 50, 50}, .turned = 1}}};
   const size_t kind_count = sizeof kinds / sizeof *kinds;
   size_t kind = 0;
-  while (argc == 4 && kind < kind_count && strcmp(argv[1], kinds[kind].name)) kind++;
+  while (argc == 4 && kind < kind_count && strcmp(argv[1], kinds[kind].name) != 0) kind++;
   if (argc != 4 || kind == kind_count) {
     fprintf(stderr, "usage: %s phone|clean|cube|turned COUNT OUT.stl|OUT.ply\n", argv[0]);
     return 2;
