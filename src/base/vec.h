@@ -18,6 +18,14 @@ typedef struct quat {
   double w, x, y, z;
 } quat;
 
+/* As fmin and fmax, which are calls, but of numbers only. */
+static inline double scree_smaller(double a, double b) {
+  return a < b ? a : b;
+}
+static inline double scree_larger(double a, double b) {
+  return a > b ? a : b;
+}
+
 static inline vec3 vec3_load(const double *p) {
   return (vec3){p[0], p[1], p[2]};
 }

@@ -39,7 +39,7 @@ typedef struct choose_run {
 
 /* The choice that meshes are written by. */
 const scree_pick *choose_default_pick(const choose_run *run, const scree_choice *choice);
-double choose_set_rp(const choose_run *run);
+const scree_set_pick *choose_default_set_pick(const choose_run *run, const scree_set_choice *set);
 
 /* The table and what to do, for people. */
 void choose_print(FILE *out, const choose_run *run);

@@ -110,7 +110,7 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
     status = scree_levels_write(curve, choice, SCREE_LEVELS_BYTES / run->count, path,
                                 run->arguments->overwrite, error);
   if (status != SCREE_OK || run->count < 2) return status;
-  double rp = run->arguments->paper ? set->paper.rp : set->robust.rp;
+  double rp = choose_default_set_pick(run, set)->rp;
   level = scree_curve_find(curve, scree_choice_target(rp, choice->triangle_count));
   return write_level(run, index, curve, level, "set/", path, error);
 }

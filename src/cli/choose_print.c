@@ -73,7 +73,7 @@ static void print_table(FILE *out, const choose_run *run) {
 /* The range of counts and errors at the set's Rp. */
 static void print_set_advice(FILE *out, const choose_run *run) {
   size_t least = SIZE_MAX, most = 0;
-  double worst = 0, rp = choose_set_rp(run);
+  double worst = 0, rp = choose_default_set_pick(run, &run->set)->rp;
   for (size_t i = 0; i < run->count; i++) {
     const scree_choice *c = &run->choices[i];
     size_t k = 0;
@@ -93,7 +93,7 @@ static void print_set_advice(FILE *out, const choose_run *run) {
 static void print_similar(FILE *out, const choose_run *run) {
   char low[32], high[32];
   if (run->count > 1) {
-    const scree_set_pick *pick = run->arguments->paper ? &run->set.paper : &run->set.robust;
+    const scree_set_pick *pick = choose_default_set_pick(run, &run->set);
     if (pick->rp_high > pick->rp_low)
       fprintf(out,
               "From Rp = %s up to %s there are levels with an Ip within a tenth of the least.\n",

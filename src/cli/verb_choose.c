@@ -57,8 +57,8 @@ const scree_pick *choose_default_pick(const choose_run *run, const scree_choice 
   return run->arguments->paper ? &choice->paper : &choice->robust;
 }
 
-double choose_set_rp(const choose_run *run) {
-  return run->arguments->paper ? run->set.paper.rp : run->set.robust.rp;
+const scree_set_pick *choose_default_set_pick(const choose_run *run, const scree_set_choice *set) {
+  return run->arguments->paper ? &set->paper : &set->robust;
 }
 
 /* "1e-5:1e-1:9" */

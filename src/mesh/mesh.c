@@ -92,19 +92,15 @@ out_of_memory:
 /* Above this, squares of areas have not lost bits to underflow. */
 #define LEAST_SQUARE 1e-200
 
-static double larger(double a, double b) {
-  return a > b ? a : b;
-}
-
 bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle) {
   vec3 corner[3];
   double largest = 0, longest2 = 0;
   for (int k = 0; k < 3; k++) {
     vec3 p = corner[k] = scree_mesh_corner(mesh, triangle, k);
-    largest = larger(larger(largest, fabs(p.x)), larger(fabs(p.y), fabs(p.z)));
+    largest = scree_larger(scree_larger(largest, fabs(p.x)), scree_larger(fabs(p.y), fabs(p.z)));
   }
   for (int k = 0; k < 3; k++)
-    longest2 = larger(longest2, vec3_norm2(vec3_sub(corner[(k + 1) % 3], corner[k])));
+    longest2 = scree_larger(longest2, vec3_norm2(vec3_sub(corner[(k + 1) % 3], corner[k])));
   vec3 normal = vec3_triangle_normal(corner[0], corner[1], corner[2]);
   double rounding = FLAT_ULPS * DBL_EPSILON * largest;
   /* nearly all facets are far from flat, and need no root */

@@ -47,7 +47,7 @@ out_of_memory:
 
 scree_status scree_ahead_begin(scree_ahead *a, const scree_decimator *d) {
   scree_status status = SCREE_OK;
-  *a = (scree_ahead){.count = 0};
+  *a = (scree_ahead){.from = NULL};
   for (int i = 0; i < SCREE_OFFER_COUNT && status == SCREE_OK; i++)
     status = trial_begin(&a->trials[i], d);
   return status;

@@ -30,7 +30,6 @@ typedef struct scree_ahead {
   scree_trial trials[SCREE_OFFER_COUNT];
   const scree_step *from;
   scree_offer *offers;
-  size_t count;
 } scree_ahead;
 
 /* Before: what is gone leaves the surface and the memory, if it is kept, so that copies are small.

@@ -495,7 +495,7 @@ static scree_status begin(scree_decimator *d, queue *q) {
 /* The last triangles of method `volume`, with a look ahead. */
 static scree_status end_with_care(scree_decimator *d) {
   queue q;
-  scree_ahead ahead = {.count = 0};
+  scree_ahead ahead = {.from = NULL};
   scree_status status = scree_ahead_prepare(d);
   if (status != SCREE_OK) return status;
   status = begin(d, &q);

@@ -30,20 +30,15 @@ static line line_of(const side *s, const scree_edge *edge) {
   return (line){start, along, {1 / along.x, 1 / along.y, 1 / along.z}, edge->length};
 }
 
-static double smaller(double a, double b) {
-  return a < b ? a : b;
-} /* fmin is a call */
-static double larger(double a, double b) {
-  return a > b ? a : b;
-}
-
 /* By the box's slabs. */
 static bool line_meets(const line *l, const scree_box *box) {
   vec3 low = vec3_sub(box->low, l->start), high = vec3_sub(box->high, l->start);
   double x0 = low.x * l->inverse.x, x1 = high.x * l->inverse.x, y0 = low.y * l->inverse.y,
          y1 = high.y * l->inverse.y, z0 = low.z * l->inverse.z, z1 = high.z * l->inverse.z;
-  double in = larger(larger(smaller(x0, x1), smaller(y0, y1)), smaller(z0, z1)),
-         out = smaller(smaller(larger(x0, x1), larger(y0, y1)), larger(z0, z1));
+  double in = scree_larger(scree_larger(scree_smaller(x0, x1), scree_smaller(y0, y1)),
+                           scree_smaller(z0, z1)),
+         out = scree_smaller(scree_smaller(scree_larger(x0, x1), scree_larger(y0, y1)),
+                             scree_larger(z0, z1));
   return in <= out && out >= 0 && in <= l->length;
 }
 

@@ -305,15 +305,21 @@ static double apart_from_brute(scree_world *world, scree_world *brute, int steps
   return apart;
 }
 
+/* A box, a hook, a tray and an icosphere of so many subdivisions. */
+static void make_four(scree_particle *shapes[4], int subdivisions) {
+  shapes[0] = shape_particle(shape_box(0.06, 0.04, 0.02));
+  shapes[1] = shape_particle(solid_hook(0.05, 0.012, 0.02));
+  shapes[2] = shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004));
+  shapes[3] = shape_particle(shape_icosphere(0.02, subdivisions));
+}
+
 /* Hits at 10 m/s beside the same with every feature of both bodies looked at in every step: the
  * same energies to rounding, however deep. The force's sums run in another order, and a hit at this
  * speed magnifies what that leaves. */
 static void deep_hits_by_brute_force(void **state) {
   (void)state;
-  scree_particle *shapes[] = {shape_particle(shape_box(0.06, 0.04, 0.02)),
-                              shape_particle(solid_hook(0.05, 0.012, 0.02)),
-                              shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004)),
-                              shape_particle(shape_icosphere(0.02, 0))};
+  scree_particle *shapes[4];
+  make_four(shapes, 0);
   scree_rng rng = {.seed = 15};
   double apart = 0, deepest = 0;
   for (int i = 0; i < 32; i++) {
@@ -569,10 +575,8 @@ static double sampled_depth(const scree_particle *from, const scree_particle *to
  * than what it was asked for by more than an eighth. */
 static void depth_of_edges(void **state) {
   (void)state;
-  scree_particle *shapes[] = {shape_particle(shape_box(0.06, 0.04, 0.02)),
-                              shape_particle(solid_hook(0.05, 0.012, 0.02)),
-                              shape_particle(solid_tray(0.06, 0.04, 0.02, 0.004)),
-                              shape_particle(shape_icosphere(0.02, 1))};
+  scree_particle *shapes[4];
+  make_four(shapes, 1);
   scree_world *world = elastic_world(0.02);
   scree_rng rng = {.seed = 23};
   size_t deep = 0, missed = 0, apart = 0;
