@@ -99,6 +99,7 @@ static double follow(const side *s, const line *l, double depth) {
     vec3 p = vec3_mad(l->start, l->along, gone);
     uint32_t face;
     double distance = scree_nearest_face(s->to, &root, 1, p, INFINITY, &face);
+    if (!(distance < INFINITY)) return depth; /* too far off for its square, or no number */
     int region;
     vec3 offset = vec3_sub(p, scree_closest_on_face(&s->to->faces[face], p, &region));
     if (vec3_dot(offset, scree_outward(s->to, face, region)) >= 0) {
