@@ -327,12 +327,12 @@ static scree_status pour(drop_run *run, scree_error *error) {
   double start = now();
   status = simulate(run, error);
   double seconds = now() - start;
-  if (status == SCREE_OK) status = draw(run, error);
   if (!can_be_told(status)) return status;
   scree_error later; /* what happened first is what is told */
+  scree_status drawn = status == SCREE_OK ? draw(run, error) : SCREE_OK;
   scree_status told = tell(run, status == SCREE_OK ? NULL : error->message, seconds,
-                           status == SCREE_OK ? error : &later);
-  return status == SCREE_OK ? told : status;
+                           status == SCREE_OK && drawn == SCREE_OK ? error : &later);
+  return status != SCREE_OK ? status : drawn != SCREE_OK ? drawn : told;
 }
 
 static int run(const cli_call *call) {

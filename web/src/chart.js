@@ -14,9 +14,14 @@ const dark = matchMedia('(prefers-color-scheme: dark)');
 const shade = (light, other) => () => (dark.matches && !printing ? other : light);
 export const palette = [shade('#0072b2', '#56b4e9'), shade('#d55e00', '#e69f00'), shade('#009e73', '#1fc79a'), shade('#b0578d', '#e3a0c6')];
 
-const isPower = (v) => Math.abs(Math.log10(v) - Math.round(Math.log10(v))) < 1e-9;
 const raised = (n) => [...String(n)].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c])).join('');
-const power = (v) => (isPower(v) ? `10${raised(Math.round(Math.log10(v)))}` : '');
+const exponentOf = (v) => Math.floor(Math.log10(v) + 1e-9);
+const digitOf = (v) => Math.round(v / 10 ** exponentOf(v));
+const power = (v) => `${digitOf(v) > 1 ? `${digitOf(v)}·` : ''}10${raised(exponentOf(v))}`;
+// Of the ticks of a logarithmic axis those with a label and a line: powers of ten, and where fewer than two are in
+// sight, more digits.
+const major = (at) => [[1], [1, 2, 5]].map((digits) => at.map((v) => (digits.includes(digitOf(v)) ? v : null)))
+  .find((some) => some.filter((v) => v !== null).length > 1) ?? at;
 
 export class Chart {
   // yLeast: lower end of the axis, where data go below. series: [{label, values, color, dash, width, text(v),
@@ -32,8 +37,8 @@ export class Chart {
     host.replaceChildren();
     const axis = (label, log) => ({
       label, stroke: ink, ticks: { stroke: rule }, labelSize: 24,
-      grid: { stroke: rule, width: 1, ...(log ? { filter: (_, at) => at.map((v) => (isPower(v) ? v : null)) } : {}) },
-      ...(log ? { values: (_, at) => at.map(power) } : {}),
+      grid: { stroke: rule, width: 1, ...(log ? { filter: (_, at) => major(at) } : {}) },
+      ...(log ? { values: (_, at) => major(at).map((v) => (v === null ? '' : power(v))) } : {}),
     });
     const options = {
       width: Math.max(260, host.clientWidth), height: 340,
