@@ -24,9 +24,7 @@
 enum {
   ROUNDS = 24,    /* in all; three or four are usual */
   CUT_ROUNDS = 4, /* of these with cutting */
-  MERGE_ROUNDS = 3,
-  GROWTH = 64, /* times the facets that came in; more, and the rounds run away */
-  LEAST_LIMIT = 4096
+  MERGE_ROUNDS = 3
 };
 
 static const struct {
@@ -319,21 +317,10 @@ static scree_status merge_early(scree_repair *r, tries *n, scree_error *error) {
   return status == SCREE_OK && merged ? weld(r, &r->mesh, &bad, &collapsed, error) : status;
 }
 
-/* Facets at angles beyond rounding can be split at each other for ever: 42 became 84,057 in three
- * rounds. */
-static scree_status verify_growth(const scree_repair *r, size_t came_in, scree_error *error) {
-  size_t limit = came_in < LEAST_LIMIT / GROWTH ? LEAST_LIMIT : GROWTH * came_in;
-  if (r->mesh.triangle_count <= limit) return SCREE_OK;
-  return scree_fail(
-      error, SCREE_BAD_MESH,
-      "the mesh cannot be repaired: each mending asks for more, and its %zu triangles "
-      "have become %zu; at most %zu are tried",
-      came_in, r->mesh.triangle_count, limit);
-}
-
 static scree_status run_rounds(scree_repair *r, scree_error *error) {
   tries n = {0};
-  size_t bad, collapsed, came_in = r->mesh.triangle_count;
+  size_t bad, collapsed;
+  r->came_in = r->mesh.triangle_count;
   scree_status status = merge_early(r, &n, error);
   for (int round = 0; round < ROUNDS && status == SCREE_OK; round++) {
     bool settled;
@@ -343,7 +330,7 @@ static scree_status run_rounds(scree_repair *r, scree_error *error) {
     if (status != SCREE_OK || settled) break;
     status = weld(r, &r->mesh, &bad, &collapsed, error);
     r->report.done[SCREE_REPAIR_DROP_DEGENERATE] += status == SCREE_OK ? collapsed : 0;
-    if (status == SCREE_OK) status = verify_growth(r, came_in, error);
+    if (status == SCREE_OK) status = scree_repair_growth(r, r->mesh.triangle_count, error);
   }
   return status;
 }

@@ -12,6 +12,7 @@
 typedef struct scree_repair {
   scree_mesh mesh; /* owned */
   size_t vertex_capacity, triangle_capacity;
+  size_t came_in; /* triangles, when the rounds began */
   const scree_repair_options *options;
   const scree_progress *progress;
   double diagonal;      /* of the bounding box, m */
@@ -29,6 +30,9 @@ bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *
 bool scree_repair_add_facet(scree_repair *r, uint32_t a, uint32_t b, uint32_t c);
 /* Removes the facets marked; returns how many. */
 size_t scree_repair_remove(scree_repair *r, const bool *marked);
+/* Refuses a mesh of so many triangles where that is far more than came in: facets at angles beyond
+ * rounding can be split at each other for ever, 42 became 84,057 in three rounds. */
+scree_status scree_repair_growth(const scree_repair *r, size_t triangle_count, scree_error *error);
 /* The sentence for a stage that ran out of memory. */
 scree_status scree_repair_no_memory(scree_error *error);
 

@@ -4,6 +4,11 @@
 
 #include <string.h>
 
+enum {
+  GROWTH = 64, /* times the facets that came in; more, and the rounds run away */
+  LEAST_LIMIT = 4096
+};
+
 bool scree_repair_add_vertex(scree_repair *r, const double *position, uint32_t *index) {
   scree_mesh *m = &r->mesh;
   double copy[3] = {position[0], position[1], position[2]}; /* may lie in the array that moves */
@@ -41,6 +46,16 @@ size_t scree_repair_remove(scree_repair *r, const bool *marked) {
   }
   m->triangle_count = kept;
   return before - kept;
+}
+
+scree_status scree_repair_growth(const scree_repair *r, size_t triangle_count, scree_error *error) {
+  size_t limit = r->came_in < LEAST_LIMIT / GROWTH ? LEAST_LIMIT : GROWTH * r->came_in;
+  if (triangle_count <= limit) return SCREE_OK;
+  return scree_fail(
+      error, SCREE_BAD_MESH,
+      "the mesh cannot be repaired: each mending asks for more, and its %zu triangles "
+      "have become %zu; at most %zu are tried",
+      r->came_in, triangle_count, limit);
 }
 
 scree_status scree_repair_no_memory(scree_error *error) {

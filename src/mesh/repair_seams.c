@@ -298,11 +298,13 @@ static scree_status pass(scree_repair *r, size_t *split_count, scree_error *erro
     free_rim(&b);
     return status;
   }
-  for (size_t e = 0; e < b.adjacency.edge_count && room && work <= NEAR_LIMIT; e++) {
+  for (size_t e = 0; e < b.adjacency.edge_count && work <= NEAR_LIMIT; e++) {
     uint32_t h = b.adjacency.edges[e];
     if (b.adjacency.ring[h] == h) room = find_on_edge(r, &b, h, &work, &found);
+    if (room) status = scree_repair_growth(r, r->mesh.triangle_count + found.count, error);
+    if (!room || status != SCREE_OK) break;
   }
-  if (room && work <= NEAR_LIMIT && found.count) {
+  if (room && status == SCREE_OK && work <= NEAR_LIMIT && found.count) {
     qsort(found.items, found.count, sizeof *found.items, compare_junctions);
     room = split_all(r, &found, split_count);
   }
