@@ -6,7 +6,8 @@
  *
  * Geometry, of the new triangle i with doubled area vector m_i against the old n_i:
  *   flip      m_i.n_i > FLIP |m_i||n_i|
- *   shape     area over longest edge squared not below SLIVER, or not below the worst before
+ *   shape     area over longest edge squared not below SLIVER, or not below the worst before; of
+ *             those below FLAT no more than before
  *   fold      over all edges around, the number with normals more than 150 degrees apart does not
  *             grow: spokes and the edges to the triangles beyond. */
 #include "simplify/collapse.h"
@@ -17,6 +18,8 @@
 #define FLIP 0.1
 /* Smallest 2 area / longest edge^2 of a new triangle, unless one was as bad before. */
 #define SLIVER 2e-3
+/* Below it a triangle has no area but that of rounding. */
+#define FLAT 1e-10
 
 static bool push(scree_ring *r, uint32_t h) {
   if (r->count == SCREE_RING_MAX) return false;
@@ -137,6 +140,11 @@ static double squared_shape(vec3 n, vec3 e1, vec3 e2, vec3 e3) {
   double l = l1 > l2 ? l1 : l2;
   l = l3 > l ? l3 : l;
   return l > 0 ? vec3_norm2(n) / (l * l) : 0;
+}
+
+static double shape_of(vec3 a, vec3 b, vec3 c) {
+  return squared_shape(vec3_triangle_normal(a, b, c), vec3_sub(b, a), vec3_sub(c, b),
+                       vec3_sub(a, c));
 }
 
 /* The ring's triangles side by side, one per lane. */
@@ -285,6 +293,22 @@ static bool folds_do_not_grow(const scree_halfmesh *s, const scree_ring *r,
   return after <= before;
 }
 
+/* Triangles without area, of the ring and the edge, before and after. */
+static bool flats_do_not_grow(const scree_halfmesh *s, const scree_ring *r, vec3 x) {
+  vec3 pa = s->vertex[r->a].at, pb = s->vertex[r->b].at;
+  uint32_t apex[2] = {r->c, r->d};
+  int before = 0, after = 0;
+  for (uint32_t i = 0; i < r->count; i++) {
+    vec3 p = i < r->a_count ? pa : pb, p1 = s->vertex[s->half[r->edge[i]].from].at,
+         p2 = s->vertex[scree_to(s, r->edge[i])].at;
+    before += shape_of(p, p1, p2) < FLAT * FLAT;
+    after += shape_of(x, p1, p2) < FLAT * FLAT;
+  }
+  for (int k = 0; k < 2 && apex[k] != SCREE_NONE; k++)
+    before += shape_of(pa, pb, s->vertex[apex[k]].at) < FLAT * FLAT;
+  return after <= before;
+}
+
 bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change,
                           scree_around *around) {
   tally sum = {.shape_before = 1, .shape_after = 1};
@@ -294,6 +318,7 @@ bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_chang
   change->area = 0.5 * sum.area;
   change->volume = sum.volume / 6;
   if (!(sum.shape_after >= SLIVER * SLIVER || sum.shape_after >= sum.shape_before)) return false;
+  if (sum.shape_after < FLAT * FLAT && !flats_do_not_grow(s, ring, change->target)) return false;
   return folds_do_not_grow(s, ring, around, &sum);
 }
 
