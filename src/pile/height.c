@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double most_cells = 4e8; /* 3.2 GB: a coarser grid is meant */
+static const double most_cells = 1e8; /* 0.8 GB: a coarser grid is meant */
 
 scree_status scree_height_field_create(double centre_x, double centre_y, double half_width,
                                        double cell, scree_height_field *field, scree_error *error) {
