@@ -1,5 +1,6 @@
-/* A level is the better the smaller its witnesses' mean distance times the root of the distance of
- * its farthest place is. */
+/* A level is the better the smaller its witnesses' mean distance times the cube root of the
+ * distance of its farthest place is. A trial with moves is dear, so that most offers are judged
+ * without. */
 #include "simplify/ahead.h"
 
 #include "base/array.h"
@@ -9,6 +10,12 @@
 
 /* Scores that differ by no more of themselves are the same: the cheaper collapse is taken. */
 #define SAME_SCORE 1e-9
+
+/* Squared distances are known above this share of the level's farthest; when the farthest has come
+ * nearer than the second, or farther than the third times what is known, all are found anew. */
+#define KNOWN_ABOVE 0.25
+#define TOO_NEAR    2.0
+#define TOO_FAR     16.0
 
 scree_status scree_ahead_prepare(scree_decimator *d) {
   uint32_t *vertices = NULL, *triangles = NULL;
@@ -38,6 +45,7 @@ static scree_status trial_begin(scree_trial *t, const scree_decimator *d) {
   SCREE_ALLOC_OR(t->d.anchors.vertex, d->anchors.count, d->error, out_of_memory);
   SCREE_ALLOC_OR(t->step.stamp, s->vertex_count, d->error, out_of_memory);
   SCREE_ALLOC_OR(t->step.touched, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->moved, s->vertex_count, d->error, out_of_memory);
   if (!SCREE_RESERVE(moves, SCREE_MOST_ABOUT + 2))
     return scree_fail_memory(d->error, (SCREE_MOST_ABOUT + 2) * sizeof *moves->items, "moves");
   return scree_record_allocate(&t->d.record, 1, d->error);
@@ -45,16 +53,39 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+/* Finds the distances of what has an end at these vertices, or of all. */
+static void find_distances(scree_ahead *a, const scree_decimator *d, const bool *moved) {
+  const scree_halfmesh *s = &d->s;
+  for (uint32_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE && (!moved || moved[v]))
+      a->of_vertex2[v] = scree_memory_vertex_stray(&d->memory, s, v, a->least2);
+  for (uint32_t h = 0; h < 3 * s->triangle_count; h++)
+    if (s->half[h].from != SCREE_NONE && h < s->half[h].twin &&
+        (!moved || moved[s->half[h].from] || moved[scree_to(s, h)]))
+      a->of_edge2[h] = scree_memory_edge_stray(&d->memory, s, h, a->least2);
+}
+
+static void find_all_distances(scree_ahead *a, const scree_decimator *d) {
+  a->least2 = KNOWN_ABOVE * scree_memory_farthest(&d->memory, &d->s);
+  find_distances(a, d, NULL);
+}
+
 scree_status scree_ahead_begin(scree_ahead *a, const scree_decimator *d) {
   scree_status status = SCREE_OK;
   *a = (scree_ahead){.from = NULL};
-  for (int i = 0; i < SCREE_OFFER_COUNT && status == SCREE_OK; i++)
+  for (int i = 0; i < SCREE_TRIAL_COUNT && status == SCREE_OK; i++)
     status = trial_begin(&a->trials[i], d);
-  return status;
+  if (status != SCREE_OK) return status;
+  SCREE_ALLOC_OR(a->of_vertex2, d->s.vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(a->of_edge2, 3 * d->s.triangle_count, d->error, out_of_memory);
+  find_all_distances(a, d);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_ahead_free(scree_ahead *a) {
-  for (int i = 0; i < SCREE_OFFER_COUNT; i++) {
+  for (int i = 0; i < SCREE_TRIAL_COUNT; i++) {
     scree_trial *t = &a->trials[i];
     scree_free(t->d.s.half);
     scree_free(t->d.s.vertex);
@@ -65,8 +96,11 @@ void scree_ahead_free(scree_ahead *a) {
     scree_free(t->d.anchors.vertex);
     scree_free(t->step.stamp);
     scree_free(t->step.touched);
+    scree_free(t->moved);
     scree_record_free(&t->d.record);
   }
+  scree_free(a->of_vertex2);
+  scree_free(a->of_edge2);
 }
 
 /* All of the surface that a step changes. */
@@ -113,7 +147,25 @@ static void start(scree_trial *t, const scree_step *from) {
 }
 
 static double score(double mean, double farthest) {
-  return fmax(mean, SCREE_SAME_DISTANCE) * sqrt(fmax(farthest, SCREE_SAME_DISTANCE));
+  return fmax(mean, SCREE_SAME_DISTANCE) * cbrt(fmax(farthest, SCREE_SAME_DISTANCE));
+}
+
+/* The largest squared distance of a place of the trial's level. */
+static double farthest2_of(const scree_ahead *a, const scree_trial *t) {
+  const scree_halfmesh *s = &t->d.s;
+  const scree_memory *m = &t->d.memory;
+  double worst2 = scree_memory_witness_stray(m, s);
+  for (uint32_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE)
+      worst2 =
+          t->moved[v] ? scree_memory_vertex_stray(m, s, v, worst2) : fmax(worst2, a->of_vertex2[v]);
+  for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
+    if (s->half[h].from == SCREE_NONE || h > s->half[h].twin) continue;
+    worst2 = t->moved[s->half[h].from] || t->moved[scree_to(s, h)]
+                 ? scree_memory_edge_stray(m, s, h, worst2)
+                 : fmax(worst2, a->of_edge2[h]);
+  }
+  return worst2 > a->least2 ? worst2 : scree_memory_farthest(m, s);
 }
 
 static void try_block(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -121,40 +173,59 @@ static void try_block(void *context, size_t begin, size_t end, size_t block, int
   scree_ahead *a = context;
   for (size_t i = begin; i < end; i++) {
     scree_trial *t = &a->trials[i];
-    const scree_offer *offer = &a->offers[i];
+    const scree_offer *offer = &a->offers[t->offer];
+    const scree_vertex *before = a->from->d->s.vertex, *after = t->d.s.vertex;
     start(t, a->from);
     t->status =
         scree_step_collapse(&t->step, &offer->ring, &offer->change, &offer->around, offer->error);
-    t->mean = scree_memory_mean(&t->d.memory);
-    t->bound = score(t->mean, scree_memory_worst(&t->d.memory));
-    t->score = INFINITY;
+    for (size_t v = 0; v < t->d.s.vertex_count; v++)
+      t->moved[v] = vec3_norm2(vec3_sub(after[v].at, before[v].at)) > 0;
+    t->moved[offer->ring.a] = true;
+    t->farthest2 = farthest2_of(a, t);
+    t->score = score(scree_memory_mean(&t->d.memory), sqrt(t->farthest2));
   }
 }
 
-/* To find the farthest place takes half as long as the trial: only where it may decide. */
-static void find_scores(scree_ahead *a, size_t count) {
-  double least = INFINITY;
-  for (;;) {
-    scree_trial *next = NULL;
-    for (size_t i = 0; i < count; i++) {
-      scree_trial *t = &a->trials[i];
-      if (!(t->score < INFINITY) && (!next || t->bound < next->bound)) next = t;
-    }
-    if (!next || next->bound > least) return;
-    next->score = score(next->mean, sqrt(scree_memory_farthest(&next->d.memory, &next->d.s)));
-    least = fmin(least, next->score);
+static void judge_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  scree_ahead *a = context;
+  const scree_decimator *d = a->from->d;
+  for (size_t i = begin; i < end; i++) {
+    const scree_offer *offer = &a->offers[i];
+    double worst2, growth = scree_memory_growth(&d->memory, &d->s, &offer->ring,
+                                                offer->change.target, a->from->farthest2, &worst2);
+    a->scores[i] = score(a->mean + growth / (double)d->memory.left, sqrt(worst2));
   }
 }
 
-size_t scree_ahead_find(scree_ahead *a, const scree_step *step, scree_offer *offers, size_t count) {
-  size_t best = 0;
+/* The offers that are tried: the best of them as they are, in their order. */
+static size_t choose(scree_ahead *a, size_t count) {
+  size_t tried = 0;
+  bool chosen[SCREE_OFFER_COUNT] = {false};
+  a->mean = scree_memory_mean(&a->from->d->memory);
+  scree_parallel_for(count, 1, judge_block, a);
+  for (size_t n = 0; n < SCREE_TRIAL_COUNT && n < count; n++) {
+    size_t best = count;
+    for (size_t i = 0; i < count; i++)
+      if (!chosen[i] && (best == count || a->scores[i] < (1 - SAME_SCORE) * a->scores[best]))
+        best = i;
+    chosen[best] = true;
+  }
+  for (size_t i = 0; i < count; i++)
+    if (chosen[i]) a->trials[tried++].offer = i;
+  return tried;
+}
+
+size_t scree_ahead_find(scree_ahead *a, scree_step *step, const scree_offer *offers, size_t count) {
   a->from = step;
   a->offers = offers;
-  scree_parallel_for(count, 1, try_block, a);
-  find_scores(a, count);
-  for (size_t i = 1; i < count; i++)
-    if (a->trials[i].score < (1 - SAME_SCORE) * a->trials[best].score) best = i;
-  return best;
+  scree_step_find_farthest(step);
+  size_t tried = choose(a, count);
+  scree_parallel_for(tried, 1, try_block, a);
+  a->best = &a->trials[0];
+  for (size_t i = 1; i < tried; i++)
+    if (a->trials[i].score < (1 - SAME_SCORE) * a->best->score) a->best = &a->trials[i];
+  return a->best->offer;
 }
 
 /* The trial's one collapse and its moves. */
@@ -176,8 +247,8 @@ static scree_status take_record(scree_decimator *d, const scree_record *from) {
   return SCREE_OK;
 }
 
-scree_status scree_ahead_take(scree_ahead *a, size_t which, scree_step *step) {
-  const scree_trial *t = &a->trials[which];
+scree_status scree_ahead_take(scree_ahead *a, scree_step *step) {
+  const scree_trial *t = a->best;
   if (t->status != SCREE_OK) return t->status;
   copy_surface(step->d, &t->d);
   step->farthest2 = t->step.farthest2;
@@ -188,5 +259,9 @@ scree_status scree_ahead_take(scree_ahead *a, size_t which, scree_step *step) {
     step->touched[i] = t->step.touched[i];
     step->stamp[step->touched[i]] = step->now;
   }
+  if (t->farthest2 > TOO_NEAR * a->least2 && t->farthest2 < TOO_FAR * a->least2)
+    find_distances(a, step->d, t->moved);
+  else
+    find_all_distances(a, step->d);
   return take_record(step->d, &t->d.record);
 }

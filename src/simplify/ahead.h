@@ -1,12 +1,19 @@
-/* The last collapses look ahead: of the cheapest that are allowed, each is done with the moves
- * after it on a copy of the surface, and the one is taken after which the level is best. */
+/* The last collapses look ahead: of the cheapest that are allowed, those after which the level is
+ * best as it is are each done with the moves after it on a copy of the surface, and the one is
+ * taken after which the level is best then. */
 #ifndef SCREE_SIMPLIFY_AHEAD_H
 #define SCREE_SIMPLIFY_AHEAD_H
 
 #include "simplify/step.h"
 
-/* From how many triangles on, later with large scans; how many collapses are tried. */
-enum { SCREE_AHEAD_COUNT = 160, SCREE_AHEAD_LATE = 100, SCREE_OFFER_COUNT = 4 };
+/* From how many triangles on, later with large scans; how many collapses are looked at, and how
+ * many of them are tried. */
+enum {
+  SCREE_AHEAD_COUNT = 160,
+  SCREE_AHEAD_LATE = 130,
+  SCREE_OFFER_COUNT = 16,
+  SCREE_TRIAL_COUNT = 4
+};
 
 /* A collapse that is allowed now. It must stay where it is in memory. */
 typedef struct scree_offer {
@@ -22,14 +29,21 @@ typedef struct scree_offer {
 typedef struct scree_trial {
   scree_decimator d;
   scree_step step;
-  double mean, bound, score; /* of the witnesses; of the score from below; INFINITY: not needed */
+  bool *moved; /* per vertex: it lies elsewhere than before, or is the survivor */
+  double farthest2, score;
   scree_status status;
+  size_t offer; /* which */
 } scree_trial;
 
 typedef struct scree_ahead {
-  scree_trial trials[SCREE_OFFER_COUNT];
+  scree_trial trials[SCREE_TRIAL_COUNT];
+  const scree_trial *best;
   const scree_step *from;
-  scree_offer *offers;
+  const scree_offer *offers;
+  double mean, scores[SCREE_OFFER_COUNT]; /* of the witnesses now; of the offers without moves */
+  /* Of the surface as it is: the squared distances of its vertices, and by half-edges the largest
+   * of the places on its edges, each or `least2`, where it is smaller. */
+  double *of_vertex2, *of_edge2, least2;
 } scree_ahead;
 
 /* Before: what is gone leaves the surface and the memory, if it is kept, so that copies are small.
@@ -40,11 +54,11 @@ scree_status scree_ahead_prepare(scree_decimator *d);
 scree_status scree_ahead_begin(scree_ahead *ahead, const scree_decimator *d);
 void scree_ahead_free(scree_ahead *ahead);
 
-/* Does all offers, side by side; answers the best, or of equal ones the first. */
-size_t scree_ahead_find(scree_ahead *ahead, const scree_step *step, scree_offer *offers,
+/* Finds the best of the offers, cheapest first; of equal ones the first. Side by side. */
+size_t scree_ahead_find(scree_ahead *ahead, scree_step *step, const scree_offer *offers,
                         size_t count);
-/* The decimator becomes what offer `which` made of it, record and all; step->touched tells of it.
+/* The decimator becomes what the offer found made of it, record and all; step->touched tells of it.
  */
-scree_status scree_ahead_take(scree_ahead *ahead, size_t which, scree_step *step);
+scree_status scree_ahead_take(scree_ahead *ahead, scree_step *step);
 
 #endif

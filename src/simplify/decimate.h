@@ -93,7 +93,7 @@ static inline bool scree_is_held_close(const scree_decimator *d) {
 
 /* Below how many triangles vertices move after a collapse (relax.h); method `volume`; later with
  * large scans. */
-enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 400 };
+enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 1000 };
 
 /* Keeps the surface as it is (stray.h). */
 scree_status scree_decimate_keep(scree_decimator *d);

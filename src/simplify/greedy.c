@@ -26,7 +26,7 @@
  *
  * Below SCREE_RELAXED_COUNT triangles the vertices about a collapse move after it, to where the
  * witnesses around them are nearer (step.c). Below SCREE_AHEAD_COUNT not the cheapest collapse is
- * done, but of the cheapest few that are allowed the one after which the level is best (ahead.h).
+ * done, but of the cheapest that are allowed the one after which the level is best (ahead.h).
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
@@ -458,7 +458,7 @@ static scree_status collapse_best(queue *q, scree_ahead *ahead) {
   for (size_t i = 0; i < count; i++) enter(q, q->offers[i].ring.half_edge);
   size_t best = scree_ahead_find(ahead, &q->step, q->offers, count);
   forget(q, &q->offers[best].ring);
-  status = scree_ahead_take(ahead, best, &q->step);
+  status = scree_ahead_take(ahead, &q->step);
   update(q);
   return status;
 }

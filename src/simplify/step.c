@@ -186,7 +186,7 @@ static scree_status exchange(scree_step *q, const uint32_t *about, size_t count)
   return try_moving(q, &m);
 }
 
-static void find_farthest(scree_step *q) {
+void scree_step_find_farthest(scree_step *q) {
   const scree_decimator *d = q->d;
   if (d->s.live_triangle_count > q->farthest_at) return;
   q->farthest2 = scree_memory_farthest(&d->memory, &d->s);
@@ -201,7 +201,7 @@ static scree_status relax_around(scree_step *q) {
   uint32_t about[SCREE_MOST_ABOUT];
   size_t count = q->touched_count, farthest = 1;
   double most = 0;
-  find_farthest(q);
+  scree_step_find_farthest(q);
   scree_status status = relax(q, q->touched[0]);
   memcpy(about, q->touched, count * sizeof *about);
   for (size_t i = 1; i < count; i++) {

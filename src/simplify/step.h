@@ -23,6 +23,9 @@ typedef struct scree_step {
 bool scree_step_allows(scree_step *step, scree_ring *ring, scree_change *change,
                        scree_around *around, scree_status *status);
 
+/* Finds the farthest place of the level anew, where it is time. */
+void scree_step_find_farthest(scree_step *step);
+
 /* Writes the collapse to the record and does it, with the moves after it; it was allowed. Every
  * vertex of which triangles changed is among those touched. */
 scree_status scree_step_collapse(scree_step *step, const scree_ring *ring,

@@ -416,11 +416,54 @@ bool scree_memory_stays_within(const scree_memory *m, const scree_halfmesh *s, c
   return worst <= most && stray_of_witnesses(m, s, r, target, most, most) <= most;
 }
 
+double scree_memory_growth(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
+                           vec3 target, double least, double *worst) {
+  double corners[SCREE_RING_MAX][9], growth = 0, most = least;
+  scree_four fours[SCREE_RING_MAX / SCREE_FOUR];
+  size_t four_count = scree_four_count(r->count);
+  scree_hints hints;
+  scree_no_hints(&hints);
+  ask_for_witnesses(m, s, r);
+  scree_ring_corners(s, r, target, corners);
+  scree_fours_fill(corners, r->count, fours);
+  for (uint32_t k = 0; k < count_around(r); k++)
+    for (uint32_t j = m->first[triangle_around(s, r, k)]; j != SCREE_NONE;
+         j = m->witnesses[j].next) {
+      double distance2 = distance2_from(fours, four_count, m->witnesses[j].at);
+      growth += sqrt(distance2) - sqrt(m->witnesses[j].distance2);
+      most = fmax(most, distance2);
+    }
+  *worst = scree_memory_edges_stray(m, s, r, target, most, &hints);
+  return growth;
+}
+
 double scree_memory_worst(const scree_memory *m) {
   double worst = 0;
   for (size_t i = 0; i < m->count; i++)
     if (m->witnesses[i].distance2 > worst) worst = m->witnesses[i].distance2;
   return sqrt(worst);
+}
+
+double scree_memory_witness_stray(const scree_memory *m, const scree_halfmesh *s) {
+  double worst = 0;
+  for (size_t t = 0; t < s->triangle_count; t++)
+    if (m->first[t] != SCREE_NONE) worst = fmax(worst, m->witnesses[m->first[t]].distance2);
+  return worst;
+}
+
+double scree_memory_vertex_stray(const scree_memory *m, const scree_halfmesh *s, uint32_t v,
+                                 double least) {
+  uint32_t near = m->near[v];
+  return farther(m, s->vertex[v].at, least, &near);
+}
+
+double scree_memory_edge_stray(const scree_memory *m, const scree_halfmesh *s, uint32_t h,
+                               double least) {
+  uint32_t from = s->half[h].from, near = m->near[from];
+  vec3 at = s->vertex[from].at, to = s->vertex[scree_to(s, h)].at;
+  for (uint32_t k = 0; k < SCREE_EDGE_PLACES; k++)
+    least = farther(m, vec3_lerp(at, to, places[k].sixths / 6.0), least, &near);
+  return least;
 }
 
 /* Triangles by blocks. */
@@ -438,20 +481,15 @@ static void look_at_block(void *context, size_t begin, size_t end, size_t block,
   for (uint32_t h = 3 * (uint32_t)begin; h < 3 * end; h++) {
     uint32_t from = s->half[h].from, twin = s->half[h].twin;
     if (from == SCREE_NONE) continue;
-    vec3 at = s->vertex[from].at, to = s->vertex[scree_to(s, h)].at;
-    uint32_t near = l->m->near[from];
-    if (s->vertex[from].outgoing == h) worst = farther(l->m, at, worst, &near);
-    for (uint32_t k = 0; k < SCREE_EDGE_PLACES && h < twin; k++)
-      worst = farther(l->m, vec3_lerp(at, to, places[k].sixths / 6.0), worst, &near);
+    if (s->vertex[from].outgoing == h) worst = scree_memory_vertex_stray(l->m, s, from, worst);
+    if (h < twin) worst = scree_memory_edge_stray(l->m, s, h, worst);
   }
   l->worst[block] = worst;
 }
 
 double scree_memory_farthest(const scree_memory *m, const scree_halfmesh *s) {
   looking l = {.m = m, .s = s};
-  double worst = 0;
-  for (size_t t = 0; t < s->triangle_count; t++)
-    if (m->first[t] != SCREE_NONE) worst = fmax(worst, m->witnesses[m->first[t]].distance2);
+  double worst = scree_memory_witness_stray(m, s);
   for (int i = 0; i < FARTHEST_BLOCKS; i++) l.worst[i] = worst;
   scree_parallel_for(s->triangle_count, s->triangle_count / FARTHEST_BLOCKS + 1, look_at_block, &l);
   for (int i = 0; i < FARTHEST_BLOCKS; i++) worst = fmax(worst, l.worst[i]);

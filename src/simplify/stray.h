@@ -109,9 +109,22 @@ bool scree_memory_stays_within(const scree_memory *memory, const scree_halfmesh 
 double scree_memory_mean(const scree_memory *memory);
 double scree_memory_worst(const scree_memory *memory);
 
+/* What the collapse alone makes of them: by how much the sum of the distances grows, and the
+ * largest squared distance of a witness of the ring's triangles, of the new vertex or of a place on
+ * a new edge, or `least`, where it is smaller. */
+double scree_memory_growth(const scree_memory *memory, const scree_halfmesh *s,
+                           const scree_ring *ring, vec3 target, double least, double *worst);
+
 /* The largest squared distance of all: of a witness, of a vertex or of a place on an edge; in
  * parallel. */
 double scree_memory_farthest(const scree_memory *memory, const scree_halfmesh *s);
+/* The squared distance of the farthest witness; of one vertex; the largest of the places on one
+ * edge; or `least`, where it is smaller. */
+double scree_memory_witness_stray(const scree_memory *memory, const scree_halfmesh *s);
+double scree_memory_vertex_stray(const scree_memory *memory, const scree_halfmesh *s,
+                                 uint32_t vertex, double least);
+double scree_memory_edge_stray(const scree_memory *memory, const scree_halfmesh *s,
+                               uint32_t half_edge, double least);
 
 /* How far off a place may be as things stand: ten times the mean distance of the witnesses, nine
  * times where the level is held close, less five times the one with which those placed began; 0

@@ -120,8 +120,11 @@ bool oracle_find_exchange(const oracle *o, uint32_t a, pair *p, vec3 *x, bool *s
 
 /* The distance of the farthest of all witnesses, vertices and places on edges. */
 double oracle_farthest(const oracle *o);
-/* The mean distance of the witnesses times the root of that, once (a, b) has collapsed to x and the
- * vertices about it have moved. */
+/* The mean distance of the witnesses times the cube root of the greatest: of what the level had and
+ * what is around the new vertex, once (a, b) has collapsed to x. */
+double oracle_score_alone(const oracle *o, uint32_t a, uint32_t b, vec3 x);
+/* The mean distance of the witnesses times the cube root of the farthest of all, once (a, b) has
+ * collapsed to x and the vertices about it have moved. */
 double oracle_score_after(const oracle *o, uint32_t a, uint32_t b, vec3 x, bool *sure);
 
 #endif

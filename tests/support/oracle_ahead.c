@@ -1,4 +1,4 @@
-/* Looking ahead: how good the level is that a collapse and the moves after it make. */
+/* Looking ahead: how good the level is that a collapse makes, alone and with the moves after it. */
 #include "support/check.h"
 #include "support/oracle.h"
 
@@ -51,15 +51,36 @@ static void move_around(oracle *n, uint32_t a, bool *sure) {
     for (int k = 0; k < 2; k++) oracle_apply_move(n, p.v[k], x[k]);
 }
 
+static double score_of(const oracle *n, double farthest) {
+  double mean = 0;
+  for (size_t w = 0; w < n->vertex_count; w++) mean += sqrt(n->held2[w]) / (double)n->vertex_count;
+  return fmax(mean, EQUALLY_NEAR) * cbrt(fmax(farthest, EQUALLY_NEAR));
+}
+
+double oracle_score_alone(const oracle *o, uint32_t a, uint32_t b, vec3 x) {
+  oracle n = copy_of(o);
+  double worst2 = pow(o->farthest, 2);
+  oracle_apply(&n, a, b, x);
+  for (size_t w = 0; w < n.vertex_count; w++)
+    if (oracle_has(&n, n.holder[w], a)) worst2 = fmax(worst2, n.held2[w]);
+  for (size_t t = 0; t < n.triangle_count; t++)
+    for (size_t i = 0; i < 3 && oracle_has(&n, t, a); i++)
+      for (int part = 0; part < EDGE_PARTS; part++) {
+        vec3 at = vec3_lerp(x, oracle_corner(&n, t, i), (double)part / EDGE_PARTS);
+        worst2 = fmax(worst2, oracle_start_distance2(o, at));
+      }
+  double score = score_of(&n, sqrt(worst2));
+  free_copy(&n);
+  return score;
+}
+
 double oracle_score_after(const oracle *o, uint32_t a, uint32_t b, vec3 x, bool *sure) {
   oracle n = copy_of(o);
-  double mean = 0;
   *sure = true;
   oracle_apply(&n, a, b, x);
   oracle_renew_farthest(&n);
   move_around(&n, a, sure);
-  for (size_t w = 0; w < n.vertex_count; w++) mean += sqrt(n.held2[w]) / (double)n.vertex_count;
-  double farthest = oracle_farthest(&n);
+  double score = score_of(&n, oracle_farthest(&n));
   free_copy(&n);
-  return fmax(mean, EQUALLY_NEAR) * sqrt(fmax(farthest, EQUALLY_NEAR));
+  return score;
 }

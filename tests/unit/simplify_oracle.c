@@ -18,6 +18,9 @@
  * and did none stay that should have moved? At last two of them that are no neighbours move
  * together: the same is asked, and whether they were the two that gain most.
  *
+ * When few triangles are left, the collapse must be the best of some that are best before any move:
+ * see "Looking ahead".
+ *
  * That is asked of the greedy stage. Of the batches, all but whose turn it was: every collapse of
  * their record, done after those before it, is allowed, at the place of least cost, with the right
  * error and changes. Which of a round's candidates are taken has a test of its own
@@ -297,11 +300,12 @@ static void check_moves(oracle *o, const scree_decimator *d, size_t i) {
 
 /* ---- Looking ahead ---- */
 
-enum { OFFER_COUNT = 4, WEIGHED_EVERY = 3 };
+enum { OFFER_COUNT = 16, TRIAL_COUNT = 4, WEIGHED_EVERY = 3 };
 
 typedef struct offer {
   uint32_t a, b;
   place p;
+  double alone; /* its score without moves */
 } offer;
 
 static bool is_offered(const offer *offers, size_t count, uint32_t a, uint32_t b) {
@@ -312,13 +316,13 @@ static bool is_offered(const offer *offers, size_t count, uint32_t a, uint32_t b
 
 /* The edge that waits at the least cost and is not among the offers. */
 static offer cheapest(oracle *o, const offer *offers, size_t count) {
-  offer least = {.p.cost = INFINITY};
+  offer least = {.p = {.cost = INFINITY}};
   size_t side = 0;
   uint32_t a, b;
   while (next_edge(o, &side, &a, &b)) {
     if (is_offered(offers, count, a, b)) continue;
     place p = waiting(o, a, b, least.p.cost);
-    if (p.cost < least.p.cost) least = (offer){a, b, p};
+    if (p.cost < least.p.cost) least = (offer){.a = a, .b = b, .p = p};
   }
   return least;
 }
@@ -339,8 +343,8 @@ static size_t find_offers(oracle *o, offer *offers, offer *next) {
 
 /* Whether none of the others would have made a better level. */
 static void weigh(oracle *o, const offer *offers, size_t count, uint32_t a, uint32_t b) {
-  double score[OFFER_COUNT], chosen = INFINITY;
-  bool sure[OFFER_COUNT], all = true;
+  double score[TRIAL_COUNT], chosen = INFINITY;
+  bool sure[TRIAL_COUNT], all = true;
   for (size_t i = 0; i < count; i++) {
     score[i] = oracle_score_after(o, offers[i].a, offers[i].b, offers[i].p.target, &sure[i]);
     all &= sure[i];
@@ -353,24 +357,39 @@ static void weigh(oracle *o, const offer *offers, size_t count, uint32_t a, uint
   o->weighed += all;
 }
 
-/* The engine collapses (a, b) next, to x: one of the offers, and the best of them. */
+static int by_score(const void *a, const void *b) {
+  const offer *x = a, *y = b;
+  return (x->alone > y->alone) - (x->alone < y->alone);
+}
+
+/* The engine collapses (a, b) next, to x: one of the offers that are best as they are, and the best
+ * of them. */
 static bool check_choice(oracle *o, uint32_t a, uint32_t b, vec3 x, place *chosen) {
   offer offers[OFFER_COUNT], next;
-  size_t count = find_offers(o, offers, &next);
+  oracle_renew_farthest(o);
+  size_t count = find_offers(o, offers, &next), tried = count;
   if (count == 0) return false;
-  const place *last = &offers[count - 1].p;
-  bool clear = next.p.cost - last->cost > next.p.slack + last->slack;
+  place last = offers[count - 1].p;
+  bool clear = next.p.cost - last.cost > next.p.slack + last.slack;
+  for (size_t i = 0; i < count; i++)
+    offers[i].alone = oracle_score_alone(o, offers[i].a, offers[i].b, offers[i].p.target);
+  qsort(offers, count, sizeof *offers, by_score);
+  if (count > TRIAL_COUNT) {
+    tried = TRIAL_COUNT;
+    clear &= offers[tried].alone > (1 + 1e-6) * offers[tried - 1].alone;
+  }
   o->decided += clear;
   for (size_t i = 0; i < count; i++) {
     *chosen = offers[i].p;
     if (offers[i].a != a || offers[i].b != b ||
         fmin(vec3_distance(x, chosen->target), vec3_distance(x, chosen->other)) > 1e-6)
       continue;
-    if (clear && o->compared % WEIGHED_EVERY == 0) weigh(o, offers, count, a, b);
+    if (clear && i >= tried) fail_msg("collapse of (%u, %u) is no trial", a, b);
+    if (clear && o->compared % WEIGHED_EVERY == 0) weigh(o, offers, tried, a, b);
     return true;
   }
   *chosen = waiting(o, a, b, INFINITY); /* as cheap, but for rounding */
-  return chosen->cost <= last->cost + last->slack + chosen->slack;
+  return chosen->cost <= last.cost + last.slack + chosen->slack;
 }
 
 static void measure(const oracle *o, double *area, double *volume) {
