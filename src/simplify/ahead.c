@@ -202,8 +202,11 @@ static void judge_block(void *context, size_t begin, size_t end, size_t block, i
 static size_t choose(scree_ahead *a, size_t count) {
   size_t tried = 0;
   bool chosen[SCREE_OFFER_COUNT] = {false};
-  a->mean = scree_memory_mean(&a->from->d->memory);
-  scree_parallel_for(count, 1, judge_block, a);
+  if (count > SCREE_TRIAL_COUNT) {
+    a->mean = scree_memory_mean(&a->from->d->memory);
+    scree_parallel_for(count, 1, judge_block, a);
+  } else
+    memset(a->scores, 0, sizeof a->scores); /* all */
   for (size_t n = 0; n < SCREE_TRIAL_COUNT && n < count; n++) {
     size_t best = count;
     for (size_t i = 0; i < count; i++)

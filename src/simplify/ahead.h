@@ -6,8 +6,8 @@
 
 #include "simplify/step.h"
 
-/* From how many triangles on, later with large scans; how many collapses are looked at, and how
- * many of them are tried. */
+/* From how many triangles on, later with large scans; how many collapses are looked at (of large
+ * scans no more than are tried, for it takes time), and how many of them are tried. */
 enum {
   SCREE_AHEAD_COUNT = 160,
   SCREE_AHEAD_LATE = 130,

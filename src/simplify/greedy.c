@@ -450,7 +450,8 @@ static scree_status collapse_best(queue *q, scree_ahead *ahead) {
   size_t count = 0;
   bool offered;
   scree_status status = SCREE_OK;
-  while (status == SCREE_OK && count < SCREE_OFFER_COUNT && q->heap_count > 0) {
+  const size_t most = scree_is_large(q->d) ? SCREE_TRIAL_COUNT : SCREE_OFFER_COUNT;
+  while (status == SCREE_OK && count < most && q->heap_count > 0) {
     status = try_cheapest(q, &q->offers[count], &offered);
     count += offered;
   }
