@@ -138,6 +138,43 @@ scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, s
   return status;
 }
 
+bool scree_stream_open(const char *path, scree_stream *stream) {
+  struct stat info;
+  if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return false; /* to open a pipe may wait */
+  int fd = open(path, O_RDONLY | O_CLOEXEC);
+  XXH3_state_t *hash = fd >= 0 ? XXH3_createState() : NULL;
+  if (!hash || fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+    XXH3_freeState(hash);
+    if (fd >= 0) close(fd);
+    return false;
+  }
+  XXH3_128bits_reset(hash);
+  *stream = (scree_stream){fd, (size_t)info.st_size, 0, hash};
+  return true;
+}
+
+bool scree_stream_read(scree_stream *stream, void *bytes, size_t byte_count) {
+  for (size_t done = 0; done < byte_count;) {
+    ssize_t got = read(stream->fd, (char *)bytes + done, byte_count - done);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return false;
+    done += (size_t)got;
+  }
+  stream->done += byte_count;
+  XXH3_128bits_update(stream->hash, bytes, byte_count);
+  return true;
+}
+
+scree_checksum scree_stream_checksum(const scree_stream *stream) {
+  XXH128_hash_t hash = XXH3_128bits_digest(stream->hash);
+  return (scree_checksum){hash.high64, hash.low64};
+}
+
+void scree_stream_close(scree_stream *stream) {
+  close(stream->fd);
+  XXH3_freeState(stream->hash);
+}
+
 /* A new file beside path under a name that nobody else has: another machine that shares the folder
  * may have a process of the same number, and a killed one may have left its file. */
 static int create_beside(const char *path, char *name, size_t size) {

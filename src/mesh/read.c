@@ -13,7 +13,7 @@
 #include <stdarg.h>
 #include <string.h>
 
-enum { SNIFF_BYTES = 4096, STL_HEADER = 84, STL_FACET = 50 };
+enum { SNIFF_BYTES = 4096 };
 
 scree_read_options scree_default_read_options(void) {
   return (scree_read_options){.unit_m = 1e-3};
@@ -123,11 +123,11 @@ static bool looks_like_text(const unsigned char *bytes, size_t count) {
 
 /* The length is what the count in the header says; a count made of text is a text file of that very
  * length by chance, and far longer than any. */
-static bool has_stl_length(const unsigned char *bytes, size_t byte_count) {
-  if (byte_count < STL_HEADER) return false;
+bool scree_is_whole_stl(const unsigned char *bytes, size_t byte_count) {
+  if (byte_count < SCREE_STL_HEADER) return false;
   uint32_t count = (uint32_t)bytes[80] | (uint32_t)bytes[81] << 8 | (uint32_t)bytes[82] << 16 |
                    (uint32_t)bytes[83] << 24;
-  return byte_count == STL_HEADER + (size_t)count * STL_FACET;
+  return byte_count == SCREE_STL_HEADER + (size_t)count * SCREE_STL_FACET;
 }
 
 /* The first word behind lines of comment. */
@@ -247,10 +247,10 @@ static scree_status read_binary_or_fail(scree_reading *r) {
     if (starts_with(r, m->bytes, m->length))
       return scree_reading_fail(r, SCREE_BAD_FILE, "%s", m->advice);
   }
-  if (r->byte_count < STL_HEADER)
+  if (r->byte_count < SCREE_STL_HEADER)
     return scree_reading_fail(r, SCREE_BAD_FILE,
                               "too short: %zu bytes; a binary STL has at least %d", r->byte_count,
-                              STL_HEADER);
+                              SCREE_STL_HEADER);
   return scree_read_stl_binary(r);
 }
 
@@ -258,7 +258,7 @@ static scree_status read_any(scree_reading *r) {
   if (r->byte_count == 0) return scree_reading_fail(r, SCREE_BAD_FILE, "the file is empty");
   scree_text text = scree_reading_text(r), start = text;
   if (scree_token_is(scree_text_next(&start), "ply")) return scree_read_ply(r);
-  if (has_stl_length(r->bytes, r->byte_count)) return scree_read_stl_binary(r);
+  if (scree_is_whole_stl(r->bytes, r->byte_count)) return scree_read_stl_binary(r);
   if (!looks_like_text(r->bytes, r->byte_count)) return read_binary_or_fail(r);
   start = text;
   scree_token word = scree_text_next(&start);
@@ -304,12 +304,38 @@ scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *
   return SCREE_OK;
 }
 
+/* The common kind of scan. */
+static scree_status read_stream(const char *path, const scree_read_options *options,
+                                scree_scan *scan, bool *done, scree_error *error) {
+  scree_stream stream;
+  scree_status status = SCREE_OK;
+  *done = false;
+  if (!scree_stream_open(path, &stream)) return SCREE_OK;
+  if (!options->max_bytes || stream.byte_count <= options->max_bytes) {
+    scree_scan made = {.byte_count = stream.byte_count};
+    scree_reading r = {path, NULL, stream.byte_count, options, options->unit_m, &made, error};
+    status = scree_read_stl_stream(&r, &stream, done);
+    made.checksum = scree_stream_checksum(&stream);
+    if (*done)
+      *scan = made;
+    else
+      scree_scan_free(&made);
+  }
+  scree_stream_close(&stream);
+  return status;
+}
+
 scree_status scree_scan_read(const char *path, const scree_read_options *options, scree_scan *scan,
                              scree_error *error) {
+  scree_read_options used = options ? *options : scree_default_read_options();
   char *bytes;
   size_t byte_count;
-  scree_status status =
-      scree_file_read(path, options ? options->max_bytes : 0, &bytes, &byte_count, error);
+  bool done = false;
+  scree_status status = check_options(&used, error);
+  if (status == SCREE_OK && strcmp(path, "-") != 0)
+    status = read_stream(path, &used, scan, &done, error);
+  if (status != SCREE_OK || done) return status;
+  status = scree_file_read(path, used.max_bytes, &bytes, &byte_count, error);
   if (status != SCREE_OK) return status;
   const char *name = strcmp(path, "-") != 0 ? path : "standard input";
   status = scree_scan_parse(bytes, byte_count, name, options, scan, error);

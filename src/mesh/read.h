@@ -2,7 +2,7 @@
 #ifndef SCREE_MESH_READ_H
 #define SCREE_MESH_READ_H
 
-#include "base/alloc.h"
+#include "base/file.h"
 #include "mesh/import.h"
 #include "mesh/polygon.h"
 #include "mesh/text.h"
@@ -21,14 +21,23 @@ typedef struct scree_reading {
 /* The file as text, behind a byte order mark. */
 scree_text scree_reading_text(const scree_reading *r);
 
+enum { SCREE_STL_HEADER = 84, SCREE_STL_FACET = 50 };
+
 /* The readers. Each fills scan->mesh, format and counts. */
 scree_status scree_read_stl_binary(scree_reading *r);
+/* A binary STL whose length is what its count says, welded as it is read: then *done, and r->bytes
+ * are not needed. Where anything is wrong with the file it is not done, and no error, for
+ * scree_read_stl_binary has the sentences. */
+scree_status scree_read_stl_stream(scree_reading *r, scree_stream *stream, bool *done);
 scree_status scree_read_stl_ascii(scree_reading *r);
 scree_status scree_read_ply(scree_reading *r);
 scree_status scree_read_obj(scree_reading *r);
 scree_status scree_read_off(scree_reading *r);
 /* Formats read through assimp; a build without it answers SCREE_UNSUPPORTED. */
 scree_status scree_read_import(scree_reading *r, scree_import_format format);
+/* Whether a file of byte_count bytes that begins so (at least SCREE_STL_HEADER of them, or all) is
+ * a binary STL as long as its count says. */
+bool scree_is_whole_stl(const unsigned char *bytes, size_t byte_count);
 /* Whether the word begins an OFF file, also of a kind that is refused. */
 bool scree_is_off_word(scree_token word);
 

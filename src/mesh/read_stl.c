@@ -15,7 +15,12 @@
 #include <math.h>
 #include <string.h>
 
-enum { HEADER_BYTES = 84, FACET_BYTES = 50, NORMAL_BYTES = 12 };
+enum {
+  HEADER_BYTES = SCREE_STL_HEADER,
+  FACET_BYTES = SCREE_STL_FACET,
+  NORMAL_BYTES = 12,
+  PIECE_FACETS = 4096 /* of a stream */
+};
 
 static uint32_t load_u32(const unsigned char *p) {
   return (uint32_t)p[0] | (uint32_t)p[1] << 8 | (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24;
@@ -35,12 +40,16 @@ typedef struct binary_facets {
   double unit_m;
 } binary_facets;
 
+static void unpack(const unsigned char *facet, size_t count, double unit_m, double *out) {
+  const unsigned char *p = facet + NORMAL_BYTES;
+  for (size_t f = 0; f < count; f++, p += FACET_BYTES)
+    for (size_t i = 0; i < 9; i++) *out++ = (double)load_float(p + 4 * i) * unit_m;
+}
+
 /* Corners come in whole facets. */
 static void fetch_binary(const void *context, size_t first, size_t count, double *out) {
   const binary_facets *facets = context;
-  const unsigned char *p = facets->first + first / 3 * FACET_BYTES + NORMAL_BYTES;
-  for (size_t f = 0; f < count / 3; f++, p += FACET_BYTES)
-    for (size_t i = 0; i < 9; i++) *out++ = (double)load_float(p + 4 * i) * facets->unit_m;
+  unpack(facets->first + first / 3 * FACET_BYTES, count / 3, facets->unit_m, out);
 }
 
 static scree_status fail_bad_corner(const scree_reading *r, size_t corner) {
@@ -55,9 +64,14 @@ static scree_status fail_bad_corner(const scree_reading *r, size_t corner) {
                             (double)load_float(p + 8), SCREE_COORDINATE_LIMIT);
 }
 
+static void describe_binary(scree_scan *scan, size_t facet_count) {
+  snprintf(scan->format, sizeof scan->format, "STL binary");
+  scan->facet_count = facet_count;
+  scan->solid_count = 1;
+}
+
 scree_status scree_read_stl_binary(scree_reading *r) {
   scree_scan *scan = r->scan;
-  snprintf(scan->format, sizeof scan->format, "STL binary");
   size_t count = load_u32(r->bytes + 80), room = (r->byte_count - HEADER_BYTES) / FACET_BYTES;
   if (count != room)
     return scree_reading_fail(
@@ -68,8 +82,7 @@ scree_status scree_read_stl_binary(scree_reading *r) {
         r->byte_count, room);
   if (count == 0)
     return scree_reading_fail(r, SCREE_BAD_FILE, "binary STL with no facets: bytes 80 to 83 say 0");
-  scan->facet_count = count;
-  scan->solid_count = 1;
+  describe_binary(scan, count);
   scan->ignored_byte_count = r->byte_count - HEADER_BYTES - count * FACET_BYTES;
   binary_facets facets = {r->bytes + HEADER_BYTES, r->options->unit_m};
   scree_corner_source source = {fetch_binary, &facets, 3 * count, NULL, count};
@@ -77,6 +90,71 @@ scree_status scree_read_stl_binary(scree_reading *r) {
   scree_status status = scree_weld_corners(&source, r->options->weld_tolerance, &scan->mesh,
                                            &scan->degenerate_count, &bad_corner, r->error);
   return bad_corner != SIZE_MAX ? fail_bad_corner(r, bad_corner) : status;
+}
+
+/* ---- binary, in pieces ---- */
+
+typedef struct piece {
+  scree_stream *stream;
+  unsigned char *bytes; /* of PIECE_FACETS, from facet `begin` to `end` */
+  size_t begin, end, facet_count;
+  double unit_m;
+  bool failed;
+} piece;
+
+/* The piece that begins with the facet after the last. */
+static bool next_piece(piece *p) {
+  size_t left = p->facet_count - p->end, count = left < PIECE_FACETS ? left : PIECE_FACETS;
+  p->failed = p->failed || !scree_stream_read(p->stream, p->bytes, count * FACET_BYTES);
+  p->begin = p->end;
+  p->end += count;
+  return !p->failed;
+}
+
+/* Welding asks for corners once, from the first to the last. */
+static void fetch_piece(const void *context, size_t first, size_t count, double *out) {
+  piece *p = *(piece *const *)context;
+  for (size_t facet = first / 3, end = facet + count / 3; facet < end;) {
+    if (facet == p->end && !next_piece(p)) memset(p->bytes, 0, PIECE_FACETS * FACET_BYTES);
+    size_t some = (end < p->end ? end : p->end) - facet;
+    unpack(p->bytes + (facet - p->begin) * FACET_BYTES, some, p->unit_m, out);
+    out += 9 * some;
+    facet += some;
+  }
+}
+
+/* What a file is by its first word goes before what it may be by its length. Also where the word is
+ * not whole. */
+static bool may_begin_as_ply(const scree_reading *r, const unsigned char *header) {
+  scree_reading head = *r;
+  head.bytes = header;
+  head.byte_count = HEADER_BYTES;
+  scree_text text = scree_reading_text(&head);
+  scree_token word = scree_text_next(&text);
+  return scree_token_is(word, "ply") || (word.length > 0 && text.p == text.end);
+}
+
+scree_status scree_read_stl_stream(scree_reading *r, scree_stream *stream, bool *done) {
+  unsigned char header[HEADER_BYTES];
+  scree_scan *scan = r->scan;
+  *done = false;
+  if (r->byte_count <= HEADER_BYTES || !scree_stream_read(stream, header, sizeof header) ||
+      may_begin_as_ply(r, header) || !scree_is_whole_stl(header, r->byte_count))
+    return SCREE_OK;
+  size_t count = load_u32(header + 80), bad_corner = SIZE_MAX;
+  piece p = {.stream = stream, .facet_count = count, .unit_m = r->unit_m}, *context = &p;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(p.bytes, (size_t)PIECE_FACETS * FACET_BYTES, r->error, failed);
+  scree_corner_source source = {fetch_piece, &context, 3 * count, NULL, count};
+  status = scree_weld_corners(&source, r->options->weld_tolerance, &scan->mesh,
+                              &scan->degenerate_count, &bad_corner, r->error);
+  scree_free(p.bytes);
+  if (p.failed || bad_corner != SIZE_MAX) return SCREE_OK;
+  *done = status == SCREE_OK && scan->mesh.triangle_count > 0;
+  describe_binary(scan, count);
+  return status;
+failed:
+  return status;
 }
 
 /* ---- ASCII ---- */

@@ -189,6 +189,86 @@ static void ascii_wrong(void **state) {
   expect_error(SCREE_BAD_FILE, "line 3: expected `solid`, found 'rubbish'");
 }
 
+/* ---- files, which are welded as they are read ---- */
+
+enum { MANY = 5 * 1024 }; /* facets: more than a piece holds */
+
+/* A strip of triangles, at one corner of which something else may stand. */
+static void make_strip(size_t odd, float coordinate) {
+  make_binary("a strip", MANY);
+  file.count = 84;
+  for (size_t f = 0; f < MANY; f++) {
+    unsigned char facet[50] = {0};
+    float x = (float)(f / 2), y = f % 2 ? 1 : 0,
+          corners[9] = {x, 0, 0, x + 1, y, 0, x + (1 - y), 1, 0.01f * x};
+    if (f == odd) corners[4] = coordinate;
+    memcpy(facet + 12, corners, sizeof corners);
+    put(facet, sizeof facet);
+  }
+}
+
+/* From the disk everything is as from memory. */
+static void expect_the_same_from_disk(void) {
+  static const char path[] = "made.stl";
+  scree_scan parsed = {0}, read = {0};
+  scree_error error, read_error;
+  FILE *stream = fopen(path, "wb");
+  assert_true(stream && fwrite(file.bytes, 1, file.count, stream) == file.count);
+  fclose(stream);
+  scree_status status = parse(&parsed, &error);
+  assert_int_equal(scree_scan_read(path, NULL, &read, &read_error), status);
+  remove(path);
+  if (status != SCREE_OK) {
+    assert_string_equal(error.message, read_error.message);
+    assert_null(read.mesh.positions);
+    return;
+  }
+  assert_string_equal(read.format, parsed.format);
+  assert_int_equal(read.facet_count, parsed.facet_count);
+  assert_int_equal(read.solid_count, parsed.solid_count);
+  assert_int_equal(read.degenerate_count, parsed.degenerate_count);
+  assert_int_equal(read.byte_count, parsed.byte_count);
+  assert_int_equal(read.ignored_byte_count, parsed.ignored_byte_count);
+  assert_memory_equal(&read.checksum, &parsed.checksum, sizeof read.checksum);
+  assert_int_equal(read.mesh.vertex_count, parsed.mesh.vertex_count);
+  assert_int_equal(read.mesh.triangle_count, parsed.mesh.triangle_count);
+  assert_memory_equal(read.mesh.positions, parsed.mesh.positions,
+                      3 * parsed.mesh.vertex_count * sizeof(double));
+  assert_memory_equal(read.mesh.triangles, parsed.mesh.triangles,
+                      3 * parsed.mesh.triangle_count * sizeof(uint32_t));
+  scree_scan_free(&parsed);
+  scree_scan_free(&read);
+}
+
+static void from_disk(void **state) {
+  (void)state;
+  make_strip(MANY, 0);
+  expect_the_same_from_disk();
+  put("xyz", 3); /* padding: not as long as the count says */
+  expect_the_same_from_disk();
+  make_strip(MANY - 1, NAN);
+  expect_the_same_from_disk();
+  make_strip(4096, 1e30f);
+  expect_the_same_from_disk();
+  make_strip(MANY, 0);
+  file.count -= 7;
+  expect_the_same_from_disk();
+  make_binary("ply", 4); /* a PLY by its first word, whatever its length */
+  expect_the_same_from_disk();
+  make_binary("\xef\xbb\xbfply\n", 4);
+  expect_the_same_from_disk();
+  make_binary("solid", 4);
+  expect_the_same_from_disk();
+  make_binary("flat", 4);
+  memset(file.bytes + 84, 0, 200);
+  expect_the_same_from_disk();
+  file.count = 84;
+  memset(file.bytes + 80, 0, 4);
+  expect_the_same_from_disk();
+  file.count = 0;
+  expect_the_same_from_disk();
+}
+
 static void no_mesh_at_all(void **state) {
   (void)state;
   file.count = 0;
@@ -214,6 +294,7 @@ int main(void) {
       cmocka_unit_test(binary),      cmocka_unit_test(binary_wrong),
       cmocka_unit_test(ascii),       cmocka_unit_test(ascii_several_solids_and_a_long_name),
       cmocka_unit_test(ascii_wrong), cmocka_unit_test(no_mesh_at_all),
+      cmocka_unit_test(from_disk),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
