@@ -5,7 +5,12 @@
  * of the triangles has gone. */
 #include "simplify/step.h"
 
+#include "base/parallel.h"
+
 #include <string.h>
+
+/* Vertices about a collapse that one thread asks about. */
+enum { ASKED_AT_ONCE = 2 };
 
 /* Cells per mean edge of the grid for exact tests, and when it is built anew:
  * half the triangles gone, or so many entries stale. */
@@ -153,6 +158,27 @@ static bool has_corner(const scree_halfmesh *s, const scree_ring *fan, uint32_t 
   return false;
 }
 
+/* What the witnesses say of each of some vertices. */
+typedef struct asking {
+  scree_step *step;
+  const uint32_t *vertices;
+  scree_pull *pulls; /* n_per_n 0: nothing */
+} asking;
+
+static void ask_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const asking *a = context;
+  const scree_halfmesh *s = &a->step->d->s;
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring fan = {.edge = edges};
+  for (size_t i = begin; i < end; i++) {
+    uint32_t v = a->vertices[i];
+    if ((s->flags[v] & SCREE_VERTEX_LOCKED) || !scree_ring_gather_fan(s, v, &fan) ||
+        !scree_pull_find(&a->step->d->memory, s, &fan, &a->pulls[i]))
+      a->pulls[i].n_per_n = 0;
+  }
+}
+
 /* Of these vertices the two, no neighbours, that gain most by it take over volume from each other.
  */
 static scree_status exchange(scree_step *q, const uint32_t *about, size_t count) {
@@ -161,10 +187,7 @@ static scree_status exchange(scree_step *q, const uint32_t *about, size_t count)
   double most = 0;
   moving m;
   m.count = 2;
-  for (size_t i = 0; i < count; i++)
-    if (!gather_moving(s, about[i], &m, 0) ||
-        !scree_pull_find(&q->d->memory, s, &m.fans[0], &pulls[i]))
-      pulls[i].n_per_n = 0;
+  scree_parallel_for(count, ASKED_AT_ONCE, ask_block, &(asking){q, about, pulls});
   uint32_t first = SCREE_NONE, second = SCREE_NONE;
   for (size_t i = 0; i < count; i++) {
     if (!(pulls[i].n_per_n > 0) || !gather_moving(s, about[i], &m, 0)) continue;
