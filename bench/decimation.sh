@@ -92,5 +92,8 @@ csv=$results/decimation.csv
   for file in "${files[@]}"; do judge_file "$file"; done
 } >"$csv.part"
 mv "$csv.part" "$csv"
-awk -f "$bench_dir/decimation/table.awk" "$csv" >"$results/decimation.md"
+{
+  awk -f "$bench_dir/decimation/table.awk" "$csv"
+  awk -f "$bench_dir/decimation/bars.awk" "$csv"
+} >"$results/decimation.md"
 echo "$csv" "$results/decimation.md"
