@@ -4,9 +4,8 @@
 #define _GNU_SOURCE /* memfd_create, memmem, nftw */
 #include "base/alloc.h"
 #include "base/file.h"
-#include "fuzz/files.h"
+#include "fuzz/folder.h"
 
-#include <ftw.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -15,26 +14,11 @@ typedef enum kind { CHOICE, STUDY, HEAP, POUR, ORIGIN, TEXT, LEVELS, PICTURE, PI
 static const char *const names[KINDS] = {"choice.json",     "study.json",      "result.json",
                                          "drop.json",       "provenance.json", "choice.txt",
                                          "levels/a.levels", "heap.png",        "last.scree"};
-static char folder[64], page[96];
+static char page[96];
 static size_t least_scripts; /* of a page without parts */
 
-static int remove_one(const char *path, const struct stat *info, int type, struct FTW *place) {
-  (void)info, (void)type, (void)place;
-  return remove(path);
-}
-
-static void remove_folder(void) {
-  nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
-}
-
-static const char *in_folder(const char *name) {
-  static char path[128];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
-
 static void put(kind which, const void *bytes, size_t size) {
-  fuzz_write(in_folder(names[which]), bytes, size);
+  fuzz_write(fuzz_in_folder(names[which]), bytes, size);
 }
 
 static size_t occurrences(const char *text, size_t size, const char *word) {
@@ -54,7 +38,7 @@ static char *read_page(size_t *size) {
 }
 
 static scree_status write_page(scree_error *error) {
-  const char *const folders[] = {folder};
+  const char *const folders[] = {fuzz_folder};
   unlink(page);
   return scree_page_write(folders, 1, page, false, error);
 }
@@ -62,10 +46,9 @@ static scree_status write_page(scree_error *error) {
 static void start(void) {
   scree_error error = {0};
   size_t size;
-  fuzz_place(folder, true);
-  atexit(remove_folder);
-  snprintf(page, sizeof page, "%s/page.html", folder);
-  FUZZ_CHECK(mkdir(in_folder("levels"), 0700) == 0);
+  fuzz_make_folder();
+  snprintf(page, sizeof page, "%s/page.html", fuzz_folder);
+  FUZZ_CHECK(mkdir(fuzz_in_folder("levels"), 0700) == 0);
   put(CHOICE, "{}", 2);
   FUZZ_CHECK(write_page(&error) == SCREE_OK);
   char *bytes = read_page(&size);
@@ -95,7 +78,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (!started) start();
   started = true;
   kind which = data[0] % KINDS;
-  for (int i = 0; i < KINDS; i++) unlink(in_folder(names[i]));
+  for (int i = 0; i < KINDS; i++) unlink(fuzz_in_folder(names[i]));
   if (which == ORIGIN || which == TEXT || which == LEVELS) put(CHOICE, "{\"name\": \"a\"}", 13);
   if (which == PICTURE || which == PILE) put(HEAP, "{}", 2);
   put(which, data + 1, size - 1);

@@ -2,11 +2,10 @@
  * lease, the list of its dead holders, the database as bytes, or the database with any values in
  * its tables. Opened, looked at, analysed and reported, or refused in a sentence. */
 #define _GNU_SOURCE /* memfd_create, nftw */
-#include "fuzz/files.h"
+#include "fuzz/folder.h"
 #include "study/database.h"
 #include "study/lease.h"
 
-#include <ftw.h>
 #include <sqlite3.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -15,23 +14,6 @@ typedef enum kind { SHAPE, LEASE, DEATHS, BYTES, VALUES, KINDS } kind;
 
 enum { MOST_ROWS = 40 };
 
-static char folder[64];
-
-static int remove_one(const char *path, const struct stat *info, int type, struct FTW *place) {
-  (void)info, (void)type, (void)place;
-  return remove(path);
-}
-
-static void remove_folder(void) {
-  nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
-}
-
-static const char *in_folder(const char *name) {
-  static char path[128];
-  snprintf(path, sizeof path, "%s/%s", folder, name);
-  return path;
-}
-
 static const char plan[] = "name: fuzz\nreplicates: 2\nbase: {preset: demo}\nunit: m\n"
                            "shapes: [sample:box, a.stl]\nfactors: {rp: [spheres, 0.1, 0.2, 1]}\n";
 static const char box[] = "source: 'sample:box'\nchecksum: '0123456789abcdef0123456789abcdef'\n"
@@ -39,11 +21,10 @@ static const char box[] = "source: 'sample:box'\nchecksum: '0123456789abcdef0123
 
 static void start(void) {
   static const char *const kinds[] = {"shapes", "leases", "runs", "results"};
-  fuzz_place(folder, true);
-  atexit(remove_folder);
-  for (int i = 0; i < 4; i++) FUZZ_CHECK(mkdir(in_folder(kinds[i]), 0700) == 0);
-  fuzz_write(in_folder("study.yaml"), plan, sizeof plan - 1);
-  fuzz_write(in_folder("shapes/box.yaml"), box, sizeof box - 1);
+  fuzz_make_folder();
+  for (int i = 0; i < 4; i++) FUZZ_CHECK(mkdir(fuzz_in_folder(kinds[i]), 0700) == 0);
+  fuzz_write(fuzz_in_folder("study.yaml"), plan, sizeof plan - 1);
+  fuzz_write(fuzz_in_folder("shapes/box.yaml"), box, sizeof box - 1);
 }
 
 /* ---- any values in the tables ---- */
@@ -105,8 +86,8 @@ static void fill_tables(const scree_study *study, const uint8_t *data, size_t si
 static void put_file(kind which, const uint8_t *data, size_t size) {
   static const char *const names[] = {"shapes/a.yaml", "leases/run", "leases/run.deaths",
                                       "study.sqlite"};
-  for (int i = 0; i < 4; i++) unlink(in_folder(names[i]));
-  if (which < VALUES) fuzz_write(in_folder(names[which]), data, size);
+  for (int i = 0; i < 4; i++) unlink(fuzz_in_folder(names[i]));
+  if (which < VALUES) fuzz_write(fuzz_in_folder(names[which]), data, size);
 }
 
 static void check_sentence(scree_status status, const scree_error *error) {
@@ -120,7 +101,7 @@ static void look_at_leases(void) {
   scree_error error = {0};
   char last[SCREE_LEASE_NAME], path[128];
   bool taken;
-  snprintf(path, sizeof path, "%s/leases", folder);
+  snprintf(path, sizeof path, "%s/leases", fuzz_folder);
   FUZZ_CHECK(scree_lease_look(path, "run", 1e6, &view, &error) == SCREE_OK);
   FUZZ_CHECK(strlen(view.worker) < sizeof view.worker && strlen(view.note) < sizeof view.note);
   scree_lease_deaths(path, "run", last);
@@ -153,7 +134,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   started = true;
   kind which = data[0] % KINDS;
   put_file(which, data + 1, size - 1);
-  scree_status status = scree_study_open_folder(folder, &study, &error);
+  scree_status status = scree_study_open_folder(fuzz_folder, &study, &error);
   check_sentence(status, &error);
   FUZZ_CHECK(status == SCREE_OK || which == SHAPE);
   if (status == SCREE_OK) {
