@@ -71,18 +71,23 @@ typedef struct regular_file {
 
 enum { PART_BYTES = 1 << 22 };
 
+/* The file's bytes from begin to end. */
+static part read_range(int fd, char *bytes, size_t begin, size_t end) {
+  part p = {begin, 0};
+  while (p.end < end) {
+    ssize_t got = pread(fd, bytes + (p.end - begin), end - p.end, (off_t)p.end);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) p.reason = errno;
+    if (got <= 0) break;
+    p.end += (size_t)got;
+  }
+  return p;
+}
+
 static void read_part(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)worker;
   const regular_file *file = context;
-  part *p = &file->parts[block];
-  *p = (part){begin, 0};
-  while (p->end < end) {
-    ssize_t got = pread(file->fd, file->buffer + p->end, end - p->end, (off_t)p->end);
-    if (got < 0 && errno == EINTR) continue;
-    if (got < 0) p->reason = errno;
-    if (got <= 0) return;
-    p->end += (size_t)got;
-  }
+  file->parts[block] = read_range(file->fd, file->buffer + begin, begin, end);
 }
 
 /* Reads a regular file of known size into one block; in parts on all threads, for half of the time
@@ -154,13 +159,9 @@ bool scree_stream_open(const char *path, scree_stream *stream) {
 }
 
 bool scree_stream_read(scree_stream *stream, void *bytes, size_t byte_count) {
-  for (size_t done = 0; done < byte_count;) {
-    ssize_t got = read(stream->fd, (char *)bytes + done, byte_count - done);
-    if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return false;
-    done += (size_t)got;
-  }
-  stream->done += byte_count;
+  size_t end = stream->done + byte_count;
+  if (read_range(stream->fd, bytes, stream->done, end).end < end) return false;
+  stream->done = end;
   XXH3_128bits_update(stream->hash, bytes, byte_count);
   return true;
 }

@@ -152,7 +152,6 @@ scree_status scree_read_stl_stream(scree_reading *r, scree_stream *stream, bool 
   if (p.failed || bad_corner != SIZE_MAX) return SCREE_OK;
   *done = status == SCREE_OK && scan->mesh.triangle_count > 0;
   describe_binary(scan, count);
-  return status;
 failed:
   return status;
 }

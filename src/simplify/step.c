@@ -90,9 +90,14 @@ typedef struct moving {
   scree_around around[2];
 } moving;
 
+/* Of a vertex that may move. */
+static bool gather_fan(const scree_halfmesh *s, uint32_t v, scree_ring *fan) {
+  return !(s->flags[v] & SCREE_VERTEX_LOCKED) && scree_ring_gather_fan(s, v, fan);
+}
+
 static bool gather_moving(const scree_halfmesh *s, uint32_t v, moving *m, int which) {
   m->fans[which].edge = m->edges[which];
-  return !(s->flags[v] & SCREE_VERTEX_LOCKED) && scree_ring_gather_fan(s, v, &m->fans[which]);
+  return gather_fan(s, v, &m->fans[which]);
 }
 
 /* Whether the first may move, and the second once the first has. */
@@ -160,7 +165,7 @@ static bool has_corner(const scree_halfmesh *s, const scree_ring *fan, uint32_t 
 
 /* What the witnesses say of each of some vertices. */
 typedef struct asking {
-  scree_step *step;
+  const scree_step *step;
   const uint32_t *vertices;
   scree_pull *pulls; /* n_per_n 0: nothing */
 } asking;
@@ -172,8 +177,7 @@ static void ask_block(void *context, size_t begin, size_t end, size_t block, int
   uint32_t edges[SCREE_RING_MAX];
   scree_ring fan = {.edge = edges};
   for (size_t i = begin; i < end; i++) {
-    uint32_t v = a->vertices[i];
-    if ((s->flags[v] & SCREE_VERTEX_LOCKED) || !scree_ring_gather_fan(s, v, &fan) ||
+    if (!gather_fan(s, a->vertices[i], &fan) ||
         !scree_pull_find(&a->step->d->memory, s, &fan, &a->pulls[i]))
       a->pulls[i].n_per_n = 0;
   }
