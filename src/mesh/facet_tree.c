@@ -25,8 +25,11 @@ enum {
   LOPSIDED = 8,        /* a split leaving less than 1/8 on a side is replaced by the median */
   NO_VERTEX = UINT32_MAX,
   NO_FRAME = UINT32_MAX,
+  NO_CONE = UINT32_MAX,
 };
 
+/* Room for nodes, per facet: scans have .62 to .66. */
+#define NODE_SHARE 0.7
 /* A second box is worth its test where it holds less than this share of the first. */
 #define FRAME_SHARE 0.3
 /* A node's longest edge against its diagonal from which a second box is tried. */
@@ -35,12 +38,16 @@ enum {
 #define MARGIN 1e-12
 
 typedef struct scree_facet_frame {
-  vec3 axis[3];             /* orthonormal */
-  vec3 center;              /* of the slanted box */
-  double half[3];           /* its half sides */
-  uint32_t hub;             /* the vertex that all facets have, or NO_VERTEX */
-  vec3 cone_low, cone_high; /* unit directions from the hub to the opposite edges' ends */
+  vec3 axis[3];   /* orthonormal */
+  vec3 center;    /* of the slanted box */
+  double half[3]; /* its half sides */
+  uint32_t cone;  /* or NO_CONE */
 } scree_facet_frame;
+
+typedef struct scree_facet_cone {
+  uint32_t hub;   /* the vertex that all facets have */
+  vec3 low, high; /* unit directions from it to the opposite edges' ends */
+} scree_facet_cone;
 
 /* ---- Building ---- */
 
@@ -206,17 +213,18 @@ static uint32_t common_vertex(const scree_facet_tree *t, const scree_facet_node 
   return NO_VERTEX;
 }
 
-static void frame_cone(const scree_facet_tree *t, const scree_facet_node *n, scree_facet_frame *f) {
-  vec3 hub = vec3_load(t->mesh->positions + 3 * (size_t)f->hub);
-  f->cone_low = (vec3){2, 2, 2};
-  f->cone_high = (vec3){-2, -2, -2};
+static scree_facet_cone cone_of(const scree_facet_tree *t, const scree_facet_node *n,
+                                uint32_t hub) {
+  vec3 at = vec3_load(t->mesh->positions + 3 * (size_t)hub);
+  scree_facet_cone c = {hub, {2, 2, 2}, {-2, -2, -2}};
   for (uint32_t i = n->begin; i < n->begin + n->count; i++)
     for (int k = 0; k < 3; k++) {
-      if (t->mesh->triangles[3 * (size_t)t->order[i] + (size_t)k] == f->hub) continue;
-      vec3 d = vec3_unit(vec3_sub(load(t, t->order[i], k), hub));
-      f->cone_low = vec3_min(f->cone_low, d);
-      f->cone_high = vec3_max(f->cone_high, d);
+      if (t->mesh->triangles[3 * (size_t)t->order[i] + (size_t)k] == hub) continue;
+      vec3 d = vec3_unit(vec3_sub(load(t, t->order[i], k), at));
+      c.low = vec3_min(c.low, d);
+      c.high = vec3_max(c.high, d);
     }
+  return c;
 }
 
 /* Gives the node a second box where that is much the smaller one, or a cone. */
@@ -224,19 +232,22 @@ static bool add_frame(scree_facet_tree *t, scree_facet_node *n) {
   double volume = 1, diagonal2 = 0;
   uint32_t facet = t->order[n->begin];
   vec3 edge = {0, 0, 0};
-  scree_facet_frame f;
+  scree_facet_frame f = {.cone = NO_CONE};
   for (int k = 0; k < 3; k++) {
     double side = n->bounds.high[k] - n->bounds.low[k];
     volume *= side;
     diagonal2 += side * side;
   }
   if (longest_edge(t, n, &facet, &edge) < FRAME_LENGTH * sqrt(diagonal2)) return true;
-  f.hub = n->count > 1 ? common_vertex(t, n) : NO_VERTEX;
-  bool useful = f.hub != NO_VERTEX && n->count > SCREE_LEAF_FACETS / 2;
+  uint32_t hub = n->count > 1 ? common_vertex(t, n) : NO_VERTEX;
+  bool useful = hub != NO_VERTEX && n->count > SCREE_LEAF_FACETS / 2;
   if (!frame_axes(t, facet, edge, &f)) return true;
   if (frame_box(t, n, &f) < FRAME_SHARE * volume) useful = true;
   if (!useful) return true;
-  if (f.hub != NO_VERTEX) frame_cone(t, n, &f);
+  if (hub != NO_VERTEX) {
+    f.cone = (uint32_t)t->cones.count;
+    if (!SCREE_PUSH(&t->cones, cone_of(t, n, hub))) return false;
+  }
   n->frame = (uint32_t)t->frames.count;
   return SCREE_PUSH(&t->frames, f);
 }
@@ -253,16 +264,16 @@ static bool frames_apart_along(const scree_facet_frame *a, const scree_facet_fra
 }
 
 /* The least value of d . x for x in the cone's box of directions. */
-static double cone_least(const scree_facet_frame *f, vec3 d) {
-  return d.x * (d.x > 0 ? f->cone_low.x : f->cone_high.x) +
-         d.y * (d.y > 0 ? f->cone_low.y : f->cone_high.y) +
-         d.z * (d.z > 0 ? f->cone_low.z : f->cone_high.z);
+static double cone_least(const scree_facet_cone *c, vec3 d) {
+  return d.x * (d.x > 0 ? c->low.x : c->high.x) + d.y * (d.y > 0 ? c->low.y : c->high.y) +
+         d.z * (d.z > 0 ? c->low.z : c->high.z);
 }
 
-/* A plane through the common hub with the cones strictly on either side. */
-static bool cones_apart(const scree_facet_frame *a, const scree_facet_frame *b) {
-  vec3 middle_a = vec3_unit(vec3_add(a->cone_low, a->cone_high));
-  vec3 middle_b = vec3_unit(vec3_add(b->cone_low, b->cone_high));
+/* A plane through a common hub with the cones strictly on either side. */
+static bool cones_apart(const scree_facet_cone *a, const scree_facet_cone *b) {
+  if (a->hub != b->hub) return false;
+  vec3 middle_a = vec3_unit(vec3_add(a->low, a->high));
+  vec3 middle_b = vec3_unit(vec3_add(b->low, b->high));
   vec3 d = vec3_sub(middle_a, middle_b);
   return cone_least(a, d) > 1e-9 && cone_least(b, vec3_neg(d)) > 1e-9;
 }
@@ -273,7 +284,8 @@ bool scree_facet_nodes_apart(const scree_facet_tree *t, const scree_facet_node *
   if (a->frame == NO_FRAME || b->frame == NO_FRAME) return false;
   const scree_facet_frame *f = &t->frames.items[a->frame], *g = &t->frames.items[b->frame];
   if (frames_apart_along(f, g) || frames_apart_along(g, f)) return true;
-  return f->hub != NO_VERTEX && f->hub == g->hub && cones_apart(f, g);
+  return f->cone != NO_CONE && g->cone != NO_CONE &&
+         cones_apart(&t->cones.items[f->cone], &t->cones.items[g->cone]);
 }
 
 static void leaf_bounds(const scree_facet_tree *t, scree_facet_node *n) {
@@ -321,7 +333,11 @@ scree_status scree_facet_tree_build(const scree_mesh *mesh, scree_facet_tree *ou
   SCREE_ALLOC_OR(t.order, mesh->triangle_count, error, out_of_memory);
   SCREE_ALLOC_OR(t.middle, mesh->triangle_count, error, out_of_memory);
   scree_parallel_for(mesh->triangle_count, 1 << 14, middle_block, &t);
-  if (!build(&t, 0, (uint32_t)mesh->triangle_count)) {
+  bool built = SCREE_RESERVE(&t.nodes, (size_t)(NODE_SHARE * (double)mesh->triangle_count) + 1) &&
+               build(&t, 0, (uint32_t)mesh->triangle_count);
+  scree_free(t.middle);
+  t.middle = NULL;
+  if (!built) {
     scree_fail_memory(error, t.nodes.count * sizeof(scree_facet_node), "the tree of facets");
     goto out_of_memory;
   }
@@ -337,5 +353,6 @@ void scree_facet_tree_free(scree_facet_tree *tree) {
   scree_free(tree->middle);
   scree_free(tree->nodes.items);
   scree_free(tree->frames.items);
+  scree_free(tree->cones.items);
   *tree = (scree_facet_tree){0};
 }

@@ -22,7 +22,7 @@ typedef struct scree_facet_node {
 typedef struct scree_facet_tree {
   const scree_mesh *mesh; /* borrowed */
   uint32_t *order;        /* facets, so that each node has a run of them */
-  vec3 *middle;           /* internal: of each facet's box, by facet */
+  vec3 *middle;           /* while building: of each facet's box, by facet */
   struct {
     scree_facet_node *items; /* the root is items[0] */
     size_t count, capacity;
@@ -31,6 +31,10 @@ typedef struct scree_facet_tree {
     struct scree_facet_frame *items;
     size_t count, capacity;
   } frames;
+  struct {
+    struct scree_facet_cone *items;
+    size_t count, capacity;
+  } cones;
 } scree_facet_tree;
 
 /* Builds the tree of a verified mesh with at least one facet, in O(N log N): 0.3 us per facet of
