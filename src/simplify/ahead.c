@@ -33,26 +33,6 @@ done:
   return status;
 }
 
-static scree_status trial_begin(scree_trial *t, const scree_decimator *d) {
-  const scree_halfmesh *s = &d->s;
-  scree_moves *moves = &t->d.record.moves;
-  SCREE_ALLOC_OR(t->d.s.half, 3 * s->triangle_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.s.vertex, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.s.flags, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.memory.first, s->triangle_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.memory.near, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.memory.witnesses, d->memory.count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.anchors.vertex, d->anchors.count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->step.stamp, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->step.touched, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->moved, s->vertex_count, d->error, out_of_memory);
-  if (!SCREE_RESERVE(moves, SCREE_MOST_ABOUT + 2))
-    return scree_fail_memory(d->error, (SCREE_MOST_ABOUT + 2) * sizeof *moves->items, "moves");
-  return scree_record_allocate(&t->d.record, 1, d->error);
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
-}
-
 /* Finds the distances of what has an end at these vertices, or of all. */
 static void find_distances(scree_ahead *a, const scree_decimator *d, const bool *moved) {
   const scree_halfmesh *s = &d->s;
@@ -74,8 +54,10 @@ scree_status scree_ahead_begin(scree_ahead *a, const scree_decimator *d) {
   scree_status status = SCREE_OK;
   *a = (scree_ahead){.from = NULL};
   for (int i = 0; i < SCREE_TRIAL_COUNT && status == SCREE_OK; i++)
-    status = trial_begin(&a->trials[i], d);
+    status = scree_trial_allocate(&a->outcomes[i].trial, d);
   if (status != SCREE_OK) return status;
+  for (int i = 0; i < SCREE_TRIAL_COUNT; i++)
+    SCREE_ALLOC_OR(a->outcomes[i].moved, d->s.vertex_count, d->error, out_of_memory);
   SCREE_ALLOC_OR(a->of_vertex2, d->s.vertex_count, d->error, out_of_memory);
   SCREE_ALLOC_OR(a->of_edge2, 3 * d->s.triangle_count, d->error, out_of_memory);
   find_all_distances(a, d);
@@ -86,82 +68,29 @@ out_of_memory:
 
 void scree_ahead_free(scree_ahead *a) {
   for (int i = 0; i < SCREE_TRIAL_COUNT; i++) {
-    scree_trial *t = &a->trials[i];
-    scree_free(t->d.s.half);
-    scree_free(t->d.s.vertex);
-    scree_free(t->d.s.flags);
-    scree_free(t->d.memory.first);
-    scree_free(t->d.memory.near);
-    scree_free(t->d.memory.witnesses);
-    scree_free(t->d.anchors.vertex);
-    scree_free(t->step.stamp);
-    scree_free(t->step.touched);
-    scree_free(t->moved);
-    scree_record_free(&t->d.record);
+    scree_trial_free(&a->outcomes[i].trial);
+    scree_free(a->outcomes[i].moved);
   }
   scree_free(a->of_vertex2);
   scree_free(a->of_edge2);
 }
 
-/* All of the surface that a step changes. */
-static void copy_surface(scree_decimator *to, const scree_decimator *from) {
-  scree_halfmesh own = to->s;
-  size_t triangles = from->s.triangle_count, vertices = from->s.vertex_count;
-  to->s = from->s;
-  to->s.half = own.half;
-  to->s.vertex = own.vertex;
-  to->s.flags = own.flags;
-  memcpy(to->s.half, from->s.half, 3 * triangles * sizeof *to->s.half);
-  memcpy(to->s.vertex, from->s.vertex, vertices * sizeof *to->s.vertex);
-  memcpy(to->s.flags, from->s.flags, vertices * sizeof *to->s.flags);
-  scree_memory held = to->memory;
-  to->memory = from->memory;
-  to->memory.first = held.first;
-  to->memory.near = held.near;
-  to->memory.witnesses = held.witnesses;
-  memcpy(held.first, from->memory.first, triangles * sizeof *held.first);
-  memcpy(held.near, from->memory.near, vertices * sizeof *held.near);
-  memcpy(held.witnesses, from->memory.witnesses, from->memory.count * sizeof *held.witnesses);
-  to->anchors.count = from->anchors.count;
-  if (from->anchors.count > 0)
-    memcpy(to->anchors.vertex, from->anchors.vertex,
-           from->anchors.count * sizeof *to->anchors.vertex);
-}
-
-static void start(scree_trial *t, const scree_step *from) {
-  const scree_decimator *d = from->d;
-  copy_surface(&t->d, d);
-  t->d.mesh = d->mesh;
-  t->d.coster = d->coster;
-  t->d.options = d->options;
-  t->d.error_limit = d->error_limit;
-  t->d.first_triangle_count = d->first_triangle_count;
-  t->d.grid = d->grid;
-  t->d.record.count = t->d.record.moves.count = 0;
-  t->step.d = &t->d;
-  t->step.now = 0;
-  t->step.relaxed_below = from->relaxed_below;
-  t->step.farthest2 = from->farthest2;
-  t->step.farthest_at = from->farthest_at;
-  memset(t->step.stamp, 0, d->s.vertex_count * sizeof *t->step.stamp);
-}
-
-static double score(double mean, double farthest) {
+double scree_level_score(double mean, double farthest) {
   return fmax(mean, SCREE_SAME_DISTANCE) * cbrt(fmax(farthest, SCREE_SAME_DISTANCE));
 }
 
 /* The largest squared distance of a place of the trial's level. */
-static double farthest2_of(const scree_ahead *a, const scree_trial *t) {
-  const scree_halfmesh *s = &t->d.s;
-  const scree_memory *m = &t->d.memory;
+static double farthest2_of(const scree_ahead *a, const scree_outcome *o) {
+  const scree_halfmesh *s = &o->trial.d.s;
+  const scree_memory *m = &o->trial.d.memory;
   double worst2 = scree_memory_witness_stray(m, s);
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE)
       worst2 =
-          t->moved[v] ? scree_memory_vertex_stray(m, s, v, worst2) : fmax(worst2, a->of_vertex2[v]);
+          o->moved[v] ? scree_memory_vertex_stray(m, s, v, worst2) : fmax(worst2, a->of_vertex2[v]);
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
     if (s->half[h].from == SCREE_NONE || h > s->half[h].twin) continue;
-    worst2 = t->moved[s->half[h].from] || t->moved[scree_to(s, h)]
+    worst2 = o->moved[s->half[h].from] || o->moved[scree_to(s, h)]
                  ? scree_memory_edge_stray(m, s, h, worst2)
                  : fmax(worst2, a->of_edge2[h]);
   }
@@ -172,17 +101,18 @@ static void try_block(void *context, size_t begin, size_t end, size_t block, int
   (void)block, (void)worker;
   scree_ahead *a = context;
   for (size_t i = begin; i < end; i++) {
-    scree_trial *t = &a->trials[i];
-    const scree_offer *offer = &a->offers[t->offer];
+    scree_outcome *o = &a->outcomes[i];
+    scree_trial *t = &o->trial;
+    const scree_offer *offer = &a->offers[o->offer];
     const scree_vertex *before = a->from->d->s.vertex, *after = t->d.s.vertex;
-    start(t, a->from);
-    t->status =
+    scree_trial_start(t, a->from);
+    o->status =
         scree_step_collapse(&t->step, &offer->ring, &offer->change, &offer->around, offer->error);
     for (size_t v = 0; v < t->d.s.vertex_count; v++)
-      t->moved[v] = vec3_norm2(vec3_sub(after[v].at, before[v].at)) > 0;
-    t->moved[offer->ring.a] = true;
-    t->farthest2 = farthest2_of(a, t);
-    t->score = score(scree_memory_mean(&t->d.memory), sqrt(t->farthest2));
+      o->moved[v] = vec3_norm2(vec3_sub(after[v].at, before[v].at)) > 0;
+    o->moved[offer->ring.a] = true;
+    o->farthest2 = farthest2_of(a, o);
+    o->score = scree_level_score(scree_memory_mean(&t->d.memory), sqrt(o->farthest2));
   }
 }
 
@@ -194,7 +124,7 @@ static void judge_block(void *context, size_t begin, size_t end, size_t block, i
     const scree_offer *offer = &a->offers[i];
     double worst2, growth = scree_memory_growth(&d->memory, &d->s, &offer->ring,
                                                 offer->change.target, a->from->farthest2, &worst2);
-    a->scores[i] = score(a->mean + growth / (double)d->memory.left, sqrt(worst2));
+    a->scores[i] = scree_level_score(a->mean + growth / (double)d->memory.left, sqrt(worst2));
   }
 }
 
@@ -215,7 +145,7 @@ static size_t choose(scree_ahead *a, size_t count) {
     chosen[best] = true;
   }
   for (size_t i = 0; i < count; i++)
-    if (chosen[i]) a->trials[tried++].offer = i;
+    if (chosen[i]) a->outcomes[tried++].offer = i;
   return tried;
 }
 
@@ -225,9 +155,9 @@ size_t scree_ahead_find(scree_ahead *a, scree_step *step, const scree_offer *off
   scree_step_find_farthest(step);
   size_t tried = choose(a, count);
   scree_parallel_for(tried, 1, try_block, a);
-  a->best = &a->trials[0];
+  a->best = &a->outcomes[0];
   for (size_t i = 1; i < tried; i++)
-    if (a->trials[i].score < (1 - SAME_SCORE) * a->best->score) a->best = &a->trials[i];
+    if (a->outcomes[i].score < (1 - SAME_SCORE) * a->best->score) a->best = &a->outcomes[i];
   return a->best->offer;
 }
 
@@ -251,9 +181,10 @@ static scree_status take_record(scree_decimator *d, const scree_record *from) {
 }
 
 scree_status scree_ahead_take(scree_ahead *a, scree_step *step) {
-  const scree_trial *t = a->best;
-  if (t->status != SCREE_OK) return t->status;
-  copy_surface(step->d, &t->d);
+  const scree_outcome *o = a->best;
+  const scree_trial *t = &o->trial;
+  if (o->status != SCREE_OK) return o->status;
+  scree_trial_take(t, step);
   step->farthest2 = t->step.farthest2;
   step->farthest_at = t->step.farthest_at;
   step->now++;
@@ -262,8 +193,8 @@ scree_status scree_ahead_take(scree_ahead *a, scree_step *step) {
     step->touched[i] = t->step.touched[i];
     step->stamp[step->touched[i]] = step->now;
   }
-  if (t->farthest2 > TOO_NEAR * a->least2 && t->farthest2 < TOO_FAR * a->least2)
-    find_distances(a, step->d, t->moved);
+  if (o->farthest2 > TOO_NEAR * a->least2 && o->farthest2 < TOO_FAR * a->least2)
+    find_distances(a, step->d, o->moved);
   else
     find_all_distances(a, step->d);
   return take_record(step->d, &t->d.record);

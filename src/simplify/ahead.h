@@ -4,7 +4,7 @@
 #ifndef SCREE_SIMPLIFY_AHEAD_H
 #define SCREE_SIMPLIFY_AHEAD_H
 
-#include "simplify/step.h"
+#include "simplify/trial.h"
 
 /* From how many triangles on, later with large scans; how many collapses are looked at (of large
  * scans no more than are tried, for it takes time), and how many of them are tried. */
@@ -15,6 +15,10 @@ enum {
   SCREE_TRIAL_COUNT = 4
 };
 
+/* How good a level is by the mean distance of its witnesses and the distance of its farthest place:
+ * the less, the better. */
+double scree_level_score(double mean, double farthest);
+
 /* A collapse that is allowed now. It must stay where it is in memory. */
 typedef struct scree_offer {
   uint32_t edges[SCREE_RING_MAX];
@@ -24,20 +28,18 @@ typedef struct scree_offer {
   double error;
 } scree_offer;
 
-/* The surface with one of the collapses done: a decimator of its own, which has of the other one
- * what does not change. */
-typedef struct scree_trial {
-  scree_decimator d;
-  scree_step step;
+/* One of the collapses done on a copy. */
+typedef struct scree_outcome {
+  scree_trial trial;
   bool *moved; /* per vertex: it lies elsewhere than before, or is the survivor */
   double farthest2, score;
   scree_status status;
   size_t offer; /* which */
-} scree_trial;
+} scree_outcome;
 
 typedef struct scree_ahead {
-  scree_trial trials[SCREE_TRIAL_COUNT];
-  const scree_trial *best;
+  scree_outcome outcomes[SCREE_TRIAL_COUNT];
+  const scree_outcome *best;
   const scree_step *from;
   const scree_offer *offers;
   double mean, scores[SCREE_OFFER_COUNT]; /* of the witnesses now; of the offers without moves */

@@ -41,6 +41,7 @@ typedef struct scree_decimator {
   scree_record record;
   size_t first_triangle_count;
   size_t single_from; /* triangles: where the batches end and single collapses begin */
+  bool unsettled; /* levels are left as their collapses make them: a slow oracle can follow that */
   scree_grid grid;
   scree_memory memory; /* of surfaces that the batches came to; nothing before */
   scree_anchors anchors;

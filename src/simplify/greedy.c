@@ -32,9 +32,10 @@
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
  * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
  * began with: within half of sqrt(area / triangles), the size of the level's triangles. */
-#include "simplify/ahead.h"
+#include "simplify/settle.h"
 
 #include "base/parallel.h"
+#include "simplify/ahead.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -465,7 +466,7 @@ static scree_status collapse_best(queue *q, scree_ahead *ahead) {
 }
 
 /* Down to so many triangles, or the floor. */
-static scree_status run(queue *q, size_t until, scree_ahead *ahead) {
+static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settling *settling) {
   scree_decimator *d = q->d;
   scree_status status = SCREE_OK;
   size_t entered_at = d->record.count;
@@ -478,7 +479,10 @@ static scree_status run(queue *q, size_t until, scree_ahead *ahead) {
       if (q->heap_count == 0) break;
     }
     if (q->since_tick++ % 1024 == 0 && !scree_decimate_tick(d)) return SCREE_CANCELLED;
+    size_t before = d->record.count;
     status = ahead ? collapse_best(q, ahead) : collapse_cheapest(q);
+    if (settling && status == SCREE_OK && d->record.count > before)
+      status = scree_settle_level(settling, &q->step);
   }
   return status;
 }
@@ -497,12 +501,17 @@ static scree_status begin(scree_decimator *d, queue *q) {
 static scree_status end_with_care(scree_decimator *d) {
   queue q;
   scree_ahead ahead = {.from = NULL};
+  scree_settling settling = {.count = 0};
   scree_status status = scree_ahead_prepare(d);
   if (status != SCREE_OK) return status;
   status = begin(d, &q);
   if (status == SCREE_OK) status = scree_grid_look_at_all(&d->grid, d->error);
   if (status == SCREE_OK) status = scree_ahead_begin(&ahead, d);
-  if (status == SCREE_OK) status = run(&q, d->options.stop_count, &ahead);
+  if (status == SCREE_OK && !d->unsettled) status = scree_settle_begin(&settling, d);
+  if (status == SCREE_OK)
+    status = run(&q, d->options.stop_count, &ahead, d->unsettled ? NULL : &settling);
+  if (status == SCREE_OK && !d->unsettled) status = scree_settle_end(&settling, d);
+  scree_settle_free(&settling);
   scree_ahead_free(&ahead);
   queue_free(&q);
   return status;
@@ -516,7 +525,7 @@ scree_status scree_decimate_one_by_one(scree_decimator *d) {
   if (until < ahead) until = ahead;
   if (d->s.live_triangle_count > until) {
     status = begin(d, &q);
-    if (status == SCREE_OK) status = run(&q, until, NULL);
+    if (status == SCREE_OK) status = run(&q, until, NULL, NULL);
     queue_free(&q);
   }
   if (status == SCREE_OK && d->s.live_triangle_count <= ahead) status = end_with_care(d);

@@ -90,14 +90,13 @@ typedef struct moving {
   scree_around around[2];
 } moving;
 
-/* Of a vertex that may move. */
-static bool gather_fan(const scree_halfmesh *s, uint32_t v, scree_ring *fan) {
+bool scree_step_gather(const scree_halfmesh *s, uint32_t v, scree_ring *fan) {
   return !(s->flags[v] & SCREE_VERTEX_LOCKED) && scree_ring_gather_fan(s, v, fan);
 }
 
 static bool gather_moving(const scree_halfmesh *s, uint32_t v, moving *m, int which) {
   m->fans[which].edge = m->edges[which];
-  return gather_fan(s, v, &m->fans[which]);
+  return scree_step_gather(s, v, &m->fans[which]);
 }
 
 /* Whether the first may move, and the second once the first has. */
@@ -114,9 +113,8 @@ static bool all_allowed(scree_step *q, moving *m, scree_status *status) {
   return answer;
 }
 
-/* Moves the fan's vertex to change->target. */
-static scree_status move(scree_step *q, const scree_ring *fan, const scree_change *change,
-                         const scree_around *geometry) {
+scree_status scree_step_move(scree_step *q, const scree_ring *fan, const scree_change *change,
+                             const scree_around *geometry) {
   scree_decimator *d = q->d;
   scree_status status = scree_record_move(d, fan, change);
   if (status != SCREE_OK) return status;
@@ -140,7 +138,7 @@ static scree_status try_moving(scree_step *q, moving *m) {
         !all_allowed(q, m, &status))
       continue;
     for (int i = 0; i < m->count && status == SCREE_OK; i++)
-      status = move(q, &m->fans[i], &m->changes[i], &m->around[i]);
+      status = scree_step_move(q, &m->fans[i], &m->changes[i], &m->around[i]);
     return status;
   }
   return status;
@@ -177,7 +175,7 @@ static void ask_block(void *context, size_t begin, size_t end, size_t block, int
   uint32_t edges[SCREE_RING_MAX];
   scree_ring fan = {.edge = edges};
   for (size_t i = begin; i < end; i++) {
-    if (!gather_fan(s, a->vertices[i], &fan) ||
+    if (!scree_step_gather(s, a->vertices[i], &fan) ||
         !scree_pull_find(&a->step->d->memory, s, &fan, &a->pulls[i]))
       a->pulls[i].n_per_n = 0;
   }

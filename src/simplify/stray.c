@@ -213,16 +213,23 @@ static bool walk_within(const scree_memory *m, vec3 x, double most, uint32_t *ne
   return scree_triangle_closest(m->surface.corners + 9 * (size_t)*near, x, &point) <= most;
 }
 
-/* The squared distance of x from the surface kept, if above `least`. *near: a triangle to begin
- * with, then the one found. */
+/* Whether x is farther from the surface kept than `least`, squared; then *hit is where it is
+ * nearest. *near: a triangle to begin with, then the one found. */
+static bool find_farther(const scree_memory *m, vec3 x, double least, uint32_t *near,
+                         scree_bvh_hit *hit) {
+  if (walk_within(m, x, least, near)) return false;
+  if (scree_bvh_within(&m->surface, x, least, near)) return false;
+  hit->index = *near;
+  hit->distance2 = scree_triangle_closest(m->surface.corners + 9 * (size_t)*near, x, &hit->point);
+  scree_bvh_closest(&m->surface, x, hit);
+  *near = hit->index;
+  return hit->distance2 > least;
+}
+
+/* The squared distance of x from the surface kept, if above `least`. */
 static double farther(const scree_memory *m, vec3 x, double least, uint32_t *near) {
-  if (walk_within(m, x, least, near)) return least;
-  if (scree_bvh_within(&m->surface, x, least, near)) return least;
-  scree_bvh_hit hit = {.index = *near};
-  hit.distance2 = scree_triangle_closest(m->surface.corners + 9 * (size_t)*near, x, &hit.point);
-  scree_bvh_closest(&m->surface, x, &hit);
-  *near = hit.index;
-  return hit.distance2 > least ? hit.distance2 : least;
+  scree_bvh_hit hit;
+  return find_farther(m, x, least, near, &hit) ? hit.distance2 : least;
 }
 
 /* The corners of the ring's triangle i, with its moving corner at x. */
@@ -466,6 +473,46 @@ double scree_memory_edge_stray(const scree_memory *m, const scree_halfmesh *s, u
   return least;
 }
 
+/* Whether x is farther off than `least`, as find_farther; what was found before of a place nearby
+ * mostly tells that it is not. */
+static bool is_far_place(const scree_memory *m, vec3 x, double least, scree_place_hint *hint,
+                         scree_bvh_hit *hit) {
+  double moved = sqrt(vec3_norm2(vec3_sub(x, hint->at))), bound = hint->within + moved;
+  if (bound * bound <= least) return false;
+  hint->at = x;
+  hint->near = walk_towards(m, x, hint->near);
+  hint->within =
+      sqrt(scree_triangle_closest(m->surface.corners + 9 * (size_t)hint->near, x, &hit->point));
+  if (hint->within * hint->within <= least || !find_farther(m, x, least, &hint->near, hit))
+    return false;
+  hint->within = sqrt(hit->distance2);
+  return true;
+}
+
+size_t scree_memory_far_places(const scree_memory *m, const scree_halfmesh *s, double least,
+                               bool hinted, scree_place_hint (*hints)[SCREE_LEVEL_PLACES],
+                               scree_far_place *far) {
+  size_t count = 0;
+  scree_bvh_hit hit;
+  for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
+    uint32_t from = s->half[h].from, twin = s->half[h].twin;
+    if (from == SCREE_NONE || (twin < h && s->vertex[from].outgoing != h)) continue;
+    vec3 at = s->vertex[from].at, end = s->vertex[scree_to(s, h)].at;
+    scree_place_hint *hint = hints[h];
+    if (!hinted) hint[0] = (scree_place_hint){at, INFINITY, m->near[from]};
+    if (s->vertex[from].outgoing == h && is_far_place(m, at, least, &hint[0], &hit))
+      far[count++] = (scree_far_place){h, 0, at, hit.point, hit.distance2};
+    for (uint32_t k = 0; k < SCREE_EDGE_PLACES && h < twin; k++) {
+      double share = places[k].sixths / 6.0;
+      vec3 x = vec3_lerp(at, end, share);
+      if (!hinted) hint[1 + k] = (scree_place_hint){x, INFINITY, hint[1 + places[k].beside].near};
+      if (is_far_place(m, x, least, &hint[1 + k], &hit))
+        far[count++] = (scree_far_place){h, share, x, hit.point, hit.distance2};
+    }
+  }
+  return count;
+}
+
 /* Triangles by blocks. */
 typedef struct looking {
   const scree_memory *m;
@@ -608,6 +655,36 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
       next = w->next;
       enlist(m, j, nearest_triangle(r, &f, w));
     }
+}
+
+void scree_memory_follow(scree_memory *m, const scree_halfmesh *s, uint32_t *lists) {
+  scree_four four;
+  memcpy(lists, m->first, s->triangle_count * sizeof *lists);
+  memset(m->first, 0xff, s->triangle_count * sizeof *m->first);
+  for (uint32_t t = 0; t < s->triangle_count; t++) {
+    double corners[SCREE_FOUR][9], distance2[SCREE_FOUR];
+    uint32_t beside[SCREE_FOUR] = {t};
+    size_t count = 1;
+    if (lists[t] == SCREE_NONE) continue;
+    for (uint32_t h = 3 * t; h < 3 * t + 3; h++)
+      if (s->half[h].twin != SCREE_NONE) beside[count++] = s->half[h].twin / 3;
+    for (size_t i = 0; i < count; i++) {
+      vec3 at[3];
+      scree_corners(s, beside[i], at);
+      for (size_t k = 0; k < 3; k++) vec3_store(corners[i] + 3 * k, at[k]);
+    }
+    scree_fours_fill(corners, count, &four);
+    for (uint32_t j = lists[t], next; j != SCREE_NONE; j = next) {
+      scree_witness *w = &m->witnesses[j];
+      size_t nearest = 0;
+      next = w->next;
+      scree_fours_closest(&four, 1, w->at, distance2);
+      for (size_t i = 1; i < count; i++)
+        if (distance2[i] < distance2[nearest]) nearest = i;
+      w->distance2 = distance2[nearest];
+      enlist(m, j, beside[nearest]);
+    }
+  }
 }
 
 /* The squared distance of x from the segment between the ring's ends: mostly the answer, at little

@@ -126,6 +126,31 @@ double scree_memory_vertex_stray(const scree_memory *memory, const scree_halfmes
 double scree_memory_edge_stray(const scree_memory *memory, const scree_halfmesh *s,
                                uint32_t half_edge, double least);
 
+/* A place on the level, at this share of the way along a half-edge, that is far from the surface
+ * kept, and where that is nearest. */
+typedef struct scree_far_place {
+  uint32_t half_edge;
+  double share;
+  vec3 at, nearest;
+  double distance2;
+} scree_far_place;
+
+/* Places looked at of each half-edge: a vertex and those on its edge, if they are its to tell; and
+ * what was found of one before, somewhere nearby. */
+enum { SCREE_LEVEL_PLACES = 1 + SCREE_EDGE_PLACES };
+typedef struct scree_place_hint {
+  vec3 at;       /* where it was */
+  double within; /* no farther off than that there */
+  uint32_t near; /* the triangle kept that is that near */
+} scree_place_hint;
+
+/* Lists the vertices and places on edges that are farther off than `least`, squared, and tells how
+ * many these are. hints: per half-edge, `hinted`: from the same surface, before vertices moved;
+ * they change no answer. */
+size_t scree_memory_far_places(const scree_memory *memory, const scree_halfmesh *s, double least,
+                               bool hinted, scree_place_hint (*hints)[SCREE_LEVEL_PLACES],
+                               scree_far_place *far);
+
 /* How far off a place may be as things stand: ten times the mean distance of the witnesses, nine
  * times where the level is held close, less five times the one with which those placed began; 0
  * where none is off but for rounding. */
@@ -145,6 +170,10 @@ void scree_memory_compact(scree_memory *memory, const scree_halfmesh *s);
 /* Gives the witnesses of the ring's triangles to those that will be there; before the collapse. */
 void scree_memory_move(scree_memory *memory, const scree_halfmesh *s, const scree_ring *ring,
                        vec3 target);
+
+/* After many vertices moved: each witness goes to the nearest of its triangle and those beside.
+ * lists: room for a number per triangle. */
+void scree_memory_follow(scree_memory *memory, const scree_halfmesh *s, uint32_t *lists);
 
 /* In batches, before: whether the new vertex is so near to the old triangles; whether the old ends
  * are to the new ones. Squared. */

@@ -5,14 +5,15 @@
 #include "simplify/decimate.h"
 #include "support/check.h"
 
-/* With default options and no limit of error. The mesh must stay; free with scree_decimator_free.
- */
+/* With default options, no limit of error and levels unsettled. The mesh must stay; free with
+ * scree_decimator_free. */
 static inline scree_decimator begin_decimation(const scree_mesh *mesh, const scree_coster *coster,
                                                scree_error *error) {
   scree_decimator d = {.mesh = mesh,
                        .coster = coster,
                        .options = scree_default_simplify_options(),
                        .error_limit = INFINITY,
+                       .unsettled = true,
                        .first_triangle_count = mesh->triangle_count,
                        .error = error};
   CHECK_OK(scree_halfmesh_build(mesh, &d.s, error), *error);

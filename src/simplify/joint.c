@@ -1,0 +1,293 @@
+/* One step of Gauss and Newton in all vertices together. As in relax.c, but that every corner k of
+ * witness j's triangle moves, and has the share b_jk of the nearest point: the witness's distance
+ * d_j changes by -sum_k b_jk g_j.y_k. With weights w_j,
+ *
+ *     sum_j w_j (sum_k b_jk g_j.y_k - d_j)^2 + DAMPING sum_k |y_k|^2 sum_j w_j b_jk^2 -> min
+ *
+ * What a level is judged by is the sum of distances, not of their squares, and the greatest. So
+ *
+ *     w_j = 1 / max(d_j, m / 10) + FAR_SHARE N m / F^2 (d_j / F)^6,
+ *
+ * m the mean of the N distances, F the greatest: the first part makes of squares a sum of distances
+ * (iteratively reweighted least squares), the second is felt near the greatest only. Vertices and
+ * places on edges that are more than half as far from the surface kept stand in the sum as well,
+ * with the second part alone.
+ *
+ * With n_k the sum of the doubled area vectors of vertex k's fan the volume changes by
+ * sum_k n_k.y_k / 6, to first order; it is kept as in relax.c, by one pressure for all. */
+#include "simplify/joint.h"
+
+#include "base/lanes.h"
+
+#include <string.h>
+
+/* Of the mean distance: the least that counts in a weight. */
+#define LEAST_DISTANCE 0.1
+/* What all that lies as far off as the farthest place weighs, against all witnesses. */
+#define FAR_SHARE 0.1
+/* Against the sums of the squared shares. */
+#define DAMPING 0.02
+/* Conjugate gradients end where the residual is so much smaller, squared, or after so many steps.
+ */
+#define ENOUGH 1e-6
+enum { MOST_ITERATIONS = 40 };
+/* Places are looked at above this share of the farthest's squared distance. */
+#define LOOKED_ABOVE 0.5
+/* Looks for the farthest place, each for what is nearer than in the one before. */
+enum { MOST_LOOKS = 4 };
+/* Times that what the places leave of the volume is taken up by pressure: the rest falls
+ * quadratically. */
+enum { VOLUME_ROUNDS = 3 };
+
+scree_status scree_joint_allocate(scree_joint *j, const scree_halfmesh *s, scree_error *error) {
+  size_t vertices = s->vertex_count, half_edges = 3 * s->triangle_count;
+  *j = (scree_joint){.free = NULL};
+  SCREE_ALLOC_OR(j->free, vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->step, vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->per_n, vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->far, half_edges * SCREE_LEVEL_PLACES, error, out_of_memory);
+  SCREE_ALLOC_OR(j->hints, half_edges, error, out_of_memory);
+  SCREE_ALLOC_OR(j->own, vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->shared, half_edges, error, out_of_memory);
+  SCREE_ALLOC_OR(j->n, vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->pull, vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->shares, vertices, error, out_of_memory);
+  for (int i = 0; i < 4; i++) SCREE_ALLOC_OR(j->room[i], vertices, error, out_of_memory);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+void scree_joint_free(scree_joint *j) {
+  scree_free(j->free);
+  scree_free(j->step);
+  scree_free(j->per_n);
+  scree_free(j->far);
+  scree_free(j->hints);
+  scree_free(j->own);
+  scree_free(j->shared);
+  scree_free(j->n);
+  scree_free(j->pull);
+  scree_free(j->shares);
+  for (int i = 0; i < 4; i++) scree_free(j->room[i]);
+}
+
+void scree_joint_look(scree_joint *j, const scree_memory *m, const scree_halfmesh *s,
+                      double about2) {
+  double of_witnesses2 = scree_memory_witness_stray(m, s);
+  double least2 = LOOKED_ABOVE * fmax(about2, of_witnesses2);
+  for (int look = 0; look < MOST_LOOKS; look++, least2 *= LOOKED_ABOVE) {
+    j->far_count = scree_memory_far_places(m, s, least2, j->hinted, j->hints, j->far);
+    j->hinted = true;
+    j->far2 = of_witnesses2;
+    for (size_t i = 0; i < j->far_count; i++) j->far2 = fmax(j->far2, j->far[i].distance2);
+    if (j->far2 > least2) return;
+  }
+}
+
+/* What the witnesses of one triangle say, side by side: unit vectors towards them and the shares of
+ * the corners. */
+typedef struct joint_sayings {
+  double g[3][SCREE_POINTS], share[3][SCREE_POINTS], distance[SCREE_POINTS];
+} joint_sayings;
+
+SCREE_LANES static void say_all_lanes(const double *corners, const scree_points *p,
+                                      joint_sayings *out, int count) {
+  vec3 a = vec3_load(corners), b = vec3_load(corners + 3), c = vec3_load(corners + 6);
+  vec3 n = vec3_triangle_normal(a, b, c);
+  double n2 = vec3_norm2(n);
+  for (int i = 0; i < count; i++) {
+    vec3 at = {p->at[0][i], p->at[1][i], p->at[2][i]};
+    vec3 x = {p->nearest[0][i], p->nearest[1][i], p->nearest[2][i]};
+    vec3 xa = vec3_sub(a, x), xb = vec3_sub(b, x), xc = vec3_sub(c, x);
+    double distance = sqrt(p->distance2[i]);
+    vec3 g = vec3_scale(vec3_sub(at, x), 1 / distance);
+    out->g[0][i] = g.x;
+    out->g[1][i] = g.y;
+    out->g[2][i] = g.z;
+    out->share[0][i] = vec3_dot(n, vec3_cross(xb, xc)) / n2;
+    out->share[1][i] = vec3_dot(n, vec3_cross(xc, xa)) / n2;
+    out->share[2][i] = vec3_dot(n, vec3_cross(xa, xb)) / n2;
+    out->distance[i] = distance;
+  }
+}
+
+static void add_square(double m[6], vec3 g, double weight) {
+  m[0] += weight * g.x * g.x;
+  m[1] += weight * g.x * g.y;
+  m[2] += weight * g.x * g.z;
+  m[3] += weight * g.y * g.y;
+  m[4] += weight * g.y * g.z;
+  m[5] += weight * g.z * g.z;
+}
+
+static vec3 times(const double m[6], vec3 x) {
+  return (vec3){m[0] * x.x + m[1] * x.y + m[2] * x.z, m[1] * x.x + m[3] * x.y + m[4] * x.z,
+                m[2] * x.x + m[4] * x.y + m[5] * x.z};
+}
+
+/* The block's inverse times v. */
+static vec3 over(const double m[6], vec3 v) {
+  vec3 x = {m[0], m[1], m[2]}, y = {m[1], m[3], m[4]}, z = {m[2], m[4], m[5]};
+  vec3 yz = vec3_cross(y, z), zx = vec3_cross(z, x), xy = vec3_cross(x, y);
+  vec3 sum = vec3_mad(vec3_mad(vec3_scale(yz, v.x), zx, v.y), xy, v.z);
+  return vec3_scale(sum, 1 / vec3_dot(x, yz));
+}
+
+/* The weights, see above. */
+typedef struct weighing {
+  double least, far_unit, far2;
+} weighing;
+
+static double far_weight(const weighing *w, double distance2) {
+  double ratio2 = distance2 / w->far2;
+  return w->far_unit * ratio2 * ratio2 * ratio2;
+}
+
+/* Vertex v has this share of a place. */
+static void add_end(scree_joint *j, uint32_t v, vec3 g, double weight, double share,
+                    double distance) {
+  add_square(j->own[v], g, weight * share * share);
+  j->pull[v] = vec3_mad(j->pull[v], g, weight * share * distance);
+  j->shares[v] += weight * share * share;
+}
+
+static void add_crowd(scree_joint *j, const scree_halfmesh *s, uint32_t t, const double *corners,
+                      scree_points *points, const weighing *w) {
+  joint_sayings said;
+  scree_points_closest(corners, points);
+  say_all_lanes(corners, points, &said, points->count);
+  for (int i = 0; i < points->count; i++) {
+    double distance = said.distance[i];
+    if (!(distance > SCREE_SAME_DISTANCE)) continue; /* it has no direction */
+    double weight = 1 / fmax(distance, w->least) + far_weight(w, distance * distance);
+    vec3 g = {said.g[0][i], said.g[1][i], said.g[2][i]};
+    for (uint32_t k = 0; k < 3; k++) {
+      double share = said.share[k][i], next = said.share[(k + 1) % 3][i];
+      add_end(j, s->half[3 * t + k].from, g, weight, share, distance);
+      add_square(j->shared[3 * t + k], g, weight * share * next);
+    }
+  }
+  points->count = 0;
+}
+
+static void add_triangle(scree_joint *j, const scree_memory *m, const scree_halfmesh *s, uint32_t t,
+                         const weighing *w) {
+  vec3 at[3];
+  double corners[9];
+  scree_points points;
+  points.count = 0;
+  scree_corners(s, t, at);
+  for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, at[i]);
+  vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
+  for (size_t i = 0; i < 3; i++) {
+    uint32_t v = s->half[3 * t + i].from;
+    j->n[v] = vec3_add(j->n[v], n);
+  }
+  for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next) {
+    scree_points_add(&points, m->witnesses[k].at);
+    if (points.count == SCREE_POINTS) add_crowd(j, s, t, corners, &points, w);
+  }
+  if (points.count > 0) add_crowd(j, s, t, corners, &points, w);
+}
+
+static void add_far(scree_joint *j, const scree_halfmesh *s, const scree_far_place *p,
+                    const weighing *w) {
+  double distance = sqrt(p->distance2), weight = far_weight(w, p->distance2);
+  vec3 g = vec3_scale(vec3_sub(p->nearest, p->at), 1 / distance);
+  add_end(j, s->half[p->half_edge].from, g, weight, 1 - p->share, distance);
+  add_end(j, scree_to(s, p->half_edge), g, weight, p->share, distance);
+  add_square(j->shared[p->half_edge], g, weight * p->share * (1 - p->share));
+}
+
+static double dot(const vec3 *a, const vec3 *b, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) sum += vec3_dot(a[i], b[i]);
+  return sum;
+}
+
+static void multiply(const scree_joint *j, const scree_halfmesh *s, const vec3 *x, vec3 *out) {
+  for (size_t v = 0; v < s->vertex_count; v++) out[v] = times(j->own[v], x[v]);
+  for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
+    uint32_t a = s->half[h].from;
+    if (a == SCREE_NONE) continue;
+    uint32_t b = scree_to(s, h);
+    out[a] = vec3_add(out[a], times(j->shared[h], x[b]));
+    out[b] = vec3_add(out[b], times(j->shared[h], x[a]));
+  }
+  for (size_t v = 0; v < s->vertex_count; v++)
+    if (!j->free[v]) out[v] = (vec3){0, 0, 0};
+}
+
+/* Conjugate gradients, preconditioned by what each vertex has by itself. What is not free stays. */
+static void solve(scree_joint *j, const scree_halfmesh *s, const vec3 *right, vec3 *x) {
+  size_t count = s->vertex_count;
+  vec3 *r = j->room[0], *z = j->room[1], *p = j->room[2], *q = j->room[3];
+  for (size_t v = 0; v < count; v++) {
+    x[v] = (vec3){0, 0, 0};
+    r[v] = j->free[v] ? right[v] : x[v];
+    p[v] = z[v] = j->free[v] ? over(j->own[v], r[v]) : x[v];
+  }
+  double rz = dot(r, z, count), enough = ENOUGH * rz;
+  for (int i = 0; i < MOST_ITERATIONS && rz > enough; i++) {
+    multiply(j, s, p, q);
+    double along = rz / dot(p, q, count), before = rz;
+    for (size_t v = 0; v < count; v++) {
+      x[v] = vec3_mad(x[v], p[v], along);
+      r[v] = vec3_mad(r[v], q[v], -along);
+      if (j->free[v]) z[v] = over(j->own[v], r[v]);
+    }
+    rz = dot(r, z, count);
+    for (size_t v = 0; v < count; v++) p[v] = vec3_mad(z[v], p[v], rz / before);
+  }
+}
+
+bool scree_joint_find(scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
+  size_t vertices = s->vertex_count;
+  double mean = scree_memory_mean(m);
+  if (!(mean > SCREE_SAME_DISTANCE)) return false;
+  weighing w = {LEAST_DISTANCE * mean, FAR_SHARE * (double)m->left * mean / j->far2, j->far2};
+  memset(j->own, 0, vertices * sizeof *j->own);
+  memset(j->shared, 0, 3 * s->triangle_count * sizeof *j->shared);
+  memset(j->pull, 0, vertices * sizeof *j->pull);
+  memset(j->n, 0, vertices * sizeof *j->n);
+  memset(j->shares, 0, vertices * sizeof *j->shares);
+  for (uint32_t t = 0; t < s->triangle_count; t++)
+    if (!scree_is_gone(s, t)) add_triangle(j, m, s, t, &w);
+  for (size_t i = 0; i < j->far_count; i++) add_far(j, s, &j->far[i], &w);
+  for (size_t v = 0; v < vertices; v++) {
+    j->free[v] = j->free[v] && j->shares[v] > 0;
+    for (int i = 0; i < 6; i += i == 0 ? 3 : 2) j->own[v][i] += DAMPING * j->shares[v];
+    if (!j->free[v]) j->n[v] = (vec3){0, 0, 0};
+  }
+  solve(j, s, j->pull, j->step);
+  solve(j, s, j->n, j->per_n);
+  j->n_per_n = dot(j->n, j->per_n, vertices);
+  if (!(j->n_per_n > 0)) return false;
+  double pressure = dot(j->n, j->step, vertices) / j->n_per_n;
+  for (size_t v = 0; v < vertices; v++) j->step[v] = vec3_mad(j->step[v], j->per_n[v], -pressure);
+  return true;
+}
+
+/* Six times the volume with the vertices there, less that as they are. */
+static double volume_change(const scree_halfmesh *s, const vec3 *places) {
+  double sum = 0;
+  for (uint32_t t = 0; t < s->triangle_count; t++) {
+    vec3 at[3], to[3];
+    if (scree_is_gone(s, t)) continue;
+    scree_corners(s, t, at);
+    for (size_t i = 0; i < 3; i++) to[i] = places[s->half[3 * t + i].from];
+    sum += vec3_dot(to[0], vec3_cross(to[1], to[2])) - vec3_dot(at[0], vec3_cross(at[1], at[2]));
+  }
+  return sum;
+}
+
+void scree_joint_places(const scree_joint *j, const scree_halfmesh *s, double share, vec3 *places) {
+  for (size_t v = 0; v < s->vertex_count; v++)
+    places[v] = j->free[v] ? vec3_mad(s->vertex[v].at, j->step[v], share) : s->vertex[v].at;
+  for (int k = 0; k < VOLUME_ROUNDS; k++) {
+    double pressure = -volume_change(s, places) / j->n_per_n;
+    for (size_t v = 0; v < s->vertex_count; v++)
+      if (j->free[v]) places[v] = vec3_mad(places[v], j->per_n[v], pressure);
+  }
+}

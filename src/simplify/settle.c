@@ -1,0 +1,219 @@
+/* A step is taken, whole, by half or by a quarter, where the level's score (ahead.h) falls and
+ * nothing gets much farther off. Vertices move one after the other, each if it is allowed, so that
+ * all that holds for a move holds here. What those that may not leave of the volume, the others
+ * take up. */
+#include "simplify/settle.h"
+
+#include "base/array.h"
+#include "base/parallel.h"
+#include "simplify/ahead.h"
+
+/* Steps for a level, and the shortest share of one. */
+enum { MOST_STEPS = 8 };
+#define LEAST_SHARE 0.25
+/* A smaller gain of the score, or of the mean distance, is none. */
+#define LEAST_GAIN 2e-3
+/* How much farther than the farthest place a place may be. */
+#define FARTHER 1.1
+
+static scree_status allocate(scree_settled *l, const scree_decimator *d) {
+  scree_status status = scree_trial_allocate(&l->trial, d);
+  if (status == SCREE_OK) status = scree_trial_allocate(&l->before, d);
+  if (status == SCREE_OK) status = scree_joint_allocate(&l->joint, &d->s, d->error);
+  if (status != SCREE_OK) return status;
+  SCREE_ALLOC_OR(l->places, d->s.vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->lists, d->s.triangle_count, d->error, out_of_memory);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_settle_begin(scree_settling *q, const scree_decimator *d) {
+  scree_status status = SCREE_OK;
+  *q = (scree_settling){.first = d->record.count};
+  for (int i = 0; i < SCREE_SETTLED_AT_ONCE && status == SCREE_OK; i++)
+    status = allocate(&q->levels[i], d);
+  if (status != SCREE_OK) return status;
+  SCREE_ALLOC_OR(q->shown, d->s.vertex_count, d->error, out_of_memory);
+  for (size_t v = 0; v < d->s.vertex_count; v++) q->shown[v] = d->s.vertex[v].at;
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+void scree_settle_free(scree_settling *q) {
+  for (int i = 0; i < SCREE_SETTLED_AT_ONCE; i++) {
+    scree_trial_free(&q->levels[i].trial);
+    scree_trial_free(&q->levels[i].before);
+    scree_joint_free(&q->levels[i].joint);
+    scree_free(q->levels[i].places);
+    scree_free(q->levels[i].lists);
+  }
+  scree_free(q->shown);
+  scree_free(q->moves.items);
+}
+
+/* Moves v to x, if that is allowed; the witnesses are to follow. */
+static scree_status move_to(scree_step *q, uint32_t v, vec3 x, bool *moved) {
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring fan = {.edge = edges};
+  scree_change change = {.target = x};
+  scree_around around;
+  scree_status status = SCREE_OK;
+  *moved =
+      scree_step_gather(&q->d->s, v, &fan) && scree_step_allows(q, &fan, &change, &around, &status);
+  if (!*moved) return status;
+  q->d->s.vertex[v].at = x;
+  q->d->record.area[0] += change.area;
+  q->d->record.volume[0] += change.volume;
+  return SCREE_OK;
+}
+
+/* The sum of the doubled area vectors around v, which may move. */
+static vec3 area_around(const scree_halfmesh *s, uint32_t v) {
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring fan = {.edge = edges};
+  vec3 n = {0, 0, 0};
+  scree_step_gather(s, v, &fan);
+  for (uint32_t i = 0; i < fan.count; i++) {
+    vec3 at[3];
+    scree_corners(s, fan.edge[i] / 3, at);
+    n = vec3_add(n, vec3_triangle_normal(at[0], at[1], at[2]));
+  }
+  return n;
+}
+
+/* All to their places. What is left of the volume then, the vertex takes up that yields most to
+ * pressure. *kept: it may. */
+static scree_status move_all(scree_settled *l, bool *kept) {
+  scree_step *q = &l->trial.step;
+  const scree_halfmesh *s = &q->d->s;
+  const scree_joint *j = &l->joint;
+  scree_status status = SCREE_OK;
+  const double *volume = q->d->record.volume;
+  double before = *volume, most = 0;
+  bool moved, all = true;
+  uint32_t softest = SCREE_NONE;
+  for (uint32_t v = 0; v < s->vertex_count && status == SCREE_OK; v++) {
+    if (!j->free[v]) continue;
+    status = move_to(q, v, l->places[v], &moved);
+    all &= moved;
+    double soft = vec3_dot(j->n[v], j->per_n[v]);
+    if (soft > most) softest = v;
+    most = fmax(most, soft);
+  }
+  double pressure = 6 * (before - *volume) / j->n_per_n;
+  for (uint32_t v = 0; v < s->vertex_count && !all && status == SCREE_OK; v++)
+    if (j->free[v])
+      status = move_to(q, v, vec3_mad(s->vertex[v].at, j->per_n[v], pressure), &moved);
+  if (softest == SCREE_NONE || status != SCREE_OK) return status;
+  vec3 n = area_around(s, softest);
+  double along = 6 * (before - *volume) / vec3_norm2(n);
+  status = move_to(q, softest, vec3_mad(s->vertex[softest].at, n, along), kept);
+  scree_memory_follow(&q->d->memory, s, l->lists);
+  return status;
+}
+
+/* Tries the joint's step. */
+static scree_status try_step(scree_settled *l, bool *gains) {
+  scree_decimator *d = &l->trial.d;
+  double mean = scree_memory_mean(&d->memory), far2 = l->joint.far2;
+  double score = scree_level_score(mean, sqrt(far2));
+  scree_status status = SCREE_OK;
+  *gains = false;
+  scree_trial_copy(&l->before, &l->trial);
+  for (double share = 1; share >= LEAST_SHARE; share *= 0.5) {
+    bool kept = false;
+    scree_joint_places(&l->joint, &d->s, share, l->places);
+    status = move_all(l, &kept);
+    if (status != SCREE_OK) return status;
+    double after = scree_memory_mean(&d->memory);
+    if (kept && after < (1 - LEAST_GAIN) * mean) {
+      scree_joint_look(&l->joint, &d->memory, &d->s, far2);
+      *gains = l->joint.far2 <= FARTHER * FARTHER * far2 &&
+               scree_level_score(after, sqrt(l->joint.far2)) < (1 - LEAST_GAIN) * score;
+    }
+    if (*gains) return SCREE_OK;
+    scree_trial_copy(&l->trial, &l->before);
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_settle(scree_settled *l) {
+  const scree_decimator *d = &l->trial.d;
+  scree_joint *j = &l->joint;
+  scree_status status = SCREE_OK;
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring fan = {.edge = edges};
+  bool gains = true;
+  j->hinted = false;
+  scree_joint_look(j, &d->memory, &d->s, l->trial.step.farthest2);
+  for (int i = 0; i < MOST_STEPS && gains && status == SCREE_OK; i++) {
+    for (uint32_t v = 0; v < d->s.vertex_count; v++)
+      j->free[v] = d->s.vertex[v].outgoing != SCREE_NONE && scree_step_gather(&d->s, v, &fan);
+    if (!scree_joint_find(j, &d->memory, &d->s)) break;
+    status = try_step(l, &gains);
+  }
+  return status;
+}
+
+static void settle_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  scree_settling *q = context;
+  for (size_t i = begin; i < end; i++) q->levels[i].status = scree_settle(&q->levels[i]);
+}
+
+/* From the last level shown to this one: what stands elsewhere moves. */
+static scree_status show(scree_settling *q, const scree_settled *l, scree_decimator *d) {
+  const scree_halfmesh *s = &l->trial.d.s;
+  scree_record *r = &d->record;
+  uint32_t kept = r->kept[l->index] & ~SCREE_ONE_TRIANGLE;
+  for (uint32_t v = 0; v < s->vertex_count; v++) {
+    const scree_vertex *vertex = &s->vertex[v];
+    if (vertex->outgoing == SCREE_NONE) continue;
+    vec3 at = vec3_mad(s->centre, vertex->at, s->scale);
+    vec3 stands =
+        vertex->origin == kept ? r->position[l->index] : vec3_mad(s->centre, q->shown[v], s->scale);
+    q->shown[v] = vertex->at;
+    if (!(vec3_norm2(vec3_sub(at, stands)) > 0)) continue;
+    scree_move move = {(uint32_t)l->index, vertex->origin, at};
+    if (!SCREE_PUSH(&q->moves, move))
+      return scree_fail_memory(d->error, q->moves.count * sizeof move, "the record");
+  }
+  double area = l->trial.d.record.area[0], volume = l->trial.d.record.volume[0];
+  r->area[l->index] += area - q->area;
+  r->volume[l->index] += volume - q->volume;
+  q->area = area;
+  q->volume = volume;
+  return SCREE_OK;
+}
+
+static scree_status settle_waiting(scree_settling *q, scree_decimator *d) {
+  scree_status status = SCREE_OK;
+  scree_parallel_for(q->count, 1, settle_block, q);
+  for (size_t i = 0; i < q->count && status == SCREE_OK; i++) {
+    status = q->levels[i].status;
+    if (status == SCREE_OK) status = show(q, &q->levels[i], d);
+  }
+  q->count = 0;
+  return status;
+}
+
+scree_status scree_settle_level(scree_settling *q, const scree_step *step) {
+  scree_settled *l = &q->levels[q->count++];
+  scree_trial_start(&l->trial, step);
+  l->index = step->d->record.count - 1;
+  l->trial.d.record.count = 1;
+  l->trial.d.record.area[0] = l->trial.d.record.volume[0] = 0;
+  return q->count < SCREE_SETTLED_AT_ONCE ? SCREE_OK : settle_waiting(q, step->d);
+}
+
+scree_status scree_settle_end(scree_settling *q, scree_decimator *d) {
+  scree_moves *moves = &d->record.moves;
+  scree_status status = settle_waiting(q, d);
+  while (moves->count > 0 && moves->items[moves->count - 1].index >= q->first) moves->count--;
+  for (size_t i = 0; i < q->moves.count && status == SCREE_OK; i++)
+    if (!SCREE_PUSH(moves, q->moves.items[i]))
+      status = scree_fail_memory(d->error, moves->count * sizeof *moves->items, "the record");
+  return status;
+}

@@ -1,0 +1,381 @@
+/* How coarse levels are settled (simplify/settle.h): the step in all vertices against equations
+ * that are put together and solved at full length, and the levels against those left as their
+ * collapses made them. */
+#include "simplify/ahead.h"
+#include "simplify/settle.h"
+#include "support/decimator.h"
+#include "support/shapes.h"
+
+/* What the rules name (simplify/joint.c). */
+#define LEAST_DISTANCE 0.1
+#define FAR_SHARE      0.1
+#define DAMPING        0.02
+#define LOOKED_ABOVE   0.5
+
+static scree_mesh bumpy(int kind) {
+  scree_rng rng = {.seed = (uint64_t)kind + 1};
+  scree_mesh mesh = kind == 0   ? shape_icosphere(0.03, 4)
+                    : kind == 1 ? shape_torus(0.03, 0.011, 64, 28)
+                                : shape_grid_box(0.06, 0.03, 0.01, 16);
+  shape_shake(&mesh, 4e-4, &rng);
+  return mesh;
+}
+
+static scree_decimator decimated(const scree_mesh *mesh, size_t stop, bool unsettled,
+                                 scree_error *error) {
+  scree_decimator d = begin_decimation(mesh, &scree_volume_coster, error);
+  d.options.stop_count = stop;
+  d.unsettled = unsettled;
+  CHECK_OK(scree_decimate_one_by_one(&d), *error);
+  return d;
+}
+
+/* ---- The step ---- */
+
+typedef struct equations {
+  size_t n;   /* three a vertex, and the pressure */
+  double *m;  /* n x (n + 1) */
+  double *ww; /* per vertex: weighted squares of its shares */
+} equations;
+
+static void add(equations *q, const uint32_t v[3], const double share[3], vec3 g, double weight,
+                double distance) {
+  double along[3] = {g.x, g.y, g.z};
+  for (size_t i = 0; i < 3; i++) {
+    q->ww[v[i]] += weight * share[i] * share[i];
+    for (size_t a = 0; a < 3; a++) {
+      double *row = q->m + (3 * v[i] + a) * (q->n + 1);
+      row[q->n] += weight * share[i] * along[a] * distance;
+      for (size_t k = 0; k < 3; k++)
+        for (size_t b = 0; b < 3; b++)
+          row[3 * v[k] + b] += weight * share[i] * along[a] * share[k] * along[b];
+    }
+  }
+}
+
+static void corners_of(const scree_halfmesh *s, size_t t, double corners[9]) {
+  vec3 at[3];
+  scree_corners(s, t, at);
+  for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, at[i]);
+}
+
+/* Of p, a point of the triangle. */
+static void shares_of(const double corners[9], vec3 p, double share[3]) {
+  vec3 at[3], n;
+  for (size_t i = 0; i < 3; i++) at[i] = vec3_load(corners + 3 * i);
+  n = vec3_triangle_normal(at[0], at[1], at[2]);
+  for (size_t i = 0; i < 3; i++)
+    share[i] =
+        vec3_dot(n, vec3_triangle_normal(p, at[(i + 1) % 3], at[(i + 2) % 3])) / vec3_norm2(n);
+}
+
+static double nearest_kept(const scree_memory *m, vec3 x, vec3 *nearest) {
+  *nearest = x;
+  double least = INFINITY;
+  for (size_t t = 0; t < m->surface.triangle_count; t++) {
+    vec3 point;
+    double distance2 = scree_triangle_closest(m->surface.corners + 9 * t, x, &point);
+    if (!(distance2 < least)) continue;
+    least = distance2;
+    *nearest = point;
+  }
+  return least;
+}
+
+/* Calls `each` for every vertex and place on an edge. */
+typedef void each_place(void *context, const uint32_t v[3], const double share[3], vec3 at);
+static void for_places(const scree_halfmesh *s, each_place *each, void *context) {
+  for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
+    if (s->half[h].from == SCREE_NONE) continue;
+    uint32_t a = s->half[h].from, b = scree_to(s, h), v[3] = {a, b, a};
+    for (int k = s->vertex[a].outgoing == h ? 0 : 1; k < (h < s->half[h].twin ? 6 : 1); k++) {
+      double share[3] = {1 - k / 6.0, k / 6.0, 0};
+      each(context, v, share, vec3_lerp(s->vertex[a].at, s->vertex[b].at, k / 6.0));
+    }
+  }
+}
+
+typedef struct places {
+  const scree_memory *m;
+  double far2, unit;
+  size_t count;
+  equations *q;
+} places;
+
+static void find_far(void *context, const uint32_t v[3], const double share[3], vec3 at) {
+  (void)v, (void)share;
+  places *p = context;
+  vec3 nearest;
+  p->far2 = fmax(p->far2, nearest_kept(p->m, at, &nearest));
+}
+
+static void add_far(void *context, const uint32_t v[3], const double share[3], vec3 at) {
+  places *p = context;
+  vec3 nearest;
+  double distance2 = nearest_kept(p->m, at, &nearest);
+  if (!(distance2 > LOOKED_ABOVE * p->far2)) return;
+  p->count++;
+  add(p->q, v, share, vec3_scale(vec3_sub(nearest, at), 1 / sqrt(distance2)),
+      p->unit * pow(distance2 / p->far2, 3), sqrt(distance2));
+}
+
+/* By elimination with pivots. */
+static void solve(equations *q) {
+  for (size_t i = 0; i < q->n; i++) {
+    size_t best = i;
+    for (size_t k = i; k < q->n; k++)
+      if (fabs(q->m[k * (q->n + 1) + i]) > fabs(q->m[best * (q->n + 1) + i])) best = k;
+    for (size_t k = 0; k <= q->n && best != i; k++) {
+      double swap = q->m[i * (q->n + 1) + k];
+      q->m[i * (q->n + 1) + k] = q->m[best * (q->n + 1) + k];
+      q->m[best * (q->n + 1) + k] = swap;
+    }
+    for (size_t k = 0; k < q->n; k++) {
+      double factor = q->m[k * (q->n + 1) + i] / q->m[i * (q->n + 1) + i];
+      for (size_t c = i; c <= q->n && k != i; c++)
+        q->m[k * (q->n + 1) + c] -= factor * q->m[i * (q->n + 1) + c];
+    }
+  }
+}
+
+/* Fills and solves; far2 is that of the farthest place. Answers how many places are far. */
+static size_t full_step(const scree_decimator *d, vec3 *step, double *far2) {
+  const scree_halfmesh *s = &d->s;
+  const scree_memory *m = &d->memory;
+  equations q = {.n = 3 * s->vertex_count + 1};
+  places p = {.m = m, .q = &q};
+  double mean = 0, count = 0;
+  q.m = calloc(q.n * (q.n + 1), sizeof *q.m);
+  q.ww = calloc(s->vertex_count, sizeof *q.ww);
+  for (size_t t = 0; t < s->triangle_count; t++)
+    for (uint32_t j = scree_is_gone(s, t) ? SCREE_NONE : m->first[t]; j != SCREE_NONE;
+         j = m->witnesses[j].next) {
+      mean += sqrt(m->witnesses[j].distance2);
+      count++;
+      p.far2 = fmax(p.far2, m->witnesses[j].distance2);
+    }
+  for_places(s, find_far, &p);
+  p.unit = FAR_SHARE * mean / p.far2;
+  mean /= count;
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    if (scree_is_gone(s, t)) continue;
+    double corners[9], share[3];
+    uint32_t v[3];
+    corners_of(s, t, corners);
+    vec3 n =
+        vec3_triangle_normal(vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6));
+    for (size_t i = 0; i < 3; i++) {
+      v[i] = s->half[3 * t + i].from;
+      double along[3] = {n.x, n.y, n.z};
+      for (size_t a = 0; a < 3; a++) {
+        q.m[(3 * v[i] + a) * (q.n + 1) + q.n - 1] += along[a];
+        q.m[(q.n - 1) * (q.n + 1) + 3 * v[i] + a] += along[a];
+      }
+    }
+    for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) {
+      vec3 nearest;
+      double distance = sqrt(scree_triangle_closest(corners, m->witnesses[j].at, &nearest));
+      if (distance <= 1e-12) continue;
+      shares_of(corners, nearest, share);
+      double weight =
+          1 / fmax(distance, LEAST_DISTANCE * mean) + p.unit * pow(distance * distance / p.far2, 3);
+      add(&q, v, share, vec3_scale(vec3_sub(m->witnesses[j].at, nearest), 1 / distance), weight,
+          distance);
+    }
+  }
+  for_places(s, add_far, &p);
+  for (size_t v = 0; v < s->vertex_count; v++)
+    for (size_t a = 0; a < 3; a++) {
+      double *diagonal = &q.m[(3 * v + a) * (q.n + 1) + 3 * v + a];
+      *diagonal += s->vertex[v].outgoing == SCREE_NONE ? 1 : DAMPING * q.ww[v];
+    }
+  solve(&q);
+  for (size_t v = 0; v < s->vertex_count; v++) {
+    double y[3];
+    for (size_t a = 0; a < 3; a++)
+      y[a] = q.m[(3 * v + a) * (q.n + 1) + q.n] / q.m[(3 * v + a) * (q.n + 1) + 3 * v + a];
+    step[v] = vec3_load(y);
+  }
+  *far2 = p.far2;
+  free(q.m);
+  free(q.ww);
+  return p.count;
+}
+
+static double volume_at(const scree_halfmesh *s, const vec3 *at) {
+  double sum = 0;
+  for (size_t t = 0; t < s->triangle_count; t++)
+    if (!scree_is_gone(s, t))
+      sum += vec3_dot(at[s->half[3 * t].from],
+                      vec3_cross(at[s->half[3 * t + 1].from], at[s->half[3 * t + 2].from]));
+  return sum / 6;
+}
+
+static void the_step_solves_the_equations(void **state) {
+  (void)state;
+  for (int kind = 0; kind < 3; kind++)
+    for (size_t stop = 120; stop >= 30; stop /= 2) {
+      scree_error error;
+      scree_mesh mesh = bumpy(kind);
+      scree_decimator d = decimated(&mesh, stop, true, &error);
+      size_t count = d.s.vertex_count;
+      vec3 *full = calloc(count, sizeof *full), *at = calloc(count, sizeof *at);
+      double far2, largest = 0, off = 0;
+      scree_joint j;
+      CHECK_OK(scree_joint_allocate(&j, &d.s, &error), error);
+      for (size_t v = 0; v < count; v++) j.free[v] = d.s.vertex[v].outgoing != SCREE_NONE;
+      size_t far_count = full_step(&d, full, &far2);
+      for (int look = 0; look < 3; look++) { /* whatever is expected, and again with hints */
+        scree_joint_look(&j, &d.memory, &d.s, (look == 1 ? 0.3 : 0.9) * far2);
+        CHECK_NEAR(j.far2, far2, 1e-9 * far2);
+      }
+      scree_joint_look(&j, &d.memory, &d.s, far2);
+      assert_int_equal(j.far_count, far_count);
+      assert_true(scree_joint_find(&j, &d.memory, &d.s));
+      for (size_t v = 0; v < count; v++) {
+        if (!j.free[v]) continue;
+        largest = fmax(largest, vec3_norm(full[v]));
+        off = fmax(off, vec3_norm(vec3_sub(full[v], j.step[v])));
+      }
+      assert_true(largest > 0);
+      CHECK_NEAR(off / largest, 0, 0.01);
+      for (size_t v = 0; v < count; v++) at[v] = d.s.vertex[v].at;
+      double volume = volume_at(&d.s, at);
+      scree_joint_places(&j, &d.s, 0.5, at);
+      CHECK_NEAR(volume_at(&d.s, at), volume, 1e-7 * volume);
+      scree_joint_free(&j);
+      free(full);
+      free(at);
+      scree_decimator_free(&d);
+      scree_mesh_free(&mesh);
+    }
+}
+
+/* ---- The levels ---- */
+
+/* A level of the record, in metres. */
+typedef struct level {
+  uint32_t *root, *corners;
+  vec3 *at;
+  size_t count;
+} level;
+
+static void rebuild(const scree_decimator *d, size_t collapses, level *l) {
+  const scree_record *r = &d->record;
+  const scree_mesh *mesh = d->mesh;
+  for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+    l->root[v] = v;
+    l->at[v] = vec3_load(mesh->positions + 3 * (size_t)v);
+  }
+  for (size_t i = 0, k = 0; i < collapses; i++) {
+    l->at[r->kept[i]] = r->position[i];
+    for (; k < r->moves.count && r->moves.items[k].index == i; k++)
+      l->at[r->moves.items[k].vertex] = r->moves.items[k].position;
+  }
+  for (size_t i = collapses; i-- > 0;) l->root[r->gone[i]] = l->root[r->kept[i]];
+  l->count = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    uint32_t *c = l->corners + 3 * l->count;
+    for (size_t i = 0; i < 3; i++) c[i] = l->root[mesh->triangles[3 * t + i]];
+    l->count += c[0] != c[1] && c[1] != c[2] && c[2] != c[0];
+  }
+}
+
+/* The mean distance of the mesh's vertices from the level, its volume and its area. */
+typedef struct measures {
+  double mean, volume, area;
+} measures;
+
+static measures measure(const scree_mesh *mesh, const level *l) {
+  measures m = {0};
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    double least = INFINITY, corners[9];
+    vec3 p = vec3_load(mesh->positions + 3 * v), point;
+    for (size_t t = 0; t < l->count; t++) {
+      for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, l->at[l->corners[3 * t + i]]);
+      least = fmin(least, scree_triangle_closest(corners, p, &point));
+    }
+    m.mean += sqrt(least) / (double)mesh->vertex_count;
+  }
+  for (size_t t = 0; t < l->count; t++) {
+    vec3 a = l->at[l->corners[3 * t]], b = l->at[l->corners[3 * t + 1]],
+         c = l->at[l->corners[3 * t + 2]];
+    m.volume += vec3_dot(a, vec3_cross(b, c)) / 6;
+    m.area += 0.5 * vec3_norm(vec3_triangle_normal(a, b, c));
+  }
+  return m;
+}
+
+/* Compares the levels of so many collapses; answers the logarithm of what the mean distance is of
+ * that before. */
+static double compare(const scree_decimator *left, const scree_decimator *d, size_t collapses,
+                      level *l, double first_area) {
+  rebuild(left, collapses, l);
+  size_t count = l->count;
+  measures before = measure(d->mesh, l);
+  rebuild(d, collapses, l);
+  measures m = measure(d->mesh, l);
+  double area = 0;
+  assert_int_equal(l->count, count);
+  CHECK_NEAR(m.volume, before.volume, 1e-12 * before.volume);
+  for (size_t i = 0; i < collapses; i++) area += d->record.area[i];
+  CHECK_NEAR(m.area, first_area + area * d->s.scale * d->s.scale, 1e-12 * first_area);
+  if (m.mean > 1.1 * before.mean)
+    fail_msg("%zu triangles: mean distance %g instead of %g", count, m.mean, before.mean);
+  return log(m.mean / before.mean);
+}
+
+static void levels_are_better_and_the_collapses_the_same(void **state) {
+  (void)state;
+  for (int kind = 0; kind < 3; kind++) {
+    scree_error error;
+    scree_mesh mesh = bumpy(kind);
+    scree_decimator left = decimated(&mesh, 0, true, &error),
+                    d = decimated(&mesh, 0, false, &error);
+    level l = {malloc(mesh.vertex_count * sizeof *l.root),
+               malloc(3 * mesh.triangle_count * sizeof *l.corners),
+               malloc(mesh.vertex_count * sizeof *l.at), 0};
+    double gain = 0, compared = 0;
+    assert_int_equal(left.record.count, d.record.count);
+    for (size_t i = 0; i < d.record.count; i++) {
+      assert_int_equal(left.record.kept[i], d.record.kept[i]);
+      assert_int_equal(left.record.gone[i], d.record.gone[i]);
+      assert_memory_equal(&left.record.position[i], &d.record.position[i], sizeof(vec3));
+    }
+    /* before, no level is touched */
+    size_t first = (mesh.triangle_count - SCREE_AHEAD_COUNT) / 2;
+    for (size_t k = 0; k < d.record.moves.count && d.record.moves.items[k].index < first; k++)
+      assert_memory_equal(&left.record.moves.items[k], &d.record.moves.items[k],
+                          sizeof(scree_move));
+    for (size_t i = 0; i < first; i++) {
+      assert_true(left.record.area[i] == d.record.area[i]);
+      assert_true(left.record.volume[i] == d.record.volume[i]);
+    }
+    rebuild(&d, 0, &l);
+    double first_area = 0;
+    for (size_t t = 0; t < l.count; t++)
+      first_area +=
+          0.5 * vec3_norm(vec3_triangle_normal(l.at[l.corners[3 * t]], l.at[l.corners[3 * t + 1]],
+                                               l.at[l.corners[3 * t + 2]]));
+    for (size_t i = first + 1; i <= d.record.count; i += 4, compared++)
+      gain += compare(&left, &d, i, &l, first_area);
+    assert_true(compared > 10);
+    gain = exp(gain / compared);
+    if (!(gain < (kind == 2 ? 1 : 0.98))) /* of the third it is mostly the noise */
+      fail_msg("shape %d: mean distances %g of those before", kind, gain);
+    free(l.root);
+    free(l.corners);
+    free(l.at);
+    scree_decimator_free(&left);
+    scree_decimator_free(&d);
+    scree_mesh_free(&mesh);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_step_solves_the_equations),
+      cmocka_unit_test(levels_are_better_and_the_collapses_the_same),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
