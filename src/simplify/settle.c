@@ -9,7 +9,7 @@
 #include "simplify/ahead.h"
 
 /* Steps for a level, and the shortest share of one. */
-enum { MOST_STEPS = 8 };
+enum { MOST_STEPS = 5 };
 #define LEAST_SHARE 0.25
 /* A smaller gain of the score, or of the mean distance, is none. */
 #define LEAST_GAIN 2e-3

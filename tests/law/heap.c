@@ -63,14 +63,15 @@ static void poured_and_left(void **state) {
   CHECK_OK(scree_pour_create(shapes, 3, &o, &pour, &error), error);
   scree_world *world = scree_pour_world(pour);
   scree_observation seen;
-  double end = scree_pour_filling_time(pour) + 3, entered = 0, ledger = 0;
-  do {
+  double end = scree_pour_filling_time(pour) + 3, entered = 0, ledger = 0, quiet = 0;
+  do { /* a device that is about to tip over is slow as well, but not for long */
     CHECK_OK(scree_pour_advance(pour, 500, &error), error);
     double sum = law_ledger(world, &seen);
     entered = scree_pour_entered_energy(pour);
     ledger = fmax(ledger, fabs(sum / entered - 1));
-  } while (seen.time < end &&
-           !(seen.body_count == 80 && seen.kinetic + seen.rotational < 1e-7 && seen.pair_count));
+    if (seen.body_count < 80 || seen.pair_count == 0 || seen.kinetic + seen.rotational >= 1e-7)
+      quiet = seen.time;
+  } while (seen.time < end && seen.time < quiet + 0.5);
   print_message("%.2f s, %zu pairs touch\n", seen.time, seen.pair_count);
   LAW_NEAR("L18", "devices in the heap", (double)seen.body_count, 80, 0);
   LAW_BELOW("L18", "kinetic energy (J)", seen.kinetic + seen.rotational, 1e-6);
