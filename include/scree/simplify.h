@@ -108,7 +108,9 @@ SCREE_API void scree_curve_collapse(const scree_curve *curve, size_t index,
                                     scree_collapse *collapse);
 
 /* With method volume vertices of a coarse level also move, after the collapse that makes it and as
- * part of the same step: one after the other, and one may move more than once. */
+ * part of the same step: one after the other, and one may move more than once. Those of the last
+ * 160 triangles lead from one level as it is shown to the next (docs/decimation.md, "Settled
+ * levels"). */
 typedef struct scree_vertex_move {
   uint32_t vertex;    /* of the mesh given */
   double position[3]; /* afterwards, m */

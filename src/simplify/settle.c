@@ -139,7 +139,7 @@ static scree_status try_step(scree_settled *l, bool *gains) {
   return SCREE_OK;
 }
 
-scree_status scree_settle(scree_settled *l) {
+static scree_status settle(scree_settled *l) {
   const scree_decimator *d = &l->trial.d;
   scree_joint *j = &l->joint;
   scree_status status = SCREE_OK;
@@ -160,7 +160,7 @@ scree_status scree_settle(scree_settled *l) {
 static void settle_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   scree_settling *q = context;
-  for (size_t i = begin; i < end; i++) q->levels[i].status = scree_settle(&q->levels[i]);
+  for (size_t i = begin; i < end; i++) q->levels[i].status = settle(&q->levels[i]);
 }
 
 /* From the last level shown to this one: what stands elsewhere moves. */

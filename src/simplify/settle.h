@@ -38,7 +38,4 @@ scree_status scree_settle_level(scree_settling *settling, const scree_step *step
 /* After the last level: settles those that wait, and the record tells of settled levels instead. */
 scree_status scree_settle_end(scree_settling *settling, scree_decimator *d);
 
-/* Settles one level: of the trial's surface, whose record has one collapse. */
-scree_status scree_settle(scree_settled *level);
-
 #endif
