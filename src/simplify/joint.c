@@ -112,28 +112,6 @@ SCREE_LANES static void say_all_lanes(const double *corners, const scree_points 
   }
 }
 
-static void add_square(double m[6], vec3 g, double weight) {
-  m[0] += weight * g.x * g.x;
-  m[1] += weight * g.x * g.y;
-  m[2] += weight * g.x * g.z;
-  m[3] += weight * g.y * g.y;
-  m[4] += weight * g.y * g.z;
-  m[5] += weight * g.z * g.z;
-}
-
-static vec3 times(const double m[6], vec3 x) {
-  return (vec3){m[0] * x.x + m[1] * x.y + m[2] * x.z, m[1] * x.x + m[3] * x.y + m[4] * x.z,
-                m[2] * x.x + m[4] * x.y + m[5] * x.z};
-}
-
-/* The block's inverse times v. */
-static vec3 over(const double m[6], vec3 v) {
-  vec3 x = {m[0], m[1], m[2]}, y = {m[1], m[3], m[4]}, z = {m[2], m[4], m[5]};
-  vec3 yz = vec3_cross(y, z), zx = vec3_cross(z, x), xy = vec3_cross(x, y);
-  vec3 sum = vec3_mad(vec3_mad(vec3_scale(yz, v.x), zx, v.y), xy, v.z);
-  return vec3_scale(sum, 1 / vec3_dot(x, yz));
-}
-
 /* The weights, see above. */
 typedef struct weighing {
   double least, far_unit, far2;
@@ -147,7 +125,7 @@ static double far_weight(const weighing *w, double distance2) {
 /* Vertex v has this share of a place. */
 static void add_end(scree_joint *j, uint32_t v, vec3 g, double weight, double share,
                     double distance) {
-  add_square(j->own[v], g, weight * share * share);
+  sym3_add_square(&j->own[v], g, weight * share * share);
   j->pull[v] = vec3_mad(j->pull[v], g, weight * share * distance);
   j->shares[v] += weight * share * share;
 }
@@ -165,7 +143,7 @@ static void add_crowd(scree_joint *j, const scree_halfmesh *s, uint32_t t, const
     for (uint32_t k = 0; k < 3; k++) {
       double share = said.share[k][i], next = said.share[(k + 1) % 3][i];
       add_end(j, s->half[3 * t + k].from, g, weight, share, distance);
-      add_square(j->shared[3 * t + k], g, weight * share * next);
+      sym3_add_square(&j->shared[3 * t + k], g, weight * share * next);
     }
   }
   points->count = 0;
@@ -197,7 +175,7 @@ static void add_far(scree_joint *j, const scree_halfmesh *s, const scree_far_pla
   vec3 g = vec3_scale(vec3_sub(p->nearest, p->at), 1 / distance);
   add_end(j, s->half[p->half_edge].from, g, weight, 1 - p->share, distance);
   add_end(j, scree_to(s, p->half_edge), g, weight, p->share, distance);
-  add_square(j->shared[p->half_edge], g, weight * p->share * (1 - p->share));
+  sym3_add_square(&j->shared[p->half_edge], g, weight * p->share * (1 - p->share));
 }
 
 static double dot(const vec3 *a, const vec3 *b, size_t count) {
@@ -207,13 +185,13 @@ static double dot(const vec3 *a, const vec3 *b, size_t count) {
 }
 
 static void multiply(const scree_joint *j, const scree_halfmesh *s, const vec3 *x, vec3 *out) {
-  for (size_t v = 0; v < s->vertex_count; v++) out[v] = times(j->own[v], x[v]);
+  for (size_t v = 0; v < s->vertex_count; v++) out[v] = sym3_mul_vec(&j->own[v], x[v]);
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
     uint32_t a = s->half[h].from;
     if (a == SCREE_NONE) continue;
     uint32_t b = scree_to(s, h);
-    out[a] = vec3_add(out[a], times(j->shared[h], x[b]));
-    out[b] = vec3_add(out[b], times(j->shared[h], x[a]));
+    out[a] = vec3_add(out[a], sym3_mul_vec(&j->shared[h], x[b]));
+    out[b] = vec3_add(out[b], sym3_mul_vec(&j->shared[h], x[a]));
   }
   for (size_t v = 0; v < s->vertex_count; v++)
     if (!j->free[v]) out[v] = (vec3){0, 0, 0};
@@ -226,7 +204,7 @@ static void solve(scree_joint *j, const scree_halfmesh *s, const vec3 *right, ve
   for (size_t v = 0; v < count; v++) {
     x[v] = (vec3){0, 0, 0};
     r[v] = j->free[v] ? right[v] : x[v];
-    p[v] = z[v] = j->free[v] ? over(j->own[v], r[v]) : x[v];
+    p[v] = z[v] = j->free[v] ? sym3_solve(&j->own[v], r[v]) : x[v];
   }
   double rz = dot(r, z, count), enough = ENOUGH * rz;
   for (int i = 0; i < MOST_ITERATIONS && rz > enough; i++) {
@@ -235,7 +213,7 @@ static void solve(scree_joint *j, const scree_halfmesh *s, const vec3 *right, ve
     for (size_t v = 0; v < count; v++) {
       x[v] = vec3_mad(x[v], p[v], along);
       r[v] = vec3_mad(r[v], q[v], -along);
-      if (j->free[v]) z[v] = over(j->own[v], r[v]);
+      if (j->free[v]) z[v] = sym3_solve(&j->own[v], r[v]);
     }
     rz = dot(r, z, count);
     for (size_t v = 0; v < count; v++) p[v] = vec3_mad(z[v], p[v], rz / before);
@@ -257,7 +235,7 @@ bool scree_joint_find(scree_joint *j, const scree_memory *m, const scree_halfmes
   for (size_t i = 0; i < j->far_count; i++) add_far(j, s, &j->far[i], &w);
   for (size_t v = 0; v < vertices; v++) {
     j->free[v] = j->free[v] && j->shares[v] > 0;
-    for (int i = 0; i < 6; i += i == 0 ? 3 : 2) j->own[v][i] += DAMPING * j->shares[v];
+    sym3_add_diagonal(&j->own[v], DAMPING * j->shares[v]);
     if (!j->free[v]) j->n[v] = (vec3){0, 0, 0};
   }
   solve(j, s, j->pull, j->step);

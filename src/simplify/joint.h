@@ -3,6 +3,7 @@
 #ifndef SCREE_SIMPLIFY_JOINT_H
 #define SCREE_SIMPLIFY_JOINT_H
 
+#include "base/sym3.h"
 #include "simplify/stray.h"
 
 typedef struct scree_joint {
@@ -18,10 +19,9 @@ typedef struct scree_joint {
   double far2;
   scree_place_hint (*hints)[SCREE_LEVEL_PLACES]; /* per half-edge */
   bool hinted;
-  /* The equations: per vertex, per half-edge; upper triangles of symmetric blocks. */
-  double (*own)[6], (*shared)[6];
-  vec3 *n, *pull; /* per vertex: sum of the doubled area vectors of its fan; right side */
-  double *shares; /* per vertex: of the squares, weighted */
+  sym3 *own, *shared; /* the equations: blocks per vertex and per half-edge */
+  vec3 *n, *pull;     /* per vertex: sum of the doubled area vectors of its fan; right side */
+  double *shares;     /* per vertex: of the squares, weighted */
   vec3 *room[4];
 } scree_joint;
 

@@ -25,6 +25,7 @@
 #include "simplify/relax.h"
 
 #include "base/lanes.h"
+#include "base/sym3.h"
 
 /* Against the sum of the squared shares: the fan says little of some directions. */
 #define DAMPING 0.05
@@ -32,7 +33,7 @@
 #define LEAST_GAIN 1e-2
 
 typedef struct equations {
-  double xx, xy, xz, yy, yz, zz;
+  sym3 h;
   vec3 g;
   double shares;
 } equations;
@@ -67,24 +68,11 @@ static void add_points(equations *q, const double *corners, scree_points *points
     double distance = sqrt(points->distance2[i]), share = said.share[i];
     vec3 g = {said.g[0][i], said.g[1][i], said.g[2][i]};
     if (!(distance > SCREE_SAME_DISTANCE)) continue; /* it has no direction */
-    q->xx += g.x * g.x;
-    q->xy += g.x * g.y;
-    q->xz += g.x * g.z;
-    q->yy += g.y * g.y;
-    q->yz += g.y * g.z;
-    q->zz += g.z * g.z;
+    sym3_add_square(&q->h, g, 1);
     q->g = vec3_mad(q->g, g, distance);
     q->shares += share * share;
   }
   points->count = 0;
-}
-
-/* H^-1 v; the damping keeps H well away from singular. */
-static vec3 solve(const equations *q, vec3 v) {
-  vec3 x = {q->xx, q->xy, q->xz}, y = {q->xy, q->yy, q->yz}, z = {q->xz, q->yz, q->zz};
-  vec3 yz = vec3_cross(y, z), zx = vec3_cross(z, x), xy = vec3_cross(x, y);
-  vec3 sum = vec3_mad(vec3_mad(vec3_scale(yz, v.x), zx, v.y), xy, v.z);
-  return vec3_scale(sum, 1 / vec3_dot(x, yz));
 }
 
 bool scree_pull_find(const scree_memory *m, const scree_halfmesh *s, const scree_ring *fan,
@@ -107,12 +95,10 @@ bool scree_pull_find(const scree_memory *m, const scree_halfmesh *s, const scree
     if (points.count > 0) add_points(&q, corners[i], &points);
   }
   if (!(q.shares > 0)) return false;
-  q.xx += DAMPING * q.shares;
-  q.yy += DAMPING * q.shares;
-  q.zz += DAMPING * q.shares;
+  sym3_add_diagonal(&q.h, DAMPING * q.shares); /* well away from singular */
   p->worst = scree_past_rounding(p->worst);
-  p->free = solve(&q, q.g);
-  p->per_n = solve(&q, p->n);
+  p->free = sym3_solve(&q.h, q.g);
+  p->per_n = sym3_solve(&q.h, p->n);
   p->gain = vec3_dot(q.g, p->free);
   p->n_free = vec3_dot(p->n, p->free);
   p->n_per_n = vec3_dot(p->n, p->per_n);

@@ -113,8 +113,9 @@ static bool all_allowed(scree_step *q, moving *m, scree_status *status) {
   return answer;
 }
 
-scree_status scree_step_move(scree_step *q, const scree_ring *fan, const scree_change *change,
-                             const scree_around *geometry) {
+/* Moves the fan's vertex to change->target. */
+static scree_status move(scree_step *q, const scree_ring *fan, const scree_change *change,
+                         const scree_around *geometry) {
   scree_decimator *d = q->d;
   scree_status status = scree_record_move(d, fan, change);
   if (status != SCREE_OK) return status;
@@ -138,7 +139,7 @@ static scree_status try_moving(scree_step *q, moving *m) {
         !all_allowed(q, m, &status))
       continue;
     for (int i = 0; i < m->count && status == SCREE_OK; i++)
-      status = scree_step_move(q, &m->fans[i], &m->changes[i], &m->around[i]);
+      status = move(q, &m->fans[i], &m->changes[i], &m->around[i]);
     return status;
   }
   return status;

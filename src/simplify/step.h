@@ -26,11 +26,6 @@ bool scree_step_allows(scree_step *step, scree_ring *ring, scree_change *change,
 /* The fan of a vertex that may move; false: it may not. */
 bool scree_step_gather(const scree_halfmesh *s, uint32_t vertex, scree_ring *fan);
 
-/* Writes a move of the fan's vertex, which was allowed, to the record and does it. Every vertex of
- * which triangles changed is among those touched. */
-scree_status scree_step_move(scree_step *step, const scree_ring *fan, const scree_change *change,
-                             const scree_around *around);
-
 /* Finds the farthest place of the level anew, where it is time. */
 void scree_step_find_farthest(scree_step *step);
 
