@@ -96,6 +96,11 @@ static inline bool scree_is_held_close(const scree_decimator *d) {
  * large scans. */
 enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 1000 };
 
+/* Witnesses for a triangle above which they are thinned, and how many are kept however few
+ * triangles there are: places found by few fit these rather than the scan. Of large scans fewer,
+ * for it takes time. */
+enum { SCREE_CROWD = 48, SCREE_LEAST_WITNESSES = 4000, SCREE_CROWD_OF_LARGE = 24 };
+
 /* Keeps the surface as it is (stray.h). */
 scree_status scree_decimate_keep(scree_decimator *d);
 

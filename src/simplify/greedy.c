@@ -49,6 +49,10 @@
 #define TOLL_RANK   0.1
 #define RENEW_BELOW 0.7
 
+/* Of scans held close: the share of the toll below so many triangles. */
+#define EASY_TOLL 0.05
+enum { EASY_BELOW = 900 };
+
 /* Edges evaluated in one call. */
 enum { SIDE_BY_SIDE = 32 };
 
@@ -207,6 +211,13 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* Scans held close in their fine levels have room in the greatest distance of coarser ones, until
+ * those look ahead. */
+static bool has_easy_toll(const scree_decimator *d) {
+  return scree_is_close_scan(d) && d->s.live_triangle_count < EASY_BELOW &&
+         d->s.live_triangle_count > SCREE_AHEAD_COUNT;
+}
+
 /* Enters all edges and finds the toll. */
 static void renew(queue *q) {
   scree_decimator *d = q->d;
@@ -215,10 +226,14 @@ static void renew(queue *q) {
   for (size_t i = 0; i < q->heap_count; i++) q->sorted[i] = q->cost[q->heap[i]];
   qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
   double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
-  scree_memory_thin(&d->memory, &d->s, scree_is_held_close(d));
+  if (scree_is_large(d))
+    scree_memory_thin(&d->memory, &d->s, SCREE_CROWD_OF_LARGE, 0);
+  else
+    scree_memory_thin(&d->memory, &d->s, SCREE_CROWD, SCREE_LEAST_WITNESSES);
   double far = scree_memory_usual(&d->memory, scree_is_held_close(d));
   if (far > 0) far = fmax(far, scree_memory_worst(&d->memory));
   q->toll = far > 0 ? cost / pow(far, 6) : 0;
+  if (has_easy_toll(d)) q->toll *= EASY_TOLL;
   q->renew_at = (size_t)(RENEW_BELOW * (double)d->s.live_triangle_count);
 }
 

@@ -1,17 +1,20 @@
-/* One step of Gauss and Newton in all vertices together. As in relax.c, but that every corner k of
+/* Steps of Gauss and Newton in all vertices together. As in relax.c, but that every corner k of
  * witness j's triangle moves, and has the share b_jk of the nearest point: the witness's distance
  * d_j changes by -sum_k b_jk g_j.y_k. With weights w_j,
  *
- *     sum_j w_j (sum_k b_jk g_j.y_k - d_j)^2 + DAMPING sum_k |y_k|^2 sum_j w_j b_jk^2 -> min
+ *     sum_j w_j (sum_k b_jk g_j.y_k - d_j)^2 + damping sum_k |y_k|^2 sum_j w_j b_jk^2 -> min
  *
- * What a level is judged by is the sum of distances, not of their squares, and the greatest. So
+ * What a level is judged by is the mean of its N distances, and the greatest. So with m and F what
+ * these were when the steps began, they make the merit
  *
- *     w_j = 1 / max(d_j, m / 10) + FAR_SHARE N m / F^2 (d_j / F)^6,
+ *     2 / N sum_j d_j + FAR_SHARE m / 4 sum_j (d_j / F)^8
  *
- * m the mean of the N distances, F the greatest: the first part makes of squares a sum of distances
- * (iteratively reweighted least squares), the second is felt near the greatest only. Vertices and
- * places on edges that are more than half as far from the surface kept stand in the sum as well,
- * with the second part alone.
+ * less, whose second part is felt near the greatest only. Its gradient is that of the squares with
+ *
+ *     w_j = 1 / max(d_j, m / 10) + FAR_SHARE N m / F^2 (d_j / F)^6
+ *
+ * (iteratively reweighted least squares). Vertices and places on edges that are more than half as
+ * far from the surface kept stand in the sums as well, with the second part alone.
  *
  * With n_k the sum of the doubled area vectors of vertex k's fan the volume changes by
  * sum_k n_k.y_k / 6, to first order; it is kept as in relax.c, by one pressure for all. */
@@ -25,13 +28,12 @@
 #define LEAST_DISTANCE 0.1
 /* What all that lies as far off as the farthest place weighs, against all witnesses. */
 #define FAR_SHARE 0.1
-/* Against the sums of the squared shares. */
-#define DAMPING 0.02
 /* Conjugate gradients end where the residual is so much smaller, squared, or after so many steps.
  */
 #define ENOUGH 1e-6
 enum { MOST_ITERATIONS = 40 };
-/* Places are looked at above this share of the farthest's squared distance. */
+/* Places are looked at above this share of the farthest's squared distance, or, where there are
+ * none, of that again. */
 #define LOOKED_ABOVE 0.5
 /* Looks for the farthest place, each for what is nearer than in the one before. */
 enum { MOST_LOOKS = 4 };
@@ -48,6 +50,7 @@ scree_status scree_joint_allocate(scree_joint *j, const scree_halfmesh *s, scree
   SCREE_ALLOC_OR(j->far, half_edges * SCREE_LEVEL_PLACES, error, out_of_memory);
   SCREE_ALLOC_OR(j->hints, half_edges, error, out_of_memory);
   SCREE_ALLOC_OR(j->own, vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->damped, vertices, error, out_of_memory);
   SCREE_ALLOC_OR(j->shared, half_edges, error, out_of_memory);
   SCREE_ALLOC_OR(j->n, vertices, error, out_of_memory);
   SCREE_ALLOC_OR(j->pull, vertices, error, out_of_memory);
@@ -65,6 +68,7 @@ void scree_joint_free(scree_joint *j) {
   scree_free(j->far);
   scree_free(j->hints);
   scree_free(j->own);
+  scree_free(j->damped);
   scree_free(j->shared);
   scree_free(j->n);
   scree_free(j->pull);
@@ -72,17 +76,48 @@ void scree_joint_free(scree_joint *j) {
   for (int i = 0; i < 4; i++) scree_free(j->room[i]);
 }
 
-void scree_joint_look(scree_joint *j, const scree_memory *m, const scree_halfmesh *s,
-                      double about2) {
+/* Lists the places that are farther off than `least2`. */
+static void list_far(scree_joint *j, const scree_memory *m, const scree_halfmesh *s,
+                     double least2) {
+  j->far_count = scree_memory_far_places(m, s, least2, j->hinted, j->hints, j->far);
+  j->hinted = true;
+}
+
+void scree_joint_begin(scree_joint *j, const scree_memory *m, const scree_halfmesh *s,
+                       double about2) {
   double of_witnesses2 = scree_memory_witness_stray(m, s);
   double least2 = LOOKED_ABOVE * fmax(about2, of_witnesses2);
+  j->mean = scree_memory_mean(m);
+  j->hinted = false;
   for (int look = 0; look < MOST_LOOKS; look++, least2 *= LOOKED_ABOVE) {
-    j->far_count = scree_memory_far_places(m, s, least2, j->hinted, j->hints, j->far);
-    j->hinted = true;
+    list_far(j, m, s, least2);
     j->far2 = of_witnesses2;
     for (size_t i = 0; i < j->far_count; i++) j->far2 = fmax(j->far2, j->far[i].distance2);
-    if (j->far2 > least2) return;
+    if (j->far2 > least2) break;
   }
+  if (least2 != LOOKED_ABOVE * j->far2) scree_joint_look(j, m, s);
+}
+
+void scree_joint_look(scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
+  list_far(j, m, s, LOOKED_ABOVE * j->far2);
+}
+
+static double eighth_power(double distance2, double far2) {
+  double ratio2 = distance2 / far2, ratio4 = ratio2 * ratio2;
+  return ratio4 * ratio4;
+}
+
+double scree_joint_merit(const scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
+  double sum = 0, far = 0;
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    if (scree_is_gone(s, t)) continue;
+    for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next) {
+      sum += sqrt(m->witnesses[k].distance2);
+      far += eighth_power(m->witnesses[k].distance2, j->far2);
+    }
+  }
+  for (size_t i = 0; i < j->far_count; i++) far += eighth_power(j->far[i].distance2, j->far2);
+  return 2 * sum / (double)m->left + FAR_SHARE / 4 * j->mean * far;
 }
 
 /* What the witnesses of one triangle say, side by side: unit vectors towards them and the shares of
@@ -185,7 +220,7 @@ static double dot(const vec3 *a, const vec3 *b, size_t count) {
 }
 
 static void multiply(const scree_joint *j, const scree_halfmesh *s, const vec3 *x, vec3 *out) {
-  for (size_t v = 0; v < s->vertex_count; v++) out[v] = sym3_mul_vec(&j->own[v], x[v]);
+  for (size_t v = 0; v < s->vertex_count; v++) out[v] = sym3_mul_vec(&j->damped[v], x[v]);
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
     uint32_t a = s->half[h].from;
     if (a == SCREE_NONE) continue;
@@ -204,7 +239,7 @@ static void solve(scree_joint *j, const scree_halfmesh *s, const vec3 *right, ve
   for (size_t v = 0; v < count; v++) {
     x[v] = (vec3){0, 0, 0};
     r[v] = j->free[v] ? right[v] : x[v];
-    p[v] = z[v] = j->free[v] ? sym3_solve(&j->own[v], r[v]) : x[v];
+    p[v] = z[v] = j->free[v] ? sym3_solve(&j->damped[v], r[v]) : x[v];
   }
   double rz = dot(r, z, count), enough = ENOUGH * rz;
   for (int i = 0; i < MOST_ITERATIONS && rz > enough; i++) {
@@ -213,18 +248,17 @@ static void solve(scree_joint *j, const scree_halfmesh *s, const vec3 *right, ve
     for (size_t v = 0; v < count; v++) {
       x[v] = vec3_mad(x[v], p[v], along);
       r[v] = vec3_mad(r[v], q[v], -along);
-      if (j->free[v]) z[v] = sym3_solve(&j->own[v], r[v]);
+      if (j->free[v]) z[v] = sym3_solve(&j->damped[v], r[v]);
     }
     rz = dot(r, z, count);
     for (size_t v = 0; v < count; v++) p[v] = vec3_mad(z[v], p[v], rz / before);
   }
 }
 
-bool scree_joint_find(scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
+bool scree_joint_fill(scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
   size_t vertices = s->vertex_count;
-  double mean = scree_memory_mean(m);
-  if (!(mean > SCREE_SAME_DISTANCE)) return false;
-  weighing w = {LEAST_DISTANCE * mean, FAR_SHARE * (double)m->left * mean / j->far2, j->far2};
+  if (!(j->mean > SCREE_SAME_DISTANCE)) return false;
+  weighing w = {LEAST_DISTANCE * j->mean, FAR_SHARE * (double)m->left * j->mean / j->far2, j->far2};
   memset(j->own, 0, vertices * sizeof *j->own);
   memset(j->shared, 0, 3 * s->triangle_count * sizeof *j->shared);
   memset(j->pull, 0, vertices * sizeof *j->pull);
@@ -235,8 +269,16 @@ bool scree_joint_find(scree_joint *j, const scree_memory *m, const scree_halfmes
   for (size_t i = 0; i < j->far_count; i++) add_far(j, s, &j->far[i], &w);
   for (size_t v = 0; v < vertices; v++) {
     j->free[v] = j->free[v] && j->shares[v] > 0;
-    sym3_add_diagonal(&j->own[v], DAMPING * j->shares[v]);
     if (!j->free[v]) j->n[v] = (vec3){0, 0, 0};
+  }
+  return true;
+}
+
+bool scree_joint_solve(scree_joint *j, const scree_halfmesh *s, double damping) {
+  size_t vertices = s->vertex_count;
+  for (size_t v = 0; v < vertices; v++) {
+    j->damped[v] = j->own[v];
+    sym3_add_diagonal(&j->damped[v], damping * j->shares[v]);
   }
   solve(j, s, j->pull, j->step);
   solve(j, s, j->n, j->per_n);
@@ -260,9 +302,9 @@ static double volume_change(const scree_halfmesh *s, const vec3 *places) {
   return sum;
 }
 
-void scree_joint_places(const scree_joint *j, const scree_halfmesh *s, double share, vec3 *places) {
+void scree_joint_places(const scree_joint *j, const scree_halfmesh *s, vec3 *places) {
   for (size_t v = 0; v < s->vertex_count; v++)
-    places[v] = j->free[v] ? vec3_mad(s->vertex[v].at, j->step[v], share) : s->vertex[v].at;
+    places[v] = j->free[v] ? vec3_add(s->vertex[v].at, j->step[v]) : s->vertex[v].at;
   for (int k = 0; k < VOLUME_ROUNDS; k++) {
     double pressure = -volume_change(s, places) / j->n_per_n;
     for (size_t v = 0; v < s->vertex_count; v++)

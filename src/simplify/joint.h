@@ -12,16 +12,17 @@ typedef struct scree_joint {
    * how pressure moves it. */
   vec3 *step, *per_n;
   double n_per_n; /* six times the volume that a unit of pressure takes */
-  /* Of what lies far off: the places, how many they are, and the squared distance of the farthest
-   * of all, a witness perhaps. */
-  scree_far_place *far;
+  /* As the steps began: the mean distance of the witnesses, and the squared distance of the
+   * farthest of all, a witness perhaps. */
+  double mean, far2;
+  scree_far_place *far; /* vertices and places on edges that lie far off, as it is */
   size_t far_count;
-  double far2;
   scree_place_hint (*hints)[SCREE_LEVEL_PLACES]; /* per half-edge */
   bool hinted;
-  sym3 *own, *shared; /* the equations: blocks per vertex and per half-edge */
-  vec3 *n, *pull;     /* per vertex: sum of the doubled area vectors of its fan; right side */
-  double *shares;     /* per vertex: of the squares, weighted */
+  sym3 *own, *damped, *shared; /* the equations: blocks per vertex, the same with damping, and per
+                                  half-edge */
+  vec3 *n, *pull; /* per vertex: sum of the doubled area vectors of its fan; right side */
+  double *shares; /* per vertex: of the squares, weighted */
   vec3 *room[4];
 } scree_joint;
 
@@ -29,16 +30,26 @@ typedef struct scree_joint {
 scree_status scree_joint_allocate(scree_joint *joint, const scree_halfmesh *s, scree_error *error);
 void scree_joint_free(scree_joint *joint);
 
-/* Looks for the farthest place of the level, and for those more than half as far off. about2: the
- * squared distance that is expected of it. */
-void scree_joint_look(scree_joint *joint, const scree_memory *memory, const scree_halfmesh *s,
-                      double about2);
+/* The level as it is: what the steps are measured against. about2: the squared distance that is
+ * expected of its farthest place. */
+void scree_joint_begin(scree_joint *joint, const scree_memory *memory, const scree_halfmesh *s,
+                       double about2);
 
-/* Finds the steps, after a look. False: nothing is off, or the volume has no way to be kept. */
-bool scree_joint_find(scree_joint *joint, const scree_memory *memory, const scree_halfmesh *s);
+/* Looks for what lies far off now. */
+void scree_joint_look(scree_joint *joint, const scree_memory *memory, const scree_halfmesh *s);
 
-/* Where the vertices are at this share of their steps, with the volume kept: per vertex. */
-void scree_joint_places(const scree_joint *joint, const scree_halfmesh *s, double share,
-                        vec3 *places);
+/* What the steps make less: twice the mean distance and a quarter of what lies far off, weighted.
+ * After a look. */
+double scree_joint_merit(const scree_joint *joint, const scree_memory *memory,
+                         const scree_halfmesh *s);
+
+/* Fills the equations, after a look. False: nothing was off. */
+bool scree_joint_fill(scree_joint *joint, const scree_memory *memory, const scree_halfmesh *s);
+/* Finds the steps; damping: against the sums of the squared shares. False: the volume has no way to
+ * be kept. */
+bool scree_joint_solve(scree_joint *joint, const scree_halfmesh *s, double damping);
+
+/* Where the steps lead, with the volume kept: per vertex. */
+void scree_joint_places(const scree_joint *joint, const scree_halfmesh *s, vec3 *places);
 
 #endif

@@ -1,20 +1,22 @@
-/* A step is taken, whole, by half or by a quarter, where the level's score (ahead.h) falls and
- * nothing gets much farther off. Vertices move one after the other, each if it is allowed, so that
- * all that holds for a move holds here. What those that may not leave of the volume, the others
- * take up. */
+/* Vertices move one after the other, each if it is allowed, so that all that holds for a move holds
+ * here. What those that may not leave of the volume, the others take up. Steps are taken where the
+ * merit (joint.h) falls; else they are found once more with more damping (Levenberg, Marquardt). */
 #include "simplify/settle.h"
 
 #include "base/array.h"
 #include "base/parallel.h"
-#include "simplify/ahead.h"
 
-/* Steps for a level, and the shortest share of one. */
-enum { MOST_STEPS = 5 };
-#define LEAST_SHARE 0.25
-/* A smaller gain of the score, or of the mean distance, is none. */
-#define LEAST_GAIN 2e-3
-/* How much farther than the farthest place a place may be. */
-#define FARTHER 1.1
+/* Steps tried for a level; of large scans fewer, for it takes time. */
+enum { MOST_STEPS = 10, MOST_OF_LARGE = 5 };
+/* A smaller gain of the merit is none. */
+#define LEAST_GAIN 1e-4
+/* Damping to begin with; by how much it falls after steps that were taken and grows after others;
+ * its limits. */
+#define DAMPING       0.02
+#define LESS_DAMPING  3.0
+#define MORE_DAMPING  6.0
+#define LEAST_DAMPING 1e-4
+#define MOST_DAMPING  10.0
 
 static scree_status allocate(scree_settled *l, const scree_decimator *d) {
   scree_status status = scree_trial_allocate(&l->trial, d);
@@ -94,6 +96,7 @@ static scree_status move_all(scree_settled *l, bool *kept) {
   double before = *volume, most = 0;
   bool moved, all = true;
   uint32_t softest = SCREE_NONE;
+  *kept = false;
   for (uint32_t v = 0; v < s->vertex_count && status == SCREE_OK; v++) {
     if (!j->free[v]) continue;
     status = move_to(q, v, l->places[v], &moved);
@@ -114,45 +117,43 @@ static scree_status move_all(scree_settled *l, bool *kept) {
   return status;
 }
 
-/* Tries the joint's step. */
-static scree_status try_step(scree_settled *l, bool *gains) {
-  scree_decimator *d = &l->trial.d;
-  double mean = scree_memory_mean(&d->memory), far2 = l->joint.far2;
-  double score = scree_level_score(mean, sqrt(far2));
-  scree_status status = SCREE_OK;
-  *gains = false;
+/* Takes the joint's steps, if the merit falls by them. */
+static scree_status try_steps(scree_settled *l, double *merit, bool *taken) {
+  const scree_decimator *d = &l->trial.d;
   scree_trial_copy(&l->before, &l->trial);
-  for (double share = 1; share >= LEAST_SHARE; share *= 0.5) {
-    bool kept = false;
-    scree_joint_places(&l->joint, &d->s, share, l->places);
-    status = move_all(l, &kept);
-    if (status != SCREE_OK) return status;
-    double after = scree_memory_mean(&d->memory);
-    if (kept && after < (1 - LEAST_GAIN) * mean) {
-      scree_joint_look(&l->joint, &d->memory, &d->s, far2);
-      *gains = l->joint.far2 <= FARTHER * FARTHER * far2 &&
-               scree_level_score(after, sqrt(l->joint.far2)) < (1 - LEAST_GAIN) * score;
-    }
-    if (*gains) return SCREE_OK;
-    scree_trial_copy(&l->trial, &l->before);
+  scree_joint_places(&l->joint, &d->s, l->places);
+  scree_status status = move_all(l, taken);
+  if (status != SCREE_OK) return status;
+  if (*taken) {
+    scree_joint_look(&l->joint, &d->memory, &d->s);
+    double now = scree_joint_merit(&l->joint, &d->memory, &d->s);
+    *taken = now < (1 - LEAST_GAIN) * *merit;
+    if (*taken) *merit = now;
   }
+  if (!*taken) scree_trial_copy(&l->trial, &l->before);
   return SCREE_OK;
+}
+
+static bool fill(scree_joint *j, const scree_decimator *d) {
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring fan = {.edge = edges};
+  for (uint32_t v = 0; v < d->s.vertex_count; v++)
+    j->free[v] = d->s.vertex[v].outgoing != SCREE_NONE && scree_step_gather(&d->s, v, &fan);
+  return scree_joint_fill(j, &d->memory, &d->s);
 }
 
 static scree_status settle(scree_settled *l) {
   const scree_decimator *d = &l->trial.d;
   scree_joint *j = &l->joint;
   scree_status status = SCREE_OK;
-  uint32_t edges[SCREE_RING_MAX];
-  scree_ring fan = {.edge = edges};
-  bool gains = true;
-  j->hinted = false;
-  scree_joint_look(j, &d->memory, &d->s, l->trial.step.farthest2);
-  for (int i = 0; i < MOST_STEPS && gains && status == SCREE_OK; i++) {
-    for (uint32_t v = 0; v < d->s.vertex_count; v++)
-      j->free[v] = d->s.vertex[v].outgoing != SCREE_NONE && scree_step_gather(&d->s, v, &fan);
-    if (!scree_joint_find(j, &d->memory, &d->s)) break;
-    status = try_step(l, &gains);
+  scree_joint_begin(j, &d->memory, &d->s, l->trial.step.farthest2);
+  double merit = scree_joint_merit(j, &d->memory, &d->s), damping = DAMPING;
+  int most = scree_is_large(d) ? MOST_OF_LARGE : MOST_STEPS;
+  bool taken = true;
+  for (int i = 0; i < most && damping <= MOST_DAMPING && status == SCREE_OK; i++) {
+    if ((taken && !fill(j, d)) || !scree_joint_solve(j, &d->s, damping)) break;
+    status = try_steps(l, &merit, &taken);
+    damping = taken ? fmax(LEAST_DAMPING, damping / LESS_DAMPING) : MORE_DAMPING * damping;
   }
   return status;
 }

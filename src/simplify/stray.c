@@ -20,9 +20,7 @@
 #define ROUGH_MEANS 5.0
 /* Triangles walked over towards a place before the tree is asked. */
 enum { MOST_STEPS = 32 };
-/* Witnesses per triangle above which half of them are dropped, where the level is held close and
- * else, and how these are known. */
-enum { CLOSE_CROWD = 48, CROWD = 24 };
+/* How witnesses that were dropped are known. */
 #define DROPPED (-1.0)
 /* In which the farthest place is looked for. */
 enum { FARTHEST_BLOCKS = 16 };
@@ -571,9 +569,10 @@ static void thin_list(scree_memory *m, uint32_t *first) {
   }
 }
 
-void scree_memory_thin(scree_memory *m, const scree_halfmesh *s, bool close) {
-  size_t crowd = close ? CLOSE_CROWD : CROWD;
-  while (m->left > crowd * s->live_triangle_count)
+void scree_memory_thin(scree_memory *m, const scree_halfmesh *s, size_t crowd, size_t least) {
+  size_t most = crowd * s->live_triangle_count;
+  if (most < least) most = least;
+  while (m->left > most)
     for (size_t t = 0; t < s->triangle_count; t++)
       if (!scree_is_gone(s, t)) thin_list(m, &m->first[t]);
 }

@@ -156,9 +156,9 @@ size_t scree_memory_far_places(const scree_memory *memory, const scree_halfmesh 
  * where none is off but for rounding. */
 double scree_memory_usual(const scree_memory *memory, bool close);
 
-/* Where there are very many witnesses for so few triangles, every second of each triangle goes, in
- * the order of their distances; the farthest of each stays. */
-void scree_memory_thin(scree_memory *memory, const scree_halfmesh *s, bool close);
+/* While there are more than `crowd` witnesses for a triangle, and more than `least`, every second
+ * of each triangle goes, in the order of their distances; the farthest of each stays. */
+void scree_memory_thin(scree_memory *memory, const scree_halfmesh *s, size_t crowd, size_t least);
 
 /* Forgets the witnesses that were dropped; those of a triangle lie side by side then. */
 scree_status scree_memory_squeeze(scree_memory *memory, const scree_halfmesh *s,

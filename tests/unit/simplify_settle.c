@@ -9,7 +9,6 @@
 /* What the rules name (simplify/joint.c). */
 #define LEAST_DISTANCE 0.1
 #define FAR_SHARE      0.1
-#define DAMPING        0.02
 #define LOOKED_ABOVE   0.5
 
 static scree_mesh bumpy(int kind) {
@@ -97,7 +96,7 @@ static void for_places(const scree_halfmesh *s, each_place *each, void *context)
 
 typedef struct places {
   const scree_memory *m;
-  double far2, unit;
+  double far2, unit, merit;
   size_t count;
   equations *q;
 } places;
@@ -115,6 +114,7 @@ static void add_far(void *context, const uint32_t v[3], const double share[3], v
   double distance2 = nearest_kept(p->m, at, &nearest);
   if (!(distance2 > LOOKED_ABOVE * p->far2)) return;
   p->count++;
+  p->merit += pow(distance2 / p->far2, 4);
   add(p->q, v, share, vec3_scale(vec3_sub(nearest, at), 1 / sqrt(distance2)),
       p->unit * pow(distance2 / p->far2, 3), sqrt(distance2));
 }
@@ -139,7 +139,8 @@ static void solve(equations *q) {
 }
 
 /* Fills and solves; far2 is that of the farthest place. Answers how many places are far. */
-static size_t full_step(const scree_decimator *d, vec3 *step, double *far2) {
+static size_t full_step(const scree_decimator *d, double damping, vec3 *step, double *far2,
+                        double *merit) {
   const scree_halfmesh *s = &d->s;
   const scree_memory *m = &d->memory;
   equations q = {.n = 3 * s->vertex_count + 1};
@@ -175,6 +176,7 @@ static size_t full_step(const scree_decimator *d, vec3 *step, double *far2) {
     for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) {
       vec3 nearest;
       double distance = sqrt(scree_triangle_closest(corners, m->witnesses[j].at, &nearest));
+      p.merit += pow(distance * distance / p.far2, 4);
       if (distance <= 1e-12) continue;
       shares_of(corners, nearest, share);
       double weight =
@@ -187,7 +189,7 @@ static size_t full_step(const scree_decimator *d, vec3 *step, double *far2) {
   for (size_t v = 0; v < s->vertex_count; v++)
     for (size_t a = 0; a < 3; a++) {
       double *diagonal = &q.m[(3 * v + a) * (q.n + 1) + 3 * v + a];
-      *diagonal += s->vertex[v].outgoing == SCREE_NONE ? 1 : DAMPING * q.ww[v];
+      *diagonal += s->vertex[v].outgoing == SCREE_NONE ? 1 : damping * q.ww[v];
     }
   solve(&q);
   for (size_t v = 0; v < s->vertex_count; v++) {
@@ -197,6 +199,7 @@ static size_t full_step(const scree_decimator *d, vec3 *step, double *far2) {
     step[v] = vec3_load(y);
   }
   *far2 = p.far2;
+  *merit = 2 * mean + FAR_SHARE / 4 * mean * p.merit;
   free(q.m);
   free(q.ww);
   return p.count;
@@ -220,28 +223,35 @@ static void the_step_solves_the_equations(void **state) {
       scree_decimator d = decimated(&mesh, stop, true, &error);
       size_t count = d.s.vertex_count;
       vec3 *full = calloc(count, sizeof *full), *at = calloc(count, sizeof *at);
-      double far2, largest = 0, off = 0;
+      double far2, merit;
       scree_joint j;
       CHECK_OK(scree_joint_allocate(&j, &d.s, &error), error);
       for (size_t v = 0; v < count; v++) j.free[v] = d.s.vertex[v].outgoing != SCREE_NONE;
-      size_t far_count = full_step(&d, full, &far2);
-      for (int look = 0; look < 3; look++) { /* whatever is expected, and again with hints */
-        scree_joint_look(&j, &d.memory, &d.s, (look == 1 ? 0.3 : 0.9) * far2);
-        CHECK_NEAR(j.far2, far2, 1e-9 * far2);
+      for (double damping = 1e-3; damping < 1; damping *= 20) {
+        double largest = 0, off = 0;
+        size_t far_count = full_step(&d, damping, full, &far2, &merit);
+        for (int expected = 0; expected < 3; expected++) {
+          scree_joint_begin(&j, &d.memory, &d.s, (0.1 + 0.5 * expected) * far2);
+          CHECK_NEAR(j.far2, far2, 1e-9 * far2);
+          assert_int_equal(j.far_count, far_count);
+        }
+        scree_joint_look(&j, &d.memory, &d.s); /* again, with hints */
+        assert_int_equal(j.far_count, far_count);
+        CHECK_NEAR(scree_joint_merit(&j, &d.memory, &d.s), merit, 1e-9 * merit);
+        assert_true(scree_joint_fill(&j, &d.memory, &d.s));
+        assert_true(scree_joint_solve(&j, &d.s, 7)); /* the next is as if it had not been */
+        assert_true(scree_joint_solve(&j, &d.s, damping));
+        for (size_t v = 0; v < count; v++) {
+          if (!j.free[v]) continue;
+          largest = fmax(largest, vec3_norm(full[v]));
+          off = fmax(off, vec3_norm(vec3_sub(full[v], j.step[v])));
+        }
+        assert_true(largest > 0);
+        CHECK_NEAR(off / largest, 0, 0.01);
       }
-      scree_joint_look(&j, &d.memory, &d.s, far2);
-      assert_int_equal(j.far_count, far_count);
-      assert_true(scree_joint_find(&j, &d.memory, &d.s));
-      for (size_t v = 0; v < count; v++) {
-        if (!j.free[v]) continue;
-        largest = fmax(largest, vec3_norm(full[v]));
-        off = fmax(off, vec3_norm(vec3_sub(full[v], j.step[v])));
-      }
-      assert_true(largest > 0);
-      CHECK_NEAR(off / largest, 0, 0.01);
       for (size_t v = 0; v < count; v++) at[v] = d.s.vertex[v].at;
       double volume = volume_at(&d.s, at);
-      scree_joint_places(&j, &d.s, 0.5, at);
+      scree_joint_places(&j, &d.s, at);
       CHECK_NEAR(volume_at(&d.s, at), volume, 1e-7 * volume);
       scree_joint_free(&j);
       free(full);

@@ -257,12 +257,14 @@ static void every_second_goes(void **state) {
     m.witnesses[j].next = m.first[0];
     m.first[0] = j;
   }
-  scree_memory_thin(&m, &s, false); /* 1,280 triangles: not crowded */
+  scree_memory_thin(&m, &s, 24, 0); /* 1,280 triangles: not crowded */
   assert_int_equal(m.left, 642);
   s.live_triangle_count = 20;
-  scree_memory_thin(&m, &s, true); /* 642 not above 960 */
+  scree_memory_thin(&m, &s, 48, 0); /* 642 not above 960 */
   assert_int_equal(m.left, 642);
-  scree_memory_thin(&m, &s, false); /* 642 above 480, 321 not */
+  scree_memory_thin(&m, &s, 24, 642); /* crowded, but no more than are to stay */
+  assert_int_equal(m.left, 642);
+  scree_memory_thin(&m, &s, 24, 641); /* 642 above 480, 321 not */
   assert_int_equal(m.left, 321);
   double before = INFINITY;
   size_t count = 0;
