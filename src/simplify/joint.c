@@ -108,16 +108,14 @@ static double eighth_power(double distance2, double far2) {
 }
 
 double scree_joint_merit(const scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
-  double sum = 0, far = 0;
+  double far = 0;
   for (size_t t = 0; t < s->triangle_count; t++) {
     if (scree_is_gone(s, t)) continue;
-    for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next) {
-      sum += sqrt(m->witnesses[k].distance2);
+    for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next)
       far += eighth_power(m->witnesses[k].distance2, j->far2);
-    }
   }
   for (size_t i = 0; i < j->far_count; i++) far += eighth_power(j->far[i].distance2, j->far2);
-  return 2 * sum / (double)m->left + FAR_SHARE / 4 * j->mean * far;
+  return 2 * scree_memory_mean(m) + FAR_SHARE / 4 * j->mean * far;
 }
 
 /* What the witnesses of one triangle say, side by side: unit vectors towards them and the shares of
