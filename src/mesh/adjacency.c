@@ -124,6 +124,7 @@ static scree_status collect_edges(builder *b, size_t block_count, scree_error *e
   size_t edge_count = 0;
   for (size_t i = 0; i < block_count; i++) edge_count += b->block_edges[i];
   SCREE_ALLOC_OR(b->out->edges, edge_count, error, out_of_memory);
+  scree_populate(b->out->edges, edge_count * sizeof *b->out->edges);
   uint32_t *edge = b->out->edges;
   for (size_t i = 0; i < block_count; i++) {
     const uint64_t *pair = b->pairs + b->start[i * VERTEX_BLOCK];

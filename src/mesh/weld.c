@@ -56,8 +56,10 @@ static uint64_t run_seed(const void *somewhere) {
 }
 
 static bool slots_allocate(distinct *d, size_t slot_count) {
-  uint32_t *slots = scree_alloc_zero(slot_count, sizeof *slots);
+  uint32_t *slots = scree_alloc(slot_count, sizeof *slots);
   if (!slots) return false;
+  scree_populate(slots, slot_count * sizeof *slots);
+  memset(slots, 0, slot_count * sizeof *slots);
   scree_free(d->slots);
   d->slots = slots;
   d->slot_count = slot_count;
@@ -177,6 +179,7 @@ static scree_status distinct_create(distinct *d, size_t corner_count, size_t tri
   *d = (distinct){.capacity = expected};
   d->seed = run_seed(d);
   SCREE_ALLOC_OR(d->positions, 3 * expected, error, out_of_memory);
+  scree_populate(d->positions, 3 * expected * sizeof *d->positions);
   size_t slot_count = 1024;
   while (slot_count / 2 < expected) slot_count *= 2;
   if (slots_allocate(d, slot_count)) return SCREE_OK;
@@ -239,6 +242,7 @@ scree_status scree_weld_corners(const scree_corner_source *source, double tolera
   if (status != SCREE_OK) return status;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(numbers, source->corner_count, error, done);
+  scree_populate(numbers, source->corner_count * sizeof *numbers);
   status = number_corners(source, &d, numbers, bad_corner, error);
   if (status != SCREE_OK) goto done;
   scree_free(d.slots);

@@ -188,6 +188,8 @@ static scree_status sort_vertices(vertex_sort *v, scree_error *error) {
   SCREE_ALLOC_OR(v->scratch, v->count, error, done);
   SCREE_ALLOC_OR(v->counts, v->count + 2, error, done);
   SCREE_ALLOC_OR(v->block_starts, blocks + 1, error, done);
+  scree_populate(v->sorted, v->count * sizeof *v->sorted);
+  scree_populate(v->scratch, v->count * sizeof *v->scratch);
   gather_records(v);
   if (v->count) spread_records(v);
   for (size_t k = 0; k <= blocks; k++)
@@ -274,6 +276,8 @@ static scree_status sort_triangles(const scree_loose_mesh *loose, const uint32_t
     goto done;
   }
   SCREE_ALLOC_OR(rest, count, error, done);
+  scree_populate(rest, count * sizeof *rest);
+  scree_populate(made->triangles, 3 * count * sizeof *made->triangles);
   /* shifted by two, so that filling moves starts[v + 1] to where triangles of v + 1 begin */
   for (size_t t = 0; t < 3 * count; t += 3) {
     const uint32_t *v = loose->triangles + t;

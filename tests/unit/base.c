@@ -1,3 +1,4 @@
+#define _DEFAULT_SOURCE
 #include "base/alloc.h"
 #include "base/arena.h"
 #include "base/array.h"
@@ -8,6 +9,7 @@
 #include "support/check.h"
 #include "support/folder.h"
 
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -171,9 +173,58 @@ static void a_discarded_tail_can_be_used_again(void **state) {
   assert_int_equal(scree_memory_used(), used);
 }
 
+#ifdef MADV_POPULATE_WRITE
+/* How many of the whole pages in the block are there. */
+static size_t resident_pages(const unsigned char *block, size_t size, size_t *all) {
+  size_t page = (size_t)sysconf(_SC_PAGESIZE), shift = (size_t)(-(uintptr_t)block & (page - 1));
+  size_t count = (size - shift) / page, found = 0;
+  unsigned char *there = calloc(count, 1);
+  assert_non_null(there);
+  /* mincore changes nothing, but asks for a pointer that could */
+  assert_int_equal(mincore((void *)(uintptr_t)(block + shift), count * page, there), 0);
+  for (size_t i = 0; i < count; i++) found += there[i] & 1;
+  free(there);
+  *all = count;
+  return found;
+}
+
+static void a_populated_block_is_there_before_it_is_written(void **state) {
+  (void)state;
+  const size_t size = (size_t)24 << 20;
+  unsigned char *block = scree_alloc(size, 1);
+  size_t all;
+  assert_non_null(block);
+  size_t before = resident_pages(block, size, &all);
+  scree_set_threads(2);
+  scree_populate(block, size);
+  size_t after = resident_pages(block, size, &all);
+  bool able = madvise(block, size, MADV_POPULATE_WRITE) == 0;
+  scree_free(block);
+  /* written before, bytes stay; small blocks and one thread are left alone */
+  block = scree_alloc(size, 1);
+  assert_non_null(block);
+  for (size_t i = 0; i < size; i += 1000) block[i] = (unsigned char)(i / 1000);
+  scree_populate(block, size);
+  for (size_t i = 0; i < size; i += 1000) assert_int_equal(block[i], (unsigned char)(i / 1000));
+  scree_populate(block, 0);
+  scree_populate(block, 100);
+  scree_free(block);
+  scree_set_threads(0);
+  if (!able) {
+    print_message("the system cannot populate memory: nothing to see\n");
+    skip();
+  }
+  assert_true(before < all / 2);
+  assert_true(after > all * 3 / 4);
+}
+#endif
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_discarded_tail_can_be_used_again),
+#ifdef MADV_POPULATE_WRITE
+      cmocka_unit_test(a_populated_block_is_there_before_it_is_written),
+#endif
       cmocka_unit_test(memory_is_aligned_and_counted),
       cmocka_unit_test(arena_gives_blocks_of_its_own),
       cmocka_unit_test(blocks_do_not_depend_on_threads),
