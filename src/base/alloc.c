@@ -108,10 +108,27 @@ void *scree_alloc(size_t count, size_t size) {
   return block;
 }
 
+static void touch_pages(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+#ifdef MADV_POPULATE_WRITE
+  (void)madvise((char *)context + begin, end - begin, MADV_POPULATE_WRITE);
+#else
+  (void)context, (void)begin, (void)end;
+#endif
+}
+
+void scree_populate(void *block, size_t size) {
+  uintptr_t mask = HUGE_PAGE - 1, address = (uintptr_t)block;
+  uintptr_t first = (address + mask) & ~mask, last = (address + size) & ~mask;
+  if (scree_worker_count() > 1 && last > first + HUGE_PAGE)
+    scree_parallel_for(last - first, HUGE_PAGE, touch_pages, (char *)block + (first - address));
+}
+
 void *scree_alloc_zero(size_t count, size_t size) {
   void *block = scree_alloc(count, size);
-  if (block) memset(block, 0, count * size);
-  return block;
+  if (!block) return NULL;
+  scree_populate(block, count * size);
+  return memset(block, 0, count * size);
 }
 
 /* Moves rather than resizes in place: the aligned position inside the raw block may differ. */
@@ -130,22 +147,6 @@ void scree_free(void *block) {
   header found = *header_of(block);
   atomic_fetch_sub(&used_bytes, found.size);
   hook(hook_context, found.raw, 0);
-}
-
-static void touch_pages(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-#ifdef MADV_POPULATE_WRITE
-  (void)madvise((char *)context + begin, end - begin, MADV_POPULATE_WRITE);
-#else
-  (void)context, (void)begin, (void)end;
-#endif
-}
-
-void scree_populate(void *block, size_t size) {
-  uintptr_t mask = HUGE_PAGE - 1, address = (uintptr_t)block;
-  uintptr_t first = (address + mask) & ~mask, last = (address + size) & ~mask;
-  if (scree_worker_count() > 1 && last > first + HUGE_PAGE)
-    scree_parallel_for(last - first, HUGE_PAGE, touch_pages, (char *)block + (first - address));
 }
 
 void scree_discard_tail(void *block, size_t size) {

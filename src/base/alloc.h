@@ -15,10 +15,9 @@ void *scree_resize(void *block, size_t count, size_t size);
 void scree_free(void *block);
 /* All threads together make the pages of a new block the program's own, as the system does where a
  * page is first written to: a loop on one thread that fills the block would wait for each, and the
- * others idle. For blocks that will be filled to their end. It changes no byte; small blocks, and
- * systems without the call, are left alone. */
+ * others idle. For blocks that will be filled to their end; scree_alloc_zero does it. It changes no
+ * byte; small blocks, and systems without the call, are left alone. */
 void scree_populate(void *block, size_t size);
-
 /* Gives the system back what lies behind the first `size` bytes, where that is some megabytes: what
  * it held is lost, but the block stays as large as it was, and counts as such. */
 void scree_discard_tail(void *block, size_t size);

@@ -56,10 +56,8 @@ static uint64_t run_seed(const void *somewhere) {
 }
 
 static bool slots_allocate(distinct *d, size_t slot_count) {
-  uint32_t *slots = scree_alloc(slot_count, sizeof *slots);
+  uint32_t *slots = scree_alloc_zero(slot_count, sizeof *slots);
   if (!slots) return false;
-  scree_populate(slots, slot_count * sizeof *slots);
-  memset(slots, 0, slot_count * sizeof *slots);
   scree_free(d->slots);
   d->slots = slots;
   d->slot_count = slot_count;

@@ -200,7 +200,7 @@ static void a_populated_block_is_there_before_it_is_written(void **state) {
   size_t after = resident_pages(block, size, &all);
   bool able = madvise(block, size, MADV_POPULATE_WRITE) == 0;
   scree_free(block);
-  /* written before, bytes stay; small blocks and one thread are left alone */
+  /* written before, bytes stay; small blocks are left alone */
   block = scree_alloc(size, 1);
   assert_non_null(block);
   for (size_t i = 0; i < size; i += 1000) block[i] = (unsigned char)(i / 1000);
