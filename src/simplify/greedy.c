@@ -86,6 +86,7 @@ typedef struct queue {
   uint8_t *stage; /* per half-edge: how far it has come */
   scree_step step;
   size_t since_tick;
+  size_t entered_at;              /* collapses when all edges were entered last */
   double toll;                    /* weight of the stray's sixth power in the cost */
   size_t renew_at;                /* triangles */
   double *sorted;                 /* scratch: costs */
@@ -484,12 +485,11 @@ static scree_status collapse_best(queue *q, scree_ahead *ahead) {
 static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settling *settling) {
   scree_decimator *d = q->d;
   scree_status status = SCREE_OK;
-  size_t entered_at = d->record.count;
   while (status == SCREE_OK && d->s.live_triangle_count > until) {
     if (d->s.live_triangle_count <= q->renew_at) renew(q);
     if (q->heap_count == 0) { /* what was too far off before may be near enough now */
-      if (d->record.count == entered_at) break;
-      entered_at = d->record.count;
+      if (d->record.count == q->entered_at) break;
+      q->entered_at = d->record.count;
       enter_all(q);
       if (q->heap_count == 0) break;
     }
@@ -503,7 +503,7 @@ static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settli
 }
 
 static scree_status begin(scree_decimator *d, queue *q) {
-  *q = (queue){.d = d, .step = {.d = d}};
+  *q = (queue){.d = d, .step = {.d = d}, .entered_at = d->record.count};
   if (!d->coster->merge)
     q->step.relaxed_below = scree_is_large(d) ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
   q->step.farthest_at = q->step.relaxed_below;
@@ -513,36 +513,47 @@ static scree_status begin(scree_decimator *d, queue *q) {
 }
 
 /* The last triangles of method `volume`, with a look ahead. */
-static scree_status end_with_care(scree_decimator *d) {
+static scree_status end_with_care(scree_decimator *d, scree_settling *settling) {
   queue q;
   scree_ahead ahead = {.from = NULL};
-  scree_settling settling = {.count = 0};
   scree_status status = scree_ahead_prepare(d);
   if (status != SCREE_OK) return status;
   status = begin(d, &q);
   if (status == SCREE_OK) status = scree_grid_look_at_all(&d->grid, d->error);
   if (status == SCREE_OK) status = scree_ahead_begin(&ahead, d);
-  if (status == SCREE_OK && !d->unsettled) status = scree_settle_begin(&settling, d);
-  if (status == SCREE_OK)
-    status = run(&q, d->options.stop_count, &ahead, d->unsettled ? NULL : &settling);
-  if (status == SCREE_OK && !d->unsettled) status = scree_settle_end(&settling, d);
-  scree_settle_free(&settling);
+  if (status == SCREE_OK && settling && !settling->shown)
+    status = scree_settle_begin(settling, &q.step);
+  if (status == SCREE_OK) status = run(&q, d->options.stop_count, &ahead, settling);
   scree_ahead_free(&ahead);
   queue_free(&q);
   return status;
 }
 
-scree_status scree_decimate_one_by_one(scree_decimator *d) {
+/* Down to so many triangles without a look ahead; the last of these levels are settled already. */
+static scree_status begin_quickly(scree_decimator *d, size_t until, scree_settling *settling) {
   queue q;
+  size_t settled = settling && !scree_is_large(d) ? SCREE_SETTLED_COUNT : 0;
+  scree_status status = begin(d, &q);
+  if (status == SCREE_OK) status = run(&q, until > settled ? until : settled, NULL, NULL);
+  if (status == SCREE_OK && until < settled && d->s.live_triangle_count > until) {
+    status = scree_memory_squeeze(&d->memory, &d->s, d->error);
+    if (status == SCREE_OK) status = scree_settle_begin(settling, &q.step);
+    if (status == SCREE_OK) status = run(&q, until, NULL, settling);
+  }
+  queue_free(&q);
+  return status;
+}
+
+scree_status scree_decimate_one_by_one(scree_decimator *d) {
+  scree_settling settling = {.count = 0}, *settled = NULL;
   size_t until = d->options.stop_count, ahead = 0;
   scree_status status = SCREE_OK;
   if (!d->coster->merge) ahead = scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT;
+  if (!d->coster->merge && !d->unsettled) settled = &settling;
   if (until < ahead) until = ahead;
-  if (d->s.live_triangle_count > until) {
-    status = begin(d, &q);
-    if (status == SCREE_OK) status = run(&q, until, NULL, NULL);
-    queue_free(&q);
-  }
-  if (status == SCREE_OK && d->s.live_triangle_count <= ahead) status = end_with_care(d);
+  if (d->s.live_triangle_count > until) status = begin_quickly(d, until, settled);
+  if (status == SCREE_OK && d->s.live_triangle_count <= ahead) status = end_with_care(d, settled);
+  if (status == SCREE_OK && settling.shown) status = scree_settle_end(&settling, d);
+  scree_settle_free(&settling);
   return status;
 }

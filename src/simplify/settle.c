@@ -6,10 +6,13 @@
 #include "base/array.h"
 #include "base/parallel.h"
 
+#include <string.h>
+
 /* Steps tried for a level; of large scans fewer, for it takes time. */
-enum { MOST_STEPS = 10, MOST_OF_LARGE = 5 };
-/* A smaller gain of the merit is none. */
+enum { MOST_STEPS = 20, MOST_OF_LARGE = 5 };
+/* A smaller gain of the merit is none; after a smaller one than the second the level is settled. */
 #define LEAST_GAIN 1e-4
+#define WORTH_MORE 1e-3
 /* Damping to begin with; by how much it falls after steps that were taken and grows after others;
  * its limits. */
 #define DAMPING       0.02
@@ -30,20 +33,77 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-scree_status scree_settle_begin(scree_settling *q, const scree_decimator *d) {
+static scree_status allocate_draft(scree_draft *f, const scree_decimator *d) {
+  scree_status status = scree_trial_allocate(&f->trial, d);
+  if (status != SCREE_OK) return status;
+  SCREE_ALLOC_OR(f->sums, d->s.vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(f->refused, 3 * d->s.triangle_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(f->vertices, d->s.vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(f->triangles, d->s.triangle_count, d->error, out_of_memory);
+  return scree_grid_look_at_all(&f->trial.d.grid, d->error);
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static void free_draft(scree_draft *f) {
+  scree_grid_free(&f->trial.d.grid);
+  scree_trial_free(&f->trial);
+  scree_free(f->sums);
+  scree_free(f->refused);
+  scree_free(f->vertices);
+  scree_free(f->triangles);
+}
+
+/* Makes it a copy of the step's surface, without what is gone. */
+static scree_status draw(scree_draft *f, const scree_step *from) {
+  scree_decimator *d = &f->trial.d;
+  scree_grid grid = d->grid;
+  scree_trial_start(&f->trial, from);
+  d->grid = grid;
+  d->error = from->d->error;
+  d->s.sums = f->sums;
+  d->s.refused = f->refused;
+  memcpy(f->sums, from->d->s.sums, d->s.vertex_count * sizeof *f->sums);
+  memcpy(f->refused, from->d->s.refused, 3 * d->s.triangle_count);
+  scree_memory_compact(&d->memory, &d->s);
+  scree_halfmesh_compact(&d->s, f->vertices, f->triangles);
+  return scree_anchors_find(&d->s, &d->anchors, from->d->error);
+}
+
+/* What a level is copied from. */
+static scree_status draw_from(scree_settling *q, const scree_step *step, const scree_step **from) {
+  *from = step;
+  if (step->d->grid.few) return SCREE_OK; /* nothing is left of what is gone */
+  *from = &q->draft.trial.step;
+  return draw(&q->draft, step);
+}
+
+static void show_first(scree_settling *q, const scree_halfmesh *s) {
+  size_t count = 0;
+  for (size_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE)
+      q->shown[count++] = (scree_shown){s->vertex[v].origin, s->vertex[v].at};
+}
+
+scree_status scree_settle_begin(scree_settling *q, const scree_step *step) {
+  const scree_decimator *d = step->d;
+  const scree_step *from = step;
   scree_status status = SCREE_OK;
   *q = (scree_settling){.first = d->record.count};
+  if (!d->grid.few) status = allocate_draft(&q->draft, d);
+  if (status == SCREE_OK) status = draw_from(q, step, &from);
   for (int i = 0; i < SCREE_SETTLED_AT_ONCE && status == SCREE_OK; i++)
-    status = allocate(&q->levels[i], d);
+    status = allocate(&q->levels[i], from->d);
   if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(q->shown, d->s.vertex_count, d->error, out_of_memory);
-  for (size_t v = 0; v < d->s.vertex_count; v++) q->shown[v] = d->s.vertex[v].at;
+  SCREE_ALLOC_OR(q->shown, from->d->s.vertex_count, d->error, out_of_memory);
+  show_first(q, &from->d->s);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
 void scree_settle_free(scree_settling *q) {
+  free_draft(&q->draft);
   for (int i = 0; i < SCREE_SETTLED_AT_ONCE; i++) {
     scree_trial_free(&q->levels[i].trial);
     scree_trial_free(&q->levels[i].before);
@@ -152,7 +212,9 @@ static scree_status settle(scree_settled *l) {
   bool taken = true;
   for (int i = 0; i < most && damping <= MOST_DAMPING && status == SCREE_OK; i++) {
     if ((taken && !fill(j, d)) || !scree_joint_solve(j, &d->s, damping)) break;
+    double before = merit;
     status = try_steps(l, &merit, &taken);
+    if (taken && merit > (1 - WORTH_MORE) * before) break;
     damping = taken ? fmax(LEAST_DAMPING, damping / LESS_DAMPING) : MORE_DAMPING * damping;
   }
   return status;
@@ -169,13 +231,15 @@ static scree_status show(scree_settling *q, const scree_settled *l, scree_decima
   const scree_halfmesh *s = &l->trial.d.s;
   scree_record *r = &d->record;
   uint32_t kept = r->kept[l->index] & ~SCREE_ONE_TRIANGLE;
+  scree_shown *shown = q->shown;
   for (uint32_t v = 0; v < s->vertex_count; v++) {
     const scree_vertex *vertex = &s->vertex[v];
     if (vertex->outgoing == SCREE_NONE) continue;
+    while (shown->origin != vertex->origin) shown++; /* those went since */
     vec3 at = vec3_mad(s->centre, vertex->at, s->scale);
     vec3 stands =
-        vertex->origin == kept ? r->position[l->index] : vec3_mad(s->centre, q->shown[v], s->scale);
-    q->shown[v] = vertex->at;
+        vertex->origin == kept ? r->position[l->index] : vec3_mad(s->centre, shown->at, s->scale);
+    shown->at = vertex->at;
     if (!(vec3_norm2(vec3_sub(at, stands)) > 0)) continue;
     scree_move move = {(uint32_t)l->index, vertex->origin, at};
     if (!SCREE_PUSH(&q->moves, move))
@@ -201,8 +265,11 @@ static scree_status settle_waiting(scree_settling *q, scree_decimator *d) {
 }
 
 scree_status scree_settle_level(scree_settling *q, const scree_step *step) {
+  const scree_step *from;
+  scree_status status = draw_from(q, step, &from);
+  if (status != SCREE_OK) return status;
   scree_settled *l = &q->levels[q->count++];
-  scree_trial_start(&l->trial, step);
+  scree_trial_start(&l->trial, from);
   l->index = step->d->record.count - 1;
   l->trial.d.record.count = 1;
   l->trial.d.record.area[0] = l->trial.d.record.volume[0] = 0;

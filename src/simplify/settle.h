@@ -1,11 +1,14 @@
-/* The levels that look ahead are settled: from where the collapse and the moves after it have left
- * them, all vertices of a level move together (joint.h). The next level does not begin there, so
- * that what is good for one spoils no other, and levels are settled side by side. */
+/* The coarsest levels are settled: from where the collapse and the moves after it have left them,
+ * all vertices of a level move together (joint.h). The next level does not begin there, so that
+ * what is good for one spoils no other, and levels are settled side by side. */
 #ifndef SCREE_SIMPLIFY_SETTLE_H
 #define SCREE_SIMPLIFY_SETTLE_H
 
 #include "simplify/joint.h"
 #include "simplify/trial.h"
+
+/* From how many triangles on, later with large scans (SCREE_AHEAD_LATE): there it takes time. */
+enum { SCREE_SETTLED_COUNT = 200 };
 
 /* Levels settled at once. */
 enum { SCREE_SETTLED_AT_ONCE = 8 };
@@ -20,17 +23,33 @@ typedef struct scree_settled {
   scree_status status;
 } scree_settled;
 
+/* The surface without what is gone of it, while the decimation itself goes on with all. */
+typedef struct scree_draft {
+  scree_trial trial;
+  double (*sums)[10]; /* room, as the rest */
+  uint8_t *refused;
+  uint32_t *vertices, *triangles;
+} scree_draft;
+
+/* Where a vertex stands in the last level settled. */
+typedef struct scree_shown {
+  uint32_t origin; /* of the mesh given */
+  vec3 at;
+} scree_shown;
+
 typedef struct scree_settling {
+  scree_draft draft; /* until the decimation forgets what is gone (ahead.h) */
   scree_settled levels[SCREE_SETTLED_AT_ONCE];
   size_t count;        /* levels waiting */
   size_t first;        /* collapse: the first whose level is settled */
-  vec3 *shown;         /* per vertex: where it stands in the last level settled */
+  scree_shown *shown;  /* vertices that there were when it began, in their order */
   double area, volume; /* of that level, less those that it had before */
   scree_moves moves;   /* from level to level */
 } scree_settling;
 
-/* From the surface as it is on. Free what it holds whatever the outcome. */
-scree_status scree_settle_begin(scree_settling *settling, const scree_decimator *d);
+/* From the step's surface as it is on, of which the memory is kept. Free what it holds whatever the
+ * outcome. */
+scree_status scree_settle_begin(scree_settling *settling, const scree_step *step);
 void scree_settle_free(scree_settling *settling);
 
 /* Takes the level that the last collapse has made; a few are settled at once. */
