@@ -8,11 +8,12 @@
 
 #include <string.h>
 
-/* Steps tried for a level; of large scans fewer, for it takes time. */
-enum { MOST_STEPS = 20, MOST_OF_LARGE = 5 };
-/* A smaller gain of the merit is none; after a smaller one than the second the level is settled. */
+/* Steps tried for a level; of large scans fewer, for it takes time. Levels of more than so many
+ * triangles, whose steps take long, have no more after one that gains little. */
+enum { MOST_STEPS = 20, MOST_OF_LARGE = 5, QUICK_STEPS = 64 };
+#define LITTLE_GAIN 1e-3
+/* A smaller gain of the merit is none. */
 #define LEAST_GAIN 1e-4
-#define WORTH_MORE 1e-3
 /* Damping to begin with; by how much it falls after steps that were taken and grows after others;
  * its limits. */
 #define DAMPING       0.02
@@ -209,12 +210,12 @@ static scree_status settle(scree_settled *l) {
   scree_joint_begin(j, &d->memory, &d->s, l->trial.step.farthest2);
   double merit = scree_joint_merit(j, &d->memory, &d->s), damping = DAMPING;
   int most = scree_is_large(d) ? MOST_OF_LARGE : MOST_STEPS;
-  bool taken = true;
+  bool taken = true, quick = d->s.live_triangle_count <= QUICK_STEPS;
   for (int i = 0; i < most && damping <= MOST_DAMPING && status == SCREE_OK; i++) {
     if ((taken && !fill(j, d)) || !scree_joint_solve(j, &d->s, damping)) break;
     double before = merit;
     status = try_steps(l, &merit, &taken);
-    if (taken && merit > (1 - WORTH_MORE) * before) break;
+    if (taken && !quick && merit > (1 - LITTLE_GAIN) * before) break;
     damping = taken ? fmax(LEAST_DAMPING, damping / LESS_DAMPING) : MORE_DAMPING * damping;
   }
   return status;
