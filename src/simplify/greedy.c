@@ -535,7 +535,8 @@ static scree_status begin_quickly(scree_decimator *d, size_t until, scree_settli
   size_t settled = settling && !scree_is_large(d) ? SCREE_SETTLED_COUNT : 0;
   scree_status status = begin(d, &q);
   if (status == SCREE_OK) status = run(&q, until > settled ? until : settled, NULL, NULL);
-  if (status == SCREE_OK && until < settled && d->s.live_triangle_count > until) {
+  size_t count = d->s.live_triangle_count;
+  if (status == SCREE_OK && count <= settled && count > until) {
     status = scree_memory_squeeze(&d->memory, &d->s, d->error);
     if (status == SCREE_OK) status = scree_settle_begin(settling, &q.step);
     if (status == SCREE_OK) status = run(&q, until, NULL, settling);
