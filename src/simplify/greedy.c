@@ -26,7 +26,8 @@
  *
  * Below SCREE_RELAXED_COUNT triangles the vertices about a collapse move after it, to where the
  * witnesses around them are nearer (step.c). Below SCREE_AHEAD_COUNT not the cheapest collapse is
- * done, but of the cheapest that are allowed the one after which the level is best (ahead.h).
+ * done, but of the cheapest that are allowed the one after which the level is best (ahead.h). The
+ * levels below SCREE_SETTLED_COUNT are settled, each by itself, beside the path (settle.h).
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small

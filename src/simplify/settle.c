@@ -79,13 +79,6 @@ static scree_status draw_from(scree_settling *q, const scree_step *step, const s
   return draw(&q->draft, step);
 }
 
-static void show_first(scree_settling *q, const scree_halfmesh *s) {
-  size_t count = 0;
-  for (size_t v = 0; v < s->vertex_count; v++)
-    if (s->vertex[v].outgoing != SCREE_NONE)
-      q->shown[count++] = (scree_shown){s->vertex[v].origin, s->vertex[v].at};
-}
-
 scree_status scree_settle_begin(scree_settling *q, const scree_step *step) {
   const scree_decimator *d = step->d;
   const scree_step *from = step;
@@ -96,8 +89,10 @@ scree_status scree_settle_begin(scree_settling *q, const scree_step *step) {
   for (int i = 0; i < SCREE_SETTLED_AT_ONCE && status == SCREE_OK; i++)
     status = allocate(&q->levels[i], from->d);
   if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(q->shown, from->d->s.vertex_count, d->error, out_of_memory);
-  show_first(q, &from->d->s);
+  const scree_halfmesh *s = &from->d->s;
+  SCREE_ALLOC_OR(q->shown, s->vertex_count, d->error, out_of_memory);
+  for (size_t v = 0; v < s->vertex_count; v++)
+    q->shown[v] = (scree_shown){s->vertex[v].origin, s->vertex[v].at};
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
