@@ -56,7 +56,7 @@ enum { REFUSED, POSTPONED, CERTAIN, UNCERTAIN };
 /* A collapse that was taken; its ring is in pass.edges from first_edge on. */
 typedef struct taken {
   uint32_t half_edge, first_edge;
-  uint32_t key; /* of its cost */
+  uint32_t key; /* of its cost; then its place among those that are done, in the order of cost */
   uint16_t a_count, count;
   uint8_t verdict;
   bool open;  /* a boundary edge: one triangle goes */
@@ -685,36 +685,6 @@ static size_t sort_certain(pass *p) {
   return count;
 }
 
-/* Asks for what writing these collapses down will read: in the order of cost they lie anywhere. */
-SCREE_PREFETCHES void ask_for_records(const pass *p, const scree_keyed *order, size_t count) {
-  const scree_halfmesh *s = &p->d->s;
-  for (size_t k = 0; k < count; k++) {
-    scree_prefetch(&p->taken[order[k].index], sizeof *p->taken);
-    scree_prefetch(&p->changes[order[k].index], sizeof *p->changes);
-  }
-  for (size_t k = 0; k < count; k++)
-    scree_prefetch(&s->half[p->taken[order[k].index].half_edge / 3 * 3], 3 * sizeof *s->half);
-  for (size_t k = 0; k < count; k++) {
-    uint32_t h = p->taken[order[k].index].half_edge;
-    __builtin_prefetch(&s->vertex[s->half[h].from]);
-    __builtin_prefetch(&s->vertex[scree_to(s, h)]);
-  }
-}
-
-static void record_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  pass *p = context;
-  scree_decimator *d = p->d;
-  for (size_t k = begin; k < end; k++) {
-    if ((k - begin) % SIDE_BY_SIDE == 0)
-      ask_for_records(p, p->order + k, end - k < SIDE_BY_SIDE ? end - k : SIDE_BY_SIDE);
-    uint32_t i = p->order[k].index;
-    scree_ring ring;
-    scree_ring_name(&d->s, p->taken[i].half_edge, &ring);
-    scree_record_write(d, d->record.count + k, &ring, &p->changes[i], (double)p->taken[i].error);
-  }
-}
-
 /* Asks for what applying these collapses will touch. */
 SCREE_PREFETCHES void ask_for_changes(const pass *p, const taken *t, size_t count) {
   const scree_halfmesh *s = &p->d->s;
@@ -749,6 +719,8 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
       continue;
     }
     scree_ring ring = ring_of(p, &p->taken[i]);
+    scree_record_write(d, d->record.count + p->taken[i].key, &ring, &p->changes[i],
+                       (double)p->taken[i].error);
     if (scree_memory_is_kept(&d->memory))
       scree_memory_move(&d->memory, &d->s, &ring, p->changes[i].target);
     scree_collapse_apply(&d->s, &ring, p->changes[i].target);
@@ -766,12 +738,13 @@ static size_t apply(pass *p) {
   scree_decimator *d = p->d;
   size_t count = sort_certain(p), open = 0;
   for (size_t k = 0; k < count; k++) {
-    if (k + AHEAD < count) __builtin_prefetch(&p->taken[p->order[k + AHEAD].index].error);
-    p->moves += sqrt((double)p->taken[p->order[k].index].error);
+    if (k + AHEAD < count) __builtin_prefetch(&p->taken[p->order[k + AHEAD].index], 1);
+    taken *t = &p->taken[p->order[k].index];
+    t->key = (uint32_t)k;
+    p->moves += sqrt((double)t->error);
   }
   if (!d->s.closed)
     for (size_t k = 0; k < count; k++) open += p->taken[p->order[k].index].open;
-  scree_parallel_for(count, TAKEN_BLOCK, record_block, p);
   scree_parallel_for(p->taken_count, TAKEN_BLOCK, apply_block, p);
   d->record.count += count;
   d->s.live_vertex_count -= count;
