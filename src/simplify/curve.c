@@ -234,25 +234,12 @@ static scree_status check_options(const scree_simplify_options *options, scree_e
   return SCREE_OK;
 }
 
-/* Such a facet has no place in the surface, and levels could not be counted. */
-static scree_status refuse_collapsed(const scree_mesh *mesh, scree_error *error) {
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    const uint32_t *c = mesh->triangles + 3 * t;
-    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])
-      return scree_fail(error, SCREE_BAD_MESH,
-                        "triangle %zu names vertex %u twice; repair the mesh first", t,
-                        c[0] == c[1] ? c[0] : c[2]);
-  }
-  return SCREE_OK;
-}
-
 scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_options *options,
                                const scree_progress *progress, scree_curve **curve,
                                scree_error *error) {
   const scree_simplify_options defaults = scree_default_simplify_options();
   if (!options) options = &defaults;
   scree_status status = check_options(options, error);
-  if (status == SCREE_OK) status = refuse_collapsed(mesh, error);
   if (status != SCREE_OK) return status;
   scree_decimator d = {.options = *options, .ticker = {.progress = progress}, .error = error};
   scree_sum area = {0}, volume = {0};
@@ -275,6 +262,7 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
                                     .locked_vertex_count = d.s.locked_vertex_count,
                                     .closed = d.s.closed};
   status = measure_surface(&d.s, &area, &volume, error);
+  d.s.area = scree_sum_value(area);
   if (status == SCREE_OK) status = scree_record_allocate(&d.record, d.s.live_vertex_count, error);
   if (status == SCREE_OK) status = decimate(&d);
   if (status != SCREE_OK) goto finished;

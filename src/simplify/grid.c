@@ -82,55 +82,16 @@ void scree_grid_free(scree_grid *g) {
   *g = (scree_grid){0};
 }
 
-/* Box and doubled area of a part of the surface. */
-typedef struct part {
-  vec3 low, high;
-  double doubled;
-} part;
-
-enum { PARTS = 64 };
-
-typedef struct measuring {
-  const scree_halfmesh *s;
-  part parts[PARTS];
-} measuring;
-
-static void measure_part(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
-  measuring *m = context;
-  part sum = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, 0};
-  for (size_t t = begin; t < end; t++) {
-    vec3 at[3];
-    if (scree_is_gone(m->s, t)) continue;
-    scree_corners(m->s, t, at);
-    sum.low = vec3_min(sum.low, vec3_min(at[0], vec3_min(at[1], at[2])));
-    sum.high = vec3_max(sum.high, vec3_max(at[0], vec3_max(at[1], at[2])));
-    sum.doubled += vec3_norm(vec3_triangle_normal(at[0], at[1], at[2]));
-  }
-  m->parts[block] = sum;
-}
-
-/* The mean edge from the area: a triangle of side e has sqrt(3)/4 e^2. */
-static double mean_edge(const scree_halfmesh *s, vec3 *low, vec3 *high) {
-  measuring m = {.s = s};
-  size_t size = s->triangle_count / PARTS + 1, count = scree_block_count(s->triangle_count, size);
-  scree_parallel_for(s->triangle_count, size, measure_part, &m);
-  double doubled = 0;
-  *low = m.parts[0].low;
-  *high = m.parts[0].high;
-  for (size_t i = 0; i < count; i++) {
-    *low = vec3_min(*low, m.parts[i].low);
-    *high = vec3_max(*high, m.parts[i].high);
-    doubled += m.parts[i].doubled;
-  }
-  return sqrt(1.1547 * doubled / (double)s->live_triangle_count);
+/* The mean edge, had the surface the box and the area with which it was built: a triangle of side e
+ * has sqrt(3)/4 e^2. Cells need not fit closely. */
+static double mean_edge(const scree_halfmesh *s) {
+  return sqrt(2.3094 * s->area / (double)s->live_triangle_count);
 }
 
 scree_status scree_grid_shape(scree_grid *g, const scree_halfmesh *s, double edges_per_cell,
                               scree_error *error) {
-  vec3 low = {0, 0, 0}, high = low;
-  double cell = mean_edge(s, &low, &high) * edges_per_cell;
-  vec3 extent = vec3_sub(high, low);
+  double cell = mean_edge(s) * edges_per_cell;
+  vec3 extent = vec3_sub(s->high, s->low);
   double longest = fmax(extent.x, fmax(extent.y, extent.z));
   if (!(cell > longest / 1024)) cell = longest / 1024;
   for (;; cell *= 1.25) { /* thin features in a large box: a few cells per triangle are enough */
@@ -139,7 +100,7 @@ scree_status scree_grid_shape(scree_grid *g, const scree_halfmesh *s, double edg
     if (n <= 4.0 * (double)s->live_triangle_count + 64) break;
   }
   free_cells(g);
-  g->low = low;
+  g->low = s->low;
   g->cells_per_length = 1 / cell;
   g->size[0] = (uint32_t)(extent.x / cell) + 1;
   g->size[1] = (uint32_t)(extent.y / cell) + 1;

@@ -41,26 +41,90 @@ void scree_halfmesh_free(scree_halfmesh *s) {
   *s = (scree_halfmesh){0};
 }
 
+/* Of a part of the mesh: its box, and whether something in it is wrong. */
+typedef struct part {
+  vec3 low, high;
+  bool bad_triangles, bad_vertices;
+} part;
+
+enum { PARTS = 64 };
+
+typedef struct checking {
+  const scree_mesh *mesh;
+  part parts[PARTS];
+} checking;
+
+static bool names_twice(const uint32_t *c) {
+  return (c[0] == c[1]) | (c[1] == c[2]) | (c[2] == c[0]);
+}
+
+static bool is_finite(vec3 p) {
+  return isfinite(p.x) && isfinite(p.y) && isfinite(p.z);
+}
+
+static void check_parts(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  checking *c = context;
+  const scree_mesh *mesh = c->mesh;
+  const size_t triangles = mesh->triangle_count, vertices = mesh->vertex_count;
+  for (size_t i = begin; i < end; i++) {
+    part found = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false, false};
+    for (size_t t = triangles * i / PARTS; t < triangles * (i + 1) / PARTS; t++) {
+      const uint32_t *v = mesh->triangles + 3 * t;
+      found.bad_triangles |=
+          (v[0] >= vertices) | (v[1] >= vertices) | (v[2] >= vertices) | names_twice(v);
+    }
+    for (size_t v = vertices * i / PARTS; v < vertices * (i + 1) / PARTS; v++) {
+      vec3 p = vec3_load(mesh->positions + 3 * v);
+      found.bad_vertices |= !is_finite(p);
+      found.low = vec3_min(found.low, p);
+      found.high = vec3_max(found.high, p);
+    }
+    c->parts[i] = found;
+  }
+}
+
+/* A facet that names a vertex twice has no place in the surface, and levels could not be counted.
+ */
+static scree_status refuse_triangles(const scree_mesh *mesh, scree_error *error) {
+  size_t stray = scree_mesh_stray_corner(mesh), t = 0;
+  if (stray != SIZE_MAX)
+    return scree_fail(error, SCREE_BAD_MESH, "triangle %zu names vertex %u of %zu", stray / 3,
+                      mesh->triangles[stray], mesh->vertex_count);
+  while (!names_twice(mesh->triangles + 3 * t)) t++;
+  const uint32_t *c = mesh->triangles + 3 * t;
+  return scree_fail(error, SCREE_BAD_MESH,
+                    "triangle %zu names vertex %u twice; repair the mesh first", t,
+                    c[0] == c[1] ? c[0] : c[2]);
+}
+
+static scree_status refuse_vertices(const scree_mesh *mesh, scree_error *error) {
+  size_t v = 0;
+  while (is_finite(vec3_load(mesh->positions + 3 * v))) v++;
+  const double *p = mesh->positions + 3 * v;
+  return scree_fail(error, SCREE_BAD_MESH, "vertex %zu is not finite: (%g, %g, %g)", v, p[0], p[1],
+                    p[2]);
+}
+
 static scree_status check_mesh(const scree_mesh *mesh, vec3 *low, vec3 *high, scree_error *error) {
+  checking c = {.mesh = mesh};
+  bool bad_triangles = false, bad_vertices = false;
   if (mesh->triangle_count == 0)
     return scree_fail(error, SCREE_BAD_MESH, "the mesh has no triangles to decimate");
   if (mesh->triangle_count > SCREE_NONE / 3 - 1 || mesh->vertex_count > SCREE_NONE - 1)
     return scree_fail(error, SCREE_LIMIT, "%zu triangles are above decimation's limit of %u",
                       mesh->triangle_count, SCREE_NONE / 3 - 1);
-  size_t stray = scree_mesh_stray_corner(mesh);
-  if (stray != SIZE_MAX)
-    return scree_fail(error, SCREE_BAD_MESH, "triangle %zu names vertex %u of %zu", stray / 3,
-                      mesh->triangles[stray], mesh->vertex_count);
-  *low = *high = vec3_load(mesh->positions);
-  for (size_t v = 0; v < mesh->vertex_count; v++) {
-    vec3 p = vec3_load(mesh->positions + 3 * v);
-    if (!(isfinite(p.x) && isfinite(p.y) && isfinite(p.z)))
-      return scree_fail(error, SCREE_BAD_MESH, "vertex %zu is not finite: (%g, %g, %g)", v, p.x,
-                        p.y, p.z);
-    *low = vec3_min(*low, p);
-    *high = vec3_max(*high, p);
+  scree_parallel_for(PARTS, 1, check_parts, &c);
+  *low = c.parts[0].low;
+  *high = c.parts[0].high;
+  for (size_t i = 0; i < PARTS; i++) {
+    bad_triangles |= c.parts[i].bad_triangles;
+    bad_vertices |= c.parts[i].bad_vertices;
+    *low = vec3_min(*low, c.parts[i].low);
+    *high = vec3_max(*high, c.parts[i].high);
   }
-  return SCREE_OK;
+  if (bad_triangles) return refuse_triangles(mesh, error);
+  return bad_vertices ? refuse_vertices(mesh, error) : SCREE_OK;
 }
 
 /* The box: its centre, and the power of two not below its longest side. */
@@ -73,6 +137,8 @@ static scree_status choose_box(scree_halfmesh *s, vec3 low, vec3 high, scree_err
   frexp(extent, &exponent);
   s->scale = ldexp(1, exponent);
   s->centre = vec3_scale(vec3_add(low, high), 0.5);
+  s->low = scree_into_box(s, low);
+  s->high = scree_into_box(s, high);
   return SCREE_OK;
 }
 

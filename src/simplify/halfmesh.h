@@ -49,8 +49,10 @@ typedef struct scree_halfmesh {
   uint8_t *refused;                              /* of half-edges: 0 or SCREE_EDGE_... */
   size_t vertex_count, triangle_count;           /* extents of the arrays */
   size_t live_vertex_count, live_triangle_count; /* still there */
-  vec3 centre;  /* position in metres = centre + scale * position in the box */
-  double scale; /* a power of two */
+  vec3 centre;    /* position in metres = centre + scale * position in the box */
+  double scale;   /* a power of two */
+  vec3 low, high; /* of the surface as it was built, in the box */
+  double area;    /* the same */
   size_t boundary_edge_count, locked_vertex_count, shell_count;
   bool closed; /* no half-edge without twin at the start */
 } scree_halfmesh;
