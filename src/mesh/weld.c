@@ -22,7 +22,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { BATCH = 192, EMPTY = 0 };
+enum { BATCH = 192, EMPTY = 0, LOOK_BLOCK = 1 << 14 };
 
 /* ---- 1. equal positions ---- */
 
@@ -208,6 +208,30 @@ static bool is_degenerate(const uint32_t v[3]) {
   return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
 }
 
+/* Whether every triangle keeps three corners. */
+typedef struct keeping {
+  const renumbering *renumbering;
+  bool all;
+} keeping;
+
+static void look_at_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  keeping *k = context;
+  bool degenerate = false;
+  for (size_t t = begin; t < end; t++) {
+    uint32_t v[3];
+    load_triangle(k->renumbering, t, v);
+    degenerate |= is_degenerate(v);
+  }
+  if (degenerate) __atomic_store_n(&k->all, false, __ATOMIC_RELAXED);
+}
+
+static bool all_keep_corners(const renumbering *r) {
+  keeping k = {r, true};
+  scree_parallel_for(r->triangle_count, LOOK_BLOCK, look_at_block, &k);
+  return k.all;
+}
+
 /* Writes the triangles that keep three corners, and marks the vertices they use; answers how many.
  * kept may be the source itself. */
 static size_t keep_triangles(const renumbering *r, uint32_t *kept, uint8_t *used) {
@@ -247,14 +271,17 @@ scree_status scree_weld_corners(const scree_corner_source *source, double tolera
   d.slots = NULL;
   status = SCREE_OUT_OF_MEMORY;
   if (source->triangles) SCREE_ALLOC_OR(kept, 3 * source->triangle_count, error, done);
-  used = scree_alloc_zero(d.count, 1);
-  if (!used) {
-    scree_fail_memory(error, d.count, "the vertices of a mesh");
-    goto done;
-  }
   renumbering r = {source->triangles, numbers, source->triangle_count};
   uint32_t *target = kept ? kept : numbers;
-  scree_loose_mesh loose = {d.positions, used, d.count, target, keep_triangles(&r, target, used)};
+  scree_loose_mesh loose = {d.positions, NULL, d.count, target, source->triangle_count};
+  if (source->triangles || !all_keep_corners(&r)) {
+    loose.used = used = scree_alloc_zero(d.count, 1);
+    if (!used) {
+      scree_fail_memory(error, d.count, "the vertices of a mesh");
+      goto done;
+    }
+    loose.triangle_count = keep_triangles(&r, target, used);
+  }
   status = scree_weld_sort(&loose, &made, error);
   if (status == SCREE_OK && tolerance > 0) status = scree_weld_near(&made, tolerance, error);
   if (status != SCREE_OK) goto done;

@@ -264,35 +264,69 @@ static uint32_t least_of(uint32_t a, uint32_t b, uint32_t c) {
   return ab < c ? ab : c;
 }
 
+/* Triangles by their smallest vertex, counted and spread in two halves. */
+typedef struct triangle_spread {
+  const uint32_t *loose, *rank;
+  uint32_t *triangles; /* renumbered */
+  uint32_t *next[2];   /* per vertex: how many a half has of it; then where the next one goes */
+  uint64_t *rest;
+} triangle_spread;
+
+static void count_half(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const triangle_spread *s = context;
+  uint32_t *counts = s->next[block];
+  for (size_t t = begin; t < end; t++) {
+    const uint32_t *v = s->loose + 3 * t;
+    uint32_t *ranked = s->triangles + 3 * t;
+    for (int k = 0; k < 3; k++) ranked[k] = s->rank[v[k]];
+    counts[least_of(ranked[0], ranked[1], ranked[2])]++;
+  }
+}
+
+static void spread_half(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const triangle_spread *s = context;
+  uint32_t *next = s->next[block];
+  for (size_t t = begin; t < end; t++) {
+    const uint32_t *v = s->triangles + 3 * t;
+    uint32_t least = least_of(v[0], v[1], v[2]);
+    int k = v[0] == least ? 0 : v[1] == least ? 1 : 2;
+    uint32_t second = v[(k + 1) % 3], third = v[(k + 2) % 3];
+    s->rest[next[least]++] = (uint64_t)second << 32 | third;
+  }
+}
+
 /* Renumbers loose->triangles by rank, into made->triangles. */
 static scree_status sort_triangles(const scree_loose_mesh *loose, const uint32_t *rank,
                                    scree_mesh *made, scree_error *error) {
   scree_status status = SCREE_OUT_OF_MEMORY;
   size_t count = loose->triangle_count, vertex_count = made->vertex_count;
-  uint32_t *starts = scree_alloc_zero(vertex_count + 2, sizeof *starts);
+  /* the vertices' starts, and both halves' counts */
+  uint32_t *starts = scree_alloc_zero(3 * vertex_count + 1, sizeof *starts);
   uint64_t *rest = NULL;
   if (!starts) {
-    scree_fail_memory(error, vertex_count * sizeof *starts, "the triangles of a mesh");
+    scree_fail_memory(error, 3 * vertex_count * sizeof *starts, "the triangles of a mesh");
     goto done;
   }
   SCREE_ALLOC_OR(rest, count, error, done);
   scree_populate(rest, count * sizeof *rest);
   scree_populate(made->triangles, 3 * count * sizeof *made->triangles);
-  /* shifted by two, so that filling moves starts[v + 1] to where triangles of v + 1 begin */
-  for (size_t t = 0; t < 3 * count; t += 3) {
-    const uint32_t *v = loose->triangles + t;
-    uint32_t *ranked = made->triangles + t;
-    for (int k = 0; k < 3; k++) ranked[k] = rank[v[k]];
-    starts[least_of(ranked[0], ranked[1], ranked[2]) + 2]++;
+  triangle_spread s = {.loose = loose->triangles,
+                       .rank = rank,
+                       .triangles = made->triangles,
+                       .next = {starts + vertex_count + 1, starts + 2 * vertex_count + 1},
+                       .rest = rest};
+  scree_parallel_for(count, count / 2 + 1, count_half, &s);
+  uint32_t start = 0;
+  for (size_t v = 0; v < vertex_count; v++) {
+    uint32_t first = s.next[0][v], second = s.next[1][v];
+    starts[v] = s.next[0][v] = start;
+    s.next[1][v] = start + first;
+    start += first + second;
   }
-  for (size_t v = 2; v < vertex_count + 2; v++) starts[v] += starts[v - 1];
-  for (size_t t = 0; t < 3 * count; t += 3) {
-    const uint32_t *v = made->triangles + t;
-    uint32_t least = least_of(v[0], v[1], v[2]);
-    int k = v[0] == least ? 0 : v[1] == least ? 1 : 2;
-    uint32_t second = v[(k + 1) % 3], third = v[(k + 2) % 3];
-    rest[starts[least + 1]++] = (uint64_t)second << 32 | third;
-  }
+  starts[vertex_count] = start;
+  scree_parallel_for(count, count / 2 + 1, spread_half, &s);
   triangle_sort sort = {starts, rest, made->triangles};
   scree_parallel_for(vertex_count, SORT_BLOCK, sort_triangle_block, &sort);
   status = SCREE_OK;
