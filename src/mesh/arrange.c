@@ -540,7 +540,7 @@ static bool cut_facet(arranger *a, scree_facet_cutter *cutter, const facet *f, u
     p[k] = position(a, job.corner[k]);
   }
   const uint32_t *v = job.corner;
-  if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) return true; /* its rim cancels */
+  if (scree_names_twice(v)) return true; /* its rim cancels */
   a->rim.count = 0;
   for (int k = 0; k < 3; k++) {
     if (!list_rim(a, v[k], v[(k + 1) % 3])) return false;

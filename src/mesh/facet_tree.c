@@ -12,17 +12,20 @@
  * meet elsewhere.
  *
  * Bounds of the second kind are rounded generously outwards, so rounding costs time only. The tree
- * depends on the mesh alone. */
+ * depends on the mesh alone: it is cut from the root on into parts, all of one depth at a time;
+ * threads build these, and they are put in the order in which one thread would have built all. */
 #include "mesh/facet_tree.h"
 
 #include "base/array.h"
 #include "base/parallel.h"
 
 #include <float.h>
+#include <string.h>
 
 enum {
-  FRAME_FACETS = 2048, /* larger nodes get no second box: there are too few of them to matter */
-  LOPSIDED = 8,        /* a split leaving less than 1/8 on a side is replaced by the median */
+  PART_FACETS = 1 << 12, /* smaller nodes are built by one thread; not below the next */
+  FRAME_FACETS = 2048,   /* larger nodes get no second box: there are too few of them to matter */
+  LOPSIDED = 8,          /* a split leaving less than 1/8 on a side is replaced by the median */
   NO_VERTEX = UINT32_MAX,
   NO_FRAME = UINT32_MAX,
   NO_CONE = UINT32_MAX,
@@ -51,7 +54,7 @@ typedef struct scree_facet_cone {
 
 /* ---- Building ---- */
 
-static scree_box facet_box(const scree_mesh *mesh, uint32_t t) {
+scree_box scree_facet_box(const scree_mesh *mesh, uint32_t t) {
   vec3 p = scree_mesh_corner(mesh, t, 0), q = scree_mesh_corner(mesh, t, 1),
        r = scree_mesh_corner(mesh, t, 2);
   scree_box b;
@@ -65,11 +68,6 @@ static void box_add(scree_box *b, const scree_box *other) {
     if (other->low[k] < b->low[k]) b->low[k] = other->low[k];
     if (other->high[k] > b->high[k]) b->high[k] = other->high[k];
   }
-}
-
-static bool boxes_apart(const scree_box *a, const scree_box *b) {
-  return a->low[0] > b->high[0] || b->low[0] > a->high[0] || a->low[1] > b->high[1] ||
-         b->low[1] > a->high[1] || a->low[2] > b->high[2] || b->low[2] > a->high[2];
 }
 
 static double along(const scree_facet_tree *t, uint32_t facet, int axis) {
@@ -149,20 +147,22 @@ static vec3 load(const scree_facet_tree *t, uint32_t facet, int k) {
   return scree_mesh_corner(t->mesh, facet, k % 3);
 }
 
-/* The longest edge among the node's facets and the facet that has it. */
-static double longest_edge(const scree_facet_tree *t, const scree_facet_node *n, uint32_t *facet,
-                           vec3 *direction) {
-  double longest2 = 0;
+/* The longest edge of some facets, and which of them has it: the first. */
+typedef struct longest {
+  double length2;
+  uint32_t facet;
+  vec3 edge;
+} longest;
+
+static longest longest_in_leaf(const scree_facet_tree *t, const scree_facet_node *n) {
+  longest l = {.facet = t->order[n->begin]};
   for (uint32_t i = n->begin; i < n->begin + n->count; i++)
     for (int k = 0; k < 3; k++) {
       vec3 edge = vec3_sub(load(t, t->order[i], k + 1), load(t, t->order[i], k));
       double length2 = vec3_norm2(edge);
-      if (length2 <= longest2) continue;
-      longest2 = length2;
-      *facet = t->order[i];
-      *direction = edge;
+      if (length2 > l.length2) l = (longest){length2, t->order[i], edge};
     }
-  return sqrt(longest2);
+  return l;
 }
 
 /* Axes along the edge, along the facet's normal, and across both; false where the facet has no
@@ -185,8 +185,8 @@ static double frame_box(const scree_facet_tree *t, const scree_facet_node *n,
       vec3 p = vec3_sub(load(t, t->order[i], k), origin);
       for (int a = 0; a < 3; a++) {
         double d = vec3_dot(p, f->axis[a]);
-        low[a] = fmin(low[a], d);
-        high[a] = fmax(high[a], d);
+        low[a] = d < low[a] ? d : low[a];
+        high[a] = d > high[a] ? d : high[a];
       }
     }
   double volume = 1, reach = fabs(origin.x) + fabs(origin.y) + fabs(origin.z) + high[0] - low[0];
@@ -228,20 +228,18 @@ static scree_facet_cone cone_of(const scree_facet_tree *t, const scree_facet_nod
 }
 
 /* Gives the node a second box where that is much the smaller one, or a cone. */
-static bool add_frame(scree_facet_tree *t, scree_facet_node *n) {
+static bool add_frame(scree_facet_tree *t, scree_facet_node *n, const longest *l) {
   double volume = 1, diagonal2 = 0;
-  uint32_t facet = t->order[n->begin];
-  vec3 edge = {0, 0, 0};
   scree_facet_frame f = {.cone = NO_CONE};
   for (int k = 0; k < 3; k++) {
     double side = n->bounds.high[k] - n->bounds.low[k];
     volume *= side;
     diagonal2 += side * side;
   }
-  if (longest_edge(t, n, &facet, &edge) < FRAME_LENGTH * sqrt(diagonal2)) return true;
+  if (sqrt(l->length2) < FRAME_LENGTH * sqrt(diagonal2)) return true;
   uint32_t hub = n->count > 1 ? common_vertex(t, n) : NO_VERTEX;
   bool useful = hub != NO_VERTEX && n->count > SCREE_LEAF_FACETS / 2;
-  if (!frame_axes(t, facet, edge, &f)) return true;
+  if (!frame_axes(t, l->facet, l->edge, &f)) return true;
   if (frame_box(t, n, &f) < FRAME_SHARE * volume) useful = true;
   if (!useful) return true;
   if (hub != NO_VERTEX) {
@@ -280,7 +278,7 @@ static bool cones_apart(const scree_facet_cone *a, const scree_facet_cone *b) {
 
 bool scree_facet_nodes_apart(const scree_facet_tree *t, const scree_facet_node *a,
                              const scree_facet_node *b) {
-  if (boxes_apart(&a->bounds, &b->bounds)) return true;
+  if (scree_box_apart(&a->bounds, &b->bounds)) return true;
   if (a->frame == NO_FRAME || b->frame == NO_FRAME) return false;
   const scree_facet_frame *f = &t->frames.items[a->frame], *g = &t->frames.items[b->frame];
   if (frames_apart_along(f, g) || frames_apart_along(g, f)) return true;
@@ -289,29 +287,32 @@ bool scree_facet_nodes_apart(const scree_facet_tree *t, const scree_facet_node *
 }
 
 static void leaf_bounds(const scree_facet_tree *t, scree_facet_node *n) {
-  n->bounds = facet_box(t->mesh, t->order[n->begin]);
+  n->bounds = scree_facet_box(t->mesh, t->order[n->begin]);
   for (uint32_t i = n->begin + 1; i < n->begin + n->count; i++) {
-    scree_box b = facet_box(t->mesh, t->order[i]);
+    scree_box b = scree_facet_box(t->mesh, t->order[i]);
     box_add(&n->bounds, &b);
   }
 }
 
-/* Builds the node of [begin, end) and all below it. */
-static bool build(scree_facet_tree *t, uint32_t begin, uint32_t end) {
+/* Builds the node of [begin, end) and all below it; tells its longest edge. */
+static bool build(scree_facet_tree *t, uint32_t begin, uint32_t end, longest *l) {
   scree_facet_node n = {.begin = begin, .count = end - begin, .frame = NO_FRAME};
   uint32_t index = (uint32_t)t->nodes.count;
   if (!SCREE_PUSH(&t->nodes, n)) return false;
   if (n.count <= SCREE_LEAF_FACETS) {
     leaf_bounds(t, &n);
+    *l = longest_in_leaf(t, &n);
   } else {
+    longest r;
     uint32_t split = begin + (uint32_t)cut(t, begin, end);
-    if (!build(t, begin, split)) return false;
+    if (!build(t, begin, split, l)) return false;
     n.right = (uint32_t)t->nodes.count;
-    if (!build(t, split, end)) return false;
+    if (!build(t, split, end, &r)) return false;
+    if (r.length2 > l->length2) *l = r;
     n.bounds = t->nodes.items[index + 1].bounds;
     box_add(&n.bounds, &t->nodes.items[n.right].bounds);
   }
-  if (n.count <= FRAME_FACETS && !add_frame(t, &n)) return false;
+  if (n.count <= FRAME_FACETS && !add_frame(t, &n, l)) return false;
   t->nodes.items[index] = n;
   return true;
 }
@@ -321,10 +322,156 @@ static void middle_block(void *context, size_t begin, size_t end, size_t block, 
   (void)worker;
   scree_facet_tree *t = context;
   for (size_t i = begin; i < end; i++) {
-    scree_box b = facet_box(t->mesh, (uint32_t)i);
+    scree_box b = scree_facet_box(t->mesh, (uint32_t)i);
     t->order[i] = (uint32_t)i;
     t->middle[i] = vec3_lerp(vec3_load(b.low), vec3_load(b.high), 0.5);
   }
+}
+
+/* ---- Building in parallel ---- */
+
+/* A node near the root, or a part: what one thread builds with all below it. */
+typedef struct top {
+  uint32_t begin, end; /* of order[] */
+  uint32_t left;       /* its children are tops[left] and tops[left + 1]; 0: it is a part */
+  bool failed;
+  scree_facet_tree part;    /* its nodes, frames and cones, numbered from 0 */
+  size_t node, frame, cone; /* where they go in the whole tree */
+} top;
+
+typedef struct tops {
+  scree_facet_tree *tree;
+  struct {
+    top *items;
+    size_t count, capacity;
+  } list;
+  size_t level; /* the first of the tops that are being cut */
+} tops;
+
+static void cut_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  tops *p = context;
+  for (size_t i = begin; i < end; i++) {
+    top *t = &p->list.items[p->level + i];
+    t->left = t->end - t->begin > PART_FACETS ? (uint32_t)cut(p->tree, t->begin, t->end) : 0;
+  }
+}
+
+/* Cuts what is larger than a part, all of one depth at a time. */
+static bool cut_tops(tops *p) {
+  if (!SCREE_PUSH(&p->list, (top){.end = (uint32_t)p->tree->mesh->triangle_count})) return false;
+  for (size_t end = p->list.count; p->level < end; end = p->list.count) {
+    scree_parallel_for(end - p->level, 1, cut_block, p);
+    for (; p->level < end; p->level++) {
+      top *t = &p->list.items[p->level];
+      uint32_t begin = t->begin, split = begin + t->left, stop = t->end;
+      if (!t->left) continue;
+      t->left = (uint32_t)p->list.count;
+      if (!SCREE_PUSH(&p->list, (top){.begin = begin, .end = split}) ||
+          !SCREE_PUSH(&p->list, (top){.begin = split, .end = stop}))
+        return false;
+    }
+  }
+  return true;
+}
+
+static void build_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  tops *p = context;
+  for (size_t i = begin; i < end; i++) {
+    top *t = &p->list.items[i];
+    if (t->left) continue;
+    t->part = (scree_facet_tree){
+        .mesh = p->tree->mesh, .order = p->tree->order, .middle = p->tree->middle};
+    size_t room = (size_t)(NODE_SHARE * (double)(t->end - t->begin)) + 1;
+    longest l;
+    t->failed = !SCREE_RESERVE(&t->part.nodes, room) || !build(&t->part, t->begin, t->end, &l);
+  }
+}
+
+/* Numbers the nodes of tops[index] and all below it, depth first, from where the tree ends. */
+static bool place_top(tops *p, size_t index) {
+  scree_facet_tree *tree = p->tree;
+  top *t = &p->list.items[index];
+  t->node = tree->nodes.count;
+  t->frame = tree->frames.count;
+  t->cone = tree->cones.count;
+  tree->nodes.count += t->left ? 1 : t->part.nodes.count;
+  tree->frames.count += t->part.frames.count;
+  tree->cones.count += t->part.cones.count;
+  if (!t->left) return !t->failed;
+  uint32_t left = t->left;
+  return place_top(p, left) && place_top(p, left + 1);
+}
+
+/* Room for what was counted, and no more. */
+static bool make_room(scree_facet_tree *t) {
+  return SCREE_RESERVE(&t->nodes, t->nodes.count) && SCREE_RESERVE(&t->frames, t->frames.count) &&
+         SCREE_RESERVE(&t->cones, t->cones.count);
+}
+
+static void free_part(scree_facet_tree *part) {
+  scree_free(part->nodes.items);
+  scree_free(part->frames.items);
+  scree_free(part->cones.items);
+  *part = (scree_facet_tree){0};
+}
+
+static void copy_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  tops *p = context;
+  for (size_t i = begin; i < end; i++) {
+    top *t = &p->list.items[i];
+    const scree_facet_tree *part = &t->part;
+    for (size_t k = 0; k < part->nodes.count; k++) {
+      scree_facet_node n = part->nodes.items[k];
+      if (n.right) n.right += (uint32_t)t->node;
+      if (n.frame != NO_FRAME) n.frame += (uint32_t)t->frame;
+      p->tree->nodes.items[t->node + k] = n;
+    }
+    for (size_t k = 0; k < part->frames.count; k++) {
+      scree_facet_frame f = part->frames.items[k];
+      if (f.cone != NO_CONE) f.cone += (uint32_t)t->cone;
+      p->tree->frames.items[t->frame + k] = f;
+    }
+    if (part->cones.count > 0)
+      memcpy(p->tree->cones.items + t->cone, part->cones.items,
+             part->cones.count * sizeof *part->cones.items);
+    free_part(&t->part); /* not all are held twice */
+  }
+}
+
+/* The nodes above the parts; children come after them. */
+static void join_tops(const tops *p) {
+  scree_facet_node *nodes = p->tree->nodes.items;
+  for (size_t i = p->list.count; i-- > 0;) {
+    const top *t = &p->list.items[i];
+    if (!t->left) continue;
+    scree_facet_node n = {.begin = t->begin,
+                          .count = t->end - t->begin,
+                          .right = (uint32_t)p->list.items[t->left + 1].node,
+                          .frame = NO_FRAME};
+    n.bounds = nodes[t->node + 1].bounds;
+    box_add(&n.bounds, &nodes[n.right].bounds);
+    nodes[t->node] = n;
+  }
+}
+
+/* The whole of it, of facets whose middles are known. */
+static bool build_all(scree_facet_tree *tree) {
+  tops p = {.tree = tree};
+  bool built = cut_tops(&p);
+  if (built) {
+    scree_parallel_for(p.list.count, 1, build_block, &p);
+    built = place_top(&p, 0) && make_room(tree);
+  }
+  if (built) {
+    scree_parallel_for(p.list.count, 1, copy_block, &p);
+    join_tops(&p);
+  }
+  for (size_t i = 0; i < p.list.count; i++) free_part(&p.list.items[i].part);
+  scree_free(p.list.items);
+  return built;
 }
 
 scree_status scree_facet_tree_build(const scree_mesh *mesh, scree_facet_tree *out,
@@ -333,8 +480,7 @@ scree_status scree_facet_tree_build(const scree_mesh *mesh, scree_facet_tree *ou
   SCREE_ALLOC_OR(t.order, mesh->triangle_count, error, out_of_memory);
   SCREE_ALLOC_OR(t.middle, mesh->triangle_count, error, out_of_memory);
   scree_parallel_for(mesh->triangle_count, 1 << 14, middle_block, &t);
-  bool built = SCREE_RESERVE(&t.nodes, (size_t)(NODE_SHARE * (double)mesh->triangle_count) + 1) &&
-               build(&t, 0, (uint32_t)mesh->triangle_count);
+  bool built = build_all(&t);
   scree_free(t.middle);
   t.middle = NULL;
   if (!built) {

@@ -270,25 +270,3 @@ scree_meet scree_triangles_meet(const double *positions, const uint32_t t[3], co
   bool enters = opposite_edge_enters(p.t, p.u) || opposite_edge_enters(p.u, p.t);
   return enters ? SCREE_MEET_CROSS : SCREE_MEET_NOT;
 }
-
-static double least(const double v[3]) {
-  double low = v[0] < v[1] ? v[0] : v[1];
-  return low < v[2] ? low : v[2];
-}
-
-static double most(const double v[3]) {
-  double high = v[0] > v[1] ? v[0] : v[1];
-  return high > v[2] ? high : v[2];
-}
-
-bool scree_boxes_apart(const double *positions, const uint32_t t[3], const uint32_t u[3]) {
-  for (int k = 0; k < 3; k++) {
-    double a[3], b[3];
-    for (int i = 0; i < 3; i++) {
-      a[i] = positions[3 * (size_t)t[i] + k];
-      b[i] = positions[3 * (size_t)u[i] + k];
-    }
-    if (least(a) > most(b) || least(b) > most(a)) return true;
-  }
-  return false;
-}

@@ -37,7 +37,6 @@ static bool test_pair(search *s, uint32_t a, uint32_t b, scree_meetings *out) {
   const scree_mesh *mesh = s->tree->mesh;
   const uint32_t *t = mesh->triangles + 3 * (size_t)a, *u = mesh->triangles + 3 * (size_t)b;
   if (s->settled && s->settled[a] && s->settled[b]) return true;
-  if (scree_boxes_apart(mesh->positions, t, u)) return true;
   scree_meet meet = scree_triangles_meet(mesh->positions, t, u);
   if (meet == SCREE_MEET_NOT) return true;
   if (atomic_fetch_add(&s->total, 1) >= s->limit) return true;
@@ -45,12 +44,35 @@ static bool test_pair(search *s, uint32_t a, uint32_t b, scree_meetings *out) {
   return SCREE_PUSH(out, (scree_meeting){first, second, meet});
 }
 
+/* Facets of a leaf with their boxes. */
+typedef struct crowd {
+  uint32_t facet[SCREE_LEAF_FACETS];
+  scree_box box[SCREE_LEAF_FACETS];
+  int count;
+} crowd;
+
+/* Those of the leaf that are not apart from the box. */
+static void list_near(const scree_facet_tree *t, const scree_facet_node *leaf, const scree_box *box,
+                      crowd *near) {
+  near->count = 0;
+  for (uint32_t i = leaf->begin; i < leaf->begin + leaf->count; i++) {
+    near->facet[near->count] = t->order[i];
+    near->box[near->count] = scree_facet_box(t->mesh, t->order[i]);
+    near->count += scree_box_apart(&near->box[near->count], box) ? 0 : 1;
+  }
+}
+
 static bool test_leaves(search *s, const scree_facet_node *a, const scree_facet_node *b,
                         scree_meetings *out) {
-  const uint32_t *order = s->tree->order;
-  for (uint32_t i = a->begin; i < a->begin + a->count; i++)
-    for (uint32_t j = a == b ? i + 1 : b->begin; j < b->begin + b->count; j++)
-      if (!test_pair(s, order[i], order[j], out)) return false;
+  crowd of_a, of_b;
+  list_near(s->tree, a, &b->bounds, &of_a);
+  if (of_a.count == 0) return true;
+  list_near(s->tree, b, &a->bounds, &of_b);
+  for (int i = 0; i < of_a.count; i++)
+    for (int j = a == b ? i + 1 : 0; j < of_b.count; j++)
+      if (!scree_box_apart(&of_a.box[i], &of_b.box[j]) &&
+          !test_pair(s, of_a.facet[i], of_b.facet[j], out))
+        return false;
   return true;
 }
 

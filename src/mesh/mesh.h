@@ -21,6 +21,11 @@ static inline size_t scree_mesh_stray_corner(const scree_mesh *mesh) {
   return SIZE_MAX;
 }
 
+/* Whether a triangle's corners are not three vertices but two or one. */
+static inline bool scree_names_twice(const uint32_t *c) {
+  return (c[0] == c[1]) | (c[1] == c[2]) | (c[2] == c[0]);
+}
+
 /* Whether the height of a triangle over its longest edge is not above the rounding of its
  * coordinates: an exact zero would be lost when units are converted. */
 bool scree_facet_is_flat(const scree_mesh *mesh, size_t triangle);

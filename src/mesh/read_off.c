@@ -105,7 +105,12 @@ static scree_status read_body(scree_text *t, off *o) {
     scree_text_skip_line(t);
   }
   for (int64_t f = 0; f < o->face_count && status == SCREE_OK; f++) status = read_face(t, o);
-  return status;
+  if (status != SCREE_OK) return status;
+  skip_comments(t);
+  if (t->p == t->end) return SCREE_OK;
+  return scree_text_fail(t, t->p,
+                         "more follows the last of the header's %lld faces: a count is wrong",
+                         (long long)o->face_count);
 }
 
 scree_status scree_read_off(scree_reading *r) {

@@ -124,7 +124,8 @@ static scree_status add_corner(ply *p, double value, const char *at) {
   bool restart = value == -1 && p->element->kind == SCREE_PLY_STRIPS;
   if (!restart && !(value >= 0 && value < (double)p->vertex_count && value == floor(value))) {
     p->text.p = at;
-    return fail_at(p, "%.0f is not the number of a vertex", value);
+    return fail_at(p, "%g is not the number of a vertex: there are %zu, from 0 on", value,
+                   p->vertex_count);
   }
   if (!SCREE_PUSH(&p->corners, restart ? UINT32_MAX : (uint32_t)value))
     return scree_fail_memory(p->text.error, p->corners.capacity * sizeof(uint32_t),
@@ -260,6 +261,24 @@ static scree_status find_vertices(ply *p) {
                     p->text.name);
 }
 
+/* Refuses rows behind the last that the header tells of. A binary file may end with what is too
+ * short for a triangle, as some are filled up. */
+static scree_status check_end(ply *p) {
+  enum { TRIANGLE_BYTES = 13 }; /* a count and three indices, as they mostly are */
+  scree_text *t = &p->text;
+  if (is_ascii(p)) {
+    scree_text_skip_space(t);
+    if (t->p == t->end) return SCREE_OK;
+    return scree_text_fail(t, t->p,
+                           "more follows the rows that the header tells of: a count is wrong");
+  }
+  if (t->end - t->p < TRIANGLE_BYTES) return SCREE_OK;
+  return scree_fail(
+      t->error, SCREE_BAD_FILE,
+      "%s: byte %td: %td bytes follow the rows that the header tells of: a count is wrong", t->name,
+      t->p - t->begin, t->end - t->p);
+}
+
 static const char *const format_names[] = {"PLY ASCII", "PLY binary little endian",
                                            "PLY binary big endian"};
 
@@ -271,6 +290,7 @@ scree_status scree_read_ply(scree_reading *r) {
     p.element = &p.header.elements.items[i];
     status = read_element(&p);
   }
+  if (status == SCREE_OK) status = check_end(&p);
   snprintf(r->scan->format, sizeof r->scan->format, "%s", format_names[p.header.encoding]);
   if (status == SCREE_OK)
     status = scree_reading_weld_faces(r, p.positions, p.vertex_count, &p.faces);

@@ -147,10 +147,8 @@ static bool join_near(const scree_repair *r, const rim *b, double distance, uint
 static bool remap(const scree_repair *r, uint32_t *parent, uint32_t *corners) {
   for (size_t c = 0; c < 3 * r->mesh.triangle_count; c++)
     corners[c] = scree_find_root(parent, r->mesh.triangles[c]);
-  for (size_t t = 0; t < r->mesh.triangle_count; t++) {
-    const uint32_t *c = corners + 3 * t;
-    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0]) return false;
-  }
+  for (size_t t = 0; t < r->mesh.triangle_count; t++)
+    if (scree_names_twice(corners + 3 * t)) return false;
   return true;
 }
 

@@ -91,41 +91,58 @@ out_of_memory:
   return scree_fail_memory(error, capacity * sizeof *third, "facets at an edge");
 }
 
+/* REACHED: the corner. The others, of a half-edge: the ring of its edge was gone through about the
+ * vertex that it leaves, or leads to. */
+enum { REACHED = 1, FROM_DONE = 2, TO_DONE = 4 };
+
 /* Turns round the vertex of corner start through edges of two facets and marks the corners passed;
  * false, with none marked, where an edge of another kind is in the way. */
-static bool walk_fan(const counter *c, uint32_t start, bool *reached) {
+static bool walk_fan(const counter *c, uint32_t start, uint8_t *marks) {
   const uint32_t *ring = c->adjacency->ring, *corners = c->mesh->triangles;
   uint32_t vertex = corners[start], corner = start;
   do {
     uint32_t h = ring[corner];
     if (h == corner || ring[h] != corner || corners[h] == vertex) {
       for (uint32_t back = start; back != corner; back = scree_half_edge_next(ring[back]))
-        reached[back] = false;
+        marks[back] &= (uint8_t)~REACHED;
       return false;
     }
-    reached[corner] = true;
+    marks[corner] |= REACHED;
     corner = scree_half_edge_next(h);
   } while (corner != start);
   return true;
 }
 
-/* Floods the fan of corner start round its vertex; corners are marked as they are reached. */
-static void flood_fan(const counter *c, uint32_t start, bool *reached, uint32_t *stack) {
+/* Goes round the edge of `side` and puts the corners at the vertex that are new onto the stack.
+ * Once for an edge and vertex: where many facets share an edge, each of them asks. */
+static size_t flood_edge(const counter *c, uint32_t side, uint32_t vertex, uint8_t *marks,
+                         uint32_t *stack, size_t depth) {
   const uint32_t *ring = c->adjacency->ring, *corners = c->mesh->triangles;
-  uint32_t vertex = corners[start];
+  if (marks[side] & (corners[side] == vertex ? FROM_DONE : TO_DONE)) return depth;
+  uint32_t h = side;
+  do {
+    bool leaves = corners[h] == vertex;
+    uint32_t other = leaves ? h : scree_half_edge_next(h);
+    marks[h] |= leaves ? FROM_DONE : TO_DONE;
+    if (!(marks[other] & REACHED)) {
+      marks[other] |= REACHED;
+      stack[depth++] = other;
+    }
+    h = ring[h];
+  } while (h != side);
+  return depth;
+}
+
+/* Floods the fan of corner start round its vertex; corners are marked as they are reached. */
+static void flood_fan(const counter *c, uint32_t start, uint8_t *marks, uint32_t *stack) {
+  uint32_t vertex = c->mesh->triangles[start];
   size_t depth = 0;
   stack[depth++] = start;
-  reached[start] = true;
+  marks[start] |= REACHED;
   while (depth > 0) {
     uint32_t corner = stack[--depth];
-    uint32_t sides[2] = {corner, scree_half_edge_previous(corner)};
-    for (int s = 0; s < 2; s++)
-      for (uint32_t h = ring[sides[s]]; h != sides[s]; h = ring[h]) {
-        uint32_t other = corners[h] == vertex ? h : scree_half_edge_next(h);
-        if (reached[other]) continue;
-        reached[other] = true;
-        stack[depth++] = other;
-      }
+    depth = flood_edge(c, corner, vertex, marks, stack, depth);
+    depth = flood_edge(c, scree_half_edge_previous(corner), vertex, marks, stack, depth);
   }
 }
 
@@ -133,9 +150,8 @@ static scree_status count_vertices(counter *c, scree_error *error) {
   const scree_mesh *mesh = c->mesh;
   size_t corner_count = 3 * mesh->triangle_count;
   scree_status status = SCREE_OUT_OF_MEMORY;
-  bool *reached = NULL;
   uint32_t *stack = NULL, *valence = NULL;
-  uint8_t *fans = NULL;
+  uint8_t *fans = NULL, *marks = NULL;
   SCREE_ALLOC_OR(valence, mesh->vertex_count, error, done);
   memset(valence, 0, mesh->vertex_count * sizeof *valence);
   uint32_t largest = 0;
@@ -145,13 +161,13 @@ static scree_status count_vertices(counter *c, scree_error *error) {
       if (now > largest) largest = now;
     }
   SCREE_ALLOC_OR(stack, largest, error, done);
-  SCREE_ALLOC_OR(reached, corner_count, error, done);
+  SCREE_ALLOC_OR(marks, corner_count, error, done);
   SCREE_ALLOC_OR(fans, mesh->vertex_count, error, done);
-  memset(reached, 0, corner_count * sizeof *reached);
+  memset(marks, 0, corner_count * sizeof *marks);
   memset(fans, 0, mesh->vertex_count * sizeof *fans);
   for (uint32_t corner = 0; corner < corner_count; corner++) {
-    if (c->adjacency->ring[corner] == SCREE_NO_HALF_EDGE || reached[corner]) continue;
-    if (!walk_fan(c, corner, reached)) flood_fan(c, corner, reached, stack);
+    if (c->adjacency->ring[corner] == SCREE_NO_HALF_EDGE || marks[corner] & REACHED) continue;
+    if (!walk_fan(c, corner, marks)) flood_fan(c, corner, marks, stack);
     uint8_t *at = &fans[mesh->triangles[corner]];
     if (*at < 2) c->found->non_manifold_vertex_count += ++*at == 2;
   }
@@ -163,7 +179,7 @@ static scree_status count_vertices(counter *c, scree_error *error) {
 done:
   scree_free(valence);
   scree_free(stack);
-  scree_free(reached);
+  scree_free(marks);
   scree_free(fans);
   return status;
 }

@@ -16,6 +16,7 @@
 
 #include "base/parallel.h"
 #include "base/progress.h"
+#include "mesh/mesh.h"
 #include "mesh/weld_near.h"
 #include "mesh/weld_sort.h"
 
@@ -204,10 +205,6 @@ static void load_triangle(const renumbering *r, size_t t, uint32_t v[3]) {
   }
 }
 
-static bool is_degenerate(const uint32_t v[3]) {
-  return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
-}
-
 /* Whether every triangle keeps three corners. */
 typedef struct keeping {
   const renumbering *renumbering;
@@ -221,7 +218,7 @@ static void look_at_block(void *context, size_t begin, size_t end, size_t block,
   for (size_t t = begin; t < end; t++) {
     uint32_t v[3];
     load_triangle(k->renumbering, t, v);
-    degenerate |= is_degenerate(v);
+    degenerate |= scree_names_twice(v);
   }
   if (degenerate) __atomic_store_n(&k->all, false, __ATOMIC_RELAXED);
 }
@@ -239,7 +236,7 @@ static size_t keep_triangles(const renumbering *r, uint32_t *kept, uint8_t *used
   for (size_t t = 0; t < r->triangle_count; t++) {
     uint32_t v[3];
     load_triangle(r, t, v);
-    if (is_degenerate(v)) continue;
+    if (scree_names_twice(v)) continue;
     used[v[0]] = used[v[1]] = used[v[2]] = 1;
     memcpy(kept + 3 * count++, v, sizeof v);
   }

@@ -9,6 +9,7 @@
 #include "mesh/weld_near.h"
 
 #include "base/vec.h"
+#include "mesh/mesh.h"
 #include "mesh/weld_sort.h"
 
 #include <math.h>
@@ -105,7 +106,7 @@ static scree_status rebuild(scree_mesh *mesh, uint32_t *parent, scree_error *err
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     uint32_t v[3];
     for (int k = 0; k < 3; k++) v[k] = find_root(parent, mesh->triangles[3 * t + (size_t)k]);
-    if (v[0] == v[1] || v[1] == v[2] || v[2] == v[0]) continue;
+    if (scree_names_twice(v)) continue;
     used[v[0]] = used[v[1]] = used[v[2]] = 1;
     memcpy(triangles + 3 * count++, v, sizeof v);
   }

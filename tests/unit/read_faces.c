@@ -194,6 +194,24 @@ static void ply_cut_anywhere(void **state) {
   }
 }
 
+/* What fills a file up is too short for a triangle. */
+static void ply_with_a_tail(void **state) {
+  (void)state;
+  for (int style = 1; style < 3; style++) {
+    ply_style s = {"alb"[style], "float", "uint8", "int", "\n", false, false};
+    make_ply(&s);
+    size_t whole = file_size;
+    for (int more = 0; more < 30; more++) {
+      file_size = whole;
+      for (int i = 0; i < more; i++) put_text(i % 2 ? "\1" : "\n");
+      if (more < 13)
+        expect_cube(ply_format(s.order));
+      else
+        expect_error("follow the rows that the header tells of");
+    }
+  }
+}
+
 static void ply_broken(void **state) {
   (void)state;
   begin("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n");
@@ -202,6 +220,10 @@ static void ply_broken(void **state) {
   size_t header = file_size;
   put_text("0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
   expect_error("line 13: face 1 of 1: 3 is not the number of a vertex");
+  file_size = header, put_text("0 0 0\n1 0 0\n0 1 0\n3 0.5 1 2\n");
+  expect_error("line 13: face 1 of 1: 0.5 is not the number of a vertex: there are 3, from 0 on");
+  file_size = header, put_text("0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n\n3 0 2 1\n");
+  expect_error("line 15: more follows the rows that the header tells of: a count is wrong");
   file_size = header, put_text("0 0 0\n1 0 nan\n0 1 0\n3 0 1 2\n");
   expect_error("line 11: a value should be a finite number, found 'nan'");
   file_size = header, put_text("0 0 0\n1 0 1e40\n0 1 0\n3 0 1 2\n");
@@ -350,6 +372,8 @@ static void off_broken(void **state) {
   (void)state;
   begin("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n");
   expect_error("line 6: a corner of a face should be a whole number from 0 to 2, found '3'");
+  begin("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n# end\n3 0 2 1\n");
+  expect_error("line 8: more follows the last of the header's 1 faces: a count is wrong");
   begin("OFF\n3000000 1 0\n0 0 0\n");
   expect_error("line 2: the number of vertices should be a whole number from 0 to ");
   begin("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n");
@@ -431,11 +455,12 @@ static void memory_runs_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ply_in_every_style),   cmocka_unit_test(ply_cut_anywhere),
-      cmocka_unit_test(ply_broken),           cmocka_unit_test(obj),
-      cmocka_unit_test(obj_broken),           cmocka_unit_test(off),
-      cmocka_unit_test(off_broken),           cmocka_unit_test(concave_polygons),
-      cmocka_unit_test(faces_of_two_corners), cmocka_unit_test(memory_runs_out),
+      cmocka_unit_test(ply_in_every_style), cmocka_unit_test(ply_cut_anywhere),
+      cmocka_unit_test(ply_broken),         cmocka_unit_test(obj),
+      cmocka_unit_test(obj_broken),         cmocka_unit_test(off),
+      cmocka_unit_test(ply_with_a_tail),    cmocka_unit_test(off_broken),
+      cmocka_unit_test(concave_polygons),   cmocka_unit_test(faces_of_two_corners),
+      cmocka_unit_test(memory_runs_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

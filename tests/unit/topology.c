@@ -266,6 +266,33 @@ static void test_hub(void **state) {
   check_whole(mesh, 0, 1, 0);
 }
 
+/* As many facets at one edge: in linear time, or this does not end. */
+static void test_many_at_an_edge(void **state) {
+  (void)state;
+  size_t n = 300000;
+  scree_mesh doubled = shape_make(3, n), fan = shape_make(n + 2, n);
+  for (size_t i = 0; i < 3; i++) vec3_store(doubled.positions + 3 * i, (vec3){i == 1, i == 2, 0});
+  for (size_t i = 0; i < 3 * n; i++) doubled.triangles[i] = (uint32_t)(i % 3);
+  vec3_store(fan.positions, (vec3){0, 0, 0});
+  vec3_store(fan.positions + 3, (vec3){0, 0, 1});
+  for (size_t i = 0; i < n; i++) {
+    const uint32_t corners[3] = {0, 1, (uint32_t)(i + 2)};
+    vec3_store(fan.positions + 3 * (i + 2), (vec3){cos((double)i), sin((double)i), 0});
+    memcpy(fan.triangles + 3 * i, corners, sizeof corners);
+  }
+  scree_topology t = topology_of(&doubled);
+  assert_int_equal(t.duplicate_facet_count, n - 1);
+  assert_int_equal(t.non_manifold_edge_count, 3);
+  assert_int_equal(t.non_manifold_vertex_count, 0);
+  t = topology_of(&fan);
+  assert_int_equal(t.boundary_edge_count, 2 * n);
+  assert_int_equal(t.non_manifold_edge_count, 1);
+  assert_int_equal(t.non_manifold_vertex_count, 0);
+  assert_int_equal(t.shell_count, 1);
+  scree_mesh_free(&doubled);
+  scree_mesh_free(&fan);
+}
+
 /* Thinner than the rounding of its coordinates is flat, wherever the mesh lies; above, it is not.
  */
 static void test_flat_facets(void **state) {
@@ -308,6 +335,7 @@ int main(void) {
       cmocka_unit_test(test_known_surfaces),
       cmocka_unit_test(test_sheet_and_pinch),
       cmocka_unit_test(test_hub),
+      cmocka_unit_test(test_many_at_an_edge),
       cmocka_unit_test(test_flat_facets),
       cmocka_unit_test(test_bad_meshes),
   };
