@@ -22,11 +22,12 @@
 static const double TARGET_SLACK = 1e-12;
 /* Slack at the ends of the grid: 1e-5 10^(36/9) may come out just above 1e-1. */
 static const double GRID_SLACK = 1e-9;
-/* A plain minimum counts as an accident where its error is below this part of the worst so far. */
-static const double ACCIDENT_RATIO = 0.1;
+/* A plain minimum counts as an accident where its error is below this part of the worst so far,
+ * unless that is no more than rounding. */
+static const double ACCIDENT_RATIO = 0.1, LEAST_ERROR = 1e-9;
 
 static bool is_accident(double error, double worst) {
-  return error < ACCIDENT_RATIO * worst;
+  return worst > LEAST_ERROR && error < ACCIDENT_RATIO * worst;
 }
 
 scree_choice_options scree_default_choice_options(void) {

@@ -56,18 +56,19 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
     if ((unsigned char)*c < ' ' || *c == 127) *c = '_'; /* a name goes into tables and file names */
 }
 
-static size_t character_length(const char *text) {
-  size_t length = 1;
-  while (((unsigned char)text[length] & 0xc0) == 0x80) length++;
-  return length;
+static bool begins_character(char c) {
+  return ((unsigned char)c & 0xc0) != 0x80;
 }
 
 void cli_print_cell(FILE *stream, const char *text, size_t least, size_t most) {
-  size_t count = 0;
-  for (; *text && count < most; count++) {
-    size_t length = character_length(text);
-    fprintf(stream, "%.*s", (int)length, text);
-    text += length;
+  size_t count = 0, at = 0;
+  for (const char *c = text; *c; c++) count += begins_character(*c);
+  size_t left = count <= most ? count : most / 2,
+         right = count <= most ? count : count - most + left + 1;
+  for (const char *c = text; *c; c++) {
+    at += begins_character(*c);
+    if (at == left + 1 && begins_character(*c) && at <= right) putc('~', stream);
+    if (at <= left || at > right) putc(*c, stream);
   }
   for (; count < least; count++) putc(' ', stream);
 }

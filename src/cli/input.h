@@ -45,7 +45,8 @@ scree_status cli_load(const char *word, const cli_input_options *options,
 
 /* The word without folders and ending, or the sample's name, into buffer; "stdin" for "-". */
 void cli_short_name(const char *word, char *buffer, size_t size);
-/* UTF-8 text as a cell of a table: of at least and at most so many characters. */
+/* UTF-8 text as a cell of a table: of at least and at most so many characters. What is longer has a
+ * ~ in its middle, for names are told apart by their beginnings or their ends. */
 void cli_print_cell(FILE *stream, const char *text, size_t least, size_t most);
 
 /* 12345678 as 12,345,678 */

@@ -1,6 +1,7 @@
 #include "cli/surface.h"
 #include "cli/terminal.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -122,13 +123,41 @@ static scree_status round_mesh(const scree_mesh *mesh, double unit, scree_mesh *
   return status;
 }
 
+static bool is_single(const char *path) {
+  return !strcmp(path, "-") || scree_file_format_of(path) == SCREE_FORMAT_STL;
+}
+
+/* Six times the volume, from the first corner. */
+static double volume_of(const scree_mesh *mesh, double unit, bool round) {
+  double from[3], sum = 0;
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    double at[3][3];
+    for (size_t i = 0; i < 9; i++) {
+      double x = mesh->positions[3 * (size_t)mesh->triangles[3 * t + i / 3] + i % 3];
+      at[i / 3][i % 3] = round ? rounded(x, unit) : x;
+    }
+    if (t == 0) memcpy(from, at[0], sizeof from);
+    for (size_t i = 0; i < 9; i++) at[i / 3][i % 3] -= from[i % 3];
+    for (int k = 0; k < 3; k++) {
+      int l = (k + 1) % 3, m = (k + 2) % 3;
+      sum += at[0][k] * (at[1][l] * at[2][m] - at[1][m] * at[2][l]);
+    }
+  }
+  return sum;
+}
+
+double cli_volume_lost(const scree_mesh *mesh, const char *path, double unit) {
+  if (!is_single(path) || mesh->triangle_count == 0) return 0;
+  double volume = volume_of(mesh, unit, false);
+  return volume != 0 ? fabs(volume_of(mesh, unit, true) - volume) / fabs(volume) : 0;
+}
+
 scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double unit,
                                const scree_check_options *how, const scree_progress *progress,
                                scree_error *error) {
-  bool single = !strcmp(path, "-") || scree_file_format_of(path) == SCREE_FORMAT_STL;
   scree_mesh read;
   scree_check check;
-  if (!single || fits_single(mesh, unit)) return SCREE_OK;
+  if (!is_single(path) || fits_single(mesh, unit)) return SCREE_OK;
   scree_status status = round_mesh(mesh, unit, &read, error);
   if (status != SCREE_OK) return status;
   status = scree_mesh_check(&read, how, progress, &check, error);

@@ -53,4 +53,10 @@ scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double 
                                const scree_check_options *how, const scree_progress *progress,
                                scree_error *error);
 
+/* What single precision, if the file that the path will name has that, takes from the volume or
+ * adds to it, relative; of a mesh far from the origin it is much. */
+double cli_volume_lost(const scree_mesh *mesh, const char *path, double unit);
+/* From here on it is said: scans are no more exact than that. */
+#define CLI_NOTABLE_LOSS 1e-6
+
 #endif

@@ -32,7 +32,8 @@ static const cli_option options[] = {
      "Keep at most this many triangles.", 1, 4294967295.0, NULL},
     {"error", 'e', CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
      "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the quadric "
-     "error, an estimate, not a bound.",
+     "error, an estimate, not a bound. Dearer collapses are left out and others go on, so that the "
+     "mesh is none of the levels that curve shows. May be given with -r or -n.",
      1e-12, 1e12, NULL},
     {"method", 'm', CLI_CHOICE, offsetof(simplify_arguments, method), "METHOD",
      "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
@@ -63,8 +64,8 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index) {
           "%s: %zu -> %zu triangles (Rp %.3g), method %s, eps_s %.3g, eps_v %.3g, quadric error "
           "%.3g mm, coordinates in %s\n",
           call->inputs[0], first.triangle_count, level.triangle_count, level.rp,
-          scree_method_name(facts.method), (level.area - first.area) / first.area,
-          first.volume != 0 ? (level.volume - first.volume) / fabs(first.volume) : 0,
+          scree_method_name(facts.method), fabs(level.area - first.area) / first.area,
+          first.volume != 0 ? fabs(level.volume - first.volume) / fabs(first.volume) : 0,
           level.quadric_error * 1e3,
           cli_unit_name(((const simplify_arguments *)call->options)->source.unit));
   if (!facts.closed)
@@ -113,6 +114,12 @@ static scree_status write_level(const cli_call *call, const scree_scan *scan,
   if (status == SCREE_OK)
     status = arguments->density > 0 ? write_with_mass(call, scan, &mesh, error)
                                     : write_plain(call, &mesh, error);
+  double lost = cli_volume_lost(&mesh, arguments->output, arguments->source.unit);
+  if (status == SCREE_OK && lost >= CLI_NOTABLE_LOSS && !call->quiet)
+    fprintf(stderr,
+            "%s: an STL holds single precision, which changes the volume by %.2g of it here; .ply, "
+            ".obj and .off hold it\n",
+            arguments->output, lost);
   scree_mesh_free(&mesh);
   return status;
 }
