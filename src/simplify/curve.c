@@ -7,7 +7,7 @@
 #include "base/array.h"
 #include "base/parallel.h"
 #include "base/sum.h"
-#include "simplify/decimate.h"
+#include "simplify/patch.h"
 
 #include <string.h>
 
@@ -216,7 +216,9 @@ static void sum_block(void *context, size_t begin, size_t end, size_t block, int
 
 static scree_status decimate(scree_decimator *d) {
   scree_parallel_for(d->s.vertex_count, 1024, sum_block, d);
-  scree_status status = scree_decimate_in_batches(d);
+  scree_status status = SCREE_OK;
+  if (scree_is_large(d)) status = scree_decimate_in_patches(d, SCREE_PATCH);
+  if (status == SCREE_OK) status = scree_decimate_in_batches(d);
   if (status == SCREE_OK) status = scree_decimate_one_by_one(d);
   if (status == SCREE_CANCELLED)
     return scree_fail(d->error, SCREE_CANCELLED, "decimation was cancelled at %zu triangles",

@@ -45,6 +45,7 @@ typedef struct scree_decimator {
   scree_grid grid;
   scree_memory memory; /* of surfaces that the batches came to; nothing before */
   scree_anchors anchors;
+  double mean_move; /* of the collapses of the last pass: the root of the mean square move; or 0 */
   scree_ticker ticker;
   scree_error *error;
 } scree_decimator;
@@ -94,12 +95,18 @@ static inline bool scree_is_held_close(const scree_decimator *d) {
 
 /* Below how many triangles vertices move after a collapse (relax.h); method `volume`; later with
  * large scans. */
-enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 1000 };
+enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 1300 };
 
 /* Witnesses for a triangle above which they are thinned, and how many are kept however few
- * triangles there are: places found by few fit these rather than the scan. Of large scans fewer,
- * for it takes time. */
-enum { SCREE_CROWD = 48, SCREE_LEAST_WITNESSES = 4000, SCREE_CROWD_OF_LARGE = 24 };
+ * triangles there are: places found by few fit these rather than the scan. Of large scans fewer for
+ * a triangle, for it takes time; but theirs are the vertices of a surface kept late, and more of
+ * them are needed for coarse levels. */
+enum {
+  SCREE_CROWD = 48,
+  SCREE_LEAST_WITNESSES = 4000,
+  SCREE_CROWD_OF_LARGE = 24,
+  SCREE_LEAST_OF_LARGE = 6000
+};
 
 /* Keeps the surface as it is (stray.h). */
 scree_status scree_decimate_keep(scree_decimator *d);

@@ -229,7 +229,7 @@ static void renew(queue *q) {
   qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
   double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
   if (scree_is_large(d))
-    scree_memory_thin(&d->memory, &d->s, SCREE_CROWD_OF_LARGE, 0);
+    scree_memory_thin(&d->memory, &d->s, SCREE_CROWD_OF_LARGE, SCREE_LEAST_OF_LARGE);
   else
     scree_memory_thin(&d->memory, &d->s, SCREE_CROWD, SCREE_LEAST_WITNESSES);
   double far = scree_memory_usual(&d->memory, scree_is_held_close(d));

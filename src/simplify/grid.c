@@ -7,11 +7,14 @@
 #include <string.h>
 
 enum { BLOCK = 128 * SCREE_GROUP, CLEAR_BLOCK = 1 << 15 };
-/* A normal must point this much towards a direction to face it (cosine): past any rounding. */
+/* A normal must point this much towards a direction to face it (sine of the least angle, roughly):
+ * past any rounding; and where directions are kept free for what comes, 27 degrees. */
 #define FACING 1e-6
+#define ROOMY  0.45
+/* Of a cell: no triangle was entered there. */
+#define NO_SURFACE (UINT64_C(1) << 63)
 
-/* Half of the directions; the other half are their opposites. Not normalised: the margin FACING is
- * loose enough. */
+/* Half of the directions; the other half are their opposites. Not normalised. */
 static const double directions[SCREE_DIRECTIONS][3] = {
     {1, 0, 0},  {0, 1, 0},  {0, 0, 1},  {1, 1, 0},  {1, -1, 0}, {1, 0, 1},  {1, 0, -1},
     {0, 1, 1},  {0, 1, -1}, {1, 1, 1},  {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}, {2, 1, 1},
@@ -25,18 +28,19 @@ vec3 scree_faced_direction(uint64_t averse) {
   return k < SCREE_DIRECTIONS ? direction : vec3_scale(direction, -1);
 }
 
-static uint64_t averse_exactly(vec3 n) {
-  double margin = FACING * (fabs(n.x) + fabs(n.y) + fabs(n.z));
+static uint64_t averse_exactly(vec3 n, double facing) {
   uint64_t bits = 0;
   for (int k = 0; k < SCREE_DIRECTIONS; k++) {
-    double dot = n.x * directions[k][0] + n.y * directions[k][1] + n.z * directions[k][2];
+    vec3 direction = vec3_load(directions[k]);
+    double dot = vec3_dot(n, direction), margin = facing * vec3_norm(n) * vec3_norm(direction);
     bits |= (uint64_t) !(dot > margin) << k | (uint64_t) !(-dot > margin) << (k + SCREE_DIRECTIONS);
   }
   return bits;
 }
 
 /* Normals fall into the squares of a cube's faces, SCREE_TILES by SCREE_TILES each. What a square
- * holds is averse to whatever one of its corners is: facing is linear on the square. */
+ * holds is averse to whatever one of its corners is: the normals that face a direction by a margin
+ * are a convex cone. */
 enum { TILE_COUNT = 6 * SCREE_TILES * SCREE_TILES };
 
 static vec3 tile_corner(int face, int i, int j) {
@@ -47,21 +51,25 @@ static vec3 tile_corner(int face, int i, int j) {
                          : (vec3){u, v, sign};
 }
 
-static void fill_face(uint64_t *averse_of, int face) {
+static void fill_face(uint64_t *averse_of, double facing, int face) {
   uint64_t corner[SCREE_TILES + 1][SCREE_TILES + 1];
   for (int i = 0; i <= SCREE_TILES; i++)
-    for (int j = 0; j <= SCREE_TILES; j++) corner[i][j] = averse_exactly(tile_corner(face, i, j));
+    for (int j = 0; j <= SCREE_TILES; j++)
+      corner[i][j] = averse_exactly(tile_corner(face, i, j), facing);
   for (int i = 0; i < SCREE_TILES; i++)
     for (int j = 0; j < SCREE_TILES; j++)
       averse_of[(face * SCREE_TILES + i) * SCREE_TILES + j] =
           corner[i][j] | corner[i + 1][j] | corner[i][j + 1] | corner[i + 1][j + 1];
 }
 
-/* The table of directions, the same for every shape. */
+/* The tables of directions, the same for every shape. */
 static scree_status prepare_tiles(scree_grid *g, scree_error *error) {
   if (g->averse_of) return SCREE_OK;
-  SCREE_ALLOC_OR(g->averse_of, TILE_COUNT, error, out_of_memory);
-  for (int face = 0; face < 6; face++) fill_face(g->averse_of, face);
+  SCREE_ALLOC_OR(g->averse_of, 2 * TILE_COUNT, error, out_of_memory);
+  for (int face = 0; face < 6; face++) {
+    fill_face(g->averse_of, FACING, face);
+    fill_face(g->averse_of + TILE_COUNT, ROOMY, face);
+  }
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -82,16 +90,16 @@ void scree_grid_free(scree_grid *g) {
   *g = (scree_grid){0};
 }
 
-/* The mean edge, had the surface the box and the area with which it was built: a triangle of side e
+/* The mean edge, had the surface the area with which it was built: a triangle of side e
  * has sqrt(3)/4 e^2. Cells need not fit closely. */
 static double mean_edge(const scree_halfmesh *s) {
   return sqrt(2.3094 * s->area / (double)s->live_triangle_count);
 }
 
-scree_status scree_grid_shape(scree_grid *g, const scree_halfmesh *s, double edges_per_cell,
-                              scree_error *error) {
+static scree_status shape(scree_grid *g, const scree_halfmesh *s, vec3 low, vec3 high,
+                          double edges_per_cell, scree_error *error) {
   double cell = mean_edge(s) * edges_per_cell;
-  vec3 extent = vec3_sub(s->high, s->low);
+  vec3 extent = vec3_sub(high, low);
   double longest = fmax(extent.x, fmax(extent.y, extent.z));
   if (!(cell > longest / 1024)) cell = longest / 1024;
   for (;; cell *= 1.25) { /* thin features in a large box: a few cells per triangle are enough */
@@ -100,7 +108,7 @@ scree_status scree_grid_shape(scree_grid *g, const scree_halfmesh *s, double edg
     if (n <= 4.0 * (double)s->live_triangle_count + 64) break;
   }
   free_cells(g);
-  g->low = s->low;
+  g->low = low;
   g->cells_per_length = 1 / cell;
   g->size[0] = (uint32_t)(extent.x / cell) + 1;
   g->size[1] = (uint32_t)(extent.y / cell) + 1;
@@ -117,6 +125,19 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+scree_status scree_grid_shape(scree_grid *g, const scree_halfmesh *s, double edges_per_cell,
+                              scree_error *error) {
+  return shape(g, s, s->low, s->high, edges_per_cell, error);
+}
+
+scree_status scree_grid_shape_in(scree_grid *g, const scree_halfmesh *s,
+                                 const scree_frame_of_places *frame, double edges_per_cell,
+                                 scree_error *error) {
+  scree_status status = shape(g, s, frame->low, frame->high, edges_per_cell, error);
+  g->frame = frame;
+  return status;
+}
+
 static void enter(scree_grid *g, scree_grid_box c, uint64_t averse) {
   if (scree_count_cells(&c) > SCREE_CELLS_MAX) {
     __atomic_fetch_or(&g->averse_all, averse, __ATOMIC_RELAXED);
@@ -130,6 +151,7 @@ static void enter(scree_grid *g, scree_grid_box c, uint64_t averse) {
 typedef struct entering {
   scree_grid *grid;
   const scree_halfmesh *s;
+  const uint64_t *averse_of; /* by tile */
 } entering;
 
 /* Triangles of a group side by side, one per lane. */
@@ -163,8 +185,9 @@ SCREE_LANES static void place_lanes(const scree_grid *g, lanes *l, int count) {
   }
 }
 
-static void enter_group(scree_grid *g, const scree_halfmesh *s, size_t begin, size_t end,
-                        scree_grid_box *all) {
+static void enter_group(const entering *work, size_t begin, size_t end, scree_grid_box *all) {
+  scree_grid *g = work->grid;
+  const scree_halfmesh *s = work->s;
   lanes l;
   int count = 0;
   for (size_t t = begin; t < end; t++) {
@@ -172,6 +195,7 @@ static void enter_group(scree_grid *g, const scree_halfmesh *s, size_t begin, si
     if (scree_is_gone(s, t)) continue;
     scree_corners(s, t, at);
     for (int k = 0; k < 3; k++) {
+      if (g->frame) at[k] = scree_into_frame(g->frame, at[k]);
       l.at[k][0][count] = at[k].x;
       l.at[k][1][count] = at[k].y;
       l.at[k][2][count] = at[k].z;
@@ -183,7 +207,7 @@ static void enter_group(scree_grid *g, const scree_halfmesh *s, size_t begin, si
   for (int i = 0; i < count; i++) {
     scree_grid_box c = {{(uint16_t)l.low[0][i], (uint16_t)l.low[1][i], (uint16_t)l.low[2][i]},
                         {(uint16_t)l.high[0][i], (uint16_t)l.high[1][i], (uint16_t)l.high[2][i]}};
-    enter(g, c, scree_averse_in(g, l.tile[i]));
+    enter(g, c, l.tile[i] < 0 ? SCREE_ALL_AVERSE : work->averse_of[l.tile[i]]);
     scree_join_cells(all, &c);
   }
 }
@@ -193,7 +217,7 @@ static void enter_block(void *context, size_t begin, size_t end, size_t block, i
   entering *work = context;
   for (size_t first = begin; first < end; first += SCREE_GROUP) {
     size_t last = first + SCREE_GROUP < end ? first + SCREE_GROUP : end;
-    enter_group(work->grid, work->s, first, last, &work->grid->groups[first / SCREE_GROUP]);
+    enter_group(work, first, last, &work->grid->groups[first / SCREE_GROUP]);
   }
 }
 
@@ -203,12 +227,48 @@ static void clear_block(void *context, size_t begin, size_t end, size_t block, i
   memset(g->averse + begin, 0, (end - begin) * sizeof *g->averse);
 }
 
-void scree_grid_enter_directions(scree_grid *g, const scree_halfmesh *s) {
-  entering work = {g, s};
+static void enter_all(scree_grid *g, const scree_halfmesh *s, const uint64_t *averse_of) {
+  entering work = {g, s, averse_of};
   scree_parallel_for(g->cell_count, CLEAR_BLOCK, clear_block, g);
   g->averse_all = 0;
   g->group_count = scree_block_count(s->triangle_count, SCREE_GROUP);
   scree_parallel_for(s->triangle_count, BLOCK, enter_block, &work);
+}
+
+void scree_grid_enter_directions(scree_grid *g, const scree_halfmesh *s) {
+  enter_all(g, s, g->averse_of);
+}
+
+/* What the cells around this one, where there is surface, are averse to. */
+static uint64_t averse_around(const scree_grid *g, size_t cell) {
+  size_t at[3] = {cell % g->size[0], cell / g->size[0] % g->size[1],
+                  cell / g->size[0] / g->size[1]};
+  scree_grid_box c;
+  uint64_t averse = 0;
+  for (int k = 0; k < 3; k++) {
+    c.low[k] = (uint16_t)(at[k] > 0 ? at[k] - 1 : 0);
+    c.high[k] = (uint16_t)(at[k] + 1 < g->size[k] ? at[k] + 1 : at[k]);
+  }
+  SCREE_FOR_CELLS(g, c, other) {
+    uint64_t found = __atomic_load_n(&g->averse[other], __ATOMIC_RELAXED);
+    if (!(found & NO_SURFACE)) averse |= found;
+  }
+  return averse ? averse : SCREE_ALL_AVERSE;
+}
+
+/* What the cell was averse to when it was entered. One without surface, to which some may come, has
+ * the directions of those around; whoever asks first notes them. */
+static uint64_t averse_roomy(const scree_grid *g, size_t cell) {
+  uint64_t averse = __atomic_load_n(&g->averse[cell], __ATOMIC_RELAXED);
+  if (averse == 0) {
+    averse = NO_SURFACE | averse_around(g, cell);
+    __atomic_store_n(&g->averse[cell], averse, __ATOMIC_RELAXED);
+  }
+  return averse & ~NO_SURFACE;
+}
+
+void scree_grid_enter_roomy(scree_grid *g, const scree_halfmesh *s) {
+  enter_all(g, s, g->averse_of + TILE_COUNT);
 }
 
 scree_status scree_grid_look_at_all(scree_grid *g, scree_error *error) {
@@ -243,4 +303,36 @@ bool scree_grid_certifies(const scree_grid *g, const scree_ring *r, const scree_
   if (averse == SCREE_ALL_AVERSE || scree_count_cells(&c) > SCREE_CELLS_MAX) return false;
   SCREE_FOR_CELLS(g, c, cell) averse |= g->averse[cell];
   return averse != SCREE_ALL_AVERSE;
+}
+
+/* The ring's box in the grid's frame, and what its triangles as they will be are averse to there.
+ */
+static scree_grid_box turned_box(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
+                                 vec3 target) {
+  vec3 low = scree_into_frame(g->frame, target), high = low;
+  vec3 at[] = {scree_into_frame(g->frame, s->vertex[r->a].at),
+               scree_into_frame(g->frame, s->vertex[r->b].at)};
+  low = vec3_min(low, vec3_min(at[0], at[1]));
+  high = vec3_max(high, vec3_max(at[0], at[1]));
+  for (uint32_t i = 0; i < r->count; i++) { /* a loop: each corner is the first of an edge */
+    vec3 p = scree_into_frame(g->frame, s->vertex[s->half[r->edge[i]].from].at);
+    low = vec3_min(low, p);
+    high = vec3_max(high, p);
+  }
+  return scree_cells_of(g, low, high);
+}
+
+bool scree_grid_keeps(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
+                      vec3 target, const scree_around *around) {
+  scree_grid_box c = turned_box(g, s, r, target);
+  uint64_t averse = 0, all = g->averse_all, lost = 0;
+  for (uint32_t i = 0; i < r->count; i++)
+    averse |= scree_averse_to(g, mat3_mul_vec(&g->frame->axes, around->after[i]));
+  if (averse == SCREE_ALL_AVERSE || scree_count_cells(&c) > SCREE_CELLS_MAX) return false;
+  SCREE_FOR_CELLS(g, c, cell) {
+    uint64_t found = averse_roomy(g, cell);
+    all |= found;
+    lost |= averse & ~found;
+  }
+  return !lost && all != SCREE_ALL_AVERSE;
 }

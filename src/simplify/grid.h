@@ -13,6 +13,7 @@
 #define SCREE_SIMPLIFY_GRID_H
 
 #include "simplify/collapse.h"
+#include "simplify/order.h"
 
 /* In cells or fractions of cells, inclusive. */
 typedef struct scree_grid_box {
@@ -25,7 +26,8 @@ typedef struct scree_grid_node {
 } scree_grid_node;
 
 typedef struct scree_grid {
-  uint64_t *averse_of; /* by direction of a normal: what faces it, see grid.c */
+  uint64_t *averse_of; /* by direction of a normal: what it does not face, twice; see grid.c */
+  const scree_frame_of_places *frame; /* in whose axes the cells are; NULL: as the surface lies */
   vec3 low;
   double cells_per_length;
   uint32_t size[3];
@@ -50,6 +52,9 @@ typedef struct scree_planned {
   const scree_change *changes;
 } scree_planned;
 
+/* Mean edges per cell, and the share of triangles left at which a pass sets new cells. */
+#define SCREE_EDGES_PER_CELL 2.0
+#define SCREE_REGRID_BELOW   0.6
 /* Triangles of a group: so many one after the other. */
 enum { SCREE_GROUP = 16 };
 
@@ -57,6 +62,11 @@ enum { SCREE_GROUP = 16 };
  * per triangle. Cells are empty: fill directions or lists as needed. */
 scree_status scree_grid_shape(scree_grid *grid, const scree_halfmesh *s, double edges_per_cell,
                               scree_error *error);
+/* The same with cells in this frame, which must stay: for answers that do not hang on how the
+ * surface lies. */
+scree_status scree_grid_shape_in(scree_grid *grid, const scree_halfmesh *s,
+                                 const scree_frame_of_places *frame, double edges_per_cell,
+                                 scree_error *error);
 void scree_grid_free(scree_grid *grid);
 /* For so few triangles that searches may look at them all, in place of the cells. */
 scree_status scree_grid_look_at_all(scree_grid *grid, scree_error *error);
@@ -73,6 +83,16 @@ bool scree_grid_certifies(const scree_grid *grid, const scree_ring *ring,
                           const scree_around *around);
 /* The same for a ring that was entered: its new triangles are among those in the cells. */
 bool scree_grid_certifies_entered(const scree_grid *grid, const scree_grid_box *box);
+
+/* For collapses that are certified without being entered (patch.c): enters all triangles as above,
+ * but a cell counts as faced only what they face by 27 degrees and more. */
+void scree_grid_enter_roomy(scree_grid *grid, const scree_halfmesh *s);
+/* True: the closed ring's triangles, as they will be, face all that cells about them count as
+ * faced, and some direction is faced in all of these. Then the surface, which is closed, meets
+ * itself no more than before, whatever other such collapses are done first. The grid has a frame.
+ */
+bool scree_grid_keeps(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
+                      vec3 target, const scree_around *around);
 
 /* One by one: lists all triangles, or one that has changed. False: out of memory. */
 bool scree_grid_list_all(scree_grid *grid, const scree_halfmesh *s);

@@ -44,7 +44,7 @@ void scree_halfmesh_free(scree_halfmesh *s) {
 /* Of a part of the mesh: its box, and whether something in it is wrong. */
 typedef struct part {
   vec3 low, high;
-  bool bad_triangles, bad_vertices;
+  bool bad;
 } part;
 
 enum { PARTS = 64 };
@@ -54,29 +54,21 @@ typedef struct checking {
   part parts[PARTS];
 } checking;
 
-static bool names_twice(const uint32_t *c) {
-  return (c[0] == c[1]) | (c[1] == c[2]) | (c[2] == c[0]);
-}
-
-static bool is_finite(vec3 p) {
-  return isfinite(p.x) && isfinite(p.y) && isfinite(p.z);
-}
-
 static void check_parts(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   checking *c = context;
   const scree_mesh *mesh = c->mesh;
   const size_t triangles = mesh->triangle_count, vertices = mesh->vertex_count;
   for (size_t i = begin; i < end; i++) {
-    part found = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false, false};
+    part found = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}, false};
     for (size_t t = triangles * i / PARTS; t < triangles * (i + 1) / PARTS; t++) {
       const uint32_t *v = mesh->triangles + 3 * t;
-      found.bad_triangles |=
-          (v[0] >= vertices) | (v[1] >= vertices) | (v[2] >= vertices) | names_twice(v);
+      found.bad |=
+          (v[0] >= vertices) | (v[1] >= vertices) | (v[2] >= vertices) | scree_names_twice(v);
     }
     for (size_t v = vertices * i / PARTS; v < vertices * (i + 1) / PARTS; v++) {
       vec3 p = vec3_load(mesh->positions + 3 * v);
-      found.bad_vertices |= !is_finite(p);
+      found.bad |= !isfinite(p.x) | !isfinite(p.y) | !isfinite(p.z);
       found.low = vec3_min(found.low, p);
       found.high = vec3_max(found.high, p);
     }
@@ -86,29 +78,20 @@ static void check_parts(void *context, size_t begin, size_t end, size_t block, i
 
 /* A facet that names a vertex twice has no place in the surface, and levels could not be counted.
  */
-static scree_status refuse_triangles(const scree_mesh *mesh, scree_error *error) {
-  size_t stray = scree_mesh_stray_corner(mesh), t = 0;
-  if (stray != SIZE_MAX)
-    return scree_fail(error, SCREE_BAD_MESH, "triangle %zu names vertex %u of %zu", stray / 3,
-                      mesh->triangles[stray], mesh->vertex_count);
-  while (!names_twice(mesh->triangles + 3 * t)) t++;
+static scree_status refuse(const scree_mesh *mesh, scree_error *error) {
+  scree_status status = scree_mesh_verify(mesh, error);
+  if (status != SCREE_OK) return status;
+  size_t t = 0;
+  while (!scree_names_twice(mesh->triangles + 3 * t)) t++;
   const uint32_t *c = mesh->triangles + 3 * t;
   return scree_fail(error, SCREE_BAD_MESH,
                     "triangle %zu names vertex %u twice; repair the mesh first", t,
                     c[0] == c[1] ? c[0] : c[2]);
 }
 
-static scree_status refuse_vertices(const scree_mesh *mesh, scree_error *error) {
-  size_t v = 0;
-  while (is_finite(vec3_load(mesh->positions + 3 * v))) v++;
-  const double *p = mesh->positions + 3 * v;
-  return scree_fail(error, SCREE_BAD_MESH, "vertex %zu is not finite: (%g, %g, %g)", v, p[0], p[1],
-                    p[2]);
-}
-
 static scree_status check_mesh(const scree_mesh *mesh, vec3 *low, vec3 *high, scree_error *error) {
   checking c = {.mesh = mesh};
-  bool bad_triangles = false, bad_vertices = false;
+  bool bad = false;
   if (mesh->triangle_count == 0)
     return scree_fail(error, SCREE_BAD_MESH, "the mesh has no triangles to decimate");
   if (mesh->triangle_count > SCREE_NONE / 3 - 1 || mesh->vertex_count > SCREE_NONE - 1)
@@ -118,13 +101,11 @@ static scree_status check_mesh(const scree_mesh *mesh, vec3 *low, vec3 *high, sc
   *low = c.parts[0].low;
   *high = c.parts[0].high;
   for (size_t i = 0; i < PARTS; i++) {
-    bad_triangles |= c.parts[i].bad_triangles;
-    bad_vertices |= c.parts[i].bad_vertices;
+    bad |= c.parts[i].bad;
     *low = vec3_min(*low, c.parts[i].low);
     *high = vec3_max(*high, c.parts[i].high);
   }
-  if (bad_triangles) return refuse_triangles(mesh, error);
-  return bad_vertices ? refuse_vertices(mesh, error) : SCREE_OK;
+  return bad ? refuse(mesh, error) : SCREE_OK;
 }
 
 /* The box: its centre, and the power of two not below its longest side. */
@@ -232,7 +213,7 @@ static void rank_vertices(void *context, size_t begin, size_t end, size_t block,
 }
 
 /* A large surface is put in order first: neighbours are near in memory then. */
-static scree_status place_in_order(builder *b, vec3 low, vec3 high, scree_error *error) {
+static scree_status place_in_order(builder *b, vec3 centre, scree_error *error) {
   const scree_mesh *mesh = b->mesh;
   if (mesh->triangle_count < ORDERED_FROM) {
     for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
@@ -240,7 +221,7 @@ static scree_status place_in_order(builder *b, vec3 low, vec3 high, scree_error 
     return SCREE_OK;
   }
   SCREE_ALLOC_OR(b->order, mesh->vertex_count, error, out_of_memory);
-  scree_status status = scree_order_vertices(mesh, low, high, b->order, error);
+  scree_status status = scree_order_vertices(mesh, centre, b->order, error);
   if (status != SCREE_OK) return status;
   scree_parallel_for(mesh->vertex_count, BLOCK, rank_vertices, b);
   place_triangles(b);
@@ -435,7 +416,7 @@ static scree_status build_edges(builder *b, vec3 low, vec3 high, scree_error *er
   b->next[0] = b->start + mesh->vertex_count + 1;
   b->next[1] = b->next[0] + mesh->vertex_count;
   b->rank = b->next[1] + mesh->vertex_count;
-  scree_status status = place_in_order(b, low, high, error);
+  scree_status status = place_in_order(b, vec3_scale(vec3_add(low, high), 0.5), error);
   if (status != SCREE_OK) return status;
   SCREE_ALLOC_OR(b->fan, half_edges, error, out_of_memory);
   SCREE_ALLOC_OR(b->fan_to, half_edges, error, out_of_memory);
@@ -591,4 +572,11 @@ void scree_halfmesh_compact(scree_halfmesh *s, uint32_t *vertex_scratch,
   scree_parallel_for(2, 1, move_block, &c);
   s->vertex_count = s->live_vertex_count = c.vertex_count;
   s->triangle_count = s->live_triangle_count = c.triangle_count;
+}
+
+void scree_halfmesh_give_back(const scree_halfmesh *s) {
+  scree_discard_tail(s->vertex, s->vertex_count * sizeof *s->vertex);
+  scree_discard_tail(s->half, 3 * s->triangle_count * sizeof *s->half);
+  scree_discard_tail(s->sums, s->vertex_count * sizeof *s->sums);
+  scree_discard_tail(s->refused, 3 * s->triangle_count);
 }

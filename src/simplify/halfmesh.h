@@ -16,12 +16,15 @@
 #define SCREE_NONE UINT32_MAX
 
 /* LOCKED: never moves. STALE: its sums are. CHANGED: its triangles changed since all edges were
- * evaluated. ANCHOR: it stands for its shell (anchor.h). */
+ * evaluated. ANCHOR: it stands for its shell (anchor.h). BORDER: it stays in this pass (patch.h).
+ */
 enum {
   SCREE_VERTEX_LOCKED = 1,
   SCREE_VERTEX_STALE = 2,
   SCREE_VERTEX_CHANGED = 4,
-  SCREE_VERTEX_ANCHOR = 8
+  SCREE_VERTEX_ANCHOR = 8,
+  SCREE_VERTEX_BORDER = 16,
+  SCREE_VERTEX_STAYS = SCREE_VERTEX_LOCKED | SCREE_VERTEX_BORDER
 };
 
 /* REFUSED: the collapse was tried and is not allowed now. POSTPONED: it costs too much for this
@@ -95,5 +98,7 @@ void scree_halfmesh_free(scree_halfmesh *surface);
  * triangle. */
 void scree_halfmesh_compact(scree_halfmesh *surface, uint32_t *vertex_scratch,
                             uint32_t *triangle_scratch);
+/* After that: memory that is not needed any more goes back to the system. */
+void scree_halfmesh_give_back(const scree_halfmesh *surface);
 
 #endif

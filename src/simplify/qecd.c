@@ -18,7 +18,7 @@
 #include <string.h>
 
 /* MeshLab's QualityThr and BoundaryQuadricWeight, and the error below which the
- * middle is taken. */
+ * middle is taken: of a surface of area 1, so that its scale does not matter. */
 #define QUALITY      0.3
 #define BOUNDARY     0.5
 #define MIDDLE_ERROR 2e-15
@@ -132,7 +132,7 @@ SCREE_LANES_INLINE vec3 minimise(const double *q, const factors *f, vec3 m) {
 
 /* best: the minimiser, where the middle is not as good as it; else the place asked for. The cost is
  * as if no new triangle were ill-shaped. */
-SCREE_LANES_INLINE void solve_lanes(lanes *l, bool best, int count) {
+SCREE_LANES_INLINE void solve_lanes(lanes *l, bool best, double middle_error, int count) {
   for (int i = 0; i < count; i++) {
     double q[10];
     for (int k = 0; k < 10; k++) q[k] = l->q[k][i];
@@ -142,7 +142,7 @@ SCREE_LANES_INLINE void solve_lanes(lanes *l, bool best, int count) {
       factors f = factorise(q, PULL * trace);
       vec3 least = minimise(q, &f, minimise(q, &f, x));
       double least_error = value(q, least);
-      bool better = (error > MIDDLE_ERROR) & (trace > 0) & (least_error < error);
+      bool better = (error > middle_error) & (trace > 0) & (least_error < error);
       x.x = better ? least.x : x.x;
       x.y = better ? least.y : x.y;
       x.z = better ? least.z : x.z;
@@ -158,12 +158,12 @@ SCREE_LANES_INLINE void solve_lanes(lanes *l, bool best, int count) {
   }
 }
 
-SCREE_LANES static void solve_best_qecd(lanes *l, int count) {
-  solve_lanes(l, true, count);
+SCREE_LANES static void solve_best_qecd(lanes *l, double middle_error, int count) {
+  solve_lanes(l, true, middle_error, count);
 }
 
 static void solve_along(lanes *l) {
-  solve_lanes(l, false, 1);
+  solve_lanes(l, false, 0, 1);
 }
 
 static scree_candidate answer(const lanes *l, int i) {
@@ -211,7 +211,7 @@ static void qecd_evaluate(const scree_halfmesh *s, const uint32_t *half_edges, s
     int width = (filled + 3) & ~3; /* whole vectors */
     for (int i = 0; i < width; i++)
       gather(s, half_edges[begin + (size_t)(i < filled ? i : 0)], 0.5, &l, i);
-    solve_best_qecd(&l, width);
+    solve_best_qecd(&l, MIDDLE_ERROR * s->area * s->area, width);
     for (int i = 0; i < filled; i++) out[begin + (size_t)i] = answer(&l, i);
   }
 }

@@ -6,6 +6,7 @@
 #include "base/array.h"
 #include "base/parallel.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 /* Steps tried for a level; of large scans fewer, for it takes time. Levels of more than so many
@@ -28,6 +29,7 @@ static scree_status allocate(scree_settled *l, const scree_decimator *d) {
   if (status == SCREE_OK) status = scree_joint_allocate(&l->joint, &d->s, d->error);
   if (status != SCREE_OK) return status;
   SCREE_ALLOC_OR(l->places, d->s.vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->errands, d->s.vertex_count, d->error, out_of_memory);
   SCREE_ALLOC_OR(l->lists, d->s.triangle_count, d->error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
@@ -105,6 +107,7 @@ void scree_settle_free(scree_settling *q) {
     scree_trial_free(&q->levels[i].before);
     scree_joint_free(&q->levels[i].joint);
     scree_free(q->levels[i].places);
+    scree_free(q->levels[i].errands);
     scree_free(q->levels[i].lists);
   }
   scree_free(q->shown);
@@ -141,6 +144,24 @@ static vec3 area_around(const scree_halfmesh *s, uint32_t v) {
   return n;
 }
 
+static int by_length(const void *a, const void *b) {
+  const scree_errand *x = a, *y = b;
+  if (x->length2 != y->length2) return x->length2 < y->length2 ? -1 : 1;
+  return (x->vertex > y->vertex) - (x->vertex < y->vertex);
+}
+
+/* Lists those that may move, the shortest way first: an order of their numbers would be another one
+ * when the scan is turned. */
+static size_t list_errands(const scree_settled *l) {
+  const scree_halfmesh *s = &l->trial.d.s;
+  size_t count = 0;
+  for (uint32_t v = 0; v < s->vertex_count; v++)
+    if (l->joint.free[v])
+      l->errands[count++] = (scree_errand){vec3_norm2(vec3_sub(l->places[v], s->vertex[v].at)), v};
+  qsort(l->errands, count, sizeof *l->errands, by_length);
+  return count;
+}
+
 /* All to their places. What is left of the volume then, the vertex takes up that yields most to
  * pressure. *kept: it may. */
 static scree_status move_all(scree_settled *l, bool *kept) {
@@ -153,8 +174,9 @@ static scree_status move_all(scree_settled *l, bool *kept) {
   bool moved, all = true;
   uint32_t softest = SCREE_NONE;
   *kept = false;
-  for (uint32_t v = 0; v < s->vertex_count && status == SCREE_OK; v++) {
-    if (!j->free[v]) continue;
+  size_t count = list_errands(l);
+  for (size_t i = 0; i < count && status == SCREE_OK; i++) {
+    uint32_t v = l->errands[i].vertex;
     status = move_to(q, v, l->places[v], &moved);
     all &= moved;
     double soft = vec3_dot(j->n[v], j->per_n[v]);
@@ -162,9 +184,10 @@ static scree_status move_all(scree_settled *l, bool *kept) {
     most = fmax(most, soft);
   }
   double pressure = 6 * (before - *volume) / j->n_per_n;
-  for (uint32_t v = 0; v < s->vertex_count && !all && status == SCREE_OK; v++)
-    if (j->free[v])
-      status = move_to(q, v, vec3_mad(s->vertex[v].at, j->per_n[v], pressure), &moved);
+  for (size_t i = 0; i < count && !all && status == SCREE_OK; i++) {
+    uint32_t v = l->errands[i].vertex;
+    status = move_to(q, v, vec3_mad(s->vertex[v].at, j->per_n[v], pressure), &moved);
+  }
   if (softest == SCREE_NONE || status != SCREE_OK) return status;
   vec3 n = area_around(s, softest);
   double along = 6 * (before - *volume) / vec3_norm2(n);

@@ -13,13 +13,20 @@ enum { SCREE_SETTLED_COUNT = 200 };
 /* Levels settled at once. */
 enum { SCREE_SETTLED_AT_ONCE = 8 };
 
+/* How far a vertex is to go, squared. */
+typedef struct scree_errand {
+  double length2;
+  uint32_t vertex;
+} scree_errand;
+
 /* A level on its way. */
 typedef struct scree_settled {
   scree_trial trial, before; /* before: as it was before the last step */
   scree_joint joint;
-  vec3 *places;    /* per vertex */
-  uint32_t *lists; /* per triangle: scratch */
-  size_t index;    /* of the collapse that made the level */
+  vec3 *places;          /* per vertex */
+  scree_errand *errands; /* of those that may move */
+  uint32_t *lists;       /* per triangle: scratch */
+  size_t index;          /* of the collapse that made the level */
   scree_status status;
 } scree_settled;
 

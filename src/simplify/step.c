@@ -125,10 +125,11 @@ static scree_status move(scree_step *q, const scree_ring *fan, const scree_chang
 }
 
 /* Moves them by as large a share of their steps as gains and is allowed, if any. */
-static scree_status try_moving(scree_step *q, moving *m) {
+static scree_status try_moving(scree_step *q, moving *m, bool *moved) {
   scree_decimator *d = q->d;
   scree_status status = SCREE_OK;
   vec3 places[2];
+  *moved = false;
   for (int i = 0; i < m->count; i++) /* relax.c has set it */
     /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage) */
     m->relaxations[i].worst = fmax(m->relaxations[i].worst, q->farthest2);
@@ -138,6 +139,7 @@ static scree_status try_moving(scree_step *q, moving *m) {
     if (!scree_relax_gains(&d->memory, &d->s, m->relaxations, m->count, places) ||
         !all_allowed(q, m, &status))
       continue;
+    *moved = true;
     for (int i = 0; i < m->count && status == SCREE_OK; i++)
       status = move(q, &m->fans[i], &m->changes[i], &m->around[i]);
     return status;
@@ -145,15 +147,33 @@ static scree_status try_moving(scree_step *q, moving *m) {
   return status;
 }
 
-static scree_status relax(scree_step *q, uint32_t v) {
-  moving m;
-  scree_pull pull;
-  m.count = 1;
-  if (!gather_moving(&q->d->s, v, &m, 0) ||
-      !scree_pull_find(&q->d->memory, &q->d->s, &m.fans[0], &pull) ||
-      !scree_relax_alone(&pull, &m.fans[0], &m.relaxations[0]))
-    return SCREE_OK;
-  return try_moving(q, &m);
+/* The vertices about a collapse, and what the witnesses say of each, while that is known. */
+typedef struct asking {
+  const scree_step *step;
+  size_t count;
+  uint32_t vertices[SCREE_MOST_ABOUT];
+  scree_pull pulls[SCREE_MOST_ABOUT]; /* n_per_n 0: nothing */
+  bool known[SCREE_MOST_ABOUT];
+} asking;
+
+static void ask_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  asking *a = context;
+  const scree_halfmesh *s = &a->step->d->s;
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring fan = {.edge = edges};
+  for (size_t i = begin; i < end; i++) {
+    if (a->known[i]) continue;
+    if (!scree_step_gather(s, a->vertices[i], &fan) ||
+        !scree_pull_find(&a->step->d->memory, s, &fan, &a->pulls[i]))
+      a->pulls[i].n_per_n = 0;
+    a->known[i] = true;
+  }
+}
+
+/* Afterwards all are known. */
+static void ask_all(asking *a) {
+  scree_parallel_for(a->count, ASKED_AT_ONCE, ask_block, a);
 }
 
 static bool has_corner(const scree_halfmesh *s, const scree_ring *fan, uint32_t v) {
@@ -162,60 +182,59 @@ static bool has_corner(const scree_halfmesh *s, const scree_ring *fan, uint32_t 
   return false;
 }
 
-/* What the witnesses say of each of some vertices. */
-typedef struct asking {
-  const scree_step *step;
-  const uint32_t *vertices;
-  scree_pull *pulls; /* n_per_n 0: nothing */
-} asking;
-
-static void ask_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  const asking *a = context;
-  const scree_halfmesh *s = &a->step->d->s;
-  uint32_t edges[SCREE_RING_MAX];
-  scree_ring fan = {.edge = edges};
-  for (size_t i = begin; i < end; i++) {
-    if (!scree_step_gather(s, a->vertices[i], &fan) ||
-        !scree_pull_find(&a->step->d->memory, s, &fan, &a->pulls[i]))
-      a->pulls[i].n_per_n = 0;
-  }
+/* The fan's vertex has moved: those that share a triangle with it have other witnesses. */
+static void forget_around(asking *a, const scree_ring *fan) {
+  for (size_t i = 0; i < a->count; i++)
+    if (a->vertices[i] == fan->a || has_corner(&a->step->d->s, fan, a->vertices[i]))
+      a->known[i] = false;
 }
 
-/* Of these vertices the two, no neighbours, that gain most by it take over volume from each other.
- */
-static scree_status exchange(scree_step *q, const uint32_t *about, size_t count) {
+/* Moves one of them, where it gains. */
+static scree_status relax(scree_step *q, asking *a, size_t which) {
+  moving m;
+  bool moved;
+  m.count = 1;
+  ask_block(a, which, which + 1, 0, 0);
+  if (!(a->pulls[which].n_per_n > 0) || !gather_moving(&q->d->s, a->vertices[which], &m, 0) ||
+      !scree_relax_alone(&a->pulls[which], &m.fans[0], &m.relaxations[0]))
+    return SCREE_OK;
+  scree_status status = try_moving(q, &m, &moved);
+  if (moved) forget_around(a, &m.fans[0]);
+  return status;
+}
+
+/* The two, no neighbours, that gain most by it take over volume from each other. */
+static scree_status exchange(scree_step *q, asking *a) {
   const scree_halfmesh *s = &q->d->s;
-  scree_pull pulls[SCREE_MOST_ABOUT], best[2];
+  const scree_pull *pulls = a->pulls;
   double most = 0;
+  size_t first = 0, second = 0;
+  bool moved;
   moving m;
   m.count = 2;
-  scree_parallel_for(count, ASKED_AT_ONCE, ask_block, &(asking){q, about, pulls});
-  uint32_t first = SCREE_NONE, second = SCREE_NONE;
-  for (size_t i = 0; i < count; i++) {
-    if (!(pulls[i].n_per_n > 0) || !gather_moving(s, about[i], &m, 0)) continue;
-    for (size_t j = i + 1; j < count; j++) {
-      if (!(pulls[j].n_per_n > 0) || has_corner(s, &m.fans[0], about[j])) continue;
+  ask_all(a);
+  for (size_t i = 0; i < a->count; i++) {
+    if (!(pulls[i].n_per_n > 0) || !gather_moving(s, a->vertices[i], &m, 0)) continue;
+    for (size_t j = i + 1; j < a->count; j++) {
+      if (!(pulls[j].n_per_n > 0) || has_corner(s, &m.fans[0], a->vertices[j])) continue;
       double gain = scree_exchange_gain(&pulls[i], &pulls[j]);
       if (!(gain > most)) continue;
       most = gain;
-      first = about[i];
-      second = about[j];
-      best[0] = pulls[i];
-      best[1] = pulls[j];
+      first = i;
+      second = j;
     }
   }
   if (!(most > 0)) return SCREE_OK;
-  gather_moving(s, first, &m, 0);
-  gather_moving(s, second, &m, 1);
-  scree_exchange_begin(best, m.fans, m.relaxations);
-  return try_moving(q, &m);
+  gather_moving(s, a->vertices[first], &m, 0);
+  gather_moving(s, a->vertices[second], &m, 1);
+  scree_exchange_begin((scree_pull[2]){pulls[first], pulls[second]}, m.fans, m.relaxations);
+  return try_moving(q, &m, &moved);
 }
 
 void scree_step_find_farthest(scree_step *q) {
   const scree_decimator *d = q->d;
   if (d->s.live_triangle_count > q->farthest_at) return;
-  q->farthest2 = scree_memory_farthest(&d->memory, &d->s);
+  q->farthest2 = scree_past_rounding(scree_memory_farthest(&d->memory, &d->s));
   q->farthest_at = (size_t)(FARTHEST_BELOW * (double)d->s.live_triangle_count);
 }
 
@@ -224,20 +243,22 @@ void scree_step_find_farthest(scree_step *q) {
  * together. */
 static scree_status relax_around(scree_step *q) {
   const scree_vertex *vertex = q->d->s.vertex;
-  uint32_t about[SCREE_MOST_ABOUT];
   size_t count = q->touched_count, farthest = 1;
   double most = 0;
+  asking a = {.step = q, .count = count};
+  memcpy(a.vertices, q->touched, count * sizeof *a.vertices);
   scree_step_find_farthest(q);
-  scree_status status = relax(q, q->touched[0]);
-  memcpy(about, q->touched, count * sizeof *about);
+  scree_status status = relax(q, &a, 0);
   for (size_t i = 1; i < count; i++) {
-    double distance2 = vec3_norm2(vec3_sub(vertex[about[i]].at, vertex[about[0]].at));
+    double distance2 = vec3_norm2(vec3_sub(vertex[a.vertices[i]].at, vertex[a.vertices[0]].at));
     if (distance2 > most) farthest = i;
     most = fmax(most, distance2);
   }
-  for (size_t i = 0; i + 1 < count && status == SCREE_OK; i++)
-    status = relax(q, about[1 + (farthest - 1 + i) % (count - 1)]);
-  return status == SCREE_OK ? exchange(q, about, count) : status;
+  for (size_t i = 0; i + 1 < count; i++)
+    a.vertices[1 + i] = q->touched[1 + (farthest - 1 + i) % (count - 1)];
+  if (scree_worker_count() > 1) ask_all(&a); /* some in vain: what is forgotten is asked again */
+  for (size_t i = 1; i < count && status == SCREE_OK; i++) status = relax(q, &a, i);
+  return status == SCREE_OK ? exchange(q, &a) : status;
 }
 
 scree_status scree_step_collapse(scree_step *q, const scree_ring *r, const scree_change *change,

@@ -656,6 +656,20 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
     }
 }
 
+/* Of a triangle, the first, and those beside it: as above, but that a witness stays where that is
+ * as near as any. */
+static size_t nearest_beside(const scree_four *four, const double *distance2, size_t count) {
+  double least = distance2[0];
+  size_t nearest = SIZE_MAX;
+  for (size_t i = 1; i < count; i++) least = distance2[i] < least ? distance2[i] : least;
+  double near = scree_past_rounding(least);
+  if (distance2[0] <= near) return 0;
+  for (size_t i = 1; i < count; i++)
+    if (distance2[i] <= near && (nearest == SIZE_MAX || four->n2[i] > four->n2[nearest]))
+      nearest = i;
+  return nearest;
+}
+
 void scree_memory_follow(scree_memory *m, const scree_halfmesh *s, uint32_t *lists) {
   scree_four four;
   memcpy(lists, m->first, s->triangle_count * sizeof *lists);
@@ -675,11 +689,9 @@ void scree_memory_follow(scree_memory *m, const scree_halfmesh *s, uint32_t *lis
     scree_fours_fill(corners, count, &four);
     for (uint32_t j = lists[t], next; j != SCREE_NONE; j = next) {
       scree_witness *w = &m->witnesses[j];
-      size_t nearest = 0;
       next = w->next;
       scree_fours_closest(&four, 1, w->at, distance2);
-      for (size_t i = 1; i < count; i++)
-        if (distance2[i] < distance2[nearest]) nearest = i;
+      size_t nearest = nearest_beside(&four, distance2, count);
       w->distance2 = distance2[nearest];
       enlist(m, j, beside[nearest]);
     }

@@ -18,6 +18,11 @@ static inline scree_decimator begin_decimation(const scree_mesh *mesh, const scr
                        .error = error};
   CHECK_OK(scree_halfmesh_build(mesh, &d.s, error), *error);
   CHECK_OK(scree_record_allocate(&d.record, mesh->vertex_count, error), *error);
+  for (size_t t = 0; t < d.s.triangle_count; t++) {
+    vec3 at[3];
+    scree_corners(&d.s, t, at);
+    d.s.area += 0.5 * vec3_norm(vec3_triangle_normal(at[0], at[1], at[2]));
+  }
   for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
   return d;
 }

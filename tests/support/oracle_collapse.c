@@ -19,7 +19,7 @@
 #define QECD_PULL    1e-8
 #define QECD_TIE     1e-12
 #define QECD_SHAPE   0.3
-#define QECD_MIDDLE  2e-15
+#define QECD_MIDDLE  2e-15 /* of a surface of area 1 */
 
 vec3 oracle_corner(const oracle *o, size_t t, size_t i) {
   return o->position[o->triangle[3 * t + i]];
@@ -163,6 +163,10 @@ static double shape_at(const oracle *o, size_t t, uint32_t a, uint32_t b, const 
   return longest > 0 ? vec3_norm(vec3_triangle_normal(p[0], p[1], p[2])) / longest : 0;
 }
 
+static double qecd_middle(const oracle *o) {
+  return QECD_MIDDLE * o->start_area * o->start_area;
+}
+
 static place qecd_place(const oracle *o, uint32_t a, uint32_t b, int fallback) {
   static const double along[SCREE_FALLBACK_COUNT] = {0.5, 0, 1};
   place p = {.cost = INFINITY};
@@ -174,14 +178,14 @@ static place qecd_place(const oracle *o, uint32_t a, uint32_t b, int fallback) {
     vec3 x = plane_minimum(o, a, b, middle, QECD_PULL * trace);
     x = plane_minimum(o, a, b, x, QECD_PULL * trace);
     double least = plane_error(o, a, b, x, &trace), doubt = 1e-15 * trace;
-    if (error > QECD_MIDDLE && least < error) {
-      if (error < QECD_MIDDLE + doubt || least > error - doubt)
+    if (error > qecd_middle(o) && least < error) {
+      if (error < qecd_middle(o) + doubt || least > error - doubt)
         p.other = p.target;
       else
         p.other = x;
       p.target = x;
       error = least;
-    } else if (error > QECD_MIDDLE - doubt) {
+    } else if (error > qecd_middle(o) - doubt) {
       p.other = x;
     }
   }

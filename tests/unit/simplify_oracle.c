@@ -21,11 +21,12 @@
  * When few triangles are left, the collapse must be the best of some that are best before any move:
  * see "Looking ahead".
  *
- * That is asked of the greedy stage. Of the batches, all but whose turn it was: every collapse of
- * their record, done after those before it, is allowed, at the place of least cost, with the right
- * error and changes. Which of a round's candidates are taken has a test of its own
+ * That is asked of the greedy stage. Of batches and patches, all but whose turn it was: every
+ * collapse of their record, done after those before it, is allowed, at the place of least cost,
+ * with the right error and changes. Which of a round's candidates are taken has a test of its own
  * (simplify_independent.c). */
 #include "mesh/intersect.h"
+#include "simplify/patch.h"
 #include "support/decimator.h"
 #include "support/oracle.h"
 #include "support/shapes.h"
@@ -547,12 +548,18 @@ static void compare(const scree_mesh *mesh, bool qecd, totals *sum) {
   scree_decimator_free(&d);
 }
 
-/* Batches down to few triangles; answers how many collapses they were. */
-static size_t compare_batches(const scree_mesh *mesh, bool qecd) {
+/* Batches down to few triangles, or before them patches of so many vertices; answers how many
+ * collapses they were. */
+static size_t compare_batches(const scree_mesh *mesh, bool qecd, size_t patch) {
   scree_error error;
   scree_decimator d = decimator_of(mesh, qecd, &error);
   d.single_from = mesh->triangle_count / 12;
-  CHECK_OK(scree_decimate_in_batches(&d), error);
+  if (patch > 0) {
+    CHECK_OK(scree_decimate_in_patches(&d, patch), error);
+    for (size_t v = 0; v < d.s.vertex_count; v++) assert_false(d.s.flags[v] & SCREE_VERTEX_BORDER);
+  } else {
+    CHECK_OK(scree_decimate_in_batches(&d), error);
+  }
   oracle o = oracle_of(mesh, &d.s, qecd);
   o.batched = true;
   assert_true(is_clean(&o));
@@ -648,7 +655,7 @@ static scree_mesh hollow_sphere(scree_rng *rng) {
   return both;
 }
 
-/* Noise of a good part of an edge, so that checks refuse; plates that only the search keeps apart.
+/* Noise of a good part of an edge, so that checks refuse; shells that only the search keeps apart.
  */
 static void every_collapse_of_a_batch_is_sound(void **state) {
   (void)state;
@@ -659,7 +666,7 @@ static void every_collapse_of_a_batch_is_sound(void **state) {
                         : which == 1 ? shape_torus(0.03, 0.006, 36, 12)
                                      : hollow_sphere(&rng);
       if (which < 2) shape_shake(&mesh, which == 0 ? 5e-4 : 3e-4, &rng);
-      size_t compared = compare_batches(&mesh, qecd);
+      size_t compared = compare_batches(&mesh, qecd, 0);
       print_message("batches of shape %d, %s: %zu collapses\n", which, qecd ? "qecd" : "volume",
                     compared);
       assert_true(compared > mesh.vertex_count / 2);
@@ -667,9 +674,26 @@ static void every_collapse_of_a_batch_is_sound(void **state) {
     }
 }
 
+/* Boxes, of which cells of the grid see a side or an edge, of little and of more noise. */
+static void every_collapse_of_a_patch_is_sound(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 37};
+  for (int which = 0; which < 2; which++)
+    for (int qecd = 0; qecd < 2; qecd++) {
+      scree_mesh mesh = shape_grid_box(0.1, 0.07, 0.05, 14);
+      shape_shake(&mesh, which == 0 ? 1e-4 : 3e-4, &rng);
+      size_t compared = compare_batches(&mesh, qecd, 300);
+      print_message("patches of shape %d, %s: %zu collapses of %zu vertices\n", which,
+                    qecd ? "qecd" : "volume", compared, mesh.vertex_count);
+      assert_true(compared > mesh.vertex_count / 10);
+      scree_mesh_free(&mesh);
+    }
+}
+
 int main(int argc, char **argv) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(every_collapse_is_the_oracles),
-                                     cmocka_unit_test(every_collapse_of_a_batch_is_sound)};
+                                     cmocka_unit_test(every_collapse_of_a_batch_is_sound),
+                                     cmocka_unit_test(every_collapse_of_a_patch_is_sound)};
   const struct CMUnitTest greedy[] = {cmocka_unit_test(every_collapse_is_the_oracles)};
   more = argc > 1 && !strcmp(argv[1], "more");
   return more ? cmocka_run_group_tests(greedy, NULL, NULL)

@@ -259,7 +259,7 @@ static void the_step_solves_the_equations(void **state) {
           off = fmax(off, vec3_norm(vec3_sub(full[v], j.step[v])));
         }
         assert_true(largest > 0);
-        CHECK_NEAR(off / largest, 0, 0.01);
+        CHECK_NEAR(off / largest, 0, 0.02);
       }
       for (size_t v = 0; v < count; v++) at[v] = d.s.vertex[v].at;
       double volume = volume_at(&d.s, at);
@@ -394,10 +394,65 @@ static void levels_are_better_and_the_collapses_the_same(void **state) {
   }
 }
 
+/* ---- The scan turned ---- */
+
+static scree_curve *curve_of(const scree_mesh *mesh, const scree_simplify_options *options) {
+  scree_curve *curve;
+  scree_error error;
+  CHECK_OK(scree_curve_build(mesh, options, NULL, &curve, &error), error);
+  return curve;
+}
+
+static void compare_areas(const scree_curve *curve, const scree_curve *turned, double scale) {
+  size_t levels = scree_curve_level_count(curve);
+  assert_int_equal(scree_curve_level_count(turned), levels);
+  for (size_t i = 0; i < levels; i++) {
+    scree_level a, b;
+    scree_curve_level(curve, i, &a);
+    scree_curve_level(turned, i, &b);
+    assert_int_equal(a.triangle_count, b.triangle_count);
+    CHECK_NEAR(b.area / (scale * scale), a.area, 1e-8 * a.area);
+  }
+}
+
+/* Levels are the same but for rounding when the scan is turned, moved and scaled, which gives its
+ * vertices other numbers: nothing may hang on these. Not so of the box, whose facets meet each
+ * other: what a collapse may come to meet is looked for along the axes. */
+static void levels_do_not_depend_on_how_the_scan_lies(void **state) {
+  (void)state;
+  static const struct {
+    mat3 turn;
+    vec3 move;
+    double scale;
+  } lies[] = {{{{{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}}, {0, 0, 0}, 1},
+              {{{{0, 1, 0}, {0, 0, 1}, {1, 0, 0}}}, {0.1, -0.3, 0.2}, 1},
+              {{{{480, 640, 0}, {-640, 480, 0}, {0, 0, 800}}}, {0, 0, 0}, 800}};
+  for (int kind = 0; kind < BOX; kind++)
+    for (scree_method method = SCREE_METHOD_VOLUME; method <= SCREE_METHOD_QECD; method++) {
+      scree_simplify_options options = {.method = method};
+      scree_mesh loose = bumpy(kind), mesh = shape_weld(&loose, NULL);
+      scree_curve *curve = curve_of(&mesh, &options);
+      for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
+        scree_mesh lying = bumpy(kind);
+        shape_transform(&lying, &lies[i].turn, lies[i].move);
+        scree_mesh turned = shape_weld(&lying, NULL);
+        scree_curve *other = curve_of(&turned, &options);
+        compare_areas(curve, other, lies[i].scale);
+        scree_curve_free(other);
+        scree_mesh_free(&lying);
+        scree_mesh_free(&turned);
+      }
+      scree_curve_free(curve);
+      scree_mesh_free(&loose);
+      scree_mesh_free(&mesh);
+    }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_step_solves_the_equations),
       cmocka_unit_test(levels_are_better_and_the_collapses_the_same),
+      cmocka_unit_test(levels_do_not_depend_on_how_the_scan_lies),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
