@@ -288,11 +288,27 @@ bool oracle_triangles_stay_sound(const oracle *o, const oracle *after, uint32_t 
   return (worst_after >= SLIVER_SHAPE || worst_after >= worst_before) && flat_after <= flat_before;
 }
 
+/* Of x from the box of three corners: the triangle is no nearer. */
+static double box_distance2(const double *corners, vec3 x) {
+  const double p[3] = {x.x, x.y, x.z};
+  double sum = 0;
+  for (int k = 0; k < 3; k++) {
+    double a = corners[k], b = corners[3 + k], c = corners[6 + k];
+    double low = a < b ? a : b, high = a < b ? b : a;
+    double below = (low < c ? low : c) - p[k], above = p[k] - (high > c ? high : c);
+    double off = below > above ? below : above;
+    if (off > 0) sum += off * off;
+  }
+  return sum;
+}
+
+/* From all triangles; most are known to be farther by their boxes (with some room for rounding). */
 double oracle_start_distance2(const oracle *o, vec3 x) {
   double least = INFINITY;
   vec3 point;
   for (size_t t = 0; t < o->plane_count; t++)
-    least = fmin(least, scree_triangle_closest(o->start + 9 * t, x, &point));
+    if (box_distance2(o->start + 9 * t, x) <= (1 + EQUAL_AREA) * least)
+      least = fmin(least, scree_triangle_closest(o->start + 9 * t, x, &point));
   return least;
 }
 
