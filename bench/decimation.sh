@@ -3,8 +3,8 @@
 #
 #   bench/decimation.sh [FILE...]
 #
-# Without files: the noisy phone of 762,008 triangles, the flat cube upright and turned, and the scans
-# of SCREE_DATA_DIR where it is set. Levels at Rp 1e-1 ... 1e-5; SCREE_BENCH_PEERS names the peers to
+# Without files: the noisy phone of 762,008 triangles, the flat cube upright and turned, the nine samples, and
+# the scans of SCREE_DATA_DIR where it is set. Levels at Rp 1e-1 ... 1e-5; SCREE_BENCH_PEERS names the peers to
 # run (default: all that are built). Writes results/decimation.csv and results/decimation.md.
 # meshoptimizer of today, where Debian's is older, runs after
 #   npm install --prefix build/bench/node meshoptimizer
@@ -81,6 +81,8 @@ judge_file() {
 files=("$@")
 if [ $# -eq 0 ]; then
   files=("$(body phone 762008 ply)" "$(body cube 786432 ply)" "$(body turned 786432 ply)")
+  "$bin/scree" sample -q -f -o "$work" all
+  for sample in fp-1 fp-2 fp-3 dc-1 dc-2 dc-3 sp-1 sp-2 sp-3; do files+=("$work/$sample.stl"); done
   for scan in $scans; do
     if [ -n "$data" ] && [ -e "$data/$scan" ]; then files+=("$data/$scan"); fi
   done

@@ -4,7 +4,7 @@
 #   [SCREE_DATA_DIR=folder of scans] bench/run.sh
 #
 # Peers come from Debian (apt-get install libmeshoptimizer-dev libcgal-dev libeigen3-dev
-# libopenmesh-dev libvtk9-dev) and are left out by name where they are not installed. About 20 minutes
+# libopenmesh-dev libvtk9-dev) and are left out by name where they are not installed. About 50 minutes
 # on a quiet machine with all of them; SCREE_BENCH_PEERS="meshopt cgal_lt" takes fewer.
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"

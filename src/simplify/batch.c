@@ -212,6 +212,11 @@ static void set_box(const scree_halfmesh *s, vec3 target, scree_ring *r) {
   }
 }
 
+/* Places looked at on every new edge. */
+static uint32_t edge_places(const scree_decimator *d) {
+  return scree_is_close_scan(d) ? SCREE_EDGE_PLACES : scree_is_large(d) ? 3 : 1;
+}
+
 /* Whether the collapse takes the surface too far off for this pass. */
 static bool strays(const pass *p, const scree_ring *ring, const scree_candidate *c) {
   const scree_decimator *d = p->d;
@@ -219,8 +224,7 @@ static bool strays(const pass *p, const scree_ring *ring, const scree_candidate 
   if (!scree_memory_is_kept(&d->memory))
     return !scree_stays_within(&d->s, ring, c->target, most) ||
            (p->usual2 < INFINITY && !scree_ends_stay_within(&d->s, ring, c->target, most));
-  return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target,
-                                    scree_is_close_scan(d) ? SCREE_EDGE_PLACES : 1, most);
+  return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, edge_places(d), most);
 }
 
 static void check_one(pass *p, uint32_t index, const scree_candidate *candidate) {
@@ -509,8 +513,10 @@ static scree_status set_usual(pass *p) {
     status = scree_decimate_keep(d);
   if (status != SCREE_OK) return status;
   if (scree_memory_is_kept(&d->memory)) {
-    usual = scree_memory_usual(&d->memory, scree_is_held_close(d));
-    if (usual > 0 && !scree_is_close_scan(d)) usual = fmax(usual, scree_memory_worst(&d->memory));
+    bool large = scree_is_large(d);
+    usual = scree_memory_usual(&d->memory, large || scree_is_held_close(d));
+    if (usual > 0 && !large && !scree_is_close_scan(d))
+      usual = fmax(usual, scree_memory_worst(&d->memory));
   } else if (!scree_is_fine(d)) {
     usual = MOST_MOVES * d->mean_move;
   }

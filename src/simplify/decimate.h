@@ -80,7 +80,7 @@ enum { SCREE_GREEDY_COUNT = 10000, SCREE_GREEDY_LATE = 5000 };
 
 /* From how many triangles on the surface is kept (stray.h); method `volume`. To look at every stray
  * from there on takes time, so that of large scans it is kept later. */
-enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 20000 };
+enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 60000 };
 
 /* Scans of more triangles, unless they are large, have room in the mean distance: their levels are
  * held closer to them, down to so many triangles, and the surface is kept, still without witnesses,
@@ -99,8 +99,8 @@ enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 1300 };
 
 /* Witnesses for a triangle above which they are thinned, and how many are kept however few
  * triangles there are: places found by few fit these rather than the scan. Of large scans fewer for
- * a triangle, for it takes time; but theirs are the vertices of a surface kept late, and more of
- * them are needed for coarse levels. */
+ * a triangle, for it takes time; but theirs are the vertices of a surface kept late and the last
+ * that went before it, and more of them are needed for coarse levels. */
 enum {
   SCREE_CROWD = 48,
   SCREE_LEAST_WITNESSES = 4000,

@@ -5,6 +5,9 @@
 #include "simplify/decimate.h"
 
 enum { WITNESS_BLOCK = 1024 };
+/* Of large scans one in so many of the vertices that went are looked for, for it takes time: the
+ * last, which were the dearest to take away and so lie where the surface goes astray most. */
+enum { LAST_OF_LARGE = 8 };
 /* Squared cosines to the normal that differ from 1 by no more are 1. */
 #define ABOVE 1e-9
 
@@ -15,7 +18,7 @@ typedef struct finding {
   uint32_t *end;    /* scratch, per vertex */
   scree_witness *witnesses;
   size_t count;
-  size_t gone_count; /* of the record, how many are looked through for those that went */
+  size_t gone_begin; /* of the record: from here on it is looked through for those that went */
 } finding;
 
 static void find_places(finding *f) {
@@ -23,23 +26,24 @@ static void find_places(finding *f) {
   const scree_record *r = &f->d->record;
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE) f->place[s->vertex[v].origin] = v;
-  for (size_t i = f->gone_count; i-- > 0;)
+  for (size_t i = r->count; i-- > f->gone_begin;)
     f->place[r->gone[i]] = f->place[r->kept[i] & ~SCREE_ONE_TRIANGLE];
 }
 
-/* Lists the vertices that are there and, but of large scans, those that went; sorted by their
- * places, so that what is asked for together lies together. */
+/* Lists the vertices that are there and those of that part that went; sorted by their places, so
+ * that what is asked for together lies together. */
 static void list_origins(finding *f) {
   const scree_halfmesh *s = &f->d->s;
   const scree_record *r = &f->d->record;
   uint32_t count = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++) f->end[v] = s->vertex[v].outgoing != SCREE_NONE;
-  for (size_t i = 0; i < f->gone_count; i++) f->end[f->place[r->gone[i]]]++;
+  for (size_t i = f->gone_begin; i < r->count; i++) f->end[f->place[r->gone[i]]]++;
   for (uint32_t v = 0; v < s->vertex_count; v++) {
     count += f->end[v];
     f->end[v] = count;
   }
-  for (size_t i = 0; i < f->gone_count; i++) f->origin[--f->end[f->place[r->gone[i]]]] = r->gone[i];
+  for (size_t i = f->gone_begin; i < r->count; i++)
+    f->origin[--f->end[f->place[r->gone[i]]]] = r->gone[i];
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE) f->origin[--f->end[v]] = s->vertex[v].origin;
   f->count = count;
@@ -98,9 +102,10 @@ scree_status scree_decimate_keep(scree_decimator *d) {
   scree_status status = SCREE_OUT_OF_MEMORY;
   if (d->record.count == 0 || d->coster->merge) /* they are the surface's own; not asked for */
     return scree_memory_keep(s, NULL, 0, &d->memory, d->error);
-  if (!scree_is_large(d)) f.gone_count = d->record.count;
+  size_t gone_count = scree_is_large(d) ? d->record.count / LAST_OF_LARGE : d->record.count;
+  f.gone_begin = d->record.count - gone_count;
   SCREE_ALLOC_OR(f.place, d->mesh->vertex_count, d->error, done);
-  SCREE_ALLOC_OR(f.origin, s->live_vertex_count + f.gone_count, d->error, done);
+  SCREE_ALLOC_OR(f.origin, s->live_vertex_count + gone_count, d->error, done);
   SCREE_ALLOC_OR(f.end, s->vertex_count, d->error, done);
   find_places(&f);
   list_origins(&f);
