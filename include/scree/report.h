@@ -191,7 +191,8 @@ SCREE_API scree_status scree_choice_figure_write(const scree_choice_report *repo
 SCREE_API scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
                                                bool overwrite, scree_error *error);
 
-/* One row per object and grid Rp. "-" is stdout. */
+/* One row per object and grid Rp, one for its robust choice, and two for a set of several objects
+ * (docs/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
                                               bool overwrite, scree_error *error);
 

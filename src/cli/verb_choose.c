@@ -48,8 +48,8 @@ static const cli_option options[] = {
      "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(choose_arguments, source),
     {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
-    {"csv", 0, CLI_FLAG, AT(csv), NULL, "Print CSV instead of text: a row per grid level.", 0, 0,
-     NULL},
+    {"csv", 0, CLI_FLAG, AT(csv), NULL,
+     "Print CSV instead of text: a row per grid level and choice.", 0, 0, NULL},
     {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
 
