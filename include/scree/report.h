@@ -299,6 +299,10 @@ SCREE_API scree_status scree_provenance_write(const scree_work_start *start,
  * holds no results or a damaged file. Cost: that of reading and writing. */
 SCREE_API scree_status scree_page_write(const char *const *folders, size_t folder_count,
                                         const char *path, bool overwrite, scree_error *error);
+/* The page of one folder, which is called `name` in it: of one that gets its name when all is
+ * written. */
+SCREE_API scree_status scree_page_write_named(const char *folder, const char *name,
+                                              const char *path, bool overwrite, scree_error *error);
 
 /* ---- Files for DEM codes ---- */
 

@@ -10,6 +10,7 @@
 enum { BAR_WIDTH = 24, LINE_WIDTH = 78, LINE_BYTES = 128 };
 
 static volatile sig_atomic_t received_signal;
+static bool settled;
 
 static struct {
   bool show, drawn;
@@ -83,17 +84,34 @@ void cli_terminal_seconds(char *text, size_t size, double seconds) {
 static bool report(void *context, const char *phase, double fraction) {
   (void)context;
   if (terminal.show) draw(phase, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction);
-  return !received_signal;
+  return !cli_interrupted();
 }
 
-const scree_progress *cli_terminal_start(bool show) {
-  static const scree_progress progress = {report, NULL, 0.1};
-  struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND}, before;
+static void catch_signals(int flags) {
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = flags}, before;
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* else: nohup */
     sigaction(SIGHUP, &action, NULL);
+}
+
+bool cli_terminal_settle(void) {
+  sigset_t ours, before;
+  sigemptyset(&ours);
+  sigaddset(&ours, SIGINT);
+  sigaddset(&ours, SIGTERM);
+  sigaddset(&ours, SIGHUP);
+  sigprocmask(SIG_BLOCK, &ours, &before);
+  settled = !received_signal;
+  if (settled) catch_signals((int)(SA_RESETHAND | SA_RESTART)); /* what is printed is not cut off */
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  return settled;
+}
+
+const scree_progress *cli_terminal_start(bool show) {
+  static const scree_progress progress = {report, NULL, 0.1};
+  catch_signals((int)SA_RESETHAND);
   terminal.show = show;
   return &progress;
 }
@@ -104,7 +122,7 @@ void cli_terminal_end(void) {
 }
 
 bool cli_interrupted(void) {
-  return received_signal != 0;
+  return received_signal != 0 && !settled;
 }
 
 void cli_terminal_reraise(void) {

@@ -13,8 +13,11 @@ void cli_terminal_line(const char *text);
 void cli_terminal_seconds(char *text, size_t size, double seconds);
 /* Clears the line: before anything else is printed. */
 void cli_terminal_end(void);
-/* Whether one of these came; with true, cli_terminal_reraise ends the program as the signal
- * would have done, so that the shell sees it. */
+/* From here on what is asked for is done: the next of these signals changes nothing any more, and
+ * the one after it ends the program where it stands. False where one came before. */
+bool cli_terminal_settle(void);
+/* Whether one of these came, before it was settled; with true, cli_terminal_reraise ends the
+ * program as the signal would have done, so that the shell sees it. */
 bool cli_interrupted(void);
 void cli_terminal_reraise(void);
 
