@@ -52,12 +52,20 @@ static void print_row(FILE *out, const choose_run *run, size_t index) {
           cli_count_text(c->robust.triangle_count, n2), percent_text(c->robust.eps_s, e2));
 }
 
+/* What eps_s is measured against, where that is not the scan's area by itself. */
+static const char *reference_text(const choose_run *run) {
+  size_t found = 0;
+  for (size_t i = 0; i < run->count; i++) found += run->choices[i].noise.found;
+  if (run->options.reference == SCREE_REFERENCE_SCAN) return "";
+  return found == run->count ? ", area free of noise"
+         : found             ? ", area free of noise where some was found"
+                             : ", the scan's area: no noise was found";
+}
+
 static void print_table(FILE *out, const choose_run *run) {
   char rp1[16], rp2[16];
-  const char *reference =
-      run->options.reference == SCREE_REFERENCE_SMOOTH ? ", area free of noise" : "";
   fprintf(out, "Ip = eps_s + %g Nr/Nm, method %s%s, coordinates in %s\n", run->options.weight,
-          scree_method_name(run->simplify.method), reference,
+          scree_method_name(run->simplify.method), reference_text(run),
           cli_unit_name(run->arguments->source.unit));
   fprintf(out, "%30s%-24s| %s\n", "",
           run->arguments->paper ? "| paper (default)" : "| paper's grid",
@@ -153,18 +161,17 @@ static void print_accidents(FILE *out, const choose_run *run) {
             NOTABLE_RATIO, differ, run->count);
 }
 
+/* Said where the choice would be another: the object's, or the set's. */
 static void print_noise(FILE *out, const choose_run *run) {
-  size_t moved = 0;
+  const scree_choice *c = &run->choices[0];
   double most = 0;
-  for (size_t i = 0; i < run->count; i++) {
-    const scree_choice *c = &run->choices[i];
-    if (!c->noise.found) continue;
-    most = fmax(most, c->noise.fraction);
-    moved +=
-        ratio((double)c->smooth.triangle_count, (double)c->robust.triangle_count) > NOTABLE_RATIO;
-  }
+  bool moved = run->count > 1 ? ratio(run->set.smooth.rp, run->set.robust.rp) > NOTABLE_RATIO
+                              : ratio((double)c->smooth.triangle_count,
+                                      (double)c->robust.triangle_count) > NOTABLE_RATIO;
+  for (size_t i = 0; i < run->count; i++)
+    if (run->choices[i].noise.found) most = fmax(most, run->choices[i].noise.fraction);
   char percent[16], rp[16];
-  if (moved && run->options.reference == SCREE_REFERENCE_SCAN)
+  if (moved && most > 0 && run->options.reference == SCREE_REFERENCE_SCAN)
     fprintf(out,
             "Scan noise adds up to %s of area and misleads eps_s: --reference smooth takes it\n"
             "out and gives Rp = %s.\n",

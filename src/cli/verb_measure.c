@@ -92,7 +92,14 @@ static void print_topology(const scree_topology *t) {
 
 static void warn(const scree_measure_entry *entry) {
   const scree_measures *m = &entry->measures;
-  if (!m->closed && entry->topology.closed)
+  size_t crowded = entry->topology.non_manifold_edge_count;
+  if (!m->closed && entry->topology.closed && entry->topology.oriented)
+    fprintf(stderr,
+            "scree: %s: warning: %zu non-manifold edge%s, where the facets do not pair up both "
+            "ways, so they enclose no volume; volume, centroid, moments and what follows from "
+            "them mean little\n",
+            entry->file, crowded, cli_plural(crowded));
+  else if (!m->closed && entry->topology.closed)
     fprintf(stderr,
             "scree: %s: warning: the facets are not wound consistently, so they enclose no volume; "
             "volume, centroid, moments and what follows from them mean little\n",

@@ -150,6 +150,13 @@ static size_t set_guide(const scree_choice_report *report, char *text, size_t si
   return 1;
 }
 
+static const char *reference_text(const scree_choice_report *report) {
+  size_t found = 0;
+  for (size_t e = 0; e < report->entry_count; e++) found += report->entries[e].choice->noise.found;
+  if (report->options->reference == SCREE_REFERENCE_SCAN || !found) return "the scan's";
+  return found == report->entry_count ? "free of noise" : "free of noise where found";
+}
+
 scree_status scree_choice_figure_write(const scree_choice_report *report, const char *path,
                                        bool overwrite, scree_error *error) {
   if (report->entry_count == 0)
@@ -169,8 +176,7 @@ scree_status scree_choice_figure_write(const scree_choice_report *report, const 
   }
   if (status == SCREE_OK) {
     snprintf(note, sizeof note, "scree %s, method %s, w = %g, reference area: %s", scree_version(),
-             scree_method_name(report->method), report->options->weight,
-             report->options->reference == SCREE_REFERENCE_SMOOTH ? "free of noise" : "the scan's");
+             scree_method_name(report->method), report->options->weight, reference_text(report));
     scree_figure figure = {.panels = panels,
                            .panel_count = 2,
                            .panel_width = PANEL_WIDTH,
