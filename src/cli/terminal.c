@@ -53,23 +53,30 @@ static void put_line(const char *text) {
   terminal.drawn = true;
 }
 
+/* "42 s left"; nothing where that would be 0 s while work goes on. */
+static void format_left(char *text, size_t size, double seconds) {
+  char number[32];
+  format_seconds(number, sizeof number, seconds);
+  snprintf(text, size, "%s left", number);
+  if (seconds < 0.5) *text = 0;
+}
+
 static void draw(const char *phase, double fraction) {
   if (strncmp(phase, terminal.phase, sizeof terminal.phase - 1) != 0) {
     snprintf(terminal.phase, sizeof terminal.phase, "%s", phase);
     terminal.phase_start = now();
   }
   double elapsed = now() - terminal.phase_start;
-  char left[32], bar[BAR_WIDTH + 1], line[LINE_BYTES];
-  format_seconds(left, sizeof left,
-                 fraction > 0.01 ? elapsed * (1 - fraction) / fraction : INFINITY);
+  double seconds = fraction > 0.01 ? elapsed * (1 - fraction) / fraction : INFINITY;
+  char left[40], bar[BAR_WIDTH + 1], line[LINE_BYTES];
+  format_left(left, sizeof left, seconds);
   int full = (int)(fraction * BAR_WIDTH);
   for (int i = 0; i < BAR_WIDTH; i++) bar[i] = i < full ? '#' : '.';
   bar[BAR_WIDTH] = 0;
   if (line_width() == LINE_WIDTH)
-    snprintf(line, sizeof line, "%-30.30s [%s] %3.0f %%  %s left", phase, bar, 100 * fraction,
-             left);
+    snprintf(line, sizeof line, "%-30.30s [%s] %3.0f %%  %s", phase, bar, 100 * fraction, left);
   else
-    snprintf(line, sizeof line, "%3.0f %% %s left, %s", 100 * fraction, left, phase);
+    snprintf(line, sizeof line, "%3.0f %% %s%s%s", 100 * fraction, left, *left ? ", " : "", phase);
   put_line(line);
 }
 
@@ -85,6 +92,24 @@ static bool report(void *context, const char *phase, double fraction) {
   (void)context;
   if (terminal.show) draw(phase, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction);
   return !cli_interrupted();
+}
+
+static bool report_share(void *context, const char *phase, double fraction) {
+  cli_share *share = context;
+  const scree_progress *whole = share->whole;
+  share->done = fmax(share->done, share->base + share->part * fmin(fmax(fraction, 0), 1));
+  return whole->report(whole->context, share->phase ? share->phase : phase, share->done);
+}
+
+cli_share cli_share_of(const scree_progress *whole, const char *phase) {
+  return (cli_share){.whole = whole, .phase = phase};
+}
+
+const scree_progress *cli_share_enter(cli_share *share, double base, double part) {
+  share->base = base;
+  share->part = part;
+  share->progress = (scree_progress){report_share, share, share->whole->interval};
+  return &share->progress;
 }
 
 static void catch_signals(int flags) {

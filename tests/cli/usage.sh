@@ -10,3 +10,8 @@ done
 run check x '' 2>&1 | sed -n 2p
 run simplify x -n 4 -o '' 2>&1 | sed -n 2p
 run choose x --output= 2>&1 | sed -n 2p
+# one progress for all that a call does, which never goes back and never says that 0 s are left
+"$SCREE" curve sample:icosphere-4 --distance --per-decade 2 --progress 2>&1 >/dev/null | tr '\r' '\n' >drawn
+sed -n 's/^\([a-z ]*[a-z]\) *\[.*/\1/p' drawn | uniq
+sed -n 's/.*\] *\([0-9]*\) %.*/\1/p' drawn | awk '$1 < last { print "back to", $1 } { last = $1 }'
+grep -c ' 0 s left' drawn

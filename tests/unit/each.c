@@ -124,7 +124,7 @@ static scree_status choose(watch *w, scree_choice *choices, scree_set_choice *se
 
 static void cancelled_or_complete(void **state) {
   (void)state;
-  watch w = {.ball = shape_icosphere(0.02, 2), .cancel_at = -1};
+  watch w = {.ball = shape_icosphere(0.02, 0), .cancel_at = -1};
   size_t cancelled = 0;
   for (int threads = 1; threads <= 3; threads += 2) {
     scree_set_threads(threads);
