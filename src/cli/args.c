@@ -119,6 +119,13 @@ static bool in_range(const cli_option *option, double value) {
   return value >= option->minimum && value <= option->maximum;
 }
 
+/* In mm, as the help has it; large ones in m. */
+static const char *length_text(double metres, char buffer[32]) {
+  bool large = metres >= 1;
+  snprintf(buffer, 32, "%g%s", large ? metres : 1e3 * metres, large ? "m" : "mm");
+  return buffer;
+}
+
 static int out_of_range(const cli_verb *verb, const cli_option *option, const char *text) {
   bool open = option->minimum == 0 && option->maximum == 0;
   if (option->kind == CLI_COUNT && open)
@@ -127,8 +134,12 @@ static int out_of_range(const cli_verb *verb, const cli_option *option, const ch
   if (option->kind == CLI_COUNT)
     return cli_misuse(verb, "--%s %s: outside the range %.0f to %.0f", option->name, text,
                       option->minimum, option->maximum);
-  return cli_misuse(verb, "--%s %s: outside the range %g to %g%s", option->name, text,
-                    option->minimum, option->maximum, option->kind == CLI_LENGTH ? " m" : "");
+  char low[32], high[32];
+  if (option->kind == CLI_LENGTH)
+    return cli_misuse(verb, "--%s %s: outside the range %s to %s", option->name, text,
+                      length_text(option->minimum, low), length_text(option->maximum, high));
+  return cli_misuse(verb, "--%s %s: outside the range %g to %g", option->name, text,
+                    option->minimum, option->maximum);
 }
 
 static int parse_count(const cli_verb *verb, const cli_option *option, const char *text,

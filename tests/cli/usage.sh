@@ -15,3 +15,14 @@ run choose x --output= 2>&1 | sed -n 2p
 sed -n 's/^\([a-z ]*[a-z]\) *\[.*/\1/p' drawn | uniq
 sed -n 's/.*\] *\([0-9]*\) %.*/\1/p' drawn | awk '$1 < last { print "back to", $1 } { last = $1 }'
 grep -c ' 0 s left' drawn
+# what the overview lists has a help; lengths are in the unit that the help has
+run help help
+run help version
+run measure sample:dc-1 --resolution 0.01mm 2>&1 | sed -n 2p
+run simplify x -n 4 -o y.stl -e 0mm 2>&1 | sed -n 2p
+# a sample's name without sample: is taken for a file, unless there is one
+run measure fp-1
+"$SCREE" sample icosphere-2 -o ball.stl -q >/dev/null && cp ball.stl fp-2
+"$SCREE" measure fp-2 | head -n 1
+# an error limit that ends it before the count asked for
+run simplify ball.stl -n 8 -e 0.01mm -o fine.stl 2>&1 | grep asked
