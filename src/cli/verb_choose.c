@@ -281,5 +281,6 @@ const cli_verb cli_verb_choose = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = SIZE_MAX,
+    .partners = "density:output",
     .run = run_choose,
 };

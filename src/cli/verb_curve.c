@@ -237,5 +237,6 @@ const cli_verb cli_verb_curve = {
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 1,
+    .partners = "samples:distance",
     .run = run,
 };

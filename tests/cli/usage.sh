@@ -26,3 +26,9 @@ run measure fp-1
 "$SCREE" measure fp-2 | head -n 1
 # an error limit that ends it before the count asked for
 run simplify ball.stl -n 8 -e 0.01mm -o fine.stl 2>&1 | grep asked
+# an option that does nothing without another is refused
+for words in "curve x --samples 10" "choose x --density 2" "pile x -s 100x100" "pile x --view points" "repair x -o y.stl --flat" \
+  "study x --tasks 3" "repose x -m qecd" "repose x --vtp=all"; do
+  run $words 2>&1 | sed -n 2p
+done
+"$SCREE" curve ball.stl --distance --samples 10 --per-decade 1 | wc -l
