@@ -13,7 +13,10 @@
 #include <stdarg.h>
 #include <string.h>
 
-enum { SNIFF_BYTES = 4096 };
+enum {
+  SNIFF_BYTES = 4096,
+  MOST_DAMAGE = 20 /* bytes of text for each that is none, in a damaged one */
+};
 
 scree_read_options scree_default_read_options(void) {
   return (scree_read_options){.unit_m = 1e-3};
@@ -237,6 +240,30 @@ static bool looks_like_3ds(const scree_reading *r) {
              r->byte_count;
 }
 
+/* Text but for a few bytes, and where the first of these is: no float and no count looks so. */
+static bool is_damaged_text(const scree_reading *r, size_t *first) {
+  size_t count = r->byte_count < SNIFF_BYTES ? r->byte_count : SNIFF_BYTES, bad = 0;
+  for (size_t i = count; i-- > 0;)
+    if (!looks_like_text(r->bytes + i, 1)) {
+      *first = i;
+      bad++;
+    }
+  return bad * MOST_DAMAGE < count;
+}
+
+static const char *text_kind(scree_text text) {
+  scree_text start = text;
+  if (scree_token_is(scree_text_next(&start), "solid")) return "an ASCII STL";
+  return looks_like_off(text) ? "an OFF file" : looks_like_obj(text) ? "an OBJ file" : "text";
+}
+
+/* "OFF BINARY", and numbers behind it. */
+static bool is_binary_off(scree_text text) {
+  scree_token word = first_word(text);
+  text.p = word.begin + word.length;
+  return scree_is_off_word(word) && scree_token_is(scree_text_next(&text), "binary");
+}
+
 static scree_status read_binary_or_fail(scree_reading *r) {
   if (starts_with(r, "PK\x03\x04", 4)) return scree_read_import(r, SCREE_IMPORT_3MF);
   if (starts_with(r, "glTF", 4)) return scree_read_import(r, SCREE_IMPORT_GLB);
@@ -247,6 +274,13 @@ static scree_status read_binary_or_fail(scree_reading *r) {
     if (starts_with(r, m->bytes, m->length))
       return scree_reading_fail(r, SCREE_BAD_FILE, "%s", m->advice);
   }
+  scree_text text = scree_reading_text(r);
+  size_t damaged = 0;
+  if (is_binary_off(text)) return scree_read_off(r);
+  if (is_damaged_text(r, &damaged))
+    return scree_reading_fail(r, SCREE_BAD_FILE,
+                              "is %s, but byte %zu is 0x%02x, which no text has: it is damaged",
+                              text_kind(text), damaged, r->bytes[damaged]);
   if (r->byte_count < SCREE_STL_HEADER)
     return scree_reading_fail(r, SCREE_BAD_FILE,
                               "too short: %zu bytes; a binary STL has at least %d", r->byte_count,
