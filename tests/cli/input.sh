@@ -28,3 +28,14 @@ printf 'OFF BINARY\n\000\000\000\004\000\000\000\004\000\000\000\000' >binary.of
 head -c 100 /dev/zero >>binary.off
 (printf '%-80s' 'solid facet vertex' && printf '\004\000\000\000' && head -c 120 /dev/zero) >cut.stl
 for file in nul.stl one.obj binary.off cut.stl; do run measure $file; done
+# a stream that never ends is left as soon as it shows to be no mesh, or longer than it says
+yes | "$SCREE" measure - 2>&1
+"$SCREE" measure /dev/zero 2>&1
+"$SCREE" sample icosphere-2 -o ball.stl -q >/dev/null
+(cat ball.stl && yes) 2>/dev/null | "$SCREE" measure - 2>&1
+(cat ball.stl && printf '%49s' x) | "$SCREE" measure - | head -n 1
+(cat ball.stl && printf '%50s' x) | "$SCREE" measure - 2>&1
+"$SCREE" sample icosphere-5 -o large.ply -q >/dev/null
+cat large.ply | "$SCREE" measure - --json | grep -E '"(format|checksum)"'
+"$SCREE" measure large.ply --json | grep '"checksum"'
+(yes '# a comment' | head -n 20000 && cat one.obj) | grep -v "$(printf '\001')" | "$SCREE" measure - 2>/dev/null | head -n 1
