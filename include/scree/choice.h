@@ -190,11 +190,16 @@ typedef struct scree_choice_job {
   scree_status (*done)(void *context, size_t index, const scree_curve *curve,
                        const scree_choice *choice, const scree_set_choice *set, scree_error *error);
   void *context;
+  /* Gets the error of each object that has no choice, by index, from the calling thread, before
+   * `done` is called for the others; NULL: one that fails ends it all. */
+  void (*failed)(void *context, size_t index, const scree_error *error);
 } scree_choice_job;
 
 /* Fills choices (job->count of them) and *set. Where objects fail the first one's error is
- * reported and all outputs are as freed. progress->report is called from any thread, by one at a
- * time. The result does not depend on the number of threads. */
+ * reported and all outputs are as freed; with job->failed their choices are as freed, and the set
+ * is of the others. Even so the first error is reported where none is left, and where memory ran
+ * out or it was cancelled, which has no object's mesh for a reason. progress->report is called from
+ * any thread, by one at a time. The result does not depend on the number of threads. */
 SCREE_API scree_status scree_choose_each(const scree_choice_job *job,
                                          const scree_progress *progress, scree_choice *choices,
                                          scree_set_choice *set, scree_error *error);

@@ -191,7 +191,8 @@ SCREE_API scree_status scree_choice_figure_write(const scree_choice_report *repo
 SCREE_API scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
                                                bool overwrite, scree_error *error);
 
-/* One row per object and grid Rp. "-" is stdout. */
+/* One row per object and grid Rp, one for its robust choice, and two for a set of several objects
+ * (docs/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
                                               bool overwrite, scree_error *error);
 
@@ -298,6 +299,10 @@ SCREE_API scree_status scree_provenance_write(const scree_work_start *start,
  * holds no results or a damaged file. Cost: that of reading and writing. */
 SCREE_API scree_status scree_page_write(const char *const *folders, size_t folder_count,
                                         const char *path, bool overwrite, scree_error *error);
+/* The page of one folder, which is called `name` in it: of one that gets its name when all is
+ * written. */
+SCREE_API scree_status scree_page_write_named(const char *folder, const char *name,
+                                              const char *path, bool overwrite, scree_error *error);
 
 /* ---- Files for DEM codes ---- */
 

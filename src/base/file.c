@@ -19,9 +19,25 @@ static size_t stream_limit(void) {
   return pages > 0 && page > 0 ? (size_t)pages * (size_t)page / 8 : SIZE_MAX;
 }
 
+/* Where a stream is left: judge is NULL where that is at its end. */
+typedef struct ending {
+  scree_stream_judge *judge;
+  bool left;
+} ending;
+
+/* Whether enough was read, which is cut to that. */
+static bool is_enough(ending *e, const char *bytes, size_t *used, bool all) {
+  if (!e->judge || (*used < SCREE_JUDGED_BYTES && !all)) return false;
+  size_t judged = *used < SCREE_JUDGED_BYTES ? *used : SCREE_JUDGED_BYTES;
+  size_t enough = e->judge(bytes, judged);
+  e->left = *used > enough;
+  if (e->left) *used = enough;
+  return e->left;
+}
+
 /* Reads a stream of unknown length, doubling. */
-static scree_status read_stream(int fd, const char *name, size_t max_bytes, char **bytes,
-                                size_t *byte_count, scree_error *error) {
+static scree_status read_stream(int fd, const char *name, size_t max_bytes, ending *end,
+                                char **bytes, size_t *byte_count, scree_error *error) {
   size_t capacity = STREAM_START_BYTES, used = 0, most = max_bytes ? max_bytes : stream_limit();
   char *buffer = scree_alloc(capacity, 1);
   if (!buffer) return scree_fail_memory(error, capacity, name);
@@ -43,8 +59,8 @@ static scree_status read_stream(int fd, const char *name, size_t max_bytes, char
       return scree_fail(error, SCREE_IO, "%s: cannot read at byte %zu: %s", name, used,
                         strerror(reason));
     }
-    if (got == 0) break;
     used += (size_t)got;
+    if (is_enough(end, buffer, &used, got == 0) || got == 0) break;
     if (used > most) {
       scree_free(buffer);
       return scree_fail(error, SCREE_LIMIT, "%s: more than the limit of %zu bytes%s", name, most,
@@ -119,10 +135,10 @@ done:
   return status;
 }
 
-scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
-                             scree_error *error) {
+static scree_status read_file(const char *path, size_t max_bytes, ending *end, char **bytes,
+                              size_t *byte_count, scree_error *error) {
   if (!strcmp(path, "-"))
-    return read_stream(STDIN_FILENO, "standard input", max_bytes, bytes, byte_count, error);
+    return read_stream(STDIN_FILENO, "standard input", max_bytes, end, bytes, byte_count, error);
   int fd = open(path, O_RDONLY | O_CLOEXEC);
   if (fd < 0) return scree_fail(error, SCREE_IO, "%s: cannot open: %s", path, strerror(errno));
   struct stat info;
@@ -133,13 +149,27 @@ scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, s
   else if (S_ISDIR(info.st_mode))
     status = scree_fail(error, SCREE_IO, "%s: is a folder, not a file", path);
   else if (!S_ISREG(info.st_mode))
-    status = read_stream(fd, path, max_bytes, bytes, byte_count, error);
+    status = read_stream(fd, path, max_bytes, end, bytes, byte_count, error);
   else if (max_bytes && (size_t)info.st_size > max_bytes)
     status = scree_fail(error, SCREE_LIMIT, "%s: %zu bytes, more than the limit of %zu", path,
                         (size_t)info.st_size, max_bytes);
   else
     status = read_regular(fd, path, (size_t)info.st_size, bytes, byte_count, error);
   close(fd);
+  return status;
+}
+
+scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
+                             scree_error *error) {
+  return read_file(path, max_bytes, &(ending){NULL, false}, bytes, byte_count, error);
+}
+
+scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_stream_judge *judge,
+                                    char **bytes, size_t *byte_count, bool *goes_on,
+                                    scree_error *error) {
+  ending end = {judge, false};
+  scree_status status = read_file(path, max_bytes, &end, bytes, byte_count, error);
+  *goes_on = end.left;
   return status;
 }
 

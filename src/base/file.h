@@ -12,6 +12,16 @@
 scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
                              scree_error *error);
 
+/* How many bytes of a stream are worth reading, by its first SCREE_JUDGED_BYTES, or all where it
+ * has fewer; SIZE_MAX: all that come. */
+typedef size_t scree_stream_judge(const char *bytes, size_t byte_count);
+enum { SCREE_JUDGED_BYTES = 1 << 16 };
+
+/* scree_file_read that leaves off there, for some streams never end; *goes_on where it did. */
+scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_stream_judge *judge,
+                                    char **bytes, size_t *byte_count, bool *goes_on,
+                                    scree_error *error);
+
 /* A regular file that is read from its beginning in pieces, into a small buffer that stays in the
  * processor's cache: half of the time of reading a whole file goes into memory touched for the
  * first time. */

@@ -119,6 +119,13 @@ static bool in_range(const cli_option *option, double value) {
   return value >= option->minimum && value <= option->maximum;
 }
 
+/* In mm, as the help has it; large ones in m. */
+static const char *length_text(double metres, char buffer[32]) {
+  bool large = metres >= 1;
+  snprintf(buffer, 32, "%g%s", large ? metres : 1e3 * metres, large ? "m" : "mm");
+  return buffer;
+}
+
 static int out_of_range(const cli_verb *verb, const cli_option *option, const char *text) {
   bool open = option->minimum == 0 && option->maximum == 0;
   if (option->kind == CLI_COUNT && open)
@@ -127,8 +134,12 @@ static int out_of_range(const cli_verb *verb, const cli_option *option, const ch
   if (option->kind == CLI_COUNT)
     return cli_misuse(verb, "--%s %s: outside the range %.0f to %.0f", option->name, text,
                       option->minimum, option->maximum);
-  return cli_misuse(verb, "--%s %s: outside the range %g to %g%s", option->name, text,
-                    option->minimum, option->maximum, option->kind == CLI_LENGTH ? " m" : "");
+  char low[32], high[32];
+  if (option->kind == CLI_LENGTH)
+    return cli_misuse(verb, "--%s %s: outside the range %s to %s", option->name, text,
+                      length_text(option->minimum, low), length_text(option->maximum, high));
+  return cli_misuse(verb, "--%s %s: outside the range %g to %g", option->name, text,
+                    option->minimum, option->maximum);
 }
 
 static int parse_count(const cli_verb *verb, const cli_option *option, const char *text,
@@ -246,6 +257,8 @@ typedef struct found_option {
   void *base;
 } found_option;
 
+enum { MOST_OPTIONS = 128 };
+
 typedef struct parser {
   const cli_verb *verb;
   void *options;
@@ -253,6 +266,7 @@ typedef struct parser {
   int word_count;
   char **words;
   int next;
+  bool given[MOST_OPTIONS]; /* of the verb's */
 } parser;
 
 static found_option find_option(const parser *p, const char *name, size_t length, char letter) {
@@ -265,6 +279,37 @@ static found_option find_option(const parser *p, const char *name, size_t length
         return (found_option){&options[i], table ? (void *)p->common : p->options};
   }
   return (found_option){NULL, NULL};
+}
+
+static size_t index_of(const parser *p, const char *name, size_t length) {
+  found_option found = find_option(p, name, length, 0);
+  return found.base == p->options ? (size_t)(found.option - p->verb->options) : MOST_OPTIONS;
+}
+
+static bool is_given(const parser *p, const char *name, size_t length) {
+  size_t index = index_of(p, name, length);
+  return index < MOST_OPTIONS && p->given[index];
+}
+
+static void mark_given(parser *p, found_option found) {
+  size_t index = (size_t)(found.option - p->verb->options);
+  if (found.base == p->options && index < MOST_OPTIONS) p->given[index] = true;
+}
+
+/* 0, or 2 after telling which option does nothing by itself. */
+static int check_partners(const parser *p) {
+  for (const char *at = p->verb->partners; at && *at;) {
+    size_t name = strcspn(at, ":"), all = strcspn(at, " ");
+    bool missing = is_given(p, at, name);
+    const char *first = at + name + 1;
+    for (const char *one = first; one < at + all; one += strcspn(one, "| ") + 1)
+      missing = missing && !is_given(p, one, strcspn(one, "| "));
+    if (missing)
+      return cli_misuse(p->verb, "--%.*s does nothing without --%.*s", (int)name, at,
+                        (int)strcspn(first, "| "), first);
+    at += all + (at[all] != 0);
+  }
+  return 0;
 }
 
 /* Levenshtein distance, for "did you mean". */
@@ -324,6 +369,7 @@ static int parse_long(parser *p, const char *word) {
   size_t length = equals ? (size_t)(equals - word - 2) : strlen(word + 2);
   found_option found = find_option(p, word + 2, length, 0);
   if (!found.option) return unknown_option(p->verb, word, length);
+  mark_given(p, found);
   if (found.option->kind == CLI_FLAG) {
     if (equals) return cli_misuse(p->verb, "--%s takes no value", found.option->name);
     return store(p->verb, found.option, NULL, found.base);
@@ -343,6 +389,7 @@ static int parse_letters(parser *p, const char *word) {
     if (!found.option)
       return cli_misuse(p->verb, "unknown option '-%c' in '%s'%s", *letter, word,
                         file_hint(word, hint, sizeof hint));
+    mark_given(p, found);
     if (found.option->kind == CLI_FLAG) {
       store(p->verb, found.option, NULL, found.base);
       continue;
@@ -374,7 +421,7 @@ static int check_input_count(const cli_verb *verb, const char *const *inputs, si
 
 int cli_parse(const cli_verb *verb, int word_count, char **words, void *options, cli_common *common,
               const char **inputs, size_t *input_count) {
-  parser p = {verb, options, common, word_count, words, 0};
+  parser p = {verb, options, common, word_count, words, 0, {false}};
   bool only_inputs = false;
   *input_count = 0;
   while (p.next < word_count) {
@@ -389,5 +436,6 @@ int cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
     if (result) return result;
     if (common->help) return 0;
   }
-  return check_input_count(verb, inputs, *input_count);
+  int result = check_input_count(verb, inputs, *input_count);
+  return result ? result : check_partners(&p);
 }

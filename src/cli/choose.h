@@ -4,6 +4,7 @@
 
 #include "cli/args.h"
 #include "cli/input.h"
+#include "cli/stage.h"
 
 enum { CHOOSE_NAME_BYTES = 128, CHOOSE_NOTE_BYTES = 256, CHOOSE_PATH_BYTES = 4096 };
 
@@ -23,6 +24,7 @@ typedef struct choose_object {
   char note[CHOOSE_NOTE_BYTES]; /* what was repaired or is wrong; "" for nothing */
   char mesh_path[CHOOSE_PATH_BYTES];
   scree_checksum checksum;
+  bool failed;
 } choose_object;
 
 typedef struct choose_run {
@@ -30,7 +32,9 @@ typedef struct choose_run {
   const choose_arguments *arguments;
   choose_object *objects;
   scree_choice *choices;
-  size_t count;
+  size_t count, left;  /* objects; those that did not fail, which alone are counted in the end */
+  size_t failed_count; /* in the end, behind them */
+  cli_stage stage;     /* of the output's folder, while it is written */
   scree_set_choice set;
   scree_choice_options options;
   scree_simplify_options simplify;
@@ -43,15 +47,18 @@ const scree_set_pick *choose_default_set_pick(const choose_run *run, const scree
 
 /* The table and what to do, for people. */
 void choose_print(FILE *out, const choose_run *run);
+/* Which objects are not in it, in one line. */
+void choose_print_failed(FILE *out, const choose_run *run);
 
-/* Refuses early where a file that will be written exists; makes the folder. */
-scree_status choose_prepare_folder(const choose_run *run, scree_error *error);
+/* Refuses early where a file that will be written exists; makes the folder to write into. */
+scree_status choose_prepare_folder(choose_run *run, scree_error *error);
 /* The meshes of one object, and its levels for the report. */
 scree_status choose_write_meshes(const choose_run *run, size_t index, const scree_curve *curve,
                                  const scree_choice *choice, const scree_set_choice *set,
                                  scree_error *error);
-/* Everything else: curves, figure, tables, the page. */
-scree_status choose_write_reports(const choose_run *run, const scree_choice_report *report,
+/* Everything else: curves, figure, tables, the page. Then all of it is put where it was asked for,
+ * or nothing where the call was cancelled before. */
+scree_status choose_write_reports(choose_run *run, const scree_choice_report *report,
                                   scree_error *error);
 
 #endif

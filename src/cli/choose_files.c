@@ -10,67 +10,117 @@
  *   figure.png, .svg, .pdf, .csv, .gnuplot
  *   provenance.json      when, where, how long
  *   levels/NAME.levels   what the report shows of each object in 3D
- *   report.html          all of it as one page, as `scree report DIR` makes it */
+ *   report.html          all of it as one page, as `scree report DIR` makes it
+ *
+ * They are written into another folder and moved when all are there: who cancels finds none. */
 #include "cli/choose.h"
 #include "cli/output.h"
 #include "cli/surface.h"
+#include "cli/terminal.h"
 
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char *const FIGURES[] = {"figure.png", "figure.svg", "figure.pdf", "figure.csv",
                                       "figure.gnuplot"};
 enum { FIGURE_COUNT = 5 };
-static const char *const SINGLE_FILES[] = {"choice.json", "choice.csv", "choice.txt",
-                                           "provenance.json", "report.html"};
+static const char *const SINGLE_FILES[] = {"choice.csv", "choice.txt", "provenance.json",
+                                           "choice.json", "report.html"};
 enum { SINGLE_FILE_COUNT = 5 };
+static const char *const SUBFOLDERS[] = {"levels", "set"};
 
-/* DIR/before name after */
+/* FOLDER/before name after */
+static scree_status join_in(const char *folder, const char *before, const char *name,
+                            const char *after, char path[CHOOSE_PATH_BYTES], scree_error *error) {
+  int length = snprintf(path, CHOOSE_PATH_BYTES, "%s/%s%s%s", folder, before, name, after);
+  if (length < CHOOSE_PATH_BYTES) return SCREE_OK;
+  return cli_refuse(error, SCREE_LIMIT, folder, "the path is too long");
+}
+
+/* The same where it is written. */
 static scree_status join(const choose_run *run, const char *before, const char *name,
                          const char *after, char path[CHOOSE_PATH_BYTES], scree_error *error) {
-  int length =
-      snprintf(path, CHOOSE_PATH_BYTES, "%s/%s%s%s", run->arguments->output, before, name, after);
-  if (length < CHOOSE_PATH_BYTES) return SCREE_OK;
-  return cli_refuse(error, SCREE_LIMIT, run->arguments->output, "the path is too long");
+  return join_in(run->stage.path, before, name, after, path, error);
 }
+
+/* ---- from where it is written to where it was asked for ---- */
+
+typedef scree_status visit_file(const choose_run *run, const char *before, const char *name,
+                                const char *after, scree_error *error);
 
 static scree_status check_file(const choose_run *run, const char *before, const char *name,
                                const char *after, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
-  scree_status status = join(run, before, name, after, path, error);
+  scree_status status = join_in(run->arguments->output, before, name, after, path, error);
   return status == SCREE_OK ? cli_check_output(run->call, path, run->arguments->overwrite, error)
                             : status;
 }
 
-static scree_status check_mesh(const choose_run *run, const char *before, const char *name,
-                               scree_error *error) {
-  scree_status status = check_file(run, before, name, ".stl", error);
-  return status == SCREE_OK ? check_file(run, before, name, ".mass.json", error) : status;
+static scree_status move_file(const choose_run *run, const char *before, const char *name,
+                              const char *after, scree_error *error) {
+  char from[CHOOSE_PATH_BYTES], to[CHOOSE_PATH_BYTES];
+  scree_status status = join(run, before, name, after, from, error);
+  if (status == SCREE_OK) status = join_in(run->arguments->output, before, name, after, to, error);
+  if (status == SCREE_OK && rename(from, to) != 0)
+    status = cli_refuse(error, SCREE_IO, to, strerror(errno));
+  return status;
 }
 
-static scree_status make_subfolder(const choose_run *run, const char *name, scree_error *error) {
-  char path[CHOOSE_PATH_BYTES];
-  scree_status status = join(run, name, "", "", path, error);
-  return status == SCREE_OK ? cli_make_folder(path, error) : status;
-}
-
-scree_status choose_prepare_folder(const choose_run *run, scree_error *error) {
-  scree_status status = cli_make_folder(run->arguments->output, error);
-  if (status == SCREE_OK) status = make_subfolder(run, "levels", error);
-  if (status == SCREE_OK && run->count > 1) status = make_subfolder(run, "set", error);
+/* All files; those that a finished choice is known by come last. */
+static scree_status visit_files(const choose_run *run, visit_file *visit, scree_error *error) {
+  static const char *const MESH_FILES[] = {".stl", ".mass.json"};
+  scree_status status = SCREE_OK;
   for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
-    status = check_file(run, "", FIGURES[i], "", error);
-  for (int i = 0; i < SINGLE_FILE_COUNT && status == SCREE_OK; i++)
-    status = check_file(run, "", SINGLE_FILES[i], "", error);
+    status = visit(run, "", FIGURES[i], "", error);
   for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
     const char *name = run->objects[i].name;
-    status = check_mesh(run, "", name, error);
-    if (status == SCREE_OK) status = check_file(run, "", name, ".curve.csv", error);
-    if (status == SCREE_OK) status = check_file(run, "levels/", name, ".levels", error);
-    if (status == SCREE_OK && run->count > 1) status = check_mesh(run, "set/", name, error);
+    for (int k = 0; k < 2 && status == SCREE_OK; k++) {
+      status = visit(run, "", name, MESH_FILES[k], error);
+      if (status == SCREE_OK && run->count > 1)
+        status = visit(run, "set/", name, MESH_FILES[k], error);
+    }
+    if (status == SCREE_OK) status = visit(run, "", name, ".curve.csv", error);
+    if (status == SCREE_OK) status = visit(run, "levels/", name, ".levels", error);
+  }
+  for (int i = 0; i < SINGLE_FILE_COUNT && status == SCREE_OK; i++)
+    status = visit(run, "", SINGLE_FILES[i], "", error);
+  return status;
+}
+
+static scree_status make_subfolders(const choose_run *run, const char *folder, scree_error *error) {
+  char path[CHOOSE_PATH_BYTES];
+  scree_status status = SCREE_OK;
+  for (int i = 0; i < (run->count > 1 ? 2 : 1) && status == SCREE_OK; i++) {
+    status = join_in(folder, SUBFOLDERS[i], "", "", path, error);
+    if (status == SCREE_OK) status = cli_make_folder(path, error);
   }
   return status;
 }
+
+scree_status choose_prepare_folder(choose_run *run, scree_error *error) {
+  scree_status status = cli_stage_open(run->arguments->output, &run->stage, error);
+  if (status == SCREE_OK && run->stage.existed) {
+    status = make_subfolders(run, run->arguments->output, error);
+    if (status == SCREE_OK) status = visit_files(run, check_file, error);
+  }
+  return status == SCREE_OK ? make_subfolders(run, run->stage.path, error) : status;
+}
+
+/* A file that came into the folder meanwhile is spared, unless it may be overwritten. */
+static scree_status put_in_place(choose_run *run, scree_error *error) {
+  if (!cli_terminal_settle())
+    return cli_refuse(error, SCREE_CANCELLED, run->arguments->output, "cancelled while writing");
+  char empty[CHOOSE_PATH_BYTES];
+  if (run->count == 1 && join(run, "set", "", "", empty, error) == SCREE_OK)
+    (void)rmdir(empty); /* the others failed */
+  if (!run->stage.existed) return cli_stage_rename(&run->stage, error);
+  scree_status status = visit_files(run, check_file, error);
+  return status == SCREE_OK ? visit_files(run, move_file, error) : status;
+}
+
+/* ---- the files ---- */
 
 /* One level of object `index` into `before`: path gets the mesh's, what it weighs lies beside it.
  */
@@ -110,12 +160,14 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
   choose_object *object = &run->objects[index];
   size_t level = choose_default_pick(run, choice)->level_index;
   char path[CHOOSE_PATH_BYTES];
-  scree_status status = write_level(run, index, curve, level, "", object->mesh_path, error);
+  scree_status status = write_level(run, index, curve, level, "", path, error);
+  if (status == SCREE_OK)
+    status = join_in(run->arguments->output, "", object->name, ".stl", object->mesh_path, error);
   if (status == SCREE_OK) status = join(run, "levels/", object->name, ".levels", path, error);
   if (status == SCREE_OK)
-    status = scree_levels_write(curve, choice, SCREE_LEVELS_BYTES / run->count, path,
+    status = scree_levels_write(curve, choice, SCREE_LEVELS_BYTES / run->left, path,
                                 run->arguments->overwrite, error);
-  if (status != SCREE_OK || run->count < 2) return status;
+  if (status != SCREE_OK || run->left < 2) return status;
   double rp = choose_default_set_pick(run, set)->rp;
   level = scree_curve_find(curve, scree_choice_target(rp, choice->triangle_count));
   return write_level(run, index, curve, level, "set/", path, error);
@@ -147,11 +199,12 @@ static scree_status write_page(const choose_run *run, scree_error *error) {
     status = scree_provenance_write(&run->start, run->call->command_line, path, overwrite, error);
   if (status == SCREE_OK) status = join(run, "", "report.html", "", path, error);
   if (status == SCREE_OK)
-    status = scree_page_write(&run->arguments->output, 1, path, overwrite, error);
+    status =
+        scree_page_write_named(run->stage.path, run->arguments->output, path, overwrite, error);
   return status;
 }
 
-scree_status choose_write_reports(const choose_run *run, const scree_choice_report *report,
+scree_status choose_write_reports(choose_run *run, const scree_choice_report *report,
                                   scree_error *error) {
   bool overwrite = run->arguments->overwrite;
   char path[CHOOSE_PATH_BYTES];
@@ -170,5 +223,5 @@ scree_status choose_write_reports(const choose_run *run, const scree_choice_repo
   if (status == SCREE_OK) status = join(run, "", "choice.json", "", path, error);
   if (status == SCREE_OK) status = scree_choice_json_write(report, path, overwrite, error);
   if (status == SCREE_OK) status = write_page(run, error);
-  return status;
+  return status == SCREE_OK ? put_in_place(run, error) : status;
 }

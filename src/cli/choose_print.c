@@ -52,12 +52,20 @@ static void print_row(FILE *out, const choose_run *run, size_t index) {
           cli_count_text(c->robust.triangle_count, n2), percent_text(c->robust.eps_s, e2));
 }
 
+/* What eps_s is measured against, where that is not the scan's area by itself. */
+static const char *reference_text(const choose_run *run) {
+  size_t found = 0;
+  for (size_t i = 0; i < run->count; i++) found += run->choices[i].noise.found;
+  if (run->options.reference == SCREE_REFERENCE_SCAN) return "";
+  return found == run->count ? ", area free of noise"
+         : found             ? ", area free of noise where some was found"
+                             : ", the scan's area: no noise was found";
+}
+
 static void print_table(FILE *out, const choose_run *run) {
   char rp1[16], rp2[16];
-  const char *reference =
-      run->options.reference == SCREE_REFERENCE_SMOOTH ? ", area free of noise" : "";
   fprintf(out, "Ip = eps_s + %g Nr/Nm, method %s%s, coordinates in %s\n", run->options.weight,
-          scree_method_name(run->simplify.method), reference,
+          scree_method_name(run->simplify.method), reference_text(run),
           cli_unit_name(run->arguments->source.unit));
   fprintf(out, "%30s%-24s| %s\n", "",
           run->arguments->paper ? "| paper (default)" : "| paper's grid",
@@ -70,17 +78,36 @@ static void print_table(FILE *out, const choose_run *run) {
             "", rp_text(run->set.robust.rp, rp2));
 }
 
+void choose_print_failed(FILE *out, const choose_run *run) {
+  fputs("Without ", out);
+  for (size_t i = 0; i < run->failed_count; i++)
+    fprintf(out, "%s%s", i ? ", " : "", run->objects[run->count + i].word);
+  if (run->count > 1)
+    fprintf(out, ", which could not be used: the set's choice is of the other %zu.\n", run->count);
+  else
+    fputs(", which could not be used: there is no set to choose for.\n", out);
+}
+
+/* The level of an object at the set's Rp, which lies on the grid by the paper's rule and on the
+ * trace by the robust one. */
+static const scree_choice_level *level_at(const choose_run *run, size_t index, double rp) {
+  const scree_choice *c = &run->choices[index];
+  bool grid = run->arguments->paper;
+  const scree_choice_level *levels = grid ? c->levels : c->trace;
+  size_t count = grid ? c->level_count : c->trace_count, k = 0;
+  while (k + 1 < count && levels[k].rp < rp * (1 - 1e-9)) k++;
+  return &levels[k];
+}
+
 /* The range of counts and errors at the set's Rp. */
 static void print_set_advice(FILE *out, const choose_run *run) {
   size_t least = SIZE_MAX, most = 0;
   double worst = 0, rp = choose_default_set_pick(run, &run->set)->rp;
   for (size_t i = 0; i < run->count; i++) {
-    const scree_choice *c = &run->choices[i];
-    size_t k = 0;
-    while (k + 1 < c->trace_count && c->trace[k].rp < rp * (1 - 1e-9)) k++;
-    if (c->trace[k].triangle_count < least) least = c->trace[k].triangle_count;
-    if (c->trace[k].triangle_count > most) most = c->trace[k].triangle_count;
-    worst = fmax(worst, c->trace[k].worst_eps_s);
+    const scree_choice_level *level = level_at(run, i, rp);
+    if (level->triangle_count < least) least = level->triangle_count;
+    if (level->triangle_count > most) most = level->triangle_count;
+    worst = fmax(worst, run->arguments->paper ? level->eps_s : level->worst_eps_s);
   }
   char rp_buffer[16], low[32], high[32], percent[16];
   fprintf(out, "Use Rp = %s for the set: %s%s%s triangles%s, area within %s.\n",
@@ -134,18 +161,17 @@ static void print_accidents(FILE *out, const choose_run *run) {
             NOTABLE_RATIO, differ, run->count);
 }
 
+/* Said where the choice would be another: the object's, or the set's. */
 static void print_noise(FILE *out, const choose_run *run) {
-  size_t moved = 0;
+  const scree_choice *c = &run->choices[0];
   double most = 0;
-  for (size_t i = 0; i < run->count; i++) {
-    const scree_choice *c = &run->choices[i];
-    if (!c->noise.found) continue;
-    most = fmax(most, c->noise.fraction);
-    moved +=
-        ratio((double)c->smooth.triangle_count, (double)c->robust.triangle_count) > NOTABLE_RATIO;
-  }
+  bool moved = run->count > 1 ? ratio(run->set.smooth.rp, run->set.robust.rp) > NOTABLE_RATIO
+                              : ratio((double)c->smooth.triangle_count,
+                                      (double)c->robust.triangle_count) > NOTABLE_RATIO;
+  for (size_t i = 0; i < run->count; i++)
+    if (run->choices[i].noise.found) most = fmax(most, run->choices[i].noise.fraction);
   char percent[16], rp[16];
-  if (moved && run->options.reference == SCREE_REFERENCE_SCAN)
+  if (moved && most > 0 && run->options.reference == SCREE_REFERENCE_SCAN)
     fprintf(out,
             "Scan noise adds up to %s of area and misleads eps_s: --reference smooth takes it\n"
             "out and gives Rp = %s.\n",
@@ -213,6 +239,7 @@ static void print_other_errors(FILE *out, const choose_run *run) {
 void choose_print(FILE *out, const choose_run *run) {
   print_table(out, run);
   putc('\n', out);
+  if (run->failed_count) choose_print_failed(out, run);
   print_advice(out, run);
   print_similar(out, run);
   print_accidents(out, run);

@@ -1,6 +1,7 @@
 #include "cli/input.h"
 
 #include <string.h>
+#include <unistd.h>
 
 static const char SAMPLE_PREFIX[] = "sample:";
 
@@ -11,6 +12,16 @@ bool cli_is_sample(const char *word, const char **name) {
   return true;
 }
 
+/* A file that is not there, but a sample of that name. */
+static void hint_sample(const char *word, scree_error *error) {
+  size_t used = strlen(error->message);
+  if (access(word, F_OK) == 0) return;
+  for (size_t i = 0; scree_sample_name(i); i++)
+    if (!strcmp(word, scree_sample_name(i)))
+      snprintf(error->message + used, sizeof error->message - used, "; did you mean %s%s?",
+               SAMPLE_PREFIX, word);
+}
+
 scree_status cli_load(const char *word, const cli_input_options *options,
                       const scree_progress *progress, scree_scan *scan, scree_error *error) {
   const char *name;
@@ -18,7 +29,10 @@ scree_status cli_load(const char *word, const cli_input_options *options,
   scree_status status;
   if (!cli_is_sample(word, &name)) {
     status = scree_scan_read(word, &options->read, scan, error);
-    return status == SCREE_OK ? status : cli_name_in_error(word, error);
+    if (status == SCREE_OK) return status;
+    status = cli_name_in_error(word, error);
+    hint_sample(word, error);
+    return status;
   }
   status = scree_sample_make(name, &options->sample, progress, &made.mesh, error);
   if (status != SCREE_OK) return status;

@@ -48,6 +48,13 @@ static int help(int word_count, char **words) {
     cli_print_completion(stdout);
     return 0;
   }
+  if (!strcmp(words[0], "help") || !strcmp(words[0], "version")) {
+    bool is_help = words[0][0] == 'h';
+    printf("usage: scree %s%s\n\n%s\n", words[0], is_help ? " [VERB]" : "",
+           is_help ? "Lists the verbs, or shows what a verb does and its options."
+                   : "Shows the version.");
+    return 0;
+  }
   const cli_verb *verb = cli_find_verb(words[0]);
   if (!verb) return cli_misuse(NULL, "unknown verb '%s'", words[0]);
   cli_print_help(stdout, verb);

@@ -10,6 +10,7 @@
 enum { BAR_WIDTH = 24, LINE_WIDTH = 78, LINE_BYTES = 128 };
 
 static volatile sig_atomic_t received_signal;
+static bool settled;
 
 static struct {
   bool show, drawn;
@@ -52,23 +53,30 @@ static void put_line(const char *text) {
   terminal.drawn = true;
 }
 
+/* "42 s left"; nothing where that would be 0 s while work goes on. */
+static void format_left(char *text, size_t size, double seconds) {
+  char number[32];
+  format_seconds(number, sizeof number, seconds);
+  snprintf(text, size, "%s left", number);
+  if (seconds < 0.5) *text = 0;
+}
+
 static void draw(const char *phase, double fraction) {
   if (strncmp(phase, terminal.phase, sizeof terminal.phase - 1) != 0) {
     snprintf(terminal.phase, sizeof terminal.phase, "%s", phase);
     terminal.phase_start = now();
   }
   double elapsed = now() - terminal.phase_start;
-  char left[32], bar[BAR_WIDTH + 1], line[LINE_BYTES];
-  format_seconds(left, sizeof left,
-                 fraction > 0.01 ? elapsed * (1 - fraction) / fraction : INFINITY);
+  double seconds = fraction > 0.01 ? elapsed * (1 - fraction) / fraction : INFINITY;
+  char left[40], bar[BAR_WIDTH + 1], line[LINE_BYTES];
+  format_left(left, sizeof left, seconds);
   int full = (int)(fraction * BAR_WIDTH);
   for (int i = 0; i < BAR_WIDTH; i++) bar[i] = i < full ? '#' : '.';
   bar[BAR_WIDTH] = 0;
   if (line_width() == LINE_WIDTH)
-    snprintf(line, sizeof line, "%-30.30s [%s] %3.0f %%  %s left", phase, bar, 100 * fraction,
-             left);
+    snprintf(line, sizeof line, "%-30.30s [%s] %3.0f %%  %s", phase, bar, 100 * fraction, left);
   else
-    snprintf(line, sizeof line, "%3.0f %% %s left, %s", 100 * fraction, left, phase);
+    snprintf(line, sizeof line, "%3.0f %% %s%s%s", 100 * fraction, left, *left ? ", " : "", phase);
   put_line(line);
 }
 
@@ -83,17 +91,52 @@ void cli_terminal_seconds(char *text, size_t size, double seconds) {
 static bool report(void *context, const char *phase, double fraction) {
   (void)context;
   if (terminal.show) draw(phase, fraction < 0 ? 0 : fraction > 1 ? 1 : fraction);
-  return !received_signal;
+  return !cli_interrupted();
 }
 
-const scree_progress *cli_terminal_start(bool show) {
-  static const scree_progress progress = {report, NULL, 0.1};
-  struct sigaction action = {.sa_handler = on_signal, .sa_flags = (int)SA_RESETHAND}, before;
+static bool report_share(void *context, const char *phase, double fraction) {
+  cli_share *share = context;
+  const scree_progress *whole = share->whole;
+  share->done = fmax(share->done, share->base + share->part * fmin(fmax(fraction, 0), 1));
+  return whole->report(whole->context, share->phase ? share->phase : phase, share->done);
+}
+
+cli_share cli_share_of(const scree_progress *whole, const char *phase) {
+  return (cli_share){.whole = whole, .phase = phase};
+}
+
+const scree_progress *cli_share_enter(cli_share *share, double base, double part) {
+  share->base = base;
+  share->part = part;
+  share->progress = (scree_progress){report_share, share, share->whole->interval};
+  return &share->progress;
+}
+
+static void catch_signals(int flags) {
+  struct sigaction action = {.sa_handler = on_signal, .sa_flags = flags}, before;
   sigemptyset(&action.sa_mask);
   sigaction(SIGINT, &action, NULL);
   sigaction(SIGTERM, &action, NULL);
   if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* else: nohup */
     sigaction(SIGHUP, &action, NULL);
+}
+
+bool cli_terminal_settle(void) {
+  sigset_t ours, before;
+  sigemptyset(&ours);
+  sigaddset(&ours, SIGINT);
+  sigaddset(&ours, SIGTERM);
+  sigaddset(&ours, SIGHUP);
+  sigprocmask(SIG_BLOCK, &ours, &before);
+  settled = !received_signal;
+  if (settled) catch_signals((int)(SA_RESETHAND | SA_RESTART)); /* what is printed is not cut off */
+  sigprocmask(SIG_SETMASK, &before, NULL);
+  return settled;
+}
+
+const scree_progress *cli_terminal_start(bool show) {
+  static const scree_progress progress = {report, NULL, 0.1};
+  catch_signals((int)SA_RESETHAND);
   terminal.show = show;
   return &progress;
 }
@@ -104,7 +147,7 @@ void cli_terminal_end(void) {
 }
 
 bool cli_interrupted(void) {
-  return received_signal != 0;
+  return received_signal != 0 && !settled;
 }
 
 void cli_terminal_reraise(void) {

@@ -48,8 +48,8 @@ static const cli_option options[] = {
      "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(choose_arguments, source),
     {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
-    {"csv", 0, CLI_FLAG, AT(csv), NULL, "Print CSV instead of text: a row per grid level.", 0, 0,
-     NULL},
+    {"csv", 0, CLI_FLAG, AT(csv), NULL,
+     "Print CSV instead of text: a row per grid level and choice.", 0, 0, NULL},
     {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
 
@@ -101,7 +101,7 @@ static void name_objects(choose_run *run) {
 static bool list_objects(choose_run *run) {
   static char sample_words[SCREE_SAMPLE_DEVICES][32];
   size_t samples = run->arguments->samples ? SCREE_SAMPLE_DEVICES : 0;
-  run->count = samples + run->call->input_count;
+  run->count = run->left = samples + run->call->input_count;
   run->objects = calloc(run->count, sizeof *run->objects);
   run->choices = calloc(run->count, sizeof *run->choices);
   if (!run->objects || !run->choices) return false;
@@ -138,7 +138,30 @@ static scree_status done(void *context, size_t index, const scree_curve *curve,
   return choose_write_meshes(context, index, curve, choice, set, error);
 }
 
-static scree_status write_output(const choose_run *run, scree_error *error) {
+static void failed(void *context, size_t index, const scree_error *error) {
+  choose_run *run = context;
+  cli_fail(error);
+  run->objects[index].failed = true;
+  run->left--;
+}
+
+/* Puts what failed behind the others, both in their order. */
+static void part_failed(choose_run *run) {
+  size_t kept = 0;
+  for (size_t i = 0; i < run->count; i++) {
+    choose_object object = run->objects[i];
+    scree_choice choice = run->choices[i];
+    if (object.failed) continue;
+    memmove(&run->objects[kept + 1], &run->objects[kept], (i - kept) * sizeof object);
+    memmove(&run->choices[kept + 1], &run->choices[kept], (i - kept) * sizeof choice);
+    run->objects[kept] = object;
+    run->choices[kept++] = choice;
+  }
+  run->failed_count = run->count - kept;
+  run->count = kept;
+}
+
+static scree_status write_output(choose_run *run, scree_error *error) {
   const choose_arguments *a = run->arguments;
   scree_choice_entry *entries = calloc(run->count, sizeof *entries);
   if (!entries) {
@@ -171,6 +194,8 @@ static scree_status write_output(const choose_run *run, scree_error *error) {
   scree_status status = SCREE_OK;
   if (a->output) status = choose_write_reports(run, &report, error);
   cli_terminal_end();
+  if (status == SCREE_OK && run->failed_count && (a->json || a->csv) && !run->call->quiet)
+    choose_print_failed(stderr, run);
   if (status == SCREE_OK && a->json)
     status = scree_choice_json_write(&report, "-", false, error);
   else if (status == SCREE_OK && a->csv)
@@ -216,15 +241,19 @@ static int run_choose(const cli_call *call) {
   }
   if (status == SCREE_OK && a->output) status = choose_prepare_folder(&run, &error);
   scree_choice_job job = {run.count, run.simplify, run.options, load, a->output ? done : NULL,
-                          &run};
+                          &run,      failed};
   if (status == SCREE_OK)
     status = scree_choose_each(&job, call->progress, run.choices, &run.set, &error);
+  if (status == SCREE_OK) part_failed(&run);
   if (status == SCREE_OK) status = write_output(&run, &error);
+  cli_stage_hide(&run.stage, &error);
+  cli_stage_discard(&run.stage);
   for (size_t i = 0; run.choices && i < run.count; i++) scree_choice_free(&run.choices[i]);
   scree_set_choice_free(&run.set);
   free(run.choices);
   free(run.objects);
-  return status == SCREE_OK ? 0 : cli_fail(&error);
+  if (status != SCREE_OK) return cli_fail(&error);
+  return run.failed_count ? 1 : 0;
 }
 
 const cli_verb cli_verb_choose = {
@@ -239,7 +268,8 @@ const cli_verb cli_verb_choose = {
         "The paper's choice is the least Ip on a logarithmic grid of Rp. The robust choice, the "
         "default, takes the worst error at a count or any finer one, over every count, so that an "
         "area that is right by accident does not count. Several scans also get one Rp for all.\n\n"
-        "Scans that are no closed surface are repaired first. sample:NAME stands for a built-in "
+        "Scans that are no closed surface are repaired first. One that cannot be used is told on "
+        "stderr and left out; the exit code is then 1. sample:NAME stands for a built-in "
         "sample. Nothing is written without -o.",
     .examples = "scree choose phone.stl -o phone\n"
                 "scree choose *.stl -o devices --errors\n"
@@ -251,5 +281,6 @@ const cli_verb cli_verb_choose = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = SIZE_MAX,
+    .partners = "density:output",
     .run = run_choose,
 };

@@ -47,10 +47,14 @@ static const cli_option options[] = {
 static const curve_arguments defaults = {
     .source = CLI_SOURCE_DEFAULTS, .from = 1e-5, .to = 1e-1, .per_decade = 9};
 
+/* Parts of the time with --distance, without which the curve takes the rest. */
+static const double LOAD_PART = 0.1, CURVE_PART = 0.3;
+
 /* What the rows need. */
 typedef struct table {
   const cli_call *call;
   const curve_arguments *arguments;
+  cli_share share; /* of the progress: all is one */
   scree_curve *curve;
   scree_replay *replay;
   scree_surface *scan;
@@ -92,7 +96,8 @@ static void print_row(const table *t, const scree_curve_row *row) {
   putchar('\n');
 }
 
-static scree_status measure_distance(table *t, size_t index, scree_distance *distance) {
+static scree_status measure_distance(table *t, size_t index, const scree_progress *progress,
+                                     scree_distance *distance) {
   scree_distance_options settings = scree_default_distance_options();
   const scree_mesh *mesh;
   scree_surface *surface = NULL;
@@ -100,19 +105,19 @@ static scree_status measure_distance(table *t, size_t index, scree_distance *dis
   scree_status status = scree_replay_step(t->replay, index, &mesh, &t->error);
   if (status == SCREE_OK) status = scree_surface_create(mesh, &surface, &t->error);
   if (status == SCREE_OK)
-    status =
-        scree_surface_distance(t->scan, surface, &settings, t->call->progress, distance, &t->error);
+    status = scree_surface_distance(t->scan, surface, &settings, progress, distance, &t->error);
   scree_surface_free(surface);
   return status;
 }
 
-static scree_status make_row(table *t, size_t index, scree_curve_row *row) {
+static scree_status make_row(table *t, size_t index, const scree_progress *progress,
+                             scree_curve_row *row) {
   double whole = fabs(t->first.volume);
   scree_curve_level(t->curve, index, &row->level);
   row->eps_s = fabs(row->level.area - t->first.area) / t->first.area;
   row->eps_v = whole > 0 ? fabs(row->level.volume - t->first.volume) / whole : 0;
   row->ip = row->eps_s + row->level.rp;
-  return t->arguments->distance ? measure_distance(t, index, &row->distance) : SCREE_OK;
+  return t->arguments->distance ? measure_distance(t, index, progress, &row->distance) : SCREE_OK;
 }
 
 /* Rows from fine to coarse on the grid of Rp, each level once; text and CSV as they come. */
@@ -132,7 +137,10 @@ static scree_status make_rows(table *t) {
     size_t index = scree_curve_find(t->curve, target);
     if (index == last) continue;
     last = index;
-    scree_status status = make_row(t, index, &t->rows[t->row_count]);
+    double part = (1 - LOAD_PART - CURVE_PART) / (double)rows;
+    const scree_progress *progress =
+        cli_share_enter(&t->share, 1 - part * (double)(rows - i), part);
+    scree_status status = make_row(t, index, progress, &t->rows[t->row_count]);
     if (status != SCREE_OK) return status;
     if (!arguments->json) print_row(t, &t->rows[t->row_count]);
     t->row_count++;
@@ -180,10 +188,16 @@ static int run(const cli_call *call) {
   settings.method = (scree_method)t.arguments->method;
   if (t.arguments->soundness.no_repair && t.arguments->soundness.unchecked)
     return cli_misuse(call->verb, "--no-repair and --unchecked exclude each other");
+  cli_call loading = *call;
+  t.share = cli_share_of(call->progress,
+                         t.arguments->distance ? "decimating and measuring" : "decimating");
+  loading.progress = cli_share_enter(&t.share, 0, LOAD_PART);
   scree_status status =
-      cli_load_for_levels(call, &t.arguments->source, &t.arguments->soundness, &scan, &t.error);
+      cli_load_for_levels(&loading, &t.arguments->source, &t.arguments->soundness, &scan, &t.error);
+  double part = t.arguments->distance ? CURVE_PART : 1 - LOAD_PART;
   if (status == SCREE_OK)
-    status = scree_curve_build(&scan.mesh, &settings, call->progress, &t.curve, &t.error);
+    status = scree_curve_build(&scan.mesh, &settings, cli_share_enter(&t.share, LOAD_PART, part),
+                               &t.curve, &t.error);
   if (status == SCREE_OK && t.arguments->distance) {
     status = scree_surface_create(&scan.mesh, &t.scan, &t.error);
     if (status == SCREE_OK) status = scree_replay_start(t.curve, &t.replay, &t.error);
@@ -223,5 +237,6 @@ const cli_verb cli_verb_curve = {
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 1,
+    .partners = "samples:distance",
     .run = run,
 };

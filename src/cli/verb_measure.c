@@ -41,6 +41,13 @@ static double tidy(double value, double largest) {
   return fabs(value) < 1e-14 * largest ? 0 : value;
 }
 
+/* As many as tell a place to a ten-millionth of the body's size, however far off it lies. */
+static int place_digits(double place, double size) {
+  enum { DIGITS = 7, MOST = 17 };
+  double more = size > 0 && fabs(place) > size ? ceil(log10(fabs(place) / size)) : 0;
+  return more < MOST - DIGITS ? DIGITS + (int)more : MOST;
+}
+
 static void print_axis(const char *label, const double axis[3]) {
   printf("  %-22s", label);
   for (int i = 0; i < 3; i++) printf(" %+.6f", fabs(axis[i]) < 5e-7 ? 0 : axis[i]);
@@ -52,8 +59,11 @@ static void print_measures(const scree_measures *m, double unit) {
   double cube = unit * unit * unit, size = m->oriented_dimensions[0];
   printf("  %-22s %.9g %s2\n", "area S", m->area / unit / unit, name);
   printf("  %-22s %.9g %s3\n", "volume V", m->volume / cube, name);
-  printf("  %-22s %.7g, %.7g, %.7g %s\n", "centroid", tidy(m->centroid[0], size) / unit,
-         tidy(m->centroid[1], size) / unit, tidy(m->centroid[2], size) / unit, name);
+  printf("  %-22s", "centroid");
+  for (int i = 0; i < 3; i++)
+    printf("%s%.*g", i ? ", " : " ", place_digits(m->centroid[i], size),
+           tidy(m->centroid[i], size) / unit);
+  printf(" %s\n", name);
   print_three("dimensions x, y, z", m->dimensions, unit, name, "");
   print_three("oriented dimensions", m->oriented_dimensions, unit, name, "");
   printf("  %-22s %.7g %s\n", "equivalent diameter", m->equivalent_diameter / unit, name);
@@ -92,7 +102,14 @@ static void print_topology(const scree_topology *t) {
 
 static void warn(const scree_measure_entry *entry) {
   const scree_measures *m = &entry->measures;
-  if (!m->closed && entry->topology.closed)
+  size_t crowded = entry->topology.non_manifold_edge_count;
+  if (!m->closed && entry->topology.closed && entry->topology.oriented)
+    fprintf(stderr,
+            "scree: %s: warning: %zu non-manifold edge%s, where the facets do not pair up both "
+            "ways, so they enclose no volume; volume, centroid, moments and what follows from "
+            "them mean little\n",
+            entry->file, crowded, cli_plural(crowded));
+  else if (!m->closed && entry->topology.closed)
     fprintf(stderr,
             "scree: %s: warning: the facets are not wound consistently, so they enclose no volume; "
             "volume, centroid, moments and what follows from them mean little\n",

@@ -161,5 +161,7 @@ const cli_verb cli_verb_pile = {
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 1,
+    .partners =
+        "size:picture azimuth:picture elevation:picture width:picture samples:picture view:vtp",
     .run = run,
 };

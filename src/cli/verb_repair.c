@@ -176,5 +176,6 @@ const cli_verb cli_verb_repair = {
     .options_size = sizeof(repair_arguments),
     .input_minimum = 1,
     .input_maximum = 1,
+    .partners = "flat:large-holes",
     .run = run,
 };

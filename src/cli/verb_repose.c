@@ -546,5 +546,6 @@ const cli_verb cli_verb_repose = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = 60,
+    .partners = "method:rp vtp:output",
     .run = run,
 };

@@ -156,7 +156,13 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
     scree_curve_level(curve, index, &level);
     status = write_level(call, &scan, curve, index, error);
     if (status == SCREE_OK) say(call, curve, index);
-    if (status == SCREE_OK && level.triangle_count > target && !(arguments->error > 0))
+    bool above = status == SCREE_OK && target > 0 && level.triangle_count > target;
+    if (above && arguments->error > 0)
+      fprintf(stderr,
+              "%s: %zu triangles, not the %zu asked for: no collapse is left within the error of "
+              "%g mm\n",
+              call->inputs[0], level.triangle_count, target, arguments->error * 1e3);
+    else if (above)
       fprintf(stderr, "%s: %zu triangles is the lowest count that could be reached\n",
               call->inputs[0], level.triangle_count);
   }

@@ -188,5 +188,6 @@ const cli_verb cli_verb_study = {
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 2,
+    .partners = "tasks:slurm",
     .run = run,
 };

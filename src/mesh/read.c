@@ -13,7 +13,10 @@
 #include <stdarg.h>
 #include <string.h>
 
-enum { SNIFF_BYTES = 4096 };
+enum {
+  SNIFF_BYTES = 4096,
+  MOST_DAMAGE = 20 /* bytes of text for each that is none, in a damaged one */
+};
 
 scree_read_options scree_default_read_options(void) {
   return (scree_read_options){.unit_m = 1e-3};
@@ -237,6 +240,30 @@ static bool looks_like_3ds(const scree_reading *r) {
              r->byte_count;
 }
 
+/* Text but for a few bytes, and where the first of these is: no float and no count looks so. */
+static bool is_damaged_text(const scree_reading *r, size_t *first) {
+  size_t count = r->byte_count < SNIFF_BYTES ? r->byte_count : SNIFF_BYTES, bad = 0;
+  for (size_t i = count; i-- > 0;)
+    if (!looks_like_text(r->bytes + i, 1)) {
+      *first = i;
+      bad++;
+    }
+  return bad * MOST_DAMAGE < count;
+}
+
+static const char *text_kind(scree_text text) {
+  scree_text start = text;
+  if (scree_token_is(scree_text_next(&start), "solid")) return "an ASCII STL";
+  return looks_like_off(text) ? "an OFF file" : looks_like_obj(text) ? "an OBJ file" : "text";
+}
+
+/* "OFF BINARY", and numbers behind it. */
+static bool is_binary_off(scree_text text) {
+  scree_token word = first_word(text);
+  text.p = word.begin + word.length;
+  return scree_is_off_word(word) && scree_token_is(scree_text_next(&text), "binary");
+}
+
 static scree_status read_binary_or_fail(scree_reading *r) {
   if (starts_with(r, "PK\x03\x04", 4)) return scree_read_import(r, SCREE_IMPORT_3MF);
   if (starts_with(r, "glTF", 4)) return scree_read_import(r, SCREE_IMPORT_GLB);
@@ -247,6 +274,13 @@ static scree_status read_binary_or_fail(scree_reading *r) {
     if (starts_with(r, m->bytes, m->length))
       return scree_reading_fail(r, SCREE_BAD_FILE, "%s", m->advice);
   }
+  scree_text text = scree_reading_text(r);
+  size_t damaged = 0;
+  if (is_binary_off(text)) return scree_read_off(r);
+  if (is_damaged_text(r, &damaged))
+    return scree_reading_fail(r, SCREE_BAD_FILE,
+                              "is %s, but byte %zu is 0x%02x, which no text has: it is damaged",
+                              text_kind(text), damaged, r->bytes[damaged]);
   if (r->byte_count < SCREE_STL_HEADER)
     return scree_reading_fail(r, SCREE_BAD_FILE,
                               "too short: %zu bytes; a binary STL has at least %d", r->byte_count,
@@ -282,14 +316,13 @@ static scree_status check_options(const scree_read_options *o, scree_error *erro
   return SCREE_OK;
 }
 
-scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
-                              const scree_read_options *options, scree_scan *scan,
-                              scree_error *error) {
+static scree_status parse(const void *bytes, size_t byte_count, bool goes_on, const char *name,
+                          const scree_read_options *options, scree_scan *scan, scree_error *error) {
   scree_read_options used = options ? *options : scree_default_read_options();
   scree_status status = check_options(&used, error);
   if (status != SCREE_OK) return status;
   scree_scan made = {.byte_count = byte_count};
-  scree_reading r = {name, bytes, byte_count, &used, used.unit_m, &made, error};
+  scree_reading r = {name, bytes, byte_count, &used, used.unit_m, &made, error, goes_on};
   status = read_any(&r);
   if (status == SCREE_OK && made.mesh.triangle_count == 0)
     status = scree_reading_fail(&r, SCREE_BAD_MESH,
@@ -304,6 +337,46 @@ scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *
   return SCREE_OK;
 }
 
+scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
+                              const scree_read_options *options, scree_scan *scan,
+                              scree_error *error) {
+  return parse(bytes, byte_count, false, name, options, scan, error);
+}
+
+/* What a stream is may show at its end only where it begins with white space or comments, or where
+ * one of assimp's formats may follow. */
+static bool may_be_text_format(scree_text text) {
+  scree_text start = text;
+  scree_token word = first_word(text);
+  if (word.begin + word.length == text.end) return true;
+  scree_text_skip_space(&start);
+  return *start.p == '{' || *start.p == '<' || begins_with(&start, "; fbx") ||
+         scree_token_is(scree_text_next(&text), "solid") || scree_is_off_word(word) ||
+         looks_like_obj(start);
+}
+
+/* For a stream: no more of it than says what it is, where it is none of ours; of a binary STL so
+ * much that it shows to be too long. */
+static size_t judge(const char *beginning, size_t byte_count) {
+  static const char *const imported[] = {"PK\x03\x04", "glTF", "Kaydara FBX Binary", "MM"};
+  const scree_read_options options = scree_default_read_options();
+  const unsigned char *bytes = (const unsigned char *)beginning;
+  scree_reading r = {"", bytes, byte_count, &options, 1, NULL, NULL, false};
+  scree_text text = scree_reading_text(&r), start = text;
+  size_t damaged = 0;
+  if (byte_count < SCREE_JUDGED_BYTES) return SIZE_MAX; /* it has ended */
+  if (scree_token_is(scree_text_next(&start), "ply")) return SIZE_MAX;
+  if (looks_like_text(bytes, byte_count)) return may_be_text_format(text) ? SIZE_MAX : byte_count;
+  for (size_t i = 0; i < sizeof imported / sizeof *imported; i++)
+    if (starts_with(&r, imported[i], strlen(imported[i]))) return SIZE_MAX;
+  for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++)
+    if (starts_with(&r, foreign_marks[i].bytes, foreign_marks[i].length)) return byte_count;
+  if (is_binary_off(text) || is_damaged_text(&r, &damaged)) return byte_count;
+  size_t count = (size_t)bytes[80] | (size_t)bytes[81] << 8 | (size_t)bytes[82] << 16 |
+                 (size_t)bytes[83] << 24;
+  return SCREE_STL_HEADER + (count + 1) * SCREE_STL_FACET;
+}
+
 /* The common kind of scan. */
 static scree_status read_stream(const char *path, const scree_read_options *options,
                                 scree_scan *scan, bool *done, scree_error *error) {
@@ -313,7 +386,8 @@ static scree_status read_stream(const char *path, const scree_read_options *opti
   if (!scree_stream_open(path, &stream)) return SCREE_OK;
   if (!options->max_bytes || stream.byte_count <= options->max_bytes) {
     scree_scan made = {.byte_count = stream.byte_count};
-    scree_reading r = {path, NULL, stream.byte_count, options, options->unit_m, &made, error};
+    scree_reading r = {path,  NULL, stream.byte_count, options, options->unit_m, &made,
+                       error, false};
     status = scree_read_stl_stream(&r, &stream, done);
     made.checksum = scree_stream_checksum(&stream);
     if (*done)
@@ -335,10 +409,12 @@ scree_status scree_scan_read(const char *path, const scree_read_options *options
   if (status == SCREE_OK && strcmp(path, "-") != 0)
     status = read_stream(path, &used, scan, &done, error);
   if (status != SCREE_OK || done) return status;
-  status = scree_file_read(path, used.max_bytes, &bytes, &byte_count, error);
+  bool goes_on;
+  status =
+      scree_file_read_judged(path, used.max_bytes, judge, &bytes, &byte_count, &goes_on, error);
   if (status != SCREE_OK) return status;
   const char *name = strcmp(path, "-") != 0 ? path : "standard input";
-  status = scree_scan_parse(bytes, byte_count, name, options, scan, error);
+  status = parse(bytes, byte_count, goes_on, name, options, scan, error);
   scree_free(bytes);
   return status;
 }

@@ -16,6 +16,7 @@ typedef struct scree_reading {
   double unit_m;    /* metres per unit: of the options, unless the file states its own */
   scree_scan *scan; /* filled; its mesh is freed by the caller on failure */
   scree_error *error;
+  bool goes_on; /* a stream that was left where it had shown to be no such file */
 } scree_reading;
 
 /* The file as text, behind a byte order mark. */

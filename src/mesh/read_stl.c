@@ -73,6 +73,12 @@ static void describe_binary(scree_scan *scan, size_t facet_count) {
 scree_status scree_read_stl_binary(scree_reading *r) {
   scree_scan *scan = r->scan;
   size_t count = load_u32(r->bytes + 80), room = (r->byte_count - HEADER_BYTES) / FACET_BYTES;
+  if (count != room && r->goes_on)
+    return scree_reading_fail(
+        r, SCREE_BAD_FILE,
+        "binary STL with a wrong count: bytes 80 to 83 say %zu facets, which take %zu bytes, but "
+        "more than %zu came",
+        count, HEADER_BYTES + count * FACET_BYTES, r->byte_count - 1);
   if (count != room)
     return scree_reading_fail(
         r, SCREE_BAD_FILE,

@@ -150,13 +150,38 @@ static size_t set_guide(const scree_choice_report *report, char *text, size_t si
   return 1;
 }
 
+/* The axis is logarithmic and ends above the least: what has hardly an error, or none, is not on
+ * it. */
+static const char *missing_text(const scree_choice_report *report, char text[64]) {
+  scree_axis axis = {.minimum = 0};
+  bool missing = false;
+  fit_errors(report, false, &axis);
+  for (size_t e = 0; e < report->entry_count; e++)
+    for (size_t i = 0; i < report->entries[e].choice->level_count; i++) {
+      double eps_s = report->entries[e].choice->levels[i].eps_s;
+      missing = missing || !(eps_s > 0) || eps_s < axis.minimum;
+    }
+  if (axis.minimum > 0)
+    snprintf(text, 64, "; not in (a): \u03b5_{s} < %.1e", axis.minimum);
+  else
+    snprintf(text, 64, "; not in (a): \u03b5_{s} = 0");
+  return missing ? text : "";
+}
+
+static const char *reference_text(const scree_choice_report *report) {
+  size_t found = 0;
+  for (size_t e = 0; e < report->entry_count; e++) found += report->entries[e].choice->noise.found;
+  if (report->options->reference == SCREE_REFERENCE_SCAN || !found) return "the scan's";
+  return found == report->entry_count ? "free of noise" : "free of noise where found";
+}
+
 scree_status scree_choice_figure_write(const scree_choice_report *report, const char *path,
                                        bool overwrite, scree_error *error) {
   if (report->entry_count == 0)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no object to draw", path);
   panel_data data[2] = {{0}, {0}};
   scree_panel panels[2];
-  char guide_text[64], note[NOTE_BYTES];
+  char guide_text[64], missing[64], note[NOTE_BYTES];
   scree_guide guide;
   size_t guide_count = set_guide(report, guide_text, sizeof guide_text, &guide);
   scree_status status = SCREE_OK;
@@ -168,9 +193,9 @@ scree_status scree_choice_figure_write(const scree_choice_report *report, const 
     panels[p].guide_count = guide_count;
   }
   if (status == SCREE_OK) {
-    snprintf(note, sizeof note, "scree %s, method %s, w = %g, reference area: %s", scree_version(),
-             scree_method_name(report->method), report->options->weight,
-             report->options->reference == SCREE_REFERENCE_SMOOTH ? "free of noise" : "the scan's");
+    snprintf(note, sizeof note, "scree %s, method %s, w = %g, reference area: %s%s",
+             scree_version(), scree_method_name(report->method), report->options->weight,
+             reference_text(report), missing_text(report, missing));
     scree_figure figure = {.panels = panels,
                            .panel_count = 2,
                            .panel_width = PANEL_WIDTH,

@@ -185,7 +185,8 @@ static void csv_level(FILE *stream, const scree_choice_level *level) {
   const double values[] = {level->area,        level->volume,    level->eps_s,    level->ip,
                            level->worst_eps_s, level->robust_ip, level->smooth_ip};
   scree_csv_number(stream, level->rp);
-  fprintf(stream, ",%zu", level->triangle_count);
+  putc(',', stream);
+  if (level->triangle_count) fprintf(stream, "%zu", level->triangle_count);
   for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
     putc(',', stream);
     scree_csv_number(stream, values[i]);
@@ -194,6 +195,68 @@ static void csv_level(FILE *stream, const scree_choice_level *level) {
 
 static const char LEVEL_HEADER[] =
     "rp,triangle_count,area_m2,volume_m3,eps_s,ip,worst_eps_s,robust_ip,smooth_ip";
+
+static void csv_start(FILE *stream, const char *file, size_t triangle_count) {
+  scree_csv_text(stream, file);
+  putc(',', stream);
+  if (triangle_count) fprintf(stream, "%zu", triangle_count);
+  putc(',', stream);
+}
+
+/* What was chosen here, and the errors beside area: NULL where there are none. */
+static void csv_finish(FILE *stream, const char *choice, const double *errors) {
+  fprintf(stream, ",%s", choice);
+  for (int e = SCREE_ERROR_VOLUME; e < SCREE_SHAPE_ERROR_COUNT; e++) {
+    putc(',', stream);
+    if (errors) scree_csv_number(stream, errors[e]);
+  }
+  putc('\n', stream);
+}
+
+/* The robust choice lies off the grid; what it has beside a level of it is not known. */
+static void csv_robust(FILE *stream, const scree_choice_entry *entry) {
+  const scree_choice *choice = entry->choice;
+  const scree_pick *pick = &choice->robust;
+  double errors[SCREE_SHAPE_ERROR_COUNT], penalty = pick->ip - pick->eps_s;
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) errors[e] = NAN;
+  errors[SCREE_ERROR_VOLUME] = fabs(pick->volume - choice->volume) / fabs(choice->volume);
+  csv_start(stream, entry->file, choice->triangle_count);
+  csv_level(stream, &(scree_choice_level){.rp = pick->rp,
+                                          .triangle_count = pick->triangle_count,
+                                          .area = pick->area,
+                                          .volume = pick->volume,
+                                          .eps_s = pick->level_eps_s,
+                                          .ip = pick->level_eps_s + penalty,
+                                          .worst_eps_s = pick->eps_s,
+                                          .robust_ip = pick->ip,
+                                          .smooth_ip = NAN});
+  csv_finish(stream, "robust", errors);
+}
+
+/* The set's choice is an Rp and a mean: of no file, of no one count. */
+static void csv_set(FILE *stream, const scree_set_pick *pick, bool robust) {
+  csv_start(stream, "", 0);
+  csv_level(stream, &(scree_choice_level){.rp = pick->rp,
+                                          .area = NAN,
+                                          .volume = NAN,
+                                          .eps_s = NAN,
+                                          .ip = robust ? NAN : pick->ip,
+                                          .worst_eps_s = NAN,
+                                          .robust_ip = robust ? pick->ip : NAN,
+                                          .smooth_ip = NAN});
+  csv_finish(stream, robust ? "set robust" : "set paper", NULL);
+}
+
+static void csv_entry(FILE *stream, const scree_choice_entry *entry) {
+  const scree_choice *choice = entry->choice;
+  for (size_t i = 0; i < choice->level_count; i++) {
+    const scree_choice_level *level = &choice->levels[i];
+    csv_start(stream, entry->file, choice->triangle_count);
+    csv_level(stream, level);
+    csv_finish(stream, i == choice->best[SCREE_ERROR_AREA] ? "paper" : "", level->errors);
+  }
+  csv_robust(stream, entry);
+}
 
 scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
                                     bool overwrite, scree_error *error) {
@@ -204,19 +267,10 @@ scree_status scree_choice_csv_write(const scree_choice_report *report, const cha
   for (int e = SCREE_ERROR_VOLUME; e < SCREE_SHAPE_ERROR_COUNT; e++)
     fprintf(output.stream, ",error_%s", scree_shape_error_name((scree_shape_error)e));
   putc('\n', output.stream);
-  for (size_t k = 0; k < report->entry_count; k++) {
-    const scree_choice *choice = report->entries[k].choice;
-    for (size_t i = 0; i < choice->level_count; i++) {
-      scree_csv_text(output.stream, report->entries[k].file);
-      fprintf(output.stream, ",%zu,", choice->triangle_count);
-      csv_level(output.stream, &choice->levels[i]);
-      fputs(i == choice->best[SCREE_ERROR_AREA] ? ",paper" : ",", output.stream);
-      for (int e = SCREE_ERROR_VOLUME; e < SCREE_SHAPE_ERROR_COUNT; e++) {
-        putc(',', output.stream);
-        scree_csv_number(output.stream, choice->levels[i].errors[e]);
-      }
-      putc('\n', output.stream);
-    }
+  for (size_t k = 0; k < report->entry_count; k++) csv_entry(output.stream, &report->entries[k]);
+  if (report->set && report->entry_count > 1) {
+    csv_set(output.stream, &report->set->paper, false);
+    csv_set(output.stream, &report->set->robust, true);
   }
   return scree_output_commit(&output, error);
 }

@@ -40,6 +40,7 @@ static const struct {
 
 typedef struct page {
   FILE *stream;
+  const char *name; /* what the one folder is called; NULL: by its path */
   scree_error *error;
   scree_page_parts parts;
   size_t result_bytes; /* of all JSON and texts */
@@ -252,7 +253,7 @@ static scree_status put_folder(page *p, const char *folder) {
   char *found[RESULT_COUNT] = {NULL};
   fputs("{\n\"folder\": ", p->stream);
   scree_json json = scree_json_start(p->stream);
-  scree_json_text(&json, NULL, folder);
+  scree_json_text(&json, NULL, p->name ? p->name : folder);
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < RESULT_COUNT && status == SCREE_OK; i++)
     status = put_member(p, folder, results[i].file, results[i].key, &found[i]);
@@ -357,9 +358,9 @@ static scree_status put_page(page *p, const name_list *folders) {
   return status;
 }
 
-scree_status scree_page_write(const char *const *folders, size_t folder_count, const char *path,
-                              bool overwrite, scree_error *error) {
-  page p = {.error = error};
+static scree_status write_page(const char *const *folders, size_t folder_count, const char *name,
+                               const char *path, bool overwrite, scree_error *error) {
+  page p = {.name = name, .error = error};
   name_list found = {0};
   scree_output output;
   scree_status status = SCREE_OK;
@@ -377,4 +378,14 @@ scree_status scree_page_write(const char *const *folders, size_t folder_count, c
   scree_page_parts_free(&p.parts);
   free_names(&found);
   return status;
+}
+
+scree_status scree_page_write(const char *const *folders, size_t folder_count, const char *path,
+                              bool overwrite, scree_error *error) {
+  return write_page(folders, folder_count, NULL, path, overwrite, error);
+}
+
+scree_status scree_page_write_named(const char *folder, const char *name, const char *path,
+                                    bool overwrite, scree_error *error) {
+  return write_page(&folder, 1, name, path, overwrite, error);
 }

@@ -135,6 +135,7 @@ static void write_script(const scree_figure *figure, const char *data, FILE *str
   fputs("# gnuplot -p FILE draws the figure from the .csv beside it (run it in the same folder)\n"
         "set datafile separator comma\nset key below maxrows 4\nset grid\n",
         stream);
+  if (figure->note) fprintf(stream, "# %s\n", figure->note);
   fprintf(stream, "set multiplot layout %zu,%zu\n", (figure->panel_count + columns - 1) / columns,
           columns);
   for (size_t p = 0; p < figure->panel_count; p++) {

@@ -482,6 +482,8 @@ static scree_status collapse_best(queue *q, scree_ahead *ahead) {
   return status;
 }
 
+enum { TICK_EACH = 10000 };
+
 /* Down to so many triangles, or the floor. */
 static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settling *settling) {
   scree_decimator *d = q->d;
@@ -494,7 +496,8 @@ static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settli
       enter_all(q);
       if (q->heap_count == 0) break;
     }
-    if (q->since_tick++ % 1024 == 0 && !scree_decimate_tick(d)) return SCREE_CANCELLED;
+    bool coarse = d->s.live_triangle_count < TICK_EACH; /* each takes long there */
+    if ((coarse || q->since_tick++ % 1024 == 0) && !scree_decimate_tick(d)) return SCREE_CANCELLED;
     size_t before = d->record.count;
     status = ahead ? collapse_best(q, ahead) : collapse_cheapest(q);
     if (settling && status == SCREE_OK && d->record.count > before)

@@ -28,3 +28,26 @@ ls named | grep lines
 run check -dash.stl 2>&1 | sed -n 2p
 mv ./-dash.stl ./--dash.stl
 run check --dash.stl 2>&1 | sed -n 2p
+# a file that cannot be used is said and left out, of one folder, table and set; the exit code says it too
+echo junk >junk.stl
+run choose plain.stl junk.stl again.stl missing.stl -o rest
+ls rest/set
+run choose plain.stl junk.stl again.stl --csv | sed 's/^\([a-z]*\.stl\),.*/\1/; s/,,,,*[0-9].*,set/, set/' | uniq
+run choose junk.stl plain.stl -o rest -f --json | grep -E '"(file|object_count|mesh_file)"'
+run choose junk.stl plain.stl -o alone | tail -n 4
+find alone -name set
+run choose junk.stl missing.stl -o none/of/it
+ls -d none
+# by the paper's rule the set's Rp is one of the grid, and so are the counts: those of the meshes written
+"$SCREE" choose --paper sample:icosphere-4 sample:icosphere-5 -o by-paper | grep '^Use'
+for name in icosphere-4 icosphere-5; do "$SCREE" measure by-paper/set/$name.stl | sed -n 's/^  \([0-9]* facets\),.*/\1/p'; done
+# noise that misleads one object is said of it alone, not of a set whose choice it hardly moves; what was not found is not said to be used
+noisy="--resolution 1.5mm --noise 0.3mm"
+"$SCREE" choose sample:sp-1 $noisy | grep -c misleads
+"$SCREE" choose sample:fp-1 sample:sp-1 $noisy | grep -c misleads
+for words in plain.stl "sample:sp-1 $noisy" "sample:sp-1 plain.stl $noisy"; do
+  "$SCREE" choose $words --reference smooth | head -n 1
+done
+# what has hardly an error is not on the figure's logarithmic axis, which says so
+"$SCREE" choose sample:box --resolution 5mm -o box >/dev/null 2>&1
+grep '^# scree' box/figure.gnuplot out/figure.gnuplot | sed 's/scree [0-9][0-9.]*[^,]*/scree N/'

@@ -26,3 +26,9 @@ run distance --gap 0.001 --one-way box.off moved.off
 run distance --json box.off moved.off | grep -v '"version"' | sed "$digits"
 run distance box.off
 run distance box.off broken.stl
+# a double pyramid with a wall inside: every edge of the wall has three facets, which is not a matter of winding
+printf 'OFF 5 7 0\n0 0 0\n4 0 0\n0 4 0\n1 1 3\n1 1 -3\n3 0 1 3\n3 1 2 3\n3 2 0 3\n3 1 0 4\n3 2 1 4\n3 0 2 4\n3 0 1 2\n' >wall.off
+run measure wall.off 2>&1 | grep -E 'wound|warning'
+# far from the origin, a place is told as exactly as beside it
+printf 'OFF 4 4 0\n%s 0 0\n%s 0 0\n%s 4 0\n%s 0 4\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n' 1000000 1000005 1000000 1000000 >far.off
+run measure far.off | grep centroid

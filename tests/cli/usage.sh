@@ -10,3 +10,25 @@ done
 run check x '' 2>&1 | sed -n 2p
 run simplify x -n 4 -o '' 2>&1 | sed -n 2p
 run choose x --output= 2>&1 | sed -n 2p
+# one progress for all that a call does, which never goes back and never says that 0 s are left
+"$SCREE" curve sample:icosphere-4 --distance --per-decade 2 --progress 2>&1 >/dev/null | tr '\r' '\n' >drawn
+sed -n 's/^\([a-z ]*[a-z]\) *\[.*/\1/p' drawn | uniq
+sed -n 's/.*\] *\([0-9]*\) %.*/\1/p' drawn | awk '$1 < last { print "back to", $1 } { last = $1 }'
+grep -c ' 0 s left' drawn
+# what the overview lists has a help; lengths are in the unit that the help has
+run help help
+run help version
+run measure sample:dc-1 --resolution 0.01mm 2>&1 | sed -n 2p
+run simplify x -n 4 -o y.stl -e 0mm 2>&1 | sed -n 2p
+# a sample's name without sample: is taken for a file, unless there is one
+run measure fp-1
+"$SCREE" sample icosphere-2 -o ball.stl -q >/dev/null && cp ball.stl fp-2
+"$SCREE" measure fp-2 | head -n 1
+# an error limit that ends it before the count asked for
+run simplify ball.stl -n 8 -e 0.01mm -o fine.stl 2>&1 | grep asked
+# an option that does nothing without another is refused
+for words in "curve x --samples 10" "choose x --density 2" "pile x -s 100x100" "pile x --view points" "repair x -o y.stl --flat" \
+  "study x --tasks 3" "repose x -m qecd" "repose x --vtp=all"; do
+  run $words 2>&1 | sed -n 2p
+done
+"$SCREE" curve ball.stl --distance --samples 10 --per-decade 1 | wc -l

@@ -28,6 +28,11 @@ static scree_status write_page(void *context, scree_error *error) {
   return scree_page_write(context, 1, in_folder("report.html"), true, error);
 }
 
+static scree_status write_named_page(void *context, scree_error *error) {
+  const char *const *folders = context;
+  return scree_page_write_named(folders[0], "other", in_folder("named.html"), true, error);
+}
+
 /* One folder with a choice, its text, provenance and two files of levels. */
 static void pages(void **state) {
   (void)state;
@@ -53,6 +58,7 @@ static void pages(void **state) {
     CHECK_OK(scree_levels_write(curve, &choice, 100000, path, false, &error), error);
   }
   assert_true(check_allocation_failures(write_page, folders) >= 8);
+  assert_true(check_allocation_failures(write_named_page, folders) >= 8);
   scree_choice_free(&choice);
   scree_curve_free(curve);
   scree_mesh_free(&ball);

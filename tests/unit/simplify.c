@@ -364,6 +364,39 @@ static void bad_input_is_refused_with_a_sentence(void **state) {
   scree_mesh_free(&mesh);
 }
 
+typedef struct watched {
+  double last;
+  size_t count, late;
+} watched;
+
+static bool watch(void *context, const char *phase, double fraction) {
+  watched *w = context;
+  (void)phase;
+  assert_true(fraction >= w->last && fraction <= 1);
+  w->last = fraction;
+  w->count++;
+  w->late += fraction > 0.9;
+  return true;
+}
+
+/* Coarse levels take most of the time, so they have most of the progress, and a say in it. */
+static void progress_is_by_time(void **state) {
+  (void)state;
+  scree_mesh ball = shape_icosphere(0.02, 4);
+  for (size_t stop = 0; stop <= 500; stop += 500) {
+    scree_simplify_options options = scree_default_simplify_options();
+    watched w = {0};
+    const scree_progress progress = {watch, &w, 0};
+    scree_curve *curve;
+    scree_error error;
+    options.stop_count = stop;
+    CHECK_OK(scree_curve_build(&ball, &options, &progress, &curve, &error), error);
+    assert_true(w.count > 1000 && w.late < w.count / 8 && w.last > 0.9);
+    scree_curve_free(curve);
+  }
+  scree_mesh_free(&ball);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_level_is_sound_and_as_recorded),
@@ -376,6 +409,7 @@ int main(void) {
       cmocka_unit_test(any_mesh_is_taken),
       cmocka_unit_test(limits_stop_the_run),
       cmocka_unit_test(failing_memory_is_told),
+      cmocka_unit_test(progress_is_by_time),
       cmocka_unit_test(bad_input_is_refused_with_a_sentence),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,46 @@
+# Ctrl-C while `choose -o DIR` is at work, at many moments: nothing is left, or all is there and the exit code is 0.
+export OMP_NUM_THREADS=1 # others are at work here
+"$SCREE" sample icosphere-3 -o a.stl -q >/dev/null
+"$SCREE" sample icosphere-4 -o b.stl -q >/dev/null
+start=$(date +%s%N)
+"$SCREE" choose a.stl b.stl -o whole >/dev/null
+span=$(($(date +%s%N) - start))
+(cd whole && find . | sort) >names
+mkdir -p kept && echo mine >kept/notes.txt
+stopped=0 finished=0
+
+# attempt FOLDER SECONDS: what is in the folder when it was stopped is in the file `before`
+attempt() {
+  timeout --foreground --preserve-status -s INT "$2" "$SCREE" choose a.stl b.stl -o "$1" >said 2>&1
+  code=$?
+  (cd "$1" 2>/dev/null && find . ! -name notes.txt | sort) >found
+  case $code in
+  130)
+    stopped=$((stopped + 1))
+    cmp before found || echo "stopped after $2 s: $(tr '\n' ' ' <found)"
+    grep -q cancelled said || echo "stopped after $2 s without a word"
+    ;;
+  0)
+    finished=$((finished + 1))
+    cmp names found || echo "finished in $2 s: $(tr '\n' ' ' <found)"
+    ;;
+  *) echo "exit code $code after $2 s: $(cat said)" ;;
+  esac
+  ls | grep part
+}
+
+i=1
+while [ $i -le 18 ]; do
+  seconds=$(echo $((span / 14 * i)) | awk '{ printf "%.4f", $1 / 1e9 }')
+  rm -rf new
+  : >before
+  attempt new "$seconds"
+  echo . >before
+  attempt kept "$seconds"
+  [ -f kept/notes.txt ] || echo "another's file is gone"
+  find kept -mindepth 1 ! -name notes.txt -delete
+  i=$((i + 1))
+done
+[ $stopped -gt 5 ] || echo "only $stopped of 36 were stopped"
+[ $finished -gt 0 ] || echo "none of 36 was finished"
+echo "nothing or all of it"
