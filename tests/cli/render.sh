@@ -2,7 +2,7 @@ run render sample:icosphere-2
 for size in 64 0x0 63x64 64x20001 64x64x 64x -64x64 " 64x64" 99999999999999999999x64; do
   run render sample:icosphere-2 -o a.png --size "$size" 2>&1 | sed -n 2p
 done
-run pile missing.scree --size 9x9
+run pile missing.scree --picture p.png --size 9x9
 run render none.stl -o a.png
 run render sample:icosphere-2 -o a.png --view under
 run render sample:icosphere-2 -o a.png --levels 0.5,2
