@@ -127,29 +127,18 @@ static bool is_single(const char *path) {
   return !strcmp(path, "-") || scree_file_format_of(path) == SCREE_FORMAT_STL;
 }
 
-/* Six times the volume, from the first corner. */
-static double volume_of(const scree_mesh *mesh, double unit, bool round) {
-  double from[3], sum = 0;
-  for (size_t t = 0; t < mesh->triangle_count; t++) {
-    double at[3][3];
-    for (size_t i = 0; i < 9; i++) {
-      double x = mesh->positions[3 * (size_t)mesh->triangles[3 * t + i / 3] + i % 3];
-      at[i / 3][i % 3] = round ? rounded(x, unit) : x;
-    }
-    if (t == 0) memcpy(from, at[0], sizeof from);
-    for (size_t i = 0; i < 9; i++) at[i / 3][i % 3] -= from[i % 3];
-    for (int k = 0; k < 3; k++) {
-      int l = (k + 1) % 3, m = (k + 2) % 3;
-      sum += at[0][k] * (at[1][l] * at[2][m] - at[1][m] * at[2][l]);
-    }
-  }
-  return sum;
-}
-
 double cli_volume_lost(const scree_mesh *mesh, const char *path, double unit) {
-  if (!is_single(path) || mesh->triangle_count == 0) return 0;
-  double volume = volume_of(mesh, unit, false);
-  return volume != 0 ? fabs(volume_of(mesh, unit, true) - volume) / fabs(volume) : 0;
+  scree_mesh single;
+  scree_error error; /* is told by what writes the mesh; this only remarks */
+  double held = 0, left = 0;
+  if (!is_single(path) || scree_mesh_area_volume(mesh, NULL, &held, &error) != SCREE_OK ||
+      scree_mesh_copy(mesh, &single, &error) != SCREE_OK)
+    return 0;
+  for (size_t i = 0; i < 3 * single.vertex_count; i++)
+    single.positions[i] = rounded(single.positions[i], unit);
+  scree_status status = scree_mesh_area_volume(&single, NULL, &left, &error);
+  scree_mesh_free(&single);
+  return status == SCREE_OK && held != 0 ? fabs(left - held) / fabs(held) : 0;
 }
 
 scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double unit,

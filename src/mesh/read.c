@@ -124,13 +124,17 @@ static bool looks_like_text(const unsigned char *bytes, size_t count) {
   return true;
 }
 
+/* Of a binary STL's header: so many facets follow. */
+static size_t stl_count(const unsigned char *bytes) {
+  return (size_t)bytes[80] | (size_t)bytes[81] << 8 | (size_t)bytes[82] << 16 |
+         (size_t)bytes[83] << 24;
+}
+
 /* The length is what the count in the header says; a count made of text is a text file of that very
  * length by chance, and far longer than any. */
 bool scree_is_whole_stl(const unsigned char *bytes, size_t byte_count) {
   if (byte_count < SCREE_STL_HEADER) return false;
-  uint32_t count = (uint32_t)bytes[80] | (uint32_t)bytes[81] << 8 | (uint32_t)bytes[82] << 16 |
-                   (uint32_t)bytes[83] << 24;
-  return byte_count == SCREE_STL_HEADER + (size_t)count * SCREE_STL_FACET;
+  return byte_count == SCREE_STL_HEADER + stl_count(bytes) * SCREE_STL_FACET;
 }
 
 /* The first word behind lines of comment. */
@@ -264,10 +268,27 @@ static bool is_binary_off(scree_text text) {
   return scree_is_off_word(word) && scree_token_is(scree_text_next(&text), "binary");
 }
 
+/* How files that assimp reads begin; 3DS besides (looks_like_3ds). */
+static const struct {
+  const char *bytes;
+  scree_import_format format;
+} imported_marks[] = {{"PK\x03\x04", SCREE_IMPORT_3MF},
+                      {"glTF", SCREE_IMPORT_GLB},
+                      {"Kaydara FBX Binary", SCREE_IMPORT_FBX}};
+enum { IMPORTED_MARK_COUNT = sizeof imported_marks / sizeof *imported_marks };
+
+/* IMPORTED_MARK_COUNT: none. */
+static size_t imported_mark_of(const scree_reading *r) {
+  size_t i = 0;
+  while (i < IMPORTED_MARK_COUNT &&
+         !starts_with(r, imported_marks[i].bytes, strlen(imported_marks[i].bytes)))
+    i++;
+  return i;
+}
+
 static scree_status read_binary_or_fail(scree_reading *r) {
-  if (starts_with(r, "PK\x03\x04", 4)) return scree_read_import(r, SCREE_IMPORT_3MF);
-  if (starts_with(r, "glTF", 4)) return scree_read_import(r, SCREE_IMPORT_GLB);
-  if (starts_with(r, "Kaydara FBX Binary", 18)) return scree_read_import(r, SCREE_IMPORT_FBX);
+  size_t imported = imported_mark_of(r);
+  if (imported < IMPORTED_MARK_COUNT) return scree_read_import(r, imported_marks[imported].format);
   if (looks_like_3ds(r)) return scree_read_import(r, SCREE_IMPORT_3DS);
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++) {
     const mark *m = &foreign_marks[i];
@@ -358,7 +379,6 @@ static bool may_be_text_format(scree_text text) {
 /* For a stream: no more of it than says what it is, where it is none of ours; of a binary STL so
  * much that it shows to be too long. */
 static size_t judge(const char *beginning, size_t byte_count) {
-  static const char *const imported[] = {"PK\x03\x04", "glTF", "Kaydara FBX Binary", "MM"};
   const scree_read_options options = scree_default_read_options();
   const unsigned char *bytes = (const unsigned char *)beginning;
   scree_reading r = {"", bytes, byte_count, &options, 1, NULL, NULL, false};
@@ -367,14 +387,11 @@ static size_t judge(const char *beginning, size_t byte_count) {
   if (byte_count < SCREE_JUDGED_BYTES) return SIZE_MAX; /* it has ended */
   if (scree_token_is(scree_text_next(&start), "ply")) return SIZE_MAX;
   if (looks_like_text(bytes, byte_count)) return may_be_text_format(text) ? SIZE_MAX : byte_count;
-  for (size_t i = 0; i < sizeof imported / sizeof *imported; i++)
-    if (starts_with(&r, imported[i], strlen(imported[i]))) return SIZE_MAX;
+  if (imported_mark_of(&r) < IMPORTED_MARK_COUNT || starts_with(&r, "MM", 2)) return SIZE_MAX;
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++)
     if (starts_with(&r, foreign_marks[i].bytes, foreign_marks[i].length)) return byte_count;
   if (is_binary_off(text) || is_damaged_text(&r, &damaged)) return byte_count;
-  size_t count = (size_t)bytes[80] | (size_t)bytes[81] << 8 | (size_t)bytes[82] << 16 |
-                 (size_t)bytes[83] << 24;
-  return SCREE_STL_HEADER + (count + 1) * SCREE_STL_FACET;
+  return SCREE_STL_HEADER + (stl_count(bytes) + 1) * SCREE_STL_FACET;
 }
 
 /* The common kind of scan. */

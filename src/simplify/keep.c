@@ -13,7 +13,7 @@ enum { LAST_OF_LARGE = 8 };
 
 typedef struct finding {
   const scree_decimator *d;
-  uint32_t *place;  /* of every vertex of the mesh given: the vertex that it became */
+  uint32_t *place;  /* of what is looked for of the mesh given: the vertex that it became */
   uint32_t *origin; /* the vertices that are to be witnesses */
   uint32_t *end;    /* scratch, per vertex */
   scree_witness *witnesses;
