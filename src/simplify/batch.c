@@ -580,7 +580,8 @@ scree_status scree_decimate_in_batches(scree_decimator *d) {
   pass p = {.d = d};
   size_t done = 1;
   scree_status status = SCREE_OK;
-  if (d->s.live_triangle_count > d->single_from) status = pass_allocate(&p);
+  if (d->s.live_triangle_count > d->single_from) status = scree_decimate_sum(d);
+  if (status == SCREE_OK && d->s.live_triangle_count > d->single_from) status = pass_allocate(&p);
   while (status == SCREE_OK && done > 0 && d->s.live_triangle_count > d->single_from &&
          d->s.live_triangle_count > d->options.stop_count)
     status = scree_decimate_tick(d) ? run_pass(&p, &done) : SCREE_CANCELLED;

@@ -16,11 +16,10 @@ enum { BINS = 1 << 16 };
 
 scree_status scree_cheapest_allocate(scree_cheapest *e, scree_decimator *d) {
   size_t n = d->s.vertex_count;
-  *e = (scree_cheapest){.d = d};
+  *e = (scree_cheapest){.d = d, .s = &d->s};
   SCREE_ALLOC_OR(e->best, n, d->error, out_of_memory);
   SCREE_ALLOC_OR(e->cost, n, d->error, out_of_memory);
   SCREE_ALLOC_OR(e->bins, 4 * BINS, d->error, out_of_memory);
-  SCREE_ALLOC_OR(e->possible, scree_block_count(n, SCREE_PASS_BLOCK), d->error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -30,7 +29,6 @@ void scree_cheapest_free(scree_cheapest *e) {
   scree_free(e->best);
   scree_free(e->cost);
   scree_free(e->bins);
-  scree_free(e->possible);
 }
 
 static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -58,7 +56,7 @@ void scree_cheapest_refresh_sums(scree_cheapest *e) {
  * turning the scan, which changes numbers, changes nothing. (From the smaller fan the fine levels'
  * mean distance is 1 to 3 % larger.) */
 static bool looks(const scree_halfmesh *s, uint32_t u, uint32_t v) {
-  const double *a = s->sums[u], *b = s->sums[v];
+  const double *a = scree_sums_of(s, u), *b = scree_sums_of(s, v);
   double size_u = a[0] + a[3] + a[5], size_v = b[0] + b[3] + b[5]; /* the quadrics' traces */
   return (size_u > size_v) | ((size_u == size_v) & (u < v));
 }
@@ -95,7 +93,7 @@ static void take_cheaper(scree_cheapest *e, const waiting *w, uint32_t v, uint32
   if (!(c->cost < most || (c->cost == most && i < *has)) || !(c->error <= e->d->error_limit))
     return;
   if (e->d->coster->shape) {
-    e->d->coster->shape(&e->d->s, w->edge[i], most, c);
+    e->d->coster->shape(e->s, w->edge[i], most, c);
     if (!(c->cost < most || (c->cost == most && i < *has))) return;
   }
   e->cost[v] = c->cost;
@@ -104,7 +102,7 @@ static void take_cheaper(scree_cheapest *e, const waiting *w, uint32_t v, uint32
 }
 
 static void evaluate_waiting(scree_cheapest *e, waiting *w) {
-  const scree_halfmesh *s = &e->d->s;
+  const scree_halfmesh *s = e->s;
   scree_candidate candidates[SCREE_SIDE_BY_SIDE];
   e->d->coster->evaluate(s, w->edge, w->count, candidates);
   for (uint32_t begin = 0, end; begin < w->count; begin = end) {
@@ -119,28 +117,35 @@ static void evaluate_waiting(scree_cheapest *e, waiting *w) {
   w->count = 0;
 }
 
-static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)worker;
-  scree_cheapest *e = context;
-  scree_halfmesh *s = &e->d->s;
+/* Evaluates the edges that are looked at from v, or has them wait. */
+static void look_from(scree_cheapest *e, uint32_t v, waiting *w) {
+  scree_halfmesh *s = e->s;
+  e->best[v] = SCREE_NONE;
+  e->cost[v] = INFINITY;
+  if (s->vertex[v].outgoing == SCREE_NONE || s->flags[v] & SCREE_VERTEX_STAYS) return;
+  uint32_t first = s->vertex[v].outgoing, h = first;
+  do {
+    w->edge[w->count] = h;
+    w->count += open_to_collapse(s, v, h);
+    if (w->count == SCREE_SIDE_BY_SIDE) evaluate_waiting(e, w);
+    h = scree_turn(s, h);
+  } while (h != SCREE_NONE && h != first);
+}
+
+void scree_cheapest_find_of(scree_cheapest *e, const uint32_t *vertices, size_t count) {
   waiting w = {.count = 0};
-  scree_ask_for_block(s, begin, end);
-  scree_prefetch(s->sums[begin], (end - begin) * sizeof *s->sums);
-  for (size_t v = begin; v < end; v++) {
-    e->best[v] = SCREE_NONE;
-    e->cost[v] = INFINITY;
-    if (s->vertex[v].outgoing == SCREE_NONE || s->flags[v] & SCREE_VERTEX_STAYS) continue;
-    uint32_t first = s->vertex[v].outgoing, h = first;
-    do {
-      w.edge[w.count] = h;
-      w.count += open_to_collapse(s, (uint32_t)v, h);
-      if (w.count == SCREE_SIDE_BY_SIDE) evaluate_waiting(e, &w);
-      h = scree_turn(s, h);
-    } while (h != SCREE_NONE && h != first);
-  }
+  for (size_t i = 0; i < count; i++) look_from(e, vertices[i], &w);
   evaluate_waiting(e, &w);
-  e->possible[block] = 0;
-  for (size_t v = begin; v < end; v++) e->possible[block] += e->cost[v] < INFINITY;
+}
+
+static void evaluate_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  scree_cheapest *e = context;
+  waiting w = {.count = 0};
+  scree_ask_for_block(e->s, begin, end);
+  scree_prefetch(e->s->sums[begin], (end - begin) * sizeof *e->s->sums);
+  for (size_t v = begin; v < end; v++) look_from(e, (uint32_t)v, &w);
+  evaluate_waiting(e, &w);
 }
 
 void scree_cheapest_find(scree_cheapest *e) {
@@ -189,16 +194,23 @@ static void count_all_keys(counting *c) {
   for (size_t bin = 0; bin < used; bin++) e->bins[bin] += e->bins[2 * BINS + bin];
 }
 
-/* The keys of the items of these two ranks: the upper halves by one count, the lower ones by
- * another. A coarser answer would depend on the scale of the scan. */
-static void keys_at(scree_cheapest *e, size_t rank[2], uint32_t key[2]) {
+/* The keys of the items at these shares of all that have a cost, and their ranks among those with
+ * the same key: the upper halves by one count, the lower ones by another. A coarser answer would
+ * depend on the scale of the scan. False: there are none. */
+static bool keys_at(scree_cheapest *e, const double share[2], uint32_t key[2], size_t rank[2]) {
   counting c = {.e = e, .upper = true};
+  size_t count = 0;
   count_all_keys(&c);
-  for (int i = 0; i < 2; i++) c.high[i] = bin_at(e->bins, &rank[i]);
+  for (size_t bin = 0; bin < BINS; bin++) count += e->bins[bin];
+  for (int i = 0; i < 2; i++) {
+    rank[i] = (size_t)(share[i] * (double)count);
+    c.high[i] = bin_at(e->bins, &rank[i]);
+  }
   c.upper = false;
   count_all_keys(&c);
   for (int i = 0; i < 2; i++)
     key[i] = c.high[i] << 16 | bin_at(e->bins + (size_t)i * BINS, &rank[i]);
+  return count > 0;
 }
 
 bool scree_is_fine(const scree_decimator *d) {
@@ -224,15 +236,11 @@ static double cost_at(const scree_cheapest *e, uint32_t key, size_t rank) {
 }
 
 bool scree_cheapest_set_limit(scree_cheapest *e) {
-  size_t count = 0, vertices = e->d->s.vertex_count;
-  uint32_t key[2];
-  for (size_t i = 0; i < scree_block_count(vertices, SCREE_PASS_BLOCK); i++)
-    count += e->possible[i];
-  if (count == 0) return false;
   bool fine = scree_is_fine(e->d);
-  size_t rank[] = {(size_t)((fine ? FINE_SHARE : HIGH_SHARE) * (double)count),
-                   (size_t)(LOW_SHARE * (double)count)};
-  keys_at(e, rank, key);
+  double share[] = {fine ? FINE_SHARE : HIGH_SHARE, LOW_SHARE};
+  uint32_t key[2];
+  size_t rank[2];
+  if (!keys_at(e, share, key, rank)) return false;
   e->limit = cost_at(e, key[0], rank[0]);
   e->low = cost_at(e, key[1], rank[1]);
   if (!fine) e->limit = fmin(e->limit, SPREAD * e->low);
@@ -240,7 +248,7 @@ bool scree_cheapest_set_limit(scree_cheapest *e) {
 }
 
 void scree_cheapest_renew(scree_cheapest *e, const uint32_t *half_edges, uint32_t count) {
-  const scree_halfmesh *s = &e->d->s;
+  const scree_halfmesh *s = e->s;
   scree_candidate candidates[SCREE_SIDE_BY_SIDE];
   e->d->coster->evaluate(s, half_edges, count, candidates);
   for (uint32_t i = 0; i < count; i++) {

@@ -14,12 +14,12 @@ enum { SCREE_PASS_BLOCK = 1024, SCREE_SIDE_BY_SIDE = 64 };
 
 typedef struct scree_cheapest {
   scree_decimator *d;
+  scree_halfmesh *s; /* the decimator's surface, or with sums of its own (patch.c) */
   uint32_t *best;   /* per vertex: half-edge of its cheapest edge, or NONE */
   double *cost;     /* per vertex: of that; INFINITY: it has none */
   double limit;     /* the most for this pass */
   double low;       /* the cost that a low share of the edges does not exceed */
   uint32_t *bins;   /* twice two sets */
-  size_t *possible; /* per block: vertices with an edge that may be collapsed */
 } scree_cheapest;
 
 scree_status scree_cheapest_allocate(scree_cheapest *e, scree_decimator *d);
@@ -30,6 +30,8 @@ void scree_cheapest_refresh_sums(scree_cheapest *e);
 /* Evaluates all edges that may be collapsed, each from one of its ends. Sums must be fresh. Edges
  * that were refused are looked at again where a triangle at their ends has changed since. */
 void scree_cheapest_find(scree_cheapest *e);
+/* The same of these vertices alone, in this thread. */
+void scree_cheapest_find_of(scree_cheapest *e, const uint32_t *vertices, size_t count);
 /* Sets the limit: a share of all that was found, most of it while the levels are fine. False: there
  * is nothing to collapse. */
 bool scree_cheapest_set_limit(scree_cheapest *e);

@@ -23,7 +23,7 @@ static inline double scree_stray_at(const scree_candidate *c, double whole) {
 enum { SCREE_FALLBACK_COUNT = 3 };
 
 typedef struct scree_coster {
-  /* Fills s->sums[v] from the triangles around v. Volume: after every change of them; qecd: once at
+  /* Fills the sums of v from the triangles around v. Volume: after every change of them; qecd: once at
    * the start. */
   void (*sum)(scree_halfmesh *s, uint32_t v);
   /* Many at once: cheaper than one by one, and the same bits. Without what `shape` adds. */

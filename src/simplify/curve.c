@@ -219,15 +219,28 @@ static scree_status record_shrink(scree_record *r, scree_error *error) {
   return SCREE_OK;
 }
 
+enum { SUM_BLOCK = 1024 };
+
 static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   scree_decimator *d = context;
-  for (size_t v = begin; v < end; v++)
-    if (d->s.vertex[v].outgoing != SCREE_NONE) d->coster->sum(&d->s, (uint32_t)v);
+  for (size_t v = begin; v < end; v++) {
+    if (d->s.vertex[v].outgoing == SCREE_NONE) continue;
+    d->coster->sum(&d->s, (uint32_t)v);
+    d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
+  }
+}
+
+scree_status scree_decimate_sum(scree_decimator *d) {
+  if (d->s.sums) return SCREE_OK;
+  SCREE_ALLOC_OR(d->s.sums, d->s.vertex_count, d->error, out_of_memory);
+  scree_parallel_for(d->s.vertex_count, SUM_BLOCK, sum_block, d);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
 }
 
 static scree_status decimate(scree_decimator *d) {
-  scree_parallel_for(d->s.vertex_count, 1024, sum_block, d);
   scree_status status = SCREE_OK;
   if (scree_is_large(d)) status = scree_decimate_in_patches(d, SCREE_PATCH);
   if (status == SCREE_OK) status = scree_decimate_in_batches(d);

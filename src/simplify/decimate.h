@@ -108,6 +108,9 @@ enum {
   SCREE_LEAST_OF_LARGE = 6000
 };
 
+/* The sums of all vertices, if there are none yet: they are needed but in patches. */
+scree_status scree_decimate_sum(scree_decimator *d);
+
 /* Keeps the surface as it is (stray.h). */
 scree_status scree_decimate_keep(scree_decimator *d);
 

@@ -552,7 +552,8 @@ static scree_status begin_quickly(scree_decimator *d, size_t until, scree_settli
 scree_status scree_decimate_one_by_one(scree_decimator *d) {
   scree_settling settling = {.count = 0}, *settled = NULL;
   size_t until = d->options.stop_count, ahead = 0;
-  scree_status status = SCREE_OK;
+  scree_status status = scree_decimate_sum(d);
+  if (status != SCREE_OK) return status;
   if (!d->coster->merge) ahead = scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT;
   if (!d->coster->merge && !d->unsettled) settled = &settling;
   if (until < ahead) until = ahead;

@@ -469,7 +469,6 @@ scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surfac
   b.fan = NULL;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(b.root, made.vertex_count, error, done);
-  SCREE_ALLOC_OR(made.sums, made.vertex_count, error, done);
   SCREE_ALLOC_OR(made.refused, 3 * mesh->triangle_count, error, done);
   memset(made.refused, 0, 3 * mesh->triangle_count);
   count_facts(&b);
@@ -540,7 +539,7 @@ static void move_vertices(scree_halfmesh *s) {
     if (v != to) {
       s->vertex[to] = s->vertex[v];
       s->flags[to] = s->flags[v];
-      memcpy(s->sums[to], s->sums[v], sizeof s->sums[v]);
+      if (s->sums) memcpy(s->sums[to], s->sums[v], sizeof s->sums[v]);
     }
     to++;
   }
@@ -577,6 +576,6 @@ void scree_halfmesh_compact(scree_halfmesh *s, uint32_t *vertex_scratch,
 void scree_halfmesh_give_back(const scree_halfmesh *s) {
   scree_discard_tail(s->vertex, s->vertex_count * sizeof *s->vertex);
   scree_discard_tail(s->half, 3 * s->triangle_count * sizeof *s->half);
-  scree_discard_tail(s->sums, s->vertex_count * sizeof *s->sums);
+  if (s->sums) scree_discard_tail(s->sums, s->vertex_count * sizeof *s->sums);
   scree_discard_tail(s->refused, 3 * s->triangle_count);
 }

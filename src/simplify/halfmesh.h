@@ -48,7 +48,10 @@ typedef struct scree_halfmesh {
   scree_vertex *vertex;
   scree_half_edge *half;
   uint8_t *flags;                                /* of vertices: SCREE_VERTEX_... */
-  double (*sums)[10];                            /* of vertices: the method's quadric, see cost.h */
+  double (*sums)[10];                            /* of vertices: the method's quadric, see cost.h;
+                                                    NULL: none yet */
+  const uint32_t *slot;                          /* per vertex: the place of its sums, from */
+  uint32_t first_slot;                           /* this one on; NULL: its own number */
   uint8_t *refused;                              /* of half-edges: 0 or SCREE_EDGE_... */
   size_t vertex_count, triangle_count;           /* extents of the arrays */
   size_t live_vertex_count, live_triangle_count; /* still there */
@@ -72,6 +75,10 @@ static inline uint32_t scree_to(const scree_halfmesh *s, uint32_t h) {
 /* The next outgoing half-edge of the same vertex, counter-clockwise; NONE past a boundary. */
 static inline uint32_t scree_turn(const scree_halfmesh *s, uint32_t h) {
   return s->half[scree_previous(h)].twin;
+}
+/* The sums of vertex v. */
+static inline double *scree_sums_of(const scree_halfmesh *s, uint32_t v) {
+  return s->sums[s->slot ? s->slot[v] - s->first_slot : v];
 }
 static inline bool scree_on_boundary(const scree_halfmesh *s, uint32_t v) {
   return s->half[s->vertex[v].outgoing].twin == SCREE_NONE;

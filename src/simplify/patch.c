@@ -1,8 +1,10 @@
-/* A pass over patches evaluates every edge but those of borders, keeps the cheapest of each vertex,
- * and sets a threshold of cost, as a pass of batches does. Within a patch follow rounds: the
- * candidates below the threshold are gone through in the order of cost, and those that are
- * independent (batch.c) of what was taken before are done, one after the other; what is left over
- * is evaluated once more for the next round.
+/* A pass over patches evaluates every edge of some of them but those of borders, keeps the cheapest
+ * of each vertex, and sets a threshold of cost, as a pass of batches does. Then patch by patch it
+ * does so once more, and rounds follow: the candidates below the threshold are gone through in the
+ * order of cost, and those that are independent (batch.c) of what was taken before are done, one
+ * after the other; what is left over is evaluated once more for the next round. All that is done
+ * with a patch is done at once, while it is in the cache; method `volume` has the sums of its
+ * vertices for so long only, for they would be a quarter of all memory.
  *
  * Does a collapse make the surface run into itself? Every cell of the grid has a set of directions
  * which all triangles in it faced, by a margin, when the grid was built, and which all that come to
@@ -23,6 +25,9 @@ enum { ROUNDS = 8 };
 #define FEW 0.01
 /* A pass that takes less than this share of the triangles is the last. */
 #define LITTLE 0.05
+/* The threshold comes from one in so many patches; from more, where that would be fewer than so
+ * many. */
+enum { SAMPLE_STRIDE = 8, LEAST_SAMPLES = 8 };
 enum { WALK_BLOCK = 1 << 12 };
 /* Of the curve: steps along an axis, and of them those by which it may be shifted. */
 enum { AXIS_BITS = 7, STEPS = 1 << AXIS_BITS, SHIFT = STEPS / 4 };
@@ -48,9 +53,10 @@ typedef struct patching {
   scree_cheapest e;
   scree_decimator *d;
   size_t patch, passes; /* vertices of a patch; passes until now */
+  size_t stride;        /* of those sampled */
   scree_frame_of_places frame;
   uint32_t *members;  /* the vertices, patch by patch */
-  uint32_t *patch_of; /* per vertex */
+  uint32_t *place_of; /* per vertex: its place among them */
   uint8_t *marks;     /* per vertex: TOUCHED, APEX */
   deed *deeds;        /* those of a patch from half the place of its first member on */
   doings *doings;     /* per patch */
@@ -68,6 +74,9 @@ typedef struct taken {
 /* What a worker needs for a patch. */
 struct work {
   patching *p;
+  scree_cheapest e;   /* that of all, with this surface */
+  scree_halfmesh s;   /* that of all, with sums of the patch, unless the method keeps them */
+  double (*sums)[10]; /* room */
   const uint32_t *members;
   size_t member_count;
   deed *deeds;
@@ -114,7 +123,7 @@ static void member_block(void *context, size_t begin, size_t end, size_t block, 
   for (size_t i = begin; i < end; i++) {
     uint32_t v = c->items[i].index;
     c->p->members[i] = v;
-    c->p->patch_of[v] = (uint32_t)(i / c->p->patch);
+    c->p->place_of[v] = (uint32_t)i;
   }
 }
 
@@ -127,22 +136,89 @@ static void find_members(const patching *p) {
   scree_parallel_for(count, WALK_BLOCK, member_block, &c);
 }
 
-static void find_border(void *context, size_t begin, size_t end, size_t block, int worker) {
+static bool is_border(const patching *p, uint32_t v) {
+  const scree_halfmesh *s = &p->d->s;
+  uint32_t h = s->vertex[v].outgoing, stop = h;
+  size_t patch = p->place_of[v] / p->patch;
+  bool border = s->flags[v] & SCREE_VERTEX_ANCHOR; /* others read where it is */
+  do {
+    border |= p->place_of[scree_to(s, h)] / p->patch != patch;
+    h = scree_turn(s, h);
+  } while (h != stop);
+  return border;
+}
+
+/* Asks for the patch's vertices, and for the triangles around them. */
+SCREE_PREFETCHES void ask_for_members(const work *w) {
+  const scree_halfmesh *s = &w->s;
+  for (size_t i = 0; i < w->member_count; i++) __builtin_prefetch(&s->vertex[w->members[i]]);
+  for (size_t i = 0; i < w->member_count; i++) {
+    uint32_t h = s->vertex[w->members[i]].outgoing;
+    if (h != SCREE_NONE) __builtin_prefetch(&s->half[h]);
+  }
+}
+
+/* Makes patch k the worker's. */
+static void enter_patch(work *w, size_t k) {
+  const patching *p = w->p;
+  size_t first = k * p->patch, left = p->d->s.vertex_count - first;
+  w->members = p->members + first;
+  w->member_count = left < p->patch ? left : p->patch;
+  w->deeds = p->deeds + first / 2;
+  w->room = w->member_count / 2;
+  w->s = p->d->s;
+  w->e = p->e;
+  w->e.s = &w->s;
+  if (p->d->coster->merge) return;
+  w->s.sums = w->sums;
+  w->s.slot = p->place_of;
+  w->s.first_slot = (uint32_t)first;
+}
+
+/* Finds the border, and the cheapest edge of every other vertex. */
+static void look_at_patch(work *w) {
+  scree_halfmesh *s = &w->s;
+  ask_for_members(w);
+  for (size_t i = 0; i < w->member_count; i++) {
+    uint32_t v = w->members[i];
+    s->flags[v] &= (uint8_t)~SCREE_VERTEX_BORDER;
+    if (s->vertex[v].outgoing != SCREE_NONE && is_border(w->p, v))
+      s->flags[v] |= SCREE_VERTEX_BORDER;
+  }
+  for (size_t i = 0; i < w->member_count && !w->p->d->coster->merge; i++) {
+    uint32_t v = w->members[i];
+    if (s->vertex[v].outgoing == SCREE_NONE || s->flags[v] & SCREE_VERTEX_BORDER) continue;
+    w->p->d->coster->sum(s, v);
+    s->flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
+  }
+  scree_cheapest_find_of(&w->e, w->members, w->member_count);
+}
+
+/* A block is one of the patches sampled. */
+static void sample_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)end, (void)block;
+  patching *p = context;
+  work *w = &p->works[worker];
+  enter_patch(w, begin * p->stride);
+  look_at_patch(w);
+}
+
+/* Of the patches that are not sampled no vertex has a cost. */
+static void clear_costs(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const patching *p = context;
-  const scree_halfmesh *s = &p->d->s;
-  scree_ask_for_block(s, begin, end);
-  for (size_t v = begin; v < end; v++) {
-    s->flags[v] &= (uint8_t)~SCREE_VERTEX_BORDER;
-    uint32_t h = s->vertex[v].outgoing, stop = h;
-    bool border = s->flags[v] & SCREE_VERTEX_ANCHOR; /* others read where it is */
-    if (h == SCREE_NONE) continue;
-    do {
-      border |= p->patch_of[scree_to(s, h)] != p->patch_of[v];
-      h = scree_turn(s, h);
-    } while (h != stop);
-    if (border) s->flags[v] |= SCREE_VERTEX_BORDER;
-  }
+  for (size_t v = begin; v < end; v++) p->e.cost[v] = INFINITY;
+}
+
+/* Sets the threshold; false: there is nothing to collapse. */
+static bool sample(patching *p) {
+  size_t patches = patch_count(p);
+  p->stride = patches / LEAST_SAMPLES;
+  if (p->stride > SAMPLE_STRIDE) p->stride = SAMPLE_STRIDE;
+  if (p->stride < 1) p->stride = 1;
+  scree_parallel_for(p->d->s.vertex_count, WALK_BLOCK, clear_costs, p);
+  scree_parallel_for(scree_block_count(patches, p->stride), 1, sample_block, p);
+  return scree_cheapest_set_limit(&p->e);
 }
 
 static bool is_marked(const patching *p, const scree_ring *r) {
@@ -169,7 +245,7 @@ static double cost_of_vertex(const void *context, uint32_t v) {
  * left. */
 static void choose(work *w) {
   patching *p = w->p;
-  scree_halfmesh *s = &p->d->s;
+  scree_halfmesh *s = &w->s;
   scree_keyed *sorted = scree_radix_sort(w->candidates, w->swap, w->count, 32);
   size_t left = 0;
   scree_refine_order(sorted, w->count, cost_of_vertex, &p->e);
@@ -228,8 +304,8 @@ static void set_flags(scree_halfmesh *s, const scree_ring *r) {
 
 static void carry_out(work *w, const scree_ring *ring, const scree_candidate *candidate,
                       const scree_change *change) {
-  scree_decimator *d = w->p->d;
-  scree_halfmesh *s = &d->s;
+  const scree_decimator *d = w->p->d;
+  scree_halfmesh *s = &w->s;
   w->deeds[w->deed_count++] = (deed){.position = vec3_mad(s->centre, change->target, s->scale),
                                      .area = change->area,
                                      .volume = change->volume,
@@ -244,7 +320,7 @@ static void carry_out(work *w, const scree_ring *ring, const scree_candidate *ca
 
 /* Does what was taken; answers how much of it. */
 static size_t do_taken(work *w) {
-  scree_halfmesh *s = &w->p->d->s;
+  scree_halfmesh *s = &w->s;
   size_t before = w->deed_count;
   uint32_t edges[SCREE_SIDE_BY_SIDE];
   scree_candidate candidates[SCREE_SIDE_BY_SIDE];
@@ -269,16 +345,16 @@ static size_t do_taken(work *w) {
   return w->deed_count - before;
 }
 
-static void refresh(const patching *p, uint32_t v) {
-  scree_halfmesh *s = &p->d->s;
-  if (!(s->flags[v] & SCREE_VERTEX_STALE) || p->d->coster->merge) return;
-  p->d->coster->sum(s, v);
+static void refresh(work *w, uint32_t v) {
+  scree_halfmesh *s = &w->s;
+  if (!(s->flags[v] & SCREE_VERTEX_STALE) || w->p->d->coster->merge) return;
+  w->p->d->coster->sum(s, v);
   s->flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
 }
 
 /* Puts the vertex among the candidates, if it is one. */
 static void enlist(work *w, uint32_t v) {
-  const scree_cheapest *e = &w->p->e;
+  const scree_cheapest *e = &w->e;
   if (e->cost[v] <= e->limit)
     w->candidates[w->count++] = (scree_keyed){scree_key_of(e->cost[v]), v};
 }
@@ -287,7 +363,7 @@ static void enlist(work *w, uint32_t v) {
  * dropped. */
 static void reconsider(work *w) {
   const patching *p = w->p;
-  const scree_halfmesh *s = &p->d->s;
+  const scree_halfmesh *s = &w->s;
   uint32_t edges[SCREE_SIDE_BY_SIDE], waiting = 0;
   size_t left = 0;
   for (size_t i = 0; i < w->count; i++) {
@@ -296,14 +372,14 @@ static void reconsider(work *w) {
     uint32_t other = scree_to(s, h);
     w->candidates[left++].index = v;
     if (!((s->flags[v] | s->flags[other]) & SCREE_VERTEX_CHANGED)) continue;
-    refresh(p, v);
-    refresh(p, other);
+    refresh(w, v);
+    refresh(w, other);
     edges[waiting++] = h;
     if (waiting < SCREE_SIDE_BY_SIDE) continue;
-    scree_cheapest_renew(&w->p->e, edges, waiting);
+    scree_cheapest_renew(&w->e, edges, waiting);
     waiting = 0;
   }
-  scree_cheapest_renew(&w->p->e, edges, waiting);
+  scree_cheapest_renew(&w->e, edges, waiting);
   w->count = 0;
   for (size_t i = 0; i < left; i++) enlist(w, w->candidates[i].index);
 }
@@ -331,11 +407,8 @@ static void decimate_block(void *context, size_t begin, size_t end, size_t block
   (void)end, (void)block;
   patching *p = context;
   work *w = &p->works[worker];
-  size_t first = begin * p->patch, left = p->d->s.vertex_count - first;
-  w->members = p->members + first;
-  w->member_count = left < p->patch ? left : p->patch;
-  w->deeds = p->deeds + first / 2;
-  w->room = w->member_count / 2;
+  enter_patch(w, begin);
+  look_at_patch(w);
   decimate_patch(w, &p->doings[begin]);
 }
 
@@ -433,10 +506,7 @@ static scree_status run_pass(patching *p, size_t *done) {
   if (status == SCREE_OK) status = scree_anchors_find(&d->s, &d->anchors, d->error);
   if (status != SCREE_OK) return status;
   find_members(p);
-  scree_parallel_for(d->s.vertex_count, SCREE_PASS_BLOCK, find_border, p);
-  scree_cheapest_refresh_sums(&p->e);
-  scree_cheapest_find(&p->e);
-  if (!scree_cheapest_set_limit(&p->e)) return SCREE_OK;
+  if (!sample(p)) return SCREE_OK;
   scree_parallel_for(patch_count(p), 1, decimate_block, p);
   status = write_deeds(p, done);
   if (status != SCREE_OK) return status;
@@ -449,11 +519,12 @@ static scree_status run_pass(patching *p, size_t *done) {
 static void patching_free(patching *p) {
   scree_cheapest_free(&p->e);
   scree_free(p->members);
-  scree_free(p->patch_of);
+  scree_free(p->place_of);
   scree_free(p->marks);
   scree_free(p->deeds);
   scree_free(p->doings);
   for (int i = 0; p->works && i < scree_worker_count(); i++) {
+    scree_free(p->works[i].sums);
     scree_free(p->works[i].candidates);
     scree_free(p->works[i].swap);
     scree_free(p->works[i].taken);
@@ -467,7 +538,7 @@ static scree_status patching_allocate(patching *p) {
   size_t n = p->d->s.vertex_count;
   if (scree_cheapest_allocate(&p->e, p->d) != SCREE_OK) return SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(p->members, n, error, out_of_memory);
-  SCREE_ALLOC_OR(p->patch_of, n, error, out_of_memory);
+  SCREE_ALLOC_OR(p->place_of, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->marks, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->deeds, n / 2 + 1, error, out_of_memory);
   SCREE_ALLOC_OR(p->doings, n / p->patch + 1, error, out_of_memory);
@@ -477,6 +548,7 @@ static scree_status patching_allocate(patching *p) {
     work *w = &p->works[i];
     w->p = p;
     w->edge_room = 3 * p->patch + SCREE_RING_MAX;
+    if (!p->d->coster->merge) SCREE_ALLOC_OR(w->sums, p->patch, error, out_of_memory);
     SCREE_ALLOC_OR(w->candidates, p->patch, error, out_of_memory);
     SCREE_ALLOC_OR(w->swap, p->patch, error, out_of_memory);
     SCREE_ALLOC_OR(w->taken, p->patch, error, out_of_memory);
@@ -498,6 +570,7 @@ scree_status scree_decimate_in_patches(scree_decimator *d, size_t patch) {
   scree_places places = {&s->vertex->at.x, sizeof *s->vertex / sizeof(double), s->vertex_count};
   scree_status status =
       scree_frame_find(&places, vec3_scale(vec3_add(s->low, s->high), 0.5), &p.frame, d->error);
+  if (status == SCREE_OK && d->coster->merge) status = scree_decimate_sum(d);
   if (status == SCREE_OK) status = patching_allocate(&p);
   bool little = false;
   while (status == SCREE_OK && !little && goes_on(d)) {

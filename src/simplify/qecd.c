@@ -75,11 +75,13 @@ static void qecd_sum(scree_halfmesh *s, uint32_t v) {
     g = scree_turn(s, g);
   } while (g != SCREE_NONE && g != first);
   if (g == SCREE_NONE) add_boundary(s, q, scree_previous(last));
-  memcpy(s->sums[v], q, sizeof q);
+  memcpy(scree_sums_of(s, v), q, sizeof q);
 }
 
 static void qecd_merge(scree_halfmesh *s, uint32_t survivor, uint32_t gone) {
-  for (int i = 0; i < 10; i++) s->sums[survivor][i] += s->sums[gone][i];
+  const double *of_gone = scree_sums_of(s, gone);
+  double *of_survivor = scree_sums_of(s, survivor);
+  for (int i = 0; i < 10; i++) of_survivor[i] += of_gone[i];
 }
 
 /* Edges are evaluated side by side, one per lane. */
@@ -95,7 +97,8 @@ typedef struct lanes {
 static void gather(const scree_halfmesh *s, uint32_t half_edge, double along, lanes *l, int i) {
   uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge);
   vec3 pa = s->vertex[a].at, pb = s->vertex[b].at, m = vec3_lerp(pa, pb, along);
-  for (int k = 0; k < 10; k++) l->q[k][i] = s->sums[a][k] + s->sums[b][k];
+  const double *of_a = scree_sums_of(s, a), *of_b = scree_sums_of(s, b);
+  for (int k = 0; k < 10; k++) l->q[k][i] = of_a[k] + of_b[k];
   l->m[0][i] = m.x;
   l->m[1][i] = m.y;
   l->m[2][i] = m.z;

@@ -91,7 +91,7 @@ static void volume_sum(scree_halfmesh *s, uint32_t v) {
     g = scree_turn(s, g);
   } while (g != SCREE_NONE && g != first);
   if (g == SCREE_NONE) add_boundary(h, e1, 1);
-  memcpy(s->sums[v], h, sizeof h);
+  memcpy(scree_sums_of(s, v), h, sizeof h);
 }
 
 /* Edges are evaluated side by side, one per lane: E(y) = y.H y - 2 g.y + k and the plane n.y = d,
@@ -121,7 +121,7 @@ static inline void set_lane(double v[3][LANES], int i, vec3 p) {
 
 static void gather(const scree_halfmesh *s, uint32_t half_edge, lanes *q, int i) {
   uint32_t a = s->half[half_edge].from, b = scree_to(s, half_edge), twin = s->half[half_edge].twin;
-  const double *ha = s->sums[a], *hb = s->sums[b];
+  const double *ha = scree_sums_of(s, a), *hb = scree_sums_of(s, b);
   vec3 p = s->vertex[a].at, e = vec3_sub(s->vertex[b].at, p), to_d = {0, 0, 0};
   double h[6];
   for (int k = 0; k < 6; k++) h[k] = ha[k] + hb[k];

@@ -23,7 +23,6 @@ static inline scree_decimator begin_decimation(const scree_mesh *mesh, const scr
     scree_corners(&d.s, t, at);
     d.s.area += 0.5 * vec3_norm(vec3_triangle_normal(at[0], at[1], at[2]));
   }
-  for (uint32_t v = 0; v < d.s.vertex_count; v++) d.coster->sum(&d.s, v);
   return d;
 }
 
