@@ -18,7 +18,7 @@
 #endif
 
 #ifndef SCREE_LANES
-#define SCREE_LANES __attribute__((target_clones("avx2", "default")))
+#define SCREE_LANES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
 #endif
 
 /* A part of such a function that must be compiled with it. */

@@ -376,38 +376,3 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
   }
   return found;
 }
-
-static bool within_leaf(const scree_bvh *bvh, const scree_bvh_node *leaf, vec3 p, double distance2,
-                        uint32_t *near) {
-  for (uint32_t i = leaf->first; i < leaf->first + leaf->count; i++) {
-    vec3 point;
-    if (scree_triangle_closest(bvh->corners + 9 * (size_t)i, p, &point) > distance2) continue;
-    *near = i;
-    return true;
-  }
-  return false;
-}
-
-bool scree_bvh_within(const scree_bvh *bvh, vec3 p, double distance2, uint32_t *near) {
-  uint32_t stack[STACK];
-  int depth = 0;
-  vec3 point;
-  if (bvh->node_count == 0) return false;
-  if (scree_triangle_closest(bvh->corners + 9 * (size_t)*near, p, &point) <= distance2) return true;
-  if (box_distance2(bvh->nodes, p) <= distance2) stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_bvh_node *node = &bvh->nodes[stack[--depth]];
-    if (node->count) {
-      if (within_leaf(bvh, node, p, distance2, near)) return true;
-      continue;
-    }
-    uint32_t nearer = node->first, other = nearer + 1;
-    double near2 = box_distance2(&bvh->nodes[nearer], p),
-           other2 = box_distance2(&bvh->nodes[other], p);
-    bool swap = other2 < near2;
-    double least = swap ? other2 : near2, most = swap ? near2 : other2;
-    if (most <= distance2) stack[depth++] = swap ? nearer : other;
-    if (least <= distance2) stack[depth++] = swap ? other : nearer;
-  }
-  return false;
-}

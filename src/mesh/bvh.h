@@ -38,9 +38,4 @@ typedef struct scree_bvh_hit {
  * near triangles: one of them, depending on the bound. */
 bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit);
 
-/* Whether p is within the distance, which is given squared. Less work than to find the nearest
- * point: the first triangle that is near enough will do. *near, in tree order, is looked at first,
- * and is that triangle afterwards, if there is one. */
-bool scree_bvh_within(const scree_bvh *bvh, vec3 p, double distance2, uint32_t *near);
-
 #endif

@@ -6,12 +6,13 @@
 
 #include "simplify/trial.h"
 
-/* From how many triangles on, later with large scans; how many collapses are looked at (of large
- * scans no more than are tried, for it takes time), and how many of them are tried. */
+/* From how many triangles on, later with large scans; how many collapses are looked at, and how many
+ * of them are tried; of large scans two are, for it takes time. */
 enum {
   SCREE_AHEAD_COUNT = 160,
   SCREE_AHEAD_LATE = 130,
   SCREE_OFFER_COUNT = 16,
+  SCREE_OFFERS_OF_LARGE = 2,
   SCREE_TRIAL_COUNT = 4
 };
 

@@ -29,9 +29,11 @@ enum { ROUNDS = 4 };
 /* Where there are no more than SCREE_GREEDY_COUNT triangles, what is usual for the squared stray
  * counts for so much: single collapses would look at more places, and pay a toll. */
 #define COARSE_USUAL2 0.5
-/* When the levels are not fine any more, as long as no surface is kept: how far one collapse may
- * stray, in mean moves of those of the pass before. */
+/* When the levels are not fine any more or the surface is kept, as long as there are no witnesses:
+ * how far one collapse may stray, in mean moves of those of the pass before. */
 #define MOST_MOVES 4.0
+/* ... and how far all of them since the surface was kept may, squared, against that. */
+#define ALL_MOVES2 1.44
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
 
@@ -221,10 +223,13 @@ static uint32_t edge_places(const scree_decimator *d) {
 static bool strays(const pass *p, const scree_ring *ring, const scree_candidate *c) {
   const scree_decimator *d = p->d;
   double most = fmin(scree_stray_at(c, p->e.limit), p->usual2);
-  if (!scree_memory_is_kept(&d->memory))
-    return !scree_stays_within(&d->s, ring, c->target, most) ||
-           (p->usual2 < INFINITY && !scree_ends_stay_within(&d->s, ring, c->target, most));
-  return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, edge_places(d), most);
+  if (scree_memory_is_kept(&d->memory))
+    return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, edge_places(d), most);
+  if (!scree_stays_within(&d->s, ring, c->target, most)) return true;
+  if (!(p->usual2 < INFINITY)) return false;
+  return !scree_ends_stay_within(&d->s, ring, c->target, most) ||
+         (scree_memory_has_surface(&d->memory) &&
+          !scree_memory_middles_within(&d->memory, &d->s, ring, c->target, ALL_MOVES2 * p->usual2));
 }
 
 static void check_one(pass *p, uint32_t index, const scree_candidate *candidate) {
@@ -506,7 +511,8 @@ static scree_status set_usual(pass *p) {
   size_t kept = scree_is_large(d) ? SCREE_KEPT_LATE : SCREE_KEPT_COUNT;
   double usual = 0;
   scree_status status = SCREE_OK;
-  if (!d->coster->merge && scree_is_close_scan(d) && count <= SCREE_SURFACE_COUNT &&
+  bool early = scree_is_large(d) || scree_is_close_scan(d);
+  if (!d->coster->merge && early && count <= SCREE_SURFACE_COUNT &&
       !scree_memory_has_surface(&d->memory))
     status = scree_memory_keep_surface(&d->s, &d->memory, d->error);
   if (status == SCREE_OK && !d->coster->merge && count <= kept && !scree_memory_is_kept(&d->memory))
@@ -517,7 +523,7 @@ static scree_status set_usual(pass *p) {
     usual = scree_memory_usual(&d->memory, large || scree_is_held_close(d));
     if (usual > 0 && !large && !scree_is_close_scan(d))
       usual = fmax(usual, scree_memory_worst(&d->memory));
-  } else if (!scree_is_fine(d)) {
+  } else if (!scree_is_fine(d) || scree_memory_has_surface(&d->memory)) {
     usual = MOST_MOVES * d->mean_move;
   }
   p->usual2 = usual > 0 ? usual * usual : INFINITY;

@@ -23,8 +23,8 @@ static inline double scree_stray_at(const scree_candidate *c, double whole) {
 enum { SCREE_FALLBACK_COUNT = 3 };
 
 typedef struct scree_coster {
-  /* Fills the sums of v from the triangles around v. Volume: after every change of them; qecd: once at
-   * the start. */
+  /* Fills the sums of v from the triangles around v. Volume: after every change of them; qecd: once
+   * at the start. */
   void (*sum)(scree_halfmesh *s, uint32_t v);
   /* Many at once: cheaper than one by one, and the same bits. Without what `shape` adds. */
   void (*evaluate)(const scree_halfmesh *s, const uint32_t *half_edges, size_t count,

@@ -80,11 +80,11 @@ enum { SCREE_GREEDY_COUNT = 10000, SCREE_GREEDY_LATE = 5000 };
 
 /* From how many triangles on the surface is kept (stray.h); method `volume`. To look at every stray
  * from there on takes time, so that of large scans it is kept later. */
-enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 60000 };
+enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 30000 };
 
 /* Scans of more triangles, unless they are large, have room in the mean distance: their levels are
- * held closer to them, down to so many triangles, and the surface is kept, still without witnesses,
- * from so many on already. */
+ * held closer to them, down to so many triangles. Of these and of large scans the surface is kept,
+ * still without witnesses, from so many on already. */
 enum { SCREE_CLOSE_SCAN = 200000, SCREE_CLOSE_COUNT = 3000, SCREE_SURFACE_COUNT = 180000 };
 static inline bool scree_is_close_scan(const scree_decimator *d) {
   return !scree_is_large(d) && d->first_triangle_count > SCREE_CLOSE_SCAN;

@@ -468,7 +468,7 @@ static scree_status collapse_best(queue *q, scree_ahead *ahead) {
   size_t count = 0;
   bool offered;
   scree_status status = SCREE_OK;
-  const size_t most = scree_is_large(q->d) ? SCREE_TRIAL_COUNT : SCREE_OFFER_COUNT;
+  const size_t most = scree_is_large(q->d) ? SCREE_OFFERS_OF_LARGE : SCREE_OFFER_COUNT;
   while (status == SCREE_OK && count < most && q->heap_count > 0) {
     status = try_cheapest(q, &q->offers[count], &offered);
     count += offered;

@@ -18,8 +18,11 @@
 #define CLOSE_MEANS 9.0
 /* ... less so many of those with which the scan's vertices began. */
 #define ROUGH_MEANS 5.0
-/* Triangles walked over towards a place before the tree is asked. */
-enum { MOST_STEPS = 32 };
+/* Triangles walked over towards a place before one begins anew in its cell, and then before the
+ * tree is asked. */
+enum { FIRST_STEPS = 8, MOST_STEPS = 32 };
+/* Cells along the longest side of the surface's box. */
+enum { START_CELLS = 64 };
 /* How witnesses that were dropped are known. */
 #define DROPPED (-1.0)
 /* In which the farthest place is looked for. */
@@ -31,6 +34,7 @@ enum { WAY_BLOCK = 4096 };
 void scree_memory_free(scree_memory *m) {
   scree_bvh_free(&m->surface);
   scree_free(m->ways);
+  scree_free(m->starts.triangle);
   scree_free(m->near);
   scree_free(m->witnesses);
   scree_free(m->first);
@@ -116,6 +120,42 @@ static void way_block(void *context, size_t begin, size_t end, size_t block, int
   }
 }
 
+static uint32_t cell_along(double at, double low, double cells_per_length, uint32_t size) {
+  double cell = (at - low) * cells_per_length;
+  return cell > 0 ? cell < size ? (uint32_t)cell : size - 1 : 0;
+}
+
+static uint32_t start_cell(const scree_starts *g, vec3 x) {
+  uint32_t i = cell_along(x.x, g->low.x, g->cells_per_length, g->size[0]),
+           j = cell_along(x.y, g->low.y, g->cells_per_length, g->size[1]),
+           k = cell_along(x.z, g->low.z, g->cells_per_length, g->size[2]);
+  return (k * g->size[1] + j) * g->size[0] + i;
+}
+
+/* The last of the triangles whose middle is in a cell is there to begin with. */
+static scree_status find_starts(scree_memory *m, const scree_halfmesh *s, scree_error *error) {
+  scree_starts *g = &m->starts;
+  vec3 extent = vec3_sub(s->high, s->low);
+  double longest = fmax(extent.x, fmax(extent.y, extent.z));
+  g->low = s->low;
+  g->cells_per_length = longest > 0 ? START_CELLS / longest : 0;
+  g->size[0] = (uint32_t)(extent.x * g->cells_per_length) + 1;
+  g->size[1] = (uint32_t)(extent.y * g->cells_per_length) + 1;
+  g->size[2] = (uint32_t)(extent.z * g->cells_per_length) + 1;
+  size_t count = (size_t)g->size[0] * g->size[1] * g->size[2];
+  SCREE_ALLOC_OR(g->triangle, count, error, out_of_memory);
+  memset(g->triangle, 0xff, count * sizeof *g->triangle);
+  for (uint32_t i = 0; i < m->surface.triangle_count; i++) {
+    const double *corners = m->surface.corners + 9 * (size_t)i;
+    vec3 sum =
+        vec3_add(vec3_add(vec3_load(corners), vec3_load(corners + 3)), vec3_load(corners + 6));
+    g->triangle[start_cell(g, vec3_scale(sum, 1.0 / 3))] = i;
+  }
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
 scree_status scree_memory_keep_surface(const scree_halfmesh *s, scree_memory *m,
                                        scree_error *error) {
   scree_mesh mesh = {.vertex_count = s->vertex_count};
@@ -143,7 +183,7 @@ scree_status scree_memory_keep_surface(const scree_halfmesh *s, scree_memory *m,
   SCREE_ALLOC_OR(m->ways, s->live_triangle_count, error, done);
   find_beside(m, s, number, place);
   scree_parallel_for(m->surface.triangle_count, WAY_BLOCK, way_block, m);
-  status = SCREE_OK;
+  status = find_starts(m, s, error);
 done:
   scree_mesh_free(&mesh);
   scree_free(number);
@@ -177,28 +217,40 @@ bool scree_memory_allows(const scree_memory *m, size_t triangle_count, vec3 x) {
   return scree_bvh_closest(&m->surface, x, &(scree_bvh_hit){STAND_OFF * STAND_OFF * size2, x, 0});
 }
 
-/* Of the triangles kept the one that x lies above, or one near to it, looked for from `now` on by
- * going over the edge beyond which x lies farthest. */
-static uint32_t walk_towards(const scree_memory *m, vec3 x, uint32_t now) {
-  float at[3] = {(float)x.x, (float)x.y, (float)x.z};
-  uint32_t last = SCREE_NONE;
-  for (int step = 0; step < MOST_STEPS; step++) {
+/* Goes over the edge beyond which x lies farthest, so many times at the most. True: x lies above
+ * the triangle come to, or that is as near as it gets. */
+static bool walk(const scree_memory *m, const float *at, int steps, uint32_t *triangle) {
+  uint32_t last = SCREE_NONE, now = *triangle;
+  for (int step = 0; step < steps; step++) {
     const scree_way *way = &m->ways[now];
     const float *p = way->second, *q = way->third;
+    *triangle = now;
     for (int k = 0; k < 3; k++)
       if (way->beside[k] != SCREE_NONE) __builtin_prefetch(&m->ways[way->beside[k]]);
     float second = p[0] * at[0] + p[1] * at[1] + p[2] * at[2] + p[3];
     float third = q[0] * at[0] + q[1] * at[1] + q[2] * at[2] + q[3], first = 1 - second - third;
-    if ((first >= 0) & (second >= 0) & (third >= 0)) break;
+    if ((first >= 0) & (second >= 0) & (third >= 0)) return true;
     int edge = third <= first && third <= second ? 0 : first <= second ? 1 : 2;
     uint32_t next = way->beside[edge];
-    if (next == SCREE_NONE || next == last) break; /* here, or back and forth over a crest */
+    if (next == SCREE_NONE || next == last) return true; /* back and forth over a crest */
     last = now;
     now = next;
     const double *corners = m->surface.corners + 9 * (size_t)now;
     __builtin_prefetch(corners);
     __builtin_prefetch(corners + 8);
   }
+  *triangle = now;
+  return false;
+}
+
+/* Of the triangles kept the one that x lies above, or one near to it, looked for from `now` on,
+ * then from x's cell. */
+static uint32_t walk_towards(const scree_memory *m, vec3 x, uint32_t now) {
+  float at[3] = {(float)x.x, (float)x.y, (float)x.z};
+  if (walk(m, at, FIRST_STEPS, &now)) return now;
+  uint32_t start = m->starts.triangle[start_cell(&m->starts, x)];
+  if (start != SCREE_NONE) now = start;
+  walk(m, at, MOST_STEPS, &now);
   return now;
 }
 
@@ -215,8 +267,7 @@ static bool walk_within(const scree_memory *m, vec3 x, double most, uint32_t *ne
  * nearest. *near: a triangle to begin with, then the one found. */
 static bool find_farther(const scree_memory *m, vec3 x, double least, uint32_t *near,
                          scree_bvh_hit *hit) {
-  if (walk_within(m, x, least, near)) return false;
-  if (scree_bvh_within(&m->surface, x, least, near)) return false;
+  if (walk_within(m, x, least, near)) return false; /* else it is mostly farther */
   hit->index = *near;
   hit->distance2 = scree_triangle_closest(m->surface.corners + 9 * (size_t)*near, x, &hit->point);
   scree_bvh_closest(&m->surface, x, hit);
@@ -411,6 +462,13 @@ double scree_memory_edges_stray(const scree_memory *m, const scree_halfmesh *s,
 bool scree_memory_edges_within(const scree_memory *m, const scree_halfmesh *s,
                                const scree_ring *fan, vec3 x, double most, scree_hints *hints) {
   return stray_of_edges(m, s, fan, x, SCREE_EDGE_PLACES, most, most, hints) <= most;
+}
+
+bool scree_memory_middles_within(const scree_memory *m, const scree_halfmesh *s,
+                                 const scree_ring *r, vec3 target, double most) {
+  scree_hints hints;
+  scree_no_hints(&hints);
+  return stray_of_edges(m, s, r, target, 1, most, most, &hints) <= most;
 }
 
 bool scree_memory_stays_within(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,

@@ -6,7 +6,8 @@
  * distances of
  *   - the witnesses of the triangles that change, from the new ones, where it grows;
  *   - the new vertex and five places on every new edge, from the surface kept.
- * In batches, as long as no surface is kept: of the new vertex from the old triangles. */
+ * In batches, as long as no surface is kept: of the new vertex from the old triangles; as long as
+ * there are no witnesses, of the middles of the new edges from the surface besides. */
 #ifndef SCREE_SIMPLIFY_STRAY_H
 #define SCREE_SIMPLIFY_STRAY_H
 
@@ -26,10 +27,20 @@ typedef struct scree_way {
   uint32_t beside[3];        /* triangles across the edge from corner k, or NONE */
 } scree_way;
 
+/* Where to begin looking for a place: of every cell of a grid about the surface a triangle in it,
+ * in the tree's order, or NONE. */
+typedef struct scree_starts {
+  uint32_t *triangle;
+  vec3 low;
+  double cells_per_length;
+  uint32_t size[3];
+} scree_starts;
+
 typedef struct scree_memory {
   scree_bvh surface;
   scree_way *ways; /* of its triangles, in the tree's order */
-  uint32_t *near;  /* per vertex of the level: a triangle kept near it, in the tree's order */
+  scree_starts starts;
+  uint32_t *near; /* per vertex of the level: a triangle kept near it, in the tree's order */
   double area;
   double roughness; /* the mean distance with which the scan's vertices began */
   scree_witness *witnesses;
@@ -98,6 +109,11 @@ bool scree_memory_edges_within(const scree_memory *memory, const scree_halfmesh 
 /* The corners of the ring's triangles with their moving one, the first, at target. */
 void scree_ring_corners(const scree_halfmesh *s, const scree_ring *ring, vec3 target,
                         double (*corners)[9]);
+
+/* In batches, while there are no witnesses: whether the new vertex and the middle of every new edge
+ * are so near to the surface kept, squared. */
+bool scree_memory_middles_within(const scree_memory *memory, const scree_halfmesh *s,
+                                 const scree_ring *ring, vec3 target, double most);
 
 /* In batches: whether the stray is at most `most`, both squared, with the first so many places on
  * every edge, the middle first. */

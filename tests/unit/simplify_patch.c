@@ -27,6 +27,7 @@ static scree_decimator in_patches(const scree_mesh *mesh, const scree_coster *co
   static scree_error error;
   scree_decimator d = begin_decimation(mesh, coster, &error);
   CHECK_OK(scree_decimate_in_patches(&d, PATCH), error);
+  assert_int_equal(d.s.sums != NULL, coster->merge != NULL); /* no room for those of all */
   return d;
 }
 

@@ -111,6 +111,7 @@ static void what_went_before_is_remembered(void **state) {
   CHECK_OK(scree_decimate_in_batches(&d), error);
   assert_true(d.s.live_triangle_count < mesh.triangle_count / 3);
   assert_false(scree_memory_is_kept(&d.memory));
+  scree_memory_free(&d.memory); /* or the surface would be an earlier one */
   d.first_triangle_count = mesh.triangle_count;
   CHECK_OK(scree_decimate_keep(&d), error);
   assert_int_equal(d.memory.left, mesh.vertex_count);
@@ -158,6 +159,21 @@ static void surface_is_kept_before_its_witnesses(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* Against the distances of the new vertex and of the middles of the new edges, each by itself. */
+static void check_middles(const scree_decimator *d, const scree_ring *ring, vec3 target) {
+  scree_bvh_hit hit = {.distance2 = INFINITY};
+  assert_true(scree_bvh_closest(&d->memory.surface, target, &hit));
+  double worst2 = hit.distance2;
+  for (uint32_t i = 0; i < ring->count; i++) {
+    vec3 end = d->s.vertex[d->s.half[ring->edge[i]].from].at;
+    hit.distance2 = INFINITY;
+    assert_true(scree_bvh_closest(&d->memory.surface, vec3_lerp(target, end, 0.5), &hit));
+    worst2 = fmax(worst2, hit.distance2);
+  }
+  assert_true(scree_memory_middles_within(&d->memory, &d->s, ring, target, 1.001 * worst2));
+  assert_false(scree_memory_middles_within(&d->memory, &d->s, ring, target, 0.999 * worst2));
+}
+
 /* What batches ask against the stray that single collapses find. */
 static void limits_are_those_of_the_stray(void **state) {
   (void)state;
@@ -182,6 +198,7 @@ static void limits_are_those_of_the_stray(void **state) {
                                           1.001 * stray2));
     assert_false(scree_memory_stays_within(&d.memory, &d.s, &ring, target, SCREE_EDGE_PLACES,
                                            0.999 * stray2));
+    check_middles(&d, &ring, target);
     tried++;
   }
   assert_true(tried > 100);
