@@ -15,11 +15,11 @@ enum { SCREE_PASS_BLOCK = 1024, SCREE_SIDE_BY_SIDE = 64 };
 typedef struct scree_cheapest {
   scree_decimator *d;
   scree_halfmesh *s; /* the decimator's surface, or with sums of its own (patch.c) */
-  uint32_t *best;   /* per vertex: half-edge of its cheapest edge, or NONE */
-  double *cost;     /* per vertex: of that; INFINITY: it has none */
-  double limit;     /* the most for this pass */
-  double low;       /* the cost that a low share of the edges does not exceed */
-  uint32_t *bins;   /* twice two sets */
+  uint32_t *best;    /* per vertex: half-edge of its cheapest edge, or NONE */
+  double *cost;      /* per vertex: of that; INFINITY: it has none */
+  double limit;      /* the most for this pass */
+  double low;        /* the cost that a low share of the edges does not exceed */
+  uint32_t *bins;    /* twice two sets */
 } scree_cheapest;
 
 scree_status scree_cheapest_allocate(scree_cheapest *e, scree_decimator *d);
