@@ -104,8 +104,8 @@ enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 1300 };
 enum {
   SCREE_CROWD = 48,
   SCREE_LEAST_WITNESSES = 4000,
-  SCREE_CROWD_OF_LARGE = 24,
-  SCREE_LEAST_OF_LARGE = 6000
+  SCREE_CROWD_OF_LARGE = 16,
+  SCREE_LEAST_OF_LARGE = 4000
 };
 
 /* The sums of all vertices, if there are none yet: they are needed but in patches. */
