@@ -175,8 +175,8 @@ static void enter_patch(work *w, size_t k) {
   w->s.first_slot = (uint32_t)first;
 }
 
-/* Finds the border, and the cheapest edge of every other vertex. */
-static void look_at_patch(work *w) {
+/* Finds the border, and the sums of the other vertices. */
+static void sum_patch(work *w) {
   scree_halfmesh *s = &w->s;
   ask_for_members(w);
   for (size_t i = 0; i < w->member_count; i++) {
@@ -191,7 +191,6 @@ static void look_at_patch(work *w) {
     w->p->d->coster->sum(s, v);
     s->flags[v] &= (uint8_t)~SCREE_VERTEX_STALE;
   }
-  scree_cheapest_find_of(&w->e, w->members, w->member_count);
 }
 
 /* A block is one of the patches sampled. */
@@ -200,7 +199,8 @@ static void sample_block(void *context, size_t begin, size_t end, size_t block, 
   patching *p = context;
   work *w = &p->works[worker];
   enter_patch(w, begin * p->stride);
-  look_at_patch(w);
+  sum_patch(w);
+  scree_cheapest_find_of(&w->e, w->members, w->member_count);
 }
 
 /* Of the patches that are not sampled no vertex has a cost. */
@@ -408,7 +408,9 @@ static void decimate_block(void *context, size_t begin, size_t end, size_t block
   patching *p = context;
   work *w = &p->works[worker];
   enter_patch(w, begin);
-  look_at_patch(w);
+  sum_patch(w);
+  if (begin % p->stride != 0) /* else that is known */
+    scree_cheapest_find_of(&w->e, w->members, w->member_count);
   decimate_patch(w, &p->doings[begin]);
 }
 
