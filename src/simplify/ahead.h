@@ -6,8 +6,8 @@
 
 #include "simplify/trial.h"
 
-/* From how many triangles on, later with large scans; how many collapses are looked at, and how many
- * of them are tried; of large scans two are, for it takes time. */
+/* From how many triangles on, later with large scans; how many collapses are looked at, and how
+ * many of them are tried; of large scans two are, for it takes time. */
 enum {
   SCREE_AHEAD_COUNT = 160,
   SCREE_AHEAD_LATE = 130,
