@@ -100,6 +100,7 @@ static scree_status pass_allocate(pass *p) {
   size_t n = p->d->s.vertex_count, triangles = p->d->s.triangle_count;
   size_t blocks = scree_block_count(n, SCREE_PASS_BLOCK);
   p->room = n / 6 + 1; /* more wait for the next round */
+  if (scree_decimate_sum(p->d) != SCREE_OK) goto out_of_memory;
   if (scree_cheapest_allocate(&p->e, p->d) != SCREE_OK) goto out_of_memory;
   SCREE_ALLOC_OR(p->marks, n, error, out_of_memory);
   SCREE_ALLOC_OR(p->chosen, n, error, out_of_memory);
@@ -229,7 +230,8 @@ static bool strays(const pass *p, const scree_ring *ring, const scree_candidate 
   if (!(p->usual2 < INFINITY)) return false;
   return !scree_ends_stay_within(&d->s, ring, c->target, most) ||
          (scree_memory_has_surface(&d->memory) &&
-          !scree_memory_middles_within(&d->memory, &d->s, ring, c->target, ALL_MOVES2 * p->usual2));
+          !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, 1,
+                                     ALL_MOVES2 * p->usual2));
 }
 
 static void check_one(pass *p, uint32_t index, const scree_candidate *candidate) {
@@ -511,9 +513,8 @@ static scree_status set_usual(pass *p) {
   size_t kept = scree_is_large(d) ? SCREE_KEPT_LATE : SCREE_KEPT_COUNT;
   double usual = 0;
   scree_status status = SCREE_OK;
-  bool early = scree_is_large(d) || scree_is_close_scan(d);
-  if (!d->coster->merge && early && count <= SCREE_SURFACE_COUNT &&
-      !scree_memory_has_surface(&d->memory))
+  if (!d->coster->merge && d->first_triangle_count > SCREE_CLOSE_SCAN &&
+      count <= SCREE_SURFACE_COUNT && !scree_memory_has_surface(&d->memory))
     status = scree_memory_keep_surface(&d->s, &d->memory, d->error);
   if (status == SCREE_OK && !d->coster->merge && count <= kept && !scree_memory_is_kept(&d->memory))
     status = scree_decimate_keep(d);
@@ -586,8 +587,7 @@ scree_status scree_decimate_in_batches(scree_decimator *d) {
   pass p = {.d = d};
   size_t done = 1;
   scree_status status = SCREE_OK;
-  if (d->s.live_triangle_count > d->single_from) status = scree_decimate_sum(d);
-  if (status == SCREE_OK && d->s.live_triangle_count > d->single_from) status = pass_allocate(&p);
+  if (d->s.live_triangle_count > d->single_from) status = pass_allocate(&p);
   while (status == SCREE_OK && done > 0 && d->s.live_triangle_count > d->single_from &&
          d->s.live_triangle_count > d->options.stop_count)
     status = scree_decimate_tick(d) ? run_pass(&p, &done) : SCREE_CANCELLED;

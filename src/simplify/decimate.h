@@ -78,8 +78,9 @@ static inline bool scree_is_large(const scree_decimator *d) {
  * goes on in batches to the second, for it is most of what does not run in parallel. */
 enum { SCREE_GREEDY_COUNT = 10000, SCREE_GREEDY_LATE = 5000 };
 
-/* From how many triangles on the surface is kept (stray.h); method `volume`. To look at every stray
- * from there on takes time, so that of large scans it is kept later. */
+/* From how many triangles on there are witnesses (stray.h), and the surface is kept if it is not
+ * yet; method `volume`. To look at every stray from there on takes time, so that with large scans
+ * it is later. */
 enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 30000 };
 
 /* Scans of more triangles, unless they are large, have room in the mean distance: their levels are

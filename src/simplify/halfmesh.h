@@ -47,11 +47,11 @@ typedef struct scree_vertex {
 typedef struct scree_halfmesh {
   scree_vertex *vertex;
   scree_half_edge *half;
-  uint8_t *flags;                                /* of vertices: SCREE_VERTEX_... */
-  double (*sums)[10];                            /* of vertices: the method's quadric, see cost.h;
-                                                    NULL: none yet */
-  const uint32_t *slot;                          /* per vertex: the place of its sums, from */
-  uint32_t first_slot;                           /* this one on; NULL: its own number */
+  uint8_t *flags;       /* of vertices: SCREE_VERTEX_... */
+  double (*sums)[10];   /* of vertices: the method's quadric, see cost.h;
+                           NULL: none yet */
+  const uint32_t *slot; /* per vertex: its sums lie at this less first_slot; NULL: at its number */
+  uint32_t first_slot;
   uint8_t *refused;                              /* of half-edges: 0 or SCREE_EDGE_... */
   size_t vertex_count, triangle_count;           /* extents of the arrays */
   size_t live_vertex_count, live_triangle_count; /* still there */

@@ -464,19 +464,13 @@ bool scree_memory_edges_within(const scree_memory *m, const scree_halfmesh *s,
   return stray_of_edges(m, s, fan, x, SCREE_EDGE_PLACES, most, most, hints) <= most;
 }
 
-bool scree_memory_middles_within(const scree_memory *m, const scree_halfmesh *s,
-                                 const scree_ring *r, vec3 target, double most) {
-  scree_hints hints;
-  scree_no_hints(&hints);
-  return stray_of_edges(m, s, r, target, 1, most, most, &hints) <= most;
-}
-
 bool scree_memory_stays_within(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
                                vec3 target, uint32_t places_on_edge, double most) {
   scree_hints hints;
   scree_no_hints(&hints);
   double worst = stray_of_edges(m, s, r, target, places_on_edge, most, most, &hints);
-  return worst <= most && stray_of_witnesses(m, s, r, target, most, most) <= most;
+  if (worst > most || !scree_memory_is_kept(m)) return worst <= most;
+  return stray_of_witnesses(m, s, r, target, most, most) <= most;
 }
 
 double scree_memory_growth(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,

@@ -110,13 +110,8 @@ bool scree_memory_edges_within(const scree_memory *memory, const scree_halfmesh 
 void scree_ring_corners(const scree_halfmesh *s, const scree_ring *ring, vec3 target,
                         double (*corners)[9]);
 
-/* In batches, while there are no witnesses: whether the new vertex and the middle of every new edge
- * are so near to the surface kept, squared. */
-bool scree_memory_middles_within(const scree_memory *memory, const scree_halfmesh *s,
-                                 const scree_ring *ring, vec3 target, double most);
-
 /* In batches: whether the stray is at most `most`, both squared, with the first so many places on
- * every edge, the middle first. */
+ * every edge, the middle first; that of the witnesses only once there are any. */
 bool scree_memory_stays_within(const scree_memory *memory, const scree_halfmesh *s,
                                const scree_ring *ring, vec3 target, uint32_t places_on_edge,
                                double most);

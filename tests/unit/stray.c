@@ -162,16 +162,18 @@ static void surface_is_kept_before_its_witnesses(void **state) {
 /* Against the distances of the new vertex and of the middles of the new edges, each by itself. */
 static void check_middles(const scree_decimator *d, const scree_ring *ring, vec3 target) {
   scree_bvh_hit hit = {.distance2 = INFINITY};
-  assert_true(scree_bvh_closest(&d->memory.surface, target, &hit));
+  scree_memory bare = d->memory; /* as while there are no witnesses */
+  bare.first = NULL;
+  assert_true(scree_bvh_closest(&bare.surface, target, &hit));
   double worst2 = hit.distance2;
   for (uint32_t i = 0; i < ring->count; i++) {
     vec3 end = d->s.vertex[d->s.half[ring->edge[i]].from].at;
     hit.distance2 = INFINITY;
-    assert_true(scree_bvh_closest(&d->memory.surface, vec3_lerp(target, end, 0.5), &hit));
+    assert_true(scree_bvh_closest(&bare.surface, vec3_lerp(target, end, 0.5), &hit));
     worst2 = fmax(worst2, hit.distance2);
   }
-  assert_true(scree_memory_middles_within(&d->memory, &d->s, ring, target, 1.001 * worst2));
-  assert_false(scree_memory_middles_within(&d->memory, &d->s, ring, target, 0.999 * worst2));
+  assert_true(scree_memory_stays_within(&bare, &d->s, ring, target, 1, 1.001 * worst2));
+  assert_false(scree_memory_stays_within(&bare, &d->s, ring, target, 1, 0.999 * worst2));
 }
 
 /* What batches ask against the stray that single collapses find. */
