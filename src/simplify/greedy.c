@@ -68,8 +68,10 @@ enum {
   KNOWN = FALLBACK + SCREE_FALLBACK_COUNT
 };
 
-/* First choices found at once, at most; kept; edges of the heap looked at for them. */
-enum { AT_ONCE = 8, KEPT = 64, LOOKED_AT = 24 };
+/* First choices found at once by each worker: of more, many would be forgotten before their turn,
+ * and of one, the workers would wait for each other; at once, at most; kept; edges of the heap
+ * looked at for them. */
+enum { FOR_EACH = 2, AT_ONCE = 8, KEPT = 64, LOOKED_AT = 24 };
 
 typedef struct choice {
   uint32_t half_edge;
@@ -221,10 +223,10 @@ static bool has_easy_toll(const scree_decimator *d) {
 }
 
 /* Enters all edges and finds the toll. */
-static void renew(queue *q) {
+static scree_status renew(queue *q) {
   scree_decimator *d = q->d;
   enter_all(q);
-  if (d->coster->merge || q->heap_count == 0) return;
+  if (d->coster->merge || q->heap_count == 0) return SCREE_OK;
   for (size_t i = 0; i < q->heap_count; i++) q->sorted[i] = q->cost[q->heap[i]];
   qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
   double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
@@ -237,6 +239,7 @@ static void renew(queue *q) {
   q->toll = far > 0 ? cost / pow(far, 6) : 0;
   if (has_easy_toll(d)) q->toll *= EASY_TOLL;
   q->renew_at = (size_t)(RENEW_BELOW * (double)d->s.live_triangle_count);
+  return scree_memory_squeeze(&d->memory, &d->s, d->error);
 }
 
 static scree_status queue_fill(queue *q) {
@@ -258,7 +261,7 @@ static scree_status queue_fill(queue *q) {
     if (s->vertex[v].outgoing != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
   scree_status status = SCREE_OK;
   if (!scree_memory_is_kept(&d->memory)) status = scree_decimate_keep(d);
-  if (status == SCREE_OK) renew(q);
+  if (status == SCREE_OK) status = renew(q);
   return status;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -362,7 +365,7 @@ static void find_block(void *context, size_t begin, size_t end, size_t block, in
 }
 
 /* Lists edges that wait for their first choice, in their order: the cheapest, and others that come
- * soon. One for each worker: of more, most would be forgotten before their turn. */
+ * soon. */
 static size_t list_next(const queue *q, size_t most, uint32_t *edges) {
   size_t places[2 * LOOKED_AT + 1] = {0}, place_count = q->heap_count > 0, count = 0;
   for (int looked = 0; looked < LOOKED_AT && place_count > 0 && count < most; looked++) {
@@ -381,8 +384,8 @@ static size_t list_next(const queue *q, size_t most, uint32_t *edges) {
 /* Finds the first choice of the cheapest edge, and of some that come soon. */
 static void find_first_choices(queue *q) {
   uint32_t edges[AT_ONCE] = {q->heap[0]};
-  size_t workers = (size_t)scree_worker_count(), most = workers < AT_ONCE ? workers : AT_ONCE;
-  size_t count = most > 1 ? list_next(q, most, edges) : 1;
+  size_t workers = (size_t)scree_worker_count(), most = FOR_EACH * workers;
+  size_t count = workers > 1 ? list_next(q, most < AT_ONCE ? most : AT_ONCE, edges) : 1;
   if (q->known_next + count > KEPT) q->known_next = 0;
   for (size_t i = 0; i < count; i++) {
     choice *made = &q->known[q->known_next + i];
@@ -489,7 +492,8 @@ static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settli
   scree_decimator *d = q->d;
   scree_status status = SCREE_OK;
   while (status == SCREE_OK && d->s.live_triangle_count > until) {
-    if (d->s.live_triangle_count <= q->renew_at) renew(q);
+    if (d->s.live_triangle_count <= q->renew_at) status = renew(q);
+    if (status != SCREE_OK) break;
     if (q->heap_count == 0) { /* what was too far off before may be near enough now */
       if (d->record.count == q->entered_at) break;
       q->entered_at = d->record.count;

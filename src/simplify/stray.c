@@ -28,6 +28,9 @@ enum { START_CELLS = 64 };
 /* In which the farthest place is looked for. */
 enum { FARTHEST_BLOCKS = 16 };
 enum { WAY_BLOCK = 4096 };
+/* Of a sum of a few products in single precision, the rounding of its factors with it, in units of
+ * the products' sizes: several times what it can be. */
+#define WAY_ERROR 1e-6
 /* Squared areas that differ by no more of themselves are the same. */
 #define SAME_SIZE 1e-9
 
@@ -99,14 +102,18 @@ static void find_beside(scree_memory *m, const scree_halfmesh *s, uint32_t *numb
   }
 }
 
-static void set_share(float *share, vec3 per_length, vec3 a) {
-  share[0] = (float)per_length.x;
-  share[1] = (float)per_length.y;
-  share[2] = (float)per_length.z;
-  share[3] = (float)-vec3_dot(per_length, a);
+/* Answers the sum of the sizes. */
+static double set_linear(float *f, vec3 per_length, vec3 zero) {
+  double rest = -vec3_dot(per_length, zero);
+  f[0] = (float)per_length.x;
+  f[1] = (float)per_length.y;
+  f[2] = (float)per_length.z;
+  f[3] = (float)rest;
+  return fabs(per_length.x) + fabs(per_length.y) + fabs(per_length.z) + fabs(rest);
 }
 
-/* The shares, linear in the place: those of its foot on the triangle's plane. */
+/* The shares, linear in the place, are those of its foot on the triangle's plane: wrong shares move
+ * the foot along the sides, far if they are steep. */
 static void way_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   scree_memory *m = context;
@@ -115,8 +122,12 @@ static void way_block(void *context, size_t begin, size_t end, size_t block, int
     vec3 a = vec3_load(corners), ab = vec3_sub(vec3_load(corners + 3), a),
          ac = vec3_sub(vec3_load(corners + 6), a), n = vec3_cross(ab, ac);
     double n2 = vec3_norm2(n);
-    set_share(m->ways[i].second, vec3_scale(vec3_cross(ac, n), 1 / n2), a);
-    set_share(m->ways[i].third, vec3_scale(vec3_cross(n, ab), 1 / n2), a);
+    scree_way *way = &m->ways[i];
+    double second = set_linear(way->second, vec3_scale(vec3_cross(ac, n), 1 / n2), a),
+           third = set_linear(way->third, vec3_scale(vec3_cross(n, ab), 1 / n2), a),
+           height = set_linear(way->height, vec3_scale(n, 1 / sqrt(n2)), a);
+    way->error =
+        (float)(WAY_ERROR * (second * vec3_norm(ab) + third * vec3_norm(ac) + height));
   }
 }
 
@@ -218,61 +229,65 @@ bool scree_memory_allows(const scree_memory *m, size_t triangle_count, vec3 x) {
 }
 
 /* Goes over the edge beyond which x lies farthest, so many times at the most. True: x lies above
- * the triangle come to, or that is as near as it gets. */
-static bool walk(const scree_memory *m, const float *at, int steps, uint32_t *triangle) {
+ * the triangle come to, or that is as near as it gets. *bound: no less than the distance of x from
+ * it. */
+static bool walk(const scree_memory *m, const float *at, int steps, uint32_t *triangle,
+                 float *bound) {
   uint32_t last = SCREE_NONE, now = *triangle;
+  *bound = INFINITY;
   for (int step = 0; step < steps; step++) {
     const scree_way *way = &m->ways[now];
-    const float *p = way->second, *q = way->third;
+    const float *p = way->second, *q = way->third, *n = way->height;
     *triangle = now;
     for (int k = 0; k < 3; k++)
       if (way->beside[k] != SCREE_NONE) __builtin_prefetch(&m->ways[way->beside[k]]);
     float second = p[0] * at[0] + p[1] * at[1] + p[2] * at[2] + p[3];
     float third = q[0] * at[0] + q[1] * at[1] + q[2] * at[2] + q[3], first = 1 - second - third;
-    if ((first >= 0) & (second >= 0) & (third >= 0)) return true;
+    if ((first >= 0) & (second >= 0) & (third >= 0)) {
+      *bound = fabsf(n[0] * at[0] + n[1] * at[1] + n[2] * at[2] + n[3]) + way->error;
+      return true;
+    }
     int edge = third <= first && third <= second ? 0 : first <= second ? 1 : 2;
     uint32_t next = way->beside[edge];
     if (next == SCREE_NONE || next == last) return true; /* back and forth over a crest */
     last = now;
     now = next;
-    const double *corners = m->surface.corners + 9 * (size_t)now;
-    __builtin_prefetch(corners);
-    __builtin_prefetch(corners + 8);
   }
   *triangle = now;
   return false;
 }
 
-/* Of the triangles kept the one that x lies above, or one near to it, looked for from `now` on,
- * then from x's cell. */
-static uint32_t walk_towards(const scree_memory *m, vec3 x, uint32_t now) {
-  float at[3] = {(float)x.x, (float)x.y, (float)x.z};
-  if (walk(m, at, FIRST_STEPS, &now)) return now;
+/* Of the triangles kept the one that x lies above, or one near to it, looked for from *near on,
+ * then from x's cell. Answers a distance: x is no farther from it. */
+static double walk_towards(const scree_memory *m, vec3 x, uint32_t *near) {
+  float at[3] = {(float)x.x, (float)x.y, (float)x.z}, bound;
+  if (walk(m, at, FIRST_STEPS, near, &bound)) return (double)bound;
   uint32_t start = m->starts.triangle[start_cell(&m->starts, x)];
-  if (start != SCREE_NONE) now = start;
-  walk(m, at, MOST_STEPS, &now);
-  return now;
+  if (start != SCREE_NONE) *near = start;
+  walk(m, at, MOST_STEPS, near, &bound);
+  return (double)bound;
 }
 
-/* Whether the triangle that x lies above, looked for from *near on, is within this distance,
- * squared: mostly the answer, at less cost than to look through the tree. Then *near is that
- * triangle. */
-static bool walk_within(const scree_memory *m, vec3 x, double most, uint32_t *near) {
-  vec3 point;
-  *near = walk_towards(m, x, *near);
-  return scree_triangle_closest(m->surface.corners + 9 * (size_t)*near, x, &point) <= most;
+/* Whether x, which is near this triangle, is farther from the surface kept than `least`, squared;
+ * then *hit is where it is nearest. */
+static bool find_farther_from(const scree_memory *m, vec3 x, double least, uint32_t near,
+                              scree_bvh_hit *hit) {
+  hit->index = near;
+  hit->distance2 = scree_triangle_closest(m->surface.corners + 9 * (size_t)near, x, &hit->point);
+  if (hit->distance2 <= least) return false; /* else it is mostly farther */
+  scree_bvh_closest(&m->surface, x, hit);
+  return hit->distance2 > least;
 }
 
-/* Whether x is farther from the surface kept than `least`, squared; then *hit is where it is
- * nearest. *near: a triangle to begin with, then the one found. */
+/* The same, *near being a triangle to begin with, then one near x: mostly that is the answer, at
+ * less cost than to look through the tree. */
 static bool find_farther(const scree_memory *m, vec3 x, double least, uint32_t *near,
                          scree_bvh_hit *hit) {
-  if (walk_within(m, x, least, near)) return false; /* else it is mostly farther */
-  hit->index = *near;
-  hit->distance2 = scree_triangle_closest(m->surface.corners + 9 * (size_t)*near, x, &hit->point);
-  scree_bvh_closest(&m->surface, x, hit);
+  double bound = walk_towards(m, x, near);
+  if (bound * bound <= least) return false;
+  bool is_farther = find_farther_from(m, x, least, *near, hit);
   *near = hit->index;
-  return hit->distance2 > least;
+  return is_farther;
 }
 
 /* The squared distance of x from the surface kept, if above `least`. */
@@ -530,13 +545,12 @@ static bool is_far_place(const scree_memory *m, vec3 x, double least, scree_plac
   double moved = sqrt(vec3_norm2(vec3_sub(x, hint->at))), bound = hint->within + moved;
   if (bound * bound <= least) return false;
   hint->at = x;
-  hint->near = walk_towards(m, x, hint->near);
-  hint->within =
-      sqrt(scree_triangle_closest(m->surface.corners + 9 * (size_t)hint->near, x, &hit->point));
-  if (hint->within * hint->within <= least || !find_farther(m, x, least, &hint->near, hit))
-    return false;
+  hint->within = walk_towards(m, x, &hint->near);
+  if (hint->within * hint->within <= least) return false;
+  bool far = find_farther_from(m, x, least, hint->near, hit);
   hint->within = sqrt(hit->distance2);
-  return true;
+  hint->near = hit->index;
+  return far;
 }
 
 size_t scree_memory_far_places(const scree_memory *m, const scree_halfmesh *s, double least,
@@ -694,7 +708,7 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
   scree_fours_fill(corners, r->count, f.fours);
   f.four_count = scree_four_count(r->count);
   ask_for_witnesses(m, s, r);
-  m->near[r->a] = walk_towards(m, target, m->near[r->a]);
+  walk_towards(m, target, &m->near[r->a]);
   for (uint32_t k = 0; k < around; k++) {
     uint32_t *first = &m->first[triangle_around(s, r, k)];
     moving[k] = *first;

@@ -20,11 +20,14 @@ typedef struct scree_witness {
   uint32_t next;    /* of the same triangle, or NONE */
 } scree_witness;
 
-/* From a triangle of the surface kept on towards a place. In single precision: it only tells where
- * to look. */
+/* From a triangle of the surface kept on towards a place, and how far off that is. In single
+ * precision: it tells where to look, and bounds the distance of what lies above the triangle. A
+ * cache line each. */
 typedef struct scree_way {
   float second[4], third[4]; /* shares of these corners at a place x: second[0..2].x + second[3] */
+  float height[4];           /* of x above the plane, likewise */
   uint32_t beside[3];        /* triangles across the edge from corner k, or NONE */
+  float error; /* what rounding may take off the distance of a place that seems to lie above */
 } scree_way;
 
 /* Where to begin looking for a place: of every cell of a grid about the surface a triangle in it,
