@@ -22,9 +22,11 @@
  * tree is asked. */
 enum { FIRST_STEPS = 8, MOST_STEPS = 32 };
 /* Cells along the longest side of the surface's box. */
-enum { START_CELLS = 64 };
+enum { START_CELLS = 128 };
 /* How witnesses that were dropped are known. */
 #define DROPPED (-1.0)
+/* Witnesses that move together, and how many of them side by side. */
+enum { MOVED_AT_ONCE = 512, MOVED_BLOCK = 32 };
 /* In which the farthest place is looked for. */
 enum { FARTHEST_BLOCKS = 16 };
 enum { WAY_BLOCK = 4096 };
@@ -126,8 +128,7 @@ static void way_block(void *context, size_t begin, size_t end, size_t block, int
     double second = set_linear(way->second, vec3_scale(vec3_cross(ac, n), 1 / n2), a),
            third = set_linear(way->third, vec3_scale(vec3_cross(n, ab), 1 / n2), a),
            height = set_linear(way->height, vec3_scale(n, 1 / sqrt(n2)), a);
-    way->error =
-        (float)(WAY_ERROR * (second * vec3_norm(ab) + third * vec3_norm(ac) + height));
+    way->error = (float)(WAY_ERROR * (second * vec3_norm(ab) + third * vec3_norm(ac) + height));
   }
 }
 
@@ -223,11 +224,6 @@ failed:
   return status;
 }
 
-bool scree_memory_allows(const scree_memory *m, size_t triangle_count, vec3 x) {
-  double size2 = m->area / (double)triangle_count;
-  return scree_bvh_closest(&m->surface, x, &(scree_bvh_hit){STAND_OFF * STAND_OFF * size2, x, 0});
-}
-
 /* Goes over the edge beyond which x lies farthest, so many times at the most. True: x lies above
  * the triangle come to, or that is as near as it gets. *bound: no less than the distance of x from
  * it. */
@@ -288,6 +284,14 @@ static bool find_farther(const scree_memory *m, vec3 x, double least, uint32_t *
   bool is_farther = find_farther_from(m, x, least, *near, hit);
   *near = hit->index;
   return is_farther;
+}
+
+bool scree_memory_allows(const scree_memory *m, size_t triangle_count, vec3 x) {
+  double most = STAND_OFF * STAND_OFF * m->area / (double)triangle_count;
+  uint32_t near = m->starts.triangle[start_cell(&m->starts, x)];
+  scree_bvh_hit hit;
+  if (near == SCREE_NONE) return scree_bvh_closest(&m->surface, x, &(scree_bvh_hit){most, x, 0});
+  return !find_farther(m, x, most, &near, &hit);
 }
 
 /* The squared distance of x from the surface kept, if above `least`. */
@@ -435,6 +439,27 @@ static vec3 place_on_edge(const scree_halfmesh *s, const scree_ring *r, vec3 tar
   return vec3_lerp(target, end, places[k].sixths / 6.0);
 }
 
+/* Where to begin looking for place k of the edges, if that is not known: in its cell. All are asked
+ * for at once. */
+SCREE_PREFETCHES void begin_places(const scree_memory *m, const scree_halfmesh *s,
+                                   const scree_ring *r, vec3 target, uint32_t k,
+                                   scree_hints *hints) {
+  uint32_t cell[SCREE_RING_MAX], first = 1 + k * r->count;
+  uint32_t begin = hints->known > first ? hints->known - first : 0;
+  for (uint32_t i = begin; i < r->count; i++) {
+    cell[i] = start_cell(&m->starts, place_on_edge(s, r, target, i, k));
+    __builtin_prefetch(&m->starts.triangle[cell[i]]);
+  }
+  for (uint32_t i = begin; i < r->count; i++) {
+    uint32_t *near = &hints->near[first + i];
+    *near = m->starts.triangle[cell[i]];
+    if (*near == SCREE_NONE)
+      *near = places[k].beside < 0 ? hints->near[0]
+                                   : hints->near[1 + (uint32_t)places[k].beside * r->count + i];
+    __builtin_prefetch(&m->ways[*near]);
+  }
+}
+
 /* The same of the new vertex and of the first `count` places on each new edge, from the surface
  * kept. In hints, place k of edge i has the number 1 + k * (edges) + i, the new vertex 0. */
 static double stray_of_edges(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
@@ -450,16 +475,15 @@ static double stray_of_edges(const scree_memory *m, const scree_halfmesh *s, con
   }
   if (known == 0) near[0] = m->near[r->a];
   worst = farther(m, target, worst, &near[0]);
-  for (uint32_t k = 0; k < count; k++)
+  for (uint32_t k = 0; k < count && worst <= most; k++) {
+    begin_places(m, s, r, target, k, hints);
     for (uint32_t i = 0; i < r->count && worst <= most; i++, number++) {
-      if (number >= known)
-        near[number] =
-            places[k].beside < 0 ? near[0] : near[1 + (uint32_t)places[k].beside * r->count + i];
       double found = farther(m, place_on_edge(s, r, target, i, k), worst, &near[number]);
       if (found > worst) hints->farthest = number;
       worst = found;
     }
-  if (number > known) hints->known = number;
+  }
+  if (number > hints->known) hints->known = number;
   return worst;
 }
 
@@ -700,13 +724,37 @@ static uint32_t nearest_triangle(const scree_ring *r, const fan *f, scree_witnes
   return nearest;
 }
 
+/* Witnesses that get another triangle, as many as fit. */
+typedef struct removal {
+  const scree_memory *m;
+  const scree_ring *ring;
+  fan fan;
+  uint32_t count, witness[MOVED_AT_ONCE], triangle[MOVED_AT_ONCE];
+} removal;
+
+static void find_nearest(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  removal *q = context;
+  for (size_t i = begin; i < end; i++)
+    q->triangle[i] = nearest_triangle(q->ring, &q->fan, &q->m->witnesses[q->witness[i]]);
+}
+
+static void move_gathered(scree_memory *m, removal *q) {
+  scree_parallel_for(q->count, MOVED_BLOCK, find_nearest, q);
+  for (uint32_t i = 0; i < q->count; i++) enlist(m, q->witness[i], q->triangle[i]);
+  q->count = 0;
+}
+
 void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_ring *r, vec3 target) {
-  fan f;
+  removal q;
   double corners[SCREE_RING_MAX][9];
   uint32_t moving[SCREE_RING_MAX + 2], around = count_around(r);
+  q.m = m;
+  q.ring = r;
+  q.count = 0;
   scree_ring_corners(s, r, target, corners);
-  scree_fours_fill(corners, r->count, f.fours);
-  f.four_count = scree_four_count(r->count);
+  scree_fours_fill(corners, r->count, q.fan.fours);
+  q.fan.four_count = scree_four_count(r->count);
   ask_for_witnesses(m, s, r);
   walk_towards(m, target, &m->near[r->a]);
   for (uint32_t k = 0; k < around; k++) {
@@ -715,11 +763,11 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
     *first = SCREE_NONE;
   }
   for (uint32_t k = 0; k < around; k++)
-    for (uint32_t j = moving[k], next; j != SCREE_NONE; j = next) {
-      scree_witness *w = &m->witnesses[j];
-      next = w->next;
-      enlist(m, j, nearest_triangle(r, &f, w));
+    for (uint32_t j = moving[k]; j != SCREE_NONE; j = m->witnesses[j].next) {
+      if (q.count == MOVED_AT_ONCE) move_gathered(m, &q);
+      q.witness[q.count++] = j;
     }
+  move_gathered(m, &q);
 }
 
 /* Of a triangle, the first, and those beside it: as above, but that a witness stays where that is
