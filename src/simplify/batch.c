@@ -34,6 +34,14 @@ enum { ROUNDS = 4 };
 #define MOST_MOVES 4.0
 /* ... and how far all of them since the surface was kept may, squared, against that. */
 #define ALL_MOVES2 1.44
+/* On a rough surface every stray is large: its cost is above the threshold, which comes from costs
+ * without it, or it is above the limit, for mean moves are those of the few that are done. Most
+ * wait, then. After passes that take less than the first share of the triangles a whole cost may be
+ * more times the threshold, and the stray as far as that is worth; less again after passes that
+ * take more than the second. */
+#define STALLS       0.1
+#define MOVES_ON     0.2
+#define MORE_LENIENT 2.0
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
 
@@ -67,9 +75,10 @@ typedef struct pass {
   scree_contender *contenders;
   struct scree_choice_count *counts;
   scree_choosing choosing; /* of the above */
-  double usual2;           /* squared stray that no collapse of this pass may exceed */
-  double moves;            /* sum over the collapses of this pass: how far they moved the surface */
-  taken *taken;            /* in the order of their vertices */
+  double leniency; /* thresholds that a whole cost may be: 1; more after passes that stalled */
+  double usual2;   /* squared stray that no collapse of this pass may exceed */
+  double moves;    /* sum over the collapses of this pass: how far they moved the surface */
+  taken *taken;    /* in the order of their vertices */
   scree_change *changes;
   size_t taken_count, room;
   uint32_t *edges;           /* the rings */
@@ -223,7 +232,7 @@ static uint32_t edge_places(const scree_decimator *d) {
 /* Whether the collapse takes the surface too far off for this pass. */
 static bool strays(const pass *p, const scree_ring *ring, const scree_candidate *c) {
   const scree_decimator *d = p->d;
-  double most = fmin(scree_stray_at(c, p->e.limit), p->usual2);
+  double most = fmin(scree_stray_at(c, p->leniency * p->e.limit), p->usual2);
   if (scree_memory_is_kept(&d->memory))
     return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, edge_places(d), most);
   if (!scree_stays_within(&d->s, ring, c->target, most)) return true;
@@ -525,7 +534,7 @@ static scree_status set_usual(pass *p) {
     if (usual > 0 && !large && !scree_is_close_scan(d))
       usual = fmax(usual, scree_memory_worst(&d->memory));
   } else if (!scree_is_fine(d) || scree_memory_has_surface(&d->memory)) {
-    usual = MOST_MOVES * d->mean_move;
+    usual = sqrt(sqrt(p->leniency)) * MOST_MOVES * d->mean_move; /* as D^4 costs */
   }
   p->usual2 = usual > 0 ? usual * usual : INFINITY;
   if (count <= SCREE_GREEDY_COUNT) p->usual2 *= COARSE_USUAL2;
@@ -554,6 +563,16 @@ static void discard_tails(const pass *p) {
   scree_halfmesh_give_back(s);
 }
 
+/* After a pass that took this share of the triangles. Witnesses tell better what is far off. */
+static void set_leniency(pass *p, double share) {
+  if (scree_memory_is_kept(&p->d->memory))
+    p->leniency = 1;
+  else if (share < STALLS)
+    p->leniency *= MORE_LENIENT;
+  else if (share > MOVES_ON)
+    p->leniency = fmax(1, p->leniency / MORE_LENIENT);
+}
+
 static scree_status run_pass(pass *p, size_t *done) {
   scree_decimator *d = p->d;
   scree_status status = prepare_grid(d);
@@ -575,6 +594,7 @@ static scree_status run_pass(pass *p, size_t *done) {
     *done += run_round(p);
   }
   if (*done > 0) d->mean_move = p->moves / (double)*done;
+  set_leniency(p, 2 * (double)*done / (double)d->s.live_triangle_count);
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count) {
     if (scree_memory_has_surface(&d->memory)) scree_memory_compact(&d->memory, &d->s);
     scree_halfmesh_compact(&d->s, (uint32_t *)p->contenders, p->edges);
@@ -584,7 +604,7 @@ static scree_status run_pass(pass *p, size_t *done) {
 }
 
 scree_status scree_decimate_in_batches(scree_decimator *d) {
-  pass p = {.d = d};
+  pass p = {.d = d, .leniency = 1};
   size_t done = 1;
   scree_status status = SCREE_OK;
   if (d->s.live_triangle_count > d->single_from) status = pass_allocate(&p);
