@@ -15,7 +15,7 @@ enum {
   LEAF = 4,            /* triangles at most */
   LEAST = 2,           /* triangles on either side of a split, so nodes are fewer than triangles */
   BINS = 16,           /* per axis; more gains nothing measurable */
-  SUBTREES = 64,       /* parts built in parallel: fixed, so that the tree is */
+  SUBTREES = 64,       /* parts built in parallel, or up to twice as many */
   BALANCED_DEPTH = 48, /* below this, halves: bounds the depth and so the stack */
   STACK = 96,          /* > BALANCED_DEPTH + log2(2^32) */
   PRIMITIVE_BLOCK = 1 << 14
@@ -37,12 +37,18 @@ typedef struct task {
   int depth;
 } task;
 
+typedef struct halves {
+  uint32_t slot; /* of the left part's node; the right one's is the next */
+  task left, right;
+} halves;
+
 typedef struct builder {
   const scree_mesh *mesh;
   primitive *primitives;
   scree_bvh_node *scratch; /* the subtree over [first, first + count) uses slots of that range */
   uint32_t root_slot;
-  task subtrees[SUBTREES];
+  task subtrees[2 * SUBTREES];
+  halves splits[SUBTREES]; /* of these, as they are split */
   size_t subtree_count;
   scree_bvh *out;
 } builder;
@@ -211,20 +217,38 @@ static void build_subtree(void *context, size_t begin, size_t end, size_t block,
   }
 }
 
-/* Splits the largest part until there are SUBTREES of them or all are small. */
+static bool is_small(const task *t) {
+  return t->count <= SUBTREES;
+}
+
+static void split_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  builder *b = context;
+  for (size_t i = begin; i < end; i++) {
+    halves *made = &b->splits[i];
+    if (!is_small(&b->subtrees[i]))
+      build_node(b, &b->subtrees[i], &made->slot, &made->left, &made->right);
+  }
+}
+
+/* Splits all parts that are not small, and again, until there are SUBTREES of them. */
 static void build_top(builder *b) {
   uint32_t count = (uint32_t)b->mesh->triangle_count, slot = count + 1;
   b->root_slot = count;
   b->subtrees[0] = (task){b->root_slot, 0, count, 0};
   b->subtree_count = 1;
-  while (b->subtree_count < SUBTREES) {
-    size_t largest = 0;
-    for (size_t i = 1; i < b->subtree_count; i++)
-      if (b->subtrees[i].count > b->subtrees[largest].count) largest = i;
-    task now = b->subtrees[largest], left, right;
-    if (now.count <= SUBTREES || !build_node(b, &now, &slot, &left, &right)) break;
-    b->subtrees[largest] = left;
-    b->subtrees[b->subtree_count++] = right;
+  for (size_t before = 0; before < b->subtree_count && b->subtree_count < SUBTREES;) {
+    before = b->subtree_count;
+    for (size_t i = 0; i < before; i++) {
+      b->splits[i].slot = slot;
+      if (!is_small(&b->subtrees[i])) slot += 2;
+    }
+    scree_parallel_for(before, 1, split_block, b);
+    for (size_t i = 0; i < before; i++) {
+      if (is_small(&b->subtrees[i])) continue;
+      b->subtrees[i] = b->splits[i].left;
+      b->subtrees[b->subtree_count++] = b->splits[i].right;
+    }
   }
 }
 
@@ -285,7 +309,7 @@ scree_status scree_bvh_build(const scree_mesh *mesh, scree_bvh *bvh, scree_error
   size_t count = mesh->triangle_count;
   scree_status status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(b.primitives, count, error, done);
-  SCREE_ALLOC_OR(b.scratch, count + (size_t)2 * SUBTREES + 1, error, done);
+  SCREE_ALLOC_OR(b.scratch, count + (size_t)4 * SUBTREES + 1, error, done);
   if (count > 0) {
     scree_parallel_for(count, PRIMITIVE_BLOCK, make_primitives, &b);
     build_top(&b);

@@ -49,26 +49,47 @@ static void list_origins(finding *f) {
   f->count = count;
 }
 
+/* The triangles at a vertex, a few of many at a time. */
+enum { FAN_PART = 4 * SCREE_FOUR };
+typedef struct fan {
+  uint32_t triangle[FAN_PART];
+  double corners[FAN_PART][9];
+  uint32_t count;
+} fan;
+
+/* Those from half-edge *h on; *h is where the rest begins, or NONE. */
+static void gather_fan(const scree_halfmesh *s, uint32_t first, uint32_t *h, fan *f) {
+  for (f->count = 0; f->count < FAN_PART && *h != SCREE_NONE; f->count++) {
+    vec3 at[3];
+    scree_corners(s, *h / 3, at);
+    for (size_t i = 0; i < 3; i++) vec3_store(f->corners[f->count] + 3 * i, at[i]);
+    f->triangle[f->count] = *h / 3;
+    *h = scree_turn(s, *h);
+    if (*h == first) *h = SCREE_NONE;
+  }
+}
+
 /* Gives w the nearest triangle at vertex v, in w->next. Whether others may be nearer still: not
  * where what it has is as near, nor where w lies right above the triangle. */
 static bool look_around(const scree_halfmesh *s, uint32_t v, scree_witness *w) {
-  uint32_t first = s->vertex[v].outgoing, h = first;
+  scree_four fours[FAN_PART / SCREE_FOUR];
+  double distance2[FAN_PART];
+  fan f;
   bool found = false;
-  do {
-    vec3 at[3], point;
-    double corners[9];
-    scree_corners(s, h / 3, at);
-    for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, at[i]);
-    double distance2 = scree_triangle_closest(corners, w->at, &point);
-    if (distance2 < w->distance2) {
-      vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
-      double height = vec3_dot(n, vec3_sub(w->at, at[0]));
-      w->distance2 = distance2;
-      w->next = h / 3;
-      found = height * height < (1 - ABOVE) * distance2 * vec3_norm2(n);
+  for (uint32_t first = s->vertex[v].outgoing, h = first; h != SCREE_NONE;) {
+    gather_fan(s, first, &h, &f);
+    scree_fours_fill(f.corners, f.count, fours);
+    scree_fours_closest(fours, scree_four_count(f.count), w->at, distance2);
+    for (uint32_t i = 0; i < f.count; i++) {
+      if (!(distance2[i] < w->distance2)) continue;
+      vec3 a = vec3_load(f.corners[i]);
+      vec3 n = vec3_triangle_normal(a, vec3_load(f.corners[i] + 3), vec3_load(f.corners[i] + 6));
+      double height = vec3_dot(n, vec3_sub(w->at, a));
+      w->distance2 = distance2[i];
+      w->next = f.triangle[i];
+      found = height * height < (1 - ABOVE) * distance2[i] * vec3_norm2(n);
     }
-    h = scree_turn(s, h);
-  } while (h != SCREE_NONE && h != first);
+  }
   return found;
 }
 
