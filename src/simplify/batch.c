@@ -45,7 +45,8 @@ enum { ROUNDS = 4 };
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
 
-enum { TAKEN_BLOCK = 256 };
+/* Collapses by blocks: small ones, for late passes take few. */
+enum { TAKEN_BLOCK = SCREE_SIDE_BY_SIDE, SEARCH_BLOCK = 16 };
 static_assert((int)SCREE_PASS_BLOCK == (int)SCREE_CHOICE_BLOCK, "one list a block");
 /* How far ahead memory is asked for in a walk over all. */
 enum { AHEAD = 16 };
@@ -403,7 +404,7 @@ static void search_uncertain(pass *p) {
   }
   if (p->uncertain_count == 0) return;
   scree_grid_join_groups(&d->grid);
-  scree_parallel_for(p->uncertain_count, TAKEN_BLOCK / 16, search_block, p);
+  scree_parallel_for(p->uncertain_count, SEARCH_BLOCK, search_block, p);
 }
 
 static void set_flag(scree_halfmesh *s, uint32_t v) {
@@ -456,9 +457,8 @@ static void apply_block(void *context, size_t begin, size_t end, size_t block, i
   (void)block, (void)worker;
   pass *p = context;
   scree_decimator *d = p->d;
+  ask_for_changes(p, p->taken + begin, end - begin);
   for (size_t i = begin; i < end; i++) {
-    if ((i - begin) % SCREE_SIDE_BY_SIDE == 0)
-      ask_for_changes(p, p->taken + i, end - i < SCREE_SIDE_BY_SIDE ? end - i : SCREE_SIDE_BY_SIDE);
     give_up(p, &p->taken[i]);
     if (p->taken[i].verdict != CERTAIN) {
       d->s.refused[p->taken[i].half_edge] =
