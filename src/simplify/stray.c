@@ -21,8 +21,9 @@
 /* Triangles walked over towards a place before one begins anew in its cell, and then before the
  * tree is asked. */
 enum { FIRST_STEPS = 8, MOST_STEPS = 32 };
-/* Cells along the longest side of the surface's box. */
-enum { START_CELLS = 128 };
+/* Cells along the longest side of the surface's box: at most, and their square for a triangle. */
+#define MOST_CELLS         128.0
+#define CELLS_PER_TRIANGLE 0.125
 /* How witnesses that were dropped are known. */
 #define DROPPED (-1.0)
 /* Witnesses that move together, and how many of them side by side. */
@@ -150,7 +151,8 @@ static scree_status find_starts(scree_memory *m, const scree_halfmesh *s, scree_
   vec3 extent = vec3_sub(s->high, s->low);
   double longest = fmax(extent.x, fmax(extent.y, extent.z));
   g->low = s->low;
-  g->cells_per_length = longest > 0 ? START_CELLS / longest : 0;
+  double cells = fmin(MOST_CELLS, sqrt(CELLS_PER_TRIANGLE * (double)m->surface.triangle_count));
+  g->cells_per_length = longest > 0 ? cells / longest : 0;
   g->size[0] = (uint32_t)(extent.x * g->cells_per_length) + 1;
   g->size[1] = (uint32_t)(extent.y * g->cells_per_length) + 1;
   g->size[2] = (uint32_t)(extent.z * g->cells_per_length) + 1;
