@@ -443,9 +443,8 @@ static vec3 place_on_edge(const scree_halfmesh *s, const scree_ring *r, vec3 tar
 
 /* Where to begin looking for place k of the edges, if that is not known: in its cell. All are asked
  * for at once. */
-SCREE_PREFETCHES void begin_places(const scree_memory *m, const scree_halfmesh *s,
-                                   const scree_ring *r, vec3 target, uint32_t k,
-                                   scree_hints *hints) {
+static void begin_places(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
+                         vec3 target, uint32_t k, scree_hints *hints) {
   uint32_t cell[SCREE_RING_MAX], first = 1 + k * r->count;
   uint32_t begin = hints->known > first ? hints->known - first : 0;
   for (uint32_t i = begin; i < r->count; i++) {
