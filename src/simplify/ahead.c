@@ -23,8 +23,6 @@ scree_status scree_ahead_prepare(scree_decimator *d) {
   SCREE_ALLOC_OR(vertices, d->s.vertex_count, d->error, done);
   SCREE_ALLOC_OR(triangles, d->s.triangle_count, d->error, done);
   status = SCREE_OK;
-  if (scree_memory_is_kept(&d->memory)) status = scree_memory_squeeze(&d->memory, &d->s, d->error);
-  if (status != SCREE_OK) goto done;
   if (scree_memory_has_surface(&d->memory)) scree_memory_compact(&d->memory, &d->s);
   scree_halfmesh_compact(&d->s, vertices, triangles);
 done:

@@ -545,8 +545,7 @@ static scree_status begin_quickly(scree_decimator *d, size_t until, scree_settli
   if (status == SCREE_OK) status = run(&q, until > settled ? until : settled, NULL, NULL);
   size_t count = d->s.live_triangle_count;
   if (status == SCREE_OK && count <= settled && count > until) {
-    status = scree_memory_squeeze(&d->memory, &d->s, d->error);
-    if (status == SCREE_OK) status = scree_settle_begin(settling, &q.step);
+    status = scree_settle_begin(settling, &q.step);
     if (status == SCREE_OK) status = run(&q, until, NULL, settling);
   }
   queue_free(&q);
