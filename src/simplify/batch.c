@@ -21,27 +21,12 @@
 #include "base/parallel.h"
 #include "simplify/cheapest.h"
 #include "simplify/independent.h"
+#include "simplify/limit.h"
 
 #include <assert.h>
 #include <string.h>
 
 enum { ROUNDS = 4 };
-/* Where there are no more than SCREE_GREEDY_COUNT triangles, what is usual for the squared stray
- * counts for so much: single collapses would look at more places, and pay a toll. */
-#define COARSE_USUAL2 0.5
-/* When the levels are not fine any more or the surface is kept, as long as there are no witnesses:
- * how far one collapse may stray, in mean moves of those of the pass before. */
-#define MOST_MOVES 4.0
-/* ... and how far all of them since the surface was kept may, squared, against that. */
-#define ALL_MOVES2 1.44
-/* On a rough surface every stray is large: its cost is above the threshold, which comes from costs
- * without it, or it is above the limit, for mean moves are those of the few that are done. Most
- * wait, then. After passes that take less than the first share of the triangles a whole cost may be
- * more times the threshold, and the stray as far as that is worth; less again after passes that
- * take more than the second. */
-#define STALLS       0.1
-#define MOVES_ON     0.2
-#define MORE_LENIENT 2.0
 /* Compact when less than this is left of the arrays. */
 #define COMPACT_BELOW 0.8
 
@@ -76,10 +61,9 @@ typedef struct pass {
   scree_contender *contenders;
   struct scree_choice_count *counts;
   scree_choosing choosing; /* of the above */
-  double leniency; /* thresholds that a whole cost may be: 1; more after passes that stalled */
-  double usual2;   /* squared stray that no collapse of this pass may exceed */
-  double moves;    /* sum over the collapses of this pass: how far they moved the surface */
-  taken *taken;    /* in the order of their vertices */
+  double usual2;           /* squared stray that no collapse of this pass may exceed */
+  double moves;            /* sum over the collapses of this pass: how far they moved the surface */
+  taken *taken;            /* in the order of their vertices */
   scree_change *changes;
   size_t taken_count, room;
   uint32_t *edges;           /* the rings */
@@ -225,25 +209,6 @@ static void set_box(const scree_halfmesh *s, vec3 target, scree_ring *r) {
   }
 }
 
-/* Places looked at on every new edge. */
-static uint32_t edge_places(const scree_decimator *d) {
-  return scree_is_close_scan(d) ? SCREE_EDGE_PLACES : scree_is_large(d) ? 3 : 1;
-}
-
-/* Whether the collapse takes the surface too far off for this pass. */
-static bool strays(const pass *p, const scree_ring *ring, const scree_candidate *c) {
-  const scree_decimator *d = p->d;
-  double most = fmin(scree_stray_at(c, p->leniency * p->e.limit), p->usual2);
-  if (scree_memory_is_kept(&d->memory))
-    return !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, edge_places(d), most);
-  if (!scree_stays_within(&d->s, ring, c->target, most)) return true;
-  if (!(p->usual2 < INFINITY)) return false;
-  return !scree_ends_stay_within(&d->s, ring, c->target, most) ||
-         (scree_memory_has_surface(&d->memory) &&
-          !scree_memory_stays_within(&d->memory, &d->s, ring, c->target, 1,
-                                     ALL_MOVES2 * p->usual2));
-}
-
 static void check_one(pass *p, uint32_t index, const scree_candidate *candidate) {
   scree_decimator *d = p->d;
   taken *t = &p->taken[index];
@@ -257,7 +222,7 @@ static void check_one(pass *p, uint32_t index, const scree_candidate *candidate)
   t->verdict = sound ? UNCERTAIN : REFUSED;
   if (!sound) return;
   t->steep = around.steep;
-  if (candidate->stray > 0 && strays(p, &ring, candidate)) {
+  if (scree_strays(d, &ring, candidate, p->e.limit, p->usual2)) {
     t->verdict = POSTPONED;
     return;
   }
@@ -515,31 +480,20 @@ static size_t run_round(pass *p) {
   return apply(p);
 }
 
-/* Finds how far collapses may take the surface off; keeps it when it has become small enough. */
+/* Keeps the surface when it has become small enough; finds how far collapses may take it off. */
 static scree_status set_usual(pass *p) {
   scree_decimator *d = p->d;
   size_t count = d->s.live_triangle_count;
   size_t kept = scree_is_large(d) ? SCREE_KEPT_LATE : SCREE_KEPT_COUNT;
-  double usual = 0;
   scree_status status = SCREE_OK;
   if (!d->coster->merge && d->first_triangle_count > SCREE_CLOSE_SCAN &&
       count <= SCREE_SURFACE_COUNT && !scree_memory_has_surface(&d->memory))
     status = scree_memory_keep_surface(&d->s, &d->memory, d->error);
   if (status == SCREE_OK && !d->coster->merge && count <= kept && !scree_memory_is_kept(&d->memory))
     status = scree_decimate_keep(d);
-  if (status != SCREE_OK) return status;
-  if (scree_memory_is_kept(&d->memory)) {
-    bool large = scree_is_large(d);
-    usual = scree_memory_usual(&d->memory, large || scree_is_held_close(d));
-    if (usual > 0 && !large && !scree_is_close_scan(d))
-      usual = fmax(usual, scree_memory_worst(&d->memory));
-  } else if (!scree_is_fine(d) || scree_memory_has_surface(&d->memory)) {
-    usual = sqrt(sqrt(p->leniency)) * MOST_MOVES * d->mean_move; /* as D^4 costs */
-  }
-  p->usual2 = usual > 0 ? usual * usual : INFINITY;
-  if (count <= SCREE_GREEDY_COUNT) p->usual2 *= COARSE_USUAL2;
+  p->usual2 = scree_usual_stray2(d);
   p->moves = 0;
-  return SCREE_OK;
+  return status;
 }
 
 /* After compacting: memory that is not needed any more. The record needs it. */
@@ -563,16 +517,6 @@ static void discard_tails(const pass *p) {
   scree_halfmesh_give_back(s);
 }
 
-/* After a pass that took this share of the triangles. Witnesses tell better what is far off. */
-static void set_leniency(pass *p, double share) {
-  if (scree_memory_is_kept(&p->d->memory))
-    p->leniency = 1;
-  else if (share < STALLS)
-    p->leniency *= MORE_LENIENT;
-  else if (share > MOVES_ON)
-    p->leniency = fmax(1, p->leniency / MORE_LENIENT);
-}
-
 static scree_status run_pass(pass *p, size_t *done) {
   scree_decimator *d = p->d;
   scree_status status = prepare_grid(d);
@@ -594,7 +538,7 @@ static scree_status run_pass(pass *p, size_t *done) {
     *done += run_round(p);
   }
   if (*done > 0) d->mean_move = p->moves / (double)*done;
-  set_leniency(p, 2 * (double)*done / (double)d->s.live_triangle_count);
+  scree_limits_follow(d, 2 * (double)*done / (double)d->s.live_triangle_count);
   if ((double)d->s.live_triangle_count < COMPACT_BELOW * (double)d->s.triangle_count) {
     if (scree_memory_has_surface(&d->memory)) scree_memory_compact(&d->memory, &d->s);
     scree_halfmesh_compact(&d->s, (uint32_t *)p->contenders, p->edges);
@@ -604,7 +548,7 @@ static scree_status run_pass(pass *p, size_t *done) {
 }
 
 scree_status scree_decimate_in_batches(scree_decimator *d) {
-  pass p = {.d = d, .leniency = 1};
+  pass p = {.d = d};
   size_t done = 1;
   scree_status status = SCREE_OK;
   if (d->s.live_triangle_count > d->single_from) status = pass_allocate(&p);

@@ -46,6 +46,7 @@ typedef struct scree_decimator {
   scree_memory memory; /* of surfaces that the batches came to; nothing before */
   scree_anchors anchors;
   double mean_move; /* of the collapses of the last pass: the root of the mean square move; or 0 */
+  int lenient;      /* where passes stall: how often their limits were doubled (limit.h) */
   scree_ticker ticker;
   scree_error *error;
 } scree_decimator;

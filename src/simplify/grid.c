@@ -148,17 +148,38 @@ static void enter(scree_grid *g, scree_grid_box c, uint64_t averse) {
     __atomic_fetch_or(&g->averse[cell], averse, __ATOMIC_RELAXED);
 }
 
+/* What of a triangle is entered: the directions that it does not face, by tile, or whose it is. */
 typedef struct entering {
   scree_grid *grid;
   const scree_halfmesh *s;
-  const uint64_t *averse_of; /* by tile */
+  const uint64_t *averse_of;
+  const uint32_t *place_of;
+  size_t patch;
 } entering;
+
+/* An owner's number and, so that two of them joined are none, its complement. Bits 62 and 63 are
+ * not used. */
+#define OWNER_BITS 31
+#define NOBODY     ((UINT64_C(1) << (2 * OWNER_BITS)) - 1)
+static uint64_t owner_code(size_t owner) {
+  uint64_t code = owner & (NOBODY >> OWNER_BITS);
+  return code | (NOBODY >> OWNER_BITS & ~code) << OWNER_BITS;
+}
+
+/* The codes of its corners' owners, joined. */
+static uint64_t owners_of(const entering *work, size_t t) {
+  uint64_t code = 0;
+  for (size_t i = 0; i < 3; i++)
+    code |= owner_code(work->place_of[work->s->half[3 * t + i].from] / work->patch);
+  return code;
+}
 
 /* Triangles of a group side by side, one per lane. */
 typedef struct lanes {
   double at[3][3][SCREE_GROUP]; /* corner, axis */
   int32_t low[3][SCREE_GROUP], high[3][SCREE_GROUP];
   int32_t tile[SCREE_GROUP]; /* of the normal, or -1: it faces no direction */
+  uint64_t entered[SCREE_GROUP];
 } lanes;
 
 /* The lanes' cells and tiles, as scree_cells_of and scree_averse_to find them. */
@@ -194,6 +215,7 @@ static void enter_group(const entering *work, size_t begin, size_t end, scree_gr
     vec3 at[3];
     if (scree_is_gone(s, t)) continue;
     scree_corners(s, t, at);
+    if (work->place_of) l.entered[count] = owners_of(work, t);
     for (int k = 0; k < 3; k++) {
       if (g->frame) at[k] = scree_into_frame(g->frame, at[k]);
       l.at[k][0][count] = at[k].x;
@@ -203,11 +225,13 @@ static void enter_group(const entering *work, size_t begin, size_t end, scree_gr
     count++;
   }
   place_lanes(g, &l, count);
+  for (int i = 0; i < count && !work->place_of; i++)
+    l.entered[i] = l.tile[i] < 0 ? SCREE_ALL_AVERSE : work->averse_of[l.tile[i]];
   *all = SCREE_NO_CELLS;
   for (int i = 0; i < count; i++) {
     scree_grid_box c = {{(uint16_t)l.low[0][i], (uint16_t)l.low[1][i], (uint16_t)l.low[2][i]},
                         {(uint16_t)l.high[0][i], (uint16_t)l.high[1][i], (uint16_t)l.high[2][i]}};
-    enter(g, c, l.tile[i] < 0 ? SCREE_ALL_AVERSE : work->averse_of[l.tile[i]]);
+    enter(g, c, l.entered[i]);
     scree_join_cells(all, &c);
   }
 }
@@ -227,8 +251,9 @@ static void clear_block(void *context, size_t begin, size_t end, size_t block, i
   memset(g->averse + begin, 0, (end - begin) * sizeof *g->averse);
 }
 
-static void enter_all(scree_grid *g, const scree_halfmesh *s, const uint64_t *averse_of) {
-  entering work = {g, s, averse_of};
+static void enter_all(entering work) {
+  scree_grid *g = work.grid;
+  const scree_halfmesh *s = work.s;
   scree_parallel_for(g->cell_count, CLEAR_BLOCK, clear_block, g);
   g->averse_all = 0;
   g->group_count = scree_block_count(s->triangle_count, SCREE_GROUP);
@@ -236,39 +261,44 @@ static void enter_all(scree_grid *g, const scree_halfmesh *s, const uint64_t *av
 }
 
 void scree_grid_enter_directions(scree_grid *g, const scree_halfmesh *s) {
-  enter_all(g, s, g->averse_of);
+  enter_all((entering){g, s, .averse_of = g->averse_of});
 }
 
-/* What the cells around this one, where there is surface, are averse to. */
-static uint64_t averse_around(const scree_grid *g, size_t cell) {
+/* What was entered in the cells around this one, where there is surface. */
+static uint64_t entered_around(const scree_grid *g, size_t cell) {
   size_t at[3] = {cell % g->size[0], cell / g->size[0] % g->size[1],
                   cell / g->size[0] / g->size[1]};
   scree_grid_box c;
-  uint64_t averse = 0;
+  uint64_t all = 0;
   for (int k = 0; k < 3; k++) {
     c.low[k] = (uint16_t)(at[k] > 0 ? at[k] - 1 : 0);
     c.high[k] = (uint16_t)(at[k] + 1 < g->size[k] ? at[k] + 1 : at[k]);
   }
   SCREE_FOR_CELLS(g, c, other) {
     uint64_t found = __atomic_load_n(&g->averse[other], __ATOMIC_RELAXED);
-    if (!(found & NO_SURFACE)) averse |= found;
+    if (!(found & NO_SURFACE)) all |= found;
   }
-  return averse ? averse : SCREE_ALL_AVERSE;
+  return all ? all : SCREE_ALL_AVERSE; /* nobody's code either */
 }
 
-/* What the cell was averse to when it was entered. One without surface, to which some may come, has
- * the directions of those around; whoever asks first notes them. */
-static uint64_t averse_roomy(const scree_grid *g, size_t cell) {
-  uint64_t averse = __atomic_load_n(&g->averse[cell], __ATOMIC_RELAXED);
-  if (averse == 0) {
-    averse = NO_SURFACE | averse_around(g, cell);
-    __atomic_store_n(&g->averse[cell], averse, __ATOMIC_RELAXED);
+/* What was entered in the cell. One without surface, to which some may come, has what those around
+ * have; whoever asks first notes it. */
+static uint64_t entered_in(const scree_grid *g, size_t cell) {
+  uint64_t found = __atomic_load_n(&g->averse[cell], __ATOMIC_RELAXED);
+  if (found == 0) {
+    found = NO_SURFACE | entered_around(g, cell);
+    __atomic_store_n(&g->averse[cell], found, __ATOMIC_RELAXED);
   }
-  return averse & ~NO_SURFACE;
+  return found & ~NO_SURFACE;
 }
 
 void scree_grid_enter_roomy(scree_grid *g, const scree_halfmesh *s) {
-  enter_all(g, s, g->averse_of + TILE_COUNT);
+  enter_all((entering){g, s, .averse_of = g->averse_of + TILE_COUNT});
+}
+
+void scree_grid_enter_owners(scree_grid *g, const scree_halfmesh *s, const uint32_t *place_of,
+                             size_t patch) {
+  enter_all((entering){g, s, .place_of = place_of, .patch = patch});
 }
 
 scree_status scree_grid_look_at_all(scree_grid *g, scree_error *error) {
@@ -330,9 +360,38 @@ bool scree_grid_keeps(const scree_grid *g, const scree_halfmesh *s, const scree_
     averse |= scree_averse_to(g, mat3_mul_vec(&g->frame->axes, around->after[i]));
   if (averse == SCREE_ALL_AVERSE || scree_count_cells(&c) > SCREE_CELLS_MAX) return false;
   SCREE_FOR_CELLS(g, c, cell) {
-    uint64_t found = averse_roomy(g, cell);
+    uint64_t found = entered_in(g, cell);
     all |= found;
     lost |= averse & ~found;
   }
   return !lost && all != SCREE_ALL_AVERSE;
+}
+
+static bool owns(const scree_grid *g, const scree_grid_box *c, size_t patch) {
+  uint64_t all = g->averse_all, own = owner_code(patch);
+  if (scree_count_cells(c) > SCREE_CELLS_MAX) return false;
+  SCREE_FOR_CELLS(g, *c, cell) {
+    all |= entered_in(g, cell);
+    if (all != own) return false;
+  }
+  return true;
+}
+
+bool scree_grid_owns(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r, vec3 target,
+                     size_t patch) {
+  scree_grid_box c = turned_box(g, s, r, target);
+  return owns(g, &c, patch);
+}
+
+bool scree_grid_owns_fan(const scree_grid *g, const scree_halfmesh *s, uint32_t v, size_t patch) {
+  vec3 low = scree_into_frame(g->frame, s->vertex[v].at), high = low;
+  uint32_t first = s->vertex[v].outgoing, h = first;
+  do {
+    vec3 p = scree_into_frame(g->frame, s->vertex[scree_to(s, h)].at);
+    low = vec3_min(low, p);
+    high = vec3_max(high, p);
+    h = scree_turn(s, h);
+  } while (h != first);
+  scree_grid_box c = scree_cells_of(g, low, high);
+  return owns(g, &c, patch);
 }

@@ -32,7 +32,8 @@ typedef struct scree_grid {
   double cells_per_length;
   uint32_t size[3];
   size_t cell_count;
-  uint64_t *averse;       /* per cell: bit k set if some triangle does not face direction k */
+  uint64_t *averse;       /* per cell: bit k set if some triangle does not face direction k; or
+                             whose it is, see scree_grid_enter_owners */
   uint64_t averse_all;    /* the same for triangles too large to be entered cell by cell */
   scree_grid_box *groups; /* cells of SCREE_GROUP triangles each; then of groups joined */
   size_t group_count;
@@ -94,6 +95,18 @@ void scree_grid_enter_roomy(scree_grid *grid, const scree_halfmesh *s);
 bool scree_grid_keeps(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                       vec3 target, const scree_around *around);
 
+/* For patches, stretches of `patch` places of vertices, in place of directions: enters whose the
+ * cells are. */
+void scree_grid_enter_owners(scree_grid *grid, const scree_halfmesh *s, const uint32_t *place_of,
+                             size_t patch);
+/* True: nothing that lies in the cells about the closed ring belongs to another patch or to
+ * several, now or later, as long as all that is changed or asked for is owned in this sense. */
+bool scree_grid_owns(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
+                     vec3 target, size_t patch);
+/* The same of the cells about a vertex and its neighbours. */
+bool scree_grid_owns_fan(const scree_grid *grid, const scree_halfmesh *s, uint32_t vertex,
+                         size_t patch);
+
 /* One by one: lists all triangles, or one that has changed. False: out of memory. */
 bool scree_grid_list_all(scree_grid *grid, const scree_halfmesh *s);
 bool scree_grid_list_triangle(scree_grid *grid, const scree_halfmesh *s, uint32_t triangle);
@@ -107,5 +120,9 @@ void scree_grid_join_groups(scree_grid *grid);
  * With `planned` among the groups, else among the lists. ring->low and high are set. */
 bool scree_grid_clear(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                       vec3 target, const scree_planned *planned);
+
+/* The same among these triangles alone: no others come near the ring. */
+bool scree_grid_clear_among(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
+                            vec3 target, const uint32_t *triangles, size_t count);
 
 #endif

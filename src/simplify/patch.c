@@ -10,21 +10,37 @@
  * which all triangles in it faced, by a margin, when the grid was built, and which all that come to
  * lie in it must still face. That asks for nothing that changes meanwhile; and where one direction
  * is in the sets of all cells about a collapse, it has the certificate of grid.h whatever else is
- * done, before or after. Other collapses wait for the batches. */
+ * done, before or after.
+ *
+ * Where a scan is so fine that its noise faces every way, that decides little. Then cells have
+ * owners instead: those whose triangles, as a pass begins, are all one patch's alone (own.h); one
+ * without surface is its around which nothing else lies. A collapse must lie in its patch's cells,
+ * now and as it will be. So nothing that another thread does comes there, and the patch's triangles
+ * alone are searched. Vertices beside foreign cells are borders as well.
+ *
+ * Other collapses wait for the batches. */
 #include "simplify/patch.h"
 
 #include "base/parallel.h"
 #include "base/radix.h"
 #include "simplify/cheapest.h"
+#include "simplify/limit.h"
 #include "simplify/order.h"
-#include "simplify/stray.h"
+#include "simplify/own.h"
 
 /* Rounds of a pass, and the share of the patch's vertices below which a round takes too few to go
  * on. */
 enum { ROUNDS = 8 };
 #define FEW 0.01
-/* A pass that takes less than this share of the triangles is the last. */
-#define LITTLE 0.05
+/* A pass that takes less than this share of the triangles is the last; one that takes less than the
+ * second while cells have directions, the last with these. */
+#define LITTLE     0.05
+#define TOO_LITTLE 0.15
+/* Passes go on while the levels are fine (cheapest.h), or of more triangles than this: batches of
+ * so many wait for memory. */
+enum { MANY = 400000 };
+/* Room for a patch's own triangles, for each of its vertices. */
+enum { OWN_ROOM = 3 };
 /* The threshold comes from one in so many patches; from more, where that would be fewer than so
  * many. */
 enum { SAMPLE_STRIDE = 8, LEAST_SAMPLES = 8 };
@@ -54,6 +70,8 @@ typedef struct patching {
   scree_decimator *d;
   size_t patch, passes; /* vertices of a patch; passes until now */
   size_t stride;        /* of those sampled */
+  double usual2;        /* squared stray that no collapse of this pass may exceed */
+  uint16_t *own_place;  /* while cells have owners: per triangle of a patch, its place; or NULL */
   scree_frame_of_places frame;
   uint32_t *members;  /* the vertices, patch by patch */
   uint32_t *place_of; /* per vertex: its place among them */
@@ -87,6 +105,8 @@ struct work {
   size_t taken_count;
   uint32_t *edges;
   size_t edge_count, edge_room;
+  scree_own own; /* while cells have owners: of the patch */
+  size_t patch;  /* which */
 };
 
 static size_t patch_count(const patching *p) {
@@ -164,6 +184,7 @@ static void enter_patch(work *w, size_t k) {
   size_t first = k * p->patch, left = p->d->s.vertex_count - first;
   w->members = p->members + first;
   w->member_count = left < p->patch ? left : p->patch;
+  w->patch = k;
   w->deeds = p->deeds + first / 2;
   w->room = w->member_count / 2;
   w->s = p->d->s;
@@ -182,7 +203,9 @@ static void sum_patch(work *w) {
   for (size_t i = 0; i < w->member_count; i++) {
     uint32_t v = w->members[i];
     s->flags[v] &= (uint8_t)~SCREE_VERTEX_BORDER;
-    if (s->vertex[v].outgoing != SCREE_NONE && is_border(w->p, v))
+    if (s->vertex[v].outgoing == SCREE_NONE) continue;
+    if (is_border(w->p, v) ||
+        (w->p->own_place && !scree_grid_owns_fan(&w->p->d->grid, s, v, w->patch)))
       s->flags[v] |= SCREE_VERTEX_BORDER;
   }
   for (size_t i = 0; i < w->member_count && !w->p->d->coster->merge; i++) {
@@ -276,21 +299,29 @@ static void choose(work *w) {
   w->count = left;
 }
 
+/* 0, or why the collapse may make the surface meet itself. */
+static uint8_t meeting(const work *w, scree_ring *ring, vec3 target, const scree_around *around) {
+  const scree_decimator *d = w->p->d;
+  if (!w->p->own_place)
+    return scree_grid_keeps(&d->grid, &d->s, ring, target, around) ? 0 : SCREE_EDGE_POSTPONED;
+  if (!scree_grid_owns(&d->grid, &d->s, ring, target, w->patch)) return SCREE_EDGE_POSTPONED;
+  return scree_own_clear(&w->own, &d->grid, &d->s, ring, target, around) ? 0 : SCREE_EDGE_REFUSED;
+}
+
 /* 0, or why the collapse is not done. */
-static uint8_t refusal(const patching *p, scree_ring *ring, const scree_candidate *candidate,
+static uint8_t refusal(const work *w, scree_ring *ring, const scree_candidate *candidate,
                        scree_change *change) {
+  const patching *p = w->p;
   const scree_decimator *d = p->d;
   scree_around around;
   if (!scree_collapse_keeps_topology(&d->s, ring) ||
       !scree_collapse_check(&d->s, ring, change, &around))
     return SCREE_EDGE_REFUSED;
-  if (candidate->stray > 0 &&
-      !scree_stays_within(&d->s, ring, candidate->target, scree_stray_at(candidate, p->e.limit)))
-    return SCREE_EDGE_POSTPONED;
-  if (!scree_grid_keeps(&d->grid, &d->s, ring, change->target, &around) ||
-      !scree_anchors_stay(&d->anchors, &d->s, ring, change->target))
-    return SCREE_EDGE_POSTPONED;
-  return 0;
+  if (scree_strays(d, ring, candidate, p->e.limit, p->usual2)) return SCREE_EDGE_POSTPONED;
+  uint8_t refused = meeting(w, ring, change->target, &around);
+  if (!refused && !scree_anchors_stay(&d->anchors, &d->s, ring, change->target))
+    refused = SCREE_EDGE_POSTPONED;
+  return refused;
 }
 
 static void set_flags(scree_halfmesh *s, const scree_ring *r) {
@@ -313,7 +344,9 @@ static void carry_out(work *w, const scree_ring *ring, const scree_candidate *ca
                                      .gone = s->vertex[ring->b].origin,
                                      .error = (float)candidate->error,
                                      .cost = w->p->e.cost[ring->a]};
+  uint32_t gone[] = {ring->half_edge / 3, s->half[ring->half_edge].twin / 3};
   scree_collapse_apply(s, ring, change->target);
+  if (w->p->own_place) scree_own_follow(&w->own, &d->grid, s, ring, gone, w->p->own_place);
   if (d->coster->merge) d->coster->merge(s, ring->a, ring->b);
   set_flags(s, ring);
 }
@@ -335,7 +368,7 @@ static size_t do_taken(work *w) {
           .edge = w->edges + t->first_edge, .a_count = t->a_count, .count = t->count};
       scree_change change = {.target = candidates[i].target};
       scree_ring_name(s, t->half_edge, &ring);
-      uint8_t refused = refusal(w->p, &ring, &candidates[i], &change);
+      uint8_t refused = refusal(w, &ring, &candidates[i], &change);
       if (refused)
         s->refused[t->half_edge] = refused;
       else
@@ -384,15 +417,42 @@ static void reconsider(work *w) {
   for (size_t i = 0; i < left; i++) enlist(w, w->candidates[i].index);
 }
 
+/* Lists the triangles that are the patch's alone, at their first corners among its members, and so
+ * in an order in which they lie near each other. False: they are too many. */
+static bool list_own(work *w) {
+  const patching *p = w->p;
+  const scree_halfmesh *s = &w->s;
+  scree_own *own = &w->own;
+  own->count = 0;
+  for (size_t i = 0; i < w->member_count; i++) {
+    uint32_t first = s->vertex[w->members[i]].outgoing, h = first;
+    size_t place = w->patch * p->patch + i;
+    if (h == SCREE_NONE) continue;
+    do {
+      size_t b = p->place_of[scree_to(s, h)], c = p->place_of[s->half[scree_previous(h)].from];
+      if (b > place && c > place && b / p->patch == w->patch && c / p->patch == w->patch) {
+        if (own->count == own->room) return false;
+        own->triangles[own->count++] = h / 3;
+      }
+      h = scree_turn(s, h);
+    } while (h != first);
+  }
+  return true;
+}
+
 static void decimate_patch(work *w, doings *done) {
   patching *p = w->p;
+  *done = (doings){.moves = 0};
+  if (p->own_place) {
+    if (!list_own(w)) return;
+    scree_own_enter(&w->own, &p->d->grid, &w->s, p->own_place);
+  }
   w->count = w->deed_count = 0;
   for (size_t i = 0; i < w->member_count; i++) {
     p->d->s.flags[w->members[i]] &= (uint8_t)~SCREE_VERTEX_CHANGED;
     enlist(w, w->members[i]);
   }
   double few = FEW * (double)w->member_count;
-  *done = (doings){.moves = 0};
   for (int round = 0; round < ROUNDS; round++) {
     if (round > 0) reconsider(w);
     choose(w);
@@ -483,6 +543,7 @@ static scree_status write_deeds(patching *p, size_t *done) {
   d->record.count += *done;
   d->s.live_vertex_count -= *done;
   d->s.live_triangle_count -= 2 * *done;
+  scree_limits_follow(d, 2 * (double)*done / (double)d->s.live_triangle_count);
   status = SCREE_OK;
 finished:
   scree_free(w.items);
@@ -490,14 +551,32 @@ finished:
   return status;
 }
 
-static scree_status prepare_grid(const patching *p) {
+static void end_owning(patching *p) {
+  for (int i = 0; p->works && i < scree_worker_count(); i++) scree_own_free(&p->works[i].own);
+  scree_free(p->own_place);
+  p->own_place = NULL;
+}
+
+/* Directions say too little: cells have owners from now on. */
+static scree_status begin_owning(patching *p) {
+  scree_decimator *d = p->d;
+  scree_status status = SCREE_OK;
+  SCREE_ALLOC_OR(p->own_place, d->s.triangle_count, d->error, out_of_memory);
+  for (int i = 0; i < scree_worker_count() && status == SCREE_OK; i++)
+    status = scree_own_allocate(&p->works[i].own, OWN_ROOM * p->patch, d->error);
+  return status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status prepare_grid(patching *p) {
   scree_decimator *d = p->d;
   size_t count = d->s.live_triangle_count;
   if (d->grid.built_for && (double)count > SCREE_REGRID_BELOW * (double)d->grid.built_for)
-    return SCREE_OK; /* what was entered holds for all that was done since */
+    return SCREE_OK; /* directions entered hold for all that was done since */
   scree_status status =
       scree_grid_shape_in(&d->grid, &d->s, &p->frame, SCREE_EDGES_PER_CELL, d->error);
-  if (status == SCREE_OK) scree_grid_enter_roomy(&d->grid, &d->s);
+  if (status == SCREE_OK && !p->own_place) scree_grid_enter_roomy(&d->grid, &d->s);
   return status;
 }
 
@@ -508,7 +587,9 @@ static scree_status run_pass(patching *p, size_t *done) {
   if (status == SCREE_OK) status = scree_anchors_find(&d->s, &d->anchors, d->error);
   if (status != SCREE_OK) return status;
   find_members(p);
+  if (p->own_place) scree_grid_enter_owners(&d->grid, &d->s, p->place_of, p->patch);
   if (!sample(p)) return SCREE_OK;
+  p->usual2 = scree_usual_stray2(d);
   scree_parallel_for(patch_count(p), 1, decimate_block, p);
   status = write_deeds(p, done);
   if (status != SCREE_OK) return status;
@@ -519,6 +600,7 @@ static scree_status run_pass(patching *p, size_t *done) {
 }
 
 static void patching_free(patching *p) {
+  end_owning(p);
   scree_cheapest_free(&p->e);
   scree_free(p->members);
   scree_free(p->place_of);
@@ -562,7 +644,8 @@ out_of_memory:
 }
 
 static bool goes_on(const scree_decimator *d) {
-  return d->s.closed && scree_is_fine(d) && d->s.live_triangle_count > d->options.stop_count;
+  size_t count = d->s.live_triangle_count;
+  return d->s.closed && (scree_is_fine(d) || count > MANY) && count > d->options.stop_count;
 }
 
 scree_status scree_decimate_in_patches(scree_decimator *d, size_t patch) {
@@ -578,7 +661,12 @@ scree_status scree_decimate_in_patches(scree_decimator *d, size_t patch) {
   while (status == SCREE_OK && !little && goes_on(d)) {
     size_t before = d->s.live_triangle_count, done;
     status = scree_decimate_tick(d) ? run_pass(&p, &done) : SCREE_CANCELLED;
-    if (status == SCREE_OK) little = 2 * (double)done < LITTLE * (double)before;
+    if (status != SCREE_OK) break;
+    double share = 2 * (double)done / (double)before;
+    if (!p.own_place && share < TOO_LITTLE)
+      status = begin_owning(&p);
+    else
+      little = share < LITTLE;
   }
   for (size_t v = 0; v < d->s.vertex_count; v++) d->s.flags[v] &= (uint8_t)~SCREE_VERTEX_BORDER;
   scree_grid_free(&d->grid); /* its frame is ours */

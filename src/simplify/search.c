@@ -308,8 +308,15 @@ static bool is_graph(const search *q) {
   return ends == 0 && turns == 1;
 }
 
-static void search_begin(search *q, vec3 target) {
-  const scree_ring *r = q->ring;
+static void search_begin(search *q, const scree_grid *g, const scree_halfmesh *s,
+                         const scree_ring *r, vec3 target, const scree_planned *planned) {
+  q->grid = g;
+  q->s = s;
+  q->ring = r;
+  q->planned = planned;
+  q->self = planned ? planned->chosen[r->a] : SCREE_NONE;
+  q->before = q->after = 0;
+  q->averse = 0;
   for (uint32_t i = 0; i < r->count; i++) {
     q->moved[i] = ring_triangle(q, i);
     q->moved[i].name[0] = MOVED;
@@ -417,17 +424,19 @@ static void search_all(search *q) {
       search_triangle(q, t);
 }
 
+bool scree_grid_clear_among(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
+                            vec3 target, const uint32_t *triangles, size_t count) {
+  search q;
+  search_begin(&q, g, s, r, target, NULL);
+  for (size_t i = 0; i < count; i++)
+    if (!scree_is_gone(s, triangles[i])) search_triangle(&q, triangles[i]);
+  return q.after <= q.before;
+}
+
 bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_ring *r,
                       vec3 target, const scree_planned *planned) {
   search q;
-  q.grid = g;
-  q.s = s;
-  q.ring = r;
-  q.planned = planned;
-  q.self = planned ? planned->chosen[r->a] : SCREE_NONE;
-  q.before = q.after = 0;
-  q.averse = 0;
-  search_begin(&q, target);
+  search_begin(&q, g, s, r, target, planned);
   if (g->few) {
     search_all(&q);
     return q.after <= q.before;
