@@ -551,6 +551,7 @@ scree_status scree_decimate_in_batches(scree_decimator *d) {
   pass p = {.d = d};
   size_t done = 1;
   scree_status status = SCREE_OK;
+  d->lenient = 0; /* patches end early for other reasons as well */
   if (d->s.live_triangle_count > d->single_from) status = pass_allocate(&p);
   while (status == SCREE_OK && done > 0 && d->s.live_triangle_count > d->single_from &&
          d->s.live_triangle_count > d->options.stop_count)

@@ -96,14 +96,14 @@ bool scree_grid_keeps(const scree_grid *grid, const scree_halfmesh *s, const scr
                       vec3 target, const scree_around *around);
 
 /* For patches, stretches of `patch` places of vertices, in place of directions: enters whose the
- * cells are. */
+ * cells are. The grid has a frame. */
 void scree_grid_enter_owners(scree_grid *grid, const scree_halfmesh *s, const uint32_t *place_of,
                              size_t patch);
 /* True: nothing that lies in the cells about the closed ring belongs to another patch or to
  * several, now or later, as long as all that is changed or asked for is owned in this sense. */
 bool scree_grid_owns(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                      vec3 target, size_t patch);
-/* The same of the cells about a vertex and its neighbours. */
+/* The same of the cells about a vertex, on no boundary, and its neighbours. */
 bool scree_grid_owns_fan(const scree_grid *grid, const scree_halfmesh *s, uint32_t vertex,
                          size_t patch);
 

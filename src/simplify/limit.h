@@ -8,7 +8,7 @@
 double scree_usual_stray2(const scree_decimator *d);
 
 /* Whether the collapse takes the surface too far off: farther than that, or so far that its whole
- * cost is above the pass's limit. */
+ * cost is above the pass's limit, or where passes stall a multiple of it. */
 bool scree_strays(const scree_decimator *d, const scree_ring *ring,
                   const scree_candidate *candidate, double cost_limit, double usual2);
 

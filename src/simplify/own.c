@@ -2,6 +2,7 @@
 
 #include "simplify/grid_cells.h"
 
+#include <assert.h>
 #include <string.h>
 
 /* Boxes that are joined to one; joinings of 2^16. */
@@ -10,6 +11,7 @@ enum { JOINED = 8, MOST_LEVELS = 6 };
 typedef uint16_t bounds __attribute__((vector_size(sizeof(scree_own_box))));
 
 scree_status scree_own_allocate(scree_own *o, size_t room, scree_error *error) {
+  assert(room <= UINT16_MAX + 1);
   *o = (scree_own){.room = room};
   SCREE_ALLOC_OR(o->triangles, room, error, out_of_memory);
   SCREE_ALLOC_OR(o->boxes, 2 * room + MOST_LEVELS, error, out_of_memory);

@@ -32,7 +32,8 @@ void scree_own_follow(scree_own *own, const scree_grid *grid, const scree_halfme
                       const scree_ring *ring, const uint32_t gone[2], const uint16_t *place_of);
 
 /* Whether the triangles around target meet no more of them than those around the edge do. The
- * ring's box is set, and `around`. */
+ * ring's box is set, and `around`; the surface is closed, and no other triangle is near the ring.
+ */
 bool scree_own_clear(const scree_own *own, const scree_grid *grid, const scree_halfmesh *s,
                      const scree_ring *ring, vec3 target, const scree_around *around);
 

@@ -299,13 +299,13 @@ static void choose(work *w) {
   w->count = left;
 }
 
-/* 0, or why the collapse may make the surface meet itself. */
-static uint8_t meeting(const work *w, scree_ring *ring, vec3 target, const scree_around *around) {
+/* Whether the surface surely meets itself no more by it. */
+static bool is_clear(const work *w, const scree_ring *ring, vec3 target,
+                     const scree_around *around) {
   const scree_decimator *d = w->p->d;
-  if (!w->p->own_place)
-    return scree_grid_keeps(&d->grid, &d->s, ring, target, around) ? 0 : SCREE_EDGE_POSTPONED;
-  if (!scree_grid_owns(&d->grid, &d->s, ring, target, w->patch)) return SCREE_EDGE_POSTPONED;
-  return scree_own_clear(&w->own, &d->grid, &d->s, ring, target, around) ? 0 : SCREE_EDGE_REFUSED;
+  if (!w->p->own_place) return scree_grid_keeps(&d->grid, &d->s, ring, target, around);
+  return scree_grid_owns(&d->grid, &d->s, ring, target, w->patch) &&
+         scree_own_clear(&w->own, &d->grid, &d->s, ring, target, around);
 }
 
 /* 0, or why the collapse is not done. */
@@ -318,10 +318,10 @@ static uint8_t refusal(const work *w, scree_ring *ring, const scree_candidate *c
       !scree_collapse_check(&d->s, ring, change, &around))
     return SCREE_EDGE_REFUSED;
   if (scree_strays(d, ring, candidate, p->e.limit, p->usual2)) return SCREE_EDGE_POSTPONED;
-  uint8_t refused = meeting(w, ring, change->target, &around);
-  if (!refused && !scree_anchors_stay(&d->anchors, &d->s, ring, change->target))
-    refused = SCREE_EDGE_POSTPONED;
-  return refused;
+  if (!is_clear(w, ring, change->target, &around) ||
+      !scree_anchors_stay(&d->anchors, &d->s, ring, change->target))
+    return SCREE_EDGE_POSTPONED;
+  return 0;
 }
 
 static void set_flags(scree_halfmesh *s, const scree_ring *r) {
@@ -375,6 +375,10 @@ static size_t do_taken(work *w) {
         carry_out(w, &ring, &candidates[i], &change);
     }
   }
+  /* Where cells have owners a collapse may be clear for those before it only. Of many equally dear
+   * the order is not that of the rest of their costs: the record must not find another one. */
+  for (size_t i = before + 1; i < w->deed_count; i++)
+    w->deeds[i].cost = fmax(w->deeds[i].cost, w->deeds[i - 1].cost);
   return w->deed_count - before;
 }
 
@@ -511,8 +515,8 @@ static void write_block(void *context, size_t begin, size_t end, size_t block, i
   }
 }
 
-/* Enters in the record what was done, merged: what a patch did in a round is in the order of cost,
- * and independent. */
+/* Enters in the record what was done, merged: what a patch did in a round is in the order of
+ * cost. */
 static scree_status write_deeds(patching *p, size_t *done) {
   scree_decimator *d = p->d;
   size_t patches = patch_count(p), ends[ROUNDS];
@@ -561,6 +565,7 @@ static void end_owning(patching *p) {
 static scree_status begin_owning(patching *p) {
   scree_decimator *d = p->d;
   scree_status status = SCREE_OK;
+  d->lenient = 0; /* it was not the stray */
   SCREE_ALLOC_OR(p->own_place, d->s.triangle_count, d->error, out_of_memory);
   for (int i = 0; i < scree_worker_count() && status == SCREE_OK; i++)
     status = scree_own_allocate(&p->works[i].own, OWN_ROOM * p->patch, d->error);
