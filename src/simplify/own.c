@@ -1,5 +1,6 @@
 #include "simplify/own.h"
 
+#include "base/parallel.h"
 #include "simplify/grid_cells.h"
 
 #include <assert.h>
@@ -81,7 +82,7 @@ static int find_levels(const scree_own *o, level *levels) {
   levels[0] = (level){o->boxes, o->count};
   for (; levels[last].count > JOINED; last++)
     levels[last + 1] = (level){levels[last].boxes + levels[last].count,
-                               (levels[last].count + JOINED - 1) / JOINED};
+                               scree_block_count(levels[last].count, JOINED)};
   return last;
 }
 

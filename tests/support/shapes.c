@@ -217,6 +217,13 @@ void shape_shake(scree_mesh *mesh, double size, scree_rng *rng) {
     mesh->positions[i] += size * scree_rng_normal(rng);
 }
 
+void shape_roughen(scree_mesh *mesh, double share, scree_rng *rng) {
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    double k = 1 + share * (2 * scree_rng_uniform(rng) - 1);
+    for (size_t i = 0; i < 3; i++) mesh->positions[3 * v + i] *= k;
+  }
+}
+
 void shape_flip(scree_mesh *mesh, size_t triangle) {
   uint32_t *corner = mesh->triangles + 3 * triangle, second = corner[1];
   corner[1] = corner[2];

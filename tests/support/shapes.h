@@ -33,6 +33,9 @@ void shape_transform(scree_mesh *mesh, const mat3 *matrix, vec3 offset);
 void shape_move(scree_mesh *mesh, vec3 offset);
 /* Adds a normal deviate of this size to every coordinate. */
 void shape_shake(scree_mesh *mesh, double size, scree_rng *rng);
+/* Every vertex is nearer to the origin, or farther, by up to this share of its distance: a surface
+ * that is seen whole from there still cannot meet itself. */
+void shape_roughen(scree_mesh *mesh, double share, scree_rng *rng);
 /* The facets as a reader hands them on, in an order and each from a corner of the rng's (NULL: as
  * they are), welded exactly. */
 scree_mesh shape_weld(const scree_mesh *mesh, scree_rng *rng);

@@ -8,13 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A ball of which every vertex is nearer or farther by up to this share: it cannot meet itself. */
 static scree_mesh rough_ball(double radius, int level, double share, scree_rng *rng) {
   scree_mesh mesh = shape_icosphere(radius, level);
-  for (size_t v = 0; v < mesh.vertex_count; v++) {
-    double k = 1 + share * (2 * scree_rng_uniform(rng) - 1);
-    for (size_t i = 0; i < 3; i++) mesh.positions[3 * v + i] *= k;
-  }
+  shape_roughen(&mesh, share, rng);
   return mesh;
 }
 

@@ -28,9 +28,10 @@ static scree_mesh slanted_box(void) {
 static scree_mesh rough_ball(void) {
   scree_rng rng = {.seed = 12};
   scree_mesh mesh = shape_icosphere(0.05, 5);
+  shape_roughen(&mesh, 0.04, &rng);
   for (size_t v = 0; v < mesh.vertex_count; v++) {
-    double k = 1 + 0.04 * (2 * scree_rng_uniform(&rng) - 1), *p = mesh.positions + 3 * v;
-    for (size_t i = 0; i < 3; i++) p[i] *= k * (1 + 0.2 * (double)i);
+    double *p = mesh.positions + 3 * v;
+    for (size_t i = 0; i < 3; i++) p[i] *= 1 + 0.2 * (double)i;
     p[0] *= 1 + 2 * p[0] + p[1];
     p[1] *= 1 + p[1];
   }
