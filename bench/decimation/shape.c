@@ -2,6 +2,8 @@
  *
  *   bench_shape phone COUNT OUT     a rounded box of 100 x 50 x 15 mm with 0.02 mm of normal noise,
  *                                   of about COUNT triangles (762008 is met exactly)
+ *   bench_shape even COUNT OUT      the same with noise of so much for 762008 triangles, and for others
+ *                                   as much of their spacing: as rough at every size
  *   bench_shape clean COUNT OUT     the same without noise
  *   bench_shape cube COUNT OUT      a flat cube of 50 mm, about COUNT triangles (786432 exactly)
  *   bench_shape turned COUNT OUT    the same, turned about an oblique axis
@@ -19,8 +21,11 @@ typedef struct {
   double size[3]; /* mm */
   double radius;  /* of the rounding, mm */
   double noise;   /* standard deviation along the normal, mm */
+  int even; /* whether that is for EVEN_COUNT triangles, and in proportion to the spacing */
   int turned;
 } body;
+
+enum { EVEN_COUNT = 762008 };
 
 typedef struct {
   double *positions;
@@ -188,6 +193,7 @@ int main(int argc, char **argv) {
     const char *name;
     body body;
   } kinds[] = {{"phone", {.size = {100, 50, 15}, .radius = 4, .noise = 0.02}},
+               {"even", {.size = {100, 50, 15}, .radius = 4, .noise = 0.02, .even = 1}},
                {"clean", {.size = {100, 50, 15}, .radius = 4}},
                {"cube", {.size = {50, 50, 50}}},
                {"turned", {.size = {50, 50, 50}, .turned = 1}}};
@@ -195,11 +201,13 @@ int main(int argc, char **argv) {
   size_t kind = 0;
   while (argc == 4 && kind < kind_count && strcmp(argv[1], kinds[kind].name) != 0) kind++;
   if (argc != 4 || kind == kind_count) {
-    fprintf(stderr, "usage: %s phone|clean|cube|turned COUNT OUT.stl|OUT.ply\n", argv[0]);
+    fprintf(stderr, "usage: %s phone|even|clean|cube|turned COUNT OUT.stl|OUT.ply\n", argv[0]);
     return 2;
   }
   body b = kinds[kind].body;
-  choose_cells(&b, strtol(argv[2], NULL, 10));
+  const long count = strtol(argv[2], NULL, 10);
+  choose_cells(&b, count);
+  if (b.even) b.noise *= sqrt(EVEN_COUNT / (double)count);
   surface s = build(&b);
   FILE *file = fopen(argv[3], "wb");
   if (!file) return fprintf(stderr, "%s: cannot write\n", argv[3]), 1;
