@@ -18,6 +18,15 @@ static inline void sym3_add_square(sym3 *m, vec3 g, double weight) {
   m->zz += weight * g.z * g.z;
 }
 
+static inline void sym3_add(sym3 *m, const sym3 *other) {
+  m->xx += other->xx;
+  m->xy += other->xy;
+  m->xz += other->xz;
+  m->yy += other->yy;
+  m->yz += other->yz;
+  m->zz += other->zz;
+}
+
 static inline void sym3_add_diagonal(sym3 *m, double value) {
   m->xx += value;
   m->yy += value;

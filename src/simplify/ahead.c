@@ -122,7 +122,7 @@ static void judge_block(void *context, size_t begin, size_t end, size_t block, i
     const scree_offer *offer = &a->offers[i];
     double worst2, growth = scree_memory_growth(&d->memory, &d->s, &offer->ring,
                                                 offer->change.target, a->from->farthest2, &worst2);
-    a->scores[i] = scree_level_score(a->mean + growth / (double)d->memory.left, sqrt(worst2));
+    a->scores[i] = scree_level_score(a->mean + growth / d->memory.weight, sqrt(worst2));
   }
 }
 

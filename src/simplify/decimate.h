@@ -110,11 +110,19 @@ enum {
   SCREE_LEAST_OF_LARGE = 4000
 };
 
+/* Of large scans, how many are spread for the levels that look ahead (keep.c), and for a triangle:
+ * fewer from about half of these levels on. */
+enum { SCREE_SPREAD_COUNT = 8000, SCREE_CROWD_SPREAD = 90 };
+
 /* The sums of all vertices, if there are none yet: they are needed but in patches. */
 scree_status scree_decimate_sum(scree_decimator *d);
 
 /* Keeps the surface as it is (stray.h). */
 scree_status scree_decimate_keep(scree_decimator *d);
+
+/* Of few triangles: witnesses spread evenly over the scan take the place of those that there are.
+ */
+scree_status scree_decimate_spread(scree_decimator *d);
 
 /* Passes of many independent collapses, while there are more than single_from triangles. */
 scree_status scree_decimate_in_batches(scree_decimator *d);

@@ -215,11 +215,14 @@ static int by_value(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+static bool looks_ahead(const scree_decimator *d) {
+  return d->s.live_triangle_count <= (scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT);
+}
+
 /* Scans held close in their fine levels have room in the greatest distance of coarser ones, until
  * those look ahead. */
 static bool has_easy_toll(const scree_decimator *d) {
-  return scree_is_close_scan(d) && d->s.live_triangle_count < EASY_BELOW &&
-         d->s.live_triangle_count > SCREE_AHEAD_COUNT;
+  return scree_is_close_scan(d) && d->s.live_triangle_count < EASY_BELOW && !looks_ahead(d);
 }
 
 /* Enters all edges and finds the toll. */
@@ -231,7 +234,8 @@ static scree_status renew(queue *q) {
   qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
   double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
   if (scree_is_large(d))
-    scree_memory_thin(&d->memory, &d->s, SCREE_CROWD_OF_LARGE, SCREE_LEAST_OF_LARGE);
+    scree_memory_thin(&d->memory, &d->s, looks_ahead(d) ? SCREE_CROWD_SPREAD : SCREE_CROWD_OF_LARGE,
+                      SCREE_LEAST_OF_LARGE);
   else
     scree_memory_thin(&d->memory, &d->s, SCREE_CROWD, SCREE_LEAST_WITNESSES);
   double far = scree_memory_usual(&d->memory, scree_is_held_close(d));
@@ -522,11 +526,12 @@ static scree_status begin(scree_decimator *d, queue *q) {
 
 /* The last triangles of method `volume`, with a look ahead. */
 static scree_status end_with_care(scree_decimator *d, scree_settling *settling) {
-  queue q;
+  queue q = {.d = d};
   scree_ahead ahead = {.from = NULL};
   scree_status status = scree_ahead_prepare(d);
   if (status != SCREE_OK) return status;
-  status = begin(d, &q);
+  if (scree_is_large(d) && scree_memory_is_kept(&d->memory)) status = scree_decimate_spread(d);
+  if (status == SCREE_OK) status = begin(d, &q);
   if (status == SCREE_OK) status = scree_grid_look_at_all(&d->grid, d->error);
   if (status == SCREE_OK) status = scree_ahead_begin(&ahead, d);
   if (status == SCREE_OK && settling && !settling->shown)

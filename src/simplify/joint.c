@@ -4,14 +4,15 @@
  *
  *     sum_j w_j (sum_k b_jk g_j.y_k - d_j)^2 + damping sum_k |y_k|^2 sum_j w_j b_jk^2 -> min
  *
- * What a level is judged by is the mean of its N distances, and the greatest. So with m and F what
- * these were when the steps began, they make the merit
+ * What a level is judged by is the mean of its distances, and the greatest. So with m and F what
+ * these were when the steps began, and W the sum of what the witnesses weigh in the mean, v_j, they
+ * make the merit
  *
- *     2 / N sum_j d_j + FAR_SHARE m / 4 sum_j (d_j / F)^8
+ *     2 / W sum_j v_j d_j + FAR_SHARE m / 4 sum_j (d_j / F)^8
  *
  * less, whose second part is felt near the greatest only. Its gradient is that of the squares with
  *
- *     w_j = 1 / max(d_j, m / 10) + FAR_SHARE N m / F^2 (d_j / F)^6
+ *     w_j = v_j / max(d_j, m / 10) + FAR_SHARE W m / F^2 (d_j / F)^6
  *
  * (iteratively reweighted least squares). Vertices and places on edges that are more than half as
  * far from the surface kept stand in the sums as well, with the second part alone.
@@ -22,12 +23,14 @@
 
 #include "base/lanes.h"
 
+#include <float.h>
 #include <string.h>
 
 /* Of the mean distance: the least that counts in a weight. */
 #define LEAST_DISTANCE 0.1
-/* What all that lies as far off as the farthest place weighs, against all witnesses. */
-#define FAR_SHARE 0.1
+/* What all that lies as far off as the farthest place weighs, against all witnesses: more brings it
+ * nearer, and leaves the mean distance larger. */
+#define FAR_SHARE 0.03
 /* Conjugate gradients end where the residual is so much smaller, squared, or after so many steps.
  */
 #define ENOUGH 1e-6
@@ -118,41 +121,139 @@ double scree_joint_merit(const scree_joint *j, const scree_memory *m, const scre
   return 2 * scree_memory_mean(m) + FAR_SHARE / 4 * j->mean * far;
 }
 
-/* What the witnesses of one triangle say, side by side: unit vectors towards them and the shares of
- * the corners. */
-typedef struct joint_sayings {
-  double g[3][SCREE_POINTS], share[3][SCREE_POINTS], distance[SCREE_POINTS];
-} joint_sayings;
-
-SCREE_LANES static void say_all_lanes(const double *corners, const scree_points *p,
-                                      joint_sayings *out, int count) {
-  vec3 a = vec3_load(corners), b = vec3_load(corners + 3), c = vec3_load(corners + 6);
-  vec3 n = vec3_triangle_normal(a, b, c);
-  double n2 = vec3_norm2(n);
-  for (int i = 0; i < count; i++) {
-    vec3 at = {p->at[0][i], p->at[1][i], p->at[2][i]};
-    vec3 x = {p->nearest[0][i], p->nearest[1][i], p->nearest[2][i]};
-    vec3 xa = vec3_sub(a, x), xb = vec3_sub(b, x), xc = vec3_sub(c, x);
-    double distance = sqrt(p->distance2[i]);
-    vec3 g = vec3_scale(vec3_sub(at, x), 1 / distance);
-    out->g[0][i] = g.x;
-    out->g[1][i] = g.y;
-    out->g[2][i] = g.z;
-    out->share[0][i] = vec3_dot(n, vec3_cross(xb, xc)) / n2;
-    out->share[1][i] = vec3_dot(n, vec3_cross(xc, xa)) / n2;
-    out->share[2][i] = vec3_dot(n, vec3_cross(xa, xb)) / n2;
-    out->distance[i] = distance;
-  }
-}
-
 /* The weights, see above. */
 typedef struct weighing {
   double least, far_unit, far2;
 } weighing;
 
-static double far_weight(const weighing *w, double distance2) {
+static inline double far_weight(const weighing *w, double distance2) {
   double ratio2 = distance2 / w->far2;
   return w->far_unit * ratio2 * ratio2 * ratio2;
+}
+
+/* What a triangle's witnesses add to the equations: of its corners, own and with the next one the
+ * same squares, pull and squared shares. Every fourth witness adds to the same lane. */
+enum { SUM_LANES = 4 };
+typedef struct triangle_sums {
+  double own[3][6][SUM_LANES], shared[3][6][SUM_LANES];
+  double pull[3][3][SUM_LANES], shares[3][SUM_LANES];
+} triangle_sums;
+
+/* What some witnesses say, side by side: of the unit vector towards each the squares and that times
+ * the distance; the weight; the shares of the corners. */
+typedef struct joint_sayings {
+  double square[6][SCREE_POINTS], along[3][SCREE_POINTS];
+  double weight[SCREE_POINTS], share[3][SCREE_POINTS];
+} joint_sayings;
+
+SCREE_LANES static void say_all_lanes(const double *corners, const scree_points *p,
+                                      const double *weights, const weighing *w,
+                                      joint_sayings *restrict out, int count) {
+  vec3 a = vec3_load(corners), b = vec3_load(corners + 3), c = vec3_load(corners + 6);
+  vec3 n = vec3_triangle_normal(a, b, c);
+  double per_n2 = 1 / vec3_norm2(n), floor = w->least, far_unit = w->far_unit,
+         per_far2 = 1 / w->far2;
+  for (int i = 0; i < count; i++) {
+    vec3 x = {p->nearest[0][i], p->nearest[1][i], p->nearest[2][i]};
+    vec3 off = {p->at[0][i] - x.x, p->at[1][i] - x.y, p->at[2][i] - x.z};
+    vec3 xa = vec3_sub(a, x), xb = vec3_sub(b, x), xc = vec3_sub(c, x);
+    double distance = sqrt(p->distance2[i]), ratio2 = per_far2 * p->distance2[i];
+    double most = distance > floor ? distance : floor;
+    vec3 g = vec3_scale(off, 1 / (distance + DBL_MIN)); /* of none it is none */
+    out->weight[i] = weights[i] / most + far_unit * ratio2 * ratio2 * ratio2;
+    out->share[0][i] = per_n2 * vec3_dot(n, vec3_cross(xb, xc));
+    out->share[1][i] = per_n2 * vec3_dot(n, vec3_cross(xc, xa));
+    out->share[2][i] = per_n2 * vec3_dot(n, vec3_cross(xa, xb));
+    out->square[0][i] = g.x * g.x;
+    out->square[1][i] = g.x * g.y;
+    out->square[2][i] = g.x * g.z;
+    out->square[3][i] = g.y * g.y;
+    out->square[4][i] = g.y * g.z;
+    out->square[5][i] = g.z * g.z;
+    out->along[0][i] = g.x * distance;
+    out->along[1][i] = g.y * distance;
+    out->along[2][i] = g.z * distance;
+  }
+}
+
+/* The products of a and b, each added to its lane of the sum. */
+SCREE_LANES_INLINE void add_products(const double *restrict a, const double *restrict b, int count,
+                                     double *restrict sum) {
+  for (int begin = 0; begin < count; begin += SUM_LANES)
+    for (int lane = 0; lane < SUM_LANES; lane++) sum[lane] += a[begin + lane] * b[begin + lane];
+}
+
+SCREE_LANES static void sum_sayings_lanes(const joint_sayings *restrict said, int count,
+                                          triangle_sums *restrict sums) {
+  for (int k = 0; k < 3; k++) {
+    double with_own[SCREE_POINTS], own[SCREE_POINTS], shared[SCREE_POINTS];
+    const double *share = said->share[k], *next = said->share[(k + 1) % 3];
+    for (int i = 0; i < count; i++) {
+      with_own[i] = said->weight[i] * share[i];
+      own[i] = with_own[i] * share[i];
+      shared[i] = with_own[i] * next[i];
+    }
+    for (int q = 0; q < 6; q++) {
+      add_products(own, said->square[q], count, sums->own[k][q]);
+      add_products(shared, said->square[q], count, sums->shared[k][q]);
+    }
+    for (int q = 0; q < 3; q++) add_products(with_own, said->along[q], count, sums->pull[k][q]);
+    add_products(with_own, share, count, sums->shares[k]);
+  }
+}
+
+static void add_crowd(const double *corners, scree_points *points, double *weights,
+                      const weighing *w, triangle_sums *sums) {
+  joint_sayings said;
+  int width = (points->count + SUM_LANES - 1) / SUM_LANES * SUM_LANES;
+  for (int i = points->count; i < width; i++) weights[i] = 0;
+  scree_points_closest(corners, points);
+  for (int i = points->count; i < width; i++) {
+    points->distance2[i] = 0;
+    for (int k = 0; k < 3; k++) points->at[k][i] = points->nearest[k][i] = corners[k];
+  }
+  say_all_lanes(corners, points, weights, w, &said, width);
+  sum_sayings_lanes(&said, width, sums);
+  points->count = 0;
+}
+
+static double lane_sum(const double *lanes) {
+  return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
+
+static sym3 sum_of_squares(double (*lanes)[SUM_LANES]) {
+  return (sym3){lane_sum(lanes[0]), lane_sum(lanes[1]), lane_sum(lanes[2]),
+                lane_sum(lanes[3]), lane_sum(lanes[4]), lane_sum(lanes[5])};
+}
+
+static void add_triangle(scree_joint *j, const scree_memory *m, const scree_halfmesh *s, uint32_t t,
+                         const weighing *w) {
+  vec3 at[3];
+  double corners[9], weights[SCREE_POINTS];
+  scree_points points;
+  triangle_sums sums;
+  points.count = 0;
+  memset(&sums, 0, sizeof sums);
+  scree_corners(s, t, at);
+  for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, at[i]);
+  vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
+  for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next) {
+    if (m->witnesses[k].distance2 <= scree_past_rounding(0)) continue; /* it has no direction */
+    weights[points.count] = (double)m->witnesses[k].weight;
+    scree_points_add(&points, m->witnesses[k].at);
+    if (points.count == SCREE_POINTS) add_crowd(corners, &points, weights, w, &sums);
+  }
+  if (points.count > 0) add_crowd(corners, &points, weights, w, &sums);
+  for (uint32_t k = 0; k < 3; k++) {
+    uint32_t v = s->half[3 * t + k].from;
+    j->n[v] = vec3_add(j->n[v], n);
+    sym3 own = sum_of_squares(sums.own[k]);
+    sym3_add(&j->own[v], &own);
+    j->shared[3 * t + k] = sum_of_squares(sums.shared[k]);
+    j->pull[v] = vec3_add(j->pull[v], (vec3){lane_sum(sums.pull[k][0]), lane_sum(sums.pull[k][1]),
+                                             lane_sum(sums.pull[k][2])});
+    j->shares[v] += lane_sum(sums.shares[k]);
+  }
 }
 
 /* Vertex v has this share of a place. */
@@ -161,45 +262,6 @@ static void add_end(scree_joint *j, uint32_t v, vec3 g, double weight, double sh
   sym3_add_square(&j->own[v], g, weight * share * share);
   j->pull[v] = vec3_mad(j->pull[v], g, weight * share * distance);
   j->shares[v] += weight * share * share;
-}
-
-static void add_crowd(scree_joint *j, const scree_halfmesh *s, uint32_t t, const double *corners,
-                      scree_points *points, const weighing *w) {
-  joint_sayings said;
-  scree_points_closest(corners, points);
-  say_all_lanes(corners, points, &said, points->count);
-  for (int i = 0; i < points->count; i++) {
-    double distance = said.distance[i];
-    if (!(distance > SCREE_SAME_DISTANCE)) continue; /* it has no direction */
-    double weight = 1 / fmax(distance, w->least) + far_weight(w, distance * distance);
-    vec3 g = {said.g[0][i], said.g[1][i], said.g[2][i]};
-    for (uint32_t k = 0; k < 3; k++) {
-      double share = said.share[k][i], next = said.share[(k + 1) % 3][i];
-      add_end(j, s->half[3 * t + k].from, g, weight, share, distance);
-      sym3_add_square(&j->shared[3 * t + k], g, weight * share * next);
-    }
-  }
-  points->count = 0;
-}
-
-static void add_triangle(scree_joint *j, const scree_memory *m, const scree_halfmesh *s, uint32_t t,
-                         const weighing *w) {
-  vec3 at[3];
-  double corners[9];
-  scree_points points;
-  points.count = 0;
-  scree_corners(s, t, at);
-  for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, at[i]);
-  vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
-  for (size_t i = 0; i < 3; i++) {
-    uint32_t v = s->half[3 * t + i].from;
-    j->n[v] = vec3_add(j->n[v], n);
-  }
-  for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next) {
-    scree_points_add(&points, m->witnesses[k].at);
-    if (points.count == SCREE_POINTS) add_crowd(j, s, t, corners, &points, w);
-  }
-  if (points.count > 0) add_crowd(j, s, t, corners, &points, w);
 }
 
 static void add_far(scree_joint *j, const scree_halfmesh *s, const scree_far_place *p,
@@ -256,7 +318,7 @@ static void solve(scree_joint *j, const scree_halfmesh *s, const vec3 *right, ve
 bool scree_joint_fill(scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
   size_t vertices = s->vertex_count;
   if (!(j->mean > SCREE_SAME_DISTANCE)) return false;
-  weighing w = {LEAST_DISTANCE * j->mean, FAR_SHARE * (double)m->left * j->mean / j->far2, j->far2};
+  weighing w = {LEAST_DISTANCE * j->mean, FAR_SHARE * m->weight * j->mean / j->far2, j->far2};
   memset(j->own, 0, vertices * sizeof *j->own);
   memset(j->shared, 0, 3 * s->triangle_count * sizeof *j->shared);
   memset(j->pull, 0, vertices * sizeof *j->pull);

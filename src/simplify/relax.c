@@ -60,17 +60,19 @@ SCREE_LANES static void say_lanes(const double *corners, const scree_points *p, 
   }
 }
 
-static void add_points(equations *q, const double *corners, scree_points *points) {
+static void add_points(equations *q, const double *corners, scree_points *points,
+                       const float *weights) {
   sayings said;
   scree_points_closest(corners, points);
   say_lanes(corners, points, &said, points->count);
   for (int i = 0; i < points->count; i++) {
     double distance = sqrt(points->distance2[i]), share = said.share[i];
+    double weight = (double)weights[i];
     vec3 g = {said.g[0][i], said.g[1][i], said.g[2][i]};
     if (!(distance > SCREE_SAME_DISTANCE)) continue; /* it has no direction */
-    sym3_add_square(&q->h, g, 1);
-    q->g = vec3_mad(q->g, g, distance);
-    q->shares += share * share;
+    sym3_add_square(&q->h, g, weight);
+    q->g = vec3_mad(q->g, g, weight * distance);
+    q->shares += weight * share * share;
   }
   points->count = 0;
 }
@@ -80,6 +82,7 @@ bool scree_pull_find(const scree_memory *m, const scree_halfmesh *s, const scree
   double corners[SCREE_RING_MAX][9];
   equations q = {.shares = 0};
   scree_points points;
+  float weights[SCREE_POINTS] = {0};
   points.count = 0;
   *p = (scree_pull){.from = s->vertex[fan->a].at};
   scree_ring_corners(s, fan, p->from, corners);
@@ -87,12 +90,13 @@ bool scree_pull_find(const scree_memory *m, const scree_halfmesh *s, const scree
     p->n = vec3_add(p->n, vec3_triangle_normal(vec3_load(corners[i]), vec3_load(corners[i] + 3),
                                                vec3_load(corners[i] + 6)));
     for (uint32_t j = m->first[fan->edge[i] / 3]; j != SCREE_NONE; j = m->witnesses[j].next) {
-      p->sum += m->witnesses[j].distance2;
+      p->sum += (double)m->witnesses[j].weight * m->witnesses[j].distance2;
       p->worst = fmax(p->worst, m->witnesses[j].distance2);
+      weights[points.count] = m->witnesses[j].weight;
       scree_points_add(&points, m->witnesses[j].at);
-      if (points.count == SCREE_POINTS) add_points(&q, corners[i], &points);
+      if (points.count == SCREE_POINTS) add_points(&q, corners[i], &points, weights);
     }
-    if (points.count > 0) add_points(&q, corners[i], &points);
+    if (points.count > 0) add_points(&q, corners[i], &points, weights);
   }
   if (!(q.shares > 0)) return false;
   sym3_add_diagonal(&q.h, DAMPING * q.shares); /* well away from singular */
@@ -165,7 +169,7 @@ static void add_witnesses(const scree_memory *m, const scree_halfmesh *s, const 
     for (uint32_t j = m->first[fan->edge[i] / 3]; j != SCREE_NONE && *sum < most;
          j = m->witnesses[j].next) {
       double distance2 = distance2_after(corners, fan, i, &m->witnesses[j]);
-      *sum += distance2;
+      *sum += (double)m->witnesses[j].weight * distance2;
       *worst = fmax(*worst, distance2);
     }
 }

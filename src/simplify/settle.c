@@ -11,7 +11,7 @@
 
 /* Steps tried for a level; of large scans fewer, for it takes time. Levels of more than so many
  * triangles, whose steps take long, have no more after one that gains little. */
-enum { MOST_STEPS = 20, MOST_OF_LARGE = 5, QUICK_STEPS = 64 };
+enum { MOST_STEPS = 20, MOST_OF_LARGE = 10, QUICK_STEPS = 64 };
 #define LITTLE_GAIN 1e-3
 /* A smaller gain of the merit is none. */
 #define LEAST_GAIN 1e-4

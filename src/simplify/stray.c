@@ -3,6 +3,7 @@
  * (Visualization 1996), have it for all vertices of the mesh given. */
 #include "simplify/stray.h"
 
+#include "base/lanes.h"
 #include "base/parallel.h"
 #include "base/prefetch.h"
 #include "base/sum.h"
@@ -57,16 +58,18 @@ static void enlist(scree_memory *m, uint32_t j, uint32_t triangle) {
 }
 
 static void add_witness(scree_memory *m, vec3 at, uint32_t triangle) {
-  m->witnesses[m->count] = (scree_witness){.at = at};
+  m->witnesses[m->count] = (scree_witness){.at = at, .weight = 1};
   enlist(m, (uint32_t)m->count++, triangle);
   m->left++;
+  m->weight++;
 }
 
 double scree_memory_mean(const scree_memory *m) {
   scree_sum sum = {0};
   for (size_t i = 0; i < m->count; i++)
-    if (m->witnesses[i].distance2 != DROPPED) scree_sum_add(&sum, sqrt(m->witnesses[i].distance2));
-  return scree_sum_value(sum) / (double)m->left;
+    if (m->witnesses[i].distance2 != DROPPED)
+      scree_sum_add(&sum, (double)m->witnesses[i].weight * sqrt(m->witnesses[i].distance2));
+  return scree_sum_value(sum) / m->weight;
 }
 
 /* Each vertex with the first of its triangles. */
@@ -84,8 +87,12 @@ static scree_status add_vertices(scree_memory *m, const scree_halfmesh *s, scree
 }
 
 static void add_placed(scree_memory *m, size_t count) {
-  for (uint32_t j = 0; j < count; j++) enlist(m, j, m->witnesses[j].next);
+  for (uint32_t j = 0; j < count; j++) {
+    m->witnesses[j].weight = 1;
+    enlist(m, j, m->witnesses[j].next);
+  }
   m->count = m->left = count;
+  m->weight = (double)count;
   m->roughness = scree_memory_mean(m);
 }
 
@@ -527,7 +534,8 @@ double scree_memory_growth(const scree_memory *m, const scree_halfmesh *s, const
     for (uint32_t j = m->first[triangle_around(s, r, k)]; j != SCREE_NONE;
          j = m->witnesses[j].next) {
       double distance2 = distance2_from(fours, four_count, m->witnesses[j].at);
-      growth += sqrt(distance2) - sqrt(m->witnesses[j].distance2);
+      growth +=
+          (double)m->witnesses[j].weight * (sqrt(distance2) - sqrt(m->witnesses[j].distance2));
       most = fmax(most, distance2);
     }
   *worst = scree_memory_edges_stray(m, s, r, target, most, &hints);
@@ -656,6 +664,7 @@ static void thin_list(scree_memory *m, uint32_t *first) {
     if (dropped == SCREE_NONE) continue;
     m->witnesses[j].next = next = m->witnesses[dropped].next;
     m->witnesses[dropped].distance2 = DROPPED;
+    m->weight -= (double)m->witnesses[dropped].weight;
     m->left--;
   }
 }
@@ -771,6 +780,83 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
   move_gathered(m, &q);
 }
 
+/* By the area of their triangles, which they share; in parts of what one has on the average. */
+static void weigh(scree_memory *m, const scree_halfmesh *s) {
+  double unit = m->area / (double)m->count;
+  m->weight = 0;
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    vec3 at[3];
+    double count = 0;
+    for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) count++;
+    if (!(count > 0)) continue;
+    scree_corners(s, t, at);
+    double area = 0.5 * vec3_norm(vec3_triangle_normal(at[0], at[1], at[2]));
+    for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) {
+      m->witnesses[j].weight = (float)(area / (count * unit));
+      m->weight += (double)m->witnesses[j].weight;
+    }
+  }
+}
+
+void scree_memory_replace(scree_memory *m, const scree_halfmesh *s, scree_witness *witnesses,
+                          size_t count) {
+  removal q;
+  double corners[SCREE_RING_MAX][9];
+  uint32_t edges[SCREE_RING_MAX];
+  scree_ring all = {.edge = edges};
+  for (uint32_t t = 0; t < s->triangle_count; t++) {
+    vec3 at[3];
+    if (scree_is_gone(s, t)) continue;
+    scree_corners(s, t, at);
+    for (size_t k = 0; k < 3; k++) vec3_store(corners[all.count] + 3 * k, at[k]);
+    edges[all.count++] = 3 * t;
+  }
+  q.m = m;
+  q.ring = &all;
+  q.count = 0;
+  scree_fours_fill(corners, all.count, q.fan.fours);
+  q.fan.four_count = scree_four_count(all.count);
+  scree_free(m->witnesses);
+  m->witnesses = witnesses;
+  m->count = m->left = count;
+  memset(m->first, 0xff, s->triangle_count * sizeof *m->first);
+  for (uint32_t j = 0; j < count; j++) {
+    if (q.count == MOVED_AT_ONCE) move_gathered(m, &q);
+    q.witness[q.count++] = j;
+  }
+  move_gathered(m, &q);
+  weigh(m, s);
+}
+
+/* How deep inside the triangle the nearest points lie, across its edges; none: on one of them. */
+SCREE_LANES static void depth_lanes(const double *corners, const scree_points *p, double *depth,
+                                    int count) {
+  vec3 a = vec3_load(corners), b = vec3_load(corners + 3), c = vec3_load(corners + 6);
+  vec3 n = vec3_unit(vec3_triangle_normal(a, b, c));
+  double per_ab = 1 / vec3_norm(vec3_sub(b, a)), per_bc = 1 / vec3_norm(vec3_sub(c, b)),
+         per_ca = 1 / vec3_norm(vec3_sub(a, c));
+  for (int i = 0; i < count; i++) {
+    vec3 x = {p->nearest[0][i], p->nearest[1][i], p->nearest[2][i]};
+    vec3 xa = vec3_sub(a, x), xb = vec3_sub(b, x), xc = vec3_sub(c, x);
+    double ab = per_ab * vec3_dot(n, vec3_cross(xa, xb)),
+           bc = per_bc * vec3_dot(n, vec3_cross(xb, xc)),
+           ca = per_ca * vec3_dot(n, vec3_cross(xc, xa));
+    double least = ab < bc ? ab : bc;
+    least = ca < least ? ca : least;
+    depth[i] = least > 0 ? least : 0;
+  }
+}
+
+/* Whether the triangles beside this one, the first, lie beyond planes upright on it. */
+static bool faces_all(const scree_four *four, size_t count) {
+  bool faces = true;
+  for (size_t i = 1; i < count; i++)
+    faces &= four->n[0][0] * four->n[0][i] + four->n[1][0] * four->n[1][i] +
+                 four->n[2][0] * four->n[2][i] >
+             0;
+  return faces;
+}
+
 /* Of a triangle, the first, and those beside it: as above, but that a witness stays where that is
  * as near as any. */
 static size_t nearest_beside(const scree_four *four, const double *distance2, size_t count) {
@@ -785,31 +871,61 @@ static size_t nearest_beside(const scree_four *four, const double *distance2, si
   return nearest;
 }
 
-void scree_memory_follow(scree_memory *m, const scree_halfmesh *s, uint32_t *lists) {
+/* Witnesses of one triangle that are to follow. */
+typedef struct following {
+  scree_memory *m;
+  uint32_t beside[SCREE_FOUR]; /* the triangle, and those beside it */
+  double corners[SCREE_FOUR][9];
+  size_t count;
   scree_four four;
+  bool faces; /* all beside it */
+  scree_points points;
+  uint32_t witness[SCREE_POINTS];
+} following;
+
+/* Deep inside, farther from all edges than from the witness, nothing beyond them is nearer. */
+static void follow_gathered(following *f) {
+  double depth[SCREE_POINTS], distance2[SCREE_FOUR];
+  scree_points_closest(f->corners[0], &f->points);
+  depth_lanes(f->corners[0], &f->points, depth, f->points.count);
+  for (int i = 0; i < f->points.count; i++) {
+    scree_witness *w = &f->m->witnesses[f->witness[i]];
+    size_t nearest = 0;
+    w->distance2 = f->points.distance2[i];
+    if (!f->faces || !(depth[i] * depth[i] > (1 + SAME_SIZE) * w->distance2)) {
+      scree_fours_closest(&f->four, 1, w->at, distance2);
+      nearest = nearest_beside(&f->four, distance2, f->count);
+      w->distance2 = distance2[nearest];
+    }
+    enlist(f->m, f->witness[i], f->beside[nearest]);
+  }
+  f->points.count = 0;
+}
+
+void scree_memory_follow(scree_memory *m, const scree_halfmesh *s, uint32_t *lists) {
+  following f = {.m = m};
   memcpy(lists, m->first, s->triangle_count * sizeof *lists);
   memset(m->first, 0xff, s->triangle_count * sizeof *m->first);
   for (uint32_t t = 0; t < s->triangle_count; t++) {
-    double corners[SCREE_FOUR][9], distance2[SCREE_FOUR];
-    uint32_t beside[SCREE_FOUR] = {t};
-    size_t count = 1;
     if (lists[t] == SCREE_NONE) continue;
+    f.beside[0] = t;
+    f.count = 1;
     for (uint32_t h = 3 * t; h < 3 * t + 3; h++)
-      if (s->half[h].twin != SCREE_NONE) beside[count++] = s->half[h].twin / 3;
-    for (size_t i = 0; i < count; i++) {
+      if (s->half[h].twin != SCREE_NONE) f.beside[f.count++] = s->half[h].twin / 3;
+    for (size_t i = 0; i < f.count; i++) {
       vec3 at[3];
-      scree_corners(s, beside[i], at);
-      for (size_t k = 0; k < 3; k++) vec3_store(corners[i] + 3 * k, at[k]);
+      scree_corners(s, f.beside[i], at);
+      for (size_t k = 0; k < 3; k++) vec3_store(f.corners[i] + 3 * k, at[k]);
     }
-    scree_fours_fill(corners, count, &four);
+    scree_fours_fill(f.corners, f.count, &f.four);
+    f.faces = faces_all(&f.four, f.count);
     for (uint32_t j = lists[t], next; j != SCREE_NONE; j = next) {
-      scree_witness *w = &m->witnesses[j];
-      next = w->next;
-      scree_fours_closest(&four, 1, w->at, distance2);
-      size_t nearest = nearest_beside(&four, distance2, count);
-      w->distance2 = distance2[nearest];
-      enlist(m, j, beside[nearest]);
+      next = m->witnesses[j].next;
+      f.witness[f.points.count] = j;
+      scree_points_add(&f.points, m->witnesses[j].at);
+      if (f.points.count == SCREE_POINTS) follow_gathered(&f);
     }
+    if (f.points.count > 0) follow_gathered(&f);
   }
 }
 

@@ -18,6 +18,7 @@ typedef struct scree_witness {
   vec3 at;
   double distance2; /* from its triangle, squared; below 0: dropped */
   uint32_t next;    /* of the same triangle, or NONE */
+  float weight;     /* what it counts in the mean */
 } scree_witness;
 
 /* From a triangle of the surface kept on towards a place, and how far off that is. In single
@@ -48,6 +49,7 @@ typedef struct scree_memory {
   double roughness; /* the mean distance with which the scan's vertices began */
   scree_witness *witnesses;
   size_t count, left; /* left: not dropped */
+  double weight;      /* of those left */
   uint32_t *first;    /* per triangle: its first witness, or NONE */
 } scree_memory;
 
@@ -76,6 +78,12 @@ void scree_memory_free(scree_memory *memory);
 static inline bool scree_memory_is_kept(const scree_memory *memory) {
   return memory->first != NULL;
 }
+
+/* Other witnesses instead, made with scree_alloc and taken over, of which `at` is set. The level
+ * has SCREE_RING_MAX triangles at the most: each witness gets the nearest, and weighs what it
+ * stands for of its area. */
+void scree_memory_replace(scree_memory *memory, const scree_halfmesh *s, scree_witness *witnesses,
+                          size_t count);
 
 /* Whether x is near enough to the surface kept for a vertex of a level of so many triangles: within
  * half of sqrt(area / count). */

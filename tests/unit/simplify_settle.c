@@ -8,8 +8,8 @@
 
 /* What the rules name (simplify/joint.c). */
 #define LEAST_DISTANCE 0.1
-#define FAR_SHARE      0.1
 #define LOOKED_ABOVE   0.5
+#define FAR_SHARE      0.03
 
 enum { KINDS = 4, BOX = 2 };
 
@@ -157,19 +157,19 @@ static size_t full_step(const scree_decimator *d, double damping, vec3 *step, do
   const scree_memory *m = &d->memory;
   equations q = {.n = 3 * s->vertex_count + 1};
   places p = {.m = m, .q = &q};
-  double mean = 0, count = 0;
+  double mean = 0, weights = 0;
   q.m = calloc(q.n * (q.n + 1), sizeof *q.m);
   q.ww = calloc(s->vertex_count, sizeof *q.ww);
   for (size_t t = 0; t < s->triangle_count; t++)
     for (uint32_t j = scree_is_gone(s, t) ? SCREE_NONE : m->first[t]; j != SCREE_NONE;
          j = m->witnesses[j].next) {
-      mean += sqrt(m->witnesses[j].distance2);
-      count++;
+      mean += (double)m->witnesses[j].weight * sqrt(m->witnesses[j].distance2);
+      weights += (double)m->witnesses[j].weight;
       p.far2 = fmax(p.far2, m->witnesses[j].distance2);
     }
   for_places(s, find_far, &p);
   p.unit = FAR_SHARE * mean / p.far2;
-  mean /= count;
+  mean /= weights;
   for (size_t t = 0; t < s->triangle_count; t++) {
     if (scree_is_gone(s, t)) continue;
     double corners[9], share[3];
@@ -191,8 +191,8 @@ static size_t full_step(const scree_decimator *d, double damping, vec3 *step, do
       p.merit += pow(distance * distance / p.far2, 4);
       if (distance <= 1e-12) continue;
       shares_of(corners, nearest, share);
-      double weight =
-          1 / fmax(distance, LEAST_DISTANCE * mean) + p.unit * pow(distance * distance / p.far2, 3);
+      double weight = (double)m->witnesses[j].weight / fmax(distance, LEAST_DISTANCE * mean) +
+                      p.unit * pow(distance * distance / p.far2, 3);
       add(&q, v, share, vec3_scale(vec3_sub(m->witnesses[j].at, nearest), 1 / distance), weight,
           distance);
     }
@@ -226,6 +226,13 @@ static double volume_at(const scree_halfmesh *s, const vec3 *at) {
   return sum / 6;
 }
 
+static void weigh_at_random(scree_memory *m) {
+  scree_rng rng = {.seed = 77};
+  m->weight = 0; /* all are left: they were squeezed */
+  for (size_t j = 0; j < m->count; j++)
+    m->weight += (double)(m->witnesses[j].weight = (float)(0.2 + scree_rng_uniform(&rng)));
+}
+
 static void the_step_solves_the_equations(void **state) {
   (void)state;
   for (int kind = 0; kind < KINDS; kind++)
@@ -234,6 +241,7 @@ static void the_step_solves_the_equations(void **state) {
       scree_mesh mesh = bumpy(kind);
       scree_decimator d = decimated(&mesh, stop, true, &error);
       size_t count = d.s.vertex_count;
+      if (kind > 0) weigh_at_random(&d.memory);
       vec3 *full = calloc(count, sizeof *full), *at = calloc(count, sizeof *at);
       double far2, merit;
       scree_joint j;

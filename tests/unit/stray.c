@@ -1,5 +1,5 @@
 /* The witnesses of the stray, carried through batches, against the level as it is; what thinning
- * leaves. */
+ * leaves; others for coarse levels, and what their weights do. */
 #include "support/decimator.h"
 #include "support/shapes.h"
 
@@ -317,6 +317,172 @@ static void every_second_goes(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* 100 triangles or so, each vertex of the scan that went a witness or not. */
+static scree_decimator coarse(const scree_mesh *mesh, scree_error *error) {
+  scree_decimator d = begin_decimation(mesh, &scree_volume_coster, error);
+  d.options.stop_count = 100;
+  CHECK_OK(scree_decimate_in_batches(&d), *error);
+  CHECK_OK(scree_decimate_one_by_one(&d), *error);
+  assert_true(d.s.live_triangle_count <= 100);
+  return d;
+}
+
+/* Each of every so many that went, at the nearest of all triangles; together those of a triangle
+ * weigh as much as its share of the area. */
+static void witnesses_are_spread(void **state) {
+  (void)state;
+  scree_error error;
+  scree_mesh mesh = shaken_sphere();
+  scree_decimator d = coarse(&mesh, &error);
+  const scree_record *r = &d.record;
+  const scree_memory *m = &d.memory;
+  CHECK_OK(scree_decimate_spread(&d), error);
+  assert_int_equal(m->count, SCREE_SPREAD_COUNT);
+  assert_int_equal(m->left, SCREE_SPREAD_COUNT);
+  double sum = 0, weights = 0, unit = m->area / (double)m->count;
+  for (uint32_t t = 0; t < d.s.triangle_count; t++) {
+    vec3 at[3];
+    double of_triangle = 0;
+    if (scree_is_gone(&d.s, t)) continue;
+    for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) {
+      const scree_witness *w = &m->witnesses[j];
+      double distance = sqrt(w->distance2), least = INFINITY;
+      size_t place = (size_t)(((double)j + 0.5) * (double)r->count / (double)m->count);
+      vec3 p = scree_into_box(&d.s, vec3_load(mesh.positions + 3 * (size_t)r->gone[place]));
+      assert_true(vec3_norm(vec3_sub(w->at, p)) == 0);
+      for (uint32_t k = 0; k < d.s.triangle_count; k++)
+        if (!scree_is_gone(&d.s, k)) least = fmin(least, distance_from(&d.s, k, w->at));
+      CHECK_NEAR(distance, least, SCREE_SAME_DISTANCE);
+      CHECK_NEAR(distance_from(&d.s, t, w->at), least, SCREE_SAME_DISTANCE);
+      of_triangle += (double)w->weight;
+      sum += (double)w->weight * distance;
+    }
+    scree_corners(&d.s, t, at);
+    double area = 0.5 * vec3_norm(vec3_triangle_normal(at[0], at[1], at[2]));
+    assert_true(of_triangle > 0);
+    CHECK_NEAR(of_triangle * unit, area, 1e-6 * area);
+    weights += of_triangle;
+  }
+  CHECK_NEAR(m->weight, weights, 1e-9 * weights);
+  CHECK_NEAR(scree_memory_mean(m), sum / weights, 1e-12);
+  scree_decimator_free(&d);
+  scree_mesh_free(&mesh);
+}
+
+/* After vertices moved, by little and by much: the nearest of its triangle and those beside. */
+static void witnesses_follow(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 35};
+  scree_error error;
+  size_t stayed = 0, went = 0;
+  scree_mesh mesh = shaken_sphere();
+  scree_decimator d = coarse(&mesh, &error);
+  scree_halfmesh *s = &d.s;
+  scree_memory *m = &d.memory;
+  CHECK_OK(scree_decimate_spread(&d), error);
+  uint32_t *held = malloc(m->count * sizeof *held);
+  uint32_t *lists = malloc(s->triangle_count * sizeof *lists);
+  for (int round = 0; round < 6; round++) {
+    for (uint32_t t = 0; t < s->triangle_count; t++)
+      for (uint32_t j = scree_is_gone(s, t) ? SCREE_NONE : m->first[t]; j != SCREE_NONE;
+           j = m->witnesses[j].next)
+        held[j] = t;
+    for (uint32_t v = 0; v < s->vertex_count; v++)
+      for (int k = 0; k < 3; k++) {
+        vec3 off = {scree_rng_uniform(&rng) - 0.5, scree_rng_uniform(&rng) - 0.5,
+                    scree_rng_uniform(&rng) - 0.5};
+        s->vertex[v].at = vec3_mad(s->vertex[v].at, off, 0.01 * (1 << round) / 3);
+      }
+    for (uint32_t t = 0; t < s->triangle_count; t++)
+      if (scree_is_gone(s, t)) m->first[t] = SCREE_NONE;
+    scree_memory_follow(m, s, lists);
+    for (uint32_t t = 0; t < s->triangle_count; t++)
+      for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) {
+        const scree_witness *w = &m->witnesses[j];
+        double least = distance_from(s, held[j], w->at);
+        for (uint32_t h = 3 * held[j]; h < 3 * held[j] + 3; h++)
+          least = fmin(least, distance_from(s, s->half[h].twin / 3, w->at));
+        CHECK_NEAR(sqrt(w->distance2), least, SCREE_SAME_DISTANCE);
+        CHECK_NEAR(distance_from(s, t, w->at), least, SCREE_SAME_DISTANCE);
+        stayed += t == held[j];
+        went += t != held[j];
+      }
+  }
+  assert_int_equal(stayed + went, 6 * m->count);
+  assert_true(went > m->count / 10);
+  free(held);
+  free(lists);
+  scree_decimator_free(&d);
+  scree_mesh_free(&mesh);
+}
+
+/* Each witness of weight v twice, with v/3 and 2 v/3. */
+static void split_witnesses(scree_memory *m, const scree_halfmesh *s) {
+  size_t count = m->count;
+  scree_witness *twice = scree_alloc(2 * count, sizeof *twice);
+  for (uint32_t j = 0; j < count; j++) {
+    twice[j] = twice[count + j] = m->witnesses[j];
+    twice[j].weight /= 3;
+    twice[count + j].weight -= twice[j].weight;
+  }
+  for (uint32_t t = 0; t < s->triangle_count; t++)
+    for (uint32_t *at = &m->first[t]; !scree_is_gone(s, t) && *at != SCREE_NONE;) {
+      uint32_t j = *at, next = twice[j].next;
+      twice[j].next = (uint32_t)count + j;
+      twice[count + j].next = next;
+      at = &twice[count + j].next;
+    }
+  scree_free(m->witnesses);
+  m->witnesses = twice;
+  m->count = m->left = 2 * count;
+}
+
+/* What the witnesses say counts by their weights: one that stands in two parts says the same. */
+static void weights_add_up(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 34};
+  scree_error error;
+  scree_mesh mesh = shaken_sphere();
+  scree_decimator d = coarse(&mesh, &error), split = coarse(&mesh, &error);
+  size_t tried = 0;
+  CHECK_OK(scree_decimate_spread(&d), error);
+  CHECK_OK(scree_decimate_spread(&split), error);
+  split_witnesses(&split.memory, &split.s);
+  double mean = scree_memory_mean(&d.memory);
+  CHECK_NEAR(scree_memory_mean(&split.memory), mean, 1e-7 * mean);
+  for (uint32_t v = 0; v < d.s.vertex_count; v++) {
+    uint32_t edges[SCREE_RING_MAX];
+    scree_ring fan = {.edge = edges};
+    scree_pull a, b;
+    scree_relaxation of_a, of_b;
+    double worst_a, worst_b;
+    if (d.s.vertex[v].outgoing == SCREE_NONE || !scree_ring_gather_fan(&d.s, v, &fan)) continue;
+    assert_true(scree_pull_find(&d.memory, &d.s, &fan, &a));
+    assert_true(scree_pull_find(&split.memory, &split.s, &fan, &b));
+    CHECK_NEAR(vec3_norm(vec3_sub(a.free, b.free)), 0, 1e-6 * vec3_norm(a.free));
+    CHECK_NEAR(a.n_per_n, b.n_per_n, 1e-6 * a.n_per_n);
+    CHECK_NEAR(a.sum, b.sum, 1e-6 * a.sum);
+    vec3 x = vec3_mad(a.from, a.n, 0.1 * scree_rng_uniform(&rng));
+    double growth = scree_memory_growth(&d.memory, &d.s, &fan, x, 0, &worst_a);
+    CHECK_NEAR(scree_memory_growth(&split.memory, &split.s, &fan, x, 0, &worst_b), growth,
+               1e-6 * (fabs(growth) + a.sum));
+    assert_true(worst_a == worst_b);
+    scree_relax_alone(&a, &fan, &of_a);
+    scree_relax_alone(&b, &fan, &of_b);
+    for (double share = 0.25; share <= 1; share += 0.25) {
+      vec3 place;
+      scree_relax_places(&of_a, 1, share, &place);
+      assert_int_equal(scree_relax_gains(&d.memory, &d.s, &of_a, 1, &place),
+                       scree_relax_gains(&split.memory, &split.s, &of_b, 1, &place));
+    }
+    tried++;
+  }
+  assert_true(tried > 30);
+  scree_decimator_free(&d);
+  scree_decimator_free(&split);
+  scree_mesh_free(&mesh);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(witnesses_go_with_the_batches),
                                      cmocka_unit_test(what_went_before_is_remembered),
@@ -324,6 +490,9 @@ int main(void) {
                                      cmocka_unit_test(limits_are_those_of_the_stray),
                                      cmocka_unit_test(few_are_remembered_of_large_scans),
                                      cmocka_unit_test(ends_are_near_or_not),
-                                     cmocka_unit_test(every_second_goes)};
+                                     cmocka_unit_test(every_second_goes),
+                                     cmocka_unit_test(witnesses_are_spread),
+                                     cmocka_unit_test(witnesses_follow),
+                                     cmocka_unit_test(weights_add_up)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
