@@ -63,7 +63,7 @@ static void poured_and_left(void **state) {
   CHECK_OK(scree_pour_create(shapes, 3, &o, &pour, &error), error);
   scree_world *world = scree_pour_world(pour);
   scree_observation seen;
-  double end = scree_pour_filling_time(pour) + 3, entered = 0, ledger = 0, quiet = 0;
+  double end = scree_pour_filling_time(pour) + 8, entered = 0, ledger = 0, quiet = 0;
   do { /* a device that is about to tip over is slow as well, but not for long */
     CHECK_OK(scree_pour_advance(pour, 500, &error), error);
     double sum = law_ledger(world, &seen);
