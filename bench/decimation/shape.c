@@ -2,10 +2,11 @@
  *
  *   bench_shape phone COUNT OUT     a rounded box of 100 x 50 x 15 mm with 0.02 mm of normal noise,
  *                                   of about COUNT triangles (762008 is met exactly)
- *   bench_shape even COUNT OUT      the same with noise of so much for 762008 triangles, and for
- * others as much of their spacing: as rough at every size bench_shape clean COUNT OUT     the same
- * without noise bench_shape cube COUNT OUT      a flat cube of 50 mm, about COUNT triangles (786432
- * exactly) bench_shape turned COUNT OUT    the same, turned about an oblique axis
+ *   bench_shape even COUNT OUT      the same, but noise in proportion to the spacing, 0.02 mm for
+ *                                   762008 triangles: as rough at every size
+ *   bench_shape clean COUNT OUT     the same without noise
+ *   bench_shape cube COUNT OUT      a flat cube of 50 mm, about COUNT triangles (786432 exactly)
+ *   bench_shape turned COUNT OUT    the same, turned about an oblique axis
  *
  * OUT ends in .stl (binary, single precision) or .ply (binary little endian, double precision).
  * The surface is the grid of a box of cells[0] x cells[1] x cells[2], each square cut in two. */

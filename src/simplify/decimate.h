@@ -120,8 +120,7 @@ scree_status scree_decimate_sum(scree_decimator *d);
 /* Keeps the surface as it is (stray.h). */
 scree_status scree_decimate_keep(scree_decimator *d);
 
-/* Of few triangles: witnesses spread evenly over the scan take the place of those that there are.
- */
+/* Of few triangles: witnesses spread evenly over the scan take the place of the others. */
 scree_status scree_decimate_spread(scree_decimator *d);
 
 /* Passes of many independent collapses, while there are more than single_from triangles. */
