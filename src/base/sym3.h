@@ -46,4 +46,11 @@ static inline vec3 sym3_solve(const sym3 *m, vec3 v) {
   return vec3_scale(sum, 1 / vec3_dot(x, yz));
 }
 
+static inline sym3 sym3_inverse(const sym3 *m) {
+  vec3 x = {m->xx, m->xy, m->xz}, y = {m->xy, m->yy, m->yz}, z = {m->xz, m->yz, m->zz};
+  vec3 yz = vec3_cross(y, z), zx = vec3_cross(z, x), xy = vec3_cross(x, y);
+  double scale = 1 / vec3_dot(x, yz);
+  return (sym3){scale * yz.x, scale * yz.y, scale * yz.z, scale * zx.y, scale * zx.z, scale * xy.z};
+}
+
 #endif

@@ -63,6 +63,18 @@ void scree_ring_name(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
   r->d = twin == SCREE_NONE ? SCREE_NONE : s->half[scree_previous(twin)].from;
 }
 
+void scree_ring_corners_at(const scree_halfmesh *s, const scree_ring *r, uint32_t i, vec3 x,
+                           double *corners) {
+  vec3_store(corners, x);
+  vec3_store(corners + 3, s->vertex[s->half[r->edge[i]].from].at);
+  vec3_store(corners + 6, s->vertex[scree_to(s, r->edge[i])].at);
+}
+
+void scree_ring_corners(const scree_halfmesh *s, const scree_ring *r, vec3 target,
+                        double (*corners)[9]) {
+  for (uint32_t i = 0; i < r->count; i++) scree_ring_corners_at(s, r, i, target, corners[i]);
+}
+
 bool scree_ring_gather(const scree_halfmesh *s, uint32_t h, scree_ring *r) {
   uint32_t twin = s->half[h].twin;
   bool open;

@@ -34,6 +34,24 @@ bool scree_ring_gather_fan(const scree_halfmesh *s, uint32_t vertex, scree_ring 
 /* Ends and apexes of the ring from its half-edge. */
 void scree_ring_name(const scree_halfmesh *s, uint32_t half_edge, scree_ring *ring);
 
+/* Triangle k of those around: the ring's, then the edge's own; and how many these are. */
+static inline uint32_t scree_ring_triangle(const scree_halfmesh *s, const scree_ring *r,
+                                           uint32_t k) {
+  uint32_t h = k < r->count    ? r->edge[k]
+               : k == r->count ? r->half_edge
+                               : s->half[r->half_edge].twin;
+  return h / 3;
+}
+static inline uint32_t scree_ring_triangle_count(const scree_ring *r) {
+  return r->count + (r->c != SCREE_NONE) + (r->d != SCREE_NONE);
+}
+
+/* The corners of the ring's triangle i, with its moving corner, the first, at x; of all. */
+void scree_ring_corners_at(const scree_halfmesh *s, const scree_ring *ring, uint32_t i, vec3 x,
+                           double *corners);
+void scree_ring_corners(const scree_halfmesh *s, const scree_ring *ring, vec3 target,
+                        double (*corners)[9]);
+
 /* Cosine of a fold, 149 degrees: one to spare for coordinates rounded to float. */
 #define SCREE_FOLD (-0.857)
 

@@ -83,17 +83,21 @@ void scree_record_write(scree_decimator *d, size_t i, const scree_ring *ring,
   r->error[i] = (float)error;
 }
 
+scree_status scree_record_place(scree_decimator *d, uint32_t vertex, vec3 at) {
+  scree_record *r = &d->record;
+  scree_move move = {(uint32_t)(r->count - 1), d->s.vertex[vertex].origin,
+                     vec3_mad(d->s.centre, at, d->s.scale)};
+  return SCREE_PUSH(&r->moves, move)
+             ? SCREE_OK
+             : scree_fail_memory(d->error, r->moves.count * sizeof move, "the record");
+}
+
 scree_status scree_record_move(scree_decimator *d, const scree_ring *fan,
                                const scree_change *change) {
   scree_record *r = &d->record;
-  size_t last = r->count - 1;
-  scree_move move = {(uint32_t)last, d->s.vertex[fan->a].origin,
-                     vec3_mad(d->s.centre, change->target, d->s.scale)};
-  if (!SCREE_PUSH(&r->moves, move))
-    return scree_fail_memory(d->error, r->moves.count * sizeof move, "the record");
-  r->area[last] += change->area;
-  r->volume[last] += change->volume;
-  return SCREE_OK;
+  r->area[r->count - 1] += change->area;
+  r->volume[r->count - 1] += change->volume;
+  return scree_record_place(d, fan->a, change->target);
 }
 
 /* Seconds that are still to come at so many triangles, as measured on scans of 100,000 to 900,000:

@@ -32,6 +32,14 @@ typedef struct scree_record {
 
 #define SCREE_ONE_TRIANGLE UINT32_C(0x80000000)
 
+/* What of method `volume` is left as its collapses and their moves make it (settle.h): a slow
+ * oracle can follow that. */
+typedef enum scree_unsettled {
+  SCREE_UNSETTLED_NONE,
+  SCREE_UNSETTLED_LEVELS, /* the coarsest, each by itself */
+  SCREE_UNSETTLED_ALL     /* and the surface on its way */
+} scree_unsettled;
+
 typedef struct scree_decimator {
   const scree_mesh *mesh; /* the mesh given */
   scree_halfmesh s;
@@ -41,7 +49,7 @@ typedef struct scree_decimator {
   scree_record record;
   size_t first_triangle_count;
   size_t single_from; /* triangles: where the batches end and single collapses begin */
-  bool unsettled; /* levels are left as their collapses make them: a slow oracle can follow that */
+  scree_unsettled unsettled;
   scree_grid grid;
   scree_memory memory; /* of surfaces that the batches came to; nothing before */
   scree_anchors anchors;
@@ -64,9 +72,11 @@ void scree_decimator_free(scree_decimator *d);
 void scree_record_write(scree_decimator *d, size_t place, const scree_ring *ring,
                         const scree_change *change, double error);
 
-/* The same of a move of the fan's vertex, after the last collapse written. */
+/* The same of a move of the fan's vertex, after the last collapse written; and of the place alone,
+ * where what the move changes is told otherwise. */
 scree_status scree_record_move(scree_decimator *d, const scree_ring *fan,
                                const scree_change *change);
+scree_status scree_record_place(scree_decimator *d, uint32_t vertex, vec3 at);
 
 /* Of large scans method `volume` looks at less, or later, for it takes time: see the counts below.
  */
@@ -79,7 +89,7 @@ static inline bool scree_is_large(const scree_decimator *d) {
  * goes on in batches to the second, for it is most of what does not run in parallel. */
 enum { SCREE_GREEDY_COUNT = 10000, SCREE_GREEDY_LATE = 5000 };
 
-/* From how many triangles on there are witnesses (stray.h), and the surface is kept if it is not
+/* From how many triangles on there are witnesses (memory.h), and the surface is kept if it is not
  * yet; method `volume`. To look at every stray from there on takes time, so that with large scans
  * it is later. */
 enum { SCREE_KEPT_COUNT = 100000, SCREE_KEPT_LATE = 30000 };
@@ -95,20 +105,16 @@ static inline bool scree_is_held_close(const scree_decimator *d) {
   return scree_is_close_scan(d) && d->s.live_triangle_count > SCREE_CLOSE_COUNT;
 }
 
-/* Below how many triangles vertices move after a collapse (relax.h); method `volume`; later with
- * large scans. */
-enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 1300 };
+/* Below how many triangles vertices move after a collapse (relax.h), and all of them together now
+ * and then (settle.h); method `volume`. With large scans later, the former not before the last
+ * levels: the latter alone makes as good ones in less time. */
+enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 130 };
+enum { SCREE_PATH_COUNT = 3000, SCREE_PATH_LATE = 1700 };
 
 /* Witnesses for a triangle above which they are thinned, and how many are kept however few
  * triangles there are: places found by few fit these rather than the scan. Of large scans fewer for
- * a triangle, for it takes time; but theirs are the vertices of a surface kept late and the last
- * that went before it, and more of them are needed for coarse levels. */
-enum {
-  SCREE_CROWD = 48,
-  SCREE_LEAST_WITNESSES = 4000,
-  SCREE_CROWD_OF_LARGE = 16,
-  SCREE_LEAST_OF_LARGE = 4000
-};
+ * a triangle, until the surface settles, for it takes time. */
+enum { SCREE_CROWD = 48, SCREE_CROWD_OF_LARGE = 24, SCREE_LEAST_WITNESSES = 4000 };
 
 /* Of large scans, how many are spread for the levels that look ahead (keep.c), and for a triangle:
  * fewer from about half of these levels on. */
@@ -117,7 +123,7 @@ enum { SCREE_SPREAD_COUNT = 8000, SCREE_CROWD_SPREAD = 90 };
 /* The sums of all vertices, if there are none yet: they are needed but in patches. */
 scree_status scree_decimate_sum(scree_decimator *d);
 
-/* Keeps the surface as it is (stray.h). */
+/* Keeps the surface as it is (memory.h). */
 scree_status scree_decimate_keep(scree_decimator *d);
 
 /* Of few triangles: witnesses spread evenly over the scan take the place of the others. */

@@ -25,9 +25,11 @@
  * changes around the edge before its turn comes; so the outcome is that of one thread.
  *
  * Below SCREE_RELAXED_COUNT triangles the vertices about a collapse move after it, to where the
- * witnesses around them are nearer (step.c). Below SCREE_AHEAD_COUNT not the cheapest collapse is
- * done, but of the cheapest that are allowed the one after which the level is best (ahead.h). The
- * levels below SCREE_SETTLED_COUNT are settled, each by itself, beside the path (settle.h).
+ * witnesses around them are nearer (step.c), and below SCREE_PATH_COUNT, at every tenth that goes,
+ * all of them together (settle.h), until the look ahead or the settled levels begin. Below
+ * SCREE_AHEAD_COUNT not the cheapest collapse is done, but of the cheapest that are allowed the one
+ * after which the level is best (ahead.h). The levels below SCREE_SETTLED_COUNT are settled, each
+ * by itself, beside the path (settle.h).
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
@@ -49,6 +51,8 @@
  * found anew. */
 #define TOLL_RANK   0.1
 #define RENEW_BELOW 0.7
+/* ... and where the surface settles then. */
+#define SETTLE_BELOW 0.9
 
 /* Of scans held close: the share of the toll below so many triangles. */
 #define EASY_TOLL 0.05
@@ -92,6 +96,8 @@ typedef struct queue {
   size_t entered_at;              /* collapses when all edges were entered last */
   double toll;                    /* weight of the stray's sixth power in the cost */
   size_t renew_at;                /* triangles */
+  bool settles;                   /* the surface does, where its vertices move */
+  scree_settled settled;          /* room for that, from then on */
   double *sorted;                 /* scratch: costs */
   uint32_t waiting[SIDE_BY_SIDE]; /* half-edges to be evaluated */
   size_t waiting_count;
@@ -201,6 +207,7 @@ static void queue_free(queue *q) {
   scree_free(q->step.touched);
   scree_free(q->sorted);
   scree_free(q->offers);
+  scree_settled_free(&q->settled);
 }
 
 static void enter_all(queue *q) {
@@ -225,24 +232,79 @@ static bool has_easy_toll(const scree_decimator *d) {
   return scree_is_close_scan(d) && d->s.live_triangle_count < EASY_BELOW && !looks_ahead(d);
 }
 
-/* Enters all edges and finds the toll. */
+static void sum_all(const queue *q) {
+  scree_halfmesh *s = &q->d->s;
+  for (uint32_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE) q->d->coster->sum(s, v);
+}
+
+static size_t settles_below(const scree_decimator *d) {
+  return scree_is_large(d) ? SCREE_PATH_LATE : SCREE_PATH_COUNT;
+}
+
+static bool may_settle(const queue *q) {
+  const scree_decimator *d = q->d;
+  return q->settles && d->record.count > 0 && d->s.live_triangle_count < settles_below(d);
+}
+
+/* Closes the gaps that collapses left, before edges are entered anew: to settle looks at all
+ * triangles many times. */
+static scree_status compact(queue *q) {
+  scree_decimator *d = q->d;
+  scree_halfmesh *s = &d->s;
+  size_t half_edges = 3 * s->triangle_count;
+  q->heap_count = q->known_next = 0;
+  scree_memory_compact(&d->memory, s);
+  scree_joint_compact(&q->settled.joint, s);
+  scree_halfmesh_compact(s, q->place, q->heap);
+  memset(q->place, 0xff, half_edges * sizeof *q->place);
+  memset(q->stage, IN_PART, half_edges);
+  memset(q->step.stamp, 0, s->vertex_count * sizeof *q->step.stamp);
+  d->grid.built_for = 0; /* it has the old numbers */
+  return scree_anchors_find(s, &d->anchors, d->error);
+}
+
+static scree_status settle(queue *q) {
+  scree_status status = compact(q);
+  if (status == SCREE_OK && !q->settled.places) status = scree_settled_allocate(&q->settled, q->d);
+  if (status == SCREE_OK) status = scree_settle_path(&q->settled, &q->step);
+  sum_all(q);
+  return status;
+}
+
+/* At how many triangles edges are entered anew. */
+static size_t next_renewal(const queue *q) {
+  double count = (double)q->d->s.live_triangle_count, from = (double)settles_below(q->d);
+  double at = RENEW_BELOW * count;
+  if (q->settles && at < from) at = fmax(at, fmin(SETTLE_BELOW * count, from - 1));
+  return (size_t)at;
+}
+
+/* Witnesses for a triangle above which they are thinned. */
+static size_t crowd(const scree_decimator *d) {
+  if (!scree_is_large(d)) return SCREE_CROWD;
+  if (looks_ahead(d)) return SCREE_CROWD_SPREAD;
+  return d->s.live_triangle_count < SCREE_PATH_LATE ? SCREE_CROWD : SCREE_CROWD_OF_LARGE;
+}
+
+/* Settles, enters all edges and finds the toll. */
 static scree_status renew(queue *q) {
   scree_decimator *d = q->d;
+  if (may_settle(q)) {
+    scree_status status = settle(q);
+    if (status != SCREE_OK) return status;
+  }
   enter_all(q);
   if (d->coster->merge || q->heap_count == 0) return SCREE_OK;
   for (size_t i = 0; i < q->heap_count; i++) q->sorted[i] = q->cost[q->heap[i]];
   qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
   double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
-  if (scree_is_large(d))
-    scree_memory_thin(&d->memory, &d->s, looks_ahead(d) ? SCREE_CROWD_SPREAD : SCREE_CROWD_OF_LARGE,
-                      SCREE_LEAST_OF_LARGE);
-  else
-    scree_memory_thin(&d->memory, &d->s, SCREE_CROWD, SCREE_LEAST_WITNESSES);
+  scree_memory_thin(&d->memory, &d->s, crowd(d), SCREE_LEAST_WITNESSES);
   double far = scree_memory_usual(&d->memory, scree_is_held_close(d));
   if (far > 0) far = fmax(far, scree_memory_worst(&d->memory));
   q->toll = far > 0 ? cost / pow(far, 6) : 0;
   if (has_easy_toll(d)) q->toll *= EASY_TOLL;
-  q->renew_at = (size_t)(RENEW_BELOW * (double)d->s.live_triangle_count);
+  q->renew_at = next_renewal(q);
   return scree_memory_squeeze(&d->memory, &d->s, d->error);
 }
 
@@ -261,8 +323,7 @@ static scree_status queue_fill(queue *q) {
   memset(q->place, 0xff, half_edges * sizeof *q->place);
   memset(q->stage, IN_PART, half_edges);
   memset(q->step.stamp, 0, s->vertex_count * sizeof *q->step.stamp);
-  for (uint32_t v = 0; v < s->vertex_count; v++)
-    if (s->vertex[v].outgoing != SCREE_NONE && !d->coster->merge) d->coster->sum(s, v);
+  if (!d->coster->merge) sum_all(q);
   scree_status status = SCREE_OK;
   if (!scree_memory_is_kept(&d->memory)) status = scree_decimate_keep(d);
   if (status == SCREE_OK) status = renew(q);
@@ -514,14 +575,14 @@ static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settli
   return status;
 }
 
-static scree_status begin(scree_decimator *d, queue *q) {
-  *q = (queue){.d = d, .step = {.d = d}, .entered_at = d->record.count};
+static scree_status begin(scree_decimator *d, bool settles, queue *q) {
+  *q = (queue){.d = d, .step = {.d = d}, .entered_at = d->record.count, .settles = settles};
   if (!d->coster->merge)
     q->step.relaxed_below = scree_is_large(d) ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
   q->step.farthest_at = q->step.relaxed_below;
   scree_grid_free(&d->grid);
-  scree_status status = queue_fill(q);
-  return status == SCREE_OK ? scree_anchors_find(&d->s, &d->anchors, d->error) : status;
+  scree_status status = scree_anchors_find(&d->s, &d->anchors, d->error);
+  return status == SCREE_OK ? queue_fill(q) : status;
 }
 
 /* The last triangles of method `volume`, with a look ahead. */
@@ -531,7 +592,7 @@ static scree_status end_with_care(scree_decimator *d, scree_settling *settling) 
   scree_status status = scree_ahead_prepare(d);
   if (status != SCREE_OK) return status;
   if (scree_is_large(d) && scree_memory_is_kept(&d->memory)) status = scree_decimate_spread(d);
-  if (status == SCREE_OK) status = begin(d, &q);
+  if (status == SCREE_OK) status = begin(d, false, &q);
   if (status == SCREE_OK) status = scree_grid_look_at_all(&d->grid, d->error);
   if (status == SCREE_OK) status = scree_ahead_begin(&ahead, d);
   if (status == SCREE_OK && settling && !settling->shown)
@@ -542,15 +603,18 @@ static scree_status end_with_care(scree_decimator *d, scree_settling *settling) 
   return status;
 }
 
-/* Down to so many triangles without a look ahead; the last of these levels are settled already. */
+/* Down to so many triangles without a look ahead; the last of these levels are settled already,
+ * and the surface itself not any more. */
 static scree_status begin_quickly(scree_decimator *d, size_t until, scree_settling *settling) {
   queue q;
-  size_t settled = settling && !scree_is_large(d) ? SCREE_SETTLED_COUNT : 0;
-  scree_status status = begin(d, &q);
+  bool settles = !d->coster->merge && d->unsettled != SCREE_UNSETTLED_ALL;
+  size_t settled = settles && !scree_is_large(d) ? SCREE_SETTLED_COUNT : 0;
+  scree_status status = begin(d, settles, &q);
   if (status == SCREE_OK) status = run(&q, until > settled ? until : settled, NULL, NULL);
+  q.settles = false;
   size_t count = d->s.live_triangle_count;
   if (status == SCREE_OK && count <= settled && count > until) {
-    status = scree_settle_begin(settling, &q.step);
+    if (settling) status = scree_settle_begin(settling, &q.step);
     if (status == SCREE_OK) status = run(&q, until, NULL, settling);
   }
   queue_free(&q);
@@ -563,7 +627,7 @@ scree_status scree_decimate_one_by_one(scree_decimator *d) {
   scree_status status = scree_decimate_sum(d);
   if (status != SCREE_OK) return status;
   if (!d->coster->merge) ahead = scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT;
-  if (!d->coster->merge && !d->unsettled) settled = &settling;
+  if (!d->coster->merge && d->unsettled == SCREE_UNSETTLED_NONE) settled = &settling;
   if (until < ahead) until = ahead;
   if (d->s.live_triangle_count > until) status = begin_quickly(d, until, settled);
   if (status == SCREE_OK && d->s.live_triangle_count <= ahead) status = end_with_care(d, settled);

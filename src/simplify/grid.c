@@ -62,8 +62,7 @@ static void fill_face(uint64_t *averse_of, double facing, int face) {
           corner[i][j] | corner[i + 1][j] | corner[i][j + 1] | corner[i + 1][j + 1];
 }
 
-/* The tables of directions, the same for every shape. */
-static scree_status prepare_tiles(scree_grid *g, scree_error *error) {
+scree_status scree_grid_prepare(scree_grid *g, scree_error *error) {
   if (g->averse_of) return SCREE_OK;
   SCREE_ALLOC_OR(g->averse_of, 2 * TILE_COUNT, error, out_of_memory);
   for (int face = 0; face < 6; face++) {
@@ -115,7 +114,7 @@ static scree_status shape(scree_grid *g, const scree_halfmesh *s, vec3 low, vec3
   g->size[2] = (uint32_t)(extent.z / cell) + 1;
   g->cell_count = (size_t)g->size[0] * g->size[1] * g->size[2];
   g->built_for = s->live_triangle_count;
-  if (prepare_tiles(g, error) != SCREE_OK) goto out_of_memory;
+  if (scree_grid_prepare(g, error) != SCREE_OK) goto out_of_memory;
   SCREE_ALLOC_OR(g->averse, g->cell_count, error, out_of_memory);
   SCREE_ALLOC_OR(g->groups, 2 * scree_block_count(s->triangle_count, SCREE_GROUP), error,
                  out_of_memory);
@@ -304,7 +303,7 @@ void scree_grid_enter_owners(scree_grid *g, const scree_halfmesh *s, const uint3
 scree_status scree_grid_look_at_all(scree_grid *g, scree_error *error) {
   free_cells(g);
   g->few = true;
-  return prepare_tiles(g, error);
+  return scree_grid_prepare(g, error);
 }
 
 static uint64_t ring_averse_to(const scree_grid *g, const scree_ring *r, const vec3 *normals) {

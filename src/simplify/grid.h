@@ -59,6 +59,10 @@ typedef struct scree_planned {
 /* Triangles of a group: so many one after the other. */
 enum { SCREE_GROUP = 16 };
 
+/* Makes the tables of directions, the same for every shape; what is below does where it needs them.
+ */
+scree_status scree_grid_prepare(scree_grid *grid, scree_error *error);
+
 /* Sets the cells for the surface as it is: about cells_per_edge cells per mean edge, at most a few
  * per triangle. Cells are empty: fill directions or lists as needed. */
 scree_status scree_grid_shape(scree_grid *grid, const scree_halfmesh *s, double edges_per_cell,
@@ -124,5 +128,16 @@ bool scree_grid_clear(const scree_grid *grid, const scree_halfmesh *s, const scr
 /* The same among these triangles alone: no others come near the ring. */
 bool scree_grid_clear_among(const scree_grid *grid, const scree_halfmesh *s, const scree_ring *ring,
                             vec3 target, const uint32_t *triangles, size_t count);
+
+/* A triangle and its box. */
+typedef struct scree_swept {
+  vec3 low, high;
+  uint32_t triangle;
+} scree_swept;
+
+/* Exact: true if no two triangles meet beyond what they share; of a few thousand at the most. The
+ * grid's cells are not asked. Room for a flag per vertex and a box per triangle. */
+bool scree_grid_clear_all(const scree_grid *grid, const scree_halfmesh *s, bool *graph,
+                          scree_swept *swept);
 
 #endif

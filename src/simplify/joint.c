@@ -22,12 +22,16 @@
 #include "simplify/joint.h"
 
 #include "base/lanes.h"
+#include "base/parallel.h"
 
-#include <float.h>
 #include <string.h>
 
 /* Of the mean distance: the least that counts in a weight. */
 #define LEAST_DISTANCE 0.1
+/* ... and below which a witness stands less and less for its own direction g and more for its
+ * triangle's normal, as one above the inside does anyway: of next to nothing the direction is
+ * rounding, which from step to step would grow until it decides. */
+#define NO_DISTANCE 0.05
 /* What all that lies as far off as the farthest place weighs, against all witnesses: more brings it
  * nearer, and leaves the mean distance larger. */
 #define FAR_SHARE 0.03
@@ -38,6 +42,8 @@ enum { MOST_ITERATIONS = 40 };
 /* Places are looked at above this share of the farthest's squared distance, or, where there are
  * none, of that again. */
 #define LOOKED_ABOVE 0.5
+/* Triangles that one thread asks at a time. */
+enum { ASKED_AT_ONCE = 64 };
 /* Looks for the farthest place, each for what is nearer than in the one before. */
 enum { MOST_LOOKS = 4 };
 /* Times that what the places leave of the volume is taken up by pressure: the rest falls
@@ -54,11 +60,14 @@ scree_status scree_joint_allocate(scree_joint *j, const scree_halfmesh *s, scree
   SCREE_ALLOC_OR(j->hints, half_edges, error, out_of_memory);
   SCREE_ALLOC_OR(j->own, vertices, error, out_of_memory);
   SCREE_ALLOC_OR(j->damped, vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->inverse, vertices, error, out_of_memory);
   SCREE_ALLOC_OR(j->shared, half_edges, error, out_of_memory);
+  SCREE_ALLOC_OR(j->edges, half_edges, error, out_of_memory);
   SCREE_ALLOC_OR(j->n, vertices, error, out_of_memory);
   SCREE_ALLOC_OR(j->pull, vertices, error, out_of_memory);
   SCREE_ALLOC_OR(j->shares, vertices, error, out_of_memory);
-  for (int i = 0; i < 4; i++) SCREE_ALLOC_OR(j->room[i], vertices, error, out_of_memory);
+  SCREE_ALLOC_OR(j->parts, s->triangle_count, error, out_of_memory);
+  for (int i = 0; i < 8; i++) SCREE_ALLOC_OR(j->room[i / 4][i % 4], vertices, error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -72,11 +81,14 @@ void scree_joint_free(scree_joint *j) {
   scree_free(j->hints);
   scree_free(j->own);
   scree_free(j->damped);
+  scree_free(j->inverse);
   scree_free(j->shared);
+  scree_free(j->edges);
   scree_free(j->n);
   scree_free(j->pull);
   scree_free(j->shares);
-  for (int i = 0; i < 4; i++) scree_free(j->room[i]);
+  scree_free(j->parts);
+  for (int i = 0; i < 8; i++) scree_free(j->room[i / 4][i % 4]);
 }
 
 /* Lists the places that are farther off than `least2`. */
@@ -86,12 +98,20 @@ static void list_far(scree_joint *j, const scree_memory *m, const scree_halfmesh
   j->hinted = true;
 }
 
+void scree_joint_compact(scree_joint *j, const scree_halfmesh *s) {
+  size_t count = 0;
+  for (size_t t = 0; t < s->triangle_count && j->hinted; t++) {
+    if (scree_is_gone(s, t)) continue;
+    if (t > count) memcpy(j->hints + 3 * count, j->hints + 3 * t, 3 * sizeof *j->hints);
+    count++;
+  }
+}
+
 void scree_joint_begin(scree_joint *j, const scree_memory *m, const scree_halfmesh *s,
                        double about2) {
   double of_witnesses2 = scree_memory_witness_stray(m, s);
   double least2 = LOOKED_ABOVE * fmax(about2, of_witnesses2);
   j->mean = scree_memory_mean(m);
-  j->hinted = false;
   for (int look = 0; look < MOST_LOOKS; look++, least2 *= LOOKED_ABOVE) {
     list_far(j, m, s, least2);
     j->far2 = of_witnesses2;
@@ -123,7 +143,7 @@ double scree_joint_merit(const scree_joint *j, const scree_memory *m, const scre
 
 /* The weights, see above. */
 typedef struct weighing {
-  double least, far_unit, far2;
+  double least, none, far_unit, far2;
 } weighing;
 
 static inline double far_weight(const weighing *w, double distance2) {
@@ -139,8 +159,8 @@ typedef struct triangle_sums {
   double pull[3][3][SUM_LANES], shares[3][SUM_LANES];
 } triangle_sums;
 
-/* What some witnesses say, side by side: of the unit vector towards each the squares and that times
- * the distance; the weight; the shares of the corners. */
+/* What some witnesses say, side by side: of the unit vector towards each the squares, and that
+ * times the distance; the weight; the shares of the corners. */
 typedef struct joint_sayings {
   double square[6][SCREE_POINTS], along[3][SCREE_POINTS];
   double weight[SCREE_POINTS], share[3][SCREE_POINTS];
@@ -152,27 +172,28 @@ SCREE_LANES static void say_all_lanes(const double *corners, const scree_points 
   vec3 a = vec3_load(corners), b = vec3_load(corners + 3), c = vec3_load(corners + 6);
   vec3 n = vec3_triangle_normal(a, b, c);
   double per_n2 = 1 / vec3_norm2(n), floor = w->least, far_unit = w->far_unit,
-         per_far2 = 1 / w->far2;
+         per_far2 = 1 / w->far2, none2 = w->none * w->none, upright2 = per_n2 * none2;
   for (int i = 0; i < count; i++) {
     vec3 x = {p->nearest[0][i], p->nearest[1][i], p->nearest[2][i]};
     vec3 off = {p->at[0][i] - x.x, p->at[1][i] - x.y, p->at[2][i] - x.z};
     vec3 xa = vec3_sub(a, x), xb = vec3_sub(b, x), xc = vec3_sub(c, x);
     double distance = sqrt(p->distance2[i]), ratio2 = per_far2 * p->distance2[i];
     double most = distance > floor ? distance : floor;
-    vec3 g = vec3_scale(off, 1 / (distance + DBL_MIN)); /* of none it is none */
+    double per_all2 = 1 / (p->distance2[i] + none2), towards = per_all2,
+           upright = upright2 * per_all2;
     out->weight[i] = weights[i] / most + far_unit * ratio2 * ratio2 * ratio2;
     out->share[0][i] = per_n2 * vec3_dot(n, vec3_cross(xb, xc));
     out->share[1][i] = per_n2 * vec3_dot(n, vec3_cross(xc, xa));
     out->share[2][i] = per_n2 * vec3_dot(n, vec3_cross(xa, xb));
-    out->square[0][i] = g.x * g.x;
-    out->square[1][i] = g.x * g.y;
-    out->square[2][i] = g.x * g.z;
-    out->square[3][i] = g.y * g.y;
-    out->square[4][i] = g.y * g.z;
-    out->square[5][i] = g.z * g.z;
-    out->along[0][i] = g.x * distance;
-    out->along[1][i] = g.y * distance;
-    out->along[2][i] = g.z * distance;
+    out->square[0][i] = towards * off.x * off.x + upright * n.x * n.x;
+    out->square[1][i] = towards * off.x * off.y + upright * n.x * n.y;
+    out->square[2][i] = towards * off.x * off.z + upright * n.x * n.z;
+    out->square[3][i] = towards * off.y * off.y + upright * n.y * n.y;
+    out->square[4][i] = towards * off.y * off.z + upright * n.y * n.z;
+    out->square[5][i] = towards * off.z * off.z + upright * n.z * n.z;
+    out->along[0][i] = off.x;
+    out->along[1][i] = off.y;
+    out->along[2][i] = off.z;
   }
 }
 
@@ -221,13 +242,17 @@ static double lane_sum(const double *lanes) {
   return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
 }
 
+static vec3 sum_of_pulls(double (*lanes)[SUM_LANES]) {
+  return (vec3){lane_sum(lanes[0]), lane_sum(lanes[1]), lane_sum(lanes[2])};
+}
+
 static sym3 sum_of_squares(double (*lanes)[SUM_LANES]) {
   return (sym3){lane_sum(lanes[0]), lane_sum(lanes[1]), lane_sum(lanes[2]),
                 lane_sum(lanes[3]), lane_sum(lanes[4]), lane_sum(lanes[5])};
 }
 
-static void add_triangle(scree_joint *j, const scree_memory *m, const scree_halfmesh *s, uint32_t t,
-                         const weighing *w) {
+static void ask_triangle(const scree_memory *m, const scree_halfmesh *s, uint32_t t,
+                         const weighing *w, scree_joint_part *part) {
   vec3 at[3];
   double corners[9], weights[SCREE_POINTS];
   scree_points points;
@@ -236,7 +261,6 @@ static void add_triangle(scree_joint *j, const scree_memory *m, const scree_half
   memset(&sums, 0, sizeof sums);
   scree_corners(s, t, at);
   for (size_t i = 0; i < 3; i++) vec3_store(corners + 3 * i, at[i]);
-  vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
   for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next) {
     if (m->witnesses[k].distance2 <= scree_past_rounding(0)) continue; /* it has no direction */
     weights[points.count] = (double)m->witnesses[k].weight;
@@ -244,15 +268,40 @@ static void add_triangle(scree_joint *j, const scree_memory *m, const scree_half
     if (points.count == SCREE_POINTS) add_crowd(corners, &points, weights, w, &sums);
   }
   if (points.count > 0) add_crowd(corners, &points, weights, w, &sums);
+  part->n = vec3_triangle_normal(at[0], at[1], at[2]);
+  for (size_t k = 0; k < 3; k++) {
+    part->own[k] = sum_of_squares(sums.own[k]);
+    part->shared[k] = sum_of_squares(sums.shared[k]);
+    part->pull[k] = sum_of_pulls(sums.pull[k]);
+    part->shares[k] = lane_sum(sums.shares[k]);
+  }
+}
+
+/* The triangles' parts of the equations, side by side. */
+typedef struct asking {
+  scree_joint *joint;
+  const scree_memory *memory;
+  const scree_halfmesh *s;
+  weighing weighing;
+} asking;
+
+static void ask_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const asking *a = context;
+  for (size_t t = begin; t < end; t++)
+    if (!scree_is_gone(a->s, t))
+      ask_triangle(a->memory, a->s, (uint32_t)t, &a->weighing, &a->joint->parts[t]);
+}
+
+static void add_part(scree_joint *j, const scree_halfmesh *s, uint32_t t) {
+  const scree_joint_part *part = &j->parts[t];
   for (uint32_t k = 0; k < 3; k++) {
     uint32_t v = s->half[3 * t + k].from;
-    j->n[v] = vec3_add(j->n[v], n);
-    sym3 own = sum_of_squares(sums.own[k]);
-    sym3_add(&j->own[v], &own);
-    j->shared[3 * t + k] = sum_of_squares(sums.shared[k]);
-    j->pull[v] = vec3_add(j->pull[v], (vec3){lane_sum(sums.pull[k][0]), lane_sum(sums.pull[k][1]),
-                                             lane_sum(sums.pull[k][2])});
-    j->shares[v] += lane_sum(sums.shares[k]);
+    j->n[v] = vec3_add(j->n[v], part->n);
+    sym3_add(&j->own[v], &part->own[k]);
+    j->shared[3 * t + k] = part->shared[k];
+    j->pull[v] = vec3_add(j->pull[v], part->pull[k]);
+    j->shares[v] += part->shares[k];
   }
 }
 
@@ -279,58 +328,85 @@ static double dot(const vec3 *a, const vec3 *b, size_t count) {
   return sum;
 }
 
-static void multiply(const scree_joint *j, const scree_halfmesh *s, const vec3 *x, vec3 *out) {
-  for (size_t v = 0; v < s->vertex_count; v++) out[v] = sym3_mul_vec(&j->damped[v], x[v]);
-  for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
-    uint32_t a = s->half[h].from;
-    if (a == SCREE_NONE) continue;
-    uint32_t b = scree_to(s, h);
-    out[a] = vec3_add(out[a], sym3_mul_vec(&j->shared[h], x[b]));
-    out[b] = vec3_add(out[b], sym3_mul_vec(&j->shared[h], x[a]));
+static void multiply(const scree_joint *j, size_t count, const vec3 *x, vec3 *out) {
+  for (size_t v = 0; v < count; v++) out[v] = sym3_mul_vec(&j->damped[v], x[v]);
+  for (size_t i = 0; i < j->edge_count; i++) {
+    uint32_t a = j->edges[i].ends[0], b = j->edges[i].ends[1];
+    out[a] = vec3_add(out[a], sym3_mul_vec(&j->edges[i].shared, x[b]));
+    out[b] = vec3_add(out[b], sym3_mul_vec(&j->edges[i].shared, x[a]));
   }
-  for (size_t v = 0; v < s->vertex_count; v++)
+  for (size_t v = 0; v < count; v++)
     if (!j->free[v]) out[v] = (vec3){0, 0, 0};
 }
 
 /* Conjugate gradients, preconditioned by what each vertex has by itself. What is not free stays. */
-static void solve(scree_joint *j, const scree_halfmesh *s, const vec3 *right, vec3 *x) {
-  size_t count = s->vertex_count;
-  vec3 *r = j->room[0], *z = j->room[1], *p = j->room[2], *q = j->room[3];
+static void solve(const scree_joint *j, size_t count, const vec3 *right, vec3 *const *room,
+                  vec3 *x) {
+  vec3 *r = room[0], *z = room[1], *p = room[2], *q = room[3];
   for (size_t v = 0; v < count; v++) {
     x[v] = (vec3){0, 0, 0};
     r[v] = j->free[v] ? right[v] : x[v];
-    p[v] = z[v] = j->free[v] ? sym3_solve(&j->damped[v], r[v]) : x[v];
+    p[v] = z[v] = j->free[v] ? sym3_mul_vec(&j->inverse[v], r[v]) : x[v];
   }
   double rz = dot(r, z, count), enough = ENOUGH * rz;
   for (int i = 0; i < MOST_ITERATIONS && rz > enough; i++) {
-    multiply(j, s, p, q);
+    multiply(j, count, p, q);
     double along = rz / dot(p, q, count), before = rz;
     for (size_t v = 0; v < count; v++) {
       x[v] = vec3_mad(x[v], p[v], along);
       r[v] = vec3_mad(r[v], q[v], -along);
-      if (j->free[v]) z[v] = sym3_solve(&j->damped[v], r[v]);
+      if (j->free[v]) z[v] = sym3_mul_vec(&j->inverse[v], r[v]);
     }
     rz = dot(r, z, count);
     for (size_t v = 0; v < count; v++) p[v] = vec3_mad(z[v], p[v], rz / before);
   }
 }
 
+/* The ways and how pressure moves the vertices, side by side. */
+typedef struct solving {
+  scree_joint *joint;
+  const scree_halfmesh *s;
+} solving;
+
+static void solve_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const solving *q = context;
+  scree_joint *j = q->joint;
+  for (size_t i = begin; i < end; i++)
+    solve(j, q->s->vertex_count, i == 0 ? j->pull : j->n, j->room[i], i == 0 ? j->step : j->per_n);
+}
+
+static void list_edges(scree_joint *j, const scree_halfmesh *s) {
+  j->edge_count = 0;
+  for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
+    uint32_t twin = s->half[h].twin;
+    if (s->half[h].from == SCREE_NONE || twin < h) continue;
+    scree_joint_edge *edge = &j->edges[j->edge_count++];
+    *edge = (scree_joint_edge){{s->half[h].from, scree_to(s, h)}, j->shared[h]};
+    if (twin != SCREE_NONE) sym3_add(&edge->shared, &j->shared[twin]);
+  }
+}
+
 bool scree_joint_fill(scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
   size_t vertices = s->vertex_count;
   if (!(j->mean > SCREE_SAME_DISTANCE)) return false;
-  weighing w = {LEAST_DISTANCE * j->mean, FAR_SHARE * m->weight * j->mean / j->far2, j->far2};
+  weighing w = {LEAST_DISTANCE * j->mean, NO_DISTANCE * j->mean,
+                FAR_SHARE * m->weight * j->mean / j->far2, j->far2};
+  asking a = {j, m, s, w};
   memset(j->own, 0, vertices * sizeof *j->own);
   memset(j->shared, 0, 3 * s->triangle_count * sizeof *j->shared);
   memset(j->pull, 0, vertices * sizeof *j->pull);
   memset(j->n, 0, vertices * sizeof *j->n);
   memset(j->shares, 0, vertices * sizeof *j->shares);
+  scree_parallel_for(s->triangle_count, ASKED_AT_ONCE, ask_block, &a);
   for (uint32_t t = 0; t < s->triangle_count; t++)
-    if (!scree_is_gone(s, t)) add_triangle(j, m, s, t, &w);
+    if (!scree_is_gone(s, t)) add_part(j, s, t);
   for (size_t i = 0; i < j->far_count; i++) add_far(j, s, &j->far[i], &w);
   for (size_t v = 0; v < vertices; v++) {
     j->free[v] = j->free[v] && j->shares[v] > 0;
     if (!j->free[v]) j->n[v] = (vec3){0, 0, 0};
   }
+  list_edges(j, s);
   return true;
 }
 
@@ -339,9 +415,9 @@ bool scree_joint_solve(scree_joint *j, const scree_halfmesh *s, double damping) 
   for (size_t v = 0; v < vertices; v++) {
     j->damped[v] = j->own[v];
     sym3_add_diagonal(&j->damped[v], damping * j->shares[v]);
+    if (j->free[v]) j->inverse[v] = sym3_inverse(&j->damped[v]);
   }
-  solve(j, s, j->pull, j->step);
-  solve(j, s, j->n, j->per_n);
+  scree_parallel_for(2, 1, solve_block, &(solving){j, s});
   j->n_per_n = dot(j->n, j->per_n, vertices);
   if (!(j->n_per_n > 0)) return false;
   double pressure = dot(j->n, j->step, vertices) / j->n_per_n;

@@ -21,7 +21,7 @@
  * triangle, so that their volumes add up exactly.
  *
  * A witness is taken to stay with its triangle, so that its distance afterwards is found at once
- * and is an upper bound, as everywhere in stray.h. */
+ * and is an upper bound, as everywhere in memory.h. */
 #include "simplify/relax.h"
 
 #include "base/lanes.h"

@@ -12,6 +12,8 @@
 #include "base/parallel.h"
 #include "mesh/intersect.h"
 
+#include <stdatomic.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Groups that are asked for together first. */
@@ -452,4 +454,100 @@ bool scree_grid_clear(const scree_grid *g, const scree_halfmesh *s, const scree_
     search_lists(&q, &c, &box);
   }
   return q.after <= q.before;
+}
+
+/* ---- The whole surface ---- */
+
+/* Vertices or triangles that one thread looks at at a time. */
+enum { SWEPT_AT_ONCE = 64 };
+
+/* Whether every triangle at v faces one direction, once around it: then those that share it have no
+ * more in common than they should. */
+static bool fan_is_graph(const scree_grid *g, const scree_halfmesh *s, uint32_t v) {
+  uint64_t averse = 0;
+  uint32_t first = s->vertex[v].outgoing, h = first, turns = 0;
+  vec3 center = s->vertex[v].at, edge = vec3_sub(s->vertex[scree_to(s, first)].at, center);
+  do {
+    vec3 at[3];
+    scree_corners(s, h / 3, at);
+    averse |= scree_averse_to(g, vec3_triangle_normal(at[0], at[1], at[2]));
+    h = scree_turn(s, h);
+  } while (h != SCREE_NONE && h != first);
+  if (h == SCREE_NONE || averse == SCREE_ALL_AVERSE) return false;
+  vec3 across = vec3_cross(scree_faced_direction(averse), edge);
+  do {
+    uint32_t next = scree_turn(s, h);
+    double from = vec3_dot(across, vec3_sub(s->vertex[scree_to(s, h)].at, center)),
+           to = vec3_dot(across, vec3_sub(s->vertex[scree_to(s, next)].at, center));
+    turns += from < 0 && to >= 0;
+    h = next;
+  } while (h != first);
+  return turns == 1;
+}
+
+/* Whether the two surely have no more in common than vertices that they share. */
+static bool are_apart(const scree_halfmesh *s, const bool *graph, uint32_t t, uint32_t u) {
+  for (uint32_t i = 3 * t; i < 3 * t + 3; i++)
+    for (uint32_t j = 3 * u; j < 3 * u + 3; j++)
+      if (s->half[i].from == s->half[j].from && graph[s->half[i].from]) return true;
+  corners x = corners_of(s, t), y = corners_of(s, u);
+  plane of_x = plane_of(x.at), of_y = plane_of(y.at);
+  return beside(&x, &y, &of_y) || beside(&y, &x, &of_x) || !meet(&x, &y);
+}
+
+static int by_low(const void *a, const void *b) {
+  const scree_swept *x = a, *y = b;
+  if (x->low.x != y->low.x) return x->low.x < y->low.x ? -1 : 1;
+  return (x->triangle > y->triangle) - (x->triangle < y->triangle);
+}
+
+/* The search for two triangles that meet. */
+typedef struct sweep {
+  const scree_grid *grid;
+  const scree_halfmesh *s;
+  bool *graph;
+  const scree_swept *swept;
+  size_t count;
+  atomic_bool met;
+} sweep;
+
+static void graph_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const sweep *q = context;
+  for (size_t v = begin; v < end; v++)
+    q->graph[v] =
+        q->s->vertex[v].outgoing != SCREE_NONE && fan_is_graph(q->grid, q->s, (uint32_t)v);
+}
+
+/* Each with those that begin where it has not ended. */
+static void sweep_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  sweep *q = context;
+  for (size_t i = begin; i < end && !q->met; i++) {
+    const scree_swept *a = &q->swept[i], *last = q->swept + q->count;
+    for (const scree_swept *b = a + 1; b < last && b->low.x <= a->high.x; b++) {
+      if (b->low.y > a->high.y || b->low.z > a->high.z || b->high.y < a->low.y ||
+          b->high.z < a->low.z || are_apart(q->s, q->graph, a->triangle, b->triangle))
+        continue;
+      q->met = true;
+      return;
+    }
+  }
+}
+
+bool scree_grid_clear_all(const scree_grid *g, const scree_halfmesh *s, bool *graph,
+                          scree_swept *swept) {
+  size_t count = 0;
+  sweep q = {.grid = g, .s = s, .graph = graph, .swept = swept};
+  scree_parallel_for(s->vertex_count, SWEPT_AT_ONCE, graph_block, &q);
+  for (uint32_t t = 0; t < s->triangle_count; t++) {
+    if (scree_is_gone(s, t)) continue;
+    swept[count].triangle = t;
+    triangle_box(s, t, &swept[count].low, &swept[count].high);
+    count++;
+  }
+  qsort(swept, count, sizeof *swept, by_low);
+  q.count = count;
+  scree_parallel_for(count, SWEPT_AT_ONCE, sweep_block, &q);
+  return !q.met;
 }

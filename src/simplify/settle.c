@@ -1,5 +1,6 @@
-/* Vertices move one after the other, each if it is allowed, so that all that holds for a move holds
- * here. What those that may not leave of the volume, the others take up. Steps are taken where the
+/* Vertices move one after the other, each if it suits; at the end the surface must not meet itself.
+ * If it does, they move once more, each if it is allowed as any move is. What those that may not
+ * leave of the volume, the others take up. Steps are taken where the
  * merit (joint.h) falls; else they are found once more with more damping (Levenberg, Marquardt). */
 #include "simplify/settle.h"
 
@@ -9,9 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Steps tried for a level; of large scans fewer, for it takes time. Levels of more than so many
- * triangles, whose steps take long, have no more after one that gains little. */
+/* Steps tried for a level, and on the path; of large scans fewer, for it takes time. Levels of more
+ * than so many triangles, whose steps take long, have no more after one that gains little. */
 enum { MOST_STEPS = 20, MOST_OF_LARGE = 10, QUICK_STEPS = 64 };
+enum { MOST_ON_PATH = 4, MOST_ON_LARGE_PATH = 3 };
 #define LITTLE_GAIN 1e-3
 /* A smaller gain of the merit is none. */
 #define LEAST_GAIN 1e-4
@@ -23,17 +25,35 @@ enum { MOST_STEPS = 20, MOST_OF_LARGE = 10, QUICK_STEPS = 64 };
 #define LEAST_DAMPING 1e-4
 #define MOST_DAMPING  10.0
 
-static scree_status allocate(scree_settled *l, const scree_decimator *d) {
-  scree_status status = scree_trial_allocate(&l->trial, d);
-  if (status == SCREE_OK) status = scree_trial_allocate(&l->before, d);
-  if (status == SCREE_OK) status = scree_joint_allocate(&l->joint, &d->s, d->error);
+scree_status scree_settled_allocate(scree_settled *l, const scree_decimator *d) {
+  const scree_halfmesh *s = &d->s;
+  scree_status status = scree_joint_allocate(&l->joint, s, d->error);
   if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(l->places, d->s.vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->errands, d->s.vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->lists, d->s.triangle_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->before.places, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->before.witnesses, d->memory.count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->before.first, s->triangle_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->places, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->errands, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->lists, s->triangle_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->followed, d->memory.count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->graph, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->swept, s->triangle_count, d->error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
+}
+
+void scree_settled_free(scree_settled *l) {
+  scree_joint_free(&l->joint);
+  scree_free(l->before.places);
+  scree_free(l->before.witnesses);
+  scree_free(l->before.first);
+  scree_free(l->places);
+  scree_free(l->errands);
+  scree_free(l->lists);
+  scree_free(l->followed);
+  scree_free(l->graph);
+  scree_free(l->swept);
 }
 
 static scree_status allocate_draft(scree_draft *f, const scree_decimator *d) {
@@ -88,8 +108,10 @@ scree_status scree_settle_begin(scree_settling *q, const scree_step *step) {
   *q = (scree_settling){.first = d->record.count};
   if (!d->grid.few) status = allocate_draft(&q->draft, d);
   if (status == SCREE_OK) status = draw_from(q, step, &from);
-  for (int i = 0; i < SCREE_SETTLED_AT_ONCE && status == SCREE_OK; i++)
-    status = allocate(&q->levels[i], from->d);
+  for (int i = 0; i < SCREE_SETTLED_AT_ONCE && status == SCREE_OK; i++) {
+    status = scree_trial_allocate(&q->levels[i].trial, from->d);
+    if (status == SCREE_OK) status = scree_settled_allocate(&q->levels[i], from->d);
+  }
   if (status != SCREE_OK) return status;
   const scree_halfmesh *s = &from->d->s;
   SCREE_ALLOC_OR(q->shown, s->vertex_count, d->error, out_of_memory);
@@ -104,30 +126,33 @@ void scree_settle_free(scree_settling *q) {
   free_draft(&q->draft);
   for (int i = 0; i < SCREE_SETTLED_AT_ONCE; i++) {
     scree_trial_free(&q->levels[i].trial);
-    scree_trial_free(&q->levels[i].before);
-    scree_joint_free(&q->levels[i].joint);
-    scree_free(q->levels[i].places);
-    scree_free(q->levels[i].errands);
-    scree_free(q->levels[i].lists);
+    scree_settled_free(&q->levels[i]);
   }
   scree_free(q->shown);
   scree_free(q->moves.items);
 }
 
-/* Moves v to x, if that is allowed; the witnesses are to follow. */
-static scree_status move_to(scree_step *q, uint32_t v, vec3 x, bool *moved) {
+/* Where the level's changes of area and volume are told. */
+static size_t told_at(const scree_settled *l) {
+  return l->step->d->record.count - 1;
+}
+
+/* Moves v to x, if that suits, or is allowed; the witnesses are to follow. */
+static scree_status move_to(const scree_settled *l, bool each, uint32_t v, vec3 x, bool *moved) {
+  scree_step *q = l->step;
   uint32_t edges[SCREE_RING_MAX];
   scree_ring fan = {.edge = edges};
   scree_change change = {.target = x};
   scree_around around;
   scree_status status = SCREE_OK;
-  *moved =
-      scree_step_gather(&q->d->s, v, &fan) && scree_step_allows(q, &fan, &change, &around, &status);
+  *moved = scree_step_gather(&q->d->s, v, &fan) &&
+           (each ? scree_step_allows(q, &fan, &change, &around, &status)
+                 : scree_step_suits(q, &fan, &change, &around));
   if (!*moved) return status;
   q->d->s.vertex[v].at = x;
-  q->d->record.area[0] += change.area;
-  q->d->record.volume[0] += change.volume;
-  return SCREE_OK;
+  q->d->record.area[told_at(l)] += change.area;
+  q->d->record.volume[told_at(l)] += change.volume;
+  return each ? scree_step_list(q, &fan, &around) : SCREE_OK;
 }
 
 /* The sum of the doubled area vectors around v, which may move. */
@@ -153,7 +178,7 @@ static int by_length(const void *a, const void *b) {
 /* Lists those that may move, the shortest way first: an order of their numbers would be another one
  * when the scan is turned. */
 static size_t list_errands(const scree_settled *l) {
-  const scree_halfmesh *s = &l->trial.d.s;
+  const scree_halfmesh *s = &l->step->d->s;
   size_t count = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (l->joint.free[v])
@@ -164,12 +189,12 @@ static size_t list_errands(const scree_settled *l) {
 
 /* All to their places. What is left of the volume then, the vertex takes up that yields most to
  * pressure. *kept: it may. */
-static scree_status move_all(scree_settled *l, bool *kept) {
-  scree_step *q = &l->trial.step;
-  const scree_halfmesh *s = &q->d->s;
+static scree_status move_all(scree_settled *l, bool each, bool *kept) {
+  scree_decimator *d = l->step->d;
+  const scree_halfmesh *s = &d->s;
   const scree_joint *j = &l->joint;
   scree_status status = SCREE_OK;
-  const double *volume = q->d->record.volume;
+  const double *volume = &d->record.volume[told_at(l)];
   double before = *volume, most = 0;
   bool moved, all = true;
   uint32_t softest = SCREE_NONE;
@@ -177,7 +202,7 @@ static scree_status move_all(scree_settled *l, bool *kept) {
   size_t count = list_errands(l);
   for (size_t i = 0; i < count && status == SCREE_OK; i++) {
     uint32_t v = l->errands[i].vertex;
-    status = move_to(q, v, l->places[v], &moved);
+    status = move_to(l, each, v, l->places[v], &moved);
     all &= moved;
     double soft = vec3_dot(j->n[v], j->per_n[v]);
     if (soft > most) softest = v;
@@ -186,30 +211,54 @@ static scree_status move_all(scree_settled *l, bool *kept) {
   double pressure = 6 * (before - *volume) / j->n_per_n;
   for (size_t i = 0; i < count && !all && status == SCREE_OK; i++) {
     uint32_t v = l->errands[i].vertex;
-    status = move_to(q, v, vec3_mad(s->vertex[v].at, j->per_n[v], pressure), &moved);
+    status = move_to(l, each, v, vec3_mad(s->vertex[v].at, j->per_n[v], pressure), &moved);
   }
   if (softest == SCREE_NONE || status != SCREE_OK) return status;
   vec3 n = area_around(s, softest);
   double along = 6 * (before - *volume) / vec3_norm2(n);
-  status = move_to(q, softest, vec3_mad(s->vertex[softest].at, n, along), kept);
-  scree_memory_follow(&q->d->memory, s, l->lists);
-  return status;
+  return move_to(l, each, softest, vec3_mad(s->vertex[softest].at, n, along), kept);
+}
+
+static void remember(scree_settled *l) {
+  const scree_decimator *d = l->step->d;
+  for (size_t v = 0; v < d->s.vertex_count; v++) l->before.places[v] = d->s.vertex[v].at;
+  memcpy(l->before.witnesses, d->memory.witnesses, d->memory.count * sizeof *d->memory.witnesses);
+  memcpy(l->before.first, d->memory.first, d->s.triangle_count * sizeof *d->memory.first);
+  l->before.area = d->record.area[told_at(l)];
+  l->before.volume = d->record.volume[told_at(l)];
+}
+
+/* The level is as it was then. */
+static void go_back(scree_settled *l) {
+  scree_decimator *d = l->step->d;
+  for (size_t v = 0; v < d->s.vertex_count; v++) d->s.vertex[v].at = l->before.places[v];
+  memcpy(d->memory.witnesses, l->before.witnesses, d->memory.count * sizeof *d->memory.witnesses);
+  memcpy(d->memory.first, l->before.first, d->s.triangle_count * sizeof *d->memory.first);
+  d->record.area[told_at(l)] = l->before.area;
+  d->record.volume[told_at(l)] = l->before.volume;
+  d->grid.built_for = 0;
 }
 
 /* Takes the joint's steps, if the merit falls by them. */
 static scree_status try_steps(scree_settled *l, double *merit, bool *taken) {
-  const scree_decimator *d = &l->trial.d;
-  scree_trial_copy(&l->before, &l->trial);
+  scree_decimator *d = l->step->d;
+  remember(l);
   scree_joint_places(&l->joint, &d->s, l->places);
-  scree_status status = move_all(l, taken);
+  scree_status status = move_all(l, false, taken);
+  d->grid.built_for = 0; /* it knows nothing of that */
+  if (status == SCREE_OK && *taken && !scree_grid_clear_all(&d->grid, &d->s, l->graph, l->swept)) {
+    go_back(l);
+    status = move_all(l, true, taken);
+  }
   if (status != SCREE_OK) return status;
   if (*taken) {
+    scree_memory_follow(&d->memory, &d->s, l->lists, l->followed);
     scree_joint_look(&l->joint, &d->memory, &d->s);
     double now = scree_joint_merit(&l->joint, &d->memory, &d->s);
     *taken = now < (1 - LEAST_GAIN) * *merit;
     if (*taken) *merit = now;
   }
-  if (!*taken) scree_trial_copy(&l->trial, &l->before);
+  if (!*taken) go_back(l);
   return SCREE_OK;
 }
 
@@ -221,13 +270,12 @@ static bool fill(scree_joint *j, const scree_decimator *d) {
   return scree_joint_fill(j, &d->memory, &d->s);
 }
 
-static scree_status settle(scree_settled *l) {
-  const scree_decimator *d = &l->trial.d;
+static scree_status settle(scree_settled *l, int most) {
+  const scree_decimator *d = l->step->d;
   scree_joint *j = &l->joint;
   scree_status status = SCREE_OK;
-  scree_joint_begin(j, &d->memory, &d->s, l->trial.step.farthest2);
+  scree_joint_begin(j, &d->memory, &d->s, l->step->farthest2);
   double merit = scree_joint_merit(j, &d->memory, &d->s), damping = DAMPING;
-  int most = scree_is_large(d) ? MOST_OF_LARGE : MOST_STEPS;
   bool taken = true, quick = d->s.live_triangle_count <= QUICK_STEPS;
   for (int i = 0; i < most && damping <= MOST_DAMPING && status == SCREE_OK; i++) {
     if ((taken && !fill(j, d)) || !scree_joint_solve(j, &d->s, damping)) break;
@@ -239,10 +287,35 @@ static scree_status settle(scree_settled *l) {
   return status;
 }
 
+scree_status scree_settle_path(scree_settled *l, scree_step *step) {
+  scree_decimator *d = step->d;
+  const scree_halfmesh *s = &d->s;
+  vec3 *stood;
+  l->step = step;
+  SCREE_ALLOC_OR(stood, s->vertex_count, d->error, out_of_memory);
+  for (size_t v = 0; v < s->vertex_count; v++) stood[v] = s->vertex[v].at;
+  scree_status status = scree_grid_prepare(&d->grid, d->error);
+  scree_step_find_farthest(step);
+  if (status == SCREE_OK) status = settle(l, scree_is_large(d) ? MOST_ON_LARGE_PATH : MOST_ON_PATH);
+  for (uint32_t v = 0; v < s->vertex_count && status == SCREE_OK; v++) {
+    const scree_vertex *vertex = &s->vertex[v];
+    if (vertex->outgoing == SCREE_NONE || !(vec3_norm2(vec3_sub(vertex->at, stood[v])) > 0))
+      continue;
+    status = scree_record_place(d, v, vertex->at);
+  }
+  scree_free(stood);
+  return status;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
 static void settle_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   scree_settling *q = context;
-  for (size_t i = begin; i < end; i++) q->levels[i].status = settle(&q->levels[i]);
+  for (size_t i = begin; i < end; i++) {
+    scree_settled *l = &q->levels[i];
+    l->status = settle(l, scree_is_large(l->step->d) ? MOST_OF_LARGE : MOST_STEPS);
+  }
 }
 
 /* From the last level shown to this one: what stands elsewhere moves. */
@@ -289,6 +362,8 @@ scree_status scree_settle_level(scree_settling *q, const scree_step *step) {
   if (status != SCREE_OK) return status;
   scree_settled *l = &q->levels[q->count++];
   scree_trial_start(&l->trial, from);
+  if (from != step) l->joint.hinted = false;
+  l->step = &l->trial.step;
   l->index = step->d->record.count - 1;
   l->trial.d.record.count = 1;
   l->trial.d.record.area[0] = l->trial.d.record.volume[0] = 0;

@@ -1,6 +1,7 @@
-/* The coarsest levels are settled: from where the collapse and the moves after it have left them,
- * all vertices of a level move together (joint.h). The next level does not begin there, so that
- * what is good for one spoils no other, and levels are settled side by side. */
+/* All vertices of a level move together (joint.h) from where the collapses and the moves after them
+ * have left them. Of the coarsest levels each is settled so: the next does not begin there, so that
+ * what is good for one spoils no other, and levels are settled side by side. Before them the
+ * decimation itself settles now and then on its way, and goes on from there. */
 #ifndef SCREE_SIMPLIFY_SETTLE_H
 #define SCREE_SIMPLIFY_SETTLE_H
 
@@ -19,16 +20,37 @@ typedef struct scree_errand {
   uint32_t vertex;
 } scree_errand;
 
+/* What steps change of a level: as it was before the last one. */
+typedef struct scree_stand {
+  vec3 *places;             /* per vertex */
+  scree_witness *witnesses; /* and per triangle the first, as the memory has them */
+  uint32_t *first;
+  double area, volume; /* changes of them so far */
+} scree_stand;
+
 /* A level on its way. */
 typedef struct scree_settled {
-  scree_trial trial, before; /* before: as it was before the last step */
+  scree_step *step;  /* whose surface it is */
+  scree_trial trial; /* of a level beside the path */
+  scree_stand before;
   scree_joint joint;
   vec3 *places;          /* per vertex */
   scree_errand *errands; /* of those that may move */
   uint32_t *lists;       /* per triangle: scratch */
-  size_t index;          /* of the collapse that made the level */
+  uint32_t *followed;    /* and per witness */
+  bool *graph;           /* and per vertex and triangle, to see whether the surface meets itself */
+  scree_swept *swept;
+  size_t index; /* of the collapse that made the level */
   scree_status status;
 } scree_settled;
+
+/* Room to settle the surface itself; free it whatever the outcome. */
+scree_status scree_settled_allocate(scree_settled *level, const scree_decimator *d);
+void scree_settled_free(scree_settled *level);
+
+/* Settles the step's surface by a few steps, after its last collapse; its memory is kept, with no
+ * more witnesses than when room was made. */
+scree_status scree_settle_path(scree_settled *level, scree_step *step);
 
 /* The surface without what is gone of it, while the decimation itself goes on with all. */
 typedef struct scree_draft {

@@ -38,13 +38,25 @@ static scree_status prepare_grid(scree_decimator *d) {
   return SCREE_OK;
 }
 
+/* What holds of the new triangles each, and of where the vertex lies. */
+static bool suits(const scree_step *q, scree_ring *ring, scree_change *change,
+                  scree_around *around) {
+  const scree_decimator *d = q->d;
+  size_t after = d->s.live_triangle_count - (ring->c != SCREE_NONE) - (ring->d != SCREE_NONE);
+  return scree_collapse_check(&d->s, ring, change, around) &&
+         scree_memory_allows(&d->memory, after, change->target);
+}
+
+bool scree_step_suits(const scree_step *q, scree_ring *fan, scree_change *change,
+                      scree_around *around) {
+  return suits(q, fan, change, around) &&
+         scree_anchors_stay(&q->d->anchors, &q->d->s, fan, change->target);
+}
+
 bool scree_step_allows(scree_step *q, scree_ring *ring, scree_change *change, scree_around *around,
                        scree_status *status) {
   scree_decimator *d = q->d;
-  size_t after = d->s.live_triangle_count - (ring->c != SCREE_NONE) - (ring->d != SCREE_NONE);
-  if (!scree_collapse_check(&d->s, ring, change, around) ||
-      !scree_memory_allows(&q->d->memory, after, change->target))
-    return false;
+  if (!suits(q, ring, change, around)) return false;
   *status = prepare_grid(d);
   if (*status != SCREE_OK) return false;
   return (d->s.closed && !d->grid.few && scree_grid_certifies(&d->grid, ring, around)) ||
@@ -58,9 +70,8 @@ static void touch(scree_step *q, uint32_t v) {
   q->touched[q->touched_count++] = v;
 }
 
-/* The grid knows the ring's new triangles. */
-static scree_status list_ring(scree_decimator *d, const scree_ring *r,
-                              const scree_around *geometry) {
+scree_status scree_step_list(scree_step *q, const scree_ring *r, const scree_around *geometry) {
+  scree_decimator *d = q->d;
   if (d->grid.few) return SCREE_OK;
   scree_grid_enter_ring(&d->grid, r, geometry);
   for (uint32_t i = 0; i < r->count; i++)
@@ -77,7 +88,7 @@ static scree_status settle(scree_step *q, const scree_ring *r, const scree_aroun
     touch(q, s->half[r->edge[i]].from);
     touch(q, scree_to(s, r->edge[i]));
   }
-  return list_ring(q->d, r, geometry);
+  return scree_step_list(q, r, geometry);
 }
 
 /* One or two vertices on their way to where the witnesses are nearer. */
@@ -106,7 +117,7 @@ static bool all_allowed(scree_step *q, moving *m, scree_status *status) {
   if (m->count == 1) return true;
   vec3 *at = &d->s.vertex[m->fans[0].a].at, from = *at;
   *at = m->changes[0].target;
-  *status = list_ring(d, &m->fans[0], &m->around[0]);
+  *status = scree_step_list(q, &m->fans[0], &m->around[0]);
   bool answer = *status == SCREE_OK &&
                 scree_step_allows(q, &m->fans[1], &m->changes[1], &m->around[1], status);
   *at = from;

@@ -22,9 +22,15 @@ typedef struct scree_step {
  * failed memory. */
 bool scree_step_allows(scree_step *step, scree_ring *ring, scree_change *change,
                        scree_around *around, scree_status *status);
+/* The same, but for whether the surface would meet itself, of a fan. */
+bool scree_step_suits(const scree_step *step, scree_ring *fan, scree_change *change,
+                      scree_around *around);
 
 /* The fan of a vertex that may move; false: it may not. */
 bool scree_step_gather(const scree_halfmesh *s, uint32_t vertex, scree_ring *fan);
+
+/* Once the fan's vertex has moved, the grid is told of its new triangles. */
+scree_status scree_step_list(scree_step *step, const scree_ring *fan, const scree_around *around);
 
 /* Finds the farthest place of the level anew, where it is time. */
 void scree_step_find_farthest(scree_step *step);

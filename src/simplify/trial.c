@@ -79,12 +79,6 @@ void scree_trial_start(scree_trial *t, const scree_step *from) {
   memset(t->step.stamp, 0, d->s.vertex_count * sizeof *t->step.stamp);
 }
 
-void scree_trial_copy(scree_trial *t, const scree_trial *from) {
-  copy_surface(&t->d, &from->d);
-  t->d.record.area[0] = from->d.record.area[0];
-  t->d.record.volume[0] = from->d.record.volume[0];
-}
-
 void scree_trial_take(const scree_trial *t, scree_step *step) {
   copy_surface(step->d, &t->d);
 }

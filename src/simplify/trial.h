@@ -17,8 +17,6 @@ void scree_trial_free(scree_trial *trial);
 
 /* Makes it a copy of the step's surface, with an empty record. */
 void scree_trial_start(scree_trial *trial, const scree_step *from);
-/* Makes its surface that of another trial, with the measures of its one collapse. */
-void scree_trial_copy(scree_trial *trial, const scree_trial *from);
 /* Makes the step's surface that of the trial. */
 void scree_trial_take(const scree_trial *trial, scree_step *step);
 

@@ -5,7 +5,7 @@
 #include "simplify/decimate.h"
 #include "support/check.h"
 
-/* With default options, no limit of error and levels unsettled. The mesh must stay; free with
+/* With default options, no limit of error and nothing settled. The mesh must stay; free with
  * scree_decimator_free. */
 static inline scree_decimator begin_decimation(const scree_mesh *mesh, const scree_coster *coster,
                                                scree_error *error) {
@@ -13,7 +13,7 @@ static inline scree_decimator begin_decimation(const scree_mesh *mesh, const scr
                        .coster = coster,
                        .options = scree_default_simplify_options(),
                        .error_limit = INFINITY,
-                       .unsettled = true,
+                       .unsettled = SCREE_UNSETTLED_ALL,
                        .first_triangle_count = mesh->triangle_count,
                        .error = error};
   CHECK_OK(scree_halfmesh_build(mesh, &d.s, error), *error);

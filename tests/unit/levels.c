@@ -222,7 +222,7 @@ static void the_limit_holds_and_is_used(void **state) {
   shape_shake(&o.mesh, 2e-5, &rng);
   choose(&o);
   size_t shown = 0;
-  for (size_t limit = 70000; limit < 300000; limit = limit * 3 / 2) {
+  for (size_t limit = 100000; limit < 300000; limit = limit * 3 / 2) {
     CHECK_OK(scree_levels_write(o.curve, &o.choice, limit, path, true, &error), error);
     file f = read_levels();
     assert_in_range(f.in.count, limit / 2, limit + 40);

@@ -1,6 +1,8 @@
 /* How coarse levels are settled (simplify/settle.h): the step in all vertices against equations
  * that are put together and solved at full length, and the levels against those left as their
  * collapses made them. */
+#include "mesh/intersect.h"
+#include "mesh/mesh.h"
 #include "simplify/ahead.h"
 #include "simplify/settle.h"
 #include "support/decimator.h"
@@ -8,6 +10,7 @@
 
 /* What the rules name (simplify/joint.c). */
 #define LEAST_DISTANCE 0.1
+#define NO_DISTANCE    0.05
 #define LOOKED_ABOVE   0.5
 #define FAR_SHARE      0.03
 
@@ -32,7 +35,7 @@ static scree_mesh bumpy(int kind) {
   return mesh;
 }
 
-static scree_decimator decimated(const scree_mesh *mesh, size_t stop, bool unsettled,
+static scree_decimator decimated(const scree_mesh *mesh, size_t stop, scree_unsettled unsettled,
                                  scree_error *error) {
   scree_decimator d = begin_decimation(mesh, &scree_volume_coster, error);
   d.options.stop_count = stop;
@@ -49,17 +52,22 @@ typedef struct equations {
   double *ww; /* per vertex: weighted squares of its shares */
 } equations;
 
-static void add(equations *q, const uint32_t v[3], const double share[3], vec3 g, double weight,
-                double distance) {
-  double along[3] = {g.x, g.y, g.z};
+/* `off` by so much; n: upright on the triangle, where less than that has no direction of its own.
+ */
+static void add(equations *q, const uint32_t v[3], const double share[3], vec3 off, vec3 n,
+                double weight) {
+  double along[3], upright[3], all2 = vec3_norm2(off) + vec3_norm2(n);
+  vec3_store(along, off);
+  vec3_store(upright, n);
   for (size_t i = 0; i < 3; i++) {
     q->ww[v[i]] += weight * share[i] * share[i];
     for (size_t a = 0; a < 3; a++) {
       double *row = q->m + (3 * v[i] + a) * (q->n + 1);
-      row[q->n] += weight * share[i] * along[a] * distance;
+      row[q->n] += weight * share[i] * along[a];
       for (size_t k = 0; k < 3; k++)
         for (size_t b = 0; b < 3; b++)
-          row[3 * v[k] + b] += weight * share[i] * along[a] * share[k] * along[b];
+          row[3 * v[k] + b] +=
+              weight * share[i] * share[k] * (along[a] * along[b] + upright[a] * upright[b]) / all2;
     }
   }
 }
@@ -127,8 +135,8 @@ static void add_far(void *context, const uint32_t v[3], const double share[3], v
   if (!(distance2 > LOOKED_ABOVE * p->far2)) return;
   p->count++;
   p->merit += pow(distance2 / p->far2, 4);
-  add(p->q, v, share, vec3_scale(vec3_sub(nearest, at), 1 / sqrt(distance2)),
-      p->unit * pow(distance2 / p->far2, 3), sqrt(distance2));
+  add(p->q, v, share, vec3_sub(nearest, at), (vec3){0, 0, 0},
+      p->unit * pow(distance2 / p->far2, 3));
 }
 
 /* By elimination with pivots. */
@@ -177,6 +185,7 @@ static size_t full_step(const scree_decimator *d, double damping, vec3 *step, do
     corners_of(s, t, corners);
     vec3 n =
         vec3_triangle_normal(vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6));
+    vec3 upright = vec3_scale(vec3_unit(n), NO_DISTANCE * mean);
     for (size_t i = 0; i < 3; i++) {
       v[i] = s->half[3 * t + i].from;
       double along[3] = {n.x, n.y, n.z};
@@ -189,12 +198,10 @@ static size_t full_step(const scree_decimator *d, double damping, vec3 *step, do
       vec3 nearest;
       double distance = sqrt(scree_triangle_closest(corners, m->witnesses[j].at, &nearest));
       p.merit += pow(distance * distance / p.far2, 4);
-      if (distance <= 1e-12) continue;
       shares_of(corners, nearest, share);
       double weight = (double)m->witnesses[j].weight / fmax(distance, LEAST_DISTANCE * mean) +
                       p.unit * pow(distance * distance / p.far2, 3);
-      add(&q, v, share, vec3_scale(vec3_sub(m->witnesses[j].at, nearest), 1 / distance), weight,
-          distance);
+      add(&q, v, share, vec3_sub(m->witnesses[j].at, nearest), upright, weight);
     }
   }
   for_places(s, add_far, &p);
@@ -239,7 +246,7 @@ static void the_step_solves_the_equations(void **state) {
     for (size_t stop = 120; stop >= 30; stop /= 2) {
       scree_error error;
       scree_mesh mesh = bumpy(kind);
-      scree_decimator d = decimated(&mesh, stop, true, &error);
+      scree_decimator d = decimated(&mesh, stop, SCREE_UNSETTLED_ALL, &error);
       size_t count = d.s.vertex_count;
       if (kind > 0) weigh_at_random(&d.memory);
       vec3 *full = calloc(count, sizeof *full), *at = calloc(count, sizeof *at);
@@ -279,6 +286,68 @@ static void the_step_solves_the_equations(void **state) {
       scree_decimator_free(&d);
       scree_mesh_free(&mesh);
     }
+}
+
+/* ---- Whether the surface meets itself ---- */
+
+/* By all pairs. */
+static bool meets_itself(const scree_halfmesh *s) {
+  scree_mesh mesh = shape_make(s->vertex_count, s->live_triangle_count);
+  scree_meetings found;
+  scree_error error;
+  size_t count = 0;
+  for (size_t v = 0; v < s->vertex_count; v++) vec3_store(mesh.positions + 3 * v, s->vertex[v].at);
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    if (scree_is_gone(s, t)) continue;
+    for (size_t i = 0; i < 3; i++) mesh.triangles[3 * count + i] = s->half[3 * t + i].from;
+    count++;
+  }
+  assert_int_equal(count, s->live_triangle_count);
+  CHECK_OK(scree_mesh_meetings(&mesh, SIZE_MAX, NULL, &found, &error), error);
+  bool answer = found.count > 0;
+  scree_free(found.items);
+  scree_mesh_free(&mesh);
+  return answer;
+}
+
+/* Vertices of coarse levels moved at random, some or all, a little or by an edge. */
+static void meetings_are_seen(void **state) {
+  (void)state;
+  size_t clear = 0, not_clear = 0;
+  scree_rng rng = {.seed = 5};
+  for (int kind = 0; kind < KINDS; kind++)
+    for (size_t stop = 600; stop >= 30; stop /= 4) {
+      scree_error error;
+      scree_mesh mesh = bumpy(kind);
+      scree_decimator d = decimated(&mesh, stop, SCREE_UNSETTLED_ALL, &error);
+      size_t count = d.s.vertex_count;
+      vec3 *at = calloc(count, sizeof *at);
+      bool *graph = calloc(count, sizeof *graph);
+      scree_swept *swept = calloc(d.s.triangle_count, sizeof *swept);
+      double edge = sqrt(d.s.area / (double)d.s.live_triangle_count);
+      CHECK_OK(scree_grid_prepare(&d.grid, &error), error);
+      for (size_t v = 0; v < count; v++) at[v] = d.s.vertex[v].at;
+      for (int i = 0; i < 60; i++) {
+        double far = edge * pow(0.8, i % 12);
+        uint32_t some = i % 3 == 0 ? 1 : (uint32_t)(count / 4);
+        for (size_t v = 0; v < count; v++) {
+          d.s.vertex[v].at = at[v];
+          if (i > 0 && scree_rng_below(&rng, some) == 0)
+            d.s.vertex[v].at = vec3_mad(at[v], scree_rng_direction(&rng), far);
+        }
+        bool expected = !meets_itself(&d.s);
+        assert_int_equal(scree_grid_clear_all(&d.grid, &d.s, graph, swept), expected);
+        clear += expected;
+        not_clear += !expected;
+      }
+      free(at);
+      free(graph);
+      free(swept);
+      scree_decimator_free(&d);
+      scree_mesh_free(&mesh);
+    }
+  print_message("%zu clear, %zu not\n", clear, not_clear);
+  assert_true(clear > 100 && not_clear > 100);
 }
 
 /* ---- The levels ---- */
@@ -336,69 +405,113 @@ static measures measure(const scree_mesh *mesh, const level *l) {
   return m;
 }
 
-/* Compares the levels of so many collapses; answers the logarithm of what the mean distance is of
- * that before. */
-static double compare(const scree_decimator *left, const scree_decimator *d, size_t collapses,
-                      level *l, double first_area) {
-  rebuild(left, collapses, l);
+/* Both decimations of a mesh, and room for a level of each. */
+typedef struct both {
+  scree_mesh mesh;
+  scree_decimator left, d;
+  level level;
+  double first_area, gain, compared;
+} both;
+
+static void begin_both(both *b, int kind, scree_unsettled left, scree_unsettled unsettled,
+                       scree_error *error) {
+  *b = (both){.mesh = bumpy(kind)};
+  level *l = &b->level;
+  b->left = decimated(&b->mesh, 0, left, error);
+  b->d = decimated(&b->mesh, 0, unsettled, error);
+  l->root = malloc(b->mesh.vertex_count * sizeof *l->root);
+  l->corners = malloc(3 * b->mesh.triangle_count * sizeof *l->corners);
+  l->at = malloc(b->mesh.vertex_count * sizeof *l->at);
+  rebuild(&b->d, 0, l);
+  b->first_area = measure(&b->mesh, l).area;
+}
+
+static void free_both(both *b) {
+  free(b->level.root);
+  free(b->level.corners);
+  free(b->level.at);
+  scree_decimator_free(&b->left);
+  scree_decimator_free(&b->d);
+  scree_mesh_free(&b->mesh);
+}
+
+/* Compares the levels of so many collapses: what the mean distance is of that before. */
+static double compare(both *b, size_t collapses) {
+  const scree_record *r = &b->d.record;
+  level *l = &b->level;
+  rebuild(&b->left, collapses, l);
   size_t count = l->count;
-  measures before = measure(d->mesh, l);
-  rebuild(d, collapses, l);
-  measures m = measure(d->mesh, l);
-  double area = 0;
+  measures before = measure(&b->mesh, l);
+  rebuild(&b->d, collapses, l);
+  measures m = measure(&b->mesh, l);
+  double area = 0, scale2 = b->d.s.scale * b->d.s.scale;
   assert_int_equal(l->count, count);
   CHECK_NEAR(m.volume, before.volume, 1e-12 * before.volume);
-  for (size_t i = 0; i < collapses; i++) area += d->record.area[i];
-  CHECK_NEAR(m.area, first_area + area * d->s.scale * d->s.scale, 1e-12 * first_area);
-  if (m.mean > 1.1 * before.mean)
-    fail_msg("%zu triangles: mean distance %g instead of %g", count, m.mean, before.mean);
-  return log(m.mean / before.mean);
+  for (size_t i = 0; i < collapses; i++) area += r->area[i];
+  CHECK_NEAR(m.area, b->first_area + area * scale2, 1e-12 * b->first_area);
+  b->gain += log(m.mean / before.mean);
+  b->compared++;
+  return m.mean / before.mean;
+}
+
+/* Below, where the surface itself settled, the collapses before it are the same, and so is every
+ * level until there. */
+static void the_path_is_better(void **state) {
+  (void)state;
+  for (int kind = 0; kind < KINDS; kind++) {
+    scree_error error;
+    both b;
+    begin_both(&b, kind, SCREE_UNSETTLED_ALL, SCREE_UNSETTLED_LEVELS, &error);
+    size_t first = b.mesh.triangle_count > SCREE_PATH_COUNT
+                       ? (b.mesh.triangle_count - SCREE_PATH_COUNT) / 2
+                       : 0;
+    for (size_t i = 0; i < first; i++) {
+      assert_int_equal(b.left.record.kept[i], b.d.record.kept[i]);
+      assert_int_equal(b.left.record.gone[i], b.d.record.gone[i]);
+      assert_memory_equal(&b.left.record.position[i], &b.d.record.position[i], sizeof(vec3));
+      assert_true(b.left.record.area[i] == b.d.record.area[i]);
+    }
+    assert_true(b.d.record.moves.count > b.left.record.moves.count);
+    /* well after the first settling, and before the levels that look ahead */
+    for (size_t n = SCREE_PATH_COUNT * 3 / 4; n > SCREE_AHEAD_COUNT; n -= n / 8)
+      if (n < b.mesh.triangle_count * 3 / 4) compare(&b, (b.mesh.triangle_count - n) / 2);
+    assert_true(b.compared > 10);
+    double gain = exp(b.gain / b.compared);
+    if (!(gain < 0.99)) fail_msg("shape %d: mean distances %g of those before", kind, gain);
+    free_both(&b);
+  }
 }
 
 static void levels_are_better_and_the_collapses_the_same(void **state) {
   (void)state;
   for (int kind = 0; kind < KINDS; kind++) {
     scree_error error;
-    scree_mesh mesh = bumpy(kind);
-    scree_decimator left = decimated(&mesh, 0, true, &error),
-                    d = decimated(&mesh, 0, false, &error);
-    level l = {malloc(mesh.vertex_count * sizeof *l.root),
-               malloc(3 * mesh.triangle_count * sizeof *l.corners),
-               malloc(mesh.vertex_count * sizeof *l.at), 0};
-    double gain = 0, compared = 0;
-    assert_int_equal(left.record.count, d.record.count);
-    for (size_t i = 0; i < d.record.count; i++) {
-      assert_int_equal(left.record.kept[i], d.record.kept[i]);
-      assert_int_equal(left.record.gone[i], d.record.gone[i]);
-      assert_memory_equal(&left.record.position[i], &d.record.position[i], sizeof(vec3));
+    both b;
+    begin_both(&b, kind, SCREE_UNSETTLED_LEVELS, SCREE_UNSETTLED_NONE, &error);
+    const scree_record *left = &b.left.record, *r = &b.d.record;
+    assert_int_equal(left->count, r->count);
+    for (size_t i = 0; i < r->count; i++) {
+      assert_int_equal(left->kept[i], r->kept[i]);
+      assert_int_equal(left->gone[i], r->gone[i]);
+      assert_memory_equal(&left->position[i], &r->position[i], sizeof(vec3));
     }
     /* before, no level is touched */
-    size_t first = (mesh.triangle_count - SCREE_SETTLED_COUNT) / 2;
-    for (size_t k = 0; k < d.record.moves.count && d.record.moves.items[k].index < first; k++)
-      assert_memory_equal(&left.record.moves.items[k], &d.record.moves.items[k],
-                          sizeof(scree_move));
+    size_t first = (b.mesh.triangle_count - SCREE_SETTLED_COUNT) / 2;
+    for (size_t k = 0; k < r->moves.count && r->moves.items[k].index < first; k++)
+      assert_memory_equal(&left->moves.items[k], &r->moves.items[k], sizeof(scree_move));
     for (size_t i = 0; i < first; i++) {
-      assert_true(left.record.area[i] == d.record.area[i]);
-      assert_true(left.record.volume[i] == d.record.volume[i]);
+      assert_true(left->area[i] == r->area[i]);
+      assert_true(left->volume[i] == r->volume[i]);
     }
-    rebuild(&d, 0, &l);
-    double first_area = 0;
-    for (size_t t = 0; t < l.count; t++)
-      first_area +=
-          0.5 * vec3_norm(vec3_triangle_normal(l.at[l.corners[3 * t]], l.at[l.corners[3 * t + 1]],
-                                               l.at[l.corners[3 * t + 2]]));
-    for (size_t i = first + 1; i <= d.record.count; i += 4, compared++)
-      gain += compare(&left, &d, i, &l, first_area);
-    assert_true(compared > 10);
-    gain = exp(gain / compared);
+    for (size_t i = first + 1; i <= r->count; i += 4) {
+      double ratio = compare(&b, i);
+      if (ratio > 1.1) fail_msg("%zu triangles: mean distance %g times", b.level.count, ratio);
+    }
+    assert_true(b.compared > 10);
+    double gain = exp(b.gain / b.compared);
     if (!(gain < (kind == BOX ? 1 : 0.98))) /* of the box it is mostly the noise */
       fail_msg("shape %d: mean distances %g of those before", kind, gain);
-    free(l.root);
-    free(l.corners);
-    free(l.at);
-    scree_decimator_free(&left);
-    scree_decimator_free(&d);
-    scree_mesh_free(&mesh);
+    free_both(&b);
   }
 }
 
@@ -419,7 +532,7 @@ static void compare_areas(const scree_curve *curve, const scree_curve *turned, d
     scree_curve_level(curve, i, &a);
     scree_curve_level(turned, i, &b);
     assert_int_equal(a.triangle_count, b.triangle_count);
-    CHECK_NEAR(b.area / (scale * scale), a.area, 1e-8 * a.area);
+    CHECK_NEAR(b.area / (scale * scale), a.area, 1e-10 * a.area);
   }
 }
 
@@ -459,6 +572,8 @@ static void levels_do_not_depend_on_how_the_scan_lies(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_step_solves_the_equations),
+      cmocka_unit_test(meetings_are_seen),
+      cmocka_unit_test(the_path_is_better),
       cmocka_unit_test(levels_are_better_and_the_collapses_the_same),
       cmocka_unit_test(levels_do_not_depend_on_how_the_scan_lies),
   };

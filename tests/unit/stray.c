@@ -382,6 +382,7 @@ static void witnesses_follow(void **state) {
   CHECK_OK(scree_decimate_spread(&d), error);
   uint32_t *held = malloc(m->count * sizeof *held);
   uint32_t *lists = malloc(s->triangle_count * sizeof *lists);
+  uint32_t *triangle = malloc(m->count * sizeof *triangle);
   for (int round = 0; round < 6; round++) {
     for (uint32_t t = 0; t < s->triangle_count; t++)
       for (uint32_t j = scree_is_gone(s, t) ? SCREE_NONE : m->first[t]; j != SCREE_NONE;
@@ -395,7 +396,7 @@ static void witnesses_follow(void **state) {
       }
     for (uint32_t t = 0; t < s->triangle_count; t++)
       if (scree_is_gone(s, t)) m->first[t] = SCREE_NONE;
-    scree_memory_follow(m, s, lists);
+    scree_memory_follow(m, s, lists, triangle);
     for (uint32_t t = 0; t < s->triangle_count; t++)
       for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) {
         const scree_witness *w = &m->witnesses[j];
@@ -412,6 +413,7 @@ static void witnesses_follow(void **state) {
   assert_true(went > m->count / 10);
   free(held);
   free(lists);
+  free(triangle);
   scree_decimator_free(&d);
   scree_mesh_free(&mesh);
 }
