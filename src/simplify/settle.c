@@ -14,6 +14,8 @@
  * than so many triangles, whose steps take long, have no more after one that gains little. */
 enum { MOST_STEPS = 20, MOST_OF_LARGE = 10, QUICK_STEPS = 64 };
 enum { MOST_ON_PATH = 4, MOST_ON_LARGE_PATH = 3 };
+/* ... and the first time there: vertices of large scans have not moved yet. */
+enum { MOST_AT_FIRST = 8 };
 #define LITTLE_GAIN 1e-3
 /* A smaller gain of the merit is none. */
 #define LEAST_GAIN 1e-4
@@ -287,6 +289,11 @@ static scree_status settle(scree_settled *l, int most) {
   return status;
 }
 
+static int most_on_path(const scree_settled *l) {
+  if (!scree_is_large(l->step->d)) return MOST_ON_PATH;
+  return l->joint.hinted ? MOST_ON_LARGE_PATH : MOST_AT_FIRST;
+}
+
 scree_status scree_settle_path(scree_settled *l, scree_step *step) {
   scree_decimator *d = step->d;
   const scree_halfmesh *s = &d->s;
@@ -296,7 +303,7 @@ scree_status scree_settle_path(scree_settled *l, scree_step *step) {
   for (size_t v = 0; v < s->vertex_count; v++) stood[v] = s->vertex[v].at;
   scree_status status = scree_grid_prepare(&d->grid, d->error);
   scree_step_find_farthest(step);
-  if (status == SCREE_OK) status = settle(l, scree_is_large(d) ? MOST_ON_LARGE_PATH : MOST_ON_PATH);
+  if (status == SCREE_OK) status = settle(l, most_on_path(l));
   for (uint32_t v = 0; v < s->vertex_count && status == SCREE_OK; v++) {
     const scree_vertex *vertex = &s->vertex[v];
     if (vertex->outgoing == SCREE_NONE || !(vec3_norm2(vec3_sub(vertex->at, stood[v])) > 0))
