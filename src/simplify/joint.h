@@ -22,7 +22,7 @@ typedef struct scree_joint_edge {
 
 typedef struct scree_joint {
   bool *free; /* per vertex: it may move; the caller's to set */
-  /* Per vertex, set by scree_joint_find: its way, by which the volume is kept to first order, and
+  /* Per vertex, set by scree_joint_solve: its way, by which the volume is kept to first order, and
    * how pressure moves it. */
   vec3 *step, *per_n;
   double n_per_n; /* six times the volume that a unit of pressure takes */

@@ -1,7 +1,7 @@
 /* Vertices move one after the other, each if it suits; at the end the surface must not meet itself.
  * If it does, they move once more, each if it is allowed as any move is. What those that may not
- * leave of the volume, the others take up. Steps are taken where the
- * merit (joint.h) falls; else they are found once more with more damping (Levenberg, Marquardt). */
+ * leave of the volume, the others take up. Steps are taken where the merit (joint.h) falls; else
+ * they are found once more with more damping (Levenberg, Marquardt). */
 #include "simplify/settle.h"
 
 #include "base/array.h"
