@@ -38,19 +38,26 @@ static inline vec3 sym3_mul_vec(const sym3 *m, vec3 v) {
                 m->xz * v.x + m->yz * v.y + m->zz * v.z};
 }
 
-/* m^-1 v, of a matrix that is not singular. */
-static inline vec3 sym3_solve(const sym3 *m, vec3 v) {
+/* The columns of the adjugate; answers the determinant. */
+static inline double sym3_adjugate(const sym3 *m, vec3 columns[3]) {
   vec3 x = {m->xx, m->xy, m->xz}, y = {m->xy, m->yy, m->yz}, z = {m->xz, m->yz, m->zz};
-  vec3 yz = vec3_cross(y, z), zx = vec3_cross(z, x), xy = vec3_cross(x, y);
-  vec3 sum = vec3_mad(vec3_mad(vec3_scale(yz, v.x), zx, v.y), xy, v.z);
-  return vec3_scale(sum, 1 / vec3_dot(x, yz));
+  columns[0] = vec3_cross(y, z);
+  columns[1] = vec3_cross(z, x);
+  columns[2] = vec3_cross(x, y);
+  return vec3_dot(x, columns[0]);
 }
 
+/* m^-1 v, and m^-1, of a matrix that is not singular. */
+static inline vec3 sym3_solve(const sym3 *m, vec3 v) {
+  vec3 c[3];
+  double scale = 1 / sym3_adjugate(m, c);
+  return vec3_scale(vec3_mad(vec3_mad(vec3_scale(c[0], v.x), c[1], v.y), c[2], v.z), scale);
+}
 static inline sym3 sym3_inverse(const sym3 *m) {
-  vec3 x = {m->xx, m->xy, m->xz}, y = {m->xy, m->yy, m->yz}, z = {m->xz, m->yz, m->zz};
-  vec3 yz = vec3_cross(y, z), zx = vec3_cross(z, x), xy = vec3_cross(x, y);
-  double scale = 1 / vec3_dot(x, yz);
-  return (sym3){scale * yz.x, scale * yz.y, scale * yz.z, scale * zx.y, scale * zx.z, scale * xy.z};
+  vec3 c[3];
+  double scale = 1 / sym3_adjugate(m, c);
+  return (sym3){scale * c[0].x, scale * c[0].y, scale * c[0].z,
+                scale * c[1].y, scale * c[1].z, scale * c[2].z};
 }
 
 #endif

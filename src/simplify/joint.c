@@ -179,8 +179,7 @@ SCREE_LANES static void say_all_lanes(const double *corners, const scree_points 
     vec3 xa = vec3_sub(a, x), xb = vec3_sub(b, x), xc = vec3_sub(c, x);
     double distance = sqrt(p->distance2[i]), ratio2 = per_far2 * p->distance2[i];
     double most = distance > floor ? distance : floor;
-    double per_all2 = 1 / (p->distance2[i] + none2), towards = per_all2,
-           upright = upright2 * per_all2;
+    double towards = 1 / (p->distance2[i] + none2), upright = upright2 * towards;
     out->weight[i] = weights[i] / most + far_unit * ratio2 * ratio2 * ratio2;
     out->share[0][i] = per_n2 * vec3_dot(n, vec3_cross(xb, xc));
     out->share[1][i] = per_n2 * vec3_dot(n, vec3_cross(xc, xa));
@@ -364,16 +363,16 @@ static void solve(const scree_joint *j, size_t count, const vec3 *right, vec3 *c
 
 /* The ways and how pressure moves the vertices, side by side. */
 typedef struct solving {
-  scree_joint *joint;
-  const scree_halfmesh *s;
+  const scree_joint *joint;
+  size_t count; /* vertices */
 } solving;
 
 static void solve_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const solving *q = context;
-  scree_joint *j = q->joint;
+  const scree_joint *j = q->joint;
   for (size_t i = begin; i < end; i++)
-    solve(j, q->s->vertex_count, i == 0 ? j->pull : j->n, j->room[i], i == 0 ? j->step : j->per_n);
+    solve(j, q->count, i == 0 ? j->pull : j->n, j->room[i], i == 0 ? j->step : j->per_n);
 }
 
 static void list_edges(scree_joint *j, const scree_halfmesh *s) {
@@ -417,7 +416,7 @@ bool scree_joint_solve(scree_joint *j, const scree_halfmesh *s, double damping) 
     sym3_add_diagonal(&j->damped[v], damping * j->shares[v]);
     if (j->free[v]) j->inverse[v] = sym3_inverse(&j->damped[v]);
   }
-  scree_parallel_for(2, 1, solve_block, &(solving){j, s});
+  scree_parallel_for(2, 1, solve_block, &(solving){j, vertices});
   j->n_per_n = dot(j->n, j->per_n, vertices);
   if (!(j->n_per_n > 0)) return false;
   double pressure = dot(j->n, j->step, vertices) / j->n_per_n;

@@ -14,8 +14,9 @@
 enum { SCREE_PATCH = 4096 };
 
 /* Passes over patches of so many vertices while the surface is closed and the levels fine
- * (cheapest.h) or of very many triangles; no surface may be kept (stray.h) until they are not. What
- * cannot be decided within a patch (whether the surface would meet itself) waits for the batches.
+ * (cheapest.h) or of very many triangles; no surface may be kept (memory.h) until they are not.
+ * What cannot be decided within a patch (whether the surface would meet itself) waits for the
+ * batches.
  */
 scree_status scree_decimate_in_patches(scree_decimator *d, size_t patch);
 
