@@ -218,7 +218,7 @@ static void check_one(pass *p, uint32_t index, const scree_candidate *candidate)
   change->target = candidate->target;
   t->error = (float)candidate->error;
   bool sound = scree_collapse_keeps_topology(&d->s, &ring) &&
-               scree_collapse_check(&d->s, &ring, change, &around);
+               scree_collapse_check(&d->s, &ring, SCREE_LEAST_TURN, change, &around);
   t->verdict = sound ? UNCERTAIN : REFUSED;
   if (!sound) return;
   t->steep = around.steep;

@@ -5,7 +5,7 @@
  * boundary vertices is itself boundary; at least three triangles stay.
  *
  * Geometry, of the new triangle i with doubled area vector m_i against the old n_i:
- *   flip      m_i.n_i > FLIP |m_i||n_i|
+ *   flip      m_i.n_i > least_turn |m_i||n_i|
  *   shape     area over longest edge squared not below SLIVER, or not below the worst before; of
  *             those below FLAT no more than before
  *   fold      over all edges around, the number with normals more than 150 degrees apart does not
@@ -14,8 +14,6 @@
 
 #include "base/lanes.h"
 
-/* Cosine of the largest turn of a triangle's normal in one collapse (84 degrees). */
-#define FLIP 0.1
 /* Smallest 2 area / longest edge^2 of a new triangle, unless one was as bad before. */
 #define SLIVER 2e-3
 /* Below it a triangle has no area but that of rounding. */
@@ -233,10 +231,16 @@ static inline double worse_shape(double worst, double shape) {
   return shape >= worst ? worst : shape > 0 ? shape : 0;
 }
 
-static bool take_lane(const lanes *l, int i, tally *sum, bool *steep) {
+/* The normals' product against the least that it may be. */
+static bool turns_too_far(double turn, double n2, double m2, double least_turn) {
+  double most2 = least_turn * least_turn * n2 * m2;
+  return least_turn > 0 ? !(turn > 0 && turn * turn > most2) : turn < 0 && !(turn * turn < most2);
+}
+
+static bool take_lane(const lanes *l, int i, double least_turn, tally *sum, bool *steep) {
   /* compare_lanes has set it: NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
   double n2 = l->n2[i], m2 = l->m2[i], turn = l->turn[i], m_b = l->m_b[i];
-  if (n2 > 0 && (!(turn > 0) || !(turn * turn > FLIP * FLIP * n2 * m2))) return false;
+  if (n2 > 0 && turns_too_far(turn, n2, m2, least_turn)) return false;
   if (!(m2 > 0)) return false;
   sum->shape_before = worse_shape(sum->shape_before, l->shape_before[i]);
   sum->shape_after = worse_shape(sum->shape_after, l->shape_after[i]);
@@ -248,8 +252,8 @@ static bool take_lane(const lanes *l, int i, tally *sum, bool *steep) {
   return true;
 }
 
-static bool check_triangles(const scree_halfmesh *s, scree_ring *r, vec3 x, tally *sum,
-                            scree_around *around) {
+static bool check_triangles(const scree_halfmesh *s, scree_ring *r, vec3 x, double least_turn,
+                            tally *sum, scree_around *around) {
   lanes l;
   r->low = vec3_min(vec3_min(s->vertex[r->a].at, s->vertex[r->b].at), x);
   r->high = vec3_max(vec3_max(s->vertex[r->a].at, s->vertex[r->b].at), x);
@@ -259,7 +263,7 @@ static bool check_triangles(const scree_halfmesh *s, scree_ring *r, vec3 x, tall
     for (uint32_t i = 0; i < width; i++) gather(s, r, begin + (i < filled ? i : 0), &l, (int)i);
     compare_lanes(&l, x, (int)width);
     for (int i = 0; i < (int)filled; i++) {
-      if (!take_lane(&l, i, sum, &around->steep)) return false;
+      if (!take_lane(&l, i, least_turn, sum, &around->steep)) return false;
       vec3 p1 = lane(l.p1, i), p2 = lane(l.p2, i);
       r->low = vec3_min(r->low, vec3_min(p1, p2));
       r->high = vec3_max(r->high, vec3_max(p1, p2));
@@ -321,11 +325,11 @@ static bool flats_do_not_grow(const scree_halfmesh *s, const scree_ring *r, vec3
   return after <= before;
 }
 
-bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change,
-                          scree_around *around) {
+bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, double least_turn,
+                          scree_change *change, scree_around *around) {
   tally sum = {.shape_before = 1, .shape_after = 1};
   around->steep = false;
-  if (!check_triangles(s, ring, change->target, &sum, around)) return false;
+  if (!check_triangles(s, ring, change->target, least_turn, &sum, around)) return false;
   take_gone(s, ring, change->target, &sum);
   change->area = 0.5 * sum.area;
   change->volume = sum.volume / 6;

@@ -70,11 +70,17 @@ typedef struct scree_around {
   bool steep; /* some new triangle is at more than 60 degrees to its neighbour outside the ring */
 } scree_around;
 
-/* Whether the triangles around change->target would be sound: none flipped, degenerate, a sliver
- * worse than those before, no more folds than before. Fills the rest of change, the box, and
- * *around; what they hold is complete only where the answer is true. */
-bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, scree_change *change,
-                          scree_around *around);
+/* The cosine of the largest turn of a triangle's normal in one collapse: 84 degrees. What stands on
+ * the surface steeply, and is small against the triangles of a coarse level, can only go by larger
+ * ones: 107 degrees; there every new triangle is searched for folds and for what it meets. */
+#define SCREE_LEAST_TURN        0.1
+#define SCREE_LEAST_COARSE_TURN (-0.3)
+
+/* Whether the triangles around change->target would be sound: none turned farther than that,
+ * degenerate, a sliver worse than those before, no more folds than before. Fills the rest of
+ * change, the box, and *around; what they hold is complete only where the answer is true. */
+bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, double least_turn,
+                          scree_change *change, scree_around *around);
 
 /* Collapses: a moves to target, b goes, with the triangles at the edge. Touches only triangles of
  * the two fans and the outgoing half-edges of a, b, c and d. */

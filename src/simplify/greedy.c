@@ -54,8 +54,9 @@
 /* ... and where the surface settles then. */
 #define SETTLE_BELOW 0.9
 
-/* Of scans held close: the share of the toll below so many triangles. */
-#define EASY_TOLL 0.05
+/* Of the toll of close scans: while they are held close, and below so many triangles. */
+#define CLOSE_TOLL 8.0
+#define EASY_TOLL  0.05
 enum { EASY_BELOW = 900 };
 
 /* Edges evaluated in one call. */
@@ -95,6 +96,7 @@ typedef struct queue {
   size_t since_tick;
   size_t entered_at;              /* collapses when all edges were entered last */
   double toll;                    /* weight of the stray's sixth power in the cost */
+  uint32_t places;                /* looked at on every new edge for it */
   size_t renew_at;                /* triangles */
   bool settles;                   /* the surface does, where its vertices move */
   scree_settled settled;          /* room for that, from then on */
@@ -226,10 +228,12 @@ static bool looks_ahead(const scree_decimator *d) {
   return d->s.live_triangle_count <= (scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT);
 }
 
-/* Scans held close in their fine levels have room in the greatest distance of coarser ones, until
- * those look ahead. */
-static bool has_easy_toll(const scree_decimator *d) {
-  return scree_is_close_scan(d) && d->s.live_triangle_count < EASY_BELOW && !looks_ahead(d);
+/* Times the toll. Scans held close in their fine levels have room in the greatest distance of
+ * coarser ones, until those look ahead. */
+static double toll_factor(const scree_decimator *d) {
+  if (scree_is_held_close(d)) return CLOSE_TOLL;
+  bool easy = scree_is_close_scan(d) && d->s.live_triangle_count < EASY_BELOW && !looks_ahead(d);
+  return easy ? EASY_TOLL : 1;
 }
 
 static void sum_all(const queue *q) {
@@ -294,6 +298,7 @@ static scree_status renew(queue *q) {
     scree_status status = settle(q);
     if (status != SCREE_OK) return status;
   }
+  q->places = scree_is_held_close(d) ? SCREE_MOST_EDGE_PLACES : SCREE_EDGE_PLACES;
   enter_all(q);
   if (d->coster->merge || q->heap_count == 0) return SCREE_OK;
   for (size_t i = 0; i < q->heap_count; i++) q->sorted[i] = q->cost[q->heap[i]];
@@ -302,8 +307,7 @@ static scree_status renew(queue *q) {
   scree_memory_thin(&d->memory, &d->s, crowd(d), SCREE_LEAST_WITNESSES);
   double far = scree_memory_usual(&d->memory, scree_is_held_close(d));
   if (far > 0) far = fmax(far, scree_memory_worst(&d->memory));
-  q->toll = far > 0 ? cost / pow(far, 6) : 0;
-  if (has_easy_toll(d)) q->toll *= EASY_TOLL;
+  q->toll = far > 0 ? toll_factor(d) * cost / pow(far, 6) : 0;
   q->renew_at = next_renewal(q);
   return scree_memory_squeeze(&d->memory, &d->s, d->error);
 }
@@ -382,7 +386,7 @@ static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c
     enough = fmin(enough, cbrt((most - c->cost) / q->toll));
   }
   double stray2 =
-      scree_memory_stray(&q->d->memory, &q->d->s, ring, c->target, least, enough, hints);
+      scree_memory_stray(&q->d->memory, &q->d->s, ring, c->target, q->places, least, enough, hints);
   c->cost += (c->stray + q->toll * stray2) * stray2 * stray2;
 }
 

@@ -39,7 +39,7 @@ double scree_usual_stray2(const scree_decimator *d) {
 
 /* Places looked at on every new edge. */
 static uint32_t edge_places(const scree_decimator *d) {
-  return scree_is_close_scan(d) ? SCREE_EDGE_PLACES : scree_is_large(d) ? 3 : 1;
+  return scree_is_close_scan(d) ? SCREE_MOST_EDGE_PLACES : scree_is_large(d) ? 3 : 1;
 }
 
 bool scree_strays(const scree_decimator *d, const scree_ring *ring, const scree_candidate *c,

@@ -315,7 +315,7 @@ static uint8_t refusal(const work *w, scree_ring *ring, const scree_candidate *c
   const scree_decimator *d = p->d;
   scree_around around;
   if (!scree_collapse_keeps_topology(&d->s, ring) ||
-      !scree_collapse_check(&d->s, ring, change, &around))
+      !scree_collapse_check(&d->s, ring, SCREE_LEAST_TURN, change, &around))
     return SCREE_EDGE_REFUSED;
   if (scree_strays(d, ring, candidate, p->e.limit, p->usual2)) return SCREE_EDGE_POSTPONED;
   if (!is_clear(w, ring, change->target, &around) ||

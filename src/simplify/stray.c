@@ -87,17 +87,22 @@ static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
   return worst;
 }
 
-/* The places on an edge, as shares of sixths, middles first: along an edge over a hollow the
+/* The places on an edge, as shares of twelfths, middles first: along an edge over a hollow the
  * surface is farthest off somewhere in between. Each with the place before it that is next to it;
  * -1: the target. */
 static const struct {
-  int sixths, beside;
-} places[SCREE_EDGE_PLACES] = {{3, -1}, {2, 0}, {4, 0}, {1, 1}, {5, 2}};
+  int twelfths, beside;
+} places[SCREE_MOST_EDGE_PLACES] = {{6, -1}, {4, 0}, {8, 0}, {2, 1}, {10, 2}, {1, 3},
+                                    {3, 1},  {5, 0}, {7, 0}, {9, 2}, {11, 4}};
+
+static double share_of_place(uint32_t k) {
+  return places[k].twelfths / 12.0;
+}
 
 static vec3 place_on_edge(const scree_halfmesh *s, const scree_ring *r, vec3 target, uint32_t i,
                           uint32_t k) {
   vec3 end = s->vertex[s->half[r->edge[i]].from].at;
-  return vec3_lerp(target, end, places[k].sixths / 6.0);
+  return vec3_lerp(target, end, share_of_place(k));
 }
 
 /* Where to begin looking for place k of the edges, if that is not known: in its cell. All are asked
@@ -149,9 +154,10 @@ static double stray_of_edges(const scree_memory *m, const scree_halfmesh *s, con
 }
 
 double scree_memory_stray(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
-                          vec3 target, double least, double most, scree_hints *hints) {
+                          vec3 target, uint32_t places_on_edge, double least, double most,
+                          scree_hints *hints) {
   double worst = stray_of_witnesses(m, s, r, target, least, most);
-  return stray_of_edges(m, s, r, target, SCREE_EDGE_PLACES, worst, most, hints);
+  return stray_of_edges(m, s, r, target, places_on_edge, worst, most, hints);
 }
 
 double scree_memory_edges_stray(const scree_memory *m, const scree_halfmesh *s,
@@ -206,7 +212,7 @@ double scree_memory_edge_stray(const scree_memory *m, const scree_halfmesh *s, u
   uint32_t from = s->half[h].from, near = m->near[from];
   vec3 at = s->vertex[from].at, to = s->vertex[scree_to(s, h)].at;
   for (uint32_t k = 0; k < SCREE_EDGE_PLACES; k++)
-    least = scree_memory_farther(m, vec3_lerp(at, to, places[k].sixths / 6.0), least, &near);
+    least = scree_memory_farther(m, vec3_lerp(at, to, share_of_place(k)), least, &near);
   return least;
 }
 
@@ -251,7 +257,7 @@ static size_t list_far_of(const far_search *q, uint32_t h, scree_far_place *far)
   if (s->vertex[from].outgoing == h && is_far_place(m, at, q->least, &hint[0], &hit))
     far[count++] = (scree_far_place){h, 0, at, hit.point, hit.distance2};
   for (uint32_t k = 0; k < SCREE_EDGE_PLACES && h < twin; k++) {
-    double share = places[k].sixths / 6.0;
+    double share = share_of_place(k);
     vec3 x = vec3_lerp(at, end, share);
     if (!q->hinted) hint[1 + k].near = hint[1 + places[k].beside].near;
     if (is_far_place(m, x, q->least, &hint[1 + k], &hit))

@@ -1,6 +1,6 @@
 /* How far a collapse takes the surface astray: the largest of the distances of
  *   - the witnesses of the triangles that change, from the new ones, where it grows;
- *   - the new vertex and five places on every new edge, from the surface kept.
+ *   - the new vertex and some places on every new edge, from the surface kept.
  * In batches, as long as no surface is kept: of the new vertex from the old triangles; as long as
  * there are no witnesses, of the middles of the new edges from the surface besides. */
 #ifndef SCREE_SIMPLIFY_STRAY_H
@@ -8,15 +8,17 @@
 
 #include "simplify/memory.h"
 
-/* Places looked at on each new edge. */
-enum { SCREE_EDGE_PLACES = 5 };
+/* Places looked at on each new edge, and where levels are held close: a long edge passes over
+ * narrow grooves. */
+enum { SCREE_EDGE_PLACES = 5, SCREE_MOST_EDGE_PLACES = 11 };
 
 /* Of one ring, from one target to the next, for their places lie near each other: what was near to
  * each place, and which was farthest off. It changes no answer. Begin with scree_no_hints. */
 typedef struct scree_hints {
   uint32_t known;    /* places, the new vertex first; 0: none yet */
   uint32_t farthest; /* place; 0: not known */
-  uint32_t near[1 + SCREE_EDGE_PLACES * SCREE_RING_MAX]; /* kept triangles, in the tree's order */
+  uint32_t
+      near[1 + SCREE_MOST_EDGE_PLACES * SCREE_RING_MAX]; /* kept triangles, in the tree's order */
 } scree_hints;
 
 static inline void scree_no_hints(scree_hints *hints) {
@@ -24,10 +26,11 @@ static inline void scree_no_hints(scree_hints *hints) {
 }
 
 /* The square of the stray, or `least`, where it is smaller; where it is above `most`, something
- * above that is enough. These are squares as well. */
+ * above that is enough. These are squares as well. Of the places on every edge the first so many,
+ * the middle first. */
 double scree_memory_stray(const scree_memory *memory, const scree_halfmesh *s,
-                          const scree_ring *ring, vec3 target, double least, double most,
-                          scree_hints *hints);
+                          const scree_ring *ring, vec3 target, uint32_t places_on_edge,
+                          double least, double most, scree_hints *hints);
 
 /* Of a vertex at x, and of the places on the edges from there to the fan's rim: the largest squared
  * distance from the surface kept, or `least`, where it is smaller; whether it is at most `most`. */

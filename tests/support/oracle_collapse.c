@@ -8,6 +8,8 @@
 
 /* What the rules name (docs/decimation.md). */
 #define FLIP_COSINE  0.1
+#define COARSE_FLIP  (-0.3) /* of `volume`, collapses one by one, below so many triangles */
+#define COARSE_COUNT 1000
 #define SLIVER_SHAPE 2e-3
 #define FLAT_SHAPE   1e-10
 #define FOLD_COSINE  (-0.857)
@@ -273,7 +275,8 @@ int oracle_meetings(const oracle *o, const bool *touched) {
 }
 
 bool oracle_triangles_stay_sound(const oracle *o, const oracle *after, uint32_t a, uint32_t b) {
-  double worst_before = 1, worst_after = 1;
+  bool coarse = !o->qecd && !o->batched && o->triangle_count < COARSE_COUNT;
+  double worst_before = 1, worst_after = 1, flip = coarse ? COARSE_FLIP : FLIP_COSINE;
   int flat_before = 0, flat_after = 0;
   for (size_t t = 0; t < o->triangle_count; t++) {
     if (!oracle_has(o, t, a) && !oracle_has(o, t, b)) continue;
@@ -281,7 +284,7 @@ bool oracle_triangles_stay_sound(const oracle *o, const oracle *after, uint32_t 
     flat_before += shape_at(o, t, a, b, NULL) < FLAT_SHAPE;
     if (oracle_gone(after, t)) continue;
     vec3 n = oracle_area_vector(o, t), m = oracle_area_vector(after, t);
-    if (!(vec3_dot(n, m) > FLIP_COSINE * vec3_norm(n) * vec3_norm(m))) return false;
+    if (!(vec3_dot(n, m) > flip * vec3_norm(n) * vec3_norm(m))) return false;
     worst_after = fmin(worst_after, shape_at(after, t, a, b, NULL));
     flat_after += shape_at(after, t, a, b, NULL) < FLAT_SHAPE;
   }

@@ -194,7 +194,8 @@ static void limits_are_those_of_the_stray(void **state) {
     vec3 target =
         vec3_lerp(d.s.vertex[ring.a].at, d.s.vertex[ring.b].at, 2 * scree_rng_uniform(&rng) - 0.5);
     scree_no_hints(&hints);
-    double stray2 = scree_memory_stray(&d.memory, &d.s, &ring, target, 0, INFINITY, &hints);
+    double stray2 =
+        scree_memory_stray(&d.memory, &d.s, &ring, target, SCREE_EDGE_PLACES, 0, INFINITY, &hints);
     if (!(stray2 > 0)) continue;
     assert_true(scree_memory_stays_within(&d.memory, &d.s, &ring, target, SCREE_EDGE_PLACES,
                                           1.001 * stray2));
