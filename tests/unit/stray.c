@@ -159,8 +159,10 @@ static void surface_is_kept_before_its_witnesses(void **state) {
   scree_mesh_free(&mesh);
 }
 
-/* Against the distances of the new vertex and of the middles of the new edges, each by itself. */
-static void check_middles(const scree_decimator *d, const scree_ring *ring, vec3 target) {
+/* Against the distances of the new vertex and of so many places on every new edge, evenly spread,
+ * each by itself. */
+static void check_on_edges(const scree_decimator *d, const scree_ring *ring, vec3 target,
+                           uint32_t places) {
   scree_bvh_hit hit = {.distance2 = INFINITY};
   scree_memory bare = d->memory; /* as while there are no witnesses */
   bare.first = NULL;
@@ -168,12 +170,15 @@ static void check_middles(const scree_decimator *d, const scree_ring *ring, vec3
   double worst2 = hit.distance2;
   for (uint32_t i = 0; i < ring->count; i++) {
     vec3 end = d->s.vertex[d->s.half[ring->edge[i]].from].at;
-    hit.distance2 = INFINITY;
-    assert_true(scree_bvh_closest(&bare.surface, vec3_lerp(target, end, 0.5), &hit));
-    worst2 = fmax(worst2, hit.distance2);
+    for (uint32_t k = 1; k <= places; k++) {
+      hit.distance2 = INFINITY;
+      assert_true(
+          scree_bvh_closest(&bare.surface, vec3_lerp(target, end, k / (places + 1.0)), &hit));
+      worst2 = fmax(worst2, hit.distance2);
+    }
   }
-  assert_true(scree_memory_stays_within(&bare, &d->s, ring, target, 1, 1.001 * worst2));
-  assert_false(scree_memory_stays_within(&bare, &d->s, ring, target, 1, 0.999 * worst2));
+  assert_true(scree_memory_stays_within(&bare, &d->s, ring, target, places, 1.001 * worst2));
+  assert_false(scree_memory_stays_within(&bare, &d->s, ring, target, places, 0.999 * worst2));
 }
 
 /* What batches ask against the stray that single collapses find. */
@@ -182,6 +187,7 @@ static void limits_are_those_of_the_stray(void **state) {
   scree_rng rng = {.seed = 35};
   scree_error error;
   scree_hints hints;
+  const uint32_t places[] = {1, SCREE_EDGE_PLACES, SCREE_MOST_EDGE_PLACES};
   size_t tried = 0;
   scree_mesh mesh = shaken_sphere();
   scree_decimator d = begin_decimation(&mesh, &scree_volume_coster, &error);
@@ -193,18 +199,20 @@ static void limits_are_those_of_the_stray(void **state) {
     if (scree_is_gone(&d.s, h / 3) || !scree_ring_gather(&d.s, h, &ring)) continue;
     vec3 target =
         vec3_lerp(d.s.vertex[ring.a].at, d.s.vertex[ring.b].at, 2 * scree_rng_uniform(&rng) - 0.5);
-    scree_no_hints(&hints);
-    double stray2 =
-        scree_memory_stray(&d.memory, &d.s, &ring, target, SCREE_EDGE_PLACES, 0, INFINITY, &hints);
-    if (!(stray2 > 0)) continue;
-    assert_true(scree_memory_stays_within(&d.memory, &d.s, &ring, target, SCREE_EDGE_PLACES,
-                                          1.001 * stray2));
-    assert_false(scree_memory_stays_within(&d.memory, &d.s, &ring, target, SCREE_EDGE_PLACES,
-                                           0.999 * stray2));
-    check_middles(&d, &ring, target);
-    tried++;
+    for (size_t i = 0; i < sizeof places / sizeof *places; i++) {
+      scree_no_hints(&hints);
+      double stray2 =
+          scree_memory_stray(&d.memory, &d.s, &ring, target, places[i], 0, INFINITY, &hints);
+      if (!(stray2 > 0)) continue;
+      assert_true(
+          scree_memory_stays_within(&d.memory, &d.s, &ring, target, places[i], 1.001 * stray2));
+      assert_false(
+          scree_memory_stays_within(&d.memory, &d.s, &ring, target, places[i], 0.999 * stray2));
+      check_on_edges(&d, &ring, target, places[i]);
+      tried++;
+    }
   }
-  assert_true(tried > 100);
+  assert_true(tried > 300);
   scree_decimator_free(&d);
   scree_mesh_free(&mesh);
 }
