@@ -231,16 +231,12 @@ static inline double worse_shape(double worst, double shape) {
   return shape >= worst ? worst : shape > 0 ? shape : 0;
 }
 
-/* The normals' product against the least that it may be. */
-static bool turns_too_far(double turn, double n2, double m2, double least_turn) {
-  double most2 = least_turn * least_turn * n2 * m2;
-  return least_turn > 0 ? !(turn > 0 && turn * turn > most2) : turn < 0 && !(turn * turn < most2);
-}
-
 static bool take_lane(const lanes *l, int i, double least_turn, tally *sum, bool *steep) {
   /* compare_lanes has set it: NOLINTNEXTLINE(clang-analyzer-core.uninitialized.Assign) */
   double n2 = l->n2[i], m2 = l->m2[i], turn = l->turn[i], m_b = l->m_b[i];
-  if (n2 > 0 && turns_too_far(turn, n2, m2, least_turn)) return false;
+  /* squares with their signs have the order of what is squared */
+  double least = least_turn * fabs(least_turn) * n2 * m2;
+  if (n2 > 0 && !(turn * fabs(turn) > least)) return false;
   if (!(m2 > 0)) return false;
   sum->shape_before = worse_shape(sum->shape_before, l->shape_before[i]);
   sum->shape_after = worse_shape(sum->shape_after, l->shape_after[i]);

@@ -72,7 +72,7 @@ typedef struct scree_around {
 
 /* The cosine of the largest turn of a triangle's normal in one collapse: 84 degrees. What stands on
  * the surface steeply, and is small against the triangles of a coarse level, can only go by larger
- * ones: 107 degrees; there every new triangle is searched for folds and for what it meets. */
+ * ones: 107 degrees. Folds and meetings are looked for in either case. */
 #define SCREE_LEAST_TURN        0.1
 #define SCREE_LEAST_COARSE_TURN (-0.3)
 

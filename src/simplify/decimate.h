@@ -111,8 +111,7 @@ static inline bool scree_is_held_close(const scree_decimator *d) {
 enum { SCREE_RELAXED_COUNT = 3000, SCREE_RELAXED_LATE = 130 };
 enum { SCREE_PATH_COUNT = 3000, SCREE_PATH_LATE = 1700 };
 
-/* Below how many triangles those about a collapse may turn farther (collapse.h); method `volume`.
- */
+/* Below how many triangles their normals may turn farther (collapse.h); method `volume`. */
 enum { SCREE_TURNED_COUNT = 1000 };
 
 /* Witnesses for a triangle above which they are thinned, and how many are kept however few

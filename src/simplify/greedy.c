@@ -96,7 +96,7 @@ typedef struct queue {
   size_t since_tick;
   size_t entered_at;              /* collapses when all edges were entered last */
   double toll;                    /* weight of the stray's sixth power in the cost */
-  uint32_t places;                /* looked at on every new edge for it */
+  uint32_t places;                /* looked at on every new edge; found anew with the toll */
   size_t renew_at;                /* triangles */
   bool settles;                   /* the surface does, where its vertices move */
   scree_settled settled;          /* room for that, from then on */
