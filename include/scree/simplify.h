@@ -29,8 +29,10 @@ typedef struct scree_simplify_options {
 SCREE_API scree_simplify_options scree_default_simplify_options(void);
 
 /* The record of one decimation: from it any level can be rebuilt. Level 0 is the mesh given, level
- * i is the mesh after i edge collapses. Levels are nested: every vertex of level i+1 is a vertex of
- * level i, but for the one that the collapse placed. */
+ * i is the mesh after i edge collapses. The coarsest levels of method volume (200 triangles or
+ * fewer, of scans of more than 600,000 triangles 130) are not made of each other: each is the best
+ * of several ways there, with all its vertices where they lie best (docs/decimation.md, "Endings").
+ */
 typedef struct scree_curve scree_curve;
 
 /* Decimates from the mesh's own count down to the floor, by edge collapses in the order of their
@@ -83,15 +85,15 @@ typedef struct scree_level {
   double quadric_error; /* m; the largest root mean square move of a collapse up to here */
 } scree_level;
 
-/* 1 + the number of collapses; at least 1. */
+/* At least 1; counts fall from level to level. */
 SCREE_API size_t scree_curve_level_count(const scree_curve *curve);
 /* level_index must be below the level count. O(1). */
 SCREE_API void scree_curve_level(const scree_curve *curve, size_t level_index, scree_level *level);
 /* The first level with at most target_triangle_count triangles, or the last level where none is so
  * low. A closed surface has an even count, so that an odd target gives one triangle less. */
 SCREE_API size_t scree_curve_find(const scree_curve *curve, size_t target_triangle_count);
-/* Rebuilds a level: triangles and vertices in the order of the mesh given. Free with
- * scree_mesh_free. O(Nm) time. */
+/* Rebuilds a level: vertices, and triangles where collapses lead there, in the order of the mesh
+ * given. Free with scree_mesh_free. O(Nm) time. */
 SCREE_API scree_status scree_curve_mesh(const scree_curve *curve, size_t level_index,
                                         scree_mesh *mesh, scree_error *error);
 
@@ -103,14 +105,14 @@ typedef struct scree_collapse {
   double position[3];      /* of kept afterwards, m */
 } scree_collapse;
 
-/* index must be below the level count less one. O(1). */
+/* How many collapses there are: they make the levels up to this one. */
+SCREE_API size_t scree_curve_collapse_count(const scree_curve *curve);
+/* index must be below that. O(1). */
 SCREE_API void scree_curve_collapse(const scree_curve *curve, size_t index,
                                     scree_collapse *collapse);
 
 /* With method volume vertices of a coarse level also move, after the collapse that makes it and as
- * part of the same step: one after the other, and one may move more than once. Those of the last
- * 160 triangles lead from one level as it is shown to the next (docs/decimation.md, "Settled
- * levels"). */
+ * part of the same step: one after the other, and one may move more than once. */
 typedef struct scree_vertex_move {
   uint32_t vertex;    /* of the mesh given */
   double position[3]; /* afterwards, m */

@@ -1,5 +1,5 @@
-/* Levels of one object for the report, small enough to send: the scan, and a finest level with the
- * collapses that lead from it down to the last. Positions lie on a grid of 16 bits; where a
+/* Levels of one object for the report, small enough to send: the scan, a finest level with the
+ * collapses that lead from it down, and the coarsest levels as a whole. Positions lie on a grid of 16 bits; where a
  * collapse puts a vertex is told by the steps on that grid from where the vertex was. Both, and
  * the triangles, go through meshoptimizer's codecs, which web/src/levels.js reads with the same
  * library's JavaScript.
@@ -16,12 +16,13 @@
 #include <string.h>
 
 static const char magic[] = "screeLVL";
-enum { VERSION = 1, BYTE_ORDER_MARK = 0x01020304, HEADER_BYTES = 40 };
+enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304, HEADER_BYTES = 40 };
 
 /* How the limit is shared: found on scans of 80,000 to 762,008 triangles, see docs/formats.md. */
 static const double levels_share = 0.32;         /* of the bytes: base and collapses */
 static const double bytes_per_base_triangle = 8; /* with its collapses */
 static const double bytes_per_move = 8;          /* of a vertex, after them */
+static const double bytes_per_whole_triangle = 5;
 static const double bytes_per_scan_triangle = 3; /* first guess */
 static const size_t least_base_triangles = 500;  /* however small the limit */
 static const size_t most_base_triangles =
@@ -34,14 +35,20 @@ typedef struct levels {
   const scree_curve *curve;
 } levels;
 
+/* The levels from this one on are not made by collapses. */
+static size_t first_whole(const levels *l) {
+  return scree_curve_collapse_count(l->curve) + 1;
+}
+
 /* ---- the grid ---- */
 
-/* Holds the scan and every place that a collapse puts a vertex to. */
-static void find_grid(levels *l, const scree_mesh *scan) {
+/* Holds the scan, every place that a collapse puts a vertex to, and the levels that are whole. */
+static scree_status find_grid(levels *l, const scree_mesh *scan) {
+  scree_replay *replay = NULL;
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (size_t v = 0; v < scan->vertex_count; v++)
     scree_pack_stretch(scan->positions + 3 * v, low, high);
-  for (size_t i = 0; i + 1 < scree_curve_level_count(l->curve); i++) {
+  for (size_t i = 0; i < scree_curve_collapse_count(l->curve); i++) {
     scree_collapse collapse;
     scree_curve_collapse(l->curve, i, &collapse);
     scree_pack_stretch(collapse.position, low, high);
@@ -51,7 +58,16 @@ static void find_grid(levels *l, const scree_mesh *scan) {
       scree_pack_stretch(move.position, low, high);
     }
   }
+  scree_status status = scree_replay_start(l->curve, &replay, l->pack.error);
+  for (size_t i = first_whole(l); i < scree_curve_level_count(l->curve); i++) {
+    const scree_mesh *level;
+    if (status == SCREE_OK) status = scree_replay_step(replay, i, &level, l->pack.error);
+    for (size_t v = 0; status == SCREE_OK && v < level->vertex_count; v++)
+      scree_pack_stretch(level->positions + 3 * v, low, high);
+  }
+  scree_replay_free(replay);
   scree_pack_grid(&l->pack, low, high);
+  return status;
 }
 
 /* ---- the parts ---- */
@@ -96,7 +112,7 @@ static void put_collapse(steps *s, size_t index) {
 /* Collapses and moves from base_level on. */
 static scree_status put_collapses(levels *l, size_t base_level, const scree_mesh *base,
                                   const uint32_t *number, const uint32_t *place) {
-  size_t last = scree_curve_level_count(l->curve) - 1, count = last - base_level;
+  size_t last = scree_curve_collapse_count(l->curve), count = last - base_level;
   steps s = {.l = l, .number = number, .place = place};
   scree_status status = SCREE_OUT_OF_MEMORY;
   for (size_t i = base_level; i < last; i++) count += scree_curve_move_count(l->curve, i);
@@ -131,6 +147,12 @@ static scree_status put_levels(levels *l, size_t base_level) {
   status = scree_pack_mesh(&l->pack, base, place);
   if (status == SCREE_OK)
     status = put_collapses(l, base_level, base, scree_replay_numbering(replay), place);
+  size_t level_count = scree_curve_level_count(l->curve);
+  scree_pack_u32(&l->pack, level_count - first_whole(l));
+  for (size_t i = first_whole(l); i < level_count && status == SCREE_OK; i++) {
+    status = scree_replay_step(replay, i, &base, l->pack.error);
+    if (status == SCREE_OK) status = scree_pack_mesh(&l->pack, base, NULL);
+  }
 done:
   scree_free(place);
   scree_replay_free(replay);
@@ -208,8 +230,13 @@ static scree_status put_measures(levels *l, const scree_mesh *scan, const scree_
 
 /* The finest level whose share of the limit holds it with the collapses and moves after it. */
 static size_t choose_base(const scree_curve *curve, double room) {
-  size_t level = scree_curve_level_count(curve) - 1;
+  size_t level = scree_curve_collapse_count(curve);
   double moves = 0;
+  for (size_t i = level + 1; i < scree_curve_level_count(curve); i++) {
+    scree_level whole;
+    scree_curve_level(curve, i, &whole);
+    room -= bytes_per_whole_triangle * (double)whole.triangle_count;
+  }
   for (; level > 0; level--) {
     scree_level finer;
     scree_curve_level(curve, level - 1, &finer);
@@ -224,12 +251,13 @@ static size_t choose_base(const scree_curve *curve, double room) {
 
 static scree_status pack(levels *l, const scree_mesh *scan, const scree_choice *choice,
                          size_t byte_limit) {
-  find_grid(l, scan);
+  scree_status status = find_grid(l, scan);
+  if (status != SCREE_OK) return status;
   scree_code_reals(&l->pack.out, l->pack.low, 3);
   scree_code_real(&l->pack.out, &l->pack.step);
   scree_pack_u32(&l->pack, scan->triangle_count);
   put_trace(l, choice);
-  scree_status status = put_measures(l, scan, choice);
+  status = put_measures(l, scan, choice);
   if (status == SCREE_OK)
     status = put_levels(l, choose_base(l->curve, levels_share * (double)byte_limit));
   size_t room = byte_limit > l->pack.out.count ? byte_limit - l->pack.out.count : 0;
@@ -341,6 +369,10 @@ size_t scree_levels_drop_scan(char *bytes, size_t byte_count) {
   skip_packed(&in, 2);
   read_u32(&in); /* collapses */
   skip_packed(&in, 2);
+  for (uint32_t left = read_u32(&in); left > 0 && !in.failed; left--) {
+    skip(&in, MESH_COUNTS);
+    skip_packed(&in, 2);
+  }
   size_t start = in.position;
   if (in.failed || byte_count - start < NO_MESH) return byte_count;
   memset(bytes + start, 0, NO_MESH); /* no vertices, no triangles, nothing packed of either */

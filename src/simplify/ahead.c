@@ -8,9 +8,6 @@
 
 #include <string.h>
 
-/* Scores that differ by no more of themselves are the same: the cheaper collapse is taken. */
-#define SAME_SCORE 1e-9
-
 /* Squared distances are known above this share of the level's farthest; when the farthest has come
  * nearer than the second, or farther than the third times what is known, all are found anew. */
 #define KNOWN_ABOVE 0.25
@@ -138,7 +135,7 @@ static size_t choose(scree_ahead *a, size_t count) {
   for (size_t n = 0; n < SCREE_TRIAL_COUNT && n < count; n++) {
     size_t best = count;
     for (size_t i = 0; i < count; i++)
-      if (!chosen[i] && (best == count || a->scores[i] < (1 - SAME_SCORE) * a->scores[best]))
+      if (!chosen[i] && (best == count || a->scores[i] < (1 - SCREE_SAME_SCORE) * a->scores[best]))
         best = i;
     chosen[best] = true;
   }
@@ -155,7 +152,7 @@ size_t scree_ahead_find(scree_ahead *a, scree_step *step, const scree_offer *off
   scree_parallel_for(tried, 1, try_block, a);
   a->best = &a->outcomes[0];
   for (size_t i = 1; i < tried; i++)
-    if (a->outcomes[i].score < (1 - SAME_SCORE) * a->best->score) a->best = &a->outcomes[i];
+    if (a->outcomes[i].score < (1 - SCREE_SAME_SCORE) * a->best->score) a->best = &a->outcomes[i];
   return a->best->offer;
 }
 

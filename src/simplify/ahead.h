@@ -9,16 +9,22 @@
 /* From how many triangles on, later with large scans; how many collapses are looked at, and how
  * many of them are tried; of large scans two are, for it takes time. */
 enum {
-  SCREE_AHEAD_COUNT = 160,
+  SCREE_AHEAD_COUNT = 200,
   SCREE_AHEAD_LATE = 130,
   SCREE_OFFER_COUNT = 16,
   SCREE_OFFERS_OF_LARGE = 2,
   SCREE_TRIAL_COUNT = 4
 };
 
+static inline size_t scree_ahead_from(const scree_decimator *d) {
+  return scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT;
+}
+
 /* How good a level is by the mean distance of its witnesses and the distance of its farthest place:
  * the less, the better. */
 double scree_level_score(double mean, double farthest);
+/* Scores that differ by no more of themselves are the same. */
+#define SCREE_SAME_SCORE 1e-9
 
 /* A collapse that is allowed now. It must stay where it is in memory. */
 typedef struct scree_offer {

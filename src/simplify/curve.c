@@ -3,7 +3,8 @@
  * A level is rebuilt from the record alone: vertex `gone` of each collapse becomes `kept`, whose
  * position is the last one written; a triangle lives while its corners are three. Going through
  * the collapses backwards, the vertex that `kept` finally became is known when it is asked for, so
- * that no search is needed. */
+ * that no search is needed. The coarsest levels of method `volume` stand in the record as a whole.
+ */
 #include "base/array.h"
 #include "base/parallel.h"
 #include "base/sum.h"
@@ -38,6 +39,12 @@ scree_simplify_options scree_default_simplify_options(void) {
   return (scree_simplify_options){.method = SCREE_METHOD_VOLUME};
 }
 
+void scree_whole_level_free(scree_whole_level *level) {
+  scree_free(level->origin);
+  scree_free(level->position);
+  scree_free(level->triangle);
+}
+
 void scree_record_free(scree_record *r) {
   scree_free(r->kept);
   scree_free(r->gone);
@@ -46,6 +53,8 @@ void scree_record_free(scree_record *r) {
   scree_free(r->volume);
   scree_free(r->error);
   scree_free(r->moves.items);
+  for (size_t i = 0; i < r->whole.count; i++) scree_whole_level_free(&r->whole.items[i]);
+  scree_free(r->whole.items);
   *r = (scree_record){0};
 }
 
@@ -165,6 +174,18 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+/* NULL: the level is told by collapses. */
+static const scree_whole_level *whole_at(const scree_curve *curve, size_t level) {
+  const scree_record *r = &curve->record;
+  return level > r->count ? &r->whole.items[level - r->count - 1] : NULL;
+}
+
+static size_t count_at(const scree_curve *curve, size_t level) {
+  const scree_whole_level *whole = whole_at(curve, level);
+  if (whole) return whole->triangle_count;
+  return curve->counts ? curve->counts[level] : curve->mesh->triangle_count - 2 * level;
+}
+
 /* Turns the changes into the levels' values, in metres. */
 static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum volume, double scale,
                                scree_error *error) {
@@ -184,13 +205,13 @@ static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum vol
     r->error[i] = (float)worst;
     all_two &= !(r->kept[i] & SCREE_ONE_TRIANGLE);
   }
-  curve->facts.floor_count = count - 2 * r->count;
+  for (size_t i = 0; i < r->whole.count; i++)
+    r->whole.items[i].error = (float)(sqrt((double)r->whole.items[i].error) * scale);
   if (all_two) return SCREE_OK;
   SCREE_ALLOC_OR(curve->counts, r->count + 1, error, out_of_memory);
   curve->counts[0] = count;
   for (size_t i = 0; i < r->count; i++)
     curve->counts[i + 1] = count -= r->kept[i] & SCREE_ONE_TRIANGLE ? 1 : 2;
-  curve->facts.floor_count = count;
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -303,6 +324,8 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   made->record = d.record;
   d.record = (scree_record){0};
   status = accumulate(made, area, volume, d.s.scale, error);
+  if (status == SCREE_OK)
+    made->facts.floor_count = count_at(made, scree_curve_level_count(made) - 1);
 finished:
   scree_decimator_free(&d);
   if (status == SCREE_OK)
@@ -317,24 +340,25 @@ scree_curve_facts scree_curve_get_facts(const scree_curve *curve) {
 }
 
 size_t scree_curve_level_count(const scree_curve *curve) {
-  return curve->record.count + 1;
-}
-
-static size_t count_at(const scree_curve *curve, size_t level) {
-  return curve->counts ? curve->counts[level] : curve->mesh->triangle_count - 2 * level;
+  return curve->record.count + 1 + curve->record.whole.count;
 }
 
 void scree_curve_level(const scree_curve *curve, size_t index, scree_level *level) {
+  const scree_record *r = &curve->record;
+  const scree_whole_level *whole = whole_at(curve, index);
   size_t count = count_at(curve, index);
   *level = (scree_level){.triangle_count = count,
                          .rp = (double)count / (double)curve->mesh->triangle_count,
-                         .area = index ? curve->record.area[index - 1] : curve->area,
-                         .volume = index ? curve->record.volume[index - 1] : curve->volume,
-                         .quadric_error = index ? (double)curve->record.error[index - 1] : 0};
+                         .area = curve->area,
+                         .volume = curve->volume};
+  if (index == 0) return;
+  level->area = whole ? whole->area : r->area[index - 1];
+  level->volume = whole ? whole->volume : r->volume[index - 1];
+  level->quadric_error = (double)(whole ? whole->error : r->error[index - 1]);
 }
 
 size_t scree_curve_find(const scree_curve *curve, size_t target) {
-  size_t low = 0, high = curve->record.count; /* the answer lies in [low, high] */
+  size_t low = 0, high = scree_curve_level_count(curve) - 1; /* the answer lies in [low, high] */
   while (low < high) {
     size_t middle = low + (high - low) / 2;
     if (count_at(curve, middle) <= target)
@@ -343,6 +367,10 @@ size_t scree_curve_find(const scree_curve *curve, size_t target) {
       low = middle + 1;
   }
   return low;
+}
+
+size_t scree_curve_collapse_count(const scree_curve *curve) {
+  return curve->record.count;
 }
 
 void scree_curve_collapse(const scree_curve *curve, size_t index, scree_collapse *collapse) {
@@ -437,7 +465,6 @@ static void replay_collapses(scree_replay *r, size_t level) {
     count++;
   }
   r->triangle_count = count;
-  r->level = level;
 }
 
 /* The level's mesh with its own vertices, in the order of the mesh given. */
@@ -462,17 +489,39 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+static scree_status copy_whole(scree_replay *r, const scree_whole_level *w, scree_mesh *mesh,
+                               scree_error *error) {
+  scree_mesh made = {.vertex_count = w->vertex_count, .triangle_count = w->triangle_count};
+  memset(r->number, 0xff, r->curve->mesh->vertex_count * sizeof *r->number);
+  SCREE_ALLOC_OR(made.positions, 3 * w->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(made.triangles, 3 * w->triangle_count, error, out_of_memory);
+  for (size_t v = 0; v < w->vertex_count; v++) {
+    vec3_store(made.positions + 3 * v, w->position[v]);
+    r->number[w->origin[v]] = (uint32_t)v;
+  }
+  memcpy(made.triangles, w->triangle, w->triangle_count * sizeof *w->triangle);
+  *mesh = made;
+  return SCREE_OK;
+out_of_memory:
+  scree_mesh_free(&made);
+  return SCREE_OUT_OF_MEMORY;
+}
+
 scree_status scree_replay_step(scree_replay *replay, size_t level_index, const scree_mesh **mesh,
                                scree_error *error) {
-  if (level_index < replay->level || level_index > replay->curve->record.count)
+  size_t last = scree_curve_level_count(replay->curve) - 1;
+  if (level_index < replay->level || level_index > last)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "level %zu is not within [%zu, %zu]", level_index,
-                      replay->level, replay->curve->record.count);
+                      replay->level, last);
+  const scree_whole_level *whole = whole_at(replay->curve, level_index);
   scree_mesh made;
-  replay_collapses(replay, level_index);
-  scree_status status = number_vertices(replay, &made, error);
+  if (!whole) replay_collapses(replay, level_index);
+  scree_status status =
+      whole ? copy_whole(replay, whole, &made, error) : number_vertices(replay, &made, error);
   if (status != SCREE_OK) return status;
   scree_mesh_free(&replay->mesh);
   replay->mesh = made;
+  replay->level = level_index;
   *mesh = &replay->mesh;
   return SCREE_OK;
 }

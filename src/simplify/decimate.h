@@ -19,6 +19,22 @@ typedef struct scree_moves {
   size_t count, capacity;
 } scree_moves;
 
+/* One of the coarsest levels of method `volume` as a whole, in metres (ending.h). */
+typedef struct scree_whole_level {
+  size_t vertex_count, triangle_count;
+  uint32_t *origin;        /* per vertex: in the mesh given, ascending */
+  vec3 *position;          /* per vertex */
+  uint32_t (*triangle)[3]; /* corners: of these vertices */
+  double area, volume;
+  float error; /* of the record that led to it, with this level's end */
+} scree_whole_level;
+
+/* From fine to coarse, each with fewer triangles. */
+typedef struct scree_whole_levels {
+  scree_whole_level *items;
+  size_t count, capacity;
+} scree_whole_levels;
+
 /* The collapses in their order, one array per field. Positions and measures are in metres. */
 typedef struct scree_record {
   size_t count, capacity;
@@ -28,15 +44,22 @@ typedef struct scree_record {
   double *area, *volume; /* while decimating: change of the collapse; then: the level's value */
   float *error;          /* mean square move, unit box; then: running maximum, metres */
   scree_moves moves;     /* in their order; what they change counts with their collapse */
+  scree_whole_levels whole; /* after all of these */
 } scree_record;
 
 #define SCREE_ONE_TRIANGLE UINT32_C(0x80000000)
 
-/* What of method `volume` is left as its collapses and their moves make it (settle.h): a slow
- * oracle can follow that. */
+/* What single collapses go by, which differs between the ways to the coarsest levels. */
+typedef struct scree_rule {
+  double toll;       /* times that of greedy.c */
+  double least_turn; /* of normals below SCREE_TURNED_COUNT triangles (collapse.h) */
+} scree_rule;
+
+/* What of method `volume` is left as its collapses and their moves make it (ending.h, settle.h): a
+ * slow oracle can follow that. */
 typedef enum scree_unsettled {
   SCREE_UNSETTLED_NONE,
-  SCREE_UNSETTLED_LEVELS, /* the coarsest, each by itself */
+  SCREE_UNSETTLED_LEVELS, /* the coarsest, each by itself: there is one way to them */
   SCREE_UNSETTLED_ALL     /* and the surface on its way */
 } scree_unsettled;
 
@@ -50,6 +73,7 @@ typedef struct scree_decimator {
   size_t first_triangle_count;
   size_t single_from; /* triangles: where the batches end and single collapses begin */
   scree_unsettled unsettled;
+  const scree_rule *rule; /* NULL: the usual one */
   scree_grid grid;
   scree_memory memory; /* of surfaces that the batches came to; nothing before */
   scree_anchors anchors;
@@ -59,10 +83,18 @@ typedef struct scree_decimator {
   scree_error *error;
 } scree_decimator;
 
+static inline scree_rule scree_rule_of(const scree_decimator *d) {
+  const scree_rule usual = {.toll = 1, .least_turn = SCREE_LEAST_COARSE_TURN};
+  return d->rule ? *d->rule : usual;
+}
+
 /* The record has room for so many collapses. */
 scree_status scree_record_allocate(scree_record *record, size_t capacity, scree_error *error);
 
 void scree_record_free(scree_record *record);
+
+/* What the items hold. */
+void scree_whole_level_free(scree_whole_level *level);
 
 /* All that it holds. */
 void scree_decimator_free(scree_decimator *d);
@@ -129,8 +161,10 @@ scree_status scree_decimate_sum(scree_decimator *d);
 /* Keeps the surface as it is (memory.h). */
 scree_status scree_decimate_keep(scree_decimator *d);
 
-/* Of few triangles: witnesses spread evenly over the scan take the place of the others. */
-scree_status scree_decimate_spread(scree_decimator *d);
+/* Of few triangles: witnesses spread evenly over the scan, of the first collapses of a
+ * record, take the place of the others. */
+scree_status scree_decimate_spread(scree_decimator *d, const scree_record *record,
+                                   size_t gone_count);
 
 /* Passes of many independent collapses, while there are more than single_from triangles. */
 scree_status scree_decimate_in_batches(scree_decimator *d);

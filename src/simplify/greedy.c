@@ -26,19 +26,20 @@
  *
  * Below SCREE_RELAXED_COUNT triangles the vertices about a collapse move after it, to where the
  * witnesses around them are nearer (step.c), and below SCREE_PATH_COUNT, at every tenth that goes,
- * all of them together (settle.h), until the look ahead or the settled levels begin. Below
- * SCREE_AHEAD_COUNT not the cheapest collapse is done, but of the cheapest that are allowed the one
- * after which the level is best (ahead.h). The levels below SCREE_SETTLED_COUNT are settled, each
- * by itself, beside the path (settle.h).
+ * all of them together (settle.h), until the look ahead begins. Below SCREE_AHEAD_COUNT not the
+ * cheapest collapse is done, but of the cheapest that are allowed the one after which the level is
+ * best (ahead.h). What comes in which order, and that the end is come to by several ways, is
+ * ending.c's.
  *
  * Few triangles and a volume that is to be kept can throw a vertex far out: where the normals
  * around nearly cancel (a thin part, a handle) the plane of equal volume is far away, and small
  * triangles make it cheap to go there. So a vertex must stay near the surface that this stage
  * began with: within half of sqrt(area / triangles), the size of the level's triangles. */
-#include "simplify/settle.h"
+#include "simplify/greedy.h"
 
+#include "base/alloc.h"
 #include "base/parallel.h"
-#include "simplify/ahead.h"
+#include "simplify/settle.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -85,7 +86,7 @@ typedef struct choice {
   scree_candidate candidate;
 } choice;
 
-typedef struct queue {
+struct scree_greedy {
   scree_decimator *d;
   double *cost;    /* per half-edge */
   uint32_t *place; /* per half-edge: its place in the heap, or NONE */
@@ -94,6 +95,7 @@ typedef struct queue {
   uint8_t *stage; /* per half-edge: how far it has come */
   scree_step step;
   size_t since_tick;
+  size_t begun_at;                /* collapses */
   size_t entered_at;              /* collapses when all edges were entered last */
   double toll;                    /* weight of the stray's sixth power in the cost */
   uint32_t places;                /* looked at on every new edge; found anew with the toll */
@@ -106,9 +108,9 @@ typedef struct queue {
   choice known[KEPT];
   size_t known_next;
   scree_offer *offers; /* SCREE_OFFER_COUNT */
-} queue;
+};
 
-static bool before(const queue *q, uint32_t g, uint32_t h) {
+static bool before(const scree_greedy *q, uint32_t g, uint32_t h) {
   if (q->cost[g] != q->cost[h]) return q->cost[g] < q->cost[h];
   const scree_halfmesh *s = &q->d->s;
   uint32_t ga = s->vertex[s->half[g].from].origin, ha = s->vertex[s->half[h].from].origin;
@@ -116,12 +118,12 @@ static bool before(const queue *q, uint32_t g, uint32_t h) {
   return s->vertex[scree_to(s, g)].origin < s->vertex[scree_to(s, h)].origin;
 }
 
-static void put(queue *q, size_t place, uint32_t h) {
+static void put(scree_greedy *q, size_t place, uint32_t h) {
   q->heap[place] = h;
   q->place[h] = (uint32_t)place;
 }
 
-static void sift_up(queue *q, size_t place) {
+static void sift_up(scree_greedy *q, size_t place) {
   uint32_t h = q->heap[place];
   while (place > 0 && before(q, h, q->heap[(place - 1) / 2])) {
     put(q, place, q->heap[(place - 1) / 2]);
@@ -130,7 +132,7 @@ static void sift_up(queue *q, size_t place) {
   put(q, place, h);
 }
 
-static void sift_down(queue *q, size_t place) {
+static void sift_down(scree_greedy *q, size_t place) {
   uint32_t h = q->heap[place];
   for (;;) {
     size_t child = 2 * place + 1;
@@ -143,7 +145,7 @@ static void sift_down(queue *q, size_t place) {
   put(q, place, h);
 }
 
-static void leave(queue *q, uint32_t h) {
+static void leave(scree_greedy *q, uint32_t h) {
   uint32_t place = q->place[h];
   if (place == SCREE_NONE) return;
   q->place[h] = SCREE_NONE;
@@ -161,7 +163,7 @@ static uint32_t owner(const scree_halfmesh *s, uint32_t h) {
 }
 
 /* Gives edge h its place in the heap by this candidate, or takes it out. */
-static void enqueue(queue *q, uint32_t h, const scree_candidate *candidate) {
+static void enqueue(scree_greedy *q, uint32_t h, const scree_candidate *candidate) {
   if (!(candidate->cost < INFINITY) || candidate->error > q->d->error_limit) {
     leave(q, h);
     return;
@@ -173,13 +175,13 @@ static void enqueue(queue *q, uint32_t h, const scree_candidate *candidate) {
 }
 
 /* Gives edge h, which left, its place at the cost that it has. */
-static void enter(queue *q, uint32_t h) {
+static void enter(scree_greedy *q, uint32_t h) {
   put(q, q->heap_count++, h);
   sift_up(q, q->place[h]);
 }
 
 /* Gives those waiting their places. */
-static void evaluate_waiting(queue *q) {
+static void evaluate_waiting(scree_greedy *q) {
   scree_halfmesh *s = &q->d->s;
   scree_candidate candidates[SIDE_BY_SIDE];
   q->d->coster->evaluate(s, q->waiting, q->waiting_count, candidates);
@@ -195,12 +197,13 @@ static void evaluate_waiting(queue *q) {
   q->waiting_count = 0;
 }
 
-static void evaluate(queue *q, uint32_t h) {
+static void evaluate(scree_greedy *q, uint32_t h) {
   q->waiting[q->waiting_count++] = h;
   if (q->waiting_count == SIDE_BY_SIDE) evaluate_waiting(q);
 }
 
-static void queue_free(queue *q) {
+void scree_greedy_free(scree_greedy *q) {
+  if (!q) return;
   scree_free(q->cost);
   scree_free(q->place);
   scree_free(q->heap);
@@ -210,9 +213,10 @@ static void queue_free(queue *q) {
   scree_free(q->sorted);
   scree_free(q->offers);
   scree_settled_free(&q->settled);
+  scree_free(q);
 }
 
-static void enter_all(queue *q) {
+static void enter_all(scree_greedy *q) {
   const scree_halfmesh *s = &q->d->s;
   for (uint32_t h = 0; h < 3 * s->triangle_count; h++)
     if (s->half[h].from != SCREE_NONE && owner(s, h) == h) evaluate(q, h);
@@ -225,7 +229,7 @@ static int by_value(const void *a, const void *b) {
 }
 
 static bool looks_ahead(const scree_decimator *d) {
-  return d->s.live_triangle_count <= (scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT);
+  return d->s.live_triangle_count <= scree_ahead_from(d);
 }
 
 /* Times the toll. Scans held close in their fine levels have room in the greatest distance of
@@ -233,10 +237,10 @@ static bool looks_ahead(const scree_decimator *d) {
 static double toll_factor(const scree_decimator *d) {
   if (scree_is_held_close(d)) return CLOSE_TOLL;
   bool easy = scree_is_close_scan(d) && d->s.live_triangle_count < EASY_BELOW && !looks_ahead(d);
-  return easy ? EASY_TOLL : 1;
+  return (easy ? EASY_TOLL : 1) * scree_rule_of(d).toll;
 }
 
-static void sum_all(const queue *q) {
+static void sum_all(const scree_greedy *q) {
   scree_halfmesh *s = &q->d->s;
   for (uint32_t v = 0; v < s->vertex_count; v++)
     if (s->vertex[v].outgoing != SCREE_NONE) q->d->coster->sum(s, v);
@@ -246,14 +250,14 @@ static size_t settles_below(const scree_decimator *d) {
   return scree_is_large(d) ? SCREE_PATH_LATE : SCREE_PATH_COUNT;
 }
 
-static bool may_settle(const queue *q) {
+static bool may_settle(const scree_greedy *q) {
   const scree_decimator *d = q->d;
-  return q->settles && d->record.count > 0 && d->s.live_triangle_count < settles_below(d);
+  return q->settles && d->record.count > q->begun_at && d->s.live_triangle_count < settles_below(d);
 }
 
 /* Closes the gaps that collapses left, before edges are entered anew: to settle looks at all
  * triangles many times. */
-static scree_status compact(queue *q) {
+static scree_status compact(scree_greedy *q) {
   scree_decimator *d = q->d;
   scree_halfmesh *s = &d->s;
   size_t half_edges = 3 * s->triangle_count;
@@ -268,7 +272,7 @@ static scree_status compact(queue *q) {
   return scree_anchors_find(s, &d->anchors, d->error);
 }
 
-static scree_status settle(queue *q) {
+static scree_status settle(scree_greedy *q) {
   scree_status status = compact(q);
   if (status == SCREE_OK && !q->settled.places) status = scree_settled_allocate(&q->settled, q->d);
   if (status == SCREE_OK) status = scree_settle_path(&q->settled, &q->step);
@@ -277,7 +281,7 @@ static scree_status settle(queue *q) {
 }
 
 /* At how many triangles edges are entered anew. */
-static size_t next_renewal(const queue *q) {
+static size_t next_renewal(const scree_greedy *q) {
   double count = (double)q->d->s.live_triangle_count, from = (double)settles_below(q->d);
   double at = RENEW_BELOW * count;
   if (q->settles && at < from) at = fmax(at, fmin(SETTLE_BELOW * count, from - 1));
@@ -292,7 +296,7 @@ static size_t crowd(const scree_decimator *d) {
 }
 
 /* Settles, enters all edges and finds the toll. */
-static scree_status renew(queue *q) {
+static scree_status renew(scree_greedy *q) {
   scree_decimator *d = q->d;
   if (may_settle(q)) {
     scree_status status = settle(q);
@@ -312,7 +316,7 @@ static scree_status renew(queue *q) {
   return scree_memory_squeeze(&d->memory, &d->s, d->error);
 }
 
-static scree_status queue_fill(queue *q) {
+static scree_status queue_fill(scree_greedy *q) {
   scree_decimator *d = q->d;
   scree_halfmesh *s = &d->s;
   size_t half_edges = 3 * s->triangle_count;
@@ -337,7 +341,7 @@ out_of_memory:
 }
 
 /* Takes the ring's edges that vanish or change owner out of the heap. */
-static void forget(queue *q, const scree_ring *r) {
+static void forget(scree_greedy *q, const scree_ring *r) {
   const scree_halfmesh *s = &q->d->s;
   uint32_t ends[2] = {r->a, r->b};
   for (int i = 0; i < 2; i++) {
@@ -352,7 +356,7 @@ static void forget(queue *q, const scree_ring *r) {
 }
 
 /* Re-evaluates all edges at the vertices stamped now, once each. */
-static void update_vertex(queue *q, uint32_t v) {
+static void update_vertex(scree_greedy *q, uint32_t v) {
   scree_halfmesh *s = &q->d->s;
   uint32_t first = s->vertex[v].outgoing, h = first, last;
   do {
@@ -368,7 +372,7 @@ static void update_vertex(queue *q, uint32_t v) {
 }
 
 /* After a collapse: all edges that it may concern get their places anew. */
-static void update(queue *q) {
+static void update(scree_greedy *q) {
   const scree_step *step = &q->step;
   if (!q->d->coster->merge)
     for (size_t i = 0; i < step->touched_count; i++) q->d->coster->sum(&q->d->s, step->touched[i]);
@@ -377,7 +381,7 @@ static void update(queue *q) {
 }
 
 /* Makes the cost whole, or not less than `most` if it is not. */
-static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c, double most,
+static void add_stray(const scree_greedy *q, const scree_ring *ring, scree_candidate *c, double most,
                       scree_hints *hints) {
   if (!(c->stray > 0) || !(c->cost < most)) return;
   double least = scree_stray_at(c, 0), enough = sqrt((most - c->cost) / c->stray);
@@ -391,7 +395,7 @@ static void add_stray(const queue *q, const scree_ring *ring, scree_candidate *c
 }
 
 /* Other place k with its whole cost, if that is below `most`; else some cost that is not. */
-static scree_candidate other_place(const queue *q, const scree_ring *ring, int k, double most,
+static scree_candidate other_place(const scree_greedy *q, const scree_ring *ring, int k, double most,
                                    scree_hints *hints) {
   scree_candidate c;
   q->d->coster->fall_back(&q->d->s, ring->half_edge, k, &c);
@@ -401,7 +405,7 @@ static scree_candidate other_place(const queue *q, const scree_ring *ring, int k
 
 /* Finds the first choice of an edge: its whole cost, or LOOKED_UP_TO times that at which the edge
  * waits, if it is more: most edges are evaluated anew before their turn comes at that. */
-static void find_first_choice(const queue *q, choice *made) {
+static void find_first_choice(const scree_greedy *q, choice *made) {
   const scree_halfmesh *s = &q->d->s;
   uint32_t h = made->half_edge, edges[SCREE_RING_MAX];
   scree_ring ring = {.edge = edges};
@@ -429,13 +433,13 @@ static void find_first_choice(const queue *q, choice *made) {
 
 static void find_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
-  queue *q = context;
+  scree_greedy *q = context;
   for (size_t i = begin; i < end; i++) find_first_choice(q, &q->known[q->known_next + i]);
 }
 
 /* Lists edges that wait for their first choice, in their order: the cheapest, and others that come
  * soon. */
-static size_t list_next(const queue *q, size_t most, uint32_t *edges) {
+static size_t list_next(const scree_greedy *q, size_t most, uint32_t *edges) {
   size_t places[2 * LOOKED_AT + 1] = {0}, place_count = q->heap_count > 0, count = 0;
   for (int looked = 0; looked < LOOKED_AT && place_count > 0 && count < most; looked++) {
     size_t least = 0;
@@ -451,7 +455,7 @@ static size_t list_next(const queue *q, size_t most, uint32_t *edges) {
 }
 
 /* Finds the first choice of the cheapest edge, and of some that come soon. */
-static void find_first_choices(queue *q) {
+static void find_first_choices(scree_greedy *q) {
   uint32_t edges[AT_ONCE] = {q->heap[0]};
   size_t workers = (size_t)scree_worker_count(), most = FOR_EACH * workers;
   size_t count = workers > 1 ? list_next(q, most < AT_ONCE ? most : AT_ONCE, edges) : 1;
@@ -470,7 +474,7 @@ static void find_first_choices(queue *q) {
 
 /* Puts the edge back with the cheapest other place that is allowed, if there is
  * one. */
-static scree_status try_fallbacks(queue *q, scree_ring *ring) {
+static scree_status try_fallbacks(scree_greedy *q, scree_ring *ring) {
   uint32_t h = ring->half_edge;
   scree_candidate best = {.cost = INFINITY};
   scree_hints hints;
@@ -492,7 +496,7 @@ static scree_status try_fallbacks(queue *q, scree_ring *ring) {
 
 /* The cheapest edge has its turn: its collapse is offered where it is allowed, else the edge is put
  * back, or out. */
-static scree_status try_cheapest(queue *q, scree_offer *offer, bool *offered) {
+static scree_status try_cheapest(scree_greedy *q, scree_offer *offer, bool *offered) {
   scree_decimator *d = q->d;
   uint32_t h = q->heap[0];
   scree_ring *ring = &offer->ring;
@@ -523,7 +527,7 @@ static scree_status try_cheapest(queue *q, scree_offer *offer, bool *offered) {
   return try_fallbacks(q, ring);
 }
 
-static scree_status collapse_cheapest(queue *q) {
+static scree_status collapse_cheapest(scree_greedy *q) {
   bool offered;
   scree_offer *offer = q->offers;
   scree_status status = try_cheapest(q, offer, &offered);
@@ -536,7 +540,7 @@ static scree_status collapse_cheapest(queue *q) {
 }
 
 /* Of the cheapest collapses that are allowed, the one after which the level is best. */
-static scree_status collapse_best(queue *q, scree_ahead *ahead) {
+static scree_status collapse_best(scree_greedy *q, scree_ahead *ahead) {
   size_t count = 0;
   bool offered;
   scree_status status = SCREE_OK;
@@ -556,8 +560,7 @@ static scree_status collapse_best(queue *q, scree_ahead *ahead) {
 
 enum { TICK_EACH = 10000 };
 
-/* Down to so many triangles, or the floor. */
-static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settling *settling) {
+scree_status scree_greedy_run(scree_greedy *q, size_t until, scree_ahead *ahead) {
   scree_decimator *d = q->d;
   scree_status status = SCREE_OK;
   while (status == SCREE_OK && d->s.live_triangle_count > until) {
@@ -571,16 +574,17 @@ static scree_status run(queue *q, size_t until, scree_ahead *ahead, scree_settli
     }
     bool coarse = d->s.live_triangle_count < TICK_EACH; /* each takes long there */
     if ((coarse || q->since_tick++ % 1024 == 0) && !scree_decimate_tick(d)) return SCREE_CANCELLED;
-    size_t before = d->record.count;
     status = ahead ? collapse_best(q, ahead) : collapse_cheapest(q);
-    if (settling && status == SCREE_OK && d->record.count > before)
-      status = scree_settle_level(settling, &q->step);
   }
   return status;
 }
 
-static scree_status begin(scree_decimator *d, bool settles, queue *q) {
-  *q = (queue){.d = d, .step = {.d = d}, .entered_at = d->record.count, .settles = settles};
+scree_status scree_greedy_begin(scree_decimator *d, bool settles, scree_greedy **made) {
+  scree_greedy *q = *made = scree_alloc_zero(1, sizeof *q);
+  if (!q) return scree_fail_memory(d->error, sizeof *q, "the queue of edges");
+  q->d = q->step.d = d;
+  q->begun_at = q->entered_at = d->record.count;
+  q->settles = settles;
   if (!d->coster->merge)
     q->step.relaxed_below = scree_is_large(d) ? SCREE_RELAXED_LATE : SCREE_RELAXED_COUNT;
   q->step.farthest_at = q->step.relaxed_below;
@@ -589,53 +593,6 @@ static scree_status begin(scree_decimator *d, bool settles, queue *q) {
   return status == SCREE_OK ? queue_fill(q) : status;
 }
 
-/* The last triangles of method `volume`, with a look ahead. */
-static scree_status end_with_care(scree_decimator *d, scree_settling *settling) {
-  queue q = {.d = d};
-  scree_ahead ahead = {.from = NULL};
-  scree_status status = scree_ahead_prepare(d);
-  if (status != SCREE_OK) return status;
-  if (scree_is_large(d) && scree_memory_is_kept(&d->memory)) status = scree_decimate_spread(d);
-  if (status == SCREE_OK) status = begin(d, false, &q);
-  if (status == SCREE_OK) status = scree_grid_look_at_all(&d->grid, d->error);
-  if (status == SCREE_OK) status = scree_ahead_begin(&ahead, d);
-  if (status == SCREE_OK && settling && !settling->shown)
-    status = scree_settle_begin(settling, &q.step);
-  if (status == SCREE_OK) status = run(&q, d->options.stop_count, &ahead, settling);
-  scree_ahead_free(&ahead);
-  queue_free(&q);
-  return status;
-}
-
-/* Down to so many triangles without a look ahead; the last of these levels are settled already,
- * and the surface itself not any more. */
-static scree_status begin_quickly(scree_decimator *d, size_t until, scree_settling *settling) {
-  queue q;
-  bool settles = !d->coster->merge && d->unsettled != SCREE_UNSETTLED_ALL;
-  size_t settled = settles && !scree_is_large(d) ? SCREE_SETTLED_COUNT : 0;
-  scree_status status = begin(d, settles, &q);
-  if (status == SCREE_OK) status = run(&q, until > settled ? until : settled, NULL, NULL);
-  q.settles = false;
-  size_t count = d->s.live_triangle_count;
-  if (status == SCREE_OK && count <= settled && count > until) {
-    if (settling) status = scree_settle_begin(settling, &q.step);
-    if (status == SCREE_OK) status = run(&q, until, NULL, settling);
-  }
-  queue_free(&q);
-  return status;
-}
-
-scree_status scree_decimate_one_by_one(scree_decimator *d) {
-  scree_settling settling = {.count = 0}, *settled = NULL;
-  size_t until = d->options.stop_count, ahead = 0;
-  scree_status status = scree_decimate_sum(d);
-  if (status != SCREE_OK) return status;
-  if (!d->coster->merge) ahead = scree_is_large(d) ? SCREE_AHEAD_LATE : SCREE_AHEAD_COUNT;
-  if (!d->coster->merge && d->unsettled == SCREE_UNSETTLED_NONE) settled = &settling;
-  if (until < ahead) until = ahead;
-  if (d->s.live_triangle_count > until) status = begin_quickly(d, until, settled);
-  if (status == SCREE_OK && d->s.live_triangle_count <= ahead) status = end_with_care(d, settled);
-  if (status == SCREE_OK && settling.shown) status = scree_settle_end(&settling, d);
-  scree_settle_free(&settling);
-  return status;
+scree_step *scree_greedy_step(scree_greedy *q) {
+  return &q->step;
 }

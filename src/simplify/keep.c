@@ -145,13 +145,13 @@ done:
   return status;
 }
 
-scree_status scree_decimate_spread(scree_decimator *d) {
-  const scree_record *r = &d->record;
-  size_t count = r->count < SCREE_SPREAD_COUNT ? r->count : SCREE_SPREAD_COUNT;
+scree_status scree_decimate_spread(scree_decimator *d, const scree_record *record,
+                                   size_t gone_count) {
+  size_t count = gone_count < SCREE_SPREAD_COUNT ? gone_count : SCREE_SPREAD_COUNT;
   scree_witness *witnesses;
   SCREE_ALLOC_OR(witnesses, count, d->error, out_of_memory);
   for (size_t i = 0; i < count; i++) {
-    uint32_t gone = r->gone[(2 * i + 1) * r->count / (2 * count)];
+    uint32_t gone = record->gone[(2 * i + 1) * gone_count / (2 * count)];
     witnesses[i].at = scree_into_box(&d->s, vec3_load(d->mesh->positions + 3 * (size_t)gone));
   }
   scree_memory_replace(&d->memory, &d->s, witnesses, count);

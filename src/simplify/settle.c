@@ -6,6 +6,8 @@
 
 #include "base/array.h"
 #include "base/parallel.h"
+#include "base/sum.h"
+#include "simplify/ahead.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -58,80 +60,17 @@ void scree_settled_free(scree_settled *l) {
   scree_free(l->swept);
 }
 
-static scree_status allocate_draft(scree_draft *f, const scree_decimator *d) {
-  scree_status status = scree_trial_allocate(&f->trial, d);
-  if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(f->sums, d->s.vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(f->refused, 3 * d->s.triangle_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(f->vertices, d->s.vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(f->triangles, d->s.triangle_count, d->error, out_of_memory);
-  return scree_grid_look_at_all(&f->trial.d.grid, d->error);
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
-}
-
-static void free_draft(scree_draft *f) {
-  scree_grid_free(&f->trial.d.grid);
-  scree_trial_free(&f->trial);
-  scree_free(f->sums);
-  scree_free(f->refused);
-  scree_free(f->vertices);
-  scree_free(f->triangles);
-}
-
-/* Makes it a copy of the step's surface, without what is gone. */
-static scree_status draw(scree_draft *f, const scree_step *from) {
-  scree_decimator *d = &f->trial.d;
-  scree_grid grid = d->grid;
-  scree_trial_start(&f->trial, from);
-  d->grid = grid;
-  d->error = from->d->error;
-  d->s.sums = f->sums;
-  d->s.refused = f->refused;
-  memcpy(f->sums, from->d->s.sums, d->s.vertex_count * sizeof *f->sums);
-  memcpy(f->refused, from->d->s.refused, 3 * d->s.triangle_count);
-  scree_memory_compact(&d->memory, &d->s);
-  scree_halfmesh_compact(&d->s, f->vertices, f->triangles);
-  return scree_anchors_find(&d->s, &d->anchors, from->d->error);
-}
-
-/* What a level is copied from. */
-static scree_status draw_from(scree_settling *q, const scree_step *step, const scree_step **from) {
-  *from = step;
-  if (step->d->grid.few) return SCREE_OK; /* nothing is left of what is gone */
-  *from = &q->draft.trial.step;
-  return draw(&q->draft, step);
-}
-
-scree_status scree_settle_begin(scree_settling *q, const scree_step *step) {
-  const scree_decimator *d = step->d;
-  const scree_step *from = step;
-  scree_status status = SCREE_OK;
-  *q = (scree_settling){.first = d->record.count};
-  if (!d->grid.few) status = allocate_draft(&q->draft, d);
-  if (status == SCREE_OK) status = draw_from(q, step, &from);
-  for (int i = 0; i < SCREE_SETTLED_AT_ONCE && status == SCREE_OK; i++) {
-    status = scree_trial_allocate(&q->levels[i].trial, from->d);
-    if (status == SCREE_OK) status = scree_settled_allocate(&q->levels[i], from->d);
-  }
-  if (status != SCREE_OK) return status;
-  const scree_halfmesh *s = &from->d->s;
-  SCREE_ALLOC_OR(q->shown, s->vertex_count, d->error, out_of_memory);
-  for (size_t v = 0; v < s->vertex_count; v++)
-    q->shown[v] = (scree_shown){s->vertex[v].origin, s->vertex[v].at};
-  return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
+void scree_settle_begin(scree_settling *q, scree_whole_levels *whole, bool compares,
+                        scree_error *error) {
+  *q = (scree_settling){
+      .whole = whole, .compares = compares, .least_count = SIZE_MAX, .error = error};
 }
 
 void scree_settle_free(scree_settling *q) {
-  free_draft(&q->draft);
   for (int i = 0; i < SCREE_SETTLED_AT_ONCE; i++) {
     scree_trial_free(&q->levels[i].trial);
     scree_settled_free(&q->levels[i]);
   }
-  scree_free(q->shown);
-  scree_free(q->moves.items);
 }
 
 /* Where the level's changes of area and volume are told. */
@@ -321,68 +260,134 @@ static void settle_block(void *context, size_t begin, size_t end, size_t block, 
   scree_settling *q = context;
   for (size_t i = begin; i < end; i++) {
     scree_settled *l = &q->levels[i];
-    l->status = settle(l, scree_is_large(l->step->d) ? MOST_OF_LARGE : MOST_STEPS);
+    const scree_decimator *d = &l->trial.d;
+    l->status = settle(l, scree_is_large(d) ? MOST_OF_LARGE : MOST_STEPS);
+    if (q->compares)
+      l->score = scree_level_score(scree_memory_mean(&d->memory),
+                                   sqrt(scree_memory_farthest(&d->memory, &d->s)));
   }
 }
 
-/* From the last level shown to this one: what stands elsewhere moves. */
-static scree_status show(scree_settling *q, const scree_settled *l, scree_decimator *d) {
-  const scree_halfmesh *s = &l->trial.d.s;
-  scree_record *r = &d->record;
-  uint32_t kept = r->kept[l->index] & ~SCREE_ONE_TRIANGLE;
-  scree_shown *shown = q->shown;
-  for (uint32_t v = 0; v < s->vertex_count; v++) {
-    const scree_vertex *vertex = &s->vertex[v];
-    if (vertex->outgoing == SCREE_NONE) continue;
-    while (shown->origin != vertex->origin) shown++; /* those went since */
-    vec3 at = vec3_mad(s->centre, vertex->at, s->scale);
-    vec3 stands =
-        vertex->origin == kept ? r->position[l->index] : vec3_mad(s->centre, shown->at, s->scale);
-    shown->at = vertex->at;
-    if (!(vec3_norm2(vec3_sub(at, stands)) > 0)) continue;
-    scree_move move = {(uint32_t)l->index, vertex->origin, at};
-    if (!SCREE_PUSH(&q->moves, move))
-      return scree_fail_memory(d->error, q->moves.count * sizeof move, "the record");
+typedef struct origin {
+  uint32_t of, vertex; /* in the mesh given; in the level */
+} origin;
+
+static int by_origin(const void *a, const void *b) {
+  const origin *x = a, *y = b;
+  return (x->of > y->of) - (x->of < y->of);
+}
+
+/* The vertices of a level in the order of the mesh given, and the places of all in that order. */
+static size_t order_vertices(const scree_halfmesh *s, origin *origins, uint32_t *places) {
+  size_t count = 0;
+  for (uint32_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE) origins[count++] = (origin){s->vertex[v].origin, v};
+  qsort(origins, count, sizeof *origins, by_origin);
+  for (size_t i = 0; i < count; i++) places[origins[i].vertex] = (uint32_t)i;
+  return count;
+}
+
+static void fill_whole(const scree_halfmesh *s, const origin *origins, const uint32_t *places,
+                       scree_whole_level *w) {
+  scree_sum area = {0}, volume = {0};
+  for (size_t i = 0; i < w->vertex_count; i++) {
+    w->origin[i] = origins[i].of;
+    w->position[i] = vec3_mad(s->centre, s->vertex[origins[i].vertex].at, s->scale);
   }
-  double area = l->trial.d.record.area[0], volume = l->trial.d.record.volume[0];
-  r->area[l->index] += area - q->area;
-  r->volume[l->index] += volume - q->volume;
-  q->area = area;
-  q->volume = volume;
+  for (size_t t = 0, n = 0; t < s->triangle_count; t++) {
+    vec3 at[3];
+    if (scree_is_gone(s, t)) continue;
+    scree_corners(s, t, at);
+    vec3 normal = vec3_triangle_normal(at[0], at[1], at[2]);
+    scree_sum_add(&area, 0.5 * vec3_norm(normal));
+    scree_sum_add(&volume, vec3_dot(at[0], normal) / 6);
+    for (size_t k = 0; k < 3; k++) w->triangle[n][k] = places[s->half[3 * t + k].from];
+    n++;
+  }
+  w->area = scree_sum_value(area) * s->scale * s->scale;
+  w->volume = scree_sum_value(volume) * s->scale * s->scale * s->scale;
+}
+
+static scree_status make_whole(const scree_settled *l, scree_whole_level *made,
+                               scree_error *error) {
+  const scree_halfmesh *s = &l->trial.d.s;
+  scree_whole_level w = {.triangle_count = s->live_triangle_count, .error = l->error};
+  origin *origins = NULL;
+  uint32_t *places = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(origins, s->vertex_count, error, done);
+  SCREE_ALLOC_OR(places, s->vertex_count, error, done);
+  w.vertex_count = order_vertices(s, origins, places);
+  SCREE_ALLOC_OR(w.origin, w.vertex_count, error, done);
+  SCREE_ALLOC_OR(w.position, w.vertex_count, error, done);
+  SCREE_ALLOC_OR(w.triangle, w.triangle_count, error, done);
+  fill_whole(s, origins, places, &w);
+  status = SCREE_OK;
+done:
+  scree_free(origins);
+  scree_free(places);
+  if (status == SCREE_OK)
+    *made = w;
+  else
+    scree_whole_level_free(&w);
+  return status;
+}
+
+/* The level, unless one of as many triangles is there that is as good. */
+static scree_status tell(scree_settling *q, const scree_settled *l) {
+  scree_whole_levels *levels = q->whole;
+  scree_whole_level made, *last = levels->count > 0 ? &levels->items[levels->count - 1] : NULL;
+  bool same = last && last->triangle_count == l->trial.d.s.live_triangle_count;
+  if (same && !(l->score < (1 - SCREE_SAME_SCORE) * q->score)) return SCREE_OK;
+  if (!SCREE_RESERVE(levels, levels->count + 1))
+    return scree_fail_memory(q->error, (levels->count + 1) * sizeof made, "the record");
+  scree_status status = make_whole(l, &made, q->error);
+  if (status != SCREE_OK) return status;
+  if (same) scree_whole_level_free(&levels->items[--levels->count]);
+  levels->items[levels->count++] = made;
+  q->score = l->score;
   return SCREE_OK;
 }
 
-static scree_status settle_waiting(scree_settling *q, scree_decimator *d) {
+scree_status scree_settle_end(scree_settling *q) {
   scree_status status = SCREE_OK;
   scree_parallel_for(q->count, 1, settle_block, q);
   for (size_t i = 0; i < q->count && status == SCREE_OK; i++) {
     status = q->levels[i].status;
-    if (status == SCREE_OK) status = show(q, &q->levels[i], d);
+    if (status == SCREE_OK) status = tell(q, &q->levels[i]);
   }
   q->count = 0;
   return status;
 }
 
-scree_status scree_settle_level(scree_settling *q, const scree_step *step) {
-  const scree_step *from;
-  scree_status status = draw_from(q, step, &from);
-  if (status != SCREE_OK) return status;
-  scree_settled *l = &q->levels[q->count++];
-  scree_trial_start(&l->trial, from);
-  if (from != step) l->joint.hinted = false;
-  l->step = &l->trial.step;
-  l->index = step->d->record.count - 1;
-  l->trial.d.record.count = 1;
-  l->trial.d.record.area[0] = l->trial.d.record.volume[0] = 0;
-  return q->count < SCREE_SETTLED_AT_ONCE ? SCREE_OK : settle_waiting(q, step->d);
+/* Room for a copy of the step's surface. */
+static scree_status make_room(scree_settled *l, const scree_decimator *d) {
+  if (l->room.vertices >= d->s.vertex_count && l->room.triangles >= d->s.triangle_count &&
+      l->room.witnesses >= d->memory.count)
+    return SCREE_OK;
+  scree_trial_free(&l->trial);
+  scree_settled_free(l);
+  *l = (scree_settled){.from = NULL};
+  scree_status status = scree_trial_allocate(&l->trial, d);
+  if (status == SCREE_OK) status = scree_settled_allocate(l, d);
+  l->room.vertices = d->s.vertex_count;
+  l->room.triangles = d->s.triangle_count;
+  l->room.witnesses = d->memory.count;
+  return status;
 }
 
-scree_status scree_settle_end(scree_settling *q, scree_decimator *d) {
-  scree_moves *moves = &d->record.moves;
-  scree_status status = settle_waiting(q, d);
-  while (moves->count > 0 && moves->items[moves->count - 1].index >= q->first) moves->count--;
-  for (size_t i = 0; i < q->moves.count && status == SCREE_OK; i++)
-    if (!SCREE_PUSH(moves, q->moves.items[i]))
-      status = scree_fail_memory(d->error, moves->count * sizeof *moves->items, "the record");
-  return status;
+scree_status scree_settle_level(scree_settling *q, const scree_step *step, float error) {
+  scree_settled *l = &q->levels[q->count];
+  scree_status status = make_room(l, step->d);
+  if (status != SCREE_OK) return status;
+  q->count++;
+  scree_trial_start(&l->trial, step);
+  if (l->from != step) l->joint.hinted = false;
+  l->from = step;
+  l->step = &l->trial.step;
+  l->error = error;
+  l->trial.d.record.count = 1;
+  l->trial.d.record.area[0] = l->trial.d.record.volume[0] = 0;
+  q->least_count = step->d->s.live_triangle_count;
+  return q->count < SCREE_SETTLED_AT_ONCE ? SCREE_OK : scree_settle_end(q);
 }

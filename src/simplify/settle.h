@@ -8,9 +8,6 @@
 #include "simplify/joint.h"
 #include "simplify/trial.h"
 
-/* From how many triangles on, later with large scans (SCREE_AHEAD_LATE): there it takes time. */
-enum { SCREE_SETTLED_COUNT = 200 };
-
 /* Levels settled at once. */
 enum { SCREE_SETTLED_AT_ONCE = 8 };
 
@@ -40,7 +37,12 @@ typedef struct scree_settled {
   uint32_t *followed;    /* and per witness */
   bool *graph;           /* and per vertex and triangle, to see whether the surface meets itself */
   scree_swept *swept;
-  size_t index; /* of the collapse that made the level */
+  struct {
+    size_t vertices, triangles, witnesses;
+  } room;
+  const scree_step *from; /* what it is a copy of */
+  float error;            /* of the record up to it */
+  double score;           /* settled (scree_level_score); of use where levels are compared */
   scree_status status;
 } scree_settled;
 
@@ -52,38 +54,25 @@ void scree_settled_free(scree_settled *level);
  * more witnesses than when room was made. */
 scree_status scree_settle_path(scree_settled *level, scree_step *step);
 
-/* The surface without what is gone of it, while the decimation itself goes on with all. */
-typedef struct scree_draft {
-  scree_trial trial;
-  double (*sums)[10]; /* room, as the rest */
-  uint8_t *refused;
-  uint32_t *vertices, *triangles;
-} scree_draft;
-
-/* Where a vertex stands in the last level settled. */
-typedef struct scree_shown {
-  uint32_t origin; /* of the mesh given */
-  vec3 at;
-} scree_shown;
-
 typedef struct scree_settling {
-  scree_draft draft; /* until the decimation forgets what is gone (ahead.h) */
   scree_settled levels[SCREE_SETTLED_AT_ONCE];
-  size_t count;        /* levels waiting */
-  size_t first;        /* collapse: the first whose level is settled */
-  scree_shown *shown;  /* vertices that there were when it began, in their order */
-  double area, volume; /* of that level, less those that it had before */
-  scree_moves moves;   /* from level to level */
+  size_t count; /* levels waiting */
+  scree_whole_levels *whole;
+  bool compares;      /* levels may have the same count: the better one is told */
+  double score;       /* of the last one told */
+  size_t least_count; /* triangles of the last one taken */
+  scree_error *error;
 } scree_settling;
 
-/* From the step's surface as it is on, of which the memory is kept. Free what it holds whatever the
- * outcome. */
-scree_status scree_settle_begin(scree_settling *settling, const scree_step *step);
+/* Settled levels are told to `whole`. Free what it holds whatever the outcome. */
+void scree_settle_begin(scree_settling *settling, scree_whole_levels *whole, bool compares,
+                        scree_error *error);
 void scree_settle_free(scree_settling *settling);
 
-/* Takes the level that the last collapse has made; a few are settled at once. */
-scree_status scree_settle_level(scree_settling *settling, const scree_step *step);
-/* After the last level: settles those that wait, and the record tells of settled levels instead. */
-scree_status scree_settle_end(scree_settling *settling, scree_decimator *d);
+/* Takes the step's level as it is, which has no more triangles than the last one and nothing that
+ * is gone, and whose grid looks at all; a few are settled at once. error: of the record up to it. */
+scree_status scree_settle_level(scree_settling *settling, const scree_step *step, float error);
+/* Settles those that wait. */
+scree_status scree_settle_end(scree_settling *settling);
 
 #endif

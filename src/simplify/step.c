@@ -44,7 +44,7 @@ static bool suits(const scree_step *q, scree_ring *ring, scree_change *change,
   const scree_decimator *d = q->d;
   size_t after = d->s.live_triangle_count - (ring->c != SCREE_NONE) - (ring->d != SCREE_NONE);
   bool coarse = !d->coster->merge && d->s.live_triangle_count < SCREE_TURNED_COUNT;
-  return scree_collapse_check(&d->s, ring, coarse ? SCREE_LEAST_COARSE_TURN : SCREE_LEAST_TURN,
+  return scree_collapse_check(&d->s, ring, coarse ? scree_rule_of(d).least_turn : SCREE_LEAST_TURN,
                               change, around) &&
          scree_memory_allows(&d->memory, after, change->target);
 }

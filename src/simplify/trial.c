@@ -68,6 +68,7 @@ void scree_trial_start(scree_trial *t, const scree_step *from) {
   t->d.coster = d->coster;
   t->d.options = d->options;
   t->d.error_limit = d->error_limit;
+  t->d.rule = d->rule;
   t->d.first_triangle_count = d->first_triangle_count;
   t->d.grid = d->grid;
   t->d.record.count = t->d.record.moves.count = 0;

@@ -40,7 +40,7 @@ typedef struct oracle {
   double *whole;   /* as state, for every place: the whole cost, or NAN where it is not known yet */
   size_t moved, taken; /* moves of the record that were checked; of these, in any order */
   size_t exchanged;    /* pairs that moved together */
-  bool looks_ahead;
+  bool parted, looks_ahead;
   size_t weighed;           /* choices of which every offer was done */
   size_t compared, decided; /* collapses, and those with no rival within rounding */
 } oracle;

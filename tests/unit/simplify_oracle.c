@@ -36,7 +36,8 @@
 #define TOLL_SHARE  0.1
 #define USUAL_MEANS 10.0
 #define RENEW_SHARE 0.7
-#define AHEAD_COUNT 160
+#define PARTING_COUNT 1000
+#define AHEAD_COUNT 200
 #define EQUAL_COST  1e-9
 
 /* ---- The order ---- */
@@ -486,8 +487,10 @@ static void check_collapse(oracle *o, const scree_decimator *d, size_t i) {
   uint32_t a = r->kept[i], b = r->gone[i];
   vec3 x = vec3_scale(vec3_sub(r->position[i], d->s.centre), 1 / d->s.scale);
   place chosen;
-  if (!o->qecd && !o->looks_ahead && o->triangle_count <= AHEAD_COUNT) {
-    o->looks_ahead = true;
+  size_t next = o->parted ? AHEAD_COUNT : PARTING_COUNT; /* there it begins anew */
+  if (!o->qecd && !o->looks_ahead && o->triangle_count <= next) {
+    o->parted = true;
+    o->looks_ahead = o->triangle_count <= AHEAD_COUNT;
     o->renew_at = o->far_at = o->triangle_count;
   }
   renew(o);

@@ -345,7 +345,7 @@ static void witnesses_are_spread(void **state) {
   scree_decimator d = coarse(&mesh, &error);
   const scree_record *r = &d.record;
   const scree_memory *m = &d.memory;
-  CHECK_OK(scree_decimate_spread(&d), error);
+  CHECK_OK(scree_decimate_spread(&d, &d.record, d.record.count), error);
   assert_int_equal(m->count, SCREE_SPREAD_COUNT);
   assert_int_equal(m->left, SCREE_SPREAD_COUNT);
   double sum = 0, weights = 0, unit = m->area / (double)m->count;
@@ -388,7 +388,7 @@ static void witnesses_follow(void **state) {
   scree_decimator d = coarse(&mesh, &error);
   scree_halfmesh *s = &d.s;
   scree_memory *m = &d.memory;
-  CHECK_OK(scree_decimate_spread(&d), error);
+  CHECK_OK(scree_decimate_spread(&d, &d.record, d.record.count), error);
   uint32_t *held = malloc(m->count * sizeof *held);
   uint32_t *lists = malloc(s->triangle_count * sizeof *lists);
   uint32_t *triangle = malloc(m->count * sizeof *triangle);
@@ -456,8 +456,8 @@ static void weights_add_up(void **state) {
   scree_mesh mesh = shaken_sphere();
   scree_decimator d = coarse(&mesh, &error), split = coarse(&mesh, &error);
   size_t tried = 0;
-  CHECK_OK(scree_decimate_spread(&d), error);
-  CHECK_OK(scree_decimate_spread(&split), error);
+  CHECK_OK(scree_decimate_spread(&d, &d.record, d.record.count), error);
+  CHECK_OK(scree_decimate_spread(&split, &split.record, split.record.count), error);
   split_witnesses(&split.memory, &split.s);
   double mean = scree_memory_mean(&d.memory);
   CHECK_NEAR(scree_memory_mean(&split.memory), mean, 1e-7 * mean);
