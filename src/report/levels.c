@@ -1,8 +1,8 @@
 /* Levels of one object for the report, small enough to send: the scan, a finest level with the
- * collapses that lead from it down, and the coarsest levels as a whole. Positions lie on a grid of 16 bits; where a
- * collapse puts a vertex is told by the steps on that grid from where the vertex was. Both, and
- * the triangles, go through meshoptimizer's codecs, which web/src/levels.js reads with the same
- * library's JavaScript.
+ * collapses that lead from it down, and the coarsest levels as a whole. Positions lie on a grid of
+ * 16 bits; where a collapse puts a vertex is told by the steps on that grid from where the vertex
+ * was. Both, and the triangles, go through meshoptimizer's codecs, which web/src/levels.js reads
+ * with the same library's JavaScript.
  *
  * What fits is found by trying: the levels get their share first, the scan what is left of
  * byte_limit, and where the scan needs more, the first level of the curve that does not. */

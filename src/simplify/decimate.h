@@ -41,9 +41,9 @@ typedef struct scree_record {
   uint32_t *kept,
       *gone;      /* vertices of the mesh given; bit 31 of kept: one triangle goes, not two */
   vec3 *position; /* where kept lies afterwards */
-  double *area, *volume; /* while decimating: change of the collapse; then: the level's value */
-  float *error;          /* mean square move, unit box; then: running maximum, metres */
-  scree_moves moves;     /* in their order; what they change counts with their collapse */
+  double *area, *volume;    /* while decimating: change of the collapse; then: the level's value */
+  float *error;             /* mean square move, unit box; then: running maximum, metres */
+  scree_moves moves;        /* in their order; what they change counts with their collapse */
   scree_whole_levels whole; /* after all of these */
 } scree_record;
 

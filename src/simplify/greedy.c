@@ -381,8 +381,8 @@ static void update(scree_greedy *q) {
 }
 
 /* Makes the cost whole, or not less than `most` if it is not. */
-static void add_stray(const scree_greedy *q, const scree_ring *ring, scree_candidate *c, double most,
-                      scree_hints *hints) {
+static void add_stray(const scree_greedy *q, const scree_ring *ring, scree_candidate *c,
+                      double most, scree_hints *hints) {
   if (!(c->stray > 0) || !(c->cost < most)) return;
   double least = scree_stray_at(c, 0), enough = sqrt((most - c->cost) / c->stray);
   if (q->toll > 0) {
@@ -395,8 +395,8 @@ static void add_stray(const scree_greedy *q, const scree_ring *ring, scree_candi
 }
 
 /* Other place k with its whole cost, if that is below `most`; else some cost that is not. */
-static scree_candidate other_place(const scree_greedy *q, const scree_ring *ring, int k, double most,
-                                   scree_hints *hints) {
+static scree_candidate other_place(const scree_greedy *q, const scree_ring *ring, int k,
+                                   double most, scree_hints *hints) {
   scree_candidate c;
   q->d->coster->fall_back(&q->d->s, ring->half_edge, k, &c);
   add_stray(q, ring, &c, most, hints);

@@ -70,7 +70,8 @@ void scree_settle_begin(scree_settling *settling, scree_whole_levels *whole, boo
 void scree_settle_free(scree_settling *settling);
 
 /* Takes the step's level as it is, which has no more triangles than the last one and nothing that
- * is gone, and whose grid looks at all; a few are settled at once. error: of the record up to it. */
+ * is gone, and whose grid looks at all; a few are settled at once. error: of the record up to it.
+ */
 scree_status scree_settle_level(scree_settling *settling, const scree_step *step, float error);
 /* Settles those that wait. */
 scree_status scree_settle_end(scree_settling *settling);

@@ -218,8 +218,7 @@ static void every_level_is_the_curves(void **state) {
         check_same(&f, &f.base, o.curve, level);
     }
     assert_int_equal(level, scree_curve_collapse_count(o.curve));
-    for (uint32_t i = 0; i < f.whole_count; i++)
-      check_same(&f, &f.whole[i], o.curve, ++level);
+    for (uint32_t i = 0; i < f.whole_count; i++) check_same(&f, &f.whole[i], o.curve, ++level);
     assert_int_equal(level + 1, scree_curve_level_count(o.curve));
     if (kind == 0 || kind == 2) assert_true(moved > 0);
     free_levels(&f);

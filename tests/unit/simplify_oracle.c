@@ -32,13 +32,13 @@
 #include "support/shapes.h"
 
 /* What the rules name (docs/decimation.md). */
-#define STRAY_SHARE 0.01
-#define TOLL_SHARE  0.1
-#define USUAL_MEANS 10.0
-#define RENEW_SHARE 0.7
+#define STRAY_SHARE   0.01
+#define TOLL_SHARE    0.1
+#define USUAL_MEANS   10.0
+#define RENEW_SHARE   0.7
 #define PARTING_COUNT 1000
-#define AHEAD_COUNT 200
-#define EQUAL_COST  1e-9
+#define AHEAD_COUNT   200
+#define EQUAL_COST    1e-9
 
 /* ---- The order ---- */
 
