@@ -49,7 +49,7 @@ scree_status scree_ahead_begin(scree_ahead *a, const scree_decimator *d) {
   scree_status status = SCREE_OK;
   *a = (scree_ahead){.from = NULL};
   for (int i = 0; i < SCREE_TRIAL_COUNT && status == SCREE_OK; i++)
-    status = scree_trial_allocate(&a->outcomes[i].trial, d);
+    status = scree_trial_allocate(&a->outcomes[i].trial, d, d->error);
   if (status != SCREE_OK) return status;
   for (int i = 0; i < SCREE_TRIAL_COUNT; i++)
     SCREE_ALLOC_OR(a->outcomes[i].moved, d->s.vertex_count, d->error, out_of_memory);

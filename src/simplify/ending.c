@@ -55,7 +55,7 @@ typedef struct endings {
 static scree_status copy(ending *e, scree_decimator *d) {
   scree_trial *t = &e->trial;
   const scree_step step = {.d = d};
-  scree_status status = scree_trial_allocate(t, d);
+  scree_status status = scree_trial_allocate(t, d, d->error);
   if (status != SCREE_OK) return status;
   scree_trial_start(t, &step);
   t->d.s.sums = NULL;

@@ -274,7 +274,8 @@ static scree_status compact(scree_greedy *q) {
 
 static scree_status settle(scree_greedy *q) {
   scree_status status = compact(q);
-  if (status == SCREE_OK && !q->settled.places) status = scree_settled_allocate(&q->settled, q->d);
+  if (status == SCREE_OK && !q->settled.places)
+    status = scree_settled_allocate(&q->settled, q->d, q->d->error);
   if (status == SCREE_OK) status = scree_settle_path(&q->settled, &q->step);
   sum_all(q);
   return status;

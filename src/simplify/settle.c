@@ -29,19 +29,20 @@ enum { MOST_AT_FIRST = 8 };
 #define LEAST_DAMPING 1e-4
 #define MOST_DAMPING  10.0
 
-scree_status scree_settled_allocate(scree_settled *l, const scree_decimator *d) {
+scree_status scree_settled_allocate(scree_settled *l, const scree_decimator *d,
+                                    scree_error *error) {
   const scree_halfmesh *s = &d->s;
-  scree_status status = scree_joint_allocate(&l->joint, s, d->error);
+  scree_status status = scree_joint_allocate(&l->joint, s, error);
   if (status != SCREE_OK) return status;
-  SCREE_ALLOC_OR(l->before.places, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->before.witnesses, d->memory.count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->before.first, s->triangle_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->places, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->errands, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->lists, s->triangle_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->followed, d->memory.count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->graph, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(l->swept, s->triangle_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(l->before.places, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(l->before.witnesses, d->memory.count, error, out_of_memory);
+  SCREE_ALLOC_OR(l->before.first, s->triangle_count, error, out_of_memory);
+  SCREE_ALLOC_OR(l->places, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(l->errands, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(l->lists, s->triangle_count, error, out_of_memory);
+  SCREE_ALLOC_OR(l->followed, d->memory.count, error, out_of_memory);
+  SCREE_ALLOC_OR(l->graph, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(l->swept, s->triangle_count, error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -361,15 +362,15 @@ scree_status scree_settle_end(scree_settling *q) {
 }
 
 /* Room for a copy of the step's surface. */
-static scree_status make_room(scree_settled *l, const scree_decimator *d) {
+static scree_status make_room(scree_settled *l, const scree_decimator *d, scree_error *error) {
   if (l->room.vertices >= d->s.vertex_count && l->room.triangles >= d->s.triangle_count &&
       l->room.witnesses >= d->memory.count)
     return SCREE_OK;
   scree_trial_free(&l->trial);
   scree_settled_free(l);
   *l = (scree_settled){.from = NULL};
-  scree_status status = scree_trial_allocate(&l->trial, d);
-  if (status == SCREE_OK) status = scree_settled_allocate(l, d);
+  scree_status status = scree_trial_allocate(&l->trial, d, error);
+  if (status == SCREE_OK) status = scree_settled_allocate(l, d, error);
   l->room.vertices = d->s.vertex_count;
   l->room.triangles = d->s.triangle_count;
   l->room.witnesses = d->memory.count;
@@ -378,7 +379,7 @@ static scree_status make_room(scree_settled *l, const scree_decimator *d) {
 
 scree_status scree_settle_level(scree_settling *q, const scree_step *step, float error) {
   scree_settled *l = &q->levels[q->count];
-  scree_status status = make_room(l, step->d);
+  scree_status status = make_room(l, step->d, q->error);
   if (status != SCREE_OK) return status;
   q->count++;
   scree_trial_start(&l->trial, step);

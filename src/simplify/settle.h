@@ -47,7 +47,8 @@ typedef struct scree_settled {
 } scree_settled;
 
 /* Room to settle the surface itself; free it whatever the outcome. */
-scree_status scree_settled_allocate(scree_settled *level, const scree_decimator *d);
+scree_status scree_settled_allocate(scree_settled *level, const scree_decimator *d,
+                                    scree_error *error);
 void scree_settled_free(scree_settled *level);
 
 /* Settles the step's surface by a few steps, after its last collapse; its memory is kept, with no

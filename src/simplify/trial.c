@@ -4,21 +4,21 @@
 
 #include <string.h>
 
-scree_status scree_trial_allocate(scree_trial *t, const scree_decimator *d) {
+scree_status scree_trial_allocate(scree_trial *t, const scree_decimator *d, scree_error *error) {
   const scree_halfmesh *s = &d->s;
   scree_moves *moves = &t->d.record.moves;
-  SCREE_ALLOC_OR(t->d.s.half, 3 * s->triangle_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.s.vertex, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.s.flags, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.memory.first, s->triangle_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.memory.near, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.memory.witnesses, d->memory.count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->d.anchors.vertex, d->anchors.count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->step.stamp, s->vertex_count, d->error, out_of_memory);
-  SCREE_ALLOC_OR(t->step.touched, s->vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.s.half, 3 * s->triangle_count, error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.s.vertex, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.s.flags, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.memory.first, s->triangle_count, error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.memory.near, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.memory.witnesses, d->memory.count, error, out_of_memory);
+  SCREE_ALLOC_OR(t->d.anchors.vertex, d->anchors.count, error, out_of_memory);
+  SCREE_ALLOC_OR(t->step.stamp, s->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(t->step.touched, s->vertex_count, error, out_of_memory);
   if (!SCREE_RESERVE(moves, SCREE_MOST_ABOUT + 2))
-    return scree_fail_memory(d->error, (SCREE_MOST_ABOUT + 2) * sizeof *moves->items, "moves");
-  return scree_record_allocate(&t->d.record, 1, d->error);
+    return scree_fail_memory(error, (SCREE_MOST_ABOUT + 2) * sizeof *moves->items, "moves");
+  return scree_record_allocate(&t->d.record, 1, error);
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }

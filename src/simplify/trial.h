@@ -12,7 +12,7 @@ typedef struct scree_trial {
 
 /* Room for copies of the surface as it is, and a record of one collapse. Free it whatever the
  * outcome. */
-scree_status scree_trial_allocate(scree_trial *trial, const scree_decimator *d);
+scree_status scree_trial_allocate(scree_trial *trial, const scree_decimator *d, scree_error *error);
 void scree_trial_free(scree_trial *trial);
 
 /* Makes it a copy of the step's surface, with an empty record. */
