@@ -337,15 +337,20 @@ done:
 /* The level, unless one of as many triangles is there that is as good. */
 static scree_status tell(scree_settling *q, const scree_settled *l) {
   scree_whole_levels *levels = q->whole;
-  scree_whole_level made, *last = levels->count > 0 ? &levels->items[levels->count - 1] : NULL;
-  bool same = last && last->triangle_count == l->trial.d.s.live_triangle_count;
+  scree_whole_level made;
+  size_t last = levels->count - 1;
+  bool same =
+      levels->count > 0 && levels->items[last].triangle_count == l->trial.d.s.live_triangle_count;
   if (same && !(l->score < (1 - SCREE_SAME_SCORE) * q->score)) return SCREE_OK;
-  if (!SCREE_RESERVE(levels, levels->count + 1))
-    return scree_fail_memory(q->error, (levels->count + 1) * sizeof made, "the record");
   scree_status status = make_whole(l, &made, q->error);
   if (status != SCREE_OK) return status;
-  if (same) scree_whole_level_free(&levels->items[--levels->count]);
-  levels->items[levels->count++] = made;
+  if (same) {
+    scree_whole_level_free(&levels->items[last]);
+    levels->items[last] = made;
+  } else if (!SCREE_PUSH(levels, made)) {
+    scree_whole_level_free(&made);
+    return scree_fail_memory(q->error, (levels->count + 1) * sizeof made, "the record");
+  }
   q->score = l->score;
   return SCREE_OK;
 }
