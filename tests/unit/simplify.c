@@ -323,6 +323,42 @@ static void limits_stop_the_run(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* The level of a run that stops there is that of one that goes on, whole or told by collapses; of
+ * a closed body, and of one beside a sheet, where one triangle may go at a time. */
+static void a_stop_changes_no_level(void **state) {
+  (void)state;
+  static const size_t stops[] = {1001, 700, 202, 201, 200, 101, 40};
+  scree_mesh ball = bumpy_sphere(3, 1), sheet = shape_sheet(0, 12), bodies[2];
+  shape_move(&sheet, (vec3){0, 0, 5});
+  bodies[0] = ball;
+  bodies[1] = shape_join(&ball, &sheet);
+  for (int k = 0; k < 2; k++) {
+    scree_simplify_options options = scree_default_simplify_options();
+    scree_curve *whole, *part;
+    scree_error error;
+    CHECK_OK(scree_curve_build(&bodies[k], &options, NULL, &whole, &error), error);
+    for (size_t i = 0; i < sizeof stops / sizeof *stops; i++) {
+      scree_mesh a, b;
+      options.stop_count = stops[i];
+      CHECK_OK(scree_curve_build(&bodies[k], &options, NULL, &part, &error), error);
+      size_t last = scree_curve_level_count(part) - 1;
+      assert_int_equal(last, scree_curve_find(whole, stops[i]));
+      CHECK_OK(scree_curve_mesh(whole, last, &a, &error), error);
+      CHECK_OK(scree_curve_mesh(part, last, &b, &error), error);
+      assert_int_equal(a.triangle_count, b.triangle_count);
+      assert_int_equal(a.vertex_count, b.vertex_count);
+      assert_memory_equal(a.triangles, b.triangles, 3 * a.triangle_count * sizeof *a.triangles);
+      assert_memory_equal(a.positions, b.positions, 3 * a.vertex_count * sizeof *a.positions);
+      scree_mesh_free(&a);
+      scree_mesh_free(&b);
+      scree_curve_free(part);
+    }
+    scree_curve_free(whole);
+    scree_mesh_free(&bodies[k]);
+  }
+  scree_mesh_free(&sheet);
+}
+
 static scree_status build_and_rebuild(void *context, scree_error *error) {
   scree_simplify_options options = {.stop_count = ((scree_mesh *)context)->triangle_count / 2};
   scree_curve *curve = NULL;
@@ -408,6 +444,7 @@ int main(void) {
       cmocka_unit_test(numbers_change_rounding_only),
       cmocka_unit_test(any_mesh_is_taken),
       cmocka_unit_test(limits_stop_the_run),
+      cmocka_unit_test(a_stop_changes_no_level),
       cmocka_unit_test(failing_memory_is_told),
       cmocka_unit_test(progress_is_by_time),
       cmocka_unit_test(bad_input_is_refused_with_a_sentence),
