@@ -278,13 +278,17 @@ static int by_origin(const void *a, const void *b) {
   return (x->of > y->of) - (x->of < y->of);
 }
 
-/* The vertices of a level in the order of the mesh given, and the places of all in that order. */
+/* The vertices of a level in the order of the mesh given, and the places of all in that order. A
+ * vertex of the mesh that is several here, each of a fan of its own, is one again. */
 static size_t order_vertices(const scree_halfmesh *s, origin *origins, uint32_t *places) {
-  size_t count = 0;
+  size_t all = 0, count = 0;
   for (uint32_t v = 0; v < s->vertex_count; v++)
-    if (s->vertex[v].outgoing != SCREE_NONE) origins[count++] = (origin){s->vertex[v].origin, v};
-  qsort(origins, count, sizeof *origins, by_origin);
-  for (size_t i = 0; i < count; i++) places[origins[i].vertex] = (uint32_t)i;
+    if (s->vertex[v].outgoing != SCREE_NONE) origins[all++] = (origin){s->vertex[v].origin, v};
+  qsort(origins, all, sizeof *origins, by_origin);
+  for (size_t i = 0; i < all; i++) {
+    if (count == 0 || origins[i].of != origins[count - 1].of) origins[count++] = origins[i];
+    places[origins[i].vertex] = (uint32_t)(count - 1);
+  }
   return count;
 }
 

@@ -305,6 +305,51 @@ static void any_mesh_is_taken(void **state) {
   }
 }
 
+/* Two balls that share a vertex share it at every level. */
+static void a_shared_vertex_stays_one(void **state) {
+  (void)state;
+  scree_mesh a = shape_icosphere(1, 3), b = shape_icosphere(1, 3);
+  scree_error error;
+  double top = -INFINITY;
+  vec3 at = {0, 0, 0};
+  for (size_t v = 0; v < a.vertex_count; v++) {
+    vec3 x = vec3_load(a.positions + 3 * v);
+    if (x.z > top) at = x;
+    top = fmax(top, x.z);
+  }
+  for (size_t i = 0; i < 3 * b.vertex_count; i++) b.positions[i] = -b.positions[i];
+  for (size_t t = 0; t < b.triangle_count; t++) {
+    uint32_t *c = b.triangles + 3 * t, c0 = c[0];
+    c[0] = c[1];
+    c[1] = c0;
+  }
+  shape_move(&b, vec3_scale(at, 2)); /* its lowest vertex lies on the other's highest */
+  scree_mesh loose = shape_join(&a, &b), mesh = shape_weld(&loose, NULL);
+  assert_int_equal(mesh.vertex_count, a.vertex_count + b.vertex_count - 1);
+  for (int m = 0; m < 2; m++) {
+    scree_curve *curve = build(&mesh, methods[m]);
+    scree_replay *replay = NULL;
+    assert_int_equal(scree_curve_get_facts(curve).locked_vertex_count, 2);
+    CHECK_OK(scree_replay_start(curve, &replay, &error), error);
+    for (size_t i = 0; i < scree_curve_level_count(curve); i++) {
+      const scree_mesh *now;
+      scree_topology topology;
+      scree_level level;
+      CHECK_OK(scree_replay_step(replay, i, &now, &error), error);
+      CHECK_OK(scree_mesh_topology(now, &topology, &error), error);
+      scree_curve_level(curve, i, &level);
+      assert_int_equal(now->triangle_count, level.triangle_count);
+      assert_int_equal(topology.non_manifold_vertex_count, 1);
+    }
+    scree_replay_free(replay);
+    scree_curve_free(curve);
+  }
+  scree_mesh_free(&a);
+  scree_mesh_free(&b);
+  scree_mesh_free(&loose);
+  scree_mesh_free(&mesh);
+}
+
 static void limits_stop_the_run(void **state) {
   (void)state;
   scree_mesh mesh = bumpy_sphere(4, 1);
@@ -443,6 +488,7 @@ int main(void) {
       cmocka_unit_test(moving_scaling_turning_change_rounding_only),
       cmocka_unit_test(numbers_change_rounding_only),
       cmocka_unit_test(any_mesh_is_taken),
+      cmocka_unit_test(a_shared_vertex_stays_one),
       cmocka_unit_test(limits_stop_the_run),
       cmocka_unit_test(a_stop_changes_no_level),
       cmocka_unit_test(failing_memory_is_told),
