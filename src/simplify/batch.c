@@ -555,7 +555,7 @@ scree_status scree_decimate_in_batches(scree_decimator *d) {
   if (d->s.live_triangle_count > d->single_from) status = pass_allocate(&p);
   while (status == SCREE_OK && done > 0 && d->s.live_triangle_count > d->single_from &&
          d->s.live_triangle_count > d->options.stop_count)
-    status = scree_decimate_tick(d) ? run_pass(&p, &done) : SCREE_CANCELLED;
+    status = scree_decimate_tick(d, &d->ticker) ? run_pass(&p, &done) : SCREE_CANCELLED;
   pass_free(&p);
   return status;
 }

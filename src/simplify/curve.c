@@ -119,11 +119,11 @@ static double work_left(const scree_decimator *d, double count) {
                                                   : fine;
 }
 
-bool scree_decimate_tick(scree_decimator *d) {
+bool scree_decimate_tick(const scree_decimator *d, scree_ticker *ticker) {
   double all = work_left(d, (double)d->first_triangle_count);
   double end = work_left(d, (double)d->options.stop_count);
   double left = work_left(d, (double)d->s.live_triangle_count);
-  return scree_tick(&d->ticker, "decimating", all > end ? (all - left) / (all - end) : 0);
+  return scree_tick(ticker, "decimating", all > end ? (all - left) / (all - end) : 0);
 }
 
 void scree_curve_free(scree_curve *curve) {
@@ -147,13 +147,7 @@ static void measure_block(void *context, size_t begin, size_t end, size_t block,
   (void)worker;
   const measuring *m = context;
   scree_sum area = {0}, volume = {0};
-  for (size_t t = begin; t < end; t++) {
-    vec3 at[3];
-    scree_corners(m->s, t, at);
-    vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
-    scree_sum_add(&area, 0.5 * vec3_norm(n));
-    scree_sum_add(&volume, vec3_dot(at[0], n) / 6);
-  }
+  for (size_t t = begin; t < end; t++) scree_add_triangle(m->s, t, &area, &volume);
   m->blocks[block].area = area;
   m->blocks[block].volume = volume;
 }
@@ -217,12 +211,20 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
+size_t scree_record_above(const scree_decimator *d, size_t triangle_count) {
+  const scree_record *r = &d->record;
+  size_t count = d->first_triangle_count;
+  for (size_t i = 0; i < r->count; i++) {
+    count -= r->kept[i] & SCREE_ONE_TRIANGLE ? 1 : 2;
+    if (count <= triangle_count) return i;
+  }
+  return r->count;
+}
+
 /* Drops collapses beyond the first level that is low enough. */
 static void cut_at_stop(scree_decimator *d) {
-  size_t count = d->first_triangle_count, i = 0;
-  while (i < d->record.count && count > d->options.stop_count)
-    count -= d->record.kept[i++] & SCREE_ONE_TRIANGLE ? 1 : 2;
-  d->record.count = i;
+  size_t above = scree_record_above(d, d->options.stop_count);
+  if (above < d->record.count) d->record.count = above + 1;
 }
 
 /* Gives back what is worth copying the rest. */

@@ -93,6 +93,9 @@ scree_status scree_record_allocate(scree_record *record, size_t capacity, scree_
 
 void scree_record_free(scree_record *record);
 
+/* How many of its collapses leave more than so many triangles. */
+size_t scree_record_above(const scree_decimator *d, size_t triangle_count);
+
 /* What the items hold. */
 void scree_whole_level_free(scree_whole_level *level);
 
@@ -171,6 +174,7 @@ scree_status scree_decimate_in_batches(scree_decimator *d);
 /* One collapse after the other, always the cheapest, to the end. */
 scree_status scree_decimate_one_by_one(scree_decimator *d);
 
-bool scree_decimate_tick(scree_decimator *d);
+/* Tells the ticker how far it has come; false: cancelled. */
+bool scree_decimate_tick(const scree_decimator *d, scree_ticker *ticker);
 
 #endif

@@ -99,9 +99,8 @@ static scree_status begin(endings *w, const scree_rule *by, size_t count) {
     ending *e = &w->each[w->count++];
     e->worst = worst;
     e->d = d;
-    e->told = d->record.count;
     if (i > 0) status = copy(e, d);
-    if (i > 0) e->told = 0;
+    e->told = e->d->record.count;
     e->d->rule = &by[i];
   }
   return status;
@@ -157,9 +156,14 @@ static double score_of(const ending *e) {
   return scree_level_score(scree_memory_mean(m), sqrt(scree_memory_farthest(m, &e->d->s)));
 }
 
+/* How many levels of a count are settled. */
+static size_t settled_of(const scree_decimator *d) {
+  return scree_is_close_scan(d) ? SETTLED_OF_CLOSE : SETTLED;
+}
+
 /* Settles the best of the levels that have so many triangles; of equal ones the first. */
 static scree_status take_levels(endings *w) {
-  size_t most = scree_is_close_scan(w->d) ? SETTLED_OF_CLOSE : SETTLED;
+  size_t most = settled_of(w->d);
   double least = 0; /* the last score taken */
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < w->count; i++)
@@ -199,14 +203,9 @@ static bool all_over(const endings *w) {
 /* The record goes down to the levels that are told as a whole. */
 static void cut_record(scree_decimator *d, size_t whole_from) {
   scree_record *r = &d->record;
-  size_t count = d->first_triangle_count, i = 0;
-  for (; i < r->count; i++) {
-    size_t gone = r->kept[i] & SCREE_ONE_TRIANGLE ? 1 : 2;
-    if (count - gone <= whole_from) break;
-    count -= gone;
-  }
-  r->count = i;
-  while (r->moves.count > 0 && r->moves.items[r->moves.count - 1].index >= i) r->moves.count--;
+  scree_moves *moves = &r->moves;
+  r->count = scree_record_above(d, whole_from);
+  while (moves->count > 0 && moves->items[moves->count - 1].index >= r->count) moves->count--;
 }
 
 /* Whether the record has a level of no more than stop_count triangles. */
@@ -223,7 +222,7 @@ static scree_status run(endings *w, bool whole) {
   size_t stop = d->options.stop_count, from = scree_ahead_from(d);
   scree_ticker ticker = d->ticker;
   scree_status status = SCREE_OK;
-  d->ticker.progress = NULL; /* told from this thread */
+  d->ticker.progress = NULL; /* a way may be another thread's: it is told here */
   w->until = d->s.live_triangle_count;
   do {
     size_t next = (size_t)(TOLD_AT * (double)w->until);
@@ -231,11 +230,9 @@ static scree_status run(endings *w, bool whole) {
     w->until = w->until > stop && stop > from && next < stop ? stop : next;
     status = advance_all(w);
     if (status == SCREE_OK && whole && w->until <= from) status = take_levels(w);
-    d->ticker.progress = ticker.progress;
-    if (status == SCREE_OK && !scree_decimate_tick(d)) status = SCREE_CANCELLED;
-    d->ticker.progress = NULL;
+    if (status == SCREE_OK && !scree_decimate_tick(d, &ticker)) status = SCREE_CANCELLED;
   } while (status == SCREE_OK && !is_low_enough(w, whole) && !all_over(w));
-  d->ticker.progress = ticker.progress;
+  d->ticker = ticker;
   if (status == SCREE_OK && whole) status = scree_settle_end(&w->settling);
   if (status == SCREE_OK && whole) cut_record(d, from);
   return status;
@@ -246,7 +243,7 @@ scree_status scree_decimate_endings(scree_decimator *d, const scree_rule *by, si
   if (!w) return scree_fail_memory(d->error, sizeof *w, "the last levels");
   w->d = d;
   w->record_count = d->record.count;
-  scree_settle_begin(&w->settling, &d->record.whole, count > 1, d->error);
+  scree_settle_begin(&w->settling, &d->record.whole, settled_of(d) > 1, d->error);
   const scree_rule *usual = d->rule;
   scree_status status = begin(w, by, count);
   if (status == SCREE_OK) status = run(w, d->unsettled == SCREE_UNSETTLED_NONE);

@@ -574,7 +574,8 @@ scree_status scree_greedy_run(scree_greedy *q, size_t until, scree_ahead *ahead)
       if (q->heap_count == 0) break;
     }
     bool coarse = d->s.live_triangle_count < TICK_EACH; /* each takes long there */
-    if ((coarse || q->since_tick++ % 1024 == 0) && !scree_decimate_tick(d)) return SCREE_CANCELLED;
+    if ((coarse || q->since_tick++ % 1024 == 0) && !scree_decimate_tick(d, &d->ticker))
+      return SCREE_CANCELLED;
     status = ahead ? collapse_best(q, ahead) : collapse_cheapest(q);
   }
   return status;

@@ -11,6 +11,7 @@
 #define SCREE_SIMPLIFY_HALFMESH_H
 
 #include "base/alloc.h"
+#include "base/sum.h"
 #include "base/vec.h"
 
 #define SCREE_NONE UINT32_MAX
@@ -94,6 +95,16 @@ static inline bool scree_is_gone(const scree_halfmesh *s, size_t triangle) {
 }
 static inline void scree_corners(const scree_halfmesh *s, size_t triangle, vec3 at[3]) {
   for (size_t i = 0; i < 3; i++) at[i] = s->vertex[s->half[3 * triangle + i].from].at;
+}
+
+/* Adds the triangle's area, and its part of the volume about the box's middle. */
+static inline void scree_add_triangle(const scree_halfmesh *s, size_t triangle, scree_sum *area,
+                                      scree_sum *volume) {
+  vec3 at[3];
+  scree_corners(s, triangle, at);
+  vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
+  scree_sum_add(area, 0.5 * vec3_norm(n));
+  scree_sum_add(volume, vec3_dot(at[0], n) / 6);
 }
 
 /* Builds the surface of a mesh; what scree_curve_build says about bad meshes is checked here. */

@@ -665,7 +665,7 @@ scree_status scree_decimate_in_patches(scree_decimator *d, size_t patch) {
   bool little = false;
   while (status == SCREE_OK && !little && goes_on(d)) {
     size_t before = d->s.live_triangle_count, done;
-    status = scree_decimate_tick(d) ? run_pass(&p, &done) : SCREE_CANCELLED;
+    status = scree_decimate_tick(d, &d->ticker) ? run_pass(&p, &done) : SCREE_CANCELLED;
     if (status != SCREE_OK) break;
     double share = 2 * (double)done / (double)before;
     if (!p.own_place && share < TOO_LITTLE)

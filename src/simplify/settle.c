@@ -6,7 +6,6 @@
 
 #include "base/array.h"
 #include "base/parallel.h"
-#include "base/sum.h"
 #include "simplify/ahead.h"
 
 #include <stdlib.h>
@@ -300,12 +299,8 @@ static void fill_whole(const scree_halfmesh *s, const origin *origins, const uin
     w->position[i] = vec3_mad(s->centre, s->vertex[origins[i].vertex].at, s->scale);
   }
   for (size_t t = 0, n = 0; t < s->triangle_count; t++) {
-    vec3 at[3];
     if (scree_is_gone(s, t)) continue;
-    scree_corners(s, t, at);
-    vec3 normal = vec3_triangle_normal(at[0], at[1], at[2]);
-    scree_sum_add(&area, 0.5 * vec3_norm(normal));
-    scree_sum_add(&volume, vec3_dot(at[0], normal) / 6);
+    scree_add_triangle(s, t, &area, &volume);
     for (size_t k = 0; k < 3; k++) w->triangle[n][k] = places[s->half[3 * t + k].from];
     n++;
   }

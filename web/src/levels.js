@@ -1,7 +1,7 @@
 // The file of levels of one object (docs/formats.md): the scan, a fine level, the collapses from it down, and the
-// coarsest levels as they are. Positions are integers on a grid: metres = low + step * integer. A level is rebuilt from the fine one
-// for every position of the slider: vertices follow their chain of collapses, triangles whose corners fall
-// together are dropped.
+// coarsest levels as they are. Positions are integers on a grid: metres = low + step * integer. A level that
+// collapses lead to is rebuilt from the fine one for every position of the slider: vertices follow their chain of
+// collapses, triangles whose corners fall together are dropped.
 import { Reader, decodeMesh, decodeVertices } from './packed.js';
 
 const measureNames = ['triangle_count', 'area', 'volume', 'length', 'width', 'height', 'moment_1', 'moment_2', 'moment_3', 'sphericity', 'convexity'];
