@@ -381,7 +381,7 @@ static void update(scree_greedy *q) {
   evaluate_waiting(q);
 }
 
-/* Makes the cost whole, or not less than `most` if it is not. */
+/* Makes the cost whole, or at least `most` and not above the whole one if it is not. */
 static void add_stray(const scree_greedy *q, const scree_ring *ring, scree_candidate *c,
                       double most, scree_hints *hints) {
   if (!(c->stray > 0) || !(c->cost < most)) return;
@@ -395,17 +395,9 @@ static void add_stray(const scree_greedy *q, const scree_ring *ring, scree_candi
   c->cost += (c->stray + q->toll * stray2) * stray2 * stray2;
 }
 
-/* Other place k with its whole cost, if that is below `most`; else some cost that is not. */
-static scree_candidate other_place(const scree_greedy *q, const scree_ring *ring, int k,
-                                   double most, scree_hints *hints) {
-  scree_candidate c;
-  q->d->coster->fall_back(&q->d->s, ring->half_edge, k, &c);
-  add_stray(q, ring, &c, most, hints);
-  return c;
-}
-
-/* Finds the first choice of an edge: its whole cost, or LOOKED_UP_TO times that at which the edge
- * waits, if it is more: most edges are evaluated anew before their turn comes at that. */
+/* Finds the first choice of an edge: its whole cost, or what is known to be no more than that,
+ * where it is beyond LOOKED_UP_TO times the cost at which the edge waits: most edges are evaluated
+ * anew before their turn comes at that. */
 static void find_first_choice(const scree_greedy *q, choice *made) {
   const scree_halfmesh *s = &q->d->s;
   uint32_t h = made->half_edge, edges[SCREE_RING_MAX];
@@ -421,15 +413,14 @@ static void find_first_choice(const scree_greedy *q, choice *made) {
   q->d->coster->evaluate(s, &h, 1, best);
   add_stray(q, &ring, best, most, &hints);
   for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
-    scree_candidate c = other_place(q, &ring, k, fmin(best->cost, most), &hints);
+    scree_candidate c;
+    q->d->coster->fall_back(s, h, k, &c);
+    add_stray(q, &ring, &c, fmin(best->cost, most), &hints);
     if (!(c.cost < best->cost)) continue;
     *best = c;
     made->stage = (uint8_t)(OTHER + k);
   }
-  if (!(best->cost < most)) {
-    best->cost = most;
-    made->stage = IN_PART;
-  }
+  if (!(best->cost < most)) made->stage = IN_PART;
 }
 
 static void find_block(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -484,8 +475,11 @@ static scree_status try_fallbacks(scree_greedy *q, scree_ring *ring) {
   for (int k = 0; k < SCREE_FALLBACK_COUNT && status == SCREE_OK; k++) {
     scree_change change;
     scree_around around;
-    scree_candidate c = other_place(q, ring, k, best.cost, &hints);
+    scree_candidate c;
+    q->d->coster->fall_back(&q->d->s, h, k, &c);
     change.target = c.target;
+    if (!scree_step_shapes(&q->step, ring, &change, &around)) continue; /* the stray is dearer */
+    add_stray(q, ring, &c, best.cost, &hints);
     if (!(c.cost < best.cost) || !scree_step_allows(&q->step, ring, &change, &around, &status))
       continue;
     best = c;

@@ -38,9 +38,8 @@ static scree_status prepare_grid(scree_decimator *d) {
   return SCREE_OK;
 }
 
-/* What holds of the new triangles each, and of where the vertex lies. */
-static bool suits(const scree_step *q, scree_ring *ring, scree_change *change,
-                  scree_around *around) {
+bool scree_step_shapes(const scree_step *q, scree_ring *ring, scree_change *change,
+                       scree_around *around) {
   const scree_decimator *d = q->d;
   size_t after = d->s.live_triangle_count - (ring->c != SCREE_NONE) - (ring->d != SCREE_NONE);
   bool coarse = !d->coster->merge && d->s.live_triangle_count < SCREE_TURNED_COUNT;
@@ -51,14 +50,14 @@ static bool suits(const scree_step *q, scree_ring *ring, scree_change *change,
 
 bool scree_step_suits(const scree_step *q, scree_ring *fan, scree_change *change,
                       scree_around *around) {
-  return suits(q, fan, change, around) &&
+  return scree_step_shapes(q, fan, change, around) &&
          scree_anchors_stay(&q->d->anchors, &q->d->s, fan, change->target);
 }
 
 bool scree_step_allows(scree_step *q, scree_ring *ring, scree_change *change, scree_around *around,
                        scree_status *status) {
   scree_decimator *d = q->d;
-  if (!suits(q, ring, change, around)) return false;
+  if (!scree_step_shapes(q, ring, change, around)) return false;
   *status = prepare_grid(d);
   if (*status != SCREE_OK) return false;
   return (d->s.closed && !d->grid.few && scree_grid_certifies(&d->grid, ring, around)) ||

@@ -22,7 +22,11 @@ typedef struct scree_step {
  * failed memory. */
 bool scree_step_allows(scree_step *step, scree_ring *ring, scree_change *change,
                        scree_around *around, scree_status *status);
-/* The same, but for whether the surface would meet itself, of a fan. */
+/* A part of that, found in less time: what holds of the new triangles each, and of where the vertex
+ * lies. */
+bool scree_step_shapes(const scree_step *step, scree_ring *ring, scree_change *change,
+                       scree_around *around);
+/* The same as scree_step_allows, but for whether the surface would meet itself, of a fan. */
 bool scree_step_suits(const scree_step *step, scree_ring *fan, scree_change *change,
                       scree_around *around);
 

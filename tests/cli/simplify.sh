@@ -48,7 +48,7 @@ run curve lone.off --no-repair 2>&1
 run curve hole.off --no-repair --unchecked 2>&1 | sed -n 2p
 run render hole.off --levels 1 -o levels.png 2>&1
 # the line of progress is gone when something else is printed, and keeps to a narrow terminal
-"$SCREE" sample icosphere-7 -o fine.ply >/dev/null
+"$SCREE" sample icosphere-6 -o fine.ply >/dev/null
 for words in "simplify fine.ply -n 100 -o none.off" "curve fine.ply --from 1e-2 --to 1e-2"; do
   "$SCREE" $words --progress 2>&1 | tr '\r' '\n' | grep -c 'left *[^ ]'
 done
