@@ -395,6 +395,24 @@ static void add_stray(const scree_greedy *q, const scree_ring *ring, scree_candi
   c->cost += (c->stray + q->toll * stray2) * stray2 * stray2;
 }
 
+/* Whether the new triangles would be sound with the vertex at the best place or at some other:
+ * where they are at none, no cost and no later level makes the edge collapse before something
+ * changes around it. */
+static bool has_place(const scree_greedy *q, scree_ring *ring, const scree_candidate *best) {
+  const scree_decimator *d = q->d;
+  double least_turn = fmin(SCREE_LEAST_TURN, scree_rule_of(d).least_turn);
+  scree_change change = {.target = best->target};
+  scree_around around;
+  if (scree_collapse_check(&d->s, ring, least_turn, &change, &around)) return true;
+  for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
+    scree_candidate c;
+    d->coster->fall_back(&d->s, ring->half_edge, k, &c);
+    change.target = c.target;
+    if (scree_collapse_check(&d->s, ring, least_turn, &change, &around)) return true;
+  }
+  return false;
+}
+
 /* Finds the first choice of an edge: its whole cost, or what is known to be no more than that,
  * where it is beyond LOOKED_UP_TO times the cost at which the edge waits: most edges are evaluated
  * anew before their turn comes at that. */
@@ -411,6 +429,8 @@ static void find_first_choice(const scree_greedy *q, choice *made) {
   scree_hints hints;
   scree_no_hints(&hints);
   q->d->coster->evaluate(s, &h, 1, best);
+  made->possible = has_place(q, &ring, best);
+  if (!made->possible) return;
   add_stray(q, &ring, best, most, &hints);
   for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
     scree_candidate c;
