@@ -321,17 +321,31 @@ static bool flats_do_not_grow(const scree_halfmesh *s, const scree_ring *r, vec3
   return after <= before;
 }
 
+/* All but the folds. */
+static bool check_ring(const scree_halfmesh *s, scree_ring *ring, vec3 x, double least_turn,
+                       tally *sum, scree_around *around) {
+  *sum = (tally){.shape_before = 1, .shape_after = 1};
+  around->steep = false;
+  if (!check_triangles(s, ring, x, least_turn, sum, around)) return false;
+  take_gone(s, ring, x, sum);
+  if (!(sum->shape_after >= SLIVER * SLIVER || sum->shape_after >= sum->shape_before)) return false;
+  return !(sum->shape_after < FLAT * FLAT) || flats_do_not_grow(s, ring, x);
+}
+
 bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, double least_turn,
                           scree_change *change, scree_around *around) {
-  tally sum = {.shape_before = 1, .shape_after = 1};
-  around->steep = false;
-  if (!check_triangles(s, ring, change->target, least_turn, &sum, around)) return false;
-  take_gone(s, ring, change->target, &sum);
+  tally sum;
+  if (!check_ring(s, ring, change->target, least_turn, &sum, around)) return false;
   change->area = 0.5 * sum.area;
   change->volume = sum.volume / 6;
-  if (!(sum.shape_after >= SLIVER * SLIVER || sum.shape_after >= sum.shape_before)) return false;
-  if (sum.shape_after < FLAT * FLAT && !flats_do_not_grow(s, ring, change->target)) return false;
   return folds_do_not_grow(s, ring, around, &sum);
+}
+
+bool scree_collapse_suits_ring(const scree_halfmesh *s, scree_ring *ring, double least_turn,
+                               vec3 target) {
+  tally sum;
+  scree_around around;
+  return check_ring(s, ring, target, least_turn, &sum, &around);
 }
 
 /* Joins the neighbours across the two other sides of the triangle of h, which goes. The apex may

@@ -82,6 +82,11 @@ typedef struct scree_around {
 bool scree_collapse_check(const scree_halfmesh *s, scree_ring *ring, double least_turn,
                           scree_change *change, scree_around *around);
 
+/* Of this what asks about the ring's triangles and the edge's own, and not about those beyond: the
+ * answer stays while no vertex of the ring moves or goes. */
+bool scree_collapse_suits_ring(const scree_halfmesh *s, scree_ring *ring, double least_turn,
+                               vec3 target);
+
 /* Collapses: a moves to target, b goes, with the triangles at the edge. Touches only triangles of
  * the two fans and the outgoing half-edges of a, b, c and d. */
 void scree_collapse_apply(scree_halfmesh *s, const scree_ring *ring, vec3 target);

@@ -395,21 +395,14 @@ static void add_stray(const scree_greedy *q, const scree_ring *ring, scree_candi
   c->cost += (c->stray + q->toll * stray2) * stray2 * stray2;
 }
 
-/* Whether the new triangles would be sound with the vertex at the best place or at some other:
- * where they are at none, no cost and no later level makes the edge collapse before something
- * changes around it. */
-static bool has_place(const scree_greedy *q, scree_ring *ring, const scree_candidate *best) {
-  const scree_decimator *d = q->d;
-  double least_turn = fmin(SCREE_LEAST_TURN, scree_rule_of(d).least_turn);
-  scree_change change = {.target = best->target};
-  scree_around around;
-  if (scree_collapse_check(&d->s, ring, least_turn, &change, &around)) return true;
-  for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
-    scree_candidate c;
-    d->coster->fall_back(&d->s, ring->half_edge, k, &c);
-    change.target = c.target;
-    if (scree_collapse_check(&d->s, ring, least_turn, &change, &around)) return true;
-  }
+/* The places that an edge's vertex may get: the best and the few others. */
+enum { PLACES = 1 + SCREE_FALLBACK_COUNT };
+
+/* Whether the new triangles may be sound at some of them. */
+static bool may_collapse(const scree_greedy *q, scree_ring *ring, const scree_candidate *places) {
+  for (int k = 0; k < PLACES; k++)
+    if (places[k].cost < INFINITY && scree_step_may_be_sound(&q->step, ring, places[k].target))
+      return true;
   return false;
 }
 
@@ -425,19 +418,21 @@ static void find_first_choice(const scree_greedy *q, choice *made) {
   if (!made->possible) return;
   /* a share of nothing would be no more */
   double most = q->cost[h] > DBL_MIN ? LOOKED_UP_TO * q->cost[h] : INFINITY;
-  made->stage = WHOLE;
+  scree_candidate places[PLACES];
+  q->d->coster->evaluate(s, &h, 1, &places[0]);
+  for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) q->d->coster->fall_back(s, h, k, &places[1 + k]);
+  made->possible = may_collapse(q, &ring, places);
+  if (!made->possible) return;
   scree_hints hints;
   scree_no_hints(&hints);
-  q->d->coster->evaluate(s, &h, 1, best);
-  made->possible = has_place(q, &ring, best);
-  if (!made->possible) return;
+  made->stage = WHOLE;
+  *best = places[0];
   add_stray(q, &ring, best, most, &hints);
   for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) {
-    scree_candidate c;
-    q->d->coster->fall_back(s, h, k, &c);
-    add_stray(q, &ring, &c, fmin(best->cost, most), &hints);
-    if (!(c.cost < best->cost)) continue;
-    *best = c;
+    scree_candidate *c = &places[1 + k];
+    add_stray(q, &ring, c, fmin(best->cost, most), &hints);
+    if (!(c->cost < best->cost)) continue;
+    *best = *c;
     made->stage = (uint8_t)(OTHER + k);
   }
   if (!(best->cost < most)) made->stage = IN_PART;
@@ -498,9 +493,9 @@ static scree_status try_fallbacks(scree_greedy *q, scree_ring *ring) {
     scree_candidate c;
     q->d->coster->fall_back(&q->d->s, h, k, &c);
     change.target = c.target;
-    if (!scree_step_shapes(&q->step, ring, &change, &around)) continue; /* the stray is dearer */
-    add_stray(q, ring, &c, best.cost, &hints);
-    if (!(c.cost < best.cost) || !scree_step_allows(&q->step, ring, &change, &around, &status))
+    if (!(c.cost < best.cost) || !scree_step_is_sound(&q->step, ring, &change, &around)) continue;
+    add_stray(q, ring, &c, best.cost, &hints); /* the dearest part */
+    if (!(c.cost < best.cost) || !scree_step_is_clear(&q->step, ring, &change, &around, &status))
       continue;
     best = c;
     q->stage[h] = (uint8_t)(FALLBACK + k);

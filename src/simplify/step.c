@@ -38,8 +38,8 @@ static scree_status prepare_grid(scree_decimator *d) {
   return SCREE_OK;
 }
 
-bool scree_step_shapes(const scree_step *q, scree_ring *ring, scree_change *change,
-                       scree_around *around) {
+bool scree_step_is_sound(const scree_step *q, scree_ring *ring, scree_change *change,
+                         scree_around *around) {
   const scree_decimator *d = q->d;
   size_t after = d->s.live_triangle_count - (ring->c != SCREE_NONE) - (ring->d != SCREE_NONE);
   bool coarse = !d->coster->merge && d->s.live_triangle_count < SCREE_TURNED_COUNT;
@@ -50,19 +50,29 @@ bool scree_step_shapes(const scree_step *q, scree_ring *ring, scree_change *chan
 
 bool scree_step_suits(const scree_step *q, scree_ring *fan, scree_change *change,
                       scree_around *around) {
-  return scree_step_shapes(q, fan, change, around) &&
+  return scree_step_is_sound(q, fan, change, around) &&
          scree_anchors_stay(&q->d->anchors, &q->d->s, fan, change->target);
 }
 
-bool scree_step_allows(scree_step *q, scree_ring *ring, scree_change *change, scree_around *around,
-                       scree_status *status) {
+bool scree_step_may_be_sound(const scree_step *q, scree_ring *ring, vec3 target) {
+  double least_turn = fmin(SCREE_LEAST_TURN, scree_rule_of(q->d).least_turn);
+  return scree_collapse_suits_ring(&q->d->s, ring, least_turn, target);
+}
+
+bool scree_step_is_clear(scree_step *q, const scree_ring *ring, const scree_change *change,
+                         const scree_around *around, scree_status *status) {
   scree_decimator *d = q->d;
-  if (!scree_step_shapes(q, ring, change, around)) return false;
   *status = prepare_grid(d);
   if (*status != SCREE_OK) return false;
   return (d->s.closed && !d->grid.few && scree_grid_certifies(&d->grid, ring, around)) ||
          (scree_grid_clear(&d->grid, &d->s, ring, change->target, NULL) &&
           scree_anchors_stay(&d->anchors, &d->s, ring, change->target));
+}
+
+bool scree_step_allows(scree_step *q, scree_ring *ring, scree_change *change, scree_around *around,
+                       scree_status *status) {
+  return scree_step_is_sound(q, ring, change, around) &&
+         scree_step_is_clear(q, ring, change, around, status);
 }
 
 static void touch(scree_step *q, uint32_t v) {

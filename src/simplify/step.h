@@ -22,10 +22,15 @@ typedef struct scree_step {
  * failed memory. */
 bool scree_step_allows(scree_step *step, scree_ring *ring, scree_change *change,
                        scree_around *around, scree_status *status);
-/* A part of that, found in less time: what holds of the new triangles each, and of where the vertex
- * lies. */
-bool scree_step_shapes(const scree_step *step, scree_ring *ring, scree_change *change,
-                       scree_around *around);
+/* The two parts of that, the first of which takes less time: what holds of the new triangles each
+ * and of where the vertex lies, then whether the surface would meet itself. */
+bool scree_step_is_sound(const scree_step *step, scree_ring *ring, scree_change *change,
+                         scree_around *around);
+bool scree_step_is_clear(scree_step *step, const scree_ring *ring, const scree_change *change,
+                         const scree_around *around, scree_status *status);
+/* False: it is not sound, nor will be, whatever else goes, while no vertex of the ring moves or
+ * goes. */
+bool scree_step_may_be_sound(const scree_step *step, scree_ring *ring, vec3 target);
 /* The same as scree_step_allows, but for whether the surface would meet itself, of a fan. */
 bool scree_step_suits(const scree_step *step, scree_ring *fan, scree_change *change,
                       scree_around *around);

@@ -154,10 +154,9 @@ static void batches_keep_every_promise(void **state) {
 
 /* So many cavities, and no other shell inside another or inside out. */
 static void check_cavities(const scree_mesh *mesh, size_t count) {
-  scree_check_options options = scree_default_check_options();
   scree_check check;
   scree_error error;
-  CHECK_OK(scree_mesh_check(mesh, &options, NULL, &check, &error), error);
+  CHECK_OK(scree_mesh_check(mesh, NULL, NULL, &check, &error), error);
   assert_int_equal(check.defects[SCREE_DEFECT_CAVITY], count);
   assert_int_equal(check.defects[SCREE_DEFECT_INSIDE_OUT_SHELL], 0);
   assert_int_equal(check.defects[SCREE_DEFECT_NESTED_SHELL], 0);
