@@ -8,6 +8,12 @@
 
 #include <string.h>
 
+/* The power of the farthest place's distance in a level's score. More brings that place nearer and
+ * leaves the mean distance larger, for which the levels of close scans have room. */
+#define POWER          (1.0 / 3)
+#define POWER_OF_CLOSE 0.5
+#define POWER_OF_LARGE 0.28
+
 /* Squared distances are known above this share of the level's farthest; when the farthest has come
  * nearer than the second, or farther than the third times what is known, all are found anew. */
 #define KNOWN_ABOVE 0.25
@@ -70,8 +76,11 @@ void scree_ahead_free(scree_ahead *a) {
   scree_free(a->of_edge2);
 }
 
-double scree_level_score(double mean, double farthest) {
-  return fmax(mean, SCREE_SAME_DISTANCE) * cbrt(fmax(farthest, SCREE_SAME_DISTANCE));
+double scree_level_score(const scree_decimator *d, double mean, double farthest) {
+  double power = scree_is_large(d)        ? POWER_OF_LARGE
+                 : scree_is_close_scan(d) ? POWER_OF_CLOSE
+                                          : POWER;
+  return fmax(mean, SCREE_SAME_DISTANCE) * pow(fmax(farthest, SCREE_SAME_DISTANCE), power);
 }
 
 /* The largest squared distance of a place of the trial's level. */
@@ -107,7 +116,7 @@ static void try_block(void *context, size_t begin, size_t end, size_t block, int
       o->moved[v] = vec3_norm2(vec3_sub(after[v].at, before[v].at)) > 0;
     o->moved[offer->ring.a] = true;
     o->farthest2 = farthest2_of(a, o);
-    o->score = scree_level_score(scree_memory_mean(&t->d.memory), sqrt(o->farthest2));
+    o->score = scree_level_score(&t->d, scree_memory_mean(&t->d.memory), sqrt(o->farthest2));
   }
 }
 
@@ -119,7 +128,7 @@ static void judge_block(void *context, size_t begin, size_t end, size_t block, i
     const scree_offer *offer = &a->offers[i];
     double worst2, growth = scree_memory_growth(&d->memory, &d->s, &offer->ring,
                                                 offer->change.target, a->from->farthest2, &worst2);
-    a->scores[i] = scree_level_score(a->mean + growth / d->memory.weight, sqrt(worst2));
+    a->scores[i] = scree_level_score(d, a->mean + growth / d->memory.weight, sqrt(worst2));
   }
 }
 

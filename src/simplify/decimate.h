@@ -150,9 +150,10 @@ enum { SCREE_PATH_COUNT = 3000, SCREE_PATH_LATE = 1700 };
 enum { SCREE_TURNED_COUNT = 1000 };
 
 /* Witnesses for a triangle above which they are thinned, and how many are kept however few
- * triangles there are: places found by few fit these rather than the scan. Of large scans fewer for
- * a triangle, until the surface settles, for it takes time. */
-enum { SCREE_CROWD = 48, SCREE_CROWD_OF_LARGE = 24, SCREE_LEAST_WITNESSES = 4000 };
+ * triangles there are: places found by few fit these rather than the scan. Of close scans more of
+ * the latter; of large scans fewer for a triangle, until the surface settles, for it takes time. */
+enum { SCREE_CROWD = 48, SCREE_CROWD_OF_LARGE = 24 };
+enum { SCREE_LEAST_WITNESSES = 4000, SCREE_LEAST_OF_CLOSE = 10000 };
 
 /* Of large scans, how many are spread for the levels that look ahead (keep.c), and for a triangle:
  * fewer from about half of these levels on. */

@@ -153,7 +153,7 @@ static void advance_block(void *context, size_t begin, size_t end, size_t block,
 static double score_of(const ending *e) {
   const scree_memory *m = &e->d->memory;
   if (e->ahead.best) return e->ahead.best->score;
-  return scree_level_score(scree_memory_mean(m), sqrt(scree_memory_farthest(m, &e->d->s)));
+  return scree_level_score(e->d, scree_memory_mean(m), sqrt(scree_memory_farthest(m, &e->d->s)));
 }
 
 /* How many levels of a count are settled. */
@@ -233,6 +233,9 @@ static scree_status run(endings *w, bool whole) {
     if (status == SCREE_OK && !scree_decimate_tick(d, &ticker)) status = SCREE_CANCELLED;
   } while (status == SCREE_OK && !is_low_enough(w, whole) && !all_over(w));
   d->ticker = ticker;
+  ending *usual = &w->each[0];
+  if (status == SCREE_OK && !usual->careful && !usual->over)
+    status = scree_greedy_end(usual->greedy);
   if (status == SCREE_OK && whole) status = scree_settle_end(&w->settling);
   if (status == SCREE_OK && whole) cut_record(d, from);
   return status;
@@ -253,12 +256,13 @@ scree_status scree_decimate_endings(scree_decimator *d, const scree_rule *by, si
   return status;
 }
 
-/* Without a look ahead, by the usual rule. */
-static scree_status go_down(scree_decimator *d, size_t until) {
+/* Without a look ahead, by the usual rule; to the last level, or to where ways part. */
+static scree_status go_down(scree_decimator *d, size_t until, bool last) {
   scree_greedy *greedy = NULL;
   bool settles = !d->coster->merge && d->unsettled != SCREE_UNSETTLED_ALL;
   scree_status status = scree_greedy_begin(d, settles, &greedy);
   if (status == SCREE_OK) status = scree_greedy_run(greedy, until, NULL);
+  if (status == SCREE_OK && last) status = scree_greedy_end(greedy);
   scree_greedy_free(greedy);
   return status;
 }
@@ -268,8 +272,9 @@ scree_status scree_decimate_one_by_one(scree_decimator *d) {
   scree_status status = scree_decimate_sum(d);
   if (status != SCREE_OK) return status;
   if (!d->coster->merge) parting = scree_is_large(d) ? SCREE_PARTING_LATE : SCREE_PARTING_COUNT;
-  if (parting < stop) parting = stop;
-  if (d->s.live_triangle_count > parting) status = go_down(d, parting);
+  bool last = parting < stop;
+  if (last) parting = stop;
+  if (d->s.live_triangle_count > parting) status = go_down(d, parting, last);
   if (status != SCREE_OK || d->coster->merge || d->s.live_triangle_count <= stop ||
       d->s.live_triangle_count > parting)
     return status;

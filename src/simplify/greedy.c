@@ -52,8 +52,10 @@
  * found anew. */
 #define TOLL_RANK   0.1
 #define RENEW_BELOW 0.7
-/* ... and where the surface settles then. */
-#define SETTLE_BELOW 0.9
+/* ... and where the surface settles then: at Rp = 10^(-n / 18), which are the levels of the usual
+ * grid, nine a decade, and one between each two. */
+#define SETTLE_EACH 0.8799225435691069
+#define ROUNDING    1e-9
 
 /* Of the toll of close scans: while they are held close, and below so many triangles. */
 #define CLOSE_TOLL 8.0
@@ -283,10 +285,14 @@ static scree_status settle(scree_greedy *q) {
 
 /* At how many triangles edges are entered anew. */
 static size_t next_renewal(const scree_greedy *q) {
-  double count = (double)q->d->s.live_triangle_count, from = (double)settles_below(q->d);
-  double at = RENEW_BELOW * count;
-  if (q->settles && at < from) at = fmax(at, fmin(SETTLE_BELOW * count, from - 1));
-  return (size_t)at;
+  const scree_decimator *d = q->d;
+  size_t count = d->s.live_triangle_count, from = settles_below(d);
+  size_t at = (size_t)(RENEW_BELOW * (double)count);
+  double level = (double)d->first_triangle_count;
+  if (!q->settles || at >= from) return at;
+  while (level >= 1 && ((size_t)(level * (1 + ROUNDING)) >= count || level >= (double)from))
+    level *= SETTLE_EACH;
+  return (size_t)fmax((double)at, level * (1 + ROUNDING));
 }
 
 /* Witnesses for a triangle above which they are thinned. */
@@ -294,6 +300,10 @@ static size_t crowd(const scree_decimator *d) {
   if (!scree_is_large(d)) return SCREE_CROWD;
   if (looks_ahead(d)) return SCREE_CROWD_SPREAD;
   return d->s.live_triangle_count < SCREE_PATH_LATE ? SCREE_CROWD : SCREE_CROWD_OF_LARGE;
+}
+
+static size_t least_witnesses(const scree_decimator *d) {
+  return scree_is_close_scan(d) ? SCREE_LEAST_OF_CLOSE : SCREE_LEAST_WITNESSES;
 }
 
 /* Settles, enters all edges and finds the toll. */
@@ -309,7 +319,7 @@ static scree_status renew(scree_greedy *q) {
   for (size_t i = 0; i < q->heap_count; i++) q->sorted[i] = q->cost[q->heap[i]];
   qsort(q->sorted, q->heap_count, sizeof *q->sorted, by_value);
   double cost = q->sorted[(size_t)(TOLL_RANK * (double)q->heap_count)];
-  scree_memory_thin(&d->memory, &d->s, crowd(d), SCREE_LEAST_WITNESSES);
+  scree_memory_thin(&d->memory, &d->s, crowd(d), least_witnesses(d));
   double far = scree_memory_usual(&d->memory, scree_is_held_close(d));
   if (far > 0) far = fmax(far, scree_memory_worst(&d->memory));
   q->toll = far > 0 ? toll_factor(d) * cost / pow(far, 6) : 0;
@@ -588,6 +598,10 @@ scree_status scree_greedy_run(scree_greedy *q, size_t until, scree_ahead *ahead)
     status = ahead ? collapse_best(q, ahead) : collapse_cheapest(q);
   }
   return status;
+}
+
+scree_status scree_greedy_end(scree_greedy *q) {
+  return q->d->s.live_triangle_count <= q->renew_at && may_settle(q) ? settle(q) : SCREE_OK;
 }
 
 scree_status scree_greedy_begin(scree_decimator *d, bool settles, scree_greedy **made) {

@@ -13,6 +13,9 @@ void scree_greedy_free(scree_greedy *greedy);
 
 /* Down to so many triangles, or the floor; ahead may be NULL. */
 scree_status scree_greedy_run(scree_greedy *greedy, size_t until, scree_ahead *ahead);
+/* At the last level of a run that has a stop: where a run that goes on would settle before it does,
+ * the surface settles. */
+scree_status scree_greedy_end(scree_greedy *greedy);
 
 /* With which its collapses are done. */
 scree_step *scree_greedy_step(scree_greedy *greedy);

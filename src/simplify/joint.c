@@ -8,14 +8,17 @@
  * these were when the steps began, and W the sum of what the witnesses weigh in the mean, v_j, they
  * make the merit
  *
- *     2 / W sum_j v_j d_j + FAR_SHARE m / 4 sum_j (d_j / F)^8
+ *     2 / W sum_j v_j d_j + s m / 4 sum_j (d_j / F)^8
  *
  * less, whose second part is felt near the greatest only. Its gradient is that of the squares with
  *
- *     w_j = v_j / max(d_j, m / 10) + FAR_SHARE W m / F^2 (d_j / F)^6
+ *     w_j = v_j / max(d_j, m / 10) + s W m / F^2 (d_j / F)^6
  *
- * (iteratively reweighted least squares). Vertices and places on edges that are more than half as
- * far from the surface kept stand in the sums as well, with the second part alone.
+ * (iteratively reweighted least squares). s is FAR_SHARE over that last sum as the steps began: a
+ * change of the merit is then, over 2 m, one of the logarithm of the mean distance times the cube
+ * root of (sum_j d_j^8)^(1/8), which stands for the greatest, as in a level's score. Vertices and
+ * places on edges that are more than half as far, squared, from the surface kept stand in the sums
+ * as well, with the second part alone.
  *
  * With n_k the sum of the doubled area vectors of vertex k's fan the volume changes by
  * sum_k n_k.y_k / 6, to first order; it is kept as in relax.c, by one pressure for all. */
@@ -32,9 +35,9 @@
  * triangle's normal, as one above the inside does anyway: of next to nothing the direction is
  * rounding, which from step to step would grow until it decides. */
 #define NO_DISTANCE 0.05
-/* What all that lies as far off as the farthest place weighs, against all witnesses: more brings it
- * nearer, and leaves the mean distance larger. */
-#define FAR_SHARE 0.03
+/* What all that lies far off weighs, against all witnesses: more brings it nearer, and leaves the
+ * mean distance larger. A third is what the score gives it (scree_level_score). */
+#define FAR_SHARE 0.333
 /* Conjugate gradients end where the residual is so much smaller, squared, or after so many steps.
  */
 #define ENOUGH 1e-6
@@ -107,6 +110,22 @@ void scree_joint_compact(scree_joint *j, const scree_halfmesh *s) {
   }
 }
 
+static double eighth_power(double distance2, double far2) {
+  double ratio2 = distance2 / far2, ratio4 = ratio2 * ratio2;
+  return ratio4 * ratio4;
+}
+
+static double sum_of_far(const scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
+  double far = 0;
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    if (scree_is_gone(s, t)) continue;
+    for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next)
+      far += eighth_power(m->witnesses[k].distance2, j->far2);
+  }
+  for (size_t i = 0; i < j->far_count; i++) far += eighth_power(j->far[i].distance2, j->far2);
+  return far;
+}
+
 void scree_joint_begin(scree_joint *j, const scree_memory *m, const scree_halfmesh *s,
                        double about2) {
   double of_witnesses2 = scree_memory_witness_stray(m, s);
@@ -119,26 +138,15 @@ void scree_joint_begin(scree_joint *j, const scree_memory *m, const scree_halfme
     if (j->far2 > least2) break;
   }
   if (least2 != LOOKED_ABOVE * j->far2) scree_joint_look(j, m, s);
+  j->far_share = FAR_SHARE / sum_of_far(j, m, s);
 }
 
 void scree_joint_look(scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
   list_far(j, m, s, LOOKED_ABOVE * j->far2);
 }
 
-static double eighth_power(double distance2, double far2) {
-  double ratio2 = distance2 / far2, ratio4 = ratio2 * ratio2;
-  return ratio4 * ratio4;
-}
-
 double scree_joint_merit(const scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
-  double far = 0;
-  for (size_t t = 0; t < s->triangle_count; t++) {
-    if (scree_is_gone(s, t)) continue;
-    for (uint32_t k = m->first[t]; k != SCREE_NONE; k = m->witnesses[k].next)
-      far += eighth_power(m->witnesses[k].distance2, j->far2);
-  }
-  for (size_t i = 0; i < j->far_count; i++) far += eighth_power(j->far[i].distance2, j->far2);
-  return 2 * scree_memory_mean(m) + FAR_SHARE / 4 * j->mean * far;
+  return 2 * scree_memory_mean(m) + j->far_share / 4 * j->mean * sum_of_far(j, m, s);
 }
 
 /* The weights, see above. */
@@ -390,7 +398,7 @@ bool scree_joint_fill(scree_joint *j, const scree_memory *m, const scree_halfmes
   size_t vertices = s->vertex_count;
   if (!(j->mean > SCREE_SAME_DISTANCE)) return false;
   weighing w = {LEAST_DISTANCE * j->mean, NO_DISTANCE * j->mean,
-                FAR_SHARE * m->weight * j->mean / j->far2, j->far2};
+                j->far_share * m->weight * j->mean / j->far2, j->far2};
   asking a = {j, m, s, w};
   memset(j->own, 0, vertices * sizeof *j->own);
   memset(j->shared, 0, 3 * s->triangle_count * sizeof *j->shared);

@@ -26,9 +26,9 @@ typedef struct scree_joint {
    * how pressure moves it. */
   vec3 *step, *per_n;
   double n_per_n; /* six times the volume that a unit of pressure takes */
-  /* As the steps began: the mean distance of the witnesses, and the squared distance of the
-   * farthest of all, a witness perhaps. */
-  double mean, far2;
+  /* As the steps began: the mean distance of the witnesses, the squared distance of the farthest of
+   * all, a witness perhaps, and what one that lies so far off weighs. */
+  double mean, far2, far_share;
   scree_far_place *far; /* vertices and places on edges that lie far off, as it is */
   size_t far_count;
   scree_place_hint (*hints)[SCREE_LEVEL_PLACES]; /* per half-edge */

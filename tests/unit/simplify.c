@@ -372,7 +372,8 @@ static void limits_stop_the_run(void **state) {
  * a closed body, and of one beside a sheet, where one triangle may go at a time. */
 static void a_stop_changes_no_level(void **state) {
   (void)state;
-  static const size_t stops[] = {1001, 700, 202, 201, 200, 101, 40};
+  /* At 1126 and 872 triangles (of 1280) the surface settles. */
+  static const size_t stops[] = {1126, 1001, 872, 700, 202, 201, 200, 101, 40};
   scree_mesh ball = bumpy_sphere(3, 1), sheet = shape_sheet(0, 12), bodies[2];
   shape_move(&sheet, (vec3){0, 0, 5});
   bodies[0] = ball;

@@ -13,7 +13,7 @@
 #define LEAST_DISTANCE 0.1
 #define NO_DISTANCE    0.05
 #define LOOKED_ABOVE   0.5
-#define FAR_SHARE      0.03
+#define FAR_SHARE      0.333
 
 enum { KINDS = 4, BOX = 2 };
 
@@ -117,7 +117,7 @@ static void for_places(const scree_halfmesh *s, each_place *each, void *context)
 
 typedef struct places {
   const scree_memory *m;
-  double far2, unit, merit;
+  double far2, unit, sum;
   size_t count;
   equations *q;
 } places;
@@ -129,13 +129,20 @@ static void find_far(void *context, const uint32_t v[3], const double share[3], 
   p->far2 = fmax(p->far2, nearest_kept(p->m, at, &nearest));
 }
 
+static void sum_far(void *context, const uint32_t v[3], const double share[3], vec3 at) {
+  (void)v, (void)share;
+  places *p = context;
+  vec3 nearest;
+  double distance2 = nearest_kept(p->m, at, &nearest);
+  if (distance2 > LOOKED_ABOVE * p->far2) p->sum += pow(distance2 / p->far2, 4);
+}
+
 static void add_far(void *context, const uint32_t v[3], const double share[3], vec3 at) {
   places *p = context;
   vec3 nearest;
   double distance2 = nearest_kept(p->m, at, &nearest);
   if (!(distance2 > LOOKED_ABOVE * p->far2)) return;
   p->count++;
-  p->merit += pow(distance2 / p->far2, 4);
   add(p->q, v, share, vec3_sub(nearest, at), (vec3){0, 0, 0},
       p->unit * pow(distance2 / p->far2, 3));
 }
@@ -177,7 +184,13 @@ static size_t full_step(const scree_decimator *d, double damping, vec3 *step, do
       p.far2 = fmax(p.far2, m->witnesses[j].distance2);
     }
   for_places(s, find_far, &p);
-  p.unit = FAR_SHARE * mean / p.far2;
+  for (size_t t = 0; t < s->triangle_count; t++)
+    for (uint32_t j = scree_is_gone(s, t) ? SCREE_NONE : m->first[t]; j != SCREE_NONE;
+         j = m->witnesses[j].next)
+      p.sum += pow(m->witnesses[j].distance2 / p.far2, 4);
+  for_places(s, sum_far, &p);
+  double far_share = FAR_SHARE / p.sum;
+  p.unit = far_share * mean / p.far2;
   mean /= weights;
   for (size_t t = 0; t < s->triangle_count; t++) {
     if (scree_is_gone(s, t)) continue;
@@ -198,7 +211,6 @@ static size_t full_step(const scree_decimator *d, double damping, vec3 *step, do
     for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) {
       vec3 nearest;
       double distance = sqrt(scree_triangle_closest(corners, m->witnesses[j].at, &nearest));
-      p.merit += pow(distance * distance / p.far2, 4);
       shares_of(corners, nearest, share);
       double weight = (double)m->witnesses[j].weight / fmax(distance, LEAST_DISTANCE * mean) +
                       p.unit * pow(distance * distance / p.far2, 3);
@@ -219,7 +231,7 @@ static size_t full_step(const scree_decimator *d, double damping, vec3 *step, do
     step[v] = vec3_load(y);
   }
   *far2 = p.far2;
-  *merit = 2 * mean + FAR_SHARE / 4 * mean * p.merit;
+  *merit = 2 * mean + far_share / 4 * mean * p.sum;
   free(q.m);
   free(q.ww);
   return p.count;
@@ -599,7 +611,7 @@ static void levels_are_the_best_way(void **state) {
       for (int k = 0; k < 3; k++) {
         copy_whole(of[k], &l);
         measures m = measure(&mesh, &l);
-        score[k] = scree_level_score(m.mean, m.farthest);
+        score[k] = scree_level_score(&d[0], m.mean, m.farthest);
       }
       for (int k = 0; k < 2; k++) gain[k] += log(score[2] / score[k]);
     }
