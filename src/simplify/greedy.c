@@ -55,7 +55,9 @@
 /* ... and where the surface settles then: at Rp = 10^(-n / 18), which are the levels of the usual
  * grid, nine a decade, and one between each two. */
 #define SETTLE_EACH 0.8799225435691069
-#define ROUNDING    1e-9
+/* ... of the scan's triangles, and so much more of them: 1e-3 of 762,000 is 762, however it rounds.
+ */
+#define ROUNDING 1e-9
 
 /* Of the toll of close scans: while they are held close, and below so many triangles. */
 #define CLOSE_TOLL 8.0
@@ -288,11 +290,10 @@ static size_t next_renewal(const scree_greedy *q) {
   const scree_decimator *d = q->d;
   size_t count = d->s.live_triangle_count, from = settles_below(d);
   size_t at = (size_t)(RENEW_BELOW * (double)count);
-  double level = (double)d->first_triangle_count;
+  double level = (1 + ROUNDING) * (double)d->first_triangle_count;
   if (!q->settles || at >= from) return at;
-  while (level >= 1 && ((size_t)(level * (1 + ROUNDING)) >= count || level >= (double)from))
-    level *= SETTLE_EACH;
-  return (size_t)fmax((double)at, level * (1 + ROUNDING));
+  while (level >= 1 && ((size_t)level >= count || level >= (double)from)) level *= SETTLE_EACH;
+  return (size_t)fmax((double)at, level);
 }
 
 /* Witnesses for a triangle above which they are thinned. */

@@ -36,7 +36,7 @@
  * rounding, which from step to step would grow until it decides. */
 #define NO_DISTANCE 0.05
 /* What all that lies far off weighs, against all witnesses: more brings it nearer, and leaves the
- * mean distance larger. A third is what the score gives it (scree_level_score). */
+ * mean distance larger. A third is what the score of most scans gives it (scree_level_score). */
 #define FAR_SHARE 0.333
 /* Conjugate gradients end where the residual is so much smaller, squared, or after so many steps.
  */
@@ -126,8 +126,12 @@ static double sum_of_far(const scree_joint *j, const scree_memory *m, const scre
   return far;
 }
 
-void scree_joint_begin(scree_joint *j, const scree_memory *m, const scree_halfmesh *s,
-                       double about2) {
+static double merit_of(const scree_joint *j, double mean, double far) {
+  return 2 * mean + j->far_share / 4 * j->mean * far;
+}
+
+double scree_joint_begin(scree_joint *j, const scree_memory *m, const scree_halfmesh *s,
+                         double about2) {
   double of_witnesses2 = scree_memory_witness_stray(m, s);
   double least2 = LOOKED_ABOVE * fmax(about2, of_witnesses2);
   j->mean = scree_memory_mean(m);
@@ -138,7 +142,9 @@ void scree_joint_begin(scree_joint *j, const scree_memory *m, const scree_halfme
     if (j->far2 > least2) break;
   }
   if (least2 != LOOKED_ABOVE * j->far2) scree_joint_look(j, m, s);
-  j->far_share = FAR_SHARE / sum_of_far(j, m, s);
+  double far = sum_of_far(j, m, s);
+  j->far_share = FAR_SHARE / far;
+  return merit_of(j, j->mean, far);
 }
 
 void scree_joint_look(scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
@@ -146,7 +152,7 @@ void scree_joint_look(scree_joint *j, const scree_memory *m, const scree_halfmes
 }
 
 double scree_joint_merit(const scree_joint *j, const scree_memory *m, const scree_halfmesh *s) {
-  return 2 * scree_memory_mean(m) + j->far_share / 4 * j->mean * sum_of_far(j, m, s);
+  return merit_of(j, scree_memory_mean(m), sum_of_far(j, m, s));
 }
 
 /* The weights, see above. */

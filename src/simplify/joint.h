@@ -51,10 +51,10 @@ void scree_joint_free(scree_joint *joint);
 /* Before scree_halfmesh_compact: what it knows gets the triangles' new numbers. */
 void scree_joint_compact(scree_joint *joint, const scree_halfmesh *s);
 
-/* The level as it is: what the steps are measured against. about2: the squared distance that is
- * expected of its farthest place. */
-void scree_joint_begin(scree_joint *joint, const scree_memory *memory, const scree_halfmesh *s,
-                       double about2);
+/* The level as it is: what the steps are measured against; answers its merit. about2: the squared
+ * distance that is expected of its farthest place. */
+double scree_joint_begin(scree_joint *joint, const scree_memory *memory, const scree_halfmesh *s,
+                         double about2);
 
 /* Looks for what lies far off now. */
 void scree_joint_look(scree_joint *joint, const scree_memory *memory, const scree_halfmesh *s);

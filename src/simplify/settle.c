@@ -215,8 +215,7 @@ static scree_status settle(scree_settled *l, int most) {
   const scree_decimator *d = l->step->d;
   scree_joint *j = &l->joint;
   scree_status status = SCREE_OK;
-  scree_joint_begin(j, &d->memory, &d->s, l->step->farthest2);
-  double merit = scree_joint_merit(j, &d->memory, &d->s), damping = DAMPING;
+  double merit = scree_joint_begin(j, &d->memory, &d->s, l->step->farthest2), damping = DAMPING;
   bool taken = true, quick = d->s.live_triangle_count <= QUICK_STEPS;
   for (int i = 0; i < most && damping <= MOST_DAMPING && status == SCREE_OK; i++) {
     if ((taken && !fill(j, d)) || !scree_joint_solve(j, &d->s, damping)) break;
