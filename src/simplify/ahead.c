@@ -83,6 +83,11 @@ double scree_level_score(const scree_decimator *d, double mean, double farthest)
   return fmax(mean, SCREE_SAME_DISTANCE) * pow(fmax(farthest, SCREE_SAME_DISTANCE), power);
 }
 
+double scree_level_score_now(const scree_decimator *d) {
+  return scree_level_score(d, scree_memory_mean(&d->memory),
+                           sqrt(scree_memory_farthest(&d->memory, &d->s)));
+}
+
 /* The largest squared distance of a place of the trial's level. */
 static double farthest2_of(const scree_ahead *a, const scree_outcome *o) {
   const scree_halfmesh *s = &o->trial.d.s;

@@ -23,6 +23,8 @@ static inline size_t scree_ahead_from(const scree_decimator *d) {
 /* How good a level is by the mean distance of its witnesses and the distance of its farthest place:
  * the less, the better. What the latter counts hangs on the scan (ahead.c). */
 double scree_level_score(const scree_decimator *d, double mean, double farthest);
+/* ... of its level as it is. */
+double scree_level_score_now(const scree_decimator *d);
 /* Scores that differ by no more of themselves are the same. */
 #define SCREE_SAME_SCORE 1e-9
 

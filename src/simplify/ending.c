@@ -151,9 +151,7 @@ static void advance_block(void *context, size_t begin, size_t end, size_t block,
 }
 
 static double score_of(const ending *e) {
-  const scree_memory *m = &e->d->memory;
-  if (e->ahead.best) return e->ahead.best->score;
-  return scree_level_score(e->d, scree_memory_mean(m), sqrt(scree_memory_farthest(m, &e->d->s)));
+  return e->ahead.best ? e->ahead.best->score : scree_level_score_now(e->d);
 }
 
 /* How many levels of a count are settled. */

@@ -261,9 +261,7 @@ static void settle_block(void *context, size_t begin, size_t end, size_t block, 
     scree_settled *l = &q->levels[i];
     const scree_decimator *d = &l->trial.d;
     l->status = settle(l, scree_is_large(d) ? MOST_OF_LARGE : MOST_STEPS);
-    if (q->compares)
-      l->score = scree_level_score(d, scree_memory_mean(&d->memory),
-                                   sqrt(scree_memory_farthest(&d->memory, &d->s)));
+    if (q->compares) l->score = scree_level_score_now(d);
   }
 }
 
