@@ -240,3 +240,61 @@ void scree_parallel_for(size_t count, size_t block_size, scree_block_function *b
     run_serially(count, block_size, blocks, body, context);
   }
 }
+
+/* Tasks under way. */
+typedef struct tasking {
+  const scree_tasks *tasks;
+  void *context;
+  pthread_mutex_t lock; /* held for take and end, and for the count */
+  pthread_cond_t ended;
+  int running;
+  atomic_uint ends; /* so far, and once more when all is done */
+} tasking;
+
+/* Waits until a task has ended after so many ends. The lock is held, but meanwhile. */
+static void await_end(tasking *t, unsigned ends) {
+  pthread_mutex_unlock(&t->lock);
+  for (int spin = 0; spin < SPINS && atomic_load(&t->ends) == ends; spin++) pause_briefly();
+  pthread_mutex_lock(&t->lock);
+  while (atomic_load(&t->ends) == ends) pthread_cond_wait(&t->ended, &t->lock);
+}
+
+static void tell_end(tasking *t) {
+  atomic_fetch_add(&t->ends, 1);
+  pthread_cond_broadcast(&t->ended);
+}
+
+static void do_tasks(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)begin, (void)end, (void)block;
+  tasking *t = context;
+  size_t task;
+  pthread_mutex_lock(&t->lock);
+  for (;;) {
+    if (t->tasks->take(t->context, worker, &task)) {
+      t->running++;
+      pthread_mutex_unlock(&t->lock);
+      t->tasks->run(t->context, task);
+      pthread_mutex_lock(&t->lock);
+      t->running--;
+      t->tasks->end(t->context, task);
+      tell_end(t);
+    } else if (t->running > 0) {
+      await_end(t, atomic_load(&t->ends));
+    } else {
+      break;
+    }
+  }
+  tell_end(t); /* whoever waits finds that none is ready */
+  pthread_mutex_unlock(&t->lock);
+}
+
+void scree_parallel_tasks(int most, const scree_tasks *tasks, void *context) {
+  tasking t = {.tasks = tasks,
+               .context = context,
+               .lock = PTHREAD_MUTEX_INITIALIZER,
+               .ended = PTHREAD_COND_INITIALIZER};
+  int workers = scree_worker_count();
+  scree_parallel_for((size_t)(most < workers ? most : workers), 1, do_tasks, &t);
+  pthread_mutex_destroy(&t.lock);
+  pthread_cond_destroy(&t.ended);
+}

@@ -4,6 +4,7 @@
 #ifndef SCREE_BASE_PARALLEL_H
 #define SCREE_BASE_PARALLEL_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* Handles items [begin, end) of block `block`; worker is in [0, scree_worker_count()). */
@@ -13,6 +14,19 @@ typedef void scree_block_function(void *context, size_t begin, size_t end, size_
 /* Calls body for every block of block_size items in [0, count), on all threads, in any order;
  * returns when all are done. Blocks are handed out as workers come free. */
 void scree_parallel_for(size_t count, size_t block_size, scree_block_function *body, void *context);
+
+/* Tasks of which some are ready only when others have ended. take and end are called one at a time,
+ * run side by side; run's nested loops are serial, unless `most` is 1. */
+typedef struct scree_tasks {
+  /* Takes one that is ready. False: none is, for now; it is asked again after every end. */
+  bool (*take)(void *context, int worker, size_t *task);
+  void (*run)(void *context, size_t task);
+  void (*end)(void *context, size_t task);
+} scree_tasks;
+
+/* Does all on at most so many threads; returns when none is ready and none runs. The caller's is
+ * worker 0. */
+void scree_parallel_tasks(int most, const scree_tasks *tasks, void *context);
 
 static inline size_t scree_block_count(size_t count, size_t block_size) {
   return count / block_size + (count % block_size != 0);

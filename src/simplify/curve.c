@@ -119,11 +119,15 @@ static double work_left(const scree_decimator *d, double count) {
                                                   : fine;
 }
 
-bool scree_decimate_tick(const scree_decimator *d, scree_ticker *ticker) {
+bool scree_decimate_tick_at(const scree_decimator *d, size_t triangle_count, scree_ticker *ticker) {
   double all = work_left(d, (double)d->first_triangle_count);
   double end = work_left(d, (double)d->options.stop_count);
-  double left = work_left(d, (double)d->s.live_triangle_count);
+  double left = work_left(d, (double)triangle_count);
   return scree_tick(ticker, "decimating", all > end ? (all - left) / (all - end) : 0);
+}
+
+bool scree_decimate_tick(const scree_decimator *d, scree_ticker *ticker) {
+  return scree_decimate_tick_at(d, d->s.live_triangle_count, ticker);
 }
 
 void scree_curve_free(scree_curve *curve) {

@@ -177,5 +177,7 @@ scree_status scree_decimate_one_by_one(scree_decimator *d);
 
 /* Tells the ticker how far it has come; false: cancelled. */
 bool scree_decimate_tick(const scree_decimator *d, scree_ticker *ticker);
+/* The same where so many triangles are left. */
+bool scree_decimate_tick_at(const scree_decimator *d, size_t triangle_count, scree_ticker *ticker);
 
 #endif

@@ -5,7 +5,12 @@
  * and stand in the record as a whole.
  *
  * How good a level is, its witnesses tell (scree_level_score): as the way left it, to choose those
- * that are settled, for that takes time; then as it is settled. */
+ * that are settled, for that takes time; then as it is settled.
+ *
+ * Ways go on by steps, beside each other: each for itself to where levels are compared, then from
+ * one level to the next, where all wait for the last. What was chosen is settled when no way can go
+ * on, so that no thread is idle while another has a longer way; it is told in the order in which it
+ * was chosen. */
 #include "simplify/ending.h"
 
 #include "base/alloc.h"
@@ -13,6 +18,7 @@
 #include "simplify/greedy.h"
 #include "simplify/settle.h"
 
+#include <limits.h>
 #include <string.h>
 
 /* The usual way; one on which nothing but the cost itself keeps the farthest place near; one that
@@ -25,8 +31,8 @@ static const scree_rule rules_of_large[] = {{1, SCREE_LEAST_COARSE_TURN}, {0, -0
  * close scans is little beside the rest. */
 enum { ENDINGS = 2, ENDINGS_OF_CLOSE = 3, SETTLED = 1, SETTLED_OF_CLOSE = 2 };
 
-/* The share of triangles left after which progress is told. */
-#define TOLD_AT 0.9
+/* The share of triangles that a step leaves, where levels are not compared. */
+#define STEP 0.9
 
 /* A way. */
 typedef struct ending {
@@ -34,6 +40,8 @@ typedef struct ending {
   scree_trial trial; /* whose decimator it is, but of the first way */
   scree_greedy *greedy;
   scree_ahead ahead;
+  bool busy;    /* with a step */
+  size_t left;  /* triangles, when it is not */
   bool careful; /* it looks ahead */
   bool over;    /* no edge can be collapsed any more */
   size_t told;  /* collapses of its record that `worst` counts */
@@ -46,9 +54,14 @@ typedef struct ending {
 typedef struct endings {
   scree_decimator *d;
   ending each[SCREE_MOST_ENDINGS];
-  size_t count, until;
+  size_t count;
+  size_t until;        /* triangles to which all are to come now */
   size_t record_count; /* collapses where they part */
+  bool whole;          /* levels that look ahead are compared, settled and told */
+  bool over;           /* there is no further level */
   scree_settling settling;
+  scree_ticker ticker;
+  scree_status status;
 } endings;
 
 /* A copy of the surface with a record of its own. */
@@ -98,6 +111,7 @@ static scree_status begin(endings *w, const scree_rule *by, size_t count) {
   for (size_t i = 0; i < count && status == SCREE_OK; i++) {
     ending *e = &w->each[w->count++];
     e->worst = worst;
+    e->left = d->s.live_triangle_count;
     e->d = d;
     if (i > 0) status = copy(e, d);
     e->told = e->d->record.count;
@@ -121,13 +135,13 @@ static scree_status take_care(const endings *w, ending *e) {
   return status;
 }
 
-static scree_status advance(const endings *w, ending *e) {
+static scree_status advance(const endings *w, ending *e, size_t to) {
   scree_decimator *d = e->d;
   size_t ahead = scree_ahead_from(d);
   scree_status status = SCREE_OK;
-  while (!e->over && d->s.live_triangle_count > w->until && status == SCREE_OK) {
+  while (!e->over && d->s.live_triangle_count > to && status == SCREE_OK) {
     bool careful = d->s.live_triangle_count <= ahead;
-    size_t until = careful || w->until > ahead ? w->until : ahead;
+    size_t until = careful || to > ahead ? to : ahead;
     if (careful && !e->careful) status = take_care(w, e);
     if (!careful && !e->greedy)
       status = scree_greedy_begin(d, d->unsettled != SCREE_UNSETTLED_ALL, &e->greedy);
@@ -139,17 +153,6 @@ static scree_status advance(const endings *w, ending *e) {
   return status;
 }
 
-static void advance_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  endings *w = context;
-  for (size_t i = begin; i < end; i++) {
-    ending *e = &w->each[i];
-    const scree_record *r = &e->d->record;
-    e->status = advance(w, e);
-    for (; e->told < r->count; e->told++) e->worst = fmaxf(e->worst, r->error[e->told]);
-  }
-}
-
 static double score_of(const ending *e) {
   return e->ahead.best ? e->ahead.best->score : scree_level_score_now(e->d);
 }
@@ -159,43 +162,29 @@ static size_t settled_of(const scree_decimator *d) {
   return scree_is_close_scan(d) ? SETTLED_OF_CLOSE : SETTLED;
 }
 
-/* Settles the best of the levels that have so many triangles; of equal ones the first. */
+/* Whether levels of so many triangles are compared. */
+static bool compares(const endings *w, size_t triangle_count) {
+  return w->whole && triangle_count <= scree_ahead_from(w->d);
+}
+
+/* The best of the levels that have so many triangles are to be settled; of equal ones the first. */
 static scree_status take_levels(endings *w) {
   size_t most = settled_of(w->d);
   double least = 0; /* the last score taken */
   scree_status status = SCREE_OK;
-  for (size_t i = 0; i < w->count; i++)
-    if (w->each[i].d->s.live_triangle_count == w->until) w->each[i].score = score_of(&w->each[i]);
   for (size_t n = 0; n < most && status == SCREE_OK; n++) {
     ending *best = NULL;
     for (size_t i = 0; i < w->count; i++) {
       ending *e = &w->each[i];
-      if (e->d->s.live_triangle_count != w->until) continue;
+      if (e->left != w->until) continue;
       if (n > 0 && !(e->score > (1 + SCREE_SAME_SCORE) * least)) continue;
       if (!best || e->score < (1 - SCREE_SAME_SCORE) * best->score) best = e;
     }
     if (!best) break;
     least = best->score;
-    status = scree_settle_level(&w->settling, scree_greedy_step(best->greedy), best->worst);
+    status = scree_settle_later(&w->settling, scree_greedy_step(best->greedy), best->worst);
   }
   return status;
-}
-
-/* Down to w->until triangles, side by side. */
-static scree_status advance_all(endings *w) {
-  scree_status status = SCREE_OK;
-  scree_parallel_for(w->count, 1, advance_block, w);
-  for (size_t i = 0; i < w->count && status == SCREE_OK; i++) {
-    status = w->each[i].status;
-    if (status != SCREE_OK && i > 0 && w->d->error) *w->d->error = w->each[i].error;
-  }
-  return status;
-}
-
-static bool all_over(const endings *w) {
-  for (size_t i = 0; i < w->count; i++)
-    if (!w->each[i].over) return false;
-  return true;
 }
 
 /* The record goes down to the levels that are told as a whole. */
@@ -206,37 +195,125 @@ static void cut_record(scree_decimator *d, size_t whole_from) {
   while (moves->count > 0 && moves->items[moves->count - 1].index >= r->count) moves->count--;
 }
 
-/* Whether the record has a level of no more than stop_count triangles. */
-static bool is_low_enough(const endings *w, bool whole) {
-  size_t left = SIZE_MAX, stop = w->d->options.stop_count;
-  for (size_t i = 0; i < w->count; i++)
-    if (w->each[i].d->s.live_triangle_count < left) left = w->each[i].d->s.live_triangle_count;
-  if (whole && left <= scree_ahead_from(w->d)) left = w->settling.least_count;
-  return left <= stop;
+/* Whether the record has a level of no more than stop_count triangles, or no way goes on. */
+static bool is_over(const endings *w) {
+  size_t left = SIZE_MAX;
+  bool over = true;
+  for (size_t i = 0; i < w->count; i++) {
+    if (w->each[i].left < left) left = w->each[i].left;
+    over &= w->each[i].over;
+  }
+  if (compares(w, left)) left = w->settling.least_count;
+  return over || left <= w->d->options.stop_count;
 }
 
-static scree_status run(endings *w, bool whole) {
+/* The next count to which all are to come: where levels begin to be compared, or every one from
+ * there on. */
+static void set_next(endings *w) {
+  size_t from = scree_ahead_from(w->d), stop = w->d->options.stop_count;
+  w->until = w->until <= from ? w->until - 1 : stop > from ? stop : from;
+}
+
+static bool has_come(const endings *w, const ending *e) {
+  return !e->busy && (e->over || e->left <= w->until);
+}
+
+/* All have come. */
+static void end_level(endings *w) {
+  if (compares(w, w->until)) w->status = take_levels(w);
+  w->over = is_over(w);
+  if (!w->over) set_next(w);
+}
+
+/* The way that has the most triangles left, of those that can take a step; or NULL. *all: all have
+ * come. */
+static ending *next_way(endings *w, bool *all) {
+  ending *next = NULL;
+  *all = true;
+  for (size_t i = 0; i < w->count; i++) {
+    ending *e = &w->each[i];
+    if (has_come(w, e)) continue;
+    *all = false;
+    if (!e->busy && (!next || e->left > next->left)) next = e;
+  }
+  return next;
+}
+
+/* Tasks are steps of the ways by their numbers, then the levels that wait by their places. */
+static bool take_task(void *context, int worker, size_t *task) {
+  endings *w = context;
+  bool all;
+  if (worker == 0 && w->status == SCREE_OK) { /* that is the caller's thread */
+    size_t left = 0;
+    for (size_t i = 0; i < w->count; i++)
+      if (w->each[i].left > left) left = w->each[i].left;
+    if (!scree_decimate_tick_at(w->d, left, &w->ticker)) w->status = SCREE_CANCELLED;
+  }
+  while (w->status == SCREE_OK && !w->over) {
+    ending *e = next_way(w, &all);
+    if (e) {
+      e->busy = true;
+      *task = (size_t)(e - w->each);
+      return true;
+    }
+    if (!all || !scree_settle_has_room(&w->settling, settled_of(w->d))) break;
+    end_level(w);
+  }
+  size_t place;
+  if (w->status != SCREE_OK || !scree_settle_next(&w->settling, &place)) return false;
+  *task = w->count + place;
+  return true;
+}
+
+static void step(const endings *w, ending *e) {
+  const scree_record *r = &e->d->record;
+  size_t to = (size_t)(STEP * (double)e->left);
+  if (to < w->until) to = w->until;
+  e->status = advance(w, e, to);
+  for (; e->told < r->count; e->told++) e->worst = fmaxf(e->worst, r->error[e->told]);
+  size_t left = e->d->s.live_triangle_count;
+  if (e->status == SCREE_OK && compares(w, left)) e->score = score_of(e);
+}
+
+static void do_task(void *context, size_t task) {
+  endings *w = context;
+  if (task < w->count)
+    step(w, &w->each[task]);
+  else
+    scree_settle_level(&w->settling, task - w->count);
+}
+
+static void end_task(void *context, size_t task) {
+  endings *w = context;
+  scree_status status;
+  if (task < w->count) {
+    ending *e = &w->each[task];
+    e->busy = false;
+    e->left = e->d->s.live_triangle_count;
+    status = e->status;
+    if (status != SCREE_OK && w->status == SCREE_OK && task > 0 && w->d->error)
+      *w->d->error = e->error;
+  } else {
+    status = scree_settle_tell(&w->settling, task - w->count);
+  }
+  if (w->status == SCREE_OK) w->status = status;
+}
+
+static scree_status run(endings *w) {
   scree_decimator *d = w->d;
-  size_t stop = d->options.stop_count, from = scree_ahead_from(d);
-  scree_ticker ticker = d->ticker;
-  scree_status status = SCREE_OK;
+  const scree_tasks tasks = {take_task, do_task, end_task};
+  w->ticker = d->ticker;
   d->ticker.progress = NULL; /* a way may be another thread's: it is told here */
   w->until = d->s.live_triangle_count;
-  do {
-    size_t next = (size_t)(TOLD_AT * (double)w->until);
-    if (next < from) next = w->until > from ? from : w->until - 1;
-    w->until = w->until > stop && stop > from && next < stop ? stop : next;
-    status = advance_all(w);
-    if (status == SCREE_OK && whole && w->until <= from) status = take_levels(w);
-    if (status == SCREE_OK && !scree_decimate_tick(d, &ticker)) status = SCREE_CANCELLED;
-  } while (status == SCREE_OK && !is_low_enough(w, whole) && !all_over(w));
-  d->ticker = ticker;
+  set_next(w);
+  /* one way alone has all threads for itself */
+  scree_parallel_tasks(w->count > 1 ? INT_MAX : 1, &tasks, w);
+  d->ticker = w->ticker;
   ending *usual = &w->each[0];
-  if (status == SCREE_OK && !usual->careful && !usual->over)
-    status = scree_greedy_end(usual->greedy);
-  if (status == SCREE_OK && whole) status = scree_settle_end(&w->settling);
-  if (status == SCREE_OK && whole) cut_record(d, from);
-  return status;
+  if (w->status == SCREE_OK && !usual->careful && !usual->over)
+    w->status = scree_greedy_end(usual->greedy);
+  if (w->status == SCREE_OK && w->whole) cut_record(d, scree_ahead_from(d));
+  return w->status;
 }
 
 scree_status scree_decimate_endings(scree_decimator *d, const scree_rule *by, size_t count) {
@@ -244,10 +321,11 @@ scree_status scree_decimate_endings(scree_decimator *d, const scree_rule *by, si
   if (!w) return scree_fail_memory(d->error, sizeof *w, "the last levels");
   w->d = d;
   w->record_count = d->record.count;
+  w->whole = d->unsettled == SCREE_UNSETTLED_NONE;
   scree_settle_begin(&w->settling, &d->record.whole, settled_of(d) > 1, d->error);
   const scree_rule *usual = d->rule;
   scree_status status = begin(w, by, count);
-  if (status == SCREE_OK) status = run(w, d->unsettled == SCREE_UNSETTLED_NONE);
+  if (status == SCREE_OK) status = run(w);
   free_endings(w);
   scree_free(w);
   d->rule = usual;

@@ -67,7 +67,7 @@ void scree_settle_begin(scree_settling *q, scree_whole_levels *whole, bool compa
 }
 
 void scree_settle_free(scree_settling *q) {
-  for (int i = 0; i < SCREE_SETTLED_AT_ONCE; i++) {
+  for (int i = 0; i < SCREE_WAIT_TO_SETTLE; i++) {
     scree_trial_free(&q->levels[i].trial);
     scree_settled_free(&q->levels[i]);
   }
@@ -254,17 +254,6 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-static void settle_block(void *context, size_t begin, size_t end, size_t block, int worker) {
-  (void)block, (void)worker;
-  scree_settling *q = context;
-  for (size_t i = begin; i < end; i++) {
-    scree_settled *l = &q->levels[i];
-    const scree_decimator *d = &l->trial.d;
-    l->status = settle(l, scree_is_large(d) ? MOST_OF_LARGE : MOST_STEPS);
-    if (q->compares) l->score = scree_level_score_now(d);
-  }
-}
-
 typedef struct origin {
   uint32_t of, vertex; /* in the mesh given; in the level */
 } origin;
@@ -351,14 +340,29 @@ static scree_status tell(scree_settling *q, const scree_settled *l) {
   return SCREE_OK;
 }
 
-scree_status scree_settle_end(scree_settling *q) {
+bool scree_settle_next(scree_settling *q, size_t *place) {
+  if (q->begun == q->count) return false;
+  *place = (q->first + q->begun++) % SCREE_WAIT_TO_SETTLE;
+  return true;
+}
+
+void scree_settle_level(scree_settling *q, size_t place) {
+  scree_settled *l = &q->levels[place];
+  const scree_decimator *d = &l->trial.d;
+  l->status = settle(l, scree_is_large(d) ? MOST_OF_LARGE : MOST_STEPS);
+  if (q->compares) l->score = scree_level_score_now(d);
+}
+
+scree_status scree_settle_tell(scree_settling *q, size_t place) {
   scree_status status = SCREE_OK;
-  scree_parallel_for(q->count, 1, settle_block, q);
-  for (size_t i = 0; i < q->count && status == SCREE_OK; i++) {
-    status = q->levels[i].status;
-    if (status == SCREE_OK) status = tell(q, &q->levels[i]);
+  q->levels[place].over = true;
+  while (q->begun > 0 && q->levels[q->first].over && status == SCREE_OK) {
+    const scree_settled *l = &q->levels[q->first];
+    status = l->status == SCREE_OK ? tell(q, l) : l->status;
+    q->first = (q->first + 1) % SCREE_WAIT_TO_SETTLE;
+    q->begun--;
+    q->count--;
   }
-  q->count = 0;
   return status;
 }
 
@@ -378,8 +382,8 @@ static scree_status make_room(scree_settled *l, const scree_decimator *d, scree_
   return status;
 }
 
-scree_status scree_settle_level(scree_settling *q, const scree_step *step, float error) {
-  scree_settled *l = &q->levels[q->count];
+scree_status scree_settle_later(scree_settling *q, const scree_step *step, float error) {
+  scree_settled *l = &q->levels[(q->first + q->count) % SCREE_WAIT_TO_SETTLE];
   scree_status status = make_room(l, step->d, q->error);
   if (status != SCREE_OK) return status;
   q->count++;
@@ -388,8 +392,9 @@ scree_status scree_settle_level(scree_settling *q, const scree_step *step, float
   l->from = step;
   l->step = &l->trial.step;
   l->error = error;
+  l->over = false;
   l->trial.d.record.count = 1;
   l->trial.d.record.area[0] = l->trial.d.record.volume[0] = 0;
   q->least_count = step->d->s.live_triangle_count;
-  return q->count < SCREE_SETTLED_AT_ONCE ? SCREE_OK : scree_settle_end(q);
+  return SCREE_OK;
 }

@@ -8,8 +8,8 @@
 #include "simplify/joint.h"
 #include "simplify/trial.h"
 
-/* Levels settled at once. */
-enum { SCREE_SETTLED_AT_ONCE = 8 };
+/* Levels that may wait to be settled. */
+enum { SCREE_WAIT_TO_SETTLE = 8 };
 
 /* How far a vertex is to go, squared. */
 typedef struct scree_errand {
@@ -44,6 +44,7 @@ typedef struct scree_settled {
   float error;            /* of the record up to it */
   double score;           /* settled (scree_level_score); of use where levels are compared */
   scree_status status;
+  bool over; /* it is settled, or failed */
 } scree_settled;
 
 /* Room to settle the surface itself; free it whatever the outcome. */
@@ -56,8 +57,9 @@ void scree_settled_free(scree_settled *level);
 scree_status scree_settle_path(scree_settled *level, scree_step *step);
 
 typedef struct scree_settling {
-  scree_settled levels[SCREE_SETTLED_AT_ONCE];
-  size_t count; /* levels waiting */
+  scree_settled levels[SCREE_WAIT_TO_SETTLE]; /* a ring */
+  size_t first, count; /* of those that are not told yet: the first; how many */
+  size_t begun;        /* of these, the first so many are being settled, or are */
   scree_whole_levels *whole;
   bool compares;      /* levels may have the same count: the better one is told */
   double score;       /* of the last one told */
@@ -70,11 +72,18 @@ void scree_settle_begin(scree_settling *settling, scree_whole_levels *whole, boo
                         scree_error *error);
 void scree_settle_free(scree_settling *settling);
 
-/* Takes the step's level as it is, which has no more triangles than the last one and nothing that
- * is gone, and whose grid looks at all; a few are settled at once. error: of the record up to it.
- */
-scree_status scree_settle_level(scree_settling *settling, const scree_step *step, float error);
-/* Settles those that wait. */
-scree_status scree_settle_end(scree_settling *settling);
+/* Whether so many more may wait. */
+static inline bool scree_settle_has_room(const scree_settling *settling, size_t count) {
+  return settling->count + count <= SCREE_WAIT_TO_SETTLE;
+}
+/* A copy of the step's level as it is waits, if there is room; it has no more triangles than the
+ * last one and nothing that is gone, and its grid looks at all. error: of the record up to it. */
+scree_status scree_settle_later(scree_settling *settling, const scree_step *step, float error);
+/* The next one to be settled, by its place. False: none waits. */
+bool scree_settle_next(scree_settling *settling, size_t *place);
+/* Settles it; several side by side, and beside steps of what they are copies of. */
+void scree_settle_level(scree_settling *settling, size_t place);
+/* Tells of it, once those that waited before it are told. */
+scree_status scree_settle_tell(scree_settling *settling, size_t place);
 
 #endif

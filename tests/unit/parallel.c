@@ -114,12 +114,114 @@ static void a_forked_child_may_call(void **state) {
   scree_set_threads(0);
 }
 
+/* Chains of tasks, each ready when the one before has ended; at every tenth link all chains wait
+ * for the last. What is left loose at a link is ready at once, and done when no chain goes on. */
+enum { CHAINS = 3, LINKS = 60, MEET = 10, LOOSE = CHAINS * LINKS };
+
+typedef struct chains {
+  size_t links[CHAINS];  /* done */
+  bool busy[CHAINS];     /* with the next one */
+  size_t waiting, begun; /* loose ones: numbers from `begun` up to `waiting` */
+  atomic_uchar seen[2 * LOOSE];
+  atomic_int exclusive; /* in take or end */
+  atomic_bool wrong;
+  size_t fails_at; /* ends after which nothing is ready any more */
+  size_t ends;
+  int nested; /* workers that a loop within a task has */
+} chains;
+
+static void enter_exclusive(chains *c) {
+  if (atomic_fetch_add(&c->exclusive, 1) != 0) atomic_store(&c->wrong, true);
+}
+
+static bool take_link(void *context, int worker, size_t *task) {
+  chains *c = context;
+  bool taken = false;
+  enter_exclusive(c);
+  if (worker < 0 || worker >= WORKERS) atomic_store(&c->wrong, true);
+  size_t least = LINKS;
+  for (size_t i = 0; i < CHAINS; i++)
+    if (c->links[i] < least) least = c->links[i];
+  for (size_t i = 0; i < CHAINS && !taken && c->ends < c->fails_at; i++) {
+    size_t most = MEET * (least / MEET + 1);
+    if (c->busy[i] || c->links[i] >= most || c->links[i] == LINKS) continue;
+    c->busy[i] = taken = true;
+    *task = i * LINKS + c->links[i];
+  }
+  if (!taken && c->begun < c->waiting && c->ends < c->fails_at) {
+    *task = LOOSE + c->begun++;
+    taken = true;
+  }
+  atomic_fetch_sub(&c->exclusive, 1);
+  return taken;
+}
+
+static void do_link(void *context, size_t task) {
+  chains *c = context;
+  tally own = {.wrong = false};
+  atomic_fetch_add(&c->seen[task], 1);
+  if (scree_worker_count() != c->nested) atomic_store(&c->wrong, true);
+  scree_parallel_for(1 + task % 50, 3, count_items, &own);
+  if (!all_once(&own, 1 + task % 50)) atomic_store(&c->wrong, true);
+}
+
+static void end_link(void *context, size_t task) {
+  chains *c = context;
+  enter_exclusive(c);
+  c->ends++;
+  if (task < LOOSE) {
+    size_t i = task / LINKS;
+    if (!c->busy[i] || c->links[i] != task % LINKS) atomic_store(&c->wrong, true);
+    c->busy[i] = false;
+    c->links[i]++;
+    c->waiting++;
+  }
+  atomic_fetch_sub(&c->exclusive, 1);
+}
+
+static const scree_tasks links = {take_link, do_link, end_link};
+
+static void tasks_are_done_as_they_come_ready(void **state) {
+  (void)state;
+  for (int round = 0; round < 400; round++) {
+    chains c = {.fails_at = SIZE_MAX};
+    int threads = 1 + round % WORKERS;
+    bool alone = round % 5 == 0; /* then a task's own loops have all threads */
+    c.nested = alone ? threads : 1;
+    scree_set_threads(threads);
+    scree_parallel_tasks(alone ? 1 : WORKERS, &links, &c);
+    assert_false(atomic_load(&c.wrong));
+    for (size_t i = 0; i < 2 * (size_t)LOOSE; i++)
+      if (atomic_load(&c.seen[i]) != 1) fail_msg("round %d: task %zu", round, i);
+  }
+  scree_set_threads(0);
+}
+
+/* Where none is ready any more, those under way are ended, and no others begun. */
+static void tasks_may_stop_in_between(void **state) {
+  (void)state;
+  for (int round = 0; round < 200; round++) {
+    chains c = {.fails_at = (size_t)round, .nested = 1};
+    size_t begun = 0;
+    scree_set_threads(1 + round % WORKERS);
+    scree_parallel_tasks(WORKERS, &links, &c);
+    for (size_t i = 0; i < 2 * (size_t)LOOSE; i++) begun += atomic_load(&c.seen[i]);
+    assert_false(atomic_load(&c.wrong));
+    assert_int_equal(begun, c.ends);
+    assert_true(c.ends >= (size_t)round && c.ends < (size_t)round + WORKERS);
+    for (size_t i = 0; i < CHAINS; i++) assert_false(c.busy[i]);
+  }
+  scree_set_threads(0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_item_is_handled_once),
       cmocka_unit_test(nested_loops_are_serial),
       cmocka_unit_test(several_threads_may_call),
       cmocka_unit_test(a_forked_child_may_call),
+      cmocka_unit_test(tasks_are_done_as_they_come_ready),
+      cmocka_unit_test(tasks_may_stop_in_between),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
