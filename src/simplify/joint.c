@@ -168,6 +168,7 @@ static inline double far_weight(const weighing *w, double distance2) {
 /* What a triangle's witnesses add to the equations: of its corners, own and with the next one the
  * same squares, pull and squared shares. Every fourth witness adds to the same lane. */
 enum { SUM_LANES = 4 };
+typedef double four_lanes __attribute__((vector_size(SUM_LANES * sizeof(double))));
 typedef struct triangle_sums {
   double own[3][6][SUM_LANES], shared[3][6][SUM_LANES];
   double pull[3][3][SUM_LANES], shares[3][SUM_LANES];
@@ -210,30 +211,51 @@ SCREE_LANES static void say_all_lanes(const double *corners, const scree_points 
   }
 }
 
-/* The products of a and b, each added to its lane of the sum. */
-SCREE_LANES_INLINE void add_products(const double *restrict a, const double *restrict b, int count,
-                                     double *restrict sum) {
-  for (int begin = 0; begin < count; begin += SUM_LANES)
-    for (int lane = 0; lane < SUM_LANES; lane++) sum[lane] += a[begin + lane] * b[begin + lane];
+SCREE_LANES_INLINE void load_lanes(four_lanes *lanes, const double *from) {
+  memcpy(lanes, from, sizeof *lanes);
+}
+
+SCREE_LANES_INLINE void store_lanes(double *to, const four_lanes *lanes) {
+  memcpy(to, lanes, sizeof *lanes);
+}
+
+/* Of one corner all sums side by side: each by itself would wait for its addition before. */
+SCREE_LANES_INLINE void sum_of_corner(const joint_sayings *restrict said, int corner, int count,
+                                      triangle_sums *restrict sums) {
+  const double *share = said->share[corner], *next = said->share[(corner + 1) % 3];
+  four_lanes own[6], shared[6], pull[3], shares;
+  for (int q = 0; q < 6; q++) load_lanes(&own[q], sums->own[corner][q]);
+  for (int q = 0; q < 6; q++) load_lanes(&shared[q], sums->shared[corner][q]);
+  for (int q = 0; q < 3; q++) load_lanes(&pull[q], sums->pull[corner][q]);
+  load_lanes(&shares, sums->shares[corner]);
+  for (int i = 0; i < count; i += SUM_LANES) {
+    four_lanes of_corner, of_next, with_own, with_both, read;
+    load_lanes(&of_corner, share + i);
+    load_lanes(&of_next, next + i);
+    load_lanes(&read, said->weight + i);
+    with_own = read * of_corner;
+    with_both = with_own * of_next;
+    for (int q = 0; q < 3; q++) {
+      load_lanes(&read, said->along[q] + i);
+      pull[q] += with_own * read;
+    }
+    with_own *= of_corner;
+    shares += with_own;
+    for (int q = 0; q < 6; q++) {
+      load_lanes(&read, said->square[q] + i);
+      own[q] += with_own * read;
+      shared[q] += with_both * read;
+    }
+  }
+  for (int q = 0; q < 6; q++) store_lanes(sums->own[corner][q], &own[q]);
+  for (int q = 0; q < 6; q++) store_lanes(sums->shared[corner][q], &shared[q]);
+  for (int q = 0; q < 3; q++) store_lanes(sums->pull[corner][q], &pull[q]);
+  store_lanes(sums->shares[corner], &shares);
 }
 
 SCREE_LANES static void sum_sayings_lanes(const joint_sayings *restrict said, int count,
                                           triangle_sums *restrict sums) {
-  for (int k = 0; k < 3; k++) {
-    double with_own[SCREE_POINTS], own[SCREE_POINTS], shared[SCREE_POINTS];
-    const double *share = said->share[k], *next = said->share[(k + 1) % 3];
-    for (int i = 0; i < count; i++) {
-      with_own[i] = said->weight[i] * share[i];
-      own[i] = with_own[i] * share[i];
-      shared[i] = with_own[i] * next[i];
-    }
-    for (int q = 0; q < 6; q++) {
-      add_products(own, said->square[q], count, sums->own[k][q]);
-      add_products(shared, said->square[q], count, sums->shared[k][q]);
-    }
-    for (int q = 0; q < 3; q++) add_products(with_own, said->along[q], count, sums->pull[k][q]);
-    add_products(with_own, share, count, sums->shares[k]);
-  }
+  for (int corner = 0; corner < 3; corner++) sum_of_corner(said, corner, count, sums);
 }
 
 static void add_crowd(const double *corners, scree_points *points, double *weights,
