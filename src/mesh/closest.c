@@ -81,85 +81,145 @@ SCREE_LANES_INLINE vec3 choose_point(bool first, vec3 a, vec3 b) {
   return (vec3){choose(first, a.x, b.x), choose(first, a.y, b.y), choose(first, a.z, b.z)};
 }
 
-/* As closest_on_segment: of no length, either end. */
-SCREE_LANES_INLINE vec3 on_segment(vec3 a, vec3 b, vec3 p) {
-  vec3 ab = vec3_sub(b, a);
-  double length2 = vec3_norm2(ab), along = vec3_dot(vec3_sub(p, a), ab);
-  vec3 found = vec3_mad(a, ab, choose(along > 0, along / length2, 0));
-  return choose_point(along >= length2, b, found);
+/* A triangle that is no needle, with its sides and their squared lengths. */
+typedef struct lane_triangle {
+  vec3 a, b, c, ab, bc, ca, n;
+  double n2, ab2, bc2, ca2;
+} lane_triangle;
+
+/* The point of a segment, at the share given where that lies between its ends. */
+SCREE_LANES_INLINE vec3 on_segment(vec3 from, vec3 side, vec3 to, double along, double length2,
+                                   double share) {
+  vec3 between = vec3_mad(from, side, choose(along > 0, share, 0));
+  return choose_point(along >= length2, to, between);
 }
 
-/* The point of a triangle that is no needle. */
-SCREE_LANES_INLINE vec3 nearest_lane(vec3 a, vec3 b, vec3 c, vec3 n, double n2, vec3 p,
-                                     double *distance2) {
-  vec3 ab = vec3_sub(b, a), ac = vec3_sub(c, a), ap = vec3_sub(p, a);
-  double v = vec3_dot(vec3_cross(ap, ac), n), w = vec3_dot(vec3_cross(ab, ap), n), u = n2 - v - w;
-  vec3 inside = vec3_mad(vec3_mad(a, ab, v / n2), ac, w / n2);
-  vec3 bc = on_segment(b, c, p), ca = on_segment(c, a, p), found = on_segment(a, b, p);
-  /* of the edges only those that p is beyond count, and the first of equals */
-  double of_bc = choose(u < 0, vec3_norm2(vec3_sub(bc, p)), INFINITY);
-  double of_ca = choose(v < 0, vec3_norm2(vec3_sub(ca, p)), INFINITY);
-  double least = choose(w < 0, vec3_norm2(vec3_sub(found, p)), INFINITY);
-  bool nearer = of_ca <= least;
-  found = choose_point(nearer, ca, found);
+/* The nearest point, and its squared distance. Of the edges only those that p is beyond count, and
+ * the first of equals. That are two at the most, and none where p is above the inside: so two
+ * divisions are enough, where each is of what its lane needs. */
+SCREE_LANES_INLINE vec3 nearest_lane(const lane_triangle *t, vec3 p, double *distance2) {
+  vec3 ap = vec3_sub(p, t->a), ac = vec3_scale(t->ca, -1);
+  double v = vec3_dot(vec3_cross(ap, ac), t->n), w = vec3_dot(vec3_cross(t->ab, ap), t->n),
+         u = t->n2 - v - w;
+  bool beyond_bc = u < 0, beyond_ca = v < 0, beyond_ab = w < 0;
+  double along_ab = vec3_dot(ap, t->ab), along_bc = vec3_dot(vec3_sub(p, t->b), t->bc),
+         along_ca = vec3_dot(vec3_sub(p, t->c), t->ca);
+  double one = choose(beyond_ca, along_ca, choose(beyond_bc, along_bc, v)),
+         of_one = choose(beyond_ca, t->ca2, choose(beyond_bc, t->bc2, t->n2)),
+         two = choose(beyond_ca, along_ca, choose(beyond_ab, along_ab, w)),
+         of_two = choose(beyond_ca, t->ca2, choose(beyond_ab, t->ab2, t->n2));
+  one = choose(beyond_ab, along_ab, one) / choose(beyond_ab, t->ab2, of_one);
+  two = choose(beyond_bc, along_bc, two) / choose(beyond_bc, t->bc2, of_two);
+  vec3 inside = vec3_mad(vec3_mad(t->a, t->ab, one), ac, two);
+  vec3 ab = on_segment(t->a, t->ab, t->b, along_ab, t->ab2, one);
+  vec3 bc = on_segment(t->b, t->bc, t->c, along_bc, t->bc2, two);
+  vec3 ca = on_segment(t->c, t->ca, t->a, along_ca, t->ca2, choose(beyond_ab, two, one));
+  double of_bc = choose(beyond_bc, vec3_norm2(vec3_sub(bc, p)), INFINITY);
+  double of_ca = choose(beyond_ca, vec3_norm2(vec3_sub(ca, p)), INFINITY);
+  double least = choose(beyond_ab, vec3_norm2(vec3_sub(ab, p)), INFINITY);
+  bool nearer = of_ca <= least, outside = beyond_bc | beyond_ca | beyond_ab;
+  vec3 found = choose_point(nearer, ca, ab);
   least = choose(nearer, of_ca, least);
   nearer = of_bc <= least;
   found = choose_point(nearer, bc, found);
-  found = choose_point((u < 0) | (v < 0) | (w < 0), found, inside);
-  *distance2 = vec3_norm2(vec3_sub(p, found));
-  return found;
+  least = choose(nearer, of_bc, least);
+  *distance2 = choose(outside, least, vec3_norm2(vec3_sub(p, inside)));
+  return choose_point(outside, found, inside);
 }
 
-void scree_fours_fill(const double (*corners)[9], size_t count, scree_four *fours) {
-  for (size_t i = 0; i < SCREE_FOUR * scree_four_count(count); i++) {
-    const double *from = corners[i < count ? i : count - 1];
-    scree_four *four = &fours[i / SCREE_FOUR];
-    size_t lane = i % SCREE_FOUR;
-    vec3 a = vec3_load(from), ab = vec3_sub(vec3_load(from + 3), a),
-         ac = vec3_sub(vec3_load(from + 6), a), n = vec3_cross(ab, ac);
-    for (size_t k = 0; k < 9; k++) four->at[k / 3][k % 3][lane] = from[k];
-    four->n[0][lane] = n.x;
-    four->n[1][lane] = n.y;
-    four->n[2][lane] = n.z;
-    four->n2[lane] = vec3_norm2(n);
-    four->needle[lane] = is_needle(four->n2[lane], ab, ac);
-    four->has_needle = (lane > 0 && four->has_needle) || four->needle[lane];
+SCREE_LANES_INLINE vec3 lane_of(const double (*axes)[SCREE_EIGHT], int lane) {
+  return (vec3){axes[0][lane], axes[1][lane], axes[2][lane]};
+}
+
+SCREE_LANES_INLINE void set_lane(double (*axes)[SCREE_EIGHT], int lane, vec3 x) {
+  axes[0][lane] = x.x;
+  axes[1][lane] = x.y;
+  axes[2][lane] = x.z;
+}
+
+/* What the corners tell. */
+SCREE_LANES static void eight_lanes(scree_eight *restrict e) {
+  for (int i = 0; i < SCREE_EIGHT; i++) {
+    vec3 a = lane_of(e->at[0], i), b = lane_of(e->at[1], i), c = lane_of(e->at[2], i);
+    vec3 ab = vec3_sub(b, a), bc = vec3_sub(c, b), ca = vec3_sub(a, c);
+    vec3 n = vec3_cross(ab, vec3_sub(c, a));
+    double ab2 = vec3_norm2(ab), ca2 = vec3_norm2(ca), longer2 = choose(ab2 > ca2, ab2, ca2);
+    set_lane(e->side[0], i, ab);
+    set_lane(e->side[1], i, bc);
+    set_lane(e->side[2], i, ca);
+    set_lane(e->n, i, n);
+    e->length2[0][i] = ab2;
+    e->length2[1][i] = vec3_norm2(bc);
+    e->length2[2][i] = ca2;
+    e->n2[i] = vec3_norm2(n);
+    e->needle[i] = e->n2[i] <= NEEDLE * (longer2 * longer2);
   }
 }
 
-SCREE_LANES static void fours_lanes(const scree_four *fours, size_t count, vec3 p,
-                                    double *restrict out) {
-  for (const scree_four *f = fours; f < fours + count; f++, out += SCREE_FOUR)
-    for (int i = 0; i < SCREE_FOUR; i++) {
-      vec3 a = {f->at[0][0][i], f->at[0][1][i], f->at[0][2][i]};
-      vec3 b = {f->at[1][0][i], f->at[1][1][i], f->at[1][2][i]};
-      vec3 c = {f->at[2][0][i], f->at[2][1][i], f->at[2][2][i]};
-      vec3 n = {f->n[0][i], f->n[1][i], f->n[2][i]};
-      nearest_lane(a, b, c, n, f->n2[i], p, &out[i]);
+void scree_eights_fill(const double (*corners)[9], size_t count, scree_eight *eights) {
+  for (size_t first = 0; first < count; first += SCREE_EIGHT) {
+    scree_eight *e = &eights[first / SCREE_EIGHT];
+    for (size_t lane = 0; lane < SCREE_EIGHT; lane++) {
+      const double *from = corners[first + lane < count ? first + lane : count - 1];
+      for (size_t k = 0; k < 9; k++) e->at[k / 3][k % 3][lane] = from[k];
+    }
+    eight_lanes(e);
+    e->has_needle = false;
+    for (size_t lane = 0; lane < SCREE_EIGHT; lane++) e->has_needle |= e->needle[lane];
+  }
+}
+
+SCREE_LANES static void eights_lanes(const scree_eight *eights, size_t count, vec3 p,
+                                     double *restrict out) {
+  for (const scree_eight *e = eights; e < eights + count; e++, out += SCREE_EIGHT)
+    for (int i = 0; i < SCREE_EIGHT; i++) {
+      lane_triangle t = {.a = lane_of(e->at[0], i),
+                         .b = lane_of(e->at[1], i),
+                         .c = lane_of(e->at[2], i),
+                         .ab = lane_of(e->side[0], i),
+                         .bc = lane_of(e->side[1], i),
+                         .ca = lane_of(e->side[2], i),
+                         .n = lane_of(e->n, i),
+                         .n2 = e->n2[i],
+                         .ab2 = e->length2[0][i],
+                         .bc2 = e->length2[1][i],
+                         .ca2 = e->length2[2][i]};
+      nearest_lane(&t, p, &out[i]);
     }
 }
 
-void scree_fours_closest(const scree_four *fours, size_t four_count, vec3 p, double *distance2) {
-  fours_lanes(fours, four_count, p, distance2);
-  for (const scree_four *f = fours; f < fours + four_count; f++) {
-    if (!f->has_needle) continue;
-    for (size_t i = 0; i < SCREE_FOUR; i++) {
+void scree_eights_closest(const scree_eight *eights, size_t eight_count, vec3 p,
+                          double *distance2) {
+  eights_lanes(eights, eight_count, p, distance2);
+  for (const scree_eight *e = eights; e < eights + eight_count; e++) {
+    if (!e->has_needle) continue;
+    for (size_t i = 0; i < SCREE_EIGHT; i++) {
       double corners[9];
       vec3 point;
-      if (!f->needle[i]) continue;
-      for (size_t k = 0; k < 9; k++) corners[k] = f->at[k / 3][k % 3][i];
-      distance2[SCREE_FOUR * (size_t)(f - fours) + i] = scree_triangle_closest(corners, p, &point);
+      if (!e->needle[i]) continue;
+      for (size_t k = 0; k < 9; k++) corners[k] = e->at[k / 3][k % 3][i];
+      distance2[SCREE_EIGHT * (size_t)(e - eights) + i] =
+          scree_triangle_closest(corners, p, &point);
     }
   }
 }
 
 SCREE_LANES static void points_lanes(vec3 a, vec3 b, vec3 c, scree_points *q, int count) {
-  vec3 n = vec3_triangle_normal(a, b, c);
-  double n2 = vec3_norm2(n);
-  for (int begin = 0; begin < count; begin += SCREE_FOUR)
-    for (int i = begin; i < begin + SCREE_FOUR; i++) {
+  lane_triangle t = {.a = a,
+                     .b = b,
+                     .c = c,
+                     .ab = vec3_sub(b, a),
+                     .bc = vec3_sub(c, b),
+                     .ca = vec3_sub(a, c),
+                     .n = vec3_triangle_normal(a, b, c)};
+  t.n2 = vec3_norm2(t.n);
+  t.ab2 = vec3_norm2(t.ab);
+  t.bc2 = vec3_norm2(t.bc);
+  t.ca2 = vec3_norm2(t.ca);
+  for (int begin = 0; begin < count; begin += SCREE_EIGHT)
+    for (int i = begin; i < begin + SCREE_EIGHT; i++) {
       vec3 p = {q->at[0][i], q->at[1][i], q->at[2][i]};
-      vec3 found = nearest_lane(a, b, c, n, n2, p, &q->distance2[i]);
+      vec3 found = nearest_lane(&t, p, &q->distance2[i]);
       q->nearest[0][i] = found.x;
       q->nearest[1][i] = found.y;
       q->nearest[2][i] = found.z;
@@ -180,7 +240,7 @@ void scree_points_closest(const double corners[9], scree_points *q) {
     }
     return;
   }
-  int width = (q->count + SCREE_FOUR - 1) / SCREE_FOUR * SCREE_FOUR;
+  int width = (q->count + SCREE_EIGHT - 1) / SCREE_EIGHT * SCREE_EIGHT;
   for (int k = 0; k < 3; k++)
     for (int i = q->count; i < width; i++) q->at[k][i] = q->at[k][0];
   points_lanes(a, b, c, q, width);

@@ -13,25 +13,28 @@
 /* The distance of p from one triangle, squared; *point is the nearest point. */
 double scree_triangle_closest(const double corners[9], vec3 p, vec3 *point);
 
-/* Four triangles side by side. */
-enum { SCREE_FOUR = 4 };
-typedef struct scree_four {
-  double at[3][3][SCREE_FOUR]; /* corner, axis */
-  double n[3][SCREE_FOUR], n2[SCREE_FOUR];
-  bool needle[SCREE_FOUR], has_needle; /* flat, or nearly: an own way is taken */
-} scree_four;
+/* Eight triangles side by side: of fewer, each operation would wait for the one before. */
+enum { SCREE_EIGHT = 8 };
+typedef struct scree_eight {
+  double at[3][3][SCREE_EIGHT];   /* corner, axis */
+  double side[3][3][SCREE_EIGHT]; /* from each corner to the next, axis */
+  double length2[3][SCREE_EIGHT]; /* of these, squared */
+  double n[3][SCREE_EIGHT], n2[SCREE_EIGHT];
+  uint8_t needle[SCREE_EIGHT]; /* flat, or nearly: an own way is taken */
+  bool has_needle;
+} scree_eight;
 
-/* How many fours hold so many triangles. */
-static inline size_t scree_four_count(size_t count) {
-  return (count + SCREE_FOUR - 1) / SCREE_FOUR;
+/* How many eights hold so many triangles. */
+static inline size_t scree_eight_count(size_t count) {
+  return (count + SCREE_EIGHT - 1) / SCREE_EIGHT;
 }
 
-/* Makes these triangles, at least one, ready: their fours, of which the last one repeats the last
+/* Makes these triangles, at least one, ready: their eights, of which the last one repeats the last
  * triangle. */
-void scree_fours_fill(const double (*corners)[9], size_t count, scree_four *fours);
+void scree_eights_fill(const double (*corners)[9], size_t count, scree_eight *eights);
 
-/* The squared distances of p from all triangles of the fours, in their order. */
-void scree_fours_closest(const scree_four *fours, size_t four_count, vec3 p, double *distance2);
+/* The squared distances of p from all triangles of the eights, in their order. */
+void scree_eights_closest(const scree_eight *eights, size_t eight_count, vec3 p, double *distance2);
 
 /* Points side by side; the first `count` of `at` are the caller's to set. */
 enum { SCREE_POINTS = 32 };

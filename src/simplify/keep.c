@@ -55,7 +55,7 @@ static void list_origins(finding *f) {
 }
 
 /* The triangles at a vertex, a few of many at a time. */
-enum { FAN_PART = 4 * SCREE_FOUR };
+enum { FAN_PART = 2 * SCREE_EIGHT };
 typedef struct fan {
   uint32_t triangle[FAN_PART];
   double corners[FAN_PART][9];
@@ -77,14 +77,14 @@ static void gather_fan(const scree_halfmesh *s, uint32_t first, uint32_t *h, fan
 /* Gives w the nearest triangle at vertex v, in w->next. Whether others may be nearer still: not
  * where what it has is as near, nor where w lies right above the triangle. */
 static bool look_around(const scree_halfmesh *s, uint32_t v, scree_witness *w) {
-  scree_four fours[FAN_PART / SCREE_FOUR];
+  scree_eight eights[FAN_PART / SCREE_EIGHT];
   double distance2[FAN_PART];
   fan f;
   bool found = false;
   for (uint32_t first = s->vertex[v].outgoing, h = first; h != SCREE_NONE;) {
     gather_fan(s, first, &h, &f);
-    scree_fours_fill(f.corners, f.count, fours);
-    scree_fours_closest(fours, scree_four_count(f.count), w->at, distance2);
+    scree_eights_fill(f.corners, f.count, eights);
+    scree_eights_closest(eights, scree_eight_count(f.count), w->at, distance2);
     for (uint32_t i = 0; i < f.count; i++) {
       if (!(distance2[i] < w->distance2)) continue;
       vec3 a = vec3_load(f.corners[i]);

@@ -8,10 +8,10 @@
 enum { FARTHEST_BLOCKS = 16 };
 
 /* The least of the squared distances of p from these triangles. */
-static double distance2_from(const scree_four *fours, size_t four_count, vec3 p) {
+static double distance2_from(const scree_eight *eights, size_t eight_count, vec3 p) {
   double distance2[SCREE_RING_MAX], least = INFINITY;
-  scree_fours_closest(fours, four_count, p, distance2);
-  for (size_t i = 0; i < SCREE_FOUR * four_count; i++)
+  scree_eights_closest(eights, eight_count, p, distance2);
+  for (size_t i = 0; i < SCREE_EIGHT * eight_count; i++)
     if (distance2[i] < least) least = distance2[i];
   return least;
 }
@@ -55,13 +55,13 @@ static uint32_t gather_crowd(const scree_memory *m, uint32_t j, double safe2, wi
 static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
                                  const scree_ring *r, vec3 target, double worst, double most) {
   double corners[SCREE_RING_MAX][9];
-  scree_four fours[SCREE_RING_MAX / SCREE_FOUR];
-  size_t four_count = scree_four_count(r->count);
+  scree_eight eights[SCREE_RING_MAX / SCREE_EIGHT];
+  size_t eight_count = scree_eight_count(r->count);
   witness_crowd c;
   if (worst > most) return worst;
   scree_memory_ask(m, s, r);
   scree_ring_corners(s, r, target, corners);
-  scree_fours_fill(corners, r->count, fours);
+  scree_eights_fill(corners, r->count, eights);
   for (uint32_t k = 0; k < scree_ring_triangle_count(r); k++) {
     uint32_t j = m->first[scree_ring_triangle(s, r, k)];
     if (j == SCREE_NONE) continue;
@@ -78,7 +78,7 @@ static double stray_of_witnesses(const scree_memory *m, const scree_halfmesh *s,
         double near = c.points.distance2[i];
         if (near <= worst || near <= scree_past_rounding(c.before[i])) continue;
         double distance2 = distance2_from(
-            fours, four_count, (vec3){c.points.at[0][i], c.points.at[1][i], c.points.at[2][i]});
+            eights, eight_count, (vec3){c.points.at[0][i], c.points.at[1][i], c.points.at[2][i]});
         if (distance2 > fmax(worst, scree_past_rounding(c.before[i]))) worst = distance2;
         if (worst > most) return worst;
       }
@@ -182,17 +182,17 @@ bool scree_memory_stays_within(const scree_memory *m, const scree_halfmesh *s, c
 double scree_memory_growth(const scree_memory *m, const scree_halfmesh *s, const scree_ring *r,
                            vec3 target, double least, double *worst) {
   double corners[SCREE_RING_MAX][9], growth = 0, most = least;
-  scree_four fours[SCREE_RING_MAX / SCREE_FOUR];
-  size_t four_count = scree_four_count(r->count);
+  scree_eight eights[SCREE_RING_MAX / SCREE_EIGHT];
+  size_t eight_count = scree_eight_count(r->count);
   scree_hints hints;
   scree_no_hints(&hints);
   scree_memory_ask(m, s, r);
   scree_ring_corners(s, r, target, corners);
-  scree_fours_fill(corners, r->count, fours);
+  scree_eights_fill(corners, r->count, eights);
   for (uint32_t k = 0; k < scree_ring_triangle_count(r); k++)
     for (uint32_t j = m->first[scree_ring_triangle(s, r, k)]; j != SCREE_NONE;
          j = m->witnesses[j].next) {
-      double distance2 = distance2_from(fours, four_count, m->witnesses[j].at);
+      double distance2 = distance2_from(eights, eight_count, m->witnesses[j].at);
       growth +=
           (double)m->witnesses[j].weight * (sqrt(distance2) - sqrt(m->witnesses[j].distance2));
       most = fmax(most, distance2);

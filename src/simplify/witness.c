@@ -240,12 +240,12 @@ void scree_memory_compact(scree_memory *m, const scree_halfmesh *s) {
 
 /* The new triangles of a ring. */
 typedef struct fan {
-  scree_four fours[SCREE_RING_MAX / SCREE_FOUR];
-  size_t four_count;
+  scree_eight eights[SCREE_RING_MAX / SCREE_EIGHT];
+  size_t eight_count;
 } fan;
 
 static double size2_of(const fan *f, uint32_t i) {
-  return f->fours[i / SCREE_FOUR].n2[i % SCREE_FOUR];
+  return f->eights[i / SCREE_EIGHT].n2[i % SCREE_EIGHT];
 }
 
 /* The triangle whose new form is nearest to the witness. Equally near ones are usual, for the
@@ -254,7 +254,7 @@ static double size2_of(const fan *f, uint32_t i) {
 static uint32_t nearest_triangle(const scree_ring *r, const fan *f, scree_witness *w) {
   double distance2[SCREE_RING_MAX], least = INFINITY, largest = 0;
   uint32_t nearest = SCREE_NONE;
-  scree_fours_closest(f->fours, f->four_count, w->at, distance2);
+  scree_eights_closest(f->eights, f->eight_count, w->at, distance2);
   for (uint32_t i = 0; i < r->count; i++)
     if (distance2[i] < least) least = distance2[i];
   double near = scree_past_rounding(least);
@@ -297,8 +297,8 @@ void scree_memory_move(scree_memory *m, const scree_halfmesh *s, const scree_rin
   q.ring = r;
   q.count = 0;
   scree_ring_corners(s, r, target, corners);
-  scree_fours_fill(corners, r->count, q.fan.fours);
-  q.fan.four_count = scree_four_count(r->count);
+  scree_eights_fill(corners, r->count, q.fan.eights);
+  q.fan.eight_count = scree_eight_count(r->count);
   scree_memory_ask(m, s, r);
   scree_memory_walk(m, target, &m->near[r->a]);
   for (uint32_t k = 0; k < around; k++) {
@@ -348,8 +348,8 @@ void scree_memory_replace(scree_memory *m, const scree_halfmesh *s, scree_witnes
   q.m = m;
   q.ring = &all;
   q.count = 0;
-  scree_fours_fill(corners, all.count, q.fan.fours);
-  q.fan.four_count = scree_four_count(all.count);
+  scree_eights_fill(corners, all.count, q.fan.eights);
+  q.fan.eight_count = scree_eight_count(all.count);
   scree_free(m->witnesses);
   m->witnesses = witnesses;
   m->count = m->left = count;
@@ -382,25 +382,25 @@ SCREE_LANES static void depth_lanes(const double *corners, const scree_points *p
 }
 
 /* Whether the triangles beside this one, the first, lie beyond planes upright on it. */
-static bool faces_all(const scree_four *four, size_t count) {
+static bool faces_all(const scree_eight *around, size_t count) {
   bool faces = true;
   for (size_t i = 1; i < count; i++)
-    faces &= four->n[0][0] * four->n[0][i] + four->n[1][0] * four->n[1][i] +
-                 four->n[2][0] * four->n[2][i] >
+    faces &= around->n[0][0] * around->n[0][i] + around->n[1][0] * around->n[1][i] +
+                 around->n[2][0] * around->n[2][i] >
              0;
   return faces;
 }
 
 /* Of a triangle, the first, and those beside it: as above, but that a witness stays where that is
  * as near as any. */
-static size_t nearest_beside(const scree_four *four, const double *distance2, size_t count) {
+static size_t nearest_beside(const scree_eight *around, const double *distance2, size_t count) {
   double least = distance2[0];
   size_t nearest = SIZE_MAX;
   for (size_t i = 1; i < count; i++) least = distance2[i] < least ? distance2[i] : least;
   double near = scree_past_rounding(least);
   if (distance2[0] <= near) return 0;
   for (size_t i = 1; i < count; i++)
-    if (distance2[i] <= near && (nearest == SIZE_MAX || four->n2[i] > four->n2[nearest]))
+    if (distance2[i] <= near && (nearest == SIZE_MAX || around->n2[i] > around->n2[nearest]))
       nearest = i;
   return nearest;
 }
@@ -408,19 +408,19 @@ static size_t nearest_beside(const scree_four *four, const double *distance2, si
 /* Witnesses of one triangle that are to follow. */
 typedef struct following {
   scree_memory *m;
-  uint32_t *triangle;          /* per witness: where it goes */
-  uint32_t beside[SCREE_FOUR]; /* the triangle, and those beside it */
-  double corners[SCREE_FOUR][9];
+  uint32_t *triangle; /* per witness: where it goes */
+  uint32_t beside[4]; /* the triangle, and those beside it */
+  double corners[4][9];
   size_t count;
-  scree_four four;
-  bool faces; /* all beside it */
+  scree_eight around; /* these */
+  bool faces;         /* all beside it */
   scree_points points;
   uint32_t witness[SCREE_POINTS];
 } following;
 
 /* Deep inside, farther from all edges than from the witness, nothing beyond them is nearer. */
 static void follow_gathered(following *f) {
-  double depth[SCREE_POINTS], distance2[SCREE_FOUR];
+  double depth[SCREE_POINTS], distance2[SCREE_EIGHT];
   scree_points_closest(f->corners[0], &f->points);
   depth_lanes(f->corners[0], &f->points, depth, f->points.count);
   for (int i = 0; i < f->points.count; i++) {
@@ -428,8 +428,8 @@ static void follow_gathered(following *f) {
     size_t nearest = 0;
     w->distance2 = f->points.distance2[i];
     if (!f->faces || !(depth[i] * depth[i] > (1 + SAME_SIZE) * w->distance2)) {
-      scree_fours_closest(&f->four, 1, w->at, distance2);
-      nearest = nearest_beside(&f->four, distance2, f->count);
+      scree_eights_closest(&f->around, 1, w->at, distance2);
+      nearest = nearest_beside(&f->around, distance2, f->count);
       w->distance2 = distance2[nearest];
     }
     f->triangle[f->witness[i]] = f->beside[nearest];
@@ -449,8 +449,8 @@ static void follow_from(following *f, const scree_halfmesh *s, uint32_t t) {
     scree_corners(s, f->beside[i], at);
     for (size_t k = 0; k < 3; k++) vec3_store(f->corners[i] + 3 * k, at[k]);
   }
-  scree_fours_fill(f->corners, f->count, &f->four);
-  f->faces = faces_all(&f->four, f->count);
+  scree_eights_fill(f->corners, f->count, &f->around);
+  f->faces = faces_all(&f->around, f->count);
   for (uint32_t j = m->first[t]; j != SCREE_NONE; j = m->witnesses[j].next) {
     f->witness[f->points.count] = j;
     scree_points_add(&f->points, m->witnesses[j].at);

@@ -88,15 +88,15 @@ static void test_side_by_side(void **state) {
   (void)state;
   enum { TRIANGLES = 23 };
   scree_rng rng = {.seed = 27};
-  scree_four fours[TRIANGLES / SCREE_FOUR + 1];
-  double corners[TRIANGLES][9], distance2[TRIANGLES + SCREE_FOUR];
+  scree_eight eights[TRIANGLES / SCREE_EIGHT + 1];
+  double corners[TRIANGLES][9], distance2[TRIANGLES + SCREE_EIGHT];
   size_t flat = 0;
   for (int round = 0; round < 300; round++) {
     size_t count = 1 + scree_rng_below(&rng, TRIANGLES);
     scree_points points = {.count = 0};
     for (size_t i = 0; i < count; i++)
       random_triangle(&rng, (int)scree_rng_below(&rng, 4), corners[i]);
-    scree_fours_fill(corners, count, fours);
+    scree_eights_fill(corners, count, eights);
     int wanted = 1 + (int)scree_rng_below(&rng, SCREE_POINTS);
     while (points.count < wanted) { /* anywhere, at corners and on edges */
       const double *c = corners[scree_rng_below(&rng, count)];
@@ -106,14 +106,14 @@ static void test_side_by_side(void **state) {
     }
     for (size_t t = 0; t < count; t++) {
       scree_points_closest(corners[t], &points);
-      flat += fours[t / SCREE_FOUR].needle[t % SCREE_FOUR];
+      flat += eights[t / SCREE_EIGHT].needle[t % SCREE_EIGHT];
       for (int i = 0; i < points.count; i++) {
         vec3 p = {points.at[0][i], points.at[1][i], points.at[2][i]}, nearest;
         double expected = scree_triangle_closest(corners[t], p, &nearest);
         assert_true(points.distance2[i] == expected);
         assert_true(points.nearest[0][i] == nearest.x && points.nearest[1][i] == nearest.y &&
                     points.nearest[2][i] == nearest.z);
-        scree_fours_closest(fours, scree_four_count(count), p, distance2);
+        scree_eights_closest(eights, scree_eight_count(count), p, distance2);
         assert_true(distance2[t] == expected);
       }
     }
