@@ -3,6 +3,7 @@
 Screenshots and the printed page go to the folder KEEP, where given. Exits 77 where no Chromium is installed."""
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -208,6 +209,21 @@ def several_objects(browser, folder):
     scree("report", "one", "two", "-o", "both.html", folder=folder)
     ready(browser, os.path.join(folder, "both.html"))
     check(browser.text("main").count("How this was made") == 2, "a page of two folders lacks one")
+
+
+def the_set_is_the_text_s(browser, folder):
+    """The headline of several objects says what choice.txt says: of all of them, by either rule."""
+    scree("sample", "sphere", "--resolution", "2mm", "-o", "sphere.stl", folder=folder)
+    scree("sample", "fp-1", "dc-1", "sp-1", "--resolution", "1.5mm", "-o", "scans", folder=folder)
+    for name, words in (("floor", ("scans/fp-1.stl", "scans/sp-1.stl", "sphere.stl", "-w", "20")),
+                        ("paper", ("scans/fp-1.stl", "scans/dc-1.stl", "scans/sp-1.stl", "--paper"))):
+        scree("choose", *words, "-o", name, folder=folder)
+        with open(os.path.join(folder, name, "choice.txt"), encoding="utf-8") as file:
+            text = re.search(r"([\d,]+ to [\d,]+) triangles, area within ([\d.]+)%", file.read())
+        ready(browser, os.path.join(folder, name, "report.html"))
+        page = re.search(r"([\d,]+ to [\d,]+) triangles, area within ([\d.]+) %", browser.text(".answer"))
+        check(page and page[1] == text[1] and float(page[2]) == float(text[2]),
+              f"{name}: the page says {browser.text('.answer')}, the text {text[0]}")
 
 
 def a_large_page(browser, folder):
@@ -426,6 +442,7 @@ def main():
         with Browser() as browser:
             page = one_object(browser, folder)
             several_objects(browser, folder)
+            the_set_is_the_text_s(browser, folder)
             a_study(browser, folder)
             heap = a_heap(browser, folder)
             pour = a_pour(browser, folder)

@@ -78,15 +78,24 @@ export class ChoiceSection {
 
   setAnswer(set) {
     const { rp, similar_rp_low: low, similar_rp_high: high } = set[this.objects[0].default];
-    const counts = [], errors = [];
-    this.objects.forEach((object, i) => {
-      const row = this.levelsOf(i)?.trace.findLast(({ count }) => count <= rp * object.triangle_count * (1 + 1e-9));
-      if (!row) return;
-      counts.push(row.count);
-      errors.push(row.worst);
-    });
-    const range = counts.length ? `: ${whole(Math.min(...counts))} to ${whole(Math.max(...counts))} triangles, area within ${percent(Math.max(...errors))} of the scans'` : '';
+    const levels = this.objects.map((_, i) => this.levelAt(i, rp));
+    const counts = levels.map((level) => level?.count), worst = Math.max(...levels.map((level) => level?.error));
+    const least = Math.min(...counts), most = Math.max(...counts);
+    const range = levels.every(Boolean) ? `: ${least < most ? `${whole(least)} to ${whole(most)} triangles` : `${whole(least)} triangles each`}, area within ${percent(worst)} of the scans'` : '';
     return `Use Rp = ${rpText(rp)} for all ${this.objects.length}${range}.${similar(low, high, (v) => `Rp = ${rpText(v)}`)} Each object's own choice is below.`;
+  }
+
+  // The level of an object at the set's Rp, which lies on the grid by the paper's rule and on the curve by the robust
+  // one; the coarsest where decimation ended above. Nothing where the curve is not in the page.
+  levelAt(index, rp) {
+    const object = this.objects[index];
+    if (object.default === 'paper') {
+      const level = object.levels.find((each) => each.rp >= rp * (1 - 1e-9));
+      return { count: level.triangle_count, error: level.eps_s };
+    }
+    const trace = this.levelsOf(index)?.trace;
+    const row = trace?.findLast(({ count }) => count <= rp * object.triangle_count * (1 + 1e-9)) ?? trace?.[0];
+    return row && { count: row.count, error: row.worst };
   }
 
   tellObjects() {
