@@ -49,7 +49,7 @@ export class Levels {
     }
   }
 
-  // The middle and size of the object, in steps of the grid.
+  // The middle and size of the object, and half its box, in steps of the grid.
   frame() {
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
     const { points } = this.base;
@@ -58,7 +58,8 @@ export class Levels {
       high[i % 3] = Math.max(high[i % 3], points[i]);
     }
     this.centre = low.map((x, k) => (x + high[k]) / 2);
-    this.size = Math.hypot(...low.map((x, k) => high[k] - x)) || 1;
+    this.half = low.map((x, k) => (high[k] - x) / 2);
+    this.size = 2 * Math.hypot(...this.half) || 1;
   }
 
   // Where there is none in the page, the fine level.

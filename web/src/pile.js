@@ -1,12 +1,12 @@
 // A pile (docs/formats.md): its shapes, and where its bodies were at moments of the run; and the 3D view that plays
 // it. Between two moments bodies go straight and turn evenly.
 import {
-  BufferAttribute, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh, Matrix4,
-  Mesh, MeshBasicMaterial, MeshStandardMaterial, Quaternion, Vector3,
+  Box3, BufferAttribute, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh,
+  Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, Quaternion, Vector3,
 } from 'three';
 import { Reader, decodeMesh, decodeVertices } from './packed.js';
 import { counted, element, number, whole } from './text.js';
-import { View } from './view.js';
+import { View, corners } from './view.js';
 
 let shapeColors; // as the pictures have them
 export const setShapeColors = (colors) => {
@@ -72,18 +72,33 @@ export class Pile {
     return true;
   }
 
-  // What the picture is fitted to: most bodies at the end, and the cylinder.
-  frame() {
-    const position = new Vector3(), turn = new Quaternion(), far = [], high = [];
-    const last = this.momentAt(this.end);
+  // How far from the axis and how high each body reaches at a moment.
+  reaches(moment) {
+    const position = new Vector3(), turn = new Quaternion(), point = new Vector3(), far = [], high = [];
+    const boxes = this.shapes.map(({ mesh }) => {
+      const { min, max } = new Box3().setFromArray(mesh.points);
+      return corners(min.toArray(), max.toArray());
+    });
     for (let i = 0; i < this.bodyCount; i++) {
-      if (!this.pose(i, last, position, turn)) continue;
-      far.push(Math.hypot(position.x, position.y));
-      high.push(position.z);
+      if (!this.pose(i, moment, position, turn)) continue;
+      const points = boxes[this.shapeOf[i]].map((corner) => point.copy(corner).applyQuaternion(turn).add(position).toArray());
+      far.push(Math.max(...points.map(([x, y]) => Math.hypot(x, y))));
+      high.push(Math.max(...points.map(([, , z]) => z)));
     }
-    const most = (list) => (list.length ? list.sort((a, b) => a - b)[Math.floor(0.95 * (list.length - 1))] : 0);
-    const height = most(high);
-    return { size: 2 * Math.max(1.15 * most(far), height, 0.65 * this.width), height };
+    const ascending = (list) => list.sort((a, b) => a - b);
+    return { far: ascending(far), high: ascending(high) };
+  }
+
+  // What the picture is fitted to: the container and what is in it before it rises, and the bodies at the end but for
+  // those that rolled far off.
+  frame() {
+    const { times, cylinder } = this;
+    const rises = cylinder.findIndex((height) => height > 0);
+    const filled = this.reaches(this.momentAt(times[rises > 0 ? rises - 1 : times.length - 1]));
+    const { far, high } = this.reaches(this.momentAt(this.end));
+    const usual = far[Math.floor(0.95 * (far.length - 1))] ?? 0;
+    const container = this.cylinderRadius || Math.hypot(...this.box) / 2;
+    return { container, filled: filled.high.at(-1) ?? 0, radius: Math.max(container, Math.min(far.at(-1) ?? 0, 1.5 * usual)), top: high.at(-1) ?? 0 };
   }
 
   // Across the container: what stands round the bodies from the start.
@@ -114,26 +129,23 @@ function wallGeometry(pile) {
   return box ? made.scale(...pile.box, 1) : made;
 }
 
+// Points on a circle about the vertical axis.
+const ring = (radius, z) => Array.from({ length: 16 }, (_, i) => new Vector3(radius, 0, z).applyAxisAngle(new Vector3(0, 0, 1), (Math.PI * i) / 8));
+
 // Draws a pile at any time. Throws where there is no WebGL.
 export class PileView extends View {
   constructor(host, label) {
-    super(host, label);
-    this.home();
-  }
-
-  home() {
-    this.camera.position.set(2.2, -3.4, 1.5);
-    this.controls.target.set(0, 0, 0);
-    this.controls.update();
+    super(host, label, [2.2, -3.4, 1.5]);
   }
 
   set(pile) {
     this.clear();
     this.pile = pile;
-    const { size, height } = pile.frame();
+    const { container, filled, radius, top } = pile.frame();
     const group = new Group();
-    group.scale.setScalar(2 / size);
-    group.position.z = (-0.45 * height * 2) / size;
+    const middle = Math.max(filled, top) / 2, scale = 1 / Math.max(radius, middle);
+    group.scale.setScalar(scale);
+    group.position.z = -middle * scale;
     const floor = new Mesh(new CircleGeometry(pile.discRadius || pile.width, 96), new MeshStandardMaterial({ color: 0x9a9aa2, roughness: 1, transparent: true, opacity: 0.5, side: DoubleSide }));
     floor.position.z = -0.0005;
     this.wall = new Mesh(wallGeometry(pile), new MeshBasicMaterial({ color: 0x8899bb, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }));
@@ -148,6 +160,7 @@ export class PileView extends View {
     });
     this.parts.push(group);
     this.scene.add(group);
+    this.surround([[radius, 0], [radius, top], [container, filled]].flatMap(([r, z]) => ring(r * scale, (z - middle) * scale)));
   }
 
   showTime(time) {

@@ -1,11 +1,12 @@
 // A 3D view of a mesh that is turned with mouse, finger or arrow keys. Flat shading, so that facets are seen.
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, LineBasicMaterial, LineSegments, Mesh,
-  MeshStandardMaterial, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, LineBasicMaterial, LineSegments, MathUtils,
+  Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
 export const mostEdgeTriangles = 60000; // edges of finer meshes would hide them
+const filled = 0.92; // of the panel by the scan; its levels stick out a little
 
 // viridis at nine points
 const ramp = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129],
@@ -54,9 +55,26 @@ function edges(mesh) {
   return geometry;
 }
 
+// How far from the origin, in a direction, the camera sees all points.
+function fitDistance(camera, direction, points) {
+  const right = new Vector3().crossVectors(camera.up, direction).normalize();
+  const upward = new Vector3().crossVectors(direction, right);
+  const high = filled * Math.tan(MathUtils.degToRad(camera.fov / 2)), wide = high * camera.aspect;
+  const reach = (p) => p.dot(direction) + Math.max(Math.abs(p.dot(right)) / wide, Math.abs(p.dot(upward)) / high);
+  return points.reduce((far, p) => Math.max(far, reach(p)), 1);
+}
+
+export function corners(low, high) {
+  const [xs, ys, zs] = low.map((x, k) => [x, high[k]]);
+  return xs.flatMap((x) => ys.flatMap((y) => zs.map((z) => new Vector3(x, y, z))));
+}
+
 export class View {
-  constructor(host, label) {
+  // from: where the camera stands at first, seen from the origin
+  constructor(host, label, from = [2.35, -2.7, 1.75]) {
     this.host = host;
+    this.from = new Vector3(...from).normalize();
+    this.outline = [];
     this.renderer = new WebGLRenderer({ antialias: true, alpha: true, preserveDrawingBuffer: true });
     const canvas = this.renderer.domElement;
     canvas.setAttribute('role', 'img');
@@ -75,15 +93,27 @@ export class View {
     this.scene.add(this.camera);
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.addEventListener('change', () => this.draw());
+    this.controls.addEventListener('start', () => (this.turned = true));
     canvas.addEventListener('keydown', (event) => this.key(event));
     this.home();
     new ResizeObserver(() => this.resize()).observe(host);
   }
 
   home() {
-    this.camera.position.set(2.35, -2.7, 1.75);
+    this.turned = false;
+    this.fit(this.from);
+  }
+
+  fit(direction) {
     this.controls.target.set(0, 0, 0);
+    this.camera.position.copy(direction).multiplyScalar(fitDistance(this.camera, direction, this.outline));
     this.controls.update();
+  }
+
+  // outline: points round another object about the origin, seen whole from where the camera is turned to.
+  surround(outline) {
+    this.outline = outline;
+    this.fit(this.camera.position.clone().sub(this.controls.target).normalize());
   }
 
   key(event) {
@@ -101,6 +131,7 @@ export class View {
       sphere.radius *= nearer[event.key] ?? 1;
       const moved = new Vector3().setFromSpherical(sphere);
       this.camera.position.set(moved.x, -moved.z, moved.y).add(this.controls.target);
+      this.turned = true;
       this.controls.update();
     } else {
       return;
@@ -115,6 +146,7 @@ export class View {
     this.renderer.setSize(width, height);
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
+    if (!this.turned) this.home();
     this.draw();
   }
 
@@ -130,7 +162,7 @@ export class View {
     this.parts = [];
   }
 
-  // frame: {centre, size} in the mesh's units; field: distances to show as colours up to range, or null.
+  // frame: {centre, size, half: of its box} in the mesh's units; field: distances to show as colours up to range, or null.
   show(mesh, frame, { wire = false, only = false, field = null, range = 1 }) {
     this.clear();
     if (!only)
@@ -149,6 +181,11 @@ export class View {
       part.position.set(...frame.centre).multiplyScalar(-2 / frame.size);
       this.scene.add(part);
     }
+    if (frame !== this.frame) {
+      this.frame = frame;
+      const half = frame.half.map((x) => (2 * x) / frame.size);
+      this.surround(corners(half.map((x) => -x), half));
+    }
     this.draw();
   }
 
@@ -158,6 +195,7 @@ export class View {
   }
 
   follow(other) {
+    this.turned = other.turned;
     this.camera.position.copy(other.camera.position);
     this.camera.quaternion.copy(other.camera.quaternion);
     this.controls.target.copy(other.controls.target);
