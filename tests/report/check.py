@@ -279,6 +279,22 @@ def long_bodies_are_whole(browser, folder):
     browser.look()
 
 
+def one_level_is_said(browser, folder):
+    """A scan that cannot be reduced: no empty curve, and the next object has its own."""
+    with open(os.path.join(folder, "tetrahedron.off"), "w", encoding="utf-8") as file:
+        file.write("OFF\n4 4 0\n0 0 0\n10 0 0\n0 10 0\n0 0 10\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n")
+    scree("sample", "icosphere-3", "-o", "reducible.stl", folder=folder)
+    scree("choose", "--unit", "mm", "tetrahedron.off", "reducible.stl", "-o", "single", folder=folder)
+    ready(browser, os.path.join(folder, "single", "report.html"))
+    drawn = "return [...document.querySelectorAll('.chart, .slider')].filter((e) => e.checkVisibility()).length"
+    said = "The scan has one level only"
+    check(said in browser.text("main") and browser.run(drawn) == 0, "a single level is drawn as a curve")
+    check(shown(browser) == 4 and whole_in_view(browser, 1), "the single level is not to be seen")
+    browser.run("document.querySelectorAll('.objects button')[1].click()")
+    check(said not in browser.text("main") and browser.run(drawn) == 2, "an object after that of one level has no curve")
+    no_complaints(browser, "one level")
+
+
 def a_large_page(browser, folder):
     """Folders that are too much for one page: scans, then levels are left out, and that is said."""
     scree("choose", "sample:dc-1", "--resolution", "0.45mm", "-o", "many/1", folder=folder)
@@ -497,6 +513,7 @@ def main():
             several_objects(browser, folder)
             the_set_is_the_text_s(browser, folder)
             long_bodies_are_whole(browser, folder)
+            one_level_is_said(browser, folder)
             a_study(browser, folder)
             heap = a_heap(browser, folder)
             pour = a_pour(browser, folder)

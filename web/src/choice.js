@@ -128,11 +128,13 @@ export class ChoiceSection {
     this.title = element('h2', null, host, { class: 'object-name' });
     this.answer = element('p', null, host);
     this.curve = element('div', null, host);
-    this.chartHost = element('div', null, this.curve, { class: 'chart' });
-    const label = element('label', 'Level: move along the curve, or click into it', this.curve, { class: 'soft' });
+    this.single = element('p', 'The scan has one level only: there is no curve to draw.', this.curve, { hidden: '' });
+    this.along = element('div', null, this.curve);
+    this.chartHost = element('div', null, this.along, { class: 'chart' });
+    const label = element('label', 'Level: move along the curve, or click into it', this.along, { class: 'soft' });
     this.slider = element('input', null, label, { type: 'range', min: 0, max: 1, step: 1, class: 'slider' });
     this.slider.addEventListener('input', () => this.moveTo(Number(this.slider.value)));
-    this.jumps = element('div', null, this.curve, { class: 'controls' });
+    this.jumps = element('div', null, this.along, { class: 'controls' });
     this.levelText = element('p', null, this.curve, { class: 'level-text' });
     this.missing = element('p', 'The levels of this object are not in this page, which would grow too large: it shows tables only. `scree report` of this folder alone may hold them.', host, { hidden: '' });
     this.buildViews();
@@ -201,8 +203,11 @@ export class ChoiceSection {
     this.missing.hidden = Boolean(levels);
     this.tables.replaceChildren();
     if (levels) {
+      const several = levels.trace.length > 1;
       this.slider.max = levels.trace.length - 1;
-      this.drawCurve(object, levels);
+      this.single.hidden = several;
+      this.along.hidden = !several;
+      if (several) this.drawCurve(object, levels);
       this.offerJumps(object, levels);
       this.tellScan(object, levels);
       this.moveTo(this.rowOf(levels, pickOf(object).triangle_count), true);
@@ -266,7 +271,7 @@ export class ChoiceSection {
     const levels = this.levelsOf(this.state.object);
     this.steps = levels.stepsTo(levels.trace[row].count);
     this.tellLevel(levels);
-    this.chart.redraw();
+    this.chart?.redraw();
     if (atOnce) return this.showLevel(0);
     this.frame ??= requestAnimationFrame(() => {
       this.frame = null;
