@@ -474,6 +474,12 @@ def a_study(browser, folder):
     for part in (f"Study {HOSTILE}", "shapes a: from Rp = 1.0e-3 on", "64 of 80 runs", "Angle of repose against Rp",
                  "coefficient of variation", "Rotational velocity", "Computation time", "cannot be told yet"):
         check(part in text, f"the study does not say: {part}")
+    bars = re.findall("Bars: (.*)", text)
+    check(["confidence" in said for said in bars] == [False, True, False], f"not said of each chart what its bars are: {bars}")
+    labels = browser.run("return [...document.querySelectorAll('.u-legend .u-series:first-child .u-label')].map((e) => e.textContent)")
+    check(labels[2] == "time since the cylinder began to rise / s", f"not said from when the rotation's time counts: {labels}")
+    swatches = browser.run("return [...document.querySelectorAll('.uplot')].map((e) => [...e.querySelectorAll('.u-marker')].map((m) => m.style.background).filter(Boolean))")
+    check(len(swatches[2]) == 8 and all(len(set(chart)) == len(chart) for chart in swatches), f"two curves have the same swatch: {swatches}")
     check(browser.run("return document.querySelectorAll('.uplot canvas').length") == 4, "a curve is missing")
     check(browser.run("return document.querySelectorAll('b').length") == 0, "a text became markup")
     no_complaints(browser, "study")

@@ -9,10 +9,18 @@ const color = (name) => (printing ? { '--ink': '#1c1c22', '--rule': '#d9d9de' }[
 const ink = () => color('--ink');
 const rule = () => color('--rule');
 
-// Okabe and Ito's, on light and on dark paper.
+// Okabe and Ito's, and two more, on light and on dark paper.
 const dark = matchMedia('(prefers-color-scheme: dark)');
 const shade = (light, other) => () => (dark.matches && !printing ? other : light);
-export const palette = [shade('#0072b2', '#56b4e9'), shade('#d55e00', '#e69f00'), shade('#009e73', '#1fc79a'), shade('#b0578d', '#e3a0c6')];
+export const palette = [shade('#0072b2', '#56b4e9'), shade('#d55e00', '#e69f00'), shade('#009e73', '#1fc79a'), shade('#b0578d', '#e3a0c6'), shade('#857400', '#f0e442'), shade('#55555f', '#c9c9d3')];
+
+// A piece of a line as a background: its dashes and gaps, from left to right.
+function lineImage(color, dash) {
+  if (!dash) return color;
+  let at = 0;
+  const stops = dash.map((length, i) => `${i % 2 ? 'transparent' : color} ${at}px ${at += length}px`);
+  return `repeating-linear-gradient(90deg, ${stops.join(', ')})`;
+}
 
 const raised = (n) => [...String(n)].map((c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c])).join('');
 const exponentOf = (v) => Math.floor(Math.log10(v) + 1e-9);
@@ -43,6 +51,7 @@ export class Chart {
     const options = {
       width: Math.max(260, host.clientWidth), height: 340,
       cursor: { drag: { x: false, y: false } },
+      legend: { markers: { width: 0, fill: (_, i) => lineImage(series[i - 1].color(), series[i - 1].dash) } },
       scales: { x: { time: false, distr: this.logX ? 3 : 1 }, y: { distr: this.logY ? 3 : 1, ...(this.logY ? {} : { range: () => this.span() }), ...(this.yLeast ? { range: (_, low, high) => uPlot.rangeLog(Math.max(low, this.yLeast), high, 10, true) } : {}) } },
       axes: [axis(x.label, this.logX), { ...axis(this.yLabel, this.logY), size: 56 }],
       series: [{ label: x.label, value: (_, v) => (v === null ? '' : `: ${x.text(v)}`) }, ...series.map((s) => ({

@@ -7,6 +7,7 @@ import { counted, element, number, rpText, table, whole } from './text.js';
 // Rp as a number: the scan itself is 1, spheres have none.
 const rpOf = (point) => (point.rp === 'scan' ? 1 : point.rp === 'spheres' ? NaN : Number(point.rp));
 const familyOf = (point) => point.label.split(', ').filter((part) => !part.startsWith('rp ')).join(', ');
+const deviations = 'one standard deviation to either side of the mean';
 const known = (x) => x !== null && x !== undefined && Number.isFinite(x);
 const rpName = (rp) => (Number(rp) > 0 ? `Rp = ${rpText(Number(rp))}` : `the ${rp}`);
 
@@ -66,11 +67,11 @@ export class StudySection {
         : `${what}${start[1]} runs done do not show at any level that the angle of repose is that of ${rpName(f.finest)} within ${number(study.margin_deg)}°.`;
     });
     element('p', answers.join(' ') || 'No level can be compared with a finer one yet.', host, { class: 'answer' });
-    element('p', `${whole(runs.done)} of ${counted(all, 'run')} ${all === 1 ? 'is' : 'are'} done${runs.failed ? `, ${whole(runs.failed)} failed` : ''}; ${counted(study.replicates, 'replicate')} a point. Intervals are of ${number(100 * study.confidence)} % confidence; bars are standard deviations. Angle measured: ${study.angle}.${study.mixed_versions ? ' The runs come from different versions of scree.' : ''}`, host, { class: 'soft' });
+    element('p', `${whole(runs.done)} of ${counted(all, 'run')} ${all === 1 ? 'is' : 'are'} done${runs.failed ? `, ${whole(runs.failed)} failed` : ''}; ${counted(study.replicates, 'replicate')} a point. Intervals are of ${number(100 * study.confidence)} % confidence. Angle measured: ${study.angle}.${study.mixed_versions ? ' The runs come from different versions of scree.' : ''}`, host, { class: 'soft' });
   }
 
-  // One chart against Rp: a series for each family. get(point): {value, low, high} or null.
-  againstRp(title, yLabel, get, { logY = false, extra = () => [] } = {}) {
+  // One chart against Rp: a series for each family. get(point): {value, low, high} or null; bars: what low and high are.
+  againstRp(title, yLabel, get, bars, { logY = false, extra = () => [] } = {}) {
     const xs = [...new Set([...this.families.values()].flat().map(rpOf).filter((x) => x > 0))].sort((a, b) => a - b);
     const text = (v) => number(v, 4);
     const series = [...this.families].map(([name, points], i) => {
@@ -87,17 +88,18 @@ export class StudySection {
     new Chart(element('div', null, this.host, { class: 'chart' }), {
       x: { label: 'Rp', values: xs, text: (v) => v.toExponential(1) }, yLabel, logY, series: all,
     });
+    if (series.some((s) => s.low?.some(known))) element('p', `Bars: ${bars}.`, this.host, { class: 'soft' });
   }
 
   drawAngles() {
     this.againstRp('Angle of repose against Rp', 'angle / °', ({ angle_deg: a }) => (known(a.mean)
-      ? { value: a.mean, low: known(a.sd) ? a.mean - a.sd : null, high: known(a.sd) ? a.mean + a.sd : null } : null));
+      ? { value: a.mean, low: known(a.sd) ? a.mean - a.sd : null, high: known(a.sd) ? a.mean + a.sd : null } : null), deviations);
     for (const [name, points] of this.families) {
       const spheres = points.find((point) => point.rp === 'spheres' && known(point.angle_deg.mean));
       if (spheres) element('p', `${name ? `${name}: ` : ''}spheres of the same volumes, which have no Rp: ${number(spheres.angle_deg.mean)} ± ${number(spheres.angle_deg.sd)}°.`, this.host, { class: 'soft' });
     }
     this.againstRp('Its coefficient of variation against Rp', 'CV / %', ({ angle_deg: a }) => (known(a.cv)
-      ? { value: 100 * a.cv, low: known(a.sd_low) ? (100 * a.sd_low) / Math.abs(a.mean) : null, high: known(a.sd_high) ? (100 * a.sd_high) / Math.abs(a.mean) : null } : null));
+      ? { value: 100 * a.cv, low: known(a.sd_low) ? (100 * a.sd_low) / Math.abs(a.mean) : null, high: known(a.sd_high) ? (100 * a.sd_high) / Math.abs(a.mean) : null } : null), `the interval of ${number(100 * this.study.confidence)} % confidence of the standard deviation, over the mean`);
   }
 
   drawRotation() {
@@ -107,7 +109,7 @@ export class StudySection {
     const times = [...new Set(drawn.flatMap((point) => point.rotation.time))].sort((a, b) => a - b);
     const dashes = [undefined, [6, 3], [2, 2]];
     new Chart(element('div', null, this.host, { class: 'chart' }), {
-      x: { label: 'time / s', values: times, text: (v) => number(v, 4) }, yLabel: 'mean |ω| / (rad/s)', logX: false, logY: false,
+      x: { label: 'time since the cylinder began to rise / s', values: times, text: (v) => number(v, 4) }, yLabel: 'mean |ω| / (rad/s)', logX: false, logY: false,
       series: drawn.map((point, i) => {
         const at = new Map(point.rotation.time.map((t, k) => [t, point.rotation.mean[k]]));
         return { label: point.label || point.rp, values: times.map((t) => at.get(t) ?? null), color: palette[i % palette.length], dash: dashes[Math.floor(i / palette.length)], text: (v) => number(v, 3) };
@@ -124,7 +126,7 @@ export class StudySection {
       color: palette[(i + this.families.size) % palette.length], dash: [6, 4], text: (v) => number(v, 3),
     }));
     this.againstRp('Computation time of a run against Rp', 'time / s', ({ seconds: s }) => (known(s.mean)
-      ? { value: s.mean, low: known(s.sd) && s.sd < s.mean ? s.mean - s.sd : null, high: known(s.sd) && s.sd < s.mean ? s.mean + s.sd : null } : null), { logY: true, extra });
+      ? { value: s.mean, low: known(s.sd) && s.sd < s.mean ? s.mean - s.sd : null, high: known(s.sd) && s.sd < s.mean ? s.mean + s.sd : null } : null), deviations, { logY: true, extra });
     for (const f of laws) {
       const { exponent, exponent_low: low, exponent_high: high, r2, factor } = f.time_law;
       element('p', `${f.label ? `${f.label}: ` : ''}time = ${number(factor, 3)} s Rp^${number(exponent, 3)}${known(low) ? ` (exponent ${number(low, 3)} to ${number(high, 3)})` : ''}, R² of the logarithms ${number(r2, 3)}.`, this.host, { class: 'soft' });
