@@ -1,14 +1,15 @@
-/* OFF as Geomview defines it: a word [ST][C][N]OFF, the numbers of vertices, faces and (ignored)
- * edges, then a line for each vertex, whose first three numbers are its position, and for each
- * face, its number of corners and these; what follows on a line (normals, colours) is skipped. `#`
- * begins a comment. */
+/* OFF as Geomview defines it: a word [ST][C][N]OFF, the numbers of vertices, faces and (ignored,
+ * also where it is missing) edges, then a line for each vertex, whose first three numbers are its
+ * position, and for each face, its number of corners and these; what follows on a line (normals,
+ * colours) is skipped. `#` begins a comment. */
 #include "base/array.h"
 #include "mesh/polygon.h"
 #include "mesh/read.h"
 
 #include <string.h>
 
-enum { VERTEX_LEAST_BYTES = 6, FACE_LEAST_BYTES = 2 }; /* "0 0 0\n", "0\n" */
+/* "0 0 0\n", "0\n", "0 " */
+enum { VERTEX_LEAST_BYTES = 6, FACE_LEAST_BYTES = 2, CORNER_LEAST_BYTES = 2 };
 
 static void skip_comments(scree_text *t) {
   for (;;) {
@@ -48,14 +49,38 @@ typedef struct off {
   double *positions;
   scree_index_list face;
   scree_face_list faces;
+  const char *spilled; /* the first vertex or face whose numbers took a second line: it may lack
+                          some, and have taken them from the next */
 } off;
 
 /* A count that the rest of the file has room for. */
 static scree_status read_count(scree_text *t, const char *what, int64_t least_bytes,
                                int64_t *count) {
   skip_comments(t);
-  int64_t room = (t->end - t->p) / least_bytes + 1;
-  return scree_text_integer(t, what, 0, room < UINT32_MAX - 1 ? room : UINT32_MAX - 1, count);
+  const char *at = t->p;
+  int64_t room = (t->end - at) / least_bytes + 1;
+  scree_status status = scree_text_integer(t, what, 0, UINT32_MAX - 1, count);
+  if (status != SCREE_OK || *count <= room) return status;
+  return scree_text_fail(t, at, "%s is %lld, more than the rest of the file has room for", what,
+                         (long long)*count);
+}
+
+/* The number of edges ends the line of the number of faces or has one of its own; where neither
+ * is so, it is missing, and vertices begin. */
+static void skip_edge_count(scree_text *t) {
+  double number;
+  scree_text_skip_blanks(t);
+  bool follows = !scree_text_at_line_end(t) && *t->p != '#';
+  scree_text_skip_line(t);
+  if (follows) return;
+  scree_text probe = *t;
+  probe.error = NULL;
+  skip_comments(&probe);
+  if (scree_text_number(&probe, "", &number) != SCREE_OK) return;
+  scree_text_skip_blanks(&probe);
+  if (!scree_text_at_line_end(&probe) && *probe.p != '#') return;
+  scree_text_skip_line(&probe);
+  t->p = probe.p;
 }
 
 static scree_status read_header(scree_text *t, off *o) {
@@ -75,15 +100,18 @@ static scree_status read_header(scree_text *t, off *o) {
       read_count(t, "the number of vertices", VERTEX_LEAST_BYTES, &o->vertex_count);
   if (status == SCREE_OK)
     status = read_count(t, "the number of faces", FACE_LEAST_BYTES, &o->face_count);
-  scree_text_skip_line(t);
+  if (status == SCREE_OK) skip_edge_count(t);
   return status;
 }
 
-static scree_status read_face(scree_text *t, off *o) {
+static scree_status read_vertex(scree_text *t, off *o, int64_t vertex) {
+  return scree_text_position(t, o->positions + 3 * vertex);
+}
+
+static scree_status read_face(scree_text *t, off *o, int64_t face) {
   int64_t corner_count, corner;
-  skip_comments(t);
-  int64_t room = (t->end - t->p) / 2 + 1;
-  scree_status status = scree_text_integer(t, "the number of corners", 0, room, &corner_count);
+  (void)face;
+  scree_status status = read_count(t, "the number of corners", CORNER_LEAST_BYTES, &corner_count);
   o->face.count = 0;
   for (int64_t i = 0; i < corner_count && status == SCREE_OK; i++) {
     status = scree_text_integer(t, "a corner of a face", 0, o->vertex_count - 1, &corner);
@@ -93,18 +121,49 @@ static scree_status read_face(scree_text *t, off *o) {
   if (status == SCREE_OK && !scree_face_list_add(&o->faces, o->face.items, o->face.count))
     status = scree_fail_memory(t->error, o->faces.triangles.capacity * sizeof(uint32_t),
                                "the faces of an OFF");
-  scree_text_skip_line(t);
   return status;
 }
 
-static scree_status read_body(scree_text *t, off *o) {
-  scree_status status = SCREE_OK;
-  for (int64_t v = 0; v < o->vertex_count && status == SCREE_OK; v++) {
+static bool has_line_end(const char *begin, const char *end) {
+  for (const char *p = begin; p < end; p++)
+    if (*p == '\n' || *p == '\r') return true;
+  return false;
+}
+
+static scree_status fail_early_end(const scree_text *t, const off *o, const char *what,
+                                   int64_t done, int64_t count) {
+  if (o->spilled)
+    return scree_text_fail(t, o->spilled,
+                           "the file ends after %lld of %lld %s; one that begins here took "
+                           "numbers of the next line, so some may be missing",
+                           (long long)done, (long long)count, what);
+  return scree_text_fail(t, t->end, "the file ends after %lld of %lld %s", (long long)done,
+                         (long long)count, what);
+}
+
+/* One line each. */
+static scree_status read_rows(scree_text *t, off *o, const char *what, int64_t count,
+                              scree_status (*read_row)(scree_text *, off *, int64_t)) {
+  for (int64_t i = 0; i < count; i++) {
     skip_comments(t);
-    status = scree_text_position(t, o->positions + 3 * v);
+    const char *at = t->p;
+    if (at == t->end) return fail_early_end(t, o, what, i, count);
+    scree_status status = read_row(t, o, i);
+    if (status == SCREE_BAD_FILE && t->p == t->end) return fail_early_end(t, o, what, i, count);
+    bool spills = has_line_end(at, t->p);
+    if (status == SCREE_BAD_FILE && spills)
+      return scree_text_fail(t, at,
+                             "too few numbers here, and the next line does not go on with them");
+    if (status != SCREE_OK) return status;
+    if (!o->spilled && spills) o->spilled = at;
     scree_text_skip_line(t);
   }
-  for (int64_t f = 0; f < o->face_count && status == SCREE_OK; f++) status = read_face(t, o);
+  return SCREE_OK;
+}
+
+static scree_status read_body(scree_text *t, off *o) {
+  scree_status status = read_rows(t, o, "vertices", o->vertex_count, read_vertex);
+  if (status == SCREE_OK) status = read_rows(t, o, "faces", o->face_count, read_face);
   if (status != SCREE_OK) return status;
   skip_comments(t);
   if (t->p == t->end) return SCREE_OK;

@@ -348,11 +348,14 @@ static void off(void **state) {
   static const char *const words[] = {"OFF", "COFF", "NOFF", "off", "STCNOFF"};
   static const char *const tails[] = {"", " 0.1 0.2 0.3 1", " 0 0 1", " # what",
                                       " 0 0 1 1 0 0 1 0 0"};
-  static const char *const counts[] = {"\n8 6 12\n", " 8 6 12\n", "\n# counts\n\n8 6\n"};
-  for (int style = 0; style < 30; style++) {
+  static const char *const counts[] = {"\n8 6 12\n",          " 8 6 12\n",
+                                       "\n# counts\n\n8 6\n", "\n8\n6\n12 # e\n",
+                                       "\n8 6 # vf\n12\n",    " 8\n\n6\n# e\n 12 \n",
+                                       "\r8\r6\r12\r"};
+  for (int style = 0; style < 210; style++) {
     char line[100];
     begin(style % 2 ? "# first\n" : "");
-    put_text(words[style % 5]), put_text(counts[style % 3]);
+    put_text(words[style % 5]), put_text(counts[style % 7]);
     for (int v = 0; v < 8; v++) {
       snprintf(line, sizeof line, "%d %d %d%s%s", cube_vertices[v][0], cube_vertices[v][1],
                cube_vertices[v][2], tails[style % 5], style / 3 % 2 ? "\r\n" : "\n");
@@ -375,11 +378,22 @@ static void off_broken(void **state) {
   begin("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n# end\n3 0 2 1\n");
   expect_error("line 8: more follows the last of the header's 1 faces: a count is wrong");
   begin("OFF\n3000000 1 0\n0 0 0\n");
-  expect_error("line 2: the number of vertices should be a whole number from 0 to ");
+  expect_error(
+      "line 2: the number of vertices is 3000000, more than the rest of the file has room");
   begin("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n");
-  expect_error("line 6: the number of corners");
-  begin("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1");
-  expect_error("the end of the file");
+  expect_error("line 6: the file ends after 0 of 1 faces");
+  begin("OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1");
+  expect_error("line 7: the file ends after 1 of 2 faces");
+  begin("OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1\n3 0 2 1\n");
+  expect_error("line 7: too few numbers here");
+  begin("OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1\n3 0 2 1\n");
+  expect_error(
+      "line 8: the file ends after 2 of 3 faces; one that begins here took numbers of the");
+  begin("OFF\n4 1 0\n0 0 0\n1 0\n0 1 0\n0 0 1\n3 0 1 2\n");
+  expect_error("line 4: the file ends after 0 of 1 faces");
+  begin("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n99999999 0 1 2\n");
+  expect_error(
+      "line 6: the number of corners is 99999999, more than the rest of the file has room");
   begin("OFF BINARY\n");
   expect_error("binary OFF");
   begin("OFF\n1 0 0\n0 0 0\n");
