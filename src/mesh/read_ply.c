@@ -93,6 +93,24 @@ static scree_status next_value(ply *p, scree_ply_type type, double *value) {
   return SCREE_OK;
 }
 
+/* nan, -nan(ind), inf, -Infinity, 1.#QNAN and their like: the C libraries' words. */
+static bool is_no_finite_number(scree_token word) {
+  if (word.length && (*word.begin == '-' || *word.begin == '+')) word.begin++, word.length--;
+  if (word.length < 3) return false;
+  word.length = 3;
+  return scree_token_is(word, "nan") || scree_token_is(word, "inf") || scree_token_is(word, "1.#");
+}
+
+/* What is ignored may be any value of its type, in text as in binary. */
+static scree_status skip_value(ply *p, scree_ply_type type) {
+  double ignored;
+  scree_text probe = p->text;
+  if (!is_ascii(p) || !is_no_finite_number(scree_text_next(&probe)))
+    return next_value(p, type, &ignored);
+  p->text.p = probe.p;
+  return SCREE_OK;
+}
+
 /* Where the next value begins, for errors about it. */
 static const char *value_start(ply *p) {
   if (is_ascii(p)) scree_text_skip_space(&p->text);
@@ -146,19 +164,21 @@ static scree_status read_list(ply *p, const scree_ply_property *property) {
   }
   p->corners.count = property->role == SCREE_PLY_CORNERS ? 0 : p->corners.count;
   for (size_t i = 0; i < (size_t)count && status == SCREE_OK; i++) {
+    if (property->role != SCREE_PLY_CORNERS) {
+      status = skip_value(p, property->type);
+      continue;
+    }
     at = value_start(p);
     status = next_value(p, property->type, &value);
-    if (status == SCREE_OK && property->role == SCREE_PLY_CORNERS)
-      status = add_corner(p, value, at);
+    if (status == SCREE_OK) status = add_corner(p, value, at);
   }
   return status;
 }
 
 static scree_status read_property(ply *p, const scree_ply_property *property) {
-  double ignored;
   if (property->is_list) return read_list(p, property);
   if (property->role <= SCREE_PLY_Z) return read_coordinate(p, property);
-  return next_value(p, property->type, &ignored);
+  return skip_value(p, property->type);
 }
 
 /* The strip's triangles; those between -1s, every second one turned. */

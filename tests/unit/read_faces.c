@@ -212,6 +212,31 @@ static void ply_with_a_tail(void **state) {
   }
 }
 
+/* Normals and qualities of nothing are written so; they mean nothing here. */
+static void ply_with_ignored_nans(void **state) {
+  (void)state;
+  static const char *const values[] = {"nan",       "-nan",    "inf",   "-Infinity",
+                                       "-nan(ind)", "1.#QNAN", "1e999", "0.5"};
+  for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+    char line[100];
+    begin("ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float nx\n"
+          "property float y\nproperty float z\nproperty list uchar float weights\n"
+          "element face 6\nproperty list uchar int vertex_indices\nproperty float quality\n"
+          "end_header\n");
+    for (int v = 0; v < 8; v++) {
+      snprintf(line, sizeof line, "%d %s %d %d 2 1 %s\n", cube_vertices[v][0], values[i],
+               cube_vertices[v][1], cube_vertices[v][2], values[i]);
+      put_text(line);
+    }
+    for (int f = 0; f < 6; f++) {
+      snprintf(line, sizeof line, "4 %d %d %d %d %s\n", cube_faces[f][0], cube_faces[f][1],
+               cube_faces[f][2], cube_faces[f][3], values[i]);
+      put_text(line);
+    }
+    expect_cube("PLY ASCII");
+  }
+}
+
 static void ply_broken(void **state) {
   (void)state;
   begin("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n");
@@ -469,12 +494,12 @@ static void memory_runs_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ply_in_every_style), cmocka_unit_test(ply_cut_anywhere),
-      cmocka_unit_test(ply_broken),         cmocka_unit_test(obj),
-      cmocka_unit_test(obj_broken),         cmocka_unit_test(off),
-      cmocka_unit_test(ply_with_a_tail),    cmocka_unit_test(off_broken),
-      cmocka_unit_test(concave_polygons),   cmocka_unit_test(faces_of_two_corners),
-      cmocka_unit_test(memory_runs_out),
+      cmocka_unit_test(ply_in_every_style),   cmocka_unit_test(ply_cut_anywhere),
+      cmocka_unit_test(ply_broken),           cmocka_unit_test(obj),
+      cmocka_unit_test(obj_broken),           cmocka_unit_test(off),
+      cmocka_unit_test(ply_with_a_tail),      cmocka_unit_test(ply_with_ignored_nans),
+      cmocka_unit_test(off_broken),           cmocka_unit_test(concave_polygons),
+      cmocka_unit_test(faces_of_two_corners), cmocka_unit_test(memory_runs_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
