@@ -54,7 +54,6 @@ try() {
   for room in 0 9 70; do # blocks of 512 bytes
     rm -rf cut && mkdir -p cut/out && cd cut || exit
     (
-      trap '' XFSZ
       ulimit -f $room
       "$SCREE" "$@" >/dev/null 2>&1 | cat >/dev/null
     )

@@ -41,3 +41,7 @@ done
 ln -s nowhere.off dangling.off
 run sample box-12 -o dangling.off
 [ -L dangling.off ] && run sample box-12 -o dangling.off -f -q
+# a limit on the size of files is told as a full disk is, and leaves nothing
+mkdir limited && cd limited || exit
+(ulimit -f 1 && run sample icosphere-3 -q -o ball.stl 2>&1) | cat
+ls
