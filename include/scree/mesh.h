@@ -42,6 +42,7 @@ typedef struct scree_scan {
   scree_mesh mesh;         /* metres; vertices and triangles in canonical order (scree_mesh_weld) */
   scree_checksum checksum; /* of the file's bytes */
   size_t byte_count;
+  double unit_m;           /* metres per unit of the file: of the options, or what it states */
   char format[32];         /* for example "STL binary", "3MF, inch" (with the unit it states) */
   size_t facet_count;      /* triangles in the file; a polygon counts as its triangles */
   size_t degenerate_count; /* of these, dropped: fewer than three different corners */

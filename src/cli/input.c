@@ -25,7 +25,7 @@ static void hint_sample(const char *word, scree_error *error) {
 scree_status cli_load(const char *word, const cli_input_options *options,
                       const scree_progress *progress, scree_scan *scan, scree_error *error) {
   const char *name;
-  scree_scan made = {.format = "sample", .solid_count = 1};
+  scree_scan made = {.unit_m = 1, .format = "sample", .solid_count = 1};
   scree_status status;
   if (!cli_is_sample(word, &name)) {
     status = scree_scan_read(word, &options->read, scan, error);

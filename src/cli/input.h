@@ -32,7 +32,7 @@ typedef struct cli_source {
 
 cli_input_options cli_source_options(const cli_source *source);
 
-/* Metres per unit of what the word names: 1 for a sample. */
+/* Metres per unit that a file without one of its own is read in: 1 for a sample. */
 double cli_source_unit(const char *word, const cli_source *source);
 
 /* Whether the word names a built-in sample; then *name (may be NULL) is its name. */

@@ -45,19 +45,17 @@ static scree_status check_one(const cli_call *call, const char *path, checked *c
 }
 
 static void print_one(const cli_call *call, const char *path, const checked *c) {
-  const check_arguments *arguments = call->options;
   printf("%s: %s\n", path, c->check.verdict);
   if (call->quiet) return;
   printf("%10s", c->scan.format);
-  if (!cli_is_sample(path, NULL))
-    printf(", coordinates in %s", cli_unit_name(arguments->source.unit));
+  const char *unit = cli_unit_name(c->scan.unit_m);
+  if (!cli_is_sample(path, NULL) && *unit != '?') printf(", coordinates in %s", unit);
   putchar('\n');
   cli_print_left_out(stdout, c->scan.degenerate_count);
   cli_print_check(stdout, &c->check);
 }
 
 static scree_status print_json(const cli_call *call, const checked *all) {
-  const check_arguments *arguments = call->options;
   scree_check_entry *entries = calloc(call->input_count, sizeof *entries);
   scree_error error;
   scree_status status = SCREE_OUT_OF_MEMORY;
@@ -70,7 +68,7 @@ static scree_status print_json(const cli_call *call, const checked *all) {
     bool failed = c->error.status != SCREE_OK;
     entries[i] = (scree_check_entry){.file = call->inputs[i],
                                      .scan = c->read ? &c->scan : NULL,
-                                     .unit_m = cli_source_unit(call->inputs[i], &arguments->source),
+                                     .unit_m = c->scan.unit_m,
                                      .check = failed ? NULL : &c->check,
                                      .failure = failed ? c->error.message : NULL};
   }

@@ -64,8 +64,7 @@ static int run(const cli_call *call) {
   if (read_two(call, scans, &error) != SCREE_OK) return cli_fail(&error);
   scree_distance_entry entry = {.file = {call->inputs[0], call->inputs[1]},
                                 .checksum = {scans[0].checksum, scans[1].checksum},
-                                .unit_m = {cli_source_unit(call->inputs[0], &arguments->source),
-                                           cli_source_unit(call->inputs[1], &arguments->source)},
+                                .unit_m = {scans[0].unit_m, scans[1].unit_m},
                                 .options = scree_default_distance_options()};
   entry.options.sample_count = arguments->samples;
   entry.options.hausdorff_gap = arguments->gap;

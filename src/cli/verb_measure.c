@@ -127,7 +127,8 @@ static void warn(const scree_measure_entry *entry) {
 /* Shells are measured one by one and added up: said where their union has another volume. */
 static scree_status warn_of_shells(const cli_call *call, const scree_mesh *mesh,
                                    const scree_measure_entry *entry, scree_error *error) {
-  double volume = fabs(entry->measures.volume), cube = pow(entry->unit_m, 3);
+  const double unit = ((const measure_arguments *)call->options)->source.unit;
+  double volume = fabs(entry->measures.volume), cube = pow(unit, 3);
   scree_check check;
   if (call->quiet || !entry->measures.closed || entry->topology.shell_count < 2) return SCREE_OK;
   scree_status status = scree_mesh_check(mesh, NULL, call->progress, &check, error);
@@ -142,7 +143,7 @@ static scree_status warn_of_shells(const cli_call *call, const scree_mesh *mesh,
     fprintf(stderr,
             "scree: %s: warning: shells lie in each other or overlap: their union has a volume of "
             "%.9g %s3; volume, centroid and moments count what they share more than once\n",
-            entry->file, check.volume / cube, cli_unit_name(entry->unit_m));
+            entry->file, check.volume / cube, cli_unit_name(unit));
   return SCREE_OK;
 }
 
@@ -157,10 +158,8 @@ static scree_status measure_file(const cli_call *call, const char *file, scree_m
   scree_status status = cli_load(file, &input, call->progress, &scan, error);
   if (status != SCREE_OK) return status;
   memcpy(format, scan.format, sizeof scan.format);
-  *entry = (scree_measure_entry){.file = file,
-                                 .format = format,
-                                 .checksum = scan.checksum,
-                                 .unit_m = cli_source_unit(file, &arguments->source)};
+  *entry = (scree_measure_entry){
+      .file = file, .format = format, .checksum = scan.checksum, .unit_m = scan.unit_m};
   status = scree_mesh_measure(&scan.mesh, &entry->measures, error);
   if (status == SCREE_OK) status = scree_mesh_topology(&scan.mesh, &entry->topology, error);
   if (status == SCREE_OK) status = warn_of_shells(call, &scan.mesh, entry, error);

@@ -116,7 +116,7 @@ static int tell(const cli_call *call, const scree_scan *scan, const scree_repair
   } else {
     scree_check_entry entry = {.file = call->inputs[0],
                                .scan = scan,
-                               .unit_m = cli_source_unit(call->inputs[0], &a->source),
+                               .unit_m = scan->unit_m,
                                .check = &report->before,
                                .repair = report,
                                .output = code ? NULL : a->output,

@@ -345,6 +345,7 @@ static scree_status parse(const void *bytes, size_t byte_count, bool goes_on, co
   scree_scan made = {.byte_count = byte_count};
   scree_reading r = {name, bytes, byte_count, &used, used.unit_m, &made, error, goes_on};
   status = read_any(&r);
+  made.unit_m = r.unit_m;
   if (status == SCREE_OK && made.mesh.triangle_count == 0)
     status = scree_reading_fail(&r, SCREE_BAD_MESH,
                                 "all %zu facets are degenerate: two corners of each coincide",
@@ -402,7 +403,7 @@ static scree_status read_stream(const char *path, const scree_read_options *opti
   *done = false;
   if (!scree_stream_open(path, &stream)) return SCREE_OK;
   if (!options->max_bytes || stream.byte_count <= options->max_bytes) {
-    scree_scan made = {.byte_count = stream.byte_count};
+    scree_scan made = {.byte_count = stream.byte_count, .unit_m = options->unit_m};
     scree_reading r = {path,  NULL, stream.byte_count, options, options->unit_m, &made,
                        error, false};
     status = scree_read_stl_stream(&r, &stream, done);

@@ -44,6 +44,7 @@ static void expect_cube(const char *format) {
   scree_error error;
   CHECK_OK(scree_scan_parse(file, file_size, "made", NULL, &scan, &error), error);
   assert_string_equal(scan.format, format);
+  assert_true(scan.unit_m == 1e-3);
   assert_int_equal(scan.mesh.vertex_count, 8);
   assert_int_equal(scan.mesh.triangle_count, 12);
   assert_int_equal(scan.facet_count, 12 + scan.degenerate_count);

@@ -288,6 +288,14 @@ static void expect_cubes(const char *format, size_t count, double x, double volu
   scree_scan_free(&scan);
 }
 
+static void expect_unit(double metres) {
+  scree_scan scan = {0};
+  scree_error error;
+  CHECK_OK(parse(&scan, &error), error);
+  assert_true(scan.unit_m == metres);
+  scree_scan_free(&scan);
+}
+
 static void expect_error(scree_status status, const char *part) {
   scree_scan scan = {0};
   scree_error error;
@@ -324,11 +332,13 @@ static void reads_3mf(void **state) {
   expect_cubes("3MF, millimeter", 1, 0, 1e-9);
   make_3mf(" unit='inch'", item);
   expect_cubes("3MF, inch", 1, 0.254, 0.0254 * 0.0254 * 0.0254);
+  expect_unit(0.0254);
   make_3mf(" xml:lang = \"en\"  unit = \"micron\" ", item);
   expect_cubes("3MF, micron", 1, 1e-5, 1e-18);
   make_3mf(" unit=\"meter\"", "<item objectid=\"1\"/><item objectid=\"1\" transform=\"-1 0 0 0 1 0 "
                               "0 0 1 -10 0 0\"/>"); /* mirrored: still outward */
   expect_cubes("3MF, meter", 2, -11, 2);
+  expect_unit(1);
 }
 
 /* Objects made of others, each with its place; then the same with the others in a file of their
