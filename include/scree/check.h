@@ -55,11 +55,16 @@ SCREE_API const char *scree_defect_name(scree_defect defect);
 SCREE_API const char *scree_defect_text(scree_defect defect, size_t count);
 SCREE_API bool scree_defect_is_grave(scree_defect defect);
 
+/* A surface of which more pairs of facets meet is no surface. */
+enum { SCREE_PAIR_LIMIT = 20000000 };
+
 typedef struct scree_check {
   size_t triangle_count, vertex_count;
   size_t shell_count; /* sets of facets connected through shared edges */
   size_t defects[SCREE_DEFECT_COUNT];
   bool intersections_known; /* the exact test was made; else the pairs above are 0 */
+  bool too_many_pairs;      /* it found more than SCREE_PAIR_LIMIT and left off: of what kind they
+                               are is not known, nor how shells lie; see scree_defect_is_counted */
   bool volume_known;        /* false: open or inside-out shells leave it unsaid, and so does a
                                check without the exact test */
   double volume;     /* where the winding number is positive: of the union of the shells, less
@@ -67,6 +72,9 @@ typedef struct scree_check {
   bool usable;       /* as a particle: no grave defect was found */
   char verdict[512]; /* the same in one sentence, with the reasons */
 } scree_check;
+
+/* False where too many pairs leave the number of such a defect, which is then 0, unknown. */
+SCREE_API bool scree_defect_is_counted(const scree_check *check, scree_defect defect);
 
 typedef struct scree_check_options {
   /* Find all pairs of facets that cross, touch or overlap, exactly; default true. */

@@ -92,8 +92,8 @@ class scree_distance_options(Structure):
 
 class scree_check(Structure):
     _fields_ = [("triangle_count", c_size_t), ("vertex_count", c_size_t), ("shell_count", c_size_t),
-                ("defects", c_size_t * DEFECT_COUNT), ("intersections_known", c_bool), ("volume_known", c_bool),
-                ("volume", c_double), ("usable", c_bool), ("verdict", c_char * 512)]
+                ("defects", c_size_t * DEFECT_COUNT), ("intersections_known", c_bool), ("too_many_pairs", c_bool),
+                ("volume_known", c_bool), ("volume", c_double), ("usable", c_bool), ("verdict", c_char * 512)]
 
 
 class scree_check_options(Structure):
@@ -371,6 +371,7 @@ _PLAIN = {  # result, argument types
     "default_body": (scree_body, ()),
     "default_export_options": (scree_export_options, ()),
     "defect_name": (_S, (c_int,)),
+    "defect_is_counted": (c_bool, (POINTER(scree_check), c_int)),
     "repair_action_name": (_S, (c_int,)),
     "curve_free": (None, (_H,)),
     "curve_get_facts": (scree_curve_facts, (_H,)),

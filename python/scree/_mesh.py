@@ -149,7 +149,8 @@ class Mesh:
 
 def _check(struct):
     check = from_struct(struct)
-    check.defects = {lib["defect_name"](i).decode(): n for i, n in enumerate(struct.defects)}
+    check.defects = {lib["defect_name"](i).decode(): n if lib["defect_is_counted"](struct, i) else None
+                     for i, n in enumerate(struct.defects)}
     check.volume = struct.volume if struct.volume_known else None
     return check
 

@@ -63,6 +63,11 @@ void cli_print_check(FILE *stream, const scree_check *check) {
     if (check->defects[i])
       fprintf(stream, "%10zu %s\n", check->defects[i],
               scree_defect_text((scree_defect)i, check->defects[i]));
+  if (check->too_many_pairs)
+    fprintf(stream,
+            "more than %d pairs of facets meet: neither their kinds are told, nor how shells "
+            "lie\n",
+            SCREE_PAIR_LIMIT);
   if (check->volume_known)
     fprintf(stream, "%10.6g cm3 volume\n", check->volume * 1e6);
   else

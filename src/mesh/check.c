@@ -26,8 +26,6 @@
 /* What reading and welding accept, m; far within the range of the exact predicates. */
 #define LARGEST_COORDINATE 1e30
 
-/* More pairs than this are not told apart: a surface that meets itself so often is no surface. */
-enum { MEETING_LIMIT = 20000000 };
 /* Fewer facets are looked at as they are. */
 enum { PROOF_FACETS = 2000 };
 
@@ -51,6 +49,11 @@ const char *scree_defect_text(scree_defect defect, size_t count) {
 
 bool scree_defect_is_grave(scree_defect defect) {
   return (unsigned)defect < SCREE_DEFECT_COUNT && defects[defect].grave;
+}
+
+bool scree_defect_is_counted(const scree_check *check, scree_defect defect) {
+  return !check->too_many_pairs || defect < SCREE_DEFECT_INSIDE_OUT_SHELL ||
+         defect > SCREE_DEFECT_EXTRA_BODY;
 }
 
 scree_check_options scree_default_check_options(void) {
@@ -100,11 +103,11 @@ static scree_status count_meetings(const scree_facet_tree *tree, const scree_adj
                                    scree_shell_pairs *pairs, scree_check *check,
                                    scree_error *error) {
   scree_meetings found;
-  scree_status status = scree_facet_meetings(tree, MEETING_LIMIT, progress, &found, error);
+  scree_status status = scree_facet_meetings(tree, SCREE_PAIR_LIMIT, progress, &found, error);
   if (status != SCREE_OK) return status;
   check->intersections_known = true;
   if (found.truncated) {
-    check->defects[SCREE_DEFECT_CROSSING_PAIR] = found.count;
+    check->too_many_pairs = true;
     return SCREE_OK;
   }
   for (size_t i = 0; i < found.count; i++) {
@@ -222,8 +225,8 @@ static scree_status examine(const scree_mesh *mesh, const scree_check_options *o
     status = scree_facet_tree_build(mesh, &tree, error);
   if (status == SCREE_OK && options->intersections && !clear)
     status = count_meetings(&tree, &adjacency, &shells, progress, &pairs, check, error);
-  if (status == SCREE_OK && shells.count > 1)
-    status = scree_shells_wind(&shells, &pairs, &tree, error);
+  if (status != SCREE_OK || check->too_many_pairs) goto done;
+  if (shells.count > 1) status = scree_shells_wind(&shells, &pairs, &tree, error);
   if (status == SCREE_OK) count_kinds(&shells, check);
 done:
   scree_adjacency_free(&adjacency);
@@ -267,6 +270,12 @@ static void add_count(text *t, size_t count, const char *name) {
 
 static void add_defects(text *t, const scree_check *check, bool grave) {
   bool first = true;
+  if (grave && check->too_many_pairs) {
+    char words[64];
+    snprintf(words, sizeof words, "more than %d meeting pairs", SCREE_PAIR_LIMIT);
+    add_text(t, words);
+    first = false;
+  }
   for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
     if (!check->defects[i] || defects[i].grave != grave) continue;
     if (!first) add_text(t, ", ");
@@ -277,7 +286,7 @@ static void add_defects(text *t, const scree_check *check, bool grave) {
 
 static void conclude(scree_check *check) {
   text t = {check->verdict, sizeof check->verdict};
-  bool grave = false, noted = false;
+  bool grave = check->too_many_pairs, noted = false;
   for (int i = 0; i < SCREE_DEFECT_COUNT; i++) {
     grave |= check->defects[i] && defects[i].grave;
     noted |= check->defects[i] && !defects[i].grave;

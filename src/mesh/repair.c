@@ -309,7 +309,7 @@ static scree_status step(scree_repair *r, const scree_check *check, tries *n, bo
 static scree_status merge_early(scree_repair *r, tries *n, scree_error *error) {
   const size_t *defect = r->report.before.defects;
   bool met = defect[SCREE_DEFECT_CROSSING_PAIR] || defect[SCREE_DEFECT_TOUCHING_PAIR] ||
-             defect[SCREE_DEFECT_OVERLAPPING_PAIR];
+             defect[SCREE_DEFECT_OVERLAPPING_PAIR] || r->report.before.too_many_pairs;
   bool merged;
   size_t bad, collapsed;
   if (!r->options->merge_shells || !met) return SCREE_OK;

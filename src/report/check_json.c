@@ -14,9 +14,13 @@ static void json_check(scree_json *json, const char *key, const scree_check *che
   else
     scree_json_text(json, "volume", NULL);
   scree_json_bool(json, "intersections_known", check->intersections_known);
+  scree_json_bool(json, "too_many_pairs", check->too_many_pairs);
   scree_json_object(json, "defects");
   for (int i = 0; i < SCREE_DEFECT_COUNT; i++)
-    scree_json_count(json, scree_defect_name((scree_defect)i), check->defects[i]);
+    if (scree_defect_is_counted(check, (scree_defect)i))
+      scree_json_count(json, scree_defect_name((scree_defect)i), check->defects[i]);
+    else
+      scree_json_text(json, scree_defect_name((scree_defect)i), NULL);
   scree_json_end(json);
   scree_json_end(json);
 }

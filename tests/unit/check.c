@@ -262,6 +262,24 @@ static void transforms(void **state) {
   }
 }
 
+/* 7,000 copies of a triangle: what was not counted is not told as a number. */
+static void too_many_pairs(void **state) {
+  (void)state;
+  enum { COPIES = 7000 };
+  static uint32_t triangles[3 * COPIES];
+  static double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  for (int i = 0; i < 3 * COPIES; i++) triangles[i] = (uint32_t)(i % 3);
+  scree_mesh mesh = {positions, triangles, 3, COPIES};
+  scree_check check = check_of(&mesh);
+  assert_true(check.too_many_pairs && check.intersections_known && !check.volume_known);
+  assert_false(check.usable);
+  assert_int_equal(check.defects[SCREE_DEFECT_CROSSING_PAIR], 0);
+  assert_false(scree_defect_is_counted(&check, SCREE_DEFECT_CROSSING_PAIR));
+  assert_false(scree_defect_is_counted(&check, SCREE_DEFECT_EXTRA_BODY));
+  assert_true(scree_defect_is_counted(&check, SCREE_DEFECT_NON_MANIFOLD_EDGE));
+  assert_non_null(strstr(check.verdict, "particle: more than 20000000 meeting pairs, 6999 dup"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(clean),
                                      cmocka_unit_test(planted),
@@ -271,6 +289,7 @@ int main(void) {
                                      cmocka_unit_test(pockets),
                                      cmocka_unit_test(nested_at_a_vertex),
                                      cmocka_unit_test(refused),
+                                     cmocka_unit_test(too_many_pairs),
                                      cmocka_unit_test(transforms)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
