@@ -16,11 +16,14 @@ extern "C" {
  * Where `closed` is false the surface bounds no volume: volume, centroid, inertia and what follows
  * from them are those of the surface with every hole closed by a cone to the centre of the bounding
  * box, a stand-in to be shown with a warning. Where `inward` is true the facets are wound clockwise
- * from outside: the volume is negative, everything else as if they were turned round. Values that
- * do not exist (the convexity of a flat sheet) are 0. */
+ * from outside: the volume is negative, everything else as if they were turned round. Where
+ * `has_volume` is false the volume is 0 but for rounding, as of a flat sheet or one folded on
+ * itself: centroid, inertia and what follows from them do not exist; the moments and shares are 0,
+ * the centroid is the middle of the bounding box. */
 typedef struct scree_measures {
   bool closed;                   /* every edge is used equally often in both directions */
-  bool inward;                   /* volume < 0 */
+  bool inward;                   /* volume < 0, beyond rounding */
+  bool has_volume;               /* it is more than rounding */
   double area;                   /* S, m^2 */
   double volume;                 /* V, m^3, signed */
   double centroid[3];            /* of the volume, m */

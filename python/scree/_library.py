@@ -59,8 +59,8 @@ class scree_write_options(Structure):
 
 
 class scree_measures(Structure):
-    _fields_ = [("closed", c_bool), ("inward", c_bool), ("area", c_double), ("volume", c_double),
-                ("centroid", double3), ("inertia", double33), ("principal_moments", double3),
+    _fields_ = [("closed", c_bool), ("inward", c_bool), ("has_volume", c_bool), ("area", c_double),
+                ("volume", c_double), ("centroid", double3), ("inertia", double33), ("principal_moments", double3),
                 ("principal_axes", double33), ("equivalent_diameter", c_double), ("sphericity", c_double),
                 ("box_min", double3), ("box_max", double3), ("dimensions", double3),
                 ("oriented_dimensions", double3), ("oriented_axes", double33), ("oriented_center", double3),

@@ -54,25 +54,49 @@ static void print_axis(const char *label, const double axis[3]) {
   putchar('\n');
 }
 
-static void print_measures(const scree_measures *m, double unit) {
-  const char *name = cli_unit_name(unit);
-  double cube = unit * unit * unit, size = m->oriented_dimensions[0];
-  printf("  %-22s %.9g %s2\n", "area S", m->area / unit / unit, name);
-  printf("  %-22s %.9g %s3\n", "volume V", m->volume / cube, name);
+/* Of what encloses no volume. */
+static void print_none(const char *label) {
+  printf("  %-22s none\n", label);
+}
+
+static void print_centroid(const scree_measures *m, double unit, const char *name) {
+  double size = m->oriented_dimensions[0];
+  if (!m->has_volume) {
+    print_none("centroid");
+    return;
+  }
   printf("  %-22s", "centroid");
   for (int i = 0; i < 3; i++)
     printf("%s%.*g", i ? ", " : " ", place_digits(m->centroid[i], size),
            tidy(m->centroid[i], size) / unit);
   printf(" %s\n", name);
-  print_three("dimensions x, y, z", m->dimensions, unit, name, "");
-  print_three("oriented dimensions", m->oriented_dimensions, unit, name, "");
-  printf("  %-22s %.7g %s\n", "equivalent diameter", m->equivalent_diameter / unit, name);
-  printf("  %-22s %.5f\n", "sphericity", m->sphericity);
-  printf("  %-22s %.5f\n", "convexity", m->convexity);
-  printf("  %-22s %.6g, %.6g, %.6g %s5 (times density)\n", "principal moments",
+}
+
+/* What follows from the volume. */
+static void print_mass(const scree_measures *m, double unit, const char *name) {
+  static const char *const labels[] = {"equivalent diameter", "sphericity", "convexity",
+                                       "principal moments", "principal axes"};
+  double cube = unit * unit * unit;
+  for (size_t i = 0; i < sizeof labels / sizeof *labels && !m->has_volume; i++)
+    print_none(labels[i]);
+  if (!m->has_volume) return;
+  printf("  %-22s %.7g %s\n", labels[0], m->equivalent_diameter / unit, name);
+  printf("  %-22s %.5f\n", labels[1], m->sphericity);
+  printf("  %-22s %.5f\n", labels[2], m->convexity);
+  printf("  %-22s %.6g, %.6g, %.6g %s5 (times density)\n", labels[3],
          m->principal_moments[0] / cube / unit / unit, m->principal_moments[1] / cube / unit / unit,
          m->principal_moments[2] / cube / unit / unit, name);
-  for (int i = 0; i < 3; i++) print_axis(i ? "" : "principal axes", m->principal_axes[i]);
+  for (int i = 0; i < 3; i++) print_axis(i ? "" : labels[4], m->principal_axes[i]);
+}
+
+static void print_measures(const scree_measures *m, double unit) {
+  const char *name = cli_unit_name(unit);
+  printf("  %-22s %.9g %s2\n", "area S", m->area / unit / unit, name);
+  printf("  %-22s %.9g %s3\n", "volume V", m->volume / (unit * unit * unit), name);
+  print_centroid(m, unit, name);
+  print_three("dimensions x, y, z", m->dimensions, unit, name, "");
+  print_three("oriented dimensions", m->oriented_dimensions, unit, name, "");
+  print_mass(m, unit, name);
 }
 
 static void print_count(size_t count, const char *what) {
@@ -103,7 +127,12 @@ static void print_topology(const scree_topology *t) {
 static void warn(const scree_measure_entry *entry) {
   const scree_measures *m = &entry->measures;
   size_t crowded = entry->topology.non_manifold_edge_count;
-  if (!m->closed && entry->topology.closed && entry->topology.oriented)
+  if (!m->has_volume)
+    fprintf(stderr,
+            "scree: %s: warning: the surface encloses no volume: it has no centroid, moments, "
+            "sphericity or convexity\n",
+            entry->file);
+  else if (!m->closed && entry->topology.closed && entry->topology.oriented)
     fprintf(stderr,
             "scree: %s: warning: %zu non-manifold edge%s, where the facets do not pair up both "
             "ways, so they enclose no volume; volume, centroid, moments and what follows from "

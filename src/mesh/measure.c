@@ -146,8 +146,9 @@ static void set_mass(scree_measures *m, vec3 origin, double diagonal, const doub
   double volume = integrals[VOLUME], sign = volume < 0 ? -1 : 1;
   const double *first = integrals + FIRST, *second = integrals + SECOND;
   double offset[3] = {0, 0, 0}, about[6] = {0};
+  m->has_volume = fabs(volume) > NO_VOLUME * m->area * diagonal;
   static const int row[6] = {0, 1, 2, 0, 0, 1}, column[6] = {0, 1, 2, 1, 2, 2};
-  if (fabs(volume) > NO_VOLUME * m->area * diagonal) {
+  if (m->has_volume) {
     for (int k = 0; k < 3; k++) offset[k] = first[k] / volume;
     for (int i = 0; i < 6; i++)
       about[i] = sign * (second[i] - volume * offset[row[i]] * offset[column[i]]);
@@ -163,9 +164,10 @@ static void set_mass(scree_measures *m, vec3 origin, double diagonal, const doub
   memcpy(m->principal_axes, axes.m, sizeof m->principal_axes);
   double size = fabs(volume);
   m->volume = volume;
-  m->inward = volume < 0;
+  m->inward = m->has_volume && volume < 0;
+  if (!m->has_volume) return;
   m->equivalent_diameter = cbrt(6 * size / PI);
-  m->sphericity = m->area > 0 ? PI * m->equivalent_diameter * m->equivalent_diameter / m->area : 0;
+  m->sphericity = PI * m->equivalent_diameter * m->equivalent_diameter / m->area;
 }
 
 /* The vertices in use, relative to origin. */
@@ -204,7 +206,7 @@ static scree_status measure_hull(const scree_mesh *mesh, vec3 origin, scree_meas
   if (status == SCREE_OK) {
     m->hull_area = hull.area;
     m->hull_volume = hull.volume;
-    m->convexity = hull.volume > 0 ? fabs(m->volume) / hull.volume : 0;
+    m->convexity = m->has_volume && hull.volume > 0 ? fabs(m->volume) / hull.volume : 0;
     memcpy(m->oriented_axes, box.axes.m, sizeof m->oriented_axes);
     vec3_store(m->oriented_dimensions, box.size);
     vec3_store(m->oriented_center, vec3_add(origin, box.center));

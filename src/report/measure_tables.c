@@ -12,25 +12,34 @@ typedef struct field {
   kind kind;
   size_t offset;
   int count;
+  bool of_volume; /* it does not exist where there is none */
 } field;
 
-#define M(name, kind, count)                                                                       \
-  { #name, kind, offsetof(scree_measure_entry, measures) + offsetof(scree_measures, name), count }
+#define MEASURE(name, kind, count, of_volume)                                                      \
+  {                                                                                                \
+#name, kind, offsetof(scree_measure_entry, measures) + offsetof(scree_measures, name), count,  \
+        of_volume                                                                                  \
+  }
+#define M(name, kind, count) MEASURE(name, kind, count, false)
+#define V(name, count)       MEASURE(name, REAL, count, true)
 #define T(name, kind)                                                                              \
-  { #name, kind, offsetof(scree_measure_entry, topology) + offsetof(scree_topology, name), 1 }
+  {                                                                                                \
+#name, kind, offsetof(scree_measure_entry, topology) + offsetof(scree_topology, name), 1,      \
+        false                                                                                      \
+  }
 
 static const field measure_fields[] = {
     M(area, REAL, 1),
     M(volume, REAL, 1),
     M(closed, FLAG, 1),
     M(inward, FLAG, 1),
-    M(centroid, REAL, 3),
-    M(inertia, REAL, 9),
-    M(principal_moments, REAL, 3),
-    M(principal_axes, REAL, 9),
-    M(equivalent_diameter, REAL, 1),
-    M(sphericity, REAL, 1),
-    M(convexity, REAL, 1),
+    V(centroid, 3),
+    V(inertia, 9),
+    V(principal_moments, 3),
+    V(principal_axes, 9),
+    V(equivalent_diameter, 1),
+    V(sphericity, 1),
+    V(convexity, 1),
     M(dimensions, REAL, 3),
     M(box_min, REAL, 3),
     M(box_max, REAL, 3),
@@ -61,13 +70,19 @@ static const field topology_fields[] = {
     T(manifold, FLAG),
     T(oriented, FLAG),
 };
+#undef MEASURE
 #undef M
+#undef V
 #undef T
 
 enum {
   MEASURE_FIELDS = sizeof measure_fields / sizeof *measure_fields,
   TOPOLOGY_FIELDS = sizeof topology_fields / sizeof *topology_fields
 };
+
+static bool exists(const scree_measure_entry *entry, const field *f) {
+  return !f->of_volume || entry->measures.has_volume;
+}
 
 static const void *value_of(const scree_measure_entry *entry, const field *f) {
   return (const char *)entry + f->offset;
@@ -83,7 +98,9 @@ static void json_reals(scree_json *json, const char *key, const double *values, 
 
 static void json_field(scree_json *json, const scree_measure_entry *entry, const field *f) {
   const void *value = value_of(entry, f);
-  if (f->kind == COUNT) {
+  if (!exists(entry, f)) {
+    scree_json_text(json, f->name, NULL);
+  } else if (f->kind == COUNT) {
     scree_json_count(json, f->name, *(const size_t *)value);
   } else if (f->kind == SIGNED) {
     scree_json_number(json, f->name, (double)*(const long long *)value);
@@ -242,6 +259,7 @@ static void csv_fields(FILE *stream, const scree_measure_entry *entry, const fie
     for (int k = 0; k < fields[i].count; k++) {
       const void *value = value_of(entry, &fields[i]);
       putc(',', stream);
+      if (!exists(entry, &fields[i])) continue;
       if (fields[i].kind == REAL)
         scree_csv_number(stream, ((const double *)value)[k]);
       else if (fields[i].kind == COUNT)

@@ -7,6 +7,11 @@ echo "solid nothing" >broken.stl
 digits='s/"checksum": "[0-9a-f]*"/"checksum": "..."/; s/\(-\?[0-9]*\.[0-9]\{10\}\)[0-9]*/\1/g'
 
 run measure box.off
+# what encloses no volume has no centroid, nor anything else of a body
+printf 'OFF 3 2 0\n0 0 0\n4 0 0\n0 4 0\n3 0 1 2\n3 0 2 1\n' >folded.off
+run measure folded.off
+run measure --json folded.off | grep -A 1 null
+run measure --csv folded.off 2>/dev/null | tail -n 1 | cut -d, -f1-10
 run measure --unit m open.off
 run measure unlike.off
 run measure broken.stl box.off | tail -n 3

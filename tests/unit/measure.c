@@ -350,7 +350,7 @@ static void test_flat_sheet(void **state) {
     shape_transform(&mesh, &stretch, (vec3){0, 0, 0});
     if (i) shape_transform(&mesh, &turn, (vec3){0, 0, 0});
     scree_measures m = measures_of(&mesh);
-    assert_false(m.closed);
+    assert_false(m.closed || m.has_volume || m.inward);
     CHECK_NEAR(m.area, 2, TIGHT);
     CHECK_NEAR(m.volume, 0, TIGHT);
     CHECK_NEAR(m.oriented_dimensions[0], 2, 1e-9);
@@ -381,6 +381,7 @@ static void test_bad_meshes(void **state) {
     CHECK_NEAR(m.oriented_dimensions[0], line, TIGHT);
     CHECK_NEAR(m.area, 0, 0);
     CHECK_NEAR(m.sphericity, 0, 0);
+    assert_false(m.has_volume);
     scree_mesh_free(&mesh);
   }
 }
