@@ -30,6 +30,7 @@ static void *default_reallocate(void *context, void *block, size_t size) {
 static scree_reallocate *hook = default_reallocate;
 static void *hook_context = NULL;
 static atomic_size_t limit_bytes, used_bytes, peak_bytes, allocation_count;
+static atomic_bool failed_at_limit; /* the last allocation that failed */
 
 void scree_set_allocator(scree_reallocate *reallocate, void *context) {
   hook = reallocate ? reallocate : default_reallocate;
@@ -91,12 +92,17 @@ static void advise_huge_pages(void *block, size_t size) {
 
 void *scree_alloc(size_t count, size_t size) {
   size_t counted;
-  if (!counted_size(count, size, &counted) || !reserve(counted)) return NULL;
+  bool countable = counted_size(count, size, &counted);
+  if (!countable || !reserve(counted)) {
+    atomic_store(&failed_at_limit, countable);
+    return NULL;
+  }
   /* a large block begins on a huge page; what that leaves before it is never touched */
   size_t alignment = counted >= 2 * (size_t)HUGE_PAGE ? HUGE_PAGE : ALIGNMENT;
   void *raw = hook(hook_context, NULL, counted - ALIGNMENT + alignment);
   if (!raw) {
     atomic_fetch_sub(&used_bytes, counted);
+    atomic_store(&failed_at_limit, false);
     return NULL;
   }
   atomic_fetch_add(&allocation_count, 1);
@@ -159,6 +165,28 @@ void scree_discard_tail(void *block, size_t size) {
 #else
   (void)block, (void)size;
 #endif
+}
+
+/* 307200 as "300 KiB" */
+static void format_size(size_t size, char text[32]) {
+  static const char *const units[] = {"bytes", "KiB", "MiB", "GiB"};
+  size_t unit = 0;
+  for (; unit < 3 && size && size % 1024 == 0; unit++) size /= 1024;
+  snprintf(text, 32, "%zu %s", size, units[unit]);
+}
+
+void scree_tell_memory(scree_error *error, size_t byte_count, const char *what,
+                       const char *expression) {
+  char size[32];
+  if (atomic_load(&failed_at_limit)) {
+    format_size(scree_memory_limit(), size);
+    scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory: more than the limit of %s is needed%s%s",
+               size, what ? " for " : "", what ? what : "");
+    return;
+  }
+  snprintf(size, sizeof size, ": %zu bytes", byte_count);
+  scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory%s for %s", byte_count ? size : "",
+             what ? what : expression);
 }
 
 char *scree_strdup(const char *text) {

@@ -38,7 +38,7 @@ size_t scree_memory_limit(void);
   do {                                                                                             \
     (pointer) = scree_alloc((count), sizeof *(pointer));                                           \
     if (!(pointer)) {                                                                              \
-      scree_fail_memory((error), (size_t)(count) * sizeof *(pointer), #pointer);                   \
+      scree_tell_memory((error), (size_t)(count) * sizeof *(pointer), NULL, #pointer);             \
       goto label;                                                                                  \
     }                                                                                              \
   } while (0)

@@ -17,10 +17,13 @@ static inline scree_status scree_status_after(scree_status told, scree_status st
   return status;
 }
 
-/* The one sentence for a failed allocation of byte_count bytes needed for `what`. */
+/* The one sentence for a failed allocation of byte_count bytes (0: not said) needed for `what`, or
+ * for the C expression that they were for; at the limit of memory it names that. */
+void scree_tell_memory(scree_error *error, size_t byte_count, const char *what,
+                       const char *expression);
 static inline scree_status scree_fail_memory(scree_error *error, size_t byte_count,
                                              const char *what) {
-  scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory: %zu bytes for %s", byte_count, what);
+  scree_tell_memory(error, byte_count, what, NULL);
   return SCREE_OUT_OF_MEMORY;
 }
 

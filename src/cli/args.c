@@ -70,8 +70,10 @@ bool cli_real_from_text(const char *text, double *value) {
 
 int cli_fail(const scree_error *error) {
   bool spared = strstr(error->message, "not overwritten");
+  bool limited = error->status == SCREE_OUT_OF_MEMORY && strstr(error->message, "the limit of");
   cli_terminal_end();
-  fprintf(stderr, "scree: %s%s\n", error->message, spared ? "; -f overwrites" : "");
+  fprintf(stderr, "scree: %s%s%s\n", error->message, spared ? "; -f overwrites" : "",
+          limited ? "; --max-memory sets it" : "");
   return 1;
 }
 

@@ -59,5 +59,5 @@ scree_status scree_repair_growth(const scree_repair *r, size_t triangle_count, s
 }
 
 scree_status scree_repair_no_memory(scree_error *error) {
-  return scree_fail(error, SCREE_OUT_OF_MEMORY, "out of memory while repairing");
+  return scree_fail_memory(error, 0, "the repair");
 }

@@ -15,7 +15,7 @@ run check sample:fp-1 --noise 0.1mm
 run distance sample:box-12 sample:box-12 --resolution 3
 # the limit of memory names the file
 run repair -q sample:icosphere-5 -o large.obj | tail -1 | cut -c1-20
-run check --max-memory 300K large.obj 2>&1 | cut -d: -f1-3
+run check --max-memory 300K large.obj 2>&1
 # nothing could be done is not nothing had to be done
 printf 'OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n' >alone.off
 run repair alone.off -o closed.off | head -3

@@ -36,6 +36,34 @@ static void memory_is_aligned_and_counted(void **state) {
   scree_free(block);
 }
 
+static scree_status take(size_t count, scree_error *error) {
+  double *block;
+  SCREE_ALLOC_OR(block, count, error, out_of_memory);
+  scree_free(block);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static void memory_says_why_it_is_out(void **state) {
+  (void)state;
+  scree_error error;
+  scree_set_memory_limit(100 << 10);
+  assert_int_equal(take(1 << 20, &error), SCREE_OUT_OF_MEMORY);
+  assert_string_equal(error.message, "out of memory: more than the limit of 100 KiB is needed");
+  assert_null(scree_alloc(1 << 20, 1));
+  scree_fail_memory(&error, 1 << 20, "a mesh");
+  assert_string_equal(error.message,
+                      "out of memory: more than the limit of 100 KiB is needed for a mesh");
+  scree_set_memory_limit(0);
+  volatile size_t huge = SIZE_MAX / 2;
+  assert_null(scree_alloc(huge, 3));
+  scree_fail_memory(&error, 77, "a mesh");
+  assert_string_equal(error.message, "out of memory: 77 bytes for a mesh");
+  scree_fail_memory(&error, 0, "a mesh");
+  assert_string_equal(error.message, "out of memory for a mesh");
+}
+
 static void arena_gives_blocks_of_its_own(void **state) {
   (void)state;
   enum { BLOCKS = 2000 };
@@ -226,6 +254,7 @@ int main(void) {
       cmocka_unit_test(a_populated_block_is_there_before_it_is_written),
 #endif
       cmocka_unit_test(memory_is_aligned_and_counted),
+      cmocka_unit_test(memory_says_why_it_is_out),
       cmocka_unit_test(arena_gives_blocks_of_its_own),
       cmocka_unit_test(blocks_do_not_depend_on_threads),
       cmocka_unit_test(compensated_sum_is_exact_where_plain_is_not),
