@@ -19,20 +19,21 @@ static size_t stream_limit(void) {
   return pages > 0 && page > 0 ? (size_t)pages * (size_t)page / 8 : SIZE_MAX;
 }
 
-/* Where a stream is left: judge is NULL where that is at its end. */
+/* Where a file is left: judge is NULL where that is at its end. */
 typedef struct ending {
-  scree_stream_judge *judge;
-  bool left;
+  scree_file_judge *judge;
+  size_t whole_count; /* of the file that was left, or SCREE_NO_END; 0: it was not */
 } ending;
 
 /* Whether enough was read, which is cut to that. */
 static bool is_enough(ending *e, const char *bytes, size_t *used, bool all) {
   if (!e->judge || (*used < SCREE_JUDGED_BYTES && !all)) return false;
   size_t judged = *used < SCREE_JUDGED_BYTES ? *used : SCREE_JUDGED_BYTES;
-  size_t enough = e->judge(bytes, judged);
-  e->left = *used > enough;
-  if (e->left) *used = enough;
-  return e->left;
+  size_t enough = e->judge(bytes, judged, SCREE_NO_END);
+  if (*used <= enough) return false;
+  e->whole_count = SCREE_NO_END;
+  *used = enough;
+  return true;
 }
 
 /* Reads a stream of unknown length, doubling. */
@@ -135,6 +136,25 @@ done:
   return status;
 }
 
+/* The beginning of a regular file that is not worth reading; *bytes stays where it is. */
+static scree_status judge_regular(int fd, const char *path, size_t size, ending *end, char **bytes,
+                                  size_t *byte_count, scree_error *error) {
+  if (!end->judge || size <= SCREE_JUDGED_BYTES) return SCREE_OK;
+  char *beginning = scree_alloc(SCREE_JUDGED_BYTES + 1, 1);
+  if (!beginning) return scree_fail_memory(error, SCREE_JUDGED_BYTES, path);
+  size_t got = read_range(fd, beginning, 0, SCREE_JUDGED_BYTES).end;
+  size_t enough = got < SCREE_JUDGED_BYTES ? SIZE_MAX : end->judge(beginning, got, size);
+  if (enough >= size) {
+    scree_free(beginning);
+    return SCREE_OK;
+  }
+  end->whole_count = size;
+  *byte_count = enough < got ? enough : got;
+  beginning[*byte_count] = 0;
+  *bytes = beginning;
+  return SCREE_OK;
+}
+
 static scree_status read_file(const char *path, size_t max_bytes, ending *end, char **bytes,
                               size_t *byte_count, scree_error *error) {
   if (!strcmp(path, "-"))
@@ -153,23 +173,26 @@ static scree_status read_file(const char *path, size_t max_bytes, ending *end, c
   else if (max_bytes && (size_t)info.st_size > max_bytes)
     status = scree_fail(error, SCREE_LIMIT, "%s: %zu bytes, more than the limit of %zu", path,
                         (size_t)info.st_size, max_bytes);
-  else
-    status = read_regular(fd, path, (size_t)info.st_size, bytes, byte_count, error);
+  else {
+    status = judge_regular(fd, path, (size_t)info.st_size, end, bytes, byte_count, error);
+    if (status == SCREE_OK && !end->whole_count)
+      status = read_regular(fd, path, (size_t)info.st_size, bytes, byte_count, error);
+  }
   close(fd);
   return status;
 }
 
 scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
                              scree_error *error) {
-  return read_file(path, max_bytes, &(ending){NULL, false}, bytes, byte_count, error);
+  return read_file(path, max_bytes, &(ending){NULL, 0}, bytes, byte_count, error);
 }
 
-scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_stream_judge *judge,
-                                    char **bytes, size_t *byte_count, bool *goes_on,
+scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_file_judge *judge,
+                                    char **bytes, size_t *byte_count, size_t *whole_count,
                                     scree_error *error) {
-  ending end = {judge, false};
+  ending end = {judge, 0};
   scree_status status = read_file(path, max_bytes, &end, bytes, byte_count, error);
-  *goes_on = end.left;
+  if (status == SCREE_OK) *whole_count = end.whole_count ? end.whole_count : *byte_count;
   return status;
 }
 

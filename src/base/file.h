@@ -12,14 +12,16 @@
 scree_status scree_file_read(const char *path, size_t max_bytes, char **bytes, size_t *byte_count,
                              scree_error *error);
 
-/* How many bytes of a stream are worth reading, by its first SCREE_JUDGED_BYTES, or all where it
- * has fewer; SIZE_MAX: all that come. */
-typedef size_t scree_stream_judge(const char *bytes, size_t byte_count);
+/* How many bytes of a file of whole_count bytes (SCREE_NO_END: a stream) are worth reading, by its
+ * first SCREE_JUDGED_BYTES, or all where it has fewer; SIZE_MAX: all that come. */
+typedef size_t scree_file_judge(const char *bytes, size_t byte_count, size_t whole_count);
 enum { SCREE_JUDGED_BYTES = 1 << 16 };
+#define SCREE_NO_END SIZE_MAX
 
-/* scree_file_read that leaves off there, for some streams never end; *goes_on where it did. */
-scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_stream_judge *judge,
-                                    char **bytes, size_t *byte_count, bool *goes_on,
+/* scree_file_read that leaves off there, for files are large and some streams never end; then
+ * *whole_count is more than *byte_count: the length of the file, or SCREE_NO_END. */
+scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_file_judge *judge,
+                                    char **bytes, size_t *byte_count, size_t *whole_count,
                                     scree_error *error);
 
 /* A regular file that is read from its beginning in pieces, into a small buffer that stays in the

@@ -313,7 +313,7 @@ static scree_status read_any(scree_reading *r) {
   if (r->byte_count == 0) return scree_reading_fail(r, SCREE_BAD_FILE, "the file is empty");
   scree_text text = scree_reading_text(r), start = text;
   if (scree_token_is(scree_text_next(&start), "ply")) return scree_read_ply(r);
-  if (scree_is_whole_stl(r->bytes, r->byte_count)) return scree_read_stl_binary(r);
+  if (scree_is_whole_stl(r->bytes, r->whole_count)) return scree_read_stl_binary(r);
   if (!looks_like_text(r->bytes, r->byte_count)) return read_binary_or_fail(r);
   start = text;
   scree_token word = scree_text_next(&start);
@@ -337,13 +337,14 @@ static scree_status check_options(const scree_read_options *o, scree_error *erro
   return SCREE_OK;
 }
 
-static scree_status parse(const void *bytes, size_t byte_count, bool goes_on, const char *name,
-                          const scree_read_options *options, scree_scan *scan, scree_error *error) {
+static scree_status parse(const void *bytes, size_t byte_count, size_t whole_count,
+                          const char *name, const scree_read_options *options, scree_scan *scan,
+                          scree_error *error) {
   scree_read_options used = options ? *options : scree_default_read_options();
   scree_status status = check_options(&used, error);
   if (status != SCREE_OK) return status;
   scree_scan made = {.byte_count = byte_count};
-  scree_reading r = {name, bytes, byte_count, &used, used.unit_m, &made, error, goes_on};
+  scree_reading r = {name, bytes, byte_count, whole_count, &used, used.unit_m, &made, error};
   status = read_any(&r);
   made.unit_m = r.unit_m;
   if (status == SCREE_OK && made.mesh.triangle_count == 0)
@@ -362,7 +363,7 @@ static scree_status parse(const void *bytes, size_t byte_count, bool goes_on, co
 scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
                               const scree_read_options *options, scree_scan *scan,
                               scree_error *error) {
-  return parse(bytes, byte_count, false, name, options, scan, error);
+  return parse(bytes, byte_count, byte_count, name, options, scan, error);
 }
 
 /* What a stream is may show at its end only where it begins with white space or comments, or where
@@ -377,22 +378,25 @@ static bool may_be_text_format(scree_text text) {
          looks_like_obj(start);
 }
 
-/* For a stream: no more of it than says what it is, where it is none of ours; of a binary STL so
+/* No more of it than says what it is, where it is none of ours; of a binary STL that is a stream so
  * much that it shows to be too long. */
-static size_t judge(const char *beginning, size_t byte_count) {
+static size_t judge(const char *beginning, size_t byte_count, size_t whole_count) {
   const scree_read_options options = scree_default_read_options();
   const unsigned char *bytes = (const unsigned char *)beginning;
-  scree_reading r = {"", bytes, byte_count, &options, 1, NULL, NULL, false};
+  scree_reading r = {"", bytes, byte_count, whole_count, &options, 1, NULL, NULL};
   scree_text text = scree_reading_text(&r), start = text;
   size_t damaged = 0;
   if (byte_count < SCREE_JUDGED_BYTES) return SIZE_MAX; /* it has ended */
   if (scree_token_is(scree_text_next(&start), "ply")) return SIZE_MAX;
+  if (scree_is_whole_stl(bytes, whole_count)) return SIZE_MAX;
   if (looks_like_text(bytes, byte_count)) return may_be_text_format(text) ? SIZE_MAX : byte_count;
   if (imported_mark_of(&r) < IMPORTED_MARK_COUNT || starts_with(&r, "MM", 2)) return SIZE_MAX;
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++)
     if (starts_with(&r, foreign_marks[i].bytes, foreign_marks[i].length)) return byte_count;
   if (is_binary_off(text) || is_damaged_text(&r, &damaged)) return byte_count;
-  return SCREE_STL_HEADER + (stl_count(bytes) + 1) * SCREE_STL_FACET;
+  size_t enough = SCREE_STL_HEADER + (stl_count(bytes) + 1) * SCREE_STL_FACET;
+  bool cut_off = whole_count < enough - SCREE_STL_FACET;
+  return cut_off ? byte_count : enough;
 }
 
 /* The common kind of scan. */
@@ -404,8 +408,8 @@ static scree_status read_stream(const char *path, const scree_read_options *opti
   if (!scree_stream_open(path, &stream)) return SCREE_OK;
   if (!options->max_bytes || stream.byte_count <= options->max_bytes) {
     scree_scan made = {.byte_count = stream.byte_count, .unit_m = options->unit_m};
-    scree_reading r = {path,  NULL, stream.byte_count, options, options->unit_m, &made,
-                       error, false};
+    scree_reading r = {path,  NULL, stream.byte_count, stream.byte_count, options, options->unit_m,
+                       &made, error};
     status = scree_read_stl_stream(&r, &stream, done);
     made.checksum = scree_stream_checksum(&stream);
     if (*done)
@@ -421,18 +425,17 @@ scree_status scree_scan_read(const char *path, const scree_read_options *options
                              scree_error *error) {
   scree_read_options used = options ? *options : scree_default_read_options();
   char *bytes;
-  size_t byte_count;
+  size_t byte_count, whole_count;
   bool done = false;
   scree_status status = check_options(&used, error);
   if (status == SCREE_OK && strcmp(path, "-") != 0)
     status = read_stream(path, &used, scan, &done, error);
   if (status != SCREE_OK || done) return status;
-  bool goes_on;
   status =
-      scree_file_read_judged(path, used.max_bytes, judge, &bytes, &byte_count, &goes_on, error);
+      scree_file_read_judged(path, used.max_bytes, judge, &bytes, &byte_count, &whole_count, error);
   if (status != SCREE_OK) return status;
   const char *name = strcmp(path, "-") != 0 ? path : "standard input";
-  status = parse(bytes, byte_count, goes_on, name, options, scan, error);
+  status = parse(bytes, byte_count, whole_count, name, options, scan, error);
   scree_free(bytes);
   return status;
 }

@@ -12,11 +12,12 @@ typedef struct scree_reading {
   const char *name; /* for errors */
   const unsigned char *bytes;
   size_t byte_count;
+  size_t whole_count; /* of the file; more than byte_count, or SCREE_NO_END of a stream, where its
+                         beginning showed that it is no such file */
   const scree_read_options *options;
   double unit_m;    /* metres per unit: of the options, unless the file states its own */
   scree_scan *scan; /* filled; its mesh is freed by the caller on failure */
   scree_error *error;
-  bool goes_on; /* a stream that was left where it had shown to be no such file */
 } scree_reading;
 
 /* The file as text, behind a byte order mark. */

@@ -72,8 +72,8 @@ static void describe_binary(scree_scan *scan, size_t facet_count) {
 
 scree_status scree_read_stl_binary(scree_reading *r) {
   scree_scan *scan = r->scan;
-  size_t count = load_u32(r->bytes + 80), room = (r->byte_count - HEADER_BYTES) / FACET_BYTES;
-  if (count != room && r->goes_on)
+  size_t count = load_u32(r->bytes + 80), room = (r->whole_count - HEADER_BYTES) / FACET_BYTES;
+  if (r->whole_count == SCREE_NO_END)
     return scree_reading_fail(
         r, SCREE_BAD_FILE,
         "binary STL with a wrong count: bytes 80 to 83 say %zu facets, which take %zu bytes, but "
@@ -85,7 +85,7 @@ scree_status scree_read_stl_binary(scree_reading *r) {
         "binary STL %s: bytes 80 to 83 say %zu facets, which take %zu bytes, but the file has %zu "
         "bytes, room for %zu facets",
         count > room ? "cut off" : "with a wrong count", count, HEADER_BYTES + count * FACET_BYTES,
-        r->byte_count, room);
+        r->whole_count, room);
   if (count == 0)
     return scree_reading_fail(r, SCREE_BAD_FILE, "binary STL with no facets: bytes 80 to 83 say 0");
   describe_binary(scan, count);

@@ -39,3 +39,8 @@ yes | "$SCREE" measure - 2>&1
 cat large.ply | "$SCREE" measure - --json | grep -E '"(format|checksum)"'
 "$SCREE" measure large.ply --json | grep '"checksum"'
 (yes '# a comment' | head -n 20000 && cat one.obj) | grep -v "$(printf '\001')" | "$SCREE" measure - 2>/dev/null | head -n 1
+# nor is a large file that is no mesh read to its end
+truncate -s 3G sparse.stl
+(printf '%-80s' cut && printf '\377\377\377\377') >long.stl && truncate -s 3G long.stl
+(yes 1,2,3 | head -n 20000) >table.csv && truncate -s 3G table.csv
+for file in sparse.stl long.stl table.csv; do run measure --max-memory 1M $file; done
