@@ -43,9 +43,10 @@ typedef struct scree_measures {
 
 /* Measures a mesh of any quality. Fails with SCREE_BAD_MESH where it has no triangle, an index is
  * out of range or a coordinate is not finite. Cost: O(N) and the convex hull (about 0.5 s for a
- * million facets of a scan; longest where most vertices lie on the hull); qhull's own memory does
- * not come from scree_set_allocator. Relative error about 1e-14 wherever the mesh lies, beyond what
- * the rounding of its coordinates costs. */
+ * million facets of a scan; longest where most vertices lie on the hull, and quadratic in the
+ * vertices of the hull that lie in one plane: a cylinder of 64,000 facets takes half a minute);
+ * qhull's own memory does not come from scree_set_allocator. Relative error about 1e-14 wherever
+ * the mesh lies, beyond what the rounding of its coordinates costs. */
 SCREE_API scree_status scree_mesh_measure(const scree_mesh *mesh, scree_measures *measures,
                                           scree_error *error);
 

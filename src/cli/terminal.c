@@ -134,6 +134,15 @@ bool cli_terminal_settle(void) {
   return settled;
 }
 
+void cli_terminal_release(void) {
+  static const int caught[] = {SIGINT, SIGTERM, SIGHUP};
+  for (size_t i = 0; i < sizeof caught / sizeof *caught; i++) {
+    struct sigaction before;
+    if (sigaction(caught[i], NULL, &before) == 0 && before.sa_handler == on_signal)
+      signal(caught[i], SIG_DFL);
+  }
+}
+
 const scree_progress *cli_terminal_start(bool show) {
   static const scree_progress progress = {report, NULL, 0.1};
   catch_signals((int)SA_RESETHAND);

@@ -28,6 +28,9 @@ void cli_terminal_end(void);
 /* From here on what is asked for is done: the next of these signals changes nothing any more, and
  * the one after it ends the program where it stands. False where one came before. */
 bool cli_terminal_settle(void);
+/* The signals end the program where it stands: for a call that leaves no files and works where it
+ * cannot be asked to stop. */
+void cli_terminal_release(void);
 /* Whether one of these came, before it was settled; with true, cli_terminal_reraise ends the
  * program as the signal would have done, so that the shell sees it. */
 bool cli_interrupted(void);

@@ -221,6 +221,7 @@ static int run(const cli_call *call) {
   char(*formats)[32] = calloc(call->input_count, sizeof *formats);
   scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory for the table of measures"};
   size_t count = 0;
+  cli_terminal_release(); /* qhull asks nobody whether to go on */
   int code = entries && formats ? 0 : cli_fail(&error);
   for (size_t i = 0; i < call->input_count && entries && formats; i++) {
     if (measure_file(call, call->inputs[i], &entries[count], formats[count], &error) != SCREE_OK) {
