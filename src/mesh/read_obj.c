@@ -85,13 +85,20 @@ static scree_status read_face(scree_text *t, obj *o) {
   return SCREE_OK;
 }
 
+/* A word of one letter, also alone on its line. */
+static bool at_short_word(const scree_text *t) {
+  scree_text behind = *t;
+  if (behind.p++ == t->end) return false;
+  return scree_text_at_line_end(&behind) || *behind.p == ' ' || *behind.p == '\t';
+}
+
 static scree_status read_lines(scree_text *t, obj *o) {
   while (t->p < t->end) {
     scree_text_skip_space(t);
     const char *p = t->p;
-    bool short_word = t->end - p >= 2 && (p[1] == ' ' || p[1] == '\t');
+    bool short_word = at_short_word(t);
     scree_status status = SCREE_OK;
-    t->p += short_word ? 2 : 0;
+    t->p += short_word;
     if (short_word && (*p == 'v' || *p == 'V'))
       status = read_vertex(t, o);
     else if (short_word && (*p == 'f' || *p == 'F'))

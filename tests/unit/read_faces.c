@@ -334,6 +334,8 @@ static void obj_broken(void **state) {
   expect_error("line 2: a vertex with 2 coordinates; it needs 3");
   begin("v 0 0 0\nv\t # 1 2 3\n");
   expect_error("line 2: a vertex with 0 coordinates; it needs 3");
+  begin("v 0 0 0\nv\n");
+  expect_error("line 2: a vertex with 0 coordinates; it needs 3");
   begin("v 0 0 0\nv 1 2 \\\nx\n");
   expect_error("line 3: z is 'x'");
   begin("v 0 0 0\n");
@@ -350,7 +352,7 @@ static void faces_of_two_corners(void **state) {
        "0 0 0\n1 0 0\n0 1 0\n",
        "3 0 1 2\n2 0 1\n1 2\n"},
       {"OFF\n3 3 0\n0 0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n2 0 1\n1 2\n"},
-      {"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "f 1 2 3\nf 1 2\nf 3\n"}};
+      {"v 0 0 0\nv 1 0 0\nv 0 1 0\n", "f 1 2 3\nf\nf 3\n"}};
   for (size_t i = 0; i < 3; i++) {
     scree_scan scan = {0};
     scree_error error;
