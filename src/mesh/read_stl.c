@@ -233,6 +233,13 @@ static scree_status read_facet(scree_text *t, corner_list *corners) {
   return status;
 }
 
+static scree_status fail_behind(const scree_text *t, const char *at) {
+  char quote[SCREE_QUOTE_SIZE];
+  return scree_text_fail(t, at,
+                         "behind `endsolid` there is %s (first byte 0x%02x), which is no `solid`",
+                         scree_text_quote(t, at, quote), (unsigned)(unsigned char)*at);
+}
+
 static scree_status read_solids(scree_reading *r, scree_text *t, corner_list *corners) {
   bool inside = false;
   for (;;) {
@@ -253,8 +260,10 @@ static scree_status read_solids(scree_reading *r, scree_text *t, corner_list *co
       inside = true;
       r->scan->solid_count++;
       skip_name(t);
-    } else
-      status = fail_expected(t, token.begin, inside ? "facet` or `endsolid" : "solid");
+    } else if (inside)
+      status = fail_expected(t, token.begin, "facet` or `endsolid");
+    else
+      status = fail_behind(t, token.begin);
     if (status != SCREE_OK) return status;
   }
 }

@@ -186,7 +186,11 @@ static void ascii_wrong(void **state) {
   file.count = 0, put_text("solid\nfacet normal 0 0 1\nouter loop\nvertex 1 2\nvertex");
   expect_error(SCREE_BAD_FILE, "line 5: z is 'vertex'");
   file.count = 0, put_text("solid\nendsolid\nrubbish\n");
-  expect_error(SCREE_BAD_FILE, "line 3: expected `solid`, found 'rubbish'");
+  expect_error(SCREE_BAD_FILE, "line 3: behind `endsolid` there is 'rubbish' (first byte 0x72)");
+  file.count = 0, put_text("solid\n");
+  for (int i = 0; i < 10; i++) put_solid(lower, " ", "\n", numbers);
+  put_text("endsolid\n\x1a");
+  expect_error(SCREE_BAD_FILE, "line 283: behind `endsolid` there is '?' (first byte 0x1a)");
 }
 
 /* ---- files, which are welded as they are read ---- */
