@@ -77,10 +77,17 @@ int cli_fail(const scree_error *error) {
   return 1;
 }
 
+/* As errors of the library have it: nothing that a terminal obeys. */
+static void make_printable(char *text) {
+  for (char *c = text; *c; c++)
+    if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
+}
+
 scree_status cli_refuse(scree_error *error, scree_status status, const char *path,
                         const char *reason) {
   error->status = status;
   snprintf(error->message, sizeof error->message, "%.700s: %.300s", path, reason);
+  make_printable(error->message);
   return status;
 }
 
@@ -92,11 +99,12 @@ static bool names(const char *message, const char *word) {
 }
 
 scree_status cli_name_in_error(const char *word, scree_error *error) {
-  if (!strcmp(word, "-")) word = "standard input";
-  if (error->status == SCREE_CANCELLED || names(error->message, word)) return error->status;
-  char message[sizeof error->message];
+  char message[sizeof error->message], name[sizeof error->message];
+  snprintf(name, sizeof name, "%s", strcmp(word, "-") != 0 ? word : "standard input");
+  make_printable(name);
+  if (error->status == SCREE_CANCELLED || names(error->message, name)) return error->status;
   memcpy(message, error->message, sizeof message);
-  snprintf(error->message, sizeof error->message, "%.300s: %.700s", word, message);
+  snprintf(error->message, sizeof error->message, "%.300s: %.700s", name, message);
   return error->status;
 }
 

@@ -53,3 +53,9 @@ for verb in check measure choose; do
   run $verb - </dev/null
   run $verb - - <e 2>&1 | sed -n 2p
 done
+# nor is it shown twice, or obeyed by a terminal, where it has control characters
+escape=$(printf 'no\033[31m.stl')
+"$SCREE" check "$escape"
+"$SCREE" simplify --no-repair -n 4 -o s.ply "$escape"
+cp e "$escape"
+"$SCREE" choose --no-repair "$escape"
