@@ -5,6 +5,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <limits.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -229,12 +230,24 @@ void scree_stream_close(scree_stream *stream) {
   XXH3_freeState(stream->hash);
 }
 
+/* The length of path without what a name of NAME_MAX bytes leaves no room for once `more` bytes are
+ * put behind it; no character of UTF-8 is cut. */
+static size_t room_beside(const char *path, size_t more) {
+  const char *slash = strrchr(path, '/');
+  size_t length = strlen(path), most = (slash ? (size_t)(slash + 1 - path) : 0) + NAME_MAX - more;
+  if (length <= most) return length;
+  while (most > 0 && ((unsigned char)path[most] & 0xc0) == 0x80) most--;
+  return most;
+}
+
 /* A new file beside path under a name that nobody else has: another machine that shares the folder
  * may have a process of the same number, and a killed one may have left its file. */
 static int create_beside(const char *path, char *name, size_t size) {
   int fd = -1;
   for (int attempt = 0; attempt < TEMPORARY_NAMES; attempt++) {
-    snprintf(name, size, "%s.%ld-%d.part", path, (long)getpid(), attempt);
+    char tail[32];
+    int more = snprintf(tail, sizeof tail, ".%ld-%d.part", (long)getpid(), attempt);
+    snprintf(name, size, "%.*s%s", (int)room_beside(path, (size_t)more), path, tail);
     fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd >= 0 || errno != EEXIST) break;
   }
@@ -261,6 +274,8 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
   }
   struct stat info;
   bool exists = stat(path, &info) == 0, direct = exists && is_special(&info);
+  if (!exists && errno == ENAMETOOLONG) /* the temporary file's may be shorter */
+    return scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
   if (!exists && !overwrite && lstat(path, &info) == 0) /* a link that leads nowhere */
     return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
   if (exists && S_ISDIR(info.st_mode))

@@ -45,3 +45,7 @@ run sample box-12 -o dangling.off
 mkdir limited && cd limited || exit
 (ulimit -f 1 && run sample icosphere-3 -q -o ball.stl 2>&1) | cat
 ls
+# a name as long as names may be, of characters of two bytes
+long=$(printf '\303\244%.0s' $(seq 125)).off
+run sample box-12 -q -o "$long" >/dev/null && ls
+run sample box-12 -q -o "long$long"
