@@ -27,7 +27,8 @@ static const cli_option options[] = {
      "united to close a seam. Default: 1e-4.",
      0, 0.01, NULL},
     {"holes", 0, CLI_COUNT, AT(hole_edges), "EDGES",
-     "Fill holes of at most this many edges; 0 fills none. Default: 128.", 0, 4096, NULL},
+     "Fill holes of at most this many edges; 0 fills none. Not with --large-holes. Default: 128.",
+     0, 4096, NULL},
     {"large-holes", 0, CLI_FLAG, AT(large_holes), NULL,
      "Fill holes of up to 4096 edges, those of more than 32 smoothly: with triangles as small as "
      "round the hole, and its slope.",
@@ -137,7 +138,12 @@ static int run(const cli_call *call) {
   scree_mesh repaired = {0};
   scree_error error = {.status = SCREE_OK};
   if (!a->output) return cli_misuse(call->verb, "say with -o where the result is to go");
-  if (cli_check_mesh_output(call, a->output, a->force, &error) != SCREE_OK ||
+  if (a->large_holes && a->hole_edges != defaults.hole_edges)
+    return cli_misuse(call->verb, "--holes and --large-holes exclude each other");
+  scree_status checked = cli_check_mesh_output(call, a->output, a->force, &error);
+  if (checked != SCREE_OK && scree_file_format_of(a->output) == SCREE_FORMAT_AUTO)
+    return cli_misuse(call->verb, "%s", error.message);
+  if (checked != SCREE_OK ||
       cli_load(call->inputs[0], &input, call->progress, &scan, &error) != SCREE_OK)
     return cli_fail(&error);
   scree_status status =
@@ -167,7 +173,7 @@ const cli_verb cli_verb_repair = {
         "cross, overlap or touch into the surface of their union. Prints what was done with "
         "counts. The result passes `scree check`, or nothing is written and what remains is "
         "said.\n\n"
-        "Exit code 0 where the result was written, 1 otherwise.",
+        "Exit code 0 where the result was written, 2 for wrong usage, 1 otherwise.",
     .examples = "scree repair scan.stl -o closed.stl\n"
                 "scree repair scan.ply -o closed.ply --large-holes --largest\n",
     .options = options,

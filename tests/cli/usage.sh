@@ -32,3 +32,8 @@ for words in "curve x --samples 10" "choose x --density 2" "pile x -s 100x100" "
   run $words 2>&1 | sed -n 2p
 done
 "$SCREE" curve ball.stl --distance --samples 10 --per-decade 1 | wc -l
+# what cannot both be is wrong usage, and so is an output of no known format
+for words in '--holes 0 --large-holes -o y.stl' '-o x.xyz' '-o -'; do
+  "$SCREE" repair ball.stl $words 2>said
+  echo "exit code $?: $(head -n 1 said)"
+done
