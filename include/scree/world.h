@@ -113,7 +113,10 @@ SCREE_API scree_status scree_world_add_body(scree_world *world, scree_particle *
 SCREE_API size_t scree_world_body_count(const scree_world *world);
 SCREE_API bool scree_world_body_removed(const scree_world *world, size_t index);
 SCREE_API void scree_world_get_body(const scree_world *world, size_t index, scree_body *state);
-SCREE_API void scree_world_set_body(scree_world *world, size_t index, const scree_body *state);
+/* Puts a body into another state. SCREE_BAD_ARGUMENT, as of scree_world_add_body, where a value is
+ * not finite or the orientation has no length; the body then stays as it is. */
+SCREE_API scree_status scree_world_set_body(scree_world *world, size_t index,
+                                            const scree_body *state, scree_error *error);
 SCREE_API scree_particle *scree_world_body_particle(const scree_world *world, size_t index);
 SCREE_API size_t scree_world_body_material(const scree_world *world, size_t index);
 SCREE_API double scree_world_body_mass(const scree_world *world, size_t index);

@@ -149,7 +149,7 @@ class World:
         self._check(index, "world_body_count", "body")
         body = c.scree_body()
         lib["world_get_body"](self._handle, index, body)
-        lib["world_set_body"](self._handle, index, set_fields(body, state, "a body"))
+        call("world_set_body", self._handle, index, set_fields(body, state, "a body"))
 
     def remove_body(self, index):
         self._check(index, "world_body_count", "body")

@@ -30,9 +30,10 @@ static scree_status check_wall(const scree_world *world, const scree_wall *wall,
                       "world: wall %zu has an axis of length %g, or a value that is not finite",
                       number, sqrt(axis2));
   bool round = wall->kind == SCREE_WALL_DISC || wall->kind == SCREE_WALL_CYLINDER;
-  if (round && !(wall->radius > 0 && isfinite(wall->radius) && wall->length >= 0))
+  if (round && !(wall->radius > 0 && wall->length >= 0 && isfinite(wall->radius + wall->length)))
     return scree_fail(error, SCREE_BAD_ARGUMENT,
-                      "world: wall %zu has radius %g m and length %g m; above 0, at least 0",
+                      "world: wall %zu has radius %g m and length %g m; finite, above 0 and at "
+                      "least 0",
                       number, wall->radius, wall->length);
   if (wall->kind == SCREE_WALL_MESH && !wall->mesh)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: wall %zu is a mesh without one", number);

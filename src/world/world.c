@@ -161,21 +161,45 @@ static bool is_finite_body(const scree_body *s) {
   return isfinite(sum) && length > 0 && isfinite(length);
 }
 
+static scree_status check_state(size_t index, const char *what, const scree_body *state,
+                                scree_error *error) {
+  if (is_finite_body(state)) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT,
+                    "world: body %zu is to be %s a state that is not finite", index, what);
+}
+
+static void place_body(scree_world *world, size_t i, const scree_body *state) {
+  scree_bodies *b = &world->bodies;
+  const double *o = state->orientation;
+  b->orientation[i] = quat_unit((quat){o[0], o[1], o[2], o[3]});
+  scree_frame *frame = &b->frame[i];
+  frame->position = vec3_load(state->position);
+  frame->velocity = vec3_load(state->velocity);
+  frame->rotation = quat_to_mat3(b->orientation[i]);
+  vec3 local = mat3_tmul_vec(&frame->rotation, vec3_load(state->angular_velocity)),
+       in = b->inertia[i];
+  b->momentum[i] =
+      mat3_mul_vec(&frame->rotation, (vec3){in.x * local.x, in.y * local.y, in.z * local.z});
+  frame->spin = vec3_load(state->angular_velocity);
+  frame->velocity_now = frame->velocity;
+  frame->spin_now = frame->spin;
+  b->force[i] = b->torque[i] = (vec3){0, 0, 0};
+  scree_body_forget(world, i);
+}
+
 scree_status scree_world_add_body(scree_world *world, scree_particle *particle, size_t material,
                                   const scree_body *state, size_t *index, scree_error *error) {
   if (material >= world->material_count)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: material %zu of %zu", material,
                       world->material_count);
   scree_body start = state ? *state : scree_default_body();
-  if (!is_finite_body(&start))
-    return scree_fail(error, SCREE_BAD_ARGUMENT,
-                      "world: body %zu is to be added with a state that is not finite",
-                      world->bodies.count);
   scree_bodies *b = &world->bodies;
+  scree_status status = check_state(b->count, "added with", &start, error);
+  if (status) return status;
   if (b->count == b->capacity) {
     if (b->count > UINT32_MAX / 8)
       return scree_fail(error, SCREE_LIMIT, "world: at most %u bodies", UINT32_MAX / 8);
-    scree_status status = grow_bodies(world, error);
+    status = grow_bodies(world, error);
     if (status) return status;
   }
   size_t i = b->count++;
@@ -188,7 +212,7 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
   b->removed[i] = false;
   b->particle[i] = particle;
   scree_particle_retain(particle);
-  scree_world_set_body(world, i, &start);
+  place_body(world, i, &start);
   world->time_step_stale = true;
   if (index) *index = i;
   return SCREE_OK;
@@ -212,23 +236,12 @@ void scree_world_get_body(const scree_world *world, size_t i, scree_body *state)
   memcpy(state->orientation, orientation, sizeof orientation);
 }
 
-void scree_world_set_body(scree_world *world, size_t i, const scree_body *state) {
-  scree_bodies *b = &world->bodies;
-  const double *o = state->orientation;
-  b->orientation[i] = quat_unit((quat){o[0], o[1], o[2], o[3]});
-  scree_frame *frame = &b->frame[i];
-  frame->position = vec3_load(state->position);
-  frame->velocity = vec3_load(state->velocity);
-  frame->rotation = quat_to_mat3(b->orientation[i]);
-  vec3 local = mat3_tmul_vec(&frame->rotation, vec3_load(state->angular_velocity)),
-       in = b->inertia[i];
-  b->momentum[i] =
-      mat3_mul_vec(&frame->rotation, (vec3){in.x * local.x, in.y * local.y, in.z * local.z});
-  frame->spin = vec3_load(state->angular_velocity);
-  frame->velocity_now = frame->velocity;
-  frame->spin_now = frame->spin;
-  b->force[i] = b->torque[i] = (vec3){0, 0, 0};
-  scree_body_forget(world, i);
+scree_status scree_world_set_body(scree_world *world, size_t index, const scree_body *state,
+                                  scree_error *error) {
+  scree_status status = check_state(index, "set to", state, error);
+  if (status) return status;
+  place_body(world, index, state);
+  return SCREE_OK;
 }
 
 scree_particle *scree_world_body_particle(const scree_world *world, size_t index) {

@@ -124,11 +124,54 @@ static void a_body_put_elsewhere_is_at_rest(void **state) {
   law_step(world, 10);
   body.position[2] = 0.1;
   body.velocity[2] = 0;
-  scree_world_set_body(world, 0, &body);
+  law_place(world, 0, &body);
   scree_world_observe(world, &o);
   LAW_NEAR("-", "its kinetic energy (J)", o.kinetic + o.rotational, 0, 0);
   scree_world_free(world);
   scree_particle_free(ball);
+}
+
+/* Neither is a body added nor put into a state that is none; it stays as it is. */
+static void no_body_has_a_state_that_is_not_finite(void **state) {
+  (void)state;
+  const law_setup setup = law_default();
+  const double odd[] = {NAN, INFINITY, -INFINITY};
+  enum { VALUES = sizeof(scree_body) / sizeof(double) };
+  scree_error error;
+  scree_world *world = law_world(&setup);
+  scree_particle *ball = law_sphere(0.01);
+  law_body(world, ball, scree_default_body());
+  scree_checksum before = scree_world_hash(world);
+  for (size_t i = 0; i < 3 * VALUES + 1; i++) {
+    double values[VALUES];
+    scree_body body = scree_default_body();
+    memcpy(values, &body, sizeof body);
+    if (i < 3 * VALUES) values[i / 3] = odd[i % 3];
+    memcpy(&body, values, sizeof body);
+    if (i == 3 * VALUES) body.orientation[0] = 0;
+    assert_int_equal(scree_world_set_body(world, 0, &body, &error), SCREE_BAD_ARGUMENT);
+    assert_string_equal(error.message, "world: body 0 is to be set to a state that is not finite");
+    assert_int_equal(scree_world_add_body(world, ball, 0, &body, NULL, &error), SCREE_BAD_ARGUMENT);
+    assert_string_equal(error.message,
+                        "world: body 1 is to be added with a state that is not finite");
+  }
+  scree_checksum after = scree_world_hash(world);
+  assert_true(before.high == after.high && before.low == after.low);
+  scree_world_free(world);
+  scree_particle_free(ball);
+}
+
+static void no_wall_is_without_end_but_of_length_0(void **state) {
+  (void)state;
+  const law_setup setup = law_default();
+  scree_error error;
+  scree_world *world = law_world(&setup);
+  scree_wall wall = {.kind = SCREE_WALL_CYLINDER, .axis = {0, 0, 1}, .radius = 0.1};
+  wall.length = INFINITY;
+  assert_int_equal(scree_world_add_wall(world, &wall, NULL, &error), SCREE_BAD_ARGUMENT);
+  wall.length = 0;
+  CHECK_OK(scree_world_add_wall(world, &wall, NULL, &error), error);
+  scree_world_free(world);
 }
 
 /* A hit, the bodies added in either order: velocity and spin of the first shape afterwards. */
@@ -183,6 +226,8 @@ int main(void) {
                                      cmocka_unit_test(friction_may_change),
                                      cmocka_unit_test(what_is_removed_touches_nothing),
                                      cmocka_unit_test(a_body_put_elsewhere_is_at_rest),
+                                     cmocka_unit_test(no_body_has_a_state_that_is_not_finite),
+                                     cmocka_unit_test(no_wall_is_without_end_but_of_length_0),
                                      cmocka_unit_test(the_order_of_bodies_is_no_part_of_the_law)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,8 +37,8 @@ static double one_landing(scree_particle *box, scree_particle *other, double tur
   double step = scree_world_time_step(world, NULL) * speed;
   up.position[2] = 0.0075 + m.rounding + 0.5 * step * (3 + 0.25 * phase + 0.125);
   down.position[2] = -up.position[2];
-  scree_world_set_body(world, a, &up);
-  scree_world_set_body(world, b, &down);
+  law_place(world, a, &up);
+  law_place(world, b, &down);
   scree_observation o;
   double energy = 0.25 * scree_world_body_mass(world, a) * speed * speed, worst = 0;
   bool touched = false;

@@ -29,8 +29,8 @@ static scree_world *elastic_world(double skin) {
 /* The pair's energy, and the force on body 0, at these poses (both at rest). */
 static double energy_at(scree_world *world, const scree_body *a, const scree_body *b,
                         double force[3]) {
-  scree_world_set_body(world, 0, a);
-  scree_world_set_body(world, 1, b);
+  law_place(world, 0, a);
+  law_place(world, 1, b);
   law_step(world, 1);
   scree_observation o;
   scree_world_observe(world, &o);

@@ -213,7 +213,7 @@ static void spinning_plate(void **state) {
   scree_body body;
   scree_world_get_body(world, a, &body);
   body.angular_velocity[2] = 10;
-  scree_world_set_body(world, a, &body);
+  law_place(world, a, &body);
   double start = scree_world_time(world);
   until(world, start + 0.005);
   scree_world_get_body(world, a, &body);

@@ -121,7 +121,7 @@ static void time_step_takes_its_share(void **state) {
         body.velocity[2] = -1;
         body.position[2] =
             0.02 + scree_world_time_step(world, NULL) * (10 + phase / (double)PHASES);
-        scree_world_set_body(world, 0, &body);
+        law_place(world, 0, &body);
         law_step(world, 10 + 10 * (size_t)steps);
         double energy = 0.5 * scree_world_body_mass(world, 0);
         lost += (1 - law_ledger(world, &seen) / energy) / PHASES;
@@ -158,7 +158,7 @@ static void hysteretic_restitution(void **state) {
       law_body(world, ball, body);
       body.velocity[2] = -1;
       body.position[2] = 0.01 + scree_world_time_step(world, NULL) * (10 + phase / 8.0);
-      scree_world_set_body(world, 0, &body);
+      law_place(world, 0, &body);
       double energy = 0.5 * scree_world_body_mass(world, 0);
       for (int k = 0; k < 400; k++) {
         scree_observation seen;

@@ -29,12 +29,12 @@ static scree_particle *cube(void) {
 static double force_at(scree_world *world, const scree_body *upper, const scree_body *lower) {
   scree_body apart = *upper, after;
   apart.position[2] += 0.001; /* seen from outside first */
-  scree_world_set_body(world, 0, &apart);
-  scree_world_set_body(world, 1, lower);
+  law_place(world, 0, &apart);
+  law_place(world, 1, lower);
   law_step(world, 1);
   apart = *upper;
-  scree_world_set_body(world, 0, &apart);
-  scree_world_set_body(world, 1, lower);
+  law_place(world, 0, &apart);
+  law_place(world, 1, lower);
   law_step(world, 1);
   scree_world_get_body(world, 0, &after);
   return scree_world_body_mass(world, 0) * after.velocity[2] / scree_world_time_step(world, NULL);

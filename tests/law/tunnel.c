@@ -109,10 +109,10 @@ static void what_passes_a_thin_wall_between_steps_stops(void **state) {
     double dt = scree_world_time_step(world, NULL), speed = 1e-3 / dt;
     body.velocity[2] = moves ? -speed : 0;
     body.position[2] = 0.05;
-    scree_world_set_body(world, 0, &body);
+    law_place(world, 0, &body);
     body.velocity[2] = moves ? 0 : speed;
     body.position[2] = 0;
-    scree_world_set_body(world, lower, &body);
+    law_place(world, lower, &body);
     scree_error error;
     assert_int_equal(scree_world_step(world, 200, &error), SCREE_DIVERGED);
     print_message("%s\n", error.message);

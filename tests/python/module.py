@@ -231,6 +231,8 @@ class Worlds(unittest.TestCase):
         world = self.world()
         world.set_body(1, velocity=(1, 2, 3))
         self.assertEqual(list(world.body(1).velocity), [1, 2, 3])
+        with self.assertRaisesRegex(scree.Error, "body 1 is to be set to a state that is not finite"):
+            world.set_body(1, position=(math.nan, 0, 0))
         world.remove_body(0)
         self.assertEqual(world.live(), [1])
         with self.assertRaises(IndexError):

@@ -65,6 +65,11 @@ static inline size_t law_body(scree_world *world, scree_particle *particle, scre
   return index;
 }
 
+static inline void law_place(scree_world *world, size_t index, const scree_body *state) {
+  scree_error error;
+  CHECK_OK(scree_world_set_body(world, index, state, &error), error);
+}
+
 static inline void law_step(scree_world *world, size_t count) {
   scree_error error;
   CHECK_OK(scree_world_step(world, count, &error), error);

@@ -148,7 +148,7 @@ static void keeps_failure(void **state) {
   scree_body body;
   scree_world_get_body(world, 2, &body);
   body.velocity[0] = 1e4;
-  scree_world_set_body(world, 2, &body);
+  CHECK_OK(scree_world_set_body(world, 2, &body, &error), error);
   assert_int_equal(scree_world_step(world, 1, &error), SCREE_DIVERGED);
   packed p = pack(world);
   scree_world *loaded = unpack(p);
