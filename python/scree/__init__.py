@@ -9,10 +9,11 @@
 SI units: metres, kilograms, seconds, radians. Tables are numpy arrays where numpy is installed, memoryviews and
 lists where it is not. What the library refuses is a scree.Error with one sentence and a `status`. Long work takes
 `progress`, a function of (phase, fraction) that cancels by returning False; Ctrl-C works anyway."""
-from ._library import Error, lib as _lib
+from ._library import Error, c_uint32 as _uint32, lib as _lib
 from ._mesh import Choice, Curve, Mesh, load, sample, samples
 from ._pour import Pour
 from ._run import Experiment, Motion, Run, report, repose
+from ._values import whole as _whole
 from ._world import Particle, World, write_pvd
 
 __all__ = ["Choice", "Curve", "Error", "Experiment", "Mesh", "Motion", "Particle", "Pour", "Run", "World", "load", "report",
@@ -25,4 +26,4 @@ def version():
 
 def set_threads(count):
     """Threads of parallel work; 0: one per processor. Results do not depend on it."""
-    _lib["set_threads"](count)
+    _lib["set_threads"](_whole(count, "a number of threads", _uint32))

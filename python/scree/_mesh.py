@@ -5,7 +5,7 @@ import weakref
 
 from . import _library as c
 from ._library import call, lib
-from ._values import c_array, column, from_struct, index_of, metres, set_fields, table
+from ._values import c_array, column, from_struct, index_of, metres, set_fields, table, whole
 
 
 class Mesh:
@@ -138,7 +138,9 @@ class Mesh:
         """The first level with at most `count` triangles, or rp times the mesh's."""
         if (count is None) == (rp is None):
             raise TypeError("simplify needs a count or an rp")
-        target = count if rp is None else lib["choice_target"](rp, self.triangle_count)
+        if rp is not None and not 0 < rp <= 1:
+            raise ValueError(f"rp is {rp}; above 0, at most 1")
+        target = whole(count, "count") if rp is None else lib["choice_target"](rp, self.triangle_count)
         curve = Curve(self, method, progress, stop_count=target)
         return curve.mesh(curve.find(target))
 
@@ -186,7 +188,7 @@ class Curve:
 
     def find(self, target):
         """The index of the first level with at most `target` triangles, or the last."""
-        return lib["curve_find"](self._handle, target)
+        return lib["curve_find"](self._handle, whole(target, "target"))
 
     def mesh(self, index):
         if not 0 <= index < len(self):

@@ -4,7 +4,7 @@ import os
 
 from . import _library as c
 from ._library import call, lib
-from ._values import from_struct, index_of, set_fields
+from ._values import from_struct, index_of, set_fields, whole
 from ._world import Owner, Particle, World, advance
 
 
@@ -24,7 +24,8 @@ class Pour:
         settings.container = index_of(container, c.CONTAINERS, "container")
         settings.world.law = index_of(law, c.LAWS, "law")
         shapes = [(shape if isinstance(shape, Particle) else Particle(shape), count) for shape, count in shapes]
-        rows = (c.scree_pour_shape * max(1, len(shapes)))(*[(particle._handle, count) for particle, count in shapes])
+        rows = (c.scree_pour_shape * max(1, len(shapes)))(
+            *[(particle._handle, whole(count, "a number of particles")) for particle, count in shapes])
         handle = ctypes.c_void_p()
         call("pour_create", rows, len(shapes), settings, handle)
         self._take(handle)
@@ -51,7 +52,7 @@ class Pour:
 
     def step(self, count=1):
         """As World.step, letting in layers when they are due."""
-        call("pour_advance", self._handle, count)
+        call("pour_advance", self._handle, whole(count, "a number of steps"))
 
     def run(self, duration):
         """Advances by a time in seconds, rounded up to whole steps."""

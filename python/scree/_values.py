@@ -1,5 +1,6 @@
 """Between C values and Python's: numpy arrays where numpy is there, memoryviews and lists where it is not."""
 import ctypes
+import operator
 import types
 
 try:
@@ -7,6 +8,7 @@ try:
 except ImportError:
     numpy = None
 
+WHOLE_KINDS = (ctypes.c_int, ctypes.c_size_t, ctypes.c_uint32, ctypes.c_uint64)
 UNITS = {"m": 1, "mm": 1e-3, "cm": 1e-2, "um": 1e-6, "km": 1e3, "inch": 0.0254, "in": 0.0254, "ft": 0.3048}
 
 
@@ -17,6 +19,19 @@ def metres(unit):
             raise ValueError(f"'{unit}' is no unit of length ({', '.join(UNITS)})")
         return UNITS[unit]
     return float(unit)
+
+
+def whole(value, what, kind=ctypes.c_size_t):
+    """value, where it is a whole number that the C type holds: ctypes would wrap any other around."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what} is {value!r}; a whole number") from None
+    bits, signed = 8 * ctypes.sizeof(kind), kind(-1).value < 0
+    low, high = (-(1 << bits - 1), (1 << bits - 1) - 1) if signed else (0, (1 << bits) - 1)
+    if not low <= number <= high:
+        raise ValueError(f"{what} is {number}; from {low} to {high}")
+    return number
 
 
 def index_of(word, words, what):
@@ -50,7 +65,10 @@ def c_array(kind, values, width=None):
     """A C array of nested sequences or of a numpy array, flattened; and its rows, where width is given."""
     if numpy is not None:
         dtype = numpy.float64 if kind is ctypes.c_double else numpy.uint32
-        flat = numpy.ascontiguousarray(values, dtype=dtype)
+        given = numpy.asarray(values)
+        flat = numpy.ascontiguousarray(given, dtype=dtype)
+        if kind is not ctypes.c_double and (flat != given).any():
+            whole(given[flat != given][0], "an index", kind)
         if width and (flat.ndim != 2 or flat.shape[1] != width):
             raise ValueError(f"expected rows of {width} values, got an array of shape {flat.shape}")
         rows = len(flat)
@@ -62,6 +80,8 @@ def c_array(kind, values, width=None):
     if width and any(len(row) != width for row in rows):
         raise ValueError(f"expected rows of {width} values")
     flat = [value for row in rows for value in row]
+    if kind is not ctypes.c_double:
+        flat = [whole(value, "an index", kind) for value in flat]
     return (kind * max(1, len(flat)))(*flat), len(rows) if width else len(flat)
 
 
@@ -97,5 +117,7 @@ def set_fields(struct, values, what):
             continue
         if isinstance(getattr(struct, name), ctypes.Array):
             value = known[name](*value)
+        elif known[name] in WHOLE_KINDS:
+            value = whole(value, f"{what}: {name}", known[name])
         setattr(struct, name, value)
     return struct

@@ -1,12 +1,13 @@
 """Particles and worlds."""
 import ctypes
+import math
 import os
 import weakref
 
 from . import _library as c
 from ._library import call, lib
 from ._mesh import Mesh
-from ._values import c_array, column, from_struct, index_of, metres, set_fields
+from ._values import c_array, column, from_struct, index_of, metres, set_fields, whole
 
 
 class Particle:
@@ -88,13 +89,14 @@ class World:
 
     def set_contact(self, a, b, restitution, friction):
         """Between two materials."""
+        a, b = whole(a, "a material"), whole(b, "a material")
         call("world_set_contact", self._handle, a, b, restitution, friction)
 
     def add_wall(self, kind, material, mesh=None, **values):
         """Its index. kind plane, disc, cylinder or mesh; position, axis, radius, length, velocity,
         angular_velocity."""
-        wall = c.scree_wall(kind=index_of(kind, c.WALL_KINDS, "wall"), material=material, axis=(0, 0, 1))
-        set_fields(wall, values, "a wall")
+        wall = c.scree_wall(kind=index_of(kind, c.WALL_KINDS, "wall"), axis=(0, 0, 1))
+        set_fields(wall, {"material": material, **values}, "a wall")
         if mesh is not None:
             wall.mesh = ctypes.pointer(mesh._struct)
         return self._add("world_add_wall", wall)
@@ -114,7 +116,7 @@ class World:
         """Its index. position (m), orientation (w x y z), velocity (m/s), angular_velocity (rad/s)."""
         body = set_fields(lib["default_body"](), state, "a body")
         index = ctypes.c_size_t()
-        call("world_add_body", self._handle, particle._handle, material, body, index)
+        call("world_add_body", self._handle, particle._handle, whole(material, "a material"), body, index)
         return index.value
 
     def _add(self, name, struct):
@@ -161,7 +163,7 @@ class World:
 
     def step(self, count=1):
         """Advances by whole steps; Error with status DIVERGED where the run leaves its model."""
-        call("world_step", self._handle, count)
+        call("world_step", self._handle, whole(count, "a number of steps"))
 
     def run(self, duration):
         """Advances by a time in seconds, rounded up to whole steps."""
@@ -214,6 +216,8 @@ class Owner:
 
 def advance(world, step, duration):
     """step(count), in pieces between which Ctrl-C works."""
+    if not (math.isfinite(duration) and duration >= 0):
+        raise ValueError(f"a duration is {duration} s; finite and at least 0")
     end = world.time + duration
     while world.time < end:
         step(min(1000, max(1, int((end - world.time) / world.time_step + 0.999999))))

@@ -248,6 +248,32 @@ class Worlds(unittest.TestCase):
         with self.assertRaises(TypeError):
             world.add_wall("plane", 1, colour="red")
 
+    def test_numbers_that_c_would_wrap(self):
+        world, ball, box = self.world(), scree.Particle.sphere(0.01), scree.load("sample:box-12")
+        before = world.hash
+        for wrong in (lambda: world.step(-1), lambda: world.set_contact(0, -1, 0.5, 0.5),
+                      lambda: world.add_wall("plane", -1), lambda: world.add_body(ball, -1),
+                      lambda: scree.Pour([(ball, -1)]), lambda: scree.Pour([(ball, 1)], seed=-1),
+                      lambda: scree.Pour([(ball, 1)]).step(-1), lambda: world.run(-1), lambda: box.simplify(-1),
+                      lambda: box.curve().find(-1), lambda: box.curve(stop_count=-1),
+                      lambda: box.distance(box, sample_count=-1), lambda: scree.set_threads(-1),
+                      lambda: scree.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, -1]])):
+            with self.assertRaisesRegex(ValueError, "is -1"):
+                wrong()
+        for wrong in (lambda: world.step(2**64 + 1), lambda: scree.Pour([(ball, 2**64 + 1)]),
+                      lambda: scree.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2**32 + 2]]),
+                      lambda: box.curve().choose(per_decade=2**32 + 4)):
+            with self.assertRaisesRegex(ValueError, "is (18446744073709551617|4294967298|4294967300)"):
+                wrong()
+        for duration in math.nan, math.inf:
+            with self.assertRaisesRegex(ValueError, f"a duration is {duration} s"):
+                world.run(duration)
+            with self.assertRaisesRegex(ValueError, f"rp is {duration}"):
+                box.simplify(rp=duration)
+        with self.assertRaisesRegex(TypeError, "a number of steps is 2.5"):
+            world.step(2.5)
+        self.assertEqual((world.hash, len(world)), (before, 2))
+
     def test_results(self):
         with self.assertRaises(scree.Error):
             scree.Run("missing.scree")
