@@ -63,7 +63,8 @@ typedef enum scree_wall_kind {
   SCREE_WALL_PLANE,    /* through position, solid behind, normal along axis */
   SCREE_WALL_DISC,     /* the plane cut off at radius, a sheet met from both sides */
   SCREE_WALL_CYLINDER, /* a sheet; from position along axis over length (0: endless). The rims of
-                          discs and cylinders are met by points only */
+                          discs and cylinders are polygons of 720 points and edges, which touch
+                          faces and edges as those of a body do */
   SCREE_WALL_MESH,     /* any consistently wound triangles, also open; outside is in front */
 } scree_wall_kind;
 
