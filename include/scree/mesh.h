@@ -93,6 +93,10 @@ SCREE_API scree_status scree_scan_parse(const void *bytes, size_t byte_count, co
 SCREE_API scree_status scree_mesh_weld(const double *corner_positions, size_t facet_count,
                                        double tolerance, scree_mesh *mesh, size_t *degenerate_count,
                                        scree_error *error);
+/* Brings a mesh into canonical order by welding equal positions: what reading gives back of a
+ * lossless file of it. A mesh that was read stays as it is. A particle's forces add up in the order
+ * of its mesh, so that runs of the same bits need the same order. On failure *mesh is untouched. */
+SCREE_API scree_status scree_mesh_canonicalize(scree_mesh *mesh, scree_error *error);
 
 /* Formats that are written. */
 typedef enum scree_file_format {

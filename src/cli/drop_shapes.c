@@ -175,6 +175,7 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
   if (status != SCREE_OK) return status;
   shape->source_triangles = mesh.triangle_count;
   status = decimate(run, &mesh, error);
+  if (status == SCREE_OK) status = scree_mesh_canonicalize(&mesh, error);
   if (status == SCREE_OK) status = scree_particle_from_mesh(&mesh, NULL, &shape->particle, error);
   scree_mesh_free(&mesh);
   return status == SCREE_OK ? SCREE_OK : cli_name_in_error(shape->name, error);

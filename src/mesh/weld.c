@@ -305,3 +305,14 @@ scree_status scree_mesh_weld(const double *corner_positions, size_t facet_count,
                                 facet_count};
   return scree_weld_corners(&source, tolerance, mesh, degenerate_count, NULL, error);
 }
+
+scree_status scree_mesh_canonicalize(scree_mesh *mesh, scree_error *error) {
+  scree_corner_source source = {fetch_doubles, mesh->positions, mesh->vertex_count, mesh->triangles,
+                                mesh->triangle_count};
+  scree_mesh canonical;
+  scree_status status = scree_weld_corners(&source, 0, &canonical, NULL, NULL, error);
+  if (status) return status;
+  scree_mesh_free(mesh);
+  *mesh = canonical;
+  return SCREE_OK;
+}

@@ -13,7 +13,7 @@ void scree_grain_free(scree_grain *grain) {
   *grain = (scree_grain){0};
 }
 
-/* The level of the scan; *mesh is to be freed. */
+/* The level of the scan in the order of its curve; *mesh is to be freed. */
 static scree_status take_level(const scree_mesh *scan, const scree_curve *curve, double rp,
                                const scree_progress *progress, scree_mesh *mesh,
                                scree_error *error) {
@@ -28,6 +28,21 @@ static scree_status take_level(const scree_mesh *scan, const scree_curve *curve,
   }
   scree_status status = scree_curve_mesh(curve, scree_curve_find(curve, target), mesh, error);
   scree_curve_free(own);
+  return status;
+}
+
+/* In canonical order: a study, which reads its levels from files, has the same bits. */
+static scree_status make_level(const scree_mesh *scan, const scree_curve *curve, double rp,
+                               const scree_progress *progress, scree_mesh *mesh,
+                               scree_error *error) {
+  scree_mesh made = {0};
+  scree_status status = rp < 1 ? take_level(scan, curve, rp, progress, &made, error)
+                               : scree_mesh_copy(scan, &made, error);
+  if (status == SCREE_OK) status = scree_mesh_canonicalize(&made, error);
+  if (status == SCREE_OK)
+    *mesh = made;
+  else
+    scree_mesh_free(&made);
   return status;
 }
 
@@ -55,11 +70,9 @@ scree_status scree_grain_make(const scree_mesh *scan, const scree_curve *curve,
     return scree_fail(error, SCREE_BAD_MESH, "the volume is %g m3: not an outward surface",
                       made.scan_volume);
   scree_mesh level = {0};
-  bool decimate = options->rp < 1 && !options->sphere;
-  if (decimate) status = take_level(scan, curve, options->rp, progress, &level, error);
+  if (!options->sphere) status = make_level(scan, curve, options->rp, progress, &level, error);
   if (status == SCREE_OK)
-    status = make_particle(decimate ? &level : scan, options, made.scan_volume, &made.run.particle,
-                           error);
+    status = make_particle(&level, options, made.scan_volume, &made.run.particle, error);
   scree_mesh_free(&level);
   if (status != SCREE_OK) return status;
   scree_particle_measures m;

@@ -402,6 +402,46 @@ static void a_study_is_worked_off_and_told(void **state) {
   scree_study_free(study);
 }
 
+static void expect_same_shape(const scree_run_shape *a, const scree_run_shape *b) {
+  const scree_mesh *first = scree_particle_mesh(a->particle),
+                   *second = scree_particle_mesh(b->particle);
+  assert_int_equal(first->vertex_count, second->vertex_count);
+  assert_int_equal(first->triangle_count, second->triangle_count);
+  assert_memory_equal(first->positions, second->positions,
+                      3 * first->vertex_count * sizeof *first->positions);
+  assert_memory_equal(first->triangles, second->triangles,
+                      3 * first->triangle_count * sizeof *first->triangles);
+  assert_true(a->density_factor == b->density_factor);
+}
+
+/* Shapes from files in the folder and those of a single run, from memory, have the same bits. */
+static void a_single_run_has_the_shapes_of_a_study(void **state) {
+  (void)state;
+  const double rp[] = {0.02, 0.1, 1};
+  scree_error error;
+  scree_mesh scan;
+  scree_study *study = open_tiny(
+      "shapes", "name: shapes\nshapes: [sample:fp-1]\nsample: {resolution: 4e-3, noise: 0.2e-3}\n"
+                "base: {preset: demo}\nfactors:\n  rp: [0.02, 0.1, scan]\n");
+  CHECK_OK(scree_sample_make("fp-1", &study->sample, NULL, &scan, &error), error);
+  for (size_t point = 0; point < 3; point++)
+    for (int rule = 0; rule < 2; rule++) {
+      scree_run_shape shape;
+      scree_grain grain;
+      scree_grain_options o = scree_default_grain_options();
+      double count;
+      o.rp = rp[point];
+      o.mass_rule = rule ? SCREE_MASS_FROM_SCAN : SCREE_MASS_FROM_MESH;
+      CHECK_OK(scree_study_make_shapes(study, point, o.mass_rule, &shape, &count, &error), error);
+      CHECK_OK(scree_grain_make(&scan, NULL, &o, NULL, &grain, &error), error);
+      expect_same_shape(&shape, &grain.run);
+      scree_particle_free(shape.particle);
+      scree_grain_free(&grain);
+    }
+  scree_mesh_free(&scan);
+  scree_study_free(study);
+}
+
 /* One more replicate and one more level leave the runs that are done as they are. */
 static void a_study_can_grow(void **state) {
   (void)state;
@@ -679,6 +719,7 @@ int main(void) {
       cmocka_unit_test(of_many_one_wins),
       cmocka_unit_test(records_read_back_the_same_or_not_at_all),
       cmocka_unit_test(a_study_is_worked_off_and_told),
+      cmocka_unit_test(a_single_run_has_the_shapes_of_a_study),
       cmocka_unit_test(a_study_can_grow),
       cmocka_unit_test(the_death_of_a_worker_loses_nothing),
       cmocka_unit_test(a_run_that_kills_its_workers_fails),

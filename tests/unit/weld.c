@@ -2,6 +2,7 @@
 #include "base/alloc.h"
 #include "base/rng.h"
 #include "support/check.h"
+#include "support/shapes.h"
 
 static scree_rng rng;
 
@@ -201,6 +202,32 @@ static void near_against_all_pairs(void **state) {
   }
 }
 
+/* Whatever the order, what comes is the order of reading; a mesh that has it stays as it is. */
+static void canonicalized(void **state) {
+  (void)state;
+  for (int round = 0; round < 100; round++) {
+    scree_error error;
+    scree_mesh mesh = shape_icosphere(0.02, 1 + round % 3), read = shape_weld(&mesh, NULL);
+    scree_mesh_free(&mesh);
+    mesh = shape_weld(&read, NULL);
+    for (size_t t = mesh.triangle_count; t-- > 1;) { /* another order, other corners first */
+      uint32_t *a = mesh.triangles + 3 * t, *b = mesh.triangles + 3 * scree_rng_below(&rng, t);
+      const uint32_t was[3] = {a[0], a[1], a[2]}, turned[3] = {b[1], b[2], b[0]};
+      memcpy(a, turned, sizeof turned);
+      memcpy(b, was, sizeof was);
+    }
+    CHECK_OK(scree_mesh_canonicalize(&mesh, &error), error);
+    assert_same_mesh(&mesh, &read);
+    CHECK_OK(scree_mesh_canonicalize(&mesh, &error), error);
+    assert_same_mesh(&mesh, &read);
+    mesh.positions[3] = NAN;
+    assert_int_equal(scree_mesh_canonicalize(&mesh, &error), SCREE_BAD_ARGUMENT);
+    assert_int_equal(mesh.triangle_count, read.triangle_count);
+    scree_mesh_free(&mesh);
+    scree_mesh_free(&read);
+  }
+}
+
 static void refusals(void **state) {
   (void)state;
   scree_error error;
@@ -222,9 +249,9 @@ static void refusals(void **state) {
 int main(void) {
   rng = (scree_rng){11, 2, 0};
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(same_as_slow), cmocka_unit_test(any_order_any_threads),
-      cmocka_unit_test(fan),          cmocka_unit_test(near_against_all_pairs),
-      cmocka_unit_test(refusals),
+      cmocka_unit_test(same_as_slow),  cmocka_unit_test(any_order_any_threads),
+      cmocka_unit_test(fan),           cmocka_unit_test(near_against_all_pairs),
+      cmocka_unit_test(canonicalized), cmocka_unit_test(refusals),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
