@@ -61,7 +61,7 @@ scree_status drop_make_particles(drop_run *run, scree_error *error);
 /* drop_output.c: makes the folder; an earlier drop in it is refused where nothing may be
  * overwritten. */
 scree_status drop_check_output(const drop_run *run, scree_error *error);
-/* The table. */
+/* The table, in a folder without what an earlier drop left there. */
 scree_status drop_open_output(drop_run *run, scree_error *error);
 /* A pour that fails shall leave the state before it. */
 scree_status drop_keep_state(drop_run *run, scree_error *error);

@@ -24,29 +24,26 @@ scree_status drop_no_series(scree_error *error) {
   return SCREE_IO;
 }
 
-/* What is there after any drop; series.csv first, which stands for them all. */
-static const char *const FILES[] = {"series.csv",      "checkpoint.scree",
-                                    "motion.scree",    "frame-000000.vtp",
-                                    "drop.pvd",        "drop.png",
-                                    "drop.json",       "drop.txt",
-                                    "last.world",      "before-failure.world",
-                                    "provenance.json", "report.html"};
-enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
+static const char *const file_names[] = {
+    "series.csv",      "checkpoint.scree", "motion.scree", "frame-#.vtp", "drop.pvd",
+    "drop.png",        "drop.json",        "drop.txt",     "last.world",  "before-failure.world",
+    "provenance.json", "report.html"};
+static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 scree_status drop_check_output(const drop_run *run, scree_error *error) {
   const drop_arguments *a = run->arguments;
   scree_status status = cli_make_folder(a->output, error);
   if (status == SCREE_OK && !a->resume)
-    status = cli_check_run_output(run->call, a->output, FILES, FILE_COUNT, a->overwrite, error);
+    status = cli_check_run_output(run->call, a->output, &run_files, a->overwrite, error);
   return status;
 }
 
 scree_status drop_open_output(drop_run *run, scree_error *error) {
   char path[DROP_PATH_BYTES];
-  scree_status status = drop_path(run, "checkpoint.scree", path, error);
-  if (status != SCREE_OK) return status;
-  (void)remove(path); /* of an earlier drop */
-  status = drop_path(run, "series.csv", path, error);
+  scree_status status = SCREE_OK;
+  if (may_replace(run))
+    status = cli_clear_run_output(run->call, run->arguments->output, &run_files, error);
+  if (status == SCREE_OK) status = drop_path(run, "series.csv", path, error);
   if (status != SCREE_OK) return status;
   run->series = fopen(path, may_replace(run) ? "w" : "wx");
   if (!run->series) return cli_refuse(error, SCREE_IO, path, strerror(errno));

@@ -1,6 +1,8 @@
 #include "cli/output.h"
 #include "cli/input.h"
 
+#include <dirent.h>
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
@@ -79,20 +81,79 @@ scree_status cli_check_page_output(const cli_call *call, const char *path, bool 
   return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a page must end in .html");
 }
 
+/* ---- what a run leaves in its folder ---- */
+
+/* Whether the file is called so; of a # in the name, any digits. */
+static bool is_called(const char *file, const char *name) {
+  for (; *name; name++) {
+    size_t digits = *name == '#' ? strspn(file, "0123456789") : 0;
+    if (*name == '#' ? digits == 0 : *file != *name) return false;
+    file += digits ? digits : 1;
+  }
+  return *file == 0;
+}
+
+typedef scree_status run_file_visit(const cli_call *call, const char *path, scree_error *error);
+
+static scree_status visit_file(const cli_call *call, const char *folder, const char *name,
+                               run_file_visit *visit, scree_error *error) {
+  char path[4200];
+  if (snprintf(path, sizeof path, "%s/%s", folder, name) >= (int)sizeof path)
+    return cli_refuse(error, SCREE_LIMIT, folder, "the folder's name is too long");
+  return visit(call, path, error);
+}
+
+/* Of a name with a # those that are there, of another one the file, there or not. */
+static scree_status visit_files(const cli_call *call, const char *folder, const char *name,
+                                run_file_visit *visit, scree_error *error) {
+  if (!strchr(name, '#')) return visit_file(call, folder, name, visit, error);
+  scree_status status = SCREE_OK;
+  DIR *entries = opendir(folder);
+  if (!entries) return cli_refuse(error, SCREE_IO, folder, strerror(errno));
+  for (struct dirent *entry; status == SCREE_OK && (entry = readdir(entries));)
+    if (is_called(entry->d_name, name))
+      status = visit_file(call, folder, entry->d_name, visit, error);
+  closedir(entries);
+  return status;
+}
+
+static scree_status check_new(const cli_call *call, const char *path, scree_error *error) {
+  return cli_check_output(call, path, false, error);
+}
+
+static scree_status check_replaced(const cli_call *call, const char *path, scree_error *error) {
+  return cli_check_output(call, path, true, error);
+}
+
 scree_status cli_check_run_output(const cli_call *call, const char *folder,
-                                  const char *const *files, size_t count, bool overwrite,
-                                  scree_error *error) {
+                                  const cli_run_files *files, bool overwrite, scree_error *error) {
   char path[4200];
   scree_status status = SCREE_OK;
-  for (size_t i = 0; i < count && status == SCREE_OK; i++) {
-    if (snprintf(path, sizeof path, "%s/%s", folder, files[i]) >= (int)sizeof path)
-      return cli_refuse(error, SCREE_LIMIT, folder, "the folder's name is too long");
-    status = cli_check_output(call, path, overwrite, error);
-    if (status == SCREE_EXISTS && i == 0)
-      return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
+  for (size_t i = 0; i < files->count && status == SCREE_OK; i++) {
+    status =
+        visit_files(call, folder, files->names[i], overwrite ? check_replaced : check_new, error);
+    if (status != SCREE_EXISTS || i > 0) continue;
+    snprintf(path, sizeof path, "%.4000s/%.100s", folder, files->names[i]);
+    return cli_refuse(error, status, path, "exists already: --resume goes on, -f begins anew");
   }
   return status;
 }
+
+static scree_status remove_file(const cli_call *call, const char *path, scree_error *error) {
+  struct stat info;
+  if (lstat(path, &info) != 0 || S_ISDIR(info.st_mode) || find_reader(call, &info)) return SCREE_OK;
+  return unlink(path) == 0 ? SCREE_OK : cli_refuse(error, SCREE_IO, path, strerror(errno));
+}
+
+scree_status cli_clear_run_output(const cli_call *call, const char *folder,
+                                  const cli_run_files *files, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < files->count && status == SCREE_OK; i++)
+    status = visit_files(call, folder, files->names[i], remove_file, error);
+  return status;
+}
+
+/* ---- folders and names ---- */
 
 /* The folders made by this call, outer ones first. */
 static char **made_folders;

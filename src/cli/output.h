@@ -22,11 +22,20 @@ scree_status cli_check_picture_output(const cli_call *call, const char *path, bo
 scree_status cli_check_page_output(const cli_call *call, const char *path, bool overwrite,
                                    scree_error *error);
 
-/* cli_check_output of all files that a run leaves in its folder. The first stands for them all:
- * where it exists, the error says that --resume goes on and -f begins anew. */
+/* The files that a run leaves in its folder, by their names; a # in a name stands for the number of
+ * a frame. The first stands for them all. */
+typedef struct cli_run_files {
+  const char *const *names;
+  size_t count;
+} cli_run_files;
+
+/* cli_check_output of all of them. Where the first exists, the error says that --resume goes on and
+ * -f begins anew. */
 scree_status cli_check_run_output(const cli_call *call, const char *folder,
-                                  const char *const *files, size_t count, bool overwrite,
-                                  scree_error *error);
+                                  const cli_run_files *files, bool overwrite, scree_error *error);
+/* Removes those that are there, but for what the call reads. */
+scree_status cli_clear_run_output(const cli_call *call, const char *folder,
+                                  const cli_run_files *files, scree_error *error);
 
 /* scree_folder_create for a verb's output; the folders made are remembered. */
 scree_status cli_make_folder(const char *path, scree_error *error);

@@ -108,8 +108,8 @@ static const cli_option options[] = {
     {"no-picture", 0, CLI_FLAG, AT(no_picture), NULL, "Do not render drop.png.", 0, 0, NULL},
     {"samples", 0, CLI_COUNT, AT(samples), "N", "Rays a pixel of drop.png. Default: 24.", 1, 65536,
      NULL},
-    {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite the files of an earlier drop.", 0, 0,
-     NULL},
+    {"force", 'f', CLI_FLAG, AT(overwrite), NULL,
+     "Begin anew in a folder with an earlier drop, whose files go.", 0, 0, NULL},
 };
 
 static double now(void) {

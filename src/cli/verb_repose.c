@@ -4,9 +4,11 @@
 #include "cli/output.h"
 #include "cli/terminal.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 /* Every field of the experiment as an option: X(option, field, VALUE, help). */
@@ -113,8 +115,8 @@ static const cli_option options[] = {
     {"resume", 0, CLI_FLAG, AT(resume), NULL,
      "Go on from the checkpoint in DIR where there is one; without SHAPE, with what is in it.", 0,
      0, NULL},
-    {"force", 'f', CLI_FLAG, AT(force), NULL, "Begin anew in a folder with an earlier run.", 0, 0,
-     NULL},
+    {"force", 'f', CLI_FLAG, AT(force), NULL,
+     "Begin anew in a folder with an earlier run, whose files go.", 0, 0, NULL},
     {"vtp", 0, CLI_CHOICE, AT(vtp), "VIEW",
      "What of each frame becomes a .vtp file for ParaView. Default: surfaces.", 0, 0,
      "none|surfaces|points|contacts|walls|all"},
@@ -351,17 +353,23 @@ static one_run level_run(repose *r, size_t level) {
   return o;
 }
 
-/* What there is after any run; experiment.yaml first, which stands for them all. */
-static const char *const FILES[] = {
-    "experiment.yaml", "checkpoint.scree", "last.scree", "motion.scree",    "result.json",
-    "result.txt",      "series.csv",       "heap.png",   "provenance.json", "report.html"};
-enum { FILE_COUNT = sizeof FILES / sizeof *FILES };
+static const char *const file_names[] = {
+    "experiment.yaml",      "checkpoint.scree",   "last.scree",
+    "stopped.scree",        "motion.scree",       "result.json",
+    "result.txt",           "series.csv",         "heap.png",
+    "provenance.json",      "report.html",        "frame-#.scree",
+#define VIEW_NAMES(view) "frame-#-" view ".vtp", "last-" view ".vtp", view ".vtp.series"
+    VIEW_NAMES("surfaces"), VIEW_NAMES("points"), VIEW_NAMES("contacts"),
+    VIEW_NAMES("walls")
+#undef VIEW_NAMES
+};
+static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 static scree_status check_folder(repose *r, const char *folder) {
   const repose_arguments *a = r->arguments;
   scree_status status = cli_make_folder(folder, &r->error);
   if (status == SCREE_OK && !a->resume)
-    status = cli_check_run_output(r->call, folder, FILES, FILE_COUNT, a->force, &r->error);
+    status = cli_check_run_output(r->call, folder, &run_files, a->force, &r->error);
   return status;
 }
 
@@ -378,6 +386,29 @@ static scree_status check_folders(repose *r) {
   if (status != SCREE_OK || levels < 2 || a->resume) return status;
   snprintf(path, sizeof path, "%.4100s/report.html", a->output);
   return cli_check_output(r->call, path, a->force, &r->error);
+}
+
+/* Whether runs of several levels have folders called so. */
+static bool is_level_name(const char *name) {
+  double rp;
+  return !strcmp(name, "spheres") ||
+         (!strncmp(name, "rp-", 3) && cli_real_from_text(name + 3, &rp));
+}
+
+/* What an earlier run left, of one level or of several: a page of the folder would show it. */
+static scree_status clear_folders(repose *r) {
+  const char *output = r->arguments->output;
+  char path[4200];
+  scree_status status = cli_clear_run_output(r->call, output, &run_files, &r->error);
+  DIR *entries = status == SCREE_OK ? opendir(output) : NULL;
+  for (struct dirent *entry; status == SCREE_OK && entries && (entry = readdir(entries));) {
+    struct stat info;
+    snprintf(path, sizeof path, "%.3900s/%.255s", output, entry->d_name);
+    if (is_level_name(entry->d_name) && stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+      status = cli_clear_run_output(r->call, path, &run_files, &r->error);
+  }
+  if (entries) closedir(entries);
+  return status;
 }
 
 static scree_status run_level(repose *r, size_t level, bool alone) {
@@ -455,6 +486,9 @@ static scree_status run_all(repose *r, const char *const *words, size_t word_cou
     status = cli_make_grains(words, word_count, &r->grain_options, r->call->progress, &r->grains,
                              &r->error);
   cli_terminal_end();
+  if (status == SCREE_OK && !alone && r->arguments->output && r->arguments->force &&
+      !r->arguments->resume)
+    status = clear_folders(r);
   size_t levels = r->grains.level_count;
   if (status != SCREE_OK) return status;
   r->runs = calloc(levels, sizeof *r->runs);

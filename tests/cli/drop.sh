@@ -26,6 +26,10 @@ run drop sphere:40mm=3 -o out
 # the same bits again, another number of threads
 drop sphere:40mm=3 sample:icosphere-1=4 --time 0.02 --frames 0.05 -o again -j 3 >/dev/null
 for file in out/frame-*.vtp; do cmp "$file" again/"${file#out/}"; done
+# begun anew: nothing of the earlier drop stays, and nothing else goes
+touch out/mine.txt out/frame-x.vtp
+drop sphere:40mm=1 --time 0 --frames 0 --no-picture -o out -f >/dev/null
+ls out
 # a box, without frames and picture
 drop sphere:40mm=9 -c box -w 100mm --depth 60mm --frames 0 --no-picture --time 0 -o box | head -3
 ls box

@@ -54,3 +54,8 @@ run pile nothing.scree
 "$SCREE" pile whole/frame-0001.scree --csv series.csv --vtp frame.vtp >/dev/null || echo failed
 head -1 series.csv
 "$SCREE" pile whole/last.scree --json | grep -o '"heap"\|"mean_rotation"\|"packing_fraction"\|"preset"' | sort -u
+
+# begun anew: nothing of the earlier runs stays, and nothing else goes
+mkdir whole/rp-0.5 && touch whole/rp-0.5/result.json whole/rp-0.5/mine.txt whole/heap.png whole/frame-x.scree
+"$SCREE" repose $small pair.csv -o whole -f >/dev/null || echo failed
+ls whole whole/rp-0.5
