@@ -285,8 +285,8 @@ typedef struct scree_run_state {
 } scree_run_state;
 
 typedef struct scree_run_job {
-  const scree_experiment *experiment;
-  const scree_run_shape *shapes; /* 1 to 60 */
+  const scree_experiment *experiment; /* NULL: that of the checkpoint, which must be there */
+  const scree_run_shape *shapes;      /* 1 to 60; NULL: likewise */
   size_t shape_count;
   /* Gets checkpoint.scree every output.checkpoint_interval, when the run is cancelled and when it
    * is done; frame-NNNN.scree at every output.frame_interval, NNNN counting from 0000; and

@@ -153,11 +153,27 @@ typedef struct repose {
 
 /* ---- the experiment ---- */
 
-/* 0, or the exit code after saying why. */
-static int read_experiment(repose *r) {
+/* What the file and the options change: a preset; where a call without shapes names none, what is
+ * in the checkpoint. 0, or the exit code after saying why. */
+static int read_base(repose *r, bool alone) {
   const repose_arguments *a = r->arguments;
-  if (scree_experiment_preset(a->preset, &r->experiment, &r->error) != SCREE_OK)
+  char path[4200];
+  scree_run *run;
+  snprintf(path, sizeof path, "%.4100s/checkpoint.scree", alone ? a->output : "");
+  if (!alone || a->preset != defaults.preset || access(path, F_OK) != 0) {
+    if (scree_experiment_preset(a->preset, &r->experiment, &r->error) == SCREE_OK) return 0;
     return cli_misuse(r->call->verb, "--preset %s: must be paper, small or demo", a->preset);
+  }
+  if (scree_run_load(path, &run, &r->error) != SCREE_OK) return cli_fail(&r->error);
+  scree_status status = scree_experiment_copy(scree_run_experiment(run), &r->experiment, &r->error);
+  scree_run_free(run);
+  return status == SCREE_OK ? 0 : cli_fail(&r->error);
+}
+
+static int read_experiment(repose *r, bool alone) {
+  const repose_arguments *a = r->arguments;
+  int code = read_base(r, alone);
+  if (code) return code;
   if (a->config && scree_experiment_read(a->config, &r->experiment, &r->error) != SCREE_OK)
     return cli_fail(&r->error);
   for (int i = 0; i < SETTING_COUNT; i++)
@@ -415,7 +431,7 @@ static scree_status run_level(repose *r, size_t level, bool alone) {
   one_run o = level_run(r, level);
   const repose_arguments *a = r->arguments;
   o.alone = alone;
-  scree_run_job job = {.experiment = alone ? NULL : &r->experiment,
+  scree_run_job job = {.experiment = &r->experiment,
                        .shapes = alone ? NULL : r->grains.shapes + level * r->grains.shape_count,
                        .shape_count = r->grains.shape_count,
                        .folder = a->output ? o.folder : NULL,
@@ -527,7 +543,7 @@ static int run(const cli_call *call) {
                                 .spheres = a->spheres}};
   size_t samples = a->samples ? SCREE_SAMPLE_DEVICES : 0, count = samples + call->input_count;
   const char **words = malloc((count + 1) * sizeof *words);
-  int code = words ? read_experiment(&r) : 1;
+  int code = words ? read_experiment(&r, count == 0 && a->resume && a->output) : 1;
   if (code == 0 && a->print_config) {
     scree_experiment_print(&r.experiment, stdout);
     goto done;

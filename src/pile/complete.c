@@ -226,7 +226,7 @@ static scree_status check_job(const scree_run_job *job, const scree_run *run, co
                       run->world->failure.message);
   if (!job->experiment) return SCREE_OK;
   scree_status status = check_experiment(job->experiment, &run->experiment, path, error);
-  if (status != SCREE_OK) return status;
+  if (status != SCREE_OK || !job->shapes) return status;
   bool same = job->shape_count == run->shape_count;
   for (size_t i = 0; same && i < run->shape_count; i++)
     same = same_shape(&job->shapes[i], &run->shapes[i]);
@@ -262,7 +262,7 @@ done:
 
 static scree_status begin(work *w, scree_error *error) {
   const scree_run_job *job = w->job;
-  if (!job->experiment)
+  if (!job->experiment || !job->shapes)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no checkpoint to go on from",
                       job->folder ? job->folder : "no folder");
   return scree_run_create(job->experiment, job->shapes, job->shape_count, &w->run, error);

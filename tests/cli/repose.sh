@@ -31,6 +31,10 @@ ls whole
 run repose $small box.off pair.csv -o whole
 run repose $small box.off pair.csv -o whole --resume --friction 0.3
 grep friction_particle whole/experiment.yaml | cut -d"#" -f1
+# without shapes named it is the experiment of the checkpoint, and what is said of it must be so there
+run repose --resume -o whole --friction 0.1 --lift-speed 0.5 --seed 9
+run repose --resume -o whole -p demo 2>&1 | cut -d: -f-3
+run repose --resume -o whole -c small.yaml --friction 0.5 --no-picture | sed -n 2p | rest
 printf broken >whole/checkpoint.scree
 run repose $small box.off pair.csv -o whole --resume
 

@@ -324,6 +324,11 @@ static void a_checkpoint_of_something_else_is_refused(void **state) {
   p.experiment.friction_wall = 0.4;
   assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_BAD_ARGUMENT);
   assert_non_null(strstr(error.message, "contact.friction_wall is 0.5 there and 0.4 here"));
+  const scree_run_shape *shapes = job.shapes;
+  job.shapes = NULL;
+  assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_BAD_ARGUMENT);
+  assert_non_null(strstr(error.message, "contact.friction_wall is 0.5 there and 0.4 here"));
+  job.shapes = shapes;
   p.experiment.friction_wall = 0.5;
   p.shapes[0].density_factor = 1.1;
   assert_int_equal(scree_run_complete(&job, &run, &error), SCREE_BAD_ARGUMENT);
