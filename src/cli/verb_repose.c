@@ -404,6 +404,22 @@ static scree_status check_folders(repose *r) {
   return cli_check_output(r->call, path, a->force, &r->error);
 }
 
+/* Refuses what a run that begins would refuse, before anything is written. */
+static scree_status check_runs(repose *r) {
+  char checkpoint[4200];
+  scree_status status = SCREE_OK;
+  for (size_t level = 0; level < r->grains.level_count && status == SCREE_OK; level++) {
+    one_run o = level_run(r, level);
+    scree_run *run;
+    snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", o.folder);
+    if (r->arguments->resume && access(checkpoint, F_OK) == 0) continue;
+    status = scree_run_create(&r->experiment, r->grains.shapes + level * r->grains.shape_count,
+                              r->grains.shape_count, &run, &r->error);
+    if (status == SCREE_OK) scree_run_free(run);
+  }
+  return status;
+}
+
 /* Whether runs of several levels have folders called so. */
 static bool is_level_name(const char *name) {
   double rp;
@@ -491,20 +507,26 @@ static scree_status write_common_page(repose *r) {
   return scree_page_write(&folder, 1, path, true, &r->error);
 }
 
+/* All that can be refused, before anything is written; then the folders are as a run begins. */
+static scree_status prepare(repose *r, const char *const *words, size_t word_count) {
+  const repose_arguments *a = r->arguments;
+  scree_status status = a->output ? check_folders(r) : SCREE_OK;
+  if (status == SCREE_OK)
+    status = cli_make_grains(words, word_count, &r->grain_options, r->call->progress, &r->grains,
+                             &r->error);
+  cli_terminal_end();
+  if (status == SCREE_OK && a->output) status = check_runs(r);
+  if (status == SCREE_OK && a->output && a->force && !a->resume) status = clear_folders(r);
+  return status;
+}
+
 static scree_status run_all(repose *r, const char *const *words, size_t word_count) {
   bool alone = word_count == 0;
   scree_status status = SCREE_OK;
   if (alone)
     r->grains.level_count = 1;
-  else if (r->arguments->output)
-    status = check_folders(r);
-  if (status == SCREE_OK && !alone)
-    status = cli_make_grains(words, word_count, &r->grain_options, r->call->progress, &r->grains,
-                             &r->error);
-  cli_terminal_end();
-  if (status == SCREE_OK && !alone && r->arguments->output && r->arguments->force &&
-      !r->arguments->resume)
-    status = clear_folders(r);
+  else
+    status = prepare(r, words, word_count);
   size_t levels = r->grains.level_count;
   if (status != SCREE_OK) return status;
   r->runs = calloc(levels, sizeof *r->runs);

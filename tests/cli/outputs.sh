@@ -37,6 +37,12 @@ for words in 'choose missing.stl' 'drop missing.stl' 'drop --resume' 'repose mis
   for folder in new/a/b kept kept/c/; do "$SCREE" $words -o $folder 2>/dev/null; done
   ls -d new* kept kept/* 2>/dev/null
 done
+# nor does a heap that is refused before it begins
+box 20 30 40 >box.off
+run repose box.off --particles 4 --cylinder 0.01 -o new
+run repose box.off --particles 4 --cell 1 -o new
+run repose box.off --particles 4 --rp 0.5,1 --cell 1 -o new
+ls -d new* kept
 # nor is a link that leads nowhere replaced unasked
 ln -s nowhere.off dangling.off
 run sample box-12 -o dangling.off
