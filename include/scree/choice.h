@@ -197,8 +197,9 @@ typedef struct scree_choice_job {
 
 /* Fills choices (job->count of them) and *set. Where objects fail the first one's error is
  * reported and all outputs are as freed; with job->failed their choices are as freed, and the set
- * is of the others. Even so the first error is reported where none is left, and where memory ran
- * out or it was cancelled, which has no object's mesh for a reason. progress->report is called from
+ * is of the others. Even so the first error is reported where none is left, after `failed` was told
+ * of each, and where memory ran out or it was cancelled, which has no object's mesh for a reason:
+ * then `failed` is not called. progress->report is called from
  * any thread, by one at a time. The result does not depend on the number of threads. */
 SCREE_API scree_status scree_choose_each(const scree_choice_job *job,
                                          const scree_progress *progress, scree_choice *choices,

@@ -148,21 +148,20 @@ static scree_status run_round(batch *b, scree_error *error) {
   return o->status;
 }
 
-/* Tells of the objects without a choice; the first one's error where there are no others. */
+/* Tells of each object without a choice; the first one's error where there are no others. */
 static scree_status leave_out(batch *b, scree_error *error) {
   const scree_choice_job *job = b->job;
-  size_t failed = 0;
-  for (size_t i = 0; i < job->count; i++) failed += b->objects[i].status != SCREE_OK;
-  if (failed == job->count) {
-    if (error) *error = b->objects[0].error;
-    return b->objects[0].status;
-  }
+  size_t left = job->count;
   for (size_t i = 0; i < job->count; i++) {
     object *o = &b->objects[i];
     o->left_out = o->status != SCREE_OK;
-    if (o->left_out) job->failed(job->context, i, &o->error);
+    if (!o->left_out) continue;
+    job->failed(job->context, i, &o->error);
+    left--;
   }
-  return SCREE_OK;
+  if (left) return SCREE_OK;
+  if (error) *error = b->objects[0].error;
+  return b->objects[0].status;
 }
 
 /* The set's choice is of the objects that have one. */

@@ -252,7 +252,7 @@ static int run_choose(const cli_call *call) {
   scree_set_choice_free(&run.set);
   free(run.choices);
   free(run.objects);
-  if (status != SCREE_OK) return cli_fail(&error);
+  if (status != SCREE_OK) return run.left ? cli_fail(&error) : 1; /* else each was told */
   return run.failed_count ? 1 : 0;
 }
 
