@@ -12,12 +12,15 @@
  *   levels/NAME.levels   what the report shows of each object in 3D
  *   report.html          all of it as one page, as `scree report DIR` makes it
  *
- * They are written into another folder and moved when all are there: who cancels finds none. */
+ * They are written into another folder and moved when all are there: who cancels finds none. What
+ * an earlier choice left in the folder and this one has not goes with it, before the answer is
+ * moved. */
 #include "cli/choose.h"
 #include "cli/output.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -30,6 +33,16 @@ static const char *const SINGLE_FILES[] = {"choice.csv", "choice.txt", "provenan
                                            "choice.json", "report.html"};
 enum { SINGLE_FILE_COUNT = 5 };
 static const char *const SUBFOLDERS[] = {"levels", "set"};
+/* What each object has, and how each such file begins. */
+static const struct {
+  const char *before, *after, *begin;
+} OBJECT_FILES[] = {{"", ".stl", "scree "},
+                    {"set/", ".stl", "scree "},
+                    {"", ".mass.json", "{\n  \"mesh_file\": "},
+                    {"set/", ".mass.json", "{\n  \"mesh_file\": "},
+                    {"", ".curve.csv", "rp,triangle_count,"},
+                    {"levels/", ".levels", "screeLVL"}};
+enum { LEVELS_FILE = 5, OBJECT_FILE_COUNT };
 
 /* FOLDER/before name after */
 static scree_status join_in(const char *folder, const char *before, const char *name,
@@ -68,25 +81,107 @@ static scree_status move_file(const choose_run *run, const char *before, const c
   return status;
 }
 
-/* All files; those that a finished choice is known by come last. */
-static scree_status visit_files(const choose_run *run, visit_file *visit, scree_error *error) {
-  static const char *const MESH_FILES[] = {".stl", ".mass.json"};
+static bool in_set(const char *before) {
+  return !strcmp(before, "set/");
+}
+
+/* All files but those that a finished choice is known by. */
+static scree_status visit_parts(const choose_run *run, visit_file *visit, scree_error *error) {
   scree_status status = SCREE_OK;
   for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
     status = visit(run, "", FIGURES[i], "", error);
-  for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
-    const char *name = run->objects[i].name;
-    for (int k = 0; k < 2 && status == SCREE_OK; k++) {
-      status = visit(run, "", name, MESH_FILES[k], error);
-      if (status == SCREE_OK && run->count > 1)
-        status = visit(run, "set/", name, MESH_FILES[k], error);
-    }
-    if (status == SCREE_OK) status = visit(run, "", name, ".curve.csv", error);
-    if (status == SCREE_OK) status = visit(run, "levels/", name, ".levels", error);
-  }
+  for (size_t i = 0; i < run->count; i++)
+    for (int k = 0; k < OBJECT_FILE_COUNT && status == SCREE_OK; k++)
+      if (run->count > 1 || !in_set(OBJECT_FILES[k].before))
+        status =
+            visit(run, OBJECT_FILES[k].before, run->objects[i].name, OBJECT_FILES[k].after, error);
+  return status;
+}
+
+static scree_status visit_answer(const choose_run *run, visit_file *visit, scree_error *error) {
+  scree_status status = SCREE_OK;
   for (int i = 0; i < SINGLE_FILE_COUNT && status == SCREE_OK; i++)
     status = visit(run, "", SINGLE_FILES[i], "", error);
   return status;
+}
+
+/* ---- what an earlier choice left ---- */
+
+static bool begins_with(const char *path, const char *text) {
+  char start[32];
+  size_t length = strlen(text);
+  FILE *file = fopen(path, "rb");
+  bool same = file && fread(start, 1, length, file) == length && !memcmp(start, text, length);
+  if (file) fclose(file);
+  return same;
+}
+
+static bool has_object(const choose_run *run, const char *name) {
+  for (size_t i = 0; i < run->count; i++)
+    if (!strcmp(run->objects[i].name, name)) return true;
+  return false;
+}
+
+/* The files of one object of an earlier choice that this one does not write. */
+static scree_status visit_stale(const choose_run *run, const char *name, visit_file *visit,
+                                scree_error *error) {
+  char path[CHOOSE_PATH_BYTES];
+  scree_status status = SCREE_OK;
+  bool stays = has_object(run, name);
+  for (int k = 0; k < OBJECT_FILE_COUNT && status == SCREE_OK; k++) {
+    const char *before = OBJECT_FILES[k].before, *after = OBJECT_FILES[k].after;
+    if (stays && (run->count > 1 || !in_set(before))) continue;
+    status = join_in(run->arguments->output, before, name, after, path, error);
+    if (status == SCREE_OK && begins_with(path, OBJECT_FILES[k].begin))
+      status = visit(run, before, name, after, error);
+  }
+  return status;
+}
+
+/* Objects of earlier choices are known by their levels, which nothing else writes. */
+static scree_status visit_earlier(const choose_run *run, visit_file *visit, scree_error *error) {
+  static const char ending[] = ".levels";
+  char path[CHOOSE_PATH_BYTES], name[CHOOSE_PATH_BYTES];
+  scree_status status = join_in(run->arguments->output, "levels", "", "", path, error);
+  DIR *entries = status == SCREE_OK ? opendir(path) : NULL;
+  for (struct dirent *entry; status == SCREE_OK && entries && (entry = readdir(entries));) {
+    size_t length = strlen(entry->d_name), end = sizeof ending - 1;
+    if (length <= end || strcmp(entry->d_name + length - end, ending) != 0) continue;
+    status = join_in(path, entry->d_name, "", "", name, error);
+    if (status != SCREE_OK || !begins_with(name, OBJECT_FILES[LEVELS_FILE].begin)) continue;
+    snprintf(name, sizeof name, "%.*s", (int)(length - end), entry->d_name);
+    status = visit_stale(run, name, visit, error);
+  }
+  if (entries) closedir(entries);
+  return status;
+}
+
+static scree_status remove_file(const choose_run *run, const char *before, const char *name,
+                                const char *after, scree_error *error) {
+  char path[CHOOSE_PATH_BYTES];
+  scree_status status = join_in(run->arguments->output, before, name, after, path, error);
+  if (status == SCREE_OK && unlink(path) != 0)
+    return cli_refuse(error, SCREE_IO, path, strerror(errno));
+  if (status == SCREE_OK && in_set(before)) {
+    status = join_in(run->arguments->output, before, "", "", path, error);
+    if (status == SCREE_OK) (void)rmdir(path); /* where it was the last */
+  }
+  return status;
+}
+
+static scree_status check_files(const choose_run *run, scree_error *error) {
+  scree_status status = visit_parts(run, check_file, error);
+  if (status == SCREE_OK) status = visit_answer(run, check_file, error);
+  if (status == SCREE_OK && run->arguments->overwrite)
+    status = visit_earlier(run, check_file, error);
+  return status;
+}
+
+static scree_status move_files(const choose_run *run, scree_error *error) {
+  scree_status status = visit_parts(run, move_file, error);
+  if (status == SCREE_OK && run->arguments->overwrite)
+    status = visit_earlier(run, remove_file, error);
+  return status == SCREE_OK ? visit_answer(run, move_file, error) : status;
 }
 
 static scree_status make_subfolders(const choose_run *run, const char *folder, scree_error *error) {
@@ -103,7 +198,7 @@ scree_status choose_prepare_folder(choose_run *run, scree_error *error) {
   scree_status status = cli_stage_open(run->arguments->output, &run->stage, error);
   if (status == SCREE_OK && run->stage.existed) {
     status = make_subfolders(run, run->arguments->output, error);
-    if (status == SCREE_OK) status = visit_files(run, check_file, error);
+    if (status == SCREE_OK) status = check_files(run, error);
   }
   return status == SCREE_OK ? make_subfolders(run, run->stage.path, error) : status;
 }
@@ -116,8 +211,8 @@ static scree_status put_in_place(choose_run *run, scree_error *error) {
   if (run->count == 1 && join(run, "set", "", "", empty, error) == SCREE_OK)
     (void)rmdir(empty); /* the others failed */
   if (!run->stage.existed) return cli_stage_rename(&run->stage, error);
-  scree_status status = visit_files(run, check_file, error);
-  return status == SCREE_OK ? visit_files(run, move_file, error) : status;
+  scree_status status = check_files(run, error);
+  return status == SCREE_OK ? move_files(run, error) : status;
 }
 
 /* ---- the files ---- */

@@ -50,7 +50,9 @@ static const cli_option options[] = {
     {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
     {"csv", 0, CLI_FLAG, AT(csv), NULL,
      "Print CSV instead of text: a row per grid level and choice.", 0, 0, NULL},
-    {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
+    {"force", 'f', CLI_FLAG, AT(overwrite), NULL,
+     "Overwrite existing files; what else an earlier choice left in the folder is removed.", 0, 0,
+     NULL},
 };
 
 const scree_pick *choose_default_pick(const choose_run *run, const scree_choice *choice) {

@@ -33,7 +33,16 @@ echo junk >junk.stl
 run choose plain.stl junk.stl again.stl missing.stl -o rest
 ls rest/set
 run choose plain.stl junk.stl again.stl --csv | sed 's/^\([a-z]*\.stl\),.*/\1/; s/,,,,*[0-9].*,set/, set/' | uniq
+# with -f all that an earlier choice left goes when the new one is there, not before; other files stay
+cp junk.stl rest/own.stl && cp junk.stl rest/set/again.off && cp -r rest read && cp junk.stl rest/again.curve.csv
+find rest | sort >before
+"$SCREE" choose missing.stl -o rest -f
+find rest | sort | cmp - before
+run choose read/set/plain.stl -o read -f
 run choose junk.stl plain.stl -o rest -f --json | grep -E '"(file|object_count|mesh_file)"'
+find rest -name 'again*' -o -name 'own*' -o -path 'rest/set*' | sort
+"$SCREE" choose sample:icosphere-2 -o read -f >/dev/null
+find read -name 'again*' -o -name 'plain*' -o -name 'icosphere*' | sort
 run choose junk.stl plain.stl -o alone | tail -n 4
 find alone -name set
 run choose junk.stl missing.stl -o none/of/it
