@@ -128,9 +128,10 @@ typedef struct scree_choice {
   scree_pick plain;  /* least ip of all levels, for diagnosis: often an accident */
   /* The error there is below a tenth of the worst at finer levels. */
   bool paper_is_accident, plain_is_accident;
-  scree_pick smooth;  /* robust with the area free of noise; robust where none was found */
-  size_t finer_count; /* what robust would choose were the scan's spacing half as large (Nm four
-                         times as large) and the shape the same: the choice follows resolution */
+  scree_pick smooth; /* robust with the area free of noise; robust where none was found */
+  /* What robust and paper would choose were the scan's spacing half as large (Nm four times as
+   * large) and the curve the same, which it will not be: an estimate. */
+  size_t finer_count, paper_finer_count;
   size_t best[SCREE_SHAPE_ERROR_COUNT]; /* grid index of the least error + w Nr/Nm; level_count
                                            where that error was not measured */
 } scree_choice;
@@ -157,6 +158,9 @@ typedef struct scree_set_choice {
   scree_set_pick robust;              /* least mean robust_ip on the trace; ties likewise */
   scree_set_pick smooth;              /* the same against the areas free of noise */
   double paper_spread, robust_spread; /* largest over smallest Rp chosen by the objects alone */
+  /* How many times the triangles they would have at half the spacing, the curves staying the same
+   */
+  double paper_growth, robust_growth;
 } scree_set_choice;
 
 /* Chooses from the curve of one object. scan is the mesh that the curve was built from; it may be

@@ -155,7 +155,8 @@ class scree_choice(Structure):
                 ("reference_area", c_double), ("noise", scree_noise), ("levels", POINTER(scree_choice_level)),
                 ("level_count", c_size_t), ("trace", POINTER(scree_choice_level)), ("trace_count", c_size_t),
                 ("paper", scree_pick), ("robust", scree_pick), ("plain", scree_pick), ("paper_is_accident", c_bool),
-                ("plain_is_accident", c_bool), ("smooth", scree_pick), ("finer_count", c_size_t), ("best", c_size_t * len(SHAPE_ERRORS))]
+                ("plain_is_accident", c_bool), ("smooth", scree_pick), ("finer_count", c_size_t),
+                ("paper_finer_count", c_size_t), ("best", c_size_t * len(SHAPE_ERRORS))]
 
 
 class scree_sample_options(Structure):

@@ -209,7 +209,7 @@ static scree_status run_pass(const scree_level_table *table, const scree_choice_
     keep_best(&p, p.worst, &p.robust);
     keep_best(&p, p.smooth_worst, &p.smooth);
     if (p.plain.index == i) choice->plain_is_accident = is_accident(p.eps, p.worst);
-    double finer_ip = p.worst + 0.25 * p.penalty; /* Nm four times as large */
+    double finer_ip = p.worst + SCREE_FINER_PENALTY * p.penalty;
     if (finer_ip <= p.best_finer_ip) {
       p.best_finer_ip = finer_ip;
       choice->finer_count = p.row.triangle_count;
@@ -308,6 +308,8 @@ scree_status scree_choice_from_table(const scree_level_table *table,
   }
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
     filled.best[e] = best_on_grid(&filled, (scree_shape_error)e, options->weight);
+  size_t finer = best_on_grid(&filled, SCREE_ERROR_AREA, SCREE_FINER_PENALTY * options->weight);
+  filled.paper_finer_count = filled.levels[finer].triangle_count;
   const scree_choice_level *paper = &filled.levels[filled.best[SCREE_ERROR_AREA]];
   filled.paper = (scree_pick){.rp = paper->rp,
                               .level_index = paper->level_index,

@@ -27,6 +27,9 @@ scree_status scree_choice_from_table(const scree_level_table *table,
                                      const scree_choice_options *options, scree_choice *choice,
                                      scree_error *error);
 
+/* What is left of Nr/Nm at half the scan's spacing: Nm is four times as large. */
+#define SCREE_FINER_PENALTY 0.25
+
 /* The three criteria a level is weighed by. */
 typedef enum scree_criterion { SCREE_PLAIN_IP, SCREE_ROBUST_IP, SCREE_SMOOTH_IP } scree_criterion;
 

@@ -17,11 +17,12 @@ typedef struct points {
   const scree_choice *choices;
   size_t object_count, count;
   scree_criterion criterion;
+  double relief; /* the part of the penalty that does not count */
 } points;
 
 static points points_of(const scree_choice *choices, size_t count, scree_criterion criterion) {
   bool grid = criterion == SCREE_PLAIN_IP;
-  return (points){choices, count, grid ? choices->level_count : choices->trace_count, criterion};
+  return (points){choices, count, grid ? choices->level_count : choices->trace_count, criterion, 0};
 }
 
 static const scree_choice_level *level_at(const points *p, size_t object, size_t index) {
@@ -31,8 +32,11 @@ static const scree_choice_level *level_at(const points *p, size_t object, size_t
 
 static double mean_ip(const points *p, size_t index) {
   scree_sum sum = {0, 0};
-  for (size_t k = 0; k < p->object_count; k++)
-    scree_sum_add(&sum, scree_level_ip(level_at(p, k, index), p->criterion));
+  for (size_t k = 0; k < p->object_count; k++) {
+    const scree_choice_level *level = level_at(p, k, index);
+    double penalty = level->ip - level->eps_s;
+    scree_sum_add(&sum, scree_level_ip(level, p->criterion) - p->relief * penalty);
+  }
   return scree_sum_value(sum) / (double)p->object_count;
 }
 
@@ -49,11 +53,16 @@ static void consider(const points *p, size_t index, best_rp *best) {
   if (here.ip < best->ip || (same && here.misfit < best->misfit)) *best = here;
 }
 
+static best_rp find_best(const points *p) {
+  best_rp best = {.ip = INFINITY};
+  for (size_t i = 0; i < p->count; i++) consider(p, i, &best);
+  return best;
+}
+
 static scree_set_pick pick_for_set(const scree_choice *choices, size_t count,
                                    scree_criterion criterion) {
   const points p = points_of(choices, count, criterion);
-  best_rp best = {.ip = INFINITY};
-  for (size_t i = 0; i < p.count; i++) consider(&p, i, &best);
+  best_rp best = find_best(&p);
   scree_set_pick pick = {best.rp, best.ip, best.rp, best.rp};
   for (size_t i = 0; i < p.count; i++) {
     if (mean_ip(&p, i) > SCREE_SIMILAR_IP * best.ip) continue;
@@ -61,6 +70,14 @@ static scree_set_pick pick_for_set(const scree_choice *choices, size_t count,
     pick.rp_high = fmax(pick.rp_high, level_at(&p, 0, i)->rp);
   }
   return pick;
+}
+
+/* How many times the triangles of the pick a set of scans of half the spacing would take. */
+static double growth_of(const scree_choice *choices, size_t count, scree_criterion criterion,
+                        const scree_set_pick *pick) {
+  points p = points_of(choices, count, criterion);
+  p.relief = 1 - SCREE_FINER_PENALTY;
+  return find_best(&p).rp / pick->rp;
 }
 
 static void fill_grid(const scree_choice *choices, size_t count, scree_set_choice *set) {
@@ -117,6 +134,8 @@ scree_status scree_choose_set(const scree_choice *choices, size_t count, scree_s
   filled.paper = pick_for_set(choices, count, SCREE_PLAIN_IP);
   filled.robust = pick_for_set(choices, count, SCREE_ROBUST_IP);
   filled.smooth = pick_for_set(choices, count, SCREE_SMOOTH_IP);
+  filled.paper_growth = growth_of(choices, count, SCREE_PLAIN_IP, &filled.paper);
+  filled.robust_growth = growth_of(choices, count, SCREE_ROBUST_IP, &filled.robust);
   *set = filled;
   return SCREE_OK;
 }

@@ -179,22 +179,30 @@ static void print_noise(FILE *out, const choose_run *run) {
             rp_text(run->count > 1 ? run->set.smooth.rp : run->choices[0].smooth.rp, rp));
 }
 
+/* How many times the triangles at half the spacing, by the choice that meshes are written by. */
+static double growth_of(const choose_run *run) {
+  const scree_choice *c = &run->choices[0];
+  bool paper = run->arguments->paper;
+  if (run->count > 1) return paper ? run->set.paper_growth : run->set.robust_growth;
+  return (double)(paper ? c->paper_finer_count : c->finer_count) /
+         (double)choose_default_pick(run, c)->triangle_count;
+}
+
 static void print_resolution(FILE *out, const choose_run *run) {
-  double least = INFINITY, most = 0, growth = 0;
+  double least = INFINITY, most = 0, growth = growth_of(run);
   for (size_t i = 0; i < run->count; i++) {
     const scree_choice *c = &run->choices[i];
     least = fmin(least, (double)c->triangle_count);
     most = fmax(most, (double)c->triangle_count);
-    growth += (double)c->finer_count / (double)c->robust.triangle_count / (double)run->count;
   }
   bool unlike = ratio(most, least) > NOTABLE_RESOLUTION ||
                 ratio(least, PAPER_COUNT) > NOTABLE_RESOLUTION ||
                 ratio(most, PAPER_COUNT) > NOTABLE_RESOLUTION;
   if (unlike && fabs(growth - 1) >= NOTABLE_GROWTH)
-    fprintf(
-        out,
-        "Nr depends on the scan's resolution: at half the spacing it would be %.1f times this.\n",
-        growth);
+    fprintf(out,
+            "At half the scan's spacing Nr would be about %.*f times this, if the curve stays as "
+            "it is.\n",
+            growth < 9.95, growth);
 }
 
 static void print_floor(FILE *out, const choose_run *run) {

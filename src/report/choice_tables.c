@@ -123,7 +123,8 @@ static void json_entry(scree_json *json, const scree_choice_report *report,
   json_best(json, choice, report->options->weight);
   scree_json_number(json, "reference_area", choice->reference_area);
   scree_json_count(json, "floor_triangle_count", choice->floor_count);
-  scree_json_count(json, "triangle_count_if_scanned_twice_as_fine", choice->finer_count);
+  scree_json_count(json, "triangle_count_if_scanned_twice_as_fine",
+                   report->paper ? choice->paper_finer_count : choice->finer_count);
   json_source(json, entry);
   scree_json_text(json, "version", scree_version());
   scree_json_text(json, "command", report->command_line);
@@ -160,6 +161,8 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
   json_set_pick(json, "smooth", &set->smooth);
   scree_json_number(json, "paper_spread", set->paper_spread);
   scree_json_number(json, "robust_spread", set->robust_spread);
+  scree_json_number(json, "triangle_ratio_if_scanned_twice_as_fine",
+                    report->paper ? set->paper_growth : set->robust_growth);
   scree_json_text(json, "version", scree_version());
   scree_json_text(json, "command", report->command_line);
   json_options(json, report);

@@ -47,6 +47,11 @@ run choose junk.stl plain.stl -o alone | tail -n 4
 find alone -name set
 run choose junk.stl missing.stl -o none/of/it
 ls -d none
+# the estimate for half the spacing is of the choice that is told, the set's own where there are several
+for words in '' --paper; do
+  "$SCREE" choose sample:icosphere-4 sample:box-12 sample:icosphere-5 $words | grep spacing
+  "$SCREE" choose sample:icosphere-4 $words | grep spacing
+done
 # by the paper's rule the set's Rp is one of the grid, and so are the counts: those of the meshes written
 "$SCREE" choose --paper sample:icosphere-4 sample:icosphere-5 -o by-paper | grep '^Use'
 for name in icosphere-4 icosphere-5; do "$SCREE" measure by-paper/set/$name.stl | sed -n 's/^  \([0-9]* facets\),.*/\1/p'; done

@@ -322,6 +322,12 @@ static void pass_agrees_with_the_quadratic_oracle(void **state) {
     }
     assert_int_equal(c.paper.fewest, fewest);
     assert_int_equal(c.paper.most, most);
+    /* half the spacing: Nm four times as large is the weight a quarter */
+    o.weight /= 4;
+    scree_choice finer = choose(rows, count, &o);
+    assert_int_equal(c.finer_count, finer.robust.triangle_count);
+    assert_int_equal(c.paper_finer_count, finer.paper.triangle_count);
+    scree_choice_free(&finer);
     scree_choice_free(&c);
   }
 }
@@ -329,8 +335,9 @@ static void pass_agrees_with_the_quadratic_oracle(void **state) {
 static void set_takes_the_least_mean(void **state) {
   (void)state;
   scree_rng rng = {11, 1, 0};
-  scree_choice_options o = scree_default_choice_options();
-  scree_choice c[3];
+  scree_choice_options o = scree_default_choice_options(), quarter = o;
+  scree_choice c[3], finer[3];
+  quarter.weight /= 4;
   const size_t scans[3] = {90000, 300000, 51234};
   for (int k = 0; k < 3; k++) {
     size_t count;
@@ -338,11 +345,16 @@ static void set_takes_the_least_mean(void **state) {
     for (size_t i = 1; i < count; i++)
       rows[i].area -= 1e-3 * scree_rng_uniform(&rng) * (double)i / (double)count;
     c[k] = choose(rows, count, &o);
+    finer[k] = choose(rows, count, &quarter);
     free(rows);
   }
-  scree_set_choice set;
+  scree_set_choice set, finer_set;
   scree_error error;
   CHECK_OK(scree_choose_set(c, 3, &set, &error), error);
+  CHECK_OK(scree_choose_set(finer, 3, &finer_set, &error), error);
+  CHECK_NEAR(set.paper_growth, finer_set.paper.rp / set.paper.rp, 0);
+  CHECK_NEAR(set.robust_growth, finer_set.robust.rp / set.robust.rp, 0);
+  scree_set_choice_free(&finer_set);
   double best = INFINITY, best_rp = 0;
   for (size_t i = 0; i < set.level_count; i++) {
     double a = c[0].levels[i].ip, b = c[1].levels[i].ip, d = c[2].levels[i].ip;
@@ -371,7 +383,10 @@ static void set_takes_the_least_mean(void **state) {
   scree_choice mixed[2] = {c[0], other};
   assert_int_equal(scree_choose_set(mixed, 2, &set, &error), SCREE_BAD_ARGUMENT);
   assert_int_equal(scree_choose_set(mixed, 0, &set, &error), SCREE_BAD_ARGUMENT);
-  for (int k = 0; k < 3; k++) scree_choice_free(&c[k]);
+  for (int k = 0; k < 3; k++) {
+    scree_choice_free(&c[k]);
+    scree_choice_free(&finer[k]);
+  }
   scree_choice_free(&other);
 }
 
