@@ -41,15 +41,21 @@ static const char *percent_text(double fraction, char buffer[16]) {
   return buffer;
 }
 
+/* The grid's Rp, or the level's own where the grid's was not reached. */
+static double rp_of(const scree_choice *choice, const scree_pick *pick) {
+  return fmax(pick->rp, (double)pick->triangle_count / (double)choice->triangle_count);
+}
+
 static void print_row(FILE *out, const choose_run *run, size_t index) {
   const scree_choice *c = &run->choices[index];
   char scan[32], n1[32], n2[32], rp1[16], rp2[16], e1[16], e2[16], noise[16];
   cli_print_cell(out, run->objects[index].name, 12, 12);
   fprintf(out, "%10s%7s |%7s%7s%8s%c|%7s%7s%8s\n", cli_count_text(c->triangle_count, scan),
-          c->noise.found ? percent_text(c->noise.fraction, noise) : "-", rp_text(c->paper.rp, rp1),
-          cli_count_text(c->paper.triangle_count, n1), percent_text(c->paper.eps_s, e1),
-          c->paper_is_accident ? '*' : ' ', rp_text(c->robust.rp, rp2),
-          cli_count_text(c->robust.triangle_count, n2), percent_text(c->robust.eps_s, e2));
+          c->noise.found ? percent_text(c->noise.fraction, noise) : "-",
+          rp_text(rp_of(c, &c->paper), rp1), cli_count_text(c->paper.triangle_count, n1),
+          percent_text(c->paper.eps_s, e1), c->paper_is_accident ? '*' : ' ',
+          rp_text(c->robust.rp, rp2), cli_count_text(c->robust.triangle_count, n2),
+          percent_text(c->robust.eps_s, e2));
 }
 
 /* What eps_s is measured against, where that is not the scan's area by itself. */
@@ -142,7 +148,7 @@ static void print_advice(FILE *out, const choose_run *run) {
   }
   const scree_pick *pick = choose_default_pick(run, c);
   fprintf(out, "Use %s triangles (Rp = %s): area within %s of the scan's.\n",
-          cli_count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
+          cli_count_text(pick->triangle_count, count), rp_text(rp_of(c, pick), rp),
           percent_text(run->arguments->paper ? pick->level_eps_s : pick->eps_s, percent));
 }
 

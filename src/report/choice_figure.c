@@ -30,7 +30,7 @@ static void copy_levels(panel_data *data, const scree_choice_level *levels, size
                         bool criterion, scree_series *series) {
   double *x = take(data, count), *y = take(data, count);
   for (size_t i = 0; i < count; i++) {
-    x[i] = levels[i].rp;
+    x[i] = fmax(levels[i].rp, levels[i].rp_reached);
     y[i] = criterion ? levels[i].ip : levels[i].eps_s;
     /* a level that stands for several Rp below the floor is drawn once, where it is */
     bool repeated = i + 1 < count && levels[i].level_index == levels[i + 1].level_index;
@@ -75,6 +75,11 @@ static void add_robust_line(const scree_choice *choice, bool criterion, panel_da
                      .draw = SCREE_DRAW_LINE | SCREE_DRAW_DASHED | SCREE_DRAW_UNFITTED};
 }
 
+/* The grid's Rp, or the level's own where the grid's was not reached. */
+static double pick_rp(const scree_choice *choice, const scree_pick *pick) {
+  return fmax(pick->rp, (double)pick->triangle_count / (double)choice->triangle_count);
+}
+
 static void add_picks(const scree_choice_report *report, bool robust, bool criterion,
                       panel_data *data) {
   size_t count = report->entry_count;
@@ -83,7 +88,7 @@ static void add_picks(const scree_choice_report *report, bool robust, bool crite
     const scree_choice *choice = report->entries[e].choice;
     const scree_pick *pick = robust ? &choice->robust : &choice->paper;
     double part = pick->ip - pick->eps_s; /* w Nr / Nm */
-    x[e] = pick->rp;
+    x[e] = pick_rp(choice, pick);
     y[e] = pick->level_eps_s + (criterion ? part : 0);
   }
   data->series[data->series_count++] =
@@ -96,16 +101,42 @@ static void add_picks(const scree_choice_report *report, bool robust, bool crite
                      .marker = robust ? SCREE_MARKER_STAR : SCREE_MARKER_RING};
 }
 
-/* The error axis from the least grid value down to the floor only. */
+/* Up to the grid's end, or to a choice behind it. */
+static double largest_rp(const scree_choice_report *report) {
+  double rp = report->options->rp_max;
+  for (size_t e = 0; e < report->entry_count; e++) {
+    const scree_choice *choice = report->entries[e].choice;
+    rp = fmax(rp, pick_rp(choice, &choice->paper));
+    if (!report->paper) rp = fmax(rp, pick_rp(choice, &choice->robust));
+  }
+  return rp / 0.75;
+}
+
+/* Least (above 0) and largest value of the levels up to an Rp, of the envelope too where drawn. */
+static void find_range(const scree_choice_level *levels, size_t count, double rp_max,
+                       bool criterion, bool envelope, double range[2]) {
+  for (size_t i = 0; i < count && levels[i].rp <= rp_max; i++) {
+    const scree_choice_level *level = &levels[i];
+    double value = criterion ? level->ip : level->eps_s;
+    double worst = criterion ? level->robust_ip : level->worst_eps_s;
+    if (value > 0) range[0] = fmin(range[0], value);
+    range[1] = fmax(range[1], envelope ? fmax(value, worst) : value);
+  }
+}
+
+/* All that is drawn, but of errors no less than the grid's least, and than the floor. */
 static void fit_errors(const scree_choice_report *report, bool criterion, scree_axis *axis) {
-  double low = INFINITY, high = 0;
-  for (size_t e = 0; e < report->entry_count; e++)
-    for (size_t i = 0; i < report->entries[e].choice->level_count; i++) {
-      const scree_choice_level *level = &report->entries[e].choice->levels[i];
-      double value = criterion ? level->ip : level->eps_s;
-      if (value > 0) low = fmin(low, value);
-      high = fmax(high, value);
-    }
+  double grid[2] = {INFINITY, 0}, drawn[2] = {INFINITY, 0}, rp_max = largest_rp(report);
+  for (size_t e = 0; e < report->entry_count; e++) {
+    const scree_choice *choice = report->entries[e].choice;
+    double penalty = choice->robust.ip - choice->robust.eps_s;
+    find_range(choice->levels, choice->level_count, rp_max, criterion, false, grid);
+    find_range(choice->trace, choice->trace_count, rp_max, criterion, report->entry_count == 1,
+               drawn);
+    if (!report->paper)
+      drawn[1] = fmax(drawn[1], choice->robust.level_eps_s + (criterion ? penalty : 0));
+  }
+  double low = criterion ? fmin(grid[0], drawn[0]) : grid[0], high = fmax(grid[1], drawn[1]);
   if (!(high > 0)) return;
   axis->minimum = fmax(low / 1.4, ERROR_FLOOR * high);
   axis->maximum = high * 1.4;
@@ -128,7 +159,7 @@ static scree_status allocate(const scree_choice_report *report, panel_data *data
 static scree_panel make_panel(const scree_choice_report *report, bool criterion, panel_data *data) {
   scree_panel panel = {.title = criterion ? "(b) criterion" : "(a) surface error",
                        .x = {"percentage reduction  R_{p} = N^{r}/N^{m}", SCREE_SCALE_LOG,
-                             0.75 * report->options->rp_min, report->options->rp_max / 0.75},
+                             0.75 * report->options->rp_min, largest_rp(report)},
                        .y = {criterion ? "I_{p}" : "\u03b5_{s}", SCREE_SCALE_LOG, 0, 0}};
   add_entries(report, criterion, data);
   if (report->entry_count == 1) add_robust_line(report->entries[0].choice, criterion, data);
@@ -150,17 +181,24 @@ static size_t set_guide(const scree_choice_report *report, char *text, size_t si
   return 1;
 }
 
+static bool has_below(const scree_choice_level *levels, size_t count, double rp_max, double least) {
+  for (size_t i = 0; i < count && levels[i].rp <= rp_max; i++)
+    if (!(levels[i].eps_s > 0) || levels[i].eps_s < least) return true;
+  return false;
+}
+
 /* The axis is logarithmic and ends above the least: what has hardly an error, or none, is not on
  * it. */
 static const char *missing_text(const scree_choice_report *report, char text[64]) {
   scree_axis axis = {.minimum = 0};
   bool missing = false;
+  double rp_max = largest_rp(report);
   fit_errors(report, false, &axis);
-  for (size_t e = 0; e < report->entry_count; e++)
-    for (size_t i = 0; i < report->entries[e].choice->level_count; i++) {
-      double eps_s = report->entries[e].choice->levels[i].eps_s;
-      missing = missing || !(eps_s > 0) || eps_s < axis.minimum;
-    }
+  for (size_t e = 0; e < report->entry_count; e++) {
+    const scree_choice *choice = report->entries[e].choice;
+    missing = missing || has_below(choice->levels, choice->level_count, rp_max, axis.minimum) ||
+              has_below(choice->trace, choice->trace_count, rp_max, axis.minimum);
+  }
   if (axis.minimum > 0)
     snprintf(text, 64, "; not in (a): \u03b5_{s} < %.1e", axis.minimum);
   else

@@ -65,3 +65,14 @@ done
 # what has hardly an error is not on the figure's logarithmic axis, which says so
 "$SCREE" choose sample:box --resolution 5mm -o box >/dev/null 2>&1
 grep '^# scree' box/figure.gnuplot out/figure.gnuplot | sed 's/scree [0-9][0-9.]*[^,]*/scree N/'
+# nor does the dense curve, of a coarse grid, leave it at the top; a choice behind the grid's end is drawn and named where it is
+"$SCREE" choose sample:sp-3 --resolution 4mm --grid 1e-5:1e-1:1 -o spiky >/dev/null
+"$SCREE" choose box.off -o one-level | grep Use
+"$SCREE" choose box.off --paper | grep Use
+for folder in spiky one-level; do
+  sed -n 's/^set \([xy]\)range \[.*:\(.*\)\]$/\1 \2/p' $folder/figure.gnuplot >ends
+  awk -F, 'NR == FNR { split($0, w, " "); panel += w[1] == "x"; end[panel w[1]] = w[2]; next }
+    FNR > 1 && $5 > 0 { drawn++; hidden = $4 > end[$1 "x"]
+      outside += hidden ? $3 ~ /choice/ : $5 > end[$1 "y"] }
+    END { print (drawn ? "some" : "none"), "drawn,", outside + 0, "outside" }' ends $folder/figure.csv
+done
