@@ -30,8 +30,10 @@ static const cli_option options[] = {
     {"weight", 'w', CLI_REAL, AT(weight), "W",
      "Weight of the penalty: Ip = eps_s + W Nr/Nm. Default: 1, as the paper.", 1e-9, 1e9, NULL},
     {"grid", 'g', CLI_TEXT, AT(grid), "MIN:MAX:N",
-     "Grid of Rp: from MIN to MAX with N points per factor of ten. Default: 1e-5:1e-1:9.", 0, 0,
-     NULL},
+     "Grid of Rp: from MIN upward with N points per factor of ten, as far as MAX, which belongs to "
+     "it "
+     "only where a step meets it. Default: 1e-5:1e-1:9.",
+     0, 0, NULL},
     {"reference", 'r', CLI_CHOICE, AT(reference), "AREA",
      "Area that eps_s is measured against: scan (the paper's) or smooth (past the scanner's "
      "noise, measured on the curve). Default: scan.",

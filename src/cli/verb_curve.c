@@ -21,9 +21,10 @@ static const cli_option options[] = {
      "Default: volume.",
      0, 0, "volume|qecd"},
     {"from", 0, CLI_REAL, offsetof(curve_arguments, from), "RP",
-     "The coarsest Rp of the table. Default: 1e-5.", 1e-9, 1, NULL},
+     "The coarsest Rp of the table, also where no step from --to comes to it. Default: 1e-5.", 1e-9,
+     1, NULL},
     {"to", 0, CLI_REAL, offsetof(curve_arguments, to), "RP",
-     "The finest Rp of the table. Default: 1e-1.", 1e-9, 1, NULL},
+     "The finest Rp of the table, from which the steps go down. Default: 1e-1.", 1e-9, 1, NULL},
     {"per-decade", 0, CLI_COUNT, offsetof(curve_arguments, per_decade), "N",
      "Levels per decade of Rp. Default: 9.", 1, 1000, NULL},
     {"distance", 0, CLI_FLAG, offsetof(curve_arguments, distance), NULL,
@@ -49,6 +50,9 @@ static const curve_arguments defaults = {
 
 /* Parts of the time with --distance, without which the curve takes the rest. */
 static const double LOAD_PART = 0.1, CURVE_PART = 0.3;
+
+/* Of a step, at the ends of the grid. */
+static const double GRID_SLACK = 1e-9;
 
 /* What the rows need. */
 typedef struct table {
@@ -120,11 +124,14 @@ static scree_status make_row(table *t, size_t index, const scree_progress *progr
   return t->arguments->distance ? measure_distance(t, index, progress, &row->distance) : SCREE_OK;
 }
 
-/* Rows from fine to coarse on the grid of Rp, each level once; text and CSV as they come. */
+/* Rows from fine to coarse on the grid of Rp, each level once; text and CSV as they come. The grid
+ * goes down from --to, and --from ends it where no step meets it. */
 static scree_status make_rows(table *t) {
   const curve_arguments *arguments = t->arguments;
   double top = log10(arguments->to), steps = (double)arguments->per_decade;
-  size_t rows = (size_t)floor((top - log10(arguments->from)) * steps + 1e-9) + 1;
+  double span = (top - log10(arguments->from)) * steps;
+  size_t on_grid = (size_t)floor(span + GRID_SLACK) + 1;
+  size_t rows = on_grid + (span - (double)(on_grid - 1) > GRID_SLACK);
   size_t last = SIZE_MAX;
   t->rows = calloc(rows, sizeof *t->rows);
   if (!t->rows) {
@@ -132,7 +139,7 @@ static scree_status make_rows(table *t) {
     return SCREE_OUT_OF_MEMORY;
   }
   for (size_t i = 0; i < rows; i++) {
-    double rp = pow(10, top - (double)i / steps);
+    double rp = i < on_grid ? pow(10, top - (double)i / steps) : arguments->from;
     size_t target = (size_t)(rp * (double)t->first.triangle_count * (1 + 1e-12));
     size_t index = scree_curve_find(t->curve, target);
     if (index == last) continue;

@@ -2,6 +2,8 @@
 run curve icosphere-4.stl --from 1e-3 --per-decade 2
 run curve icosphere-4.stl --from 1e-2 --per-decade 2 -m qecd --distance --samples 2000
 run curve icosphere-4.stl --from 1e-2 --per-decade 1 --csv --threads 1
+# both ends are in the table, met by a step or not
+run curve icosphere-4.stl --from 1e-2 --to 0.05 --per-decade 1
 run simplify icosphere-4.stl -r 1e-2 -o out.ply
 run simplify icosphere-4.stl -n 7 -o six.off
 head -3 six.off | tail -1
