@@ -86,14 +86,14 @@ static void print_row(const table *t, const scree_curve_row *row) {
   const scree_distance *d = &row->distance;
   bool csv = t->arguments->csv;
   cli_terminal_end();
-  printf(csv ? "%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.9g"
+  printf(csv ? "%zu,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g,%.17g"
              : "%9zu %9.3g %10.4g %10.4g %9.3g %9.2g %9.4g %9.3g",
          level->triangle_count, level->rp, level->area * (csv ? 1 : 1e4),
          level->volume * (csv ? 1 : 1e6), row->eps_s, row->eps_v, row->ip,
          level->quadric_error * (csv ? 1 : 1e3));
   if (t->arguments->distance) {
     double scale = csv ? 1 : 1e3;
-    printf(csv ? ",%.9g,%.9g,%.9g,%.9g,%.9g" : "  %9.4g %9.4g %9.4g %9.4g %9.4g",
+    printf(csv ? ",%.17g,%.17g,%.17g,%.17g,%.17g" : "  %9.4g %9.4g %9.4g %9.4g %9.4g",
            d->forward.mean * scale, d->forward.maximum * scale, d->backward.mean * scale,
            d->backward.maximum * scale, d->hausdorff * scale);
   }

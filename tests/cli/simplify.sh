@@ -2,6 +2,13 @@
 run curve icosphere-4.stl --from 1e-3 --per-decade 2
 run curve icosphere-4.stl --from 1e-2 --per-decade 2 -m qecd --distance --samples 2000
 run curve icosphere-4.stl --from 1e-2 --per-decade 1 --csv --threads 1
+# the digits of the CSV are JSON's
+"$SCREE" curve icosphere-4.stl --from 1e-2 --per-decade 1 --distance --json >levels.json
+"$SCREE" curve icosphere-4.stl --from 1e-2 --per-decade 1 --distance --csv | tail -n 1 | tr ',' '\n' >numbers
+grep -c . numbers
+while read -r number; do
+  awk -v n="$number" '{ gsub(/[,":]/, " "); for (i = 1; i <= NF; i++) found = found || ($i ~ /^[-0-9]/ && $i + 0 == n + 0) } END { if (!found) print n, "is not in the JSON" }' levels.json
+done <numbers
 # both ends are in the table, met by a step or not
 run curve icosphere-4.stl --from 1e-2 --to 0.05 --per-decade 1
 run simplify icosphere-4.stl -r 1e-2 -o out.ply
