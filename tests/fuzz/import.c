@@ -18,7 +18,7 @@ static void take(scree_import_format format, bool fitting, const uint8_t *data, 
     size = sizeof(scree_import_answer) + (size_t)count * 9 * sizeof(double);
     memcpy(answer, &count, sizeof count);
   }
-  scree_reading r = {"fuzz", data, size, &options, options.unit_m, &scan, &error, false};
+  scree_reading r = {"fuzz", data, size, size, &options, options.unit_m, &scan, &error};
   scree_reset_memory_peak();
   scree_status status = scree_import_take(&r, format, answer, size);
   FUZZ_CHECK(scree_memory_peak() - used <= FUZZ_BYTES_PER_BYTE * size + FUZZ_LEAST_BYTES);
