@@ -277,6 +277,8 @@ typedef struct parser {
   char **words;
   int next;
   bool given[MOST_OPTIONS]; /* of the verb's */
+  const char **inputs;
+  size_t input_count;
 } parser;
 
 static found_option find_option(const parser *p, const char *name, size_t length, char letter) {
@@ -306,17 +308,30 @@ static void mark_given(parser *p, found_option found) {
   if (found.base == p->options && index < MOST_OPTIONS) p->given[index] = true;
 }
 
+static bool has_input(const parser *p, const char *beginning, size_t length) {
+  for (size_t i = 0; i < p->input_count; i++)
+    if (!strncmp(p->inputs[i], beginning, length)) return true;
+  return false;
+}
+
 /* 0, or 2 after telling which option does nothing by itself. */
 static int check_partners(const parser *p) {
   for (const char *at = p->verb->partners; at && *at;) {
     size_t name = strcspn(at, ":"), all = strcspn(at, " ");
     bool missing = is_given(p, at, name);
     const char *first = at + name + 1;
-    for (const char *one = first; one < at + all; one += strcspn(one, "| ") + 1)
-      missing = missing && !is_given(p, one, strcspn(one, "| "));
+    for (const char *one = first; one < at + all; one += strcspn(one, "| ") + 1) {
+      size_t length = strcspn(one, "| ");
+      bool is_input = one[length - 1] == ':';
+      missing = missing && !(is_input ? has_input(p, one, length) : is_given(p, one, length));
+    }
+    size_t length = strcspn(first, "| ");
+    if (missing && first[length - 1] == ':')
+      return cli_misuse(p->verb, "--%.*s does nothing without an input %.*sNAME", (int)name, at,
+                        (int)length, first);
     if (missing)
-      return cli_misuse(p->verb, "--%.*s does nothing without --%.*s", (int)name, at,
-                        (int)strcspn(first, "| "), first);
+      return cli_misuse(p->verb, "--%.*s does nothing without --%.*s", (int)name, at, (int)length,
+                        first);
     at += all + (at[all] != 0);
   }
   return 0;
@@ -431,7 +446,12 @@ static int check_input_count(const cli_verb *verb, const char *const *inputs, si
 
 int cli_parse(const cli_verb *verb, int word_count, char **words, void *options, cli_common *common,
               const char **inputs, size_t *input_count) {
-  parser p = {verb, options, common, word_count, words, 0, {false}};
+  parser p = {.verb = verb,
+              .options = options,
+              .common = common,
+              .word_count = word_count,
+              .words = words,
+              .inputs = inputs};
   bool only_inputs = false;
   *input_count = 0;
   while (p.next < word_count) {
@@ -446,6 +466,7 @@ int cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
     if (result) return result;
     if (common->help) return 0;
   }
+  p.input_count = *input_count;
   int result = check_input_count(verb, inputs, *input_count);
   return result ? result : check_partners(&p);
 }

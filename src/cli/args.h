@@ -41,7 +41,8 @@ typedef struct cli_verb {
   size_t options_size;  /* its size, at most CLI_OPTIONS_BYTES */
   size_t input_minimum, input_maximum;
   const char *partners; /* "samples:distance to:from|until": options that do nothing without (one
-                           of) the others, so that they are refused; or NULL */
+                           of) the others, so that they are refused; "noise:sample:": without an
+                           input that begins so; or NULL */
   int (*run)(const struct cli_call *call); /* the exit code */
 } cli_verb;
 

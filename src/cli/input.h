@@ -30,6 +30,9 @@ typedef struct cli_source {
 #define CLI_SAMPLE_OPTION(type, source, field, kind, value, help, minimum, maximum)                \
   { #field, 0, kind, offsetof(type, source.field), value, help, minimum, maximum, NULL }
 
+/* What they do nothing without, among the verb's partners. */
+#define CLI_SAMPLE_PARTNERS "resolution:sample: noise:sample: seed:sample:"
+
 cli_input_options cli_source_options(const cli_source *source);
 
 /* Metres per unit that a file without one of its own is read in: 1 for a sample. */

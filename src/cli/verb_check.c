@@ -123,5 +123,6 @@ const cli_verb cli_verb_check = {
     .options_size = sizeof(check_arguments),
     .input_minimum = 1,
     .input_maximum = SIZE_MAX,
+    .partners = CLI_SAMPLE_PARTNERS,
     .run = run,
 };

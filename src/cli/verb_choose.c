@@ -285,6 +285,7 @@ const cli_verb cli_verb_choose = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = SIZE_MAX,
-    .partners = "density:output",
+    .partners =
+        "density:output resolution:sample:|samples noise:sample:|samples seed:sample:|samples",
     .run = run_choose,
 };

@@ -244,6 +244,6 @@ const cli_verb cli_verb_curve = {
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 1,
-    .partners = "samples:distance",
+    .partners = "samples:distance " CLI_SAMPLE_PARTNERS,
     .run = run,
 };

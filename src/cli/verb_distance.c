@@ -99,5 +99,6 @@ const cli_verb cli_verb_distance = {
     .options_size = sizeof defaults,
     .input_minimum = 2,
     .input_maximum = 2,
+    .partners = CLI_SAMPLE_PARTNERS,
     .run = run,
 };

@@ -386,5 +386,6 @@ const cli_verb cli_verb_drop = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = 60,
+    .partners = "resolution:sample: noise:sample:",
     .run = run,
 };

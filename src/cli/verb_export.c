@@ -323,5 +323,6 @@ const cli_verb cli_verb_export = {
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = SIZE_MAX,
+    .partners = CLI_SAMPLE_PARTNERS,
     .run = run,
 };

@@ -288,5 +288,6 @@ const cli_verb cli_verb_render = {
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 1000,
+    .partners = CLI_SAMPLE_PARTNERS,
     .run = run,
 };

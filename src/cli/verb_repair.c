@@ -182,6 +182,6 @@ const cli_verb cli_verb_repair = {
     .options_size = sizeof(repair_arguments),
     .input_minimum = 1,
     .input_maximum = 1,
-    .partners = "flat:large-holes",
+    .partners = "flat:large-holes " CLI_SAMPLE_PARTNERS,
     .run = run,
 };

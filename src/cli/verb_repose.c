@@ -618,6 +618,7 @@ const cli_verb cli_verb_repose = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = 60,
-    .partners = "method:rp vtp:output",
+    .partners = "method:rp vtp:output resolution:sample:|samples noise:sample:|samples "
+                "sample-seed:sample:|samples",
     .run = run,
 };

@@ -105,6 +105,10 @@ static int run(const cli_call *call) {
   bool to_file = names_file(output);
   if (to_file && count != 1)
     return cli_misuse(call->verb, "%zu samples do not fit into one file: -o takes a folder", count);
+  for (size_t i = 0; i < call->input_count; i++)
+    for (size_t k = 0; k < i; k++)
+      if (!strcmp(call->inputs[i], call->inputs[k]))
+        return cli_misuse(call->verb, "'%s' is given twice", call->inputs[i]);
   scree_error error;
   if (!to_file && cli_make_folder(output, &error) != SCREE_OK) return cli_fail(&error);
   for (size_t i = 0; i < count; i++) { /* first whether all can be written */

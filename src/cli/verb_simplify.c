@@ -206,5 +206,6 @@ const cli_verb cli_verb_simplify = {
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 1,
+    .partners = CLI_SAMPLE_PARTNERS,
     .run = run,
 };

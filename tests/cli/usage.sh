@@ -31,6 +31,14 @@ for words in "curve x --samples 10" "choose x --density 2" "pile x -s 100x100" "
   "study x --tasks 3" "repose x -m qecd" "repose x --vtp=all"; do
   run $words 2>&1 | sed -n 2p
 done
+# so are those of samples where there is none
+for verb in 'simplify -n 4 -o y.stl' 'curve' 'measure' 'check' 'repair -o y.stl' 'distance ball.stl' 'export -o y.obj' 'render -o y.png' \
+  'choose' 'repose' 'drop'; do
+  run $verb ball.stl --resolution 3mm 2>&1 | sed -n 2p
+done
+run measure ball.stl --noise 0mm --seed 2 2>&1 | sed -n 2p
+run repose ball.stl --sample-seed 2 2>&1 | sed -n 2p
+for words in 'ball.stl sample:box-12' --samples; do run choose $words --resolution 3mm --json --csv 2>&1 | sed -n 2p; done
 "$SCREE" curve ball.stl --distance --samples 10 --per-decade 1 | wc -l
 # what cannot both be is wrong usage, and so is an output of no known format
 for words in '--holes 0 --large-holes -o y.stl' '-o x.xyz' '-o -'; do
