@@ -10,6 +10,7 @@
 static scree_status copy_mesh(void *context, scree_error *error) {
   scree_mesh copy = {0};
   scree_status status = scree_mesh_copy(context, &copy, error);
+  if (status == SCREE_OK) status = scree_mesh_canonicalize(&copy, error);
   scree_mesh_free(&copy);
   return status;
 }

@@ -100,6 +100,8 @@ static scree_status build_world(void *context, scree_error *error) {
     status = scree_world_set_wall_velocity(world, 0, (double[3]){0}, (double[3]){0}, error);
   if (status == SCREE_OK)
     status = scree_world_add_body(world, ((parts *)context)->particle, 0, NULL, NULL, error);
+  const scree_body body = scree_default_body();
+  if (status == SCREE_OK) status = scree_world_set_body(world, 0, &body, error);
   scree_world_free(world);
   return status;
 }
