@@ -42,7 +42,7 @@ box 20 30 40 >box.off
 run repose box.off --particles 4 --cylinder 0.01 -o new
 run repose box.off --particles 4 --cell 1 -o new
 run repose box.off --particles 4 --rp 0.5,1 --cell 1 -o new
-ls -d new* kept
+ls -d new* kept 2>/dev/null
 # nor is a link that leads nowhere replaced unasked
 ln -s nowhere.off dangling.off
 run sample box-12 -o dangling.off
