@@ -211,7 +211,7 @@ static bool is_over(const endings *w) {
  * there on. */
 static void set_next(endings *w) {
   size_t from = scree_ahead_from(w->d), stop = w->d->options.stop_count;
-  w->until = w->until <= from ? w->until - 1 : stop > from ? stop : from;
+  w->until = w->until <= from ? w->until - 1 : w->until > stop && stop > from ? stop : from;
 }
 
 static bool has_come(const endings *w, const ending *e) {
