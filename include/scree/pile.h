@@ -372,6 +372,8 @@ typedef enum scree_container {
 typedef struct scree_pour_shape {
   scree_particle *particle;
   size_t count;
+  const char *name;   /* for reports, copied; NULL: none */
+  const char *source; /* where it came from: file, checksum, triangles; copied; NULL: unknown */
 } scree_pour_shape;
 
 typedef struct scree_pour_options {
@@ -416,7 +418,7 @@ SCREE_API void scree_pour_get_options(const scree_pour *pour, scree_pour_options
 /* All particles, and those that have entered. */
 SCREE_API size_t scree_pour_particle_count(const scree_pour *pour);
 SCREE_API size_t scree_pour_entered_count(const scree_pour *pour);
-/* The shapes; particles are the pour's. */
+/* The shapes; particles and texts are the pour's. */
 SCREE_API size_t scree_pour_shape_count(const scree_pour *pour);
 SCREE_API scree_pour_shape scree_pour_get_shape(const scree_pour *pour, size_t index);
 /* Which of the shapes body `index` is. */

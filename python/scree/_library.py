@@ -278,7 +278,7 @@ class scree_run_job(Structure):
 
 
 class scree_pour_shape(Structure):
-    _fields_ = [("particle", c_void_p), ("count", c_size_t)]
+    _fields_ = [("particle", c_void_p), ("count", c_size_t), ("name", c_char_p), ("source", c_char_p)]
 
 
 class scree_pour_options(Structure):

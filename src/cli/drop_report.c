@@ -66,13 +66,14 @@ static scree_status read_points(const drop_run *run, points *p, scree_error *err
 
 /* ---- files ---- */
 
-/* Name and source of each shape. A pour that went on without its shapes named knows neither. */
+/* Name and source of each shape: a pour of another program may know neither. */
 static void name_shapes(const drop_run *run, size_t count, const char **names, const char **sources,
                         char (*numbers)[32]) {
   for (size_t i = 0; i < count; i++) {
     snprintf(numbers[i], sizeof numbers[i], "shape %zu", i + 1);
-    names[i] = run->shape_count ? run->shapes[i].title : numbers[i];
-    sources[i] = run->shape_count ? run->shapes[i].source : NULL;
+    scree_pour_shape shape = scree_pour_get_shape(run->pour, i);
+    names[i] = shape.name ? shape.name : numbers[i];
+    sources[i] = shape.source;
   }
 }
 

@@ -143,7 +143,8 @@ static scree_status create_pour(drop_run *run, scree_error *error) {
   scree_pour_shape *shapes = calloc(run->shape_count, sizeof *shapes);
   if (!shapes) return drop_no_memory(error);
   for (size_t i = 0; i < run->shape_count; i++)
-    shapes[i] = (scree_pour_shape){run->shapes[i].particle, run->shapes[i].count};
+    shapes[i] = (scree_pour_shape){run->shapes[i].particle, run->shapes[i].count,
+                                   run->shapes[i].title, run->shapes[i].source};
   scree_status status = scree_pour_create(shapes, run->shape_count, &o, &run->pour, error);
   free(shapes);
   return status;

@@ -256,6 +256,19 @@ static void plan(scree_pour *pour) {
   pour->layers = (pour->count + cells - 1) / cells;
 }
 
+static scree_status copy_texts(scree_pour *pour, const scree_pour_shape *shapes,
+                               scree_error *error) {
+  pour->texts = scree_alloc_zero(2 * pour->shape_count, sizeof *pour->texts);
+  if (!pour->texts) return scree_fail_memory(error, pour->shape_count, "the shapes' names");
+  for (size_t i = 0; i < 2 * pour->shape_count; i++) {
+    const char *text = i % 2 ? shapes[i / 2].source : shapes[i / 2].name;
+    if (!text) continue;
+    pour->texts[i] = scree_strdup(text);
+    if (!pour->texts[i]) return scree_fail_memory(error, 0, "a shape's name");
+  }
+  return SCREE_OK;
+}
+
 static scree_status allocate(scree_pour *pour, const scree_pour_shape *shapes, scree_error *error) {
   for (size_t s = 0; s < pour->shape_count; s++) pour->count += shapes[s].count;
   SCREE_ALLOC_OR(pour->shape_of, pour->count, error, out_of_memory);
@@ -267,7 +280,7 @@ static scree_status allocate(scree_pour *pour, const scree_pour_shape *shapes, s
     pour->particles[s] = shapes[s].particle;
     scree_particle_retain(shapes[s].particle);
   }
-  return SCREE_OK;
+  return copy_texts(pour, shapes, error);
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
@@ -305,6 +318,8 @@ void scree_pour_free(scree_pour *pour) {
   for (size_t s = 0; pour->particles && s < pour->shape_count; s++)
     scree_particle_free(pour->particles[s]);
   scree_free(pour->particles);
+  for (size_t i = 0; pour->texts && i < 2 * pour->shape_count; i++) scree_free(pour->texts[i]);
+  scree_free(pour->texts);
   scree_free(pour->counts);
   scree_free(pour->notes);
   scree_free(pour->shape_of);
@@ -380,7 +395,8 @@ size_t scree_pour_shape_count(const scree_pour *pour) {
   return pour->shape_count;
 }
 scree_pour_shape scree_pour_get_shape(const scree_pour *pour, size_t index) {
-  return (scree_pour_shape){pour->particles[index], pour->counts[index]};
+  return (scree_pour_shape){pour->particles[index], pour->counts[index], pour->texts[2 * index],
+                            pour->texts[2 * index + 1]};
 }
 size_t scree_pour_shape_of(const scree_pour *pour, size_t index) {
   return pour->shape_of[index];

@@ -11,6 +11,7 @@ struct scree_pour {
   size_t *shape_of;           /* by particle, in the order of entering */
   scree_particle **particles; /* by shape; held */
   size_t *counts;             /* by shape */
+  char **texts;               /* name and source by shape; NULL: none */
   double *radii;              /* bounding, by particle */
   size_t shape_count, count, entered_count, layer_count;
   double pitch, time_step, entered_energy;

@@ -1,4 +1,5 @@
-/* Checkpoints of a pour: a seal (base/seal.h), the plan, the gallery (a packed world with the
+/* Checkpoints of a pour: a seal (base/seal.h), the plan, the shapes' counts, names and sources, the
+ * gallery (a packed world with the
  * pour's world options and materials, and one body of each shape), the packed world, how far the
  * pour is, and the caller's notes. Order, cells and radii follow from the plan and are made again.
  */
@@ -9,8 +10,8 @@
 
 #include <string.h>
 
-static const scree_seal seal = {"screePOU", "checkpoint of a scree pour", "pour", 1};
-enum { MOST_SHAPES = 1 << 20 };
+static const scree_seal seal = {"screePOU", "checkpoint of a scree pour", "pour", 2};
+enum { MOST_SHAPES = 1 << 20, SHAPE_BYTES = 24 /* at least */ };
 
 static void code_plan(scree_codec *c, scree_pour_options *o) {
   uint32_t container = (uint32_t)o->container;
@@ -31,12 +32,19 @@ static void code_progress(scree_codec *c, scree_pour *pour) {
 
 /* ---- saving ---- */
 
-static void save_counts(scree_codec *c, const scree_pour *pour) {
+static void save_text(scree_codec *c, char *text) {
+  size_t length = text ? strlen(text) : 0;
+  scree_code_count(c, &length, 1);
+  scree_code_bytes(c, text, length);
+}
+
+static void save_shapes(scree_codec *c, const scree_pour *pour) {
   size_t shapes = pour->shape_count;
-  scree_code_count(c, &shapes, 8);
+  scree_code_count(c, &shapes, SHAPE_BYTES);
   for (size_t s = 0; s < shapes; s++) {
     uint64_t count = pour->counts[s];
     scree_code_u64(c, &count);
+    for (size_t i = 2 * s; i < 2 * s + 2; i++) save_text(c, pour->texts[i]);
   }
 }
 
@@ -55,7 +63,7 @@ scree_status scree_pour_save(const scree_pour *pour, const char *path, bool over
   scree_pour state = *pour; /* a shallow copy: only its plain fields are written */
   scree_seal_begin(&c);
   code_plan(&c, &state.options);
-  save_counts(&c, pour);
+  save_shapes(&c, pour);
   scree_status status = save_gallery(&c, pour, error);
   if (status == SCREE_OK) status = scree_world_save_block(&c, pour->world, error);
   code_progress(&c, &state);
@@ -75,6 +83,7 @@ typedef struct loader {
   scree_error *error;
   scree_pour_options options;
   scree_pour_shape *shapes;
+  char **texts; /* two of each shape */
   size_t shape_count;
   scree_world *gallery, *world;
   scree_pour *pour;
@@ -84,21 +93,36 @@ static scree_status fail_here(const loader *l) {
   return scree_seal_refuse(&l->codec, &seal, l->name, l->error);
 }
 
+/* NULL where it is empty, or cannot be had. */
+static char *load_text(scree_codec *c) {
+  size_t length = 0;
+  scree_code_count(c, &length, 1);
+  if (!scree_codec_good(c) || length == 0) return NULL;
+  char *text = scree_alloc_zero(length + 1, 1);
+  if (!text) c->out_of_memory = true;
+  if (text) scree_code_bytes(c, text, length);
+  return text;
+}
+
 static scree_status load_shapes(loader *l) {
   scree_codec *c = &l->codec;
   size_t count = 0;
   code_plan(c, &l->options);
-  scree_code_count(c, &count, 8);
+  scree_code_count(c, &count, SHAPE_BYTES);
   if (count > MOST_SHAPES) c->failed = true;
   if (!scree_codec_good(c)) return fail_here(l);
   l->shapes = scree_alloc_zero(count, sizeof *l->shapes);
-  if (!l->shapes) return scree_fail_memory(l->error, count * sizeof *l->shapes, "shapes");
+  l->texts = scree_alloc_zero(2 * count, sizeof *l->texts);
+  if (!l->shapes || !l->texts)
+    return scree_fail_memory(l->error, count * sizeof *l->shapes, "shapes");
   l->shape_count = count;
   for (size_t s = 0; s < count; s++) {
     uint64_t many = 0;
     scree_code_u64(c, &many);
     if (many > UINT32_MAX) c->failed = true;
     l->shapes[s].count = (size_t)many;
+    l->shapes[s].name = l->texts[2 * s] = load_text(c);
+    l->shapes[s].source = l->texts[2 * s + 1] = load_text(c);
   }
   if (!scree_codec_good(c)) return fail_here(l);
   scree_status status = scree_world_load_block(c, l->name, &l->gallery, l->error);
@@ -164,6 +188,8 @@ scree_status scree_pour_load(const char *path, scree_pour **pour, scree_error *e
   scree_status status = scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error);
   if (status != SCREE_OK) return status;
   status = load(&l);
+  for (size_t i = 0; l.texts && i < 2 * l.shape_count; i++) scree_free(l.texts[i]);
+  scree_free(l.texts);
   scree_free(l.shapes);
   scree_world_free(l.world);
   scree_world_free(l.gallery);

@@ -54,8 +54,9 @@ static double farthest_way(const scree_world *world, const scree_body *before) {
 static void poured_and_left(void **state) {
   (void)state;
   scree_error error;
-  const scree_pour_shape shapes[] = {
-      {device("fp-1", 100), 30}, {device("fp-3", 60), 25}, {device("sp-1", 100), 25}};
+  const scree_pour_shape shapes[] = {{.particle = device("fp-1", 100), .count = 30},
+                                     {.particle = device("fp-3", 60), .count = 25},
+                                     {.particle = device("sp-1", 100), .count = 25}};
   scree_pour_options o = scree_default_pour_options();
   o.width = 0.6;
   o.particles.density = 1100; /* devices of 0.1 kg, as the note's scales have it */
@@ -121,8 +122,9 @@ static double pour_error(const scree_pour_shape *shapes, double steps_per_contac
 /* What the ledger misses is the integration's error, of second order in the time step. */
 static void ledger_is_of_second_order(void **state) {
   (void)state;
-  const scree_pour_shape shapes[] = {
-      {device("fp-1", 100), 10}, {device("fp-3", 60), 10}, {device("sp-1", 100), 10}};
+  const scree_pour_shape shapes[] = {{.particle = device("fp-1", 100), .count = 10},
+                                     {.particle = device("fp-3", 60), .count = 10},
+                                     {.particle = device("sp-1", 100), .count = 10}};
   double coarse = pour_error(shapes, 20), fine = pour_error(shapes, 40);
   LAW_BELOW("L17", "ledger of a pour at N = 20", coarse, 5e-3);
   LAW_BELOW("L17", "the same at N = 40", fine, 1e-3);

@@ -68,7 +68,7 @@ static void a_pile(void **state) {
   CHECK_OK(scree_grain_make(&mesh, NULL, NULL, NULL, &grain, &error), error);
   assert_int_equal(grain.triangle_count, mesh.triangle_count);
   CHECK_OK(scree_particle_from_mesh(&mesh, NULL, &particle, &error), error);
-  scree_pour_shape shape = {particle, 2};
+  scree_pour_shape shape = {.particle = particle, .count = 2};
   CHECK_OK(scree_pour_create(&shape, 1, NULL, &pour, &error), error);
   CHECK_OK(scree_world_create(NULL, &world, &error), error);
   CHECK_OK(scree_height_field_create(0, 0, 0.1, 0.01, &field, &error), error);

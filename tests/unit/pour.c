@@ -22,7 +22,8 @@ static scree_pour *make_pour(const scree_pour_options *options, size_t boxes, si
   scree_particle *box = box_particle(0.05, 0.03, 0.02), *ball = NULL;
   scree_pour *pour = NULL;
   CHECK_OK(scree_particle_sphere(0.012, &ball, &error), error);
-  const scree_pour_shape shapes[] = {{box, boxes}, {ball, balls}};
+  const scree_pour_shape shapes[] = {{box, boxes, "box", "box.stl, 12 triangles"},
+                                     {.particle = ball, .count = balls}};
   CHECK_OK(scree_pour_create(shapes, 2, options, &pour, &error), error);
   scree_particle_free(box);
   scree_particle_free(ball);
@@ -210,7 +211,7 @@ static void what_cannot_be_poured_is_refused(void **state) {
   scree_error error;
   scree_pour *pour = NULL;
   scree_particle *box = box_particle(0.05, 0.03, 0.02);
-  scree_pour_shape shape = {box, 5};
+  scree_pour_shape shape = {.particle = box, .count = 5};
   scree_pour_options o = scree_default_pour_options();
   o.width = 0.06;
   assert_int_equal(scree_pour_create(&shape, 1, &o, &pour, &error), SCREE_BAD_ARGUMENT);
@@ -260,7 +261,12 @@ static void a_pour_goes_on_with_the_same_bits(void **state) {
     assert_int_equal(count, 2);
     assert_true(kept[0] == notes[0] && kept[1] == notes[1]);
     assert_int_equal(scree_pour_shape_count(cut), 2);
-    assert_int_equal(scree_pour_get_shape(cut, 0).count, 9);
+    scree_pour_shape first = scree_pour_get_shape(cut, 0), second = scree_pour_get_shape(cut, 1);
+    assert_int_equal(first.count, 9);
+    assert_string_equal(first.name, "box");
+    assert_string_equal(first.source, "box.stl, 12 triangles");
+    assert_null(second.name);
+    assert_null(second.source);
     scree_pour_free(whole);
     scree_pour_free(cut);
   }
@@ -304,7 +310,7 @@ static scree_status save_and_load(void *context, scree_error *error) {
 }
 
 static scree_status pour_all(void *context, scree_error *error) {
-  const scree_pour_shape shape = {context, 3};
+  const scree_pour_shape shape = {context, 3, "box", "box.stl"};
   scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0);
   const char *name = "box";
   scree_pour_point point = {.entered_energy = 0};
