@@ -74,6 +74,14 @@ scree_status cli_check_picture_output(const cli_call *call, const char *path, bo
   return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a picture must end in .png");
 }
 
+scree_status cli_check_vtp_output(const cli_call *call, const char *path, bool overwrite,
+                                  scree_error *error) {
+  if (!strcmp(path, "-") || has_ending(path, ".vtp"))
+    return cli_check_output(call, path, overwrite, error);
+  return cli_refuse(error, SCREE_BAD_ARGUMENT, path,
+                    "the name of a ParaView file must end in .vtp");
+}
+
 scree_status cli_check_page_output(const cli_call *call, const char *path, bool overwrite,
                                    scree_error *error) {
   if (!strcmp(path, "-") || has_ending(path, ".html") || has_ending(path, ".htm"))

@@ -18,6 +18,10 @@ scree_status cli_check_mesh_output(const cli_call *call, const char *path, bool 
 scree_status cli_check_picture_output(const cli_call *call, const char *path, bool overwrite,
                                       scree_error *error);
 
+/* Of a .vtp for ParaView, which must be called so. */
+scree_status cli_check_vtp_output(const cli_call *call, const char *path, bool overwrite,
+                                  scree_error *error);
+
 /* And of a page, which must be called one: it never replaces what it is made of. */
 scree_status cli_check_page_output(const cli_call *call, const char *path, bool overwrite,
                                    scree_error *error);

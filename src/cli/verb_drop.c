@@ -44,8 +44,8 @@ static const cli_option options[] = {
     {"width", 'w', CLI_LENGTH, AT(width), "LENGTH",
      "Diameter of the cylinder or side of the box, inside, as in 300mm. Default: about the height "
      "the heap will have, and room for three abreast.",
-     0, 1e6, NULL},
-    {"depth", 0, CLI_LENGTH, AT(depth), "LENGTH", "The box's other side. Default: the width.", 0,
+     1e-6, 1e6, NULL},
+    {"depth", 0, CLI_LENGTH, AT(depth), "LENGTH", "The box's other side. Default: the width.", 1e-6,
      1e6, NULL},
     {"number", 'N', CLI_COUNT, AT(number), "COUNT",
      "Particles of a shape without =COUNT. Default: 30.", 1, 10000000, NULL},
@@ -346,6 +346,9 @@ static int run(const cli_call *call) {
   if (run.arguments->noise > 0.25 * run.arguments->resolution)
     return cli_misuse(call->verb, "--noise %g mm: at most a quarter of the resolution, %g mm",
                       1e3 * run.arguments->noise, 0.25e3 * run.arguments->resolution);
+  if (run.arguments->depth > 0 && run.shape_count &&
+      run.arguments->container != SCREE_CONTAINER_BOX)
+    return cli_misuse(call->verb, "--depth does nothing without -c box");
   if (run.shape_count == 0 && !run.arguments->resume)
     return cli_misuse(call->verb, "needs a SHAPE, or --resume with -o DIR");
   scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory"};

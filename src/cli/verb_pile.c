@@ -121,10 +121,8 @@ static int measure(const cli_call *call, scree_run *run, const scree_render_opti
 
 static scree_status check_outputs(const cli_call *call, scree_error *error) {
   const pile_arguments *a = call->options;
-  const char *const outputs[] = {a->csv, a->vtp};
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; i < 2 && status == SCREE_OK; i++)
-    if (outputs[i]) status = cli_check_output(call, outputs[i], a->force, error);
+  scree_status status = a->csv ? cli_check_output(call, a->csv, a->force, error) : SCREE_OK;
+  if (status == SCREE_OK && a->vtp) status = cli_check_vtp_output(call, a->vtp, a->force, error);
   if (status == SCREE_OK && a->picture)
     status = cli_check_picture_output(call, a->picture, a->force, error);
   return status;
@@ -132,6 +130,8 @@ static scree_status check_outputs(const cli_call *call, scree_error *error) {
 
 static int run(const cli_call *call) {
   const pile_arguments *a = call->options;
+  if (a->json && a->csv && !strcmp(a->csv, "-"))
+    return cli_misuse(call->verb, "--json and --csv - exclude each other");
   scree_render_options render = scree_default_render_options();
   scree_run *loaded;
   scree_error error;
@@ -139,7 +139,13 @@ static int run(const cli_call *call) {
   if (code) return code;
   if (check_outputs(call, &error) != SCREE_OK) return cli_fail(&error);
   if (scree_run_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);
-  code = measure(call, loaded, &render, &error);
+  if (a->vtp && a->vtp_view == SCREE_VIEW_CONTACTS && scree_run_is_frame(loaded)) {
+    cli_refuse(&error, SCREE_UNSUPPORTED, call->inputs[0],
+               "a frame holds no contacts; a checkpoint does");
+    code = cli_fail(&error);
+  } else {
+    code = measure(call, loaded, &render, &error);
+  }
   scree_run_free(loaded);
   return code;
 }

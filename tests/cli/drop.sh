@@ -12,6 +12,8 @@ run drop sphere:40mm=3 -w 30mm -o no
 run drop sphere:40mm=3 sample:box-12 -o out --resolution 0.02mm 2>&1 | sed -n 2p
 run drop none=5.stl -o no
 ls
+run drop sphere:40mm=3 --depth 30mm -o no 2>&1 | sed -n 2p
+run drop sphere:40mm=3 --width 0mm -o no 2>&1 | sed -n 2p
 # numbers may differ in their last digits between compilers: only their form is compared
 shape() { sed 's/[0-9][0-9.]*\(e[-+][0-9]*\)*/N/g; s/-N/N/g; s/  */ /g'; }
 drop() {

@@ -53,6 +53,9 @@ run repose $small --spheres box.off | grep -v cost | head -3 | rest
 "$SCREE" pile whole/last.scree >measured || echo failed
 tail -n +2 text | grep -v "cost\|look at" | diff - measured && echo the same measurement
 run pile whole/last.scree --band-low 0.9
+run pile whole/last.scree --vtp contacts.vtp --view contacts
+run pile whole/last.scree --vtp contacts.txt
+run pile whole/last.scree --json --csv - 2>&1 | sed -n 2p
 run pile box.off
 run pile nothing.scree
 "$SCREE" pile whole/frame-0001.scree --csv series.csv --vtp frame.vtp >/dev/null || echo failed
