@@ -323,10 +323,18 @@ scree_status scree_output_check(const char *path, bool overwrite, scree_error *e
   return status;
 }
 
+/* Of an errno; of 0, where an earlier write that failed left only the stream's mark, what is
+ * likely.
+ */
+static const char *reason_to_tell(int reason) {
+  return reason ? strerror(reason) : "the disk is full, or a limit is reached";
+}
+
 scree_status scree_output_commit(scree_output *output, scree_error *error) {
   if (!output->path) {
+    errno = 0;
     if (fflush(output->stream) == 0 && !ferror(output->stream)) return SCREE_OK;
-    return scree_fail(error, SCREE_IO, "standard output: cannot write: %s", strerror(errno));
+    return scree_fail(error, SCREE_IO, "standard output: cannot write: %s", reason_to_tell(errno));
   }
   errno = 0;
   bool direct = !output->temporary_path;
@@ -343,9 +351,9 @@ scree_status scree_output_commit(scree_output *output, scree_error *error) {
     reason = errno;
   }
   scree_status status = SCREE_OK;
-  if (!written) /* an earlier write that failed left only the stream's mark */
-    status = scree_fail(error, SCREE_IO, "%s: cannot write: %s", output->path,
-                        reason ? strerror(reason) : "the disk is full, or a limit is reached");
+  if (!written)
+    status =
+        scree_fail(error, SCREE_IO, "%s: cannot write: %s", output->path, reason_to_tell(reason));
   scree_output_discard(output);
   return status;
 }

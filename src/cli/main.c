@@ -150,7 +150,6 @@ int main(int argc, char **argv) {
   give_back_large_blocks();
   fill_standard_streams();
   int result = act(argc, argv);
-  if (result != 0 || (fflush(stdout) == 0 && !ferror(stdout))) return result;
-  perror("scree: cannot write to standard output");
-  return 1;
+  if (result != 0) return result;
+  return cli_finish_printing() ? 0 : 1;
 }

@@ -89,6 +89,24 @@ scree_status cli_check_page_output(const cli_call *call, const char *path, bool 
   return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a page must end in .html");
 }
 
+/* ---- what is printed ---- */
+
+static int
+    printing_failure; /* errno of the first flush that failed: the stream keeps a mark only */
+
+void cli_flush(void) {
+  if (fflush(stdout) != 0 && !printing_failure) printing_failure = errno;
+}
+
+bool cli_finish_printing(void) {
+  cli_flush();
+  if (!printing_failure && !ferror(stdout)) return true;
+  fprintf(stderr, "scree: cannot write to standard output: %s\n",
+          printing_failure ? strerror(printing_failure)
+                           : "the disk is full, or a limit is reached");
+  return false;
+}
+
 /* ---- what a run leaves in its folder ---- */
 
 /* Whether the file is called so; of a # in the name, any digits. */

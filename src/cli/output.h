@@ -41,6 +41,12 @@ scree_status cli_check_run_output(const cli_call *call, const char *folder,
 scree_status cli_clear_run_output(const cli_call *call, const char *folder,
                                   const cli_run_files *files, scree_error *error);
 
+/* Writes out what was printed so far. */
+void cli_flush(void);
+/* Likewise, at the end of the call; false after telling stderr why not all of it could be written.
+ */
+bool cli_finish_printing(void);
+
 /* scree_folder_create for a verb's output; the folders made are remembered. */
 scree_status cli_make_folder(const char *path, scree_error *error);
 /* Takes away those that are still empty, the last made first: a call that fails before it has

@@ -1,5 +1,6 @@
 /* scree drop: pour shapes into a container, watch them come to rest. */
 #include "cli/drop.h"
+#include "cli/output.h"
 #include "cli/terminal.h"
 
 #include <math.h>
@@ -162,7 +163,7 @@ static void say_pour(const drop_run *run) {
     printf("%zu particle%s into a cylinder of %.4g mm\n", count, cli_plural(count), 1e3 * o.width);
   printf("time step %.4g us, %g steps per quarter period of the fastest contact\n",
          1e6 * scree_world_time_step(scree_pour_world(run->pour), NULL), o.world.steps_per_contact);
-  fflush(stdout);
+  cli_flush();
 }
 
 /* ---- the run ---- */
@@ -290,7 +291,7 @@ static scree_status tell(drop_run *run, const char *stopped, double seconds, scr
   }
   cli_terminal_end();
   fputs(text, stdout);
-  fflush(stdout);
+  cli_flush();
   print_costs(run, seconds);
   scree_status status = drop_write_report(run, stopped, text, error);
   free(text);

@@ -1,5 +1,6 @@
 /* scree measure: sizes, mass properties and topology of scans. */
 #include "cli/input.h"
+#include "cli/output.h"
 #include "cli/terminal.h"
 
 #include <math.h>
@@ -232,7 +233,7 @@ static int run(const cli_call *call) {
     if (!arguments->json && !arguments->csv) {
       if (count) putchar('\n');
       print_entry(&entries[count], arguments->source.unit);
-      fflush(stdout);
+      cli_flush();
     }
     if (!call->quiet) warn(&entries[count]);
     count++;

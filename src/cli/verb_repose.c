@@ -470,7 +470,7 @@ static scree_status run_level(repose *r, size_t level, bool alone) {
     if (o.folder[0])
       printf("  look at           %s/report.html; result.json and series.csv lie in %s\n",
              a->output, o.folder);
-    fflush(stdout);
+    cli_flush();
   }
   return status;
 }

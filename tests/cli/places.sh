@@ -51,6 +51,8 @@ echo
 # devices and pipes are written to as they are, and stay what they are
 "$SCREE" simplify 'bäll 1.stl' -n 20 -o - -q >/dev/full
 echo "exit code $?"
+"$SCREE" drop sphere:40mm -N 1 -t 0 -o full --no-picture --frames 0 -q >/dev/full
+echo "exit code $?"
 mkfifo pipe.ply
 grep -av ^comment twenty.ply >expected
 grep -av ^comment pipe.ply | cmp expected - &
