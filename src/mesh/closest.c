@@ -43,9 +43,9 @@ static vec3 closest_on_outline(const vec3 corner[3], const double weight[3], vec
 #define NEEDLE 1e-10 /* squared height over squared length, below which an own way is taken */
 
 /* Where this is so, `squared` from the corners. */
-static bool is_needle(double squared, vec3 ab, vec3 ac) {
-  double bb = vec3_norm2(ab), cc = vec3_norm2(ac);
-  return squared <= NEEDLE * (bb > cc ? bb * bb : cc * cc);
+SCREE_LANES_INLINE bool is_needle(double squared, double ab2, double ac2) {
+  double longer2 = ab2 > ac2 ? ab2 : ac2;
+  return squared <= NEEDLE * (longer2 * longer2);
 }
 
 double scree_triangle_closest(const double corners[9], vec3 p, vec3 *point) {
@@ -58,7 +58,7 @@ double scree_triangle_closest(const double corners[9], vec3 p, vec3 *point) {
   const double weight[3] = {squared - v - w, v, w};
   bool above = squared > 0 && weight[0] >= 0 && v >= 0 && w >= 0;
   vec3 inside = above ? vec3_mad(vec3_mad(corner[0], ab, v / squared), ac, w / squared) : corner[0];
-  if (is_needle(squared, ab, ac))
+  if (is_needle(squared, vec3_norm2(ab), vec3_norm2(ac)))
     *point = closest_on_needle(corner, p, inside);
   else
     *point = above ? inside : closest_on_outline(corner, weight, p);
@@ -86,6 +86,21 @@ typedef struct lane_triangle {
   vec3 a, b, c, ab, bc, ca, n;
   double n2, ab2, bc2, ca2;
 } lane_triangle;
+
+SCREE_LANES_INLINE lane_triangle triangle_of(vec3 a, vec3 b, vec3 c) {
+  lane_triangle t = {.a = a,
+                     .b = b,
+                     .c = c,
+                     .ab = vec3_sub(b, a),
+                     .bc = vec3_sub(c, b),
+                     .ca = vec3_sub(a, c),
+                     .n = vec3_triangle_normal(a, b, c)};
+  t.n2 = vec3_norm2(t.n);
+  t.ab2 = vec3_norm2(t.ab);
+  t.bc2 = vec3_norm2(t.bc);
+  t.ca2 = vec3_norm2(t.ca);
+  return t;
+}
 
 /* The point of a segment, at the share given where that lies between its ends. */
 SCREE_LANES_INLINE vec3 on_segment(vec3 from, vec3 side, vec3 to, double along, double length2,
@@ -140,19 +155,16 @@ SCREE_LANES_INLINE void set_lane(double (*axes)[SCREE_EIGHT], int lane, vec3 x) 
 /* What the corners tell. */
 SCREE_LANES static void eight_lanes(scree_eight *restrict e) {
   for (int i = 0; i < SCREE_EIGHT; i++) {
-    vec3 a = lane_of(e->at[0], i), b = lane_of(e->at[1], i), c = lane_of(e->at[2], i);
-    vec3 ab = vec3_sub(b, a), bc = vec3_sub(c, b), ca = vec3_sub(a, c);
-    vec3 n = vec3_cross(ab, vec3_sub(c, a));
-    double ab2 = vec3_norm2(ab), ca2 = vec3_norm2(ca), longer2 = choose(ab2 > ca2, ab2, ca2);
-    set_lane(e->side[0], i, ab);
-    set_lane(e->side[1], i, bc);
-    set_lane(e->side[2], i, ca);
-    set_lane(e->n, i, n);
-    e->length2[0][i] = ab2;
-    e->length2[1][i] = vec3_norm2(bc);
-    e->length2[2][i] = ca2;
-    e->n2[i] = vec3_norm2(n);
-    e->needle[i] = e->n2[i] <= NEEDLE * (longer2 * longer2);
+    lane_triangle t = triangle_of(lane_of(e->at[0], i), lane_of(e->at[1], i), lane_of(e->at[2], i));
+    set_lane(e->side[0], i, t.ab);
+    set_lane(e->side[1], i, t.bc);
+    set_lane(e->side[2], i, t.ca);
+    set_lane(e->n, i, t.n);
+    e->length2[0][i] = t.ab2;
+    e->length2[1][i] = t.bc2;
+    e->length2[2][i] = t.ca2;
+    e->n2[i] = t.n2;
+    e->needle[i] = is_needle(t.n2, t.ab2, t.ca2);
   }
 }
 
@@ -204,18 +216,8 @@ void scree_eights_closest(const scree_eight *eights, size_t eight_count, vec3 p,
   }
 }
 
-SCREE_LANES static void points_lanes(vec3 a, vec3 b, vec3 c, scree_points *q, int count) {
-  lane_triangle t = {.a = a,
-                     .b = b,
-                     .c = c,
-                     .ab = vec3_sub(b, a),
-                     .bc = vec3_sub(c, b),
-                     .ca = vec3_sub(a, c),
-                     .n = vec3_triangle_normal(a, b, c)};
-  t.n2 = vec3_norm2(t.n);
-  t.ab2 = vec3_norm2(t.ab);
-  t.bc2 = vec3_norm2(t.bc);
-  t.ca2 = vec3_norm2(t.ca);
+SCREE_LANES static void points_lanes(const lane_triangle *of, scree_points *q, int count) {
+  const lane_triangle t = *of; /* that q cannot be part of */
   for (int begin = 0; begin < count; begin += SCREE_EIGHT)
     for (int i = begin; i < begin + SCREE_EIGHT; i++) {
       vec3 p = {q->at[0][i], q->at[1][i], q->at[2][i]};
@@ -227,9 +229,8 @@ SCREE_LANES static void points_lanes(vec3 a, vec3 b, vec3 c, scree_points *q, in
 }
 
 void scree_points_closest(const double corners[9], scree_points *q) {
-  vec3 a = vec3_load(corners), b = vec3_load(corners + 3), c = vec3_load(corners + 6);
-  vec3 ab = vec3_sub(b, a), ac = vec3_sub(c, a);
-  if (is_needle(vec3_norm2(vec3_cross(ab, ac)), ab, ac)) {
+  lane_triangle t = triangle_of(vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6));
+  if (is_needle(t.n2, t.ab2, t.ca2)) {
     for (int i = 0; i < q->count; i++) {
       vec3 found;
       q->distance2[i] =
@@ -243,5 +244,5 @@ void scree_points_closest(const double corners[9], scree_points *q) {
   int width = (q->count + SCREE_EIGHT - 1) / SCREE_EIGHT * SCREE_EIGHT;
   for (int k = 0; k < 3; k++)
     for (int i = q->count; i < width; i++) q->at[k][i] = q->at[k][0];
-  points_lanes(a, b, c, q, width);
+  points_lanes(&t, q, width);
 }
