@@ -259,7 +259,9 @@ static void plan(scree_pour *pour) {
 static scree_status copy_texts(scree_pour *pour, const scree_pour_shape *shapes,
                                scree_error *error) {
   pour->texts = scree_alloc_zero(2 * pour->shape_count, sizeof *pour->texts);
-  if (!pour->texts) return scree_fail_memory(error, pour->shape_count, "the shapes' names");
+  if (!pour->texts)
+    return scree_fail_memory(error, 2 * pour->shape_count * sizeof *pour->texts,
+                             "the shapes' names");
   for (size_t i = 0; i < 2 * pour->shape_count; i++) {
     const char *text = i % 2 ? shapes[i / 2].source : shapes[i / 2].name;
     if (!text) continue;
