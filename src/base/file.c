@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* for O_TMPFILE */
 #include "base/file.h"
 
 #include "base/parallel.h"
@@ -11,7 +12,7 @@
 #include <unistd.h>
 #include <xxhash.h>
 
-enum { STREAM_START_BYTES = 1 << 20, TEMPORARY_NAMES = 1000 };
+enum { STREAM_START_BYTES = 1 << 20, TEMPORARY_NAMES = 1000, TAIL_BYTES = 32 };
 
 /* What a stream may hold where no limit was given: one that never ends must not take the machine's
  * memory with it. A buffer that doubles, and what is made of it, take several times as much. */
@@ -240,18 +241,82 @@ static size_t room_beside(const char *path, size_t more) {
   return most;
 }
 
+static size_t temporary_bytes(const char *path) {
+  return strlen(path) + TAIL_BYTES;
+}
+
+/* The name of the attempt-th temporary file beside path. */
+static void name_beside(const char *path, int attempt, char *name, size_t size) {
+  char tail[TAIL_BYTES];
+  int more = snprintf(tail, sizeof tail, ".%ld-%d.part", (long)getpid(), attempt);
+  snprintf(name, size, "%.*s%s", (int)room_beside(path, (size_t)more), path, tail);
+}
+
 /* A new file beside path under a name that nobody else has: another machine that shares the folder
  * may have a process of the same number, and a killed one may have left its file. */
 static int create_beside(const char *path, char *name, size_t size) {
   int fd = -1;
   for (int attempt = 0; attempt < TEMPORARY_NAMES; attempt++) {
-    char tail[32];
-    int more = snprintf(tail, sizeof tail, ".%ld-%d.part", (long)getpid(), attempt);
-    snprintf(name, size, "%.*s%s", (int)room_beside(path, (size_t)more), path, tail);
+    name_beside(path, attempt, name, size);
     fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (fd >= 0 || errno != EEXIST) break;
   }
   return fd;
+}
+
+#ifdef O_TMPFILE
+static void own_link(int fd, char text[static TAIL_BYTES]) {
+  snprintf(text, TAIL_BYTES, "/proc/self/fd/%d", fd);
+}
+
+/* A file without a name in the folder of path, which is gone with the process however that ends;
+ * -1 where the file system has none, or there is no way to give it a name later. */
+static int create_nameless(const char *path, char *name, size_t size) {
+  const char *slash = strrchr(path, '/');
+  int length = !slash ? 1 : slash == path ? 1 : (int)(slash - path);
+  snprintf(name, size, "%.*s", length, slash ? path : ".");
+  int fd = open(name, O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  char link[TAIL_BYTES];
+  if (fd >= 0) own_link(fd, link);
+  if (fd >= 0 && access(link, F_OK) != 0) {
+    close(fd);
+    fd = -1;
+  }
+  if (fd >= 0) *name = 0;
+  return fd;
+}
+
+/* Gives a nameless file a name beside the target, from which it can replace that. */
+static bool give_name(const scree_output *output) {
+  char link[TAIL_BYTES];
+  own_link(fileno(output->stream), link);
+  for (int attempt = 0; attempt < TEMPORARY_NAMES; attempt++) {
+    name_beside(output->path, attempt, output->temporary_path, temporary_bytes(output->path));
+    if (linkat(AT_FDCWD, link, AT_FDCWD, output->temporary_path, AT_SYMLINK_FOLLOW) == 0)
+      return true;
+    if (errno != EEXIST) break;
+  }
+  int reason = errno;
+  *output->temporary_path = 0;
+  errno = reason;
+  return false;
+}
+#else
+static int create_nameless(const char *path, char *name, size_t size) {
+  (void)path;
+  (void)name;
+  (void)size;
+  return -1;
+}
+static bool give_name(const scree_output *output) {
+  (void)output;
+  return true;
+}
+#endif
+
+static int create_temporary(const char *path, char *name, size_t size) {
+  int fd = create_nameless(path, name, size);
+  return fd >= 0 ? fd : create_beside(path, name, size);
 }
 
 /* A file may be replaced by whoever may write to its folder; one that nobody may write to is left
@@ -284,7 +349,7 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
     return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
   if (exists && !direct && is_protected(path, &info))
     return scree_fail(error, SCREE_IO, "%s: is write-protected; not replaced", path);
-  size_t size = strlen(path) + 32;
+  size_t size = temporary_bytes(path);
   scree_output opened = {NULL, scree_strdup(path), direct ? NULL : scree_alloc(size, 1)};
   int fd = -1;
   scree_status status = SCREE_OK;
@@ -292,7 +357,7 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
     status = scree_fail_memory(error, size, "a file name");
   else
     fd = direct ? open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY)
-                : create_beside(path, opened.temporary_path, size);
+                : create_temporary(path, opened.temporary_path, size);
   opened.stream = fd >= 0 ? fdopen(fd, "wb") : NULL;
   if (status == SCREE_OK && !opened.stream)
     status = scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
@@ -302,7 +367,7 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
   }
   if (fd >= 0) {
     close(fd);
-    if (!direct) unlink(opened.temporary_path);
+    if (!direct && *opened.temporary_path) unlink(opened.temporary_path);
   }
   scree_free(opened.path);
   scree_free(opened.temporary_path);
@@ -339,7 +404,8 @@ scree_status scree_output_commit(scree_output *output, scree_error *error) {
   errno = 0;
   bool direct = !output->temporary_path;
   bool written = fflush(output->stream) == 0 && !ferror(output->stream) &&
-                 (direct || fsync(fileno(output->stream)) == 0);
+                 (direct || fsync(fileno(output->stream)) == 0) &&
+                 (direct || *output->temporary_path || give_name(output));
   int reason = errno;
   if (fclose(output->stream) != 0 && written) {
     written = false;
@@ -360,7 +426,7 @@ scree_status scree_output_commit(scree_output *output, scree_error *error) {
 
 void scree_output_discard(scree_output *output) {
   if (output->path && output->stream) fclose(output->stream);
-  if (output->temporary_path) unlink(output->temporary_path);
+  if (output->temporary_path && *output->temporary_path) unlink(output->temporary_path);
   scree_free(output->path);
   scree_free(output->temporary_path);
   *output = (scree_output){0};

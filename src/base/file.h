@@ -1,6 +1,7 @@
-/* Whole files in, whole files out. Nothing half-written: output goes to a temporary name beside the
- * target and is renamed when complete and on disk. A target that is no file (a device, a pipe) is
- * written to as it stands. */
+/* Whole files in, whole files out. Nothing half-written: output goes to a file without a name in
+ * the target's folder (where a file system has none, to a temporary name there), which takes the
+ * target's name when complete and on disk. A target that is no file (a device, a pipe) is written
+ * to as it stands. */
 #ifndef SCREE_BASE_FILE_H
 #define SCREE_BASE_FILE_H
 
@@ -45,7 +46,7 @@ void scree_stream_close(scree_stream *stream);
 typedef struct scree_output {
   FILE *stream;
   char *path;           /* NULL: the stream is stdout */
-  char *temporary_path; /* NULL: path is no file and written to directly */
+  char *temporary_path; /* NULL: path is no file and written to directly; "": has no name yet */
 } scree_output;
 
 /* Opens path for writing ("-" is stdout). Without overwrite an existing file is refused with

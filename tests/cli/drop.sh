@@ -70,7 +70,6 @@ for how in INT KILL; do
   wait $child 2>/dev/null
   [ $how = INT ] && again="" || again=$pour
   "$SCREE" drop $again --resume -o cut --time 0.3 --still 0 --frames 0.05 --no-picture -q >/dev/null || echo failed
-  rm -f cut/*.part # half a checkpoint
   for file in whole/*; do
     case $file in
     # these know the command, or where the pour was stopped

@@ -1,4 +1,4 @@
-#define _DEFAULT_SOURCE
+#define _GNU_SOURCE /* for O_TMPFILE */
 #include "base/alloc.h"
 #include "base/arena.h"
 #include "base/array.h"
@@ -9,8 +9,12 @@
 #include "support/check.h"
 #include "support/folder.h"
 
+#include <dirent.h>
+#include <fcntl.h>
+#include <signal.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 static void memory_is_aligned_and_counted(void **state) {
@@ -182,6 +186,58 @@ static void files_are_whole_or_absent(void **state) {
   assert_int_equal(scree_file_read(in_folder("a"), 0, &bytes, &count, &error), SCREE_IO);
 }
 
+#ifdef O_TMPFILE
+static size_t count_files(const char *folder) {
+  size_t count = 0;
+  DIR *entries = opendir(folder);
+  assert_non_null(entries);
+  for (struct dirent *entry; (entry = readdir(entries));) count += entry->d_name[0] != '.';
+  closedir(entries);
+  return count;
+}
+
+/* What a killed process was writing is gone with it. */
+static void a_killed_process_leaves_no_half_of_a_file(void **state) {
+  (void)state;
+  scree_error error;
+  scree_output output;
+  char folder[400], path[400]; /* in_folder has few */
+  snprintf(folder, sizeof folder, "%s", in_folder("left"));
+  snprintf(path, sizeof path, "%s", in_folder("left/file"));
+  CHECK_OK(scree_folder_create(folder, &error), error);
+  int probe = open(folder, O_WRONLY | O_TMPFILE, 0666);
+  if (probe < 0) skip(); /* this file system has no files without names */
+  close(probe);
+  pid_t child = fork();
+  if (child == 0) {
+    if (scree_output_open(path, false, &output, &error) != SCREE_OK) _exit(1);
+    fputs("half", output.stream);
+    fflush(output.stream);
+    raise(SIGKILL);
+  }
+  int code;
+  assert_int_equal(waitpid(child, &code, 0), child);
+  assert_true(WIFSIGNALED(code));
+  assert_int_equal(count_files(folder), 0);
+
+  umask(027);
+  CHECK_OK(scree_output_open(path, false, &output, &error), error);
+  assert_int_equal(count_files(folder), 0);
+  fputs("whole", output.stream);
+  CHECK_OK(scree_output_commit(&output, &error), error);
+  assert_int_equal(count_files(folder), 1);
+  struct stat info;
+  assert_int_equal(stat(path, &info), 0);
+  assert_int_equal(info.st_mode & 0777, 0640);
+  umask(022);
+  CHECK_OK(scree_output_open(path, true, &output, &error), error);
+  assert_int_equal(unlink(path), 0);
+  assert_int_equal(rmdir(folder), 0);
+  assert_int_equal(scree_output_commit(&output, &error), SCREE_IO);
+  assert_non_null(strstr(error.message, "cannot write: No such file or directory"));
+}
+#endif
+
 static void a_discarded_tail_can_be_used_again(void **state) {
   (void)state;
   const size_t size = (size_t)16 << 20, kept = (size_t)5 << 20;
@@ -261,6 +317,9 @@ int main(void) {
       cmocka_unit_test(random_numbers_have_the_moments_they_claim),
       cmocka_unit_test(a_shuffle_gives_every_order_alike),
       cmocka_unit_test(files_are_whole_or_absent),
+#ifdef O_TMPFILE
+      cmocka_unit_test(a_killed_process_leaves_no_half_of_a_file),
+#endif
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
