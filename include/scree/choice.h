@@ -185,10 +185,11 @@ typedef struct scree_choice_job {
   size_t count;
   scree_simplify_options simplify;
   scree_choice_options options;
-  /* Gives the mesh of object `index`, which is freed for it; may be called twice for an object
-   * where curves need more than 2 GiB together. */
+  /* Gives the mesh of object `index`, which is freed for it, and in *scale, which is 1 before, what
+   * it is multiplied by once it is decimated (scree_curve_build_scaled); may be called twice for an
+   * object where curves need more than 2 GiB together. */
   scree_status (*load)(void *context, size_t index, const scree_progress *progress,
-                       scree_mesh *mesh, scree_error *error);
+                       scree_mesh *mesh, double *scale, scree_error *error);
   /* Gets each object's curve once all choices are made, to rebuild levels from; NULL: not wanted.
    */
   scree_status (*done)(void *context, size_t index, const scree_curve *curve,

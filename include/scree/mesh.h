@@ -20,6 +20,8 @@ typedef struct scree_mesh {
 SCREE_API void scree_mesh_free(scree_mesh *mesh);
 SCREE_API scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy,
                                        scree_error *error);
+/* Multiplies all coordinates. */
+SCREE_API void scree_mesh_scale(scree_mesh *mesh, double factor);
 
 /* ---- Reading and writing ---- */
 
@@ -43,6 +45,7 @@ typedef struct scree_scan {
   scree_checksum checksum; /* of the file's bytes */
   size_t byte_count;
   double unit_m;           /* metres per unit of the file: of the options, or what it states */
+  bool states_unit;        /* the file does */
   char format[32];         /* for example "STL binary", "3MF, inch" (with the unit it states) */
   size_t facet_count;      /* triangles in the file; a polygon counts as its triangles */
   size_t degenerate_count; /* of these, dropped: fewer than three different corners */

@@ -64,6 +64,17 @@ SCREE_API scree_status scree_curve_build(const scree_mesh *mesh,
                                          scree_error *error);
 SCREE_API void scree_curve_free(scree_curve *curve);
 
+/* Builds the curve of a mesh as it is, then multiplies the mesh's coordinates and all that the
+ * curve tells by `scale`; options->error_limit is of what comes out. Decimated after it was scaled,
+ * rounding would give other levels where costs are equal: scans read as if in millimetres and
+ * scaled here, as the program does, have the same levels in every unit. Where it fails the mesh
+ * stays as it is; fails as scree_curve_build, and with SCREE_BAD_ARGUMENT where the scale is not
+ * above 0 and finite. */
+SCREE_API scree_status scree_curve_build_scaled(scree_mesh *mesh, double scale,
+                                                const scree_simplify_options *options,
+                                                const scree_progress *progress, scree_curve **curve,
+                                                scree_error *error);
+
 /* What is known of the run as a whole. */
 typedef struct scree_curve_facts {
   scree_method method;

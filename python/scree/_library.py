@@ -50,7 +50,7 @@ class scree_read_options(Structure):
 
 class scree_scan(Structure):
     _fields_ = [("mesh", scree_mesh), ("checksum", scree_checksum), ("byte_count", c_size_t), ("unit_m", c_double),
-                ("format", c_char * 32), ("facet_count", c_size_t), ("degenerate_count", c_size_t), ("solid_count", c_size_t),
+                ("states_unit", c_bool), ("format", c_char * 32), ("facet_count", c_size_t), ("degenerate_count", c_size_t), ("solid_count", c_size_t),
                 ("ignored_byte_count", c_size_t)]
 
 

@@ -78,10 +78,11 @@ static void let_go(object *o) {
 static scree_status load_and_decimate(object *o) {
   const scree_choice_job *job = o->batch->job;
   scree_progress progress = enter_stage(o, 0, LOAD_PART);
-  scree_status status = job->load(job->context, o->index, &progress, &o->mesh, &o->error);
+  double scale = 1;
+  scree_status status = job->load(job->context, o->index, &progress, &o->mesh, &scale, &o->error);
   if (status != SCREE_OK) return status;
   progress = enter_stage(o, LOAD_PART, 1 - LOAD_PART - choice_part(&job->options));
-  return scree_curve_build(&o->mesh, &job->simplify, &progress, &o->curve, &o->error);
+  return scree_curve_build_scaled(&o->mesh, scale, &job->simplify, &progress, &o->curve, &o->error);
 }
 
 static scree_status choose_object(object *o) {

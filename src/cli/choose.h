@@ -21,6 +21,7 @@ typedef struct choose_object {
   const char *word;
   char name[CHOOSE_NAME_BYTES]; /* unique among the objects */
   char format[32];
+  double unit_m;                /* of the file: as asked for, or as it states */
   char note[CHOOSE_NOTE_BYTES]; /* what was repaired or is wrong; "" for nothing */
   char mesh_path[CHOOSE_PATH_BYTES];
   scree_checksum checksum;

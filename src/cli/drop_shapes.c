@@ -89,7 +89,7 @@ static void describe(drop_shape *shape, const scree_scan *scan) {
     snprintf(shape->source + used, size - used, ", %zu triangles", scan->mesh.triangle_count);
 }
 
-static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mesh,
+static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mesh, double *scale,
                          scree_error *error) {
   const drop_arguments *a = run->arguments;
   cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
@@ -99,7 +99,7 @@ static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mes
   scree_repair_report report;
   scree_scan scan;
   scree_status status = cli_load_closed(shape->name, &input, a->no_repair, run->call->progress,
-                                        &scan, &report, error);
+                                        &scan, scale, &report, error);
   if (status != SCREE_OK) return status;
   describe(shape, &scan);
   *mesh = scan.mesh;
@@ -125,16 +125,25 @@ static scree_status pick_level(const drop_run *run, const scree_curve *curve,
   return SCREE_OK;
 }
 
-static scree_status decimate(const drop_run *run, scree_mesh *mesh, scree_error *error) {
-  const drop_arguments *a = run->arguments;
+static bool is_small(const drop_arguments *a, const scree_mesh *mesh) {
   bool asked = a->rp > 0 || a->triangles;
-  if (!asked && mesh->triangle_count <= LARGE_SCAN) return SCREE_OK;
-  if (a->triangles && mesh->triangle_count <= a->triangles) return SCREE_OK;
+  if (!asked && mesh->triangle_count <= LARGE_SCAN) return true;
+  return a->triangles && mesh->triangle_count <= a->triangles;
+}
+
+/* Into metres as well. */
+static scree_status decimate(const drop_run *run, scree_mesh *mesh, double scale,
+                             scree_error *error) {
+  if (is_small(run->arguments, mesh)) {
+    scree_mesh_scale(mesh, scale);
+    return SCREE_OK;
+  }
   scree_simplify_options options = scree_default_simplify_options();
   scree_curve *curve = NULL;
   scree_mesh level_mesh;
   size_t level;
-  scree_status status = scree_curve_build(mesh, &options, run->call->progress, &curve, error);
+  scree_status status =
+      scree_curve_build_scaled(mesh, scale, &options, run->call->progress, &curve, error);
   if (status == SCREE_OK) status = pick_level(run, curve, mesh, &level, error);
   if (status == SCREE_OK) status = scree_curve_mesh(curve, level, &level_mesh, error);
   scree_curve_free(curve);
@@ -171,10 +180,11 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
   if (cli_is_clump(shape->name))
     return scree_particle_clump_read(shape->name, run->arguments->unit, &shape->particle, error);
   scree_mesh mesh;
-  scree_status status = load(run, shape, &mesh, error);
+  double scale;
+  scree_status status = load(run, shape, &mesh, &scale, error);
   if (status != SCREE_OK) return status;
   shape->source_triangles = mesh.triangle_count;
-  status = decimate(run, &mesh, error);
+  status = decimate(run, &mesh, scale, error);
   if (status == SCREE_OK) status = scree_mesh_canonicalize(&mesh, error);
   if (status == SCREE_OK) status = scree_particle_from_mesh(&mesh, NULL, &shape->particle, error);
   scree_mesh_free(&mesh);

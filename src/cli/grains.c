@@ -88,17 +88,19 @@ static double smallest_rp(const cli_grain_options *o) {
   return least;
 }
 
-static scree_status make_levels(const maker *m, size_t shape, const char *word,
-                                const scree_scan *scan) {
+static scree_status make_levels(const maker *m, size_t shape, const char *word, scree_scan *scan,
+                                double scale) {
   const cli_grain_options *o = m->options;
-  const scree_mesh *mesh = &scan->mesh;
+  scree_mesh *mesh = &scan->mesh;
   scree_curve *curve = NULL;
   scree_status status = SCREE_OK;
   if (smallest_rp(o) < 1) {
     scree_simplify_options simplify = scree_default_simplify_options();
     simplify.method = (scree_method)o->method;
     simplify.stop_count = scree_choice_target(smallest_rp(o), mesh->triangle_count);
-    status = scree_curve_build(mesh, &simplify, m->progress, &curve, m->error);
+    status = scree_curve_build_scaled(mesh, scale, &simplify, m->progress, &curve, m->error);
+  } else {
+    scree_mesh_scale(mesh, scale);
   }
   for (size_t level = 0; status == SCREE_OK && level < m->grains->level_count; level++) {
     scree_grain_options grain = scree_default_grain_options();
@@ -126,10 +128,11 @@ static scree_status make_levels(const maker *m, size_t shape, const char *word,
 static scree_status make_from_scan(const maker *m, size_t shape, const char *word) {
   cli_input_options input = cli_source_options(&m->options->source);
   scree_scan scan;
-  scree_status status =
-      cli_load_closed(word, &input, m->options->no_repair, m->progress, &scan, NULL, m->error);
+  double scale;
+  scree_status status = cli_load_closed(word, &input, m->options->no_repair, m->progress, &scan,
+                                        &scale, NULL, m->error);
   if (status != SCREE_OK) return status;
-  status = make_levels(m, shape, word, &scan);
+  status = make_levels(m, shape, word, &scan, scale);
   scree_scan_free(&scan);
   return status == SCREE_OK ? status : cli_name_in_error(word, m->error);
 }

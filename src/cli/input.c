@@ -25,7 +25,7 @@ static void hint_sample(const char *word, scree_error *error) {
 scree_status cli_load(const char *word, const cli_input_options *options,
                       const scree_progress *progress, scree_scan *scan, scree_error *error) {
   const char *name;
-  scree_scan made = {.unit_m = 1, .format = "sample", .solid_count = 1};
+  scree_scan made = {.unit_m = 1, .states_unit = true, .format = "sample", .solid_count = 1};
   scree_status status;
   if (!cli_is_sample(word, &name)) {
     status = scree_scan_read(word, &options->read, scan, error);
@@ -50,8 +50,9 @@ cli_input_options cli_source_options(const cli_source *source) {
   return input;
 }
 
-double cli_source_unit(const char *word, const cli_source *source) {
-  return cli_is_sample(word, NULL) ? 1 : source->unit;
+void cli_print_unit(FILE *stream, const char *word, const scree_scan *scan) {
+  const char *unit = cli_unit_name(scan->unit_m);
+  if (!cli_is_sample(word, NULL) && *unit != '?') fprintf(stream, ", coordinates in %s", unit);
 }
 
 void cli_short_name(const char *word, char *buffer, size_t size) {

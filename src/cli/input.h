@@ -35,9 +35,6 @@ typedef struct cli_source {
 
 cli_input_options cli_source_options(const cli_source *source);
 
-/* Metres per unit that a file without one of its own is read in: 1 for a sample. */
-double cli_source_unit(const char *word, const cli_source *source);
-
 /* Whether the word names a built-in sample; then *name (may be NULL) is its name. */
 bool cli_is_sample(const char *word, const char **name);
 
@@ -45,6 +42,9 @@ bool cli_is_sample(const char *word, const char **name);
  * scree_scan_free. */
 scree_status cli_load(const char *word, const cli_input_options *options,
                       const scree_progress *progress, scree_scan *scan, scree_error *error);
+
+/* ", coordinates in mm" of a file; nothing of a sample, or where the unit has no name. */
+void cli_print_unit(FILE *stream, const char *word, const scree_scan *scan);
 
 /* The word without folders and ending, or the sample's name, into buffer; "stdin" for "-". */
 void cli_short_name(const char *word, char *buffer, size_t size);

@@ -17,12 +17,25 @@ void cli_hint_at_holes(const scree_repair_report *report, const scree_repair_opt
              options->hole_edges);
 }
 
+/* Always in the same unit, which is the default one. */
+static scree_status load_unscaled(const char *word, const cli_input_options *options,
+                                  const scree_progress *progress, scree_scan *scan, double *scale,
+                                  scree_error *error) {
+  cli_input_options used = *options;
+  used.read.unit_m = scree_default_read_options().unit_m;
+  scree_status status = cli_load(word, &used, progress, scan, error);
+  if (status != SCREE_OK) return status;
+  *scale = scan->states_unit ? 1 : options->read.unit_m / used.read.unit_m;
+  if (!scan->states_unit) scan->unit_m = options->read.unit_m;
+  return SCREE_OK;
+}
+
 scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
-                             const scree_progress *progress, scree_scan *scan,
+                             const scree_progress *progress, scree_scan *scan, double *scale,
                              scree_repair_report *report, scree_error *error) {
   scree_repair_options repair = scree_default_repair_options();
   scree_repair_report made = {.before.usable = true};
-  scree_status status = cli_load(word, options, progress, scan, error);
+  scree_status status = load_unscaled(word, options, progress, scan, scale, error);
   if (status == SCREE_OK && !cli_is_sample(word, NULL)) {
     status = scree_mesh_prepare(&scan->mesh, no_repair ? NULL : &repair, progress, &scan->mesh,
                                 &made, error);
@@ -34,14 +47,15 @@ scree_status cli_load_closed(const char *word, const cli_input_options *options,
 }
 
 scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
-                                 const cli_soundness *how, scree_scan *scan, scree_error *error) {
+                                 const cli_soundness *how, scree_scan *scan, double *scale,
+                                 scree_error *error) {
   cli_input_options input = cli_source_options(source);
   scree_repair_report report;
   char note[1024];
   const char *word = call->inputs[0];
-  if (how->unchecked) return cli_load(word, &input, call->progress, scan, error);
+  if (how->unchecked) return load_unscaled(word, &input, call->progress, scan, scale, error);
   scree_status status =
-      cli_load_closed(word, &input, how->no_repair, call->progress, scan, &report, error);
+      cli_load_closed(word, &input, how->no_repair, call->progress, scan, scale, &report, error);
   if (status != SCREE_OK) return status;
   cli_repair_text(&report, note, sizeof note);
   cli_terminal_end();

@@ -4,10 +4,12 @@
 
 #include "cli/input.h"
 
-/* cli_load, and what is no closed surface is repaired, or with no_repair refused; samples are made
- * closed and not looked at. Errors name the word. report may be NULL. */
+/* cli_load of what is to be decimated: in metres only once it is multiplied by *scale, as
+ * scree_curve_build_scaled does, because levels must not hang on the unit. What is no closed
+ * surface is repaired, or with no_repair refused; samples are made closed and not looked at. Errors
+ * name the word. report may be NULL. */
 scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
-                             const scree_progress *progress, scree_scan *scan,
+                             const scree_progress *progress, scree_scan *scan, double *scale,
                              scree_repair_report *report, scree_error *error);
 
 /* How a scan comes to be what a decimation may assume, as a member of a verb's struct. */
@@ -29,9 +31,11 @@ typedef struct cli_soundness {
         0, 0, NULL                                                                                 \
   }
 
-/* The call's first input as the options ask; repairs are said on stderr, unless it is quiet. */
+/* The call's first input as the options ask, as cli_load_closed gives it; repairs are said on
+ * stderr, unless it is quiet. */
 scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
-                                 const cli_soundness *how, scree_scan *scan, scree_error *error);
+                                 const cli_soundness *how, scree_scan *scan, double *scale,
+                                 scree_error *error);
 
 /* Where the repair failed for holes that it may not fill: what would, at the end of the error. */
 void cli_hint_at_holes(const scree_repair_report *report, const scree_repair_options *options,

@@ -48,8 +48,7 @@ static void print_one(const cli_call *call, const char *path, const checked *c) 
   printf("%s: %s\n", path, c->check.verdict);
   if (call->quiet) return;
   printf("%10s", c->scan.format);
-  const char *unit = cli_unit_name(c->scan.unit_m);
-  if (!cli_is_sample(path, NULL) && *unit != '?') printf(", coordinates in %s", unit);
+  cli_print_unit(stdout, path, &c->scan);
   putchar('\n');
   cli_print_left_out(stdout, c->scan.degenerate_count);
   cli_print_check(stdout, &c->check);

@@ -120,16 +120,17 @@ static bool list_objects(choose_run *run) {
 }
 
 static scree_status load(void *context, size_t index, const scree_progress *progress,
-                         scree_mesh *mesh, scree_error *error) {
+                         scree_mesh *mesh, double *scale, scree_error *error) {
   const choose_run *run = context;
   choose_object *object = &run->objects[index];
   cli_input_options input = cli_source_options(&run->arguments->source);
   scree_repair_report report;
   scree_scan scan;
   scree_status status = cli_load_closed(object->word, &input, run->arguments->no_repair, progress,
-                                        &scan, &report, error);
+                                        &scan, scale, &report, error);
   if (status != SCREE_OK) return status;
   memcpy(object->format, scan.format, sizeof object->format);
+  object->unit_m = scan.unit_m;
   object->checksum = scan.checksum;
   *mesh = scan.mesh;
   cli_repair_text(&report, object->note, sizeof object->note);
@@ -179,7 +180,7 @@ static scree_status write_output(choose_run *run, scree_error *error) {
                                       o->word,
                                       o->format,
                                       o->checksum,
-                                      cli_source_unit(o->word, &a->source),
+                                      o->unit_m,
                                       is_sample,
                                       a->source.resolution,
                                       a->source.noise,

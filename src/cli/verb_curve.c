@@ -159,7 +159,7 @@ static scree_status write_json(table *t, const scree_scan *scan) {
   scree_curve_entry entry = {.file = t->call->inputs[0],
                              .format = scan->format,
                              .checksum = scan->checksum,
-                             .unit_m = cli_source_unit(t->call->inputs[0], &t->arguments->source),
+                             .unit_m = scan->unit_m,
                              .facts = scree_curve_get_facts(t->curve),
                              .area = t->first.area,
                              .volume = t->first.volume,
@@ -169,13 +169,14 @@ static scree_status write_json(table *t, const scree_scan *scan) {
   return scree_curve_json_write(&entry, t->call->command_line, "-", false, &t->error);
 }
 
-static void print_facts(const table *t) {
+static void print_facts(const table *t, const scree_scan *scan) {
   scree_curve_facts facts = scree_curve_get_facts(t->curve);
   if (t->call->quiet || t->arguments->csv || t->arguments->json) return;
-  printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles; coordinates in %s\n",
-         t->call->inputs[0], facts.triangle_count, facts.shell_count, cli_plural(facts.shell_count),
-         scree_method_name(facts.method), facts.floor_count,
-         cli_unit_name(t->arguments->source.unit));
+  printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles", t->call->inputs[0],
+         facts.triangle_count, facts.shell_count, cli_plural(facts.shell_count),
+         scree_method_name(facts.method), facts.floor_count);
+  cli_print_unit(stdout, t->call->inputs[0], scan);
+  putchar('\n');
   if (!facts.closed)
     printf("not closed: %zu boundary edge%s; V and eps_v mean nothing\n", facts.boundary_edge_count,
            cli_plural(facts.boundary_edge_count));
@@ -188,6 +189,7 @@ static int run(const cli_call *call) {
   table t = {.call = call, .arguments = call->options};
   scree_simplify_options settings = scree_default_simplify_options();
   scree_scan scan = {0};
+  double scale;
   if (t.arguments->from > t.arguments->to)
     return cli_misuse(call->verb, "--from %g is above --to %g", t.arguments->from, t.arguments->to);
   if (t.arguments->csv && t.arguments->json)
@@ -199,12 +201,13 @@ static int run(const cli_call *call) {
   t.share = cli_share_of(call->progress,
                          t.arguments->distance ? "decimating and measuring" : "decimating");
   loading.progress = cli_share_enter(&t.share, 0, LOAD_PART);
-  scree_status status =
-      cli_load_for_levels(&loading, &t.arguments->source, &t.arguments->soundness, &scan, &t.error);
+  scree_status status = cli_load_for_levels(&loading, &t.arguments->source, &t.arguments->soundness,
+                                            &scan, &scale, &t.error);
   double part = t.arguments->distance ? CURVE_PART : 1 - LOAD_PART;
   if (status == SCREE_OK)
-    status = scree_curve_build(&scan.mesh, &settings, cli_share_enter(&t.share, LOAD_PART, part),
-                               &t.curve, &t.error);
+    status =
+        scree_curve_build_scaled(&scan.mesh, scale, &settings,
+                                 cli_share_enter(&t.share, LOAD_PART, part), &t.curve, &t.error);
   if (status == SCREE_OK && t.arguments->distance) {
     status = scree_surface_create(&scan.mesh, &t.scan, &t.error);
     if (status == SCREE_OK) status = scree_replay_start(t.curve, &t.replay, &t.error);
@@ -212,7 +215,7 @@ static int run(const cli_call *call) {
   if (status == SCREE_OK) {
     scree_curve_level(t.curve, 0, &t.first);
     cli_terminal_end();
-    print_facts(&t);
+    print_facts(&t, &scan);
     print_header(&t);
     status = make_rows(&t);
   }

@@ -116,12 +116,12 @@ static scree_status read_one(picture *p, size_t i, const char *word, const cli_s
 }
 
 /* Levels of the first surface become the surfaces behind it. */
-static scree_status make_levels(picture *p, const double *rp, const char *word,
+static scree_status make_levels(picture *p, const double *rp, const char *word, double scale,
                                 const scree_progress *progress, scree_error *error) {
   scree_curve *curve = NULL;
   scree_simplify_options simplify = scree_default_simplify_options();
-  const scree_mesh *scan = &p->scans[0].mesh;
-  scree_status status = scree_curve_build(scan, &simplify, progress, &curve, error);
+  scree_mesh *scan = &p->scans[0].mesh;
+  scree_status status = scree_curve_build_scaled(scan, scale, &simplify, progress, &curve, error);
   for (size_t i = 1; i < p->count && status == SCREE_OK; i++) {
     size_t target = scree_choice_target(rp[i - 1], scan->triangle_count);
     status = scree_curve_mesh(curve, scree_curve_find(curve, target), &p->scans[i].mesh, error);
@@ -228,9 +228,11 @@ static scree_status make_picture(const cli_call *call, const double *rp, size_t 
   scree_status status = SCREE_OK;
   if (level_count) { /* then the input is one */
     const cli_soundness soundness = {0};
-    status = cli_load_for_levels(call, &a->source, &soundness, &p->scans[0], error);
+    double scale;
+    status = cli_load_for_levels(call, &a->source, &soundness, &p->scans[0], &scale, error);
     if (status == SCREE_OK) put_cell(p, 0, call->inputs[0], 0);
-    if (status == SCREE_OK) status = make_levels(p, rp, call->inputs[0], call->progress, error);
+    if (status == SCREE_OK)
+      status = make_levels(p, rp, call->inputs[0], scale, call->progress, error);
   }
   for (size_t i = 0; status == SCREE_OK && !level_count && i < call->input_count; i++)
     status = read_one(p, i, call->inputs[i], &a->source, call->progress, error);

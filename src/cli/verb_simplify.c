@@ -140,16 +140,19 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
   scree_simplify_options simplify_options = scree_default_simplify_options();
   scree_scan scan = {0};
   scree_curve *curve = NULL;
+  double scale;
   scree_status status = check_output(call, error);
   if (status == SCREE_OK)
-    status = cli_load_for_levels(call, &arguments->source, &arguments->soundness, &scan, error);
+    status =
+        cli_load_for_levels(call, &arguments->source, &arguments->soundness, &scan, &scale, error);
   if (status != SCREE_OK) return status;
   size_t target = arguments->count;
   if (arguments->rp > 0) target = scree_choice_target(arguments->rp, scan.mesh.triangle_count);
   simplify_options.method = (scree_method)arguments->method;
   simplify_options.stop_count = target;
   simplify_options.error_limit = arguments->error;
-  status = scree_curve_build(&scan.mesh, &simplify_options, call->progress, &curve, error);
+  status =
+      scree_curve_build_scaled(&scan.mesh, scale, &simplify_options, call->progress, &curve, error);
   if (status == SCREE_OK) {
     size_t index = scree_curve_find(curve, target);
     scree_level level;

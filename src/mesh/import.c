@@ -63,6 +63,7 @@ scree_status scree_import_take(scree_reading *r, scree_import_format format, con
     snprintf(r->scan->format, sizeof r->scan->format, "%s", scree_import_kinds[format].name);
   } else {
     r->unit_m = a.unit_m;
+    r->scan->states_unit = true;
     snprintf(r->scan->format, sizeof r->scan->format, "%s, %s", scree_import_kinds[format].name,
              a.unit_name);
   }

@@ -13,6 +13,10 @@ void scree_mesh_free(scree_mesh *mesh) {
   *mesh = (scree_mesh){0};
 }
 
+void scree_mesh_scale(scree_mesh *mesh, double factor) {
+  for (size_t i = 0; i < 3 * mesh->vertex_count; i++) mesh->positions[i] *= factor;
+}
+
 scree_status scree_mesh_copy(const scree_mesh *mesh, scree_mesh *copy, scree_error *error) {
   scree_mesh made = {.vertex_count = mesh->vertex_count, .triangle_count = mesh->triangle_count};
   SCREE_ALLOC_OR(made.positions, 3 * mesh->vertex_count, error, out_of_memory);

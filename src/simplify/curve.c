@@ -10,6 +10,7 @@
 #include "base/sum.h"
 #include "simplify/patch.h"
 
+#include <math.h>
 #include <string.h>
 
 struct scree_curve {
@@ -339,6 +340,46 @@ finished:
   else
     scree_curve_free(made);
   return status;
+}
+
+static void scale_places(vec3 *position, size_t count, double scale) {
+  for (size_t i = 0; i < count; i++) position[i] = vec3_scale(position[i], scale);
+}
+
+static void scale_curve(scree_curve *curve, double scale) {
+  scree_record *r = &curve->record;
+  double square = scale * scale, cube = square * scale;
+  curve->area *= square;
+  curve->volume *= cube;
+  scale_places(r->position, r->count, scale);
+  for (size_t i = 0; i < r->count; i++) {
+    r->area[i] *= square;
+    r->volume[i] *= cube;
+    r->error[i] = (float)((double)r->error[i] * scale);
+  }
+  for (size_t i = 0; i < r->moves.count; i++) scale_places(&r->moves.items[i].position, 1, scale);
+  for (size_t i = 0; i < r->whole.count; i++) {
+    scree_whole_level *level = &r->whole.items[i];
+    scale_places(level->position, level->vertex_count, scale);
+    level->area *= square;
+    level->volume *= cube;
+    level->error = (float)((double)level->error * scale);
+  }
+}
+
+scree_status scree_curve_build_scaled(scree_mesh *mesh, double scale,
+                                      const scree_simplify_options *options,
+                                      const scree_progress *progress, scree_curve **curve,
+                                      scree_error *error) {
+  scree_simplify_options used = options ? *options : scree_default_simplify_options();
+  if (!(scale > 0 && isfinite(scale)))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the scale %g is not above 0 and finite", scale);
+  used.error_limit /= scale;
+  scree_status status = scree_curve_build(mesh, &used, progress, curve, error);
+  if (status != SCREE_OK || scale == 1) return status;
+  scree_mesh_scale(mesh, scale);
+  scale_curve(*curve, scale);
+  return SCREE_OK;
 }
 
 scree_curve_facts scree_curve_get_facts(const scree_curve *curve) {

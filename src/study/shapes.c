@@ -156,15 +156,16 @@ static scree_status read_sample(const scree_study *study, const scree_study_shap
   return scree_sample_make(shape->word + 7, &study->sample, progress, mesh, error);
 }
 
+/* In metres only once it is multiplied by *scale, as scree_curve_build_scaled does. */
 static scree_status read_scan(const scree_study *study, const scree_study_shape *shape,
-                              const scree_progress *progress, scree_mesh *mesh, scree_checksum *sum,
-                              scree_error *error) {
+                              const scree_progress *progress, scree_mesh *mesh, double *scale,
+                              scree_checksum *sum, scree_error *error) {
   scree_read_options read = scree_default_read_options();
   scree_repair_options repair = scree_default_repair_options();
   scree_scan scan;
-  read.unit_m = study->unit_m;
   scree_status status = scree_scan_read(shape->path, &read, &scan, error);
   if (status != SCREE_OK) return status;
+  *scale = scan.states_unit ? 1 : study->unit_m / read.unit_m;
   *sum = scan.checksum;
   status = scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, NULL, error);
   if (status != SCREE_OK)
@@ -227,14 +228,14 @@ static scree_status write_facts(const scree_study *study, const scree_study_shap
   return scree_output_commit(&output, error);
 }
 
-static scree_status decimate(const scree_study *study, size_t index, const scree_mesh *mesh,
+static scree_status decimate(const scree_study *study, size_t index, scree_mesh *mesh, double scale,
                              const scree_progress *progress, scree_study_shape *made,
                              scree_error *error) {
   scree_simplify_options simplify = scree_default_simplify_options();
   scree_curve *curve;
   scree_choice choice = {0};
   simplify.method = study->method;
-  scree_status status = scree_curve_build(mesh, &simplify, progress, &curve, error);
+  scree_status status = scree_curve_build_scaled(mesh, scale, &simplify, progress, &curve, error);
   if (status != SCREE_OK) return status;
   status = scree_choose(curve, mesh, NULL, progress, &choice, error);
   if (status == SCREE_OK) {
@@ -261,7 +262,8 @@ static scree_status make_shape(const scree_study *study, size_t index,
   scree_study_shape made = study->shapes[index];
   scree_checksum sum;
   scree_mesh mesh;
-  scree_status status = made.path ? read_scan(study, &made, progress, &mesh, &sum, error)
+  double scale = 1;
+  scree_status status = made.path ? read_scan(study, &made, progress, &mesh, &scale, &sum, error)
                                   : read_sample(study, &made, progress, &mesh, &sum, error);
   if (status != SCREE_OK) {
     if (error && status != SCREE_CANCELLED && !strstr(error->message, made.word)) {
@@ -274,7 +276,7 @@ static scree_status make_shape(const scree_study *study, size_t index,
     status = scree_fail(error, SCREE_BAD_ARGUMENT,
                         "%s: has changed since the study began: use another folder", made.word);
   made.checksum = sum;
-  if (status == SCREE_OK) status = decimate(study, index, &mesh, progress, &made, error);
+  if (status == SCREE_OK) status = decimate(study, index, &mesh, scale, progress, &made, error);
   scree_mesh_free(&mesh);
   return status == SCREE_OK ? write_facts(study, &made, error) : status;
 }

@@ -19,6 +19,17 @@ cp out/icosphere-4.stl again.stl
 run choose --paper --grid 1e-4:1:3 sample:icosphere-3 2>&1 | sed -n 2p
 box 3 2 1 >box.off
 "$SCREE" choose box.off --unit cm | shape
+# levels do not hang on the unit, though of such a ball many edges cost the same
+"$SCREE" sample icosphere-4 -o ball.stl -q >/dev/null
+for unit in mm inch m km; do
+  "$SCREE" choose ball.stl --unit $unit --csv >$unit.csv
+  awk -F, 'NR > 1 { printf "%s %s %.12f %.12f %s\n", $3, $4, $7, $8, $12 }' $unit.csv >$unit.txt
+  "$SCREE" simplify ball.stl --unit $unit -n 100 -q -o $unit.stl # whose header tells the unit
+  tail -c +81 $unit.stl >$unit.bin
+  cmp mm.txt $unit.txt && cmp mm.bin $unit.bin && wc -l <$unit.txt
+done
+awk -F, 'NR == 2 { print $5 * 1e6 }' mm.csv
+awk -F, 'NR == 2 { print $5 / .0254 ^ 2 }' inch.csv
 # names of many kinds keep to their column; control characters, which a table or a file name cannot bear, do not stay
 "$SCREE" sample icosphere-2 -o plain.stl -q >/dev/null
 lines=$(printf 'two\nlines.stl')

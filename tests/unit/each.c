@@ -17,7 +17,7 @@ typedef struct watch {
 } watch;
 
 static scree_status load(void *context, size_t index, const scree_progress *progress,
-                         scree_mesh *mesh, scree_error *error) {
+                         scree_mesh *mesh, double *scale, scree_error *error) {
   const watch *w = context;
   (void)progress;
   if (w->fails[index]) {
@@ -25,10 +25,8 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
     snprintf(error->message, sizeof error->message, "object %zu", index);
     return w->how;
   }
-  scree_status status = scree_mesh_copy(&w->ball, mesh, error);
-  for (size_t i = 0; status == SCREE_OK && i < 3 * mesh->vertex_count; i++)
-    mesh->positions[i] *= (double)(1 + index);
-  return status;
+  *scale = (double)(1 + index);
+  return scree_mesh_copy(&w->ball, mesh, error);
 }
 
 static scree_status done(void *context, size_t index, const scree_curve *curve,
@@ -97,6 +95,11 @@ static void what_fails_is_left_out(void **state) {
   scree_set_choice set;
   scree_error error;
   CHECK_OK(scree_choose_each(&job, NULL, whole, &set, &error), error);
+  for (int i = 1; i < OBJECTS; i++) { /* each is scaled by its own factor */
+    double square = (1 + i) * (1 + i);
+    assert_true(fabs(whole[i].area - square * whole[0].area) < 1e-12 * whole[i].area);
+    assert_int_equal(whole[i].robust.triangle_count, whole[0].robust.triangle_count);
+  }
   scree_set_choice_free(&set);
   for (int threads = 1; threads <= 3; threads += 2) {
     scree_set_threads(threads);

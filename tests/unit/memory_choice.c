@@ -106,8 +106,8 @@ static scree_status choose_of_two(void *context, scree_error *error) {
 }
 
 static scree_status load_ball(void *context, size_t index, const scree_progress *progress,
-                              scree_mesh *mesh, scree_error *error) {
-  (void)index, (void)progress;
+                              scree_mesh *mesh, double *scale, scree_error *error) {
+  (void)index, (void)progress, (void)scale;
   return scree_mesh_copy(context, mesh, error);
 }
 

@@ -239,6 +239,55 @@ static void moving_scaling_turning_change_rounding_only(void **state) {
   }
 }
 
+/* A curve that is scaled afterwards is the other one times the factor, to the bit where that is a
+ * power of two; coarse levels, which are told as a whole, and moves included. */
+static void a_scaled_curve_is_the_same_curve(void **state) {
+  (void)state;
+  static const double factor = 1024;
+  for (int m = 0; m < 2; m++) {
+    scree_mesh mesh = bumpy_sphere(4, 4), scaled = bumpy_sphere(4, 4);
+    scree_simplify_options options = {.method = methods[m]};
+    scree_curve *a = build(&mesh, methods[m]), *b = NULL;
+    scree_error error;
+    assert_int_equal(scree_curve_build_scaled(&scaled, 0, &options, NULL, &b, &error),
+                     SCREE_BAD_ARGUMENT);
+    CHECK_OK(scree_curve_build_scaled(&scaled, factor, &options, NULL, &b, &error), error);
+    for (size_t i = 0; i < 3 * mesh.vertex_count; i++)
+      assert_true(scaled.positions[i] == factor * mesh.positions[i]);
+    assert_int_equal(scree_curve_level_count(a), scree_curve_level_count(b));
+    for (size_t i = 0; i < scree_curve_level_count(a); i += i < 4700 ? 47 : 1) {
+      scree_level level_a, level_b;
+      scree_mesh mesh_a, mesh_b;
+      scree_curve_level(a, i, &level_a);
+      scree_curve_level(b, i, &level_b);
+      assert_int_equal(level_a.triangle_count, level_b.triangle_count);
+      assert_true(level_b.area == level_a.area * factor * factor);
+      assert_true(level_b.volume == level_a.volume * factor * factor * factor);
+      assert_true(level_b.quadric_error == level_a.quadric_error * factor);
+      CHECK_OK(scree_curve_mesh(a, i, &mesh_a, &error), error);
+      CHECK_OK(scree_curve_mesh(b, i, &mesh_b, &error), error);
+      assert_int_equal(mesh_a.vertex_count, mesh_b.vertex_count);
+      for (size_t k = 0; k < 3 * mesh_a.vertex_count; k++)
+        assert_true(mesh_b.positions[k] == factor * mesh_a.positions[k]);
+      scree_mesh_free(&mesh_a);
+      scree_mesh_free(&mesh_b);
+    }
+    scree_curve_free(b);
+    scree_mesh_free(&scaled);
+    scaled = bumpy_sphere(4, 4);
+    options.error_limit = factor * 1e-4; /* of what comes out */
+    CHECK_OK(scree_curve_build_scaled(&scaled, factor, &options, NULL, &b, &error), error);
+    scree_level last;
+    scree_curve_level(b, scree_curve_level_count(b) - 1, &last);
+    assert_true(last.quadric_error <= options.error_limit && last.triangle_count > 8 &&
+                last.triangle_count < mesh.triangle_count);
+    scree_curve_free(a);
+    scree_curve_free(b);
+    scree_mesh_free(&mesh);
+    scree_mesh_free(&scaled);
+  }
+}
+
 /* The same surface with its vertices and triangles in another order. */
 static scree_mesh renumbered(const scree_mesh *mesh, scree_rng *rng) {
   scree_mesh other = shape_make(mesh->vertex_count, mesh->triangle_count);
@@ -504,6 +553,7 @@ int main(void) {
       cmocka_unit_test(batches_keep_every_promise),
       cmocka_unit_test(shells_stay_in_and_beside_each_other),
       cmocka_unit_test(moving_scaling_turning_change_rounding_only),
+      cmocka_unit_test(a_scaled_curve_is_the_same_curve),
       cmocka_unit_test(numbers_change_rounding_only),
       cmocka_unit_test(any_mesh_is_taken),
       cmocka_unit_test(a_shared_vertex_stays_one),
