@@ -83,6 +83,12 @@ static void make_printable(char *text) {
     if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
 }
 
+const char *cli_printable(const char *text, char buffer[CLI_PRINTABLE_BYTES]) {
+  snprintf(buffer, CLI_PRINTABLE_BYTES, "%s", text);
+  make_printable(buffer);
+  return buffer;
+}
+
 scree_status cli_refuse(scree_error *error, scree_status status, const char *path,
                         const char *reason) {
   error->status = status;
@@ -110,10 +116,12 @@ scree_status cli_name_in_error(const char *word, scree_error *error) {
 
 int cli_misuse(const cli_verb *verb, const char *format, ...) {
   va_list arguments;
-  fprintf(stderr, "scree%s%s: ", verb ? " " : "", verb ? verb->name : "");
+  char message[CLI_PRINTABLE_BYTES];
   va_start(arguments, format);
-  vfprintf(stderr, format, arguments);
+  vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
+  make_printable(message); /* the words of the call come in as they are */
+  fprintf(stderr, "scree%s%s: %s", verb ? " " : "", verb ? verb->name : "", message);
   if (verb)
     fprintf(stderr, "\nusage: scree %s [options] %s\n`scree help %s` lists the options.\n",
             verb->name, verb->inputs, verb->name);

@@ -82,6 +82,11 @@ void cli_print_help(FILE *stream, const cli_verb *verb);
 void cli_print_man(FILE *stream);
 void cli_print_completion(FILE *stream);
 
+enum { CLI_PRINTABLE_BYTES = 4200 };
+/* A copy of a name as text may show it, each character that a terminal obeys as a ?, as errors of
+ * the library have it. For people: JSON and CSV keep names as they are. */
+const char *cli_printable(const char *text, char buffer[CLI_PRINTABLE_BYTES]);
+
 /* Prints "scree: message" on stderr; returns the exit code 1. */
 int cli_fail(const scree_error *error);
 /* "path: reason" as an error of that status, which it returns. */

@@ -85,9 +85,10 @@ static void print_table(FILE *out, const choose_run *run) {
 }
 
 void choose_print_failed(FILE *out, const choose_run *run) {
+  char shown[CLI_PRINTABLE_BYTES];
   fputs("Without ", out);
   for (size_t i = 0; i < run->failed_count; i++)
-    fprintf(out, "%s%s", i ? ", " : "", run->objects[run->count + i].word);
+    fprintf(out, "%s%s", i ? ", " : "", cli_printable(run->objects[run->count + i].word, shown));
   if (run->count > 1)
     fprintf(out, ", which could not be used: the set's choice is of the other %zu.\n", run->count);
   else
@@ -262,11 +263,12 @@ void choose_print(FILE *out, const choose_run *run) {
   print_floor(out, run);
   print_notes(out, run);
   const char *folder = run->arguments->output;
+  char shown[CLI_PRINTABLE_BYTES];
   if (folder)
     fprintf(out,
             "In %s: report.html, %s, figure.png, choice.json\n"
             "*.mass.json: mass, centre, inertia at %g kg/m3. Placed otherwise: scree export\n",
-            folder, run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl",
-            run->arguments->density);
+            cli_printable(folder, shown),
+            run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl", run->arguments->density);
   print_other_errors(out, run);
 }

@@ -98,13 +98,15 @@ static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mes
   input.sample.noise = a->noise;
   scree_repair_report report;
   scree_scan scan;
+  char shown[CLI_PRINTABLE_BYTES];
   scree_status status = cli_load_closed(shape->name, &input, a->no_repair, run->call->progress,
                                         &scan, scale, &report, error);
   if (status != SCREE_OK) return status;
   describe(shape, &scan);
   *mesh = scan.mesh;
   if (!report.before.usable && !run->call->quiet)
-    fprintf(stderr, "%s: repaired: it was %s\n", shape->name, report.before.verdict);
+    fprintf(stderr, "%s: repaired: it was %s\n", cli_printable(shape->name, shown),
+            report.before.verdict);
   return SCREE_OK;
 }
 
@@ -155,9 +157,10 @@ static scree_status decimate(const drop_run *run, scree_mesh *mesh, double scale
 
 static void say_shape(const drop_run *run, const drop_shape *shape) {
   scree_particle_measures m;
+  char shown[CLI_PRINTABLE_BYTES];
   scree_particle_measure(shape->particle, &m);
   if (run->call->quiet) return;
-  cli_print_cell(stdout, shape->name, 24, SIZE_MAX);
+  cli_print_cell(stdout, cli_printable(shape->name, shown), 24, SIZE_MAX);
   if (shape->diameter > 0) {
     printf(" %6zu  sphere of %.4g mm\n", shape->count, 1e3 * shape->diameter);
     return;

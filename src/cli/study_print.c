@@ -16,9 +16,11 @@ static void print_seconds(FILE *stream, double seconds) {
 
 static void print_counts(FILE *stream, const scree_study_result *r) {
   const scree_study_counts *c = &r->counts;
-  fprintf(stream, "%s: %zu point%s x %zu replicate%s, %zu runs: %zu done", r->name, r->point_count,
-          cli_plural(r->point_count), r->replicate_count, cli_plural(r->replicate_count),
-          r->point_count * r->replicate_count, c->done);
+  char shown[CLI_PRINTABLE_BYTES];
+  fprintf(stream, "%s: %zu point%s x %zu replicate%s, %zu runs: %zu done",
+          cli_printable(r->name, shown), r->point_count, cli_plural(r->point_count),
+          r->replicate_count, cli_plural(r->replicate_count), r->point_count * r->replicate_count,
+          c->done);
   if (c->failed) fprintf(stream, ", %zu failed", c->failed);
   if (c->running) fprintf(stream, ", %zu running", c->running);
   if (c->leased) fprintf(stream, ", %zu leased", c->leased);

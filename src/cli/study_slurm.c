@@ -53,22 +53,23 @@ static int submit(const char *script) {
     const char *fixed[3];
     char *words[3];
   } line = {{"sbatch", script}};
+  char shown[CLI_PRINTABLE_BYTES];
   pid_t pid;
   int status;
   int code = posix_spawnp(&pid, "sbatch", NULL, NULL, line.words, environ);
   if (code == 0 && waitpid(pid, &status, 0) == pid && WIFEXITED(status) && WEXITSTATUS(status) == 0)
     return 0;
-  fprintf(stderr, "scree: %s could not be submitted: %s\n", script,
+  fprintf(stderr, "scree: %s could not be submitted: %s\n", cli_printable(script, shown),
           code ? strerror(code) : "sbatch failed");
   return 1;
 }
 
 int study_run_slurm(const cli_call *call, const scree_study *study, const char *folder) {
   const study_arguments *a = call->options;
-  char file[PATH_MAX], full[PATH_MAX], script[PATH_MAX + 16];
+  char file[PATH_MAX], full[PATH_MAX], script[PATH_MAX + 16], shown[CLI_PRINTABLE_BYTES];
   size_t runs = scree_study_run_count(study), tasks = a->tasks ? a->tasks : runs;
   if (!realpath(call->inputs[0], file) || !realpath(folder, full)) {
-    fprintf(stderr, "scree: %s: %s\n", folder, strerror(errno));
+    fprintf(stderr, "scree: %s: %s\n", cli_printable(folder, shown), strerror(errno));
     return 1;
   }
   snprintf(script, sizeof script, "%s/study.sbatch", full);
@@ -78,7 +79,7 @@ int study_run_slurm(const cli_call *call, const scree_study *study, const char *
   FILE *stream = open_memstream(&text, &size);
   if (stream) write_script(stream, call, file, full, tasks < runs ? tasks : runs);
   if (!stream || fclose(stream) != 0) {
-    fprintf(stderr, "scree: %s: out of memory\n", script);
+    fprintf(stderr, "scree: %s: out of memory\n", cli_printable(script, shown));
     free(text);
     return 1;
   }
@@ -86,6 +87,6 @@ int study_run_slurm(const cli_call *call, const scree_study *study, const char *
   free(text);
   if (status != SCREE_OK) return cli_fail(&error);
   if (!a->dry_run) return submit(script);
-  printf("%s: not submitted; `sbatch %s` does\n", script, script);
+  printf("%s: not submitted; `sbatch %s` does\n", cli_printable(script, shown), shown);
   return 0;
 }

@@ -51,7 +51,7 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
                                  scree_error *error) {
   cli_input_options input = cli_source_options(source);
   scree_repair_report report;
-  char note[1024];
+  char note[1024], shown[CLI_PRINTABLE_BYTES];
   const char *word = call->inputs[0];
   if (how->unchecked) return load_unscaled(word, &input, call->progress, scan, scale, error);
   scree_status status =
@@ -59,7 +59,7 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
   if (status != SCREE_OK) return status;
   cli_repair_text(&report, note, sizeof note);
   cli_terminal_end();
-  if (note[0] && !call->quiet) fprintf(stderr, "%s: %s\n", word, note);
+  if (note[0] && !call->quiet) fprintf(stderr, "%s: %s\n", cli_printable(word, shown), note);
   return SCREE_OK;
 }
 

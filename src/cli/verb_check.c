@@ -45,7 +45,8 @@ static scree_status check_one(const cli_call *call, const char *path, checked *c
 }
 
 static void print_one(const cli_call *call, const char *path, const checked *c) {
-  printf("%s: %s\n", path, c->check.verdict);
+  char shown[CLI_PRINTABLE_BYTES];
+  printf("%s: %s\n", cli_printable(path, shown), c->check.verdict);
   if (call->quiet) return;
   printf("%10s", c->scan.format);
   cli_print_unit(stdout, path, &c->scan);

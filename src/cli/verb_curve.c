@@ -171,10 +171,11 @@ static scree_status write_json(table *t, const scree_scan *scan) {
 
 static void print_facts(const table *t, const scree_scan *scan) {
   scree_curve_facts facts = scree_curve_get_facts(t->curve);
+  char shown[CLI_PRINTABLE_BYTES];
   if (t->call->quiet || t->arguments->csv || t->arguments->json) return;
-  printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles", t->call->inputs[0],
-         facts.triangle_count, facts.shell_count, cli_plural(facts.shell_count),
-         scree_method_name(facts.method), facts.floor_count);
+  printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles",
+         cli_printable(t->call->inputs[0], shown), facts.triangle_count, facts.shell_count,
+         cli_plural(facts.shell_count), scree_method_name(facts.method), facts.floor_count);
   cli_print_unit(stdout, t->call->inputs[0], scan);
   putchar('\n');
   if (!facts.closed)

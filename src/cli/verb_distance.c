@@ -42,7 +42,9 @@ static scree_status read_two(const cli_call *call, scree_scan scans[2], scree_er
 }
 
 static void print_way(const char *from, const char *to, const scree_deviation *d, double unit) {
-  printf("%s to %s (%zu point%s)\n", from, to, d->sample_count, cli_plural(d->sample_count));
+  char shown[2][CLI_PRINTABLE_BYTES];
+  printf("%s to %s (%zu point%s)\n", cli_printable(from, shown[0]), cli_printable(to, shown[1]),
+         d->sample_count, cli_plural(d->sample_count));
   printf("  mean %.6g, rms %.6g, largest %.6g (no point beyond %.6g), at %.6g, %.6g, %.6g\n",
          d->mean / unit, d->rms / unit, d->maximum / unit, d->maximum_bound / unit, d->at[0] / unit,
          d->at[1] / unit, d->at[2] / unit);

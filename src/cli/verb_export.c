@@ -103,16 +103,17 @@ static double millimetres(double length) {
 
 static void say(const cli_call *call, const scree_exported *p, const char *json_path) {
   const export_arguments *a = call->options;
+  char shown[CLI_PRINTABLE_BYTES];
   cli_terminal_end();
   if (call->quiet) return;
   printf("%s: %.6g kg at %g kg/m3, centre of mass %.4f, %.4f, %.4f mm, principal moments %.4g, "
          "%.4g, %.4g kg m2, coordinates in %s\n",
-         a->output, p->mass, a->density, millimetres(p->measures.centroid[0]),
+         cli_printable(a->output, shown), p->mass, a->density, millimetres(p->measures.centroid[0]),
          millimetres(p->measures.centroid[1]), millimetres(p->measures.centroid[2]),
          a->density * p->measures.principal_moments[0],
          a->density * p->measures.principal_moments[1],
          a->density * p->measures.principal_moments[2], cli_unit_name(export_options(call).unit_m));
-  printf("%s: the same with all digits, and where the mesh was\n", json_path);
+  printf("%s: the same with all digits, and where the mesh was\n", cli_printable(json_path, shown));
 }
 
 static scree_status write_mesh(const cli_call *call, const scree_scan *scan, const char *json_path,

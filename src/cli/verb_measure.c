@@ -127,31 +127,33 @@ static void print_topology(const scree_topology *t) {
 
 static void warn(const scree_measure_entry *entry) {
   const scree_measures *m = &entry->measures;
+  char shown[CLI_PRINTABLE_BYTES];
+  const char *file = cli_printable(entry->file, shown);
   size_t crowded = entry->topology.non_manifold_edge_count;
   if (!m->has_volume)
     fprintf(stderr,
             "scree: %s: warning: the surface encloses no volume: it has no centroid, moments, "
             "sphericity or convexity\n",
-            entry->file);
+            file);
   else if (!m->closed && entry->topology.closed && entry->topology.oriented)
     fprintf(stderr,
             "scree: %s: warning: %zu non-manifold edge%s, where the facets do not pair up both "
             "ways, so they enclose no volume; volume, centroid, moments and what follows from "
             "them mean little\n",
-            entry->file, crowded, cli_plural(crowded));
+            file, crowded, cli_plural(crowded));
   else if (!m->closed && entry->topology.closed)
     fprintf(stderr,
             "scree: %s: warning: the facets are not wound consistently, so they enclose no volume; "
             "volume, centroid, moments and what follows from them mean little\n",
-            entry->file);
+            file);
   else if (!m->closed)
     fprintf(stderr,
             "scree: %s: warning: the surface is not closed; volume, centroid, moments and what "
             "follows from them are a stand-in, with every hole closed by a cone\n",
-            entry->file);
+            file);
   else if (m->inward)
     fprintf(stderr, "scree: %s: warning: the surface is inside out: its volume is negative\n",
-            entry->file);
+            file);
 }
 
 /* Shells are measured one by one and added up: said where their union has another volume. */
@@ -159,6 +161,8 @@ static scree_status warn_of_shells(const cli_call *call, const scree_mesh *mesh,
                                    const scree_measure_entry *entry, scree_error *error) {
   const double unit = ((const measure_arguments *)call->options)->source.unit;
   double volume = fabs(entry->measures.volume), cube = pow(unit, 3);
+  char shown[CLI_PRINTABLE_BYTES];
+  const char *file = cli_printable(entry->file, shown);
   scree_check check;
   if (call->quiet || !entry->measures.closed || entry->topology.shell_count < 2) return SCREE_OK;
   scree_status status = scree_mesh_check(mesh, NULL, call->progress, &check, error);
@@ -168,12 +172,12 @@ static scree_status warn_of_shells(const cli_call *call, const scree_mesh *mesh,
     fprintf(stderr,
             "scree: %s: warning: it cannot be told how the shells lie in each other; volume, "
             "centroid and moments count each by itself\n",
-            entry->file);
+            file);
   else if (fabs(check.volume - volume) > 1e-9 * volume)
     fprintf(stderr,
             "scree: %s: warning: shells lie in each other or overlap: their union has a volume of "
             "%.9g %s3; volume, centroid and moments count what they share more than once\n",
-            entry->file, check.volume / cube, cli_unit_name(unit));
+            file, check.volume / cube, cli_unit_name(unit));
   return SCREE_OK;
 }
 
@@ -199,7 +203,9 @@ static scree_status measure_file(const cli_call *call, const char *file, scree_m
 }
 
 static void print_entry(const scree_measure_entry *entry, double unit) {
-  printf("%s (%s, lengths in %s)\n", entry->file, entry->format, cli_unit_name(unit));
+  char shown[CLI_PRINTABLE_BYTES];
+  printf("%s (%s, lengths in %s)\n", cli_printable(entry->file, shown), entry->format,
+         cli_unit_name(unit));
   print_topology(&entry->topology);
   print_measures(&entry->measures, unit);
 }

@@ -95,7 +95,8 @@ static scree_status write_result(const cli_call *call, const scree_mesh *mesh, s
 static void print_text(const cli_call *call, const scree_scan *scan,
                        const scree_repair_report *report, bool written) {
   bool sound = report->after.usable;
-  printf("%s: %s\n", call->inputs[0], report->before.verdict);
+  char shown[CLI_PRINTABLE_BYTES];
+  printf("%s: %s\n", cli_printable(call->inputs[0], shown), report->before.verdict);
   cli_print_left_out(stdout, scan->degenerate_count);
   cli_print_repair(stdout, report);
   if (sound && !written) return; /* why not is the error's to say */

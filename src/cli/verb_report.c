@@ -18,13 +18,14 @@ static const cli_option options[] = {
 
 static int run(const cli_call *call) {
   const report_arguments *a = call->options;
+  char shown[CLI_PRINTABLE_BYTES];
   scree_error error;
   if (cli_check_page_output(call, a->output, a->overwrite, &error) != SCREE_OK ||
       scree_page_write(call->inputs, call->input_count, a->output, a->overwrite, &error) !=
           SCREE_OK)
     return cli_fail(&error);
   if (!call->quiet && strcmp(a->output, "-") != 0)
-    printf("%s: open it in any browser; it needs no network\n", a->output);
+    printf("%s: open it in any browser; it needs no network\n", cli_printable(a->output, shown));
   return 0;
 }
 

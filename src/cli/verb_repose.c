@@ -466,10 +466,11 @@ static scree_status run_level(repose *r, size_t level, bool alone) {
   if (status == SCREE_OK) status = write_results(&o, r->runs[level], &r->results[level], &r->error);
   cli_terminal_end();
   if (status == SCREE_OK && !a->json) {
+    char shown[2][CLI_PRINTABLE_BYTES];
     print_result(stdout, &o, r->runs[level], &r->results[level]);
     if (o.folder[0])
       printf("  look at           %s/report.html; result.json and series.csv lie in %s\n",
-             a->output, o.folder);
+             cli_printable(a->output, shown[0]), cli_printable(o.folder, shown[1]));
     cli_flush();
   }
   return status;

@@ -49,6 +49,7 @@ static bool names_file(const char *path) {
 
 static void print_row(FILE *stream, const char *name, const char *path, const scree_mesh *mesh) {
   double area, volume, low[3], high[3];
+  char shown[CLI_PRINTABLE_BYTES];
   if (scree_mesh_area_volume(mesh, &area, &volume, NULL) != SCREE_OK) return;
   for (int a = 0; a < 3; a++) low[a] = high[a] = mesh->positions[a];
   for (size_t i = 3; i < 3 * mesh->vertex_count; i++) {
@@ -58,7 +59,7 @@ static void print_row(FILE *stream, const char *name, const char *path, const sc
   }
   fprintf(stream, "%-10s %9zu  %6.1f x %6.1f x %6.1f  %7.1f  %7.2f  %s\n", name,
           mesh->triangle_count, (high[0] - low[0]) * 1e3, (high[1] - low[1]) * 1e3,
-          (high[2] - low[2]) * 1e3, area * 1e4, volume * 1e6, path);
+          (high[2] - low[2]) * 1e3, area * 1e4, volume * 1e6, cli_printable(path, shown));
 }
 
 static int make_one(const cli_call *call, const char *name, const char *path, bool first) {

@@ -55,6 +55,8 @@ static const simplify_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
 static void say(const cli_call *call, const scree_curve *curve, size_t index) {
   scree_level first, level;
+  char shown[CLI_PRINTABLE_BYTES];
+  const char *word = cli_printable(call->inputs[0], shown);
   scree_curve_facts facts = scree_curve_get_facts(curve);
   scree_curve_level(curve, 0, &first);
   scree_curve_level(curve, index, &level);
@@ -63,17 +65,17 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index) {
   fprintf(stderr,
           "%s: %zu -> %zu triangles (Rp %.3g), method %s, eps_s %.3g, eps_v %.3g, quadric error "
           "%.3g mm, coordinates in %s\n",
-          call->inputs[0], first.triangle_count, level.triangle_count, level.rp,
+          word, first.triangle_count, level.triangle_count, level.rp,
           scree_method_name(facts.method), fabs(level.area - first.area) / first.area,
           first.volume != 0 ? fabs(level.volume - first.volume) / fabs(first.volume) : 0,
           level.quadric_error * 1e3,
           cli_unit_name(((const simplify_arguments *)call->options)->source.unit));
   if (!facts.closed)
-    fprintf(stderr, "%s: not closed: %zu boundary edge%s; the volume means nothing\n",
-            call->inputs[0], facts.boundary_edge_count, cli_plural(facts.boundary_edge_count));
+    fprintf(stderr, "%s: not closed: %zu boundary edge%s; the volume means nothing\n", word,
+            facts.boundary_edge_count, cli_plural(facts.boundary_edge_count));
   if (facts.locked_vertex_count > 0)
-    fprintf(stderr, "%s: non-manifold places: %zu of the vertices stay where they are\n",
-            call->inputs[0], facts.locked_vertex_count);
+    fprintf(stderr, "%s: non-manifold places: %zu of the vertices stay where they are\n", word,
+            facts.locked_vertex_count);
 }
 
 static scree_status write_plain(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
@@ -106,6 +108,7 @@ static scree_status write_with_mass(const cli_call *call, const scree_scan *scan
 static scree_status write_level(const cli_call *call, const scree_scan *scan,
                                 const scree_curve *curve, size_t index, scree_error *error) {
   const simplify_arguments *arguments = call->options;
+  char shown[CLI_PRINTABLE_BYTES];
   scree_mesh mesh = {0};
   scree_status status = scree_curve_mesh(curve, index, &mesh, error);
   if (status == SCREE_OK && !arguments->soundness.unchecked)
@@ -119,7 +122,7 @@ static scree_status write_level(const cli_call *call, const scree_scan *scan,
     fprintf(stderr,
             "%s: an STL holds single precision, which changes the volume by %.2g of it here; .ply, "
             ".obj and .off hold it\n",
-            arguments->output, lost);
+            cli_printable(arguments->output, shown), lost);
   scree_mesh_free(&mesh);
   return status;
 }
@@ -140,6 +143,7 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
   scree_simplify_options simplify_options = scree_default_simplify_options();
   scree_scan scan = {0};
   scree_curve *curve = NULL;
+  char shown[CLI_PRINTABLE_BYTES];
   double scale;
   scree_status status = check_output(call, error);
   if (status == SCREE_OK)
@@ -164,10 +168,11 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
       fprintf(stderr,
               "%s: %zu triangles, not the %zu asked for: no collapse is left within the error of "
               "%g mm\n",
-              call->inputs[0], level.triangle_count, target, arguments->error * 1e3);
+              cli_printable(call->inputs[0], shown), level.triangle_count, target,
+              arguments->error * 1e3);
     else if (above)
       fprintf(stderr, "%s: %zu triangles is the lowest count that could be reached\n",
-              call->inputs[0], level.triangle_count);
+              cli_printable(call->inputs[0], shown), level.triangle_count);
   }
   scree_curve_free(curve);
   scree_scan_free(&scan);

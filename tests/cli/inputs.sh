@@ -59,3 +59,16 @@ escape=$(printf 'no\033[31m.stl')
 "$SCREE" simplify --no-repair -n 4 -o s.ply "$escape"
 cp e "$escape"
 "$SCREE" choose --no-repair "$escape"
+# nor in what else is printed of it; JSON and CSV have the name as it is
+box 1 2 3 >box.off
+cp box.off "$escape"
+for words in check measure 'curve --from 1 --to 1' 'repair -o r.off' 'simplify -n 6 -o six.off' 'drop -N 1 -t 0 -o poured --no-picture --frames 0' \
+  'distance --samples 100 e' 'export box.off -f -o' 'sample box-12 -f -o'; do
+  "$SCREE" $words "$escape" 2>&1 | tr '\033' '!' | grep -o 'no[!?]\[31m.stl' | sed "s/^/${words%% *}: /"
+done
+"$SCREE" choose box.off -o "$escape.d" | tr '\033' '!' | grep -o '^In no.*:'
+"$SCREE" report poured -o "$escape.html" | tr '\033' '!'
+"$SCREE" "$escape" 2>&1 | tr '\033' '!' | head -n 1
+"$SCREE" check --"$escape" 2>&1 | tr '\033' '!' | head -n 1
+"$SCREE" measure "$escape" --csv | tr '\033' '!' | sed -n 's/,.*//; 2p'
+"$SCREE" check "$escape" --json | grep -o '"file": ".*31m.stl'
