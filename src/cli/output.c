@@ -54,39 +54,28 @@ scree_status cli_check_output(const cli_call *call, const char *path, bool overw
   return cli_refuse(error, SCREE_BAD_ARGUMENT, path, reason);
 }
 
-scree_status cli_check_mesh_output(const cli_call *call, const char *path, bool overwrite,
-                                   scree_error *error) {
-  if (scree_file_format_of(path) != SCREE_FORMAT_AUTO)
-    return cli_check_output(call, path, overwrite, error);
-  return cli_refuse(error, SCREE_BAD_ARGUMENT, path,
-                    "the name of a mesh must end in .stl, .ply, .obj, .off or .3mf");
-}
-
 static bool has_ending(const char *path, const char *ending) {
   const char *dot = strrchr(path, '.');
   return dot && !strcasecmp(dot, ending);
 }
 
-scree_status cli_check_picture_output(const cli_call *call, const char *path, bool overwrite,
-                                      scree_error *error) {
-  if (!strcmp(path, "-") || has_ending(path, ".png"))
-    return cli_check_output(call, path, overwrite, error);
-  return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a picture must end in .png");
+static bool says(const char *path, cli_content content) {
+  if (content == CLI_MESH) return scree_file_format_of(path) != SCREE_FORMAT_AUTO;
+  if (!strcmp(path, "-")) return true;
+  if (content == CLI_PAGE) return has_ending(path, ".html") || has_ending(path, ".htm");
+  return has_ending(path, content == CLI_PICTURE ? ".png" : ".vtp");
 }
 
-scree_status cli_check_vtp_output(const cli_call *call, const char *path, bool overwrite,
-                                  scree_error *error) {
-  if (!strcmp(path, "-") || has_ending(path, ".vtp"))
-    return cli_check_output(call, path, overwrite, error);
-  return cli_refuse(error, SCREE_BAD_ARGUMENT, path,
-                    "the name of a ParaView file must end in .vtp");
-}
-
-scree_status cli_check_page_output(const cli_call *call, const char *path, bool overwrite,
-                                   scree_error *error) {
-  if (!strcmp(path, "-") || has_ending(path, ".html") || has_ending(path, ".htm"))
-    return cli_check_output(call, path, overwrite, error);
-  return cli_refuse(error, SCREE_BAD_ARGUMENT, path, "the name of a page must end in .html");
+int cli_check_ending(const cli_verb *verb, const char *path, cli_content content) {
+  static const struct {
+    const char *what, *endings;
+  } contents[] = {[CLI_MESH] = {"mesh", ".stl, .ply, .obj, .off or .3mf"},
+                  [CLI_PICTURE] = {"picture", ".png"},
+                  [CLI_VTP] = {"ParaView file", ".vtp"},
+                  [CLI_PAGE] = {"page", ".html"}};
+  if (says(path, content)) return 0;
+  return cli_misuse(verb, "%s: the name of a %s must end in %s", path, contents[content].what,
+                    contents[content].endings);
 }
 
 /* ---- what is printed ---- */

@@ -10,21 +10,11 @@
 scree_status cli_check_output(const cli_call *call, const char *path, bool overwrite,
                               scree_error *error);
 
-/* cli_check_output of a mesh: its ending must say the format. */
-scree_status cli_check_mesh_output(const cli_call *call, const char *path, bool overwrite,
-                                   scree_error *error);
-
-/* cli_check_output of a picture: it is written as PNG, so it must be called one. */
-scree_status cli_check_picture_output(const cli_call *call, const char *path, bool overwrite,
-                                      scree_error *error);
-
-/* Of a .vtp for ParaView, which must be called so. */
-scree_status cli_check_vtp_output(const cli_call *call, const char *path, bool overwrite,
-                                  scree_error *error);
-
-/* And of a page, which must be called one: it never replaces what it is made of. */
-scree_status cli_check_page_output(const cli_call *call, const char *path, bool overwrite,
-                                   scree_error *error);
+/* What is written, which its name must say by its ending. */
+typedef enum cli_content { CLI_MESH, CLI_PICTURE, CLI_VTP, CLI_PAGE } cli_content;
+/* 0, or 2 after telling that the name has none of the endings. A stream, which has no name, is
+ * right for all but a mesh: that one has several formats. */
+int cli_check_ending(const cli_verb *verb, const char *path, cli_content content);
 
 /* The files that a run leaves in its folder, by their names; a # in a name stands for the number of
  * a frame. The first stands for them all. */

@@ -122,9 +122,9 @@ static int measure(const cli_call *call, scree_run *run, const scree_render_opti
 static scree_status check_outputs(const cli_call *call, scree_error *error) {
   const pile_arguments *a = call->options;
   scree_status status = a->csv ? cli_check_output(call, a->csv, a->force, error) : SCREE_OK;
-  if (status == SCREE_OK && a->vtp) status = cli_check_vtp_output(call, a->vtp, a->force, error);
+  if (status == SCREE_OK && a->vtp) status = cli_check_output(call, a->vtp, a->force, error);
   if (status == SCREE_OK && a->picture)
-    status = cli_check_picture_output(call, a->picture, a->force, error);
+    status = cli_check_output(call, a->picture, a->force, error);
   return status;
 }
 
@@ -136,6 +136,8 @@ static int run(const cli_call *call) {
   scree_run *loaded;
   scree_error error;
   int code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
+  if (code == 0 && a->vtp) code = cli_check_ending(call->verb, a->vtp, CLI_VTP);
+  if (code == 0 && a->picture) code = cli_check_ending(call->verb, a->picture, CLI_PICTURE);
   if (code) return code;
   if (check_outputs(call, &error) != SCREE_OK) return cli_fail(&error);
   if (scree_run_load(call->inputs[0], &loaded, &error) != SCREE_OK) return cli_fail(&error);

@@ -246,7 +246,8 @@ static int run(const cli_call *call) {
   double rp[MOST_LEVELS];
   size_t level_count = a->levels ? parse_levels(a->levels, rp) : 0;
   if (!a->output) return cli_misuse(call->verb, "needs an output file: -o FILE.png");
-  int code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
+  int code = cli_check_ending(call->verb, a->output, CLI_PICTURE);
+  if (code == 0) code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
   if (code) return code;
   if (a->levels && !level_count)
     return cli_misuse(call->verb,
@@ -259,8 +260,7 @@ static int run(const cli_call *call) {
   picture p;
   scree_error error;
   scree_image image = {0};
-  if (cli_check_picture_output(call, a->output, a->overwrite, &error) != SCREE_OK)
-    return cli_fail(&error);
+  if (cli_check_output(call, a->output, a->overwrite, &error) != SCREE_OK) return cli_fail(&error);
   scree_status status = make_picture(call, rp, level_count, &p, &error);
   if (status == SCREE_OK && (a->reference || a->color_by))
     status = color_by_distance(&p, call, &render, &error);

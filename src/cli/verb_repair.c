@@ -141,15 +141,13 @@ static int run(const cli_call *call) {
   if (!a->output) return cli_misuse(call->verb, "say with -o where the result is to go");
   if (a->large_holes && a->hole_edges != defaults.hole_edges)
     return cli_misuse(call->verb, "--holes and --large-holes exclude each other");
-  scree_status checked = cli_check_mesh_output(call, a->output, a->force, &error);
-  if (checked != SCREE_OK && scree_file_format_of(a->output) == SCREE_FORMAT_AUTO)
-    return cli_misuse(call->verb, "%s", error.message);
-  if (checked != SCREE_OK ||
+  int code = cli_check_ending(call->verb, a->output, CLI_MESH);
+  if (code) return code;
+  if (cli_check_output(call, a->output, a->force, &error) != SCREE_OK ||
       cli_load(call->inputs[0], &input, call->progress, &scan, &error) != SCREE_OK)
     return cli_fail(&error);
   scree_status status =
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
-  int code;
   if (status == SCREE_BAD_MESH) cli_hint_at_holes(&report, &how, &error);
   if (status != SCREE_OK) cli_name_in_error(call->inputs[0], &error);
   if (status != SCREE_OK && status != SCREE_BAD_MESH) {

@@ -20,7 +20,9 @@ static int run(const cli_call *call) {
   const report_arguments *a = call->options;
   char shown[CLI_PRINTABLE_BYTES];
   scree_error error;
-  if (cli_check_page_output(call, a->output, a->overwrite, &error) != SCREE_OK ||
+  int code = cli_check_ending(call->verb, a->output, CLI_PAGE);
+  if (code) return code;
+  if (cli_check_output(call, a->output, a->overwrite, &error) != SCREE_OK ||
       scree_page_write(call->inputs, call->input_count, a->output, a->overwrite, &error) !=
           SCREE_OK)
     return cli_fail(&error);

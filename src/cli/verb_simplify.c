@@ -132,7 +132,7 @@ static scree_status check_output(const cli_call *call, scree_error *error) {
   const simplify_arguments *arguments = call->options;
   char path[PATH_BYTES];
   if (!strcmp(arguments->output, "-")) return SCREE_OK;
-  scree_status status = cli_check_mesh_output(call, arguments->output, arguments->force, error);
+  scree_status status = cli_check_output(call, arguments->output, arguments->force, error);
   if (status != SCREE_OK || !(arguments->density > 0)) return status;
   status = cli_beside(arguments->output, ".json", path, sizeof path, error);
   return status == SCREE_OK ? cli_check_output(call, path, arguments->force, error) : status;
@@ -189,8 +189,11 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "one of -r RP, -n COUNT or -e LENGTH is needed");
   if (arguments->soundness.no_repair && arguments->soundness.unchecked)
     return cli_misuse(call->verb, "--no-repair and --unchecked exclude each other");
-  if (arguments->density > 0 && !strcmp(arguments->output, "-"))
+  bool to_stdout = !strcmp(arguments->output, "-");
+  if (arguments->density > 0 && to_stdout)
     return cli_misuse(call->verb, "--density writes beside a file: -o - has none");
+  int code = to_stdout ? 0 : cli_check_ending(call->verb, arguments->output, CLI_MESH);
+  if (code) return code;
   return simplify(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
 }
 

@@ -24,3 +24,4 @@ head -c 4 a.png | tail -c 3
 echo
 "$SCREE" render sample:icosphere-2 -o a.png --size 64x64 -n 1 2>&1 | grep -v "no ray tracer" | head -1
 run render sample:icosphere-2 -o a.jpg --size 64x64
+run pile missing.scree -o a.jpg 2>&1 | sed -n 2p
