@@ -43,8 +43,8 @@ static const cli_option options[] = {
      0, 0, NULL},
     {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text: as result.json of repose.",
      0, 0, NULL},
-    {"csv", 0, CLI_TEXT, AT(csv), "FILE", "Write the series up to the frame; - is stdout.", 0, 0,
-     NULL},
+    {"csv", 0, CLI_TEXT, AT(csv), "FILE",
+     "Write the series up to the frame; - is stdout: the text is then on stderr.", 0, 0, NULL},
     {"picture", 'o', CLI_TEXT, AT(picture), "FILE", "Write a picture of the heap, a PNG.", 0, 0,
      NULL},
     {"size", 's', CLI_TEXT, AT(size), "WxH", "Of the picture, in pixels. Default: 1200x900.", 0, 0,
@@ -96,6 +96,33 @@ static int write_picture(const cli_call *call, const scree_run *run, const scree
              : cli_fail(error);
 }
 
+static bool is_stdout(const char *path) {
+  return path && !strcmp(path, "-");
+}
+
+/* 0, or 2 after telling which two of the options write to stdout. */
+static int check_stdout(const cli_call *call) {
+  const pile_arguments *a = call->options;
+  const char *there[] = {a->json ? "--json" : NULL, is_stdout(a->csv) ? "--csv -" : NULL,
+                         is_stdout(a->vtp) ? "--vtp -" : NULL,
+                         is_stdout(a->picture) ? "--picture -" : NULL};
+  const char *first = NULL;
+  for (size_t i = 0; i < sizeof there / sizeof *there; i++) {
+    if (there[i] && first)
+      return cli_misuse(call->verb, "%s and %s exclude each other", first, there[i]);
+    if (there[i]) first = there[i];
+  }
+  return 0;
+}
+
+/* The text; on stderr where something else is on stdout. */
+static void print_text(const cli_call *call, const scree_run *run, const scree_run_result *result) {
+  const pile_arguments *a = call->options;
+  bool beside = is_stdout(a->csv) || is_stdout(a->vtp) || is_stdout(a->picture);
+  if (a->json || (beside && call->quiet)) return;
+  cli_print_heap(beside ? stderr : stdout, run, result);
+}
+
 static int measure(const cli_call *call, scree_run *run, const scree_render_options *render,
                    scree_error *error) {
   const pile_arguments *a = call->options;
@@ -107,7 +134,7 @@ static int measure(const cli_call *call, scree_run *run, const scree_render_opti
   scree_heap_entry entry = {run, &result, call->inputs[0], &settings_used, call->command_line};
   if (code == 0 && a->json && scree_heap_json_write(&entry, "-", true, error) != SCREE_OK)
     code = cli_fail(error);
-  if (code == 0 && !a->json) cli_print_heap(stdout, run, &result);
+  if (code == 0) print_text(call, run, &result);
   if (code == 0 && a->csv && scree_series_csv_write(run, a->csv, a->force, error) != SCREE_OK)
     code = cli_fail(error);
   if (code == 0 && a->vtp &&
@@ -130,12 +157,11 @@ static scree_status check_outputs(const cli_call *call, scree_error *error) {
 
 static int run(const cli_call *call) {
   const pile_arguments *a = call->options;
-  if (a->json && a->csv && !strcmp(a->csv, "-"))
-    return cli_misuse(call->verb, "--json and --csv - exclude each other");
   scree_render_options render = scree_default_render_options();
   scree_run *loaded;
   scree_error error;
-  int code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
+  int code = check_stdout(call);
+  if (code == 0) code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
   if (code == 0 && a->vtp) code = cli_check_ending(call->verb, a->vtp, CLI_VTP);
   if (code == 0 && a->picture) code = cli_check_ending(call->verb, a->picture, CLI_PICTURE);
   if (code) return code;

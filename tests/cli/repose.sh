@@ -55,7 +55,10 @@ tail -n +2 text | grep -v "cost\|look at" | diff - measured && echo the same mea
 run pile whole/last.scree --band-low 0.9
 run pile whole/last.scree --vtp contacts.vtp --view contacts
 run pile whole/last.scree --vtp contacts.txt
-run pile whole/last.scree --json --csv - 2>&1 | sed -n 2p
+# one thing on stdout
+for words in '--json --csv -' '--json --vtp -' '--csv - -o -'; do run pile whole/last.scree $words 2>&1 | sed -n 2p; done
+"$SCREE" pile whole/last.scree --csv - 2>said | head -n 1 | cut -d, -f-3
+cmp said measured && "$SCREE" pile whole/last.scree -q --vtp - 2>&1 | head -n 1
 run pile box.off
 run pile nothing.scree
 "$SCREE" pile whole/frame-0001.scree --csv series.csv --vtp frame.vtp >/dev/null || echo failed
