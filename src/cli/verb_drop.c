@@ -337,6 +337,16 @@ static scree_status pour(drop_run *run, scree_error *error) {
   return status != SCREE_OK ? status : drawn != SCREE_OK ? drawn : told;
 }
 
+/* An option that says how shapes are made, with another value than its default; NULL if none. */
+static const char *shape_option(const drop_arguments *a) {
+  return a->rp > 0                      ? "reduction"
+         : a->triangles                 ? "count"
+         : a->number != defaults.number ? "number"
+         : a->no_repair                 ? "no-repair"
+         : a->unit != defaults.unit     ? "unit"
+                                        : NULL;
+}
+
 static int run(const cli_call *call) {
   drop_run run = {.call = call,
                   .arguments = call->options,
@@ -352,6 +362,8 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "--depth does nothing without -c box");
   if (run.shape_count == 0 && !run.arguments->resume)
     return cli_misuse(call->verb, "needs a SHAPE, or --resume with -o DIR");
+  if (run.shape_count == 0 && shape_option(run.arguments))
+    return cli_misuse(call->verb, "--%s does nothing without a SHAPE", shape_option(run.arguments));
   scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory"};
   run.shapes = calloc(run.shape_count + 1, sizeof *run.shapes);
   if (!run.shapes) return cli_fail(&error);

@@ -542,10 +542,21 @@ static scree_status run_all(repose *r, const char *const *words, size_t word_cou
   return status == SCREE_OK && levels > 1 && r->arguments->output ? write_common_page(r) : status;
 }
 
+/* An option that says how shapes are made, with another value than its default; NULL if none. */
+static const char *shape_option(const repose_arguments *a) {
+  return a->rp                                    ? "rp"
+         : a->spheres                             ? "spheres"
+         : a->no_repair                           ? "no-repair"
+         : a->source.unit != defaults.source.unit ? "unit"
+                                                  : NULL;
+}
+
 static int check_words(repose *r, size_t word_count) {
   const repose_arguments *a = r->arguments;
   if (word_count == 0 && !(a->resume && a->output))
     return cli_misuse(r->call->verb, "needs a SHAPE, or --samples, or --resume with -o DIR");
+  if (word_count == 0 && shape_option(a))
+    return cli_misuse(r->call->verb, "--%s does nothing without a SHAPE", shape_option(a));
   if (a->resume && !a->output) return cli_misuse(r->call->verb, "--resume needs -o DIR");
   if (a->rp && !cli_parse_levels(a->rp, &r->grain_options))
     return cli_misuse(r->call->verb,

@@ -94,5 +94,6 @@ run drop --resume -o cut --friction 0.4
 run drop $pour --seed 3 --resume -o cut
 run drop sphere:41mm=6 sphere:40mm=6 --stiffness-factor 1e-2 --resume -o cut 2>&1 | grep -v mm
 run drop --resume -o none
+for words in '-r 0.5' '-n 12' '-N 5' --no-repair '-u m'; do run drop --resume -o cut $words 2>&1 | sed -n 2p; done
 head -c 300 cut/checkpoint.scree >short && mv short cut/checkpoint.scree
 run drop --resume -o cut 2>&1 | sed 's/announces [0-9]*/announces more/' # where it stopped

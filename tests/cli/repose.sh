@@ -35,6 +35,9 @@ grep friction_particle whole/experiment.yaml | cut -d"#" -f1
 run repose --resume -o whole --friction 0.1 --lift-speed 0.5 --seed 9
 run repose --resume -o whole -p demo 2>&1 | cut -d: -f-3
 run repose --resume -o whole -c small.yaml --friction 0.5 --no-picture | sed -n 2p | rest
+for words in '--rp 0.5' '--rp 0.5,1 -m qecd' --spheres --no-repair '-u m'; do
+  run repose --resume -o whole $words 2>&1 | sed -n 2p
+done
 printf broken >whole/checkpoint.scree
 run repose $small box.off pair.csv -o whole --resume
 
