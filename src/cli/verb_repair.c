@@ -11,9 +11,11 @@ typedef struct repair_arguments {
   const char *output;
   cli_source source;
   double seam_tolerance, debris_share;
-  size_t hole_edges;
+  size_t hole_edges; /* HOLES_UNSET: the library's default */
   bool large_holes, flat_holes, drop_cavities, largest, no_cut, no_merge, folds, fast, json, force;
 } repair_arguments;
+
+#define HOLES_UNSET SIZE_MAX
 
 #define AT(field) offsetof(repair_arguments, field)
 
@@ -61,14 +63,16 @@ static const cli_option options[] = {
     {"force", 'f', CLI_FLAG, AT(force), NULL, "Overwrite an existing file.", 0, 0, NULL},
 };
 
-static const repair_arguments defaults = {
-    .source = CLI_SOURCE_DEFAULTS, .seam_tolerance = 1e-4, .debris_share = 0.01, .hole_edges = 128};
+static const repair_arguments defaults = {.source = CLI_SOURCE_DEFAULTS,
+                                          .seam_tolerance = 1e-4,
+                                          .debris_share = 0.01,
+                                          .hole_edges = HOLES_UNSET};
 
 static scree_repair_options options_of(const repair_arguments *a) {
   scree_repair_options o = scree_default_repair_options();
   o.seam_tolerance = a->seam_tolerance;
   o.debris_share = a->debris_share;
-  o.hole_edges = a->hole_edges;
+  if (a->hole_edges != HOLES_UNSET) o.hole_edges = a->hole_edges;
   o.fill_large_holes = a->large_holes;
   o.flat_large_holes = a->flat_holes;
   o.drop_cavities = a->drop_cavities;
@@ -139,7 +143,7 @@ static int run(const cli_call *call) {
   scree_mesh repaired = {0};
   scree_error error = {.status = SCREE_OK};
   if (!a->output) return cli_misuse(call->verb, "say with -o where the result is to go");
-  if (a->large_holes && a->hole_edges != defaults.hole_edges)
+  if (a->large_holes && a->hole_edges != HOLES_UNSET)
     return cli_misuse(call->verb, "--holes and --large-holes exclude each other");
   int code = cli_check_ending(call->verb, a->output, CLI_MESH);
   if (code) return code;

@@ -41,7 +41,7 @@ run repose ball.stl --sample-seed 2 2>&1 | sed -n 2p
 for words in 'ball.stl sample:box-12' --samples; do run choose $words --resolution 3mm --json --csv 2>&1 | sed -n 2p; done
 "$SCREE" curve ball.stl --distance --samples 10 --per-decade 1 | wc -l
 # what cannot both be is wrong usage, and so is an output of no known format
-for words in '--holes 0 --large-holes -o y.stl' '-o x.xyz' '-o -'; do
+for words in '--holes 0 --large-holes -o y.stl' '--large-holes --holes 128 -o y.stl' '-o x.xyz' '-o -'; do
   "$SCREE" repair ball.stl $words 2>said
   echo "exit code $?: $(head -n 1 said)"
 done
