@@ -95,7 +95,7 @@ typedef struct scree_vtk_data {
   size_t point_array_count;
   const scree_vtk_array *cell_arrays;
   size_t cell_array_count;
-  double time; /* s, written as field data TimeValue; NaN: none */
+  double time; /* s, written as field data TimeValue; NaN: none; not infinite */
 } scree_vtk_data;
 
 /* Writes version 1.0 XML with raw appended data, 64-bit headers: read by VTK 6 and later. */
@@ -104,7 +104,8 @@ SCREE_API scree_status scree_vtp_write(const scree_vtk_data *data, const char *p
 
 /* Writes the collection of a series: file i is valid at time times[i]. The names are written as
  * given, relative to the collection. A path that ends in .series becomes ParaView's own JSON (as in
- * pile.vtp.series beside pile_0.vtp, pile_1.vtp), every other one a .pvd. */
+ * pile.vtp.series beside pile_0.vtp, pile_1.vtp), every other one a .pvd. SCREE_BAD_ARGUMENT where
+ * a time is not finite. */
 SCREE_API scree_status scree_pvd_write(const char *const *files, const double *times,
                                        size_t file_count, const char *path, bool overwrite,
                                        scree_error *error);

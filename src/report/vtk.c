@@ -140,6 +140,8 @@ static void write_header(writer *w, const scree_vtk_data *data, const cells *c) 
 scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool overwrite,
                              scree_error *error) {
   scree_output output;
+  if (isinf(data->time))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: the time is infinite", path);
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
   writer w = {output.stream, 0};
@@ -190,6 +192,10 @@ static void write_collection(FILE *stream, const char *const *files, const doubl
 scree_status scree_pvd_write(const char *const *files, const double *times, size_t file_count,
                              const char *path, bool overwrite, scree_error *error) {
   scree_output output;
+  for (size_t i = 0; i < file_count; i++)
+    if (!isfinite(times[i]))
+      return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: time %zu of %zu is no finite number", path,
+                        i + 1, file_count);
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
   if (scree_ends_with(path, ".series"))

@@ -132,6 +132,28 @@ static void refusals(void **state) {
   scree_mesh_free(&box);
 }
 
+/* Times that no reader would take are refused, and nothing is written. */
+static void times(void **state) {
+  (void)state;
+  scree_error error;
+  const char *const files[] = {"a.vtp", "b.vtp"}, *const names[] = {"t.pvd", "t.vtp.series"};
+  const double bad[] = {NAN, INFINITY, -INFINITY}, point[3] = {0};
+  for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
+    const double both[] = {0, bad[i]};
+    for (size_t k = 0; k < 2; k++) {
+      const char *path = in_folder(names[k]);
+      assert_int_equal(scree_pvd_write(files, both, 2, path, true, &error), SCREE_BAD_ARGUMENT);
+      assert_non_null(strstr(error.message, "time 2 of 2"));
+      assert_int_equal(access(path, F_OK), -1);
+      CHECK_OK(scree_pvd_write(files, both, 1, path, true, &error), error);
+      assert_int_equal(unlink(path), 0);
+    }
+    scree_vtk_data data = {.points = point, .point_count = 1, .time = bad[i]};
+    assert_int_equal(scree_vtp_write(&data, in_folder("t.vtp"), true, &error),
+                     isnan(bad[i]) ? SCREE_OK : SCREE_BAD_ARGUMENT);
+  }
+}
+
 static scree_status write_all(void *context, scree_error *error) {
   const scree_mesh *box = context;
   scree_export_options o = scree_default_export_options();
@@ -150,10 +172,8 @@ static void allocations(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(principal_box),
-      cmocka_unit_test(centre_only),
-      cmocka_unit_test(refusals),
-      cmocka_unit_test(allocations),
+      cmocka_unit_test(principal_box), cmocka_unit_test(centre_only), cmocka_unit_test(refusals),
+      cmocka_unit_test(times),         cmocka_unit_test(allocations),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
