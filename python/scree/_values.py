@@ -34,6 +34,17 @@ def whole(value, what, kind=ctypes.c_size_t):
     return number
 
 
+def vector(values, what, kind):
+    """A C array of as many numbers as its type has: ctypes would fill up with zeros what is missing."""
+    try:
+        numbers = list(values)
+    except TypeError:
+        raise TypeError(f"{what} is {values!r}; {kind._length_} numbers") from None
+    if len(numbers) != kind._length_:
+        raise ValueError(f"{what} has {len(numbers)} number{'' if len(numbers) == 1 else 's'}; it takes {kind._length_}")
+    return kind(*numbers)
+
+
 def index_of(word, words, what):
     if word not in words:
         raise ValueError(f"{what} '{word}' is none of {', '.join(words)}")
@@ -116,7 +127,7 @@ def set_fields(struct, values, what):
             set_fields(getattr(struct, name), value, name)
             continue
         if isinstance(getattr(struct, name), ctypes.Array):
-            value = known[name](*value)
+            value = vector(value, f"{what}: {name}", known[name])
         elif known[name] in WHOLE_KINDS:
             value = whole(value, f"{what}: {name}", known[name])
         setattr(struct, name, value)

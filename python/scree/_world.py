@@ -7,7 +7,7 @@ import weakref
 from . import _library as c
 from ._library import call, lib
 from ._mesh import Mesh
-from ._values import c_array, column, from_struct, index_of, metres, set_fields, whole
+from ._values import c_array, column, from_struct, index_of, metres, set_fields, vector, whole
 
 
 class Particle:
@@ -103,7 +103,8 @@ class World:
 
     def set_wall_velocity(self, index, velocity=(0, 0, 0), angular_velocity=(0, 0, 0)):
         self._check(index, "world_wall_count", "wall")
-        call("world_set_wall_velocity", self._handle, index, c.double3(*velocity), c.double3(*angular_velocity))
+        call("world_set_wall_velocity", self._handle, index, vector(velocity, "velocity", c.double3),
+             vector(angular_velocity, "angular_velocity", c.double3))
 
     def wall_force(self, index):
         """Force and torque about its position on the wall in the last step."""

@@ -274,6 +274,24 @@ class Worlds(unittest.TestCase):
             world.step(2.5)
         self.assertEqual((world.hash, len(world)), (before, 2))
 
+    def test_vectors_that_c_would_fill_up(self):
+        world, ball = self.world(), scree.Particle.sphere(0.01)
+        before = world.hash
+        for wrong, said in ((lambda: scree.World(gravity=(0, 0)), "World: gravity has 2 numbers; it takes 3"),
+                            (lambda: scree.World(gravity=(0, 0, -9.81, 0)), "gravity has 4 numbers"),
+                            (lambda: scree.Pour([(ball, 1)], world={"gravity": ()}), "world: gravity has 0 numbers"),
+                            (lambda: world.add_body(ball, 0, position=[1]), "position has 1 number; it takes 3"),
+                            (lambda: world.add_body(ball, 0, orientation=(1, 0, 0)), "orientation has 3 numbers; it takes 4"),
+                            (lambda: world.set_body(0, velocity=(1, 2)), "a body: velocity has 2 numbers"),
+                            (lambda: world.add_wall("disc", 1, radius=1, axis=(0, 1)), "a wall: axis has 2 numbers"),
+                            (lambda: world.set_wall_velocity(0, (1, 2)), "velocity has 2 numbers"),
+                            (lambda: world.set_wall_velocity(0, angular_velocity=(1, 2, 3, 4)), "angular_velocity has 4 numbers")):
+            with self.assertRaisesRegex(ValueError, said):
+                wrong()
+        with self.assertRaisesRegex(TypeError, "World: gravity is -9.81; 3 numbers"):
+            scree.World(gravity=-9.81)
+        self.assertEqual((world.hash, len(world)), (before, 2))
+
     def test_results(self):
         with self.assertRaises(scree.Error):
             scree.Run("missing.scree")
