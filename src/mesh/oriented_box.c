@@ -8,13 +8,16 @@
  * and for hulls of few edges the common normals of all pairs of edges. So the result is exact for
  * boxes, prisms and the regular tetrahedron, the least of all boxes flush with a face where the
  * hull has few faces, and else a local minimum, in practice within a few per cent of the least
- * volume. */
+ * volume. Starts are worked on side by side, each by one worker, and compared in their order. */
 #include "mesh/oriented_box.h"
 
 #include "base/array.h"
 #include "base/eigen.h"
+#include "base/parallel.h"
 
+#include <float.h>
 #include <stdlib.h>
+#include <string.h>
 
 enum {
   FACE_STARTS = 64,           /* face normals tried at most */
@@ -23,6 +26,7 @@ enum {
   ROUNDS = 32,                /* of improvement; a handful in practice */
   PROJECTION_BUDGET = 1 << 22 /* points projected over all starts: about a second */
 };
+#define FACING_SLOP    1e-14 /* of two sides, see set_facings */
 #define SAME_DIRECTION 1e-9  /* 1 - cosine below which two normals are one start */
 #define GAIN           1e-12 /* relative, below which a round has not improved the box */
 #define FIRST_TURN     0.4   /* rad */
@@ -32,6 +36,13 @@ typedef struct point2 {
   double x, y;
 } point2;
 
+/* A triangle's normal, not of unit length, and the most by which rounding may change its product
+ * with a unit vector. */
+typedef struct facing {
+  vec3 normal;
+  double slop;
+} facing;
+
 /* A direction to start from. */
 typedef struct start {
   vec3 axis;
@@ -39,8 +50,11 @@ typedef struct start {
   double rank; /* low is good: minus the area of the face, later the volume of the box */
 } start;
 
+/* One worker's: the hull, and room. */
 typedef struct fitter {
   const scree_hull *hull;
+  const facing *facings; /* of the hull's triangles */
+  unsigned char *sides;  /* of each corner: which it shows, see gather_outline */
   point2 *projected, *outline;
 } fitter;
 
@@ -99,13 +113,30 @@ static point2 best_side(const point2 *outline, size_t n) {
   return best;
 }
 
+enum { FRONT = 1, BACK = 2 };
+
+/* Projects the corners that may lie on the outline seen along w: where all triangles about a corner
+ * face the same way for sure, it projects inside. Without triangles all may. */
+static size_t gather_outline(fitter *f, vec3 u, vec3 v, vec3 w) {
+  const scree_hull *hull = f->hull;
+  size_t count = 0;
+  memset(f->sides, hull->triangle_count ? 0 : FRONT | BACK, hull->point_count);
+  for (size_t t = 0; t < hull->triangle_count; t++) {
+    double height = vec3_dot(f->facings[t].normal, w), slop = f->facings[t].slop;
+    int shown = (height < -slop ? 0 : FRONT) | (height > slop ? 0 : BACK);
+    for (size_t k = 0; k < 3; k++) f->sides[hull->triangles[3 * t + k]] |= (unsigned char)shown;
+  }
+  for (size_t i = 0; i < hull->point_count; i++)
+    if (f->sides[i] == (FRONT | BACK))
+      f->projected[count++] = (point2){vec3_dot(hull->points[i], u), vec3_dot(hull->points[i], v)};
+  return count;
+}
+
 /* Keeps direction w; turns the other two into those of the least rectangle. */
 static mat3 fit_about(fitter *f, vec3 w) {
   vec3 u, v;
   vec3_frame(w, &u, &v);
-  for (size_t i = 0; i < f->hull->point_count; i++)
-    f->projected[i] = (point2){vec3_dot(f->hull->points[i], u), vec3_dot(f->hull->points[i], v)};
-  size_t n = hull2(f->projected, f->hull->point_count, f->outline);
+  size_t n = hull2(f->projected, gather_outline(f, u, v, w), f->outline);
   point2 side = best_side(f->outline, n);
   vec3 first = vec3_unit(vec3_add(vec3_scale(u, side.x), vec3_scale(v, side.y)));
   mat3 axes;
@@ -242,21 +273,41 @@ static void consider(const scree_hull *hull, const mat3 *axes, double *least, ma
   if (found < *least) *least = found, *best = *axes;
 }
 
-static mat3 search(fitter *f, start_list *list, const mat3 *axes) {
+/* What the workers share. */
+typedef struct searcher {
+  fitter *fitters; /* one for each worker */
+  start *starts;
+} searcher;
+
+static void fit_starts(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block;
+  const searcher *s = context;
+  fitter *f = &s->fitters[worker];
+  for (size_t i = begin; i < end; i++) {
+    s->starts[i].axes = fit_about(f, s->starts[i].axis);
+    s->starts[i].rank = cost(f->hull, &s->starts[i].axes);
+  }
+}
+
+static void settle_starts(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block;
+  const searcher *s = context;
+  for (size_t i = begin; i < end; i++) settle(&s->fitters[worker], &s->starts[i].axes);
+}
+
+static mat3 search(fitter *fitters, start_list *list, const mat3 *axes) {
   const mat3 one = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  const scree_hull *hull = fitters->hull;
+  searcher s = {fitters, list->items};
   double least = INFINITY;
   mat3 best = one;
-  for (size_t i = 0; i < list->count; i++) {
-    list->items[i].axes = fit_about(f, list->items[i].axis);
-    list->items[i].rank = cost(f->hull, &list->items[i].axes);
-  }
+  size_t settled = list->count < DESCENTS ? list->count : DESCENTS;
+  scree_parallel_for(list->count, 1, fit_starts, &s);
   qsort(list->items, list->count, sizeof *list->items, compare_starts);
-  for (size_t i = 0; i < list->count && i < DESCENTS; i++) {
-    settle(f, &list->items[i].axes);
-    consider(f->hull, &list->items[i].axes, &least, &best);
-  }
-  consider(f->hull, axes, &least, &best);
-  consider(f->hull, &one, &least, &best);
+  scree_parallel_for(settled, 1, settle_starts, &s);
+  for (size_t i = 0; i < settled; i++) consider(hull, &list->items[i].axes, &least, &best);
+  consider(hull, axes, &least, &best);
+  consider(hull, &one, &least, &best);
   return best;
 }
 
@@ -282,23 +333,68 @@ static scree_oriented_box finish(const scree_hull *hull, const mat3 *axes) {
   return box;
 }
 
+/* The error of a normal is below 8 half-units of the product of its two sides, and that of its
+ * product with a unit vector below 16: a sixth of FACING_SLOP. */
+static void set_facings(const scree_hull *hull, facing *facings) {
+  for (size_t t = 0; t < hull->triangle_count; t++) {
+    const uint32_t *c = hull->triangles + 3 * t;
+    vec3 p = vec3_sub(hull->points[c[1]], hull->points[c[0]]),
+         q = vec3_sub(hull->points[c[2]], hull->points[c[0]]);
+    facings[t] = (facing){vec3_cross(p, q), FACING_SLOP * vec3_norm(p) * vec3_norm(q) + DBL_MIN};
+  }
+}
+
+static void free_fitters(fitter *fitters, int count) {
+  for (int i = 0; i < count && fitters; i++) {
+    scree_free(fitters[i].sides);
+    scree_free(fitters[i].projected);
+    scree_free(fitters[i].outline);
+  }
+  scree_free(fitters);
+}
+
+static fitter *make_fitters(const scree_hull *hull, const facing *facings, int count,
+                            scree_error *error) {
+  fitter *fitters = scree_alloc_zero((size_t)count, sizeof *fitters);
+  if (!fitters) {
+    scree_fail_memory(error, (size_t)count * sizeof *fitters, "fitting a box");
+    return NULL;
+  }
+  for (int i = 0; i < count; i++) {
+    fitter *f = &fitters[i];
+    f->hull = hull;
+    f->facings = facings;
+    SCREE_ALLOC_OR(f->sides, hull->point_count, error, out_of_memory);
+    SCREE_ALLOC_OR(f->projected, hull->point_count, error, out_of_memory);
+    SCREE_ALLOC_OR(f->outline, 2 * hull->point_count + 2, error, out_of_memory);
+  }
+  return fitters;
+out_of_memory:
+  free_fitters(fitters, count);
+  return NULL;
+}
+
 scree_status scree_oriented_box_fit(const scree_hull *hull, const mat3 *axes,
                                     scree_oriented_box *box, scree_error *error) {
-  fitter f = {.hull = hull};
+  facing *facings = NULL;
+  fitter *fitters = NULL;
   start_list list = {0};
   scree_status status = SCREE_OUT_OF_MEMORY;
-  SCREE_ALLOC_OR(f.projected, hull->point_count, error, done);
-  SCREE_ALLOC_OR(f.outline, 2 * hull->point_count + 2, error, done);
+  int worker_count = scree_worker_count();
+  SCREE_ALLOC_OR(facings, hull->triangle_count, error, done);
+  set_facings(hull, facings);
+  fitters = make_fitters(hull, facings, worker_count, error);
+  if (!fitters) goto done;
   if (!push_starts(&list, hull, axes)) {
     scree_fail_memory(error, (list.count + 1) * sizeof *list.items, "directions of boxes");
     goto done;
   }
-  mat3 best = search(&f, &list, axes);
+  mat3 best = search(fitters, &list, axes);
   *box = finish(hull, &best);
   status = SCREE_OK;
 done:
-  scree_free(f.projected);
-  scree_free(f.outline);
+  free_fitters(fitters, worker_count);
+  scree_free(facings);
   scree_free(list.items);
   return status;
 }

@@ -459,6 +459,24 @@ static double searched_volume(const vec3 *points, size_t count, scree_rng *rng) 
   return least;
 }
 
+/* The least of the boxes that keep an axis of the fitted one and have a side along the line through
+ * two points: over all pairs, of which those on the outline are some. */
+static double turned_volume(const vec3 *points, size_t count, const mat3 *box) {
+  double least = INFINITY;
+  for (int axis = 0; axis < 3; axis++)
+    for (size_t i = 0; i < count; i++)
+      for (size_t j = 0; j < i; j++) {
+        vec3 w = vec3_load(box->m[axis]), d = vec3_sub(points[i], points[j]);
+        vec3 u = vec3_unit(vec3_mad(d, w, -vec3_dot(d, w)));
+        mat3 axes;
+        vec3_store(axes.m[0], u);
+        vec3_store(axes.m[1], vec3_cross(w, u));
+        vec3_store(axes.m[2], w);
+        least = fmin(least, box_volume(points, count, &axes));
+      }
+  return least;
+}
+
 static void test_oriented_box(void **state) {
   (void)state;
   scree_rng rng = {.seed = 10};
@@ -484,6 +502,7 @@ static void test_oriented_box(void **state) {
                   fabs(p.z) <= box.size.z * 0.5000001);
     }
     assert_true(volume <= box_volume(points, count, &one) * (1 + TIGHT));
+    assert_true(volume <= turned_volume(points, count, &box.axes) * (1 + 1e-6));
     worst = fmax(worst, volume / searched_volume(points, count, &rng));
     scree_hull_free(&hull);
   }
