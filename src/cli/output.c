@@ -54,7 +54,7 @@ scree_status cli_check_output(const cli_call *call, const char *path, bool overw
   return cli_refuse(error, SCREE_BAD_ARGUMENT, path, reason);
 }
 
-static bool has_ending(const char *path, const char *ending) {
+bool cli_has_ending(const char *path, const char *ending) {
   const char *dot = strrchr(path, '.');
   return dot && !strcasecmp(dot, ending);
 }
@@ -62,8 +62,8 @@ static bool has_ending(const char *path, const char *ending) {
 static bool says(const char *path, cli_content content) {
   if (content == CLI_MESH) return scree_file_format_of(path) != SCREE_FORMAT_AUTO;
   if (!strcmp(path, "-")) return true;
-  if (content == CLI_PAGE) return has_ending(path, ".html") || has_ending(path, ".htm");
-  return has_ending(path, content == CLI_PICTURE ? ".png" : ".vtp");
+  if (content == CLI_PAGE) return cli_has_ending(path, ".html") || cli_has_ending(path, ".htm");
+  return cli_has_ending(path, content == CLI_PICTURE ? ".png" : ".vtp");
 }
 
 int cli_check_ending(const cli_verb *verb, const char *path, cli_content content) {

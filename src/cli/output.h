@@ -10,6 +10,9 @@
 scree_status cli_check_output(const cli_call *call, const char *path, bool overwrite,
                               scree_error *error);
 
+/* Whether the name ends so, ".vtp" for example, in upper or lower case. */
+bool cli_has_ending(const char *path, const char *ending);
+
 /* What is written, which its name must say by its ending. */
 typedef enum cli_content { CLI_MESH, CLI_PICTURE, CLI_VTP, CLI_PAGE } cli_content;
 /* 0, or 2 after telling that the name has none of the endings. A stream, which has no name, is

@@ -6,6 +6,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 typedef struct export_arguments {
   const char *output, *reference;
@@ -48,11 +49,6 @@ static const cli_option options[] = {
     CLI_SAMPLE_OPTIONS(export_arguments, source),
     {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
-
-static bool has_extension(const char *path, const char *extension) {
-  const char *dot = strrchr(path, '.');
-  return dot && !strcmp(dot, extension);
-}
 
 typedef enum input_kind { SURFACE, WORLD, RUN } input_kind;
 
@@ -133,7 +129,7 @@ static scree_status export_surface(const cli_call *call, scree_error *error) {
   cli_input_options input = cli_source_options(&a->source);
   scree_scan scan;
   char json_path[NAME_BYTES];
-  bool vtp = has_extension(a->output, ".vtp");
+  bool vtp = cli_has_ending(a->output, ".vtp");
   scree_status status = cli_check_output(call, a->output, a->overwrite, error);
   if (status == SCREE_OK && !vtp)
     status = cli_beside(a->output, ".json", json_path, sizeof json_path, error);
@@ -182,7 +178,7 @@ static scree_status export_world(const cli_call *call, scree_error *error) {
   checkpoint c;
   scree_status status = load_checkpoint(call->inputs[0], &c, error);
   if (status != SCREE_OK) return status;
-  if (has_extension(a->output, ".vtp"))
+  if (cli_has_ending(a->output, ".vtp"))
     status = write_view(call, &c, call->inputs[0], a->output, error);
   else
     status = scree_world_export(c.world, &o, a->output, error);
@@ -194,7 +190,7 @@ static scree_status export_world(const cli_call *call, scree_error *error) {
 static scree_status name_file(const char *output, size_t index, char name[NAME_BYTES],
                               scree_error *error) {
   const char *end = strrchr(output, '.');
-  if (end - output > 4 && !strncmp(end - 4, ".vtp", 4)) end -= 4;
+  if (end - output > 4 && !strncasecmp(end - 4, ".vtp", 4)) end -= 4;
   int length = snprintf(name, NAME_BYTES, "%.*s-%04zu.vtp", (int)(end - output), output, index);
   if (length < NAME_BYTES) return SCREE_OK;
   *error = (scree_error){SCREE_LIMIT, "the output's name is too long"};
@@ -240,7 +236,7 @@ static scree_status export_series(const cli_call *call, scree_error *error) {
 }
 
 static bool is_series(const char *path) {
-  return has_extension(path, ".pvd") || has_extension(path, ".series");
+  return cli_has_ending(path, ".pvd") || cli_has_ending(path, ".series");
 }
 
 /* 0, or 2 after telling which inputs do not go with the output. */
@@ -263,7 +259,7 @@ static int check_inputs(const cli_call *call, bool world) {
 /* 0, or 2 after telling what does not go together. */
 static int check_call(const cli_call *call, bool world) {
   const export_arguments *a = call->options;
-  bool series = is_series(a->output), vtp = has_extension(a->output, ".vtp") || series;
+  bool series = is_series(a->output), vtp = cli_has_ending(a->output, ".vtp") || series;
   bool known = vtp || scree_file_format_of(a->output) != SCREE_FORMAT_AUTO;
   int code = check_inputs(call, world);
   if (code) return code;

@@ -1,12 +1,12 @@
 /* VTK XML PolyData with raw appended data: each array is a 64-bit byte count followed by its bytes,
  * at the offset that its element names. The byte order is stated, so nothing is swapped. */
-#include "base/ending.h"
 #include "base/file.h"
 #include "base/number.h"
 #include "report/json.h"
 
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 static const struct {
   const char *name;
@@ -198,7 +198,8 @@ scree_status scree_pvd_write(const char *const *files, const double *times, size
                         i + 1, file_count);
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
-  if (scree_ends_with(path, ".series"))
+  const char *ending = strrchr(path, '.');
+  if (ending && !strcasecmp(ending, ".series"))
     write_series(output.stream, files, times, file_count);
   else
     write_collection(output.stream, files, times, file_count);

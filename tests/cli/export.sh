@@ -19,3 +19,6 @@ run export cut.scree -o pile.stl
 run export cut.scree cut.scree -o pile
 run export sample:box-12 -o all.pvd
 run export cut.scree sample:box-12 -o all.pvd
+# endings in any case
+run export sample:box-12 -o BOX.VTP -q
+run export sample:box-12 -o all.PVD
