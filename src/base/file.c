@@ -286,7 +286,37 @@ static int create_nameless(const char *path, char *name, size_t size) {
   return fd;
 }
 
-/* Gives a nameless file a name beside the target, from which it can replace that. */
+static bool copy_bytes(int from, int to) {
+  enum { PIECE = 1 << 16 };
+  char piece[PIECE];
+  for (;;) {
+    ssize_t got = read(from, piece, PIECE), done = 0;
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return got == 0;
+    while (done < got) {
+      ssize_t put = write(to, piece + done, (size_t)(got - done));
+      if (put < 0 && errno != EINTR) return false;
+      if (put > 0) done += put;
+    }
+  }
+}
+
+/* Of a nameless file, as one that has a name beside the target. */
+static bool copy_beside(const scree_output *output, const char *link) {
+  int from = open(link, O_RDONLY | O_CLOEXEC);
+  if (from < 0) return false;
+  int to = create_beside(output->path, output->temporary_path, temporary_bytes(output->path));
+  bool copied = to >= 0 && copy_bytes(from, to) && fsync(to) == 0;
+  int reason = errno;
+  if (to >= 0) close(to);
+  if (to >= 0 && !copied) unlink(output->temporary_path);
+  close(from);
+  errno = reason;
+  return copied;
+}
+
+/* Gives a nameless file a name beside the target, from which it can replace that; where the file
+ * system has no links after all, its copy. */
 static bool give_name(const scree_output *output) {
   char link[TAIL_BYTES];
   own_link(fileno(output->stream), link);
@@ -296,6 +326,7 @@ static bool give_name(const scree_output *output) {
       return true;
     if (errno != EEXIST) break;
   }
+  if (copy_beside(output, link)) return true;
   int reason = errno;
   *output->temporary_path = 0;
   errno = reason;
