@@ -482,11 +482,23 @@ static scree_status build_and_rebuild(void *context, scree_error *error) {
   return status;
 }
 
+/* The mesh is scaled by what succeeds alone. */
+static scree_status build_scaled(void *context, scree_error *error) {
+  scree_mesh *mesh = context;
+  double before = mesh->positions[0];
+  scree_curve *curve = NULL;
+  scree_status status = scree_curve_build_scaled(mesh, 2, NULL, NULL, &curve, error);
+  assert_true(mesh->positions[0] == (status == SCREE_OK ? 2 : 1) * before);
+  scree_curve_free(curve);
+  return status;
+}
+
 static void failing_memory_is_told(void **state) {
   (void)state;
   scree_mesh small = shape_icosphere(1, 1), large = bumpy_sphere(5, 1);
   check_allocation_failures(build_and_rebuild, &small);
   check_allocation_failures(build_and_rebuild, &large);
+  check_allocation_failures(build_scaled, &small);
   scree_mesh_free(&small);
   scree_mesh_free(&large);
 }
