@@ -89,18 +89,22 @@ static void describe(drop_shape *shape, const scree_scan *scan) {
     snprintf(shape->source + used, size - used, ", %zu triangles", scan->mesh.triangle_count);
 }
 
-static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mesh, double *scale,
-                         scree_error *error) {
-  const drop_arguments *a = run->arguments;
+static cli_input_options input_options(const drop_arguments *a) {
   cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
   input.read.unit_m = a->unit;
   input.sample.resolution = a->resolution;
   input.sample.noise = a->noise;
+  return input;
+}
+
+static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mesh, double *scale,
+                         scree_error *error) {
+  cli_input_options input = input_options(run->arguments);
   scree_repair_report report;
   scree_scan scan;
   char shown[CLI_PRINTABLE_BYTES];
-  scree_status status = cli_load_closed(shape->name, &input, a->no_repair, run->call->progress,
-                                        &scan, scale, &report, error);
+  scree_status status = cli_load_closed(shape->name, &input, run->arguments->no_repair,
+                                        run->call->progress, &scan, scale, &report, error);
   if (status != SCREE_OK) return status;
   describe(shape, &scan);
   *mesh = scan.mesh;
@@ -134,11 +138,12 @@ static bool is_small(const drop_arguments *a, const scree_mesh *mesh) {
 }
 
 /* Into metres as well. */
-static scree_status decimate(const drop_run *run, scree_mesh *mesh, double scale,
-                             scree_error *error) {
+static scree_status decimate(const drop_run *run, const drop_shape *shape, scree_mesh *mesh,
+                             double scale, scree_error *error) {
   if (is_small(run->arguments, mesh)) {
-    scree_mesh_scale(mesh, scale);
-    return SCREE_OK;
+    cli_input_options input = input_options(run->arguments);
+    return cli_into_metres(shape->name, &input, run->arguments->no_repair, scale,
+                           run->call->progress, mesh, error);
   }
   scree_simplify_options options = scree_default_simplify_options();
   scree_curve *curve = NULL;
@@ -187,7 +192,7 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
   scree_status status = load(run, shape, &mesh, &scale, error);
   if (status != SCREE_OK) return status;
   shape->source_triangles = mesh.triangle_count;
-  status = decimate(run, &mesh, scale, error);
+  status = decimate(run, shape, &mesh, scale, error);
   if (status == SCREE_OK) status = scree_mesh_canonicalize(&mesh, error);
   if (status == SCREE_OK) status = scree_particle_from_mesh(&mesh, NULL, &shape->particle, error);
   scree_mesh_free(&mesh);

@@ -88,6 +88,7 @@ static double smallest_rp(const cli_grain_options *o) {
   return least;
 }
 
+/* The scan is in metres, but where it is decimated only once it is multiplied by the scale. */
 static scree_status make_levels(const maker *m, size_t shape, const char *word, scree_scan *scan,
                                 double scale) {
   const cli_grain_options *o = m->options;
@@ -99,8 +100,6 @@ static scree_status make_levels(const maker *m, size_t shape, const char *word, 
     simplify.method = (scree_method)o->method;
     simplify.stop_count = scree_choice_target(smallest_rp(o), mesh->triangle_count);
     status = scree_curve_build_scaled(mesh, scale, &simplify, m->progress, &curve, m->error);
-  } else {
-    scree_mesh_scale(mesh, scale);
   }
   for (size_t level = 0; status == SCREE_OK && level < m->grains->level_count; level++) {
     scree_grain_options grain = scree_default_grain_options();
@@ -132,7 +131,10 @@ static scree_status make_from_scan(const maker *m, size_t shape, const char *wor
   scree_status status = cli_load_closed(word, &input, m->options->no_repair, m->progress, &scan,
                                         &scale, NULL, m->error);
   if (status != SCREE_OK) return status;
-  status = make_levels(m, shape, word, &scan, scale);
+  if (!(smallest_rp(m->options) < 1))
+    status = cli_into_metres(word, &input, m->options->no_repair, scale, m->progress, &scan.mesh,
+                             m->error);
+  if (status == SCREE_OK) status = make_levels(m, shape, word, &scan, scale);
   scree_scan_free(&scan);
   return status == SCREE_OK ? status : cli_name_in_error(word, m->error);
 }

@@ -12,6 +12,13 @@ scree_status cli_load_closed(const char *word, const cli_input_options *options,
                              const scree_progress *progress, scree_scan *scan, double *scale,
                              scree_repair_report *report, scree_error *error);
 
+/* Of what cli_load_closed gave and is not decimated: into metres, with the numbers of the file
+ * times its unit, which a second multiplication may miss by rounding; so it is read anew, but for
+ * stdin. */
+scree_status cli_into_metres(const char *word, const cli_input_options *options, bool no_repair,
+                             double scale, const scree_progress *progress, scree_mesh *mesh,
+                             scree_error *error);
+
 /* How a scan comes to be what a decimation may assume, as a member of a verb's struct. */
 typedef struct cli_soundness {
   bool no_repair, unchecked;

@@ -73,3 +73,18 @@ run study tiny.yaml -o whole --csv | cut -d, -f1-4
 head -1 full.txt | sed 's/[0-9a-f]\{16\}/KEY/; s/[a-z]*\.scree/FILE/'
 "$SCREE" study tiny.yaml -o full >/dev/null
 hashes full | cmp - whole.txt
+# a run again from the scan, and from the shape that the study wrote in metres: the same bits
+"$SCREE" sample icosphere-4 -o round.stl -q >/dev/null
+cat >one.yaml <<'END'
+name: one
+replicates: 1
+shapes: [round.stl]
+base: {preset: demo, particles: 6, cylinder: {diameter: 0.2}, phases: {pack_time: 0.2, settle_time: 0.05, lift_speed: 1, lift_time: 0.05, hold_time: 0.05}}
+factors: {rp: [0.02]}
+END
+"$SCREE" study one.yaml -o one --jobs 1 -q >/dev/null
+once="-p demo --particles 6 --cylinder 0.2 --pack-time 0.2 --settle-time 0.05 --lift-speed 1 --lift-time 0.05 --hold-time 0.05 --seed 1 --no-picture --json -q"
+"$SCREE" repose round.stl --rp 0.02 $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"source"' >scan.json
+"$SCREE" repose one/shapes/round-rp0.02.ply --unit m $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"source"' >written.json
+diff scan.json written.json
+grep -c height scan.json
