@@ -24,8 +24,11 @@ scree_status scree_fail_text(scree_error *error, scree_status status, const char
     vsnprintf(error->message, sizeof error->message, format, arguments);
     va_end(arguments);
     /* names and values from files come in as they are: one line, nothing a terminal obeys */
-    for (char *c = error->message; *c; c++)
-      if ((unsigned char)*c < ' ' || *c == 127) *c = '?';
+    for (unsigned char *c = (unsigned char *)error->message; *c; c++)
+      if (*c < ' ' || *c == 127)
+        *c = '?';
+      else if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0) /* U+0080 to U+009F */
+        c[0] = c[1] = '?';
   }
   return status;
 }

@@ -365,7 +365,7 @@ static bool is_special(const struct stat *info) {
 scree_status scree_output_open(const char *path, bool overwrite, scree_output *output,
                                scree_error *error) {
   if (!strcmp(path, "-")) {
-    *output = (scree_output){stdout, NULL, NULL};
+    *output = (scree_output){.stream = stdout};
     return SCREE_OK;
   }
   struct stat info;
@@ -381,7 +381,7 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
   if (exists && !direct && is_protected(path, &info))
     return scree_fail(error, SCREE_IO, "%s: is write-protected; not replaced", path);
   size_t size = temporary_bytes(path);
-  scree_output opened = {NULL, scree_strdup(path), direct ? NULL : scree_alloc(size, 1)};
+  scree_output opened = {NULL, scree_strdup(path), direct ? NULL : scree_alloc(size, 1), overwrite};
   int fd = -1;
   scree_status status = SCREE_OK;
   if (!opened.path || (!direct && !opened.temporary_path))
@@ -426,6 +426,23 @@ static const char *reason_to_tell(int reason) {
   return reason ? strerror(reason) : "the disk is full, or a limit is reached";
 }
 
+/* The whole file takes its name; a file that has come there meanwhile is spared, where it may not
+ * be overwritten. */
+static bool take_place(scree_output *output) {
+  const char *from = output->temporary_path, *to = output->path;
+  bool placed = false, done = false;
+#ifdef RENAME_NOREPLACE
+  if (!output->overwrite) {
+    placed = renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0;
+    done =
+        placed || (errno != EINVAL && errno != ENOSYS); /* else the file system has no such thing */
+  }
+#endif
+  if (!done) placed = rename(from, to) == 0;
+  if (placed) *output->temporary_path = 0; /* anybody's again */
+  return placed;
+}
+
 scree_status scree_output_commit(scree_output *output, scree_error *error) {
   if (!output->path) {
     errno = 0;
@@ -443,12 +460,14 @@ scree_status scree_output_commit(scree_output *output, scree_error *error) {
     reason = errno;
   }
   output->stream = NULL;
-  if (written && !direct && rename(output->temporary_path, output->path) != 0) {
+  if (written && !direct && !take_place(output)) {
     written = false;
     reason = errno;
   }
   scree_status status = SCREE_OK;
-  if (!written)
+  if (!written && reason == EEXIST)
+    status = scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", output->path);
+  else if (!written)
     status =
         scree_fail(error, SCREE_IO, "%s: cannot write: %s", output->path, reason_to_tell(reason));
   scree_output_discard(output);

@@ -47,6 +47,7 @@ typedef struct scree_output {
   FILE *stream;
   char *path;           /* NULL: the stream is stdout */
   char *temporary_path; /* NULL: path is no file and written to directly; "": has no name yet */
+  bool overwrite;       /* a file that has the name by then */
 } scree_output;
 
 /* Opens path for writing ("-" is stdout). Without overwrite an existing file is refused with

@@ -67,8 +67,7 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
   char *dot = strrchr(buffer, '.');
   if (dot && dot != buffer) *dot = 0;
   if (!buffer[0]) snprintf(buffer, size, "scan");
-  for (char *c = buffer; *c; c++)
-    if ((unsigned char)*c < ' ' || *c == 127) *c = '_'; /* a name goes into tables and file names */
+  cli_make_printable(buffer, '_'); /* a name goes into tables and file names */
 }
 
 static bool begins_character(char c) {

@@ -3,6 +3,8 @@
 #include "cli/output.h"
 
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 typedef struct pile_arguments {
   const char *cell, *sectors, *band_low, *band_high; /* in the order of `settings` */
@@ -96,12 +98,16 @@ static int write_picture(const cli_call *call, const scree_run *run, const scree
              : cli_fail(error);
 }
 
+/* Also by another name, as /dev/stdout, or a file that the shell has it write to. */
 static bool is_stdout(const char *path) {
-  return path && !strcmp(path, "-");
+  struct stat named, out;
+  if (!path || !strcmp(path, "-")) return path;
+  return stat(path, &named) == 0 && fstat(STDOUT_FILENO, &out) == 0 && !S_ISCHR(named.st_mode) &&
+         named.st_dev == out.st_dev && named.st_ino == out.st_ino;
 }
 
-/* 0, or 2 after telling which two of the options write to stdout. */
-static int check_stdout(const cli_call *call) {
+/* 0, or 2 after telling which two of the options write to stdout, or to one file. */
+static int check_apart(const cli_call *call) {
   const pile_arguments *a = call->options;
   const char *there[] = {a->json ? "--json" : NULL, is_stdout(a->csv) ? "--csv -" : NULL,
                          is_stdout(a->vtp) ? "--vtp -" : NULL,
@@ -112,6 +118,11 @@ static int check_stdout(const cli_call *call) {
       return cli_misuse(call->verb, "%s and %s exclude each other", first, there[i]);
     if (there[i]) first = there[i];
   }
+  const char *files[] = {a->csv, a->vtp, a->picture};
+  for (size_t i = 0; i < 3; i++)
+    for (size_t k = 0; k < i; k++)
+      if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
+        return cli_misuse(call->verb, "two outputs have the name %s", files[i]);
   return 0;
 }
 
@@ -160,7 +171,7 @@ static int run(const cli_call *call) {
   scree_render_options render = scree_default_render_options();
   scree_run *loaded;
   scree_error error;
-  int code = check_stdout(call);
+  int code = check_apart(call);
   if (code == 0) code = cli_parse_size(call->verb, a->size, &render.width, &render.height);
   if (code == 0 && a->vtp) code = cli_check_ending(call->verb, a->vtp, CLI_VTP);
   if (code == 0 && a->picture) code = cli_check_ending(call->verb, a->picture, CLI_PICTURE);

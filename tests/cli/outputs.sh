@@ -55,3 +55,8 @@ ls
 long=$(printf '\303\244%.0s' $(seq 125)).off
 run sample box-12 -q -o "$long" >/dev/null && ls
 run sample box-12 -q -o "long$long"
+# a character that a terminal obeys may take two bytes
+control=$(printf 'c\302\2331m.off')
+box 1 2 3 >"$control"
+"$SCREE" measure "$control" | sed -n 1p
+"$SCREE" check "nothing-$control"

@@ -61,6 +61,9 @@ run pile whole/last.scree --vtp contacts.txt
 # one thing on stdout
 for words in '--json --csv -' '--json --vtp -' '--csv - -o -'; do run pile whole/last.scree $words 2>&1 | sed -n 2p; done
 "$SCREE" pile whole/last.scree --csv - 2>said | head -n 1 | cut -d, -f-3
+"$SCREE" pile whole/last.scree --csv /dev/stdout 2>said | head -n 1 | cut -d, -f-3
+"$SCREE" pile whole/last.scree --csv /dev/stdout --json 2>&1 | head -n 1
+run pile whole/last.scree --csv one.vtp --vtp one.vtp 2>&1 | sed -n 2p
 cmp said measured && "$SCREE" pile whole/last.scree -q --vtp - 2>&1 | head -n 1
 run pile box.off
 run pile nothing.scree

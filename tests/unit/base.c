@@ -261,6 +261,28 @@ static void a_killed_process_leaves_no_half_of_a_file(void **state) {
 }
 #endif
 
+/* Of two that write the same new file at once, one. */
+static void the_second_of_two_does_not_overwrite(void **state) {
+  (void)state;
+  scree_error error;
+  scree_output first, second;
+  char path[400];
+  snprintf(path, sizeof path, "%s", in_folder("raced"));
+  CHECK_OK(scree_output_open(path, false, &first, &error), error);
+  CHECK_OK(scree_output_open(path, false, &second, &error), error);
+  fputs("first", first.stream);
+  fputs("second", second.stream);
+  CHECK_OK(scree_output_commit(&first, &error), error);
+  assert_int_equal(scree_output_commit(&second, &error), SCREE_EXISTS);
+  assert_non_null(strstr(error.message, "exists already; not overwritten"));
+  CHECK_OK(scree_output_open(path, true, &second, &error), error);
+  CHECK_OK(scree_output_open(path, true, &first, &error), error);
+  fputs("third", second.stream);
+  CHECK_OK(scree_output_commit(&second, &error), error);
+  CHECK_OK(scree_output_commit(&first, &error), error);
+  assert_int_equal(unlink(path), 0);
+}
+
 static void a_discarded_tail_can_be_used_again(void **state) {
   (void)state;
   const size_t size = (size_t)16 << 20, kept = (size_t)5 << 20;
@@ -340,6 +362,7 @@ int main(void) {
       cmocka_unit_test(random_numbers_have_the_moments_they_claim),
       cmocka_unit_test(a_shuffle_gives_every_order_alike),
       cmocka_unit_test(files_are_whole_or_absent),
+      cmocka_unit_test(the_second_of_two_does_not_overwrite),
 #ifdef O_TMPFILE
       cmocka_unit_test(a_killed_process_leaves_no_half_of_a_file),
 #endif
