@@ -49,6 +49,7 @@ static scree_status close_surface(const char *word, bool no_repair, const scree_
 scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
                              const scree_progress *progress, scree_scan *scan, double *scale,
                              scree_repair_report *report, scree_error *error) {
+  if (report) *report = (scree_repair_report){.before.usable = true};
   scree_status status = load_unscaled(word, options, progress, scan, scale, error);
   if (status != SCREE_OK) return cli_name_in_error(word, error);
   return close_surface(word, no_repair, progress, scan, report, error);
