@@ -276,14 +276,15 @@ static int create_nameless(const char *path, char *name, size_t size) {
   int length = !slash ? 1 : slash == path ? 1 : (int)(slash - path);
   snprintf(name, size, "%.*s", length, slash ? path : ".");
   int fd = open(name, O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
+  if (fd < 0) return -1;
   char link[TAIL_BYTES];
-  if (fd >= 0) own_link(fd, link);
-  if (fd >= 0 && access(link, F_OK) != 0) {
-    close(fd);
-    fd = -1;
+  own_link(fd, link);
+  if (access(link, F_OK) == 0) {
+    *name = 0;
+    return fd;
   }
-  if (fd >= 0) *name = 0;
-  return fd;
+  close(fd);
+  return -1;
 }
 
 static bool copy_bytes(int from, int to) {
@@ -426,21 +427,21 @@ static const char *reason_to_tell(int reason) {
   return reason ? strerror(reason) : "the disk is full, or a limit is reached";
 }
 
-/* The whole file takes its name; a file that has come there meanwhile is spared, where it may not
- * be overwritten. */
+/* rename that spares a file that has come there meanwhile, where the file system can do that. */
+static int rename_new(const char *from, const char *to) {
+#ifdef RENAME_NOREPLACE
+  if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
+  if (errno != EINVAL && errno != ENOSYS) return -1;
+#endif
+  return rename(from, to);
+}
+
+/* The whole file takes its name. */
 static bool take_place(scree_output *output) {
   const char *from = output->temporary_path, *to = output->path;
-  bool placed = false, done = false;
-#ifdef RENAME_NOREPLACE
-  if (!output->overwrite) {
-    placed = renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0;
-    done =
-        placed || (errno != EINVAL && errno != ENOSYS); /* else the file system has no such thing */
-  }
-#endif
-  if (!done) placed = rename(from, to) == 0;
-  if (placed) *output->temporary_path = 0; /* anybody's again */
-  return placed;
+  if ((output->overwrite ? rename(from, to) : rename_new(from, to)) != 0) return false;
+  *output->temporary_path = 0; /* anybody's again */
+  return true;
 }
 
 scree_status scree_output_commit(scree_output *output, scree_error *error) {

@@ -2,13 +2,14 @@
 #ifndef SCREE_CLI_DROP_H
 #define SCREE_CLI_DROP_H
 
-#include "cli/args.h"
+#include "cli/input.h"
 
 enum { DROP_PATH_BYTES = 4096 };
 
 typedef struct drop_arguments {
   const char *output, *picture;
-  double rp, unit, resolution, noise;
+  cli_source source;
+  double rp;
   size_t triangles, seed, number, samples;
   double width, depth, drop_height, speed;
   double time, still, frame_interval, checkpoint_interval;

@@ -89,17 +89,9 @@ static void describe(drop_shape *shape, const scree_scan *scan) {
     snprintf(shape->source + used, size - used, ", %zu triangles", scan->mesh.triangle_count);
 }
 
-static cli_input_options input_options(const drop_arguments *a) {
-  cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
-  input.read.unit_m = a->unit;
-  input.sample.resolution = a->resolution;
-  input.sample.noise = a->noise;
-  return input;
-}
-
 static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mesh, double *scale,
                          scree_error *error) {
-  cli_input_options input = input_options(run->arguments);
+  cli_input_options input = cli_source_options(&run->arguments->source);
   scree_repair_report report;
   scree_scan scan;
   char shown[CLI_PRINTABLE_BYTES];
@@ -141,7 +133,7 @@ static bool is_small(const drop_arguments *a, const scree_mesh *mesh) {
 static scree_status decimate(const drop_run *run, const drop_shape *shape, scree_mesh *mesh,
                              double scale, scree_error *error) {
   if (is_small(run->arguments, mesh)) {
-    cli_input_options input = input_options(run->arguments);
+    cli_input_options input = cli_source_options(&run->arguments->source);
     return cli_into_metres(shape->name, &input, run->arguments->no_repair, scale,
                            run->call->progress, mesh, error);
   }
@@ -186,7 +178,8 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
   if (shape->diameter > 0)
     return scree_particle_sphere(0.5 * shape->diameter, &shape->particle, error);
   if (cli_is_clump(shape->name))
-    return scree_particle_clump_read(shape->name, run->arguments->unit, &shape->particle, error);
+    return scree_particle_clump_read(shape->name, run->arguments->source.unit, &shape->particle,
+                                     error);
   scree_mesh mesh;
   double scale;
   scree_status status = load(run, shape, &mesh, &scale, error);

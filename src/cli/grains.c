@@ -88,6 +88,10 @@ static double smallest_rp(const cli_grain_options *o) {
   return least;
 }
 
+static bool is_decimated(const cli_grain_options *o) {
+  return smallest_rp(o) < 1;
+}
+
 /* The scan is in metres, but where it is decimated only once it is multiplied by the scale. */
 static scree_status make_levels(const maker *m, size_t shape, const char *word, scree_scan *scan,
                                 double scale) {
@@ -95,7 +99,7 @@ static scree_status make_levels(const maker *m, size_t shape, const char *word, 
   scree_mesh *mesh = &scan->mesh;
   scree_curve *curve = NULL;
   scree_status status = SCREE_OK;
-  if (smallest_rp(o) < 1) {
+  if (is_decimated(o)) {
     scree_simplify_options simplify = scree_default_simplify_options();
     simplify.method = (scree_method)o->method;
     simplify.stop_count = scree_choice_target(smallest_rp(o), mesh->triangle_count);
@@ -127,14 +131,11 @@ static scree_status make_levels(const maker *m, size_t shape, const char *word, 
 static scree_status make_from_scan(const maker *m, size_t shape, const char *word) {
   cli_input_options input = cli_source_options(&m->options->source);
   scree_scan scan;
-  double scale;
+  double scale = 1;
   scree_status status = cli_load_closed(word, &input, m->options->no_repair, m->progress, &scan,
-                                        &scale, NULL, m->error);
+                                        is_decimated(m->options) ? &scale : NULL, NULL, m->error);
   if (status != SCREE_OK) return status;
-  if (!(smallest_rp(m->options) < 1))
-    status = cli_into_metres(word, &input, m->options->no_repair, scale, m->progress, &scan.mesh,
-                             m->error);
-  if (status == SCREE_OK) status = make_levels(m, shape, word, &scan, scale);
+  status = make_levels(m, shape, word, &scan, scale);
   scree_scan_free(&scan);
   return status == SCREE_OK ? status : cli_name_in_error(word, m->error);
 }

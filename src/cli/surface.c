@@ -30,13 +30,14 @@ static scree_status load_unscaled(const char *word, const cli_input_options *opt
   return SCREE_OK;
 }
 
-static scree_status close_surface(const char *word, bool no_repair, const scree_progress *progress,
-                                  scree_scan *scan, scree_repair_report *report,
-                                  scree_error *error) {
+scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
+                             const scree_progress *progress, scree_scan *scan, double *scale,
+                             scree_repair_report *report, scree_error *error) {
   scree_repair_options repair = scree_default_repair_options();
   scree_repair_report made = {.before.usable = true};
-  scree_status status = SCREE_OK;
-  if (!cli_is_sample(word, NULL)) {
+  scree_status status = scale ? load_unscaled(word, options, progress, scan, scale, error)
+                              : cli_load(word, options, progress, scan, error);
+  if (status == SCREE_OK && !cli_is_sample(word, NULL)) {
     status = scree_mesh_prepare(&scan->mesh, no_repair ? NULL : &repair, progress, &scan->mesh,
                                 &made, error);
     if (status != SCREE_OK && !no_repair) cli_hint_at_holes(&made, &repair, error);
@@ -44,15 +45,6 @@ static scree_status close_surface(const char *word, bool no_repair, const scree_
   }
   if (report) *report = made;
   return status == SCREE_OK ? status : cli_name_in_error(word, error);
-}
-
-scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
-                             const scree_progress *progress, scree_scan *scan, double *scale,
-                             scree_repair_report *report, scree_error *error) {
-  if (report) *report = (scree_repair_report){.before.usable = true};
-  scree_status status = load_unscaled(word, options, progress, scan, scale, error);
-  if (status != SCREE_OK) return cli_name_in_error(word, error);
-  return close_surface(word, no_repair, progress, scan, report, error);
 }
 
 scree_status cli_into_metres(const char *word, const cli_input_options *options, bool no_repair,
@@ -64,9 +56,8 @@ scree_status cli_into_metres(const char *word, const cli_input_options *options,
     scree_mesh_scale(mesh, scale);
     return SCREE_OK;
   }
-  scree_status status = cli_load(word, options, progress, &again, error);
-  if (status != SCREE_OK) return cli_name_in_error(word, error);
-  status = close_surface(word, no_repair, progress, &again, NULL, error);
+  scree_status status =
+      cli_load_closed(word, options, no_repair, progress, &again, NULL, NULL, error);
   if (status != SCREE_OK) return status;
   scree_mesh_free(mesh);
   *mesh = again.mesh;

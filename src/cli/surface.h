@@ -4,17 +4,16 @@
 
 #include "cli/input.h"
 
-/* cli_load of what is to be decimated: in metres only once it is multiplied by *scale, as
- * scree_curve_build_scaled does, because levels must not hang on the unit. What is no closed
- * surface is repaired, or with no_repair refused; samples are made closed and not looked at. Errors
- * name the word. report may be NULL. */
+/* cli_load, and what is no closed surface is repaired, or with no_repair refused; samples are made
+ * closed and not looked at. Errors name the word. scale is NULL where the surface is not decimated;
+ * else it is in metres only once it is multiplied by *scale, as scree_curve_build_scaled does,
+ * because levels must not hang on the unit. report may be NULL. */
 scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
                              const scree_progress *progress, scree_scan *scan, double *scale,
                              scree_repair_report *report, scree_error *error);
 
-/* Of what cli_load_closed gave and is not decimated: into metres, with the numbers of the file
- * times its unit, which a second multiplication may miss by rounding; so it is read anew, but for
- * stdin. */
+/* Into metres what cli_load_closed gave with a scale and is not decimated after all: read anew, but
+ * for stdin, because a second multiplication may miss the numbers of the file by rounding. */
 scree_status cli_into_metres(const char *word, const cli_input_options *options, bool no_repair,
                              double scale, const scree_progress *progress, scree_mesh *mesh,
                              scree_error *error);

@@ -13,9 +13,7 @@ static const double still_time = 0.05;    /* s below the still energy before it 
 static const double line_interval = 0.01; /* s between lines of series.csv */
 
 static const drop_arguments defaults = {.output = "drop",
-                                        .unit = 1e-3,
-                                        .resolution = 0.27e-3,
-                                        .noise = 0.02e-3,
+                                        .source = CLI_SOURCE_DEFAULTS,
                                         .number = 30,
                                         .seed = 1,
                                         .samples = 24,
@@ -97,11 +95,11 @@ static const cli_option options[] = {
      1e-9, 1e9, NULL},
     {"seed", 0, CLI_COUNT, AT(seed), "N", "Another seed, another pour. Default: 1.", 0,
      9007199254740992.0, NULL},
-    {"unit", 'u', CLI_UNIT, AT(unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
-     NULL},
-    {"resolution", 0, CLI_LENGTH, AT(resolution), "LENGTH",
+    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
+     0, NULL},
+    {"resolution", 0, CLI_LENGTH, AT(source.resolution), "LENGTH",
      "Vertex spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3, NULL},
-    {"noise", 0, CLI_LENGTH, AT(noise), "LENGTH",
+    {"noise", 0, CLI_LENGTH, AT(source.noise), "LENGTH",
      "Scanner's noise of built-in samples; at most a quarter of the resolution. Default: 0.02mm.",
      0, 1, NULL},
     {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,
@@ -339,12 +337,12 @@ static scree_status pour(drop_run *run, scree_error *error) {
 
 /* An option that says how shapes are made, with another value than its default; NULL if none. */
 static const char *shape_option(const drop_arguments *a) {
-  return a->rp > 0                      ? "reduction"
-         : a->triangles                 ? "count"
-         : a->number != defaults.number ? "number"
-         : a->no_repair                 ? "no-repair"
-         : a->unit != defaults.unit     ? "unit"
-                                        : NULL;
+  return a->rp > 0                                ? "reduction"
+         : a->triangles                           ? "count"
+         : a->number != defaults.number           ? "number"
+         : a->no_repair                           ? "no-repair"
+         : a->source.unit != defaults.source.unit ? "unit"
+                                                  : NULL;
 }
 
 static int run(const cli_call *call) {
@@ -354,9 +352,9 @@ static int run(const cli_call *call) {
                   .start = scree_work_started()};
   if (run.arguments->rp > 0 && run.arguments->triangles)
     return cli_misuse(call->verb, "-r and -n exclude each other");
-  if (run.arguments->noise > 0.25 * run.arguments->resolution)
+  if (run.arguments->source.noise > 0.25 * run.arguments->source.resolution)
     return cli_misuse(call->verb, "--noise %g mm: at most a quarter of the resolution, %g mm",
-                      1e3 * run.arguments->noise, 0.25e3 * run.arguments->resolution);
+                      1e3 * run.arguments->source.noise, 0.25e3 * run.arguments->source.resolution);
   if (run.arguments->depth > 0 && run.shape_count &&
       run.arguments->container != SCREE_CONTAINER_BOX)
     return cli_misuse(call->verb, "--depth does nothing without -c box");

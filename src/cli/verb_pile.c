@@ -159,10 +159,10 @@ static int measure(const cli_call *call, scree_run *run, const scree_render_opti
 
 static scree_status check_outputs(const cli_call *call, scree_error *error) {
   const pile_arguments *a = call->options;
-  scree_status status = a->csv ? cli_check_output(call, a->csv, a->force, error) : SCREE_OK;
-  if (status == SCREE_OK && a->vtp) status = cli_check_output(call, a->vtp, a->force, error);
-  if (status == SCREE_OK && a->picture)
-    status = cli_check_output(call, a->picture, a->force, error);
+  const char *const outputs[] = {a->csv, a->vtp, a->picture};
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < 3 && status == SCREE_OK; i++)
+    if (outputs[i]) status = cli_check_output(call, outputs[i], a->force, error);
   return status;
 }
 
