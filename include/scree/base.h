@@ -74,6 +74,10 @@ typedef struct scree_progress {
   double interval;
 } scree_progress;
 
+/* Replaces what a terminal obeys, the control characters of UTF-8 text: each of its bytes becomes
+ * `instead`. All errors' messages are so. */
+SCREE_API void scree_make_printable(char *text, char instead);
+
 /* Creates the folder and its parents; an existing folder is fine. */
 SCREE_API scree_status scree_folder_create(const char *path, scree_error *error);
 

@@ -16,6 +16,16 @@ const char *scree_status_text(scree_status status) {
   return (unsigned)status < SCREE_STATUS_COUNT ? texts[status] : "unknown status";
 }
 
+void scree_make_printable(char *text, char instead) {
+  for (char *c = text; *c; c++) {
+    unsigned char first = (unsigned char)c[0], second = (unsigned char)c[1];
+    if (first < ' ' || first == 127)
+      c[0] = instead;
+    else if (first == 0xc2 && second >= 0x80 && second < 0xa0) /* U+0080 to U+009F */
+      c[0] = c[1] = instead;
+  }
+}
+
 scree_status scree_fail_text(scree_error *error, scree_status status, const char *format, ...) {
   if (error) {
     error->status = status;
@@ -24,11 +34,7 @@ scree_status scree_fail_text(scree_error *error, scree_status status, const char
     vsnprintf(error->message, sizeof error->message, format, arguments);
     va_end(arguments);
     /* names and values from files come in as they are: one line, nothing a terminal obeys */
-    for (unsigned char *c = (unsigned char *)error->message; *c; c++)
-      if (*c < ' ' || *c == 127)
-        *c = '?';
-      else if (c[0] == 0xc2 && c[1] >= 0x80 && c[1] < 0xa0) /* U+0080 to U+009F */
-        c[0] = c[1] = '?';
+    scree_make_printable(error->message, '?');
   }
   return status;
 }

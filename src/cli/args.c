@@ -77,19 +77,9 @@ int cli_fail(const scree_error *error) {
   return 1;
 }
 
-void cli_make_printable(char *text, char instead) {
-  for (char *c = text; *c; c++) {
-    unsigned char first = (unsigned char)c[0], second = (unsigned char)c[1];
-    if (first < ' ' || first == 127)
-      c[0] = instead;
-    else if (first == 0xc2 && second >= 0x80 && second < 0xa0) /* U+0080 to U+009F */
-      c[0] = c[1] = instead;
-  }
-}
-
 const char *cli_printable(const char *text, char buffer[CLI_PRINTABLE_BYTES]) {
   snprintf(buffer, CLI_PRINTABLE_BYTES, "%s", text);
-  cli_make_printable(buffer, '?');
+  scree_make_printable(buffer, '?');
   return buffer;
 }
 
@@ -97,7 +87,7 @@ scree_status cli_refuse(scree_error *error, scree_status status, const char *pat
                         const char *reason) {
   error->status = status;
   snprintf(error->message, sizeof error->message, "%.700s: %.300s", path, reason);
-  cli_make_printable(error->message, '?');
+  scree_make_printable(error->message, '?');
   return status;
 }
 
@@ -111,7 +101,7 @@ static bool names(const char *message, const char *word) {
 scree_status cli_name_in_error(const char *word, scree_error *error) {
   char message[sizeof error->message], name[sizeof error->message];
   snprintf(name, sizeof name, "%s", strcmp(word, "-") != 0 ? word : "standard input");
-  cli_make_printable(name, '?');
+  scree_make_printable(name, '?');
   if (error->status == SCREE_CANCELLED || names(error->message, name)) return error->status;
   memcpy(message, error->message, sizeof message);
   snprintf(error->message, sizeof error->message, "%.300s: %.700s", name, message);
@@ -124,7 +114,7 @@ int cli_misuse(const cli_verb *verb, const char *format, ...) {
   va_start(arguments, format);
   vsnprintf(message, sizeof message, format, arguments);
   va_end(arguments);
-  cli_make_printable(message, '?'); /* the words of the call come in as they are */
+  scree_make_printable(message, '?'); /* the words of the call come in as they are */
   fprintf(stderr, "scree%s%s: %s", verb ? " " : "", verb ? verb->name : "", message);
   if (verb)
     fprintf(stderr, "\nusage: scree %s [options] %s\n`scree help %s` lists the options.\n",

@@ -83,10 +83,8 @@ void cli_print_man(FILE *stream);
 void cli_print_completion(FILE *stream);
 
 enum { CLI_PRINTABLE_BYTES = 4200 };
-/* Nothing that a terminal obeys stays, as errors of the library have it. */
-void cli_make_printable(char *text, char instead);
-/* A copy of a name as text may show it, each character that a terminal obeys as a ?, as errors of
- * the library have it. For people: JSON and CSV keep names as they are. */
+/* A copy of a name as text may show it: scree_make_printable with a ?, as in errors. For people:
+ * JSON and CSV keep names as they are. */
 const char *cli_printable(const char *text, char buffer[CLI_PRINTABLE_BYTES]);
 
 /* Prints "scree: message" on stderr; returns the exit code 1. */

@@ -67,7 +67,7 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
   char *dot = strrchr(buffer, '.');
   if (dot && dot != buffer) *dot = 0;
   if (!buffer[0]) snprintf(buffer, size, "scan");
-  cli_make_printable(buffer, '_'); /* a name goes into tables and file names */
+  scree_make_printable(buffer, '_'); /* a name goes into tables and file names */
 }
 
 static bool begins_character(char c) {
