@@ -11,19 +11,19 @@ typedef struct distance_arguments {
   bool json, one_way;
 } distance_arguments;
 
-static const distance_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
+static const distance_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .gap = 0.01};
 
 static const cli_option options[] = {
     {"unit", 'u', CLI_UNIT, offsetof(distance_arguments, source.unit), "UNIT",
      "The files' unit of length, which the text is given in, too. Default: mm.", 0, 0, NULL},
     {"samples", 'n', CLI_COUNT, offsetof(distance_arguments, samples), "N",
-     "Points spread over each surface, besides one per facet and every vertex. Default: the "
-     "greater vertex count, at least 10,000.",
+     "Parts that each surface is cut in, every facet at least one. Default: the greater vertex "
+     "count, at least 10,000, and more until the means are exact to 1 %.",
      1, 268435456, NULL},
     {"gap", 0, CLI_REAL, offsetof(distance_arguments, gap), "SHARE",
-     "Go on until the Hausdorff distance is known to this share of itself, such as 0.01. Default: "
-     "only sample, and say the bound that follows.",
-     1e-6, 1e6, NULL},
+     "Go on until the Hausdorff distance is known to this share of itself; 0: only sample, and say "
+     "the bound that follows. Default: 0.01.",
+     0, 1e6, NULL},
     {"one-way", '1', CLI_FLAG, offsetof(distance_arguments, one_way), NULL,
      "Only from A to B, not back.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(distance_arguments, source),

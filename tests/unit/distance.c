@@ -122,6 +122,26 @@ static void test_spheres(void **state) {
   scree_mesh_free(&b);
 }
 
+/* By default mean and rms are within 1 per cent of dense samples, and so is the Hausdorff distance:
+ * between coarse and fine surfaces too, where few samples fall on a facet. */
+static void test_converged(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 33};
+  for (size_t level = 0; level < 4; level++) {
+    scree_mesh a = shape_icosphere(1, level), b = shape_icosphere(1, 5);
+    shape_shake(&a, 0.05, &rng);
+    scree_distance_options dense = {.sample_count = 400000, .hausdorff_gap = 1e-3};
+    scree_distance d = distance_of(&a, &b, NULL), e = distance_of(&a, &b, &dense);
+    CHECK_NEAR(d.forward.mean / e.forward.mean, 1, 0.005);
+    CHECK_NEAR(d.forward.rms / e.forward.rms, 1, 0.005);
+    CHECK_NEAR(d.backward.mean / e.backward.mean, 1, 0.005);
+    CHECK_NEAR(d.hausdorff / e.hausdorff, 1, 0.01);
+    assert_true(d.hausdorff_bound <= 1.0101 * d.hausdorff);
+    scree_mesh_free(&a);
+    scree_mesh_free(&b);
+  }
+}
+
 /* A surface and the same surface cut finer, coincide. */
 static void test_same_surface(void **state) {
   (void)state;
@@ -322,12 +342,13 @@ static void test_refusals(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_plates),      cmocka_unit_test(test_overhang),
-      cmocka_unit_test(test_bridged_pit), cmocka_unit_test(test_icosahedra),
-      cmocka_unit_test(test_spheres),     cmocka_unit_test(test_same_surface),
-      cmocka_unit_test(test_brute_force), cmocka_unit_test(test_noise_rule),
-      cmocka_unit_test(test_field),       cmocka_unit_test(test_threads),
-      cmocka_unit_test(test_flat_facets), cmocka_unit_test(test_refusals),
+      cmocka_unit_test(test_plates),       cmocka_unit_test(test_overhang),
+      cmocka_unit_test(test_bridged_pit),  cmocka_unit_test(test_icosahedra),
+      cmocka_unit_test(test_spheres),      cmocka_unit_test(test_converged),
+      cmocka_unit_test(test_same_surface), cmocka_unit_test(test_brute_force),
+      cmocka_unit_test(test_noise_rule),   cmocka_unit_test(test_field),
+      cmocka_unit_test(test_threads),      cmocka_unit_test(test_flat_facets),
+      cmocka_unit_test(test_refusals),
   };
   scree_set_threads(1); /* many tiny trees: waking threads would take longer than the work */
   return cmocka_run_group_tests(tests, NULL, NULL);
