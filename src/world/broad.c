@@ -186,46 +186,54 @@ static bool list_keys(scree_world *world, double width) {
   return true;
 }
 
-/* The new list: pairs that were there keep their objects. Room is made before anything moves. */
+static uint64_t key_at(const scree_world *world, size_t k) {
+  const scree_neighbours *n = &world->neighbours.items[k];
+  return key_of(n->a, n->b, n->wall);
+}
+
+static void move_neighbours(scree_world *world, size_t from, size_t to) {
+  if (from == to) return;
+  world->neighbours.items[to] = world->neighbours.items[from];
+  world->pair_of.items[to] = world->pair_of.items[from];
+}
+
+/* Those that are no longer near give their pairs back; the others move together. */
+static void drop_neighbours(scree_world *world) {
+  size_t kept = 0, key = 0;
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    uint64_t own = key_at(world, k);
+    while (key < world->keys.count && world->keys.items[key] < own) key++;
+    if (key < world->keys.count && world->keys.items[key] == own)
+      move_neighbours(world, k, kept++);
+    else if (world->pair_of.items[k] != scree_none)
+      scree_pair_give_back(world, world->pair_of.items[k]);
+  }
+  world->neighbours.count = kept;
+}
+
+/* The new list, in place: those that were there keep what they are. Room is made before anything
+ * moves. */
 static bool merge_neighbours(scree_world *world) {
   size_t needed = world->keys.count;
-  if (!SCREE_RESERVE(&world->merged_neighbours, needed) ||
-      !SCREE_RESERVE(&world->neighbours, needed) ||
-      !SCREE_RESERVE(&world->spare_neighbours,
-                     world->spare_neighbours.count + world->neighbours.count))
+  if (needed >= scree_none || !SCREE_RESERVE(&world->neighbours, needed) ||
+      !SCREE_RESERVE(&world->pair_of, needed))
     return false;
-  bool complete = true;
-  size_t old = 0, merged = 0;
-  for (size_t k = 0; k < needed; k++) {
+  drop_neighbours(world);
+  size_t old = world->neighbours.count;
+  for (size_t k = needed; k-- > 0;) { /* from the end, where there is room */
     uint64_t key = world->keys.items[k];
-    uint32_t a = (uint32_t)(key >> 32), b = (uint32_t)key & 0x7fffffffu;
-    bool wall = (key & 0x80000000u) != 0;
-    while (old < world->neighbours.count) {
-      const scree_neighbours *n = world->neighbours.items[old];
-      if (key_of(n->a, n->b, n->wall) >= key) break;
-      scree_neighbours_give_back(world, world->neighbours.items[old++]);
+    if (old > 0 && key_at(world, old - 1) == key) {
+      move_neighbours(world, --old, k);
+      scree_pair *pair = scree_pair_of(world, k);
+      if (pair) pair->neighbours = (uint32_t)k;
+      continue;
     }
-    scree_neighbours *both = NULL;
-    if (old < world->neighbours.count) {
-      scree_neighbours *n = world->neighbours.items[old];
-      if (key_of(n->a, n->b, n->wall) == key) both = n, old++;
-    }
-    if (!both) both = scree_neighbours_take(world, a, b, wall);
-    if (both)
-      world->merged_neighbours.items[merged++] = both;
-    else
-      complete = false;
+    world->neighbours.items[k] = scree_neighbours_new(
+        world, (uint32_t)(key >> 32), (uint32_t)key & 0x7fffffffu, (key & 0x80000000u) != 0);
+    world->pair_of.items[k] = scree_none;
   }
-  while (old < world->neighbours.count)
-    scree_neighbours_give_back(world, world->neighbours.items[old++]);
-  scree_neighbours **swapped = world->neighbours.items;
-  size_t capacity = world->neighbours.capacity;
-  world->neighbours.items = world->merged_neighbours.items;
-  world->neighbours.capacity = world->merged_neighbours.capacity;
-  world->neighbours.count = merged;
-  world->merged_neighbours.items = swapped;
-  world->merged_neighbours.capacity = capacity;
-  return complete;
+  world->neighbours.count = needed;
+  return true;
 }
 
 static void fill_slots(scree_world *world) {
@@ -233,13 +241,13 @@ static void fill_slots(scree_world *world) {
   world->due.count = bodies + world->walls.count;
   for (size_t i = 0; i < bodies; i++) scree_set_body_due(world, i);
   for (size_t w = 0; w < world->walls.count; w++) scree_set_wall_due(world, w);
-  world->slots.count = world->pairs.count = world->neighbours.count;
+  world->slots.count = world->neighbours.count;
   for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_neighbours *n = world->neighbours.items[k];
+    const scree_neighbours *n = &world->neighbours.items[k];
     world->slots.items[k] = (scree_slot){n->asleep ? n->wake : -INFINITY, n->a,
                                          n->wall ? (uint32_t)bodies + n->b : n->b};
-    world->pairs.items[k] = n->pair;
-    scree_mark_touching(world, k, n->pair && n->pair->touching);
+    const scree_pair *pair = scree_pair_of(world, k);
+    scree_mark_touching(world, k, pair && pair->touching);
   }
 }
 
@@ -251,21 +259,20 @@ static bool list_sides(scree_world *world) {
   if (bodies == 0) return true; /* there are no arrays yet */
   if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->acting, 2 * pairs) ||
       !SCREE_RESERVE(&world->due, bodies + world->walls.count) ||
-      !SCREE_RESERVE(&world->slots, pairs) || !SCREE_RESERVE(&world->pairs, pairs) ||
-      !SCREE_RESERVE(&world->touching, pairs / 64 + 1))
+      !SCREE_RESERVE(&world->slots, pairs) || !SCREE_RESERVE(&world->touching, pairs / 64 + 1))
     return false;
   fill_slots(world);
   size_t *begin = world->side_begin;
   memset(begin, 0, (bodies + 1) * sizeof *begin);
   for (size_t k = 0; k < pairs; k++) {
-    const scree_neighbours *n = world->neighbours.items[k];
+    const scree_neighbours *n = &world->neighbours.items[k];
     begin[n->a + 1]++;
     if (!n->wall) begin[n->b + 1]++;
   }
   for (size_t i = 0; i < bodies; i++) begin[i + 1] += begin[i];
   world->sides.count = begin[bodies];
   for (size_t k = pairs; k-- > 0;) {
-    const scree_neighbours *n = world->neighbours.items[k];
+    const scree_neighbours *n = &world->neighbours.items[k];
     world->sides.items[--begin[n->a + 1]] = (uint32_t)(2 * k);
     if (!n->wall) world->sides.items[--begin[n->b + 1]] = (uint32_t)(2 * k + 1);
   }

@@ -7,7 +7,6 @@
  * in the frame of b; edges that face away from each other are left out. */
 #include "world/world.h"
 
-#include "base/array.h"
 #include "base/progress.h"
 #include "particle/closest.h"
 
@@ -22,7 +21,7 @@ typedef struct listing {
   scree_scratch *scratch;
   double skin;
   uint64_t awake[4]; /* mark_awake */
-  bool failed;
+  bool full;         /* the pool of sleepers */
 } listing;
 
 /* What tells one item from another: the cached face is not part of it. */
@@ -34,8 +33,8 @@ static uint64_t name_of(uint32_t kind, uint32_t a, uint32_t b) {
 
 /* One bit for each awake item's name: most names are not among them. */
 static void mark_awake(listing *l) {
-  for (size_t i = 0; i < l->pair->active.count; i++) {
-    const scree_item *item = &l->pair->active.items[i];
+  for (uint32_t i = 0; i < l->pair->active.count; i++) {
+    const scree_item *item = &l->scratch->items[i];
     uint64_t bit = name_of(item->kind, item->a, item->b) >> 56;
     l->awake[bit >> 6] |= (uint64_t)1 << (bit & 63);
   }
@@ -44,8 +43,8 @@ static void mark_awake(listing *l) {
 static bool is_awake(const listing *l, uint32_t kind, uint32_t a, uint32_t b) {
   uint64_t name = name_of(kind, a, b), bit = name >> 56;
   if (!(l->awake[bit >> 6] >> (bit & 63) & 1)) return false;
-  for (size_t i = 0; i < l->pair->active.count; i++) {
-    const scree_item *item = &l->pair->active.items[i];
+  for (uint32_t i = 0; i < l->pair->active.count; i++) {
+    const scree_item *item = &l->scratch->items[i];
     if (item->kind == kind && name_of(kind, item->a, item->b) == name) return true;
   }
   return false;
@@ -53,8 +52,13 @@ static bool is_awake(const listing *l, uint32_t kind, uint32_t a, uint32_t b) {
 
 static void put_to_sleep(listing *l, scree_item_kind kind, uint32_t a, uint32_t b, double gap) {
   if (gap > l->skin || is_awake(l, kind, a, b)) return;
-  scree_sleeper sleeper = {l->pair->list.path + gap, a, b, kind};
-  if (!SCREE_PUSH(&l->pair->neighbours->sleeping, sleeper)) l->failed = true;
+  scree_range *sleeping = &l->scratch->neighbours->sleeping;
+  if (l->full || !scree_reserve_sleepers(l->scratch, sleeping->count + 1)) {
+    l->full = true;
+    return;
+  }
+  scree_sleepers(l->scratch)[sleeping->count++] =
+      (scree_sleeper){l->pair->list.path + gap, a, b, kind};
 }
 
 static vec3 into_b(const listing *l, vec3 p) {
@@ -286,7 +290,7 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
   l.skin = fmax(l.skin, fmin(SCREE_FAST_STEPS * pair->list.travel, fast_skins * l.skin));
   l.skin = fmin(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
   mark_awake(&l);
-  pair->neighbours->sleeping.count = 0;
+  scratch->neighbours->sleeping.count = 0;
   bool analytic = pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b]);
   double apart = analytic ? 0 : least_distance(&l);
   pair->list.region_radius = 0;
@@ -305,5 +309,5 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
   pair->list.end = pair->list.path + l.skin;
   scratch->list_builds++;
   scratch->candidate_seconds += scree_now() - started;
-  return !l.failed;
+  return !l.full;
 }

@@ -15,8 +15,6 @@
  * second order like the integrator. */
 #include "world/world.h"
 
-#include "base/array.h"
-
 static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
 /* What lies so deep in the other body, of the overlap limit and of half the thinnest wall, */
 static const double deep_shares[2] = {0.5, 0.75};
@@ -37,15 +35,15 @@ static double power_of(const scree_kept_load *load, vec3 velocity, vec3 spin) {
  * torques M - arm x F on a and -M on b, the power is F.(va - vb - wa x arm) + M.(wa - wb); the arm
  * is as it was before the drift. */
 static void add_later_work(const scree_world *world, const scree_pair *pair,
-                           scree_pair_sums *sums) {
+                           scree_pair_work *work) {
   const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
   vec3 slip = vec3_sub(a->velocity, b->velocity),
        arm = vec3_mad(vec3_sub(a->position, b->position), slip, -world->time_step),
        u = vec3_sub(slip, vec3_cross(a->spin, arm)), spin = vec3_sub(a->spin, b->spin);
   double half = 0.5 * world->time_step;
-  sums->dashpot += half * power_of(&pair->dashpot, u, spin);
-  sums->tangential += half * power_of(&pair->tangential, u, spin);
-  if (pair->wall) sums->wall_work += half * wall_power(pair, b);
+  work->later_dashpot = half * power_of(&pair->dashpot, u, spin);
+  work->later_tangential = half * power_of(&pair->tangential, u, spin);
+  if (pair->wall) work->later_wall = half * wall_power(pair, b);
 }
 
 static double bodies_path(const scree_world *world, const scree_pair *pair) {
@@ -72,8 +70,7 @@ static double moving_ball(const scree_world *world, const scree_pair *pair, vec3
  * of the bodies' paths is a bound, but bodies that fly together hardly move relative to each other:
  * the net motion is another, and as good, since nothing can have touched in between. */
 static double slept_path(const scree_world *world, const scree_pair *pair,
-                         const scree_frame *relative) {
-  const scree_neighbours *n = pair->neighbours;
+                         const scree_neighbours *n, const scree_frame *relative) {
   vec3 centre;
   double radius = moving_ball(world, pair, n->asleep_at, &centre);
   mat3 then = quat_to_mat3(n->asleep_turned);
@@ -105,26 +102,38 @@ static double relate(const scree_world *world, const scree_pair *pair,
   return vec3_norm(there) + radius * vec3_norm(spin);
 }
 
-static bool wake_items(scree_pair *pair) {
+/* What is due wakes; when there is no room for all some are awake already, which is no harm. */
+static bool wake_items(scree_pair *pair, scree_scratch *scratch) {
   double due = pair->list.path + 2 * pair->list.travel + scree_pair_claim(pair), next = INFINITY;
   if (due < pair->list.next_item) return true;
-  scree_neighbours *n = pair->neighbours;
-  size_t kept = 0;
-  for (size_t i = 0; i < n->sleeping.count; i++) {
-    scree_sleeper sleeper = n->sleeping.items[i];
-    if (due < sleeper.wake) {
+  scree_range *sleeping = &scratch->neighbours->sleeping;
+  scree_sleeper *sleepers = scree_sleepers(scratch);
+  bool room = true;
+  uint32_t kept = 0;
+  for (uint32_t i = 0; i < sleeping->count; i++) {
+    scree_sleeper sleeper = sleepers[i];
+    room =
+        room && (due < sleeper.wake || scree_reserve_items(scratch, pair, pair->active.count + 1));
+    if (due < sleeper.wake || !room) {
       if (sleeper.wake < next) next = sleeper.wake; /* fmin is a call */
-      if (kept < i) n->sleeping.items[kept] = sleeper;
+      if (kept < i) sleepers[kept] = sleeper;
       kept++;
       continue;
     }
-    scree_item item = {.kind = (uint8_t)sleeper.kind, .a = sleeper.a, .b = sleeper.b};
-    if (!scree_pair_reserve_items(pair, pair->active.count + 1)) return false;
-    pair->active.items[pair->active.count++] = item;
+    scratch->items[pair->active.count++] =
+        (scree_item){.kind = (uint8_t)sleeper.kind, .a = sleeper.a, .b = sleeper.b};
   }
-  n->sleeping.count = kept;
+  sleeping->count = kept;
   pair->list.next_item = next;
-  return true;
+  return room;
+}
+
+/* For the touches of all awake items, and for them all to fall asleep. */
+static bool has_room(const scree_pair *pair, scree_scratch *scratch) {
+  size_t touches = (size_t)SCREE_ANCHORS * pair->active.count;
+  if (touches > scratch->touches.capacity) scratch->touches_needed = touches;
+  return touches <= scratch->touches.capacity &&
+         scree_reserve_sleepers(scratch, scratch->neighbours->sleeping.count + pair->active.count);
 }
 
 /* Evaluates the awake items; those that cannot touch soon go to sleep. */
@@ -133,8 +142,8 @@ static bool visit_items(const scree_world *world, scree_pair *pair, const scree_
   double nap = least_sleep * pair->list.travel + scree_pair_claim(pair);
   size_t kept = 0;
   /* asleep items move only after all touches are found: touches point at anchors */
-  for (size_t i = 0; i < pair->active.count; i++) {
-    scree_item *item = &pair->active.items[i];
+  for (uint32_t i = 0; i < pair->active.count; i++) {
+    scree_item *item = &scratch->items[i];
     double gap = scree_item_touch(world, pair, item, relative, scratch);
     item->gap = gap > nap && gap > 0 && !item->inside ? gap : 0;
     kept += item->gap > 0;
@@ -142,30 +151,29 @@ static bool visit_items(const scree_world *world, scree_pair *pair, const scree_
   return kept > 0;
 }
 
-static bool settle_items(scree_pair *pair) {
-  size_t kept = 0;
-  for (size_t i = 0; i < pair->active.count; i++) {
-    const scree_item *item = &pair->active.items[i];
+static void settle_items(scree_pair *pair, scree_scratch *scratch) {
+  scree_sleeper *sleepers = scree_sleepers(scratch);
+  uint32_t kept = 0;
+  for (uint32_t i = 0; i < pair->active.count; i++) {
+    const scree_item *item = &scratch->items[i];
     if (item->gap > 0) {
       scree_sleeper sleeper = {pair->list.path + item->gap, item->a, item->b, item->kind};
-      if (!SCREE_PUSH(&pair->neighbours->sleeping, sleeper)) return false;
+      sleepers[scratch->neighbours->sleeping.count++] = sleeper;
       pair->list.next_item = fmin(pair->list.next_item, sleeper.wake);
       continue;
     }
     if (kept != i) {
-      pair->active.items[kept] = *item;
-      if (item->notched) pair->further[kept] = pair->further[i];
+      scratch->items[kept] = *item;
+      if (item->notched) scratch->further[kept] = scratch->further[i];
     }
     kept++;
   }
   pair->active.count = kept;
-  scree_pair_trim_items(pair);
-  return true;
 }
 
-static void fall_asleep(const scree_world *world, scree_pair *pair, const scree_frame *relative) {
+static void fall_asleep(const scree_world *world, scree_pair *pair, scree_neighbours *n,
+                        const scree_frame *relative) {
   if (pair->wall && vec3_norm2(world->walls.items[pair->b].frame.spin) > 0) return;
-  scree_neighbours *n = pair->neighbours;
   n->asleep_since = bodies_path(world, pair);
   n->wake = n->asleep_since + fmin(pair->list.next_item, pair->list.end) - pair->list.path;
   n->asleep_at = relative->position;
@@ -197,48 +205,56 @@ static bool passes_unseen(const scree_world *world, const scree_pair *pair) {
  * take their turns, as deep as a thin wall lets it: they have passed through it. Fast hits come out
  * again of so little. */
 static void watch(const scree_world *world, const scree_pair *pair, const scree_frame *relative,
-                  scree_pair_sums *sums) {
+                  scree_pair_work *work) {
   bool fast = scree_pair_is_fast(world, pair),
        turn = (world->step_count + pair->a + pair->b) % WATCH_EVERY == 0;
   if (pair->active.count == 0 || !(fast || turn)) return;
   double deep = deep_shares[0] * pair->law.limit, thin = deep_shares[1] * pair->law.thin,
-         least = fmax(fast ? deep : fmin(deep, thin), pair->overlap / felt_share),
-         depth = scree_pair_depth(world, pair, relative, least);
-  if (!(depth > sums->unfelt_depth)) return;
-  sums->unfelt = pair->neighbours;
-  sums->unfelt_depth = depth;
+         least = fmax(fast ? deep : fmin(deep, thin), pair->overlap / felt_share);
+  work->unfelt_depth = scree_pair_depth(world, pair, relative, least);
 }
 
-void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                         scree_pair_sums *sums) {
-  if (pair->touching) add_later_work(world, pair, sums);
-  scree_frame relative;
-  pair->list.travel = relate(world, pair, &relative) * world->time_step;
-  pair->list.path += pair->asleep ? slept_path(world, pair, &relative) : pair->list.travel;
-  pair->asleep = false;
-  bool good = true;
+/* Brings the lists up to date; false where there is too little room. */
+static bool prepare(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                    scree_scratch *scratch, scree_pair_work *work) {
   if (pair->list.path + 2 * pair->list.travel >= pair->list.end) {
-    watch(world, pair, &relative, sums);
-    good = scree_pair_list(world, pair, &relative, scratch);
+    watch(world, pair, relative, work);
+    if (!scree_pair_list(world, pair, relative, scratch)) return false;
     pair->list.next_item = -INFINITY;
   }
-  good = good && wake_items(pair);
-  if (passes_unseen(world, pair) && !sums->too_fast) sums->too_fast = pair->neighbours;
+  return wake_items(pair, scratch) && has_room(pair, scratch);
+}
+
+bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                         scree_pair_work *work) {
+  const scree_list_state before = pair->list;
+  const bool slept = pair->asleep;
+  *work = (scree_pair_work){0};
+  if (pair->touching) add_later_work(world, pair, work);
+  scree_frame relative;
+  pair->list.travel = relate(world, pair, &relative) * world->time_step;
+  pair->list.path +=
+      slept ? slept_path(world, pair, scratch->neighbours, &relative) : pair->list.travel;
+  pair->asleep = false;
+  if (!prepare(world, pair, &relative, scratch, work)) {
+    pair->list = before;
+    pair->asleep = slept;
+    return false;
+  }
+  work->too_fast = passes_unseen(world, pair);
   scratch->touches.count = 0;
   bool some_sleep = visit_items(world, pair, &relative, scratch);
   clear_results(pair);
   double largest = pair->largest;
   scree_powers powers = scree_pair_apply_law(world, pair, &scratch->touches, &relative);
-  if (some_sleep) good = good && settle_items(pair);
-  if (pair->active.count == 0) fall_asleep(world, pair, &relative);
-  if (!good || scratch->out_of_memory) sums->out_of_memory = true;
-  if (!pair->touching) return;
+  if (some_sleep) settle_items(pair, scratch);
+  if (pair->active.count == 0) fall_asleep(world, pair, scratch->neighbours, &relative);
+  if (!pair->touching) return true;
   double half = 0.5 * world->time_step;
-  sums->dashpot += half * powers.dashpot;
-  sums->tangential += half * powers.tangential;
-  if (pair->largest > largest) sums->dashpot -= hysteresis_loss(pair, largest);
-  if (pair->wall) sums->wall_work += half * wall_power(pair, scree_pair_frame_b(world, pair));
-  if (!(pair->overlap <= sums->largest_overlap)) sums->largest_overlap = pair->overlap;
-  if (!(pair->overlap <= pair->law.limit) && !sums->beyond_limit)
-    sums->beyond_limit = pair->neighbours;
+  work->dashpot = half * powers.dashpot;
+  work->tangential = half * powers.tangential;
+  if (pair->largest > largest) work->lost = hysteresis_loss(pair, largest);
+  if (pair->wall) work->wall = half * wall_power(pair, scree_pair_frame_b(world, pair));
+  work->beyond_limit = !(pair->overlap <= pair->law.limit);
+  return true;
 }

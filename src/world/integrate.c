@@ -43,8 +43,8 @@ static void sum_forces(scree_world *world, size_t i, const uint32_t *acting, siz
   vec3 force = {0, 0, 0}, torque = {0, 0, 0};
   for (size_t k = from; k < to; k++) {
     if (k + FORCES_AHEAD < count)
-      scree_prefetch(world->pairs.items[acting[k + FORCES_AHEAD] >> 1], 128);
-    const scree_wrench *w = &world->pairs.items[acting[k] >> 1]->wrench;
+      scree_prefetch(scree_pair_of(world, acting[k + FORCES_AHEAD] >> 1), 128);
+    const scree_wrench *w = &scree_pair_of(world, acting[k] >> 1)->wrench;
     bool of_b = acting[k] & 1;
     force = vec3_mad(force, w->force, of_b ? -1 : 1);
     torque = vec3_add(torque, of_b ? w->torque_b : w->torque_a);

@@ -37,7 +37,7 @@ static void add_pairs(const scree_world *world, scree_observation *o) {
   scree_sum elastic = {0};
   size_t body_sides = 0;
   for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_pair *pair = world->neighbours.items[k]->pair;
+    const scree_pair *pair = scree_pair_of(world, k);
     if (!pair || !pair->touching || scree_pair_is_removed(world, pair)) continue;
     scree_sum_add(&elastic, pair->elastic);
     o->pair_count++;
@@ -52,7 +52,7 @@ static void add_pairs(const scree_world *world, scree_observation *o) {
 static double tangential_elastic(const scree_world *world) {
   scree_sum sum = {0};
   for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_pair *pair = world->neighbours.items[k]->pair;
+    const scree_pair *pair = scree_pair_of(world, k);
     if (pair && pair->touching && !scree_pair_is_removed(world, pair))
       scree_sum_add(&sum, pair->tangential_elastic);
   }
@@ -108,13 +108,14 @@ scree_checksum scree_world_hash(const scree_world *world) {
     mix(&hash, &b->orientation[i], sizeof b->orientation[i]);
   }
   for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_pair *pair = world->neighbours.items[k]->pair;
-    for (size_t i = 0; pair && i < pair->active.count; i++) {
-      const scree_item *item = &pair->active.items[i];
+    const scree_pair *pair = scree_pair_of(world, k);
+    for (uint32_t i = 0; pair && i < pair->active.count; i++) {
+      const scree_item *item = &world->pools.items[pair->active.first + i];
+      const scree_further *further = &world->pools.further[pair->active.first + i];
       const uint32_t names[5] = {pair->a, pair->b, item->kind, item->a, item->b};
       mix(&hash, names, sizeof names);
       for (int j = 0; j < (item->notched ? SCREE_ANCHORS : 1); j++) {
-        const scree_anchor *anchor = j ? &pair->further[i].anchor[j - 1] : &item->anchor;
+        const scree_anchor *anchor = j ? &further->anchor[j - 1] : &item->anchor;
         if (anchor->share <= 0) continue;
         mix(&hash, &anchor->stretch, sizeof anchor->stretch);
         mix(&hash, &anchor->share, sizeof anchor->share);

@@ -20,8 +20,8 @@ static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "worl
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
                    (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
-                    sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 640 &&
-                    sizeof(scree_neighbours) == 256 && sizeof(scree_frame) == 192),
+                    sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 384 &&
+                    sizeof(scree_neighbours) == 240 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
 /* ---- field lists ---- */
@@ -135,7 +135,7 @@ static void code_further(scree_codec *c, scree_item *i, scree_further *further) 
   for (int k = 0; k < SCREE_ANCHORS - 1; k++) {
     scree_anchor *own = &further->anchor[k], none = {0};
     code_anchor(c, c->loading || (i->notched && own->share > 0) ? own : &none);
-    any = any || own->share > 0;
+    any = any || (c->loading && own->share > 0);
   }
   if (c->loading) i->notched = any;
 }
@@ -202,8 +202,12 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   uint64_t contacts = p->contact_count;
   scree_code_u64(c, &contacts);
   p->contact_count = (uint32_t)contacts;
-  scree_code_count(c, &p->active.count, 242);
-  scree_code_count(c, &n->sleeping.count, 20);
+  size_t active = p->active.count, sleeping = n->sleeping.count;
+  scree_code_count(c, &active, 242);
+  scree_code_count(c, &sleeping, 20);
+  if (active > UINT32_MAX / 2 || sleeping > UINT32_MAX / 2) c->failed = true;
+  p->active.count = (uint32_t)active;
+  n->sleeping.count = (uint32_t)sleeping;
   scree_code_vec3(c, &n->asleep_at);
   code_quat(c, &n->asleep_turned);
   scree_code_vec3(c, &p->list.region);
@@ -363,17 +367,20 @@ static void save_bodies(scree_codec *c, const scree_world *world) {
 }
 
 static void save_pairs(scree_codec *c, const scree_world *world) {
-  size_t count = world->pairs.count;
+  const scree_pools *pools = &world->pools;
+  size_t count = world->neighbours.count;
   scree_code_count(c, &count, 1);
-  scree_scratch scratch = {0};
-  for (size_t k = 0; k < count; k++) {
-    scree_neighbours *n = world->neighbours.items[k]; /* only read, and so are its lists */
-    scree_pair *pair = n->pair ? n->pair : scree_pair_wake(&scratch, n);
+  for (uint32_t k = 0; k < count; k++) {
+    scree_neighbours *n = &world->neighbours.items[k]; /* only read, and so are its lists */
+    scree_pair asleep = {0}, *pair = scree_pair_of(world, k);
+    if (!pair) scree_pair_begin(pair = &asleep, n, k);
     code_pair_name(c, n);
     code_pair_state(c, pair, n);
-    for (size_t i = 0; i < pair->active.count; i++)
-      code_item(c, &pair->active.items[i], &pair->further[i]);
-    for (size_t i = 0; i < n->sleeping.count; i++) code_sleeper(c, &n->sleeping.items[i]);
+    scree_range items = pair->active, sleepers = n->sleeping;
+    for (uint32_t i = 0; i < items.count; i++)
+      code_item(c, &pools->items[items.first + i], &pools->further[items.first + i]);
+    for (uint32_t i = 0; i < sleepers.count; i++)
+      code_sleeper(c, &pools->sleepers[sleepers.first + i]);
   }
 }
 
@@ -432,7 +439,7 @@ typedef struct loader {
   scree_world *world;
   scree_particle **particles;
   size_t particle_count;
-  scree_scratch scratch; /* its pair */
+  scree_scratch scratch; /* where the lists of the pair in hand lie */
   scree_error error;
 } loader;
 
@@ -584,27 +591,41 @@ static bool is_item(const loader *l, const scree_pair *pair, const scree_item *i
   return true;
 }
 
+/* Room for the lists of the pair in hand. */
+static bool make_room(loader *l, scree_pair *pair, uint32_t active, uint32_t sleeping) {
+  scree_world *world = l->world;
+  scree_neighbours *n = &world->neighbours.items[pair->neighbours];
+  for (;;) {
+    scree_take_in_hand(&l->scratch, &world->pools, pair, n);
+    if (scree_reserve_items(&l->scratch, pair, active) &&
+        scree_reserve_sleepers(&l->scratch, sleeping))
+      return true;
+    if (!scree_pools_grow(&world->pools, world->pairs.items, world->pairs.count,
+                          world->neighbours.items, world->neighbours.count))
+      return false;
+  }
+}
+
 static void load_items(loader *l, scree_pair *pair) {
-  scree_neighbours *n = pair->neighbours;
-  size_t active = pair->active.count, sleeping = n->sleeping.count;
-  pair->active.count = n->sleeping.count = 0;
+  scree_range *sleepers = &l->world->neighbours.items[pair->neighbours].sleeping;
+  uint32_t active = pair->active.count, sleeping = sleepers->count;
+  pair->active.count = sleepers->count = 0;
   if ((pair->asleep || pair->touching) && pair->asleep == (active > 0)) l->codec.failed = true;
   if (!good(l)) return;
-  if (!scree_pair_reserve_items(pair, active) || !SCREE_RESERVE(&n->sleeping, sleeping))
-    l->codec.out_of_memory = true;
-  for (size_t i = 0; i < active && good(l); i++) {
-    scree_item *item = &pair->active.items[i];
+  if (!make_room(l, pair, active, sleeping)) l->codec.out_of_memory = true;
+  for (uint32_t i = 0; i < active && good(l); i++) {
+    scree_item *item = &l->scratch.items[i];
     *item = (scree_item){0};
-    pair->further[i] = (scree_further){0};
-    code_item(&l->codec, item, &pair->further[i]);
+    l->scratch.further[i] = (scree_further){0};
+    code_item(&l->codec, item, &l->scratch.further[i]);
     if (!is_item(l, pair, item)) l->codec.failed = true;
     pair->active.count++;
   }
-  for (size_t i = 0; i < sleeping && good(l); i++) {
+  for (uint32_t i = 0; i < sleeping && good(l); i++) {
     scree_sleeper s = {0};
     code_sleeper(&l->codec, &s);
     if (!names_features(l, pair, s.kind, s.a, s.b)) l->codec.failed = true;
-    n->sleeping.items[n->sleeping.count++] = s;
+    scree_sleepers(&l->scratch)[sleepers->count++] = s;
   }
 }
 
@@ -616,31 +637,46 @@ static bool follows(const scree_neighbours *last, const scree_neighbours *next) 
   return last->b < next->b;
 }
 
+static void load_pair(loader *l, uint32_t k, uint32_t index) {
+  scree_world *world = l->world;
+  scree_neighbours *n = &world->neighbours.items[k];
+  scree_pair *pair = &world->pairs.items[index];
+  scree_pair_begin(pair, n, k);
+  code_pair_state(&l->codec, pair, n);
+  load_items(l, pair);
+  pair->law = n->law;
+  if (pair->active.count > 0) {
+    world->pair_of.items[k] = index;
+  } else {
+    scree_pair_end(pair, n);
+    scree_pair_give_back(world, index);
+  }
+}
+
 static void load_pairs(loader *l) {
   scree_world *world = l->world;
   size_t count = 0;
   scree_code_count(&l->codec, &count, 451);
-  if (!SCREE_RESERVE(&world->neighbours, count)) l->codec.out_of_memory = true;
-  for (size_t k = 0; k < count && good(l); k++) {
+  if (count >= scree_none) l->codec.failed = true;
+  if (!SCREE_RESERVE(&world->neighbours, count) || !SCREE_RESERVE(&world->pair_of, count))
+    l->codec.out_of_memory = true;
+  for (uint32_t k = 0; k < count && good(l); k++) {
     scree_neighbours name = {0};
     code_pair_name(&l->codec, &name);
     bool known =
         name.a < world->bodies.count &&
         (name.wall ? name.b < world->walls.count : name.a < name.b && name.b < world->bodies.count);
-    if (!known || !follows(k ? world->neighbours.items[k - 1] : NULL, &name))
+    if (!known || !follows(k ? &world->neighbours.items[k - 1] : NULL, &name))
       l->codec.failed = true;
     if (!good(l)) return;
-    scree_neighbours *n = scree_neighbours_take(world, name.a, name.b, name.wall);
-    if (!n) {
+    if (atomic_load(&world->spare_pairs.count) == 0 && !scree_pairs_grow(world)) {
       l->codec.out_of_memory = true;
       return;
     }
-    world->neighbours.items[world->neighbours.count++] = n;
-    scree_pair *pair = scree_pair_wake(&l->scratch, n);
-    code_pair_state(&l->codec, pair, n);
-    load_items(l, pair);
-    pair->law = pair->neighbours->law;
-    if (!scree_pair_settle(world, pair, &l->scratch)) l->codec.out_of_memory = true;
+    world->neighbours.items[k] = scree_neighbours_new(world, name.a, name.b, name.wall);
+    world->pair_of.items[k] = scree_none;
+    world->neighbours.count++;
+    load_pair(l, k, scree_pair_take(world));
   }
 }
 
@@ -683,7 +719,6 @@ scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, c
   for (size_t i = 0; i < sizeof stages / sizeof *stages && good(&l); i++) stages[i](&l);
   for (size_t i = 0; l.particles && i < l.particle_count; i++) scree_particle_free(l.particles[i]);
   scree_free(l.particles);
-  scree_free(l.scratch.pair.array.items);
   status = finish(&l, name, error);
   if (status)
     scree_world_free(l.world);

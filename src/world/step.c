@@ -12,12 +12,12 @@
 
 /* Slots a block: whole words of world->touching, which a thread of its own writes. Several blocks
  * are gone through at once where there are many, for at the beginning nothing was asked for. */
-enum { PAIR_BLOCK = 128, MOST_BLOCKS = SCREE_SLOTS_AT_ONCE / PAIR_BLOCK, LEAST_PARTS = 32 };
+enum { PAIR_BLOCK = 128, MOST_BLOCKS = 8, LEAST_PARTS = 32 };
 
 /* Who is awake or due of the neighbours [begin, end). Without branches: one in five is. */
-static size_t list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake) {
+static uint32_t list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake) {
   const double *due = world->due.items;
-  size_t count = 0;
+  uint32_t count = 0;
   for (size_t k = begin; k < end; k++) {
     const scree_slot *slot = &world->slots.items[k];
     awake[count] = (uint32_t)k;
@@ -28,11 +28,11 @@ static size_t list_awake(const scree_world *world, size_t begin, size_t end, uin
 
 /* The pair and what its evaluation reads first. */
 SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
-  const scree_pair *pair = world->pairs.items[k];
+  const scree_pair *pair = scree_pair_of(world, k);
   if (pair)
-    scree_prefetch(pair, offsetof(scree_pair, own_items) + sizeof(scree_item));
+    scree_prefetch(pair, sizeof(scree_pair));
   else
-    scree_prefetch(world->neighbours.items[k], sizeof(scree_neighbours));
+    scree_prefetch(&world->neighbours.items[k], sizeof(scree_neighbours));
   size_t b = world->slots.items[k].b;
   if (b < world->bodies.count) scree_prefetch(&world->bodies.frame[b], sizeof(scree_frame));
 }
@@ -43,11 +43,10 @@ static bool may_wake_items(const scree_pair *pair) {
 }
 
 /* The items of a pair that has come, wherever they are. */
-SCREE_PREFETCHES void fetch_items(const scree_pair *pair) {
+SCREE_PREFETCHES void fetch_items(const scree_world *world, const scree_pair *pair) {
   if (!pair) return;
-  if (pair->active.count > 1)
-    scree_prefetch(pair->active.items, pair->active.count * sizeof(scree_item));
-  if (may_wake_items(pair)) scree_prefetch(&pair->neighbours->sleeping, 1);
+  scree_prefetch(&world->pools.items[pair->active.first], pair->active.count * sizeof(scree_item));
+  if (may_wake_items(pair)) scree_prefetch(&world->neighbours.items[pair->neighbours].sleeping, 1);
 }
 
 SCREE_PREFETCHES void fetch_faces(const scree_particle *surface, const scree_item *item) {
@@ -59,8 +58,8 @@ SCREE_PREFETCHES void fetch_faces(const scree_particle *surface, const scree_ite
 SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair *pair) {
   if (!pair) return;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  for (size_t i = 0; i < pair->active.count; i++) {
-    const scree_item *item = &pair->active.items[i];
+  for (uint32_t i = 0; i < pair->active.count; i++) {
+    const scree_item *item = &world->pools.items[pair->active.first + i];
     if (item->kind == SCREE_ITEM_EDGE_EDGE) {
       scree_prefetch(&a->edges[item->a], sizeof(scree_edge));
       scree_prefetch(&b->edges[item->b], sizeof(scree_edge));
@@ -72,69 +71,162 @@ SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair 
       fetch_faces(a, item);
     }
   }
-  if (may_wake_items(pair)) scree_prefetch(pair->neighbours->sleeping.items, 256);
+  if (may_wake_items(pair))
+    scree_prefetch(&world->pools.sleepers[world->neighbours.items[pair->neighbours].sleeping.first],
+                   256);
 }
 
 enum { PAIRS_AHEAD = 8, ITEMS_AHEAD = 4, FEATURES_AHEAD = 2 };
 
-static void evaluate_at(scree_world *world, size_t k, scree_scratch *scratch,
-                        scree_pair_sums *sums) {
-  scree_pair *pair = world->pairs.items[k];
-  if (!pair) pair = scree_pair_wake(scratch, world->neighbours.items[k]);
-  scree_pair_evaluate(world, pair, scratch, sums);
-  if (pair->touching != scree_pair_touches(world, k)) scree_mark_touching(world, k, pair->touching);
-  if (pair->active.count > 0 && pair != &scratch->pair) return;
-  world->slots.items[k].wake = pair->asleep ? pair->neighbours->wake : -INFINITY;
-  if (!scree_pair_settle(world, pair, scratch)) sums->out_of_memory = true;
-  world->pairs.items[k] = world->neighbours.items[k]->pair;
-}
-
-static void evaluate_blocks(void *context, size_t begin, size_t end, size_t part, int worker) {
-  (void)part;
-  scree_world *world = context;
-  scree_pair *const *pairs = world->pairs.items;
-  scree_scratch *scratch = &world->scratch[worker];
-  uint32_t *awake = scratch->awake;
-  size_t count = list_awake(world, begin, end, awake), i = 0;
-  for (size_t k = 0; k < PAIRS_AHEAD && k < count; k++) fetch_pair(world, awake[k]);
-  for (size_t block = begin / PAIR_BLOCK; block * PAIR_BLOCK < end; block++) {
-    scree_pair_sums sums = {0};
-    for (; i < count && awake[i] / PAIR_BLOCK == block; i++) {
-      if (i + PAIRS_AHEAD < count) fetch_pair(world, awake[i + PAIRS_AHEAD]);
-      if (i + ITEMS_AHEAD < count) fetch_items(pairs[awake[i + ITEMS_AHEAD]]);
-      if (i + FEATURES_AHEAD < count) fetch_features(world, pairs[awake[i + FEATURES_AHEAD]]);
-      evaluate_at(world, awake[i], scratch, &sums);
-    }
-    world->sums.items[block] = sums;
+static void add_work(scree_pair_sums *sums, const scree_pair_work *work, const scree_pair *pair) {
+  sums->dashpot += work->later_dashpot;
+  sums->dashpot += work->dashpot;
+  sums->dashpot -= work->lost;
+  sums->tangential += work->later_tangential;
+  sums->tangential += work->tangential;
+  sums->wall_work += work->later_wall;
+  sums->wall_work += work->wall;
+  if (pair->touching && !(pair->overlap <= sums->largest_overlap))
+    sums->largest_overlap = pair->overlap;
+  if (work->beyond_limit && sums->beyond_limit == scree_none) sums->beyond_limit = pair->neighbours;
+  if (work->too_fast && sums->too_fast == scree_none) sums->too_fast = pair->neighbours;
+  if (work->unfelt_depth > sums->unfelt_depth) {
+    sums->unfelt = pair->neighbours;
+    sums->unfelt_depth = work->unfelt_depth;
   }
 }
 
-static void evaluate_pairs(scree_world *world) {
-  size_t count = world->neighbours.count,
-         blocks = scree_block_count(count, PAIR_BLOCK) / LEAST_PARTS;
-  if (blocks < 1) blocks = 1;
-  if (blocks > MOST_BLOCKS) blocks = MOST_BLOCKS;
-  scree_parallel_for(count, blocks * PAIR_BLOCK, evaluate_blocks, world);
+/* The pair of neighbours k, which may be one that begins; scree_none when there is no spare one. */
+static uint32_t pair_at(scree_world *world, uint32_t k) {
+  uint32_t pair = world->pair_of.items[k];
+  if (pair != scree_none) return pair;
+  pair = scree_pair_take(world);
+  if (pair == scree_none) return pair;
+  scree_pair_begin(&world->pairs.items[pair], &world->neighbours.items[k], k);
+  return world->pair_of.items[k] = pair;
 }
 
-static scree_status describe_overlap(scree_world *world, const scree_neighbours *n) {
+/* After its evaluation: whether the pair is given back. */
+static bool settle_pair(scree_world *world, const scree_pair *pair) {
+  uint32_t k = pair->neighbours;
+  scree_neighbours *n = &world->neighbours.items[k];
+  scree_slot *slot = &world->slots.items[k];
+  if (pair->touching != scree_pair_touches(world, k)) scree_mark_touching(world, k, pair->touching);
+  if (pair->active.count > 0) {
+    slot->wake = -INFINITY;
+    return false;
+  }
+  scree_pair_end(pair, n);
+  slot->wake = pair->asleep ? n->wake : -INFINITY;
+  world->pair_of.items[k] = scree_none;
+  return true;
+}
+
+/* False where a pool has too little room: the pair is to be evaluated again. */
+static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  scree_pair_work work;
+  scree_take_in_hand(scratch, &world->pools, pair, &world->neighbours.items[pair->neighbours]);
+  if (!scree_pair_evaluate(world, pair, scratch, &work)) return false;
+  add_work(&world->sums.items[pair->neighbours / PAIR_BLOCK], &work, pair);
+  return true;
+}
+
+/* Asks for what the next pairs of the list will read. */
+SCREE_PREFETCHES void fetch_ahead(const scree_world *world, const uint32_t *awake, size_t i,
+                                  size_t count) {
+  if (i + PAIRS_AHEAD < count) fetch_pair(world, awake[i + PAIRS_AHEAD]);
+  if (i + ITEMS_AHEAD < count) fetch_items(world, scree_pair_of(world, awake[i + ITEMS_AHEAD]));
+  if (i + FEATURES_AHEAD < count)
+    fetch_features(world, scree_pair_of(world, awake[i + FEATURES_AHEAD]));
+}
+
+static void begin_blocks(scree_world *world, size_t begin, size_t end,
+                         scree_pair_progress *progress) {
+  uint32_t *awake = &world->awake.items[begin];
+  *progress = (scree_pair_progress){.awake = list_awake(world, begin, end, awake)};
+  for (size_t k = 0; k < PAIRS_AHEAD && k < progress->awake; k++) fetch_pair(world, awake[k]);
+  for (size_t block = begin / PAIR_BLOCK; block * PAIR_BLOCK < end; block++)
+    world->sums.items[block] =
+        (scree_pair_sums){.beyond_limit = scree_none, .too_fast = scree_none, .unfelt = scree_none};
+}
+
+/* From where it stopped, if it did. Pairs that fall asleep take the places of those already done.
+ */
+static void evaluate_blocks(void *context, size_t begin, size_t end, size_t part, int worker) {
+  scree_world *world = context;
+  scree_pair_progress *progress = &world->progress.items[part];
+  uint32_t *awake = &world->awake.items[begin];
+  if (progress->done == 0) begin_blocks(world, begin, end, progress);
+  while (progress->done < progress->awake) {
+    fetch_ahead(world, awake, progress->done, progress->awake);
+    uint32_t index = pair_at(world, awake[progress->done]);
+    if (index == scree_none) return;
+    scree_pair *pair = &world->pairs.items[index];
+    if (!evaluate_pair(world, pair, &world->scratch[worker])) return;
+    if (settle_pair(world, pair)) awake[progress->given++] = index;
+    progress->done++;
+  }
+}
+
+static size_t pairs_at_once(const scree_world *world) {
+  size_t blocks = scree_block_count(world->neighbours.count, PAIR_BLOCK) / LEAST_PARTS;
+  return PAIR_BLOCK * (blocks < 1 ? 1 : blocks > MOST_BLOCKS ? MOST_BLOCKS : blocks);
+}
+
+static bool all_done(const scree_world *world, size_t parts) {
+  for (size_t p = 0; p < parts; p++)
+    if (world->progress.items[p].done < world->progress.items[p].awake) return false;
+  return true;
+}
+
+/* For what the workers asked for in vain. */
+static bool make_room(scree_world *world) {
+  if (atomic_load(&world->spare_pairs.count) < 0 && !scree_pairs_grow(world)) return false;
+  for (int i = 0; i < world->scratch_count; i++) {
+    scree_scratch *scratch = &world->scratch[i];
+    if (!SCREE_RESERVE(&scratch->touches, scratch->touches_needed)) return false;
+  }
+  return scree_pools_grow(&world->pools, world->pairs.items, world->pairs.count,
+                          world->neighbours.items, world->neighbours.count);
+}
+
+static scree_status evaluate_pairs(scree_world *world) {
+  size_t count = world->neighbours.count, size = pairs_at_once(world),
+         parts = scree_block_count(count, size);
+  for (size_t p = 0; p < parts; p++) world->progress.items[p] = (scree_pair_progress){0};
+  scree_parallel_for(count, size, evaluate_blocks, world);
+  while (!all_done(world, parts)) {
+    if (!make_room(world))
+      return scree_fail_memory(&world->failure, 0, "contact features of a pair");
+    scree_parallel_for(count, size, evaluate_blocks, world);
+  }
+  for (size_t p = 0; p < parts; p++)
+    for (uint32_t i = 0; i < world->progress.items[p].given; i++)
+      scree_pair_give_back(world, world->awake.items[p * size + i]);
+  return SCREE_OK;
+}
+
+static scree_status describe_overlap(scree_world *world, uint32_t k) {
+  const scree_neighbours *n = &world->neighbours.items[k];
   return scree_fail(&world->failure, SCREE_DIVERGED,
                     "world: step %llu, body %u overlaps %s %u by %.3g m; at most %.3g m",
                     (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,
-                    n->pair->overlap, n->law.limit);
+                    scree_pair_of(world, k)->overlap, n->law.limit);
 }
 
-static scree_status describe_speed(scree_world *world, const scree_neighbours *n) {
+static scree_status describe_speed(scree_world *world, uint32_t k) {
+  const scree_neighbours *n = &world->neighbours.items[k];
+  const scree_pair *pair = scree_pair_of(world, k);
   return scree_fail(
       &world->failure, SCREE_DIVERGED,
       "world: step %llu, body %u moved by %.3g m past %s %u in one step of %.3g s; at "
       "most %.3g m (the thinnest wall of the two, or twice the overlap limit)",
-      (unsigned long long)world->step_count, n->a, n->pair ? n->pair->list.travel : n->list.travel,
+      (unsigned long long)world->step_count, n->a, pair ? pair->list.travel : n->list.travel,
       n->wall ? "wall" : "body", n->b, world->time_step, 2 * n->law.thin);
 }
 
 static scree_status describe_unfelt(scree_world *world, const scree_pair_sums *sums) {
-  const scree_neighbours *n = sums->unfelt;
+  const scree_neighbours *n = &world->neighbours.items[sums->unfelt];
   return scree_fail(
       &world->failure, SCREE_DIVERGED,
       "world: step %llu, an edge of body %u or %s %u lies %.3g m deep in the other and is "
@@ -151,21 +243,20 @@ static scree_status combine_sums(scree_world *world, size_t blocks) {
     world->work_tangential += sums->tangential;
     world->wall_work += sums->wall_work;
     world->largest_overlap = fmax(world->largest_overlap, sums->largest_overlap);
-    if (sums->out_of_memory)
-      return scree_fail_memory(&world->failure, 0, "contact features of a pair");
   }
   for (size_t block = 0; block < blocks; block++) {
     const scree_pair_sums *sums = &world->sums.items[block];
-    if (sums->beyond_limit) return describe_overlap(world, sums->beyond_limit);
-    if (sums->too_fast) return describe_speed(world, sums->too_fast);
-    if (sums->unfelt) return describe_unfelt(world, sums);
+    if (sums->beyond_limit != scree_none) return describe_overlap(world, sums->beyond_limit);
+    if (sums->too_fast != scree_none) return describe_speed(world, sums->too_fast);
+    if (sums->unfelt != scree_none) return describe_unfelt(world, sums);
   }
   return SCREE_OK;
 }
 
 static scree_status reserve_blocks(scree_world *world, scree_error *error) {
   size_t blocks = scree_block_count(world->neighbours.count, PAIR_BLOCK);
-  if (!SCREE_RESERVE(&world->sums, blocks))
+  if (!SCREE_RESERVE(&world->sums, blocks) || !SCREE_RESERVE(&world->progress, blocks) ||
+      !SCREE_RESERVE(&world->awake, world->neighbours.count))
     return scree_fail_memory(error, blocks * sizeof *world->sums.items, "sums");
   int workers = scree_worker_count();
   if (workers <= world->scratch_count) return SCREE_OK;
@@ -182,7 +273,7 @@ static void sum_wall_forces(scree_world *world) {
   for (size_t w = 0; w < world->walls.count; w++)
     world->walls.items[w].force = world->walls.items[w].torque = (vec3){0, 0, 0};
   for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_pair *pair = world->pairs.items[k];
+    const scree_pair *pair = scree_pair_of(world, k);
     if (!pair || !pair->wall || !pair->touching) continue;
     scree_world_wall *wall = &world->walls.items[pair->b];
     wall->force = vec3_sub(wall->force, pair->wrench.force);
@@ -197,8 +288,8 @@ static scree_status one_step(scree_world *world) {
   if (!status) status = reserve_blocks(world, &world->failure);
   if (status) return status;
   double after_broad = scree_now();
-  evaluate_pairs(world);
-  status = combine_sums(world, scree_block_count(world->neighbours.count, PAIR_BLOCK));
+  status = evaluate_pairs(world);
+  if (!status) status = combine_sums(world, scree_block_count(world->neighbours.count, PAIR_BLOCK));
   double after_contacts = scree_now();
   if (!status && !scree_world_gather(world)) status = world->failure.status;
   if (!status) {

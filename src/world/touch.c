@@ -15,7 +15,6 @@
  * distance to the next one. */
 #include "world/world.h"
 
-#include "base/array.h"
 #include "particle/closest.h"
 
 static const double way_out_cosine = 0.15;     /* 81 degrees: thin wedges still count */
@@ -38,12 +37,7 @@ double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, v
     anchor->share = 0;
     return gap;
   }
-  scree_touch_list *list = &scratch->touches;
-  if (!SCREE_RESERVE(list, list->count + 1)) {
-    scratch->out_of_memory = true;
-    return gap;
-  }
-  scree_touch *touch = &list->items[list->count++];
+  scree_touch *touch = &scratch->touches.items[scratch->touches.count++];
   touch->at = vec3_mad(c, n, 0.5 * (distance - above + below));
   touch->normal = n;
   touch->lever = 1;
@@ -241,12 +235,12 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   return deep ? 1 : notch_contacts(surface, p, item, nearest, contacts);
 }
 
-static scree_anchor *anchor_of(const scree_pair *pair, scree_item *item, int k) {
-  return k == 0 ? &item->anchor : &pair->further[item - pair->active.items].anchor[k - 1];
+static scree_anchor *anchor_of(const scree_scratch *scratch, scree_item *item, int k) {
+  return k == 0 ? &item->anchor : &scratch->further[item - scratch->items].anchor[k - 1];
 }
 
 /* Gives each contact the memory of the last step whose normal is most like its own. */
-static void match_anchors(const scree_pair *pair, scree_item *item, const vec3 *normals,
+static void match_anchors(const scree_scratch *scratch, scree_item *item, const vec3 *normals,
                           int count) {
   scree_anchor *first = &item->anchor;
   if (count == 1 && !item->notched) { /* mostly */
@@ -256,8 +250,8 @@ static void match_anchors(const scree_pair *pair, scree_item *item, const vec3 *
   scree_anchor old[SCREE_ANCHORS] = {*first};
   bool used[SCREE_ANCHORS] = {false};
   for (int k = 0; k < SCREE_ANCHORS; k++) {
-    if (item->notched) old[k] = *anchor_of(pair, item, k);
-    *anchor_of(pair, item, k) = (scree_anchor){0};
+    if (item->notched) old[k] = *anchor_of(scratch, item, k);
+    *anchor_of(scratch, item, k) = (scree_anchor){0};
   }
   item->notched = count > 1;
   for (int j = 0; j < count; j++) {
@@ -270,7 +264,7 @@ static void match_anchors(const scree_pair *pair, scree_item *item, const vec3 *
     }
     if (best < 0) continue;
     used[best] = true;
-    *anchor_of(pair, item, j) = old[best];
+    *anchor_of(scratch, item, j) = old[best];
   }
 }
 
@@ -299,7 +293,7 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
     at[k] = vec3_add(mat3_mul_vec(&relative->rotation, p), relative->position);
     normals[k] = vec3_neg(mat3_mul_vec(&relative->rotation, normals[k]));
   }
-  match_anchors(pair, item, normals, count);
+  match_anchors(scratch, item, normals, count);
   double least = INFINITY, surface_radius = surface->measures.rounding,
          point_radius = from->point_radii[point];
   for (int k = 0; k < count; k++) {
@@ -307,7 +301,7 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
                               forth ? surface_radius : point_radius, contacts[k].weight};
     size_t touches = scratch->touches.count;
     double gap =
-        scree_add_touch(scratch, pair, at[k], normals[k], values, anchor_of(pair, item, k));
+        scree_add_touch(scratch, pair, at[k], normals[k], values, anchor_of(scratch, item, k));
     if (scratch->touches.count > touches) scratch->touches.items[touches].lever = contacts[k].lever;
     if (gap < least) least = gap;
   }

@@ -20,21 +20,17 @@ static bool report(const scree_world *world, const scree_pair *pair, const scree
 
 scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_visitor *visit,
                                         void *context, scree_error *error) {
-  scree_scratch scratch = {0};
+  scree_pair_copy copy = {0};
   bool good = true, going = true;
   for (size_t k = 0; k < world->neighbours.count && good && going; k++) {
-    const scree_pair *pair = world->neighbours.items[k]->pair;
+    const scree_pair *pair = scree_pair_of(world, k);
     if (!pair || !pair->touching || scree_pair_is_removed(world, pair)) continue;
-    scree_pair_copy copy;
-    scree_pair_sums sums = {0};
-    good = scree_copy_pair(pair, &copy);
-    if (good) scree_pair_evaluate(world, &copy.pair, &scratch, &sums);
-    good = good && !sums.out_of_memory;
-    for (size_t i = 0; i < scratch.touches.count && good && going && copy.pair.touching; i++)
-      if (scratch.touches.items[i].share > 0)
-        going = report(world, &copy.pair, &scratch.touches.items[i], visit, context);
-    scree_free_pair_copy(&copy);
+    good = scree_copy_pair(world, pair, &copy) && scree_evaluate_copy(world, &copy);
+    const scree_touch_list *touches = &copy.scratch.touches;
+    for (size_t i = 0; i < touches->count && good && going && copy.pair.touching; i++)
+      if (touches->items[i].share > 0)
+        going = report(world, &copy.pair, &touches->items[i], visit, context);
   }
-  scree_free(scratch.touches.items);
+  scree_free_pair_copy(&copy);
   return good ? SCREE_OK : scree_fail_memory(error, 0, "contacts");
 }

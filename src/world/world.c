@@ -84,12 +84,11 @@ void scree_world_free(scree_world *world) {
   for (size_t i = 0; i < world->walls.count; i++)
     scree_particle_free(world->walls.items[i].surface);
   scree_free(world->walls.items);
-  scree_pairs_free(world);
   scree_free(world->neighbours.items);
-  scree_free(world->spare_neighbours.items);
-  scree_free(world->merged_neighbours.items);
+  scree_free(world->pair_of.items);
   scree_free(world->pairs.items);
   scree_free(world->spare_pairs.items);
+  scree_pools_free(&world->pools);
   scree_free(world->slots.items);
   scree_free(world->due.items);
   scree_free(world->touching.items);
@@ -99,11 +98,10 @@ void scree_world_free(scree_world *world) {
   scree_free(world->side_begin);
   scree_free(world->offenders);
   scree_free(world->sums.items);
+  scree_free(world->awake.items);
+  scree_free(world->progress.items);
   scree_free(world->body_path_at_build);
-  for (int i = 0; i < world->scratch_count; i++) {
-    scree_free(world->scratch[i].touches.items);
-    scree_free(world->scratch[i].pair.array.items);
-  }
+  for (int i = 0; i < world->scratch_count; i++) scree_free(world->scratch[i].touches.items);
   scree_free(world->scratch);
   scree_broad_free(world);
   scree_free(world->kept.path);

@@ -6,7 +6,10 @@
 #include "base/prefetch.h"
 #include "particle/particle.h"
 
+#include <stdatomic.h>
+
 enum { SCREE_MATERIALS = 64 };
+static const uint32_t scree_none = UINT32_MAX; /* of an index: there is none */
 
 /* Pose and motion of a body or wall, as the contact code reads it. */
 typedef struct scree_frame {
@@ -120,19 +123,6 @@ typedef struct scree_kept_load {
   float force[3], moment[3];
 } scree_kept_load;
 
-enum { SCREE_OWN_ITEMS = 2 };
-
-typedef struct scree_neighbours scree_neighbours;
-
-/* Items, and then as many scree_further. */
-typedef struct scree_item_array {
-  scree_item *items;
-  size_t capacity;
-} scree_item_array;
-
-/* A pair that is awake. What every step touches comes first, in five cache lines, and the items of
- * most pairs after it. Pairs lie together, apart from what is kept of those asleep: a step comes to
- * one pair of neighbours in five, and each would lie on a page of its own. */
 /* What follows of the two bodies' sizes, masses and materials. */
 typedef struct scree_pair_law {
   double stiffness, damping, friction; /* K, C, mu */
@@ -150,60 +140,58 @@ typedef struct scree_list_state {
   double region_radius; /* 0: none */
 } scree_list_state;
 
+/* Places [first, first + count) of a pool; there is room for `capacity`. */
+typedef struct scree_range {
+  uint32_t first, count, capacity;
+} scree_range;
+
+/* A pair that is awake. What every step touches comes first. Pairs lie together, apart from what is
+ * kept of those asleep: a step comes to one pair of neighbours in five, and each would lie on a
+ * page of its own. */
 typedef struct scree_pair {
   _Alignas(64) uint32_t a;
   uint32_t b;
   bool wall;   /* b is a wall */
-  bool asleep; /* no item can touch before the bodies' paths reach neighbours->wake */
+  bool asleep; /* no item can touch before the bodies' paths reach the neighbours' `wake` */
   bool touching;
   uint32_t contact_count;
   scree_wrench wrench; /* here: the bodies read it with what is above */
   scree_list_state list;
-  double age; /* since the touch began */
-  struct {
-    scree_item *items; /* own_items while they are enough */
-    size_t count, capacity;
-  } active;
-  double overlap; /* m */
+  double age;          /* since the touch began */
+  scree_range active;  /* in the pool of items */
+  uint32_t neighbours; /* index */
+  double overlap;      /* m */
   scree_pair_law law;
-  scree_kept_load dashpot, tangential;   /* parts of the wrench, for the ledger */
-  double elastic, tangential_elastic;    /* U of all springs, and of the tangential ones */
-  scree_item own_items[SCREE_OWN_ITEMS]; /* from here on: not always */
-  scree_neighbours *neighbours;
-  scree_further *further; /* of the active items; own_further with own_items */
-  scree_further *own_further;
-  scree_item_array array; /* kept for when own_items are not enough */
-  double largest;         /* m of this contact (hysteresis) */
+  scree_kept_load dashpot, tangential; /* parts of the wrench, for the ledger */
+  double elastic, tangential_elastic;  /* U of all springs, and of the tangential ones */
+  double largest;                      /* m of this contact (hysteresis) */
 } scree_pair;
 
 /* Two bodies, or a body and a wall, whose boxes are near each other: what is kept of them while
  * they are asleep. */
-struct scree_neighbours {
+typedef struct scree_neighbours {
   uint32_t a, b;
   bool wall;
-  bool asleep;      /* else awake, or new */
-  scree_pair *pair; /* while they are awake; its memory counts where both have it */
+  bool asleep; /* else awake, or new */
   scree_list_state list;
   double wake, asleep_since; /* on path[a] + path[b] */
   vec3 asleep_at;            /* a in the frame of b when they fell asleep */
   quat asleep_turned;
-  struct {
-    scree_sleeper *items;
-    size_t count, capacity;
-  } sleeping; /* awake or not */
+  scree_range sleeping; /* in the pool of sleepers; awake or not */
   scree_pair_law law;
-};
+} scree_neighbours;
 
-/* Both kinds lie together: a step goes through many, and every page counts. */
-typedef struct scree_pair_slab {
-  scree_pair *pairs;
-  scree_further *further; /* SCREE_OWN_ITEMS a pair: few are ever used */
-  size_t count;
-} scree_pair_slab;
-typedef struct scree_neighbour_slab {
-  scree_neighbours *items;
-  size_t count;
-} scree_neighbour_slab;
+/* The lists of all pairs, one array a kind. A list that outgrows its place takes one behind `used`,
+ * in a step by many threads at once. Where that is beyond the capacity the pair is evaluated again,
+ * from the beginning, after the pools have grown (pool.c). */
+enum { SCREE_FIRST_ITEMS = 2, SCREE_FIRST_SLEEPERS = 8 }; /* places of a list that begins */
+typedef struct scree_pools {
+  scree_item *items;
+  scree_further *further; /* of the items */
+  scree_sleeper *sleepers;
+  uint64_t item_capacity, sleeper_capacity;
+  atomic_uint_least64_t items_used, sleepers_used;
+} scree_pools;
 
 /* One touching feature, in the frame of b. */
 typedef struct scree_touch {
@@ -220,27 +208,40 @@ typedef struct scree_touch_list {
   size_t count, capacity;
 } scree_touch_list;
 
-enum { SCREE_SLOTS_AT_ONCE = 1024 };
-
-/* Scratch of one worker. */
+/* Scratch of one worker, and where the lists of the pair in hand lie. */
 typedef struct scree_scratch {
+  scree_pools *pools;
+  scree_neighbours *neighbours; /* of the pair */
+  scree_item *items;            /* its awake ones */
+  scree_further *further;
   scree_touch_list touches;
-  uint32_t awake[SCREE_SLOTS_AT_ONCE]; /* of the slots that it goes through */
-  scree_pair pair;                     /* neighbours that wake, until they stay awake */
-  scree_further further[SCREE_OWN_ITEMS];
+  size_t touches_needed; /* by a pair that found too little room */
   uint64_t item_evaluations, closest_queries, list_builds;
   double candidate_seconds;
-  bool out_of_memory;
 } scree_scratch;
 
-/* What a block of pairs adds up; combined in block order. */
+/* What a pair's evaluation adds to the ledger, J, and what is wrong with it. */
+typedef struct scree_pair_work {
+  double later_dashpot, later_tangential, later_wall; /* second half of the last step */
+  double dashpot, tangential, wall;                   /* first half of this */
+  double lost;                                        /* in the hysteretic spring */
+  double unfelt_depth;                                /* m; 0: none */
+  bool too_fast, beyond_limit;
+} scree_pair_work;
+
+/* What a block of pairs adds up, in their order; combined in block order. */
 typedef struct scree_pair_sums {
   double dashpot, tangential, wall_work;
   double largest_overlap;
-  const scree_neighbours *beyond_limit, *too_fast, *unfelt;
-  double unfelt_depth; /* of that one */
-  bool out_of_memory;
+  uint32_t beyond_limit, too_fast, unfelt; /* the first neighbours, or scree_none */
+  double unfelt_depth;                     /* of that one */
 } scree_pair_sums;
+
+/* How far some blocks of the neighbours have come in a step. */
+typedef struct scree_pair_progress {
+  uint32_t awake, done; /* of those that are awake */
+  uint32_t given;       /* pairs that fell asleep */
+} scree_pair_progress;
 
 /* What the step reads of all neighbours, in their order. */
 typedef struct scree_slot {
@@ -265,21 +266,23 @@ struct scree_world {
     size_t count, capacity;
   } walls;
   struct {
-    scree_neighbours **items; /* sorted by a, then bodies before walls, then b */
+    scree_neighbours *items; /* sorted by a, then bodies before walls, then b */
     size_t count, capacity;
-  } neighbours, spare_neighbours, merged_neighbours;
+  } neighbours;
   struct {
-    scree_neighbour_slab *items;
+    uint32_t *items; /* of the neighbours, indices into pairs; scree_none: asleep, or new */
     size_t count, capacity;
-  } neighbour_slabs;
+  } pair_of;
   struct {
-    scree_pair **items; /* of the neighbours; NULL: asleep, or new */
+    scree_pair *items; /* awake, or spare */
     size_t count, capacity;
-  } pairs, spare_pairs;
+  } pairs;
   struct {
-    scree_pair_slab *items;
-    size_t count, capacity;
-  } pair_slabs;
+    uint32_t *items; /* pairs of no neighbours; the last is taken first */
+    size_t capacity;
+    atomic_int_least64_t count; /* below 0 when a step asked for more than there were */
+  } spare_pairs;
+  scree_pools pools;
   struct {
     scree_slot *items;
     size_t count, capacity;
@@ -307,6 +310,14 @@ struct scree_world {
     scree_pair_sums *items;
     size_t count, capacity;
   } sums;
+  struct {
+    uint32_t *items; /* indices of neighbours, from where their blocks begin; behind, pairs given */
+    size_t count, capacity;
+  } awake;
+  struct {
+    scree_pair_progress *items;
+    size_t count, capacity;
+  } progress;
   scree_scratch *scratch; /* one per worker */
   int scratch_count;
   double *body_path_at_build; /* path of each body when the pairs were made */
@@ -329,6 +340,11 @@ struct scree_world {
   scree_timings timings;
 };
 
+/* The pair of these neighbours; NULL: they are asleep, or new. */
+static inline scree_pair *scree_pair_of(const scree_world *world, size_t neighbours) {
+  uint32_t pair = world->pair_of.items[neighbours];
+  return pair == scree_none ? NULL : &world->pairs.items[pair];
+}
 static inline bool scree_pair_touches(const scree_world *world, size_t pair) {
   return world->touching.items[pair / 64] >> pair % 64 & 1;
 }
@@ -377,40 +393,71 @@ void scree_broad_free(scree_world *world);
 double scree_broad_margin(const scree_world *world);
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error);
 
-/* pair.c: neighbours a and b, new and set up; from the spares when there are some. */
-scree_neighbours *scree_neighbours_take(scree_world *world, uint32_t a, uint32_t b, bool wall);
+/* pair.c: neighbours a and b, new and set up. */
+scree_neighbours scree_neighbours_new(const scree_world *world, uint32_t a, uint32_t b, bool wall);
 /* After a change of the materials: stiffness, damping and so on of all neighbours and pairs. */
 void scree_neighbours_set_up(scree_world *world);
 /* Who sleeps near this wall wakes: its turning is no part of the paths on which they sleep. */
 void scree_neighbours_wake(scree_world *world, size_t wall);
-/* With their pair, where they are awake. */
-void scree_neighbours_give_back(scree_world *world, scree_neighbours *neighbours);
-/* All of the world's neighbours and pairs with their arrays. */
-void scree_pairs_free(scree_world *world);
+/* After a jump: the body's contacts start anew. */
+void scree_body_forget(scree_world *world, size_t body);
 /* Half the particle's thinnest wall, m. */
 double scree_thin_overlap(const scree_particle *particle);
-/* The worker's own pair as one of neighbours that are asleep or new. */
-scree_pair *scree_pair_wake(scree_scratch *scratch, scree_neighbours *neighbours);
-/* After an evaluation: a pair without awake items goes back to its neighbours, the worker's with
- * such gets a place of its own; false when memory is out. */
-bool scree_pair_settle(scree_world *world, scree_pair *pair, scree_scratch *scratch);
+/* As a pair of neighbours that are asleep or new; its place for items stays. */
+void scree_pair_begin(scree_pair *pair, const scree_neighbours *neighbours, uint32_t index);
+/* What is kept of a pair without awake items. */
+void scree_pair_end(const scree_pair *pair, scree_neighbours *neighbours);
+/* A spare pair, in a step by many threads at once; scree_none when there is none. */
+uint32_t scree_pair_take(scree_world *world);
+void scree_pair_give_back(scree_world *world, uint32_t pair);
+/* More spare pairs, at least as many as a step asked for in vain; false when memory is out. */
+bool scree_pairs_grow(scree_world *world);
 /* Pairs lie in the order of their neighbours again, where many do not. */
 void scree_pairs_tidy(scree_world *world);
-/* Room for active items, by doubling. */
-bool scree_pair_reserve_items(scree_pair *pair, size_t needed);
-/* Few items lie with the pair again. */
-void scree_pair_trim_items(scree_pair *pair);
-/* A pair and its neighbours with lists of their own, to be freed with the next; false when memory
- * is out. */
+
+/* A pair and its neighbours with pools of their own. Zeroed before the first use; free it. */
 typedef struct scree_pair_copy {
   scree_pair pair;
   scree_neighbours neighbours;
-  scree_further further[SCREE_OWN_ITEMS];
+  scree_pools pools;
+  scree_scratch scratch;
 } scree_pair_copy;
-bool scree_copy_pair(const scree_pair *pair, scree_pair_copy *copy);
+/* Of an awake pair; false when memory is out. */
+bool scree_copy_pair(const scree_world *world, const scree_pair *pair, scree_pair_copy *copy);
+/* Its step; the touches are in the copy's scratch. False when memory is out. */
+bool scree_evaluate_copy(const scree_world *world, scree_pair_copy *copy);
 void scree_free_pair_copy(scree_pair_copy *copy);
-/* After a jump: the body's contacts start anew. */
-void scree_body_forget(scree_world *world, size_t body);
+
+/* pool.c: a larger place for the pair's items, or for the sleepers of the neighbours in hand; false
+ * where the pool has too little room. */
+bool scree_grow_items(scree_scratch *scratch, scree_pair *pair, uint32_t needed);
+bool scree_grow_sleepers(scree_scratch *scratch, uint32_t needed);
+/* The lists packed in the order of their owners, with room for `extra` more, and for as much again.
+ * False when memory is out; nothing has moved then. */
+bool scree_pack_items(scree_pools *pools, scree_pair *pairs, size_t count, size_t extra);
+bool scree_pack_sleepers(scree_pools *pools, scree_neighbours *neighbours, size_t count);
+/* The pools that were asked for more than they have grow; false when memory is out. */
+bool scree_pools_grow(scree_pools *pools, scree_pair *pairs, size_t pair_count,
+                      scree_neighbours *neighbours, size_t neighbour_count);
+void scree_pools_free(scree_pools *pools);
+static inline bool scree_reserve_items(scree_scratch *scratch, scree_pair *pair, uint32_t needed) {
+  return needed <= pair->active.capacity || scree_grow_items(scratch, pair, needed);
+}
+static inline bool scree_reserve_sleepers(scree_scratch *scratch, uint32_t needed) {
+  return needed <= scratch->neighbours->sleeping.capacity || scree_grow_sleepers(scratch, needed);
+}
+/* Where the pair's lists are; before its evaluation. */
+static inline void scree_take_in_hand(scree_scratch *s, scree_pools *pools, const scree_pair *pair,
+                                      scree_neighbours *neighbours) {
+  s->pools = pools;
+  s->neighbours = neighbours;
+  s->items = pools->items + pair->active.first;
+  s->further = pools->further + pair->active.first;
+}
+/* The sleepers of the neighbours in hand. */
+static inline scree_sleeper *scree_sleepers(const scree_scratch *s) {
+  return s->pools->sleepers + s->neighbours->sleeping.first;
+}
 
 /* Evaluated for the first time, or since a jump. */
 static inline bool scree_pair_is_new(const scree_pair *p) {
@@ -511,9 +558,10 @@ typedef struct scree_powers {
 scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
                                   scree_touch_list *touches, const scree_frame *relative);
 
-/* contact.c: the whole of a pair's step. */
-void scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                         scree_pair_sums *sums);
+/* contact.c: the whole of a pair's step, its lists being in hand. False where a pool, or the
+ * scratch, has too little room: the pair is as before, but for lists that are made again. */
+bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                         scree_pair_work *work);
 
 /* integrate.c */
 

@@ -160,14 +160,11 @@ static void lists_change_nothing(void **state) {
 /* Energy of a pair's contact at its bodies' frames, on a copy of its memory; its wrench too. */
 static double energy_of_copy(const scree_world *world, const scree_pair *pair,
                              scree_wrench *wrench) {
-  scree_pair_copy copy;
-  scree_scratch scratch = {0};
-  scree_pair_sums sums = {0};
-  assert_true(scree_copy_pair(pair, &copy));
+  scree_pair_copy copy = {0};
+  assert_true(scree_copy_pair(world, pair, &copy));
   copy.pair.list.end = INFINITY; /* the present list */
-  scree_pair_evaluate(world, &copy.pair, &scratch, &sums);
+  assert_true(scree_evaluate_copy(world, &copy));
   scree_free_pair_copy(&copy);
-  scree_free(scratch.touches.items);
   *wrench = copy.pair.wrench;
   return copy.pair.elastic;
 }
@@ -246,7 +243,7 @@ static void deep_hits(void **state) {
       deepest = fmax(deepest, o.largest_overlap);
       if (step % 3) continue;
       moments++;
-      off += slope_error(world, world->neighbours.items[0]->pair) > 0.01;
+      off += slope_error(world, scree_pair_of(world, 0)) > 0.01;
     }
     scree_world_free(world);
     scree_world_free(wide);
@@ -260,13 +257,18 @@ static void deep_hits(void **state) {
 }
 
 /* All features of both bodies among the sleepers, due at once: no search, no cones. */
-static void wake_everything(const scree_world *world, scree_neighbours *n) {
+static void wake_everything(scree_world *world, size_t k) {
+  scree_neighbours *n = &world->neighbours.items[k];
+  scree_pair *pair = scree_pair_of(world, k);
   const scree_particle *a = world->bodies.particle[n->a], *b = world->bodies.particle[n->b];
   size_t count = a->point_count + b->point_count + a->edge_count * b->edge_count, made = 0;
-  scree_list_state *list = n->pair ? &n->pair->list : &n->list;
+  scree_list_state *list = pair ? &pair->list : &n->list;
   if (list->end < INFINITY) { /* for the first time */
-    scree_sleeper *all = scree_resize(n->sleeping.items, count, sizeof *all);
-    assert_non_null(all);
+    n->sleeping.count = 0;
+    n->sleeping.capacity = (uint32_t)count;
+    assert_true(
+        scree_pack_sleepers(&world->pools, world->neighbours.items, world->neighbours.count));
+    scree_sleeper *all = &world->pools.sleepers[n->sleeping.first];
     for (uint32_t i = 0; i < a->point_count; i++)
       all[made++] = (scree_sleeper){0, i, 0, SCREE_ITEM_POINT_FACE};
     for (uint32_t i = 0; i < b->point_count; i++)
@@ -274,12 +276,12 @@ static void wake_everything(const scree_world *world, scree_neighbours *n) {
     for (uint32_t i = 0; i < a->edge_count; i++)
       for (uint32_t j = 0; j < b->edge_count; j++)
         all[made++] = (scree_sleeper){0, i, j, SCREE_ITEM_EDGE_EDGE};
-    n->sleeping.items = all;
-    n->sleeping.count = n->sleeping.capacity = made;
-    if (n->pair) n->pair->active.count = 0;
+    n->sleeping.count = (uint32_t)made;
+    if (pair) pair->active.count = 0;
     list->end = INFINITY;
   }
-  for (size_t i = 0; i < n->sleeping.count; i++) n->sleeping.items[i].wake = -INFINITY;
+  for (uint32_t i = 0; i < n->sleeping.count; i++)
+    world->pools.sleepers[n->sleeping.first + i].wake = -INFINITY;
   list->next_item = -INFINITY;
   n->asleep = false;
 }
@@ -291,7 +293,7 @@ static double apart_from_brute(scree_world *world, scree_world *brute, int steps
   for (int step = 0; step < steps; step++) {
     scree_observation o, same;
     if (brute->neighbours.count > 0) {
-      wake_everything(brute, brute->neighbours.items[0]);
+      wake_everything(brute, 0);
       brute->slots.items[0].wake = -INFINITY;
     }
     law_step(world, 1);
@@ -427,12 +429,12 @@ static void threads_change_nothing(void **state) {
 /* How many awake pairs there are, and how many do not lie behind the one before them. */
 static size_t count_astray(const scree_world *world, size_t *count) {
   size_t astray = 0;
-  const scree_pair *next = NULL;
+  uint32_t next = 0;
   *count = 0;
   for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_pair *pair = world->neighbours.items[k]->pair;
-    if (!pair) continue;
-    assert_ptr_equal(pair->neighbours, world->neighbours.items[k]);
+    uint32_t pair = world->pair_of.items[k];
+    if (pair == scree_none) continue;
+    assert_int_equal(world->pairs.items[pair].neighbours, k);
     astray += pair != next;
     next = pair + 1;
     ++*count;
@@ -459,7 +461,7 @@ static void pairs_come_into_order(void **state) {
     world->pairs_stale = true; /* or the step would look for them where they were */
   }
   print_message("sorted %zu times, up to %zu pairs\n", sorted, most);
-  assert_true(sorted > 5 && most > 64); /* of more than one slab */
+  assert_true(sorted > 5 && most > 64);
   scree_world_free(world);
   for (int i = 0; i < 2; i++) scree_particle_free(shapes[i]);
 }
