@@ -1,6 +1,7 @@
 #!/bin/sh
 # Fails where a file or a public header includes what stands after it, where cli, examples or bench see
-# more than the public headers (cli also sees itself), and where a header does not compile alone.
+# more than the public headers (cli also sees itself and base), where a system's own header is included outside
+# the platform layer, and where a header does not compile alone.
 # usage: layers.sh SOURCE_DIR C_COMPILER
 set -eu
 # From within: the names found below hold no spaces, that of the source folder may.
@@ -49,11 +50,19 @@ for folder in src/cli examples bench; do
   for file in $(find "$root/$folder" -name '*.[ch]' 2>/dev/null); do
     for included in $(sed -n 's/^ *# *include *"\([^"]*\)".*/\1/p' "$file" | sort -u); do
       case "$folder:$included" in
-        *:scree.h | *:scree/*.h | src/cli:cli/* | bench:bench.h) ;;
+        *:scree.h | *:scree/*.h | src/cli:cli/* | src/cli:base/* | bench:bench.h) ;;
         *) complain "${file#"$root"/}: only the public headers are to be seen from $folder, not $included" ;;
       esac
     done
   done
+done
+
+system='unistd|fcntl|dirent|sched|spawn|poll|termios|malloc|windows|io|sys\/[a-z]*'
+for file in $(grep -lE "^ *# *include *<($system)\.h>" "$root"/src/*/*.c "$root"/src/*/*.h); do
+  case "$file" in
+    */src/base/platform_*.c | */src/base/child.c) ;;
+    *) complain "${file#"$root"/}: what differs between systems stands in src/base/platform.h" ;;
+  esac
 done
 
 for header in "$root"/include/scree.h $(find "$root/include/scree" "$root/src" -name '*.h'); do

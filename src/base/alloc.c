@@ -1,15 +1,14 @@
 /* Each block carries its raw pointer and size in the 64 bytes before it, so that use can be counted
  * with any allocator behind the hook. Large blocks ask for huge pages: touching 100 MB for the
  * first time costs 25,000 page faults otherwise, more than welding a scan. */
-#define _DEFAULT_SOURCE
 #include "base/alloc.h"
 
 #include "base/parallel.h"
+#include "base/platform.h"
 
 #include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/mman.h>
 
 enum { ALIGNMENT = 64, HUGE_PAGE = 1 << 21 };
 
@@ -81,15 +80,6 @@ static bool counted_size(size_t count, size_t size, size_t *counted) {
          *counted <= (size_t)PTRDIFF_MAX - HUGE_PAGE;
 }
 
-/* Only advice: it may be refused. */
-static void advise_huge_pages(void *block, size_t size) {
-#ifdef MADV_HUGEPAGE
-  (void)madvise(block, size, MADV_HUGEPAGE);
-#else
-  (void)block, (void)size;
-#endif
-}
-
 void *scree_alloc(size_t count, size_t size) {
   size_t counted;
   bool countable = counted_size(count, size, &counted);
@@ -110,17 +100,13 @@ void *scree_alloc(size_t count, size_t size) {
   size_t shift = (size_t)(-address & (alignment - 1));
   char *block = (char *)raw + ALIGNMENT + shift;
   *header_of(block) = (header){raw, counted};
-  if (alignment == HUGE_PAGE) advise_huge_pages(block, counted - 2 * (size_t)ALIGNMENT);
+  if (alignment == HUGE_PAGE) scree_pages_large(block, counted - 2 * (size_t)ALIGNMENT);
   return block;
 }
 
 static void touch_pages(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
-#ifdef MADV_POPULATE_WRITE
-  (void)madvise((char *)context + begin, end - begin, MADV_POPULATE_WRITE);
-#else
-  (void)context, (void)begin, (void)end;
-#endif
+  scree_pages_touch((char *)context + begin, end - begin);
 }
 
 void scree_populate(void *block, size_t size) {
@@ -156,15 +142,11 @@ void scree_free(void *block) {
 }
 
 void scree_discard_tail(void *block, size_t size) {
-#ifdef MADV_DONTNEED
   size_t end = header_of(block)->size - 2 * (size_t)ALIGNMENT;
   uintptr_t mask = HUGE_PAGE - 1, address = (uintptr_t)block;
   uintptr_t first = (address + size + mask) & ~mask, last = (address + end) & ~mask;
   if (hook == default_reallocate && size < end && first < last)
-    (void)madvise((char *)block + (first - address), last - first, MADV_DONTNEED);
-#else
-  (void)block, (void)size;
-#endif
+    scree_pages_drop((char *)block + (first - address), last - first);
 }
 
 /* 307200 as "300 KiB" */

@@ -1,24 +1,25 @@
-#define _GNU_SOURCE /* for O_TMPFILE */
 #include "base/file.h"
 
 #include "base/parallel.h"
+#include "base/platform.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
-#include <limits.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 #include <xxhash.h>
 
-enum { STREAM_START_BYTES = 1 << 20, TEMPORARY_NAMES = 1000, TAIL_BYTES = 32 };
+enum {
+  STREAM_START_BYTES = 1 << 20,
+  TEMPORARY_NAMES = 1000,
+  TAIL_BYTES = 32,
+  NAME_BYTES = 255, /* of one name in a folder, on every system */
+};
 
 /* What a stream may hold where no limit was given: one that never ends must not take the machine's
  * memory with it. A buffer that doubles, and what is made of it, take several times as much. */
 static size_t stream_limit(void) {
-  long pages = sysconf(_SC_PHYS_PAGES), page = sysconf(_SC_PAGESIZE);
-  return pages > 0 && page > 0 ? (size_t)pages * (size_t)page / 8 : SIZE_MAX;
+  size_t memory = scree_machine_memory();
+  return memory > 0 ? memory / 8 : SIZE_MAX;
 }
 
 /* Where a file is left: judge is NULL where that is at its end. */
@@ -54,7 +55,7 @@ static scree_status read_stream(int fd, const char *name, size_t max_bytes, endi
       buffer = grown;
       capacity *= 2;
     }
-    ssize_t got = read(fd, buffer + used, capacity - used - 1);
+    ptrdiff_t got = scree_read(fd, buffer + used, capacity - used - 1);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) {
       int reason = errno;
@@ -94,7 +95,7 @@ enum { PART_BYTES = 1 << 22 };
 static part read_range(int fd, char *bytes, size_t begin, size_t end) {
   part p = {begin, 0};
   while (p.end < end) {
-    ssize_t got = pread(fd, bytes + (p.end - begin), end - p.end, (off_t)p.end);
+    ptrdiff_t got = scree_read_at(fd, bytes + (p.end - begin), end - p.end, p.end);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) p.reason = errno;
     if (got <= 0) break;
@@ -160,27 +161,27 @@ static scree_status judge_regular(int fd, const char *path, size_t size, ending 
 static scree_status read_file(const char *path, size_t max_bytes, ending *end, char **bytes,
                               size_t *byte_count, scree_error *error) {
   if (!strcmp(path, "-"))
-    return read_stream(STDIN_FILENO, "standard input", max_bytes, end, bytes, byte_count, error);
-  int fd = open(path, O_RDONLY | O_CLOEXEC);
+    return read_stream(fileno(stdin), "standard input", max_bytes, end, bytes, byte_count, error);
+  int fd = scree_open_read(path);
   if (fd < 0) return scree_fail(error, SCREE_IO, "%s: cannot open: %s", path, strerror(errno));
-  struct stat info;
+  scree_path_info info;
   scree_status status;
   errno = 0;
-  if (fstat(fd, &info) != 0)
+  if (!scree_descriptor_look(fd, &info))
     status = scree_fail(error, SCREE_IO, "%s: cannot open: %s", path, strerror(errno));
-  else if (S_ISDIR(info.st_mode))
+  else if (info.kind == SCREE_PATH_FOLDER)
     status = scree_fail(error, SCREE_IO, "%s: is a folder, not a file", path);
-  else if (!S_ISREG(info.st_mode))
+  else if (info.kind != SCREE_PATH_FILE)
     status = read_stream(fd, path, max_bytes, end, bytes, byte_count, error);
-  else if (max_bytes && (size_t)info.st_size > max_bytes)
+  else if (max_bytes && info.byte_count > max_bytes)
     status = scree_fail(error, SCREE_LIMIT, "%s: %zu bytes, more than the limit of %zu", path,
-                        (size_t)info.st_size, max_bytes);
+                        (size_t)info.byte_count, max_bytes);
   else {
-    status = judge_regular(fd, path, (size_t)info.st_size, end, bytes, byte_count, error);
+    status = judge_regular(fd, path, (size_t)info.byte_count, end, bytes, byte_count, error);
     if (status == SCREE_OK && !end->whole_count)
-      status = read_regular(fd, path, (size_t)info.st_size, bytes, byte_count, error);
+      status = read_regular(fd, path, (size_t)info.byte_count, bytes, byte_count, error);
   }
-  close(fd);
+  scree_close(fd);
   return status;
 }
 
@@ -199,17 +200,18 @@ scree_status scree_file_read_judged(const char *path, size_t max_bytes, scree_fi
 }
 
 bool scree_stream_open(const char *path, scree_stream *stream) {
-  struct stat info;
-  if (stat(path, &info) != 0 || !S_ISREG(info.st_mode)) return false; /* to open a pipe may wait */
-  int fd = open(path, O_RDONLY | O_CLOEXEC);
+  scree_path_info info;
+  if (!scree_path_look(path, &info) || info.kind != SCREE_PATH_FILE)
+    return false; /* to open a pipe may wait */
+  int fd = scree_open_read(path);
   XXH3_state_t *hash = fd >= 0 ? XXH3_createState() : NULL;
-  if (!hash || fstat(fd, &info) != 0 || !S_ISREG(info.st_mode)) {
+  if (!hash || !scree_descriptor_look(fd, &info) || info.kind != SCREE_PATH_FILE) {
     XXH3_freeState(hash);
-    if (fd >= 0) close(fd);
+    if (fd >= 0) scree_close(fd);
     return false;
   }
   XXH3_128bits_reset(hash);
-  *stream = (scree_stream){fd, (size_t)info.st_size, 0, hash};
+  *stream = (scree_stream){fd, (size_t)info.byte_count, 0, hash};
   return true;
 }
 
@@ -227,15 +229,15 @@ scree_checksum scree_stream_checksum(const scree_stream *stream) {
 }
 
 void scree_stream_close(scree_stream *stream) {
-  close(stream->fd);
+  scree_close(stream->fd);
   XXH3_freeState(stream->hash);
 }
 
-/* The length of path without what a name of NAME_MAX bytes leaves no room for once `more` bytes are
- * put behind it; no character of UTF-8 is cut. */
+/* The length of path without what a name of NAME_BYTES bytes leaves no room for once `more` bytes
+ * are put behind it; no character of UTF-8 is cut. */
 static size_t room_beside(const char *path, size_t more) {
   const char *slash = strrchr(path, '/');
-  size_t length = strlen(path), most = (slash ? (size_t)(slash + 1 - path) : 0) + NAME_MAX - more;
+  size_t length = strlen(path), most = (slash ? (size_t)(slash + 1 - path) : 0) + NAME_BYTES - more;
   if (length <= most) return length;
   while (most > 0 && ((unsigned char)path[most] & 0xc0) == 0x80) most--;
   return most;
@@ -248,7 +250,7 @@ static size_t temporary_bytes(const char *path) {
 /* The name of the attempt-th temporary file beside path. */
 static void name_beside(const char *path, int attempt, char *name, size_t size) {
   char tail[TAIL_BYTES];
-  int more = snprintf(tail, sizeof tail, ".%ld-%d.part", (long)getpid(), attempt);
+  int more = snprintf(tail, sizeof tail, ".%ld-%d.part", scree_process_number(), attempt);
   snprintf(name, size, "%.*s%s", (int)room_beside(path, (size_t)more), path, tail);
 }
 
@@ -258,44 +260,31 @@ static int create_beside(const char *path, char *name, size_t size) {
   int fd = -1;
   for (int attempt = 0; attempt < TEMPORARY_NAMES; attempt++) {
     name_beside(path, attempt, name, size);
-    fd = open(name, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    fd = scree_open_new(name);
     if (fd >= 0 || errno != EEXIST) break;
   }
   return fd;
 }
 
-#ifdef O_TMPFILE
-static void own_link(int fd, char text[static TAIL_BYTES]) {
-  snprintf(text, TAIL_BYTES, "/proc/self/fd/%d", fd);
-}
-
-/* A file without a name in the folder of path, which is gone with the process however that ends;
- * -1 where the file system has none, or there is no way to give it a name later. */
+/* A file without a name in the folder of path. */
 static int create_nameless(const char *path, char *name, size_t size) {
   const char *slash = strrchr(path, '/');
   int length = !slash ? 1 : slash == path ? 1 : (int)(slash - path);
   snprintf(name, size, "%.*s", length, slash ? path : ".");
-  int fd = open(name, O_WRONLY | O_TMPFILE | O_CLOEXEC, 0666);
-  if (fd < 0) return -1;
-  char link[TAIL_BYTES];
-  own_link(fd, link);
-  if (access(link, F_OK) == 0) {
-    *name = 0;
-    return fd;
-  }
-  close(fd);
-  return -1;
+  int fd = scree_nameless_open(name);
+  if (fd >= 0) *name = 0;
+  return fd;
 }
 
 static bool copy_bytes(int from, int to) {
   enum { PIECE = 1 << 16 };
   char piece[PIECE];
   for (;;) {
-    ssize_t got = read(from, piece, PIECE), done = 0;
+    ptrdiff_t got = scree_read(from, piece, PIECE), done = 0;
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return got == 0;
     while (done < got) {
-      ssize_t put = write(to, piece + done, (size_t)(got - done));
+      ptrdiff_t put = scree_write(to, piece + done, (size_t)(got - done));
       if (put < 0 && errno != EINTR) return false;
       if (put > 0) done += put;
     }
@@ -303,15 +292,15 @@ static bool copy_bytes(int from, int to) {
 }
 
 /* Of a nameless file, as one that has a name beside the target. */
-static bool copy_beside(const scree_output *output, const char *link) {
-  int from = open(link, O_RDONLY | O_CLOEXEC);
+static bool copy_beside(const scree_output *output) {
+  int from = scree_nameless_read(fileno(output->stream));
   if (from < 0) return false;
   int to = create_beside(output->path, output->temporary_path, temporary_bytes(output->path));
-  bool copied = to >= 0 && copy_bytes(from, to) && fsync(to) == 0;
+  bool copied = to >= 0 && copy_bytes(from, to) && scree_sync(to);
   int reason = errno;
-  if (to >= 0) close(to);
-  if (to >= 0 && !copied) unlink(output->temporary_path);
-  close(from);
+  if (to >= 0) scree_close(to);
+  if (to >= 0 && !copied) scree_path_remove(output->temporary_path);
+  scree_close(from);
   errno = reason;
   return copied;
 }
@@ -319,32 +308,17 @@ static bool copy_beside(const scree_output *output, const char *link) {
 /* Gives a nameless file a name beside the target, from which it can replace that; where the file
  * system has no links after all, its copy. */
 static bool give_name(const scree_output *output) {
-  char link[TAIL_BYTES];
-  own_link(fileno(output->stream), link);
   for (int attempt = 0; attempt < TEMPORARY_NAMES; attempt++) {
     name_beside(output->path, attempt, output->temporary_path, temporary_bytes(output->path));
-    if (linkat(AT_FDCWD, link, AT_FDCWD, output->temporary_path, AT_SYMLINK_FOLLOW) == 0)
-      return true;
+    if (scree_nameless_link(fileno(output->stream), output->temporary_path)) return true;
     if (errno != EEXIST) break;
   }
-  if (copy_beside(output, link)) return true;
+  if (copy_beside(output)) return true;
   int reason = errno;
   *output->temporary_path = 0;
   errno = reason;
   return false;
 }
-#else
-static int create_nameless(const char *path, char *name, size_t size) {
-  (void)path;
-  (void)name;
-  (void)size;
-  return -1;
-}
-static bool give_name(const scree_output *output) {
-  (void)output;
-  return true;
-}
-#endif
 
 static int create_temporary(const char *path, char *name, size_t size) {
   int fd = create_nameless(path, name, size);
@@ -353,14 +327,13 @@ static int create_temporary(const char *path, char *name, size_t size) {
 
 /* A file may be replaced by whoever may write to its folder; one that nobody may write to is left
  * alone even so, and by root as well. */
-static bool is_protected(const char *path, const struct stat *info) {
-  return !(info->st_mode & (S_IWUSR | S_IWGRP | S_IWOTH)) ||
-         faccessat(AT_FDCWD, path, W_OK, AT_EACCESS) != 0;
+static bool is_protected(const char *path, const scree_path_info *info) {
+  return info->locked || !scree_path_may_write(path);
 }
 
 /* A device or a pipe. */
-static bool is_special(const struct stat *info) {
-  return !S_ISREG(info->st_mode) && !S_ISDIR(info->st_mode);
+static bool is_special(const scree_path_info *info) {
+  return info->kind != SCREE_PATH_FILE && info->kind != SCREE_PATH_FOLDER;
 }
 
 scree_status scree_output_open(const char *path, bool overwrite, scree_output *output,
@@ -369,13 +342,13 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
     *output = (scree_output){.stream = stdout};
     return SCREE_OK;
   }
-  struct stat info;
-  bool exists = stat(path, &info) == 0, direct = exists && is_special(&info);
+  scree_path_info info;
+  bool exists = scree_path_look(path, &info), direct = exists && is_special(&info);
   if (!exists && errno == ENAMETOOLONG) /* the temporary file's may be shorter */
     return scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
-  if (!exists && !overwrite && lstat(path, &info) == 0) /* a link that leads nowhere */
+  if (!exists && !overwrite && scree_path_look_at_link(path, &info)) /* a link that leads nowhere */
     return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
-  if (exists && S_ISDIR(info.st_mode))
+  if (exists && info.kind == SCREE_PATH_FOLDER)
     return scree_fail(error, SCREE_IO, "%s: is a folder, not a file", path);
   if (exists && !overwrite && !direct)
     return scree_fail(error, SCREE_EXISTS, "%s: exists already; not overwritten", path);
@@ -388,8 +361,7 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
   if (!opened.path || (!direct && !opened.temporary_path))
     status = scree_fail_memory(error, size, "a file name");
   else
-    fd = direct ? open(path, O_WRONLY | O_CLOEXEC | O_NOCTTY)
-                : create_temporary(path, opened.temporary_path, size);
+    fd = direct ? scree_open_write(path) : create_temporary(path, opened.temporary_path, size);
   opened.stream = fd >= 0 ? fdopen(fd, "wb") : NULL;
   if (status == SCREE_OK && !opened.stream)
     status = scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
@@ -398,8 +370,8 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
     return SCREE_OK;
   }
   if (fd >= 0) {
-    close(fd);
-    if (!direct && *opened.temporary_path) unlink(opened.temporary_path);
+    scree_close(fd);
+    if (!direct && *opened.temporary_path) scree_path_remove(opened.temporary_path);
   }
   scree_free(opened.path);
   scree_free(opened.temporary_path);
@@ -407,12 +379,12 @@ scree_status scree_output_open(const char *path, bool overwrite, scree_output *o
 }
 
 scree_status scree_output_check(const char *path, bool overwrite, scree_error *error) {
-  struct stat info;
+  scree_path_info info;
   scree_output output;
   if (!strcmp(path, "-")) return SCREE_OK;
   /* to open a pipe is to wait for its reader, and to close it tells the reader that it was all */
-  if (stat(path, &info) == 0 && is_special(&info)) {
-    if (access(path, W_OK) == 0) return SCREE_OK;
+  if (scree_path_look(path, &info) && is_special(&info)) {
+    if (scree_path_may_write(path)) return SCREE_OK;
     return scree_fail(error, SCREE_IO, "%s: cannot create: %s", path, strerror(errno));
   }
   scree_status status = scree_output_open(path, overwrite, &output, error);
@@ -427,19 +399,11 @@ static const char *reason_to_tell(int reason) {
   return reason ? strerror(reason) : "the disk is full, or a limit is reached";
 }
 
-/* rename that spares a file that has come there meanwhile, where the file system can do that. */
-static int rename_new(const char *from, const char *to) {
-#ifdef RENAME_NOREPLACE
-  if (renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE) == 0) return 0;
-  if (errno != EINVAL && errno != ENOSYS) return -1;
-#endif
-  return rename(from, to);
-}
-
 /* The whole file takes its name. */
 static bool take_place(scree_output *output) {
   const char *from = output->temporary_path, *to = output->path;
-  if ((output->overwrite ? rename(from, to) : rename_new(from, to)) != 0) return false;
+  if (!(output->overwrite ? scree_path_rename(from, to) : scree_path_rename_new(from, to)))
+    return false;
   *output->temporary_path = 0; /* anybody's again */
   return true;
 }
@@ -453,7 +417,7 @@ scree_status scree_output_commit(scree_output *output, scree_error *error) {
   errno = 0;
   bool direct = !output->temporary_path;
   bool written = fflush(output->stream) == 0 && !ferror(output->stream) &&
-                 (direct || fsync(fileno(output->stream)) == 0) &&
+                 (direct || scree_sync(fileno(output->stream))) &&
                  (direct || *output->temporary_path || give_name(output));
   int reason = errno;
   if (fclose(output->stream) != 0 && written) {
@@ -477,15 +441,15 @@ scree_status scree_output_commit(scree_output *output, scree_error *error) {
 
 void scree_output_discard(scree_output *output) {
   if (output->path && output->stream) fclose(output->stream);
-  if (output->temporary_path && *output->temporary_path) unlink(output->temporary_path);
+  if (output->temporary_path && *output->temporary_path) scree_path_remove(output->temporary_path);
   scree_free(output->path);
   scree_free(output->temporary_path);
   *output = (scree_output){0};
 }
 
 static bool folder_exists(const char *path) {
-  struct stat info;
-  return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+  scree_path_info info;
+  return scree_path_look(path, &info) && info.kind == SCREE_PATH_FOLDER;
 }
 
 scree_status scree_folder_create(const char *path, scree_error *error) {
@@ -497,7 +461,7 @@ scree_status scree_folder_create(const char *path, scree_error *error) {
     if (*end != '/' && *end != 0) continue;
     char kept = *end;
     *end = 0;
-    int reason = mkdir(partial, 0777) == 0 ? 0 : errno;
+    int reason = scree_folder_make(partial) ? 0 : errno;
     if (reason && !folder_exists(partial))
       status = scree_fail(error, SCREE_IO, "%s: cannot create the folder: %s", partial,
                           reason == EEXIST ? "a file has that name" : strerror(reason));

@@ -3,14 +3,12 @@
  * closes the loop when none is left, so it never waits for a thread that the system has not yet
  * woken: on a busy machine a loop costs what it costs on one thread. Whoever waits spins for a
  * moment first, as loops follow each other closely, and then sleeps. */
-#define _GNU_SOURCE
 #include "base/parallel.h"
 
+#include "base/platform.h"
 #include "scree.h"
 
 #include <pthread.h>
-#include <sched.h>
-#include <signal.h>
 #include <stdatomic.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -58,12 +56,10 @@ static int default_threads(void) {
   if (threads > 0) return threads;
   const char *text = getenv("OMP_NUM_THREADS");
   long wanted = text ? strtol(text, NULL, 10) : 0;
-  cpu_set_t processors;
   if (wanted > 0)
     threads = wanted < MOST_THREADS ? (int)wanted : MOST_THREADS;
   else
-    threads =
-        sched_getaffinity(0, sizeof processors, &processors) == 0 ? CPU_COUNT(&processors) : 1;
+    threads = scree_processor_count();
   atomic_store(&found, threads);
   return threads;
 }
@@ -169,21 +165,10 @@ static void forget_threads(void) {
 
 static void start_threads(int wanted) {
   static bool told;
-  pthread_attr_t attributes;
-  sigset_t all, before;
-  if (pool.started >= wanted || pthread_attr_init(&attributes) != 0) return;
-  if (!told) told = pthread_atfork(NULL, NULL, forget_threads) == 0;
-  pthread_attr_setdetachstate(&attributes, PTHREAD_CREATE_DETACHED);
-  sigfillset(&all); /* signals are for the caller's thread */
-  pthread_sigmask(SIG_SETMASK, &all, &before);
-  while (pool.started < wanted) {
-    pthread_t thread;
-    if (pthread_create(&thread, &attributes, work, (void *)(intptr_t)(pool.started + 1)) != 0)
-      break;
+  if (!told) scree_at_fork(forget_threads);
+  told = true;
+  while (pool.started < wanted && scree_thread_start(work, (void *)(intptr_t)(pool.started + 1)))
     pool.started++;
-  }
-  pthread_sigmask(SIG_SETMASK, &before, NULL);
-  pthread_attr_destroy(&attributes);
 }
 
 static void open_loop(int workers) {

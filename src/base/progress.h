@@ -2,6 +2,7 @@
 #ifndef SCREE_BASE_PROGRESS_H
 #define SCREE_BASE_PROGRESS_H
 
+#include "base/platform.h" /* scree_now */
 #include "scree.h"
 
 typedef struct scree_ticker {
@@ -12,8 +13,5 @@ typedef struct scree_ticker {
 /* Reports when the progress's interval is over (always when fraction is 0 or 1); false means
  * cancel. */
 bool scree_tick(scree_ticker *ticker, const char *phase, double fraction);
-
-/* Seconds on the monotonic clock: for timers and reports, never for results. */
-double scree_now(void);
 
 #endif

@@ -1,4 +1,5 @@
 #include "cli/args.h"
+#include "base/platform.h"
 #include "cli/terminal.h"
 
 #include <errno.h>
@@ -6,7 +7,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 const cli_option cli_common_options[] = {
     {"threads", 'j', CLI_COUNT, offsetof(cli_common, threads), "N",
@@ -379,7 +379,7 @@ static const char *closest_option(const cli_verb *verb, const char *name) {
 /* "-dash.stl" may be meant as the file of that name. */
 static const char *file_hint(const char *word, char *buffer, size_t size) {
   buffer[0] = 0;
-  if (access(word, F_OK) == 0) snprintf(buffer, size, "; the file of that name is ./%.200s", word);
+  if (scree_path_exists(word)) snprintf(buffer, size, "; the file of that name is ./%.200s", word);
   return buffer;
 }
 

@@ -15,16 +15,15 @@
  * They are written into another folder and moved when all are there: who cancels finds none. What
  * an earlier choice left in the folder and this one has not goes with it, before the answer is
  * moved. */
+#include "base/platform.h"
 #include "cli/choose.h"
 #include "cli/output.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 static const char *const FIGURES[] = {"figure.png", "figure.svg", "figure.pdf", "figure.csv",
                                       "figure.gnuplot"};
@@ -76,7 +75,7 @@ static scree_status move_file(const choose_run *run, const char *before, const c
   char from[CHOOSE_PATH_BYTES], to[CHOOSE_PATH_BYTES];
   scree_status status = join(run, before, name, after, from, error);
   if (status == SCREE_OK) status = join_in(run->arguments->output, before, name, after, to, error);
-  if (status == SCREE_OK && rename(from, to) != 0)
+  if (status == SCREE_OK && !scree_path_rename(from, to))
     status = cli_refuse(error, SCREE_IO, to, strerror(errno));
   return status;
 }
@@ -110,7 +109,7 @@ static scree_status visit_answer(const choose_run *run, visit_file *visit, scree
 static bool begins_with(const char *path, const char *text) {
   char start[32];
   size_t length = strlen(text);
-  FILE *file = fopen(path, "rb");
+  FILE *file = scree_open_stream(path, "rb");
   bool same = file && fread(start, 1, length, file) == length && !memcmp(start, text, length);
   if (file) fclose(file);
   return same;
@@ -143,16 +142,16 @@ static scree_status visit_earlier(const choose_run *run, visit_file *visit, scre
   static const char ending[] = ".levels";
   char path[CHOOSE_PATH_BYTES], name[CHOOSE_PATH_BYTES];
   scree_status status = join_in(run->arguments->output, "levels", "", "", path, error);
-  DIR *entries = status == SCREE_OK ? opendir(path) : NULL;
-  for (struct dirent *entry; status == SCREE_OK && entries && (entry = readdir(entries));) {
-    size_t length = strlen(entry->d_name), end = sizeof ending - 1;
-    if (length <= end || strcmp(entry->d_name + length - end, ending) != 0) continue;
-    status = join_in(path, entry->d_name, "", "", name, error);
+  scree_folder *entries = status == SCREE_OK ? scree_folder_open(path) : NULL;
+  for (const char *found; status == SCREE_OK && entries && (found = scree_folder_next(entries));) {
+    size_t length = strlen(found), end = sizeof ending - 1;
+    if (length <= end || strcmp(found + length - end, ending) != 0) continue;
+    status = join_in(path, found, "", "", name, error);
     if (status != SCREE_OK || !begins_with(name, OBJECT_FILES[LEVELS_FILE].begin)) continue;
-    snprintf(name, sizeof name, "%.*s", (int)(length - end), entry->d_name);
+    snprintf(name, sizeof name, "%.*s", (int)(length - end), found);
     status = visit_stale(run, name, visit, error);
   }
-  if (entries) closedir(entries);
+  if (entries) scree_folder_close(entries);
   return status;
 }
 
@@ -160,11 +159,11 @@ static scree_status remove_file(const choose_run *run, const char *before, const
                                 const char *after, scree_error *error) {
   char path[CHOOSE_PATH_BYTES];
   scree_status status = join_in(run->arguments->output, before, name, after, path, error);
-  if (status == SCREE_OK && unlink(path) != 0)
+  if (status == SCREE_OK && !scree_path_remove(path))
     return cli_refuse(error, SCREE_IO, path, strerror(errno));
   if (status == SCREE_OK && in_set(before)) {
     status = join_in(run->arguments->output, before, "", "", path, error);
-    if (status == SCREE_OK) (void)rmdir(path); /* where it was the last */
+    if (status == SCREE_OK) (void)scree_folder_remove(path); /* where it was the last */
   }
   return status;
 }
@@ -209,7 +208,7 @@ static scree_status put_in_place(choose_run *run, scree_error *error) {
     return cli_refuse(error, SCREE_CANCELLED, run->arguments->output, "cancelled while writing");
   char empty[CHOOSE_PATH_BYTES];
   if (run->count == 1 && join(run, "set", "", "", empty, error) == SCREE_OK)
-    (void)rmdir(empty); /* the others failed */
+    (void)scree_folder_remove(empty); /* the others failed */
   if (!run->stage.existed) return cli_stage_rename(&run->stage, error);
   scree_status status = check_files(run, error);
   return status == SCREE_OK ? move_files(run, error) : status;
@@ -274,9 +273,9 @@ static scree_status write_text(const choose_run *run, scree_error *error) {
   size_t size;
   scree_status status = join(run, "", "choice.txt", "", path, error);
   if (status != SCREE_OK) return status;
-  FILE *stream = open_memstream(&text, &size);
+  FILE *stream = scree_memory_open(&text, &size);
   if (stream) choose_print(stream, run);
-  if (!stream || fclose(stream) != 0)
+  if (!stream || !scree_memory_close(stream))
     status = cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
   else
     status = scree_text_write(text, path, run->arguments->overwrite, error);

@@ -1,4 +1,5 @@
 /* What `scree drop` writes: frames for ParaView, a table over time, a picture. */
+#include "base/platform.h"
 #include "cli/drop.h"
 #include "cli/output.h"
 
@@ -45,7 +46,7 @@ scree_status drop_open_output(drop_run *run, scree_error *error) {
     status = cli_clear_run_output(run->call, run->arguments->output, &run_files, error);
   if (status == SCREE_OK) status = drop_path(run, "series.csv", path, error);
   if (status != SCREE_OK) return status;
-  run->series = fopen(path, may_replace(run) ? "w" : "wx");
+  run->series = scree_open_stream(path, may_replace(run) ? "w" : "wx");
   if (!run->series) return cli_refuse(error, SCREE_IO, path, strerror(errno));
   fprintf(run->series,
           "# scree %s, %s\ntime_s,steps,bodies,kinetic_J,rotational_J,potential_J,elastic_J,"

@@ -2,6 +2,8 @@
  * series.csv, which a pour that went on has whole. */
 #include "cli/drop.h"
 
+#include "base/platform.h"
+
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -52,7 +54,7 @@ static scree_status read_points(const drop_run *run, points *p, scree_error *err
   scree_pour_point point = {.entered_energy = 0};
   scree_status status = drop_path(run, "series.csv", path, error);
   if (status != SCREE_OK) return status;
-  FILE *stream = fopen(path, "r");
+  FILE *stream = scree_open_stream(path, "r");
   if (!stream) return cli_refuse(error, SCREE_IO, path, strerror(errno));
   bool room = true;
   while (room && fgets(line, sizeof line, stream))

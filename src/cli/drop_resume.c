@@ -2,11 +2,12 @@
  * where the files stand: what was written after it is written again. */
 #include "cli/drop.h"
 
+#include "base/platform.h"
+
 #include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { NOTES = 5 }; /* then the times of the frames */
 
@@ -117,13 +118,13 @@ static scree_status reopen_series(drop_run *run, double length, scree_error *err
   char path[DROP_PATH_BYTES];
   scree_status status = drop_path(run, "series.csv", path, error);
   if (status != SCREE_OK) return status;
-  run->series = fopen(path, "r+");
-  if (!run->series || fseeko(run->series, 0, SEEK_END) != 0)
+  run->series = scree_open_stream(path, "r+");
+  scree_path_info info;
+  if (!run->series || !scree_descriptor_look(fileno(run->series), &info))
     return cli_refuse(error, SCREE_IO, path, strerror(errno));
-  if (!(length >= 0 && length <= (double)ftello(run->series)))
+  if (!(length >= 0 && length <= (double)info.byte_count))
     return cli_refuse(error, SCREE_BAD_FILE, path, "is shorter than the checkpoint knows it");
-  if (ftruncate(fileno(run->series), (off_t)length) != 0 ||
-      fseeko(run->series, (off_t)length, SEEK_SET) != 0)
+  if (!scree_cut(run->series, (uint64_t)length))
     return cli_refuse(error, SCREE_IO, path, strerror(errno));
   return SCREE_OK;
 }
@@ -147,7 +148,7 @@ scree_status drop_resume(drop_run *run, scree_error *error) {
   if (!run->arguments->resume) return SCREE_OK;
   scree_status status = drop_path(run, "checkpoint.scree", path, error);
   if (status != SCREE_OK) return status;
-  if (access(path, F_OK) != 0)
+  if (!scree_path_exists(path))
     return run->shape_count ? SCREE_OK
                             : cli_refuse(error, SCREE_IO, path, "no checkpoint to go on from");
   status = scree_pour_load(path, &run->pour, error);

@@ -1,11 +1,11 @@
 /* The shapes of `scree drop`: words to particles. */
+#include "base/platform.h"
 #include "cli/clump.h"
 #include "cli/drop.h"
 #include "cli/surface.h"
 
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum { LARGE_SCAN = 2000 }; /* triangles above which a shape is decimated without being asked */
 
@@ -22,7 +22,7 @@ static bool is_sphere(const char *name) {
 
 /* A shape by its name alone. */
 static bool is_known(const char *name) {
-  return cli_is_sample(name, NULL) || is_sphere(name) || access(name, F_OK) == 0;
+  return cli_is_sample(name, NULL) || is_sphere(name) || scree_path_exists(name);
 }
 
 /* "phone.stl=30": the name, and the count behind the last '='. A file may have a name like that. */
@@ -35,7 +35,7 @@ static int read_count(const drop_run *run, drop_shape *shape) {
     return cli_misuse(run->call->verb, "'%.40s': not a name", shape->word);
   memcpy(shape->name, shape->word, length);
   shape->name[length] = 0;
-  if (equals && !counted && (access(shape->word, F_OK) == 0 || !is_known(shape->name))) {
+  if (equals && !counted && (scree_path_exists(shape->word) || !is_known(shape->name))) {
     memcpy(shape->name, shape->word, strlen(shape->word) + 1);
     return 0;
   }

@@ -1,7 +1,8 @@
 #include "cli/input.h"
 
+#include "base/platform.h"
+
 #include <string.h>
-#include <unistd.h>
 
 static const char SAMPLE_PREFIX[] = "sample:";
 
@@ -15,7 +16,7 @@ bool cli_is_sample(const char *word, const char **name) {
 /* A file that is not there, but a sample of that name. */
 static void hint_sample(const char *word, scree_error *error) {
   size_t used = strlen(error->message);
-  if (access(word, F_OK) == 0) return;
+  if (scree_path_exists(word)) return;
   for (size_t i = 0; scree_sample_name(i); i++)
     if (!strcmp(word, scree_sample_name(i)))
       snprintf(error->message + used, sizeof error->message - used, "; did you mean %s%s?",

@@ -1,12 +1,9 @@
+#include "base/platform.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 
-#include <fcntl.h>
-#include <malloc.h>
-#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 const cli_verb *cli_find_verb(const char *name) {
   for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
@@ -92,7 +89,7 @@ static int run(const cli_verb *verb, int argc, char **argv) {
   }
   scree_set_threads((int)common.threads);
   scree_set_memory_limit(common.max_memory);
-  bool show = common.progress || (!common.quiet && isatty(STDERR_FILENO));
+  bool show = common.progress || (!common.quiet && scree_is_terminal(stderr));
   cli_call call = {verb,
                    options,
                    inputs,
@@ -112,13 +109,6 @@ done:
   return result;
 }
 
-/* A standard stream that came closed would be the number of the first file opened, and what is
- * printed would land in it. Reading /dev/null fails where it is written to, as it should. */
-static void fill_standard_streams(void) {
-  for (int fd = 0; fd < 3; fd++)
-    if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", fd ? O_RDONLY : O_WRONLY) != fd) _exit(1);
-}
-
 static int act(int argc, char **argv) {
   if (argc < 2) {
     cli_print_overview(stderr);
@@ -136,19 +126,8 @@ static int act(int argc, char **argv) {
   return run(verb, argc, argv);
 }
 
-/* The C library keeps freed blocks of up to 32 MB for itself once there were such: a tenth of the
- * memory of a decimation. Large ones go back to the system at once. */
-static void give_back_large_blocks(void) {
-#ifdef M_MMAP_THRESHOLD
-  enum { LARGE = 1 << 20 };
-  (void)mallopt(M_MMAP_THRESHOLD, LARGE);
-#endif
-}
-
 int main(int argc, char **argv) {
-  signal(SIGXFSZ, SIG_IGN); /* a limit on the size of files fails as a full disk does */
-  give_back_large_blocks();
-  fill_standard_streams();
+  scree_program_begin(&argc, &argv);
   int result = act(argc, argv);
   if (result != 0) return result;
   return cli_finish_printing() ? 0 : 1;

@@ -1,33 +1,31 @@
 #include "cli/output.h"
+#include "base/platform.h"
 #include "cli/input.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* What lies behind a word of the call: of "phone.stl=30" that is no file, phone.stl. */
-static bool stat_input(const char *word, struct stat *info) {
+static bool stat_input(const char *word, scree_path_info *info) {
   char name[4096];
-  if (!strcmp(word, "-")) return fstat(STDIN_FILENO, info) == 0;
+  if (!strcmp(word, "-")) return scree_descriptor_look(fileno(stdin), info);
   if (cli_is_sample(word, NULL)) return false;
-  if (stat(word, info) == 0) return true;
+  if (scree_path_look(word, info)) return true;
   const char *equals = strrchr(word, '=');
   if (!equals || (size_t)(equals - word) >= sizeof name) return false;
   snprintf(name, sizeof name, "%.*s", (int)(equals - word), word);
-  return stat(name, info) == 0;
+  return scree_path_look(name, info);
 }
 
-static bool is_file(const char *word, const struct stat *file) {
-  struct stat info;
-  return stat_input(word, &info) && info.st_dev == file->st_dev && info.st_ino == file->st_ino;
+static bool is_file(const char *word, const scree_path_info *file) {
+  scree_path_info info;
+  return stat_input(word, &info) && info.device == file->device && info.number == file->number;
 }
 
 /* The word of the call that names this file as one to read; NULL where none does. */
-static const char *find_reader(const cli_call *call, const struct stat *file) {
+static const char *find_reader(const cli_call *call, const scree_path_info *file) {
   for (size_t i = 0; i < call->input_count; i++)
     if (is_file(call->inputs[i], file)) return call->inputs[i];
   for (size_t i = 0; i < call->verb->option_count; i++) {
@@ -42,10 +40,10 @@ static const char *find_reader(const cli_call *call, const struct stat *file) {
 
 scree_status cli_check_output(const cli_call *call, const char *path, bool overwrite,
                               scree_error *error) {
-  struct stat info;
+  scree_path_info info;
   bool is_stream = !strcmp(path, "-");
   const char *word = NULL;
-  if (!is_stream && stat(path, &info) == 0 && S_ISREG(info.st_mode))
+  if (!is_stream && scree_path_look(path, &info) && info.kind == SCREE_PATH_FILE)
     word = find_reader(call, &info);
   if (!word) return scree_output_check(path, overwrite, error);
   char reason[300];
@@ -123,12 +121,11 @@ static scree_status visit_files(const cli_call *call, const char *folder, const 
                                 run_file_visit *visit, scree_error *error) {
   if (!strchr(name, '#')) return visit_file(call, folder, name, visit, error);
   scree_status status = SCREE_OK;
-  DIR *entries = opendir(folder);
+  scree_folder *entries = scree_folder_open(folder);
   if (!entries) return cli_refuse(error, SCREE_IO, folder, strerror(errno));
-  for (struct dirent *entry; status == SCREE_OK && (entry = readdir(entries));)
-    if (is_called(entry->d_name, name))
-      status = visit_file(call, folder, entry->d_name, visit, error);
-  closedir(entries);
+  for (const char *found; status == SCREE_OK && (found = scree_folder_next(entries));)
+    if (is_called(found, name)) status = visit_file(call, folder, found, visit, error);
+  scree_folder_close(entries);
   return status;
 }
 
@@ -155,9 +152,11 @@ scree_status cli_check_run_output(const cli_call *call, const char *folder,
 }
 
 static scree_status remove_file(const cli_call *call, const char *path, scree_error *error) {
-  struct stat info;
-  if (lstat(path, &info) != 0 || S_ISDIR(info.st_mode) || find_reader(call, &info)) return SCREE_OK;
-  return unlink(path) == 0 ? SCREE_OK : cli_refuse(error, SCREE_IO, path, strerror(errno));
+  scree_path_info info;
+  if (!scree_path_look_at_link(path, &info) || info.kind == SCREE_PATH_FOLDER ||
+      find_reader(call, &info))
+    return SCREE_OK;
+  return scree_path_remove(path) ? SCREE_OK : cli_refuse(error, SCREE_IO, path, strerror(errno));
 }
 
 scree_status cli_clear_run_output(const cli_call *call, const char *folder,
@@ -185,11 +184,10 @@ static bool remember_folder(const char *path, size_t length) {
 }
 
 scree_status cli_make_folder(const char *path, scree_error *error) {
-  struct stat info;
   for (size_t end = 1; *path && end <= strlen(path); end++) {
     if (path[end] && path[end] != '/') continue;
     char *part = strndup(path, end);
-    bool missing = part && stat(part, &info) != 0;
+    bool missing = part && !scree_path_exists(part);
     free(part);
     if (!part || (missing && !remember_folder(path, end)))
       return cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
@@ -198,7 +196,7 @@ scree_status cli_make_folder(const char *path, scree_error *error) {
 }
 
 void cli_remove_empty_folders(void) {
-  for (size_t i = made_count; i-- > 0;) (void)rmdir(made_folders[i]);
+  for (size_t i = made_count; i-- > 0;) (void)scree_folder_remove(made_folders[i]);
 }
 
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,

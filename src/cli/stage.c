@@ -1,11 +1,9 @@
 #include "cli/stage.h"
+#include "base/platform.h"
 #include "cli/output.h"
 
-#include <dirent.h>
 #include <errno.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 enum { TEMPORARY_NAMES = 1000 };
 
@@ -28,9 +26,9 @@ static scree_status make_beside(const char *stem, int length, cli_stage *stage,
                                 scree_error *error) {
   for (int attempt = 0; attempt < TEMPORARY_NAMES; attempt++) {
     int used = snprintf(stage->path, sizeof stage->path, "%.*s%s.%ld-%d.part", length, stem,
-                        stage->existed ? "/results" : "", (long)getpid(), attempt);
+                        stage->existed ? "/results" : "", scree_process_number(), attempt);
     if (used >= (int)sizeof stage->path) errno = ENAMETOOLONG;
-    if (used < (int)sizeof stage->path && mkdir(stage->path, 0777) == 0) return SCREE_OK;
+    if (used < (int)sizeof stage->path && scree_folder_make(stage->path)) return SCREE_OK;
     if (errno != EEXIST) break;
   }
   char reason[256];
@@ -40,9 +38,8 @@ static scree_status make_beside(const char *stem, int length, cli_stage *stage,
 }
 
 scree_status cli_stage_open(const char *folder, cli_stage *stage, scree_error *error) {
-  struct stat info;
   int length = (int)strnlen(folder, CLI_STAGE_BYTES);
-  *stage = (cli_stage){.folder = folder, .existed = lstat(folder, &info) == 0};
+  *stage = (cli_stage){.folder = folder, .existed = scree_path_look_at_link(folder, NULL)};
   if (length >= CLI_STAGE_BYTES)
     return cli_refuse(error, SCREE_LIMIT, folder, "the path is too long");
   while (length > 1 && folder[length - 1] == '/') length--;
@@ -56,7 +53,7 @@ scree_status cli_stage_rename(cli_stage *stage, scree_error *error) {
   size_t length = strlen(stage->folder);
   while (length > 1 && stage->folder[length - 1] == '/') length--;
   snprintf(target, sizeof target, "%.*s", (int)length, stage->folder);
-  if (rename(stage->path, target) == 0) {
+  if (scree_path_rename(stage->path, target)) {
     stage->path[0] = 0;
     return SCREE_OK;
   }
@@ -68,15 +65,14 @@ scree_status cli_stage_rename(cli_stage *stage, scree_error *error) {
 
 /* Folders in folders, as deep as they are made here. */
 static void remove_tree(const char *path, int depth) {
-  DIR *entries = depth > 0 ? opendir(path) : NULL;
-  for (struct dirent *entry; entries && (entry = readdir(entries));) {
+  scree_folder *entries = depth > 0 ? scree_folder_open(path) : NULL;
+  for (const char *name; entries && (name = scree_folder_next(entries));) {
     char inner[2 * CLI_STAGE_BYTES];
-    if (!strcmp(entry->d_name, ".") || !strcmp(entry->d_name, "..")) continue;
-    int used = snprintf(inner, sizeof inner, "%s/%s", path, entry->d_name);
-    if (used < (int)sizeof inner && unlink(inner) != 0) remove_tree(inner, depth - 1);
+    int used = snprintf(inner, sizeof inner, "%s/%s", path, name);
+    if (used < (int)sizeof inner && !scree_path_remove(inner)) remove_tree(inner, depth - 1);
   }
-  if (entries) closedir(entries);
-  (void)rmdir(path);
+  if (entries) scree_folder_close(entries);
+  (void)scree_folder_remove(path);
 }
 
 void cli_stage_discard(cli_stage *stage) {

@@ -1,19 +1,14 @@
 /* Workers as processes: the program itself again, with --worker. They share nothing but the folder,
  * so that the death of one harms no other. */
+#include "base/platform.h"
 #include "cli/study.h"
 #include "cli/terminal.h"
 
-#include <errno.h>
-#include <signal.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
-#include <time.h>
 
-enum { MOST_JOBS = 1024, LOOK_NS = 200000000, LOOKS_A_COLLECT = 25 };
-
-extern char **environ;
+enum { MOST_JOBS = 1024, LOOKS_A_COLLECT = 25 };
+static const double look_s = 0.2;
 
 size_t study_rank(void) {
   static const char *const names[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK",
@@ -29,7 +24,7 @@ typedef struct pool {
   const cli_call *call;
   const char *folder;
   char threads[24], lease[40], memory[24];
-  pid_t workers[MOST_JOBS];
+  long workers[MOST_JOBS];
   size_t alive, replaced;
   bool told; /* the workers, to end */
   int result;
@@ -37,21 +32,17 @@ typedef struct pool {
 
 static bool start_worker(pool *p, size_t slot) {
   const study_arguments *a = p->call->options;
-  /* spawn takes no const words, and changes none */
-  union {
-    const char *fixed[16];
-    char *words[16];
-  } line = {{"scree", "study", "-o", p->folder, "--worker", "--quiet", "--threads", p->threads,
-             "--lease", p->lease}};
+  const char *words[16] = {"scree",   "study",     "-o",       p->folder, "--worker",
+                           "--quiet", "--threads", p->threads, "--lease", p->lease};
   size_t count = 10;
-  if (a->no_wait) line.fixed[count++] = "--no-wait";
+  if (a->no_wait) words[count++] = "--no-wait";
   if (p->call->max_memory) {
-    line.fixed[count++] = "--max-memory";
-    line.fixed[count++] = p->memory;
+    words[count++] = "--max-memory";
+    words[count++] = p->memory;
   }
-  line.fixed[count++] = "--";
-  line.fixed[count++] = p->call->inputs[0];
-  int code = posix_spawn(&p->workers[slot], "/proc/self/exe", NULL, NULL, line.words, environ);
+  words[count++] = "--";
+  words[count++] = p->call->inputs[0];
+  int code = scree_process_run(words, &p->workers[slot]);
   if (code != 0) {
     fprintf(stderr, "scree: cannot start a worker: %s\n", strerror(code));
     p->workers[slot] = 0;
@@ -62,17 +53,17 @@ static bool start_worker(pool *p, size_t slot) {
   return true;
 }
 
-static void bury(pool *p, size_t slot, int status, size_t jobs) {
-  pid_t pid = p->workers[slot];
+static void bury(pool *p, size_t slot, scree_process_state state, int code, size_t jobs) {
+  long process = p->workers[slot];
   p->workers[slot] = 0;
   p->alive--;
   if (cli_interrupted()) return;
-  if (WIFEXITED(status)) {
-    if (WEXITSTATUS(status) != 0) p->result = 1; /* it has told why */
+  if (state == SCREE_PROCESS_ENDED) {
+    if (code != 0) p->result = 1; /* it has told why */
     return;
   }
   fprintf(stderr, "scree: worker %ld was killed (signal %d); another one takes its place\n",
-          (long)pid, WTERMSIG(status));
+          process, code);
   if (p->replaced++ < 10 * jobs)
     start_worker(p, slot);
   else
@@ -83,7 +74,7 @@ static void bury(pool *p, size_t slot, int status, size_t jobs) {
  * still writing its checkpoint. */
 static void pass_on(pool *p, size_t jobs) {
   for (size_t i = 0; i < jobs; i++)
-    if (p->workers[i] > 0) kill(p->workers[i], SIGTERM);
+    if (p->workers[i] > 0) scree_process_stop(p->workers[i]);
   p->told = true;
 }
 
@@ -111,12 +102,12 @@ int study_run_jobs(const cli_call *call, scree_study *study, const char *folder,
   for (size_t i = 0; i < jobs; i++)
     if (!start_worker(&p, i)) break;
   for (size_t look = 1; p.alive > 0; look++) {
-    struct timespec pause = {0, LOOK_NS};
-    nanosleep(&pause, NULL);
+    scree_sleep(look_s);
     for (size_t i = 0; i < jobs; i++) {
-      int status;
-      if (p.workers[i] > 0 && waitpid(p.workers[i], &status, WNOHANG) == p.workers[i])
-        bury(&p, i, status, jobs);
+      int code;
+      if (p.workers[i] <= 0) continue;
+      scree_process_state state = scree_process_look(p.workers[i], false, &code);
+      if (state != SCREE_PROCESS_RUNS) bury(&p, i, state, code, jobs);
     }
     if (cli_interrupted() && !p.told && look % 5 == 0) pass_on(&p, jobs);
     look_around(&p, study, look % LOOKS_A_COLLECT == 0);

@@ -1,17 +1,15 @@
 /* A Slurm job array whose tasks are workers in the shared folder. Slurm queues a task again whose
  * node fails or which is pre-empted; the run of one that is killed is gone on with by the others.
  */
-#define _XOPEN_SOURCE 700 /* realpath */
 #include "cli/study.h"
 
+#include "base/platform.h"
+
 #include <errno.h>
-#include <limits.h>
-#include <spawn.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/wait.h>
 
-extern char **environ;
+enum { MOST_PATH = 4096 };
 
 /* In single quotes, for a shell. */
 static void write_quoted(FILE *stream, const char *text) {
@@ -23,8 +21,8 @@ static void write_quoted(FILE *stream, const char *text) {
 static void write_script(FILE *stream, const cli_call *call, const char *study, const char *folder,
                          size_t tasks) {
   const study_arguments *a = call->options;
-  char program[PATH_MAX];
-  if (!realpath("/proc/self/exe", program)) snprintf(program, sizeof program, "scree");
+  char program[MOST_PATH];
+  if (!scree_program_path(program, sizeof program)) snprintf(program, sizeof program, "scree");
   fprintf(stream,
           "#!/bin/sh\n"
           "# scree %s: workers of a study; more of them, here or elsewhere, may join at any time.\n"
@@ -49,15 +47,11 @@ static void write_script(FILE *stream, const cli_call *call, const char *study, 
 }
 
 static int submit(const char *script) {
-  union {
-    const char *fixed[3];
-    char *words[3];
-  } line = {{"sbatch", script}};
+  const char *words[] = {"sbatch", script, NULL};
   char shown[CLI_PRINTABLE_BYTES];
-  pid_t pid;
-  int status;
-  int code = posix_spawnp(&pid, "sbatch", NULL, NULL, line.words, environ);
-  if (code == 0 && waitpid(pid, &status, 0) == pid && WIFEXITED(status) && WEXITSTATUS(status) == 0)
+  long process;
+  int status, code = scree_process_run(words, &process);
+  if (code == 0 && scree_process_look(process, true, &status) == SCREE_PROCESS_ENDED && status == 0)
     return 0;
   fprintf(stderr, "scree: %s could not be submitted: %s\n", cli_printable(script, shown),
           code ? strerror(code) : "sbatch failed");
@@ -66,9 +60,10 @@ static int submit(const char *script) {
 
 int study_run_slurm(const cli_call *call, const scree_study *study, const char *folder) {
   const study_arguments *a = call->options;
-  char file[PATH_MAX], full[PATH_MAX], script[PATH_MAX + 16], shown[CLI_PRINTABLE_BYTES];
+  char file[MOST_PATH], full[MOST_PATH], script[MOST_PATH + 16], shown[CLI_PRINTABLE_BYTES];
   size_t runs = scree_study_run_count(study), tasks = a->tasks ? a->tasks : runs;
-  if (!realpath(call->inputs[0], file) || !realpath(folder, full)) {
+  if (!scree_path_full(call->inputs[0], file, sizeof file) ||
+      !scree_path_full(folder, full, sizeof full)) {
     fprintf(stderr, "scree: %s: %s\n", cli_printable(folder, shown), strerror(errno));
     return 1;
   }
@@ -76,9 +71,9 @@ int study_run_slurm(const cli_call *call, const scree_study *study, const char *
   char *text = NULL;
   size_t size;
   scree_error error;
-  FILE *stream = open_memstream(&text, &size);
+  FILE *stream = scree_memory_open(&text, &size);
   if (stream) write_script(stream, call, file, full, tasks < runs ? tasks : runs);
-  if (!stream || fclose(stream) != 0) {
+  if (!stream || !scree_memory_close(stream)) {
     fprintf(stderr, "scree: %s: out of memory\n", cli_printable(script, shown));
     free(text);
     return 1;

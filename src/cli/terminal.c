@@ -1,11 +1,10 @@
 #include "cli/terminal.h"
 
+#include "base/platform.h"
+
 #include <math.h>
 #include <signal.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <time.h>
-#include <unistd.h>
 
 enum { BAR_WIDTH = 24, LINE_WIDTH = 78, LINE_BYTES = 128 };
 
@@ -17,12 +16,6 @@ static struct {
   char phase[48];
   double phase_start; /* s, monotonic */
 } terminal;
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static void on_signal(int number) {
   received_signal = number;
@@ -41,8 +34,7 @@ static void format_seconds(char *text, size_t size, double seconds) {
 
 /* How much of a line may be written without going on to the next. */
 static int line_width(void) {
-  struct winsize size;
-  int columns = ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;
+  int columns = scree_terminal_columns();
   return columns > 0 && columns <= LINE_WIDTH ? columns - 1 : LINE_WIDTH;
 }
 
@@ -64,9 +56,9 @@ static void format_left(char *text, size_t size, double seconds) {
 static void draw(const char *phase, double fraction) {
   if (strncmp(phase, terminal.phase, sizeof terminal.phase - 1) != 0) {
     snprintf(terminal.phase, sizeof terminal.phase, "%s", phase);
-    terminal.phase_start = now();
+    terminal.phase_start = scree_now();
   }
-  double elapsed = now() - terminal.phase_start;
+  double elapsed = scree_now() - terminal.phase_start;
   double seconds = fraction > 0.01 ? elapsed * (1 - fraction) / fraction : INFINITY;
   char left[40], bar[BAR_WIDTH + 1], line[LINE_BYTES];
   format_left(left, sizeof left, seconds);
@@ -112,40 +104,21 @@ const scree_progress *cli_share_enter(cli_share *share, double base, double part
   return &share->progress;
 }
 
-static void catch_signals(int flags) {
-  struct sigaction action = {.sa_handler = on_signal, .sa_flags = flags}, before;
-  sigemptyset(&action.sa_mask);
-  sigaction(SIGINT, &action, NULL);
-  sigaction(SIGTERM, &action, NULL);
-  if (sigaction(SIGHUP, NULL, &before) == 0 && before.sa_handler != SIG_IGN) /* else: nohup */
-    sigaction(SIGHUP, &action, NULL);
-}
-
 bool cli_terminal_settle(void) {
-  sigset_t ours, before;
-  sigemptyset(&ours);
-  sigaddset(&ours, SIGINT);
-  sigaddset(&ours, SIGTERM);
-  sigaddset(&ours, SIGHUP);
-  sigprocmask(SIG_BLOCK, &ours, &before);
+  scree_signals_hold();
   settled = !received_signal;
-  if (settled) catch_signals((int)(SA_RESETHAND | SA_RESTART)); /* what is printed is not cut off */
-  sigprocmask(SIG_SETMASK, &before, NULL);
+  if (settled) scree_signals_catch(on_signal, true); /* what is printed is not cut off */
+  scree_signals_go_on();
   return settled;
 }
 
 void cli_terminal_release(void) {
-  static const int caught[] = {SIGINT, SIGTERM, SIGHUP};
-  for (size_t i = 0; i < sizeof caught / sizeof *caught; i++) {
-    struct sigaction before;
-    if (sigaction(caught[i], NULL, &before) == 0 && before.sa_handler == on_signal)
-      signal(caught[i], SIG_DFL);
-  }
+  scree_signals_release(on_signal);
 }
 
 const scree_progress *cli_terminal_start(bool show) {
   static const scree_progress progress = {report, NULL, 0.1};
-  catch_signals((int)SA_RESETHAND);
+  scree_signals_catch(on_signal, false);
   terminal.show = show;
   return &progress;
 }
@@ -160,7 +133,5 @@ bool cli_interrupted(void) {
 }
 
 void cli_terminal_reraise(void) {
-  int number = received_signal;
-  signal(number, SIG_DFL);
-  raise(number);
+  scree_signal_end(received_signal);
 }

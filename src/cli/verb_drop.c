@@ -1,4 +1,5 @@
 /* scree drop: pour shapes into a container, watch them come to rest. */
+#include "base/platform.h"
 #include "cli/drop.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
@@ -6,7 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { CHUNK = 25 };                      /* steps between looks at the clock and at Ctrl-C */
 static const double still_time = 0.05;    /* s below the still energy before it counts */
@@ -111,12 +111,6 @@ static const cli_option options[] = {
      "Begin anew in a folder with an earlier drop, whose files go.", 0, 0, NULL},
 };
 
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 const drop_arguments *drop_defaults(void) {
   return &defaults;
 }
@@ -202,15 +196,16 @@ static bool is_still(const drop_run *run, drop_schedule *s, double time) {
 /* Draws the progress; false after Ctrl-C. */
 static bool report(const drop_run *run, drop_schedule *s, double time) {
   const scree_progress *p = run->call->progress;
-  if (now() - s->last_report < p->interval) return !cli_interrupted();
-  s->last_report = now();
+  if (scree_now() - s->last_report < p->interval) return !cli_interrupted();
+  s->last_report = scree_now();
   bool all = scree_pour_entered_count(run->pour) == scree_pour_particle_count(run->pour);
   return p->report(p->context, all ? "settling, at most" : "pouring", time / s->end);
 }
 
 static scree_status save_in_time(drop_run *run, scree_error *error) {
-  if (now() - run->schedule.last_checkpoint < run->arguments->checkpoint_interval) return SCREE_OK;
-  run->schedule.last_checkpoint = now();
+  if (scree_now() - run->schedule.last_checkpoint < run->arguments->checkpoint_interval)
+    return SCREE_OK;
+  run->schedule.last_checkpoint = scree_now();
   return drop_save(run, error);
 }
 
@@ -219,7 +214,7 @@ static scree_status simulate(drop_run *run, scree_error *error) {
   double time = scree_world_time(scree_pour_world(run->pour));
   scree_status status = SCREE_OK;
   s->end = schedule_of(run);
-  s->last_checkpoint = now();
+  s->last_checkpoint = scree_now();
   while (status == SCREE_OK && time < s->end && !s->still) {
     status = write_due(run, s, time, error);
     if (status == SCREE_OK) status = save_in_time(run, error);
@@ -281,9 +276,9 @@ static void print_costs(const drop_run *run, double seconds) {
 static scree_status tell(drop_run *run, const char *stopped, double seconds, scree_error *error) {
   char *text = NULL;
   size_t size;
-  FILE *stream = open_memstream(&text, &size);
+  FILE *stream = scree_memory_open(&text, &size);
   if (stream) print_summary(stream, run, run->schedule.still);
-  if (!stream || fclose(stream) != 0) {
+  if (!stream || !scree_memory_close(stream)) {
     free(text);
     return drop_no_memory(error);
   }
@@ -324,9 +319,9 @@ static scree_status pour(drop_run *run, scree_error *error) {
   if (status == SCREE_OK) status = drop_record(run, schedule_of(run), error);
   if (status != SCREE_OK) return status;
   say_pour(run);
-  double start = now();
+  double start = scree_now();
   status = simulate(run, error);
-  double seconds = now() - start;
+  double seconds = scree_now() - start;
   if (!can_be_told(status)) return status;
   scree_error later; /* what happened first is what is told */
   scree_status drawn = status == SCREE_OK ? draw(run, error) : SCREE_OK;

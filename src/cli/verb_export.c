@@ -1,4 +1,5 @@
 /* scree export: meshes and piles as other programs want them. */
+#include "base/platform.h"
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
@@ -56,7 +57,7 @@ typedef enum input_kind { SURFACE, WORLD, RUN } input_kind;
 static input_kind kind_of(const char *word) {
   char magic[8] = "";
   if (!strcmp(word, "-") || cli_is_sample(word, NULL)) return SURFACE;
-  FILE *file = fopen(word, "rb");
+  FILE *file = scree_open_stream(word, "rb");
   if (!file) return SURFACE;
   size_t count = fread(magic, 1, sizeof magic, file);
   fclose(file);

@@ -1,10 +1,9 @@
 /* scree pile: a frame or a checkpoint, measured again. */
+#include "base/platform.h"
 #include "cli/heap.h"
 #include "cli/output.h"
 
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 typedef struct pile_arguments {
   const char *cell, *sectors, *band_low, *band_high; /* in the order of `settings` */
@@ -100,10 +99,11 @@ static int write_picture(const cli_call *call, const scree_run *run, const scree
 
 /* Also by another name, as /dev/stdout, or a file that the shell has it write to. */
 static bool is_stdout(const char *path) {
-  struct stat named, out;
+  scree_path_info named, out;
   if (!path || !strcmp(path, "-")) return path;
-  return stat(path, &named) == 0 && fstat(STDOUT_FILENO, &out) == 0 && !S_ISCHR(named.st_mode) &&
-         named.st_dev == out.st_dev && named.st_ino == out.st_ino;
+  return scree_path_look(path, &named) && scree_descriptor_look(fileno(stdout), &out) &&
+         named.kind != SCREE_PATH_DEVICE && named.device == out.device &&
+         named.number == out.number;
 }
 
 /* 0, or 2 after telling which two of the options write to stdout, or to one file. */

@@ -1,15 +1,13 @@
 /* scree repose: the angle-of-repose experiment. */
+#include "base/platform.h"
 #include "cli/grains.h"
 #include "cli/heap.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 /* Every field of the experiment as an option: X(option, field, VALUE, help). */
 #define SETTINGS(X)                                                                                \
@@ -160,7 +158,7 @@ static int read_base(repose *r, bool alone) {
   char path[4200];
   scree_run *run;
   snprintf(path, sizeof path, "%.4100s/checkpoint.scree", alone ? a->output : "");
-  if (!alone || a->preset != defaults.preset || access(path, F_OK) != 0) {
+  if (!alone || a->preset != defaults.preset || !scree_path_exists(path)) {
     if (scree_experiment_preset(a->preset, &r->experiment, &r->error) == SCREE_OK) return 0;
     return cli_misuse(r->call->verb, "--preset %s: must be paper, small or demo", a->preset);
   }
@@ -234,10 +232,10 @@ static scree_status write_experiment(const one_run *o, scree_error *error) {
   snprintf(path, sizeof path, "%s/experiment.yaml", o->folder);
   snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", o->folder);
   /* a run that goes on, or is refused as another one's, keeps the text it began with */
-  if (a->resume && access(path, F_OK) == 0 && access(checkpoint, F_OK) == 0) return SCREE_OK;
-  FILE *stream = open_memstream(&text, &size);
+  if (a->resume && scree_path_exists(path) && scree_path_exists(checkpoint)) return SCREE_OK;
+  FILE *stream = scree_memory_open(&text, &size);
   if (stream) scree_experiment_print(&o->all->experiment, stream);
-  if (!stream || fclose(stream) != 0) {
+  if (!stream || !scree_memory_close(stream)) {
     free(text);
     *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for experiment.yaml"};
     return SCREE_OUT_OF_MEMORY;
@@ -310,10 +308,10 @@ static scree_status write_text_result(const one_run *o, const scree_run *run,
                                       const scree_run_result *result, scree_error *error) {
   char *text = NULL, path[4200];
   size_t size;
-  FILE *stream = open_memstream(&text, &size);
+  FILE *stream = scree_memory_open(&text, &size);
   snprintf(path, sizeof path, "%s/result.txt", o->folder);
   if (stream) print_result(stream, o, run, result);
-  if (!stream || fclose(stream) != 0) {
+  if (!stream || !scree_memory_close(stream)) {
     free(text);
     *error = (scree_error){SCREE_OUT_OF_MEMORY, "result.txt: out of memory"};
     return error->status;
@@ -412,7 +410,7 @@ static scree_status check_runs(repose *r) {
     one_run o = level_run(r, level);
     scree_run *run;
     snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", o.folder);
-    if (r->arguments->resume && access(checkpoint, F_OK) == 0) continue;
+    if (r->arguments->resume && scree_path_exists(checkpoint)) continue;
     status = scree_run_create(&r->experiment, r->grains.shapes + level * r->grains.shape_count,
                               r->grains.shape_count, &run, &r->error);
     if (status == SCREE_OK) scree_run_free(run);
@@ -432,14 +430,14 @@ static scree_status clear_folders(repose *r) {
   const char *output = r->arguments->output;
   char path[4200];
   scree_status status = cli_clear_run_output(r->call, output, &run_files, &r->error);
-  DIR *entries = status == SCREE_OK ? opendir(output) : NULL;
-  for (struct dirent *entry; status == SCREE_OK && entries && (entry = readdir(entries));) {
-    struct stat info;
-    snprintf(path, sizeof path, "%.3900s/%.255s", output, entry->d_name);
-    if (is_level_name(entry->d_name) && stat(path, &info) == 0 && S_ISDIR(info.st_mode))
+  scree_folder *entries = status == SCREE_OK ? scree_folder_open(output) : NULL;
+  for (const char *name; status == SCREE_OK && entries && (name = scree_folder_next(entries));) {
+    scree_path_info info;
+    snprintf(path, sizeof path, "%.3900s/%.255s", output, name);
+    if (is_level_name(name) && scree_path_look(path, &info) && info.kind == SCREE_PATH_FOLDER)
       status = cli_clear_run_output(r->call, path, &run_files, &r->error);
   }
-  if (entries) closedir(entries);
+  if (entries) scree_folder_close(entries);
   return status;
 }
 

@@ -4,6 +4,7 @@
 #include "mesh/hull.h"
 
 #include "base/alloc.h"
+#include "base/platform.h"
 #include "base/sum.h"
 
 #include <libqhull_r/qhull_ra.h>
@@ -86,8 +87,8 @@ scree_status scree_hull_build(const vec3 *points, size_t point_count, scree_hull
   if (point_count > INT32_MAX)
     return scree_fail(error, SCREE_LIMIT, "%zu points, above the limit of %d for a convex hull",
                       point_count, INT32_MAX);
-  FILE *sink = fopen("/dev/null", "w");
-  if (!sink) return scree_fail(error, SCREE_IO, "cannot open /dev/null");
+  FILE *sink = scree_null_open();
+  if (!sink) return scree_fail(error, SCREE_IO, "cannot open the null device");
   bool done = point_count < 4;
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < sizeof commands / sizeof *commands && !done; i++) {

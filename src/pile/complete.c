@@ -6,10 +6,10 @@
 
 #include "base/alloc.h"
 #include "base/file.h"
+#include "base/platform.h"
 #include "base/progress.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
 static const double chunk_seconds = 0.1; /* of the clock, between looks at it */
 static const double watch_seconds = 0.2; /* between calls of the watcher */
@@ -236,11 +236,10 @@ static scree_status check_job(const scree_run_job *job, const scree_run *run, co
 
 /* Loads the checkpoint into w->run, which stays NULL where there is none. */
 static scree_status find_checkpoint(work *w, scree_error *error) {
-  struct stat info;
   char *path = path_in(w, "checkpoint.scree", error);
   if (!path) return SCREE_OUT_OF_MEMORY;
   scree_status status = SCREE_OK;
-  if (stat(path, &info) != 0) goto done;
+  if (!scree_path_exists(path)) goto done;
   if (!w->job->resume) {
     if (!w->job->overwrite)
       status = scree_fail(error, SCREE_EXISTS, "%s: exists already: a run was begun here", path);

@@ -5,11 +5,11 @@
 #include "base/alloc.h"
 #include "base/codec.h"
 #include "base/file.h"
+#include "base/platform.h"
 
 #include <errno.h>
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
 
 static const char magic[] = "screeMOV";
 static const double one = 32767; /* of a quaternion's component */
@@ -105,9 +105,8 @@ static bool keep_frames(scree_motion_file *file, double time) {
     }
   }
   scree_free(bytes);
-  if (!end || !(file->stream = fopen(file->path, "r+b"))) return false;
-  if (ftruncate(fileno(file->stream), (off_t)end) == 0 && fseek(file->stream, 0, SEEK_END) == 0)
-    return true;
+  if (!end || !(file->stream = scree_open_stream(file->path, "r+b"))) return false;
+  if (scree_cut(file->stream, end)) return true;
   fclose(file->stream);
   file->stream = NULL;
   return false;
@@ -118,7 +117,7 @@ static scree_status begin(scree_motion_file *file, scree_error *error) {
   char name[8];
   uint32_t version_order[2] = {VERSION, BYTE_ORDER_MARK};
   file->last = -INFINITY;
-  file->stream = fopen(file->path, "wb");
+  file->stream = scree_open_stream(file->path, "wb");
   if (!file->stream) return fail_write(file, error);
   memcpy(name, magic, sizeof name);
   code_header(&c, name, version_order);

@@ -3,10 +3,10 @@
 #include "pile/run.h"
 
 #include "base/alloc.h"
+#include "base/platform.h"
 #include "base/progress.h"
 
 #include <string.h>
-#include <time.h>
 
 static const double clearance_share = 0.01; /* of the particle size, between bounding boxes */
 static const double still_time = 0.1;       /* s below the still energy before it counts */
@@ -312,12 +312,6 @@ static size_t steps_to_decision(const scree_run *run, size_t wanted) {
   return steps;
 }
 
-static double processor_now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static scree_status advance(scree_run *run, size_t step_count, scree_error *error) {
   while (step_count > 0 && run->phase != SCREE_PHASE_DONE) {
     scree_status status = layer_is_due(run) ? scree_run_enter_layer(run, error) : SCREE_OK;
@@ -340,10 +334,10 @@ scree_status scree_run_advance(scree_run *run, size_t step_count, scree_error *e
   if (run->is_frame)
     return scree_fail(error, SCREE_UNSUPPORTED,
                       "a frame has no contacts: a run goes on from a checkpoint only");
-  double wall = scree_now(), processor = processor_now();
+  double wall = scree_now(), processor = scree_processor_time();
   scree_status status = advance(run, step_count, error);
   run->wall_seconds += scree_now() - wall;
-  run->processor_seconds += processor_now() - processor;
+  run->processor_seconds += scree_processor_time() - processor;
   return status;
 }
 

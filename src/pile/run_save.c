@@ -7,6 +7,7 @@
 
 #include "base/alloc.h"
 #include "base/array.h"
+#include "base/platform.h"
 #include "base/seal.h"
 
 #include <stdlib.h>
@@ -69,10 +70,10 @@ static void save_block(scree_codec *c, void *bytes, size_t count) {
 static scree_status save_experiment(scree_codec *c, const scree_run *run, scree_error *error) {
   char *text = NULL;
   size_t length = 0;
-  FILE *stream = open_memstream(&text, &length);
+  FILE *stream = scree_memory_open(&text, &length);
   if (!stream) return scree_fail_memory(error, 0, "an experiment's text");
   scree_experiment_print(&run->experiment, stream);
-  bool good = fclose(stream) == 0;
+  bool good = scree_memory_close(stream);
   if (good) save_block(c, text, length);
   free(text);
   return good ? SCREE_OK : scree_fail_memory(error, 0, "an experiment's text");

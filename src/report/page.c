@@ -8,15 +8,14 @@
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/file.h"
+#include "base/platform.h"
 #include "report/json.h"
 #include "report/json_check.h"
 #include "report/page_parts.h"
 #include "report/shapes.h"
 
-#include <dirent.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "report/page.inc"
 
@@ -79,12 +78,11 @@ static void put_json(FILE *stream, const char *text) {
 /* Reads folder/name, whose path is left in `path`; *bytes is NULL where there is none. */
 static scree_status read_part(const char *folder, const char *name, char path[PATH_BYTES],
                               char **bytes, size_t *size, scree_error *error) {
-  struct stat info;
   int length = snprintf(path, PATH_BYTES, "%s/%s", folder, name);
   if (length < 0 || length >= PATH_BYTES)
     return scree_fail(error, SCREE_LIMIT, "%.200s: the path is too long", folder);
   *bytes = NULL;
-  if (stat(path, &info) != 0) return SCREE_OK;
+  if (!scree_path_exists(path)) return SCREE_OK;
   return scree_file_read(path, MOST_RESULT_BYTES, bytes, size, error);
 }
 
@@ -136,19 +134,19 @@ static int by_name(const void *a, const void *b) {
 
 /* The names in a folder that do not begin with a point, sorted; none where there is no folder. */
 static scree_status list_names(const char *folder, name_list *names, scree_error *error) {
-  DIR *directory = opendir(folder);
+  scree_folder *directory = scree_folder_open(folder);
   *names = (name_list){0};
   if (!directory) return SCREE_OK;
   scree_status status = SCREE_OK;
-  for (struct dirent *entry; status == SCREE_OK && (entry = readdir(directory));) {
-    if (entry->d_name[0] == '.') continue;
-    char *copy = scree_strdup(entry->d_name);
+  for (const char *name; status == SCREE_OK && (name = scree_folder_next(directory));) {
+    if (name[0] == '.') continue;
+    char *copy = scree_strdup(name);
     if (!copy || !SCREE_PUSH(names, copy)) {
       scree_free(copy);
       status = scree_fail_memory(error, 256, "a name");
     }
   }
-  closedir(directory);
+  scree_folder_close(directory);
   if (names->count > 1) qsort(names->items, names->count, sizeof *names->items, by_name);
   return status;
 }
@@ -162,11 +160,11 @@ static bool is_levels(const char *name) {
 static bool holds_string(const char *json, const char *name) {
   char *quoted = NULL;
   size_t size;
-  FILE *stream = open_memstream(&quoted, &size);
+  FILE *stream = scree_memory_open(&quoted, &size);
   if (!stream) return false;
   scree_json writer = scree_json_start(stream);
   scree_json_text(&writer, NULL, name);
-  bool held = fclose(stream) == 0 && strstr(json, quoted);
+  bool held = scree_memory_close(stream) && strstr(json, quoted);
   free(quoted);
   return held;
 }
@@ -270,9 +268,8 @@ static scree_status put_folder(page *p, const char *folder) {
 
 static bool has_file(const char *folder, const char *name) {
   char path[PATH_BYTES];
-  struct stat info;
   int length = snprintf(path, sizeof path, "%s/%s", folder, name);
-  return length < PATH_BYTES && stat(path, &info) == 0;
+  return length < PATH_BYTES && scree_path_exists(path);
 }
 
 static bool has_results(const char *folder) {
@@ -290,10 +287,10 @@ static scree_status add_name(page *p, name_list *folders, const char *path) {
 
 /* The folder itself, or those in it that have results: heaps at several levels. */
 static scree_status find_results(page *p, const char *folder, name_list *found) {
-  struct stat info;
+  scree_path_info info;
   name_list names;
   size_t before = found->count;
-  if (stat(folder, &info) != 0 || !S_ISDIR(info.st_mode))
+  if (!scree_path_look(folder, &info) || info.kind != SCREE_PATH_FOLDER)
     return scree_fail(p->error, SCREE_IO, "%s: is no folder", folder);
   if (has_results(folder)) return add_name(p, found, folder);
   scree_status status = list_names(folder, &names, p->error);

@@ -3,11 +3,11 @@
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/file.h"
+#include "base/platform.h"
 #include "report/levels.h"
 #include "report/pile_pack.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
 enum {
   MOST_PART_BYTES = 64 << 20,
@@ -19,11 +19,11 @@ enum {
 scree_status scree_page_part_add(scree_page_parts *parts, scree_part_kind kind, const char *folder,
                                  const char *name, const char **id, scree_error *error) {
   char path[PATH_BYTES];
-  struct stat info;
+  scree_path_info info;
   *id = NULL;
   int length = snprintf(path, sizeof path, "%s/%s", folder, name);
-  if (length >= PATH_BYTES || stat(path, &info) != 0) return SCREE_OK;
-  if (kind == SCREE_PART_PICTURE && info.st_size > MOST_PICTURE_BYTES) return SCREE_OK;
+  if (length >= PATH_BYTES || !scree_path_look(path, &info)) return SCREE_OK;
+  if (kind == SCREE_PART_PICTURE && info.byte_count > MOST_PICTURE_BYTES) return SCREE_OK;
   scree_page_part made = {.kind = kind, .path = scree_strdup(path)};
   snprintf(made.id, sizeof made.id, "part-%zu", parts->count);
   if (!made.path || !SCREE_PUSH(parts, made)) {

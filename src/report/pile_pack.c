@@ -5,12 +5,12 @@
 #include "report/pile_pack.h"
 
 #include "base/alloc.h"
+#include "base/platform.h"
 #include "report/pack.h"
 #include "report/shapes.h"
 
 #include <math.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum {
   MOST_DRAWN = 500000,     /* triangles of all bodies together */
@@ -93,12 +93,11 @@ static scree_status load_state(pile *p, const char *path) {
 static scree_status load(pile *p, const char *path) {
   const char *slash = strrchr(path, '/');
   char beside[PATH_BYTES];
-  struct stat info;
   scree_status status = load_state(p, path);
   if (status != SCREE_OK) return status;
   int length = snprintf(beside, sizeof beside, "%.*smotion.scree",
                         (int)(slash ? slash + 1 - path : 0), path);
-  if (length < PATH_BYTES && stat(beside, &info) == 0) {
+  if (length < PATH_BYTES && scree_path_exists(beside)) {
     status = scree_motion_read(beside, &p->motion, p->pack.error);
     if (status != SCREE_OK || ends_with(&p->motion, p->world)) return status;
     scree_motion_free(&p->motion);
@@ -288,8 +287,7 @@ static scree_status pack(pile *p, size_t byte_limit) {
 scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char **bytes,
                              size_t *byte_count, scree_error *error) {
   pile p = {.pack = {.error = error}};
-  struct stat info;
-  if (stat(path, &info) != 0) {
+  if (!scree_path_exists(path)) {
     *bytes = NULL;
     return SCREE_OK;
   }

@@ -1,6 +1,7 @@
 /* From the folder's files to the database. One process collects at a time, under a lease; each time
  * the plan is written anew and records that are not in yet are added, in one transaction. */
 #include "base/number.h"
+#include "base/platform.h"
 #include "base/progress.h"
 #include "study/database.h"
 #include "study/lease.h"
@@ -10,8 +11,6 @@
 #include <sqlite3.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
 
 static const double writer_lease = 120; /* s */
 
@@ -253,12 +252,11 @@ static scree_status put_failures(writer *w, const char *key) {
   scree_status status = SCREE_OK;
   for (int n = 1; status == SCREE_OK; n++) {
     char ending[32];
-    struct stat info;
     scree_study_record record;
     snprintf(ending, sizeof ending, ".failed-%d", n);
     char *path = scree_study_path(w->study, "results", key, ending);
     if (!path) return scree_fail_memory(w->error, 0, "a path");
-    bool there = stat(path, &info) == 0;
+    bool there = scree_path_exists(path);
     if (there && scree_study_record_read(path, &record, NULL) == SCREE_OK) {
       status = put_failure(w, key, n, &record);
       scree_study_record_free(&record);
@@ -310,11 +308,10 @@ static bool in_already(writer *w, const char *key, sqlite3_stmt *ask, double end
 }
 
 static scree_status put_record(writer *w, const char *key, sqlite3_stmt *ask, bool *found) {
-  struct stat info;
   scree_study_record record;
   char *path = scree_study_path(w->study, "results", key, ".yaml");
   if (!path) return scree_fail_memory(w->error, 0, "a path");
-  *found = stat(path, &info) == 0;
+  *found = scree_path_exists(path);
   scree_status status = *found ? scree_study_record_read(path, &record, w->error) : SCREE_OK;
   scree_free(path);
   if (status == SCREE_BAD_FILE) { /* the next worker puts it aside */
@@ -385,8 +382,7 @@ scree_status scree_study_collect(scree_study *study, bool wait, scree_error *err
   for (;;) {
     status = scree_lease_take(w.leases, "writer", writer_lease, worker, &taken, &lease, error);
     if (status != SCREE_OK || taken || !wait) break;
-    struct timespec pause = {0, 200000000};
-    nanosleep(&pause, NULL);
+    scree_sleep(0.2);
   }
   if (status == SCREE_OK && taken) {
     status = write_all(&w);

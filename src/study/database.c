@@ -1,9 +1,10 @@
 #include "study/database.h"
 
+#include "base/platform.h"
+
 #include <math.h>
 #include <sqlite3.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* "scrS" and the version of the tables */
 enum { APPLICATION = 0x73637253, SCHEMA = 1, BUSY_MS = 60000 };
@@ -102,11 +103,10 @@ static scree_status adopt(scree_database *d, bool writing, scree_error *error) {
 /* A rollback journal, not WAL, which shared folders cannot do. */
 scree_status scree_database_open(const scree_study *study, bool writing, scree_database *database,
                                  scree_error *error) {
-  struct stat info;
   scree_database d = {.path = scree_study_path(study, "", "study.sqlite", "")};
   if (!d.path) return scree_fail_memory(error, 0, "a path");
   scree_status status = SCREE_OK;
-  if (!writing && stat(d.path, &info) != 0)
+  if (!writing && !scree_path_exists(d.path))
     status = scree_fail(error, SCREE_IO, "%s: not there yet", d.path);
   int flags = writing ? SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE : SQLITE_OPEN_READONLY;
   if (status == SCREE_OK && sqlite3_open_v2(d.path, &d.handle, flags, NULL) != SQLITE_OK)

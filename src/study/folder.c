@@ -8,10 +8,10 @@
  *   study.sqlite    all of it as tables
  */
 #include "base/file.h"
+#include "base/platform.h"
 #include "study/study.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
 scree_study_options scree_default_study_options(void) {
   return (scree_study_options){.lease_s = 300, .poll_s = 1, .wait = true};
@@ -43,10 +43,9 @@ static scree_status make_folders(const scree_study *study, scree_error *error) {
 static scree_status keep_copy(const scree_study *study, scree_error *error) {
   char *path = scree_study_path(study, "", "study.yaml", ""), *old = NULL;
   size_t size = 0;
-  struct stat info;
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_status status = SCREE_OK;
-  bool same = stat(path, &info) == 0 && scree_file_read(path, 0, &old, &size, NULL) == SCREE_OK &&
+  bool same = scree_path_exists(path) && scree_file_read(path, 0, &old, &size, NULL) == SCREE_OK &&
               size == study->text_size && !memcmp(old, study->text, size);
   scree_free(old);
   if (!same) {
@@ -73,12 +72,11 @@ scree_status scree_study_open(scree_study *study, const char *folder, scree_erro
 scree_status scree_study_open_folder(const char *folder, scree_study **study, scree_error *error) {
   size_t size = strlen(folder) + 16;
   char *path = scree_alloc(size, 1);
-  struct stat info;
   if (!path) return scree_fail_memory(error, size, "a path");
   snprintf(path, size, "%s/study.yaml", folder);
   scree_study *made = NULL;
   scree_status status =
-      stat(path, &info) == 0
+      scree_path_exists(path)
           ? scree_study_read(path, &made, error)
           : scree_fail(error, SCREE_IO, "%s: is no folder of a study: no study.yaml in it", folder);
   scree_free(path);

@@ -12,17 +12,13 @@
 
 #include "base/alloc.h"
 #include "base/file.h"
-#include "base/progress.h"
+#include "base/platform.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
-#include <unistd.h>
 
-enum { CONTENT = 1024, MACHINE = 256, MOST_TRIES = 8 };
+enum { CONTENT = 1024, MACHINE = SCREE_SYSTEM_TEXT, MOST_TRIES = 8 };
 
 typedef struct content {
   char token[64], machine[MACHINE], worker[SCREE_LEASE_NAME], note[SCREE_LEASE_NOTE];
@@ -34,69 +30,29 @@ typedef struct content {
 /* ---- this process ---- */
 
 static bool read_small(const char *path, char *buffer, size_t size, double *modified) {
-  int fd = open(path, O_RDONLY | O_CLOEXEC);
+  int fd = scree_open_read(path);
   if (fd < 0) return false;
-  ssize_t got = read(fd, buffer, size - 1);
+  ptrdiff_t got = scree_read(fd, buffer, size - 1);
   int reason = errno;
-  struct stat info;
-  bool good = got >= 0 && fstat(fd, &info) == 0;
-  if (good && modified)
-    *modified = (double)info.st_mtim.tv_sec + 1e-9 * (double)info.st_mtim.tv_nsec;
-  close(fd);
+  scree_path_info info;
+  bool good = got >= 0 && scree_descriptor_look(fd, &info);
+  if (good) *modified = info.modified;
+  scree_close(fd);
   errno = reason;
   buffer[got > 0 ? got : 0] = 0;
   return good;
 }
 
-static void host_name(char *buffer, size_t size) {
-  if (gethostname(buffer, size) != 0) snprintf(buffer, size, "unknown");
-  buffer[size - 1] = 0;
-}
-
-static void machine_name(char machine[MACHINE]) {
-  char host[96], boot[64] = "", namespace[64] = "";
-  host_name(host, sizeof host);
-  read_small("/proc/sys/kernel/random/boot_id", boot, sizeof boot, NULL);
-  boot[strcspn(boot, "\n")] = 0;
-  ssize_t length = readlink("/proc/self/ns/pid", namespace, sizeof namespace - 1);
-  namespace[length > 0 ? length : 0] = 0;
-  snprintf(machine, MACHINE, "%s %s %s", host, boot, namespace);
-}
-
-/* When the process started, in the kernel's ticks; 0 where there is none, or a dead one not yet
- * waited for. */
-static unsigned long long start_time(long pid) {
-  char path[48], text[CONTENT], state = 0;
-  unsigned long long start = 0;
-  snprintf(path, sizeof path, "/proc/%ld/stat", pid);
-  if (!read_small(path, text, sizeof text, NULL)) return 0;
-  const char *after = strrchr(text, ')'); /* the name may hold anything */
-  if (!after || sscanf(after + 1,
-                       " %c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %*u %*u %*d %*d %*d %*d %*d "
-                       "%*d %llu",
-                       &state, &start) != 2)
-    return 0;
-  return state == 'Z' || state == 'X' ? 0 : start;
-}
-
 static void make_token(char token[64]) {
   static unsigned counter;
-  uint64_t noise = 0;
-  int fd = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
-  if (fd >= 0) {
-    if (read(fd, &noise, sizeof noise) != sizeof noise) noise = 0;
-    close(fd);
-  }
-  struct timespec now;
-  clock_gettime(CLOCK_REALTIME, &now);
-  snprintf(token, 64, "%016llx-%llx-%ld-%u", (unsigned long long)noise,
-           (unsigned long long)now.tv_nsec, (long)getpid(), counter++);
+  snprintf(token, 64, "%016llx-%ld-%u", (unsigned long long)scree_random_number(),
+           scree_process_number(), counter++);
 }
 
 void scree_lease_default_worker(char worker[SCREE_LEASE_NAME]) {
-  char host[96];
-  host_name(host, sizeof host);
-  snprintf(worker, SCREE_LEASE_NAME, "%s.%ld", host, (long)getpid());
+  char host[SCREE_SYSTEM_TEXT];
+  scree_host_name(host);
+  snprintf(worker, SCREE_LEASE_NAME, "%.96s.%ld", host, scree_process_number());
 }
 
 /* ---- files ---- */
@@ -138,36 +94,37 @@ static char *write_aside(const char *folder, const char *token, const char *work
     scree_fail_memory(error, 0, "a lease");
     return NULL;
   }
-  machine_name(machine);
-  int size = snprintf(text, sizeof text, "%s\n%s\n%ld\n%llu\n%.150s\n%.90s\n", token, machine,
-                      (long)getpid(), start_time(getpid()), worker, note);
-  int fd = open(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  scree_machine_identity(machine);
+  int size =
+      snprintf(text, sizeof text, "%s\n%s\n%ld\n%llu\n%.150s\n%.90s\n", token, machine,
+               scree_process_number(), scree_process_start(scree_process_number()), worker, note);
+  int fd = scree_open_new(path);
   errno = fd < 0 ? errno : 0;
-  bool good = fd >= 0 && write(fd, text, (size_t)size) == size && fsync(fd) == 0;
+  bool good = fd >= 0 && scree_write(fd, text, (size_t)size) == size && scree_sync(fd);
   int reason = errno ? errno : ENOSPC;
-  struct stat info;
-  if (good) good = fstat(fd, &info) == 0;
-  if (fd >= 0) close(fd);
+  scree_path_info info;
+  if (good) good = scree_descriptor_look(fd, &info);
+  if (fd >= 0) scree_close(fd);
   if (good) {
-    *modified = (double)info.st_mtim.tv_sec + 1e-9 * (double)info.st_mtim.tv_nsec;
+    *modified = info.modified;
     return path;
   }
   scree_fail(error, SCREE_IO, "%s: cannot write: %s", path, strerror(reason));
-  unlink(path);
+  scree_path_remove(path);
   scree_free(path);
   return NULL;
 }
 
 static bool is_dead(const content *c, double now, double lease_s) {
   char machine[MACHINE];
-  machine_name(machine);
-  if (!strcmp(machine, c->machine)) return start_time(c->pid) != c->start;
+  scree_machine_identity(machine);
+  if (!strcmp(machine, c->machine)) return scree_process_start(c->pid) != c->start;
   return now - c->modified > lease_s;
 }
 
 static void note_death(const char *folder, const char *name, const content *c) {
   char *path = join(folder, name, ".deaths");
-  FILE *stream = path ? fopen(path, "a") : NULL;
+  FILE *stream = path ? scree_open_stream(path, "a") : NULL;
   if (stream) {
     fprintf(stream, "%s\n", c->worker);
     fclose(stream);
@@ -183,11 +140,12 @@ static bool bury(const char *path, const char *aside, const content *dead) {
   bool moved = false;
   if (!grave) return false;
   snprintf(grave, size, "%s.dead", aside);
-  if (rename(path, grave) == 0) {
+  if (scree_path_rename(path, grave)) {
     moved = read_content(grave, &found) && !strcmp(found.token, dead->token) &&
             found.modified == dead->modified;
-    if (!moved && link(grave, path) != 0) moved = false; /* somebody was quicker: both go on */
-    unlink(grave);
+    if (!moved && !scree_path_link(grave, path))
+      moved = false; /* somebody was quicker: both go on */
+    scree_path_remove(grave);
   }
   scree_free(grave);
   return moved;
@@ -209,7 +167,7 @@ scree_status scree_lease_take(const char *folder, const char *name, double lease
     status = error ? error->status : SCREE_IO;
   for (int i = 0; status == SCREE_OK && !*taken && i < MOST_TRIES; i++) {
     content holder;
-    *taken = link(aside, made.path) == 0;
+    *taken = scree_path_link(aside, made.path);
     if (*taken) break;
     if (errno != EEXIST) {
       status =
@@ -220,7 +178,7 @@ scree_status scree_lease_take(const char *folder, const char *name, double lease
     if (!is_dead(&holder, now, lease_s)) break;
     if (bury(made.path, aside, &holder)) note_death(folder, name, &holder);
   }
-  if (aside) unlink(aside);
+  if (aside) scree_path_remove(aside);
   scree_free(aside);
   made.last_renewal = scree_now();
   if (status == SCREE_OK && *taken) {
@@ -245,7 +203,7 @@ scree_status scree_lease_renew(scree_lease *lease, const char *note, bool *kept,
   char *aside = write_aside(lease->folder, lease->token, lease->worker, note, &now, error);
   if (!aside) return error ? error->status : SCREE_IO;
   scree_status status = SCREE_OK;
-  if (rename(aside, lease->path) != 0)
+  if (!scree_path_rename(aside, lease->path))
     status = scree_fail(error, SCREE_IO, "%s: cannot renew: %s", lease->path, strerror(errno));
   scree_free(aside);
   lease->last_renewal = scree_now();
@@ -253,7 +211,7 @@ scree_status scree_lease_renew(scree_lease *lease, const char *note, bool *kept,
 }
 
 void scree_lease_release(scree_lease *lease) {
-  if (lease->path && still_ours(lease)) unlink(lease->path);
+  if (lease->path && still_ours(lease)) scree_path_remove(lease->path);
   scree_free(lease->folder);
   scree_free(lease->path);
   *lease = (scree_lease){0};
@@ -268,13 +226,11 @@ scree_status scree_lease_look(const char *folder, const char *name, double lease
   seen.held = read_content(path, &c);
   scree_free(path);
   if (seen.held) {
-    struct timespec clock;
     double now;
     make_token(token);
     char *aside = write_aside(folder, token, "", "", &now, NULL);
-    clock_gettime(CLOCK_REALTIME, &clock);
-    if (!aside) now = (double)clock.tv_sec; /* a folder we may only read */
-    if (aside) unlink(aside);
+    if (!aside) now = scree_calendar_time(); /* a folder we may only read */
+    if (aside) scree_path_remove(aside);
     scree_free(aside);
     seen.age = now - c.modified;
     seen.alive = !is_dead(&c, now, lease_s);
@@ -287,7 +243,7 @@ scree_status scree_lease_look(const char *folder, const char *name, double lease
 
 size_t scree_lease_deaths(const char *folder, const char *name, char last[SCREE_LEASE_NAME]) {
   char *path = join(folder, name, ".deaths"), line[SCREE_LEASE_NAME];
-  FILE *stream = path ? fopen(path, "r") : NULL;
+  FILE *stream = path ? scree_open_stream(path, "r") : NULL;
   size_t count = 0;
   while (stream && fgets(line, sizeof line, stream)) {
     line[strcspn(line, "\n")] = 0;
@@ -301,6 +257,6 @@ size_t scree_lease_deaths(const char *folder, const char *name, char last[SCREE_
 
 void scree_lease_forget_deaths(const char *folder, const char *name) {
   char *path = join(folder, name, ".deaths");
-  if (path) unlink(path);
+  if (path) scree_path_remove(path);
   scree_free(path);
 }

@@ -4,6 +4,7 @@
  * ones as they were, and the same seeds at all points only matter before the first contact. */
 #include "base/file.h"
 #include "base/number.h"
+#include "base/platform.h"
 #include "study/design.h"
 #include "study/study.h"
 
@@ -170,11 +171,11 @@ static scree_status make_key(const scree_study *study, size_t run, char key[SCRE
   if (status != SCREE_OK) return status;
   char *text = NULL;
   size_t size = 0;
-  FILE *stream = open_memstream(&text, &size);
+  FILE *stream = scree_memory_open(&text, &size);
   if (stream) {
     write_identity(study, &study->points[scree_study_run_point(study, run)], &e, stream);
     bool good = !ferror(stream);
-    if (fclose(stream) != 0 || !good) {
+    if (!scree_memory_close(stream) || !good) {
       free(text);
       text = NULL;
     }

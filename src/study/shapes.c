@@ -3,6 +3,7 @@
  * bits. One process makes a shape, under a lease; the others wait for it. */
 #include "base/file.h"
 #include "base/number.h"
+#include "base/platform.h"
 #include "base/progress.h"
 #include "pile/yaml.h"
 #include "study/lease.h"
@@ -11,14 +12,11 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
 
 static const double pi = 3.14159265358979324;
 
 static bool exists(const char *path) {
-  struct stat info;
-  return path && stat(path, &info) == 0;
+  return path && scree_path_exists(path);
 }
 
 /* ---- what is known ---- */
@@ -283,9 +281,7 @@ static scree_status make_shape(const scree_study *study, size_t index,
 
 static scree_status pause_for(const scree_study_options *options, const scree_progress *progress,
                               const char *what, scree_error *error) {
-  struct timespec pause = {(time_t)options->poll_s,
-                           (long)(1e9 * (options->poll_s - floor(options->poll_s)))};
-  nanosleep(&pause, NULL);
+  scree_sleep(options->poll_s);
   if (progress && progress->report && !progress->report(progress->context, what, 0))
     return scree_fail(error, SCREE_CANCELLED, "cancelled");
   return SCREE_OK;

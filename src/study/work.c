@@ -5,6 +5,7 @@
  * kills them is in it. */
 #include "base/file.h"
 #include "base/number.h"
+#include "base/platform.h"
 #include "base/progress.h"
 #include "study/lease.h"
 #include "study/record.h"
@@ -12,9 +13,6 @@
 #include <errno.h>
 #include <math.h>
 #include <string.h>
-#include <sys/stat.h>
-#include <time.h>
-#include <unistd.h>
 
 enum { MOST_SHAPES = 60, RETRIES_KEPT = 1000 };
 
@@ -34,31 +32,11 @@ typedef struct work {
   scree_error renewal_error;
 } work;
 
-static bool exists(const char *path) {
-  struct stat info;
-  return stat(path, &info) == 0;
-}
-
-static double now_since_1970(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_REALTIME, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static void describe_machine(char machine[160]) {
-  char host[64] = "unknown", line[160];
-  if (gethostname(host, sizeof host) != 0) snprintf(host, sizeof host, "unknown");
-  host[sizeof host - 1] = 0;
-  snprintf(machine, 160, "%s", host);
-  FILE *stream = fopen("/proc/cpuinfo", "r");
-  while (stream && fgets(line, sizeof line, stream)) {
-    if (strncmp(line, "model name", 10) != 0) continue;
-    const char *name = strchr(line, ':');
-    line[strcspn(line, "\n")] = 0;
-    if (name) snprintf(machine, 160, "%s,%.80s", host, name + 1);
-    break;
-  }
-  if (stream) fclose(stream);
+  char host[SCREE_SYSTEM_TEXT], processor[SCREE_SYSTEM_TEXT];
+  scree_host_name(host);
+  scree_processor_name(processor);
+  snprintf(machine, 160, "%.63s, %.80s", host, processor);
 }
 
 static char *run_file(const work *w, const char *kind, const char *ending, scree_error *error) {
@@ -71,7 +49,7 @@ static char *run_file(const work *w, const char *kind, const char *ending, scree
 static scree_status has_ended(const work *w, bool *ended, scree_error *error) {
   char *path = run_file(w, "results", ".yaml", error);
   if (!path) return SCREE_OUT_OF_MEMORY;
-  *ended = exists(path);
+  *ended = scree_path_exists(path);
   scree_free(path);
   return SCREE_OK;
 }
@@ -168,7 +146,7 @@ static scree_status write_record(const work *w, const scree_study_record *record
   scree_status status = scree_study_record_write(record, path, error);
   scree_free(path);
   char *checkpoint = status == SCREE_OK ? run_file(w, "runs", "/checkpoint.scree", NULL) : NULL;
-  if (checkpoint) unlink(checkpoint); /* the last frame stays */
+  if (checkpoint) scree_path_remove(checkpoint); /* the last frame stays */
   scree_free(checkpoint);
   return status;
 }
@@ -186,7 +164,7 @@ static void record_failure(scree_study_record *record, const char *reason) {
 
 /* Works on w->run, whose lease is ours. */
 static scree_status do_run(work *w, scree_error *error) {
-  scree_study_record record = {.started = now_since_1970()};
+  scree_study_record record = {.started = scree_calendar_time()};
   scree_error reason = {0};
   char last[SCREE_LEASE_NAME] = "", name[64];
   snprintf(record.worker, sizeof record.worker, "%s", w->worker);
@@ -201,7 +179,7 @@ static scree_status do_run(work *w, scree_error *error) {
     scree_fail(&reason, status, "%zu workers died in it, the last one was %s", deaths, last);
   else
     status = make_and_simulate(w, &record, &reason);
-  record.ended = now_since_1970();
+  record.ended = scree_calendar_time();
   if (w->lost || is_machines_fault(status)) {
     scree_study_record_free(&record);
     if (w->lost) return SCREE_OK; /* whoever has it now goes on */
@@ -250,9 +228,7 @@ static scree_status take_run(work *w, bool *taken, size_t *open, scree_error *er
 }
 
 static scree_status pause_work(const work *w, scree_error *error) {
-  double whole = floor(w->options->poll_s);
-  struct timespec pause = {(time_t)whole, (long)(1e9 * (w->options->poll_s - whole))};
-  nanosleep(&pause, NULL);
+  scree_sleep(w->options->poll_s);
   const scree_progress *p = w->progress;
   if (p && p->report && !p->report(p->context, "others work on what is left", 0))
     return scree_fail(error, SCREE_CANCELLED, "cancelled");
@@ -266,7 +242,7 @@ static scree_status reopen_failed(work *w, scree_error *error) {
     if (!path) return SCREE_OUT_OF_MEMORY;
     scree_study_record record;
     bool failed = false;
-    if (exists(path) && scree_study_record_read(path, &record, NULL) == SCREE_OK) {
+    if (scree_path_exists(path) && scree_study_record_read(path, &record, NULL) == SCREE_OK) {
       failed = record.failed;
       scree_study_record_free(&record);
     }
@@ -278,8 +254,8 @@ static scree_status reopen_failed(work *w, scree_error *error) {
         scree_free(path);
         return SCREE_OUT_OF_MEMORY;
       }
-      bool there = exists(aside);
-      if (!there) rename(path, aside);
+      bool there = scree_path_exists(aside);
+      if (!there) scree_path_rename(path, aside);
       scree_free(aside);
       if (!there) break;
     }
@@ -293,11 +269,11 @@ static scree_status put_broken_aside(work *w, scree_error *error) {
   for (w->run = 0; w->run < scree_study_run_count(w->study); w->run++) {
     char *path = run_file(w, "results", ".yaml", error);
     char *aside = path ? run_file(w, "results", ".broken", error) : NULL;
-    if (aside && exists(path)) {
+    if (aside && scree_path_exists(path)) {
       scree_study_record record;
       scree_status status = scree_study_record_read(path, &record, NULL);
       if (status == SCREE_OK) scree_study_record_free(&record);
-      if (status == SCREE_BAD_FILE) rename(path, aside);
+      if (status == SCREE_BAD_FILE) scree_path_rename(path, aside);
     }
     bool good = aside != NULL;
     scree_free(path);
