@@ -105,8 +105,9 @@ typedef struct scree_body {
 
 /* A body at rest at the origin with its axes along space's. */
 SCREE_API scree_body scree_default_body(void);
-/* Bodies may be added at any time, also between steps; index counts up and stays. One that already
- * overlaps another beyond the limit shows in the next step's status. state may be NULL. */
+/* Bodies may be added at any time, also between steps; index counts up and stays. One that lies in
+ * another body or in a wall shows in the next step's status, with both named and how deep. state
+ * may be NULL. */
 SCREE_API scree_status scree_world_add_body(scree_world *world, scree_particle *particle,
                                             size_t material, const scree_body *state, size_t *index,
                                             scree_error *error);
@@ -126,8 +127,8 @@ SCREE_API void scree_world_remove_body(scree_world *world, size_t index);
 
 /* Advances by step_count steps. SCREE_DIVERGED, with step, body and cause in the message, when the
  * run leaves the model's range: an overlap beyond the limit, a body moving more than that in one
- * step or two past each other by more than the thinner's thinnest wall, an edge that lies half the
- * limit deep in another body and is not pushed out, a value that is not finite. The world then
+ * step or two past each other by more than the thinner's thinnest wall, bodies put into each other
+ * by more than their roundings, a value that is not finite. The world then
  * stands as after the last good step, readable, and refuses to go on. Same bits for every number of
  * threads. Once warm, a step allocates nothing. About 1 to 2 us per body and step at rest on one
  * core. */
@@ -151,8 +152,10 @@ typedef struct scree_observation {
   double highest_speed;                    /* m/s */
   double coordination;                     /* mean number of touching bodies and walls */
   size_t body_count, removed_count;
-  size_t pair_count;    /* touching pairs of bodies, and of body and wall */
-  size_t contact_count; /* touching features */
+  size_t pair_count;      /* touching pairs of bodies, and of body and wall */
+  size_t contact_count;   /* touching features */
+  uint64_t parting_count; /* how often two bodies that held each other had to be moved apart since
+                             the start (docs/physics.md); 0 in most runs */
 } scree_observation;
 /* Cost one pass over the bodies. */
 SCREE_API void scree_world_observe(const scree_world *world, scree_observation *observation);

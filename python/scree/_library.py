@@ -200,7 +200,7 @@ class scree_observation(Structure):
         "time", "kinetic", "rotational", "potential", "elastic", "dissipated_dashpot", "dissipated_friction",
         "wall_work")] + [("momentum", double3), ("angular_momentum", double3)] + [(name, c_double) for name in (
             "mean_rotation", "largest_overlap", "highest_speed", "coordination")] + [(name, c_size_t) for name in (
-                "body_count", "removed_count", "pair_count", "contact_count")]
+                "body_count", "removed_count", "pair_count", "contact_count")] + [("parting_count", c_uint64)]
 
 
 class scree_contact(Structure):

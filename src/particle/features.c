@@ -22,7 +22,7 @@
 static const double flat_angle = 2e-5;             /* rad; sagitta 0.05 um over 10 mm; above the
                                                       noise of single-precision coordinates */
 static const double sharp_angle = 0.5 * 0.0174533; /* rad; design value, see above */
-static const double fold_cosine = -0.8660254;      /* normals over 150 degrees apart */
+static const double fold_cosine = -0.9969;         /* edges of less than 4.5 degrees */
 
 typedef struct half_edge {
   uint32_t low, high; /* vertices, low < high */
@@ -152,7 +152,9 @@ static scree_status pair_halves(extraction *x, bool may_be_open, scree_error *er
     }
     mesh_edge *edge = &x->edges[x->edge_count++];
     *edge = (mesh_edge){a->low, a->high, a->face, b->face, same == 2 ? turn_over(p, a, b) : 3.0};
+    if (same == 1) p->sheet = true;
     vec3 sum = vec3_add(p->faces[a->face].normal, p->faces[b->face].normal);
+    if (same == 1) sum = (vec3){0, 0, 0}; /* a rim has no sides */
     p->face_signs[a->face].edge[a->place] = p->face_signs[b->face].edge[b->place] = sum;
     i += same;
   }
@@ -189,7 +191,7 @@ static void count_bends(extraction *x) {
       vertex_bends *bends = &x->bends[ends[i]];
       if (bends->bent < 2) bends->edge[bends->bent] = (uint32_t)e;
       bends->bent++;
-      bends->convex += edge->turn > 0;
+      bends->convex += edge->turn > 0 || x->particle->sheet; /* convex from one of two sides */
     }
   }
 }
@@ -211,6 +213,35 @@ static bool is_straight(const extraction *x, uint32_t vertex) {
 
 static bool is_corner(const extraction *x, uint32_t vertex) {
   return x->bends[vertex].convex > 0 && !is_straight(x, vertex);
+}
+
+/* In the plane of the only face of a rim, away from it. */
+static vec3 rim_outward(const extraction *x, const mesh_edge *edge) {
+  const scree_mesh *mesh = &x->particle->mesh;
+  const uint32_t *t = &mesh->triangles[3 * (size_t)edge->face1];
+  vec3 low = position_of(mesh, edge->low),
+       along = vec3_unit(vec3_sub(position_of(mesh, edge->high), low));
+  for (int k = 0; k < 3; k++) {
+    if (t[k] == edge->low || t[k] == edge->high) continue;
+    vec3 inward = vec3_sub(position_of(mesh, t[k]), low);
+    return vec3_unit(vec3_mad(vec3_scale(inward, -1), along, vec3_dot(inward, along)));
+  }
+  return (vec3){0, 0, 1};
+}
+
+/* Corners on a rim have no sides either. */
+static void clear_rim_signs(extraction *x) {
+  scree_particle *p = x->particle;
+  for (size_t e = 0; e < x->edge_count; e++) {
+    const mesh_edge *edge = &x->edges[e];
+    if (edge->face1 == edge->face2)
+      x->bends[edge->low].edge[1] = x->bends[edge->high].edge[1] = UINT32_MAX;
+  }
+  for (size_t f = 0; f < p->face_count; f++)
+    for (int c = 0; c < 3; c++)
+      if (x->bends[p->mesh.triangles[3 * f + (size_t)c]].edge[1] == UINT32_MAX)
+        p->face_signs[f].corner[c] = (vec3){0, 0, 0};
+  memset(x->bends, 0, p->mesh.vertex_count * sizeof *x->bends);
 }
 
 /* Follows a straight edge from `vertex` on; returns where it ends. */
@@ -237,12 +268,18 @@ static void make_points_and_edges(extraction *x) {
     }
   for (uint32_t e = 0; e < x->edge_count; e++) {
     const mesh_edge *edge = &x->edges[e];
-    if (edge->turn <= sharp_angle || x->visited[e]) continue;
+    double turn = p->sheet ? fabs(edge->turn) : edge->turn;
+    if (turn <= sharp_angle || x->visited[e]) continue;
     x->visited[e] = true;
     vec3 start = position_of(mesh, follow(x, e, edge->low)),
          end = position_of(mesh, follow(x, e, edge->high)), along = vec3_sub(end, start);
-    double half = fmin(0.5 * edge->turn + scree_cone_slack, 1.57);
+    if (p->sheet && edge->face1 == edge->face2) {
+      p->edges[p->edge_count++] = scree_rim_edge(start, end, rim_outward(x, edge));
+      continue;
+    }
+    double half = fmin(0.5 * turn + scree_cone_slack, 1.57);
     vec3 sum = vec3_add(p->faces[edge->face1].normal, p->faces[edge->face2].normal);
+    if (edge->turn < 0) sum = vec3_neg(sum); /* of a sheet: convex from behind */
     p->edges[p->edge_count++] = (scree_edge){
         start, end, vec3_unit(along), vec3_norm(along), {vec3_unit(sum), cos(half), sin(half)}, 0};
   }
@@ -253,6 +290,7 @@ scree_status scree_particle_extract_features(scree_particle *p, bool may_be_open
   const scree_mesh *mesh = &p->mesh;
   scree_status status = check_indices(mesh, error);
   if (status) return status;
+  p->sheet = false;
   extraction x = {.particle = p};
   status = SCREE_OUT_OF_MEMORY;
   size_t halves = 3 * mesh->triangle_count;
@@ -275,6 +313,7 @@ scree_status scree_particle_extract_features(scree_particle *p, bool may_be_open
   if (status) goto done;
   status = make_corner_signs(p, error);
   if (status) goto done;
+  if (p->sheet) clear_rim_signs(&x);
   count_bends(&x);
   make_points_and_edges(&x);
 done:

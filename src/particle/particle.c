@@ -13,7 +13,6 @@
 
 static const double pi = 3.14159265358979323846;
 static const double default_rounding = 0.002; /* of the size */
-static const double rim_slack = 0.3;          /* cosine; of contacts from a sheet's own side */
 enum { RIM_SIDES = 720 };
 
 scree_particle_options scree_default_particle_options(void) {
@@ -187,6 +186,14 @@ scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
   p->measures.rounding = rounding;
   scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
   if (!status) status = scree_particle_extract_features(p, true, error);
+  if (!status && !p->sheet) {
+    double volume = scree_solid_of_mesh(&p->mesh).volume;
+    p->measures.volume = volume;
+    if (!(volume > 0))
+      status = scree_fail(
+          error, SCREE_BAD_MESH,
+          "particle: the closed surface encloses a volume of %g m3: turned inside out?", volume);
+  }
   if (!status) status = finish_mesh(p, error);
   if (status) {
     scree_particle_free(p);
@@ -196,16 +203,15 @@ scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
   return SCREE_OK;
 }
 
-/* A sheet's end is met from below and from both of its faces, a little more than half around: what
- * lies flat on the sheet and reaches beyond it presses on the rim squarely to either. */
-static scree_edge rim_edge(vec3 start, vec3 end, vec3 outward) {
+scree_edge scree_rim_edge(vec3 start, vec3 end, vec3 outward) {
   vec3 along = vec3_sub(end, start);
-  return (scree_edge){.start = start,
-                      .end = end,
-                      .along = vec3_unit(along),
-                      .length = vec3_norm(along),
-                      .normals = {outward, -rim_slack, sqrt(1 - rim_slack * rim_slack)},
-                      .facing = -rim_slack};
+  return (scree_edge){
+      .start = start,
+      .end = end,
+      .along = vec3_unit(along),
+      .length = vec3_norm(along),
+      .normals = {outward, -scree_rim_slack, sqrt(1 - scree_rim_slack * scree_rim_slack)},
+      .facing = -scree_rim_slack};
 }
 
 static void add_circle(scree_particle *p, const scree_circle *circle) {
@@ -218,7 +224,7 @@ static void add_circle(scree_particle *p, const scree_circle *circle) {
     }
     p->points[p->point_count] = at[0];
     p->point_radii[p->point_count++] = 0;
-    p->edges[p->edge_count++] = rim_edge(at[0], at[1], vec3_unit(way));
+    p->edges[p->edge_count++] = scree_rim_edge(at[0], at[1], vec3_unit(way));
   }
 }
 

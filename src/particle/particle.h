@@ -45,7 +45,14 @@ struct scree_particle {
   size_t edge_count;
   scree_tree face_tree, edge_tree, point_tree;
   scree_box box; /* of everything, rounding included */
+  bool sheet;    /* an open surface: met from both sides, and where it ends by rims */
 };
+
+/* Of rims: cosine of contacts from a sheet's own side. */
+static const double scree_rim_slack = 0.3;
+/* Where a sheet ends: met from below and from both of its faces, a little more than half around:
+ * what lies flat on the sheet and reaches beyond it presses on the rim squarely to either. */
+scree_edge scree_rim_edge(vec3 start, vec3 end, vec3 outward);
 
 void scree_particle_retain(scree_particle *particle);
 

@@ -16,10 +16,6 @@
 #include "world/world.h"
 
 static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
-/* What lies so deep in the other body, of the overlap limit and of half the thinnest wall, */
-static const double deep_shares[2] = {0.5, 0.75};
-static const double felt_share = 1.0 / 3; /* and overlaps by less than this of it is unfelt */
-enum { WATCH_EVERY = 8 };                 /* lists of slow pairs */
 
 static double wall_power(const scree_pair *pair, const scree_frame *wall) {
   return vec3_dot(pair->wrench.force, wall->velocity) - vec3_dot(pair->wrench.torque_b, wall->spin);
@@ -128,9 +124,9 @@ static bool wake_items(scree_pair *pair, scree_scratch *scratch) {
   return room;
 }
 
-/* For the touches of all awake items, and for them all to fall asleep. */
+/* For the touches of all awake items and of edges inside, and for them all to fall asleep. */
 static bool has_room(const scree_pair *pair, scree_scratch *scratch) {
-  size_t touches = (size_t)SCREE_ANCHORS * pair->active.count;
+  size_t touches = (size_t)SCREE_ANCHORS * pair->active.count + SCREE_DEPTHS;
   if (touches > scratch->touches.capacity) scratch->touches_needed = touches;
   return touches <= scratch->touches.capacity &&
          scree_reserve_sleepers(scratch, scratch->neighbours->sleeping.count + pair->active.count);
@@ -141,12 +137,16 @@ static bool visit_items(const scree_world *world, scree_pair *pair, const scree_
                         scree_scratch *scratch) {
   double nap = least_sleep * pair->list.travel + scree_pair_claim(pair);
   size_t kept = 0;
+  scratch->least_gap = INFINITY;
+  scratch->any_inside = false;
   /* asleep items move only after all touches are found: touches point at anchors */
   for (uint32_t i = 0; i < pair->active.count; i++) {
     scree_item *item = &scratch->items[i];
     double gap = scree_item_touch(world, pair, item, relative, scratch);
     item->gap = gap > nap && gap > 0 && !item->inside ? gap : 0;
     kept += item->gap > 0;
+    if (gap < scratch->least_gap) scratch->least_gap = gap;
+    scratch->any_inside |= item->inside;
   }
   return kept > 0;
 }
@@ -201,24 +201,10 @@ static bool passes_unseen(const scree_world *world, const scree_pair *pair) {
   return pair->active.count > 0 && !(pair->list.travel <= 2 * pair->law.thin);
 }
 
-/* When a list is over: whether an edge lies deep inside the other body unfelt. Of slow pairs, which
- * take their turns, as deep as a thin wall lets it: they have passed through it. Fast hits come out
- * again of so little. */
-static void watch(const scree_world *world, const scree_pair *pair, const scree_frame *relative,
-                  scree_pair_work *work) {
-  bool fast = scree_pair_is_fast(world, pair),
-       turn = (world->step_count + pair->a + pair->b) % WATCH_EVERY == 0;
-  if (pair->active.count == 0 || !(fast || turn)) return;
-  double deep = deep_shares[0] * pair->law.limit, thin = deep_shares[1] * pair->law.thin,
-         least = fmax(fast ? deep : fmin(deep, thin), pair->overlap / felt_share);
-  work->unfelt_depth = scree_pair_depth(world, pair, relative, least);
-}
-
 /* Brings the lists up to date; false where there is too little room. */
 static bool prepare(const scree_world *world, scree_pair *pair, const scree_frame *relative,
-                    scree_scratch *scratch, scree_pair_work *work) {
+                    scree_scratch *scratch) {
   if (pair->list.path + 2 * pair->list.travel >= pair->list.end) {
-    watch(world, pair, relative, work);
     if (!scree_pair_list(world, pair, relative, scratch)) return false;
     pair->list.next_item = -INFINITY;
   }
@@ -236,7 +222,7 @@ bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   pair->list.path +=
       slept ? slept_path(world, pair, scratch->neighbours, &relative) : pair->list.travel;
   pair->asleep = false;
-  if (!prepare(world, pair, &relative, scratch, work)) {
+  if (!prepare(world, pair, &relative, scratch)) {
     pair->list = before;
     pair->asleep = slept;
     return false;
@@ -244,17 +230,21 @@ bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   work->too_fast = passes_unseen(world, pair);
   scratch->touches.count = 0;
   bool some_sleep = visit_items(world, pair, &relative, scratch);
+  bool parting = pair->parting;
+  scree_pair_feel_depths(world, pair, &relative, scratch, work);
   clear_results(pair);
   double largest = pair->largest;
   scree_powers powers = scree_pair_apply_law(world, pair, &scratch->touches, &relative);
   if (some_sleep) settle_items(pair, scratch);
-  if (pair->active.count == 0) fall_asleep(world, pair, scratch->neighbours, &relative);
+  if (!scree_pair_stays_awake(pair)) fall_asleep(world, pair, scratch->neighbours, &relative);
   if (!pair->touching) return true;
+  work->begins_parting = pair->parting && !parting;
   double half = 0.5 * world->time_step;
   work->dashpot = half * powers.dashpot;
   work->tangential = half * powers.tangential;
   if (pair->largest > largest) work->lost = hysteresis_loss(pair, largest);
   if (pair->wall) work->wall = half * wall_power(pair, scree_pair_frame_b(world, pair));
-  work->beyond_limit = !(pair->overlap <= pair->law.limit);
+  double overlap = pair->parting ? fmin(pair->overlap, pair->depth) : pair->overlap;
+  work->beyond_limit = !(overlap <= pair->law.limit);
   return true;
 }

@@ -15,6 +15,12 @@
 
 enum { NEWTON_STEPS = 30, CLOSED_ROUNDS = 3 };
 
+/* Slopes that steps do not resolve: at most so steep, of blends and of fading weights. */
+static const double most_slopes[2] = {3, 1};
+/* Bodies part where depths press and the normals' mean by shares is shorter than this: */
+static const double pinched_net = 0.35;
+static const double parting_speed = 0.1; /* m/s, at most */
+
 static const double resolved_share = 0.01; /* of the roundings in a step */
 
 /* Closed form. With h the highest overlap, d_i = h - o_i, x = h - t and k = kappa/(1 - kappa), the
@@ -198,6 +204,14 @@ static void add_load(scree_load *load, vec3 direction, vec3 arm, double size) {
   load->moment = vec3_mad(load->moment, arm, size);
 }
 
+/* Most that steps resolve of the slope of a blend or of a fading weight, which lets go of much of
+ * the overlap in a small part of the way: the force must move the bodies by little of that way in a
+ * step, by K m dt^2/m* = (pi dt/contact time)^2 m. */
+static double resolved_slope(const scree_world *world, const scree_pair *pair) {
+  double turn = 3.14159265358979323846 * world->time_step / pair->law.contact_time;
+  return resolved_share * pair->law.reach / (pair->overlap * turn * turn);
+}
+
 /* One touching feature: its forces, added to the sums. */
 static void press(const scree_pair *pair, const slider *law, double spring, scree_touch *touch,
                   const scree_frame *relative, double *energy, load_sums *sums) {
@@ -208,30 +222,22 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
   vec3 seen = vec3_add(law->velocity, vec3_cross(law->spin, touch->at));
   double rate = -vec3_dot(seen, n);
   seen = vec3_mad(seen, n, rate);
-  double share = touch->share * touch->lever, elastic = share * spring;
-  double normal = elastic + share * pair->law.damping * touch->lever * rate;
+  double share = touch->share * touch->lever, elastic = share * spring,
+         normal = elastic + share * pair->law.damping * touch->lever * rate;
   if (!(normal > 0)) normal = 0;
   double dashpot = normal - elastic;
+  add_load(&sums->normal, n, arm, normal);
+  add_load(&sums->dashpot, n, arm, dashpot);
+  sums->dashpot_power += dashpot * approach;
+  touch->force = vec3_scale(n, normal);
+  if (touch->of_depth) return;
   vec3 along = slide(law, touch->anchor, touch->share, n, v, relative->spin, seen, normal, energy);
   touch->force = vec3_mad(along, n, normal);
   touch->anchor->normal = n;
   touch->anchor->share = touch->share;
-  add_load(&sums->normal, n, arm, normal);
-  add_load(&sums->dashpot, n, arm, dashpot);
-  sums->dashpot_power += dashpot * approach;
   sums->tangential.force = vec3_add(sums->tangential.force, along);
   sums->tangential.moment = vec3_add(sums->tangential.moment, vec3_cross(touch->at, along));
   sums->tangential_power += vec3_dot(along, v);
-}
-
-/* Most that a fading weight may add, in spring forces. A lone touch that fades lets go of nearly
- * all of its overlap in the last bit of the way. No step resolves that, unless it is so short that
- * the force moves the bodies by little of the way within it: by K m dt^2/m* = (pi dt/contact
- * time)^2 m.
- */
-static double most_fading(const scree_world *world, const scree_pair *pair) {
-  double turn = 3.14159265358979323846 * world->time_step / pair->law.contact_time;
-  return fmax(1, resolved_share * pair->law.reach / (pair->overlap * turn * turn));
 }
 
 /* The weight's part of the slope, with dm/dw = (o - t)^2/(2 (S (1 - kappa) + kappa l)). */
@@ -243,6 +249,54 @@ static void fade(double spring, double by_weight, double most, scree_touch *touc
   touch->force = vec3_add(touch->force, force);
   sums->normal.force = vec3_add(sums->normal.force, force);
   sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(touch->at, force));
+}
+
+/* Whether depths press, and the touches hold the bodies against each other. */
+static bool is_pinched(const scree_touch_list *touches) {
+  vec3 net = {0, 0, 0};
+  double total = 0, of_depth = 0;
+  for (size_t i = 0; i < touches->count; i++) {
+    const scree_touch *touch = &touches->items[i];
+    net = vec3_mad(net, touch->normal, touch->share * touch->lever);
+    total += touch->share;
+    if (touch->of_depth) of_depth += touch->share;
+  }
+  return of_depth > 0 && vec3_norm(net) < pinched_net * total;
+}
+
+/* A force of a dashpot's kind: its work is dissipated, or won, with theirs. */
+static void push(const scree_frame *relative, vec3 at, vec3 way, double force, load_sums *sums) {
+  vec3 arm = vec3_cross(at, way), v = vec3_add(relative->velocity, vec3_cross(relative->spin, at));
+  add_load(&sums->normal, way, arm, force);
+  add_load(&sums->dashpot, way, arm, force);
+  sums->dashpot_power += force * vec3_dot(v, way);
+}
+
+/* Edges that lie in each other may each be nearest to a way out that is the other's way in. Then
+ * the bodies go apart along the area vector of their seam, no faster than `parting_speed`, and what
+ * holds them against it lets go, until nothing lies inside. */
+static void part(const scree_world *world, scree_pair *pair, double spring, const slider *law,
+                 scree_touch_list *touches, const scree_frame *relative, load_sums *sums) {
+  vec3 way = scree_way_apart(world, pair, relative), at = {0, 0, 0};
+  if (!(vec3_norm2(way) > 0)) return;
+  way = vec3_unit(way);
+  double total = 0;
+  for (size_t i = 0; i < touches->count; i++) {
+    scree_touch *touch = &touches->items[i];
+    total += touch->share;
+    at = vec3_mad(at, touch->at, touch->share);
+    bool holds = touch->of_depth || vec3_dot(touch->normal, way) < 0;
+    if (!(touch->share > 0) || !holds) continue;
+    double elastic = touch->share * touch->lever * spring;
+    push(relative, touch->at, touch->normal, -elastic, sums);
+    touch->force = vec3_mad(touch->force, touch->normal, -elastic);
+  }
+  if (!(total > 0)) return;
+  at = vec3_scale(at, 1 / total);
+  vec3 seen = vec3_add(law->velocity, vec3_cross(law->spin, at));
+  double slow = 1 - vec3_dot(seen, way) / parting_speed,
+         most = fmin(spring, pair->law.stiffness * (pair->depth + pair->law.reach));
+  push(relative, at, way, most * (slow < 0 ? 0 : slow > 1 ? 1 : slow), sums);
 }
 
 /* Into space. */
@@ -275,6 +329,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   if (touches->count == 0 || !find_overlap(world, pair, touches, &maximum)) {
     for (size_t i = 0; i < touches->count; i++) touches->items[i].anchor->share = 0;
     pair->largest = pair->age = 0;
+    pair->parting = false;
     return (scree_powers){0, 0};
   }
   pair->touching = true;
@@ -286,20 +341,24 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   sums.normal = sums.dashpot = sums.tangential = (scree_load){{0, 0, 0}, {0, 0, 0}};
   sums.dashpot_power = sums.tangential_power = 0;
   uint32_t contacts = 0;
+  double resolved = resolved_slope(world, pair);
   for (size_t i = 0; i < touches->count; i++) {
     scree_touch *touch = &touches->items[i];
     double above = touch->overlap - maximum.cutoff;
     touch->share = above > 0 ? touch->weight * above / maximum.denominator : 0;
     if (touch->share > 0) {
+      touch->lever = fmin(touch->lever, fmax(most_slopes[0], resolved));
       press(pair, &law, spring, touch, relative, &energy, &sums);
       if (touch->fading.x != 0 || touch->fading.y != 0 || touch->fading.z != 0)
-        fade(spring, 0.5 * above * above / maximum.denominator, most_fading(world, pair), touch,
-             &sums);
+        fade(spring, 0.5 * above * above / maximum.denominator, fmax(most_slopes[1], resolved),
+             touch, &sums);
       contacts++;
     } else {
       touch->anchor->share = 0;
     }
   }
+  pair->parting = pair->depth > 0 && (pair->parting || is_pinched(touches));
+  if (pair->parting) part(world, pair, spring, &law, touches, relative, &sums);
   pair->contact_count = contacts;
   pair->tangential_elastic = energy;
   pair->elastic += energy;

@@ -59,7 +59,8 @@ void scree_pair_begin(scree_pair *pair, const scree_neighbours *n, uint32_t inde
                        .list = n->list,
                        .active = place,
                        .neighbours = index,
-                       .law = n->law};
+                       .law = n->law,
+                       .depth = -INFINITY};
 }
 
 void scree_pair_end(const scree_pair *pair, scree_neighbours *n) {

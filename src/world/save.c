@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 6};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 7};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -189,12 +189,28 @@ static void code_pair_name(scree_codec *c, scree_neighbours *n) {
 static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) {
   scree_code_bool(c, &p->asleep);
   scree_code_bool(c, &p->touching);
-  double *reals[] = {
-      &n->law.stiffness,    &n->law.damping, &n->law.friction, &n->law.restitution,
-      &n->law.smoothing,    &n->law.reach,   &n->law.limit,    &n->law.thin,
-      &p->list.travel,      &p->list.path,   &n->wake,         &n->asleep_since,
-      &p->list.next_item,   &p->list.end,    &p->elastic,      &p->tangential_elastic,
-      &n->law.contact_time, &p->age,         &p->overlap,      &p->largest};
+  scree_code_bool(c, &p->parting);
+  double *reals[] = {&n->law.stiffness,
+                     &n->law.damping,
+                     &n->law.friction,
+                     &n->law.restitution,
+                     &n->law.smoothing,
+                     &n->law.reach,
+                     &n->law.limit,
+                     &n->law.thin,
+                     &p->list.travel,
+                     &p->list.path,
+                     &n->wake,
+                     &n->asleep_since,
+                     &p->list.next_item,
+                     &p->list.end,
+                     &p->elastic,
+                     &p->tangential_elastic,
+                     &n->law.contact_time,
+                     &p->age,
+                     &p->overlap,
+                     &p->largest,
+                     &p->depth};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   code_wrench(c, &p->wrench);
   code_load(c, &p->dashpot);
@@ -238,7 +254,7 @@ static void code_body(scree_codec *c, body_record *b) {
 /* What the world counts, and how it ended. */
 typedef struct tail_record {
   double time, time_step, work_dashpot, work_tangential, wall_work, largest_overlap, margin;
-  uint64_t step_count;
+  uint64_t step_count, parting_count;
   bool pairs_stale, time_step_stale, diverged;
   uint32_t failure;
   char message[sizeof((scree_error *)0)->message];
@@ -249,6 +265,7 @@ static void code_tail(scree_codec *c, tail_record *t) {
                      &t->wall_work, &t->largest_overlap, &t->margin};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_u64(c, &t->step_count);
+  scree_code_u64(c, &t->parting_count);
   scree_code_bool(c, &t->pairs_stale);
   scree_code_bool(c, &t->time_step_stale);
   scree_code_bool(c, &t->diverged);
@@ -393,6 +410,7 @@ static void save_tail(scree_codec *c, const scree_world *world) {
                       .largest_overlap = world->largest_overlap,
                       .margin = scree_broad_margin(world),
                       .step_count = world->step_count,
+                      .parting_count = world->parting_count,
                       .pairs_stale = world->pairs_stale,
                       .time_step_stale = world->time_step_stale,
                       .diverged = world->diverged,
@@ -610,7 +628,8 @@ static void load_items(loader *l, scree_pair *pair) {
   scree_range *sleepers = &l->world->neighbours.items[pair->neighbours].sleeping;
   uint32_t active = pair->active.count, sleeping = sleepers->count;
   pair->active.count = sleepers->count = 0;
-  if ((pair->asleep || pair->touching) && pair->asleep == (active > 0)) l->codec.failed = true;
+  bool awake = active > 0 || pair->depth > 0;
+  if ((pair->asleep || pair->touching) && pair->asleep == awake) l->codec.failed = true;
   if (!good(l)) return;
   if (!make_room(l, pair, active, sleeping)) l->codec.out_of_memory = true;
   for (uint32_t i = 0; i < active && good(l); i++) {
@@ -645,7 +664,7 @@ static void load_pair(loader *l, uint32_t k, uint32_t index) {
   code_pair_state(&l->codec, pair, n);
   load_items(l, pair);
   pair->law = n->law;
-  if (pair->active.count > 0) {
+  if (scree_pair_stays_awake(pair)) {
     world->pair_of.items[k] = index;
   } else {
     scree_pair_end(pair, n);
@@ -656,7 +675,7 @@ static void load_pair(loader *l, uint32_t k, uint32_t index) {
 static void load_pairs(loader *l) {
   scree_world *world = l->world;
   size_t count = 0;
-  scree_code_count(&l->codec, &count, 451);
+  scree_code_count(&l->codec, &count, 460);
   if (count >= scree_none) l->codec.failed = true;
   if (!SCREE_RESERVE(&world->neighbours, count) || !SCREE_RESERVE(&world->pair_of, count))
     l->codec.out_of_memory = true;
@@ -693,6 +712,7 @@ static void load_tail(loader *l) {
   world->wall_work = tail.wall_work;
   world->largest_overlap = tail.largest_overlap;
   world->step_count = tail.step_count;
+  world->parting_count = tail.parting_count;
   world->pairs_stale = tail.pairs_stale;
   world->time_step_stale = tail.time_step_stale;
   world->diverged = tail.diverged;

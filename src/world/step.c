@@ -82,6 +82,7 @@ static void add_work(scree_pair_sums *sums, const scree_pair_work *work, const s
   sums->dashpot += work->later_dashpot;
   sums->dashpot += work->dashpot;
   sums->dashpot -= work->lost;
+  sums->dashpot -= work->let_go;
   sums->tangential += work->later_tangential;
   sums->tangential += work->tangential;
   sums->wall_work += work->later_wall;
@@ -90,9 +91,10 @@ static void add_work(scree_pair_sums *sums, const scree_pair_work *work, const s
     sums->largest_overlap = pair->overlap;
   if (work->beyond_limit && sums->beyond_limit == scree_none) sums->beyond_limit = pair->neighbours;
   if (work->too_fast && sums->too_fast == scree_none) sums->too_fast = pair->neighbours;
-  if (work->unfelt_depth > sums->unfelt_depth) {
-    sums->unfelt = pair->neighbours;
-    sums->unfelt_depth = work->unfelt_depth;
+  sums->partings += work->begins_parting;
+  if (work->start_depth > sums->start_depth) {
+    sums->start = pair->neighbours;
+    sums->start_depth = work->start_depth;
   }
 }
 
@@ -112,7 +114,7 @@ static bool settle_pair(scree_world *world, const scree_pair *pair) {
   scree_neighbours *n = &world->neighbours.items[k];
   scree_slot *slot = &world->slots.items[k];
   if (pair->touching != scree_pair_touches(world, k)) scree_mark_touching(world, k, pair->touching);
-  if (pair->active.count > 0) {
+  if (scree_pair_stays_awake(pair)) {
     slot->wake = -INFINITY;
     return false;
   }
@@ -147,7 +149,7 @@ static void begin_blocks(scree_world *world, size_t begin, size_t end,
   for (size_t k = 0; k < PAIRS_AHEAD && k < progress->awake; k++) fetch_pair(world, awake[k]);
   for (size_t block = begin / PAIR_BLOCK; block * PAIR_BLOCK < end; block++)
     world->sums.items[block] =
-        (scree_pair_sums){.beyond_limit = scree_none, .too_fast = scree_none, .unfelt = scree_none};
+        (scree_pair_sums){.beyond_limit = scree_none, .too_fast = scree_none, .start = scree_none};
 }
 
 /* From where it stopped, if it did. Pairs that fall asleep take the places of those already done.
@@ -225,14 +227,31 @@ static scree_status describe_speed(scree_world *world, uint32_t k) {
       n->wall ? "wall" : "body", n->b, world->time_step, 2 * n->law.thin);
 }
 
-static scree_status describe_unfelt(scree_world *world, const scree_pair_sums *sums) {
-  const scree_neighbours *n = &world->neighbours.items[sums->unfelt];
-  return scree_fail(
-      &world->failure, SCREE_DIVERGED,
-      "world: step %llu, an edge of body %u or %s %u lies %.3g m deep in the other and is "
-      "not pushed out: they met too fast or with edges too sharp for the contact law",
-      (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,
-      sums->unfelt_depth);
+/* A body's shape in a few words. */
+static const char *describe_shape(const scree_particle *p, char text[64]) {
+  const scree_particle_measures *m = &p->measures;
+  if (m->kind == SCREE_PARTICLE_MESH)
+    snprintf(text, 64, "%zu triangles, size %.3g m", m->triangle_count, m->size);
+  else
+    snprintf(text, 64, "%zu sphere%s, size %.3g m", m->point_count, m->point_count == 1 ? "" : "s",
+             m->size);
+  return text;
+}
+
+static scree_status describe_start(scree_world *world, const scree_pair_sums *sums) {
+  const scree_neighbours *n = &world->neighbours.items[sums->start];
+  static const char *const walls[] = {"plane", "disc", "cylinder", "mesh"};
+  char a[64], b[64];
+  describe_shape(world->bodies.particle[n->a], a);
+  if (n->wall)
+    snprintf(b, sizeof b, "%s", walls[world->walls.items[n->b].given.kind]);
+  else
+    describe_shape(world->bodies.particle[n->b], b);
+  return scree_fail(&world->failure, SCREE_DIVERGED,
+                    "world: step %llu, body %u (%s) and %s %u (%s) lie %.3g m deep in each other "
+                    "from the start, or since one was put there: put them apart",
+                    (unsigned long long)world->step_count, n->a, a, n->wall ? "wall" : "body", n->b,
+                    b, sums->start_depth);
 }
 
 static scree_status combine_sums(scree_world *world, size_t blocks) {
@@ -242,13 +261,14 @@ static scree_status combine_sums(scree_world *world, size_t blocks) {
     world->work_dashpot += sums->dashpot;
     world->work_tangential += sums->tangential;
     world->wall_work += sums->wall_work;
+    world->parting_count += sums->partings;
     world->largest_overlap = fmax(world->largest_overlap, sums->largest_overlap);
   }
   for (size_t block = 0; block < blocks; block++) {
     const scree_pair_sums *sums = &world->sums.items[block];
+    if (sums->start != scree_none) return describe_start(world, sums);
     if (sums->beyond_limit != scree_none) return describe_overlap(world, sums->beyond_limit);
     if (sums->too_fast != scree_none) return describe_speed(world, sums->too_fast);
-    if (sums->unfelt != scree_none) return describe_unfelt(world, sums);
   }
   return SCREE_OK;
 }

@@ -42,6 +42,7 @@ double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, v
   touch->normal = n;
   touch->lever = 1;
   touch->fading = (vec3){0, 0, 0};
+  touch->of_depth = false;
   touch->overlap = overlap;
   touch->weight = weight;
   touch->anchor = anchor;
@@ -82,22 +83,26 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
     }
     for (uint32_t k = 0; k < node->count; k++) {
       const scree_face *face = &surface->faces[surface->face_tree.order[node->first + k]];
-      if (vec3_dot(face->normal, way) < way_out_cosine) continue;
+      vec3 normal = face->normal;
+      double looks = vec3_dot(normal, way);
+      if (surface->sheet && looks < 0)
+        looks = -looks, normal = vec3_neg(normal); /* has two sides */
+      if (looks < way_out_cosine) continue;
       int region;
       vec3 c = scree_closest_on_face(face, p, &region), offset = vec3_sub(p, c);
-      double d2 = vec3_norm2(offset), height = vec3_dot(offset, face->normal);
+      double d2 = vec3_norm2(offset), height = vec3_dot(offset, normal);
       if (d2 >= reach * reach || (behind && height > 0)) continue;
       bool tied = any && d2 <= best2 * same_distance2 && best2 <= d2 * same_distance2;
       if (tied ? height > best_height : d2 < best2) {
         best2 = d2 < best2 ? d2 : best2;
         best_height = height;
         out->closest = c;
-        out->normal = face->normal;
+        out->normal = normal;
         out->over = region == SCREE_REGION_INSIDE;
         any = true;
       }
       vec3 aside =
-          region == SCREE_REGION_INSIDE ? (vec3){0, 0, 0} : vec3_mad(offset, face->normal, -height);
+          region == SCREE_REGION_INSIDE ? (vec3){0, 0, 0} : vec3_mad(offset, normal, -height);
       if (height <= 0 && vec3_norm2(aside) < least_aside2) {
         least_aside2 = vec3_norm2(aside);
         out->aside = aside;
@@ -178,14 +183,15 @@ static int notch_contacts(const scree_particle *surface, vec3 p, const scree_ite
   for (uint32_t k = 0; k < item->face_count && count < SCREE_ANCHORS; k++) {
     if (k == nearest) continue;
     const scree_face *face = &surface->faces[item->face[k]];
-    double alike = vec3_dot(face->normal, contacts[0].normal);
-    if (alike >= notch_cosines[0]) continue;
     int region;
-    vec3 c = scree_closest_on_face(face, p, &region);
-    double d = vec3_dot(vec3_sub(p, c), face->normal);
+    vec3 c = scree_closest_on_face(face, p, &region), normal = face->normal;
+    double d = vec3_dot(vec3_sub(p, c), normal);
+    if (surface->sheet && d < 0) d = -d, normal = vec3_neg(normal);
+    double alike = vec3_dot(normal, contacts[0].normal);
+    if (alike >= notch_cosines[0]) continue;
     if (region != SCREE_REGION_INSIDE || d <= 0) continue;
     double weight = 1 - scree_smooth_step(notch_cosines[1], notch_cosines[0], alike);
-    contacts[count++] = (surface_contact){c, face->normal, {0, 0, 0}, d, weight, true, 1};
+    contacts[count++] = (surface_contact){c, normal, {0, 0, 0}, d, weight, true, 1};
   }
   return count;
 }
@@ -208,6 +214,11 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   }
   vec3 offset = vec3_sub(p, contacts[0].closest);
   vec3 outward = scree_outward(surface, item->face[nearest], nearest_region);
+  if (surface->sheet) { /* the side on which it was last seen clear; a rim has none */
+    if (vec3_dot(outward, item->has_reference ? item->reference : offset) < 0)
+      outward = vec3_neg(outward);
+    if (vec3_norm2(outward) == 0) outward = offset;
+  }
   double d = sqrt(best2);
   bool outside = vec3_dot(offset, outward) >= 0;
   if (!item->has_reference && !outside && surface->measures.volume > 0)

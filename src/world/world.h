@@ -154,6 +154,7 @@ typedef struct scree_pair {
   bool wall;   /* b is a wall */
   bool asleep; /* no item can touch before the bodies' paths reach the neighbours' `wake` */
   bool touching;
+  bool parting; /* is moved apart (law.c) */
   uint32_t contact_count;
   scree_wrench wrench; /* here: the bodies read it with what is above */
   scree_list_state list;
@@ -165,6 +166,7 @@ typedef struct scree_pair {
   scree_kept_load dashpot, tangential; /* parts of the wrench, for the ledger */
   double elastic, tangential_elastic;  /* U of all springs, and of the tangential ones */
   double largest;                      /* m of this contact (hysteresis) */
+  double depth; /* no edge lies deeper inside the other body; -INFINITY: not known */
 } scree_pair;
 
 /* Two bodies, or a body and a wall, whose boxes are near each other: what is kept of them while
@@ -197,9 +199,10 @@ typedef struct scree_pools {
 typedef struct scree_touch {
   vec3 at, normal; /* normal towards a */
   double overlap, weight, share;
-  double lever; /* how much the overlap falls as a moves along the normal */
-  vec3 fading;  /* along which the weight falls as a moves, 1/m */
-  vec3 force;   /* on a */
+  double lever;  /* how much the overlap falls as a moves along the normal */
+  vec3 fading;   /* along which the weight falls as a moves, 1/m */
+  vec3 force;    /* on a */
+  bool of_depth; /* of an edge inside: without friction or memory */
   scree_anchor *anchor;
 } scree_touch;
 
@@ -217,7 +220,11 @@ typedef struct scree_scratch {
   scree_touch_list touches;
   size_t touches_needed; /* by a pair that found too little room */
   uint64_t item_evaluations, closest_queries, list_builds;
+  uint64_t depth_queries;
   double candidate_seconds;
+  double least_gap; /* of the items */
+  bool any_inside;  /* one of them is */
+  scree_anchor no_anchor;
 } scree_scratch;
 
 /* What a pair's evaluation adds to the ledger, J, and what is wrong with it. */
@@ -225,16 +232,18 @@ typedef struct scree_pair_work {
   double later_dashpot, later_tangential, later_wall; /* second half of the last step */
   double dashpot, tangential, wall;                   /* first half of this */
   double lost;                                        /* in the hysteretic spring */
-  double unfelt_depth;                                /* m; 0: none */
-  bool too_fast, beyond_limit;
+  double let_go;                                      /* by springs whose references start anew */
+  double start_depth;                                 /* in each other from the start, m; 0: none */
+  bool too_fast, beyond_limit, begins_parting;
 } scree_pair_work;
 
 /* What a block of pairs adds up, in their order; combined in block order. */
 typedef struct scree_pair_sums {
   double dashpot, tangential, wall_work;
   double largest_overlap;
-  uint32_t beyond_limit, too_fast, unfelt; /* the first neighbours, or scree_none */
-  double unfelt_depth;                     /* of that one */
+  uint32_t beyond_limit, too_fast, start; /* the first neighbours, or scree_none */
+  double start_depth;                     /* of that one, in each other from the start */
+  uint64_t partings;                      /* begun */
 } scree_pair_sums;
 
 /* How far some blocks of the neighbours have come in a step. */
@@ -324,7 +333,7 @@ struct scree_world {
   bool pairs_stale;
   double time, time_step;
   bool time_step_stale;
-  uint64_t step_count;
+  uint64_t step_count, parting_count;
   double work_dashpot, work_tangential, wall_work; /* done on bodies, so far */
   double largest_overlap;
   bool diverged;
@@ -463,6 +472,10 @@ static inline scree_sleeper *scree_sleepers(const scree_scratch *s) {
 static inline bool scree_pair_is_new(const scree_pair *p) {
   return p->list.path <= p->list.travel;
 }
+/* Else it sleeps until the bodies' paths have grown. */
+static inline bool scree_pair_stays_awake(const scree_pair *p) {
+  return p->active.count > 0 || p->depth > 0;
+}
 /* How far behind a sheet a point of a new pair may be and still belong to the body's side. */
 static inline double scree_pair_clearance(const scree_pair *p, const scree_particle *a,
                                           uint32_t point) {
@@ -537,10 +550,19 @@ double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, 
 double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
                            vec3 *normal);
 
-/* watch.c: how deep an edge of either body lies inside the other's unrounded surface, where that is
- * more than `least`, m; else 0. */
-double scree_pair_depth(const scree_world *world, const scree_pair *pair,
-                        const scree_frame *relative, double least);
+/* depth.c: adds touches for edges inside the other body where features may feel less; notes bodies
+ * that lie in each other from the start. */
+void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                            scree_scratch *scratch, scree_pair_work *work);
+/* The edges that lie deeper in the other body than `above`, as touches, the deepest SCREE_DEPTHS of
+ * them; the depth of the deepest, m, or `above`. */
+enum { SCREE_DEPTHS = 32 };
+double scree_touch_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                          double above, scree_scratch *scratch);
+
+/* seam.c: the area of b's surface inside a as a vector, outward, in the frame of b, m2: the way in
+ * which the common volume falls fastest as a moves. 0 where the surfaces do not cross. */
+vec3 scree_way_apart(const scree_world *world, const scree_pair *pair, const scree_frame *relative);
 
 /* The smooth maximum m of overlaps, t, and the denominator of the shares (law.c). */
 typedef struct scree_smooth_maximum {
