@@ -78,6 +78,10 @@ typedef struct scree_wall {
   const scree_mesh *mesh;
   double velocity[3];         /* m/s, prescribed; may be changed at any time */
   double angular_velocity[3]; /* rad/s about position */
+  /* Of its surface while the wall itself stays where it is, as of a belt or a roller: m/s, and
+   * rad/s about position, in space as the wall stands now; they turn with it. What points out of
+   * the surface does not count. */
+  double surface_velocity[3], surface_angular_velocity[3];
 } scree_wall;
 
 SCREE_API scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall,
@@ -92,9 +96,50 @@ SCREE_API scree_status scree_world_set_wall_velocity(scree_world *world, size_t 
                                                      const double velocity[3],
                                                      const double angular_velocity[3],
                                                      scree_error *error);
+/* As of scree_wall. */
+SCREE_API scree_status scree_world_set_wall_surface(scree_world *world, size_t index,
+                                                    const double velocity[3],
+                                                    const double angular_velocity[3],
+                                                    scree_error *error);
+
+/* How a wall moves: a way along a direction or an angle about an axis, as a function of time. */
+typedef enum scree_motion_law {
+  SCREE_MOTION_CONSTANT,  /* at `speed` */
+  SCREE_MOTION_SINE,      /* amplitude sin(2 pi frequency (t - from) + phase) */
+  SCREE_MOTION_POSITIONS, /* straight between the rows of `table`; held before and after */
+  SCREE_MOTION_SPEEDS,    /* the speed is; held before and after */
+} scree_motion_law;
+
+typedef struct scree_wall_motion {
+  scree_motion_law law;
+  bool turns;                         /* about the axis through `through`; else along it */
+  double axis[3];                     /* of any length above 0, in space */
+  double through[3];                  /* m, a point of the axis about which it turns */
+  double speed;                       /* m/s or rad/s */
+  double amplitude, frequency, phase; /* m or rad; Hz; rad */
+  const double *table;                /* row_count rows of a time (s, growing) and a value (m, m/s,
+                                         rad or rad/s) */
+  size_t row_count;
+  double from, until; /* s of the world's time; before and after it holds still */
+} scree_wall_motion;
+/* At rest along z from time 0 on, without an end. */
+SCREE_API scree_wall_motion scree_default_wall_motion(void);
+
+/* The wall moves so from now on, instead of by its velocity; no motions let it stand. Where it is
+ * at any time is a closed function of time: each motion in turn moves the wall and all that the
+ * motions before it have done, by what its law has come to since now. A pan that swings on a
+ * turning table: first the swing, then the turn. Motions and tables are copied. */
+SCREE_API scree_status scree_world_set_wall_motion(scree_world *world, size_t index,
+                                                   const scree_wall_motion *motions, size_t count,
+                                                   scree_error *error);
+
 /* Force and torque about its position, N and N m, on the wall from all bodies in the last step. */
 SCREE_API void scree_world_wall_force(const scree_world *world, size_t index, double force[3],
                                       double torque[3]);
+/* What the wall, moving or by its surface, does on bodies: W in the last step, and J since the
+ * start. */
+SCREE_API void scree_world_wall_power(const scree_world *world, size_t index, double *power,
+                                      double *energy);
 
 typedef struct scree_body {
   double position[3];         /* m, centre of mass */
@@ -115,6 +160,16 @@ SCREE_API scree_status scree_world_add_body(scree_world *world, scree_particle *
 SCREE_API size_t scree_world_body_count(const scree_world *world);
 SCREE_API bool scree_world_body_removed(const scree_world *world, size_t index);
 SCREE_API void scree_world_get_body(const scree_world *world, size_t index, scree_body *state);
+/* The same of `count` bodies from `first` on, into arrays of 3, 4, 3 and 3 numbers a body; NULL for
+ * what is not asked for. A removed body's are those it was removed with. */
+SCREE_API void scree_world_get_bodies(const scree_world *world, size_t first, size_t count,
+                                      double *positions, double *orientations, double *velocities,
+                                      double *angular_velocities);
+/* A force through its centre (N) and a torque (N m), in space, that act on a body in every step
+ * until they are set anew; zero ends them. Their work is booked in the ledger. */
+SCREE_API scree_status scree_world_set_body_force(scree_world *world, size_t index,
+                                                  const double force[3], const double torque[3],
+                                                  scree_error *error);
 /* Puts a body into another state. SCREE_BAD_ARGUMENT, as of scree_world_add_body, where a value is
  * not finite or the orientation has no length; the body then stays as it is. */
 SCREE_API scree_status scree_world_set_body(scree_world *world, size_t index,
@@ -146,6 +201,7 @@ typedef struct scree_observation {
   double dissipated_dashpot,
       dissipated_friction;                 /* J since the start; hysteresis counts as dashpot */
   double wall_work;                        /* J done on bodies by moving walls since the start */
+  double applied_work;                     /* J by forces of scree_world_set_body_force */
   double momentum[3], angular_momentum[3]; /* N s; N m s about the origin */
   double mean_rotation;                    /* rad/s, mean of |omega| (the paper's Fig. 7) */
   double largest_overlap;                  /* m, in the last step */

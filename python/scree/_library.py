@@ -20,6 +20,7 @@ PARTICLE_KINDS = ("mesh", "sphere", "clump")
 LAWS = ("linear", "hysteretic")
 CONTAINERS = ("cylinder", "box")
 WALL_KINDS = ("plane", "disc", "cylinder", "mesh")
+MOTION_LAWS = ("constant", "sine", "positions", "speeds")
 VIEWS = ("surfaces", "points", "contacts", "walls")
 DEFECT_COUNT, REPAIR_ACTION_COUNT = 17, 21
 
@@ -187,7 +188,13 @@ class scree_material(Structure):
 class scree_wall(Structure):
     _fields_ = [("kind", c_int), ("material", c_size_t), ("position", double3), ("axis", double3),
                 ("radius", c_double), ("length", c_double), ("mesh", POINTER(scree_mesh)), ("velocity", double3),
-                ("angular_velocity", double3)]
+                ("angular_velocity", double3), ("surface_velocity", double3), ("surface_angular_velocity", double3)]
+
+
+class scree_wall_motion(Structure):
+    _fields_ = [("law", c_int), ("turns", c_bool), ("axis", double3), ("through", double3)] + [
+        (name, c_double) for name in ("speed", "amplitude", "frequency", "phase")] + [
+            ("table", POINTER(c_double)), ("row_count", c_size_t), ("from", c_double), ("until", c_double)]
 
 
 class scree_body(Structure):
@@ -198,7 +205,7 @@ class scree_body(Structure):
 class scree_observation(Structure):
     _fields_ = [(name, c_double) for name in (
         "time", "kinetic", "rotational", "potential", "elastic", "dissipated_dashpot", "dissipated_friction",
-        "wall_work")] + [("momentum", double3), ("angular_momentum", double3)] + [(name, c_double) for name in (
+        "wall_work", "applied_work")] + [("momentum", double3), ("angular_momentum", double3)] + [(name, c_double) for name in (
             "mean_rotation", "largest_overlap", "highest_speed", "coordination")] + [(name, c_size_t) for name in (
                 "body_count", "removed_count", "pair_count", "contact_count")] + [("parting_count", c_uint64)]
 
@@ -326,6 +333,9 @@ _FALLIBLE = {  # argument types before the error
     "world_set_contact": (_H, c_size_t, c_size_t, c_double, c_double),
     "world_add_wall": (_H, POINTER(scree_wall), POINTER(c_size_t)),
     "world_set_wall_velocity": (_H, c_size_t, double3, double3),
+    "world_set_wall_motion": (_H, c_size_t, POINTER(scree_wall_motion), c_size_t),
+    "world_set_wall_surface": (_H, c_size_t, double3, double3),
+    "world_set_body_force": (_H, c_size_t, double3, double3),
     "world_add_body": (_H, _H, c_size_t, POINTER(scree_body), POINTER(c_size_t)),
     "world_set_body": (_H, c_size_t, POINTER(scree_body)),
     "world_step": (_H, c_size_t),
@@ -370,6 +380,7 @@ _PLAIN = {  # result, argument types
     "default_world_options": (scree_world_options, ()),
     "default_material": (scree_material, ()),
     "default_wall_material": (scree_material, ()),
+    "default_wall_motion": (scree_wall_motion, ()),
     "default_body": (scree_body, ()),
     "default_export_options": (scree_export_options, ()),
     "defect_name": (_S, (c_int,)),
@@ -392,6 +403,8 @@ _PLAIN = {  # result, argument types
     "world_get_wall": (None, (_H, c_size_t, POINTER(scree_wall))),
     "world_wall_count": (c_size_t, (_H,)),
     "world_wall_force": (None, (_H, c_size_t, double3, double3)),
+    "world_wall_power": (None, (_H, c_size_t, POINTER(c_double), POINTER(c_double))),
+    "world_get_bodies": (None, (_H, c_size_t, c_size_t) + 4 * (POINTER(c_double),)),
     "world_body_count": (c_size_t, (_H,)),
     "world_body_removed": (c_bool, (_H, c_size_t)),
     "world_get_body": (None, (_H, c_size_t, POINTER(scree_body))),

@@ -2,12 +2,13 @@
 import ctypes
 import math
 import os
+import types
 import weakref
 
 from . import _library as c
 from ._library import call, lib
 from ._mesh import Mesh
-from ._values import c_array, column, from_struct, index_of, metres, set_fields, vector, whole
+from ._values import c_array, column, from_struct, index_of, metres, set_fields, table, vector, whole
 
 
 class Particle:
@@ -94,7 +95,7 @@ class World:
 
     def add_wall(self, kind, material, mesh=None, **values):
         """Its index. kind plane, disc, cylinder or mesh; position, axis, radius, length, velocity,
-        angular_velocity."""
+        angular_velocity; surface_velocity and surface_angular_velocity of a belt."""
         wall = c.scree_wall(kind=index_of(kind, c.WALL_KINDS, "wall"), axis=(0, 0, 1))
         set_fields(wall, {"material": material, **values}, "a wall")
         if mesh is not None:
@@ -105,6 +106,34 @@ class World:
         self._check(index, "world_wall_count", "wall")
         call("world_set_wall_velocity", self._handle, index, vector(velocity, "velocity", c.double3),
              vector(angular_velocity, "angular_velocity", c.double3))
+
+    def set_wall_surface(self, index, velocity=(0, 0, 0), angular_velocity=(0, 0, 0)):
+        """Of its surface, while the wall itself stays: a belt, a roller."""
+        self._check(index, "world_wall_count", "wall")
+        call("world_set_wall_surface", self._handle, index, vector(velocity, "velocity", c.double3),
+             vector(angular_velocity, "angular_velocity", c.double3))
+
+    def set_wall_motion(self, index, *motions):
+        """From now on, each a dictionary: law constant, sine, positions or speeds; turns (about the axis through
+        `through`, else along it), axis, speed, amplitude, frequency, phase, table ([[t, value], ...]), from, until."""
+        self._check(index, "world_wall_count", "wall")
+        structs, tables = (c.scree_wall_motion * max(1, len(motions)))(), []
+        for i, given in enumerate(motions):
+            values = dict(given)
+            struct = lib["default_wall_motion"]()
+            struct.law = index_of(values.pop("law", "constant"), c.MOTION_LAWS, "law")
+            rows, struct.row_count = c_array(ctypes.c_double, values.pop("table", []), 2) if "table" in values else (None, 0)
+            struct.table = ctypes.cast(rows, ctypes.POINTER(ctypes.c_double))
+            tables.append(rows)
+            structs[i] = set_fields(struct, values, "a motion")
+        call("world_set_wall_motion", self._handle, index, structs, len(motions))
+
+    def wall_power(self, index):
+        """What the wall does on bodies: W in the last step, and J since the start."""
+        self._check(index, "world_wall_count", "wall")
+        power, energy = ctypes.c_double(), ctypes.c_double()
+        lib["world_wall_power"](self._handle, index, power, energy)
+        return power.value, energy.value
 
     def wall_force(self, index):
         """Force and torque about its position on the wall in the last step."""
@@ -154,13 +183,29 @@ class World:
         lib["world_get_body"](self._handle, index, body)
         call("world_set_body", self._handle, index, set_fields(body, state, "a body"))
 
+    def set_body_force(self, index, force=(0, 0, 0), torque=(0, 0, 0)):
+        """N through its centre and N m, in every step until they are set anew."""
+        self._check(index, "world_body_count", "body")
+        call("world_set_body_force", self._handle, index, vector(force, "force", c.double3),
+             vector(torque, "torque", c.double3))
+
+    def bodies(self):
+        """position, orientation, velocity and angular_velocity of all bodies ever added, a row each."""
+        count, widths = len(self), {"position": 3, "orientation": 4, "velocity": 3, "angular_velocity": 3}
+        arrays = [(ctypes.c_double * max(1, count * width))() for width in widths.values()]
+        lib["world_get_bodies"](self._handle, 0, count, *arrays)
+        return types.SimpleNamespace(**{
+            name: table(ctypes.cast(array, ctypes.POINTER(ctypes.c_double)), count, width, array)
+            for array, (name, width) in zip(arrays, widths.items())})
+
     def remove_body(self, index):
         self._check(index, "world_body_count", "body")
         lib["world_remove_body"](self._handle, index)
 
     def positions(self):
         """Of the live bodies, a row each, m."""
-        return column([list(self.body(i).position) for i in self.live()])
+        rows = self.bodies().position
+        return column([[rows[i, k] for k in range(3)] for i in self.live()])
 
     def step(self, count=1):
         """Advances by whole steps; Error with status DIVERGED where the run leaves its model."""

@@ -236,6 +236,14 @@ static bool merge_neighbours(scree_world *world) {
   return true;
 }
 
+/* There is room. */
+static void list_wall_pairs(scree_world *world) {
+  world->wall_pairs.count = 0;
+  for (size_t k = 0; k < world->neighbours.count; k++)
+    if (world->neighbours.items[k].wall)
+      world->wall_pairs.items[world->wall_pairs.count++] = (uint32_t)k;
+}
+
 static void fill_slots(scree_world *world) {
   size_t bodies = world->bodies.count;
   world->due.count = bodies + world->walls.count;
@@ -259,9 +267,11 @@ static bool list_sides(scree_world *world) {
   if (bodies == 0) return true; /* there are no arrays yet */
   if (!SCREE_RESERVE(&world->sides, 2 * pairs) || !SCREE_RESERVE(&world->acting, 2 * pairs) ||
       !SCREE_RESERVE(&world->due, bodies + world->walls.count) ||
-      !SCREE_RESERVE(&world->slots, pairs) || !SCREE_RESERVE(&world->touching, pairs / 64 + 1))
+      !SCREE_RESERVE(&world->slots, pairs) || !SCREE_RESERVE(&world->touching, pairs / 64 + 1) ||
+      !SCREE_RESERVE(&world->wall_pairs, pairs))
     return false;
   fill_slots(world);
+  list_wall_pairs(world);
   size_t *begin = world->side_begin;
   memset(begin, 0, (bodies + 1) * sizeof *begin);
   for (size_t k = 0; k < pairs; k++) {

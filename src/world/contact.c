@@ -17,10 +17,6 @@
 
 static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
 
-static double wall_power(const scree_pair *pair, const scree_frame *wall) {
-  return vec3_dot(pair->wrench.force, wall->velocity) - vec3_dot(pair->wrench.torque_b, wall->spin);
-}
-
 static double power_of(const scree_kept_load *load, vec3 velocity, vec3 spin) {
   const float *f = load->force, *m = load->moment;
   return f[0] * velocity.x + f[1] * velocity.y + f[2] * velocity.z + m[0] * spin.x + m[1] * spin.y +
@@ -38,8 +34,12 @@ static void add_later_work(const scree_world *world, const scree_pair *pair,
        u = vec3_sub(slip, vec3_cross(a->spin, arm)), spin = vec3_sub(a->spin, b->spin);
   double half = 0.5 * world->time_step;
   work->later_dashpot = half * power_of(&pair->dashpot, u, spin);
+  if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) {
+    const scree_world_wall *belt = &world->walls.items[pair->b];
+    u = vec3_sub(u, mat3_mul_vec(&b->rotation, belt->surface_velocity));
+    spin = vec3_sub(spin, mat3_mul_vec(&b->rotation, belt->surface_spin));
+  }
   work->later_tangential = half * power_of(&pair->tangential, u, spin);
-  if (pair->wall) work->later_wall = half * wall_power(pair, b);
 }
 
 static double bodies_path(const scree_world *world, const scree_pair *pair) {
@@ -243,7 +243,6 @@ bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   work->dashpot = half * powers.dashpot;
   work->tangential = half * powers.tangential;
   if (pair->largest > largest) work->lost = hysteresis_loss(pair, largest);
-  if (pair->wall) work->wall = half * wall_power(pair, scree_pair_frame_b(world, pair));
   double overlap = pair->parting ? fmin(pair->overlap, pair->depth) : pair->overlap;
   work->beyond_limit = !(overlap <= pair->law.limit);
   return true;

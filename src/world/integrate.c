@@ -49,6 +49,11 @@ static void sum_forces(scree_world *world, size_t i, const uint32_t *acting, siz
     force = vec3_mad(force, w->force, of_b ? -1 : 1);
     torque = vec3_add(torque, of_b ? w->torque_b : w->torque_a);
   }
+  if (world->bodies.applied) {
+    const scree_load *applied = &world->bodies.applied[i].now;
+    force = vec3_add(force, applied->force);
+    torque = vec3_add(torque, applied->moment);
+  }
   world->bodies.force[i] = force;
   world->bodies.torque[i] = torque;
 }
@@ -148,6 +153,22 @@ static void advance_body(scree_world *world, size_t i) {
   scree_set_body_due(world, i);
 }
 
+/* The work of the applied forces, by the velocities before and after each kick: the second half of
+ * the last step and the first of this one. */
+static void book_applied(scree_world *world) {
+  const scree_bodies *b = &world->bodies;
+  if (!b->applied) return;
+  for (size_t i = 0; i < b->count; i++) {
+    if (b->removed[i]) continue;
+    const scree_load *now = &b->applied[i].now, *last = &b->applied[i].last;
+    vec3 force = vec3_add(now->force, last->force), torque = vec3_add(now->moment, last->moment);
+    world->applied_work +=
+        0.5 * world->time_step *
+        (vec3_dot(force, b->frame[i].velocity) + vec3_dot(torque, b->frame[i].spin));
+    b->applied[i].last = *now;
+  }
+}
+
 static void advance_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block;
   (void)worker;
@@ -156,24 +177,11 @@ static void advance_block(void *context, size_t begin, size_t end, size_t block,
     if (!world->bodies.removed[i]) advance_body(world, i);
 }
 
-static void advance_wall(scree_world_wall *wall, double dt) {
-  scree_frame *frame = &wall->frame;
-  frame->position = vec3_mad(frame->position, frame->velocity, dt);
-  if (vec3_norm2(frame->spin) > 0) {
-    quat turn = quat_from_rotation_vector(vec3_scale(frame->spin, dt));
-    wall->orientation = quat_unit(quat_mul(turn, wall->orientation));
-    frame->rotation = quat_to_mat3(wall->orientation);
-  }
-  wall->travel = vec3_norm(frame->velocity) * dt;
-  wall->path += wall->travel;
-}
-
 void scree_world_advance(scree_world *world) {
+  scree_walls_book(world);
+  book_applied(world);
   scree_parallel_for(world->bodies.count, BODY_BLOCK, advance_block, world);
-  for (size_t w = 0; w < world->walls.count; w++) {
-    advance_wall(&world->walls.items[w], world->time_step);
-    if (world->bodies.count > 0) scree_set_wall_due(world, w);
-  }
+  scree_walls_advance(world);
   if (world->options.floor_height == -INFINITY) return;
   for (size_t i = 0; i < world->bodies.count; i++)
     if (!world->bodies.removed[i] &&

@@ -143,6 +143,8 @@ static double lasting(const scree_pair *pair) {
 typedef struct slider {
   double stiffness, damping, friction, time_step; /* k_t over share, c_t over share, mu, dt */
   vec3 velocity, spin;
+  bool belt; /* b's surface moves along itself so: */
+  vec3 belt_velocity, belt_spin;
 } slider;
 
 /* With u the velocity of the last drift and a dt what the last forces added to it, dashpots of an
@@ -158,12 +160,18 @@ static slider make_slider(const scree_world *world, const scree_pair *pair,
          lead = impact_lead + (lasting_lead - impact_lead) * lasts;
   vec3 velocity = vec3_sub(relative->velocity_now, relative->velocity),
        spin = vec3_sub(relative->spin_now, relative->spin);
-  return (slider){pair->law.stiffness * ratio,
-                  lasts * pair->law.damping * sqrt(ratio),
-                  pair->law.friction,
-                  world->time_step,
-                  vec3_mad(relative->velocity, velocity, lead),
-                  vec3_mad(relative->spin, spin, lead)};
+  slider law = {.stiffness = pair->law.stiffness * ratio,
+                .damping = lasts * pair->law.damping * sqrt(ratio),
+                .friction = pair->law.friction,
+                .time_step = world->time_step,
+                .velocity = vec3_mad(relative->velocity, velocity, lead),
+                .spin = vec3_mad(relative->spin, spin, lead)};
+  const scree_world_wall *wall = pair->wall ? &world->walls.items[pair->b] : NULL;
+  if (!wall || !scree_wall_is_belt(wall)) return law;
+  law.belt = true;
+  law.belt_velocity = wall->surface_velocity;
+  law.belt_spin = wall->surface_spin;
+  return law;
 }
 
 /* Stretches the spring by the last drift `v` along the surface, turns it by half of the drift's
@@ -222,6 +230,12 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
   vec3 seen = vec3_add(law->velocity, vec3_cross(law->spin, touch->at));
   double rate = -vec3_dot(seen, n);
   seen = vec3_mad(seen, n, rate);
+  if (law->belt) {
+    vec3 belt = vec3_add(law->belt_velocity, vec3_cross(law->belt_spin, touch->at));
+    belt = vec3_mad(belt, n, -vec3_dot(belt, n));
+    v = vec3_sub(v, belt);
+    seen = vec3_sub(seen, belt);
+  }
   double share = touch->share * touch->lever, elastic = share * spring,
          normal = elastic + share * pair->law.damping * touch->lever * rate;
   if (!(normal > 0)) normal = 0;

@@ -83,8 +83,9 @@ void scree_world_observe(const scree_world *world, scree_observation *observatio
   }
   o.dissipated_dashpot = -world->work_dashpot;
   o.dissipated_friction = -world->work_tangential - tangential_elastic(world);
-  o.wall_work = world->wall_work;
   o.parting_count = world->parting_count;
+  for (size_t w = 0; w < world->walls.count; w++) o.wall_work += world->walls.items[w].energy;
+  o.applied_work = world->applied_work;
   *observation = o;
 }
 

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 7};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 8};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -110,6 +110,28 @@ static void code_given_wall(scree_codec *c, scree_wall *w) {
   scree_code_real(c, &w->length);
   scree_code_reals(c, w->velocity, 3);
   scree_code_reals(c, w->angular_velocity, 3);
+  scree_code_reals(c, w->surface_velocity, 3);
+  scree_code_reals(c, w->surface_angular_velocity, 3);
+}
+
+static void code_wall_motion(scree_codec *c, scree_motion_state *m) {
+  scree_code_u32(c, &m->law);
+  if (m->law > SCREE_MOTION_SPEEDS) c->failed = true;
+  scree_code_bool(c, &m->turns);
+  scree_code_vec3(c, &m->axis);
+  scree_code_vec3(c, &m->through);
+  double *reals[] = {&m->speed, &m->amplitude, &m->frequency, &m->phase,
+                     &m->from,  &m->until,     &m->origin};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  scree_code_count(c, &m->row_count, 3 * sizeof(double));
+  bool table = m->law == SCREE_MOTION_POSITIONS || m->law == SCREE_MOTION_SPEEDS;
+  if (table != (m->row_count > 0)) c->failed = true;
+}
+
+static void code_motion_row(scree_codec *c, scree_motion_row *r) {
+  scree_code_real(c, &r->time);
+  scree_code_real(c, &r->value);
+  scree_code_real(c, &r->sum);
 }
 
 static void code_wall_state(scree_codec *c, scree_world_wall *w) {
@@ -118,8 +140,15 @@ static void code_wall_state(scree_codec *c, scree_world_wall *w) {
   scree_code_real(c, &w->travel);
   scree_code_real(c, &w->path);
   scree_code_real(c, &w->path_at_build);
-  scree_code_vec3(c, &w->force);
-  scree_code_vec3(c, &w->torque);
+  vec3 *vectors[] = {&w->force,           &w->torque,           &w->friction.force,
+                     &w->friction.moment, &w->surface_velocity, &w->surface_spin,
+                     &w->start_position};
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
+  code_quat(c, &w->start_orientation);
+  scree_code_real(c, &w->power);
+  scree_code_real(c, &w->energy);
+  scree_code_real(c, &w->energy_due);
+  scree_code_count(c, &w->motion_count, 8 * sizeof(double));
 }
 
 static void code_anchor(scree_codec *c, scree_anchor *a) {
@@ -253,7 +282,7 @@ static void code_body(scree_codec *c, body_record *b) {
 
 /* What the world counts, and how it ended. */
 typedef struct tail_record {
-  double time, time_step, work_dashpot, work_tangential, wall_work, largest_overlap, margin;
+  double time, time_step, work_dashpot, work_tangential, applied_work, largest_overlap, margin;
   uint64_t step_count, parting_count;
   bool pairs_stale, time_step_stale, diverged;
   uint32_t failure;
@@ -261,8 +290,8 @@ typedef struct tail_record {
 } tail_record;
 
 static void code_tail(scree_codec *c, tail_record *t) {
-  double *reals[] = {&t->time,      &t->time_step,       &t->work_dashpot, &t->work_tangential,
-                     &t->wall_work, &t->largest_overlap, &t->margin};
+  double *reals[] = {&t->time,         &t->time_step,       &t->work_dashpot, &t->work_tangential,
+                     &t->applied_work, &t->largest_overlap, &t->margin};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_u64(c, &t->step_count);
   scree_code_u64(c, &t->parting_count);
@@ -363,6 +392,19 @@ static void save_setup(scree_codec *c, const scree_world *world) {
     if (wall.given.kind == SCREE_WALL_MESH) code_mesh(c, &mesh);
     code_wall_state(c, &wall);
   }
+  for (size_t i = 0; i < world->motions.count; i++) {
+    scree_motion_state motion = world->motions.items[i];
+    code_wall_motion(c, &motion);
+  }
+  for (size_t i = 0; i < world->motion_rows.count; i++) {
+    scree_motion_row row = world->motion_rows.items[i];
+    code_motion_row(c, &row);
+  }
+}
+
+static void code_applied(scree_codec *c, scree_applied *a) {
+  vec3 *vectors[] = {&a->now.force, &a->now.moment, &a->last.force, &a->last.moment};
+  for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
 }
 
 static void save_bodies(scree_codec *c, const scree_world *world) {
@@ -380,6 +422,12 @@ static void save_bodies(scree_codec *c, const scree_world *world) {
                           .path_at_build = world->body_path_at_build[i],
                           .removed = b->removed[i]};
     code_body(c, &record);
+  }
+  bool any = b->applied != NULL;
+  scree_code_bool(c, &any);
+  for (size_t i = 0; any && i < b->count; i++) {
+    scree_applied applied = b->applied[i];
+    code_applied(c, &applied);
   }
 }
 
@@ -406,7 +454,7 @@ static void save_tail(scree_codec *c, const scree_world *world) {
                       .time_step = world->time_step,
                       .work_dashpot = world->work_dashpot,
                       .work_tangential = world->work_tangential,
-                      .wall_work = world->wall_work,
+                      .applied_work = world->applied_work,
                       .largest_overlap = world->largest_overlap,
                       .margin = scree_broad_margin(world),
                       .step_count = world->step_count,
@@ -465,6 +513,25 @@ static bool good(const loader *l) {
   return scree_codec_good(&l->codec) && l->error.status == SCREE_OK;
 }
 
+/* The motions of all walls, and their tables. */
+static void load_motions(loader *l) {
+  scree_world *world = l->world;
+  size_t motions = 0, rows = 0;
+  for (size_t w = 0; good(l) && w < world->walls.count; w++)
+    motions += world->walls.items[w].motion_count;
+  for (size_t i = 0; i < motions && good(l); i++) {
+    scree_motion_state motion = {0};
+    code_wall_motion(&l->codec, &motion);
+    if (!SCREE_PUSH(&world->motions, motion)) l->codec.out_of_memory = true;
+    rows += motion.row_count;
+  }
+  for (size_t i = 0; i < rows && good(l); i++) {
+    scree_motion_row row = {0};
+    code_motion_row(&l->codec, &row);
+    if (!SCREE_PUSH(&world->motion_rows, row)) l->codec.out_of_memory = true;
+  }
+}
+
 static void load_setup(loader *l) {
   scree_codec *c = &l->codec;
   scree_world_options options = {0};
@@ -496,6 +563,7 @@ static void load_setup(loader *l) {
     }
     scree_mesh_free(&mesh);
   }
+  load_motions(l);
 }
 
 static void load_clump(loader *l, const scree_particle_measures *measures,
@@ -572,6 +640,10 @@ static void load_bodies(loader *l) {
     b->removed_count += record.removed;
     l->world->body_path_at_build[i] = record.path_at_build;
   }
+  bool any = false;
+  scree_code_bool(&l->codec, &any);
+  if (any && good(l)) scree_bodies_make_applied(b, &l->error);
+  for (size_t i = 0; any && i < b->count && good(l); i++) code_applied(&l->codec, &b->applied[i]);
 }
 
 /* Whether a feature pair names features that are there. */
@@ -709,7 +781,7 @@ static void load_tail(loader *l) {
   world->time_step = tail.time_step;
   world->work_dashpot = tail.work_dashpot;
   world->work_tangential = tail.work_tangential;
-  world->wall_work = tail.wall_work;
+  world->applied_work = tail.applied_work;
   world->largest_overlap = tail.largest_overlap;
   world->step_count = tail.step_count;
   world->parting_count = tail.parting_count;

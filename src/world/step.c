@@ -85,8 +85,6 @@ static void add_work(scree_pair_sums *sums, const scree_pair_work *work, const s
   sums->dashpot -= work->let_go;
   sums->tangential += work->later_tangential;
   sums->tangential += work->tangential;
-  sums->wall_work += work->later_wall;
-  sums->wall_work += work->wall;
   if (pair->touching && !(pair->overlap <= sums->largest_overlap))
     sums->largest_overlap = pair->overlap;
   if (work->beyond_limit && sums->beyond_limit == scree_none) sums->beyond_limit = pair->neighbours;
@@ -260,7 +258,6 @@ static scree_status combine_sums(scree_world *world, size_t blocks) {
     const scree_pair_sums *sums = &world->sums.items[block];
     world->work_dashpot += sums->dashpot;
     world->work_tangential += sums->tangential;
-    world->wall_work += sums->wall_work;
     world->parting_count += sums->partings;
     world->largest_overlap = fmax(world->largest_overlap, sums->largest_overlap);
   }
@@ -287,18 +284,6 @@ static scree_status reserve_blocks(scree_world *world, scree_error *error) {
   world->scratch = scratch;
   world->scratch_count = workers;
   return SCREE_OK;
-}
-
-static void sum_wall_forces(scree_world *world) {
-  for (size_t w = 0; w < world->walls.count; w++)
-    world->walls.items[w].force = world->walls.items[w].torque = (vec3){0, 0, 0};
-  for (size_t k = 0; k < world->neighbours.count; k++) {
-    const scree_pair *pair = scree_pair_of(world, k);
-    if (!pair || !pair->wall || !pair->touching) continue;
-    scree_world_wall *wall = &world->walls.items[pair->b];
-    wall->force = vec3_sub(wall->force, pair->wrench.force);
-    wall->torque = vec3_add(wall->torque, pair->wrench.torque_b);
-  }
 }
 
 static scree_status one_step(scree_world *world) {
@@ -362,6 +347,6 @@ scree_status scree_world_step(scree_world *world, size_t step_count, scree_error
     if (error) *error = world->failure;
     return status;
   }
-  sum_wall_forces(world);
+  scree_walls_sum_forces(world);
   return SCREE_OK;
 }

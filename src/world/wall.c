@@ -22,7 +22,8 @@ static scree_status check_wall(const scree_world *world, const scree_wall *wall,
                       wall->material, world->material_count);
   double sum = 0, axis2 = 0;
   for (int i = 0; i < 3; i++) {
-    sum += wall->position[i] + wall->axis[i] + wall->velocity[i] + wall->angular_velocity[i];
+    sum += wall->position[i] + wall->axis[i] + wall->velocity[i] + wall->angular_velocity[i] +
+           wall->surface_velocity[i] + wall->surface_angular_velocity[i];
     axis2 += wall->axis[i] * wall->axis[i];
   }
   if (!isfinite(sum) || !(axis2 > 0))
@@ -43,13 +44,18 @@ static scree_status check_wall(const scree_world *world, const scree_wall *wall,
   return SCREE_OK;
 }
 
-static void set_motion(scree_world_wall *wall, const double *velocity, const double *spin) {
-  for (int i = 0; i < 3; i++) {
-    wall->given.velocity[i] = velocity[i];
-    wall->given.angular_velocity[i] = spin[i];
-  }
-  wall->frame.velocity = wall->frame.velocity_now = vec3_load(velocity);
-  wall->frame.spin = wall->frame.spin_now = vec3_load(spin);
+static void set_velocity(scree_world_wall *wall, vec3 velocity, vec3 spin) {
+  vec3_store(wall->given.velocity, velocity);
+  vec3_store(wall->given.angular_velocity, spin);
+  wall->frame.velocity = wall->frame.velocity_now = velocity;
+  wall->frame.spin = wall->frame.spin_now = spin;
+}
+
+/* In space, as the wall stands now. */
+static void set_surface(scree_world_wall *wall, const double *velocity, const double *spin) {
+  const mat3 *rotation = &wall->frame.rotation;
+  wall->surface_velocity = mat3_tmul_vec(rotation, vec3_load(velocity));
+  wall->surface_spin = mat3_tmul_vec(rotation, vec3_load(spin));
 }
 
 /* Where the sheet of a disc or cylinder ends. */
@@ -71,7 +77,8 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
   scree_world_wall made = {.given = *wall, .orientation = turn_to(vec3_load(wall->axis))};
   made.frame.position = vec3_load(wall->position);
   made.frame.rotation = quat_to_mat3(made.orientation);
-  set_motion(&made, wall->velocity, wall->angular_velocity);
+  set_velocity(&made, vec3_load(wall->velocity), vec3_load(wall->angular_velocity));
+  set_surface(&made, wall->surface_velocity, wall->surface_angular_velocity);
   if (wall->kind == SCREE_WALL_MESH) {
     status = scree_particle_surface(wall->mesh, 0, &made.surface, error);
     if (!status) made.given.mesh = &made.surface->mesh;
@@ -98,6 +105,10 @@ void scree_world_get_wall(const scree_world *world, size_t index, scree_wall *wa
   vec3_store(wall->position, w->frame.position);
   const mat3 *r = &w->frame.rotation;
   vec3_store(wall->axis, (vec3){r->m[0][2], r->m[1][2], r->m[2][2]});
+  vec3_store(wall->velocity, w->frame.velocity_now);
+  vec3_store(wall->angular_velocity, w->frame.spin_now);
+  vec3_store(wall->surface_velocity, mat3_mul_vec(r, w->surface_velocity));
+  vec3_store(wall->surface_angular_velocity, mat3_mul_vec(r, w->surface_spin));
 }
 
 void scree_world_wall_orientation(const scree_world *world, size_t index, double orientation[4]) {
@@ -105,9 +116,8 @@ void scree_world_wall_orientation(const scree_world *world, size_t index, double
   orientation[0] = q.w, orientation[1] = q.x, orientation[2] = q.y, orientation[3] = q.z;
 }
 
-scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
-                                           const double velocity[3],
-                                           const double angular_velocity[3], scree_error *error) {
+static scree_status check_velocities(const scree_world *world, size_t index, const double *velocity,
+                                     const double *angular_velocity, scree_error *error) {
   if (index >= world->walls.count)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: wall %zu of %zu", index,
                       world->walls.count);
@@ -115,11 +125,92 @@ scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
     if (!isfinite(velocity[i] + angular_velocity[i]))
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "world: wall %zu is to move with a velocity that is not finite", index);
-  scree_world_wall *w = &world->walls.items[index];
-  bool turned = vec3_norm2(w->frame.spin) > 0;
-  set_motion(w, velocity, angular_velocity);
-  if (!turned && vec3_norm2(w->frame.spin) > 0) scree_neighbours_wake(world, index);
   return SCREE_OK;
+}
+
+void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin) {
+  scree_world_wall *wall = &world->walls.items[index];
+  bool turned = vec3_norm2(wall->frame.spin) > 0;
+  set_velocity(wall, velocity, spin);
+  if (!turned && vec3_norm2(spin) > 0) scree_neighbours_wake(world, index);
+}
+
+scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
+                                           const double velocity[3],
+                                           const double angular_velocity[3], scree_error *error) {
+  scree_status status = check_velocities(world, index, velocity, angular_velocity, error);
+  if (status) return status;
+  if (world->walls.items[index].motion_count > 0)
+    status = scree_world_set_wall_motion(world, index, NULL, 0, error);
+  if (status) return status;
+  scree_wall_set_velocity(world, index, vec3_load(velocity), vec3_load(angular_velocity));
+  return SCREE_OK;
+}
+
+scree_status scree_world_set_wall_surface(scree_world *world, size_t index,
+                                          const double velocity[3],
+                                          const double angular_velocity[3], scree_error *error) {
+  scree_status status = check_velocities(world, index, velocity, angular_velocity, error);
+  if (!status) set_surface(&world->walls.items[index], velocity, angular_velocity);
+  return status;
+}
+
+/* ---- forces on walls, and the work that they do ---- */
+
+bool scree_wall_is_belt(const scree_world_wall *wall) {
+  return vec3_norm2(wall->surface_velocity) + vec3_norm2(wall->surface_spin) > 0;
+}
+
+static bool may_work(const scree_world_wall *wall) {
+  return wall->motion_count > 0 ||
+         vec3_norm2(wall->frame.velocity) + vec3_norm2(wall->frame.spin) > 0 ||
+         scree_wall_is_belt(wall);
+}
+
+void scree_walls_sum_forces(scree_world *world) {
+  const vec3 none = {0, 0, 0};
+  for (size_t w = 0; w < world->walls.count; w++) {
+    scree_world_wall *wall = &world->walls.items[w];
+    wall->force = wall->torque = wall->friction.force = wall->friction.moment = none;
+  }
+  for (size_t i = 0; i < world->wall_pairs.count; i++) {
+    const scree_pair *pair = scree_pair_of(world, world->wall_pairs.items[i]);
+    if (!pair || !pair->touching) continue;
+    scree_world_wall *wall = &world->walls.items[pair->b];
+    wall->force = vec3_sub(wall->force, pair->wrench.force);
+    wall->torque = vec3_add(wall->torque, pair->wrench.torque_b);
+    const float *f = pair->tangential.force, *m = pair->tangential.moment;
+    wall->friction.force = vec3_add(wall->friction.force, (vec3){f[0], f[1], f[2]});
+    wall->friction.moment = vec3_add(wall->friction.moment, (vec3){m[0], m[1], m[2]});
+  }
+}
+
+/* Of the wall on bodies, with the velocities of the last drift. A belt's surface moves along
+ * itself, so that friction alone works on it. */
+static double power_of(const scree_world_wall *wall) {
+  double power =
+      -vec3_dot(wall->force, wall->frame.velocity) - vec3_dot(wall->torque, wall->frame.spin);
+  if (!scree_wall_is_belt(wall)) return power;
+  const mat3 *rotation = &wall->frame.rotation;
+  return power + vec3_dot(wall->friction.force, mat3_mul_vec(rotation, wall->surface_velocity)) +
+         vec3_dot(wall->friction.moment, mat3_mul_vec(rotation, wall->surface_spin));
+}
+
+/* The work of a step is W.(v before + v after the kick) dt/2, as that of dashpots (contact.c). */
+void scree_walls_book(scree_world *world) {
+  bool any = false;
+  for (size_t w = 0; w < world->walls.count; w++) any |= may_work(&world->walls.items[w]);
+  if (any) scree_walls_sum_forces(world);
+  for (size_t w = 0; w < world->walls.count; w++) {
+    scree_world_wall *wall = &world->walls.items[w];
+    wall->power = may_work(wall) ? power_of(wall) : 0;
+    wall->energy += wall->energy_due + 0.5 * world->time_step * wall->power;
+    wall->energy_due = 0;
+  }
+}
+
+void scree_wall_book_later(scree_world_wall *wall, double time_step) {
+  wall->energy_due = may_work(wall) ? 0.5 * time_step * power_of(wall) : 0;
 }
 
 void scree_world_wall_force(const scree_world *world, size_t index, double force[3],
@@ -127,6 +218,13 @@ void scree_world_wall_force(const scree_world *world, size_t index, double force
   vec3_store(force, world->walls.items[index].force);
   vec3_store(torque, world->walls.items[index].torque);
 }
+
+void scree_world_wall_power(const scree_world *world, size_t index, double *power, double *energy) {
+  *power = world->walls.items[index].power;
+  *energy = world->walls.items[index].energy;
+}
+
+/* ---- distances ---- */
 
 double scree_wall_side(const scree_world_wall *wall, vec3 p) {
   const scree_wall *given = &wall->given;

@@ -74,7 +74,7 @@ static void free_bodies(scree_bodies *b) {
   for (size_t i = 0; i < b->count; i++) scree_particle_free(b->particle[i]);
   void *arrays[] = {b->frame,    b->orientation, b->momentum, b->inertia, b->force,
                     b->torque,   b->mass,        b->travel,   b->path,    b->particle,
-                    b->material, b->removed,     b->turn};
+                    b->material, b->removed,     b->turn,     b->applied};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) scree_free(arrays[i]);
 }
 
@@ -84,6 +84,9 @@ void scree_world_free(scree_world *world) {
   for (size_t i = 0; i < world->walls.count; i++)
     scree_particle_free(world->walls.items[i].surface);
   scree_free(world->walls.items);
+  scree_free(world->wall_pairs.items);
+  scree_free(world->motions.items);
+  scree_free(world->motion_rows.items);
   scree_free(world->neighbours.items);
   scree_free(world->pair_of.items);
   scree_free(world->pairs.items);
@@ -111,6 +114,13 @@ void scree_world_free(scree_world *world) {
 
 void scree_world_get_options(const scree_world *world, scree_world_options *options) {
   *options = world->options;
+}
+
+static scree_status grow_applied(scree_bodies *b, size_t capacity, scree_error *error) {
+  scree_applied *moved = scree_resize(b->applied, capacity + 1, sizeof *moved);
+  if (!moved) return scree_fail_memory(error, capacity * sizeof *moved, "forces on bodies");
+  b->applied = moved;
+  return SCREE_OK;
 }
 
 /* Every array of bodies to the new capacity; on failure all keep their content and the capacity
@@ -144,8 +154,9 @@ static scree_status grow_bodies(scree_world *world, scree_error *error) {
     if (!moved) return scree_fail_memory(error, capacity * arrays[i].size, "bodies");
     *arrays[i].array = moved;
   }
-  b->capacity = capacity;
-  return SCREE_OK;
+  scree_status status = b->applied ? grow_applied(b, capacity, error) : SCREE_OK;
+  if (!status) b->capacity = capacity;
+  return status;
 }
 
 scree_body scree_default_body(void) {
@@ -209,6 +220,7 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
   b->material[i] = (uint8_t)material;
   b->removed[i] = false;
   b->particle[i] = particle;
+  if (b->applied) b->applied[i] = (scree_applied){0};
   scree_particle_retain(particle);
   place_body(world, i, &start);
   world->time_step_stale = true;
@@ -232,6 +244,40 @@ void scree_world_get_body(const scree_world *world, size_t i, scree_body *state)
   vec3_store(state->angular_velocity, frame->spin);
   const double orientation[4] = {q.w, q.x, q.y, q.z};
   memcpy(state->orientation, orientation, sizeof orientation);
+}
+
+void scree_world_get_bodies(const scree_world *world, size_t first, size_t count, double *positions,
+                            double *orientations, double *velocities, double *angular_velocities) {
+  for (size_t i = 0; i < count; i++) {
+    const scree_frame *frame = &world->bodies.frame[first + i];
+    quat q = world->bodies.orientation[first + i];
+    if (positions) vec3_store(&positions[3 * i], frame->position);
+    if (orientations)
+      memcpy(&orientations[4 * i], (double[4]){q.w, q.x, q.y, q.z}, 4 * sizeof(double));
+    if (velocities) vec3_store(&velocities[3 * i], frame->velocity);
+    if (angular_velocities) vec3_store(&angular_velocities[3 * i], frame->spin);
+  }
+}
+
+scree_status scree_bodies_make_applied(scree_bodies *b, scree_error *error) {
+  if (b->applied) return SCREE_OK;
+  scree_status status = grow_applied(b, b->capacity, error);
+  if (!status) memset(b->applied, 0, b->count * sizeof *b->applied);
+  return status;
+}
+
+scree_status scree_world_set_body_force(scree_world *world, size_t index, const double force[3],
+                                        const double torque[3], scree_error *error) {
+  scree_bodies *b = &world->bodies;
+  if (index >= b->count)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: body %zu of %zu", index, b->count);
+  for (int i = 0; i < 3; i++)
+    if (!isfinite(force[i] + torque[i]))
+      return scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "world: body %zu is given a force or torque that is not finite", index);
+  scree_status status = scree_bodies_make_applied(b, error);
+  if (!status) b->applied[index].now = (scree_load){vec3_load(force), vec3_load(torque)};
+  return status;
 }
 
 scree_status scree_world_set_body(scree_world *world, size_t index, const scree_body *state,

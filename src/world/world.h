@@ -23,6 +23,11 @@ typedef struct scree_material_pair {
   bool given;
 } scree_material_pair;
 
+/* Force on a and its moment about the centre of b. */
+typedef struct scree_load {
+  vec3 force, moment;
+} scree_load;
+
 typedef struct scree_world_wall {
   scree_wall given; /* position and velocity kept up to date */
   scree_frame frame;
@@ -30,8 +35,35 @@ typedef struct scree_world_wall {
   scree_particle *surface; /* faces of a mesh wall, or rims of a disc or cylinder; NULL: none */
   double travel, path;     /* as for bodies, by translation alone */
   double path_at_build;    /* when the pairs were made */
-  vec3 force, torque;
+  vec3 force, torque;      /* on the wall in the last step, about its position */
+  scree_load friction;     /* the tangential part of them, on the bodies */
+  vec3 surface_velocity, surface_spin; /* of a belt, in the wall's own frame */
+  double power, energy,
+      energy_due;      /* done on bodies: W, J so far, J of the last step's later half */
+  vec3 start_position; /* when its motions were set */
+  quat start_orientation;
+  size_t motion_count; /* its own in world->motions, after those of the walls before it */
 } scree_world_wall;
+
+/* A motion of a wall (motion.c); its axis has length 1. */
+typedef struct scree_motion_state {
+  uint32_t law;
+  bool turns;
+  vec3 axis, through;
+  double speed, amplitude, frequency, phase, from, until;
+  double origin;    /* what its law was at when it was set */
+  size_t row_count; /* its own in world->motion_rows, after those of the motions before it */
+} scree_motion_state;
+
+typedef struct scree_motion_row {
+  double time, value;
+  double sum; /* of speeds: the way since the first row */
+} scree_motion_row;
+
+/* Force and torque of scree_world_set_body_force. */
+typedef struct scree_applied {
+  scree_load now, last; /* last: of the last step */
+} scree_applied;
 
 /* Bodies, one array per field; those of the same index are one body. */
 typedef struct scree_bodies {
@@ -41,9 +73,10 @@ typedef struct scree_bodies {
   vec3 *inertia;  /* principal moments */
   vec3 *force, *torque;
   double *mass;
-  double *travel; /* most any of its points moved in the last step */
-  double *path;   /* sum of travel */
-  vec3 *turn;     /* angular velocity in the body's own frame after the coming kick (scratch) */
+  double *travel;         /* most any of its points moved in the last step */
+  double *path;           /* sum of travel */
+  scree_applied *applied; /* NULL: there never were any */
+  vec3 *turn; /* angular velocity in the body's own frame after the coming kick (scratch) */
   scree_particle **particle;
   uint8_t *material;
   bool *removed;
@@ -111,11 +144,6 @@ typedef struct scree_further {
 typedef struct scree_wrench {
   vec3 force, torque_a, torque_b;
 } scree_wrench;
-
-/* Force on a and its moment about the centre of b. */
-typedef struct scree_load {
-  vec3 force, moment;
-} scree_load;
 
 /* A load in space as the ledger keeps it from one step to the next: the bodies do not feel its
  * rounding. */
@@ -229,17 +257,17 @@ typedef struct scree_scratch {
 
 /* What a pair's evaluation adds to the ledger, J, and what is wrong with it. */
 typedef struct scree_pair_work {
-  double later_dashpot, later_tangential, later_wall; /* second half of the last step */
-  double dashpot, tangential, wall;                   /* first half of this */
-  double lost;                                        /* in the hysteretic spring */
-  double let_go;                                      /* by springs whose references start anew */
-  double start_depth;                                 /* in each other from the start, m; 0: none */
+  double later_dashpot, later_tangential; /* second half of the last step */
+  double dashpot, tangential;             /* first half of this */
+  double lost;                            /* in the hysteretic spring */
+  double let_go;                          /* by springs whose references start anew */
+  double start_depth;                     /* in each other from the start, m; 0: none */
   bool too_fast, beyond_limit, begins_parting;
 } scree_pair_work;
 
 /* What a block of pairs adds up, in their order; combined in block order. */
 typedef struct scree_pair_sums {
-  double dashpot, tangential, wall_work;
+  double dashpot, tangential;
   double largest_overlap;
   uint32_t beyond_limit, too_fast, start; /* the first neighbours, or scree_none */
   double start_depth;                     /* of that one, in each other from the start */
@@ -274,6 +302,14 @@ struct scree_world {
     scree_world_wall *items;
     size_t count, capacity;
   } walls;
+  struct {
+    scree_motion_state *items; /* in the walls' order */
+    size_t count, capacity;
+  } motions;
+  struct {
+    scree_motion_row *items; /* in the motions' order */
+    size_t count, capacity;
+  } motion_rows;
   struct {
     scree_neighbours *items; /* sorted by a, then bodies before walls, then b */
     size_t count, capacity;
@@ -311,7 +347,11 @@ struct scree_world {
   struct {
     uint32_t *items; /* 2 * neighbours + (1 for the b side), grouped by body, ascending */
     size_t count, capacity;
-  } sides, acting;    /* acting: scratch, those that touch */
+  } sides, acting; /* acting: scratch, those that touch */
+  struct {
+    uint32_t *items; /* those of the neighbours that are a body and a wall */
+    size_t count, capacity;
+  } wall_pairs;
   size_t *side_begin; /* bodies.capacity + 1 */
   size_t *offenders;  /* scratch of the gathering, by block */
   scree_broad *broad;
@@ -334,7 +374,7 @@ struct scree_world {
   double time, time_step;
   bool time_step_stale;
   uint64_t step_count, parting_count;
-  double work_dashpot, work_tangential, wall_work; /* done on bodies, so far */
+  double work_dashpot, work_tangential, applied_work; /* done on bodies, so far */
   double largest_overlap;
   bool diverged;
   scree_error failure;
@@ -408,6 +448,8 @@ scree_neighbours scree_neighbours_new(const scree_world *world, uint32_t a, uint
 void scree_neighbours_set_up(scree_world *world);
 /* Who sleeps near this wall wakes: its turning is no part of the paths on which they sleep. */
 void scree_neighbours_wake(scree_world *world, size_t wall);
+/* world.c: room for forces on bodies, none at first. */
+scree_status scree_bodies_make_applied(scree_bodies *bodies, scree_error *error);
 /* After a jump: the body's contacts start anew. */
 void scree_body_forget(scree_world *world, size_t body);
 /* Half the particle's thinnest wall, m. */
@@ -549,6 +591,17 @@ double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, 
 /* Signed distance of p (wall frame) on that side, with the closest point and the normal. */
 double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
                            vec3 *normal);
+
+bool scree_wall_is_belt(const scree_world_wall *wall);
+/* From now on; where it begins to turn, who sleeps near it wakes. */
+void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin);
+/* Forces and torques on walls from the pairs of the last step. */
+void scree_walls_sum_forces(scree_world *world);
+/* The work of walls in this step: before they move, with the forces of the step; and after. */
+void scree_walls_book(scree_world *world);
+void scree_wall_book_later(scree_world_wall *wall, double time_step);
+/* motion.c: every wall's drift. */
+void scree_walls_advance(scree_world *world);
 
 /* depth.c: adds touches for edges inside the other body where features may feel less; notes bodies
  * that lie in each other from the start. */

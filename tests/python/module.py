@@ -248,6 +248,24 @@ class Worlds(unittest.TestCase):
         with self.assertRaises(TypeError):
             world.add_wall("plane", 1, colour="red")
 
+    def test_motions(self):
+        world = scree.World(gravity=(0, 0, 0), time_step=5e-6)
+        world.add_wall("plane", world.add_material(wall=True), surface_velocity=(0.5, 0, 0))
+        world.set_wall_surface(0, (0.2, 0, 0))
+        world.set_wall_motion(0, {"law": "positions", "table": [[0, 0], [0.01, 0.1]]},
+                              {"turns": True, "speed": 2, "axis": (1, 0, 0), "until": 0.005})
+        world.step(10)
+        self.assertEqual(world.wall_power(0), (0, 0))
+        for wrong, said in (({"law": "cosine"}, "law 'cosine' is none of"), ({"table": [[0, 1, 2]]}, "rows of 2"),
+                            ({"colour": 1}, "a motion has no option 'colour'")):
+            with self.assertRaisesRegex((ValueError, TypeError), said):
+                world.set_wall_motion(0, wrong)
+        ball = world.add_body(scree.Particle.sphere(0.01), world.add_material(), position=(0, 0, 1))
+        world.set_body_force(ball, (1e-3, 0, 0))
+        world.step(100)
+        self.assertGreater(world.bodies().velocity[ball, 0], 0)
+        self.assertAlmostEqual(world.observe().applied_work, world.observe().kinetic, 9)
+
     def test_numbers_that_c_would_wrap(self):
         world, ball, box = self.world(), scree.Particle.sphere(0.01), scree.load("sample:box-12")
         before = world.hash

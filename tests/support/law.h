@@ -82,12 +82,12 @@ static inline scree_particle *law_sphere(double radius) {
   return sphere;
 }
 
-/* Everything that must stay constant: kinetic, potential, elastic, dissipated, less work of walls.
- */
+/* Everything that must stay constant: kinetic, potential, elastic, dissipated, less the work
+ * of walls and given forces. */
 static inline double law_ledger(const scree_world *world, scree_observation *o) {
   scree_world_observe(world, o);
   return o->kinetic + o->rotational + o->potential + o->elastic + o->dissipated_dashpot +
-         o->dissipated_friction - o->wall_work;
+         o->dissipated_friction - o->wall_work - o->applied_work;
 }
 
 #endif

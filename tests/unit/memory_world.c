@@ -50,6 +50,16 @@ static scree_status add_walls(scree_world *world, scree_mesh *mesh, scree_error 
   return status;
 }
 
+static scree_status add_motions(scree_world *world, scree_error *error) {
+  static const double rows[4] = {0, 0, 1, 0.01}, side[3] = {0.1, 0, 0}, still[3] = {0, 0, 0};
+  scree_wall_motion motion = scree_default_wall_motion();
+  motion.law = SCREE_MOTION_POSITIONS, motion.table = rows, motion.row_count = 2;
+  scree_status status = scree_world_set_wall_motion(world, 0, &motion, 1, error);
+  if (status == SCREE_OK) status = scree_world_set_wall_surface(world, 2, side, still, error);
+  if (status == SCREE_OK) status = scree_world_set_body_force(world, 1, side, still, error);
+  return status;
+}
+
 /* Two boxes on the floor and two above them. */
 static scree_status add_bodies(scree_world *world, scree_particle *particle, scree_error *error) {
   scree_status status = SCREE_OK;
@@ -78,6 +88,7 @@ static scree_status make_world(parts *p, scree_world **world, scree_error *error
   if (status == SCREE_OK) status = scree_world_set_contact(*world, 0, 1, 0.5, 0.2, error);
   if (status == SCREE_OK) status = add_walls(*world, &p->plate, error);
   if (status == SCREE_OK) status = add_bodies(*world, p->particle, error);
+  if (status == SCREE_OK) status = add_motions(*world, error);
   return status;
 }
 
@@ -100,6 +111,12 @@ static scree_status build_world(void *context, scree_error *error) {
     status = scree_world_set_wall_velocity(world, 0, (double[3]){0}, (double[3]){0}, error);
   if (status == SCREE_OK)
     status = scree_world_add_body(world, ((parts *)context)->particle, 0, NULL, NULL, error);
+  const scree_wall_motion motion = scree_default_wall_motion();
+  if (status == SCREE_OK) status = scree_world_set_wall_motion(world, 0, &motion, 1, error);
+  if (status == SCREE_OK)
+    status = scree_world_set_wall_surface(world, 0, (double[3]){1}, (double[3]){0}, error);
+  if (status == SCREE_OK)
+    status = scree_world_set_body_force(world, 0, (double[3]){0}, (double[3]){0}, error);
   const scree_body body = scree_default_body();
   if (status == SCREE_OK) status = scree_world_set_body(world, 0, &body, error);
   scree_world_free(world);

@@ -109,6 +109,41 @@ static void takes_changes(void **state) {
   scree_free(p.bytes);
 }
 
+/* Walls in the midst of their motions, a belt, and a body that is pushed. */
+static void motions_go_on(void **state) {
+  (void)state;
+  static const double table[6] = {0, 0, 0.1, 0.2, 0.5, -0.1};
+  scree_error error;
+  scree_wall_motion motions[3];
+  for (int i = 0; i < 3; i++) motions[i] = scree_default_wall_motion();
+  motions[0].law = SCREE_MOTION_SPEEDS, motions[0].table = table, motions[0].row_count = 3;
+  motions[1].law = SCREE_MOTION_SINE, motions[1].amplitude = 0.003, motions[1].frequency = 20;
+  motions[2].turns = true, motions[2].speed = 1, motions[2].through[0] = 0.01;
+  scree_world *world = mixed_world(SCREE_LAW_LINEAR);
+  CHECK_OK(scree_world_set_wall_motion(world, 3, &motions[2], 1, &error), error);
+  CHECK_OK(scree_world_set_wall_motion(world, 1, motions, 3, &error), error);
+  CHECK_OK(scree_world_set_wall_motion(world, 0, &motions[1], 1, &error), error);
+  CHECK_OK(scree_world_set_wall_motion(world, 1, motions, 2, &error), error);
+  CHECK_OK(scree_world_set_wall_surface(world, 2, (double[3]){0, 0.3, 0}, (double[3]){0}, &error),
+           error);
+  CHECK_OK(scree_world_set_body_force(world, 2, (double[3]){0.1, 0, 0}, (double[3]){0}, &error),
+           error);
+  step(world, 700);
+  packed p = pack(world);
+  scree_world *loaded = unpack(p);
+  for (int k = 0; k < 3; k++) {
+    step(world, 300);
+    step(loaded, 300);
+    assert_same(world, loaded);
+  }
+  scree_observation o;
+  scree_world_observe(world, &o);
+  assert_true(o.wall_work != 0 && o.applied_work != 0);
+  scree_world_free(world);
+  scree_world_free(loaded);
+  scree_free(p.bytes);
+}
+
 /* The pairs of a body that is gone serve others, and what they knew does not show: a loaded world
  * has new ones. */
 static void pairs_taken_again_know_nothing(void **state) {
@@ -365,6 +400,7 @@ int main(void) {
       cmocka_unit_test(continues_linear),
       cmocka_unit_test(continues_hysteretic),
       cmocka_unit_test(takes_changes),
+      cmocka_unit_test(motions_go_on),
       cmocka_unit_test(pairs_taken_again_know_nothing),
       cmocka_unit_test(keeps_failure),
       cmocka_unit_test(refuses_damage),
