@@ -1,68 +1,105 @@
 /* The broad phase: which bodies' bounding boxes, grown by a margin, overlap.
  *
- * Bodies are binned by centre into cubic cells as wide as the largest grown box, so that partners
- * lie in the 27 cells around. The cells are visited through a sorted list of (cell, body). The list
- * of pairs stays valid until some body's path since it was made exceeds half the margin. Old and
- * new lists are both sorted, so pairs that stay keep their memory in one merge. */
+ * Bodies of any mixture of sizes are binned by centre into a hierarchy of grids of cubic cells. The
+ * coarsest has cells as wide as the largest grown box, each finer one half as wide; a body is in
+ * the finest of which the cells are as wide as its box. It looks for partners in its own grid and
+ * in the coarser ones, in the cells where the centre of one that reaches it may lie. The list of
+ * pairs stays valid until some body's path since it was made exceeds half its margin, or a wall's.
+ * Old and new lists are both sorted, so pairs that stay keep their memory in one merge. */
 #include "world/world.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/progress.h"
+#include "particle/closest.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const double margin_share = 0.1; /* of the mean body size: rebuilds against extra pairs */
+/* Rebuilds against extra pairs: of the mean body size, and at most of the body's own. */
+static const double margin_share = 0.1, own_margin_share = 0.4;
+enum { MOST_GRIDS = 32 };
+
+typedef struct cell {
+  int32_t x, y, z;
+  uint32_t grid;
+} cell;
 
 typedef struct cell_entry {
-  int32_t x, y, z;
+  cell at;
   uint32_t body;
 } cell_entry;
 
 struct scree_broad {
   scree_box *boxes; /* grown, by body */
+  uint8_t *grid;    /* of each body, 0: the coarsest */
   cell_entry *cells;
   uint32_t *bucket_begin; /* by hash */
+  uint32_t *key_begin;    /* by body a */
   size_t capacity, bucket_count;
   double margin;
+  double width[MOST_GRIDS];
+  uint32_t used; /* a bit for each grid that holds a body */
+  struct {
+    uint64_t *items; /* of pairs, as they are found */
+    size_t count, capacity;
+  } found;
 };
 
 void scree_broad_free(scree_world *world) {
-  if (!world->broad) return;
-  scree_free(world->broad->boxes);
-  scree_free(world->broad->cells);
-  scree_free(world->broad->bucket_begin);
-  scree_free(world->broad);
+  scree_broad *broad = world->broad;
+  if (!broad) return;
+  scree_free(broad->boxes);
+  scree_free(broad->grid);
+  scree_free(broad->cells);
+  scree_free(broad->bucket_begin);
+  scree_free(broad->key_begin);
+  scree_free(broad->found.items);
+  scree_free(broad);
 }
 
 static scree_status reserve(scree_world *world, scree_error *error) {
   if (!world->broad) world->broad = scree_alloc_zero(1, sizeof *world->broad);
   scree_broad *broad = world->broad;
   if (!broad) return scree_fail_memory(error, sizeof *broad, "the broad phase");
-  size_t capacity = world->bodies.capacity;
+  size_t capacity = world->bodies.capacity, buckets = 64;
   if (broad->capacity >= capacity) return SCREE_OK;
-  size_t buckets = 64;
   while (buckets < 2 * capacity) buckets *= 2;
-  void *boxes = scree_resize(broad->boxes, capacity, sizeof *broad->boxes);
-  if (boxes) broad->boxes = boxes;
-  void *cells = scree_resize(broad->cells, 2 * capacity, sizeof *broad->cells);
-  if (cells) broad->cells = cells;
-  void *begin = scree_resize(broad->bucket_begin, buckets + 1, sizeof *broad->bucket_begin);
-  if (begin) broad->bucket_begin = begin;
-  if (!boxes || !cells || !begin)
-    return scree_fail_memory(error, capacity * sizeof *broad->boxes, "the broad phase");
+  const struct {
+    void **array;
+    size_t count, size;
+  } arrays[] = {{(void **)&broad->boxes, capacity, sizeof *broad->boxes},
+                {(void **)&broad->grid, capacity, sizeof *broad->grid},
+                {(void **)&broad->cells, 2 * capacity, sizeof *broad->cells},
+                {(void **)&broad->bucket_begin, buckets + 1, sizeof *broad->bucket_begin},
+                {(void **)&broad->key_begin, capacity + 1, sizeof *broad->key_begin}};
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+    void *moved = scree_resize(*arrays[i].array, arrays[i].count, arrays[i].size);
+    if (!moved)
+      return scree_fail_memory(error, arrays[i].count * arrays[i].size, "the broad phase");
+    *arrays[i].array = moved;
+  }
   broad->capacity = capacity;
   broad->bucket_count = buckets;
   return SCREE_OK;
 }
 
-static size_t bucket_of(const scree_broad *broad, int32_t x, int32_t y, int32_t z) {
-  uint64_t h = (uint64_t)(uint32_t)x * 0x9E3779B97F4A7C15u ^
-               (uint64_t)(uint32_t)y * 0xC2B2AE3D27D4EB4Fu ^
-               (uint64_t)(uint32_t)z * 0x165667B19E3779F9u;
+static size_t bucket_of(const scree_broad *broad, const cell *c) {
+  uint64_t h = (uint64_t)(uint32_t)c->x * 0x9E3779B97F4A7C15u ^
+               (uint64_t)(uint32_t)c->y * 0xC2B2AE3D27D4EB4Fu ^
+               (uint64_t)(uint32_t)c->z * 0x165667B19E3779F9u ^ c->grid * 0xFF51AFD7ED558CCDu;
   h ^= h >> 29;
   return (size_t)(h & (broad->bucket_count - 1));
+}
+
+/* Small bodies among large ones have a margin of their own size. */
+static double margin_of(const scree_world *world, size_t body) {
+  return fmin(world->broad->margin, own_margin_share * world->bodies.particle[body]->measures.size);
+}
+
+static double widest_side(const scree_box *box) {
+  vec3 side = vec3_sub(box->high, box->low);
+  return fmax(side.x, fmax(side.y, side.z));
 }
 
 /* Boxes grown by half the margin; returns the widest side. */
@@ -81,11 +118,25 @@ static double make_boxes(scree_world *world) {
     if (bodies->removed[i]) continue;
     const scree_frame *frame = &bodies->frame[i];
     scree_box box = scree_box_moved(&bodies->particle[i]->box, &frame->rotation, frame->position);
-    broad->boxes[i] = scree_box_grown(box, 0.5 * broad->margin);
-    vec3 side = vec3_sub(broad->boxes[i].high, broad->boxes[i].low);
-    widest = fmax(widest, fmax(side.x, fmax(side.y, side.z)));
+    broad->boxes[i] = scree_box_grown(box, 0.5 * margin_of(world, i));
+    widest = fmax(widest, widest_side(&broad->boxes[i]));
   }
-  return widest;
+  return widest > 0 ? widest : 1;
+}
+
+/* The finest grid of which the cells hold every body's box. */
+static void choose_grids(scree_world *world, double widest) {
+  scree_broad *broad = world->broad;
+  broad->used = 0;
+  for (int g = 0; g < MOST_GRIDS; g++) broad->width[g] = ldexp(widest, -g);
+  for (size_t i = 0; i < world->bodies.count; i++) {
+    if (world->bodies.removed[i]) continue;
+    double side = widest_side(&broad->boxes[i]);
+    uint8_t g = 0;
+    while (g + 1 < MOST_GRIDS && side <= broad->width[g + 1]) g++;
+    broad->grid[i] = g;
+    broad->used |= (uint32_t)1 << g;
+  }
 }
 
 /* Bodies far out share the last cells: clamping keeps neighbours neighbours. */
@@ -95,8 +146,13 @@ static int32_t cell_of(double place) {
   return (int32_t)(place > -last ? fmin(place, last) : -last);
 }
 
+static cell cell_at(const scree_broad *broad, vec3 place, uint32_t grid) {
+  vec3 c = vec3_scale(place, 1 / broad->width[grid]);
+  return (cell){cell_of(c.x), cell_of(c.y), cell_of(c.z), grid};
+}
+
 /* Counting sort of the bodies by bucket; ascending by body within one. */
-static void bin_bodies(scree_world *world, double width) {
+static void bin_bodies(scree_world *world) {
   scree_broad *broad = world->broad;
   const scree_bodies *bodies = &world->bodies;
   cell_entry *unsorted = broad->cells + broad->capacity;
@@ -104,16 +160,15 @@ static void bin_bodies(scree_world *world, double width) {
   size_t count = 0;
   for (size_t i = 0; i < bodies->count; i++) {
     if (bodies->removed[i]) continue;
-    vec3 c = vec3_scale(vec3_add(broad->boxes[i].low, broad->boxes[i].high), 0.5 / width);
-    cell_entry entry = {cell_of(c.x), cell_of(c.y), cell_of(c.z), (uint32_t)i};
-    unsorted[count++] = entry;
-    broad->bucket_begin[bucket_of(broad, entry.x, entry.y, entry.z) + 1]++;
+    vec3 centre = vec3_scale(vec3_add(broad->boxes[i].low, broad->boxes[i].high), 0.5);
+    unsorted[count] = (cell_entry){cell_at(broad, centre, broad->grid[i]), (uint32_t)i};
+    broad->bucket_begin[bucket_of(broad, &unsorted[count++].at) + 1]++;
   }
   for (size_t b = 0; b < broad->bucket_count; b++)
     broad->bucket_begin[b + 1] += broad->bucket_begin[b];
   for (size_t k = count; k-- > 0;) { /* backwards: begin moves from end to begin of its bucket */
     const cell_entry *e = &unsorted[k];
-    broad->cells[--broad->bucket_begin[bucket_of(broad, e->x, e->y, e->z) + 1]] = *e;
+    broad->cells[--broad->bucket_begin[bucket_of(broad, &e->at) + 1]] = *e;
   }
   /* every begin now stands one bucket too far */
   for (size_t b = 0; b < broad->bucket_count; b++)
@@ -125,64 +180,109 @@ static uint64_t key_of(uint32_t a, uint32_t b, bool wall) {
   return (uint64_t)a << 32 | (wall ? 0x80000000u : 0) | b;
 }
 
-static bool push_key(scree_world *world, uint64_t key) {
-  return SCREE_PUSH(&world->keys, key);
-}
-
-/* Whether the body may come near the wall before the next rebuild. */
-static bool near_wall(const scree_world *world, size_t body, const scree_world_wall *wall) {
-  const scree_frame *frame = &world->bodies.frame[body];
-  const scree_particle *particle = world->bodies.particle[body];
-  if (!scree_wall_is_analytic(wall)) {
-    scree_box box =
-        scree_box_moved(&wall->surface->box, &wall->frame.rotation, wall->frame.position);
-    return scree_box_meets(&world->broad->boxes[body], &box);
-  }
-  vec3 p = mat3_tmul_vec(&wall->frame.rotation, vec3_sub(frame->position, wall->frame.position));
-  vec3 closest, normal;
-  double reach = particle->measures.bounding_radius + world->broad->margin;
-  return scree_wall_distance(wall, p, scree_wall_side(wall, p), &closest, &normal) < reach;
-}
-
 static int compare_keys(const void *x, const void *y) {
   uint64_t a = *(const uint64_t *)x, b = *(const uint64_t *)y;
   return a < b ? -1 : a > b;
 }
 
-/* Partners of body a that come after it, and its walls, in ascending order. */
-static bool list_partners(scree_world *world, uint32_t a, const cell_entry *cell) {
-  const scree_broad *broad = world->broad;
-  size_t first = world->keys.count;
-  for (int n = 0; n < 27; n++) {
-    int32_t x = cell->x + n % 3 - 1, y = cell->y + n / 3 % 3 - 1, z = cell->z + n / 9 - 1;
-    size_t bucket = bucket_of(broad, x, y, z);
-    for (size_t k = broad->bucket_begin[bucket]; k < broad->bucket_begin[bucket + 1]; k++) {
-      const cell_entry *other = &broad->cells[k];
-      if (other->body <= a || other->x != x || other->y != y || other->z != z) continue;
-      if (!scree_box_meets(&broad->boxes[a], &broad->boxes[other->body])) continue;
-      if (!push_key(world, key_of(a, other->body, false))) return false;
-    }
+/* Partners of the body in one cell; of those in its own grid the ones after it. */
+static bool find_in_cell(scree_world *world, uint32_t body, const cell *c) {
+  scree_broad *broad = world->broad;
+  bool own = broad->grid[body] == c->grid;
+  size_t bucket = bucket_of(broad, c);
+  for (size_t k = broad->bucket_begin[bucket]; k < broad->bucket_begin[bucket + 1]; k++) {
+    const cell_entry *e = &broad->cells[k];
+    uint32_t other = e->body;
+    if ((own && other <= body) || e->at.x != c->x || e->at.y != c->y || e->at.z != c->z ||
+        e->at.grid != c->grid || !scree_box_meets(&broad->boxes[body], &broad->boxes[other]))
+      continue;
+    uint64_t key = body < other ? key_of(body, other, false) : key_of(other, body, false);
+    if (!SCREE_PUSH(&broad->found, key)) return false;
   }
-  for (size_t w = 0; w < world->walls.count; w++)
-    if (near_wall(world, a, &world->walls.items[w]) &&
-        !push_key(world, key_of(a, (uint32_t)w, true)))
-      return false;
-  if (world->keys.count > first + 1)
-    qsort(world->keys.items + first, world->keys.count - first, sizeof *world->keys.items,
-          compare_keys);
   return true;
 }
 
-static bool list_keys(scree_world *world, double width) {
-  world->keys.count = 0;
-  const scree_bodies *bodies = &world->bodies;
-  for (size_t i = 0; i < bodies->count; i++) {
-    if (bodies->removed[i]) continue;
-    const scree_box *box = &world->broad->boxes[i];
-    vec3 c = vec3_scale(vec3_add(box->low, box->high), 0.5 / width);
-    cell_entry cell = {cell_of(c.x), cell_of(c.y), cell_of(c.z), 0};
-    if (!list_partners(world, (uint32_t)i, &cell)) return false;
+/* In the grid's cells where the centre of one that reaches the body's box may lie. */
+static bool find_in_grid(scree_world *world, uint32_t body, uint32_t grid) {
+  const scree_broad *broad = world->broad;
+  scree_box box =
+      scree_box_grown(broad->boxes[body], (0.5 + 1e-6) * broad->width[grid]); /* and rounding */
+  cell low = cell_at(broad, box.low, grid), high = cell_at(broad, box.high, grid), c = low;
+  for (c.z = low.z; c.z <= high.z; c.z++)
+    for (c.y = low.y; c.y <= high.y; c.y++)
+      for (c.x = low.x; c.x <= high.x; c.x++)
+        if (!find_in_cell(world, body, &c)) return false;
+  return true;
+}
+
+/* Whether a mesh wall's surface, which may move by `slack`, comes near the body, or the body was
+ * put inside it. */
+static bool near_mesh(const scree_world *world, size_t body, const scree_world_wall *wall,
+                      double slack) {
+  scree_box box = scree_box_moved(&wall->surface->box, &wall->frame.rotation, wall->frame.position);
+  box = scree_box_grown(box, slack);
+  if (!scree_box_meets(&world->broad->boxes[body], &box)) return false;
+  const scree_particle *particle = world->bodies.particle[body];
+  vec3 p = mat3_tmul_vec(&wall->frame.rotation,
+                         vec3_sub(world->bodies.frame[body].position, wall->frame.position));
+  double reach = particle->measures.bounding_radius + wall->surface->measures.rounding +
+                 0.5 * margin_of(world, body) + slack;
+  const uint32_t root = 0;
+  uint32_t face;
+  if (scree_nearest_face(wall->surface, &root, 1, p, reach, &face) < INFINITY) return true;
+  bool put = world->body_path_at_build[body] < 0 || wall->path_at_build < 0;
+  return put && wall->surface->measures.volume > 0 && scree_is_inside(wall->surface, p);
+}
+
+/* Whether the body may come near the wall before the next rebuild. */
+static bool near_wall(const scree_world *world, size_t body, const scree_world_wall *wall) {
+  if (!scree_wall_is_analytic(wall)) return near_mesh(world, body, wall, wall->slack);
+  const scree_frame *frame = &world->bodies.frame[body];
+  vec3 p = mat3_tmul_vec(&wall->frame.rotation, vec3_sub(frame->position, wall->frame.position));
+  vec3 closest, normal;
+  double reach = world->bodies.particle[body]->measures.bounding_radius +
+                 0.5 * margin_of(world, body) + 0.5 * world->broad->margin;
+  return scree_wall_distance(wall, p, scree_wall_side(wall, p), &closest, &normal) < reach;
+}
+
+static bool find_all(scree_world *world) {
+  scree_broad *broad = world->broad;
+  broad->found.count = 0;
+  for (size_t i = 0; i < world->bodies.count; i++) {
+    if (world->bodies.removed[i]) continue;
+    for (uint32_t g = 0; g <= broad->grid[i]; g++)
+      if (broad->used >> g & 1 && !find_in_grid(world, (uint32_t)i, g)) return false;
+    for (size_t w = 0; w < world->walls.count; w++)
+      if (near_wall(world, i, &world->walls.items[w]) &&
+          !SCREE_PUSH(&broad->found, key_of((uint32_t)i, (uint32_t)w, true)))
+        return false;
   }
+  return true;
+}
+
+/* All pairs' keys, ascending: by counting those of each body a, and each body's by comparing. */
+static bool list_keys(scree_world *world) {
+  scree_broad *broad = world->broad;
+  size_t bodies = world->bodies.count;
+  if (!find_all(world) || broad->found.count >= UINT32_MAX ||
+      !SCREE_RESERVE(&world->keys, broad->found.count))
+    return false;
+  uint32_t *begin = broad->key_begin;
+  memset(begin, 0, (bodies + 1) * sizeof *begin);
+  for (size_t k = 0; k < broad->found.count; k++) begin[broad->found.items[k] >> 32]++;
+  for (size_t i = 0, sum = 0; i <= bodies; i++) {
+    size_t count = begin[i];
+    begin[i] = (uint32_t)sum;
+    sum += count;
+  }
+  for (size_t k = 0; k < broad->found.count; k++) {
+    uint64_t key = broad->found.items[k];
+    world->keys.items[begin[key >> 32]++] = key;
+  }
+  world->keys.count = broad->found.count;
+  for (size_t i = 0, first = 0; i < bodies; first = begin[i++])
+    if (begin[i] > first + 1)
+      qsort(world->keys.items + first, begin[i] - first, sizeof *world->keys.items, compare_keys);
   return true;
 }
 
@@ -293,27 +393,48 @@ static bool list_sides(scree_world *world) {
 
 static bool is_valid(const scree_world *world) {
   if (world->pairs_stale) return false;
-  double wall_travel = 0;
   for (size_t w = 0; w < world->walls.count; w++) {
     const scree_world_wall *wall = &world->walls.items[w];
-    wall_travel = fmax(wall_travel, wall->path - wall->path_at_build);
-    if (vec3_norm2(wall->frame.spin) > 0) return false; /* rare: rebuilt every step */
+    if (wall->path - wall->path_at_build > wall->slack) return false;
   }
   const scree_bodies *bodies = &world->bodies;
-  double allowed = 0.5 * world->broad->margin - wall_travel;
   for (size_t i = 0; i < bodies->count; i++)
-    if (!bodies->removed[i] && bodies->path[i] - world->body_path_at_build[i] > allowed)
+    if (!bodies->removed[i] &&
+        bodies->path[i] - world->body_path_at_build[i] > 0.5 * margin_of(world, i))
       return false;
   return true;
+}
+
+/* How far from the wall's position bodies can be while the list lasts, and its own points. */
+static double reach_of(const scree_world *world, const scree_world_wall *wall) {
+  const scree_bodies *bodies = &world->bodies;
+  double reach = 0, margin = world->broad->margin, own = scree_wall_extent(wall) + margin;
+  for (size_t i = 0; i < bodies->count && reach < own; i++)
+    if (!bodies->removed[i])
+      reach = fmax(reach, vec3_distance(bodies->frame[i].position, wall->frame.position) +
+                              bodies->particle[i]->measures.bounding_radius + 2 * margin);
+  return fmin(reach, own);
+}
+
+/* Half the margin is for the walls that move; sheets and planes have it in any case. */
+static void prepare_walls(scree_world *world) {
+  for (size_t w = 0; w < world->walls.count; w++) {
+    scree_world_wall *wall = &world->walls.items[w];
+    bool still = wall->motion_count == 0 && wall->travel == 0 &&
+                 vec3_norm2(wall->frame.velocity) + vec3_norm2(wall->frame.spin) == 0;
+    wall->slack = still && !scree_wall_is_analytic(wall) ? 0 : 0.5 * world->broad->margin;
+    wall->reach = reach_of(world, wall);
+  }
 }
 
 scree_status scree_broad_update(scree_world *world, scree_error *error) {
   if (world->bodies.count == 0 || is_valid(world)) return SCREE_OK;
   scree_status status = reserve(world, error);
   if (status) return status;
-  double widest = make_boxes(world);
-  bin_bodies(world, widest > 0 ? widest : 1);
-  bool good = list_keys(world, widest > 0 ? widest : 1) && merge_neighbours(world);
+  choose_grids(world, make_boxes(world));
+  bin_bodies(world);
+  prepare_walls(world);
+  bool good = list_keys(world) && merge_neighbours(world);
   if (good) scree_pairs_tidy(world);
   if (!good || !list_sides(world))
     return scree_fail_memory(error, world->keys.count * sizeof(scree_neighbours),

@@ -173,7 +173,6 @@ static void settle_items(scree_pair *pair, scree_scratch *scratch) {
 
 static void fall_asleep(const scree_world *world, scree_pair *pair, scree_neighbours *n,
                         const scree_frame *relative) {
-  if (pair->wall && vec3_norm2(world->walls.items[pair->b].frame.spin) > 0) return;
   n->asleep_since = bodies_path(world, pair);
   n->wake = n->asleep_since + fmin(pair->list.next_item, pair->list.end) - pair->list.path;
   n->asleep_at = relative->position;

@@ -123,25 +123,44 @@ static vec3 rotation_vector(quat q) {
   return vec3_scale(v, s > 1e-4 ? 2 * asin(fmin(s, 1)) / s : 2 + s * s / 3);
 }
 
+/* The way and the turn from where the wall is to a pose. */
+static void way_to(const scree_world_wall *wall, const wall_pose *pose, vec3 *way, vec3 *turn) {
+  *way = vec3_sub(pose->position, wall->frame.position);
+  *turn = rotation_vector(quat_mul(pose->orientation, quat_conjugate(wall->orientation)));
+}
+
+static double travel_by(const scree_world_wall *wall, vec3 way, vec3 turn) {
+  return vec3_norm(way) + wall->reach * vec3_norm(turn);
+}
+
+/* To time t, and how far it will move in the step after. */
 static void follow_motions(scree_world_wall *wall, const scree_motion_state *motions,
                            const scree_motion_row *rows, double t, double dt) {
-  wall_pose pose = pose_at(wall, motions, rows, t);
+  wall_pose pose = pose_at(wall, motions, rows, t), next = pose_at(wall, motions, rows, t + dt);
   scree_frame *frame = &wall->frame;
-  quat turn = quat_mul(pose.orientation, quat_conjugate(wall->orientation));
-  frame->velocity = vec3_scale(vec3_sub(pose.position, frame->position), 1 / dt);
-  frame->spin = vec3_scale(rotation_vector(turn), 1 / dt);
+  vec3 way, turn;
+  way_to(wall, &pose, &way, &turn);
+  double travel = travel_by(wall, way, turn);
+  frame->velocity = vec3_scale(way, 1 / dt);
+  frame->spin = vec3_scale(turn, 1 / dt);
   frame->velocity_now = pose.velocity;
   frame->spin_now = pose.spin;
   frame->position = pose.position;
   frame->rotation = quat_to_mat3(pose.orientation);
   wall->orientation = pose.orientation;
+  way_to(wall, &next, &way, &turn);
+  wall->travel = fmax(travel, travel_by(wall, way, turn));
+  wall->path += travel;
 }
 
 static void follow_velocity(scree_world_wall *wall, double dt) {
   scree_frame *frame = &wall->frame;
+  vec3 way = vec3_scale(frame->velocity, dt), by = vec3_scale(frame->spin, dt);
+  wall->travel = travel_by(wall, way, by);
+  wall->path += wall->travel;
   frame->position = vec3_mad(frame->position, frame->velocity, dt);
   if (!(vec3_norm2(frame->spin) > 0)) return;
-  quat turn = quat_from_rotation_vector(vec3_scale(frame->spin, dt));
+  quat turn = quat_from_rotation_vector(by);
   wall->orientation = quat_unit(quat_mul(turn, wall->orientation));
   frame->rotation = quat_to_mat3(wall->orientation);
 }
@@ -158,8 +177,6 @@ void scree_walls_advance(scree_world *world) {
       follow_velocity(wall, dt);
     for (size_t i = 0; i < wall->motion_count; i++) rows += motions++->row_count;
     scree_wall_book_later(wall, dt);
-    wall->travel = vec3_norm(wall->frame.velocity) * dt;
-    wall->path += wall->travel;
     if (world->bodies.count > 0) scree_set_wall_due(world, w);
   }
 }

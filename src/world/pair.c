@@ -172,13 +172,6 @@ void scree_neighbours_set_up(scree_world *world) {
   }
 }
 
-void scree_neighbours_wake(scree_world *world, size_t wall) {
-  for (size_t k = 0; k < world->neighbours.count; k++) {
-    scree_neighbours *n = &world->neighbours.items[k];
-    if (n->wall && n->b == wall && n->asleep) n->wake = -INFINITY;
-  }
-}
-
 /* All memory goes, also what is read only while they sleep: a checkpoint holds it. */
 void scree_body_forget(scree_world *world, size_t body) {
   world->pairs_stale = true;

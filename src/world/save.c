@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 8};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 9};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -140,6 +140,8 @@ static void code_wall_state(scree_codec *c, scree_world_wall *w) {
   scree_code_real(c, &w->travel);
   scree_code_real(c, &w->path);
   scree_code_real(c, &w->path_at_build);
+  scree_code_real(c, &w->reach);
+  scree_code_real(c, &w->slack);
   vec3 *vectors[] = {&w->force,           &w->torque,           &w->friction.force,
                      &w->friction.moment, &w->surface_velocity, &w->surface_spin,
                      &w->start_position};

@@ -74,7 +74,8 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
                                   scree_error *error) {
   scree_status status = check_wall(world, wall, error);
   if (status) return status;
-  scree_world_wall made = {.given = *wall, .orientation = turn_to(vec3_load(wall->axis))};
+  scree_world_wall made = {
+      .given = *wall, .orientation = turn_to(vec3_load(wall->axis)), .path_at_build = -1};
   made.frame.position = vec3_load(wall->position);
   made.frame.rotation = quat_to_mat3(made.orientation);
   set_velocity(&made, vec3_load(wall->velocity), vec3_load(wall->angular_velocity));
@@ -130,9 +131,10 @@ static scree_status check_velocities(const scree_world *world, size_t index, con
 
 void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin) {
   scree_world_wall *wall = &world->walls.items[index];
-  bool turned = vec3_norm2(wall->frame.spin) > 0;
   set_velocity(wall, velocity, spin);
-  if (!turned && vec3_norm2(spin) > 0) scree_neighbours_wake(world, index);
+  double travel = (vec3_norm(velocity) + wall->reach * vec3_norm(spin)) * world->time_step;
+  wall->travel = fmax(wall->travel, travel);
+  if (!world->pairs_stale) scree_set_wall_due(world, index);
 }
 
 scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
@@ -225,6 +227,16 @@ void scree_world_wall_power(const scree_world *world, size_t index, double *powe
 }
 
 /* ---- distances ---- */
+
+double scree_wall_extent(const scree_world_wall *wall) {
+  const scree_wall *given = &wall->given;
+  if (given->kind == SCREE_WALL_DISC) return given->radius;
+  if (given->kind == SCREE_WALL_CYLINDER && given->length > 0)
+    return hypot(given->radius, given->length);
+  if (given->kind != SCREE_WALL_MESH) return INFINITY;
+  const scree_box *box = &wall->surface->box;
+  return vec3_norm(vec3_max(vec3_neg(box->low), box->high));
+}
 
 double scree_wall_side(const scree_world_wall *wall, vec3 p) {
   const scree_wall *given = &wall->given;

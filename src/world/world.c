@@ -193,6 +193,7 @@ static void place_body(scree_world *world, size_t i, const scree_body *state) {
   frame->velocity_now = frame->velocity;
   frame->spin_now = frame->spin;
   b->force[i] = b->torque[i] = (vec3){0, 0, 0};
+  world->body_path_at_build[i] = -1;
   scree_body_forget(world, i);
 }
 

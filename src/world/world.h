@@ -33,8 +33,11 @@ typedef struct scree_world_wall {
   scree_frame frame;
   quat orientation;
   scree_particle *surface; /* faces of a mesh wall, or rims of a disc or cylinder; NULL: none */
-  double travel, path;     /* as for bodies, by translation alone */
-  double path_at_build;    /* when the pairs were made */
+  double travel, path;     /* most that its points within reach move in the last or the coming step;
+                              the sum of what they moved */
+  double path_at_build;    /* when the pairs were made; below 0: it is new */
+  double reach;            /* from its position: farther out there is none of it, or no body */
+  double slack;            /* by which it may move before the pairs must be made again */
   vec3 force, torque;      /* on the wall in the last step, about its position */
   scree_load friction;     /* the tangential part of them, on the bodies */
   vec3 surface_velocity, surface_spin; /* of a belt, in the wall's own frame */
@@ -369,7 +372,8 @@ struct scree_world {
   } progress;
   scree_scratch *scratch; /* one per worker */
   int scratch_count;
-  double *body_path_at_build; /* path of each body when the pairs were made */
+  double
+      *body_path_at_build; /* path of each body when the pairs were made; below 0: put elsewhere */
   bool pairs_stale;
   double time, time_step;
   bool time_step_stale;
@@ -446,8 +450,6 @@ scree_status scree_broad_restore(scree_world *world, double margin, scree_error 
 scree_neighbours scree_neighbours_new(const scree_world *world, uint32_t a, uint32_t b, bool wall);
 /* After a change of the materials: stiffness, damping and so on of all neighbours and pairs. */
 void scree_neighbours_set_up(scree_world *world);
-/* Who sleeps near this wall wakes: its turning is no part of the paths on which they sleep. */
-void scree_neighbours_wake(scree_world *world, size_t wall);
 /* world.c: room for forces on bodies, none at first. */
 scree_status scree_bodies_make_applied(scree_bodies *bodies, scree_error *error);
 /* After a jump: the body's contacts start anew. */
@@ -593,13 +595,15 @@ double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, ve
                            vec3 *normal);
 
 bool scree_wall_is_belt(const scree_world_wall *wall);
-/* From now on; where it begins to turn, who sleeps near it wakes. */
+/* From now on. */
 void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin);
 /* Forces and torques on walls from the pairs of the last step. */
 void scree_walls_sum_forces(scree_world *world);
 /* The work of walls in this step: before they move, with the forces of the step; and after. */
 void scree_walls_book(scree_world *world);
 void scree_wall_book_later(scree_world_wall *wall, double time_step);
+/* How far from its position a wall extends; INFINITY for planes and endless cylinders. */
+double scree_wall_extent(const scree_world_wall *wall);
 /* motion.c: every wall's drift. */
 void scree_walls_advance(scree_world *world);
 
