@@ -37,10 +37,12 @@ typedef struct scree_world_options {
 SCREE_API scree_world_options scree_default_world_options(void);
 
 typedef struct scree_material {
-  double stiffness;   /* N/m2, the E of K = E L; default 1e8; 1e11 for walls (the paper) */
-  double density;     /* kg/m3; default 2000 (not in the paper) */
-  double restitution; /* in (0, 1]; default 0.3 (the paper) */
-  double friction;    /* at least 0; default 0.5 (the paper) */
+  double stiffness;        /* N/m2, the E of K = E L; default 1e8; 1e11 for walls (the paper) */
+  double density;          /* kg/m3; default 2000 (not in the paper) */
+  double restitution;      /* in (0, 1]; default 0.3 (the paper) */
+  double friction;         /* at least 0; default 0.5 (the paper) */
+  double rolling_friction; /* of spheres, at least 0; default 0: rolls freely */
+  double surface_energy;   /* J/m2, at least 0; default 0: does not stick */
 } scree_material;
 SCREE_API scree_material scree_default_material(void);
 SCREE_API scree_material scree_default_wall_material(void);
@@ -51,13 +53,34 @@ SCREE_API scree_status scree_world_create(const scree_world_options *options, sc
 SCREE_API void scree_world_free(scree_world *world);
 SCREE_API void scree_world_get_options(const scree_world *world, scree_world_options *options);
 
-/* Between two materials: the lower restitution and the lower friction, unless given by
- * scree_world_set_contact. At most 64 materials. */
+/* Between two materials: the lower of each property, unless given by
+ * scree_world_set_contact or scree_world_set_pair. At most 64 materials. */
 SCREE_API scree_status scree_world_add_material(scree_world *world, const scree_material *material,
                                                 size_t *index, scree_error *error);
 SCREE_API scree_status scree_world_set_contact(scree_world *world, size_t material_a,
                                                size_t material_b, double restitution,
                                                double friction, scree_error *error);
+
+/* What two materials do to each other. */
+typedef struct scree_material_contact {
+  double restitution, friction; /* as of scree_material */
+  double rolling_friction; /* mu_r: a sphere resists rolling with a torque of up to mu_r R F, 1/R
+                              the sum of both spheres' 1/r; type C of Ai and others 2011 */
+  double pull_off;         /* N with which any two that touch hold each other; default 0 */
+  double surface_energy;   /* J/m2, w: holds with 3/2 pi w R besides, the pull-off force of Johnson,
+                              Kendall and Roberts 1971; 1/R the sum of both sides' 1/r, where r of
+                              what is no sphere is half its size (scree_particle_measures) and a wall
+                              has none */
+} scree_material_contact;
+/* Read, edit, set: so what is not edited stays as it is. The pair is any two of the world's
+ * materials, or one with itself. */
+SCREE_API scree_status scree_world_get_pair(const scree_world *world, size_t material_a,
+                                            size_t material_b, scree_material_contact *contact,
+                                            scree_error *error);
+SCREE_API scree_status scree_world_set_pair(scree_world *world, size_t material_a,
+                                            size_t material_b,
+                                            const scree_material_contact *contact,
+                                            scree_error *error);
 
 typedef enum scree_wall_kind {
   SCREE_WALL_PLANE,    /* through position, solid behind, normal along axis */

@@ -182,7 +182,13 @@ class scree_world_options(Structure):
 
 
 class scree_material(Structure):
-    _fields_ = [("stiffness", c_double), ("density", c_double), ("restitution", c_double), ("friction", c_double)]
+    _fields_ = [("stiffness", c_double), ("density", c_double), ("restitution", c_double), ("friction", c_double),
+                ("rolling_friction", c_double), ("surface_energy", c_double)]
+
+
+class scree_material_contact(Structure):
+    _fields_ = [(name, c_double) for name in (
+        "restitution", "friction", "rolling_friction", "pull_off", "surface_energy")]
 
 
 class scree_wall(Structure):
@@ -331,6 +337,8 @@ _FALLIBLE = {  # argument types before the error
     "world_create": (POINTER(scree_world_options), _HH),
     "world_add_material": (_H, POINTER(scree_material), POINTER(c_size_t)),
     "world_set_contact": (_H, c_size_t, c_size_t, c_double, c_double),
+    "world_get_pair": (_H, c_size_t, c_size_t, POINTER(scree_material_contact)),
+    "world_set_pair": (_H, c_size_t, c_size_t, POINTER(scree_material_contact)),
     "world_add_wall": (_H, POINTER(scree_wall), POINTER(c_size_t)),
     "world_set_wall_velocity": (_H, c_size_t, double3, double3),
     "world_set_wall_motion": (_H, c_size_t, POINTER(scree_wall_motion), c_size_t),

@@ -84,7 +84,8 @@ class World:
         call("world_save", self._handle, os.fsencode(path), overwrite)
 
     def add_material(self, wall=False, **values):
-        """Its index. stiffness (N/m2), density (kg/m3), restitution, friction; wall: the defaults of walls."""
+        """Its index. stiffness (N/m2), density (kg/m3), restitution, friction, rolling_friction,
+        surface_energy (J/m2); wall: the defaults of walls."""
         material = lib["default_wall_material" if wall else "default_material"]()
         return self._add("world_add_material", set_fields(material, values, "a material"))
 
@@ -92,6 +93,14 @@ class World:
         """Between two materials."""
         a, b = whole(a, "a material"), whole(b, "a material")
         call("world_set_contact", self._handle, a, b, restitution, friction)
+
+    def set_pair(self, a, b, **values):
+        """Between two materials: restitution, friction, rolling_friction, pull_off (N), surface_energy (J/m2); what is
+        not given stays. All of them."""
+        a, b, contact = whole(a, "a material"), whole(b, "a material"), c.scree_material_contact()
+        call("world_get_pair", self._handle, a, b, contact)
+        call("world_set_pair", self._handle, a, b, set_fields(contact, values, "a pair"))
+        return from_struct(contact)
 
     def add_wall(self, kind, material, mesh=None, **values):
         """Its index. kind plane, disc, cylinder or mesh; position, axis, radius, length, velocity,

@@ -120,8 +120,13 @@ scree_pour_options drop_pour_options(const drop_arguments *a) {
   o.world.law = (scree_law)a->law;
   o.world.steps_per_contact = a->steps_per_contact;
   o.world.stiffness_factor = a->stiffness_factor;
-  o.particles = (scree_material){a->young, a->density, a->restitution, a->friction};
-  o.walls = (scree_material){a->young_wall, a->density, a->restitution, a->friction_wall};
+  o.particles = (scree_material){.stiffness = a->young,
+                                 .density = a->density,
+                                 .restitution = a->restitution,
+                                 .friction = a->friction};
+  o.walls = o.particles;
+  o.walls.stiffness = a->young_wall;
+  o.walls.friction = a->friction_wall;
   o.container = (scree_container)a->container;
   o.width = a->width;
   o.depth = a->depth;

@@ -42,8 +42,10 @@ static scree_status add_materials(const scree_run *run, scree_world *world, scre
   size_t wall_index;
   scree_status status = scree_world_add_material(world, &wall, &wall_index, error);
   for (size_t i = 0; status == SCREE_OK && i < run->shape_count; i++) {
-    scree_material m = {e->young_particle, e->density * run->shapes[i].density_factor,
-                        e->restitution, e->friction_particle};
+    scree_material m = {.stiffness = e->young_particle,
+                        .density = e->density * run->shapes[i].density_factor,
+                        .restitution = e->restitution,
+                        .friction = e->friction_particle};
     status = scree_world_add_material(world, &m, &run->materials[i], error);
     for (size_t j = 0; status == SCREE_OK && j <= i; j++)
       status = scree_world_set_contact(world, run->materials[i], run->materials[j], e->restitution,

@@ -119,17 +119,19 @@ static bool find_overlap(const scree_world *world, const scree_pair *pair,
                                     world->options.sharing, result);
 }
 
-/* The spring's force at overlap m, and the energy that comes back from it. */
+/* The spring's force at overlap m, less that with which the bodies hold each other, and the energy
+ * that comes back from both. */
 static double spring_force(const scree_world *world, scree_pair *pair, double m) {
+  double pull = pair->law.pull;
   if (world->options.law == SCREE_LAW_LINEAR) {
-    pair->elastic = 0.5 * pair->law.stiffness * m * m;
-    return pair->law.stiffness * m;
+    pair->elastic = 0.5 * pair->law.stiffness * m * m - pull * m;
+    return pair->law.stiffness * m - pull;
   }
   double e2 = pair->law.restitution * pair->law.restitution, unloading = pair->law.stiffness / e2;
   pair->largest = fmax(pair->largest, m);
   double force = fmax(0, fmin(pair->law.stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
-  pair->elastic = 0.5 * force * force / unloading;
-  return force;
+  pair->elastic = 0.5 * force * force / unloading - pull * m;
+  return force - pull;
 }
 
 /* How far the contact is no impact any more, from 0 to 1: the tangential dashpot. An oblique impact
@@ -205,6 +207,7 @@ static vec3 slide(const slider *law, scree_anchor *anchor, double s, vec3 n, vec
 typedef struct load_sums {
   scree_load normal, dashpot, tangential;
   double dashpot_power, tangential_power;
+  double pressed; /* the normal forces, without what holds the bodies together */
 } load_sums;
 
 static void add_load(scree_load *load, vec3 direction, vec3 arm, double size) {
@@ -236,16 +239,19 @@ static void press(const scree_pair *pair, const slider *law, double spring, scre
     v = vec3_sub(v, belt);
     seen = vec3_sub(seen, belt);
   }
-  double share = touch->share * touch->lever, elastic = share * spring,
-         normal = elastic + share * pair->law.damping * touch->lever * rate;
+  double share = touch->share * touch->lever, pull = share * pair->law.pull,
+         pressing = share * spring + pull,
+         normal = pressing + share * pair->law.damping * touch->lever * rate;
   if (!(normal > 0)) normal = 0;
-  double dashpot = normal - elastic;
+  double dashpot = normal - pressing, pressed = normal;
+  normal -= pull;
+  sums->pressed += pressed;
   add_load(&sums->normal, n, arm, normal);
   add_load(&sums->dashpot, n, arm, dashpot);
   sums->dashpot_power += dashpot * approach;
   touch->force = vec3_scale(n, normal);
   if (touch->of_depth) return;
-  vec3 along = slide(law, touch->anchor, touch->share, n, v, relative->spin, seen, normal, energy);
+  vec3 along = slide(law, touch->anchor, touch->share, n, v, relative->spin, seen, pressed, energy);
   touch->force = vec3_mad(along, n, normal);
   touch->anchor->normal = n;
   touch->anchor->share = touch->share;
@@ -313,6 +319,27 @@ static void part(const scree_world *world, scree_pair *pair, double spring, cons
   push(relative, at, way, most * (slow < 0 ? 0 : slow > 1 ? 1 : slow), sums);
 }
 
+/* Rolling resistance (Ai and others 2011, type C): a spring and dashpot against the relative
+ * turning about axes along the surface, as the tangential ones against sliding: the couple is at
+ * most mu_r R times the normal force. */
+static void roll(const scree_world *world, scree_pair *pair, const slider *sliding,
+                 const scree_frame *relative, double *energy, load_sums *sums) {
+  double arm = pair->law.rolling, size = vec3_norm(sums->normal.force);
+  if (!(arm > 0 && size > 0)) return;
+  const slider law = {.stiffness = 2.25 * pair->law.stiffness * arm * arm,
+                      .damping = pair->law.rolling_damping,
+                      .friction = arm,
+                      .time_step = world->time_step};
+  vec3 n = vec3_scale(sums->normal.force, 1 / size),
+       turning = vec3_mad(relative->spin, n, -vec3_dot(relative->spin, n)),
+       seen = vec3_mad(sliding->spin, n, -vec3_dot(sliding->spin, n));
+  scree_anchor spring = {.stretch = pair->rolled, .share = 1};
+  vec3 couple = slide(&law, &spring, 1, n, turning, relative->spin, seen, sums->pressed, energy);
+  pair->rolled = spring.stretch;
+  sums->tangential.moment = vec3_add(sums->tangential.moment, couple);
+  sums->tangential_power += vec3_dot(couple, turning);
+}
+
 /* Into space. */
 static scree_load turned(const scree_load *load, const mat3 *rotation) {
   return (scree_load){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
@@ -343,6 +370,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   if (touches->count == 0 || !find_overlap(world, pair, touches, &maximum)) {
     for (size_t i = 0; i < touches->count; i++) touches->items[i].anchor->share = 0;
     pair->largest = pair->age = 0;
+    pair->rolled = (vec3){0, 0, 0};
     pair->parting = false;
     return (scree_powers){0, 0};
   }
@@ -353,7 +381,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   slider law = make_slider(world, pair, relative);
   load_sums sums;
   sums.normal = sums.dashpot = sums.tangential = (scree_load){{0, 0, 0}, {0, 0, 0}};
-  sums.dashpot_power = sums.tangential_power = 0;
+  sums.dashpot_power = sums.tangential_power = sums.pressed = 0;
   uint32_t contacts = 0;
   double resolved = resolved_slope(world, pair);
   for (size_t i = 0; i < touches->count; i++) {
@@ -373,6 +401,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   }
   pair->parting = pair->depth > 0 && (pair->parting || is_pinched(touches));
   if (pair->parting) part(world, pair, spring, &law, touches, relative, &sums);
+  roll(world, pair, &law, relative, &energy, &sums);
   pair->contact_count = contacts;
   pair->tangential_elastic = energy;
   pair->elastic += energy;

@@ -36,17 +36,34 @@ double scree_damping_ratio(double restitution) {
   return 0.5 * (low + high);
 }
 
-static scree_status check_contact(double restitution, double friction, scree_error *error) {
-  if (!(restitution > 0 && restitution <= 1))
+static scree_status check_contact(const scree_material_contact *c, scree_error *error) {
+  if (!(c->restitution > 0 && c->restitution <= 1))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: restitution %g; above 0, at most 1",
-                      restitution);
-  if (!(friction >= 0 && isfinite(friction)))
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: friction %g; at least 0", friction);
+                      c->restitution);
+  const struct {
+    const char *name;
+    double value;
+  } others[] = {{"friction", c->friction},
+                {"rolling friction", c->rolling_friction},
+                {"pull-off force, N:", c->pull_off},
+                {"surface energy, J/m2:", c->surface_energy}};
+  for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+    if (!(others[i].value >= 0 && isfinite(others[i].value)))
+      return scree_fail(error, SCREE_BAD_ARGUMENT, "world: %s %g; at least 0", others[i].name,
+                        others[i].value);
   return SCREE_OK;
 }
 
-static scree_material_pair make_contact(double restitution, double friction, bool given) {
-  return (scree_material_pair){restitution, friction, scree_damping_ratio(restitution), given};
+static scree_material_pair make_contact(const scree_material_contact *given) {
+  return (scree_material_pair){*given, scree_damping_ratio(given->restitution)};
+}
+
+static scree_material_contact contact_of(const scree_material *a, const scree_material *b) {
+  return (scree_material_contact){.restitution = fmin(a->restitution, b->restitution),
+                                  .friction = fmin(a->friction, b->friction),
+                                  .rolling_friction =
+                                      fmin(a->rolling_friction, b->rolling_friction),
+                                  .surface_energy = fmin(a->surface_energy, b->surface_energy)};
 }
 
 scree_status scree_world_add_material(scree_world *world, const scree_material *material,
@@ -59,28 +76,49 @@ scree_status scree_world_add_material(scree_world *world, const scree_material *
   if (!(material->density > 0 && isfinite(material->density)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: density %g kg/m3; above 0",
                       material->density);
-  scree_status status = check_contact(material->restitution, material->friction, error);
+  scree_material_contact own = contact_of(material, material);
+  scree_status status = check_contact(&own, error);
   if (status) return status;
   size_t k = world->material_count++;
   world->materials[k] = *material;
   for (size_t i = 0; i <= k; i++) {
-    const scree_material *other = &world->materials[i];
-    world->contacts[i][k] = world->contacts[k][i] =
-        make_contact(fmin(material->restitution, other->restitution),
-                     fmin(material->friction, other->friction), false);
+    scree_material_contact contact = contact_of(material, &world->materials[i]);
+    world->contacts[i][k] = world->contacts[k][i] = make_contact(&contact);
   }
   if (index) *index = k;
   return SCREE_OK;
 }
 
-scree_status scree_world_set_contact(scree_world *world, size_t a, size_t b, double restitution,
-                                     double friction, scree_error *error) {
-  if (a >= world->material_count || b >= world->material_count)
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: material %zu of %zu", a > b ? a : b,
-                      world->material_count);
-  scree_status status = check_contact(restitution, friction, error);
+static scree_status check_materials(const scree_world *world, size_t a, size_t b,
+                                    scree_error *error) {
+  if (a < world->material_count && b < world->material_count) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT, "world: material %zu of %zu", a > b ? a : b,
+                    world->material_count);
+}
+
+scree_status scree_world_get_pair(const scree_world *world, size_t a, size_t b,
+                                  scree_material_contact *contact, scree_error *error) {
+  scree_status status = check_materials(world, a, b, error);
+  if (!status) *contact = world->contacts[a][b].given;
+  return status;
+}
+
+scree_status scree_world_set_pair(scree_world *world, size_t a, size_t b,
+                                  const scree_material_contact *contact, scree_error *error) {
+  scree_status status = check_materials(world, a, b, error);
+  if (!status) status = check_contact(contact, error);
   if (status) return status;
-  world->contacts[a][b] = world->contacts[b][a] = make_contact(restitution, friction, true);
+  world->contacts[a][b] = world->contacts[b][a] = make_contact(contact);
   scree_neighbours_set_up(world);
   return SCREE_OK;
+}
+
+scree_status scree_world_set_contact(scree_world *world, size_t a, size_t b, double restitution,
+                                     double friction, scree_error *error) {
+  scree_material_contact contact;
+  scree_status status = scree_world_get_pair(world, a, b, &contact, error);
+  if (status) return status;
+  contact.restitution = restitution;
+  contact.friction = friction;
+  return scree_world_set_pair(world, a, b, &contact, error);
 }

@@ -15,6 +15,46 @@ double scree_thin_overlap(const scree_particle *particle) {
   return fmax(0.5 * m->thickness, 4 * m->rounding);
 }
 
+/* 1/r of a sphere; of any other body, 2/L. */
+static double curvature_of(const scree_world *world, const scree_particle *particle) {
+  bool sphere = particle->measures.kind == SCREE_PARTICLE_SPHERE;
+  return sphere ? 1 / particle->point_radii[0] : 2 / size_of(world, particle);
+}
+
+/* 1/(I + m r^2) of a sphere that rolls, about where it touches. */
+static double ease_of_rolling(const scree_world *world, size_t body) {
+  const scree_bodies *b = &world->bodies;
+  double r = b->particle[body]->point_radii[0];
+  return 1 / (b->inertia[body].x + b->mass[body] * r * r);
+}
+
+/* Rolling resistance of type C: the spring is 9/4 K (mu_r R)^2 (law.c), and its damping this part
+ * of the critical one (Ai and others 2011, eq. 24 to 32). */
+static const double rolling_damping_ratio = 0.3;
+
+static void set_up_rolling(const scree_world *world, double rolling_friction, scree_neighbours *n) {
+  const scree_particle *sides[2] = {world->bodies.particle[n->a],
+                                    n->wall ? NULL : world->bodies.particle[n->b]};
+  const size_t bodies[2] = {n->a, n->b};
+  double curvature = 0, ease = 0;
+  for (int i = 0; i < 2; i++) {
+    if (!sides[i] || sides[i]->measures.kind != SCREE_PARTICLE_SPHERE) continue;
+    curvature += curvature_of(world, sides[i]);
+    ease += ease_of_rolling(world, bodies[i]);
+  }
+  bool rolls = curvature > 0 && rolling_friction > 0;
+  n->law.rolling = rolls ? rolling_friction / curvature : 0;
+  double stiffness = 2.25 * n->law.stiffness * n->law.rolling * n->law.rolling;
+  n->law.rolling_damping = rolls ? 2 * rolling_damping_ratio * sqrt(stiffness / ease) : 0;
+}
+
+static double pull_of(const scree_world *world, const scree_material_contact *contact,
+                      const scree_neighbours *n) {
+  double curvature = curvature_of(world, world->bodies.particle[n->a]);
+  if (!n->wall) curvature += curvature_of(world, world->bodies.particle[n->b]);
+  return contact->pull_off + 1.5 * 3.14159265358979323846 * contact->surface_energy / curvature;
+}
+
 static void set_up(const scree_world *world, scree_neighbours *n) {
   const scree_bodies *bodies = &world->bodies;
   const scree_particle *a = bodies->particle[n->a], *b = scree_shape_of(world, n->b, n->wall);
@@ -34,8 +74,10 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
                        ? 2 * contact->damping_ratio * sqrt(mass * n->law.stiffness)
                        : 0;
   n->law.contact_time = 3.14159265358979323846 * sqrt(mass / n->law.stiffness);
-  n->law.friction = contact->friction;
-  n->law.restitution = contact->restitution;
+  n->law.friction = contact->given.friction;
+  n->law.restitution = contact->given.restitution;
+  n->law.pull = pull_of(world, &contact->given, n);
+  set_up_rolling(world, contact->given.rolling_friction, n);
   n->law.smoothing = world->options.smoothing * size;
   n->law.limit = world->options.overlap_limit * size;
   n->law.thin = fmin(n->law.limit, thin);

@@ -15,13 +15,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 9};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 10};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
                    (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
                     sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 384 &&
-                    sizeof(scree_neighbours) == 240 && sizeof(scree_frame) == 192),
+                    sizeof(scree_neighbours) == 264 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
 /* ---- field lists ---- */
@@ -56,13 +56,14 @@ static void code_material(scree_codec *c, scree_material *m) {
   scree_code_real(c, &m->density);
   scree_code_real(c, &m->restitution);
   scree_code_real(c, &m->friction);
+  scree_code_real(c, &m->rolling_friction);
+  scree_code_real(c, &m->surface_energy);
 }
 
 static void code_contact(scree_codec *c, scree_material_pair *p) {
-  scree_code_real(c, &p->restitution);
-  scree_code_real(c, &p->friction);
-  scree_code_real(c, &p->damping_ratio);
-  scree_code_bool(c, &p->given);
+  double *reals[] = {&p->given.restitution, &p->given.friction,       &p->given.rolling_friction,
+                     &p->given.pull_off,    &p->given.surface_energy, &p->damping_ratio};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
 }
 
 static void code_measures(scree_codec *c, scree_particle_measures *m) {
@@ -229,6 +230,9 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
                      &n->law.reach,
                      &n->law.limit,
                      &n->law.thin,
+                     &n->law.pull,
+                     &n->law.rolling,
+                     &n->law.rolling_damping,
                      &p->list.travel,
                      &p->list.path,
                      &n->wake,
@@ -243,6 +247,7 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
                      &p->largest,
                      &p->depth};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  scree_code_vec3(c, &p->rolled);
   code_wrench(c, &p->wrench);
   code_load(c, &p->dashpot);
   code_load(c, &p->tangential);

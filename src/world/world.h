@@ -19,8 +19,8 @@ typedef struct scree_frame {
 } scree_frame;
 
 typedef struct scree_material_pair {
-  double restitution, friction, damping_ratio; /* eta */
-  bool given;
+  scree_material_contact given;
+  double damping_ratio; /* eta */
 } scree_material_pair;
 
 /* Force on a and its moment about the centre of b. */
@@ -161,6 +161,8 @@ typedef struct scree_pair_law {
   double thin;                         /* the limit, or half the thinnest wall where less */
   double contact_time;                 /* half period pi sqrt(m/K) */
   double restitution;                  /* e */
+  double pull;                         /* N, with which they hold each other */
+  double rolling, rolling_damping;     /* mu_r R, m; torque over angular velocity */
 } scree_pair_law;
 
 /* How far the list of items lasts; the pair has it while awake, its neighbours while asleep. */
@@ -197,6 +199,7 @@ typedef struct scree_pair {
   scree_kept_load dashpot, tangential; /* parts of the wrench, for the ledger */
   double elastic, tangential_elastic;  /* U of all springs, and of the tangential ones */
   double largest;                      /* m of this contact (hysteresis) */
+  vec3 rolled;  /* the spring of rolling resistance, rad, in the frame of b */
   double depth; /* no edge lies deeper inside the other body; -INFINITY: not known */
 } scree_pair;
 

@@ -261,6 +261,9 @@ class Worlds(unittest.TestCase):
             with self.assertRaisesRegex((ValueError, TypeError), said):
                 world.set_wall_motion(0, wrong)
         ball = world.add_body(scree.Particle.sphere(0.01), world.add_material(), position=(0, 0, 1))
+        self.assertEqual(world.set_pair(0, 1, rolling_friction=0.1).friction, 0.5)
+        with self.assertRaisesRegex(scree.Error, "rolling friction -1; at least 0"):
+            world.set_pair(0, 1, rolling_friction=-1)
         world.set_body_force(ball, (1e-3, 0, 0))
         world.step(100)
         self.assertGreater(world.bodies().velocity[ball, 0], 0)

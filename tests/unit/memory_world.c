@@ -99,14 +99,17 @@ static bool count_contact(void *context, const scree_contact *contact) {
 }
 
 static scree_status build_world(void *context, scree_error *error) {
+  const scree_material material = scree_default_material();
+  scree_material_contact contact;
   scree_world *world = NULL;
   scree_status status = scree_world_create(NULL, &world, error);
-  if (status == SCREE_OK)
-    status = scree_world_add_material(world, &(scree_material){1e8, 2000, 0.3, 0.5}, NULL, error);
+  if (status == SCREE_OK) status = scree_world_add_material(world, &material, NULL, error);
   if (status == SCREE_OK)
     status = scree_world_add_wall(world, &(scree_wall){.kind = SCREE_WALL_PLANE, .axis = {0, 0, 1}},
                                   NULL, error);
   if (status == SCREE_OK) status = scree_world_set_contact(world, 0, 0, 0.5, 0.2, error);
+  if (status == SCREE_OK) status = scree_world_get_pair(world, 0, 0, &contact, error);
+  if (status == SCREE_OK) status = scree_world_set_pair(world, 0, 0, &contact, error);
   if (status == SCREE_OK)
     status = scree_world_set_wall_velocity(world, 0, (double[3]){0}, (double[3]){0}, error);
   if (status == SCREE_OK)

@@ -123,14 +123,21 @@ static int run_seed(uint64_t seed, const scree_mesh *sheet, size_t *contacts) {
   scree_world_options o = random_options(&rng);
   if (!accepted(scree_world_create(&o, &world, &error), &error)) return 0;
   for (int i = 0; i < 3; i++) {
-    scree_material m = {pow(10, between(&rng, 6, 11)), value(&rng, 100, 5000), value(&rng, 0.05, 1),
-                        value(&rng, 0, 1)};
+    scree_material m = {.stiffness = pow(10, between(&rng, 6, 11))};
+    m.density = value(&rng, 100, 5000);
+    m.restitution = value(&rng, 0.05, 1);
+    m.friction = value(&rng, 0, 1);
     accepted(scree_world_add_material(world, &m, NULL, &error), &error);
   }
   if (scree_rng_below(&rng, 2))
     accepted(scree_world_set_contact(world, scree_rng_below(&rng, 4), scree_rng_below(&rng, 3),
                                      value(&rng, 0, 1), value(&rng, 0, 1), &error),
              &error);
+  scree_material_contact contact = {.restitution = 0.5, .friction = 0.5};
+  contact.rolling_friction = value(&rng, 0, 1);
+  contact.surface_energy = value(&rng, 0, 1);
+  if (scree_rng_below(&rng, 2))
+    accepted(scree_world_set_pair(world, 0, scree_rng_below(&rng, 4), &contact, &error), &error);
   add_walls(&rng, world, sheet);
   add_bodies(&rng, world);
   int good = 0;
