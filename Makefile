@@ -30,7 +30,7 @@ test:
 	@cmake --preset $(PRESET) -DSCREE_DATA_DIR="$(DATA_DIR)" -DBUILD_TESTING=ON >build.log 2>&1 || { cat build.log; exit 1; }
 	@rm -f build.log
 	@cmake --build --preset $(PRESET) -j $(JOBS)
-	@ctest --preset $(PRESET) -j $(JOBS) $(LABELS)
+	@tools/test.sh $(PRESET) -j $(JOBS) $(LABELS)
 
 install: build
 	@cmake --install build/$(PRESET)

@@ -28,13 +28,15 @@ SCREE_API void scree_mesh_scale(scree_mesh *mesh, double factor);
 /* How a scan is read. Most files carry no unit: it is stated here, never guessed. */
 typedef struct scree_read_options {
   /* Metres per unit of the file, in [1e-12, 1e12]; default 1e-3 (millimetres, as scanners write).
-   * 3MF and glTF state their own unit, and this one is not used. */
+   * 3MF, glTF and what scree wrote itself state their unit, and this one is not used. */
   double unit_m;
   /* Vertices closer than this share of the bounding box diagonal become one: 0 (the default: only
    * equal positions) or in [1e-12, 0.1]. See scree_mesh_weld. */
   double weld_tolerance;
   /* The most bytes read from a file or stream; default 0: only memory limits. */
   size_t max_bytes;
+  /* Use unit_m also where scree's own comment in the file names another; default false. */
+  bool ignore_comment_unit;
 } scree_read_options;
 
 SCREE_API scree_read_options scree_default_read_options(void);
@@ -46,22 +48,24 @@ typedef struct scree_scan {
   size_t byte_count;
   double unit_m;           /* metres per unit of the file: of the options, or what it states */
   bool states_unit;        /* the file does */
+  double comment_unit_m;   /* the unit that scree's own comment in the file names, m; 0: none */
   char format[32];         /* for example "STL binary", "3MF, inch" (with the unit it states) */
   size_t facet_count;      /* triangles in the file; a polygon counts as its triangles */
   size_t degenerate_count; /* of these, dropped: fewer than three different corners */
   size_t solid_count;      /* `solid`s of an ASCII STL; else 1 */
   size_t
       ignored_byte_count; /* bytes after the last facet of a binary STL, fewer than a facet has */
+  char warning[192];      /* in what the file contradicts itself, one sentence; "": in nothing */
 } scree_scan;
 
 SCREE_API void scree_scan_free(scree_scan *scan);
 
 /* Reads and welds a scan. path "-" is standard input. The format is found by content, not by name:
- * STL (binary, also with colours or a header that begins with `solid`; ASCII), PLY (ASCII, both
- * byte orders, polygons, triangle strips), OBJ (polygons, v/vt/vn, negative indices), OFF (also
- * with colours, normals, texture coordinates); in a build with assimp also 3MF, glTF (binary; text
- * with embedded data), COLLADA, X3D, AMF, FBX and 3DS, imported in a child process with limits on
- * memory and time (docs/formats.md). options NULL means the defaults.
+ * STL (binary, also big-endian, with colours or a header that begins with `solid`; ASCII), PLY
+ * (ASCII, both byte orders, polygons, triangle strips), OBJ (polygons, v/vt/vn, negative indices),
+ * OFF (also with colours, normals, texture coordinates); in a build with assimp also 3MF, glTF
+ * (binary; text with embedded data), COLLADA, X3D, AMF, FBX and 3DS, imported in a child process
+ * with limits on memory and time (docs/formats.md). options NULL means the defaults.
  *
  * Sizes in the file are believed only where its length allows them, so memory stays within a fixed
  * multiple of the file's length (of its triangles for 3MF and glTF). Errors: SCREE_IO, also where

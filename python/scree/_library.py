@@ -46,13 +46,14 @@ class scree_mesh(Structure):
 
 
 class scree_read_options(Structure):
-    _fields_ = [("unit_m", c_double), ("weld_tolerance", c_double), ("max_bytes", c_size_t)]
+    _fields_ = [("unit_m", c_double), ("weld_tolerance", c_double), ("max_bytes", c_size_t),
+                ("ignore_comment_unit", c_bool)]
 
 
 class scree_scan(Structure):
     _fields_ = [("mesh", scree_mesh), ("checksum", scree_checksum), ("byte_count", c_size_t), ("unit_m", c_double),
-                ("states_unit", c_bool), ("format", c_char * 32), ("facet_count", c_size_t), ("degenerate_count", c_size_t), ("solid_count", c_size_t),
-                ("ignored_byte_count", c_size_t)]
+                ("states_unit", c_bool), ("comment_unit_m", c_double), ("format", c_char * 32), ("facet_count", c_size_t), ("degenerate_count", c_size_t), ("solid_count", c_size_t),
+                ("ignored_byte_count", c_size_t), ("warning", c_char * 192)]
 
 
 class scree_write_options(Structure):

@@ -252,17 +252,19 @@ static void add_text(text *t, const char *words) {
   *t->at = 0;
 }
 
-/* "1 non manifold edge", "12 boundary edges". */
+/* "1 non manifold edge", "12 boundary edges": the name is a plural. */
 static void add_count(text *t, size_t count, const char *name) {
+  static const struct {
+    const char *several, *one;
+  } endings[] = {{"vertices", "vertex"}, {"ies", "y"}, {"s", ""}};
   char words[96];
   snprintf(words, sizeof words, "%zu %s", count, name);
-  size_t length = strlen(words);
-  if (count == 1 && scree_ends_with(words, "vertices"))
-    memcpy(words + length - 4, "x", 2);
-  else if (count == 1 && (scree_ends_with(words, "cavities") || scree_ends_with(words, "bodies")))
-    memcpy(words + length - 3, "y", 2);
-  else if (count == 1 && scree_ends_with(words, "s"))
-    words[length - 1] = 0;
+  for (size_t i = 0; count == 1 && i < sizeof endings / sizeof *endings; i++) {
+    if (!scree_ends_with(words, endings[i].several)) continue;
+    size_t begin = strlen(words) - strlen(endings[i].several);
+    snprintf(words + begin, sizeof words - begin, "%s", endings[i].one);
+    break;
+  }
   for (char *c = words; *c; c++)
     if (*c == '_') *c = ' ';
   add_text(t, words);

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/number.h"
 #include "mesh/weld.h"
+#include "mesh/write.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -41,7 +42,7 @@ scree_status scree_reading_fail(const scree_reading *r, scree_status status, con
 scree_text scree_reading_text(const scree_reading *r) {
   const char *begin = (const char *)r->bytes, *end = begin + r->byte_count, *p = begin;
   if (r->byte_count >= 3 && !memcmp(p, "\xef\xbb\xbf", 3)) p += 3;
-  return (scree_text){begin, p, end, r->name, r->options->unit_m, r->error};
+  return (scree_text){begin, p, end, r->name, r->unit_m, r->error};
 }
 
 typedef struct scaled_positions {
@@ -130,11 +131,42 @@ static size_t stl_count(const unsigned char *bytes) {
          (size_t)bytes[83] << 24;
 }
 
-/* The length is what the count in the header says; a count made of text is a text file of that very
- * length by chance, and far longer than any. */
-bool scree_is_whole_stl(const unsigned char *bytes, size_t byte_count) {
-  if (byte_count < SCREE_STL_HEADER) return false;
-  return byte_count == SCREE_STL_HEADER + stl_count(bytes) * SCREE_STL_FACET;
+/* A count made of text is a text file of that very length by chance, and far longer than any. What
+ * is shorter than its count is cut off, unless the count is all ones, as writers leave it that did
+ * not know it yet. */
+scree_stl_length scree_stl_length_of(const unsigned char *bytes, size_t byte_count) {
+  if (byte_count < SCREE_STL_HEADER) return SCREE_STL_OTHER_LENGTH;
+  unsigned char swapped[SCREE_STL_HEADER] = {0};
+  for (int i = 0; i < 4; i++) swapped[80 + i] = bytes[83 - i];
+  size_t body = byte_count - SCREE_STL_HEADER, room = body / SCREE_STL_FACET;
+  size_t count = stl_count(bytes);
+  if (body != room * SCREE_STL_FACET) return SCREE_STL_OTHER_LENGTH;
+  if (count == room) return SCREE_STL_WHOLE;
+  if (stl_count(swapped) == room) return SCREE_STL_SWAPPED;
+  return room && (count < room || count == UINT32_MAX) ? SCREE_STL_MISCOUNTED
+                                                       : SCREE_STL_OTHER_LENGTH;
+}
+
+/* scree's comment stands in a binary STL's header, behind `solid`, and behind the words for
+ * comments of PLY, OBJ and OFF. */
+void scree_reading_take_unit(scree_reading *r, const unsigned char *bytes, size_t byte_count) {
+  static const char *const marks[] = {"", "solid ", "comment ", "# "};
+  enum { LINES = 4 };
+  const char *p = (const char *)bytes;
+  const char *end = p + (byte_count < SNIFF_BYTES ? byte_count : SNIFF_BYTES);
+  double *unit = &r->scan->comment_unit_m;
+  for (int line = 0; line < LINES && p && *unit == 0; line++) {
+    for (size_t i = 0; i < sizeof marks / sizeof *marks && *unit == 0; i++) {
+      size_t length = strlen(marks[i]);
+      if ((size_t)(end - p) >= length && !memcmp(p, marks[i], length))
+        *unit = scree_provenance_unit(p + length, end);
+    }
+    p = memchr(p, '\n', (size_t)(end - p));
+    if (p) p++;
+  }
+  if (*unit == 0 || r->options->ignore_comment_unit) return;
+  r->unit_m = *unit;
+  r->scan->states_unit = true;
 }
 
 /* The first word behind lines of comment. */
@@ -236,12 +268,44 @@ static bool starts_with(const scree_reading *r, const char *bytes, size_t count)
   return r->byte_count >= count && !memcmp(r->bytes, bytes, count);
 }
 
-/* A main chunk of the file's own length. */
+static uint32_t load_u32(const unsigned char *b) {
+  return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+/* A main chunk, whose length stands in it, and in it a version, an editor's chunk or materials. */
 static bool looks_like_3ds(const scree_reading *r) {
   const unsigned char *b = r->bytes;
-  return r->byte_count > 16 && b[0] == 0x4d && b[1] == 0x4d &&
-         ((uint32_t)b[2] | (uint32_t)b[3] << 8 | (uint32_t)b[4] << 16 | (uint32_t)b[5] << 24) ==
-             r->byte_count;
+  if (r->byte_count <= 16 || b[0] != 0x4d || b[1] != 0x4d) return false;
+  unsigned first = b[6] | (unsigned)b[7] << 8;
+  return load_u32(b + 2) == r->whole_count || first == 0x0002 || first == 0x3d3d || first == 0x3d3e;
+}
+
+static scree_status read_3ds(scree_reading *r) {
+  uint32_t length = load_u32(r->bytes + 2);
+  if (length <= r->whole_count) return scree_read_import(r, SCREE_IMPORT_3DS);
+  return scree_reading_fail(r, SCREE_BAD_FILE,
+                            "3DS, cut off: its first chunk says %u bytes, but the file has %zu",
+                            length, r->whole_count);
+}
+
+/* The version that stands behind the mark of a binary glTF, or in the member `asset` of a text. */
+static bool is_gltf_1(const scree_reading *r, scree_import_format format) {
+  if (format == SCREE_IMPORT_GLB) return r->byte_count >= 8 && load_u32(r->bytes + 4) == 1;
+  static const char *const way[] = {"\"asset\"", "\"version\"", "\""};
+  const char *p = (const char *)r->bytes, *end = p + r->byte_count;
+  for (size_t i = 0; i < sizeof way / sizeof *way; i++) {
+    size_t length = strlen(way[i]);
+    while ((size_t)(end - p) > length && memcmp(p, way[i], length) != 0) p++;
+    if ((size_t)(end - p) <= length) return false;
+    p += length;
+  }
+  return *p == '1';
+}
+
+static scree_status read_gltf(scree_reading *r, scree_import_format format) {
+  if (!is_gltf_1(r, format)) return scree_read_import(r, format);
+  return scree_reading_fail(r, SCREE_UNSUPPORTED,
+                            "is glTF 1.0, and 2.0 is what scree reads; convert it first");
 }
 
 /* Text but for a few bytes, and where the first of these is: no float and no count looks so. */
@@ -288,8 +352,10 @@ static size_t imported_mark_of(const scree_reading *r) {
 
 static scree_status read_binary_or_fail(scree_reading *r) {
   size_t imported = imported_mark_of(r);
+  if (imported < IMPORTED_MARK_COUNT && imported_marks[imported].format == SCREE_IMPORT_GLB)
+    return read_gltf(r, SCREE_IMPORT_GLB);
   if (imported < IMPORTED_MARK_COUNT) return scree_read_import(r, imported_marks[imported].format);
-  if (looks_like_3ds(r)) return scree_read_import(r, SCREE_IMPORT_3DS);
+  if (looks_like_3ds(r)) return read_3ds(r);
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++) {
     const mark *m = &foreign_marks[i];
     if (starts_with(r, m->bytes, m->length))
@@ -306,21 +372,23 @@ static scree_status read_binary_or_fail(scree_reading *r) {
     return scree_reading_fail(r, SCREE_BAD_FILE,
                               "too short: %zu bytes; a binary STL has at least %d", r->byte_count,
                               SCREE_STL_HEADER);
-  return scree_read_stl_binary(r);
+  return scree_read_stl_binary(r, scree_stl_length_of(r->bytes, r->whole_count));
 }
 
 static scree_status read_any(scree_reading *r) {
   if (r->byte_count == 0) return scree_reading_fail(r, SCREE_BAD_FILE, "the file is empty");
+  scree_reading_take_unit(r, r->bytes, r->byte_count);
   scree_text text = scree_reading_text(r), start = text;
   if (scree_token_is(scree_text_next(&start), "ply")) return scree_read_ply(r);
-  if (scree_is_whole_stl(r->bytes, r->whole_count)) return scree_read_stl_binary(r);
+  if (scree_stl_length_of(r->bytes, r->whole_count) == SCREE_STL_WHOLE)
+    return scree_read_stl_binary(r, SCREE_STL_WHOLE);
   if (!looks_like_text(r->bytes, r->byte_count)) return read_binary_or_fail(r);
   start = text;
   scree_token word = scree_text_next(&start);
   if (scree_token_is(word, "solid")) return scree_read_stl_ascii(r);
   if (looks_like_off(text)) return scree_read_off(r);
   if (looks_like_obj(text)) return scree_read_obj(r);
-  if (looks_like_gltf(text)) return scree_read_import(r, SCREE_IMPORT_GLTF);
+  if (looks_like_gltf(text)) return read_gltf(r, SCREE_IMPORT_GLTF);
   scree_import_format format;
   if (find_xml_format(text, &format)) return scree_read_import(r, format);
   scree_text_skip_space(&text);
@@ -388,12 +456,13 @@ static size_t judge(const char *beginning, size_t byte_count, size_t whole_count
   size_t damaged = 0;
   if (byte_count < SCREE_JUDGED_BYTES) return SIZE_MAX; /* it has ended */
   if (scree_token_is(scree_text_next(&start), "ply")) return SIZE_MAX;
-  if (scree_is_whole_stl(bytes, whole_count)) return SIZE_MAX;
+  if (scree_stl_length_of(bytes, whole_count) == SCREE_STL_WHOLE) return SIZE_MAX;
   if (looks_like_text(bytes, byte_count)) return may_be_text_format(text) ? SIZE_MAX : byte_count;
   if (imported_mark_of(&r) < IMPORTED_MARK_COUNT || starts_with(&r, "MM", 2)) return SIZE_MAX;
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++)
     if (starts_with(&r, foreign_marks[i].bytes, foreign_marks[i].length)) return byte_count;
   if (is_binary_off(text) || is_damaged_text(&r, &damaged)) return byte_count;
+  if (scree_stl_length_of(bytes, whole_count) != SCREE_STL_OTHER_LENGTH) return SIZE_MAX;
   size_t enough = SCREE_STL_HEADER + (stl_count(bytes) + 1) * SCREE_STL_FACET;
   bool cut_off = whole_count < enough - SCREE_STL_FACET;
   return cut_off ? byte_count : enough;
@@ -412,6 +481,7 @@ static scree_status read_stream(const char *path, const scree_read_options *opti
                        &made, error};
     status = scree_read_stl_stream(&r, &stream, done);
     made.checksum = scree_stream_checksum(&stream);
+    made.unit_m = r.unit_m;
     if (*done)
       *scan = made;
     else

@@ -25,8 +25,16 @@ scree_text scree_reading_text(const scree_reading *r);
 
 enum { SCREE_STL_HEADER = 84, SCREE_STL_FACET = 50 };
 
+/* A binary STL's length beside the count in its header. */
+typedef enum scree_stl_length {
+  SCREE_STL_WHOLE,       /* what the count says */
+  SCREE_STL_SWAPPED,     /* what the count says with the most significant byte first */
+  SCREE_STL_MISCOUNTED,  /* whole facets, but the count is too low, or the highest there is */
+  SCREE_STL_OTHER_LENGTH /* anything else */
+} scree_stl_length;
+
 /* The readers. Each fills scan->mesh, format and counts. */
-scree_status scree_read_stl_binary(scree_reading *r);
+scree_status scree_read_stl_binary(scree_reading *r, scree_stl_length length);
 /* A binary STL whose length is what its count says, welded as it is read: then *done, and r->bytes
  * are not needed. Where anything is wrong with the file it is not done, and no error, for
  * scree_read_stl_binary has the sentences. */
@@ -37,9 +45,11 @@ scree_status scree_read_obj(scree_reading *r);
 scree_status scree_read_off(scree_reading *r);
 /* Formats read through assimp; a build without it answers SCREE_UNSUPPORTED. */
 scree_status scree_read_import(scree_reading *r, scree_import_format format);
-/* Whether a file of byte_count bytes that begins so (at least SCREE_STL_HEADER of them, or all) is
- * a binary STL as long as its count says. */
-bool scree_is_whole_stl(const unsigned char *bytes, size_t byte_count);
+/* How long a file of byte_count bytes that begins so (at least SCREE_STL_HEADER of them, or all) is
+ * as a binary STL. */
+scree_stl_length scree_stl_length_of(const unsigned char *bytes, size_t byte_count);
+/* Takes the unit that scree wrote into the file's first lines, unless the options say not to. */
+void scree_reading_take_unit(scree_reading *r, const unsigned char *bytes, size_t byte_count);
 /* Whether the word begins an OFF file, also of a kind that is refused. */
 bool scree_is_off_word(scree_token word);
 

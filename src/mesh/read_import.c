@@ -21,6 +21,7 @@
 #include <assimp/scene.h>
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -249,6 +250,25 @@ static void explain_split(const import *im, scree_import_answer *a) {
       scree_import_kinds[im->format].name);
 }
 
+/* What assimp makes of the file; NULL with the reason in the answer. */
+static const struct aiScene *import_scene(const import *im, scree_import_answer *a) {
+  const scree_import_kind *kind = &scree_import_kinds[im->format];
+  unsigned char *narrow = NULL;
+  size_t count = im->byte_count;
+  if (im->format == SCREE_IMPORT_3MF && !scree_zip_narrow(im->bytes, count, &narrow, &count)) {
+    a->status = SCREE_LIMIT;
+    snprintf(a->message, sizeof a->message, "as %s: reading it takes more memory than it is given",
+             kind->name);
+    return NULL;
+  }
+  const struct aiScene *scene =
+      aiImportFileFromMemory((const char *)(narrow ? narrow : im->bytes), (unsigned)count,
+                             aiProcess_Triangulate, kind->hint);
+  if (!scene) explain_refusal(im, a);
+  free(narrow);
+  return scene;
+}
+
 /* A child's work. */
 static bool import_in_child(void *context, int output) {
   static walk w;
@@ -256,11 +276,7 @@ static bool import_in_child(void *context, int output) {
   scree_import_answer a = {.unit_m = 1, .unit_name = "meter"};
   const struct aiScene *scene = NULL;
   if (scree_import_kinds[im->format].unit == SCREE_UNIT_IN_ROOT) find_root_unit(im, &a);
-  if (a.status == SCREE_OK) {
-    scene = aiImportFileFromMemory((const char *)im->bytes, (unsigned)im->byte_count,
-                                   aiProcess_Triangulate, scree_import_kinds[im->format].hint);
-    if (!scene) explain_refusal(im, &a);
-  }
+  if (a.status == SCREE_OK) scene = import_scene(im, &a);
   if (scene) {
     if (scree_import_kinds[im->format].unit == SCREE_UNIT_IN_SCENE) find_scene_unit(scene, &a);
     walk_scene(&w, scene, -1);

@@ -23,11 +23,15 @@ static void skip_comments(scree_text *t) {
  * them, which only its small letter tells from N. Otherwise letters of either case will do. */
 typedef struct off_word {
   bool known, has_other_dimension;
+  const char *end; /* some writers put the first number right behind the word */
 } off_word;
 
 static off_word parse_word(scree_token word) {
-  const char *p = word.begin, *end = p + word.length;
-  off_word w = {false, false};
+  off_word w = {.known = false};
+  while (word.length > 3 && word.begin[word.length - 1] >= '0' &&
+         word.begin[word.length - 1] <= '9')
+    word.length--;
+  const char *p = word.begin, *end = w.end = p + word.length;
   if (word.length < 3 || !scree_token_is((scree_token){end - 3, 3}, "off")) return w;
   end -= 3;
   bool small = *end == 'o';
@@ -86,7 +90,9 @@ static void skip_edge_count(scree_text *t) {
 static scree_status read_header(scree_text *t, off *o) {
   skip_comments(t);
   scree_token word = scree_text_next(t);
-  if (parse_word(word).has_other_dimension)
+  off_word parsed = parse_word(word);
+  t->p = parsed.end;
+  if (parsed.has_other_dimension)
     return scree_fail(t->error, SCREE_UNSUPPORTED,
                       "%s: the header %.*s says that vertices have more or fewer than three "
                       "coordinates; such an OFF is not read",

@@ -2,7 +2,10 @@
  * their rows, as text or binary in either byte order. Used are x, y, z of `vertex`, the corners of
  * `face` (polygons are cut into triangles) and of `tristrips` (-1 ends a strip, every second
  * triangle of a strip is turned); all else is skipped. A row count is believed only if the file has
- * room for so many of the shortest rows. */
+ * room for so many of the shortest rows.
+ *
+ * White space of any kind separates values of a text. Where that does not come out and a row has
+ * more values on its line than the header tells of, the text is read again by lines. */
 #include "mesh/read_ply.h"
 
 #include "base/array.h"
@@ -23,6 +26,9 @@ typedef struct ply {
   double *positions;
   scree_index_list corners; /* of the row */
   scree_face_list faces;
+  bool by_lines;        /* what follows a row on its line is left out */
+  const char *overlong; /* the first row that has more on its line */
+  char warning[160];    /* about it */
 } ply;
 
 static bool is_ascii(const ply *p) {
@@ -246,6 +252,32 @@ static scree_status check_element(const ply *p) {
   return SCREE_OK;
 }
 
+/* Whether a line ends between two places of a row. */
+static bool spans_lines(const char *begin, const char *end) {
+  return memchr(begin, '\n', (size_t)(end - begin)) || memchr(begin, '\r', (size_t)(end - begin));
+}
+
+/* Of a text: what stands on the row's line behind its values. */
+static scree_status finish_line(ply *p, const char *begin) {
+  scree_text *t = &p->text;
+  const char *values_end = t->p;
+  scree_text_skip_blanks(t);
+  bool more = !scree_text_at_line_end(t);
+  if (more && !p->overlong) {
+    p->overlong = begin;
+    snprintf(p->warning, sizeof p->warning,
+             "%s %zu of %zu has more values on its line than the header tells of; the rest of such "
+             "lines was left out",
+             p->element->name, p->row + 1, p->element->count);
+  }
+  if (p->by_lines && spans_lines(begin, values_end)) {
+    t->p = begin;
+    return fail_at(p, "fewer values on this line than the header tells of, and others have more");
+  }
+  if (p->by_lines) scree_text_skip_line(t);
+  return SCREE_OK;
+}
+
 static scree_status read_element(ply *p) {
   scree_status status = check_element(p);
   if (status != SCREE_OK) return status;
@@ -258,9 +290,11 @@ static scree_status read_element(ply *p) {
   const scree_ply_property *properties = properties_of(p);
   size_t row_count = p->element->property_count ? p->element->count : 0;
   for (p->row = 0; p->row < row_count && status == SCREE_OK; p->row++) {
+    const char *begin = value_start(p);
     for (size_t i = 0; i < p->element->property_count && status == SCREE_OK; i++)
       status = read_property(p, &properties[i]);
     if (status == SCREE_OK) status = finish_row(p);
+    if (status == SCREE_OK && is_ascii(p)) status = finish_line(p, begin);
   }
   return status;
 }
@@ -302,21 +336,40 @@ static scree_status check_end(ply *p) {
 static const char *const format_names[] = {"PLY ASCII", "PLY binary little endian",
                                            "PLY binary big endian"};
 
+static scree_status read_data(ply *p) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < p->header.elements.count && status == SCREE_OK; i++) {
+    p->element = &p->header.elements.items[i];
+    status = read_element(p);
+  }
+  return status == SCREE_OK ? check_end(p) : status;
+}
+
+static void forget_data(ply *p) {
+  scree_free(p->positions);
+  p->positions = NULL;
+  scree_face_list_free(&p->faces);
+}
+
 scree_status scree_read_ply(scree_reading *r) {
   ply p = {.text = scree_reading_text(r)};
   scree_status status = scree_ply_header_read(&p.text, &p.header);
   if (status == SCREE_OK) status = find_vertices(&p);
-  for (size_t i = 0; i < p.header.elements.count && status == SCREE_OK; i++) {
-    p.element = &p.header.elements.items[i];
-    status = read_element(&p);
+  const char *data = p.text.p;
+  if (status == SCREE_OK) status = read_data(&p);
+  if (status == SCREE_BAD_FILE && p.overlong) {
+    p.by_lines = true;
+    p.text.p = data;
+    forget_data(&p);
+    status = read_data(&p);
+    if (status == SCREE_OK && r->error) *r->error = (scree_error){.status = SCREE_OK};
+    snprintf(r->scan->warning, sizeof r->scan->warning, "%s", p.warning);
   }
-  if (status == SCREE_OK) status = check_end(&p);
   snprintf(r->scan->format, sizeof r->scan->format, "%s", format_names[p.header.encoding]);
   if (status == SCREE_OK)
     status = scree_reading_weld_faces(r, p.positions, p.vertex_count, &p.faces);
   scree_ply_header_free(&p.header);
-  scree_free(p.positions);
   scree_free(p.corners.items);
-  scree_face_list_free(&p.faces);
+  forget_data(&p);
   return status;
 }

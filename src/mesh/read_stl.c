@@ -38,7 +38,13 @@ static float load_float(const unsigned char *p) {
 typedef struct binary_facets {
   const unsigned char *first;
   double unit_m;
+  bool swapped; /* the most significant byte comes first */
 } binary_facets;
+
+static float load_swapped(const unsigned char *p) {
+  const unsigned char turned[4] = {p[3], p[2], p[1], p[0]};
+  return load_float(turned);
+}
 
 static void unpack(const unsigned char *facet, size_t count, double unit_m, double *out) {
   const unsigned char *p = facet + NORMAL_BYTES;
@@ -46,13 +52,21 @@ static void unpack(const unsigned char *facet, size_t count, double unit_m, doub
     for (size_t i = 0; i < 9; i++) *out++ = (double)load_float(p + 4 * i) * unit_m;
 }
 
+static void unpack_swapped(const unsigned char *facet, size_t count, double unit_m, double *out) {
+  const unsigned char *p = facet + NORMAL_BYTES;
+  for (size_t f = 0; f < count; f++, p += FACET_BYTES)
+    for (size_t i = 0; i < 9; i++) *out++ = (double)load_swapped(p + 4 * i) * unit_m;
+}
+
 /* Corners come in whole facets. */
 static void fetch_binary(const void *context, size_t first, size_t count, double *out) {
   const binary_facets *facets = context;
-  unpack(facets->first + first / 3 * FACET_BYTES, count / 3, facets->unit_m, out);
+  const unsigned char *begin = facets->first + first / 3 * FACET_BYTES;
+  (facets->swapped ? unpack_swapped : unpack)(begin, count / 3, facets->unit_m, out);
 }
 
-static scree_status fail_bad_corner(const scree_reading *r, size_t corner) {
+static scree_status fail_bad_corner(const scree_reading *r, size_t corner, bool swapped) {
+  float (*load)(const unsigned char *) = swapped ? load_swapped : load_float;
   size_t byte = HEADER_BYTES + corner / 3 * FACET_BYTES + NORMAL_BYTES + corner % 3 * 12;
   const unsigned char *p = r->bytes + byte;
   return scree_reading_fail(r, SCREE_BAD_FILE,
@@ -60,8 +74,8 @@ static scree_status fail_bad_corner(const scree_reading *r, size_t corner) {
                             "coordinates must be finite and "
                             "at most %g m in size",
                             corner / 3 + 1, r->scan->facet_count, corner % 3 + 1, byte,
-                            (double)load_float(p), (double)load_float(p + 4),
-                            (double)load_float(p + 8), SCREE_COORDINATE_LIMIT);
+                            (double)load(p), (double)load(p + 4), (double)load(p + 8),
+                            SCREE_COORDINATE_LIMIT);
 }
 
 static void describe_binary(scree_scan *scan, size_t facet_count) {
@@ -70,32 +84,47 @@ static void describe_binary(scree_scan *scan, size_t facet_count) {
   scan->solid_count = 1;
 }
 
-scree_status scree_read_stl_binary(scree_reading *r) {
+/* How the file is read although its count is wrong. */
+static void describe_length(scree_scan *scan, scree_stl_length length, size_t count, size_t room) {
+  if (length == SCREE_STL_SWAPPED) {
+    snprintf(scan->format, sizeof scan->format, "STL binary big endian");
+    snprintf(scan->warning, sizeof scan->warning,
+             "a big-endian binary STL, which is against the format; read as such");
+  } else if (length == SCREE_STL_MISCOUNTED) {
+    snprintf(scan->warning, sizeof scan->warning,
+             "bytes 80 to 83 say %zu facets, but %zu fill the file exactly; all of them were read",
+             count, room);
+  }
+}
+
+scree_status scree_read_stl_binary(scree_reading *r, scree_stl_length length) {
   scree_scan *scan = r->scan;
   size_t count = load_u32(r->bytes + 80), room = (r->whole_count - HEADER_BYTES) / FACET_BYTES;
+  bool swapped = length == SCREE_STL_SWAPPED;
   if (r->whole_count == SCREE_NO_END)
     return scree_reading_fail(
         r, SCREE_BAD_FILE,
         "binary STL with a wrong count: bytes 80 to 83 say %zu facets, which take %zu bytes, but "
         "more than %zu came",
         count, HEADER_BYTES + count * FACET_BYTES, r->byte_count - 1);
-  if (count != room)
+  if (count != room && !swapped && length != SCREE_STL_MISCOUNTED)
     return scree_reading_fail(
         r, SCREE_BAD_FILE,
         "binary STL %s: bytes 80 to 83 say %zu facets, which take %zu bytes, but the file has %zu "
         "bytes, room for %zu facets",
         count > room ? "cut off" : "with a wrong count", count, HEADER_BYTES + count * FACET_BYTES,
         r->whole_count, room);
-  if (count == 0)
+  if (room == 0)
     return scree_reading_fail(r, SCREE_BAD_FILE, "binary STL with no facets: bytes 80 to 83 say 0");
-  describe_binary(scan, count);
-  scan->ignored_byte_count = r->byte_count - HEADER_BYTES - count * FACET_BYTES;
-  binary_facets facets = {r->bytes + HEADER_BYTES, r->options->unit_m};
-  scree_corner_source source = {fetch_binary, &facets, 3 * count, NULL, count};
+  describe_binary(scan, room);
+  describe_length(scan, length, count, room);
+  scan->ignored_byte_count = r->byte_count - HEADER_BYTES - room * FACET_BYTES;
+  binary_facets facets = {r->bytes + HEADER_BYTES, r->unit_m, swapped};
+  scree_corner_source source = {fetch_binary, &facets, 3 * room, NULL, room};
   size_t bad_corner = SIZE_MAX;
   scree_status status = scree_weld_corners(&source, r->options->weld_tolerance, &scan->mesh,
                                            &scan->degenerate_count, &bad_corner, r->error);
-  return bad_corner != SIZE_MAX ? fail_bad_corner(r, bad_corner) : status;
+  return bad_corner != SIZE_MAX ? fail_bad_corner(r, bad_corner, swapped) : status;
 }
 
 /* ---- binary, in pieces ---- */
@@ -145,8 +174,9 @@ scree_status scree_read_stl_stream(scree_reading *r, scree_stream *stream, bool 
   scree_scan *scan = r->scan;
   *done = false;
   if (r->byte_count <= HEADER_BYTES || !scree_stream_read(stream, header, sizeof header) ||
-      may_begin_as_ply(r, header) || !scree_is_whole_stl(header, r->byte_count))
+      may_begin_as_ply(r, header) || scree_stl_length_of(header, r->byte_count) != SCREE_STL_WHOLE)
     return SCREE_OK;
+  scree_reading_take_unit(r, header, sizeof header);
   size_t count = load_u32(header + 80), bad_corner = SIZE_MAX;
   piece p = {.stream = stream, .facet_count = count, .unit_m = r->unit_m}, *context = &p;
   scree_status status = SCREE_OUT_OF_MEMORY;

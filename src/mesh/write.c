@@ -247,6 +247,20 @@ static void make_provenance(scree_writing *w, const char *comment) {
     if ((unsigned char)*p < ' ' || *p == 127) *p = ' ';
 }
 
+/* "scree VERSION, unit NUMBER m" */
+double scree_provenance_unit(const char *begin, const char *end) {
+  static const char name[] = "scree ", unit[] = " unit ";
+  const size_t name_length = sizeof name - 1, unit_length = sizeof unit - 1;
+  double value = 0;
+  if ((size_t)(end - begin) < name_length || memcmp(begin, name, name_length) != 0) return 0;
+  const char *comma = memchr(begin, ',', (size_t)(end - begin));
+  if (!comma || (size_t)(end - comma) <= unit_length || memcmp(comma + 1, unit, unit_length) != 0)
+    return 0;
+  const char *behind = scree_number_parse(comma + 1 + unit_length, end, &value);
+  bool whole = behind && end - behind >= 2 && behind[0] == ' ' && behind[1] == 'm';
+  return whole && value >= 1e-12 && value <= 1e12 ? value : 0;
+}
+
 static void write_body(const scree_writing *w, scree_file_format format) {
   switch (format) {
   case SCREE_FORMAT_STL:

@@ -21,6 +21,10 @@ static inline vec3 scree_writing_position(const scree_writing *w, uint32_t verte
   return (vec3){p.x / w->unit_m, p.y / w->unit_m, p.z / w->unit_m};
 }
 
+/* The unit in metres of a provenance that begins so, as a comment in a file has it; 0: it is none
+ * of scree's. */
+double scree_provenance_unit(const char *begin, const char *end);
+
 /* A 3MF stays below the 4 GiB of a plain zip: 95 bytes a vertex and 54 a triangle at most. */
 #define SCREE_3MF_LIMIT ((size_t)25000000)
 

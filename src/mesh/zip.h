@@ -16,6 +16,12 @@ typedef struct scree_zip_member {
 bool scree_zip_find(const unsigned char *bytes, size_t byte_count, const char *name,
                     scree_zip_member *member);
 
+/* The same archive without zip64, which assimp cannot read, where it has any and does without: then
+ * *narrow is to be freed with free(), else NULL. False where memory is out. For a child process, so
+ * that it allocates as assimp does. */
+bool scree_zip_narrow(const unsigned char *bytes, size_t byte_count, unsigned char **narrow,
+                      size_t *narrow_count);
+
 /* The first `capacity` bytes of the member, or fewer; answers how many. */
 size_t scree_zip_peek(const scree_zip_member *member, char *out, size_t capacity);
 

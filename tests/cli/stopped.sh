@@ -54,7 +54,7 @@ done
 echo "nothing or all of it"
 # the hull of a cylinder takes qhull half a minute, and is left at once
 awk 'BEGIN { n = 16000; printf "OFF\n%d %d 0\n", 2 * n, n + 2
-  for (i = 0; i < 2 * n; i++) printf "%.9f %.9f %d\n", cos(i % n * 6.283185307 / n), sin(i % n * 6.283185307 / n), i >= n
+  for (i = 0; i < 2 * n; i++) printf "%.9f %.9f %d\n", cos(i % n * 6.283185307 / n), sin(i % n * 6.283185307 / n), (i >= n)
   for (i = 0; i < n; i++) printf "4 %d %d %d %d\n", i, (i + 1) % n, n + (i + 1) % n, n + i
   printf "%d", n; for (i = n; i > 0; i--) printf " %d", i - 1
   printf "\n%d", n; for (i = 0; i < n; i++) printf " %d", n + i; print "" }' >cylinder.off

@@ -1,0 +1,17 @@
+#!/bin/sh
+# Runs the tests of a build and names at the end what was skipped: whole tests, and single ones in a program.
+# usage: test.sh PRESET [CTEST_OPTIONS...]
+preset=$1
+shift
+cd "$(dirname "$0")/.." || exit 1
+code=0
+ctest --preset "$preset" "$@" || code=$?
+log=build/$preset/Testing/Temporary/LastTest.log
+awk '/^[0-9]+\/[0-9]+ Testing: / { test = $3; why = "" }
+  /^skipped: / { why = ": " substr($0, 10) }
+  /^\[  SKIPPED \] [0-9]+ test/ { next }
+  /^\[  SKIPPED \] / { name = test " (" substr($0, 15) ")"; if (!seen[name]++) skipped[++count] = name }
+  /^Test Skipped/ { skipped[++count] = test why }
+  END { if (count) print "\nskipped:"
+    for (i = 1; i <= count; i++) print "  " skipped[i] }' "$log"
+exit $code
