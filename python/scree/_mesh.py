@@ -14,7 +14,7 @@ class Mesh:
     def __init__(self, positions=None, triangles=None, *, weld=False):
         """Of rows of three coordinates and rows of three vertex indices. weld unites equal positions and puts
         everything in scree's canonical order."""
-        self.source, self.format, self.checksum = None, None, c.scree_checksum()
+        self.source, self.format, self.warning, self.checksum = None, None, "", c.scree_checksum()
         if positions is None:
             self._own(c.scree_mesh())
             return
@@ -234,19 +234,22 @@ def _level(struct):
     return level
 
 
-def load(path, unit="mm", weld=0.0, **sample_options):
-    """Reads STL, PLY, OBJ, OFF (3MF, glTF); or makes a built-in sample by "sample:NAME". The mesh carries source,
-    format and checksum of what was read."""
+def load(path, unit=None, weld=0.0, **sample_options):
+    """Reads STL, PLY, OBJ, OFF (3MF, glTF); or makes a built-in sample by "sample:NAME". Without a unit it is the
+    one that the file states, as files of scree do, else mm. The mesh carries source, format and checksum of what
+    was read, and warning: in what the file contradicts itself, "" in nothing."""
     path = os.fspath(path)
     if isinstance(path, str) and path.startswith("sample:"):
         return sample(path[len("sample:"):], **sample_options)
     if sample_options:
         raise TypeError(f"{', '.join(sample_options)}: options of samples only")
     options, scan = lib["default_read_options"](), c.scree_scan()
-    options.unit_m, options.weld_tolerance = metres(unit), weld
+    options.unit_m, options.weld_tolerance = metres(unit or "mm"), weld
+    options.ignore_comment_unit = unit is not None
     call("scan_read", os.fsencode(path), options, scan)
     mesh = Mesh._of(scan.mesh, os.fsdecode(path))
-    mesh.format, mesh.checksum = scan.format.decode(), c.scree_checksum(scan.checksum.high, scan.checksum.low)
+    mesh.format, mesh.warning = scan.format.decode(), scan.warning.decode()
+    mesh.checksum = c.scree_checksum(scan.checksum.high, scan.checksum.low)
     return mesh
 
 

@@ -470,5 +470,6 @@ int cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
   }
   p.input_count = *input_count;
   int result = check_input_count(verb, inputs, *input_count);
+  common->unit_given = is_given(&p, "unit", strlen("unit"));
   return result ? result : check_partners(&p);
 }

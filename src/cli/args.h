@@ -68,6 +68,7 @@ const cli_verb *cli_find_verb(const char *name);
 typedef struct cli_common {
   bool help, quiet, verbose, progress;
   size_t threads, max_memory;
+  bool unit_given; /* the verb's own option --unit was */
 } cli_common;
 extern const cli_option cli_common_options[];
 extern const size_t cli_common_option_count;

@@ -1,7 +1,9 @@
-#include "cli/input.h"
-
 #include "base/platform.h"
+#include "cli/input.h"
+#include "cli/terminal.h"
 
+#include <math.h>
+#include <stdarg.h>
 #include <string.h>
 
 static const char SAMPLE_PREFIX[] = "sample:";
@@ -23,6 +25,75 @@ static void hint_sample(const char *word, scree_error *error) {
                SAMPLE_PREFIX, word);
 }
 
+/* ---- Remarks ---- */
+
+/* What particles are: from fine sand to boulders, and no lighter than foam. */
+static const double smallest_size = 1e-4, largest_size = 10; /* m */
+static const double least_density = 50;                      /* kg/m^3 */
+
+static bool is_quiet, unit_is_given;
+
+void cli_input_obeys(const cli_common *common) {
+  is_quiet = common->quiet;
+  unit_is_given = common->unit_given;
+}
+
+void cli_remark(const char *word, const char *format, ...) {
+  char shown[CLI_PRINTABLE_BYTES], sentence[512];
+  va_list arguments;
+  if (is_quiet) return;
+  va_start(arguments, format);
+  vsnprintf(sentence, sizeof sentence, format, arguments);
+  va_end(arguments);
+  cli_terminal_end();
+  fprintf(stderr, "%s: %s\n",
+          cli_printable(strcmp(word, "-") != 0 ? word : "standard input", shown), sentence);
+}
+
+/* The largest of the three dimensions, as the positions are. */
+static double size_of(const scree_mesh *mesh) {
+  double size = 0;
+  for (size_t k = 0; k < 3; k++) {
+    double low = INFINITY, high = -INFINITY;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+      low = fmin(low, mesh->positions[3 * v + k]);
+      high = fmax(high, mesh->positions[3 * v + k]);
+    }
+    size = fmax(size, high - low);
+  }
+  return size;
+}
+
+/* "mm", or "0.007 m" of a unit without a name. */
+static const char *unit_text(double unit_m, char buffer[32]) {
+  const char *name = cli_unit_name(unit_m);
+  if (*name != '?') return name;
+  snprintf(buffer, 32, "%.6g m", unit_m);
+  return buffer;
+}
+
+void cli_remark_scan(const char *word, const cli_input_options *options, const scree_scan *scan,
+                     double scale) {
+  char written[32], asked[32];
+  double size = scale * size_of(&scan->mesh);
+  bool states = scan->states_unit || (scan->comment_unit_m > 0 && !unit_is_given);
+  if (scan->warning[0]) cli_remark(word, "%s", scan->warning);
+  if (scan->comment_unit_m > 0 && scan->comment_unit_m != options->read.unit_m)
+    cli_remark(word,
+               unit_is_given ? "scree wrote it in %s; read in %s, as -u says"
+                             : "read in %s, as scree wrote it, not in %s",
+               unit_text(scan->comment_unit_m, written), unit_text(options->read.unit_m, asked));
+  if (size < smallest_size || size > largest_size)
+    cli_remark(word, "%.3g %s across: no size of a particle, is the unit right?%s",
+               size < 1 ? 1e3 * size : size, size < 1 ? "mm" : "m",
+               states ? "" : " -u says which it is");
+}
+
+void cli_remark_density(double density) {
+  if (density > 0 && density < least_density)
+    cli_remark("density", "%g kg/m3 is lighter than any solid: is it meant in g/cm3?", density);
+}
+
 scree_status cli_load(const char *word, const cli_input_options *options,
                       const scree_progress *progress, scree_scan *scan, scree_error *error) {
   const char *name;
@@ -30,6 +101,7 @@ scree_status cli_load(const char *word, const cli_input_options *options,
   scree_status status;
   if (!cli_is_sample(word, &name)) {
     status = scree_scan_read(word, &options->read, scan, error);
+    if (status == SCREE_OK && !options->remarked) cli_remark_scan(word, options, scan, 1);
     if (status == SCREE_OK) return status;
     status = cli_name_in_error(word, error);
     hint_sample(word, error);
@@ -43,8 +115,9 @@ scree_status cli_load(const char *word, const cli_input_options *options,
 }
 
 cli_input_options cli_source_options(const cli_source *source) {
-  cli_input_options input = {scree_default_read_options(), scree_default_sample_options()};
+  cli_input_options input = {scree_default_read_options(), scree_default_sample_options(), false};
   input.read.unit_m = source->unit;
+  input.read.ignore_comment_unit = unit_is_given;
   input.sample.resolution = source->resolution;
   input.sample.noise = source->noise;
   input.sample.seed = source->seed;

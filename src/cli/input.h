@@ -7,6 +7,7 @@
 typedef struct cli_input_options {
   scree_read_options read;
   scree_sample_options sample;
+  bool remarked; /* what is to be remarked of the file has been, or will be */
 } cli_input_options;
 
 /* The options that every verb with surfaces as input has, as a member of its struct. */
@@ -38,8 +39,20 @@ cli_input_options cli_source_options(const cli_source *source);
 /* Whether the word names a built-in sample; then *name (may be NULL) is its name. */
 bool cli_is_sample(const char *word, const char **name);
 
-/* Reads or makes the surface; a sample's format is "sample", its checksum zero. Free with
- * scree_scan_free. */
+/* From here on --quiet and --unit count: without -u, what scree wrote is in the unit that it wrote
+ * into it. */
+void cli_input_obeys(const cli_common *common);
+/* "word: sentence" on stderr, unless it is to be quiet. */
+void cli_remark(const char *word, const char *format, ...) __attribute__((format(printf, 2, 3)));
+/* Remarks where the file contradicts itself, says another unit than the options, or is of a size
+ * that no particle has; positions are in metres once they are multiplied by scale. */
+void cli_remark_scan(const char *word, const cli_input_options *options, const scree_scan *scan,
+                     double scale);
+/* Remarks a density that no solid has, kg/m^3. */
+void cli_remark_density(double density);
+
+/* Reads or makes the surface, and remarks on it; a sample's format is "sample", its checksum zero.
+ * Free with scree_scan_free. */
 scree_status cli_load(const char *word, const cli_input_options *options,
                       const scree_progress *progress, scree_scan *scan, scree_error *error);
 

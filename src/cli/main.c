@@ -1,4 +1,5 @@
 #include "base/platform.h"
+#include "cli/input.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 
@@ -89,6 +90,7 @@ static int run(const cli_verb *verb, int argc, char **argv) {
   }
   scree_set_threads((int)common.threads);
   scree_set_memory_limit(common.max_memory);
+  cli_input_obeys(&common);
   bool show = common.progress || (!common.quiet && scree_is_terminal(stderr));
   cli_call call = {verb,
                    options,

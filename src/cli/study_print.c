@@ -66,16 +66,24 @@ static void print_point(FILE *stream, const scree_study_result *r, size_t index,
   const scree_summary *a = &p->angle_deg;
   const char *label = p->label[0] ? p->label : p->shapes;
   if (!strncmp(label, "rp ", 3) && r->factor_count == 1) label += 3;
-  fprintf(stream, "%-*.*s %9.0f %3zu/%-3zu", width, width, label, p->triangle_count, p->counts.done,
-          r->replicate_count);
-  if (p->counts.done && !p->heap_count)
+  if (isnan(p->triangle_count)) /* before the first run */
+    fprintf(stream, "%-*.*s %9s", width, width, label, "-");
+  else
+    fprintf(stream, "%-*.*s %9.0f", width, width, label, p->triangle_count);
+  fprintf(stream, " %3zu/%-3zu", p->counts.done, r->replicate_count);
+  if (!p->counts.done)
+    fprintf(stream, " %-38s", " -");
+  else if (!p->heap_count)
     fprintf(stream, " %-38s", " no heap");
   else if (a->count < 2)
     fprintf(stream, " %6.2f %31s", a->mean, "");
   else
     fprintf(stream, " %6.2f [%6.2f, %6.2f] %6.2f %6.1f %%", a->mean, a->mean_low, a->mean_high,
             a->sd, 100 * a->cv);
-  fprintf(stream, " %9.4g", p->seconds.mean);
+  if (p->counts.done)
+    fprintf(stream, " %9.4g", p->seconds.mean);
+  else
+    fprintf(stream, " %9s", "-");
   print_comparison(stream, r, index);
   if (p->heap_count && p->heap_count < p->counts.done)
     fprintf(stream, "  (%zu without heap)", p->counts.done - p->heap_count);
@@ -103,6 +111,10 @@ static const char *range_text(scree_in_range in) {
 }
 
 static void print_pick(FILE *stream, const char *what, const double rp[3], scree_in_range in) {
+  if (isnan(rp[1])) {
+    fprintf(stream, "Rp chosen by %s: unknown, the shapes are not decimated yet\n", what);
+    return;
+  }
   fprintf(stream, "Rp chosen by %s: %.2g", what, rp[1]);
   if (rp[0] < rp[2]) fprintf(stream, " (%.2g to %.2g over the shapes)", rp[0], rp[2]);
   fprintf(stream, ", %s\n", range_text(in));

@@ -23,10 +23,15 @@ static scree_status load_unscaled(const char *word, const cli_input_options *opt
                                   scree_error *error) {
   cli_input_options used = *options;
   used.read.unit_m = scree_default_read_options().unit_m;
+  used.read.ignore_comment_unit = used.remarked = true;
   scree_status status = cli_load(word, &used, progress, scan, error);
   if (status != SCREE_OK) return status;
-  *scale = scan->states_unit ? 1 : options->read.unit_m / used.read.unit_m;
-  if (!scan->states_unit) scan->unit_m = options->read.unit_m;
+  bool commented = scan->comment_unit_m > 0 && !options->read.ignore_comment_unit;
+  if (!scan->states_unit) scan->unit_m = commented ? scan->comment_unit_m : options->read.unit_m;
+  *scale = scan->states_unit ? 1 : scan->unit_m / used.read.unit_m;
+  if (!cli_is_sample(word, NULL) && !options->remarked)
+    cli_remark_scan(word, options, scan, *scale);
+  scan->states_unit |= commented;
   return SCREE_OK;
 }
 
@@ -51,13 +56,15 @@ scree_status cli_into_metres(const char *word, const cli_input_options *options,
                              double scale, const scree_progress *progress, scree_mesh *mesh,
                              scree_error *error) {
   scree_scan again;
+  cli_input_options used = *options;
   if (scale == 1) return SCREE_OK;
+  used.remarked = true;
   if (!strcmp(word, "-")) {
     scree_mesh_scale(mesh, scale);
     return SCREE_OK;
   }
   scree_status status =
-      cli_load_closed(word, options, no_repair, progress, &again, NULL, NULL, error);
+      cli_load_closed(word, &used, no_repair, progress, &again, NULL, NULL, error);
   if (status != SCREE_OK) return status;
   scree_mesh_free(mesh);
   *mesh = again.mesh;

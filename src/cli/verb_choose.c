@@ -232,6 +232,7 @@ static int run_choose(const cli_call *call) {
                       "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole "
                       "N from 1 to 1000",
                       a->grid);
+  cli_remark_density(a->density);
   run.options.weight = a->weight;
   run.options.reference = (scree_reference)a->reference;
   run.options.shape_errors = a->errors;

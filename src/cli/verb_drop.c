@@ -362,6 +362,7 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "needs a SHAPE, or --resume with -o DIR");
   if (run.shape_count == 0 && shape_option(run.arguments))
     return cli_misuse(call->verb, "--%s does nothing without a SHAPE", shape_option(run.arguments));
+  cli_remark_density(run.arguments->density);
   scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory"};
   run.shapes = calloc(run.shape_count + 1, sizeof *run.shapes);
   if (!run.shapes) return cli_fail(&error);

@@ -127,6 +127,7 @@ static scree_status write_mesh(const cli_call *call, const scree_scan *scan, con
 
 static scree_status export_surface(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
+  cli_remark_density(a->density);
   cli_input_options input = cli_source_options(&a->source);
   scree_scan scan;
   char json_path[NAME_BYTES];

@@ -194,6 +194,7 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "--density writes beside a file: -o - has none");
   int code = to_stdout ? 0 : cli_check_ending(call->verb, arguments->output, CLI_MESH);
   if (code) return code;
+  cli_remark_density(arguments->density);
   return simplify(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
 }
 

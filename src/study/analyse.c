@@ -312,13 +312,18 @@ static void test_convergence(const analysis *a, scree_family_result *family) {
   family->converged = family->converged_from < finest;
 }
 
-/* Least, largest and geometric mean of the shapes' chosen Rp. */
+/* Least, largest and geometric mean of the shapes' chosen Rp; NaN where some are not made yet. */
 static void gather_picks(const analysis *a, size_t point, scree_family_result *family) {
   const scree_shape_set *set = &a->study->sets[a->study->points[point].set];
   double paper = 0, robust = 0;
   family->paper_low = family->robust_low = INFINITY;
   for (size_t i = 0; i < set->count; i++) {
     const scree_study_shape *shape = &a->study->shapes[set->shapes[i]];
+    if (!(shape->paper_rp > 0 && shape->robust_rp > 0)) {
+      family->paper_low = family->paper_high = family->paper_mean = NAN;
+      family->robust_low = family->robust_high = family->robust_mean = NAN;
+      return;
+    }
     family->paper_low = fmin(family->paper_low, shape->paper_rp);
     family->paper_high = fmax(family->paper_high, shape->paper_rp);
     family->robust_low = fmin(family->robust_low, shape->robust_rp);

@@ -161,9 +161,11 @@ static scree_status read_scan(const scree_study *study, const scree_study_shape 
   scree_read_options read = scree_default_read_options();
   scree_repair_options repair = scree_default_repair_options();
   scree_scan scan;
+  read.ignore_comment_unit = true;
   scree_status status = scree_scan_read(shape->path, &read, &scan, error);
   if (status != SCREE_OK) return status;
-  *scale = scan.states_unit ? 1 : study->unit_m / read.unit_m;
+  double unit = scan.comment_unit_m > 0 ? scan.comment_unit_m : study->unit_m;
+  *scale = scan.states_unit ? 1 : unit / read.unit_m;
   *sum = scan.checksum;
   status = scree_mesh_prepare(&scan.mesh, &repair, progress, &scan.mesh, NULL, error);
   if (status != SCREE_OK)

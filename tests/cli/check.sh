@@ -47,3 +47,8 @@ run repair -q bowl.off -o full.off
 run choose bowl.off
 run repair -q bowl.off -o full.off --large-holes | tail -1
 run choose bowl.off --no-repair
+# what scree wrote is read in the unit it was written in; -u goes before; sizes that no particle has are named
+"$SCREE" simplify sample:box-12 -n 12 -u m -o metres.stl -q
+cp metres.stl here.stl
+for unit in "" "-u mm" "-u m" "-u km"; do run measure here.stl $unit 2>&1 | grep -E "^(here|\\$)|dimensions x"; done
+run export here.stl -o there.stl -d 1.2 2>&1 | head -n 3

@@ -88,3 +88,7 @@ once="-p demo --particles 6 --cylinder 0.2 --pack-time 0.2 --settle-time 0.05 --
 "$SCREE" repose one/shapes/round-rp0.02.ply --unit m $once | grep -v '"command"\|"file"\|_seconds"\|"name"\|"source"' >written.json
 diff scan.json written.json
 grep -c height scan.json
+# of shapes that are not decimated yet nothing is said to be known
+mkdir -p early/leases early/runs early/shapes
+printf 'name: early\nreplicates: 2\nshapes: [sample:icosphere-3]\nbase: {preset: demo}\nfactors: {rp: [1e-2, 1e-1]}\n' >early/study.yaml
+run study status early

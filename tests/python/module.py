@@ -62,6 +62,9 @@ class Meshes(unittest.TestCase):
         self.assertEqual((mesh.format, mesh.source, mesh.triangle_count), ("STL binary", "t.stl", 4))
         self.assertNotEqual(mesh.checksum.high, 0)
         self.assertAlmostEqual(scree.load("t.stl", unit="m").measure().volume, 1e9 / 6, 0)
+        tetrahedron().write("t.stl", unit="m", overwrite=True)
+        self.assertAlmostEqual(scree.load("t.stl").measure().volume, 1 / 6, 6)
+        self.assertEqual(scree.load("t.stl").warning, "")
         with self.assertRaises(scree.Error) as refused:
             tetrahedron().write("t.stl")
         self.assertEqual(refused.exception.status, "EXISTS")

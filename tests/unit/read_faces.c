@@ -371,6 +371,44 @@ static void faces_of_two_corners(void **state) {
 
 /* ---- OFF ---- */
 
+/* A cube whose rows have so many values more than the header tells of. */
+static void put_long_rows(int vertex_extra, int face_extra) {
+  char line[60];
+  begin("ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 6\nproperty list uchar int vertex_indices\nend_header\n");
+  for (int v = 0; v < 8; v++) {
+    snprintf(line, sizeof line, "%d %d %d", cube_vertices[v][0], cube_vertices[v][1],
+             cube_vertices[v][2]);
+    put_text(line);
+    for (int i = 0; i < vertex_extra; i++) put_text(" 1");
+    put_text("\n");
+  }
+  for (int f = 0; f < 6; f++) {
+    snprintf(line, sizeof line, "4 %d %d %d %d", cube_faces[f][0], cube_faces[f][1],
+             cube_faces[f][2], cube_faces[f][3]);
+    put_text(line);
+    for (int i = 0; i < face_extra; i++) put_text(" 0.5");
+    put_text(f % 2 ? "\r\n" : "\n");
+  }
+}
+
+static void ply_with_long_rows(void **state) {
+  (void)state;
+  for (int extra = 1; extra < 9; extra++) {
+    scree_scan scan;
+    scree_error error = {.status = SCREE_OK};
+    put_long_rows(extra / 3, extra % 3);
+    expect_cube("PLY ASCII");
+    CHECK_OK(scree_scan_parse(file, file_size, "made", NULL, &scan, &error), error);
+    assert_int_equal(error.status, SCREE_OK);
+    assert_non_null(strstr(scan.warning, extra < 3 ? "face 1 of 6" : "vertex 1 of 8"));
+    scree_scan_free(&scan);
+  }
+  put_long_rows(2, 0);
+  *strstr(strstr(file, "0 1 1 1"), " 1 1") = '\n'; /* and one with too few */
+  expect_error("line 14: vertex 5 of 8: fewer values");
+}
+
 static void off(void **state) {
   (void)state;
   static const char *const words[] = {"OFF", "COFF", "NOFF", "off", "STCNOFF"};
@@ -379,11 +417,11 @@ static void off(void **state) {
   static const char *const counts[] = {"\n8 6 12\n",          " 8 6 12\n",
                                        "\n# counts\n\n8 6\n", "\n8\n6\n12 # e\n",
                                        "\n8 6 # vf\n12\n",    " 8\n\n6\n# e\n 12 \n",
-                                       "\r8\r6\r12\r"};
-  for (int style = 0; style < 210; style++) {
+                                       "\r8\r6\r12\r",        "8 6 12\n"};
+  for (int style = 0; style < 240; style++) {
     char line[100];
     begin(style % 2 ? "# first\n" : "");
-    put_text(words[style % 5]), put_text(counts[style % 7]);
+    put_text(words[style % 5]), put_text(counts[style % 8]);
     for (int v = 0; v < 8; v++) {
       snprintf(line, sizeof line, "%d %d %d%s%s", cube_vertices[v][0], cube_vertices[v][1],
                cube_vertices[v][2], tails[style % 5], style / 3 % 2 ? "\r\n" : "\n");
@@ -497,12 +535,19 @@ static void memory_runs_out(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(ply_in_every_style),   cmocka_unit_test(ply_cut_anywhere),
-      cmocka_unit_test(ply_broken),           cmocka_unit_test(obj),
-      cmocka_unit_test(obj_broken),           cmocka_unit_test(off),
-      cmocka_unit_test(ply_with_a_tail),      cmocka_unit_test(ply_with_ignored_nans),
-      cmocka_unit_test(off_broken),           cmocka_unit_test(concave_polygons),
-      cmocka_unit_test(faces_of_two_corners), cmocka_unit_test(memory_runs_out),
+      cmocka_unit_test(ply_in_every_style),
+      cmocka_unit_test(ply_cut_anywhere),
+      cmocka_unit_test(ply_broken),
+      cmocka_unit_test(obj),
+      cmocka_unit_test(obj_broken),
+      cmocka_unit_test(off),
+      cmocka_unit_test(ply_with_long_rows),
+      cmocka_unit_test(ply_with_a_tail),
+      cmocka_unit_test(ply_with_ignored_nans),
+      cmocka_unit_test(off_broken),
+      cmocka_unit_test(concave_polygons),
+      cmocka_unit_test(faces_of_two_corners),
+      cmocka_unit_test(memory_runs_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -33,11 +33,31 @@ static uint32_t crc_of(const char *text) {
   return ~crc;
 }
 
+static bool wide; /* sizes stand in zip64's extra field */
+
 static void put_member_fields(const char *name, const char *content) {
-  uint32_t size = (uint32_t)strlen(content);
+  uint32_t size = wide ? UINT32_MAX : (uint32_t)strlen(content);
   put_little(20, 2), put_little(0, 2), put_little(0, 2), put_little(0, 2), put_little(33, 2);
   put_little(crc_of(content), 4), put_little(size, 4), put_little(size, 4);
-  put_little((uint32_t)strlen(name), 2), put_little(0, 2);
+  put_little((uint32_t)strlen(name), 2), put_little(wide ? 20 : 0, 2);
+}
+
+static void put_name(const char *name, const char *content) {
+  uint32_t size = (uint32_t)strlen(content);
+  put_text(name);
+  if (wide)
+    put_little(1, 2), put_little(16, 2), put_little(size, 4), put_little(0, 4), put_little(size, 4),
+        put_little(0, 4);
+}
+
+/* zip64's end record and where it lies; what it says is not in the other one. */
+static void put_wide_end(uint32_t count, uint32_t length, uint32_t directory) {
+  uint32_t at = (uint32_t)file_size;
+  put_text("PK\6\6"), put_little(44, 4), put_little(0, 4), put_little(45, 2), put_little(45, 2);
+  put_little(0, 4), put_little(0, 4), put_little(count, 4), put_little(0, 4);
+  put_little(count, 4), put_little(0, 4), put_little(length, 4), put_little(0, 4);
+  put_little(directory, 4), put_little(0, 4);
+  put_text("PK\6\7"), put_little(0, 4), put_little(at, 4), put_little(0, 4), put_little(1, 4);
 }
 
 static void make_zip(const char *const (*members)[2], size_t count) {
@@ -46,15 +66,16 @@ static void make_zip(const char *const (*members)[2], size_t count) {
   for (size_t i = 0; i < count; i++) {
     starts[i] = (uint32_t)file_size;
     put_text("PK\3\4"), put_member_fields(members[i][0], members[i][1]);
-    put_text(members[i][0]), put_text(members[i][1]);
+    put_name(members[i][0], members[i][1]), put_text(members[i][1]);
   }
   uint32_t directory = (uint32_t)file_size;
   for (size_t i = 0; i < count; i++) {
     put_text("PK\1\2"), put_little(20, 2), put_member_fields(members[i][0], members[i][1]);
     put_little(0, 2), put_little(0, 2), put_little(0, 2), put_little(0, 4);
-    put_little(starts[i], 4), put_text(members[i][0]);
+    put_little(starts[i], 4), put_name(members[i][0], members[i][1]);
   }
   uint32_t length = (uint32_t)file_size - directory;
+  if (wide) put_wide_end((uint32_t)count, length, directory), directory = UINT32_MAX;
   put_text("PK\5\6"), put_little(0, 4), put_little((uint32_t)count, 2);
   put_little((uint32_t)count, 2), put_little(length, 4), put_little(directory, 4), put_little(0, 2);
 }
@@ -339,6 +360,10 @@ static void reads_3mf(void **state) {
                               "0 0 1 -10 0 0\"/>"); /* mirrored: still outward */
   expect_cubes("3MF, meter", 2, -11, 2);
   expect_unit(1);
+  wide = true;
+  make_3mf(" unit='inch'", item);
+  expect_cubes("3MF, inch", 1, 0.254, 0.0254 * 0.0254 * 0.0254);
+  wide = false;
 }
 
 /* Objects made of others, each with its place; then the same with the others in a file of their
@@ -456,6 +481,16 @@ static void hostile_gltf(void **state) {
   expect_error(SCREE_BAD_FILE, "glTF binary");
   make_gltf("\"uri\":\"/etc/passwd\",");
   expect_error(SCREE_BAD_FILE, "glTF text");
+  make_glb(36, "");
+  set32(4, 1);
+  expect_error(SCREE_UNSUPPORTED, "is glTF 1.0");
+  file_size = 0;
+  put_text("{\"asset\": {\"version\": \"1.0\"}, \"meshes\": {}}");
+  expect_error(SCREE_UNSUPPORTED, "is glTF 1.0");
+  file_size = 0;
+  put_text("MM"), put_little(5000, 4), put_little(2, 2);
+  for (int i = 0; i < 194; i++) put_little(0, 1);
+  expect_error(SCREE_BAD_FILE, "3DS, cut off: its first chunk says 5000 bytes");
 }
 
 /* Whatever is wrong, it is a result or one sentence. */

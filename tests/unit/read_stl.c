@@ -83,14 +83,51 @@ static void binary(void **state) {
   expect_tetrahedron("STL binary");
 }
 
+static void expect_warning(const char *part) {
+  scree_scan scan = {0};
+  scree_error error;
+  CHECK_OK(parse(&scan, &error), error);
+  if (!strstr(scan.warning, part)) fail_msg("the warning is '%s'", scan.warning);
+  scree_scan_free(&scan);
+}
+
+static void turn_bytes(unsigned char *p) {
+  for (int i = 0; i < 2; i++) {
+    unsigned char keep = p[i];
+    p[i] = p[3 - i], p[3 - i] = keep;
+  }
+}
+
+/* Facets that fill the file exactly are read, whatever the count says, unless it says more. */
+static void binary_miscounted(void **state) {
+  (void)state;
+  static const uint32_t counts[] = {0, 3, 0xffffffff};
+  for (int i = 0; i < 3; i++) {
+    make_binary("", counts[i]);
+    expect_tetrahedron("STL binary");
+    expect_warning("but 4 fill the file exactly");
+  }
+  make_binary("", 4);
+  expect_warning("");
+  for (size_t at = 80; at < file.count; at += at == 80 ? 4 : 50)
+    for (size_t k = 0; k < (at == 80 ? 1 : 12); k++) turn_bytes(file.bytes + at + 4 * k);
+  expect_tetrahedron("STL binary big endian");
+  expect_warning("big-endian");
+  float bad = NAN;
+  memcpy(file.bytes + 84 + 12, &bad, 4);
+  turn_bytes(file.bytes + 84 + 12);
+  expect_error(SCREE_BAD_FILE, "corner 1 (byte 96) lies at (nan, 0, 0)");
+}
+
 static void binary_wrong(void **state) {
   (void)state;
   make_binary("solid", 5);
   expect_error(SCREE_BAD_FILE, "say 5 facets, which take 334 bytes, but the file has 284");
   make_binary("", 3);
+  put("", 1);
   expect_error(SCREE_BAD_FILE, "wrong count");
-  make_binary("", 0xffffffff);
-  expect_error(SCREE_BAD_FILE, "4294967295 facets");
+  make_binary("", 0xfffffffe);
+  expect_error(SCREE_BAD_FILE, "4294967294 facets");
   make_binary("", 0);
   file.count = 84;
   expect_error(SCREE_BAD_FILE, "no facets");
@@ -295,9 +332,13 @@ static void no_mesh_at_all(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(binary),      cmocka_unit_test(binary_wrong),
-      cmocka_unit_test(ascii),       cmocka_unit_test(ascii_several_solids_and_a_long_name),
-      cmocka_unit_test(ascii_wrong), cmocka_unit_test(no_mesh_at_all),
+      cmocka_unit_test(binary),
+      cmocka_unit_test(binary_wrong),
+      cmocka_unit_test(binary_miscounted),
+      cmocka_unit_test(ascii),
+      cmocka_unit_test(ascii_several_solids_and_a_long_name),
+      cmocka_unit_test(ascii_wrong),
+      cmocka_unit_test(no_mesh_at_all),
       cmocka_unit_test(from_disk),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

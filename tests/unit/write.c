@@ -96,6 +96,37 @@ static void round_trip_3mf(void **state) {
   }
 }
 
+/* What scree writes says its unit, and is read in it unless the caller knows better. */
+static void says_its_unit(void **state) {
+  (void)state;
+  static const char *const names[] = {"mesh.stl", "mesh.ply", "mesh.obj", "mesh.off"};
+  scree_rng rng = {6, 1, 0};
+  scree_mesh mesh = random_mesh(&rng, 20, 1, true);
+  for (int i = 0; i < 5; i++) {
+    scree_write_options write = scree_default_write_options();
+    scree_read_options read = scree_default_read_options();
+    scree_error error;
+    write.overwrite = true;
+    write.format = i < 4 ? SCREE_FORMAT_AUTO : SCREE_FORMAT_STL_ASCII;
+    write.comment = "seed 1";
+    write.unit_m = i % 2 ? 0.0254 : 1;
+    CHECK_OK(scree_mesh_write(&mesh, in_folder(names[i % 4]), &write, &error), error);
+    for (int ignore = 0; ignore < 2; ignore++) {
+      scree_scan scan;
+      read.ignore_comment_unit = ignore;
+      CHECK_OK(scree_scan_read(in_folder(names[i % 4]), &read, &scan, &error), error);
+      double right = ignore ? 1e-3 : write.unit_m;
+      assert_true(scan.unit_m == right && scan.states_unit == !ignore);
+      assert_true(scan.comment_unit_m == write.unit_m);
+      for (size_t v = 0; v < 3 * mesh.vertex_count; v++)
+        CHECK_NEAR(scan.mesh.positions[v] / right, mesh.positions[v] / write.unit_m,
+                   1e-6 * fabs(mesh.positions[v] / write.unit_m));
+      scree_scan_free(&scan);
+    }
+  }
+  scree_mesh_free(&mesh);
+}
+
 static void refusals(void **state) {
   (void)state;
   double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
@@ -143,8 +174,8 @@ static void memory_runs_out(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(round_trips),
-                                     cmocka_unit_test(round_trip_3mf), cmocka_unit_test(refusals),
-                                     cmocka_unit_test(memory_runs_out)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(round_trips), cmocka_unit_test(round_trip_3mf), cmocka_unit_test(refusals),
+      cmocka_unit_test(says_its_unit), cmocka_unit_test(memory_runs_out)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
