@@ -43,7 +43,7 @@ export dir system command DATA_DIR
 code=0
 unshare --mount --pid --fork --kill-child sh -euc '
   mount --rbind /dev "$system/dev"
-  mount --bind /sys "$system/sys"
+  mount --rbind /sys "$system/sys"
   mount -t proc proc "$system/proc"
   mount --bind "$dir/archives" "$system/var/cache/apt/archives"
   if [ -n "${DATA_DIR:-}" ]; then

@@ -8,6 +8,10 @@
 extern "C" {
 #endif
 
+/* The sharpest edge that contact mechanics bears, degrees between two neighbouring facets, in the
+ * material or outside it: what check, repair and particles refuse. */
+#define SCREE_LEAST_EDGE_DEG 4.5
+
 /* What can be wrong with a surface: X(NAME, "name in JSON", grave, "what one is", "what several
  * are"). A surface with a grave one cannot serve as a particle; the others are worth knowing. */
 #define SCREE_DEFECT_LIST(X)                                                                       \
@@ -41,7 +45,9 @@ extern "C" {
     "inward shells inside the material of another")                                                \
   X(EXTRA_BODY, "extra_bodies", false, "closed outward shell in empty space, beyond the first",    \
     "closed outward shells in empty space, beyond the first")                                      \
-  X(UNUSED_VERTEX, "unused_vertices", false, "vertex of no facet", "vertices of no facet")
+  X(UNUSED_VERTEX, "unused_vertices", false, "vertex of no facet", "vertices of no facet")         \
+  X(SHARP_EDGE, "sharp_edges", true, "edge of less than 4.5 degrees: blunt it or decimate",        \
+    "edges of less than 4.5 degrees: blunt them or decimate")
 
 typedef enum scree_defect {
 #define SCREE_DEFECT_ENUM(name, key, grave, one, several) SCREE_DEFECT_##name,
@@ -116,8 +122,9 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
     "facets turned round to agree with their neighbours")                                          \
   X(SPLIT_VERTEX, "split_non_manifold_vertices", "non-manifold vertex split",                      \
     "non-manifold vertices split")                                                                 \
-  X(CUT_INTERSECTION, "cut_intersecting_facets", "facet cut out where the surface met itself",     \
-    "facets cut out where the surface met itself")                                                 \
+  X(CUT_INTERSECTION, "cut_intersecting_facets",                                                   \
+    "facet cut out where the surface met itself or had too sharp an edge",                         \
+    "facets cut out where the surface met itself or had too sharp an edge")                        \
   X(MERGE_SHELL, "merged_shells", "shell that met others united with them",                        \
     "shells that met others united with them")                                                     \
   X(FILL_HOLE, "filled_holes", "hole filled", "holes filled")                                      \
@@ -129,6 +136,7 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
     "large holes filled coarsely: smooth, they would meet the surface")                            \
   X(DROP_DEBRIS, "dropped_debris_shells", "debris shell dropped", "debris shells dropped")         \
   X(DROP_CAVITY, "dropped_cavities", "cavity dropped", "cavities dropped")                         \
+  X(FILL_CAVITY, "filled_cavities", "small cavity filled", "small cavities filled")                \
   X(DROP_NESTED, "dropped_nested_shells", "shell inside the material of another dropped",          \
     "shells inside the material of another dropped")                                               \
   X(INVERT_SHELL, "inverted_shells", "shell turned outside out", "shells turned outside out")
@@ -177,23 +185,35 @@ typedef struct scree_repair_options {
   /* Test for self-intersections exactly, before and after; default true. Without, the result may
    * have some. */
   bool intersections;
+  /* Cavities are filled, the smallest first, as long as all of them together take no more than this
+   * share of the volume, in [0, 1]: nothing ever touches them; default 1e-3. */
+  double cavity_share;
+  /* Refuse where cutting and merging change the volume by more than this share of it, in [0, 1];
+   * default 0.01. Dropping debris and cavities is no such change. */
+  double volume_change;
 } scree_repair_options;
 SCREE_API scree_repair_options scree_default_repair_options(void);
 
 typedef struct scree_repair_report {
   size_t done[SCREE_REPAIR_ACTION_COUNT];
-  double seam_distance;      /* the distance within which seams were closed, m; 0: none were */
+  double seam_distance;           /* the distance within which seams were closed, m; 0: none were */
+  double area_before, area_after; /* m^2 */
+  /* m^3. Before: of the mesh given where its check knows it, else of the first closed surface that
+   * came of it; NaN where none did. */
+  double volume_before, volume_after;
+  double filled_volume;      /* of the small cavities, m^3 */
   scree_check before, after; /* after: of the result, or of what the failed attempt came to */
 } scree_repair_report;
 
 /* Makes a closed, manifold, consistently wound, outward surface without self-intersections of a
  * mesh of any quality, or fails with SCREE_BAD_MESH and says what remains. Nothing is done to a
  * mesh that needs nothing, but vertices and triangles are put in canonical order (scree_mesh_weld),
- * so the result does not depend on the order of the facets. repaired may be mesh itself: then one
- * that needs nothing is not copied, and what it held is freed where it is replaced; on failure it
- * is as it was. options and progress may be NULL;
- * *report (may be NULL) is filled on success and on SCREE_BAD_MESH. Other errors as
- * scree_mesh_check. */
+ * so the result does not depend on the order of the facets. Where cutting a surface that meets
+ * itself would change the volume or leave several bodies, merge_folds is tried too, and what keeps
+ * the volume better is taken. repaired may be mesh itself: then one that needs nothing is not
+ * copied, and what it held is freed where it is replaced; on failure it is as it was. options and
+ * progress may be NULL; *report (may be NULL) is filled on success and on SCREE_BAD_MESH. Other
+ * errors as scree_mesh_check. */
 SCREE_API scree_status scree_mesh_repair(const scree_mesh *mesh,
                                          const scree_repair_options *options,
                                          const scree_progress *progress, scree_mesh *repaired,

@@ -45,8 +45,8 @@ typedef struct scree_particle_measures {
 
 /* A closed mesh, metres. Coplanar and collinear subdivisions do not change the features, so neither
  * the forces. Fails with SCREE_BAD_MESH, naming the first offending triangle or edge, for a mesh
- * that is open, non-manifold, inconsistently wound, folded (two faces closer than 30 degrees to
- * back to back over an edge) or without positive volume, and with the verdict of scree_mesh_check
+ * that is open, non-manifold, inconsistently wound, sharper than SCREE_LEAST_EDGE_DEG at an edge
+ * or without positive volume, and with the verdict of scree_mesh_check
  * for every other that it finds unusable: surfaces that cross or touch themselves, shells inside
  * out or inside others. options may be NULL. Cost n log n. */
 SCREE_API scree_status scree_particle_from_mesh(const scree_mesh *mesh,

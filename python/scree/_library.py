@@ -22,7 +22,7 @@ CONTAINERS = ("cylinder", "box")
 WALL_KINDS = ("plane", "disc", "cylinder", "mesh")
 MOTION_LAWS = ("constant", "sine", "positions", "speeds")
 VIEWS = ("surfaces", "points", "contacts", "walls")
-DEFECT_COUNT, REPAIR_ACTION_COUNT = 17, 21
+DEFECT_COUNT, REPAIR_ACTION_COUNT = 18, 22
 
 
 class scree_error(Structure):
@@ -104,13 +104,15 @@ class scree_check_options(Structure):
 
 class scree_repair_options(Structure):
     _fields_ = [("seam_tolerance", c_double), ("hole_edges", c_size_t), ("fill_large_holes", c_bool),
-                ("debris_share", c_double), ("drop_cavities", c_bool), ("keep_largest", c_bool),
+                ("flat_large_holes", c_bool), ("debris_share", c_double), ("drop_cavities", c_bool), ("keep_largest", c_bool),
                 ("cut_intersections", c_bool), ("merge_shells", c_bool), ("merge_folds", c_bool),
-                ("intersections", c_bool)]
+                ("intersections", c_bool), ("cavity_share", c_double), ("volume_change", c_double)]
 
 
 class scree_repair_report(Structure):
-    _fields_ = [("done", c_size_t * REPAIR_ACTION_COUNT), ("seam_distance", c_double), ("before", scree_check),
+    _fields_ = [("done", c_size_t * REPAIR_ACTION_COUNT), ("seam_distance", c_double), ("area_before", c_double),
+                ("area_after", c_double), ("volume_before", c_double), ("volume_after", c_double),
+                ("filled_volume", c_double), ("before", scree_check),
                 ("after", scree_check)]
 
 

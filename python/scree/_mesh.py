@@ -106,7 +106,7 @@ class Mesh:
     def repair(self, progress=None, **options):
         """A repaired mesh, and what was done: done by name, before, after. Options seam_tolerance, hole_edges,
         fill_large_holes, debris_share, drop_cavities, keep_largest, cut_intersections, merge_shells (shells that cross,
-        overlap or touch become one), merge_folds, intersections: scree_repair_options in scree/check.h."""
+        overlap or touch become one), merge_folds, intersections, cavity_share, volume_change: scree_repair_options in scree/check.h."""
         settings = set_fields(lib["default_repair_options"](), options, "repair")
         repaired, report = c.scree_mesh(), c.scree_repair_report()
         with c.Progress(progress) as p:

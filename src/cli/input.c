@@ -1,5 +1,5 @@
-#include "base/platform.h"
 #include "cli/input.h"
+#include "base/platform.h"
 #include "cli/terminal.h"
 
 #include <math.h>

@@ -5,11 +5,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* By the mean of the holes that are left, of which the largest is at least that. */
-void cli_hint_at_holes(const scree_repair_report *report, const scree_repair_options *options,
-                       scree_error *error) {
+/* Holes by the mean of those that are left, of which the largest is at least that. */
+void cli_hint_at_option(const scree_repair_report *report, const scree_repair_options *options,
+                        scree_error *error) {
   size_t holes = report->after.defects[SCREE_DEFECT_HOLE], used = strlen(error->message);
   size_t edges = report->after.defects[SCREE_DEFECT_BOUNDARY_EDGE];
+  if (error->status == SCREE_BAD_MESH && report->after.usable)
+    snprintf(error->message + used, sizeof error->message - used,
+             "; `scree repair --volume-change` allows more");
   if (error->status != SCREE_BAD_MESH || options->fill_large_holes || holes == 0) return;
   if (edges / holes > options->hole_edges)
     snprintf(error->message + used, sizeof error->message - used,
@@ -45,7 +48,7 @@ scree_status cli_load_closed(const char *word, const cli_input_options *options,
   if (status == SCREE_OK && !cli_is_sample(word, NULL)) {
     status = scree_mesh_prepare(&scan->mesh, no_repair ? NULL : &repair, progress, &scan->mesh,
                                 &made, error);
-    if (status != SCREE_OK && !no_repair) cli_hint_at_holes(&made, &repair, error);
+    if (status != SCREE_OK && !no_repair) cli_hint_at_option(&made, &repair, error);
     if (status != SCREE_OK) scree_scan_free(scan);
   }
   if (report) *report = made;
@@ -117,13 +120,31 @@ void cli_print_check(FILE *stream, const scree_check *check) {
 void cli_repair_text(const scree_repair_report *report, char *buffer, size_t size) {
   size_t used = 0;
   buffer[0] = 0;
-  if (report->before.usable) return;
+  const size_t *done = report->done;
+  if (report->before.usable && !done[SCREE_REPAIR_FILL_CAVITY]) return;
   for (int a = 0; a < SCREE_REPAIR_ACTION_COUNT; a++) {
-    if (!report->done[a] || used + 1 >= size) continue;
+    if (!done[a] || used + 1 >= size) continue;
     used += (size_t)snprintf(buffer + used, size - used, "%s%zu %s",
-                             used ? ", " : "repaired: ", report->done[a],
-                             scree_repair_action_text((scree_repair_action)a, report->done[a]));
+                             used ? ", " : "repaired: ", done[a],
+                             scree_repair_action_text((scree_repair_action)a, done[a]));
+    if (a == SCREE_REPAIR_FILL_CAVITY && used + 1 < size)
+      used += (size_t)snprintf(buffer + used, size - used, " (%.3g mm3, %.2g %% of the mass)",
+                               1e9 * report->filled_volume,
+                               100 * report->filled_volume / report->volume_after);
   }
+  double change = fabs(report->volume_after / report->volume_before - 1);
+  if (change >= CLI_NOTABLE_CHANGE && used + 1 < size)
+    snprintf(buffer + used, size - used, "; volume %.6g -> %.6g cm3", 1e6 * report->volume_before,
+             1e6 * report->volume_after);
+}
+
+/* "4.15 -> 4.21 cm2 area (+1.5 %)" */
+static void print_change(FILE *stream, const char *what, double before, double after) {
+  if (isnan(before))
+    fprintf(stream, "%10.6g %s, unknown before\n", after, what);
+  else
+    fprintf(stream, "%10.6g %s, %.6g before (%+.2g %%)\n", after, what, before,
+            100 * (after / before - 1));
 }
 
 void cli_print_repair(FILE *stream, const scree_repair_report *report) {
@@ -137,6 +158,13 @@ void cli_print_repair(FILE *stream, const scree_repair_report *report) {
   if (report->seam_distance > 0)
     fprintf(stream, "%10.3g mm is the distance within which seams were closed\n",
             report->seam_distance * 1e3);
+  if (any && report->after.usable) {
+    if (report->done[SCREE_REPAIR_FILL_CAVITY])
+      fprintf(stream, "%10.3g mm3 of small cavities filled, %.2g %% of the mass\n",
+              1e9 * report->filled_volume, 100 * report->filled_volume / report->volume_after);
+    print_change(stream, "cm2 area", 1e4 * report->area_before, 1e4 * report->area_after);
+    print_change(stream, "cm3 volume", 1e6 * report->volume_before, 1e6 * report->volume_after);
+  }
   if (!any)
     fprintf(stream, "%10s %s be done\n", "nothing", report->before.usable ? "had to" : "could");
 }

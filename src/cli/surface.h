@@ -43,9 +43,9 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
                                  const cli_soundness *how, scree_scan *scan, double *scale,
                                  scree_error *error);
 
-/* Where the repair failed for holes that it may not fill: what would, at the end of the error. */
-void cli_hint_at_holes(const scree_repair_report *report, const scree_repair_options *options,
-                       scree_error *error);
+/* Where the repair failed for what an option allows: which one, at the end of the error. */
+void cli_hint_at_option(const scree_repair_report *report, const scree_repair_options *options,
+                        scree_error *error);
 
 /* The facets that reading left out, where there were any. */
 void cli_print_left_out(FILE *stream, size_t count);
@@ -68,5 +68,7 @@ scree_status cli_check_rounded(const scree_mesh *mesh, const char *path, double 
 double cli_volume_lost(const scree_mesh *mesh, const char *path, double unit);
 /* From here on it is said: scans are no more exact than that. */
 #define CLI_NOTABLE_LOSS 1e-6
+/* So is what a repair changes the volume by. */
+#define CLI_NOTABLE_CHANGE 1e-3
 
 #endif

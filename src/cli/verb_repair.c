@@ -10,7 +10,7 @@
 typedef struct repair_arguments {
   const char *output;
   cli_source source;
-  double seam_tolerance, debris_share;
+  double seam_tolerance, debris_share, cavity_share, volume_change;
   size_t hole_edges; /* HOLES_UNSET: the library's default */
   bool large_holes, flat_holes, drop_cavities, largest, no_cut, no_merge, folds, fast, json, force;
 } repair_arguments;
@@ -44,8 +44,13 @@ static const cli_option options[] = {
      0, 0.999, NULL},
     {"largest", 0, CLI_FLAG, AT(largest), NULL,
      "Keep only the largest shell, after merging, and its cavities.", 0, 0, NULL},
-    {"drop-cavities", 0, CLI_FLAG, AT(drop_cavities), NULL, "Fill cavities: drop their shells.", 0,
-     0, NULL},
+    {"cavities", 0, CLI_REAL, AT(cavity_share), "SHARE",
+     "Fill cavities, the smallest first, up to this share of the volume in all: nothing ever "
+     "touches "
+     "them. Default: 1e-3.",
+     0, 1, NULL},
+    {"drop-cavities", 0, CLI_FLAG, AT(drop_cavities), NULL, "Fill all cavities: drop their shells.",
+     0, 0, NULL},
     {"no-cut", 0, CLI_FLAG, AT(no_cut), NULL,
      "Refuse a surface that meets itself instead of cutting the place out and filling the hole.", 0,
      0, NULL},
@@ -56,6 +61,9 @@ static const cli_option options[] = {
      "Where a shell meets itself, keep the outside of what it winds round instead of cutting the "
      "place out.",
      0, 0, NULL},
+    {"volume-change", 0, CLI_REAL, AT(volume_change), "SHARE",
+     "Refuse where cutting and merging change the volume by more than this share. Default: 0.01.",
+     0, 1, NULL},
     {"fast", 0, CLI_FLAG, AT(fast), NULL,
      "Do not look for self-intersections: the result may have some.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(repair_arguments, source),
@@ -66,12 +74,16 @@ static const cli_option options[] = {
 static const repair_arguments defaults = {.source = CLI_SOURCE_DEFAULTS,
                                           .seam_tolerance = 1e-4,
                                           .debris_share = 0.01,
+                                          .cavity_share = 1e-3,
+                                          .volume_change = 0.01,
                                           .hole_edges = HOLES_UNSET};
 
 static scree_repair_options options_of(const repair_arguments *a) {
   scree_repair_options o = scree_default_repair_options();
   o.seam_tolerance = a->seam_tolerance;
   o.debris_share = a->debris_share;
+  o.cavity_share = a->cavity_share;
+  o.volume_change = a->volume_change;
   if (a->hole_edges != HOLES_UNSET) o.hole_edges = a->hole_edges;
   o.fill_large_holes = a->large_holes;
   o.flat_large_holes = a->flat_holes;
@@ -152,7 +164,7 @@ static int run(const cli_call *call) {
     return cli_fail(&error);
   scree_status status =
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
-  if (status == SCREE_BAD_MESH) cli_hint_at_holes(&report, &how, &error);
+  if (status == SCREE_BAD_MESH) cli_hint_at_option(&report, &how, &error);
   if (status != SCREE_OK) cli_name_in_error(call->inputs[0], &error);
   if (status != SCREE_OK && status != SCREE_BAD_MESH) {
     code = cli_fail(&error);
@@ -172,9 +184,11 @@ const cli_verb cli_verb_repair = {
     .description =
         "Welds, drops duplicate and degenerate facets, closes seams, splits T-junctions and "
         "non-manifold edges and vertices, turns facets to agree and shells outward, fills small "
-        "holes, drops debris, cuts out places where a shell meets itself, and merges shells that "
+        "holes, drops debris, fills small cavities, cuts out places where a shell meets itself (or "
+        "merges its folds, where that keeps more of the body), and merges shells that "
         "cross, overlap or touch into the surface of their union. Prints what was done with "
-        "counts. The result passes `scree check`, or nothing is written and what remains is "
+        "counts, and area and volume before and after. The result passes `scree check`, or nothing "
+        "is written and what remains is "
         "said.\n\n"
         "Exit code 0 where the result was written, 2 for wrong usage, 1 otherwise.",
     .examples = "scree repair scan.stl -o closed.stl\n"

@@ -16,6 +16,7 @@
 #include "mesh/apart.h"
 #include "mesh/intersect.h"
 #include "mesh/mesh.h"
+#include "mesh/sharp.h"
 #include "mesh/shells.h"
 #include "mesh/topology.h"
 #include "mesh/union_volume.h"
@@ -157,13 +158,15 @@ static void count_kinds(const scree_shells *shells, scree_check *check) {
   if (!check->volume_known) check->volume = 0;
 }
 
-/* Walks over the same surface, beside each other: shells, then the parts of the topology. */
-enum { WALKS = 1 + SCREE_TOPOLOGY_PARTS };
+/* Walks over the same surface, beside each other: shells, sharp edges, the parts of the topology.
+ */
+enum { WALKS = 2 + SCREE_TOPOLOGY_PARTS };
 typedef struct connection {
   const scree_mesh *mesh;
   const scree_adjacency *adjacency;
   scree_topology topology;
   scree_shells shells;
+  size_t sharp_count;
   scree_status status[WALKS];
   scree_error error[WALKS];
 } connection;
@@ -171,10 +174,14 @@ typedef struct connection {
 static void connect(void *context, size_t begin, size_t end, size_t walk, int worker) {
   (void)begin, (void)end, (void)worker;
   connection *c = context;
-  c->status[walk] =
-      walk == 0
-          ? scree_shells_find(c->mesh, c->adjacency, &c->shells, &c->error[walk])
-          : scree_topology_count(c->mesh, c->adjacency, walk - 1, &c->topology, &c->error[walk]);
+  c->status[walk] = SCREE_OK;
+  if (walk == 0)
+    c->status[walk] = scree_shells_find(c->mesh, c->adjacency, &c->shells, &c->error[walk]);
+  else if (walk == 1)
+    c->sharp_count = scree_sharp_edges(c->mesh, c->adjacency, NULL);
+  else
+    c->status[walk] =
+        scree_topology_count(c->mesh, c->adjacency, walk - 2, &c->topology, &c->error[walk]);
 }
 
 /* Topology and shells. */
@@ -194,6 +201,7 @@ static scree_status find_connection(const scree_mesh *mesh, const scree_adjacenc
     return status;
   }
   take_topology(&c.topology, check);
+  check->defects[SCREE_DEFECT_SHARP_EDGE] = c.sharp_count;
   *shells = c.shells;
   return SCREE_OK;
 }

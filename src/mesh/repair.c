@@ -18,6 +18,7 @@
 #include "mesh/check.h"
 
 #include <float.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -50,7 +51,9 @@ scree_repair_options scree_default_repair_options(void) {
                                 .debris_share = 0.01,
                                 .cut_intersections = true,
                                 .merge_shells = true,
-                                .intersections = true};
+                                .intersections = true,
+                                .cavity_share = 1e-3,
+                                .volume_change = 0.01};
 }
 
 static scree_status verify_options(const scree_repair_options *o, scree_error *error) {
@@ -60,6 +63,12 @@ static scree_status verify_options(const scree_repair_options *o, scree_error *e
   if (!(o->debris_share >= 0 && o->debris_share < 1))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "debris_share is %g; the range is [0, 1)",
                       o->debris_share);
+  if (!(o->cavity_share >= 0 && o->cavity_share <= 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "cavity_share is %g; the range is [0, 1]",
+                      o->cavity_share);
+  if (!(o->volume_change >= 0 && o->volume_change <= 1))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "volume_change is %g; the range is [0, 1]",
+                      o->volume_change);
   return SCREE_OK;
 }
 
@@ -249,6 +258,64 @@ static size_t actions_done(const scree_repair *r) {
   return sum;
 }
 
+/* ---- What must not be lost ---- */
+
+/* A share of the volume that is worth a try in another way. */
+#define NOTABLE_LOSS 1e-3
+
+/* The volume that cutting and merging are to keep, once: where the exact check knows it of this
+ * closed surface, else the integral of the winding number, which counts twice where shells overlap
+ * and is of no use there. */
+static scree_status take_volume(scree_repair *r, scree_error *error) {
+  scree_check check;
+  double area;
+  bool as_given = actions_done(r) == r->report.done[SCREE_REPAIR_WELD];
+  if (isnan(r->volume) && as_given && r->report.before.volume_known)
+    r->volume = r->report.before.volume;
+  if (!isnan(r->volume)) return SCREE_OK;
+  scree_status status = check_now(r, r->options->intersections && !r->untangled, &check, error);
+  if (status == SCREE_OK && check.volume_known)
+    r->volume = check.volume;
+  else if (status == SCREE_OK && !check.defects[SCREE_DEFECT_OVERLAPPING_SHELLS] &&
+           !check.defects[SCREE_DEFECT_NON_MANIFOLD_EDGE]) /* shells that share one count as one */
+    status = scree_mesh_area_volume(&r->mesh, &area, &r->volume, error);
+  return status;
+}
+
+/* Of a surface whose coordinates may be bad, or that has no facets; NaN, 0. */
+static scree_status measure(const scree_mesh *mesh, const scree_check *check, double *area,
+                            double *volume, scree_error *error) {
+  *area = *volume = check->defects[SCREE_DEFECT_BAD_COORDINATE] ? NAN : 0;
+  if (check->defects[SCREE_DEFECT_BAD_COORDINATE] || mesh->triangle_count == 0) return SCREE_OK;
+  return scree_mesh_area_volume(mesh, area, volume, error);
+}
+
+/* The report on a mesh to which nothing is done. */
+static scree_status report_untouched(const scree_mesh *mesh, scree_repair_report *report,
+                                     scree_error *error) {
+  report->after = report->before;
+  scree_status status =
+      measure(mesh, &report->before, &report->area_before, &report->volume_after, error);
+  report->area_after = report->area_before;
+  report->volume_before = report->before.volume_known ? report->before.volume : NAN;
+  return status;
+}
+
+/* Of the result, as a share. */
+static double volume_change(const scree_repair *r) {
+  return isnan(r->volume) ? 0 : fabs(r->report.volume_after - r->volume) / fabs(r->volume);
+}
+
+static scree_status refuse_loss(const scree_repair *r, scree_error *error) {
+  const scree_repair_options *o = r->options;
+  if (!(volume_change(r) > o->volume_change)) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_MESH,
+                    "a repair would change the volume by %.3g %%, from %.6g to %.6g cm3, and more "
+                    "than %g %% is not allowed",
+                    100 * volume_change(r), 1e6 * r->volume, 1e6 * r->report.volume_after,
+                    100 * o->volume_change);
+}
+
 /* How often the dear stages have run. */
 typedef struct tries {
   int cuts, merges;
@@ -299,6 +366,8 @@ static scree_status step(scree_repair *r, const scree_check *check, tries *n, bo
   }
   status = scree_repair_shells(r, error);
   if (status != SCREE_OK || actions_done(r) != before) return status;
+  status = take_volume(r, error);
+  if (status != SCREE_OK) return status;
   *settled = true;
   if (!r->options->intersections || r->untangled) return SCREE_OK;
   return untangle(r, n, settled, error);
@@ -313,7 +382,12 @@ static scree_status merge_early(scree_repair *r, tries *n, scree_error *error) {
   bool merged;
   size_t bad, collapsed;
   if (!r->options->merge_shells || !met) return SCREE_OK;
-  scree_status status = try_merge(r, n, true, &merged, error);
+  scree_status status = SCREE_OK;
+  if (!defect[SCREE_DEFECT_BOUNDARY_EDGE] && !defect[SCREE_DEFECT_INCONSISTENT_EDGE]) {
+    status = scree_repair_outward(r, error);
+    if (status == SCREE_OK) status = take_volume(r, error);
+  }
+  if (status == SCREE_OK) status = try_merge(r, n, true, &merged, error);
   return status == SCREE_OK && merged ? weld(r, &r->mesh, &bad, &collapsed, error) : status;
 }
 
@@ -352,10 +426,50 @@ static scree_status mend(scree_repair *r, const scree_mesh *mesh, scree_error *e
   r->untangled = r->report.before.usable;
   if (!r->report.before.usable || r->report.before.shell_count > 1) status = run_rounds(r, error);
   if (status != SCREE_OK) return status;
-  if (actions_done(r) > 0 || r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX])
-    return check_now(r, r->options->intersections, &r->report.after, error);
   r->report.after = r->report.before; /* of the same facets */
-  return SCREE_OK;
+  if (actions_done(r) > 0 || r->report.before.defects[SCREE_DEFECT_UNUSED_VERTEX])
+    status = check_now(r, r->options->intersections, &r->report.after, error);
+  if (status == SCREE_OK)
+    status =
+        measure(&r->mesh, &r->report.after, &r->report.area_after, &r->report.volume_after, error);
+  r->report.volume_before = r->report.before.volume_known ? r->report.before.volume : r->volume;
+  return status;
+}
+
+/* Whether cutting has taken so much of the body, or added so much, that another way may keep it
+ * better. A fold that was filled adds a little. */
+static bool has_lost(const scree_repair *r) {
+  const size_t *before = r->report.before.defects, *after = r->report.after.defects;
+  return r->report.done[SCREE_REPAIR_CUT_INTERSECTION] &&
+         (!r->report.after.usable || volume_change(r) > r->options->volume_change ||
+          r->report.volume_after < (1 - NOTABLE_LOSS) * r->volume ||
+          after[SCREE_DEFECT_EXTRA_BODY] > before[SCREE_DEFECT_EXTRA_BODY]);
+}
+
+/* The same with folds merged instead of cut out, which takes r's place where it keeps more. */
+static scree_status mend_otherwise(scree_repair *r, const scree_mesh *mesh, scree_error *error) {
+  scree_repair_options options = *r->options;
+  scree_repair other = {.options = &options,
+                        .progress = r->progress,
+                        .volume = NAN,
+                        .report.before = r->report.before};
+  scree_error reason;
+  options.merge_folds = true;
+  scree_status status = mend(&other, mesh, &reason);
+  other.options = r->options;
+  bool sound = status == SCREE_OK && other.report.after.usable;
+  size_t bodies = r->report.after.defects[SCREE_DEFECT_EXTRA_BODY],
+         other_bodies = other.report.after.defects[SCREE_DEFECT_EXTRA_BODY];
+  if (sound && (!r->report.after.usable || other_bodies < bodies ||
+                (other_bodies == bodies && volume_change(&other) < volume_change(r)))) {
+    scree_mesh_free(&r->mesh);
+    *r = other;
+  } else {
+    scree_mesh_free(&other.mesh);
+  }
+  if (status != SCREE_CANCELLED && status != SCREE_OUT_OF_MEMORY) return SCREE_OK;
+  if (error) *error = reason;
+  return status;
 }
 
 /* Whether mend would come to a copy. */
@@ -369,9 +483,17 @@ static scree_status repair_checked(const scree_mesh *mesh, const scree_check *be
                                    const scree_repair_options *options,
                                    const scree_progress *progress, scree_mesh *repaired,
                                    scree_repair_report *report, scree_error *error) {
-  scree_repair r = {.options = options, .progress = progress, .apart = !options->merge_shells};
-  r.report.before = *before;
-  scree_status status = mend(&r, mesh, error);
+  scree_repair r = {.options = options,
+                    .progress = progress,
+                    .apart = !options->merge_shells,
+                    .volume = NAN,
+                    .report.before = *before};
+  double area_before, unsaid;
+  scree_status status = measure(mesh, before, &area_before, &unsaid, error);
+  if (status == SCREE_OK) status = mend(&r, mesh, error);
+  if (status == SCREE_OK && options->merge_shells && !options->merge_folds && has_lost(&r))
+    status = mend_otherwise(&r, mesh, error);
+  r.report.area_before = area_before;
   if (status == SCREE_OK || status == SCREE_BAD_MESH)
     if (report) *report = r.report;
   if (status == SCREE_OK && !r.report.after.usable)
@@ -379,6 +501,7 @@ static scree_status repair_checked(const scree_mesh *mesh, const scree_check *be
         scree_fail(error, SCREE_BAD_MESH, "the mesh cannot be repaired; what remains is %s%s%s",
                    r.report.after.verdict, r.unmerged ? "; shells were not merged: " : "",
                    r.unmerged ? r.unmerged : "");
+  if (status == SCREE_OK) status = refuse_loss(&r, error);
   if (status == SCREE_OK)
     *repaired = r.mesh;
   else
@@ -397,9 +520,9 @@ scree_status scree_mesh_repair(const scree_mesh *mesh, const scree_repair_option
   if (status == SCREE_OK) status = scree_mesh_check(mesh, &how, progress, before, error);
   if (status != SCREE_OK) return status;
   if (mesh == repaired && needs_nothing(mesh, before)) {
-    untouched.after = *before;
-    if (report) *report = untouched;
-    return SCREE_OK;
+    status = report_untouched(mesh, &untouched, error);
+    if (report && status == SCREE_OK) *report = untouched;
+    return status;
   }
   scree_mesh made;
   status = repair_checked(mesh, before, &chosen, progress, &made, report, error);
@@ -416,7 +539,8 @@ scree_status scree_mesh_prepare(const scree_mesh *mesh, const scree_repair_optio
   if (options) return scree_mesh_repair(mesh, options, progress, ready, report, error);
   scree_status status = scree_mesh_check(mesh, NULL, progress, &made.before, error);
   if (status != SCREE_OK) return status;
-  made.after = made.before;
+  status = report_untouched(mesh, &made, error);
+  if (status != SCREE_OK) return status;
   if (!made.before.usable)
     status = scree_fail(error, SCREE_BAD_MESH, "the mesh is %s", made.before.verdict);
   else if (mesh != ready)

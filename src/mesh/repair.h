@@ -19,6 +19,7 @@ typedef struct scree_repair {
   double largest;       /* coordinate, m */
   bool untangled;       /* the surface is known to meet itself nowhere */
   bool apart;           /* shells that meet will not be merged any more: each is judged alone */
+  double volume;        /* of the first closed surface, before it was cut or merged, m^3; or NaN */
   const char *unmerged; /* why shells were not merged, as the end of a sentence; NULL: no reason */
   scree_repair_report report;
 } scree_repair;
@@ -90,8 +91,10 @@ scree_status scree_repair_fair(scree_repair *r, const scree_filling *filling, bo
 /* repair_shells.c: open debris; then closed debris, nesting and outside. */
 scree_status scree_repair_scraps(scree_repair *r, scree_error *error);
 scree_status scree_repair_shells(scree_repair *r, scree_error *error);
-/* Cuts out facets that meet others of their shell, with `rings` rings of neighbours; *cut_count 0
- * where nothing could be cut. */
+/* The part of it that turns closed shells outside out. */
+scree_status scree_repair_outward(scree_repair *r, scree_error *error);
+/* Cuts out facets that meet others of their shell or have a sharp edge, with `rings` rings of
+ * neighbours; *cut_count 0 where nothing could be cut. */
 scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scree_error *error);
 /* repair_merge.c: shells that meet become one surface, where every edge is used equally often both
  * ways; *merged is false, and r->unmerged may tell why, where they do not. `early`, before other

@@ -9,7 +9,9 @@
  * there; and while it may be merged with the other it is no debris: together they are one body. */
 #include "base/alloc.h"
 #include "mesh/repair.h"
+#include "mesh/sharp.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 enum {
@@ -56,10 +58,15 @@ failed:
   return status;
 }
 
-/* Removes the facets of the shells marked. */
+/* Removes the facets of the shells marked. What they enclosed is not lost by cutting or merging. */
 static scree_status drop_shells(scree_repair *r, const nest *n, scree_error *error) {
   bool *marked = NULL;
   SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, out_of_memory);
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    if (n->drop[i] && s->closed && scree_shell_kind_of(s) != SCREE_SHELL_NESTED)
+      r->volume -= s->volume;
+  }
   for (size_t t = 0; t < r->mesh.triangle_count; t++)
     marked[t] = n->shells.label[t] != SCREE_NO_SHELL && n->drop[n->shells.label[t]];
   scree_repair_remove(r, marked);
@@ -200,6 +207,55 @@ static void judge_shells(scree_repair *r, nest *n) {
   }
 }
 
+/* ---- Small cavities ---- */
+
+typedef struct cavity {
+  double volume;
+  size_t shell;
+} cavity;
+
+static int compare_cavities(const void *a, const void *b) {
+  const cavity *x = a, *y = b;
+  if (x->volume != y->volume) return x->volume < y->volume ? -1 : 1;
+  return (x->shell > y->shell) - (x->shell < y->shell);
+}
+
+/* Marks them from the smallest on, as long as all that was filled stays under the share. */
+static scree_status fill_cavities(scree_repair *r, nest *n, scree_error *error) {
+  cavity *cavities = NULL;
+  size_t count = 0;
+  double held = 0, *filled = &r->report.filled_volume;
+  SCREE_ALLOC_OR(cavities, n->shells.count, error, out_of_memory);
+  for (size_t i = 0; i < n->shells.count; i++) {
+    const scree_shell *s = &n->shells.items[i];
+    scree_shell_kind kind = scree_shell_kind_of(s);
+    if (kind == SCREE_SHELL_BODY) held += s->volume;
+    if (kind == SCREE_SHELL_CAVITY && !is_tangled(n, i) && !n->drop[i])
+      cavities[count++] = (cavity){-s->volume, i};
+  }
+  if (count) qsort(cavities, count, sizeof *cavities, compare_cavities);
+  for (size_t i = 0; i < count; i++) {
+    if (*filled + cavities[i].volume > r->options->cavity_share * held) break;
+    *filled += cavities[i].volume;
+    n->drop[cavities[i].shell] = true;
+    r->report.done[SCREE_REPAIR_FILL_CAVITY]++;
+  }
+  scree_free(cavities);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_repair_outward(scree_repair *r, scree_error *error) {
+  nest n;
+  scree_status status = find_nest(r, &n, error);
+  if (status != SCREE_OK) return status;
+  status = find_pairs(r, &n, error);
+  if (status == SCREE_OK) status = turn_outward(r, &n, error);
+  free_nest(&n);
+  return status;
+}
+
 scree_status scree_repair_shells(scree_repair *r, scree_error *error) {
   nest n;
   scree_status status = find_nest(r, &n, error);
@@ -208,8 +264,9 @@ scree_status scree_repair_shells(scree_repair *r, scree_error *error) {
   if (status == SCREE_OK) status = turn_outward(r, &n, error);
   if (status == SCREE_OK) {
     judge_shells(r, &n);
-    status = drop_shells(r, &n, error);
+    status = fill_cavities(r, &n, error);
   }
+  if (status == SCREE_OK) status = drop_shells(r, &n, error);
   free_nest(&n);
   return status;
 }
@@ -249,13 +306,14 @@ scree_status scree_repair_cut(scree_repair *r, int rings, size_t *cut_count, scr
   scree_status status = find_nest(r, &n, error);
   if (status != SCREE_OK) return status;
   status = scree_mesh_meetings(&r->mesh, MEETING_LIMIT, r->progress, &found, error);
-  if (status != SCREE_OK || found.truncated || found.count == 0) goto done;
+  if (status != SCREE_OK || found.truncated) goto done;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(marked, r->mesh.triangle_count, error, done);
   SCREE_ALLOC_OR(vertex, r->mesh.vertex_count, error, done);
   status = SCREE_OK;
   memset(marked, 0, r->mesh.triangle_count);
   mark_meetings(&found, &n.shells, marked);
+  if (found.count + scree_sharp_edges(&r->mesh, &n.adjacency, marked) == 0) goto done;
   for (int i = 0; i < rings; i++) grow_marks(&r->mesh, marked, vertex);
   if (marked_share(&r->mesh, marked) <= CUT_SHARE) *cut_count = scree_repair_remove(r, marked);
   r->report.done[SCREE_REPAIR_CUT_INTERSECTION] += *cut_count;

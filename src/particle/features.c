@@ -15,6 +15,7 @@
 
 #include "base/alloc.h"
 #include "mesh/mesh.h"
+#include "mesh/sharp.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,6 @@
 static const double flat_angle = 2e-5;             /* rad; sagitta 0.05 um over 10 mm; above the
                                                       noise of single-precision coordinates */
 static const double sharp_angle = 0.5 * 0.0174533; /* rad; design value, see above */
-static const double fold_cosine = -0.9969;         /* edges of less than 4.5 degrees */
 
 typedef struct half_edge {
   uint32_t low, high; /* vertices, low < high */
@@ -144,11 +144,10 @@ static scree_status pair_halves(extraction *x, bool may_be_open, scree_error *er
         return scree_fail(error, SCREE_BAD_MESH,
                           "particle: triangles %u and %u are wound against each other", a->face,
                           b->face);
-      if (vec3_dot(p->faces[a->face].normal, p->faces[b->face].normal) < fold_cosine)
+      if (scree_normals_are_sharp(p->faces[a->face].normal, p->faces[b->face].normal))
         return scree_fail(error, SCREE_BAD_MESH,
-                          "particle: triangles %u and %u fold back on each other (normals over 150 "
-                          "degrees apart)",
-                          a->face, b->face);
+                          "particle: triangles %u and %u make an edge of less than %g degrees",
+                          a->face, b->face, SCREE_LEAST_EDGE_DEG);
     }
     mesh_edge *edge = &x->edges[x->edge_count++];
     *edge = (mesh_edge){a->low, a->high, a->face, b->face, same == 2 ? turn_over(p, a, b) : 3.0};

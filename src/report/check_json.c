@@ -31,6 +31,11 @@ static void json_repair(scree_json *json, const scree_repair_report *repair) {
     scree_json_count(json, scree_repair_action_name((scree_repair_action)i), repair->done[i]);
   scree_json_end(json);
   scree_json_number(json, "seam_distance", repair->seam_distance);
+  scree_json_number(json, "area_before", repair->area_before);
+  scree_json_number(json, "area_after", repair->area_after);
+  scree_json_number(json, "volume_before", repair->volume_before);
+  scree_json_number(json, "volume_after", repair->volume_after);
+  scree_json_number(json, "filled_volume", repair->filled_volume);
   json_check(json, "after", &repair->after);
 }
 

@@ -246,7 +246,8 @@ static void refused(void **state) {
   assert_false(check.usable);
 }
 
-/* The counts do not depend on where the surface lies or how it is turned. */
+/* The counts do not depend on where the surface lies or how it is turned and stretched; of angles
+ * the stretch makes others. */
 static void transforms(void **state) {
   (void)state;
   scree_rng rng = {.seed = 41};
@@ -257,7 +258,7 @@ static void transforms(void **state) {
     shape_transform(&tangle, &scale, (vec3){16, -32, 1});
     after = check_of(&tangle);
     for (int i = 0; i < SCREE_DEFECT_COUNT; i++)
-      assert_int_equal(before.defects[i], after.defects[i]);
+      if (i != SCREE_DEFECT_SHARP_EDGE) assert_int_equal(before.defects[i], after.defects[i]);
     scree_mesh_free(&tangle);
   }
 }

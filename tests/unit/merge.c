@@ -44,7 +44,8 @@ static void merge_and_compare(const scree_mesh *mesh, double volume, tally *t) {
   CHECK_OK(scree_mesh_check(&one, NULL, NULL, &after, &error), error);
   assert_true(after.usable && after.volume_known);
   t->merged += report.done[SCREE_REPAIR_MERGE_SHELL] > 0;
-  CHECK_NEAR(after.volume, volume, (was_split(&report) ? 1e-3 : 1e-9) * volume);
+  bool was_cut = report.done[SCREE_REPAIR_CUT_INTERSECTION]; /* where edges were too sharp */
+  CHECK_NEAR(after.volume, volume, (was_cut ? 0.01 : was_split(&report) ? 1e-3 : 1e-9) * volume);
   scree_mesh_free(&one);
 }
 

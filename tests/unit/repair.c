@@ -376,13 +376,15 @@ static void debris_and_cavities(void **state) {
   shape_move(&cavity, (vec3){2, 2, 2});
   shape_move(&speck, (vec3){5, 1, 1});
   scree_mesh two = shape_join(&outer, &cavity), mesh = shape_join(&two, &speck);
-  outcome o = repair(&mesh);
+  scree_repair_options keep = scree_default_repair_options();
+  keep.cavity_share = 0;
+  outcome o = repair_with(&mesh, &keep);
   CHECK_NEAR(o.measures.volume, 64 - hollow, 1e-9);
   assert_int_equal(o.report.done[SCREE_REPAIR_DROP_DEBRIS], 1);
   free_outcome(&o);
   /* inside out as a whole, the cavity stays one */
   for (size_t t = 0; t < mesh.triangle_count; t++) shape_flip(&mesh, t);
-  o = repair(&mesh);
+  o = repair_with(&mesh, &keep);
   CHECK_NEAR(o.measures.volume, 64 - hollow, 1e-9);
   assert_int_equal(o.report.done[SCREE_REPAIR_INVERT_SHELL], 3);
   assert_int_equal(o.report.after.defects[SCREE_DEFECT_CAVITY], 1);
@@ -485,8 +487,77 @@ static void spike(void **state) {
   vec3_store(mesh.positions + 3 * 40, vec3_scale(p, -1.3));
   outcome o = repair(&mesh);
   assert_true(o.report.before.defects[SCREE_DEFECT_CROSSING_PAIR] > 0);
+  assert_true(o.report.done[SCREE_REPAIR_MERGE_SHELL] ||
+              o.report.done[SCREE_REPAIR_CUT_INTERSECTION]);
+  expect_same(&o, &clean, 0.01);
+  double volume = o.measures.volume;
+  free_outcome(&o);
+  /* the same wound inward is the same body, whether folds are cut or merged */
+  for (size_t t = 0; t < mesh.triangle_count; t++) shape_flip(&mesh, t);
+  for (int folds = 0; folds < 2; folds++) {
+    scree_repair_options options = scree_default_repair_options();
+    options.merge_folds = folds;
+    o = repair_with(&mesh, &options);
+    if (!folds) expect_same(&o, &clean, 0.01); /* merged, the spike's hole stays */
+    CHECK_NEAR(o.measures.volume, volume, folds ? 0.03 * volume : 1e-9);
+    CHECK_NEAR(o.report.volume_before, volume, 0.01 * volume);
+    CHECK_NEAR(o.report.volume_after, o.measures.volume, 1e-12);
+    CHECK_NEAR(o.report.area_after, o.measures.area, 1e-12);
+    free_outcome(&o);
+  }
+  scree_mesh_free(&mesh);
+}
+
+/* Two neighbours pulled out: a fin too thin for contact, which is cut off; or refused, where so
+ * much may not be lost. */
+static void sharp_edges(void **state) {
+  (void)state;
+  scree_mesh mesh = shape_icosphere(1, 4), repaired;
+  scree_measures clean = measures_of(&mesh);
+  scree_repair_options options = scree_default_repair_options();
+  scree_error error;
+  for (int k = 0; k < 2; k++) {
+    double *p = mesh.positions + 3 * (size_t)mesh.triangles[300 + k];
+    vec3_store(p, vec3_scale(vec3_load(p), 3));
+  }
+  outcome o = repair(&mesh);
+  assert_int_equal(o.report.before.defects[SCREE_DEFECT_SHARP_EDGE], 1);
+  assert_string_equal(o.report.before.verdict, "not usable as a particle: 1 sharp edge");
   assert_true(o.report.done[SCREE_REPAIR_CUT_INTERSECTION] > 0);
   expect_same(&o, &clean, 0.01);
+  free_outcome(&o);
+  options.volume_change = 1e-4;
+  assert_int_equal(scree_mesh_repair(&mesh, &options, NULL, &repaired, NULL, &error),
+                   SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "a repair would change the volume by"));
+  scree_mesh_free(&mesh);
+}
+
+/* Filled from the smallest on, as long as all of them stay below the share. */
+static void small_cavities(void **state) {
+  (void)state;
+  scree_mesh mesh = shape_grid_box(4, 4, 4, 4);
+  double sizes[] = {0.1, 0.3, 0.1, 0.2}, filled = 0; /* of 64 */
+  for (int i = 0; i < 4; i++) {
+    scree_mesh cavity = shape_box(sizes[i], sizes[i], sizes[i]), both;
+    for (size_t t = 0; t < cavity.triangle_count; t++) shape_flip(&cavity, t);
+    shape_move(&cavity, (vec3){0.5 + 0.7 * i, 2, 2});
+    both = shape_join(&mesh, &cavity);
+    scree_mesh_free(&mesh);
+    scree_mesh_free(&cavity);
+    mesh = both;
+    if (sizes[i] < 0.3) filled += pow(sizes[i], 3);
+  }
+  scree_repair_options options = scree_default_repair_options();
+  options.cavity_share = 0.011 / 64;
+  outcome o = repair_with(&mesh, &options);
+  assert_int_equal(o.report.done[SCREE_REPAIR_FILL_CAVITY], 3);
+  CHECK_NEAR(o.report.filled_volume, filled, 1e-12);
+  CHECK_NEAR(o.measures.volume, 64 - 0.027, 1e-9);
+  free_outcome(&o);
+  options.cavity_share = 0;
+  o = repair_with(&mesh, &options);
+  CHECK_NEAR(o.measures.volume, 64 - 0.027 - filled, 1e-9);
   free_outcome(&o);
   scree_mesh_free(&mesh);
 }
@@ -681,6 +752,8 @@ int main(void) {
                                      cmocka_unit_test(nested_is_swallowed),
                                      cmocka_unit_test(parts_that_meet_are_one),
                                      cmocka_unit_test(spike),
+                                     cmocka_unit_test(sharp_edges),
+                                     cmocka_unit_test(small_cavities),
                                      cmocka_unit_test(same_whatever_order),
                                      cmocka_unit_test(moved_turned_scaled),
                                      cmocka_unit_test(runs_away),
