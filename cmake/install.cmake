@@ -3,12 +3,14 @@ include(CMakePackageConfigHelpers)
 
 # libscree.a is shipped with the names of what it stands on: pkg-config --static lists them.
 install(TARGETS scree RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
-install(TARGETS scree_shared EXPORT screeTargets
-        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(BUILD_SHARED_LIBS)
+  install(TARGETS scree_shared EXPORT screeTargets
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT screeTargets NAMESPACE scree:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
+endif()
 install(TARGETS scree_static ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES include/scree.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY include/scree DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
-install(EXPORT screeTargets NAMESPACE scree:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
 
 configure_package_config_file(cmake/screeConfig.cmake.in ${CMAKE_BINARY_DIR}/screeConfig.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
@@ -17,7 +19,7 @@ install(FILES ${CMAKE_BINARY_DIR}/screeConfig.cmake ${CMAKE_BINARY_DIR}/screeCon
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
 
 if(embree_FOUND)
-  set(SCREE_EMBREE_LIBS -lembree3)
+  set(SCREE_EMBREE_LIBS -lembree${embree_VERSION_MAJOR})
 endif()
 if(SCREE_IMPORT_LIBS)
   set(SCREE_ASSIMP_LIBS "-lassimp -lz")
@@ -29,7 +31,7 @@ install(FILES ${CMAKE_BINARY_DIR}/scree.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/p
 
 # The man page and the bash completion come from the program's own option tables.
 find_program(SCDOC scdoc)
-if(SCDOC)
+if(SCDOC AND NOT CMAKE_CROSSCOMPILING) # the program cannot be run here otherwise
   add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/scree.1
     COMMAND sh -c [["$1" help --man | "$2" > scree.1]] sh $<TARGET_FILE:scree> ${SCDOC}
     COMMAND sh -c [["$1" help --completion > scree.bash]] sh $<TARGET_FILE:scree>

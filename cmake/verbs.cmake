@@ -2,6 +2,10 @@
 # the overview is that of the flow; a verb not named here comes last.
 set(flow sample check repair measure distance simplify curve choose drop repose pile study render report export)
 file(GLOB verb_files CONFIGURE_DEPENDS src/cli/verb_*.c)
+if(NOT SCREE_STUDY)
+  list(REMOVE_ITEM flow study)
+  list(FILTER verb_files EXCLUDE REGEX "/verb_study\\.c$")
+endif()
 set(verbs)
 foreach(verb ${flow})
   if(EXISTS ${PROJECT_SOURCE_DIR}/src/cli/verb_${verb}.c)

@@ -78,6 +78,18 @@ typedef struct scree_progress {
  * `instead`. All errors' messages are so. */
 SCREE_API void scree_make_printable(char *text, char instead);
 
+/* What a build may lack. */
+typedef enum scree_build_part {
+  SCREE_BUILD_PICTURES, /* figures as PNG, SVG and PDF (cairo) */
+  SCREE_BUILD_RAYS,     /* rendered pictures (Embree) */
+  SCREE_BUILD_STUDY,    /* scree_study_... (SQLite) */
+  SCREE_BUILD_IMPORT,   /* 3MF, glTF and other formats of meshes (assimp) */
+  SCREE_BUILD_COUNT
+} scree_build_part;
+SCREE_API bool scree_build_has(scree_build_part part);
+/* A line about it, for people; "" beyond the last. */
+SCREE_API const char *scree_build_text(scree_build_part part);
+
 /* Creates the folder and its parents; an existing folder is fine. */
 SCREE_API scree_status scree_folder_create(const char *path, scree_error *error);
 

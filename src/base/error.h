@@ -2,6 +2,7 @@
 #ifndef SCREE_BASE_ERROR_H
 #define SCREE_BASE_ERROR_H
 
+#include "base/platform.h"
 #include "scree.h"
 
 /* Fills *error (may be NULL) with status and a printf-formatted sentence; returns status, so that
@@ -11,7 +12,7 @@
   scree_status_after(scree_fail_text((error), (status), __VA_ARGS__), (status))
 
 scree_status scree_fail_text(scree_error *error, scree_status status, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    SCREE_PRINTF(3, 4);
 static inline scree_status scree_status_after(scree_status told, scree_status status) {
   (void)told;
   return status;

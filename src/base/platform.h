@@ -10,6 +10,14 @@
 #include <stdint.h>
 #include <stdio.h>
 
+/* Marks a function whose arguments from `first` on follow the format at `format`, as printf's do.
+ */
+#ifdef _WIN32
+#define SCREE_PRINTF(format_place, first) __attribute__((format(gnu_printf, format_place, first)))
+#else
+#define SCREE_PRINTF(format_place, first) __attribute__((format(printf, format_place, first)))
+#endif
+
 /* ---- machine ---- */
 
 /* Processors that this process may use, at least 1. */

@@ -2,6 +2,7 @@
 #ifndef SCREE_CLI_ARGS_H
 #define SCREE_CLI_ARGS_H
 
+#include "base/platform.h"
 #include "scree.h"
 
 typedef enum cli_kind {
@@ -97,7 +98,7 @@ scree_status cli_refuse(scree_error *error, scree_status status, const char *pat
  * error's status. */
 scree_status cli_name_in_error(const char *word, scree_error *error);
 /* Says what is wrong with the call on stderr and how to get help; returns the exit code 2. */
-int cli_misuse(const cli_verb *verb, const char *format, ...) __attribute__((format(printf, 2, 3)));
+int cli_misuse(const cli_verb *verb, const char *format, ...) SCREE_PRINTF(2, 3);
 
 /* "mm" to 1e-3; false where the word is no unit of length. */
 bool cli_unit_from_text(const char *text, double *metres);

@@ -27,7 +27,7 @@
 
 static const char *const FIGURES[] = {"figure.png", "figure.svg", "figure.pdf", "figure.csv",
                                       "figure.gnuplot"};
-enum { FIGURE_COUNT = 5 };
+enum { PICTURE_COUNT = 3, FIGURE_COUNT = 5 };
 static const char *const SINGLE_FILES[] = {"choice.csv", "choice.txt", "provenance.json",
                                            "choice.json", "report.html"};
 enum { SINGLE_FILE_COUNT = 5 };
@@ -80,6 +80,11 @@ static scree_status move_file(const choose_run *run, const char *before, const c
   return status;
 }
 
+/* A build without pictures leaves out those that come first. */
+static int first_figure(void) {
+  return scree_build_has(SCREE_BUILD_PICTURES) ? 0 : PICTURE_COUNT;
+}
+
 static bool in_set(const char *before) {
   return !strcmp(before, "set/");
 }
@@ -87,7 +92,7 @@ static bool in_set(const char *before) {
 /* All files but those that a finished choice is known by. */
 static scree_status visit_parts(const choose_run *run, visit_file *visit, scree_error *error) {
   scree_status status = SCREE_OK;
-  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
+  for (int i = first_figure(); i < FIGURE_COUNT && status == SCREE_OK; i++)
     status = visit(run, "", FIGURES[i], "", error);
   for (size_t i = 0; i < run->count; i++)
     for (int k = 0; k < OBJECT_FILE_COUNT && status == SCREE_OK; k++)
@@ -308,7 +313,7 @@ scree_status choose_write_reports(choose_run *run, const scree_choice_report *re
     if (status == SCREE_OK)
       status = scree_choice_curve_csv_write(&report->entries[i], path, overwrite, error);
   }
-  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++) {
+  for (int i = first_figure(); i < FIGURE_COUNT && status == SCREE_OK; i++) {
     status = join(run, "", FIGURES[i], "", path, error);
     if (status == SCREE_OK) status = scree_choice_figure_write(report, path, overwrite, error);
   }

@@ -51,7 +51,7 @@ static int help(int word_count, char **words) {
     bool is_help = words[0][0] == 'h';
     printf("usage: scree %s%s\n\n%s\n", words[0], is_help ? " [VERB]" : "",
            is_help ? "Lists the verbs, or shows what a verb does and its options."
-                   : "Shows the version.");
+                   : "Shows the version, and which parts this build has.");
     return 0;
   }
   const cli_verb *verb = cli_find_verb(words[0]);
@@ -111,6 +111,13 @@ done:
   return result;
 }
 
+static void print_version(void) {
+  printf("scree %s\n", scree_version());
+  for (int part = 0; part < SCREE_BUILD_COUNT; part++)
+    printf("%s %s\n", scree_build_has((scree_build_part)part) ? " with  " : "without",
+           scree_build_text((scree_build_part)part));
+}
+
 static int act(int argc, char **argv) {
   if (argc < 2) {
     cli_print_overview(stderr);
@@ -120,10 +127,12 @@ static int act(int argc, char **argv) {
   if (!strcmp(word, "help") || !strcmp(word, "--help") || !strcmp(word, "-h"))
     return help(argc - 2, argv + 2);
   if (!strcmp(word, "version") || !strcmp(word, "--version")) {
-    printf("scree %s\n", scree_version());
+    print_version();
     return 0;
   }
   const cli_verb *verb = cli_find_verb(word);
+  if (!verb && !strcmp(word, "study") && !scree_build_has(SCREE_BUILD_STUDY))
+    return cli_misuse(NULL, "this build of scree has no studies (SCREE_STUDY=OFF)");
   if (!verb) return cli_misuse(NULL, "unknown verb '%s'", word);
   return run(verb, argc, argv);
 }

@@ -173,24 +173,25 @@ scree_status cli_clear_run_output(const cli_call *call, const char *folder,
 static char **made_folders;
 static size_t made_count;
 
-static bool remember_folder(const char *path, size_t length) {
+static bool remember_folder(char *path) {
   char **grown = realloc(made_folders, (made_count + 1) * sizeof *grown);
   if (!grown) return false;
   made_folders = grown;
-  made_folders[made_count] = strndup(path, length);
-  if (!made_folders[made_count]) return false;
-  made_count++;
+  made_folders[made_count++] = path;
   return true;
 }
 
 scree_status cli_make_folder(const char *path, scree_error *error) {
   for (size_t end = 1; *path && end <= strlen(path); end++) {
     if (path[end] && path[end] != '/') continue;
-    char *part = strndup(path, end);
-    bool missing = part && !scree_path_exists(part);
-    free(part);
-    if (!part || (missing && !remember_folder(path, end)))
+    char *part = strdup(path);
+    if (part) part[end] = 0;
+    if (part && scree_path_exists(part)) {
+      free(part);
+    } else if (!part || !remember_folder(part)) {
+      free(part);
       return cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
+    }
   }
   return scree_folder_create(path, error);
 }

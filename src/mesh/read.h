@@ -55,7 +55,7 @@ bool scree_is_off_word(scree_token word);
 
 /* "NAME: no facets" and its like: the sentence is for the whole file. */
 scree_status scree_reading_fail(const scree_reading *r, scree_status status, const char *format,
-                                ...) __attribute__((format(printf, 3, 4)));
+                                ...) SCREE_PRINTF(3, 4);
 
 /* Welds loose triangles in file units into scan->mesh: the end of a reader. */
 scree_status scree_reading_weld(scree_reading *r, const double *corner_positions,

@@ -45,7 +45,7 @@ scree_status scree_text_position(scree_text *t, double position[3]);
 
 /* Fails with "NAME: line N: " before the sentence, N being the line of `at`. */
 scree_status scree_text_fail(const scree_text *t, const char *at, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    SCREE_PRINTF(3, 4);
 /* The word at `at`, in quotes, cut and made printable for an error; or "the end of the file". */
 enum { SCREE_QUOTE_SIZE = 40 };
 const char *scree_text_quote(const scree_text *t, const char *at, char quote[SCREE_QUOTE_SIZE]);

@@ -1,5 +1,4 @@
-/* One description, five files. Cairo streams into our own output file, so that a picture appears
- * complete or not at all. */
+/* One description, five files. */
 #include "report/plot_draw.h"
 
 #include "base/alloc.h"
@@ -8,56 +7,11 @@
 #include "report/csv.h"
 #include "report/text.h"
 
-#include <cairo-pdf.h>
-#include <cairo-svg.h>
-#include <math.h>
 #include <string.h>
 
-static const double PIXELS_PER_POINT = 2;
+/* Those that are painted first, in the order of scree_paint. */
 static const char *const ENDINGS[] = {".png", ".svg", ".pdf", ".csv", ".gnuplot"};
 enum { ENDING_COUNT = 5, LABEL_BYTES = 256 };
-
-/* Never fails: a write that does leaves its mark on the stream, and scree_output_commit, which
- * knows the reason, finds it. */
-static cairo_status_t to_stream(void *stream, const unsigned char *bytes, unsigned count) {
-  (void)fwrite(bytes, 1, count, stream);
-  return CAIRO_STATUS_SUCCESS;
-}
-
-static cairo_status_t draw_to(const scree_figure *figure, cairo_surface_t *surface, double scale) {
-  cairo_t *cr = cairo_create(surface);
-  cairo_scale(cr, scale, scale);
-  scree_figure_draw(figure, cr);
-  cairo_status_t status = cairo_status(cr);
-  cairo_destroy(cr);
-  return status;
-}
-
-static cairo_status_t write_png(const scree_figure *figure, FILE *stream) {
-  double width, height;
-  scree_figure_extent(figure, &width, &height);
-  cairo_surface_t *surface =
-      cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)ceil(width * PIXELS_PER_POINT),
-                                 (int)ceil(height * PIXELS_PER_POINT));
-  cairo_status_t status = draw_to(figure, surface, PIXELS_PER_POINT);
-  if (status == CAIRO_STATUS_SUCCESS)
-    status = cairo_surface_write_to_png_stream(surface, to_stream, stream);
-  cairo_surface_destroy(surface);
-  return status;
-}
-
-static cairo_status_t write_vector(const scree_figure *figure, FILE *stream, bool pdf) {
-  double width, height;
-  scree_figure_extent(figure, &width, &height);
-  cairo_surface_t *surface =
-      pdf ? cairo_pdf_surface_create_for_stream(to_stream, stream, width, height)
-          : cairo_svg_surface_create_for_stream(to_stream, stream, width, height);
-  cairo_status_t status = draw_to(figure, surface, 1);
-  cairo_surface_finish(surface);
-  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(surface);
-  cairo_surface_destroy(surface);
-  return status;
-}
 
 /* ---- data ---- */
 
@@ -187,26 +141,12 @@ scree_status scree_figure_write(const scree_figure *figure, const char *path, bo
   scree_output output;
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
-  cairo_status_t drawn = CAIRO_STATUS_SUCCESS;
-  switch (ending) {
-  case 0:
-    drawn = write_png(figure, output.stream);
-    break;
-  case 1:
-    drawn = write_vector(figure, output.stream, false);
-    break;
-  case 2:
-    drawn = write_vector(figure, output.stream, true);
-    break;
-  case 3:
+  if (ending <= SCREE_PAINT_PDF)
+    status = scree_figure_paint(figure, (scree_paint)ending, output.stream, path, error);
+  else if (!strcmp(ENDINGS[ending], ".csv"))
     write_csv(figure, output.stream);
-    break;
-  default:
+  else
     status = write_script_for(figure, path, output.stream, error);
-  }
-  if (drawn != CAIRO_STATUS_SUCCESS)
-    status =
-        scree_fail(error, SCREE_IO, "%s: cannot draw: %s", path, cairo_status_to_string(drawn));
   if (status == SCREE_OK) return scree_output_commit(&output, error);
   scree_output_discard(&output);
   return status;

@@ -1,10 +1,8 @@
 #include "report/ray.h"
 
-#ifdef SCREE_WITH_EMBREE
-
 #include "base/alloc.h"
 
-#include <embree3/rtcore.h>
+#include SCREE_RAY_QUERIES /* ray_embree3.inc or ray_embree4.inc */
 #include <math.h>
 #include <string.h>
 
@@ -74,11 +72,9 @@ static struct RTCRay make_ray(const float origin[3], const float direction[3], f
 
 scree_ray_hit scree_ray_first(const scree_ray_scene *scene, const float origin[3],
                               const float direction[3]) {
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   struct RTCRayHit query = {.ray = make_ray(origin, direction, INFINITY),
                             .hit = {.geomID = RTC_INVALID_GEOMETRY_ID}};
-  rtcIntersect1(scene->scene, &context, &query);
+  intersect(scene->scene, &query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return (scree_ray_hit){.t = INFINITY};
   return (scree_ray_hit){query.ray.tfar,   {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z},
                          query.hit.u,      query.hit.v,
@@ -87,41 +83,7 @@ scree_ray_hit scree_ray_first(const scree_ray_scene *scene, const float origin[3
 
 bool scree_ray_blocked(const scree_ray_scene *scene, const float origin[3],
                        const float direction[3], float reach) {
-  struct RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
   struct RTCRay ray = make_ray(origin, direction, reach);
-  rtcOccluded1(scene->scene, &context, &ray);
+  occlude(scene->scene, &ray);
   return ray.tfar < 0;
 }
-
-#else
-
-scree_status scree_ray_scene_create(scree_ray_scene **scene, scree_error *error) {
-  (void)scene;
-  return scree_fail(error, SCREE_UNSUPPORTED, "this build has no ray tracer (Embree) for pictures");
-}
-void scree_ray_scene_free(scree_ray_scene *scene) {
-  (void)scene;
-}
-scree_status scree_ray_scene_add(scree_ray_scene *scene, const float *positions,
-                                 size_t vertex_count, const uint32_t *triangles,
-                                 size_t triangle_count, scree_error *error) {
-  (void)scene, (void)positions, (void)vertex_count, (void)triangles, (void)triangle_count;
-  return scree_fail(error, SCREE_UNSUPPORTED, "this build has no ray tracer (Embree) for pictures");
-}
-scree_status scree_ray_scene_commit(scree_ray_scene *scene, scree_error *error) {
-  (void)scene;
-  return scree_fail(error, SCREE_UNSUPPORTED, "this build has no ray tracer (Embree) for pictures");
-}
-scree_ray_hit scree_ray_first(const scree_ray_scene *scene, const float origin[3],
-                              const float direction[3]) {
-  (void)scene, (void)origin, (void)direction;
-  return (scree_ray_hit){.t = __builtin_inff()};
-}
-bool scree_ray_blocked(const scree_ray_scene *scene, const float origin[3],
-                       const float direction[3], float reach) {
-  (void)scene, (void)origin, (void)direction, (void)reach;
-  return false;
-}
-
-#endif

@@ -24,7 +24,7 @@ typedef struct reader {
 } reader;
 
 static scree_status fail_at(const reader *r, const scree_yaml *node, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+    SCREE_PRINTF(3, 4);
 static scree_status fail_at(const reader *r, const scree_yaml *node, const char *format, ...) {
   char text[512];
   va_list arguments;

@@ -1,0 +1,36 @@
+# What scree stands on, built from the sources of tools/library-sources.sh under the names of the packages.
+enable_language(CXX)
+set(sources ${SCREE_LIBRARY_SOURCES})
+
+function(add_source_library name alias)
+  add_library(${name} STATIC ${ARGN})
+  set_target_properties(${name} PROPERTIES C_EXTENSIONS ON C_VISIBILITY_PRESET default)
+  target_compile_options(${name} PRIVATE -w -O2 -ffp-contract=off)
+  add_library(${alias} ALIAS ${name})
+endfunction()
+
+file(GLOB qhull ${sources}/qhull/src/libqhull_r/*_r.c)
+add_source_library(qhull_sources Qhull::qhull_r ${qhull})
+target_include_directories(qhull_sources PUBLIC ${sources}/qhull/src)
+
+add_source_library(xxhash_sources PkgConfig::XXHASH ${sources}/xxhash/xxhash.c)
+target_include_directories(xxhash_sources PUBLIC ${sources}/xxhash)
+
+file(GLOB yaml ${sources}/libyaml/src/*.c)
+add_source_library(yaml_sources PkgConfig::YAML ${yaml})
+target_include_directories(yaml_sources PUBLIC ${sources}/libyaml/include)
+target_compile_definitions(yaml_sources PUBLIC YAML_DECLARE_STATIC PRIVATE YAML_VERSION_MAJOR=0 YAML_VERSION_MINOR=2
+  YAML_VERSION_PATCH=5 YAML_VERSION_STRING="0.2.5")
+
+# Only what packs meshes for the report.
+set(meshopt ${sources}/meshoptimizer/src)
+add_source_library(meshopt_sources meshoptimizer::meshoptimizer ${meshopt}/allocator.cpp ${meshopt}/indexcodec.cpp
+  ${meshopt}/indexgenerator.cpp ${meshopt}/vcacheoptimizer.cpp ${meshopt}/vertexcodec.cpp
+  ${meshopt}/vfetchoptimizer.cpp)
+target_compile_options(meshopt_sources PRIVATE -fno-exceptions -fno-rtti)
+target_include_directories(meshopt_sources PUBLIC ${meshopt})
+
+if(SCREE_STUDY)
+  add_source_library(sqlite_sources PkgConfig::SQLITE ${sources}/sqlite/sqlite3.c)
+  target_include_directories(sqlite_sources PUBLIC ${sources}/sqlite)
+endif()
