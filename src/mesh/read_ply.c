@@ -36,8 +36,7 @@ static bool is_ascii(const ply *p) {
 }
 
 /* Fails with the file, the line or byte, and the row before the sentence. */
-static scree_status fail_at(const ply *p, const char *format, ...)
-    SCREE_PRINTF(2, 3);
+static scree_status fail_at(const ply *p, const char *format, ...) SCREE_PRINTF(2, 3);
 
 static scree_status fail_at(const ply *p, const char *format, ...) {
   char what[160];
