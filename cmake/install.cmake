@@ -12,17 +12,25 @@ install(TARGETS scree_static ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(FILES include/scree.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(DIRECTORY include/scree DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
-configure_package_config_file(cmake/screeConfig.cmake.in ${CMAKE_BINARY_DIR}/screeConfig.cmake
-                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
-write_basic_package_version_file(${CMAKE_BINARY_DIR}/screeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
-install(FILES ${CMAKE_BINARY_DIR}/screeConfig.cmake ${CMAKE_BINARY_DIR}/screeConfigVersion.cmake
-        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
+if(BUILD_SHARED_LIBS)
+  configure_package_config_file(cmake/screeConfig.cmake.in ${CMAKE_BINARY_DIR}/screeConfig.cmake
+                                INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
+  write_basic_package_version_file(${CMAKE_BINARY_DIR}/screeConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+  install(FILES ${CMAKE_BINARY_DIR}/screeConfig.cmake ${CMAKE_BINARY_DIR}/screeConfigVersion.cmake
+          DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/scree)
+endif()
 
 if(embree_FOUND)
   set(SCREE_EMBREE_LIBS -lembree${embree_VERSION_MAJOR})
 endif()
 if(SCREE_IMPORT_LIBS)
   set(SCREE_ASSIMP_LIBS "-lassimp -lz")
+endif()
+if(SCREE_PICTURES)
+  string(APPEND SCREE_PC_REQUIRES "cairo ")
+endif()
+if(SCREE_STUDY)
+  string(APPEND SCREE_PC_REQUIRES "sqlite3")
 endif()
 # The prefix from where the file lies, so that an installation may be moved.
 file(RELATIVE_PATH SCREE_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})

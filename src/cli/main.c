@@ -111,9 +111,9 @@ done:
   return result;
 }
 
-static void print_version(void) {
+static void print_version(bool parts) {
   printf("scree %s\n", scree_version());
-  for (int part = 0; part < SCREE_BUILD_COUNT; part++)
+  for (int part = 0; parts && part < SCREE_BUILD_COUNT; part++)
     printf("%s %s\n", scree_build_has((scree_build_part)part) ? " with  " : "without",
            scree_build_text((scree_build_part)part));
 }
@@ -127,7 +127,7 @@ static int act(int argc, char **argv) {
   if (!strcmp(word, "help") || !strcmp(word, "--help") || !strcmp(word, "-h"))
     return help(argc - 2, argv + 2);
   if (!strcmp(word, "version") || !strcmp(word, "--version")) {
-    print_version();
+    print_version(*word != '-');
     return 0;
   }
   const cli_verb *verb = cli_find_verb(word);

@@ -41,7 +41,7 @@ fi
 cmake -S "$here" -B "$folder/cmake" -DCMAKE_PREFIX_PATH="$folder/prefix" -DCMAKE_C_COMPILER="$compiler" \
   >"$folder/log" && cmake --build "$folder/cmake" >>"$folder/log" || { cat "$folder/log"; exit 1; }
 expect cmake "$("$folder/cmake/consumer")"
-expect program "$("$folder/prefix/bin/scree" version | sed 's/scree //')"
+expect program "$("$folder/prefix/bin/scree" --version | sed 's/scree //')"
 if [ -x /usr/bin/python3 ]; then
   module=$(dirname "$(dirname "$(find "$folder/prefix" -path '*/scree/__init__.py')")")
   expect python "$(env -u SCREE_LIBRARY PYTHONPATH="$module" /usr/bin/python3 -c 'import scree; print(scree.version())')"
