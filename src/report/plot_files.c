@@ -161,6 +161,7 @@ scree_status scree_figure_write_all(const scree_figure *figure, const char *stem
   for (int i = 0; i < ENDING_COUNT && status == SCREE_OK; i++) {
     snprintf(path, size, "%s%s", stem, ENDINGS[i]);
     status = scree_figure_write(figure, path, overwrite, error);
+    if (status == SCREE_UNSUPPORTED) status = SCREE_OK; /* a build without pictures */
   }
   scree_free(path);
   return status;
