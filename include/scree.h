@@ -2,8 +2,8 @@
  * simulation.
  *
  * These headers are the whole public interface; each can be included alone. In the order in which
- * the data goes: base, mesh, measure, check, simplify, choice, sample, particle, world, pile,
- * study, report.
+ * the data goes: base, mesh, measure, check, simplify, choice, sample, particle, world, heap,
+ * scene, pile, study, report.
  *
  * What holds everywhere:
  *
@@ -29,12 +29,14 @@
 #include "scree/base.h"
 #include "scree/check.h"
 #include "scree/choice.h"
+#include "scree/heap.h"
 #include "scree/measure.h"
 #include "scree/mesh.h"
 #include "scree/particle.h"
 #include "scree/pile.h"
 #include "scree/report.h"
 #include "scree/sample.h"
+#include "scree/scene.h"
 #include "scree/simplify.h"
 #include "scree/study.h"
 #include "scree/world.h"

@@ -8,7 +8,7 @@ set -eu
 cd "$1"
 root=.
 compiler=$2
-layers="base mesh simplify choice sample particle world pile study report"
+layers="base mesh simplify choice sample particle world heap scene pile study report"
 failed=0
 complain() {
   echo "$1"
@@ -16,7 +16,7 @@ complain() {
 }
 
 earlier=""
-for header in base mesh measure check simplify choice sample particle world pile study report; do
+for header in base mesh measure check simplify choice sample particle world heap scene pile study report; do
   for included in $(sed -n 's/^#include "scree\/\([a-z]*\)\.h"/\1/p' "$root/include/scree/$header.h"); do
     case " $earlier " in
       *" $included "*) ;;
@@ -33,6 +33,8 @@ for layer in $layers; do
   # physics knows particles only: world sees no scan, no curve, no choice
   visible=$allowed
   [ "$layer" = world ] && visible="base particle world"
+  # a heap is its height field
+  [ "$layer" = heap ] && visible="base heap"
   # report reads results through the public header
   [ "$layer" = report ] && visible="base report"
   for file in "$root"/src/"$layer"/*; do

@@ -398,6 +398,27 @@ typedef struct scree_pour_entry {
 SCREE_API scree_status scree_pour_json_write(const scree_pour_entry *entry, const char *path,
                                              bool overwrite, scree_error *error);
 
+/* ---- Scenes: JSON and pictures ---- */
+
+/* A scene as it stands. Texts are borrowed. */
+typedef struct scree_scene_entry {
+  const scree_scene *scene;
+  const char *file;            /* the scene's; NULL: unknown */
+  const char *stopped_because; /* it was interrupted, or diverged; NULL: it came to its end */
+  const char *command_line;    /* NULL: unknown */
+  double seconds;              /* on the clock */
+} scree_scene_entry;
+
+/* One object: version, command, why it ended, the book, shapes, inlets, outlets, and every column
+ * with its last value, mean, extremes and series (docs/formats.md). "-" is stdout. */
+SCREE_API scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *path,
+                                              bool overwrite, scree_error *error);
+/* The bodies and the geometry, which is cut open towards the viewer. Errors as scree_render. */
+SCREE_API scree_status scree_scene_picture(const scree_scene *scene,
+                                           const scree_render_options *options,
+                                           const scree_progress *progress, scree_image *image,
+                                           scree_error *error);
+
 /* The bodies of a world as they stand, each shape in its colour; walls are not drawn. Errors as
  * scree_render. */
 SCREE_API scree_status scree_world_picture(const scree_world *world,

@@ -13,10 +13,11 @@ from ._library import Error, c_uint32 as _uint32, lib as _lib
 from ._mesh import Choice, Curve, Mesh, load, sample, samples
 from ._pour import Pour
 from ._run import Experiment, Motion, Run, report, repose
+from ._scene import Scene
 from ._values import whole as _whole
 from ._world import Particle, World, write_pvd
 
-__all__ = ["Choice", "Curve", "Error", "Experiment", "Mesh", "Motion", "Particle", "Pour", "Run", "World", "load", "report",
+__all__ = ["Choice", "Curve", "Error", "Experiment", "Mesh", "Motion", "Particle", "Pour", "Run", "Scene", "World", "load", "report",
            "repose", "sample", "samples", "set_threads", "version", "write_pvd"]
 
 

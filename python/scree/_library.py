@@ -303,6 +303,12 @@ class scree_pour_options(Structure):
                 ("entry_speed", c_double), ("seed", c_uint64)]
 
 
+class scree_scene_book(Structure):
+    _fields_ = [(name, c_size_t) for name in ("entered_count", "inside_count", "left_count", "waiting_count")] + [
+        (name, c_double) for name in ("entered_mass", "inside_mass", "left_mass", "entered_energy", "left_energy",
+                                      "ledger")]
+
+
 class scree_motion(Structure):
     _fields_ = [("frame_count", c_size_t), ("body_count", c_size_t), ("time", POINTER(c_double)),
                 ("cylinder_height", POINTER(c_double)), ("poses", POINTER(c_float))]
@@ -366,6 +372,13 @@ _FALLIBLE = {  # argument types before the error
     "pour_record_end": (_H,),
     "pour_save": (_H, _S, c_bool),
     "pour_load": (_S, _HH),
+    "scene_file_read": (_S, _HH),
+    "scene_file_set": (_H, _S, _S),
+    "scene_create": (_H, POINTER(scree_progress), _HH),
+    "scene_advance": (_H, c_size_t),
+    "scene_measure": (_H, POINTER(c_double)),
+    "scene_save": (_H, _S, c_bool),
+    "scene_load": (_S, _HH),
     "experiment_preset": (_S, POINTER(scree_experiment)),
     "experiment_read": (_S, POINTER(scree_experiment)),
     "experiment_set": (POINTER(scree_experiment), _S, _S),
@@ -449,6 +462,25 @@ _PLAIN = {  # result, argument types
     "run_is_frame": (c_bool, (_H,)),
     "run_series": (POINTER(scree_run_point), (_H, POINTER(c_size_t))),
     "phase_name": (_S, (c_int,)),
+    "scene_file_free": (None, (_H,)),
+    "scene_template_name": (_S, (c_size_t,)),
+    "scene_template": (_S, (_S,)),
+    "scene_free": (None, (_H,)),
+    "scene_end": (_S, (_H,)),
+    "scene_duration": (c_double, (_H,)),
+    "scene_text": (_S, (_H,)),
+    "scene_world": (_H, (_H,)),
+    "scene_shape_name": (_S, (_H, c_size_t)),
+    "scene_geometry_name": (_S, (_H, c_size_t)),
+    "scene_inlet_name": (_S, (_H, c_size_t)),
+    "scene_outlet_name": (_S, (_H, c_size_t)),
+    "scene_body_shape": (c_size_t, (_H, c_size_t)),
+    "scene_get_book": (None, (_H, POINTER(scree_scene_book))),
+    "scene_inlet_count": (c_size_t, (_H, c_size_t, POINTER(c_double), POINTER(c_size_t))),
+    "scene_outlet_count": (c_size_t, (_H, c_size_t, POINTER(c_double))),
+    "scene_column_name": (_S, (_H, c_size_t)),
+    "scene_column_unit": (_S, (_H, c_size_t)),
+    "scene_series": (POINTER(c_double), (_H, POINTER(c_size_t))),
 }
 
 

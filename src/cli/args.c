@@ -225,6 +225,14 @@ static int parse_choice(const cli_verb *verb, const cli_option *option, const ch
   return cli_misuse(verb, "--%s %s: must be one of %s", option->name, text, option->words);
 }
 
+static int add_text(const cli_verb *verb, const cli_option *option, const char *text,
+                    cli_texts *texts) {
+  if (texts->count == CLI_MOST_TEXTS)
+    return cli_misuse(verb, "--%s is given more than %d times", option->name, CLI_MOST_TEXTS);
+  texts->items[texts->count++] = text;
+  return 0;
+}
+
 static int store(const cli_verb *verb, const cli_option *option, const char *text, void *base) {
   void *value = (char *)base + option->offset;
   double real;
@@ -238,6 +246,8 @@ static int store(const cli_verb *verb, const cli_option *option, const char *tex
       return cli_misuse(verb, "--%s: the value %s is empty", option->name, option->value_name);
     *(const char **)value = text;
     return 0;
+  case CLI_TEXTS:
+    return add_text(verb, option, text, value);
   case CLI_COUNT:
     return parse_count(verb, option, text, value);
   case CLI_REAL:

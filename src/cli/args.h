@@ -8,6 +8,7 @@
 typedef enum cli_kind {
   CLI_FLAG,   /* bool: set to true */
   CLI_TEXT,   /* const char * */
+  CLI_TEXTS,  /* cli_texts: every time it is given, one more */
   CLI_FILE,   /* const char *: a file that is read */
   CLI_COUNT,  /* size_t in [minimum, maximum] */
   CLI_REAL,   /* double in [minimum, maximum] */
@@ -16,6 +17,12 @@ typedef enum cli_kind {
   CLI_BYTES,  /* size_t, with suffix K, M, G */
   CLI_CHOICE, /* int: index of the word in `words`, which reads "one|two|three" */
 } cli_kind;
+
+enum { CLI_MOST_TEXTS = 64 };
+typedef struct cli_texts {
+  const char *items[CLI_MOST_TEXTS];
+  size_t count;
+} cli_texts;
 
 typedef struct cli_option {
   const char *name;        /* long name without dashes */

@@ -40,7 +40,10 @@ typedef struct drop_schedule {
 
 typedef struct drop_run {
   const cli_call *call;
-  const drop_arguments *arguments;
+  const drop_arguments *given, *arguments; /* as called; and with what is as usual filled in */
+  drop_arguments settled;                  /* what `arguments` points to */
+  double line_interval;                    /* s between lines of series.csv */
+  double still_time;                       /* s below the still energy before it counts */
   drop_shape *shapes;
   size_t shape_count;
   scree_pour *pour;
@@ -58,6 +61,9 @@ typedef struct drop_run {
 int drop_read_words(drop_run *run);
 /* Loads, repairs, decimates: every shape gets its particle. */
 scree_status drop_make_particles(drop_run *run, scree_error *error);
+
+/* verb_drop.c: fills in what hangs on the particles' size: those of the pour, or of the shapes. */
+void drop_settle(drop_run *run);
 
 /* drop_output.c: makes the folder; an earlier drop in it is refused where nothing may be
  * overwritten. */

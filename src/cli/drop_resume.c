@@ -72,14 +72,17 @@ static void list_settings(const scree_pour_options *o, double settings[SETTINGS]
 /* A setting left at its default is not asked for where no shapes are given. */
 static scree_status check_settings(const drop_run *run, const char *path, scree_error *error) {
   scree_pour_options saved, asked = drop_pour_options(run->arguments),
-                            usual = drop_pour_options(drop_defaults());
-  double there[SETTINGS], here[SETTINGS], defaults[SETTINGS];
+                            usual = drop_pour_options(drop_defaults()),
+                            raw = drop_pour_options(run->given);
+  double there[SETTINGS], here[SETTINGS], defaults[SETTINGS], given[SETTINGS];
   scree_pour_get_options(run->pour, &saved);
   list_settings(&saved, there);
   list_settings(&asked, here);
   list_settings(&usual, defaults);
+  list_settings(&raw, given);
   for (int i = 0; i < SETTINGS; i++) {
     bool open = (i == 1 || i == 2) && here[i] == 0; /* width and depth: chosen by the pour */
+    open = open || (run->shape_count == 0 && isnan(given[i]));
     if (here[i] == there[i] || open || (run->shape_count == 0 && here[i] == defaults[i])) continue;
     char reason[160];
     snprintf(reason, sizeof reason, "is of another pour: %s is %g there and %g here",
@@ -152,6 +155,7 @@ scree_status drop_resume(drop_run *run, scree_error *error) {
     return run->shape_count ? SCREE_OK
                             : cli_refuse(error, SCREE_IO, path, "no checkpoint to go on from");
   status = scree_pour_load(path, &run->pour, error);
+  if (status == SCREE_OK) drop_settle(run);
   if (status == SCREE_OK) status = check_settings(run, path, error);
   if (status == SCREE_OK) status = check_shapes(run, path, error);
   return status == SCREE_OK ? take_notes(run, path, error) : status;

@@ -154,11 +154,36 @@ static void print_family(FILE *stream, const scree_study_result *r, const scree_
   fputs("\n", stream);
 }
 
+/* A table for each answer of a scene. */
+static void print_answers(FILE *stream, const scree_study_result *r) {
+  int width = 5;
+  for (size_t i = 0; i < r->point_count; i++) {
+    int length = (int)strlen(r->points[i].label);
+    if (length > width) width = length < 80 ? length : 80;
+  }
+  fprintf(stream, "intervals of %g %%; time of the processor\n", 100 * r->confidence);
+  for (size_t k = 0; k < r->answer_count; k++) {
+    fprintf(stream, "%s\n  %-*s %7s %12s %-27s %10s %9s\n", r->answers[k], width, "point", "runs",
+            "mean", "  interval", "SD", "time (s)");
+    for (size_t i = 0; i < r->point_count; i++) {
+      const scree_point_result *p = &r->points[i];
+      const scree_summary *a = &p->answers[k];
+      fprintf(stream, "  %-*.*s %3zu/%-3zu %12.5g [%11.5g, %11.5g] %11.4g %9.4g\n", width, width,
+              p->label[0] ? p->label : r->name, p->counts.done, r->replicate_count, a->mean,
+              a->mean_low, a->mean_high, a->sd, p->seconds.mean);
+    }
+  }
+}
+
 void study_print(FILE *stream, const scree_study_result *r) {
   print_counts(stream, r);
-  fprintf(stream, "angle by %s, degrees; intervals of %g %%; time of the processor\n", r->angle,
-          100 * r->confidence);
-  print_table(stream, r);
+  if (r->answer_count) {
+    print_answers(stream, r);
+  } else {
+    fprintf(stream, "angle by %s, degrees; intervals of %g %%; time of the processor\n", r->angle,
+            100 * r->confidence);
+    print_table(stream, r);
+  }
   for (size_t f = 0; f < r->family_count; f++) print_family(stream, r, &r->families[f]);
   if (r->mixed_versions) fputs("the runs were made by different versions of scree\n", stream);
   for (size_t i = 0; i < r->failure_count && i < 5; i++)

@@ -8,20 +8,25 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 25 };                      /* steps between looks at the clock and at Ctrl-C */
-static const double still_time = 0.05;    /* s below the still energy before it counts */
-static const double line_interval = 0.01; /* s between lines of series.csv */
+enum { CHUNK = 25 }; /* steps between looks at the clock and at Ctrl-C */
+/* What is not asked for is as for particles of this size; of smaller ones heights shrink with the
+ * size, speeds and times with its root: a fall by one's own size looks the same at every size. */
+static const double usual_size = 0.01; /* m */
+static const struct {
+  double drop_height, speed, time, still, frame_interval, line_interval;
+  double still_time; /* below the still energy before it counts */
+} usual = {0.05, 1, 2, 1e-8, 0.02, 0.01, 0.05};
 
 static const drop_arguments defaults = {.output = "drop",
                                         .source = CLI_SOURCE_DEFAULTS,
                                         .number = 30,
                                         .seed = 1,
                                         .samples = 24,
-                                        .drop_height = 0.05,
-                                        .speed = 1,
-                                        .time = 2,
-                                        .still = 1e-8,
-                                        .frame_interval = 0.02,
+                                        .drop_height = NAN,
+                                        .speed = NAN,
+                                        .time = NAN,
+                                        .still = NAN,
+                                        .frame_interval = NAN,
                                         .checkpoint_interval = 60,
                                         .young = 1e8,
                                         .young_wall = 1e11,
@@ -55,13 +60,18 @@ static const cli_option options[] = {
     {"reduction", 'r', CLI_REAL, AT(rp), "RP",
      "Decimate every shape to this share of its triangles, as in 1e-3.", 1e-12, 1, NULL},
     {"time", 't', CLI_REAL, AT(time), "S",
-     "Seconds simulated after the last layer entered, at most. Default: 2.", 0, 1e6, NULL},
+     "Seconds simulated after the last layer entered, at most. Default: 2; less of particles under "
+     "10 "
+     "mm, as their falls are shorter.",
+     0, 1e6, NULL},
     {"still", 0, CLI_REAL, AT(still), "J",
      "End early when the mean kinetic energy of a particle stays below this; 0: never. Default: "
-     "1e-8 J.",
+     "1e-8 J; less of particles under 10 mm.",
      0, 1e6, NULL},
     {"frames", 0, CLI_REAL, AT(frame_interval), "S",
-     "Simulated seconds between frames; 0 writes none. Default: 0.02.", 0, 1e6, NULL},
+     "Simulated seconds between frames; 0 writes none. Default: 0.02; less of particles under 10 "
+     "mm.",
+     0, 1e6, NULL},
     {"checkpoint", 0, CLI_REAL, AT(checkpoint_interval), "S",
      "Seconds of the clock between checkpoints. Default: 60.", 0.01, 1e6, NULL},
     {"resume", 0, CLI_FLAG, AT(resume), NULL,
@@ -69,10 +79,12 @@ static const cli_option options[] = {
      "the options that are not of the pour itself (time, still, frames, picture).",
      0, 0, NULL},
     {"drop-height", 0, CLI_LENGTH, AT(drop_height), "LENGTH",
-     "From the floor to the first layer. Later ones enter above what is there. Default: 50mm.", 0,
-     1e3, NULL},
-    {"speed", 0, CLI_REAL, AT(speed), "M/S", "Speed of entering, downwards. Default: 1 m/s.", 0,
-     100, NULL},
+     "From the floor to the first layer. Later ones enter above what is there. Default: 50mm, or "
+     "five "
+     "times the largest particle where that is less.",
+     0, 1e3, NULL},
+    {"speed", 0, CLI_REAL, AT(speed), "M/S",
+     "Speed of entering, downwards. Default: 1 m/s; less of particles under 10 mm.", 0, 100, NULL},
     {"density", 0, CLI_REAL, AT(density), "KG/M3", "Default: 2000 kg/m3.", 1e-6, 1e6, NULL},
     {"young", 0, CLI_REAL, AT(young), "PA",
      "Young's modulus of the particles: stiffness of a contact over particle size. Default: 1e8.",
@@ -113,6 +125,35 @@ static const cli_option options[] = {
 
 const drop_arguments *drop_defaults(void) {
   return &defaults;
+}
+
+/* The largest particle's diameter. */
+static double largest_size(const drop_run *run) {
+  double largest = 0;
+  size_t count = run->pour ? scree_pour_shape_count(run->pour) : run->shape_count;
+  for (size_t i = 0; i < count; i++) {
+    scree_particle_measures m;
+    scree_particle_measure(
+        run->pour ? scree_pour_get_shape(run->pour, i).particle : run->shapes[i].particle, &m);
+    largest = fmax(largest, 2 * m.bounding_radius);
+  }
+  return largest;
+}
+
+static void take(double *value, double usual_value) {
+  if (isnan(*value)) *value = usual_value;
+}
+
+void drop_settle(drop_run *run) {
+  drop_arguments *a = &run->settled;
+  double share = fmin(1, largest_size(run) / usual_size), root = sqrt(share);
+  take(&a->drop_height, share * usual.drop_height);
+  take(&a->speed, root * usual.speed);
+  take(&a->time, root * usual.time);
+  take(&a->still, share * share * share * share * usual.still); /* mass times height */
+  take(&a->frame_interval, root * usual.frame_interval);
+  run->line_interval = root * usual.line_interval;
+  run->still_time = root * usual.still_time;
 }
 
 scree_pour_options drop_pour_options(const drop_arguments *a) {
@@ -179,7 +220,7 @@ static scree_status write_due(drop_run *run, drop_schedule *s, double time, scre
   }
   if (status == SCREE_OK && time >= s->next_line) {
     status = drop_write_line(run, error);
-    while (s->next_line <= time) s->next_line += line_interval;
+    while (s->next_line <= time) s->next_line += run->line_interval;
   }
   return status;
 }
@@ -195,7 +236,7 @@ static bool is_still(const drop_run *run, drop_schedule *s, double time) {
     return false;
   }
   if (isnan(s->still_since)) s->still_since = time;
-  return time - s->still_since >= still_time;
+  return time - s->still_since >= run->still_time;
 }
 
 /* Draws the progress; false after Ctrl-C. */
@@ -312,6 +353,7 @@ static scree_status draw(drop_run *run, scree_error *error) {
 static scree_status begin(drop_run *run, scree_error *error) {
   run->schedule.still_since = NAN;
   scree_status status = drop_make_particles(run, error);
+  if (status == SCREE_OK) drop_settle(run);
   if (status == SCREE_OK) status = create_pour(run, error);
   return status == SCREE_OK ? drop_open_output(run, error) : status;
 }
@@ -347,9 +389,11 @@ static const char *shape_option(const drop_arguments *a) {
 
 static int run(const cli_call *call) {
   drop_run run = {.call = call,
-                  .arguments = call->options,
+                  .given = call->options,
+                  .settled = *(const drop_arguments *)call->options,
                   .shape_count = call->input_count,
                   .start = scree_work_started()};
+  run.arguments = &run.settled;
   if (run.arguments->rp > 0 && run.arguments->triangles)
     return cli_misuse(call->verb, "-r and -n exclude each other");
   if (run.arguments->source.noise > 0.25 * run.arguments->source.resolution)

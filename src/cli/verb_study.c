@@ -168,7 +168,8 @@ const cli_verb cli_verb_study = {
     .summary = "run an experiment many times and say what follows",
     .inputs = "STUDY.yaml | status DIR",
     .description =
-        "Runs the angle-of-repose experiment at every point of a design, several times each: "
+        "Runs the angle-of-repose experiment, or a scene of your own (base: {scene: my.yaml}), at "
+        "every point of a design, several times each: "
         "shapes, Rp levels (also spheres), friction, lift speed or any other field of the "
         "experiment, on a full grid or a space-filling design. The folder holds everything; the "
         "same command goes on where it was interrupted, and any number of processes and machines "

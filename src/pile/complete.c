@@ -1,8 +1,8 @@
 /* A whole run in a folder: chunks of steps, and between them frames, checkpoints and the watcher.
  * Frames fall on the first step at or past their time, whatever the chunks, so an interrupted run
  * writes the same frames as an uninterrupted one. */
-#include "pile/motion.h"
 #include "pile/run.h"
+#include "scene/motion.h"
 
 #include "base/alloc.h"
 #include "base/file.h"

@@ -2,7 +2,7 @@
  * from. The table reads YAML, sets single fields and prints the commented file. */
 #include "base/alloc.h"
 #include "base/number.h"
-#include "pile/yaml.h"
+#include "base/yaml.h"
 
 #include <errno.h>
 #include <stdlib.h>

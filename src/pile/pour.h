@@ -2,7 +2,7 @@
 #ifndef SCREE_PILE_POUR_H
 #define SCREE_PILE_POUR_H
 
-#include "pile/motion.h"
+#include "scene/motion.h"
 #include "world/world.h"
 
 struct scree_pour {

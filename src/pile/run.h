@@ -2,7 +2,7 @@
 #ifndef SCREE_PILE_RUN_H
 #define SCREE_PILE_RUN_H
 
-#include "pile/fill.h"
+#include "scene/fill.h"
 #include "world/world.h"
 
 struct scree_run {

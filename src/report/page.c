@@ -29,13 +29,15 @@ static const char ending[] = ".levels";
 
 /* What a folder may hold: the file, the page's name for it, what says it to readers without
  * JavaScript, and the picture that stands in for the 3D view (NULL: none). */
-enum { CHOICE, STUDY, HEAP, POUR, RESULT_COUNT };
+enum { CHOICE, STUDY, HEAP, POUR, SCENE, RESULT_COUNT };
 static const struct {
   const char *file, *key, *text, *picture;
 } results[RESULT_COUNT] = {{"choice.json", "choice", "choice.txt", NULL},
                            {"study.json", "study", NULL, NULL},
                            {"result.json", "heap", "result.txt", "heap.png"},
-                           {"drop.json", "pour", "drop.txt", "drop.png"}};
+                           {"drop.json", "pour", "drop.txt", "drop.png"},
+                           {"result.json", "scene", "result.txt", "scene.png"}};
+static const char scene_file[] = "scene.yaml"; /* beside a scene's result.json, not a heap's */
 
 typedef struct page {
   FILE *stream;
@@ -84,6 +86,19 @@ static scree_status read_part(const char *folder, const char *name, char path[PA
   *bytes = NULL;
   if (!scree_path_exists(path)) return SCREE_OK;
   return scree_file_read(path, MOST_RESULT_BYTES, bytes, size, error);
+}
+
+static bool has_file(const char *folder, const char *name) {
+  char path[PATH_BYTES];
+  int length = snprintf(path, sizeof path, "%s/%s", folder, name);
+  return length < PATH_BYTES && scree_path_exists(path);
+}
+
+/* Whether the folder has that result. */
+static bool is_there(const char *folder, size_t result) {
+  bool scene = has_file(folder, scene_file);
+  if ((result == HEAP && scene) || (result == SCENE && !scene)) return false;
+  return has_file(folder, results[result].file);
 }
 
 /* One JSON file as a member of the page's data. *text gets its content, to be freed, or NULL where
@@ -217,9 +232,10 @@ static scree_status put_pile(page *p, const char *folder, const char *file, cons
   return status;
 }
 
-/* Piles to look at: [run, id] of a study's points; [key, id] of a heap and of a pour. */
-static scree_status put_piles(page *p, const char *folder, const char *study, bool heap,
-                              bool pour) {
+/* Piles to look at: [run, id] of a study's points; [key, id] of a heap, of a pour, of a scene. */
+static scree_status put_piles(page *p, const char *folder, char *const *found) {
+  const char *study = found[STUDY];
+  const bool heap = found[HEAP], pour = found[POUR], scene = found[SCENE];
   char key[64], run[PATH_BYTES];
   scree_status status = SCREE_OK;
   fputs(",\n\"piles\": ", p->stream);
@@ -233,6 +249,8 @@ static scree_status put_piles(page *p, const char *folder, const char *study, bo
     status = put_pile(p, folder, "last.scree", results[HEAP].key, &json);
   if (status == SCREE_OK && pour)
     status = put_pile(p, folder, "last.world", results[POUR].key, &json);
+  if (status == SCREE_OK && scene)
+    status = put_pile(p, folder, "checkpoint.scree", results[SCENE].key, &json);
   scree_json_end(&json);
   return status;
 }
@@ -254,11 +272,12 @@ static scree_status put_folder(page *p, const char *folder) {
   scree_json_text(&json, NULL, p->name ? p->name : folder);
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < RESULT_COUNT && status == SCREE_OK; i++)
-    status = put_member(p, folder, results[i].file, results[i].key, &found[i]);
+    if (is_there(folder, i))
+      status = put_member(p, folder, results[i].file, results[i].key, &found[i]);
   if (status == SCREE_OK) status = put_member(p, folder, "provenance.json", "provenance", NULL);
   if (status == SCREE_OK && found[CHOICE]) status = put_levels(p, folder, found[CHOICE]);
-  if (status == SCREE_OK && (found[STUDY] || found[HEAP] || found[POUR]))
-    status = put_piles(p, folder, found[STUDY], found[HEAP], found[POUR]);
+  if (status == SCREE_OK && (found[STUDY] || found[HEAP] || found[POUR] || found[SCENE]))
+    status = put_piles(p, folder, found);
   for (int i = HEAP; i < RESULT_COUNT && status == SCREE_OK; i++)
     if (found[i]) status = put_picture(p, folder, i);
   fputs("}", p->stream);
@@ -266,15 +285,9 @@ static scree_status put_folder(page *p, const char *folder) {
   return status;
 }
 
-static bool has_file(const char *folder, const char *name) {
-  char path[PATH_BYTES];
-  int length = snprintf(path, sizeof path, "%s/%s", folder, name);
-  return length < PATH_BYTES && scree_path_exists(path);
-}
-
 static bool has_results(const char *folder) {
   for (size_t i = 0; i < RESULT_COUNT; i++)
-    if (has_file(folder, results[i].file)) return true;
+    if (is_there(folder, i)) return true;
   return false;
 }
 
@@ -301,11 +314,12 @@ static scree_status find_results(page *p, const char *folder, name_list *found) 
   }
   free_names(&names);
   if (status == SCREE_OK && found->count == before)
-    status = scree_fail(p->error, SCREE_BAD_FILE,
-                        "%s: holds no results: neither choice.json of `scree choose -o` nor "
-                        "result.json of `scree repose -o` nor study.json of `scree study` nor "
-                        "drop.json of `scree drop`",
-                        folder);
+    status = scree_fail(
+        p->error, SCREE_BAD_FILE,
+        "%s: holds no results: neither choice.json of `scree choose -o` nor "
+        "result.json of `scree repose -o` or `scree run -o` nor study.json of `scree study` nor "
+        "drop.json of `scree drop`",
+        folder);
   return status;
 }
 
@@ -316,7 +330,7 @@ static scree_status put_summaries(page *p, const name_list *folders) {
     const char *name = results[i % RESULT_COUNT].text;
     char *text, path[PATH_BYTES];
     size_t size;
-    if (!name) continue;
+    if (!name || !is_there(folders->items[i / RESULT_COUNT], i % RESULT_COUNT)) continue;
     status = read_part(folders->items[i / RESULT_COUNT], name, path, &text, &size, p->error);
     if (status == SCREE_OK && text) put_html(p->stream, text), p->result_bytes += size;
     if (status == SCREE_OK) scree_free(text);

@@ -26,9 +26,11 @@ typedef struct pile {
   scree_packing pack;
   scree_run *run;           /* NULL: a pour's, and */
   scree_world *poured;      /* its world */
-  const scree_world *world; /* of either */
+  scree_scene *scene;       /* NULL but of a scene */
+  const scree_world *world; /* of any of them */
   scree_shapes shapes;      /* of a pour */
   scree_motion motion;      /* at least one frame */
+  size_t wall_count;        /* of a scene: in the motion they stand before the bodies */
 } pile;
 
 /* position on the grid, whether it is there, quaternion */
@@ -42,34 +44,45 @@ typedef struct moment {
 /* The last frame alone. */
 static scree_status still(pile *p) {
   const scree_world *world = p->world;
-  size_t bodies = scree_world_body_count(world);
+  size_t bodies = scree_world_body_count(world), all = p->wall_count + bodies;
   scree_motion *m = &p->motion;
-  *m = (scree_motion){.frame_count = 1, .body_count = bodies};
+  *m = (scree_motion){.frame_count = 1, .body_count = all};
   m->time = scree_alloc(1, sizeof *m->time);
   m->cylinder_height = scree_alloc(1, sizeof *m->cylinder_height);
-  m->poses = scree_alloc(bodies, 7 * sizeof *m->poses);
+  m->poses = scree_alloc(all, 7 * sizeof *m->poses);
   if (!m->time || !m->cylinder_height || !m->poses)
-    return scree_fail_memory(p->pack.error, bodies * 7 * sizeof *m->poses, "a pile");
+    return scree_fail_memory(p->pack.error, all * 7 * sizeof *m->poses, "a pile");
   m->time[0] = scree_world_time(world);
   m->cylinder_height[0] = p->run ? scree_run_cylinder_height(p->run) : 0;
+  for (size_t w = 0; w < p->wall_count; w++) {
+    scree_wall wall;
+    double turn[4];
+    scree_world_get_wall(world, w, &wall);
+    scree_world_wall_orientation(world, w, turn);
+    for (int k = 0; k < 7; k++)
+      m->poses[7 * w + (size_t)k] = (float)(k < 3 ? wall.position[k] : turn[k - 3]);
+  }
   for (size_t b = 0; b < bodies; b++) {
     scree_body body;
     scree_world_get_body(world, b, &body);
     bool there = !scree_world_body_removed(world, b);
     for (int k = 0; k < 7; k++)
-      m->poses[7 * b + (size_t)k] =
+      m->poses[7 * (p->wall_count + b) + (size_t)k] =
           there ? (float)(k < 3 ? body.position[k] : body.orientation[k - 3]) : NAN;
   }
   return SCREE_OK;
 }
 
 /* Whether the motion ends with the world as it stands: else it is of another run. */
-static bool ends_with(const scree_motion *m, const scree_world *world) {
-  if (m->frame_count == 0 || m->body_count != scree_world_body_count(world)) return false;
+static bool ends_with(const pile *p) {
+  const scree_motion *m = &p->motion;
+  const scree_world *world = p->world;
+  size_t bodies = scree_world_body_count(world);
+  if (m->frame_count == 0 || m->body_count != p->wall_count + bodies) return false;
   size_t last = m->frame_count - 1;
   if (m->time[last] != scree_world_time(world)) return false;
-  for (size_t b = 0; b < m->body_count; b++) {
-    const float *pose = m->poses + 7 * (last * m->body_count + b);
+  for (size_t b = 0; b < bodies; b++) {
+    const float *pose = m->poses + 7 * (last * m->body_count + p->wall_count + b);
     scree_body body;
     scree_world_get_body(world, b, &body);
     for (int k = 0; k < 3 && !scree_world_body_removed(world, b); k++)
@@ -78,7 +91,24 @@ static bool ends_with(const scree_motion *m, const scree_world *world) {
   return true;
 }
 
+/* Whether it is a scene's checkpoint, by how it begins. */
+static bool is_scene(const char *path) {
+  char magic[8] = "";
+  FILE *stream = fopen(path, "rb");
+  if (!stream) return false;
+  size_t got = fread(magic, 1, sizeof magic, stream);
+  fclose(stream);
+  return got == sizeof magic && !memcmp(magic, "screeSCN", sizeof magic);
+}
+
 static scree_status load_state(pile *p, const char *path) {
+  if (is_scene(path)) {
+    scree_status status = scree_scene_load(path, &p->scene, p->pack.error);
+    if (status != SCREE_OK) return status;
+    p->world = scree_scene_view(p->scene);
+    p->wall_count = scree_world_wall_count(p->world);
+    return SCREE_OK;
+  }
   const char *dot = strrchr(path, '.');
   if (dot && !strcmp(dot, ".world")) {
     scree_status status = scree_world_load(path, &p->poured, p->pack.error);
@@ -99,7 +129,7 @@ static scree_status load(pile *p, const char *path) {
                         (int)(slash ? slash + 1 - path : 0), path);
   if (length < PATH_BYTES && scree_path_exists(beside)) {
     status = scree_motion_read(beside, &p->motion, p->pack.error);
-    if (status != SCREE_OK || ends_with(&p->motion, p->world)) return status;
+    if (status != SCREE_OK || ends_with(p)) return status;
     scree_motion_free(&p->motion);
   }
   return still(p);
@@ -160,14 +190,57 @@ static scree_run_shape shape_of(const pile *p, size_t index) {
   scree_run_shape shape = {0};
   if (p->run)
     scree_run_get_shape(p->run, index, &shape);
+  else if (p->scene)
+    shape = (scree_run_shape){.particle = scree_scene_shape_particle(p->scene, index),
+                              .name = scree_scene_shape_name(p->scene, index)};
   else
     shape.particle = p->shapes.particles[index];
   return shape;
 }
 
+static size_t count_shapes(const pile *p) {
+  size_t count = 0;
+  if (p->run) return scree_run_shape_count(p->run);
+  if (!p->scene) return p->shapes.count;
+  while (scree_scene_shape_name(p->scene, count)) count++;
+  return count;
+}
+
+/* A surface with the grid that its vertices lie on. */
+static scree_status put_surface(pile *p, const char *name, size_t triangle_count,
+                                const scree_mesh *mesh) {
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    scree_pack_stretch(mesh->positions + 3 * v, low, high);
+  scree_pack_grid(&p->pack, low, high);
+  put_name(&p->pack, name);
+  scree_pack_u32(&p->pack, triangle_count);
+  put_grid(&p->pack);
+  return scree_pack_mesh(&p->pack, mesh, NULL);
+}
+
+/* Of a scene its walls: those that are drawn smaller than the whole, then planes, are told apart by
+ * whether they count where the view is fitted. */
+static scree_status put_walls(pile *p) {
+  scree_status status = SCREE_OK;
+  scree_pack_u32(&p->pack, p->wall_count);
+  for (size_t w = 0; status == SCREE_OK && w < p->wall_count; w++) {
+    scree_wall wall;
+    scree_mesh mesh = {0};
+    scree_world_get_wall(p->world, w, &wall);
+    bool endless =
+        wall.kind == SCREE_WALL_PLANE || (wall.kind == SCREE_WALL_CYLINDER && !(wall.length > 0));
+    const char *name = scree_scene_geometry_name(p->scene, scree_scene_wall_geometry(p->scene, w));
+    scree_pack_u32(&p->pack, endless);
+    status = scree_wall_mesh(p->world, w, &mesh, p->pack.error);
+    if (status == SCREE_OK) status = put_surface(p, name, mesh.triangle_count, &mesh);
+    scree_mesh_free(&mesh);
+  }
+  return status;
+}
+
 static scree_status put_shapes(pile *p) {
-  size_t shapes = p->run ? scree_run_shape_count(p->run) : p->shapes.count;
-  size_t bodies = p->motion.body_count;
+  size_t shapes = count_shapes(p), bodies = p->motion.body_count - p->wall_count;
   size_t target = MOST_DRAWN / (bodies ? bodies : 1);
   target = target < LEAST_SHAPE ? LEAST_SHAPE : target > MOST_SHAPE ? MOST_SHAPE : target;
   scree_pack_u32(&p->pack, shapes);
@@ -176,27 +249,25 @@ static scree_status put_shapes(pile *p) {
     scree_run_shape shape = shape_of(p, i);
     scree_particle_measures m;
     scree_mesh mesh = {0};
-    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     scree_particle_measure(shape.particle, &m);
     status = drawn_surface(p, shape.particle, target, &mesh);
-    for (size_t v = 0; v < mesh.vertex_count; v++)
-      scree_pack_stretch(mesh.positions + 3 * v, low, high);
-    scree_pack_grid(&p->pack, low, high);
-    put_name(&p->pack, shape.name);
-    scree_pack_u32(&p->pack, m.triangle_count);
-    put_grid(&p->pack);
-    if (status == SCREE_OK) status = scree_pack_mesh(&p->pack, &mesh, NULL);
+    if (status == SCREE_OK) status = put_surface(p, shape.name, m.triangle_count, &mesh);
     scree_mesh_free(&mesh);
   }
   return status;
 }
 
+static size_t shape_of_body(const pile *p, size_t body) {
+  return p->run     ? scree_run_body_shape(p->run, body)
+         : p->scene ? scree_scene_body_shape(p->scene, body)
+                    : p->shapes.of_body[body];
+}
+
 static scree_status put_bodies(pile *p) {
-  size_t bodies = p->motion.body_count;
+  size_t bodies = p->motion.body_count - p->wall_count;
   uint32_t *shape = scree_alloc(bodies, sizeof *shape);
   if (!shape) return scree_fail_memory(p->pack.error, bodies * sizeof *shape, "a pile");
-  for (size_t b = 0; b < bodies; b++)
-    shape[b] = (uint32_t)(p->run ? scree_run_body_shape(p->run, b) : p->shapes.of_body[b]);
+  for (size_t b = 0; b < bodies; b++) shape[b] = (uint32_t)shape_of_body(p, b);
   scree_pack_u32(&p->pack, bodies);
   scree_status status = scree_pack_vertices(&p->pack, shape, bodies, sizeof *shape);
   scree_free(shape);
@@ -216,6 +287,7 @@ static void find_grid(pile *p) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (size_t i = 0; i < m->frame_count * m->body_count; i++) {
     const float *pose = m->poses + 7 * i;
+    if (i % m->body_count < p->wall_count) continue;
     double position[3] = {(double)pose[0], (double)pose[1], (double)pose[2]};
     if (!isnan(position[0])) scree_pack_stretch(position, low, high);
   }
@@ -229,7 +301,8 @@ static void fill_track(const pile *p, size_t body, size_t stride, size_t count, 
   const scree_motion *m = &p->motion;
   size_t first = count;
   for (size_t k = 0; k < count; k++) {
-    const float *pose = m->poses + 7 * (frame_at(m, stride, k) * m->body_count + body);
+    const float *pose =
+        m->poses + 7 * (frame_at(m, stride, k) * m->body_count + p->wall_count + body);
     track[k] = k ? track[k - 1] : (moment){0};
     track[k].at.extra = 0;
     if (isnan(pose[0])) continue;
@@ -255,21 +328,28 @@ static scree_status put_motion(pile *p, size_t stride) {
     scree_code_real(&p->pack.out, &m->time[frame_at(m, stride, k)]);
   for (size_t k = 0; k < count; k++)
     scree_code_real(&p->pack.out, &m->cylinder_height[frame_at(m, stride, k)]);
-  moment *tracks = scree_alloc(count * m->body_count, sizeof *tracks);
-  if (!tracks)
-    return scree_fail_memory(p->pack.error, count * m->body_count * sizeof *tracks, "a motion");
-  for (size_t b = 0; b < m->body_count; b++) fill_track(p, b, stride, count, tracks + b * count);
-  scree_status status =
-      scree_pack_vertices(&p->pack, tracks, count * m->body_count, sizeof *tracks);
+  for (size_t w = 0; w < p->wall_count; w++)
+    for (size_t k = 0; k < count; k++)
+      for (int i = 0; i < 7; i++) {
+        double value =
+            (double)m->poses[7 * (frame_at(m, stride, k) * m->body_count + w) + (size_t)i];
+        scree_code_real(&p->pack.out, &value);
+      }
+  size_t bodies = m->body_count - p->wall_count;
+  moment *tracks = scree_alloc(count * bodies, sizeof *tracks);
+  if (!tracks) return scree_fail_memory(p->pack.error, count * bodies * sizeof *tracks, "a motion");
+  for (size_t b = 0; b < bodies; b++) fill_track(p, b, stride, count, tracks + b * count);
+  scree_status status = scree_pack_vertices(&p->pack, tracks, count * bodies, sizeof *tracks);
   scree_free(tracks);
   return status;
 }
 
 static scree_status pack(pile *p, size_t byte_limit) {
-  double sizes[4];
-  find_container(p->world, sizes);
+  double sizes[4] = {0};
+  if (!p->scene) find_container(p->world, sizes);
   scree_code_reals(&p->pack.out, sizes, 4);
-  scree_status status = put_shapes(p);
+  scree_status status = put_walls(p);
+  if (status == SCREE_OK) status = put_shapes(p);
   if (status == SCREE_OK) status = put_bodies(p);
   find_grid(p);
   put_grid(&p->pack);
@@ -296,6 +376,7 @@ scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char 
   scree_motion_free(&p.motion);
   scree_run_free(p.run);
   scree_world_free(p.poured);
+  scree_scene_free(p.scene);
   scree_shapes_free(&p.shapes);
   if (status == SCREE_OK) {
     *bytes = p.pack.out.bytes;

@@ -28,4 +28,9 @@ void scree_shape_json(scree_json *json, const scree_particle *particle);
 scree_status scree_spheres_mesh(const scree_particle *particle, int level, scree_mesh *mesh,
                                 scree_error *error);
 
+/* What is drawn of a wall, in its own frame: its triangles; planes and endless cylinders are cut
+ * off where the bodies end. Free with scree_mesh_free. */
+scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh *mesh,
+                             scree_error *error);
+
 #endif

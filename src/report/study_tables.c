@@ -35,7 +35,7 @@ static void put_list(scree_json *json, const char *key, const double *values, si
   scree_json_end(json);
 }
 
-static void put_point(scree_json *json, const scree_point_result *p) {
+static void put_point(scree_json *json, const scree_study_result *r, const scree_point_result *p) {
   scree_json_object(json, NULL);
   scree_json_text(json, "label", p->label);
   scree_json_text(json, "rp", p->rp);
@@ -52,6 +52,9 @@ static void put_point(scree_json *json, const scree_point_result *p) {
   put_summary(json, "packing_fraction", &p->packing);
   put_summary(json, "left", &p->left);
   put_summary(json, "peak_rotation", &p->peak_rotation);
+  scree_json_object(json, "answers");
+  for (size_t k = 0; k < r->answer_count; k++) put_summary(json, r->answers[k], &p->answers[k]);
+  scree_json_end(json);
   scree_json_object(json, "rotation");
   put_list(json, "time", p->time, p->series_count);
   put_list(json, "mean", p->rotation, p->series_count);
@@ -140,7 +143,7 @@ static void put_result(scree_json *json, const scree_study_result *r) {
   scree_json_number(json, "seconds_left", r->seconds_left);
   scree_json_bool(json, "mixed_versions", r->mixed_versions);
   scree_json_array(json, "points");
-  for (size_t i = 0; i < r->point_count; i++) put_point(json, &r->points[i]);
+  for (size_t i = 0; i < r->point_count; i++) put_point(json, r, &r->points[i]);
   scree_json_end(json);
   scree_json_array(json, "families");
   for (size_t i = 0; i < r->family_count; i++) put_family(json, r, &r->families[i]);
@@ -190,6 +193,15 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     fprintf(stream, ",%s,%s_low,%s_high,%s_sd,%s_sd_low,%s_sd_high,%s_cv", names[i], names[i],
             names[i], names[i], names[i], names[i], names[i]);
+  for (size_t k = 0; k < result->answer_count; k++) {
+    static const char *const parts[] = {"", " low", " high", " sd", " sd low", " sd high", " cv"};
+    for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+      char name[256];
+      snprintf(name, sizeof name, "%.200s%s", result->answers[k], parts[i]);
+      putc(',', stream);
+      scree_csv_text(stream, name);
+    }
+  }
   putc('\n', stream);
   for (size_t i = 0; i < result->point_count; i++) {
     const scree_point_result *p = &result->points[i];
@@ -206,6 +218,7 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
     scree_csv_number(stream, p->triangle_count);
     for (size_t k = 0; k < sizeof summaries / sizeof *summaries; k++)
       csv_summary(stream, summaries[k]);
+    for (size_t k = 0; k < result->answer_count; k++) csv_summary(stream, &p->answers[k]);
     putc('\n', stream);
   }
   return scree_output_commit(&output, error);

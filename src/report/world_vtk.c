@@ -439,6 +439,30 @@ static void add_wall(sheet *s, const scree_world *world, size_t index, const ext
   }
 }
 
+scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh *mesh,
+                             scree_error *error) {
+  sheet s = {0};
+  scree_wall wall;
+  double orientation[4];
+  extent e = extent_of(world);
+  scree_world_get_wall(world, index, &wall);
+  scree_world_wall_orientation(world, index, orientation);
+  bool triangles = wall.kind == SCREE_WALL_MESH;
+  if (!make_room(&s, triangles ? wall.mesh->vertex_count : 2 * ROUND_SIDES + 1,
+                 triangles ? wall.mesh->triangle_count : 2 * ROUND_SIDES, 0)) {
+    free_sheet(&s);
+    return scree_fail_memory(error, 0, "a wall's triangles");
+  }
+  add_wall(&s, world, index, &e);
+  mat3 turn = turn_of(orientation);
+  for (size_t v = 0; v < s.point_count; v++) {
+    vec3 p = vec3_sub(vec3_load(s.points + 3 * v), vec3_load(wall.position));
+    vec3_store(s.points + 3 * v, mat3_tmul_vec(&turn, p));
+  }
+  *mesh = (scree_mesh){s.points, s.triangles, s.point_count, s.triangle_count};
+  return SCREE_OK;
+}
+
 static scree_status make_walls(const scree_world *world, sheet *s, scree_error *error) {
   size_t count = scree_world_wall_count(world), points = 0, triangles = 0;
   extent e = extent_of(world);

@@ -17,6 +17,7 @@ typedef struct row {
   double angle, seconds, wall, height, run_out, coordination, packing, left, triangles, fraction;
   double peak_rotation;
   bool still;
+  double *answers;         /* of a scene */
   double *time, *rotation; /* since the lift began */
   size_t series_count;
 } row;
@@ -148,6 +149,59 @@ static scree_status read_all_series(analysis *a) {
   return status;
 }
 
+/* ---- answers of a scene ---- */
+
+static scree_status read_answers(analysis *a) {
+  const scree_study *study = a->study;
+  sqlite3_stmt *s;
+  bool more;
+  for (size_t i = 0; i < a->row_count; i++) {
+    a->rows[i].answers = take(a, study->answer_count, sizeof(double));
+    if (!a->rows[i].answers) return no_memory(a);
+    for (size_t k = 0; k < study->answer_count; k++) a->rows[i].answers[k] = NAN;
+  }
+  if (!study->answer_count) return SCREE_OK;
+  scree_status status = scree_database_prepare(
+      &a->database, "SELECT number, value FROM answer WHERE key = ?1", &s, a->error);
+  for (size_t i = 0; status == SCREE_OK && i < a->row_count; i++) {
+    sqlite3_bind_text(s, 1, a->rows[i].key, -1, SQLITE_STATIC);
+    for (;;) {
+      status = scree_database_step(&a->database, s, &more, a->error);
+      if (status != SCREE_OK || !more) break;
+      size_t number = (size_t)sqlite3_column_int64(s, 0);
+      if (number < study->answer_count) a->rows[i].answers[number] = real_of(s, 1);
+    }
+    sqlite3_reset(s);
+  }
+  sqlite3_finalize(s);
+  return status;
+}
+
+static scree_status summarise_answers(const analysis *a, size_t point, scree_point_result *p,
+                                      double *scratch) {
+  p->answers = take(a, a->study->answer_count, sizeof *p->answers);
+  if (!p->answers) return no_memory(a);
+  for (size_t k = 0; k < a->study->answer_count; k++) {
+    size_t count = 0;
+    for (size_t i = 0; i < a->row_count; i++)
+      if (a->rows[i].point == point && !strcmp(a->rows[i].state, "done"))
+        scratch[count++] = a->rows[i].answers[k];
+    p->answers[k] = scree_summarise(scratch, count, a->study->confidence);
+  }
+  return SCREE_OK;
+}
+
+static scree_status name_answers(const analysis *a) {
+  scree_study_result *r = a->result;
+  r->answers = take(a, a->study->answer_count, sizeof *r->answers);
+  if (!r->answers) return no_memory(a);
+  for (size_t k = 0; k < a->study->answer_count; k++)
+    if (!(r->answers[k] = scree_arena_text(a->arena, a->study->answers[k].name)))
+      return no_memory(a);
+  r->answer_count = a->study->answer_count;
+  return SCREE_OK;
+}
+
 /* ---- points ---- */
 
 static void count_state(scree_study_counts *counts, const char *state) {
@@ -252,7 +306,8 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
   p->packing = summarise(a, index, offsetof(row, packing), scratch);
   p->left = summarise(a, index, offsetof(row, left), scratch);
   p->peak_rotation = summarise(a, index, offsetof(row, peak_rotation), scratch);
-  return average_rotation(a, index, p, scratch);
+  scree_status status = summarise_answers(a, index, p, scratch);
+  return status == SCREE_OK ? average_rotation(a, index, p, scratch) : status;
 }
 
 /* ---- families ---- */
@@ -440,6 +495,8 @@ static scree_status make_result(analysis *a) {
   if (!r->name || !r->angle || !r->points || !scratch) return no_memory(a);
   scree_status status = read_rows(a);
   if (status == SCREE_OK) status = read_all_series(a);
+  if (status == SCREE_OK) status = read_answers(a);
+  if (status == SCREE_OK) status = name_answers(a);
   for (size_t p = 0; status == SCREE_OK && p < s->point_count; p++)
     status = make_point(a, p, scratch);
   if (status == SCREE_OK) status = make_families(a);

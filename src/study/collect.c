@@ -232,6 +232,21 @@ static scree_status put_series(writer *w, const char *key, const scree_study_rec
   return status;
 }
 
+static scree_status put_answers(writer *w, const char *key, const scree_study_record *r) {
+  sqlite3_stmt *s;
+  scree_status status = make(w, "INSERT OR REPLACE INTO answer VALUES(?1, ?2, ?3, ?4)", &s);
+  if (status != SCREE_OK) return status;
+  for (size_t i = 0; status == SCREE_OK && i < r->answer_count && i < w->study->answer_count; i++) {
+    bind_text(s, 1, key);
+    bind_whole(s, 2, i);
+    bind_text(s, 3, w->study->answers[i].name);
+    bind_real(s, 4, r->answers[i]);
+    status = put(w, s);
+  }
+  sqlite3_finalize(s);
+  return status;
+}
+
 static scree_status put_failure(writer *w, const char *key, int number,
                                 const scree_study_record *r) {
   sqlite3_stmt *s;
@@ -322,6 +337,7 @@ static scree_status put_record(writer *w, const char *key, sqlite3_stmt *ask, bo
   if (!in_already(w, key, ask, record.ended)) {
     status = put_result(w, key, &record);
     if (status == SCREE_OK && !record.failed) status = put_series(w, key, &record);
+    if (status == SCREE_OK && !record.failed) status = put_answers(w, key, &record);
     if (status == SCREE_OK) status = put_failures(w, key);
   }
   scree_study_record_free(&record);

@@ -32,6 +32,11 @@ static const char schema[] =
     "CREATE TABLE failure(key TEXT, number INTEGER, reason TEXT, worker TEXT, ended REAL,"
     " PRIMARY KEY(key, number));";
 
+/* Of studies of scenes. */
+static const char answers_table[] =
+    "CREATE TABLE IF NOT EXISTS answer(key TEXT, number INTEGER, name TEXT, value REAL,"
+    " PRIMARY KEY(key, number))";
+
 static scree_status fail_database(const scree_database *d, scree_error *error) {
   int code = sqlite3_errcode(d->handle);
   if (code == SQLITE_NOTADB || code == SQLITE_CORRUPT)
@@ -116,6 +121,7 @@ scree_status scree_database_open(const scree_study *study, bool writing, scree_d
     status =
         scree_database_run(&d, "PRAGMA journal_mode = DELETE; PRAGMA synchronous = FULL;", error);
   if (status == SCREE_OK) status = adopt(&d, writing, error);
+  if (status == SCREE_OK && writing) status = scree_database_run(&d, answers_table, error);
   if (status == SCREE_OK)
     *database = d;
   else

@@ -1,6 +1,7 @@
 /* A study's folder:
  *
  *   study.yaml      the file as last given
+ *   scene.yaml      of a scene its text, and where it came from
  *   shapes/         NAME.yaml: what was found; NAME-LEVEL.ply: the particles' surfaces, in metres
  *   leases/         who works on what
  *   runs/KEY/       checkpoint while a run is on, last frame after it
@@ -66,7 +67,8 @@ scree_status scree_study_open(scree_study *study, const char *folder, scree_erro
   scree_free(study->folder);
   study->folder = copy;
   scree_status status = make_folders(study, error);
-  return status == SCREE_OK ? keep_copy(study, error) : status;
+  if (status == SCREE_OK) status = keep_copy(study, error);
+  return status == SCREE_OK ? scree_study_keep_scene(study, error) : status;
 }
 
 scree_status scree_study_open_folder(const char *folder, scree_study **study, scree_error *error) {

@@ -4,7 +4,7 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "pile/yaml.h"
+#include "base/yaml.h"
 #include "study/design.h"
 #include "study/study.h"
 
@@ -119,9 +119,97 @@ static scree_status set_base(const reader *r, const char *key, const scree_yaml 
   return place_error(r, node, scree_study_set(&r->study->base, key, node->text, &error), &error);
 }
 
+/* {scene: FILE, FIELD: VALUE, ...} */
+static scree_status read_scene_base(const reader *r, const scree_yaml *base,
+                                    const scree_yaml *scene) {
+  scree_study *study = r->study;
+  scree_error error;
+  scree_status status = need_scalar(r, scene);
+  if (status == SCREE_OK) {
+    status = scree_study_read_scene(study, scene->text, &error);
+    if (status != SCREE_OK) return place_error(r, scene, status, &error);
+  }
+  study->settings = scree_arena_take(&study->arena, base->item_count, sizeof *study->settings);
+  study->sets[0] = (scree_shape_set){"", NULL, 0};
+  study->set_count = 1;
+  if (!study->settings) return fail_memory(r);
+  for (size_t i = 0; status == SCREE_OK && i < base->item_count; i++) {
+    const scree_yaml *item = &base->items[i];
+    if (item == scene) continue;
+    status = need_scalar(r, item);
+    if (status == SCREE_OK)
+      status =
+          place_error(r, item, scree_study_try_scene(study, item->key, item->text, &error), &error);
+    if (status != SCREE_OK) return status;
+    const char **setting = study->settings[study->setting_count++];
+    setting[0] = scree_arena_text(&study->arena, item->key);
+    setting[1] = scree_arena_text(&study->arena, item->text);
+    if (!setting[0] || !setting[1]) return fail_memory(r);
+  }
+  scree_scene_file *file;
+  if (status == SCREE_OK) status = scree_study_scene(study, NULL, &file, &error);
+  if (status != SCREE_OK) return place_error(r, scene, status, &error);
+  status = place_error(r, scene, scree_scene_file_check(file, &error), &error);
+  scree_scene_file_free(file);
+  return status;
+}
+
+/* COLUMN, or {COLUMN: {from: T, until: T}} for the mean over a window. */
+static scree_status read_answer(const reader *r, const scree_yaml *item, scree_answer *a) {
+  *a = (scree_answer){.from = 0, .until = INFINITY};
+  const char *column = item->text;
+  if (item->kind == SCREE_YAML_MAPPING && item->item_count == 1 &&
+      item->items[0].kind == SCREE_YAML_MAPPING) {
+    const scree_yaml *window = &item->items[0];
+    column = window->key;
+    a->mean = true;
+    for (size_t i = 0; i < window->item_count; i++) {
+      const scree_yaml *field = &window->items[i];
+      bool from = !strcmp(field->key, "from");
+      if (!from && strcmp(field->key, "until") != 0)
+        return fail_at(r, field, "no field '%s' in an answer; there are from, until", field->key);
+      scree_status status = read_real(r, field, 0, 1e9, from ? &a->from : &a->until);
+      if (status != SCREE_OK) return status;
+    }
+  } else if (item->kind != SCREE_YAML_SCALAR) {
+    return fail_at(r, item,
+                   "an answer must be a column such as torque.power, or {torque.power: "
+                   "{from: 2}} for its mean from 2 s on");
+  }
+  char name[200] = "", *end = name;
+  end += snprintf(name, 120, "%s%.100s", a->mean ? "mean " : "", column);
+  if (a->until < INFINITY)
+    snprintf(end, 80, " %g to %g s", a->from, a->until);
+  else if (a->from > 0)
+    snprintf(end, 80, " from %g s", a->from);
+  a->column = scree_arena_text(&r->study->arena, column);
+  a->name = scree_arena_text(&r->study->arena, name);
+  return a->column && a->name ? SCREE_OK : fail_memory(r);
+}
+
+static scree_status read_answers(const reader *r, const scree_yaml *node) {
+  scree_study *study = r->study;
+  if (node->kind != SCREE_YAML_SEQUENCE || node->item_count == 0)
+    return fail_at(r, node, "answers: must be a list of columns, as in [torque.power]");
+  if (!study->scene_text) return fail_at(r, node, "answers are of scenes: base: {scene: FILE}");
+  study->answers = scree_arena_take(&study->arena, node->item_count, sizeof *study->answers);
+  if (!study->answers) return fail_memory(r);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
+    status = read_answer(r, &node->items[i], &study->answers[i]);
+    if (status == SCREE_OK && !scree_study_has_column(study, study->answers[i].column))
+      status = fail_at(r, &node->items[i], "no column '%s' in the scene; its sensors are %s",
+                       study->answers[i].column, scree_study_sensor_names(study));
+    study->answer_count += status == SCREE_OK;
+  }
+  return status;
+}
+
 static scree_status read_base(const reader *r, const scree_yaml *base) {
   if (base->kind != SCREE_YAML_MAPPING)
     return fail_at(r, base, "base: must be `key: value` lines of an experiment");
+  const scree_yaml *scene = scree_yaml_find(base, "scene");
+  if (scene) return read_scene_base(r, base, scene);
   const scree_yaml *preset = scree_yaml_find(base, "preset");
   scree_error error;
   if (preset) {
@@ -243,6 +331,9 @@ static bool is_rp(const char *text) {
 /* Tries a value on a copy of the base. */
 static scree_status try_value(const reader *r, const scree_yaml *node, const char *key,
                               const char *text) {
+  scree_error wrong;
+  if (r->study->scene_text)
+    return place_error(r, node, scree_study_try_scene(r->study, key, text, &wrong), &wrong);
   if (!strcmp(key, "rp")) {
     if (is_rp(text)) return SCREE_OK;
     return fail_at(r, node, "rp: '%s': must be a number above 0 and at most 1, scan or spheres",
@@ -375,6 +466,9 @@ static scree_status read_factors(const reader *r, const scree_yaml *node) {
   for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
     const scree_yaml *item = &node->items[i];
     if (item->kind != SCREE_YAML_MAPPING || is_range(item)) {
+      if (r->study->scene_text && (!strcmp(item->key, "rp") || !strcmp(item->key, "shapes")))
+        return fail_at(r, item, "%s: a scene's shapes are varied by fields such as shapes.NAME.rp",
+                       item->key);
       status = add_factor(r, item->key, item);
       continue;
     }
@@ -478,14 +572,15 @@ static scree_status read_plain(const reader *r, const scree_yaml *item) {
     status =
         fail_at(r, item,
                 "no field '%s' in a study; there are name, seed, replicates, attempts, shapes, "
-                "unit, sample, method, base, factors, design, points, analysis",
+                "unit, sample, method, base, answers, factors, design, points, analysis",
                 item->key);
   }
   return status;
 }
 
 static bool is_late(const char *key) {
-  return !strcmp(key, "base") || !strcmp(key, "factors") || !strcmp(key, "shapes");
+  return !strcmp(key, "base") || !strcmp(key, "factors") || !strcmp(key, "shapes") ||
+         !strcmp(key, "answers");
 }
 
 /* What only the whole can say. */
@@ -497,7 +592,11 @@ static scree_status check_whole(const reader *r, const scree_yaml *root) {
     varied = varied || !strcmp(study->factors[i].key, "shapes");
     points *= (double)study->factors[i].level_count;
   }
-  if (varied == (scree_yaml_find(root, "shapes") != NULL))
+  if (study->scene_text && scree_yaml_find(root, "shapes"))
+    return fail_at(r, scree_yaml_find(root, "shapes"), "shapes stand in the scene");
+  if (study->scene_text && !study->answer_count)
+    return fail_at(r, root, "a study of a scene needs answers: [COLUMN, ...]");
+  if (!study->scene_text && varied == (scree_yaml_find(root, "shapes") != NULL))
     return fail_at(r, root,
                    varied ? "shapes stands both by itself and as a factor"
                           : "needs shapes: [FILE or sample:NAME, ...]");
@@ -540,6 +639,8 @@ static scree_status read_root(const reader *r, const scree_yaml *root) {
   if (status == SCREE_OK && base) status = read_base(r, base);
   if (status == SCREE_OK && !scree_yaml_find(root, "seed")) study->seed = study->base.seed;
   if (status == SCREE_OK && shapes) status = read_set(r, shapes, &set);
+  const scree_yaml *answers = scree_yaml_find(root, "answers");
+  if (status == SCREE_OK && answers) status = read_answers(r, answers);
   if (status == SCREE_OK && factors) status = read_factors(r, factors);
   return status == SCREE_OK ? check_whole(r, root) : status;
 }

@@ -33,8 +33,10 @@ static const char *value_at(scree_study *study, const scree_factor *f, double u)
   char text[SCREE_NUMBER_SIZE];
   scree_experiment copy = study->base;
   scree_number_format_digits(value, 9, text);
-  if (strcmp(f->key, "rp") != 0 && scree_study_set(&copy, f->key, text, NULL) != SCREE_OK)
-    snprintf(text, sizeof text, "%.0f", value);
+  bool fits = study->scene_text
+                  ? scree_study_try_scene(study, f->key, text, NULL) == SCREE_OK
+                  : !strcmp(f->key, "rp") || scree_study_set(&copy, f->key, text, NULL) == SCREE_OK;
+  if (!fits) snprintf(text, sizeof text, "%.0f", value);
   return scree_arena_text(&study->arena, text);
 }
 
@@ -63,9 +65,23 @@ static const char *make_label(scree_study *study, const char **values) {
   return label;
 }
 
+static scree_status check_scene_point(const scree_study *study, const scree_study_point *point,
+                                      scree_error *error) {
+  scree_scene_file *file;
+  scree_error reason;
+  scree_status status = scree_study_scene(study, point->values, &file, error);
+  if (status != SCREE_OK) return status;
+  status = scree_scene_file_check(file, &reason);
+  scree_scene_file_free(file);
+  if (status == SCREE_OK) return SCREE_OK;
+  return scree_fail(error, status, "%s: at the point %s: %.500s", study->path, point->label,
+                    reason.message);
+}
+
 /* Checks what only a point's values together can say. */
 static scree_status check_point(scree_study *study, const scree_study_point *point,
                                 scree_error *error) {
+  if (study->scene_text) return check_scene_point(study, point, error);
   scree_experiment copy = study->base;
   scree_error reason;
   for (size_t f = 0; f < study->factor_count; f++) {
@@ -132,7 +148,7 @@ scree_status scree_study_experiment(const scree_study *study, size_t run,
   if (status != SCREE_OK) return status;
   for (size_t f = 0; status == SCREE_OK && f < study->factor_count; f++) {
     const char *key = study->factors[f].key;
-    if (strcmp(key, "rp") != 0 && strcmp(key, "shapes") != 0)
+    if (!study->scene_text && strcmp(key, "rp") != 0 && strcmp(key, "shapes") != 0)
       status = scree_study_set(&made, key, point->values[f], error);
   }
   made.seed = study->seed + scree_study_run_replicate(study, run);
@@ -140,6 +156,28 @@ scree_status scree_study_experiment(const scree_study *study, size_t run,
     *experiment = made;
   else
     scree_experiment_free(&made);
+  return status;
+}
+
+/* The same of a scene: its text, and what the files are that it names. */
+static scree_status write_scene_identity(const scree_study *study, size_t run, FILE *stream,
+                                         scree_error *error) {
+  scree_scene_file *file;
+  scree_status status = scree_study_run_scene(study, run, &file, error);
+  if (status != SCREE_OK) return status;
+  status = scree_scene_file_print(file, stream, error);
+  for (size_t i = 0; status == SCREE_OK; i++) {
+    char path[4096], *bytes, sum[SCREE_CHECKSUM_TEXT];
+    size_t count;
+    if (!scree_scene_file_input(file, i, path, sizeof path)) break;
+    status = scree_file_read(path, 0, &bytes, &count, error);
+    if (status != SCREE_OK) break;
+    fprintf(stream, "file=%s\n", scree_checksum_text(scree_checksum_of(bytes, count), sum));
+    scree_free(bytes);
+  }
+  for (size_t i = 0; i < study->answer_count; i++)
+    fprintf(stream, "answer=%s\n", study->answers[i].name);
+  scree_scene_file_free(file);
   return status;
 }
 
@@ -173,7 +211,10 @@ static scree_status make_key(const scree_study *study, size_t run, char key[SCRE
   size_t size = 0;
   FILE *stream = scree_memory_open(&text, &size);
   if (stream) {
-    write_identity(study, &study->points[scree_study_run_point(study, run)], &e, stream);
+    if (study->scene_text)
+      status = write_scene_identity(study, run, stream, error);
+    else
+      write_identity(study, &study->points[scree_study_run_point(study, run)], &e, stream);
     bool good = !ferror(stream);
     if (!scree_memory_close(stream) || !good) {
       free(text);
@@ -181,6 +222,10 @@ static scree_status make_key(const scree_study *study, size_t run, char key[SCRE
     }
   }
   scree_experiment_free(&e);
+  if (status != SCREE_OK) {
+    free(text);
+    return status;
+  }
   if (!text) return scree_fail_memory(error, 0, "a run's name");
   snprintf(key, SCREE_RUN_KEY_BYTES, "%016llx",
            (unsigned long long)scree_checksum_of(text, size).high);

@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/number.h"
-#include "pile/yaml.h"
+#include "base/yaml.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -80,6 +80,9 @@ enum { COLUMN_COUNT = sizeof columns / sizeof *columns };
 
 void scree_study_record_free(scree_study_record *record) {
   scree_free(record->series);
+  scree_free(record->answers);
+  record->answers = NULL;
+  record->answer_count = 0;
   record->series = NULL;
   record->series_count = 0;
 }
@@ -158,6 +161,12 @@ scree_status scree_study_record_write(const scree_study_record *record, const ch
     write_field(output.stream, &fields[i], record);
     fputs(",\n", output.stream);
   }
+  fputs(" \"answers\": [", output.stream);
+  for (size_t i = 0; i < record->answer_count; i++) {
+    if (i) fputs(", ", output.stream);
+    write_real(output.stream, record->answers[i]);
+  }
+  fputs("],\n", output.stream);
   write_series(output.stream, record);
   fputs("}\n", output.stream);
   return scree_output_commit(&output, error);
@@ -247,6 +256,21 @@ static bool read_columns(const scree_yaml *root, scree_study_record *record) {
   return good;
 }
 
+/* Of a record made before there were any, none. */
+static scree_status read_answers(const char *path, const scree_yaml *root,
+                                 scree_study_record *record, scree_error *error) {
+  const scree_yaml *list = scree_yaml_find(root, "answers");
+  if (!list || list->kind != SCREE_YAML_SEQUENCE) return SCREE_OK;
+  record->answers = scree_alloc(list->item_count, sizeof *record->answers);
+  if (!record->answers) return scree_fail_memory(error, list->item_count, path);
+  for (size_t i = 0; i < list->item_count; i++)
+    if (list->items[i].kind != SCREE_YAML_SCALAR ||
+        !parse_real(list->items[i].text, &record->answers[i]))
+      return scree_fail(error, SCREE_BAD_FILE, "%s: is no record of a run: its answers", path);
+  record->answer_count = list->item_count;
+  return SCREE_OK;
+}
+
 scree_status scree_study_record_read(const char *path, scree_study_record *record,
                                      scree_error *error) {
   enum { LARGEST_RECORD = 256 << 20 };
@@ -271,6 +295,7 @@ scree_status scree_study_record_read(const char *path, scree_study_record *recor
   }
   if (status == SCREE_OK && !read_columns(&root, &made))
     status = scree_fail(error, SCREE_BAD_FILE, "%s: is no record of a run: its series", path);
+  if (status == SCREE_OK) status = read_answers(path, &root, &made, error);
   scree_yaml_free(&root);
   if (status == SCREE_OK)
     *record = made;

@@ -15,7 +15,13 @@ typedef struct scree_study_record {
   char hash[40]; /* of the final state of the world */
   scree_run_point *series;
   size_t series_count;
+  double *answers; /* of a scene, in the study's order */
+  size_t answer_count;
 } scree_study_record;
+
+/* scene_base.c: what is kept of a scene that has ended. */
+scree_status scree_study_record_scene(const scree_study *study, scree_scene *scene,
+                                      scree_study_record *record, scree_error *error);
 
 /* FOLDER/results/KEY.yaml, which is JSON too. */
 scree_status scree_study_record_write(const scree_study_record *record, const char *path,

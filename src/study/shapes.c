@@ -5,7 +5,7 @@
 #include "base/number.h"
 #include "base/platform.h"
 #include "base/progress.h"
-#include "pile/yaml.h"
+#include "base/yaml.h"
 #include "study/lease.h"
 #include "study/study.h"
 

@@ -48,6 +48,13 @@ typedef enum scree_design {
   SCREE_DESIGN_SOBOL
 } scree_design;
 
+/* A column of a scene's sensors: its last value, or its mean over a window of time. */
+typedef struct scree_answer {
+  const char *name, *column;
+  bool mean;
+  double from, until; /* s */
+} scree_answer;
+
 struct scree_study {
   scree_arena arena; /* all texts and arrays of the plan */
   const char *path;  /* of its file, for errors */
@@ -55,7 +62,12 @@ struct scree_study {
   size_t text_size;
   char *folder; /* NULL before scree_study_open */
   const char *name;
-  scree_experiment base; /* preset owned */
+  scree_experiment base;               /* preset owned */
+  const char *scene_text, *scene_path; /* where the base is a scene; else NULL */
+  const char *(*settings)[2];          /* its fields that the base changes, and their values */
+  size_t setting_count;
+  scree_answer *answers;
+  size_t answer_count;
   uint64_t seed;
   size_t replicate_count, attempt_limit;
   scree_method method;
@@ -104,6 +116,21 @@ scree_status scree_study_know_shapes(scree_study *study, scree_error *error);
 scree_status scree_study_make_shapes(const scree_study *study, size_t point, int mass_rule,
                                      scree_run_shape *shapes, double *triangle_count,
                                      scree_error *error);
+
+/* scene_base.c: reads the text of a scene; then its file with the base's settings and with values
+ * of the factors (NULL: none), to be freed; that of a run; whether a value can be. */
+scree_status scree_study_read_scene(scree_study *study, const char *name, scree_error *error);
+scree_status scree_study_scene(const scree_study *study, const char *const *values,
+                               scree_scene_file **file, scree_error *error);
+scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_scene_file **file,
+                                   scree_error *error);
+scree_status scree_study_try_scene(const scree_study *study, const char *key, const char *value,
+                                   scree_error *error);
+/* Whether the base has such a column, known from its sensors and shapes; the sensors' names. */
+bool scree_study_has_column(const scree_study *study, const char *column);
+const char *scree_study_sensor_names(const scree_study *study);
+/* The scene's text into the study's folder. */
+scree_status scree_study_keep_scene(const scree_study *study, scree_error *error);
 
 /* folder.c: FOLDER/KIND/NAME ENDING, to be freed with scree_free; NULL when memory is out. */
 char *scree_study_path(const scree_study *study, const char *kind, const char *name,

@@ -56,21 +56,25 @@ static scree_status has_ended(const work *w, bool *ended, scree_error *error) {
 
 /* ---- one run ---- */
 
-static bool watch(void *context, const scree_run_state *state) {
-  work *w = context;
+/* A sign of life, and progress; false: the run is to stop. */
+static bool keep_lease(work *w, double done, const char *what) {
   char note[SCREE_LEASE_NOTE], phase[200], fraction[SCREE_NUMBER_SIZE];
   double interval = fmin(5, 0.2 * w->options->lease_s);
   if (scree_now() - w->lease.last_renewal > interval) {
     bool kept = true;
-    scree_number_format_digits(state->fraction, 4, fraction);
-    snprintf(note, sizeof note, "running %s %s", fraction, scree_phase_name(state->now.phase));
+    scree_number_format_digits(done, 4, fraction);
+    snprintf(note, sizeof note, "running %s %s", fraction, what);
     w->renewal = scree_lease_renew(&w->lease, note, &kept, &w->renewal_error);
     w->lost = !kept;
   }
-  snprintf(phase, sizeof phase, "run %zu: %s", w->run + 1, scree_phase_name(state->now.phase));
+  snprintf(phase, sizeof phase, "run %zu: %s", w->run + 1, what);
   if (w->progress && w->progress->report)
-    w->cancelled = !w->progress->report(w->progress->context, phase, state->fraction);
+    w->cancelled = !w->progress->report(w->progress->context, phase, done);
   return !w->cancelled && !w->lost && w->renewal == SCREE_OK;
+}
+
+static bool watch(void *context, const scree_run_state *state) {
+  return keep_lease(context, state->fraction, scree_phase_name(state->now.phase));
 }
 
 static scree_status fill_record(scree_run *run, scree_study_record *record, scree_error *error) {
@@ -117,7 +121,42 @@ static scree_status simulate(work *w, const scree_experiment *e, const scree_run
   return status;
 }
 
+/* ---- one run of a scene ---- */
+
+static bool watch_scene(void *context, const scree_scene_state *state) {
+  return keep_lease(context, state->fraction, "scene");
+}
+
+static scree_status simulate_scene(work *w, scree_study_record *record, scree_error *error) {
+  scree_scene_file *file;
+  scree_scene *scene = NULL;
+  scree_status status = scree_study_run_scene(w->study, w->run, &file, error);
+  if (status != SCREE_OK) return status;
+  char *folder = run_file(w, "runs", "", error);
+  scree_scene_job job = {
+      .file = file, .folder = folder, .resume = true, .watch = watch_scene, .context = w};
+  double wall = scree_now(), processor = scree_processor_time();
+  scree_error own;
+  status = folder ? scree_scene_complete(&job, &scene, &own) : SCREE_OUT_OF_MEMORY;
+  if (status == SCREE_BAD_FILE && folder) { /* a checkpoint that cannot be read */
+    job.resume = false;
+    job.overwrite = true;
+    status = scree_scene_complete(&job, &scene, &own);
+  }
+  record->costs.wall_seconds = scree_now() - wall;
+  record->costs.processor_seconds = scree_processor_time() - processor;
+  if (status == SCREE_OK)
+    status = scree_study_record_scene(w->study, scene, record, error);
+  else if (error)
+    *error = own;
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
+  scree_free(folder);
+  return status;
+}
+
 static scree_status make_and_simulate(work *w, scree_study_record *record, scree_error *error) {
+  if (w->study->scene_text) return simulate_scene(w, record, error);
   scree_run_shape shapes[MOST_SHAPES];
   scree_experiment e;
   size_t point = scree_study_run_point(w->study, w->run);

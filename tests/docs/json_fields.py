@@ -81,6 +81,11 @@ failed |= compare("scree export of a surface", fields_of(open("solid.json", "rb"
 subprocess.run([program, "drop", "sphere:20mm=2", "--time", "0.01", "--no-picture", "-o", "pour", "-q"], check=True,
                stdout=subprocess.DEVNULL)
 failed |= compare("scree drop", fields_of(open("pour/drop.json", "rb").read()))
+with open("hopper.yaml", "wb") as file:
+    file.write(subprocess.run([program, "run", "--template", "hopper"], stdout=subprocess.PIPE, check=True).stdout)
+failed |= compare("scree run", fields_of(subprocess.run(
+    [program, "run", "hopper.yaml", "--json", "-s", "time=0.01", "-s", "inlets.feed.count=9"], stdout=subprocess.PIPE,
+    check=True).stdout))
 subprocess.run([program, "simplify", SOLID, "-n", "12", "--density", "3", "-o", "level.stl", "-q"], check=True)
 subprocess.run([program, "choose", SOLID, BALL, "--density", "3", "-o", "chosen", "-q"], check=True, stdout=subprocess.DEVNULL)
 for path in ("level.json", "chosen/box-12.mass.json", "chosen/set/icosphere-3.mass.json"):

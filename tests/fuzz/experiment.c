@@ -1,8 +1,8 @@
 /* Experiment files: YAML as a tree, then as an experiment. What is accepted, printed and read again
  * is the same; what is refused leaves the experiment as it was. */
 #define _GNU_SOURCE /* memfd_create */
+#include "base/yaml.h"
 #include "fuzz/files.h"
-#include "pile/yaml.h"
 
 #include <stdio.h>
 #include <string.h>

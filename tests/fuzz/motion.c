@@ -1,7 +1,7 @@
 /* Motions of runs, every frame's checksum made to fit: refused, or poses of which each is a number
  * or not there. */
 #define _GNU_SOURCE /* memfd_create */
-#include "pile/motion.h"
+#include "scene/motion.h"
 #include "fuzz/files.h"
 #include "fuzz/forge.h"
 

@@ -439,5 +439,66 @@ class Experiments(unittest.TestCase):
             scree.repose([], self.experiment())
 
 
+class Scenes(unittest.TestCase):
+    FILE = """
+time: 0.2
+materials: {m: {young: 1e5, density: 1000, restitution: 0.3, friction: 0.3}}
+shapes: {ball: {sphere: 0.01}, brick: {box: [0.01, 0.008, 0.006]}}
+geometry: {belt: {box: [2, 1, 0.1], at: [0, 0, -0.05], surface_velocity: [0.1, 0, 0]}}
+inlets: {i: {box: {min: [-0.05, -0.05, 0], max: [0.05, 0.05, 0.05]}, shapes: {ball: 1, brick: 1}, count: 10}}
+sensors: {all: {region: {box: {min: [-1, -1, -1], max: [1, 1, 1]}}}, belt: {wall: belt}}
+output: {series: 0.05}
+"""
+
+    def setUp(self):
+        with open("scene.yaml", "w") as file:
+            file.write(self.FILE)
+
+    def test_a_scene_runs(self):
+        scene = scree.Scene("scene.yaml", {"inlets.i.count": 12, "inlets.i.velocity": [0, 0, -0.2]})
+        seen = []
+        scene.every(0.05, lambda s: seen.append(s.time))
+        scene.run(0.1)
+        self.assertIsNone(scene.end)
+        self.assertAlmostEqual(scene.time, 0.1, delta=2 * scene.world.time_step)
+        scene.run()
+        self.assertEqual(scene.end, "the time is over")
+        self.assertEqual([round(t, 2) for t in seen], [0, 0.05, 0.1, 0.15, 0.2])
+        self.assertEqual(scene.sensors["all.count"], 12)
+        self.assertEqual(scene.sensors["all.count.ball"], 6)
+        self.assertEqual(scene.units()["belt.force_z"], "N")
+        self.assertEqual([round(t, 2) for t in scene.series()["time"]], [0, 0.05, 0.1, 0.15, 0.2])
+        bodies = scene.bodies()
+        self.assertEqual(len(bodies.position), 12)
+        self.assertEqual(sum(bodies.inside), 12)
+        self.assertEqual(sorted(set(bodies.shape)), [0, 1])
+        book = scene.book()
+        self.assertEqual(book.entered_count, book.inside_count + book.left_count)
+        self.assertEqual(scene.inlets()["i"].count, 12)
+        self.assertEqual(scene.outlets()[None].count, 0)
+        self.assertIn("count: 12", str(scene))
+
+    def test_saved_and_loaded(self):
+        scene = scree.Scene("scene.yaml").run(0.05)
+        scene.save("half.scree", overwrite=True)
+        other = scree.Scene.load("half.scree").run()
+        self.assertEqual(scene.run().world.hash, other.world.hash)
+
+    def test_refusals(self):
+        with self.assertRaisesRegex(scree.Error, "did you mean 'count'"):
+            scree.Scene("scene.yaml", {"inlets.i.cuont": 12})
+        with self.assertRaisesRegex(ValueError, "no template 'silo'; there are hopper, drum"):
+            scree.Scene.template("silo")
+        self.assertIn("time:", scree.Scene.template("drum"))
+
+        def stop(scene):
+            raise KeyError("enough")
+
+        scene = scree.Scene("scene.yaml")
+        scene.every(0.01, stop)
+        with self.assertRaisesRegex(KeyError, "enough"):
+            scene.run()
+
+
 if __name__ == "__main__":
     unittest.main()

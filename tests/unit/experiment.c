@@ -1,5 +1,5 @@
 #include "base/alloc.h"
-#include "pile/yaml.h"
+#include "base/yaml.h"
 #include "support/check.h"
 #include "support/folder.h"
 

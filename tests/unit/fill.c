@@ -1,4 +1,4 @@
-#include "pile/fill.h"
+#include "scene/fill.h"
 
 #include "base/alloc.h"
 #include "base/rng.h"

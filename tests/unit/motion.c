@@ -243,6 +243,7 @@ static packed pack(const char *name, size_t limit) {
   CHECK_NEAR(sizes[0], 0.05, 1e-12);
   CHECK_NEAR(sizes[1], 0.04, 1e-12);
   assert_true(sizes[2] == 0 && sizes[3] == 0);
+  assert_int_equal(u32(&f), 0); /* walls, which only scenes have */
   assert_int_equal(u32(&f), 2);
   for (size_t i = 0; i < 2; i++) skip_shape(&f, i);
   f.body_count = u32(&f);

@@ -2,7 +2,7 @@
 #include "base/alloc.h"
 #include "base/file.h"
 #include "base/rng.h"
-#include "pile/yaml.h"
+#include "base/yaml.h"
 #include "study/design.h"
 #include "study/lease.h"
 #include "study/record.h"

@@ -5,6 +5,7 @@ import { HeapSection } from './heap.js';
 import { decoderReady } from './packed.js';
 import { setShapeColors } from './pile.js';
 import { PourSection } from './pour.js';
+import { SceneSection } from './scene.js';
 import { StudySection } from './study.js';
 import { element, number, table } from './text.js';
 
@@ -21,7 +22,7 @@ function provenanceRows(folder) {
   const rows = [];
   const add = (what, value) => value !== null && value !== undefined && rows.push({ what, value: String(value) });
   const first = folder.choice?.[0];
-  const run = folder.provenance ?? folder.heap ?? folder.pour ?? {};
+  const run = folder.provenance ?? folder.heap ?? folder.pour ?? folder.scene ?? {};
   add('results', folder.folder);
   add('scree', run.version ?? first?.version);
   add('command', run.command ?? first?.command);
@@ -33,7 +34,7 @@ function provenanceRows(folder) {
   if (run.elapsed_s !== undefined) add('time', `${number(run.elapsed_s, 3)} s, ${number(run.processor_s, 3)} s of processor time, ${run.threads} threads`);
   if (run.processor) add('machine', `${run.processor}, ${run.processors} processors; ${run.system}`);
   for (const object of folder.choice?.filter((entry) => !entry.set) ?? []) add(`input ${object.name}`, originOf(object));
-  for (const shape of [...(folder.heap?.shapes ?? []), ...(folder.pour?.shapes ?? [])]) add(`shape ${shape.name}`, shape.source);
+  for (const shape of [...(folder.heap?.shapes ?? []), ...(folder.pour?.shapes ?? []), ...(folder.scene?.shapes ?? [])]) add(`shape ${shape.name}`, shape.source);
   if (folder.heap) add('seed', folder.heap.experiment.seed);
   if (folder.pour) add('seed', folder.pour.options.seed);
   add('page made by', `scree ${data.version}`);
@@ -48,6 +49,7 @@ async function fill() {
     if (folder.choice) new ChoiceSection(host, folder);
     if (folder.heap) new HeapSection(host, folder);
     if (folder.pour) new PourSection(host, folder);
+    if (folder.scene) new SceneSection(host, folder);
     if (folder.study) new StudySection(host, folder);
     element('h2', 'How this was made', host);
     table(host, [{ head: 'what', value: (row) => row.what }, { head: 'value', value: (row) => row.value }],

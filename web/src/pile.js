@@ -1,5 +1,5 @@
-// A pile (docs/formats.md): its shapes, and where its bodies were at moments of the run; and the 3D view that plays
-// it. Between two moments bodies go straight and turn evenly.
+// A pile (docs/formats.md): its shapes, where its bodies were at moments of the run, and of a scene where its walls
+// were; and the 3D view that plays it. Between two moments bodies go straight and turn evenly.
 import {
   Box3, BufferAttribute, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh,
   Matrix4, Mesh, MeshBasicMaterial, MeshStandardMaterial, Quaternion, Vector3,
@@ -18,14 +18,16 @@ export class Pile {
   constructor(id) {
     const reader = new Reader(id);
     [this.discRadius, this.cylinderRadius, ...this.box] = reader.reals(4);
-    this.shapes = Array.from({ length: reader.u32() }, () => {
+    const surface = () => {
       const name = reader.text(); // none of a pour's
       const triangleCount = reader.u32();
       const grid = { low: reader.reals(3), step: reader.real() };
       const mesh = decodeMesh(reader.mesh());
       for (let i = 0; i < mesh.points.length; i++) mesh.points[i] = grid.low[i % 3] + grid.step * mesh.points[i];
       return { name, triangleCount, mesh };
-    });
+    };
+    this.walls = Array.from({ length: reader.u32() }, () => ({ endless: reader.u32() > 0, ...surface() }));
+    this.shapes = Array.from({ length: reader.u32() }, surface);
     this.bodyCount = reader.u32();
     this.shapeOf = new Uint32Array(decodeVertices(reader.buffer(), this.bodyCount, 4));
     this.low = reader.reals(3);
@@ -33,6 +35,7 @@ export class Pile {
     const count = reader.u32();
     this.times = reader.reals(count);
     this.cylinder = reader.reals(count);
+    for (const wall of this.walls) wall.poses = Array.from({ length: count }, () => reader.reals(7));
     const tracks = decodeVertices(reader.buffer(), this.bodyCount * count, 16);
     this.places = new Uint16Array(tracks);
     this.turns = new Int16Array(tracks);
@@ -70,6 +73,27 @@ export class Pile {
     position.set(...[0, 1, 2].map((k) => this.low[k] + this.step * mix(k, places)));
     quaternion.set(mix(5, turns), mix(6, turns), mix(7, turns), mix(4, turns)).normalize();
     return true;
+  }
+
+  // Position and quaternion of a wall of a scene.
+  wallPose(wall, { moment, next, part }, position, quaternion) {
+    const a = wall.poses[moment], b = wall.poses[next];
+    position.set(...[0, 1, 2].map((k) => a[k] + part * (b[k] - a[k])));
+    quaternion.set(a[4], a[5], a[6], a[3]).slerp(new Quaternion(b[4], b[5], b[6], b[3]), part);
+  }
+
+  // What a scene's picture is fitted to: its walls at the begin, but for endless ones; where there is none, its bodies.
+  sceneBox() {
+    const box = new Box3(), position = new Vector3(), turn = new Quaternion(), one = new Vector3(1, 1, 1), at = this.momentAt(this.times[0]);
+    for (const wall of this.walls.filter(({ endless }) => !endless)) {
+      this.wallPose(wall, at, position, turn);
+      const { min, max } = new Box3().setFromArray(wall.mesh.points);
+      for (const corner of corners(min.toArray(), max.toArray())) box.expandByPoint(corner.clone().applyMatrix4(new Matrix4().compose(position, turn, one)));
+    }
+    for (const time of this.times.filter((_, i) => box.isEmpty() || i === 0 || i === this.times.length >> 1)) {
+      for (let i = 0; i < this.bodyCount; i++) if (this.pose(i, this.momentAt(time), position, turn)) box.expandByPoint(position);
+    }
+    return box.isEmpty() ? box.expandByPoint(position.set(0, 0, 0)) : box;
   }
 
   // How far from the axis and how high each body reaches at a moment.
@@ -141,15 +165,9 @@ export class PileView extends View {
   set(pile) {
     this.clear();
     this.pile = pile;
-    const { container, filled, radius, top } = pile.frame();
     const group = new Group();
-    const middle = Math.max(filled, top) / 2, scale = 1 / Math.max(radius, middle);
-    group.scale.setScalar(scale);
-    group.position.z = -middle * scale;
-    const floor = new Mesh(new CircleGeometry(pile.discRadius || pile.width, 96), new MeshStandardMaterial({ color: 0x9a9aa2, roughness: 1, transparent: true, opacity: 0.5, side: DoubleSide }));
-    floor.position.z = -0.0005;
-    this.wall = new Mesh(wallGeometry(pile), new MeshBasicMaterial({ color: 0x8899bb, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }));
-    group.add(floor, this.wall);
+    this.wall = null;
+    const fit = pile.walls.length ? this.setScene(group) : this.setContainer(group);
     this.instances = pile.shapes.map((shape, k) => {
       const bodies = [];
       pile.shapeOf.forEach((of, body) => of === k && bodies.push(body));
@@ -160,7 +178,38 @@ export class PileView extends View {
     });
     this.parts.push(group);
     this.scene.add(group);
-    this.surround([[radius, 0], [radius, top], [container, filled]].flatMap(([r, z]) => ring(r * scale, (z - middle) * scale)));
+    this.surround(fit);
+  }
+
+  // The walls of a scene, seen through; the points that the picture is fitted to.
+  setScene(group) {
+    const { pile } = this;
+    const box = pile.sceneBox(), middle = box.getCenter(new Vector3());
+    const scale = 2 / Math.max(1e-9, box.getSize(new Vector3()).length());
+    group.scale.setScalar(scale);
+    group.position.copy(middle).multiplyScalar(-scale);
+    this.walls = pile.walls.map((wall) => {
+      const drawn = new Mesh(geometryOf(wall.mesh), new MeshStandardMaterial({ color: 0x8899bb, transparent: true, opacity: wall.endless ? 0.08 : 0.2, side: DoubleSide, depthWrite: false, flatShading: true }));
+      drawn.renderOrder = 1;
+      group.add(drawn);
+      return { wall, drawn };
+    });
+    return corners(box.min.toArray(), box.max.toArray()).map((corner) => corner.sub(middle).multiplyScalar(scale));
+  }
+
+  // The container of a heap or a pour.
+  setContainer(group) {
+    const { pile } = this;
+    this.walls = [];
+    const { container, filled, radius, top } = pile.frame();
+    const middle = Math.max(filled, top) / 2, scale = 1 / Math.max(radius, middle);
+    group.scale.setScalar(scale);
+    group.position.z = -middle * scale;
+    const floor = new Mesh(new CircleGeometry(pile.discRadius || pile.width, 96), new MeshStandardMaterial({ color: 0x9a9aa2, roughness: 1, transparent: true, opacity: 0.5, side: DoubleSide }));
+    floor.position.z = -0.0005;
+    this.wall = new Mesh(wallGeometry(pile), new MeshBasicMaterial({ color: 0x8899bb, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }));
+    group.add(floor, this.wall);
+    return [[radius, 0], [radius, top], [container, filled]].flatMap(([r, z]) => ring(r * scale, (z - middle) * scale));
   }
 
   showTime(time) {
@@ -178,7 +227,8 @@ export class PileView extends View {
       drawn.instanceMatrix.needsUpdate = true;
       count += there;
     }
-    this.wall.position.z = pile.cylinderAt(at);
+    if (this.wall) this.wall.position.z = pile.cylinderAt(at);
+    for (const { wall, drawn } of this.walls) pile.wallPose(wall, at, drawn.position, drawn.quaternion);
     this.draw();
     return count;
   }

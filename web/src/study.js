@@ -21,12 +21,31 @@ export class StudySection {
       this.families.get(family).push(point);
     }
     for (const points of this.families.values()) points.sort((a, b) => rpOf(a) - rpOf(b));
+    this.answers = Object.keys(study.points[0]?.answers ?? {});
+    if (this.answers.length) {
+      this.tellAnswers();
+      return;
+    }
     this.tell();
     this.drawAngles();
     this.drawRotation();
     this.drawTimes();
     this.showPiles();
     this.tellTables();
+  }
+
+  // Of a scene: a table for each answer.
+  tellAnswers() {
+    const { host, study } = this;
+    element('h1', `Study ${study.name}`, host);
+    element('p', `${whole(study.runs.done)} of ${counted(study.points.length * study.replicates, 'run')} are done; ${counted(study.replicates, 'replicate')} a point. Intervals are of ${number(100 * study.confidence)} % confidence.`, host, { class: 'soft' });
+    for (const answer of this.answers) {
+      element('h2', answer, host);
+      table(host, [
+        { head: 'point', value: (p) => p.label || study.name }, { head: 'runs done', value: (p) => p.runs.done },
+        ...[['mean', 'mean'], ['low', 'mean_low'], ['high', 'mean_high'], ['sd', 'sd'], ['CV', 'cv']].map(([head, key]) => ({ head, value: (p) => p.answers[answer][key], text: (p) => (known(p.answers[answer][key]) ? number(p.answers[answer][key], 5) : '–') })),
+      ], study.points, `${study.name}-${answer}.csv`, answer);
+    }
   }
 
   // One heap of each point.

@@ -1,6 +1,6 @@
 /* Filling: where the next layer of particles enters. */
-#ifndef SCREE_PILE_FILL_H
-#define SCREE_PILE_FILL_H
+#ifndef SCREE_SCENE_FILL_H
+#define SCREE_SCENE_FILL_H
 
 #include "base/error.h"
 #include "base/vec.h"
@@ -33,6 +33,11 @@ void scree_placement_settle(scree_placement *placement);
 
 /* Whether the two cannot touch: their spheres or their boxes are apart. */
 bool scree_placements_apart(const scree_placement *a, const scree_placement *b);
+
+/* How far the body reaches from its centre along a unit vector, and against it. */
+void scree_placement_reach(const scree_placement *placement, vec3 n, double *up, double *down);
+/* Whether the body lies within an endless cylinder. */
+bool scree_placement_within(const scree_placement *placement, vec3 from, vec3 axis, double radius);
 
 typedef struct scree_fill_layer {
   uint64_t seed, layer_index;     /* name the layer's random numbers */

@@ -1,6 +1,6 @@
 /* Frames of a run's motion. A body takes 20 bytes: its position as three floats, and its quaternion
  * as four integers, 1 being 32767, which is within 2e-5 rad. */
-#include "pile/motion.h"
+#include "scene/motion.h"
 
 #include "base/alloc.h"
 #include "base/codec.h"
@@ -147,6 +147,18 @@ double scree_motion_next(const scree_motion_file *file) {
   return file->stream ? (double)file->count * file->interval : INFINITY;
 }
 
+static void code_walls(scree_codec *c, const scree_world *world) {
+  for (size_t w = 0; w < scree_world_wall_count(world); w++) {
+    scree_wall wall;
+    double turn[4];
+    float pose[7];
+    scree_world_get_wall(world, w, &wall);
+    scree_world_wall_orientation(world, w, turn);
+    for (int k = 0; k < 7; k++) pose[k] = (float)(k < 3 ? wall.position[k] : turn[k - 3]);
+    code_pose(c, pose);
+  }
+}
+
 static void code_bodies(scree_codec *c, const scree_world *world, size_t count) {
   for (size_t i = 0; i < count; i++) {
     scree_body body;
@@ -165,7 +177,9 @@ scree_status scree_motion_put(scree_motion_file *file, const scree_world *world,
   while (f.time >= scree_motion_next(file)) file->count++;
   if (!file->stream || f.time <= file->last) return SCREE_OK;
   scree_codec bodies = {0}, frame = {0};
+  if (file->walls) code_walls(&bodies, world);
   code_bodies(&bodies, world, (size_t)f.body_count);
+  if (file->walls) f.body_count += scree_world_wall_count(world);
   f.sum = scree_checksum_of(bodies.bytes, bodies.count);
   code_frame(&frame, &f);
   scree_code_bytes(&frame, bodies.bytes, bodies.count);

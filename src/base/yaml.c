@@ -1,4 +1,4 @@
-#include "pile/yaml.h"
+#include "base/yaml.h"
 
 #include "base/alloc.h"
 #include "base/file.h"
@@ -79,6 +79,8 @@ static scree_status read_pair(reader *r, yaml_event_t *event, int depth, scree_y
     return SCREE_OUT_OF_MEMORY;
   }
   item->key = key;
+  item->key_line = event->start_mark.line + 1;
+  item->key_column = event->start_mark.column + 1;
   yaml_event_t value;
   scree_status status = next_event(r, &value);
   if (status != SCREE_OK) return status;
@@ -170,4 +172,73 @@ scree_status scree_yaml_read(const char *path, scree_yaml *root, scree_error *er
   status = scree_yaml_parse(bytes, byte_count, path, root, error);
   scree_free(bytes);
   return status;
+}
+
+/* ---- setting ---- */
+
+static void forget_places(scree_yaml *node) {
+  node->line = node->column = node->key_line = node->key_column = 0;
+  for (size_t i = 0; i < node->item_count; i++) forget_places(&node->items[i]);
+}
+
+/* The item that a key or a number names in a node; one that a mapping lacks is made. */
+static scree_status step_into(scree_yaml **node, const char *key, size_t length, const char *keys,
+                              scree_error *error) {
+  scree_yaml *at = *node;
+  char name[128];
+  if (length == 0 || length >= sizeof name)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: names no field", keys);
+  snprintf(name, sizeof name, "%.*s", (int)length, key);
+  if (at->kind == SCREE_YAML_SCALAR)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: there is nothing named '%s' in one value",
+                      keys, name);
+  if (at->kind == SCREE_YAML_SEQUENCE) {
+    size_t index = 0;
+    for (const char *c = name; *c && index < at->item_count; c++)
+      index = *c >= '0' && *c <= '9' ? 10 * index + (size_t)(*c - '0') : SIZE_MAX / 16;
+    if (index >= at->item_count)
+      return scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "%s: '%s': a list of %zu is counted from 0 to %zu", keys, name,
+                        at->item_count, at->item_count ? at->item_count - 1 : 0);
+    *node = &at->items[index];
+    return SCREE_OK;
+  }
+  for (size_t i = 0; i < at->item_count; i++)
+    if (!strcmp(at->items[i].key, name)) {
+      *node = &at->items[i];
+      return SCREE_OK;
+    }
+  char *copy = scree_strdup(name);
+  scree_yaml *items = scree_resize(at->items, at->item_count + 1, sizeof *items);
+  if (items) at->items = items;
+  if (!copy || !items) {
+    scree_free(copy);
+    return scree_fail_memory(error, (at->item_count + 1) * sizeof *items, keys);
+  }
+  *node = &items[at->item_count++];
+  **node = (scree_yaml){.kind = SCREE_YAML_MAPPING, .key = copy};
+  return SCREE_OK;
+}
+
+scree_status scree_yaml_set(scree_yaml *root, const char *keys, const char *value,
+                            scree_error *error) {
+  scree_yaml made, *node = root;
+  scree_status status = scree_yaml_parse(value, strlen(value), keys, &made, error);
+  if (status != SCREE_OK) return status;
+  forget_places(&made);
+  for (const char *key = keys; status == SCREE_OK; key++) {
+    size_t length = strcspn(key, ".");
+    status = step_into(&node, key, length, keys, error);
+    key += length;
+    if (!*key) break;
+  }
+  if (status != SCREE_OK) {
+    scree_yaml_free(&made);
+    return status;
+  }
+  made.key = node->key;
+  node->key = NULL;
+  scree_yaml_free(node);
+  *node = made;
+  return SCREE_OK;
 }

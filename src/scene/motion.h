@@ -1,7 +1,7 @@
 /* The motion of a run or a pour on disk (docs/formats.md): frames are appended while it goes on,
  * each with its own checksum, so that a run that was killed leaves whole ones. */
-#ifndef SCREE_PILE_MOTION_H
-#define SCREE_PILE_MOTION_H
+#ifndef SCREE_SCENE_MOTION_H
+#define SCREE_SCENE_MOTION_H
 
 #include "base/error.h"
 
@@ -11,6 +11,7 @@ typedef struct scree_motion_file {
   double interval; /* s, of simulated time */
   size_t count;    /* frames due so far */
   double last;     /* s, time of the last frame written */
+  bool walls;      /* of a scene: the walls stand before the bodies */
 } scree_motion_file;
 
 /* Opens path for a run that stands at `time`. Frames that an earlier piece of the run wrote up to

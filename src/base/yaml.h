@@ -1,8 +1,8 @@
 /* A YAML file (JSON is YAML) as a small tree whose every node knows its line and column. Only what
  * configuration needs: one document of mappings, sequences and scalars; no anchors, aliases or
  * tags. */
-#ifndef SCREE_PILE_YAML_H
-#define SCREE_PILE_YAML_H
+#ifndef SCREE_BASE_YAML_H
+#define SCREE_BASE_YAML_H
 
 #include "base/error.h"
 
@@ -14,7 +14,8 @@ typedef enum scree_yaml_kind {
 
 typedef struct scree_yaml {
   scree_yaml_kind kind;
-  size_t line, column;      /* from 1 */
+  size_t line, column; /* from 1; 0: put there by scree_yaml_set */
+  size_t key_line, key_column;
   char *key;                /* in a mapping; else NULL */
   char *text;               /* of a scalar; else NULL */
   struct scree_yaml *items; /* of a sequence or a mapping */
@@ -29,5 +30,10 @@ void scree_yaml_free(scree_yaml *root);
 
 /* The item with the key, or NULL. */
 const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key);
+
+/* Puts the value, itself YAML, where the keys say, joined by points, as in inlets.feed.rate; of a
+ * sequence the item's number from 0. Mappings that are missing on the way are made. */
+scree_status scree_yaml_set(scree_yaml *root, const char *keys, const char *value,
+                            scree_error *error);
 
 #endif

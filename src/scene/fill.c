@@ -1,7 +1,7 @@
 /* Random sequential addition of oriented boxes in a cylinder. Spheres and boxes both bound a
  * particle: it is enough that either pair is apart, which places round particles by their spheres
  * and long ones by their boxes. */
-#include "pile/fill.h"
+#include "scene/fill.h"
 
 #include "base/rng.h"
 
@@ -49,6 +49,26 @@ bool scree_placements_apart(const scree_placement *a, const scree_placement *b) 
   double reach = a->radius + b->radius;
   return vec3_norm2(vec3_sub(a->position, b->position)) > reach * reach ||
          scree_oriented_boxes_apart(&a->box, &b->box);
+}
+
+void scree_placement_reach(const scree_placement *p, vec3 n, double *up, double *down) {
+  vec3 local = mat3_tmul_vec(&p->box.axes, n);
+  double half = fabs(local.x) * p->half.x + fabs(local.y) * p->half.y + fabs(local.z) * p->half.z;
+  double middle = vec3_dot(n, vec3_sub(p->box.centre, p->position));
+  *up = fmin(p->radius, middle + half);
+  *down = fmin(p->radius, half - middle);
+}
+
+bool scree_placement_within(const scree_placement *p, vec3 from, vec3 axis, double radius) {
+  vec3 d = vec3_sub(p->position, from);
+  if (vec3_norm(vec3_mad(d, axis, -vec3_dot(d, axis))) + p->radius <= radius) return true;
+  for (int corner = 0; corner < 8; corner++) {
+    vec3 local = {corner & 1 ? p->half.x : -p->half.x, corner & 2 ? p->half.y : -p->half.y,
+                  corner & 4 ? p->half.z : -p->half.z};
+    vec3 c = vec3_sub(vec3_add(p->box.centre, mat3_mul_vec(&p->box.axes, local)), from);
+    if (vec3_norm(vec3_mad(c, axis, -vec3_dot(c, axis))) > radius) return false;
+  }
+  return true;
 }
 
 static bool is_free(const scree_fill_layer *layer, const scree_placement *p,

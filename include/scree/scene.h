@@ -1,0 +1,186 @@
+/* Scenes: the user's own equipment, from one YAML file. */
+#ifndef SCREE_SCENE_H
+#define SCREE_SCENE_H
+
+#include "scree/heap.h"
+#include "scree/world.h"
+
+#include <stdio.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* ---- The file ---- */
+
+/* A scene's file (docs/scenes.md), as it was read and changed since. */
+typedef struct scree_scene_file scree_scene_file;
+
+/* Reads a file of at most 1 MB ("-" is stdin). Errors name file, line, column, field, value and
+ * what is allowed. What the fields mean together is checked by scree_scene_file_check. */
+SCREE_API scree_status scree_scene_file_read(const char *path, scree_scene_file **file,
+                                             scree_error *error);
+/* The same from bytes in memory; name stands for the file in errors, and in its folder lie the
+ * files that the scene names. */
+SCREE_API scree_status scree_scene_file_parse(const char *text, size_t byte_count, const char *name,
+                                              scree_scene_file **file, scree_error *error);
+SCREE_API void scree_scene_file_free(scree_scene_file *file);
+/* Sets any field, as `inlets.feed.rate` to "5" or `gravity` to "[0, 0, -1.62]"; items of lists are
+ * counted from 0, as in `geometry.drum.motion.0.rotate.speed`. */
+SCREE_API scree_status scree_scene_file_set(scree_scene_file *file, const char *field,
+                                            const char *value, scree_error *error);
+/* Checks all but the files it names. */
+SCREE_API scree_status scree_scene_file_check(const scree_scene_file *file, scree_error *error);
+/* The columns that its sensors will have (scree_scene_column_name), known before it is made; to be
+ * called with 0, 1, 2, ... until *name is "". SCREE_BAD_FILE as scree_scene_file_check. */
+SCREE_API scree_status scree_scene_file_column(const scree_scene_file *file, size_t index,
+                                               char name[96], scree_error *error);
+/* The path of file `index` of those that its shapes and geometry name; false: there are no more, or
+ * no room. */
+SCREE_API bool scree_scene_file_input(const scree_scene_file *file, size_t index, char *path,
+                                      size_t size);
+/* Prints the whole scene with every default, units and comments; reading it back gives the same. */
+SCREE_API scree_status scree_scene_file_print(const scree_scene_file *file, FILE *stream,
+                                              scree_error *error);
+
+/* Templates: "hopper", "drum" and others; NULL past the last. */
+SCREE_API const char *scree_scene_template_name(size_t index);
+/* The commented file; NULL for an unknown name. */
+SCREE_API const char *scree_scene_template(const char *name);
+
+/* ---- A scene at work ---- */
+
+typedef struct scree_scene scree_scene;
+
+/* Reads, repairs and decimates what the file names, and makes the world with its geometry. Errors
+ * name what does not fit together, as an inlet that lies in a wall. progress may be NULL. */
+SCREE_API scree_status scree_scene_create(const scree_scene_file *file,
+                                          const scree_progress *progress, scree_scene **scene,
+                                          scree_error *error);
+SCREE_API void scree_scene_free(scree_scene *scene);
+
+/* Advances by at most step_count time steps; stops earlier where the scene ends. SCREE_DIVERGED as
+ * scree_world_step. The result does not depend on how a scene is cut into calls. */
+SCREE_API scree_status scree_scene_advance(scree_scene *scene, size_t step_count,
+                                           scree_error *error);
+/* Why it has ended: "the time is over", "still", "empty"; NULL: it has not. */
+SCREE_API const char *scree_scene_end(const scree_scene *scene);
+/* s: the scene's `time`. */
+SCREE_API double scree_scene_duration(const scree_scene *scene);
+SCREE_API const char *scree_scene_title(const scree_scene *scene);
+/* Its file with every default, as scree_scene_file_print has it. */
+SCREE_API const char *scree_scene_text(const scree_scene *scene);
+/* s: output.frames. */
+SCREE_API double scree_scene_frame_interval(const scree_scene *scene);
+/* s, of the whole scene, for its worst pair of shapes; reason as of scree_world_time_step. */
+SCREE_API double scree_scene_time_step_reason(const scree_scene *scene, char reason[256]);
+/* For observing and frames, not to be changed. */
+SCREE_API scree_world *scree_scene_world(scree_scene *scene);
+SCREE_API const scree_world *scree_scene_view(const scree_scene *scene);
+
+/* Names belong to the scene; NULL past the last. */
+SCREE_API const char *scree_scene_shape_name(const scree_scene *scene, size_t index);
+SCREE_API const char *scree_scene_shape_source(const scree_scene *scene, size_t index);
+SCREE_API scree_particle *scree_scene_shape_particle(const scree_scene *scene, size_t index);
+SCREE_API const char *scree_scene_geometry_name(const scree_scene *scene, size_t index);
+SCREE_API const char *scree_scene_inlet_name(const scree_scene *scene, size_t index);
+SCREE_API const char *scree_scene_outlet_name(const scree_scene *scene, size_t index);
+/* The shape of body `index` of the world, and the geometry that wall `index` is part of. */
+SCREE_API size_t scree_scene_body_shape(const scree_scene *scene, size_t index);
+SCREE_API size_t scree_scene_wall_geometry(const scree_scene *scene, size_t index);
+
+/* What came in, is in, went out: at every moment in = inside + out. */
+typedef struct scree_scene_book {
+  size_t entered_count, inside_count, left_count;
+  size_t waiting_count;                        /* due, but there was no room yet */
+  double entered_mass, inside_mass, left_mass; /* kg */
+  double entered_energy, left_energy;          /* J: kinetic and potential, zero at the origin */
+  double ledger; /* energy unaccounted for, as a share of all that was turned over */
+} scree_scene_book;
+SCREE_API void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book);
+/* The same of one inlet, of one outlet; the outlet past the last is the domain's rim. */
+SCREE_API size_t scree_scene_inlet_count(const scree_scene *scene, size_t index, double *mass,
+                                         size_t *waiting);
+SCREE_API size_t scree_scene_outlet_count(const scree_scene *scene, size_t index, double *mass);
+
+/* ---- Sensors ---- */
+
+/* Every number that is followed is a column: "time", "inside", "throughput.mass_rate". Its name and
+ * unit ("" for a pure number); NULL past the last. */
+SCREE_API const char *scree_scene_column_name(const scree_scene *scene, size_t index);
+SCREE_API const char *scree_scene_column_unit(const scree_scene *scene, size_t index);
+SCREE_API size_t scree_scene_column_count(const scree_scene *scene);
+/* All columns at this moment into values; NaN where there is no such number. */
+SCREE_API scree_status scree_scene_measure(const scree_scene *scene, double *values,
+                                           scree_error *error);
+/* The series so far: row_count rows of all columns, a row at every output.series of simulated time
+ * and one at the end. The scene's own; valid until it is advanced. */
+SCREE_API const double *scree_scene_series(const scree_scene *scene, size_t *row_count);
+
+/* ---- Scenes on disk ---- */
+
+/* Writes a checkpoint (docs/formats.md), which stands alone. Complete under its name or not there.
+ */
+SCREE_API scree_status scree_scene_save(const scree_scene *scene, const char *path, bool overwrite,
+                                        scree_error *error);
+/* Reads one; every later step has the same bits as in the scene that was saved. SCREE_BAD_FILE with
+ * file and reason. */
+SCREE_API scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error);
+
+/* How a whole scene goes on, for a watcher. */
+typedef struct scree_scene_state {
+  const scree_scene *scene;
+  double time, fraction;   /* s; of the simulated time */
+  double steps_per_second; /* over the last seconds on the clock; NaN at first */
+  double seconds_left;     /* on the clock, at that speed; NaN at first */
+} scree_scene_state;
+
+typedef struct scree_scene_job {
+  const scree_scene_file *file; /* NULL: that of the checkpoint, which must be there */
+  /* Gets checkpoint.scree every output.checkpoint seconds of the clock, when cancelled and at the
+   * end; series.csv; motion.scree. Made if need be. NULL: nothing is written. */
+  const char *folder;
+  /* Go on from the folder's checkpoint.scree where there is one; one of another scene is refused.
+   * Only title, time, stop and output may differ. Without resume a folder that has one is refused
+   * with SCREE_EXISTS, unless overwrite. */
+  bool resume, overwrite;
+  const scree_progress *progress; /* of making the scene; may be NULL */
+  /* Called a few times a second; false cancels: the checkpoint is written, and the answer is
+   * SCREE_CANCELLED. NULL: none. */
+  bool (*watch)(void *context, const scree_scene_state *state);
+  /* Called once the scene stands, before its first step or where it goes on. NULL: none. */
+  scree_status (*begun)(void *context, scree_scene *scene, bool resumed, scree_error *error);
+  /* Called at every output.frames of simulated time, on the first step at or past it, and at the
+   * end, counted from 0. NULL: none. */
+  scree_status (*frame)(void *context, scree_scene *scene, size_t index, scree_error *error);
+  void *context;
+} scree_scene_job;
+
+/* A scene from its beginning, or its checkpoint, to its end; free *scene. Where it is cancelled or
+ * leaves the range of its model (SCREE_DIVERGED) *scene is how it stands then, to be looked at and
+ * freed; NULL after any other failure. One that diverges leaves its last checkpoint, and
+ * stopped.scree of shortly before. */
+SCREE_API scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scene,
+                                            scree_error *error);
+
+/* ---- Motion ---- */
+
+/* Where every body of a run, a pour or a scene was at moments of its time. */
+typedef struct scree_motion {
+  size_t frame_count, body_count;
+  double *time;            /* s, of each frame, rising */
+  double *cylinder_height; /* m, likewise, of a run */
+  float *poses; /* of body b in frame f the 7 from 7 (f body_count + b): position, m, and quaternion
+                   w x y z (within 2e-5 rad); NaN where the body is not in the world */
+} scree_motion;
+
+/* Reads motion.scree of a run's folder; a frame at its end that was not written whole is left out.
+ * SCREE_BAD_FILE for anything else. */
+SCREE_API scree_status scree_motion_read(const char *path, scree_motion *motion,
+                                         scree_error *error);
+SCREE_API void scree_motion_free(scree_motion *motion);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,141 @@
+/* A scene as JSON: result.json of `scree run` (docs/formats.md). */
+#include "base/alloc.h"
+#include "base/file.h"
+#include "report/shapes.h"
+
+#include <math.h>
+#include <string.h>
+
+static void json_book(scree_json *json, const scree_scene *scene) {
+  scree_scene_book b;
+  scree_scene_get_book(scene, &b);
+  scree_json_object(json, "book");
+  scree_json_count(json, "entered_count", b.entered_count);
+  scree_json_count(json, "inside_count", b.inside_count);
+  scree_json_count(json, "left_count", b.left_count);
+  scree_json_count(json, "waiting_count", b.waiting_count);
+  scree_json_number(json, "entered_mass", b.entered_mass);
+  scree_json_number(json, "inside_mass", b.inside_mass);
+  scree_json_number(json, "left_mass", b.left_mass);
+  scree_json_number(json, "entered_energy", b.entered_energy);
+  scree_json_number(json, "left_energy", b.left_energy);
+  scree_json_number(json, "ledger", b.ledger);
+  scree_json_end(json);
+}
+
+static void json_parts(scree_json *json, const scree_scene *scene) {
+  scree_json_array(json, "shapes");
+  for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
+    scree_json_object(json, NULL);
+    scree_json_text(json, "name", scree_scene_shape_name(scene, i));
+    scree_json_text(json, "source", scree_scene_shape_source(scene, i));
+    scree_shape_json(json, scree_scene_shape_particle(scene, i));
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+  scree_json_array(json, "geometry");
+  for (size_t i = 0; scree_scene_geometry_name(scene, i); i++)
+    scree_json_text(json, NULL, scree_scene_geometry_name(scene, i));
+  scree_json_end(json);
+  scree_json_array(json, "inlets");
+  for (size_t i = 0; scree_scene_inlet_name(scene, i); i++) {
+    double mass;
+    size_t waiting, count = scree_scene_inlet_count(scene, i, &mass, &waiting);
+    scree_json_row_object(json, NULL);
+    scree_json_text(json, "name", scree_scene_inlet_name(scene, i));
+    scree_json_count(json, "count", count);
+    scree_json_number(json, "mass", mass);
+    scree_json_count(json, "waiting", waiting);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+  scree_json_array(json, "outlets"); /* the last is the domain's rim */
+  for (size_t i = 0;; i++) {
+    const char *name = scree_scene_outlet_name(scene, i);
+    double mass;
+    size_t count = scree_scene_outlet_count(scene, i, &mass);
+    scree_json_row_object(json, NULL);
+    scree_json_text(json, "name", name);
+    scree_json_count(json, "count", count);
+    scree_json_number(json, "mass", mass);
+    scree_json_end(json);
+    if (!name) break;
+  }
+  scree_json_end(json);
+}
+
+/* Of a column over the rows of the series that have a number. */
+typedef struct column_summary {
+  double mean, least, greatest;
+} column_summary;
+
+static column_summary summarise(const double *rows, size_t row_count, size_t columns, size_t k) {
+  column_summary s = {0, INFINITY, -INFINITY};
+  size_t count = 0;
+  for (size_t i = 0; i < row_count; i++) {
+    double value = rows[i * columns + k];
+    if (isnan(value)) continue;
+    s.mean += value, count++;
+    s.least = fmin(s.least, value), s.greatest = fmax(s.greatest, value);
+  }
+  s.mean = count ? s.mean / (double)count : (double)NAN;
+  return s;
+}
+
+static void json_columns(scree_json *json, const scree_scene *scene, const double *last) {
+  size_t rows, columns = scree_scene_column_count(scene);
+  const double *series = scree_scene_series(scene, &rows);
+  scree_json_array(json, "columns");
+  for (size_t k = 0; k < columns; k++) {
+    column_summary s = summarise(series, rows, columns, k);
+    scree_json_object(json, NULL);
+    scree_json_text(json, "name", scree_scene_column_name(scene, k));
+    scree_json_text(json, "unit", scree_scene_column_unit(scene, k));
+    scree_json_number(json, "last", rows ? series[(rows - 1) * columns + k] : last[k]);
+    scree_json_number(json, "mean", s.mean);
+    scree_json_number(json, "least", s.least);
+    scree_json_number(json, "greatest", s.greatest);
+    scree_json_row_array(json, "values");
+    for (size_t i = 0; i < rows; i++) scree_json_number(json, NULL, series[i * columns + k]);
+    scree_json_end(json);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+}
+
+static void write_scene(FILE *stream, const scree_scene_entry *entry, const double *last) {
+  const scree_scene *scene = entry->scene;
+  const scree_world *world = scree_scene_view(scene);
+  scree_json json = scree_json_start(stream);
+  scree_json_object(&json, NULL);
+  scree_json_text(&json, "version", scree_version());
+  scree_json_text(&json, "command", entry->command_line);
+  scree_json_text(&json, "title", scree_scene_title(scene));
+  scree_json_text(&json, "file", entry->file);
+  scree_json_text(&json, "ended_because",
+                  entry->stopped_because ? entry->stopped_because : scree_scene_end(scene));
+  scree_json_bool(&json, "whole", !entry->stopped_because);
+  scree_json_number(&json, "time", scree_world_time(world));
+  scree_json_number(&json, "time_step", scree_world_time_step(world, NULL));
+  scree_json_count(&json, "step_count", scree_world_step_count(world));
+  scree_json_number(&json, "wall_seconds", entry->seconds);
+  json_book(&json, scene);
+  json_parts(&json, scene);
+  json_columns(&json, scene, last);
+  scree_json_end(&json);
+}
+
+scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *path,
+                                    bool overwrite, scree_error *error) {
+  double *last = scree_alloc(scree_scene_column_count(entry->scene), sizeof *last);
+  if (!last) return scree_fail_memory(error, 0, "a scene's numbers");
+  scree_output output;
+  scree_status status = scree_scene_measure(entry->scene, last, error);
+  if (status == SCREE_OK) status = scree_output_open(path, overwrite, &output, error);
+  if (status == SCREE_OK) {
+    write_scene(output.stream, entry, last);
+    status = scree_output_commit(&output, error);
+  }
+  scree_free(last);
+  return status;
+}

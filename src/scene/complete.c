@@ -1,0 +1,340 @@
+/* A whole scene in a folder: chunks of steps, and between them frames, the series, the motion,
+ * checkpoints and the watcher. Frames fall on the first step at or past their time, whatever the
+ * chunks, so an interrupted scene writes the same frames as an uninterrupted one. */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+#include "base/file.h"
+#include "base/platform.h"
+
+#include <errno.h>
+#include <string.h>
+
+static const double chunk_seconds = 0.1; /* of the clock, between looks at it */
+static const double watch_seconds = 0.2; /* between calls of the watcher */
+static const double speed_seconds = 5;   /* the speed shown is over about as long */
+enum { KEEP_STEPS = 2000 };              /* between states kept for a failure */
+enum { FIRST_CHUNK = 20, LONGEST_CHUNK = 100000 };
+enum { MOTION_FRAMES = 240 }; /* enough to be played */
+static const char checkpoint_name[] = "checkpoint.scree", stopped_name[] = "stopped.scree";
+
+typedef struct work {
+  const scree_scene_job *job;
+  scree_scene *scene;
+  scree_motion_file motion;
+  FILE *series;
+  size_t rows_written, frame_count, chunk;
+  double last_checkpoint, last_watch; /* on the clock */
+  double speed_since, speed, speed_at_time, time_speed;
+  uint64_t speed_steps;
+} work;
+
+static double now_of(const work *w) {
+  return scree_world_time(w->scene->world);
+}
+
+/* folder/name, to be freed; NULL after filling the error. */
+static char *path_in(const work *w, const char *name, scree_error *error) {
+  size_t size = strlen(w->job->folder) + strlen(name) + 2;
+  char *path = scree_alloc(size, 1);
+  if (!path)
+    scree_fail_memory(error, size, "a path");
+  else
+    snprintf(path, size, "%s/%s", w->job->folder, name);
+  return path;
+}
+
+static scree_status checkpoint(work *w, scree_error *error) {
+  w->last_checkpoint = scree_now();
+  if (!w->job->folder) return SCREE_OK;
+  char *path = path_in(w, checkpoint_name, error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  scree_status status = scree_scene_save(w->scene, path, true, error);
+  scree_free(path);
+  return status;
+}
+
+/* ---- series.csv ---- */
+
+static scree_status fail_series(scree_error *error) {
+  return scree_fail(error, SCREE_IO, "series.csv: cannot write: %s", strerror(errno));
+}
+
+/* The rows that are not written yet. A column is NAME_UNIT, as in time_s. */
+static scree_status write_rows(work *w, scree_error *error) {
+  const scree_scene *scene = w->scene;
+  size_t columns = scene->columns.count;
+  if (!w->series) return SCREE_OK;
+  for (; w->rows_written < scene->row_count; w->rows_written++)
+    for (size_t k = 0; k < columns; k++)
+      fprintf(w->series, "%.9g%c", scene->series.items[w->rows_written * columns + k],
+              k + 1 < columns ? ',' : '\n');
+  return fflush(w->series) == 0 && !ferror(w->series) ? SCREE_OK : fail_series(error);
+}
+
+/* Anew, with all rows so far: what was written after a checkpoint is written again. */
+static scree_status open_series(work *w, scree_error *error) {
+  const scree_scene *scene = w->scene;
+  char *path = path_in(w, "series.csv", error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  w->series = scree_open_stream(path, "wb");
+  scree_free(path);
+  if (!w->series) return fail_series(error);
+  fprintf(w->series, "# scree %s, %s\n", scree_version(),
+          scene->plan.title ? scene->plan.title : "");
+  for (size_t k = 0; k < scene->columns.count; k++) {
+    const scree_scene_column *c = &scene->columns.items[k];
+    fprintf(w->series, "%s%s%s%s%s", k ? "," : "", c->name, *c->unit ? " [" : "", c->unit,
+            *c->unit ? "]" : "");
+  }
+  putc('\n', w->series);
+  return write_rows(w, error);
+}
+
+/* ---- frames ---- */
+
+static double next_frame(const work *w) {
+  double interval = w->scene->plan.output->frames;
+  return interval > 0 ? (double)w->frame_count * interval : INFINITY;
+}
+
+static scree_status put_frames(work *w, bool last, scree_error *error) {
+  scree_status status = SCREE_OK;
+  bool due = now_of(w) >= next_frame(w) || (last && isfinite(next_frame(w)));
+  if (due && w->job->frame)
+    status = w->job->frame(w->job->context, w->scene, w->frame_count, error);
+  if (due) w->frame_count++;
+  while (now_of(w) >= next_frame(w)) w->frame_count++; /* an interval shorter than a step */
+  return status;
+}
+
+static scree_status open_motion(work *w, bool go_on, scree_error *error) {
+  const scree_plan *plan = &w->scene->plan;
+  double interval = plan->output->motion > 0 ? plan->output->motion : plan->time / MOTION_FRAMES;
+  char *path = path_in(w, "motion.scree", error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  scree_status status = scree_motion_open(&w->motion, path, interval, go_on, now_of(w), error);
+  w->motion.walls = true;
+  scree_free(path);
+  return status;
+}
+
+static scree_status put_motion(work *w, bool last, scree_error *error) {
+  if (now_of(w) < scree_motion_next(&w->motion) && !last) return SCREE_OK;
+  return scree_motion_put(&w->motion, w->scene->world, 0, error);
+}
+
+/* As many steps as stay before the next frame of either kind, or one. */
+static size_t steps_to_frame(const work *w) {
+  double next = fmin(next_frame(w), scree_motion_next(&w->motion));
+  double until = floor((next - now_of(w)) / w->scene->time_step) - 1;
+  if (until >= (double)w->chunk) return w->chunk;
+  return until > 1 ? (size_t)until : 1;
+}
+
+/* ---- watching ---- */
+
+static void measure_speed(work *w, double now) {
+  uint64_t steps = scree_world_step_count(w->scene->world);
+  double span = now - w->speed_since;
+  if (span < (isnan(w->speed) ? 1 : speed_seconds)) return;
+  w->speed = (double)(steps - w->speed_steps) / span;
+  w->time_speed = (now_of(w) - w->speed_at_time) / span;
+  w->speed_since = now;
+  w->speed_steps = steps;
+  w->speed_at_time = now_of(w);
+}
+
+static bool watch(work *w, bool always) {
+  double now = scree_now(), time = now_of(w), all = w->scene->plan.time;
+  if (!w->job->watch || (!always && now - w->last_watch < watch_seconds)) return true;
+  w->last_watch = now;
+  measure_speed(w, now);
+  scree_scene_state state = {w->scene, time, fmin(1, time / all), w->speed,
+                             w->time_speed > 0 ? (all - time) / w->time_speed : (double)NAN};
+  return w->job->watch(w->job->context, &state);
+}
+
+/* ---- the loop ---- */
+
+static void tune_chunk(work *w, double seconds) {
+  if (seconds < 0.5 * chunk_seconds && w->chunk < LONGEST_CHUNK) w->chunk *= 2;
+  if (seconds > 2 * chunk_seconds && w->chunk > 1) w->chunk /= 2;
+}
+
+/* One that leaves the range of the contact law leaves a state shortly before. */
+static scree_status keep_state(work *w, scree_error *error) {
+  if (!w->job->folder) return SCREE_OK;
+  char *path = path_in(w, stopped_name, error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  (void)scree_path_remove(path); /* what an earlier try left; mostly there is none */
+  scree_status status =
+      scree_world_keep_all(w->scene->world, path, KEEP_STEPS, scree_scene_pack, w->scene, error);
+  scree_free(path);
+  return status;
+}
+
+static scree_status cancel(work *w, scree_error *error) {
+  scree_status status = checkpoint(w, error);
+  if (status != SCREE_OK) return status;
+  return scree_fail(error, SCREE_CANCELLED, "cancelled at %.6g s of simulated time%s", now_of(w),
+                    w->job->folder ? "; the checkpoint is written" : "");
+}
+
+static scree_status go_on(work *w, scree_error *error) {
+  while (!w->scene->end) {
+    scree_status status = put_frames(w, false, error);
+    if (status == SCREE_OK) status = put_motion(w, false, error);
+    if (status != SCREE_OK) return status;
+    double start = scree_now();
+    size_t steps = steps_to_frame(w);
+    status = scree_scene_advance(w->scene, steps, error);
+    if (status == SCREE_OK) status = write_rows(w, error);
+    if (status != SCREE_OK) return status;
+    if (steps == w->chunk) tune_chunk(w, scree_now() - start);
+    if (!watch(w, false)) return cancel(w, error);
+    if (scree_now() - w->last_checkpoint >= w->scene->plan.output->checkpoint)
+      status = checkpoint(w, error);
+    if (status != SCREE_OK) return status;
+  }
+  scree_status status = put_frames(w, true, error);
+  if (status == SCREE_OK) status = put_motion(w, true, error);
+  if (status == SCREE_OK) status = checkpoint(w, error);
+  watch(w, true);
+  return status;
+}
+
+/* ---- beginning, or going on ---- */
+
+/* The next line of a printed file, without what may differ: title, time, stop and output. */
+static const char *next_line(const char **text, size_t *length) {
+  static const char *const free_keys[] = {"title:", "time:", "stop:", "output:"};
+  bool skip = false;
+  while (**text) {
+    const char *line = *text;
+    *length = strcspn(line, "\n");
+    *text += *length + (line[*length] == '\n');
+    if (*line != ' ') {
+      skip = false;
+      for (size_t i = 0; i < 4; i++)
+        skip = skip || !strncmp(line, free_keys[i], strlen(free_keys[i]));
+    }
+    if (!skip) return line;
+  }
+  return NULL;
+}
+
+/* Characters of a line before its comment. */
+static int shown(const char *line, size_t length) {
+  const char *comment = strstr(line, "  # ");
+  size_t blanks = strspn(line, " ");
+  return (int)((comment && comment < line + length ? (size_t)(comment - line) : length) - blanks);
+}
+
+static scree_status compare_texts(const char *here, const char *there, const char *path,
+                                  scree_error *error) {
+  for (;;) {
+    size_t m = 0, n = 0;
+    const char *a = next_line(&here, &m), *b = next_line(&there, &n);
+    if (!a && !b) return SCREE_OK;
+    if (a && b && m == n && !strncmp(a, b, m)) continue;
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "%s: is of another scene: '%.*s' there and '%.*s' here", path,
+                      b ? shown(b, n) : 7, b ? b + strspn(b, " ") : "nothing", a ? shown(a, m) : 7,
+                      a ? a + strspn(a, " ") : "nothing");
+  }
+}
+
+/* What may differ is taken from the file now. */
+static scree_status take_over(work *w, const char *path, scree_error *error) {
+  scree_scene *scene = w->scene;
+  scree_plan plan;
+  char *text;
+  scree_status status = scree_scene_file_text(w->job->file, &text, error);
+  if (status != SCREE_OK) return status;
+  status = compare_texts(text, scene->text, path, error);
+  if (status == SCREE_OK) status = scree_scene_file_plan(w->job->file, &scene->arena, &plan, error);
+  if (status == SCREE_OK && plan.output->series != scene->plan.output->series)
+    status = scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "%s: is of another scene: output.series is %g there and %g here", path,
+                        scene->plan.output->series, plan.output->series);
+  if (status != SCREE_OK) {
+    scree_free(text);
+    return status;
+  }
+  bool longer = plan.time > now_of(w);
+  scene->plan.title = plan.title;
+  scene->plan.time = plan.time;
+  scene->plan.stop = plan.stop;
+  scene->plan.output = plan.output;
+  scree_free(scene->text);
+  scene->text = text;
+  if (longer && scree_scene_reopen(scene)) w->rows_written = 0;
+  return SCREE_OK;
+}
+
+/* Loads the checkpoint into w->scene, which stays NULL where there is none. */
+static scree_status find_checkpoint(work *w, scree_error *error) {
+  char *path = path_in(w, checkpoint_name, error);
+  if (!path) return SCREE_OUT_OF_MEMORY;
+  scree_status status = SCREE_OK;
+  if (!scree_path_exists(path)) goto done;
+  if (!w->job->resume) {
+    if (!w->job->overwrite)
+      status = scree_fail(error, SCREE_EXISTS, "%s: exists already: a scene was begun here", path);
+    goto done;
+  }
+  status = scree_scene_load(path, &w->scene, error);
+  if (status == SCREE_OK && w->scene->world->diverged)
+    status = scree_fail(error, SCREE_BAD_FILE,
+                        "%s: was saved after its scene had failed, and cannot go on: %.700s", path,
+                        w->scene->world->failure.message);
+  if (status == SCREE_OK && w->job->file) status = take_over(w, path, error);
+  if (status == SCREE_OK)
+    while (now_of(w) >= next_frame(w)) w->frame_count++;
+done:
+  scree_free(path);
+  return status;
+}
+
+static scree_status prepare(work *w, scree_error *error) {
+  const scree_scene_job *job = w->job;
+  scree_status status = SCREE_OK;
+  if (job->folder) status = scree_folder_create(job->folder, error);
+  if (job->folder && status == SCREE_OK) status = find_checkpoint(w, error);
+  bool resumed = w->scene != NULL;
+  if (status == SCREE_OK && !resumed) {
+    if (!job->file)
+      return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no checkpoint to go on from",
+                        job->folder ? job->folder : "no folder");
+    status = scree_scene_create(job->file, job->progress, &w->scene, error);
+  }
+  if (status == SCREE_OK && job->folder) status = open_series(w, error);
+  if (status == SCREE_OK && job->folder) status = open_motion(w, resumed, error);
+  if (status == SCREE_OK && job->begun) status = job->begun(job->context, w->scene, resumed, error);
+  return status == SCREE_OK ? keep_state(w, error) : status;
+}
+
+scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scene,
+                                  scree_error *error) {
+  double now = scree_now();
+  work w = {.job = job,
+            .chunk = FIRST_CHUNK,
+            .last_checkpoint = now,
+            .last_watch = -INFINITY,
+            .speed_since = now,
+            .speed = NAN};
+  scree_status status = prepare(&w, error);
+  if (status == SCREE_OK) {
+    w.speed_steps = scree_world_step_count(w.scene->world);
+    w.speed_at_time = now_of(&w);
+    status = go_on(&w, error);
+    if (status == SCREE_CANCELLED || status == SCREE_DIVERGED) put_motion(&w, true, NULL);
+  }
+  scree_motion_close(&w.motion);
+  if (w.series && fclose(w.series) != 0 && status == SCREE_OK) status = fail_series(error);
+  bool stands = status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED;
+  if (!stands) scree_scene_free(w.scene);
+  *scene = stands ? w.scene : NULL;
+  return status;
+}

@@ -1,0 +1,133 @@
+/* A scene's file: a tree that knows its places, changed field by field, and read into a plan. */
+#include "scene/scene.h"
+#include "scene/templates.h"
+
+#include "base/alloc.h"
+#include "base/platform.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static scree_status keep(scree_yaml *root, const char *name, scree_scene_file **file,
+                         scree_error *error) {
+  const char *slash = strrchr(name, '/');
+  scree_scene_file *made = scree_alloc_zero(1, sizeof *made);
+  if (made) {
+    made->name = scree_strdup(strcmp(name, "-") != 0 ? name : "standard input");
+    made->folder = scree_strdup(slash ? name : "");
+  }
+  if (!made || !made->name || !made->folder) {
+    scree_yaml_free(root);
+    scree_scene_file_free(made);
+    return scree_fail_memory(error, sizeof *made, name);
+  }
+  if (slash) made->folder[slash + 1 - name] = 0;
+  made->root = *root;
+  *file = made;
+  return SCREE_OK;
+}
+
+scree_status scree_scene_file_read(const char *path, scree_scene_file **file, scree_error *error) {
+  scree_yaml root;
+  scree_status status = scree_yaml_read(path, &root, error);
+  return status == SCREE_OK ? keep(&root, path, file, error) : status;
+}
+
+scree_status scree_scene_file_parse(const char *text, size_t byte_count, const char *name,
+                                    scree_scene_file **file, scree_error *error) {
+  scree_yaml root;
+  scree_status status = scree_yaml_parse(text, byte_count, name, &root, error);
+  return status == SCREE_OK ? keep(&root, name, file, error) : status;
+}
+
+void scree_scene_file_free(scree_scene_file *file) {
+  if (!file) return;
+  scree_yaml_free(&file->root);
+  scree_free(file->name);
+  scree_free(file->folder);
+  scree_free(file);
+}
+
+scree_status scree_scene_file_set(scree_scene_file *file, const char *field, const char *value,
+                                  scree_error *error) {
+  return scree_yaml_set(&file->root, field, value, error);
+}
+
+scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *arena,
+                                   scree_plan *plan, scree_error *error) {
+  scree_reader reader = {file->name, arena, error, ""};
+  return scree_plan_read(&reader, &file->root, plan);
+}
+
+scree_status scree_scene_file_check(const scree_scene_file *file, scree_error *error) {
+  scree_arena arena = {0};
+  scree_plan plan;
+  scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
+  scree_arena_free(&arena);
+  return status;
+}
+
+scree_status scree_scene_file_print(const scree_scene_file *file, FILE *stream,
+                                    scree_error *error) {
+  scree_arena arena = {0};
+  scree_plan plan;
+  scree_status status = scree_scene_file_plan(file, &arena, &plan, error);
+  if (status == SCREE_OK) scree_record_print(&scree_plan_record, &plan, 0, true, stream);
+  scree_arena_free(&arena);
+  return status;
+}
+
+scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error) {
+  char *printed = NULL;
+  size_t size;
+  FILE *stream = scree_memory_open(&printed, &size);
+  if (!stream) return scree_fail_memory(error, 0, file->name);
+  scree_status status = scree_scene_file_print(file, stream, error);
+  bool good = scree_memory_close(stream);
+  if (status == SCREE_OK) {
+    *text = good ? scree_strdup(printed) : NULL;
+    if (!*text) status = scree_fail_memory(error, size, file->name);
+  }
+  free(printed);
+  return status;
+}
+
+/* The name of file `index` of the plan; NULL: there are no more. */
+static const char *input_at(const scree_plan *plan, size_t index) {
+  for (size_t i = 0; i < plan->shapes.count; i++) {
+    const scree_plan_shape *s = SCREE_PLAN_AT(plan, shapes, scree_plan_shape, i);
+    const char *name = s->file ? s->file : s->clump;
+    if (name && index-- == 0) return name;
+  }
+  for (size_t i = 0; i < plan->geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    if (index < g->file.count) return g->file.items[index];
+    index -= g->file.count;
+  }
+  return NULL;
+}
+
+bool scree_scene_file_input(const scree_scene_file *file, size_t index, char *path, size_t size) {
+  scree_arena arena = {0};
+  scree_plan plan;
+  const char *name = NULL;
+  if (scree_scene_file_plan(file, &arena, &plan, NULL) == SCREE_OK) name = input_at(&plan, index);
+  bool fits =
+      name && (size_t)snprintf(path, size, "%s%s", *name == '/' ? "" : file->folder, name) < size;
+  scree_arena_free(&arena);
+  return fits;
+}
+
+/* ---- templates ---- */
+
+const char *scree_scene_template_name(size_t index) {
+  for (size_t i = 0; i < index; i++)
+    if (!scree_templates[i].name) return NULL;
+  return scree_templates[index].name;
+}
+
+const char *scree_scene_template(const char *name) {
+  for (const scree_template *t = scree_templates; t->name; t++)
+    if (!strcmp(t->name, name)) return t->text;
+  return NULL;
+}

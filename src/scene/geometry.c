@@ -1,0 +1,291 @@
+/* Geometry: walls of the world, their motions, and whether a body that is placed is clear of them.
+ */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+static const double degree = 0.017453292519943295;
+
+static const scree_plan_geometry *plan_of(const scree_scene *scene, size_t index) {
+  return SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, index);
+}
+
+/* ---- into the world ---- */
+
+static quat turn_of(const scree_plan_geometry *g) {
+  if (!g->turn) return (quat){1, 0, 0, 0};
+  vec3 axis = vec3_unit(vec3_load(g->turn->axis));
+  return quat_from_rotation_vector(vec3_scale(axis, degree * g->turn->angle_deg));
+}
+
+static void turn_vector(const scree_plan_geometry *g, const double from[3], double to[3]) {
+  mat3 turn = quat_to_mat3(turn_of(g));
+  vec3_store(to, mat3_mul_vec(&turn, vec3_load(from)));
+}
+
+static void turn_mesh(const scree_plan_geometry *g, scree_mesh *mesh) {
+  if (!g->turn) return;
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    turn_vector(g, mesh->positions + 3 * v, mesh->positions + 3 * v);
+}
+
+static size_t material_of(const scree_scene *scene, const char *name) {
+  return name ? scree_plan_find(&scene->plan.materials, sizeof(scree_plan_material), name) : 0;
+}
+
+static scree_status add_wall(const scree_scene *scene, const scree_plan_geometry *g,
+                             scree_world *world, scree_wall *wall, scree_error *error) {
+  scree_error why;
+  wall->material = material_of(scene, g->material);
+  memcpy(wall->position, g->at, sizeof wall->position);
+  if (!isnan(g->surface_velocity[0]))
+    memcpy(wall->surface_velocity, g->surface_velocity, sizeof wall->surface_velocity);
+  scree_status status = scree_world_add_wall(world, wall, NULL, &why);
+  if (status == SCREE_OK) return status;
+  return scree_fail(error, status, "%s: %s: %s", scene->name, g->place.path, why.message);
+}
+
+static scree_status add_mesh(const scree_scene *scene, const scree_plan_geometry *g,
+                             scree_world *world, scree_mesh *mesh, scree_error *error) {
+  scree_wall wall = {.kind = SCREE_WALL_MESH, .axis = {0, 0, 1}, .mesh = mesh};
+  turn_mesh(g, mesh);
+  scree_status status = add_wall(scene, g, world, &wall, error);
+  scree_mesh_free(mesh);
+  return status;
+}
+
+static scree_status add_file(const scree_scene *scene, const scree_plan_geometry *g,
+                             const char *folder, const char *name, scree_world *world,
+                             scree_error *error) {
+  scree_read_options o = scree_default_read_options();
+  scree_scan scan;
+  o.unit_m = scree_plan_unit(g->unit);
+  char *path = scree_scene_path(folder, name);
+  if (!path) return scree_fail_memory(error, strlen(name), "a path");
+  scree_status status = scree_scan_read(path, &o, &scan, error);
+  scree_free(path);
+  return status == SCREE_OK ? add_mesh(scene, g, world, &scan.mesh, error) : status;
+}
+
+static scree_status add_solid(const scree_scene *scene, const scree_plan_geometry *g,
+                              scree_world *world, scree_error *error) {
+  scree_wall wall = {.kind = SCREE_WALL_PLANE};
+  if (!isnan(g->box[0])) {
+    scree_mesh mesh;
+    scree_status status = scree_scene_box_mesh(g->box, &mesh, error);
+    return status == SCREE_OK ? add_mesh(scene, g, world, &mesh, error) : status;
+  }
+  if (g->disc) {
+    wall.kind = SCREE_WALL_DISC;
+    wall.radius = g->disc->radius;
+    turn_vector(g, g->disc->normal, wall.axis);
+  } else if (g->cylinder) {
+    wall.kind = SCREE_WALL_CYLINDER;
+    wall.radius = g->cylinder->radius;
+    wall.length = g->cylinder->length;
+    turn_vector(g, g->cylinder->axis, wall.axis);
+  } else {
+    turn_vector(g, g->plane, wall.axis);
+  }
+  return add_wall(scene, g, world, &wall, error);
+}
+
+/* ---- motions ---- */
+
+static void take_table(scree_wall_motion *m, const scree_table *table, scree_motion_law law) {
+  if (!table->count) return;
+  m->law = law;
+  m->table = table->items[0];
+  m->row_count = table->count;
+}
+
+static scree_wall_motion motion_of(const scree_plan_motion *plan) {
+  scree_wall_motion m = scree_default_wall_motion();
+  m.from = plan->from;
+  if (!isnan(plan->until)) m.until = plan->until;
+  if (plan->translate) {
+    const scree_plan_translate *t = plan->translate;
+    bool constant = !isnan(t->velocity[0]);
+    memcpy(m.axis, constant ? t->velocity : t->along, sizeof m.axis);
+    m.speed = constant ? vec3_norm(vec3_load(t->velocity)) : 0;
+    if (m.speed == 0 && constant) m.axis[2] = 1; /* stands */
+    take_table(&m, &t->table, SCREE_MOTION_SPEEDS);
+    take_table(&m, &t->positions, SCREE_MOTION_POSITIONS);
+  } else if (plan->rotate) {
+    const scree_plan_rotate *t = plan->rotate;
+    m.turns = true;
+    memcpy(m.axis, t->axis, sizeof m.axis);
+    memcpy(m.through, t->through, sizeof m.through);
+    m.speed = isnan(t->speed) ? 0 : t->speed;
+    take_table(&m, &t->table, SCREE_MOTION_SPEEDS);
+    take_table(&m, &t->positions, SCREE_MOTION_POSITIONS);
+  } else {
+    const scree_plan_vibrate *v = plan->vibrate;
+    m.law = SCREE_MOTION_SINE;
+    memcpy(m.axis, v->along, sizeof m.axis);
+    m.amplitude = v->amplitude;
+    m.frequency = v->frequency;
+    m.phase = v->phase;
+  }
+  return m;
+}
+
+static scree_status set_motions(const scree_scene *scene, size_t index, scree_world *world,
+                                scree_error *error) {
+  const scree_plan_geometry *g = plan_of(scene, index);
+  const scree_scene_geometry *made = &scene->geometry[index];
+  scree_status status = SCREE_OK;
+  if (g->motion.count == 0) return SCREE_OK;
+  scree_wall_motion *motions = scree_alloc(g->motion.count, sizeof *motions);
+  if (!motions) return scree_fail_memory(error, g->motion.count * sizeof *motions, "motions");
+  for (size_t i = 0; i < g->motion.count; i++)
+    motions[i] = motion_of(&((const scree_plan_motion *)g->motion.items)[i]);
+  for (size_t w = 0; status == SCREE_OK && w < made->wall_count; w++)
+    status =
+        scree_world_set_wall_motion(world, made->first_wall + w, motions, g->motion.count, error);
+  scree_free(motions);
+  return status;
+}
+
+scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, scree_world *world,
+                                      scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.geometry.count; i++) {
+    const scree_plan_geometry *g = plan_of(scene, i);
+    scene->geometry[i].first_wall = scree_world_wall_count(world);
+    scene->geometry[i].wall_count = g->file.count ? g->file.count : 1;
+    for (size_t k = 0; status == SCREE_OK && k < g->file.count; k++)
+      status = add_file(scene, g, folder, g->file.items[k], world, error);
+    if (status == SCREE_OK && g->file.count == 0) status = add_solid(scene, g, world, error);
+    if (status == SCREE_OK) status = set_motions(scene, i, world, error);
+  }
+  scene->wall_count = scree_world_wall_count(world);
+  return status;
+}
+
+/* ---- what placing must know ---- */
+
+static scree_status find_closed(const scree_mesh *mesh, bool *closed, scree_error *error) {
+  scree_check_options o = {.intersections = false};
+  scree_check check;
+  scree_status status = scree_mesh_check(mesh, &o, NULL, &check, error);
+  *closed = status == SCREE_OK && check.defects[SCREE_DEFECT_BOUNDARY_EDGE] == 0 &&
+            check.defects[SCREE_DEFECT_INCONSISTENT_EDGE] == 0;
+  return status;
+}
+
+scree_status scree_scene_find_surfaces(scree_scene *scene, scree_error *error) {
+  scene->wall_count = scree_world_wall_count(scene->world);
+  scene->surfaces = scree_alloc_zero(scene->wall_count, sizeof *scene->surfaces);
+  if (!scene->surfaces)
+    return scree_fail_memory(error, scene->wall_count * sizeof *scene->surfaces, "walls");
+  scree_status status = SCREE_OK;
+  for (size_t w = 0; status == SCREE_OK && w < scene->wall_count; w++) {
+    scree_wall wall;
+    scree_world_get_wall(scene->world, w, &wall);
+    if (wall.kind != SCREE_WALL_MESH) continue;
+    scree_bvh bvh;
+    status = scree_bvh_build(wall.mesh, &bvh, error);
+    if (status == SCREE_OK) scene->surfaces[w].bvh = bvh;
+    if (status == SCREE_OK) status = find_closed(wall.mesh, &scene->surfaces[w].closed, error);
+  }
+  return status;
+}
+
+/* ---- whether a body is clear ---- */
+
+static bool clear_of_plane(const scree_wall *wall, const scree_placement *p) {
+  double up, down;
+  vec3 n = vec3_unit(vec3_load(wall->axis));
+  scree_placement_reach(p, n, &up, &down);
+  return vec3_dot(n, vec3_sub(p->position, vec3_load(wall->position))) > down;
+}
+
+static bool clear_of_disc(const scree_wall *wall, const scree_placement *p) {
+  double up, down;
+  vec3 n = vec3_unit(vec3_load(wall->axis)), d = vec3_sub(p->position, vec3_load(wall->position));
+  double height = vec3_dot(n, d), away = vec3_norm(vec3_mad(d, n, -height));
+  scree_placement_reach(p, n, &up, &down);
+  return height > down || -height > up || away > wall->radius + p->radius;
+}
+
+static bool clear_of_cylinder(const scree_wall *wall, const scree_placement *p) {
+  vec3 axis = vec3_unit(vec3_load(wall->axis)), from = vec3_load(wall->position);
+  vec3 d = vec3_sub(p->position, from);
+  double along = vec3_dot(d, axis), away = vec3_norm(vec3_mad(d, axis, -along));
+  if (wall->length > 0 && (along < -p->radius || along > wall->length + p->radius)) return true;
+  return away > wall->radius + p->radius || scree_placement_within(p, from, axis, wall->radius);
+}
+
+/* Whether a plane lies between the box and the triangle: the thirteen candidates of the separating
+ * axis theorem, in the box's frame (Akenine-Moeller 2001). */
+static bool box_clear_of_triangle(const double corners[9], vec3 half) {
+  const double h[3] = {half.x, half.y, half.z};
+  vec3 c[3] = {vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6)};
+  vec3 axes[13] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, vec3_triangle_normal(c[0], c[1], c[2])};
+  for (int e = 0; e < 3; e++)
+    for (int k = 0; k < 3; k++)
+      axes[4 + 3 * e + k] = vec3_cross(axes[k], vec3_sub(c[(e + 1) % 3], c[e]));
+  for (int i = 0; i < 13; i++) {
+    double reach = h[0] * fabs(axes[i].x) + h[1] * fabs(axes[i].y) + h[2] * fabs(axes[i].z);
+    double a = vec3_dot(axes[i], c[0]), b = vec3_dot(axes[i], c[1]), d = vec3_dot(axes[i], c[2]);
+    if (fmin(a, fmin(b, d)) > reach || fmax(a, fmax(b, d)) < -reach) return true;
+  }
+  return false;
+}
+
+/* Solid angle of all triangles seen from p, over 4 pi (van Oosterom and Strackee 1983): 1 within a
+ * closed surface that is wound outward. */
+static double winding_number(const scree_bvh *bvh, vec3 p) {
+  double sum = 0;
+  for (size_t t = 0; t < bvh->triangle_count; t++) {
+    const double *at = bvh->corners + 9 * t;
+    vec3 a = vec3_sub(vec3_load(at), p), b = vec3_sub(vec3_load(at + 3), p),
+         c = vec3_sub(vec3_load(at + 6), p);
+    double la = vec3_norm(a), lb = vec3_norm(b), lc = vec3_norm(c);
+    sum += atan2(vec3_dot(a, vec3_cross(b, c)),
+                 la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb);
+  }
+  return sum / 6.283185307179586;
+}
+
+static bool clear_of_mesh(const scree_scene *scene, size_t index, const scree_wall *wall,
+                          const scree_placement *p) {
+  const scree_scene_surface *surface = &scene->surfaces[index];
+  double q[4];
+  scree_world_wall_orientation(scene->world, index, q);
+  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  vec3 centre = mat3_tmul_vec(&turn, vec3_sub(p->position, vec3_load(wall->position)));
+  scree_bvh_hit hit = {.distance2 = p->radius * p->radius};
+  bool near = scree_bvh_closest(&surface->bvh, centre, &hit);
+  if (!near) return !surface->closed || winding_number(&surface->bvh, centre) < 0.5;
+  vec3 middle = mat3_tmul_vec(&turn, vec3_sub(p->box.centre, vec3_load(wall->position)));
+  mat3 axes = mat3_tmul(&turn, &p->box.axes);
+  for (size_t t = 0; t < surface->bvh.triangle_count; t++) {
+    double corners[9];
+    for (int c = 0; c < 3; c++) {
+      vec3 corner = vec3_sub(vec3_load(surface->bvh.corners + 9 * t + 3 * c), middle);
+      vec3_store(corners + 3 * c, mat3_tmul_vec(&axes, corner));
+    }
+    if (!box_clear_of_triangle(corners, p->half)) return false;
+  }
+  return !surface->closed || winding_number(&surface->bvh, centre) < 0.5;
+}
+
+bool scree_scene_is_clear(const scree_scene *scene, const scree_placement *placement,
+                          size_t *blocking) {
+  for (size_t w = 0; w < scene->wall_count; w++) {
+    scree_wall wall;
+    bool clear = true;
+    scree_world_get_wall(scene->world, w, &wall);
+    if (wall.kind == SCREE_WALL_PLANE) clear = clear_of_plane(&wall, placement);
+    if (wall.kind == SCREE_WALL_DISC) clear = clear_of_disc(&wall, placement);
+    if (wall.kind == SCREE_WALL_CYLINDER) clear = clear_of_cylinder(&wall, placement);
+    if (wall.kind == SCREE_WALL_MESH) clear = clear_of_mesh(scene, w, &wall, placement);
+    *blocking = w;
+    if (!clear) return false;
+  }
+  return true;
+}

@@ -1,0 +1,276 @@
+/* Inlets: random sequential addition. A body that is due takes a random place and orientation in
+ * its region; where it would touch another or a wall it takes the next, and after so many tries it
+ * waits until the next tick. Shapes come in their shares: next is the one that is most behind. */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/rng.h"
+
+#include <string.h>
+
+enum { TRIES = 100, FIRST_TRIES = 4000, STREAM = 64 };
+
+static const double pi = 3.14159265358979323846;
+
+/* ---- what is due ---- */
+
+static double active_time(const scree_plan_inlet *plan, double time) {
+  double until = isnan(plan->until) ? INFINITY : plan->until;
+  return fmax(0, fmin(time, until) - plan->from);
+}
+
+/* How many bodies should be in by now. */
+static size_t due_count(const scree_scene_inlet *inlet, double time) {
+  const scree_plan_inlet *plan = inlet->plan;
+  size_t most = plan->count ? plan->count : SIZE_MAX;
+  if (time < plan->from) return 0;
+  if (!isnan(plan->rate)) {
+    double due = ceil(plan->rate * active_time(plan, time) * (1 - 1e-12));
+    return due < (double)most ? (size_t)due : most;
+  }
+  if (!isnan(plan->mass_rate)) return most; /* by mass, below */
+  return isnan(plan->until) || time < plan->until ? most : inlet->entered;
+}
+
+static bool is_due(const scree_scene_inlet *inlet, double time) {
+  const scree_plan_inlet *plan = inlet->plan;
+  if (inlet->entered >= due_count(inlet, time)) return false;
+  return isnan(plan->mass_rate) || inlet->mass < plan->mass_rate * active_time(plan, time);
+}
+
+/* How many wait, now that no more fit: bodies of a mass rate are counted by the mean mass. */
+static size_t count_waiting(const scree_scene *scene, const scree_scene_inlet *inlet, double time) {
+  const scree_plan_inlet *plan = inlet->plan;
+  if (isnan(plan->mass_rate)) {
+    size_t due = due_count(inlet, time);
+    return due > inlet->entered ? due - inlet->entered : 0;
+  }
+  double mean = 0, shares = 0;
+  for (size_t k = 0; k < plan->shapes.count; k++) {
+    mean += plan->shapes.values[k] * scene->shapes[inlet->shapes[k]].mass;
+    shares += plan->shapes.values[k];
+  }
+  double behind = (plan->mass_rate * active_time(plan, time) - inlet->mass) * shares / mean;
+  return behind > 0 ? (size_t)ceil(behind) : 0;
+}
+
+static bool has_ended(const scree_scene_inlet *inlet, double time) {
+  const scree_plan_inlet *plan = inlet->plan;
+  if (plan->count && inlet->entered >= plan->count) return true;
+  return !isnan(plan->until) && time >= plan->until && inlet->waiting == 0;
+}
+
+bool scree_scene_is_filled(const scree_scene *scene) {
+  double time = scree_world_time(scene->world);
+  for (size_t i = 0; i < scene->plan.inlets.count; i++)
+    if (!has_ended(&scene->inlets[i], time)) return false;
+  return true;
+}
+
+/* Of the inlet's shapes the one that is most behind its share. */
+static size_t next_shape(const scree_scene_inlet *inlet) {
+  const scree_weights *w = &inlet->plan->shapes;
+  double shares = 0, most = -INFINITY;
+  size_t next = 0;
+  for (size_t k = 0; k < w->count; k++) shares += w->values[k];
+  for (size_t k = 0; k < w->count; k++) {
+    double behind = w->values[k] / shares * (double)(inlet->entered + 1) - (double)inlet->counts[k];
+    if (behind > most + 1e-9) most = behind, next = k;
+  }
+  return next;
+}
+
+/* ---- a place ---- */
+
+/* A place along a unit vector so that the body lies within [low, high]; false: it is too long. */
+static bool draw_along(const scree_placement *p, vec3 n, double low, double high, scree_rng *rng,
+                       double *at) {
+  double up, down, share = scree_rng_uniform(rng);
+  scree_placement_reach(p, n, &up, &down);
+  *at = low + down + share * (high - low - up - down);
+  return high - low >= up + down;
+}
+
+static bool draw_in_box(const scree_plan_box *box, scree_placement *p, scree_rng *rng) {
+  double at[3];
+  bool fits = true;
+  for (int k = 0; k < 3; k++) {
+    vec3 n = {k == 0, k == 1, k == 2};
+    fits = draw_along(p, n, box->min[k], box->max[k], rng, &at[k]) && fits;
+  }
+  p->position = vec3_load(at);
+  return fits;
+}
+
+static bool draw_in_cylinder(const scree_plan_cylinder *c, scree_placement *p, scree_rng *rng) {
+  vec3 axis = vec3_unit(vec3_load(c->axis)), u, w;
+  double along;
+  vec3_frame(axis, &u, &w);
+  bool fits = draw_along(p, axis, 0, c->length, rng, &along);
+  double r = c->radius * sqrt(scree_rng_uniform(rng)), a = 2 * pi * scree_rng_uniform(rng);
+  vec3 at = vec3_mad(vec3_mad(vec3_scale(u, r * cos(a)), w, r * sin(a)), axis, along);
+  p->position = vec3_add(vec3_load(c->at), at);
+  scree_placement_settle(p);
+  return fits && scree_placement_within(p, vec3_load(c->at), axis, c->radius);
+}
+
+/* Whether the random place is within the region. */
+static bool draw(const scree_scene *scene, const scree_scene_inlet *inlet, size_t shape,
+                 scree_rng *rng, scree_placement *p) {
+  *p = scene->shapes[shape].extent;
+  p->orientation =
+      inlet->plan->orientation ? scene->shapes[shape].as_given : scree_rng_rotation(rng);
+  p->position = (vec3){0, 0, 0};
+  scree_placement_settle(p);
+  bool within = inlet->plan->box ? draw_in_box(inlet->plan->box, p, rng)
+                                 : draw_in_cylinder(inlet->plan->cylinder, p, rng);
+  scree_placement_settle(p);
+  return within;
+}
+
+static scree_rng rng_of(const scree_scene *scene, size_t index) {
+  return (scree_rng){scene->plan.seed, STREAM + index, scene->inlets[index].draws};
+}
+
+/* ---- before it begins ---- */
+
+static scree_status check_shape(scree_scene *scene, size_t index, size_t shape,
+                                scree_error *error) {
+  scree_scene_inlet *inlet = &scene->inlets[index];
+  const scree_place *place = &inlet->plan->place;
+  scree_rng rng = {scene->plan.seed, STREAM / 2, 0};
+  scree_placement p;
+  size_t wall = 0, within = 0;
+  for (int try = 0; try < FIRST_TRIES; try++) {
+    if (!draw(scene, inlet, shape, &rng, &p)) continue;
+    within++;
+    if (scree_scene_is_clear(scene, &p, &wall)) return SCREE_OK;
+    if (within > FIRST_TRIES / 8) break;
+  }
+  const char *name = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, shape)->place.name;
+  scree_reader r = {scene->name, NULL, error, ""};
+  if (!within)
+    return scree_fail_place(&r, place,
+                            "is too small for '%s', %.4g x %.4g x %.4g m with the room about it",
+                            name, 2 * p.half.x, 2 * p.half.y, 2 * p.half.z);
+  size_t g = scree_scene_wall_geometry(scene, wall);
+  return scree_fail_place(&r, place,
+                          "lies in '%s': nowhere in it is there room for '%s' clear of that wall",
+                          scree_scene_geometry_name(scene, g), name);
+}
+
+scree_status scree_scene_check_inlets(scree_scene *scene, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++)
+    for (size_t k = 0; status == SCREE_OK && k < scene->inlets[i].plan->shapes.count; k++)
+      status = check_shape(scene, i, scene->inlets[i].shapes[k], error);
+  return status;
+}
+
+/* ---- filling ---- */
+
+static void region_of(const scree_plan_inlet *plan, double low[3], double high[3]) {
+  if (plan->box) {
+    memcpy(low, plan->box->min, 3 * sizeof *low);
+    memcpy(high, plan->box->max, 3 * sizeof *high);
+    return;
+  }
+  const scree_plan_cylinder *c = plan->cylinder;
+  vec3 axis = vec3_unit(vec3_load(c->axis));
+  const double n[3] = {axis.x, axis.y, axis.z};
+  for (int k = 0; k < 3; k++) {
+    double aside = c->radius * sqrt(fmax(0, 1 - n[k] * n[k])), end = c->length * n[k];
+    low[k] = c->at[k] + fmin(0, end) - aside;
+    high[k] = c->at[k] + fmax(0, end) + aside;
+  }
+}
+
+/* The bodies that reach into the region. */
+static scree_status list_present(scree_scene *scene, const scree_plan_inlet *plan,
+                                 scree_error *error) {
+  double low[3], high[3];
+  region_of(plan, low, high);
+  scene->present.count = 0;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_body body;
+    scree_placement p = scene->shapes[scene->shape_of.items[b]].extent;
+    bool inside = true;
+    scree_world_get_body(scene->world, b, &body);
+    for (int k = 0; k < 3; k++)
+      inside =
+          inside && body.position[k] + p.radius >= low[k] && body.position[k] - p.radius <= high[k];
+    if (!inside) continue;
+    p.position = vec3_load(body.position);
+    p.orientation = scree_body_turn(&body);
+    scree_placement_settle(&p);
+    if (!SCREE_PUSH(&scene->present, p))
+      return scree_fail_memory(error, scene->present.count * sizeof p, "an inlet's bodies");
+  }
+  return SCREE_OK;
+}
+
+static bool is_free(const scree_scene *scene, const scree_placement *p) {
+  size_t wall;
+  for (size_t i = scene->present.count; i-- > 0;)
+    if (!scree_placements_apart(p, &scene->present.items[i])) return false;
+  return scree_scene_is_clear(scene, p, &wall);
+}
+
+static scree_status enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
+                          const scree_placement *p, scree_error *error) {
+  size_t shape = inlet->shapes[which], index;
+  scree_scene_shape *s = &scene->shapes[shape];
+  scree_body body = scree_default_body();
+  vec3_store(body.position, p->position);
+  const double q[4] = {p->orientation.w, p->orientation.x, p->orientation.y, p->orientation.z};
+  memcpy(body.orientation, q, sizeof q);
+  memcpy(body.velocity, inlet->plan->velocity, sizeof body.velocity);
+  if (!SCREE_PUSH(&scene->present, *p) ||
+      !SCREE_RESERVE(&scene->shape_of, scene->shape_of.count + 1) ||
+      !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1))
+    return scree_fail_memory(error, scene->shape_of.count * sizeof *p, "bodies");
+  scree_status status =
+      scree_world_add_body(scene->world, s->particle, s->material, &body, &index, error);
+  if (status != SCREE_OK) return status;
+  scene->shape_of.items[scene->shape_of.count++] = (uint32_t)shape;
+  scene->entered_at.items[scene->entered_at.count++] = scree_world_time(scene->world);
+  vec3 v = vec3_load(body.velocity), g = vec3_load(scene->plan.gravity);
+  scene->entered_energy += s->mass * (0.5 * vec3_norm2(v) - vec3_dot(g, p->position));
+  scene->entered_mass += s->mass;
+  inlet->mass += s->mass;
+  inlet->entered++;
+  inlet->counts[which]++;
+  s->entered++;
+  return SCREE_OK;
+}
+
+static scree_status fill(scree_scene *scene, size_t index, scree_error *error) {
+  scree_scene_inlet *inlet = &scene->inlets[index];
+  double time = scree_world_time(scene->world);
+  bool room = true, listed = false;
+  while (room && is_due(inlet, time)) {
+    size_t which = next_shape(inlet);
+    scree_placement p;
+    scree_rng rng = rng_of(scene, index);
+    scree_status status = listed ? SCREE_OK : list_present(scene, inlet->plan, error);
+    if (status != SCREE_OK) return status;
+    listed = true;
+    room = false;
+    for (int try = 0; try < TRIES && !room; try++)
+      room = draw(scene, inlet, inlet->shapes[which], &rng, &p) && is_free(scene, &p);
+    inlet->draws = rng.counter;
+    if (room) status = enter(scene, inlet, which, &p, error);
+    if (status != SCREE_OK) return status;
+  }
+  inlet->waiting = room ? 0 : count_waiting(scene, inlet, time);
+  return SCREE_OK;
+}
+
+scree_status scree_scene_fill(scree_scene *scene, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++)
+    status = fill(scene, i, error);
+  return status;
+}

@@ -1,0 +1,170 @@
+/* What takes more than a sum to measure: the angle of repose, the slope of a surface, mixing. */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const double degree = 57.29577951308232;
+
+/* ---- the angle of repose ---- */
+
+static void raise_body(const scree_scene *scene, size_t b, const scree_body *body, double floor_z,
+                       scree_height_field *field) {
+  scree_particle *particle = scree_world_body_particle(scene->world, b);
+  scree_particle_measures m;
+  scree_particle_measure(particle, &m);
+  if (m.kind == SCREE_PARTICLE_MESH) {
+    scree_height_field_add_mesh(field, scree_particle_mesh(particle), body->position,
+                                body->orientation, floor_z);
+    return;
+  }
+  mat3 turn = quat_to_mat3(scree_body_turn(body));
+  for (size_t i = 0; i < m.point_count; i++) {
+    double local[3], centre[3], radius;
+    scree_particle_point(particle, i, local, &radius);
+    vec3_store(centre, vec3_add(mat3_mul_vec(&turn, vec3_load(local)), vec3_load(body->position)));
+    scree_height_field_add_sphere(field, centre, radius, floor_z);
+  }
+}
+
+/* Mean position and how far bodies lie from it, of those above the floor. */
+static size_t find_extent(const scree_scene *scene, double floor_z, double centre[2], double *reach,
+                          double *size) {
+  size_t count = 0;
+  centre[0] = centre[1] = *reach = *size = 0;
+  for (int pass = 0; pass < 2; pass++) {
+    for (size_t b = 0; b < scene->shape_of.count; b++) {
+      scree_body body;
+      if (scree_world_body_removed(scene->world, b)) continue;
+      scree_world_get_body(scene->world, b, &body);
+      if (body.position[2] < floor_z) continue;
+      const scree_scene_shape *s = &scene->shapes[scene->shape_of.items[b]];
+      for (int k = 0; pass == 0 && k < 2; k++) centre[k] += body.position[k];
+      if (pass == 0) *size += 2 * cbrt(s->volume / 4.18879020478639), count++;
+      double away = hypot(body.position[0] - centre[0], body.position[1] - centre[1]);
+      if (pass == 1) *reach = fmax(*reach, away + s->extent.radius);
+    }
+    for (int k = 0; pass == 0 && count && k < 2; k++) centre[k] /= (double)count;
+  }
+  if (count) *size /= (double)count;
+  return count;
+}
+
+scree_status scree_scene_measure_pile(const scree_scene *scene, const scree_plan_pile *plan,
+                                      double *at, scree_error *error) {
+  double centre[2], reach, size;
+  for (int k = 0; k < 5; k++) at[k] = NAN;
+  if (find_extent(scene, plan->floor, centre, &reach, &size) == 0) return SCREE_OK;
+  double cell = plan->cell > 0 ? plan->cell : 0.1 * size;
+  scree_height_field field;
+  scree_status status =
+      scree_height_field_create(centre[0], centre[1], reach + size, cell, &field, error);
+  if (status != SCREE_OK) return status;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    if (body.position[2] >= plan->floor) raise_body(scene, b, &body, plan->floor, &field);
+  }
+  scree_repose_options o = scree_default_repose_options();
+  scree_repose r;
+  o.particle_size = size;
+  status = scree_repose_measure(&field, &o, &r, error);
+  scree_height_field_free(&field);
+  if (status != SCREE_OK) return status;
+  const double values[5] = {r.sector_deg, r.cone_deg, r.silhouette_deg, r.height, r.base_radius};
+  memcpy(at, values, sizeof values);
+  return SCREE_OK;
+}
+
+/* ---- the slope of a surface ---- */
+
+enum { SLOPE_BINS = 24 };
+static const double middle_share = 0.5; /* of the bed's width: near the walls the surface bends */
+
+/* The bed is seen along the axis. Each of the bins across it has a highest body; a line through
+ * the tops of the middle half of them, by least squares, is the surface. */
+double scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan) {
+  vec3 axis = vec3_unit(vec3_load(plan->axis)), g = vec3_load(scene->plan.gravity);
+  vec3 up = vec3_unit(vec3_mad(vec3_neg(g), axis, vec3_dot(g, axis))),
+       across = vec3_cross(up, axis);
+  double low = INFINITY, high = -INFINITY, top[SLOPE_BINS], at[SLOPE_BINS];
+  for (int pass = 0; pass < 2; pass++) {
+    for (int k = 0; k < SLOPE_BINS; k++) top[k] = -INFINITY;
+    for (size_t b = 0; b < scene->shape_of.count; b++) {
+      scree_body body;
+      if (scree_world_body_removed(scene->world, b)) continue;
+      scree_world_get_body(scene->world, b, &body);
+      double x = vec3_dot(across, vec3_load(body.position));
+      if (pass == 0) low = fmin(low, x), high = fmax(high, x);
+      if (pass == 0 || !(high > low)) continue;
+      int k = (int)(SLOPE_BINS * (x - low) / (high - low) * (1 - 1e-9));
+      double y = vec3_dot(up, vec3_load(body.position));
+      if (y > top[k]) top[k] = y, at[k] = x;
+    }
+  }
+  double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (int k = 0; k < SLOPE_BINS; k++) {
+    if (fabs(k + 0.5 - 0.5 * SLOPE_BINS) > 0.5 * middle_share * SLOPE_BINS) continue;
+    if (!(top[k] > -INFINITY)) continue;
+    n++, sx += at[k], sy += top[k], sxx += at[k] * at[k], sxy += at[k] * top[k];
+  }
+  double spread = n * sxx - sx * sx;
+  return n >= 3 && spread > 0 ? degree * atan((n * sxy - sx * sy) / spread) : NAN;
+}
+
+/* ---- mixing ---- */
+
+typedef struct cell_body {
+  int64_t cell[3];
+  uint32_t shape;
+} cell_body;
+
+static int by_cell(const void *a, const void *b) {
+  const cell_body *p = a, *q = b;
+  for (int k = 0; k < 3; k++)
+    if (p->cell[k] != q->cell[k]) return p->cell[k] < q->cell[k] ? -1 : 1;
+  return (p->shape > q->shape) - (p->shape < q->shape);
+}
+
+/* Lacey's index (1954) of one shape against all others: (s0^2 - s^2) / (s0^2 - sr^2), where s0^2 =
+ * p(1 - p) is the variance between cells when apart, and sr^2 = s0^2 / n that of a random mixture
+ * in cells of n bodies. Cells count by their bodies. 0: apart, 1: mixed. */
+static double lacey(const cell_body *bodies, size_t count, uint32_t shape) {
+  double of_shape = 0, cells = 0, sum = 0;
+  for (size_t i = 0; i < count; i++) of_shape += bodies[i].shape == shape;
+  double p = of_shape / (double)count, apart = p * (1 - p);
+  for (size_t i = 0, j; i < count; i = j) {
+    double in = 0;
+    for (j = i; j < count && !memcmp(bodies[i].cell, bodies[j].cell, sizeof bodies[i].cell); j++)
+      in += bodies[j].shape == shape;
+    double n = (double)(j - i), share = in / n;
+    sum += n * (share - p) * (share - p);
+    cells++;
+  }
+  double mixed = apart * cells / (double)count;
+  return apart > 0 && apart > mixed ? (apart - sum / (double)count) / (apart - mixed) : NAN;
+}
+
+scree_status scree_scene_measure_mixing(const scree_scene *scene,
+                                        const scree_plan_segregation *plan, double *at,
+                                        scree_error *error) {
+  size_t count = 0, shapes = SCREE_SCENE_SHAPES(scene);
+  cell_body *bodies = scree_alloc(scene->shape_of.count, sizeof *bodies);
+  if (!bodies)
+    return scree_fail_memory(error, scene->shape_of.count * sizeof *bodies, "a segregation");
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    for (int k = 0; k < 3; k++)
+      bodies[count].cell[k] = (int64_t)floor(body.position[k] / plan->cells);
+    bodies[count++].shape = scene->shape_of.items[b];
+  }
+  if (count) qsort(bodies, count, sizeof *bodies, by_cell);
+  for (size_t s = 0; s < shapes; s++) at[s] = count ? lacey(bodies, count, (uint32_t)s) : NAN;
+  scree_free(bodies);
+  return SCREE_OK;
+}

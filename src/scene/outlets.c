@@ -1,0 +1,61 @@
+/* Outlets: bodies whose centre is in one, or beyond the domain, are taken out and booked. */
+#include "scene/scene.h"
+
+static bool is_in(const double p[3], const double low[3], const double high[3]) {
+  for (int k = 0; k < 3; k++)
+    if (!(p[k] >= low[k] && p[k] <= high[k])) return false;
+  return true;
+}
+
+/* Kinetic and potential energy of a body as it stands. */
+static double energy_of(const scree_scene *scene, size_t b, const scree_body *body) {
+  scree_particle_measures m;
+  scree_particle_measure(scree_world_body_particle(scene->world, b), &m);
+  double mass = scree_world_body_mass(scene->world, b), density = mass / m.volume;
+  mat3 turn = quat_to_mat3(scree_body_turn(body));
+  vec3 spin = mat3_tmul_vec(&turn, vec3_load(body->angular_velocity));
+  double rotation = density * (m.inertia[0] * spin.x * spin.x + m.inertia[1] * spin.y * spin.y +
+                               m.inertia[2] * spin.z * spin.z);
+  vec3 g = vec3_load(scene->plan.gravity);
+  return 0.5 * (mass * vec3_norm2(vec3_load(body->velocity)) + rotation) -
+         mass * vec3_dot(g, vec3_load(body->position));
+}
+
+/* The outlet that a centre is in; their count: none. */
+static size_t outlet_at(const scree_scene *scene, const double p[3], double time) {
+  size_t count = scene->plan.outlets.count;
+  for (size_t i = 0; i < count; i++) {
+    const scree_plan_outlet *o = SCREE_PLAN_AT(&scene->plan, outlets, scree_plan_outlet, i);
+    if (time >= o->from && (isnan(o->until) || time < o->until) &&
+        is_in(p, o->box->min, o->box->max))
+      return i;
+  }
+  return count;
+}
+
+static void take_out(scree_scene *scene, size_t b, const scree_body *body, size_t outlet) {
+  double mass = scree_world_body_mass(scene->world, b);
+  scree_scene_note_leaving(scene, b);
+  scene->outlets[outlet].left++;
+  scene->outlets[outlet].mass += mass;
+  scene->left_mass += mass;
+  scene->left_energy += energy_of(scene, b, body);
+  scene->left_count++;
+  scene->shapes[scene->shape_of.items[b]].left++;
+  scree_world_remove_body(scene->world, b);
+}
+
+void scree_scene_empty(scree_scene *scene) {
+  const scree_plan_domain *d = scene->plan.domain;
+  size_t rim = scene->plan.outlets.count;
+  double time = scree_world_time(scene->world);
+  if (!d && rim == 0) return;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    size_t outlet = outlet_at(scene, body.position, time);
+    if (outlet < rim || (d && !is_in(body.position, d->min, d->max)))
+      take_out(scene, b, &body, outlet);
+  }
+}

@@ -1,0 +1,702 @@
+/* The fields of a scene in tables, and what fields must be together. */
+#include "scene/plan.h"
+
+#include <math.h>
+#include <string.h>
+
+#define UNITS "m|cm|mm|um|inch|ft|km"
+#define NONE                                                                                       \
+  { NAN, NAN, NAN }
+#define FIELDS(table) (table), sizeof(table) / sizeof *(table)
+
+double scree_plan_unit(int unit) {
+  static const double metres[] = {1, 1e-2, 1e-3, 1e-6, 0.0254, 0.3048, 1e3};
+  return metres[unit];
+}
+
+size_t scree_plan_find(const scree_records *records, size_t size, const char *name) {
+  for (size_t i = 0; i < records->count; i++) {
+    const scree_place *place = (const void *)((const char *)records->items + i * size);
+    if (!strcmp(place->name, name)) return i;
+  }
+  return records->count;
+}
+
+static bool given(const double *value) {
+  return !isnan(*value);
+}
+
+static bool has_length(const double *v) {
+  return v[0] != 0 || v[1] != 0 || v[2] != 0;
+}
+
+/* Exactly one of those must be given. */
+static scree_status one_of(const scree_reader *r, const scree_place *place, const bool *there,
+                           size_t count, const char *names) {
+  size_t found = 0;
+  for (size_t i = 0; i < count; i++) found += there[i];
+  if (found == 1) return SCREE_OK;
+  return scree_fail_place(r, place, found ? "only one of %s may be given" : "needs one of %s",
+                          names);
+}
+
+static scree_status check_direction(const scree_reader *r, const scree_place *place,
+                                    const char *what, const double *v) {
+  if (!given(v) || has_length(v)) return SCREE_OK;
+  return scree_fail_place(r, place, "%s [0, 0, 0] points nowhere", what);
+}
+
+/* ---- materials ---- */
+
+#define AT(member) offsetof(scree_plan_material, member)
+static const scree_field material_fields[] = {
+    {"young", SCREE_FIELD_REAL, AT(young), 1, 1e16, "Pa", "stiffness of a contact over size", NULL},
+    {"density", SCREE_FIELD_REAL, AT(density), 1e-3, 1e6, "kg/m3", "of particles", NULL},
+    {"restitution", SCREE_FIELD_REAL, AT(restitution), 0.01, 1, "",
+     "of a pair, the lower of the two, unless `pairs` says more", NULL},
+    {"friction", SCREE_FIELD_REAL, AT(friction), 0, 100, "", "likewise", NULL},
+};
+#undef AT
+static const scree_plan_material material_defaults = {{0}, 1e8, 2000, 0.3, 0.5};
+static const scree_record material_record = {"a material", FIELDS(material_fields),
+                                             sizeof(scree_plan_material), &material_defaults, NULL};
+
+#define AT(member) offsetof(scree_plan_pair, member)
+static const scree_field pair_fields[] = {
+    {"between", SCREE_FIELD_TEXTS, AT(between), 0, 0, "", "two materials, or one twice", NULL},
+    {"restitution", SCREE_FIELD_REAL, AT(restitution), 0.01, 1, "", "", NULL},
+    {"friction", SCREE_FIELD_REAL, AT(friction), 0, 100, "", "", NULL},
+};
+#undef AT
+static scree_status check_pair(const scree_reader *r, const void *record) {
+  const scree_plan_pair *p = record;
+  if (p->between.count == 2) return SCREE_OK;
+  return scree_fail_place(r, &p->place, "needs between: [material, material]");
+}
+static const scree_plan_pair pair_defaults = {{0}, {0}, NAN, NAN};
+static const scree_record pair_record = {"a pair", FIELDS(pair_fields), sizeof(scree_plan_pair),
+                                         &pair_defaults, check_pair};
+
+/* ---- shapes ---- */
+
+#define AT(member) offsetof(scree_plan_shape, member)
+static const scree_field shape_fields[] = {
+    {"file", SCREE_FIELD_TEXT, AT(file), 0, 0, "", "a scan", NULL},
+    {"sample", SCREE_FIELD_TEXT, AT(sample), 0, 0, "", "a built-in one, as sp-1", NULL},
+    {"sphere", SCREE_FIELD_REAL, AT(sphere), 1e-9, 1e3, "m", "diameter", NULL},
+    {"clump", SCREE_FIELD_TEXT, AT(clump), 0, 0, "", "a table of spheres: x, y, z, radius", NULL},
+    {"box", SCREE_FIELD_VECTOR, AT(box), 1e-9, 1e3, "m", "three sides", NULL},
+    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, UNITS, "of the file's lengths", NULL},
+    {"resolution", SCREE_FIELD_REAL, AT(resolution), 0.02e-3, 5e-3, "m", "of a sample's vertices",
+     NULL},
+    {"triangles", SCREE_FIELD_TEXT, AT(triangles), 0, 0, "",
+     "recommended (as `scree choose` does), all, or at most so many", NULL},
+    {"rp", SCREE_FIELD_REAL, AT(rp), 1e-12, 1, "", "or this share of the triangles", NULL},
+    {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
+};
+#undef AT
+
+/* 4 or more: fewer triangles enclose nothing. */
+static bool is_count(const char *text) {
+  size_t digits = strspn(text, "0123456789");
+  return digits > 0 && digits < 10 && !text[digits] && (digits > 1 || *text >= '4');
+}
+
+static scree_status check_shape(const scree_reader *r, const void *record) {
+  const scree_plan_shape *s = record;
+  const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere), s->clump != NULL,
+                        given(s->box)};
+  scree_status status =
+      one_of(r, &s->place, there, 5, "file, sample, sphere (its diameter), clump, box");
+  if (status != SCREE_OK) return status;
+  bool scan = s->file || s->sample;
+  if (s->triangles && given(&s->rp))
+    return scree_fail_place(r, &s->place, "triangles and rp say the same in two ways: give one");
+  if (!scan && (s->triangles || given(&s->rp)))
+    return scree_fail_place(r, &s->place, "triangles and rp are of scans: this one has none");
+  if (s->triangles && strcmp(s->triangles, "recommended") != 0 &&
+      strcmp(s->triangles, "all") != 0 && !is_count(s->triangles))
+    return scree_fail_place(r, &s->place,
+                            "triangles '%.60s': must be recommended, all, or a count of 4 or more",
+                            s->triangles);
+  return SCREE_OK;
+}
+static const scree_plan_shape shape_defaults = {
+    .sphere = NAN, .box = NONE, .rp = NAN, .resolution = NAN, .unit = 2};
+static const scree_record shape_record = {"a shape", FIELDS(shape_fields), sizeof(scree_plan_shape),
+                                          &shape_defaults, check_shape};
+
+/* ---- geometry ---- */
+
+#define AT(member) offsetof(scree_plan_turn, member)
+static const scree_field turn_fields[] = {
+    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
+    {"angle_deg", SCREE_FIELD_REAL, AT(angle_deg), -360, 360, "deg", "right-handed about the axis",
+     NULL},
+};
+#undef AT
+static scree_status check_turn(const scree_reader *r, const void *record) {
+  const scree_plan_turn *t = record;
+  return check_direction(r, &t->place, "axis", t->axis);
+}
+static const scree_plan_turn turn_defaults = {{0}, {0, 0, 1}, 0};
+static const scree_record turn_record = {"a turn", FIELDS(turn_fields), sizeof(scree_plan_turn),
+                                         &turn_defaults, check_turn};
+
+#define AT(member) offsetof(scree_plan_disc, member)
+static const scree_field disc_fields[] = {
+    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "", NULL},
+    {"normal", SCREE_FIELD_VECTOR, AT(normal), 0, 0, "", "", NULL},
+};
+#undef AT
+static scree_status check_disc(const scree_reader *r, const void *record) {
+  const scree_plan_disc *d = record;
+  if (!given(&d->radius)) return scree_fail_place(r, &d->place, "needs a radius");
+  return check_direction(r, &d->place, "normal", d->normal);
+}
+static const scree_plan_disc disc_defaults = {{0}, {0, 0, 1}, NAN};
+static const scree_record disc_record = {"a disc", FIELDS(disc_fields), sizeof(scree_plan_disc),
+                                         &disc_defaults, check_disc};
+
+#define AT(member) offsetof(scree_plan_cylinder, member)
+static const scree_field cylinder_fields[] = {
+    {"radius", SCREE_FIELD_REAL, AT(radius), 1e-9, 1e6, "m", "inside", NULL},
+    {"length", SCREE_FIELD_REAL, AT(length), 0, 1e6, "m", "along the axis; of geometry 0: endless",
+     NULL},
+    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
+    {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m",
+     "of a region: the middle of the end it begins at", NULL},
+};
+#undef AT
+static scree_status check_cylinder(const scree_reader *r, const void *record) {
+  const scree_plan_cylinder *c = record;
+  if (!given(&c->radius)) return scree_fail_place(r, &c->place, "needs a radius");
+  return check_direction(r, &c->place, "axis", c->axis);
+}
+static const scree_plan_cylinder cylinder_defaults = {{0}, NONE, {0, 0, 1}, NAN, 0};
+static const scree_record cylinder_record = {"a cylinder", FIELDS(cylinder_fields),
+                                             sizeof(scree_plan_cylinder), &cylinder_defaults,
+                                             check_cylinder};
+
+#define AT(member) offsetof(scree_plan_box, member)
+static const scree_field box_fields[] = {
+    {"min", SCREE_FIELD_VECTOR, AT(min), -1e6, 1e6, "m", "corner", NULL},
+    {"max", SCREE_FIELD_VECTOR, AT(max), -1e6, 1e6, "m", "opposite corner", NULL},
+};
+#undef AT
+static scree_status check_corners(const scree_reader *r, const scree_place *place,
+                                  const double *min, const double *max) {
+  if (!given(min) || !given(max))
+    return scree_fail_place(r, place, "needs min: [x, y, z] and max: [x, y, z]");
+  for (int k = 0; k < 3; k++)
+    if (!(min[k] < max[k]))
+      return scree_fail_place(r, place, "min %g must be below max %g along %c", min[k], max[k],
+                              "xyz"[k]);
+  return SCREE_OK;
+}
+static scree_status check_box(const scree_reader *r, const void *record) {
+  const scree_plan_box *b = record;
+  return check_corners(r, &b->place, b->min, b->max);
+}
+static const scree_plan_box box_defaults = {{0}, NONE, NONE};
+static const scree_record box_record = {"a box", FIELDS(box_fields), sizeof(scree_plan_box),
+                                        &box_defaults, check_box};
+
+/* ---- motions ---- */
+
+#define AT(member) offsetof(scree_plan_translate, member)
+static const scree_field translate_fields[] = {
+    {"velocity", SCREE_FIELD_VECTOR, AT(velocity), -1e3, 1e3, "m/s", "", NULL},
+    {"along", SCREE_FIELD_VECTOR, AT(along), 0, 0, "", "direction of what the table says", NULL},
+    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "", "[time in s, speed in m/s], linear between",
+     NULL},
+    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "",
+     "or [time in s, way in m], linear between", NULL},
+};
+#undef AT
+static scree_status check_translate(const scree_reader *r, const void *record) {
+  const scree_plan_translate *t = record;
+  const bool there[] = {given(t->velocity), t->table.count > 0, t->positions.count > 0};
+  scree_status status =
+      one_of(r, &t->place, there, 3, "velocity, table (with along), positions (with along)");
+  if (status != SCREE_OK) return status;
+  if (!there[0] && !given(t->along))
+    return scree_fail_place(r, &t->place, "a table needs along: [x, y, z]");
+  return check_direction(r, &t->place, "along", t->along);
+}
+static const scree_plan_translate translate_defaults = {{0}, NONE, NONE, {0}, {0}};
+static const scree_record translate_record = {"translate", FIELDS(translate_fields),
+                                              sizeof(scree_plan_translate), &translate_defaults,
+                                              check_translate};
+
+#define AT(member) offsetof(scree_plan_rotate, member)
+static const scree_field rotate_fields[] = {
+    {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
+    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of the axis", NULL},
+    {"speed", SCREE_FIELD_REAL, AT(speed), -1e4, 1e4, "rad/s", "right-handed about the axis", NULL},
+    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "", "[time in s, speed in rad/s], linear between",
+     NULL},
+};
+#undef AT
+static scree_status check_rotate(const scree_reader *r, const void *record) {
+  const scree_plan_rotate *t = record;
+  const bool there[] = {given(&t->speed), t->table.count > 0, t->positions.count > 0};
+  scree_status status = one_of(r, &t->place, there, 3, "speed, table, positions");
+  return status == SCREE_OK ? check_direction(r, &t->place, "axis", t->axis) : status;
+}
+static const scree_plan_rotate rotate_defaults = {{0}, {0, 0, 1}, {0, 0, 0}, NAN, {0}, {0}};
+static const scree_record rotate_record = {
+    "rotate", FIELDS(rotate_fields), sizeof(scree_plan_rotate), &rotate_defaults, check_rotate};
+
+#define AT(member) offsetof(scree_plan_vibrate, member)
+static const scree_field vibrate_fields[] = {
+    {"along", SCREE_FIELD_VECTOR, AT(along), 0, 0, "", "", NULL},
+    {"amplitude", SCREE_FIELD_REAL, AT(amplitude), 0, 1e3, "m", "", NULL},
+    {"frequency", SCREE_FIELD_REAL, AT(frequency), 0, 1e5, "Hz", "", NULL},
+    {"phase", SCREE_FIELD_REAL, AT(phase), -7, 7, "rad", "of the sine", NULL},
+};
+#undef AT
+static scree_status check_vibrate(const scree_reader *r, const void *record) {
+  const scree_plan_vibrate *v = record;
+  if (!given(&v->amplitude) || !given(&v->frequency))
+    return scree_fail_place(r, &v->place, "needs amplitude and frequency");
+  return check_direction(r, &v->place, "along", v->along);
+}
+static const scree_plan_vibrate vibrate_defaults = {{0}, {0, 0, 1}, NAN, NAN, 0};
+static const scree_record vibrate_record = {"vibrate", FIELDS(vibrate_fields),
+                                            sizeof(scree_plan_vibrate), &vibrate_defaults,
+                                            check_vibrate};
+
+static scree_status check_window(const scree_reader *r, const scree_place *place, double from,
+                                 double until) {
+  if (!given(&until) || from < until) return SCREE_OK;
+  return scree_fail_place(r, place, "until %g s must be after from %g s", until, from);
+}
+
+#define WINDOW(type)                                                                               \
+  {"from", SCREE_FIELD_REAL, offsetof(type, from), 0, 1e9, "s", "", NULL}, {                       \
+    "until", SCREE_FIELD_REAL, offsetof(type, until), 0, 1e9, "s", "not given: to the end", NULL   \
+  }
+
+#define AT(member) offsetof(scree_plan_motion, member)
+static const scree_field motion_fields[] = {
+    {"translate", SCREE_FIELD_RECORD, AT(translate), 0, 0, "", "", &translate_record},
+    {"rotate", SCREE_FIELD_RECORD, AT(rotate), 0, 0, "", "", &rotate_record},
+    {"vibrate", SCREE_FIELD_RECORD, AT(vibrate), 0, 0, "", "", &vibrate_record},
+    WINDOW(scree_plan_motion),
+};
+#undef AT
+static scree_status check_motion(const scree_reader *r, const void *record) {
+  const scree_plan_motion *m = record;
+  const bool there[] = {m->translate != NULL, m->rotate != NULL, m->vibrate != NULL};
+  scree_status status = one_of(r, &m->place, there, 3, "translate, rotate, vibrate");
+  return status == SCREE_OK ? check_window(r, &m->place, m->from, m->until) : status;
+}
+static const scree_plan_motion motion_defaults = {.until = NAN};
+static const scree_record motion_record = {
+    "a motion", FIELDS(motion_fields), sizeof(scree_plan_motion), &motion_defaults, check_motion};
+
+#define AT(member) offsetof(scree_plan_geometry, member)
+static const scree_field geometry_fields[] = {
+    {"file", SCREE_FIELD_TEXTS, AT(file), 0, 0, "", "a mesh, or several that move together", NULL},
+    {"box", SCREE_FIELD_VECTOR, AT(box), 1e-9, 1e6, "m", "three sides, about `at`", NULL},
+    {"plane", SCREE_FIELD_VECTOR, AT(plane), 0, 0, "", "normal, out of the solid", NULL},
+    {"disc", SCREE_FIELD_RECORD, AT(disc), 0, 0, "", "", &disc_record},
+    {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "a sheet from `at` along its axis",
+     &cylinder_record},
+    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, UNITS, "of the file's lengths", NULL},
+    {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m", "where its origin goes", NULL},
+    {"turn", SCREE_FIELD_RECORD, AT(turn), 0, 0, "", "about its origin, before it goes there",
+     &turn_record},
+    {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
+    {"motion", SCREE_FIELD_LIST, AT(motion), 0, 0, "", "in this order", &motion_record},
+    {"surface_velocity", SCREE_FIELD_VECTOR, AT(surface_velocity), -1e3, 1e3, "m/s",
+     "of a belt that stays where it is", NULL},
+};
+#undef AT
+static scree_status check_geometry(const scree_reader *r, const void *record) {
+  const scree_plan_geometry *g = record;
+  const bool there[] = {g->file.count > 0, given(g->box), given(g->plane), g->disc != NULL,
+                        g->cylinder != NULL};
+  scree_status status = one_of(r, &g->place, there, 5, "file, box, plane, disc, cylinder");
+  if (status == SCREE_OK) status = check_direction(r, &g->place, "plane", g->plane);
+  if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
+    status = scree_fail_place(r, &g->cylinder->place,
+                              "at stands beside the cylinder, as of all geometry, not in it");
+  return status;
+}
+static const scree_plan_geometry geometry_defaults = {
+    .box = NONE, .plane = NONE, .surface_velocity = NONE, .unit = 2};
+static const scree_record geometry_record = {"geometry", FIELDS(geometry_fields),
+                                             sizeof(scree_plan_geometry), &geometry_defaults,
+                                             check_geometry};
+
+/* ---- inlets and outlets ---- */
+
+#define AT(member) offsetof(scree_plan_inlet, member)
+static const scree_field inlet_fields[] = {
+    {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "bodies begin wholly inside", &box_record},
+    {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "likewise", &cylinder_record},
+    {"shapes", SCREE_FIELD_WEIGHTS, AT(shapes), 0, 1e12, "", "and their shares by number", NULL},
+    {"rate", SCREE_FIELD_REAL, AT(rate), 0, 1e9, "1/s", "bodies a second", NULL},
+    {"mass_rate", SCREE_FIELD_REAL, AT(mass_rate), 0, 1e9, "kg/s", "or mass a second", NULL},
+    {"count", SCREE_FIELD_COUNT, AT(count), 1, 1e9, "",
+     "at most so many; without a rate as soon as there is room", NULL},
+    WINDOW(scree_plan_inlet),
+    {"velocity", SCREE_FIELD_VECTOR, AT(velocity), -1e3, 1e3, "m/s", "on entering", NULL},
+    {"orientation", SCREE_FIELD_WORD, AT(orientation), 0, 0, "random|fixed",
+     "fixed: axes as in the shape's file", NULL},
+};
+#undef AT
+static scree_status check_inlet(const scree_reader *r, const void *record) {
+  const scree_plan_inlet *i = record;
+  const bool there[] = {i->box != NULL, i->cylinder != NULL};
+  const bool rates[] = {given(&i->rate), given(&i->mass_rate), i->count > 0};
+  scree_status status = one_of(r, &i->place, there, 2, "box, cylinder");
+  if (status != SCREE_OK) return status;
+  if (i->cylinder && (!given(i->cylinder->at) || !(i->cylinder->length > 0)))
+    return scree_fail_place(r, &i->cylinder->place, "needs at: [x, y, z] and a length above 0");
+  if (i->shapes.count == 0) return scree_fail_place(r, &i->place, "needs shapes: {name: share}");
+  if (!rates[0] && !rates[1] && !rates[2])
+    return scree_fail_place(r, &i->place, "needs a rate, a mass_rate or a count");
+  if (rates[0] && rates[1])
+    return scree_fail_place(r, &i->place, "only one of rate, mass_rate may be given");
+  return check_window(r, &i->place, i->from, i->until);
+}
+static const scree_plan_inlet inlet_defaults = {.rate = NAN, .mass_rate = NAN, .until = NAN};
+static const scree_record inlet_record = {"an inlet", FIELDS(inlet_fields),
+                                          sizeof(scree_plan_inlet), &inlet_defaults, check_inlet};
+
+#define AT(member) offsetof(scree_plan_outlet, member)
+static const scree_field outlet_fields[] = {
+    {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "bodies whose centre is inside are taken out",
+     &box_record},
+    WINDOW(scree_plan_outlet),
+};
+#undef AT
+static scree_status check_outlet(const scree_reader *r, const void *record) {
+  const scree_plan_outlet *o = record;
+  if (!o->box) return scree_fail_place(r, &o->place, "needs a box: {min: ..., max: ...}");
+  return check_window(r, &o->place, o->from, o->until);
+}
+static const scree_plan_outlet outlet_defaults = {.until = NAN};
+static const scree_record outlet_record = {
+    "an outlet", FIELDS(outlet_fields), sizeof(scree_plan_outlet), &outlet_defaults, check_outlet};
+
+#define AT(member) offsetof(scree_plan_domain, member)
+static const scree_field domain_fields[] = {
+    {"min", SCREE_FIELD_VECTOR, AT(min), -1e9, 1e9, "m", "corner", NULL},
+    {"max", SCREE_FIELD_VECTOR, AT(max), -1e9, 1e9, "m", "opposite corner", NULL},
+    {"periodic", SCREE_FIELD_TEXTS, AT(periodic), 0, 0, "",
+     "axes along which what leaves enters again", NULL},
+};
+#undef AT
+static scree_status check_domain(const scree_reader *r, const void *record) {
+  const scree_plan_domain *d = record;
+  scree_status status = check_corners(r, &d->place, d->min, d->max);
+  for (size_t i = 0; status == SCREE_OK && i < d->periodic.count; i++) {
+    const char *axis = d->periodic.items[i];
+    if (strlen(axis) != 1 || !strchr("xyz", *axis))
+      status = scree_fail_place(r, &d->place, "periodic '%.20s': must be x, y or z", axis);
+  }
+  if (status == SCREE_OK && d->periodic.count)
+    status = scree_fail_place(r, &d->place, "periodic: this scree has no periodic domains yet");
+  return status;
+}
+static const scree_plan_domain domain_defaults = {{0}, NONE, NONE, {0}};
+static const scree_record domain_record = {
+    "the domain", FIELDS(domain_fields), sizeof(scree_plan_domain), &domain_defaults, check_domain};
+
+/* ---- sensors ---- */
+
+#define AT(member) offsetof(scree_plan_flow, member)
+static const scree_field flow_fields[] = {
+    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of the plane", NULL},
+    {"normal", SCREE_FIELD_VECTOR, AT(normal), 0, 0, "", "along it counts up, against it down",
+     NULL},
+    {"radius", SCREE_FIELD_REAL, AT(radius), 0, 1e6, "m", "about the point; not given: all of it",
+     NULL},
+};
+#undef AT
+static scree_status check_flow(const scree_reader *r, const void *record) {
+  const scree_plan_flow *f = record;
+  if (!given(f->through)) return scree_fail_place(r, &f->place, "needs through: [x, y, z]");
+  return check_direction(r, &f->place, "normal", f->normal);
+}
+static const scree_plan_flow flow_defaults = {{0}, NONE, {0, 0, 1}, NAN};
+static const scree_record flow_record = {"a flow", FIELDS(flow_fields), sizeof(scree_plan_flow),
+                                         &flow_defaults, check_flow};
+
+static const scree_field region_fields[] = {
+    {"box", SCREE_FIELD_RECORD, offsetof(scree_plan_region, box), 0, 0, "", "", &box_record},
+};
+static scree_status check_region(const scree_reader *r, const void *record) {
+  const scree_plan_region *g = record;
+  return g->box ? SCREE_OK : scree_fail_place(r, &g->place, "needs a box: {min: ..., max: ...}");
+}
+static const scree_plan_region region_defaults = {{0}, NULL};
+static const scree_record region_record = {
+    "a region", FIELDS(region_fields), sizeof(scree_plan_region), &region_defaults, check_region};
+
+#define AT(member) offsetof(scree_plan_pile, member)
+static const scree_field pile_fields[] = {
+    {"floor", SCREE_FIELD_REAL, AT(floor), -1e6, 1e6, "m", "height of what the pile stands on",
+     NULL},
+    {"cell", SCREE_FIELD_REAL, AT(cell), 0, 1e3, "m", "of the height field; 0: a tenth of the size",
+     NULL},
+};
+#undef AT
+static const scree_plan_pile pile_defaults = {{0}, 0, 0};
+static const scree_record pile_record = {"a pile", FIELDS(pile_fields), sizeof(scree_plan_pile),
+                                         &pile_defaults, NULL};
+
+static const scree_field slope_fields[] = {
+    {"axis", SCREE_FIELD_VECTOR, offsetof(scree_plan_slope, axis), 0, 0, "",
+     "the surface is seen along it", NULL},
+};
+static scree_status check_slope(const scree_reader *r, const void *record) {
+  const scree_plan_slope *s = record;
+  return check_direction(r, &s->place, "axis", s->axis);
+}
+static const scree_plan_slope slope_defaults = {{0}, {1, 0, 0}};
+static const scree_record slope_record = {"a slope", FIELDS(slope_fields), sizeof(scree_plan_slope),
+                                          &slope_defaults, check_slope};
+
+static const scree_field segregation_fields[] = {
+    {"cells", SCREE_FIELD_REAL, offsetof(scree_plan_segregation, cells), 1e-9, 1e6, "m",
+     "side of the cells that are compared", NULL},
+};
+static scree_status check_segregation(const scree_reader *r, const void *record) {
+  const scree_plan_segregation *s = record;
+  return given(&s->cells) ? SCREE_OK : scree_fail_place(r, &s->place, "needs cells: their side");
+}
+static const scree_plan_segregation segregation_defaults = {{0}, NAN};
+static const scree_record segregation_record = {"segregation", FIELDS(segregation_fields),
+                                                sizeof(scree_plan_segregation),
+                                                &segregation_defaults, check_segregation};
+
+static const scree_plan_residence residence_defaults = {{0}};
+static const scree_record residence_record = {
+    "residence", NULL, 0, sizeof(scree_plan_residence), &residence_defaults, NULL};
+
+#define AT(member) offsetof(scree_plan_sensor, member)
+static const scree_field sensor_fields[] = {
+    {"flow", SCREE_FIELD_RECORD, AT(flow), 0, 0, "", "count and mass through a plane, by shape",
+     &flow_record},
+    {"region", SCREE_FIELD_RECORD, AT(region), 0, 0, "", "what is in a box", &region_record},
+    {"wall", SCREE_FIELD_TEXT, AT(wall), 0, 0, "", "force, torque, power and wear of a geometry",
+     NULL},
+    {"pile", SCREE_FIELD_RECORD, AT(pile), 0, 0, "", "angle of repose three ways", &pile_record},
+    {"slope", SCREE_FIELD_RECORD, AT(slope), 0, 0, "", "angle of the surface", &slope_record},
+    {"segregation", SCREE_FIELD_RECORD, AT(segregation), 0, 0, "", "Lacey's index by shape",
+     &segregation_record},
+    {"residence", SCREE_FIELD_RECORD, AT(residence), 0, 0, "", "time from inlet to outlet",
+     &residence_record},
+};
+#undef AT
+static scree_status check_sensor(const scree_reader *r, const void *record) {
+  const scree_plan_sensor *s = record;
+  const bool there[] = {s->flow != NULL,     s->region != NULL, s->wall != NULL,
+                        s->pile != NULL,     s->slope != NULL,  s->segregation != NULL,
+                        s->residence != NULL};
+  return one_of(r, &s->place, there, 7, "flow, region, wall, pile, slope, segregation, residence");
+}
+static const scree_plan_sensor sensor_defaults = {.wall = NULL};
+static const scree_record sensor_record = {
+    "a sensor", FIELDS(sensor_fields), sizeof(scree_plan_sensor), &sensor_defaults, check_sensor};
+
+/* ---- the rest ---- */
+
+#define AT(member) offsetof(scree_plan_contact, member)
+static const scree_field contact_fields[] = {
+    {"law", SCREE_FIELD_WORD, AT(law), 0, 0, "linear|hysteretic", "docs/physics.md", NULL},
+    {"steps", SCREE_FIELD_REAL, AT(steps), 15, 1e6, "",
+     "time steps in a quarter of the fastest contact's period", NULL},
+    {"stiffness_factor", SCREE_FIELD_REAL, AT(stiffness_factor), 1e-9, 1e9, "",
+     "multiplies every stiffness: below 1 steps are longer and overlaps deeper", NULL},
+    {"tangential_ratio", SCREE_FIELD_REAL, AT(tangential_ratio), 1e-6, 1, "",
+     "tangential over normal stiffness", NULL},
+    {"time_step", SCREE_FIELD_REAL, AT(time_step), 0, 1, "s", "0: by steps", NULL},
+};
+#undef AT
+static const scree_plan_contact contact_defaults = {{0}, 0, 20, 1, 1, 0};
+static const scree_record contact_record = {"contact", FIELDS(contact_fields),
+                                            sizeof(scree_plan_contact), &contact_defaults, NULL};
+
+#define AT(member) offsetof(scree_plan_stop, member)
+static const scree_field stop_fields[] = {
+    {"still", SCREE_FIELD_REAL, AT(still), 0, 1e9, "J",
+     "all have entered and move with less energy a body", NULL},
+    {"empty", SCREE_FIELD_FLAG, AT(empty), 0, 0, "", "all have entered and left", NULL},
+    {"after", SCREE_FIELD_REAL, AT(after), 0, 1e9, "s", "not before", NULL},
+};
+#undef AT
+static const scree_plan_stop stop_defaults = {{0}, NAN, 0, false};
+static const scree_record stop_record = {"stop", FIELDS(stop_fields), sizeof(scree_plan_stop),
+                                         &stop_defaults, NULL};
+
+#define AT(member) offsetof(scree_plan_output, member)
+static const scree_field output_fields[] = {
+    {"frames", SCREE_FIELD_REAL, AT(frames), 0, 1e9, "s", "between files for ParaView; 0: none",
+     NULL},
+    {"series", SCREE_FIELD_REAL, AT(series), 1e-9, 1e9, "s", "between the lines of series.csv",
+     NULL},
+    {"motion", SCREE_FIELD_REAL, AT(motion), 0, 1e9, "s",
+     "between moments of report.html; 0: a 240th of the time", NULL},
+    {"checkpoint", SCREE_FIELD_REAL, AT(checkpoint), 0.01, 1e9, "s", "of the clock", NULL},
+};
+#undef AT
+static const scree_plan_output output_defaults = {{0}, 0, 0.01, 60, 0};
+static const scree_record output_record = {"output", FIELDS(output_fields),
+                                           sizeof(scree_plan_output), &output_defaults, NULL};
+
+#define AT(member) offsetof(scree_plan, member)
+static const scree_field plan_fields[] = {
+    {"title", SCREE_FIELD_TEXT, AT(title), 0, 0, "", "", NULL},
+    {"time", SCREE_FIELD_REAL, AT(time), 1e-9, 1e9, "s", "simulated, at most", NULL},
+    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "of places, orientations and order", NULL},
+    {"gravity", SCREE_FIELD_VECTOR, AT(gravity), -1e3, 1e3, "m/s2", "", NULL},
+    {"contact", SCREE_FIELD_RECORD, AT(contact), 0, 0, "", "", &contact_record},
+    {"materials", SCREE_FIELD_NAMED, AT(materials), 0, 0, "", "", &material_record},
+    {"pairs", SCREE_FIELD_LIST, AT(pairs), 0, 0, "", "", &pair_record},
+    {"shapes", SCREE_FIELD_NAMED, AT(shapes), 0, 0, "", "", &shape_record},
+    {"geometry", SCREE_FIELD_NAMED, AT(geometry), 0, 0, "", "", &geometry_record},
+    {"inlets", SCREE_FIELD_NAMED, AT(inlets), 0, 0, "", "", &inlet_record},
+    {"outlets", SCREE_FIELD_NAMED, AT(outlets), 0, 0, "", "", &outlet_record},
+    {"domain", SCREE_FIELD_RECORD, AT(domain), 0, 0, "", "what leaves it is taken out",
+     &domain_record},
+    {"sensors", SCREE_FIELD_NAMED, AT(sensors), 0, 0, "", "", &sensor_record},
+    {"stop", SCREE_FIELD_RECORD, AT(stop), 0, 0, "", "what ends it before its time", &stop_record},
+    {"output", SCREE_FIELD_RECORD, AT(output), 0, 0, "", "", &output_record},
+};
+#undef AT
+
+/* ---- the whole ---- */
+
+/* A name that another record must have. */
+static scree_status need_name(const scree_reader *r, const scree_place *place,
+                              const scree_records *records, size_t size, const char *what,
+                              const char *name) {
+  const char *names[64] = {NULL};
+  char list[400] = "";
+  size_t count = 0;
+  if (scree_plan_find(records, size, name) < records->count) return SCREE_OK;
+  for (size_t i = 0; i < records->count && count < 64; i++) {
+    const scree_place *other = (const void *)((const char *)records->items + i * size);
+    size_t used = strlen(list);
+    names[count++] = other->name;
+    snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", other->name);
+  }
+  const char *nearest = scree_nearest_name(name, names, count);
+  if (nearest)
+    return scree_fail_place(r, place, "no %s '%.64s'; did you mean '%s'?", what, name, nearest);
+  return scree_fail_place(r, place, "no %s '%.64s'; there %s %s", what, name,
+                          count == 1 ? "is" : "are", count ? list : "none");
+}
+
+#define NEED(records, type, what, name, place)                                                     \
+  need_name(r, place, &plan->records, sizeof(type), what, name)
+
+static scree_status check_materials(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->pairs.count; i++) {
+    const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
+    for (size_t k = 0; status == SCREE_OK && k < 2; k++)
+      status = NEED(materials, scree_plan_material, "material", p->between.items[k], &p->place);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < plan->shapes.count; i++) {
+    const scree_plan_shape *s = SCREE_PLAN_AT(plan, shapes, scree_plan_shape, i);
+    if (s->material)
+      status = NEED(materials, scree_plan_material, "material", s->material, &s->place);
+    else if (plan->materials.count > 1)
+      status = scree_fail_place(r, &s->place, "needs a material: there are several");
+  }
+  for (size_t i = 0; status == SCREE_OK && i < plan->geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    if (g->material)
+      status = NEED(materials, scree_plan_material, "material", g->material, &g->place);
+    else if (plan->materials.count > 1)
+      status = scree_fail_place(r, &g->place, "needs a material: there are several");
+  }
+  return status;
+}
+
+static scree_status check_inside(const scree_reader *r, const scree_plan *plan,
+                                 const scree_plan_inlet *inlet) {
+  const scree_plan_domain *d = plan->domain;
+  if (!d) return SCREE_OK;
+  double low[3], high[3];
+  for (int k = 0; k < 3; k++) {
+    const scree_plan_cylinder *c = inlet->cylinder;
+    low[k] = c ? c->at[k] : inlet->box->min[k];
+    high[k] = c ? c->at[k] : inlet->box->max[k];
+    if (low[k] < d->min[k] || high[k] > d->max[k])
+      return scree_fail_place(r, &inlet->place,
+                              "lies outside the domain along %c: what enters would leave at once",
+                              "xyz"[k]);
+  }
+  return SCREE_OK;
+}
+
+static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->inlets.count; i++) {
+    const scree_plan_inlet *inlet = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i);
+    for (size_t k = 0; status == SCREE_OK && k < inlet->shapes.count; k++)
+      status = NEED(shapes, scree_plan_shape, "shape", inlet->shapes.names[k], &inlet->place);
+    if (status == SCREE_OK) status = check_inside(r, plan, inlet);
+  }
+  return status;
+}
+
+static scree_status check_sensors(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->sensors.count; i++) {
+    const scree_plan_sensor *s = SCREE_PLAN_AT(plan, sensors, scree_plan_sensor, i);
+    if (s->wall) status = NEED(geometry, scree_plan_geometry, "geometry", s->wall, &s->place);
+    if (status == SCREE_OK && s->segregation && plan->shapes.count < 2)
+      status = scree_fail_place(r, &s->place, "segregation needs two shapes at least");
+  }
+  return status;
+}
+
+static scree_status check_plan(const scree_reader *r, const void *record) {
+  const scree_plan *plan = record;
+  if (!given(&plan->time))
+    return scree_fail_place(r, &plan->place, "needs time: how many seconds to simulate");
+  if (plan->materials.count > 60)
+    return scree_fail_place(r, &plan->place, "%zu materials: at most 60", plan->materials.count);
+  if (plan->shapes.count == 0)
+    return scree_fail_place(r, &plan->place, "needs shapes: {name: {file: ...}}");
+  if (plan->inlets.count == 0)
+    return scree_fail_place(r, &plan->place, "needs inlets: nothing would ever be in it");
+  scree_status status = check_materials(r, plan);
+  if (status == SCREE_OK) status = check_inlets(r, plan);
+  return status == SCREE_OK ? check_sensors(r, plan) : status;
+}
+
+static const scree_plan plan_defaults = {.time = NAN, .seed = 1, .gravity = {0, 0, -9.81}};
+const scree_record scree_plan_record = {"a scene", FIELDS(plan_fields), sizeof(scree_plan),
+                                        &plan_defaults, check_plan};
+
+/* Groups that may be left out, and then have their defaults. */
+static scree_status fill_in(const scree_reader *r, const scree_record *kind, void **record) {
+  if (*record) return SCREE_OK;
+  *record = scree_arena_take(r->arena, 1, kind->size);
+  if (!*record) return scree_fail_memory(r->error, kind->size, r->file);
+  memcpy(*record, kind->defaults, kind->size);
+  return SCREE_OK;
+}
+
+scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root, scree_plan *plan) {
+  scree_plan made;
+  scree_place place = {NULL, "", root->line, root->column};
+  if (root->kind != SCREE_YAML_MAPPING)
+    return scree_fail_place(reader, &place, "a scene is `key: value` lines");
+  scree_status status = scree_record_read(reader, root, &scree_plan_record, &made);
+  if (status == SCREE_OK) status = fill_in(reader, &contact_record, (void **)&made.contact);
+  if (status == SCREE_OK) status = fill_in(reader, &stop_record, (void **)&made.stop);
+  if (status == SCREE_OK) status = fill_in(reader, &output_record, (void **)&made.output);
+  if (status == SCREE_OK) *plan = made;
+  return status;
+}

@@ -1,0 +1,190 @@
+/* What a scene's file says: plain records, in an arena. */
+#ifndef SCREE_SCENE_PLAN_H
+#define SCREE_SCENE_PLAN_H
+
+#include "scene/schema.h"
+
+typedef struct scree_plan_material {
+  scree_place place;
+  double young, density, restitution, friction;
+} scree_plan_material;
+
+typedef struct scree_plan_pair {
+  scree_place place;
+  scree_texts between;
+  double restitution, friction;
+} scree_plan_pair;
+
+/* One of file, sample, sphere, clump, box. */
+typedef struct scree_plan_shape {
+  scree_place place;
+  const char *file, *sample, *clump, *triangles, *material;
+  double sphere, box[3], rp, resolution;
+  int unit;
+} scree_plan_shape;
+
+typedef struct scree_plan_turn {
+  scree_place place;
+  double axis[3], angle_deg;
+} scree_plan_turn;
+
+typedef struct scree_plan_disc {
+  scree_place place;
+  double normal[3], radius;
+} scree_plan_disc;
+
+/* Of geometry, and as the region of an inlet. */
+typedef struct scree_plan_cylinder {
+  scree_place place;
+  double at[3], axis[3], radius, length;
+} scree_plan_cylinder;
+
+typedef struct scree_plan_box {
+  scree_place place;
+  double min[3], max[3];
+} scree_plan_box;
+
+typedef struct scree_plan_translate {
+  scree_place place;
+  double velocity[3], along[3];
+  scree_table table, positions;
+} scree_plan_translate;
+
+typedef struct scree_plan_rotate {
+  scree_place place;
+  double axis[3], through[3], speed;
+  scree_table table, positions;
+} scree_plan_rotate;
+
+typedef struct scree_plan_vibrate {
+  scree_place place;
+  double along[3], amplitude, frequency, phase;
+} scree_plan_vibrate;
+
+typedef struct scree_plan_motion {
+  scree_place place;
+  scree_plan_translate *translate;
+  scree_plan_rotate *rotate;
+  scree_plan_vibrate *vibrate;
+  double from, until;
+} scree_plan_motion;
+
+/* One of file, box, plane, disc, cylinder. */
+typedef struct scree_plan_geometry {
+  scree_place place;
+  scree_texts file;
+  const char *material;
+  int unit;
+  double box[3], plane[3], at[3], surface_velocity[3];
+  scree_plan_disc *disc;
+  scree_plan_cylinder *cylinder;
+  scree_plan_turn *turn;
+  scree_records motion; /* of scree_plan_motion */
+} scree_plan_geometry;
+
+typedef struct scree_plan_inlet {
+  scree_place place;
+  scree_plan_box *box;
+  scree_plan_cylinder *cylinder;
+  scree_weights shapes;
+  double rate, mass_rate, from, until, velocity[3];
+  size_t count;
+  int orientation; /* 0 random, 1 fixed */
+} scree_plan_inlet;
+
+typedef struct scree_plan_outlet {
+  scree_place place;
+  scree_plan_box *box;
+  double from, until;
+} scree_plan_outlet;
+
+typedef struct scree_plan_domain {
+  scree_place place;
+  double min[3], max[3];
+  scree_texts periodic;
+} scree_plan_domain;
+
+typedef struct scree_plan_flow {
+  scree_place place;
+  double through[3], normal[3], radius;
+} scree_plan_flow;
+
+typedef struct scree_plan_region {
+  scree_place place;
+  scree_plan_box *box;
+} scree_plan_region;
+
+typedef struct scree_plan_pile {
+  scree_place place;
+  double floor, cell;
+} scree_plan_pile;
+
+typedef struct scree_plan_slope {
+  scree_place place;
+  double axis[3];
+} scree_plan_slope;
+
+typedef struct scree_plan_segregation {
+  scree_place place;
+  double cells;
+} scree_plan_segregation;
+
+typedef struct scree_plan_residence {
+  scree_place place;
+} scree_plan_residence;
+
+/* One of them. */
+typedef struct scree_plan_sensor {
+  scree_place place;
+  scree_plan_flow *flow;
+  scree_plan_region *region;
+  const char *wall;
+  scree_plan_pile *pile;
+  scree_plan_slope *slope;
+  scree_plan_segregation *segregation;
+  scree_plan_residence *residence;
+} scree_plan_sensor;
+
+typedef struct scree_plan_stop {
+  scree_place place;
+  double still, after;
+  bool empty;
+} scree_plan_stop;
+
+typedef struct scree_plan_output {
+  scree_place place;
+  double frames, series, checkpoint, motion;
+} scree_plan_output;
+
+typedef struct scree_plan_contact {
+  scree_place place;
+  int law;
+  double steps, stiffness_factor, tangential_ratio, time_step;
+} scree_plan_contact;
+
+typedef struct scree_plan {
+  scree_place place;
+  const char *title;
+  double time, gravity[3];
+  uint64_t seed;
+  scree_plan_contact *contact;
+  scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors;
+  scree_plan_domain *domain;
+  scree_plan_stop *stop;
+  scree_plan_output *output;
+} scree_plan;
+
+extern const scree_record scree_plan_record;
+
+/* Reads and checks it all but the files it names. */
+scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root, scree_plan *plan);
+
+/* The records by index. */
+#define SCREE_PLAN_AT(plan, list, type, index) (&((const type *)(plan)->list.items)[index])
+
+/* Index of the named record; its count where there is none. */
+size_t scree_plan_find(const scree_records *records, size_t size, const char *name);
+/* Metres of the unit. */
+double scree_plan_unit(int unit);
+
+#endif

@@ -1,0 +1,252 @@
+/* Checkpoints of a scene: a seal (base/seal.h); the file, printed; the shapes' sources; the gallery
+ * (a packed world with one body of each shape); the world; the books, inlets, outlets, sensors and
+ * bodies; the series. What follows from the file is made again. */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/seal.h"
+
+#include <string.h>
+
+static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 1};
+
+/* ---- the fields, in and out alike ---- */
+
+static void code_size(scree_codec *c, size_t *value) {
+  uint64_t wide = *value;
+  scree_code_u64(c, &wide);
+  *value = (size_t)wide;
+}
+
+static void code_books(scree_codec *c, scree_scene *scene) {
+  double *reals[] = {&scene->time_step, &scene->entered_mass, &scene->left_mass,
+                     &scene->entered_energy, &scene->left_energy};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  uint32_t end = (uint32_t)scene->end;
+  scree_code_u64(c, &scene->tick_steps);
+  scree_code_u64(c, &scene->next_tick);
+  code_size(c, &scene->still_ticks);
+  code_size(c, &scene->left_count);
+  scree_code_u32(c, &end);
+  if (end > 3 || scene->tick_steps == 0) c->failed = true;
+  scene->end = (int)end;
+}
+
+static void code_inlets(scree_codec *c, scree_scene *scene) {
+  for (size_t i = 0; i < scene->plan.inlets.count; i++) {
+    scree_scene_inlet *inlet = &scene->inlets[i];
+    code_size(c, &inlet->entered);
+    code_size(c, &inlet->waiting);
+    scree_code_real(c, &inlet->mass);
+    scree_code_u64(c, &inlet->draws);
+    for (size_t k = 0; k < inlet->plan->shapes.count; k++) code_size(c, &inlet->counts[k]);
+  }
+  for (size_t i = 0; i <= scene->plan.outlets.count; i++) {
+    code_size(c, &scene->outlets[i].left);
+    scree_code_real(c, &scene->outlets[i].mass);
+  }
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
+    code_size(c, &scene->shapes[i].entered);
+    code_size(c, &scene->shapes[i].left);
+  }
+}
+
+static void code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor) {
+  double *arrays[] = {sensor->count, sensor->mass, sensor->sum, sensor->sum2};
+  for (size_t k = 0; k < 4; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
+  size_t count = sensor->side.count;
+  scree_code_count(c, &count, 1);
+  if (scree_codec_good(c) && !SCREE_RESERVE(&sensor->side, count)) c->out_of_memory = true;
+  if (!scree_codec_good(c)) return;
+  sensor->side.count = count;
+  scree_code_bytes(c, sensor->side.items, count);
+}
+
+static void code_bodies(scree_codec *c, scree_scene *scene) {
+  size_t count = scene->shape_of.count;
+  scree_code_count(c, &count, 12);
+  if (scree_codec_good(c) &&
+      (!SCREE_RESERVE(&scene->shape_of, count) || !SCREE_RESERVE(&scene->entered_at, count)))
+    c->out_of_memory = true;
+  if (!scree_codec_good(c)) return;
+  scene->shape_of.count = scene->entered_at.count = count;
+  for (size_t i = 0; i < count; i++) {
+    scree_code_u32(c, &scene->shape_of.items[i]);
+    if (c->loading && scene->shape_of.items[i] >= SCREE_SCENE_SHAPES(scene)) {
+      c->failed = true;
+      scene->shape_of.items[i] = 0;
+    }
+  }
+  scree_code_reals(c, scene->entered_at.items, count);
+}
+
+static void code_series(scree_codec *c, scree_scene *scene) {
+  size_t rows = scene->row_count, columns = scene->columns.count;
+  scree_code_count(c, &rows, columns * sizeof(double));
+  if (scree_codec_good(c) && !SCREE_RESERVE(&scene->series, rows * columns))
+    c->out_of_memory = true;
+  if (!scree_codec_good(c)) return;
+  scene->row_count = rows;
+  scree_code_reals(c, scene->series.items, rows * columns);
+}
+
+static void code_state(scree_codec *c, scree_scene *scene) {
+  code_books(c, scene);
+  code_inlets(c, scene);
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) code_sensor(c, scene, &scene->sensors[i]);
+  code_bodies(c, scene);
+  code_series(c, scene);
+}
+
+/* ---- saving ---- */
+
+static void save_text(scree_codec *c, char *text) {
+  size_t length = text ? strlen(text) : 0;
+  scree_code_count(c, &length, 1);
+  scree_code_bytes(c, text, length);
+}
+
+static scree_status save(scree_codec *c, const scree_scene *scene, scree_error *error) {
+  scree_scene state = *scene; /* its arrays are written, never changed */
+  scree_seal_begin(c);
+  save_text(c, scene->name);
+  save_text(c, scene->text);
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) save_text(c, scene->shapes[i].source);
+  scree_status status = scree_world_save_block(c, scene->gallery, error);
+  if (status == SCREE_OK) status = scree_world_save_block(c, scene->world, error);
+  code_state(c, &state);
+  return status == SCREE_OK ? scree_seal_end(c, &seal, error) : status;
+}
+
+scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,
+                              scree_error *error) {
+  scree_codec c = {0};
+  scree_status status = save(&c, scene, error);
+  if (status == SCREE_OK) {
+    *bytes = c.bytes;
+    *byte_count = c.count;
+  } else {
+    scree_free(c.bytes);
+  }
+  return status;
+}
+
+scree_status scree_scene_save(const scree_scene *scene, const char *path, bool overwrite,
+                              scree_error *error) {
+  unsigned char *bytes;
+  size_t count;
+  scree_status status = scree_scene_pack(scene, &bytes, &count, error);
+  if (status != SCREE_OK) return status;
+  status = scree_seal_write(bytes, count, path, overwrite, error);
+  scree_free(bytes);
+  return status;
+}
+
+/* ---- loading ---- */
+
+typedef struct loader {
+  scree_codec codec;
+  const char *name;
+  scree_error *error;
+  scree_scene *scene;
+} loader;
+
+static scree_status fail_here(const loader *l) {
+  return scree_seal_refuse(&l->codec, &seal, l->name, l->error);
+}
+
+static char *load_text(scree_codec *c) {
+  size_t length = 0;
+  scree_code_count(c, &length, 1);
+  if (!scree_codec_good(c)) return NULL;
+  char *text = scree_alloc(length + 1, 1);
+  if (!text) {
+    c->out_of_memory = true;
+    return NULL;
+  }
+  scree_code_bytes(c, text, length);
+  text[length] = 0;
+  return text;
+}
+
+static scree_status load_plan(loader *l) {
+  scree_scene *scene = l->scene;
+  scree_scene_file *file;
+  scene->name = load_text(&l->codec);
+  scene->text = load_text(&l->codec);
+  if (!scene->name || !scene->text) return fail_here(l);
+  scree_status status =
+      scree_scene_file_parse(scene->text, strlen(scene->text), l->name, &file, l->error);
+  if (status != SCREE_OK) return status;
+  status = scree_scene_file_plan(file, &scene->arena, &scene->plan, l->error);
+  scree_scene_file_free(file);
+  return status == SCREE_OK ? scree_scene_prepare(scene, l->error) : status;
+}
+
+/* Particles of bodies in the world are taken from there, so that a shape stays one particle however
+ * often a scene is loaded. */
+static scree_status adopt_particles(loader *l) {
+  scree_scene *scene = l->scene;
+  size_t bodies = scree_world_body_count(scene->world);
+  if (bodies != scene->shape_of.count ||
+      scree_world_wall_count(scene->world) != scree_world_wall_count(scene->gallery))
+    return fail_here(l);
+  for (size_t b = 0; b < bodies; b++) {
+    scree_particle **held = &scene->shapes[scene->shape_of.items[b]].particle;
+    scree_particle *particle = scree_world_body_particle(scene->world, b);
+    if (*held == particle) continue;
+    scree_particle_retain(particle);
+    scree_particle_free(*held);
+    *held = particle;
+  }
+  return SCREE_OK;
+}
+
+static void find_walls(scree_scene *scene) {
+  size_t next = 0;
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, i);
+    scene->geometry[i] = (scree_scene_geometry){next, g->file.count ? g->file.count : 1};
+    next += scene->geometry[i].wall_count;
+  }
+}
+
+static scree_status load(loader *l) {
+  scree_scene *scene = l->scene;
+  scree_status status = load_plan(l);
+  for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++)
+    if (!(scene->shapes[i].source = load_text(&l->codec))) status = fail_here(l);
+  if (status == SCREE_OK)
+    status = scree_world_load_block(&l->codec, l->name, &scene->gallery, l->error);
+  if (status == SCREE_OK)
+    status = scree_world_load_block(&l->codec, l->name, &scene->world, l->error);
+  if (status != SCREE_OK) return status;
+  if (scree_world_body_count(scene->gallery) != SCREE_SCENE_SHAPES(scene)) return fail_here(l);
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
+    scene->shapes[i].particle = scree_world_body_particle(scene->gallery, i);
+    scree_particle_retain(scene->shapes[i].particle);
+    scree_scene_measure_shape(scene, i);
+  }
+  find_walls(scene);
+  code_state(&l->codec, scene);
+  if (l->codec.position != l->codec.count) l->codec.failed = true;
+  if (!scree_codec_good(&l->codec)) return fail_here(l);
+  status = adopt_particles(l);
+  return status == SCREE_OK ? scree_scene_find_surfaces(scene, l->error) : status;
+}
+
+scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error) {
+  char *bytes;
+  loader l = {.error = error};
+  scree_status status = scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error);
+  if (status != SCREE_OK) return status;
+  l.scene = scree_alloc_zero(1, sizeof *l.scene);
+  status = l.scene ? load(&l) : scree_fail_memory(error, sizeof *l.scene, "a scene");
+  scree_free(bytes);
+  if (status == SCREE_OK)
+    *scene = l.scene;
+  else
+    scree_scene_free(l.scene);
+  return status;
+}

@@ -1,0 +1,428 @@
+/* The loop. Every few steps, a tick, outlets are emptied, inlets filled, flows counted and the end
+ * looked for; between ticks the world goes its steps. Which steps are ticks follows from the scene
+ * alone, so that it can be cut into calls anyhow. */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+
+#include <string.h>
+
+static const double tick_share = 0.25; /* of the way a body falls in, or flies, by its radius */
+static const double clearance_share = 0.01; /* of a body's size, kept free around it on entering */
+enum { STILL_TICKS = 10 };                  /* about the time of falling by a radius */
+
+static const char *const ends[] = {NULL, "the time is over", "still", "empty"};
+enum { GOES_ON, END_TIME, END_STILL, END_EMPTY };
+
+/* ---- making ---- */
+
+static scree_world_options world_options(const scree_plan *plan, double time_step) {
+  scree_world_options o = scree_default_world_options();
+  memcpy(o.gravity, plan->gravity, sizeof o.gravity);
+  o.law = (scree_law)plan->contact->law;
+  o.steps_per_contact = plan->contact->steps;
+  o.stiffness_factor = plan->contact->stiffness_factor;
+  o.tangential_ratio = plan->contact->tangential_ratio;
+  o.time_step = plan->contact->time_step > 0 ? plan->contact->time_step : time_step;
+  return o;
+}
+
+static const scree_plan_material *material_at(const scree_scene *scene, size_t index) {
+  return SCREE_PLAN_AT(&scene->plan, materials, scree_plan_material, index);
+}
+
+static scree_status add_materials(const scree_scene *scene, scree_world *world,
+                                  scree_error *error) {
+  const scree_plan *plan = &scene->plan;
+  scree_material usual = scree_default_material();
+  scree_status status = SCREE_OK;
+  if (plan->materials.count == 0) return scree_world_add_material(world, &usual, NULL, error);
+  for (size_t i = 0; status == SCREE_OK && i < plan->materials.count; i++) {
+    const scree_plan_material *m = material_at(scene, i);
+    scree_material made = usual;
+    made.stiffness = m->young;
+    made.density = m->density;
+    made.restitution = m->restitution;
+    made.friction = m->friction;
+    status = scree_world_add_material(world, &made, NULL, error);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < plan->pairs.count; i++) {
+    const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
+    size_t k[2];
+    for (int side = 0; side < 2; side++)
+      k[side] =
+          scree_plan_find(&plan->materials, sizeof(scree_plan_material), p->between.items[side]);
+    const scree_plan_material *a = material_at(scene, k[0]), *b = material_at(scene, k[1]);
+    status = scree_world_set_contact(
+        world, k[0], k[1],
+        isnan(p->restitution) ? fmin(a->restitution, b->restitution) : p->restitution,
+        isnan(p->friction) ? fmin(a->friction, b->friction) : p->friction, error);
+  }
+  return status;
+}
+
+static scree_status make_world(const scree_scene *scene, double time_step, scree_world **world,
+                               scree_error *error) {
+  scree_world_options o = world_options(&scene->plan, time_step);
+  scree_world *made;
+  scree_status status = scree_world_create(&o, &made, error);
+  if (status != SCREE_OK) return status;
+  status = add_materials(scene, made, error);
+  if (status == SCREE_OK)
+    *world = made;
+  else
+    scree_world_free(made);
+  return status;
+}
+
+/* One of each shape, far apart: it keeps the particles, and knows the time step for the worst pair
+ * of all, whatever order they enter in. */
+static scree_status make_gallery(scree_scene *scene, const char *folder, scree_error *error) {
+  scree_status status = make_world(scene, 0, &scene->gallery, error);
+  if (status == SCREE_OK) status = scree_scene_add_geometry(scene, folder, scene->gallery, error);
+  double far = 0;
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
+    scree_particle_measures m;
+    scree_particle_measure(scene->shapes[i].particle, &m);
+    far = fmax(far, 4 * m.bounding_radius);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
+    scree_body body = scree_default_body();
+    body.position[2] = 1e5 * far + (double)i * far;
+    status = scree_world_add_body(scene->gallery, scene->shapes[i].particle,
+                                  scene->shapes[i].material, &body, NULL, error);
+  }
+  return status;
+}
+
+void scree_scene_measure_shape(scree_scene *scene, size_t index) {
+  scree_scene_shape *s = &scene->shapes[index];
+  const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, index);
+  scree_particle_measures m;
+  scree_particle_measure(s->particle, &m);
+  double more = 0.5 * clearance_share * m.size;
+  const scree_particle *p = s->particle;
+  s->extent = (scree_placement){.radius = m.bounding_radius + more,
+                                .box_centre = vec3_lerp(p->box.low, p->box.high, 0.5),
+                                .half = vec3_add(vec3_scale(vec3_sub(p->box.high, p->box.low), 0.5),
+                                                 (vec3){more, more, more})};
+  s->as_given = (quat){m.orientation[0], m.orientation[1], m.orientation[2], m.orientation[3]};
+  s->material = plan->material ? scree_plan_find(&scene->plan.materials,
+                                                 sizeof(scree_plan_material), plan->material)
+                               : 0;
+  double density = scene->plan.materials.count ? material_at(scene, s->material)->density
+                                               : scree_default_material().density;
+  s->volume = m.volume;
+  s->mass = density * m.volume;
+  scene->size = index ? fmin(scene->size, m.size) : m.size;
+}
+
+static void plan_ticks(scree_scene *scene) {
+  double speed = 0, radius = 0.5 * scene->size, g = vec3_norm(vec3_load(scene->plan.gravity));
+  for (size_t i = 0; i < scene->plan.inlets.count; i++)
+    speed = fmax(speed, vec3_norm(vec3_load(scene->inlets[i].plan->velocity)));
+  speed = fmax(speed, sqrt(2 * g * radius));
+  double interval = speed > 0 ? tick_share * radius / speed : scene->plan.output->series;
+  interval = fmin(interval, scene->plan.output->series);
+  scene->tick_steps = (uint64_t)fmax(1, floor(interval / scene->time_step));
+}
+
+static scree_status allocate_inlets(scree_scene *scene) {
+  const scree_plan *plan = &scene->plan;
+  for (size_t i = 0; i < plan->inlets.count; i++) {
+    scree_scene_inlet *inlet = &scene->inlets[i];
+    inlet->plan = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i);
+    size_t count = inlet->plan->shapes.count;
+    inlet->shapes = scree_arena_take(&scene->arena, count, sizeof *inlet->shapes);
+    inlet->counts = scree_arena_take(&scene->arena, count, sizeof *inlet->counts);
+    if (!inlet->shapes || !inlet->counts) return SCREE_OUT_OF_MEMORY;
+    memset(inlet->counts, 0, count * sizeof *inlet->counts);
+    for (size_t k = 0; k < count; k++)
+      inlet->shapes[k] =
+          scree_plan_find(&plan->shapes, sizeof(scree_plan_shape), inlet->plan->shapes.names[k]);
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
+  const scree_plan *plan = &scene->plan;
+  const struct {
+    void **items;
+    size_t count, size;
+  } arrays[] = {
+      {(void **)&scene->shapes, plan->shapes.count, sizeof *scene->shapes},
+      {(void **)&scene->geometry, plan->geometry.count, sizeof *scene->geometry},
+      {(void **)&scene->inlets, plan->inlets.count, sizeof *scene->inlets},
+      {(void **)&scene->outlets, plan->outlets.count + 1, sizeof *scene->outlets},
+      {(void **)&scene->sensors, plan->sensors.count, sizeof *scene->sensors},
+  };
+  for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+    *arrays[i].items = scree_arena_take(&scene->arena, arrays[i].count, arrays[i].size);
+    if (!*arrays[i].items) return scree_fail_memory(error, 0, "a scene");
+    memset(*arrays[i].items, 0, arrays[i].count * arrays[i].size);
+  }
+  if (allocate_inlets(scene) != SCREE_OK) return scree_fail_memory(error, 0, "inlets");
+  return scree_scene_plan_columns(scene, error);
+}
+
+scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_error *error) {
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) scree_scene_measure_shape(scene, i);
+  scree_status status = make_gallery(scene, folder, error);
+  if (status != SCREE_OK) return status;
+  scene->time_step = scree_world_time_step(scene->gallery, NULL);
+  plan_ticks(scene);
+  status = make_world(scene, scene->time_step, &scene->world, error);
+  if (status == SCREE_OK) status = scree_scene_add_geometry(scene, folder, scene->world, error);
+  return status;
+}
+
+static scree_status make_particles(scree_scene *scene, const char *folder,
+                                   const scree_progress *progress, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
+    const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, i);
+    scree_error why;
+    scree_scene_shape *s = &scene->shapes[i];
+    status = scree_scene_make_particle(plan, folder, progress, &s->particle, &s->source, &why);
+    scree_reader r = {scene->name, NULL, error, ""};
+    if (status == SCREE_BAD_FILE || status == SCREE_IO || status == SCREE_BAD_MESH)
+      scree_fail_place(&r, &plan->place, "%s", why.message);
+    else if (status != SCREE_OK && error)
+      *error = why;
+  }
+  return status;
+}
+
+scree_status scree_scene_create(const scree_scene_file *file, const scree_progress *progress,
+                                scree_scene **scene, scree_error *error) {
+  scree_scene *made = scree_alloc_zero(1, sizeof *made);
+  if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
+  scree_status status = scree_scene_file_plan(file, &made->arena, &made->plan, error);
+  if (status == SCREE_OK) {
+    made->name = scree_strdup(file->name);
+    status = made->name ? scree_scene_file_text(file, &made->text, error)
+                        : scree_fail_memory(error, 0, file->name);
+  }
+  if (status == SCREE_OK) status = scree_scene_prepare(made, error);
+  if (status == SCREE_OK) status = make_particles(made, file->folder, progress, error);
+  if (status == SCREE_OK) status = scree_scene_set_up(made, file->folder, error);
+  if (status == SCREE_OK) status = scree_scene_find_surfaces(made, error);
+  if (status == SCREE_OK) status = scree_scene_check_inlets(made, error);
+  if (status == SCREE_OK)
+    *scene = made;
+  else
+    scree_scene_free(made);
+  return status;
+}
+
+scree_status scree_scene_file_column(const scree_scene_file *file, size_t index, char name[96],
+                                     scree_error *error) {
+  scree_scene *made = scree_alloc_zero(1, sizeof *made);
+  if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
+  scree_status status = scree_scene_file_plan(file, &made->arena, &made->plan, error);
+  if (status == SCREE_OK) status = scree_scene_prepare(made, error);
+  if (status == SCREE_OK)
+    snprintf(name, 96, "%s", index < made->columns.count ? made->columns.items[index].name : "");
+  scree_scene_free(made);
+  return status;
+}
+
+void scree_scene_free(scree_scene *scene) {
+  if (!scene) return;
+  scree_world_free(scene->world);
+  scree_world_free(scene->gallery);
+  for (size_t i = 0; scene->shapes && i < SCREE_SCENE_SHAPES(scene); i++) {
+    scree_particle_free(scene->shapes[i].particle);
+    scree_free(scene->shapes[i].source);
+  }
+  for (size_t w = 0; scene->surfaces && w < scene->wall_count; w++)
+    scree_bvh_free(&scene->surfaces[w].bvh);
+  for (size_t i = 0; scene->sensors && i < scene->plan.sensors.count; i++)
+    scree_free(scene->sensors[i].side.items);
+  scree_free(scene->surfaces);
+  scree_free(scene->columns.items);
+  scree_free(scene->series.items);
+  scree_free(scene->shape_of.items);
+  scree_free(scene->entered_at.items);
+  scree_free(scene->present.items);
+  scree_free(scene->text);
+  scree_free(scene->name);
+  scree_arena_free(&scene->arena);
+  scree_free(scene);
+}
+
+/* ---- going on ---- */
+
+static bool is_still(scree_scene *scene) {
+  const scree_plan_stop *stop = scene->plan.stop;
+  scree_observation o;
+  if (isnan(stop->still) || !scree_scene_is_filled(scene)) return false;
+  scree_world_observe(scene->world, &o);
+  bool still = o.kinetic + o.rotational < stop->still * (double)o.body_count && o.pair_count > 0;
+  scene->still_ticks = still ? scene->still_ticks + 1 : 0;
+  return scene->still_ticks >= STILL_TICKS;
+}
+
+static int find_end(scree_scene *scene) {
+  const scree_plan_stop *stop = scene->plan.stop;
+  double time = scree_world_time(scene->world);
+  if (time >= scene->plan.time) return END_TIME;
+  if (time < stop->after) return GOES_ON;
+  if (stop->empty && scene->left_count == scene->shape_of.count && scree_scene_is_filled(scene))
+    return END_EMPTY;
+  return is_still(scene) ? END_STILL : GOES_ON;
+}
+
+static scree_status tick(scree_scene *scene, scree_error *error) {
+  scree_status status = scree_scene_watch_flows(scene, error);
+  if (status == SCREE_OK) {
+    scree_scene_empty(scene);
+    status = scree_scene_fill(scene, error);
+  }
+  scene->next_tick += scene->tick_steps;
+  return status;
+}
+
+static double next_row(const scree_scene *scene) {
+  return (double)scene->row_count * scene->plan.output->series;
+}
+
+/* Steps up to the next tick, or to just before the next row of the series or the end. */
+static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
+  uint64_t left = scene->next_tick - scree_world_step_count(scene->world);
+  size_t steps = wanted < left ? wanted : (size_t)left;
+  double due = fmin(next_row(scene), scene->plan.time);
+  double until = floor((due - scree_world_time(scene->world)) / scene->time_step) - 1;
+  if (until < (double)steps) steps = until > 1 ? (size_t)until : 1;
+  return steps;
+}
+
+/* What falls on this moment; done once, however calls are cut. */
+static scree_status decide(scree_scene *scene, scree_error *error) {
+  scree_status status = SCREE_OK;
+  if (scree_world_step_count(scene->world) >= scene->next_tick) {
+    status = tick(scene, error);
+    if (status == SCREE_OK) scene->end = find_end(scene);
+  } else if (scree_world_time(scene->world) >= scene->plan.time) {
+    scene->end = END_TIME;
+  }
+  bool row = scree_world_time(scene->world) >= next_row(scene) || scene->end;
+  return status == SCREE_OK && row ? scree_scene_record(scene, error) : status;
+}
+
+scree_status scree_scene_advance(scree_scene *scene, size_t step_count, scree_error *error) {
+  while (step_count > 0 && !scene->end) {
+    scree_status status = decide(scene, error);
+    if (status != SCREE_OK || scene->end) return status;
+    size_t steps = steps_to_decision(scene, step_count);
+    status = scree_world_step(scene->world, steps, error);
+    if (status != SCREE_OK) return status;
+    step_count -= steps;
+  }
+  return SCREE_OK;
+}
+
+bool scree_scene_reopen(scree_scene *scene) {
+  if (!scene->end) return false;
+  scene->end = GOES_ON;
+  scene->still_ticks = 0;
+  if (scree_world_time(scene->world) < next_row(scene) - scene->plan.output->series)
+    scene->row_count--;
+  return true;
+}
+
+/* ---- looking ---- */
+
+const char *scree_scene_end(const scree_scene *scene) {
+  return ends[scene->end];
+}
+double scree_scene_duration(const scree_scene *scene) {
+  return scene->plan.time;
+}
+const char *scree_scene_title(const scree_scene *scene) {
+  return scene->plan.title;
+}
+const char *scree_scene_text(const scree_scene *scene) {
+  return scene->text;
+}
+double scree_scene_frame_interval(const scree_scene *scene) {
+  return scene->plan.output->frames;
+}
+double scree_scene_time_step_reason(const scree_scene *scene, char reason[256]) {
+  return scree_world_time_step(scene->gallery, reason);
+}
+scree_world *scree_scene_world(scree_scene *scene) {
+  return scene->world;
+}
+const scree_world *scree_scene_view(const scree_scene *scene) {
+  return scene->world;
+}
+
+static const char *name_at(const scree_records *records, size_t size, size_t index) {
+  if (index >= records->count) return NULL;
+  return ((const scree_place *)(const void *)((const char *)records->items + index * size))->name;
+}
+
+const char *scree_scene_shape_name(const scree_scene *scene, size_t index) {
+  return name_at(&scene->plan.shapes, sizeof(scree_plan_shape), index);
+}
+const char *scree_scene_shape_source(const scree_scene *scene, size_t index) {
+  return index < SCREE_SCENE_SHAPES(scene) ? scene->shapes[index].source : NULL;
+}
+scree_particle *scree_scene_shape_particle(const scree_scene *scene, size_t index) {
+  return scene->shapes[index].particle;
+}
+const char *scree_scene_geometry_name(const scree_scene *scene, size_t index) {
+  return name_at(&scene->plan.geometry, sizeof(scree_plan_geometry), index);
+}
+const char *scree_scene_inlet_name(const scree_scene *scene, size_t index) {
+  return name_at(&scene->plan.inlets, sizeof(scree_plan_inlet), index);
+}
+const char *scree_scene_outlet_name(const scree_scene *scene, size_t index) {
+  return name_at(&scene->plan.outlets, sizeof(scree_plan_outlet), index);
+}
+size_t scree_scene_body_shape(const scree_scene *scene, size_t index) {
+  return scene->shape_of.items[index];
+}
+size_t scree_scene_wall_geometry(const scree_scene *scene, size_t index) {
+  size_t g = 0;
+  while (index >= scene->geometry[g].first_wall + scene->geometry[g].wall_count) g++;
+  return g;
+}
+
+void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book) {
+  scree_observation o;
+  scree_world_observe(scene->world, &o);
+  scree_scene_book b = {.entered_count = scene->shape_of.count,
+                        .left_count = scene->left_count,
+                        .entered_mass = scene->entered_mass,
+                        .left_mass = scene->left_mass,
+                        .entered_energy = scene->entered_energy,
+                        .left_energy = scene->left_energy};
+  for (size_t i = 0; i < scene->plan.inlets.count; i++) b.waiting_count += scene->inlets[i].waiting;
+  for (size_t i = 0; i < scene->shape_of.count; i++)
+    if (!scree_world_body_removed(scene->world, i)) {
+      b.inside_count++;
+      b.inside_mass += scree_world_body_mass(scene->world, i);
+    }
+  double lost = o.dissipated_dashpot + o.dissipated_friction;
+  double is = o.kinetic + o.rotational + o.potential + o.elastic + lost;
+  double should = scene->entered_energy - scene->left_energy + o.wall_work + o.applied_work;
+  double turned =
+      lost + o.kinetic + o.rotational + o.elastic + fabs(o.wall_work) + fabs(o.applied_work);
+  b.ledger = turned > 0 ? (is - should) / turned : 0;
+  *book = b;
+}
+
+size_t scree_scene_inlet_count(const scree_scene *scene, size_t index, double *mass,
+                               size_t *waiting) {
+  if (mass) *mass = scene->inlets[index].mass;
+  if (waiting) *waiting = scene->inlets[index].waiting;
+  return scene->inlets[index].entered;
+}
+
+size_t scree_scene_outlet_count(const scree_scene *scene, size_t index, double *mass) {
+  if (mass) *mass = scene->outlets[index].mass;
+  return scene->outlets[index].left;
+}

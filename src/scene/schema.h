@@ -1,0 +1,102 @@
+/* Records that are read from YAML by a table of their fields: each has a key, a kind, a range, a
+ * unit and a sentence. The same table reads, refuses what is wrong with its place, and prints the
+ * record with units and comments. */
+#ifndef SCREE_SCENE_SCHEMA_H
+#define SCREE_SCENE_SCHEMA_H
+
+#include "base/arena.h"
+#include "base/yaml.h"
+
+typedef enum scree_field_kind {
+  SCREE_FIELD_REAL,    /* double; NAN: not given */
+  SCREE_FIELD_COUNT,   /* size_t; 0: not given */
+  SCREE_FIELD_SEED,    /* uint64_t */
+  SCREE_FIELD_FLAG,    /* bool */
+  SCREE_FIELD_WORD,    /* int: which of the words that `unit` lists */
+  SCREE_FIELD_TEXT,    /* const char *; NULL: not given */
+  SCREE_FIELD_TEXTS,   /* scree_texts: one text, or a list of them */
+  SCREE_FIELD_VECTOR,  /* double[3]; first NAN: not given */
+  SCREE_FIELD_TURN,    /* double[4], w x y z; first NAN: not given */
+  SCREE_FIELD_TABLE,   /* scree_table: [[t, value], ...], t rising */
+  SCREE_FIELD_WEIGHTS, /* scree_weights: {name: number, ...}, a list of names, or one name */
+  SCREE_FIELD_RECORD,  /* struct *; NULL: not given */
+  SCREE_FIELD_NAMED,   /* scree_records: {name: record, ...} */
+  SCREE_FIELD_LIST,    /* scree_records: [record, ...] */
+} scree_field_kind;
+
+typedef struct scree_texts {
+  const char **items;
+  size_t count;
+} scree_texts;
+
+typedef struct scree_table {
+  double (*items)[2];
+  size_t count;
+} scree_table;
+
+typedef struct scree_weights {
+  const char **names;
+  double *values;
+  size_t count;
+} scree_weights;
+
+typedef struct scree_records {
+  void *items;
+  size_t count;
+} scree_records;
+
+/* Where a record was read; the first member of each. */
+typedef struct scree_place {
+  const char *name; /* its key, where records are named */
+  const char *path; /* "inlets.feed" */
+  size_t line, column;
+} scree_place;
+
+struct scree_record;
+
+typedef struct scree_field {
+  const char *key;
+  scree_field_kind kind;
+  size_t offset;
+  double minimum, maximum; /* of numbers; both 0: any that is finite */
+  const char *unit;        /* "" for a pure number; the words of a word */
+  const char *comment;
+  const struct scree_record *record;
+} scree_field;
+
+typedef struct scree_reader scree_reader;
+
+typedef struct scree_record {
+  const char *what; /* "an inlet" */
+  const scree_field *fields;
+  size_t field_count, size;
+  const void *defaults;
+  /* What single fields cannot say; NULL: nothing. */
+  scree_status (*check)(const scree_reader *reader, const void *record);
+} scree_record;
+
+struct scree_reader {
+  const char *file; /* for messages */
+  scree_arena *arena;
+  scree_error *error;
+  const char *path; /* of the record being read, "" at the top */
+};
+
+/* Reads a mapping into *record, which begins with a scree_place; it is in the arena, or all of it
+ * is the caller's. */
+scree_status scree_record_read(const scree_reader *reader, const scree_yaml *node,
+                               const scree_record *kind, void *record);
+/* "FILE, line L, column C: PATH: ..." as an error of SCREE_BAD_FILE. */
+scree_status scree_fail_place(const scree_reader *reader, const scree_place *place,
+                              const char *format, ...) __attribute__((format(printf, 3, 4)));
+/* Whether a field of the record was given; `field` is its offset. */
+bool scree_field_is_given(const scree_field *field, const void *record);
+
+/* Prints what was given or has a default, as YAML that reads back to the same values. */
+void scree_record_print(const scree_record *kind, const void *record, int depth, bool comments,
+                        FILE *stream);
+
+/* Of the names the one that is a typing error away from `word`; NULL: none is. */
+const char *scree_nearest_name(const char *word, const char *const *names, size_t count);
+
+#endif

@@ -1,0 +1,313 @@
+/* Sensors as columns of numbers: what each is called, what it reads now, and what flows and
+ * residence gather from tick to tick. */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/sum.h"
+
+#include <stdarg.h>
+#include <string.h>
+
+/* ---- columns ---- */
+
+/* What is always there. */
+static const struct {
+  const char *name, *unit;
+} base_columns[] = {
+    {"time", "s"},           {"entered", ""},       {"inside", ""},       {"left", ""},
+    {"waiting", ""},         {"mass_inside", "kg"}, {"kinetic", "J"},     {"rotational", "J"},
+    {"potential", "J"},      {"elastic", "J"},      {"dissipated", "J"},  {"wall_work", "J"},
+    {"ledger", ""},          {"contacts", ""},      {"coordination", ""}, {"largest_overlap", "m"},
+    {"highest_speed", "m/s"}};
+enum { BASE_COLUMNS = sizeof base_columns / sizeof *base_columns };
+
+__attribute__((format(printf, 3, 4))) static bool add_column(scree_scene *scene, const char *unit,
+                                                             const char *format, ...) {
+  scree_scene_column column = {.unit = unit};
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(column.name, sizeof column.name, format, arguments);
+  va_end(arguments);
+  return SCREE_PUSH(&scene->columns, column);
+}
+
+/* SENSOR.WHAT, and where there are several shapes SENSOR.WHAT.SHAPE. */
+static bool add_by_shape(scree_scene *scene, const char *sensor, const char *what, const char *unit,
+                         bool total) {
+  bool good = !total || add_column(scene, unit, "%s.%s", sensor, what);
+  for (size_t s = 0; good && SCREE_SCENE_SHAPES(scene) > 1 && s < SCREE_SCENE_SHAPES(scene); s++)
+    good = add_column(scene, unit, "%s.%s.%s", sensor, what, scree_scene_shape_name(scene, s));
+  return good;
+}
+
+static bool add_all(scree_scene *scene, const char *sensor, const char *const *names_units) {
+  bool good = true;
+  for (; good && names_units[0]; names_units += 2)
+    good = add_column(scene, names_units[1], "%s.%s", sensor, names_units[0]);
+  return good;
+}
+
+static bool add_sensor(scree_scene *scene, const scree_plan_sensor *plan) {
+  static const char *const wall[] = {"force_x",  "N",   "force_y",  "N",   "force_z",  "N",
+                                     "torque_x", "N m", "torque_y", "N m", "torque_z", "N m",
+                                     "power",    "W",   "energy",   "J",   NULL};
+  static const char *const pile[] = {"sector_deg",     "deg", "cone_deg", "deg",
+                                     "silhouette_deg", "deg", "height",   "m",
+                                     "base_radius",    "m",   NULL};
+  const char *name = plan->place.name;
+  if (plan->flow)
+    return add_by_shape(scene, name, "count", "", true) &&
+           add_by_shape(scene, name, "mass", "kg", true) &&
+           add_by_shape(scene, name, "rate", "1/s", true) &&
+           add_by_shape(scene, name, "mass_rate", "kg/s", true);
+  if (plan->region)
+    return add_by_shape(scene, name, "count", "", true) &&
+           add_by_shape(scene, name, "mass", "kg", true) &&
+           add_column(scene, "", "%s.packing", name) &&
+           add_column(scene, "m/s", "%s.mean_speed", name);
+  if (plan->wall) return add_all(scene, name, wall);
+  if (plan->pile) return add_all(scene, name, pile);
+  if (plan->slope) return add_column(scene, "deg", "%s.angle_deg", name);
+  if (plan->segregation) return add_by_shape(scene, name, "lacey", "", false);
+  return add_by_shape(scene, name, "count", "", true) &&
+         add_by_shape(scene, name, "mean", "s", true) && add_by_shape(scene, name, "sd", "s", true);
+}
+
+static bool allocate_sums(scree_scene *scene, scree_scene_sensor *sensor) {
+  double **arrays[] = {&sensor->count, &sensor->mass, &sensor->sum, &sensor->sum2};
+  size_t count = SCREE_SCENE_SHAPES(scene) + 1;
+  for (size_t i = 0; i < 4; i++) {
+    *arrays[i] = scree_arena_take(&scene->arena, count, sizeof **arrays[i]);
+    if (!*arrays[i]) return false;
+    memset(*arrays[i], 0, count * sizeof **arrays[i]);
+  }
+  return true;
+}
+
+scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error) {
+  bool good = true;
+  for (size_t i = 0; good && i < BASE_COLUMNS; i++)
+    good = add_column(scene, base_columns[i].unit, "%s", base_columns[i].name);
+  for (size_t i = 0; good && i < scene->plan.sensors.count; i++) {
+    scree_scene_sensor *sensor = &scene->sensors[i];
+    sensor->plan = SCREE_PLAN_AT(&scene->plan, sensors, scree_plan_sensor, i);
+    sensor->first_column = scene->columns.count;
+    if (sensor->plan->wall)
+      sensor->geometry =
+          scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), sensor->plan->wall);
+    good = add_sensor(scene, sensor->plan) && allocate_sums(scene, sensor);
+  }
+  return good ? SCREE_OK : scree_fail_memory(error, 0, "sensors");
+}
+
+const char *scree_scene_column_name(const scree_scene *scene, size_t index) {
+  return index < scene->columns.count ? scene->columns.items[index].name : NULL;
+}
+const char *scree_scene_column_unit(const scree_scene *scene, size_t index) {
+  return index < scene->columns.count ? scene->columns.items[index].unit : NULL;
+}
+size_t scree_scene_column_count(const scree_scene *scene) {
+  return scene->columns.count;
+}
+
+/* ---- from tick to tick ---- */
+
+static void count_crossing(scree_scene *scene, scree_scene_sensor *sensor, size_t body, int way) {
+  size_t all = SCREE_SCENE_SHAPES(scene), shape = scene->shape_of.items[body];
+  double mass = way * scree_world_body_mass(scene->world, body);
+  sensor->count[shape] += way;
+  sensor->count[all] += way;
+  sensor->mass[shape] += mass;
+  sensor->mass[all] += mass;
+}
+
+static scree_status watch_flow(scree_scene *scene, scree_scene_sensor *sensor, scree_error *error) {
+  const scree_plan_flow *plan = sensor->plan->flow;
+  vec3 n = vec3_unit(vec3_load(plan->normal)), through = vec3_load(plan->through);
+  size_t count = scene->shape_of.count;
+  if (!SCREE_RESERVE(&sensor->side, count))
+    return scree_fail_memory(error, count, "a flow's bodies");
+  for (size_t b = 0; b < count; b++) {
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_body body;
+    scree_world_get_body(scene->world, b, &body);
+    vec3 d = vec3_sub(vec3_load(body.position), through);
+    double height = vec3_dot(d, n);
+    int8_t side = height < 0 ? -1 : 1;
+    bool known = b < sensor->side.count;
+    bool crossed = known && side != sensor->side.items[b];
+    if (crossed && (isnan(plan->radius) || vec3_norm(vec3_mad(d, n, -height)) <= plan->radius))
+      count_crossing(scene, sensor, b, side);
+    sensor->side.items[b] = side;
+    if (!known) sensor->side.count = b + 1;
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++)
+    if (scene->sensors[i].plan->flow) status = watch_flow(scene, &scene->sensors[i], error);
+  return status;
+}
+
+void scree_scene_note_leaving(scree_scene *scene, size_t body) {
+  double stay = scree_world_time(scene->world) - scene->entered_at.items[body];
+  size_t all = SCREE_SCENE_SHAPES(scene);
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
+    scree_scene_sensor *sensor = &scene->sensors[i];
+    if (!sensor->plan->residence) continue;
+    const size_t places[2] = {scene->shape_of.items[body], all};
+    for (int k = 0; k < 2; k++) {
+      sensor->count[places[k]]++;
+      sensor->sum[places[k]] += stay;
+      sensor->sum2[places[k]] += stay * stay;
+    }
+  }
+}
+
+/* ---- reading ---- */
+
+/* The values of all shapes first, then where there are several each one's, at *at. */
+static void put_by_shape(const scree_scene *scene, const double *values, double factor,
+                         double **at) {
+  size_t shapes = SCREE_SCENE_SHAPES(scene);
+  *(*at)++ = factor * values[shapes];
+  for (size_t s = 0; shapes > 1 && s < shapes; s++) *(*at)++ = factor * values[s];
+}
+
+/* Counts and masses, and since the last row how many a second. */
+static void read_flow(const scree_scene *scene, const scree_scene_sensor *sensor, double time,
+                      double *at) {
+  size_t shapes = SCREE_SCENE_SHAPES(scene), width = shapes > 1 ? shapes + 1 : 1;
+  const double *now = at, *before = NULL;
+  double since = 0;
+  if (scene->row_count) {
+    const double *row = scene->series.items + (scene->row_count - 1) * scene->columns.count;
+    before = row + sensor->first_column;
+    since = row[0];
+  }
+  put_by_shape(scene, sensor->count, 1, &at);
+  put_by_shape(scene, sensor->mass, 1, &at);
+  for (size_t k = 0; k < 2 * width; k++)
+    *at++ = time > since ? (now[k] - (before ? before[k] : 0)) / (time - since) : NAN;
+}
+
+static void read_region(const scree_scene *scene, const scree_plan_box *box, double *count,
+                        double *mass, double *at) {
+  size_t shapes = SCREE_SCENE_SHAPES(scene);
+  double speed = 0, solid = 0, volume = 1;
+  memset(count, 0, (shapes + 1) * sizeof *count);
+  memset(mass, 0, (shapes + 1) * sizeof *mass);
+  for (int k = 0; k < 3; k++) volume *= box->max[k] - box->min[k];
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    bool inside = !scree_world_body_removed(scene->world, b);
+    if (!inside) continue;
+    scree_world_get_body(scene->world, b, &body);
+    for (int k = 0; k < 3; k++)
+      inside = inside && body.position[k] >= box->min[k] && body.position[k] <= box->max[k];
+    if (!inside) continue;
+    size_t shape = scene->shape_of.items[b];
+    double m = scree_world_body_mass(scene->world, b);
+    count[shape]++, count[shapes]++;
+    mass[shape] += m, mass[shapes] += m;
+    solid += scene->shapes[shape].volume;
+    speed += vec3_norm(vec3_load(body.velocity));
+  }
+  put_by_shape(scene, count, 1, &at);
+  put_by_shape(scene, mass, 1, &at);
+  *at++ = solid / volume;
+  *at++ = count[shapes] > 0 ? speed / count[shapes] : NAN;
+}
+
+static void read_wall(const scree_scene *scene, size_t geometry, double *at) {
+  const scree_scene_geometry *g = &scene->geometry[geometry];
+  for (int k = 0; k < 8; k++) at[k] = 0;
+  for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
+    double force[3], torque[3];
+    scree_world_wall_force(scene->world, w, force, torque);
+    double power, energy;
+    scree_world_wall_power(scene->world, w, &power, &energy);
+    for (int k = 0; k < 3; k++) at[k] += force[k], at[3 + k] += torque[k];
+    at[6] += power, at[7] += energy;
+  }
+}
+
+static void read_residence(const scree_scene *scene, const scree_scene_sensor *sensor, double *at) {
+  size_t shapes = SCREE_SCENE_SHAPES(scene);
+  put_by_shape(scene, sensor->count, 1, &at);
+  for (int what = 0; what < 2; what++)
+    for (size_t k = 0; k <= (shapes > 1 ? shapes : 0); k++) {
+      size_t s = k ? k - 1 : shapes;
+      double n = sensor->count[s], mean = sensor->sum[s] / n;
+      double variance = (sensor->sum2[s] - n * mean * mean) / (n - 1);
+      *at++ = what == 0 ? (n > 0 ? mean : NAN) : n > 1 ? sqrt(fmax(0, variance)) : NAN;
+    }
+}
+
+static scree_status read_sensor(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                double *values, scree_error *error) {
+  const scree_plan_sensor *plan = sensor->plan;
+  double *at = values + sensor->first_column;
+  scree_status status = SCREE_OK;
+  if (plan->flow)
+    read_flow(scene, sensor, values[0], at);
+  else if (plan->region)
+    read_region(scene, plan->region->box, sensor->count, sensor->mass, at);
+  else if (plan->wall)
+    read_wall(scene, sensor->geometry, at);
+  else if (plan->pile)
+    status = scree_scene_measure_pile(scene, plan->pile, at, error);
+  else if (plan->slope)
+    *at = scree_scene_measure_slope(scene, plan->slope);
+  else if (plan->segregation)
+    status = scree_scene_measure_mixing(scene, plan->segregation, at, error);
+  else
+    read_residence(scene, sensor, at);
+  return status;
+}
+
+scree_status scree_scene_measure(const scree_scene *scene, double *values, scree_error *error) {
+  scree_observation o;
+  scree_scene_book b;
+  scree_world_observe(scene->world, &o);
+  scree_scene_get_book(scene, &b);
+  const double base[BASE_COLUMNS] = {o.time,
+                                     (double)b.entered_count,
+                                     (double)b.inside_count,
+                                     (double)b.left_count,
+                                     (double)b.waiting_count,
+                                     b.inside_mass,
+                                     o.kinetic,
+                                     o.rotational,
+                                     o.potential,
+                                     o.elastic,
+                                     o.dissipated_dashpot + o.dissipated_friction,
+                                     o.wall_work,
+                                     b.ledger,
+                                     (double)o.contact_count,
+                                     o.coordination,
+                                     o.largest_overlap,
+                                     o.highest_speed};
+  memcpy(values, base, sizeof base);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++)
+    status = read_sensor(scene, &scene->sensors[i], values, error);
+  return status;
+}
+
+scree_status scree_scene_record(scree_scene *scene, scree_error *error) {
+  size_t columns = scene->columns.count, used = scene->row_count * columns;
+  if (!SCREE_RESERVE(&scene->series, used + columns))
+    return scree_fail_memory(error, (used + columns) * sizeof(double), "the series of a scene");
+  scree_status status = scree_scene_measure(scene, scene->series.items + used, error);
+  if (status == SCREE_OK) scene->row_count++;
+  return status;
+}
+
+const double *scree_scene_series(const scree_scene *scene, size_t *row_count) {
+  *row_count = scene->row_count;
+  return scene->series.items;
+}

@@ -1,0 +1,36 @@
+# A study whose base is a scene: any field a factor, any column of its sensors an answer.
+cat >chute.yaml <<'END'
+time: 0.3
+materials: {grain: {young: 1e6, density: 1000, restitution: 0.3, friction: 0.4}}
+shapes: {ball: {sphere: 0.01}}
+geometry: {chute: {box: [0.2, 0.2, 0.02], turn: {axis: [0, 1, 0], angle_deg: 35}}}
+inlets: {feed: {box: {min: [-0.05, -0.03, 0.06], max: [0, 0.03, 0.12]}, shapes: ball, rate: 100, until: 0.1}}
+sensors: {all: {region: {box: {min: [-1, -1, -1], max: [1, 1, 1]}}}, load: {wall: chute}}
+output: {series: 0.02}
+END
+cat >study.yaml <<'END'
+base: {scene: chute.yaml, time: 0.2}
+factors:
+  inlets.feed.rate: [50, 100]
+  geometry.chute.turn.angle_deg: [20, 40]
+answers: [all.count, all.count: {from: 0.15}]
+replicates: 2
+END
+# the last two columns are noise and time
+table() { sed -E 's/ +[0-9.e-]+ +[0-9.e-]+$//'; }
+run study study.yaml -o out -q | table
+sed -n '1s/.*,\(all.count.*\)/\1/p' out/points.csv
+head -1 out/scene.yaml | sed 's/of .*\//of /'
+run study status out | head -1
+rm chute.yaml
+run study status out | sed -n 3,5p | table
+cat >wrong.yaml <<'END'
+base: {scene: out/scene.yaml}
+factors: {inlets.feed.rat: [50, 100]}
+answers: [all.count]
+END
+run study wrong.yaml 2>&1 | sed 's/: [^ ]*chute/: chute/' | cut -c 1-110
+sed -i 's/rat:/rate:/; s/all.count/all.cuont/' wrong.yaml
+run study wrong.yaml 2>&1 | cut -c 1-110
+sed -i 's/answers.*//' wrong.yaml
+run study wrong.yaml

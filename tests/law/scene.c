@@ -1,0 +1,168 @@
+/* Scenes against closed forms: a belt, a tilted plate, a shaken plate, a hopper that runs out
+ * (docs/verification.md). */
+#include "scree.h"
+#include "support/check.h"
+
+static const double g = 9.81;
+
+static scree_scene *create(const char *text) {
+  scree_error error;
+  scree_scene_file *file = NULL;
+  scree_scene *scene = NULL;
+  CHECK_OK(scree_scene_file_parse(text, strlen(text), "test.yaml", &file, &error), error);
+  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
+  scree_scene_file_free(file);
+  return scene;
+}
+
+/* Up to a time; false where the scene ended before. */
+static bool run_until(scree_scene *scene, double time) {
+  scree_error error;
+  double dt = scree_world_time_step(scree_scene_view(scene), NULL);
+  while (!scree_scene_end(scene) && scree_world_time(scree_scene_view(scene)) < time) {
+    double left = (time - scree_world_time(scree_scene_view(scene))) / dt;
+    CHECK_OK(scree_scene_advance(scene, left > 2 ? (size_t)left : 1, &error), error);
+  }
+  return !scree_scene_end(scene);
+}
+
+static scree_body body_of(const scree_scene *scene, size_t index) {
+  scree_body body;
+  scree_world_get_body(scree_scene_view(scene), index, &body);
+  return body;
+}
+
+/* A box set on a belt slides until it has the belt's speed: v = mu g t, then v stays. */
+static void belt(void **state) {
+  (void)state;
+  scree_scene *scene = create(
+      "time: 1\n"
+      "materials: {m: {young: 1e5, density: 500, restitution: 0.1, friction: 0.3}}\n"
+      "shapes: {box: {box: [0.06, 0.06, 0.02]}}\n"
+      "geometry: {belt: {box: [4, 0.4, 0.1], at: [0, 0, -0.05], surface_velocity: [0.6, 0, 0]}}\n"
+      "inlets: {i: {box: {min: [-0.031, -0.031, 0.0001], max: [0.031, 0.031, 0.0212]}, shapes: "
+      "box, "
+      "count: 1, orientation: fixed}}\n");
+  run_until(scene, 0.05); /* it has landed */
+  double begin = body_of(scene, 0).velocity[0];
+  run_until(scene, 0.15);
+  double after = body_of(scene, 0).velocity[0];
+  CHECK_NEAR((after - begin) / 0.1, 0.3 * g, 0.02 * 0.3 * g);
+  run_until(scene, 0.6 / (0.3 * g) + 0.15);
+  CHECK_NEAR(body_of(scene, 0).velocity[0], 0.6, 0.006);
+  double x = body_of(scene, 0).position[0];
+  run_until(scene, 0.9);
+  double moved = body_of(scene, 0).position[0] - x, time = 0.9 - (0.6 / (0.3 * g) + 0.15);
+  CHECK_NEAR(moved / time, 0.6, 0.003);
+  scree_scene_free(scene);
+}
+
+/* A plate that is tilted lets a block go at tan(angle) = mu. */
+static void tilted_plate(void **state) {
+  (void)state;
+  static const double mu[] = {0.2, 0.5};
+  for (int i = 0; i < 2; i++) {
+    char text[1000];
+    snprintf(text, sizeof text,
+             "time: 8\n"
+             "materials: {m: {young: 1e6, density: 500, restitution: 0.1, friction: %g}}\n"
+             "shapes: {block: {box: [0.06, 0.06, 0.01]}}\n"
+             "geometry: {plate: {box: [1, 0.4, 0.1], at: [0, 0, -0.05], motion: [{rotate: {axis: "
+             "[0, 1, 0], through: [0, 0, 0], speed: 0.1}, from: 0.2}]}}\n"
+             "inlets: {i: {box: {min: [-0.031, -0.031, 0.0001], max: [0.031, 0.031, 0.0112]}, "
+             "shapes: block, count: 1, orientation: fixed}}\n",
+             mu[i]);
+    scree_scene *scene = create(text);
+    double angle = 0, slid = 0, begin = 0;
+    run_until(scene, 0.2);
+    begin = body_of(scene, 0).position[0];
+    while (fabs(slid) < 1e-5 && angle < 1) {
+      double turn[4];
+      run_until(scene, scree_world_time(scree_scene_view(scene)) + 0.005);
+      scree_body b = body_of(scene, 0);
+      scree_world_wall_orientation(scree_scene_view(scene), 0, turn);
+      angle = 2 * atan2(turn[2], turn[0]);
+      slid = b.position[0] * cos(angle) - b.position[2] * sin(angle) - begin; /* along the plate */
+    }
+    CHECK_NEAR(angle * 57.29577951308232, atan(mu[i]) * 57.29577951308232, 0.5);
+    scree_scene_free(scene);
+  }
+}
+
+/* A plate that swings up and down throws a ball when it slows down faster than gravity would: with
+ * A w^2 > g at z = g / w^2 above the middle, at the speed that the plate has there. */
+static void shaken_plate(void **state) {
+  (void)state;
+  const double amplitude = 0.01, frequency = 12, w = 2 * 3.14159265358979 * frequency;
+  scree_scene *scene =
+      create("time: 1\n"
+             "materials: {m: {young: 1e7, density: 1000, restitution: 0.05, friction: 0.3}}\n"
+             "shapes: {ball: {sphere: 0.02}}\n"
+             "geometry: {plate: {box: [0.2, 0.2, 0.1], at: [0, 0, -0.05], motion: [{vibrate: "
+             "{along: [0, 0, "
+             "1], amplitude: 0.01, frequency: 12, phase: -1.5707963267948966}, from: 0.3}]}}\n"
+             "inlets: {i: {box: {min: [-0.0101, -0.0101, 0.00001], max: [0.0101, 0.0101, 0.0204]}, "
+             "shapes: "
+             "ball, count: 1}}\n");
+  run_until(scene, 0.3);
+  double rest = body_of(scene, 0).position[2], top = 0;
+  while (scree_world_time(scree_scene_view(scene)) < 0.3 + 0.25) {
+    run_until(scene, scree_world_time(scree_scene_view(scene)) + 2e-4);
+    double z = body_of(scene, 0).position[2] - rest;
+    if (z < top - 1e-3) break;
+    top = fmax(top, z);
+  }
+  double leaves = g / (w * w), speed = w * sqrt(amplitude * amplitude - leaves * leaves);
+  double height = amplitude + leaves + speed * speed / (2 * g); /* it began at its lowest */
+  CHECK_NEAR(top, height, 0.01 * height);
+  scree_scene_free(scene);
+}
+
+/* All that came into a hopper leaves it, whether its mesh is a sheet or a closed solid. */
+static void discharge(void **state) {
+  (void)state;
+  static const char *const walls[] = {
+      "funnel: {cylinder: {radius: 0.03, length: 0.1}, at: [0, 0, 0.02]}",
+      "a: {box: [0.02, 0.1, 0.1], at: [-0.04, 0, 0.07]}, b: {box: [0.02, 0.1, 0.1], at: [0.04, 0, "
+      "0.07]}, c: {box: [0.06, 0.02, 0.1], at: [0, -0.04, 0.07]}, d: {box: [0.06, 0.02, 0.1], at: "
+      "[0, 0.04, 0.07]}"};
+  for (int i = 0; i < 2; i++) {
+    char text[1400];
+    snprintf(
+        text, sizeof text,
+        "time: 2\n"
+        "materials: {m: {young: 1e5, density: 1000, restitution: 0.3, friction: 0.3}}\n"
+        "shapes: {ball: {sphere: 0.008}}\n"
+        "geometry: {%s, gate: {box: [0.1, 0.1, 0.01], at: [0, 0, 0.014], motion: [{translate: "
+        "{velocity: [1, 0, 0]}, from: 0.3}]}}\n"
+        "inlets: {i: {cylinder: {at: [0, 0, 0.05], radius: 0.029, length: 0.07}, shapes: ball, "
+        "count: 60}}\n"
+        "outlets: {o: {box: {min: [-2, -2, -1], max: [4, 2, -0.05]}}}\n"
+        "sensors: {f: {flow: {through: [0, 0, 0], normal: [0, 0, -1]}}}\n"
+        "stop: {empty: true}\n",
+        walls[i]);
+    scree_scene *scene = create(text);
+    run_until(scene, 3);
+    scree_scene_book b;
+    scree_scene_get_book(scene, &b);
+    assert_string_equal(scree_scene_end(scene), "empty");
+    assert_int_equal(b.left_count, 60);
+    CHECK_NEAR(b.left_mass, b.entered_mass, 1e-12);
+    CHECK_NEAR(b.ledger, 0, 1e-2);
+    size_t rows, columns = scree_scene_column_count(scene), k = 0;
+    const double *series = scree_scene_series(scene, &rows);
+    while (strcmp(scree_scene_column_name(scene, k), "f.count") != 0) k++;
+    CHECK_NEAR(series[(rows - 1) * columns + k], 60, 0);
+    scree_scene_free(scene);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(belt),
+      cmocka_unit_test(tilted_plate),
+      cmocka_unit_test(shaken_plate),
+      cmocka_unit_test(discharge),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,241 @@
+/* A scene's file: each mistake that a person makes is told in one sentence with its place and with
+ * what is allowed; what is printed reads back to the same; single fields are set. */
+#include "base/platform.h"
+#include "support/check.h"
+#include "support/folder.h"
+
+#include "scree.h"
+
+static const char good[] =
+    "title: test\n"                                                    /* 1 */
+    "time: 2\n"                                                        /* 2 */
+    "seed: 3\n"                                                        /* 3 */
+    "materials:\n"                                                     /* 4 */
+    "  grain: {young: 1e6, density: 2500, friction: 0.5}\n"            /* 5 */
+    "  steel: {young: 1e8}\n"                                          /* 6 */
+    "pairs:\n"                                                         /* 7 */
+    "  - {between: [grain, steel], restitution: 0.5, friction: 0.3}\n" /* 8 */
+    "shapes:\n"                                                        /* 9 */
+    "  ball: {sphere: 0.01, material: grain}\n"                        /* 10 */
+    "  brick: {box: [0.02, 0.01, 0.01], material: grain}\n"            /* 11 */
+    "geometry:\n"                                                      /* 12 */
+    "  floor: {plane: [0, 0, 1], at: [0, 0, 0], material: steel}\n"    /* 13 */
+    "  deck: {box: [0.1, 0.1, 0.01], at: [0, 0, 0.1], material: steel, "
+    "motion: [{vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}}]}\n"
+    "inlets:\n" /* 15 */
+    "  feed: {box: {min: [-0.1, -0.1, 0.2], max: [0.1, 0.1, 0.3]}, "
+    "shapes: {ball: 3, brick: 1}, rate: 20, until: 1}\n"          /* 16 */
+    "outlets:\n"                                                  /* 17 */
+    "  end: {box: {min: [0.5, -1, -1], max: [2, 1, 1]}}\n"        /* 18 */
+    "domain: {min: [-1, -1, -1], max: [2, 1, 1]}\n"               /* 19 */
+    "sensors:\n"                                                  /* 20 */
+    "  flow: {flow: {through: [0.4, 0, 0], normal: [1, 0, 0]}}\n" /* 21 */
+    "  load: {wall: deck}\n"                                      /* 22 */
+    "stop: {still: 1e-6 J, empty: true}\n"                        /* 23 */
+    "output: {frames: 0.1, series: 0.01}\n";                      /* 24 */
+
+/* What is written for what, and what must be said. */
+static const struct {
+  const char *from, *to, *line, *says;
+} mistakes[] = {
+    {"time: 2\n", "tiem: 2\n", "line 2, column 1",
+     "no field 'tiem' in a scene; did you mean 'time'"},
+    {"time: 2\n", "", "line 1, column 1", "needs time"},
+    {"time: 2\n", "time: 2 min\n", "line 2, column 7", "'2 min': must be a number in s"},
+    {"time: 2\n", "time: -2\n", "line 2", "-2: must be 1e-09 to 1e+09 s"},
+    {"time: 2\n", "time: soon\n", "line 2", "'soon': must be a number in s"},
+    {"time: 2\n", "time: [2]\n", "line 2", "must be one number"},
+    {"time: 2\n", "time: 2\ntime: 3\n", "line 3, column 1", "this key stands here twice"},
+    {"seed: 3", "seed: 1.5", "line 3", "must be a whole number"},
+    {"young: 1e6", "young: 1e6 MPa", "line 5", "must be a number in Pa, such as"},
+    {"young: 1e6", "youngs: 1e6", "line 5, column 11", "did you mean 'young'"},
+    {"density: 2500", "density: 0", "line 5", "materials.grain.density: 0: must be"},
+    {"friction: 0.5", "friction: 0,5", "line 5", "no field '5'"},
+    {"friction: 0.5", "friction: -0.5", "line 5", "-0.5: must be 0 to 100"},
+    {"restitution: 0.5", "restitution: 1.5", "line 8", "1.5: must be 0.01 to 1"},
+    {"between: [grain, steel]", "between: [grain, steal]", "line 8",
+     "no material 'steal'; did you mean 'steel'"},
+    {"between: [grain, steel]", "between: [grain]", "line 8", "between: [material, material]"},
+    {"pairs:\n  - ", "pairs:\n  a: ", "line 8", "must be a list of groups"},
+    {"sphere: 0.01", "sphere: 10mm", "line 10", "'10mm': must be a number in m"},
+    {"sphere: 0.01", "sphere: 0", "line 10", "shapes.ball.sphere: 0: must be"},
+    {"sphere: 0.01, ", "", "line 10", "needs one of file, sample, sphere"},
+    {"sphere: 0.01", "sphere: 0.01, file: a.stl", "line 10", "only one of file, sample, sphere"},
+    {"sphere: 0.01", "sphere: 0.01, triangles: 100", "line 10", "are of scans"},
+    {"sphere: 0.01", "file: a.stl, triangles: few", "line 10",
+     "must be recommended, all, or a count of 4 or more"},
+    {"sphere: 0.01", "file: a.stl, unit: miles", "line 10", "must be one of m|cm|mm"},
+    {"sphere: 0.01", "file: a.stl, triangles: 100, rp: 1e-3", "line 10", "give one"},
+    {"ball: {sphere: 0.01, material: grain}", "ball: {sphere: 0.01}", "line 10",
+     "needs a material"},
+    {"ball: {sphere: 0.01, material: grain}", "ball: 0.01", "line 10", "must be a group"},
+    {"plane: [0, 0, 1]", "plane: [0, 0]", "line 13", "must be 3 numbers"},
+    {"plane: [0, 0, 1]", "plane: [0, 0, 0]", "line 13", "points nowhere"},
+    {"plane: [0, 0, 1]", "plan: [0, 0, 1]", "line 13", "did you mean 'plane'"},
+    {"amplitude: 1e-3, ", "", "line 14", "needs amplitude and frequency"},
+    {"motion: [{vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}}]",
+     "motion: {vibrate: {frequency: 20}}", "line 14", "must be a list of groups"},
+    {"vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}",
+     "rotate: {table: [[0, 1], [0, 2]]}", "line 14", "times must rise: 0 s after 0 s"},
+    {"vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}", "rotate: {axis: [0, 0, 1]}",
+     "line 14", "needs one of speed, table"},
+    {"rate: 20", "rate: -20", "line 16", "-20: must be 0 to 1e+09 1/s"},
+    {"rate: 20, until: 1", "until: 1", "line 16", "needs a rate, a mass_rate or a count"},
+    {"rate: 20", "rate: 20, mass_rate: 1", "line 16", "only one of rate, mass_rate"},
+    {"until: 1", "from: 3, until: 1", "line 16", "until 1 s must be after from 3 s"},
+    {"ball: 3, brick: 1", "bal: 3", "line 16", "no shape 'bal'; did you mean 'ball'"},
+    {"ball: 3, brick: 1", "ball: 0", "line 16", "a share must be above 0"},
+    {"min: [-0.1, -0.1, 0.2]", "min: [-0.1, -0.1, 0.4]", "line 16",
+     "min 0.4 must be below max 0.3 along z"},
+    {"max: [0.1, 0.1, 0.3]", "max: [3, 0.1, 0.3]", "line 16", "outside the domain along x"},
+    {"max: [2, 1, 1]}}", "max: [2, 1]}}", "line 18", "must be 3 numbers"},
+    {"domain: {min: [-1, -1, -1]", "domain: {periodic: [w], min: [-1, -1, -1]", "line 19",
+     "must be x, y or z"},
+    {"domain: {min: [-1, -1, -1]", "domain: {periodic: [x], min: [-1, -1, -1]", "line 19",
+     "no periodic domains yet"},
+    {"wall: deck", "wall: desk", "line 22", "no geometry 'desk'; did you mean 'deck'"},
+    {"wall: deck", "wall: deck, pile: {}", "line 22", "only one of flow, region"},
+    {"empty: true", "empty: yes", "line 23", "must be true or false"},
+    {"1e-6 J", "1e-6 kJ", "line 23", "must be a number in J, such as 1e-06"},
+    {"series: 0.01", "series: 0", "line 24", "output.series: 0: must be"},
+    {"output: {frames", "output: {frames: 0.1\n", "line 25", ""},
+};
+
+/* The good file with one thing replaced. */
+static void replace(const char *from, const char *to, char *text, size_t size) {
+  const char *at = strstr(good, from);
+  assert_non_null(at);
+  snprintf(text, size, "%.*s%s%s", (int)(at - good), good, to, at + strlen(from));
+}
+
+static scree_status check_text(const char *text, scree_error *error) {
+  scree_scene_file *file;
+  scree_status status = scree_scene_file_parse(text, strlen(text), "my.yaml", &file, error);
+  if (status != SCREE_OK) return status;
+  status = scree_scene_file_check(file, error);
+  scree_scene_file_free(file);
+  return status;
+}
+
+static void wrong_files(void **state) {
+  (void)state;
+  size_t count = sizeof mistakes / sizeof *mistakes, bad = 0;
+  assert_true(count >= 40);
+  for (size_t i = 0; i < count; i++) {
+    char text[4000];
+    scree_error error = {SCREE_OK, ""};
+    replace(mistakes[i].from, mistakes[i].to, text, sizeof text);
+    scree_status status = check_text(text, &error);
+    bool told = status == SCREE_BAD_FILE && !strncmp(error.message, "my.yaml, line ", 14) &&
+                strstr(error.message, mistakes[i].line) && strstr(error.message, mistakes[i].says);
+    if (!told) print_error("%s -> %s: %s\n", mistakes[i].from, mistakes[i].to, error.message);
+    bad += !told;
+  }
+  assert_int_equal(bad, 0);
+}
+
+static char *print_file(const scree_scene_file *file) {
+  char *text;
+  size_t size;
+  scree_error error;
+  FILE *stream = scree_memory_open(&text, &size);
+  CHECK_OK(scree_scene_file_print(file, stream, &error), error);
+  assert_true(scree_memory_close(stream));
+  return text;
+}
+
+static scree_scene_file *parse(const char *text) {
+  scree_error error;
+  scree_scene_file *file = NULL;
+  CHECK_OK(scree_scene_file_parse(text, strlen(text), "my.yaml", &file, &error), error);
+  return file;
+}
+
+static void check_reads_back(const char *text) {
+  scree_scene_file *file = parse(text), *again;
+  char *first = print_file(file), *second;
+  again = parse(first);
+  second = print_file(again);
+  assert_string_equal(first, second);
+  scree_scene_file_free(file);
+  scree_scene_file_free(again);
+  free(first);
+  free(second);
+}
+
+static void printed_reads_back(void **state) {
+  (void)state;
+  check_reads_back(good);
+  for (size_t i = 0; scree_scene_template_name(i); i++)
+    check_reads_back(scree_scene_template(scree_scene_template_name(i)));
+  assert_null(scree_scene_template("silo"));
+}
+
+static void fields_are_set(void **state) {
+  (void)state;
+  scree_error error;
+  scree_scene_file *file = parse(good);
+  CHECK_OK(scree_scene_file_set(file, "inlets.feed.rate", "5", &error), error);
+  CHECK_OK(scree_scene_file_set(file, "gravity", "[0, 0, -1.62]", &error), error);
+  CHECK_OK(scree_scene_file_set(file, "geometry.deck.motion.0.vibrate.frequency", "25", &error),
+           error);
+  CHECK_OK(scree_scene_file_set(file, "sensors.more", "{pile: {}}", &error), error);
+  CHECK_OK(scree_scene_file_check(file, &error), error);
+  char *text = print_file(file);
+  assert_non_null(strstr(text, "rate: 5 "));
+  assert_non_null(strstr(text, "gravity: [0, 0, -1.62]"));
+  assert_non_null(strstr(text, "frequency: 25 "));
+  assert_non_null(strstr(text, "more:\n    pile:"));
+  free(text);
+  assert_int_equal(scree_scene_file_set(file, "geometry.deck.motion.1.from", "2", &error),
+                   SCREE_BAD_ARGUMENT);
+  assert_int_equal(scree_scene_file_set(file, "time.x", "2", &error), SCREE_BAD_ARGUMENT);
+  assert_int_equal(scree_scene_file_set(file, "time", "[", &error), SCREE_BAD_FILE);
+  CHECK_OK(scree_scene_file_set(file, "time", "soon", &error), error);
+  assert_int_equal(scree_scene_file_check(file, &error), SCREE_BAD_FILE);
+  assert_non_null(strstr(error.message, "my.yaml as changed: time: 'soon'"));
+  scree_scene_file_free(file);
+}
+
+/* What only the files and the geometry can say. */
+static void scenes_that_cannot_be(void **state) {
+  (void)state;
+  static const struct {
+    const char *from, *to, *says;
+  } rows[] = {
+      {"sphere: 0.01", "file: nowhere.stl", "line 10, column 9: shapes.ball: nowhere.stl"},
+      {"at: [0, 0, 0.1]", "at: [0, 0, 0.25]", NULL},
+      {"box: [0.1, 0.1, 0.01], at: [0, 0, 0.1]", "box: [1, 1, 1], at: [0, 0, 0.25]",
+       "inlets.feed: lies in 'deck': nowhere in it is there room for 'ball' clear of that wall"},
+      {"plane: [0, 0, 1], at: [0, 0, 0]", "plane: [0, 0, 1], at: [0, 0, 0.5]",
+       "inlets.feed: lies in 'floor'"},
+      {"max: [0.1, 0.1, 0.3]", "max: [0.1, 0.1, 0.205]", "inlets.feed: is too small for 'ball'"},
+      {"box: [0.1, 0.1, 0.01], at", "file: nowhere.stl, at", "nowhere.stl"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    char text[4000];
+    scree_error error = {SCREE_OK, ""};
+    scree_scene *scene = NULL;
+    replace(rows[i].from, rows[i].to, text, sizeof text);
+    scree_scene_file *file = parse(text);
+    scree_status status = scree_scene_create(file, NULL, &scene, &error);
+    if (rows[i].says) {
+      assert_int_not_equal(status, SCREE_OK);
+      if (!strstr(error.message, rows[i].says)) fail_msg("%s", error.message);
+    } else {
+      CHECK_OK(status, error);
+    }
+    scree_scene_free(scene);
+    scree_scene_file_free(file);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(wrong_files),
+      cmocka_unit_test(printed_reads_back),
+      cmocka_unit_test(fields_are_set),
+      cmocka_unit_test(scenes_that_cannot_be),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
