@@ -21,6 +21,14 @@ build() {
 tools/install-packages.sh build test ci
 part "release build" build release
 part "all tests, the slow ones too" tools/test.sh release
+# `native COMPILER`: the states of tests/golden, by code for this very machine
+native() {
+  cmake -S . -B "build/native-$1" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_COMPILER="$1" \
+    -DCMAKE_C_FLAGS=-march=native -DBUILD_TESTING=ON >/dev/null &&
+    cmake --build "build/native-$1" --target golden_world && "build/native-$1/bin/golden_world"
+}
+part "the same bits with -march=native, gcc" native gcc
+part "the same bits with -march=native, clang" native clang
 part "sanitizer build" build asan
 part "slow and long tests under ASan and UBSan" tools/test.sh asan -L 'slow|long'
 part "fuzzing build" build fuzz -DSCREE_FUZZ_SECONDS=1200
