@@ -2,24 +2,48 @@
 #ifndef SCREE_CHOICE_H
 #define SCREE_CHOICE_H
 
-#include "scree/simplify.h"
+#include "scree/fidelity.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* From a curve to a triangle count. The criterion (Katagiri and Koyanaka 2020, eq. 1 and 2):
+/* From a curve to a triangle count. Three rules, and which to take:
  *
- *   eps_s(N) = |S(N) - S_ref| / S_ref        Ip(N) = eps_s(N) + w N / Nm
+ *   recommended  the default: the coarsest level that keeps a tolerance on each of several errors
+ *                against the scan (scree/fidelity.h). It is the same for scans of any resolution
+ * and noise, and gives every body the same fidelity paper        the least Ip on a logarithmic grid
+ * of Rp = N / Nm, where (Katagiri and Koyanaka 2020, eq. 1 and 2)
  *
- * with S the surface area at N triangles, Nm the scan's count, S_ref the scan's area Sm and w = 1
- * in the paper. Two choices are made from it:
+ *                  eps_s(N) = |S(N) - S_ref| / S_ref        Ip(N) = eps_s(N) + w N / Nm
  *
- *   paper   the least Ip on a logarithmic grid of Rp = N / Nm
- *   robust  the least of (worst eps_s at N or any finer level) + w N / Nm, over every level: eps_s
- *           falls to zero where S crosses S_ref by accident, the worst so far does not
+ *                with S the surface area at N triangles, Nm the scan's count, S_ref the scan's area
+ *                Sm and w = 1: to repeat what the paper did
+ *   robust       the least of (worst eps_s at N or any finer level) + w N / Nm, over every level:
+ *                eps_s falls to zero where S crosses S_ref by accident, the worst so far does not.
+ *                The paper's criterion for a single scan
  *
- * docs/method.md says why, with figures. */
+ * Beside them stands the criterion in the paper's form with a scale that is the cost of simulating
+ * and not the scan's count, I = mean distance / D + N / SCREE_COST_COUNT: no tolerances, but unlike
+ * bodies get unlike fidelities. docs/method.md says why, with figures. */
+
+#define SCREE_CHOICE_RULE_LIST(X)                                                                  \
+  X(RECOMMENDED, "recommended")                                                                    \
+  X(ROBUST, "robust")                                                                              \
+  X(PAPER, "paper")
+
+typedef enum scree_choice_rule {
+#define SCREE_CHOICE_RULE_ENUM(name, text) SCREE_RULE_##name,
+  SCREE_CHOICE_RULE_LIST(SCREE_CHOICE_RULE_ENUM)
+#undef SCREE_CHOICE_RULE_ENUM
+      SCREE_RULE_COUNT
+} scree_choice_rule;
+
+SCREE_API const char *scree_choice_rule_name(scree_choice_rule rule);
+
+/* Triangles that cost what one more share of mean distance does: a particle of 1,500 triangles
+ * costs about 1.07 times one of 100 at rest, 2.5 times in a flowing heap. */
+#define SCREE_COST_COUNT 1e5
 
 typedef enum scree_reference {
   SCREE_REFERENCE_SCAN,   /* "scan", the default: Sm, the scan's own area, as in the paper */
@@ -27,35 +51,18 @@ typedef enum scree_reference {
                              the curve; the scan's area where no noise is found */
 } scree_reference;
 
-/* The errors a level is reported with, each relative to the scan; area is the paper's eps_s.
- * Lengths are relative to the diameter of the sphere of the scan's area, sqrt(Sm / pi). */
-#define SCREE_SHAPE_ERROR_LIST(X)                                                                  \
-  X(AREA, "area")           /* |S - S_ref| / S_ref */                                              \
-  X(VOLUME, "volume")       /* |V - Vm| / |Vm| */                                                  \
-  X(HAUSDORFF, "hausdorff") /* the larger of both ways */                                          \
-  X(MEAN, "mean_distance")  /* the larger of both ways */                                          \
-  X(INERTIA, "inertia")     /* Frobenius norm of the tensors' difference over the scan's */        \
-  X(SIZE, "size")           /* largest relative change of the three principal dimensions */
-
-typedef enum scree_shape_error {
-#define SCREE_SHAPE_ERROR_ENUM(name, text) SCREE_ERROR_##name,
-  SCREE_SHAPE_ERROR_LIST(SCREE_SHAPE_ERROR_ENUM)
-#undef SCREE_SHAPE_ERROR_ENUM
-      SCREE_SHAPE_ERROR_COUNT
-} scree_shape_error;
-
-/* The name above, for example "mean_distance". */
-SCREE_API const char *scree_shape_error_name(scree_shape_error which);
-
 typedef struct scree_choice_options {
   double weight;         /* w, > 0; 1: the paper, eq. 2 */
   double rp_min, rp_max; /* ends of the grid, 0 < rp_min <= rp_max <= 1; 1e-5, 1e-1: the paper */
   int per_decade;        /* grid points per factor of ten, 1..1000; 9 */
   scree_reference reference; /* S_ref of paper, robust and plain; SCREE_REFERENCE_SCAN */
-  bool shape_errors;         /* also inertia and size at every grid level, which are rebuilt */
-  bool distances;            /* also the distances at every grid level: minutes on large scans */
+  /* Of the recommended choice, by error: the most it may be, a share; INFINITY: any. Of those that
+   * a scan has none of (NaN) nothing is asked. */
+  double tolerances[SCREE_SHAPE_ERROR_COUNT];
+  bool area_only; /* no errors but area's and volume's, and no recommended choice; false */
 } scree_choice_options;
 
+/* The tolerances: mean distance 0.3 %, Hausdorff distance 3 %, inertia 2 %, thickness 3 %. */
 SCREE_API scree_choice_options scree_default_choice_options(void);
 
 /* Point `index` of the grid: rp_min 10^(index / per_decade); index 0 is rp_min. */
@@ -134,7 +141,16 @@ typedef struct scree_choice {
   size_t finer_count, paper_finer_count;
   size_t best[SCREE_SHAPE_ERROR_COUNT]; /* grid index of the least error + w Nr/Nm; level_count
                                            where that error was not measured */
+  /* Errors of levels, those of the grid among them; NULL with area_only or without the scan. Then
+   * what follows is 0, and `recommended` is `robust`. */
+  scree_fidelity *fidelity;
+  scree_pick recommended;       /* ip: the largest error over its tolerance there, below 1 */
+  size_t recommended_row;       /* in fidelity */
+  scree_shape_error limited_by; /* the error that has it */
+  scree_pick cost;              /* least I = mean distance / D + N / SCREE_COST_COUNT; ip: I */
 } scree_choice;
+
+SCREE_API const scree_pick *scree_choice_pick(const scree_choice *choice, scree_choice_rule rule);
 
 enum { SCREE_TRACE_PER_DECADE = 200 };
 
@@ -164,15 +180,25 @@ typedef struct scree_set_choice {
 } scree_set_choice;
 
 /* Chooses from the curve of one object. scan is the mesh that the curve was built from; it may be
- * NULL without shape_errors and distances. options NULL means the defaults, progress may be NULL.
+ * NULL, which is as area_only. options NULL means the defaults, progress may be NULL.
  * Errors: SCREE_BAD_MESH where the scan has no area, SCREE_BAD_ARGUMENT, SCREE_OUT_OF_MEMORY,
- * SCREE_CANCELLED. Cost: one pass over the levels, some ms for 400,000 of them. */
+ * SCREE_CANCELLED. Cost: with area_only one pass over the levels, some ms for 400,000 of them; else
+ * that of scree_fidelity_measure for the grid's levels too. */
 SCREE_API scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
                                     const scree_choice_options *options,
                                     const scree_progress *progress, scree_choice *choice,
                                     scree_error *error);
 
 SCREE_API void scree_choice_free(scree_choice *choice);
+
+/* From a scan to the mesh to simulate it by, in one call: decimates it, method volume, chooses with
+ * the defaults, and gives the recommended level. The scan is multiplied by `scale` once it is
+ * decimated (scree_curve_build_scaled), 1 for one in metres. It should be closed: see
+ * scree_mesh_repair. choice tells what was chosen and why, or is NULL; free both. Fails as
+ * scree_curve_build_scaled and scree_choose do. */
+SCREE_API scree_status scree_choose_mesh(scree_mesh *scan, double scale,
+                                         const scree_progress *progress, scree_mesh *mesh,
+                                         scree_choice *choice, scree_error *error);
 SCREE_API void scree_set_choice_free(scree_set_choice *set);
 
 /* The set's choice. All objects must have been chosen with the same options. */

@@ -177,7 +177,7 @@ typedef struct scree_choice_report {
   const scree_set_choice *set;
   const scree_choice_options *options;
   scree_method method;
-  bool paper;               /* the default choice is the paper's, not the robust one */
+  scree_choice_rule rule;   /* the one that is told first and that meshes are written by */
   const char *command_line; /* for provenance; NULL: unknown */
 } scree_choice_report;
 
@@ -192,8 +192,8 @@ SCREE_API scree_status scree_choice_figure_write(const scree_choice_report *repo
 SCREE_API scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
                                                bool overwrite, scree_error *error);
 
-/* One row per object and grid Rp, one for its robust choice, and two for a set of several objects
- * (docs/formats.md). "-" is stdout. */
+/* One row per object and grid Rp, one for its robust and one for its recommended choice, and two
+ * for a set of several objects (docs/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
                                               bool overwrite, scree_error *error);
 

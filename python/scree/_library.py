@@ -15,7 +15,8 @@ STATUSES = ("OK", "BAD_ARGUMENT", "BAD_FILE", "BAD_MESH", "IO", "OUT_OF_MEMORY",
             "UNSUPPORTED", "NO_BACKEND", "DIVERGED")
 METHODS = ("volume", "qecd")
 REFERENCES = ("scan", "smooth")
-SHAPE_ERRORS = ("area", "volume", "hausdorff", "mean_distance", "inertia", "size")
+SHAPE_ERRORS = ("area", "volume", "hausdorff", "mean_distance", "inertia", "size", "thickness", "thinnest", "convexity",
+                "normals")
 PARTICLE_KINDS = ("mesh", "sphere", "clump")
 LAWS = ("linear", "hysteretic")
 CONTAINERS = ("cylinder", "box")
@@ -133,7 +134,7 @@ class scree_level(Structure):
 
 class scree_choice_options(Structure):
     _fields_ = [("weight", c_double), ("rp_min", c_double), ("rp_max", c_double), ("per_decade", c_int),
-                ("reference", c_int), ("shape_errors", c_bool), ("distances", c_bool)]
+                ("reference", c_int), ("tolerances", c_double * len(SHAPE_ERRORS)), ("area_only", c_bool)]
 
 
 class scree_choice_level(Structure):
@@ -160,7 +161,8 @@ class scree_choice(Structure):
                 ("level_count", c_size_t), ("trace", POINTER(scree_choice_level)), ("trace_count", c_size_t),
                 ("paper", scree_pick), ("robust", scree_pick), ("plain", scree_pick), ("paper_is_accident", c_bool),
                 ("plain_is_accident", c_bool), ("smooth", scree_pick), ("finer_count", c_size_t),
-                ("paper_finer_count", c_size_t), ("best", c_size_t * len(SHAPE_ERRORS))]
+                ("paper_finer_count", c_size_t), ("best", c_size_t * len(SHAPE_ERRORS)), ("fidelity", c_void_p),
+                ("recommended", scree_pick), ("recommended_row", c_size_t), ("limited_by", c_int), ("cost", scree_pick)]
 
 
 class scree_sample_options(Structure):

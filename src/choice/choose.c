@@ -1,10 +1,11 @@
-/* From a curve to a choice, and the errors beside area. Area and volume come with the curve and
- * cost nothing; inertia, size and distances need the meshes, so they are measured at the grid's
- * levels only, in one sweep from fine to coarse. */
+/* From a curve to a choice. Area and volume come with the curve and cost nothing; the other errors
+ * need the levels' meshes. They are measured in one sweep over the levels that the recommended
+ * choice is made from and those of the grid. */
 #include "base/alloc.h"
-#include "base/progress.h"
-#include "base/vec.h"
 #include "choice/criterion.h"
+#include "choice/recommend.h"
+
+#include <stdlib.h>
 
 static scree_level_row curve_row(const void *context, size_t index) {
   scree_level level;
@@ -12,97 +13,101 @@ static scree_level_row curve_row(const void *context, size_t index) {
   return (scree_level_row){level.triangle_count, level.area, level.volume};
 }
 
-/* What the levels are compared with. */
-typedef struct comparison {
-  const scree_choice_options *options;
-  scree_measures measures;
-  scree_surface *surface; /* of the scan; NULL without distances */
-  double length;          /* diameter of the sphere of the scan's area */
-} comparison;
-
-static double inertia_error(const scree_measures *a, const scree_measures *b) {
-  double difference = 0, size = 0;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) {
-      double d = a->inertia[i][j] - b->inertia[i][j];
-      difference += d * d;
-      size += b->inertia[i][j] * b->inertia[i][j];
-    }
-  return sqrt(difference / size);
+static int ascending(const void *a, const void *b) {
+  size_t x = *(const size_t *)a, y = *(const size_t *)b;
+  return (x > y) - (x < y);
 }
 
-static double size_error(const scree_measures *a, const scree_measures *b) {
-  double worst = 0;
-  for (int i = 0; i < 3; i++)
-    worst = fmax(worst, fabs(a->oriented_dimensions[i] / b->oriented_dimensions[i] - 1));
-  return worst;
+/* The levels to measure, ascending, each once; indices has room for SCREE_FIDELITY_MOST and the
+ * grid. */
+static size_t list_levels(const scree_curve *curve, const scree_choice *choice, size_t *indices) {
+  size_t count = scree_fidelity_levels(curve, indices), kept = 0;
+  for (size_t i = 0; i < choice->level_count; i++) indices[count++] = choice->levels[i].level_index;
+  qsort(indices, count, sizeof *indices, ascending);
+  for (size_t i = 0; i < count; i++)
+    if (kept == 0 || indices[i] != indices[kept - 1]) indices[kept++] = indices[i];
+  return kept;
 }
 
-static scree_status measure_level(const comparison *c, const scree_mesh *mesh, double *errors,
-                                  scree_error *error) {
-  scree_status status = SCREE_OK;
-  if (c->options->shape_errors) {
-    scree_measures measures;
-    status = scree_mesh_measure(mesh, &measures, error);
-    if (status != SCREE_OK) return status;
-    errors[SCREE_ERROR_INERTIA] = inertia_error(&measures, &c->measures);
-    errors[SCREE_ERROR_SIZE] = size_error(&measures, &c->measures);
+/* Gives the grid's levels their errors. */
+static void fill_errors(scree_choice *choice, double weight) {
+  const scree_fidelity *f = choice->fidelity;
+  for (size_t i = 0; i < choice->level_count; i++) {
+    size_t row = 0;
+    while (scree_fidelity_level_index(f, row) != choice->levels[i].level_index) row++;
+    for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+      choice->levels[i].errors[e] = scree_fidelity_error(f, row, (scree_shape_error)e);
   }
-  if (c->options->distances) {
-    scree_surface *surface;
-    scree_distance distance;
-    status = scree_surface_create(mesh, &surface, error);
-    if (status != SCREE_OK) return status;
-    status = scree_surface_distance(c->surface, surface, NULL, NULL, &distance, error);
-    scree_surface_free(surface);
-    if (status != SCREE_OK) return status;
-    errors[SCREE_ERROR_HAUSDORFF] = distance.hausdorff / c->length;
-    errors[SCREE_ERROR_MEAN] = fmax(distance.forward.mean, distance.backward.mean) / c->length;
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    if (e != SCREE_ERROR_AREA)
+      choice->best[e] = scree_choice_best_level(choice, (scree_shape_error)e, weight);
+}
+
+/* A pick off the grid, with what it is judged by. */
+static scree_pick pick_at(const scree_curve *curve, const scree_choice *choice, size_t level_index,
+                          double ip) {
+  scree_level level;
+  scree_curve_level(curve, level_index, &level);
+  double eps = fabs(level.area - choice->reference_area) / choice->reference_area;
+  return (scree_pick){.rp = (double)level.triangle_count / (double)choice->triangle_count,
+                      .level_index = level_index,
+                      .triangle_count = level.triangle_count,
+                      .area = level.area,
+                      .volume = level.volume,
+                      .eps_s = eps,
+                      .ip = ip,
+                      .level_eps_s = eps,
+                      .fewest = level.triangle_count,
+                      .most = level.triangle_count};
+}
+
+static scree_status choose_by_cost(const scree_curve *curve, scree_choice *choice,
+                                   scree_error *error) {
+  const scree_fidelity *f = choice->fidelity;
+  size_t count = scree_fidelity_count(f);
+  scree_kept *levels = scree_alloc(count, sizeof *levels);
+  if (!levels) return scree_fail_memory(error, count * sizeof *levels, "errors of levels");
+  for (size_t i = 0; i < count; i++)
+    levels[i] = (scree_kept){scree_fidelity_triangle_count(f, i),
+                             scree_fidelity_error(f, i, SCREE_ERROR_MEAN)};
+  scree_least least = scree_trend_least(levels, count, SCREE_COST_COUNT);
+  choice->cost =
+      pick_at(curve, choice, scree_curve_find(curve, (size_t)least.triangle_count), least.sum);
+  choice->cost.fewest = (size_t)least.fewest;
+  choice->cost.most = (size_t)least.most;
+  scree_free(levels);
+  return SCREE_OK;
+}
+
+static scree_status measure(const scree_curve *curve, const scree_mesh *scan,
+                            const scree_choice_options *options, const scree_progress *progress,
+                            scree_choice *choice, scree_error *error) {
+  scree_gauge gauge = {0};
+  scree_recommended found;
+  size_t *indices = scree_alloc(SCREE_FIDELITY_MOST + choice->level_count, sizeof *indices);
+  if (!indices)
+    return scree_fail_memory(error, choice->level_count * sizeof *indices, "levels to measure");
+  size_t count = list_levels(curve, choice, indices);
+  scree_status status = scree_gauge_make(scan, SCREE_GAUGE_POINTS, &gauge, error);
+  if (status == SCREE_OK)
+    status =
+        scree_fidelity_sweep(&gauge, curve, indices, count, progress, &choice->fidelity, error);
+  if (status == SCREE_OK) {
+    fill_errors(choice, options->weight);
+    status = choose_by_cost(curve, choice, error);
   }
+  if (status == SCREE_OK)
+    status = scree_recommend(curve, &gauge, choice->fidelity, options->tolerances, &found, error);
+  if (status == SCREE_OK) {
+    double load = scree_load(found.reading.errors, options->tolerances, &choice->limited_by);
+    choice->recommended = pick_at(curve, choice, found.level_index, load);
+    status = scree_fidelity_insert(choice->fidelity, found.level_index,
+                                   choice->recommended.triangle_count, &found.reading,
+                                   &choice->recommended_row, error);
+  }
+  scree_gauge_free(&gauge);
+  scree_free(indices);
   return status;
-}
-
-/* All grid levels, from fine to coarse; a level that stands for several Rp is measured once. */
-static scree_status measure_levels(const comparison *c, scree_replay *replay,
-                                   const scree_progress *progress, scree_choice *choice,
-                                   scree_error *error) {
-  scree_ticker ticker = {progress, 0};
-  for (size_t i = choice->level_count; i-- > 0;) {
-    scree_choice_level *level = &choice->levels[i];
-    if (!scree_tick(&ticker, "measuring levels", 1 - (double)(i + 1) / (double)choice->level_count))
-      return scree_fail(error, SCREE_CANCELLED, "cancelled while measuring levels");
-    const scree_choice_level *finer = level + 1;
-    if (i + 1 < choice->level_count && finer->level_index == level->level_index) {
-      for (int e = SCREE_ERROR_HAUSDORFF; e < SCREE_SHAPE_ERROR_COUNT; e++)
-        level->errors[e] = finer->errors[e];
-      continue;
-    }
-    const scree_mesh *mesh;
-    scree_status status = scree_replay_step(replay, level->level_index, &mesh, error);
-    if (status == SCREE_OK) status = measure_level(c, mesh, level->errors, error);
-    if (status != SCREE_OK) return status;
-  }
-  return SCREE_OK;
-}
-
-static scree_status measure_shapes(const scree_curve *curve, const scree_mesh *scan,
-                                   const scree_choice_options *options,
-                                   const scree_progress *progress, scree_choice *choice,
-                                   scree_error *error) {
-  comparison c = {.options = options, .length = sqrt(choice->area / acos(-1))};
-  scree_replay *replay = NULL;
-  scree_status status = SCREE_OK;
-  if (options->shape_errors) status = scree_mesh_measure(scan, &c.measures, error);
-  if (status == SCREE_OK && options->distances)
-    status = scree_surface_create(scan, &c.surface, error);
-  if (status == SCREE_OK) status = scree_replay_start(curve, &replay, error);
-  if (status == SCREE_OK) status = measure_levels(&c, replay, progress, choice, error);
-  scree_replay_free(replay);
-  scree_surface_free(c.surface);
-  if (status != SCREE_OK) return status;
-  for (int e = SCREE_ERROR_HAUSDORFF; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    choice->best[e] = scree_choice_best_level(choice, (scree_shape_error)e, options->weight);
-  return SCREE_OK;
 }
 
 scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
@@ -110,15 +115,29 @@ scree_status scree_choose(const scree_curve *curve, const scree_mesh *scan,
                           scree_choice *choice, scree_error *error) {
   scree_choice_options defaults = scree_default_choice_options();
   if (!options) options = &defaults;
-  bool shapes = options->shape_errors || options->distances;
-  if (shapes && !scan)
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "other errors than area need the scan's mesh");
   scree_level_table table = {scree_curve_level_count(curve), curve_row, curve};
   scree_choice chosen;
   scree_status status = scree_choice_from_table(&table, options, &chosen, error);
   if (status != SCREE_OK) return status;
-  if (shapes) status = measure_shapes(curve, scan, options, progress, &chosen, error);
+  if (scan && !options->area_only) status = measure(curve, scan, options, progress, &chosen, error);
   if (status == SCREE_OK)
+    *choice = chosen;
+  else
+    scree_choice_free(&chosen);
+  return status;
+}
+
+scree_status scree_choose_mesh(scree_mesh *scan, double scale, const scree_progress *progress,
+                               scree_mesh *mesh, scree_choice *choice, scree_error *error) {
+  scree_curve *curve = NULL;
+  scree_choice chosen = {0};
+  scree_status status = scree_curve_build_scaled(scan, scale, NULL, progress, &curve, error);
+  if (status != SCREE_OK) return status;
+  status = scree_choose(curve, scan, NULL, progress, &chosen, error);
+  if (status == SCREE_OK)
+    status = scree_curve_mesh(curve, chosen.recommended.level_index, mesh, error);
+  scree_curve_free(curve);
+  if (status == SCREE_OK && choice)
     *choice = chosen;
   else
     scree_choice_free(&chosen);

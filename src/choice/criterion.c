@@ -18,6 +18,21 @@
 
 #include <math.h>
 
+/* What the recommended level keeps by default. */
+static const struct {
+  scree_shape_error error;
+  double share;
+} usual_tolerances[] = {
+    /* the surface as a whole: a third of a millimetre on a body of 100 mm */
+    {SCREE_ERROR_MEAN, 0.003},
+    /* no part of the body is lost that reaches farther out than this */
+    {SCREE_ERROR_HAUSDORFF, 0.03},
+    /* how it turns */
+    {SCREE_ERROR_INERTIA, 0.02},
+    /* thin walls stay walls: what is 1 mm thick is 0.03 mm off in the mean */
+    {SCREE_ERROR_THICKNESS, 0.03},
+};
+
 /* Relative slack that keeps 1e-3 * 762000 at 762, whichever way 1e-3 was rounded. */
 static const double TARGET_SLACK = 1e-12;
 /* Slack at the ends of the grid: 1e-5 10^(36/9) may come out just above 1e-1. */
@@ -31,14 +46,24 @@ static bool is_accident(double error, double worst) {
 }
 
 scree_choice_options scree_default_choice_options(void) {
-  return (scree_choice_options){1, 1e-5, 1e-1, 9, SCREE_REFERENCE_SCAN, false, false};
+  scree_choice_options o = {1, 1e-5, 1e-1, 9, SCREE_REFERENCE_SCAN, {0}, false};
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) o.tolerances[e] = INFINITY;
+  for (size_t i = 0; i < sizeof usual_tolerances / sizeof *usual_tolerances; i++)
+    o.tolerances[usual_tolerances[i].error] = usual_tolerances[i].share;
+  return o;
 }
 
-const char *scree_shape_error_name(scree_shape_error which) {
-#define SCREE_SHAPE_ERROR_NAME(name, text) text,
-  static const char *const names[] = {SCREE_SHAPE_ERROR_LIST(SCREE_SHAPE_ERROR_NAME)};
-#undef SCREE_SHAPE_ERROR_NAME
-  return (unsigned)which < SCREE_SHAPE_ERROR_COUNT ? names[which] : "?";
+const char *scree_choice_rule_name(scree_choice_rule rule) {
+#define SCREE_CHOICE_RULE_NAME(name, text) text,
+  static const char *const names[] = {SCREE_CHOICE_RULE_LIST(SCREE_CHOICE_RULE_NAME)};
+#undef SCREE_CHOICE_RULE_NAME
+  return (unsigned)rule < SCREE_RULE_COUNT ? names[rule] : "?";
+}
+
+const scree_pick *scree_choice_pick(const scree_choice *choice, scree_choice_rule rule) {
+  return rule == SCREE_RULE_PAPER    ? &choice->paper
+         : rule == SCREE_RULE_ROBUST ? &choice->robust
+                                     : &choice->recommended;
 }
 
 static double log_grid(double rp_min, int per_decade, size_t index) {
@@ -262,6 +287,10 @@ static scree_status check_options(const scree_choice_options *o, scree_error *er
   if (o->per_decade < 1 || o->per_decade > 1000)
     return scree_fail(error, SCREE_BAD_ARGUMENT,
                       "%d grid points per decade: must be from 1 to 1000", o->per_decade);
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    if (!(o->tolerances[e] > 0))
+      return scree_fail(error, SCREE_BAD_ARGUMENT, "tolerance %g of %s: must be above 0",
+                        o->tolerances[e], scree_shape_error_name((scree_shape_error)e));
   if (o->rp_min < 1e-12)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "grid from %g: smaller than the limit 1e-12",
                       o->rp_min);
@@ -324,12 +353,14 @@ scree_status scree_choice_from_table(const scree_level_table *table,
   find_similar(filled.trace, filled.trace_count, SCREE_PLAIN_IP, &filled.plain);
   find_similar(filled.trace, filled.trace_count, SCREE_ROBUST_IP, &filled.robust);
   find_similar(filled.trace, filled.trace_count, SCREE_SMOOTH_IP, &filled.smooth);
+  filled.recommended = filled.cost = filled.robust;
   *choice = filled;
   return SCREE_OK;
 }
 
 void scree_choice_free(scree_choice *choice) {
   if (!choice) return;
+  scree_fidelity_free(choice->fidelity);
   scree_free(choice->levels);
   scree_free(choice->trace);
   *choice = (scree_choice){0};

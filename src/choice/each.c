@@ -14,12 +14,11 @@ static const size_t KEEP_BYTES = (size_t)2 << 30;
 enum { KEPT_BYTES_PER_TRIANGLE = 64 }; /* record and mesh */
 
 /* Parts of an object's time, measured on 100,000 to 900,000 triangles: loading takes from a
- * twentieth to two fifths, by what there is to repair; the choice none, unless more than area is
- * measured. */
-static const double LOAD_PART = 0.15, SHAPE_PART = 0.2, DISTANCE_PART = 0.6;
+ * twentieth to two fifths, by what there is to repair; the choice none where it is by area only. */
+static const double LOAD_PART = 0.15, CHOICE_PART = 0.2;
 
 static double choice_part(const scree_choice_options *options) {
-  return options->distances ? DISTANCE_PART : options->shape_errors ? SHAPE_PART : 0;
+  return options->area_only ? 0 : CHOICE_PART;
 }
 
 typedef struct object {

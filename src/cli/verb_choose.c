@@ -39,9 +39,8 @@ static const cli_option options[] = {
      "noise, measured on the curve). Default: scan.",
      0, 0, "scan|smooth"},
     {"errors", 'e', CLI_FLAG, AT(errors), NULL,
-     "Also inertia and principal dimensions at every grid level.", 0, 0, NULL},
-    {"distance", 'd', CLI_FLAG, AT(distances), NULL,
-     "Also Hausdorff and mean distance to the scan at every grid level (slow).", 0, 0, NULL},
+     "Also the count that each other error alone would choose on the grid.", 0, 0, NULL},
+    {"distance", 'd', CLI_FLAG, AT(distances), NULL, "As --errors.", 0, 0, NULL},
     {"density", 0, CLI_REAL, AT(density), "RHO",
      "Density in kg/m3, for the mass and inertia written. Default: 2000.", 1e-6, 1e6, NULL},
     {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
@@ -194,7 +193,7 @@ static scree_status write_output(choose_run *run, scree_error *error) {
                                 &run->set,
                                 &run->options,
                                 run->simplify.method,
-                                a->paper,
+                                a->paper ? SCREE_RULE_PAPER : SCREE_RULE_ROBUST,
                                 run->call->command_line};
   scree_status status = SCREE_OK;
   if (a->output) status = choose_write_reports(run, &report, error);
@@ -235,8 +234,6 @@ static int run_choose(const cli_call *call) {
   cli_remark_density(a->density);
   run.options.weight = a->weight;
   run.options.reference = (scree_reference)a->reference;
-  run.options.shape_errors = a->errors;
-  run.options.distances = a->distances;
   run.simplify = scree_default_simplify_options();
   if (a->method != METHOD_UNSET) run.simplify.method = (scree_method)a->method;
   if (a->paper) run.simplify.method = SCREE_METHOD_QECD;

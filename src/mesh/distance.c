@@ -30,12 +30,10 @@
 #include <string.h>
 
 enum {
-  BLOCK = 512,         /* vertices or facets that share a start */
-  CHUNK = 256 * BLOCK, /* between two reports of progress */
-  /* Samples for cutting a facet, whatever the budget: surfaces that all but coincide would be cut
-   * without end. */
-  CUT_LEAST = 32,
-  CUT_MOST = 1 << 14,
+  BLOCK = 512,             /* vertices or facets that share a start */
+  CHUNK = 256 * BLOCK,     /* between two reports of progress */
+  CUT_FIRST = 8,           /* samples for cutting one facet in the first round */
+  CUT_MOST = 1 << 14,      /* samples for cutting one facet */
   SAMPLE_LEAST = 10000,    /* by default, to begin with */
   SAMPLE_LIMIT = 1 << 28,  /* per surface */
   CONVERGE_MOST = 1 << 24, /* samples per surface while converging */
@@ -174,7 +172,7 @@ typedef struct sweep {
   const scree_surface *from, *to;
   double density; /* samples per m^2 */
   double gap;     /* as asked; 0: parts are not cut further */
-  size_t budget;  /* samples for cutting a facet */
+  double budget;  /* samples for cutting, per facet of a block */
   double found;   /* the largest distance of the sweeps before */
   double *vertex_distance;
   uint32_t *vertex_near; /* a triangle of to.bvh, per vertex of from */
@@ -309,11 +307,13 @@ static double sweep_whole_facet(const sweep *s, const part *facet, const uint32_
 }
 
 /* Edges, as Metro does: where an edge crosses a hollow it is farther off than the middles of parts.
- * For the maximum alone. Edges between two facets are seen twice, whichever way they are wound. */
-static void sweep_edges(const sweep *s, const part *facet, uint32_t near, tally *t) {
+ * For the maximum alone. The corners of m x m parts lie on them, which is enough but for needles.
+ * Edges between two facets are seen twice, whichever way they are wound. */
+static void sweep_edges(const sweep *s, const part *facet, double m, uint32_t near, tally *t) {
   for (int k = 0; k < 3; k++) {
     vec3 from = facet->corner[k], to = facet->corner[(k + 1) % 3];
     double parts = round(vec3_distance(from, to) * sqrt(s->density));
+    if (m > 1 && parts <= 2 * m) continue;
     for (double i = 1; i < parts; i++) {
       vec3 at = vec3_lerp(from, to, i / parts);
       note(t, scree_surface_nearest(s->to, at, &near), at);
@@ -339,7 +339,7 @@ static void sweep_facets(void *context, size_t begin, size_t end, size_t block, 
     uint32_t near = s->vertex_near[corners[0]];
     double bound = cuts > 1 ? sweep_cut_facet(s, &facet, corners, (size_t)cuts, area, &near, &t)
                             : sweep_whole_facet(s, &facet, corners, area, &near, &t);
-    sweep_edges(s, &facet, near, &t);
+    sweep_edges(s, &facet, cuts, near, &t);
     scree_sum_add(&t.area, area);
     t.bound = fmax(t.bound, bound);
     if (s->facet_bound) s->facet_bound[i] = bound;
@@ -391,33 +391,54 @@ static void push_quarters(const sweep *s, const queued *whole, queued *heap, siz
   for (int k = 0; k < 4; k++) push_part(s, &parts[k], whole->near, heap, count, t);
 }
 
-/* What is below the largest distance found, give or take the gap, is done with. */
-static void cut_facet(const sweep *s, const part *facet, uint32_t near, queued *heap, tally *t) {
-  size_t count = 0;
+/* What is below the largest distance found, give or take the gap, is done with. *bound becomes
+ * what no point of the facet exceeds. Answers how many samples that took, at most the budget. */
+static size_t cut_facet(const sweep *s, const part *facet, uint32_t near, size_t budget,
+                        queued *heap, tally *t, double *bound) {
+  size_t count = 0, spent = 1;
   push_part(s, facet, near, heap, &count, t);
-  for (size_t spent = 1;; spent += 4) {
+  for (;; spent += 4) {
     double enough = fmax(s->found, t->maximum) * (1 + s->gap) + ROUNDING * s->to->size;
-    if (heap[0].bound <= enough || spent + 4 > s->budget) break;
+    if (heap[0].bound <= enough || spent + 4 > budget) break;
     queued top = heap_pop(heap, &count);
     push_quarters(s, &top, heap, &count, t);
   }
-  t->bound = fmax(t->bound, heap[0].bound);
+  *bound = fmin(*bound, heap[0].bound);
+  return spent;
 }
 
+/* The facets of a block by falling bound. */
+static void sort_by_bound(const double *bounds, size_t count, uint16_t order[BLOCK]) {
+  for (size_t i = 0; i < count; i++) {
+    size_t k = i;
+    for (; k > 0 && bounds[order[k - 1]] < bounds[i]; k--) order[k] = order[k - 1];
+    order[k] = (uint16_t)i;
+  }
+}
+
+/* In two rounds, those of the largest bounds first: a few samples for each find a distance that
+ * settles most, then the rest of the block's samples go to what is left. */
 static void sweep_bounds(void *context, size_t begin, size_t end, size_t block, int worker) {
   const sweep *s = context;
   tally t = {.maximum = -1};
-  double enough = s->found * (1 + s->gap) + ROUNDING * s->to->size;
-  for (size_t i = s->first + begin; i < s->first + end; i++) {
-    const double *c = s->from->bvh.corners + 9 * i;
-    part facet = {{vec3_load(c), vec3_load(c + 3), vec3_load(c + 6)}};
-    if (s->facet_bound[i] <= enough) {
-      t.bound = fmax(t.bound, s->facet_bound[i]);
-      continue;
+  queued *heap = s->heaps + (size_t)worker * CUT_MOST;
+  double *bounds = s->facet_bound + s->first + begin;
+  uint16_t order[BLOCK];
+  size_t left = (size_t)(s->budget * (double)(end - begin));
+  for (int round = 0; round < 2; round++) {
+    sort_by_bound(bounds, end - begin, order);
+    for (size_t k = 0; k < end - begin && left > 0; k++) {
+      size_t i = s->first + begin + order[k];
+      double enough = fmax(s->found, t.maximum) * (1 + s->gap) + ROUNDING * s->to->size;
+      if (bounds[order[k]] <= enough) break;
+      const double *c = s->from->bvh.corners + 9 * i;
+      part facet = {{vec3_load(c), vec3_load(c + 3), vec3_load(c + 6)}};
+      uint32_t near = s->vertex_near[s->from->mesh.triangles[3 * (size_t)s->from->bvh.order[i]]];
+      size_t most = round == 0 ? CUT_FIRST : CUT_MOST;
+      left -= cut_facet(s, &facet, near, most < left ? most : left, heap, &t, &bounds[order[k]]);
     }
-    uint32_t first = s->from->mesh.triangles[3 * (size_t)s->from->bvh.order[i]];
-    cut_facet(s, &facet, s->vertex_near[first], s->heaps + (size_t)worker * CUT_MOST, &t);
   }
+  for (size_t k = 0; k < end - begin; k++) t.bound = fmax(t.bound, bounds[k]);
   s->tallies[block] = t;
 }
 
@@ -530,8 +551,8 @@ static scree_status deviate(const scree_surface *from, const scree_surface *to,
   SCREE_ALLOC_OR(s.vertex_distance, vertex_count, error, done);
   SCREE_ALLOC_OR(s.vertex_near, vertex_count, error, done);
   SCREE_ALLOC_OR(s.tallies, CHUNK / BLOCK, error, done);
-  s.budget = way->cut_budget / from->mesh.triangle_count;
-  s.budget = s.budget < CUT_LEAST ? CUT_LEAST : s.budget > CUT_MOST ? CUT_MOST : s.budget;
+  s.budget = (double)way->cut_budget / (double)from->mesh.triangle_count;
+  s.budget = fmax(s.budget, (double)way->cut_least);
   if (s.gap > 0) {
     SCREE_ALLOC_OR(s.facet_bound, from->mesh.triangle_count, error, done);
     SCREE_ALLOC_OR(s.heaps, (size_t)scree_worker_count() * CUT_MOST, error, done);
@@ -565,7 +586,8 @@ static scree_status set_way(const scree_distance_options *options, const scree_s
   const scree_distance_options defaults = scree_default_distance_options();
   const scree_distance_options *o = options ? options : &defaults;
   size_t more = a->used_count > b->used_count ? a->used_count : b->used_count;
-  *way = (scree_way){o->sample_count, o->sample_count == 0, o->hausdorff_gap, 0, SCREE_CUT_BUDGET};
+  *way = (scree_way){o->sample_count,  o->sample_count == 0, o->hausdorff_gap, 0,
+                     SCREE_CUT_BUDGET, SCREE_CUT_LEAST};
   if (way->converge) way->sample_count = more < SAMPLE_LEAST ? SAMPLE_LEAST : more;
   if (way->sample_count > SAMPLE_LIMIT)
     return scree_fail(error, SCREE_LIMIT, "%zu samples, above the limit of %d", way->sample_count,

@@ -23,10 +23,12 @@ typedef struct scree_way {
   bool converge;       /* and four times as many, until the mean is known to 1 per cent */
   double gap;          /* as scree_distance_options.hausdorff_gap */
   double known;        /* m; what is nearer need not be bounded: 0, or a distance known elsewhere */
-  size_t cut_budget;   /* samples for bounding, all facets together */
+  /* Samples for bounding, all facets together, but at least cut_least for each: surfaces that all
+   * but coincide would be cut without end. */
+  size_t cut_budget, cut_least;
 } scree_way;
 
-enum { SCREE_CUT_BUDGET = 1 << 22 };
+enum { SCREE_CUT_BUDGET = 1 << 22, SCREE_CUT_LEAST = 32 };
 
 /* From every point of one surface to the other. */
 scree_status scree_surface_deviation(const scree_surface *from, const scree_surface *to,

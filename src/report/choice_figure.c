@@ -107,7 +107,7 @@ static double largest_rp(const scree_choice_report *report) {
   for (size_t e = 0; e < report->entry_count; e++) {
     const scree_choice *choice = report->entries[e].choice;
     rp = fmax(rp, pick_rp(choice, &choice->paper));
-    if (!report->paper) rp = fmax(rp, pick_rp(choice, &choice->robust));
+    if (report->rule != SCREE_RULE_PAPER) rp = fmax(rp, pick_rp(choice, &choice->robust));
   }
   return rp / 0.75;
 }
@@ -133,7 +133,7 @@ static void fit_errors(const scree_choice_report *report, bool criterion, scree_
     find_range(choice->levels, choice->level_count, rp_max, criterion, false, grid);
     find_range(choice->trace, choice->trace_count, rp_max, criterion, report->entry_count == 1,
                drawn);
-    if (!report->paper)
+    if (report->rule != SCREE_RULE_PAPER)
       drawn[1] = fmax(drawn[1], choice->robust.level_eps_s + (criterion ? penalty : 0));
   }
   double low = criterion ? fmin(grid[0], drawn[0]) : grid[0], high = fmax(grid[1], drawn[1]);
@@ -164,7 +164,7 @@ static scree_panel make_panel(const scree_choice_report *report, bool criterion,
   add_entries(report, criterion, data);
   if (report->entry_count == 1) add_robust_line(report->entries[0].choice, criterion, data);
   add_picks(report, false, criterion, data);
-  if (!report->paper) add_picks(report, true, criterion, data);
+  if (report->rule != SCREE_RULE_PAPER) add_picks(report, true, criterion, data);
   fit_errors(report, criterion, &panel.y);
   panel.series = data->series;
   panel.series_count = data->series_count;
@@ -175,7 +175,7 @@ static scree_panel make_panel(const scree_choice_report *report, bool criterion,
 static size_t set_guide(const scree_choice_report *report, char *text, size_t size,
                         scree_guide *guide) {
   if (report->entry_count < 2 || !report->set) return 0;
-  double rp = report->paper ? report->set->paper.rp : report->set->robust.rp;
+  double rp = report->rule == SCREE_RULE_PAPER ? report->set->paper.rp : report->set->robust.rp;
   snprintf(text, size, "set: %.2g", rp);
   *guide = (scree_guide){text, rp, false};
   return 1;

@@ -77,7 +77,7 @@ static void json_options(scree_json *json, const scree_choice_report *report) {
   const scree_choice_options *o = report->options;
   scree_json_row_object(json, "options");
   scree_json_text(json, "method", scree_method_name(report->method));
-  scree_json_bool(json, "paper", report->paper);
+  scree_json_bool(json, "paper", (report->rule == SCREE_RULE_PAPER));
   scree_json_number(json, "weight", o->weight);
   scree_json_number(json, "rp_min", o->rp_min);
   scree_json_number(json, "rp_max", o->rp_max);
@@ -115,7 +115,7 @@ static void json_entry(scree_json *json, const scree_choice_report *report,
   json_pick(json, "paper", &choice->paper);
   json_pick(json, "robust", &choice->robust);
   scree_json_bool(json, "paper_is_accident", choice->paper_is_accident);
-  scree_json_text(json, "default", report->paper ? "paper" : "robust");
+  scree_json_text(json, "default", report->rule == SCREE_RULE_PAPER ? "paper" : "robust");
   json_pick(json, "plain", &choice->plain);
   scree_json_bool(json, "plain_is_accident", choice->plain_is_accident);
   json_pick(json, "smooth", &choice->smooth);
@@ -124,7 +124,7 @@ static void json_entry(scree_json *json, const scree_choice_report *report,
   scree_json_number(json, "reference_area", choice->reference_area);
   scree_json_count(json, "floor_triangle_count", choice->floor_count);
   scree_json_count(json, "triangle_count_if_scanned_twice_as_fine",
-                   report->paper ? choice->paper_finer_count : choice->finer_count);
+                   report->rule == SCREE_RULE_PAPER ? choice->paper_finer_count : choice->finer_count);
   json_source(json, entry);
   scree_json_text(json, "version", scree_version());
   scree_json_text(json, "command", report->command_line);
@@ -162,7 +162,7 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
   scree_json_number(json, "paper_spread", set->paper_spread);
   scree_json_number(json, "robust_spread", set->robust_spread);
   scree_json_number(json, "triangle_ratio_if_scanned_twice_as_fine",
-                    report->paper ? set->paper_growth : set->robust_growth);
+                    report->rule == SCREE_RULE_PAPER ? set->paper_growth : set->robust_growth);
   scree_json_text(json, "version", scree_version());
   scree_json_text(json, "command", report->command_line);
   json_options(json, report);

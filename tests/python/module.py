@@ -169,7 +169,7 @@ class Curves(unittest.TestCase):
         self.assertLessEqual(self.scan.simplify(count=50, method="qecd").triangle_count, 50)
 
     def test_choice(self):
-        choice = self.scan.choose(shape_errors=True)
+        choice = self.scan.choose()
         self.assertEqual(len(choice.levels), 37)
         least = min(choice.levels, key=lambda level: level.ip)
         self.assertEqual(choice.paper.triangle_count, least.triangle_count)

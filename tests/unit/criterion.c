@@ -406,15 +406,20 @@ static void bad_input_is_one_sentence(void **state) {
     assert_int_equal(scree_choice_from_table(&table, &o, &c, &error), SCREE_BAD_MESH);
   }
   scree_level_table table = table_of(good, 2);
-  const scree_choice_options bad_options[] = {
-      {0, 1e-5, 0.1, 9, 0, 0, 0},      {NAN, 1e-5, 0.1, 9, 0, 0, 0}, {1, 0, 0.1, 9, 0, 0, 0},
-      {1, 0.2, 0.1, 9, 0, 0, 0},       {1, 1e-5, 1.5, 9, 0, 0, 0},   {1, 1e-5, 0.1, 0, 0, 0, 0},
-      {1, 1e-5, 0.1, 2000, 0, 0, 0},   {1, 1e-300, 0.1, 9, 0, 0, 0}, {1, NAN, 0.1, 9, 0, 0, 0},
-      {INFINITY, 1e-5, 1, 9, 0, 0, 0},
-  };
-  for (size_t i = 0; i < sizeof bad_options / sizeof *bad_options; i++)
-    assert_int_equal(scree_choice_from_table(&table, &bad_options[i], &c, &error),
-                     SCREE_BAD_ARGUMENT);
+  const double bad_options[][4] = {{0, 1e-5, 0.1, 9},     {NAN, 1e-5, 0.1, 9}, {1, 0, 0.1, 9},
+                                   {1, 0.2, 0.1, 9},      {1, 1e-5, 1.5, 9},   {1, 1e-5, 0.1, 0},
+                                   {1, 1e-5, 0.1, 2000},  {1, 1e-300, 0.1, 9}, {1, NAN, 0.1, 9},
+                                   {INFINITY, 1e-5, 1, 9}};
+  for (size_t i = 0; i < sizeof bad_options / sizeof *bad_options; i++) {
+    o.weight = bad_options[i][0];
+    o.rp_min = bad_options[i][1];
+    o.rp_max = bad_options[i][2];
+    o.per_decade = (int)bad_options[i][3];
+    assert_int_equal(scree_choice_from_table(&table, &o, &c, &error), SCREE_BAD_ARGUMENT);
+  }
+  o = scree_default_choice_options();
+  o.tolerances[SCREE_ERROR_MEAN] = 0;
+  assert_int_equal(scree_choice_from_table(&table, &o, &c, &error), SCREE_BAD_ARGUMENT);
 }
 
 /* Fails the nth allocation from now. */

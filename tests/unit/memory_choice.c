@@ -78,7 +78,6 @@ static scree_choice_options quick_options(void) {
   o.rp_min = 1e-2;
   o.rp_max = 0.5;
   o.per_decade = 3;
-  o.shape_errors = o.distances = true;
   return o;
 }
 
@@ -94,6 +93,24 @@ static scree_status choose_one(void *context, scree_error *error) {
   scree_choice choice = {0};
   scree_status status = scree_choose(c->curve, &c->mesh, &options, NULL, &choice, error);
   scree_choice_free(&choice);
+  return status;
+}
+
+static scree_status choose_mesh(void *context, scree_error *error) {
+  const choosing *c = context;
+  scree_mesh scan = {0}, level = {0};
+  scree_status status = scree_mesh_copy(&c->mesh, &scan, error);
+  if (status == SCREE_OK) status = scree_choose_mesh(&scan, 1, NULL, &level, NULL, error);
+  scree_mesh_free(&scan);
+  scree_mesh_free(&level);
+  return status;
+}
+
+static scree_status measure_levels(void *context, scree_error *error) {
+  const choosing *c = context;
+  scree_fidelity *fidelity = NULL;
+  scree_status status = scree_fidelity_measure(c->curve, &c->mesh, NULL, 0, NULL, &fidelity, error);
+  scree_fidelity_free(fidelity);
   return status;
 }
 
@@ -120,7 +137,6 @@ static scree_status choose_many(void *context, scree_error *error) {
                           .options = quick_options(),
                           .load = load_ball,
                           .context = &c->mesh};
-  job.options.distances = false;
   scree_status status = scree_choose_each(&job, NULL, choices, &set, error);
   for (int i = 0; i < 2; i++) scree_choice_free(&choices[i]);
   scree_set_choice_free(&set);
@@ -148,6 +164,8 @@ static void choices(void **state) {
   choosing c;
   start_choosing(&c);
   check_allocation_failures(choose_one, &c);
+  check_allocation_failures(choose_mesh, &c);
+  check_allocation_failures(measure_levels, &c);
   check_allocation_failures(choose_of_two, &c);
   check_allocation_failures(choose_many, &c);
   end_choosing(&c);

@@ -1,0 +1,110 @@
+/* How true the levels of a curve are to the scan. */
+#ifndef SCREE_FIDELITY_H
+#define SCREE_FIDELITY_H
+
+#include "scree/simplify.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The errors of a level, each a share. Lengths are shares of D = sqrt(S / pi), S the scan's area:
+ * the diameter of the sphere of that area. */
+#define SCREE_SHAPE_ERROR_LIST(X)                                                                  \
+  X(AREA, "area")           /* |S - S_clean| / S_clean, S_clean the scan's area without noise */   \
+  X(VOLUME, "volume")       /* |V - Vm| / |Vm| */                                                  \
+  X(HAUSDORFF, "hausdorff") /* the larger of both ways, over D */                                  \
+  X(MEAN, "mean_distance")  /* the larger of both ways, over D */                                  \
+  X(INERTIA, "inertia")     /* Frobenius norm of the tensors' difference over the scan's */        \
+  X(SIZE, "size")           /* largest relative change of the three principal dimensions */        \
+  X(THICKNESS, "thickness") /* mean over the scan's walls of the distance to the level over the    \
+                               wall's thickness there */                                           \
+  X(THINNEST, "thinnest")   /* relative change of the first percentile of the walls' thickness */  \
+  X(CONVEXITY, "convexity") /* relative change of volume / hull volume */                          \
+  X(NORMALS, "normals")     /* mean angle between the normals of scan and level, over pi */
+
+typedef enum scree_shape_error {
+#define SCREE_SHAPE_ERROR_ENUM(name, text) SCREE_ERROR_##name,
+  SCREE_SHAPE_ERROR_LIST(SCREE_SHAPE_ERROR_ENUM)
+#undef SCREE_SHAPE_ERROR_ENUM
+      SCREE_SHAPE_ERROR_COUNT
+} scree_shape_error;
+
+/* The name above, for example "mean_distance". */
+SCREE_API const char *scree_shape_error_name(scree_shape_error which);
+
+/* The errors of several levels, and what the scan itself is like. */
+typedef struct scree_fidelity scree_fidelity;
+
+/* Measures the levels of a curve whose indices are given, ascending, in one sweep; level_indices
+ * NULL: scree_fidelity_levels of them. scan is the mesh that the curve was built from.
+ *
+ * Some 10,000 points are spread over the scan, and as many parts over each level; means are exact
+ * to 1 per cent. The Hausdorff distance is bounded by how far points lie apart, and what could be
+ * farther than the largest found is looked at closer, to 1 per cent. Walls are where a ray inward
+ * from one of the points meets the surface again, facing back. Noise is what a quadric through the
+ * points round each leaves over, as far as that does not depend on how many.
+ *
+ * The same for any number of threads. Fails with SCREE_BAD_MESH where the scan has no area,
+ * SCREE_BAD_ARGUMENT where the indices do not ascend, SCREE_OUT_OF_MEMORY, SCREE_CANCELLED. Cost:
+ * about a third of the curve's. */
+SCREE_API scree_status scree_fidelity_measure(const scree_curve *curve, const scree_mesh *scan,
+                                              const size_t *level_indices, size_t level_count,
+                                              const scree_progress *progress,
+                                              scree_fidelity **fidelity, scree_error *error);
+SCREE_API void scree_fidelity_free(scree_fidelity *fidelity);
+
+enum { SCREE_FIDELITY_PER_DECADE = 9, SCREE_FIDELITY_FINEST = 2500, SCREE_FIDELITY_MOST = 48 };
+/* The levels that a choice is made from: at Rp = 10^(-k / SCREE_FIDELITY_PER_DECADE), as the
+ * paper's grid has them, of at most SCREE_FIDELITY_FINEST triangles; from fine to coarse. Fills
+ * level_indices, at most SCREE_FIDELITY_MOST of them, and answers how many. */
+SCREE_API size_t scree_fidelity_levels(const scree_curve *curve,
+                                       size_t level_indices[SCREE_FIDELITY_MOST]);
+
+SCREE_API size_t scree_fidelity_count(const scree_fidelity *fidelity);
+/* Rows are the levels in the order asked for; row must be below the count. */
+SCREE_API size_t scree_fidelity_level_index(const scree_fidelity *fidelity, size_t row);
+SCREE_API size_t scree_fidelity_triangle_count(const scree_fidelity *fidelity, size_t row);
+/* NaN where the scan has none of it, as the thickness of a body without walls. */
+SCREE_API double scree_fidelity_error(const scree_fidelity *fidelity, size_t row,
+                                      scree_shape_error which);
+/* The point of scan or level that is farthest from the other surface, m. */
+SCREE_API void scree_fidelity_farthest(const scree_fidelity *fidelity, size_t row, double at[3]);
+
+/* Changes with their sign, relative to the scan: below 0 where the level has less. */
+#define SCREE_CHANGE_LIST(X)                                                                       \
+  X(AREA, "area")         /* against the area without noise */                                     \
+  X(VOLUME, "volume")     /* */                                                                    \
+  X(INERTIA, "inertia")   /* of the tensor's trace */                                              \
+  X(LENGTH, "length")     /* of the least box: */                                                  \
+  X(WIDTH, "width")       /* */                                                                    \
+  X(HEIGHT, "height")     /* */                                                                    \
+  X(THINNEST, "thinnest") /* first percentile of the thickness */                                  \
+  X(CONVEXITY, "convexity")
+
+typedef enum scree_shape_change {
+#define SCREE_CHANGE_ENUM(name, text) SCREE_CHANGE_##name,
+  SCREE_CHANGE_LIST(SCREE_CHANGE_ENUM)
+#undef SCREE_CHANGE_ENUM
+      SCREE_CHANGE_COUNT
+} scree_shape_change;
+
+SCREE_API const char *scree_shape_change_name(scree_shape_change which);
+SCREE_API double scree_fidelity_change(const scree_fidelity *fidelity, size_t row,
+                                       scree_shape_change which);
+
+/* What is known of the scan. */
+typedef enum scree_scan_fact {
+  SCREE_SCAN_LENGTH,     /* D, m */
+  SCREE_SCAN_NOISE,      /* standard deviation of the scanner's noise, m; 0 where none is seen */
+  SCREE_SCAN_CLEAN_AREA, /* without what noise adds, m2 */
+  SCREE_SCAN_THICKNESS,  /* median thickness of the walls, m; NaN without walls */
+  SCREE_SCAN_THINNEST,   /* first percentile of it, m */
+  SCREE_SCAN_HEIGHT,     /* the least of the three principal dimensions, m */
+} scree_scan_fact;
+SCREE_API double scree_fidelity_scan(const scree_fidelity *fidelity, scree_scan_fact which);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

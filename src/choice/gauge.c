@@ -1,0 +1,350 @@
+/* Distances from the scan are taken at the points spread over it. A vertex of the scan lies no
+ * farther from the level than its point does, plus the way between them; vertices that could be the
+ * farthest by that bound are asked themselves. Distances back are those of the level's parts to the
+ * scan (mesh/distance.c), bounded only where they could exceed the distance forward. */
+#include "choice/gauge.h"
+
+#include "base/alloc.h"
+#include "base/parallel.h"
+#include "base/sum.h"
+#include "mesh/ray.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum {
+  PROBE_STEP = 4,   /* points per probe */
+  PARTS = 16,       /* points per facet of a level whose parts give the mean */
+  CUT_SHARE = 4,    /* samples of a level for bounding the way back, per point of the spread */
+  QUERY_BLOCK = 256 /* points that share a start */
+};
+/* Facets of the scan no larger than this hide nothing between their corners; of D. */
+static const double SMALL_FACET = 0.002;
+/* A wall's other side faces back: the cosine of its normal with the ray inward. */
+static const double FACING_BACK = 0.8;
+/* Thinner is the surface itself, seen from beside the point; of D. */
+static const double LEAST_WALL = 0.002;
+/* ---- The scan ---- */
+
+static int ascending(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+static double percentile(double *values, size_t count, double share) {
+  if (count == 0) return NAN;
+  qsort(values, count, sizeof *values, ascending);
+  return values[(size_t)(share * (double)count)];
+}
+
+/* How thick the surface is along a line from between its sides; 0 where it has none there. */
+static double thickness_along(const scree_bvh *bvh, const scree_body_wall *wall) {
+  double facing[2] = {0, 0};
+  double there = scree_ray_meet(bvh, wall->middle, wall->inward, 0, &facing[0]),
+         back = scree_ray_meet(bvh, wall->middle, vec3_neg(wall->inward), 0, &facing[1]);
+  bool inside = there + back < INFINITY && facing[0] > 0 && facing[1] > 0;
+  return inside ? there + back : 0;
+}
+
+static void find_walls(scree_gauge *g) {
+  const scree_bvh *bvh = &g->surface->bvh;
+  for (size_t i = 0; i < g->probe_count; i++) {
+    scree_body_wall *wall = &g->walls[g->wall_count];
+    double facing = 0;
+    wall->point = (uint32_t)(i * g->probe_step);
+    wall->inward = vec3_neg(g->probe_normals[i]);
+    vec3 from = g->spread.points[wall->point];
+    double way = scree_ray_meet(bvh, from, wall->inward, LEAST_WALL * g->length, &facing);
+    if (!(way < INFINITY) || facing < FACING_BACK) continue;
+    wall->middle = vec3_mad(from, wall->inward, way / 2);
+    wall->thickness = thickness_along(bvh, wall);
+    g->wall_count += wall->thickness > 0;
+  }
+}
+
+static scree_status set_thickness(scree_gauge *g, scree_error *error) {
+  double *sorted = scree_alloc(g->wall_count, sizeof *sorted);
+  if (!sorted) return scree_fail_memory(error, g->wall_count * sizeof *sorted, "walls");
+  for (size_t i = 0; i < g->wall_count; i++) sorted[i] = g->walls[i].thickness;
+  g->thickness = percentile(sorted, g->wall_count, 0.5);
+  g->thinnest = percentile(sorted, g->wall_count, 0.01);
+  scree_free(sorted);
+  return SCREE_OK;
+}
+
+static scree_status set_probes(scree_gauge *g, scree_error *error) {
+  vec3 *points = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  g->probe_step = PROBE_STEP;
+  g->probe_count = (g->spread.count + PROBE_STEP - 1) / PROBE_STEP;
+  SCREE_ALLOC_OR(points, g->probe_count, error, done);
+  SCREE_ALLOC_OR(g->probe_normals, g->probe_count, error, done);
+  SCREE_ALLOC_OR(g->walls, g->probe_count + 1, error, done);
+  for (size_t i = 0; i < g->probe_count; i++) {
+    points[i] = g->spread.points[i * PROBE_STEP];
+    g->probe_normals[i] = g->spread.normals[i * PROBE_STEP];
+    if (g->measures.inward) g->probe_normals[i] = vec3_neg(g->probe_normals[i]);
+  }
+  status = scree_fit_points(g->scan, points, g->probe_normals, g->probe_count, &g->fit, error);
+  if (status != SCREE_OK) goto done;
+  g->clean_area = g->fit.area_share * g->measures.area;
+  find_walls(g);
+  status = set_thickness(g, error);
+done:
+  scree_free(points);
+  return status;
+}
+
+scree_status scree_gauge_make(const scree_mesh *scan, size_t point_count, scree_gauge *gauge,
+                              scree_error *error) {
+  scree_gauge made = {.scan = scan};
+  scree_status status = scree_mesh_measure(scan, &made.measures, error);
+  if (status == SCREE_OK && !(made.measures.area > 0))
+    status = scree_fail(error, SCREE_BAD_MESH, "%zu triangles of area %g m2: no surface to judge",
+                        scan->triangle_count, made.measures.area);
+  if (status != SCREE_OK) return status;
+  made.length = sqrt(made.measures.area / acos(-1));
+  status = scree_surface_create(scan, &made.surface, error);
+  if (status == SCREE_OK) status = scree_spread_make(scan, point_count, &made.spread, error);
+  if (status == SCREE_OK) status = set_probes(&made, error);
+  if (status == SCREE_OK)
+    *gauge = made;
+  else
+    scree_gauge_free(&made);
+  return status;
+}
+
+scree_status scree_gauge_refine(const scree_gauge *gauge, size_t point_count, scree_gauge *refined,
+                                scree_error *error) {
+  scree_gauge made = {.scan = gauge->scan,
+                      .surface = gauge->surface,
+                      .refined = true,
+                      .measures = gauge->measures,
+                      .length = gauge->length};
+  scree_status status = scree_spread_make(gauge->scan, point_count, &made.spread, error);
+  if (status == SCREE_OK) status = set_probes(&made, error);
+  if (status == SCREE_OK)
+    *refined = made;
+  else
+    scree_gauge_free(&made);
+  return status;
+}
+
+void scree_gauge_free(scree_gauge *gauge) {
+  if (!gauge->refined) scree_surface_free(gauge->surface);
+  scree_spread_free(&gauge->spread);
+  scree_free(gauge->probe_normals);
+  scree_free(gauge->walls);
+  *gauge = (scree_gauge){0};
+}
+
+/* ---- From the scan to a level ---- */
+
+typedef struct forward {
+  const scree_gauge *gauge;
+  const scree_surface *level;
+  double *distances; /* of the points */
+  uint32_t *nearest; /* facet of the level's tree, of each point */
+  double mean, maximum;
+  vec3 at;
+} forward;
+
+static void ask_points(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const forward *f = context;
+  uint32_t near = 0;
+  for (size_t i = begin; i < end; i++) {
+    f->distances[i] = scree_surface_nearest(f->level, f->gauge->spread.points[i], &near);
+    f->nearest[i] = near;
+  }
+}
+
+static void keep_farthest(forward *f, double distance, vec3 at) {
+  if (distance <= f->maximum) return;
+  f->maximum = distance;
+  f->at = at;
+}
+
+/* Vertices round point i, where one of them could be the farthest. */
+static void ask_vertices(forward *f, size_t i, double gap) {
+  const scree_spread *s = &f->gauge->spread;
+  uint32_t near = f->nearest[i];
+  for (uint32_t k = s->starts[i]; k < s->starts[i + 1]; k++) {
+    vec3 p = vec3_load(f->gauge->scan->positions + 3 * (size_t)s->vertices[k]);
+    double bound = f->distances[i] + vec3_distance(p, s->points[i]);
+    if (bound <= (1 + gap) * f->maximum) continue;
+    keep_farthest(f, scree_surface_nearest(f->level, p, &near), p);
+  }
+}
+
+/* First round the points that are far themselves, so that the bound spares most of the others. */
+static void find_farthest(forward *f, double gap) {
+  const scree_spread *s = &f->gauge->spread;
+  for (size_t i = 0; i < s->count; i++) keep_farthest(f, f->distances[i], s->points[i]);
+  double far = 0.9 * f->maximum;
+  for (int round = 0; round < 2; round++)
+    for (size_t i = 0; i < s->count; i++) {
+      bool first = f->distances[i] >= far;
+      if (first == (round == 0) && f->distances[i] + s->reach[i] > (1 + gap) * f->maximum)
+        ask_vertices(f, i, gap);
+    }
+}
+
+static void go_forward(forward *f, double gap) {
+  scree_sum sum = {0, 0};
+  size_t count = f->gauge->spread.count;
+  f->maximum = -1;
+  scree_parallel_for(count, QUERY_BLOCK, ask_points, f);
+  for (size_t i = 0; i < count; i++) scree_sum_add(&sum, f->distances[i]);
+  f->mean = scree_sum_value(sum) / (double)count;
+  find_farthest(f, gap);
+}
+
+/* ---- What the probes see ---- */
+
+static vec3 facet_normal(const scree_bvh *bvh, uint32_t facet) {
+  const double *c = bvh->corners + 9 * (size_t)facet;
+  return vec3_unit(vec3_triangle_normal(vec3_load(c), vec3_load(c + 3), vec3_load(c + 6)));
+}
+
+/* Mean angle between the normals, over pi. */
+static double normals_error(const forward *f) {
+  const scree_gauge *g = f->gauge;
+  double sum = 0, turn = g->measures.inward ? -1 : 1;
+  for (size_t i = 0; i < g->probe_count; i++) {
+    vec3 normal = facet_normal(&f->level->bvh, f->nearest[i * g->probe_step]);
+    double cosine = turn * vec3_dot(normal, g->probe_normals[i]);
+    sum += acos(fmax(-1, fmin(1, cosine)));
+  }
+  return sum / (double)g->probe_count / acos(-1);
+}
+
+/* The mean of distance over thickness, and the change of the first percentile of thickness. */
+static scree_status read_walls(const forward *f, scree_gauge_reading *r, scree_error *error) {
+  const scree_gauge *g = f->gauge;
+  double *now = scree_alloc(g->wall_count, sizeof *now), sum = 0;
+  if (!now) return scree_fail_memory(error, g->wall_count * sizeof *now, "walls");
+  for (size_t i = 0; i < g->wall_count; i++) {
+    sum += f->distances[g->walls[i].point] / g->walls[i].thickness;
+    now[i] = thickness_along(&f->level->bvh, &g->walls[i]);
+  }
+  r->errors[SCREE_ERROR_THICKNESS] = g->wall_count ? sum / (double)g->wall_count : NAN;
+  r->changes[SCREE_CHANGE_THINNEST] = percentile(now, g->wall_count, 0.01) / g->thinnest - 1;
+  scree_free(now);
+  return SCREE_OK;
+}
+
+/* ---- Integrals ---- */
+
+static double inertia_error(const scree_measures *a, const scree_measures *b) {
+  double difference = 0, size = 0;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      double d = a->inertia[i][j] - b->inertia[i][j];
+      difference += d * d;
+      size += b->inertia[i][j] * b->inertia[i][j];
+    }
+  return sqrt(difference / size);
+}
+
+static double trace_of(const scree_measures *m) {
+  return m->principal_moments[0] + m->principal_moments[1] + m->principal_moments[2];
+}
+
+static void read_measures(const scree_gauge *g, const scree_measures *m, scree_gauge_reading *r) {
+  const scree_measures *scan = &g->measures;
+  r->changes[SCREE_CHANGE_AREA] = m->area / g->clean_area - 1;
+  r->changes[SCREE_CHANGE_VOLUME] = m->volume / scan->volume - 1;
+  r->changes[SCREE_CHANGE_INERTIA] = trace_of(m) / trace_of(scan) - 1;
+  r->changes[SCREE_CHANGE_CONVEXITY] = m->convexity / scan->convexity - 1;
+  r->errors[SCREE_ERROR_SIZE] = 0;
+  for (int i = 0; i < 3; i++) {
+    double change = m->oriented_dimensions[i] / scan->oriented_dimensions[i] - 1;
+    r->changes[SCREE_CHANGE_LENGTH + i] = change;
+    r->errors[SCREE_ERROR_SIZE] = fmax(r->errors[SCREE_ERROR_SIZE], fabs(change));
+  }
+  r->errors[SCREE_ERROR_AREA] = fabs(r->changes[SCREE_CHANGE_AREA]);
+  r->errors[SCREE_ERROR_VOLUME] = fabs(r->changes[SCREE_CHANGE_VOLUME]);
+  r->errors[SCREE_ERROR_CONVEXITY] = fabs(r->changes[SCREE_CHANGE_CONVEXITY]);
+  r->errors[SCREE_ERROR_INERTIA] = inertia_error(m, scan);
+}
+
+/* ---- Both ways ---- */
+
+/* Facets as small as the points are apart have few samples each: their mean distance is better
+ * taken at points spread over all of them. */
+static scree_status spread_mean(const forward *f, double *mean, scree_error *error) {
+  const scree_gauge *g = f->gauge;
+  scree_spread points;
+  scree_sum sum = {0, 0};
+  uint32_t near = 0;
+  scree_status status = scree_spread_make(&f->level->mesh, g->spread.count, &points, error);
+  if (status != SCREE_OK) return status;
+  for (size_t i = 0; i < points.count; i++)
+    scree_sum_add(&sum, scree_surface_nearest(g->surface, points.points[i], &near));
+  *mean = scree_sum_value(sum) / (double)points.count;
+  scree_spread_free(&points);
+  return SCREE_OK;
+}
+
+/* Where a facet of the scan spans a hollow of the level, it is farther off than its corners. */
+static scree_status search_facets(forward *f, double gap, scree_error *error) {
+  const scree_gauge *g = f->gauge;
+  scree_deviation d;
+  const scree_way way = {.sample_count = 1,
+                         .gap = gap,
+                         .known = f->maximum,
+                         .cut_budget = CUT_SHARE * g->spread.count};
+  if (!g->refined || sqrt(g->surface->largest_facet) < SMALL_FACET * g->length) return SCREE_OK;
+  scree_status status = scree_surface_deviation(g->surface, f->level, &way, NULL, &d, error);
+  if (status == SCREE_OK) keep_farthest(f, d.maximum, vec3_load(d.at));
+  return status;
+}
+
+static scree_status read_distances(forward *f, double gap, scree_gauge_reading *r,
+                                   scree_error *error) {
+  const scree_gauge *g = f->gauge;
+  scree_deviation back;
+  go_forward(f, gap);
+  scree_status status = search_facets(f, gap, error);
+  if (status != SCREE_OK) return status;
+  const scree_way way = {.sample_count = g->spread.count / 2,
+                         .gap = gap,
+                         .known = f->maximum,
+                         .cut_budget = CUT_SHARE * g->spread.count};
+  status = scree_surface_deviation(f->level, g->surface, &way, NULL, &back, error);
+  if (status == SCREE_OK && f->level->mesh.triangle_count > g->spread.count / PARTS)
+    status = spread_mean(f, &back.mean, error);
+  if (status != SCREE_OK) return status;
+  r->errors[SCREE_ERROR_MEAN] = fmax(f->mean, back.mean) / g->length;
+  r->errors[SCREE_ERROR_HAUSDORFF] = fmax(f->maximum, back.maximum) / g->length;
+  vec3_store(r->farthest, f->at);
+  if (back.maximum > f->maximum) memcpy(r->farthest, back.at, sizeof r->farthest);
+  return SCREE_OK;
+}
+
+scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level, double gap,
+                              scree_gauge_reading *reading, scree_error *error) {
+  scree_surface *surface = NULL;
+  scree_measures measures;
+  scree_gauge_reading r;
+  forward f = {.gauge = gauge};
+  scree_status status = scree_mesh_measure(level, &measures, error);
+  if (status == SCREE_OK) status = scree_surface_create(level, &surface, error);
+  if (status != SCREE_OK) return status;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(f.distances, gauge->spread.count, error, done);
+  SCREE_ALLOC_OR(f.nearest, gauge->spread.count, error, done);
+  f.level = surface;
+  read_measures(gauge, &measures, &r);
+  status = read_distances(&f, gap, &r, error);
+  if (status == SCREE_OK) status = read_walls(&f, &r, error);
+  r.errors[SCREE_ERROR_NORMALS] = normals_error(&f);
+  r.errors[SCREE_ERROR_THINNEST] = fabs(r.changes[SCREE_CHANGE_THINNEST]);
+  if (status == SCREE_OK) *reading = r;
+done:
+  scree_surface_free(surface);
+  scree_free(f.distances);
+  scree_free(f.nearest);
+  return status;
+}

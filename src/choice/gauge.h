@@ -1,0 +1,69 @@
+/* A scan made ready to have levels held against it. */
+#ifndef SCREE_CHOICE_GAUGE_H
+#define SCREE_CHOICE_GAUGE_H
+
+#include "scree/choice.h"
+
+#include "choice/fit.h"
+#include "choice/spread.h"
+#include "mesh/surface.h"
+
+/* A place where the body has two sides. */
+typedef struct scree_body_wall {
+  uint32_t point; /* of the spread */
+  vec3 middle;    /* between the sides */
+  vec3 inward;    /* unit, from the point to the other side */
+  double thickness;
+} scree_body_wall;
+
+typedef struct scree_gauge {
+  const scree_mesh *scan;
+  scree_surface *surface;
+  bool refined; /* by scree_gauge_refine: the surface is another gauge's */
+  scree_measures measures;
+  double length, clean_area;
+  scree_fit fit;
+  scree_spread spread;
+  size_t probe_step, probe_count; /* every so many points are probes: */
+  vec3 *probe_normals;            /* free of noise */
+  scree_body_wall *walls;
+  size_t wall_count;
+  double thickness, thinnest; /* median and first percentile; NaN without walls */
+} scree_gauge;
+
+/* What is found of one level. */
+typedef struct scree_gauge_reading {
+  double errors[SCREE_SHAPE_ERROR_COUNT], changes[SCREE_CHANGE_COUNT];
+  double farthest[3];
+} scree_gauge_reading;
+
+/* What the errors of levels are measured with: points over the scan, and the gap of the Hausdorff
+ * distance. */
+enum { SCREE_GAUGE_POINTS = 10000 };
+#define SCREE_GAUGE_GAP 0.01
+
+/* The mesh is borrowed. point_count points are spread over it. Free with scree_gauge_free. */
+scree_status scree_gauge_make(const scree_mesh *scan, size_t point_count, scree_gauge *gauge,
+                              scree_error *error);
+/* The same of more points, which borrows from the first. What it reads is for telling: within facets
+ * of a coarse scan the farthest point is looked for too. */
+scree_status scree_gauge_refine(const scree_gauge *gauge, size_t point_count, scree_gauge *refined,
+                                scree_error *error);
+void scree_gauge_free(scree_gauge *gauge);
+
+/* The Hausdorff distance is known to `gap` of itself. */
+scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level, double gap,
+                              scree_gauge_reading *reading, scree_error *error);
+
+/* scree_fidelity_measure with a gauge at hand. */
+scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *curve,
+                                  const size_t *level_indices, size_t level_count,
+                                  const scree_progress *progress, scree_fidelity **fidelity,
+                                  scree_error *error);
+
+/* Adds a row at its place, or replaces the one of that level. */
+scree_status scree_fidelity_insert(scree_fidelity *fidelity, size_t level_index,
+                                   size_t triangle_count, const scree_gauge_reading *reading,
+                                   size_t *row, scree_error *error);
+
+#endif

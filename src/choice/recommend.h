@@ -1,0 +1,45 @@
+/* The recommended level: the coarsest that keeps every tolerance. */
+#ifndef SCREE_CHOICE_RECOMMEND_H
+#define SCREE_CHOICE_RECOMMEND_H
+
+#include "choice/gauge.h"
+
+/* One level of the sweep as far as the rule sees it: its count, and the largest error over its
+ * tolerance. */
+typedef struct scree_kept {
+  size_t triangle_count;
+  double load;
+} scree_kept;
+
+/* The largest error over its tolerance; *which is that error (may be NULL). Errors that are NaN do
+ * not count. */
+double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
+                  const double tolerances[SCREE_SHAPE_ERROR_COUNT], scree_shape_error *which);
+
+/* The count, not whole, at which the trend of the load crosses 1, from the finest level down;
+ * levels of falling count. The finest count where not even that keeps its tolerances, the last
+ * where all do. */
+double scree_trend_crossing(const scree_kept *levels, size_t count);
+
+/* The least of the trend of load + count / scale, and from which to which count it is at most
+ * SCREE_SIMILAR_IP times that. */
+typedef struct scree_least {
+  double triangle_count, sum; /* counts are not whole */
+  double fewest, most;
+} scree_least;
+
+scree_least scree_trend_least(const scree_kept *levels, size_t count, double scale);
+
+typedef struct scree_recommended {
+  size_t level_index;
+  scree_gauge_reading reading; /* by the dense measurement */
+} scree_recommended;
+
+/* Finds the recommended level of a curve, of which the sweep is given and the gauge it was made
+ * with. */
+scree_status scree_recommend(const scree_curve *curve, const scree_gauge *gauge,
+                             const scree_fidelity *fidelity,
+                             const double tolerances[SCREE_SHAPE_ERROR_COUNT],
+                             scree_recommended *found, scree_error *error);
+
+#endif

@@ -1,0 +1,149 @@
+/* Facets are put in the order of a Morton curve through the bounding box, so that neighbours on the
+ * curve are neighbours on the surface. The area along the curve is cut in equal shares, and a point
+ * is taken in the facet where the middle of each share falls, by a sequence that fills a square
+ * evenly (Roberts 2018, R2). Vertices go to the nearer of the points before and after their facet
+ * on the curve. */
+#include "choice/spread.h"
+
+#include "base/alloc.h"
+#include "base/radix.h"
+#include "mesh/measure.h"
+#include "mesh/mesh.h"
+
+enum { AXIS_BITS = 10 };
+
+/* Steps of R2: 1/p and 1/p^2 with p^3 = p + 1. */
+static const double STEP_U = 0.7548776662466927, STEP_V = 0.5698402909980532;
+
+static uint32_t interleave(uint32_t x) {
+  x = (x | x << 16) & 0x030000ff;
+  x = (x | x << 8) & 0x0300f00f;
+  x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
+
+static uint32_t morton(vec3 p, vec3 low, double side) {
+  double scale = ((1 << AXIS_BITS) - 1) / side;
+  return interleave((uint32_t)((p.x - low.x) * scale)) |
+         interleave((uint32_t)((p.y - low.y) * scale)) << 1 |
+         interleave((uint32_t)((p.z - low.z) * scale)) << 2;
+}
+
+static vec3 twice_area(const scree_mesh *mesh, size_t t) {
+  return vec3_triangle_normal(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1),
+                              scree_mesh_corner(mesh, t, 2));
+}
+
+static void key_facets(const scree_mesh *mesh, scree_keyed *keys) {
+  vec3 low, high;
+  scree_mesh_bounds(mesh, &low, &high);
+  vec3 size = vec3_sub(high, low);
+  double side = fmax(size.x, fmax(size.y, size.z));
+  for (size_t t = 0; t < mesh->triangle_count; t++) {
+    vec3 middle =
+        vec3_scale(vec3_add(vec3_add(scree_mesh_corner(mesh, t, 0), scree_mesh_corner(mesh, t, 1)),
+                            scree_mesh_corner(mesh, t, 2)),
+                   1.0 / 3);
+    keys[t] = (scree_keyed){morton(middle, low, side), (uint32_t)t};
+  }
+}
+
+/* Takes the points, and for each facet on the curve the number of points before it. */
+static void take_points(const scree_mesh *mesh, const scree_keyed *curve, size_t wanted,
+                        uint32_t *before, scree_spread *s) {
+  double area = 0, done = 0, u = 0.5, v = 0.5;
+  for (size_t k = 0; k < mesh->triangle_count; k++)
+    area += vec3_norm(twice_area(mesh, curve[k].index)) / 2;
+  double share = area / (double)wanted;
+  for (size_t k = 0; k < mesh->triangle_count; k++) {
+    size_t t = curve[k].index;
+    vec3 normal = twice_area(mesh, t), corner = scree_mesh_corner(mesh, t, 0),
+         e = vec3_sub(scree_mesh_corner(mesh, t, 1), corner),
+         f = vec3_sub(scree_mesh_corner(mesh, t, 2), corner);
+    before[k] = (uint32_t)s->count;
+    done += vec3_norm(normal) / 2;
+    for (; s->count < wanted && ((double)s->count + 0.5) * share <= done; s->count++) {
+      u = fmod(u + STEP_U, 1);
+      v = fmod(v + STEP_V, 1);
+      double x = u + v > 1 ? 1 - u : u, y = u + v > 1 ? 1 - v : v;
+      s->points[s->count] = vec3_mad(vec3_mad(corner, e, x), f, y);
+      s->normals[s->count] = vec3_unit(normal);
+    }
+  }
+}
+
+/* The point that each vertex goes to: the nearest of those next to its facets on the curve. */
+static void find_nearest(const scree_mesh *mesh, const scree_keyed *curve, const uint32_t *before,
+                         const scree_spread *s, uint32_t *nearest, double *distance) {
+  for (size_t v = 0; v < mesh->vertex_count; v++) distance[v] = INFINITY, nearest[v] = UINT32_MAX;
+  for (size_t k = 0; k < mesh->triangle_count; k++)
+    for (size_t c = 0; c < 3; c++) {
+      uint32_t v = mesh->triangles[3 * (size_t)curve[k].index + c];
+      vec3 p = vec3_load(mesh->positions + 3 * (size_t)v);
+      for (size_t i = before[k] ? before[k] - 1 : 0; i <= before[k] && i < s->count; i++) {
+        double d = vec3_distance(p, s->points[i]);
+        if (d < distance[v]) distance[v] = d, nearest[v] = (uint32_t)i;
+      }
+    }
+}
+
+static void group_vertices(const scree_mesh *mesh, const uint32_t *nearest, const double *distance,
+                           scree_spread *s) {
+  for (size_t i = 0; i <= s->count; i++) s->starts[i] = 0;
+  for (size_t i = 0; i < s->count; i++) s->reach[i] = 0;
+  for (size_t v = 0; v < mesh->vertex_count; v++) {
+    if (nearest[v] == UINT32_MAX) continue;
+    s->starts[nearest[v] + 1]++;
+    s->reach[nearest[v]] = fmax(s->reach[nearest[v]], distance[v]);
+  }
+  for (size_t i = 0; i < s->count; i++) s->starts[i + 1] += s->starts[i];
+  for (size_t v = 0; v < mesh->vertex_count; v++)
+    if (nearest[v] != UINT32_MAX) s->vertices[s->starts[nearest[v]]++] = (uint32_t)v;
+  for (size_t i = s->count; i > 0; i--) s->starts[i] = s->starts[i - 1];
+  s->starts[0] = 0;
+}
+
+scree_status scree_spread_make(const scree_mesh *mesh, size_t count, scree_spread *spread,
+                               scree_error *error) {
+  scree_spread made = {0};
+  scree_keyed *keys = NULL, *swap = NULL;
+  uint32_t *before = NULL, *nearest = NULL;
+  double *distance = NULL;
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(keys, mesh->triangle_count, error, done);
+  SCREE_ALLOC_OR(swap, mesh->triangle_count, error, done);
+  SCREE_ALLOC_OR(before, mesh->triangle_count, error, done);
+  SCREE_ALLOC_OR(nearest, mesh->vertex_count, error, done);
+  SCREE_ALLOC_OR(distance, mesh->vertex_count, error, done);
+  SCREE_ALLOC_OR(made.points, count, error, done);
+  SCREE_ALLOC_OR(made.normals, count, error, done);
+  SCREE_ALLOC_OR(made.vertices, mesh->vertex_count, error, done);
+  SCREE_ALLOC_OR(made.starts, count + 1, error, done);
+  SCREE_ALLOC_OR(made.reach, count, error, done);
+  key_facets(mesh, keys);
+  const scree_keyed *curve = scree_radix_sort(keys, swap, mesh->triangle_count, 3 * AXIS_BITS);
+  take_points(mesh, curve, count, before, &made);
+  find_nearest(mesh, curve, before, &made, nearest, distance);
+  group_vertices(mesh, nearest, distance, &made);
+  status = SCREE_OK;
+done:
+  scree_free(keys);
+  scree_free(swap);
+  scree_free(before);
+  scree_free(nearest);
+  scree_free(distance);
+  if (status == SCREE_OK)
+    *spread = made;
+  else
+    scree_spread_free(&made);
+  return status;
+}
+
+void scree_spread_free(scree_spread *spread) {
+  scree_free(spread->points);
+  scree_free(spread->normals);
+  scree_free(spread->vertices);
+  scree_free(spread->starts);
+  scree_free(spread->reach);
+  *spread = (scree_spread){0};
+}
