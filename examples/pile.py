@@ -23,8 +23,8 @@ def main(folder, scan_name="sample:fp-3", count="6"):
     scan = scree.load(scan_name, **options)
     choice = scan.choose()
     mesh = choice.mesh()
-    print(f"{scan_name}: {choice.robust.triangle_count} of {scan.triangle_count} triangles, "
-          f"eps_s {choice.robust.eps_s:.3g}")
+    print(f"{scan_name}: {choice.recommended.triangle_count} of {scan.triangle_count} triangles, "
+          f"mean distance {choice.errors['mean_distance']:.2%} of its size")
 
     world = scree.World()
     plastic, steel = world.add_material(density=1500), world.add_material(wall=True)

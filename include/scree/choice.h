@@ -59,6 +59,8 @@ typedef struct scree_choice_options {
   /* Of the recommended choice, by error: the most it may be, a share; INFINITY: any. Of those that
    * a scan has none of (NaN) nothing is asked. */
   double tolerances[SCREE_SHAPE_ERROR_COUNT];
+  /* The same for distances, in metres: with the share, whichever is less; INFINITY: any. */
+  double tolerance_lengths[SCREE_SHAPE_ERROR_COUNT];
   bool area_only; /* no errors but area's and volume's, and no recommended choice; false */
 } scree_choice_options;
 
@@ -149,6 +151,11 @@ typedef struct scree_choice {
   scree_shape_error limited_by; /* the error that has it */
   scree_pick cost;              /* least I = mean distance / D + N / SCREE_COST_COUNT; ip: I */
 } scree_choice;
+
+/* What was asked of one error of this object, a share: a length is over its size D. */
+SCREE_API double scree_choice_tolerance(const scree_choice *choice,
+                                        const scree_choice_options *options,
+                                        scree_shape_error which);
 
 SCREE_API const scree_pick *scree_choice_pick(const scree_choice *choice, scree_choice_rule rule);
 

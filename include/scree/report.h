@@ -181,6 +181,17 @@ typedef struct scree_choice_report {
   const char *command_line; /* for provenance; NULL: unknown */
 } scree_choice_report;
 
+/* The answer and the warnings in sentences, lengths in mm: the same in the text for people, in the
+ * JSON and in the page. `entry` is an entry's index, or entry_count: the set as a whole. Answer how
+ * many sentences there are, the first of them in texts. */
+enum { SCREE_CHOICE_SENTENCES = 12, SCREE_CHOICE_SENTENCE_BYTES = 512 };
+SCREE_API size_t
+scree_choice_answer(const scree_choice_report *report, size_t entry,
+                    char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES]);
+SCREE_API size_t
+scree_choice_warnings(const scree_choice_report *report, size_t entry,
+                      char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES]);
+
 /* The paper's Fig. 4, by the path's ending (.png, .svg, .pdf; .csv and .gnuplot for its data and a
  * script): eps_s and Ip against Rp, all objects, the choices marked. */
 SCREE_API scree_status scree_choice_figure_write(const scree_choice_report *report,

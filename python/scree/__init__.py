@@ -3,7 +3,7 @@
     import scree
     scan = scree.load("phone.stl")              # or "sample:fp-1"
     choice = scan.choose()
-    choice.robust.triangle_count, choice.robust.rp
+    choice.recommended.triangle_count, choice.errors["mean_distance"]
     choice.mesh().write("particle.stl")
 
 SI units: metres, kilograms, seconds, radians. Tables are numpy arrays where numpy is installed, memoryviews and

@@ -134,7 +134,8 @@ class scree_level(Structure):
 
 class scree_choice_options(Structure):
     _fields_ = [("weight", c_double), ("rp_min", c_double), ("rp_max", c_double), ("per_decade", c_int),
-                ("reference", c_int), ("tolerances", c_double * len(SHAPE_ERRORS)), ("area_only", c_bool)]
+                ("reference", c_int), ("tolerances", c_double * len(SHAPE_ERRORS)),
+                ("tolerance_lengths", c_double * len(SHAPE_ERRORS)), ("area_only", c_bool)]
 
 
 class scree_choice_level(Structure):
@@ -418,6 +419,7 @@ _PLAIN = {  # result, argument types
     "curve_level": (None, (_H, c_size_t, POINTER(scree_level))),
     "curve_find": (c_size_t, (_H, c_size_t)),
     "choice_target": (c_size_t, (c_double, c_size_t)),
+    "fidelity_error": (c_double, (c_void_p, c_size_t, c_int)),
     "choice_free": (None, (POINTER(scree_choice),)),
     "sample_count": (c_size_t, ()),
     "sample_name": (_S, (c_size_t,)),

@@ -197,19 +197,22 @@ class Curve:
         call("curve_mesh", self._handle, index, mesh)
         return Mesh._of(mesh, self.source_mesh.source)
 
-    def choose(self, progress=None, reference="scan", **options):
-        """Options weight, rp_min, rp_max, per_decade, shape_errors, distances."""
-        return Choice(self, progress, reference, **options)
+    def choose(self, progress=None, reference="scan", tolerances=None, **options):
+        """Options weight, rp_min, rp_max, per_decade, area_only; tolerances by name as shares, such as {"size": 0.02}."""
+        return Choice(self, progress, reference, tolerances, **options)
 
 
 class Choice:
-    """paper, robust, plain and smooth, each with rp, triangle_count, level_index, eps_s, ip, and fewest and most triangles with
-    an ip within a tenth of it; levels (the grid) and
-    trace (the dense curve) as lists; noise; best, the grid level of the least error by name."""
+    """recommended, paper, robust, plain, smooth and cost, each with rp, triangle_count, level_index, eps_s, ip, and fewest and
+    most triangles with an ip within a tenth of it; errors of the recommended level by name, shares, and limited_by, the one
+    that decides; levels (the grid) and trace (the dense curve) as lists; noise; best, the grid level of the least error by
+    name."""
 
-    def __init__(self, curve, progress=None, reference="scan", **options):
+    def __init__(self, curve, progress=None, reference="scan", tolerances=None, **options):
         settings = set_fields(lib["default_choice_options"](), options, "choose")
         settings.reference = index_of(reference, c.REFERENCES, "reference")
+        for name, share in (tolerances or {}).items():
+            settings.tolerances[index_of(name, c.SHAPE_ERRORS, "tolerance")] = share
         choice = c.scree_choice()
         with c.Progress(progress) as p:
             call("choose", curve._handle, curve.source_mesh._struct, settings, p, choice)
@@ -218,13 +221,19 @@ class Choice:
             self.levels = [_level(choice.levels[i]) for i in range(choice.level_count)]
             self.trace = [_level(choice.trace[i]) for i in range(choice.trace_count)]
             self.best = {name: i for name, i in zip(c.SHAPE_ERRORS, choice.best) if i < choice.level_count}
+            self.errors = {}
+            if choice.fidelity:
+                self.errors = {name: lib["fidelity_error"](choice.fidelity, choice.recommended_row, i)
+                               for i, name in enumerate(c.SHAPE_ERRORS)}
+                self.limited_by = c.SHAPE_ERRORS[choice.limited_by]
         finally:
             lib["choice_free"](choice)
+        del self.fidelity, self.recommended_row
         self.curve = curve
 
-    def mesh(self, which="robust"):
+    def mesh(self, which="recommended"):
         """The mesh of one of the choices."""
-        index_of(which, ("paper", "robust", "plain", "smooth"), "choice")
+        index_of(which, ("recommended", "paper", "robust", "plain", "smooth", "cost"), "choice")
         return self.curve.mesh(getattr(self, which).level_index)
 
 

@@ -96,10 +96,13 @@ static scree_status measure(const scree_curve *curve, const scree_mesh *scan,
     fill_errors(choice, options->weight);
     status = choose_by_cost(curve, choice, error);
   }
+  double tolerances[SCREE_SHAPE_ERROR_COUNT];
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT && status == SCREE_OK; e++)
+    tolerances[e] = scree_choice_tolerance(choice, options, (scree_shape_error)e);
   if (status == SCREE_OK)
-    status = scree_recommend(curve, &gauge, choice->fidelity, options->tolerances, &found, error);
+    status = scree_recommend(curve, &gauge, choice->fidelity, tolerances, &found, error);
   if (status == SCREE_OK) {
-    double load = scree_load(found.reading.errors, options->tolerances, &choice->limited_by);
+    double load = scree_load(found.reading.errors, tolerances, &choice->limited_by);
     choice->recommended = pick_at(curve, choice, found.level_index, load);
     status = scree_fidelity_insert(choice->fidelity, found.level_index,
                                    choice->recommended.triangle_count, &found.reading,

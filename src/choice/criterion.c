@@ -46,8 +46,9 @@ static bool is_accident(double error, double worst) {
 }
 
 scree_choice_options scree_default_choice_options(void) {
-  scree_choice_options o = {1, 1e-5, 1e-1, 9, SCREE_REFERENCE_SCAN, {0}, false};
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) o.tolerances[e] = INFINITY;
+  scree_choice_options o = {1, 1e-5, 1e-1, 9, SCREE_REFERENCE_SCAN, {0}, {0}, false};
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    o.tolerances[e] = o.tolerance_lengths[e] = INFINITY;
   for (size_t i = 0; i < sizeof usual_tolerances / sizeof *usual_tolerances; i++)
     o.tolerances[usual_tolerances[i].error] = usual_tolerances[i].share;
   return o;
@@ -58,6 +59,14 @@ const char *scree_choice_rule_name(scree_choice_rule rule) {
   static const char *const names[] = {SCREE_CHOICE_RULE_LIST(SCREE_CHOICE_RULE_NAME)};
 #undef SCREE_CHOICE_RULE_NAME
   return (unsigned)rule < SCREE_RULE_COUNT ? names[rule] : "?";
+}
+
+double scree_choice_tolerance(const scree_choice *choice, const scree_choice_options *options,
+                              scree_shape_error which) {
+  double length =
+      choice->fidelity ? scree_fidelity_scan(choice->fidelity, SCREE_SCAN_LENGTH) : INFINITY;
+  double limit = options->tolerance_lengths[which];
+  return fmin(options->tolerances[which], limit < INFINITY ? limit / length : INFINITY);
 }
 
 const scree_pick *scree_choice_pick(const scree_choice *choice, scree_choice_rule rule) {
@@ -288,9 +297,10 @@ static scree_status check_options(const scree_choice_options *o, scree_error *er
     return scree_fail(error, SCREE_BAD_ARGUMENT,
                       "%d grid points per decade: must be from 1 to 1000", o->per_decade);
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-    if (!(o->tolerances[e] > 0))
+    if (!(o->tolerances[e] > 0 && o->tolerance_lengths[e] > 0))
       return scree_fail(error, SCREE_BAD_ARGUMENT, "tolerance %g of %s: must be above 0",
-                        o->tolerances[e], scree_shape_error_name((scree_shape_error)e));
+                        fmin(o->tolerances[e], o->tolerance_lengths[e]),
+                        scree_shape_error_name((scree_shape_error)e));
   if (o->rp_min < 1e-12)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "grid from %g: smaller than the limit 1e-12",
                       o->rp_min);

@@ -195,6 +195,14 @@ static int parse_bytes(const cli_verb *verb, const cli_option *option, const cha
   return 0;
 }
 
+bool cli_length_from_text(const char *text, double *metres) {
+  const char *end;
+  double number = parse_decimal(text, &end), unit;
+  if (end == text || !isfinite(number) || !cli_unit_from_text(end, &unit)) return false;
+  *metres = number * unit;
+  return true;
+}
+
 static int parse_length(const cli_verb *verb, const cli_option *option, const char *text,
                         void *value) {
   const char *end;

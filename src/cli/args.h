@@ -118,5 +118,7 @@ int cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t
 const char *cli_plural(size_t count);
 /* A number, all of the text; false otherwise. Not locale-dependent: the program never sets one. */
 bool cli_real_from_text(const char *text, double *value);
+/* A number with a unit, all of the text, as in 0.27mm; false otherwise. */
+bool cli_length_from_text(const char *text, double *metres);
 
 #endif

@@ -9,10 +9,10 @@
 enum { CHOOSE_NAME_BYTES = 128, CHOOSE_NOTE_BYTES = 256, CHOOSE_PATH_BYTES = 4096 };
 
 typedef struct choose_arguments {
-  const char *output, *grid;
+  const char *output, *grid, *tolerance;
   cli_source source;
   double weight, density;
-  int method, reference;
+  int method, reference, rule;
   bool samples, paper, errors, distances, json, csv, no_repair, overwrite;
 } choose_arguments;
 
@@ -40,6 +40,7 @@ typedef struct choose_run {
   scree_choice_options options;
   scree_simplify_options simplify;
   scree_work_start start;
+  scree_choice_report report; /* in the end */
 } choose_run;
 
 /* The choice that meshes are written by. */

@@ -106,7 +106,8 @@ static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mes
   return SCREE_OK;
 }
 
-/* The level asked for; of a large scan, where none is asked for, the one that `choose` chooses. */
+/* The level asked for; of a large scan, where none is asked for, the one that `choose`
+ * recommends. */
 static scree_status pick_level(const drop_run *run, const scree_curve *curve,
                                const scree_mesh *mesh, size_t *level, scree_error *error) {
   const drop_arguments *a = run->arguments;
@@ -118,7 +119,7 @@ static scree_status pick_level(const drop_run *run, const scree_curve *curve,
   scree_choice choice;
   scree_status status = scree_choose(curve, mesh, NULL, run->call->progress, &choice, error);
   if (status != SCREE_OK) return status;
-  *level = choice.robust.level_index;
+  *level = choice.recommended.level_index;
   scree_choice_free(&choice);
   return SCREE_OK;
 }

@@ -2,16 +2,18 @@
 #include "cli/surface.h"
 #include "cli/terminal.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { METHOD_UNSET = -1 };
+enum { METHOD_UNSET = -1, RULE_UNSET = -1 };
 
 static const choose_arguments defaults = {.grid = "1e-5:1e-1:9",
                                           .source = CLI_SOURCE_DEFAULTS,
                                           .weight = 1,
                                           .density = 2000,
-                                          .method = METHOD_UNSET};
+                                          .method = METHOD_UNSET,
+                                          .rule = RULE_UNSET};
 
 #define AT(field) offsetof(choose_arguments, field)
 static const cli_option options[] = {
@@ -24,6 +26,15 @@ static const cli_option options[] = {
     {"paper", 'p', CLI_FLAG, AT(paper), NULL,
      "Do exactly what the paper did: method qecd, its grid, plain Ip; meshes by its choice.", 0, 0,
      NULL},
+    {"rule", 0, CLI_CHOICE, AT(rule), "RULE",
+     "Whose choice is told first and written: recommended (keeps tolerances), robust or paper (least "
+     "Ip). Default: recommended.",
+     0, 0, "recommended|robust|paper"},
+    {"tolerance", 't', CLI_TEXT, AT(tolerance), "LIST",
+     "What the recommended level keeps, instead of the defaults, as shares or, of distances, "
+     "lengths: mean=0.3%,hausdorff=3%,inertia=2%,thickness=3% are the defaults; also area, volume, "
+     "size, thinnest, convexity, normals; none: does not count.",
+     0, 0, NULL},
     {"method", 'm', CLI_CHOICE, AT(method), "NAME",
      "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume.", 0, 0,
      "volume|qecd"},
@@ -57,11 +68,11 @@ static const cli_option options[] = {
 };
 
 const scree_pick *choose_default_pick(const choose_run *run, const scree_choice *choice) {
-  return run->arguments->paper ? &choice->paper : &choice->robust;
+  return scree_choice_pick(choice, run->report.rule);
 }
 
 const scree_set_pick *choose_default_set_pick(const choose_run *run, const scree_set_choice *set) {
-  return run->arguments->paper ? &set->paper : &set->robust;
+  return run->report.rule == SCREE_RULE_ROBUST ? &set->robust : &set->paper;
 }
 
 /* "1e-5:1e-1:9" */
@@ -82,6 +93,55 @@ static bool parse_grid(const char *text, scree_choice_options *o) {
   if (!(count >= 1 && count <= 1000) || count != (double)(int)count) return false;
   o->per_decade = (int)count;
   return o->rp_min >= 1e-12 && o->rp_min <= o->rp_max && o->rp_max <= 1;
+}
+
+/* "0.3%", "0.003", "0.5mm" or "none" */
+static bool parse_bound(const char *word, scree_shape_error error, scree_choice_options *o) {
+  char number[32];
+  double value;
+  size_t length = strlen(word);
+  bool percent = length > 1 && word[length - 1] == '%';
+  o->tolerances[error] = o->tolerance_lengths[error] = INFINITY;
+  if (!strcmp(word, "none")) return true;
+  if (length >= sizeof number) return false;
+  memcpy(number, word, length + 1);
+  if (percent) number[length - 1] = 0;
+  if (cli_real_from_text(number, &value)) {
+    o->tolerances[error] = percent ? value / 100 : value;
+    return value > 0 && value < INFINITY;
+  }
+  bool is_distance = error == SCREE_ERROR_MEAN || error == SCREE_ERROR_HAUSDORFF;
+  if (!is_distance || percent || !cli_length_from_text(word, &value)) return false;
+  o->tolerance_lengths[error] = value;
+  return value > 0 && value < INFINITY;
+}
+
+static bool find_error(const char *word, scree_shape_error *error) {
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) {
+    *error = (scree_shape_error)e;
+    if (!strcmp(word, scree_shape_error_name(*error))) return true;
+  }
+  *error = SCREE_ERROR_MEAN;
+  return !strcmp(word, "mean");
+}
+
+/* "mean=0.3%,size=2%" */
+static bool parse_tolerances(const char *text, scree_choice_options *o) {
+  while (*text) {
+    char word[64];
+    size_t length = strcspn(text, ",");
+    if (length == 0 || length >= sizeof word) return false;
+    memcpy(word, text, length);
+    word[length] = 0;
+    char *bound = strchr(word, '=');
+    if (!bound) return false;
+    *bound++ = 0;
+    scree_shape_error error;
+    if (!find_error(word, &error) || !parse_bound(bound, error, o)) return false;
+    text += length;
+    if (*text == ',' && !*++text) return false;
+  }
+  return true;
 }
 
 static bool name_taken(const choose_run *run, size_t before, const char *name) {
@@ -188,13 +248,13 @@ static scree_status write_output(choose_run *run, scree_error *error) {
                                       o->mesh_path[0] ? o->mesh_path : NULL,
                                       &run->choices[i]};
   }
-  scree_choice_report report = {entries,
-                                run->count,
-                                &run->set,
-                                &run->options,
-                                run->simplify.method,
-                                a->paper ? SCREE_RULE_PAPER : SCREE_RULE_ROBUST,
-                                run->call->command_line};
+  run->report.entries = entries;
+  run->report.entry_count = run->count;
+  run->report.set = &run->set;
+  run->report.options = &run->options;
+  run->report.method = run->simplify.method;
+  run->report.command_line = run->call->command_line;
+  const scree_choice_report report = run->report;
   scree_status status = SCREE_OK;
   if (a->output) status = choose_write_reports(run, &report, error);
   cli_terminal_end();
@@ -231,6 +291,16 @@ static int run_choose(const cli_call *call) {
                       "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole "
                       "N from 1 to 1000",
                       a->grid);
+  if (a->tolerance && !parse_tolerances(a->tolerance, &run.options))
+    return cli_misuse(call->verb,
+                      "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, "
+                      "bounds above 0, lengths of mean and hausdorff alone",
+                      a->tolerance);
+  if (a->paper && a->rule != RULE_UNSET && a->rule != SCREE_RULE_PAPER)
+    return cli_misuse(call->verb, "--paper is --rule paper");
+  run.report.rule = a->paper               ? SCREE_RULE_PAPER
+                    : a->rule != RULE_UNSET ? (scree_choice_rule)a->rule
+                                            : SCREE_RULE_RECOMMENDED;
   cli_remark_density(a->density);
   run.options.weight = a->weight;
   run.options.reference = (scree_reference)a->reference;
@@ -264,18 +334,19 @@ const cli_verb cli_verb_choose = {
     .summary = "find the triangle count to use, and write that mesh",
     .inputs = "[FILE...] [--samples]",
     .description =
-        "Decimates each scan once, through every triangle count, and chooses the count that "
-        "balances the error of the surface area against the number of triangles:\n\n"
-        "Ip = eps_s + W Nr/Nm, eps_s = |S - Sm|/Sm (Katagiri and Koyanaka 2020), with Rp = "
-        "Nr/Nm.\n\n"
-        "The paper's choice is the least Ip on a logarithmic grid of Rp. The robust choice, the "
-        "default, takes the worst error at a count or any finer one, over every count, so that an "
-        "area that is right by accident does not count. Several scans also get one Rp for all.\n\n"
+        "Decimates each scan once, through every triangle count, and recommends the coarsest level "
+        "that keeps a tolerance on each of several errors against the scan: mean distance 0.3 %, "
+        "Hausdorff distance 3 % (of the body's size, the diameter of the sphere of its area), "
+        "inertia 2 %, and 3 % for the mean of distance over local wall thickness.\n\n"
+        "Beside it stand the paper's criterion (Katagiri and Koyanaka 2020), Ip = eps_s + W Nr/Nm "
+        "with eps_s = |S - Sm|/Sm and Rp = Nr/Nm: the least on a logarithmic grid of Rp; and the "
+        "robust choice, which takes the worst eps_s at a count or any finer one, over every count. "
+        "Several scans also get the paper's one Rp for all.\n\n"
         "Scans that are no closed surface are repaired first. One that cannot be used is told on "
         "stderr and left out; the exit code is then 1. sample:NAME stands for a built-in "
         "sample. Nothing is written without -o.",
     .examples = "scree choose phone.stl -o phone\n"
-                "scree choose *.stl -o devices --errors\n"
+                "scree choose *.stl -o devices --tolerance mean=0.2%,hausdorff=1mm\n"
                 "scree choose --samples --paper\n"
                 "scree choose sample:fp-1 sample:dc-1 --noise 0mm --json",
     .options = options,

@@ -24,6 +24,71 @@ static void json_pick(scree_json *json, const char *key, const scree_pick *pick)
   scree_json_end(json);
 }
 
+static void json_errors(scree_json *json, const double errors[SCREE_SHAPE_ERROR_COUNT]) {
+  scree_json_row_object(json, "errors");
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    if (isfinite(errors[e]))
+      scree_json_number(json, scree_shape_error_name((scree_shape_error)e), errors[e]);
+  scree_json_end(json);
+}
+
+typedef size_t tell_sentences(const scree_choice_report *report, size_t entry,
+                              char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES]);
+
+static void json_sentences(scree_json *json, const char *key, const scree_choice_report *report,
+                           size_t entry, tell_sentences *tell) {
+  char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES];
+  size_t count = tell(report, entry, texts);
+  scree_json_array(json, key);
+  for (size_t i = 0; i < count; i++) scree_json_text(json, NULL, texts[i]);
+  scree_json_end(json);
+}
+
+static void json_changes(scree_json *json, const scree_fidelity *fidelity, size_t row) {
+  scree_json_row_object(json, "changes");
+  for (int k = 0; k < SCREE_CHANGE_COUNT; k++) {
+    double change = scree_fidelity_change(fidelity, row, (scree_shape_change)k);
+    if (isfinite(change))
+      scree_json_number(json, scree_shape_change_name((scree_shape_change)k), change);
+  }
+  scree_json_end(json);
+}
+
+/* Of a choice without the errors of levels there is none. */
+static void json_recommended(scree_json *json, const scree_choice_report *report, size_t entry) {
+  const scree_choice *c = report->entries[entry].choice;
+  const scree_fidelity *f = c->fidelity;
+  double errors[SCREE_SHAPE_ERROR_COUNT], at[3];
+  if (!f) return;
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    errors[e] = scree_fidelity_error(f, c->recommended_row, (scree_shape_error)e);
+  scree_fidelity_farthest(f, c->recommended_row, at);
+  scree_json_object(json, "recommended");
+  scree_json_number(json, "rp", c->recommended.rp);
+  scree_json_count(json, "triangle_count", c->recommended.triangle_count);
+  scree_json_number(json, "area", c->recommended.area);
+  scree_json_number(json, "volume", c->recommended.volume);
+  scree_json_number(json, "level_eps_s", c->recommended.level_eps_s);
+  json_errors(json, errors);
+  json_changes(json, f, c->recommended_row);
+  scree_json_row_array(json, "farthest");
+  for (int k = 0; k < 3; k++) scree_json_number(json, NULL, at[k]);
+  scree_json_end(json);
+  scree_json_text(json, "limited_by", scree_shape_error_name(c->limited_by));
+  scree_json_number(json, "largest_over_tolerance", c->recommended.ip);
+  json_sentences(json, "warnings", report, entry, scree_choice_warnings);
+  scree_json_end(json);
+  json_pick(json, "cost", &c->cost);
+  scree_json_row_object(json, "scan");
+  scree_json_number(json, "size", scree_fidelity_scan(f, SCREE_SCAN_LENGTH));
+  scree_json_number(json, "noise", scree_fidelity_scan(f, SCREE_SCAN_NOISE));
+  scree_json_number(json, "clean_area", scree_fidelity_scan(f, SCREE_SCAN_CLEAN_AREA));
+  scree_json_number(json, "thickness", scree_fidelity_scan(f, SCREE_SCAN_THICKNESS));
+  scree_json_number(json, "thinnest", scree_fidelity_scan(f, SCREE_SCAN_THINNEST));
+  scree_json_end(json);
+  scree_json_text(json, "limited_by", scree_shape_error_name(c->limited_by));
+}
+
 static void json_levels(scree_json *json, const scree_choice *choice) {
   scree_json_array(json, "levels");
   for (size_t i = 0; i < choice->level_count; i++) {
@@ -38,11 +103,7 @@ static void json_levels(scree_json *json, const scree_choice *choice) {
     scree_json_number(json, "worst_eps_s", level->worst_eps_s);
     scree_json_number(json, "robust_ip", level->robust_ip);
     scree_json_bool(json, "reached", level->reached);
-    scree_json_row_object(json, "errors");
-    for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-      if (isfinite(level->errors[e]))
-        scree_json_number(json, scree_shape_error_name((scree_shape_error)e), level->errors[e]);
-    scree_json_end(json);
+    json_errors(json, level->errors);
     scree_json_end(json);
   }
   scree_json_end(json);
@@ -77,12 +138,24 @@ static void json_options(scree_json *json, const scree_choice_report *report) {
   const scree_choice_options *o = report->options;
   scree_json_row_object(json, "options");
   scree_json_text(json, "method", scree_method_name(report->method));
-  scree_json_bool(json, "paper", (report->rule == SCREE_RULE_PAPER));
+  scree_json_bool(json, "paper", report->rule == SCREE_RULE_PAPER);
+  scree_json_text(json, "rule", scree_choice_rule_name(report->rule));
   scree_json_number(json, "weight", o->weight);
   scree_json_number(json, "rp_min", o->rp_min);
   scree_json_number(json, "rp_max", o->rp_max);
   scree_json_count(json, "per_decade", (uint64_t)o->per_decade);
   scree_json_text(json, "reference", reference_name(o->reference));
+  scree_json_row_object(json, "tolerances");
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    if (o->tolerances[e] < INFINITY)
+      scree_json_number(json, scree_shape_error_name((scree_shape_error)e), o->tolerances[e]);
+  scree_json_end(json);
+  scree_json_row_object(json, "tolerance_lengths");
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    if (o->tolerance_lengths[e] < INFINITY)
+      scree_json_number(json, scree_shape_error_name((scree_shape_error)e),
+                        o->tolerance_lengths[e]);
+  scree_json_end(json);
   scree_json_end(json);
 }
 
@@ -104,7 +177,8 @@ static void json_source(scree_json *json, const scree_choice_entry *entry) {
 }
 
 static void json_entry(scree_json *json, const scree_choice_report *report,
-                       const scree_choice_entry *entry) {
+                       size_t index) {
+  const scree_choice_entry *entry = &report->entries[index];
   const scree_choice *choice = entry->choice;
   scree_json_object(json, NULL);
   scree_json_text(json, "file", entry->file);
@@ -112,10 +186,13 @@ static void json_entry(scree_json *json, const scree_choice_report *report,
   scree_json_number(json, "area", choice->area);
   scree_json_number(json, "volume", choice->volume);
   json_levels(json, choice);
+  json_recommended(json, report, index);
+  json_sentences(json, "answer", report, index, scree_choice_answer);
+  json_sentences(json, "warnings", report, index, scree_choice_warnings);
   json_pick(json, "paper", &choice->paper);
   json_pick(json, "robust", &choice->robust);
   scree_json_bool(json, "paper_is_accident", choice->paper_is_accident);
-  scree_json_text(json, "default", report->rule == SCREE_RULE_PAPER ? "paper" : "robust");
+  scree_json_text(json, "default", scree_choice_rule_name(report->rule));
   json_pick(json, "plain", &choice->plain);
   scree_json_bool(json, "plain_is_accident", choice->plain_is_accident);
   json_pick(json, "smooth", &choice->smooth);
@@ -156,6 +233,13 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
     scree_json_end(json);
   }
   scree_json_end(json);
+  json_sentences(json, "answer", report, report->entry_count, scree_choice_answer);
+  json_sentences(json, "warnings", report, report->entry_count, scree_choice_warnings);
+  scree_json_row_array(json, "recommended_triangle_counts");
+  for (size_t i = 0; i < report->entry_count; i++)
+    if (report->entries[i].choice->fidelity)
+      scree_json_count(json, NULL, report->entries[i].choice->recommended.triangle_count);
+  scree_json_end(json);
   json_set_pick(json, "paper", &set->paper);
   json_set_pick(json, "robust", &set->robust);
   json_set_pick(json, "smooth", &set->smooth);
@@ -176,7 +260,7 @@ scree_status scree_choice_json_write(const scree_choice_report *report, const ch
   if (status != SCREE_OK) return status;
   scree_json json = scree_json_start(output.stream);
   scree_json_array(&json, NULL);
-  for (size_t e = 0; e < report->entry_count; e++) json_entry(&json, report, &report->entries[e]);
+  for (size_t e = 0; e < report->entry_count; e++) json_entry(&json, report, e);
   if (report->set) json_set(&json, report);
   scree_json_end(&json);
   return scree_output_commit(&output, error);
@@ -236,6 +320,27 @@ static void csv_robust(FILE *stream, const scree_choice_entry *entry) {
   csv_finish(stream, "robust", errors);
 }
 
+static void csv_recommended(FILE *stream, const scree_choice_entry *entry) {
+  const scree_choice *choice = entry->choice;
+  const scree_pick *pick = &choice->recommended;
+  double errors[SCREE_SHAPE_ERROR_COUNT];
+  if (!choice->fidelity) return;
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    errors[e] =
+        scree_fidelity_error(choice->fidelity, choice->recommended_row, (scree_shape_error)e);
+  csv_start(stream, entry->file, choice->triangle_count);
+  csv_level(stream, &(scree_choice_level){.rp = pick->rp,
+                                          .triangle_count = pick->triangle_count,
+                                          .area = pick->area,
+                                          .volume = pick->volume,
+                                          .eps_s = pick->level_eps_s,
+                                          .ip = NAN,
+                                          .worst_eps_s = NAN,
+                                          .robust_ip = NAN,
+                                          .smooth_ip = NAN});
+  csv_finish(stream, "recommended", errors);
+}
+
 /* The set's choice is an Rp and a mean: of no file, of no one count. */
 static void csv_set(FILE *stream, const scree_set_pick *pick, bool robust) {
   csv_start(stream, "", 0);
@@ -259,6 +364,7 @@ static void csv_entry(FILE *stream, const scree_choice_entry *entry) {
     csv_finish(stream, i == choice->best[SCREE_ERROR_AREA] ? "paper" : "", level->errors);
   }
   csv_robust(stream, entry);
+  csv_recommended(stream, entry);
 }
 
 scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,

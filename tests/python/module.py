@@ -173,8 +173,12 @@ class Curves(unittest.TestCase):
         self.assertEqual(len(choice.levels), 37)
         least = min(choice.levels, key=lambda level: level.ip)
         self.assertEqual(choice.paper.triangle_count, least.triangle_count)
-        self.assertEqual(choice.mesh().triangle_count, choice.robust.triangle_count)
-        self.assertEqual(set(choice.best), {"area", "volume", "inertia", "size"})
+        self.assertEqual(choice.mesh().triangle_count, choice.recommended.triangle_count)
+        self.assertEqual(choice.mesh("robust").triangle_count, choice.robust.triangle_count)
+        self.assertLess(choice.errors["mean_distance"], 0.003)
+        looser = self.scan.choose(tolerances={"mean_distance": 0.02, "hausdorff": 0.1, "thickness": 1, "inertia": 1})
+        self.assertLess(looser.recommended.triangle_count, choice.recommended.triangle_count)
+        self.assertLessEqual({"area", "volume", "mean_distance", "hausdorff", "inertia", "size"}, set(choice.best))
         self.assertGreater(len(choice.trace), 200)
 
     def test_progress(self):

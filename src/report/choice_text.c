@@ -1,0 +1,346 @@
+/* What a choice says in sentences. The text for people, the JSON and the page all have them from
+ * here, so that none tells what another keeps silent about. */
+#include "scree/report.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Above this ratio of counts two choices are said to differ. */
+static const double NOTABLE_RATIO = 1.5;
+/* The paper's scans have some 760,000 triangles; beyond this factor from it, or between objects,
+ * the dependence on resolution is said. */
+static const double PAPER_COUNT = 762008, NOTABLE_RESOLUTION = 3;
+/* And it is none where the count would hardly change. */
+static const double NOTABLE_GROWTH = 0.1;
+/* A dimension that changes by more has lost a feature. */
+static const double NOTABLE_SIZE = 0.02;
+/* Mean angle of the normals over pi (18 degrees): what stands out less than the distances allowed
+ * is flattened. */
+static const double NOTABLE_NORMALS = 0.1;
+/* Noise above this share of the tolerance on the mean distance takes part in it. */
+static const double NOTABLE_NOISE = 0.3;
+/* A level with more of the scan's triangles than this is hardly coarser than the scan. */
+static const double NOTABLE_SHARE = 0.5;
+/* The cost of a particle-step in a flowing heap, over that of 100 triangles: 2.5 at 1,500. */
+static const double COST_RISE = 1.5 / 1400, COST_START = 100;
+/* The paper's coarsest levels; a floor above is worth a word. */
+enum { PAPER_FLOOR = 8, NUMBER_BYTES = 32 };
+
+typedef struct sentences {
+  char (*texts)[SCREE_CHOICE_SENTENCE_BYTES];
+  size_t count;
+} sentences;
+
+__attribute__((format(printf, 2, 3))) static void say(sentences *s, const char *format, ...) {
+  if (s->count == SCREE_CHOICE_SENTENCES) return;
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(s->texts[s->count++], SCREE_CHOICE_SENTENCE_BYTES, format, arguments);
+  va_end(arguments);
+}
+
+/* 12345 as 12,345 */
+static const char *count_text(size_t count, char buffer[NUMBER_BYTES]) {
+  char digits[NUMBER_BYTES];
+  int length = snprintf(digits, sizeof digits, "%zu", count), used = 0;
+  for (int i = 0; i < length; i++) {
+    if (i > 0 && (length - i) % 3 == 0) buffer[used++] = ',';
+    buffer[used++] = digits[i];
+  }
+  buffer[used] = 0;
+  return buffer;
+}
+
+/* 0.00123 as 1.2e-3 */
+static const char *rp_text(double rp, char buffer[NUMBER_BYTES]) {
+  int exponent = (int)floor(log10(rp) + 1e-9);
+  double digits = rp / pow(10, exponent);
+  if (digits >= 9.95) {
+    digits /= 10;
+    exponent++;
+  }
+  if (exponent >= -1)
+    snprintf(buffer, NUMBER_BYTES, "%.2f", rp);
+  else
+    snprintf(buffer, NUMBER_BYTES, "%.1fe%d", digits, exponent);
+  return buffer;
+}
+
+static const char *percent_text(double fraction, char buffer[NUMBER_BYTES]) {
+  double percent = 100 * fraction;
+  snprintf(buffer, NUMBER_BYTES, percent < 0.095  ? "%.3f%%"
+                                 : percent < 9.95 ? "%.2f%%"
+                                                  : "%.0f%%",
+           percent);
+  return buffer;
+}
+
+static double ratio(double a, double b) {
+  return a > b ? a / b : b / a;
+}
+
+/* The grid's Rp, or the level's own where the grid's was not reached. */
+static double rp_of(const scree_choice *choice, const scree_pick *pick) {
+  return fmax(pick->rp, (double)pick->triangle_count / (double)choice->triangle_count);
+}
+
+static bool is_recommended(const scree_choice_report *report, const scree_choice *choice) {
+  return report->rule == SCREE_RULE_RECOMMENDED && choice->fidelity;
+}
+
+static const scree_set_pick *set_pick(const scree_choice_report *report) {
+  return report->rule == SCREE_RULE_ROBUST ? &report->set->robust : &report->set->paper;
+}
+
+/* ---- The answer ---- */
+
+static const char *error_words(scree_shape_error which) {
+  static const char *const words[] = {
+      [SCREE_ERROR_AREA] = "the area",
+      [SCREE_ERROR_VOLUME] = "the volume",
+      [SCREE_ERROR_HAUSDORFF] = "the largest distance",
+      [SCREE_ERROR_MEAN] = "the mean distance",
+      [SCREE_ERROR_INERTIA] = "the inertia",
+      [SCREE_ERROR_SIZE] = "the dimensions",
+      [SCREE_ERROR_THICKNESS] = "the distance over the walls' thickness",
+      [SCREE_ERROR_THINNEST] = "the thinnest walls",
+      [SCREE_ERROR_CONVEXITY] = "the convexity",
+      [SCREE_ERROR_NORMALS] = "the normals",
+  };
+  return words[which];
+}
+
+static double cost_of(size_t triangle_count) {
+  return 1 + COST_RISE * ((double)triangle_count - COST_START);
+}
+
+static void say_recommended(sentences *s, const scree_choice_report *report,
+                            const scree_choice *c) {
+  const scree_fidelity *f = c->fidelity;
+  const scree_pick *pick = &c->recommended;
+  size_t row = c->recommended_row;
+  double length = scree_fidelity_scan(f, SCREE_SCAN_LENGTH), at[3],
+         thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST);
+  char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES], walls[64] = "", share[NUMBER_BYTES],
+      most[NUMBER_BYTES];
+  scree_fidelity_farthest(f, row, at);
+  if (isfinite(thinnest)) snprintf(walls, sizeof walls, "thinnest walls %+.2g %%, ", 100 * thinnest);
+  say(s,
+      "Use %s triangles (Rp = %s): surface %.2g mm off in the mean, %.2g mm at worst (at %.3g, "
+      "%.3g, %.3g mm); %sinertia %+.2g %%, area %+.2g %%.",
+      count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
+      1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_MEAN),
+      1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF), 1e3 * at[0],
+      1e3 * at[1], 1e3 * at[2], walls, 100 * scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA),
+      100 * scree_fidelity_change(f, row, SCREE_CHANGE_AREA));
+  say(s, "Limited by %s, %s of %s at most; sizes are relative to %.3g mm.",
+      error_words(c->limited_by),
+      percent_text(scree_fidelity_error(f, row, c->limited_by), share),
+      percent_text(scree_choice_tolerance(c, report->options, c->limited_by), most),
+      1e3 * length);
+  if (pick->triangle_count > c->paper.triangle_count)
+    say(s, "In a flowing heap it costs about %.1f times the paper's %s triangles to simulate.",
+        cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count),
+        count_text(c->paper.triangle_count, other));
+}
+
+static void say_by_area(sentences *s, const scree_choice_report *report, const scree_choice *c) {
+  const scree_pick *pick = scree_choice_pick(c, report->rule);
+  bool paper = report->rule == SCREE_RULE_PAPER;
+  char count[NUMBER_BYTES], rp[NUMBER_BYTES], percent[NUMBER_BYTES], low[NUMBER_BYTES],
+      high[NUMBER_BYTES];
+  say(s, "Use %s triangles (Rp = %s): area within %s of the scan's.",
+      count_text(pick->triangle_count, count), rp_text(rp_of(c, pick), rp),
+      percent_text(paper ? pick->level_eps_s : pick->eps_s, percent));
+  if (pick->most > pick->fewest)
+    say(s, "From %s up to %s triangles there are levels with an Ip within a tenth of it.",
+        count_text(pick->fewest, low), count_text(pick->most, high));
+}
+
+/* The level of an object at the set's Rp, which lies on the grid by the paper's rule and on the
+ * trace by the robust one. */
+static const scree_choice_level *level_at(const scree_choice_report *report, size_t index,
+                                          double rp) {
+  const scree_choice *c = report->entries[index].choice;
+  bool grid = report->rule != SCREE_RULE_ROBUST;
+  const scree_choice_level *levels = grid ? c->levels : c->trace;
+  size_t count = grid ? c->level_count : c->trace_count, k = 0;
+  while (k + 1 < count && levels[k].rp < rp * (1 - 1e-9)) k++;
+  return &levels[k];
+}
+
+/* Counts and errors at the set's Rp. */
+static void say_common_rp(sentences *s, const scree_choice_report *report, const char *begin,
+                          const char *end) {
+  size_t least = SIZE_MAX, most = 0;
+  double worst = 0, rp = set_pick(report)->rp;
+  for (size_t i = 0; i < report->entry_count; i++) {
+    const scree_choice_level *level = level_at(report, i, rp);
+    if (level->triangle_count < least) least = level->triangle_count;
+    if (level->triangle_count > most) most = level->triangle_count;
+    worst = fmax(worst, report->rule == SCREE_RULE_ROBUST ? level->worst_eps_s : level->eps_s);
+  }
+  char rp_buffer[NUMBER_BYTES], low[NUMBER_BYTES], high[NUMBER_BYTES], percent[NUMBER_BYTES];
+  say(s, "%s Rp = %s for the set: %s%s%s triangles%s, area within %s%s.", begin,
+      rp_text(rp, rp_buffer), count_text(least, low), least < most ? " to " : "",
+      least < most ? count_text(most, high) : "", least < most ? "" : " each",
+      percent_text(worst, percent), end);
+}
+
+static void say_set(sentences *s, const scree_choice_report *report) {
+  const scree_set_pick *pick = set_pick(report);
+  char low[NUMBER_BYTES], high[NUMBER_BYTES];
+  if (!is_recommended(report, report->entries[0].choice)) {
+    say_common_rp(s, report, "Use", "");
+    if (pick->rp_high > pick->rp_low)
+      say(s, "From Rp = %s up to %s there are levels with an Ip within a tenth of the least.",
+          rp_text(pick->rp_low, low), rp_text(pick->rp_high, high));
+    return;
+  }
+  size_t least = SIZE_MAX, most = 0;
+  for (size_t i = 0; i < report->entry_count; i++) {
+    size_t count = report->entries[i].choice->recommended.triangle_count;
+    if (count < least) least = count;
+    if (count > most) most = count;
+  }
+  say(s, "Use each shape's own count, %s to %s triangles: all keep the same tolerances.",
+      count_text(least, low), count_text(most, high));
+  say_common_rp(s, report, "The paper's criterion gives one", ", but fidelities that differ");
+}
+
+size_t scree_choice_answer(const scree_choice_report *report, size_t entry,
+                           char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES]) {
+  sentences s = {texts, 0};
+  if (entry == report->entry_count) {
+    say_set(&s, report);
+    return s.count;
+  }
+  const scree_choice *c = report->entries[entry].choice;
+  if (is_recommended(report, c))
+    say_recommended(&s, report, c);
+  else
+    say_by_area(&s, report, c);
+  return s.count;
+}
+
+/* ---- Warnings ---- */
+
+static void warn_of_losses(sentences *s, const scree_choice_report *report,
+                           const scree_choice *c) {
+  static const char *const sides[] = {"length", "width", "height"};
+  const scree_fidelity *f = c->fidelity;
+  size_t row = c->recommended_row;
+  char count[NUMBER_BYTES];
+  for (int i = 0; i < 3; i++) {
+    double change =
+        scree_fidelity_change(f, row, (scree_shape_change)(SCREE_CHANGE_LENGTH + i));
+    if (fabs(change) > NOTABLE_SIZE)
+      say(s,
+          "%s a feature, thinner than the tolerances keep: %s %+.2g %% (--tolerance size=2%% "
+          "keeps it).",
+          change < 0 ? "It loses" : "It enlarges", sides[i], 100 * change);
+  }
+  double normals = scree_fidelity_error(f, row, SCREE_ERROR_NORMALS);
+  if (normals > NOTABLE_NORMALS)
+    say(s,
+        "Relief is flattened: normals are %.0f degrees off in the mean (--tolerance normals=5%% "
+        "keeps more).",
+        180 * normals);
+  double noise = scree_fidelity_scan(f, SCREE_SCAN_NOISE),
+         length = scree_fidelity_scan(f, SCREE_SCAN_LENGTH);
+  if (noise > NOTABLE_NOISE * length *
+                  scree_choice_tolerance(c, report->options, SCREE_ERROR_MEAN))
+    say(s, "Scan noise of %.2g mm takes part in the mean distance: the count is more than the "
+           "shape needs.",
+        1e3 * noise);
+  if ((double)c->recommended.triangle_count > NOTABLE_SHARE * (double)c->triangle_count)
+    say(s, "The scan is coarse for these tolerances: of its %s triangles most are needed.",
+        count_text(c->triangle_count, count));
+}
+
+static void warn_of_accidents(sentences *s, const scree_choice *c) {
+  double differ = ratio((double)c->paper.triangle_count, (double)c->robust.triangle_count);
+  if (c->paper_is_accident)
+    say(s, "The paper's choice is an accident: the area crosses the scan's there; finer meshes are "
+           "further off.");
+  else if (differ > NOTABLE_RATIO)
+    say(s, "The paper's and the robust choice differ %.1f times.", differ);
+}
+
+/* Said where the choice would be another: the object's, or the set's. */
+static void warn_of_noise(sentences *s, const scree_choice_report *report, size_t entry) {
+  bool set = entry == report->entry_count;
+  double most = 0, rp, factor;
+  for (size_t i = set ? 0 : entry; i < (set ? entry : entry + 1); i++) {
+    const scree_noise *noise = &report->entries[i].choice->noise;
+    if (noise->found) most = fmax(most, noise->fraction);
+  }
+  if (set) {
+    rp = report->set->smooth.rp;
+    factor = ratio(rp, report->set->robust.rp);
+  } else {
+    const scree_choice *c = report->entries[entry].choice;
+    rp = c->smooth.rp;
+    factor = ratio((double)c->smooth.triangle_count, (double)c->robust.triangle_count);
+  }
+  char percent[NUMBER_BYTES], text[NUMBER_BYTES];
+  if (factor > NOTABLE_RATIO && most > 0 && report->options->reference == SCREE_REFERENCE_SCAN)
+    say(s,
+        "Scan noise adds up to %s of area and misleads eps_s: --reference smooth takes it out and "
+        "gives Rp = %s.",
+        percent_text(most, percent), rp_text(rp, text));
+}
+
+/* How many times the triangles at half the spacing, by the rule that is told. */
+static double growth_of(const scree_choice_report *report, size_t entry) {
+  bool paper = report->rule == SCREE_RULE_PAPER;
+  if (entry == report->entry_count)
+    return paper ? report->set->paper_growth : report->set->robust_growth;
+  const scree_choice *c = report->entries[entry].choice;
+  return (double)(paper ? c->paper_finer_count : c->finer_count) /
+         (double)scree_choice_pick(c, report->rule)->triangle_count;
+}
+
+static void warn_of_resolution(sentences *s, const scree_choice_report *report, size_t entry) {
+  double least = INFINITY, most = 0, growth = growth_of(report, entry);
+  bool set = entry == report->entry_count;
+  for (size_t i = set ? 0 : entry; i < (set ? entry : entry + 1); i++) {
+    const scree_choice *c = report->entries[i].choice;
+    least = fmin(least, (double)c->triangle_count);
+    most = fmax(most, (double)c->triangle_count);
+  }
+  bool unlike = ratio(most, least) > NOTABLE_RESOLUTION ||
+                ratio(least, PAPER_COUNT) > NOTABLE_RESOLUTION ||
+                ratio(most, PAPER_COUNT) > NOTABLE_RESOLUTION;
+  if (unlike && fabs(growth - 1) >= NOTABLE_GROWTH)
+    say(s,
+        "At half the scan's spacing Nr would be about %.*f times this, if the curve stays as it "
+        "is.",
+        growth < 9.95, growth);
+}
+
+static void warn_of_floor(sentences *s, const scree_choice_report *report, size_t entry) {
+  const scree_choice_entry *e = &report->entries[entry];
+  char count[NUMBER_BYTES], rp[NUMBER_BYTES];
+  if (!e->choice->levels[0].reached && e->choice->floor_count > PAPER_FLOOR)
+    say(s, "Rp = %s was not reached: %s stops at %s triangles.",
+        rp_text(report->options->rp_min, rp), e->name, count_text(e->choice->floor_count, count));
+}
+
+size_t scree_choice_warnings(const scree_choice_report *report, size_t entry,
+                             char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES]) {
+  sentences s = {texts, 0};
+  bool set = entry == report->entry_count;
+  bool recommended = is_recommended(report, report->entries[set ? 0 : entry].choice);
+  if (!set && recommended) warn_of_losses(&s, report, report->entries[entry].choice);
+  if (!recommended) {
+    if (!set) warn_of_accidents(&s, report->entries[entry].choice);
+    warn_of_noise(&s, report, entry);
+    warn_of_resolution(&s, report, entry);
+  }
+  if (!set) warn_of_floor(&s, report, entry);
+  if (!set && report->entries[entry].note) say(&s, "%s", report->entries[entry].note);
+  return s.count;
+}
