@@ -45,8 +45,8 @@ enum { SCREE_GAUGE_POINTS = 10000 };
 /* The mesh is borrowed. point_count points are spread over it. Free with scree_gauge_free. */
 scree_status scree_gauge_make(const scree_mesh *scan, size_t point_count, scree_gauge *gauge,
                               scree_error *error);
-/* The same of more points, which borrows from the first. What it reads is for telling: within facets
- * of a coarse scan the farthest point is looked for too. */
+/* The same of more points, which borrows from the first. What it reads is for telling: within
+ * facets of a coarse scan the farthest point is looked for too. */
 scree_status scree_gauge_refine(const scree_gauge *gauge, size_t point_count, scree_gauge *refined,
                                 scree_error *error);
 void scree_gauge_free(scree_gauge *gauge);

@@ -31,14 +31,14 @@ static void print_row(FILE *out, const choose_run *run, size_t index) {
   const scree_fidelity *f = c->fidelity;
   char scan[32], n[4][32], share[3][16];
   cli_print_cell(out, run->objects[index].name, 12, 12);
-  fprintf(out, "%10s |%7s%7s%8s |%7s%7s%c |%7s |%6s\n", cli_count_text(c->triangle_count, scan),
-          cli_count_text(c->recommended.triangle_count, n[0]),
-          percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_MEAN), share[0]),
-          percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_HAUSDORFF),
-                       share[1]),
-          cli_count_text(c->paper.triangle_count, n[1]), percent_text(c->paper.eps_s, share[2]),
-          c->paper_is_accident ? '*' : ' ', cli_count_text(c->robust.triangle_count, n[2]),
-          cli_count_text(c->cost.triangle_count, n[3]));
+  fprintf(
+      out, "%10s |%7s%7s%8s |%7s%7s%c |%7s |%6s\n", cli_count_text(c->triangle_count, scan),
+      cli_count_text(c->recommended.triangle_count, n[0]),
+      percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_MEAN), share[0]),
+      percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_HAUSDORFF), share[1]),
+      cli_count_text(c->paper.triangle_count, n[1]), percent_text(c->paper.eps_s, share[2]),
+      c->paper_is_accident ? '*' : ' ', cli_count_text(c->robust.triangle_count, n[2]),
+      cli_count_text(c->cost.triangle_count, n[3]));
 }
 
 /* What eps_s is measured against, where that is not the scan's area by itself. */
@@ -61,7 +61,8 @@ static void print_table(FILE *out, const choose_run *run) {
           "largest", "Nr", "eps_s", "Nr", "Nr");
   for (size_t i = 0; i < run->count; i++) print_row(out, run, i);
   if (run->count > 1)
-    fprintf(out, "the set, by the paper's criterion: one Rp = %s\n", rp_text(run->set.paper.rp, rp));
+    fprintf(out, "the set, by the paper's criterion: one Rp = %s\n",
+            rp_text(run->set.paper.rp, rp));
 }
 
 void choose_print_failed(FILE *out, const choose_run *run) {

@@ -27,7 +27,8 @@ static const cli_option options[] = {
      "Do exactly what the paper did: method qecd, its grid, plain Ip; meshes by its choice.", 0, 0,
      NULL},
     {"rule", 0, CLI_CHOICE, AT(rule), "RULE",
-     "Whose choice is told first and written: recommended (keeps tolerances), robust or paper (least "
+     "Whose choice is told first and written: recommended (keeps tolerances), robust or paper "
+     "(least "
      "Ip). Default: recommended.",
      0, 0, "recommended|robust|paper"},
     {"tolerance", 't', CLI_TEXT, AT(tolerance), "LIST",
@@ -292,13 +293,14 @@ static int run_choose(const cli_call *call) {
                       "N from 1 to 1000",
                       a->grid);
   if (a->tolerance && !parse_tolerances(a->tolerance, &run.options))
-    return cli_misuse(call->verb,
-                      "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, "
-                      "bounds above 0, lengths of mean and hausdorff alone",
-                      a->tolerance);
+    return cli_misuse(
+        call->verb,
+        "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, "
+        "bounds above 0, lengths of mean and hausdorff alone",
+        a->tolerance);
   if (a->paper && a->rule != RULE_UNSET && a->rule != SCREE_RULE_PAPER)
     return cli_misuse(call->verb, "--paper is --rule paper");
-  run.report.rule = a->paper               ? SCREE_RULE_PAPER
+  run.report.rule = a->paper                ? SCREE_RULE_PAPER
                     : a->rule != RULE_UNSET ? (scree_choice_rule)a->rule
                                             : SCREE_RULE_RECOMMENDED;
   cli_remark_density(a->density);

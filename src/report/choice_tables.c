@@ -176,8 +176,7 @@ static void json_source(scree_json *json, const scree_choice_entry *entry) {
   scree_json_text(json, "mesh_file", entry->mesh_file);
 }
 
-static void json_entry(scree_json *json, const scree_choice_report *report,
-                       size_t index) {
+static void json_entry(scree_json *json, const scree_choice_report *report, size_t index) {
   const scree_choice_entry *entry = &report->entries[index];
   const scree_choice *choice = entry->choice;
   scree_json_object(json, NULL);
@@ -201,7 +200,8 @@ static void json_entry(scree_json *json, const scree_choice_report *report,
   scree_json_number(json, "reference_area", choice->reference_area);
   scree_json_count(json, "floor_triangle_count", choice->floor_count);
   scree_json_count(json, "triangle_count_if_scanned_twice_as_fine",
-                   report->rule == SCREE_RULE_PAPER ? choice->paper_finer_count : choice->finer_count);
+                   report->rule == SCREE_RULE_PAPER ? choice->paper_finer_count
+                                                    : choice->finer_count);
   json_source(json, entry);
   scree_json_text(json, "version", scree_version());
   scree_json_text(json, "command", report->command_line);

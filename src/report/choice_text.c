@@ -70,9 +70,10 @@ static const char *rp_text(double rp, char buffer[NUMBER_BYTES]) {
 
 static const char *percent_text(double fraction, char buffer[NUMBER_BYTES]) {
   double percent = 100 * fraction;
-  snprintf(buffer, NUMBER_BYTES, percent < 0.095  ? "%.3f%%"
-                                 : percent < 9.95 ? "%.2f%%"
-                                                  : "%.0f%%",
+  snprintf(buffer, NUMBER_BYTES,
+           percent < 0.095  ? "%.3f%%"
+           : percent < 9.95 ? "%.2f%%"
+                            : "%.0f%%",
            percent);
   return buffer;
 }
@@ -123,23 +124,22 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
   size_t row = c->recommended_row;
   double length = scree_fidelity_scan(f, SCREE_SCAN_LENGTH), at[3],
          thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST);
-  char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES], walls[64] = "", share[NUMBER_BYTES],
-      most[NUMBER_BYTES];
+  char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES],
+      walls[64] = "", share[NUMBER_BYTES], most[NUMBER_BYTES];
   scree_fidelity_farthest(f, row, at);
-  if (isfinite(thinnest)) snprintf(walls, sizeof walls, "thinnest walls %+.2g %%, ", 100 * thinnest);
+  if (isfinite(thinnest))
+    snprintf(walls, sizeof walls, "thinnest walls %+.2g %%, ", 100 * thinnest);
   say(s,
       "Use %s triangles (Rp = %s): surface %.2g mm off in the mean, %.2g mm at worst (at %.3g, "
       "%.3g, %.3g mm); %sinertia %+.2g %%, area %+.2g %%.",
       count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
       1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_MEAN),
-      1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF), 1e3 * at[0],
-      1e3 * at[1], 1e3 * at[2], walls, 100 * scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA),
+      1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF), 1e3 * at[0], 1e3 * at[1],
+      1e3 * at[2], walls, 100 * scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA),
       100 * scree_fidelity_change(f, row, SCREE_CHANGE_AREA));
   say(s, "Limited by %s, %s of %s at most; sizes are relative to %.3g mm.",
-      error_words(c->limited_by),
-      percent_text(scree_fidelity_error(f, row, c->limited_by), share),
-      percent_text(scree_choice_tolerance(c, report->options, c->limited_by), most),
-      1e3 * length);
+      error_words(c->limited_by), percent_text(scree_fidelity_error(f, row, c->limited_by), share),
+      percent_text(scree_choice_tolerance(c, report->options, c->limited_by), most), 1e3 * length);
   if (pick->triangle_count > c->paper.triangle_count)
     say(s, "In a flowing heap it costs about %.1f times the paper's %s triangles to simulate.",
         cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count),
@@ -227,15 +227,13 @@ size_t scree_choice_answer(const scree_choice_report *report, size_t entry,
 
 /* ---- Warnings ---- */
 
-static void warn_of_losses(sentences *s, const scree_choice_report *report,
-                           const scree_choice *c) {
+static void warn_of_losses(sentences *s, const scree_choice_report *report, const scree_choice *c) {
   static const char *const sides[] = {"length", "width", "height"};
   const scree_fidelity *f = c->fidelity;
   size_t row = c->recommended_row;
   char count[NUMBER_BYTES];
   for (int i = 0; i < 3; i++) {
-    double change =
-        scree_fidelity_change(f, row, (scree_shape_change)(SCREE_CHANGE_LENGTH + i));
+    double change = scree_fidelity_change(f, row, (scree_shape_change)(SCREE_CHANGE_LENGTH + i));
     if (fabs(change) > NOTABLE_SIZE)
       say(s,
           "%s a feature, thinner than the tolerances keep: %s %+.2g %% (--tolerance size=2%% "
@@ -250,10 +248,10 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report,
         180 * normals);
   double noise = scree_fidelity_scan(f, SCREE_SCAN_NOISE),
          length = scree_fidelity_scan(f, SCREE_SCAN_LENGTH);
-  if (noise > NOTABLE_NOISE * length *
-                  scree_choice_tolerance(c, report->options, SCREE_ERROR_MEAN))
-    say(s, "Scan noise of %.2g mm takes part in the mean distance: the count is more than the "
-           "shape needs.",
+  if (noise > NOTABLE_NOISE * length * scree_choice_tolerance(c, report->options, SCREE_ERROR_MEAN))
+    say(s,
+        "Scan noise of %.2g mm takes part in the mean distance: the count is more than the "
+        "shape needs.",
         1e3 * noise);
   if ((double)c->recommended.triangle_count > NOTABLE_SHARE * (double)c->triangle_count)
     say(s, "The scan is coarse for these tolerances: of its %s triangles most are needed.",
