@@ -11,9 +11,11 @@ const mm = 1000;
 const shownSamples = 24000; // small triangles that carry the distance colours
 
 const pickOf = (object) => object[object.default];
-// How sharp a choice is: nothing where it stands alone.
-const similar = (least, most, text) => (most > least ? ` From ${text(least)} up to ${text(most)} there are levels with an Ip within a tenth of the least.` : '');
-const worstError = (object) => (object.default === 'paper' ? object.paper.level_eps_s : object.robust.eps_s);
+const rules = {
+  recommended: 'the coarsest level that keeps a tolerance on each of several errors against the scan',
+  robust: 'the least Ip over every level, with the worst error at a level or any finer one, so that an area that is right by accident does not count',
+  paper: 'the least Ip on a logarithmic grid of counts, as the paper has it',
+};
 
 // 1, 2 or 5 times a power of ten, not below x.
 function roundUp(x) {
@@ -24,7 +26,7 @@ function roundUp(x) {
 
 // The curve in the file is a selection of levels: the chosen ones are put between.
 function addPicks(trace, object) {
-  for (const key of ['robust', 'paper', 'smooth', 'plain']) {
+  for (const key of ['recommended', 'robust', 'paper', 'smooth', 'plain'].filter((name) => object[name])) {
     const { triangle_count: count, area, volume, level_eps_s: error, eps_s: worst } = object[key];
     const at = trace.findIndex((row) => row.count >= count);
     if (at < 0 || trace[at].count === count) continue;
@@ -38,7 +40,8 @@ export class ChoiceSection {
     this.set = folder.choice.find((entry) => entry.set);
     this.ids = new Map(folder.levels);
     this.levels = new Map();
-    this.state = { object: 0, row: 0, wire: true, only: false, colored: false };
+    // the level recommended begins with its distances shown
+    this.state = { object: 0, row: 0, wire: true, only: false, colored: this.objects[0].default === 'recommended' };
     this.host = host;
     this.tellAnswer();
     if (this.objects.length > 1) this.tellObjects();
@@ -64,38 +67,19 @@ export class ChoiceSection {
     const { options } = objects[0];
     const many = objects.length > 1;
     element('h1', many ? `How many triangles do these ${objects.length} scans need?` : `How many triangles does ${objects[0].name} need?`, host);
-    element('p', many ? this.setAnswer(set) : this.ownAnswer(objects[0]), host, { class: 'answer' });
-    const rule = options.paper
-      ? `the least Ip on a grid of ${options.per_decade} counts per factor of ten, as the paper has it`
-      : 'the least Ip over every level, with the worst error at a level or any finer one, so that an area that is right by accident does not count';
-    element('p', `Asked: the count that balances the error of the surface area against the number of triangles, Ip = eps_s + ${options.weight === 1 ? '' : `${number(options.weight)} `}Nr/Nm with eps_s = |S − Sm|/Sm${options.reference === 'smooth' ? ', Sm free of scan noise' : ''} (Katagiri and Koyanaka 2020). Chosen: ${rule}. Nr of the scan's Nm triangles are kept; Rp = Nr/Nm. Decimation: ${options.method}.`, host, { class: 'soft' });
+    const { answer, warnings } = many ? set : objects[0];
+    element('p', answer.join(' '), host, { class: 'answer' });
+    this.tellWarnings(host, warnings);
+    const { tolerances, tolerance_lengths: lengths } = options;
+    const kept = [...Object.entries(tolerances).map(([name, share]) => `${name} ${percent(share)}`), ...Object.entries(lengths).map(([name, length]) => `${name} ${number(length * mm)} mm`)].join(', ');
+    const area = `Ip = eps_s + ${options.weight === 1 ? '' : `${number(options.weight)} `}Nr/Nm with eps_s = |S − Sm|/Sm${options.reference === 'smooth' ? ', Sm free of scan noise' : ''} (Katagiri and Koyanaka 2020)`;
+    element('p', `Chosen: ${rules[objects[0].default]}${objects[0].default === 'recommended' ? ` (${kept}; distances as shares of sqrt(S/π))` : ''}. ${objects[0].default === 'recommended' ? 'Beside it the paper\'s criterion' : 'The criterion'}: ${area}. Nr of the scan's Nm triangles are kept; Rp = Nr/Nm. Decimation: ${options.method}.`, host, { class: 'soft' });
   }
 
-  ownAnswer(object) {
-    const pick = pickOf(object);
-    return `Use ${whole(pick.triangle_count)} of the scan's ${whole(object.triangle_count)} triangles (Rp = ${rpText(pick.triangle_count / object.triangle_count)}): the area stays within ${percent(worstError(object))} of the scan's.${similar(pick.similar_fewest, pick.similar_most, (n) => `${whole(n)} triangles`)}`;
-  }
-
-  setAnswer(set) {
-    const { rp, similar_rp_low: low, similar_rp_high: high } = set[this.objects[0].default];
-    const levels = this.objects.map((_, i) => this.levelAt(i, rp));
-    const counts = levels.map((level) => level?.count), worst = Math.max(...levels.map((level) => level?.error));
-    const least = Math.min(...counts), most = Math.max(...counts);
-    const range = levels.every(Boolean) ? `: ${least < most ? `${whole(least)} to ${whole(most)} triangles` : `${whole(least)} triangles each`}, area within ${percent(worst)} of the scans'` : '';
-    return `Use Rp = ${rpText(rp)} for all ${this.objects.length}${range}.${similar(low, high, (v) => `Rp = ${rpText(v)}`)} Each object's own choice is below.`;
-  }
-
-  // The level of an object at the set's Rp, which lies on the grid by the paper's rule and on the curve by the robust
-  // one; the coarsest where decimation ended above. Nothing where the curve is not in the page.
-  levelAt(index, rp) {
-    const object = this.objects[index];
-    if (object.default === 'paper') {
-      const level = object.levels.find((each) => each.rp >= rp * (1 - 1e-9));
-      return { count: level.triangle_count, error: level.eps_s };
-    }
-    const trace = this.levelsOf(index)?.trace;
-    const row = trace?.findLast(({ count }) => count <= rp * object.triangle_count * (1 + 1e-9)) ?? trace?.[0];
-    return row && { count: row.count, error: row.worst };
+  tellWarnings(host, warnings) {
+    if (!warnings.length) return;
+    const list = element('ul', null, host, { class: 'warnings' });
+    for (const text of warnings) element('li', text, list);
   }
 
   tellObjects() {
@@ -104,6 +88,12 @@ export class ChoiceSection {
       { head: 'object', value: (o) => o.name },
       { head: 'scan triangles', value: (o) => o.triangle_count, text: (o) => whole(o.triangle_count) },
       { head: 'scan noise in area', value: (o) => (o.noise.found ? o.noise.fraction : null), text: (o) => (o.noise.found ? percent(o.noise.fraction) : '–') },
+      ...this.objects[0].recommended ? [
+        { head: 'recommended: triangles', value: (o) => o.recommended.triangle_count, text: (o) => whole(o.recommended.triangle_count) },
+        { head: 'mean distance', value: (o) => o.recommended.errors.mean_distance, text: (o) => percent(o.recommended.errors.mean_distance) },
+        { head: 'largest', value: (o) => o.recommended.errors.hausdorff, text: (o) => percent(o.recommended.errors.hausdorff) },
+        { head: 'limited by', value: (o) => o.recommended.limited_by },
+      ] : [],
       ...[['robust', 'worst error'], ['paper', 'error']].flatMap(([key, error]) => [
         { head: `${key}: triangles`, value: (o) => o[key].triangle_count, text: (o) => whole(o[key].triangle_count) },
         { head: `${key}: Rp`, value: (o) => o[key].rp, text: (o) => rpText(o[key].rp) },
@@ -127,10 +117,12 @@ export class ChoiceSection {
     const { host } = this;
     this.title = element('h2', null, host, { class: 'object-name' });
     this.answer = element('p', null, host);
+    this.warnings = element('div', null, host);
     this.curve = element('div', null, host);
     this.single = element('p', 'The scan has one level only: there is no curve to draw.', this.curve, { hidden: '' });
     this.along = element('div', null, this.curve);
     this.chartHost = element('div', null, this.along, { class: 'chart' });
+    this.errorsHost = element('div', null, this.along, { class: 'chart errors' });
     const label = element('label', 'Level: move along the curve, or click into it', this.along, { class: 'soft' });
     this.slider = element('input', null, label, { type: 'range', min: 0, max: 1, step: 1, class: 'slider' });
     this.slider.addEventListener('input', () => this.moveTo(Number(this.slider.value)));
@@ -196,9 +188,12 @@ export class ChoiceSection {
     this.buttons?.forEach((button, i) => button.setAttribute('aria-pressed', String(i === index)));
     this.title.textContent = object.name;
     this.title.hidden = this.objects.length === 1;
-    this.answer.textContent = `${this.objects.length > 1 ? this.ownAnswer(object) : ''} ${object.note ? `Note: ${object.note}.` : ''}`.trim();
+    this.answer.textContent = this.objects.length > 1 ? object.answer.join(' ') : '';
+    this.warnings.replaceChildren();
+    if (this.objects.length > 1) this.tellWarnings(this.warnings, object.warnings);
     this.chart?.remove();
-    this.chart = null;
+    this.errorsChart?.remove();
+    this.chart = this.errorsChart = null;
     this.curve.hidden = !levels;
     this.missing.hidden = Boolean(levels);
     this.tables.replaceChildren();
@@ -208,6 +203,7 @@ export class ChoiceSection {
       this.single.hidden = several;
       this.along.hidden = !several;
       if (several) this.drawCurve(object, levels);
+      if (several && object.recommended) this.drawErrors(object);
       this.offerJumps(object, levels);
       this.tellScan(object, levels);
       this.moveTo(this.rowOf(levels, pickOf(object).triangle_count), true);
@@ -239,6 +235,28 @@ export class ChoiceSection {
         { x: rp[this.state.row] },
       ],
       pick: (row) => this.moveTo(row),
+    });
+  }
+
+  // Each error over its tolerance against the count: what lies above 1 is not kept.
+  drawErrors(object) {
+    const { tolerances, tolerance_lengths: lengths } = object.options;
+    const bounds = { ...tolerances };
+    for (const [name, length] of Object.entries(lengths)) bounds[name] = Math.min(bounds[name] ?? Infinity, length / object.scan.size);
+    const chosen = { triangle_count: object.recommended.triangle_count, errors: object.recommended.errors };
+    const rows = new Map([...object.levels, chosen].filter((level) => Object.keys(level.errors).length > 2).map((level) => [level.triangle_count, level]));
+    const levels = [...rows.values()].sort((a, b) => a.triangle_count - b.triangle_count);
+    const names = Object.keys(bounds).filter((name) => levels.every((level) => level.errors[name] > 0));
+    if (levels.length < 2) return;
+    this.errorsChart = new Chart(this.errorsHost, {
+      x: { label: 'triangles', values: levels.map((level) => level.triangle_count), text: whole },
+      yLabel: 'error over its tolerance',
+      series: [
+        ...names.map((name, i) => ({ label: `${name}, of ${percent(bounds[name])}`, values: levels.map((level) => level.errors[name] / bounds[name]), color: palette[i % palette.length], width: 2, text: (v) => number(v, 3) })),
+        { label: 'tolerance', values: levels.map(() => 1), color: palette[5], dash: [6, 3], text: () => '1' },
+      ],
+      marks: () => [{ x: object.recommended.triangle_count, color: palette[3], dash: [6, 5], label: 'recommended' }],
+      pick: (row) => this.moveTo(this.rowOf(this.levelsOf(this.state.object), levels[row].triangle_count)),
     });
   }
 
@@ -331,8 +349,8 @@ export class ChoiceSection {
   tellTables(object, levels) {
     const { tables: host } = this;
     element('h2', 'Candidate levels', host);
-    const names = { paper: 'paper: least Ip on the grid', robust: 'robust: least Ip, worst eps_s so far', smooth: 'robust, free of scan noise', plain: 'least Ip of all levels' };
-    const keys = ['paper', 'robust', 'smooth', 'plain'];
+    const names = { recommended: 'recommended: keeps the tolerances', cost: 'least mean distance / size + Nr/100,000', paper: 'paper: least Ip on the grid', robust: 'robust: least Ip, worst eps_s so far', smooth: 'robust, free of scan noise', plain: 'least Ip of all levels' };
+    const keys = ['paper', 'robust', 'smooth', 'plain', 'recommended', 'cost'].filter((key) => object[key]);
     const rows = [
       { name: 'scan', pick: { triangle_count: object.triangle_count, area: object.area, volume: object.volume, level_eps_s: 0 }, measures: levels?.measures[0] },
       ...keys.map((key, i) => ({ name: `${names[key]}${key === object.default ? ' (chosen)' : ''}${object[`${key}_is_accident`] ? ' (an accident)' : ''}`, pick: object[key], measures: levels?.measures[i + 1] })),
@@ -346,7 +364,7 @@ export class ChoiceSection {
       { head: 'level', value: (row) => row.name },
       { head: 'triangles', value: (row) => row.pick.triangle_count, text: (row) => whole(row.pick.triangle_count) },
       value('Rp', (row) => row.pick.triangle_count / object.triangle_count, 3),
-      value('Ip', (row) => row.pick.ip, 3),
+      { head: 'Ip', value: (row) => row.pick.ip ?? null, text: (row) => (row.pick.ip === undefined || row.pick === object.cost ? '' : number(row.pick.ip, 3)) },
       { head: 'fewest, Ip within a tenth', value: (row) => row.pick.similar_fewest ?? null, text: (row) => (row.pick.similar_fewest ? whole(row.pick.similar_fewest) : '') },
       { head: 'most', value: (row) => row.pick.similar_most ?? null, text: (row) => (row.pick.similar_most ? whole(row.pick.similar_most) : '') },
       value('eps_s', (row) => row.pick.level_eps_s, 3),
