@@ -202,7 +202,7 @@ static void put_trace(levels *l, const scree_choice *choice) {
 /* Measures of the scan and of the choices, in the order paper, robust, smooth, plain, recommended,
  * cost. */
 static scree_status put_measures(levels *l, const scree_mesh *scan, const scree_choice *choice) {
-  const scree_pick *picks[] = {&choice->paper, &choice->robust, &choice->smooth,
+  const scree_pick *picks[] = {&choice->paper, &choice->robust,      &choice->smooth,
                                &choice->plain, &choice->recommended, &choice->cost};
   enum { PICKS = sizeof picks / sizeof *picks };
   scree_pack_u32(&l->pack, PICKS + 1);
