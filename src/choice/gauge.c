@@ -15,7 +15,7 @@
 enum {
   PROBE_STEP = 4,   /* points per probe */
   PARTS = 16,       /* points per facet of a level whose parts give the mean */
-  CUT_SHARE = 4,    /* samples of a level for bounding the way back, per point of the spread */
+  CUT_SHARE = 1,    /* samples of a level for bounding the way back, per point of the spread */
   QUERY_BLOCK = 256 /* points that share a start */
 };
 /* Facets of the scan no larger than this hide nothing between their corners; of D. */

@@ -130,8 +130,8 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
   if (isfinite(thinnest))
     snprintf(walls, sizeof walls, "thinnest walls %+.2g %%, ", 100 * thinnest);
   say(s,
-      "Use %s triangles (Rp = %s): surface %.2g mm off in the mean, %.2g mm at worst (at %.3g, "
-      "%.3g, %.3g mm); %sinertia %+.2g %%, area %+.2g %%.",
+      "Use %s triangles (Rp = %s): surface %.2g mm off in the mean, %.2g mm at worst (at %.6g, "
+      "%.6g, %.6g mm); %sinertia %+.2g %%, area %+.2g %%.",
       count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
       1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_MEAN),
       1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF), 1e3 * at[0], 1e3 * at[1],

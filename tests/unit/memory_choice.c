@@ -137,6 +137,7 @@ static scree_status choose_many(void *context, scree_error *error) {
                           .options = quick_options(),
                           .load = load_ball,
                           .context = &c->mesh};
+  job.options.area_only = true;
   scree_status status = scree_choose_each(&job, NULL, choices, &set, error);
   for (int i = 0; i < 2; i++) scree_choice_free(&choices[i]);
   scree_set_choice_free(&set);
@@ -147,7 +148,7 @@ static void start_choosing(choosing *c) {
   const scree_simplify_options simplify = scree_default_simplify_options();
   const scree_choice_options options = quick_options();
   scree_error error;
-  c->mesh = shape_icosphere(0.02, 1);
+  c->mesh = shape_icosphere(0.02, 0);
   CHECK_OK(scree_curve_build(&c->mesh, &simplify, NULL, &c->curve, &error), error);
   for (int i = 0; i < 2; i++)
     CHECK_OK(scree_choose(c->curve, &c->mesh, &options, NULL, &c->choices[i], &error), error);
