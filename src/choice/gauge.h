@@ -2,8 +2,6 @@
 #ifndef SCREE_CHOICE_GAUGE_H
 #define SCREE_CHOICE_GAUGE_H
 
-#include "scree/choice.h"
-
 #include "choice/fit.h"
 #include "choice/spread.h"
 #include "mesh/surface.h"

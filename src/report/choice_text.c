@@ -1,6 +1,6 @@
 /* What a choice says in sentences. The text for people, the JSON and the page all have them from
  * here, so that none tells what another keeps silent about. */
-#include "scree/report.h"
+#include "base/error.h"
 
 #include <math.h>
 #include <stdarg.h>
