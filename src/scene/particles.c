@@ -57,7 +57,7 @@ static scree_status pick_level(const making *m, const scree_curve *curve, size_t
   scree_choice choice;
   scree_status status = scree_choose(curve, &m->mesh, NULL, m->progress, &choice, error);
   if (status != SCREE_OK) return status;
-  *level = choice.robust.level_index;
+  *level = choice.recommended.level_index;
   scree_choice_free(&choice);
   return SCREE_OK;
 }
