@@ -18,6 +18,24 @@ build() {
   cmake --preset "$1" -DSCREE_DATA_DIR="$data" -DBUILD_TESTING=ON "${@:2}" >/dev/null && cmake --build --preset "$1"
 }
 
+# Samples at 20, 60 and 200 triangles, to pour.
+shapes=$(mktemp -d)
+trap 'rm -rf "$shapes"' EXIT
+make_shapes() {
+  local sample n
+  for sample in fp-1 fp-2 fp-3 dc-1 dc-2 dc-3 sp-1 sp-2 sp-3; do
+    build/release/bin/scree sample "$sample" --resolution 1mm -q -f -o "$shapes/$sample.stl" >/dev/null || return 1
+    for n in 20 60 200; do
+      build/release/bin/scree simplify "$shapes/$sample.stl" -u mm -n $n -q -f -o "$shapes/${sample}_$n.ply" || return 1
+    done
+    rm "$shapes/$sample.stl"
+  done
+}
+# `pour FIRST_SEED LAST_SEED [OPTIONS]`
+pour() {
+  tests/pours/run.sh build/release/bin/scree build/release/bin/inside "$shapes" "$@"
+}
+
 tools/install-packages.sh build test ci
 part "release build" build release
 part "all tests, the slow ones too" tools/test.sh release
@@ -29,6 +47,10 @@ native() {
 }
 part "the same bits with -march=native, gcc" native gcc
 part "the same bits with -march=native, clang" native clang
+part "shapes to pour" make_shapes
+part "500 pours, none of which fails or leaves a body in another" pour 1 500
+part "200 soft pours" pour 1 200 --stiffness-factor 0.1
+part "60 heaps" env MODE=repose tests/pours/run.sh build/release/bin/scree build/release/bin/inside "$shapes" 1 60
 part "sanitizer build" build asan
 part "slow and long tests under ASan and UBSan" tools/test.sh asan -L 'slow|long'
 part "fuzzing build" build fuzz -DSCREE_FUZZ_SECONDS=1200

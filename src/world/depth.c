@@ -16,12 +16,14 @@
 
 /* Bodies that lie deeper in each other from the start, of the limit, are refused. */
 static const double start_share = 0.05;
-static const double drawn_in = 0.9;      /* corners, for what lies in each other from the start */
 static const double near_share = 0.25;   /* of the roundings: depths are asked for from here on */
 static const double stride_share = 0.25; /* of the depth, while an edge is gone along */
 static const double least_stride = 1.0 / 64; /* of the edge's way within the other's box */
 static const double flat_bend = 1e-12;       /* of slopes along an edge */
-enum { REFINEMENTS = 24, HALVE_EVERY = 4 };
+/* Points of a mesh are looked for in the other from the start: corners, drawn towards the centre.
+ */
+static const double drawn_in[] = {0.9, 0.5, 0};
+enum { REFINEMENTS = 24, HALVE_EVERY = 4, DRAWN_COUNT = sizeof drawn_in / sizeof *drawn_in };
 
 /* The edges of one body against the surface of the other. */
 typedef struct side {
@@ -224,22 +226,28 @@ double scree_touch_depths(const scree_world *world, scree_pair *pair, const scre
 
 /* ---- bodies in each other from the start ---- */
 
-/* How deep a point of `from`, drawn in, lies in `to`: of bodies that were made in each other no
- * edge need be inside. */
-static double deepest_point(const side *sd, double deepest) {
-  if (!is_solid(sd->to)) return deepest;
+/* How deep a point of `from`, in its frame and with a radius, lies in `to`, where deeper than
+ * `deepest`. */
+static double depth_of_point(const side *sd, vec3 own, double radius, double deepest) {
   const uint32_t root = 0;
-  bool mesh = sd->from->face_count > 0;
-  if (mesh && !is_solid(sd->from)) return deepest;
-  for (size_t i = 0; i < sd->from->point_count; i++) {
-    vec3 own = vec3_scale(sd->from->points[i], mesh ? drawn_in : 1),
-         p = vec3_add(mat3_mul_vec(&sd->rotation, own), sd->shift);
-    if (scree_box_distance2(&sd->to->face_tree.nodes[0].box, p) > 0) continue;
-    uint32_t face;
-    double d = scree_nearest_face(sd->to, &root, 1, p, INFINITY, &face);
-    if (!mesh) d += sd->from->point_radii[i];
-    if (d > deepest && scree_is_inside(sd->to, p) && (!mesh || scree_is_inside(sd->from, own)))
-      deepest = d;
+  uint32_t face;
+  vec3 p = vec3_add(mat3_mul_vec(&sd->rotation, own), sd->shift);
+  if (scree_box_distance2(&sd->to->face_tree.nodes[0].box, p) > 0) return deepest;
+  double d = scree_nearest_face(sd->to, &root, 1, p, INFINITY, &face) + radius;
+  bool deeper = d > deepest && scree_is_inside(sd->to, p);
+  return deeper && (!is_solid(sd->from) || scree_is_inside(sd->from, own)) ? d : deepest;
+}
+
+/* Of bodies that were made in each other no edge need be inside: the deepest of drawn-in corners
+ * and of spheres. */
+static double deepest_point(const side *sd, double deepest) {
+  const scree_particle *from = sd->from;
+  if (!is_solid(sd->to) || (from->face_count && !is_solid(from))) return deepest;
+  for (size_t i = 0; i < from->point_count; i++) {
+    bool sphere = !from->face_count;
+    if (sphere) deepest = depth_of_point(sd, from->points[i], from->point_radii[i], deepest);
+    for (int k = 0; k < DRAWN_COUNT && !sphere; k++)
+      deepest = depth_of_point(sd, vec3_scale(from->points[i], drawn_in[k]), 0, deepest);
   }
   return deepest;
 }
@@ -288,6 +296,7 @@ void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const sc
          far = near + 2 * pair->list.travel - pair->law.reach - pair->law.smoothing;
   if (!scratch->any_inside && !(pair->depth > 0) && !new && scratch->least_gap >= far) {
     pair->depth = -INFINITY; /* cores that were apart meet at features, of which none is near */
+    pair->parting = false;
     return;
   }
   scree_smooth_maximum felt = felt_overlap(world, pair, &scratch->touches);
@@ -298,11 +307,14 @@ void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const sc
     pair->depth += pair->list.travel;
     return;
   }
+  bool was_inside = pair->depth > 0;
   double least = pair->parting ? 0 : fmin(above - near, 0.5 * above);
   pair->depth = scree_touch_depths(world, pair, relative, least, scratch);
   scratch->depth_queries++;
   if (new) note_start(pair, pair->depth, work);
   if (!pair->parting || pair->depth > 0) return;
+  pair->parting = false;
+  if (!was_inside) return;
   start_anew(pair, scratch);
   work->let_go = pair->elastic; /* of the last step */
 }

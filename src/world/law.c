@@ -17,7 +17,7 @@ enum { NEWTON_STEPS = 30, CLOSED_ROUNDS = 3 };
 
 /* Slopes that steps do not resolve: at most so steep, of blends and of fading weights. */
 static const double most_slopes[2] = {3, 1};
-/* Bodies part where depths press and the normals' mean by shares is shorter than this: */
+/* Bodies part where the normals' mean by shares and levers is shorter than this: */
 static const double pinched_net = 0.35;
 static const double parting_speed = 0.1; /* m/s, at most */
 
@@ -271,8 +271,9 @@ static void fade(double spring, double by_weight, double most, scree_touch *touc
   sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(touch->at, force));
 }
 
-/* Whether depths press, and the touches hold the bodies against each other. */
-static bool is_pinched(const scree_touch_list *touches) {
+/* Where the touches hold the bodies against each other these are to part. Where no depth presses it
+ * is asked for first: features may cancel in a notch too. */
+static void judge(scree_pair *pair, const scree_touch_list *touches) {
   vec3 net = {0, 0, 0};
   double total = 0, of_depth = 0;
   for (size_t i = 0; i < touches->count; i++) {
@@ -281,7 +282,10 @@ static bool is_pinched(const scree_touch_list *touches) {
     total += touch->share;
     if (touch->of_depth) of_depth += touch->share;
   }
-  return of_depth > 0 && vec3_norm(net) < pinched_net * total;
+  bool deep = of_depth > 0 || pair->overlap > pair->law.reach;
+  if (!deep || vec3_norm(net) >= pinched_net * total) return;
+  pair->parting = true;
+  if (of_depth == 0) pair->depth = -INFINITY;
 }
 
 /* A force of a dashpot's kind: its work is dissipated, or won, with theirs. */
@@ -399,8 +403,8 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
       touch->anchor->share = 0;
     }
   }
-  pair->parting = pair->depth > 0 && (pair->parting || is_pinched(touches));
-  if (pair->parting) part(world, pair, spring, &law, touches, relative, &sums);
+  if (!pair->parting) judge(pair, touches);
+  if (pair->parting && pair->depth > 0) part(world, pair, spring, &law, touches, relative, &sums);
   roll(world, pair, &law, relative, &energy, &sums);
   pair->contact_count = contacts;
   pair->tangential_elastic = energy;
