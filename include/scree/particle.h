@@ -20,9 +20,9 @@ typedef enum scree_particle_kind {
 } scree_particle_kind;
 
 typedef struct scree_particle_options {
-  /* m; radius by which the surface is rounded for contact: two meshes touch when their surfaces are
-   * within the sum. Mass and centre come from the unrounded mesh. 0 (default): 0.002 of the size,
-   * 0.1 mm for a phone (docs/physics.md, "Rounding"). */
+  /* m; by how much the surface stands out for contact: two meshes touch when their surfaces are
+   * within the sum. Mass and centre come from the mesh itself. 0 (default): 0.002 of the size, and
+   * at most a 250th of the thickness (docs/physics.md, "Rounding"). */
   double rounding;
 } scree_particle_options;
 SCREE_API scree_particle_options scree_default_particle_options(void);
@@ -37,7 +37,7 @@ typedef struct scree_particle_measures {
   double inertia[3];      /* m5, principal moments for density 1, ascending for a mesh */
   double bounding_radius; /* m, about the centre of mass, rounding included */
   double thickness;       /* m, the thinnest wall: 1 % of the surface has less solid behind it */
-  double rounding;        /* m */
+  double rounding;        /* m, see scree_particle_options */
   size_t triangle_count;  /* of the mesh; 0 for spheres and clumps */
   size_t point_count;     /* contact features: corners of the mesh, or spheres */
   size_t edge_count;      /* contact features: straight convex edges */

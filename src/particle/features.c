@@ -50,8 +50,9 @@ typedef struct extraction {
   bool *visited; /* edges already in a chain */
 } extraction;
 
-static vec3 position_of(const scree_mesh *mesh, uint32_t v) {
-  return vec3_load(&mesh->positions[3 * (size_t)v]);
+/* Of the core, where there is one. */
+static vec3 position_of(const scree_particle *p, uint32_t v) {
+  return vec3_load(&(p->core ? p->core : p->mesh.positions)[3 * (size_t)v]);
 }
 
 static scree_status check_indices(const scree_mesh *mesh, scree_error *error) {
@@ -77,9 +78,9 @@ static scree_status make_faces(scree_particle *p, scree_error *error) {
   for (size_t f = 0; f < mesh->triangle_count; f++) {
     const uint32_t *t = &mesh->triangles[3 * f];
     scree_face *face = &p->faces[f];
-    face->corner = position_of(mesh, t[0]);
-    face->along1 = vec3_sub(position_of(mesh, t[1]), face->corner);
-    face->along2 = vec3_sub(position_of(mesh, t[2]), face->corner);
+    face->corner = position_of(p, t[0]);
+    face->along1 = vec3_sub(position_of(p, t[1]), face->corner);
+    face->along2 = vec3_sub(position_of(p, t[2]), face->corner);
     vec3 n = vec3_cross(face->along1, face->along2);
     face->d11 = vec3_norm2(face->along1);
     face->d22 = vec3_norm2(face->along2);
@@ -116,7 +117,7 @@ static void list_halves(const scree_mesh *mesh, half_edge *halves) {
 /* Signed angle between the normals of two faces over an edge: positive where convex. */
 static double turn_over(const scree_particle *p, const half_edge *a, const half_edge *b) {
   vec3 n1 = p->faces[a->face].normal, n2 = p->faces[b->face].normal;
-  vec3 along = vec3_unit(vec3_sub(position_of(&p->mesh, a->high), position_of(&p->mesh, a->low)));
+  vec3 along = vec3_unit(vec3_sub(position_of(p, a->high), position_of(p, a->low)));
   double sine = vec3_dot(vec3_cross(n1, n2), along);
   if (a->reversed) sine = -sine;
   return atan2(sine, vec3_dot(n1, n2));
@@ -172,8 +173,8 @@ static scree_status make_corner_signs(scree_particle *p, scree_error *error) {
           p->face_signs[f].corner[c] = sums[t[c]];
           continue;
         }
-        vec3 at = position_of(mesh, t[c]), u = vec3_sub(position_of(mesh, t[(c + 1) % 3]), at),
-             v = vec3_sub(position_of(mesh, t[(c + 2) % 3]), at);
+        vec3 at = position_of(p, t[c]), u = vec3_sub(position_of(p, t[(c + 1) % 3]), at),
+             v = vec3_sub(position_of(p, t[(c + 2) % 3]), at);
         double angle = atan2(vec3_norm(vec3_cross(u, v)), vec3_dot(u, v));
         sums[t[c]] = vec3_mad(sums[t[c]], p->faces[f].normal, angle);
       }
@@ -198,8 +199,7 @@ static void count_bends(extraction *x) {
 static vec3 direction_from(const extraction *x, uint32_t edge_index, uint32_t vertex) {
   const mesh_edge *edge = &x->edges[edge_index];
   uint32_t other = edge->low == vertex ? edge->high : edge->low;
-  const scree_mesh *mesh = &x->particle->mesh;
-  return vec3_unit(vec3_sub(position_of(mesh, other), position_of(mesh, vertex)));
+  return vec3_unit(vec3_sub(position_of(x->particle, other), position_of(x->particle, vertex)));
 }
 
 /* Whether the vertex lies inside a straight edge. */
@@ -218,11 +218,11 @@ static bool is_corner(const extraction *x, uint32_t vertex) {
 static vec3 rim_outward(const extraction *x, const mesh_edge *edge) {
   const scree_mesh *mesh = &x->particle->mesh;
   const uint32_t *t = &mesh->triangles[3 * (size_t)edge->face1];
-  vec3 low = position_of(mesh, edge->low),
-       along = vec3_unit(vec3_sub(position_of(mesh, edge->high), low));
+  vec3 low = position_of(x->particle, edge->low),
+       along = vec3_unit(vec3_sub(position_of(x->particle, edge->high), low));
   for (int k = 0; k < 3; k++) {
     if (t[k] == edge->low || t[k] == edge->high) continue;
-    vec3 inward = vec3_sub(position_of(mesh, t[k]), low);
+    vec3 inward = vec3_sub(position_of(x->particle, t[k]), low);
     return vec3_unit(vec3_mad(vec3_scale(inward, -1), along, vec3_dot(inward, along)));
   }
   return (vec3){0, 0, 1};
@@ -262,16 +262,16 @@ static void make_points_and_edges(extraction *x) {
   const scree_mesh *mesh = &p->mesh;
   for (uint32_t v = 0; v < mesh->vertex_count; v++)
     if (is_corner(x, v)) {
-      p->points[p->point_count] = position_of(mesh, v);
-      p->point_radii[p->point_count++] = p->measures.rounding;
+      p->points[p->point_count] = position_of(p, v);
+      p->point_radii[p->point_count++] = p->radius;
     }
   for (uint32_t e = 0; e < x->edge_count; e++) {
     const mesh_edge *edge = &x->edges[e];
     double turn = p->sheet ? fabs(edge->turn) : edge->turn;
     if (turn <= sharp_angle || x->visited[e]) continue;
     x->visited[e] = true;
-    vec3 start = position_of(mesh, follow(x, e, edge->low)),
-         end = position_of(mesh, follow(x, e, edge->high)), along = vec3_sub(end, start);
+    vec3 start = position_of(p, follow(x, e, edge->low)),
+         end = position_of(p, follow(x, e, edge->high)), along = vec3_sub(end, start);
     if (p->sheet && edge->face1 == edge->face2) {
       p->edges[p->edge_count++] = scree_rim_edge(start, end, rim_outward(x, edge));
       continue;
@@ -306,6 +306,9 @@ scree_status scree_particle_extract_features(scree_particle *p, bool may_be_open
   memset(x.bends, 0, mesh->vertex_count * sizeof *x.bends);
   memset(x.visited, 0, halves * sizeof *x.visited);
   status = make_faces(p, error);
+  double inset = p->radius - p->measures.rounding;
+  if (!status && inset > 0) status = scree_particle_make_core(p, inset, error);
+  if (!status && p->core) status = make_faces(p, error);
   if (status) goto done;
   list_halves(mesh, x.halves);
   status = pair_halves(&x, may_be_open, error);
@@ -362,7 +365,7 @@ scree_status scree_particle_build_trees(scree_particle *p, scree_error *error) {
     status = scree_tree_build(boxes, counts[what], trees[what], error);
     if (status) break;
     scree_box box = trees[what]->nodes[0].box;
-    if (what == 0) box = scree_box_grown(box, p->measures.rounding);
+    if (what == 0) box = scree_box_grown(box, p->radius);
     p->box = any ? scree_box_join(p->box, box) : box;
     any = true;
   }

@@ -1,7 +1,9 @@
 /* Making particles. A mesh is moved into its principal frame first, so that everything the physics
- * reads is in one frame. The rounding is 0.002 of the size: small against the shape, large against
- * resting overlaps (micrometres), so that resting contacts see separated surfaces whose closest
- * points and normals are exact. */
+ * reads is in one frame. The radius of the rounding is 0.002 of the size: small against the shape,
+ * large against resting overlaps (micrometres), so that resting contacts see separated surfaces
+ * whose closest points and normals are exact. The surface stands out by as much, but by no more
+ * than a 250th of the thickness: what is rounded is a core that lies deeper by the difference
+ * (inset.c), and thin plates are stacked right to 1 %. */
 #include "particle/particle.h"
 
 #include "base/alloc.h"
@@ -12,7 +14,8 @@
 #include <string.h>
 
 static const double pi = 3.14159265358979323846;
-static const double default_rounding = 0.002; /* of the size */
+static const double rounding_radius = 0.002;   /* of the size, at least */
+static const double most_rounding = 1.0 / 250; /* of the thickness */
 enum { RIM_SIDES = 720 };
 
 scree_particle_options scree_default_particle_options(void) {
@@ -23,14 +26,21 @@ void scree_particle_retain(scree_particle *particle) {
   atomic_fetch_add(&particle->reference_count, 1);
 }
 
-void scree_particle_free(scree_particle *p) {
-  if (!p || atomic_fetch_sub(&p->reference_count, 1) > 1) return;
-  scree_mesh_free(&p->mesh);
+static void drop_features(scree_particle *p) {
   scree_free(p->faces);
   scree_free(p->face_signs);
   scree_free(p->points);
   scree_free(p->point_radii);
   scree_free(p->edges);
+  scree_free(p->core);
+  p->faces = NULL, p->face_signs = NULL, p->points = NULL, p->point_radii = NULL;
+  p->edges = NULL, p->core = NULL, p->point_count = p->edge_count = 0;
+}
+
+void scree_particle_free(scree_particle *p) {
+  if (!p || atomic_fetch_sub(&p->reference_count, 1) > 1) return;
+  scree_mesh_free(&p->mesh);
+  drop_features(p);
   scree_tree_free(&p->face_tree);
   scree_tree_free(&p->edge_tree);
   scree_tree_free(&p->point_tree);
@@ -123,7 +133,11 @@ static scree_status finish_mesh(scree_particle *p, scree_error *error) {
   if (status) return status;
   set_bounding_radius(p);
   set_counts(p);
-  return measure_thickness(p, error);
+  return SCREE_OK;
+}
+
+static double radius_of(const scree_particle_measures *m) {
+  return fmax(m->rounding, rounding_radius * m->size);
 }
 
 static scree_status make_mesh_particle(scree_particle *p, double rounding, scree_error *error) {
@@ -133,12 +147,19 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
                       "particle: the mesh encloses a volume of %g m3: turned inside out?",
                       solid.volume);
   set_solid(&p->measures, &solid);
-  p->measures.rounding = rounding > 0 ? rounding : default_rounding * p->measures.size;
   for (size_t v = 0; v < p->mesh.vertex_count; v++) {
     double *position = &p->mesh.positions[3 * v];
     vec3_store(position, into_frame(&p->measures, position));
   }
   scree_status status = scree_particle_extract_features(p, false, error);
+  if (!status) status = measure_thickness(p, error);
+  if (status) return status;
+  scree_particle_measures *m = &p->measures;
+  double least = rounding_radius * m->size;
+  m->rounding = rounding > 0 ? rounding : fmin(least, most_rounding * m->thickness);
+  p->radius = radius_of(m);
+  drop_features(p);
+  status = scree_particle_extract_features(p, false, error);
   return status ? status : finish_mesh(p, error);
 }
 
@@ -161,13 +182,7 @@ scree_status scree_particle_from_mesh(const scree_mesh *mesh, const scree_partic
   /* first as it stands, so that messages name what is wrong before the volume is asked for */
   if (!status) {
     status = scree_particle_extract_features(p, false, error);
-    scree_free(p->faces);
-    scree_free(p->face_signs);
-    scree_free(p->points);
-    scree_free(p->point_radii);
-    scree_free(p->edges);
-    p->faces = NULL, p->face_signs = NULL, p->points = NULL, p->point_radii = NULL;
-    p->edges = NULL, p->point_count = p->edge_count = 0;
+    drop_features(p);
   }
   if (!status) status = check_surface(mesh, error);
   if (!status) status = make_mesh_particle(p, rounding, error);
@@ -183,7 +198,7 @@ scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
                                     scree_particle **particle, scree_error *error) {
   scree_particle *p = new_particle(SCREE_PARTICLE_MESH, error);
   if (!p) return SCREE_OUT_OF_MEMORY;
-  p->measures.rounding = rounding;
+  p->measures.rounding = p->radius = rounding;
   scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
   if (!status) status = scree_particle_extract_features(p, true, error);
   if (!status && !p->sheet) {
@@ -194,6 +209,7 @@ scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
           error, SCREE_BAD_MESH,
           "particle: the closed surface encloses a volume of %g m3: turned inside out?", volume);
   }
+  if (!status) status = measure_thickness(p, error);
   if (!status) status = finish_mesh(p, error);
   if (status) {
     scree_particle_free(p);
@@ -316,6 +332,7 @@ scree_status scree_particle_clump(const double *centres, const double *radii, si
 static scree_status restore(scree_particle *p, const scree_mesh *mesh, const double *centres,
                             const double *radii, size_t count, scree_error *error) {
   if (p->measures.kind == SCREE_PARTICLE_MESH) {
+    p->radius = radius_of(&p->measures);
     scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
     if (!status) status = scree_particle_extract_features(p, false, error);
     if (status) return status;

@@ -35,6 +35,8 @@ struct scree_particle {
   atomic_int reference_count;
   scree_particle_measures measures;
   scree_mesh mesh; /* in the particle's frame */
+  double radius;   /* of the rounding, m: at least that by which the surface stands out */
+  double *core;    /* the mesh's vertices moved in by the difference, or NULL; features are its */
   scree_face *faces;
   scree_face_signs *face_signs;
   size_t face_count;
@@ -80,6 +82,8 @@ scree_status scree_particle_restore(const scree_particle_measures *measures, con
 /* features.c: fills faces, signs, points and edges from particle->mesh. */
 scree_status scree_particle_extract_features(scree_particle *particle, bool may_be_open,
                                              scree_error *error);
+/* inset.c: the core that lies `by` inside the faces, or nearer where the shape has no room. */
+scree_status scree_particle_make_core(scree_particle *particle, double by, scree_error *error);
 /* Trees and the box over what was extracted. */
 scree_status scree_particle_build_trees(scree_particle *particle, scree_error *error);
 

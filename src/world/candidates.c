@@ -126,7 +126,7 @@ typedef struct point_listing {
 static void list_point(const point_listing *pl, uint32_t i, const front *near) {
   listing *l = pl->list;
   vec3 p = vec3_add(mat3_mul_vec(&pl->rotation, pl->from->points[i]), pl->shift);
-  double touch = pl->from->point_radii[i] + pl->to->measures.rounding + l->pair->law.smoothing;
+  double touch = pl->from->point_radii[i] + pl->to->radius + l->pair->law.smoothing;
   uint32_t face;
   double distance = scree_nearest_face(pl->to, near->nodes, near->count, p, l->skin + touch, &face);
   l->scratch->closest_queries++;
@@ -163,7 +163,7 @@ static void list_surface_points(listing *l, const scree_particle *from, const sc
     pl.rotation = mat3_transpose(&r->rotation);
     pl.shift = vec3_neg(mat3_mul_vec(&pl.rotation, r->position));
   }
-  pl.far = l->skin + l->pair->law.smoothing + to->measures.rounding; /* boxes hold the radii */
+  pl.far = l->skin + l->pair->law.smoothing + to->radius; /* boxes hold the radii */
   const front whole = {.nodes = {0}, .count = 1};
   if (from->point_count) list_points_below(&pl, 0, &whole);
 }

@@ -354,7 +354,7 @@ double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree
     item->crossing = crosses ? SCREE_CROSSING_REFUSED : SCREE_CROSSING_NONE;
     return heard ? fmin(far, 0) : far;
   }
-  double rounding = world->bodies.particle[pair->a]->measures.rounding;
+  double rounding = world->bodies.particle[pair->a]->radius;
   const double values[4] = {c.distance, rounding, pair->law.reach - rounding, c.weight};
   size_t touches = scratch->touches.count;
   double gap = scree_add_touch(scratch, pair, x.on_b, c.normal, values, &item->anchor);

@@ -12,7 +12,7 @@ static double size_of(const scree_world *world, const scree_particle *particle) 
 double scree_thin_overlap(const scree_particle *particle) {
   /* rays grazing a notch find walls thinner than they are: never below four roundings */
   const scree_particle_measures *m = &particle->measures;
-  return fmax(0.5 * m->thickness, 4 * m->rounding);
+  return fmax(0.5 * m->thickness, 4 * particle->radius);
 }
 
 /* 1/r of a sphere; of any other body, 2/L. */
@@ -81,8 +81,7 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
   n->law.smoothing = world->options.smoothing * size;
   n->law.limit = world->options.overlap_limit * size;
   n->law.thin = fmin(n->law.limit, thin);
-  n->law.reach =
-      (a->face_count ? a->measures.rounding : 0) + (b && b->face_count ? b->measures.rounding : 0);
+  n->law.reach = (a->face_count ? a->radius : 0) + (b && b->face_count ? b->radius : 0);
 }
 
 scree_neighbours scree_neighbours_new(const scree_world *world, uint32_t a, uint32_t b, bool wall) {

@@ -15,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 10};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 11};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||

@@ -305,7 +305,7 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
     normals[k] = vec3_neg(mat3_mul_vec(&relative->rotation, normals[k]));
   }
   match_anchors(scratch, item, normals, count);
-  double least = INFINITY, surface_radius = surface->measures.rounding,
+  double least = INFINITY, surface_radius = surface->radius,
          point_radius = from->point_radii[point];
   for (int k = 0; k < count; k++) {
     const double values[4] = {contacts[k].distance, forth ? point_radius : surface_radius,

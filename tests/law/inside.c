@@ -223,8 +223,8 @@ static void a_corner_sinks_beside_a_rim(void **state) {
     law_body(world, box, scree_default_body());
     scree_wall wall = {.kind = SCREE_WALL_MESH, .material = 0, .mesh = &spike, .axis = {0, 0, 1}};
     vec3 rim = box->box.high; /* in the body's frame, which has axes of its own */
-    wall.position[0] = rim.x - box->measures.rounding - in;
-    wall.position[2] = rim.z - box->measures.rounding + 3e-4;
+    wall.position[0] = rim.x - box->radius - in;
+    wall.position[2] = rim.z - box->radius + 3e-4;
     size_t index;
     CHECK_OK(scree_world_add_wall(world, &wall, &index, &error), error);
     double speed = fine / scree_world_time_step(world, NULL), before = 0, first = 0, highest = 0;
@@ -363,8 +363,8 @@ static void crossed_sharp_rims_hold(void **state) {
     most = fmax(most, fabs(seen.largest_overlap - before));
     before = seen.largest_overlap;
   }
-  LAW_RELATIVE("L8", "overlap of rims that cross 0.6 mm deep (m)", before,
-               way + flange->measures.rounding, 0.02);
+  LAW_RELATIVE("L8", "overlap of rims that cross 0.6 mm deep (m)", before, way + flange->radius,
+               0.02);
   LAW_BELOW("L8", "its change over the way", most / stride_in, 2);
   scree_world_free(world);
   scree_particle_free(flange);
