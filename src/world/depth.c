@@ -261,7 +261,7 @@ static double start_depth(const scree_world *world, const scree_pair *pair,
 
 /* ---- when depths are asked for ---- */
 
-/* Apart: what features remember is from the wrong side. */
+/* Nothing lies inside: what features that hold the bodies remember is from the wrong side. */
 static void start_anew(const scree_pair *pair, scree_scratch *scratch) {
   for (uint32_t i = 0; i < pair->active.count; i++) {
     scree_item *item = &scratch->items[i];
@@ -307,14 +307,12 @@ void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const sc
     pair->depth += pair->list.travel;
     return;
   }
-  bool was_inside = pair->depth > 0;
   double least = pair->parting ? 0 : fmin(above - near, 0.5 * above);
   pair->depth = scree_touch_depths(world, pair, relative, least, scratch);
   scratch->depth_queries++;
   if (new) note_start(pair, pair->depth, work);
   if (!pair->parting || pair->depth > 0) return;
   pair->parting = false;
-  if (!was_inside) return;
   start_anew(pair, scratch);
   work->let_go = pair->elastic; /* of the last step */
 }

@@ -271,8 +271,9 @@ static void fade(double spring, double by_weight, double most, scree_touch *touc
   sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(touch->at, force));
 }
 
-/* Where the touches hold the bodies against each other these are to part. Where no depth presses it
- * is asked for first: features may cancel in a notch too. */
+/* Where the touches hold the bodies against each other these are to part. So they are where
+ * features alone cancel and the contact lasts, deeper than references count from: the next step
+ * asks for the depth. */
 static void judge(scree_pair *pair, const scree_touch_list *touches) {
   vec3 net = {0, 0, 0};
   double total = 0, of_depth = 0;
@@ -282,8 +283,8 @@ static void judge(scree_pair *pair, const scree_touch_list *touches) {
     total += touch->share;
     if (touch->of_depth) of_depth += touch->share;
   }
-  bool deep = of_depth > 0 || pair->overlap > pair->law.reach;
-  if (!deep || vec3_norm(net) >= pinched_net * total) return;
+  bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1;
+  if ((of_depth == 0 && !jammed) || vec3_norm(net) >= pinched_net * total) return;
   pair->parting = true;
   if (of_depth == 0) pair->depth = -INFINITY;
 }

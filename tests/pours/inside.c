@@ -60,14 +60,15 @@ static vec3 closest_on_segment(vec3 a, vec3 b, vec3 x) {
 static double distance_to(const placed *p, vec3 x) {
   double best = INFINITY;
   for (size_t t = 0; t < p->mesh->triangle_count; t++) {
-    vec3 a = corner_of(p, t, 0), b = corner_of(p, t, 1), c = corner_of(p, t, 2),
-         n = vec3_unit(vec3_cross(vec3_sub(b, a), vec3_sub(c, a)));
-    double height = vec3_dot(vec3_sub(x, a), n), share;
-    if (pierces(vec3_mad(x, n, -2 * height), x, p, t, &share)) best = fmin(best, fabs(height));
-    for (size_t k = 0; k < 3; k++)
-      best =
-          fmin(best,
-               vec3_distance(x, closest_on_segment(corner_of(p, t, k), corner_of(p, t, k + 1), x)));
+    vec3 a = corner_of(p, t, 0), u = vec3_sub(corner_of(p, t, 1), a),
+         v = vec3_sub(corner_of(p, t, 2), a), n = vec3_unit(vec3_cross(u, v));
+    bool over = true; /* it */
+    for (size_t k = 0; k < 3; k++) {
+      vec3 from = corner_of(p, t, k), to = corner_of(p, t, k + 1);
+      over &= vec3_dot(vec3_cross(n, vec3_sub(to, from)), vec3_sub(x, from)) >= 0;
+      best = fmin(best, vec3_distance(x, closest_on_segment(from, to, x)));
+    }
+    if (over) best = fmin(best, fabs(vec3_dot(vec3_sub(x, a), n)));
   }
   return best;
 }

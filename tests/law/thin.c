@@ -1,0 +1,193 @@
+/* Thin and open things: stacks of plates stand right, sheets of triangles are met from both sides
+ * and end in rims, blades are felt, and what lies in each other from the start is told. */
+#include "support/law.h"
+
+#include "base/vec.h"
+#include "support/shapes.h"
+#include "support/solids.h"
+
+static const double degree = 3.14159265358979323846 / 180;
+
+/* The mesh's own z axis upright. */
+static scree_body lying(scree_particle *particle) {
+  scree_particle_measures m;
+  scree_particle_measure(particle, &m);
+  scree_body body = scree_default_body();
+  memcpy(body.orientation, m.orientation, sizeof body.orientation);
+  return body;
+}
+
+static void stacks_stand_right(void **state) {
+  (void)state;
+  enum { PLATES = 8 };
+  const double thick[] = {1e-3, 3e-4};
+  for (size_t k = 0; k < sizeof thick / sizeof *thick; k++) {
+    double t = thick[k];
+    law_setup setup = law_default();
+    setup.gravity = 9.81, setup.steps_per_contact = 20;
+    scree_world *world = law_world(&setup);
+    law_floor(world);
+    scree_particle *plate = shape_particle(shape_box(0.03, 0.03, t));
+    scree_particle_measures m;
+    scree_particle_measure(plate, &m);
+    LAW_BELOW("-", "rounding over thickness", m.rounding / t, 1.0 / 200);
+    for (int i = 0; i < PLATES; i++) {
+      scree_body body = lying(plate);
+      body.position[2] = 0.5 * t + m.rounding + i * (t + 2 * m.rounding) * 1.0005;
+      law_body(world, plate, body);
+    }
+    while (scree_world_time(world) < 0.02) law_step(world, 100);
+    scree_body top;
+    scree_world_get_body(world, PLATES - 1, &top);
+    LAW_RELATIVE("-", "height of eight plates", top.position[2] + 0.5 * t, PLATES * t, 0.01);
+    scree_world_free(world);
+    scree_particle_free(plate);
+  }
+}
+
+static scree_mesh sheet(double half) {
+  const double corners[] = {-half, -half, 0, half, -half, 0, half, half, 0, -half, half, 0};
+  static const uint32_t triangles[] = {0, 1, 2, 0, 2, 3};
+  scree_mesh mesh = shape_make(4, 2);
+  memcpy(mesh.positions, corners, sizeof corners);
+  memcpy(mesh.triangles, triangles, sizeof triangles);
+  return mesh;
+}
+
+/* A plate slides over the rim of two triangles and falls, on either side of them. */
+static void an_open_rim_is_passed(void **state) {
+  (void)state;
+  scree_mesh mesh = sheet(0.05);
+  scree_particle *plate = shape_particle(shape_box(0.06, 0.04, 0.0015));
+  for (int side = -1; side < 2; side += 2) {
+    law_setup setup = law_default();
+    setup.gravity = 9.81 * side, setup.steps_per_contact = 20, setup.friction = 0.2;
+    scree_world *world = law_world(&setup);
+    scree_error error;
+    scree_wall wall = {.kind = SCREE_WALL_MESH, .material = 1, .axis = {0, 0, 1}, .mesh = &mesh};
+    CHECK_OK(scree_world_add_wall(world, &wall, NULL, &error), error);
+    scree_body body = lying(plate);
+    body.position[2] = side * 0.0008;
+    body.velocity[0] = 0.8;
+    law_body(world, plate, body);
+    scree_observation o;
+    law_step(world, 1);
+    double before = law_ledger(world, &o), came_in = o.kinetic, worst = 0;
+    while (scree_world_time(world) < 0.2) {
+      law_step(world, 100);
+      worst = fmax(worst, fabs(law_ledger(world, &o) - before) / came_in);
+    }
+    scree_world_get_body(world, 0, &body);
+    assert_true(side * body.position[2] < -0.005); /* it fell */
+    LAW_BELOW("L17", "over an open rim: ledger over what came in", worst, 1e-3);
+    scree_world_free(world);
+  }
+  scree_mesh_free(&mesh);
+  scree_particle_free(plate);
+}
+
+static void turned_inside_out_is_refused(void **state) {
+  (void)state;
+  const law_setup setup = law_default();
+  scree_world *world = law_world(&setup);
+  scree_mesh box = shape_box(0.1, 0.1, 0.1);
+  for (size_t t = 0; t < box.triangle_count; t++) {
+    uint32_t first = box.triangles[3 * t];
+    box.triangles[3 * t] = box.triangles[3 * t + 1];
+    box.triangles[3 * t + 1] = first;
+  }
+  scree_wall wall = {.kind = SCREE_WALL_MESH, .material = 1, .axis = {0, 0, 1}, .mesh = &box};
+  scree_error error;
+  assert_int_equal(scree_world_add_wall(world, &wall, NULL, &error), SCREE_BAD_MESH);
+  assert_non_null(strstr(error.message, "inside out"));
+  scree_mesh_free(&box);
+  scree_world_free(world);
+}
+
+static void what_lies_in_each_other_is_told(void **state) {
+  (void)state;
+  scree_particle *small = shape_particle(shape_box(0.02, 0.02, 0.02)),
+                 *large = shape_particle(shape_box(0.2, 0.2, 0.2)),
+                 *plate = shape_particle(shape_box(0.06, 0.04, 0.0015)), *ball = law_sphere(0.01);
+  const quat across = quat_from_rotation_vector((vec3){0, 90 * degree, 0});
+  const struct {
+    scree_particle *one, *other;
+    double at[3];
+    quat turned;
+    const char *what;
+  } cases[] = {
+      {small, small, {0, 0, 0}, {1, 0, 0, 0}, "body 0 (12 triangles, size 0.0248 m) and body 1"},
+      {large, small, {0.01, 0, 0}, {1, 0, 0, 0}, "and body 1 (12 triangles, size 0.0248 m)"},
+      {small, small, {0.014, 0.003, 0.002}, {1, 0, 0, 0}, "from the start"},
+      {plate, plate, {0.001, 0.002, 0.003}, across, "from the start"},
+      {large, ball, {0, 0, 0}, {1, 0, 0, 0}, "and body 1 (1 sphere, size 0.02 m)"},
+  };
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    const law_setup setup = law_default();
+    scree_world *world = law_world(&setup);
+    scree_body body = scree_default_body();
+    law_body(world, cases[k].one, body);
+    memcpy(body.position, cases[k].at, sizeof body.position);
+    quat q = cases[k].turned;
+    const double orientation[4] = {q.w, q.x, q.y, q.z};
+    memcpy(body.orientation, orientation, sizeof orientation);
+    law_body(world, cases[k].other, body);
+    scree_error error;
+    assert_int_equal(scree_world_step(world, 1, &error), SCREE_DIVERGED);
+    print_message("%s\n", error.message);
+    assert_non_null(strstr(error.message, cases[k].what));
+    scree_world_free(world);
+  }
+  scree_particle *all[] = {small, large, plate, ball};
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++) scree_particle_free(all[i]);
+}
+
+/* Blades of 5 and 31 degrees that fly edge first into a cube at 15 m/s. */
+static void blades_win_nothing(void **state) {
+  (void)state;
+  enum { TRIES = 12 };
+  const double angles[] = {5, 31}, length = 0.06;
+  scree_particle *cube = shape_particle(shape_box(0.05, 0.05, 0.05));
+  for (size_t k = 0; k < sizeof angles / sizeof *angles; k++) {
+    double half = length * tan(0.5 * angles[k] * degree), highest = 0;
+    const double profile[] = {0, 0, length, -half, length, half};
+    scree_particle *blade = shape_particle(solid_prism(profile, 3, 0.02));
+    for (int i = 0; i < TRIES; i++) {
+      law_setup setup = law_default();
+      setup.steps_per_contact = 20;
+      scree_world *world = law_world(&setup);
+      law_body(world, cube, scree_default_body());
+      scree_particle_measures m;
+      scree_particle_measure(blade, &m);
+      quat own = {m.orientation[0], m.orientation[1], m.orientation[2], m.orientation[3]},
+           q = quat_mul(quat_from_rotation_vector((vec3){0, 0.08 * (i - 6), 0.05 * i}), own);
+      scree_body body = {.position = {0.075, 0.003 * (i - 6), 0.002 * i},
+                         .orientation = {q.w, q.x, q.y, q.z},
+                         .velocity = {-15, 0, 0}};
+      law_body(world, blade, body);
+      scree_observation o;
+      law_step(world, 1);
+      double before = law_ledger(world, &o), worst = 0;
+      while (scree_world_time(world) < 0.006) {
+        law_step(world, 10);
+        worst = fmax(worst, law_ledger(world, &o) / before - 1);
+      }
+      highest = fmax(highest, worst);
+      assert_true(o.dissipated_dashpot > 0); /* they met */
+      scree_world_free(world);
+    }
+    char what[64];
+    snprintf(what, sizeof what, "blades of %g degrees: energy won", angles[k]);
+    LAW_BELOW("L7", what, highest, 0.005);
+    scree_particle_free(blade);
+  }
+  scree_particle_free(cube);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(stacks_stand_right), cmocka_unit_test(an_open_rim_is_passed),
+      cmocka_unit_test(turned_inside_out_is_refused),
+      cmocka_unit_test(what_lies_in_each_other_is_told), cmocka_unit_test(blades_win_nothing)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
