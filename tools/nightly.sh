@@ -38,6 +38,7 @@ pour() {
 
 tools/install-packages.sh build test ci
 part "release build" build release
+export SCREE_SLOW=1
 part "all tests, the slow ones too" tools/test.sh release
 # `native COMPILER`: the states of tests/golden, by code for this very machine
 native() {

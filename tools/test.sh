@@ -1,10 +1,12 @@
 #!/bin/sh
 # Runs the tests of a build and names at the end what was skipped: whole tests, and single ones in a program.
+# The tests slow.* take longer than a change can wait for: with SCREE_SLOW=1 they run too (tools/nightly.sh).
 # usage: test.sh PRESET [CTEST_OPTIONS...]
 preset=$1
 shift
 cd "$(dirname "$0")/.." || exit 1
 code=0
+[ -n "${SCREE_SLOW:-}" ] || set -- -E '^slow\.' "$@"
 ctest --preset "$preset" "$@" || code=$?
 log=build/$preset/Testing/Temporary/LastTest.log
 awk '/^[0-9]+\/[0-9]+ Testing: / { test = $3; why = "" }
