@@ -167,6 +167,8 @@ static void print_line(const scree_world *world, const scree_timings *before, do
          o.kinetic + o.rotational, o.largest_overlap, usage.ru_maxrss * 1024);
 }
 
+static size_t at_once = 10; /* steps a call */
+
 static int measure(char **a) {
   scree_error error;
   scree_set_threads(atoi(a[0]));
@@ -174,11 +176,11 @@ static int measure(char **a) {
   scree_world *world = load(a[2]);
   scree_timings before;
   for (double start = seconds(CLOCK_MONOTONIC); seconds(CLOCK_MONOTONIC) - start < warm;)
-    need(scree_world_step(world, 10, &error), &error);
+    need(scree_world_step(world, at_once, &error), &error);
   scree_world_timings(world, &before);
   double wall = seconds(CLOCK_MONOTONIC), cpu = seconds(CLOCK_PROCESS_CPUTIME_ID);
   while (seconds(CLOCK_MONOTONIC) - wall < wanted)
-    need(scree_world_step(world, 10, &error), &error);
+    need(scree_world_step(world, at_once, &error), &error);
   print_line(world, &before, seconds(CLOCK_MONOTONIC) - wall,
              seconds(CLOCK_PROCESS_CPUTIME_ID) - cpu);
   scree_world_free(world);
@@ -198,6 +200,14 @@ static int hash(char **a) {
 }
 
 int main(int argc, char **argv) {
+  scree_error error;
+  if (argc > 2 && strcmp(argv[1], "--backend") == 0) {
+    need(scree_set_backend(argv[2], &error), &error);
+    at_once = strcmp(argv[2], "cpu") ? 200 : at_once; /* between calls the state comes back */
+    argv[2] = argv[0];
+    argv += 2;
+    argc -= 2;
+  }
   static const struct {
     const char *name;
     int argument_count;
@@ -209,7 +219,8 @@ int main(int argc, char **argv) {
     if (argc == commands[i].argument_count + 2 && strcmp(argv[1], commands[i].name) == 0)
       return commands[i].run(argv + 2);
   fprintf(stderr,
-          "usage: %s fill KIND TRIANGLES COUNT OUT | refit KIND FROM TRIANGLES IN OUT | "
+          "usage: %s [--backend NAME] fill KIND TRIANGLES COUNT OUT | refit KIND FROM TRIANGLES IN "
+          "OUT | "
           "stack COPIES IN OUT | shelve COPIES SECONDS IN OUT | lift HEIGHT IN OUT | retime DT IN "
           "OUT | "
           "time THREADS SECONDS IN | hash THREADS STEPS IN | dump IN OUT\n",

@@ -26,7 +26,7 @@ SCREE_API const char *scree_version(void);
   X(CANCELLED, "cancelled")         /* a progress callback answered false */                       \
   X(EXISTS, "file exists")          /* nothing is overwritten unless asked */                      \
   X(UNSUPPORTED, "unsupported")     /* known, but not in this build or not yet */                  \
-  X(NO_BACKEND, "no such backend")  /* the compute backend is not in this build */                 \
+  X(NO_BACKEND, "no such backend")  /* the compute backend is not there, or was lost */            \
   X(DIVERGED, "diverged")           /* a simulation left the range of its model */
 
 typedef enum scree_status {
@@ -63,6 +63,14 @@ SCREE_API void scree_reset_memory_peak(void);
  * function depends on it. */
 SCREE_API void scree_set_threads(int thread_count);
 SCREE_API int scree_threads(void);
+
+/* Where the steps of worlds are computed from now on: "cpu" (the default), "cuda", or "cuda:N" for
+ * the NVIDIA device of that number. The results are the same bits. SCREE_BAD_ARGUMENT for another
+ * name; SCREE_NO_BACKEND, with what is missing, where it is not there: the choice stays then. */
+SCREE_API scree_status scree_set_backend(const char *name, scree_error *error);
+/* The same without choosing it; description: what is there, in a few words. */
+SCREE_API scree_status scree_check_backend(const char *name, char description[256],
+                                           scree_error *error);
 
 /* Progress of long work. report is called from the calling thread, with the phase in a few words
  * and the fraction done in [0, 1]; answering false cancels the work, which then returns

@@ -8,8 +8,8 @@ enum { SWEEPS = 30 }; /* quadratic convergence: six are enough, the rest is for 
 static void rotate(double a[3][3], double v[3][3], int p, int q) {
   if (a[p][q] == 0) return;
   double tau = (a[q][q] - a[p][p]) / (2 * a[p][q]);
-  double t = (tau >= 0 ? 1 : -1) / (fabs(tau) + hypot(1, tau));
-  double c = 1 / hypot(1, t), s = t * c;
+  double t = (tau >= 0 ? 1 : -1) / (fabs(tau) + sqrt(1 + tau * tau));
+  double c = 1 / sqrt(1 + t * t), s = t * c;
   for (int k = 0; k < 3; k++) {
     double x = a[k][p], y = a[k][q];
     a[k][p] = c * x - s * y;

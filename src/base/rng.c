@@ -53,17 +53,17 @@ void scree_rng_shuffle(scree_rng *rng, void *items, size_t count, size_t size) {
 
 double scree_rng_normal(scree_rng *rng) {
   double u = 1 - scree_rng_uniform(rng), v = scree_rng_uniform(rng);
-  return sqrt(-2 * log(u)) * cos(two_pi * v);
+  return sqrt(-2 * scree_log(u)) * scree_cos(two_pi * v);
 }
 
 quat scree_rng_rotation(scree_rng *rng) {
   double u = scree_rng_uniform(rng), a = two_pi * scree_rng_uniform(rng),
          b = two_pi * scree_rng_uniform(rng), p = sqrt(1 - u), q = sqrt(u);
-  return (quat){q * cos(b), p * sin(a), p * cos(a), q * sin(b)};
+  return (quat){q * scree_cos(b), p * scree_sin(a), p * scree_cos(a), q * scree_sin(b)};
 }
 
 vec3 scree_rng_direction(scree_rng *rng) {
   double z = 2 * scree_rng_uniform(rng) - 1, a = two_pi * scree_rng_uniform(rng),
          r = sqrt(1 - z * z);
-  return (vec3){r * cos(a), r * sin(a), z};
+  return (vec3){r * scree_cos(a), r * scree_sin(a), z};
 }

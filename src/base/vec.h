@@ -2,7 +2,7 @@
 #ifndef SCREE_BASE_VEC_H
 #define SCREE_BASE_VEC_H
 
-#include <math.h>
+#include "base/math.h"
 
 typedef struct vec3 {
   double x, y, z;
@@ -18,7 +18,7 @@ typedef struct quat {
   double w, x, y, z;
 } quat;
 
-/* As fmin and fmax, which are calls, but of numbers only. */
+/* As scree_min and scree_max, but of numbers only, and the second of two equal ones. */
 static inline double scree_smaller(double a, double b) {
   return a < b ? a : b;
 }
@@ -136,8 +136,8 @@ static inline quat quat_unit(quat q) {
 static inline quat quat_conjugate(quat q) {
   return (quat){q.w, -q.x, -q.y, -q.z};
 }
-/* At least how far the rotation from p to q moves a point at distance 1, 2 sin(angle/2): a little
- * more for large angles, exact for small ones. */
+/* At least how far the rotation from p to q moves a point at distance 1, 2 sin(angle/2): a
+ * little more for large angles, exact for small ones. */
 static inline double quat_chord(quat p, quat q) {
   double sign = p.w * q.w + p.x * q.x + p.y * q.y + p.z * q.z < 0 ? -1 : 1;
   double w = q.w - sign * p.w, x = q.x - sign * p.x, y = q.y - sign * p.y, z = q.z - sign * p.z;
@@ -150,8 +150,8 @@ static inline quat quat_from_rotation_vector(vec3 r) {
     double s = 0.5 - angle2 / 48;
     return (quat){1 - angle2 / 8, r.x * s, r.y * s, r.z * s};
   }
-  double angle = sqrt(angle2), half = 0.5 * angle, s = sin(half) / angle;
-  return (quat){cos(half), r.x * s, r.y * s, r.z * s};
+  double angle = sqrt(angle2), half = 0.5 * angle, s = scree_sin(half) / angle;
+  return (quat){scree_cos(half), r.x * s, r.y * s, r.z * s};
 }
 static inline mat3 quat_to_mat3(quat q) {
   double xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z,

@@ -12,6 +12,10 @@ const cli_option cli_common_options[] = {
     {"threads", 'j', CLI_COUNT, offsetof(cli_common, threads), "N",
      "Threads to use; 0 is one per processor, the default. The results do not depend on it.", 0,
      4096, NULL},
+    {"backend", 0, CLI_TEXT, offsetof(cli_common, backend), "NAME",
+     "Where worlds are stepped: cpu, the default, cuda, or cuda:N for the NVIDIA device N. The "
+     "results are the same bits.",
+     0, 0, NULL},
     {"max-memory", 0, CLI_BYTES, offsetof(cli_common, max_memory), "SIZE",
      "Fail rather than hold more than SIZE bytes (suffixes K, M, G); 0, the default, is no limit.",
      0, 0, NULL},

@@ -64,6 +64,7 @@ typedef struct cli_call {
   size_t input_count;
   bool quiet;
   size_t max_memory;              /* bytes; 0: no limit */
+  const char *backend;            /* for the workers of a study; NULL: the processor */
   const scree_progress *progress; /* draws on stderr where that is a terminal; Ctrl-C cancels */
   const char *command_line;       /* for provenance, words quoted where needed */
 } cli_call;
@@ -76,7 +77,8 @@ const cli_verb *cli_find_verb(const char *name);
 typedef struct cli_common {
   bool help, quiet, verbose, progress;
   size_t threads, max_memory;
-  bool unit_given; /* the verb's own option --unit was */
+  bool unit_given;     /* the verb's own option --unit was */
+  const char *backend; /* NULL: the processor */
 } cli_common;
 extern const cli_option cli_common_options[];
 extern const size_t cli_common_option_count;

@@ -49,9 +49,11 @@ static int help(int word_count, char **words) {
   }
   if (!strcmp(words[0], "help") || !strcmp(words[0], "version")) {
     bool is_help = words[0][0] == 'h';
-    printf("usage: scree %s%s\n\n%s\n", words[0], is_help ? " [VERB]" : "",
-           is_help ? "Lists the verbs, or shows what a verb does and its options."
-                   : "Shows the version, and which parts this build has.");
+    printf(
+        "usage: scree %s%s\n\n%s\n", words[0], is_help ? " [VERB]" : "",
+        is_help
+            ? "Lists the verbs, or shows what a verb does and its options."
+            : "Shows the version, which parts this build has, and on what worlds can be stepped.");
     return 0;
   }
   const cli_verb *verb = cli_find_verb(words[0]);
@@ -91,14 +93,15 @@ static int run(const cli_verb *verb, int argc, char **argv) {
   scree_set_threads((int)common.threads);
   scree_set_memory_limit(common.max_memory);
   cli_input_obeys(&common);
+  scree_error error;
+  if (common.backend && scree_set_backend(common.backend, &error)) {
+    result = error.status == SCREE_BAD_ARGUMENT ? cli_misuse(verb, "%s", error.message)
+                                                : cli_fail(&error);
+    goto done;
+  }
   bool show = common.progress || (!common.quiet && scree_is_terminal(stderr));
-  cli_call call = {verb,
-                   options,
-                   inputs,
-                   input_count,
-                   common.quiet,
-                   common.max_memory,
-                   cli_terminal_start(show),
+  cli_call call = {verb,         options,           inputs,         input_count,
+                   common.quiet, common.max_memory, common.backend, cli_terminal_start(show),
                    command_line};
   result = verb->run(&call);
   if (result) cli_remove_empty_folders();
@@ -111,11 +114,23 @@ done:
   return result;
 }
 
+static void print_backends(void) {
+  static const char *const names[] = {"cpu", "cuda"};
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    char description[256];
+    scree_error error;
+    bool there = scree_check_backend(names[i], description, &error) == SCREE_OK;
+    printf("backend %-5s %s%s\n", names[i],
+           there ? "" : "not there: ", there ? description : error.message);
+  }
+}
+
 static void print_version(bool parts) {
   printf("scree %s\n", scree_version());
   for (int part = 0; parts && part < SCREE_BUILD_COUNT; part++)
     printf("%s %s\n", scree_build_has((scree_build_part)part) ? " with  " : "without",
            scree_build_text((scree_build_part)part));
+  if (parts) print_backends();
 }
 
 static int act(int argc, char **argv) {

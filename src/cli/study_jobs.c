@@ -32,13 +32,17 @@ typedef struct pool {
 
 static bool start_worker(pool *p, size_t slot) {
   const study_arguments *a = p->call->options;
-  const char *words[16] = {"scree",   "study",     "-o",       p->folder, "--worker",
+  const char *words[18] = {"scree",   "study",     "-o",       p->folder, "--worker",
                            "--quiet", "--threads", p->threads, "--lease", p->lease};
   size_t count = 10;
   if (a->no_wait) words[count++] = "--no-wait";
   if (p->call->max_memory) {
     words[count++] = "--max-memory";
     words[count++] = p->memory;
+  }
+  if (p->call->backend) {
+    words[count++] = "--backend";
+    words[count++] = p->call->backend;
   }
   words[count++] = "--";
   words[count++] = p->call->inputs[0];

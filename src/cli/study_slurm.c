@@ -41,6 +41,7 @@ static void write_script(FILE *stream, const cli_call *call, const char *study, 
   fputs(" study -o ", stream);
   write_quoted(stream, folder);
   if (call->max_memory) fprintf(stream, " --max-memory %zu", call->max_memory);
+  if (call->backend) fprintf(stream, " --backend %s", call->backend);
   fprintf(stream, " --worker --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ", a->lease);
   write_quoted(stream, study);
   putc('\n', stream);

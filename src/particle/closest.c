@@ -157,7 +157,7 @@ bool scree_is_inside(const scree_particle *particle, vec3 p) {
     double na = vec3_norm(a), nb = vec3_norm(b), nc = vec3_norm(c);
     double top = vec3_dot(a, vec3_cross(b, c));
     double bottom = na * nb * nc + vec3_dot(a, b) * nc + vec3_dot(b, c) * na + vec3_dot(c, a) * nb;
-    turns += atan2(top, bottom);
+    turns += scree_atan2(top, bottom);
   }
   return turns > 3.14159265358979323846; /* the full turn is 2 pi in half angles */
 }

@@ -120,7 +120,7 @@ static double turn_over(const scree_particle *p, const half_edge *a, const half_
   vec3 along = vec3_unit(vec3_sub(position_of(p, a->high), position_of(p, a->low)));
   double sine = vec3_dot(vec3_cross(n1, n2), along);
   if (a->reversed) sine = -sine;
-  return atan2(sine, vec3_dot(n1, n2));
+  return scree_atan2(sine, vec3_dot(n1, n2));
 }
 
 static scree_status pair_halves(extraction *x, bool may_be_open, scree_error *error) {
@@ -175,7 +175,7 @@ static scree_status make_corner_signs(scree_particle *p, scree_error *error) {
         }
         vec3 at = position_of(p, t[c]), u = vec3_sub(position_of(p, t[(c + 1) % 3]), at),
              v = vec3_sub(position_of(p, t[(c + 2) % 3]), at);
-        double angle = atan2(vec3_norm(vec3_cross(u, v)), vec3_dot(u, v));
+        double angle = scree_atan2(vec3_norm(vec3_cross(u, v)), vec3_dot(u, v));
         sums[t[c]] = vec3_mad(sums[t[c]], p->faces[f].normal, angle);
       }
   scree_free(sums);
@@ -279,8 +279,12 @@ static void make_points_and_edges(extraction *x) {
     double half = fmin(0.5 * turn + scree_cone_slack, 1.57);
     vec3 sum = vec3_add(p->faces[edge->face1].normal, p->faces[edge->face2].normal);
     if (edge->turn < 0) sum = vec3_neg(sum); /* of a sheet: convex from behind */
-    p->edges[p->edge_count++] = (scree_edge){
-        start, end, vec3_unit(along), vec3_norm(along), {vec3_unit(sum), cos(half), sin(half)}, 0};
+    p->edges[p->edge_count++] = (scree_edge){start,
+                                             end,
+                                             vec3_unit(along),
+                                             vec3_norm(along),
+                                             {vec3_unit(sum), scree_cos(half), scree_sin(half)},
+                                             0};
   }
 }
 

@@ -38,7 +38,7 @@ static void add_planes(const scree_particle *p, vertex_planes *vertices) {
       vec3 at = vertex_of(mesh->positions, t[c]),
            u = vec3_sub(vertex_of(mesh->positions, t[(c + 1) % 3]), at),
            v = vec3_sub(vertex_of(mesh->positions, t[(c + 2) % 3]), at);
-      double angle = atan2(vec3_norm(vec3_cross(u, v)), vec3_dot(u, v));
+      double angle = scree_atan2(vec3_norm(vec3_cross(u, v)), vec3_dot(u, v));
       add_plane(&vertices[t[c]], p->faces[f].normal, angle);
     }
 }

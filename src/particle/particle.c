@@ -64,7 +64,7 @@ static void set_solid(scree_particle_measures *m, const scree_solid *solid) {
   quat q;
   scree_solid_principal(solid, &moments, &q);
   m->volume = solid->volume;
-  m->size = cbrt(6 * solid->volume / pi);
+  m->size = scree_cbrt(6 * solid->volume / pi);
   vec3_store(m->centre, solid->centre);
   vec3_store(m->inertia, moments);
   const double orientation[4] = {q.w, q.x, q.y, q.z};
@@ -234,7 +234,8 @@ static void add_circle(scree_particle *p, const scree_circle *circle) {
   for (int k = 0; k < RIM_SIDES; k++) {
     vec3 at[2], way = {0, 0, 0};
     for (int end = 0; end < 2; end++) {
-      double angle = 2 * pi * ((k + end) % RIM_SIDES) / RIM_SIDES, c = cos(angle), s = sin(angle);
+      double angle = 2 * pi * ((k + end) % RIM_SIDES) / RIM_SIDES, c = scree_cos(angle),
+             s = scree_sin(angle);
       at[end] = (vec3){circle->radius * c, circle->radius * s, circle->height};
       way = vec3_add(way, (vec3){circle->radial * c, circle->radial * s, circle->axial});
     }

@@ -96,10 +96,10 @@ double scree_scanner_correlation(double distance) {
 /* Unit vectors towards the camera. The object's y axis is the turntable's in the first posture, its
  * z axis in the second, and it stands on its head in the third. */
 static void make_views(vec3 views[RINGS * VIEWS_PER_RING]) {
-  double up = sin(elevation), out = cos(elevation);
+  double up = scree_sin(elevation), out = scree_cos(elevation);
   for (int v = 0; v < VIEWS_PER_RING; v++) {
     double turn = 2 * 3.14159265358979323846 * v / VIEWS_PER_RING;
-    double a = out * cos(turn), b = out * sin(turn);
+    double a = out * scree_cos(turn), b = out * scree_sin(turn);
     views[v] = (vec3){a, up, b};
     views[VIEWS_PER_RING + v] = (vec3){a, b, up};
     views[2 * VIEWS_PER_RING + v] = (vec3){a, -up, b};

@@ -24,7 +24,7 @@ static inline double min2(double a, double b) {
 /* ---- From the drawing ---- */
 
 static mat3 axis_turn(int axis, double angle) {
-  double c = cos(angle), s = sin(angle);
+  double c = scree_cos(angle), s = scree_sin(angle);
   int u = (axis + 1) % 3, v = (axis + 2) % 3;
   mat3 turn = {{{0}}};
   turn.m[axis][axis] = 1;
@@ -63,7 +63,7 @@ static bool add_part(scree_shape *shape, const scree_piece_mm *line) {
 static vec3 bend_forward(const scree_part *part, vec3 p) {
   double limit = part->bend_half_angle * part->bend_radius;
   double arc = min2(max2(p.y, -limit), limit), beyond = p.y - arc;
-  double angle = arc / part->bend_radius, c = cos(angle), s = sin(angle);
+  double angle = arc / part->bend_radius, c = scree_cos(angle), s = scree_sin(angle);
   double r = part->bend_radius - p.z;
   return (vec3){p.x, r * s + beyond * c, part->bend_radius - r * c + beyond * s};
 }
@@ -165,10 +165,11 @@ static void into_frame(vec3 at, const mat3 *turn, bool turned, const scree_point
 /* Undoes the bend: the neutral plane z = 0 is an arc of radius R about (y, z) = (0, R) for angles
  * up to the half angle, straight beyond. */
 static void unbend(const scree_part *part, size_t count, scree_points *points) {
-  double radius = part->bend_radius, limit = part->bend_half_angle, c = cos(limit), s = sin(limit);
+  double radius = part->bend_radius, limit = part->bend_half_angle, c = scree_cos(limit),
+         s = scree_sin(limit);
   for (size_t i = 0; i < count; i++) {
     double y = points->y[i], z = points->z[i], side = y < 0 ? -1 : 1;
-    double angle = atan2(fabs(y), radius - z);
+    double angle = scree_atan2(fabs(y), radius - z);
     if (angle < limit) {
       points->y[i] = side * angle * radius;
       points->z[i] = radius - sqrt(y * y + (radius - z) * (radius - z));

@@ -6,7 +6,7 @@
  * in the coarser ones, in the cells where the centre of one that reaches it may lie. The list of
  * pairs stays valid until some body's path since it was made exceeds half its margin, or a wall's.
  * Old and new lists are both sorted, so pairs that stay keep their memory in one merge. */
-#include "world/world.h"
+#include "world/stages.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
@@ -391,7 +391,7 @@ static bool list_sides(scree_world *world) {
   return true;
 }
 
-static bool is_valid(const scree_world *world) {
+bool scree_broad_is_valid(const scree_world *world) {
   if (world->pairs_stale) return false;
   for (size_t w = 0; w < world->walls.count; w++) {
     const scree_world_wall *wall = &world->walls.items[w];
@@ -428,7 +428,7 @@ static void prepare_walls(scree_world *world) {
 }
 
 scree_status scree_broad_update(scree_world *world, scree_error *error) {
-  if (world->bodies.count == 0 || is_valid(world)) return SCREE_OK;
+  if (world->bodies.count == 0 || scree_broad_is_valid(world)) return SCREE_OK;
   scree_status status = reserve(world, error);
   if (status) return status;
   choose_grids(world, make_boxes(world));

@@ -127,8 +127,7 @@ static bool wake_items(scree_pair *pair, scree_scratch *scratch) {
 /* For the touches of all awake items and of edges inside, and for them all to fall asleep. */
 static bool has_room(const scree_pair *pair, scree_scratch *scratch) {
   size_t touches = (size_t)SCREE_ANCHORS * pair->active.count + SCREE_DEPTHS;
-  if (touches > scratch->touches.capacity) scratch->touches_needed = touches;
-  return touches <= scratch->touches.capacity &&
+  return scree_reserve_touches(scratch, touches) &&
          scree_reserve_sleepers(scratch, scratch->neighbours->sleeping.count + pair->active.count);
 }
 

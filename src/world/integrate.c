@@ -3,7 +3,7 @@
  * rounding: L += tau dt,   q_h = q exp(dt/2 I^-1 R(q)^T L),   q = q exp(dt I^-1 R(q_h)^T L), a
  * midpoint rule in the body's frame (compare Buss 2000, "Accurate and efficient simulation of
  * rigid-body rotations", and Dullweber et al. 1997 for the splitting it stands beside). */
-#include "world/world.h"
+#include "world/stages.h"
 
 #include "base/parallel.h"
 
@@ -89,6 +89,14 @@ typedef struct gathering {
   size_t *offender; /* by block: first body beyond its limit; SIZE_MAX for none */
 } gathering;
 
+bool scree_gather_body(scree_world *world, size_t i) {
+  size_t end = 0;
+  const uint32_t *acting = list_acting(world, i, i + 1, &end);
+  sum_forces(world, i, acting, 0, end, end);
+  world->bodies.travel[i] = coming_travel(world, i);
+  return world->bodies.travel[i] <= travel_limit(world, i);
+}
+
 static void gather_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)worker;
   gathering *g = context;
@@ -105,6 +113,19 @@ static void gather_block(void *context, size_t begin, size_t end, size_t block, 
   }
 }
 
+scree_status scree_describe_offender(scree_world *world, size_t i) {
+  double travel = world->bodies.travel[i];
+  if (!isfinite(travel))
+    return scree_fail(&world->failure, SCREE_DIVERGED,
+                      "world: step %llu, body %zu: the forces on it are not finite",
+                      (unsigned long long)world->step_count, i);
+  return scree_fail(&world->failure, SCREE_DIVERGED,
+                    "world: step %llu, body %zu would move %.3g m in one step of %.3g s; at most "
+                    "%.3g m (the overlap limit)",
+                    (unsigned long long)world->step_count, i, travel, world->time_step,
+                    travel_limit(world, i));
+}
+
 bool scree_world_gather(scree_world *world) {
   gathering g = {world, world->offenders};
   scree_parallel_for(world->bodies.count, BODY_BLOCK, gather_block, &g);
@@ -112,23 +133,13 @@ bool scree_world_gather(scree_world *world) {
   for (size_t block = 0; block < blocks; block++) {
     size_t i = world->offenders[block];
     if (i == SIZE_MAX) continue;
-    double travel = world->bodies.travel[i];
-    if (isfinite(travel))
-      scree_fail(&world->failure, SCREE_DIVERGED,
-                 "world: step %llu, body %zu would move %.3g m in one step of %.3g s; at most "
-                 "%.3g m (the overlap limit)",
-                 (unsigned long long)world->step_count, i, travel, world->time_step,
-                 travel_limit(world, i));
-    else
-      scree_fail(&world->failure, SCREE_DIVERGED,
-                 "world: step %llu, body %zu: the forces on it are not finite",
-                 (unsigned long long)world->step_count, i);
+    scree_describe_offender(world, i);
     return false;
   }
   return true;
 }
 
-static void advance_body(scree_world *world, size_t i) {
+void scree_advance_body(scree_world *world, size_t i) {
   scree_bodies *b = &world->bodies;
   scree_frame *frame = &b->frame[i];
   double dt = world->time_step;
@@ -174,12 +185,16 @@ static void advance_block(void *context, size_t begin, size_t end, size_t block,
   (void)worker;
   scree_world *world = context;
   for (size_t i = begin; i < end; i++)
-    if (!world->bodies.removed[i]) advance_body(world, i);
+    if (!world->bodies.removed[i]) scree_advance_body(world, i);
+}
+
+void scree_book_work(scree_world *world) {
+  scree_walls_book(world);
+  book_applied(world);
 }
 
 void scree_world_advance(scree_world *world) {
-  scree_walls_book(world);
-  book_applied(world);
+  scree_book_work(world);
   scree_parallel_for(world->bodies.count, BODY_BLOCK, advance_block, world);
   scree_walls_advance(world);
   if (world->options.floor_height == -INFINITY) return;

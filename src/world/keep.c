@@ -34,10 +34,12 @@ scree_status scree_world_keep(scree_world *world, const char *path, uint64_t ste
   return scree_world_keep_all(world, path, step_interval, pack_world, world, error);
 }
 
+bool scree_world_keep_is_due(const scree_world *world) {
+  return world->kept.path &&
+         (!world->kept.bytes || world->step_count - world->kept.step >= world->kept.interval);
+}
+
 scree_status scree_world_keep_state(scree_world *world, scree_error *error) {
-  if (!world->kept.path) return SCREE_OK;
-  bool due = !world->kept.bytes || world->step_count - world->kept.step >= world->kept.interval;
-  if (!due) return SCREE_OK;
   unsigned char *bytes;
   size_t count;
   scree_status status = world->kept.pack(world->kept.what, &bytes, &count, error);
@@ -50,7 +52,8 @@ scree_status scree_world_keep_state(scree_world *world, scree_error *error) {
 }
 
 void scree_world_write_kept(scree_world *world) {
-  if (!world->kept.bytes || world->failure.status != SCREE_DIVERGED) return;
+  const scree_status why = world->failure.status;
+  if (!world->kept.bytes || (why != SCREE_DIVERGED && why != SCREE_NO_BACKEND)) return;
   scree_error error;
   char *message = world->failure.message;
   size_t used = strlen(message), left = sizeof world->failure.message - used;

@@ -16,10 +16,10 @@ scree_material scree_default_wall_material(void) {
 
 static double restitution_of(double eta) {
   const double pi = 3.14159265358979323846;
-  if (eta == 1) return exp(-2);
+  if (eta == 1) return scree_exp(-2);
   double w = sqrt(fabs(1 - eta * eta));
-  if (eta < 1) return exp(-eta / w * (pi - atan2(2 * eta * w, 1 - 2 * eta * eta)));
-  return exp(-eta / w * log((eta + w) * (eta + w))); /* (eta - w)(eta + w) = 1 */
+  if (eta < 1) return scree_exp(-eta / w * (pi - scree_atan2(2 * eta * w, 1 - 2 * eta * eta)));
+  return scree_exp(-eta / w * scree_log((eta + w) * (eta + w))); /* (eta - w)(eta + w) = 1 */
 }
 
 double scree_damping_ratio(double restitution) {

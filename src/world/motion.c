@@ -63,8 +63,8 @@ static double law_at(const scree_motion_state *m, const scree_motion_row *rows, 
     slope = m->speed;
     break;
   case SCREE_MOTION_SINE:
-    value = m->amplitude * sin(turn * (t - m->from) + m->phase);
-    slope = m->amplitude * turn * cos(turn * (t - m->from) + m->phase);
+    value = m->amplitude * scree_sin(turn * (t - m->from) + m->phase);
+    slope = m->amplitude * turn * scree_cos(turn * (t - m->from) + m->phase);
     break;
   case SCREE_MOTION_POSITIONS:
     value = between_rows(rows, m->row_count, t, &slope);

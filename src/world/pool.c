@@ -44,6 +44,17 @@ bool scree_grow_sleepers(scree_scratch *s, uint32_t needed) {
   return true;
 }
 
+bool scree_reserve_touches(scree_scratch *s, size_t needed) {
+  scree_pools *pools = s->pools;
+  if (needed <= s->touches.capacity) return true;
+  s->touches_needed = needed;
+  if (!pools->touches) return false;
+  uint64_t first = atomic_fetch_add_explicit(&pools->touches_used, needed, memory_order_relaxed);
+  if (first + needed > pools->touch_capacity) return false;
+  s->touches = (scree_touch_list){pools->touches + first, 0, needed};
+  return true;
+}
+
 /* Of a pool whose lists have `total` places. What was asked for in vain is in `used`. */
 static uint64_t roomy(uint64_t total, uint64_t extra, uint64_t used, uint64_t capacity) {
   uint64_t asked = used > capacity ? used - capacity : 0, needed = total + extra + asked;

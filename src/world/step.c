@@ -1,7 +1,8 @@
 /* The step: pairs, forces, sums, advance. Pairs are evaluated in blocks of the sorted list; what a
  * block adds up is combined in block order, and every body sums its pairs in list order, so the
  * result does not depend on the threads. */
-#include "world/world.h"
+#include "world/backend.h"
+#include "world/stages.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
@@ -10,14 +11,14 @@
 
 #include <string.h>
 
-/* Slots a block: whole words of world->touching, which a thread of its own writes. Several blocks
- * are gone through at once where there are many, for at the beginning nothing was asked for. */
-enum { PAIR_BLOCK = 128, MOST_BLOCKS = 8, LEAST_PARTS = 32 };
+/* Several blocks are gone through at once where there are many, for at the beginning nothing was
+ * asked for. */
+enum { MOST_BLOCKS = 8, LEAST_PARTS = 32 };
 
-/* Who is awake or due of the neighbours [begin, end). Without branches: one in five is. */
-static uint32_t list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake) {
+/* Without branches: one in five is. */
+size_t scree_list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake) {
   const double *due = world->due.items;
-  uint32_t count = 0;
+  size_t count = 0;
   for (size_t k = begin; k < end; k++) {
     const scree_slot *slot = &world->slots.items[k];
     awake[count] = (uint32_t)k;
@@ -45,7 +46,9 @@ static bool may_wake_items(const scree_pair *pair) {
 /* The items of a pair that has come, wherever they are. */
 SCREE_PREFETCHES void fetch_items(const scree_world *world, const scree_pair *pair) {
   if (!pair) return;
-  scree_prefetch(&world->pools.items[pair->active.first], pair->active.count * sizeof(scree_item));
+  const scree_item *items = &world->pools.items[pair->active.first];
+  scree_prefetch(items, sizeof *items);
+  if (pair->active.count > 1) scree_prefetch(items + 1, (pair->active.count - 1) * sizeof *items);
   if (may_wake_items(pair)) scree_prefetch(&world->neighbours.items[pair->neighbours].sleeping, 1);
 }
 
@@ -78,7 +81,22 @@ SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair 
 
 enum { PAIRS_AHEAD = 8, ITEMS_AHEAD = 4, FEATURES_AHEAD = 2 };
 
-static void add_work(scree_pair_sums *sums, const scree_pair_work *work, const scree_pair *pair) {
+scree_pair_sums scree_no_sums(void) {
+  return (scree_pair_sums){.beyond_limit = scree_none, .too_fast = scree_none, .start = scree_none};
+}
+
+static void note_trouble(scree_pair_sums *sums, const scree_pair_work *work, uint32_t k) {
+  if (work->beyond_limit && sums->beyond_limit == scree_none) sums->beyond_limit = k;
+  if (work->too_fast && sums->too_fast == scree_none) sums->too_fast = k;
+  if (work->start_depth > sums->start_depth) {
+    sums->start = k;
+    sums->start_depth = work->start_depth;
+  }
+}
+
+void scree_add_work(scree_pair_sums *sums, const scree_pair_work *work, const scree_pair *pair) {
+  if (work->beyond_limit || work->too_fast || work->start_depth > 0)
+    note_trouble(sums, work, pair->neighbours);
   sums->dashpot += work->later_dashpot;
   sums->dashpot += work->dashpot;
   sums->dashpot -= work->lost;
@@ -87,17 +105,10 @@ static void add_work(scree_pair_sums *sums, const scree_pair_work *work, const s
   sums->tangential += work->tangential;
   if (pair->touching && !(pair->overlap <= sums->largest_overlap))
     sums->largest_overlap = pair->overlap;
-  if (work->beyond_limit && sums->beyond_limit == scree_none) sums->beyond_limit = pair->neighbours;
-  if (work->too_fast && sums->too_fast == scree_none) sums->too_fast = pair->neighbours;
   sums->partings += work->begins_parting;
-  if (work->start_depth > sums->start_depth) {
-    sums->start = pair->neighbours;
-    sums->start_depth = work->start_depth;
-  }
 }
 
-/* The pair of neighbours k, which may be one that begins; scree_none when there is no spare one. */
-static uint32_t pair_at(scree_world *world, uint32_t k) {
+uint32_t scree_pair_at(scree_world *world, uint32_t k) {
   uint32_t pair = world->pair_of.items[k];
   if (pair != scree_none) return pair;
   pair = scree_pair_take(world);
@@ -106,16 +117,15 @@ static uint32_t pair_at(scree_world *world, uint32_t k) {
   return world->pair_of.items[k] = pair;
 }
 
-/* After its evaluation: whether the pair is given back. */
-static bool settle_pair(scree_world *world, const scree_pair *pair) {
+bool scree_settle_pair(scree_world *world, const scree_pair *pair) {
   uint32_t k = pair->neighbours;
-  scree_neighbours *n = &world->neighbours.items[k];
   scree_slot *slot = &world->slots.items[k];
   if (pair->touching != scree_pair_touches(world, k)) scree_mark_touching(world, k, pair->touching);
   if (scree_pair_stays_awake(pair)) {
     slot->wake = -INFINITY;
     return false;
   }
+  scree_neighbours *n = &world->neighbours.items[k];
   scree_pair_end(pair, n);
   slot->wake = pair->asleep ? n->wake : -INFINITY;
   world->pair_of.items[k] = scree_none;
@@ -127,7 +137,7 @@ static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *s
   scree_pair_work work;
   scree_take_in_hand(scratch, &world->pools, pair, &world->neighbours.items[pair->neighbours]);
   if (!scree_pair_evaluate(world, pair, scratch, &work)) return false;
-  add_work(&world->sums.items[pair->neighbours / PAIR_BLOCK], &work, pair);
+  scree_add_work(&world->sums.items[pair->neighbours / SCREE_PAIR_BLOCK], &work, pair);
   return true;
 }
 
@@ -143,11 +153,10 @@ SCREE_PREFETCHES void fetch_ahead(const scree_world *world, const uint32_t *awak
 static void begin_blocks(scree_world *world, size_t begin, size_t end,
                          scree_pair_progress *progress) {
   uint32_t *awake = &world->awake.items[begin];
-  *progress = (scree_pair_progress){.awake = list_awake(world, begin, end, awake)};
+  *progress = (scree_pair_progress){.awake = (uint32_t)scree_list_awake(world, begin, end, awake)};
   for (size_t k = 0; k < PAIRS_AHEAD && k < progress->awake; k++) fetch_pair(world, awake[k]);
-  for (size_t block = begin / PAIR_BLOCK; block * PAIR_BLOCK < end; block++)
-    world->sums.items[block] =
-        (scree_pair_sums){.beyond_limit = scree_none, .too_fast = scree_none, .start = scree_none};
+  for (size_t block = begin / SCREE_PAIR_BLOCK; block * SCREE_PAIR_BLOCK < end; block++)
+    world->sums.items[block] = scree_no_sums();
 }
 
 /* From where it stopped, if it did. Pairs that fall asleep take the places of those already done.
@@ -157,20 +166,22 @@ static void evaluate_blocks(void *context, size_t begin, size_t end, size_t part
   scree_pair_progress *progress = &world->progress.items[part];
   uint32_t *awake = &world->awake.items[begin];
   if (progress->done == 0) begin_blocks(world, begin, end, progress);
-  while (progress->done < progress->awake) {
-    fetch_ahead(world, awake, progress->done, progress->awake);
-    uint32_t index = pair_at(world, awake[progress->done]);
-    if (index == scree_none) return;
+  const size_t count = progress->awake;
+  size_t i = progress->done;
+  for (; i < count; i++) {
+    fetch_ahead(world, awake, i, count);
+    uint32_t index = scree_pair_at(world, awake[i]);
+    if (index == scree_none) break;
     scree_pair *pair = &world->pairs.items[index];
-    if (!evaluate_pair(world, pair, &world->scratch[worker])) return;
-    if (settle_pair(world, pair)) awake[progress->given++] = index;
-    progress->done++;
+    if (!evaluate_pair(world, pair, &world->scratch[worker])) break;
+    if (scree_settle_pair(world, pair)) awake[progress->given++] = index;
   }
+  progress->done = (uint32_t)i;
 }
 
 static size_t pairs_at_once(const scree_world *world) {
-  size_t blocks = scree_block_count(world->neighbours.count, PAIR_BLOCK) / LEAST_PARTS;
-  return PAIR_BLOCK * (blocks < 1 ? 1 : blocks > MOST_BLOCKS ? MOST_BLOCKS : blocks);
+  size_t blocks = scree_block_count(world->neighbours.count, SCREE_PAIR_BLOCK) / LEAST_PARTS;
+  return SCREE_PAIR_BLOCK * (blocks < 1 ? 1 : blocks > MOST_BLOCKS ? MOST_BLOCKS : blocks);
 }
 
 static bool all_done(const scree_world *world, size_t parts) {
@@ -252,26 +263,36 @@ static scree_status describe_start(scree_world *world, const scree_pair_sums *su
                     b, sums->start_depth);
 }
 
-static scree_status combine_sums(scree_world *world, size_t blocks) {
-  world->largest_overlap = 0;
+scree_pair_sums scree_combine_sums(scree_world *world) {
+  scree_pair_sums all = scree_no_sums();
+  size_t blocks = scree_block_count(world->neighbours.count, SCREE_PAIR_BLOCK);
+  bool trouble = false;
   for (size_t block = 0; block < blocks; block++) {
     const scree_pair_sums *sums = &world->sums.items[block];
     world->work_dashpot += sums->dashpot;
     world->work_tangential += sums->tangential;
     world->parting_count += sums->partings;
-    world->largest_overlap = fmax(world->largest_overlap, sums->largest_overlap);
+    all.largest_overlap = fmax(all.largest_overlap, sums->largest_overlap);
+    if (trouble || (sums->start & sums->beyond_limit & sums->too_fast) == scree_none) continue;
+    trouble = true;
+    all.start = sums->start;
+    all.start_depth = sums->start_depth;
+    all.beyond_limit = sums->beyond_limit;
+    all.too_fast = sums->too_fast;
   }
-  for (size_t block = 0; block < blocks; block++) {
-    const scree_pair_sums *sums = &world->sums.items[block];
-    if (sums->start != scree_none) return describe_start(world, sums);
-    if (sums->beyond_limit != scree_none) return describe_overlap(world, sums->beyond_limit);
-    if (sums->too_fast != scree_none) return describe_speed(world, sums->too_fast);
-  }
+  world->largest_overlap = all.largest_overlap;
+  return all;
+}
+
+scree_status scree_describe_trouble(scree_world *world, const scree_pair_sums *sums) {
+  if (sums->start != scree_none) return describe_start(world, sums);
+  if (sums->beyond_limit != scree_none) return describe_overlap(world, sums->beyond_limit);
+  if (sums->too_fast != scree_none) return describe_speed(world, sums->too_fast);
   return SCREE_OK;
 }
 
-static scree_status reserve_blocks(scree_world *world, scree_error *error) {
-  size_t blocks = scree_block_count(world->neighbours.count, PAIR_BLOCK);
+scree_status scree_reserve_blocks(scree_world *world, scree_error *error) {
+  size_t blocks = scree_block_count(world->neighbours.count, SCREE_PAIR_BLOCK);
   if (!SCREE_RESERVE(&world->sums, blocks) || !SCREE_RESERVE(&world->progress, blocks) ||
       !SCREE_RESERVE(&world->awake, world->neighbours.count))
     return scree_fail_memory(error, blocks * sizeof *world->sums.items, "sums");
@@ -290,11 +311,14 @@ static scree_status one_step(scree_world *world) {
   scree_timings *timings = &world->timings;
   double start = scree_now();
   scree_status status = scree_broad_update(world, &world->failure);
-  if (!status) status = reserve_blocks(world, &world->failure);
+  if (!status) status = scree_reserve_blocks(world, &world->failure);
   if (status) return status;
   double after_broad = scree_now();
   status = evaluate_pairs(world);
-  if (!status) status = combine_sums(world, scree_block_count(world->neighbours.count, PAIR_BLOCK));
+  if (!status) {
+    scree_pair_sums sums = scree_combine_sums(world);
+    status = scree_describe_trouble(world, &sums);
+  }
   double after_contacts = scree_now();
   if (!status && !scree_world_gather(world)) status = world->failure.status;
   if (!status) {
@@ -311,6 +335,14 @@ static scree_status one_step(scree_world *world) {
   timings->pair_evaluations += world->neighbours.count;
   return status;
 }
+
+/* The state is where it is stepped already. */
+static scree_status stay(scree_world *world, scree_error *error) {
+  (void)world, (void)error;
+  return SCREE_OK;
+}
+
+const scree_backend scree_backend_cpu = {"cpu", stay, one_step, stay, NULL};
 
 static scree_status check_time_step(scree_world *world, scree_error *error) {
   if (!world->time_step_stale) return SCREE_OK;
@@ -335,18 +367,25 @@ scree_status scree_world_step(scree_world *world, size_t step_count, scree_error
     if (error) *error = world->failure;
     return world->failure.status;
   }
+  const scree_backend *backend = scree_backend_chosen();
   scree_status status = check_time_step(world, error);
+  if (!status) status = backend->begin(world, error);
   if (status) return status;
   for (size_t k = 0; k < step_count; k++) {
-    status = scree_world_keep_state(world, error);
-    if (status) return status;
-    status = one_step(world);
+    if (scree_world_keep_is_due(world)) {
+      status = backend->fetch(world, error);
+      if (!status) status = scree_world_keep_state(world, error);
+      if (status) return status;
+    }
+    status = backend->step(world);
     if (status == SCREE_OK) continue;
     world->diverged = true;
     scree_world_write_kept(world);
     if (error) *error = world->failure;
     return status;
   }
+  status = backend->fetch(world, error);
+  if (status) return status;
   scree_walls_sum_forces(world);
   return SCREE_OK;
 }

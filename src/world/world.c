@@ -1,5 +1,6 @@
 /* Making worlds and what is in them. */
 #include "world/world.h"
+#include "world/backend.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
@@ -92,6 +93,7 @@ void scree_world_free(scree_world *world) {
   scree_free(world->pairs.items);
   scree_free(world->spare_pairs.items);
   scree_pools_free(&world->pools);
+  if (world->on_device) scree_backend_cuda.release(world);
   scree_free(world->slots.items);
   scree_free(world->due.items);
   scree_free(world->touching.items);

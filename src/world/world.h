@@ -227,6 +227,10 @@ typedef struct scree_pools {
   scree_sleeper *sleepers;
   uint64_t item_capacity, sleeper_capacity;
   atomic_uint_least64_t items_used, sleepers_used;
+  /* of a device, whose threads have no scratch of their own; else NULL */
+  struct scree_touch *touches;
+  uint64_t touch_capacity;
+  atomic_uint_least64_t touches_used;
 } scree_pools;
 
 /* One touching feature, in the frame of b. */
@@ -394,6 +398,7 @@ struct scree_world {
     size_t byte_count;
   } kept;
   scree_timings timings;
+  struct scree_device_world *on_device; /* cuda.c; NULL: it never was on one */
 };
 
 /* The pair of these neighbours; NULL: they are asleep, or new. */
@@ -488,6 +493,8 @@ void scree_free_pair_copy(scree_pair_copy *copy);
  * where the pool has too little room. */
 bool scree_grow_items(scree_scratch *scratch, scree_pair *pair, uint32_t needed);
 bool scree_grow_sleepers(scree_scratch *scratch, uint32_t needed);
+/* Room for the touches of the pair in hand, which are found anew. */
+bool scree_reserve_touches(scree_scratch *scratch, size_t needed);
 /* The lists packed in the order of their owners, with room for `extra` more, and for as much again.
  * False when memory is out; nothing has moved then. */
 bool scree_pack_items(scree_pools *pools, scree_pair *pairs, size_t count, size_t extra);
@@ -669,7 +676,8 @@ scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, c
 /* keep.c: scree_world_keep for what stands around the world, which outlives it. */
 scree_status scree_world_keep_all(scree_world *world, const char *path, uint64_t step_interval,
                                   scree_packer *pack, const void *what, scree_error *error);
-/* Packs the state when the interval is over; after a failure writes what was packed last,
+bool scree_world_keep_is_due(const scree_world *world);
+/* Packs the state; after a failure writes what was packed last,
  * and says so in world->failure. */
 scree_status scree_world_keep_state(scree_world *world, scree_error *error);
 void scree_world_write_kept(scree_world *world);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 static char file[] = "/tmp/scree-memory-XXXXXX";
+static const char *backend = "cpu";
 
 /* ---- Particles ---- */
 
@@ -129,7 +130,10 @@ static scree_status build_world(void *context, scree_error *error) {
 static scree_status step_world(void *context, scree_error *error) {
   scree_world *world = NULL;
   size_t contacts = 0;
-  scree_status status = make_world(context, &world, error);
+  char description[256];
+  scree_status status = scree_check_backend(backend, description, error);
+  if (status == SCREE_OK) status = scree_set_backend(backend, error);
+  if (status == SCREE_OK) status = make_world(context, &world, error);
   if (status == SCREE_OK) status = scree_world_keep(world, file, 25, error);
   if (status == SCREE_OK) status = scree_world_step(world, 60, error);
   if (status == SCREE_OK)
@@ -269,7 +273,9 @@ static int remove_file(void **state) {
   return unlink(file);
 }
 
-int main(void) {
+/* With a backend's name: there. */
+int main(int argc, char **argv) {
+  if (argc > 1) backend = argv[1];
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(particles), cmocka_unit_test(worlds), cmocka_unit_test(experiments),
       cmocka_unit_test(runs),      cmocka_unit_test(fits),

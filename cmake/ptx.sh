@@ -1,0 +1,59 @@
+#!/bin/bash
+# The kernels of a step as PTX text, from the sources that the processor runs, by clang and llvm alone.
+#
+#   cmake/ptx.sh CLANG LLVM_BIN OUT [PTXAS]
+#
+# Writes OUT.ptx, and OUT.c with it as scree_ptx. CLANG has the NVPTX target (Debian's clang-14 has). Every double operation is rounded to nearest and none
+# is contracted: the script fails where one is not, or where something is left undefined. With PTXAS the
+# text is assembled for sm_75, sm_90 and sm_120 as far as that knows them, as a check.
+set -euo pipefail
+clang=$1 llvm=$2 out=$3 ptxas=${4:-}
+root=$(cd "$(dirname "$0")/.." && pwd)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$root"
+sources=(src/world/device/kernels.c src/base/math.c)
+for name in contact touch edges law candidates watch seam depth wall pair pool step integrate; do
+  [ ! -e src/world/$name.c ] || sources+=(src/world/$name.c)
+done
+for name in closest tree; do sources+=(src/particle/$name.c); done
+flags=(-std=c17 -target nvptx64-nvidia-cuda -Xclang -target-cpu -Xclang sm_70 -O2 -Xclang -disable-llvm-passes
+  -ffp-contract=off -fno-math-errno -nostdinc -isystem "$("$clang" -print-resource-dir)/include"
+  -isystem src/world/device/include -Isrc -Iinclude -DNDEBUG -w -emit-llvm -c)
+for source in "${sources[@]}"; do
+  "$clang" "${flags[@]}" -o "$work/$(echo "$source" | tr / _).bc" "$source"
+done
+"$llvm/llvm-link" "$work"/*.bc -S -o "$work/all.ll"
+# what marks a kernel for llvm 14
+kernels=$(sed -n 's/^  X(\([a-z]*\)).*/scree_kernel_\1/p' src/world/device/device.h)
+{
+  number=9000 nodes=
+  for kernel in $kernels; do
+    echo "!$number = !{void (%struct.scree_world*, %struct.scree_device_step*)* @$kernel, !\"kernel\", i32 1}"
+    nodes="$nodes${nodes:+, }!$number" number=$((number + 1))
+  done
+  echo "!nvvm.annotations = !{$nodes}"
+} >>"$work/all.ll"
+"$llvm/opt" -S -passes='internalize,globaldce,default<O3>,globaldce' \
+  -internalize-public-api-list="$(echo $kernels | tr ' ' ,)" "$work/all.ll" -o "$work/opt.ll"
+"$llvm/llc" -mcpu=sm_70 -O3 -fp-contract=off "$work/opt.ll" -o "$work/raw.ptx"
+sed -e 's/[[:space:]]*\/\/.*$//' -e '/^[[:space:]]*$/d' "$work/raw.ptx" >"$work/out.ptx"
+if grep -nE '\bfma\b|\b(add|sub|mul|div|sqrt|rcp)\.(f64|f32|approx|full|ftz)|^\.extern' "$work/out.ptx" | head -5 | grep .; then
+  echo "ptx.sh: the lines above are contracted, not rounded to nearest, or undefined" >&2
+  exit 1
+fi
+if [ -n "$ptxas" ]; then
+  for target in sm_75 sm_90 sm_120; do
+    "$ptxas" --list-arch 2>/dev/null | grep -qx "$target" || "$ptxas" -h | grep -q "$target" || continue
+    "$ptxas" -arch=$target "$work/out.ptx" -o /dev/null
+  done
+fi
+{
+  echo '/* Made by cmake/ptx.sh. */'
+  echo 'extern const char scree_ptx[];'
+  echo 'const char scree_ptx[] ='
+  sed -e 's/[\\"]/\\&/g' -e 's/.*/"&\\n"/' "$work/out.ptx"
+  echo ';'
+} >"$work/out.c"
+cp "$work/out.ptx" "$out.ptx"
+cp "$work/out.c" "$out.c"

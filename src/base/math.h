@@ -1,0 +1,30 @@
+/* Elementary functions of our own, within an ulp or two of the true value: the C library's differ
+ * in their last bit from one platform to the next, and a device has none. Only sqrt, floor, ceil
+ * and fabs, which IEEE 754 defines to the bit, come from there. */
+#ifndef SCREE_BASE_MATH_H
+#define SCREE_BASE_MATH_H
+
+#include <math.h>
+
+/* Angles in rad. Up to 1e6 within an ulp; larger ones modulo the double next to 2 pi. NaN for
+ * infinities. */
+double scree_sin(double x);
+double scree_cos(double x);
+/* The angle of (x, y), -pi to pi, within 1.5 ulps; signs of zeros and infinities as in C. */
+double scree_atan2(double y, double x);
+/* 0 to pi, within two ulps; NaN outside [-1, 1]. */
+double scree_acos(double x);
+double scree_exp(double x);
+/* Natural; NaN below 0, -infinity at 0. */
+double scree_log(double x);
+double scree_cbrt(double x);
+
+/* Of two equal ones, which zeros of either sign are, the first; a number rather than NaN. */
+static inline double scree_min(double a, double b) {
+  return b < a || a != a ? b : a;
+}
+static inline double scree_max(double a, double b) {
+  return b > a || a != a ? b : a;
+}
+
+#endif

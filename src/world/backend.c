@@ -1,0 +1,50 @@
+/* Which backend worlds step on. */
+#include "world/backend.h"
+
+#include "world/cuda_driver.h"
+
+#include "base/error.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const scree_backend *chosen = &scree_backend_cpu;
+static int chosen_device = 0;
+
+const scree_backend *scree_backend_chosen(void) {
+  return chosen;
+}
+int scree_backend_device(void) {
+  return chosen_device;
+}
+
+/* "cpu", "cuda" or "cuda:N". */
+static const scree_backend *find(const char *name, int *device) {
+  *device = 0;
+  if (strcmp(name, "cpu") == 0) return &scree_backend_cpu;
+  if (strncmp(name, "cuda", 4) != 0) return NULL;
+  if (name[4] == 0) return &scree_backend_cuda;
+  char *end;
+  long number = strtol(name + 5, &end, 10);
+  if (name[4] != ':' || name[5] < '0' || name[5] > '9' || *end || number > 999) return NULL;
+  *device = (int)number;
+  return &scree_backend_cuda;
+}
+
+scree_status scree_check_backend(const char *name, char description[256], scree_error *error) {
+  int device;
+  const scree_backend *backend = find(name, &device);
+  if (!backend)
+    return scree_fail(error, SCREE_BAD_ARGUMENT,
+                      "backend '%s': cpu, cuda or cuda:N (the device's number) are known", name);
+  if (backend == &scree_backend_cuda) return scree_cuda_open(device, description, error);
+  snprintf(description, 256, "the processor's threads");
+  return SCREE_OK;
+}
+
+scree_status scree_set_backend(const char *name, scree_error *error) {
+  char description[256];
+  scree_status status = scree_check_backend(name, description, error);
+  if (status == SCREE_OK) chosen = find(name, &chosen_device);
+  return status;
+}

@@ -1,0 +1,194 @@
+#include "world/cuda_driver.h"
+
+#include "base/error.h"
+#include "base/parallel.h"
+
+#ifdef SCREE_WITH_CUDA
+#include <dlfcn.h>
+#include <string.h>
+
+extern const char scree_ptx[]; /* made by cmake/ptx.sh */
+
+enum { MOST_DEVICES = 16, THREADS = 128, STACK_BYTES = 24576 };
+/* The driver's own numbers. */
+enum { LIMIT_STACK = 0, JIT_ERROR_LOG = 5, JIT_ERROR_LOG_SIZE = 6, OUT_OF_MEMORY = 2 };
+
+typedef void *handle;
+static struct {
+  int (*init)(unsigned);
+  int (*device_count)(int *);
+  int (*device_get)(int *, int);
+  int (*device_name)(char *, int, int);
+  int (*device_memory)(size_t *, int);
+  int (*retain)(handle *, int);
+  int (*set_current)(handle);
+  int (*set_limit)(int, size_t);
+  int (*load)(handle *, const void *, unsigned, int *, void **);
+  int (*get_function)(handle *, handle, const char *);
+  int (*allocate)(scree_device_address *, size_t);
+  int (*release)(scree_device_address);
+  int (*write)(scree_device_address, const void *, size_t);
+  int (*read)(void *, scree_device_address, size_t);
+  int (*launch)(handle, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
+                handle, void **, void **);
+  int (*error_text)(int, const char **);
+} cu;
+
+static const struct {
+  void **function;
+  const char *name;
+} names[] = {{(void **)&cu.init, "cuInit"},
+             {(void **)&cu.device_count, "cuDeviceGetCount"},
+             {(void **)&cu.device_get, "cuDeviceGet"},
+             {(void **)&cu.device_name, "cuDeviceGetName"},
+             {(void **)&cu.device_memory, "cuDeviceTotalMem_v2"},
+             {(void **)&cu.retain, "cuDevicePrimaryCtxRetain"},
+             {(void **)&cu.set_current, "cuCtxSetCurrent"},
+             {(void **)&cu.set_limit, "cuCtxSetLimit"},
+             {(void **)&cu.load, "cuModuleLoadDataEx"},
+             {(void **)&cu.get_function, "cuModuleGetFunction"},
+             {(void **)&cu.allocate, "cuMemAlloc_v2"},
+             {(void **)&cu.release, "cuMemFree_v2"},
+             {(void **)&cu.write, "cuMemcpyHtoD_v2"},
+             {(void **)&cu.read, "cuMemcpyDtoH_v2"},
+             {(void **)&cu.launch, "cuLaunchKernel"},
+             {(void **)&cu.error_text, "cuGetErrorString"}};
+
+static struct opened {
+  handle context, functions[SCREE_KERNEL_COUNT];
+  char description[256];
+} devices[MOST_DEVICES];
+
+static scree_status check(int result, const char *what, scree_error *error) {
+  const char *text = NULL;
+  if (result == 0) return SCREE_OK;
+  cu.error_text(result, &text);
+  return scree_fail(error, result == OUT_OF_MEMORY ? SCREE_OUT_OF_MEMORY : SCREE_NO_BACKEND,
+                    "cuda: %s: %s (error %d)", what, text ? text : "no text", result);
+}
+
+static scree_status load_driver(scree_error *error) {
+  static bool loaded = false;
+  if (loaded) return SCREE_OK;
+  void *library = dlopen("libcuda.so.1", RTLD_NOW);
+  if (!library)
+    return scree_fail(error, SCREE_NO_BACKEND,
+                      "cuda: no NVIDIA driver (libcuda.so.1) is installed");
+  for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+    if (!(*names[i].function = dlsym(library, names[i].name)))
+      return scree_fail(error, SCREE_NO_BACKEND, "cuda: the driver has no %s: too old",
+                        names[i].name);
+  scree_status status = check(cu.init(0), "the driver does not start", error);
+  loaded = status == SCREE_OK;
+  return status;
+}
+
+static scree_status load_kernels(struct opened *device, scree_error *error) {
+#define SCREE_NAME(name) "scree_kernel_" #name,
+  static const char *const kernels[] = {SCREE_KERNELS(SCREE_NAME)};
+#undef SCREE_NAME
+  char log[512] = "";
+  int options[] = {JIT_ERROR_LOG, JIT_ERROR_LOG_SIZE};
+  void *values[] = {log, (void *)sizeof log};
+  handle module;
+  int result = cu.load(&module, scree_ptx, 2, options, values);
+  if (result)
+    return scree_fail(error, SCREE_NO_BACKEND,
+                      "cuda: the driver refuses the kernels: error %d %.300s", result, log);
+  for (int k = 0; k < SCREE_KERNEL_COUNT; k++) {
+    scree_status status =
+        check(cu.get_function(&device->functions[k], module, kernels[k]), kernels[k], error);
+    if (status) return status;
+  }
+  return SCREE_OK;
+}
+
+static scree_status open_device(int number, scree_error *error) {
+  scree_status status = load_driver(error);
+  int count = 0, id;
+  if (status) return status;
+  status = check(cu.device_count(&count), "devices", error);
+  if (status) return status;
+  if (number >= count || number >= MOST_DEVICES)
+    return scree_fail(error, SCREE_NO_BACKEND, "cuda: device %d of %d", number, count);
+  struct opened *device = &devices[number];
+  if (device->context) return SCREE_OK;
+  char name[128];
+  size_t memory = 0;
+  handle context;
+  status = check(cu.device_get(&id, number), "device", error);
+  if (!status) status = check(cu.device_name(name, sizeof name, id), "device", error);
+  if (!status) status = check(cu.device_memory(&memory, id), "device", error);
+  if (!status) status = check(cu.retain(&context, id), "context", error);
+  if (!status) status = check(cu.set_current(context), "context", error);
+  if (!status) status = check(cu.set_limit(LIMIT_STACK, STACK_BYTES), "stack", error);
+  if (!status) status = load_kernels(device, error);
+  if (status) return status;
+  snprintf(device->description, sizeof device->description, "%s, %.1f GB", name,
+           (double)memory * 1e-9);
+  device->context = context;
+  return SCREE_OK;
+}
+
+scree_status scree_cuda_open(int device, char description[256], scree_error *error) {
+  scree_enter_alone();
+  scree_status status = open_device(device, error);
+  scree_leave_alone();
+  if (!status) snprintf(description, 256, "%s", devices[device].description);
+  return status;
+}
+
+scree_status scree_cuda_use(int device, scree_error *error) {
+  return check(cu.set_current(devices[device].context), "context", error);
+}
+
+scree_status scree_cuda_reserve(scree_device_address *block, size_t *capacity, size_t size,
+                                scree_error *error) {
+  if (size <= *capacity) return SCREE_OK;
+  scree_cuda_free(*block);
+  *block = 0;
+  *capacity = 0;
+  scree_device_address made;
+  int result = cu.allocate(&made, size);
+  if (result == OUT_OF_MEMORY)
+    return scree_fail(error, SCREE_OUT_OF_MEMORY,
+                      "out of memory: the device has no room for %zu bytes more", size);
+  if (result) return check(result, "memory", error);
+  *block = made;
+  *capacity = size;
+  return SCREE_OK;
+}
+
+void scree_cuda_free(scree_device_address block) {
+  if (block) cu.release(block);
+}
+
+scree_status scree_cuda_write(scree_device_address to, const void *from, size_t size,
+                              scree_error *error) {
+  return size ? check(cu.write(to, from, size), "to the device", error) : SCREE_OK;
+}
+
+scree_status scree_cuda_read(void *to, scree_device_address from, size_t size, scree_error *error) {
+  return size ? check(cu.read(to, from, size), "from the device", error) : SCREE_OK;
+}
+
+scree_status scree_cuda_launch(int device, scree_kernel kernel, size_t count,
+                               scree_device_address world, scree_device_address step,
+                               scree_error *error) {
+  void *arguments[] = {&world, &step};
+  if (count == 0) return SCREE_OK;
+  return check(cu.launch(devices[device].functions[kernel],
+                         (unsigned)scree_block_count(count, THREADS), 1, 1, THREADS, 1, 1, 0, NULL,
+                         arguments, NULL),
+               "a kernel", error);
+}
+
+#else
+
+scree_status scree_cuda_open(int device, char description[256], scree_error *error) {
+  (void)device, (void)description;
+  return scree_fail(error, SCREE_NO_BACKEND,
+                    "cuda: this build has no kernels (it was made without clang for NVPTX)");
+}
+
+#endif

@@ -1,0 +1,35 @@
+/* NVIDIA's driver, loaded where there is one: no toolkit is needed to build or to run. */
+#ifndef SCREE_WORLD_CUDA_DRIVER_H
+#define SCREE_WORLD_CUDA_DRIVER_H
+
+#include "scree.h"
+#include "world/device/device.h"
+
+typedef unsigned long long scree_device_address;
+
+typedef enum scree_kernel {
+#define SCREE_NAME(name) SCREE_KERNEL_##name,
+  SCREE_KERNELS(SCREE_NAME)
+#undef SCREE_NAME
+      SCREE_KERNEL_COUNT
+} scree_kernel;
+
+/* The device is opened once, and stays open. Says what it is, or in a sentence what is missing. */
+scree_status scree_cuda_open(int device, char description[256], scree_error *error);
+
+/* The calling thread's calls go to this device, which is open. */
+scree_status scree_cuda_use(int device, scree_error *error);
+/* Larger, when it is too small; its content goes then. */
+scree_status scree_cuda_reserve(scree_device_address *block, size_t *capacity, size_t size,
+                                scree_error *error);
+void scree_cuda_free(scree_device_address block);
+scree_status scree_cuda_write(scree_device_address to, const void *from, size_t size,
+                              scree_error *error);
+/* After all kernels that were launched. */
+scree_status scree_cuda_read(void *to, scree_device_address from, size_t size, scree_error *error);
+/* A thread for each of `count` elements, of the two arguments that every kernel has. */
+scree_status scree_cuda_launch(int device, scree_kernel kernel, size_t count,
+                               scree_device_address world, scree_device_address step,
+                               scree_error *error);
+
+#endif

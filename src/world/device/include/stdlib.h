@@ -1,0 +1,6 @@
+#ifndef SCREE_DEVICE_STDLIB_H
+#define SCREE_DEVICE_STDLIB_H
+#include <stddef.h>
+void abort(void);
+void qsort(void *items, size_t count, size_t size, int (*compare)(const void *, const void *));
+#endif

@@ -1,0 +1,40 @@
+/* The stages of a step, each for one of many independent elements. The loops of step.c and
+ * integrate.c call them on the processor's threads, the kernels of device/ on a device's: one code,
+ * the same bits. */
+#ifndef SCREE_WORLD_STAGES_H
+#define SCREE_WORLD_STAGES_H
+
+#include "world/world.h"
+
+enum { SCREE_PAIR_BLOCK = 128 }; /* neighbours: whole words of world->touching */
+
+/* step.c: who is awake or due of the neighbours [begin, end). */
+size_t scree_list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake);
+/* The pair of neighbours k, which may be one that begins; scree_none when there is no spare one. */
+uint32_t scree_pair_at(scree_world *world, uint32_t k);
+/* After its evaluation: whether the pair is given back. */
+bool scree_settle_pair(scree_world *world, const scree_pair *pair);
+scree_pair_sums scree_no_sums(void);
+void scree_add_work(scree_pair_sums *sums, const scree_pair_work *work, const scree_pair *pair);
+/* Adds all blocks to the world's ledger; answers the largest overlap and the first trouble. */
+scree_pair_sums scree_combine_sums(scree_world *world);
+
+/* A sentence in world->failure; OK where there is no trouble. */
+scree_status scree_describe_trouble(scree_world *world, const scree_pair_sums *sums);
+/* Room for the blocks' results. */
+scree_status scree_reserve_blocks(scree_world *world, scree_error *error);
+
+/* broad.c: whether no two bodies that are not neighbours can have come near each other. */
+bool scree_broad_is_valid(const scree_world *world);
+
+/* integrate.c: the forces on body i, and how far it will move; false where that is too far. */
+bool scree_gather_body(scree_world *world, size_t i);
+/* Kick, turn and drift. */
+void scree_advance_body(scree_world *world, size_t i);
+/* For a body that scree_gather_body refused: a sentence in world->failure. */
+scree_status scree_describe_offender(scree_world *world, size_t i);
+/* The work of walls and of applied forces in this step, before anything moves: one after another.
+ */
+void scree_book_work(scree_world *world);
+
+#endif
