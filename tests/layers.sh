@@ -37,8 +37,7 @@ for layer in $layers; do
   [ "$layer" = heap ] && visible="base heap"
   # report reads results through the public header
   [ "$layer" = report ] && visible="base report"
-  for file in "$root"/src/"$layer"/*; do
-    [ -f "$file" ] || continue
+  for file in $(find "$root/src/$layer" -name '*.[ch]'); do
     for included in $(sed -n 's/^ *# *include *"\([a-z_]*\)\/.*/\1/p' "$file" | sort -u); do
       case " $visible " in
         *" $included "*) ;;

@@ -29,10 +29,8 @@ typedef struct scree_simplify_options {
 SCREE_API scree_simplify_options scree_default_simplify_options(void);
 
 /* The record of one decimation: from it any level can be rebuilt. Level 0 is the mesh given, level
- * i is the mesh after i edge collapses. The coarsest levels of method volume (200 triangles or
- * fewer, of scans of more than 600,000 triangles 130) are not made of each other: each is the best
- * of several ways there, with all its vertices where they lie best (docs/decimation.md, "Endings").
- */
+ * i is the mesh after i edge collapses.
+ * It is a progressive mesh: each level is a prefix of the collapses. */
 typedef struct scree_curve scree_curve;
 
 /* Decimates from the mesh's own count down to the floor, by edge collapses in the order of their
@@ -121,19 +119,6 @@ SCREE_API size_t scree_curve_collapse_count(const scree_curve *curve);
 /* index must be below that. O(1). */
 SCREE_API void scree_curve_collapse(const scree_curve *curve, size_t index,
                                     scree_collapse *collapse);
-
-/* With method volume vertices of a coarse level also move, after the collapse that makes it and as
- * part of the same step: one after the other, and one may move more than once. */
-typedef struct scree_vertex_move {
-  uint32_t vertex;    /* of the mesh given */
-  double position[3]; /* afterwards, m */
-} scree_vertex_move;
-
-/* How many belong to collapse `index`. O(log of the moves). */
-SCREE_API size_t scree_curve_move_count(const scree_curve *curve, size_t index);
-/* number must be below that. */
-SCREE_API void scree_curve_move(const scree_curve *curve, size_t index, size_t number,
-                                scree_vertex_move *move);
 
 /* Goes through many levels, from fine to coarse, in one sweep: O(Nm) for all steps together and the
  * size of each level for its step. */

@@ -1,5 +1,5 @@
-/* Levels of one object for the report, small enough to send: the scan, a finest level with the
- * collapses that lead from it down, and the coarsest levels as a whole. Positions lie on a grid of
+/* Levels of one object for the report, small enough to send: the scan, and a finest level with the
+ * collapses that lead from it down. Positions lie on a grid of
  * 16 bits; where a collapse puts a vertex is told by the steps on that grid from where the vertex
  * was. Both, and the triangles, go through meshoptimizer's codecs, which web/src/levels.js reads
  * with the same library's JavaScript.
@@ -16,13 +16,11 @@
 #include <string.h>
 
 static const char magic[] = "screeLVL";
-enum { VERSION = 2, BYTE_ORDER_MARK = 0x01020304, HEADER_BYTES = 40 };
+enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER_BYTES = 40 };
 
 /* How the limit is shared: found on scans of 80,000 to 762,008 triangles, see docs/formats.md. */
 static const double levels_share = 0.32;         /* of the bytes: base and collapses */
 static const double bytes_per_base_triangle = 8; /* with its collapses */
-static const double bytes_per_move = 8;          /* of a vertex, after them */
-static const double bytes_per_whole_triangle = 5;
 static const double bytes_per_scan_triangle = 3; /* first guess */
 static const size_t least_base_triangles = 500;  /* however small the limit */
 static const size_t most_base_triangles =
@@ -35,16 +33,10 @@ typedef struct levels {
   const scree_curve *curve;
 } levels;
 
-/* The levels from this one on are not made by collapses. */
-static size_t first_whole(const levels *l) {
-  return scree_curve_collapse_count(l->curve) + 1;
-}
-
 /* ---- the grid ---- */
 
-/* Holds the scan, every place that a collapse puts a vertex to, and the levels that are whole. */
-static scree_status find_grid(levels *l, const scree_mesh *scan) {
-  scree_replay *replay = NULL;
+/* Holds the scan and every place that a collapse puts a vertex to. */
+static void find_grid(levels *l, const scree_mesh *scan) {
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
   for (size_t v = 0; v < scan->vertex_count; v++)
     scree_pack_stretch(scan->positions + 3 * v, low, high);
@@ -52,22 +44,8 @@ static scree_status find_grid(levels *l, const scree_mesh *scan) {
     scree_collapse collapse;
     scree_curve_collapse(l->curve, i, &collapse);
     scree_pack_stretch(collapse.position, low, high);
-    for (size_t k = 0; k < scree_curve_move_count(l->curve, i); k++) {
-      scree_vertex_move move;
-      scree_curve_move(l->curve, i, k, &move);
-      scree_pack_stretch(move.position, low, high);
-    }
   }
-  scree_status status = scree_replay_start(l->curve, &replay, l->pack.error);
-  for (size_t i = first_whole(l); i < scree_curve_level_count(l->curve); i++) {
-    const scree_mesh *level;
-    if (status == SCREE_OK) status = scree_replay_step(replay, i, &level, l->pack.error);
-    for (size_t v = 0; status == SCREE_OK && v < level->vertex_count; v++)
-      scree_pack_stretch(level->positions + 3 * v, low, high);
-  }
-  scree_replay_free(replay);
   scree_pack_grid(&l->pack, low, high);
-  return status;
 }
 
 /* ---- the parts ---- */
@@ -82,40 +60,24 @@ typedef struct steps {
   size_t count;
 } steps;
 
-static void put_step(steps *s, uint32_t kept, uint32_t gone, size_t triangle_count,
-                     const double *position) {
-  uint32_t v = s->number[kept];
-  scree_grid_point to = scree_pack_point(&s->l->pack, position), *move = &s->moves[s->count];
-  for (int k = 0; k < 3; k++) move->x[k] = (uint16_t)(to.x[k] - s->now[v].x[k]);
-  move->extra = (uint16_t)triangle_count;
-  s->now[v] = to;
-  s->pairs[2 * s->count] = s->place[v];
-  s->pairs[2 * s->count++ + 1] = s->place[s->number[gone]];
-}
-
-/* The moves of a collapse come before it, and its own vertex goes to where it moved at last: so the
- * first step that leaves so many triangles makes the level. */
 static void put_collapse(steps *s, size_t index) {
   scree_collapse c;
   scree_curve_collapse(s->l->curve, index, &c);
-  for (size_t k = 0; k < scree_curve_move_count(s->l->curve, index); k++) {
-    scree_vertex_move move;
-    scree_curve_move(s->l->curve, index, k, &move);
-    if (move.vertex == c.kept)
-      memcpy(c.position, move.position, sizeof c.position);
-    else
-      put_step(s, move.vertex, move.vertex, 0, move.position);
-  }
-  put_step(s, c.kept, c.gone, c.triangle_count, c.position);
+  uint32_t v = s->number[c.kept];
+  scree_grid_point to = scree_pack_point(&s->l->pack, c.position), *move = &s->moves[s->count];
+  for (int k = 0; k < 3; k++) move->x[k] = (uint16_t)(to.x[k] - s->now[v].x[k]);
+  move->extra = (uint16_t)c.triangle_count;
+  s->now[v] = to;
+  s->pairs[2 * s->count] = s->place[v];
+  s->pairs[2 * s->count++ + 1] = s->place[s->number[c.gone]];
 }
 
-/* Collapses and moves from base_level on. */
+/* Collapses from base_level on. */
 static scree_status put_collapses(levels *l, size_t base_level, const scree_mesh *base,
                                   const uint32_t *number, const uint32_t *place) {
   size_t last = scree_curve_collapse_count(l->curve), count = last - base_level;
   steps s = {.l = l, .number = number, .place = place};
   scree_status status = SCREE_OUT_OF_MEMORY;
-  for (size_t i = base_level; i < last; i++) count += scree_curve_move_count(l->curve, i);
   SCREE_ALLOC_OR(s.pairs, 2 * count + 1, l->pack.error, done);
   SCREE_ALLOC_OR(s.moves, count + 1, l->pack.error, done);
   SCREE_ALLOC_OR(s.now, base->vertex_count, l->pack.error, done);
@@ -147,12 +109,6 @@ static scree_status put_levels(levels *l, size_t base_level) {
   status = scree_pack_mesh(&l->pack, base, place);
   if (status == SCREE_OK)
     status = put_collapses(l, base_level, base, scree_replay_numbering(replay), place);
-  size_t level_count = scree_curve_level_count(l->curve);
-  scree_pack_u32(&l->pack, level_count - first_whole(l));
-  for (size_t i = first_whole(l); i < level_count && status == SCREE_OK; i++) {
-    status = scree_replay_step(replay, i, &base, l->pack.error);
-    if (status == SCREE_OK) status = scree_pack_mesh(&l->pack, base, NULL);
-  }
 done:
   scree_free(place);
   scree_replay_free(replay);
@@ -230,22 +186,15 @@ static scree_status put_measures(levels *l, const scree_mesh *scan, const scree_
   return SCREE_OK;
 }
 
-/* The finest level whose share of the limit holds it with the collapses and moves after it. */
+/* The finest level whose share of the limit holds it with the collapses after it. */
 static size_t choose_base(const scree_curve *curve, double room) {
   size_t level = scree_curve_collapse_count(curve);
-  double moves = 0;
-  for (size_t i = level + 1; i < scree_curve_level_count(curve); i++) {
-    scree_level whole;
-    scree_curve_level(curve, i, &whole);
-    room -= bytes_per_whole_triangle * (double)whole.triangle_count;
-  }
   for (; level > 0; level--) {
     scree_level finer;
     scree_curve_level(curve, level - 1, &finer);
-    moves += (double)scree_curve_move_count(curve, level - 1);
     if (finer.triangle_count > most_base_triangles ||
         (finer.triangle_count > least_base_triangles &&
-         bytes_per_base_triangle * (double)finer.triangle_count + bytes_per_move * moves > room))
+         bytes_per_base_triangle * (double)finer.triangle_count > room))
       break;
   }
   return level;
@@ -253,13 +202,12 @@ static size_t choose_base(const scree_curve *curve, double room) {
 
 static scree_status pack(levels *l, const scree_mesh *scan, const scree_choice *choice,
                          size_t byte_limit) {
-  scree_status status = find_grid(l, scan);
-  if (status != SCREE_OK) return status;
+  find_grid(l, scan);
   scree_code_reals(&l->pack.out, l->pack.low, 3);
   scree_code_real(&l->pack.out, &l->pack.step);
   scree_pack_u32(&l->pack, scan->triangle_count);
   put_trace(l, choice);
-  status = put_measures(l, scan, choice);
+  scree_status status = put_measures(l, scan, choice);
   if (status == SCREE_OK)
     status = put_levels(l, choose_base(l->curve, levels_share * (double)byte_limit));
   size_t room = byte_limit > l->pack.out.count ? byte_limit - l->pack.out.count : 0;
@@ -371,10 +319,6 @@ size_t scree_levels_drop_scan(char *bytes, size_t byte_count) {
   skip_packed(&in, 2);
   read_u32(&in); /* collapses */
   skip_packed(&in, 2);
-  for (uint32_t left = read_u32(&in); left > 0 && !in.failed; left--) {
-    skip(&in, MESH_COUNTS);
-    skip_packed(&in, 2);
-  }
   size_t start = in.position;
   if (in.failed || byte_count - start < NO_MESH) return byte_count;
   memset(bytes + start, 0, NO_MESH); /* no vertices, no triangles, nothing packed of either */

@@ -1,26 +1,24 @@
 /* Building the half-edges: vertices and triangles in an order that keeps neighbours together
- * (order.h), outgoing half-edges of each vertex by counting sort, twins by search among them (about
- * six). An edge is sound if it has exactly one half-edge each way; with one alone
- * it is boundary; anything else is non-manifold or wound inconsistently: its half-edges get no twin
- * and its ends are locked. */
+ * (morton.h), outgoing half-edges of each vertex by counting sort, twins by search among them
+ * (about six). An edge is sound if it has exactly one half-edge each way; with one alone it is
+ * boundary; anything else is non-manifold or wound inconsistently: its half-edges get no twin and
+ * its ends are locked. */
 #include "simplify/halfmesh.h"
 
 #include "base/parallel.h"
 #include "mesh/mesh.h"
-#include "simplify/order.h"
+#include "simplify/morton.h"
 
 #include <string.h>
 
 enum { BLOCK = 4096 };
-/* Triangles from which on the order in memory is worth the time. */
-enum { ORDERED_FROM = 50000 };
 /* A flag of vertices while building. */
 enum { SEVERAL_FANS = 128 };
 
 typedef struct builder {
   const scree_mesh *mesh;
   scree_halfmesh *surface;
-  uint32_t *order;   /* vertex v of the surface is order[v] of the mesh; NULL: they are the same */
+  uint32_t *order;   /* vertex v of the surface is order[v] of the mesh */
   uint32_t *start;   /* per vertex, into fan; vertex_count + 1 */
   uint32_t *rank;    /* of the mesh's vertices in the order */
   uint32_t *next[2]; /* per vertex: where what the first and the second half of the triangles have
@@ -37,7 +35,6 @@ void scree_halfmesh_free(scree_halfmesh *s) {
   scree_free(s->half);
   scree_free(s->flags);
   scree_free(s->sums);
-  scree_free(s->refused);
   *s = (scree_halfmesh){0};
 }
 
@@ -212,14 +209,9 @@ static void rank_vertices(void *context, size_t begin, size_t end, size_t block,
   for (size_t v = begin; v < end; v++) b->rank[b->order[v]] = (uint32_t)v;
 }
 
-/* A large surface is put in order first: neighbours are near in memory then. */
+/* Neighbours are near in memory. */
 static scree_status place_in_order(builder *b, vec3 centre, scree_error *error) {
   const scree_mesh *mesh = b->mesh;
-  if (mesh->triangle_count < ORDERED_FROM) {
-    for (size_t c = 0; c < 3 * mesh->triangle_count; c++)
-      b->surface->half[c] = (scree_half_edge){mesh->triangles[c], SCREE_NONE};
-    return SCREE_OK;
-  }
   SCREE_ALLOC_OR(b->order, mesh->vertex_count, error, out_of_memory);
   scree_status status = scree_order_vertices(mesh, centre, b->order, error);
   if (status != SCREE_OK) return status;
@@ -316,7 +308,7 @@ static void place_vertices(void *context, size_t begin, size_t end, size_t block
   scree_halfmesh *s = b->surface;
   for (uint32_t v = (uint32_t)begin; v < end; v++) {
     scree_vertex *made = &s->vertex[v];
-    *made = (scree_vertex){.outgoing = SCREE_NONE, .origin = b->order ? b->order[v] : v};
+    *made = (scree_vertex){.outgoing = SCREE_NONE, .origin = b->order[v]};
     if (b->start[v] == b->start[v + 1]) continue;
     vec3 p = vec3_load(b->mesh->positions + 3 * (size_t)made->origin);
     made->at = scree_into_box(s, p);
@@ -389,7 +381,7 @@ static void count_block(void *context, size_t begin, size_t end, size_t block, i
     if (s->vertex[v].outgoing == SCREE_NONE) continue;
     vertices++;
     locked += s->flags[v] & SCREE_VERTEX_LOCKED;
-    if (b->root[v] == v) s->flags[v] |= SCREE_VERTEX_ANCHOR;
+    if (b->root[v] == v) s->flags[v] |= SCREE_VERTEX_MARKER;
   }
   add_to(&s->live_vertex_count, vertices);
   add_to(&s->locked_vertex_count, locked);
@@ -469,8 +461,6 @@ scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surfac
   b.fan = NULL;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(b.root, made.vertex_count, error, done);
-  SCREE_ALLOC_OR(made.refused, 3 * mesh->triangle_count, error, done);
-  memset(made.refused, 0, 3 * mesh->triangle_count);
   count_facts(&b);
   *surface = made;
   made = (scree_halfmesh){0};
@@ -525,10 +515,7 @@ static void number_vertices(compaction *c) {
 static void move_triangles(scree_halfmesh *s) {
   for (size_t t = 0, to = 0; t < s->triangle_count; t++) {
     if (scree_is_gone(s, t)) continue;
-    for (size_t i = 0; i < 3 && t != to; i++) {
-      s->half[3 * to + i] = s->half[3 * t + i];
-      s->refused[3 * to + i] = s->refused[3 * t + i];
-    }
+    for (size_t i = 0; i < 3 && t != to; i++) s->half[3 * to + i] = s->half[3 * t + i];
     to++;
   }
 }
@@ -577,5 +564,4 @@ void scree_halfmesh_give_back(const scree_halfmesh *s) {
   scree_discard_tail(s->vertex, s->vertex_count * sizeof *s->vertex);
   scree_discard_tail(s->half, 3 * s->triangle_count * sizeof *s->half);
   if (s->sums) scree_discard_tail(s->sums, s->vertex_count * sizeof *s->sums);
-  scree_discard_tail(s->refused, 3 * s->triangle_count);
 }

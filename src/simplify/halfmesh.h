@@ -16,21 +16,9 @@
 
 #define SCREE_NONE UINT32_MAX
 
-/* LOCKED: never moves. STALE: its sums are. CHANGED: its triangles changed since all edges were
- * evaluated. ANCHOR: it stands for its shell (anchor.h). BORDER: it stays in this pass (patch.h).
- */
-enum {
-  SCREE_VERTEX_LOCKED = 1,
-  SCREE_VERTEX_STALE = 2,
-  SCREE_VERTEX_CHANGED = 4,
-  SCREE_VERTEX_ANCHOR = 8,
-  SCREE_VERTEX_BORDER = 16,
-  SCREE_VERTEX_STAYS = SCREE_VERTEX_LOCKED | SCREE_VERTEX_BORDER
-};
-
-/* REFUSED: the collapse was tried and is not allowed now. POSTPONED: it costs too much for this
- * pass. */
-enum { SCREE_EDGE_REFUSED = 1, SCREE_EDGE_POSTPONED = 2 };
+/* LOCKED: never moves. STALE: its triangles changed since its sums were found. MARKER: it stands
+ * for its shell (guard/marker.h). */
+enum { SCREE_VERTEX_LOCKED = 1, SCREE_VERTEX_STALE = 2, SCREE_VERTEX_MARKER = 8 };
 
 /* What is asked for together lies together: the cost of decimation is that of waiting for memory.
  */
@@ -48,12 +36,8 @@ typedef struct scree_vertex {
 typedef struct scree_halfmesh {
   scree_vertex *vertex;
   scree_half_edge *half;
-  uint8_t *flags;       /* of vertices: SCREE_VERTEX_... */
-  double (*sums)[10];   /* of vertices: the method's quadric, see cost.h;
-                           NULL: none yet */
-  const uint32_t *slot; /* per vertex: its sums lie at this less first_slot; NULL: at its number */
-  uint32_t first_slot;
-  uint8_t *refused;                              /* of half-edges: 0 or SCREE_EDGE_... */
+  uint8_t *flags;     /* of vertices: SCREE_VERTEX_... */
+  double (*sums)[10]; /* of vertices: the method's quadric, see cost/cost.h; NULL: none yet */
   size_t vertex_count, triangle_count;           /* extents of the arrays */
   size_t live_vertex_count, live_triangle_count; /* still there */
   vec3 centre;    /* position in metres = centre + scale * position in the box */
@@ -76,10 +60,6 @@ static inline uint32_t scree_to(const scree_halfmesh *s, uint32_t h) {
 /* The next outgoing half-edge of the same vertex, counter-clockwise; NONE past a boundary. */
 static inline uint32_t scree_turn(const scree_halfmesh *s, uint32_t h) {
   return s->half[scree_previous(h)].twin;
-}
-/* The sums of vertex v. */
-static inline double *scree_sums_of(const scree_halfmesh *s, uint32_t v) {
-  return s->sums[s->slot ? s->slot[v] - s->first_slot : v];
 }
 static inline bool scree_on_boundary(const scree_halfmesh *s, uint32_t v) {
   return s->half[s->vertex[v].outgoing].twin == SCREE_NONE;

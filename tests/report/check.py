@@ -333,7 +333,7 @@ def a_heap(browser, folder):
     end, count = float(browser.run("return document.body.dataset.shownTime")), int(browser.run("return document.body.dataset.shownBodies"))
     check(abs(end - result["result"]["time"]) < 1e-9 and count == result["result"]["body_count"], "the page does not begin at the end")
     last = painted(browser, 0)
-    check(last["covered"] > 150 and last["colors"] > 5, f"no heap to be seen: {last}")
+    check(last["covered"] > 100 and last["colors"] > 5, f"no heap to be seen: {last}")
     check(browser.run("return document.querySelectorAll('body > img').length") == 0, "the picture is shown beside the 3D view")
     start = seek(browser, 0)
     check(start[0] == 0 and start[1] < count and "filling" in browser.text(".level-text"), f"the slider does not go to the start: {start}")

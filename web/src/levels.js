@@ -1,7 +1,6 @@
-// The file of levels of one object (docs/formats.md): the scan, a fine level, the collapses from it down, and the
-// coarsest levels as they are. Positions are integers on a grid: metres = low + step * integer. A level that
-// collapses lead to is rebuilt from the fine one for every position of the slider: vertices follow their chain of
-// collapses, triangles whose corners fall together are dropped.
+// The file of levels of one object (docs/formats.md): the scan, a fine level, and the collapses from it down.
+// Positions are integers on a grid: metres = low + step * integer. A level is rebuilt from the fine one for every
+// position of the slider: vertices follow their chain of collapses, triangles whose corners fall together are dropped.
 import { Reader, decodeMesh, decodeVertices } from './packed.js';
 
 const measureNames = ['triangle_count', 'area', 'volume', 'length', 'width', 'height', 'moment_1', 'moment_2', 'moment_3', 'sphericity', 'convexity'];
@@ -24,7 +23,6 @@ export class Levels {
     const count = reader.u32();
     const pairs = reader.buffer();
     const moves = reader.buffer();
-    this.whole = Array.from({ length: reader.u32() }, () => reader.mesh());
     this.packedScan = reader.mesh();
     this.base = decodeMesh(base);
     this.baseCount = base.triangleCount;
@@ -39,8 +37,7 @@ export class Levels {
   place(moves, count) {
     const now = Uint16Array.from(this.base.points);
     this.placed = new Uint16Array(3 * count);
-    this.counts = new Uint32Array(count + 1 + this.whole.length);
-    this.whole.forEach((mesh, i) => (this.counts[count + 1 + i] = mesh.triangleCount));
+    this.counts = new Uint32Array(count + 1);
     this.counts[0] = this.baseCount;
     for (let i = 0; i < count; i++) {
       const kept = this.pairs[2 * i];
@@ -69,7 +66,7 @@ export class Levels {
     return this.decodedScan;
   }
 
-  // How many steps lead to the first level with at most `count` triangles: collapses and moves, then whole levels.
+  // How many collapses lead to the first level with at most `count` triangles.
   stepsTo(count) {
     let low = 0, high = this.counts.length - 1;
     while (low < high) {
@@ -81,8 +78,6 @@ export class Levels {
   }
 
   level(steps) {
-    const collapses = this.counts.length - 1 - this.whole.length;
-    if (steps > collapses) return decodeMesh(this.whole[steps - collapses - 1]);
     const { base, pairs, placed, root } = this;
     const points = Float32Array.from(base.points);
     for (let v = 0; v < root.length; v++) root[v] = v;

@@ -1,0 +1,320 @@
+#include "simplify/cost/deviation.h"
+
+#include "base/array.h"
+#include "base/parallel.h"
+#include "simplify/tuning.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { BLOCK = 1024 };
+/* Squared distances, and areas, that differ by rounding alone. */
+#define EQUAL 1e-9
+/* In place of a distance. */
+#define NOT_YET (-1.0F)
+#define DROPPED (-2.0F)
+
+void scree_samples_free(scree_samples *p) {
+  scree_halfmesh_free(&p->scan);
+  scree_surface_tree_free(&p->scan_tree);
+  scree_free(p->of);
+  scree_free(p->first);
+  scree_free(p->worst);
+  scree_free(p->next);
+  scree_free(p->far);
+  *p = (scree_samples){0};
+}
+
+/* ---- Finding them ---- */
+
+typedef struct finding {
+  const scree_halfmesh *s;
+  const scree_surface_tree *tree;
+  scree_samples *samples;
+  bool *stays; /* per vertex of the scan: the surface has it as it was */
+} finding;
+
+/* Of the triangles about the nearest that are as near the largest, whatever their order. */
+static uint32_t largest_about(const scree_halfmesh *s, uint32_t nearest, vec3 p, double distance2) {
+  vec3 corner[3];
+  double area2 = 0;
+  uint32_t largest = nearest;
+  for (uint32_t k = 3 * nearest; k < 3 * nearest + 3; k++) {
+    uint32_t first = s->vertex[s->half[k].from].outgoing, h = first;
+    do {
+      scree_corners(s, h / 3, corner);
+      double n2 = vec3_norm2(vec3_triangle_normal(corner[0], corner[1], corner[2]));
+      if (n2 > (1 + EQUAL) * area2 && scree_distance2(corner, p) <= (1 + EQUAL) * distance2) {
+        area2 = n2;
+        largest = h / 3;
+      }
+      h = scree_turn(s, h);
+    } while (h != first && h != SCREE_NONE);
+  }
+  return largest;
+}
+
+static void find_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const finding *f = context;
+  scree_samples *p = f->samples;
+  uint32_t nearest = SCREE_NONE; /* that of the one before is near */
+  for (size_t v = begin; v < end; v++) {
+    p->far[v] = NOT_YET;
+    if (f->stays[v] || p->scan.vertex[v].outgoing == SCREE_NONE) continue;
+    double d2 = scree_surface_tree_distance(f->tree, f->s, p->scan.vertex[v].at, 0, &nearest);
+    p->far[v] = (float)sqrt(d2);
+    p->next[v] = largest_about(f->s, nearest, p->scan.vertex[v].at, d2);
+  }
+}
+
+/* The surface's vertices are named by those of the scan; what still is where it was stays. */
+static scree_status match(const scree_mesh *mesh, finding *f, scree_error *error) {
+  const scree_halfmesh *s = f->s, *scan = &f->samples->scan;
+  uint32_t *number; /* of the mesh's vertices in the scan */
+  SCREE_ALLOC_OR(number, mesh->vertex_count, error, out_of_memory);
+  for (uint32_t v = (uint32_t)scan->vertex_count; v-- > 0;) number[scan->vertex[v].origin] = v;
+  memset(f->stays, 0, scan->vertex_count * sizeof *f->stays);
+  for (size_t v = 0; v < s->vertex_count; v++) {
+    if (s->vertex[v].outgoing == SCREE_NONE) continue;
+    uint32_t same = f->samples->of[v] = number[s->vertex[v].origin];
+    vec3 moved = vec3_sub(s->vertex[v].at, scan->vertex[same].at);
+    f->stays[same] = vec3_norm2(moved) == 0;
+  }
+  scree_free(number);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* From the last on, so that lists ascend. */
+static void link_all(scree_samples *p, size_t triangle_count) {
+  memset(p->first, 0xff, triangle_count * sizeof *p->first);
+  memset(p->worst, 0, triangle_count * sizeof *p->worst);
+  for (uint32_t v = (uint32_t)p->scan.vertex_count; v-- > 0;) {
+    if (p->far[v] < 0) continue;
+    uint32_t t = p->next[v];
+    p->next[v] = p->first[t];
+    p->first[t] = v;
+    p->worst[t] = p->far[v] > p->worst[t] ? p->far[v] : p->worst[t];
+  }
+}
+
+scree_status scree_samples_find(const scree_mesh *mesh, const scree_halfmesh *surface,
+                                const scree_surface_tree *tree, scree_samples *p,
+                                scree_error *error) {
+  finding f = {.s = surface, .tree = tree, .samples = p};
+  scree_status status = scree_halfmesh_build(mesh, &p->scan, error);
+  if (status == SCREE_OK) status = scree_surface_tree_make(&p->scan, &p->scan_tree, error);
+  if (status != SCREE_OK) return status;
+  size_t count = p->scan.vertex_count;
+  SCREE_ALLOC_OR(f.stays, count, error, out_of_memory);
+  SCREE_ALLOC_OR(p->of, surface->vertex_count, error, out_of_memory);
+  SCREE_ALLOC_OR(p->first, surface->triangle_count, error, out_of_memory);
+  SCREE_ALLOC_OR(p->worst, surface->triangle_count, error, out_of_memory);
+  SCREE_ALLOC_OR(p->next, count, error, out_of_memory);
+  SCREE_ALLOC_OR(p->far, count, error, out_of_memory);
+  status = match(mesh, &f, error);
+  if (status == SCREE_OK) {
+    scree_parallel_for(count, BLOCK, find_block, &f);
+    link_all(p, surface->triangle_count);
+    status = scree_samples_average(p, error);
+  }
+  scree_free(f.stays);
+  return status;
+out_of_memory:
+  scree_free(f.stays);
+  return SCREE_OUT_OF_MEMORY;
+}
+
+typedef struct averaging {
+  const scree_samples *samples;
+  struct {
+    double sum;
+    size_t count;
+  } * blocks;
+} averaging;
+
+static void average_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const averaging *a = context;
+  double sum = 0;
+  size_t count = 0;
+  for (size_t v = begin; v < end; v++)
+    if (a->samples->far[v] >= 0) sum += (double)a->samples->far[v], count++;
+  a->blocks[block].sum = sum;
+  a->blocks[block].count = count;
+}
+
+scree_status scree_samples_average(scree_samples *p, scree_error *error) {
+  averaging a = {.samples = p};
+  size_t blocks = scree_block_count(p->scan.vertex_count, BLOCK);
+  SCREE_ALLOC_OR(a.blocks, blocks, error, out_of_memory);
+  scree_parallel_for(p->scan.vertex_count, BLOCK, average_block, &a);
+  double sum = 0;
+  p->count = 0;
+  for (size_t i = 0; i < blocks; i++) sum += a.blocks[i].sum, p->count += a.blocks[i].count;
+  p->mean = p->count > 0 ? sum / (double)p->count : 0;
+  scree_free(a.blocks);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+void scree_samples_compact(scree_samples *p, const scree_halfmesh *s) {
+  size_t count = 0;
+  for (size_t t = 0; t < s->triangle_count; t++) {
+    if (scree_is_gone(s, t)) continue;
+    p->first[count] = p->first[t];
+    p->worst[count++] = p->worst[t];
+  }
+  count = 0;
+  for (size_t v = 0; v < s->vertex_count; v++)
+    if (s->vertex[v].outgoing != SCREE_NONE) p->of[count++] = p->of[v];
+}
+
+/* ---- About one collapse ---- */
+
+static bool gather(scree_gathered *g, uint32_t sample, uint32_t start) {
+  return SCREE_PUSH(g, (struct scree_sample){.sample = sample, .start = start});
+}
+
+/* The samples of the fan's triangles and of those that go, and the vertices that will be samples.
+ */
+static bool gather_all(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                       scree_gathered *g) {
+  bool room = true;
+  g->count = 0;
+  if (p->far[p->of[f->a]] == NOT_YET) room &= gather(g, p->of[f->a], 0);
+  if (f->b != f->a && p->far[p->of[f->b]] == NOT_YET) room &= gather(g, p->of[f->b], 0);
+  for (uint32_t k = 0; k < scree_fan_triangle_count(f); k++)
+    for (uint32_t v = p->first[scree_fan_triangle(s, f, k)]; v != SCREE_NONE; v = p->next[v])
+      room &= gather(g, v, k < f->count ? k : 0);
+  return room;
+}
+
+/* The squared distance of p from the fan as it is set or, where that is at most `enough`, of any of
+ * its triangles; *nearest is looked at first, and becomes the one found. */
+static double to_fan(const scree_fan *f, vec3 p, double enough, uint32_t *nearest) {
+  double best = INFINITY;
+  for (uint32_t k = 0, i = *nearest; k < f->count && best > enough;
+       k++, i = i + 1 < f->count ? i + 1 : 0) {
+    const vec3 corner[3] = {f->at, f->from[i], f->to[i]};
+    double d = scree_distance2(corner, p);
+    if (d < best) best = d, *nearest = i;
+  }
+  return best;
+}
+
+/* The fan's triangle that is nearest to p; of those that are equally near, at a common edge or at
+ * the new vertex, the largest, whatever their order. */
+static uint32_t nearest_of_fan(const scree_fan *f, vec3 p, double *distance2) {
+  double best = INFINITY, area2 = 0;
+  uint32_t nearest = 0;
+  for (uint32_t i = 0; i < f->count; i++) {
+    const vec3 corner[3] = {f->at, f->from[i], f->to[i]};
+    double d = scree_distance2(corner, p), n2 = vec3_norm2(f->after[i]);
+    if (d > (1 + EQUAL) * best || (d > (1 - EQUAL) * best && n2 <= (1 + EQUAL) * area2)) continue;
+    best = scree_smaller(d, best);
+    area2 = n2;
+    nearest = i;
+  }
+  *distance2 = best;
+  return nearest;
+}
+
+/* The squared distance of p from the scan or, where that is at most `enough`, of a part of it:
+ * first of the triangles about the nearest of the samples gathered. */
+static double to_scan(const scree_samples *p, vec3 at, const scree_gathered *g, uint32_t nearest,
+                      double enough) {
+  const scree_halfmesh *scan = &p->scan;
+  double best = vec3_norm2(vec3_sub(at, scan->vertex[nearest].at));
+  for (size_t k = 0; k < g->count; k++) {
+    double d = vec3_norm2(vec3_sub(at, scan->vertex[g->items[k].sample].at));
+    if (d < best) best = d, nearest = g->items[k].sample;
+  }
+  if (best <= enough) return best;
+  uint32_t first = scan->vertex[nearest].outgoing, h = first, hint = h / 3;
+  do {
+    vec3 corner[3];
+    scree_corners(scan, h / 3, corner);
+    double d = scree_distance2(corner, at);
+    if (d <= enough) return d;
+    if (d < best) best = d, hint = h / 3;
+    h = scree_turn(scan, h);
+  } while (h != first && h != SCREE_NONE);
+  return scree_surface_tree_distance(&p->scan_tree, scan, at, enough, &hint);
+}
+
+double scree_deviation_bound(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f) {
+  double worst = 0, rise2 = 0;
+  for (uint32_t k = 0; k < scree_fan_triangle_count(f); k++) {
+    uint32_t t = scree_fan_triangle(s, f, k);
+    vec3 at[3];
+    scree_corners(s, t, at);
+    vec3 n = vec3_triangle_normal(at[0], at[1], at[2]);
+    double along = vec3_dot(n, vec3_sub(f->at, at[0])), n2 = vec3_norm2(n);
+    rise2 = scree_larger(rise2, n2 > 0 ? along * along / n2 : 0);
+    worst = scree_larger(worst, (double)p->worst[t]);
+  }
+  return worst + sqrt(rise2);
+}
+
+bool scree_deviation_find(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                          double from, double to, scree_gathered *g, double *deviation) {
+  double worst = from * from, most = to * to;
+  if (!gather_all(p, s, f, g)) return false;
+  for (size_t k = 0; k < g->count && worst <= most; k++) {
+    uint32_t start = g->items[k].start;
+    worst = scree_larger(worst, to_fan(f, p->scan.vertex[g->items[k].sample].at, worst, &start));
+  }
+  if (worst <= most) worst = scree_larger(worst, to_scan(p, f->at, g, p->of[f->a], worst));
+  for (uint32_t i = 0; i < f->count && worst <= most; i++) {
+    uint32_t near = p->of[s->half[f->edge[i]].from];
+    worst = scree_larger(worst, to_scan(p, vec3_lerp(f->at, f->from[i], 0.5), g, near, worst));
+  }
+  *deviation = worst <= most ? sqrt(worst) : INFINITY;
+  return true;
+}
+
+static int by_distance(const void *a, const void *b) {
+  const struct scree_sample *x = a, *y = b;
+  if (x->far != y->far) return x->far < y->far ? -1 : 1;
+  return x->sample < y->sample ? -1 : x->sample > y->sample;
+}
+
+/* Of those that tell little every fourth is dropped, in the order of distance: it does not hang on
+ * their numbers, and what is left has about the same distances. */
+static void thin(scree_samples *p, scree_gathered *g) {
+  size_t left = 0, near = 0;
+  for (size_t k = 0; k < g->count; k++) g->items[k].far = p->far[g->items[k].sample];
+  qsort(g->items, g->count, sizeof *g->items, by_distance);
+  for (size_t k = 0; k < g->count; k++) {
+    struct scree_sample item = g->items[k];
+    if (item.far >= 0 && (double)item.far < 2 * p->mean && near++ % 4 == 3)
+      p->far[item.sample] = DROPPED;
+    else
+      g->items[left++] = item;
+  }
+  g->count = left;
+}
+
+bool scree_samples_move(scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                        scree_gathered *g) {
+  if (!gather_all(p, s, f, g)) return false;
+  if (g->count > (size_t)scree_tune.crowd * f->count) thin(p, g);
+  for (uint32_t i = 0; i < f->count; i++) {
+    p->first[f->edge[i] / 3] = SCREE_NONE;
+    p->worst[f->edge[i] / 3] = 0;
+  }
+  for (size_t k = 0; k < g->count; k++) {
+    uint32_t v = g->items[k].sample;
+    double distance2;
+    uint32_t t = f->edge[nearest_of_fan(f, p->scan.vertex[v].at, &distance2)] / 3;
+    p->far[v] = (float)sqrt(distance2);
+    p->worst[t] = p->far[v] > p->worst[t] ? p->far[v] : p->worst[t];
+    p->next[v] = p->first[t];
+    p->first[t] = v;
+  }
+  return true;
+}

@@ -1,0 +1,67 @@
+/* How far the surface is from the scan.
+ *
+ * Vertices of the scan that the surface has left are samples, each in the list of the triangle that
+ * it is nearest to (after Klein, Liebich, Strasser, "Mesh reduction with error control", 1996). The
+ * scan itself is the reference surface. The deviation of a collapse is the greatest distance, both
+ * ways, that the new triangles answer for: of the samples around from these, and of the new vertex
+ * and the middles of the new edges from the scan. */
+#ifndef SCREE_SIMPLIFY_DEVIATION_H
+#define SCREE_SIMPLIFY_DEVIATION_H
+
+#include "simplify/fan.h"
+
+typedef struct scree_samples {
+  scree_halfmesh scan; /* the reference surface, in the same box */
+  scree_surface_tree scan_tree;
+  uint32_t *of;    /* per vertex of the surface: of the scan */
+  uint32_t *first; /* per triangle of the surface: its first sample, or NONE */
+  float *worst;    /* per triangle: the greatest distance of its samples */
+  uint32_t *next;  /* per vertex of the scan: in its triangle's list */
+  float *far;      /* the same: its distance from its triangle; below 0: no sample yet */
+  double mean;     /* of the samples' distances, when it was last found */
+  size_t count;    /* of them then */
+} scree_samples;
+
+/* Samples about one collapse: scratch of one thread. */
+typedef struct scree_gathered {
+  struct scree_sample {
+    uint32_t sample, start; /* start: of the fan's triangles the one to look at first */
+    float far;              /* while they are thinned */
+  } * items;
+  size_t count, capacity;
+} scree_gathered;
+
+static inline bool scree_has_samples(const scree_samples *samples) {
+  return samples->far != NULL;
+}
+
+/* Makes the reference surface, and samples of all vertices of the mesh that the surface, whose tree
+ * is tight, has left. */
+scree_status scree_samples_find(const scree_mesh *mesh, const scree_halfmesh *surface,
+                                const scree_surface_tree *tree, scree_samples *samples,
+                                scree_error *error);
+void scree_samples_free(scree_samples *samples);
+
+/* Finds the mean anew; in parallel, the same bits for any number of threads. */
+scree_status scree_samples_average(scree_samples *samples, scree_error *error);
+
+/* Before the surface is squeezed (scree_halfmesh_compact): so are the lists. */
+void scree_samples_compact(scree_samples *samples, const scree_halfmesh *surface);
+
+/* At most about the deviation of the fan as it is set, at little cost: what the worst sample around
+ * is off, and how high the new vertex is above the triangles there. */
+double scree_deviation_bound(const scree_samples *samples, const scree_halfmesh *s,
+                             const scree_fan *fan);
+
+/* The deviation; below `from` it need not be exact, above `to` it is INFINITY. False: out of
+ * memory. */
+bool scree_deviation_find(const scree_samples *samples, const scree_halfmesh *s,
+                          const scree_fan *fan, double from, double to, scree_gathered *scratch,
+                          double *deviation);
+
+/* Before the fan collapses: its samples, with those that its vertices become, go to the nearest of
+ * the new triangles. Touches only these triangles' lists. False: out of memory. */
+bool scree_samples_move(scree_samples *samples, const scree_halfmesh *s, const scree_fan *fan,
+                        scree_gathered *scratch);
+
+#endif

@@ -1,0 +1,15 @@
+/* What curve.c builds and replay.c reads. */
+#ifndef SCREE_SIMPLIFY_CURVE_H
+#define SCREE_SIMPLIFY_CURVE_H
+
+#include "simplify/record.h"
+
+struct scree_curve {
+  const scree_mesh *mesh;
+  scree_record record;
+  scree_curve_facts facts;
+  uint32_t *counts;    /* triangles per level, NULL where every collapse takes two */
+  double area, volume; /* of level 0 */
+};
+
+#endif

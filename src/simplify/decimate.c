@@ -1,0 +1,278 @@
+/* Decimation by edge collapses in the order of their cost.
+ *
+ *   passes:    rank all edges, take the cheapest that are independent, judge them side by side,
+ *              collapse what is allowed; again, down to a share of the scan's triangles.
+ *   samples:   the scan becomes the reference surface, the vertices that went become samples of the
+ *              distance from it. Passes again, while they are worth their parallel loops.
+ *   in order:  a queue of all edges; the cheapest is judged, and collapsed if it is allowed and
+ *              still the cheapest. Costs are found anew whenever a quarter of the triangles has
+ *              gone. Where nothing is allowed any more the guards become more lenient, twice.
+ *
+ * The whole cost of a collapse (cost/volume.c has E and A) is
+ *
+ *     E + drift A D^4 + C (D / F)^6
+ *
+ * D the deviation from the scan (cost/deviation.h): its second part weighs D against the size of
+ * the triangles, the third against what is usual for the level, C the cost that a tenth of the
+ * edges do not exceed and F some times the mean distance of the samples. To find D is dear; it is
+ * found when the edge's turn comes, and only as far as it decides. */
+#include "simplify/decimate.h"
+
+#include "base/parallel.h"
+#include "simplify/tuning.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { SUM_BLOCK = 1024 };
+/* A tenth of the edges are cheaper than what is usual. */
+enum { USUAL_SHARE = 10 };
+
+/* ---- The run ---- */
+
+scree_status scree_decimate(scree_decimator *d) {
+  double fine = scree_tune.fine * (double)d->first_triangle_count;
+  scree_status status = scree_decimate_in_passes(d, fine);
+  if (status == SCREE_OK) status = scree_decimate_refresh(d);
+  if (status == SCREE_OK && !d->coster->merge) /* with qecd the cost alone decides */
+    status = scree_samples_find(d->mesh, &d->s, &d->tree, &d->samples, d->error);
+  if (status == SCREE_OK) status = scree_decimate_in_passes(d, 0);
+  size_t done = 1;
+  while (status == SCREE_OK && d->leniency < SCREE_LENIENCIES &&
+         d->s.live_triangle_count > d->options.stop_count) {
+    status = scree_decimate_refresh(d);
+    if (status == SCREE_OK) status = scree_decimate_in_order(d, &done);
+    if (done == 0) d->leniency++;
+  }
+  return status;
+}
+
+/* ---- Start and end ---- */
+
+static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  scree_decimator *d = context;
+  for (size_t v = begin; v < end; v++)
+    if (d->s.vertex[v].outgoing != SCREE_NONE) d->coster->sum(&d->s, (uint32_t)v);
+}
+
+/* The sums of all vertices. */
+static scree_status sum_all(scree_decimator *d) {
+  SCREE_ALLOC_OR(d->s.sums, d->s.vertex_count, d->error, out_of_memory);
+  scree_parallel_for(d->s.vertex_count, SUM_BLOCK, sum_block, d);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* Area and volume, by blocks of triangles. */
+typedef struct measuring {
+  const scree_halfmesh *s;
+  struct {
+    scree_sum area, volume;
+  } * blocks;
+} measuring;
+
+enum { MEASURE_BLOCK = 8192 };
+
+static void measure_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const measuring *m = context;
+  scree_sum area = {0}, volume = {0};
+  for (size_t t = begin; t < end; t++) scree_add_triangle(m->s, t, &area, &volume);
+  m->blocks[block].area = area;
+  m->blocks[block].volume = volume;
+}
+
+static scree_status measure_surface(const scree_halfmesh *s, scree_sum *area, scree_sum *volume,
+                                    scree_error *error) {
+  measuring m = {.s = s};
+  size_t count = scree_block_count(s->triangle_count, MEASURE_BLOCK);
+  SCREE_ALLOC_OR(m.blocks, count, error, out_of_memory);
+  scree_parallel_for(s->triangle_count, MEASURE_BLOCK, measure_block, &m);
+  for (size_t i = 0; i < count; i++) {
+    scree_sum_merge(area, m.blocks[i].area);
+    scree_sum_merge(volume, m.blocks[i].volume);
+  }
+  scree_free(m.blocks);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
+                                   const scree_simplify_options *options, scree_error *error) {
+  *d = (scree_decimator){.mesh = mesh,
+                         .options = *options,
+                         .first_triangle_count = mesh->triangle_count,
+                         .pass_least = SCREE_PASS_LEAST,
+                         .usual_far = INFINITY,
+                         .error = error};
+  d->coster = options->method == SCREE_METHOD_QECD ? &scree_qecd_coster : &scree_volume_coster;
+  scree_status status = scree_halfmesh_build(mesh, &d->s, error);
+  if (status != SCREE_OK) return status;
+  double limit = options->error_limit / d->s.scale;
+  d->error_limit = limit > 0 ? limit * limit : INFINITY;
+  status = measure_surface(&d->s, &d->area, &d->volume, error);
+  d->s.area = scree_sum_value(d->area);
+  if (status == SCREE_OK) status = scree_record_allocate(&d->record, d->s.live_vertex_count, error);
+  if (status == SCREE_OK) status = sum_all(d);
+  if (status == SCREE_OK) status = scree_surface_tree_make(&d->s, &d->tree, error);
+  return status;
+}
+
+void scree_decimator_free(scree_decimator *d) {
+  scree_halfmesh_free(&d->s);
+  scree_record_free(&d->record);
+  scree_surface_tree_free(&d->tree);
+  scree_markers_free(&d->markers);
+  scree_samples_free(&d->samples);
+}
+
+/* What is still to do at so many triangles, in those that go one by one: passes take less time for
+ * each. */
+static double work_left(const scree_decimator *d, double count) {
+  static const double FASTER = 8;
+  double one_by_one = scree_smaller(count, (double)d->pass_least);
+  return one_by_one + (count - one_by_one) / FASTER;
+}
+
+bool scree_decimate_tick(scree_decimator *d) {
+  double all = work_left(d, (double)d->first_triangle_count);
+  double end = work_left(d, (double)d->options.stop_count);
+  double left = work_left(d, (double)d->s.live_triangle_count);
+  return scree_tick(&d->ticker, "decimating", all > end ? (all - left) / (all - end) : 0);
+}
+
+scree_status scree_decimate_refresh(scree_decimator *d) {
+  uint32_t *vertices = NULL, *triangles = NULL;
+  SCREE_ALLOC_OR(vertices, d->s.vertex_count, d->error, out_of_memory);
+  SCREE_ALLOC_OR(triangles, d->s.triangle_count, d->error, out_of_memory);
+  if (scree_has_samples(&d->samples)) scree_samples_compact(&d->samples, &d->s);
+  scree_halfmesh_compact(&d->s, vertices, triangles);
+  scree_free(vertices);
+  scree_free(triangles);
+  scree_halfmesh_give_back(&d->s);
+  scree_surface_tree_fit(&d->tree, &d->s, NULL);
+  scree_discard_tail(d->tree.node, 2 * d->tree.leaves * sizeof *d->tree.node);
+  scree_status status = scree_markers_find(&d->s, &d->markers, d->error);
+  if (status == SCREE_OK && scree_has_samples(&d->samples))
+    status = scree_samples_average(&d->samples, d->error);
+  return status;
+out_of_memory:
+  scree_free(vertices);
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static int by_size(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+double scree_decimate_set_usual(scree_decimator *d, double *costs, size_t count, double share) {
+  qsort(costs, count, sizeof *costs, by_size);
+  if (scree_has_samples(&d->samples) && d->samples.mean > 0) {
+    d->usual_cost = costs[count / USUAL_SHARE];
+    d->usual_far = scree_tune.usual * d->samples.mean;
+  }
+  return costs[(size_t)(share * (double)(count - 1))];
+}
+
+/* ---- One edge ---- */
+
+/* What a deviation adds to the cost of a collapse with that area around. */
+static double penalty(const scree_decimator *d, double area, double far) {
+  double r = far / d->usual_far, square = far * far;
+  return scree_tune.drift * area * square * square + d->usual_cost * r * r * r * r * r * r;
+}
+
+/* About the least deviation that adds so much. */
+static double deviation_for(const scree_decimator *d, double area, double cost) {
+  double drift = pow(cost / (scree_tune.drift * area), 1.0 / 4);
+  double usual = d->usual_cost > 0 ? d->usual_far * pow(cost / d->usual_cost, 1.0 / 6) : INFINITY;
+  return fmin(1, fmin(drift, usual));
+}
+
+/* The cost with the deviation's part, of the fan as it is set; above `most` at least `most`. */
+static double whole_cost(const scree_decimator *d, const scree_fan *f, const scree_candidate *c,
+                         double most, scree_gathered *scratch, bool *out_of_memory) {
+  if (!scree_has_samples(&d->samples)) return c->cost;
+  double from = deviation_for(d, c->area, scree_tune.heed * c->cost), far = from;
+  if (scree_deviation_bound(&d->samples, &d->s, f) <= from) return c->cost;
+  double rest = most - c->cost;
+  double to = most < INFINITY ? deviation_for(d, c->area, rest > 0 ? rest : 0) : INFINITY;
+  *out_of_memory |= !scree_deviation_find(&d->samples, &d->s, f, from, to, scratch, &far);
+  if (far <= from) return c->cost;
+  return far < INFINITY ? c->cost + penalty(d, c->area, far) : scree_larger(most, c->cost);
+}
+
+/* A vertex stays within the scan's box, but for a share of the size of the level's triangles. */
+static bool is_spike(const scree_decimator *d, vec3 x) {
+  const scree_halfmesh *s = &d->s;
+  double room = scree_tune.spike * sqrt(s->area / (double)s->live_triangle_count);
+  return !(x.x >= s->low.x - room && x.y >= s->low.y - room && x.z >= s->low.z - room &&
+           x.x <= s->high.x + room && x.y <= s->high.y + room && x.z <= s->high.z + room);
+}
+
+/* Tries one place; the fan is set to it. */
+static void try_place(const scree_decimator *d, const scree_candidate *c, double most, scree_fan *f,
+                      scree_gathered *scratch, scree_verdict *v) {
+  if (!(c->cost < INFINITY) || c->error > d->error_limit || is_spike(d, c->target)) return;
+  scree_fan_set(f, c->target);
+  if (!scree_shape_allows(&d->s, f, d->leniency)) return;
+  double cost = whole_cost(d, f, c, fmin(v->cost, most), scratch, &v->out_of_memory);
+  if (!(cost < v->cost)) return;
+  v->cost = cost;
+  v->target = c->target;
+  v->error = c->error;
+}
+
+static int by_cost(const void *a, const void *b) {
+  const scree_candidate *x = a, *y = b;
+  return (x->cost > y->cost) - (x->cost < y->cost);
+}
+
+scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t h, double most, scree_fan *f,
+                                   scree_gathered *scratch) {
+  static const double NEAR = 2; /* another place is hardly worth its time for less */
+  scree_verdict v = {.cost = INFINITY};
+  scree_candidate best, others[SCREE_FALLBACK_COUNT];
+  if (!scree_fan_of_edge(&d->s, h, f) || !scree_fan_keeps_topology(&d->s, f)) return v;
+  d->coster->evaluate(&d->s, &h, 1, &best);
+  try_place(d, &best, most, f, scratch, &v);
+  if (!(v.cost < NEAR * best.cost)) {
+    for (int k = 0; k < SCREE_FALLBACK_COUNT; k++) d->coster->fall_back(&d->s, h, k, &others[k]);
+    qsort(others, SCREE_FALLBACK_COUNT, sizeof *others, by_cost);
+    for (int k = 0; k < SCREE_FALLBACK_COUNT && !(v.cost < NEAR * others[k].cost); k++)
+      if (others[k].cost < most)
+        try_place(d, &others[k], most, f, scratch, &v);
+      else
+        v.cost = fmin(v.cost, others[k].cost); /* it may be allowed */
+  }
+  if (v.cost < INFINITY) scree_fan_set(f, v.target);
+  return v;
+}
+
+bool scree_decimate_collapse(scree_decimator *d, size_t i, const scree_fan *f, double error,
+                             scree_gathered *scratch) {
+  scree_record *r = &d->record;
+  scree_halfmesh *s = &d->s;
+  bool one = s->half[f->half_edge].twin == SCREE_NONE;
+  r->kept[i] = s->vertex[f->a].origin | (one ? SCREE_ONE_TRIANGLE : 0);
+  r->gone[i] = s->vertex[f->b].origin;
+  r->position[i] = vec3_mad(s->centre, f->at, s->scale);
+  scree_fan_measure(s, f, &r->area[i], &r->volume[i]);
+  r->error[i] = (float)error;
+  if (scree_has_samples(&d->samples) && !scree_samples_move(&d->samples, s, f, scratch))
+    return false;
+  scree_fan_collapse(s, f);
+  if (d->coster->merge) d->coster->merge(s, f->a, f->b);
+  return true;
+}
+
+void scree_decimate_count(scree_decimator *d, const scree_fan *f) {
+  d->record.count++;
+  d->s.live_vertex_count--;
+  d->s.live_triangle_count -= f->d == SCREE_NONE ? 1 : 2;
+  scree_markers_follow(&d->markers, f);
+}

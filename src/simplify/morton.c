@@ -1,0 +1,203 @@
+/* Morton, "A computer oriented geodetic data base and a new technique in file sequencing" (IBM,
+ * 1966): the bits of the three coordinates, each in 1024 steps along the longest side, are
+ * interleaved and the outcome is sorted, by radix; vertices within the same steps by the next bits.
+ *
+ * The coordinates are those along the principal axes of the vertices, the first two in the
+ * direction of the longer tail (the third moment), so that the order is the same however the scan
+ * lies, unless its own symmetry leaves the axes open. */
+#include "simplify/morton.h"
+
+#include "base/eigen.h"
+#include "base/parallel.h"
+#include "base/radix.h"
+#include "base/sym3.h"
+
+enum { STEPS = 1 << SCREE_MORTON_BITS, BLOCK = 1 << 14 };
+/* Vertices within the same steps, of more of which the order stays as it was. */
+enum { MOST_TOGETHER = 64 };
+
+/* Of a block of vertices. */
+typedef struct block_sums {
+  vec3 first, low, high, third; /* first and third moments */
+  sym3 second;
+} block_sums;
+
+typedef struct framing {
+  const scree_places *places;
+  scree_frame_of_places *frame;
+  block_sums *blocks;
+} framing;
+
+static vec3 place(const scree_places *p, size_t index) {
+  return vec3_load(p->at + p->stride * index);
+}
+
+static void measure_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const framing *f = context;
+  block_sums sums = {.first = {0, 0, 0}};
+  for (size_t i = begin; i < end; i++) {
+    vec3 p = vec3_sub(place(f->places, i), f->frame->centre);
+    sums.first = vec3_add(sums.first, p);
+    sym3_add_square(&sums.second, p, 1);
+  }
+  f->blocks[block] = sums;
+}
+
+static void look_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const framing *f = context;
+  vec3 p = scree_into_frame(f->frame, place(f->places, begin));
+  block_sums sums = {.low = p, .high = p, .third = {0, 0, 0}};
+  for (size_t i = begin; i < end; i++) {
+    p = scree_into_frame(f->frame, place(f->places, i));
+    sums.low = vec3_min(sums.low, p);
+    sums.high = vec3_max(sums.high, p);
+    sums.third = vec3_add(sums.third, (vec3){p.x * p.x * p.x, p.y * p.y * p.y, 0});
+  }
+  f->blocks[block] = sums;
+}
+
+/* Mean and principal axes. */
+static void find_axes(framing *f, size_t blocks) {
+  double count = (double)f->places->count, values[3];
+  vec3 first = {0, 0, 0};
+  sym3 second = {0};
+  scree_parallel_for(f->places->count, BLOCK, measure_block, f);
+  for (size_t i = 0; i < blocks; i++) {
+    const block_sums *b = &f->blocks[i];
+    first = vec3_add(first, b->first);
+    second.xx += b->second.xx, second.xy += b->second.xy, second.xz += b->second.xz;
+    second.yy += b->second.yy, second.yz += b->second.yz, second.zz += b->second.zz;
+  }
+  vec3 mean = vec3_scale(first, 1 / count);
+  sym3_add_square(&second, mean, -count);
+  mat3 matrix = {{{second.xx, second.xy, second.xz},
+                  {second.xy, second.yy, second.yz},
+                  {second.xz, second.yz, second.zz}}};
+  scree_eigen_symmetric(&matrix, values, &f->frame->axes);
+  f->frame->centre = vec3_add(f->frame->centre, mean);
+}
+
+static void turn_round(double row[3], double *low, double *high) {
+  for (int k = 0; k < 3; k++) row[k] = -row[k];
+  double swapped = *low;
+  *low = -*high;
+  *high = -swapped;
+}
+
+/* The axes' directions, and the box in the frame. */
+static void direct_axes(framing *f, size_t blocks) {
+  scree_parallel_for(f->places->count, BLOCK, look_block, f);
+  vec3 low = f->blocks[0].low, high = f->blocks[0].high, third = {0, 0, 0};
+  for (size_t i = 0; i < blocks; i++) {
+    low = vec3_min(low, f->blocks[i].low);
+    high = vec3_max(high, f->blocks[i].high);
+    third = vec3_add(third, f->blocks[i].third);
+  }
+  scree_frame_of_places *frame = f->frame;
+  vec3 extent = vec3_sub(high, low);
+  frame->extent = fmax(extent.x, fmax(extent.y, extent.z));
+  bool x = third.x < 0, y = third.y < 0;
+  if (x) turn_round(frame->axes.m[0], &low.x, &high.x);
+  if (y) turn_round(frame->axes.m[1], &low.y, &high.y);
+  if (x != y) turn_round(frame->axes.m[2], &low.z, &high.z); /* right-handed, as they were */
+  frame->low = low;
+  frame->high = high;
+}
+
+scree_status scree_frame_find(const scree_places *places, vec3 centre, scree_frame_of_places *frame,
+                              scree_error *error) {
+  size_t blocks = scree_block_count(places->count, BLOCK);
+  framing f = {.places = places, .frame = frame};
+  SCREE_ALLOC_OR(f.blocks, blocks, error, out_of_memory);
+  frame->centre = centre;
+  find_axes(&f, blocks);
+  direct_axes(&f, blocks);
+  scree_free(f.blocks);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+vec3 scree_frame_steps(const scree_frame_of_places *frame, double steps, vec3 p) {
+  /* half a step less, or rounding would say in which step the farthest lies */
+  return vec3_scale(vec3_sub(scree_into_frame(frame, p), frame->low),
+                    (steps - 0.5) / frame->extent);
+}
+
+/* Puts two zeros between the bits. */
+static uint32_t spread(uint32_t x) {
+  x = (x | x << 16) & 0x030000ff;
+  x = (x | x << 8) & 0x0300f00f;
+  x = (x | x << 4) & 0x030c30c3;
+  return (x | x << 2) & 0x09249249;
+}
+
+static uint32_t whole_step(double step) {
+  return step < STEPS - 1 ? step > 0 ? (uint32_t)step : 0 : STEPS - 1;
+}
+
+uint32_t scree_morton_code(vec3 steps) {
+  return spread(whole_step(steps.x)) | spread(whole_step(steps.y)) << 1 |
+         spread(whole_step(steps.z)) << 2;
+}
+
+typedef struct coding {
+  scree_places places;
+  scree_frame_of_places frame;
+  scree_keyed *items;
+} coding;
+
+static vec3 steps_of(const coding *c, size_t v) {
+  return scree_frame_steps(&c->frame, STEPS, place(&c->places, v));
+}
+
+static void code_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const coding *c = context;
+  for (size_t v = begin; v < end; v++)
+    c->items[v] = (scree_keyed){scree_morton_code(steps_of(c, v)), (uint32_t)v};
+}
+
+/* The bits after those of the code. */
+static uint32_t next_code(const coding *c, uint32_t v) {
+  vec3 steps = steps_of(c, v);
+  vec3 rest = {steps.x - floor(steps.x), steps.y - floor(steps.y), steps.z - floor(steps.z)};
+  return scree_morton_code(vec3_scale(rest, STEPS));
+}
+
+/* Those of equal code by their next bits. */
+static void order_together(const coding *c, scree_keyed *items, size_t count) {
+  for (size_t begin = 0, end; begin < count; begin = end) {
+    for (end = begin + 1; end < count && items[end].key == items[begin].key;) end++;
+    if (end - begin == 1 || end - begin > MOST_TOGETHER) continue;
+    for (size_t i = begin; i < end; i++) {
+      scree_keyed item = {next_code(c, items[i].index), items[i].index};
+      size_t j = i;
+      for (; j > begin && items[j - 1].key > item.key; j--) items[j] = items[j - 1];
+      items[j] = item;
+    }
+  }
+}
+
+scree_status scree_order_vertices(const scree_mesh *mesh, vec3 centre, uint32_t *order,
+                                  scree_error *error) {
+  size_t count = mesh->vertex_count;
+  coding c = {.places = {mesh->positions, 3, count}};
+  scree_keyed *swap = NULL;
+  scree_status status = scree_frame_find(&c.places, centre, &c.frame, error);
+  if (status != SCREE_OK) return status;
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(c.items, count, error, done);
+  SCREE_ALLOC_OR(swap, count, error, done);
+  scree_parallel_for(count, BLOCK, code_block, &c);
+  scree_keyed *sorted = scree_radix_sort(c.items, swap, count, 3 * SCREE_MORTON_BITS);
+  order_together(&c, sorted, count);
+  for (size_t i = 0; i < count; i++) order[i] = sorted[i].index;
+  status = SCREE_OK;
+done:
+  scree_free(c.items);
+  scree_free(swap);
+  return status;
+}

@@ -1,0 +1,232 @@
+/* One collapse after the other, from a heap of all edges by their costs. An edge waits at its cost
+ * without the deviation's part, which is no more than the whole. When its turn comes it is judged;
+ * where the whole cost is above the next in the queue, it waits at that. After a collapse the edges
+ * about the new vertex get new costs, and edges beside it that could not be done before are looked
+ * at again; others are found out when their turn comes. */
+#include "simplify/decimate.h"
+#include "simplify/tuning.h"
+
+#include <string.h>
+
+/* An edge is judged no farther than to so many times the next cost: beyond it waits again. */
+#define JUDGED_TO 8
+/* Progress is told, and cancelling asked for, after so many collapses. */
+enum { TICK_EVERY = 64, SIDE_BY_SIDE = 2 * SCREE_FAN_MAX };
+
+/* Edges are named by their lower half-edge. */
+typedef struct queue {
+  scree_decimator *d;
+  uint32_t *edge;  /* the heap */
+  uint32_t *place; /* per half-edge: in the heap, or NONE */
+  double *cost;    /* per half-edge */
+  bool *known;     /* per half-edge: its cost is the whole, as far as it was judged */
+  size_t count;
+  scree_gathered scratch;
+  scree_fan fan;
+} queue;
+
+static uint32_t edge_of(const scree_halfmesh *s, uint32_t h) {
+  uint32_t twin = s->half[h].twin;
+  return twin < h ? twin : h;
+}
+
+/* ---- The heap ---- */
+
+static bool goes_before(const queue *q, uint32_t e, uint32_t f) {
+  return q->cost[e] < q->cost[f] || (q->cost[e] == q->cost[f] && e < f);
+}
+
+static void put(queue *q, size_t i, uint32_t e) {
+  q->edge[i] = e;
+  q->place[e] = (uint32_t)i;
+}
+
+static void sift(queue *q, size_t i) {
+  uint32_t e = q->edge[i];
+  for (; i > 0 && goes_before(q, e, q->edge[(i - 1) / 2]); i = (i - 1) / 2)
+    put(q, i, q->edge[(i - 1) / 2]);
+  for (size_t k; (k = 2 * i + 1) < q->count; i = k) {
+    if (k + 1 < q->count && goes_before(q, q->edge[k + 1], q->edge[k])) k++;
+    if (!goes_before(q, q->edge[k], e)) break;
+    put(q, i, q->edge[k]);
+  }
+  put(q, i, e);
+}
+
+static void drop(queue *q, uint32_t e) {
+  size_t i = q->place[e];
+  if (i == SCREE_NONE) return;
+  q->place[e] = SCREE_NONE;
+  uint32_t last = q->edge[--q->count];
+  if (last == e) return;
+  put(q, i, last);
+  sift(q, i);
+}
+
+static void set(queue *q, uint32_t e, double cost, bool known) {
+  q->cost[e] = cost;
+  q->known[e] = known;
+  if (cost == INFINITY) {
+    drop(q, e);
+    return;
+  }
+  if (q->place[e] == SCREE_NONE) put(q, q->count++, e);
+  sift(q, q->place[e]);
+}
+
+/* ---- Costs ---- */
+
+static void rank(queue *q, const uint32_t *edges, size_t count) {
+  scree_candidate c[SIDE_BY_SIDE];
+  q->d->coster->evaluate(&q->d->s, edges, count, c);
+  for (size_t i = 0; i < count; i++) set(q, edges[i], c[i].cost, false);
+}
+
+/* Every edge; what is usual is set from their costs. */
+static void rank_all(queue *q) {
+  const scree_halfmesh *s = &q->d->s;
+  uint32_t edges[SIDE_BY_SIDE];
+  size_t count = 0;
+  for (uint32_t h = 0; h < 3 * s->triangle_count; h++) {
+    q->place[h] = SCREE_NONE;
+    if (edge_of(s, h) == h) edges[count++] = h;
+    if (count == SIDE_BY_SIDE) rank(q, edges, count), count = 0;
+  }
+  rank(q, edges, count);
+}
+
+static scree_status set_usual(queue *q) {
+  double *costs;
+  SCREE_ALLOC_OR(costs, q->count, q->d->error, out_of_memory);
+  for (size_t i = 0; i < q->count; i++) costs[i] = q->cost[q->edge[i]];
+  scree_decimate_set_usual(q->d, costs, q->count, 0);
+  scree_free(costs);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status start(queue *q, scree_decimator *d) {
+  size_t half_edges = 3 * d->s.triangle_count;
+  *q = (queue){.d = d};
+  SCREE_ALLOC_OR(q->edge, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->place, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->cost, half_edges, d->error, out_of_memory);
+  SCREE_ALLOC_OR(q->known, half_edges, d->error, out_of_memory);
+  rank_all(q);
+  return q->count > 0 ? set_usual(q) : SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static void end(queue *q) {
+  scree_free(q->edge);
+  scree_free(q->place);
+  scree_free(q->cost);
+  scree_free(q->known);
+  scree_free(q->scratch.items);
+}
+
+/* ---- Collapses ---- */
+
+/* The edges of triangle t leave the queue before it goes. */
+static void drop_triangle(queue *q, uint32_t t) {
+  for (uint32_t h = 3 * t; h < 3 * t + 3; h++) drop(q, edge_of(&q->d->s, h));
+}
+
+static void renew_sums(scree_decimator *d, uint32_t v) {
+  if (!d->coster->merge) d->coster->sum(&d->s, v);
+}
+
+/* Every edge of vertex u. */
+static void renew_about(queue *q, uint32_t u) {
+  const scree_halfmesh *s = &q->d->s;
+  uint32_t edges[SIDE_BY_SIDE], first = s->vertex[u].outgoing, h = first, last = first;
+  size_t count = 0;
+  do {
+    if (count == SIDE_BY_SIDE - 1) rank(q, edges, count), count = 0;
+    edges[count++] = edge_of(s, h);
+    last = h;
+    h = scree_turn(s, h);
+  } while (h != first && h != SCREE_NONE);
+  if (h == SCREE_NONE) edges[count++] = scree_previous(last);
+  rank(q, edges, count);
+}
+
+static void renew(queue *q, const scree_fan *f) {
+  scree_decimator *d = q->d;
+  const scree_halfmesh *s = &d->s;
+  renew_sums(d, f->a);
+  for (uint32_t i = 0; i < f->count; i++) {
+    renew_sums(d, s->half[f->edge[i]].from);
+    uint32_t j = i + 1 < f->count ? i + 1 : 0;
+    if (s->half[f->edge[j]].from != scree_to(s, f->edge[i])) renew_sums(d, scree_to(s, f->edge[i]));
+  }
+  for (uint32_t i = 0; i < f->count; i++) {
+    renew_about(q, s->half[f->edge[i]].from);
+    uint32_t j = i + 1 < f->count ? i + 1 : 0;
+    if (s->half[f->edge[j]].from != scree_to(s, f->edge[i]))
+      renew_about(q, scree_to(s, f->edge[i]));
+  }
+}
+
+static scree_status collapse(queue *q, double error) {
+  scree_decimator *d = q->d;
+  const scree_fan *f = &q->fan;
+  drop_triangle(q, f->half_edge / 3);
+  if (f->d != SCREE_NONE) drop_triangle(q, d->s.half[f->half_edge].twin / 3);
+  if (!scree_decimate_collapse(d, d->record.count, f, error, &q->scratch))
+    return scree_fail_memory(d->error, q->scratch.count * sizeof *q->scratch.items, "samples");
+  scree_decimate_count(d, f);
+  for (uint32_t i = 0; i < f->count; i++) {
+    scree_bounds b = scree_fan_bounds(f, i);
+    scree_surface_tree_grow(&d->tree, f->edge[i] / 3, &b, f->after[i]);
+  }
+  renew(q, f);
+  return SCREE_OK;
+}
+
+static double next_cost(const queue *q) {
+  double next = INFINITY;
+  for (size_t k = 1; k < 3 && k < q->count; k++) next = fmin(next, q->cost[q->edge[k]]);
+  return next;
+}
+
+/* Collapses the cheapest edge that may be; *found: there was one. */
+static scree_status step(queue *q, bool *found) {
+  scree_decimator *d = q->d;
+  const scree_surroundings around = {&d->s, &d->tree, &d->markers, NULL};
+  for (*found = false; q->count > 0;) {
+    uint32_t e = q->edge[0];
+    double next = next_cost(q), was = q->cost[e];
+    double most = q->known[e] ? INFINITY : JUDGED_TO * fmax(next, was);
+    scree_verdict v = scree_decimate_judge(d, e, most, &q->fan, &q->scratch);
+    if (v.out_of_memory)
+      return scree_fail_memory(d->error, q->scratch.count * sizeof *q->scratch.items, "samples");
+    if (v.cost > next && v.cost < INFINITY && !(q->known[e] && v.cost <= was)) {
+      set(q, e, v.cost, true);
+    } else if (v.cost < INFINITY && scree_apart(&around, &q->fan)) {
+      *found = true;
+      return collapse(q, v.error);
+    } else {
+      drop(q, e);
+    }
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_decimate_in_order(scree_decimator *d, size_t *done) {
+  queue q;
+  size_t least = (size_t)(scree_tune.refresh * (double)d->s.live_triangle_count);
+  scree_status status = start(&q, d);
+  bool found = true;
+  for (*done = 0; status == SCREE_OK && d->s.live_triangle_count > d->options.stop_count;) {
+    if (*done % TICK_EVERY == 0 && !scree_decimate_tick(d)) status = SCREE_CANCELLED;
+    if (status == SCREE_OK) status = step(&q, &found);
+    if (!found) break;
+    ++*done;
+    if (d->s.live_triangle_count <= least) break;
+  }
+  end(&q);
+  return status;
+}

@@ -1,0 +1,54 @@
+/* All numbers of the method that were found by trying, with unit and reason. None depends on how
+ * many triangles the scan has. */
+#ifndef SCREE_SIMPLIFY_TUNING_H
+#define SCREE_SIMPLIFY_TUNING_H
+
+/* What the guards allow is given three times: when no edge is left that they allow, the next is
+ * taken. Cosines are of angles between normals. */
+enum { SCREE_LENIENCIES = 3 };
+
+typedef struct scree_tuning {
+  /* cost */
+  double stiff; /* share of the trace of H below which a direction is free: there the vertex stays
+                   in the middle of its edge. Above rounding, below what a real crease has. */
+  double tie;   /* weight of the edge's squared length times the trace of H in the cost: orders what
+                   costs nothing, short edges first. Far below the cost of what changes a shape. */
+  double drift; /* weight of area times deviation^4 in the cost: the deviation begins to count at a
+                   tenth of the size of the triangles, and soon decides. */
+  double usual; /* deviations of so many mean ones add as much as a usual collapse costs. */
+  double heed;  /* share of the cost below which the deviation's part is not looked for. */
+  /* guards */
+  double turn[SCREE_LENIENCIES];  /* least cosine of the turn of a normal: 84, 107, 134 degrees */
+  double fold[SCREE_LENIENCIES];  /* least cosine over a new edge: 120, 135 and 149 degrees */
+  double shape[SCREE_LENIENCIES]; /* height over longest edge; below it at most half is lost */
+  double spike; /* of sqrt(area / triangles): so far beyond the scan's box a vertex may come */
+  /* order */
+  double batch;   /* share of the vertices whose cheapest edge a pass may take: more, and the order
+                     of the costs is lost; less, and each pass finds them all for little. */
+  double fine;    /* share of the scan's triangles down to which passes do without samples: hardly a
+                     level that anybody asks for, and mostly noise. */
+  double refresh; /* share of the triangles after which costs, boxes and what is usual are found
+                     anew. */
+  /* samples */
+  int crowd; /* of a triangle, above which they are thinned: enough to tell its distance */
+} scree_tuning;
+
+static const scree_tuning scree_tune = {.stiff = 1e-5,
+                                        .tie = 1e-9,
+                                        .drift = 5,
+                                        .usual = 12,
+                                        .heed = 0.1,
+                                        .turn = {0.1, -0.3, -0.7},
+                                        .fold = {-0.5, -0.7071, -0.857},
+                                        .shape = {0.05, 0.01, 0},
+                                        .spike = 0.5,
+                                        .batch = 0.5,
+                                        .fine = 0.125,
+                                        .refresh = 0.75,
+                                        .crowd = 48};
+
+/* Passes of independent collapses go on while a pass has enough for all threads: a size of blocks
+ * of parallel loops. Below, one collapse follows the other. */
+enum { SCREE_PASS_LEAST = 8192 };
+
+#endif
