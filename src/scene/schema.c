@@ -11,6 +11,7 @@ enum { LONGEST_NAME = 64, LONGEST_PATH = 256 };
 
 /* ---- saying what is wrong ---- */
 
+SCREE_PRINTF(5, 0)
 static scree_status fail_text(const scree_reader *r, size_t line, size_t column, const char *path,
                               const char *format, va_list arguments) {
   char text[700], where[96];
