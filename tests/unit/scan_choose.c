@@ -19,7 +19,7 @@ static const expectation files[] = {
     {"gen02_ascii_crlf_three_solids.stl", NULL},
     {"gen03_bin_header_solid_facet_normal.stl", NULL},
     {"gen04_bin_truncated_mid_facet.stl", "binary STL cut off"},
-    {"gen05_bin_count_too_small.stl", "binary STL with a wrong count"},
+    {"gen05_bin_count_too_small.stl", NULL},
     {"gen06_bin_nan_inf.stl", "coordinates must be finite"},
     {"gen07_bin_far_from_origin.stl", NULL},
     {"gen08_bin_flips_dups_degenerates.stl", NULL},
