@@ -2,8 +2,8 @@
  * simulation.
  *
  * These headers are the whole public interface; each can be included alone. In the order in which
- * the data goes: base, mesh, measure, check, simplify, fidelity, choice, sample, particle, world,
- * heap, scene, pile, study, report.
+ * the data goes: base, mesh, measure, check, simplify, fidelity, choice, sample, particle, clump,
+ * world, heap, scene, pile, study, report.
  *
  * What holds everywhere:
  *
@@ -29,6 +29,7 @@
 #include "scree/base.h"
 #include "scree/check.h"
 #include "scree/choice.h"
+#include "scree/clump.h"
 #include "scree/fidelity.h"
 #include "scree/heap.h"
 #include "scree/measure.h"

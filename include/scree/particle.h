@@ -63,7 +63,9 @@ SCREE_API scree_status scree_particle_clump(const double *centres, const double 
                                             scree_particle **particle, scree_error *error);
 /* The clump of a table: a sphere a line, its centre x, y, z and its radius in units of unit_m
  * metres, between blanks, commas or semicolons; a first line of words, empty lines and lines that
- * begin with # are passed over. At most 10,000 spheres. Errors: SCREE_BAD_FILE, naming file and
+ * begin with # are passed over, but for `# volume V`, `# centroid X Y Z` and `# inertia XX YY ZZ XY
+ * XZ YZ` (about the centroid, for density 1) in that unit: with all three these are the clump's, as
+ * of a particle that it is like. At most 10,000 spheres. Errors: SCREE_BAD_FILE, naming file and
  * line. */
 SCREE_API scree_status scree_particle_clump_read(const char *path, double unit_m,
                                                  scree_particle **particle, scree_error *error);

@@ -250,6 +250,7 @@ SCREE_API scree_status scree_run_complete(const scree_run_job *job, scree_run **
 typedef struct scree_grain_options {
   double rp;       /* percentage reduction in (0, 1]; default 1: the scan as it is */
   bool sphere;     /* the sphere of the scan's volume instead, whatever the Rp; default false */
+  size_t clump;    /* a clump of so many spheres that stands for the level; default 0: none */
   int mass_rule;   /* a scree_mass_rule; default SCREE_MASS_FROM_MESH */
   double rounding; /* m, see scree_particle_options; default 0 */
 } scree_grain_options;

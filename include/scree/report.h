@@ -3,7 +3,9 @@
 #define SCREE_REPORT_H
 
 #include "scree/choice.h"
+#include "scree/clump.h"
 #include "scree/measure.h"
+#include "scree/particle.h"
 #include "scree/pile.h"
 
 #ifdef __cplusplus
@@ -238,6 +240,74 @@ SCREE_API scree_status scree_curve_json_write(const scree_curve_entry *entry,
                                               const char *command_line, const char *path,
                                               bool overwrite, scree_error *error);
 
+/* ---- Clumps in other DEM codes ---- */
+
+typedef enum scree_dem_code {
+  SCREE_DEM_LAMMPS,   /* NAME.mol for `molecule`, in.NAME with `fix rigid/small` */
+  SCREE_DEM_LIGGGHTS, /* NAME.txt for `fix particletemplate/multisphere`, in.NAME */
+  SCREE_DEM_YADE,     /* NAME.py with appendClumped */
+  SCREE_DEM_PFC,      /* NAME.dat with `clump template create` */
+  SCREE_DEM_CHRONO,   /* NAME.csv and NAME.py for DEM-Engine's LoadClumpType */
+  SCREE_DEM_CODE_COUNT
+} scree_dem_code;
+
+/* lammps, liggghts, yade, pfc, chrono. NULL for no code. */
+SCREE_API const char *scree_dem_code_name(scree_dem_code code);
+
+typedef struct scree_code_options {
+  const char *name; /* of the files; default clump. Borrowed */
+  double density;   /* kg/m3, default 2000 */
+  size_t count;     /* of clumps that the scripts let fall; default 27 */
+  bool overwrite;
+} scree_code_options;
+SCREE_API scree_code_options scree_default_code_options(void);
+
+/* Writes a clump (or sphere) into an existing folder as the code reads it, in SI units: its spheres
+ * about the centre of mass along the principal axes, the particle's mass and inertia, and for
+ * LAMMPS, LIGGGHTS and YADE a script that lets some fall into a box, with made-up materials. */
+SCREE_API scree_status scree_clump_code_write(const scree_particle *particle, scree_dem_code code,
+                                              const scree_code_options *options, const char *folder,
+                                              scree_error *error);
+
+/* ---- Clumps: figure, tables, JSON ---- */
+
+/* One body and its clumps. Texts are borrowed. */
+typedef struct scree_clump_entry {
+  const char *name;           /* short, for tables and legends */
+  const char *file;           /* as given: a path, or sample:NAME */
+  const char *format;         /* as read; "sample" for built-in ones */
+  scree_checksum checksum;    /* of the file's bytes; zero for samples */
+  double unit_m;              /* metres per unit of the file */
+  const char *note;           /* what was repaired, in one sentence; NULL: nothing */
+  size_t scan_triangle_count; /* before it was decimated to mesh */
+  const scree_mesh *mesh;     /* that the spheres were fitted to */
+  const scree_clumps *clumps;
+  const scree_clump *chosen; /* one of them */
+  const char *clump_file;    /* where that was written; NULL: nowhere */
+} scree_clump_entry;
+
+typedef struct scree_clump_report {
+  const scree_clump_entry *entries;
+  size_t entry_count;
+  const char *command_line; /* for provenance; NULL: unknown */
+} scree_clump_report;
+
+/* The errors and the criterion against the number of spheres, by the path's ending (.png, .svg,
+ * .pdf, .csv, .gnuplot). */
+SCREE_API scree_status scree_clump_figure_write(const scree_clump_report *report, const char *path,
+                                                bool overwrite, scree_error *error);
+/* An array with an object per body, all its clumps in it (docs/formats.md). "-" is stdout. */
+SCREE_API scree_status scree_clump_json_write(const scree_clump_report *report, const char *path,
+                                              bool overwrite, scree_error *error);
+/* A row per body and count. "-" is stdout. */
+SCREE_API scree_status scree_clump_csv_write(const scree_clump_report *report, const char *path,
+                                             bool overwrite, scree_error *error);
+/* A sphere a line, x,y,z,radius below a line of words and the body's mass properties, in units of
+ * unit_m metres: what scree_particle_clump_read reads. */
+SCREE_API scree_status scree_spheres_write(const scree_clumps *clumps, const scree_clump *clump,
+                                           double unit_m, const char *path, bool overwrite,
+                                           scree_error *error);
+
 /* ---- Measures and distances: tables, JSON ---- */
 
 /* One measured scan. Texts are borrowed. */
@@ -247,6 +317,8 @@ typedef struct scree_measure_entry {
   double unit_m; /* metres per unit of the file */
   scree_measures measures;
   scree_topology topology;
+  bool described; /* else there are no descriptors: the surface bounds no body */
+  scree_descriptors descriptors;
 } scree_measure_entry;
 
 /* One array, an object per entry: every field of measures and topology by its name, in SI units
@@ -259,6 +331,11 @@ SCREE_API scree_status scree_measure_json_write(const scree_measure_entry *entri
 SCREE_API scree_status scree_measure_csv_write(const scree_measure_entry *entries,
                                                size_t entry_count, const char *path, bool overwrite,
                                                scree_error *error);
+/* Zingg's plot (1935) of those that are described: elongation I / L against flatness S / I, by the
+ * path's ending (.png, .svg, .pdf, .csv, .gnuplot). SCREE_BAD_ARGUMENT where none is. */
+SCREE_API scree_status scree_zingg_figure_write(const scree_measure_entry *entries,
+                                                size_t entry_count, const char *path,
+                                                bool overwrite, scree_error *error);
 
 /* The distance between two scans. */
 typedef struct scree_distance_entry {

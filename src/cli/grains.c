@@ -1,25 +1,41 @@
 #include "cli/grains.h"
 
 #include "cli/clump.h"
+#include "cli/clump_surface.h"
 #include "cli/surface.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+enum { MOST_SPHERES = 300 };
+
+/* "1e-4" or "clump:20" as one level more; false where it is neither, or there is that already. */
+static bool add_level(const char *word, cli_grain_options *o) {
+  static const char prefix[] = "clump:";
+  bool clump = !strncmp(word, prefix, sizeof prefix - 1);
+  double value;
+  if (!cli_real_from_text(word + (clump ? sizeof prefix - 1 : 0), &value)) return false;
+  if (clump ? !(value >= 1 && value <= MOST_SPHERES && value == floor(value))
+            : !(value > 0 && value <= 1))
+    return false;
+  size_t spheres = clump ? (size_t)value : 0;
+  for (size_t i = 0; i < o->rp_count; i++)
+    if (o->clump[i] == spheres && (clump || o->rp[i] == value)) return false;
+  o->rp[o->rp_count] = clump ? 1 : value;
+  o->clump[o->rp_count++] = spheres;
+  return true;
+}
+
 bool cli_parse_levels(const char *text, cli_grain_options *options) {
   options->rp_count = 0;
   while (*text) {
     char word[32];
     size_t length = strcspn(text, ",");
-    double value;
     if (length == 0 || length >= sizeof word || options->rp_count == CLI_MOST_LEVELS) return false;
     memcpy(word, text, length);
     word[length] = 0;
-    if (!cli_real_from_text(word, &value) || !(value > 0 && value <= 1)) return false;
-    for (size_t i = 0; i < options->rp_count; i++)
-      if (options->rp[i] == value) return false;
-    options->rp[options->rp_count++] = value;
+    if (!add_level(word, options)) return false;
     text += length;
     if (*text == ',' && !*++text) return false;
   }
@@ -38,6 +54,8 @@ static bool is_sphere_level(const cli_grain_options *o, size_t level) {
 void cli_level_name(const cli_grain_options *o, size_t level, char *buffer, size_t size) {
   if (is_sphere_level(o, level))
     snprintf(buffer, size, "spheres");
+  else if (o->rp_count && o->clump[level])
+    snprintf(buffer, size, "clump-%zu", o->clump[level]);
   else if (o->rp_count)
     snprintf(buffer, size, "rp-%g", o->rp[level]);
   else
@@ -82,14 +100,20 @@ static void describe(const maker *m, const char *word, const scree_scan *scan, s
 
 /* ---- scans ---- */
 
-static double smallest_rp(const cli_grain_options *o) {
+/* Of a scan of so many triangles, at that level. */
+static double level_rp(const cli_grain_options *o, size_t level, size_t triangle_count) {
+  if (!o->clump[level]) return o->rp[level];
+  return fmin(1, CLI_CLUMP_TRIANGLES / (double)triangle_count);
+}
+
+static double smallest_rp(const cli_grain_options *o, size_t triangle_count) {
   double least = 1;
-  for (size_t i = 0; i < o->rp_count; i++) least = fmin(least, o->rp[i]);
+  for (size_t i = 0; i < o->rp_count; i++) least = fmin(least, level_rp(o, i, triangle_count));
   return least;
 }
 
 static bool is_decimated(const cli_grain_options *o) {
-  return smallest_rp(o) < 1;
+  return smallest_rp(o, SIZE_MAX) < 1;
 }
 
 /* The scan is in metres, but where it is decimated only once it is multiplied by the scale. */
@@ -102,14 +126,18 @@ static scree_status make_levels(const maker *m, size_t shape, const char *word, 
   if (is_decimated(o)) {
     scree_simplify_options simplify = scree_default_simplify_options();
     simplify.method = (scree_method)o->method;
-    simplify.stop_count = scree_choice_target(smallest_rp(o), mesh->triangle_count);
+    simplify.stop_count =
+        scree_choice_target(smallest_rp(o, mesh->triangle_count), mesh->triangle_count);
     status = scree_curve_build_scaled(mesh, scale, &simplify, m->progress, &curve, m->error);
   }
   for (size_t level = 0; status == SCREE_OK && level < m->grains->level_count; level++) {
     scree_grain_options grain = scree_default_grain_options();
     size_t index = level * m->grains->shape_count + shape;
     grain.sphere = is_sphere_level(o, level);
-    if (o->rp_count && !grain.sphere) grain.rp = o->rp[level];
+    if (o->rp_count && !grain.sphere) {
+      grain.rp = level_rp(o, level, mesh->triangle_count);
+      grain.clump = o->clump[level];
+    }
     grain.mass_rule = o->mass_rule;
     if (!grain.sphere && (double)mesh->triangle_count * grain.rp > CLI_LARGEST_GRAIN) {
       char what[160];

@@ -1,6 +1,7 @@
 /* scree export: meshes and piles as other programs want them. */
 #include "base/platform.h"
-#include "cli/input.h"
+#include "cli/clump.h"
+#include "cli/clump_surface.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 
@@ -10,16 +11,18 @@
 #include <strings.h>
 
 typedef struct export_arguments {
-  const char *output, *reference;
+  const char *output, *reference, *to;
   cli_source source;
-  double to, density;
+  double density;
+  size_t spheres, particles;
   int view;
   bool centre, principal, overwrite;
 } export_arguments;
 
 enum { NAME_BYTES = 4096 };
 
-static const export_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .density = 2000};
+static const export_arguments defaults = {
+    .source = CLI_SOURCE_DEFAULTS, .density = 2000, .particles = 27};
 
 #define AT(field) offsetof(export_arguments, field)
 static const cli_option options[] = {
@@ -30,9 +33,17 @@ static const cli_option options[] = {
      ".vtp.series, "
      "with a .vtp each beside it.",
      0, 0, NULL},
-    {"to", 't', CLI_UNIT, AT(to), "UNIT",
-     "Unit of the meshes written. Default: the input's; mm for samples and checkpoints.", 0, 0,
-     NULL},
+    {"to", 't', CLI_TEXT, AT(to), "UNIT|CODE",
+     "Unit of the meshes written; default: the input's; mm for samples and checkpoints. Or the DEM "
+     "code that reads what is written: lammps, liggghts, yade, pfc or chrono. These take clumps: "
+     "of "
+     "a surface one is made.",
+     0, 0, NULL},
+    {"spheres", 's', CLI_COUNT, AT(spheres), "N",
+     "For a DEM code: spheres of the clump made of a surface. Default: the recommended number.", 1,
+     300, NULL},
+    {"particles", 0, CLI_COUNT, AT(particles), "N",
+     "For a DEM code: clumps that the script lets fall. Default: 27.", 1, 100000, NULL},
     {"centre", 'c', CLI_FLAG, AT(centre), NULL, "Put the centre of mass at the origin.", 0, 0,
      NULL},
     {"principal", 'p', CLI_FLAG, AT(principal), NULL,
@@ -69,7 +80,8 @@ static scree_export_options export_options(const cli_call *call) {
   const export_arguments *a = call->options;
   scree_export_options o = scree_default_export_options();
   o.density = a->density;
-  o.unit_m = a->to > 0 ? a->to : a->source.unit;
+  double unit;
+  o.unit_m = a->to && cli_unit_from_text(a->to, &unit) ? unit : a->source.unit;
   o.centre = a->centre;
   o.principal = a->principal;
   o.overwrite = a->overwrite;
@@ -141,6 +153,66 @@ static scree_status export_surface(const cli_call *call, scree_error *error) {
   status = vtp ? write_vtp(call, &scan.mesh, error) : write_mesh(call, &scan, json_path, error);
   scree_scan_free(&scan);
   return status == SCREE_BAD_MESH ? cli_name_in_error(call->inputs[0], error) : status;
+}
+
+/* ---- Clumps for other DEM codes ---- */
+
+/* The code that --to names; SCREE_DEM_CODE_COUNT where it names none. */
+static scree_dem_code code_of(const export_arguments *a) {
+  int code = 0;
+  while (code < SCREE_DEM_CODE_COUNT &&
+         (!a->to || strcmp(a->to, scree_dem_code_name((scree_dem_code)code)) != 0))
+    code++;
+  return (scree_dem_code)code;
+}
+
+static scree_status make_clump(const cli_call *call, scree_particle **particle,
+                               scree_error *error) {
+  const export_arguments *a = call->options;
+  const char *word = call->inputs[0];
+  cli_input_options input = cli_source_options(&a->source);
+  if (cli_is_clump(word)) return scree_particle_clump_read(word, a->source.unit, particle, error);
+  cli_clump_surface surface = {.triangles = CLI_CLUMP_TRIANGLES};
+  scree_clump_options o = scree_default_clump_options();
+  scree_clumps clumps;
+  scree_status status = cli_load_for_clump(word, &input, call->progress, &surface, error);
+  if (status != SCREE_OK) return status;
+  if (a->spheres) o.most = a->spheres;
+  status = scree_clumps_make(&surface.mesh, &o, call->progress, &clumps, error);
+  scree_mesh_free(&surface.mesh);
+  if (status != SCREE_OK) return cli_name_in_error(word, error);
+  const scree_clump *clump =
+      a->spheres ? scree_clumps_of_count(&clumps, a->spheres) : &clumps.clumps[clumps.recommended];
+  status = scree_clump_particle(&clumps, clump, particle, error);
+  scree_clumps_free(&clumps);
+  return status;
+}
+
+static scree_status export_clump(const cli_call *call, scree_error *error) {
+  const export_arguments *a = call->options;
+  scree_code_options o = scree_default_code_options();
+  scree_particle *particle;
+  scree_particle_measures m;
+  char name[128], shown[CLI_PRINTABLE_BYTES];
+  cli_short_name(call->inputs[0], name, sizeof name);
+  o.name = name;
+  o.density = a->density;
+  o.count = a->particles;
+  o.overwrite = a->overwrite;
+  scree_status status = cli_make_folder(a->output, error);
+  if (status == SCREE_OK) status = make_clump(call, &particle, error);
+  if (status != SCREE_OK) return status;
+  status = scree_clump_code_write(particle, code_of(a), &o, a->output, error);
+  scree_particle_measure(particle, &m);
+  cli_terminal_end();
+  if (status == SCREE_OK && !call->quiet)
+    printf("%s: a clump of %zu sphere%s for %s, %.6g kg at %g kg/m3, principal moments %.4g, %.4g, "
+           "%.4g kg m2\n",
+           cli_printable(a->output, shown), m.point_count, cli_plural(m.point_count), a->to,
+           a->density * m.volume, a->density, a->density * m.inertia[0], a->density * m.inertia[1],
+           a->density * m.inertia[2]);
+  scree_particle_free(particle);
+  return status;
 }
 
 /* ---- Checkpoints ---- */
@@ -282,11 +354,41 @@ static int check_call(const cli_call *call, bool world) {
   return 0;
 }
 
+/* 0, or 2 after telling what does not go with a DEM code. */
+static int check_clump_call(const cli_call *call) {
+  const export_arguments *a = call->options;
+  if (call->input_count > 1 || kind_of(call->inputs[0]) != SURFACE)
+    return cli_misuse(call->verb, "--to %s is for one surface or clump", a->to);
+  if (a->reference || a->view || a->centre || a->principal)
+    return cli_misuse(
+        call->verb,
+        "--to %s takes neither --reference, --view, --centre nor --principal: a clump "
+        "stands about its centre of mass, along its principal axes",
+        a->to);
+  if (a->spheres && cli_is_clump(call->inputs[0]))
+    return cli_misuse(call->verb, "--spheres is for a surface; %s is a clump", call->inputs[0]);
+  return 0;
+}
+
 static int run(const cli_call *call) {
   const export_arguments *a = call->options;
   scree_error error;
   scree_status status;
+  double unit;
   if (!a->output) return cli_misuse(call->verb, "say with -o what to write");
+  if (code_of(a) < SCREE_DEM_CODE_COUNT) {
+    int misuse = check_clump_call(call);
+    if (misuse) return misuse;
+    return export_clump(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
+  }
+  if (a->to && !cli_unit_from_text(a->to, &unit))
+    return cli_misuse(
+        call->verb,
+        "--to %s: must be a unit (m, cm, mm, um, inch, ft, km) or a DEM code (lammps, "
+        "liggghts, yade, pfc, chrono)",
+        a->to);
+  if (a->spheres || cli_is_clump(call->inputs[0]))
+    return cli_misuse(call->verb, "a clump is written for a DEM code: say which with --to");
   bool world = kind_of(call->inputs[0]) != SURFACE;
   int code = check_call(call, world);
   if (code) return code;
@@ -302,9 +404,15 @@ const cli_verb cli_verb_export = {
     .summary = "write a mesh or a pile for other programs",
     .inputs = "FILE|sample:NAME|CHECKPOINT...",
     .description =
-        "For DEM codes: a particle's mesh in the unit asked, with its centre of mass at the origin "
+        "A particle's mesh in the unit asked, with its centre of mass at the origin "
         "and its principal axes along x, y and z when asked, and mass, centre and inertia in a "
         "JSON beside it. The surface must be closed.\n\n"
+        "For other DEM codes (--to lammps, liggghts, yade, pfc or chrono) a clump is written into "
+        "a "
+        "folder as that code reads it, from a table of `scree clump` or made of a surface: spheres "
+        "about the centre of mass along the principal axes with the body's mass and inertia, and "
+        "for "
+        "the first three a script that lets some fall into a box. Other codes read the mesh.\n\n"
         "For ParaView: a surface as .vtp with the area of every triangle, and with --reference its "
         "distance to another surface; lengths in metres.\n\n"
         "A checkpoint or frame of a simulation becomes .vtp, as the view asked; or a folder: "
@@ -312,6 +420,7 @@ const cli_verb cli_verb_export = {
         "bodies.csv with every body's position, quaternion and velocities, and an STL per shape in "
         "the frame that the quaternions turn. docs/formats.md has every field.",
     .examples = "scree export result/phone.stl --principal --to m --density 1800 -o phone-dem.stl\n"
+                "scree export phone.stl --to lammps --spheres 20 -o phone-lammps\n"
                 "scree export result/phone.stl --reference phone.stl -o phone.vtp\n"
                 "scree export repose/checkpoint.scree --view contacts -o contacts.vtp\n"
                 "scree export repose/last.scree --to m -o pile\n"

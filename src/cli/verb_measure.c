@@ -10,7 +10,8 @@
 typedef struct measure_arguments {
   cli_source source;
   double weld;
-  bool json, csv;
+  const char *zingg;
+  bool json, csv, overwrite;
 } measure_arguments;
 
 static const measure_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
@@ -27,6 +28,10 @@ static const cli_option options[] = {
      "JSON: one array, an object per file, in SI units.", 0, 0, NULL},
     {"csv", 0, CLI_FLAG, offsetof(measure_arguments, csv), NULL,
      "CSV: one row per file, in SI units.", 0, 0, NULL},
+    {"zingg", 'z', CLI_TEXT, offsetof(measure_arguments, zingg), "FILE",
+     "Draw Zingg's plot of all files: .png, .svg or .pdf, or its data as .csv.", 0, 0, NULL},
+    {"force", 'f', CLI_FLAG, offsetof(measure_arguments, overwrite), NULL,
+     "Overwrite an existing file.", 0, 0, NULL},
 };
 
 /* ---- Text ---- */
@@ -98,6 +103,75 @@ static void print_measures(const scree_measures *m, double unit) {
   print_three("dimensions x, y, z", m->dimensions, unit, name, "");
   print_three("oriented dimensions", m->oriented_dimensions, unit, name, "");
   print_mass(m, unit, name);
+}
+
+static void print_shape(const scree_descriptors *d, double unit) {
+  const char *name = cli_unit_name(unit);
+  printf("  %-22s %.4f I/L, %.4f S/I: %s (Zingg)\n", "elongation, flatness", d->elongation,
+         d->flatness, scree_zingg_name(d->zingg));
+  printf("  %-22s %.5f\n", "Krumbein sphericity", d->krumbein_sphericity);
+  printf("  %-22s %.4f, %.4g\n", "roundness, angularity", d->roundness, d->angularity);
+  printf("  %-22s %.6g inside, %.6g around %s\n", "radii of spheres", d->inscribed_radius / unit,
+         d->bounding_radius / unit, name);
+}
+
+/* ---- Of a set ---- */
+
+static int by_value(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Least, quartiles and largest of sorted values, interpolated. */
+static void print_spread(const char *label, double *values, size_t count) {
+  qsort(values, count, sizeof *values, by_value);
+  printf("  %-22s", label);
+  for (int q = 0; q <= 4; q++) {
+    double at = (double)(count - 1) * q / 4;
+    size_t i = (size_t)at;
+    double next = i + 1 < count ? values[i + 1] : values[i];
+    printf(" %9.4g", values[i] + (at - (double)i) * (next - values[i]));
+  }
+  putchar('\n');
+}
+
+static const struct {
+  const char *label;
+  size_t offset; /* in scree_measure_entry */
+} spreads[] = {
+    {"equivalent diameter/m", offsetof(scree_measure_entry, measures.equivalent_diameter)},
+    {"elongation I/L", offsetof(scree_measure_entry, descriptors.elongation)},
+    {"flatness S/I", offsetof(scree_measure_entry, descriptors.flatness)},
+    {"Wadell sphericity", offsetof(scree_measure_entry, measures.sphericity)},
+    {"Krumbein sphericity", offsetof(scree_measure_entry, descriptors.krumbein_sphericity)},
+    {"convexity", offsetof(scree_measure_entry, measures.convexity)},
+    {"roundness", offsetof(scree_measure_entry, descriptors.roundness)},
+    {"angularity", offsetof(scree_measure_entry, descriptors.angularity)},
+};
+
+/* Distributions over all bodies described, and how many are of which class. */
+static void print_set(const scree_measure_entry *entries, size_t count) {
+  double *values = calloc(count, sizeof *values);
+  size_t bodies = 0, classes[4] = {0};
+  if (!values) return;
+  for (size_t i = 0; i < count; i++) {
+    bodies += entries[i].described;
+    if (entries[i].described) classes[entries[i].descriptors.zingg]++;
+  }
+  if (bodies > 1)
+    printf("\n%zu bodies            %9s %9s %9s %9s %9s\n", bodies, "least", "25 %", "median",
+           "75 %", "largest");
+  for (size_t k = 0; bodies > 1 && k < sizeof spreads / sizeof *spreads; k++) {
+    size_t used = 0;
+    for (size_t i = 0; i < count; i++)
+      if (entries[i].described)
+        values[used++] = *(const double *)((const char *)&entries[i] + spreads[k].offset);
+    print_spread(spreads[k].label, values, used);
+  }
+  for (int c = 0; bodies > 1 && c < 4; c++)
+    printf("%s%zu %s%s", c ? ", " : "  ", classes[c], scree_zingg_name((scree_zingg)c),
+           c == 3 ? "\n" : "");
+  free(values);
 }
 
 static void print_count(size_t count, const char *what) {
@@ -196,6 +270,10 @@ static scree_status measure_file(const cli_call *call, const char *file, scree_m
       .file = file, .format = format, .checksum = scan.checksum, .unit_m = scan.unit_m};
   status = scree_mesh_measure(&scan.mesh, &entry->measures, error);
   if (status == SCREE_OK) status = scree_mesh_topology(&scan.mesh, &entry->topology, error);
+  const scree_measures *m = &entry->measures;
+  entry->described = m->closed && m->has_volume && !m->inward;
+  if (status == SCREE_OK && entry->described)
+    status = scree_mesh_describe(&scan.mesh, m, &entry->descriptors, error);
   if (status == SCREE_OK) status = warn_of_shells(call, &scan.mesh, entry, error);
   if (status == SCREE_OK) entry->topology.degenerate_facet_count += scan.degenerate_count;
   scree_scan_free(&scan);
@@ -208,11 +286,18 @@ static void print_entry(const scree_measure_entry *entry, double unit) {
          cli_unit_name(unit));
   print_topology(&entry->topology);
   print_measures(&entry->measures, unit);
+  if (entry->described) print_shape(&entry->descriptors, unit);
 }
 
 static scree_status write_tables(const cli_call *call, const scree_measure_entry *entries,
                                  size_t count, scree_error *error) {
   const measure_arguments *arguments = call->options;
+  if (arguments->zingg) {
+    scree_status status =
+        scree_zingg_figure_write(entries, count, arguments->zingg, arguments->overwrite, error);
+    if (status != SCREE_OK) return status;
+  }
+  if (!arguments->json && !arguments->csv) print_set(entries, count);
   if (arguments->json)
     return scree_measure_json_write(entries, count, call->command_line, "-", false, error);
   if (arguments->csv) return scree_measure_csv_write(entries, count, "-", false, error);
@@ -224,6 +309,11 @@ static int run(const cli_call *call) {
   const measure_arguments *arguments = call->options;
   if (arguments->json && arguments->csv)
     return cli_misuse(call->verb, "--json and --csv exclude each other");
+  if (arguments->zingg) {
+    scree_error refused;
+    if (cli_check_output(call, arguments->zingg, arguments->overwrite, &refused) != SCREE_OK)
+      return cli_fail(&refused);
+  }
   scree_measure_entry *entries = calloc(call->input_count, sizeof *entries);
   char(*formats)[32] = calloc(call->input_count, sizeof *formats);
   scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory for the table of measures"};
@@ -259,7 +349,10 @@ const cli_verb cli_verb_measure = {
         "Measures each scan: area, volume, centroid, principal moments of inertia (of unit "
         "density), dimensions along the axes and of the least-volume box found, the diameter of "
         "the sphere of equal volume, sphericity (Wadell), convexity (volume over that of the "
-        "convex hull), and how its facets hang together. Integrals are exact for the polyhedron. "
+        "convex hull), how its facets hang together, and of a closed body what people report of "
+        "shapes: elongation, flatness and Zingg's class, Krumbein's sphericity, roundness and "
+        "angularity by local curvature, the largest sphere inside and the smallest around; of "
+        "several their distributions. Integrals are exact for the polyhedron. "
         "Where the surface is not closed, a warning says so. - is standard input.\n\n"
         "Text is in the file's unit; JSON and CSV are in SI units.",
     .examples = "scree measure phone.stl\n"

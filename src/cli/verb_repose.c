@@ -102,7 +102,9 @@ static const cli_option options[] = {
      "Print the experiment as it would be run, with units and comments, and stop.", 0, 0, NULL},
     {"samples", 0, CLI_FLAG, AT(samples), NULL, "The nine built-in devices as shapes.", 0, 0, NULL},
     {"rp", 'r', CLI_TEXT, AT(rp), "LIST",
-     "Decimate the scans first, as 1e-3, or 1e-5,1e-4,1e-3 for a run at each.", 0, 0, NULL},
+     "Decimate the scans first, as 1e-3, or 1e-5,1e-4,1e-3 for a run at each; clump:20 is a run "
+     "with clumps of 20 spheres that stand for the scans.",
+     0, 0, NULL},
     {"spheres", 0, CLI_FLAG, AT(spheres), NULL,
      "A run with spheres of the shapes' volumes: alone, or after those of --rp.", 0, 0, NULL},
     {"method", 'm', CLI_CHOICE, AT(method), "NAME",
@@ -422,7 +424,8 @@ static scree_status check_runs(repose *r) {
 static bool is_level_name(const char *name) {
   double rp;
   return !strcmp(name, "spheres") ||
-         (!strncmp(name, "rp-", 3) && cli_real_from_text(name + 3, &rp));
+         (!strncmp(name, "rp-", 3) && cli_real_from_text(name + 3, &rp)) ||
+         (!strncmp(name, "clump-", 6) && cli_real_from_text(name + 6, &rp));
 }
 
 /* What an earlier run left, of one level or of several: a page of the folder would show it. */
@@ -558,8 +561,9 @@ static int check_words(repose *r, size_t word_count) {
   if (a->resume && !a->output) return cli_misuse(r->call->verb, "--resume needs -o DIR");
   if (a->rp && !cli_parse_levels(a->rp, &r->grain_options))
     return cli_misuse(r->call->verb,
-                      "--rp %s: must be up to %d different numbers in (0, 1], as 1e-4,1e-3", a->rp,
-                      CLI_MOST_LEVELS);
+                      "--rp %s: must be up to %d different numbers in (0, 1] or clumps of 1 to 300 "
+                      "spheres, as 1e-4,1e-3,clump:20",
+                      a->rp, CLI_MOST_LEVELS);
   return 0;
 }
 

@@ -59,7 +59,7 @@ static scree_particle *new_particle(scree_particle_kind kind, scree_error *error
   return p;
 }
 
-static void set_solid(scree_particle_measures *m, const scree_solid *solid) {
+void scree_particle_set_solid(scree_particle_measures *m, const scree_solid *solid) {
   vec3 moments;
   quat q;
   scree_solid_principal(solid, &moments, &q);
@@ -146,7 +146,7 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
     return scree_fail(error, SCREE_BAD_MESH,
                       "particle: the mesh encloses a volume of %g m3: turned inside out?",
                       solid.volume);
-  set_solid(&p->measures, &solid);
+  scree_particle_set_solid(&p->measures, &solid);
   for (size_t v = 0; v < p->mesh.vertex_count; v++) {
     double *position = &p->mesh.positions[3 * v];
     vec3_store(position, into_frame(&p->measures, position));
@@ -318,7 +318,7 @@ scree_status scree_particle_clump(const double *centres, const double *radii, si
     p->measures.rounding = 0;
   } else {
     scree_solid solid = solid_of_clump(centres, radii, count);
-    set_solid(&p->measures, &solid);
+    scree_particle_set_solid(&p->measures, &solid);
   }
   scree_status status = p->measures.volume > 0 ? fill_clump(p, centres, radii, count, error)
                                                : scree_fail_memory(error, count, "a clump");
@@ -328,6 +328,15 @@ scree_status scree_particle_clump(const double *centres, const double *radii, si
   }
   *particle = p;
   return SCREE_OK;
+}
+
+scree_status scree_particle_clump_of(const double *centres, const double *radii, size_t count,
+                                     const scree_solid *solid, scree_particle **particle,
+                                     scree_error *error) {
+  if (!solid) return scree_particle_clump(centres, radii, count, NULL, particle, error);
+  scree_particle like = {.measures = {0}};
+  scree_particle_set_solid(&like.measures, solid);
+  return scree_particle_clump(centres, radii, count, &like, particle, error);
 }
 
 static scree_status restore(scree_particle *p, const scree_mesh *mesh, const double *centres,

@@ -2,6 +2,7 @@
 #ifndef SCREE_PARTICLE_PARTICLE_H
 #define SCREE_PARTICLE_PARTICLE_H
 
+#include "particle/mass.h"
 #include "particle/tree.h"
 
 #include <stdatomic.h>
@@ -61,6 +62,14 @@ void scree_particle_retain(scree_particle *particle);
 /* The surface alone, in the mesh's own coordinates, without mass: for walls. May be open. */
 scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
                                     scree_particle **particle, scree_error *error);
+
+/* Volume, size, centre, orientation and moments of inertia. */
+void scree_particle_set_solid(scree_particle_measures *measures, const scree_solid *solid);
+
+/* scree_particle_clump with the mass properties of a solid, or of the union where that is NULL. */
+scree_status scree_particle_clump_of(const double *centres, const double *radii, size_t count,
+                                     const scree_solid *solid, scree_particle **particle,
+                                     scree_error *error);
 
 /* A circle about the z axis, where a round sheet ends. */
 typedef struct scree_circle {

@@ -46,8 +46,23 @@ static scree_status make_level(const scree_mesh *scan, const scree_curve *curve,
   return status;
 }
 
+/* Of so many spheres, or as many as the body has use for; mass and inertia are the level's. */
+static scree_status make_clump(const scree_mesh *mesh, size_t count, const scree_progress *progress,
+                               scree_particle **particle, scree_error *error) {
+  scree_clump_options o = scree_default_clump_options();
+  scree_clumps clumps;
+  o.most = count;
+  scree_status status = scree_clumps_make(mesh, &o, progress, &clumps, error);
+  if (status != SCREE_OK) return status;
+  status = scree_clump_particle(&clumps, scree_clumps_of_count(&clumps, count), particle, error);
+  scree_clumps_free(&clumps);
+  return status;
+}
+
 static scree_status make_particle(const scree_mesh *mesh, const scree_grain_options *options,
-                                  double volume, scree_particle **particle, scree_error *error) {
+                                  double volume, const scree_progress *progress,
+                                  scree_particle **particle, scree_error *error) {
+  if (options->clump) return make_clump(mesh, options->clump, progress, particle, error);
   if (options->sphere)
     return scree_particle_sphere(cbrt(0.75 * volume / 3.14159265358979324), particle, error);
   scree_particle_options o = scree_default_particle_options();
@@ -70,9 +85,10 @@ scree_status scree_grain_make(const scree_mesh *scan, const scree_curve *curve,
     return scree_fail(error, SCREE_BAD_MESH, "the volume is %g m3: not an outward surface",
                       made.scan_volume);
   scree_mesh level = {0};
-  if (!options->sphere) status = make_level(scan, curve, options->rp, progress, &level, error);
+  if (!options->sphere || options->clump)
+    status = make_level(scan, curve, options->rp, progress, &level, error);
   if (status == SCREE_OK)
-    status = make_particle(&level, options, made.scan_volume, &made.run.particle, error);
+    status = make_particle(&level, options, made.scan_volume, progress, &made.run.particle, error);
   scree_mesh_free(&level);
   if (status != SCREE_OK) return status;
   scree_particle_measures m;

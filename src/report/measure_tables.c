@@ -4,7 +4,9 @@
 #include "report/csv.h"
 #include "report/json.h"
 
-typedef enum kind { REAL, COUNT, SIGNED, FLAG } kind;
+typedef enum kind { REAL, COUNT, SIGNED, FLAG, CLASS } kind;
+/* What a field needs to exist. */
+typedef enum need { NOTHING, VOLUME, BODY } need;
 
 /* A field of scree_measure_entry: count values (1, 3, or 9 as three rows of three). */
 typedef struct field {
@@ -12,20 +14,20 @@ typedef struct field {
   kind kind;
   size_t offset;
   int count;
-  bool of_volume; /* it does not exist where there is none */
+  need needs;
 } field;
 
-#define MEASURE(name, kind, count, of_volume)                                                      \
+#define MEASURE(name, kind, count, needs)                                                          \
   {                                                                                                \
 #name, kind, offsetof(scree_measure_entry, measures) + offsetof(scree_measures, name), count,  \
-        of_volume                                                                                  \
+        needs                                                                                      \
   }
-#define M(name, kind, count) MEASURE(name, kind, count, false)
-#define V(name, count)       MEASURE(name, REAL, count, true)
+#define M(name, kind, count) MEASURE(name, kind, count, NOTHING)
+#define V(name, count)       MEASURE(name, REAL, count, VOLUME)
 #define T(name, kind)                                                                              \
   {                                                                                                \
 #name, kind, offsetof(scree_measure_entry, topology) + offsetof(scree_topology, name), 1,      \
-        false                                                                                      \
+        NOTHING                                                                                    \
   }
 
 static const field measure_fields[] = {
@@ -70,18 +72,33 @@ static const field topology_fields[] = {
     T(manifold, FLAG),
     T(oriented, FLAG),
 };
+
+#define D(name, kind, count)                                                                       \
+  {                                                                                                \
+#name, kind, offsetof(scree_measure_entry, descriptors) + offsetof(scree_descriptors, name),   \
+        count, BODY                                                                                \
+  }
+static const field shape_fields[] = {
+    D(elongation, REAL, 1),          D(flatness, REAL, 1),         D(zingg, CLASS, 1),
+    D(krumbein_sphericity, REAL, 1), D(roundness, REAL, 1),        D(angularity, REAL, 1),
+    D(inscribed_radius, REAL, 1),    D(inscribed_centre, REAL, 3), D(bounding_radius, REAL, 1),
+    D(bounding_centre, REAL, 3),
+};
 #undef MEASURE
 #undef M
 #undef V
 #undef T
+#undef D
 
 enum {
   MEASURE_FIELDS = sizeof measure_fields / sizeof *measure_fields,
-  TOPOLOGY_FIELDS = sizeof topology_fields / sizeof *topology_fields
+  TOPOLOGY_FIELDS = sizeof topology_fields / sizeof *topology_fields,
+  SHAPE_FIELDS = sizeof shape_fields / sizeof *shape_fields
 };
 
 static bool exists(const scree_measure_entry *entry, const field *f) {
-  return !f->of_volume || entry->measures.has_volume;
+  return f->needs == NOTHING ||
+         (f->needs == VOLUME ? entry->measures.has_volume : entry->described);
 }
 
 static const void *value_of(const scree_measure_entry *entry, const field *f) {
@@ -106,6 +123,8 @@ static void json_field(scree_json *json, const scree_measure_entry *entry, const
     scree_json_number(json, f->name, (double)*(const long long *)value);
   } else if (f->kind == FLAG) {
     scree_json_bool(json, f->name, *(const bool *)value);
+  } else if (f->kind == CLASS) {
+    scree_json_text(json, f->name, scree_zingg_name(*(const scree_zingg *)value));
   } else if (f->count == 1) {
     scree_json_number(json, f->name, *(const double *)value);
   } else if (f->count == 3) {
@@ -131,6 +150,9 @@ static void json_entry(scree_json *json, const scree_measure_entry *entry,
   scree_json_text(json, "checksum", scree_checksum_text(entry->checksum, checksum));
   scree_json_number(json, "unit_m", entry->unit_m);
   for (int i = 0; i < MEASURE_FIELDS; i++) json_field(json, entry, &measure_fields[i]);
+  scree_json_object(json, "shape");
+  for (int i = 0; i < SHAPE_FIELDS; i++) json_field(json, entry, &shape_fields[i]);
+  scree_json_end(json);
   scree_json_object(json, "topology");
   for (int i = 0; i < TOPOLOGY_FIELDS; i++) json_field(json, entry, &topology_fields[i]);
   scree_json_end(json);
@@ -266,6 +288,8 @@ static void csv_fields(FILE *stream, const scree_measure_entry *entry, const fie
         fprintf(stream, "%zu", *(const size_t *)value);
       else if (fields[i].kind == SIGNED)
         fprintf(stream, "%lld", *(const long long *)value);
+      else if (fields[i].kind == CLASS)
+        fputs(scree_zingg_name(*(const scree_zingg *)value), stream);
       else
         fputs(*(const bool *)value ? "true" : "false", stream);
     }
@@ -279,6 +303,7 @@ scree_status scree_measure_csv_write(const scree_measure_entry *entries, size_t 
   fputs("file,unit_m", output.stream);
   csv_header(output.stream, measure_fields, MEASURE_FIELDS, "");
   csv_header(output.stream, topology_fields, TOPOLOGY_FIELDS, "topology_");
+  csv_header(output.stream, shape_fields, SHAPE_FIELDS, "shape_");
   putc('\n', output.stream);
   for (size_t i = 0; i < entry_count; i++) {
     scree_csv_text(output.stream, entries[i].file);
@@ -286,6 +311,7 @@ scree_status scree_measure_csv_write(const scree_measure_entry *entries, size_t 
     scree_csv_number(output.stream, entries[i].unit_m);
     csv_fields(output.stream, &entries[i], measure_fields, MEASURE_FIELDS);
     csv_fields(output.stream, &entries[i], topology_fields, TOPOLOGY_FIELDS);
+    csv_fields(output.stream, &entries[i], shape_fields, SHAPE_FIELDS);
     putc('\n', output.stream);
   }
   return scree_output_commit(&output, error);

@@ -29,11 +29,12 @@ static const char ending[] = ".levels";
 
 /* What a folder may hold: the file, the page's name for it, what says it to readers without
  * JavaScript, and the picture that stands in for the 3D view (NULL: none). */
-enum { CHOICE, STUDY, HEAP, POUR, SCENE, RESULT_COUNT };
+enum { CHOICE, STUDY, CLUMP, HEAP, POUR, SCENE, RESULT_COUNT };
 static const struct {
   const char *file, *key, *text, *picture;
 } results[RESULT_COUNT] = {{"choice.json", "choice", "choice.txt", NULL},
                            {"study.json", "study", NULL, NULL},
+                           {"clump.json", "clump", "clump.txt", NULL},
                            {"result.json", "heap", "result.txt", "heap.png"},
                            {"drop.json", "pour", "drop.txt", "drop.png"},
                            {"result.json", "scene", "result.txt", "scene.png"}};
@@ -318,7 +319,7 @@ static scree_status find_results(page *p, const char *folder, name_list *found) 
         p->error, SCREE_BAD_FILE,
         "%s: holds no results: neither choice.json of `scree choose -o` nor "
         "result.json of `scree repose -o` or `scree run -o` nor study.json of `scree study` nor "
-        "drop.json of `scree drop`",
+        "drop.json of `scree drop` nor clump.json of `scree clump -o`",
         folder);
   return status;
 }

@@ -17,6 +17,7 @@ with open("open.off", "w") as file:  # a tetrahedron without one facet: repair h
 BALL, SOLID = "sample:icosphere-3", "sample:box-12"
 VERBS = {  # heading: calls that together print every field
     "scree choose": [["choose", BALL, "open.off", "--errors", "--distance"]],
+    "scree clump": [["clump", SOLID, "--max", "2"]],
     "scree curve": [["curve", BALL, "--distance", "--per-decade", "1"]],
     "scree measure": [["measure", SOLID]],
     "scree distance": [["distance", SOLID, BALL, "--samples", "100"]],

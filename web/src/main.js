@@ -1,6 +1,7 @@
 // Fills the page from the data in it. Everything that comes from files is set as text.
 import './page.css';
 import { ChoiceSection } from './choice.js';
+import { ClumpSection } from './clump.js';
 import { HeapSection } from './heap.js';
 import { decoderReady } from './packed.js';
 import { setShapeColors } from './pile.js';
@@ -21,7 +22,7 @@ function originOf(object) {
 function provenanceRows(folder) {
   const rows = [];
   const add = (what, value) => value !== null && value !== undefined && rows.push({ what, value: String(value) });
-  const first = folder.choice?.[0];
+  const first = folder.choice?.[0] ?? folder.clump?.[0];
   const run = folder.provenance ?? folder.heap ?? folder.pour ?? folder.scene ?? {};
   add('results', folder.folder);
   add('scree', run.version ?? first?.version);
@@ -33,7 +34,7 @@ function provenanceRows(folder) {
   add('started', run.started);
   if (run.elapsed_s !== undefined) add('time', `${number(run.elapsed_s, 3)} s, ${number(run.processor_s, 3)} s of processor time, ${run.threads} threads`);
   if (run.processor) add('machine', `${run.processor}, ${run.processors} processors; ${run.system}`);
-  for (const object of folder.choice?.filter((entry) => !entry.set) ?? []) add(`input ${object.name}`, originOf(object));
+  for (const object of [...(folder.choice?.filter((entry) => !entry.set) ?? []), ...(folder.clump ?? [])]) add(`input ${object.name}`, originOf(object));
   for (const shape of [...(folder.heap?.shapes ?? []), ...(folder.pour?.shapes ?? []), ...(folder.scene?.shapes ?? [])]) add(`shape ${shape.name}`, shape.source);
   if (folder.heap) add('seed', folder.heap.experiment.seed);
   if (folder.pour) add('seed', folder.pour.options.seed);
@@ -47,6 +48,7 @@ async function fill() {
   for (const folder of data.folders) {
     const host = element('section', null, page);
     if (folder.choice) new ChoiceSection(host, folder);
+    if (folder.clump) new ClumpSection(host, folder);
     if (folder.heap) new HeapSection(host, folder);
     if (folder.pour) new PourSection(host, folder);
     if (folder.scene) new SceneSection(host, folder);

@@ -1,7 +1,7 @@
 // A 3D view of a mesh that is turned with mouse, finger or arrow keys. Flat shading, so that facets are seen.
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, LineBasicMaterial, LineSegments, MathUtils,
-  Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, IcosahedronGeometry, InstancedMesh, LineBasicMaterial, LineSegments, MathUtils,
+  Matrix4, Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 
@@ -176,6 +176,21 @@ export class View {
         color: only ? 0x4477aa : 0x101018, transparent: true, opacity: dense < 5000 ? 0.9 : dense < 20000 ? 0.5 : 0.25,
       })));
     }
+    this.place(frame);
+  }
+
+  // spheres: rows x, y, z, radius in the mesh's units; over them the mesh's edges, if asked for.
+  showSpheres(spheres, mesh, frame, wire) {
+    this.clear();
+    const balls = new InstancedMesh(new IcosahedronGeometry(1, 4), new MeshStandardMaterial({ color: 0xd08a3c, roughness: 0.7 }), spheres.length);
+    spheres.forEach(([x, y, z, r], i) => balls.setMatrixAt(i, new Matrix4().makeScale(r, r, r).setPosition(x, y, z)));
+    this.parts.push(balls);
+    if (wire) this.parts.push(new LineSegments(edges(mesh), new LineBasicMaterial({ color: 0x101018, transparent: true, opacity: 0.45 })));
+    this.place(frame);
+  }
+
+  // Scales and moves all parts so that the frame stands about the origin.
+  place(frame) {
     for (const part of this.parts) {
       part.scale.setScalar(2 / frame.size);
       part.position.set(...frame.centre).multiplyScalar(-2 / frame.size);

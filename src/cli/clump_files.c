@@ -1,0 +1,134 @@
+#include "cli/clump_files.h"
+
+#include "cli/output.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *const figures[] = {"clump.png", "clump.svg", "clump.pdf"};
+static const char *const others[] = {"clump.json", "clump.csv", "clump.txt", "provenance.json",
+                                     "report.html"};
+enum { FIGURE_COUNT = 3, OTHER_COUNT = 5 };
+
+static bool name_taken(const clump_run *run, size_t before, const char *name) {
+  for (size_t k = 0; k < before; k++)
+    if (!strcmp(run->objects[k].name, name)) return true;
+  return false;
+}
+
+void clump_name_objects(clump_run *run) {
+  for (size_t i = 0; i < run->count; i++) {
+    char *name = run->objects[i].name, plain[CLUMP_NAME_BYTES - 24];
+    run->objects[i].word = run->call->inputs[i];
+    cli_short_name(run->objects[i].word, plain, sizeof plain);
+    snprintf(name, CLUMP_NAME_BYTES, "%s", plain);
+    for (size_t n = 2; name_taken(run, i, name); n++)
+      snprintf(name, CLUMP_NAME_BYTES, "%s-%zu", plain, n);
+  }
+}
+
+static scree_status join(const clump_run *run, const char *name, const char *ending,
+                         char path[CLUMP_PATH_BYTES], scree_error *error) {
+  const clump_arguments *a = run->call->options;
+  int length = snprintf(path, CLUMP_PATH_BYTES, "%s/%s%s", a->output, name, ending);
+  return length < CLUMP_PATH_BYTES
+             ? SCREE_OK
+             : cli_refuse(error, SCREE_LIMIT, a->output, "the path is too long");
+}
+
+static scree_status check(const clump_run *run, const char *name, const char *ending,
+                          scree_error *error) {
+  const clump_arguments *a = run->call->options;
+  char path[CLUMP_PATH_BYTES];
+  scree_status status = join(run, name, ending, path, error);
+  return status == SCREE_OK ? cli_check_output(run->call, path, a->overwrite, error) : status;
+}
+
+scree_status clump_check_files(const clump_run *run, scree_error *error) {
+  const clump_arguments *a = run->call->options;
+  scree_status status = cli_make_folder(a->output, error);
+  for (size_t i = 0; i < run->count && status == SCREE_OK; i++)
+    status = check(run, run->objects[i].name, ".csv", error);
+  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
+    status = check(run, figures[i], "", error);
+  for (int i = 0; i < OTHER_COUNT && status == SCREE_OK; i++)
+    status = check(run, others[i], "", error);
+  return status;
+}
+
+scree_status clump_report_make(const clump_run *run, scree_clump_report *report,
+                               scree_error *error) {
+  const clump_arguments *a = run->call->options;
+  scree_clump_entry *entries = calloc(run->count, sizeof *entries);
+  *report = (scree_clump_report){entries, run->count, run->call->command_line};
+  if (!entries)
+    return cli_refuse(error, SCREE_OUT_OF_MEMORY, run->objects[0].word, "out of memory");
+  for (size_t i = 0; i < run->count; i++) {
+    clump_object *o = &run->objects[i];
+    if (a->output) snprintf(o->file, sizeof o->file, "%s.csv", o->name);
+    entries[i] = (scree_clump_entry){.name = o->name,
+                                     .file = o->word,
+                                     .format = o->surface.format,
+                                     .checksum = o->surface.checksum,
+                                     .unit_m = o->surface.unit_m,
+                                     .note = o->surface.note[0] ? o->surface.note : NULL,
+                                     .scan_triangle_count = o->surface.scan_triangle_count,
+                                     .mesh = &o->surface.mesh,
+                                     .clumps = &o->clumps,
+                                     .chosen = o->chosen,
+                                     .clump_file = a->output ? o->file : NULL};
+  }
+  return SCREE_OK;
+}
+
+void clump_report_free(scree_clump_report *report) {
+  free((void *)(uintptr_t)report->entries);
+  report->entries = NULL;
+}
+
+static scree_status write_text(const clump_run *run, scree_error *error) {
+  const clump_arguments *a = run->call->options;
+  char *text = NULL, path[CLUMP_PATH_BYTES];
+  size_t size;
+  scree_status status = join(run, "clump.txt", "", path, error);
+  if (status != SCREE_OK) return status;
+  FILE *stream = open_memstream(&text, &size);
+  if (stream) clump_print(stream, run);
+  if (!stream || fclose(stream) != 0)
+    status = cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
+  else
+    status = scree_text_write(text, path, a->overwrite, error);
+  free(text);
+  return status;
+}
+
+scree_status clump_write_files(clump_run *run, const scree_clump_report *report,
+                               scree_error *error) {
+  const clump_arguments *a = run->call->options;
+  char path[CLUMP_PATH_BYTES];
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < run->count && status == SCREE_OK; i++) {
+    const clump_object *o = &run->objects[i];
+    status = join(run, o->name, ".csv", path, error);
+    if (status == SCREE_OK)
+      status =
+          scree_spheres_write(&o->clumps, o->chosen, o->surface.unit_m, path, a->overwrite, error);
+  }
+  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++) {
+    status = join(run, figures[i], "", path, error);
+    if (status == SCREE_OK) status = scree_clump_figure_write(report, path, a->overwrite, error);
+  }
+  if (status == SCREE_OK) status = join(run, "clump.json", "", path, error);
+  if (status == SCREE_OK) status = scree_clump_json_write(report, path, a->overwrite, error);
+  if (status == SCREE_OK) status = join(run, "clump.csv", "", path, error);
+  if (status == SCREE_OK) status = scree_clump_csv_write(report, path, a->overwrite, error);
+  if (status == SCREE_OK) status = write_text(run, error);
+  if (status == SCREE_OK) status = join(run, "provenance.json", "", path, error);
+  if (status == SCREE_OK)
+    status =
+        scree_provenance_write(&run->start, run->call->command_line, path, a->overwrite, error);
+  if (status == SCREE_OK) status = join(run, "report.html", "", path, error);
+  return status == SCREE_OK
+             ? scree_page_write_named(a->output, a->output, path, a->overwrite, error)
+             : status;
+}

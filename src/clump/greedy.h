@@ -1,0 +1,12 @@
+/* Published ways of placing spheres one by one, to compare with and to reproduce. */
+#ifndef SCREE_CLUMP_GREEDY_H
+#define SCREE_CLUMP_GREEDY_H
+
+#include "clump/path.h"
+
+/* Fills path->best by the method, which is not SCREE_CLUMP_FITTED; where it gives fewer spheres
+ * than path->most, larger counts have count 0. */
+scree_status scree_greedy_fill(scree_path *path, const scree_clump_options *options,
+                               scree_error *error);
+
+#endif

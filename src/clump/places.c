@@ -1,0 +1,142 @@
+#include "clump/places.h"
+
+#include "base/alloc.h"
+
+#include <string.h>
+
+static const float
+    reach = 1.15f,        /* of a new sphere, in distances free: it will overlap its neighbours */
+    apart2 = 1.5f * 1.5f; /* of found places, in distances free, squared */
+static const double least_radius = 0.01;
+
+static bool is_taken(size_t i, size_t j, size_t k) {
+  return (i + j + k) % 2 == 0;
+}
+
+static void push(scree_places *p, const double at[3], float value, double volume) {
+  if (!(value < 0)) return;
+  p->x[p->count] = (float)at[0];
+  p->y[p->count] = (float)at[1];
+  p->z[p->count] = (float)at[2];
+  p->volume[p->count] = (float)volume;
+  p->depth[p->count++] = -value;
+}
+
+/* Nodes of one cell's finer grid, each of which belongs to one cell alone. */
+static void push_brick(const scree_field *f, const size_t cell[3], const float *values,
+                       scree_places *p) {
+  double fine = scree_field_spacing(f), volume = 2 * fine * fine * fine;
+  for (size_t i = 0; i < SCREE_FINER; i++)
+    for (size_t j = 0; j < SCREE_FINER; j++)
+      for (size_t k = 0; k < SCREE_FINER; k++) {
+        if (!is_taken(i, j, k)) continue;
+        const double at[3] = {f->low[0] + (double)cell[0] * f->step + (double)i * fine,
+                              f->low[1] + (double)cell[1] * f->step + (double)j * fine,
+                              f->low[2] + (double)cell[2] * f->step + (double)k * fine};
+        push(p, at, values[(i * SCREE_BRICK_SIDE + j) * SCREE_BRICK_SIDE + k], volume);
+      }
+}
+
+static void collect(const scree_field *f, scree_places *p) {
+  size_t node = 0;
+  for (size_t i = 0; i < f->n[0]; i++)
+    for (size_t j = 0; j < f->n[1]; j++)
+      for (size_t k = 0; k < f->n[2]; k++, node++) {
+        const double at[3] = {f->low[0] + (double)i * f->step, f->low[1] + (double)j * f->step,
+                              f->low[2] + (double)k * f->step};
+        if (f->brick[node] < 0)
+          push(p, at, f->values[node], f->step * f->step * f->step);
+        else
+          push_brick(f, (size_t[3]){i, j, k}, f->bricks[f->brick[node]], p);
+      }
+}
+
+scree_status scree_places_make(const scree_field *field, scree_places *places, scree_error *error) {
+  size_t room = field->n[0] * field->n[1] * field->n[2] +
+                field->brick_count * SCREE_FINER * SCREE_FINER * SCREE_FINER / 2;
+  scree_places p = {0};
+  SCREE_ALLOC_OR(p.x, room, error, out_of_memory);
+  SCREE_ALLOC_OR(p.y, room, error, out_of_memory);
+  SCREE_ALLOC_OR(p.z, room, error, out_of_memory);
+  SCREE_ALLOC_OR(p.depth, room, error, out_of_memory);
+  SCREE_ALLOC_OR(p.volume, room, error, out_of_memory);
+  collect(field, &p);
+  SCREE_ALLOC_OR(p.left, p.count, error, out_of_memory);
+  *places = p;
+  return SCREE_OK;
+out_of_memory:
+  scree_places_free(&p);
+  return SCREE_OUT_OF_MEMORY;
+}
+
+void scree_places_free(scree_places *places) {
+  scree_free(places->x);
+  scree_free(places->y);
+  scree_free(places->z);
+  scree_free(places->depth);
+  scree_free(places->volume);
+  scree_free(places->left);
+  *places = (scree_places){0};
+}
+
+static float distance2(const scree_places *p, size_t i, float x, float y, float z) {
+  float dx = p->x[i] - x, dy = p->y[i] - y, dz = p->z[i] - z;
+  return dx * dx + dy * dy + dz * dz;
+}
+
+static void keep_off(scree_places *p, const scree_sphere *s) {
+  float x = (float)s->centre[0], y = (float)s->centre[1], z = (float)s->centre[2],
+        r = (float)s->radius;
+  for (size_t i = 0; i < p->count; i++) {
+    float free = sqrtf(distance2(p, i, x, y, z)) - r;
+    p->left[i] = free < p->left[i] ? free : p->left[i];
+  }
+}
+
+static size_t deepest(const scree_places *p) {
+  size_t best = 0;
+  for (size_t i = 1; i < p->count; i++)
+    if (p->left[i] > p->left[best]) best = i;
+  return best;
+}
+
+/* As counted by the points within: those that are free, and the sphere's volume outside. */
+static double gain_of(const scree_places *p, const scree_sphere *s, double outside) {
+  const double pi = 3.14159265358979323846;
+  float x = (float)s->centre[0], y = (float)s->centre[1], z = (float)s->centre[2],
+        r2 = (float)(s->radius * s->radius), free = 0, inside = 0;
+  for (size_t i = 0; i < p->count; i++) {
+    if (distance2(p, i, x, y, z) >= r2) continue;
+    inside += p->volume[i];
+    if (p->left[i] > 0) free += p->volume[i];
+  }
+  double all = 4 * pi / 3 * s->radius * s->radius * s->radius;
+  return (double)free - outside * fmax(0, all - (double)inside);
+}
+
+static void insert(scree_place *found, size_t count, scree_place place) {
+  for (; count > 0 && found[count - 1].gain < place.gain; count--) found[count] = found[count - 1];
+  found[count] = place;
+}
+
+size_t scree_places_free_of(scree_places *p, const scree_sphere *spheres, size_t count,
+                            double outside, scree_place *found, size_t most) {
+  const float passed_over = 1e-30f; /* free, but never the deepest */
+  size_t number = 0;
+  if (p->count == 0) return 0;
+  memcpy(p->left, p->depth, p->count * sizeof *p->left);
+  for (size_t s = 0; s < count; s++) keep_off(p, &spheres[s]);
+  while (number < most) {
+    size_t best = deepest(p);
+    float free = p->left[best], x = p->x[best], y = p->y[best], z = p->z[best];
+    if (!(free > passed_over)) break;
+    scree_place place = {
+        {{(double)x, (double)y, (double)z}, fmax((double)(reach * free), least_radius)}, 0};
+    place.gain = gain_of(p, &place.sphere, outside);
+    insert(found, number++, place);
+    for (size_t i = 0; number < most && i < p->count; i++)
+      if (p->left[i] > 0 && distance2(p, i, x, y, z) <= apart2 * free * free)
+        p->left[i] = passed_over;
+  }
+  return number;
+}

@@ -1,0 +1,30 @@
+/* Where a sphere may be added: points inside a body, and how deep they lie. */
+#ifndef SCREE_CLUMP_PLACES_H
+#define SCREE_CLUMP_PLACES_H
+
+#include "clump/field.h"
+
+typedef struct scree_places {
+  size_t count;
+  float *x, *y, *z, *depth;
+  float *volume; /* that each stands for */
+  float *left;   /* scratch: from the surface and from the spheres there are */
+} scree_places;
+
+/* Nodes of the coarse grid, and where that has finer cells, half of theirs. */
+scree_status scree_places_make(const scree_field *field, scree_places *places, scree_error *error);
+void scree_places_free(scree_places *places);
+
+/* A sphere that may be added, and by how much the volume covered inside would grow, less the weight
+ * `outside` of what it would cover outside. */
+typedef struct scree_place {
+  scree_sphere sphere;
+  double gain;
+} scree_place;
+
+/* Up to `most` spheres at the deepest points that none of the spheres covers, each out of the
+ * others' neighbourhood; most gain first. Their radius reaches a little over the distance free. */
+size_t scree_places_free_of(scree_places *places, const scree_sphere *spheres, size_t count,
+                            double outside, scree_place *found, size_t most);
+
+#endif

@@ -1,0 +1,226 @@
+/* Greedy methods, and what clumps are written to: tables, figures, particles, other codes. */
+#include "base/vec.h"
+#include "support/alloc_fail.h"
+#include "support/check.h"
+#include "support/folder.h"
+#include "support/overlap.h"
+#include "support/shapes.h"
+
+/* A box, its clumps, and all that is written of them. */
+typedef struct made {
+  scree_mesh mesh;
+  scree_clumps clumps;
+  scree_clump_entry entry;
+  scree_clump_report report;
+  scree_particle *particle;
+} made;
+
+static scree_clumps make(const scree_mesh *mesh, scree_clump_method method, size_t most) {
+  scree_clump_options options = scree_default_clump_options();
+  scree_clumps clumps;
+  scree_error error;
+  options.most = most;
+  options.method = method;
+  CHECK_OK(scree_clumps_make(mesh, &options, NULL, &clumps, &error), error);
+  return clumps;
+}
+
+static void set_up(made *m) {
+  scree_error error;
+  mat3 turn = quat_to_mat3(quat_unit((quat){0.9, 0.2, -0.3, 0.1}));
+  *m = (made){.mesh = shape_grid_box(0.03, 0.02, 0.012, 2)};
+  shape_transform(&m->mesh, &turn, (vec3){0.1, 0.2, -0.3});
+  m->clumps = make(&m->mesh, SCREE_CLUMP_PEELING, 8);
+  m->entry = (scree_clump_entry){.name = "box",
+                                 .file = "box.stl",
+                                 .format = "STL binary",
+                                 .unit_m = 1e-3,
+                                 .mesh = &m->mesh,
+                                 .clumps = &m->clumps,
+                                 .chosen = scree_clumps_of_count(&m->clumps, 8)};
+  m->report = (scree_clump_report){&m->entry, 1, "scree clump box.stl"};
+  CHECK_OK(scree_clump_particle(&m->clumps, m->entry.chosen, &m->particle, &error), error);
+}
+
+static void clean_up(made *m) {
+  scree_particle_free(m->particle);
+  scree_clumps_free(&m->clumps);
+  scree_mesh_free(&m->mesh);
+}
+
+/* All spheres moved together cover more than any method that places one by one, as points count it.
+ */
+static void fitted_is_best(void **state) {
+  (void)state;
+  enum { SPHERES = 5, LINES = 2000 };
+  scree_mesh mesh = shape_grid_box(3, 2, 1.2, 2);
+  double best = 0;
+  for (int method = 0; scree_clump_method_name((scree_clump_method)method); method++) {
+    scree_clumps clumps = make(&mesh, (scree_clump_method)method, SPHERES);
+    const scree_clump *c = scree_clumps_of_count(&clumps, SPHERES);
+    overlap_counts counts = overlap_count(&mesh, c->spheres, c->sphere_count, LINES);
+    double iou = overlap_iou(&counts);
+    CHECK_NEAR(iou, c->iou, 0.015);
+    if (method == SCREE_CLUMP_FITTED)
+      best = iou;
+    else
+      assert_true(iou < best);
+    assert_true(c->sphere_count >= 1 && iou > 0.001);
+    if (method == SCREE_CLUMP_PEELING || method == SCREE_CLUMP_FAVIER)
+      CHECK_NEAR(c->outside, 0, 1e-9); /* inscribed */
+    scree_clumps_free(&clumps);
+  }
+  scree_mesh_free(&mesh);
+}
+
+/* The largest ball inside a box touches its widest faces; the next ones are as large. */
+static void peeling_begins_with_the_largest_ball(void **state) {
+  (void)state;
+  made m;
+  set_up(&m);
+  CHECK_NEAR(scree_clumps_of_count(&m.clumps, 1)->spheres[0].radius, 0.006, 2e-4);
+  for (size_t i = 1; i < m.clumps.clump_count; i++)
+    assert_true(m.clumps.clumps[i].iou >= m.clumps.clumps[i - 1].iou - 1e-12);
+  clean_up(&m);
+}
+
+/* No two spheres of a bubble pack meet at a larger angle than asked. */
+static void bubbles_keep_their_angle(void **state) {
+  (void)state;
+  const double pi = 3.14159265358979323846;
+  scree_mesh mesh = shape_grid_box(3, 2, 1.2, 2);
+  scree_clump_options options = scree_default_clump_options();
+  scree_clumps clumps;
+  scree_error error;
+  options.method = SCREE_CLUMP_BUBBLE;
+  options.angle_deg = 100;
+  options.ratio = 0.3;
+  CHECK_OK(scree_clumps_make(&mesh, &options, NULL, &clumps, &error), error);
+  const scree_clump *c = &clumps.clumps[clumps.clump_count - 1];
+  assert_true(c->sphere_count > 2);
+  for (size_t i = 0; i < c->sphere_count; i++) {
+    assert_true(c->spheres[i].radius >= 0.3 * c->spheres[0].radius);
+    for (size_t k = 0; k < i; k++) {
+      const scree_sphere *s = &c->spheres[i], *t = &c->spheres[k];
+      double d = vec3_distance(vec3_load(s->centre), vec3_load(t->centre));
+      double cosine =
+          (s->radius * s->radius + t->radius * t->radius - d * d) / (2 * s->radius * t->radius);
+      assert_true(180 - 180 / pi * acos(fmax(-1, fmin(1, cosine))) <= 100 + 1e-6);
+    }
+  }
+  scree_clumps_free(&clumps);
+  scree_mesh_free(&mesh);
+}
+
+/* Mass, centre and inertia are the box's, by the closed form, also through a file. */
+static void the_bodys_mass_goes_along(void **state) {
+  (void)state;
+  made m;
+  scree_error error;
+  set_up(&m);
+  CHECK_OK(scree_spheres_write(&m.clumps, m.entry.chosen, 1e-3, in_folder("c.csv"), false, &error),
+           error);
+  scree_particle *read;
+  CHECK_OK(scree_particle_clump_read(in_folder("c.csv"), 1e-3, &read, &error), error);
+  const double s[3] = {0.03, 0.02, 0.012}, volume = s[0] * s[1] * s[2];
+  scree_particle *both[2] = {m.particle, read};
+  for (int i = 0; i < 2; i++) {
+    scree_particle_measures p;
+    scree_particle_measure(both[i], &p);
+    assert_int_equal(p.kind, SCREE_PARTICLE_CLUMP);
+    assert_int_equal(p.point_count, m.entry.chosen->sphere_count);
+    CHECK_NEAR(p.volume, volume, 1e-12 * volume);
+    for (int k = 0; k < 3; k++) {
+      double a = s[(k + 1) % 3], b = s[(k + 2) % 3], moment = volume / 12 * (a * a + b * b);
+      CHECK_NEAR(p.inertia[k], moment, 1e-9 * moment);
+      CHECK_NEAR(p.centre[k], m.clumps.measures.centroid[k], 1e-12);
+    }
+  }
+  scree_particle_free(read);
+  clean_up(&m);
+}
+
+static void a_wrong_mass_is_told(void **state) {
+  (void)state;
+  static const char *const lines[] = {"# volume -1", "# volume", "# centroid 1 2",
+                                      "# inertia 1 1 1 0 0 x", "# inertia 1 1 9 0 0 0"};
+  for (size_t i = 0; i < sizeof lines / sizeof *lines; i++) {
+    FILE *f = fopen(in_folder("w.csv"), "w");
+    assert_non_null(f);
+    fprintf(f, "x,y,z,radius\n%s\n0,0,0,1\n", lines[i]);
+    (void)fclose(f);
+    scree_particle *particle;
+    scree_error error;
+    assert_int_equal(scree_particle_clump_read(in_folder("w.csv"), 1e-3, &particle, &error),
+                     SCREE_BAD_FILE);
+    assert_non_null(strstr(error.message, "line 2"));
+  }
+}
+
+static scree_status write_json(void *context, scree_error *error) {
+  made *m = context;
+  return scree_clump_json_write(&m->report, in_folder("a.json"), true, error);
+}
+static scree_status write_csv(void *context, scree_error *error) {
+  made *m = context;
+  return scree_clump_csv_write(&m->report, in_folder("a.csv"), true, error);
+}
+static scree_status write_figure(void *context, scree_error *error) {
+  made *m = context;
+  return scree_clump_figure_write(&m->report, in_folder("a-figure.csv"), true, error);
+}
+static scree_status write_spheres(void *context, scree_error *error) {
+  made *m = context;
+  return scree_spheres_write(&m->clumps, m->entry.chosen, 1, in_folder("s.csv"), true, error);
+}
+static scree_status make_particle(void *context, scree_error *error) {
+  made *m = context;
+  scree_particle *particle = NULL;
+  scree_status status = scree_clump_particle(&m->clumps, m->entry.chosen, &particle, error);
+  scree_particle_free(particle);
+  return status;
+}
+static scree_status write_code(void *context, scree_error *error) {
+  made *m = context;
+  scree_code_options o = scree_default_code_options();
+  scree_status status = SCREE_OK;
+  o.overwrite = true;
+  for (int code = 0; code < SCREE_DEM_CODE_COUNT && status == SCREE_OK; code++)
+    status = scree_clump_code_write(m->particle, (scree_dem_code)code, &o, in_folder("."), error);
+  return status;
+}
+
+static void memory_may_run_out(void **state) {
+  (void)state;
+  made m;
+  set_up(&m);
+  check_allocation_failures(write_json, &m);
+  check_allocation_failures(write_csv, &m);
+  check_allocation_failures(write_figure, &m);
+  check_allocation_failures(write_spheres, &m);
+  check_allocation_failures(make_particle, &m);
+  check_allocation_failures(write_code, &m);
+  clean_up(&m);
+}
+
+static void a_mesh_is_no_clump(void **state) {
+  (void)state;
+  scree_particle *box = shape_particle(shape_box(1, 2, 3));
+  scree_error error;
+  assert_int_equal(scree_clump_code_write(box, SCREE_DEM_PFC, NULL, in_folder("."), &error),
+                   SCREE_BAD_ARGUMENT);
+  scree_particle_free(box);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(fitted_is_best),
+      cmocka_unit_test(peeling_begins_with_the_largest_ball),
+      cmocka_unit_test(bubbles_keep_their_angle),
+      cmocka_unit_test(the_bodys_mass_goes_along),
+      cmocka_unit_test(a_wrong_mass_is_told),
+      cmocka_unit_test(memory_may_run_out),
+      cmocka_unit_test(a_mesh_is_no_clump),
+  };
+  return cmocka_run_group_tests(tests, make_folder, remove_folder);
+}
