@@ -83,7 +83,7 @@ static scree_status collect(scree_path *p, scree_clumps *c, scree_error *error) 
   c->storage = scree_alloc(total, sizeof *c->storage);
   if (!c->clumps || !c->storage)
     return scree_fail_memory(error, total * sizeof *c->storage, "the spheres of clumps");
-  scree_status status = scree_judge_make(p->body, &p->field, &p->gauge, &judge, error);
+  scree_status status = scree_judge_make(p->body, &p->field, &p->ruler, &judge, error);
   if (status != SCREE_OK) return status;
   c->clump_count = 0;
   for (size_t n = 1; n <= p->most; n++) {
@@ -96,7 +96,7 @@ static scree_status collect(scree_path *p, scree_clumps *c, scree_error *error) 
     used += t->count;
   }
   scree_judge_free(&judge);
-  if (p->gauge.failed) return scree_fail_memory(error, 0, "the chords of a clump");
+  if (p->ruler.failed) return scree_fail_memory(error, 0, "the chords of a clump");
   choose(c);
   return SCREE_OK;
 }

@@ -39,7 +39,7 @@ static void put(scree_path *p, const scree_sphere *spheres, size_t count) {
   scree_trial *t = &p->best[count];
   t->count = count;
   for (size_t i = 0; i < count; i++) t->spheres[i] = spheres[i];
-  t->overlap = scree_gauge_measure(&p->gauge, spheres, count, NULL);
+  t->overlap = scree_ruler_measure(&p->ruler, spheres, count, NULL);
 }
 
 /* Clumps of the first, the first two, ... */
@@ -195,7 +195,7 @@ scree_status scree_greedy_fill(scree_path *path, const scree_clump_options *opti
     fill_ferellec(path, options->seed, (uint32_t *)scratch);
   if (options->method == SCREE_CLUMP_BUBBLE) fill_bubble(path, options, scratch);
   scree_free(scratch);
-  if (path->gauge.failed) return scree_fail_memory(error, 0, "the chords of a clump");
+  if (path->ruler.failed) return scree_fail_memory(error, 0, "the chords of a clump");
   if (!path->best[1].count)
     return scree_fail(error, SCREE_LIMIT, "the method %s finds no sphere inside",
                       scree_clump_method_name(options->method));

@@ -7,13 +7,13 @@
 /* Across a compact body some 100 lines: IoU within 2e-4 of finer ones. */
 static const double lines_over_body = 10000, lines_over_all = 80000;
 
-scree_status scree_gauge_make(const scree_target *body, scree_gauge *gauge, scree_error *error) {
+scree_status scree_ruler_make(const scree_target *body, scree_ruler *ruler, scree_error *error) {
   vec3 size = vec3_sub(body->high, body->low);
   double rim = 2 * SCREE_LARGEST_SPHERE;
   double step = fmax(sqrt(size.x * size.y / lines_over_body),
                      sqrt((size.x + rim) * (size.y + rim) / lines_over_all));
   double x_rim = ceil(SCREE_LARGEST_SPHERE / step), y_rim = x_rim;
-  scree_gauge g = {.body = body,
+  scree_ruler g = {.body = body,
                    .lines = {.nx = (size_t)(ceil(size.x / step) + 2 * x_rim),
                              .ny = (size_t)(ceil(size.y / step) + 2 * y_rim),
                              .x0 = body->low.x + (0.5 - x_rim) * step,
@@ -23,29 +23,29 @@ scree_status scree_gauge_make(const scree_target *body, scree_gauge *gauge, scre
   if (status != SCREE_OK) return status;
   SCREE_ALLOC_OR(g.count, g.lines.nx * g.lines.ny, error, out_of_memory);
   SCREE_ALLOC_OR(g.next, g.lines.nx * g.lines.ny, error, out_of_memory);
-  *gauge = g;
+  *ruler = g;
   return SCREE_OK;
 out_of_memory:
-  scree_gauge_free(&g);
+  scree_ruler_free(&g);
   return SCREE_OUT_OF_MEMORY;
 }
 
-void scree_gauge_free(scree_gauge *gauge) {
-  scree_lines_free(&gauge->lines);
-  scree_free(gauge->count);
-  scree_free(gauge->next);
-  scree_free(gauge->chords);
-  *gauge = (scree_gauge){0};
+void scree_ruler_free(scree_ruler *ruler) {
+  scree_lines_free(&ruler->lines);
+  scree_free(ruler->count);
+  scree_free(ruler->next);
+  scree_free(ruler->chords);
+  *ruler = (scree_ruler){0};
 }
 
-typedef void chord_function(scree_gauge *g, size_t line, scree_chord chord);
+typedef void chord_function(scree_ruler *g, size_t line, scree_chord chord);
 
-static void count_chord(scree_gauge *g, size_t line, scree_chord chord) {
+static void count_chord(scree_ruler *g, size_t line, scree_chord chord) {
   (void)chord;
   g->count[line]++;
 }
 
-static void put_chord(scree_gauge *g, size_t line, scree_chord chord) {
+static void put_chord(scree_ruler *g, size_t line, scree_chord chord) {
   g->chords[g->next[line]++] = chord;
 }
 
@@ -58,7 +58,7 @@ static void line_range(double centre, double reach, double origin, double step, 
   range[1] = last < first ? range[0] : (size_t)fmin(last + 1, (double)count);
 }
 
-static void each_chord(scree_gauge *g, const scree_sphere *s, uint32_t number,
+static void each_chord(scree_ruler *g, const scree_sphere *s, uint32_t number,
                        chord_function *call) {
   const scree_lines *l = &g->lines;
   size_t across[2], along[2];
@@ -77,7 +77,7 @@ static void each_chord(scree_gauge *g, const scree_sphere *s, uint32_t number,
 }
 
 /* Sorts the chords of all spheres into lines; false when memory is out. */
-static bool cut_chords(scree_gauge *g, const scree_sphere *spheres, size_t count) {
+static bool cut_chords(scree_ruler *g, const scree_sphere *spheres, size_t count) {
   size_t line_count = g->lines.nx * g->lines.ny, total = 0;
   memset(g->count, 0, line_count * sizeof *g->count);
   for (size_t s = 0; s < count; s++) each_chord(g, &spheres[s], (uint32_t)s, count_chord);
@@ -142,7 +142,7 @@ static void add_alone(const scree_lines *l, size_t line, const scree_chord *chor
   }
 }
 
-static void measure_line(const scree_gauge *g, size_t line, scree_chord *chords,
+static void measure_line(const scree_ruler *g, size_t line, scree_chord *chords,
                          scree_overlap *overlap, scree_alone *alone) {
   const scree_lines *l = &g->lines;
   size_t count = g->count[line];
@@ -156,7 +156,7 @@ static void measure_line(const scree_gauge *g, size_t line, scree_chord *chords,
   }
 }
 
-scree_overlap scree_gauge_measure(scree_gauge *g, const scree_sphere *spheres, size_t count,
+scree_overlap scree_ruler_measure(scree_ruler *g, const scree_sphere *spheres, size_t count,
                                   scree_alone *alone) {
   scree_overlap o = {0};
   if (alone) memset(alone, 0, count * sizeof *alone);

@@ -12,14 +12,14 @@ typedef struct scree_chord {
 } scree_chord;
 
 /* Lines over the body and a rim around it, and scratch for the spheres' chords. */
-typedef struct scree_gauge {
+typedef struct scree_ruler {
   const scree_target *body;
   scree_lines lines;
   uint32_t *count, *next; /* by line */
   scree_chord *chords;
   size_t chord_capacity;
   bool failed; /* memory ran out: what was measured since is worth nothing */
-} scree_gauge;
+} scree_ruler;
 
 /* What only one sphere covers: volume within the body, and outside. */
 typedef struct scree_alone {
@@ -36,11 +36,11 @@ typedef struct scree_overlap {
  * the body's box: so the lines reach around all. */
 #define SCREE_LARGEST_SPHERE 0.7
 
-scree_status scree_gauge_make(const scree_target *body, scree_gauge *gauge, scree_error *error);
-void scree_gauge_free(scree_gauge *gauge);
+scree_status scree_ruler_make(const scree_target *body, scree_ruler *ruler, scree_error *error);
+void scree_ruler_free(scree_ruler *ruler);
 
 /* alone: as many as spheres, or NULL. */
-scree_overlap scree_gauge_measure(scree_gauge *gauge, const scree_sphere *spheres, size_t count,
+scree_overlap scree_ruler_measure(scree_ruler *ruler, const scree_sphere *spheres, size_t count,
                                   scree_alone *alone);
 
 /* What IoU loses when the sphere goes. */

@@ -42,7 +42,7 @@ static bool is_strict(const scree_path *p) {
 }
 
 static void measure(scree_path *p, scree_trial *t) {
-  t->overlap = scree_gauge_measure(&p->gauge, t->spheres, t->count, NULL);
+  t->overlap = scree_ruler_measure(&p->ruler, t->spheres, t->count, NULL);
 }
 
 /* By how much the worst of the held moments is out of tolerance. */
@@ -104,7 +104,7 @@ static size_t find_useless(scree_path *p, scree_trial *t, size_t *least) {
   scree_alone alone[SCREE_MOST_SPHERES];
   size_t useless = 0;
   double least_loss = INFINITY;
-  t->overlap = scree_gauge_measure(&p->gauge, t->spheres, t->count, alone);
+  t->overlap = scree_ruler_measure(&p->ruler, t->spheres, t->count, alone);
   for (size_t i = 0; i < t->count; i++) {
     double loss = scree_overlap_loss(&t->overlap, &alone[i]);
     useless += loss < least_gain;
@@ -156,7 +156,7 @@ bool scree_path_keep(scree_path *p, scree_trial *t) {
 
 static bool tick(scree_path *p, double fraction) {
   if (!p->cancelled && !scree_tick(&p->ticker, "fitting spheres", fraction)) p->cancelled = true;
-  return !p->cancelled && !p->gauge.failed;
+  return !p->cancelled && !p->ruler.failed;
 }
 
 /* Shares of the whole time, measured. */
@@ -272,13 +272,13 @@ scree_status scree_path_search(scree_path *p, scree_error *error) {
     if (p->best[n].count) last = n;
   }
   if (p->cancelled) return scree_fail(error, SCREE_CANCELLED, "cancelled");
-  if (p->gauge.failed) return scree_fail_memory(error, 0, "the chords of a clump");
+  if (p->ruler.failed) return scree_fail_memory(error, 0, "the chords of a clump");
   if (!p->best[1].count)
     return scree_fail(error, SCREE_LIMIT,
                       "no point of the grid lies inside: walls are thinner than %g of the size",
                       scree_field_spacing(&p->field) / SCREE_UNIT_SIZE);
   settle(p);
-  return p->gauge.failed ? scree_fail_memory(error, 0, "the chords of a clump") : SCREE_OK;
+  return p->ruler.failed ? scree_fail_memory(error, 0, "the chords of a clump") : SCREE_OK;
 }
 
 scree_status scree_path_make(const scree_target *body, size_t most, double most_outside,
@@ -287,7 +287,7 @@ scree_status scree_path_make(const scree_target *body, size_t most, double most_
   p.ticker = (scree_ticker){.progress = progress};
   *path = p;
   scree_status status = scree_field_make(body, &path->field, error);
-  if (status == SCREE_OK) status = scree_gauge_make(body, &path->gauge, error);
+  if (status == SCREE_OK) status = scree_ruler_make(body, &path->ruler, error);
   if (status == SCREE_OK) status = scree_mover_make(body, &path->field, &path->mover, error);
   if (status == SCREE_OK) status = scree_places_make(&path->field, &path->places, error);
   if (status == SCREE_OK) {
@@ -303,7 +303,7 @@ scree_status scree_path_make(const scree_target *body, size_t most, double most_
 
 void scree_path_free(scree_path *path) {
   scree_field_free(&path->field);
-  scree_gauge_free(&path->gauge);
+  scree_ruler_free(&path->ruler);
   scree_mover_free(&path->mover);
   scree_places_free(&path->places);
   scree_free(path->best);

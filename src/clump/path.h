@@ -16,7 +16,7 @@ typedef struct scree_trial {
 typedef struct scree_path {
   const scree_target *body;
   scree_field field;
-  scree_gauge gauge;
+  scree_ruler ruler;
   scree_mover mover;
   scree_places places;
   size_t most;              /* counts to answer for */

@@ -19,8 +19,8 @@ enum {
 };
 
 scree_status scree_judge_make(const scree_target *body, const scree_field *field,
-                              scree_gauge *gauge, scree_judge *judge, scree_error *error) {
-  *judge = (scree_judge){.body = body, .field = field, .gauge = gauge};
+                              scree_ruler *ruler, scree_judge *judge, scree_error *error) {
+  *judge = (scree_judge){.body = body, .field = field, .ruler = ruler};
   judge->points =
       scree_alloc(EXPOSED_POINTS + SCREE_MOST_SPHERES * LEAST_DIRECTIONS, sizeof *judge->points);
   return judge->points ? SCREE_OK : scree_fail_memory(error, 0, "points on a clump");
@@ -163,7 +163,7 @@ static double farthest_out(const scree_judge *j, const scree_sphere *spheres, si
 static void measure_volumes(scree_judge *j, const scree_sphere *spheres, size_t count,
                             scree_clump *c) {
   scree_alone alone[SCREE_MOST_SPHERES];
-  scree_overlap o = scree_gauge_measure(j->gauge, spheres, count, alone);
+  scree_overlap o = scree_ruler_measure(j->ruler, spheres, count, alone);
   const double *m = o.moments;
   if (!(m[0] > 0)) return;
   c->iou = o.iou;

@@ -10,14 +10,14 @@
 typedef struct scree_judge {
   const scree_target *body;
   const scree_field *field;
-  scree_gauge *gauge;
+  scree_ruler *ruler;
   scree_directions directions;
   vec3 *points; /* on the exposed surface of the clump at hand */
   size_t point_count;
 } scree_judge;
 
 scree_status scree_judge_make(const scree_target *body, const scree_field *field,
-                              scree_gauge *gauge, scree_judge *judge, scree_error *error);
+                              scree_ruler *ruler, scree_judge *judge, scree_error *error);
 void scree_judge_free(scree_judge *judge);
 
 /* All of the clump but its spheres; these are in the body's frame, what is answered is in metres.
