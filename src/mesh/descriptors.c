@@ -8,7 +8,8 @@
  *
  * The smallest ball around: the farthest point joins the points that hold the ball, until none is
  * outside (a dual simplex method on at most four points). The largest ball inside: cubes are
- * halved, the one with the largest bound first, until the bound is reached. */
+ * halved, the one with the largest bound first, until the bound is near or, where a whole region
+ * holds the centres of equal balls, enough were seen; then the best climbs to the top nearby. */
 #include "base/array.h"
 #include "mesh/adjacency.h"
 #include "mesh/bvh.h"
@@ -18,8 +19,8 @@
 
 static const double pi = 3.14159265358979323846;
 static const double zingg_limit = 2. / 3;
-static const double inscribed_accuracy = 1e-4; /* of the radius */
-enum { MOST_CUBES = 200000, MOST_PIVOTS = 1000 };
+static const double inscribed_accuracy = 2e-3; /* of the radius, before it climbs */
+enum { MOST_CUBES = 4000, MOST_PIVOTS = 1000, CLIMB_HALVINGS = 24 };
 
 /* ---- The smallest ball around points ---- */
 
@@ -125,6 +126,7 @@ static double winding(const scree_mesh *mesh, vec3 p) {
 typedef struct cube {
   vec3 centre;
   double half, bound; /* no point in it is farther from the surface */
+  bool inside;        /* as a whole */
 } cube;
 
 typedef struct cubes {
@@ -171,9 +173,13 @@ static double distance_from(const scree_bvh *tree, vec3 p) {
 
 /* Looks at a cube: a better ball at its middle, and whether it may hold a better one still. */
 static bool look(const scree_mesh *mesh, const scree_bvh *tree, cube c, cubes *heap, ball *best) {
-  double d = distance_from(tree, c.centre), radius = sqrt(best->radius2);
-  c.bound = d + c.half * sqrt(3);
-  if (d > radius && winding(mesh, c.centre) > 0.5) *best = (ball){c.centre, d * d};
+  double d = distance_from(tree, c.centre), radius = sqrt(best->radius2), reach = c.half * sqrt(3);
+  if (!c.inside && d > reach) { /* the surface does not pass through it */
+    c.inside = winding(mesh, c.centre) > 0.5;
+    if (!c.inside) return true;
+  }
+  c.bound = d + reach;
+  if (d > radius && (c.inside || winding(mesh, c.centre) > 0.5)) *best = (ball){c.centre, d * d};
   return c.bound <= radius * (1 + inscribed_accuracy) || push_cube(heap, c);
 }
 
@@ -187,16 +193,17 @@ static scree_status inscribed_ball(const scree_mesh *mesh, ball *best, scree_err
   vec3 size = vec3_sub(high, low);
   double half = 0.5 * fmax(size.x, fmax(size.y, size.z));
   *best = (ball){vec3_lerp(low, high, 0.5), 0};
-  bool ok = look(mesh, &tree, (cube){best->centre, half, INFINITY}, &heap, best);
+  bool ok = look(mesh, &tree, (cube){best->centre, half, INFINITY, false}, &heap, best);
   for (size_t n = 0; ok && heap.count > 0 && n < MOST_CUBES; n++) {
     cube c = pop_cube(&heap);
     if (c.bound <= sqrt(best->radius2) * (1 + inscribed_accuracy)) break;
     for (int i = 0; ok && i < 8; i++) {
       double h = c.half / 2;
       vec3 way = {i & 1 ? h : -h, i & 2 ? h : -h, i & 4 ? h : -h};
-      ok = look(mesh, &tree, (cube){vec3_add(c.centre, way), h, INFINITY}, &heap, best);
+      ok = look(mesh, &tree, (cube){vec3_add(c.centre, way), h, INFINITY, c.inside}, &heap, best);
     }
   }
+  if (ok) climb(&tree, best);
   scree_bvh_free(&tree);
   scree_free(heap.items);
   return ok ? SCREE_OK : scree_fail_memory(error, 0, "the largest ball inside");
