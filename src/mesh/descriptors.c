@@ -183,6 +183,26 @@ static bool look(const scree_mesh *mesh, const scree_bvh *tree, cube c, cubes *h
   return c.bound <= radius * (1 + inscribed_accuracy) || push_cube(heap, c);
 }
 
+/* Along the axes by halved steps. A step within the ball stays inside the body. */
+static void climb(const scree_bvh *tree, ball *best) {
+  double radius = sqrt(best->radius2), step = radius / 4;
+  for (int halvings = 0; halvings < CLIMB_HALVINGS;) {
+    bool moved = false;
+    for (int k = 0; k < 6; k++) {
+      double way = k % 2 ? -step : step;
+      vec3 next = vec3_add(
+          best->centre, (vec3){k / 2 == 0 ? way : 0, k / 2 == 1 ? way : 0, k / 2 == 2 ? way : 0});
+      double d = distance_from(tree, next);
+      if (d <= radius) continue;
+      radius = d;
+      best->centre = next;
+      moved = true;
+    }
+    if (!moved) halvings++, step /= 2;
+  }
+  best->radius2 = radius * radius;
+}
+
 static scree_status inscribed_ball(const scree_mesh *mesh, ball *best, scree_error *error) {
   scree_bvh tree = {0};
   cubes heap = {0};
