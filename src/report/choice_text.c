@@ -1,6 +1,7 @@
 /* What a choice says in sentences. The text for people, the JSON and the page all have them from
  * here, so that none tells what another keeps silent about. */
 #include "base/error.h"
+#include "base/number.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -41,6 +42,28 @@ __attribute__((format(printf, 2, 3))) static void say(sentences *s, const char *
   va_end(arguments);
 }
 
+/* With so many digits, whatever the locale. */
+static const char *number_text(double value, int digits, char buffer[NUMBER_BYTES]) {
+  scree_number_format_digits(value, digits, buffer);
+  return buffer;
+}
+#define NUMBER(value, digits) number_text(value, digits, (char[NUMBER_BYTES]){0})
+
+/* A fraction as a change in per cent: +1.2, -3 */
+static const char *change_text(double fraction, char buffer[NUMBER_BYTES]) {
+  buffer[0] = '+';
+  scree_number_format_digits(100 * fraction, 2, buffer + (fraction >= 0));
+  return buffer;
+}
+#define CHANGE(fraction) change_text(fraction, (char[NUMBER_BYTES]){0})
+
+/* A number that printf wrote with the locale's decimal point. */
+static const char *with_point(char *text) {
+  char *comma = strchr(text, ',');
+  if (comma) *comma = '.';
+  return text;
+}
+
 /* 12345 as 12,345 */
 static const char *count_text(size_t count, char buffer[NUMBER_BYTES]) {
   char digits[NUMBER_BYTES];
@@ -65,7 +88,7 @@ static const char *rp_text(double rp, char buffer[NUMBER_BYTES]) {
     snprintf(buffer, NUMBER_BYTES, "%.2f", rp);
   else
     snprintf(buffer, NUMBER_BYTES, "%.1fe%d", digits, exponent);
-  return buffer;
+  return with_point(buffer);
 }
 
 static const char *percent_text(double fraction, char buffer[NUMBER_BYTES]) {
@@ -75,7 +98,7 @@ static const char *percent_text(double fraction, char buffer[NUMBER_BYTES]) {
            : percent < 9.95 ? "%.2f%%"
                             : "%.0f%%",
            percent);
-  return buffer;
+  return with_point(buffer);
 }
 
 static double ratio(double a, double b) {
@@ -127,22 +150,23 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
   char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES],
       walls[64] = "", share[NUMBER_BYTES], most[NUMBER_BYTES];
   scree_fidelity_farthest(f, row, at);
-  if (isfinite(thinnest))
-    snprintf(walls, sizeof walls, "thinnest walls %+.2g %%, ", 100 * thinnest);
+  if (isfinite(thinnest)) snprintf(walls, sizeof walls, "thinnest walls %s %%, ", CHANGE(thinnest));
   say(s,
-      "Use %s triangles (Rp = %s): surface %.2g mm off in the mean, %.2g mm at worst (at %.6g, "
-      "%.6g, %.6g mm); %sinertia %+.2g %%, area %+.2g %%.",
+      "Use %s triangles (Rp = %s): surface %s mm off in the mean, %s mm at worst (at %s, %s, %s "
+      "mm); %sinertia %s %%, area %s %%.",
       count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
-      1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_MEAN),
-      1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF), 1e3 * at[0], 1e3 * at[1],
-      1e3 * at[2], walls, 100 * scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA),
-      100 * scree_fidelity_change(f, row, SCREE_CHANGE_AREA));
-  say(s, "Limited by %s, %s of %s at most; sizes are relative to %.3g mm.",
+      NUMBER(1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_MEAN), 2),
+      NUMBER(1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF), 2),
+      NUMBER(1e3 * at[0], 6), NUMBER(1e3 * at[1], 6), NUMBER(1e3 * at[2], 6), walls,
+      CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA)),
+      CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_AREA)));
+  say(s, "Limited by %s, %s of %s at most; sizes are relative to %s mm.",
       error_words(c->limited_by), percent_text(scree_fidelity_error(f, row, c->limited_by), share),
-      percent_text(scree_choice_tolerance(c, report->options, c->limited_by), most), 1e3 * length);
+      percent_text(scree_choice_tolerance(c, report->options, c->limited_by), most),
+      NUMBER(1e3 * length, 3));
   if (pick->triangle_count > c->paper.triangle_count)
-    say(s, "In a flowing heap it costs about %.1f times the paper's %s triangles to simulate.",
-        cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count),
+    say(s, "In a flowing heap it costs about %s times the paper's %s triangles to simulate.",
+        NUMBER(cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count), 2),
         count_text(c->paper.triangle_count, other));
 }
 
@@ -236,23 +260,23 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
     double change = scree_fidelity_change(f, row, (scree_shape_change)(SCREE_CHANGE_LENGTH + i));
     if (fabs(change) > NOTABLE_SIZE)
       say(s,
-          "%s a feature, thinner than the tolerances keep: %s %+.2g %% (--tolerance size=2%% "
+          "%s a feature, thinner than the tolerances keep: %s %s %% (--tolerance size=2%% "
           "keeps it).",
-          change < 0 ? "It loses" : "It enlarges", sides[i], 100 * change);
+          change < 0 ? "It loses" : "It enlarges", sides[i], CHANGE(change));
   }
   double normals = scree_fidelity_error(f, row, SCREE_ERROR_NORMALS);
   if (normals > NOTABLE_NORMALS)
     say(s,
-        "Relief is flattened: normals are %.0f degrees off in the mean (--tolerance normals=5%% "
+        "Relief is flattened: normals are %s degrees off in the mean (--tolerance normals=5%% "
         "keeps more).",
-        180 * normals);
+        NUMBER(180 * normals, 2));
   double noise = scree_fidelity_scan(f, SCREE_SCAN_NOISE),
          length = scree_fidelity_scan(f, SCREE_SCAN_LENGTH);
   if (noise > NOTABLE_NOISE * length * scree_choice_tolerance(c, report->options, SCREE_ERROR_MEAN))
     say(s,
-        "Scan noise of %.2g mm takes part in the mean distance: the count is more than the "
+        "Scan noise of %s mm takes part in the mean distance: the count is more than the "
         "shape needs.",
-        1e3 * noise);
+        NUMBER(1e3 * noise, 2));
   if ((double)c->recommended.triangle_count > NOTABLE_SHARE * (double)c->triangle_count)
     say(s, "The scan is coarse for these tolerances: of its %s triangles most are needed.",
         count_text(c->triangle_count, count));
@@ -264,7 +288,7 @@ static void warn_of_accidents(sentences *s, const scree_choice *c) {
     say(s, "The paper's choice is an accident: the area crosses the scan's there; finer meshes are "
            "further off.");
   else if (differ > NOTABLE_RATIO)
-    say(s, "The paper's and the robust choice differ %.1f times.", differ);
+    say(s, "The paper's and the robust choice differ %s times.", NUMBER(differ, 2));
 }
 
 /* Said where the choice would be another: the object's, or the set's. */
