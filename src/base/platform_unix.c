@@ -189,7 +189,8 @@ int scree_process_run(const char *const *words, long *process) {
     const char *fixed[MOST_WORDS];
     char *words[MOST_WORDS];
   } line;
-  size_t count = 0;
+  size_t count = 1;
+  line.fixed[0] = words[0];
   for (; words[count] && count + 1 < MOST_WORDS; count++) line.fixed[count] = words[count];
   line.fixed[count] = NULL;
   bool self = !strcmp(words[0], "scree");

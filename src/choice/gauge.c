@@ -327,7 +327,7 @@ scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level,
                               scree_gauge_reading *reading, scree_error *error) {
   scree_surface *surface = NULL;
   scree_measures measures;
-  scree_gauge_reading r;
+  scree_gauge_reading r = {0};
   forward f = {.gauge = gauge};
   scree_status status = scree_mesh_measure(level, &measures, error);
   if (status == SCREE_OK) status = scree_surface_create(level, &surface, error);
@@ -339,9 +339,10 @@ scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level,
   read_measures(gauge, &measures, &r);
   status = read_distances(&f, gap, &r, error);
   if (status == SCREE_OK) status = read_walls(&f, &r, error);
+  if (status != SCREE_OK) goto done;
   r.errors[SCREE_ERROR_NORMALS] = normals_error(&f);
   r.errors[SCREE_ERROR_THINNEST] = fabs(r.changes[SCREE_CHANGE_THINNEST]);
-  if (status == SCREE_OK) *reading = r;
+  *reading = r;
 done:
   scree_surface_free(surface);
   scree_free(f.distances);

@@ -191,7 +191,7 @@ static scree_status make_clump(const cli_call *call, scree_particle **particle,
 static scree_status export_clump(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
   scree_code_options o = scree_default_code_options();
-  scree_particle *particle;
+  scree_particle *particle = NULL;
   scree_particle_measures m;
   char name[128], shown[CLI_PRINTABLE_BYTES];
   cli_short_name(call->inputs[0], name, sizeof name);

@@ -151,7 +151,7 @@ static const struct {
 
 /* Distributions over all bodies described, and how many are of which class. */
 static void print_set(const scree_measure_entry *entries, size_t count) {
-  double *values = calloc(count, sizeof *values);
+  double *values = calloc(count + 1, sizeof *values);
   size_t bodies = 0, classes[4] = {0};
   if (!values) return;
   for (size_t i = 0; i < count; i++) {

@@ -65,7 +65,7 @@ static vec3 slice_centroid(const scree_places *places, double low, double high) 
 static void fill_favier(scree_path *p) {
   double low = p->body->low.z, length = p->body->high.z - low;
   for (size_t n = 1; n <= p->most; n++) {
-    scree_sphere spheres[SCREE_MOST_SPHERES];
+    scree_sphere spheres[SCREE_MOST_SPHERES] = {0};
     size_t count = 0;
     for (size_t i = 0; i < n; i++) {
       vec3 at = slice_centroid(&p->places, low + length * (double)i / (double)n,

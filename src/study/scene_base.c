@@ -4,6 +4,7 @@
 #include "base/platform.h"
 #include "study/record.h"
 
+#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -83,8 +84,8 @@ scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_s
   char seed[32];
   scree_status status = scree_study_scene(study, point->values, file, error);
   if (status != SCREE_OK) return status;
-  snprintf(seed, sizeof seed, "%llu",
-           (unsigned long long)(study->seed + scree_study_run_replicate(study, run)));
+  snprintf(seed, sizeof seed, "%" PRIu64,
+           study->seed + (uint64_t)scree_study_run_replicate(study, run));
   status = scree_scene_file_set(*file, "seed", seed, error);
   if (status != SCREE_OK) scree_scene_file_free(*file);
   return status;

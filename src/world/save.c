@@ -432,7 +432,7 @@ static void save_bodies(scree_codec *c, const scree_world *world) {
   }
   bool any = b->applied != NULL;
   scree_code_bool(c, &any);
-  for (size_t i = 0; any && i < b->count; i++) {
+  for (size_t i = 0; b->applied && i < b->count; i++) {
     scree_applied applied = b->applied[i];
     code_applied(c, &applied);
   }

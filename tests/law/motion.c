@@ -300,11 +300,10 @@ static void given_forces_work(void **state) {
   LAW_RELATIVE("W4", "spin by a given torque, rad/s", body.angular_velocity[1], 3 * t, 1e-9);
   scree_observation o;
   LAW_NEAR("W4", "ledger, J", law_ledger(world, &o), 0, 1e-7 * o.applied_work);
-  double before = o.applied_work;
   CHECK_OK(scree_world_set_body_force(world, index, (double[3]){0}, (double[3]){0}, &error), error);
   law_step(world, 2);
   scree_world_observe(world, &o);
-  before = o.applied_work;
+  double before = o.applied_work;
   law_step(world, 100);
   scree_world_observe(world, &o);
   LAW_NEAR("W4", "work after it ended, J", o.applied_work - before, 0, 0);

@@ -9,7 +9,10 @@
 enum { ARGUMENTS = 200000 };
 
 static bool same_bits(double a, double b) {
-  return memcmp(&a, &b, sizeof a) == 0 || (isnan(a) && isnan(b));
+  uint64_t p, q;
+  memcpy(&p, &a, sizeof p);
+  memcpy(&q, &b, sizeof q);
+  return p == q || (isnan(a) && isnan(b));
 }
 
 /* In units in the last place of the true value. */

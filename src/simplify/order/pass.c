@@ -231,7 +231,7 @@ typedef bool visitor(pass *p, uint32_t candidate, uint32_t at);
 
 static bool visit_about(pass *p, uint32_t v, uint32_t candidate, visitor *visit) {
   const scree_halfmesh *s = &p->d->s;
-  uint32_t first = s->vertex[v].outgoing, h = first, last = first;
+  uint32_t first = s->vertex[v].outgoing, h = first, last;
   if (!visit(p, candidate, v)) return false;
   do {
     if (!visit(p, candidate, scree_to(s, h))) return false;

@@ -141,7 +141,7 @@ static void renew_sums(scree_decimator *d, uint32_t v) {
 /* Every edge of vertex u. */
 static void renew_about(queue *q, uint32_t u) {
   const scree_halfmesh *s = &q->d->s;
-  uint32_t edges[SIDE_BY_SIDE], first = s->vertex[u].outgoing, h = first, last = first;
+  uint32_t edges[SIDE_BY_SIDE], first = s->vertex[u].outgoing, h = first, last;
   size_t count = 0;
   do {
     if (count == SIDE_BY_SIDE - 1) rank(q, edges, count), count = 0;
