@@ -18,6 +18,12 @@ build() {
   cmake --preset "$1" -DSCREE_DATA_DIR="$data" -DBUILD_TESTING=ON "${@:2}" >/dev/null && cmake --build --preset "$1"
 }
 
+# scree.exe, cross-built and run under Wine.
+windows() {
+  tools/install-packages.sh windows && tools/library-sources.sh build/library-sources && cmake --preset windows >/dev/null &&
+    cmake --build --preset windows && tests/windows/run.sh build/windows/bin/scree.exe build/release/bin/scree
+}
+
 # Samples at 20, 60 and 200 triangles, to pour.
 shapes=$(mktemp -d)
 trap 'rm -rf "$shapes"' EXIT
@@ -38,6 +44,7 @@ pour() {
 
 tools/install-packages.sh build test ci
 part "release build" build release
+part "Windows" windows
 export SCREE_SLOW=1
 part "all tests, the slow ones too" tools/test.sh release
 # `native COMPILER`: the states of tests/golden, by code for this very machine
