@@ -315,12 +315,11 @@ static scree_status find_results(page *p, const char *folder, name_list *found) 
   }
   free_names(&names);
   if (status == SCREE_OK && found->count == before)
-    status = scree_fail(
-        p->error, SCREE_BAD_FILE,
-        "%s: holds no results: neither choice.json of `scree choose -o` nor "
-        "result.json of `scree repose -o` or `scree run -o` nor study.json of `scree study` nor "
-        "drop.json of `scree drop` nor clump.json of `scree clump -o`",
-        folder);
+    status = scree_fail(p->error, SCREE_BAD_FILE,
+                        "%s: holds no results: no choice.json (scree choose), result.json (run, "
+                        "repose), drop.json, "
+                        "study.json or clump.json",
+                        folder);
   return status;
 }
 
