@@ -1,5 +1,5 @@
 # A thin face: everything real is in CMake (CMakePresets.json names the builds).
-#   make         build/release/bin/scree
+#   make         build/release/bin/scree; installs nothing
 #   make demo    installs what is missing, builds, runs the main job on the built-in samples
 #   make test    installs what is missing, builds, runs the tests
 #   make install, make uninstall    DESTDIR=... stages below a folder
@@ -17,12 +17,13 @@ all: build
 packages:
 	@tools/install-packages.sh build
 
-build: packages
+build:
 	@cmake --preset $(PRESET) -DSCREE_DATA_DIR="$(DATA_DIR)" -DBUILD_TESTING=OFF >build.log 2>&1 || { cat build.log; exit 1; }
 	@rm -f build.log
 	@cmake --build --preset $(PRESET) -j $(JOBS)
 
-demo: build
+demo: packages
+	@$(MAKE) --no-print-directory build
 	@tools/demo.sh build/$(PRESET)/bin/scree "$(DEMO_DIR)"
 
 test:

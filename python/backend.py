@@ -24,12 +24,18 @@ def _build_library(folder):
     return pathlib.Path(folder) / "libscree.so"
 
 
+def _soname(library):
+    """The name under which programs and the module look for it."""
+    lines = subprocess.run(["objdump", "-p", library], check=True, capture_output=True, text=True).stdout.splitlines()
+    return next(line.split()[1] for line in lines if line.split()[:1] == ["SONAME"])
+
+
 def _contents(library, version):
     """(name in the wheel, bytes) of everything but RECORD."""
     for source in sorted((HERE / "scree").glob("*.py")):
         yield f"scree/{source.name}", source.read_bytes()
     yield "scree/VERSION", version.encode()
-    yield f"scree/libscree.so.{version.split('.')[0]}", library.resolve().read_bytes()
+    yield f"scree/{_soname(library)}", library.resolve().read_bytes()
     info = f"scree-{version}.dist-info"
     yield f"{info}/METADATA", (f"Metadata-Version: 2.1\nName: scree\nVersion: {version}\nRequires-Python: >=3.9\n"
                                "Provides-Extra: arrays\nRequires-Dist: numpy; extra == 'arrays'\n").encode()

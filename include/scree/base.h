@@ -82,10 +82,6 @@ typedef struct scree_progress {
   double interval;
 } scree_progress;
 
-/* Replaces what a terminal obeys, the control characters of UTF-8 text: each of its bytes becomes
- * `instead`. All errors' messages are so. */
-SCREE_API void scree_make_printable(char *text, char instead);
-
 /* What a build may lack. */
 typedef enum scree_build_part {
   SCREE_BUILD_PICTURES, /* figures as PNG, SVG and PDF (cairo) */
@@ -100,12 +96,6 @@ SCREE_API const char *scree_build_text(scree_build_part part);
 
 /* Creates the folder and its parents; an existing folder is fine. */
 SCREE_API scree_status scree_folder_create(const char *path, scree_error *error);
-
-/* Whether path could be written to now, for before long work: SCREE_EXISTS where there is a file
- * and nothing may be overwritten, SCREE_IO where the system says no, or where the file there is
- * write-protected (mode 444; root may not either). Leaves nothing behind; "-", pipes and devices
- * are not opened. */
-SCREE_API scree_status scree_output_check(const char *path, bool overwrite, scree_error *error);
 
 /* 128 bits that name a file's content: XXH3-128, as `xxhsum -H2` prints it. */
 typedef struct scree_checksum {

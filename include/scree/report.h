@@ -365,23 +365,6 @@ SCREE_API scree_status scree_levels_write(const scree_curve *curve, const scree_
                                           size_t byte_limit, const char *path, bool overwrite,
                                           scree_error *error);
 
-/* A text, whole or not at all; "-" is stdout. */
-SCREE_API scree_status scree_text_write(const char *text, const char *path, bool overwrite,
-                                        scree_error *error);
-
-/* When some work began, by three clocks, in seconds. */
-typedef struct scree_work_start {
-  double calendar, elapsed, processor; /* since 1970; of no meaning alone; of all threads */
-} scree_work_start;
-
-SCREE_API scree_work_start scree_work_started(void);
-
-/* JSON: version, command, when the work began and how long it took until now, on what machine and
- * how many threads. Kept apart from results, which do not change from run to run. */
-SCREE_API scree_status scree_provenance_write(const scree_work_start *start,
-                                              const char *command_line, const char *path,
-                                              bool overwrite, scree_error *error);
-
 /* Makes one page of folders with results (docs/formats.md): of a choice, choice.json with
  * choice.txt, provenance.json and levels/NAME.levels. The page is complete in itself, asks nothing
  * of any network, and shows texts from files as text. Fails with SCREE_BAD_FILE where a folder

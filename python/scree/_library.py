@@ -496,6 +496,12 @@ class Error(Exception):
         self.status = status
 
 
+def interface_version(version):
+    """The part of a version that names the interface: 0.MINOR before 1.0, then MAJOR."""
+    major, minor = version.strip().split(".")[:2]
+    return f"0.{minor}" if major == "0" else major
+
+
 def _candidates():
     """SCREE_LIBRARY; beside an installed module (PREFIX/lib/python3/dist-packages/scree and the like); the system's."""
     named = os.environ.get("SCREE_LIBRARY")
@@ -503,7 +509,7 @@ def _candidates():
         yield named
         return
     version = (pathlib.Path(__file__).parent / "VERSION")
-    name = "libscree.so." + version.read_text().split(".")[0] if version.exists() else "libscree.so"
+    name = "libscree.so." + interface_version(version.read_text()) if version.exists() else "libscree.so"
     for folder in pathlib.Path(__file__).resolve().parents:
         for library in [folder / name, *sorted(folder.glob(f"lib*/{name}")), *sorted(folder.glob(f"lib*/*/{name}"))]:
             if library.exists():

@@ -28,6 +28,10 @@ static inline scree_status scree_fail_memory(scree_error *error, size_t byte_cou
   return SCREE_OUT_OF_MEMORY;
 }
 
+/* Replaces what a terminal obeys, the control characters of UTF-8 text: each of its bytes becomes
+ * `instead`. All errors' messages are so. */
+void scree_make_printable(char *text, char instead);
+
 #ifdef SCREE_ASSERTIONS
 void scree_assert_failed(const char *condition, const char *file, int line);
 #define SCREE_ASSERT(condition)                                                                    \

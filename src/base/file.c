@@ -481,3 +481,12 @@ const char *scree_checksum_text(scree_checksum checksum, char text[SCREE_CHECKSU
   snprintf(text, SCREE_CHECKSUM_TEXT, "%016" PRIx64 "%016" PRIx64, checksum.high, checksum.low);
   return checksum.high || checksum.low ? text : NULL;
 }
+
+scree_status scree_text_write(const char *text, const char *path, bool overwrite,
+                              scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  fputs(text, output.stream);
+  return scree_output_commit(&output, error);
+}

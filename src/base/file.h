@@ -59,6 +59,16 @@ scree_status scree_output_commit(scree_output *output, scree_error *error);
 /* Closes and removes the temporary file. */
 void scree_output_discard(scree_output *output);
 
+/* Whether path could be written to now, for before long work: SCREE_EXISTS where there is a file
+ * and nothing may be overwritten, SCREE_IO where the system says no, or where the file there is
+ * write-protected (mode 444; root may not either). Leaves nothing behind; "-", pipes and devices
+ * are not opened. */
+scree_status scree_output_check(const char *path, bool overwrite, scree_error *error);
+
+/* A text, whole or not at all; "-" is stdout. */
+scree_status scree_text_write(const char *text, const char *path, bool overwrite,
+                              scree_error *error);
+
 scree_checksum scree_checksum_of(const void *bytes, size_t byte_count);
 
 #endif

@@ -1,4 +1,5 @@
 #include "cli/args.h"
+#include "base/error.h"
 #include "base/platform.h"
 #include "cli/terminal.h"
 

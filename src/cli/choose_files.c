@@ -15,11 +15,13 @@
  * They are written into another folder and moved when all are there: who cancels finds none. What
  * an earlier choice left in the folder and this one has not goes with it, before the answer is
  * moved. */
+#include "base/file.h"
 #include "base/platform.h"
 #include "cli/choose.h"
 #include "cli/output.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
+#include "report/provenance.h"
 
 #include <errno.h>
 #include <stdlib.h>

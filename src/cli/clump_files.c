@@ -1,6 +1,8 @@
 #include "cli/clump_files.h"
 
+#include "base/file.h"
 #include "cli/output.h"
+#include "report/provenance.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,6 +3,7 @@
 #define SCREE_CLI_DROP_H
 
 #include "cli/input.h"
+#include "report/provenance.h"
 
 enum { DROP_PATH_BYTES = 4096 };
 

@@ -2,7 +2,9 @@
  * series.csv, which a pour that went on has whole. */
 #include "cli/drop.h"
 
+#include "base/file.h"
 #include "base/platform.h"
+#include "report/provenance.h"
 
 #include <errno.h>
 #include <stdlib.h>

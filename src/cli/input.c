@@ -1,4 +1,5 @@
 #include "cli/input.h"
+#include "base/error.h"
 #include "base/platform.h"
 #include "cli/terminal.h"
 

@@ -1,4 +1,5 @@
 #include "cli/output.h"
+#include "base/file.h"
 #include "base/platform.h"
 #include "cli/input.h"
 

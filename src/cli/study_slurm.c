@@ -3,6 +3,7 @@
  */
 #include "cli/study.h"
 
+#include "base/file.h"
 #include "base/platform.h"
 
 #include <errno.h>

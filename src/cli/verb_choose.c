@@ -1,6 +1,7 @@
 #include "cli/choose.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
+#include "report/provenance.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,6 +3,7 @@
 #include "cli/drop.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
+#include "report/provenance.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,11 @@
 /* scree repose: the angle-of-repose experiment. */
+#include "base/file.h"
 #include "base/platform.h"
 #include "cli/grains.h"
 #include "cli/heap.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
+#include "report/provenance.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,9 @@
 /* scree run: a scene of the user's own. */
+#include "base/file.h"
 #include "base/platform.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
+#include "report/provenance.h"
 
 #include <math.h>
 #include <stdlib.h>

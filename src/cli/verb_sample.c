@@ -1,4 +1,5 @@
 /* scree sample: the built-in devices and test solids as files. */
+#include "base/file.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 

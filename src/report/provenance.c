@@ -1,4 +1,5 @@
 /* Where and when some work was done: what changes from run to run, apart from the results. */
+#include "report/provenance.h"
 #include "base/file.h"
 #include "base/platform.h"
 #include "report/json.h"
@@ -28,14 +29,5 @@ scree_status scree_provenance_write(const scree_work_start *start, const char *c
   scree_json_text(&json, "processor", processor);
   scree_json_count(&json, "processors", (uint64_t)scree_processor_count());
   scree_json_end(&json);
-  return scree_output_commit(&output, error);
-}
-
-scree_status scree_text_write(const char *text, const char *path, bool overwrite,
-                              scree_error *error) {
-  scree_output output;
-  scree_status status = scree_output_open(path, overwrite, &output, error);
-  if (status != SCREE_OK) return status;
-  fputs(text, output.stream);
   return scree_output_commit(&output, error);
 }

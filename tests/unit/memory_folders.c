@@ -1,6 +1,8 @@
 /* Memory running out where folders, pages and pictures of worlds are made: every public call
  * refuses with a sentence, leaks nothing and leaves no file half-written. tests/allocations.sh
  * keeps the list. */
+#include "base/file.h"
+#include "report/provenance.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
 #include "support/folder.h"
