@@ -25,7 +25,7 @@ def choose(*words):
 
 
 def sample(name, spacing, noise, seed=1):
-    chosen = choose(f"sample:{name}", "--resolution", f"{spacing}mm", "--noise", f"{noise}mm", "--seed", seed)
+    chosen = choose(f"sample:{name}", "--resolution", f"{spacing}mm", "--noise", f"{noise}mm", "--sample-seed", seed)
     return chosen["recommended"]["triangle_count"]
 
 
@@ -40,7 +40,7 @@ def check_scan(path):
         level = os.path.join(folder, "out", answer["mesh_file"].rsplit("/", 1)[-1])
         asked = answer["options"]["tolerances"]
         size, told = answer["scan"]["size"], answer["recommended"]
-        words = ["--json", "-n", 1000000, "--gap", 0.002]
+        words = ["--json", "--points", 1000000, "--gap", 0.002]
         far = json.loads(scree("distance", *words, path, level))
         scan, here = inertia(path), inertia(level)
         found = {"mean_distance": max(far["forward"]["mean"], far["backward"]["mean"]) / size,

@@ -57,7 +57,7 @@ part "the same bits with -march=native, gcc" native gcc
 part "the same bits with -march=native, clang" native clang
 part "shapes to pour" make_shapes
 part "500 pours, none of which fails or leaves a body in another" pour 1 500
-part "200 soft pours" pour 1 200 --stiffness-factor 0.1
+part "200 soft pours" pour 1 200 --stiffness 0.1
 part "60 heaps" env MODE=repose tests/pours/run.sh build/release/bin/scree build/release/bin/inside "$shapes" 1 60
 part "sanitizer build" build asan
 part "slow and long tests under ASan and UBSan" tools/test.sh asan -L 'slow|long'

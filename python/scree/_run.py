@@ -12,7 +12,7 @@ from ._world import Owner, Particle, World
 
 class Experiment:
     """Settings of the experiment: a preset (demo, small or paper), over it a YAML file as `scree repose
-    --print-config` writes it, over that single fields by their keys in the file:
+    --print` writes it, over that single fields by their keys in the file:
 
         Experiment("small", {"particles": 100, "cylinder.diameter": 0.25})
         e["contact.friction_particle"] = 0.4"""

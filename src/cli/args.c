@@ -1,6 +1,7 @@
 #include "cli/args.h"
 #include "base/error.h"
 #include "base/platform.h"
+#include "cli/options.h"
 #include "cli/terminal.h"
 
 #include <errno.h>
@@ -10,23 +11,22 @@
 #include <string.h>
 
 const cli_option cli_common_options[] = {
-    {"threads", 'j', CLI_COUNT, offsetof(cli_common, threads), "N",
+    {"threads", CLI_COUNT, offsetof(cli_common, threads), "N",
      "Threads to use; 0 is one per processor, the default. The results do not depend on it.", 0,
      4096, NULL},
-    {"backend", 0, CLI_TEXT, offsetof(cli_common, backend), "NAME",
+    {"backend", CLI_TEXT, offsetof(cli_common, backend), "NAME",
      "Where worlds are stepped: cpu, the default, cuda, or cuda:N for the NVIDIA device N. The "
      "results are the same bits.",
      0, 0, NULL},
-    {"max-memory", 0, CLI_BYTES, offsetof(cli_common, max_memory), "SIZE",
+    {"max-memory", CLI_BYTES, offsetof(cli_common, max_memory), "SIZE",
      "Fail rather than hold more than SIZE bytes (suffixes K, M, G); 0, the default, is no limit.",
      0, 0, NULL},
-    {"progress", 0, CLI_FLAG, offsetof(cli_common, progress), NULL,
+    {"progress", CLI_FLAG, offsetof(cli_common, progress), NULL,
      "Show progress even where stderr is not a terminal.", 0, 0, NULL},
-    {"quiet", 'q', CLI_FLAG, offsetof(cli_common, quiet), NULL, "Only results and errors.", 0, 0,
-     NULL},
-    {"verbose", 'v', CLI_FLAG, offsetof(cli_common, verbose), NULL,
+    {"quiet", CLI_FLAG, offsetof(cli_common, quiet), NULL, "Only results and errors.", 0, 0, NULL},
+    {"verbose", CLI_FLAG, offsetof(cli_common, verbose), NULL,
      "Say at the end what it cost, on stderr: time, processor time, memory.", 0, 0, NULL},
-    {"help", 'h', CLI_FLAG, offsetof(cli_common, help), NULL, "Show this help.", 0, 0, NULL},
+    {"help", CLI_FLAG, offsetof(cli_common, help), NULL, "Show this help.", 0, 0, NULL},
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
 
@@ -71,6 +71,14 @@ bool cli_real_from_text(const char *text, double *value) {
   const char *end;
   *value = parse_decimal(text, &end);
   return end != text && *end == 0 && isfinite(*value);
+}
+
+bool cli_fraction_from_text(const char *text, double *value) {
+  const char *end;
+  *value = parse_decimal(text, &end);
+  if (end == text || !isfinite(*value)) return false;
+  if (*end == '%') *value /= 100;
+  return end[*end == '%'] == 0;
 }
 
 int cli_fail(const scree_error *error) {
@@ -152,11 +160,16 @@ static int out_of_range(const cli_verb *verb, const cli_option *option, const ch
     return cli_misuse(verb, "--%s %s: outside the range %.0f to %.0f", option->name, text,
                       option->minimum, option->maximum);
   char low[32], high[32];
+  double number;
+  bool bare = cli_real_from_text(text, &number) && number != 0;
   if (option->kind == CLI_LENGTH)
-    return cli_misuse(verb, "--%s %s: outside the range %s to %s", option->name, text,
+    return cli_misuse(verb, "--%s %s%s: outside the range %s to %s", option->name, text,
+                      bare ? ", which is in m without a unit" : "",
                       length_text(option->minimum, low), length_text(option->maximum, high));
-  return cli_misuse(verb, "--%s %s: outside the range %g to %g", option->name, text,
-                    option->minimum, option->maximum);
+  bool percent = option->kind == CLI_SHARE && bare && number > 1 && number <= 100;
+  return cli_misuse(verb, "--%s %s: outside the range %g to %g%s%s%s", option->name, text,
+                    option->minimum, option->maximum, percent ? "; did you mean " : "",
+                    percent ? text : "", percent ? "%?" : "");
 }
 
 static int parse_count(const cli_verb *verb, const cli_option *option, const char *text,
@@ -202,24 +215,37 @@ static int parse_bytes(const cli_verb *verb, const cli_option *option, const cha
 
 bool cli_length_from_text(const char *text, double *metres) {
   const char *end;
-  double number = parse_decimal(text, &end), unit;
-  if (end == text || !isfinite(number) || !cli_unit_from_text(end, &unit)) return false;
+  double number = parse_decimal(text, &end), unit = 1;
+  if (end == text || !isfinite(number)) return false;
+  if (*end && !cli_unit_from_text(end, &unit)) return false;
   *metres = number * unit;
   return true;
 }
 
 static int parse_length(const cli_verb *verb, const cli_option *option, const char *text,
-                        void *value) {
-  const char *end;
-  double number = parse_decimal(text, &end), metres = 0;
-  if (end == text || !isfinite(number))
-    return cli_misuse(verb, "--%s %s: not a length such as 0.27mm", option->name, text);
-  if (!cli_unit_from_text(end, &metres) && number != 0)
-    return cli_misuse(verb, "--%s %s: needs a unit (m, cm, mm, um, km, inch, ft), as in %.*smm",
-                      option->name, text, (int)(end - text), text);
-  if (!in_range(option, number * metres)) return out_of_range(verb, option, text);
-  *(double *)value = number * metres;
-  return 0;
+                        double *metres) {
+  if (!cli_length_from_text(text, metres))
+    return cli_misuse(verb,
+                      "--%s %s: not a length such as 0.27mm (m, cm, mm, um, km, inch, ft; without "
+                      "a unit, m)",
+                      option->name, text);
+  return in_range(option, *metres) ? 0 : out_of_range(verb, option, text);
+}
+
+static int parse_fraction(const cli_verb *verb, const cli_option *option, const char *text,
+                          double *value) {
+  if (!cli_fraction_from_text(text, value))
+    return cli_misuse(verb, "--%s %s: not a share such as 0.005 or 0.5%%", option->name, text);
+  return in_range(option, *value) ? 0 : out_of_range(verb, option, text);
+}
+
+const char *cli_si_text(cli_kind kind, const char *text, char buffer[CLI_NUMBER_BYTES]) {
+  double value;
+  if (kind == CLI_LENGTH_TEXT ? !cli_length_from_text(text, &value)
+                              : kind != CLI_SHARE_TEXT || !cli_fraction_from_text(text, &value))
+    return text;
+  snprintf(buffer, CLI_NUMBER_BYTES, "%.15g", value);
+  return buffer;
 }
 
 static int parse_choice(const cli_verb *verb, const cli_option *option, const char *text,
@@ -249,6 +275,7 @@ static int add_text(const cli_verb *verb, const cli_option *option, const char *
 static int store(const cli_verb *verb, const cli_option *option, const char *text, void *base) {
   void *value = (char *)base + option->offset;
   double real;
+  int result;
   switch (option->kind) {
   case CLI_FLAG:
     *(bool *)value = true;
@@ -270,7 +297,19 @@ static int store(const cli_verb *verb, const cli_option *option, const char *tex
     *(double *)value = real;
     return 0;
   case CLI_LENGTH:
-    return parse_length(verb, option, text, value);
+    result = parse_length(verb, option, text, &real);
+    if (result == 0) *(double *)value = real;
+    return result;
+  case CLI_SHARE:
+    result = parse_fraction(verb, option, text, &real);
+    if (result == 0) *(double *)value = real;
+    return result;
+  case CLI_LENGTH_TEXT:
+  case CLI_SHARE_TEXT:
+    result = option->kind == CLI_LENGTH_TEXT ? parse_length(verb, option, text, &real)
+                                             : parse_fraction(verb, option, text, &real);
+    if (result == 0) *(const char **)value = text;
+    return result;
   case CLI_UNIT:
     if (!cli_unit_from_text(text, &real))
       return cli_misuse(verb, "--%s %s: no unit of length (m, cm, mm, um, km, inch, ft)",
@@ -311,7 +350,7 @@ static found_option find_option(const parser *p, const char *name, size_t length
     const cli_option *options = table ? cli_common_options : p->verb->options;
     size_t count = table ? cli_common_option_count : p->verb->option_count;
     for (size_t i = 0; i < count; i++)
-      if (letter ? options[i].letter == letter
+      if (letter ? cli_letter(options[i].name) == letter
                  : strlen(options[i].name) == length && !strncmp(options[i].name, name, length))
         return (found_option){&options[i], table ? (void *)p->common : p->options};
   }
@@ -362,43 +401,6 @@ static int check_partners(const parser *p) {
   return 0;
 }
 
-/* Levenshtein distance, for "did you mean". */
-static size_t edit_distance(const char *a, const char *b) {
-  enum { LONGEST = 40 };
-  size_t row[LONGEST + 1], n = strlen(a), m = strlen(b);
-  if (n > LONGEST || m > LONGEST) return LONGEST;
-  for (size_t j = 0; j <= m; j++) row[j] = j;
-  for (size_t i = 1; i <= n; i++) {
-    size_t diagonal = row[0];
-    row[0] = i;
-    for (size_t j = 1; j <= m; j++) {
-      size_t best = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      if (row[j] + 1 < best) best = row[j] + 1;
-      if (row[j - 1] + 1 < best) best = row[j - 1] + 1;
-      row[j] = best;
-    }
-  }
-  return row[m];
-}
-
-static const char *closest_option(const cli_verb *verb, const char *name) {
-  const char *best = NULL;
-  size_t best_distance = 3;
-  for (int table = 0; table < 2; table++) {
-    const cli_option *options = table ? cli_common_options : verb->options;
-    size_t count = table ? cli_common_option_count : verb->option_count;
-    for (size_t i = 0; i < count; i++) {
-      size_t distance = edit_distance(name, options[i].name);
-      if (distance < best_distance) {
-        best_distance = distance;
-        best = options[i].name;
-      }
-    }
-  }
-  return best;
-}
-
 /* "-dash.stl" may be meant as the file of that name. */
 static const char *file_hint(const char *word, char *buffer, size_t size) {
   buffer[0] = 0;
@@ -406,19 +408,24 @@ static const char *file_hint(const char *word, char *buffer, size_t size) {
   return buffer;
 }
 
-static int unknown_option(const cli_verb *verb, const char *word, size_t name_length) {
-  char name[64], hint[256];
-  snprintf(name, sizeof name, "%.*s", (int)name_length, word + 2);
-  const char *meant = closest_option(verb, name);
-  if (meant) return cli_misuse(verb, "unknown option '--%s'; did you mean '--%s'?", name, meant);
-  return cli_misuse(verb, "unknown option '--%s'%s", name, file_hint(word, hint, sizeof hint));
+static int unknown_option(const cli_verb *verb, const char *word, const char *name) {
+  char hint[256];
+  const char *dashes = name[1] ? "--" : "-";
+  cli_option_hint(verb, name, hint, sizeof hint);
+  if (*hint) return cli_misuse(verb, "unknown option '%s%s'%s", dashes, name, hint);
+  return cli_misuse(verb, "unknown option '%s%s'%s", dashes, name,
+                    file_hint(word, hint, sizeof hint));
 }
 
 static int parse_long(parser *p, const char *word) {
   const char *equals = strchr(word, '=');
   size_t length = equals ? (size_t)(equals - word - 2) : strlen(word + 2);
   found_option found = find_option(p, word + 2, length, 0);
-  if (!found.option) return unknown_option(p->verb, word, length);
+  if (!found.option) {
+    char name[64];
+    snprintf(name, sizeof name, "%.*s", (int)length, word + 2);
+    return unknown_option(p->verb, word, name);
+  }
   mark_given(p, found);
   if (found.option->kind == CLI_FLAG) {
     if (equals) return cli_misuse(p->verb, "--%s takes no value", found.option->name);
@@ -433,12 +440,9 @@ static int parse_long(parser *p, const char *word) {
 
 /* -qv, -n100, -n 100 */
 static int parse_letters(parser *p, const char *word) {
-  char hint[256];
   for (const char *letter = word + 1; *letter; letter++) {
     found_option found = find_option(p, NULL, 0, *letter);
-    if (!found.option)
-      return cli_misuse(p->verb, "unknown option '-%c' in '%s'%s", *letter, word,
-                        file_hint(word, hint, sizeof hint));
+    if (!found.option) return unknown_option(p->verb, word, (char[]){*letter, 0});
     mark_given(p, found);
     if (found.option->kind == CLI_FLAG) {
       store(p->verb, found.option, NULL, found.base);
@@ -469,6 +473,23 @@ static int check_input_count(const cli_verb *verb, const char *const *inputs, si
   return 0;
 }
 
+/* Names what is given and cannot be meant, on stderr. */
+static void remark_values(const parser *p) {
+  for (size_t i = 0; i < p->verb->option_count && i < MOST_OPTIONS; i++) {
+    const cli_option *option = &p->verb->options[i];
+    const cli_meaning *meaning = cli_find_meaning(option->name);
+    const void *value = (const char *)p->options + option->offset;
+    double number;
+    if (!p->given[i] || !meaning || !(meaning->most > 0)) continue;
+    if (option->kind == CLI_REAL)
+      number = *(const double *)value;
+    else if (option->kind != CLI_TEXT || !cli_real_from_text(*(char *const *)value, &number))
+      continue;
+    if (number < meaning->least || number > meaning->most)
+      fprintf(stderr, "scree: --%s %g: %s\n", option->name, number, meaning->expected);
+  }
+}
+
 int cli_parse(const cli_verb *verb, int word_count, char **words, void *options, cli_common *common,
               const char **inputs, size_t *input_count) {
   parser p = {.verb = verb,
@@ -494,5 +515,7 @@ int cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
   p.input_count = *input_count;
   int result = check_input_count(verb, inputs, *input_count);
   common->unit_given = is_given(&p, "unit", strlen("unit"));
-  return result ? result : check_partners(&p);
+  if (result == 0) result = check_partners(&p);
+  if (result == 0 && !common->quiet) remark_values(&p);
+  return result;
 }

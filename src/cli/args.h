@@ -6,16 +6,19 @@
 #include "scree.h"
 
 typedef enum cli_kind {
-  CLI_FLAG,   /* bool: set to true */
-  CLI_TEXT,   /* const char * */
-  CLI_TEXTS,  /* cli_texts: every time it is given, one more */
-  CLI_FILE,   /* const char *: a file that is read */
-  CLI_COUNT,  /* size_t in [minimum, maximum] */
-  CLI_REAL,   /* double in [minimum, maximum] */
-  CLI_LENGTH, /* double in metres; the value carries its unit, as in 0.27mm */
-  CLI_UNIT,   /* double: metres per unit, from m, cm, mm, um, inch, ft, km */
-  CLI_BYTES,  /* size_t, with suffix K, M, G */
-  CLI_CHOICE, /* int: index of the word in `words`, which reads "one|two|three" */
+  CLI_FLAG,        /* bool: set to true */
+  CLI_TEXT,        /* const char * */
+  CLI_TEXTS,       /* cli_texts: every time it is given, one more */
+  CLI_FILE,        /* const char *: a file that is read */
+  CLI_COUNT,       /* size_t in [minimum, maximum] */
+  CLI_REAL,        /* double in [minimum, maximum] */
+  CLI_SHARE,       /* double, as 0.5 or 50% */
+  CLI_LENGTH,      /* double in metres; the value may carry its unit, as in 0.27mm */
+  CLI_UNIT,        /* double: metres per unit, from m, cm, mm, um, inch, ft, km */
+  CLI_BYTES,       /* size_t, with suffix K, M, G */
+  CLI_CHOICE,      /* int: index of the word in `words`, which reads "one|two|three" */
+  CLI_LENGTH_TEXT, /* const char *, a length as given: cli_si_text makes it metres */
+  CLI_SHARE_TEXT,  /* const char *, a share alike */
 } cli_kind;
 
 enum { CLI_MOST_TEXTS = 64 };
@@ -25,13 +28,12 @@ typedef struct cli_texts {
 } cli_texts;
 
 typedef struct cli_option {
-  const char *name;        /* long name without dashes */
-  char letter;             /* short name, or 0 */
+  const char *name;        /* long name without dashes; its letter is in cli/options.c */
   cli_kind kind;           /* */
   size_t offset;           /* of the value in the verb's struct */
   const char *value_name;  /* in the help, as RP; NULL for flags */
   const char *help;        /* one or more sentences; says unit and default */
-  double minimum, maximum; /* CLI_COUNT, CLI_REAL, CLI_LENGTH; both 0: any value not below 0 */
+  double minimum, maximum; /* of a number; both 0: any value not below 0 */
   const char *words;       /* CLI_CHOICE */
 } cli_option;
 
@@ -91,6 +93,9 @@ int cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
 void cli_print_overview(FILE *stream);
 void cli_print_help(FILE *stream, const cli_verb *verb);
 void cli_print_man(FILE *stream);
+/* The one table of options, a line each: name, letter, meaning and the verbs that have it, with
+ * tabs between. */
+void cli_print_options(FILE *stream);
 void cli_print_completion(FILE *stream);
 
 enum { CLI_PRINTABLE_BYTES = 4200 };
@@ -120,7 +125,12 @@ int cli_parse_size(const cli_verb *verb, const char *text, size_t *width, size_t
 const char *cli_plural(size_t count);
 /* A number, all of the text; false otherwise. Not locale-dependent: the program never sets one. */
 bool cli_real_from_text(const char *text, double *value);
-/* A number with a unit, all of the text, as in 0.27mm; false otherwise. */
+/* A share, all of the text, as 0.5 or 50%; false otherwise. */
+bool cli_fraction_from_text(const char *text, double *value);
+enum { CLI_NUMBER_BYTES = 32 };
+/* What the kind's text means as a plain number in SI units; other kinds' text as it is. */
+const char *cli_si_text(cli_kind kind, const char *text, char buffer[CLI_NUMBER_BYTES]);
+/* A length, all of the text, as in 0.27mm, or in metres; false otherwise. */
 bool cli_length_from_text(const char *text, double *metres);
 
 #endif

@@ -14,7 +14,7 @@ typedef struct choose_arguments {
   cli_source source;
   double weight, density;
   int method, reference, rule;
-  bool samples, paper, errors, distances, json, csv, no_repair, overwrite;
+  bool samples, paper, errors, json, csv, no_repair, overwrite;
 } choose_arguments;
 
 /* One object from its word on the command line to its files. */

@@ -78,7 +78,7 @@ void choose_print_failed(FILE *out, const choose_run *run) {
 
 /* Where other errors were asked for: the grid's choice by each. */
 static void print_other_errors(FILE *out, const choose_run *run) {
-  if (!run->arguments->errors && !run->arguments->distances) return;
+  if (!run->arguments->errors) return;
   fprintf(out, "\nRp of the least error + Nr/Nm on the grid, by other errors than area:\n%-13s",
           "object");
   for (int e = 1; e < SCREE_SHAPE_ERROR_COUNT; e++)

@@ -144,7 +144,7 @@ scree_status drop_write_picture(drop_run *run, scree_error *error) {
   if (status != SCREE_OK) return status;
   scree_image image = {0};
   scree_render_options options = scree_default_render_options();
-  options.samples = run->arguments->samples;
+  options.samples = run->arguments->rays;
   status = scree_world_picture(scree_pour_world(run->pour), &options, run->call->progress, &image,
                                error);
   if (status == SCREE_OK) status = scree_image_write_png(&image, path, may_replace(run), error);

@@ -30,7 +30,7 @@ static int read_count(const drop_run *run, drop_shape *shape) {
   const char *equals = strrchr(shape->word, '='), *digits = equals ? equals + 1 : "";
   bool counted = *digits && digits[strspn(digits, "0123456789")] == 0;
   size_t length = equals ? (size_t)(equals - shape->word) : strlen(shape->word);
-  shape->count = run->arguments->number;
+  shape->count = run->arguments->particles;
   if (length == 0 || strlen(shape->word) >= sizeof shape->name)
     return cli_misuse(run->call->verb, "'%.40s': not a name", shape->word);
   memcpy(shape->name, shape->word, length);

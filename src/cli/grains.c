@@ -15,7 +15,7 @@ static bool add_level(const char *word, cli_grain_options *o) {
   static const char prefix[] = "clump:";
   bool clump = !strncmp(word, prefix, sizeof prefix - 1);
   double value;
-  if (!cli_real_from_text(word + (clump ? sizeof prefix - 1 : 0), &value)) return false;
+  if (!cli_fraction_from_text(word + (clump ? sizeof prefix - 1 : 0), &value)) return false;
   if (clump ? !(value >= 1 && value <= MOST_SPHERES && value == floor(value))
             : !(value > 0 && value <= 1))
     return false;

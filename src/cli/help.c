@@ -1,5 +1,5 @@
 /* Help, man page and completion, all from the option tables. */
-#include "cli/args.h"
+#include "cli/options.h"
 
 #include <string.h>
 
@@ -40,9 +40,9 @@ static void print_examples(FILE *stream, const char *text) {
 
 static void print_option(FILE *stream, const cli_option *option) {
   char left[64];
-  int used = option->letter
-                 ? snprintf(left, sizeof left, "  -%c, --%s", option->letter, option->name)
-                 : snprintf(left, sizeof left, "      --%s", option->name);
+  char letter = cli_letter(option->name);
+  int used = letter ? snprintf(left, sizeof left, "  -%c, --%s", letter, option->name)
+                    : snprintf(left, sizeof left, "      --%s", option->name);
   if (option->value_name && used < (int)sizeof left)
     used += snprintf(left + used, sizeof left - (size_t)used, " %s", option->value_name);
   fputs(left, stream);
@@ -87,7 +87,8 @@ static void print_scdoc_text(FILE *stream, const char *text) {
 
 static void print_scdoc_options(FILE *stream, const cli_option *options, size_t count) {
   for (size_t i = 0; i < count; i++) {
-    if (options[i].letter) fprintf(stream, "*-%c*, ", options[i].letter);
+    char letter = cli_letter(options[i].name);
+    if (letter) fprintf(stream, "*-%c*, ", letter);
     fprintf(stream, "*--%s*", options[i].name);
     if (options[i].value_name) fprintf(stream, " _%s_", options[i].value_name);
     fputs("\n\t", stream);
@@ -112,6 +113,20 @@ void cli_print_man(FILE *stream) {
     if ((*verb)->examples) fprintf(stream, "```\n%s\n```\n\n", (*verb)->examples);
   }
   fputs("# EXIT STATUS\n\n0 done, 1 failed (one sentence on stderr), 2 wrong usage.\n", stream);
+}
+
+void cli_print_options(FILE *stream) {
+  for (size_t i = 0; i < cli_meaning_count; i++) {
+    const cli_meaning *m = &cli_meanings[i];
+    fprintf(stream, "%s\t%s%.1s\t%s\t", m->name, m->letter ? "-" : "", &m->letter, m->meaning);
+    const char *space = "";
+    for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
+      if (cli_has_option(*verb, m->name)) {
+        fprintf(stream, "%s%s", space, (*verb)->name);
+        space = " ";
+      }
+    fprintf(stream, "%s\n", *space ? "" : "all");
+  }
 }
 
 static void print_words(FILE *stream, const cli_option *options, size_t count) {

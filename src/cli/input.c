@@ -28,9 +28,8 @@ static void hint_sample(const char *word, scree_error *error) {
 
 /* ---- Remarks ---- */
 
-/* What particles are: from fine sand to boulders, and no lighter than foam. */
+/* What particles are: from fine sand to boulders. */
 static const double smallest_size = 1e-4, largest_size = 10; /* m */
-static const double least_density = 50;                      /* kg/m^3 */
 
 static bool is_quiet, unit_is_given;
 
@@ -88,11 +87,6 @@ void cli_remark_scan(const char *word, const cli_input_options *options, const s
     cli_remark(word, "%.3g %s across: no size of a particle, is the unit right?%s",
                size < 1 ? 1e3 * size : size, size < 1 ? "mm" : "m",
                states ? "" : " -u says which it is");
-}
-
-void cli_remark_density(double density) {
-  if (density > 0 && density < least_density)
-    cli_remark("density", "%g kg/m3 is lighter than any solid: is it meant in g/cm3?", density);
 }
 
 scree_status cli_load(const char *word, const cli_input_options *options,

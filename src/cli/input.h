@@ -22,17 +22,29 @@ typedef struct cli_source {
 
 /* Their rows in the option table of a verb whose struct `type` has the member `source`. */
 #define CLI_SAMPLE_OPTIONS(type, source)                                                           \
-  CLI_SAMPLE_OPTION(type, source, resolution, CLI_LENGTH, "LENGTH",                                \
-                    "Spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3),               \
-      CLI_SAMPLE_OPTION(type, source, noise, CLI_LENGTH, "LENGTH",                                 \
-                        "Scanner noise of built-in samples. Default: 0.02mm.", 0, 2e-3),           \
-      CLI_SAMPLE_OPTION(type, source, seed, CLI_COUNT, "N", "Seed of that noise. Default: 1.", 0,  \
-                        1e15)
-#define CLI_SAMPLE_OPTION(type, source, field, kind, value, help, minimum, maximum)                \
-  { #field, 0, kind, offsetof(type, source.field), value, help, minimum, maximum, NULL }
+  {"resolution",                                                                                   \
+   CLI_LENGTH,                                                                                     \
+   offsetof(type, source.resolution),                                                              \
+   "LENGTH",                                                                                       \
+   "Spacing of built-in samples. Default: 0.27mm.",                                                \
+   0.02e-3,                                                                                        \
+   5e-3,                                                                                           \
+   NULL},                                                                                          \
+      {"noise",                                                                                    \
+       CLI_LENGTH,                                                                                 \
+       offsetof(type, source.noise),                                                               \
+       "LENGTH",                                                                                   \
+       "Scanner noise of built-in samples. Default: 0.02mm.",                                      \
+       0,                                                                                          \
+       2e-3,                                                                                       \
+       NULL},                                                                                      \
+  {                                                                                                \
+    "sample-seed", CLI_COUNT, offsetof(type, source.seed), "N", "Seed of that noise. Default: 1.", \
+        0, 1e15, NULL                                                                              \
+  }
 
 /* What they do nothing without, among the verb's partners. */
-#define CLI_SAMPLE_PARTNERS "resolution:sample: noise:sample: seed:sample:"
+#define CLI_SAMPLE_PARTNERS "resolution:sample: noise:sample: sample-seed:sample:"
 
 cli_input_options cli_source_options(const cli_source *source);
 
@@ -48,9 +60,6 @@ void cli_remark(const char *word, const char *format, ...) __attribute__((format
  * that no particle has; positions are in metres once they are multiplied by scale. */
 void cli_remark_scan(const char *word, const cli_input_options *options, const scree_scan *scan,
                      double scale);
-/* Remarks a density that no solid has, kg/m^3. */
-void cli_remark_density(double density);
-
 /* Reads or makes the surface, and remarks on it; a sample's format is "sample", its checksum zero.
  * Free with scree_scan_free. */
 scree_status cli_load(const char *word, const cli_input_options *options,

@@ -1,5 +1,6 @@
 #include "base/platform.h"
 #include "cli/input.h"
+#include "cli/options.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 #include "report/provenance.h"
@@ -35,6 +36,12 @@ static char *join_words(int count, char **words) {
   return line;
 }
 
+static int unknown_verb(const char *word) {
+  char hint[64];
+  cli_verb_hint(word, hint, sizeof hint);
+  return cli_misuse(NULL, "unknown verb '%s'%s", word, hint);
+}
+
 static int help(int word_count, char **words) {
   if (word_count == 0) {
     cli_print_overview(stdout);
@@ -42,6 +49,10 @@ static int help(int word_count, char **words) {
   }
   if (!strcmp(words[0], "--man")) {
     cli_print_man(stdout);
+    return 0;
+  }
+  if (!strcmp(words[0], "--options")) {
+    cli_print_options(stdout);
     return 0;
   }
   if (!strcmp(words[0], "--completion")) {
@@ -58,7 +69,7 @@ static int help(int word_count, char **words) {
     return 0;
   }
   const cli_verb *verb = cli_find_verb(words[0]);
-  if (!verb) return cli_misuse(NULL, "unknown verb '%s'", words[0]);
+  if (!verb) return unknown_verb(words[0]);
   cli_print_help(stdout, verb);
   return 0;
 }
@@ -149,7 +160,7 @@ static int act(int argc, char **argv) {
   const cli_verb *verb = cli_find_verb(word);
   if (!verb && !strcmp(word, "study") && !scree_build_has(SCREE_BUILD_STUDY))
     return cli_misuse(NULL, "this build of scree has no studies (SCREE_STUDY=OFF)");
-  if (!verb) return cli_misuse(NULL, "unknown verb '%s'", word);
+  if (!verb) return unknown_verb(word);
   return run(verb, argc, argv);
 }
 

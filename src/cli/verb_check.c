@@ -12,13 +12,13 @@ typedef struct check_arguments {
 } check_arguments;
 
 static const cli_option options[] = {
-    {"unit", 'u', CLI_UNIT, offsetof(check_arguments, source.unit), "UNIT",
+    {"unit", CLI_UNIT, offsetof(check_arguments, source.unit), "UNIT",
      "The files' unit of length. Default: mm.", 0, 0, NULL},
-    {"fast", 0, CLI_FLAG, offsetof(check_arguments, fast), NULL,
-     "Do not look for self-intersections.", 0, 0, NULL},
+    {"fast", CLI_FLAG, offsetof(check_arguments, fast), NULL, "Do not look for self-intersections.",
+     0, 0, NULL},
     CLI_SAMPLE_OPTIONS(check_arguments, source),
-    {"json", 0, CLI_FLAG, offsetof(check_arguments, json), NULL, "Print JSON instead of text.", 0,
-     0, NULL},
+    {"json", CLI_FLAG, offsetof(check_arguments, json), NULL, "Print JSON instead of text.", 0, 0,
+     NULL},
 };
 
 static const check_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};

@@ -1,4 +1,5 @@
 #include "cli/choose.h"
+#include "cli/grid.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
 #include "report/provenance.h"
@@ -9,7 +10,7 @@
 
 enum { METHOD_UNSET = -1, RULE_UNSET = -1 };
 
-static const choose_arguments defaults = {.grid = "1e-5:1e-1:9",
+static const choose_arguments defaults = {.grid = CLI_GRID_DEFAULT,
                                           .source = CLI_SOURCE_DEFAULTS,
                                           .weight = 1,
                                           .density = 2000,
@@ -18,53 +19,47 @@ static const choose_arguments defaults = {.grid = "1e-5:1e-1:9",
 
 #define AT(field) offsetof(choose_arguments, field)
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+    {"output", CLI_TEXT, AT(output), "DIR",
      "Write the chosen meshes with mass and inertia, the curves, the figure, the tables and "
      "report.html into DIR.",
      0, 0, NULL},
-    {"samples", 0, CLI_FLAG, AT(samples), NULL, "Choose for the nine built-in devices.", 0, 0,
-     NULL},
-    {"paper", 'p', CLI_FLAG, AT(paper), NULL,
+    {"samples", CLI_FLAG, AT(samples), NULL, "Choose for the nine built-in devices.", 0, 0, NULL},
+    {"paper", CLI_FLAG, AT(paper), NULL,
      "Do exactly what the paper did: method qecd, its grid, plain Ip; meshes by its choice.", 0, 0,
      NULL},
-    {"rule", 0, CLI_CHOICE, AT(rule), "RULE",
+    {"rule", CLI_CHOICE, AT(rule), "RULE",
      "Whose choice is told first and written: recommended (keeps tolerances), robust or paper "
      "(least "
      "Ip). Default: recommended.",
      0, 0, "recommended|robust|paper"},
-    {"tolerance", 't', CLI_TEXT, AT(tolerance), "LIST",
+    {"tolerance", CLI_TEXT, AT(tolerance), "LIST",
      "What the recommended level keeps, instead of the defaults, as shares or, of distances, "
      "lengths: mean=0.3%,hausdorff=3%,inertia=2%,thickness=3% are the defaults; also area, volume, "
      "size, thinnest, convexity, normals; none: does not count.",
      0, 0, NULL},
-    {"method", 'm', CLI_CHOICE, AT(method), "NAME",
+    {"method", CLI_CHOICE, AT(method), "NAME",
      "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume.", 0, 0,
      "volume|qecd"},
-    {"weight", 'w', CLI_REAL, AT(weight), "W",
+    {"weight", CLI_REAL, AT(weight), "W",
      "Weight of the penalty: Ip = eps_s + W Nr/Nm. Default: 1, as the paper.", 1e-9, 1e9, NULL},
-    {"grid", 'g', CLI_TEXT, AT(grid), "MIN:MAX:N",
-     "Grid of Rp: from MIN upward with N points per factor of ten, as far as MAX, which belongs to "
-     "it "
-     "only where a step meets it. Default: 1e-5:1e-1:9.",
-     0, 0, NULL},
-    {"reference", 'r', CLI_CHOICE, AT(reference), "AREA",
+    CLI_GRID_OPTION(choose_arguments, grid),
+    {"area", CLI_CHOICE, AT(reference), "AREA",
      "Area that eps_s is measured against: scan (the paper's) or smooth (past the scanner's "
      "noise, measured on the curve). Default: scan.",
      0, 0, "scan|smooth"},
-    {"errors", 'e', CLI_FLAG, AT(errors), NULL,
+    {"errors", CLI_FLAG, AT(errors), NULL,
      "Also the count that each other error alone would choose on the grid.", 0, 0, NULL},
-    {"distance", 'd', CLI_FLAG, AT(distances), NULL, "As --errors.", 0, 0, NULL},
-    {"density", 0, CLI_REAL, AT(density), "RHO",
+    {"density", CLI_REAL, AT(density), "KG/M3",
      "Density in kg/m3, for the mass and inertia written. Default: 2000.", 1e-6, 1e6, NULL},
-    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
-     0, NULL},
-    {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,
+    {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
+     NULL},
+    {"no-repair", CLI_FLAG, AT(no_repair), NULL,
      "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(choose_arguments, source),
-    {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
-    {"csv", 0, CLI_FLAG, AT(csv), NULL,
-     "Print CSV instead of text: a row per grid level and choice.", 0, 0, NULL},
-    {"force", 'f', CLI_FLAG, AT(overwrite), NULL,
+    {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text.", 0, 0, NULL},
+    {"csv", CLI_FLAG, AT(csv), NULL, "Print CSV instead of text: a row per grid level and choice.",
+     0, 0, NULL},
+    {"force", CLI_FLAG, AT(overwrite), NULL,
      "Overwrite existing files; what else an earlier choice left in the folder is removed.", 0, 0,
      NULL},
 };
@@ -77,45 +72,19 @@ const scree_set_pick *choose_default_set_pick(const choose_run *run, const scree
   return run->report.rule == SCREE_RULE_ROBUST ? &set->robust : &set->paper;
 }
 
-/* "1e-5:1e-1:9" */
-static bool parse_grid(const char *text, scree_choice_options *o) {
-  char part[3][32] = {"", "", ""};
-  for (int i = 0; i < 3; i++) {
-    size_t length = strcspn(text, ":");
-    if (length == 0 || length >= sizeof part[0]) return false;
-    memcpy(part[i], text, length);
-    text += length;
-    if (*text != (i < 2 ? ':' : 0)) return false;
-    text += i < 2;
-  }
-  double count;
-  if (!cli_real_from_text(part[0], &o->rp_min) || !cli_real_from_text(part[1], &o->rp_max) ||
-      !cli_real_from_text(part[2], &count))
-    return false;
-  if (!(count >= 1 && count <= 1000) || count != (double)(int)count) return false;
-  o->per_decade = (int)count;
-  return o->rp_min >= 1e-12 && o->rp_min <= o->rp_max && o->rp_max <= 1;
-}
-
 /* "0.3%", "0.003", "0.5mm" or "none" */
 static bool parse_bound(const char *word, scree_shape_error error, scree_choice_options *o) {
-  char number[32];
   double value;
-  size_t length = strlen(word);
-  bool percent = length > 1 && word[length - 1] == '%';
   o->tolerances[error] = o->tolerance_lengths[error] = INFINITY;
   if (!strcmp(word, "none")) return true;
-  if (length >= sizeof number) return false;
-  memcpy(number, word, length + 1);
-  if (percent) number[length - 1] = 0;
-  if (cli_real_from_text(number, &value)) {
-    o->tolerances[error] = percent ? value / 100 : value;
-    return value > 0 && value < INFINITY;
+  if (cli_fraction_from_text(word, &value)) {
+    o->tolerances[error] = value;
+    return value > 0;
   }
   bool is_distance = error == SCREE_ERROR_MEAN || error == SCREE_ERROR_HAUSDORFF;
-  if (!is_distance || percent || !cli_length_from_text(word, &value)) return false;
+  if (!is_distance || !cli_length_from_text(word, &value)) return false;
   o->tolerance_lengths[error] = value;
-  return value > 0 && value < INFINITY;
+  return value > 0;
 }
 
 static bool find_error(const char *word, scree_shape_error *error) {
@@ -288,11 +257,12 @@ static int run_choose(const cli_call *call) {
     return cli_misuse(call->verb,
                       "--paper is method qecd, weight 1, the scan's area and the grid %s",
                       defaults.grid);
-  if (!parse_grid(a->grid, &run.options))
-    return cli_misuse(call->verb,
-                      "--grid '%s': must be MIN:MAX:N with 1e-12 <= MIN <= MAX <= 1 and a whole "
-                      "N from 1 to 1000",
-                      a->grid);
+  cli_grid grid;
+  int code = cli_parse_grid(call->verb, a->grid, &grid);
+  if (code) return code;
+  run.options.rp_min = grid.least;
+  run.options.rp_max = grid.most;
+  run.options.per_decade = grid.per_decade;
   if (a->tolerance && !parse_tolerances(a->tolerance, &run.options))
     return cli_misuse(
         call->verb,
@@ -304,7 +274,6 @@ static int run_choose(const cli_call *call) {
   run.report.rule = a->paper                ? SCREE_RULE_PAPER
                     : a->rule != RULE_UNSET ? (scree_choice_rule)a->rule
                                             : SCREE_RULE_RECOMMENDED;
-  cli_remark_density(a->density);
   run.options.weight = a->weight;
   run.options.reference = (scree_reference)a->reference;
   run.simplify = scree_default_simplify_options();
@@ -358,7 +327,7 @@ const cli_verb cli_verb_choose = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = SIZE_MAX,
-    .partners =
-        "density:output resolution:sample:|samples noise:sample:|samples seed:sample:|samples",
+    .partners = "density:output resolution:sample:|samples noise:sample:|samples "
+                "sample-seed:sample:|samples",
     .run = run_choose,
 };

@@ -1,4 +1,5 @@
 /* scree curve: the table of levels. */
+#include "cli/grid.h"
 #include "cli/input.h"
 #include "cli/surface.h"
 #include "cli/terminal.h"
@@ -9,49 +10,42 @@
 typedef struct curve_arguments {
   cli_source source;
   cli_soundness soundness;
-  double from, to;
-  size_t per_decade, samples;
+  const char *grid;
+  size_t points;
   int method;
   bool distance, csv, json;
 } curve_arguments;
 
 static const cli_option options[] = {
-    {"method", 'm', CLI_CHOICE, offsetof(curve_arguments, method), "METHOD",
+    {"method", CLI_CHOICE, offsetof(curve_arguments, method), "METHOD",
      "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
      "Default: volume.",
      0, 0, "volume|qecd"},
-    {"from", 0, CLI_REAL, offsetof(curve_arguments, from), "RP",
-     "The coarsest Rp of the table, also where no step from --to comes to it. Default: 1e-5.", 1e-9,
-     1, NULL},
-    {"to", 0, CLI_REAL, offsetof(curve_arguments, to), "RP",
-     "The finest Rp of the table, from which the steps go down. Default: 1e-1.", 1e-9, 1, NULL},
-    {"per-decade", 0, CLI_COUNT, offsetof(curve_arguments, per_decade), "N",
-     "Levels per decade of Rp. Default: 9.", 1, 1000, NULL},
-    {"distance", 0, CLI_FLAG, offsetof(curve_arguments, distance), NULL,
+    CLI_GRID_OPTION(curve_arguments, grid),
+    {"distance", CLI_FLAG, offsetof(curve_arguments, distance), NULL,
      "Add mean and greatest distance to the scan, both ways: mean and maximum from the scan to the "
      "level, the same back, and the Hausdorff distance.",
      0, 0, NULL},
-    {"samples", 0, CLI_COUNT, offsetof(curve_arguments, samples), "N",
+    {"points", CLI_COUNT, offsetof(curve_arguments, points), "N",
      "Points per surface for --distance; every vertex is one besides. Default: the scan's vertex "
      "count.",
      0, 268435456, NULL},
-    {"csv", 0, CLI_FLAG, offsetof(curve_arguments, csv), NULL,
+    {"csv", CLI_FLAG, offsetof(curve_arguments, csv), NULL,
      "Comma-separated values in SI units, full digits.", 0, 0, NULL},
-    {"json", 0, CLI_FLAG, offsetof(curve_arguments, json), NULL,
+    {"json", CLI_FLAG, offsetof(curve_arguments, json), NULL,
      "JSON in SI units: one object with the levels in an array.", 0, 0, NULL},
-    {"unit", 'u', CLI_UNIT, offsetof(curve_arguments, source.unit), "UNIT",
+    {"unit", CLI_UNIT, offsetof(curve_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the file: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
     CLI_SOUNDNESS_OPTIONS(curve_arguments),
     CLI_SAMPLE_OPTIONS(curve_arguments, source),
 };
 
-static const curve_arguments defaults = {
-    .source = CLI_SOURCE_DEFAULTS, .from = 1e-5, .to = 1e-1, .per_decade = 9};
+static const curve_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .grid = CLI_GRID_DEFAULT};
 
 /* Parts of the time with --distance, without which the curve takes the rest. */
 static const double LOAD_PART = 0.1, CURVE_PART = 0.3;
 
-/* Of a step, at the ends of the grid. */
+/* Of a step, at the end of the grid. */
 static const double GRID_SLACK = 1e-9;
 
 /* What the rows need. */
@@ -59,6 +53,7 @@ typedef struct table {
   const cli_call *call;
   const curve_arguments *arguments;
   cli_share share; /* of the progress: all is one */
+  cli_grid grid;
   scree_curve *curve;
   scree_replay *replay;
   scree_surface *scan;
@@ -105,7 +100,7 @@ static scree_status measure_distance(table *t, size_t index, const scree_progres
   scree_distance_options settings = scree_default_distance_options();
   const scree_mesh *mesh;
   scree_surface *surface = NULL;
-  settings.sample_count = t->arguments->samples;
+  settings.sample_count = t->arguments->points;
   scree_status status = scree_replay_step(t->replay, index, &mesh, &t->error);
   if (status == SCREE_OK) status = scree_surface_create(mesh, &surface, &t->error);
   if (status == SCREE_OK)
@@ -124,14 +119,11 @@ static scree_status make_row(table *t, size_t index, const scree_progress *progr
   return t->arguments->distance ? measure_distance(t, index, progress, &row->distance) : SCREE_OK;
 }
 
-/* Rows from fine to coarse on the grid of Rp, each level once; text and CSV as they come. The grid
- * goes down from --to, and --from ends it where no step meets it. */
+/* Rows from fine to coarse on the grid of Rp, each level once; text and CSV as they come. */
 static scree_status make_rows(table *t) {
   const curve_arguments *arguments = t->arguments;
-  double top = log10(arguments->to), steps = (double)arguments->per_decade;
-  double span = (top - log10(arguments->from)) * steps;
-  size_t on_grid = (size_t)floor(span + GRID_SLACK) + 1;
-  size_t rows = on_grid + (span - (double)(on_grid - 1) > GRID_SLACK);
+  double bottom = log10(t->grid.least), steps = t->grid.per_decade;
+  size_t rows = (size_t)floor((log10(t->grid.most) - bottom) * steps + GRID_SLACK) + 1;
   size_t last = SIZE_MAX;
   t->rows = calloc(rows, sizeof *t->rows);
   if (!t->rows) {
@@ -139,7 +131,7 @@ static scree_status make_rows(table *t) {
     return SCREE_OUT_OF_MEMORY;
   }
   for (size_t i = 0; i < rows; i++) {
-    double rp = i < on_grid ? pow(10, top - (double)i / steps) : arguments->from;
+    double rp = pow(10, bottom + (double)(rows - 1 - i) / steps);
     size_t target = (size_t)(rp * (double)t->first.triangle_count * (1 + 1e-12));
     size_t index = scree_curve_find(t->curve, target);
     if (index == last) continue;
@@ -191,8 +183,8 @@ static int run(const cli_call *call) {
   scree_simplify_options settings = scree_default_simplify_options();
   scree_scan scan = {0};
   double scale;
-  if (t.arguments->from > t.arguments->to)
-    return cli_misuse(call->verb, "--from %g is above --to %g", t.arguments->from, t.arguments->to);
+  int code = cli_parse_grid(call->verb, t.arguments->grid, &t.grid);
+  if (code) return code;
   if (t.arguments->csv && t.arguments->json)
     return cli_misuse(call->verb, "--json and --csv exclude each other");
   settings.method = (scree_method)t.arguments->method;
@@ -241,13 +233,13 @@ const cli_verb cli_verb_curve = {
         "the criterion Ip = eps_s + Rp of Katagiri and Koyanaka (2020), and the quadric error.",
     .examples = "scree curve phone.stl\n"
                 "scree curve phone.stl --distance --csv > phone.csv\n"
-                "scree curve phone.stl -m qecd --per-decade 20\n",
+                "scree curve phone.stl -m qecd --grid 1e-4:1e-1:20\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,
     .options_size = sizeof defaults,
     .input_minimum = 1,
     .input_maximum = 1,
-    .partners = "samples:distance " CLI_SAMPLE_PARTNERS,
+    .partners = "points:distance " CLI_SAMPLE_PARTNERS,
     .run = run,
 };

@@ -7,28 +7,28 @@
 typedef struct distance_arguments {
   cli_source source;
   double gap;
-  size_t samples;
+  size_t points;
   bool json, one_way;
 } distance_arguments;
 
 static const distance_arguments defaults = {.source = CLI_SOURCE_DEFAULTS, .gap = 0.01};
 
 static const cli_option options[] = {
-    {"unit", 'u', CLI_UNIT, offsetof(distance_arguments, source.unit), "UNIT",
+    {"unit", CLI_UNIT, offsetof(distance_arguments, source.unit), "UNIT",
      "The files' unit of length, which the text is given in, too. Default: mm.", 0, 0, NULL},
-    {"samples", 'n', CLI_COUNT, offsetof(distance_arguments, samples), "N",
+    {"points", CLI_COUNT, offsetof(distance_arguments, points), "N",
      "Parts that each surface is cut in, every facet at least one. Default: the greater vertex "
      "count, at least 10,000, and more until the means are exact to 1 %.",
      1, 268435456, NULL},
-    {"gap", 0, CLI_REAL, offsetof(distance_arguments, gap), "SHARE",
+    {"gap", CLI_SHARE, offsetof(distance_arguments, gap), "SHARE",
      "Go on until the Hausdorff distance is known to this share of itself; 0: only sample, and say "
      "the bound that follows. Default: 0.01.",
      0, 1e6, NULL},
-    {"one-way", '1', CLI_FLAG, offsetof(distance_arguments, one_way), NULL,
+    {"one-way", CLI_FLAG, offsetof(distance_arguments, one_way), NULL,
      "Only from A to B, not back.", 0, 0, NULL},
     CLI_SAMPLE_OPTIONS(distance_arguments, source),
-    {"json", 0, CLI_FLAG, offsetof(distance_arguments, json), NULL, "JSON: one object, in metres.",
-     0, 0, NULL},
+    {"json", CLI_FLAG, offsetof(distance_arguments, json), NULL, "JSON: one object, in metres.", 0,
+     0, NULL},
 };
 
 static scree_status read_two(const cli_call *call, scree_scan scans[2], scree_error *error) {
@@ -68,7 +68,7 @@ static int run(const cli_call *call) {
                                 .checksum = {scans[0].checksum, scans[1].checksum},
                                 .unit_m = {scans[0].unit_m, scans[1].unit_m},
                                 .options = scree_default_distance_options()};
-  entry.options.sample_count = arguments->samples;
+  entry.options.sample_count = arguments->points;
   entry.options.hausdorff_gap = arguments->gap;
   entry.options.one_way = arguments->one_way;
   scree_status status = scree_mesh_distance(&scans[0].mesh, &scans[1].mesh, &entry.options,

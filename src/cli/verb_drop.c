@@ -20,9 +20,9 @@ static const struct {
 
 static const drop_arguments defaults = {.output = "drop",
                                         .source = CLI_SOURCE_DEFAULTS,
-                                        .number = 30,
+                                        .particles = 30,
                                         .seed = 1,
-                                        .samples = 24,
+                                        .rays = 24,
                                         .drop_height = NAN,
                                         .speed = NAN,
                                         .time = NAN,
@@ -40,87 +40,81 @@ static const drop_arguments defaults = {.output = "drop",
 
 #define AT(field) offsetof(drop_arguments, field)
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+    {"output", CLI_TEXT, AT(output), "DIR",
      "The folder for drop.pvd, frame-*.vtp, series.csv, drop.png and report.html, made if need be. "
      "Default: drop.",
      0, 0, NULL},
-    {"container", 'c', CLI_CHOICE, AT(container), "KIND", "cylinder or box. Default: cylinder.", 0,
-     0, "cylinder|box"},
-    {"width", 'w', CLI_LENGTH, AT(width), "LENGTH",
+    {"container", CLI_CHOICE, AT(container), "KIND", "cylinder or box. Default: cylinder.", 0, 0,
+     "cylinder|box"},
+    {"width", CLI_LENGTH, AT(width), "LENGTH",
      "Diameter of the cylinder or side of the box, inside, as in 300mm. Default: about the height "
      "the heap will have, and room for three abreast.",
      1e-6, 1e6, NULL},
-    {"depth", 0, CLI_LENGTH, AT(depth), "LENGTH", "The box's other side. Default: the width.", 1e-6,
+    {"depth", CLI_LENGTH, AT(depth), "LENGTH", "The box's other side. Default: the width.", 1e-6,
      1e6, NULL},
-    {"number", 'N', CLI_COUNT, AT(number), "COUNT",
+    {"particles", CLI_COUNT, AT(particles), "COUNT",
      "Particles of a shape without =COUNT. Default: 30.", 1, 10000000, NULL},
-    {"count", 'n', CLI_COUNT, AT(triangles), "COUNT",
+    {"count", CLI_COUNT, AT(triangles), "COUNT",
      "Decimate every shape to at most this many triangles. Default: shapes of more than 2000 are "
      "decimated to what `scree choose` chooses for them.",
      4, 4294967295.0, NULL},
-    {"reduction", 'r', CLI_REAL, AT(rp), "RP",
+    {"rp", CLI_SHARE, AT(rp), "RP",
      "Decimate every shape to this share of its triangles, as in 1e-3.", 1e-12, 1, NULL},
-    {"time", 't', CLI_REAL, AT(time), "S",
+    {"time", CLI_REAL, AT(time), "S",
      "Seconds simulated after the last layer entered, at most. Default: 2; less of particles under "
      "10 "
      "mm, as their falls are shorter.",
      0, 1e6, NULL},
-    {"still", 0, CLI_REAL, AT(still), "J",
+    {"still", CLI_REAL, AT(still), "J",
      "End early when the mean kinetic energy of a particle stays below this; 0: never. Default: "
      "1e-8 J; less of particles under 10 mm.",
      0, 1e6, NULL},
-    {"frames", 0, CLI_REAL, AT(frame_interval), "S",
+    {"frames", CLI_REAL, AT(frame_interval), "S",
      "Simulated seconds between frames; 0 writes none. Default: 0.02; less of particles under 10 "
      "mm.",
      0, 1e6, NULL},
-    {"checkpoint", 0, CLI_REAL, AT(checkpoint_interval), "S",
+    {"checkpoint", CLI_REAL, AT(checkpoint_interval), "S",
      "Seconds of the clock between checkpoints. Default: 60.", 0.01, 1e6, NULL},
-    {"resume", 0, CLI_FLAG, AT(resume), NULL,
+    {"resume", CLI_FLAG, AT(resume), NULL,
      "Go on from DIR/checkpoint.scree where there is one: with the same call, or with -o alone and "
      "the options that are not of the pour itself (time, still, frames, picture).",
      0, 0, NULL},
-    {"drop-height", 0, CLI_LENGTH, AT(drop_height), "LENGTH",
+    {"drop-height", CLI_LENGTH, AT(drop_height), "LENGTH",
      "From the floor to the first layer. Later ones enter above what is there. Default: 50mm, or "
      "five "
      "times the largest particle where that is less.",
      0, 1e3, NULL},
-    {"speed", 0, CLI_REAL, AT(speed), "M/S",
+    {"speed", CLI_REAL, AT(speed), "M/S",
      "Speed of entering, downwards. Default: 1 m/s; less of particles under 10 mm.", 0, 100, NULL},
-    {"density", 0, CLI_REAL, AT(density), "KG/M3", "Default: 2000 kg/m3.", 1e-6, 1e6, NULL},
-    {"young", 0, CLI_REAL, AT(young), "PA",
+    {"density", CLI_REAL, AT(density), "KG/M3", "Default: 2000 kg/m3.", 1e-6, 1e6, NULL},
+    {"young", CLI_REAL, AT(young), "PA",
      "Young's modulus of the particles: stiffness of a contact over particle size. Default: 1e8.",
      1, 1e14, NULL},
-    {"young-wall", 0, CLI_REAL, AT(young_wall), "PA", "The walls'. Default: 1e11.", 1, 1e16, NULL},
-    {"restitution", 0, CLI_REAL, AT(restitution), "E", "From 0.01 to 1. Default: 0.3.", 0.01, 1,
+    {"young-wall", CLI_REAL, AT(young_wall), "PA", "The walls'. Default: 1e11.", 1, 1e16, NULL},
+    {"restitution", CLI_REAL, AT(restitution), "E", "From 0.01 to 1. Default: 0.3.", 0.01, 1, NULL},
+    {"friction", CLI_REAL, AT(friction), "MU", "Between particles. Default: 0.5.", 0, 100, NULL},
+    {"friction-wall", CLI_REAL, AT(friction_wall), "MU", "Against walls. Default: 0.5.", 0, 100,
      NULL},
-    {"friction", 0, CLI_REAL, AT(friction), "MU", "Between particles. Default: 0.5.", 0, 100, NULL},
-    {"friction-wall", 0, CLI_REAL, AT(friction_wall), "MU", "Against walls. Default: 0.5.", 0, 100,
-     NULL},
-    {"law", 0, CLI_CHOICE, AT(law), "LAW",
+    {"law", CLI_CHOICE, AT(law), "LAW",
      "linear (spring, dashpot, slider) or hysteretic (Walton and Braun). Default: linear.", 0, 0,
      "linear|hysteretic"},
-    {"steps-per-contact", 0, CLI_REAL, AT(steps_per_contact), "N",
+    {"steps", CLI_REAL, AT(steps_per_contact), "N",
      "Time steps in a quarter period of the fastest contact. Default: 20; 40 for energies to 2 %.",
      15, 1e6, NULL},
-    {"stiffness-factor", 0, CLI_REAL, AT(stiffness_factor), "X",
+    {"stiffness", CLI_REAL, AT(stiffness_factor), "X",
      "Multiplies all stiffnesses: 0.01 is 10 times faster, with 100 times the overlaps at rest. "
      "Default: 1.",
      1e-9, 1e9, NULL},
-    {"seed", 0, CLI_COUNT, AT(seed), "N", "Another seed, another pour. Default: 1.", 0,
+    {"seed", CLI_COUNT, AT(seed), "N", "Another seed, another pour. Default: 1.", 0,
      9007199254740992.0, NULL},
-    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
-     0, NULL},
-    {"resolution", 0, CLI_LENGTH, AT(source.resolution), "LENGTH",
-     "Vertex spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3, NULL},
-    {"noise", 0, CLI_LENGTH, AT(source.noise), "LENGTH",
-     "Scanner's noise of built-in samples; at most a quarter of the resolution. Default: 0.02mm.",
-     0, 1, NULL},
-    {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,
-     "Refuse files that cannot serve as they are, instead of repairing them.", 0, 0, NULL},
-    {"no-picture", 0, CLI_FLAG, AT(no_picture), NULL, "Do not render drop.png.", 0, 0, NULL},
-    {"samples", 0, CLI_COUNT, AT(samples), "N", "Rays a pixel of drop.png. Default: 24.", 1, 65536,
+    {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
      NULL},
-    {"force", 'f', CLI_FLAG, AT(overwrite), NULL,
+    CLI_SAMPLE_OPTIONS(drop_arguments, source),
+    {"no-repair", CLI_FLAG, AT(no_repair), NULL,
+     "Refuse files that cannot serve as they are, instead of repairing them.", 0, 0, NULL},
+    {"no-picture", CLI_FLAG, AT(no_picture), NULL, "Do not render drop.png.", 0, 0, NULL},
+    {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel of drop.png. Default: 24.", 1, 65536, NULL},
+    {"force", CLI_FLAG, AT(overwrite), NULL,
      "Begin anew in a folder with an earlier drop, whose files go.", 0, 0, NULL},
 };
 
@@ -380,9 +374,9 @@ static scree_status pour(drop_run *run, scree_error *error) {
 
 /* An option that says how shapes are made, with another value than its default; NULL if none. */
 static const char *shape_option(const drop_arguments *a) {
-  return a->rp > 0                                ? "reduction"
+  return a->rp > 0                                ? "rp"
          : a->triangles                           ? "count"
-         : a->number != defaults.number           ? "number"
+         : a->particles != defaults.particles     ? "particles"
          : a->no_repair                           ? "no-repair"
          : a->source.unit != defaults.source.unit ? "unit"
                                                   : NULL;
@@ -402,12 +396,11 @@ static int run(const cli_call *call) {
                       1e3 * run.arguments->source.noise, 0.25e3 * run.arguments->source.resolution);
   if (run.arguments->depth > 0 && run.shape_count &&
       run.arguments->container != SCREE_CONTAINER_BOX)
-    return cli_misuse(call->verb, "--depth does nothing without -c box");
+    return cli_misuse(call->verb, "--depth does nothing without --container box");
   if (run.shape_count == 0 && !run.arguments->resume)
     return cli_misuse(call->verb, "needs a SHAPE, or --resume with -o DIR");
   if (run.shape_count == 0 && shape_option(run.arguments))
     return cli_misuse(call->verb, "--%s does nothing without a SHAPE", shape_option(run.arguments));
-  cli_remark_density(run.arguments->density);
   scree_error error = {SCREE_OUT_OF_MEMORY, "out of memory"};
   run.shapes = calloc(run.shape_count + 1, sizeof *run.shapes);
   if (!run.shapes) return cli_fail(&error);
@@ -438,15 +431,16 @@ const cli_verb cli_verb_drop = {
         "report shows it, and --resume goes on from checkpoint.scree with the same bits, as after "
         "a crash. A pour that leaves the range of the contact law stops with step, body and "
         "cause, and leaves the state shortly before in before-failure.world.",
-    .examples = "scree drop phone.stl=50\n"
-                "scree drop sample:fp-1=20 sample:dc-2=20 -n 100 -c box -w 300mm -o mixed\n"
-                "scree drop sphere:40mm=200 --frames 0.01 --seed 2\n",
+    .examples =
+        "scree drop phone.stl=50\n"
+        "scree drop sample:fp-1=20 sample:dc-2=20 -n 100 --container box --width 300mm -o mixed\n"
+        "scree drop sphere:40mm=200 --frames 0.01 --seed 2\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = 60,
-    .partners = "resolution:sample: noise:sample:",
+    .partners = CLI_SAMPLE_PARTNERS,
     .run = run,
 };

@@ -14,7 +14,7 @@ typedef struct export_arguments {
   const char *output, *reference, *to;
   cli_source source;
   double density;
-  size_t spheres, particles;
+  size_t count, particles;
   int view;
   bool centre, principal, overwrite;
 } export_arguments;
@@ -26,40 +26,39 @@ static const export_arguments defaults = {
 
 #define AT(field) offsetof(export_arguments, field)
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, AT(output), "OUT",
+    {"output", CLI_TEXT, AT(output), "OUT",
      "What to write (required). Of a surface: .stl, .ply, .obj, .off or .3mf, with a .json of the "
      "same "
      "name beside it, or .vtp. Of a checkpoint: .vtp, or a folder. Of several: .pvd or "
      ".vtp.series, "
      "with a .vtp each beside it.",
      0, 0, NULL},
-    {"to", 't', CLI_TEXT, AT(to), "UNIT|CODE",
+    {"to", CLI_TEXT, AT(to), "UNIT|CODE",
      "Unit of the meshes written; default: the input's; mm for samples and checkpoints. Or the DEM "
      "code that reads what is written: lammps, liggghts, yade, pfc or chrono. These take clumps: "
      "of "
      "a surface one is made.",
      0, 0, NULL},
-    {"spheres", 's', CLI_COUNT, AT(spheres), "N",
+    {"count", CLI_COUNT, AT(count), "N",
      "For a DEM code: spheres of the clump made of a surface. Default: the recommended number.", 1,
      300, NULL},
-    {"particles", 0, CLI_COUNT, AT(particles), "N",
+    {"particles", CLI_COUNT, AT(particles), "N",
      "For a DEM code: clumps that the script lets fall. Default: 27.", 1, 100000, NULL},
-    {"centre", 'c', CLI_FLAG, AT(centre), NULL, "Put the centre of mass at the origin.", 0, 0,
-     NULL},
-    {"principal", 'p', CLI_FLAG, AT(principal), NULL,
+    {"centre", CLI_FLAG, AT(centre), NULL, "Put the centre of mass at the origin.", 0, 0, NULL},
+    {"principal", CLI_FLAG, AT(principal), NULL,
      "And turn the principal axes of inertia along x, y and z, the long one along x.", 0, 0, NULL},
-    {"density", 'd', CLI_REAL, AT(density), "RHO",
+    {"density", CLI_REAL, AT(density), "KG/M3",
      "Density in kg/m3, for mass and inertia. Default: 2000.", 1e-6, 1e6, NULL},
-    {"reference", 'r', CLI_FILE, AT(reference), "FILE",
+    {"reference", CLI_FILE, AT(reference), "FILE",
      "For .vtp of a surface: add the distance to the surface in FILE, or sample:NAME.", 0, 0, NULL},
-    {"view", 'w', CLI_CHOICE, AT(view), "VIEW",
+    {"view", CLI_CHOICE, AT(view), "VIEW",
      "For .vtp of a checkpoint: surfaces (every triangle in its place), points (one per body, with "
      "quaternion and velocities), contacts (lines with forces) or walls. Default: surfaces.",
      0, 0, "surfaces|points|contacts|walls"},
-    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The input's unit of length. Default: mm.", 0,
-     0, NULL},
+    {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The input's unit of length. Default: mm.", 0, 0,
+     NULL},
     CLI_SAMPLE_OPTIONS(export_arguments, source),
-    {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
+    {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
 
 typedef enum input_kind { SURFACE, WORLD, RUN } input_kind;
@@ -139,7 +138,6 @@ static scree_status write_mesh(const cli_call *call, const scree_scan *scan, con
 
 static scree_status export_surface(const cli_call *call, scree_error *error) {
   const export_arguments *a = call->options;
-  cli_remark_density(a->density);
   cli_input_options input = cli_source_options(&a->source);
   scree_scan scan;
   char json_path[NAME_BYTES];
@@ -177,12 +175,12 @@ static scree_status make_clump(const cli_call *call, scree_particle **particle,
   scree_clumps clumps;
   scree_status status = cli_load_for_clump(word, &input, call->progress, &surface, error);
   if (status != SCREE_OK) return status;
-  if (a->spheres) o.most = a->spheres;
+  if (a->count) o.most = a->count;
   status = scree_clumps_make(&surface.mesh, &o, call->progress, &clumps, error);
   scree_mesh_free(&surface.mesh);
   if (status != SCREE_OK) return cli_name_in_error(word, error);
   const scree_clump *clump =
-      a->spheres ? scree_clumps_of_count(&clumps, a->spheres) : &clumps.clumps[clumps.recommended];
+      a->count ? scree_clumps_of_count(&clumps, a->count) : &clumps.clumps[clumps.recommended];
   status = scree_clump_particle(&clumps, clump, particle, error);
   scree_clumps_free(&clumps);
   return status;
@@ -365,8 +363,8 @@ static int check_clump_call(const cli_call *call) {
         "--to %s takes neither --reference, --view, --centre nor --principal: a clump "
         "stands about its centre of mass, along its principal axes",
         a->to);
-  if (a->spheres && cli_is_clump(call->inputs[0]))
-    return cli_misuse(call->verb, "--spheres is for a surface; %s is a clump", call->inputs[0]);
+  if (a->count && cli_is_clump(call->inputs[0]))
+    return cli_misuse(call->verb, "--count is for a surface; %s is a clump", call->inputs[0]);
   return 0;
 }
 
@@ -387,7 +385,7 @@ static int run(const cli_call *call) {
         "--to %s: must be a unit (m, cm, mm, um, inch, ft, km) or a DEM code (lammps, "
         "liggghts, yade, pfc, chrono)",
         a->to);
-  if (a->spheres || cli_is_clump(call->inputs[0]))
+  if (a->count || cli_is_clump(call->inputs[0]))
     return cli_misuse(call->verb, "a clump is written for a DEM code: say which with --to");
   bool world = kind_of(call->inputs[0]) != SURFACE;
   int code = check_call(call, world);
@@ -420,7 +418,7 @@ const cli_verb cli_verb_export = {
         "bodies.csv with every body's position, quaternion and velocities, and an STL per shape in "
         "the frame that the quaternions turn. docs/formats.md has every field.",
     .examples = "scree export result/phone.stl --principal --to m --density 1800 -o phone-dem.stl\n"
-                "scree export phone.stl --to lammps --spheres 20 -o phone-lammps\n"
+                "scree export phone.stl --to lammps -n 20 -o phone-lammps\n"
                 "scree export result/phone.stl --reference phone.stl -o phone.vtp\n"
                 "scree export repose/checkpoint.scree --view contacts -o contacts.vtp\n"
                 "scree export repose/last.scree --to m -o pile\n"

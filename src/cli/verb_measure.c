@@ -17,21 +17,21 @@ typedef struct measure_arguments {
 static const measure_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
 static const cli_option options[] = {
-    {"unit", 'u', CLI_UNIT, offsetof(measure_arguments, source.unit), "UNIT",
+    {"unit", CLI_UNIT, offsetof(measure_arguments, source.unit), "UNIT",
      "The files' unit of length, which the text is given in, too. Default: mm.", 0, 0, NULL},
-    {"weld", 0, CLI_REAL, offsetof(measure_arguments, weld), "SHARE",
+    {"weld", CLI_SHARE, offsetof(measure_arguments, weld), "SHARE",
      "Unite vertices closer than this share of the bounding box diagonal. Default: 0, only equal "
      "ones.",
      0, 0.1, NULL},
     CLI_SAMPLE_OPTIONS(measure_arguments, source),
-    {"json", 0, CLI_FLAG, offsetof(measure_arguments, json), NULL,
+    {"json", CLI_FLAG, offsetof(measure_arguments, json), NULL,
      "JSON: one array, an object per file, in SI units.", 0, 0, NULL},
-    {"csv", 0, CLI_FLAG, offsetof(measure_arguments, csv), NULL,
-     "CSV: one row per file, in SI units.", 0, 0, NULL},
-    {"zingg", 'z', CLI_TEXT, offsetof(measure_arguments, zingg), "FILE",
+    {"csv", CLI_FLAG, offsetof(measure_arguments, csv), NULL, "CSV: one row per file, in SI units.",
+     0, 0, NULL},
+    {"zingg", CLI_TEXT, offsetof(measure_arguments, zingg), "FILE",
      "Draw Zingg's plot of all files: .png, .svg or .pdf, or its data as .csv.", 0, 0, NULL},
-    {"force", 'f', CLI_FLAG, offsetof(measure_arguments, overwrite), NULL,
-     "Overwrite an existing file.", 0, 0, NULL},
+    {"force", CLI_FLAG, offsetof(measure_arguments, overwrite), NULL, "Overwrite an existing file.",
+     0, 0, NULL},
 };
 
 /* ---- Text ---- */

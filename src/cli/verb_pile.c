@@ -7,62 +7,62 @@
 
 typedef struct pile_arguments {
   const char *cell, *sectors, *band_low, *band_high; /* in the order of `settings` */
-  const char *picture, *size, *csv;
-  double azimuth_deg, elevation_deg, width;
-  size_t samples;
+  const char *picture, *size;
+  double azimuth_deg, elevation_deg, picture_width;
+  size_t rays;
   int vtp_view;
   const char *vtp;
-  bool json, force;
+  bool json, csv, force;
 } pile_arguments;
 
 static const pile_arguments defaults = {.size = "1200x900",
                                         .azimuth_deg = 35,
                                         .elevation_deg = 18,
-                                        .samples = 24,
+                                        .rays = 24,
                                         .vtp_view = SCREE_VIEW_SURFACES};
 
 static const struct {
   const char *option, *field;
+  cli_kind kind;
   size_t offset;
 } settings[] = {
-    {"cell", "measure.cell", offsetof(pile_arguments, cell)},
-    {"sectors", "measure.sectors", offsetof(pile_arguments, sectors)},
-    {"band-low", "measure.band_low", offsetof(pile_arguments, band_low)},
-    {"band-high", "measure.band_high", offsetof(pile_arguments, band_high)},
+    {"cell", "measure.cell", CLI_LENGTH_TEXT, offsetof(pile_arguments, cell)},
+    {"sectors", "measure.sectors", CLI_TEXT, offsetof(pile_arguments, sectors)},
+    {"band-low", "measure.band_low", CLI_SHARE_TEXT, offsetof(pile_arguments, band_low)},
+    {"band-high", "measure.band_high", CLI_SHARE_TEXT, offsetof(pile_arguments, band_high)},
 };
 enum { SETTING_COUNT = sizeof settings / sizeof *settings };
 
 #define AT(field) offsetof(pile_arguments, field)
 static const cli_option options[] = {
-    {"cell", 0, CLI_TEXT, AT(cell), "M",
+    {"cell", CLI_LENGTH_TEXT, AT(cell), "LENGTH",
      "Side of the height field's cells; 0: a tenth of the particle size. Default: the run's.", 0, 0,
      NULL},
-    {"sectors", 0, CLI_TEXT, AT(sectors), "N", "Azimuth sectors. Default: the run's.", 0, 0, NULL},
-    {"band-low", 0, CLI_TEXT, AT(band_low), "SHARE",
+    {"sectors", CLI_TEXT, AT(sectors), "N", "Azimuth sectors. Default: the run's.", 0, 0, NULL},
+    {"band-low", CLI_SHARE_TEXT, AT(band_low), "SHARE",
      "The flank begins at this share of the heap's height. Default: the run's.", 0, 0, NULL},
-    {"band-high", 0, CLI_TEXT, AT(band_high), "SHARE", "And ends at this one. Default: the run's.",
-     0, 0, NULL},
-    {"json", 0, CLI_FLAG, AT(json), NULL, "Print JSON instead of text: as result.json of repose.",
-     0, 0, NULL},
-    {"csv", 0, CLI_TEXT, AT(csv), "FILE",
-     "Write the series up to the frame; - is stdout: the text is then on stderr.", 0, 0, NULL},
-    {"picture", 'o', CLI_TEXT, AT(picture), "FILE", "Write a picture of the heap, a PNG.", 0, 0,
+    {"band-high", CLI_SHARE_TEXT, AT(band_high), "SHARE",
+     "And ends at this one. Default: the run's.", 0, 0, NULL},
+    {"json", CLI_FLAG, AT(json), NULL, "Print JSON instead of text: as result.json of repose.", 0,
+     0, NULL},
+    {"csv", CLI_FLAG, AT(csv), NULL, "Print the series up to the frame as CSV instead of text.", 0,
+     0, NULL},
+    {"output", CLI_TEXT, AT(picture), "FILE", "Write a picture of the heap, a PNG.", 0, 0, NULL},
+    {"size", CLI_TEXT, AT(size), "WxH", "Of the picture, in pixels. Default: 1200x900.", 0, 0,
      NULL},
-    {"size", 's', CLI_TEXT, AT(size), "WxH", "Of the picture, in pixels. Default: 1200x900.", 0, 0,
-     NULL},
-    {"azimuth", 'a', CLI_REAL, AT(azimuth_deg), "DEG",
+    {"azimuth", CLI_REAL, AT(azimuth_deg), "DEG",
      "The camera's angle about the vertical. Default: 35.", -360, 360, NULL},
-    {"elevation", 'e', CLI_REAL, AT(elevation_deg), "DEG",
+    {"elevation", CLI_REAL, AT(elevation_deg), "DEG",
      "The camera's angle above the horizontal. Default: 18.", -90, 90, NULL},
-    {"width", 'w', CLI_LENGTH, AT(width), "LENGTH",
-     "Half of what the picture shows, about the middle of the heap; default: the heap.", 0, 1e4,
+    {"picture-width", CLI_LENGTH, AT(picture_width), "LENGTH",
+     "What the picture shows across, about the middle of the heap. Default: the heap.", 0, 1e4,
      NULL},
-    {"samples", 'n', CLI_COUNT, AT(samples), "N", "Rays a pixel. Default: 24.", 1, 65536, NULL},
-    {"vtp", 0, CLI_TEXT, AT(vtp), "FILE", "Write the particles for ParaView, a .vtp.", 0, 0, NULL},
-    {"view", 0, CLI_CHOICE, AT(vtp_view), "VIEW",
+    {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel. Default: 24.", 1, 65536, NULL},
+    {"vtp", CLI_TEXT, AT(vtp), "FILE", "Write the particles for ParaView, a .vtp.", 0, 0, NULL},
+    {"view", CLI_CHOICE, AT(vtp_view), "VIEW",
      "What goes into it (a frame has no contacts, a checkpoint has). Default: surfaces.", 0, 0,
      "surfaces|points|contacts|walls"},
-    {"force", 'f', CLI_FLAG, AT(force), NULL, "Overwrite existing files.", 0, 0, NULL},
+    {"force", CLI_FLAG, AT(force), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
 #undef AT
 
@@ -73,7 +73,9 @@ static int read_settings(const cli_call *call, const scree_run *run, scree_exper
     return cli_fail(error);
   for (int i = 0; i < SETTING_COUNT; i++) {
     const char *text;
+    char number[CLI_NUMBER_BYTES];
     memcpy(&text, (const char *)call->options + settings[i].offset, sizeof text);
+    if (text) text = cli_si_text(settings[i].kind, text, number);
     if (text && scree_experiment_set(measure, settings[i].field, text, error) != SCREE_OK)
       return cli_misuse(call->verb, "--%s: %s", settings[i].option, error->message);
   }
@@ -85,9 +87,9 @@ static int write_picture(const cli_call *call, const scree_run *run, const scree
   const pile_arguments *a = call->options;
   render.azimuth_deg = a->azimuth_deg;
   render.elevation_deg = a->elevation_deg;
-  render.samples = a->samples;
-  if (a->width > 0) {
-    render.focus_radius = a->width;
+  render.samples = a->rays;
+  if (a->picture_width > 0) {
+    render.focus_radius = 0.5 * a->picture_width;
     render.focus[0] = result->repose.axis[0];
     render.focus[1] = result->repose.axis[1];
     render.focus[2] = 0.35 * result->repose.peak;
@@ -109,28 +111,25 @@ static bool is_stdout(const char *path) {
 /* 0, or 2 after telling which two of the options write to stdout, or to one file. */
 static int check_apart(const cli_call *call) {
   const pile_arguments *a = call->options;
-  const char *there[] = {a->json ? "--json" : NULL, is_stdout(a->csv) ? "--csv -" : NULL,
+  const char *there[] = {a->json ? "--json" : NULL, a->csv ? "--csv" : NULL,
                          is_stdout(a->vtp) ? "--vtp -" : NULL,
-                         is_stdout(a->picture) ? "--picture -" : NULL};
+                         is_stdout(a->picture) ? "--output -" : NULL};
   const char *first = NULL;
   for (size_t i = 0; i < sizeof there / sizeof *there; i++) {
     if (there[i] && first)
       return cli_misuse(call->verb, "%s and %s exclude each other", first, there[i]);
     if (there[i]) first = there[i];
   }
-  const char *files[] = {a->csv, a->vtp, a->picture};
-  for (size_t i = 0; i < 3; i++)
-    for (size_t k = 0; k < i; k++)
-      if (files[i] && files[k] && strcmp(files[i], files[k]) == 0)
-        return cli_misuse(call->verb, "two outputs have the name %s", files[i]);
+  if (a->vtp && a->picture && strcmp(a->vtp, a->picture) == 0)
+    return cli_misuse(call->verb, "two outputs have the name %s", a->vtp);
   return 0;
 }
 
 /* The text; on stderr where something else is on stdout. */
 static void print_text(const cli_call *call, const scree_run *run, const scree_run_result *result) {
   const pile_arguments *a = call->options;
-  bool beside = is_stdout(a->csv) || is_stdout(a->vtp) || is_stdout(a->picture);
-  if (a->json || (beside && call->quiet)) return;
+  bool beside = is_stdout(a->vtp) || is_stdout(a->picture);
+  if (a->json || a->csv || (beside && call->quiet)) return;
   cli_print_heap(beside ? stderr : stdout, run, result);
 }
 
@@ -146,7 +145,7 @@ static int measure(const cli_call *call, scree_run *run, const scree_render_opti
   if (code == 0 && a->json && scree_heap_json_write(&entry, "-", true, error) != SCREE_OK)
     code = cli_fail(error);
   if (code == 0) print_text(call, run, &result);
-  if (code == 0 && a->csv && scree_series_csv_write(run, a->csv, a->force, error) != SCREE_OK)
+  if (code == 0 && a->csv && scree_series_csv_write(run, "-", true, error) != SCREE_OK)
     code = cli_fail(error);
   if (code == 0 && a->vtp &&
       scree_world_vtp_write(scree_run_view(run), (scree_world_view)a->vtp_view, a->vtp, a->force,
@@ -159,9 +158,9 @@ static int measure(const cli_call *call, scree_run *run, const scree_render_opti
 
 static scree_status check_outputs(const cli_call *call, scree_error *error) {
   const pile_arguments *a = call->options;
-  const char *const outputs[] = {a->csv, a->vtp, a->picture};
+  const char *const outputs[] = {a->vtp, a->picture};
   scree_status status = SCREE_OK;
-  for (size_t i = 0; i < 3 && status == SCREE_OK; i++)
+  for (size_t i = 0; i < 2 && status == SCREE_OK; i++)
     if (outputs[i]) status = cli_check_output(call, outputs[i], a->force, error);
   return status;
 }
@@ -207,6 +206,6 @@ const cli_verb cli_verb_pile = {
     .input_minimum = 1,
     .input_maximum = 1,
     .partners =
-        "size:picture azimuth:picture elevation:picture width:picture samples:picture view:vtp",
+        "size:output azimuth:output elevation:output picture-width:output rays:output view:vtp",
     .run = run,
 };

@@ -13,7 +13,7 @@ typedef struct render_arguments {
   const char *output, *size, *reference, *levels;
   cli_source source;
   double azimuth_deg, elevation_deg;
-  size_t samples, columns;
+  size_t rays, columns;
   int view, color_by;
   bool edges, wire, no_ground, no_captions, overwrite;
 } render_arguments;
@@ -22,42 +22,42 @@ static const render_arguments defaults = {.size = "1200x900",
                                           .source = CLI_SOURCE_DEFAULTS,
                                           .azimuth_deg = NAN, /* the view's */
                                           .elevation_deg = NAN,
-                                          .samples = 24};
+                                          .rays = 24};
 
 #define AT(field) offsetof(render_arguments, field)
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, AT(output), "FILE", "The PNG to write (required); - is stdout.", 0, 0,
+    {"output", CLI_TEXT, AT(output), "FILE", "The PNG to write (required); - is stdout.", 0, 0,
      NULL},
-    {"size", 's', CLI_TEXT, AT(size), "WxH", "Size in pixels. Default: 1200x900.", 0, 0, NULL},
-    {"view", 0, CLI_CHOICE, AT(view), "SIDE",
+    {"size", CLI_TEXT, AT(size), "WxH", "Size in pixels. Default: 1200x900.", 0, 0, NULL},
+    {"from", CLI_CHOICE, AT(view), "SIDE",
      "Seen from: oblique, front (against -y), back, left, right, top or bottom. Default: oblique.",
      0, 0, "oblique|front|back|left|right|top|bottom"},
-    {"azimuth", 'a', CLI_REAL, AT(azimuth_deg), "DEG",
+    {"azimuth", CLI_REAL, AT(azimuth_deg), "DEG",
      "The camera's angle about the vertical. Default: the view's; 35 of oblique.", -360, 360, NULL},
-    {"elevation", 'e', CLI_REAL, AT(elevation_deg), "DEG",
+    {"elevation", CLI_REAL, AT(elevation_deg), "DEG",
      "The camera's angle above the horizontal. Default: the view's; 25 of oblique.", -90, 90, NULL},
-    {"samples", 'n', CLI_COUNT, AT(samples), "N",
-     "Rays a pixel: more is smoother and slower. Default: 24.", 1, 65536, NULL},
-    {"columns", 'c', CLI_COUNT, AT(columns), "N",
-     "Columns of views. Default: what makes them largest.", 1, 1000, NULL},
-    {"edges", 0, CLI_FLAG, AT(edges), NULL, "Draw the edges of the triangles.", 0, 0, NULL},
-    {"wire", 0, CLI_FLAG, AT(wire), NULL, "Draw only the edges.", 0, 0, NULL},
-    {"levels", 'l', CLI_TEXT, AT(levels), "RP,...",
+    {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel: more is smoother and slower. Default: 24.", 1,
+     65536, NULL},
+    {"columns", CLI_COUNT, AT(columns), "N", "Columns of views. Default: what makes them largest.",
+     1, 1000, NULL},
+    {"edges", CLI_FLAG, AT(edges), NULL, "Draw the edges of the triangles.", 0, 0, NULL},
+    {"wire", CLI_FLAG, AT(wire), NULL, "Draw only the edges.", 0, 0, NULL},
+    {"rp", CLI_TEXT, AT(levels), "LIST",
      "Of one surface: also its levels at these Rp (0 < RP <= 1) by the decimation of choose.", 0, 0,
      NULL},
-    {"color-by", 0, CLI_CHOICE, AT(color_by), "WHAT",
+    {"color-by", CLI_CHOICE, AT(color_by), "WHAT",
      "plain, or distance: to the first surface, or to the one of --reference, with a scale bar; "
      "all over the triangles, or with --edges and --wire between their corners. Default: plain.",
      0, 0, "plain|distance"},
-    {"reference", 'r', CLI_FILE, AT(reference), "FILE",
-     "Colour by the distance to the surface in FILE.", 0, 0, NULL},
-    {"no-ground", 0, CLI_FLAG, AT(no_ground), NULL, "No floor and no shadow on it.", 0, 0, NULL},
-    {"no-captions", 0, CLI_FLAG, AT(no_captions), NULL,
+    {"reference", CLI_FILE, AT(reference), "FILE", "Colour by the distance to the surface in FILE.",
+     0, 0, NULL},
+    {"no-ground", CLI_FLAG, AT(no_ground), NULL, "No floor and no shadow on it.", 0, 0, NULL},
+    {"no-captions", CLI_FLAG, AT(no_captions), NULL,
      "No file name and triangle count below each view.", 0, 0, NULL},
-    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
-     0, NULL},
+    {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
+     NULL},
     CLI_SAMPLE_OPTIONS(render_arguments, source),
-    {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
+    {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
 };
 
 typedef struct picture {
@@ -202,7 +202,7 @@ static size_t parse_levels(const char *text, double rp[MOST_LEVELS]) {
     if (length >= sizeof word || count == MOST_LEVELS) return 0;
     memcpy(word, text, length);
     word[length] = 0;
-    if (!cli_real_from_text(word, &rp[count]) || !(rp[count] > 0 && rp[count] <= 1)) return 0;
+    if (!cli_fraction_from_text(word, &rp[count]) || !(rp[count] > 0 && rp[count] <= 1)) return 0;
     count++;
     if (!text[length]) return count;
     text += length + 1;
@@ -214,7 +214,7 @@ static void set_options(const render_arguments *a, scree_render_options *render)
                                     {90, 0},  {0, 90}, {0, -90}};
   render->azimuth_deg = isnan(a->azimuth_deg) ? views[a->view][0] : a->azimuth_deg;
   render->elevation_deg = isnan(a->elevation_deg) ? views[a->view][1] : a->elevation_deg;
-  render->samples = a->samples;
+  render->samples = a->rays;
   render->columns = a->columns;
   render->edges = a->edges;
   render->wire = a->wire;
@@ -251,11 +251,11 @@ static int run(const cli_call *call) {
   if (code) return code;
   if (a->levels && !level_count)
     return cli_misuse(call->verb,
-                      "--levels %s: must be at most %d numbers above 0 and up to 1, "
+                      "--rp %s: must be at most %d numbers above 0 and up to 1, "
                       "with commas between",
                       a->levels, MOST_LEVELS);
   if (a->levels && call->input_count != 1)
-    return cli_misuse(call->verb, "--levels takes one surface, not %zu", call->input_count);
+    return cli_misuse(call->verb, "--rp takes one surface, not %zu", call->input_count);
   set_options(a, &render);
   picture p;
   scree_error error;
@@ -281,9 +281,9 @@ const cli_verb cli_verb_render = {
         "triangle count: for example a scan and its levels side by side.",
     .examples = "scree render scan.stl -o scan.png\n"
                 "scree render scan.stl level-*.stl -o levels.png --size 1800x500 --edges\n"
-                "scree render scan.stl --levels 1e-1,1e-2,1e-3,1e-4,1e-5 --edges -o row.png "
+                "scree render scan.stl --rp 1e-1,1e-2,1e-3,1e-4,1e-5 --edges -o row.png "
                 "--size 2400x400\n"
-                "scree render scan.stl --levels 1e-3 --color-by distance -o error.png\n",
+                "scree render scan.stl --rp 1e-3 --color-by distance -o error.png\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,

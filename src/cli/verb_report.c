@@ -11,9 +11,9 @@ static const report_arguments defaults = {.output = "report.html"};
 
 #define AT(field) offsetof(report_arguments, field)
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, AT(output), "FILE",
+    {"output", CLI_TEXT, AT(output), "FILE",
      "The page to write, .html; - is stdout. Default: report.html.", 0, 0, NULL},
-    {"force", 'f', CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
+    {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite an existing file.", 0, 0, NULL},
 };
 
 static int run(const cli_call *call) {

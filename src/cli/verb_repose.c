@@ -11,58 +11,63 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Every field of the experiment as an option: X(option, field, VALUE, help). */
+/* Every field of the experiment as an option: X(option, field, kind, VALUE, help). */
 #define SETTINGS(X)                                                                                \
-  X(PARTICLES, "particles", "particles", "N",                                                      \
+  X(PARTICLES, "particles", "particles", CLI_TEXT, "N",                                            \
     "How many particles, in equal shares of the shapes.")                                          \
-  X(SEED, "seed", "seed", "N", "Of positions, orientations and order.")                            \
-  X(DENSITY, "density", "density", "KG/M3", "Of the particles.")                                   \
-  X(MASS_FROM, "mass-from", "mass_from", "WHAT",                                                   \
+  X(SEED, "seed", "seed", CLI_TEXT, "N", "Of positions, orientations and order.")                  \
+  X(DENSITY, "density", "density", CLI_TEXT, "KG/M3", "Of the particles.")                         \
+  X(MASS_FROM, "mass-from", "mass_from", CLI_TEXT, "WHAT",                                         \
     "mesh: mass by each decimated mesh's own volume, as a simulator that reads the mesh has it; "  \
     "scan: by the scan's at every level.")                                                         \
-  X(CYLINDER, "cylinder", "cylinder.diameter", "M", "Inner diameter of the cylinder.")             \
-  X(DISC, "disc", "disc.diameter", "M", "Diameter of the bottom disc.")                            \
-  X(PACK_TIME, "pack-time", "phases.pack_time", "S", "While the particles are filled in.")         \
-  X(SETTLE_TIME, "settle-time", "phases.settle_time", "S", "While they come to rest.")             \
-  X(LIFT_SPEED, "lift-speed", "phases.lift_speed", "M/S", "Of the cylinder.")                      \
-  X(LIFT_TIME, "lift-time", "phases.lift_time", "S", "How long it rises.")                         \
-  X(HOLD_TIME, "hold-time", "phases.hold_time", "S", "After the lift, at most, until still.")      \
-  X(STOP_WHEN_STILL, "stop-when-still", "phases.stop_when_still", "BOOL",                          \
+  X(CYLINDER, "cylinder", "cylinder.diameter", CLI_LENGTH_TEXT, "LENGTH",                          \
+    "Inner diameter of the cylinder.")                                                             \
+  X(DISC, "disc", "disc.diameter", CLI_LENGTH_TEXT, "LENGTH", "Diameter of the bottom disc.")      \
+  X(PACK_TIME, "pack-time", "phases.pack_time", CLI_TEXT, "S",                                     \
+    "While the particles are filled in.")                                                          \
+  X(SETTLE_TIME, "settle-time", "phases.settle_time", CLI_TEXT, "S", "While they come to rest.")   \
+  X(LIFT_SPEED, "lift-speed", "phases.lift_speed", CLI_TEXT, "M/S", "Of the cylinder.")            \
+  X(LIFT_TIME, "lift-time", "phases.lift_time", CLI_TEXT, "S", "How long it rises.")               \
+  X(HOLD_TIME, "hold-time", "phases.hold_time", CLI_TEXT, "S",                                     \
+    "After the lift, at most, until still.")                                                       \
+  X(STOP_WHEN_STILL, "stop-when-still", "phases.stop_when_still", CLI_TEXT, "BOOL",                \
     "true: phases end early when still.")                                                          \
-  X(STILL_ENERGY, "still-energy", "phases.still_energy", "J",                                      \
+  X(STILL_ENERGY, "still", "phases.still_energy", CLI_TEXT, "J",                                   \
     "Kinetic energy a particle: less is still.")                                                   \
-  X(INLET, "inlet", "phases.inlet", "WHERE",                                                       \
+  X(INLET, "inlet", "phases.inlet", CLI_TEXT, "WHERE",                                             \
     "top: particles fall from above where the packed heap will end; heap: from near the heap.")    \
-  X(DROP_HEIGHT, "drop-height", "phases.drop_height", "M",                                         \
+  X(DROP_HEIGHT, "drop-height", "phases.drop_height", CLI_LENGTH_TEXT, "LENGTH",                   \
     "From the heap's top to the inlet, at least.")                                                 \
-  X(YOUNG, "young", "contact.young_particle", "PA", "Young's modulus of the particles.")           \
-  X(YOUNG_WALL, "young-wall", "contact.young_wall", "PA", "Young's modulus of the walls.")         \
-  X(POISSON, "poisson", "contact.poisson", "NU",                                                   \
+  X(YOUNG, "young", "contact.young_particle", CLI_TEXT, "PA", "Young's modulus of the particles.") \
+  X(YOUNG_WALL, "young-wall", "contact.young_wall", CLI_TEXT, "PA",                                \
+    "Young's modulus of the walls.")                                                               \
+  X(POISSON, "poisson", "contact.poisson", CLI_TEXT, "NU",                                         \
     "Poisson's ratio (the linear law does not use it).")                                           \
-  X(RESTITUTION, "restitution", "contact.restitution", "E", "Of every contact.")                   \
-  X(FRICTION, "friction", "contact.friction_particle", "MU", "Particle on particle.")              \
-  X(FRICTION_WALL, "friction-wall", "contact.friction_wall", "MU", "Particle on wall.")            \
-  X(LAW, "law", "contact.law", "NAME", "linear or hysteretic.")                                    \
-  X(STEPS, "steps", "contact.steps", "N",                                                          \
+  X(RESTITUTION, "restitution", "contact.restitution", CLI_TEXT, "E", "Of every contact.")         \
+  X(FRICTION, "friction", "contact.friction_particle", CLI_TEXT, "MU", "Particle on particle.")    \
+  X(FRICTION_WALL, "friction-wall", "contact.friction_wall", CLI_TEXT, "MU", "Particle on wall.")  \
+  X(LAW, "law", "contact.law", CLI_TEXT, "NAME", "linear or hysteretic.")                          \
+  X(STEPS, "steps", "contact.steps", CLI_TEXT, "N",                                                \
     "Time steps in a quarter of a contact's period, at least 15.")                                 \
-  X(STIFFNESS, "stiffness", "contact.stiffness_factor", "F",                                       \
+  X(STIFFNESS, "stiffness", "contact.stiffness_factor", CLI_TEXT, "F",                             \
     "Multiplies every stiffness; 0.2 is 2.2 times faster, with overlaps 5 times deeper.")          \
-  X(GRAVITY, "gravity", "gravity", "M/S2", "Downwards.")                                           \
-  X(FRAMES, "frames", "output.frame_interval", "S",                                                \
+  X(GRAVITY, "gravity", "gravity", CLI_TEXT, "M/S2", "Downwards.")                                 \
+  X(FRAMES, "frames", "output.frame_interval", CLI_TEXT, "S",                                      \
     "Simulated time between frames; 0: only the last.")                                            \
-  X(CHECKPOINT, "checkpoint", "output.checkpoint_interval", "S",                                   \
+  X(CHECKPOINT, "checkpoint", "output.checkpoint_interval", CLI_TEXT, "S",                         \
     "Clock time between checkpoints.")                                                             \
-  X(SERIES, "series", "output.series_interval", "S",                                               \
+  X(SERIES, "series", "output.series_interval", CLI_TEXT, "S",                                     \
     "Simulated time between points of the series.")                                                \
-  X(ANGLES, "angles", "output.angle_interval", "S", "And between those with angles.")              \
-  X(CELL, "cell", "measure.cell", "M", "Of the height field; 0: a tenth of the particle size.")    \
-  X(SECTORS, "sectors", "measure.sectors", "N", "Azimuth sectors.")                                \
-  X(BAND_LOW, "band-low", "measure.band_low", "SHARE",                                             \
+  X(ANGLES, "angles", "output.angle_interval", CLI_TEXT, "S", "And between those with angles.")    \
+  X(CELL, "cell", "measure.cell", CLI_LENGTH_TEXT, "LENGTH",                                       \
+    "Of the height field; 0: a tenth of the particle size.")                                       \
+  X(SECTORS, "sectors", "measure.sectors", CLI_TEXT, "N", "Azimuth sectors.")                      \
+  X(BAND_LOW, "band-low", "measure.band_low", CLI_SHARE_TEXT, "SHARE",                             \
     "The flank begins at this share of the height.")                                               \
-  X(BAND_HIGH, "band-high", "measure.band_high", "SHARE", "And ends at this one.")
+  X(BAND_HIGH, "band-high", "measure.band_high", CLI_SHARE_TEXT, "SHARE", "And ends at this one.")
 
 enum {
-#define PLACE(id, option, field, value, help) SETTING_##id,
+#define PLACE(id, option, field, kind, value, help) SETTING_##id,
   SETTINGS(PLACE)
 #undef PLACE
       SETTING_COUNT
@@ -70,8 +75,9 @@ enum {
 
 static const struct {
   const char *option, *field;
+  cli_kind kind;
 } settings[] = {
-#define NAMES(id, option, field, value, help) {option, field},
+#define NAMES(id, option, field, kind, value, help) {option, field, kind},
     SETTINGS(NAMES)
 #undef NAMES
 };
@@ -82,59 +88,53 @@ typedef struct repose_arguments {
   const char *config, *preset, *output, *rp;
   const char *settings[SETTING_COUNT];
   cli_source source;
-  int method, vtp;
-  bool samples, spheres, no_repair, resume, force, print_config, json, no_picture;
+  int method, view;
+  bool samples, spheres, no_repair, resume, force, print, json, no_picture;
 } repose_arguments;
 
 static const repose_arguments defaults = {
-    .preset = "demo", .source = CLI_SOURCE_DEFAULTS, .vtp = VTP_UNSET};
+    .preset = "demo", .source = CLI_SOURCE_DEFAULTS, .view = VTP_UNSET};
 
 #define AT(field) offsetof(repose_arguments, field)
 static const cli_option options[] = {
-    {"config", 'c', CLI_FILE, AT(config), "FILE",
-     "An experiment in YAML, as --print-config writes it; - is stdin.", 0, 0, NULL},
-    {"preset", 'p', CLI_TEXT, AT(preset), "NAME",
+    {"config", CLI_FILE, AT(config), "FILE",
+     "An experiment in YAML, as --print writes it; - is stdin.", 0, 0, NULL},
+    {"preset", CLI_TEXT, AT(preset), "NAME",
      "What the file and the options change: paper, small or demo (the default).", 0, 0, NULL},
-    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+    {"output", CLI_TEXT, AT(output), "DIR",
      "A folder, made if need be, for checkpoints, frames, result.json, series.csv, "
      "experiment.yaml, heap.png and report.html; with several runs, a folder in it for each, and "
      "one report.html.",
      0, 0, NULL},
-    {"print-config", 0, CLI_FLAG, AT(print_config), NULL,
+    {"print", CLI_FLAG, AT(print), NULL,
      "Print the experiment as it would be run, with units and comments, and stop.", 0, 0, NULL},
-    {"samples", 0, CLI_FLAG, AT(samples), NULL, "The nine built-in devices as shapes.", 0, 0, NULL},
-    {"rp", 'r', CLI_TEXT, AT(rp), "LIST",
+    {"samples", CLI_FLAG, AT(samples), NULL, "The nine built-in devices as shapes.", 0, 0, NULL},
+    {"rp", CLI_TEXT, AT(rp), "LIST",
      "Decimate the scans first, as 1e-3, or 1e-5,1e-4,1e-3 for a run at each; clump:20 is a run "
      "with clumps of 20 spheres that stand for the scans.",
      0, 0, NULL},
-    {"spheres", 0, CLI_FLAG, AT(spheres), NULL,
+    {"spheres", CLI_FLAG, AT(spheres), NULL,
      "A run with spheres of the shapes' volumes: alone, or after those of --rp.", 0, 0, NULL},
-    {"method", 'm', CLI_CHOICE, AT(method), "NAME",
+    {"method", CLI_CHOICE, AT(method), "NAME",
      "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume.", 0, 0,
      "volume|qecd"},
-    {"no-repair", 0, CLI_FLAG, AT(no_repair), NULL,
+    {"no-repair", CLI_FLAG, AT(no_repair), NULL,
      "Refuse scans that are no closed surface instead of repairing them.", 0, 0, NULL},
-    {"resume", 0, CLI_FLAG, AT(resume), NULL,
+    {"resume", CLI_FLAG, AT(resume), NULL,
      "Go on from the checkpoint in DIR where there is one; without SHAPE, with what is in it.", 0,
      0, NULL},
-    {"force", 'f', CLI_FLAG, AT(force), NULL,
+    {"force", CLI_FLAG, AT(force), NULL,
      "Begin anew in a folder with an earlier run, whose files go.", 0, 0, NULL},
-    {"vtp", 0, CLI_CHOICE, AT(vtp), "VIEW",
+    {"view", CLI_CHOICE, AT(view), "VIEW",
      "What of each frame becomes a .vtp file for ParaView. Default: surfaces.", 0, 0,
      "none|surfaces|points|contacts|walls|all"},
-    {"json", 0, CLI_FLAG, AT(json), NULL, "Print result.json instead of text.", 0, 0, NULL},
-    {"no-picture", 0, CLI_FLAG, AT(no_picture), NULL, "Do not write heap.png.", 0, 0, NULL},
-    {"unit", 'u', CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0,
-     0, NULL},
-    CLI_SAMPLE_OPTION(repose_arguments, source, resolution, CLI_LENGTH, "LENGTH",
-                      "Spacing of built-in samples. Default: 0.27mm.", 0.02e-3, 5e-3),
-    CLI_SAMPLE_OPTION(repose_arguments, source, noise, CLI_LENGTH, "LENGTH",
-                      "Scanner noise of built-in samples. Default: 0.02mm.", 0, 2e-3),
-    {"sample-seed", 0, CLI_COUNT, AT(source.seed), "N", "Seed of that noise. Default: 1.", 0, 1e15,
+    {"json", CLI_FLAG, AT(json), NULL, "Print result.json instead of text.", 0, 0, NULL},
+    {"no-picture", CLI_FLAG, AT(no_picture), NULL, "Do not write heap.png.", 0, 0, NULL},
+    {"unit", CLI_UNIT, AT(source.unit), "UNIT", "The files' unit of length. Default: mm.", 0, 0,
      NULL},
-#define OPTION(id, option, field, value, help)                                                     \
-  {option, 0, CLI_TEXT, AT(settings) + SETTING_##id * sizeof(const char *), value, help,           \
-   0,      0, NULL},
+    CLI_SAMPLE_OPTIONS(repose_arguments, source),
+#define OPTION(id, option, field, kind, value, help)                                               \
+  {option, kind, AT(settings) + SETTING_##id * sizeof(const char *), value, help, 0, 0, NULL},
     SETTINGS(OPTION)
 #undef OPTION
 };
@@ -178,10 +178,13 @@ static int read_experiment(repose *r, bool alone) {
   if (code) return code;
   if (a->config && scree_experiment_read(a->config, &r->experiment, &r->error) != SCREE_OK)
     return cli_fail(&r->error);
-  for (int i = 0; i < SETTING_COUNT; i++)
-    if (a->settings[i] && scree_experiment_set(&r->experiment, settings[i].field, a->settings[i],
-                                               &r->error) != SCREE_OK)
+  for (int i = 0; i < SETTING_COUNT; i++) {
+    char number[CLI_NUMBER_BYTES];
+    if (!a->settings[i]) continue;
+    const char *text = cli_si_text(settings[i].kind, a->settings[i], number);
+    if (scree_experiment_set(&r->experiment, settings[i].field, text, &r->error) != SCREE_OK)
       return cli_misuse(r->call->verb, "--%s: %s", settings[i].option, r->error.message);
+  }
   return scree_experiment_check(&r->experiment, &r->error) == SCREE_OK ? 0 : cli_fail(&r->error);
 }
 
@@ -207,7 +210,8 @@ static bool watch(void *context, const scree_run_state *state) {
 
 static scree_status write_views(const one_run *o, scree_run *run, const char *stem,
                                 scree_error *error) {
-  int vtp = o->all->arguments->vtp == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->vtp;
+  int vtp =
+      o->all->arguments->view == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->view;
   for (int view = 0; view < SCREE_VIEW_COUNT; view++) {
     char path[4200];
     if (vtp != VTP_ALL && vtp != view + 1) continue;
@@ -256,7 +260,8 @@ static scree_status write_collections(const one_run *o, const scree_run *run, sc
   scree_run_get_costs(run, &costs);
   size_t count = 0;
   scree_status status = SCREE_OK;
-  int vtp = o->all->arguments->vtp == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->vtp;
+  int vtp =
+      o->all->arguments->view == VTP_UNSET ? 1 + SCREE_VIEW_SURFACES : o->all->arguments->view;
   if (!(interval > 0) || vtp == VTP_NONE) return SCREE_OK;
   while ((double)count * interval <= scree_world_time(scree_run_view(run))) count++;
   if (count == 0) return SCREE_OK;
@@ -352,7 +357,7 @@ static scree_status write_results(const one_run *o, scree_run *run, const scree_
   snprintf(path, sizeof path, "%s/series.csv", o->folder);
   if (status == SCREE_OK) status = scree_series_csv_write(run, path, true, error);
   if (status == SCREE_OK) status = write_collections(o, run, error);
-  if (status == SCREE_OK && o->all->arguments->vtp > VTP_NONE)
+  if (status == SCREE_OK && o->all->arguments->view > VTP_NONE)
     status = write_views(o, run, "last", error);
   if (status == SCREE_OK) status = write_picture(o, run, error);
   if (status == SCREE_OK) status = write_text_result(o, run, result, error);
@@ -582,7 +587,7 @@ static int run(const cli_call *call) {
   size_t samples = a->samples ? SCREE_SAMPLE_DEVICES : 0, count = samples + call->input_count;
   const char **words = malloc((count + 1) * sizeof *words);
   int code = words ? read_experiment(&r, count == 0 && a->resume && a->output) : 1;
-  if (code == 0 && a->print_config) {
+  if (code == 0 && a->print) {
     scree_experiment_print(&r.experiment, stdout);
     goto done;
   }
@@ -626,7 +631,7 @@ const cli_verb cli_verb_repose = {
     .examples = "scree repose phone_762.stl -o heap\n"
                 "scree repose --samples --rp 1e-4,1e-3 --spheres -p small -o levels\n"
                 "scree repose --resume -o heap\n"
-                "scree repose -p paper --friction 0.4 --print-config > experiment.yaml\n"
+                "scree repose -p paper --friction 0.4 --print > experiment.yaml\n"
                 "scree repose -c experiment.yaml --samples --rp 1e-3 -o night\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
@@ -634,7 +639,7 @@ const cli_verb cli_verb_repose = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = 60,
-    .partners = "method:rp vtp:output resolution:sample:|samples noise:sample:|samples "
+    .partners = "method:rp view:output resolution:sample:|samples noise:sample:|samples "
                 "sample-seed:sample:|samples",
     .run = run,
 };

@@ -12,36 +12,35 @@
 typedef struct run_arguments {
   const char *output, *template_name;
   cli_texts set;
-  size_t samples;
+  size_t rays;
   bool print, resume, overwrite, json, no_picture;
 } run_arguments;
 
-static const run_arguments defaults = {.samples = 24};
+static const run_arguments defaults = {.rays = 24};
 
 #define AT(field) offsetof(run_arguments, field)
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+    {"output", CLI_TEXT, AT(output), "DIR",
      "A folder, made if need be, for result.json, series.csv, scene.yaml, checkpoint.scree, "
      "bodies.pvd and geometry.pvd with their frames, scene.png and report.html.",
      0, 0, NULL},
-    {"set", 's', CLI_TEXTS, AT(set), "FIELD=VALUE",
+    {"set", CLI_TEXTS, AT(set), "FIELD=VALUE",
      "Change any field of the file, as inlets.feed.rate=5; may be given several times.", 0, 0,
      NULL},
-    {"print", 0, CLI_FLAG, AT(print), NULL,
+    {"print", CLI_FLAG, AT(print), NULL,
      "Print the scene as it would be run, with units and comments, and stop.", 0, 0, NULL},
-    {"template", 0, CLI_TEXT, AT(template_name), "NAME",
+    {"template", CLI_TEXT, AT(template_name), "NAME",
      "Print a commented scene to start from: hopper, drum, tilting-box, drawdown, "
      "hollow-cylinder, conveyor, vibrating-screen or shear-box.",
      0, 0, NULL},
-    {"resume", 0, CLI_FLAG, AT(resume), NULL,
+    {"resume", CLI_FLAG, AT(resume), NULL,
      "Go on from the checkpoint in DIR where there is one; without a file, with what is in it.", 0,
      0, NULL},
-    {"force", 'f', CLI_FLAG, AT(overwrite), NULL,
+    {"force", CLI_FLAG, AT(overwrite), NULL,
      "Begin anew in a folder with an earlier scene, whose files go.", 0, 0, NULL},
-    {"json", 0, CLI_FLAG, AT(json), NULL, "Print result.json instead of text.", 0, 0, NULL},
-    {"no-picture", 0, CLI_FLAG, AT(no_picture), NULL, "Do not render scene.png.", 0, 0, NULL},
-    {"samples", 0, CLI_COUNT, AT(samples), "N", "Rays a pixel of scene.png. Default: 24.", 1, 65536,
-     NULL},
+    {"json", CLI_FLAG, AT(json), NULL, "Print result.json instead of text.", 0, 0, NULL},
+    {"no-picture", CLI_FLAG, AT(no_picture), NULL, "Do not render scene.png.", 0, 0, NULL},
+    {"rays", CLI_COUNT, AT(rays), "N", "Rays a pixel of scene.png. Default: 24.", 1, 65536, NULL},
 };
 #undef AT
 
@@ -259,7 +258,7 @@ static scree_status draw(const scene_run *r, scree_error *error) {
   scree_image image = {0};
   scree_render_options o = scree_default_render_options();
   if (r->arguments->no_picture) return SCREE_OK;
-  o.samples = r->arguments->samples;
+  o.samples = r->arguments->rays;
   scree_status status = path_of(r, "scene.png", path, error);
   if (status == SCREE_OK)
     status = scree_scene_picture(r->scene, &o, r->call->progress, &image, error);
@@ -418,6 +417,6 @@ const cli_verb cli_verb_run = {
     .options_size = sizeof defaults,
     .input_minimum = 0,
     .input_maximum = 1,
-    .partners = "samples:output no-picture:output force:output",
+    .partners = "rays:output no-picture:output force:output",
     .run = run,
 };

@@ -13,25 +13,25 @@ typedef struct sample_arguments {
 } sample_arguments;
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, offsetof(sample_arguments, output), "PATH",
+    {"output", CLI_TEXT, offsetof(sample_arguments, output), "PATH",
      "A folder, made if need be, that gets NAME.stl for every sample; or, for one sample, a file "
      "(.stl, .ply, .obj, .off, .3mf), or - for a binary STL on stdout. Default: the current "
      "folder.",
      0, 0, NULL},
-    {"resolution", 0, CLI_LENGTH, offsetof(sample_arguments, resolution), "LENGTH",
+    {"resolution", CLI_LENGTH, offsetof(sample_arguments, resolution), "LENGTH",
      "Spacing of the mesh's vertices, with its unit, from 0.02mm to 5mm. Default: 0.27mm, the "
      "paper's.",
      0.02e-3, 5e-3, NULL},
-    {"noise", 0, CLI_LENGTH, offsetof(sample_arguments, noise), "LENGTH",
+    {"noise", CLI_LENGTH, offsetof(sample_arguments, noise), "LENGTH",
      "Standard deviation of the scanner's noise; 0 gives a clean mesh. At most a quarter of the "
      "resolution. The test solids have none. Default: 0.02mm.",
      0, 1, NULL},
-    {"seed", 0, CLI_COUNT, offsetof(sample_arguments, seed), "N",
+    {"sample-seed", CLI_COUNT, offsetof(sample_arguments, seed), "N",
      "Another seed, another scan of the same device. Default: 1.", 0, 9007199254740992.0, NULL},
-    {"list", 0, CLI_FLAG, offsetof(sample_arguments, list), NULL,
+    {"list", CLI_FLAG, offsetof(sample_arguments, list), NULL,
      "List the samples and write nothing.", 0, 0, NULL},
-    {"force", 'f', CLI_FLAG, offsetof(sample_arguments, force), NULL, "Overwrite existing files.",
-     0, 0, NULL},
+    {"force", CLI_FLAG, offsetof(sample_arguments, force), NULL, "Overwrite existing files.", 0, 0,
+     NULL},
 };
 
 static const sample_arguments defaults = {".", 0.27e-3, 0.02e-3, 1, false, false};

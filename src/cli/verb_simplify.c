@@ -20,35 +20,35 @@ typedef struct simplify_arguments {
 } simplify_arguments;
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, offsetof(simplify_arguments, output), "FILE",
+    {"output", CLI_TEXT, offsetof(simplify_arguments, output), "FILE",
      "The file to write: .stl, .ply, .obj, .off or .3mf by its extension; - writes a binary STL to "
      "stdout.",
      0, 0, NULL},
-    {"reduction", 'r', CLI_REAL, offsetof(simplify_arguments, rp), "RP",
+    {"rp", CLI_SHARE, offsetof(simplify_arguments, rp), "RP",
      "Keep this share of the triangles, as in 1e-3: the first level with at most RP times the "
      "scan's count, rounded down. A closed surface has an even count.",
      1e-12, 1, NULL},
-    {"count", 'n', CLI_COUNT, offsetof(simplify_arguments, count), "COUNT",
+    {"count", CLI_COUNT, offsetof(simplify_arguments, count), "COUNT",
      "Keep at most this many triangles.", 1, 4294967295.0, NULL},
-    {"error", 'e', CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
+    {"error", CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
      "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the quadric "
      "error, an estimate, not a bound. Dearer collapses are left out and others go on, so that the "
      "mesh is none of the levels that curve shows. May be given with -r or -n.",
      1e-12, 1e12, NULL},
-    {"method", 'm', CLI_CHOICE, offsetof(simplify_arguments, method), "METHOD",
+    {"method", CLI_CHOICE, offsetof(simplify_arguments, method), "METHOD",
      "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
      "Default: volume.",
      0, 0, "volume|qecd"},
-    {"density", 'd', CLI_REAL, offsetof(simplify_arguments, density), "RHO",
+    {"density", CLI_REAL, offsetof(simplify_arguments, density), "KG/M3",
      "Also write mass, centre of mass and inertia of the result at this density in kg/m3 into a "
      ".json of the same name, as export does. The surface must be closed.",
      1e-6, 1e6, NULL},
-    {"unit", 'u', CLI_UNIT, offsetof(simplify_arguments, source.unit), "UNIT",
+    {"unit", CLI_UNIT, offsetof(simplify_arguments, source.unit), "UNIT",
      "Unit of the coordinates in the files: m, cm, mm, um, inch, ft, km. Default: mm.", 0, 0, NULL},
     CLI_SOUNDNESS_OPTIONS(simplify_arguments),
     CLI_SAMPLE_OPTIONS(simplify_arguments, source),
-    {"force", 'f', CLI_FLAG, offsetof(simplify_arguments, force), NULL,
-     "Overwrite an existing file.", 0, 0, NULL},
+    {"force", CLI_FLAG, offsetof(simplify_arguments, force), NULL, "Overwrite an existing file.", 0,
+     0, NULL},
 };
 
 static const simplify_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
@@ -194,7 +194,6 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "--density writes beside a file: -o - has none");
   int code = to_stdout ? 0 : cli_check_ending(call->verb, arguments->output, CLI_MESH);
   if (code) return code;
-  cli_remark_density(arguments->density);
   return simplify(call, &error) == SCREE_OK ? 0 : cli_fail(&error);
 }
 

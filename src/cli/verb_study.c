@@ -7,35 +7,35 @@
 
 #define AT(field) offsetof(study_arguments, field)
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, AT(output), "DIR",
+    {"output", CLI_TEXT, AT(output), "DIR",
      "Folder of the study. Default: the file's name without its ending, in the present folder.", 0,
      0, NULL},
-    {"jobs", 0, CLI_COUNT, AT(jobs), "N",
+    {"jobs", CLI_COUNT, AT(jobs), "N",
      "Runs at the same time, each in a process of its own. Default: one per processor, at most one "
      "per run.",
      0, 1024, NULL},
-    {"lease", 0, CLI_REAL, AT(lease), "SECONDS",
+    {"lease", CLI_REAL, AT(lease), "SECONDS",
      "A run whose worker on another machine gave no sign of life for so long is taken over. "
      "Default: 300.",
      5, 1e6, NULL},
-    {"keep-failed", 0, CLI_FLAG, AT(keep_failed), NULL,
+    {"keep-failed", CLI_FLAG, AT(keep_failed), NULL,
      "Leave runs that failed before as they are; else they are tried once more.", 0, 0, NULL},
-    {"worker", 0, CLI_FLAG, AT(worker), NULL,
+    {"worker", CLI_FLAG, AT(worker), NULL,
      "Only work on runs, in this process, and print nothing: for more workers, here or on other "
      "machines that share the folder.",
      0, 0, NULL},
-    {"no-wait", 0, CLI_FLAG, AT(no_wait), NULL, "Do not wait for runs that others are at work on.",
-     0, 0, NULL},
-    {"slurm", 0, CLI_FLAG, AT(slurm), NULL,
+    {"no-wait", CLI_FLAG, AT(no_wait), NULL, "Do not wait for runs that others are at work on.", 0,
+     0, NULL},
+    {"slurm", CLI_FLAG, AT(slurm), NULL,
      "Prepare the shapes, write DIR/study.sbatch, a job array of workers, and submit it.", 0, 0,
      NULL},
-    {"tasks", 0, CLI_COUNT, AT(tasks), "N", "Tasks of that array. Default: one per run.", 1, 100000,
+    {"tasks", CLI_COUNT, AT(tasks), "N", "Tasks of that array. Default: one per run.", 1, 100000,
      NULL},
-    {"dry-run", 0, CLI_FLAG, AT(dry_run), NULL,
+    {"dry-run", CLI_FLAG, AT(dry_run), NULL,
      "With --slurm: write it, do not submit it. Else: read the file and list the runs.", 0, 0,
      NULL},
-    {"json", 0, CLI_FLAG, AT(json), NULL, "Print the results as JSON.", 0, 0, NULL},
-    {"csv", 0, CLI_FLAG, AT(csv), NULL, "Print the results as CSV, a row per point.", 0, 0, NULL},
+    {"json", CLI_FLAG, AT(json), NULL, "Print the results as JSON.", 0, 0, NULL},
+    {"csv", CLI_FLAG, AT(csv), NULL, "Print the results as CSV, a row per point.", 0, 0, NULL},
 };
 static const study_arguments defaults = {.lease = 300};
 

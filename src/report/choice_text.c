@@ -310,7 +310,7 @@ static void warn_of_noise(sentences *s, const scree_choice_report *report, size_
   char percent[NUMBER_BYTES], text[NUMBER_BYTES];
   if (factor > NOTABLE_RATIO && most > 0 && report->options->reference == SCREE_REFERENCE_SCAN)
     say(s,
-        "Scan noise adds up to %s of area and misleads eps_s: --reference smooth takes it out and "
+        "Scan noise adds up to %s of area and misleads eps_s: --area smooth takes it out and "
         "gives Rp = %s.",
         percent_text(most, percent), rp_text(rp, text));
 }

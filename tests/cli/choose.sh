@@ -67,9 +67,9 @@ done
 "$SCREE" choose --paper sample:icosphere-2 sample:icosphere-3 -o by-paper | grep '^Use'
 for name in icosphere-2 icosphere-3; do "$SCREE" measure by-paper/set/$name.stl | sed -n 's/^  \([0-9]* facets\),.*/\1/p'; done
 # noise that was not found is not said to be used
-noisy="--resolution 3mm --noise 0.6mm --seed 3"
+noisy="--resolution 3mm --noise 0.6mm --sample-seed 3"
 for words in plain.stl "sample:sp-1 $noisy"; do
-  "$SCREE" choose $words --reference smooth | head -n 1
+  "$SCREE" choose $words --area smooth | head -n 1
 done
 # what has hardly an error is not on the figure's logarithmic axis, which says so
 "$SCREE" choose sample:box --resolution 5mm -o box >/dev/null 2>&1

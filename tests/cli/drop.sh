@@ -17,7 +17,7 @@ run drop sphere:40mm=3 --width 0mm -o no 2>&1 | sed -n 2p
 # numbers may differ in their last digits between compilers: only their form is compared
 shape() { sed 's/[0-9][0-9.]*\(e[-+][0-9]*\)*/N/g; s/-N/N/g; s/  */ /g'; }
 drop() {
-  { "$SCREE" drop "$@" --samples 1 --stiffness-factor 1e-2 --progress 2>progress || cat progress; } | shape
+  { "$SCREE" drop "$@" --rays 1 --stiffness 1e-2 --progress 2>progress || cat progress; } | shape
 }
 drop sphere:40mm=3 sample:icosphere-1=4 --time 0.02 --frames 0.05 -o out
 grep -c "particle-steps/s" progress
@@ -33,7 +33,7 @@ touch out/mine.txt out/frame-x.vtp
 drop sphere:40mm=1 --time 0 --frames 0 --no-picture -o out -f >/dev/null
 ls out
 # a box, without frames and picture
-drop sphere:40mm=9 -c box -w 100mm --depth 60mm --frames 0 --no-picture --time 0 -o box | head -3
+drop sphere:40mm=9 --container box -w 100mm --depth 60mm --frames 0 --no-picture --time 0 -o box | head -3
 ls box
 # Ctrl-C
 "$SCREE" drop sphere:40mm=9 -o stopped --time 1000 --still 0 -q >text 2>&1 &
@@ -56,7 +56,7 @@ printf '1,2,3,4,5\n' >five.csv
 run drop negative.csv -o no
 run drop five.csv -o no
 # stopped, killed, and gone on with: the same files as those of a drop left alone
-pour="sphere:40mm=6 sample:icosphere-1=6 --time 0.3 --still 0 --frames 0.05 --no-picture --stiffness-factor 1e-2"
+pour="sphere:40mm=6 sample:icosphere-1=6 --time 0.3 --still 0 --frames 0.05 --no-picture --stiffness 1e-2"
 "$SCREE" drop $pour -o whole -q >/dev/null
 for how in INT KILL; do
   "$SCREE" drop $pour -o cut --checkpoint 0.01 -q >/dev/null 2>&1 &
@@ -92,7 +92,7 @@ done
 ls whole/frame* cut/frame* | wc -l
 run drop --resume -o cut --friction 0.4
 run drop $pour --seed 3 --resume -o cut
-run drop sphere:41mm=6 sphere:40mm=6 --stiffness-factor 1e-2 --resume -o cut 2>&1 | grep -v mm
+run drop sphere:41mm=6 sphere:40mm=6 --stiffness 1e-2 --resume -o cut 2>&1 | grep -v mm
 run drop --resume -o none
 for words in '-r 0.5' '-n 12' '-N 5' --no-repair '-u m'; do run drop --resume -o cut $words 2>&1 | sed -n 2p; done
 head -c 300 cut/checkpoint.scree >short && mv short cut/checkpoint.scree

@@ -1,10 +1,10 @@
 # every verb takes sample:NAME, and the options of samples, where it takes a file
 small="--resolution 3mm --noise 0.2mm"
 run simplify sample:fp-1 $small -n 60 -o fp.ply -q && grep -a "element" fp.ply
-run curve sample:fp-1 $small --from 1e-2 --to 1e-2 | head -1 | cut -c1-30
+run curve sample:fp-1 $small --grid 1e-2:1e-2:9 | head -1 | cut -c1-30
 run measure sample:box-12 | head -6
 run measure --json sample:box-12 | grep -E '"(file|format|checksum|unit_m)"'
-run check -q sample:fp-1 $small --seed 2
+run check -q sample:fp-1 $small --sample-seed 2
 run check --json sample:box-12 | grep -E '"(file|format|checksum|unit_m)"'
 run distance sample:box-12 sample:icosphere-2 | cut -d" " -f1-3 | head -1 | cut -c1-30
 run distance --json sample:box-12 sample:box-12 | grep '"file"'

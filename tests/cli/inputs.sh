@@ -16,17 +16,17 @@ run repair ball.stl -f -o link.stl
 run choose ball.stl -f -o .
 run export ball.stl -f -o ball.stl
 cp ball.stl ball.vtp
-run export before.stl -r ball.vtp -f -o ball.vtp
+run export before.stl --reference ball.vtp -f -o ball.vtp
 cp ball.stl ball.png
 run render ball.png -f -o ball.png
-run render before.stl -r ball.png --color-by distance -f -o ball.png
+run render before.stl --reference ball.png --color-by distance -f -o ball.png
 cmp ball.png ball.stl
 cp ball.stl ball.json
 run simplify ball.json -n 20 --density 1000 -f -o ball.ply
 printf '0 0 0 1\n' >series.csv
 run drop series.csv=3 -f -o .
 run repose series.csv -f -o .
-"$SCREE" repose --print-config >experiment.yaml
+"$SCREE" repose --print >experiment.yaml
 cp experiment.yaml yaml
 run repose -c experiment.yaml ball.stl -f -o .
 cmp experiment.yaml yaml
@@ -62,8 +62,8 @@ cp e "$escape"
 # nor in what else is printed of it; JSON and CSV have the name as it is
 box 1 2 3 >box.off
 cp box.off "$escape"
-for words in check measure 'curve --from 1 --to 1' 'repair -o r.off' 'simplify -n 6 -o six.off' 'drop -N 1 -t 0 -o poured --no-picture --frames 0' \
-  'distance --samples 100 e' 'export box.off -f -o' 'sample box-12 -f -o'; do
+for words in check measure 'curve --grid 1:1:9' 'repair -o r.off' 'simplify -n 6 -o six.off' 'drop -N 1 --time 0 -o poured --no-picture --frames 0' \
+  'distance --points 100 e' 'export box.off -f -o' 'sample box-12 -f -o'; do
   "$SCREE" $words "$escape" 2>&1 | tr '\033' '!' | grep -o 'no[!?]\[31m.stl' | sed "s/^/${words%% *}: /"
 done
 "$SCREE" choose box.off -o "$escape.d" | tr '\033' '!' | grep -o '^In no.*:'

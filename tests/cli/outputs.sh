@@ -14,7 +14,7 @@ run simplify missing.stl -n 10 -o x.xyz
 run repair missing.stl -o -
 run export missing.stl -o nowhere/x.stl
 run render missing.stl -o nowhere/x.png
-run pile missing.scree --csv nowhere/x.csv
+run pile missing.scree --vtp nowhere/x.vtp
 run choose missing.stl -o file
 run choose missing.stl -o file/x
 mkdir -p old/levels && touch old/missing.mass.json

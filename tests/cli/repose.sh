@@ -3,22 +3,22 @@ run repose --resume box.off
 run repose --rp 2 box.off
 run repose --lift-speed 99 box.off
 run repose -p tiny box.off
-"$SCREE" repose --print-config -p demo --friction 0.4 --seed 7 >printed.yaml
+"$SCREE" repose --print -p demo --friction 0.4 --seed 7 >printed.yaml
 grep "friction_particle: 0.4\|^seed: 7\|^preset: demo" printed.yaml
-"$SCREE" repose -c printed.yaml --print-config >again.yaml
+"$SCREE" repose -c printed.yaml --print >again.yaml
 cmp printed.yaml again.yaml && echo the same
 printf 'particles: 10\nphases:\n  lift_speed: fast\n' >broken.yaml
-run repose -c broken.yaml --print-config
+run repose -c broken.yaml --print
 printf 'particles: 10\nphases: {lift_sped: 1}\n' >broken.yaml
-run repose -c broken.yaml --print-config
+run repose -c broken.yaml --print
 printf 'particles: [1\nseed: 3\n' >broken.yaml
-run repose -c broken.yaml --print-config
+run repose -c broken.yaml --print
 box 20 12 6 >box.off
 printf 'x,y,z,r\n0,0,0,5\n8,0,0,5\n' >pair.csv
 printf '0,0,0\n' >bad.csv
 "$SCREE" repose -p demo --particles 12 --cylinder 0.08 --disc 0.3 --pack-time 0.1 --settle-time 0.05 \
   --lift-speed 1 --lift-time 0.08 --hold-time 0.02 --drop-height 0.01 --young 1e7 --stiffness 1 --series 0.01 \
-  --stop-when-still false --print-config >small.yaml
+  --stop-when-still false --print >small.yaml
 small="-c small.yaml --no-picture -j 1"
 run repose $small bad.csv
 run repose $small sample:box --resolution 0.5mm
@@ -59,15 +59,14 @@ run pile whole/last.scree --band-low 0.9
 run pile whole/last.scree --vtp contacts.vtp --view contacts
 run pile whole/last.scree --vtp contacts.txt
 # one thing on stdout
-for words in '--json --csv -' '--json --vtp -' '--csv - -o -'; do run pile whole/last.scree $words 2>&1 | sed -n 2p; done
-"$SCREE" pile whole/last.scree --csv - 2>said | head -n 1 | cut -d, -f-3
-"$SCREE" pile whole/last.scree --csv /dev/stdout 2>said | head -n 1 | cut -d, -f-3
-"$SCREE" pile whole/last.scree --csv /dev/stdout --json 2>&1 | head -n 1
-run pile whole/last.scree --csv one.vtp --vtp one.vtp 2>&1 | sed -n 2p
+for words in '--json --csv' '--json --vtp -' '--csv -o -'; do run pile whole/last.scree $words 2>&1 | sed -n 2p; done
+"$SCREE" pile whole/last.scree --csv | head -n 1 | cut -d, -f-3
+"$SCREE" pile whole/last.scree --vtp /dev/stdout --json 2>&1 | head -n 1
+"$SCREE" pile whole/last.scree --vtp - 2>said | head -n 1
 cmp said measured && "$SCREE" pile whole/last.scree -q --vtp - 2>&1 | head -n 1
 run pile box.off
 run pile nothing.scree
-"$SCREE" pile whole/frame-0001.scree --csv series.csv --vtp frame.vtp >/dev/null || echo failed
+"$SCREE" pile whole/frame-0001.scree --csv --vtp frame.vtp >series.csv || echo failed
 head -1 series.csv
 "$SCREE" pile whole/last.scree --json | grep -o '"heap"\|"mean_rotation"\|"packing_fraction"\|"preset"' | sort -u
 

@@ -4,11 +4,11 @@ run run 2>&1 | head -2
 run run --template silo 2>&1 | head -2
 "$SCREE" run --template hopper >hopper.yaml
 head -2 hopper.yaml | tail -1
-"$SCREE" run hopper.yaml --print -s inlets.feed.count=20 -s time=0.05 >small.yaml
+"$SCREE" run hopper.yaml --print --set inlets.feed.count=20 --set time=0.05 >small.yaml
 grep -E '^time|count|sphere' small.yaml
-run run hopper.yaml -s inlets.feed.cuont=20 2>&1 | cut -c 1-120
-run run hopper.yaml -s inlets 2>&1 | head -2
-run run hopper.yaml -s time=short
+run run hopper.yaml --set inlets.feed.cuont=20 2>&1 | cut -c 1-120
+run run hopper.yaml --set inlets 2>&1 | head -2
+run run hopper.yaml --set time=short
 run run nowhere.yaml
 run run hopper.yaml --resume 2>&1 | head -2
 sed 's/friction: 0.3/fricton: 0.3/' hopper.yaml >wrong.yaml
@@ -16,16 +16,16 @@ run run wrong.yaml
 run run small.yaml -o out --no-picture -q | numbers
 ls out
 run run small.yaml -o out --no-picture
-run run small.yaml -o out --no-picture --resume -q -s inlets.feed.count=21
+run run small.yaml -o out --no-picture --resume -q --set inlets.feed.count=21
 run run small.yaml -o out --no-picture -f -q | head -2 | numbers
 run run -o out --resume -q --no-picture | head -2 | numbers
 sed -n 2p out/series.csv | cut -c 1-75
 # killed outright and gone on with: the same as in one piece
-"$SCREE" run small.yaml -s output.checkpoint=0.01 -o killed --no-picture -q >/dev/null 2>&1 &
+"$SCREE" run small.yaml --set output.checkpoint=0.01 -o killed --no-picture -q >/dev/null 2>&1 &
 victim=$!
 sleep 0.3
 kill -9 $victim 2>/dev/null
 wait $victim 2>/dev/null
-"$SCREE" run small.yaml -s output.checkpoint=0.01 -o killed --no-picture -q --resume >/dev/null
+"$SCREE" run small.yaml --set output.checkpoint=0.01 -o killed --no-picture -q --resume >/dev/null
 cmp out/series.csv killed/series.csv && echo same series
 cmp out/motion.scree killed/motion.scree && echo same motion

@@ -1,16 +1,16 @@
 "$SCREE" sample icosphere-4 -o icosphere-4.stl >/dev/null 2>&1
-run curve icosphere-4.stl --from 1e-3 --per-decade 2
-run curve icosphere-4.stl --from 1e-2 --per-decade 2 -m qecd --distance --samples 2000
-run curve icosphere-4.stl --from 1e-2 --per-decade 1 --csv --threads 1
+run curve icosphere-4.stl --grid 1e-3:1e-1:2
+run curve icosphere-4.stl --grid 1e-2:1e-1:2 -m qecd --distance --points 2000
+run curve icosphere-4.stl --grid 1e-2:1e-1:1 --csv --threads 1
 # the digits of the CSV are JSON's
-"$SCREE" curve icosphere-4.stl --from 1e-2 --per-decade 1 --distance --json >levels.json
-"$SCREE" curve icosphere-4.stl --from 1e-2 --per-decade 1 --distance --csv | tail -n 1 | tr ',' '\n' >numbers
+"$SCREE" curve icosphere-4.stl --grid 1e-2:1e-1:1 --distance --json >levels.json
+"$SCREE" curve icosphere-4.stl --grid 1e-2:1e-1:1 --distance --csv | tail -n 1 | tr ',' '\n' >numbers
 grep -c . numbers
 while read -r number; do
   awk -v n="$number" '{ gsub(/[,":]/, " "); for (i = 1; i <= NF; i++) found = found || ($i ~ /^[-0-9]/ && $i + 0 == n + 0) } END { if (!found) print n, "is not in the JSON" }' levels.json
 done <numbers
 # both ends are in the table, met by a step or not
-run curve icosphere-4.stl --from 1e-2 --to 0.05 --per-decade 1
+run curve icosphere-4.stl --grid 1e-2:0.05:1
 run simplify icosphere-4.stl -r 1e-2 -o out.ply
 run simplify icosphere-4.stl -n 7 -o six.off
 head -3 six.off | tail -1
@@ -21,7 +21,7 @@ run simplify icosphere-4.stl -o x.stl 2>&1
 run simplify icosphere-4.stl -n 10 2>&1
 run simplify icosphere-4.stl -n 10 -r 0.1 -o x.stl 2>&1
 run simplify missing.stl -n 10 -o x.stl 2>&1
-run curve icosphere-4.stl --from 0.1 --to 0.01 2>&1
+run curve icosphere-4.stl --grid 0.1:0.01:9 2>&1
 # a length or a share of nothing, and one in hexadecimal
 for e in 0 -0 1e-400m 0x1mm; do run simplify icosphere-4.stl -e $e -o x.stl 2>&1 | sed -n 2p; done
 run simplify icosphere-4.stl -r 0x10 -o x.stl 2>&1 | sed -n 2p
@@ -51,14 +51,14 @@ run simplify thin.off -r 1 -o thin.ply
 run check -q thin.ply
 ls thin*
 # the table and the picture of levels are of the scan that simplify and choose decimate
-run curve hole.off --from 1 --to 1 2>&1
-run curve hole.off --from 1 --to 1 --unchecked
+run curve hole.off --grid 1:1:9 2>&1
+run curve hole.off --grid 1:1:9 --unchecked
 run curve lone.off --no-repair 2>&1
 run curve hole.off --no-repair --unchecked 2>&1 | sed -n 2p
-run render hole.off --levels 1 -o levels.png 2>&1
+run render hole.off --rp 1 -o levels.png 2>&1
 # the line of progress is gone when something else is printed, and keeps to a narrow terminal
 "$SCREE" sample icosphere-6 -o fine.ply >/dev/null
-for words in "simplify fine.ply -n 100 -o none.off" "curve fine.ply --from 1e-2 --to 1e-2"; do
+for words in "simplify fine.ply -n 100 -o none.off" "curve fine.ply --grid 1e-2:1e-2:9"; do
   "$SCREE" $words --progress 2>&1 | tr '\r' '\n' | grep -c 'left *[^ ]'
 done
 command -v python3 >/dev/null || echo "lines of progress: some, longer than 29: 0" # no terminal to try it on

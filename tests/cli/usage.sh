@@ -11,7 +11,7 @@ run check x '' 2>&1 | sed -n 2p
 run simplify x -n 4 -o '' 2>&1 | sed -n 2p
 run choose x --output= 2>&1 | sed -n 2p
 # one progress for all that a call does, which never goes back and never says that 0 s are left
-"$SCREE" curve sample:icosphere-4 --distance --per-decade 2 --progress 2>&1 >/dev/null | tr '\r' '\n' >drawn
+"$SCREE" curve sample:icosphere-4 --distance --grid 1e-5:1e-1:2 --progress 2>&1 >/dev/null | tr '\r' '\n' >drawn
 sed -n 's/^\([a-z ]*[a-z]\) *\[.*/\1/p' drawn | uniq
 sed -n 's/.*\] *\([0-9]*\) %.*/\1/p' drawn | awk '$1 < last { print "back to", $1 } { last = $1 }'
 grep -c ' 0 s left' drawn
@@ -27,8 +27,8 @@ run measure fp-1
 # an error limit that ends it before the count asked for
 run simplify ball.stl -n 8 -e 0.01mm -o fine.stl 2>&1 | grep asked
 # an option that does nothing without another is refused
-for words in "curve x --samples 10" "choose x --density 2" "pile x -s 100x100" "pile x --view points" "repair x -o y.stl --flat" \
-  "study x --tasks 3" "repose x -m qecd" "repose x --vtp=all"; do
+for words in "curve x --points 10" "choose x --density 2" "pile x -s 100x100" "pile x --view points" "repair x -o y.stl --flat" \
+  "study x --tasks 3" "repose x -m qecd" "repose x --view=all"; do
   run $words 2>&1 | sed -n 2p
 done
 # so are those of samples where there is none
@@ -36,12 +36,29 @@ for verb in 'simplify -n 4 -o y.stl' 'curve' 'measure' 'check' 'repair -o y.stl'
   'choose' 'repose' 'drop'; do
   run $verb ball.stl --resolution 3mm 2>&1 | sed -n 2p
 done
-run measure ball.stl --noise 0mm --seed 2 2>&1 | sed -n 2p
+run measure ball.stl --noise 0mm --sample-seed 2 2>&1 | sed -n 2p
 run repose ball.stl --sample-seed 2 2>&1 | sed -n 2p
 for words in 'ball.stl sample:box-12' --samples; do run choose $words --resolution 3mm --json --csv 2>&1 | sed -n 2p; done
-"$SCREE" curve ball.stl --distance --samples 10 --per-decade 1 | wc -l
+"$SCREE" curve ball.stl --distance --points 10 --grid 1e-5:1e-1:1 | wc -l
 # what cannot both be is wrong usage, and so is an output of no known format
 for words in '--holes 0 --large-holes -o y.stl' '--large-holes --holes 128 -o y.stl' '-o x.xyz' '-o -'; do
   "$SCREE" repair ball.stl $words 2>said
   echo "exit code $?: $(head -n 1 said)"
 done
+# one table of options: old spellings name the new one, near misses what may be meant
+for words in 'chose x' 'choose x --tolerence 1' 'curve x --per-decade 3' 'distance x y -n 9' 'render x -o y.png -l 0.1' 'choose x -p' \
+  'export x -t mm' 'pile x --picture y.png' 'measure sample:box --seed 3' 'repose x --print-config' 'drop x --number 3'; do
+  run $words 2>&1 | sed -n 2p
+done
+# a length may carry its unit, without one it is in metres; shares may be in percent
+run simplify ball.stl -r 50% -o half.off
+"$SCREE" simplify ball.stl -r 0.5 -q -o again.off && tail -n +3 half.off >half && tail -n +3 again.off | cmp - half
+run simplify ball.stl -r 50 -o no.off 2>&1 | sed -n 2p
+run simplify ball.stl -r half -o no.off 2>&1 | sed -n 2p
+run sample box-12 --noise 0.3 -o no.off 2>&1 | sed -n 2p
+for length in 300mm 0.3 30cm; do "$SCREE" repose --print --cylinder $length --band-low 30%; done | grep 'diameter: 0.3\|band_low: 0.3' |
+  sort | uniq -c | cut -c1-26
+run drop sphere:40mm --width 3bananas 2>&1 | sed -n 2p
+# what cannot be meant is named
+"$SCREE" repose --print --young 1e13 --friction 50 --density 2.65 2>&1 >/dev/null
+"$SCREE" repose --print --young 1e13 -q 2>&1 >/dev/null

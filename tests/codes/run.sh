@@ -16,7 +16,7 @@ mass=0.66045
 ran=0
 for count in 1 4; do
   for code in lammps liggghts yade; do
-    "$SCREE" export sample:box-12 --to $code --spheres 4 --particles $count -o $code-$count -q ||
+    "$SCREE" export sample:box-12 --to $code -n 4 --particles $count -o $code-$count -q ||
       fail "scree export --to $code"
   done
   if command -v lmp >/dev/null; then

@@ -16,11 +16,11 @@ with open("open.off", "w") as file:  # a tetrahedron without one facet: repair h
     file.write("OFF 4 3 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 2 1\n3 0 1 3\n3 0 3 2\n")
 BALL, SOLID = "sample:icosphere-3", "sample:box-12"
 VERBS = {  # heading: calls that together print every field
-    "scree choose": [["choose", BALL, "open.off", "--errors", "--distance"]],
+    "scree choose": [["choose", BALL, "open.off", "--errors"]],
     "scree clump": [["clump", SOLID, "--max", "2"]],
-    "scree curve": [["curve", BALL, "--distance", "--per-decade", "1"]],
+    "scree curve": [["curve", BALL, "--distance", "--grid", "1e-5:1e-1:1"]],
     "scree measure": [["measure", SOLID]],
-    "scree distance": [["distance", SOLID, BALL, "--samples", "100"]],
+    "scree distance": [["distance", SOLID, BALL, "--points", "100"]],
     "scree repose and scree pile": [["repose", SOLID, "--particles", "2", "--pack-time", "0.02", "--settle-time",
                                      "0.01", "--lift-time", "0.01", "--hold-time", "0.01", "-j", "1"]],
     "scree check and scree repair": [["check", SOLID, "missing.stl"], ["repair", "open.off", "-o", "r.stl"]],
@@ -85,7 +85,7 @@ failed |= compare("scree drop", fields_of(open("pour/drop.json", "rb").read()))
 with open("hopper.yaml", "wb") as file:
     file.write(subprocess.run([program, "run", "--template", "hopper"], stdout=subprocess.PIPE, check=True).stdout)
 failed |= compare("scree run", fields_of(subprocess.run(
-    [program, "run", "hopper.yaml", "--json", "-s", "time=0.01", "-s", "inlets.feed.count=9"], stdout=subprocess.PIPE,
+    [program, "run", "hopper.yaml", "--json", "--set", "time=0.01", "--set", "inlets.feed.count=9"], stdout=subprocess.PIPE,
     check=True).stdout))
 subprocess.run([program, "simplify", SOLID, "-n", "12", "--density", "3", "-o", "level.stl", "-q"], check=True)
 subprocess.run([program, "choose", SOLID, BALL, "--density", "3", "-o", "chosen", "-q"], check=True, stdout=subprocess.DEVNULL)

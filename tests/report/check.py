@@ -227,7 +227,7 @@ def the_set_is_the_text_s(browser, folder):
     """The headline of several objects says what choice.txt says: of all of them, by either rule."""
     scree("sample", "sphere", "--resolution", "2mm", "-o", "sphere.stl", folder=folder)
     scree("sample", "fp-1", "dc-1", "sp-1", "--resolution", "1.5mm", "-o", "scans", folder=folder)
-    for name, words in (("floor", ("scans/fp-1.stl", "scans/sp-1.stl", "sphere.stl", "-w", "20")),
+    for name, words in (("floor", ("scans/fp-1.stl", "scans/sp-1.stl", "sphere.stl", "--weight", "20")),
                         ("paper", ("scans/fp-1.stl", "scans/dc-1.stl", "scans/sp-1.stl", "--paper"))):
         scree("choose", *words, "-o", name, folder=folder)
         ready(browser, os.path.join(folder, name, "report.html"))
@@ -389,7 +389,7 @@ def a_heap(browser, folder):
 
 
 def a_pour(browser, folder):
-    scree("drop", "sample:fp-1=5", "sphere:30mm=4", "--resolution", "3mm", "-n", "60", "-c", "box", "-w", "230mm", "--time", "0.3",
+    scree("drop", "sample:fp-1=5", "sphere:30mm=4", "--resolution", "3mm", "-n", "60", "--container", "box", "-w", "230mm", "--time", "0.3",
           "--frames", "0", "-o", "pour", folder=folder)
     page = os.path.join(folder, "pour", "report.html")
     with open(os.path.join(folder, "pour", "drop.json"), encoding="utf-8") as file:
@@ -399,7 +399,7 @@ def a_pour(browser, folder):
     ready(browser, page)
     text = browser.text("main")
     for part in ("9 particles of 2 shapes poured into a box of 230 × 230 mm", "sphere:30mm", "Where the energy went",
-                 "Energy of motion against time", "How this was made", "-c box"):
+                 "Energy of motion against time", "How this was made", "--container box"):
         check(part in text, f"the pour does not say: {part}")
     end = float(browser.run("return document.body.dataset.shownTime"))
     check(abs(end - pour["result"]["time"]) < 1e-9, "the page does not begin at the end")
