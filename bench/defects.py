@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Defects against what scree and admesh (Debian) make of them: prints the tables of docs/defects.md.
+"""Defects against what scree and admesh (Debian) make of them: prints the tables of docs/reference/defects.md.
 
 usage: bench/defects.py SCREE [FOLDER_OF_SCANS]
 

@@ -93,7 +93,7 @@ SCREE_API scree_check_options scree_default_check_options(void);
  * meet, which is counted exactly; those that cross or touch count as beside each other. options and
  * progress may be NULL. Fails with SCREE_BAD_MESH where an index is out of range, SCREE_LIMIT above
  * 1,431,655,764 triangles, SCREE_CANCELLED, SCREE_OUT_OF_MEMORY; a mesh without facets is examined
- * and found unusable. Cost: see docs/defects.md. */
+ * and found unusable. Cost: see docs/reference/defects.md. */
 SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options *options,
                                         const scree_progress *progress, scree_check *check,
                                         scree_error *error);
@@ -161,7 +161,7 @@ typedef struct scree_repair_options {
   /* Fill larger holes as well, up to 4,096 edges; default false. Fillings of more than 32 edges get
    * vertices as dense as those round the hole, and go on with its slope (Liepa, SGP 2003), unless
    * the surface would then meet itself, or the rim lies in a plane and the surface comes to it
-   * steeply (docs/defects.md): then they are flat. */
+   * steeply (docs/reference/defects.md): then they are flat. */
   bool fill_large_holes;
   /* Give none of these fillings vertices of its own, as where flat faces with rough rims are
    * missing; default false. */
@@ -240,7 +240,7 @@ typedef struct scree_check_entry {
 } scree_check_entry;
 
 /* One array with an object per entry: file, checksum, counts of every defect, verdict, what was
- * done. docs/formats.md has every field. command_line may be NULL; path "-" is stdout. */
+ * done. docs/reference/formats.md has every field. command_line may be NULL; path "-" is stdout. */
 SCREE_API scree_status scree_check_json_write(const scree_check_entry *entries, size_t entry_count,
                                               const char *command_line, const char *path,
                                               bool overwrite, scree_error *error);

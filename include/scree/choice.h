@@ -25,7 +25,7 @@ extern "C" {
  *
  * Beside them stands the criterion in the paper's form with a scale that is the cost of simulating
  * and not the scan's count, I = mean distance / D + N / SCREE_COST_COUNT: no tolerances, but unlike
- * bodies get unlike fidelities. docs/method.md says why, with figures. */
+ * bodies get unlike fidelities. docs/background/method.md says why, with figures. */
 
 #define SCREE_CHOICE_RULE_LIST(X)                                                                  \
   X(RECOMMENDED, "recommended")                                                                    \

@@ -16,7 +16,8 @@ typedef struct scree_sphere {
 /* How spheres are placed. All but the first are greedy, by the paper named; they are there to
  * compare and to reproduce. */
 typedef enum scree_clump_method {
-  SCREE_CLUMP_FITTED,   /* all spheres moved together until the union fits best (docs/clumps.md) */
+  SCREE_CLUMP_FITTED,   /* all spheres moved together until the union fits best
+                           (docs/background/clumps.md) */
   SCREE_CLUMP_FAVIER,   /* Favier et al. 1999: spheres along the longest principal axis */
   SCREE_CLUMP_BUBBLE,   /* Taghavi 2011: bubble pack; medial spheres by `ratio` and `angle_deg` */
   SCREE_CLUMP_FERELLEC, /* Ferellec and McDowell 2010: spheres grown from surface points inward */

@@ -66,11 +66,12 @@ typedef struct scree_repose {
   double envelope_volume; /* m^3 under the field: packing fraction = solid over this */
 } scree_repose;
 
-/* Measures the field. The ways (docs/repose.md): 1, in each sector a straight line through the mean
- * heights of radial bins where the falling profile is within the band; 2, a cone h = H - m |r - r0|
- * fitted by Gauss-Newton to the cells where it is itself within the band, apex free; 3, the outline
- * seen from the side, a line on each flank within the band. SCREE_BAD_ARGUMENT for lengths that are
- * not finite or beyond 1e30 m. Cost: linear in the cells times the silhouettes. */
+/* Measures the field. The ways (docs/background/repose.md): 1, in each sector a straight line
+ * through the mean heights of radial bins where the falling profile is within the band; 2, a cone h
+ * = H - m |r - r0| fitted by Gauss-Newton to the cells where it is itself within the band, apex
+ * free; 3, the outline seen from the side, a line on each flank within the band. SCREE_BAD_ARGUMENT
+ * for lengths that are not finite or beyond 1e30 m. Cost: linear in the cells times the
+ * silhouettes. */
 SCREE_API scree_status scree_repose_measure(const scree_height_field *field,
                                             const scree_repose_options *options,
                                             scree_repose *repose, scree_error *error);

@@ -10,8 +10,9 @@ extern "C" {
 
 /* ---- Measures ---- */
 
-/* Sizes and mass properties of a surface, as exact integrals over its polyhedron (docs/method.md,
- * "Measures"). Unit density: an inertia in m^5 times a density in kg/m^3 is one in kg m^2.
+/* Sizes and mass properties of a surface, as exact integrals over its polyhedron
+ * (docs/background/method.md, "Measures"). Unit density: an inertia in m^5 times a density in
+ * kg/m^3 is one in kg m^2.
  *
  * Where `closed` is false the surface bounds no volume: volume, centroid, inertia and what follows
  * from them are those of the surface with every hole closed by a cone to the centre of the bounding

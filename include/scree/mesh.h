@@ -65,7 +65,7 @@ SCREE_API void scree_scan_free(scree_scan *scan);
  * (ASCII, both byte orders, polygons, triangle strips), OBJ (polygons, v/vt/vn, negative indices),
  * OFF (also with colours, normals, texture coordinates); in a build with assimp also 3MF, glTF
  * (binary; text with embedded data), COLLADA, X3D, AMF, FBX and 3DS, imported in a child process
- * with limits on memory and time (docs/formats.md). options NULL means the defaults.
+ * with limits on memory and time (docs/reference/formats.md). options NULL means the defaults.
  *
  * Sizes in the file are believed only where its length allows them, so memory stays within a fixed
  * multiple of the file's length (of its triangles for 3MF and glTF). Errors: SCREE_IO, also where

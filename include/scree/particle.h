@@ -22,7 +22,7 @@ typedef enum scree_particle_kind {
 typedef struct scree_particle_options {
   /* m; by how much the surface stands out for contact: two meshes touch when their surfaces are
    * within the sum. Mass and centre come from the mesh itself. 0 (default): 0.002 of the size, and
-   * at most a 250th of the thickness (docs/physics.md, "Rounding"). */
+   * at most a 250th of the thickness (docs/background/physics.md, "Rounding"). */
   double rounding;
 } scree_particle_options;
 SCREE_API scree_particle_options scree_default_particle_options(void);

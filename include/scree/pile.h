@@ -192,8 +192,8 @@ SCREE_API scree_status scree_run_measure_with(const scree_run *run, const scree_
 
 /* ---- Runs on disk ---- */
 
-/* Writes a checkpoint: experiment, shapes, world, series; it stands alone (docs/formats.md).
- * Complete under its name or not there. */
+/* Writes a checkpoint: experiment, shapes, world, series; it stands alone
+ * (docs/reference/formats.md). Complete under its name or not there. */
 SCREE_API scree_status scree_run_save(const scree_run *run, const char *path, bool overwrite,
                                       scree_error *error);
 /* Writes a frame: the same without the contacts, a fraction of the size; it can be measured and

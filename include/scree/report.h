@@ -201,12 +201,12 @@ SCREE_API scree_status scree_choice_figure_write(const scree_choice_report *repo
                                                  scree_error *error);
 
 /* One array: an object per entry, then the set's with "set": true. Lengths in metres, areas and
- * volumes in m2 and m3. docs/formats.md has every field. "-" is stdout. */
+ * volumes in m2 and m3. docs/reference/formats.md has every field. "-" is stdout. */
 SCREE_API scree_status scree_choice_json_write(const scree_choice_report *report, const char *path,
                                                bool overwrite, scree_error *error);
 
 /* One row per object and grid Rp, one for its robust and one for its recommended choice, and two
- * for a set of several objects (docs/formats.md). "-" is stdout. */
+ * for a set of several objects (docs/reference/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_choice_csv_write(const scree_choice_report *report, const char *path,
                                               bool overwrite, scree_error *error);
 
@@ -234,8 +234,8 @@ typedef struct scree_curve_entry {
   bool distances;
 } scree_curve_entry;
 
-/* One object, the rows in `levels` (docs/formats.md); SI units. command_line NULL: unknown. "-" is
- * stdout. */
+/* One object, the rows in `levels` (docs/reference/formats.md); SI units. command_line NULL:
+ * unknown. "-" is stdout. */
 SCREE_API scree_status scree_curve_json_write(const scree_curve_entry *entry,
                                               const char *command_line, const char *path,
                                               bool overwrite, scree_error *error);
@@ -296,7 +296,8 @@ typedef struct scree_clump_report {
  * .pdf, .csv, .gnuplot). */
 SCREE_API scree_status scree_clump_figure_write(const scree_clump_report *report, const char *path,
                                                 bool overwrite, scree_error *error);
-/* An array with an object per body, all its clumps in it (docs/formats.md). "-" is stdout. */
+/* An array with an object per body, all its clumps in it (docs/reference/formats.md). "-" is
+ * stdout. */
 SCREE_API scree_status scree_clump_json_write(const scree_clump_report *report, const char *path,
                                               bool overwrite, scree_error *error);
 /* A row per body and count. "-" is stdout. */
@@ -322,7 +323,7 @@ typedef struct scree_measure_entry {
 } scree_measure_entry;
 
 /* One array, an object per entry: every field of measures and topology by its name, in SI units
- * (docs/formats.md). command_line is provenance; NULL: unknown. "-" is stdout. */
+ * (docs/reference/formats.md). command_line is provenance; NULL: unknown. "-" is stdout. */
 SCREE_API scree_status scree_measure_json_write(const scree_measure_entry *entries,
                                                 size_t entry_count, const char *command_line,
                                                 const char *path, bool overwrite,
@@ -359,13 +360,13 @@ enum { SCREE_LEVELS_BYTES = 3750000 };
 /* What the report shows of one object in 3D, in at most byte_limit bytes (but at least a level of
  * 2,000 triangles and what follows from it): the scan, or where that is too large the finest level
  * that fits; a fine level and the collapses that lead from it to the last; the dense curve;
- * measures of the scan and the choices. docs/formats.md has the fields. Cost: O(N log N), some
- * 0.5 s for 762,008 triangles, half of it for the convex hull. */
+ * measures of the scan and the choices. docs/reference/formats.md has the fields. Cost: O(N log N),
+ * some 0.5 s for 762,008 triangles, half of it for the convex hull. */
 SCREE_API scree_status scree_levels_write(const scree_curve *curve, const scree_choice *choice,
                                           size_t byte_limit, const char *path, bool overwrite,
                                           scree_error *error);
 
-/* Makes one page of folders with results (docs/formats.md): of a choice, choice.json with
+/* Makes one page of folders with results (docs/reference/formats.md): of a choice, choice.json with
  * choice.txt, provenance.json and levels/NAME.levels. The page is complete in itself, asks nothing
  * of any network, and shows texts from files as text. Fails with SCREE_BAD_FILE where a folder
  * holds no results or a damaged file. Cost: that of reading and writing. */
@@ -404,9 +405,9 @@ typedef struct scree_exported {
 } scree_exported;
 
 /* Writes the mesh, put as asked, to mesh_path (format by its ending) and what a DEM code needs to
- * know of it as JSON to json_path (docs/formats.md; NULL: not wanted). *exported may be NULL.
- * Fails with SCREE_BAD_MESH where the mesh is not closed or inside out: it would have no mass; with
- * SCREE_EXISTS before anything is written; else as scree_mesh_write. */
+ * know of it as JSON to json_path (docs/reference/formats.md; NULL: not wanted). *exported may be
+ * NULL. Fails with SCREE_BAD_MESH where the mesh is not closed or inside out: it would have no
+ * mass; with SCREE_EXISTS before anything is written; else as scree_mesh_write. */
 SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
                                              const scree_export_options *options,
                                              const char *mesh_path, const char *json_path,
@@ -414,7 +415,7 @@ SCREE_API scree_status scree_particle_export(const scree_mesh *mesh,
 
 /* Writes a world for other programs into a folder, made if need be:
  *
- *   pile.json      time, gravity, shapes, bodies, walls (docs/formats.md), SI
+ *   pile.json      time, gravity, shapes, bodies, walls (docs/reference/formats.md), SI
  *   bodies.csv     the bodies as rows
  *   shape-K.stl    the mesh of shape K (scree_world_shape) in the particle's frame, in unit_m
  *   wall-K.stl     the mesh of wall K in its own frame, in unit_m
@@ -437,7 +438,7 @@ typedef struct scree_heap_entry {
 } scree_heap_entry;
 
 /* One object: version, command, experiment, shapes, the heap three ways, costs, and the series as
- * columns (docs/formats.md). "-" is stdout. */
+ * columns (docs/reference/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *path,
                                              bool overwrite, scree_error *error);
 /* The series, one row a point. "-" is stdout. */
@@ -465,7 +466,7 @@ typedef struct scree_pour_entry {
 } scree_pour_entry;
 
 /* One object: version, command, the state at the end, options, shapes in the order of their first
- * bodies, and the moments as columns (docs/formats.md). "-" is stdout. */
+ * bodies, and the moments as columns (docs/reference/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_pour_json_write(const scree_pour_entry *entry, const char *path,
                                              bool overwrite, scree_error *error);
 
@@ -481,7 +482,7 @@ typedef struct scree_scene_entry {
 } scree_scene_entry;
 
 /* One object: version, command, why it ended, the book, shapes, inlets, outlets, and every column
- * with its last value, mean, extremes and series (docs/formats.md). "-" is stdout. */
+ * with its last value, mean, extremes and series (docs/reference/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_scene_json_write(const scree_scene_entry *entry, const char *path,
                                               bool overwrite, scree_error *error);
 /* The bodies and the geometry, which is cut open towards the viewer. Errors as scree_render. */

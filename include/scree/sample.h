@@ -9,10 +9,10 @@ extern "C" {
 #endif
 
 /* Nine electronic devices in the manner of the paper's, and four test solids. All are synthetic:
- * drawn, meshed and given a scanner's noise here (docs/samples.md), after no make in particular.
- * Samples 0 to SCREE_SAMPLE_DEVICES - 1 are the devices: fp-1, fp-2, fp-3 (feature phones), dc-1,
- * dc-2, dc-3 (digital cameras), sp-1, sp-2, sp-3 (smartphones); then sphere, box, box-12 and
- * icosphere. */
+ * drawn, meshed and given a scanner's noise here (docs/background/samples.md), after no make in
+ * particular. Samples 0 to SCREE_SAMPLE_DEVICES - 1 are the devices: fp-1, fp-2, fp-3 (feature
+ * phones), dc-1, dc-2, dc-3 (digital cameras), sp-1, sp-2, sp-3 (smartphones); then sphere, box,
+ * box-12 and icosphere. */
 enum { SCREE_SAMPLE_DEVICES = 9 };
 
 SCREE_API size_t scree_sample_count(void);

@@ -13,7 +13,7 @@ extern "C" {
 
 /* ---- The file ---- */
 
-/* A scene's file (docs/scenes.md), as it was read and changed since. */
+/* A scene's file (docs/reference/scenes.md), as it was read and changed since. */
 typedef struct scree_scene_file scree_scene_file;
 
 /* Reads a file of at most 1 MB ("-" is stdin). Errors name file, line, column, field, value and
@@ -119,7 +119,8 @@ SCREE_API const double *scree_scene_series(const scree_scene *scene, size_t *row
 
 /* ---- Scenes on disk ---- */
 
-/* Writes a checkpoint (docs/formats.md), which stands alone. Complete under its name or not there.
+/* Writes a checkpoint (docs/reference/formats.md), which stands alone. Complete under its name or
+ * not there.
  */
 SCREE_API scree_status scree_scene_save(const scree_scene *scene, const char *path, bool overwrite,
                                         scree_error *error);

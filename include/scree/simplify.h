@@ -34,7 +34,7 @@ SCREE_API scree_simplify_options scree_default_simplify_options(void);
 typedef struct scree_curve scree_curve;
 
 /* Decimates from the mesh's own count down to the floor, by edge collapses in the order of their
- * cost (docs/decimation.md gives the formulas and rules).
+ * cost (docs/background/decimation.md gives the formulas and rules).
  *
  * What holds at every level: where the mesh was closed, manifold and outward, so is the level. No
  * level has more non-manifold edges, degenerate facets or folds (neighbouring triangles whose

@@ -73,7 +73,7 @@ SCREE_API double scree_polynomial_value(const scree_polynomial *fit, double x);
 
 /* ---- A study: points, replicates, runs ---- */
 
-/* A study's file (docs/study.md) and the runs that follow from it: at every point of
+/* A study's file (docs/reference/study.md) and the runs that follow from it: at every point of
  * a design, as many replicates as wanted, each with its own seed. */
 typedef struct scree_study scree_study;
 
@@ -232,7 +232,7 @@ SCREE_API void scree_study_result_free(scree_study_result *result);
 
 /* ---- Reports of a study ---- */
 
-/* docs/formats.md has every field. "-" is stdout. */
+/* docs/reference/formats.md has every field. "-" is stdout. */
 SCREE_API scree_status scree_study_json_write(const scree_study_result *result, const char *path,
                                               bool overwrite, scree_error *error);
 /* One row per point. */

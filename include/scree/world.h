@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* Bodies under gravity, touching each other and walls by the law of docs/physics.md. */
+/* Bodies under gravity, touching each other and walls by the law of docs/background/physics.md. */
 typedef struct scree_world scree_world;
 
 typedef enum scree_law {
@@ -234,7 +234,7 @@ typedef struct scree_observation {
   size_t pair_count;      /* touching pairs of bodies, and of body and wall */
   size_t contact_count;   /* touching features */
   uint64_t parting_count; /* how often two bodies that held each other had to be moved apart since
-                             the start (docs/physics.md); 0 in most runs */
+                             the start (docs/background/physics.md); 0 in most runs */
 } scree_observation;
 /* Cost one pass over the bodies. */
 SCREE_API void scree_world_observe(const scree_world *world, scree_observation *observation);
@@ -265,10 +265,11 @@ SCREE_API void scree_world_timings(const scree_world *world, scree_timings *timi
 /* Names the state: every bit of positions, velocities, contact memory and time. */
 SCREE_API scree_checksum scree_world_hash(const scree_world *world);
 
-/* Writes a checkpoint (docs/formats.md): everything in the world, its particles included, so that
- * the file stands alone; timings are not in it. It is complete under its name or not there ("-" is
- * stdout). Without overwrite an existing file is refused with SCREE_EXISTS. Needs memory for the
- * file's size: about 100 bytes a triangle of each particle, 500 a body, 1 to 3 KB a pair. */
+/* Writes a checkpoint (docs/reference/formats.md): everything in the world, its particles included,
+ * so that the file stands alone; timings are not in it. It is complete under its name or not there
+ * ("-" is stdout). Without overwrite an existing file is refused with SCREE_EXISTS. Needs memory
+ * for the file's size: about 100 bytes a triangle of each particle, 500 a body, 1 to 3 KB a pair.
+ */
 SCREE_API scree_status scree_world_save(const scree_world *world, const char *path, bool overwrite,
                                         scree_error *error);
 /* Reads a checkpoint ("-" is stdin); free *world with scree_world_free. Every later step has the

@@ -106,7 +106,7 @@ class Run:
         return column([lib["run_body_shape"](self._handle, i) for i in range(len(self.world))])
 
     def write_json(self, path, overwrite=False):
-        """Result, experiment, shapes, costs and series (docs/formats.md): with this as result.json in its folder,
+        """Result, experiment, shapes, costs and series (docs/reference/formats.md): with this as result.json in its folder,
         `report` shows the run."""
         result = c.scree_run_result()
         call("run_measure", self._handle, result)

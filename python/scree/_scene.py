@@ -11,7 +11,7 @@ from ._world import Owner, World
 
 
 class Scene:
-    """What a scene's file describes (docs/scenes.md), as `scree run` runs it:
+    """What a scene's file describes (docs/reference/scenes.md), as `scree run` runs it:
 
         scene = scree.Scene("drum.yaml", {"geometry.shell.motion.0.rotate.speed": 3})
         scene.run(2)                        # up to 2 s of simulated time; without a time to its end

@@ -416,7 +416,7 @@ const cli_verb cli_verb_export = {
         "A checkpoint or frame of a simulation becomes .vtp, as the view asked; or a folder: "
         "pile.json and "
         "bodies.csv with every body's position, quaternion and velocities, and an STL per shape in "
-        "the frame that the quaternions turn. docs/formats.md has every field.",
+        "the frame that the quaternions turn. docs/reference/formats.md has every field.",
     .examples = "scree export result/phone.stl --principal --to m --density 1800 -o phone-dem.stl\n"
                 "scree export phone.stl --to lammps -n 20 -o phone-lammps\n"
                 "scree export result/phone.stl --reference phone.stl -o phone.vtp\n"

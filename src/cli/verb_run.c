@@ -396,7 +396,8 @@ const cli_verb cli_verb_run = {
     .summary = "run a scene of your own: shapes, moving geometry, inlets, sensors",
     .inputs = "SCENE.yaml",
     .description =
-        "Simulates what a YAML file describes (docs/scenes.md): shapes from scans, spheres and "
+        "Simulates what a YAML file describes (docs/reference/scenes.md): shapes from scans, "
+        "spheres and "
         "clumps; geometry from mesh files and solids, at rest or moving; inlets, outlets, sensors. "
         "`scree run --template NAME > my.yaml` writes a commented file to start from. Every error "
         "in a file is told with line and column, and with what is allowed.\n\n"

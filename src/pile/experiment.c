@@ -20,7 +20,8 @@ typedef struct field {
 } field;
 
 #define AT(name) offsetof(scree_experiment, name)
-/* Sources: [p] the paper, section 2.3; [p*] the paper, read as docs/method.md says; [s] scree. */
+/* Sources: [p] the paper, section 2.3; [p*] the paper, read as docs/background/method.md says; [s]
+ * scree. */
 static const field fields[] = {
     {"particles", FIELD_COUNT, AT(particle_count), 1, 1e7, "",
      "how many, in equal shares of the shapes [p]"},
@@ -444,7 +445,7 @@ void scree_experiment_print(const scree_experiment *experiment, FILE *stream) {
   size_t group_length = 0;
   fprintf(stream,
           "# An angle-of-repose experiment for scree %s. [p]: Katagiri and Koyanaka (2020);\n"
-          "# [p*]: the same, read as docs/method.md says; [s]: scree's choice.\n",
+          "# [p*]: the same, read as docs/background/method.md says; [s]: scree's choice.\n",
           scree_version());
   fprintf(stream, "# %s\npreset: %s\n", preset_difference(experiment->preset), experiment->preset);
   for (size_t i = 0; i < FIELD_COUNT_ALL; i++) {

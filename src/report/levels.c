@@ -18,7 +18,8 @@
 static const char magic[] = "screeLVL";
 enum { VERSION = 3, BYTE_ORDER_MARK = 0x01020304, HEADER_BYTES = 40 };
 
-/* How the limit is shared: found on scans of 80,000 to 762,008 triangles, see docs/formats.md. */
+/* How the limit is shared: found on scans of 80,000 to 762,008 triangles, see
+ * docs/reference/formats.md. */
 static const double levels_share = 0.32;         /* of the bytes: base and collapses */
 static const double bytes_per_base_triangle = 8; /* with its collapses */
 static const double bytes_per_scan_triangle = 3; /* first guess */

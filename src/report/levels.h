@@ -1,5 +1,5 @@
-/* The file of levels that the report shows (docs/formats.md): written by scree_levels_write, put
- * into the page as it is, read by web/src/levels.js. */
+/* The file of levels that the report shows (docs/reference/formats.md): written by
+ * scree_levels_write, put into the page as it is, read by web/src/levels.js. */
 #ifndef SCREE_REPORT_LEVELS_H
 #define SCREE_REPORT_LEVELS_H
 

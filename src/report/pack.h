@@ -1,6 +1,6 @@
 /* Meshes and tables for the report's page, small: positions on a grid of 16 bits, and what
  * meshoptimizer's codecs make of them, which web/src/packed.js reads with the same library's
- * JavaScript. docs/formats.md has the layout. */
+ * JavaScript. docs/reference/formats.md has the layout. */
 #ifndef SCREE_REPORT_PACK_H
 #define SCREE_REPORT_PACK_H
 

@@ -1,5 +1,5 @@
 /* A particle's mesh and mass properties for other DEM codes. The inertia is that of the mesh as it
- * lies in the file, times the density; docs/formats.md lists the fields. */
+ * lies in the file, times the density; docs/reference/formats.md lists the fields. */
 #include "report/particle_export.h"
 #include "base/file.h"
 #include "base/vec.h"

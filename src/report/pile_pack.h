@@ -5,8 +5,9 @@
 #include "base/error.h"
 
 /* Packs the last frame of a run, or the world (.world) that a pour left, and what motion.scree
- * beside it tells of it (docs/formats.md) into at most byte_limit bytes, where the shapes and one
- * frame fit, leaving out frames; *bytes is NULL where path does not exist. Free it with scree_free.
+ * beside it tells of it (docs/reference/formats.md) into at most byte_limit bytes, where the shapes
+ * and one frame fit, leaving out frames; *bytes is NULL where path does not exist. Free it with
+ * scree_free.
  */
 scree_status scree_pile_pack(const char *path, size_t byte_limit, unsigned char **bytes,
                              size_t *byte_count, scree_error *error);

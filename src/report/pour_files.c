@@ -1,4 +1,4 @@
-/* A pour as JSON: drop.json of `scree drop` (docs/formats.md). */
+/* A pour as JSON: drop.json of `scree drop` (docs/reference/formats.md). */
 #include "base/alloc.h"
 #include "base/file.h"
 #include "report/shapes.h"

@@ -1,4 +1,4 @@
-/* A scene as JSON: result.json of `scree run` (docs/formats.md). */
+/* A scene as JSON: result.json of `scree run` (docs/reference/formats.md). */
 #include "base/alloc.h"
 #include "base/file.h"
 #include "report/shapes.h"

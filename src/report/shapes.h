@@ -20,7 +20,8 @@ enum { SCREE_SHAPE_COLORS = 9 };
 uint32_t scree_shape_color(size_t shape);
 void scree_shape_color_linear(size_t shape, float linear[3]);
 
-/* kind, counts and sizes of a particle, as members of the open object (docs/formats.md). */
+/* kind, counts and sizes of a particle, as members of the open object (docs/reference/formats.md).
+ */
 void scree_shape_json(scree_json *json, const scree_particle *particle);
 
 /* The spheres of a sphere or clump, in its frame, each as an icosphere of 20 * 4^level triangles.

@@ -1,5 +1,5 @@
-/* The motion of a run or a pour on disk (docs/formats.md): frames are appended while it goes on,
- * each with its own checksum, so that a run that was killed leaves whole ones. */
+/* The motion of a run or a pour on disk (docs/reference/formats.md): frames are appended while it
+ * goes on, each with its own checksum, so that a run that was killed leaves whole ones. */
 #ifndef SCREE_SCENE_MOTION_H
 #define SCREE_SCENE_MOTION_H
 

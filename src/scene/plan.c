@@ -509,7 +509,8 @@ static const scree_record sensor_record = {
 
 #define AT(member) offsetof(scree_plan_contact, member)
 static const scree_field contact_fields[] = {
-    {"law", SCREE_FIELD_WORD, AT(law), 0, 0, "linear|hysteretic", "docs/physics.md", NULL},
+    {"law", SCREE_FIELD_WORD, AT(law), 0, 0, "linear|hysteretic", "docs/background/physics.md",
+     NULL},
     {"steps", SCREE_FIELD_REAL, AT(steps), 15, 1e6, "",
      "time steps in a quarter of the fastest contact's period", NULL},
     {"stiffness_factor", SCREE_FIELD_REAL, AT(stiffness_factor), 1e-9, 1e9, "",

@@ -1,5 +1,5 @@
 /* From the database to what a study says: every point's statistics; where the angle has converged;
- * time against Rp. docs/study.md has the reasons. */
+ * time against Rp. docs/reference/study.md has the reasons. */
 #include "base/array.h"
 #include "base/number.h"
 #include "study/database.h"

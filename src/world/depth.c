@@ -1,5 +1,5 @@
-/* What no feature may miss: how deep the edges of one body lie inside the other (docs/physics.md,
- * "Depths").
+/* What no feature may miss: how deep the edges of one body lie inside the other
+ * (docs/background/physics.md, "Depths").
  *
  * The depth of an edge is that of its deepest point: the largest distance from the other's surface
  * over the part that lies inside. It follows from the pose alone, and changes by no more than what

@@ -1,4 +1,4 @@
-/* The contact law of a pair: anchored smooth maximum (docs/physics.md, "One spring").
+/* The contact law of a pair: anchored smooth maximum (docs/background/physics.md, "One spring").
  *
  * The pair's overlap m is a smooth maximum of its features' overlaps o_i, with a width l that grows
  * with the overlap, l = l0 + kappa m: m = (t + l0)/(1 - kappa), where t solves

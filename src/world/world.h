@@ -1,4 +1,5 @@
-/* The world's own structures. Only src/world sees them; docs/physics.md has the equations. */
+/* The world's own structures. Only src/world sees them; docs/background/physics.md has the
+ * equations. */
 #ifndef SCREE_WORLD_WORLD_H
 #define SCREE_WORLD_WORLD_H
 

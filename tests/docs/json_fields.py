@@ -1,4 +1,4 @@
-"""Runs the verbs with --json and compares the fields they print with the tables of docs/formats.md: each field
+"""Runs the verbs with --json and compares the fields they print with the tables of docs/reference/formats.md: each field
 printed must be in the verb's table or in the common one, and each field in a table must be printed.
 `scree export` writes its JSON as files.
 usage: json_fields.py PROGRAM FORMATS.MD WORLD_WRITER"""

@@ -77,7 +77,8 @@ static void poured_and_left(void **state) {
   LAW_NEAR("L18", "devices in the heap", (double)seen.body_count, 80, 0);
   LAW_BELOW("L18", "kinetic energy (J)", seen.kinetic + seen.rotational, 1e-6);
   LAW_BELOW("L18", "largest overlap (m)", seen.largest_overlap, 1e-5);
-  /* sharp corners of thin shapes reach out of the core that touches (docs/physics.md, "Rounding")
+  /* sharp corners of thin shapes reach out of the core that touches (docs/background/physics.md,
+   * "Rounding")
    */
   LAW_BELOW("L18", "farthest vertex outside the walls (m)", farthest_out(world, 0.5 * o.width),
             2e-4);

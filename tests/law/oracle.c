@@ -218,7 +218,7 @@ static void throw_at_each_other(scree_particle *const shapes[4], int i, scree_rn
 
 /* Bodies hit each other at 10 m/s, edges and corners far deeper than the roundings: at the moments
  * of the hit the force is the slope of the energy, but where weights change (their slopes are left
- * out: docs/physics.md). The same hit with lists that reach two and a half times farther
+ * out: docs/background/physics.md). The same hit with lists that reach two and a half times farther
  * takes the same course. */
 static void deep_hits(void **state) {
   (void)state;

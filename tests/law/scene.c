@@ -1,5 +1,5 @@
 /* Scenes against closed forms: a belt, a tilted plate, a shaken plate, a hopper that runs out
- * (docs/verification.md). */
+ * (docs/background/verification.md). */
 #include "scree.h"
 #include "support/check.h"
 

@@ -14,7 +14,7 @@ pile = json.loads((folder / "pile/pile.json").read_text())
 assert len(pile["bodies"]) == 2 and (folder / "pile/shape-0.stl").exists()
 assert (folder / "pile.pvd").exists() and (folder / "contacts-0005.vtp").exists()
 
-# the importers' files; the programs themselves were run by hand (docs/formats.md)
+# the importers' files; the programs themselves were run by hand (docs/reference/formats.md)
 subprocess.run([sys.executable, examples / "pile_to_lammps.py", folder / "pile", folder / "lammps"], check=True)
 data = (folder / "lammps/pile.data").read_text().splitlines()
 assert data[2] == "2 atoms" and data[3] == "2 bodies", data[:6]

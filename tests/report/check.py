@@ -440,7 +440,7 @@ def summary(mean, sd):
 
 
 def made_up_study():
-    """A study.json (docs/formats.md) with numbers that no run gave."""
+    """A study.json (docs/reference/formats.md) with numbers that no run gave."""
     points = [{
         "label": f"shapes {shapes}, rp {rp}", "rp": rp, "shapes": shapes, "heap_count": 8, "triangle_count": 100 * i,
         "runs": {"done": 8, "failed": 1, "running": 0, "leased": 0, "waiting": 1},

@@ -1,5 +1,5 @@
 /* Law tests: a closed form against a run of the world. Each check prints its id, what is expected,
- * what came out and the tolerance; docs/verification.md lists the ids. */
+ * what came out and the tolerance; docs/background/verification.md lists the ids. */
 #ifndef SCREE_TEST_LAW_H
 #define SCREE_TEST_LAW_H
 

@@ -1,4 +1,4 @@
-// The section of clumps (clump.json, docs/formats.md): answer, table of the bodies, and for the body picked its
+// The section of clumps (clump.json, docs/reference/formats.md): answer, table of the bodies, and for the body picked its
 // curve, the clump of every number of spheres over the surface in 3D, and the table.
 import { Chart, palette } from './chart.js';
 import { element, number, percent, table, whole } from './text.js';

@@ -1,4 +1,4 @@
-// The section of one heap (result.json, docs/formats.md): its angles, the pile to play, the curves beside it.
+// The section of one heap (result.json, docs/reference/formats.md): its angles, the pile to play, the curves beside it.
 import { PlayedSection, known } from './played.js';
 import { counted, element, number, whole } from './text.js';
 

@@ -1,4 +1,4 @@
-// The file of levels of one object (docs/formats.md): the scan, a fine level, and the collapses from it down.
+// The file of levels of one object (docs/reference/formats.md): the scan, a fine level, and the collapses from it down.
 // Positions are integers on a grid: metres = low + step * integer. A level is rebuilt from the fine one for every
 // position of the slider: vertices follow their chain of collapses, triangles whose corners fall together are dropped.
 import { Reader, decodeMesh, decodeVertices } from './packed.js';

@@ -1,4 +1,4 @@
-// A pile (docs/formats.md): its shapes, where its bodies were at moments of the run, and of a scene where its walls
+// A pile (docs/reference/formats.md): its shapes, where its bodies were at moments of the run, and of a scene where its walls
 // were; and the 3D view that plays it. Between two moments bodies go straight and turn evenly.
 import {
   Box3, BufferAttribute, BufferGeometry, CircleGeometry, Color, CylinderGeometry, DoubleSide, Group, InstancedMesh,

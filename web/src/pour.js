@@ -1,4 +1,4 @@
-// The section of one pour (drop.json, docs/formats.md): the particles to play, the curves beside them.
+// The section of one pour (drop.json, docs/reference/formats.md): the particles to play, the curves beside them.
 import { PlayedSection, known } from './played.js';
 import { counted, element, number, whole } from './text.js';
 

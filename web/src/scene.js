@@ -1,4 +1,4 @@
-// The section of one scene (result.json with scene.yaml, docs/formats.md): its bodies and walls to play, what its
+// The section of one scene (result.json with scene.yaml, docs/reference/formats.md): its bodies and walls to play, what its
 // sensors read beside them.
 import { PlayedSection, known } from './played.js';
 import { counted, element, number, whole } from './text.js';

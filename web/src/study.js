@@ -1,4 +1,4 @@
-// The section of a study (study.json, docs/formats.md): what the runs say, each curve with its spread, the tables.
+// The section of a study (study.json, docs/reference/formats.md): what the runs say, each curve with its spread, the tables.
 import { Chart, palette } from './chart.js';
 import { holds } from './packed.js';
 import { Pile, PilePlayer } from './pile.js';
