@@ -36,10 +36,11 @@ vec3 scree_closest_on_border(const scree_face *face, vec3 p, int *region) {
 /* Keeps the nearest, ascending; what falls off the end bounds `next`. */
 static void insert_near(scree_near *near, uint32_t face, double distance) {
   if (near->count == SCREE_NEAR_FACES && distance >= near->distance[near->count - 1]) {
-    near->next = fmin(near->next, distance);
+    near->next = scree_min(near->next, distance);
     return;
   }
-  if (near->count == SCREE_NEAR_FACES) near->next = fmin(near->next, near->distance[--near->count]);
+  if (near->count == SCREE_NEAR_FACES)
+    near->next = scree_min(near->next, near->distance[--near->count]);
   int i = near->count++;
   for (; i > 0 && near->distance[i - 1] > distance; i--) {
     near->distance[i] = near->distance[i - 1];
@@ -49,14 +50,9 @@ static void insert_near(scree_near *near, uint32_t face, double distance) {
   near->face[i] = face;
 }
 
-/* Not by fmin, which is a call. */
-static double lesser(double a, double b) {
-  return a < b ? a : b;
-}
-
 static double near_bound(const scree_near *near, double reach, double slack) {
-  double bound = near->count ? lesser(reach, near->distance[0] + slack) : reach;
-  return lesser(bound, near->next);
+  double bound = near->count ? scree_smaller(reach, near->distance[0] + slack) : reach;
+  return scree_smaller(bound, near->next);
 }
 
 typedef struct tree_entry {
@@ -77,7 +73,7 @@ void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, d
     tree_entry entry = stack[--depth];
     double bound = near_bound(near, reach, slack);
     if (entry.distance2 > bound * bound) {
-      pruned2 = lesser(pruned2, entry.distance2);
+      pruned2 = scree_smaller(pruned2, entry.distance2);
       continue;
     }
     const scree_tree_node *node = &nodes[entry.node];
@@ -100,10 +96,10 @@ void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, d
       insert_near(near, face, vec3_distance(p, c));
     }
   }
-  double bound = near->count ? lesser(reach, near->distance[0] + slack) : reach;
-  near->next = lesser(near->next, sqrt(pruned2));
+  double bound = near->count ? scree_smaller(reach, near->distance[0] + slack) : reach;
+  near->next = scree_smaller(near->next, sqrt(pruned2));
   while (near->count > 0 && near->distance[near->count - 1] > bound)
-    near->next = lesser(near->next, near->distance[--near->count]);
+    near->next = scree_smaller(near->next, near->distance[--near->count]);
 }
 
 /* Below one node, nearer child first: distance and face of what is nearer than *best2. */
@@ -148,18 +144,75 @@ double scree_nearest_face(const scree_particle *particle, const uint32_t *nodes,
   return best2 < reach * reach ? sqrt(best2) : INFINITY;
 }
 
+/* ---- inside or outside ---- */
+
+/* The ray's direction, along no side or diagonal of a box. */
+static const vec3 ray = {0.35355339, 0.21650635, 1};
+
+/* A point as seen against the ray: its place beside it. Of one vertex it is the same to the last
+ * bit in all faces that share it. */
+typedef struct sight {
+  double u, v;
+} sight;
+
+static sight sight_of(const double *at, vec3 p) {
+  double along = at[2] - p.z;
+  return (sight){at[0] - p.x - ray.x * along, at[1] - p.y - ray.y * along};
+}
+
+/* How often the way from a to b crosses what lies beyond the ray along u, upwards; of the way back
+ * the opposite, however it is rounded. So what neighbouring faces make of their common edge
+ * cancels, and a closed surface is counted rightly wherever the ray meets its edges and vertices.
+ */
+static int crossing_of(sight a, sight b) {
+  if ((a.v > 0) == (b.v > 0)) return 0;
+  double side = a.u * b.v - a.v * b.u;
+  return b.v > 0 ? side > 0 : -(side < 0);
+}
+
+/* 1 where the ray leaves by the face, -1 where it enters, else 0. */
+static int passage(const scree_particle *particle, uint32_t f, vec3 p) {
+  const double *positions = particle->core ? particle->core : particle->mesh.positions;
+  const uint32_t *t = &particle->mesh.triangles[3 * (size_t)f];
+  sight a = sight_of(&positions[3 * (size_t)t[0]], p),
+        b = sight_of(&positions[3 * (size_t)t[1]], p),
+        c = sight_of(&positions[3 * (size_t)t[2]], p);
+  int turn = crossing_of(a, b) + crossing_of(b, c) + crossing_of(c, a);
+  if (turn == 0) return 0;
+  const scree_face *face = &particle->faces[f];
+  return turn * vec3_dot(face->normal, vec3_sub(face->corner, p)) > 0 ? turn : 0;
+}
+
+/* Whether the ray from p may meet the box, which is wider by `slack` than what it holds. */
+static bool meets_ray(const scree_box *box, vec3 p, double slack) {
+  double from = 0, to = box->high.z - p.z + slack;
+  from = scree_max(from, box->low.z - p.z - slack);
+  from = scree_max(from, (box->low.x - p.x - slack) * (1 / ray.x));
+  to = scree_min(to, (box->high.x - p.x + slack) * (1 / ray.x));
+  from = scree_max(from, (box->low.y - p.y - slack) * (1 / ray.y));
+  to = scree_min(to, (box->high.y - p.y + slack) * (1 / ray.y));
+  return from <= to;
+}
+
 bool scree_is_inside(const scree_particle *particle, vec3 p) {
-  double turns = 0;
-  for (size_t f = 0; f < particle->face_count; f++) {
-    const scree_face *face = &particle->faces[f];
-    vec3 a = vec3_sub(face->corner, p), b = vec3_add(a, face->along1),
-         c = vec3_add(a, face->along2);
-    double na = vec3_norm(a), nb = vec3_norm(b), nc = vec3_norm(c);
-    double top = vec3_dot(a, vec3_cross(b, c));
-    double bottom = na * nb * nc + vec3_dot(a, b) * nc + vec3_dot(b, c) * na + vec3_dot(c, a) * nb;
-    turns += scree_atan2(top, bottom);
+  const scree_tree *tree = &particle->face_tree;
+  const scree_box *whole = &tree->nodes[0].box;
+  if (scree_box_distance2(whole, p) > 0) return false;
+  vec3 extent = vec3_sub(whole->high, whole->low);
+  double slack = 1e-12 * (extent.x + extent.y + extent.z + vec3_norm(whole->low));
+  uint32_t stack[SCREE_TREE_STACK];
+  int depth = 0, turns = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+    if (!meets_ray(&node->box, p, slack)) continue;
+    for (uint32_t k = 0; k < node->count; k++)
+      turns += passage(particle, tree->order[node->first + k], p);
+    if (node->count) continue;
+    stack[depth++] = node->first + 1;
+    stack[depth++] = node->first;
   }
-  return turns > 3.14159265358979323846; /* the full turn is 2 pi in half angles */
+  return turns > 0;
 }
 
 double scree_ray_depth(const scree_particle *particle, vec3 p, vec3 direction, size_t skip_face) {

@@ -77,7 +77,8 @@ void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, d
 double scree_nearest_face(const scree_particle *particle, const uint32_t *nodes, int node_count,
                           vec3 p, double reach, uint32_t *face);
 
-/* Whether p is inside a closed surface, by its winding number (van Oosterom and Strackee 1983). */
+/* Whether p is inside a closed surface: whether a ray from p leaves it more often than it enters.
+ * Exact but for points within rounding of the surface, which may be either. */
 bool scree_is_inside(const scree_particle *particle, vec3 p);
 
 /* Least distance from p against direction to a face met from behind; INFINITY for none. */

@@ -85,7 +85,7 @@ static scree_status make_faces(scree_particle *p, scree_error *error) {
     face->d11 = vec3_norm2(face->along1);
     face->d22 = vec3_norm2(face->along2);
     face->d12 = vec3_dot(face->along1, face->along2);
-    double area2 = vec3_norm2(n), longest2 = fmax(face->d11, face->d22);
+    double area2 = vec3_norm2(n), longest2 = scree_max(face->d11, face->d22);
     if (!(area2 > 1e-20 * longest2 * longest2))
       return scree_fail(error, SCREE_BAD_MESH,
                         "particle: triangle %zu has no area (%g m2, longest edge %g m)", f,
@@ -276,7 +276,7 @@ static void make_points_and_edges(extraction *x) {
       p->edges[p->edge_count++] = scree_rim_edge(start, end, rim_outward(x, edge));
       continue;
     }
-    double half = fmin(0.5 * turn + scree_cone_slack, 1.57);
+    double half = scree_min(0.5 * turn + scree_cone_slack, 1.57);
     vec3 sum = vec3_add(p->faces[edge->face1].normal, p->faces[edge->face2].normal);
     if (edge->turn < 0) sum = vec3_neg(sum); /* of a sheet: convex from behind */
     p->edges[p->edge_count++] = (scree_edge){start,

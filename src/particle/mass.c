@@ -87,7 +87,7 @@ static void add_line(moments *m, const double xy[2], double area, chord *chords,
   for (size_t i = 0; i < count;) {
     chord merged = chords[i++];
     for (; i < count && chords[i].low <= merged.high; i++)
-      merged.high = fmax(merged.high, chords[i].high);
+      merged.high = scree_max(merged.high, chords[i].high);
     add_chord(m, xy, area, merged);
   }
 }
@@ -103,7 +103,7 @@ scree_solid scree_solid_of_spheres(const double *centres, const double *radii, s
   vec3 origin = vec3_scale(vec3_add(low, high), 0.5), size = vec3_sub(high, low);
   chord *chords = scree_alloc(count, sizeof *chords);
   if (!chords) return (scree_solid){0};
-  double step = fmax(size.x, size.y) / SPHERE_GRID;
+  double step = scree_max(size.x, size.y) / SPHERE_GRID;
   size_t nx = (size_t)ceil(size.x / step), ny = (size_t)ceil(size.y / step);
   for (size_t iy = 0; iy < ny; iy++)
     for (size_t ix = 0; ix < nx; ix++) {

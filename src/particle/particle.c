@@ -84,9 +84,9 @@ static vec3 into_frame(const scree_particle_measures *m, const double *position)
 static void set_bounding_radius(scree_particle *p) {
   double r = 0;
   for (size_t i = 0; i < p->mesh.vertex_count; i++)
-    r = fmax(r, vec3_norm(vec3_load(&p->mesh.positions[3 * i])) + p->measures.rounding);
+    r = scree_max(r, vec3_norm(vec3_load(&p->mesh.positions[3 * i])) + p->measures.rounding);
   for (size_t i = 0; i < p->point_count; i++)
-    r = fmax(r, vec3_norm(p->points[i]) + p->point_radii[i]);
+    r = scree_max(r, vec3_norm(p->points[i]) + p->point_radii[i]);
   p->measures.bounding_radius = r;
 }
 
@@ -137,7 +137,7 @@ static scree_status finish_mesh(scree_particle *p, scree_error *error) {
 }
 
 static double radius_of(const scree_particle_measures *m) {
-  return fmax(m->rounding, rounding_radius * m->size);
+  return scree_max(m->rounding, rounding_radius * m->size);
 }
 
 static scree_status make_mesh_particle(scree_particle *p, double rounding, scree_error *error) {
@@ -156,7 +156,7 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
   if (status) return status;
   scree_particle_measures *m = &p->measures;
   double least = rounding_radius * m->size;
-  m->rounding = rounding > 0 ? rounding : fmin(least, most_rounding * m->thickness);
+  m->rounding = rounding > 0 ? rounding : scree_min(least, most_rounding * m->thickness);
   p->radius = radius_of(m);
   drop_features(p);
   status = scree_particle_extract_features(p, false, error);
@@ -288,7 +288,7 @@ static scree_status fill_clump(scree_particle *p, const double *centres, const d
   for (size_t i = 0; i < count; i++) {
     p->points[i] = into_frame(&p->measures, &centres[3 * i]);
     p->point_radii[i] = radii[i];
-    thinnest = fmin(thinnest, 2 * radii[i]);
+    thinnest = scree_min(thinnest, 2 * radii[i]);
   }
   p->measures.thickness = thinnest;
   set_bounding_radius(p);

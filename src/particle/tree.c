@@ -96,15 +96,15 @@ out_of_memory:
 /* The least cone about both (up to rounding, for which it is widened). */
 static scree_cone join_cones(const scree_cone *a, const scree_cone *b) {
   double wide_a = scree_acos(a->cosine), wide_b = scree_acos(b->cosine),
-         between = scree_acos(fmax(-1, fmin(1, vec3_dot(a->axis, b->axis))));
+         between = scree_acos(scree_max(-1, scree_min(1, vec3_dot(a->axis, b->axis))));
   if (between + wide_b <= wide_a) return *a;
   if (between + wide_a <= wide_b) return *b;
-  double wide = fmin(0.5 * (between + wide_a + wide_b) + 1e-7, pi), turn = wide - wide_a;
+  double wide = scree_min(0.5 * (between + wide_a + wide_b) + 1e-7, pi), turn = wide - wide_a;
   vec3 aside = vec3_unit(vec3_mad(b->axis, a->axis, -vec3_dot(a->axis, b->axis)));
   if (between > pi - opposite) wide = pi; /* aside is rounding */
   return (scree_cone){
       vec3_unit(vec3_mad(vec3_scale(a->axis, scree_cos(turn)), aside, scree_sin(turn))),
-      scree_cos(wide), fmax(scree_sin(wide), 0)};
+      scree_cos(wide), scree_max(scree_sin(wide), 0)};
 }
 
 scree_status scree_tree_add_cones(scree_tree *tree, const scree_cone *items, scree_error *error) {

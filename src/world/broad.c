@@ -94,12 +94,13 @@ static size_t bucket_of(const scree_broad *broad, const cell *c) {
 
 /* Small bodies among large ones have a margin of their own size. */
 static double margin_of(const scree_world *world, size_t body) {
-  return fmin(world->broad->margin, own_margin_share * world->bodies.particle[body]->measures.size);
+  return scree_min(world->broad->margin,
+                   own_margin_share * world->bodies.particle[body]->measures.size);
 }
 
 static double widest_side(const scree_box *box) {
   vec3 side = vec3_sub(box->high, box->low);
-  return fmax(side.x, fmax(side.y, side.z));
+  return scree_max(side.x, scree_max(side.y, side.z));
 }
 
 /* Boxes grown by half the margin; returns the widest side. */
@@ -119,7 +120,7 @@ static double make_boxes(scree_world *world) {
     const scree_frame *frame = &bodies->frame[i];
     scree_box box = scree_box_moved(&bodies->particle[i]->box, &frame->rotation, frame->position);
     broad->boxes[i] = scree_box_grown(box, 0.5 * margin_of(world, i));
-    widest = fmax(widest, widest_side(&broad->boxes[i]));
+    widest = scree_max(widest, widest_side(&broad->boxes[i]));
   }
   return widest > 0 ? widest : 1;
 }
@@ -143,7 +144,7 @@ static void choose_grids(scree_world *world, double widest) {
 static int32_t cell_of(double place) {
   const double last = 1 << 30;
   place = floor(place);
-  return (int32_t)(place > -last ? fmin(place, last) : -last);
+  return (int32_t)(place > -last ? scree_min(place, last) : -last);
 }
 
 static cell cell_at(const scree_broad *broad, vec3 place, uint32_t grid) {
@@ -411,9 +412,9 @@ static double reach_of(const scree_world *world, const scree_world_wall *wall) {
   double reach = 0, margin = world->broad->margin, own = scree_wall_extent(wall) + margin;
   for (size_t i = 0; i < bodies->count && reach < own; i++)
     if (!bodies->removed[i])
-      reach = fmax(reach, vec3_distance(bodies->frame[i].position, wall->frame.position) +
-                              bodies->particle[i]->measures.bounding_radius + 2 * margin);
-  return fmin(reach, own);
+      reach = scree_max(reach, vec3_distance(bodies->frame[i].position, wall->frame.position) +
+                                   bodies->particle[i]->measures.bounding_radius + 2 * margin);
+  return scree_min(reach, own);
 }
 
 /* Half the margin is for the walls that move; sheets and planes have it in any case. */

@@ -235,10 +235,10 @@ static void list_edges(listing *l) {
 }
 
 static double box_gap(const scree_box *a, const scree_box *b) {
-  double x = fmax(a->low.x - b->high.x, b->low.x - a->high.x),
-         y = fmax(a->low.y - b->high.y, b->low.y - a->high.y),
-         z = fmax(a->low.z - b->high.z, b->low.z - a->high.z);
-  return fmax(x, fmax(y, z));
+  double x = scree_max(a->low.x - b->high.x, b->low.x - a->high.x),
+         y = scree_max(a->low.y - b->high.y, b->low.y - a->high.y),
+         z = scree_max(a->low.z - b->high.z, b->low.z - a->high.z);
+  return scree_max(x, scree_max(y, z));
 }
 
 /* The shapes are at least this far apart: the larger gap of the two boxes in either frame. Boxes
@@ -249,7 +249,7 @@ static double least_distance(const listing *l) {
   double gap = box_gap(&moved, &l->b->box);
   mat3 back = mat3_transpose(&r->rotation);
   moved = scree_box_moved(&l->b->box, &back, vec3_neg(mat3_mul_vec(&back, r->position)));
-  return fmax(gap, box_gap(&moved, &l->a->box)) - l->pair->law.smoothing;
+  return scree_max(gap, box_gap(&moved, &l->a->box)) - l->pair->law.smoothing;
 }
 
 /* A ball around the part of either box that is within the skin of the other box, and room to move
@@ -272,8 +272,8 @@ static void set_region(listing *l) {
     best = radius;
     pair->list.region = of_a ? into_b(l, centre) : centre;
   }
-  best = fmax(best, l->skin / scree_cone_slack); /* the path grows by radius times angle */
-  double smaller = fmin(l->a->measures.bounding_radius, l->b->measures.bounding_radius);
+  best = scree_max(best, l->skin / scree_cone_slack); /* the path grows by radius times angle */
+  double smaller = scree_min(l->a->measures.bounding_radius, l->b->measures.bounding_radius);
   pair->list.region_radius = best < smaller ? best : 0;
 }
 
@@ -287,8 +287,9 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
                .relative = relative,
                .scratch = scratch,
                .skin = scree_pair_skin(world, pair)};
-  l.skin = fmax(l.skin, fmin(SCREE_FAST_STEPS * pair->list.travel, fast_skins * l.skin));
-  l.skin = fmin(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
+  l.skin = scree_max(l.skin, scree_min(SCREE_FAST_STEPS * pair->list.travel, fast_skins * l.skin));
+  l.skin =
+      scree_min(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
   mark_awake(&l);
   scratch->neighbours->sleeping.count = 0;
   bool analytic = pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b]);

@@ -74,7 +74,7 @@ static double slept_path(const scree_world *world, const scree_pair *pair,
        now = vec3_add(mat3_mul_vec(&relative->rotation, of_a), relative->position);
   double net =
       vec3_distance(now, centre) + radius * quat_chord(n->asleep_turned, turned(world, pair));
-  return fmin(net, bodies_path(world, pair) - n->asleep_since);
+  return scree_min(net, bodies_path(world, pair) - n->asleep_since);
 }
 
 /* a in the frame of b, its velocity and spin such that a's point at q moves with velocity + spin x
@@ -111,7 +111,7 @@ static bool wake_items(scree_pair *pair, scree_scratch *scratch) {
     room =
         room && (due < sleeper.wake || scree_reserve_items(scratch, pair, pair->active.count + 1));
     if (due < sleeper.wake || !room) {
-      if (sleeper.wake < next) next = sleeper.wake; /* fmin is a call */
+      next = scree_min(next, sleeper.wake);
       if (kept < i) sleepers[kept] = sleeper;
       kept++;
       continue;
@@ -158,7 +158,7 @@ static void settle_items(scree_pair *pair, scree_scratch *scratch) {
     if (item->gap > 0) {
       scree_sleeper sleeper = {pair->list.path + item->gap, item->a, item->b, item->kind};
       sleepers[scratch->neighbours->sleeping.count++] = sleeper;
-      pair->list.next_item = fmin(pair->list.next_item, sleeper.wake);
+      pair->list.next_item = scree_min(pair->list.next_item, sleeper.wake);
       continue;
     }
     if (kept != i) {
@@ -173,7 +173,7 @@ static void settle_items(scree_pair *pair, scree_scratch *scratch) {
 static void fall_asleep(const scree_world *world, scree_pair *pair, scree_neighbours *n,
                         const scree_frame *relative) {
   n->asleep_since = bodies_path(world, pair);
-  n->wake = n->asleep_since + fmin(pair->list.next_item, pair->list.end) - pair->list.path;
+  n->wake = n->asleep_since + scree_min(pair->list.next_item, pair->list.end) - pair->list.path;
   n->asleep_at = relative->position;
   n->asleep_turned = turned(world, pair);
   pair->asleep = true;
@@ -241,7 +241,7 @@ bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scrat
   work->dashpot = half * powers.dashpot;
   work->tangential = half * powers.tangential;
   if (pair->largest > largest) work->lost = hysteresis_loss(pair, largest);
-  double overlap = pair->parting ? fmin(pair->overlap, pair->depth) : pair->overlap;
+  double overlap = pair->parting ? scree_min(pair->overlap, pair->depth) : pair->overlap;
   work->beyond_limit = !(overlap <= pair->law.limit);
   return true;
 }

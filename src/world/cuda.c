@@ -139,8 +139,9 @@ static void pack_tree(packer *p, scree_tree *tree) {
 static scree_device_address pack_shape(packer *p, const scree_particle *particle) {
   scree_particle copy;
   memcpy(&copy, particle, sizeof copy);
-  copy.mesh = (scree_mesh){0}; /* no kernel reads it, nor the core */
-  copy.core = NULL;
+  lead(p, &copy.mesh.triangles, 3 * copy.mesh.triangle_count, sizeof *copy.mesh.triangles);
+  lead(p, &copy.mesh.positions, 3 * copy.mesh.vertex_count, sizeof *copy.mesh.positions);
+  lead(p, &copy.core, 3 * copy.mesh.vertex_count, sizeof *copy.core);
   pack_tree(p, &copy.face_tree);
   pack_tree(p, &copy.edge_tree);
   pack_tree(p, &copy.point_tree);

@@ -126,13 +126,13 @@ static sample refine(const scree_particle *to, const line *l, sample low, sample
 static bool find_deepest(const side *sd, const scree_edge *edge, double above, sample *deepest) {
   line l;
   if (!make_line(sd, edge, above, &l)) return false;
-  double least = fmax(least_stride * (l.to - l.from), 1e-9 * edge->length);
+  double least = scree_max(least_stride * (l.to - l.from), 1e-9 * edge->length);
   sample before = sample_at(sd->to, &l, l.from);
   *deepest = before;
   if (!(before.depth > above)) deepest->depth = above;
   while (before.s < l.to) {
     double way = before.depth < above ? above - before.depth : stride_share * fabs(before.depth);
-    sample here = sample_at(sd->to, &l, fmin(before.s + fmax(way, least), l.to));
+    sample here = sample_at(sd->to, &l, scree_min(before.s + scree_max(way, least), l.to));
     bool peak = before.rate > 0 && here.rate < 0 &&
                 0.5 * (before.depth + here.depth + here.s - before.s) > deepest->depth;
     if (here.depth > deepest->depth) *deepest = here;
@@ -207,7 +207,7 @@ static double touch_side(const side *sd, scree_pair *pair, double above, scree_s
     if (!scree_box_meets(&box, &within)) continue;
     for (uint32_t k = 0; k < node->count; k++) {
       const scree_edge *edge = &sd->from->edges[tree->order[node->first + k]];
-      deepest = fmax(deepest, touch_edge(sd, pair, edge, above, scratch));
+      deepest = scree_max(deepest, touch_edge(sd, pair, edge, above, scratch));
     }
     if (node->count) continue;
     stack[depth++] = node->first + 1;
@@ -221,7 +221,7 @@ double scree_touch_depths(const scree_world *world, scree_pair *pair, const scre
   side sides[2];
   make_sides(world, pair, relative, sides);
   double of_a = touch_side(&sides[0], pair, above, scratch);
-  return fmax(of_a, touch_side(&sides[1], pair, above, scratch));
+  return scree_max(of_a, touch_side(&sides[1], pair, above, scratch));
 }
 
 /* ---- bodies in each other from the start ---- */
@@ -281,8 +281,8 @@ static scree_smooth_maximum felt_overlap(const scree_world *world, const scree_p
 }
 
 static void note_start(const scree_pair *pair, double depth, scree_pair_work *work) {
-  if (depth > fmax(start_share * pair->law.limit, pair->law.reach))
-    work->start_depth = fmax(work->start_depth, depth);
+  if (depth > scree_max(start_share * pair->law.limit, pair->law.reach))
+    work->start_depth = scree_max(work->start_depth, depth);
 }
 
 void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
@@ -307,7 +307,7 @@ void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const sc
     pair->depth += pair->list.travel;
     return;
   }
-  double least = pair->parting ? 0 : fmin(above - near, 0.5 * above);
+  double least = pair->parting ? 0 : scree_min(above - near, 0.5 * above);
   pair->depth = scree_touch_depths(world, pair, relative, least, scratch);
   scratch->depth_queries++;
   if (new) note_start(pair, pair->depth, work);

@@ -129,7 +129,7 @@ static vec3 way_out(const scree_item *item, const crossing *x, double *weight) {
   vec3 back = vec3_neg(x->across);
   if ((toward < 0) != (facing < 0)) {
     double one = common_share(x, x->across), other = common_share(x, back),
-           doubt = one > 0 && other > 0 ? 2 * fmin(one, other) / (one + other) : 0,
+           doubt = one > 0 && other > 0 ? 2 * scree_min(one, other) / (one + other) : 0,
            known =
                doubt * scree_smooth_step(crossing_cosines[0], crossing_cosines[1], fabs(toward));
     *weight *= fabs(2 * known - 1);
@@ -152,7 +152,7 @@ static bool is_crossed(const scree_world *world, const scree_pair *pair,
 
 /* Within this of an end the weight fades. */
 static double fading_way(double overlap, double reach) {
-  return fmin(end_share * (reach + fmax(overlap, 0)), 0.5 * reach);
+  return scree_min(end_share * (reach + scree_max(overlap, 0)), 0.5 * reach);
 }
 
 /* The weight near an end, and how it falls. */
@@ -299,7 +299,8 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
   item->inside = armed && !stale && c->distance < 0.5 * pair->law.reach;
   if (!apart && !scree_pair_is_new(pair)) c->first = 0;
   if (behind) /* what changes nothing */
-    c->first = fmax(c->first, pair->overlap * (1 - world->options.sharing) - pair->law.smoothing);
+    c->first =
+        scree_max(c->first, pair->overlap * (1 - world->options.sharing) - pair->law.smoothing);
   return armed && !stale;
 }
 
@@ -312,7 +313,7 @@ static bool has_leapt(const scree_pair *pair, const scree_item *item, const edge
 /* False where the crossing does not count. */
 static bool find_contact(const scree_world *world, const scree_pair *pair, scree_item *item,
                          const scree_frame *relative, const crossing *x, edge_contact *c) {
-  *c = (edge_contact){.normal = vec3_scale(x->offset, 1 / fmax(x->distance, 1e-300)),
+  *c = (edge_contact){.normal = vec3_scale(x->offset, 1 / scree_max(x->distance, 1e-300)),
                       .distance = x->distance};
   if (item->crossing != SCREE_CROSSING_COUNTS) c->first = first_overlap(pair, item, x);
   c->weight = scree_smooth_step(parallel_sines[0], parallel_sines[1], x->sine) * facing_share(x);
@@ -331,10 +332,11 @@ static bool find_contact(const scree_world *world, const scree_pair *pair, scree
  * rest is held back. What is held falls with the overlap, so that nothing is once they are apart.
  */
 static void hold_back(const scree_pair *pair, scree_item *item, scree_touch *touch, double first) {
-  double overlap = fmax(touch->overlap, 0);
+  double overlap = scree_max(touch->overlap, 0);
   bool outside = overlap <= 2 * pair->list.travel; /* a step ago */
-  if (item->crossing != SCREE_CROSSING_COUNTS) item->held = outside ? 0 : fmax(overlap - first, 0);
-  item->held = fmin(item->held, overlap);
+  if (item->crossing != SCREE_CROSSING_COUNTS)
+    item->held = outside ? 0 : scree_max(overlap - first, 0);
+  item->held = scree_min(item->held, overlap);
   touch->overlap -= item->held;
 }
 
@@ -352,7 +354,7 @@ double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree
   if (!crosses || !find_contact(world, pair, item, relative, &x, &c)) {
     item->anchor.share = 0;
     item->crossing = crosses ? SCREE_CROSSING_REFUSED : SCREE_CROSSING_NONE;
-    return heard ? fmin(far, 0) : far;
+    return heard ? scree_min(far, 0) : far;
   }
   double rounding = world->bodies.particle[pair->a]->radius;
   const double values[4] = {c.distance, rounding, pair->law.reach - rounding, c.weight};

@@ -60,8 +60,9 @@ static void sum_forces(scree_world *world, size_t i, const uint32_t *acting, siz
 
 /* Most that a point of the box moves by the spin (both in the body's frame). */
 static double fastest_point(vec3 spin, const scree_box *box) {
-  double x = fmax(-box->low.x, box->high.x), y = fmax(-box->low.y, box->high.y),
-         z = fmax(-box->low.z, box->high.z), u = fabs(spin.x), v = fabs(spin.y), w = fabs(spin.z);
+  double x = scree_max(-box->low.x, box->high.x), y = scree_max(-box->low.y, box->high.y),
+         z = scree_max(-box->low.z, box->high.z), u = fabs(spin.x), v = fabs(spin.y),
+         w = fabs(spin.z);
   return vec3_norm((vec3){v * z + w * y, w * x + u * z, u * y + v * x});
 }
 

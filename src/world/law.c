@@ -94,7 +94,7 @@ bool scree_solve_smooth_maximum(const scree_touch *touches, size_t count, double
   if (solve_closed(touches, count, l0, k, highest, &x, &sum)) {
     t = highest - x;
   } else {
-    t = fmax(-l0, highest - (l0 + k * (highest + l0)) / sqrt(weight));
+    t = scree_max(-l0, highest - (l0 + k * (highest + l0)) / sqrt(weight));
     solve_by_steps(touches, count, l0, k, &t, &sum);
   }
   double m = (t + l0) / (1 - kappa), l = l0 + kappa * m;
@@ -128,8 +128,9 @@ static double spring_force(const scree_world *world, scree_pair *pair, double m)
     return pair->law.stiffness * m - pull;
   }
   double e2 = pair->law.restitution * pair->law.restitution, unloading = pair->law.stiffness / e2;
-  pair->largest = fmax(pair->largest, m);
-  double force = fmax(0, fmin(pair->law.stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
+  pair->largest = scree_max(pair->largest, m);
+  double force =
+      scree_max(0, scree_min(pair->law.stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
   pair->elastic = 0.5 * force * force / unloading - pull * m;
   return force - pull;
 }
@@ -320,7 +321,7 @@ static void part(const scree_world *world, scree_pair *pair, double spring, cons
   at = vec3_scale(at, 1 / total);
   vec3 seen = vec3_add(law->velocity, vec3_cross(law->spin, at));
   double slow = 1 - vec3_dot(seen, way) / parting_speed,
-         most = fmin(spring, pair->law.stiffness * (pair->depth + pair->law.reach));
+         most = scree_min(spring, pair->law.stiffness * (pair->depth + pair->law.reach));
   push(relative, at, way, most * (slow < 0 ? 0 : slow > 1 ? 1 : slow), sums);
 }
 
@@ -394,10 +395,10 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
     double above = touch->overlap - maximum.cutoff;
     touch->share = above > 0 ? touch->weight * above / maximum.denominator : 0;
     if (touch->share > 0) {
-      touch->lever = fmin(touch->lever, fmax(most_slopes[0], resolved));
+      touch->lever = scree_min(touch->lever, scree_max(most_slopes[0], resolved));
       press(pair, &law, spring, touch, relative, &energy, &sums);
       if (touch->fading.x != 0 || touch->fading.y != 0 || touch->fading.z != 0)
-        fade(spring, 0.5 * above * above / maximum.denominator, fmax(most_slopes[1], resolved),
+        fade(spring, 0.5 * above * above / maximum.denominator, scree_max(most_slopes[1], resolved),
              touch, &sums);
       contacts++;
     } else {

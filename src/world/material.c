@@ -59,11 +59,11 @@ static scree_material_pair make_contact(const scree_material_contact *given) {
 }
 
 static scree_material_contact contact_of(const scree_material *a, const scree_material *b) {
-  return (scree_material_contact){.restitution = fmin(a->restitution, b->restitution),
-                                  .friction = fmin(a->friction, b->friction),
-                                  .rolling_friction =
-                                      fmin(a->rolling_friction, b->rolling_friction),
-                                  .surface_energy = fmin(a->surface_energy, b->surface_energy)};
+  return (scree_material_contact){
+      .restitution = scree_min(a->restitution, b->restitution),
+      .friction = scree_min(a->friction, b->friction),
+      .rolling_friction = scree_min(a->rolling_friction, b->rolling_friction),
+      .surface_energy = scree_min(a->surface_energy, b->surface_energy)};
 }
 
 scree_status scree_world_add_material(scree_world *world, const scree_material *material,

@@ -120,7 +120,7 @@ static vec3 rotation_vector(quat q) {
   vec3 v = {q.x, q.y, q.z};
   if (q.w < 0) v = vec3_neg(v);
   double s = vec3_norm(v);
-  return vec3_scale(v, s > 1e-4 ? 2 * asin(fmin(s, 1)) / s : 2 + s * s / 3);
+  return vec3_scale(v, s > 1e-4 ? 2 * asin(scree_min(s, 1)) / s : 2 + s * s / 3);
 }
 
 /* The way and the turn from where the wall is to a pose. */
@@ -149,7 +149,7 @@ static void follow_motions(scree_world_wall *wall, const scree_motion_state *mot
   frame->rotation = quat_to_mat3(pose.orientation);
   wall->orientation = pose.orientation;
   way_to(wall, &next, &way, &turn);
-  wall->travel = fmax(travel, travel_by(wall, way, turn));
+  wall->travel = scree_max(travel, travel_by(wall, way, turn));
   wall->path += travel;
 }
 

@@ -30,7 +30,7 @@ static void add_body(const scree_world *world, size_t i, double dt, energy_sums 
     scree_sum_add(&sums->momentum[k], ps[k]);
     scree_sum_add(&sums->angular[k], ls[k]);
   }
-  sums->speed = fmax(sums->speed, vec3_norm(v));
+  sums->speed = scree_max(sums->speed, vec3_norm(v));
 }
 
 static void add_pairs(const scree_world *world, scree_observation *o) {

@@ -12,7 +12,7 @@ static double size_of(const scree_world *world, const scree_particle *particle) 
 double scree_thin_overlap(const scree_particle *particle) {
   /* rays grazing a notch find walls thinner than they are: never below four roundings */
   const scree_particle_measures *m = &particle->measures;
-  return fmax(0.5 * m->thickness, 4 * particle->radius);
+  return scree_max(0.5 * m->thickness, 4 * particle->radius);
 }
 
 /* 1/r of a sphere; of any other body, 2/L. */
@@ -64,9 +64,9 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
     material_b = world->walls.items[n->b].given.material;
   } else {
     material_b = bodies->material[n->b];
-    size = fmin(size, size_of(world, b));
+    size = scree_min(size, size_of(world, b));
     mass = mass * bodies->mass[n->b] / (mass + bodies->mass[n->b]);
-    thin = fmin(thin, scree_thin_overlap(b));
+    thin = scree_min(thin, scree_thin_overlap(b));
   }
   const scree_material_pair *contact = &world->contacts[material_a][material_b];
   n->law.stiffness = scree_pair_stiffness(world, material_a, material_b, size);
@@ -80,7 +80,7 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
   set_up_rolling(world, contact->given.rolling_friction, n);
   n->law.smoothing = world->options.smoothing * size;
   n->law.limit = world->options.overlap_limit * size;
-  n->law.thin = fmin(n->law.limit, thin);
+  n->law.thin = scree_min(n->law.limit, thin);
   n->law.reach = (a->face_count ? a->radius : 0) + (b && b->face_count ? b->radius : 0);
 }
 

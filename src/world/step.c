@@ -272,7 +272,7 @@ scree_pair_sums scree_combine_sums(scree_world *world) {
     world->work_dashpot += sums->dashpot;
     world->work_tangential += sums->tangential;
     world->parting_count += sums->partings;
-    all.largest_overlap = fmax(all.largest_overlap, sums->largest_overlap);
+    all.largest_overlap = scree_max(all.largest_overlap, sums->largest_overlap);
     if (trouble || (sums->start & sums->beyond_limit & sums->too_fast) == scree_none) continue;
     trouble = true;
     all.start = sums->start;

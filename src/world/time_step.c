@@ -65,7 +65,7 @@ double scree_world_choose_time_step(const scree_world *world, char reason[256]) 
     for (size_t j = i; j < count; j++) {
       double mj = bodies->mass[kinds[j].body], m = mi * mj / (mi + mj);
       double k = scree_pair_stiffness(world, kinds[i].material, kinds[j].material,
-                                      fmin(li, size_of(world, kinds[j].body)));
+                                      scree_min(li, size_of(world, kinds[j].body)));
       if (m / k < best)
         best = m / k, mass = m, stiffness = k, first = kinds[i].body, second = kinds[j].body,
         wall = false;

@@ -290,7 +290,7 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
             : mat3_tmul_vec(&relative->rotation, vec3_sub(p, relative->position));
   if (item->face_count == 0 || pair->list.path > item->valid) {
     refresh_faces(surface, p, item, pair->list.path,
-                  fmax(0.25 * pair->law.reach, 8 * pair->list.travel));
+                  scree_max(0.25 * pair->law.reach, 8 * pair->list.travel));
     scratch->closest_queries++;
   }
   surface_contact contacts[SCREE_ANCHORS];

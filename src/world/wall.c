@@ -133,7 +133,7 @@ void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, ve
   scree_world_wall *wall = &world->walls.items[index];
   set_velocity(wall, velocity, spin);
   double travel = (vec3_norm(velocity) + wall->reach * vec3_norm(spin)) * world->time_step;
-  wall->travel = fmax(wall->travel, travel);
+  wall->travel = scree_max(wall->travel, travel);
   if (!world->pairs_stale) scree_set_wall_due(world, index);
 }
 

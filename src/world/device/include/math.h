@@ -9,6 +9,4 @@ double fabs(double x);
 double sqrt(double x);
 double floor(double x);
 double ceil(double x);
-double fmin(double a, double b);
-double fmax(double a, double b);
 #endif
