@@ -37,18 +37,34 @@ file(RELATIVE_PATH SCREE_PC_PREFIX ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAK
 configure_file(cmake/scree.pc.in ${CMAKE_BINARY_DIR}/scree.pc @ONLY)
 install(FILES ${CMAKE_BINARY_DIR}/scree.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 
-# The man page and the bash completion come from the program's own option tables.
-find_program(SCDOC scdoc)
-if(SCDOC AND NOT CMAKE_CROSSCOMPILING) # the program cannot be run here otherwise
-  add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/scree.1
-    COMMAND sh -c [["$1" help --man | "$2" > scree.1]] sh $<TARGET_FILE:scree> ${SCDOC}
-    COMMAND sh -c [["$1" help --completion > scree.bash]] sh $<TARGET_FILE:scree>
-    BYPRODUCTS ${CMAKE_BINARY_DIR}/scree.bash
-    DEPENDS scree WORKING_DIRECTORY ${CMAKE_BINARY_DIR} VERBATIM)
-  add_custom_target(man ALL DEPENDS ${CMAKE_BINARY_DIR}/scree.1)
-  install(FILES ${CMAKE_BINARY_DIR}/scree.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
-  install(FILES ${CMAKE_BINARY_DIR}/scree.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
-          RENAME scree)
+# Man pages and completions come from the program's own option tables.
+if(NOT CMAKE_CROSSCOMPILING) # the program cannot be run here otherwise
+  set(completions)
+  foreach(shell bash zsh fish)
+    set(file ${CMAKE_BINARY_DIR}/completion/scree.${shell})
+    add_custom_command(OUTPUT ${file} COMMAND sh -c [["$1" help --completion $2 > "$3"]] sh $<TARGET_FILE:scree> ${shell} ${file}
+                       DEPENDS scree VERBATIM)
+    list(APPEND completions ${file})
+  endforeach()
+  file(MAKE_DIRECTORY ${CMAKE_BINARY_DIR}/completion ${CMAKE_BINARY_DIR}/man)
+  add_custom_target(completion ALL DEPENDS ${completions})
+  set(data ${CMAKE_INSTALL_DATADIR})
+  install(FILES ${CMAKE_BINARY_DIR}/completion/scree.bash DESTINATION ${data}/bash-completion/completions RENAME scree)
+  install(FILES ${CMAKE_BINARY_DIR}/completion/scree.zsh DESTINATION ${data}/zsh/site-functions RENAME _scree)
+  install(FILES ${CMAKE_BINARY_DIR}/completion/scree.fish DESTINATION ${data}/fish/vendor_completions.d)
+  find_program(SCDOC scdoc)
+endif()
+if(SCDOC AND NOT CMAKE_CROSSCOMPILING)
+  set(pages)
+  foreach(verb "" ${verbs})
+    string(REGEX REPLACE "-$" "" page "scree-${verb}")
+    set(file ${CMAKE_BINARY_DIR}/man/${page}.1)
+    add_custom_command(OUTPUT ${file} COMMAND sh -c [["$1" help --man $2 | "$3" > "$4"]] sh $<TARGET_FILE:scree> "${verb}" ${SCDOC} ${file}
+                       DEPENDS scree VERBATIM)
+    list(APPEND pages ${file})
+  endforeach()
+  add_custom_target(man ALL DEPENDS ${pages})
+  install(FILES ${pages} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 endif()
 
 # The Python module, over the shared library. Debian's Python looks into lib/python3.N/dist-packages below

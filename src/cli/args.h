@@ -92,11 +92,14 @@ int cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
 
 void cli_print_overview(FILE *stream);
 void cli_print_help(FILE *stream, const cli_verb *verb);
-void cli_print_man(FILE *stream);
-/* The one table of options, a line each: name, letter, meaning and the verbs that have it, with
- * tabs between. */
+/* For scdoc: the page of a verb, or with NULL scree(1). */
+void cli_print_man(FILE *stream, const cli_verb *verb);
+/* The reference of a verb, or with NULL that of all verbs and options. */
+void cli_print_markdown(FILE *stream, const cli_verb *verb);
+/* The one table of options, a line each: name, letter and meaning with tabs between. */
 void cli_print_options(FILE *stream);
-void cli_print_completion(FILE *stream);
+/* For bash, zsh or fish; false, and nothing printed, for another shell. */
+bool cli_print_completion(FILE *stream, const char *shell);
 
 enum { CLI_PRINTABLE_BYTES = 4200 };
 /* A copy of a name as text may show it: scree_make_printable with a ?, as in errors. For people:

@@ -1,4 +1,4 @@
-/* Help, man page and completion, all from the option tables. */
+/* Help on the terminal, from the option tables. */
 #include "cli/options.h"
 
 #include <string.h>
@@ -74,81 +74,5 @@ void cli_print_overview(FILE *stream) {
   fputs("  help       show this, or the help of a verb: scree help VERB\n"
         "  version    show the version\n"
         "\nExit codes: 0 done, 1 failed, 2 wrong usage.\n",
-        stream);
-}
-
-/* Text for scdoc: what it takes as markup is escaped. */
-static void print_scdoc_text(FILE *stream, const char *text) {
-  for (; *text; text++) {
-    if (strchr("_*\\#", *text)) fputc('\\', stream);
-    fputc(*text, stream);
-  }
-}
-
-static void print_scdoc_options(FILE *stream, const cli_option *options, size_t count) {
-  for (size_t i = 0; i < count; i++) {
-    char letter = cli_letter(options[i].name);
-    if (letter) fprintf(stream, "*-%c*, ", letter);
-    fprintf(stream, "*--%s*", options[i].name);
-    if (options[i].value_name) fprintf(stream, " _%s_", options[i].value_name);
-    fputs("\n\t", stream);
-    print_scdoc_text(stream, options[i].help);
-    fputs("\n\n", stream);
-  }
-}
-
-void cli_print_man(FILE *stream) {
-  fputs("scree(1)\n\n# NAME\n\nscree - triangle counts for DEM particles from 3D scans\n\n"
-        "# SYNOPSIS\n\n*scree* _VERB_ [options] _INPUT_...\n\n"
-        "# OPTIONS OF EVERY VERB\n\n",
-        stream);
-  print_scdoc_options(stream, cli_common_options, cli_common_option_count);
-  for (const cli_verb *const *verb = cli_verbs; *verb; verb++) {
-    fprintf(stream, "# SCREE %s\n\n*scree %s* [options] ", (*verb)->name, (*verb)->name);
-    print_scdoc_text(stream, (*verb)->inputs);
-    fputs("\n\n", stream);
-    print_scdoc_text(stream, (*verb)->description);
-    fputs("\n\n", stream);
-    print_scdoc_options(stream, (*verb)->options, (*verb)->option_count);
-    if ((*verb)->examples) fprintf(stream, "```\n%s\n```\n\n", (*verb)->examples);
-  }
-  fputs("# EXIT STATUS\n\n0 done, 1 failed (one sentence on stderr), 2 wrong usage.\n", stream);
-}
-
-void cli_print_options(FILE *stream) {
-  for (size_t i = 0; i < cli_meaning_count; i++) {
-    const cli_meaning *m = &cli_meanings[i];
-    fprintf(stream, "%s\t%s%.1s\t%s\t", m->name, m->letter ? "-" : "", &m->letter, m->meaning);
-    const char *space = "";
-    for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
-      if (cli_has_option(*verb, m->name)) {
-        fprintf(stream, "%s%s", space, (*verb)->name);
-        space = " ";
-      }
-    fprintf(stream, "%s\n", *space ? "" : "all");
-  }
-}
-
-static void print_words(FILE *stream, const cli_option *options, size_t count) {
-  for (size_t i = 0; i < count; i++) fprintf(stream, " --%s", options[i].name);
-}
-
-void cli_print_completion(FILE *stream) {
-  fputs("_scree() {\n  local word=${COMP_WORDS[COMP_CWORD]} words=\n"
-        "  if [ \"$COMP_CWORD\" = 1 ]; then\n    words=\"help version",
-        stream);
-  for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
-    fprintf(stream, " %s", (*verb)->name);
-  fputs("\"\n  else\n    case ${COMP_WORDS[1]} in\n", stream);
-  for (const cli_verb *const *verb = cli_verbs; *verb; verb++) {
-    fprintf(stream, "      %s) words=\"", (*verb)->name);
-    print_words(stream, (*verb)->options, (*verb)->option_count);
-    fputs("\" ;;\n", stream);
-  }
-  fputs("    esac\n    words=\"$words", stream);
-  print_words(stream, cli_common_options, cli_common_option_count);
-  fputs("\"\n  fi\n"
-        "  COMPREPLY=($(compgen -W \"$words\" -- \"$word\") $(compgen -f -- \"$word\"))\n}\n"
-        "complete -F _scree scree\n",
         stream);
 }

@@ -42,23 +42,31 @@ static int unknown_verb(const char *word) {
   return cli_misuse(NULL, "unknown verb '%s'%s", word, hint);
 }
 
+/* scree help --man [VERB] and the like: what the build makes of the tables. */
+static int print_manual(const char *kind, const char *word) {
+  const cli_verb *verb = word ? cli_find_verb(word) : NULL;
+  if (!strcmp(kind, "--completion")) {
+    if (cli_print_completion(stdout, word ? word : "bash")) return 0;
+    return cli_misuse(NULL, "--completion %s: must be bash, zsh or fish", word);
+  }
+  if (word && !verb) return unknown_verb(word);
+  if (!strcmp(kind, "--man"))
+    cli_print_man(stdout, verb);
+  else if (!strcmp(kind, "--markdown"))
+    cli_print_markdown(stdout, verb);
+  else if (!strcmp(kind, "--options"))
+    cli_print_options(stdout);
+  else
+    return cli_misuse(NULL, "unknown option '%s' of help", kind);
+  return 0;
+}
+
 static int help(int word_count, char **words) {
   if (word_count == 0) {
     cli_print_overview(stdout);
     return 0;
   }
-  if (!strcmp(words[0], "--man")) {
-    cli_print_man(stdout);
-    return 0;
-  }
-  if (!strcmp(words[0], "--options")) {
-    cli_print_options(stdout);
-    return 0;
-  }
-  if (!strcmp(words[0], "--completion")) {
-    cli_print_completion(stdout);
-    return 0;
-  }
+  if (!strncmp(words[0], "--", 2)) return print_manual(words[0], word_count > 1 ? words[1] : NULL);
   if (!strcmp(words[0], "help") || !strcmp(words[0], "version")) {
     bool is_help = words[0][0] == 'h';
     printf(

@@ -11,3 +11,15 @@ for verb in $("$SCREE" help | sed -n 's/^  \([a-z]*\)  .*/\1/p' | grep -v 'help\
 done
 # and there are no others in it
 LC_ALL=C sort -u seen | comm -13 - names
+# pages for man and the site of every verb, and completion that the shells read
+for verb in '' $("$SCREE" help | sed -n 's/^  \([a-z]*\)  .*/\1/p' | grep -v 'help\|version'); do
+  "$SCREE" help --man $verb | grep -q '^# SYNOPSIS' && "$SCREE" help --markdown $verb | grep -q '^| option' || echo "no page: $verb"
+done
+run help --man chose 2>&1 | sed -n 2p
+for shell in bash zsh fish tcsh; do
+  "$SCREE" help --completion $shell >completion 2>&1 || head -n 1 completion
+  command -v $shell >/dev/null && [ $shell != tcsh ] && { $shell -n completion || echo "$shell does not read its completion"; }
+done
+"$SCREE" help --completion bash >completion
+bash -c '. ./completion; COMP_WORDS=(scree choose --rule ""); COMP_CWORD=3; _scree; echo ${COMPREPLY[@]}'
+bash -c '. ./completion; COMP_WORDS=(scree choo); COMP_CWORD=1; _scree; echo ${COMPREPLY[@]}'

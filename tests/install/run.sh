@@ -46,4 +46,7 @@ if [ -x /usr/bin/python3 ]; then
   module=$(dirname "$(dirname "$(find "$folder/prefix" -path '*/scree/__init__.py')")")
   expect python "$(env -u SCREE_LIBRARY PYTHONPATH="$module" /usr/bin/python3 -c 'import scree; print(scree.version())')"
 fi
-[ -s "$folder/prefix/share/man/man1/scree.1" ] || { echo "no man page installed"; exit 1; }
+for file in man/man1/scree.1 man/man1/scree-choose.1 bash-completion/completions/scree zsh/site-functions/_scree \
+  fish/vendor_completions.d/scree.fish; do
+  [ -s "$folder/prefix/share/$file" ] || { echo "not installed: $file"; exit 1; }
+done
