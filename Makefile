@@ -2,6 +2,8 @@
 #   make         build/release/bin/scree; installs nothing
 #   make demo    installs what is missing, builds, runs the main job on the built-in samples
 #   make test    installs what is missing, builds, runs the tests
+#   make page    build/page/scree.html, the page that does it in a browser (needs emscripten and npm)
+#   make npm     build/npm/scree-VERSION.tgz, the npm package
 #   make install, make uninstall    DESTDIR=... stages below a folder
 # PRESET=asan|debug|tsan|clang for another build; DATA_DIR=... for a folder of real scans that some tests
 # read; LABELS="-LE slow" and the like are passed to ctest; JOBS=N.
@@ -11,7 +13,7 @@ LABELS ?=
 JOBS ?= $(shell nproc)
 DEMO_DIR ?= demo
 
-.PHONY: all build packages demo test install uninstall clean
+.PHONY: all build packages demo test page npm install uninstall clean
 all: build
 
 packages:
@@ -32,6 +34,13 @@ test:
 	@rm -f build.log
 	@cmake --build --preset $(PRESET) -j $(JOBS)
 	@tools/test.sh $(PRESET) -j $(JOBS) $(LABELS)
+
+page npm:
+	@tools/install-packages.sh build browser
+	@tools/library-sources.sh build/library-sources
+	@cmake --preset wasm >build.log 2>&1 || { cat build.log; exit 1; }
+	@rm -f build.log
+	@cmake --build --preset wasm -j $(JOBS) --target $@
 
 install: build
 	@cmake --install build/$(PRESET)

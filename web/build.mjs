@@ -1,24 +1,13 @@
 // Bundles the page into ../src/report/page.inc: C string literals of the page up to the summary for readers
 // without JavaScript, of what follows up to the data, and of the script. With --check: fails where the committed
 // file differs.
-import { createHash } from 'node:crypto';
 import { readFileSync, writeFileSync } from 'node:fs';
-import { build } from 'esbuild';
+import { bundle, hash, licences, names } from './bundle.mjs';
 
-const result = await build({
-  entryPoints: ['src/main.js'], bundle: true, minify: true, format: 'esm', target: 'es2022', write: false,
-  outdir: 'out', legalComments: 'none', charset: 'ascii',
-});
-const text = (ending) => result.outputFiles.find((file) => file.path.endsWith(ending)).text.trim();
-const hash = (content) => createHash('sha256').update(content).digest('base64');
-const script = text('.js').replaceAll('</script', '<\\/script').replaceAll('<!--', '<\\!--');
-const style = text('.css');
-
-const names = ['three', 'uplot', 'meshoptimizer'];
-const licences = names.map((name) => `${name}: ${readFileSync(`licences/${name}.txt`, 'utf8').trim()}`).join('\n\n');
+const { script, style } = await bundle('src/main.js');
 const page = readFileSync('page.html', 'utf8')
   .replace('@SCRIPT@', hash(script)).replace('@STYLE@', hash(style)).replace('@CSS@', () => style)
-  .replace('@LICENCES@', () => licences.replaceAll('--', '- -'));
+  .replace('@LICENCES@', licences);
 const [top, middle] = page.split('@SUMMARY@');
 
 // Literals of at most 4000 bytes: C17 promises 4095.

@@ -5,6 +5,7 @@
 #include "choice/gauge.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 #include "base/parallel.h"
 #include "base/sum.h"
 #include "mesh/ray.h"
@@ -214,7 +215,7 @@ static double normals_error(const forward *f) {
   for (size_t i = 0; i < g->probe_count; i++) {
     vec3 normal = facet_normal(&f->level->bvh, f->nearest[i * g->probe_step]);
     double cosine = turn * vec3_dot(normal, g->probe_normals[i]);
-    sum += acos(fmax(-1, fmin(1, cosine)));
+    sum += scree_acos(fmax(-1, fmin(1, cosine)));
   }
   return sum / (double)g->probe_count / acos(-1);
 }

@@ -92,9 +92,10 @@ static point2 best_side(const point2 *outline, size_t n) {
   size_t far[3] = {0, 0, 0};
   for (size_t i = 0; i < n; i++) {
     point2 p = outline[i], q = outline[(i + 1) % n];
-    double length = hypot(q.x - p.x, q.y - p.y);
+    double x = q.x - p.x, y = q.y - p.y;
+    double length = sqrt(x * x + y * y); /* unlike hypot the same bits everywhere */
     if (length == 0) continue;
-    point2 u = {(q.x - p.x) / length, (q.y - p.y) / length};
+    point2 u = {x / length, y / length};
     const point2 direction[3] = {u, {-u.y, u.x}, {-u.x, -u.y}};
     double reach[3];
     for (int d = 0; d < 3; d++) {

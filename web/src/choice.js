@@ -1,7 +1,6 @@
 // The section of one choice: answer, table of the objects, and for the object picked its curve, its mesh at every
 // level beside the scan, and the tables.
 import { Chart, palette } from './chart.js';
-import { Tree, distanceField } from './distance.js';
 import { Levels } from './levels.js';
 import { holds } from './packed.js';
 import { element, number, percent, rpText, saveButton, table, whole } from './text.js';
@@ -36,17 +35,25 @@ function addPicks(trace, object) {
 
 export class ChoiceSection {
   constructor(host, folder) {
+    // the level recommended begins with its distances shown
+    this.state = { object: 0, row: 0, wire: true, only: false, colored: folder.choice[0].default === 'recommended' };
+    this.head = element('div', null, host);
+    this.host = element('div', null, host);
+    this.build();
+    this.tell(folder);
+  }
+
+  // Also another choice in place of the one told.
+  tell(folder) {
     this.objects = folder.choice.filter((entry) => !entry.set);
     this.set = folder.choice.find((entry) => entry.set);
     this.ids = new Map(folder.levels);
     this.levels = new Map();
-    // the level recommended begins with its distances shown
-    this.state = { object: 0, row: 0, wire: true, only: false, colored: this.objects[0].default === 'recommended' };
-    this.host = host;
+    this.buttons = null;
+    this.head.replaceChildren();
     this.tellAnswer();
     if (this.objects.length > 1) this.tellObjects();
-    this.build();
-    this.select(0);
+    this.select(Math.min(this.state.object, this.objects.length - 1));
   }
 
   levelsOf(index) {
@@ -63,7 +70,7 @@ export class ChoiceSection {
   // ---- what was asked, and the answer ----
 
   tellAnswer() {
-    const { objects, set, host } = this;
+    const { objects, set, head: host } = this;
     const { options } = objects[0];
     const many = objects.length > 1;
     element('h1', many ? `How many triangles do these ${objects.length} scans need?` : `How many triangles does ${objects[0].name} need?`, host);
@@ -83,7 +90,7 @@ export class ChoiceSection {
   }
 
   tellObjects() {
-    const { host } = this;
+    const { head: host } = this;
     const columns = [
       { head: 'object', value: (o) => o.name },
       { head: 'scan triangles', value: (o) => o.triangle_count, text: (o) => whole(o.triangle_count) },
@@ -321,19 +328,21 @@ export class ChoiceSection {
     if (row.count > shown) notes.push('the finest level that fits into this page');
     if ((wire || only) && !edges) notes.push(`edges are drawn up to ${whole(mostEdgeTriangles)}`);
     this.scale.hidden = !colored;
+    this.shown = mesh;
     this.levelView.show(mesh, levels, options);
     this.levelLabel.textContent = `This level: ${notes.join('; ')}`;
     document.body.dataset.shownTriangles = shown;
     delete document.body.dataset.largestDistance;
     clearTimeout(this.coloring);
     if (!colored) return;
-    if (!levels.tree) this.levelLabel.textContent = `This level: ${notes.join('; ')}; measuring distances ...`;
-    this.coloring = setTimeout(() => this.colorLevel(levels, mesh, options, notes), levels.tree ? wait : 30);
+    if (!levels.measured) this.levelLabel.textContent = `This level: ${notes.join('; ')}; measuring distances ...`;
+    this.coloring = setTimeout(() => this.colorLevel(levels, mesh, options, notes), levels.measured ? wait : 30);
   }
 
-  colorLevel(levels, mesh, options, notes) {
-    levels.tree ??= new Tree(levels.scan());
-    const field = distanceField(mesh, levels.tree, shownSamples);
+  async colorLevel(levels, mesh, options, notes) {
+    const field = await levels.field(mesh, shownSamples);
+    levels.measured = true;
+    if (this.shown !== mesh) return; // another one is shown by now
     const largest = field.largest * levels.step * mm;
     // a few far points must not take the colours from all others
     const range = roundUp(Float32Array.from(field.distances).sort()[Math.floor(0.98 * field.distances.length)] * levels.step * mm);

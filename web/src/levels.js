@@ -1,6 +1,7 @@
 // The file of levels of one object (docs/reference/formats.md): the scan, a fine level, and the collapses from it down.
 // Positions are integers on a grid: metres = low + step * integer. A level is rebuilt from the fine one for every
 // position of the slider: vertices follow their chain of collapses, triangles whose corners fall together are dropped.
+import { Tree, distanceField } from './distance.js';
 import { Reader, decodeMesh, decodeVertices } from './packed.js';
 
 const measureNames = ['triangle_count', 'area', 'volume', 'length', 'width', 'height', 'moment_1', 'moment_2', 'moment_3', 'sphericity', 'convexity'];
@@ -64,6 +65,15 @@ export class Levels {
     if (!this.packedScan.triangleCount) return this.base;
     this.decodedScan ??= decodeMesh(this.packedScan);
     return this.decodedScan;
+  }
+
+  // The distances of a level's surface from the scan's (distanceField). Who has a worker measures there instead.
+  static async measure(levels, mesh, most) {
+    levels.tree ??= new Tree(levels.scan());
+    return distanceField(mesh, levels.tree, most);
+  }
+  field(mesh, most) {
+    return Levels.measure(this, mesh, most);
   }
 
   // How many collapses lead to the first level with at most `count` triangles.

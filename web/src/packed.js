@@ -35,15 +35,21 @@ export class Reader {
   }
 }
 
-// Whether a part is in the page: what would make it too large is left out.
-export const holds = (id) => Boolean(id && document.getElementById(id));
+// Parts that the page got after it was loaded, by id.
+const given = new Map();
+export const give = (id, bytes) => given.set(id, bytes);
 
-function bytesOf(id) {
-  const text = atob(document.getElementById(id).textContent);
+// Whether a part is in the page: what would make it too large is left out.
+export const holds = (id) => Boolean(id && (given.has(id) || document.getElementById(id)));
+
+function fromBase64(base64) {
+  const text = atob(base64);
   const bytes = new Uint8Array(text.length);
   for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
   return bytes;
 }
+
+const bytesOf = (id) => given.get(id) ?? fromBase64(document.getElementById(id).textContent);
 
 export function decodeVertices(bytes, count, size) {
   const out = new Uint8Array(count * size);

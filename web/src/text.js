@@ -32,8 +32,8 @@ export function element(tag, text, parent, attributes = {}) {
   return made;
 }
 
-function saveAs(name, type, text) {
-  const url = URL.createObjectURL(new Blob([text], { type }));
+export function saveAs(name, type, content) {
+  const url = URL.createObjectURL(new Blob([content], { type }));
   const anchor = element('a', '', document.body, { href: url, download: name });
   anchor.click();
   anchor.remove();

@@ -1,0 +1,180 @@
+// The tab of pouring: particles fall into a container while one looks on. The physics is the library's, in a worker.
+import { Cancelled, Engine } from './engine.js';
+import { PileView, setShapeColors, shapeColor } from '../src/pile.js';
+import { counted, element, number, whole } from '../src/text.js';
+
+const samples = ['fp-1', 'dc-1', 'sp-1'];
+const frame = 1 / 30; // s simulated between pictures, and about as long on the clock where the machine is quick enough
+const patience = 60; // ms of computing before a picture is shown all the same
+const still = 2e-8; // J a particle: at rest
+
+setShapeColors(['#4c8bc9', '#d98a3d', '#4fae7f', '#b872a8', '#a89a2e', '#8a8a94']);
+
+// A pour as the report's view of piles draws it: where the bodies are now.
+class LivePile {
+  constructor({ shapeOf, width, surfaces }, box) {
+    this.shapes = surfaces.map((mesh) => ({ mesh }));
+    this.walls = [];
+    Object.assign(this, { shapeOf, width, discRadius: 0, cylinderRadius: box ? 0 : width / 2, box: box ? [width, width] : [0, 0], entered: 0 });
+  }
+  momentAt() {
+    return null;
+  }
+  cylinderAt() {
+    return 0;
+  }
+  pose(body, _, position, quaternion) {
+    if (body >= this.entered) return false;
+    const [x, y, z, w, i, j, k] = this.poses.subarray(7 * body, 7 * body + 7);
+    position.set(x, y, z);
+    quaternion.set(i, j, k, w);
+    return true;
+  }
+  highest() {
+    return this.width;
+  }
+  frame() {
+    return { container: this.width / 2, filled: this.width, radius: this.width / 2, top: this.width };
+  }
+}
+
+export class PourTab {
+  constructor(host, scans) {
+    Object.assign(this, { host, scans, engine: null, playing: false });
+    this.build();
+  }
+
+  build() {
+    const { host } = this;
+    element('h1', 'Pour particles', host);
+    element('p', 'Non-convex polyhedra fall into a container, with contact forces, friction and damping of the library. Shapes are the scans of the first tab, decimated, or samples.', host, { class: 'soft' });
+    const row = element('div', null, host, { class: 'controls' });
+    const choose = (text, id, choices) => {
+      const select = element('select', null, element('label', text, row), { id });
+      choices.forEach(([value, shown]) => element('option', shown, select, { value }));
+      return select;
+    };
+    this.source = choose('Shapes ', 'pour-source', [['samples', 'three sample devices'], ['scans', 'my scans']]);
+    this.container = choose('Container ', 'pour-container', [['cylinder', 'cylinder'], ['box', 'box']]);
+    this.stiffness = choose('Stiffness ', 'pour-stiffness', [['0.1', 'a tenth (quick)'], ['0.01', 'a hundredth (quicker, softer)'], ['1', 'as the paper (slow)']]);
+    const sliders = element('div', null, host, { class: 'tolerances' });
+    const slide = (text, id, low, high, step, value, shown) => {
+      const label = element('label', `${text} `, sliders);
+      const output = element('output', shown(value), label);
+      const input = element('input', null, label, { type: 'range', class: 'slider', id, min: low, max: high, step, value });
+      input.addEventListener('input', () => (output.textContent = shown(Number(input.value))));
+      return input;
+    };
+    this.count = slide('Particles', 'pour-count', 10, 200, 5, 40, whole);
+    this.triangles = slide('Triangles a particle, at most', 'pour-triangles', 20, 400, 10, 100, whole);
+    this.friction = slide('Friction', 'pour-friction', 0, 1, 0.05, 0.5, String);
+    const buttons = element('div', null, host, { class: 'controls' });
+    const button = (text, id, act) => {
+      const made = element('button', text, buttons, { type: 'button', id });
+      made.addEventListener('click', act);
+      return made;
+    };
+    button('Pour', 'pour-start', () => this.begin());
+    this.pause = button('Pause', 'pour-pause', () => this.toggle());
+    button('Turn back', 'pour-home', () => this.view?.home());
+    this.pause.disabled = true;
+    this.state = element('p', null, host, { role: 'status', class: 'soft state', id: 'pour-state' });
+    const figure = element('figure', null, element('div', null, host, { class: 'pile' }), { class: 'view' });
+    this.viewHost = element('div', null, figure);
+    this.legend = element('figcaption', null, figure, { class: 'legend' });
+  }
+
+  tell(text, isError = false) {
+    this.state.textContent = text;
+    this.state.classList.toggle('error', isError);
+  }
+
+  // A PLY file of each shape, with its unit.
+  async makeShapes() {
+    const most = Number(this.triangles.value);
+    if (this.source.value === 'scans') {
+      const shapes = await this.scans.levels(most);
+      if (!shapes.length) throw new Error('There is no scan in the first tab yet: add one there, or pour the samples.');
+      return shapes;
+    }
+    const shapes = [];
+    for (const name of samples) {
+      this.tell(`Making ${name} ...`);
+      const { code, complaints, files } = await this.engine.ask({ do: 'program', wanted: ['shape.ply'],
+        words: ['simplify', `sample:${name}`, '--resolution', '2.5mm', '-n', String(most), '-u', 'm', '-o', 'shape.ply'] });
+      if (code) throw new Error(complaints.join(' '));
+      shapes.push({ name, bytes: files[0], unit: 1 });
+    }
+    return shapes;
+  }
+
+  async begin() {
+    this.playing = false;
+    this.engine?.end();
+    const engine = new Engine();
+    this.engine = engine;
+    try {
+      this.tell('Starting ...');
+      await engine.ready;
+      const shapes = await this.makeShapes();
+      const count = Number(this.count.value), box = this.container.value === 'box';
+      const shares = shapes.map((shape, i) => ({ ...shape, count: Math.floor((count + i) / shapes.length) })).filter((shape) => shape.count);
+      const made = await engine.ask({ do: 'pour', shapes: shares, box, stiffness: Number(this.stiffness.value), friction: Number(this.friction.value) });
+      this.view ??= new PileView(this.viewHost, 'The pour in 3D');
+      this.pile = new LivePile(made, box);
+      this.view.set(this.pile);
+      this.tellLegend(shares, made);
+      this.pause.disabled = false;
+      await this.play(engine, made);
+    } catch (error) {
+      if (!(error instanceof Cancelled)) this.tell(error.message, true);
+    }
+  }
+
+  tellLegend(shapes, { surfaces, step }) {
+    this.legend.replaceChildren();
+    shapes.forEach(({ name, count }, k) => {
+      const item = element('span', null, this.legend);
+      const swatch = element('canvas', null, item, { width: 12, height: 12, 'aria-hidden': 'true' });
+      const context = swatch.getContext('2d');
+      context.fillStyle = shapeColor(k);
+      context.fillRect(0, 0, 12, 12);
+      item.append(` ${count} × ${name}, ${whole(surfaces[k].triangles.length / 3)} triangles`);
+    });
+    element('span', `time step ${number(step * 1e6, 3)} µs`, this.legend);
+  }
+
+  toggle() {
+    this.playing = !this.playing;
+    this.pause.textContent = this.playing ? 'Pause' : 'Go on';
+    if (this.playing) this.resume?.();
+  }
+
+  async play(engine, { shapeOf }) {
+    let time = 0;
+    this.playing = true;
+    this.pause.textContent = 'Pause';
+    while (engine === this.engine) {
+      if (!this.playing) await new Promise((resolve) => (this.resume = resolve));
+      const begin = performance.now();
+      const now = await engine.ask({ do: 'advance', until: time + frame, ms: patience });
+      const speed = (now.time - time) / (performance.now() - begin) * 1000;
+      time = now.time;
+      this.show(now, shapeOf.length, Math.min(1, speed));
+      if (now.entered === shapeOf.length && now.energy < still) break;
+      await new Promise((resolve) => setTimeout(resolve, Math.max(0, 1000 * frame - (performance.now() - begin))));
+      await new Promise(requestAnimationFrame);
+    }
+    if (engine !== this.engine) return;
+    this.pause.disabled = true;
+    this.tell(`At rest after ${number(time, 3)} s: ${counted(shapeOf.length, 'particle')}.`);
+    document.body.dataset.poured = String(shapeOf.length);
+  }
+
+  show({ poses, entered, time, energy }, count, speed) {
+    Object.assign(this.pile, { poses, entered });
+    this.view.showTime(time);
+    this.tell(`${number(time, 3)} s simulated, ${number(100 * speed, 2)} % of real time; ${whole(entered)} of ${counted(count, 'particle')} in, ${number(energy, 2)} J of motion each.`);
+    Object.assign(document.body.dataset, { pourTime: time, pourEntered: entered });
+  }
+}
