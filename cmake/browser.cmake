@@ -1,6 +1,8 @@
-# Small where speed is not asked for.
-file(GLOB cold ${PROJECT_SOURCE_DIR}/src/report/*.c ${PROJECT_SOURCE_DIR}/src/cli/*.c ${PROJECT_SOURCE_DIR}/src/scene/*.c)
+# Small where speed is not asked for: the page has it all inside.
+file(GLOB cold src/report/*.c src/cli/*.c src/scene/*.c src/sample/*.c src/pile/*.c src/heap/*.c)
 set_source_files_properties(${cold} PROPERTIES COMPILE_OPTIONS -Os)
+target_compile_options(qhull_sources PRIVATE -Os)
+target_compile_options(yaml_sources PRIVATE -Os)
 
 # The program as WebAssembly (preset wasm). Two links of the same objects: `scree` reads and writes the system's files
 # through Node; `scree_web` has files in memory and what the page asks beside the program (web/wasm/session.c).

@@ -310,7 +310,10 @@ export class ScansTab {
     }) };
     this.result.hidden = this.output.hidden = false;
     if (this.section) this.section.tell(folder);
-    else this.section = new ChoiceSection(this.result, folder);
+    else {
+      this.section = new ChoiceSection(this.result, folder);
+      this.section.head.after(this.output);
+    }
     document.body.dataset.memory = memory;
   }
 

@@ -4,6 +4,7 @@
  * of the worker's memory. What a verb of the program does at once (check, clump) the worker leaves
  * to the program, which is in the same module. */
 #include "cli/surface.h"
+#include "report/provenance.h"
 
 #include <emscripten.h>
 #include <math.h>
