@@ -3,6 +3,7 @@
 usage: check.py PROGRAM PAGE [KEEP]
 SCREE_SCAN: a scan of one's own that must give the program's bytes too. Screenshots go to the folder KEEP, where given.
 Exits 77 where no Chromium is installed, or the page is not there or older than what it is made of."""
+import base64
 import json
 import os
 import subprocess
@@ -12,12 +13,14 @@ import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "report"))
+sys.path.insert(0, HERE)
 from browser import Browser, missing  # noqa: E402
+from tasks import Tasks  # noqa: E402
 
 ROOT = os.path.dirname(os.path.dirname(HERE))
 SIZE = 1.5e6  # bytes of the page, at most
 MEMORY = 250e6  # bytes of WebAssembly for 762,008 triangles, at most
-BLOCKED = 200  # ms that the page may take for itself at a time, in processor time: the clock hangs on what else runs
+BLOCKED = 200  # ms of processor time that the page may take for itself at a time
 
 
 def check(condition, what):
@@ -92,7 +95,6 @@ def saved(browser, button):
       };
       document.querySelector(arguments[0]).click();""", button)
     browser.wait("window.kept", 240)
-    import base64
     name, text = browser.run("return window.kept")
     return name, base64.b64decode(text)
 
@@ -101,19 +103,11 @@ def quiet(browser, what):
     """Nothing on the console, and nothing asked for but the page and what it holds."""
     said = [entry["message"] for entry in browser.log("browser") if entry["level"] == "SEVERE"]
     check(not said, f"{what}: the console says {said}")
-    longest = 0
     for line in browser.log("performance"):
         message = json.loads(line["message"])["message"]
         if message["method"] == "Network.requestWillBeSent":
             url = message["params"]["request"]["url"]
             check(url.startswith(("file:", "blob:", "data:")), f"{what}: asked for {url}")
-    return longest
-
-
-def watch(browser):
-    """From now on keeps how long the page's own tasks take."""
-    browser.run("window.tasks = []; new PerformanceObserver((list) => list.getEntries().forEach((e) => window.tasks.push(e.duration)))"
-                ".observe({ entryTypes: ['longtask'] })")
 
 
 def native_choice(file, folder, *words):
@@ -123,7 +117,6 @@ def native_choice(file, folder, *words):
 def answer_is_the_programs(browser, folder):
     scree("sample", "fp-1", "--resolution", "1mm", "-o", "fp-1.stl", folder=folder)
     scan = os.path.join(folder, "fp-1.stl")
-    ready(browser)
     drop(browser, scan)
     check("Which unit" in browser.text(".state"), "the unit is not asked for")
     time.sleep(0.3)
@@ -246,12 +239,15 @@ def own_scan(browser, scan, folder):
     """A large one: the program's bytes, within the memory."""
     os.symlink(os.path.abspath(scan), os.path.join(folder, "scan.stl"))
     ready(browser)
-    watch(browser)
     pick(browser, "#unit", "mm")
     begin = time.monotonic()
-    chosen(browser, lambda: drop(browser, os.path.join(folder, "scan.stl")), 600)
-    print(f"own scan: {time.monotonic() - begin:.1f} s to the number, {int(browser.run('return document.body.dataset.memory')) / 1e6:.0f} MB,"
-          f" longest tasks {sorted(browser.run('return window.tasks'))[-3:]} ms")
+    with Tasks(browser) as tasks:
+        chosen(browser, lambda: drop(browser, os.path.join(folder, "scan.stl")), 600)
+        taken = time.monotonic() - begin
+        browser.wait("document.body.dataset.largestDistance", 120)
+    print(f"own scan: {taken:.1f} s to the number, {int(browser.run('return document.body.dataset.memory')) / 1e6:.0f} MB, "
+          f"at most {tasks.longest():.0f} ms of the page's own at a time")
+    check(tasks.longest() <= BLOCKED, f"the page blocked for {tasks.longest():.0f} ms")
     check(saved(browser, "#save-choice")[1] == native_choice("scan.stl", folder), "the scan's choice.json is not the program's")
     check(int(browser.run("return document.body.dataset.memory")) <= MEMORY, "more memory than allowed")
 
@@ -270,8 +266,11 @@ def main():
         return 77
     check(os.path.getsize(PAGE) <= SIZE, f"the page has {os.path.getsize(PAGE)} bytes")
     with tempfile.TemporaryDirectory() as folder, Browser() as browser:
-        scan, answer = answer_is_the_programs(browser, folder)
-        another_tolerance(browser, folder, scan)
+        ready(browser)
+        with Tasks(browser) as tasks:
+            scan, answer = answer_is_the_programs(browser, folder)
+            another_tolerance(browser, folder, scan)
+        check(tasks.longest() <= BLOCKED, f"the page blocked for {tasks.longest():.0f} ms")
         level_is_taken(browser, folder, answer)
         pictures(browser)
         broken_files_say_why(browser, folder)
