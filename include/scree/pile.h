@@ -111,16 +111,17 @@ typedef struct scree_run_shape {
 } scree_run_shape;
 
 /* The particles take the shapes in equal shares, shuffled by the seed; positions and orientations
- * are random, and their bounding boxes never overlap (src/pile/fill.c). Layers follow each other so
- * that all are in after pack_time; a cylinder too narrow for the largest particle, or a layer that
- * would have to enter faster than the contact law allows, is refused here with the pack_time that
- * would do. At most 60 shapes. */
+ * are random, and their bounding boxes never overlap (src/scene/fill.c). Layers follow each other
+ * so that all are in after pack_time; a cylinder too narrow for the largest particle, or a layer
+ * that would have to enter faster than the contact law allows, is refused here with the pack_time
+ * that would do. At most 60 shapes. */
 SCREE_API scree_status scree_run_create(const scree_experiment *experiment,
                                         const scree_run_shape *shapes, size_t shape_count,
                                         scree_run **run, scree_error *error);
 SCREE_API void scree_run_free(scree_run *run);
 
-/* Advances by at most step_count time steps; stops earlier where a phase ends. SCREE_DIVERGED as
+/* Advances by at most step_count time steps; stops earlier where the run ends, which
+ * the call after its last step finds. SCREE_DIVERGED as
  * scree_world_step. The result does not depend on how a run is cut into calls. */
 SCREE_API scree_status scree_run_advance(scree_run *run, size_t step_count, scree_error *error);
 SCREE_API scree_phase scree_run_phase(const scree_run *run);

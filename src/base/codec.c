@@ -82,3 +82,25 @@ void scree_code_count(scree_codec *c, size_t *count, size_t record_bytes) {
   }
   *count = (size_t)wide;
 }
+
+void scree_code_text(scree_codec *codec, const char *text, size_t length) {
+  scree_code_count(codec, &length, 1);
+  for (size_t i = 0; i < length; i++) {
+    uint8_t byte = (uint8_t)text[i];
+    scree_code_u8(codec, &byte);
+  }
+}
+
+char *scree_decode_text(scree_codec *codec) {
+  size_t length = 0;
+  scree_code_count(codec, &length, 1);
+  if (!scree_codec_good(codec)) return NULL;
+  char *text = scree_alloc(length + 1, 1);
+  if (!text) {
+    codec->out_of_memory = true;
+    return NULL;
+  }
+  scree_code_bytes(codec, text, length);
+  text[length] = 0;
+  return text;
+}

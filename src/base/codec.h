@@ -31,6 +31,10 @@ void scree_code_vec3(scree_codec *codec, vec3 *value);
  * that no damaged count asks for memory. */
 void scree_code_count(scree_codec *codec, size_t *count, size_t record_bytes);
 
+/* A text with its length; reading one, it is to be freed, and NULL where it cannot be had. */
+void scree_code_text(scree_codec *codec, const char *text, size_t length);
+char *scree_decode_text(scree_codec *codec);
+
 static inline bool scree_codec_good(const scree_codec *codec) {
   return !codec->failed && !codec->out_of_memory;
 }

@@ -1,155 +1,39 @@
-/* Checkpoints and frames of a run. One format: a seal (base/seal.h), the experiment as its own
- * YAML, the shapes (as a packed world with one body of each: the gallery), the world, where the run
- * stands, and the series. A frame's world is made anew with the bodies alone, without what contacts
- * remember; what follows from contacts is kept as numbers. The plan of filling follows from
- * experiment and shapes, and is made again. */
+/* Checkpoints and frames of a run: those of its scene, under a seal of their own. The notes hold
+ * what the scene does not say: the experiment as its own YAML, and of each shape its density factor
+ * and its name. */
 #include "pile/run.h"
 
 #include "base/alloc.h"
-#include "base/array.h"
 #include "base/platform.h"
-#include "base/seal.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeRUN", "checkpoint or frame of a scree run", "run", 1};
-enum { POINT_BYTES = 92 };
-
-/* ---- field lists ---- */
-
-static void code_point(scree_codec *c, scree_run_point *p) {
-  uint32_t phase = (uint32_t)p->phase;
-  uint64_t bodies = p->body_count;
-  scree_code_u32(c, &phase);
-  if (phase > SCREE_PHASE_DONE) c->failed = true;
-  p->phase = (scree_phase)phase;
-  scree_code_u64(c, &bodies);
-  p->body_count = (size_t)bodies;
-  double *reals[] = {&p->time,
-                     &p->kinetic,
-                     &p->mean_rotation,
-                     &p->highest_speed,
-                     &p->largest_overlap,
-                     &p->coordination,
-                     &p->cylinder_height,
-                     &p->sector_deg,
-                     &p->cone_deg,
-                     &p->silhouette_deg,
-                     &p->height};
-  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
-}
-
-static void code_state(scree_codec *c, scree_run *run) {
-  uint32_t phase = (uint32_t)run->phase;
-  uint64_t counts[4] = {run->entered_count, run->layer_count, run->particle_steps,
-                        run->piece_count};
-  scree_code_u32(c, &phase);
-  if (phase > SCREE_PHASE_DONE) c->failed = true;
-  run->phase = (scree_phase)phase;
-  for (int i = 0; i < 4; i++) scree_code_u64(c, &counts[i]);
-  run->entered_count = (size_t)counts[0];
-  run->layer_count = (size_t)counts[1];
-  run->particle_steps = counts[2];
-  run->piece_count = (size_t)counts[3];
-  double *reals[] = {&run->phase_start,       &run->still_since, &run->wall_seconds,
-                     &run->processor_seconds, &run->frame_time,  &run->frame_coordination,
-                     &run->frame_kinetic};
-  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
-  scree_code_bool(c, &run->is_frame);
-}
+const scree_seal scree_run_seal = {"screeRUN", "checkpoint or frame of a scree run", "run", 2};
 
 /* ---- saving ---- */
-
-static void save_block(scree_codec *c, void *bytes, size_t count) {
-  size_t length = count;
-  scree_code_count(c, &length, 1);
-  scree_code_bytes(c, bytes, count);
-}
 
 static scree_status save_experiment(scree_codec *c, const scree_run *run, scree_error *error) {
   char *text = NULL;
   size_t length = 0;
   FILE *stream = scree_memory_open(&text, &length);
-  if (!stream) return scree_fail_memory(error, 0, "an experiment's text");
-  scree_experiment_print(&run->experiment, stream);
-  bool good = scree_memory_close(stream);
-  if (good) save_block(c, text, length);
+  if (stream) scree_experiment_print(&run->experiment, stream);
+  bool good = stream && scree_memory_close(stream);
+  if (good) scree_code_text(c, text, length);
   free(text);
   return good ? SCREE_OK : scree_fail_memory(error, 0, "an experiment's text");
 }
 
-/* A world with the same bodies and walls, and no contacts. */
-static scree_status strip_world(const scree_run *run, scree_world **world, scree_error *error) {
-  scree_status status = scree_run_make_world(run, scree_run_cylinder_height(run),
-                                             scree_world_time_step(run->world, NULL), world, error);
-  for (size_t i = 0; status == SCREE_OK && i < run->entered_count; i++) {
-    scree_body body;
-    size_t index;
-    scree_world_get_body(run->world, i, &body);
-    status = scree_world_add_body(*world, scree_world_body_particle(run->world, i),
-                                  scree_world_body_material(run->world, i), &body, &index, error);
-    if (status == SCREE_OK && scree_world_body_removed(run->world, i))
-      scree_world_remove_body(*world, i);
-    if (status != SCREE_OK) scree_world_free(*world);
-  }
-  if (status == SCREE_OK) (*world)->time = run->world->time; /* what is drawn of it says so */
-  return status;
-}
-
-static scree_status save_shapes(scree_codec *c, const scree_run *run, scree_error *error) {
-  size_t count = run->shape_count;
-  scree_code_count(c, &count, 24);
-  for (size_t i = 0; i < count; i++) {
-    double factor = run->shapes[i].density_factor;
-    scree_code_real(c, &factor);
-    for (size_t k = 2 * i; k < 2 * i + 2; k++) save_block(c, run->names[k], strlen(run->names[k]));
-  }
-  return scree_world_save_block(c, run->gallery, error);
-}
-
-static scree_status save_rest(scree_codec *c, const scree_run *run, bool as_frame,
-                              scree_error *error) {
-  scree_world *world = run->world;
-  scree_status status = as_frame ? strip_world(run, &world, error) : SCREE_OK;
-  if (status != SCREE_OK) return status;
-  status = scree_world_save_block(c, world, error);
-  if (as_frame) scree_world_free(world);
-  if (status != SCREE_OK) return status;
-  scree_run_point now = scree_run_point_now(run);
-  scree_run state = *run; /* a shallow copy: only its plain fields are written */
-  state.is_frame = as_frame;
-  state.frame_time = now.time;
-  state.frame_coordination = now.coordination;
-  state.frame_kinetic = now.kinetic;
-  code_state(c, &state);
-  size_t count = run->series.count;
-  scree_code_count(c, &count, POINT_BYTES);
-  for (size_t i = 0; i < count; i++) code_point(c, &run->series.items[i]);
-  return SCREE_OK;
-}
-
-static scree_status pack(const scree_run *run, bool as_frame, scree_codec *c, scree_error *error) {
-  scree_seal_begin(c);
-  scree_status status = save_experiment(c, run, error);
-  if (status == SCREE_OK) status = save_shapes(c, run, error);
-  if (status == SCREE_OK) status = save_rest(c, run, as_frame, error);
-  return status == SCREE_OK ? scree_seal_end(c, &seal, error) : status;
-}
-
-static scree_status save(const scree_run *run, bool as_frame, const char *path, bool overwrite,
-                         scree_error *error) {
+scree_status scree_run_pack_notes(const scree_run *run, unsigned char **bytes, size_t *byte_count,
+                                  scree_error *error) {
   scree_codec c = {0};
-  scree_status status = pack(run, as_frame, &c, error);
-  if (status == SCREE_OK) status = scree_seal_write(c.bytes, c.count, path, overwrite, error);
-  scree_free(c.bytes);
-  return status;
-}
-
-scree_status scree_run_pack(const void *run, unsigned char **bytes, size_t *byte_count,
-                            scree_error *error) {
-  scree_codec c = {0};
-  scree_status status = pack(run, false, &c, error);
+  scree_status status = save_experiment(&c, run, error);
+  for (size_t i = 0; i < run->shape_count; i++) {
+    scree_code_real(&c, &run->shapes[i].density_factor);
+    scree_code_text(&c, run->names[2 * i], strlen(run->names[2 * i]));
+  }
+  if (status == SCREE_OK && c.out_of_memory)
+    status = scree_fail_memory(error, c.count, "a run's notes");
   if (status != SCREE_OK) {
     scree_free(c.bytes);
     return status;
@@ -161,146 +45,105 @@ scree_status scree_run_pack(const void *run, unsigned char **bytes, size_t *byte
 
 scree_status scree_run_save(const scree_run *run, const char *path, bool overwrite,
                             scree_error *error) {
-  if (run->is_frame)
-    return scree_fail(error, SCREE_UNSUPPORTED, "%s: a frame cannot become a checkpoint", path);
-  return save(run, false, path, overwrite, error);
+  return scree_scene_save_as(run->scene, false, path, overwrite, error);
 }
 
 scree_status scree_run_save_frame(const scree_run *run, const char *path, bool overwrite,
                                   scree_error *error) {
-  return save(run, true, path, overwrite, error);
+  return scree_scene_save_as(run->scene, true, path, overwrite, error);
 }
 
 /* ---- loading ---- */
-
-enum { MOST_SHAPES = 60 };
 
 typedef struct loader {
   scree_codec codec;
   const char *name;
   scree_error *error;
   scree_experiment experiment;
-  scree_run_shape shapes[MOST_SHAPES];
-  char *names[2 * MOST_SHAPES];
-  size_t shape_count;
-  scree_world *gallery, *world;
-  scree_run *run;
+  scree_run_shape *shapes;
+  char **names;
 } loader;
 
-/* The bytes of a block, in place; NULL where they run out. */
-static const unsigned char *load_block(loader *l, size_t *count) {
-  scree_code_count(&l->codec, count, 1);
-  if (!scree_codec_good(&l->codec)) return NULL;
-  const unsigned char *bytes = l->codec.source + l->codec.position;
-  l->codec.position += *count;
-  return bytes;
-}
-
-static scree_status fail_here(const loader *l) {
-  return scree_seal_refuse(&l->codec, &seal, l->name, l->error);
+static scree_status refuse(loader *l) {
+  l->codec.failed = !l->codec.out_of_memory;
+  return scree_seal_refuse(&l->codec, &scree_run_seal, l->name, l->error);
 }
 
 static scree_status load_experiment(loader *l) {
-  size_t count;
   scree_status status = scree_experiment_preset("paper", &l->experiment, l->error);
-  const unsigned char *text = load_block(l, &count);
+  char *text = status == SCREE_OK ? scree_decode_text(&l->codec) : NULL;
   if (status != SCREE_OK) return status;
-  if (!text) return fail_here(l);
-  return scree_experiment_parse((const char *)text, count, l->name, &l->experiment, l->error);
+  if (!text) return refuse(l);
+  status = scree_experiment_parse(text, strlen(text), l->name, &l->experiment, l->error);
+  scree_free(text);
+  return status;
 }
 
-/* A block as a string; NULL where it cannot be had. */
-static char *load_text(loader *l) {
-  size_t length;
-  const unsigned char *text = load_block(l, &length);
-  char *copy = text ? scree_alloc(length + 1, 1) : NULL;
-  if (text && !copy) l->codec.out_of_memory = true;
-  if (!copy) return NULL;
-  memcpy(copy, text, length);
-  copy[length] = 0;
-  return copy;
-}
-
-static scree_status load_shapes(loader *l) {
-  scree_code_count(&l->codec, &l->shape_count, 24);
-  if (!scree_codec_good(&l->codec) || l->shape_count > MOST_SHAPES) {
-    l->shape_count = 0;
-    return fail_here(l);
-  }
-  for (size_t i = 0; i < l->shape_count; i++) {
+static scree_status load_shapes(loader *l, const scree_scene *scene) {
+  size_t count = SCREE_SCENE_SHAPES(scene);
+  l->shapes = scree_alloc_zero(count, sizeof *l->shapes);
+  l->names = scree_alloc_zero(count, sizeof *l->names);
+  if (!l->shapes || !l->names) return scree_fail_memory(l->error, 0, "a run's shapes");
+  for (size_t i = 0; i < count; i++) {
     scree_code_real(&l->codec, &l->shapes[i].density_factor);
-    l->shapes[i].name = l->names[2 * i] = load_text(l);
-    l->shapes[i].source = l->names[2 * i + 1] = load_text(l);
-    if (!l->names[2 * i] || !l->names[2 * i + 1]) return fail_here(l);
+    l->names[i] = scree_decode_text(&l->codec);
+    if (!l->names[i]) return refuse(l);
+    l->shapes[i].name = l->names[i];
+    l->shapes[i].source = scene->shapes[i].source;
+    l->shapes[i].particle = scene->shapes[i].particle;
   }
-  scree_status status = scree_world_load_block(&l->codec, l->name, &l->gallery, l->error);
+  if (l->codec.position != l->codec.count) l->codec.failed = true;
+  return scree_codec_good(&l->codec) ? SCREE_OK : refuse(l);
+}
+
+/* The scene must be the one that the experiment makes. */
+static scree_status compare(loader *l, const scree_run *run, const scree_scene *scene) {
+  scree_scene_file *file;
+  bool same;
+  scree_status status = scree_run_file(run, &file, l->error);
   if (status != SCREE_OK) return status;
-  if (scree_world_body_count(l->gallery) != l->shape_count) return fail_here(l);
-  for (size_t i = 0; i < l->shape_count; i++)
-    l->shapes[i].particle = scree_world_body_particle(l->gallery, i);
-  return SCREE_OK;
+  status = scree_scene_matches(scene, file, &same, l->error);
+  scree_scene_file_free(file);
+  return status == SCREE_OK && !same ? refuse(l) : status;
 }
 
-/* Shapes that are in the world are taken from there, so that a shape stays one particle however
- * often a run is loaded. The order follows from the seed. */
-static scree_status adopt_particles(loader *l) {
-  size_t bodies = scree_world_body_count(l->world), count = l->experiment.particle_count;
-  if (l->shape_count < 1 || bodies > count || scree_world_wall_count(l->world) != 2)
-    return fail_here(l);
-  uint32_t *order = scree_alloc(count, sizeof *order);
-  if (!order) return scree_fail_memory(l->error, count * sizeof *order, "an order");
-  scree_fill_order(l->experiment.seed, l->shape_count, order, count);
-  for (size_t i = 0; i < bodies; i++)
-    l->shapes[order[i]].particle = scree_world_body_particle(l->world, i);
-  scree_free(order);
-  return SCREE_OK;
-}
-
-static scree_status load_state(loader *l) {
-  scree_run *run = l->run;
-  size_t count = 0;
-  code_state(&l->codec, run);
-  scree_code_count(&l->codec, &count, POINT_BYTES);
-  if (scree_codec_good(&l->codec) && !SCREE_RESERVE(&run->series, count))
-    l->codec.out_of_memory = true;
-  for (size_t i = 0; scree_codec_good(&l->codec) && i < count; i++) {
-    scree_run_point *point = &run->series.items[run->series.count++];
-    *point = (scree_run_point){0};
-    code_point(&l->codec, point);
-  }
-  if (l->codec.position != l->codec.count ||
-      run->entered_count != scree_world_body_count(run->world))
-    l->codec.failed = true;
-  return scree_codec_good(&l->codec) ? SCREE_OK : fail_here(l);
-}
-
-static scree_status load(loader *l) {
+static scree_status load(loader *l, const scree_scene *scene, scree_run **run) {
   scree_status status = load_experiment(l);
-  if (status == SCREE_OK) status = load_shapes(l);
-  if (status == SCREE_OK) status = scree_world_load_block(&l->codec, l->name, &l->world, l->error);
-  if (status == SCREE_OK) status = adopt_particles(l);
+  if (status == SCREE_OK) status = load_shapes(l, scene);
   if (status == SCREE_OK)
-    status = scree_run_plan(&l->experiment, l->shapes, l->shape_count, &l->run, l->error);
-  if (status != SCREE_OK) return status;
-  l->run->world = l->world;
-  l->world = NULL;
-  return load_state(l);
+    status =
+        scree_run_describe(&l->experiment, l->shapes, SCREE_SCENE_SHAPES(scene), run, l->error);
+  return status == SCREE_OK ? compare(l, *run, scene) : status;
+}
+
+scree_status scree_run_of_scene(scree_scene *scene, const char *path, scree_run **run,
+                                scree_error *error) {
+  loader l = {.codec = {.source = scene->notes.bytes, .count = scene->notes.count, .loading = true},
+              .name = path,
+              .error = error};
+  scree_run *made = NULL;
+  scree_status status = load(&l, scene, &made);
+  for (size_t i = 0; l.names && i < SCREE_SCENE_SHAPES(scene); i++) scree_free(l.names[i]);
+  scree_free(l.names);
+  scree_free(l.shapes);
+  scree_experiment_free(&l.experiment);
+  if (status == SCREE_OK) {
+    made->scene = scene;
+    status = scree_run_follow(made, error);
+    if (status != SCREE_OK) made->scene = NULL;
+  }
+  if (status == SCREE_OK)
+    *run = made;
+  else
+    scree_run_free(made);
+  return status;
 }
 
 scree_status scree_run_load(const char *path, scree_run **run, scree_error *error) {
-  char *bytes;
-  loader l = {.error = error};
-  scree_status status = scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error);
+  scree_scene *scene;
+  scree_status status = scree_scene_load_as(&scree_run_seal, path, &scene, error);
   if (status != SCREE_OK) return status;
-  status = load(&l);
-  for (size_t i = 0; i < 2 * l.shape_count; i++) scree_free(l.names[i]);
-  scree_world_free(l.world);
-  scree_world_free(l.gallery);
-  scree_experiment_free(&l.experiment);
-  scree_free(bytes);
-  if (status == SCREE_OK)
-    *run = l.run;
-  else
-    scree_run_free(l.run);
+  status = scree_run_of_scene(scene, path, run, error);
+  if (status != SCREE_OK) scree_scene_free(scene);
   return status;
 }

@@ -19,13 +19,14 @@ enum { MOTION_FRAMES = 240 }; /* enough to be played */
 static const char checkpoint_name[] = "checkpoint.scree", stopped_name[] = "stopped.scree";
 
 typedef struct work {
+  const scree_scene_drive *drive;
   const scree_scene_job *job;
   scree_scene *scene;
   scree_motion_file motion;
   FILE *series;
   size_t rows_written, frame_count, chunk;
   double last_checkpoint, last_watch; /* on the clock */
-  double speed_since, speed, speed_at_time, time_speed;
+  double speed_since, speed, speed_at_fraction, fraction_speed;
   uint64_t speed_steps;
 } work;
 
@@ -100,7 +101,7 @@ static double next_frame(const work *w) {
 
 static scree_status put_frames(work *w, bool last, scree_error *error) {
   scree_status status = SCREE_OK;
-  bool due = now_of(w) >= next_frame(w) || (last && isfinite(next_frame(w)));
+  bool due = now_of(w) >= next_frame(w) || (last && w->drive->closing && isfinite(next_frame(w)));
   if (due && w->job->frame)
     status = w->job->frame(w->job->context, w->scene, w->frame_count, error);
   if (due) w->frame_count++;
@@ -110,18 +111,20 @@ static scree_status put_frames(work *w, bool last, scree_error *error) {
 
 static scree_status open_motion(work *w, bool go_on, scree_error *error) {
   const scree_plan *plan = &w->scene->plan;
-  double interval = plan->output->motion > 0 ? plan->output->motion : plan->time / MOTION_FRAMES;
+  double interval = plan->output->motion > 0 ? plan->output->motion
+                                             : scree_scene_duration(w->scene) / MOTION_FRAMES;
   char *path = path_in(w, "motion.scree", error);
   if (!path) return SCREE_OUT_OF_MEMORY;
   scree_status status = scree_motion_open(&w->motion, path, interval, go_on, now_of(w), error);
-  w->motion.walls = true;
+  w->motion.walls = !w->drive->cylinder_height;
   scree_free(path);
   return status;
 }
 
 static scree_status put_motion(work *w, bool last, scree_error *error) {
   if (now_of(w) < scree_motion_next(&w->motion) && !last) return SCREE_OK;
-  return scree_motion_put(&w->motion, w->scene->world, 0, error);
+  double height = w->drive->cylinder_height ? w->drive->cylinder_height(w->scene) : 0;
+  return scree_motion_put(&w->motion, w->scene->world, height, error);
 }
 
 /* As many steps as stay before the next frame of either kind, or one. */
@@ -136,22 +139,23 @@ static size_t steps_to_frame(const work *w) {
 
 static void measure_speed(work *w, double now) {
   uint64_t steps = scree_world_step_count(w->scene->world);
-  double span = now - w->speed_since;
+  double span = now - w->speed_since, fraction = scree_scene_fraction(w->scene);
   if (span < (isnan(w->speed) ? 1 : speed_seconds)) return;
   w->speed = (double)(steps - w->speed_steps) / span;
-  w->time_speed = (now_of(w) - w->speed_at_time) / span;
+  w->fraction_speed = (fraction - w->speed_at_fraction) / span;
   w->speed_since = now;
   w->speed_steps = steps;
-  w->speed_at_time = now_of(w);
+  w->speed_at_fraction = fraction;
 }
 
 static bool watch(work *w, bool always) {
-  double now = scree_now(), time = now_of(w), all = w->scene->plan.time;
+  double now = scree_now(), fraction = scree_scene_fraction(w->scene);
   if (!w->job->watch || (!always && now - w->last_watch < watch_seconds)) return true;
   w->last_watch = now;
   measure_speed(w, now);
-  scree_scene_state state = {w->scene, time, fmin(1, time / all), w->speed,
-                             w->time_speed > 0 ? (all - time) / w->time_speed : (double)NAN};
+  scree_scene_state state = {w->scene, now_of(w), fraction, w->speed,
+                             w->fraction_speed > 0 ? (1 - fraction) / w->fraction_speed
+                                                   : (double)NAN};
   return w->job->watch(w->job->context, &state);
 }
 
@@ -245,15 +249,14 @@ static scree_status compare_texts(const char *here, const char *there, const cha
   }
 }
 
-/* What may differ is taken from the file now. */
-static scree_status take_over(work *w, const char *path, scree_error *error) {
-  scree_scene *scene = w->scene;
+scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
+                                   const char *path, scree_error *error) {
   scree_plan plan;
   char *text;
-  scree_status status = scree_scene_file_text(w->job->file, &text, error);
+  scree_status status = scree_scene_file_text(file, &text, error);
   if (status != SCREE_OK) return status;
   status = compare_texts(text, scene->text, path, error);
-  if (status == SCREE_OK) status = scree_scene_file_plan(w->job->file, &scene->arena, &plan, error);
+  if (status == SCREE_OK) status = scree_scene_file_plan(file, &scene->arena, &plan, error);
   if (status == SCREE_OK && plan.output->series != scene->plan.output->series)
     status = scree_fail(error, SCREE_BAD_ARGUMENT,
                         "%s: is of another scene: output.series is %g there and %g here", path,
@@ -262,15 +265,26 @@ static scree_status take_over(work *w, const char *path, scree_error *error) {
     scree_free(text);
     return status;
   }
-  bool longer = plan.time > now_of(w);
+  bool longer = plan.time > scree_world_time(scene->world);
   scene->plan.title = plan.title;
   scene->plan.time = plan.time;
   scene->plan.stop = plan.stop;
   scene->plan.output = plan.output;
   scree_free(scene->text);
   scene->text = text;
-  if (longer && scree_scene_reopen(scene)) w->rows_written = 0;
+  if (longer) scree_scene_reopen(scene);
   return SCREE_OK;
+}
+
+static scree_status check_found(work *w, const char *path, scree_error *error) {
+  const scree_scene *scene = w->scene;
+  if (scene->is_frame)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: is a frame, not a checkpoint", path);
+  if (scene->world->diverged)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: was saved after its %s had failed, and cannot go on: %.700s", path,
+                      scene->seal->whose, scene->world->failure.message);
+  return w->drive->check(w->drive->context, w->scene, path, error);
 }
 
 /* Loads the checkpoint into w->scene, which stays NULL where there is none. */
@@ -281,17 +295,15 @@ static scree_status find_checkpoint(work *w, scree_error *error) {
   if (!scree_path_exists(path)) goto done;
   if (!w->job->resume) {
     if (!w->job->overwrite)
-      status = scree_fail(error, SCREE_EXISTS, "%s: exists already: a scene was begun here", path);
+      status = scree_fail(error, SCREE_EXISTS, "%s: exists already: a %s was begun here", path,
+                          w->drive->seal->whose);
     goto done;
   }
-  status = scree_scene_load(path, &w->scene, error);
-  if (status == SCREE_OK && w->scene->world->diverged)
-    status = scree_fail(error, SCREE_BAD_FILE,
-                        "%s: was saved after its scene had failed, and cannot go on: %.700s", path,
-                        w->scene->world->failure.message);
-  if (status == SCREE_OK && w->job->file) status = take_over(w, path, error);
-  if (status == SCREE_OK)
-    while (now_of(w) >= next_frame(w)) w->frame_count++;
+  status = scree_scene_load_as(w->drive->seal, path, &w->scene, error);
+  if (status == SCREE_OK) status = check_found(w, path, error);
+  if (status != SCREE_OK) goto done;
+  w->scene->costs.piece_count++;
+  while (now_of(w) >= next_frame(w)) w->frame_count++;
 done:
   scree_free(path);
   return status;
@@ -303,22 +315,19 @@ static scree_status prepare(work *w, scree_error *error) {
   if (job->folder) status = scree_folder_create(job->folder, error);
   if (job->folder && status == SCREE_OK) status = find_checkpoint(w, error);
   bool resumed = w->scene != NULL;
-  if (status == SCREE_OK && !resumed) {
-    if (!job->file)
-      return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no checkpoint to go on from",
-                        job->folder ? job->folder : "no folder");
-    status = scree_scene_create(job->file, job->progress, &w->scene, error);
-  }
-  if (status == SCREE_OK && job->folder) status = open_series(w, error);
-  if (status == SCREE_OK && job->folder) status = open_motion(w, resumed, error);
+  if (status == SCREE_OK && !resumed) status = w->drive->make(w->drive->context, &w->scene, error);
+  if (status == SCREE_OK && job->folder && w->drive->series) status = open_series(w, error);
+  if (status == SCREE_OK && job->folder && w->drive->motion)
+    status = open_motion(w, resumed, error);
   if (status == SCREE_OK && job->begun) status = job->begun(job->context, w->scene, resumed, error);
   return status == SCREE_OK ? keep_state(w, error) : status;
 }
 
-scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scene,
+scree_status scree_scene_drive_on(const scree_scene_drive *drive, scree_scene **scene,
                                   scree_error *error) {
   double now = scree_now();
-  work w = {.job = job,
+  work w = {.drive = drive,
+            .job = drive->job,
             .chunk = FIRST_CHUNK,
             .last_checkpoint = now,
             .last_watch = -INFINITY,
@@ -327,14 +336,47 @@ scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scen
   scree_status status = prepare(&w, error);
   if (status == SCREE_OK) {
     w.speed_steps = scree_world_step_count(w.scene->world);
-    w.speed_at_time = now_of(&w);
+    w.speed_at_fraction = scree_scene_fraction(w.scene);
     status = go_on(&w, error);
-    if (status == SCREE_CANCELLED || status == SCREE_DIVERGED) put_motion(&w, true, NULL);
   }
+  bool stopped = status == SCREE_CANCELLED || status == SCREE_DIVERGED;
+  bool stands = status == SCREE_OK || (stopped && drive->closing);
+  if (stopped && stands && w.scene) put_motion(&w, true, NULL);
   scree_motion_close(&w.motion);
-  if (w.series && fclose(w.series) != 0 && status == SCREE_OK) status = fail_series(error);
-  bool stands = status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED;
+  if (w.series && fclose(w.series) != 0 && status == SCREE_OK) {
+    status = fail_series(error);
+    stands = false;
+  }
   if (!stands) scree_scene_free(w.scene);
   *scene = stands ? w.scene : NULL;
   return status;
+}
+
+/* ---- of a scene's file ---- */
+
+static scree_status make_scene(void *context, scree_scene **scene, scree_error *error) {
+  const scree_scene_job *job = context;
+  if (job->file) return scree_scene_create(job->file, job->progress, scene, error);
+  return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: no checkpoint to go on from",
+                    job->folder ? job->folder : "no folder");
+}
+
+static scree_status check_scene(void *context, scree_scene *scene, const char *path,
+                                scree_error *error) {
+  const scree_scene_job *job = context;
+  return job->file ? scree_scene_take_over(scene, job->file, path, error) : SCREE_OK;
+}
+
+scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scene,
+                                  scree_error *error) {
+  scree_scene_job own = *job;
+  const scree_scene_drive drive = {.job = &own,
+                                   .seal = &scree_scene_seal,
+                                   .motion = true,
+                                   .series = true,
+                                   .closing = true,
+                                   .make = make_scene,
+                                   .check = check_scene,
+                                   .context = &own};
+  return scree_scene_drive_on(&drive, scene, error);
 }

@@ -92,6 +92,16 @@ scree_status scree_scene_file_text(const scree_scene_file *file, char **text, sc
   return status;
 }
 
+scree_status scree_scene_matches(const scree_scene *scene, const scree_scene_file *file, bool *same,
+                                 scree_error *error) {
+  char *text;
+  scree_status status = scree_scene_file_text(file, &text, error);
+  if (status != SCREE_OK) return status;
+  *same = !strcmp(text, scene->text);
+  scree_free(text);
+  return SCREE_OK;
+}
+
 /* The name of file `index` of the plan; NULL: there are no more. */
 static const char *input_at(const scree_plan *plan, size_t index) {
   for (size_t i = 0; i < plan->shapes.count; i++) {

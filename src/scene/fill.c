@@ -1,8 +1,9 @@
-/* Random sequential addition of oriented boxes in a cylinder. Spheres and boxes both bound a
- * particle: it is enough that either pair is apart, which places round particles by their spheres
+/* Random sequential addition of oriented boxes in a cylinder or a box. Spheres and boxes both bound
+ * a particle: it is enough that either pair is apart, which places round particles by their spheres
  * and long ones by their boxes. */
 #include "scene/fill.h"
 
+#include "base/alloc.h"
 #include "base/rng.h"
 
 /* Random numbers: one stream for the order, then one a layer. */
@@ -86,33 +87,54 @@ static double half_height(const scree_oriented_box *box) {
          fabs(box->axes.m[2][2]) * box->half.z;
 }
 
-static bool is_inside(const scree_oriented_box *box, double radius) {
+static bool is_inside(const scree_oriented_box *box, const scree_fill_layer *layer) {
+  double radius = layer->cylinder_radius;
   for (int corner = 0; corner < 8; corner++) {
     vec3 local = {corner & 1 ? box->half.x : -box->half.x, corner & 2 ? box->half.y : -box->half.y,
                   corner & 4 ? box->half.z : -box->half.z};
     vec3 p = vec3_add(box->centre, mat3_mul_vec(&box->axes, local));
-    if (p.x * p.x + p.y * p.y > radius * radius) return false;
+    p.x -= layer->centre[0], p.y -= layer->centre[1];
+    if (radius > 0 && p.x * p.x + p.y * p.y > radius * radius) return false;
+    if (radius == 0 && (fabs(p.x) > layer->half[0] || fabs(p.y) > layer->half[1])) return false;
   }
   return true;
 }
 
+/* A random place across the layer. */
+static void draw_place(const scree_fill_layer *layer, scree_rng *rng, double at[2]) {
+  double first = scree_rng_uniform(rng), second = scree_rng_uniform(rng);
+  if (layer->cylinder_radius > 0) {
+    double r = layer->cylinder_radius * sqrt(first), a = 6.283185307179586 * second;
+    at[0] = r * cos(a), at[1] = r * sin(a);
+  } else {
+    at[0] = layer->half[0] * (2 * first - 1), at[1] = layer->half[1] * (2 * second - 1);
+  }
+}
+
+/* Whether its sphere is. */
+static bool is_round_inside(const scree_fill_layer *layer, const scree_placement *p) {
+  double x = p->position.x - layer->centre[0], y = p->position.y - layer->centre[1];
+  if (layer->cylinder_radius > 0) return hypot(x, y) + p->radius <= layer->cylinder_radius;
+  return fabs(x) + p->radius <= layer->half[0] && fabs(y) + p->radius <= layer->half[1];
+}
+
 /* A random orientation, and a random place of the box's centre in the layer; false where the box
- * leaves the layer or the cylinder. */
+ * leaves the layer or its rim. */
 static bool try_place(const scree_fill_layer *layer, scree_placement *p, scree_rng *rng) {
   p->orientation = scree_rng_rotation(rng);
   p->position = (vec3){0, 0, 0};
   scree_placement_settle(p);
-  double r = layer->cylinder_radius * sqrt(scree_rng_uniform(rng));
-  double a = 6.283185307179586 * scree_rng_uniform(rng), share = scree_rng_uniform(rng);
+  double at[2];
+  draw_place(layer, rng, at);
+  double share = scree_rng_uniform(rng);
   bool by_sphere = p->half.x >= p->radius && p->half.y >= p->radius && p->half.z >= p->radius;
   double extent = by_sphere ? p->radius : half_height(&p->box);
   if (2 * extent > layer->height) return false;
-  vec3 centre = {r * cos(a), r * sin(a),
+  vec3 centre = {layer->centre[0] + at[0], layer->centre[1] + at[1],
                  layer->bottom + extent + share * (layer->height - 2 * extent)};
   p->position = vec3_sub(centre, p->box.centre);
   p->box.centre = centre;
-  if (hypot(p->position.x, p->position.y) + p->radius <= layer->cylinder_radius) return true;
-  return is_inside(&p->box, layer->cylinder_radius);
+  return is_round_inside(layer, p) || is_inside(&p->box, layer);
 }
 
 size_t scree_fill_place(const scree_fill_layer *layer, scree_placement *placements, size_t count) {
@@ -120,15 +142,39 @@ size_t scree_fill_place(const scree_fill_layer *layer, scree_placement *placemen
   for (size_t i = 0; i < count; i++) {
     bool found = false;
     for (int try = 0; try < TRIES && !found; try++)
-      found =
-          try_place(layer, &placements[i], &rng) && is_free(layer, &placements[i], placements, i);
+      found = try_place(layer, &placements[i], &rng) &&
+              is_free(layer, &placements[i], placements, i) &&
+              (!layer->is_clear || layer->is_clear(layer->context, &placements[i]));
     if (!found) return i;
   }
   return count;
 }
 
-void scree_fill_order(uint64_t seed, size_t shape_count, uint32_t *order, size_t count) {
+size_t scree_fill_next_shape(const double *shares, size_t shape_count, const size_t *dealt) {
+  double sum = 0, most = -INFINITY;
+  size_t next = 0, count = 0;
+  for (size_t k = 0; k < shape_count; k++) {
+    sum += shares ? shares[k] : 1;
+    count += dealt[k];
+  }
+  for (size_t k = 0; k < shape_count; k++) {
+    double share = (shares ? shares[k] : 1) / sum,
+           behind = share * (double)(count + 1) - (double)dealt[k];
+    if (behind > most + 1e-9) most = behind, next = k;
+  }
+  return next;
+}
+
+scree_status scree_fill_order(uint64_t seed, const double *shares, size_t shape_count,
+                              uint32_t *order, size_t count, scree_error *error) {
   scree_rng rng = {.seed = seed, .stream = ORDER_STREAM};
-  for (size_t i = 0; i < count; i++) order[i] = (uint32_t)(i % shape_count);
+  size_t *dealt = scree_alloc_zero(shape_count, sizeof *dealt);
+  if (!dealt) return scree_fail_memory(error, shape_count * sizeof *dealt, "an order");
+  for (size_t i = 0; i < count; i++) {
+    order[i] = (uint32_t)scree_fill_next_shape(shares, shape_count, dealt);
+    dealt[order[i]]++;
+  }
+  scree_free(dealt);
   scree_rng_shuffle(&rng, order, count, sizeof *order);
+  return SCREE_OK;
 }

@@ -41,10 +41,14 @@ bool scree_placement_within(const scree_placement *placement, vec3 from, vec3 ax
 
 typedef struct scree_fill_layer {
   uint64_t seed, layer_index;     /* name the layer's random numbers */
-  double cylinder_radius;         /* m, inside */
+  double cylinder_radius;         /* m, inside; 0: a box */
   double bottom, height;          /* m: all lie within */
   const scree_placement *present; /* settled bodies that must not be touched */
   size_t present_count;
+  double half[2], centre[2]; /* m: half the sides of the box; its middle, or the axis */
+  /* What else a place must be clear of; NULL: nothing. */
+  bool (*is_clear)(const void *context, const scree_placement *placement);
+  const void *context;
 } scree_fill_layer;
 
 /* Places as many of the particles as fit into the layer, in their order, by random sequential
@@ -52,8 +56,12 @@ typedef struct scree_fill_layer {
  * so many tries ends the layer. Returns how many were placed. */
 size_t scree_fill_place(const scree_fill_layer *layer, scree_placement *placements, size_t count);
 
-/* Item i of the order in which count particles take shape_count shapes in equal shares, shuffled:
- * order has room for count. */
-void scree_fill_order(uint64_t seed, size_t shape_count, uint32_t *order, size_t count);
+/* Of shapes that have these shares (NULL: equal ones) and were dealt so often: the one that is most
+ * behind. */
+size_t scree_fill_next_shape(const double *shares, size_t shape_count, const size_t *dealt);
+/* Item i of the order in which count particles take the shapes in these shares, shuffled: order has
+ * room for count. */
+scree_status scree_fill_order(uint64_t seed, const double *shares, size_t shape_count,
+                              uint32_t *order, size_t count, scree_error *error);
 
 #endif

@@ -68,19 +68,6 @@ bool scree_scene_is_filled(const scree_scene *scene) {
   return true;
 }
 
-/* Of the inlet's shapes the one that is most behind its share. */
-static size_t next_shape(const scree_scene_inlet *inlet) {
-  const scree_weights *w = &inlet->plan->shapes;
-  double shares = 0, most = -INFINITY;
-  size_t next = 0;
-  for (size_t k = 0; k < w->count; k++) shares += w->values[k];
-  for (size_t k = 0; k < w->count; k++) {
-    double behind = w->values[k] / shares * (double)(inlet->entered + 1) - (double)inlet->counts[k];
-    if (behind > most + 1e-9) most = behind, next = k;
-  }
-  return next;
-}
-
 /* ---- a place ---- */
 
 /* A place along a unit vector so that the body lies within [low, high]; false: it is too long. */
@@ -163,7 +150,9 @@ static scree_status check_shape(scree_scene *scene, size_t index, size_t shape,
 scree_status scree_scene_check_inlets(scree_scene *scene, scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++)
-    for (size_t k = 0; status == SCREE_OK && k < scene->inlets[i].plan->shapes.count; k++)
+    for (size_t k = 0; status == SCREE_OK && !scene->inlets[i].plan->layers &&
+                       k < scene->inlets[i].plan->shapes.count;
+         k++)
       status = check_shape(scene, i, scene->inlets[i].shapes[k], error);
   return status;
 }
@@ -218,15 +207,16 @@ static bool is_free(const scree_scene *scene, const scree_placement *p) {
   return scree_scene_is_clear(scene, p, &wall);
 }
 
-static scree_status enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
-                          const scree_placement *p, scree_error *error) {
+scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
+                               const scree_placement *p, const double velocity[3],
+                               scree_error *error) {
   size_t shape = inlet->shapes[which], index;
   scree_scene_shape *s = &scene->shapes[shape];
   scree_body body = scree_default_body();
   vec3_store(body.position, p->position);
   const double q[4] = {p->orientation.w, p->orientation.x, p->orientation.y, p->orientation.z};
   memcpy(body.orientation, q, sizeof q);
-  memcpy(body.velocity, inlet->plan->velocity, sizeof body.velocity);
+  memcpy(body.velocity, velocity, sizeof body.velocity);
   if (!SCREE_PUSH(&scene->present, *p) ||
       !SCREE_RESERVE(&scene->shape_of, scene->shape_of.count + 1) ||
       !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1))
@@ -251,7 +241,8 @@ static scree_status fill(scree_scene *scene, size_t index, scree_error *error) {
   double time = scree_world_time(scene->world);
   bool room = true, listed = false;
   while (room && is_due(inlet, time)) {
-    size_t which = next_shape(inlet);
+    const scree_weights *shares = &inlet->plan->shapes;
+    size_t which = scree_fill_next_shape(shares->values, shares->count, inlet->counts);
     scree_placement p;
     scree_rng rng = rng_of(scene, index);
     scree_status status = listed ? SCREE_OK : list_present(scene, inlet->plan, error);
@@ -261,7 +252,7 @@ static scree_status fill(scree_scene *scene, size_t index, scree_error *error) {
     for (int try = 0; try < TRIES && !room; try++)
       room = draw(scene, inlet, inlet->shapes[which], &rng, &p) && is_free(scene, &p);
     inlet->draws = rng.counter;
-    if (room) status = enter(scene, inlet, which, &p, error);
+    if (room) status = scree_scene_enter(scene, inlet, which, &p, inlet->plan->velocity, error);
     if (status != SCREE_OK) return status;
   }
   inlet->waiting = room ? 0 : count_waiting(scene, inlet, time);
@@ -271,6 +262,6 @@ static scree_status fill(scree_scene *scene, size_t index, scree_error *error) {
 scree_status scree_scene_fill(scree_scene *scene, scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++)
-    status = fill(scene, i, error);
+    if (!scene->inlets[i].plan->layers) status = fill(scene, i, error);
   return status;
 }

@@ -29,53 +29,91 @@ static void raise_body(const scree_scene *scene, size_t b, const scree_body *bod
   }
 }
 
-/* Mean position and how far bodies lie from it, of those above the floor. */
-static size_t find_extent(const scree_scene *scene, double floor_z, double centre[2], double *reach,
-                          double *size) {
+/* Above the floor and, where there is a disc, over it: not on its way down beside it. */
+static bool is_of_pile(const scree_scene *scene, const scree_plan_pile *plan, size_t b,
+                       scree_body *body) {
+  if (scree_world_body_removed(scene->world, b)) return false;
+  scree_world_get_body(scene->world, b, body);
+  return body->position[2] >= plan->floor &&
+         (isnan(plan->disc) || hypot(body->position[0], body->position[1]) <= plan->disc);
+}
+
+typedef struct extent {
+  double centre[2], reach, size; /* mean position; of the farthest; mean size */
+} extent;
+
+static extent find_extent(const scree_scene *scene, const scree_plan_pile *plan) {
+  extent e = {0};
   size_t count = 0;
-  centre[0] = centre[1] = *reach = *size = 0;
-  for (int pass = 0; pass < 2; pass++) {
-    for (size_t b = 0; b < scene->shape_of.count; b++) {
-      scree_body body;
-      if (scree_world_body_removed(scene->world, b)) continue;
-      scree_world_get_body(scene->world, b, &body);
-      if (body.position[2] < floor_z) continue;
-      const scree_scene_shape *s = &scene->shapes[scene->shape_of.items[b]];
-      for (int k = 0; pass == 0 && k < 2; k++) centre[k] += body.position[k];
-      if (pass == 0) *size += 2 * cbrt(s->volume / 4.18879020478639), count++;
-      double away = hypot(body.position[0] - centre[0], body.position[1] - centre[1]);
-      if (pass == 1) *reach = fmax(*reach, away + s->extent.radius);
-    }
-    for (int k = 0; pass == 0 && count && k < 2; k++) centre[k] /= (double)count;
+  scree_body body;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    if (!is_of_pile(scene, plan, b, &body)) continue;
+    for (int k = 0; k < 2; k++) e.centre[k] += body.position[k];
+    e.size += 2 * cbrt(scene->shapes[scene->shape_of.items[b]].volume / 4.18879020478639);
+    count++;
   }
-  if (count) *size /= (double)count;
-  return count;
+  if (count == 0) return e;
+  e.size /= (double)count;
+  for (int k = 0; k < 2; k++) e.centre[k] /= (double)count;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    if (!is_of_pile(scene, plan, b, &body)) continue;
+    double away = hypot(body.position[0] - e.centre[0], body.position[1] - e.centre[1]);
+    e.reach = fmax(e.reach, away + scene->shapes[scene->shape_of.items[b]].extent.radius);
+  }
+  e.reach += e.size;
+  return e;
+}
+
+/* Where the plan says how large it may be, it is the disc that the field covers. */
+static extent take_extent(const scree_scene *scene, const scree_plan_pile *plan) {
+  bool known = !isnan(plan->disc) && !isnan(plan->size);
+  extent e = known ? (extent){0} : find_extent(scene, plan);
+  if (!isnan(plan->size)) e.size = plan->size;
+  if (isnan(plan->disc)) return e;
+  e.centre[0] = e.centre[1] = 0;
+  e.reach = isnan(plan->reach) ? plan->disc + 2 * e.size : plan->reach;
+  return e;
+}
+
+scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan_pile *plan,
+                                      scree_scene_heap *heap, scree_error *error) {
+  extent e = take_extent(scene, plan);
+  scree_scene_heap made = {.body_count = 0};
+  scree_height_field field;
+  if (!(e.size > 0)) {
+    *heap = made;
+    return SCREE_OK;
+  }
+  scree_status status = scree_height_field_create(
+      e.centre[0], e.centre[1], e.reach, plan->cell > 0 ? plan->cell : 0.1 * e.size, &field, error);
+  if (status != SCREE_OK) return status;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (!is_of_pile(scene, plan, b, &body)) continue;
+    made.solid += scene->shapes[scene->shape_of.items[b]].volume;
+    made.body_count++;
+    raise_body(scene, b, &body, plan->floor, &field);
+  }
+  scree_repose_options o = scree_default_repose_options();
+  o.sector_count = plan->sectors;
+  o.band_low = plan->band_low;
+  o.band_high = plan->band_high;
+  o.particle_size = e.size;
+  status = scree_repose_measure(&field, &o, &made.repose, error);
+  scree_height_field_free(&field);
+  if (status == SCREE_OK) *heap = made;
+  return status;
 }
 
 scree_status scree_scene_measure_pile(const scree_scene *scene, const scree_plan_pile *plan,
                                       double *at, scree_error *error) {
-  double centre[2], reach, size;
-  for (int k = 0; k < 5; k++) at[k] = NAN;
-  if (find_extent(scene, plan->floor, centre, &reach, &size) == 0) return SCREE_OK;
-  double cell = plan->cell > 0 ? plan->cell : 0.1 * size;
-  scree_height_field field;
-  scree_status status =
-      scree_height_field_create(centre[0], centre[1], reach + size, cell, &field, error);
+  scree_scene_heap heap;
+  scree_status status = scree_scene_measure_heap(scene, plan, &heap, error);
   if (status != SCREE_OK) return status;
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
-    if (body.position[2] >= plan->floor) raise_body(scene, b, &body, plan->floor, &field);
-  }
-  scree_repose_options o = scree_default_repose_options();
-  scree_repose r;
-  o.particle_size = size;
-  status = scree_repose_measure(&field, &o, &r, error);
-  scree_height_field_free(&field);
-  if (status != SCREE_OK) return status;
-  const double values[5] = {r.sector_deg, r.cone_deg, r.silhouette_deg, r.height, r.base_radius};
-  memcpy(at, values, sizeof values);
+  const scree_repose *r = &heap.repose;
+  const double values[5] = {r->sector_deg, r->cone_deg, r->silhouette_deg, r->height,
+                            r->base_radius};
+  for (int k = 0; k < 5; k++) at[k] = heap.body_count ? values[k] : NAN;
   return SCREE_OK;
 }
 

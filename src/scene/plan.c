@@ -55,9 +55,13 @@ static const scree_field material_fields[] = {
     {"restitution", SCREE_FIELD_REAL, AT(restitution), 0.01, 1, "",
      "of a pair, the lower of the two, unless `pairs` says more", NULL},
     {"friction", SCREE_FIELD_REAL, AT(friction), 0, 100, "", "likewise", NULL},
+    {"rolling_friction", SCREE_FIELD_REAL, AT(rolling_friction), 0, 100, "",
+     "of spheres, likewise; 0: they roll freely", NULL},
+    {"surface_energy", SCREE_FIELD_REAL, AT(surface_energy), 0, 1e6, "J/m2",
+     "of cohesion, likewise; 0: nothing sticks", NULL},
 };
 #undef AT
-static const scree_plan_material material_defaults = {{0}, 1e8, 2000, 0.3, 0.5};
+static const scree_plan_material material_defaults = {{0}, 1e8, 2000, 0.3, 0.5, 0, 0};
 static const scree_record material_record = {"a material", FIELDS(material_fields),
                                              sizeof(scree_plan_material), &material_defaults, NULL};
 
@@ -66,6 +70,10 @@ static const scree_field pair_fields[] = {
     {"between", SCREE_FIELD_TEXTS, AT(between), 0, 0, "", "two materials, or one twice", NULL},
     {"restitution", SCREE_FIELD_REAL, AT(restitution), 0.01, 1, "", "", NULL},
     {"friction", SCREE_FIELD_REAL, AT(friction), 0, 100, "", "", NULL},
+    {"rolling_friction", SCREE_FIELD_REAL, AT(rolling_friction), 0, 100, "", "of spheres", NULL},
+    {"surface_energy", SCREE_FIELD_REAL, AT(surface_energy), 0, 1e6, "J/m2", "of cohesion", NULL},
+    {"pull_off", SCREE_FIELD_REAL, AT(pull_off), 0, 1e9, "N", "that holds any two that touch",
+     NULL},
 };
 #undef AT
 static scree_status check_pair(const scree_reader *r, const void *record) {
@@ -73,7 +81,7 @@ static scree_status check_pair(const scree_reader *r, const void *record) {
   if (p->between.count == 2) return SCREE_OK;
   return scree_fail_place(r, &p->place, "needs between: [material, material]");
 }
-static const scree_plan_pair pair_defaults = {{0}, {0}, NAN, NAN};
+static const scree_plan_pair pair_defaults = {{0}, {0}, NAN, NAN, NAN, NAN, NAN};
 static const scree_record pair_record = {"a pair", FIELDS(pair_fields), sizeof(scree_plan_pair),
                                          &pair_defaults, check_pair};
 
@@ -86,6 +94,7 @@ static const scree_field shape_fields[] = {
     {"sphere", SCREE_FIELD_REAL, AT(sphere), 1e-9, 1e3, "m", "diameter", NULL},
     {"clump", SCREE_FIELD_TEXT, AT(clump), 0, 0, "", "a table of spheres: x, y, z, radius", NULL},
     {"box", SCREE_FIELD_VECTOR, AT(box), 1e-9, 1e3, "m", "three sides", NULL},
+    {"given", SCREE_FIELD_TEXT, AT(given), 0, 0, "", "by the program that makes the scene", NULL},
     {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, UNITS, "of the file's lengths", NULL},
     {"resolution", SCREE_FIELD_REAL, AT(resolution), 0.02e-3, 5e-3, "m", "of a sample's vertices",
      NULL},
@@ -104,10 +113,10 @@ static bool is_count(const char *text) {
 
 static scree_status check_shape(const scree_reader *r, const void *record) {
   const scree_plan_shape *s = record;
-  const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere), s->clump != NULL,
-                        given(s->box)};
+  const bool there[] = {s->file != NULL,  s->sample != NULL, given(&s->sphere),
+                        s->clump != NULL, given(s->box),     s->given != NULL};
   scree_status status =
-      one_of(r, &s->place, there, 5, "file, sample, sphere (its diameter), clump, box");
+      one_of(r, &s->place, there, 6, "file, sample, sphere (its diameter), clump, box");
   if (status != SCREE_OK) return status;
   bool scan = s->file || s->sample;
   if (s->triangles && given(&s->rp))
@@ -236,6 +245,8 @@ static const scree_field rotate_fields[] = {
     {"speed", SCREE_FIELD_REAL, AT(speed), -1e4, 1e4, "rad/s", "right-handed about the axis", NULL},
     {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "", "[time in s, speed in rad/s], linear between",
      NULL},
+    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "",
+     "or [time in s, angle in rad], linear between", NULL},
 };
 #undef AT
 static scree_status check_rotate(const scree_reader *r, const void *record) {
@@ -284,12 +295,21 @@ static const scree_field motion_fields[] = {
     {"rotate", SCREE_FIELD_RECORD, AT(rotate), 0, 0, "", "", &rotate_record},
     {"vibrate", SCREE_FIELD_RECORD, AT(vibrate), 0, 0, "", "", &vibrate_record},
     WINDOW(scree_plan_motion),
+    {"during", SCREE_FIELD_TEXT, AT(during), 0, 0, "", "a phase: only while it lasts", NULL},
 };
 #undef AT
 static scree_status check_motion(const scree_reader *r, const void *record) {
   const scree_plan_motion *m = record;
   const bool there[] = {m->translate != NULL, m->rotate != NULL, m->vibrate != NULL};
   scree_status status = one_of(r, &m->place, there, 3, "translate, rotate, vibrate");
+  bool constant =
+      (m->translate && given(m->translate->velocity)) || (m->rotate && given(&m->rotate->speed));
+  if (status == SCREE_OK && m->during && !constant)
+    status = scree_fail_place(r, &m->place,
+                              "during a phase only a translate with a velocity or a rotate with a "
+                              "speed may act");
+  if (status == SCREE_OK && m->during && (m->from > 0 || given(&m->until)))
+    status = scree_fail_place(r, &m->place, "during stands instead of from and until");
   return status == SCREE_OK ? check_window(r, &m->place, m->from, m->until) : status;
 }
 static const scree_plan_motion motion_defaults = {.until = NAN};
@@ -323,6 +343,11 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
   if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
     status = scree_fail_place(r, &g->cylinder->place,
                               "at stands beside the cylinder, as of all geometry, not in it");
+  const scree_plan_motion *motions = g->motion.items;
+  for (size_t i = 0; status == SCREE_OK && g->motion.count > 1 && i < g->motion.count; i++)
+    if (motions[i].during)
+      status = scree_fail_place(r, &motions[i].place,
+                                "a motion during a phase must be the geometry's only one");
   return status;
 }
 static const scree_plan_geometry geometry_defaults = {
@@ -332,6 +357,28 @@ static const scree_record geometry_record = {"geometry", FIELDS(geometry_fields)
                                              check_geometry};
 
 /* ---- inlets and outlets ---- */
+
+#define AT(member) offsetof(scree_plan_layers, member)
+static const scree_field layers_fields[] = {
+    {"packed", SCREE_FIELD_WORD, AT(packed), 0, 0, "random|grid",
+     "as many as random places hold, or one in every cell of a square grid", NULL},
+    {"pack_time", SCREE_FIELD_REAL, AT(pack_time), 0, 1e6, "s",
+     "in which all enter; not given: each layer as the one before has made room by falling", NULL},
+    {"above", SCREE_FIELD_REAL, AT(above), 0, 1e3, "m", "the highest body, at least", NULL},
+    {"clearance", SCREE_FIELD_REAL, AT(clearance), 0, 1e3, "m",
+     "kept free around a body; not given: half a hundredth of its size", NULL},
+};
+#undef AT
+static scree_status check_layers(const scree_reader *r, const void *record) {
+  const scree_plan_layers *l = record;
+  if (!l->packed || !given(&l->pack_time)) return SCREE_OK;
+  return scree_fail_place(r, &l->place,
+                          "pack_time is of random layers; those of a grid follow "
+                          "from the velocity");
+}
+static const scree_plan_layers layers_defaults = {{0}, 0, NAN, 0, NAN};
+static const scree_record layers_record = {
+    "layers", FIELDS(layers_fields), sizeof(scree_plan_layers), &layers_defaults, check_layers};
 
 #define AT(member) offsetof(scree_plan_inlet, member)
 static const scree_field inlet_fields[] = {
@@ -346,14 +393,35 @@ static const scree_field inlet_fields[] = {
     {"velocity", SCREE_FIELD_VECTOR, AT(velocity), -1e3, 1e3, "m/s", "on entering", NULL},
     {"orientation", SCREE_FIELD_WORD, AT(orientation), 0, 0, "random|fixed",
      "fixed: axes as in the shape's file", NULL},
+    {"layers", SCREE_FIELD_RECORD, AT(layers), 0, 0, "",
+     "batches, each above all that is there; the region is what they cover and where they begin",
+     &layers_record},
 };
 #undef AT
+static scree_status check_layered(const scree_reader *r, const scree_plan_inlet *i) {
+  const scree_plan_cylinder *c = i->cylinder;
+  if (c && (!given(c->at) || c->axis[0] != 0 || c->axis[1] != 0))
+    return scree_fail_place(r, &c->place, "of layers needs at: [x, y, z] and an axis along z");
+  if (i->shapes.count == 0) return scree_fail_place(r, &i->place, "needs shapes: {name: share}");
+  if (i->count == 0 || given(&i->rate) || given(&i->mass_rate) || given(&i->until) || i->from > 0)
+    return scree_fail_place(r, &i->place,
+                            "layers need a count, and no rate, mass_rate, from or until");
+  if (i->orientation) return scree_fail_place(r, &i->place, "layers have random orientations only");
+  if (i->velocity[0] != 0 || i->velocity[1] != 0 || i->velocity[2] > 0)
+    return scree_fail_place(r, &i->place, "layers enter downwards: velocity: [0, 0, -1]");
+  if (given(&i->layers->pack_time) && i->velocity[2] != 0)
+    return scree_fail_place(r, &i->place,
+                            "pack_time sets the velocity of layers: give one of them");
+  return SCREE_OK;
+}
+
 static scree_status check_inlet(const scree_reader *r, const void *record) {
   const scree_plan_inlet *i = record;
   const bool there[] = {i->box != NULL, i->cylinder != NULL};
   const bool rates[] = {given(&i->rate), given(&i->mass_rate), i->count > 0};
   scree_status status = one_of(r, &i->place, there, 2, "box, cylinder");
   if (status != SCREE_OK) return status;
+  if (i->layers) return check_layered(r, i);
   if (i->cylinder && (!given(i->cylinder->at) || !(i->cylinder->length > 0)))
     return scree_fail_place(r, &i->cylinder->place, "needs at: [x, y, z] and a length above 0");
   if (i->shapes.count == 0) return scree_fail_place(r, &i->place, "needs shapes: {name: share}");
@@ -444,11 +512,35 @@ static const scree_field pile_fields[] = {
      NULL},
     {"cell", SCREE_FIELD_REAL, AT(cell), 0, 1e3, "m", "of the height field; 0: a tenth of the size",
      NULL},
+    {"disc", SCREE_FIELD_REAL, AT(disc), 1e-9, 1e6, "m",
+     "radius about the origin; bodies beyond are not of the pile; not given: all are", NULL},
+    {"reach", SCREE_FIELD_REAL, AT(reach), 1e-9, 1e6, "m",
+     "of the height field with a disc; not given: two sizes beyond it", NULL},
+    {"size", SCREE_FIELD_REAL, AT(size), 1e-9, 1e3, "m",
+     "of a body; not given: the mean of those there", NULL},
+    {"sectors", SCREE_FIELD_COUNT, AT(sectors), 1, 3600, "", "in azimuth", NULL},
+    {"band_low", SCREE_FIELD_REAL, AT(band_low), 0, 1, "", "of the height: the flank begins", NULL},
+    {"band_high", SCREE_FIELD_REAL, AT(band_high), 0, 1, "", "and ends", NULL},
+    {"every", SCREE_FIELD_REAL, AT(every), 0, 1e9, "s",
+     "between lines of the series that have it; 0: only the last; not given: all", NULL},
+    {"during", SCREE_FIELD_TEXTS, AT(during), 0, 0, "", "phases; not given: all", NULL},
 };
 #undef AT
-static const scree_plan_pile pile_defaults = {{0}, 0, 0};
+static scree_status check_pile(const scree_reader *r, const void *record) {
+  const scree_plan_pile *p = record;
+  if (p->band_low < p->band_high) return SCREE_OK;
+  return scree_fail_place(r, &p->place, "band_low %g must be below band_high %g", p->band_low,
+                          p->band_high);
+}
+static const scree_plan_pile pile_defaults = {.disc = NAN,
+                                              .reach = NAN,
+                                              .size = NAN,
+                                              .every = NAN,
+                                              .band_low = 0.2,
+                                              .band_high = 0.8,
+                                              .sectors = 36};
 static const scree_record pile_record = {"a pile", FIELDS(pile_fields), sizeof(scree_plan_pile),
-                                         &pile_defaults, NULL};
+                                         &pile_defaults, check_pile};
 
 static const scree_field slope_fields[] = {
     {"axis", SCREE_FIELD_VECTOR, offsetof(scree_plan_slope, axis), 0, 0, "",
@@ -486,6 +578,7 @@ static const scree_field sensor_fields[] = {
     {"region", SCREE_FIELD_RECORD, AT(region), 0, 0, "", "what is in a box", &region_record},
     {"wall", SCREE_FIELD_TEXT, AT(wall), 0, 0, "", "force, torque, power and wear of a geometry",
      NULL},
+    {"position", SCREE_FIELD_TEXT, AT(position), 0, 0, "", "where a geometry is", NULL},
     {"pile", SCREE_FIELD_RECORD, AT(pile), 0, 0, "", "angle of repose three ways", &pile_record},
     {"slope", SCREE_FIELD_RECORD, AT(slope), 0, 0, "", "angle of the surface", &slope_record},
     {"segregation", SCREE_FIELD_RECORD, AT(segregation), 0, 0, "", "Lacey's index by shape",
@@ -496,10 +589,11 @@ static const scree_field sensor_fields[] = {
 #undef AT
 static scree_status check_sensor(const scree_reader *r, const void *record) {
   const scree_plan_sensor *s = record;
-  const bool there[] = {s->flow != NULL,     s->region != NULL, s->wall != NULL,
-                        s->pile != NULL,     s->slope != NULL,  s->segregation != NULL,
-                        s->residence != NULL};
-  return one_of(r, &s->place, there, 7, "flow, region, wall, pile, slope, segregation, residence");
+  const bool there[] = {s->flow != NULL,      s->region != NULL,  s->wall != NULL,
+                        s->pile != NULL,      s->slope != NULL,   s->segregation != NULL,
+                        s->residence != NULL, s->position != NULL};
+  return one_of(r, &s->place, there, 8,
+                "flow, region, wall, position, pile, slope, segregation, residence");
 }
 static const scree_plan_sensor sensor_defaults = {.wall = NULL};
 static const scree_record sensor_record = {
@@ -536,6 +630,29 @@ static const scree_plan_stop stop_defaults = {{0}, NAN, 0, false};
 static const scree_record stop_record = {"stop", FIELDS(stop_fields), sizeof(scree_plan_stop),
                                          &stop_defaults, NULL};
 
+#define AT(member) offsetof(scree_plan_phase, member)
+static const scree_field phase_fields[] = {
+    {"time", SCREE_FIELD_REAL, AT(time), 0, 1e9, "s", "it lasts, at most", NULL},
+    {"filled", SCREE_FIELD_FLAG, AT(filled), 0, 0, "",
+     "it lasts until all have entered, however long", NULL},
+    {"still", SCREE_FIELD_REAL, AT(still), 0, 1e9, "J",
+     "it ends early when all move with less energy a body", NULL},
+    {"rest", SCREE_FIELD_REAL, AT(rest), 0, 1e9, "s", "for so long", NULL},
+    {"clear", SCREE_FIELD_TEXT, AT(clear), 0, 0, "",
+     "a geometry: it ends early only when that is above all bodies", NULL},
+};
+#undef AT
+static scree_status check_phase(const scree_reader *r, const void *record) {
+  const scree_plan_phase *p = record;
+  if (!given(&p->time)) return scree_fail_place(r, &p->place, "needs a time");
+  if (p->clear && !given(&p->still))
+    return scree_fail_place(r, &p->place, "clear says when `still` may end it: give still too");
+  return SCREE_OK;
+}
+static const scree_plan_phase phase_defaults = {{0}, NAN, NAN, 0.1, false, NULL};
+static const scree_record phase_record = {"a phase", FIELDS(phase_fields), sizeof(scree_plan_phase),
+                                          &phase_defaults, check_phase};
+
 #define AT(member) offsetof(scree_plan_output, member)
 static const scree_field output_fields[] = {
     {"frames", SCREE_FIELD_REAL, AT(frames), 0, 1e9, "s", "between files for ParaView; 0: none",
@@ -557,6 +674,9 @@ static const scree_field plan_fields[] = {
     {"time", SCREE_FIELD_REAL, AT(time), 1e-9, 1e9, "s", "simulated, at most", NULL},
     {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "of places, orientations and order", NULL},
     {"gravity", SCREE_FIELD_VECTOR, AT(gravity), -1e3, 1e3, "m/s2", "", NULL},
+    {"tick", SCREE_FIELD_COUNT, AT(tick), 1, 1e6, "",
+     "steps between looks at inlets, outlets, flows and the end; not given: by the bodies' size",
+     NULL},
     {"contact", SCREE_FIELD_RECORD, AT(contact), 0, 0, "", "", &contact_record},
     {"materials", SCREE_FIELD_NAMED, AT(materials), 0, 0, "", "", &material_record},
     {"pairs", SCREE_FIELD_LIST, AT(pairs), 0, 0, "", "", &pair_record},
@@ -567,6 +687,8 @@ static const scree_field plan_fields[] = {
     {"domain", SCREE_FIELD_RECORD, AT(domain), 0, 0, "", "what leaves it is taken out",
      &domain_record},
     {"sensors", SCREE_FIELD_NAMED, AT(sensors), 0, 0, "", "", &sensor_record},
+    {"phases", SCREE_FIELD_NAMED, AT(phases), 0, 0, "",
+     "follow each other; after the last the scene ends", &phase_record},
     {"stop", SCREE_FIELD_RECORD, AT(stop), 0, 0, "", "what ends it before its time", &stop_record},
     {"output", SCREE_FIELD_RECORD, AT(output), 0, 0, "", "", &output_record},
 };
@@ -631,6 +753,7 @@ static scree_status check_inside(const scree_reader *r, const scree_plan *plan,
     const scree_plan_cylinder *c = inlet->cylinder;
     low[k] = c ? c->at[k] : inlet->box->min[k];
     high[k] = c ? c->at[k] : inlet->box->max[k];
+    if (inlet->layers && k == 2) high[k] = low[k];
     if (low[k] < d->min[k] || high[k] > d->max[k])
       return scree_fail_place(r, &inlet->place,
                               "lies outside the domain along %c: what enters would leave at once",
@@ -646,6 +769,8 @@ static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) 
     for (size_t k = 0; status == SCREE_OK && k < inlet->shapes.count; k++)
       status = NEED(shapes, scree_plan_shape, "shape", inlet->shapes.names[k], &inlet->place);
     if (status == SCREE_OK) status = check_inside(r, plan, inlet);
+    if (status == SCREE_OK && inlet->layers && plan->gravity[2] > 0)
+      status = scree_fail_place(r, &inlet->layers->place, "layers need a gravity that points down");
   }
   return status;
 }
@@ -654,25 +779,44 @@ static scree_status check_sensors(const scree_reader *r, const scree_plan *plan)
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < plan->sensors.count; i++) {
     const scree_plan_sensor *s = SCREE_PLAN_AT(plan, sensors, scree_plan_sensor, i);
-    if (s->wall) status = NEED(geometry, scree_plan_geometry, "geometry", s->wall, &s->place);
+    const char *of = s->wall ? s->wall : s->position;
+    if (of) status = NEED(geometry, scree_plan_geometry, "geometry", of, &s->place);
+    for (size_t k = 0; status == SCREE_OK && s->pile && k < s->pile->during.count; k++)
+      status = NEED(phases, scree_plan_phase, "phase", s->pile->during.items[k], &s->pile->place);
     if (status == SCREE_OK && s->segregation && plan->shapes.count < 2)
       status = scree_fail_place(r, &s->place, "segregation needs two shapes at least");
   }
   return status;
 }
 
+static scree_status check_phases(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->phases.count; i++) {
+    const scree_plan_phase *p = SCREE_PLAN_AT(plan, phases, scree_plan_phase, i);
+    if (p->clear) status = NEED(geometry, scree_plan_geometry, "geometry", p->clear, &p->place);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < plan->geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    const scree_plan_motion *m = g->motion.items;
+    if (g->motion.count && m->during)
+      status = NEED(phases, scree_plan_phase, "phase", m->during, &m->place);
+  }
+  return status;
+}
+
 static scree_status check_plan(const scree_reader *r, const void *record) {
   const scree_plan *plan = record;
-  if (!given(&plan->time))
+  if (!given(&plan->time) && plan->phases.count == 0)
     return scree_fail_place(r, &plan->place, "needs time: how many seconds to simulate");
-  if (plan->materials.count > 60)
-    return scree_fail_place(r, &plan->place, "%zu materials: at most 60", plan->materials.count);
+  if (plan->materials.count > 64)
+    return scree_fail_place(r, &plan->place, "%zu materials: at most 64", plan->materials.count);
   if (plan->shapes.count == 0)
     return scree_fail_place(r, &plan->place, "needs shapes: {name: {file: ...}}");
   if (plan->inlets.count == 0)
     return scree_fail_place(r, &plan->place, "needs inlets: nothing would ever be in it");
   scree_status status = check_materials(r, plan);
   if (status == SCREE_OK) status = check_inlets(r, plan);
+  if (status == SCREE_OK) status = check_phases(r, plan);
   return status == SCREE_OK ? check_sensors(r, plan) : status;
 }
 

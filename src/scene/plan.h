@@ -6,19 +6,19 @@
 
 typedef struct scree_plan_material {
   scree_place place;
-  double young, density, restitution, friction;
+  double young, density, restitution, friction, rolling_friction, surface_energy;
 } scree_plan_material;
 
 typedef struct scree_plan_pair {
   scree_place place;
   scree_texts between;
-  double restitution, friction;
+  double restitution, friction, rolling_friction, surface_energy, pull_off;
 } scree_plan_pair;
 
-/* One of file, sample, sphere, clump, box. */
+/* One of file, sample, sphere, clump, box, given. */
 typedef struct scree_plan_shape {
   scree_place place;
-  const char *file, *sample, *clump, *triangles, *material;
+  const char *file, *sample, *clump, *given, *triangles, *material;
   double sphere, box[3], rp, resolution;
   int unit;
 } scree_plan_shape;
@@ -67,6 +67,7 @@ typedef struct scree_plan_motion {
   scree_plan_rotate *rotate;
   scree_plan_vibrate *vibrate;
   double from, until;
+  const char *during; /* a phase */
 } scree_plan_motion;
 
 /* One of file, box, plane, disc, cylinder. */
@@ -82,8 +83,15 @@ typedef struct scree_plan_geometry {
   scree_records motion; /* of scree_plan_motion */
 } scree_plan_geometry;
 
+typedef struct scree_plan_layers {
+  scree_place place;
+  int packed; /* 0 random, 1 grid */
+  double pack_time, above, clearance;
+} scree_plan_layers;
+
 typedef struct scree_plan_inlet {
   scree_place place;
+  scree_plan_layers *layers;
   scree_plan_box *box;
   scree_plan_cylinder *cylinder;
   scree_weights shapes;
@@ -116,7 +124,10 @@ typedef struct scree_plan_region {
 
 typedef struct scree_plan_pile {
   scree_place place;
-  double floor, cell;
+  double floor, cell, disc, reach, size, every;
+  double band_low, band_high;
+  size_t sectors;
+  scree_texts during;
 } scree_plan_pile;
 
 typedef struct scree_plan_slope {
@@ -138,7 +149,7 @@ typedef struct scree_plan_sensor {
   scree_place place;
   scree_plan_flow *flow;
   scree_plan_region *region;
-  const char *wall;
+  const char *wall, *position; /* of a geometry */
   scree_plan_pile *pile;
   scree_plan_slope *slope;
   scree_plan_segregation *segregation;
@@ -150,6 +161,13 @@ typedef struct scree_plan_stop {
   double still, after;
   bool empty;
 } scree_plan_stop;
+
+typedef struct scree_plan_phase {
+  scree_place place;
+  double time, still, rest;
+  bool filled;
+  const char *clear; /* a geometry */
+} scree_plan_phase;
 
 typedef struct scree_plan_output {
   scree_place place;
@@ -167,8 +185,9 @@ typedef struct scree_plan {
   const char *title;
   double time, gravity[3];
   uint64_t seed;
+  size_t tick;
   scree_plan_contact *contact;
-  scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors;
+  scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors, phases;
   scree_plan_domain *domain;
   scree_plan_stop *stop;
   scree_plan_output *output;

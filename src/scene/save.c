@@ -1,6 +1,8 @@
 /* Checkpoints of a scene: a seal (base/seal.h); the file, printed; the shapes' sources; the gallery
  * (a packed world with one body of each shape); the world; the books, inlets, outlets, sensors and
- * bodies; the series. What follows from the file is made again. */
+ * bodies; the series; the notes of the program that made it. What follows from the file is made
+ * again. A frame's world has its bodies and walls without what contacts remember; what follows from
+ * contacts is kept as a number. */
 #include "scene/scene.h"
 
 #include "base/alloc.h"
@@ -9,7 +11,7 @@
 
 #include <string.h>
 
-static const scree_seal seal = {"screeSCN", "checkpoint of a scree scene", "scene", 1};
+const scree_seal scree_scene_seal = {"screeSCN", "checkpoint of a scree scene", "scene", 2};
 
 /* ---- the fields, in and out alike ---- */
 
@@ -29,8 +31,20 @@ static void code_books(scree_codec *c, scree_scene *scene) {
   code_size(c, &scene->still_ticks);
   code_size(c, &scene->left_count);
   scree_code_u32(c, &end);
-  if (end > 3 || scene->tick_steps == 0) c->failed = true;
+  if (end > 4 || scene->tick_steps == 0) c->failed = true;
   scene->end = (int)end;
+}
+
+static void code_progress(scree_codec *c, scree_scene *scene) {
+  scree_scene_costs *costs = &scene->costs;
+  double *reals[] = {&scene->phase_start, &scene->still_since, &costs->wall_seconds,
+                     &costs->processor_seconds, &scene->frame_coordination};
+  for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  scree_code_u64(c, &costs->body_steps);
+  scree_code_u64(c, &costs->piece_count);
+  scree_code_bool(c, &scene->is_frame);
+  code_size(c, &scene->phase);
+  if (scene->phase > scene->plan.phases.count) c->failed = true;
 }
 
 static void code_inlets(scree_codec *c, scree_scene *scene) {
@@ -40,6 +54,8 @@ static void code_inlets(scree_codec *c, scree_scene *scene) {
     code_size(c, &inlet->waiting);
     scree_code_real(c, &inlet->mass);
     scree_code_u64(c, &inlet->draws);
+    code_size(c, &inlet->layers.count);
+    if (inlet->plan->count && inlet->entered > inlet->plan->count) c->failed = true;
     for (size_t k = 0; k < inlet->plan->shapes.count; k++) code_size(c, &inlet->counts[k]);
   }
   for (size_t i = 0; i <= scene->plan.outlets.count; i++) {
@@ -93,6 +109,7 @@ static void code_series(scree_codec *c, scree_scene *scene) {
 
 static void code_state(scree_codec *c, scree_scene *scene) {
   code_books(c, scene);
+  code_progress(c, scene);
   code_inlets(c, scene);
   for (size_t i = 0; i < scene->plan.sensors.count; i++) code_sensor(c, scene, &scene->sensors[i]);
   code_bodies(c, scene);
@@ -101,28 +118,38 @@ static void code_state(scree_codec *c, scree_scene *scene) {
 
 /* ---- saving ---- */
 
-static void save_text(scree_codec *c, char *text) {
-  size_t length = text ? strlen(text) : 0;
-  scree_code_count(c, &length, 1);
-  scree_code_bytes(c, text, length);
+/* A frame's world is the same but for its contacts. */
+static scree_status save_world(scree_codec *c, const scree_scene *scene, bool as_frame,
+                               scree_error *error) {
+  scree_world bare = *scene->world; /* its arrays are written, never changed */
+  if (as_frame) bare.neighbours.count = 0;
+  return scree_world_save_block(c, as_frame ? &bare : scene->world, error);
 }
 
-static scree_status save(scree_codec *c, const scree_scene *scene, scree_error *error) {
-  scree_scene state = *scene; /* its arrays are written, never changed */
+static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame,
+                         scree_error *error) {
+  scree_scene state = *scene; /* likewise */
+  scree_observation o;
+  scree_world_observe(scene->world, &o);
+  state.is_frame = as_frame;
+  if (!scene->is_frame) state.frame_coordination = o.coordination;
   scree_seal_begin(c);
-  save_text(c, scene->name);
-  save_text(c, scene->text);
-  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) save_text(c, scene->shapes[i].source);
+  scree_code_text(c, scene->name, strlen(scene->name));
+  scree_code_text(c, scene->text, strlen(scene->text));
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
+    scree_code_text(c, scene->shapes[i].source, strlen(scene->shapes[i].source));
   scree_status status = scree_world_save_block(c, scene->gallery, error);
-  if (status == SCREE_OK) status = scree_world_save_block(c, scene->world, error);
+  if (status == SCREE_OK) status = save_world(c, scene, as_frame, error);
   code_state(c, &state);
-  return status == SCREE_OK ? scree_seal_end(c, &seal, error) : status;
+  scree_code_count(c, &state.notes.count, 1);
+  scree_code_bytes(c, state.notes.bytes, state.notes.count);
+  return status == SCREE_OK ? scree_seal_end(c, scene->seal, error) : status;
 }
 
 scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,
                               scree_error *error) {
   scree_codec c = {0};
-  scree_status status = save(&c, scene, error);
+  scree_status status = save(&c, scene, false, error);
   if (status == SCREE_OK) {
     *bytes = c.bytes;
     *byte_count = c.count;
@@ -132,15 +159,20 @@ scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *
   return status;
 }
 
+scree_status scree_scene_save_as(const scree_scene *scene, bool as_frame, const char *path,
+                                 bool overwrite, scree_error *error) {
+  scree_codec c = {0};
+  if (scene->is_frame && !as_frame)
+    return scree_fail(error, SCREE_UNSUPPORTED, "%s: a frame cannot become a checkpoint", path);
+  scree_status status = save(&c, scene, as_frame, error);
+  if (status == SCREE_OK) status = scree_seal_write(c.bytes, c.count, path, overwrite, error);
+  scree_free(c.bytes);
+  return status;
+}
+
 scree_status scree_scene_save(const scree_scene *scene, const char *path, bool overwrite,
                               scree_error *error) {
-  unsigned char *bytes;
-  size_t count;
-  scree_status status = scree_scene_pack(scene, &bytes, &count, error);
-  if (status != SCREE_OK) return status;
-  status = scree_seal_write(bytes, count, path, overwrite, error);
-  scree_free(bytes);
-  return status;
+  return scree_scene_save_as(scene, false, path, overwrite, error);
 }
 
 /* ---- loading ---- */
@@ -153,28 +185,14 @@ typedef struct loader {
 } loader;
 
 static scree_status fail_here(const loader *l) {
-  return scree_seal_refuse(&l->codec, &seal, l->name, l->error);
-}
-
-static char *load_text(scree_codec *c) {
-  size_t length = 0;
-  scree_code_count(c, &length, 1);
-  if (!scree_codec_good(c)) return NULL;
-  char *text = scree_alloc(length + 1, 1);
-  if (!text) {
-    c->out_of_memory = true;
-    return NULL;
-  }
-  scree_code_bytes(c, text, length);
-  text[length] = 0;
-  return text;
+  return scree_seal_refuse(&l->codec, l->scene->seal, l->name, l->error);
 }
 
 static scree_status load_plan(loader *l) {
   scree_scene *scene = l->scene;
   scree_scene_file *file;
-  scene->name = load_text(&l->codec);
-  scene->text = load_text(&l->codec);
+  scene->name = scree_decode_text(&l->codec);
+  scene->text = scree_decode_text(&l->codec);
   if (!scene->name || !scene->text) return fail_here(l);
   scree_status status =
       scree_scene_file_parse(scene->text, strlen(scene->text), l->name, &file, l->error);
@@ -212,17 +230,30 @@ static void find_walls(scree_scene *scene) {
   }
 }
 
+/* The last of the file. */
+static scree_status load_notes(loader *l) {
+  size_t count = 0;
+  scree_code_count(&l->codec, &count, 1);
+  if (!scree_codec_good(&l->codec)) return fail_here(l);
+  const unsigned char *notes = l->codec.source + l->codec.position;
+  l->codec.position += count;
+  if (l->codec.position != l->codec.count) l->codec.failed = true;
+  if (!scree_codec_good(&l->codec)) return fail_here(l);
+  return scree_scene_set_notes(l->scene, notes, count, l->error);
+}
+
 static scree_status load(loader *l) {
   scree_scene *scene = l->scene;
   scree_status status = load_plan(l);
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++)
-    if (!(scene->shapes[i].source = load_text(&l->codec))) status = fail_here(l);
+    if (!(scene->shapes[i].source = scree_decode_text(&l->codec))) status = fail_here(l);
   if (status == SCREE_OK)
     status = scree_world_load_block(&l->codec, l->name, &scene->gallery, l->error);
   if (status == SCREE_OK)
     status = scree_world_load_block(&l->codec, l->name, &scene->world, l->error);
   if (status != SCREE_OK) return status;
   if (scree_world_body_count(scene->gallery) != SCREE_SCENE_SHAPES(scene)) return fail_here(l);
+  scree_world_get_options(scene->gallery, &scene->base);
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     scene->shapes[i].particle = scree_world_body_particle(scene->gallery, i);
     scree_particle_retain(scene->shapes[i].particle);
@@ -230,18 +261,20 @@ static scree_status load(loader *l) {
   }
   find_walls(scene);
   code_state(&l->codec, scene);
-  if (l->codec.position != l->codec.count) l->codec.failed = true;
-  if (!scree_codec_good(&l->codec)) return fail_here(l);
-  status = adopt_particles(l);
-  return status == SCREE_OK ? scree_scene_find_surfaces(scene, l->error) : status;
+  status = load_notes(l);
+  if (status == SCREE_OK) status = adopt_particles(l);
+  if (status == SCREE_OK) status = scree_scene_find_surfaces(scene, l->error);
+  return status == SCREE_OK ? scree_scene_plan_layers(scene, l->error) : status;
 }
 
-scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error) {
+scree_status scree_scene_load_as(const scree_seal *seal, const char *path, scree_scene **scene,
+                                 scree_error *error) {
   char *bytes;
   loader l = {.error = error};
-  scree_status status = scree_seal_read(path, &seal, &bytes, &l.codec, &l.name, error);
+  scree_status status = scree_seal_read(path, seal, &bytes, &l.codec, &l.name, error);
   if (status != SCREE_OK) return status;
   l.scene = scree_alloc_zero(1, sizeof *l.scene);
+  if (l.scene) l.scene->seal = seal;
   status = l.scene ? load(&l) : scree_fail_memory(error, sizeof *l.scene, "a scene");
   scree_free(bytes);
   if (status == SCREE_OK)
@@ -249,4 +282,8 @@ scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error
   else
     scree_scene_free(l.scene);
   return status;
+}
+
+scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error) {
+  return scree_scene_load_as(&scree_scene_seal, path, scene, error);
 }

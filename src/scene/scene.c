@@ -5,6 +5,8 @@
 
 #include "base/alloc.h"
 #include "base/array.h"
+#include "base/platform.h"
+#include "base/progress.h"
 
 #include <string.h>
 
@@ -12,13 +14,15 @@ static const double tick_share = 0.25; /* of the way a body falls in, or flies, 
 static const double clearance_share = 0.01; /* of a body's size, kept free around it on entering */
 enum { STILL_TICKS = 10 };                  /* about the time of falling by a radius */
 
-static const char *const ends[] = {NULL, "the time is over", "still", "empty"};
-enum { GOES_ON, END_TIME, END_STILL, END_EMPTY };
+static const char *const ends[] = {NULL, "the time is over", "still", "empty",
+                                   "the phases are over"};
+enum { GOES_ON, END_TIME, END_STILL, END_EMPTY, END_PHASES };
 
 /* ---- making ---- */
 
-static scree_world_options world_options(const scree_plan *plan, double time_step) {
-  scree_world_options o = scree_default_world_options();
+static scree_world_options world_options(const scree_scene *scene, double time_step) {
+  const scree_plan *plan = &scene->plan;
+  scree_world_options o = scene->base;
   memcpy(o.gravity, plan->gravity, sizeof o.gravity);
   o.law = (scree_law)plan->contact->law;
   o.steps_per_contact = plan->contact->steps;
@@ -30,6 +34,23 @@ static scree_world_options world_options(const scree_plan *plan, double time_ste
 
 static const scree_plan_material *material_at(const scree_scene *scene, size_t index) {
   return SCREE_PLAN_AT(&scene->plan, materials, scree_plan_material, index);
+}
+
+static void take_given(double *value, double given) {
+  if (!isnan(given)) *value = given;
+}
+
+static scree_status set_pair(scree_world *world, const size_t k[2], const scree_plan_pair *p,
+                             scree_error *error) {
+  scree_material_contact c;
+  scree_status status = scree_world_get_pair(world, k[0], k[1], &c, error);
+  if (status != SCREE_OK) return status;
+  take_given(&c.restitution, p->restitution);
+  take_given(&c.friction, p->friction);
+  take_given(&c.rolling_friction, p->rolling_friction);
+  take_given(&c.surface_energy, p->surface_energy);
+  take_given(&c.pull_off, p->pull_off);
+  return scree_world_set_pair(world, k[0], k[1], &c, error);
 }
 
 static scree_status add_materials(const scree_scene *scene, scree_world *world,
@@ -45,6 +66,8 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
     made.density = m->density;
     made.restitution = m->restitution;
     made.friction = m->friction;
+    made.rolling_friction = m->rolling_friction;
+    made.surface_energy = m->surface_energy;
     status = scree_world_add_material(world, &made, NULL, error);
   }
   for (size_t i = 0; status == SCREE_OK && i < plan->pairs.count; i++) {
@@ -53,18 +76,14 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
     for (int side = 0; side < 2; side++)
       k[side] =
           scree_plan_find(&plan->materials, sizeof(scree_plan_material), p->between.items[side]);
-    const scree_plan_material *a = material_at(scene, k[0]), *b = material_at(scene, k[1]);
-    status = scree_world_set_contact(
-        world, k[0], k[1],
-        isnan(p->restitution) ? fmin(a->restitution, b->restitution) : p->restitution,
-        isnan(p->friction) ? fmin(a->friction, b->friction) : p->friction, error);
+    status = set_pair(world, k, p, error);
   }
   return status;
 }
 
 static scree_status make_world(const scree_scene *scene, double time_step, scree_world **world,
                                scree_error *error) {
-  scree_world_options o = world_options(&scene->plan, time_step);
+  scree_world_options o = world_options(scene, time_step);
   scree_world *made;
   scree_status status = scree_world_create(&o, &made, error);
   if (status != SCREE_OK) return status;
@@ -96,17 +115,19 @@ static scree_status make_gallery(scree_scene *scene, const char *folder, scree_e
   return status;
 }
 
+scree_placement scree_placement_of(const scree_particle *p, double more) {
+  return (scree_placement){.radius = p->measures.bounding_radius + more,
+                           .box_centre = vec3_lerp(p->box.low, p->box.high, 0.5),
+                           .half = vec3_add(vec3_scale(vec3_sub(p->box.high, p->box.low), 0.5),
+                                            (vec3){more, more, more})};
+}
+
 void scree_scene_measure_shape(scree_scene *scene, size_t index) {
   scree_scene_shape *s = &scene->shapes[index];
   const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, index);
   scree_particle_measures m;
   scree_particle_measure(s->particle, &m);
-  double more = 0.5 * clearance_share * m.size;
-  const scree_particle *p = s->particle;
-  s->extent = (scree_placement){.radius = m.bounding_radius + more,
-                                .box_centre = vec3_lerp(p->box.low, p->box.high, 0.5),
-                                .half = vec3_add(vec3_scale(vec3_sub(p->box.high, p->box.low), 0.5),
-                                                 (vec3){more, more, more})};
+  s->extent = scree_placement_of(s->particle, 0.5 * clearance_share * m.size);
   s->as_given = (quat){m.orientation[0], m.orientation[1], m.orientation[2], m.orientation[3]};
   s->material = plan->material ? scree_plan_find(&scene->plan.materials,
                                                  sizeof(scree_plan_material), plan->material)
@@ -125,7 +146,8 @@ static void plan_ticks(scree_scene *scene) {
   speed = fmax(speed, sqrt(2 * g * radius));
   double interval = speed > 0 ? tick_share * radius / speed : scene->plan.output->series;
   interval = fmin(interval, scene->plan.output->series);
-  scene->tick_steps = (uint64_t)fmax(1, floor(interval / scene->time_step));
+  scene->tick_steps =
+      scene->plan.tick ? scene->plan.tick : (uint64_t)fmax(1, floor(interval / scene->time_step));
 }
 
 static scree_status allocate_inlets(scree_scene *scene) {
@@ -162,6 +184,8 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
     if (!*arrays[i].items) return scree_fail_memory(error, 0, "a scene");
     memset(*arrays[i].items, 0, arrays[i].count * arrays[i].size);
   }
+  scene->still_since = NAN;
+  scene->costs.piece_count = 1;
   if (allocate_inlets(scene) != SCREE_OK) return scree_fail_memory(error, 0, "inlets");
   return scree_scene_plan_columns(scene, error);
 }
@@ -177,43 +201,98 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
   return status;
 }
 
+static scree_status fail_shape(const scree_scene *scene, const scree_plan_shape *plan,
+                               const scree_error *why, scree_status status, scree_error *error) {
+  scree_reader r = {scene->name, NULL, error, ""};
+  if (status == SCREE_BAD_FILE || status == SCREE_IO || status == SCREE_BAD_MESH)
+    scree_fail_place(&r, &plan->place, "%s", why->message);
+  else if (error)
+    *error = *why;
+  return status;
+}
+
+static scree_status take_given_particle(scree_scene *scene, const scree_scene_gift *gift,
+                                        size_t index, scree_error *error) {
+  const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, index);
+  scree_scene_shape *s = &scene->shapes[index];
+  scree_reader r = {scene->name, NULL, error, ""};
+  if (!gift || !gift->particles)
+    return scree_fail_place(&r, &plan->place,
+                            "given: '%.60s' comes from a program; here a shape needs a file, "
+                            "sample, sphere, clump or box",
+                            plan->given);
+  s->particle = gift->particles[index];
+  scree_particle_retain(s->particle);
+  s->source = scree_strdup(gift->sources && gift->sources[index] ? gift->sources[index] : "");
+  return s->source ? SCREE_OK : scree_fail_memory(error, 0, "a shape's source");
+}
+
 static scree_status make_particles(scree_scene *scene, const char *folder,
-                                   const scree_progress *progress, scree_error *error) {
+                                   const scree_scene_gift *gift, const scree_progress *progress,
+                                   scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
     const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, i);
     scree_error why;
     scree_scene_shape *s = &scene->shapes[i];
+    if (plan->given) {
+      status = take_given_particle(scene, gift, i, error);
+      continue;
+    }
     status = scree_scene_make_particle(plan, folder, progress, &s->particle, &s->source, &why);
-    scree_reader r = {scene->name, NULL, error, ""};
-    if (status == SCREE_BAD_FILE || status == SCREE_IO || status == SCREE_BAD_MESH)
-      scree_fail_place(&r, &plan->place, "%s", why.message);
-    else if (status != SCREE_OK && error)
-      *error = why;
+    if (status != SCREE_OK) status = fail_shape(scene, plan, &why, status, error);
   }
   return status;
 }
 
-scree_status scree_scene_create(const scree_scene_file *file, const scree_progress *progress,
-                                scree_scene **scene, scree_error *error) {
+scree_status scree_scene_set_notes(scree_scene *scene, const unsigned char *bytes, size_t count,
+                                   scree_error *error) {
+  unsigned char *copy = scree_alloc(count, 1);
+  if (!copy) return scree_fail_memory(error, count, "a scene's notes");
+  if (count) memcpy(copy, bytes, count);
+  scree_free(scene->notes.bytes);
+  scene->notes.bytes = copy;
+  scene->notes.count = count;
+  return SCREE_OK;
+}
+
+/* Name, text and plan of the file. */
+static scree_status take_file(scree_scene *scene, const scree_scene_file *file,
+                              const scree_scene_gift *gift, scree_error *error) {
+  scene->seal = gift ? gift->seal : &scree_scene_seal;
+  scene->base = gift && gift->options ? *gift->options : scree_default_world_options();
+  scree_status status = scree_scene_file_plan(file, &scene->arena, &scene->plan, error);
+  if (status != SCREE_OK) return status;
+  scene->name = scree_strdup(file->name);
+  if (!scene->name) return scree_fail_memory(error, 0, "a scene's name");
+  status = scree_scene_file_text(file, &scene->text, error);
+  if (status == SCREE_OK && gift)
+    status = scree_scene_set_notes(scene, gift->notes, gift->note_bytes, error);
+  return status == SCREE_OK ? scree_scene_prepare(scene, error) : status;
+}
+
+scree_status scree_scene_make(const scree_scene_file *file, const scree_scene_gift *gift,
+                              const scree_progress *progress, scree_scene **scene,
+                              scree_error *error) {
   scree_scene *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a scene");
-  scree_status status = scree_scene_file_plan(file, &made->arena, &made->plan, error);
-  if (status == SCREE_OK) {
-    made->name = scree_strdup(file->name);
-    status = made->name ? scree_scene_file_text(file, &made->text, error)
-                        : scree_fail_memory(error, 0, file->name);
-  }
-  if (status == SCREE_OK) status = scree_scene_prepare(made, error);
-  if (status == SCREE_OK) status = make_particles(made, file->folder, progress, error);
+  scree_status status = take_file(made, file, gift, error);
+  if (status == SCREE_OK) status = make_particles(made, file->folder, gift, progress, error);
   if (status == SCREE_OK) status = scree_scene_set_up(made, file->folder, error);
   if (status == SCREE_OK) status = scree_scene_find_surfaces(made, error);
   if (status == SCREE_OK) status = scree_scene_check_inlets(made, error);
+  if (status == SCREE_OK) status = scree_scene_plan_layers(made, error);
+  if (status == SCREE_OK) status = scree_scene_begin_phases(made, error);
   if (status == SCREE_OK)
     *scene = made;
   else
     scree_scene_free(made);
   return status;
+}
+
+scree_status scree_scene_create(const scree_scene_file *file, const scree_progress *progress,
+                                scree_scene **scene, scree_error *error) {
+  return scree_scene_make(file, NULL, progress, scene, error);
 }
 
 scree_status scree_scene_file_column(const scree_scene_file *file, size_t index, char name[96],
@@ -248,6 +327,7 @@ void scree_scene_free(scree_scene *scene) {
   scree_free(scene->present.items);
   scree_free(scene->text);
   scree_free(scene->name);
+  scree_free(scene->notes.bytes);
   scree_arena_free(&scene->arena);
   scree_free(scene);
 }
@@ -264,11 +344,21 @@ static bool is_still(scree_scene *scene) {
   return scene->still_ticks >= STILL_TICKS;
 }
 
+static double time_limit(const scree_scene *scene) {
+  return isnan(scene->plan.time) ? INFINITY : scene->plan.time;
+}
+
+/* What ends it at any moment. */
+static int find_over(const scree_scene *scene) {
+  if (scree_world_time(scene->world) >= time_limit(scene)) return END_TIME;
+  size_t phases = scene->plan.phases.count;
+  return phases && scene->phase == phases ? END_PHASES : GOES_ON;
+}
+
+/* At ticks also: */
 static int find_end(scree_scene *scene) {
   const scree_plan_stop *stop = scene->plan.stop;
-  double time = scree_world_time(scene->world);
-  if (time >= scene->plan.time) return END_TIME;
-  if (time < stop->after) return GOES_ON;
+  if (scree_world_time(scene->world) < stop->after) return GOES_ON;
   if (stop->empty && scene->left_count == scene->shape_of.count && scree_scene_is_filled(scene))
     return END_EMPTY;
   return is_still(scene) ? END_STILL : GOES_ON;
@@ -288,39 +378,54 @@ static double next_row(const scree_scene *scene) {
   return (double)scene->row_count * scene->plan.output->series;
 }
 
-/* Steps up to the next tick, or to just before the next row of the series or the end. */
+/* Steps up to the next tick or layer, or to just before the next row of the series, the end of a
+ * phase or the end. */
 static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
   uint64_t left = scene->next_tick - scree_world_step_count(scene->world);
-  size_t steps = wanted < left ? wanted : (size_t)left;
-  double due = fmin(next_row(scene), scene->plan.time);
+  size_t steps = wanted < left ? wanted : (size_t)left, layer = scree_scene_steps_to_layer(scene);
+  if (layer < steps) steps = layer;
+  double due = fmin(next_row(scene), fmin(time_limit(scene), scree_scene_phase_end(scene)));
   double until = floor((due - scree_world_time(scene->world)) / scene->time_step) - 1;
   if (until < (double)steps) steps = until > 1 ? (size_t)until : 1;
   return steps;
 }
 
-/* What falls on this moment; done once, however calls are cut. */
-static scree_status decide(scree_scene *scene, scree_error *error) {
-  scree_status status = SCREE_OK;
-  if (scree_world_step_count(scene->world) >= scene->next_tick) {
-    status = tick(scene, error);
-    if (status == SCREE_OK) scene->end = find_end(scene);
-  } else if (scree_world_time(scene->world) >= scene->plan.time) {
-    scene->end = END_TIME;
-  }
+scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
+  bool ticks = scree_world_step_count(scene->world) >= scene->next_tick;
+  scree_status status = ticks ? tick(scene, error) : SCREE_OK;
+  if (status == SCREE_OK) status = scree_scene_turn_phase(scene, ticks, error);
+  if (status != SCREE_OK) return status;
+  scene->end = find_over(scene);
+  if (!scene->end && ticks) scene->end = find_end(scene);
+  if (!scene->end) status = scree_scene_enter_layers(scene, error);
   bool row = scree_world_time(scene->world) >= next_row(scene) || scene->end;
   return status == SCREE_OK && row ? scree_scene_record(scene, error) : status;
 }
 
-scree_status scree_scene_advance(scree_scene *scene, size_t step_count, scree_error *error) {
+static scree_status advance(scree_scene *scene, size_t step_count, scree_error *error) {
   while (step_count > 0 && !scene->end) {
-    scree_status status = decide(scene, error);
+    scree_status status = scree_scene_decide(scene, error);
     if (status != SCREE_OK || scene->end) return status;
     size_t steps = steps_to_decision(scene, step_count);
     status = scree_world_step(scene->world, steps, error);
     if (status != SCREE_OK) return status;
+    scene->costs.body_steps +=
+        steps * (scene->world->bodies.count - scene->world->bodies.removed_count);
     step_count -= steps;
   }
   return SCREE_OK;
+}
+
+scree_status scree_scene_advance(scree_scene *scene, size_t step_count, scree_error *error) {
+  if (scene->is_frame)
+    return scree_fail(error, SCREE_UNSUPPORTED,
+                      "a frame has no contacts: a %s goes on from a checkpoint only",
+                      scene->seal->whose);
+  double wall = scree_now(), processor = scree_processor_time();
+  scree_status status = advance(scene, step_count, error);
+  scene->costs.wall_seconds += scree_now() - wall;
+  scene->costs.processor_seconds += scree_processor_time() - processor;
+  return status;
 }
 
 bool scree_scene_reopen(scree_scene *scene) {
@@ -338,7 +443,8 @@ const char *scree_scene_end(const scree_scene *scene) {
   return ends[scene->end];
 }
 double scree_scene_duration(const scree_scene *scene) {
-  return scene->plan.time;
+  double phases = scene->plan.phases.count ? scree_scene_phase_times(scene) : time_limit(scene);
+  return fmin(time_limit(scene), phases);
 }
 const char *scree_scene_title(const scree_scene *scene) {
   return scene->plan.title;

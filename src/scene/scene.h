@@ -2,6 +2,7 @@
 #ifndef SCREE_SCENE_SCENE_H
 #define SCREE_SCENE_SCENE_H
 
+#include "base/seal.h"
 #include "mesh/bvh.h"
 #include "scene/fill.h"
 #include "scene/motion.h"
@@ -36,12 +37,28 @@ typedef struct scree_scene_surface {
   bool closed;
 } scree_scene_surface;
 
+/* Of an inlet by layers; all but the count of layers follows from the plan. */
+typedef struct scree_scene_layers {
+  uint32_t *order;          /* by body, in the order of entering: which of the inlet's shapes */
+  scree_placement *extents; /* of each of the inlet's shapes, clearance included */
+  size_t count;             /* that have begun */
+  size_t planned;           /* that there will be, as long as no body stands in the way */
+  double height, speed;     /* m; m/s, downwards */
+  double interval;          /* s, from one to the next; or, where not 0: */
+  uint64_t steps;
+  vec3 *cells; /* of a grid: centres, z = 0 */
+  uint32_t *cell_order;
+  size_t cell_count;
+  double pitch;
+} scree_scene_layers;
+
 typedef struct scree_scene_inlet {
   const scree_plan_inlet *plan;
   size_t *shapes, *counts; /* index of each of its shapes; how many of it entered */
   size_t entered, waiting;
   double mass;
   uint64_t draws; /* random numbers used */
+  scree_scene_layers layers;
 } scree_scene_inlet;
 
 typedef struct scree_scene_outlet {
@@ -52,7 +69,7 @@ typedef struct scree_scene_outlet {
 typedef struct scree_scene_sensor {
   const scree_plan_sensor *plan;
   size_t first_column;
-  size_t geometry;      /* of a wall */
+  size_t geometry;      /* of a wall or a position */
   double *count, *mass; /* of a flow and of residence, by shape, all shapes last */
   double *sum, *sum2;   /* of residence, s and s2, likewise */
   struct {
@@ -66,8 +83,27 @@ typedef struct scree_scene_column {
   const char *unit;
 } scree_scene_column;
 
+/* What a scene has cost so far, all its pieces between interruptions together. */
+typedef struct scree_scene_costs {
+  uint64_t body_steps;                    /* sum over the steps of the bodies in the world */
+  double wall_seconds, processor_seconds; /* of advancing it; processor: of the process */
+  uint64_t piece_count;                   /* 1, and one more for every resume */
+} scree_scene_costs;
+
+/* What a program makes a scene of, besides its text. */
+typedef struct scree_scene_gift {
+  const scree_seal *seal;             /* of its checkpoints */
+  scree_particle *const *particles;   /* of all shapes, in the text `given`; borrowed */
+  const char *const *sources;         /* where they came from; NULL: not known */
+  const scree_world_options *options; /* of the world, what no text says; NULL: the defaults */
+  const unsigned char *notes;         /* the caller's, kept with a checkpoint; copied */
+  size_t note_bytes;
+} scree_scene_gift;
+
 struct scree_scene {
   scree_arena arena;
+  const scree_seal *seal;
+  scree_world_options base; /* what the plan does not say */
   scree_plan plan;
   char *text; /* the file, printed */
   char *name;
@@ -106,14 +142,43 @@ struct scree_scene {
   size_t still_ticks;
   double entered_mass, left_mass, entered_energy, left_energy;
   size_t left_count;
-  int end; /* index into the reasons; 0: it goes on */
+  int end;            /* index into the reasons; 0: it goes on */
+  size_t phase;       /* index; their count: all are over */
+  double phase_start; /* s */
+  double still_since; /* s; NaN while moving */
+  scree_scene_costs costs;
+  struct {
+    unsigned char *bytes;
+    size_t count;
+  } notes;
+  bool is_frame;             /* loaded from a frame: no contacts, cannot go on */
+  double frame_coordination; /* of a frame, as its contacts were */
 };
+
+extern const scree_seal scree_scene_seal;
+
+/* scene.c: as scree_scene_create, with what a program gives. */
+scree_status scree_scene_make(const scree_scene_file *file, const scree_scene_gift *gift,
+                              const scree_progress *progress, scree_scene **scene,
+                              scree_error *error);
+/* What falls on this moment, such as a layer that enters; done once, however calls are cut.
+ * scree_scene_advance begins with it. */
+scree_status scree_scene_decide(scree_scene *scene, scree_error *error);
+/* Of its time or its phases, by the longest schedule. */
+double scree_scene_fraction(const scree_scene *scene);
+/* Replaces the caller's notes; they are copied. */
+scree_status scree_scene_set_notes(scree_scene *scene, const unsigned char *bytes, size_t count,
+                                   scree_error *error);
 
 /* plan.c of a file: into the arena of whoever asks. */
 scree_status scree_scene_file_plan(const scree_scene_file *file, scree_arena *arena,
                                    scree_plan *plan, scree_error *error);
 /* As printed, to be freed. */
 scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error);
+
+/* Whether the scene is one of that file. */
+scree_status scree_scene_matches(const scree_scene *scene, const scree_scene_file *file, bool *same,
+                                 scree_error *error);
 
 /* particles.c: what a shape is made from. *source is to be freed. */
 scree_status scree_scene_make_particle(const scree_plan_shape *shape, const char *folder,
@@ -138,6 +203,30 @@ scree_status scree_scene_fill(scree_scene *scene, scree_error *error);
 /* Whether nothing more will come, ever. */
 bool scree_scene_is_filled(const scree_scene *scene);
 
+/* scene.c: a particle's extents with `more` m kept free all around. */
+scree_placement scree_placement_of(const scree_particle *particle, double more);
+
+/* layers.c: plans those of an inlet, refusing what cannot be; lets in those that are due. */
+scree_status scree_scene_plan_layers(scree_scene *scene, scree_error *error);
+scree_status scree_scene_enter_layers(scree_scene *scene, scree_error *error);
+/* Steps until the next layer: 0, it is due; SIZE_MAX: there is none. Near its time it is 1, since
+ * it falls on the first step at or past it. */
+size_t scree_scene_steps_to_layer(const scree_scene *scene);
+/* inlets.c: one body more in the world; `which` of the inlet's shapes. */
+scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
+                               const scree_placement *placement, const double velocity[3],
+                               scree_error *error);
+
+/* phases.c: their motions begin with the first. Ends the one that is over; `observed`: whether now
+ * is a tick, on which it may end early. */
+scree_status scree_scene_begin_phases(scree_scene *scene, scree_error *error);
+scree_status scree_scene_turn_phase(scree_scene *scene, bool observed, scree_error *error);
+/* s: when it ends at the latest; infinity where there is none, or it waits for the inlets. */
+double scree_scene_phase_end(const scree_scene *scene);
+/* s, of all. */
+double scree_scene_phase_times(const scree_scene *scene);
+bool scree_scene_is_in_phase(const scree_scene *scene, const scree_texts *names);
+
 /* outlets.c: takes out what is in an outlet or left the domain. */
 void scree_scene_empty(scree_scene *scene);
 
@@ -147,7 +236,15 @@ scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error);
 scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error);
 void scree_scene_note_leaving(scree_scene *scene, size_t body);
 scree_status scree_scene_record(scree_scene *scene, scree_error *error);
-/* measures.c: into columns from `at` on. */
+/* measures.c: the bodies of a pile, raised and measured. */
+typedef struct scree_scene_heap {
+  scree_repose repose;
+  size_t body_count;
+  double solid; /* m3, of the bodies */
+} scree_scene_heap;
+scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan_pile *plan,
+                                      scree_scene_heap *heap, scree_error *error);
+/* Into columns from `at` on. */
 scree_status scree_scene_measure_pile(const scree_scene *scene, const scree_plan_pile *plan,
                                       double *at, scree_error *error);
 double scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan);
@@ -166,6 +263,30 @@ void scree_scene_measure_shape(scree_scene *scene, size_t index);
 /* save.c: a checkpoint, for scree_world_keep_all. */
 scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,
                               scree_error *error);
+/* Of a kind of its own. A frame has no contacts: a fraction of the size, to be looked at only. */
+scree_status scree_scene_save_as(const scree_scene *scene, bool as_frame, const char *path,
+                                 bool overwrite, scree_error *error);
+scree_status scree_scene_load_as(const scree_seal *seal, const char *path, scree_scene **scene,
+                                 scree_error *error);
+
+/* complete.c: what scree_scene_complete does, for any scene that a program makes. */
+typedef struct scree_scene_drive {
+  const scree_scene_job *job; /* but for its file */
+  const scree_seal *seal;
+  bool motion, series; /* what the folder gets besides checkpoints */
+  bool closing;        /* The end is a frame too; one that stopped is given as it stands. */
+  double (*cylinder_height)(const scree_scene *scene); /* beside the motion; NULL: the walls are */
+  scree_status (*make)(void *context, scree_scene **scene, scree_error *error);
+  /* Of a checkpoint that was found at path; also takes over what may differ. */
+  scree_status (*check)(void *context, scree_scene *scene, const char *path, scree_error *error);
+  void *context; /* of these two */
+} scree_scene_drive;
+scree_status scree_scene_drive_on(const scree_scene_drive *drive, scree_scene **scene,
+                                  scree_error *error);
+/* A checkpoint's scene goes on by this file, where it says the same but for title, time, stop and
+ * output. */
+scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
+                                   const char *path, scree_error *error);
 
 #define SCREE_SCENE_SHAPES(scene) ((scene)->plan.shapes.count)
 

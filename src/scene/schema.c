@@ -16,6 +16,7 @@ static scree_status fail_text(const scree_reader *r, size_t line, size_t column,
                               const char *format, va_list arguments) {
   char text[700], where[96];
   vsnprintf(text, sizeof text, format, arguments);
+  if (!*r->file) return scree_fail(r->error, SCREE_BAD_ARGUMENT, "%s", text); /* of a program */
   if (line)
     snprintf(where, sizeof where, ", line %zu, column %zu", line, column);
   else

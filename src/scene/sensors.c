@@ -14,12 +14,25 @@
 /* What is always there. */
 static const struct {
   const char *name, *unit;
-} base_columns[] = {
-    {"time", "s"},           {"entered", ""},       {"inside", ""},       {"left", ""},
-    {"waiting", ""},         {"mass_inside", "kg"}, {"kinetic", "J"},     {"rotational", "J"},
-    {"potential", "J"},      {"elastic", "J"},      {"dissipated", "J"},  {"wall_work", "J"},
-    {"ledger", ""},          {"contacts", ""},      {"coordination", ""}, {"largest_overlap", "m"},
-    {"highest_speed", "m/s"}};
+} base_columns[] = {{"time", "s"},
+                    {"entered", ""},
+                    {"inside", ""},
+                    {"left", ""},
+                    {"waiting", ""},
+                    {"mass_inside", "kg"},
+                    {"kinetic", "J"},
+                    {"rotational", "J"},
+                    {"potential", "J"},
+                    {"elastic", "J"},
+                    {"dissipated", "J"},
+                    {"wall_work", "J"},
+                    {"ledger", ""},
+                    {"contacts", ""},
+                    {"coordination", ""},
+                    {"largest_overlap", "m"},
+                    {"highest_speed", "m/s"},
+                    {"mean_rotation", "rad/s"},
+                    {"phase", ""}};
 enum { BASE_COLUMNS = sizeof base_columns / sizeof *base_columns };
 
 __attribute__((format(printf, 3, 4))) static bool add_column(scree_scene *scene, const char *unit,
@@ -55,6 +68,7 @@ static bool add_sensor(scree_scene *scene, const scree_plan_sensor *plan) {
   static const char *const pile[] = {"sector_deg",     "deg", "cone_deg", "deg",
                                      "silhouette_deg", "deg", "height",   "m",
                                      "base_radius",    "m",   NULL};
+  static const char *const position[] = {"x", "m", "y", "m", "z", "m", NULL};
   const char *name = plan->place.name;
   if (plan->flow)
     return add_by_shape(scene, name, "count", "", true) &&
@@ -67,6 +81,7 @@ static bool add_sensor(scree_scene *scene, const scree_plan_sensor *plan) {
            add_column(scene, "", "%s.packing", name) &&
            add_column(scene, "m/s", "%s.mean_speed", name);
   if (plan->wall) return add_all(scene, name, wall);
+  if (plan->position) return add_all(scene, name, position);
   if (plan->pile) return add_all(scene, name, pile);
   if (plan->slope) return add_column(scene, "deg", "%s.angle_deg", name);
   if (plan->segregation) return add_by_shape(scene, name, "lacey", "", false);
@@ -93,9 +108,9 @@ scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error) {
     scree_scene_sensor *sensor = &scene->sensors[i];
     sensor->plan = SCREE_PLAN_AT(&scene->plan, sensors, scree_plan_sensor, i);
     sensor->first_column = scene->columns.count;
-    if (sensor->plan->wall)
-      sensor->geometry =
-          scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), sensor->plan->wall);
+    const char *of = sensor->plan->wall ? sensor->plan->wall : sensor->plan->position;
+    if (of)
+      sensor->geometry = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), of);
     good = add_sensor(scene, sensor->plan) && allocate_sums(scene, sensor);
   }
   return good ? SCREE_OK : scree_fail_memory(error, 0, "sensors");
@@ -235,6 +250,22 @@ static void read_wall(const scree_scene *scene, size_t geometry, double *at) {
   }
 }
 
+static void read_position(const scree_scene *scene, size_t geometry, double *at) {
+  scree_wall wall;
+  scree_world_get_wall(scene->world, scene->geometry[geometry].first_wall, &wall);
+  memcpy(at, wall.position, sizeof wall.position);
+}
+
+/* Whether the next row of the series has the pile: once in every interval of the clock. */
+static bool pile_is_due(const scree_scene *scene, const scree_plan_pile *plan) {
+  double time = scree_world_time(scene->world), every = plan->every, before = -every;
+  if (scene->end) return true;
+  if (!scree_scene_is_in_phase(scene, &plan->during) || every == 0) return false;
+  if (isnan(every)) return true;
+  if (scene->row_count) before = scene->series.items[(scene->row_count - 1) * scene->columns.count];
+  return floor(time / every) > floor(before / every);
+}
+
 static void read_residence(const scree_scene *scene, const scree_scene_sensor *sensor, double *at) {
   size_t shapes = SCREE_SCENE_SHAPES(scene);
   put_by_shape(scene, sensor->count, 1, &at);
@@ -248,7 +279,7 @@ static void read_residence(const scree_scene *scene, const scree_scene_sensor *s
 }
 
 static scree_status read_sensor(const scree_scene *scene, const scree_scene_sensor *sensor,
-                                double *values, scree_error *error) {
+                                bool all, double *values, scree_error *error) {
   const scree_plan_sensor *plan = sensor->plan;
   double *at = values + sensor->first_column;
   scree_status status = SCREE_OK;
@@ -258,6 +289,10 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
     read_region(scene, plan->region->box, sensor->count, sensor->mass, at);
   else if (plan->wall)
     read_wall(scene, sensor->geometry, at);
+  else if (plan->position)
+    read_position(scene, sensor->geometry, at);
+  else if (plan->pile && !all && !pile_is_due(scene, plan->pile))
+    for (int k = 0; k < 5; k++) at[k] = NAN;
   else if (plan->pile)
     status = scree_scene_measure_pile(scene, plan->pile, at, error);
   else if (plan->slope)
@@ -269,7 +304,9 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
   return status;
 }
 
-scree_status scree_scene_measure(const scree_scene *scene, double *values, scree_error *error) {
+/* all: also what the series has at some of its rows only. */
+static scree_status measure(const scree_scene *scene, bool all, double *values,
+                            scree_error *error) {
   scree_observation o;
   scree_scene_book b;
   scree_world_observe(scene->world, &o);
@@ -290,19 +327,25 @@ scree_status scree_scene_measure(const scree_scene *scene, double *values, scree
                                      (double)o.contact_count,
                                      o.coordination,
                                      o.largest_overlap,
-                                     o.highest_speed};
+                                     o.highest_speed,
+                                     o.mean_rotation,
+                                     (double)scene->phase};
   memcpy(values, base, sizeof base);
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++)
-    status = read_sensor(scene, &scene->sensors[i], values, error);
+    status = read_sensor(scene, &scene->sensors[i], all, values, error);
   return status;
+}
+
+scree_status scree_scene_measure(const scree_scene *scene, double *values, scree_error *error) {
+  return measure(scene, true, values, error);
 }
 
 scree_status scree_scene_record(scree_scene *scene, scree_error *error) {
   size_t columns = scene->columns.count, used = scene->row_count * columns;
   if (!SCREE_RESERVE(&scene->series, used + columns))
     return scree_fail_memory(error, (used + columns) * sizeof(double), "the series of a scene");
-  scree_status status = scree_scene_measure(scene, scene->series.items + used, error);
+  scree_status status = measure(scene, false, scene->series.items + used, error);
   if (status == SCREE_OK) scene->row_count++;
   return status;
 }

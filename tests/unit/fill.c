@@ -155,8 +155,13 @@ static void fillings_never_overlap(void **state) {
       present[i].orientation = scree_rng_rotation(&rng);
       scree_placement_settle(&present[i]);
     }
-    scree_fill_layer layer = {seed, seed % 7, 0.2,          between(&rng, 0, 0.1),
-                              0.3,  present,  present_count};
+    scree_fill_layer layer = {.seed = seed,
+                              .layer_index = seed % 7,
+                              .cylinder_radius = 0.2,
+                              .bottom = between(&rng, 0, 0.1),
+                              .height = 0.3,
+                              .present = present,
+                              .present_count = present_count};
     size_t placed = scree_fill_place(&layer, placements, count);
     check_layer(&layer, placements, placed);
     placed_in_all += placed;
@@ -173,7 +178,7 @@ static void long_particles_fill_a_layer(void **state) {
   scree_placement p[100];
   for (int i = 0; i < 100; i++)
     p[i] = (scree_placement){.radius = 0.0978, .half = {0.094, 0.025, 0.01}};
-  scree_fill_layer layer = {1, 0, 0.2, 0, 0.3, NULL, 0};
+  scree_fill_layer layer = {.seed = 1, .cylinder_radius = 0.2, .height = 0.3};
   assert_true(scree_fill_place(&layer, p, 100) >= 20);
 }
 
@@ -181,7 +186,7 @@ static void particles_too_large_are_not_placed(void **state) {
   (void)state;
   scree_placement p[2] = {{.radius = 0.05, .half = {0.05, 0.05, 0.05}},
                           {.radius = 0.11, .half = {0.11, 0.11, 0.11}}};
-  scree_fill_layer layer = {1, 0, 0.1, 0, 1, NULL, 0};
+  scree_fill_layer layer = {.seed = 1, .cylinder_radius = 0.1, .height = 1};
   assert_int_equal(scree_fill_place(&layer, p, 2), 1);
 }
 
@@ -189,8 +194,9 @@ static void shapes_come_in_equal_shares_and_shuffled(void **state) {
   (void)state;
   uint32_t order[1197], other[1197];
   size_t shares[9] = {0}, in_place = 0;
-  scree_fill_order(3, 9, order, 1197);
-  scree_fill_order(4, 9, other, 1197);
+  scree_error error;
+  CHECK_OK(scree_fill_order(3, NULL, 9, order, 1197, &error), error);
+  CHECK_OK(scree_fill_order(4, NULL, 9, other, 1197, &error), error);
   for (size_t i = 0; i < 1197; i++) {
     shares[order[i]]++;
     in_place += order[i] == i % 9;

@@ -135,7 +135,9 @@ static void every_frame_is_the_run_at_its_time(void **state) {
     there = check_frame(run, &m, f);
     most = there > most ? there : most;
   }
+  CHECK_OK(scree_run_advance(run, 1, &error), error); /* finds that it is over */
   assert_int_equal(scree_run_phase(run), SCREE_PHASE_DONE);
+  assert_true(scree_world_time(scree_run_view(run)) == m.time[m.frame_count - 1]);
   assert_true(most == 12 && there < most); /* some fell off */
   scree_motion_free(&m);
   scree_run_free(run);

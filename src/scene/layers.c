@@ -1,0 +1,397 @@
+/* Inlets by layers. A layer of random places is a slab one and a half times as thick as the longest
+ * body, filled by random sequential addition (fill.h); one of a grid has a body in every cell of a
+ * square grid whose pitch is the largest bounding sphere. A layer enters above all that is there,
+ * as soon as the one before has moved out of the way:
+ *   spacing p = v t + g t^2 / 2,  p a layer's height, v the velocity of entering;
+ * or, where all must be in after a given time, at equal intervals with the velocity that makes room
+ * in each. When a layer enters follows from its number alone, so a scene can be cut anyhow. */
+#include "scene/scene.h"
+
+#include "base/alloc.h"
+#include "base/array.h"
+#include "base/rng.h"
+
+#include <stdarg.h>
+
+static const double layer_thickness = 1.5;   /* of the longest body */
+static const double layer_spacing = 1.05;    /* of a layer's height, travelled before the next */
+static const double fastest = 8;             /* m/s: faster hits leave the contact law's range */
+static const double cell_share = 1.02;       /* of the largest body's diameter: a grid's pitch */
+static const double clearance_share = 0.005; /* of a body's size, on each side */
+enum { GRID_STREAM = 16 };
+
+/* ---- what it covers ---- */
+
+typedef struct region {
+  vec3 middle; /* of the bottom */
+  double radius, half_x, half_y;
+} region;
+
+static region region_of(const scree_plan_inlet *plan) {
+  const scree_plan_cylinder *c = plan->cylinder;
+  const scree_plan_box *b = plan->box;
+  if (c) return (region){vec3_load(c->at), c->radius, 0, 0};
+  return (region){{0.5 * (b->min[0] + b->max[0]), 0.5 * (b->min[1] + b->max[1]), b->min[2]},
+                  0,
+                  0.5 * (b->max[0] - b->min[0]),
+                  0.5 * (b->max[1] - b->min[1])};
+}
+
+static double box_length(const scree_placement *p) {
+  return 2 * fmin(p->radius, vec3_norm(p->half));
+}
+
+static uint64_t seed_of(const scree_scene *scene, const scree_scene_inlet *inlet) {
+  return scene->plan.seed + (uint64_t)(inlet - scene->inlets);
+}
+
+/* ---- planning ---- */
+
+SCREE_PRINTF(4, 5)
+static scree_status fail_inlet(const scree_scene *scene, const scree_scene_inlet *inlet,
+                               scree_error *error, const char *format, ...) {
+  scree_reader r = {scene->name, NULL, error, ""};
+  char text[400];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return scree_fail_place(&r, &inlet->plan->place, "%s", text);
+}
+
+static scree_status allocate(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
+  scree_scene_layers *l = &inlet->layers;
+  size_t shapes = SCREE_SCENE_SHAPES(scene), count = inlet->plan->count;
+  l->order = scree_arena_take(&scene->arena, count, sizeof *l->order);
+  l->extents = scree_arena_take(&scene->arena, shapes, sizeof *l->extents);
+  if (!l->order || !l->extents) return scree_fail_memory(error, count * sizeof *l->order, "layers");
+  scree_status status = scree_fill_order(seed_of(scene, inlet), inlet->plan->shapes.values,
+                                         inlet->plan->shapes.count, l->order, count, error);
+  if (status != SCREE_OK) return status;
+  for (size_t i = 0; i < shapes; i++) {
+    double given = inlet->plan->layers->clearance;
+    scree_particle_measures m;
+    scree_particle_measure(scene->shapes[i].particle, &m);
+    l->extents[i] = scree_placement_of(scene->shapes[i].particle,
+                                       isnan(given) ? clearance_share * m.size : given);
+  }
+  return SCREE_OK;
+}
+
+static scree_fill_layer layer_at(const scree_scene *scene, const scree_scene_inlet *inlet,
+                                 double bottom) {
+  region r = region_of(inlet->plan);
+  return (scree_fill_layer){.seed = seed_of(scene, inlet),
+                            .layer_index = inlet->layers.count,
+                            .cylinder_radius = r.radius,
+                            .bottom = bottom,
+                            .height = inlet->layers.height,
+                            .half = {r.half_x, r.half_y},
+                            .centre = {r.middle.x, r.middle.y}};
+}
+
+/* The extents of all bodies but those that have entered, in their order; to be freed. */
+static scree_placement *list_waiting(const scree_scene_inlet *inlet, size_t entered, size_t *count,
+                                     scree_error *error) {
+  *count = inlet->plan->count - entered;
+  scree_placement *waiting = scree_alloc(*count, sizeof *waiting);
+  if (!waiting) {
+    scree_fail_memory(error, *count * sizeof *waiting, "a layer");
+    return NULL;
+  }
+  for (size_t i = 0; i < *count; i++)
+    waiting[i] = inlet->layers.extents[inlet->shapes[inlet->layers.order[entered + i]]];
+  return waiting;
+}
+
+static bool is_clear(const void *scene, const scree_placement *placement) {
+  size_t wall;
+  return scree_scene_is_clear(scene, placement, &wall);
+}
+
+/* Places all layer by layer without moving it: how many there will be, exactly as long as no body
+ * stands in the way. The first is placed among the walls, too. */
+static scree_status count_layers(const scree_scene *scene, scree_scene_inlet *inlet,
+                                 scree_error *error) {
+  region r = region_of(inlet->plan);
+  size_t count, placed = 0, layers = 0;
+  scree_placement *waiting = list_waiting(inlet, 0, &count, error);
+  if (!waiting) return SCREE_OUT_OF_MEMORY;
+  scree_status status = SCREE_OK;
+  for (; status == SCREE_OK && placed < count; layers++) {
+    scree_fill_layer layer = layer_at(scene, inlet, 0);
+    layer.layer_index = layers;
+    size_t more = scree_fill_place(&layer, waiting + placed, count - placed);
+    if (more == 0)
+      status = fail_inlet(scene, inlet, error,
+                          "a particle %.4g mm across does not fit into the %s of %.4g mm",
+                          1e3 * box_length(&waiting[placed]), r.radius > 0 ? "cylinder" : "box",
+                          2e3 * (r.radius > 0 ? r.radius : fmin(r.half_x, r.half_y)));
+    placed += more;
+  }
+  if (status == SCREE_OK && inlet->layers.count == 0) {
+    scree_fill_layer layer = layer_at(scene, inlet, r.middle.z);
+    layer.is_clear = is_clear, layer.context = scene;
+    if (scree_fill_place(&layer, waiting, 1) == 0)
+      status = fail_inlet(scene, inlet, error,
+                          "nowhere at %.4g m, where its layers begin, is there room for a "
+                          "particle %.4g mm across clear of the walls",
+                          r.middle.z, 1e3 * box_length(&waiting[0]));
+  }
+  scree_free(waiting);
+  inlet->layers.planned = layers;
+  return status;
+}
+
+/* s in which a body moves by the way. */
+static double falling_time(const scree_scene *scene, double speed, double way) {
+  double g = -scene->plan.gravity[2];
+  return g > 0 ? (sqrt(speed * speed + 2 * g * way) - speed) / g : way / speed;
+}
+
+static scree_status plan_random(const scree_scene *scene, scree_scene_inlet *inlet,
+                                scree_error *error) {
+  scree_scene_layers *l = &inlet->layers;
+  double pack_time = inlet->plan->layers->pack_time;
+  l->height = 0;
+  for (size_t k = 0; k < inlet->plan->shapes.count; k++)
+    l->height = fmax(l->height, layer_thickness * box_length(&l->extents[inlet->shapes[k]]));
+  scree_status status = count_layers(scene, inlet, error);
+  if (status != SCREE_OK) return status;
+  double travel = layer_spacing * l->height;
+  l->speed = -inlet->plan->velocity[2];
+  if (isnan(pack_time)) {
+    l->interval = falling_time(scene, l->speed, travel);
+  } else {
+    l->interval = pack_time / (double)l->planned;
+    l->speed = l->planned > 1 ? travel / l->interval : 0;
+  }
+  if (l->speed <= fastest) return SCREE_OK;
+  return fail_inlet(
+      scene, inlet, error,
+      "%zu particles make %zu layers of %.4g mm, which would have to enter at %.3g m/s; at "
+      "most %g m/s: set %s to %.3g s or more, or a wider cylinder",
+      inlet->plan->count, l->planned, 1e3 * l->height, l->speed, fastest,
+      *scene->name ? "pack_time" : "phases.pack_time", travel * (double)l->planned / fastest);
+}
+
+/* ---- a grid ---- */
+
+/* Cells along a side; in a circle the grid may have a cell or a corner in the middle. */
+static size_t fill_grid(const scree_scene_layers *l, const region *r, size_t nx, size_t ny,
+                        vec3 *cells) {
+  bool round = r->radius > 0;
+  double dx = round ? l->pitch : 2 * r->half_x / (double)nx,
+         dy = round ? l->pitch : 2 * r->half_y / (double)ny,
+         most = 0.5 * (2 * r->radius - l->pitch);
+  size_t count = 0;
+  for (size_t j = 0; j < ny; j++)
+    for (size_t i = 0; i < nx; i++) {
+      vec3 c = {((double)i + 0.5 - 0.5 * (double)nx) * dx,
+                ((double)j + 0.5 - 0.5 * (double)ny) * dy, 0};
+      if (round && vec3_norm(c) > most) continue;
+      if (cells) cells[count] = c;
+      count++;
+    }
+  return count;
+}
+
+static scree_status make_cells(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
+  scree_scene_layers *l = &inlet->layers;
+  region r = region_of(inlet->plan);
+  bool round = r.radius > 0;
+  double count = (double)inlet->plan->count, width = 2 * (round ? r.radius : r.half_x),
+         depth = 2 * (round ? r.radius : r.half_y), narrow = fmin(width, depth);
+  if (narrow < l->pitch)
+    return fail_inlet(scene, inlet, error,
+                      "a container %.4g m wide is too narrow for a particle %.4g m across: at "
+                      "least %.4g m",
+                      narrow, l->pitch / cell_share, l->pitch);
+  double most_x = floor(width / l->pitch), most_y = floor(depth / l->pitch);
+  if (most_x * most_y > count) { /* no more than are used: nearly a square */
+    double side = ceil(sqrt(count)) + 2;
+    most_x = fmin(most_x, fmax(side, ceil(count / most_y)));
+    most_y = fmin(most_y, fmax(side, ceil(count / most_x)));
+  }
+  size_t nx = (size_t)most_x, ny = (size_t)most_y;
+  if (round && nx > 1 && fill_grid(l, &r, nx - 1, ny - 1, NULL) > fill_grid(l, &r, nx, ny, NULL))
+    nx--, ny--;
+  size_t cells = fill_grid(l, &r, nx, ny, NULL);
+  if (cells == 0) nx = ny = cells = 1; /* in the middle */
+  l->cells = scree_arena_take(&scene->arena, cells, sizeof *l->cells);
+  l->cell_order = scree_arena_take(&scene->arena, cells, sizeof *l->cell_order);
+  if (!l->cells || !l->cell_order)
+    return scree_fail_memory(error, cells * sizeof *l->cells, "the cells of a layer");
+  l->cell_count = fill_grid(l, &r, nx, ny, l->cells);
+  return SCREE_OK;
+}
+
+static double bounding_radius(const scree_scene *scene, size_t shape) {
+  scree_particle_measures m;
+  scree_particle_measure(scene->shapes[shape].particle, &m);
+  return m.bounding_radius;
+}
+
+static scree_status plan_grid(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
+  scree_scene_layers *l = &inlet->layers;
+  double largest = 0;
+  for (size_t k = 0; k < inlet->plan->shapes.count; k++)
+    largest = fmax(largest, bounding_radius(scene, inlet->shapes[k]));
+  l->pitch = 2 * cell_share * largest;
+  scree_status status = make_cells(scene, inlet, error);
+  if (status != SCREE_OK) return status;
+  l->speed = -inlet->plan->velocity[2];
+  l->steps =
+      (uint64_t)ceil(falling_time(scene, l->speed, layer_spacing * l->pitch) / scene->time_step);
+  size_t cells = l->cell_count > 0 ? l->cell_count : 1;
+  l->planned = (inlet->plan->count + cells - 1) / cells;
+  return SCREE_OK;
+}
+
+scree_status scree_scene_plan_layers(scree_scene *scene, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++) {
+    scree_scene_inlet *inlet = &scene->inlets[i];
+    if (!inlet->plan->layers) continue;
+    bool moves = inlet->plan->velocity[2] < 0 || !isnan(inlet->plan->layers->pack_time);
+    if (!moves && !(scene->plan.gravity[2] < 0))
+      return fail_inlet(scene, inlet, error,
+                        "its layers need a velocity or a pack_time: nothing falls");
+    status = allocate(scene, inlet, error);
+    if (status == SCREE_OK)
+      status = inlet->plan->layers->packed ? plan_grid(scene, inlet, error)
+                                           : plan_random(scene, inlet, error);
+  }
+  return status;
+}
+
+/* ---- entering ---- */
+
+/* The height of the highest body; of one that is just entering in random layers it does not count:
+ * it moves out of the way. */
+static double top_of(const scree_scene *scene, const scree_scene_inlet *inlet) {
+  double top = -INFINITY;
+  bool grid = inlet->plan->layers->packed;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    size_t shape = scene->shape_of.items[b];
+    double radius = grid ? bounding_radius(scene, shape) : inlet->layers.extents[shape].radius;
+    if (grid || body.velocity[2] >= -0.5 * inlet->layers.speed)
+      top = fmax(top, body.position[2] + radius);
+  }
+  return top;
+}
+
+/* The bodies that reach above `bottom`. */
+static scree_status list_present(scree_scene *scene, const scree_scene_inlet *inlet, double bottom,
+                                 scree_error *error) {
+  scene->present.count = 0;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    scree_placement p = inlet->layers.extents[scene->shape_of.items[b]];
+    if (body.position[2] + p.radius < bottom) continue;
+    p.position = vec3_load(body.position);
+    p.orientation = scree_body_turn(&body);
+    scree_placement_settle(&p);
+    if (!SCREE_PUSH(&scene->present, p))
+      return scree_fail_memory(error, scene->present.count * sizeof p, "a layer's bodies");
+  }
+  return SCREE_OK;
+}
+
+static scree_status enter_random(scree_scene *scene, scree_scene_inlet *inlet, double bottom,
+                                 scree_error *error) {
+  size_t left;
+  double velocity[3] = {0, 0, -inlet->layers.speed};
+  scree_status status = list_present(scene, inlet, bottom, error);
+  if (status != SCREE_OK) return status;
+  scree_placement *waiting = list_waiting(inlet, inlet->entered, &left, error);
+  if (!waiting) return SCREE_OUT_OF_MEMORY;
+  scree_fill_layer layer = layer_at(scene, inlet, bottom);
+  layer.present = scene->present.items, layer.present_count = scene->present.count;
+  layer.is_clear = is_clear, layer.context = scene;
+  size_t placed = scree_fill_place(&layer, waiting, left);
+  for (size_t i = 0; status == SCREE_OK && i < placed; i++)
+    status = scree_scene_enter(scene, inlet, inlet->layers.order[inlet->entered], &waiting[i],
+                               velocity, error);
+  scree_free(waiting);
+  return status;
+}
+
+/* The place of a body in its cell: the room that a smaller one has is used at random. */
+static scree_placement place_in_cell(const scree_scene *scene, const scree_scene_inlet *inlet,
+                                     size_t shape, vec3 cell, scree_rng *rng) {
+  scree_placement p = inlet->layers.extents[shape];
+  double room = 0.5 * inlet->layers.pitch - cell_share * bounding_radius(scene, shape);
+  vec3 shift = vec3_scale(scree_rng_direction(rng), room > 0 ? room * scree_rng_uniform(rng) : 0);
+  p.position = vec3_add(cell, shift);
+  p.orientation = scree_rng_rotation(rng);
+  return p;
+}
+
+static scree_status enter_grid(scree_scene *scene, scree_scene_inlet *inlet, double bottom,
+                               scree_error *error) {
+  scree_scene_layers *l = &inlet->layers;
+  scree_rng rng = {.seed = seed_of(scene, inlet), .stream = GRID_STREAM + l->count};
+  double velocity[3] = {0, 0, -l->speed};
+  region r = region_of(inlet->plan);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; i < l->cell_count; i++) l->cell_order[i] = (uint32_t)i;
+  scree_rng_shuffle(&rng, l->cell_order, l->cell_count, sizeof *l->cell_order);
+  scene->present.count = 0;
+  for (size_t k = 0; status == SCREE_OK && k < l->cell_count; k++) {
+    if (inlet->entered == inlet->plan->count) break;
+    size_t which = l->order[inlet->entered];
+    vec3 cell = l->cells[l->cell_order[k]];
+    scree_placement p = place_in_cell(scene, inlet, inlet->shapes[which], cell, &rng);
+    p.position.x += r.middle.x, p.position.y += r.middle.y;
+    p.position.z += bottom + 0.5 * l->pitch;
+    status = scree_scene_enter(scene, inlet, which, &p, velocity, error);
+  }
+  return status;
+}
+
+/* 0: now. */
+static size_t steps_to(const scree_scene *scene, const scree_scene_inlet *inlet) {
+  const scree_scene_layers *l = &inlet->layers;
+  if (!inlet->plan->layers || inlet->entered == inlet->plan->count) return SIZE_MAX;
+  if (l->steps) {
+    uint64_t now = scree_world_step_count(scene->world), due = l->count * l->steps;
+    return due > now ? (size_t)(due - now) : 0;
+  }
+  double left = (double)l->count * l->interval - scree_world_time(scene->world);
+  if (left <= 0) return 0;
+  double steps = floor(left / scene->time_step) - 1;
+  return steps < 1 ? 1 : steps < 1e9 ? (size_t)steps : 1000000000;
+}
+
+size_t scree_scene_steps_to_layer(const scree_scene *scene) {
+  size_t least = SIZE_MAX;
+  for (size_t i = 0; i < scene->plan.inlets.count; i++) {
+    size_t steps = steps_to(scene, &scene->inlets[i]);
+    if (steps < least) least = steps;
+  }
+  return least;
+}
+
+static scree_status enter_layer(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
+  const scree_plan_layers *plan = inlet->plan->layers;
+  double above = plan->above + (plan->packed ? (cell_share - 1) * inlet->layers.pitch : 0),
+         bottom = fmax(region_of(inlet->plan).middle.z, top_of(scene, inlet) + above);
+  scree_status status = plan->packed ? enter_grid(scene, inlet, bottom, error)
+                                     : enter_random(scene, inlet, bottom, error);
+  inlet->layers.count++;
+  return status;
+}
+
+scree_status scree_scene_enter_layers(scree_scene *scene, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.inlets.count; i++)
+    while (status == SCREE_OK && steps_to(scene, &scene->inlets[i]) == 0)
+      status = enter_layer(scene, &scene->inlets[i], error);
+  return status;
+}

@@ -1,0 +1,124 @@
+/* Phases of a scene: they follow each other, each ends after its time or, where all that is there
+ * has been still for a while, before. Motions may act during one alone. */
+#include "scene/scene.h"
+
+#include <string.h>
+
+static const scree_plan_phase *phase_of(const scree_scene *scene) {
+  size_t count = scene->plan.phases.count;
+  return scene->phase < count ? SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, scene->phase)
+                              : NULL;
+}
+
+/* ---- motions ---- */
+
+static scree_status move_wall(scree_scene *scene, size_t wall_index, const scree_plan_motion *m,
+                              scree_error *error) {
+  double velocity[3] = {0, 0, 0}, spin[3] = {0, 0, 0};
+  const scree_plan_phase *phase = phase_of(scene);
+  if (phase && !strcmp(m->during, phase->place.name)) {
+    if (m->translate) memcpy(velocity, m->translate->velocity, sizeof velocity);
+    if (m->rotate) {
+      scree_wall wall;
+      scree_world_get_wall(scene->world, wall_index, &wall);
+      vec3 turn = vec3_scale(vec3_unit(vec3_load(m->rotate->axis)), m->rotate->speed);
+      vec3 arm = vec3_sub(vec3_load(wall.position), vec3_load(m->rotate->through));
+      vec3_store(spin, turn);
+      vec3_store(velocity, vec3_cross(turn, arm));
+    }
+  }
+  return scree_world_set_wall_velocity(scene->world, wall_index, velocity, spin, error);
+}
+
+scree_status scree_scene_begin_phases(scree_scene *scene, scree_error *error) {
+  scree_status status = SCREE_OK;
+  scene->phase_start = scree_world_time(scene->world);
+  scene->still_since = NAN;
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, i);
+    const scree_scene_geometry *made = &scene->geometry[i];
+    const scree_plan_motion *m = g->motion.items;
+    if (g->motion.count == 0 || !m->during) continue;
+    for (size_t w = 0; status == SCREE_OK && w < made->wall_count; w++)
+      status = move_wall(scene, made->first_wall + w, m, error);
+  }
+  return status;
+}
+
+/* ---- their ends ---- */
+
+static double highest(const scree_scene *scene) {
+  double top = -INFINITY;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    top = fmax(top, body.position[2] + scene->shapes[scene->shape_of.items[b]].extent.radius);
+  }
+  return top;
+}
+
+static bool is_above_all(const scree_scene *scene, const char *name) {
+  size_t g = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), name);
+  scree_wall wall;
+  scree_world_get_wall(scene->world, scene->geometry[g].first_wall, &wall);
+  return wall.position[2] > highest(scene);
+}
+
+/* Whether all has been still for a while. */
+static bool is_over_early(scree_scene *scene, const scree_plan_phase *phase) {
+  scree_observation o;
+  if (isnan(phase->still)) return false;
+  scree_world_observe(scene->world, &o);
+  double count = (double)(o.body_count > 0 ? o.body_count : 1);
+  if ((o.kinetic + o.rotational) / count >= phase->still) {
+    scene->still_since = NAN;
+    return false;
+  }
+  if (isnan(scene->still_since)) scene->still_since = o.time;
+  if (o.time - scene->still_since < phase->rest) return false;
+  return !phase->clear || is_above_all(scene, phase->clear);
+}
+
+static bool waits(const scree_scene *scene, const scree_plan_phase *phase) {
+  return phase->filled && !scree_scene_is_filled(scene);
+}
+
+scree_status scree_scene_turn_phase(scree_scene *scene, bool observed, scree_error *error) {
+  const scree_plan_phase *phase = phase_of(scene);
+  double elapsed = scree_world_time(scene->world) - scene->phase_start;
+  if (!phase || waits(scene, phase)) return SCREE_OK;
+  bool over = elapsed >= phase->time || (observed && is_over_early(scene, phase));
+  if (!over) return SCREE_OK;
+  scene->phase++;
+  return scree_scene_begin_phases(scene, error);
+}
+
+double scree_scene_phase_end(const scree_scene *scene) {
+  const scree_plan_phase *phase = phase_of(scene);
+  return phase && !waits(scene, phase) ? scene->phase_start + phase->time : (double)INFINITY;
+}
+
+double scree_scene_phase_times(const scree_scene *scene) {
+  double sum = 0;
+  for (size_t i = 0; i < scene->plan.phases.count; i++)
+    sum += SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, i)->time;
+  return sum;
+}
+
+double scree_scene_fraction(const scree_scene *scene) {
+  double time = scree_world_time(scene->world), all = scree_scene_phase_times(scene), done = 0;
+  if (scene->plan.phases.count == 0) return fmin(1, time / scene->plan.time);
+  for (size_t i = 0; i < scene->phase && i < scene->plan.phases.count; i++)
+    done += SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, i)->time;
+  if (phase_of(scene)) done += fmin(time - scene->phase_start, phase_of(scene)->time);
+  return all > 0 ? done / all : 1;
+}
+
+bool scree_scene_is_in_phase(const scree_scene *scene, const scree_texts *names) {
+  const scree_plan_phase *phase = phase_of(scene);
+  if (names->count == 0) return true;
+  for (size_t i = 0; phase && i < names->count; i++)
+    if (!strcmp(names->items[i], phase->place.name)) return true;
+  return false;
+}
