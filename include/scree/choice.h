@@ -198,6 +198,10 @@ SCREE_API scree_status scree_choose(const scree_curve *curve, const scree_mesh *
 
 SCREE_API void scree_choice_free(scree_choice *choice);
 
+/* A scan of more triangles is simulated at its recommended level where nothing else is asked for:
+ * as many are dear. */
+enum { SCREE_DENSE_SCAN = 2000 };
+
 /* From a scan to the mesh to simulate it by, in one call: decimates it, method volume, chooses with
  * the defaults, and gives the recommended level. The scan is multiplied by `scale` once it is
  * decimated (scree_curve_build_scaled), 1 for one in metres. It should be closed: see

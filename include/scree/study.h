@@ -179,6 +179,12 @@ typedef enum scree_in_range {
   SCREE_IN_RANGE_NO
 } scree_in_range;
 
+/* The Rp chosen for the shapes of a run; NaN where some are not made yet. */
+typedef struct scree_rp_pick {
+  double low, mean, high;  /* the mean is geometric */
+  scree_in_range in_range; /* whether even the lowest lies at or above the Rp converged from */
+} scree_rp_pick;
+
 /* Points that differ in rp only. */
 typedef struct scree_family_result {
   const char *label;             /* what they have in common; "" where rp is the only factor */
@@ -190,11 +196,9 @@ typedef struct scree_family_result {
    * within the margin, tested from fine to coarse until one fails, so that the error rate of the
    * whole is that of one test. level_count - 1: only the finest itself, which says nothing. */
   size_t converged_from;
-  bool converged;                                 /* at least one other level is equivalent */
-  double paper_low, paper_high, paper_mean;       /* Rp chosen by Ip on the grid, of the shapes */
-  double robust_low, robust_high, robust_mean;    /* by the robust criterion; means are geometric */
-  scree_in_range paper_in_range, robust_in_range; /* whether even the lowest of them lies at or
-                                                     above the Rp converged from */
+  bool converged;                              /* at least one other level is equivalent */
+  scree_rp_pick by_ip, by_robust, recommended; /* by Ip on the grid, by the robust criterion, and
+                                                  the recommended ones */
   scree_power_law time_law;    /* seconds against Rp, all runs; count 0: too few levels */
   scree_polynomial time_curve; /* the paper's fourth order; count 0: too few levels */
 } scree_family_result;

@@ -176,9 +176,14 @@ static int parse_count(const cli_verb *verb, const cli_option *option, const cha
                        void *value) {
   char *end;
   errno = 0;
+  if (option->words && !strcmp(text, option->words)) {
+    *(size_t *)value = SIZE_MAX;
+    return 0;
+  }
   unsigned long long parsed = strtoull(text, &end, 10);
   if (*text < '0' || *text > '9' || *end)
-    return cli_misuse(verb, "--%s %s: not a whole number", option->name, text);
+    return cli_misuse(verb, "--%s %s: not a whole number%s%s", option->name, text,
+                      option->words ? " nor " : "", option->words ? option->words : "");
   if (errno || !in_range(option, (double)parsed)) return out_of_range(verb, option, text);
   *(size_t *)value = (size_t)parsed;
   return 0;

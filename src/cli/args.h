@@ -10,7 +10,7 @@ typedef enum cli_kind {
   CLI_TEXT,        /* const char * */
   CLI_TEXTS,       /* cli_texts: every time it is given, one more */
   CLI_FILE,        /* const char *: a file that is read */
-  CLI_COUNT,       /* size_t in [minimum, maximum] */
+  CLI_COUNT,       /* size_t in [minimum, maximum]; SIZE_MAX for the word in `words` */
   CLI_REAL,        /* double in [minimum, maximum] */
   CLI_SHARE,       /* double, as 0.5 or 50% */
   CLI_LENGTH,      /* double in metres; the value may carry its unit, as in 0.27mm */
@@ -34,7 +34,7 @@ typedef struct cli_option {
   const char *value_name;  /* in the help, as RP; NULL for flags */
   const char *help;        /* one or more sentences; says unit and default */
   double minimum, maximum; /* of a number; both 0: any value not below 0 */
-  const char *words;       /* CLI_CHOICE */
+  const char *words;       /* CLI_CHOICE, CLI_COUNT; else NULL */
 } cli_option;
 
 struct cli_call;

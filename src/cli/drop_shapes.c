@@ -7,8 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LARGE_SCAN = 2000 }; /* triangles above which a shape is decimated without being asked */
-
 static const char sphere_prefix[] = "sphere:";
 
 scree_status drop_no_memory(scree_error *error) {
@@ -116,17 +114,12 @@ static scree_status pick_level(const drop_run *run, const scree_curve *curve,
     *level = scree_curve_find(curve, target);
     return SCREE_OK;
   }
-  scree_choice choice;
-  scree_status status = scree_choose(curve, mesh, NULL, run->call->progress, &choice, error);
-  if (status != SCREE_OK) return status;
-  *level = choice.recommended.level_index;
-  scree_choice_free(&choice);
-  return SCREE_OK;
+  return cli_recommended_level(curve, mesh, run->call->progress, level, error);
 }
 
 static bool is_small(const drop_arguments *a, const scree_mesh *mesh) {
   bool asked = a->rp > 0 || a->triangles;
-  if (!asked && mesh->triangle_count <= LARGE_SCAN) return true;
+  if (!asked && mesh->triangle_count <= SCREE_DENSE_SCAN) return true;
   return a->triangles && mesh->triangle_count <= a->triangles;
 }
 

@@ -3,6 +3,7 @@
 #include "cli/clump.h"
 #include "cli/clump_surface.h"
 #include "cli/surface.h"
+#include "cli/terminal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -10,14 +11,17 @@
 
 enum { MOST_SPHERES = 300 };
 
-/* "1e-4" or "clump:20" as one level more; false where it is neither, or there is that already. */
+/* "1e-4", "recommended" or "clump:20" as one level more; false where it is neither, or there is
+ * that already. */
 static bool add_level(const char *word, cli_grain_options *o) {
   static const char prefix[] = "clump:";
   bool clump = !strncmp(word, prefix, sizeof prefix - 1);
-  double value;
-  if (!cli_fraction_from_text(word + (clump ? sizeof prefix - 1 : 0), &value)) return false;
+  bool recommended = !strcmp(word, "recommended");
+  double value = CLI_RECOMMENDED;
+  if (!recommended && !cli_fraction_from_text(word + (clump ? sizeof prefix - 1 : 0), &value))
+    return false;
   if (clump ? !(value >= 1 && value <= MOST_SPHERES && value == floor(value))
-            : !(value > 0 && value <= 1))
+            : !recommended && !(value > 0 && value <= 1))
     return false;
   size_t spheres = clump ? (size_t)value : 0;
   for (size_t i = 0; i < o->rp_count; i++)
@@ -56,6 +60,8 @@ void cli_level_name(const cli_grain_options *o, size_t level, char *buffer, size
     snprintf(buffer, size, "spheres");
   else if (o->rp_count && o->clump[level])
     snprintf(buffer, size, "clump-%zu", o->clump[level]);
+  else if (o->rp_count && o->rp[level] == CLI_RECOMMENDED)
+    snprintf(buffer, size, "recommended");
   else if (o->rp_count)
     snprintf(buffer, size, "rp-%g", o->rp[level]);
   else
@@ -100,44 +106,63 @@ static void describe(const maker *m, const char *word, const scree_scan *scan, s
 
 /* ---- scans ---- */
 
-/* Of a scan of so many triangles, at that level. */
+/* Of a scan of so many triangles, at that level: may be CLI_RECOMMENDED. */
 static double level_rp(const cli_grain_options *o, size_t level, size_t triangle_count) {
+  bool dense = triangle_count > SCREE_DENSE_SCAN;
+  if (is_sphere_level(o, level)) return 1;
+  if (!o->rp_count) return dense ? CLI_RECOMMENDED : 1;
   if (!o->clump[level]) return o->rp[level];
   return fmin(1, CLI_CLUMP_TRIANGLES / (double)triangle_count);
 }
 
 static double smallest_rp(const cli_grain_options *o, size_t triangle_count) {
   double least = 1;
-  for (size_t i = 0; i < o->rp_count; i++) least = fmin(least, level_rp(o, i, triangle_count));
+  for (size_t i = 0; i < cli_level_count(o); i++)
+    least = fmin(least, level_rp(o, i, triangle_count));
   return least;
 }
 
-static bool is_decimated(const cli_grain_options *o) {
-  return smallest_rp(o, SIZE_MAX) < 1;
+/* The Rp that is recommended; said where it was not asked for. */
+static scree_status recommended_rp(const maker *m, const char *word, const scree_curve *curve,
+                                   const scree_mesh *mesh, double *rp) {
+  size_t index;
+  scree_level level;
+  char shown[CLI_PRINTABLE_BYTES];
+  scree_status status = cli_recommended_level(curve, mesh, m->progress, &index, m->error);
+  if (status != SCREE_OK) return status;
+  scree_curve_level(curve, index, &level);
+  *rp = level.rp;
+  cli_terminal_end();
+  if (!m->options->rp_count && !m->options->quiet)
+    fprintf(stderr, "%s: %zu of %zu triangles, as choose recommends (--rp 1: all)\n",
+            cli_printable(word, shown), level.triangle_count, mesh->triangle_count);
+  return SCREE_OK;
 }
 
-/* The scan is in metres, but where it is decimated only once it is multiplied by the scale. */
+/* The scan is in metres once it is multiplied by the scale: where it is decimated, after that. */
 static scree_status make_levels(const maker *m, size_t shape, const char *word, scree_scan *scan,
                                 double scale) {
   const cli_grain_options *o = m->options;
   scree_mesh *mesh = &scan->mesh;
   scree_curve *curve = NULL;
   scree_status status = SCREE_OK;
-  if (is_decimated(o)) {
+  double least = smallest_rp(o, mesh->triangle_count), recommended = 1;
+  if (least < 1) {
     scree_simplify_options simplify = scree_default_simplify_options();
     simplify.method = (scree_method)o->method;
-    simplify.stop_count =
-        scree_choice_target(smallest_rp(o, mesh->triangle_count), mesh->triangle_count);
+    if (least > CLI_RECOMMENDED)
+      simplify.stop_count = scree_choice_target(least, mesh->triangle_count);
     status = scree_curve_build_scaled(mesh, scale, &simplify, m->progress, &curve, m->error);
   }
+  if (status == SCREE_OK && least == CLI_RECOMMENDED)
+    status = recommended_rp(m, word, curve, mesh, &recommended);
   for (size_t level = 0; status == SCREE_OK && level < m->grains->level_count; level++) {
     scree_grain_options grain = scree_default_grain_options();
     size_t index = level * m->grains->shape_count + shape;
     grain.sphere = is_sphere_level(o, level);
-    if (o->rp_count && !grain.sphere) {
-      grain.rp = level_rp(o, level, mesh->triangle_count);
-      grain.clump = o->clump[level];
-    }
+    grain.rp = level_rp(o, level, mesh->triangle_count);
+    if (grain.rp == CLI_RECOMMENDED) grain.rp = recommended;
+    if (o->rp_count && !grain.sphere) grain.clump = o->clump[level];
     grain.mass_rule = o->mass_rule;
     if (!grain.sphere && (double)mesh->triangle_count * grain.rp > CLI_LARGEST_GRAIN) {
       char what[160];
@@ -161,9 +186,12 @@ static scree_status make_from_scan(const maker *m, size_t shape, const char *wor
   scree_scan scan;
   double scale = 1;
   scree_status status = cli_load_closed(word, &input, m->options->no_repair, m->progress, &scan,
-                                        is_decimated(m->options) ? &scale : NULL, NULL, m->error);
+                                        &scale, NULL, m->error);
   if (status != SCREE_OK) return status;
-  status = make_levels(m, shape, word, &scan, scale);
+  if (smallest_rp(m->options, scan.mesh.triangle_count) == 1)
+    status = cli_into_metres(word, &input, m->options->no_repair, scale, m->progress, &scan.mesh,
+                             m->error);
+  if (status == SCREE_OK) status = make_levels(m, shape, word, &scan, scale);
   scree_scan_free(&scan);
   return status == SCREE_OK ? status : cli_name_in_error(word, m->error);
 }

@@ -5,15 +5,17 @@
 #include "cli/input.h"
 
 enum { CLI_MOST_LEVELS = 40, CLI_LARGEST_GRAIN = 100000 };
+#define CLI_RECOMMENDED 0.0 /* in place of an Rp: the one that `scree choose` recommends */
 
 typedef struct cli_grain_options {
   cli_source source;
   int method;     /* a scree_method */
   bool no_repair; /* refuse instead */
+  bool quiet;     /* do not say which level is taken where none was asked for */
   int mass_rule;  /* a scree_mass_rule */
   double rp[CLI_MOST_LEVELS];
   size_t clump[CLI_MOST_LEVELS]; /* spheres of the clump that stands for the shape there; 0: none */
-  size_t rp_count;               /* 0: surfaces as they are */
+  size_t rp_count;               /* 0: surfaces as they are; dense ones as recommended */
   bool spheres;                  /* one level more, the last, of equal-volume spheres */
 } cli_grain_options;
 
@@ -25,12 +27,13 @@ typedef struct cli_grains {
   char (*texts)[320];      /* what names and sources point to */
 } cli_grains;
 
-/* "1e-5,1e-4,clump:20" into options; false where it is none, or too long. */
+/* "1e-5,recommended,clump:20" into options; false where it is none, or too long. */
 bool cli_parse_levels(const char *text, cli_grain_options *options);
 
 size_t cli_level_count(const cli_grain_options *options);
 
-/* The level in words, for folders and tables: "rp-1e-05", "clump-20", "spheres", "as-given". */
+/* The level in words, for folders and tables: "rp-1e-05", "recommended", "clump-20", "spheres",
+ * "as-given". */
 void cli_level_name(const cli_grain_options *options, size_t level, char *buffer, size_t size);
 
 /* Loads, checks, repairs, decimates. words: files, sample:NAME, or NAME.csv with one sphere of a

@@ -110,14 +110,15 @@ static const char *range_text(scree_in_range in) {
                                    : "not to be judged: no converged range";
 }
 
-static void print_pick(FILE *stream, const char *what, const double rp[3], scree_in_range in) {
-  if (isnan(rp[1])) {
-    fprintf(stream, "Rp chosen by %s: unknown, the shapes are not decimated yet\n", what);
+static void print_pick(FILE *stream, const char *what, const scree_rp_pick *pick) {
+  if (isnan(pick->mean)) {
+    fprintf(stream, "%s: unknown, the shapes are not decimated yet\n", what);
     return;
   }
-  fprintf(stream, "Rp chosen by %s: %.2g", what, rp[1]);
-  if (rp[0] < rp[2]) fprintf(stream, " (%.2g to %.2g over the shapes)", rp[0], rp[2]);
-  fprintf(stream, ", %s\n", range_text(in));
+  fprintf(stream, "%s: %.2g", what, pick->mean);
+  if (pick->low < pick->high)
+    fprintf(stream, " (%.2g to %.2g over the shapes)", pick->low, pick->high);
+  fprintf(stream, ", %s\n", range_text(pick->in_range));
 }
 
 static void print_needed(FILE *stream, const scree_study_result *r, const scree_family_result *f) {
@@ -142,10 +143,9 @@ static void print_family(FILE *stream, const scree_study_result *r, const scree_
     fprintf(stream, "convergence of the angle within %g degrees is not shown (%g %% confidence)\n",
             r->margin_deg, 100 * r->confidence);
   print_needed(stream, r, f);
-  const double paper[] = {f->paper_low, f->paper_mean, f->paper_high},
-               robust[] = {f->robust_low, f->robust_mean, f->robust_high};
-  print_pick(stream, "Ip", paper, f->paper_in_range);
-  print_pick(stream, "the robust criterion", robust, f->robust_in_range);
+  print_pick(stream, "Rp recommended", &f->recommended);
+  print_pick(stream, "Rp chosen by Ip", &f->by_ip);
+  print_pick(stream, "Rp chosen by the robust criterion", &f->by_robust);
   if (!f->time_law.count) return;
   fprintf(stream, "time of a run ~ Rp^%.3f", f->time_law.exponent);
   if (!isnan(f->time_law.exponent_low))

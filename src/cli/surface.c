@@ -5,6 +5,17 @@
 #include <stdlib.h>
 #include <string.h>
 
+scree_status cli_recommended_level(const scree_curve *curve, const scree_mesh *mesh,
+                                   const scree_progress *progress, size_t *level,
+                                   scree_error *error) {
+  scree_choice choice;
+  scree_status status = scree_choose(curve, mesh, NULL, progress, &choice, error);
+  if (status != SCREE_OK) return status;
+  *level = choice.recommended.level_index;
+  scree_choice_free(&choice);
+  return SCREE_OK;
+}
+
 /* Holes by the mean of those that are left, of which the largest is at least that. */
 void cli_hint_at_option(const scree_repair_report *report, const scree_repair_options *options,
                         scree_error *error) {

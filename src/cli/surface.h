@@ -46,6 +46,11 @@ scree_status cli_load_for_levels(const cli_call *call, const cli_source *source,
                                  const cli_soundness *how, scree_scan *scan, double *scale,
                                  scree_error *error);
 
+/* The level that `scree choose` recommends of a curve of the mesh. */
+scree_status cli_recommended_level(const scree_curve *curve, const scree_mesh *mesh,
+                                   const scree_progress *progress, size_t *level,
+                                   scree_error *error);
+
 /* Where the repair failed for what an option allows: which one, at the end of the error. */
 void cli_hint_at_option(const scree_repair_report *report, const scree_repair_options *options,
                         scree_error *error);

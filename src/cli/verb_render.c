@@ -8,6 +8,7 @@
 #include <string.h>
 
 enum { MOST_LEVELS = 32 };
+static const double RECOMMENDED = 0; /* in place of an Rp */
 
 typedef struct render_arguments {
   const char *output, *size, *reference, *levels;
@@ -43,8 +44,9 @@ static const cli_option options[] = {
     {"edges", CLI_FLAG, AT(edges), NULL, "Draw the edges of the triangles.", 0, 0, NULL},
     {"wire", CLI_FLAG, AT(wire), NULL, "Draw only the edges.", 0, 0, NULL},
     {"rp", CLI_TEXT, AT(levels), "LIST",
-     "Of one surface: also its levels at these Rp (0 < RP <= 1) by the decimation of choose.", 0, 0,
-     NULL},
+     "Of one surface: also its levels at these Rp (0 < RP <= 1, or recommended) by the decimation "
+     "of choose.",
+     0, 0, NULL},
     {"color-by", CLI_CHOICE, AT(color_by), "WHAT",
      "plain, or distance: to the first surface, or to the one of --reference, with a scale bar; "
      "all over the triangles, or with --edges and --wire between their corners. Default: plain.",
@@ -96,41 +98,58 @@ static scree_status fail_memory(scree_error *error) {
   return SCREE_OUT_OF_MEMORY;
 }
 
-/* rp 0: the surface as it was given. */
-static void put_cell(picture *p, size_t i, const char *word, double rp) {
-  char name[96], count[32];
-  cli_short_name(word, name, sizeof name);
-  if (rp > 0) snprintf(name, sizeof name, "Rp = %g", rp);
+static void put_cell(picture *p, size_t i, const char *name) {
+  char count[32];
   snprintf(p->captions[i], sizeof p->captions[i], "%s: %s triangles", name,
            cli_count_text(p->scans[i].mesh.triangle_count, count));
   p->items[i] = (scree_render_item){.mesh = &p->scans[i].mesh, .color = {0.34f, 0.46f, 0.60f}};
   p->cells[i] = (scree_render_cell){&p->items[i], 1, p->captions[i]};
 }
 
+static void put_input(picture *p, size_t i, const char *word) {
+  char name[96];
+  cli_short_name(word, name, sizeof name);
+  put_cell(p, i, name);
+}
+
 static scree_status read_one(picture *p, size_t i, const char *word, const cli_source *source,
                              const scree_progress *progress, scree_error *error) {
   cli_input_options input = cli_source_options(source);
   scree_status status = cli_load(word, &input, progress, &p->scans[i], error);
-  if (status == SCREE_OK) put_cell(p, i, word, 0);
+  if (status == SCREE_OK) put_input(p, i, word);
   return status;
 }
 
+static scree_status make_level(picture *p, size_t i, double rp, const scree_curve *curve,
+                               const scree_progress *progress, scree_error *error) {
+  scree_mesh *scan = &p->scans[0].mesh, *mesh = &p->scans[i].mesh;
+  bool recommended = rp == RECOMMENDED;
+  size_t target = recommended ? 0 : scree_choice_target(rp, scan->triangle_count), level;
+  scree_status status = SCREE_OK;
+  if (recommended)
+    status = cli_recommended_level(curve, scan, progress, &level, error);
+  else
+    level = scree_curve_find(curve, target);
+  if (status == SCREE_OK) status = scree_curve_mesh(curve, level, mesh, error);
+  if (status != SCREE_OK) return status;
+  char name[96] = "recommended";
+  if (!recommended) snprintf(name, sizeof name, "Rp = %g", rp);
+  put_cell(p, i, name);
+  size_t used = strlen(p->captions[i]);
+  if (!recommended && mesh->triangle_count > target)
+    snprintf(p->captions[i] + used, sizeof p->captions[i] - used, ", not fewer");
+  return SCREE_OK;
+}
+
 /* Levels of the first surface become the surfaces behind it. */
-static scree_status make_levels(picture *p, const double *rp, const char *word, double scale,
+static scree_status make_levels(picture *p, const double *rp, double scale,
                                 const scree_progress *progress, scree_error *error) {
   scree_curve *curve = NULL;
   scree_simplify_options simplify = scree_default_simplify_options();
   scree_mesh *scan = &p->scans[0].mesh;
   scree_status status = scree_curve_build_scaled(scan, scale, &simplify, progress, &curve, error);
-  for (size_t i = 1; i < p->count && status == SCREE_OK; i++) {
-    size_t target = scree_choice_target(rp[i - 1], scan->triangle_count);
-    status = scree_curve_mesh(curve, scree_curve_find(curve, target), &p->scans[i].mesh, error);
-    if (status != SCREE_OK) break;
-    put_cell(p, i, word, rp[i - 1]);
-    if (p->scans[i].mesh.triangle_count <= target) continue;
-    size_t used = strlen(p->captions[i]);
-    snprintf(p->captions[i] + used, sizeof p->captions[i] - used, ", not fewer");
-  }
+  for (size_t i = 1; i < p->count && status == SCREE_OK; i++)
+    status = make_level(p, i, rp[i - 1], curve, progress, error);
   scree_curve_free(curve);
   return status;
 }
@@ -193,7 +212,7 @@ static scree_status color_by_distance(picture *p, const cli_call *call,
   return status;
 }
 
-/* "1e-1,1e-2" to numbers; their count, or 0 where one is none in (0, 1]. */
+/* "1e-1,recommended" to numbers; their count, or 0 where one is none in (0, 1]. */
 static size_t parse_levels(const char *text, double rp[MOST_LEVELS]) {
   size_t count = 0;
   for (;;) {
@@ -202,7 +221,10 @@ static size_t parse_levels(const char *text, double rp[MOST_LEVELS]) {
     if (length >= sizeof word || count == MOST_LEVELS) return 0;
     memcpy(word, text, length);
     word[length] = 0;
-    if (!cli_fraction_from_text(word, &rp[count]) || !(rp[count] > 0 && rp[count] <= 1)) return 0;
+    if (!strcmp(word, "recommended"))
+      rp[count] = RECOMMENDED;
+    else if (!cli_fraction_from_text(word, &rp[count]) || !(rp[count] > 0 && rp[count] <= 1))
+      return 0;
     count++;
     if (!text[length]) return count;
     text += length + 1;
@@ -230,9 +252,8 @@ static scree_status make_picture(const cli_call *call, const double *rp, size_t 
     const cli_soundness soundness = {0};
     double scale;
     status = cli_load_for_levels(call, &a->source, &soundness, &p->scans[0], &scale, error);
-    if (status == SCREE_OK) put_cell(p, 0, call->inputs[0], 0);
-    if (status == SCREE_OK)
-      status = make_levels(p, rp, call->inputs[0], scale, call->progress, error);
+    if (status == SCREE_OK) put_input(p, 0, call->inputs[0]);
+    if (status == SCREE_OK) status = make_levels(p, rp, scale, call->progress, error);
   }
   for (size_t i = 0; status == SCREE_OK && !level_count && i < call->input_count; i++)
     status = read_one(p, i, call->inputs[i], &a->source, call->progress, error);
@@ -251,8 +272,8 @@ static int run(const cli_call *call) {
   if (code) return code;
   if (a->levels && !level_count)
     return cli_misuse(call->verb,
-                      "--rp %s: must be at most %d numbers above 0 and up to 1, "
-                      "with commas between",
+                      "--rp %s: must be at most %d numbers above 0 and up to 1, or "
+                      "recommended, with commas between",
                       a->levels, MOST_LEVELS);
   if (a->levels && call->input_count != 1)
     return cli_misuse(call->verb, "--rp takes one surface, not %zu", call->input_count);

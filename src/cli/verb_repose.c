@@ -110,8 +110,8 @@ static const cli_option options[] = {
      "Print the experiment as it would be run, with units and comments, and stop.", 0, 0, NULL},
     {"samples", CLI_FLAG, AT(samples), NULL, "The nine built-in devices as shapes.", 0, 0, NULL},
     {"rp", CLI_TEXT, AT(rp), "LIST",
-     "Decimate the scans first, as 1e-3, or 1e-5,1e-4,1e-3 for a run at each; clump:20 is a run "
-     "with clumps of 20 spheres that stand for the scans.",
+     "Decimate the scans first, as 1e-3, or 1e-5,recommended,1e-3 for a run at each; clump:20 is a "
+     "run with clumps of 20 spheres that stand for the scans.",
      0, 0, NULL},
     {"spheres", CLI_FLAG, AT(spheres), NULL,
      "A run with spheres of the shapes' volumes: alone, or after those of --rp.", 0, 0, NULL},
@@ -430,7 +430,7 @@ static scree_status check_runs(repose *r) {
 /* Whether runs of several levels have folders called so. */
 static bool is_level_name(const char *name) {
   double rp;
-  return !strcmp(name, "spheres") ||
+  return !strcmp(name, "spheres") || !strcmp(name, "recommended") ||
          (!strncmp(name, "rp-", 3) && cli_real_from_text(name + 3, &rp)) ||
          (!strncmp(name, "clump-", 6) && cli_real_from_text(name + 6, &rp));
 }
@@ -567,10 +567,11 @@ static int check_words(repose *r, size_t word_count) {
     return cli_misuse(r->call->verb, "--%s does nothing without a SHAPE", shape_option(a));
   if (a->resume && !a->output) return cli_misuse(r->call->verb, "--resume needs -o DIR");
   if (a->rp && !cli_parse_levels(a->rp, &r->grain_options))
-    return cli_misuse(r->call->verb,
-                      "--rp %s: must be up to %d different numbers in (0, 1] or clumps of 1 to 300 "
-                      "spheres, as 1e-4,1e-3,clump:20",
-                      a->rp, CLI_MOST_LEVELS);
+    return cli_misuse(
+        r->call->verb,
+        "--rp %s: must be up to %d different numbers in (0, 1], recommended, or clumps of 1 to "
+        "300 spheres, as 1e-4,recommended,clump:20",
+        a->rp, CLI_MOST_LEVELS);
   return 0;
 }
 
@@ -583,6 +584,7 @@ static int run(const cli_call *call) {
               .grain_options = {.source = a->source,
                                 .method = a->method,
                                 .no_repair = a->no_repair,
+                                .quiet = call->quiet,
                                 .spheres = a->spheres}};
   size_t samples = a->samples ? SCREE_SAMPLE_DEVICES : 0, count = samples + call->input_count;
   const char **words = malloc((count + 1) * sizeof *words);
@@ -622,7 +624,9 @@ const cli_verb cli_verb_repose = {
         "Runs the experiment of Katagiri and Koyanaka (2020): particles of the shapes fall into a "
         "cylinder, come to rest, the cylinder is raised, and the heap is measured three ways. A "
         "SHAPE is a scan, sample:NAME, or NAME.csv with the spheres of a clump (x, y, z, radius a "
-        "line). The preset paper is the paper's protocol (1197 particles: hours); small has 360 "
+        "line). Without --rp a scan of more than 2,000 triangles is taken at the level that choose "
+        "recommends, which is said. The preset paper is the paper's protocol (1197 particles: "
+        "hours); small has 360 "
         "particles and softer contacts (its heap scatters more); demo, the default, shows a heap "
         "in about a minute and no number should be taken from it. Everything can be changed by a "
         "YAML file and by options, which have the last word. With -o the run writes checkpoints: "

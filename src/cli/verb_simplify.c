@@ -29,7 +29,8 @@ static const cli_option options[] = {
      "scan's count, rounded down. A closed surface has an even count.",
      1e-12, 1, NULL},
     {"count", CLI_COUNT, offsetof(simplify_arguments, count), "COUNT",
-     "Keep at most this many triangles.", 1, 4294967295.0, NULL},
+     "Keep at most this many triangles; recommended: as many as choose recommends.", 1,
+     4294967295.0, "recommended"},
     {"error", CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
      "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the quadric "
      "error, an estimate, not a bound. Dearer collapses are left out and others go on, so that the "
@@ -153,12 +154,18 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
   size_t target = arguments->count;
   if (arguments->rp > 0) target = scree_choice_target(arguments->rp, scan.mesh.triangle_count);
   simplify_options.method = (scree_method)arguments->method;
+  bool recommended = target == SIZE_MAX;
+  if (recommended) target = 0;
   simplify_options.stop_count = target;
   simplify_options.error_limit = arguments->error;
   status =
       scree_curve_build_scaled(&scan.mesh, scale, &simplify_options, call->progress, &curve, error);
+  size_t index = 0;
+  if (status == SCREE_OK && recommended)
+    status = cli_recommended_level(curve, &scan.mesh, call->progress, &index, error);
+  else if (status == SCREE_OK)
+    index = scree_curve_find(curve, target);
   if (status == SCREE_OK) {
-    size_t index = scree_curve_find(curve, target);
     scree_level level;
     scree_curve_level(curve, index, &level);
     status = write_level(call, &scan, curve, index, error);
@@ -185,6 +192,8 @@ static int run(const cli_call *call) {
   if (!arguments->output) return cli_misuse(call->verb, "-o FILE is missing");
   if (arguments->rp > 0 && arguments->count > 0)
     return cli_misuse(call->verb, "-r and -n exclude each other");
+  if (arguments->count == SIZE_MAX && arguments->error > 0)
+    return cli_misuse(call->verb, "--count recommended and --error exclude each other");
   if (!(arguments->rp > 0) && arguments->count == 0 && !(arguments->error > 0))
     return cli_misuse(call->verb, "one of -r RP, -n COUNT or -e LENGTH is needed");
   if (arguments->soundness.no_repair && arguments->soundness.unchecked)
@@ -207,7 +216,8 @@ const cli_verb cli_verb_simplify = {
         "stays so; no facet is flipped, folded over or driven through another. The same file gives "
         "the same bits, whatever the order of its facets and the "
         "number of threads.",
-    .examples = "scree simplify phone.stl -r 1e-3 -o phone_762.stl\n"
+    .examples = "scree simplify phone.stl -n recommended -o phone_dem.stl\n"
+                "scree simplify phone.stl -r 1e-3 -o phone_762.stl\n"
                 "scree simplify phone.stl -n 500 -m qecd -o phone_500.ply\n"
                 "scree simplify phone.stl -r 1e-3 --density 1800 -o phone_dem.stl\n"
                 "scree simplify phone.stl -e 0.1mm -o phone_fine.stl\n",

@@ -120,20 +120,28 @@ static size_t spheres_guide(const scree_study_result *r, scree_guide *guide) {
   return 0;
 }
 
-static size_t pick_guide(const scree_study_result *r, char *text, scree_guide *guide) {
-  if (r->family_count == 0 || !(r->families[0].paper_mean > 0)) return 0;
-  snprintf(text, TEXT, "I_{p}: %.2g", r->families[0].paper_mean);
-  *guide = (scree_guide){text, r->families[0].paper_mean, false};
-  return 1;
+/* The Rp that were chosen, of the first family; texts and guides have room for two. */
+static size_t pick_guides(const scree_study_result *r, char texts[2][TEXT], scree_guide *guides) {
+  size_t count = 0;
+  const scree_family_result *f = r->families;
+  const scree_rp_pick *picks[] = {&f->by_ip, &f->recommended};
+  static const char *const names[] = {"I_{p}", "recommended"};
+  for (size_t i = 0; i < 2; i++) {
+    if (!(picks[i]->mean > 0)) continue;
+    snprintf(texts[count], TEXT, "%s: %.2g", names[i], picks[i]->mean);
+    guides[count] = (scree_guide){texts[count], picks[i]->mean, false};
+    count++;
+  }
+  return count;
 }
 
 scree_status scree_study_angle_figure(const scree_study_result *result, const char *path,
                                       bool overwrite, scree_error *error) {
   if (result->family_count == 0) return nothing_to_draw(path, "fewer than two Rp", error);
   drawing d = {.result = result};
-  char text[TEXT];
-  scree_guide guides[2];
-  size_t guide_count = pick_guide(result, text, guides);
+  char texts[2][TEXT];
+  scree_guide guides[3];
+  size_t guide_count = pick_guides(result, texts, guides);
   size_t angle_guides = guide_count + spheres_guide(result, &guides[guide_count]);
   bool good = result->family_count > 1 || add_margin(&d, &result->families[0]);
   for (size_t f = 0; good && f < result->family_count && f < MOST_SERIES / 2 - 1; f++)

@@ -80,30 +80,29 @@ static void put_comparison(scree_json *json, const scree_study_result *r, size_t
   scree_json_end(json);
 }
 
-static void put_pick(scree_json *json, const char *key, const double rp[3], scree_in_range in) {
+static void put_pick(scree_json *json, const char *key, const scree_rp_pick *pick) {
   scree_json_row_object(json, key);
-  scree_json_number(json, "low", rp[0]);
-  scree_json_number(json, "mean", rp[1]);
-  scree_json_number(json, "high", rp[2]);
+  scree_json_number(json, "low", pick->low);
+  scree_json_number(json, "mean", pick->mean);
+  scree_json_number(json, "high", pick->high);
   scree_json_text(json, "in_converged_range",
-                  in == SCREE_IN_RANGE_YES  ? "yes"
-                  : in == SCREE_IN_RANGE_NO ? "no"
-                                            : "unknown");
+                  pick->in_range == SCREE_IN_RANGE_YES  ? "yes"
+                  : pick->in_range == SCREE_IN_RANGE_NO ? "no"
+                                                        : "unknown");
   scree_json_end(json);
 }
 
 static void put_family(scree_json *json, const scree_study_result *r,
                        const scree_family_result *f) {
-  const double paper[] = {f->paper_low, f->paper_mean, f->paper_high},
-               robust[] = {f->robust_low, f->robust_mean, f->robust_high};
   scree_json_object(json, NULL);
   scree_json_text(json, "label", f->label);
   scree_json_text(json, "finest", r->points[f->levels[f->level_count - 1]].rp);
   scree_json_bool(json, "converged", f->converged);
   scree_json_text(json, "converged_from",
                   f->converged ? r->points[f->levels[f->converged_from]].rp : NULL);
-  put_pick(json, "chosen_by_ip", paper, f->paper_in_range);
-  put_pick(json, "chosen_by_robust", robust, f->robust_in_range);
+  put_pick(json, "chosen_by_ip", &f->by_ip);
+  put_pick(json, "chosen_by_robust", &f->by_robust);
+  put_pick(json, "recommended", &f->recommended);
   scree_json_array(json, "against_finest");
   for (size_t k = 0; k + 1 < f->level_count; k++)
     put_comparison(json, r, f->levels[k], &f->comparisons[k]);

@@ -7,9 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* A scan of more triangles is decimated where nothing is said: as many are dear to simulate. */
-enum { LARGE_SCAN = 2000 };
-
 typedef struct making {
   const scree_plan_shape *shape;
   const scree_progress *progress;
@@ -65,7 +62,7 @@ static scree_status pick_level(const making *m, const scree_curve *curve, size_t
 static bool stays_whole(const making *m) {
   const scree_plan_shape *s = m->shape;
   if (s->triangles && !strcmp(s->triangles, "all")) return true;
-  if (!s->triangles && isnan(s->rp)) return m->triangle_count <= LARGE_SCAN;
+  if (!s->triangles && isnan(s->rp)) return m->triangle_count <= SCREE_DENSE_SCAN;
   return s->triangles && strtoul(s->triangles, NULL, 10) >= m->triangle_count;
 }
 

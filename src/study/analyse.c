@@ -279,6 +279,23 @@ static scree_status average_rotation(const analysis *a, size_t point, scree_poin
   return SCREE_OK;
 }
 
+/* The Rp of a point as a number; of a multiple of the recommended ones with their geometric mean.
+ * NaN of spheres, and where the shapes are not made yet. */
+static double rp_value(const scree_study *study, const scree_study_point *point) {
+  const scree_shape_set *set = &study->sets[point->set];
+  double value = !strcmp(point->rp, "scan") ? 1 : NAN, factor, sum = 0;
+  if (!scree_study_is_recommended(point->rp, &factor)) {
+    scree_number_read(point->rp, &value);
+    return value;
+  }
+  for (size_t i = 0; i < set->count; i++) {
+    const scree_study_shape *shape = &study->shapes[set->shapes[i]];
+    if (!(shape->recommended_rp > 0)) return NAN;
+    sum += log(fmin(1, factor * shape->recommended_rp));
+  }
+  return exp(sum / (double)set->count);
+}
+
 static scree_status make_point(const analysis *a, size_t index, double *scratch) {
   const scree_study_point *point = &a->study->points[index];
   scree_point_result *p = &a->result->points[index];
@@ -286,8 +303,7 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
   p->rp = scree_arena_text(a->arena, point->rp);
   p->shapes = scree_arena_text(a->arena, a->study->sets[point->set].label);
   if (!p->label || !p->rp || !p->shapes) return no_memory(a);
-  p->rp_value = !strcmp(point->rp, "scan") ? 1 : NAN;
-  scree_number_read(point->rp, &p->rp_value);
+  p->rp_value = rp_value(a->study, point);
   for (size_t i = 0; i < a->row_count; i++) { /* rows of low replicates come first */
     const row *r = &a->rows[i];
     if (r->point != index) continue;
@@ -342,7 +358,7 @@ static void gather_levels(const analysis *a, size_t first, scree_family_result *
   family->spheres = SIZE_MAX;
   for (size_t p = first; p < a->study->point_count; p++) {
     if (!same_family(a->study, first, p)) continue;
-    if (isnan(points[p].rp_value)) {
+    if (!strcmp(points[p].rp, "spheres")) {
       family->spheres = p;
       continue;
     }
@@ -367,34 +383,45 @@ static void test_convergence(const analysis *a, scree_family_result *family) {
   family->converged = family->converged_from < finest;
 }
 
-/* Least, largest and geometric mean of the shapes' chosen Rp; NaN where some are not made yet. */
-static void gather_picks(const analysis *a, size_t point, scree_family_result *family) {
-  const scree_shape_set *set = &a->study->sets[a->study->points[point].set];
-  double paper = 0, robust = 0;
-  family->paper_low = family->robust_low = INFINITY;
-  for (size_t i = 0; i < set->count; i++) {
-    const scree_study_shape *shape = &a->study->shapes[set->shapes[i]];
-    if (!(shape->paper_rp > 0 && shape->robust_rp > 0)) {
-      family->paper_low = family->paper_high = family->paper_mean = NAN;
-      family->robust_low = family->robust_high = family->robust_mean = NAN;
-      return;
-    }
-    family->paper_low = fmin(family->paper_low, shape->paper_rp);
-    family->paper_high = fmax(family->paper_high, shape->paper_rp);
-    family->robust_low = fmin(family->robust_low, shape->robust_rp);
-    family->robust_high = fmax(family->robust_high, shape->robust_rp);
-    paper += log(shape->paper_rp) / (double)set->count;
-    robust += log(shape->robust_rp) / (double)set->count;
-  }
-  family->paper_mean = exp(paper);
-  family->robust_mean = exp(robust);
-}
-
-/* A tenth of a per mille is forgiven: grids are written with few digits. */
+/* Whether even the lowest Rp chosen lies at or above the Rp converged from. A tenth of a per mille
+ * is forgiven: grids are written with few digits. */
 static scree_in_range in_range(const analysis *a, const scree_family_result *family, double low) {
   if (!family->converged || !(low > 0)) return SCREE_IN_RANGE_UNKNOWN;
   double from = a->result->points[family->levels[family->converged_from]].rp_value;
   return low >= from * (1 - 1e-4) ? SCREE_IN_RANGE_YES : SCREE_IN_RANGE_NO;
+}
+
+/* Of the shapes' chosen Rp, each a double at an offset in scree_study_shape; NaN where some are not
+ * made yet. */
+static scree_rp_pick gather_pick(const analysis *a, size_t point, size_t offset,
+                                 const scree_family_result *family) {
+  const scree_shape_set *set = &a->study->sets[a->study->points[point].set];
+  scree_rp_pick pick = {.low = INFINITY};
+  double sum = 0;
+  for (size_t i = 0; i < set->count; i++) {
+    double rp;
+    memcpy(&rp, (const char *)&a->study->shapes[set->shapes[i]] + offset, sizeof rp);
+    if (!(rp > 0)) return (scree_rp_pick){NAN, NAN, NAN, SCREE_IN_RANGE_UNKNOWN};
+    pick.low = fmin(pick.low, rp);
+    pick.high = fmax(pick.high, rp);
+    sum += log(rp);
+  }
+  pick.mean = exp(sum / (double)set->count);
+  pick.in_range = in_range(a, family, pick.low);
+  return pick;
+}
+
+/* Where levels are multiples of the recommended one, it is in the range by the multiple: shapes of
+ * a set have each its own Rp. */
+static void gather_picks(const analysis *a, size_t point, scree_family_result *family) {
+  double factor;
+  family->by_ip = gather_pick(a, point, offsetof(scree_study_shape, paper_rp), family);
+  family->by_robust = gather_pick(a, point, offsetof(scree_study_shape, robust_rp), family);
+  family->recommended = gather_pick(a, point, offsetof(scree_study_shape, recommended_rp), family);
+  const char *from = a->result->points[family->levels[family->converged_from]].rp;
+  if (family->recommended.in_range != SCREE_IN_RANGE_UNKNOWN &&
+      scree_study_is_recommended(from, &factor))
+    family->recommended.in_range = factor <= 1 ? SCREE_IN_RANGE_YES : SCREE_IN_RANGE_NO;
 }
 
 static scree_status fit_time(const analysis *a, scree_family_result *family) {
@@ -422,8 +449,6 @@ static scree_status make_family(const analysis *a, size_t first, scree_family_re
   if (family->level_count < 2) return SCREE_OK;
   test_convergence(a, family);
   gather_picks(a, first, family);
-  family->paper_in_range = in_range(a, family, family->paper_low);
-  family->robust_in_range = in_range(a, family, family->robust_low);
   return fit_time(a, family);
 }
 

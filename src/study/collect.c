@@ -84,8 +84,8 @@ static scree_status put_facts(writer *w) {
 
 static scree_status put_shapes(writer *w) {
   sqlite3_stmt *statement;
-  scree_status status =
-      make(w, "INSERT OR REPLACE INTO shape VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8)", &statement);
+  scree_status status = make(
+      w, "INSERT OR REPLACE INTO shape VALUES(?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9)", &statement);
   if (status != SCREE_OK) return status;
   for (size_t i = 0; status == SCREE_OK && i < w->study->shape_count; i++) {
     const scree_study_shape *shape = &w->study->shapes[i];
@@ -100,6 +100,7 @@ static scree_status put_shapes(writer *w) {
     bind_real(statement, 6, shape->volume);
     bind_real(statement, 7, shape->paper_rp);
     bind_real(statement, 8, shape->robust_rp);
+    bind_real(statement, 9, shape->recommended_rp);
     status = put(w, statement);
   }
   sqlite3_finalize(statement);

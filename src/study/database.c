@@ -7,12 +7,13 @@
 #include <string.h>
 
 /* "scrS" and the version of the tables */
-enum { APPLICATION = 0x73637253, SCHEMA = 1, BUSY_MS = 60000 };
+enum { APPLICATION = 0x73637253, SCHEMA = 2, BUSY_MS = 60000 };
 
 static const char schema[] =
     "CREATE TABLE study(name TEXT PRIMARY KEY, value);"
     "CREATE TABLE shape(name TEXT PRIMARY KEY, source TEXT, checksum TEXT, triangle_count INTEGER,"
-    " area REAL, volume REAL, paper_rp REAL, robust_rp REAL);"
+    " area REAL, volume REAL, paper_rp REAL, robust_rp REAL,"
+    " recommended_rp REAL);"
     "CREATE TABLE point(point INTEGER PRIMARY KEY, label TEXT, rp TEXT, shapes TEXT);"
     "CREATE TABLE factor(point INTEGER, key TEXT, value TEXT, PRIMARY KEY(point, key));"
     "CREATE TABLE parameter(point INTEGER, key TEXT, value TEXT, PRIMARY KEY(point, key));"

@@ -35,7 +35,8 @@ static bool take_facts(const scree_yaml *root, scree_study_shape *shape) {
               strlen(sum->text) == 32 && number_of(root, "triangle_count", &count) &&
               number_of(root, "area", &shape->area) && number_of(root, "volume", &shape->volume) &&
               number_of(root, "paper_rp", &shape->paper_rp) &&
-              number_of(root, "robust_rp", &shape->robust_rp);
+              number_of(root, "robust_rp", &shape->robust_rp) &&
+              number_of(root, "recommended_rp", &shape->recommended_rp);
   if (!good) return false;
   shape->triangle_count = (uint64_t)count;
   snprintf(high, sizeof high, "%.16s", sum->text);
@@ -81,9 +82,23 @@ scree_status scree_study_know_shapes(scree_study *study, scree_error *error) {
 
 /* ---- levels ---- */
 
-/* Of a text that the plan has found to be a number. */
-static double rp_of(const char *text) {
-  double rp = NAN;
+bool scree_study_is_recommended(const char *rp, double *factor) {
+  static const char word[] = "recommended";
+  char number[SCREE_NUMBER_SIZE];
+  size_t length = strcspn(rp, "*");
+  *factor = 1;
+  if (!rp[length]) return !strcmp(rp, word);
+  if (length >= sizeof number || strcmp(rp + length + 1, word) != 0) return false;
+  memcpy(number, rp, length);
+  number[length] = 0;
+  return scree_number_read(number, factor) && *factor > 0 && *factor < INFINITY;
+}
+
+/* Of a text that the plan has found to be one of the shape's levels. */
+static double rp_of(const scree_study_shape *shape, const char *text) {
+  double rp = NAN, factor;
+  if (!strcmp(text, "scan")) return 1;
+  if (scree_study_is_recommended(text, &factor)) return fmin(1, factor * shape->recommended_rp);
   scree_number_read(text, &rp);
   return rp;
 }
@@ -91,10 +106,14 @@ static double rp_of(const char *text) {
 /* The file of a shape at an Rp text; NULL when memory is out. */
 static char *level_path(const scree_study *study, const scree_study_shape *shape, const char *rp) {
   char ending[64], number[SCREE_NUMBER_SIZE];
+  double factor;
   if (!strcmp(rp, "scan"))
     snprintf(ending, sizeof ending, "-scan.ply");
-  else {
-    scree_number_format_digits(rp_of(rp), 9, number);
+  else if (scree_study_is_recommended(rp, &factor)) {
+    scree_number_format_digits(factor, 9, number);
+    snprintf(ending, sizeof ending, "-%s-recommended.ply", number);
+  } else {
+    scree_number_format_digits(rp_of(shape, rp), 9, number);
     snprintf(ending, sizeof ending, "-rp%s.ply", number);
   }
   return scree_study_path(study, "shapes", shape->name, ending);
@@ -182,11 +201,9 @@ static scree_status write_level(const scree_study *study, const scree_study_shap
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_status status = SCREE_OK;
   if (!exists(path)) {
-    scree_level first;
-    scree_curve_level(curve, 0, &first);
-    size_t level = 0;
+    size_t count = shape->triangle_count, level = 0;
     if (strcmp(rp, "scan") != 0)
-      level = scree_curve_find(curve, scree_choice_target(rp_of(rp), first.triangle_count));
+      level = scree_curve_find(curve, scree_choice_target(rp_of(shape, rp), count));
     status = scree_curve_mesh(curve, level, &mesh, error);
     if (status == SCREE_OK) {
       scree_write_options o = scree_default_write_options();
@@ -209,7 +226,8 @@ static scree_status write_facts(const scree_study *study, const scree_study_shap
   } facts[] = {{"area", shape->area},
                {"volume", shape->volume},
                {"paper_rp", shape->paper_rp},
-               {"robust_rp", shape->robust_rp}};
+               {"robust_rp", shape->robust_rp},
+               {"recommended_rp", shape->recommended_rp}};
   scree_output output;
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_status status = scree_output_open(path, true, &output, error);
@@ -244,6 +262,7 @@ static scree_status decimate(const scree_study *study, size_t index, scree_mesh 
     made->volume = choice.volume;
     made->paper_rp = choice.paper.rp;
     made->robust_rp = choice.robust.rp;
+    made->recommended_rp = choice.recommended.rp;
     if (!(made->volume > 0))
       status = scree_fail(error, SCREE_BAD_MESH, "%s: the volume is %g m3: not an outward surface",
                           made->word, made->volume);

@@ -25,7 +25,7 @@ typedef struct scree_study_shape {
   scree_checksum checksum; /* of the file; of a sample: of its name and options */
   uint64_t triangle_count;
   double area, volume; /* m2, m3 */
-  double paper_rp, robust_rp;
+  double paper_rp, robust_rp, recommended_rp;
 } scree_study_shape;
 
 /* Shapes that a run mixes. */
@@ -38,7 +38,7 @@ typedef struct scree_shape_set {
 typedef struct scree_study_point {
   const char **values; /* a text per factor */
   size_t set;          /* of shapes */
-  const char *rp;      /* "spheres", "scan" or a number */
+  const char *rp;      /* "spheres", "scan", "recommended", a multiple of it or a number */
   const char *label;   /* the factors' values; "" where there are no factors */
 } scree_study_point;
 
@@ -109,7 +109,10 @@ scree_status scree_study_experiment(const scree_study *study, size_t run,
 /* Names every run by its content; all shapes must be known. */
 scree_status scree_study_make_keys(scree_study *study, scree_error *error);
 
-/* shapes.c: reads what the folder has on the shapes; where it has all, names the runs too. */
+/* shapes.c: whether a text means the recommended Rp, as "recommended", or a multiple of it, as
+ * "0.5*recommended"; the factor. */
+bool scree_study_is_recommended(const char *rp, double *factor);
+/* Reads what the folder has on the shapes; where it has all, names the runs too. */
 scree_status scree_study_know_shapes(scree_study *study, scree_error *error);
 /* The particles of a point's shapes with their density factors, in the order of its set; free each
  * particle. triangle_count: mean over the shapes. */

@@ -16,8 +16,9 @@ enum { MOST_ROWS = 40 };
 
 static const char plan[] = "name: fuzz\nreplicates: 2\nbase: {preset: demo}\nunit: m\n"
                            "shapes: [sample:box, a.stl]\nfactors: {rp: [spheres, 0.1, 0.2, 1]}\n";
-static const char box[] = "source: 'sample:box'\nchecksum: '0123456789abcdef0123456789abcdef'\n"
-                          "triangle_count: 12\narea: 6\nvolume: 1\npaper_rp: 1\nrobust_rp: 0.5\n";
+static const char box[] =
+    "source: 'sample:box'\nchecksum: '0123456789abcdef0123456789abcdef'\n"
+    "triangle_count: 12\narea: 6\nvolume: 1\npaper_rp: 1\nrobust_rp: 0.5\nrecommended_rp: 0.5\n";
 
 static void start(void) {
   static const char *const kinds[] = {"shapes", "leases", "runs", "results"};

@@ -141,6 +141,8 @@ static void errors_say_line_column_and_limit(void **state) {
       {"shapes: [sample:box]\ncolour: red\n", "line 2, column 9: no field 'colour' in a study"},
       {"shapes: [sample:box]\nfactors: {rp: [2]}\n",
        "line 2, column 16: rp: '2': must be a number"},
+      {"shapes: [sample:box]\nfactors: {rp: [0*recommended]}\n",
+       "must be a number above 0 and at most 1, recommended, a multiple"},
       {"shapes: [sample:box]\nfactors: {rp: [1e-3, 1e-3]}\n", "the level '1e-3' stands here twice"},
       {"shapes: [sample:box]\nfactors: {contact: {restitution: [0.3, 3]}}\n",
        "line 2, column 40: contact.restitution: '3': must be 0.01 to 1"},
@@ -414,17 +416,33 @@ static void expect_same_shape(const scree_run_shape *a, const scree_run_shape *b
   assert_true(a->density_factor == b->density_factor);
 }
 
+static double recommended_rp(const scree_mesh *scan) {
+  scree_curve *curve;
+  scree_choice choice;
+  scree_error error;
+  CHECK_OK(scree_curve_build(scan, NULL, NULL, &curve, &error), error);
+  CHECK_OK(scree_choose(curve, scan, NULL, NULL, &choice, &error), error);
+  double rp = choice.recommended.rp;
+  scree_choice_free(&choice);
+  scree_curve_free(curve);
+  return rp;
+}
+
 /* Shapes from files in the folder and those of a single run, from memory, have the same bits. */
 static void a_single_run_has_the_shapes_of_a_study(void **state) {
   (void)state;
-  const double rp[] = {0.02, 0.1, 1};
+  double rp[] = {0.02, 0.1, 1, 0, 0};
+  const size_t points = sizeof rp / sizeof *rp;
   scree_error error;
   scree_mesh scan;
   scree_study *study = open_tiny(
       "shapes", "name: shapes\nshapes: [sample:fp-1]\nsample: {resolution: 4e-3, noise: 0.2e-3}\n"
-                "base: {preset: demo}\nfactors:\n  rp: [0.02, 0.1, scan]\n");
+                "base: {preset: demo}\nfactors:\n"
+                "  rp: [0.02, 0.1, scan, recommended, 0.5*recommended]\n");
   CHECK_OK(scree_sample_make("fp-1", &study->sample, NULL, &scan, &error), error);
-  for (size_t point = 0; point < 3; point++)
+  rp[3] = recommended_rp(&scan);
+  rp[4] = 0.5 * rp[3];
+  for (size_t point = 0; point < points; point++)
     for (int rule = 0; rule < 2; rule++) {
       scree_run_shape shape;
       scree_grain grain;

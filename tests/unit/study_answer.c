@@ -18,6 +18,7 @@ typedef struct outcome {
   double angles[LEVELS], sd;           /* degrees: mean over the replicates, and their SD */
   double (*seconds)(double rp, int r); /* of replicate r */
   double paper_rp[2];                  /* chosen by Ip for the two shapes */
+  double recommended_rp[2];
 } outcome;
 
 /* Four values of mean 0 and SD 1. */
@@ -107,6 +108,7 @@ static scree_study *make_study(const outcome *o) {
     study->shapes[i].known = true;
     study->shapes[i].paper_rp = o->paper_rp[i];
     study->shapes[i].robust_rp = 2 * o->paper_rp[i];
+    study->shapes[i].recommended_rp = o->recommended_rp[i];
   }
   CHECK_OK(scree_study_make_keys(study, &error), error);
   for (size_t run = 0; run < scree_study_run_count(study); run++) {
@@ -141,7 +143,8 @@ static const outcome plateau = {.name = "plateau",
                                 .angles = {20, 27, 29.7, 30.1, 30},
                                 .sd = 0.4,
                                 .seconds = quartic,
-                                .paper_rp = {1e-3, 3e-4}};
+                                .paper_rp = {1e-3, 3e-4},
+                                .recommended_rp = {4e-4, 9e-5}};
 
 /* Two one-sided tests and Welch's, written out for equal counts and spreads. */
 static void check_comparison(const scree_comparison *c, double difference, double sd,
@@ -175,11 +178,13 @@ static void a_plateau_is_found_from_where_it_begins(void **state) {
   assert_true(f->comparisons[2].equivalent && f->comparisons[3].equivalent);
   assert_true(f->converged);
   assert_int_equal(f->converged_from, 2);
-  CHECK_NEAR(f->paper_low, 3e-4, 0);
-  CHECK_NEAR(f->paper_high, 1e-3, 0);
-  CHECK_NEAR(f->paper_mean, sqrt(3e-7), 1e-12);
-  assert_int_equal(f->paper_in_range, SCREE_IN_RANGE_YES);
-  assert_int_equal(f->robust_in_range, SCREE_IN_RANGE_YES);
+  CHECK_NEAR(f->by_ip.low, 3e-4, 0);
+  CHECK_NEAR(f->by_ip.high, 1e-3, 0);
+  CHECK_NEAR(f->by_ip.mean, sqrt(3e-7), 1e-12);
+  assert_int_equal(f->by_ip.in_range, SCREE_IN_RANGE_YES);
+  assert_int_equal(f->by_robust.in_range, SCREE_IN_RANGE_YES);
+  CHECK_NEAR(f->recommended.mean, 1.897366596e-4, 1e-12);
+  assert_int_equal(f->recommended.in_range, SCREE_IN_RANGE_NO);
   const scree_point_result *spheres = &r.points[f->spheres];
   assert_int_equal(spheres->counts.done, REPLICATES);
   assert_int_equal(spheres->heap_count, 0);
@@ -198,8 +203,8 @@ static void a_choice_below_the_plateau_is_told(void **state) {
   scree_study_result r = analyse(&o);
   CHECK_NEAR(r.points[r.families[0].levels[0]].angle_deg.mean, 20, 1e-9); /* by the cone */
   assert_int_equal(r.families[0].converged_from, 2);
-  assert_int_equal(r.families[0].paper_in_range, SCREE_IN_RANGE_NO);
-  assert_int_equal(r.families[0].robust_in_range, SCREE_IN_RANGE_NO);
+  assert_int_equal(r.families[0].by_ip.in_range, SCREE_IN_RANGE_NO);
+  assert_int_equal(r.families[0].by_robust.in_range, SCREE_IN_RANGE_NO);
   scree_study_result_free(&r);
 }
 
@@ -212,7 +217,7 @@ static void a_gap_ends_the_plateau(void **state) {
   scree_study_result r = analyse(&o);
   assert_true(r.families[0].comparisons[2].equivalent);
   assert_false(r.families[0].converged);
-  assert_int_equal(r.families[0].paper_in_range, SCREE_IN_RANGE_UNKNOWN);
+  assert_int_equal(r.families[0].by_ip.in_range, SCREE_IN_RANGE_UNKNOWN);
   scree_study_result_free(&r);
 }
 
@@ -230,7 +235,7 @@ static void with_wide_scatter_nothing_is_shown(void **state) {
     assert_true(f->comparisons[k].count_needed > REPLICATES);
   }
   assert_int_equal(f->comparisons[1].count_needed, 0); /* 3 degrees away: never within 2 */
-  assert_int_equal(f->paper_in_range, SCREE_IN_RANGE_UNKNOWN);
+  assert_int_equal(f->by_ip.in_range, SCREE_IN_RANGE_UNKNOWN);
   scree_study_result_free(&r);
 }
 
