@@ -21,7 +21,7 @@ printf '0,0,0\n' >bad.csv
   --stop-when-still false --print >small.yaml
 small="-c small.yaml --no-picture -j 1"
 run repose $small bad.csv
-run repose $small sample:box --resolution 0.5mm
+run repose $small --rp 1 sample:box --resolution 0.5mm
 "$SCREE" repose $small box.off pair.csv -o whole --frames 0.1 >text || echo failed
 # what is left of motion differs between compilers, and with it whether that is still
 rest() { sed 's/ still.*//; s/ moving.*//'; }
