@@ -13,6 +13,9 @@ typedef struct scree_sphere {
   double centre[3], radius; /* m */
 } scree_sphere;
 
+/* A surface of so many triangles has all the detail that spheres show. */
+enum { SCREE_CLUMP_TRIANGLES = 2000 };
+
 /* How spheres are placed. All but the first are greedy, by the paper named; they are there to
  * compare and to reproduce. */
 typedef enum scree_clump_method {
@@ -100,6 +103,16 @@ SCREE_API const scree_clump *scree_clumps_within(const scree_clumps *clumps, dou
 /* A particle of one of the clumps, with the body's volume, centre and inertia. */
 SCREE_API scree_status scree_clump_particle(const scree_clumps *clumps, const scree_clump *clump,
                                             scree_particle **particle, scree_error *error);
+/* The same in one call: so many spheres, 1 to 300, or as many as the mesh has use for. */
+SCREE_API scree_status scree_clump_fit(const scree_mesh *mesh, size_t count,
+                                       const scree_progress *progress, scree_particle **particle,
+                                       scree_error *error);
+
+/* A sphere a line, x,y,z,radius below a line of words and the body's mass properties, in units of
+ * unit_m metres: what scree_particle_clump_read reads. */
+SCREE_API scree_status scree_spheres_write(const scree_clumps *clumps, const scree_clump *clump,
+                                           double unit_m, const char *path, bool overwrite,
+                                           scree_error *error);
 
 #ifdef __cplusplus
 }

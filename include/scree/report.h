@@ -248,10 +248,12 @@ typedef enum scree_dem_code {
   SCREE_DEM_YADE,     /* NAME.py with appendClumped */
   SCREE_DEM_PFC,      /* NAME.dat with `clump template create` */
   SCREE_DEM_CHRONO,   /* NAME.csv and NAME.py for DEM-Engine's LoadClumpType */
+  SCREE_DEM_EDEM,     /* NAME.tsv to be pasted as the spheres of a multi-sphere particle */
+  SCREE_DEM_MFIX,     /* NAME-gsp_config.csv of glued spheres */
   SCREE_DEM_CODE_COUNT
 } scree_dem_code;
 
-/* lammps, liggghts, yade, pfc, chrono. NULL for no code. */
+/* lammps, liggghts, yade, pfc, chrono, edem, mfix. NULL for no code. */
 SCREE_API const char *scree_dem_code_name(scree_dem_code code);
 
 typedef struct scree_code_options {
@@ -263,8 +265,9 @@ typedef struct scree_code_options {
 SCREE_API scree_code_options scree_default_code_options(void);
 
 /* Writes a clump (or sphere) into an existing folder as the code reads it, in SI units: its spheres
- * about the centre of mass along the principal axes, the particle's mass and inertia, and for
- * LAMMPS, LIGGGHTS and YADE a script that lets some fall into a box, with made-up materials. */
+ * about the centre of mass along the principal axes, the particle's mass and inertia (EDEM and MFiX
+ * work these out for themselves), and for LAMMPS, LIGGGHTS and YADE a script that lets some fall
+ * into a box, with made-up materials. */
 SCREE_API scree_status scree_clump_code_write(const scree_particle *particle, scree_dem_code code,
                                               const scree_code_options *options, const char *folder,
                                               scree_error *error);
@@ -303,11 +306,6 @@ SCREE_API scree_status scree_clump_json_write(const scree_clump_report *report, 
 /* A row per body and count. "-" is stdout. */
 SCREE_API scree_status scree_clump_csv_write(const scree_clump_report *report, const char *path,
                                              bool overwrite, scree_error *error);
-/* A sphere a line, x,y,z,radius below a line of words and the body's mass properties, in units of
- * unit_m metres: what scree_particle_clump_read reads. */
-SCREE_API scree_status scree_spheres_write(const scree_clumps *clumps, const scree_clump *clump,
-                                           double unit_m, const char *path, bool overwrite,
-                                           scree_error *error);
 
 /* ---- Measures and distances: tables, JSON ---- */
 

@@ -87,7 +87,7 @@ typedef struct scree_study_run {
   size_t point, replicate;
   uint64_t seed;
   const char *label;  /* the point's factors and values, "rp 0.001, contact.friction 0.3" */
-  const char *rp;     /* a number, "scan" or "spheres" */
+  const char *rp;     /* a number, "scan", "spheres" or "clump:20" */
   const char *shapes; /* names, joined by + */
   const char *key;    /* names the run by what its numbers follow from; NULL before
                          scree_study_prepare */
@@ -153,10 +153,10 @@ typedef struct scree_study_counts {
 typedef struct scree_point_result {
   const char *label, *rp, *shapes;
   const char *pile; /* key of its first run done: the heap to look at; NULL: none yet */
-  double rp_value;  /* 1 for the scan, NaN for spheres */
+  double rp_value;  /* 1 for the scan, NaN for spheres and clumps */
   scree_study_counts counts;
   size_t heap_count;           /* runs done that have an angle */
-  double triangle_count;       /* mean over the particles; 0 for spheres */
+  double triangle_count;       /* mean over the particles; 0 for spheres and clumps */
   scree_summary angle_deg;     /* of repose, by the study's way, of the runs with a heap */
   scree_summary seconds;       /* processor time of a run */
   scree_summary height;        /* m */
@@ -188,7 +188,7 @@ typedef struct scree_rp_pick {
 /* Points that differ in rp only. */
 typedef struct scree_family_result {
   const char *label;             /* what they have in common; "" where rp is the only factor */
-  size_t *levels;                /* indices of points, Rp rising, spheres left out */
+  size_t *levels;                /* indices of points, Rp rising; spheres, clumps left out */
   scree_comparison *comparisons; /* of each level with the finest; the last one is not used */
   size_t level_count;
   size_t spheres; /* index of the point with spheres; SIZE_MAX: none */

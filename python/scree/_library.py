@@ -346,6 +346,7 @@ _FALLIBLE = {  # argument types before the error
     "particle_from_mesh": (_M, POINTER(scree_particle_options), _HH),
     "particle_sphere": (c_double, _HH),
     "particle_clump": (POINTER(c_double), POINTER(c_double), c_size_t, _H, _HH),
+    "clump_fit": (_M, c_size_t, _P, _HH),
     "world_create": (POINTER(scree_world_options), _HH),
     "world_add_material": (_H, POINTER(scree_material), POINTER(c_size_t)),
     "world_set_contact": (_H, c_size_t, c_size_t, c_double, c_double),

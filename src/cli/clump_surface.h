@@ -4,9 +4,6 @@
 
 #include "cli/input.h"
 
-/* Spheres show no detail finer than a surface of so many triangles. */
-enum { CLI_CLUMP_TRIANGLES = 2000 };
-
 typedef struct cli_clump_surface {
   size_t triangles; /* at most so many */
   bool no_repair;   /* refuse instead */

@@ -112,7 +112,7 @@ static double level_rp(const cli_grain_options *o, size_t level, size_t triangle
   if (is_sphere_level(o, level)) return 1;
   if (!o->rp_count) return dense ? CLI_RECOMMENDED : 1;
   if (!o->clump[level]) return o->rp[level];
-  return fmin(1, CLI_CLUMP_TRIANGLES / (double)triangle_count);
+  return fmin(1, SCREE_CLUMP_TRIANGLES / (double)triangle_count);
 }
 
 static double smallest_rp(const cli_grain_options *o, size_t triangle_count) {

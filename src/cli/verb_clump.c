@@ -51,7 +51,7 @@ static const clump_arguments defaults = {.source = CLI_SOURCE_DEFAULTS,
                                          .outside = INFINITY,
                                          .ratio = 0.05,
                                          .angle = 150,
-                                         .triangles = CLI_CLUMP_TRIANGLES};
+                                         .triangles = SCREE_CLUMP_TRIANGLES};
 
 /* Walls of fewer cells of the grid than this are not seen. */
 static const double LEAST_CELLS = 3;

@@ -35,9 +35,8 @@ static const cli_option options[] = {
      0, 0, NULL},
     {"to", CLI_TEXT, AT(to), "UNIT|CODE",
      "Unit of the meshes written; default: the input's; mm for samples and checkpoints. Or the DEM "
-     "code that reads what is written: lammps, liggghts, yade, pfc or chrono. These take clumps: "
-     "of "
-     "a surface one is made.",
+     "code that reads what is written: lammps, liggghts, yade, pfc, chrono, edem or mfix. These "
+     "take clumps: of a surface one is made.",
      0, 0, NULL},
     {"count", CLI_COUNT, AT(count), "N",
      "For a DEM code: spheres of the clump made of a surface. Default: the recommended number.", 1,
@@ -170,7 +169,7 @@ static scree_status make_clump(const cli_call *call, scree_particle **particle,
   const char *word = call->inputs[0];
   cli_input_options input = cli_source_options(&a->source);
   if (cli_is_clump(word)) return scree_particle_clump_read(word, a->source.unit, particle, error);
-  cli_clump_surface surface = {.triangles = CLI_CLUMP_TRIANGLES};
+  cli_clump_surface surface = {.triangles = SCREE_CLUMP_TRIANGLES};
   scree_clump_options o = scree_default_clump_options();
   scree_clumps clumps;
   scree_status status = cli_load_for_clump(word, &input, call->progress, &surface, error);
@@ -383,7 +382,7 @@ static int run(const cli_call *call) {
     return cli_misuse(
         call->verb,
         "--to %s: must be a unit (m, cm, mm, um, inch, ft, km) or a DEM code (lammps, "
-        "liggghts, yade, pfc, chrono)",
+        "liggghts, yade, pfc, chrono, edem, mfix)",
         a->to);
   if (a->count || cli_is_clump(call->inputs[0]))
     return cli_misuse(call->verb, "a clump is written for a DEM code: say which with --to");
@@ -405,12 +404,12 @@ const cli_verb cli_verb_export = {
         "A particle's mesh in the unit asked, with its centre of mass at the origin "
         "and its principal axes along x, y and z when asked, and mass, centre and inertia in a "
         "JSON beside it. The surface must be closed.\n\n"
-        "For other DEM codes (--to lammps, liggghts, yade, pfc or chrono) a clump is written into "
-        "a "
-        "folder as that code reads it, from a table of `scree clump` or made of a surface: spheres "
-        "about the centre of mass along the principal axes with the body's mass and inertia, and "
-        "for "
-        "the first three a script that lets some fall into a box. Other codes read the mesh.\n\n"
+        "For other DEM codes (--to lammps, liggghts, yade, pfc, chrono, edem or mfix) a clump is "
+        "written into a folder as that code reads it, from a table of `scree clump` or made of a "
+        "surface: spheres "
+        "about the centre of mass along the principal axes with the body's mass and inertia (EDEM "
+        "and MFiX work these out for themselves), and for the first three a script that lets some "
+        "fall into a box. Other codes read the mesh.\n\n"
         "For ParaView: a surface as .vtp with the area of every triangle, and with --reference its "
         "distance to another surface; lengths in metres.\n\n"
         "A checkpoint or frame of a simulation becomes .vtp, as the view asked; or a folder: "

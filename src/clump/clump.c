@@ -183,3 +183,15 @@ scree_status scree_clump_particle(const scree_clumps *clumps, const scree_clump 
   scree_free(radii);
   return status;
 }
+
+scree_status scree_clump_fit(const scree_mesh *mesh, size_t count, const scree_progress *progress,
+                             scree_particle **particle, scree_error *error) {
+  scree_clump_options o = scree_default_clump_options();
+  scree_clumps clumps;
+  o.most = count;
+  scree_status status = scree_clumps_make(mesh, &o, progress, &clumps, error);
+  if (status != SCREE_OK) return status;
+  status = scree_clump_particle(&clumps, scree_clumps_of_count(&clumps, count), particle, error);
+  scree_clumps_free(&clumps);
+  return status;
+}

@@ -8,13 +8,15 @@
 static const double margin = 0.1, /* of the grid around the bounding box */
     bricks_per_cell_face = 2.4, /* cells near a surface of the area of one cell's face, measured */
     walls_cells = 4,            /* fine spacings that a wall shall have */
-    usual_bricks = 10000,       /* spacing about 0.009 of a compact body's size */
+    usual_bricks = 10000,       /* for 100 spheres: spacing about 0.009 of a compact body's size */
+    least_bricks = 2000,        /* for few */
     most_bricks = 24000;        /* 12 MB */
 enum { MOST_NODES = 4000000, BLOCK = 64 };
 
-static double choose_step(const scree_target *body, double thickness) {
+static double choose_step(const scree_target *body, size_t most, double thickness) {
   double area = bricks_per_cell_face * body->area;
-  double usual = sqrt(area / usual_bricks), least = sqrt(area / most_bricks);
+  double bricks = fmax(least_bricks, usual_bricks * pow((double)most / 100, 2. / 3));
+  double usual = sqrt(area / bricks), least = sqrt(area / most_bricks);
   double wanted = fmax(fmin(usual, thickness * SCREE_FINER / walls_cells), least);
   double box = 1;
   const double low[3] = {body->low.x, body->low.y, body->low.z},
@@ -138,13 +140,14 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-scree_status scree_field_make(const scree_target *body, scree_field *field, scree_error *error) {
+scree_status scree_field_make(const scree_target *body, size_t most, scree_field *field,
+                              scree_error *error) {
   scree_field f = {0};
   scree_lines lines = {0};
   size_t *cells = NULL;
   scree_status status = scree_target_thickness(body, &f.thickness, error);
   if (status != SCREE_OK) return status;
-  f.step = choose_step(body, f.thickness);
+  f.step = choose_step(body, most, f.thickness);
   lay_grid(body, &f);
   status = fill(body, &f, &lines, &cells, error);
   scree_lines_free(&lines);

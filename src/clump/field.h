@@ -22,9 +22,10 @@ typedef struct scree_field {
   size_t brick_count;
 } scree_field;
 
-/* The spacing follows the body: enough bricks for its area, finer where walls are thin, up to a
- * limit of memory. */
-scree_status scree_field_make(const scree_target *body, scree_field *field, scree_error *error);
+/* The spacing follows the size of `most` spheres, finer where walls are thin, up to a limit of
+ * memory. */
+scree_status scree_field_make(const scree_target *body, size_t most, scree_field *field,
+                              scree_error *error);
 void scree_field_free(scree_field *field);
 
 /* Finest spacing, and how many of it fit into the body's local thickness: with fewer than three a

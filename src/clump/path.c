@@ -45,33 +45,36 @@ static void measure(scree_path *p, scree_trial *t) {
   t->overlap = scree_ruler_measure(&p->ruler, t->spheres, t->count, NULL);
 }
 
-/* By how much the worst of the held moments is out of tolerance. */
-static double excess(const scree_path *p, const scree_trial *t) {
+/* What held moments out of tolerance cost. */
+static double penalty(const scree_path *p, const scree_trial *t) {
   double worst = 0;
   for (size_t m = 0; m < held_moments(t->count); m++) {
     double error = fabs(t->overlap.moments[m] - p->body->moments[m]);
-    worst = fmax(worst, error - p->mover.tolerance[m]);
+    worst = fmax(worst, p->mover.price[m] * (error - p->mover.tolerance[m]));
   }
   return worst;
 }
 
 static double score(const scree_path *p, const scree_trial *t) {
-  return t->overlap.iou - (is_strict(p) ? 0 : excess(p, t));
+  return t->overlap.iou - (is_strict(p) ? 0 : penalty(p, t));
 }
 
-/* Moments to those of the body, by the least motion that does it. */
+/* Volume and centroid to those of the body, by the least motion that does it. */
 static void restore(scree_path *p, scree_trial *t, int steps) {
   double share = 1;
   scree_trial *next = &p->work[3];
-  scree_step step = {
-      .softness = 1, .damping = 1, .outside = 1, .held = held_moments(t->count), .restore = true};
-  for (int k = 0; k < steps && excess(p, t) > 0; k++) {
+  scree_step step = {.softness = 1,
+                     .damping = 1,
+                     .outside = 1,
+                     .held = t->count >= 4 ? SCREE_FIRST_SECOND : 1,
+                     .restore = true};
+  for (int k = 0; k < steps && penalty(p, t) > 0; k++) {
     *next = *t;
     step.hold = share;
     step.moments = t->overlap.moments;
     scree_mover_step(&p->mover, next->spheres, next->count, &step);
     measure(p, next);
-    if (excess(p, next) < excess(p, t))
+    if (score(p, next) > score(p, t))
       *t = *next;
     else
       share *= 0.4;
@@ -167,6 +170,11 @@ static void sweep_up(scree_path *p) {
     scree_trial *t = &p->work[0];
     *t = p->best[n - 1];
     if (!add_sphere(p, t, 0)) break;
+    optimise(p, t, STEPS, soft_begin);
+    scree_path_keep(p, t);
+    *t = (scree_trial){.count = n};
+    if (n < 2 || !scree_places_spread(&p->places, n, t->spheres)) continue;
+    measure(p, t);
     optimise(p, t, STEPS, soft_begin);
     scree_path_keep(p, t);
   }
@@ -286,7 +294,7 @@ scree_status scree_path_make(const scree_target *body, size_t most, double most_
   scree_path p = {.body = body, .most = most, .room = most > 20 ? most + SPARE_COUNTS : most + 2};
   p.ticker = (scree_ticker){.progress = progress};
   *path = p;
-  scree_status status = scree_field_make(body, &path->field, error);
+  scree_status status = scree_field_make(body, most, &path->field, error);
   if (status == SCREE_OK) status = scree_ruler_make(body, &path->ruler, error);
   if (status == SCREE_OK) status = scree_mover_make(body, &path->field, &path->mover, error);
   if (status == SCREE_OK) status = scree_places_make(&path->field, &path->places, error);

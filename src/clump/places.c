@@ -2,6 +2,7 @@
 
 #include "base/alloc.h"
 
+#include <stdint.h>
 #include <string.h>
 
 static const float
@@ -62,6 +63,7 @@ scree_status scree_places_make(const scree_field *field, scree_places *places, s
   SCREE_ALLOC_OR(p.volume, room, error, out_of_memory);
   collect(field, &p);
   SCREE_ALLOC_OR(p.left, p.count, error, out_of_memory);
+  SCREE_ALLOC_OR(p.cluster, p.count, error, out_of_memory);
   *places = p;
   return SCREE_OK;
 out_of_memory:
@@ -76,6 +78,7 @@ void scree_places_free(scree_places *places) {
   scree_free(places->depth);
   scree_free(places->volume);
   scree_free(places->left);
+  scree_free(places->cluster);
   *places = (scree_places){0};
 }
 
@@ -139,4 +142,69 @@ size_t scree_places_free_of(scree_places *p, const scree_sphere *spheres, size_t
         p->left[i] = passed_over;
   }
   return number;
+}
+
+/* ---- Spread evenly ---- */
+
+enum { SPREAD_POINTS = 3000, LLOYD_ITERATIONS = 15 };
+
+static size_t stride_of(const scree_places *p) {
+  return 1 + p->count / SPREAD_POINTS;
+}
+
+/* The first points, each the farthest from those before; `left` is the distance squared. */
+static void spread_first(scree_places *p, size_t count, scree_sphere *spheres) {
+  size_t stride = stride_of(p), at = 0;
+  for (size_t i = 0; i < p->count; i += stride) p->left[i] = INFINITY;
+  for (size_t s = 0; s < count; s++) {
+    float x = p->x[at], y = p->y[at], z = p->z[at];
+    spheres[s] = (scree_sphere){{(double)x, (double)y, (double)z}, 0};
+    for (size_t i = 0; i < p->count; i += stride) {
+      float d = distance2(p, i, x, y, z);
+      if (d < p->left[i]) p->left[i] = d, p->cluster[i] = (uint32_t)s;
+      if (p->left[i] > p->left[at]) at = i;
+    }
+  }
+}
+
+/* Every point to the nearest centre. */
+static void assign(scree_places *p, size_t count, const scree_sphere *spheres) {
+  for (size_t i = 0; i < p->count; i += stride_of(p)) p->left[i] = INFINITY;
+  for (size_t s = 0; s < count; s++) {
+    float x = (float)spheres[s].centre[0], y = (float)spheres[s].centre[1],
+          z = (float)spheres[s].centre[2];
+    for (size_t i = 0; i < p->count; i += stride_of(p)) {
+      float d = distance2(p, i, x, y, z);
+      if (d < p->left[i]) p->left[i] = d, p->cluster[i] = (uint32_t)s;
+    }
+  }
+}
+
+/* Centres to the centroids of their clusters, radii to spheres of their volumes. */
+static void centre(const scree_places *p, size_t count, scree_sphere *spheres) {
+  double sums[SCREE_MOST_SPHERES][4] = {{0}}, all = 0;
+  for (size_t i = 0; i < p->count; i += stride_of(p)) {
+    double *sum = sums[p->cluster[i]], volume = (double)p->volume[i];
+    sum[0] += volume * (double)p->x[i];
+    sum[1] += volume * (double)p->y[i];
+    sum[2] += volume * (double)p->z[i];
+    sum[3] += volume;
+    all += volume;
+  }
+  for (size_t s = 0; s < count; s++) {
+    if (!(sums[s][3] > 0)) continue;
+    for (int k = 0; k < 3; k++) spheres[s].centre[k] = sums[s][k] / sums[s][3];
+    spheres[s].radius = fmax(least_radius, cbrt(0.75 / 3.14159265358979323846 * sums[s][3] / all));
+  }
+}
+
+bool scree_places_spread(scree_places *p, size_t count, scree_sphere *spheres) {
+  if (p->count < count * stride_of(p)) return false;
+  spread_first(p, count, spheres);
+  for (int i = 0; i < LLOYD_ITERATIONS; i++) {
+    centre(p, count, spheres);
+    assign(p, count, spheres);
+  }
+  centre(p, count, spheres);
+  return true;
 }

@@ -7,8 +7,9 @@
 typedef struct scree_places {
   size_t count;
   float *x, *y, *z, *depth;
-  float *volume; /* that each stands for */
-  float *left;   /* scratch: from the surface and from the spheres there are */
+  float *volume;     /* that each stands for */
+  float *left;       /* scratch: from the surface and from the spheres there are */
+  uint32_t *cluster; /* scratch */
 } scree_places;
 
 /* Nodes of the coarse grid, and where that has finer cells, half of theirs. */
@@ -26,5 +27,10 @@ typedef struct scree_place {
  * others' neighbourhood; most gain first. Their radius reaches a little over the distance free. */
 size_t scree_places_free_of(scree_places *places, const scree_sphere *spheres, size_t count,
                             double outside, scree_place *found, size_t most);
+
+/* So many spheres spread evenly: the centroids and volumes of the clusters that Lloyd's iteration
+ * makes of the points, from points each farthest from those before. False where there are fewer
+ * points. */
+bool scree_places_spread(scree_places *places, size_t count, scree_sphere *spheres);
 
 #endif

@@ -21,8 +21,10 @@ static const double pi = 3.14159265358979323846;
 
 /* Tuning, each once; lengths where the body's volume is 1. */
 static const double directions_in_all =
-                        24576, /* over all spheres: cost of a step, noise of areas below 1e-3 */
-    least_directions = 320,    /* of one sphere */
+                        24576, /* over all spheres in a sharp step: noise of areas below 1e-3 */
+    least_directions = 320,    /* of one sphere in a sharp step */
+    least_soft = 64,           /* in a soft one */
+    sharp = 0.05,              /* softness of a sharp step for one sphere, as n^(-1/3) */
     damping_share = 0.02,      /* of the mean curvature, added: keeps covered spheres still */
     least_curvature = 1e-6,    /* likewise where nothing is exposed */
     largest_move = 0.25,       /* of the radius, in one step */
@@ -30,6 +32,7 @@ static const double directions_in_all =
     slack_volume = 0.005,      /* tolerances: volume */
     slack_centroid = 0.001,    /* centroid */
     slack_inertia = 0.014,     /* second moments, of the moments of inertia they enter */
+    inertia_price = 0.1,       /* IoU that a whole moment of inertia is worth */
     slack_kept = 0.5,          /* part of a tolerance that a step aims into */
     slack_restored = 0.8;      /* likewise when only moments are restored */
 
@@ -47,6 +50,8 @@ static void set_tolerances(scree_mover *m) {
   m->tolerance[7] = slack_inertia * fmin(inertia[0], inertia[1]);
   m->tolerance[8] = slack_inertia * fmin(inertia[0], inertia[2]);
   m->tolerance[9] = slack_inertia * fmin(inertia[1], inertia[2]);
+  for (int k = 0; k < SCREE_MOMENTS; k++)
+    m->price[k] = k < SCREE_FIRST_SECOND ? 1 : inertia_price * slack_inertia / m->tolerance[k];
 }
 
 scree_status scree_mover_make(const scree_target *body, const scree_field *field,
@@ -141,6 +146,14 @@ static void solve_sphere(scree_normal_equations *e, bool moments) {
   }
 }
 
+/* Softer steps do with coarser patches. */
+static size_t direction_count(size_t count, const scree_step *step) {
+  double each = fmax(least_directions, directions_in_all / (double)count);
+  double fineness = step->restore ? 1 : sharp / cbrt((double)count) / step->softness;
+  each = fmax(least_soft, each * fmin(1, fineness));
+  return (size_t)fmin(SCREE_MOST_DIRECTIONS, each);
+}
+
 static double dot4(const double *a, const double *b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3];
 }
@@ -159,30 +172,49 @@ static void set_targets(const scree_mover *mover, size_t count, scree_step *step
   }
 }
 
-/* The multipliers: of those that are not active, 0. */
+/* The multipliers that are free, those that are not being as they are. */
+static void solve_multipliers(const double *matrix, const double *wanted, const bool *free,
+                              double *multipliers) {
+  double a[SCREE_MOMENTS * SCREE_MOMENTS], b[SCREE_MOMENTS];
+  for (size_t p = 0; p < SCREE_MOMENTS; p++) {
+    b[p] = free[p] ? wanted[p] : multipliers[p];
+    for (size_t q = 0; q < SCREE_MOMENTS; q++) {
+      double between = matrix[SCREE_MOMENTS * (p > q ? p : q) + (p > q ? q : p)];
+      a[SCREE_MOMENTS * p + q] = free[p] && free[q] ? between : p == q;
+      if (free[p] && !free[q]) b[p] -= between * multipliers[q];
+    }
+  }
+  factor(a, SCREE_MOMENTS);
+  solve(a, SCREE_MOMENTS, b);
+  memcpy(multipliers, b, sizeof b);
+}
+
+/* The multipliers: of moments that are not active, 0. That of a second moment is what holding it
+ * costs, at most its price: beyond, the moment gives way. */
 static void find_multipliers(const scree_mover *mover, size_t count, scree_step *step,
                              double multipliers[SCREE_MOMENTS]) {
-  double matrix[SCREE_MOMENTS * SCREE_MOMENTS] = {0};
-  set_targets(mover, count, step, multipliers);
+  double matrix[SCREE_MOMENTS * SCREE_MOMENTS] = {0}, wanted[SCREE_MOMENTS];
+  bool free[SCREE_MOMENTS], dear = false;
+  set_targets(mover, count, step, wanted);
   for (size_t i = 0; i < count; i++) {
     const scree_normal_equations *e = &mover->equations[i];
     for (size_t p = 0; p < SCREE_MOMENTS; p++) {
-      multipliers[p] -= dot4(e->slopes[p], e->gradient);
+      wanted[p] -= dot4(e->slopes[p], e->gradient);
       for (size_t q = 0; q <= p; q++)
         matrix[SCREE_MOMENTS * p + q] += dot4(e->slopes[p], e->answers[q]);
     }
   }
-  for (size_t p = 0; p < SCREE_MOMENTS; p++) {
-    double *own = &matrix[(SCREE_MOMENTS + 1) * p];
-    *own += 1e-4 * *own + 1e-9;
-    if (step->active[p]) continue;
-    for (size_t q = 0; q < SCREE_MOMENTS; q++)
-      matrix[SCREE_MOMENTS * (p > q ? p : q) + (p > q ? q : p)] = 0;
-    *own = 1;
-    multipliers[p] = 0;
+  for (size_t p = 0; p < SCREE_MOMENTS; p++)
+    matrix[(SCREE_MOMENTS + 1) * p] += 1e-4 * matrix[(SCREE_MOMENTS + 1) * p] + 1e-9;
+  memcpy(free, step->active, sizeof free);
+  solve_multipliers(matrix, wanted, free, multipliers);
+  for (size_t m = SCREE_FIRST_SECOND; m < SCREE_MOMENTS; m++) {
+    if (!(fabs(multipliers[m]) > mover->price[m])) continue;
+    multipliers[m] = copysign(mover->price[m], multipliers[m]);
+    free[m] = false;
+    dear = true;
   }
-  factor(matrix, SCREE_MOMENTS);
-  solve(matrix, SCREE_MOMENTS, multipliers);
+  if (dear) solve_multipliers(matrix, wanted, free, multipliers);
 }
 
 /* The sphere within the body's box, and of a size that is allowed. */
@@ -211,9 +243,8 @@ static void move_sphere(const scree_mover *mover, size_t index, const scree_step
 }
 
 void scree_mover_step(scree_mover *mover, scree_sphere *spheres, size_t count, scree_step *step) {
-  double multipliers[SCREE_MOMENTS] = {0}, each = directions_in_all / (double)count;
-  each = fmax(least_directions, fmin(SCREE_MOST_DIRECTIONS, each));
-  scree_directions_spread(&mover->directions, (size_t)each);
+  double multipliers[SCREE_MOMENTS] = {0};
+  scree_directions_spread(&mover->directions, direction_count(count, step));
   for (size_t i = 0; i < count; i++) {
     add_sphere(mover, spheres, count, i, step);
     solve_sphere(&mover->equations[i], step->hold > 0);

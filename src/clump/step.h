@@ -6,8 +6,6 @@
 #include "clump/field.h"
 #include "clump/overlap.h"
 
-enum { SCREE_MOST_SPHERES = 400 };
-
 /* What one sphere adds to a step: 4 unknowns, its centre and radius. */
 typedef struct scree_normal_equations {
   double curvature[4][4];           /* lower triangle; its Cholesky factor once solved */
@@ -22,6 +20,7 @@ typedef struct scree_mover {
   const scree_target *body;
   const scree_field *field;
   double tolerance[SCREE_MOMENTS]; /* how far the union's moments may be from the body's */
+  double price[SCREE_MOMENTS];     /* IoU that is given up at most for each moment */
   double most_outside;             /* no sphere stands out of the body by more; INFINITY: any */
   scree_directions directions;
   scree_normal_equations *equations; /* SCREE_MOST_SPHERES */

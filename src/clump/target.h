@@ -8,7 +8,8 @@
 #include "mesh/mesh.h"
 
 /* Moments of a solid, in this order: volume; x y z; xx yy zz xy xz yz. */
-enum { SCREE_MOMENTS = 10 };
+enum { SCREE_MOMENTS = 10, SCREE_FIRST_SECOND = 4 };
+enum { SCREE_MOST_SPHERES = 400 };
 /* The diameter of the sphere of volume 1. */
 #define SCREE_UNIT_SIZE 1.2407009817988
 

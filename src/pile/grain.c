@@ -46,23 +46,10 @@ static scree_status make_level(const scree_mesh *scan, const scree_curve *curve,
   return status;
 }
 
-/* Of so many spheres, or as many as the body has use for; mass and inertia are the level's. */
-static scree_status make_clump(const scree_mesh *mesh, size_t count, const scree_progress *progress,
-                               scree_particle **particle, scree_error *error) {
-  scree_clump_options o = scree_default_clump_options();
-  scree_clumps clumps;
-  o.most = count;
-  scree_status status = scree_clumps_make(mesh, &o, progress, &clumps, error);
-  if (status != SCREE_OK) return status;
-  status = scree_clump_particle(&clumps, scree_clumps_of_count(&clumps, count), particle, error);
-  scree_clumps_free(&clumps);
-  return status;
-}
-
 static scree_status make_particle(const scree_mesh *mesh, const scree_grain_options *options,
                                   double volume, const scree_progress *progress,
                                   scree_particle **particle, scree_error *error) {
-  if (options->clump) return make_clump(mesh, options->clump, progress, particle, error);
+  if (options->clump) return scree_clump_fit(mesh, options->clump, progress, particle, error);
   if (options->sphere)
     return scree_particle_sphere(cbrt(0.75 * volume / 3.14159265358979324), particle, error);
   scree_particle_options o = scree_default_particle_options();

@@ -2,17 +2,13 @@
  * principal axes, with mass and inertia, and a script that lets some fall into a box. Formats by
  * the codes' manuals: LAMMPS `molecule` and `fix rigid/small`, LIGGGHTS `fix
  * particletemplate/multisphere`, YADE `appendClumped`, PFC `clump template create`, Chrono
- * DEM-Engine `LoadClumpType`. */
+ * DEM-Engine `LoadClumpType`; EDEM's page "Add Multi-Sphere Particles" (a table of spheres about
+ * the origin along the principal axes, to be pasted); MFiX by what its generator of glued spheres
+ * writes as gsp_config.csv. */
 #include "base/file.h"
 #include "base/vec.h"
 
 #include <string.h>
-
-static const char *const names[] = {"lammps", "liggghts", "yade", "pfc", "chrono"};
-
-const char *scree_dem_code_name(scree_dem_code code) {
-  return (size_t)code < sizeof names / sizeof *names ? names[code] : NULL;
-}
 
 /* What all the writers need. */
 typedef struct clump_job {
@@ -26,6 +22,8 @@ typedef struct clump_job {
   double damping;       /* LAMMPS's gamma_n, 1/(m s) */
   char name[128];       /* without blanks */
 } clump_job;
+
+static const double pi = 3.14159265358979323846;
 
 /* Young's modulus, Poisson's ratio and friction of the scripts: to be edited there. */
 static const double young = 1e7, poisson = 0.3, friction = 0.5, gravity = 9.81;
@@ -48,8 +46,7 @@ static double damping_rate(const clump_job *j, double least) {
 /* A tenth of Rayleigh's time of the smallest sphere (Li, Xu, Thornton 2005). */
 static double rayleigh_step(const clump_job *j, double least) {
   double shear = young / (2 * (1 + poisson));
-  return 0.1 * 3.14159265358979 * least * sqrt(j->options->density / shear) /
-         (0.1631 * poisson + 0.8766);
+  return 0.1 * pi * least * sqrt(j->options->density / shear) / (0.1631 * poisson + 0.8766);
 }
 
 static clump_job prepare(const scree_particle *particle, const scree_code_options *o,
@@ -327,6 +324,84 @@ static scree_status write_chrono(const clump_job *j, scree_error *error) {
   return status == SCREE_OK ? write_one(j, ".py", put_chrono, error) : status;
 }
 
+/* ---- EDEM and MFiX ---- */
+
+static void put_edem(const clump_job *j, FILE *f) {
+  fputs("X (m)\tY (m)\tZ (m)\tRadius (m)\n", f);
+  put_spheres(j, f, false, '\t');
+}
+
+/* The share of a sphere's surface that lies in no other, by points on a spiral. */
+static double exposed_share(const clump_job *j, size_t index) {
+  enum { POINTS = 1000 };
+  size_t exposed = 0;
+  double c[3], r;
+  scree_particle_point(j->particle, index, c, &r);
+  for (int k = 0; k < POINTS; k++) {
+    double z = 1 - (2 * k + 1.) / POINTS, ring = sqrt(1 - z * z), turn = 2.399963229728653 * k;
+    vec3 p = vec3_mad(vec3_load(c), (vec3){ring * cos(turn), ring * sin(turn), z}, r);
+    bool covered = false;
+    for (size_t i = 0; i < j->m.point_count && !covered; i++) {
+      double other[3], radius;
+      scree_particle_point(j->particle, i, other, &radius);
+      vec3 d = vec3_sub(p, vec3_load(other));
+      covered = i != index && vec3_dot(d, d) < radius * radius;
+    }
+    exposed += !covered;
+  }
+  return (double)exposed / POINTS;
+}
+
+/* In diameters of the bounding sphere. Heat flows between neighbours: none are named. */
+static void put_mfix(const clump_job *j, FILE *f) {
+  double size = 2 * j->m.bounding_radius;
+  fputs("#version = 1\n"
+        "x,y,z,rel_d,rel_sa,w,e,s,n,t,b,w_na,e_na,s_na,n_na,t_na,b_na,pid\n",
+        f);
+  for (size_t i = 0; i < j->m.point_count; i++) {
+    double c[3], r;
+    scree_particle_point(j->particle, i, c, &r);
+    fprintf(f, "%.12g,%.12g,%.12g,%.12g,%.12g,-1,-1,-1,-1,-1,-1,0,0,0,0,0,0,1\n", c[0] / size,
+            c[1] / size, c[2] / size, 2 * r / size,
+            4 * pi * r * r / (size * size) * exposed_share(j, i));
+  }
+}
+
+static scree_status write_yade(const clump_job *j, scree_error *error) {
+  return write_one(j, ".py", put_yade, error);
+}
+
+static scree_status write_pfc(const clump_job *j, scree_error *error) {
+  return write_one(j, ".dat", put_pfc, error);
+}
+
+static scree_status write_edem(const clump_job *j, scree_error *error) {
+  return write_one(j, ".tsv", put_edem, error);
+}
+
+static scree_status write_mfix(const clump_job *j, scree_error *error) {
+  return write_one(j, "-gsp_config.csv", put_mfix, error);
+}
+
+/* ---- All of them ---- */
+
+static const struct {
+  const char *name;
+  scree_status (*write)(const clump_job *job, scree_error *error);
+} codes[SCREE_DEM_CODE_COUNT] = {
+    [SCREE_DEM_LAMMPS] = {"lammps", write_lammps},
+    [SCREE_DEM_LIGGGHTS] = {"liggghts", write_liggghts},
+    [SCREE_DEM_YADE] = {"yade", write_yade},
+    [SCREE_DEM_PFC] = {"pfc", write_pfc},
+    [SCREE_DEM_CHRONO] = {"chrono", write_chrono},
+    [SCREE_DEM_EDEM] = {"edem", write_edem},
+    [SCREE_DEM_MFIX] = {"mfix", write_mfix},
+};
+
+const char *scree_dem_code_name(scree_dem_code code) {
+  return (size_t)code < SCREE_DEM_CODE_COUNT ? codes[code].name : NULL;
+}
+
 scree_code_options scree_default_code_options(void) {
   return (scree_code_options){.name = "clump", .density = 2000, .count = 27};
 }
@@ -347,9 +422,5 @@ scree_status scree_clump_code_write(const scree_particle *particle, scree_dem_co
                       "density %g kg/m3 and %zu particles; both must be above 0", used.density,
                       used.count);
   clump_job j = prepare(particle, &used, folder);
-  return code == SCREE_DEM_LAMMPS     ? write_lammps(&j, error)
-         : code == SCREE_DEM_LIGGGHTS ? write_liggghts(&j, error)
-         : code == SCREE_DEM_YADE     ? write_one(&j, ".py", put_yade, error)
-         : code == SCREE_DEM_PFC      ? write_one(&j, ".dat", put_pfc, error)
-                                      : write_chrono(&j, error);
+  return codes[code].write(&j, error);
 }

@@ -106,7 +106,7 @@ scree_status scree_scene_matches(const scree_scene *scene, const scree_scene_fil
 static const char *input_at(const scree_plan *plan, size_t index) {
   for (size_t i = 0; i < plan->shapes.count; i++) {
     const scree_plan_shape *s = SCREE_PLAN_AT(plan, shapes, scree_plan_shape, i);
-    const char *name = s->file ? s->file : s->clump;
+    const char *name = s->file || scree_plan_spheres(s) ? s->file : s->clump;
     if (name && index-- == 0) return name;
   }
   for (size_t i = 0; i < plan->geometry.count; i++) {

@@ -46,6 +46,7 @@ static scree_status pick_level(const making *m, const scree_curve *curve, size_t
   const scree_plan_shape *s = m->shape;
   char *end = NULL;
   size_t count = s->triangles ? strtoul(s->triangles, &end, 10) : 0;
+  if (scree_plan_spheres(s) && !s->triangles) count = SCREE_CLUMP_TRIANGLES;
   if (!isnan(s->rp)) count = scree_choice_target(s->rp, m->triangle_count);
   if (count) {
     *level = scree_curve_find(curve, count);
@@ -100,7 +101,10 @@ scree_status scree_scene_box_mesh(const double sides[3], scree_mesh *mesh, scree
 
 static scree_status from_mesh(making *m, scree_particle **particle, scree_error *error) {
   scree_status status = scree_mesh_canonicalize(&m->mesh, error);
-  if (status == SCREE_OK) status = scree_particle_from_mesh(&m->mesh, NULL, particle, error);
+  size_t spheres = scree_plan_spheres(m->shape);
+  if (status == SCREE_OK)
+    status = spheres ? scree_clump_fit(&m->mesh, spheres, m->progress, particle, error)
+                     : scree_particle_from_mesh(&m->mesh, NULL, particle, error);
   scree_mesh_free(&m->mesh);
   return status;
 }
@@ -134,7 +138,8 @@ static scree_status make(making *m, const char *path, scree_particle **particle,
                          scree_error *error) {
   const scree_plan_shape *s = m->shape;
   if (!isnan(s->sphere)) return scree_particle_sphere(0.5 * s->sphere, particle, error);
-  if (s->clump) return scree_particle_clump_read(path, scree_plan_unit(s->unit), particle, error);
+  if (s->clump && !scree_plan_spheres(s))
+    return scree_particle_clump_read(path, scree_plan_unit(s->unit), particle, error);
   scree_status status;
   if (s->sample)
     status = make_sample(m, error);
@@ -151,8 +156,9 @@ scree_status scree_scene_make_particle(const scree_plan_shape *shape, const char
                                        const scree_progress *progress, scree_particle **particle,
                                        char **source, scree_error *error) {
   making m = {.shape = shape, .progress = progress, .scale = 1};
+  const char *table = scree_plan_spheres(shape) ? NULL : shape->clump;
   const char *word = shape->file     ? shape->file
-                     : shape->clump  ? shape->clump
+                     : table         ? table
                      : shape->sample ? shape->sample
                                      : shape->place.path;
   char *path = scree_scene_path(folder, word);
@@ -164,7 +170,7 @@ scree_status scree_scene_make_particle(const scree_plan_shape *shape, const char
     scree_mesh_free(&m.mesh);
     return status;
   }
-  *source = describe(&m, shape->file || shape->clump || shape->sample ? word : "", made);
+  *source = describe(&m, shape->file || table || shape->sample ? word : "", made);
   if (*source) {
     *particle = made;
     return SCREE_OK;

@@ -2,6 +2,7 @@
 #include "scene/plan.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #define UNITS "m|cm|mm|um|inch|ft|km"
@@ -92,7 +93,8 @@ static const scree_field shape_fields[] = {
     {"file", SCREE_FIELD_TEXT, AT(file), 0, 0, "", "a scan", NULL},
     {"sample", SCREE_FIELD_TEXT, AT(sample), 0, 0, "", "a built-in one, as sp-1", NULL},
     {"sphere", SCREE_FIELD_REAL, AT(sphere), 1e-9, 1e3, "m", "diameter", NULL},
-    {"clump", SCREE_FIELD_TEXT, AT(clump), 0, 0, "", "a table of spheres: x, y, z, radius", NULL},
+    {"clump", SCREE_FIELD_TEXT, AT(clump), 0, 0, "",
+     "a table of spheres: x, y, z, radius; or so many that stand for the shape", NULL},
     {"box", SCREE_FIELD_VECTOR, AT(box), 1e-9, 1e3, "m", "three sides", NULL},
     {"given", SCREE_FIELD_TEXT, AT(given), 0, 0, "", "by the program that makes the scene", NULL},
     {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, UNITS, "of the file's lengths", NULL},
@@ -111,12 +113,34 @@ static bool is_count(const char *text) {
   return digits > 0 && digits < 10 && !text[digits] && (digits > 1 || *text >= '4');
 }
 
+enum { MOST_SPHERES = 300 };
+
+static bool is_number(const char *text) {
+  return *text && !text[strspn(text, "0123456789")];
+}
+
+size_t scree_plan_spheres(const scree_plan_shape *shape) {
+  return shape->clump && is_number(shape->clump) ? strtoul(shape->clump, NULL, 10) : 0;
+}
+
+static scree_status check_spheres(const scree_reader *r, const scree_plan_shape *s) {
+  size_t count = scree_plan_spheres(s);
+  if (count < 1 || count > MOST_SPHERES)
+    return scree_fail_place(r, &s->place, "clump %.20s: must be 1 to %d spheres", s->clump,
+                            MOST_SPHERES);
+  if (given(&s->sphere) || s->given)
+    return scree_fail_place(r, &s->place, "clump %zu: is for a file, sample or box", count);
+  return SCREE_OK;
+}
+
 static scree_status check_shape(const scree_reader *r, const void *record) {
   const scree_plan_shape *s = record;
-  const bool there[] = {s->file != NULL,  s->sample != NULL, given(&s->sphere),
-                        s->clump != NULL, given(s->box),     s->given != NULL};
+  bool table = s->clump && !is_number(s->clump);
+  const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere),
+                        table,           given(s->box),     s->given != NULL};
   scree_status status =
       one_of(r, &s->place, there, 6, "file, sample, sphere (its diameter), clump, box");
+  if (status == SCREE_OK && s->clump && !table) status = check_spheres(r, s);
   if (status != SCREE_OK) return status;
   bool scan = s->file || s->sample;
   if (s->triangles && given(&s->rp))

@@ -15,13 +15,17 @@ typedef struct scree_plan_pair {
   double restitution, friction, rolling_friction, surface_energy, pull_off;
 } scree_plan_pair;
 
-/* One of file, sample, sphere, clump, box, given. */
+/* One of file, sample, sphere, clump (a table), box, given; a clump that is a count is one of the
+ * others' surface. */
 typedef struct scree_plan_shape {
   scree_place place;
   const char *file, *sample, *clump, *given, *triangles, *material;
   double sphere, box[3], rp, resolution;
   int unit;
 } scree_plan_shape;
+
+/* Spheres of the clump that stands for the shape's surface; 0: its clump is a table, or none. */
+size_t scree_plan_spheres(const scree_plan_shape *shape);
 
 typedef struct scree_plan_turn {
   scree_place place;

@@ -352,7 +352,7 @@ static const char *family_label(const analysis *a, size_t point) {
   return scree_arena_text(a->arena, text);
 }
 
-/* Levels by rising Rp, spheres apart. */
+/* Levels by rising Rp, spheres and clumps apart. */
 static void gather_levels(const analysis *a, size_t first, scree_family_result *family) {
   const scree_point_result *points = a->result->points;
   family->spheres = SIZE_MAX;
@@ -362,6 +362,7 @@ static void gather_levels(const analysis *a, size_t first, scree_family_result *
       family->spheres = p;
       continue;
     }
+    if (scree_study_spheres(points[p].rp)) continue;
     size_t at = family->level_count++;
     for (; at > 0 && points[family->levels[at - 1]].rp_value > points[p].rp_value; at--)
       family->levels[at] = family->levels[at - 1];

@@ -324,6 +324,7 @@ static scree_status read_set(const reader *r, const scree_yaml *node, size_t *in
 
 static bool is_rp(const char *text) {
   double rp;
+  if (scree_study_spheres(text)) return true;
   if (!strcmp(text, "spheres") || !strcmp(text, "scan")) return true;
   if (scree_study_is_recommended(text, &rp)) return true;
   return scree_number_read(text, &rp) && rp > 0 && rp <= 1;
@@ -339,7 +340,8 @@ static scree_status try_value(const reader *r, const scree_yaml *node, const cha
     if (is_rp(text)) return SCREE_OK;
     return fail_at(r, node,
                    "rp: '%s': must be a number above 0 and at most 1, recommended, a multiple as "
-                   "0.5*recommended, scan or spheres",
+                   "0.5*recommended, scan, spheres, "
+                   "or clump:N with N from 1 to 300",
                    text);
   }
   scree_error error;

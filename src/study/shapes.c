@@ -82,6 +82,17 @@ scree_status scree_study_know_shapes(scree_study *study, scree_error *error) {
 
 /* ---- levels ---- */
 
+enum { MOST_SPHERES = 300 };
+
+size_t scree_study_spheres(const char *rp) {
+  static const char prefix[] = "clump:";
+  double count;
+  if (strncmp(rp, prefix, sizeof prefix - 1) != 0) return 0;
+  bool good = scree_number_read(rp + sizeof prefix - 1, &count) && count >= 1 &&
+              count <= MOST_SPHERES && count == floor(count);
+  return good ? (size_t)count : 0;
+}
+
 bool scree_study_is_recommended(const char *rp, double *factor) {
   static const char word[] = "recommended";
   char number[SCREE_NUMBER_SIZE];
@@ -107,9 +118,11 @@ static double rp_of(const scree_study_shape *shape, const char *text) {
 static char *level_path(const scree_study *study, const scree_study_shape *shape, const char *rp) {
   char ending[64], number[SCREE_NUMBER_SIZE];
   double factor;
-  if (!strcmp(rp, "scan"))
+  if (!strcmp(rp, "scan")) {
     snprintf(ending, sizeof ending, "-scan.ply");
-  else if (scree_study_is_recommended(rp, &factor)) {
+  } else if (scree_study_spheres(rp)) {
+    snprintf(ending, sizeof ending, "-clump%zu.csv", scree_study_spheres(rp));
+  } else if (scree_study_is_recommended(rp, &factor)) {
     scree_number_format_digits(factor, 9, number);
     snprintf(ending, sizeof ending, "-%s-recommended.ply", number);
   } else {
@@ -194,22 +207,49 @@ static scree_status read_scan(const scree_study *study, const scree_study_shape 
   return status;
 }
 
+static scree_status write_mesh(const scree_mesh *mesh, const char *path, scree_error *error) {
+  scree_write_options o = scree_default_write_options();
+  o.unit_m = 1;
+  o.overwrite = true;
+  return scree_mesh_write(mesh, path, &o, error);
+}
+
+/* The table of the clump, or of as many spheres as the surface has use for. */
+static scree_status write_clump(scree_mesh *mesh, size_t count, const scree_progress *progress,
+                                const char *path, scree_error *error) {
+  scree_clump_options o = scree_default_clump_options();
+  scree_clumps clumps;
+  o.most = count;
+  scree_status status = scree_mesh_canonicalize(mesh, error);
+  if (status == SCREE_OK) status = scree_clumps_make(mesh, &o, progress, &clumps, error);
+  if (status != SCREE_OK) return status;
+  status =
+      scree_spheres_write(&clumps, scree_clumps_of_count(&clumps, count), 1, path, true, error);
+  scree_clumps_free(&clumps);
+  return status;
+}
+
+static size_t find_level(const scree_study_shape *shape, const scree_curve *curve, const char *rp) {
+  double count = (double)shape->triangle_count;
+  if (!strcmp(rp, "scan")) return 0;
+  double share =
+      scree_study_spheres(rp) ? fmin(1, SCREE_CLUMP_TRIANGLES / count) : rp_of(shape, rp);
+  return scree_curve_find(curve, scree_choice_target(share, shape->triangle_count));
+}
+
 static scree_status write_level(const scree_study *study, const scree_study_shape *shape,
-                                const char *rp, const scree_curve *curve, scree_error *error) {
+                                const char *rp, const scree_curve *curve,
+                                const scree_progress *progress, scree_error *error) {
   scree_mesh mesh;
   char *path = level_path(study, shape, rp);
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_status status = SCREE_OK;
   if (!exists(path)) {
-    size_t count = shape->triangle_count, level = 0;
-    if (strcmp(rp, "scan") != 0)
-      level = scree_curve_find(curve, scree_choice_target(rp_of(shape, rp), count));
-    status = scree_curve_mesh(curve, level, &mesh, error);
+    size_t spheres = scree_study_spheres(rp);
+    status = scree_curve_mesh(curve, find_level(shape, curve, rp), &mesh, error);
     if (status == SCREE_OK) {
-      scree_write_options o = scree_default_write_options();
-      o.unit_m = 1;
-      o.overwrite = true;
-      status = scree_mesh_write(&mesh, path, &o, error);
+      status = spheres ? write_clump(&mesh, spheres, progress, path, error)
+                       : write_mesh(&mesh, path, error);
       scree_mesh_free(&mesh);
     }
   }
@@ -269,7 +309,7 @@ static scree_status decimate(const scree_study *study, size_t index, scree_mesh 
   }
   for (size_t p = 0; status == SCREE_OK && p < study->point_count; p++)
     if (uses(study, p, index) && strcmp(study->points[p].rp, "spheres") != 0)
-      status = write_level(study, made, study->points[p].rp, curve, error);
+      status = write_level(study, made, study->points[p].rp, curve, progress, error);
   scree_choice_free(&choice);
   scree_curve_free(curve);
   return status;
@@ -370,20 +410,28 @@ scree_status scree_study_prepare(scree_study *study, const scree_study_options *
 
 /* ---- particles ---- */
 
+static scree_status read_mesh_particle(const char *path, scree_particle **particle,
+                                       scree_error *error) {
+  scree_read_options read = scree_default_read_options();
+  scree_scan scan;
+  read.unit_m = 1;
+  scree_status status = scree_scan_read(path, &read, &scan, error);
+  if (status != SCREE_OK) return status;
+  status = scree_particle_from_mesh(&scan.mesh, NULL, particle, error);
+  scree_scan_free(&scan);
+  return status;
+}
+
 static scree_status make_particle(const scree_study *study, const scree_study_shape *shape,
                                   const char *rp, scree_particle **particle, scree_error *error) {
   if (!strcmp(rp, "spheres"))
     return scree_particle_sphere(cbrt(0.75 * shape->volume / pi), particle, error);
-  scree_read_options read = scree_default_read_options();
-  scree_scan scan;
   char *path = level_path(study, shape, rp);
   if (!path) return scree_fail_memory(error, 0, "a path");
-  read.unit_m = 1;
-  scree_status status = scree_scan_read(path, &read, &scan, error);
+  scree_status status = scree_study_spheres(rp)
+                            ? scree_particle_clump_read(path, 1, particle, error)
+                            : read_mesh_particle(path, particle, error);
   scree_free(path);
-  if (status != SCREE_OK) return status;
-  status = scree_particle_from_mesh(&scan.mesh, NULL, particle, error);
-  scree_scan_free(&scan);
   if (status == SCREE_OK || !error) return status;
   scree_error inner = *error;
   return scree_fail(error, status, "%s at rp %s: %.700s", shape->name, rp, inner.message);

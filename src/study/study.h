@@ -114,6 +114,9 @@ scree_status scree_study_make_keys(scree_study *study, scree_error *error);
 bool scree_study_is_recommended(const char *rp, double *factor);
 /* Reads what the folder has on the shapes; where it has all, names the runs too. */
 scree_status scree_study_know_shapes(scree_study *study, scree_error *error);
+/* Spheres of the clumps that "clump:20" stands for, 1 to 300; 0 where it is none. */
+size_t scree_study_spheres(const char *rp);
+
 /* The particles of a point's shapes with their density factors, in the order of its set; free each
  * particle. triangle_count: mean over the shapes. */
 scree_status scree_study_make_shapes(const scree_study *study, size_t point, int mass_rule,

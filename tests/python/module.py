@@ -252,6 +252,11 @@ class Worlds(unittest.TestCase):
         self.assertEqual(clump.measure().point_count, 2)
         with self.assertRaises(ValueError):
             scree.Particle.clump([[0, 0, 0]], [1, 2])
+        fitted = scree.Particle.clump_of(self.box.mesh(), 2).measure()
+        self.assertEqual((fitted.kind, fitted.point_count), ("clump", 2))
+        self.assertAlmostEqual(fitted.volume, SIDE**3, 12)
+        with self.assertRaisesRegex(scree.Error, "1 to 300"):
+            scree.Particle.clump_of(self.box.mesh(), 0)
         with self.assertRaises(TypeError):
             world.add_wall("plane", 1, colour="red")
 

@@ -172,10 +172,18 @@ static scree_status make_few(void *context, scree_error *error) {
   return status;
 }
 
+static scree_status fit_few(void *context, scree_error *error) {
+  scree_particle *particle = NULL;
+  scree_status status = scree_clump_fit(context, 1, NULL, &particle, error);
+  scree_particle_free(particle);
+  return status;
+}
+
 static void memory_may_run_out(void **state) {
   (void)state;
   scree_mesh mesh = shape_box(1, 2, 3);
   check_allocation_failures(make_few, &mesh);
+  check_allocation_failures(fit_few, &mesh);
   scree_mesh_free(&mesh);
 }
 

@@ -140,6 +140,50 @@ static void the_bodys_mass_goes_along(void **state) {
   clean_up(&m);
 }
 
+/* EDEM's table, read as any other, has the particle's spheres; MFiX's has them in diameters of the
+ * bounding sphere, each with no more than its whole surface and all with more than the largest. */
+static void other_codes_get_the_spheres(void **state) {
+  (void)state;
+  const double pi = 3.14159265358979323846;
+  made m;
+  scree_error error;
+  scree_particle *read;
+  scree_particle_measures p;
+  scree_code_options o = scree_default_code_options();
+  set_up(&m);
+  scree_particle_measure(m.particle, &p);
+  o.name = "other";
+  CHECK_OK(scree_clump_code_write(m.particle, SCREE_DEM_EDEM, &o, in_folder("."), &error), error);
+  CHECK_OK(scree_clump_code_write(m.particle, SCREE_DEM_MFIX, &o, in_folder("."), &error), error);
+  CHECK_OK(scree_particle_clump_read(in_folder("other.tsv"), 1, &read, &error), error);
+  scree_particle_measures q;
+  scree_particle_measure(read, &q);
+  assert_int_equal(q.point_count, p.point_count);
+  scree_particle_free(read);
+  FILE *f = fopen(in_folder("other-gsp_config.csv"), "r");
+  assert_non_null(f);
+  char line[512];
+  double area = 0, size = 2 * p.bounding_radius;
+  assert_non_null(fgets(line, sizeof line, f));
+  assert_non_null(fgets(line, sizeof line, f));
+  for (size_t i = 0; i < p.point_count; i++) {
+    double c[3], r, row[5];
+    scree_particle_point(m.particle, i, c, &r);
+    assert_non_null(fgets(line, sizeof line, f));
+    assert_int_equal(
+        sscanf(line, "%lf,%lf,%lf,%lf,%lf,", &row[0], &row[1], &row[2], &row[3], &row[4]), 5);
+    for (int k = 0; k < 3; k++) CHECK_NEAR(row[k] * size, c[k], 1e-9);
+    CHECK_NEAR(row[3] * size, 2 * r, 1e-9);
+    assert_true(row[4] <= pi * row[3] * row[3] * (1 + 1e-9));
+    area += row[4] * size * size;
+  }
+  assert_null(fgets(line, sizeof line, f));
+  (void)fclose(f);
+  double ball = cbrt(36 * pi * p.volume * p.volume);
+  assert_true(area > ball && area < 2 * ball);
+  clean_up(&m);
+}
+
 static void a_wrong_mass_is_told(void **state) {
   (void)state;
   static const char *const lines[] = {"# volume -1", "# volume", "# centroid 1 2",
@@ -218,6 +262,7 @@ int main(void) {
       cmocka_unit_test(peeling_begins_with_the_largest_ball),
       cmocka_unit_test(bubbles_keep_their_angle),
       cmocka_unit_test(the_bodys_mass_goes_along),
+      cmocka_unit_test(other_codes_get_the_spheres),
       cmocka_unit_test(a_wrong_mass_is_told),
       cmocka_unit_test(memory_may_run_out),
       cmocka_unit_test(a_mesh_is_no_clump),
