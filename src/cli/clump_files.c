@@ -12,6 +12,11 @@ static const char *const others[] = {"clump.json", "clump.csv", "clump.txt", "pr
                                      "report.html"};
 enum { FIGURE_COUNT = 3, OTHER_COUNT = 5 };
 
+/* A build without pictures has no figures. */
+static int figure_count(void) {
+  return scree_build_has(SCREE_BUILD_PICTURES) ? FIGURE_COUNT : 0;
+}
+
 static bool name_taken(const clump_run *run, size_t before, const char *name) {
   for (size_t k = 0; k < before; k++)
     if (!strcmp(run->objects[k].name, name)) return true;
@@ -51,7 +56,7 @@ scree_status clump_check_files(const clump_run *run, scree_error *error) {
   scree_status status = cli_make_folder(a->output, error);
   for (size_t i = 0; i < run->count && status == SCREE_OK; i++)
     status = check(run, run->objects[i].name, ".csv", error);
-  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++)
+  for (int i = 0; i < figure_count() && status == SCREE_OK; i++)
     status = check(run, figures[i], "", error);
   for (int i = 0; i < OTHER_COUNT && status == SCREE_OK; i++)
     status = check(run, others[i], "", error);
@@ -116,7 +121,7 @@ scree_status clump_write_files(clump_run *run, const scree_clump_report *report,
       status =
           scree_spheres_write(&o->clumps, o->chosen, o->surface.unit_m, path, a->overwrite, error);
   }
-  for (int i = 0; i < FIGURE_COUNT && status == SCREE_OK; i++) {
+  for (int i = 0; i < figure_count() && status == SCREE_OK; i++) {
     status = join(run, figures[i], "", path, error);
     if (status == SCREE_OK) status = scree_clump_figure_write(report, path, a->overwrite, error);
   }

@@ -11,7 +11,7 @@ typedef struct drop_arguments {
   const char *output, *picture;
   cli_source source;
   double rp;
-  size_t triangles, seed, particles, rays;
+  size_t triangles, clump, seed, particles, rays;
   double width, depth, drop_height, speed;
   double time, still, frame_interval, checkpoint_interval;
   double young, young_wall, density, restitution, friction, friction_wall;

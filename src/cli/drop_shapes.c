@@ -104,14 +104,18 @@ static scree_status load(const drop_run *run, drop_shape *shape, scree_mesh *mes
   return SCREE_OK;
 }
 
-/* The level asked for; of a large scan, where none is asked for, the one that `choose`
- * recommends. */
+/* The level asked for; of a large scan, where none is asked for, the one that `choose` recommends,
+ * or what a clump is fitted to. */
 static scree_status pick_level(const drop_run *run, const scree_curve *curve,
                                const scree_mesh *mesh, size_t *level, scree_error *error) {
   const drop_arguments *a = run->arguments;
   if (a->rp > 0 || a->triangles) {
     size_t target = a->rp > 0 ? scree_choice_target(a->rp, mesh->triangle_count) : a->triangles;
     *level = scree_curve_find(curve, target);
+    return SCREE_OK;
+  }
+  if (a->clump) {
+    *level = scree_curve_find(curve, SCREE_CLUMP_TRIANGLES);
     return SCREE_OK;
   }
   return cli_recommended_level(curve, mesh, run->call->progress, level, error);
@@ -181,7 +185,10 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
   shape->source_triangles = mesh.triangle_count;
   status = decimate(run, shape, &mesh, scale, error);
   if (status == SCREE_OK) status = scree_mesh_canonicalize(&mesh, error);
-  if (status == SCREE_OK) status = scree_particle_from_mesh(&mesh, NULL, &shape->particle, error);
+  size_t spheres = run->arguments->clump;
+  if (status == SCREE_OK)
+    status = spheres ? scree_clump_fit(&mesh, spheres, run->call->progress, &shape->particle, error)
+                     : scree_particle_from_mesh(&mesh, NULL, &shape->particle, error);
   scree_mesh_free(&mesh);
   return status == SCREE_OK ? SCREE_OK : cli_name_in_error(shape->name, error);
 }

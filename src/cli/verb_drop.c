@@ -60,6 +60,9 @@ static const cli_option options[] = {
      4, 4294967295.0, NULL},
     {"rp", CLI_SHARE, AT(rp), "RP",
      "Decimate every shape to this share of its triangles, as in 1e-3.", 1e-12, 1, NULL},
+    {"clump", CLI_COUNT, AT(clump), "N",
+     "Clumps of so many spheres in place of the scans' surfaces, with their mass and inertia.", 1,
+     300, NULL},
     {"time", CLI_REAL, AT(time), "S",
      "Seconds simulated after the last layer entered, at most. Default: 2; less of particles under "
      "10 "
@@ -376,6 +379,7 @@ static scree_status pour(drop_run *run, scree_error *error) {
 static const char *shape_option(const drop_arguments *a) {
   return a->rp > 0                                ? "rp"
          : a->triangles                           ? "count"
+         : a->clump                               ? "clump"
          : a->particles != defaults.particles     ? "particles"
          : a->no_repair                           ? "no-repair"
          : a->source.unit != defaults.source.unit ? "unit"

@@ -1,8 +1,8 @@
-/* Coarse to fine, each count starts from the best of one sphere less and one more where most is
- * gained; then fine to coarse, each from the best of one sphere more without the one that is least
- * missed; a few counts also from random starts. Each start is optimised, and the better kept. At
- * the end spheres that nobody would miss are put elsewhere, and counts that gain nothing over a
- * smaller one are dropped: IoU is monotonic and no sphere useless. */
+/* A few counts begin at random. Coarse to fine, each starts from the best of one sphere less and
+ * one more where most is gained, and from spheres spread evenly; then fine to coarse, each from the
+ * best of one sphere more without the one that is least missed. Each start is optimised, and the
+ * better kept. At the end spheres that nobody would miss are put elsewhere, and counts that gain
+ * nothing over a smaller one are dropped: IoU is monotonic and no sphere useless. */
 #include "clump/path.h"
 
 #include "base/alloc.h"
@@ -23,7 +23,6 @@ static const double soft_begin =
     least_gain = 1e-4;       /* IoU that a sphere must add */
 enum {
   STEPS = 30,         /* per start */
-  STEPS_RANDOM = 30,  /* twice */
   RANDOM_COUNTS = 10, /* counts that are started at random too */
   RANDOM_STARTS = 3,  /* each */
   SPARE_COUNTS = 8,   /* above the largest asked, where the way down starts */
@@ -162,21 +161,26 @@ static bool tick(scree_path *p, double fraction) {
   return !p->cancelled && !p->ruler.failed;
 }
 
-/* Shares of the whole time, measured. */
-static const double share_up = 0.38, share_down = 0.76, share_random = 0.9;
+/* Shares of the whole time at the end of each sweep, measured. */
+static const double share_random = 0.14, share_up = 0.58, share_down = 0.9;
+
+static void try_start(scree_path *p, scree_trial *t) {
+  optimise(p, t, STEPS, soft_begin);
+  scree_path_keep(p, t);
+}
 
 static void sweep_up(scree_path *p) {
-  for (size_t n = 1; n <= p->room && tick(p, share_up * (double)n / (double)p->room); n++) {
-    scree_trial *t = &p->work[0];
+  scree_trial *t = &p->work[0];
+  for (size_t n = 1; n <= p->room; n++) {
+    double done = (double)n / (double)p->room;
+    if (!tick(p, share_random + (share_up - share_random) * done)) return;
     *t = p->best[n - 1];
-    if (!add_sphere(p, t, 0)) break;
-    optimise(p, t, STEPS, soft_begin);
-    scree_path_keep(p, t);
+    if (!add_sphere(p, t, 0)) return;
+    try_start(p, t);
     *t = (scree_trial){.count = n};
-    if (n < 2 || !scree_places_spread(&p->places, n, t->spheres)) continue;
+    if (!scree_places_spread(&p->places, n, t->spheres)) continue;
     measure(p, t);
-    optimise(p, t, STEPS, soft_begin);
-    scree_path_keep(p, t);
+    try_start(p, t);
   }
 }
 
@@ -189,8 +193,7 @@ static void sweep_down(scree_path *p) {
     scree_trial *t = &p->work[0];
     *t = p->best[n + 1];
     remove_sphere(p, t);
-    optimise(p, t, STEPS, soft_begin);
-    scree_path_keep(p, t);
+    try_start(p, t);
   }
 }
 
@@ -210,12 +213,11 @@ static void sweep_random(scree_path *p) {
   for (size_t n = 2; n <= RANDOM_COUNTS && n <= p->most && p->places.count > 0; n++)
     for (int start = 0; start < RANDOM_STARTS; start++) {
       double done = (double)n / RANDOM_COUNTS;
-      if (!tick(p, share_down + (share_random - share_down) * done)) return;
+      if (!tick(p, share_random * done)) return;
       scree_trial *t = &p->work[0];
       start_at_random(p, n, &rng, t);
-      optimise(p, t, STEPS_RANDOM, soft_random);
-      optimise(p, t, STEPS_RANDOM, soft_begin);
-      scree_path_keep(p, t);
+      optimise(p, t, STEPS, soft_random);
+      try_start(p, t);
     }
 }
 
@@ -269,11 +271,11 @@ static void settle(scree_path *p) {
 }
 
 scree_status scree_path_search(scree_path *p, scree_error *error) {
+  sweep_random(p);
   sweep_up(p);
   sweep_down(p);
-  sweep_random(p);
   for (size_t n = 2, last = 1; n <= p->most && p->best[1].count; n++) {
-    if (!tick(p, share_random + (1 - share_random) * (double)n / (double)p->most)) break;
+    if (!tick(p, share_down + (1 - share_down) * (double)n / (double)p->most)) break;
     if (p->best[n].count) refresh(p, n);
     catch_up(p, n, last);
     if (p->best[n].count && !is_strict(p)) restore(p, &p->best[n], RESTORING_STEPS);

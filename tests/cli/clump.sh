@@ -52,9 +52,13 @@ END
 run run scene.yaml --print | grep clump:
 run run scene.yaml -o scene --no-picture -q >/dev/null
 grep -c '"kind": "clump"' scene/*.json
-run run scene.yaml -s shapes.fitted.clump=301
-run run scene.yaml -s shapes.cube.clump=cube.csv
-# a study of clumps beside the surface; its runs are those of `scree repose`
+run run scene.yaml --set shapes.fitted.clump=301
+run run scene.yaml --set shapes.cube.clump=cube.csv
+# clumps of the shapes in a drop
+run drop box.off=2 --clump 2 --time 0 --frames 0 --no-picture -o dropped | head -2 | tail -1
+run drop box.off=2 --clump 0 -o none 2>&1 | head -2
+run drop --clump 2 --resume -o dropped 2>&1 | head -2
+# a study of clumps beside the surface; one made on the way in `scree repose` has the bits of the study's table
 cat >study.yaml <<'END'
 replicates: 1
 shapes: [box.off]
@@ -67,5 +71,11 @@ factors: {rp: ["clump:2", scan]}
 END
 run study study.yaml -o study --csv -q | cut -d, -f1-4
 ls study/shapes
+once="-p demo --particles 8 --cylinder 0.2 --pack-time 0.3 --settle-time 0.05 --lift-speed 1 --lift-time 0.05 --hold-time 0.05 --no-picture --json -q"
+same() { grep -v '"command"\|"file"\|_seconds"\|"name"\|"source"\|"rp'; }
+"$SCREE" repose box.off --rp clump:2 $once | same >made.json
+"$SCREE" repose study/shapes/box-clump2.csv --unit m $once | same >table.json
+diff made.json table.json
+grep -c height made.json
 sed 's/clump:2/clump:0/' study.yaml >none.yaml
 run study none.yaml --dry-run
