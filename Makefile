@@ -4,6 +4,8 @@
 #   make test    installs what is missing, builds, runs the tests
 #   make page    build/page/scree.html, the page that does it in a browser (needs emscripten and npm)
 #   make npm     build/npm/scree-VERSION.tgz, the npm package
+#   make deb     Debian packages in build/deb
+#   make wheel   a Python wheel for any Linux in build/wheel
 #   make install, make uninstall    DESTDIR=... stages below a folder
 # PRESET=asan|debug|tsan|clang for another build; DATA_DIR=... for a folder of real scans that some tests
 # read; LABELS="-LE slow" and the like are passed to ctest; JOBS=N.
@@ -13,7 +15,7 @@ LABELS ?=
 JOBS ?= $(shell nproc)
 DEMO_DIR ?= demo
 
-.PHONY: all build packages demo test page npm install uninstall clean
+.PHONY: all build packages demo test page npm deb wheel install uninstall clean
 all: build
 
 packages:
@@ -41,6 +43,12 @@ page npm:
 	@cmake --preset wasm >build.log 2>&1 || { cat build.log; exit 1; }
 	@rm -f build.log
 	@cmake --build --preset wasm -j $(JOBS) --target $@
+
+deb:
+	@tools/deb.sh
+
+wheel:
+	@tools/wheel.sh
 
 install: build
 	@cmake --install build/$(PRESET)

@@ -1,11 +1,13 @@
 """Builds the wheel of the module with its shared library inside (PEP 517), by Python's own library alone.
 
 The library is the file that SCREE_LIBRARY names, else it is built by CMake from the checkout that this folder lies
-in. It stands on the system's cairo, qhull and the like, so the wheel is for this system, not for others."""
+in. That one stands on the system's cairo, qhull and the like, so its wheel is for this system, not for others.
+A library that stands on the C library alone (tools/wheel.sh) makes a manylinux wheel."""
 import base64
 import hashlib
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sysconfig
@@ -24,10 +26,13 @@ def _build_library(folder):
     return pathlib.Path(folder) / "libscree.so"
 
 
+def _objdump(option, library):
+    return subprocess.run(["objdump", option, library], check=True, capture_output=True, text=True).stdout
+
+
 def _soname(library):
     """The name under which programs and the module look for it."""
-    lines = subprocess.run(["objdump", "-p", library], check=True, capture_output=True, text=True).stdout.splitlines()
-    return next(line.split()[1] for line in lines if line.split()[:1] == ["SONAME"])
+    return re.search(r"SONAME +(\S+)", _objdump("-p", library))[1]
 
 
 def _contents(library, version):
@@ -40,20 +45,26 @@ def _contents(library, version):
     yield f"{info}/METADATA", (f"Metadata-Version: 2.1\nName: scree\nVersion: {version}\nRequires-Python: >=3.9\n"
                                "Provides-Extra: arrays\nRequires-Dist: numpy; extra == 'arrays'\n").encode()
     yield f"{info}/WHEEL", ("Wheel-Version: 1.0\nGenerator: scree\nRoot-Is-Purelib: false\n"
-                            f"Tag: {_tag()}\n").encode()
+                            f"Tag: {_tag(library)}\n").encode()
     yield f"{info}/LICENSE", (ROOT / "LICENSE").read_bytes()
 
 
-def _tag():
-    return "py3-none-" + sysconfig.get_platform().replace("-", "_").replace(".", "_")
+def _tag(library):
+    """PEP 600: manylinux_2_N where only the C library of version 2.N or later is needed, else this system alone."""
+    platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
+    needed = re.findall(r"NEEDED +(\S+)", _objdump("-p", library))
+    if all(name.startswith(("libc.so.", "libm.so.", "ld-linux")) for name in needed):
+        version = max(int(minor) for minor in re.findall(r"GLIBC_2\.(\d+)", _objdump("-T", library)))
+        platform = platform.replace("linux", f"manylinux_2_{version}")
+    return f"py3-none-{platform}"
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     version = (ROOT / "VERSION").read_text().strip()
-    name = f"scree-{version}-{_tag()}.whl"
     with tempfile.TemporaryDirectory() as folder:
         named = os.environ.get("SCREE_LIBRARY")
         library = pathlib.Path(named) if named else _build_library(folder)
+        name = f"scree-{version}-{_tag(library)}.whl"
         record = ""
         with zipfile.ZipFile(pathlib.Path(wheel_directory) / name, "w", zipfile.ZIP_DEFLATED) as wheel:
             for path, content in _contents(library, version):
