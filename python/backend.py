@@ -2,7 +2,7 @@
 
 The library is the file that SCREE_LIBRARY names, else it is built by CMake from the checkout that this folder lies
 in. That one stands on the system's cairo, qhull and the like, so its wheel is for this system, not for others.
-A library that stands on the C library alone (tools/wheel.sh) makes a manylinux wheel."""
+A library that stands on the C and C++ libraries alone (tools/wheel.sh) makes a manylinux wheel."""
 import base64
 import hashlib
 import os
@@ -50,10 +50,11 @@ def _contents(library, version):
 
 
 def _tag(library):
-    """PEP 600: manylinux_2_N where only the C library of version 2.N or later is needed, else this system alone."""
+    """PEP 600: manylinux_2_N where only the C library of version 2.N or later and the C++ library
+    are needed, which every such system has; else this system alone."""
     platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
     needed = re.findall(r"NEEDED +(\S+)", _objdump("-p", library))
-    if all(name.startswith(("libc.so.", "libm.so.", "ld-linux")) for name in needed):
+    if all(name.startswith(("libc.so.", "libm.so.", "libstdc++.so.", "ld-linux")) for name in needed):
         version = max(int(minor) for minor in re.findall(r"GLIBC_2\.(\d+)", _objdump("-T", library)))
         platform = platform.replace("linux", f"manylinux_2_{version}")
     return f"py3-none-{platform}"

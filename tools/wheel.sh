@@ -1,6 +1,6 @@
 #!/bin/sh
-# Builds build/wheel/scree-*.whl: the Python module with a library inside that needs the C library alone, and
-# so runs on other Linux systems too. It draws no pictures: cairo and Embree would need X11 and TBB.
+# Builds build/wheel/scree-*.whl: the Python module with a library inside that needs the C and C++ libraries
+# alone, and so runs on other Linux systems too. It draws no pictures: cairo and Embree would need X11 and TBB.
 # usage: wheel.sh
 set -eu
 cd "$(dirname "$0")/.."
