@@ -18,6 +18,12 @@ typedef enum scree_mass_rule {
   SCREE_MASS_FROM_SCAN, /* density times the volume of the scan, at every level */
 } scree_mass_rule;
 
+/* From where particles come in. */
+typedef enum scree_inlet {
+  SCREE_INLET_TOP, /* above where the packed heap will end */
+  SCREE_INLET_HEAP /* as near to the heap as drop_height */
+} scree_inlet;
+
 /* The angle-of-repose experiment of Katagiri and Koyanaka (2020), section 2.3, with everything
  * settable. One table (src/pile/experiment.c) holds each field's key in YAML, unit, range and
  * source; the comments here repeat the unit. Strings are owned; free with scree_experiment_free. */
@@ -25,8 +31,8 @@ typedef struct scree_experiment {
   char *preset; /* the name it started from */
   size_t particle_count;
   uint64_t seed;
-  double density;                          /* kg/m3 */
-  int mass_rule;                           /* a scree_mass_rule */
+  double density; /* kg/m3 */
+  scree_mass_rule mass_rule;
   double cylinder_diameter, disc_diameter; /* m */
   double pack_time, settle_time;           /* s */
   double lift_speed;                       /* m/s */
@@ -34,13 +40,12 @@ typedef struct scree_experiment {
   double hold_time;                        /* s: at most, until still */
   double still_energy;                     /* J of kinetic energy a particle: less is still */
   bool stop_when_still;                    /* end a phase early when still */
-  int inlet; /* 0 "top": above where the packed heap will end; 1 "heap": as near as drop_height */
+  scree_inlet inlet;
   double drop_height;                /* m between the heap and the layer being filled in */
   double gravity;                    /* m/s2 */
   double young_particle, young_wall; /* Pa */
-  double poisson;
   double restitution, friction_particle, friction_wall;
-  int contact_law;            /* 0 linear, 1 hysteretic */
+  scree_law contact_law;
   double steps_per_contact;   /* N of the time step */
   double stiffness_factor;    /* multiplies all stiffnesses */
   double frame_interval;      /* s between frames written; 0: none but the last */
@@ -249,11 +254,11 @@ SCREE_API scree_status scree_run_complete(const scree_run_job *job, scree_run **
 /* ---- Shapes for a run ---- */
 
 typedef struct scree_grain_options {
-  double rp;       /* percentage reduction in (0, 1]; default 1: the scan as it is */
-  bool sphere;     /* the sphere of the scan's volume instead, whatever the Rp; default false */
-  size_t clump;    /* a clump of so many spheres that stands for the level; default 0: none */
-  int mass_rule;   /* a scree_mass_rule; default SCREE_MASS_FROM_MESH */
-  double rounding; /* m, see scree_particle_options; default 0 */
+  double rp;    /* percentage reduction in (0, 1]; default 1: the scan as it is */
+  bool sphere;  /* the sphere of the scan's volume instead, whatever the Rp; default false */
+  size_t clump; /* a clump of so many spheres that stands for the level; default 0: none */
+  scree_mass_rule mass_rule; /* default SCREE_MASS_FROM_MESH */
+  double rounding;           /* m, see scree_particle_options; default 0 */
 } scree_grain_options;
 SCREE_API scree_grain_options scree_default_grain_options(void);
 

@@ -279,7 +279,7 @@ class scree_experiment(Structure):
                     "cylinder_diameter", "disc_diameter", "pack_time", "settle_time", "lift_speed", "lift_time",
                     "hold_time", "still_energy")] + [
         ("stop_when_still", c_bool), ("inlet", c_int)] + [(name, c_double) for name in (
-            "drop_height", "gravity", "young_particle", "young_wall", "poisson", "restitution",
+            "drop_height", "gravity", "young_particle", "young_wall", "restitution",
             "friction_particle", "friction_wall")] + [("contact_law", c_int)] + [(name, c_double) for name in (
                 "steps_per_contact", "stiffness_factor", "frame_interval", "checkpoint_interval",
                 "series_interval", "angle_interval", "height_cell")] + [

@@ -12,7 +12,7 @@ typedef struct cli_grain_options {
   int method;     /* a scree_method */
   bool no_repair; /* refuse instead */
   bool quiet;     /* do not say which level is taken where none was asked for */
-  int mass_rule;  /* a scree_mass_rule */
+  scree_mass_rule mass_rule;
   double rp[CLI_MOST_LEVELS];
   size_t clump[CLI_MOST_LEVELS]; /* spheres of the clump that stands for the shape there; 0: none */
   size_t rp_count;               /* 0: surfaces as they are; dense ones as recommended */

@@ -83,7 +83,6 @@ const cli_meaning cli_meanings[] = {
     {"particles", 'N', "How many particles.", 0, 0, NULL},
     {.name = "picture-width", .meaning = "What a picture shows across."},
     {.name = "points", .meaning = "Points that a distance is measured at."},
-    {"poisson", 0, "Poisson's ratio.", 0, 0.5, "Poisson's ratio is meant, as 0.3"},
     {"preset", 'p', "What an experiment starts from.", 0, 0, NULL},
     {.name = "principal", .meaning = "Turn the principal axes along x, y and z."},
     {.name = "print", .meaning = "Print the file as it would be run, and stop."},

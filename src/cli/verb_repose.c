@@ -41,8 +41,6 @@
   X(YOUNG, "young", "contact.young_particle", CLI_TEXT, "PA", "Young's modulus of the particles.") \
   X(YOUNG_WALL, "young-wall", "contact.young_wall", CLI_TEXT, "PA",                                \
     "Young's modulus of the walls.")                                                               \
-  X(POISSON, "poisson", "contact.poisson", CLI_TEXT, "NU",                                         \
-    "Poisson's ratio (the linear law does not use it).")                                           \
   X(RESTITUTION, "restitution", "contact.restitution", CLI_TEXT, "E", "Of every contact.")         \
   X(FRICTION, "friction", "contact.friction_particle", CLI_TEXT, "MU", "Particle on particle.")    \
   X(FRICTION_WALL, "friction-wall", "contact.friction_wall", CLI_TEXT, "MU", "Particle on wall.")  \

@@ -52,7 +52,6 @@ static const field fields[] = {
      "from the heap's top to the layer filled in, at least [s]"},
     {"contact.young_particle", FIELD_REAL, AT(young_particle), 1e3, 1e13, "Pa", "[p]"},
     {"contact.young_wall", FIELD_REAL, AT(young_wall), 1e3, 1e13, "Pa", "[p]"},
-    {"contact.poisson", FIELD_REAL, AT(poisson), 0, 0.5, "", "[p]; the linear law does not use it"},
     {"contact.restitution", FIELD_REAL, AT(restitution), 0.01, 1, "", "[p]"},
     {"contact.friction_particle", FIELD_REAL, AT(friction_particle), 0, 10, "",
      "particle on particle [p]"},
@@ -99,7 +98,6 @@ static const scree_experiment paper = {
     .gravity = 9.81,
     .young_particle = 1e8,
     .young_wall = 1e11,
-    .poisson = 0.3,
     .restitution = 0.3,
     .friction_particle = 0.5,
     .friction_wall = 0.5,
@@ -135,7 +133,7 @@ static void make_small(scree_experiment *e) {
   e->stiffness_factor = 0.4;
   e->still_energy = 1e-6;
   e->stop_when_still = true;
-  e->inlet = 1;
+  e->inlet = SCREE_INLET_HEAP;
   e->drop_height = 0.03;
 }
 
@@ -151,7 +149,7 @@ static void make_demo(scree_experiment *e) {
   e->stiffness_factor = 0.4;
   e->still_energy = 1e-4;
   e->stop_when_still = true;
-  e->inlet = 1;
+  e->inlet = SCREE_INLET_HEAP;
   e->drop_height = 0.03;
   e->checkpoint_interval = 20;
 }

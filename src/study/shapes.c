@@ -437,9 +437,9 @@ static scree_status make_particle(const scree_study *study, const scree_study_sh
   return scree_fail(error, status, "%s at rp %s: %.700s", shape->name, rp, inner.message);
 }
 
-scree_status scree_study_make_shapes(const scree_study *study, size_t point, int mass_rule,
-                                     scree_run_shape *shapes, double *triangle_count,
-                                     scree_error *error) {
+scree_status scree_study_make_shapes(const scree_study *study, size_t point,
+                                     scree_mass_rule mass_rule, scree_run_shape *shapes,
+                                     double *triangle_count, scree_error *error) {
   const scree_shape_set *set = &study->sets[study->points[point].set];
   *triangle_count = 0;
   for (size_t i = 0; i < set->count; i++) {

@@ -119,9 +119,9 @@ size_t scree_study_spheres(const char *rp);
 
 /* The particles of a point's shapes with their density factors, in the order of its set; free each
  * particle. triangle_count: mean over the shapes. */
-scree_status scree_study_make_shapes(const scree_study *study, size_t point, int mass_rule,
-                                     scree_run_shape *shapes, double *triangle_count,
-                                     scree_error *error);
+scree_status scree_study_make_shapes(const scree_study *study, size_t point,
+                                     scree_mass_rule mass_rule, scree_run_shape *shapes,
+                                     double *triangle_count, scree_error *error);
 
 /* scene_base.c: reads the text of a scene; then its file with the base's settings and with values
  * of the factors (NULL: none), to be freed; that of a run; whether a value can be. */

@@ -25,7 +25,7 @@ static void every_preset_prints_and_reads_back_the_same(void **state) {
     scree_error error;
     const char *path = in_folder("print.yaml");
     e.density = 1234.5678901234567;
-    e.contact_law = 1;
+    e.contact_law = SCREE_LAW_HYSTERETIC;
     FILE *file = fopen(path, "w");
     scree_experiment_print(&e, file);
     fclose(file);
