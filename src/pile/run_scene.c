@@ -55,7 +55,8 @@ static void put_equipment(const scree_run *run, FILE *out) {
 static void put_filling(const scree_run *run, FILE *out) {
   const scree_experiment *e = &run->experiment;
   fprintf(out, "inlets:\n  fill:\n    cylinder: {at: [0, 0, %.17g], radius: %.17g}\n    shapes: [",
-          e->inlet == SCREE_INLET_TOP ? inlet_height(run) : e->drop_height, 0.5 * e->cylinder_diameter);
+          e->inlet == SCREE_INLET_TOP ? inlet_height(run) : e->drop_height,
+          0.5 * e->cylinder_diameter);
   for (size_t i = 0; i < run->shape_count; i++) fprintf(out, "%sgrain-%zu", i ? ", " : "", i);
   fprintf(out,
           "]\n    count: %zu\n    layers: {pack_time: %.17g, above: %.17g, clearance: %.17g}\n",
@@ -91,7 +92,8 @@ static void put_scene(const scree_run *run, FILE *out) {
   fprintf(out, "title: angle of repose\nseed: %llu\ntick: %d\ngravity: [0, 0, %.17g]\n",
           (unsigned long long)e->seed, TICK_STEPS, -e->gravity);
   fprintf(out, "contact: {law: %s, steps: %.17g, stiffness_factor: %.17g}\n",
-          e->contact_law == SCREE_LAW_HYSTERETIC ? "hysteretic" : "linear", e->steps_per_contact, e->stiffness_factor);
+          e->contact_law == SCREE_LAW_HYSTERETIC ? "hysteretic" : "linear", e->steps_per_contact,
+          e->stiffness_factor);
   put_materials(run, out);
   put_equipment(run, out);
   put_filling(run, out);
