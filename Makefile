@@ -6,6 +6,7 @@
 #   make npm     build/npm/scree-VERSION.tgz, the npm package
 #   make deb     Debian packages in build/deb
 #   make wheel   a Python wheel for any Linux in build/wheel
+#   make docs    builds the manual as a site that works from disk: build/docs/index.html
 #   make install, make uninstall    DESTDIR=... stages below a folder
 # PRESET=asan|debug|tsan|clang for another build; DATA_DIR=... for a folder of real scans that some tests
 # read; LABELS="-LE slow" and the like are passed to ctest; JOBS=N.
@@ -15,7 +16,7 @@ LABELS ?=
 JOBS ?= $(shell nproc)
 DEMO_DIR ?= demo
 
-.PHONY: all build packages demo test page npm deb wheel install uninstall clean
+.PHONY: all build packages demo test docs page npm deb wheel install uninstall clean
 all: build
 
 packages:
@@ -49,6 +50,9 @@ deb:
 
 wheel:
 	@tools/wheel.sh
+
+docs: build
+	@tools/site/build.sh build/$(PRESET) build/docs
 
 install: build
 	@cmake --install build/$(PRESET)

@@ -47,6 +47,15 @@ part "release build" build release
 part "Windows" windows
 export SCREE_SLOW=1
 part "all tests, the slow ones too" tools/test.sh release
+# Every tutorial from its own text, the long parts too.
+tutorials() {
+  local page bad=0
+  for page in README.md docs/tutorials/*.md; do
+    tests/docs/run_page.py build/release/bin/scree build/release/libscree.so "$page" --long || [ $? = 77 ] || bad=1
+  done
+  return $bad
+}
+part "tutorials, whole" tutorials
 # `native COMPILER`: the states of tests/golden, by code for this very machine
 native() {
   cmake -S . -B "build/native-$1" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_C_COMPILER="$1" \

@@ -7,7 +7,7 @@ Fenced blocks are taken in their order:
   ```sh long          only with --long
   ```python           is run by python3, which finds the module scree; takes needs= and long too
   ```yaml file=NAME   becomes the file NAME (any language)
-Each picture that the page shows must be among the files that the commands made; UPDATE=1 copies it into the page's
+Each picture that a tutorial shows must be among the files that the commands made; UPDATE=1 copies it into the page's
 place. Exit code 77 where there is nothing to run."""
 import os
 import re
@@ -66,7 +66,7 @@ def main(program, library, page, long=False):
                 count += 1
                 if os.environ.get("VERBOSE"):
                     print(f"--- {time.monotonic() - start:.1f} s\n{body}{said}")
-        if not skipped or long:
+        if "/tutorials/" in os.path.abspath(page) and (not skipped or long):
             pictures(text, page, folder)
     if not count:
         print("nothing to run")
