@@ -15,6 +15,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "cell", .meaning = "Side of the cells of a height field."},
     {.name = "centre", .meaning = "Put the centre of mass at the origin."},
     {.name = "checkpoint", .meaning = "Clock time between checkpoints."},
+    {.name = "clump", .meaning = "Spheres of the clump that stands for each shape."},
     {.name = "color-by", .meaning = "What surfaces are coloured by."},
     {.name = "columns", .meaning = "Columns of views in a picture."},
     {"config", 'c', "An experiment in YAML.", 0, 0, NULL},

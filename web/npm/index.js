@@ -1,5 +1,5 @@
 // scree for JavaScript. Each function is one call of the program, in an instance of its own with files in memory: what
-// it answers is the program's JSON, whose fields docs/formats.md has. SI units throughout.
+// it answers is the program's JSON, whose fields docs/reference/formats.md has. SI units throughout.
 import { readFile } from 'node:fs/promises';
 import { basename } from 'node:path';
 import createScree from './lib/scree_web.cjs';
