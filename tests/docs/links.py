@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """Every link between the pages and every mention of a page in the sources leads somewhere; every page of docs/ can be
-reached from its part's index. usage: links.py ROOT"""
+reached from its part's index; the version is the same everywhere. usage: links.py ROOT"""
 import os
 import re
 import subprocess
@@ -55,6 +55,11 @@ for file in files:
     for name in set(re.findall(r"\bdocs/[\w/-]+\.md\b", read(file))):
         if not os.path.exists(os.path.join(root, name)):
             wrong.append(f"{file}: {name} is not there")
+
+version = read("VERSION").strip()
+for file, line in (("CITATION.cff", f"version: {version}"), ("CHANGELOG.md", f"## [{version}]")):
+    if line not in read(file):
+        wrong.append(f"{file}: has no line {line}")
 
 print("\n".join(wrong) or f"{len(pages)} pages")
 sys.exit(bool(wrong))
