@@ -100,7 +100,9 @@ typedef enum scree_scan_fact {
   SCREE_SCAN_CLEAN_AREA, /* without what noise adds, m2 */
   SCREE_SCAN_THICKNESS,  /* median thickness of the walls, m; NaN without walls */
   SCREE_SCAN_THINNEST,   /* first percentile of it, m */
-  SCREE_SCAN_HEIGHT,     /* the least of the three principal dimensions, m */
+  SCREE_SCAN_BOX_LENGTH, /* the three principal dimensions, m */
+  SCREE_SCAN_BOX_WIDTH,
+  SCREE_SCAN_BOX_HEIGHT,
 } scree_scan_fact;
 SCREE_API double scree_fidelity_scan(const scree_fidelity *fidelity, scree_scan_fact which);
 

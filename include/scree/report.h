@@ -168,7 +168,7 @@ typedef struct scree_choice_entry {
   bool is_sample;          /* then resolution, noise and seed say how it was made */
   double sample_resolution, sample_noise; /* m */
   uint64_t sample_seed;
-  const char *note;      /* what was repaired or is wrong, in one sentence; NULL: nothing */
+  const char *note;      /* what was repaired or is wrong, a sentence a line; NULL: nothing */
   const char *mesh_file; /* where the chosen mesh was written; NULL: nowhere */
   const scree_choice *choice;
 } scree_choice_entry;
@@ -181,12 +181,13 @@ typedef struct scree_choice_report {
   scree_method method;
   scree_choice_rule rule;   /* the one that is told first and that meshes are written by */
   const char *command_line; /* for provenance; NULL: unknown */
+  const char *note;         /* what is to be said of all, a sentence a line; NULL: nothing */
 } scree_choice_report;
 
 /* The answer and the warnings in sentences, lengths in mm: the same in the text for people, in the
  * JSON and in the page. `entry` is an entry's index, or entry_count: the set as a whole. Answer how
  * many sentences there are, the first of them in texts. */
-enum { SCREE_CHOICE_SENTENCES = 12, SCREE_CHOICE_SENTENCE_BYTES = 512 };
+enum { SCREE_CHOICE_SENTENCES = 16, SCREE_CHOICE_SENTENCE_BYTES = 512 };
 SCREE_API size_t
 scree_choice_answer(const scree_choice_report *report, size_t entry,
                     char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES]);

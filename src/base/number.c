@@ -332,3 +332,31 @@ size_t scree_number_format_float(float value, char text[SCREE_NUMBER_SIZE]) {
   }
   return length;
 }
+
+/* What printf wrote, with a point whatever the locale. */
+static const char *with_point(char *text) {
+  char *comma = strchr(text, ',');
+  if (comma) *comma = '.';
+  return text;
+}
+
+const char *scree_rp_text(double rp, char text[SCREE_NUMBER_SIZE]) {
+  int exponent = (int)floor(log10(rp) + 1e-9);
+  double digits = rp / pow(10, exponent);
+  if (digits >= 9.95) {
+    digits /= 10;
+    exponent++;
+  }
+  if (exponent >= -1)
+    snprintf(text, SCREE_NUMBER_SIZE, "%.2f", rp);
+  else
+    snprintf(text, SCREE_NUMBER_SIZE, "%.1fe%d", digits, exponent);
+  return with_point(text);
+}
+
+const char *scree_percent_text(double share, char text[SCREE_NUMBER_SIZE]) {
+  double percent = 100 * share;
+  int decimals = percent < 0.095 ? 3 : percent < 9.95 ? 2 : 0;
+  snprintf(text, SCREE_NUMBER_SIZE, "%.*f%%", decimals, percent);
+  return with_point(text);
+}

@@ -24,4 +24,9 @@ size_t scree_number_format_float(float value, char text[SCREE_NUMBER_SIZE]);
 /* What printf makes of %.*g, digits at most 17; answers the length. */
 size_t scree_number_format_digits(double value, int digits, char text[SCREE_NUMBER_SIZE]);
 
+/* For people, answering text: an Rp, 0.00123 as 1.2e-3 and 0.123 as 0.12; and a share as a
+ * percentage, with three decimals below 0.1 %, two below 10 % and else none. */
+const char *scree_rp_text(double rp, char text[SCREE_NUMBER_SIZE]);
+const char *scree_percent_text(double share, char text[SCREE_NUMBER_SIZE]);
+
 #endif

@@ -12,7 +12,7 @@ typedef struct level_row {
   scree_gauge_reading reading;
 } level_row;
 
-enum { FACTS = SCREE_SCAN_HEIGHT + 1 };
+enum { FACTS = SCREE_SCAN_BOX_HEIGHT + 1 };
 
 struct scree_fidelity {
   double scan[FACTS];
@@ -81,7 +81,8 @@ static void keep_facts(scree_fidelity *f, const scree_gauge *g) {
   f->scan[SCREE_SCAN_CLEAN_AREA] = g->clean_area;
   f->scan[SCREE_SCAN_THICKNESS] = g->thickness;
   f->scan[SCREE_SCAN_THINNEST] = g->thinnest;
-  f->scan[SCREE_SCAN_HEIGHT] = g->measures.oriented_dimensions[2];
+  for (int i = 0; i < 3; i++)
+    f->scan[SCREE_SCAN_BOX_LENGTH + i] = g->measures.oriented_dimensions[i];
 }
 
 scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *curve,

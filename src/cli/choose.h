@@ -7,7 +7,7 @@
 #include "cli/stage.h"
 #include "report/provenance.h"
 
-enum { CHOOSE_NAME_BYTES = 128, CHOOSE_NOTE_BYTES = 256, CHOOSE_PATH_BYTES = 4096 };
+enum { CHOOSE_NAME_BYTES = 128, CHOOSE_NOTE_BYTES = 1536, CHOOSE_PATH_BYTES = 4096 };
 
 typedef struct choose_arguments {
   const char *output, *grid, *tolerance;
@@ -23,7 +23,7 @@ typedef struct choose_object {
   char name[CHOOSE_NAME_BYTES]; /* unique among the objects */
   char format[32];
   double unit_m;                /* of the file: as asked for, or as it states */
-  char note[CHOOSE_NOTE_BYTES]; /* what was repaired or is wrong; "" for nothing */
+  char note[CHOOSE_NOTE_BYTES]; /* what was repaired or is wrong, a sentence a line */
   char mesh_path[CHOOSE_PATH_BYTES];
   scree_checksum checksum;
   bool failed;
@@ -41,7 +41,8 @@ typedef struct choose_run {
   scree_choice_options options;
   scree_simplify_options simplify;
   scree_work_start start;
-  scree_choice_report report; /* in the end */
+  scree_choice_report report;   /* in the end */
+  char note[CHOOSE_NOTE_BYTES]; /* what is to be said of all */
 } choose_run;
 
 /* The choice that meshes are written by. */
@@ -50,8 +51,8 @@ const scree_set_pick *choose_default_set_pick(const choose_run *run, const scree
 
 /* The table and what to do, for people. */
 void choose_print(FILE *out, const choose_run *run);
-/* Which objects are not in it, in one line. */
-void choose_print_failed(FILE *out, const choose_run *run);
+/* All that is worth a warning, a line each. */
+void choose_print_warnings(FILE *out, const choose_run *run);
 
 /* Refuses early where a file that will be written exists; makes the folder to write into. */
 scree_status choose_prepare_folder(choose_run *run, scree_error *error);

@@ -246,11 +246,9 @@ static scree_status write_level(const choose_run *run, size_t index, const scree
   if (status == SCREE_OK)
     status = scree_particle_export(&mesh, &options, path, mass_path, NULL, error);
   double lost = cli_volume_lost(&mesh, path, options.unit_m);
-  size_t used = strlen(object->note);
   if (status == SCREE_OK && lost >= CLI_NOTABLE_LOSS && !strstr(object->note, "single precision"))
-    snprintf(run->objects[index].note + used, sizeof object->note - used,
-             "%san STL's single precision changes the volume by %.2g of it", used ? "; " : "",
-             lost);
+    cli_add_line(run->objects[index].note, sizeof object->note,
+                 "An STL's single precision changes the volume by %.2g of it.", lost);
   scree_mesh_free(&mesh);
   return status;
 }

@@ -1,42 +1,20 @@
 /* The answer for people: one row per object, one for the set, and what to do. Nine objects fit a
  * screen of 80 x 24. */
+#include "base/number.h"
 #include "cli/choose.h"
-
-#include <math.h>
-#include <string.h>
-
-/* 0.00123 as 1.2e-3 */
-static const char *rp_text(double rp, char buffer[16]) {
-  int exponent = (int)floor(log10(rp) + 1e-9);
-  double digits = rp / pow(10, exponent);
-  if (digits >= 9.95) {
-    digits /= 10;
-    exponent++;
-  }
-  if (exponent >= -1)
-    snprintf(buffer, 16, "%.2f", rp);
-  else
-    snprintf(buffer, 16, "%.1fe%d", digits, exponent);
-  return buffer;
-}
-
-static const char *percent_text(double fraction, char buffer[16]) {
-  double percent = 100 * fraction;
-  snprintf(buffer, 16, percent < 0.095 ? "%.3f%%" : percent < 9.95 ? "%.2f%%" : "%.0f%%", percent);
-  return buffer;
-}
 
 static void print_row(FILE *out, const choose_run *run, size_t index) {
   const scree_choice *c = &run->choices[index];
   const scree_fidelity *f = c->fidelity;
-  char scan[32], n[4][32], share[3][16];
+  char scan[32], n[4][32], share[3][SCREE_NUMBER_SIZE];
   cli_print_cell(out, run->objects[index].name, 12, 12);
   fprintf(
       out, "%10s |%7s%7s%8s |%7s%7s%c |%7s |%6s\n", cli_count_text(c->triangle_count, scan),
       cli_count_text(c->recommended.triangle_count, n[0]),
-      percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_MEAN), share[0]),
-      percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_HAUSDORFF), share[1]),
-      cli_count_text(c->paper.triangle_count, n[1]), percent_text(c->paper.eps_s, share[2]),
+      scree_percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_MEAN), share[0]),
+      scree_percent_text(scree_fidelity_error(f, c->recommended_row, SCREE_ERROR_HAUSDORFF),
+                         share[1]),
+      cli_count_text(c->paper.triangle_count, n[1]), scree_percent_text(c->paper.eps_s, share[2]),
       c->paper_is_accident ? '*' : ' ', cli_count_text(c->robust.triangle_count, n[2]),
       cli_count_text(c->cost.triangle_count, n[3]));
 }
@@ -52,7 +30,7 @@ static const char *reference_text(const choose_run *run) {
 }
 
 static void print_table(FILE *out, const choose_run *run) {
-  char rp[16];
+  char rp[SCREE_NUMBER_SIZE];
   fprintf(out, "Told and written: %s; method %s, Ip = eps_s + %g Nr/Nm%s, coordinates in %s\n",
           scree_choice_rule_name(run->report.rule), scree_method_name(run->simplify.method),
           run->options.weight, reference_text(run), cli_unit_name(run->arguments->source.unit));
@@ -62,18 +40,7 @@ static void print_table(FILE *out, const choose_run *run) {
   for (size_t i = 0; i < run->count; i++) print_row(out, run, i);
   if (run->count > 1)
     fprintf(out, "the set, by the paper's criterion: one Rp = %s\n",
-            rp_text(run->set.paper.rp, rp));
-}
-
-void choose_print_failed(FILE *out, const choose_run *run) {
-  char shown[CLI_PRINTABLE_BYTES];
-  fputs("Without ", out);
-  for (size_t i = 0; i < run->failed_count; i++)
-    fprintf(out, "%s%s", i ? ", " : "", cli_printable(run->objects[run->count + i].word, shown));
-  if (run->count > 1)
-    fprintf(out, ", which could not be used: the set's choice is of the other %zu.\n", run->count);
-  else
-    fputs(", which could not be used: there is no set to choose for.\n", out);
+            scree_rp_text(run->set.paper.rp, rp));
 }
 
 /* Where other errors were asked for: the grid's choice by each. */
@@ -88,21 +55,18 @@ static void print_other_errors(FILE *out, const choose_run *run) {
     const scree_choice *c = &run->choices[i];
     cli_print_cell(out, run->objects[i].name, 13, 13);
     for (int e = 1; e < SCREE_SHAPE_ERROR_COUNT; e++) {
-      char rp[16];
+      char rp[SCREE_NUMBER_SIZE];
       bool known = c->best[e] < c->level_count;
-      fprintf(out, "%14s", known ? rp_text(c->levels[c->best[e]].rp, rp) : "-");
+      fprintf(out, "%14s", known ? scree_rp_text(c->levels[c->best[e]].rp, rp) : "-");
     }
     putc('\n', out);
   }
 }
 
-/* What the report and the JSON say, too. */
-static void print_sentences(FILE *out, const choose_run *run) {
+/* What the report and the JSON say, too; those of the set have no name before them. */
+void choose_print_warnings(FILE *out, const choose_run *run) {
   char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES];
-  size_t told = run->count > 1 ? run->count : 0, count;
-  count = scree_choice_answer(&run->report, told, texts);
-  for (size_t i = 0; i < count; i++) fprintf(out, "%s\n", texts[i]);
-  count = run->count > 1 ? scree_choice_warnings(&run->report, told, texts) : 0;
+  size_t count = run->count > 1 ? scree_choice_warnings(&run->report, run->count, texts) : 0;
   for (size_t i = 0; i < count; i++) fprintf(out, "%s\n", texts[i]);
   for (size_t k = 0; k < run->count; k++) {
     count = scree_choice_warnings(&run->report, k, texts);
@@ -110,11 +74,17 @@ static void print_sentences(FILE *out, const choose_run *run) {
   }
 }
 
+static void print_answer(FILE *out, const choose_run *run) {
+  char texts[SCREE_CHOICE_SENTENCES][SCREE_CHOICE_SENTENCE_BYTES];
+  size_t count = scree_choice_answer(&run->report, run->count > 1 ? run->count : 0, texts);
+  for (size_t i = 0; i < count; i++) fprintf(out, "%s\n", texts[i]);
+}
+
 void choose_print(FILE *out, const choose_run *run) {
   print_table(out, run);
   putc('\n', out);
-  if (run->failed_count) choose_print_failed(out, run);
-  print_sentences(out, run);
+  print_answer(out, run);
+  choose_print_warnings(out, run);
   const char *folder = run->arguments->output;
   char shown[CLI_PRINTABLE_BYTES];
   if (folder)

@@ -72,21 +72,41 @@ static const char *unit_text(double unit_m, char buffer[32]) {
   return buffer;
 }
 
-void cli_remark_scan(const char *word, const cli_input_options *options, const scree_scan *scan,
-                     double scale) {
+void cli_add_line(char *text, size_t size, const char *format, ...) {
+  size_t used = strlen(text);
+  va_list arguments;
+  if (used > 0 && used + 1 < size) text[used++] = '\n';
+  va_start(arguments, format);
+  vsnprintf(text + used, size - used, format, arguments);
+  va_end(arguments);
+}
+
+void cli_scan_remarks(const cli_input_options *options, const scree_scan *scan, double scale,
+                      char *text, size_t bytes) {
   char written[32], asked[32];
   double size = scale * size_of(&scan->mesh);
   bool states = scan->states_unit || (scan->comment_unit_m > 0 && !unit_is_given);
-  if (scan->warning[0]) cli_remark(word, "%s", scan->warning);
+  if (scan->warning[0]) cli_add_line(text, bytes, "%s", scan->warning);
   if (scan->comment_unit_m > 0 && scan->comment_unit_m != options->read.unit_m)
-    cli_remark(word,
-               unit_is_given ? "scree wrote it in %s; read in %s, as -u says"
-                             : "read in %s, as scree wrote it, not in %s",
-               unit_text(scan->comment_unit_m, written), unit_text(options->read.unit_m, asked));
+    cli_add_line(text, bytes,
+                 unit_is_given ? "scree wrote it in %s; read in %s, as -u says"
+                               : "read in %s, as scree wrote it, not in %s",
+                 unit_text(scan->comment_unit_m, written), unit_text(options->read.unit_m, asked));
   if (size < smallest_size || size > largest_size)
-    cli_remark(word, "%.3g %s across: no size of a particle, is the unit right?%s",
-               size < 1 ? 1e3 * size : size, size < 1 ? "mm" : "m",
-               states ? "" : " -u says which it is");
+    cli_add_line(text, bytes, "%.3g %s across: no size of a particle, is the unit right?%s",
+                 size < 1 ? 1e3 * size : size, size < 1 ? "mm" : "m",
+                 states ? "" : " -u says which it is");
+}
+
+void cli_remark_scan(const char *word, const cli_input_options *options, const scree_scan *scan,
+                     double scale) {
+  char text[1024] = "";
+  cli_scan_remarks(options, scan, scale, text, sizeof text);
+  for (char *line = text, *end; *line; line = end) {
+    size_t length = strcspn(line, "\n");
+    end = line + length + (line[length] == '\n');
+    cli_remark(word, "%.*s", (int)length, line);
+  }
 }
 
 scree_status cli_load(const char *word, const cli_input_options *options,

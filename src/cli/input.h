@@ -56,8 +56,14 @@ bool cli_is_sample(const char *word, const char **name);
 void cli_input_obeys(const cli_common *common);
 /* "word: sentence" on stderr, unless it is to be quiet. */
 void cli_remark(const char *word, const char *format, ...) __attribute__((format(printf, 2, 3)));
-/* Remarks where the file contradicts itself, says another unit than the options, or is of a size
+/* One line more in a text of so many bytes. */
+void cli_add_line(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Lines where the file contradicts itself, says another unit than the options, or is of a size
  * that no particle has; positions are in metres once they are multiplied by scale. */
+void cli_scan_remarks(const cli_input_options *options, const scree_scan *scan, double scale,
+                      char *text, size_t size);
+/* The same on stderr, with the word before each. */
 void cli_remark_scan(const char *word, const cli_input_options *options, const scree_scan *scan,
                      double scale);
 /* Reads or makes the surface, and remarks on it; a sample's format is "sample", its checksum zero.

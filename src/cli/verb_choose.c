@@ -156,6 +156,8 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
   cli_input_options input = cli_source_options(&run->arguments->source);
   scree_repair_report report;
   scree_scan scan;
+  char repaired[CHOOSE_NOTE_BYTES];
+  input.remarked = true; /* with the other warnings */
   scree_status status = cli_load_closed(object->word, &input, run->arguments->no_repair, progress,
                                         &scan, scale, &report, error);
   if (status != SCREE_OK) return status;
@@ -163,7 +165,10 @@ static scree_status load(void *context, size_t index, const scree_progress *prog
   object->unit_m = scan.unit_m;
   object->checksum = scan.checksum;
   *mesh = scan.mesh;
-  cli_repair_text(&report, object->note, sizeof object->note);
+  if (!cli_is_sample(object->word, NULL))
+    cli_scan_remarks(&input, &scan, *scale, object->note, sizeof object->note);
+  cli_repair_text(&report, repaired, sizeof repaired);
+  if (repaired[0]) cli_add_line(object->note, sizeof object->note, "%s", repaired);
   return SCREE_OK;
 }
 
@@ -196,6 +201,23 @@ static void part_failed(choose_run *run) {
   run->count = kept;
 }
 
+/* What is to be said of all objects, or of those that are left. */
+static void note_all(choose_run *run) {
+  char names[CHOOSE_NOTE_BYTES / 2] = "", shown[CLI_PRINTABLE_BYTES];
+  size_t used = 0;
+  for (size_t i = 0; i < run->failed_count && used < sizeof names; i++)
+    used += (size_t)snprintf(names + used, sizeof names - used, "%s%s", i ? ", " : "",
+                             cli_printable(run->objects[run->count + i].word, shown));
+  if (run->failed_count && run->count > 1)
+    cli_add_line(run->note, sizeof run->note,
+                 "Without %s, which could not be used: the set's choice is of the other %zu.",
+                 names, run->count);
+  else if (run->failed_count)
+    cli_add_line(run->note, sizeof run->note,
+                 "Without %s, which could not be used: there is no set to choose for.", names);
+  run->report.note = run->note;
+}
+
 static scree_status write_output(choose_run *run, scree_error *error) {
   const choose_arguments *a = run->arguments;
   scree_choice_entry *entries = calloc(run->count, sizeof *entries);
@@ -225,12 +247,12 @@ static scree_status write_output(choose_run *run, scree_error *error) {
   run->report.options = &run->options;
   run->report.method = run->simplify.method;
   run->report.command_line = run->call->command_line;
+  note_all(run);
   const scree_choice_report report = run->report;
   scree_status status = SCREE_OK;
   if (a->output) status = choose_write_reports(run, &report, error);
   cli_terminal_end();
-  if (status == SCREE_OK && run->failed_count && (a->json || a->csv) && !run->call->quiet)
-    choose_print_failed(stderr, run);
+  if (status == SCREE_OK && a->csv && !run->call->quiet) choose_print_warnings(stderr, run);
   if (status == SCREE_OK && a->json)
     status = scree_choice_json_write(&report, "-", false, error);
   else if (status == SCREE_OK && a->csv)

@@ -85,6 +85,11 @@ static void json_recommended(scree_json *json, const scree_choice_report *report
   scree_json_number(json, "clean_area", scree_fidelity_scan(f, SCREE_SCAN_CLEAN_AREA));
   scree_json_number(json, "thickness", scree_fidelity_scan(f, SCREE_SCAN_THICKNESS));
   scree_json_number(json, "thinnest", scree_fidelity_scan(f, SCREE_SCAN_THINNEST));
+  scree_json_row_array(json, "dimensions");
+  for (int i = 0; i < 3; i++)
+    scree_json_number(json, NULL,
+                      scree_fidelity_scan(f, (scree_scan_fact)(SCREE_SCAN_BOX_LENGTH + i)));
+  scree_json_end(json);
   scree_json_end(json);
   scree_json_text(json, "limited_by", scree_shape_error_name(c->limited_by));
 }
@@ -172,7 +177,6 @@ static void json_source(scree_json *json, const scree_choice_entry *entry) {
     scree_json_count(json, "seed", entry->sample_seed);
     scree_json_end(json);
   }
-  scree_json_text(json, "note", entry->note);
   scree_json_text(json, "mesh_file", entry->mesh_file);
 }
 

@@ -24,10 +24,12 @@ static const double NOTABLE_NORMALS = 0.1;
 static const double NOTABLE_NOISE = 0.3;
 /* A level with more of the scan's triangles than this is hardly coarser than the scan. */
 static const double NOTABLE_SHARE = 0.5;
+/* A distance of less, as a share of the size, is none. */
+static const double ROUNDING = 1e-9;
 /* The cost of a particle-step in a flowing heap, over that of 100 triangles: 2.5 at 1,500. */
 static const double COST_RISE = 1.5 / 1400, COST_START = 100;
 /* The paper's coarsest levels; a floor above is worth a word. */
-enum { PAPER_FLOOR = 8, NUMBER_BYTES = 32 };
+enum { PAPER_FLOOR = 8, NUMBER_BYTES = SCREE_NUMBER_SIZE };
 
 typedef struct sentences {
   char (*texts)[SCREE_CHOICE_SENTENCE_BYTES];
@@ -57,13 +59,6 @@ static const char *change_text(double fraction, char buffer[NUMBER_BYTES]) {
 }
 #define CHANGE(fraction) change_text(fraction, (char[NUMBER_BYTES]){0})
 
-/* A number that printf wrote with the locale's decimal point. */
-static const char *with_point(char *text) {
-  char *comma = strchr(text, ',');
-  if (comma) *comma = '.';
-  return text;
-}
-
 /* 12345 as 12,345 */
 static const char *count_text(size_t count, char buffer[NUMBER_BYTES]) {
   char digits[NUMBER_BYTES];
@@ -74,31 +69,6 @@ static const char *count_text(size_t count, char buffer[NUMBER_BYTES]) {
   }
   buffer[used] = 0;
   return buffer;
-}
-
-/* 0.00123 as 1.2e-3 */
-static const char *rp_text(double rp, char buffer[NUMBER_BYTES]) {
-  int exponent = (int)floor(log10(rp) + 1e-9);
-  double digits = rp / pow(10, exponent);
-  if (digits >= 9.95) {
-    digits /= 10;
-    exponent++;
-  }
-  if (exponent >= -1)
-    snprintf(buffer, NUMBER_BYTES, "%.2f", rp);
-  else
-    snprintf(buffer, NUMBER_BYTES, "%.1fe%d", digits, exponent);
-  return with_point(buffer);
-}
-
-static const char *percent_text(double fraction, char buffer[NUMBER_BYTES]) {
-  double percent = 100 * fraction;
-  snprintf(buffer, NUMBER_BYTES,
-           percent < 0.095  ? "%.3f%%"
-           : percent < 9.95 ? "%.2f%%"
-                            : "%.0f%%",
-           percent);
-  return with_point(buffer);
 }
 
 static double ratio(double a, double b) {
@@ -140,30 +110,54 @@ static double cost_of(size_t triangle_count) {
   return 1 + COST_RISE * ((double)triangle_count - COST_START);
 }
 
+/* A length in mm from a share of the scan's size. */
+static const char *length_text(const scree_choice *c, double share, char buffer[NUMBER_BYTES]) {
+  double length = share * scree_fidelity_scan(c->fidelity, SCREE_SCAN_LENGTH);
+  return number_text(share < ROUNDING ? 0 : 1e3 * length, 2, buffer);
+}
+#define LENGTH(choice, share) length_text(choice, share, (char[NUMBER_BYTES]){0})
+
+static bool is_distance(scree_shape_error which) {
+  return which == SCREE_ERROR_MEAN || which == SCREE_ERROR_HAUSDORFF;
+}
+
+/* What decides, and how much of it is allowed: a distance in mm. */
+static void say_limit(sentences *s, const scree_choice_report *report, const scree_choice *c) {
+  double error = scree_fidelity_error(c->fidelity, c->recommended_row, c->limited_by),
+         most = scree_choice_tolerance(c, report->options, c->limited_by);
+  char share[NUMBER_BYTES], limit[NUMBER_BYTES];
+  if (is_distance(c->limited_by))
+    say(s, "Limited by %s, %s mm of %s mm allowed, which is %s of the body's size of %s mm.",
+        error_words(c->limited_by), LENGTH(c, error), LENGTH(c, most),
+        scree_percent_text(most, limit),
+        NUMBER(1e3 * scree_fidelity_scan(c->fidelity, SCREE_SCAN_LENGTH), 3));
+  else
+    say(s, "Limited by %s, %s of %s allowed.", error_words(c->limited_by),
+        scree_percent_text(error, share), scree_percent_text(most, limit));
+}
+
 static void say_recommended(sentences *s, const scree_choice_report *report,
                             const scree_choice *c) {
   const scree_fidelity *f = c->fidelity;
   const scree_pick *pick = &c->recommended;
   size_t row = c->recommended_row;
-  double length = scree_fidelity_scan(f, SCREE_SCAN_LENGTH), at[3],
-         thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST);
-  char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES],
-      walls[64] = "", share[NUMBER_BYTES], most[NUMBER_BYTES];
+  double at[3], thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST);
+  char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES], walls[96] = "";
   scree_fidelity_farthest(f, row, at);
-  if (isfinite(thinnest)) snprintf(walls, sizeof walls, "thinnest walls %s %%, ", CHANGE(thinnest));
+  if (isfinite(thinnest))
+    snprintf(walls, sizeof walls, "thinnest walls %s mm, %s %%; ",
+             NUMBER(1e3 * (1 + thinnest) * scree_fidelity_scan(f, SCREE_SCAN_THINNEST), 2),
+             CHANGE(thinnest));
   say(s,
       "Use %s triangles (Rp = %s): surface %s mm off in the mean, %s mm at worst (at %s, %s, %s "
       "mm); %sinertia %s %%, area %s %%.",
-      count_text(pick->triangle_count, count), rp_text(pick->rp, rp),
-      NUMBER(1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_MEAN), 2),
-      NUMBER(1e3 * length * scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF), 2),
-      NUMBER(1e3 * at[0], 6), NUMBER(1e3 * at[1], 6), NUMBER(1e3 * at[2], 6), walls,
+      count_text(pick->triangle_count, count), scree_rp_text(pick->rp, rp),
+      LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_MEAN)),
+      LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF)), NUMBER(1e3 * at[0], 6),
+      NUMBER(1e3 * at[1], 6), NUMBER(1e3 * at[2], 6), walls,
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA)),
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_AREA)));
-  say(s, "Limited by %s, %s of %s at most; sizes are relative to %s mm.",
-      error_words(c->limited_by), percent_text(scree_fidelity_error(f, row, c->limited_by), share),
-      percent_text(scree_choice_tolerance(c, report->options, c->limited_by), most),
-      NUMBER(1e3 * length, 3));
+  say_limit(s, report, c);
   if (pick->triangle_count > c->paper.triangle_count)
     say(s, "In a flowing heap it costs about %s times the paper's %s triangles to simulate.",
         NUMBER(cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count), 2),
@@ -176,8 +170,8 @@ static void say_by_area(sentences *s, const scree_choice_report *report, const s
   char count[NUMBER_BYTES], rp[NUMBER_BYTES], percent[NUMBER_BYTES], low[NUMBER_BYTES],
       high[NUMBER_BYTES];
   say(s, "Use %s triangles (Rp = %s): area within %s of the scan's.",
-      count_text(pick->triangle_count, count), rp_text(rp_of(c, pick), rp),
-      percent_text(paper ? pick->level_eps_s : pick->eps_s, percent));
+      count_text(pick->triangle_count, count), scree_rp_text(rp_of(c, pick), rp),
+      scree_percent_text(paper ? pick->level_eps_s : pick->eps_s, percent));
   if (pick->most > pick->fewest)
     say(s, "From %s up to %s triangles there are levels with an Ip within a tenth of it.",
         count_text(pick->fewest, low), count_text(pick->most, high));
@@ -208,9 +202,9 @@ static void say_common_rp(sentences *s, const scree_choice_report *report, const
   }
   char rp_buffer[NUMBER_BYTES], low[NUMBER_BYTES], high[NUMBER_BYTES], percent[NUMBER_BYTES];
   say(s, "%s Rp = %s for the set: %s%s%s triangles%s, area within %s%s.", begin,
-      rp_text(rp, rp_buffer), count_text(least, low), least < most ? " to " : "",
+      scree_rp_text(rp, rp_buffer), count_text(least, low), least < most ? " to " : "",
       least < most ? count_text(most, high) : "", least < most ? "" : " each",
-      percent_text(worst, percent), end);
+      scree_percent_text(worst, percent), end);
 }
 
 static void say_set(sentences *s, const scree_choice_report *report) {
@@ -220,7 +214,7 @@ static void say_set(sentences *s, const scree_choice_report *report) {
     say_common_rp(s, report, "Use", "");
     if (pick->rp_high > pick->rp_low)
       say(s, "From Rp = %s up to %s there are levels with an Ip within a tenth of the least.",
-          rp_text(pick->rp_low, low), rp_text(pick->rp_high, high));
+          scree_rp_text(pick->rp_low, low), scree_rp_text(pick->rp_high, high));
     return;
   }
   size_t least = SIZE_MAX, most = 0;
@@ -229,8 +223,9 @@ static void say_set(sentences *s, const scree_choice_report *report) {
     if (count < least) least = count;
     if (count > most) most = count;
   }
-  say(s, "Use each shape's own count, %s to %s triangles: all keep the same tolerances.",
-      count_text(least, low), count_text(most, high));
+  say(s, "Use each shape's own count, %s%s%s triangles: all keep the same tolerances.",
+      count_text(least, low), least < most ? " to " : "",
+      least < most ? count_text(most, high) : "");
   say_common_rp(s, report, "The paper's criterion gives one", ", but fidelities that differ");
 }
 
@@ -257,12 +252,14 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
   size_t row = c->recommended_row;
   char count[NUMBER_BYTES];
   for (int i = 0; i < 3; i++) {
-    double change = scree_fidelity_change(f, row, (scree_shape_change)(SCREE_CHANGE_LENGTH + i));
+    double change = scree_fidelity_change(f, row, (scree_shape_change)(SCREE_CHANGE_LENGTH + i)),
+           side = 1e3 * scree_fidelity_scan(f, (scree_scan_fact)(SCREE_SCAN_BOX_LENGTH + i));
     if (fabs(change) > NOTABLE_SIZE)
       say(s,
-          "%s a feature, thinner than the tolerances keep: %s %s %% (--tolerance size=2%% "
-          "keeps it).",
-          change < 0 ? "It loses" : "It enlarges", sides[i], CHANGE(change));
+          "%s a feature, thinner than the tolerances keep: the %s is %s mm, not %s mm (--tolerance "
+          "size=2%% keeps it).",
+          change < 0 ? "It loses" : "It enlarges", sides[i], NUMBER(side * (1 + change), 4),
+          NUMBER(side, 4));
   }
   double normals = scree_fidelity_error(f, row, SCREE_ERROR_NORMALS);
   if (normals > NOTABLE_NORMALS)
@@ -312,7 +309,7 @@ static void warn_of_noise(sentences *s, const scree_choice_report *report, size_
     say(s,
         "Scan noise adds up to %s of area and misleads eps_s: --area smooth takes it out and "
         "gives Rp = %s.",
-        percent_text(most, percent), rp_text(rp, text));
+        scree_percent_text(most, percent), scree_rp_text(rp, text));
 }
 
 /* How many times the triangles at half the spacing, by the rule that is told. */
@@ -348,7 +345,17 @@ static void warn_of_floor(sentences *s, const scree_choice_report *report, size_
   char count[NUMBER_BYTES], rp[NUMBER_BYTES];
   if (!e->choice->levels[0].reached && e->choice->floor_count > PAPER_FLOOR)
     say(s, "Rp = %s was not reached: %s stops at %s triangles.",
-        rp_text(report->options->rp_min, rp), e->name, count_text(e->choice->floor_count, count));
+        scree_rp_text(report->options->rp_min, rp), e->name,
+        count_text(e->choice->floor_count, count));
+}
+
+/* Each line of a note. */
+static void say_lines(sentences *s, const char *note) {
+  while (note && *note) {
+    size_t length = strcspn(note, "\n");
+    say(s, "%.*s", (int)length, note);
+    note += length + (note[length] == '\n');
+  }
 }
 
 size_t scree_choice_warnings(const scree_choice_report *report, size_t entry,
@@ -356,6 +363,8 @@ size_t scree_choice_warnings(const scree_choice_report *report, size_t entry,
   sentences s = {texts, 0};
   bool set = entry == report->entry_count;
   bool recommended = is_recommended(report, report->entries[set ? 0 : entry].choice);
+  if (!set) say_lines(&s, report->entries[entry].note);
+  if (set || report->entry_count == 1) say_lines(&s, report->note);
   if (!set && recommended) warn_of_losses(&s, report, report->entries[entry].choice);
   if (!recommended) {
     if (!set) warn_of_accidents(&s, report->entries[entry].choice);
@@ -363,6 +372,5 @@ size_t scree_choice_warnings(const scree_choice_report *report, size_t entry,
     warn_of_resolution(&s, report, entry);
   }
   if (!set) warn_of_floor(&s, report, entry);
-  if (!set && report->entries[entry].note) say(&s, "%s", report->entries[entry].note);
   return s.count;
 }

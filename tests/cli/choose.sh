@@ -54,7 +54,7 @@ run choose junk.stl plain.stl -o rest -f --json | grep -E '"(file|object_count|m
 find rest -name 'again*' -o -name 'own*' -o -path 'rest/set*' | sort
 "$SCREE" choose sample:icosphere-2 -o read -f >/dev/null
 find read -name 'again*' -o -name 'plain*' -o -name 'icosphere*' | sort
-run choose junk.stl plain.stl -o alone | tail -n 4
+run choose junk.stl plain.stl -o alone | tail -n 6
 find alone -name set
 run choose junk.stl missing.stl -o none/of/it
 ls -d none
@@ -71,6 +71,32 @@ noisy="--resolution 3mm --noise 0.6mm --sample-seed 3"
 for words in plain.stl "sample:sp-1 $noisy"; do
   "$SCREE" choose $words --area smooth | head -n 1
 done
+"$SCREE" choose sample:sp-1 $noisy --rule robust | grep misleads | shape
+# what is worth a warning stands in the text, the JSON and the page alike, and nothing of it in one of them alone
+box 3 2 1 | sed '2s/6/5/; $d' >open.off
+box 30000 20000 10000 >huge.off
+warned() {
+  "$SCREE" choose "$@" -o warned -f >text 2>/dev/null
+  cp warned/choice.json warnings.json
+  python3 - text warned/choice.txt warned/report.html warnings.json <<'PYTHON'
+import html, json, re, sys
+texts = [open(name, encoding="utf-8").read() for name in sys.argv[1:4]]
+texts[2] = html.unescape(re.sub("<[^>]*>", "", texts[2]))
+objects = json.load(open(sys.argv[4], encoding="utf-8"))
+told = [(o["name"] + ": " if "name" in o else "") + w for o in objects for w in o["warnings"]]
+for text in texts:
+    print(len(told), "warnings in the JSON,", sum(w in text for w in told), "of them in a text")
+for text in texts[:2]:  # all that is no answer
+    lines = text.split("\n\n")[1].split("\n")
+    answers = sum((o["answer"] for o in objects), [])
+    print([l for l in lines if l and l not in told + answers and not l.startswith(("In warned", "*.mass"))])
+PYTHON
+}
+if command -v python3 >/dev/null; then
+  warned open.off huge.off missing.stl
+  warned "sample:sp-1" $noisy --rule robust
+  "$SCREE" choose open.off huge.off --csv 2>&1 >/dev/null | shape
+fi
 # what has hardly an error is not on the figure's logarithmic axis, which says so
 "$SCREE" choose sample:box --resolution 5mm -o box >/dev/null 2>&1
 grep '^# scree' box/figure.gnuplot out/figure.gnuplot | sed 's/scree [0-9][0-9.]*[^,]*/scree N/'
