@@ -104,6 +104,9 @@ typedef enum scree_phase {
 
 SCREE_API const char *scree_phase_name(scree_phase phase);
 
+/* Shapes that a run or a study mixes, at most. */
+enum { SCREE_MOST_SHAPES = 1000 };
+
 /* A run: its world, walls and the schedule of filling and phases. */
 typedef struct scree_run scree_run;
 
@@ -119,7 +122,7 @@ typedef struct scree_run_shape {
  * are random, and their bounding boxes never overlap (src/scene/fill.c). Layers follow each other
  * so that all are in after pack_time; a cylinder too narrow for the largest particle, or a layer
  * that would have to enter faster than the contact law allows, is refused here with the pack_time
- * that would do. At most 60 shapes. */
+ * that would do. At most SCREE_MOST_SHAPES shapes. */
 SCREE_API scree_status scree_run_create(const scree_experiment *experiment,
                                         const scree_run_shape *shapes, size_t shape_count,
                                         scree_run **run, scree_error *error);
@@ -223,7 +226,7 @@ typedef struct scree_run_state {
 
 typedef struct scree_run_job {
   const scree_experiment *experiment; /* NULL: that of the checkpoint, which must be there */
-  const scree_run_shape *shapes;      /* 1 to 60; NULL: likewise */
+  const scree_run_shape *shapes;      /* NULL: likewise */
   size_t shape_count;
   /* Gets checkpoint.scree every output.checkpoint_interval, when the run is cancelled and when it
    * is done; frame-NNNN.scree at every output.frame_interval, NNNN counting from 0000; and

@@ -179,6 +179,10 @@ SCREE_API scree_body scree_default_body(void);
 SCREE_API scree_status scree_world_add_body(scree_world *world, scree_particle *particle,
                                             size_t material, const scree_body *state, size_t *index,
                                             scree_error *error);
+/* Gives a body another density (kg/m3, above 0) than its material's: mass and inertia follow, its
+ * velocities stay, its contacts begin anew. */
+SCREE_API scree_status scree_world_set_body_density(scree_world *world, size_t index,
+                                                    double density, scree_error *error);
 /* All ever added, removed ones included. */
 SCREE_API size_t scree_world_body_count(const scree_world *world);
 SCREE_API bool scree_world_body_removed(const scree_world *world, size_t index);

@@ -444,7 +444,7 @@ const cli_verb cli_verb_drop = {
     .defaults = &defaults,
     .options_size = sizeof defaults,
     .input_minimum = 0,
-    .input_maximum = 60,
+    .input_maximum = SCREE_MOST_SHAPES,
     .partners = CLI_SAMPLE_PARTNERS,
     .run = run,
 };

@@ -5,8 +5,6 @@
 
 #include <string.h>
 
-enum { MOST_SHAPES = 60 };
-
 const char *scree_phase_name(scree_phase phase) {
   static const char *const names[] = {"packing", "settling", "lifting", "holding", "done"};
   return (unsigned)phase <= SCREE_PHASE_DONE ? names[phase] : "?";
@@ -16,8 +14,9 @@ const char *scree_phase_name(scree_phase phase) {
 
 static scree_status check_shapes(const scree_experiment *e, const scree_run_shape *shapes,
                                  size_t count, scree_error *error) {
-  if (count < 1 || count > MOST_SHAPES)
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "%zu shapes: must be 1 to %d", count, MOST_SHAPES);
+  if (count < 1 || count > SCREE_MOST_SHAPES)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "%zu shapes: must be 1 to %d", count,
+                      SCREE_MOST_SHAPES);
   if (count > e->particle_count)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "%zu shapes for %zu particles", count,
                       e->particle_count);
@@ -87,8 +86,8 @@ scree_status scree_run_describe(const scree_experiment *experiment, const scree_
 }
 
 static scree_status make_scene(scree_run *run, scree_error *error) {
-  scree_particle *particles[MOST_SHAPES];
-  const char *sources[MOST_SHAPES];
+  scree_particle *particles[SCREE_MOST_SHAPES];
+  const char *sources[SCREE_MOST_SHAPES];
   unsigned char *notes;
   size_t note_bytes;
   scree_scene_file *file;

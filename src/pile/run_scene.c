@@ -27,22 +27,18 @@ static void put_materials(const scree_run *run, FILE *out) {
   const scree_experiment *e = &run->experiment;
   fprintf(out, "materials:\n  wall: {young: %.17g, restitution: %.17g, friction: %.17g}\n",
           e->young_wall, e->restitution, e->friction_wall);
-  for (size_t i = 0; i < run->shape_count; i++)
-    fprintf(out,
-            "  grain-%zu: {young: %.17g, density: %.17g, restitution: %.17g, friction: %.17g}\n", i,
-            e->young_particle, e->density * run->shapes[i].density_factor, e->restitution,
-            e->friction_particle);
-  fputs("pairs:\n", out);
-  for (size_t i = 0; i < run->shape_count; i++)
-    fprintf(out, "  - {between: [grain-%zu, wall], restitution: %.17g, friction: %.17g}\n", i,
-            e->restitution, e->friction_wall);
+  fprintf(out, "  grain: {young: %.17g, density: %.17g, restitution: %.17g, friction: %.17g}\n",
+          e->young_particle, e->density, e->restitution, e->friction_particle);
+  fprintf(out, "pairs:\n  - {between: [grain, wall], restitution: %.17g, friction: %.17g}\n",
+          e->restitution, e->friction_wall);
 }
 
 static void put_equipment(const scree_run *run, FILE *out) {
   const scree_experiment *e = &run->experiment;
   fputs("shapes:\n", out);
   for (size_t i = 0; i < run->shape_count; i++)
-    fprintf(out, "  grain-%zu: {given: grain-%zu, material: grain-%zu}\n", i, i, i);
+    fprintf(out, "  grain-%zu: {given: grain-%zu, material: grain, density: %.17g}\n", i, i,
+            e->density * run->shapes[i].density_factor);
   fprintf(out, "geometry:\n  disc: {disc: {radius: %.17g}, material: wall}\n",
           0.5 * e->disc_diameter);
   fprintf(out,

@@ -210,7 +210,7 @@ static bool is_free(const scree_scene *scene, const scree_placement *p) {
 scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
                                const scree_placement *p, const double velocity[3],
                                scree_error *error) {
-  size_t shape = inlet->shapes[which], index;
+  size_t shape = inlet->shapes[which];
   scree_scene_shape *s = &scene->shapes[shape];
   scree_body body = scree_default_body();
   vec3_store(body.position, p->position);
@@ -221,8 +221,7 @@ scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, siz
       !SCREE_RESERVE(&scene->shape_of, scene->shape_of.count + 1) ||
       !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1))
     return scree_fail_memory(error, scene->shape_of.count * sizeof *p, "bodies");
-  scree_status status =
-      scree_world_add_body(scene->world, s->particle, s->material, &body, &index, error);
+  scree_status status = scree_scene_add_body(s, scene->world, &body, error);
   if (status != SCREE_OK) return status;
   scene->shape_of.items[scene->shape_of.count++] = (uint32_t)shape;
   scene->entered_at.items[scene->entered_at.count++] = scree_world_time(scene->world);

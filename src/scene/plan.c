@@ -104,6 +104,8 @@ static const scree_field shape_fields[] = {
      "recommended (as `scree choose` does), all, or at most so many", NULL},
     {"rp", SCREE_FIELD_REAL, AT(rp), 1e-12, 1, "", "or this share of the triangles", NULL},
     {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
+    {"density", SCREE_FIELD_REAL, AT(density), 1e-3, 1e6, "kg/m3", "another than its material's",
+     NULL},
 };
 #undef AT
 
@@ -155,7 +157,7 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
   return SCREE_OK;
 }
 static const scree_plan_shape shape_defaults = {
-    .sphere = NAN, .box = NONE, .rp = NAN, .resolution = NAN, .unit = 2};
+    .sphere = NAN, .box = NONE, .rp = NAN, .resolution = NAN, .density = NAN, .unit = 2};
 static const scree_record shape_record = {"a shape", FIELDS(shape_fields), sizeof(scree_plan_shape),
                                           &shape_defaults, check_shape};
 

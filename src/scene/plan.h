@@ -20,7 +20,7 @@ typedef struct scree_plan_pair {
 typedef struct scree_plan_shape {
   scree_place place;
   const char *file, *sample, *clump, *given, *triangles, *material;
-  double sphere, box[3], rp, resolution;
+  double sphere, box[3], rp, resolution, density;
   int unit;
 } scree_plan_shape;
 

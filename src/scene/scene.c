@@ -97,6 +97,15 @@ static scree_status make_world(const scree_scene *scene, double time_step, scree
 
 /* One of each shape, far apart: it keeps the particles, and knows the time step for the worst pair
  * of all, whatever order they enter in. */
+scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
+                                  const scree_body *state, scree_error *error) {
+  size_t index;
+  scree_status status =
+      scree_world_add_body(world, shape->particle, shape->material, state, &index, error);
+  if (status != SCREE_OK) return status;
+  return scree_world_set_body_density(world, index, shape->density, error);
+}
+
 static scree_status make_gallery(scree_scene *scene, const char *folder, scree_error *error) {
   scree_status status = make_world(scene, 0, &scene->gallery, error);
   if (status == SCREE_OK) status = scree_scene_add_geometry(scene, folder, scene->gallery, error);
@@ -109,8 +118,7 @@ static scree_status make_gallery(scree_scene *scene, const char *folder, scree_e
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
     scree_body body = scree_default_body();
     body.position[2] = 1e5 * far + (double)i * far;
-    status = scree_world_add_body(scene->gallery, scene->shapes[i].particle,
-                                  scene->shapes[i].material, &body, NULL, error);
+    status = scree_scene_add_body(&scene->shapes[i], scene->gallery, &body, error);
   }
   return status;
 }
@@ -132,10 +140,11 @@ void scree_scene_measure_shape(scree_scene *scene, size_t index) {
   s->material = plan->material ? scree_plan_find(&scene->plan.materials,
                                                  sizeof(scree_plan_material), plan->material)
                                : 0;
-  double density = scene->plan.materials.count ? material_at(scene, s->material)->density
-                                               : scree_default_material().density;
+  s->density = plan->density > 0             ? plan->density
+               : scene->plan.materials.count ? material_at(scene, s->material)->density
+                                             : scree_default_material().density;
   s->volume = m.volume;
-  s->mass = density * m.volume;
+  s->mass = s->density * m.volume;
   scene->size = index ? fmin(scene->size, m.size) : m.size;
 }
 

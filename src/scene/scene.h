@@ -22,7 +22,7 @@ typedef struct scree_scene_shape {
   size_t material;          /* of the world */
   scree_placement extent;   /* clearance included */
   quat as_given;            /* its orientation as in its file */
-  double mass, volume;
+  double density, mass, volume;
   size_t entered, left;
 } scree_scene_shape;
 
@@ -259,6 +259,9 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
  * had ended. */
 bool scree_scene_reopen(scree_scene *scene);
 /* What the engine must know of a shape that has its particle. */
+/* At rest or as `state` says, of the shape's density. */
+scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
+                                  const scree_body *state, scree_error *error);
 void scree_scene_measure_shape(scree_scene *scene, size_t index);
 /* save.c: a checkpoint, for scree_world_keep_all. */
 scree_status scree_scene_pack(const void *scene, unsigned char **bytes, size_t *byte_count,

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LARGEST_FILE = 1 << 20, MOST_REPLICATES = 100000, MOST_SHAPES = 60 };
+enum { LARGEST_FILE = 1 << 20, MOST_REPLICATES = 100000 };
 static const double most_points = 1e6;
 
 typedef struct reader {
@@ -276,8 +276,8 @@ static scree_status find_shape(const reader *r, const scree_yaml *node, size_t *
   if (status != SCREE_OK) return status;
   for (*index = 0; *index < study->shape_count; ++*index)
     if (!strcmp(study->shapes[*index].word, node->text)) return SCREE_OK;
-  if (study->shape_count == MOST_SHAPES)
-    return fail_at(r, node, "more than %d shapes", MOST_SHAPES);
+  if (study->shape_count == SCREE_MOST_SHAPES)
+    return fail_at(r, node, "more than %d shapes", SCREE_MOST_SHAPES);
   bool is_sample = !strncmp(node->text, "sample:", 7);
   if (!*node->text || (is_sample && !known_sample(node->text + 7)))
     return fail_at(r, node, "no built-in sample '%s'", node->text);
@@ -633,7 +633,7 @@ static scree_status read_root(const reader *r, const scree_yaml *root) {
   size_t most = count_items(root); /* factors, sets: no more than there are nodes */
   study->factors = scree_arena_take(&study->arena, most, sizeof *study->factors);
   study->sets = scree_arena_take(&study->arena, most, sizeof *study->sets);
-  study->shapes = scree_arena_take(&study->arena, MOST_SHAPES, sizeof *study->shapes);
+  study->shapes = scree_arena_take(&study->arena, SCREE_MOST_SHAPES, sizeof *study->shapes);
   if (!study->factors || !study->sets || !study->shapes) return fail_memory(r);
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < root->item_count; i++)

@@ -14,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { MOST_SHAPES = 60, RETRIES_KEPT = 1000 };
+enum { RETRIES_KEPT = 1000 };
 
 typedef struct work {
   scree_study *study;
@@ -157,7 +157,7 @@ static scree_status simulate_scene(work *w, scree_study_record *record, scree_er
 
 static scree_status make_and_simulate(work *w, scree_study_record *record, scree_error *error) {
   if (w->study->scene_text) return simulate_scene(w, record, error);
-  scree_run_shape shapes[MOST_SHAPES];
+  scree_run_shape shapes[SCREE_MOST_SHAPES];
   scree_experiment e;
   size_t point = scree_study_run_point(w->study, w->run);
   size_t count = w->study->sets[w->study->points[point].set].count;

@@ -199,6 +199,13 @@ static void place_body(scree_world *world, size_t i, const scree_body *state) {
   scree_body_forget(world, i);
 }
 
+/* With matter. */
+static void fill_body(scree_bodies *b, size_t i, double density) {
+  const scree_particle_measures *m = &b->particle[i]->measures;
+  b->mass[i] = density * m->volume;
+  b->inertia[i] = vec3_scale(vec3_load(m->inertia), density);
+}
+
 scree_status scree_world_add_body(scree_world *world, scree_particle *particle, size_t material,
                                   const scree_body *state, size_t *index, scree_error *error) {
   if (material >= world->material_count)
@@ -215,19 +222,29 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
     if (status) return status;
   }
   size_t i = b->count++;
-  const scree_particle_measures *m = &particle->measures;
-  double density = world->materials[material].density;
-  b->mass[i] = density * m->volume;
-  b->inertia[i] = vec3_scale(vec3_load(m->inertia), density);
   b->travel[i] = b->path[i] = world->body_path_at_build[i] = 0;
   b->material[i] = (uint8_t)material;
   b->removed[i] = false;
   b->particle[i] = particle;
+  fill_body(b, i, world->materials[material].density);
   if (b->applied) b->applied[i] = (scree_applied){0};
   scree_particle_retain(particle);
   place_body(world, i, &start);
   world->time_step_stale = true;
   if (index) *index = i;
+  return SCREE_OK;
+}
+
+scree_status scree_world_set_body_density(scree_world *world, size_t index, double density,
+                                          scree_error *error) {
+  if (!(density > 0 && isfinite(density)))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: body %zu: density %g kg/m3; above 0",
+                      index, density);
+  scree_body state;
+  scree_world_get_body(world, index, &state);
+  fill_body(&world->bodies, index, density);
+  place_body(world, index, &state);
+  world->time_step_stale = true;
   return SCREE_OK;
 }
 

@@ -119,6 +119,7 @@ static scree_status build_world(void *context, scree_error *error) {
   if (status == SCREE_OK) status = scree_world_set_wall_motion(world, 0, &motion, 1, error);
   if (status == SCREE_OK)
     status = scree_world_set_wall_surface(world, 0, (double[3]){1}, (double[3]){0}, error);
+  if (status == SCREE_OK) status = scree_world_set_body_density(world, 0, 1500, error);
   if (status == SCREE_OK)
     status = scree_world_set_body_force(world, 0, (double[3]){0}, (double[3]){0}, error);
   const scree_body body = scree_default_body();

@@ -5,6 +5,7 @@
 #include "support/pot.h"
 #include "support/shapes.h"
 
+#include <math.h>
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,6 +62,38 @@ static void what_cannot_be_filled_is_refused_before_the_run(void **state) {
   assert_int_equal(scree_run_create(&e, &shape, 1, &run, &error), SCREE_BAD_ARGUMENT);
   scree_experiment_free(&e);
   scree_particle_free(shape.particle);
+}
+
+/* A hundred shapes of one material, each of its own density: a scan's mass on its levels. */
+static void each_shape_has_its_density(void **state) {
+  (void)state;
+  enum { COUNT = 100 };
+  scree_run_shape shapes[COUNT];
+  scree_particle *ball;
+  scree_run *run;
+  scree_error error;
+  CHECK_OK(scree_particle_sphere(0.01, &ball, &error), error);
+  for (int i = 0; i < COUNT; i++)
+    shapes[i] = (scree_run_shape){.particle = ball, .density_factor = 1 + 0.01 * i};
+  scree_experiment e = preset("paper");
+  use_pot(&e, COUNT);
+  CHECK_OK(scree_run_create(&e, shapes, COUNT, &run, &error), error);
+  while (scree_run_phase(run) == SCREE_PHASE_PACK)
+    CHECK_OK(scree_run_advance(run, 200, &error), error);
+  const scree_world *world = scree_run_world(run);
+  double volume = 4 / 3.0 * 3.14159265358979 * 1e-6, heavy = 0, light = INFINITY, sum = 0;
+  for (size_t i = 0; i < scree_world_body_count(world); i++) {
+    double mass = scree_world_body_mass(world, i);
+    heavy = fmax(heavy, mass), light = fmin(light, mass), sum += mass;
+    assert_int_equal(scree_world_body_material(world, i), scree_world_body_material(world, 0));
+  }
+  assert_int_equal(scree_world_body_count(world), COUNT);
+  assert_true(fabs(light / (e.density * volume) - 1) < 1e-9);
+  assert_true(fabs(heavy / (e.density * volume) - 1.99) < 1e-9);
+  assert_true(fabs(sum / (e.density * volume) - 149.5) < 1e-7);
+  scree_run_free(run);
+  scree_experiment_free(&e);
+  scree_particle_free(ball);
 }
 
 /* ---- a run of six spheres and six chips through all phases ---- */
@@ -440,6 +473,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_preset_takes_phones_and_long_ones),
       cmocka_unit_test(what_cannot_be_filled_is_refused_before_the_run),
+      cmocka_unit_test(each_shape_has_its_density),
       cmocka_unit_test(a_run_does_not_depend_on_how_it_is_cut),
       cmocka_unit_test(the_series_has_a_point_at_every_interval),
       cmocka_unit_test(a_run_goes_on_with_the_same_bits_from_every_phase),
