@@ -4,13 +4,15 @@ set_source_files_properties(${cold} PROPERTIES COMPILE_OPTIONS -Os)
 target_compile_options(qhull_sources PRIVATE -Os)
 target_compile_options(yaml_sources PRIVATE -Os)
 
-# The program as WebAssembly (preset wasm). Two links of the same objects: `scree` reads and writes the system's files
-# through Node; `scree_web` has files in memory and what the page asks beside the program (web/wasm/session.c).
+# The program as WebAssembly (preset wasm), twice: `scree` is all of it and reads and writes the system's files through
+# Node; `scree_web` has files in memory, the verbs on surfaces, and what the page asks beside them (web/wasm).
 set(memory -sALLOW_MEMORY_GROWTH=1 -sMAXIMUM_MEMORY=4GB -sINITIAL_MEMORY=32MB -sTOTAL_STACK=4MB)
 set(module -sMODULARIZE=1 -sEXPORT_NAME=createScree -sINVOKE_RUN=0 -sEXPORTED_RUNTIME_METHODS=FS,callMain,ccall)
 target_link_options(scree PRIVATE ${memory} ${module} -sNODERAWFS=1 -sENVIRONMENT=node -sEXIT_RUNTIME=1)
 
-add_executable(scree_web web/wasm/session.c web/wasm/pour.c $<TARGET_OBJECTS:scree>)
+write_verbs(${CMAKE_BINARY_DIR}/web_verbs.c sample check repair measure distance simplify curve choose clump)
+set(objects $<FILTER:$<TARGET_OBJECTS:scree>,EXCLUDE,/verbs\\.c>)
+add_executable(scree_web web/wasm/session.c web/wasm/pour.c ${CMAKE_BINARY_DIR}/web_verbs.c ${objects})
 set_target_properties(scree_web PROPERTIES C_EXTENSIONS ON) # emscripten.h
 set_source_files_properties(web/wasm/session.c web/wasm/pour.c PROPERTIES COMPILE_OPTIONS -Wno-missing-prototypes) # JavaScript calls by name
 target_include_directories(scree_web PRIVATE ${PROJECT_SOURCE_DIR}/src)

@@ -24,6 +24,13 @@ windows() {
     cmake --build --preset windows && tests/windows/run.sh build/windows/bin/scree.exe build/release/bin/scree
 }
 
+# The page and the npm package, and their tests with a large scan. Not in .ci/run: on a bare Debian emscripten alone
+# takes 800 MB, and it builds all of the program once more.
+browser() {
+  make page npm && cc -O2 -std=gnu17 bench/decimation/shape.c -o "$shapes/shape" -lm && "$shapes/shape" phone 762008 "$shapes/phone.stl" &&
+    SCREE_SCAN="$shapes/phone.stl" ctest --preset release --output-on-failure -R '^page\.'
+}
+
 # Samples at 20, 60 and 200 triangles, to pour.
 shapes=$(mktemp -d)
 trap 'rm -rf "$shapes"' EXIT
@@ -46,6 +53,7 @@ tools/install-packages.sh build test ci
 part "release build" build release
 part "Windows" windows
 export SCREE_SLOW=1
+part "the page in the browser, npm" browser
 part "all tests, the slow ones too" tools/test.sh release
 # Every tutorial from its own text, the long parts too.
 tutorials() {

@@ -193,9 +193,6 @@ FILE *scree_null_open(void) {
   return fopen("/dev/null", "w");
 }
 
-bool scree_is_terminal(FILE *stream) {
-  return isatty(fileno(stream));
-}
 
 long scree_process_number(void) {
   return (long)getpid();

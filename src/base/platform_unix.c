@@ -227,6 +227,9 @@ void scree_program_begin(int *count, char ***words) {
   scree_pages_give_back();
 }
 
+bool scree_is_terminal(FILE *stream) {
+  return isatty(fileno(stream));
+}
 int scree_terminal_columns(void) {
   struct winsize size;
   return ioctl(STDERR_FILENO, TIOCGWINSZ, &size) == 0 ? size.ws_col : 0;

@@ -2,6 +2,7 @@
  * signals, no terminal. */
 #include "base/platform.h"
 
+#include <emscripten.h>
 #include <errno.h>
 #include <string.h>
 
@@ -71,6 +72,12 @@ void scree_process_stop(long process) {
 
 void scree_program_begin(int *count, char ***words) {
   (void)count, (void)words;
+}
+/* Only who runs the module knows. */
+EM_JS(int, is_terminal, (int descriptor),
+      { return Module.isTerminal && Module.isTerminal(descriptor) ? 1 : 0; });
+bool scree_is_terminal(FILE *stream) {
+  return is_terminal(fileno(stream)) != 0;
 }
 int scree_terminal_columns(void) {
   return 0;

@@ -27,7 +27,7 @@ export class ScansTab {
     this.buildQuestion();
     this.state = element('p', null, host, { role: 'status', class: 'soft state' });
     this.buildProgress();
-    this.result = element('div', null, host, { class: 'result' });
+    this.result = element('div', null, host, { class: 'result', hidden: '' });
     this.buildOutput();
   }
 
@@ -128,11 +128,11 @@ export class ScansTab {
 
   async remove(scan) {
     if (this.busy) this.engine.cancel();
+    while (this.busy || this.working) await new Promise((resolve) => setTimeout(resolve, 10));
     const index = this.opened().indexOf(scan);
     this.scans.splice(this.scans.indexOf(scan), 1);
     scan.item.remove();
-    if (this.busy) this.scans.forEach((other) => (other.open = false));
-    else if (index >= 0) await this.engine.ask({ do: 'close', index });
+    if (index >= 0) await this.engine.ask({ do: 'close', index });
     this.result.hidden = this.output.hidden = true;
     this.wanted = true;
     this.work();
@@ -201,7 +201,7 @@ export class ScansTab {
     const changed = this.sliders.filter((slider) => !slider.isUsual);
     const words = ['scree', 'choose', ...this.scans.filter((scan) => !scan.failure).map((scan) => scan.file.name), '-u', this.unit.value || 'mm'];
     if (rule > 0) words.push('--rule', rules[rule][0]);
-    if (weight !== 1) words.push('-w', String(weight));
+    if (weight !== 1) words.push('--weight', String(weight));
     if (changed.length) words.push('-t', changed.map((slider) => `${slider.name}=${slider.percent}%`).join(','));
     words.push('--json');
     return { rule, weight, tolerances: Object.fromEntries(changed.map((slider) => [slider.name, slider.percent / 100])), command: words.map(quoted).join(' ') };
@@ -255,21 +255,29 @@ export class ScansTab {
     }
   }
 
-  // Opens what is not open, and chooses where something changed.
+  // Opens what is not open, and chooses where something changed, until nothing is left to do or one stops it.
   async work() {
-    if (this.busy) return;
+    if (this.busy || this.working) return;
+    this.working = true;
+    while (await this.step());
+    this.working = false;
     this.update();
-    if (!this.unit.value) {
+  }
+
+  // The next thing to do; false: there is none, or it did not come to its end.
+  async step() {
+    const unit = this.unit.value;
+    if (!unit) {
       if (this.scans.length) this.tell('Which unit are the coordinates in? Scanners mostly write millimetres; an STL does not say.');
-      return;
+      return false;
     }
-    if (this.scans.some((scan) => scan.open && scan.unit !== this.unit.value)) {
+    if (this.scans.some((scan) => scan.open && scan.unit !== unit)) {
       this.engine.cancel();
       this.scans.forEach((scan) => (scan.open = false));
     }
-    for (const scan of this.scans.filter((each) => !each.open && (!each.failure || each.unit !== this.unit.value)))
-      if (!await this.open(scan)) return;
-    if (this.wanted && this.opened().length) await this.choose();
+    const next = this.scans.find((scan) => !scan.open && (!scan.failure || scan.unit !== unit));
+    if (next) return this.open(next);
+    return this.wanted && this.opened().length > 0 && this.choose();
   }
 
   async open(scan) {
@@ -277,6 +285,7 @@ export class ScansTab {
     scan.failure = null;
     scan.told.classList.remove('error');
     this.wanted = true;
+    if (!this.section) this.prepare();
     return this.during(scan.file.name, async () => {
       try {
         const { log } = await this.engine.ask({ do: 'open', file: scan.file, name: scan.file.name, unit: metres[scan.unit] });
@@ -289,16 +298,23 @@ export class ScansTab {
     });
   }
 
+  // While the worker is busy with the first scan.
+  prepare() {
+    this.section = new ChoiceSection(this.result, null);
+    this.section.head.after(this.output);
+    this.warm = this.section.warm();
+  }
+
   async choose() {
-    while (this.wanted) {
-      this.wanted = false;
-      const choice = this.choice();
-      const done = await this.during('choosing', async () => {
-        this.tellChoice(await this.engine.ask({ do: 'choose', choice }));
-      });
-      if (!done) return;
-    }
-    document.body.dataset.chosen = String(Number(document.body.dataset.chosen ?? 0) + 1);
+    this.wanted = false;
+    const choice = this.choice();
+    const done = await this.during('choosing', async () => {
+      const answer = await this.engine.ask({ do: 'choose', choice });
+      await this.warm;
+      this.tellChoice(answer);
+    });
+    if (done && !this.wanted) document.body.dataset.chosen = String(Number(document.body.dataset.chosen ?? 0) + 1);
+    return done;
   }
 
   tellChoice({ json, levels, memory }) {
@@ -309,11 +325,7 @@ export class ScansTab {
       return [name, `levels-${name}`];
     }) };
     this.result.hidden = this.output.hidden = false;
-    if (this.section) this.section.tell(folder);
-    else {
-      this.section = new ChoiceSection(this.result, folder);
-      this.section.head.after(this.output);
-    }
+    this.section.tell(folder);
     document.body.dataset.memory = memory;
   }
 
@@ -332,7 +344,7 @@ export class ScansTab {
     const files = element('div', null, this.output, { class: 'controls' });
     const button = (text, id, act) => {
       const made = element('button', text, files, { type: 'button', id });
-      made.addEventListener('click', () => this.busy || act());
+      made.addEventListener('click', () => this.busy || this.working || act());
       return made;
     };
     button('Mesh', 'save-mesh', () => this.saveLevel('mesh'));
@@ -365,7 +377,7 @@ export class ScansTab {
   // Of each scan the level chosen, or of `most` triangles where that has more: {name, bytes of a PLY, unit in m}.
   async levels(most) {
     const made = [];
-    if (this.busy || !this.section) return made;
+    if (this.busy || !this.section?.objects) return made;
     for (const [index, object] of this.section.objects.entries()) {
       const count = Math.min(most, object[object.default].triangle_count);
       const { mesh } = await this.engine.ask({ do: 'level', index, count, ending: 'ply', density: 2000 });
@@ -391,6 +403,6 @@ export class ScansTab {
     this.question.hidden = this.scans.length === 0;
     if (this.sliders) this.command.textContent = this.choice().command.replace(/ --json$/, usable ? ' -o result' : '');
     this.output.querySelectorAll('button').forEach((button) => (button.disabled = this.busy || !usable));
-    this.host.dataset.busy = String(this.busy);
+    this.host.dataset.busy = String(Boolean(this.busy || this.working));
   }
 }

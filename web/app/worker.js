@@ -170,11 +170,17 @@ const tasks = {
   },
 };
 
-onmessage = async ({ data }) => {
+async function answer({ data }) {
   try {
-    const result = await tasks[data.do](data);
-    postMessage({ id: data.id, result });
+    postMessage({ id: data.id, result: await tasks[data.do](data) });
   } catch (error) {
-    postMessage({ id: data.id, error: error.message ?? String(error) });
+    const inside = error instanceof WebAssembly.RuntimeError ? 'scree failed inside; load the page anew: ' : '';
+    postMessage({ id: data.id, error: `${inside}${error.message ?? error}` });
   }
+}
+
+// One after the other: a file is not opened before the module is there.
+let last = Promise.resolve();
+onmessage = (event) => {
+  last = last.then(() => answer(event));
 };

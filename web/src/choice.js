@@ -34,17 +34,23 @@ function addPicks(trace, object) {
 }
 
 export class ChoiceSection {
+  // folder: null where it is told later
   constructor(host, folder) {
-    // the level recommended begins with its distances shown
-    this.state = { object: 0, row: 0, wire: true, only: false, colored: folder.choice[0].default === 'recommended' };
+    this.state = { object: 0, row: 0, wire: true, only: false, colored: false };
     this.head = element('div', null, host);
     this.host = element('div', null, host);
     this.build();
-    this.tell(folder);
+    if (folder) this.tell(folder);
+  }
+
+  // What draws is made ready before there is something to draw.
+  warm() {
+    return Promise.all([this.scanView, this.levelView].map((view) => view?.warm()));
   }
 
   // Also another choice in place of the one told.
   tell(folder) {
+    if (!this.objects) this.color(folder.choice[0].default === 'recommended'); // that level begins with its distances
     this.objects = folder.choice.filter((entry) => !entry.set);
     this.set = folder.choice.find((entry) => entry.set);
     this.ids = new Map(folder.levels);
@@ -54,6 +60,11 @@ export class ChoiceSection {
     this.tellAnswer();
     if (this.objects.length > 1) this.tellObjects();
     this.select(Math.min(this.state.object, this.objects.length - 1));
+  }
+
+  color(colored) {
+    this.state.colored = colored;
+    this.host.querySelectorAll('[data-key=colored]').forEach((box) => (box.checked = colored));
   }
 
   levelsOf(index) {

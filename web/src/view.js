@@ -1,6 +1,6 @@
 // A 3D view of a mesh that is turned with mouse, finger or arrow keys. Flat shading, so that facets are seen.
 import {
-  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, IcosahedronGeometry, InstancedMesh, LineBasicMaterial, LineSegments, MathUtils,
+  AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, Group, IcosahedronGeometry, InstancedMesh, LineBasicMaterial, LineSegments, MathUtils,
   Matrix4, Mesh, MeshStandardMaterial, PerspectiveCamera, Scene, Spherical, Vector3, WebGLRenderer,
 } from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
@@ -55,6 +55,14 @@ function edges(mesh) {
   return geometry;
 }
 
+const surfaceMaterial = (field) => new MeshStandardMaterial({
+  color: field ? 0xffffff : 0x7d9cc0, vertexColors: Boolean(field), flatShading: true, roughness: 0.8,
+  polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+});
+const edgeMaterial = (only, dense) => new LineBasicMaterial({
+  color: only ? 0x4477aa : 0x101018, transparent: true, opacity: dense < 5000 ? 0.9 : dense < 20000 ? 0.5 : 0.25,
+});
+
 // How far from the origin, in a direction, the camera sees all points.
 function fitDistance(camera, direction, points) {
   const right = new Vector3().crossVectors(camera.up, direction).normalize();
@@ -97,6 +105,18 @@ export class View {
     canvas.addEventListener('keydown', (event) => this.key(event));
     this.home();
     new ResizeObserver(() => this.resize()).observe(host);
+  }
+
+  // Has the graphics driver translate what draws surfaces, colours and edges; a first picture would wait for it.
+  async warm() {
+    const mesh = { points: new Float32Array(9), triangles: Uint32Array.of(0, 1, 2) };
+    const field = { points: new Float32Array(9), distances: new Float32Array(3) };
+    this.warmed = new Group(); // kept: what nothing uses is forgotten
+    this.warmed.add(new Mesh(surface(mesh), surfaceMaterial()), new Mesh(surface(mesh, field, 1), surfaceMaterial(field)), new LineSegments(edges(mesh), edgeMaterial(false, 1)));
+    await this.renderer.compileAsync(this.warmed, this.camera, this.scene);
+    this.scene.add(this.warmed);
+    this.draw();
+    this.scene.remove(this.warmed);
   }
 
   home() {
@@ -165,17 +185,8 @@ export class View {
   // frame: {centre, size, half: of its box} in the mesh's units; field: distances to show as colours up to range, or null.
   show(mesh, frame, { wire = false, only = false, field = null, range = 1 }) {
     this.clear();
-    if (!only)
-      this.parts.push(new Mesh(surface(mesh, field, range), new MeshStandardMaterial({
-        color: field ? 0xffffff : 0x7d9cc0, vertexColors: Boolean(field), flatShading: true, roughness: 0.8,
-        polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
-      })));
-    if (wire || only) {
-      const dense = mesh.triangles.length / 3;
-      this.parts.push(new LineSegments(edges(mesh), new LineBasicMaterial({
-        color: only ? 0x4477aa : 0x101018, transparent: true, opacity: dense < 5000 ? 0.9 : dense < 20000 ? 0.5 : 0.25,
-      })));
-    }
+    if (!only) this.parts.push(new Mesh(surface(mesh, field, range), surfaceMaterial(field)));
+    if (wire || only) this.parts.push(new LineSegments(edges(mesh), edgeMaterial(only, mesh.triangles.length / 3)));
     this.place(frame);
   }
 

@@ -21,7 +21,8 @@ typedef struct web_scan {
 } web_scan;
 
 /* One module serves one page: what a program has in main's variables stands here. */
-static web_scan *scans;
+enum { MOST_SCANS = 64 };
+static web_scan *scans[MOST_SCANS]; /* each stays where it is: its curve borrows its mesh */
 static size_t scan_count;
 static scree_set_choice set;
 static scree_choice_options options;
@@ -52,25 +53,26 @@ EMSCRIPTEN_KEEPALIVE double web_memory_peak(void) {
 
 static void forget_choices(void) {
   for (size_t i = 0; i < scan_count; i++) {
-    scree_choice_free(&scans[i].choice);
-    scans[i].choice = (scree_choice){0};
+    scree_choice_free(&scans[i]->choice);
+    scans[i]->choice = (scree_choice){0};
   }
   scree_set_choice_free(&set);
   set = (scree_set_choice){0};
 }
 
 EMSCRIPTEN_KEEPALIVE void web_close(size_t index) {
-  web_scan *s = &scans[index];
+  web_scan *s = scans[index];
   forget_choices();
   scree_curve_free(s->curve);
   scree_scan_free(&s->scan);
-  memmove(s, s + 1, (scan_count - index - 1) * sizeof *s);
+  free(s);
+  memmove(scans + index, scans + index + 1, (scan_count - index - 1) * sizeof *scans);
   scan_count--;
 }
 
 static bool name_taken(const char *name) {
   for (size_t i = 0; i < scan_count; i++)
-    if (!strcmp(scans[i].name, name)) return true;
+    if (!strcmp(scans[i]->name, name)) return true;
   return false;
 }
 
@@ -81,17 +83,20 @@ EMSCRIPTEN_KEEPALIVE int web_open(const char *file, double unit_m) {
   cli_source source = CLI_SOURCE_DEFAULTS;
   scree_repair_report repair;
   if (scan_count == 0) start = scree_work_started();
-  web_scan *grown = realloc(scans, (scan_count + 1) * sizeof *scans);
-  if (!grown) return cli_refuse(&error, SCREE_OUT_OF_MEMORY, file, "out of memory");
-  scans = grown;
-  web_scan *s = &scans[scan_count];
-  *s = (web_scan){.scale = 1};
+  if (scan_count == MOST_SCANS)
+    return cli_refuse(&error, SCREE_LIMIT, file, "64 scans are open already");
+  web_scan *s = calloc(1, sizeof *s);
+  if (!s) return cli_refuse(&error, SCREE_OUT_OF_MEMORY, file, "out of memory");
+  s->scale = 1;
   source.unit = unit_m;
   cli_input_obeys(&common);
   cli_input_options input = cli_source_options(&source);
   scree_status status =
       cli_load_closed(file, &input, false, &progress, &s->scan, &s->scale, &repair, &error);
-  if (status != SCREE_OK) return status;
+  if (status != SCREE_OK) {
+    free(s);
+    return status;
+  }
   char plain[sizeof s->name - 24];
   snprintf(s->file, sizeof s->file, "%s", file);
   cli_short_name(file, plain, sizeof plain);
@@ -99,7 +104,7 @@ EMSCRIPTEN_KEEPALIVE int web_open(const char *file, double unit_m) {
   for (size_t n = 2; name_taken(s->name); n++)
     snprintf(s->name, sizeof s->name, "%s-%zu", plain, n);
   cli_repair_text(&repair, s->note, sizeof s->note);
-  scan_count++;
+  scans[scan_count++] = s;
   if (cli_is_sample(file, NULL)) return SCREE_OK;
   printf("%s: %s\n%10s", file, repair.before.verdict, s->scan.format);
   cli_print_unit(stdout, file, &s->scan);
@@ -115,12 +120,12 @@ EMSCRIPTEN_KEEPALIVE int web_open(const char *file, double unit_m) {
 }
 
 EMSCRIPTEN_KEEPALIVE const char *web_name(size_t index) {
-  return scans[index].name;
+  return scans[index]->name;
 }
 
 /* Once after web_open: the scan is in metres afterwards. */
 EMSCRIPTEN_KEEPALIVE int web_decimate(size_t index) {
-  web_scan *s = &scans[index];
+  web_scan *s = scans[index];
   simplify = scree_default_simplify_options();
   return scree_curve_build_scaled(&s->scan.mesh, s->scale, &simplify, &progress, &s->curve, &error);
 }
@@ -152,7 +157,7 @@ EMSCRIPTEN_KEEPALIVE int web_choose(int by_rule, double weight) {
   if (!choices) return cli_refuse(&error, SCREE_OUT_OF_MEMORY, "choices", "out of memory");
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < scan_count && status == SCREE_OK; i++) {
-    web_scan *s = &scans[i];
+    web_scan *s = scans[i];
     status = scree_choose(s->curve, &s->scan.mesh, &options, &progress, &s->choice, &error);
     choices[i] = s->choice;
   }
@@ -162,7 +167,7 @@ EMSCRIPTEN_KEEPALIVE int web_choose(int by_rule, double weight) {
 }
 
 EMSCRIPTEN_KEEPALIVE double web_chosen(size_t index) {
-  return (double)scree_choice_pick(&scans[index].choice, rule)->triangle_count;
+  return (double)scree_choice_pick(&scans[index]->choice, rule)->triangle_count;
 }
 
 /* choice.json in a folder that is there, and beside it, with `whole`, what else a report is made
@@ -172,7 +177,7 @@ EMSCRIPTEN_KEEPALIVE int web_write_choice(const char *folder, const char *comman
   scree_choice_entry *entries = calloc(scan_count, sizeof *entries);
   if (!entries) return cli_refuse(&error, SCREE_OUT_OF_MEMORY, folder, "out of memory");
   for (size_t i = 0; i < scan_count; i++) {
-    const web_scan *s = &scans[i];
+    const web_scan *s = scans[i];
     entries[i] = (scree_choice_entry){.name = s->name,
                                       .file = s->file,
                                       .format = s->scan.format,
@@ -199,14 +204,14 @@ EMSCRIPTEN_KEEPALIVE int web_write_choice(const char *folder, const char *comman
 
 /* What the page shows of a scan in 3D. */
 EMSCRIPTEN_KEEPALIVE int web_write_levels(size_t index, const char *path) {
-  return scree_levels_write(scans[index].curve, &scans[index].choice,
+  return scree_levels_write(scans[index]->curve, &scans[index]->choice,
                             SCREE_LEVELS_BYTES / scan_count, path, true, &error);
 }
 
 /* The level of `count` triangles or the next fewer; json_path NULL: without its mass. */
 EMSCRIPTEN_KEEPALIVE int web_write_level(size_t index, double count, const char *mesh_path,
                                          const char *json_path, double density) {
-  const web_scan *s = &scans[index];
+  const web_scan *s = scans[index];
   scree_export_options o = scree_default_export_options();
   scree_mesh mesh = {0};
   o.density = density;
