@@ -193,7 +193,6 @@ FILE *scree_null_open(void) {
   return fopen("/dev/null", "w");
 }
 
-
 long scree_process_number(void) {
   return (long)getpid();
 }
