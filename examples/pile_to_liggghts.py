@@ -1,21 +1,20 @@
-"""A pile for LIGGGHTS: every particle as a multisphere of spheres that fill its mesh from inside, with the mass and
-inertia of the mesh, where and how it lies, with its velocities.
+"""A pile of clumps for LIGGGHTS: every particle as a multisphere, with its own mass and inertia, where and how it lies,
+with its velocities.
 
-    scree export run.scree -o pile                      (or examples/pile.py)
+    scree drop phone.stl=50 --clump 20 -o drop
+    scree export drop/last.world -o pile
     python3 pile_to_liggghts.py pile liggghts           writes liggghts/in.pile and liggghts/clump-K.txt
     cd liggghts && liggghts -in in.pile                 (Debian: liggghts)
 
 in.pile inserts the particles one by one, writes their spheres to pile.dump, and goes on for some steps under gravity
-on the plane z = 0. The spheres are few and lie inside the surface: a stand-in, smaller than the particle. LIGGGHTS
-takes their centre for the centre of mass, so that is where a particle is inserted. Other walls are not carried over.
-Slow beyond a few hundred triangles: the spheres are found by plain Python."""
+on the plane z = 0. LIGGGHTS takes the spheres' common centre for the centre of mass, so that is where a particle is
+inserted. Other walls are not carried over."""
 import math
 import pathlib
 import sys
 
 from pile_reader import read_pile, rotation, turn
 
-SPHERES, LATTICE = 40, 24  # at most so many spheres; points along the longest side where centres are tried
 HEAD = """units si
 atom_style granular
 atom_modify map array
@@ -56,57 +55,6 @@ run 200
 """
 
 
-def sub(a, b):
-    return [x - y for x, y in zip(a, b)]
-
-
-def dot(a, b):
-    return sum(x * y for x, y in zip(a, b))
-
-
-def cross(a, b):
-    return [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-
-
-def distance_to_segment(p, a, b):
-    ab, ap = sub(b, a), sub(p, a)
-    t = min(1, max(0, dot(ap, ab) / max(dot(ab, ab), 1e-300)))
-    return math.dist(p, [x + t * y for x, y in zip(a, ab)])
-
-
-def distance_and_angle(p, a, b, c):
-    """To the triangle; and the solid angle under which it is seen from p."""
-    n = cross(sub(b, a), sub(c, a))
-    inside = all(dot(cross(sub(v, u), sub(p, u)), n) >= 0 for u, v in ((a, b), (b, c), (c, a)))
-    if inside:
-        away = abs(dot(sub(p, a), n)) / max(math.sqrt(dot(n, n)), 1e-300)
-    else:
-        away = min(distance_to_segment(p, u, v) for u, v in ((a, b), (b, c), (c, a)))
-    a, b, c = sub(a, p), sub(b, p), sub(c, p)
-    la, lb, lc = (math.sqrt(dot(v, v)) for v in (a, b, c))
-    angle = 2 * math.atan2(dot(a, cross(b, c)), la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb)
-    return away, angle
-
-
-def fill_with_spheres(vertices, triangles):
-    """Largest first, no centre inside another sphere: (x, y, z, radius)."""
-    low, high = ([f(v[i] for v in vertices) for i in range(3)] for f in (min, max))
-    step = max(sub(high, low)) / LATTICE
-    counts = [max(3, math.ceil((h - l) / step)) for l, h in zip(low, high)]
-    found, corners = [], [[vertices[i] for i in t] for t in triangles]
-    for index in range(math.prod(counts)):
-        i, j, k = index % counts[0], index // counts[0] % counts[1], index // counts[0] // counts[1]
-        p = [l + (n + 0.5) * (h - l) / m for l, h, n, m in zip(low, high, (i, j, k), counts)]
-        seen = [distance_and_angle(p, *corner) for corner in corners]
-        if abs(sum(angle for _, angle in seen)) > 2 * math.pi:  # the winding number is not 0
-            found.append((*p, min(away for away, _ in seen)))
-    chosen = []
-    for sphere in sorted(found, key=lambda s: -s[3]):
-        if len(chosen) < SPHERES and all(math.dist(sphere[:3], s[:3]) > s[3] for s in chosen):
-            chosen.append(sphere)
-    return chosen
-
-
 def centre_of(spheres):
     """Of the volume that they cover together, by a lattice."""
     low = [min(s[i] - s[3] for s in spheres) for i in range(3)]
@@ -127,8 +75,9 @@ def words(values):
 def template(pile, k, density, folder):
     """The file of spheres and the lines that declare shape k."""
     shape = pile["shapes"][k]
-    spheres = (fill_with_spheres(shape["vertices"], shape["triangles"]) if shape["mesh_file"] else
-               [(*s["centre"], s["radius"]) for s in shape["spheres"]])
+    if shape["mesh_file"]:
+        sys.exit(f"shape {k} is a mesh, of which LIGGGHTS knows nothing: pour clumps (scree drop --clump 20)")
+    spheres = [(*s["centre"], s["radius"]) for s in shape["spheres"]]
     shape["spheres_centre"] = centre_of(spheres)
     (folder / f"clump-{k}.txt").write_text("".join(words(s) + "\n" for s in spheres))
     xx, yy, zz = (density * m for m in shape["inertia_per_density"])

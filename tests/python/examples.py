@@ -24,10 +24,16 @@ first = data.index("Bodies") + 2
 value_count = 6 + 3 * vertex_count + 2 * (3 * vertex_count - 6) + 4 * shape["triangle_count"] + 1
 assert data[first] == f"1 3 {value_count}", data[first]
 assert data[first + 1] == f"{vertex_count} {3 * vertex_count - 6} {shape['triangle_count']}"
-coarse = "import sys; sys.path.insert(0, sys.argv[1]); import pile_to_liggghts as m; m.LATTICE = 7; m.main(*sys.argv[2:])"
-subprocess.run([sys.executable, "-c", coarse, examples, folder / "pile", folder / "liggghts"], check=True)
+clumps = ("import sys, scree; w = scree.World(); m = w.add_material(); p = scree.Particle.clump_of(scree.load('sample:box'), 4); "
+          "[w.add_body(p, m, position=(0, 0, z)) for z in (0.1, 0.3)]; w.export(sys.argv[1], unit='m')")
+subprocess.run([sys.executable, "-c", clumps, folder / "clumps"], check=True)
+subprocess.run([sys.executable, examples / "pile_to_liggghts.py", folder / "clumps", folder / "liggghts"], check=True)
 spheres = [[float(x) for x in line.split()] for line in (folder / "liggghts/clump-0.txt").read_text().splitlines()]
-assert spheres and all(sum(x * x for x in s[:3]) ** 0.5 + s[3] <= shape["bounding_radius"] for s in spheres)
+reach = json.loads((folder / "clumps/pile.json").read_text())["shapes"][0]["bounding_radius"]
+assert len(spheres) == 4 and all(sum(x * x for x in s[:3]) ** 0.5 + s[3] <= reach * (1 + 1e-6) for s in spheres)
+refused = subprocess.run([sys.executable, examples / "pile_to_liggghts.py", folder / "pile", folder / "none"],
+                         stderr=subprocess.PIPE, text=True)
+assert refused.returncode == 1 and "is a mesh" in refused.stderr, refused.stderr
 assert (folder / "liggghts/in.pile").read_text().count("insert/pack") == 2
 
 # a heap, with fewer particles and shorter phases than the example takes by itself
