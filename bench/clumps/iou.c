@@ -1,5 +1,6 @@
-/* Intersection over union of clumps and the body they stand for, by points of its own: along random
- * parallel lines, each within the body by the crossings of all triangles below it.
+/* Intersection over union of clumps and the body they stand for, by points of its own: along
+ * parallel lines, one at random in each square of a grid, each within the body by the crossings of
+ * all triangles below it.
  * usage: bench_clumps FILE UNIT_M MOST POINTS; a row on stdout for every method and count. */
 #include "scree.h"
 
@@ -67,9 +68,12 @@ static double measure_iou(const scree_mesh *mesh, const scree_clump *clump, size
   size_t both = 0, either = 0;
   find_box(mesh, clump, low, high);
   state = 41;
-  for (size_t line = 0; line < points / ON_LINE; line++) {
+  size_t side = (size_t)sqrt((double)points / ON_LINE);
+  for (size_t line = 0; line < side * side; line++) {
     double p[3];
-    for (int k = 0; k < 2; k++) p[k] = low[k] + (high[k] - low[k]) * next_random();
+    const size_t square[2] = {line / side, line % side};
+    for (int k = 0; k < 2; k++)
+      p[k] = low[k] + (high[k] - low[k]) * ((double)square[k] + next_random()) / (double)side;
     size_t crossed = cross(mesh, p[0], p[1], heights);
     for (int i = 0; i < ON_LINE; i++) {
       size_t below = 0;
@@ -83,8 +87,8 @@ static double measure_iou(const scree_mesh *mesh, const scree_clump *clump, size
   return (double)both / (double)either;
 }
 
-/* 0 where a count is not there: a method may give fewer spheres. */
-static int compare(const scree_mesh *mesh, const char *name, size_t most, size_t points) {
+/* A method may give fewer spheres than asked for. */
+static void compare(const scree_mesh *mesh, const char *name, size_t most, size_t points) {
   for (int method = 0; method < METHODS; method++) {
     scree_clump_options o = scree_default_clump_options();
     scree_clumps clumps;
@@ -107,7 +111,6 @@ static int compare(const scree_mesh *mesh, const char *name, size_t most, size_t
     fflush(stdout);
     scree_clumps_free(&clumps);
   }
-  return 0;
 }
 
 int main(int argc, char **argv) {
@@ -127,7 +130,7 @@ int main(int argc, char **argv) {
   char name[200];
   snprintf(name, sizeof name, "%s", slash ? slash + 1 : argv[1]);
   if (strrchr(name, '.')) *strrchr(name, '.') = 0;
-  int code = compare(&scan.mesh, name, strtoul(argv[3], NULL, 10), strtoul(argv[4], NULL, 10));
+  compare(&scan.mesh, name, strtoul(argv[3], NULL, 10), strtoul(argv[4], NULL, 10));
   scree_scan_free(&scan);
-  return code;
+  return 0;
 }
