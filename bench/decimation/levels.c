@@ -1,12 +1,12 @@
 /* scree's own levels, as a peer writes them:
  *
- *   bench_levels METHOD INPUT PREFIX COUNT...      METHOD: volume or qecd
+ *   bench_levels METHOD INPUT PREFIX COUNT...      METHOD: volume, qecd, or fit: volume's, fitted
  *
  * One run gives all levels: PREFIX_COUNT.ply in the file's unit, and per level one line
  *   METHOD,count asked,count got,CPU seconds,peak bytes,file
  * where the seconds (user and system, all threads) are those of the whole curve with the first
- * level and of one rebuilding with the others, and the bytes are the library's peak less the
- * mesh's. */
+ * level and of rebuilding, fitting and writing one with each, and the bytes are the library's peak
+ * less the mesh's. */
 #include <scree.h>
 #include <stdlib.h>
 #include <string.h>
@@ -23,27 +23,37 @@ static int descending(const void *a, const void *b) {
   return (x < y) - (x > y);
 }
 
+/* The level goes to the path; its triangles are counted. */
+static scree_status write_level(const scree_curve *curve, bool fit, size_t index, const char *path,
+                                size_t *triangle_count, scree_error *error) {
+  scree_write_options options = scree_default_write_options();
+  scree_mesh mesh;
+  options.overwrite = true;
+  options.unit_m = 1;
+  scree_status status = fit ? scree_curve_fit(curve, index, &mesh, error)
+                            : scree_curve_mesh(curve, index, &mesh, error);
+  if (status != SCREE_OK) return status;
+  *triangle_count = mesh.triangle_count;
+  status = scree_mesh_write(&mesh, path, &options, error);
+  scree_mesh_free(&mesh);
+  return status;
+}
+
 static scree_status write_levels(const scree_curve *curve, const char *method, const char *prefix,
                                  const size_t *counts, size_t count_count, double seconds,
                                  size_t peak, scree_error *error) {
-  scree_replay *replay = NULL;
-  scree_write_options options = scree_default_write_options();
-  options.overwrite = true;
-  options.unit_m = 1;
-  scree_status status = scree_replay_start(curve, &replay, error);
+  const bool fit = !strcmp(method, "fit");
+  scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < count_count; i++) {
     char path[4096];
-    const scree_mesh *mesh = NULL;
+    size_t got;
     snprintf(path, sizeof path, "%s_%zu.ply", prefix, counts[i]);
     const double started = cpu_seconds();
-    status = scree_replay_step(replay, scree_curve_find(curve, counts[i]), &mesh, error);
+    status = write_level(curve, fit, scree_curve_find(curve, counts[i]), path, &got, error);
     if (status != SCREE_OK) break;
-    if (i > 0) seconds = cpu_seconds() - started;
-    status = scree_mesh_write(mesh, path, &options, error);
-    printf("%s,%zu,%zu,%.4f,%zu,%s\n", method, counts[i], mesh->triangle_count, seconds, peak,
-           path);
+    seconds = (i > 0 ? 0 : seconds) + cpu_seconds() - started;
+    printf("%s,%zu,%zu,%.4f,%zu,%s\n", method, counts[i], got, seconds, peak, path);
   }
-  scree_replay_free(replay);
   return status;
 }
 
@@ -71,7 +81,7 @@ static scree_status run(char **argv, const size_t *counts, size_t count_count, s
 int main(int argc, char **argv) {
   size_t counts[64];
   if (argc < 5 || argc > 4 + 64) {
-    fprintf(stderr, "usage: %s volume|qecd INPUT PREFIX COUNT...\n", argv[0]);
+    fprintf(stderr, "usage: %s volume|qecd|fit INPUT PREFIX COUNT...\n", argv[0]);
     return 2;
   }
   for (int i = 4; i < argc; i++) counts[i - 4] = strtoull(argv[i], NULL, 10);

@@ -341,6 +341,7 @@ _FALLIBLE = {  # argument types before the error
     "particle_export": (_M, POINTER(scree_export_options), _S, _S, POINTER(scree_exported)),
     "curve_build": (_M, POINTER(scree_simplify_options), _P, _HH),
     "curve_mesh": (_H, c_size_t, _M),
+    "curve_fit": (_H, c_size_t, _M),
     "choose": (_H, _M, POINTER(scree_choice_options), _P, POINTER(scree_choice)),
     "sample_make": (_S, POINTER(scree_sample_options), _P, _M),
     "particle_from_mesh": (_M, POINTER(scree_particle_options), _HH),

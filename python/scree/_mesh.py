@@ -190,11 +190,12 @@ class Curve:
         """The index of the first level with at most `target` triangles, or the last."""
         return lib["curve_find"](self._handle, whole(target, "target"))
 
-    def mesh(self, index):
+    def mesh(self, index, fit=False):
+        """The level's mesh; with fit its vertices move to where the surface is nearer to the scan."""
         if not 0 <= index < len(self):
             raise IndexError(f"level {index} of {len(self)}")
         mesh = c.scree_mesh()
-        call("curve_mesh", self._handle, index, mesh)
+        call("curve_fit" if fit else "curve_mesh", self._handle, index, mesh)
         return Mesh._of(mesh, self.source_mesh.source)
 
     def choose(self, progress=None, reference="scan", tolerances=None, **options):

@@ -37,6 +37,7 @@ const cli_meaning cli_meanings[] = {
     {"error", 'e', "Largest error of a collapse.", 0, 0, NULL},
     {.name = "errors", .meaning = "Also what each error alone would choose."},
     {.name = "fast", .meaning = "Do not look for self-intersections."},
+    {.name = "fit", .meaning = "Move vertices nearer to the scan."},
     {.name = "flat", .meaning = "Fill holes without new vertices."},
     {"force", 'f', "Overwrite existing files.", 0, 0, NULL},
     {.name = "frames", .meaning = "Simulated time between frames."},

@@ -16,7 +16,7 @@ typedef struct simplify_arguments {
   size_t count;
   int method;
   cli_soundness soundness;
-  bool force;
+  bool force, fit;
 } simplify_arguments;
 
 static const cli_option options[] = {
@@ -40,6 +40,11 @@ static const cli_option options[] = {
      "volume keeps the volume at every level; qecd is MeshLab's quadric edge collapse decimation. "
      "Default: volume.",
      0, 0, "volume|qecd"},
+    {"fit", CLI_FLAG, offsetof(simplify_arguments, fit), NULL,
+     "Move the level's vertices to where its surface is nearer to the scan: the mean distance "
+     "falls "
+     "by some per cent, the volume stays, the area may be further off.",
+     0, 0, NULL},
     {"density", CLI_REAL, offsetof(simplify_arguments, density), "KG/M3",
      "Also write mass, centre of mass and inertia of the result at this density in kg/m3 into a "
      ".json of the same name, as export does. The surface must be closed.",
@@ -54,23 +59,31 @@ static const cli_option options[] = {
 
 static const simplify_arguments defaults = {.source = CLI_SOURCE_DEFAULTS};
 
-static void say(const cli_call *call, const scree_curve *curve, size_t index) {
+/* What was written: of a fitted level the errors are its own, and the quadric error is none. */
+typedef struct written {
+  double area, volume;
+} written;
+
+static void say(const cli_call *call, const scree_curve *curve, size_t index, written is) {
+  const simplify_arguments *arguments = call->options;
   scree_level first, level;
-  char shown[CLI_PRINTABLE_BYTES];
+  char shown[CLI_PRINTABLE_BYTES], quadric[64] = "";
   const char *word = cli_printable(call->inputs[0], shown);
   scree_curve_facts facts = scree_curve_get_facts(curve);
   scree_curve_level(curve, 0, &first);
   scree_curve_level(curve, index, &level);
   cli_terminal_end();
   if (call->quiet) return;
-  fprintf(stderr,
-          "%s: %zu -> %zu triangles (Rp %.3g), method %s, eps_s %.3g, eps_v %.3g, quadric error "
-          "%.3g mm, coordinates in %s\n",
-          word, first.triangle_count, level.triangle_count, level.rp,
-          scree_method_name(facts.method), fabs(level.area - first.area) / first.area,
-          first.volume != 0 ? fabs(level.volume - first.volume) / fabs(first.volume) : 0,
-          level.quadric_error * 1e3,
-          cli_unit_name(((const simplify_arguments *)call->options)->source.unit));
+  if (!arguments->fit)
+    snprintf(quadric, sizeof quadric, ", quadric error %.3g mm", level.quadric_error * 1e3);
+  fprintf(
+      stderr,
+      "%s: %zu -> %zu triangles (Rp %.3g), method %s%s, eps_s %.3g, eps_v %.3g%s, coordinates in "
+      "%s\n",
+      word, first.triangle_count, level.triangle_count, level.rp, scree_method_name(facts.method),
+      arguments->fit ? ", fitted" : "", fabs(is.area - first.area) / first.area,
+      first.volume != 0 ? fabs(is.volume - first.volume) / fabs(first.volume) : 0, quadric,
+      cli_unit_name(arguments->source.unit));
   if (!facts.closed)
     fprintf(stderr, "%s: not closed: %zu boundary edge%s; the volume means nothing\n", word,
             facts.boundary_edge_count, cli_plural(facts.boundary_edge_count));
@@ -107,11 +120,14 @@ static scree_status write_with_mass(const cli_call *call, const scree_scan *scan
 }
 
 static scree_status write_level(const cli_call *call, const scree_scan *scan,
-                                const scree_curve *curve, size_t index, scree_error *error) {
+                                const scree_curve *curve, size_t index, written *is,
+                                scree_error *error) {
   const simplify_arguments *arguments = call->options;
   char shown[CLI_PRINTABLE_BYTES];
   scree_mesh mesh = {0};
-  scree_status status = scree_curve_mesh(curve, index, &mesh, error);
+  scree_status status = arguments->fit ? scree_curve_fit(curve, index, &mesh, error)
+                                       : scree_curve_mesh(curve, index, &mesh, error);
+  if (status == SCREE_OK) status = scree_mesh_area_volume(&mesh, &is->area, &is->volume, error);
   if (status == SCREE_OK && !arguments->soundness.unchecked)
     status = cli_check_rounded(&mesh, arguments->output, arguments->source.unit, NULL,
                                call->progress, error);
@@ -168,8 +184,9 @@ static scree_status simplify(const cli_call *call, scree_error *error) {
   if (status == SCREE_OK) {
     scree_level level;
     scree_curve_level(curve, index, &level);
-    status = write_level(call, &scan, curve, index, error);
-    if (status == SCREE_OK) say(call, curve, index);
+    written is = {0};
+    status = write_level(call, &scan, curve, index, &is, error);
+    if (status == SCREE_OK) say(call, curve, index, is);
     bool above = status == SCREE_OK && target > 0 && level.triangle_count > target;
     if (above && arguments->error > 0)
       fprintf(stderr,
@@ -218,6 +235,7 @@ const cli_verb cli_verb_simplify = {
         "number of threads.",
     .examples = "scree simplify phone.stl -n recommended -o phone_dem.stl\n"
                 "scree simplify phone.stl -r 1e-3 -o phone_762.stl\n"
+                "scree simplify phone.stl -n 500 --fit -o phone_near.stl\n"
                 "scree simplify phone.stl -n 500 -m qecd -o phone_500.ply\n"
                 "scree simplify phone.stl -r 1e-3 --density 1800 -o phone_dem.stl\n"
                 "scree simplify phone.stl -e 0.1mm -o phone_fine.stl\n",

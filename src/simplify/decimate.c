@@ -34,8 +34,10 @@ scree_status scree_decimate(scree_decimator *d) {
   double fine = scree_tune.fine * (double)d->first_triangle_count;
   scree_status status = scree_decimate_in_passes(d, fine);
   if (status == SCREE_OK) status = scree_decimate_refresh(d);
-  if (status == SCREE_OK && !d->coster->merge) /* with qecd the cost alone decides */
-    status = scree_samples_find(d->mesh, &d->s, &d->tree, &d->samples, d->error);
+  if (status == SCREE_OK && !d->coster->merge) { /* with qecd the cost alone decides */
+    status = scree_samples_start(d->mesh, &d->samples, d->error);
+    if (status == SCREE_OK) status = scree_samples_find(&d->s, &d->tree, &d->samples, d->error);
+  }
   if (status == SCREE_OK) status = scree_decimate_in_passes(d, 0);
   size_t done = 1;
   while (status == SCREE_OK && d->leniency < SCREE_LENIENCIES &&
@@ -109,7 +111,7 @@ scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
                          .usual_far = INFINITY,
                          .error = error};
   d->coster = options->method == SCREE_METHOD_QECD ? &scree_qecd_coster : &scree_volume_coster;
-  scree_status status = scree_halfmesh_build(mesh, &d->s, error);
+  scree_status status = scree_halfmesh_build(mesh, NULL, &d->s, error);
   if (status != SCREE_OK) return status;
   double limit = options->error_limit / d->s.scale;
   d->error_limit = limit > 0 ? limit * limit : INFINITY;
@@ -206,18 +208,11 @@ static double whole_cost(const scree_decimator *d, const scree_fan *f, const scr
   return far < INFINITY ? c->cost + penalty(d, c->area, far) : scree_larger(most, c->cost);
 }
 
-/* A vertex stays within the scan's box, but for a share of the size of the level's triangles. */
-static bool is_spike(const scree_decimator *d, vec3 x) {
-  const scree_halfmesh *s = &d->s;
-  double room = scree_tune.spike * sqrt(s->area / (double)s->live_triangle_count);
-  return !(x.x >= s->low.x - room && x.y >= s->low.y - room && x.z >= s->low.z - room &&
-           x.x <= s->high.x + room && x.y <= s->high.y + room && x.z <= s->high.z + room);
-}
-
 /* Tries one place; the fan is set to it. */
 static void try_place(const scree_decimator *d, const scree_candidate *c, double most, scree_fan *f,
                       scree_gathered *scratch, scree_verdict *v) {
-  if (!(c->cost < INFINITY) || c->error > d->error_limit || is_spike(d, c->target)) return;
+  if (!(c->cost < INFINITY) || c->error > d->error_limit || scree_shape_is_spike(&d->s, c->target))
+    return;
   scree_fan_set(f, c->target);
   if (!scree_shape_allows(&d->s, f, d->leniency)) return;
   double cost = whole_cost(d, f, c, fmin(v->cost, most), scratch, &v->out_of_memory);

@@ -106,7 +106,15 @@ static scree_status check_mesh(const scree_mesh *mesh, vec3 *low, vec3 *high, sc
 }
 
 /* The box: its centre, and the power of two not below its longest side. */
-static scree_status choose_box(scree_halfmesh *s, vec3 low, vec3 high, scree_error *error) {
+static scree_status choose_box(scree_halfmesh *s, const scree_halfmesh *other, vec3 low, vec3 high,
+                               scree_error *error) {
+  if (other) {
+    s->scale = other->scale;
+    s->centre = other->centre;
+    s->low = other->low;
+    s->high = other->high;
+    return SCREE_OK;
+  }
   double extent = fmax(high.x - low.x, fmax(high.y - low.y, high.z - low.z));
   if (!(extent > 0) || !isfinite(extent))
     return scree_fail(error, SCREE_BAD_MESH, "the mesh has an extent of %g m: nothing to decimate",
@@ -447,13 +455,13 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surface,
-                                  scree_error *error) {
+scree_status scree_halfmesh_build(const scree_mesh *mesh, const scree_halfmesh *other,
+                                  scree_halfmesh *surface, scree_error *error) {
   scree_halfmesh made = {.triangle_count = mesh->triangle_count};
   builder b = {.mesh = mesh, .surface = &made};
   vec3 low = {0, 0, 0}, high = low;
   scree_status status = check_mesh(mesh, &low, &high, error);
-  if (status == SCREE_OK) status = choose_box(&made, low, high, error);
+  if (status == SCREE_OK) status = choose_box(&made, other, low, high, error);
   if (status == SCREE_OK) status = build_edges(&b, low, high, error);
   if (status == SCREE_OK) status = build_vertices(&b, error);
   if (status != SCREE_OK) goto done;

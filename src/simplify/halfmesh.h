@@ -87,9 +87,10 @@ static inline void scree_add_triangle(const scree_halfmesh *s, size_t triangle, 
   scree_sum_add(volume, vec3_dot(at[0], n) / 6);
 }
 
-/* Builds the surface of a mesh; what scree_curve_build says about bad meshes is checked here. */
-scree_status scree_halfmesh_build(const scree_mesh *mesh, scree_halfmesh *surface,
-                                  scree_error *error);
+/* Builds the surface of a mesh, in the box of another (NULL: in its own); what scree_curve_build
+ * says about bad meshes is checked here. */
+scree_status scree_halfmesh_build(const scree_mesh *mesh, const scree_halfmesh *other,
+                                  scree_halfmesh *surface, scree_error *error);
 void scree_halfmesh_free(scree_halfmesh *surface);
 
 /* Squeezes out what is gone, keeping the order. Needs scratch for 4 bytes per vertex and per

@@ -31,6 +31,11 @@ typedef struct scree_tuning {
                      anew. */
   /* samples */
   int crowd; /* of a triangle, above which they are thinned: enough to tell its distance */
+  /* fit */
+  int sweeps;  /* over all vertices; more gain little */
+  double hold; /* share of the trace that holds a vertex where it is: it may slide nowhere without
+                  reason. */
+  double near; /* of the mean distance: nearer samples weigh no more than these */
 } scree_tuning;
 
 static const scree_tuning scree_tune = {.stiff = 1e-5,
@@ -45,7 +50,10 @@ static const scree_tuning scree_tune = {.stiff = 1e-5,
                                         .batch = 0.5,
                                         .fine = 0.3,
                                         .refresh = 0.75,
-                                        .crowd = 48};
+                                        .crowd = 48,
+                                        .sweeps = 3,
+                                        .hold = 0.02,
+                                        .near = 0.2};
 
 /* Passes of independent collapses go on while a pass has enough for all threads: a size of blocks
  * of parallel loops. Below, one collapse follows the other, which is better, and takes some tenths

@@ -12,6 +12,7 @@ done <numbers
 # both ends are in the table, met by a step or not
 run curve icosphere-4.stl --grid 1e-2:0.05:1
 run simplify icosphere-4.stl -r 1e-2 -o out.ply
+run simplify icosphere-4.stl -r 1e-2 --fit -o fitted.ply
 run simplify icosphere-4.stl -n 7 -o six.off
 head -3 six.off | tail -1
 run simplify icosphere-4.stl -n 7 -o six.off

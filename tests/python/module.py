@@ -160,6 +160,8 @@ class Curves(unittest.TestCase):
         self.assertEqual(curve.facts.method, "volume")
         index = curve.find(100)
         mesh = curve.mesh(index)
+        fitted = curve.mesh(index, fit=True)
+        self.assertEqual(fitted.triangle_count, mesh.triangle_count)
         self.assertEqual(mesh.triangle_count, curve[index].triangle_count)
         self.assertAlmostEqual(mesh.measure().volume / self.scan.measure().volume, 1, 12)
         with self.assertRaises(IndexError):

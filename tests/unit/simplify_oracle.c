@@ -31,8 +31,10 @@ static void begin(scree_decimator *d, const scree_mesh *mesh, scree_method metho
                                     .stop_count = mesh->triangle_count - 2 * collapses};
   CHECK_OK(scree_decimator_start(d, mesh, &options, error), *error);
   CHECK_OK(scree_decimate_refresh(d), *error);
-  if (method == SCREE_METHOD_VOLUME)
-    CHECK_OK(scree_samples_find(mesh, &d->s, &d->tree, &d->samples, error), *error);
+  if (method == SCREE_METHOD_VOLUME) {
+    CHECK_OK(scree_samples_start(mesh, &d->samples, error), *error);
+    CHECK_OK(scree_samples_find(&d->s, &d->tree, &d->samples, error), *error);
+  }
   for (size_t done = 1; done > 0 && d->s.live_triangle_count > options.stop_count;) {
     CHECK_OK(scree_decimate_refresh(d), *error);
     CHECK_OK(scree_decimate_in_order(d, &done), *error);

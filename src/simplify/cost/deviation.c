@@ -69,10 +69,10 @@ static void find_block(void *context, size_t begin, size_t end, size_t block, in
 }
 
 /* The surface's vertices are named by those of the scan; what still is where it was stays. */
-static scree_status match(const scree_mesh *mesh, finding *f, scree_error *error) {
+static scree_status match(finding *f, scree_error *error) {
   const scree_halfmesh *s = f->s, *scan = &f->samples->scan;
-  uint32_t *number; /* of the mesh's vertices in the scan */
-  SCREE_ALLOC_OR(number, mesh->vertex_count, error, out_of_memory);
+  uint32_t *number; /* of the mesh's vertices in the scan, which has no fewer */
+  SCREE_ALLOC_OR(number, scan->vertex_count, error, out_of_memory);
   for (uint32_t v = (uint32_t)scan->vertex_count; v-- > 0;) number[scan->vertex[v].origin] = v;
   memset(f->stays, 0, scan->vertex_count * sizeof *f->stays);
   for (size_t v = 0; v < s->vertex_count; v++) {
@@ -100,13 +100,16 @@ static void link_all(scree_samples *p, size_t triangle_count) {
   }
 }
 
-scree_status scree_samples_find(const scree_mesh *mesh, const scree_halfmesh *surface,
-                                const scree_surface_tree *tree, scree_samples *p,
-                                scree_error *error) {
-  finding f = {.s = surface, .tree = tree, .samples = p};
-  scree_status status = scree_halfmesh_build(mesh, &p->scan, error);
+scree_status scree_samples_start(const scree_mesh *mesh, scree_samples *p, scree_error *error) {
+  scree_status status = scree_halfmesh_build(mesh, NULL, &p->scan, error);
   if (status == SCREE_OK) status = scree_surface_tree_make(&p->scan, &p->scan_tree, error);
-  if (status != SCREE_OK) return status;
+  return status;
+}
+
+scree_status scree_samples_find(const scree_halfmesh *surface, const scree_surface_tree *tree,
+                                scree_samples *p, scree_error *error) {
+  finding f = {.s = surface, .tree = tree, .samples = p};
+  scree_status status;
   size_t count = p->scan.vertex_count;
   SCREE_ALLOC_OR(f.stays, count, error, out_of_memory);
   SCREE_ALLOC_OR(p->of, surface->vertex_count, error, out_of_memory);
@@ -114,7 +117,7 @@ scree_status scree_samples_find(const scree_mesh *mesh, const scree_halfmesh *su
   SCREE_ALLOC_OR(p->worst, surface->triangle_count, error, out_of_memory);
   SCREE_ALLOC_OR(p->next, count, error, out_of_memory);
   SCREE_ALLOC_OR(p->far, count, error, out_of_memory);
-  status = match(mesh, &f, error);
+  status = match(&f, error);
   if (status == SCREE_OK) {
     scree_parallel_for(count, BLOCK, find_block, &f);
     link_all(p, surface->triangle_count);
@@ -179,10 +182,8 @@ static bool gather(scree_gathered *g, uint32_t sample, uint32_t start) {
   return SCREE_PUSH(g, (struct scree_sample){.sample = sample, .start = start});
 }
 
-/* The samples of the fan's triangles and of those that go, and the vertices that will be samples.
- */
-static bool gather_all(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
-                       scree_gathered *g) {
+bool scree_samples_gather(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                          scree_gathered *g) {
   bool room = true;
   g->count = 0;
   if (p->far[p->of[f->a]] == NOT_YET) room &= gather(g, p->of[f->a], 0);
@@ -263,7 +264,7 @@ double scree_deviation_bound(const scree_samples *p, const scree_halfmesh *s, co
 bool scree_deviation_find(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
                           double from, double to, scree_gathered *g, double *deviation) {
   double worst = from * from, most = to * to;
-  if (!gather_all(p, s, f, g)) return false;
+  if (!scree_samples_gather(p, s, f, g)) return false;
   for (size_t k = 0; k < g->count && worst <= most; k++) {
     uint32_t start = g->items[k].start;
     worst = scree_larger(worst, to_fan(f, p->scan.vertex[g->items[k].sample].at, worst, &start));
@@ -299,10 +300,7 @@ static void thin(scree_samples *p, scree_gathered *g) {
   g->count = left;
 }
 
-bool scree_samples_move(scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
-                        scree_gathered *g) {
-  if (!gather_all(p, s, f, g)) return false;
-  if (g->count > (size_t)scree_tune.crowd * f->count) thin(p, g);
+void scree_samples_settle(scree_samples *p, const scree_fan *f, const scree_gathered *g) {
   for (uint32_t i = 0; i < f->count; i++) {
     p->first[f->edge[i] / 3] = SCREE_NONE;
     p->worst[f->edge[i] / 3] = 0;
@@ -316,5 +314,12 @@ bool scree_samples_move(scree_samples *p, const scree_halfmesh *s, const scree_f
     p->next[v] = p->first[t];
     p->first[t] = v;
   }
+}
+
+bool scree_samples_move(scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                        scree_gathered *g) {
+  if (!scree_samples_gather(p, s, f, g)) return false;
+  if (g->count > (size_t)scree_tune.crowd * f->count) thin(p, g);
+  scree_samples_settle(p, f, g);
   return true;
 }

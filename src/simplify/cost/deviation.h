@@ -35,11 +35,12 @@ static inline bool scree_has_samples(const scree_samples *samples) {
   return samples->far != NULL;
 }
 
-/* Makes the reference surface, and samples of all vertices of the mesh that the surface, whose tree
- * is tight, has left. */
-scree_status scree_samples_find(const scree_mesh *mesh, const scree_halfmesh *surface,
-                                const scree_surface_tree *tree, scree_samples *samples,
-                                scree_error *error);
+/* Makes the mesh the reference surface. */
+scree_status scree_samples_start(const scree_mesh *mesh, scree_samples *samples,
+                                 scree_error *error);
+/* Makes samples of all its vertices that the surface, whose tree is tight, has left. */
+scree_status scree_samples_find(const scree_halfmesh *surface, const scree_surface_tree *tree,
+                                scree_samples *samples, scree_error *error);
 void scree_samples_free(scree_samples *samples);
 
 /* Finds the mean anew; in parallel, the same bits for any number of threads. */
@@ -59,8 +60,17 @@ bool scree_deviation_find(const scree_samples *samples, const scree_halfmesh *s,
                           const scree_fan *fan, double from, double to, scree_gathered *scratch,
                           double *deviation);
 
-/* Before the fan collapses: its samples, with those that its vertices become, go to the nearest of
- * the new triangles. Touches only these triangles' lists. False: out of memory. */
+/* The samples of the fan's triangles and of those that go, and the vertices of the scan that its
+ * vertices will leave. False: out of memory. */
+bool scree_samples_gather(const scree_samples *samples, const scree_halfmesh *s,
+                          const scree_fan *fan, scree_gathered *gathered);
+
+/* What was gathered goes to the nearest of the fan's triangles as it is set. Touches only these
+ * triangles' lists. */
+void scree_samples_settle(scree_samples *samples, const scree_fan *fan,
+                          const scree_gathered *gathered);
+
+/* Before the fan collapses: its samples are gathered, thinned and settled. False: out of memory. */
 bool scree_samples_move(scree_samples *samples, const scree_halfmesh *s, const scree_fan *fan,
                         scree_gathered *scratch);
 

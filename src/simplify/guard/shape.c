@@ -91,3 +91,9 @@ bool scree_shape_folds_with(const scree_halfmesh *s, const scree_fan *f,
   }
   return false;
 }
+
+bool scree_shape_is_spike(const scree_halfmesh *s, vec3 x) {
+  double room = scree_tune.spike * sqrt(s->area / (double)s->live_triangle_count);
+  return !(x.x >= s->low.x - room && x.y >= s->low.y - room && x.z >= s->low.z - room &&
+           x.x <= s->high.x + room && x.y <= s->high.y + room && x.z <= s->high.z + room);
+}

@@ -15,4 +15,8 @@ bool scree_shape_allows(const scree_halfmesh *s, const scree_fan *fan, int lenie
 bool scree_shape_folds_with(const scree_halfmesh *s, const scree_fan *fan,
                             const scree_planned *planned, int leniency);
 
+/* Whether a vertex there would lie outside the scan's box by more than a share of the size of the
+ * level's triangles. */
+bool scree_shape_is_spike(const scree_halfmesh *s, vec3 at);
+
 #endif

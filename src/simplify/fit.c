@@ -1,0 +1,316 @@
+/* A level whose vertices are moved to where its surface is nearer to the scan.
+ *
+ * The samples are all vertices of the scan, each with the area around it, each in the list of the
+ * level's triangle that it is nearest to (cost/deviation.h). In each sweep one vertex after the
+ * other is taken to where the sum of its samples' distances by area becomes less: one step of
+ * weighted least squares, weights one over the distance (Weiszfeld 1937), across the triangle for a
+ * sample above it, else towards the sample. All guards of decimation hold, and no vertex makes the
+ * deviation both larger and unusual. Then all vertices are moved along their normals by one length,
+ * which brings the volume back. If in the end the sum over the scan is no less, or the volume could
+ * not be brought back, the level stays as it was. */
+#include "mesh/closest.h"
+#include "mesh/mesh.h"
+#include "simplify/cost/deviation.h"
+#include "simplify/curve.h"
+#include "simplify/guard/apart.h"
+#include "simplify/guard/shape.h"
+#include "simplify/tuning.h"
+
+#include <string.h>
+
+/* A step must make the sum less by this. */
+#define WORTH 1e-3
+/* The volume's relative error, above rounding. */
+#define VOLUME_KEPT 1e-13
+
+typedef struct fit {
+  scree_halfmesh s; /* the level */
+  scree_surface_tree tree;
+  scree_markers markers;
+  scree_samples samples;
+  double *area;  /* per vertex of the scan: of the triangles around */
+  double volume; /* six times, to be kept */
+  scree_fan fan;
+  scree_gathered gathered;
+} fit;
+
+static void fit_free(fit *f) {
+  scree_halfmesh_free(&f->s);
+  scree_surface_tree_free(&f->tree);
+  scree_markers_free(&f->markers);
+  scree_samples_free(&f->samples);
+  scree_free(f->area);
+  scree_free(f->gathered.items);
+}
+
+/* ---- Start ---- */
+
+/* The level's surface, in the box of the scan and with its names. */
+static scree_status build_level(fit *f, const scree_curve *curve, const scree_mesh *level,
+                                const uint32_t *numbering, scree_error *error) {
+  const scree_halfmesh *scan = &f->samples.scan;
+  scree_halfmesh *s = &f->s;
+  uint32_t *name;
+  scree_status status = scree_halfmesh_build(level, scan, s, error);
+  if (status != SCREE_OK) return status;
+  SCREE_ALLOC_OR(name, level->vertex_count, error, out_of_memory);
+  for (uint32_t v = 0; v < curve->mesh->vertex_count; v++)
+    if (numbering[v] != SCREE_NONE) name[numbering[v]] = v;
+  for (size_t v = 0; v < s->vertex_count; v++) s->vertex[v].origin = name[s->vertex[v].origin];
+  scree_free(name);
+  s->area = curve->area / (s->scale * s->scale);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status find_areas(fit *f, scree_error *error) {
+  const scree_halfmesh *scan = &f->samples.scan;
+  SCREE_ALLOC_OR(f->area, scan->vertex_count, error, out_of_memory);
+  memset(f->area, 0, scan->vertex_count * sizeof *f->area);
+  for (size_t h = 0; h < 3 * scan->triangle_count; h++)
+    f->area[scan->half[h].from] += vec3_norm(scree_normal_of(scan, h / 3));
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static double six_volumes(const scree_halfmesh *s) {
+  scree_sum area = {0}, volume = {0};
+  for (size_t t = 0; t < s->triangle_count; t++) scree_add_triangle(s, t, &area, &volume);
+  return 6 * scree_sum_value(volume);
+}
+
+static scree_status fit_start(fit *f, const scree_curve *curve, const scree_mesh *level,
+                              const uint32_t *numbering, scree_error *error) {
+  *f = (fit){0};
+  scree_status status = scree_samples_start(curve->mesh, &f->samples, error);
+  if (status == SCREE_OK) status = build_level(f, curve, level, numbering, error);
+  if (status == SCREE_OK) status = scree_surface_tree_make(&f->s, &f->tree, error);
+  if (status == SCREE_OK) status = scree_markers_find(&f->s, &f->markers, error);
+  if (status == SCREE_OK) status = scree_samples_find(&f->s, &f->tree, &f->samples, error);
+  if (status == SCREE_OK) status = find_areas(f, error);
+  f->volume = six_volumes(&f->s);
+  return status;
+}
+
+/* ---- One vertex ---- */
+
+/* The fan's triangle that is nearest to p; *nearest is looked at first. */
+static double to_fan(const scree_fan *f, vec3 p, uint32_t *nearest) {
+  double best = INFINITY;
+  for (uint32_t k = 0, i = *nearest; k < f->count; k++, i = i + 1 < f->count ? i + 1 : 0) {
+    const vec3 corner[3] = {f->at, f->from[i], f->to[i]};
+    double d = scree_distance2(corner, p);
+    if (d < best) best = d, *nearest = i;
+  }
+  return best;
+}
+
+/* The sum of the gathered samples' distances from the fan as it is set, by area. */
+static double sum_of_distances(const fit *f) {
+  const scree_samples *p = &f->samples;
+  double sum = 0;
+  for (size_t k = 0; k < f->gathered.count; k++) {
+    uint32_t v = f->gathered.items[k].sample, nearest = f->gathered.items[k].start;
+    sum += f->area[v] * sqrt(to_fan(&f->fan, p->scan.vertex[v].at, &nearest));
+  }
+  return sum;
+}
+
+/* Normal equations of the step: H step = g. */
+typedef struct equations {
+  vec3 row[3]; /* of H */
+  vec3 g;
+} equations;
+
+/* One sample at p, of that area. */
+static void add_sample(equations *q, const scree_fan *f, vec3 p, double area, double least) {
+  uint32_t i = 0;
+  vec3 at;
+  to_fan(f, p, &i);
+  const double corners[9] = {f->at.x,      f->at.y,    f->at.z,    f->from[i].x, f->from[i].y,
+                             f->from[i].z, f->to[i].x, f->to[i].y, f->to[i].z};
+  double distance = sqrt(scree_triangle_closest(corners, p, &at)), n2 = vec3_norm2(f->after[i]);
+  if (!(n2 > 0)) return;
+  vec3 rest = vec3_triangle_normal(at, f->from[i], f->to[i]), to = vec3_sub(p, at);
+  double share = vec3_dot(rest, f->after[i]) / n2; /* of the vertex in the point */
+  vec3 across = vec3_scale(f->after[i], 1 / sqrt(n2));
+  bool above = fabs(vec3_dot(across, to)) >= (1 - 1e-9) * distance;
+  vec3 along = above ? across : vec3_scale(to, 1 / distance);
+  double weight = area * share / scree_larger(distance, least);
+  q->g = vec3_mad(q->g, along, weight * vec3_dot(along, to));
+  q->row[0] = vec3_mad(q->row[0], along, weight * share * along.x);
+  q->row[1] = vec3_mad(q->row[1], along, weight * share * along.y);
+  q->row[2] = vec3_mad(q->row[2], along, weight * share * along.z);
+}
+
+/* Where the fan's vertex, as it is set, would be better. */
+static vec3 better_place(const fit *f) {
+  const scree_samples *p = &f->samples;
+  equations q = {0};
+  for (size_t k = 0; k < f->gathered.count; k++) {
+    uint32_t v = f->gathered.items[k].sample;
+    add_sample(&q, &f->fan, p->scan.vertex[v].at, f->area[v], scree_tune.near * p->mean);
+  }
+  double hold = scree_tune.hold * (q.row[0].x + q.row[1].y + q.row[2].z);
+  q.row[0].x += hold, q.row[1].y += hold, q.row[2].z += hold;
+  vec3 across = vec3_cross(q.row[1], q.row[2]);
+  double determinant = vec3_dot(q.row[0], across);
+  if (!(determinant > 0)) return f->fan.at;
+  vec3 step = {vec3_dot(q.g, across), vec3_dot(q.g, vec3_cross(q.row[2], q.row[0])),
+               vec3_dot(q.g, vec3_cross(q.row[0], q.row[1]))};
+  return vec3_mad(f->fan.at, step, 1 / determinant);
+}
+
+/* Moves the fan's vertex to where the fan is set, if the guards allow; its samples were gathered.
+ */
+static bool move(fit *f) {
+  const scree_surroundings around = {&f->s, &f->tree, &f->markers, NULL};
+  scree_fan *fan = &f->fan;
+  if (scree_shape_is_spike(&f->s, fan->at) || !scree_shape_allows(&f->s, fan, 0) ||
+      !scree_apart(&around, fan))
+    return false;
+  scree_samples_settle(&f->samples, fan, &f->gathered);
+  f->s.vertex[fan->a].at = fan->at;
+  for (uint32_t i = 0; i < fan->count; i++) {
+    scree_bounds b = scree_fan_bounds(fan, i);
+    scree_surface_tree_grow(&f->tree, fan->edge[i] / 3, &b, fan->after[i]);
+  }
+  return true;
+}
+
+/* The fan of a vertex that may move, set to where it is, and its samples. False: it stays. */
+static bool take_vertex(fit *f, uint32_t v, bool *out_of_memory) {
+  if (f->s.vertex[v].outgoing == SCREE_NONE || f->s.flags[v] & SCREE_VERTEX_LOCKED ||
+      !scree_fan_of_vertex(&f->s, v, &f->fan))
+    return false;
+  scree_fan_set(&f->fan, f->s.vertex[v].at);
+  if (!scree_samples_gather(&f->samples, &f->s, &f->fan, &f->gathered)) *out_of_memory = true;
+  return !*out_of_memory;
+}
+
+static bool find_deviation(fit *f, double from, double to, double *far) {
+  return scree_deviation_find(&f->samples, &f->s, &f->fan, from, to, &f->gathered, far);
+}
+
+static void improve(fit *f, uint32_t v, bool *out_of_memory) {
+  double usual = 0.5 * scree_tune.usual * f->samples.mean, far, was;
+  if (!take_vertex(f, v, out_of_memory) || f->gathered.count < f->fan.count) return;
+  double sum = sum_of_distances(f);
+  vec3 place = better_place(f);
+  scree_fan_set(&f->fan, place);
+  if (!(sum_of_distances(f) < (1 - WORTH) * sum)) return;
+  *out_of_memory |= !find_deviation(f, usual, INFINITY, &far);
+  if (far > usual) {
+    scree_fan_set(&f->fan, f->s.vertex[v].at);
+    *out_of_memory |= !find_deviation(f, 0, INFINITY, &was);
+    if (far > was) return;
+    scree_fan_set(&f->fan, place);
+  }
+  if (!*out_of_memory) move(f);
+}
+
+/* ---- The volume ---- */
+
+/* What moving the vertex along this changes of six volumes, per length of it. */
+static vec3 area_vector(const scree_fan *fan) {
+  vec3 sum = {0, 0, 0};
+  for (uint32_t i = 0; i < fan->count; i++) sum = vec3_add(sum, fan->after[i]);
+  return sum;
+}
+
+/* All vertices go by one length. */
+static void inflate(fit *f, double missing, bool *out_of_memory) {
+  double all = 0;
+  for (uint32_t v = 0; v < f->s.vertex_count; v++)
+    if (take_vertex(f, v, out_of_memory)) all += vec3_norm(area_vector(&f->fan));
+  for (uint32_t v = 0; v < f->s.vertex_count && all > 0; v++) {
+    if (!take_vertex(f, v, out_of_memory)) continue;
+    vec3 place = vec3_mad(f->fan.at, vec3_unit(area_vector(&f->fan)), missing / all);
+    scree_fan_set(&f->fan, place);
+    move(f);
+  }
+}
+
+/* One vertex takes up what is missing. */
+static void take_up(fit *f, double missing, bool *out_of_memory) {
+  for (uint32_t v = 0; v < f->s.vertex_count; v++) {
+    if (!take_vertex(f, v, out_of_memory)) continue;
+    vec3 along = area_vector(&f->fan);
+    if (!(vec3_norm2(along) > 0)) continue;
+    scree_fan_set(&f->fan, vec3_mad(f->fan.at, along, missing / vec3_norm2(along)));
+    if (move(f)) return;
+  }
+}
+
+/* False: the volume could not be kept. */
+static bool restore_volume(fit *f, bool *out_of_memory) {
+  double missing = 0;
+  if (!f->s.closed) return true;
+  for (int k = 0; k < 4; k++) {
+    missing = f->volume - six_volumes(&f->s);
+    if (fabs(missing) <= VOLUME_KEPT * fabs(f->volume)) return true;
+    if (k < 2)
+      inflate(f, missing, out_of_memory);
+    else
+      take_up(f, missing, out_of_memory);
+  }
+  return fabs(f->volume - six_volumes(&f->s)) <= VOLUME_KEPT * fabs(f->volume);
+}
+
+/* ---- The pass ---- */
+
+/* Over the whole scan. */
+static double sum_over_scan(const fit *f) {
+  scree_sum sum = {0};
+  for (size_t v = 0; v < f->samples.scan.vertex_count; v++)
+    if (f->samples.far[v] > 0) scree_sum_add(&sum, f->area[v] * (double)f->samples.far[v]);
+  return scree_sum_value(sum);
+}
+
+/* *better: the level is nearer to the scan than it was. */
+static bool run(fit *f, bool *better) {
+  bool out_of_memory = false;
+  double before = sum_over_scan(f);
+  *better = true;
+  for (int k = 0; k < scree_tune.sweeps && *better && !out_of_memory; k++) {
+    for (uint32_t v = 0; v < f->s.vertex_count && !out_of_memory; v++)
+      improve(f, v, &out_of_memory);
+    *better = restore_volume(f, &out_of_memory);
+  }
+  *better = *better && sum_over_scan(f) < before;
+  return !out_of_memory;
+}
+
+/* What moved, to the mesh of the level. */
+static void write_back(const fit *f, const uint32_t *numbering, scree_mesh *level) {
+  const scree_halfmesh *s = &f->s;
+  for (size_t v = 0; v < s->vertex_count; v++) {
+    if (s->vertex[v].outgoing == SCREE_NONE) continue;
+    double *at = level->positions + 3 * (size_t)numbering[s->vertex[v].origin];
+    vec3 moved = vec3_sub(s->vertex[v].at, scree_into_box(s, vec3_load(at)));
+    if (vec3_norm2(moved) > 0) vec3_store(at, vec3_mad(s->centre, s->vertex[v].at, s->scale));
+  }
+}
+
+scree_status scree_curve_fit(const scree_curve *curve, size_t level_index, scree_mesh *mesh,
+                             scree_error *error) {
+  scree_replay *replay = NULL;
+  const scree_mesh *level;
+  fit f = {0};
+  bool better = false;
+  scree_status status = scree_replay_start(curve, &replay, error);
+  if (status == SCREE_OK) status = scree_replay_step(replay, level_index, &level, error);
+  if (status == SCREE_OK)
+    status = fit_start(&f, curve, level, scree_replay_numbering(replay), error);
+  if (status == SCREE_OK && !run(&f, &better))
+    status = scree_fail_memory(error, f.gathered.count * sizeof *f.gathered.items, "samples");
+  scree_mesh made = {0};
+  if (status == SCREE_OK) status = scree_mesh_copy(level, &made, error);
+  if (status == SCREE_OK && better) write_back(&f, scree_replay_numbering(replay), &made);
+  if (status == SCREE_OK) *mesh = made;
+  fit_free(&f);
+  scree_replay_free(replay);
+  return status;
+}
