@@ -6,8 +6,9 @@
  * weighted least squares, weights one over the distance (Weiszfeld 1937), across the triangle for a
  * sample above it, else towards the sample. All guards of decimation hold, and no vertex makes the
  * deviation both larger and unusual. Then all vertices are moved along their normals by one length,
- * which brings the volume back. If in the end the sum over the scan is no less, or the volume could
- * not be brought back, the level stays as it was. */
+ * which brings the volume back. If in the end the distance, measured at other places of the scan,
+ * is no less, or the volume could not be brought back, the level stays as it was. */
+#include "base/parallel.h"
 #include "mesh/closest.h"
 #include "mesh/mesh.h"
 #include "simplify/cost/deviation.h"
@@ -261,26 +262,64 @@ static bool restore_volume(fit *f, bool *out_of_memory) {
 
 /* ---- The pass ---- */
 
-/* Over the whole scan. */
-static double sum_over_scan(const fit *f) {
-  scree_sum sum = {0};
-  for (size_t v = 0; v < f->samples.scan.vertex_count; v++)
-    if (f->samples.far[v] > 0) scree_sum_add(&sum, f->area[v] * (double)f->samples.far[v]);
-  return scree_sum_value(sum);
+/* Sums of distances by blocks of the scan's triangles. */
+typedef struct summing {
+  const fit *f;
+  double *blocks;
+} summing;
+
+enum { BLOCK = 4096 };
+
+static void sum_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)worker;
+  const summing *m = context;
+  const fit *f = m->f;
+  const scree_halfmesh *scan = &f->samples.scan;
+  uint32_t nearest = SCREE_NONE;
+  double sum = 0;
+  for (size_t t = begin; t < end; t++) {
+    vec3 at[3];
+    scree_corners(scan, t, at);
+    vec3 middle = vec3_scale(vec3_add(vec3_add(at[0], at[1]), at[2]), 1.0 / 3);
+    double d2 = scree_surface_tree_distance(&f->tree, &f->s, middle, 0, &nearest);
+    sum += vec3_norm(vec3_triangle_normal(at[0], at[1], at[2])) * sqrt(d2);
+  }
+  m->blocks[block] = sum;
+}
+
+/* The sum over the scan, by area: of the middles of its triangles, which the fit does not see, so
+ * that a level fitted to the noise of the vertices is found out. */
+static scree_status sum_over_scan(const fit *f, double *sum, scree_error *error) {
+  size_t count = scree_block_count(f->samples.scan.triangle_count, BLOCK);
+  summing m = {.f = f};
+  SCREE_ALLOC_OR(m.blocks, count, error, out_of_memory);
+  scree_parallel_for(f->samples.scan.triangle_count, BLOCK, sum_block, &m);
+  *sum = 0;
+  for (size_t i = 0; i < count; i++) *sum += m.blocks[i];
+  scree_free(m.blocks);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+/* False: the volume could not be kept. */
+static bool sweep(fit *f, bool *out_of_memory) {
+  for (uint32_t v = 0; v < f->s.vertex_count && !*out_of_memory; v++) improve(f, v, out_of_memory);
+  return restore_volume(f, out_of_memory);
 }
 
 /* *better: the level is nearer to the scan than it was. */
-static bool run(fit *f, bool *better) {
-  bool out_of_memory = false;
-  double before = sum_over_scan(f);
-  *better = true;
-  for (int k = 0; k < scree_tune.sweeps && *better && !out_of_memory; k++) {
-    for (uint32_t v = 0; v < f->s.vertex_count && !out_of_memory; v++)
-      improve(f, v, &out_of_memory);
-    *better = restore_volume(f, &out_of_memory);
-  }
-  *better = *better && sum_over_scan(f) < before;
-  return !out_of_memory;
+static scree_status run(fit *f, bool *better, scree_error *error) {
+  bool out_of_memory = false, kept = true;
+  double before, after;
+  scree_status status = sum_over_scan(f, &before, error);
+  if (status != SCREE_OK) return status;
+  for (int k = 0; k < scree_tune.sweeps && kept; k++) kept = sweep(f, &out_of_memory);
+  if (out_of_memory)
+    return scree_fail_memory(error, f->gathered.count * sizeof *f->gathered.items, "samples");
+  status = sum_over_scan(f, &after, error);
+  *better = status == SCREE_OK && kept && after < before;
+  return status;
 }
 
 /* What moved, to the mesh of the level. */
@@ -304,8 +343,7 @@ scree_status scree_curve_fit(const scree_curve *curve, size_t level_index, scree
   if (status == SCREE_OK) status = scree_replay_step(replay, level_index, &level, error);
   if (status == SCREE_OK)
     status = fit_start(&f, curve, level, scree_replay_numbering(replay), error);
-  if (status == SCREE_OK && !run(&f, &better))
-    status = scree_fail_memory(error, f.gathered.count * sizeof *f.gathered.items, "samples");
+  if (status == SCREE_OK) status = run(&f, &better, error);
   scree_mesh made = {0};
   if (status == SCREE_OK) status = scree_mesh_copy(level, &made, error);
   if (status == SCREE_OK && better) write_back(&f, scree_replay_numbering(replay), &made);
