@@ -107,7 +107,7 @@ SCREE_API scree_status scree_curve_mesh(const scree_curve *curve, size_t level_i
                                         scree_mesh *mesh, scree_error *error);
 
 /* The same level with its vertices moved to where its surface is nearer to the mesh given (the mean
- * distance, by area, falls by some per cent; docs/decimation.md). Triangles are those of
+ * distance, by area, falls by some per cent; docs/background/decimation.md). Triangles are those of
  * scree_curve_mesh, and so is the volume of a closed level, to rounding; area and distances are
  * other than the curve's: measure what you get. What holds at every level holds here too. Where
  * nothing is gained the level comes as it is. O(Nm log Nm) time, about 150 bytes per triangle of
