@@ -13,7 +13,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$root"
 sources=(src/world/device/kernels.c src/base/math.c)
-for name in contact touch edges law candidates watch seam depth wall pair pool step integrate; do
+for name in contact touch edges law candidates substep seam depth wall pair pool step integrate; do
   [ ! -e src/world/$name.c ] || sources+=(src/world/$name.c)
 done
 for name in closest tree; do sources+=(src/particle/$name.c); done

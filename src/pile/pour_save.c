@@ -2,6 +2,7 @@
  * it does not say: container, sizes and speed as they were given, of each shape its count and name,
  * and the caller's notes. */
 #include "pile/pour.h"
+#include "world/checkpoint.h"
 
 #include "base/alloc.h"
 

@@ -2,6 +2,7 @@
  * what the scene does not say: the experiment as its own YAML, and of each shape its density factor
  * and its name. */
 #include "pile/run.h"
+#include "world/checkpoint.h"
 
 #include "base/alloc.h"
 #include "base/platform.h"

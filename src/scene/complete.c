@@ -2,6 +2,7 @@
  * checkpoints and the watcher. Frames fall on the first step at or past their time, whatever the
  * chunks, so an interrupted scene writes the same frames as an uninterrupted one. */
 #include "scene/scene.h"
+#include "world/checkpoint.h"
 
 #include "base/alloc.h"
 #include "base/file.h"

@@ -4,6 +4,7 @@
  * again. A frame's world has its bodies and walls without what contacts remember; what follows from
  * contacts is kept as a number. */
 #include "scene/scene.h"
+#include "world/checkpoint.h"
 
 #include "base/alloc.h"
 #include "base/array.h"

@@ -6,7 +6,10 @@
  * in the coarser ones, in the cells where the centre of one that reaches it may lie. The list of
  * pairs stays valid until some body's path since it was made exceeds half its margin, or a wall's.
  * Old and new lists are both sorted, so pairs that stay keep their memory in one merge. */
+#include "world/broad.h"
+#include "world/pairs.h"
 #include "world/stages.h"
+#include "world/walls.h"
 
 #include "base/alloc.h"
 #include "base/array.h"

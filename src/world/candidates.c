@@ -5,7 +5,8 @@
  *
  * Points are found through both trees and the closest-point query, edges through both edge trees,
  * in the frame of b; edges that face away from each other are left out. */
-#include "world/world.h"
+#include "world/contact.h"
+#include "world/walls.h"
 
 #include "base/progress.h"
 #include "particle/closest.h"

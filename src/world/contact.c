@@ -9,11 +9,12 @@
  * sum of the two bodies' paths; the step asks that of the pair's slot, so that sleeping pairs are
  * not touched at all.
  *
- * The ledger: the work of the dashpots and of the tangential forces over a step is
- * dt/2 W.(v before + v after the kick), with W the wrench of the step. The first half is added when
+ * The ledger: the work of the dashpots and of the tangential forces over a kick of length dt is
+ * dt/2 W.(v before + v after), with W the wrench. The first half is added when
  * the wrench is known, the second at the next evaluation: a trapezoid rule along the path, of
  * second order like the integrator. */
-#include "world/world.h"
+#include "world/contact.h"
+#include "world/walls.h"
 
 static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
 
@@ -27,19 +28,19 @@ static double power_of(const scree_kept_load *load, vec3 velocity, vec3 spin) {
  * torques M - arm x F on a and -M on b, the power is F.(va - vb - wa x arm) + M.(wa - wb); the arm
  * is as it was before the drift. */
 static void add_later_work(const scree_world *world, const scree_pair *pair,
-                           scree_pair_work *work) {
-  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+                           const scree_scratch *scratch, scree_pair_work *work) {
+  const scree_frame *a = scratch->a, *b = scratch->b;
   vec3 slip = vec3_sub(a->velocity, b->velocity),
-       arm = vec3_mad(vec3_sub(a->position, b->position), slip, -world->time_step),
+       arm = vec3_mad(vec3_sub(a->position, b->position), slip, -scratch->drift),
        u = vec3_sub(slip, vec3_cross(a->spin, arm)), spin = vec3_sub(a->spin, b->spin);
-  double half = 0.5 * world->time_step;
-  work->later_dashpot = half * power_of(&pair->dashpot, u, spin);
+  double half = 0.5 * pair->kick;
+  work->later_dashpot += half * power_of(&pair->dashpot, u, spin);
   if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) {
     const scree_world_wall *belt = &world->walls.items[pair->b];
     u = vec3_sub(u, mat3_mul_vec(&b->rotation, belt->surface_velocity));
     spin = vec3_sub(spin, mat3_mul_vec(&b->rotation, belt->surface_spin));
   }
-  work->later_tangential = half * power_of(&pair->tangential, u, spin);
+  work->later_tangential += half * power_of(&pair->tangential, u, spin);
 }
 
 static double bodies_path(const scree_world *world, const scree_pair *pair) {
@@ -79,9 +80,9 @@ static double slept_path(const scree_world *world, const scree_pair *pair,
 
 /* a in the frame of b, its velocity and spin such that a's point at q moves with velocity + spin x
  * q. Answers a bound on the relative speed of the points that count. */
-static double relate(const scree_world *world, const scree_pair *pair,
+static double relate(const scree_world *world, const scree_pair *pair, const scree_scratch *scratch,
                      scree_frame *restrict relative) {
-  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+  const scree_frame *a = scratch->a, *b = scratch->b;
   vec3 between = vec3_sub(a->position, b->position), slip = vec3_sub(a->velocity, b->velocity),
        spin = vec3_sub(a->spin, b->spin), at_b = vec3_sub(slip, vec3_cross(a->spin, between)),
        now = vec3_sub(vec3_sub(a->velocity_now, b->velocity_now), vec3_cross(a->spin_now, between));
@@ -181,6 +182,8 @@ static void fall_asleep(const scree_world *world, scree_pair *pair, scree_neighb
 
 static void clear_results(scree_pair *pair) {
   pair->touching = false;
+  pair->elastic_since = 0;
+  pair->followed = false;
   pair->elastic = pair->tangential_elastic = pair->overlap = 0;
   pair->contact_count = 0;
 }
@@ -209,39 +212,95 @@ static bool prepare(const scree_world *world, scree_pair *pair, const scree_fram
   return wake_items(pair, scratch) && has_room(pair, scratch);
 }
 
-bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                         scree_pair_work *work) {
+/* Where the two are; `own` is room for places that are the pair's alone. */
+static void take_places(const scree_world *world, const scree_pair *pair, scree_frame own[2],
+                        scree_scratch *scratch) {
+  scratch->a = &world->bodies.frame[pair->a];
+  scratch->b = scree_pair_frame_b(world, pair);
+  scratch->drift = world->time_step / pair->substeps;
+  if (pair->substeps == 1) return;
+  own[0] = scree_owed_frame(world, pair, false);
+  own[1] = scree_owed_frame(world, pair, true);
+  scratch->a = &own[0];
+  scratch->b = &own[1];
+}
+
+/* The law at the present places. */
+static void press(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                  scree_scratch *scratch, scree_pair_work *work) {
+  bool parting = pair->parting, parted = pair->parted;
+  pair->parted = false;
+  scree_pair_feel_depths(world, pair, relative, scratch, work);
+  if (pair->parting) work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
+  clear_results(pair);
+  double largest = pair->largest;
+  scree_powers powers = scree_pair_apply_law(world, pair, relative, scratch);
+  pair->kick = 0;
+  if (parted)
+    work->let_go -= pair->elastic; /* what the features feel anew was not loaded by work */
+  if (!pair->touching) return;
+  pair->kick = 0.5 * (scratch->drift + scratch->step);
+  work->begins_parting |= !parting && pair->parting;
+  const double half = 0.5 * scratch->drift, rest = 0.5 * pair->kick - half;
+  work->dashpot = half * powers.dashpot;
+  work->tangential = half * powers.tangential;
+  pair->later_dashpot += rest * powers.dashpot;
+  pair->later_tangential += rest * powers.tangential;
+  if (pair->largest > largest) work->lost = hysteresis_loss(pair, largest);
+  work->beyond_limit |= !(pair->overlap <= pair->law.limit) && !pair->parting;
+}
+
+bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                     scree_frame *relative, scree_pair_work *work) {
   const scree_list_state before = pair->list;
   const bool slept = pair->asleep;
-  *work = (scree_pair_work){0};
-  if (pair->touching) add_later_work(world, pair, work);
-  scree_frame relative;
-  pair->list.travel = relate(world, pair, &relative) * world->time_step;
+  scree_frame own[2];
+  take_places(world, pair, own, scratch);
+  *work = (scree_pair_work){.later_dashpot = pair->later_dashpot,
+                            .later_tangential = pair->later_tangential};
+  if (pair->touching) add_later_work(world, pair, scratch, work);
+  double speed = relate(world, pair, scratch, relative);
+  pair->list.travel = speed * world->time_step;
   pair->list.path +=
-      slept ? slept_path(world, pair, scratch->neighbours, &relative) : pair->list.travel;
+      slept ? slept_path(world, pair, scratch->neighbours, relative) : speed * scratch->drift;
   pair->asleep = false;
-  if (!prepare(world, pair, &relative, scratch)) {
+  if (!prepare(world, pair, relative, scratch)) {
     pair->list = before;
     pair->asleep = slept;
     return false;
   }
   work->too_fast = passes_unseen(world, pair);
+  pair->later_dashpot = pair->later_tangential = 0;
   scratch->touches.count = 0;
-  bool some_sleep = visit_items(world, pair, &relative, scratch);
-  bool parting = pair->parting;
-  scree_pair_feel_depths(world, pair, &relative, scratch, work);
-  clear_results(pair);
-  double largest = pair->largest;
-  scree_powers powers = scree_pair_apply_law(world, pair, &scratch->touches, &relative);
+  bool some_sleep = visit_items(world, pair, relative, scratch);
+  scratch->substeps = scree_substep_count(world, pair, relative, scratch);
+  scratch->step = world->time_step / scratch->substeps;
+  press(world, pair, relative, scratch, work);
   if (some_sleep) settle_items(pair, scratch);
+  return true;
+}
+
+void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                             scree_pair_work *work) {
+  scree_pair_work part = {0};
+  scree_frame relative;
+  if (pair->touching) add_later_work(world, pair, scratch, &part);
+  pair->list.travel = relate(world, pair, scratch, &relative) * scratch->drift;
+  pair->list.path += pair->list.travel;
+  scratch->touches.count = 0;
+  visit_items(world, pair, &relative, scratch);
+  press(world, pair, &relative, scratch, &part);
+  pair->later_dashpot += part.later_dashpot + part.dashpot - part.lost - part.let_go;
+  pair->later_tangential += part.later_tangential + part.tangential;
+  work->begins_parting |= part.begins_parting;
+  work->beyond_limit |= part.beyond_limit;
+}
+
+bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                         scree_pair_work *work) {
+  scree_frame relative;
+  if (!scree_pair_look(world, pair, scratch, &relative, work)) return false;
+  if (scratch->substeps > 1 || pair->substeps > 1) scree_pair_follow(world, pair, scratch, work);
   if (!scree_pair_stays_awake(pair)) fall_asleep(world, pair, scratch->neighbours, &relative);
-  if (!pair->touching) return true;
-  work->begins_parting = pair->parting && !parting;
-  double half = 0.5 * world->time_step;
-  work->dashpot = half * powers.dashpot;
-  work->tangential = half * powers.tangential;
-  if (pair->largest > largest) work->lost = hysteresis_loss(pair, largest);
-  double overlap = pair->parting ? scree_min(pair->overlap, pair->depth) : pair->overlap;
-  work->beyond_limit = !(overlap <= pair->law.limit);
   return true;
 }

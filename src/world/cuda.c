@@ -7,8 +7,12 @@
  * with its own broad phase where they do not. A pair that finds too little room in a pool stops the
  * step: the host lets the pools grow, and it is evaluated again (world.h, scree_pools). */
 #include "world/backend.h"
+#include "world/broad.h"
+#include "world/contact.h"
 #include "world/cuda_driver.h"
+#include "world/pairs.h"
 #include "world/stages.h"
+#include "world/walls.h"
 
 #include "base/alloc.h"
 #include "base/array.h"

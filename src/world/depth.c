@@ -10,13 +10,14 @@
  *
  * How far a point is from a surface changes by no more than its own way, so that every sample along
  * an edge tells how far to go on. */
-#include "world/world.h"
+#include "world/contact.h"
 
 #include "particle/closest.h"
 
 /* Bodies that lie deeper in each other from the start, of the limit, are refused. */
 static const double start_share = 0.05;
 static const double near_share = 0.25;   /* of the roundings: depths are asked for from here on */
+static const double apart_share = 0.9;   /* of the roundings: bodies that part are apart */
 static const double stride_share = 0.25; /* of the depth, while an edge is gone along */
 static const double least_stride = 1.0 / 64; /* of the edge's way within the other's box */
 static const double flat_bend = 1e-12;       /* of slopes along an edge */
@@ -288,15 +289,16 @@ static void note_start(const scree_pair *pair, double depth, scree_pair_work *wo
 void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                             scree_scratch *scratch, scree_pair_work *work) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
+  if (!b || !a->face_count || !b->face_count) pair->parting = false; /* no depth is known */
   if (!b) return;
   bool new = scree_pair_is_new(pair);
   if (new) note_start(pair, start_depth(world, pair, relative), work);
   if (!a->face_count || !b->face_count) return;
   double near = near_share * pair->law.reach,
          far = near + 2 * pair->list.travel - pair->law.reach - pair->law.smoothing;
-  if (!scratch->any_inside && !(pair->depth > 0) && !new && scratch->least_gap >= far) {
+  if (!pair->parting && !scratch->any_inside && !(pair->depth > 0) && !new &&
+      scratch->least_gap >= far) {
     pair->depth = -INFINITY; /* cores that were apart meet at features, of which none is near */
-    pair->parting = false;
     return;
   }
   scree_smooth_maximum felt = felt_overlap(world, pair, &scratch->touches);
@@ -307,12 +309,17 @@ void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const sc
     pair->depth += pair->list.travel;
     return;
   }
-  double least = pair->parting ? 0 : scree_min(above - near, 0.5 * above);
+  /* once they are pushed apart, until their springs would hardly press */
+  bool pushed = vec3_norm2(pair->way) > 0;
+  double apart = pushed ? -apart_share * pair->law.reach : 0,
+         least = pair->parting ? apart : scree_min(above - near, 0.5 * above);
   pair->depth = scree_touch_depths(world, pair, relative, least, scratch);
   scratch->depth_queries++;
   if (new) note_start(pair, pair->depth, work);
-  if (!pair->parting || pair->depth > 0) return;
+  if (!pair->parting || pair->depth > apart) return;
   pair->parting = false;
+  pair->parted = true;
+  pair->way = (vec3){0, 0, 0};
   start_anew(pair, scratch);
-  work->let_go = pair->elastic; /* of the last step */
+  work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
 }

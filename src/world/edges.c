@@ -18,7 +18,7 @@
  *
  * A crossing that begins to count other than at its ends does so from nothing, or from what the
  * pair has already: what is more is held back, until the edges are apart. */
-#include "world/world.h"
+#include "world/contact.h"
 
 #include "particle/closest.h"
 

@@ -3,20 +3,32 @@
  * rounding: L += tau dt,   q_h = q exp(dt/2 I^-1 R(q)^T L),   q = q exp(dt I^-1 R(q_h)^T L), a
  * midpoint rule in the body's frame (compare Buss 2000, "Accurate and efficient simulation of
  * rigid-body rotations", and Dullweber et al. 1997 for the splitting it stands beside). */
+#include "world/integrate.h"
 #include "world/stages.h"
+#include "world/walls.h"
 
 #include "base/parallel.h"
 
 enum { BODY_BLOCK = 128 };
 
 /* I^-1 R^T momentum: angular velocity in the body's frame. */
-static vec3 local_spin(vec3 inertia, const mat3 *rotation, vec3 momentum) {
+vec3 scree_local_spin(vec3 inertia, const mat3 *rotation, vec3 momentum) {
   vec3 local = mat3_tmul_vec(rotation, momentum);
   return (vec3){local.x / inertia.x, local.y / inertia.y, local.z / inertia.z};
 }
 
 vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, vec3 momentum) {
-  return mat3_mul_vec(rotation, local_spin(bodies->inertia[i], rotation, momentum));
+  return mat3_mul_vec(rotation, scree_local_spin(bodies->inertia[i], rotation, momentum));
+}
+
+quat scree_half_turned(const quat *q, vec3 turn, double dt) {
+  return quat_mul(*q, quat_from_rotation_vector(vec3_scale(turn, 0.5 * dt)));
+}
+
+quat scree_turned(const quat *q, vec3 turn, vec3 inertia, vec3 momentum, double dt) {
+  mat3 half = quat_to_mat3(scree_half_turned(q, turn, dt));
+  turn = scree_local_spin(inertia, &half, momentum);
+  return quat_unit(quat_mul(*q, quat_from_rotation_vector(vec3_scale(turn, dt))));
 }
 
 /* Of the sides of bodies [begin, end) those that touch, and where each body's end. Without
@@ -74,7 +86,7 @@ static double coming_travel(scree_world *world, size_t i) {
   vec3 g = vec3_load(world->options.gravity);
   vec3 v = vec3_mad(frame->velocity, vec3_mad(g, b->force[i], 1 / b->mass[i]), dt);
   vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
-  b->turn[i] = local_spin(b->inertia[i], &frame->rotation, momentum);
+  b->turn[i] = scree_local_spin(b->inertia[i], &frame->rotation, momentum);
   return (vec3_norm(v) + fastest_point(b->turn[i], &b->particle[i]->box)) * dt;
 }
 
@@ -151,11 +163,8 @@ void scree_advance_body(scree_world *world, size_t i) {
   frame->position = vec3_mad(frame->position, frame->velocity, dt);
   vec3 momentum = vec3_mad(b->momentum[i], b->torque[i], dt);
   quat q = b->orientation[i];
-  quat half = quat_mul(q, quat_from_rotation_vector(vec3_scale(b->turn[i], 0.5 * dt)));
-  mat3 rotation = quat_to_mat3(half);
-  vec3 turn = local_spin(b->inertia[i], &rotation, momentum);
-  q = quat_unit(quat_mul(q, quat_from_rotation_vector(vec3_scale(turn, dt))));
-  rotation = quat_to_mat3(q);
+  q = scree_turned(&q, b->turn[i], b->inertia[i], momentum, dt);
+  mat3 rotation = quat_to_mat3(q);
   b->momentum[i] = momentum;
   b->orientation[i] = q;
   frame->rotation = rotation;

@@ -1,7 +1,7 @@
 /* The last good state of a run that fails: a checkpoint in memory, made anew every so many steps
  * and written when a step leaves the model's range. It is older than the failure, since the failing
  * step has already changed the contacts' memory; being exact, it leads there again. */
-#include "world/world.h"
+#include "world/checkpoint.h"
 
 #include "base/alloc.h"
 #include "base/seal.h"

@@ -11,7 +11,8 @@
  * kept), so that energy is only ever lost.
  * Hysteretic: F = K m on first loading, K/e^2 (m - m0) below the largest m, m0 = (1 - e^2) max m.
  */
-#include "world/world.h"
+#include "world/contact.h"
+#include "world/walls.h"
 
 enum { NEWTON_STEPS = 30, CLOSED_ROUNDS = 3 };
 
@@ -20,6 +21,9 @@ static const double most_slopes[2] = {3, 1};
 /* Bodies part where the normals' mean by shares and levers is shorter than this: */
 static const double pinched_net = 0.35;
 static const double parting_speed = 0.1; /* m/s, at most */
+/* Of the reduced mass, taken in a step: a corner's is up to seven times smaller, and no more than
+ * all may be. */
+static const double parting_damping = 0.1;
 
 static const double resolved_share = 0.01; /* of the roundings in a step */
 
@@ -158,7 +162,7 @@ typedef struct slider {
 static const double impact_lead = 1, lasting_lead = -0.5; /* of u to u + a dt/2 */
 
 static slider make_slider(const scree_world *world, const scree_pair *pair,
-                          const scree_frame *relative) {
+                          const scree_frame *relative, double drift) {
   double ratio = world->options.tangential_ratio, lasts = lasting(pair),
          lead = impact_lead + (lasting_lead - impact_lead) * lasts;
   vec3 velocity = vec3_sub(relative->velocity_now, relative->velocity),
@@ -166,7 +170,7 @@ static slider make_slider(const scree_world *world, const scree_pair *pair,
   slider law = {.stiffness = pair->law.stiffness * ratio,
                 .damping = lasts * pair->law.damping * sqrt(ratio),
                 .friction = pair->law.friction,
-                .time_step = world->time_step,
+                .time_step = drift,
                 .velocity = vec3_mad(relative->velocity, velocity, lead),
                 .spin = vec3_mad(relative->spin, spin, lead)};
   const scree_world_wall *wall = pair->wall ? &world->walls.items[pair->b] : NULL;
@@ -219,8 +223,8 @@ static void add_load(scree_load *load, vec3 direction, vec3 arm, double size) {
 /* Most that steps resolve of the slope of a blend or of a fading weight, which lets go of much of
  * the overlap in a small part of the way: the force must move the bodies by little of that way in a
  * step, by K m dt^2/m* = (pi dt/contact time)^2 m. */
-static double resolved_slope(const scree_world *world, const scree_pair *pair) {
-  double turn = 3.14159265358979323846 * world->time_step / pair->law.contact_time;
+static double resolved_slope(const scree_pair *pair, double step) {
+  double turn = 3.14159265358979323846 * step / pair->law.contact_time;
   return resolved_share * pair->law.reach / (pair->overlap * turn * turn);
 }
 
@@ -272,9 +276,9 @@ static void fade(double spring, double by_weight, double most, scree_touch *touc
   sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(touch->at, force));
 }
 
-/* Where the touches hold the bodies against each other these are to part. So they are where
- * features alone cancel and the contact lasts, deeper than references count from: the next step
- * asks for the depth. */
+/* Where the touches hold the bodies against each other these are to part, from the next step on. So
+ * they are where features alone cancel and the contact lasts, deeper than references count from:
+ * the next step asks for the depth. */
 static void judge(scree_pair *pair, const scree_touch_list *touches) {
   vec3 net = {0, 0, 0};
   double total = 0, of_depth = 0;
@@ -290,52 +294,17 @@ static void judge(scree_pair *pair, const scree_touch_list *touches) {
   if (of_depth == 0) pair->depth = -INFINITY;
 }
 
-/* A force of a dashpot's kind: its work is dissipated, or won, with theirs. */
-static void push(const scree_frame *relative, vec3 at, vec3 way, double force, load_sums *sums) {
-  vec3 arm = vec3_cross(at, way), v = vec3_add(relative->velocity, vec3_cross(relative->spin, at));
-  add_load(&sums->normal, way, arm, force);
-  add_load(&sums->dashpot, way, arm, force);
-  sums->dashpot_power += force * vec3_dot(v, way);
-}
-
-/* Edges that lie in each other may each be nearest to a way out that is the other's way in. Then
- * the bodies go apart along the area vector of their seam, no faster than `parting_speed`, and what
- * holds them against it lets go, until nothing lies inside. */
-static void part(const scree_world *world, scree_pair *pair, double spring, const slider *law,
-                 scree_touch_list *touches, const scree_frame *relative, load_sums *sums) {
-  vec3 way = scree_way_apart(world, pair, relative), at = {0, 0, 0};
-  if (!(vec3_norm2(way) > 0)) return;
-  way = vec3_unit(way);
-  double total = 0;
-  for (size_t i = 0; i < touches->count; i++) {
-    scree_touch *touch = &touches->items[i];
-    total += touch->share;
-    at = vec3_mad(at, touch->at, touch->share);
-    bool holds = touch->of_depth || vec3_dot(touch->normal, way) < 0;
-    if (!(touch->share > 0) || !holds) continue;
-    double elastic = touch->share * touch->lever * spring;
-    push(relative, touch->at, touch->normal, -elastic, sums);
-    touch->force = vec3_mad(touch->force, touch->normal, -elastic);
-  }
-  if (!(total > 0)) return;
-  at = vec3_scale(at, 1 / total);
-  vec3 seen = vec3_add(law->velocity, vec3_cross(law->spin, at));
-  double slow = 1 - vec3_dot(seen, way) / parting_speed,
-         most = scree_min(spring, pair->law.stiffness * (pair->depth + pair->law.reach));
-  push(relative, at, way, most * (slow < 0 ? 0 : slow > 1 ? 1 : slow), sums);
-}
-
 /* Rolling resistance (Ai and others 2011, type C): a spring and dashpot against the relative
  * turning about axes along the surface, as the tangential ones against sliding: the couple is at
  * most mu_r R times the normal force. */
-static void roll(const scree_world *world, scree_pair *pair, const slider *sliding,
-                 const scree_frame *relative, double *energy, load_sums *sums) {
+static void roll(scree_pair *pair, const slider *sliding, const scree_frame *relative,
+                 double *energy, load_sums *sums) {
   double arm = pair->law.rolling, size = vec3_norm(sums->normal.force);
   if (!(arm > 0 && size > 0)) return;
   const slider law = {.stiffness = 2.25 * pair->law.stiffness * arm * arm,
                       .damping = pair->law.rolling_damping,
                       .friction = arm,
-                      .time_step = world->time_step};
+                      .time_step = sliding->time_step};
   vec3 n = vec3_scale(sums->normal.force, 1 / size),
        turning = vec3_mad(relative->spin, n, -vec3_dot(relative->spin, n)),
        seen = vec3_mad(sliding->spin, n, -vec3_dot(sliding->spin, n));
@@ -357,8 +326,8 @@ static scree_kept_load kept_load(const scree_load *load) {
                            {(float)m.x, (float)m.y, (float)m.z}};
 }
 
-static void store_loads(const scree_world *world, scree_pair *pair, const load_sums *sums) {
-  const scree_frame *a = &world->bodies.frame[pair->a], *b = scree_pair_frame_b(world, pair);
+static void store_loads(const scree_scratch *scratch, scree_pair *pair, const load_sums *sums) {
+  const scree_frame *a = scratch->a, *b = scratch->b;
   scree_load normal = turned(&sums->normal, &b->rotation);
   scree_load dashpot = turned(&sums->dashpot, &b->rotation);
   scree_load tangential = turned(&sums->tangential, &b->rotation);
@@ -370,26 +339,81 @@ static void store_loads(const scree_world *world, scree_pair *pair, const load_s
   pair->wrench = (scree_wrench){force, vec3_sub(moment, vec3_cross(arm, force)), vec3_neg(moment)};
 }
 
+/* The way in which bodies part: that of their seam's area when they begin to, kept in the frame of
+ * b until they are apart. Of a body that pierces a wall the areas where it enters and leaves
+ * cancel, and what is left points here and there from step to step. */
+static vec3 way_of_parting(const scree_world *world, scree_pair *pair,
+                           const scree_frame *relative) {
+  if (vec3_norm2(pair->way) > 0) return pair->way;
+  pair->way = vec3_unit(scree_way_apart(world, pair, relative));
+  if (vec3_norm2(pair->way) == 0) pair->way = vec3_unit(relative->position);
+  if (vec3_norm2(pair->way) == 0) pair->way = (vec3){0, 0, 1};
+  return pair->way;
+}
+
+/* Where bodies that part are pushed. */
+static vec3 place_of_push(const scree_world *world, const scree_pair *pair,
+                          const scree_touch_list *touches, const scree_frame *relative) {
+  vec3 sum = {0, 0, 0};
+  double total = 0;
+  for (size_t i = 0; i < touches->count; i++) {
+    double weight = touches->items[i].overlap + pair->law.smoothing;
+    touches->items[i].anchor->share = 0;
+    sum = vec3_mad(sum, touches->items[i].at, weight);
+    total += weight;
+  }
+  if (total > 0) return vec3_scale(sum, 1 / total);
+  return scree_pair_smaller_is_a(world, pair) ? relative->position : (vec3){0, 0, 0};
+}
+
+/* Edges that lie in each other may each be nearest to a way out that is the other's way in. Then no
+ * feature counts: the bodies are brought to `parting_speed` along one way, by no more than a spring
+ * as deep as they are would press with. */
+static scree_powers part(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                         scree_scratch *scratch) {
+  vec3 at = place_of_push(world, pair, &scratch->touches, relative),
+       way = way_of_parting(world, pair, relative), arm = vec3_cross(at, way);
+  pair->touching = true;
+  pair->contact_count = 1;
+  pair->age += scratch->drift;
+  pair->largest = 0;
+  pair->rolled = (vec3){0, 0, 0};
+  pair->overlap = scree_max(0, pair->depth + pair->law.reach);
+  slider law = make_slider(world, pair, relative, scratch->drift);
+  vec3 seen = vec3_add(law.velocity, vec3_cross(law.spin, at)),
+       v = vec3_add(relative->velocity, vec3_cross(relative->spin, at));
+  double pace = pair->law.contact_time / 3.14159265358979323846,
+         mass = pair->law.stiffness * pace * pace,
+         brake = parting_damping * mass / world->time_step * (parting_speed - vec3_dot(seen, way)),
+         force = scree_min(pair->law.stiffness * pair->overlap, brake < 0 ? 0 : brake);
+  load_sums sums = {0};
+  add_load(&sums.normal, way, arm, force);
+  sums.dashpot = sums.normal;
+  store_loads(scratch, pair, &sums);
+  return (scree_powers){force * vec3_dot(v, way), 0};
+}
+
 scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
-                                  scree_touch_list *touches, const scree_frame *relative) {
+                                  const scree_frame *relative, scree_scratch *scratch) {
+  scree_touch_list *touches = &scratch->touches;
   scree_smooth_maximum maximum;
+  if (pair->parting) return part(world, pair, relative, scratch);
   if (touches->count == 0 || !find_overlap(world, pair, touches, &maximum)) {
     for (size_t i = 0; i < touches->count; i++) touches->items[i].anchor->share = 0;
     pair->largest = pair->age = 0;
     pair->rolled = (vec3){0, 0, 0};
-    pair->parting = false;
     return (scree_powers){0, 0};
   }
   pair->touching = true;
-  pair->age += world->time_step;
+  pair->age += scratch->drift;
   pair->overlap = maximum.value;
   double spring = spring_force(world, pair, maximum.value), energy = 0;
-  slider law = make_slider(world, pair, relative);
+  slider law = make_slider(world, pair, relative, scratch->drift);
   load_sums sums;
   sums.normal = sums.dashpot = sums.tangential = (scree_load){{0, 0, 0}, {0, 0, 0}};
   sums.dashpot_power = sums.tangential_power = sums.pressed = 0;
   uint32_t contacts = 0;
-  double resolved = resolved_slope(world, pair);
+  double resolved = resolved_slope(pair, scratch->step);
   for (size_t i = 0; i < touches->count; i++) {
     scree_touch *touch = &touches->items[i];
     double above = touch->overlap - maximum.cutoff;
@@ -405,12 +429,11 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
       touch->anchor->share = 0;
     }
   }
-  if (!pair->parting) judge(pair, touches);
-  if (pair->parting && pair->depth > 0) part(world, pair, spring, &law, touches, relative, &sums);
-  roll(world, pair, &law, relative, &energy, &sums);
+  judge(pair, touches);
+  roll(pair, &law, relative, &energy, &sums);
   pair->contact_count = contacts;
   pair->tangential_elastic = energy;
   pair->elastic += energy;
-  store_loads(world, pair, &sums);
+  store_loads(scratch, pair, &sums);
   return (scree_powers){sums.dashpot_power, sums.tangential_power};
 }

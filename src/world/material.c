@@ -4,7 +4,8 @@
  * cut off at zero (Schwager and Poeschel 2007, Granular Matter 9, 465, eq. 20 to 22), with w =
  * sqrt(|1 - eta^2|): eta < 1:  e = exp(-eta/w (pi - atan2(2 eta w, 1 - 2 eta^2))) eta > 1:  e =
  * exp(-eta/w ln((eta + w)/(eta - w))) e falls monotonically with eta, so bisection finds it. */
-#include "world/world.h"
+#include "world/materials.h"
+#include "world/pairs.h"
 
 scree_material scree_default_material(void) {
   return (scree_material){.stiffness = 1e8, .density = 2000, .restitution = 0.3, .friction = 0.5};

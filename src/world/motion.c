@@ -8,7 +8,7 @@
  * the derivative, and nothing drifts however long it runs. The frame's velocity and spin are the
  * means over the last drift, as those of bodies are: springs stretch and the ledger counts by them.
  */
-#include "world/world.h"
+#include "world/walls.h"
 
 #include "base/array.h"
 

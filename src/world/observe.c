@@ -1,6 +1,6 @@
 /* Observables. Forces belong to positions x_n, velocities run half a step behind, so the state is
  * brought back to the last force evaluation: x_n = x - v dt, v_n = v - (F/m + g) dt/2. */
-#include "world/world.h"
+#include "world/integrate.h"
 
 #include "base/file.h"
 #include "base/sum.h"
@@ -33,13 +33,31 @@ static void add_body(const scree_world *world, size_t i, double dt, energy_sums 
   sums->speed = scree_max(sums->speed, vec3_norm(v));
 }
 
-static void add_pairs(const scree_world *world, scree_observation *o) {
+/* Of a body in a pair that was followed in sub-steps: its motion has more than the step's mean. */
+static void add_motion_ahead(const scree_world *world, size_t i, vec3 impulse, vec3 moment,
+                             energy_sums *sums) {
+  const scree_bodies *b = &world->bodies;
+  double dt = world->time_step, m = b->mass[i];
+  vec3 g = vec3_load(world->options.gravity);
+  vec3 v = vec3_mad(b->frame[i].velocity, vec3_mad(g, b->force[i], 1 / m), -0.5 * dt),
+       l = vec3_mad(b->momentum[i], b->torque[i], -0.5 * dt);
+  const mat3 *rotation = &b->frame[i].rotation;
+  vec3 spin = scree_spin_of(b, i, rotation, l), change = scree_spin_of(b, i, rotation, moment);
+  scree_sum_add(&sums->kinetic, vec3_dot(v, impulse) + 0.5 * vec3_norm2(impulse) / m);
+  scree_sum_add(&sums->rotational, vec3_dot(spin, moment) + 0.5 * vec3_dot(change, moment));
+}
+
+static void add_pairs(const scree_world *world, scree_observation *o, energy_sums *sums) {
   scree_sum elastic = {0};
   size_t body_sides = 0;
   for (size_t k = 0; k < world->neighbours.count; k++) {
     const scree_pair *pair = scree_pair_of(world, k);
     if (!pair || !pair->touching || scree_pair_is_removed(world, pair)) continue;
     scree_sum_add(&elastic, pair->elastic);
+    const scree_wrench *ahead = &pair->ahead;
+    if (pair->followed) add_motion_ahead(world, pair->a, ahead->force, ahead->torque_a, sums);
+    if (pair->followed && !pair->wall)
+      add_motion_ahead(world, pair->b, vec3_neg(ahead->force), ahead->torque_b, sums);
     o->pair_count++;
     o->contact_count += pair->contact_count;
     body_sides += pair->wall ? 1 : 2;
@@ -71,7 +89,7 @@ void scree_world_observe(const scree_world *world, scree_observation *observatio
     o.body_count++;
     add_body(world, i, dt, &sums);
   }
-  add_pairs(world, &o);
+  add_pairs(world, &o, &sums);
   o.kinetic = scree_sum_value(sums.kinetic);
   o.rotational = scree_sum_value(sums.rotational);
   o.potential = scree_sum_value(sums.potential);

@@ -1,6 +1,8 @@
 /* Neighbours are made by the broad phase and kept while two bounding boxes are near; pairs while
  * they are awake. Pairs are recycled with their places for items. */
-#include "world/world.h"
+#include "world/contact.h"
+#include "world/materials.h"
+#include "world/pairs.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
@@ -101,7 +103,8 @@ void scree_pair_begin(scree_pair *pair, const scree_neighbours *n, uint32_t inde
                        .active = place,
                        .neighbours = index,
                        .law = n->law,
-                       .depth = -INFINITY};
+                       .depth = -INFINITY,
+                       .substeps = 1};
 }
 
 void scree_pair_end(const scree_pair *pair, scree_neighbours *n) {
@@ -253,8 +256,9 @@ bool scree_copy_pair(const scree_world *world, const scree_pair *pair, scree_pai
 bool scree_evaluate_copy(const scree_world *world, scree_pair_copy *copy) {
   for (;;) {
     scree_pair_work work;
+    scree_frame relative;
     scree_take_in_hand(&copy->scratch, &copy->pools, &copy->pair, &copy->neighbours);
-    if (scree_pair_evaluate(world, &copy->pair, &copy->scratch, &work)) return true;
+    if (scree_pair_look(world, &copy->pair, &copy->scratch, &relative, &work)) return true;
     if (!SCREE_RESERVE(&copy->scratch.touches, copy->scratch.touches_needed) ||
         !scree_pools_grow(&copy->pools, &copy->pair, 1, &copy->neighbours, 1))
       return false;

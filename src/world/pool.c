@@ -1,6 +1,7 @@
 /* Pools: the lists of all pairs in one array a kind. Lists double as they grow and leave their old
  * places behind; packing them anew is both how a pool grows and how it is swept. */
-#include "world/world.h"
+#include "world/contact.h"
+#include "world/pairs.h"
 
 #include "base/alloc.h"
 

@@ -10,17 +10,20 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/seal.h"
-#include "world/world.h"
+#include "world/broad.h"
+#include "world/checkpoint.h"
+#include "world/contact.h"
+#include "world/pairs.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 11};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 12};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
                    (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
-                    sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 384 &&
+                    sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 640 &&
                     sizeof(scree_neighbours) == 264 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
@@ -222,6 +225,9 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   scree_code_bool(c, &p->asleep);
   scree_code_bool(c, &p->touching);
   scree_code_bool(c, &p->parting);
+  scree_code_bool(c, &p->parted);
+  scree_code_bool(c, &p->followed);
+  double since = p->elastic_since;
   double *reals[] = {&n->law.stiffness,
                      &n->law.damping,
                      &n->law.friction,
@@ -245,10 +251,22 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
                      &p->age,
                      &p->overlap,
                      &p->largest,
-                     &p->depth};
+                     &p->depth,
+                     &p->kick,
+                     &p->later_dashpot,
+                     &p->later_tangential,
+                     &since};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  p->elastic_since = (float)since;
   scree_code_vec3(c, &p->rolled);
+  scree_code_vec3(c, &p->way);
   code_wrench(c, &p->wrench);
+  code_wrench(c, &p->owed);
+  code_wrench(c, &p->ahead);
+  uint32_t substeps = p->substeps;
+  scree_code_u32(c, &substeps);
+  if (substeps < 1 || substeps > SCREE_MOST_SUBSTEPS) c->failed = true;
+  p->substeps = (uint8_t)substeps;
   code_load(c, &p->dashpot);
   code_load(c, &p->tangential);
   uint64_t contacts = p->contact_count;
@@ -707,7 +725,7 @@ static void load_items(loader *l, scree_pair *pair) {
   scree_range *sleepers = &l->world->neighbours.items[pair->neighbours].sleeping;
   uint32_t active = pair->active.count, sleeping = sleepers->count;
   pair->active.count = sleepers->count = 0;
-  bool awake = active > 0 || pair->depth > 0;
+  bool awake = active > 0 || pair->depth > 0 || pair->parting || pair->substeps > 1;
   if ((pair->asleep || pair->touching) && pair->asleep == awake) l->codec.failed = true;
   if (!good(l)) return;
   if (!make_room(l, pair, active, sleeping)) l->codec.out_of_memory = true;

@@ -4,7 +4,7 @@
  * the surfaces cross. Its area as a vector is sum of p x q/2 over the seam's segments from p to q,
  * whatever surface the seam bounds, and it is the gradient of the common volume by a's place:
  * moved along it, a leaves b the fastest. */
-#include "world/world.h"
+#include "world/contact.h"
 
 typedef struct triangle {
   vec3 corner[3], normal;

@@ -4,7 +4,7 @@
 #ifndef SCREE_WORLD_STAGES_H
 #define SCREE_WORLD_STAGES_H
 
-#include "world/world.h"
+#include "world/contact.h"
 
 enum { SCREE_PAIR_BLOCK = 128 }; /* neighbours: whole words of world->touching */
 

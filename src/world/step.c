@@ -2,13 +2,21 @@
  * block adds up is combined in block order, and every body sums its pairs in list order, so the
  * result does not depend on the threads. */
 #include "world/backend.h"
+#include "world/broad.h"
+#include "world/checkpoint.h"
+#include "world/contact.h"
+#include "world/integrate.h"
+#include "world/materials.h"
+#include "world/pairs.h"
 #include "world/stages.h"
+#include "world/walls.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 
+#include <stddef.h>
 #include <string.h>
 
 /* Several blocks are gone through at once where there are many, for at the beginning nothing was
@@ -31,7 +39,7 @@ size_t scree_list_awake(const scree_world *world, size_t begin, size_t end, uint
 SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
   const scree_pair *pair = scree_pair_of(world, k);
   if (pair)
-    scree_prefetch(pair, sizeof(scree_pair));
+    scree_prefetch(pair, offsetof(scree_pair, way));
   else
     scree_prefetch(&world->neighbours.items[k], sizeof(scree_neighbours));
   size_t b = world->slots.items[k].b;

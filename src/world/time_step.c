@@ -5,7 +5,7 @@
  * mass m, over all pairs of
  * kinds of body and of kind of body and wall. A hit on a corner feels an effective mass up to seven
  * times smaller than m, which N = 15 still resolves. */
-#include "world/world.h"
+#include "world/materials.h"
 
 static const double pi = 3.14159265358979323846;
 

@@ -13,7 +13,8 @@
  *
  * Cached faces: the nearest faces of a point stay the nearest while its path is under half the
  * distance to the next one. */
-#include "world/world.h"
+#include "world/contact.h"
+#include "world/walls.h"
 
 #include "particle/closest.h"
 
@@ -221,8 +222,8 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   }
   double d = sqrt(best2);
   bool outside = vec3_dot(offset, outward) >= 0;
-  if (!item->has_reference && !outside && surface->measures.volume > 0)
-    outside = !scree_is_inside(surface, p); /* a fold may lie: ask the whole surface */
+  /* where the core of a thin shape is folded its pseudonormals lie: ask the whole surface */
+  if (!outside && surface->measures.volume > 0) outside = !scree_is_inside(surface, p);
   bool deep = !outside || d < 0.5 * pair->law.reach;
   /* out on the other side of a wall that is thinner than the overlap: held while it is behind it */
   bool pierced = !deep && item->inside && vec3_dot(outward, item->reference) < 0;

@@ -1,6 +1,7 @@
 /* Contacts for reports: every pair is evaluated once more at the present positions on a copy of its
  * memory, so that looking changes nothing. */
-#include "world/world.h"
+#include "world/contact.h"
+#include "world/pairs.h"
 
 #include "base/alloc.h"
 

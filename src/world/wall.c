@@ -3,7 +3,7 @@
  * A wall's frame has its origin in `position` and its z axis along `axis`. Distances are signed,
  * positive on the side of the bodies. A plane is solid behind; discs and cylinders are sheets, met
  * from either side: a point belongs to the side where it was last seen clear of the sheet. */
-#include "world/world.h"
+#include "world/walls.h"
 
 #include "base/array.h"
 

@@ -1,6 +1,9 @@
 /* Making worlds and what is in them. */
-#include "world/world.h"
 #include "world/backend.h"
+#include "world/broad.h"
+#include "world/contact.h"
+#include "world/materials.h"
+#include "world/pairs.h"
 
 #include "base/alloc.h"
 #include "base/array.h"

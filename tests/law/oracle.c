@@ -9,7 +9,8 @@
 #include "particle/closest.h"
 #include "support/shapes.h"
 #include "support/solids.h"
-#include "world/world.h"
+#include "world/contact.h"
+#include "world/pairs.h"
 
 #include <stdlib.h>
 

@@ -1,10 +1,10 @@
 /* The broad phase against all pairs: bodies and a mesh wall, sizes over three decades, at rest and
  * in flight. Listed must be whoever's boxes meet, and nobody whose boxes are farther apart than the
  * margin. */
+#include "world/broad.h"
 #include "base/rng.h"
 #include "support/check.h"
 #include "support/shapes.h"
-#include "world/world.h"
 
 #include "particle/closest.h"
 

@@ -5,7 +5,7 @@
 #include "support/check.h"
 #include "support/folder.h"
 #include "support/mixed.h"
-#include "world/world.h"
+#include "world/checkpoint.h"
 
 #include <unistd.h>
 

@@ -4,7 +4,7 @@
 
 #include "base/rng.h"
 #include "particle/closest.h"
-#include "world/world.h"
+#include "world/contact.h"
 
 /* sum w (o - t)+^2 - l^2 at t. */
 static double equation(const scree_touch *touches, size_t count, double l0, double kappa,

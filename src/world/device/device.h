@@ -3,7 +3,7 @@
 #ifndef SCREE_WORLD_DEVICE_DEVICE_H
 #define SCREE_WORLD_DEVICE_DEVICE_H
 
-#include "world/world.h"
+#include "world/contact.h"
 
 typedef struct scree_device_step {
   uint32_t *counts;      /* of awake neighbours, by block; they lie in world->awake */

@@ -2,6 +2,7 @@
  * loops of step.c and integrate.c call. A kernel returns at once where an earlier one of the same
  * step stopped it. Every element is written by the one thread that has it; several threads meet
  * only at counters, whose order shows nowhere. */
+#include "world/contact.h"
 #include "world/device/device.h"
 #include "world/stages.h"
 

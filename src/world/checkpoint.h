@@ -1,0 +1,27 @@
+/* Checkpoints, and the last good state of a run that fails. */
+#ifndef SCREE_WORLD_CHECKPOINT_H
+#define SCREE_WORLD_CHECKPOINT_H
+
+#include "world/world.h"
+
+/* save.c: a checkpoint's bytes, free with scree_free; and back, `name` for messages. */
+scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, size_t *byte_count,
+                              scree_error *error);
+/* The same within a larger file: its count of bytes, and the bytes. */
+scree_status scree_world_save_block(scree_codec *codec, const scree_world *world,
+                                    scree_error *error);
+scree_status scree_world_load_block(scree_codec *codec, const char *name, scree_world **world,
+                                    scree_error *error);
+scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, const char *name,
+                                scree_world **world, scree_error *error);
+
+/* keep.c: scree_world_keep for what stands around the world, which outlives it. */
+scree_status scree_world_keep_all(scree_world *world, const char *path, uint64_t step_interval,
+                                  scree_packer *pack, const void *what, scree_error *error);
+bool scree_world_keep_is_due(const scree_world *world);
+/* Packs the state; after a failure writes what was packed last,
+ * and says so in world->failure. */
+scree_status scree_world_keep_state(scree_world *world, scree_error *error);
+void scree_world_write_kept(scree_world *world);
+
+#endif

@@ -1,0 +1,194 @@
+/* A pair's contact: its features, their overlaps, the law, the step of the pair. */
+#ifndef SCREE_WORLD_CONTACT_H
+#define SCREE_WORLD_CONTACT_H
+
+#include "world/world.h"
+
+/* One touching feature, in the frame of b. */
+typedef struct scree_touch {
+  vec3 at, normal; /* normal towards a */
+  double overlap, weight, share;
+  double lever;  /* how much the overlap falls as a moves along the normal */
+  vec3 fading;   /* along which the weight falls as a moves, 1/m */
+  vec3 force;    /* on a */
+  bool of_depth; /* of an edge inside: without friction or memory */
+  scree_anchor *anchor;
+} scree_touch;
+
+typedef struct scree_touch_list {
+  scree_touch *items;
+  size_t count, capacity;
+} scree_touch_list;
+
+/* Scratch of one worker, and where the lists of the pair in hand lie. */
+struct scree_scratch {
+  scree_pools *pools;
+  scree_neighbours *neighbours; /* of the pair */
+  scree_item *items;            /* its awake ones */
+  scree_further *further;
+  scree_touch_list touches;
+  size_t touches_needed; /* by a pair that found too little room */
+  uint64_t item_evaluations, closest_queries, list_builds;
+  uint64_t depth_queries;
+  double candidate_seconds;
+  double least_gap;         /* of the items */
+  const scree_frame *a, *b; /* where the pair's two are */
+  double drift, step;       /* s, of their last drift and of the coming one */
+  uint32_t substeps;        /* of the coming step */
+  bool any_inside;          /* one of them is */
+  scree_anchor no_anchor;
+};
+
+/* What a pair's evaluation adds to the ledger, J, and what is wrong with it. */
+typedef struct scree_pair_work {
+  double later_dashpot, later_tangential; /* second half of the last step */
+  double dashpot, tangential;             /* first half of this */
+  double lost;                            /* in the hysteretic spring */
+  double let_go;                          /* by springs whose references start anew */
+  double start_depth;                     /* in each other from the start, m; 0: none */
+  bool too_fast, beyond_limit, begins_parting;
+} scree_pair_work;
+
+/* pool.c: a larger place for the pair's items, or for the sleepers of the neighbours in hand; false
+ * where the pool has too little room. */
+bool scree_grow_items(scree_scratch *scratch, scree_pair *pair, uint32_t needed);
+bool scree_grow_sleepers(scree_scratch *scratch, uint32_t needed);
+/* Room for the touches of the pair in hand, which are found anew. */
+bool scree_reserve_touches(scree_scratch *scratch, size_t needed);
+static inline bool scree_reserve_items(scree_scratch *scratch, scree_pair *pair, uint32_t needed) {
+  return needed <= pair->active.capacity || scree_grow_items(scratch, pair, needed);
+}
+static inline bool scree_reserve_sleepers(scree_scratch *scratch, uint32_t needed) {
+  return needed <= scratch->neighbours->sleeping.capacity || scree_grow_sleepers(scratch, needed);
+}
+/* Where the pair's lists are; before its evaluation. */
+static inline void scree_take_in_hand(scree_scratch *s, scree_pools *pools, const scree_pair *pair,
+                                      scree_neighbours *neighbours) {
+  s->pools = pools;
+  s->neighbours = neighbours;
+  s->items = pools->items + pair->active.first;
+  s->further = pools->further + pair->active.first;
+}
+/* The sleepers of the neighbours in hand. */
+static inline scree_sleeper *scree_sleepers(const scree_scratch *s) {
+  return s->pools->sleepers + s->neighbours->sleeping.first;
+}
+
+/* Evaluated for the first time, or since a jump. */
+static inline bool scree_pair_is_new(const scree_pair *p) {
+  return p->list.path <= p->list.travel;
+}
+/* How far behind a sheet a point of a new pair may be and still belong to the body's side. */
+static inline double scree_pair_clearance(const scree_pair *p, const scree_particle *a,
+                                          uint32_t point) {
+  return a->point_radii[point] + p->law.smoothing + 0.25 * p->law.thin;
+}
+
+/* How far apart, beyond the roundings, edges may lie that the last step's overlap can make count:
+ * those that come in behind a corner are tapered, and deeper than they are felt. 0 at rest. */
+static inline double scree_pair_claim(const scree_pair *p) {
+  double beyond = p->overlap - p->law.reach;
+  return beyond > 0 ? 2 * beyond : 0;
+}
+
+/* Reach of the lists of slow pairs, m. */
+static inline double scree_pair_skin(const scree_world *w, const scree_pair *p) {
+  return w->options.skin / w->options.smoothing * p->law.smoothing;
+}
+
+/* A list of fast bodies should last this many steps. */
+enum { SCREE_FAST_STEPS = 40 };
+
+/* Whether one that reaches no farther than the skin would not. */
+static inline bool scree_pair_is_fast(const scree_world *w, const scree_pair *p) {
+  return SCREE_FAST_STEPS * p->list.travel > scree_pair_skin(w, p);
+}
+
+/* The smaller body of a pair, whose motion relative to the other is measured, and a ball around it
+ * and a little beyond. */
+static inline bool scree_pair_smaller_is_a(const scree_world *w, const scree_pair *p) {
+  return p->wall || w->bodies.particle[p->a]->measures.bounding_radius <=
+                        w->bodies.particle[p->b]->measures.bounding_radius;
+}
+static inline double scree_pair_radius(const scree_world *w, const scree_pair *p) {
+  uint32_t smaller = scree_pair_smaller_is_a(w, p) ? p->a : p->b;
+  return w->bodies.particle[smaller]->measures.bounding_radius + 4 * scree_pair_skin(w, p);
+}
+
+/* candidates.c: which items could touch within the skin; fills sleeping, keeps active. */
+bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                     scree_scratch *scratch);
+
+/* touch.c: the touching features of one item, appended to touches; returns its gap, the way it must
+ * move before it can touch (0 or less: it does, or nearly). relative: a in the frame of b. */
+double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_item *item,
+                        const scree_frame *relative, scree_scratch *scratch);
+/* A touch between spheres or rounded surfaces: normal n, towards a, from the point c of b. values:
+ * distance of the rounding's centre of a along n, roundings of a and of b, weight. The gap; nothing
+ * is appended, and the anchor forgets, where that is not below 0. */
+double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
+                       const double values[4], scree_anchor *anchor);
+/* edges.c: the same for two edges. */
+double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
+                         const scree_frame *relative, scree_scratch *scratch);
+static inline double scree_smooth_step(double from, double to, double x) {
+  double t = (x - from) / (to - from);
+  t = t < 0 ? 0 : t > 1 ? 1 : t;
+  return t * t * (3 - 2 * t);
+}
+static inline double scree_smooth_slope(double from, double to, double x) {
+  double t = (x - from) / (to - from);
+  return t <= 0 || t >= 1 ? 0 : 6 * t * (1 - t) / (to - from);
+}
+
+/* depth.c: adds touches for edges inside the other body where features may feel less; notes bodies
+ * that lie in each other from the start. */
+void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                            scree_scratch *scratch, scree_pair_work *work);
+/* The edges that lie deeper in the other body than `above`, as touches, the deepest SCREE_DEPTHS of
+ * them; the depth of the deepest, m, or `above`. */
+enum { SCREE_DEPTHS = 32 };
+double scree_touch_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                          double above, scree_scratch *scratch);
+
+/* seam.c: the area of b's surface inside a as a vector, outward, in the frame of b, m2: the way in
+ * which the common volume falls fastest as a moves. 0 where the surfaces do not cross. */
+vec3 scree_way_apart(const scree_world *world, const scree_pair *pair, const scree_frame *relative);
+
+/* The smooth maximum m of overlaps, t, and the denominator of the shares (law.c). */
+typedef struct scree_smooth_maximum {
+  double value, cutoff, denominator;
+} scree_smooth_maximum;
+/* law.c: from the overlaps and weights of touches; false when the pair does not touch. */
+bool scree_solve_smooth_maximum(const scree_touch *touches, size_t count, double l0, double kappa,
+                                scree_smooth_maximum *result);
+
+/* Power of the dashpots and of the tangential forces with the velocities of the last drift. */
+typedef struct scree_powers {
+  double dashpot, tangential;
+} scree_powers;
+/* law.c: smooth maximum, forces, memory. Fills the pair's results. */
+scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
+                                  const scree_frame *relative, scree_scratch *scratch);
+
+/* contact.c: the whole of a pair's step, its lists being in hand. False where a pool, or the
+ * scratch, has too little room: the pair is as before, but for lists that are made again. */
+bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                         scree_pair_work *work);
+/* The contact at the present places, without what follows of it: the first part of the step. */
+bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                     scree_frame *relative, scree_pair_work *work);
+/* The contact in the midst of a step, at the places in scratch; its work is kept in the pair. */
+void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                             scree_pair_work *work);
+
+/* substep.c: into how many parts the coming step is cut for this pair. */
+uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
+                             const scree_frame *relative, const scree_scratch *scratch);
+/* Pose and motion of a, or b, as this pair sees it, which moved it in sub-steps. */
+scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair, bool of_b);
+/* After scree_pair_look: the rest of the step's parts; the wrench is their mean. */
+void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                       scree_pair_work *work);
+
+#endif

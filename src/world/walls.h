@@ -1,0 +1,32 @@
+/* Walls: sides and distances, motions, forces and work. */
+#ifndef SCREE_WORLD_WALLS_H
+#define SCREE_WORLD_WALLS_H
+
+#include "world/world.h"
+
+/* Which side of an analytic wall p (wall frame) is on: 1 in front of the plane or disc, inside the
+ * cylinder; -1 for the other side of a disc or cylinder. */
+double scree_wall_side(const scree_world_wall *wall, vec3 p);
+/* Whether a disc or cylinder lies straight below, above or beside p, not past a rim. */
+bool scree_wall_spans(const scree_world_wall *wall, vec3 p);
+/* The side of a point that is seen for the first time: the centre's, where the sheet spans it and p
+ * is less than `clearance` behind; else its own. */
+double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, double clearance);
+/* Signed distance of p (wall frame) on that side, with the closest point and the normal. */
+double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
+                           vec3 *normal);
+
+bool scree_wall_is_belt(const scree_world_wall *wall);
+/* From now on. */
+void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin);
+/* Forces and torques on walls from the pairs of the last step. */
+void scree_walls_sum_forces(scree_world *world);
+/* The work of walls in this step: before they move, with the forces of the step; and after. */
+void scree_walls_book(scree_world *world);
+void scree_wall_book_later(scree_world_wall *wall, double time_step);
+/* How far from its position a wall extends; INFINITY for planes and endless cylinders. */
+double scree_wall_extent(const scree_world_wall *wall);
+/* motion.c: every wall's drift. */
+void scree_walls_advance(scree_world *world);
+
+#endif
