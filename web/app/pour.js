@@ -81,7 +81,7 @@ export class PourTab {
     this.state = element('p', null, host, { role: 'status', class: 'soft state', id: 'pour-state' });
     const figure = element('figure', null, element('div', null, host, { class: 'pile' }), { class: 'view' });
     this.viewHost = element('div', null, figure);
-    this.legend = element('figcaption', null, figure, { class: 'legend' });
+    this.legend = element('p', null, host, { class: 'legend' });
   }
 
   tell(text, isError = false) {

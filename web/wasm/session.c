@@ -14,8 +14,8 @@
 typedef struct web_scan {
   char file[256], name[128]; /* as given; short and unlike those of the others */
   scree_scan scan;
-  double scale; /* into metres, once it is decimated */
-  char note[256];
+  double scale;    /* into metres, once it is decimated */
+  char note[1536]; /* what to say of it beside the answer, a line each */
   scree_curve *curve;
   scree_choice choice;
 } web_scan;
@@ -91,6 +91,7 @@ EMSCRIPTEN_KEEPALIVE int web_open(const char *file, double unit_m) {
   source.unit = unit_m;
   cli_input_obeys(&common);
   cli_input_options input = cli_source_options(&source);
+  input.remarked = true; /* with the note */
   scree_status status =
       cli_load_closed(file, &input, false, &progress, &s->scan, &s->scale, &repair, &error);
   if (status != SCREE_OK) {
@@ -103,7 +104,11 @@ EMSCRIPTEN_KEEPALIVE int web_open(const char *file, double unit_m) {
   snprintf(s->name, sizeof s->name, "%s", plain);
   for (size_t n = 2; name_taken(s->name); n++)
     snprintf(s->name, sizeof s->name, "%s-%zu", plain, n);
-  cli_repair_text(&repair, s->note, sizeof s->note);
+  char repaired[sizeof s->note];
+  cli_repair_text(&repair, repaired, sizeof repaired);
+  if (!cli_is_sample(file, NULL))
+    cli_scan_remarks(&input, &s->scan, s->scale, s->note, sizeof s->note);
+  if (repaired[0]) cli_add_line(s->note, sizeof s->note, "%s", repaired);
   scans[scan_count++] = s;
   if (cli_is_sample(file, NULL)) return SCREE_OK;
   printf("%s: %s\n%10s", file, repair.before.verdict, s->scan.format);
@@ -111,7 +116,7 @@ EMSCRIPTEN_KEEPALIVE int web_open(const char *file, double unit_m) {
   putchar('\n');
   cli_print_left_out(stdout, s->scan.degenerate_count);
   cli_print_check(stdout, &repair.before);
-  if (s->note[0]) {
+  if (repaired[0]) {
     puts("repaired:");
     cli_print_repair(stdout, &repair);
   }
@@ -186,8 +191,13 @@ EMSCRIPTEN_KEEPALIVE int web_write_choice(const char *folder, const char *comman
                                       .note = s->note[0] ? s->note : NULL,
                                       .choice = &s->choice};
   }
-  const scree_choice_report made = {entries,         scan_count, &set,   &options,
-                                    simplify.method, rule,       command};
+  const scree_choice_report made = {.entries = entries,
+                                    .entry_count = scan_count,
+                                    .set = &set,
+                                    .options = &options,
+                                    .method = simplify.method,
+                                    .rule = rule,
+                                    .command_line = command};
   snprintf(path, sizeof path, "%s/choice.json", folder);
   scree_status status = scree_choice_json_write(&made, path, true, &error);
   snprintf(path, sizeof path, "%s/choice.csv", folder);
