@@ -3,12 +3,10 @@
 
   fidelity.py PROGRAM scans FILE...    every recommended level keeps every tolerance by `scree distance` with a million
                                        samples and `scree measure`, and the largest error over its tolerance is near 1
-  fidelity.py PROGRAM seeds            the nine samples at 1 mm under ten seeds of noise: spread of ln N
-  fidelity.py PROGRAM noise            noise up to 0.15 of the spacing against none: ratio of N
-  fidelity.py PROGRAM spacing          spacings of 1, 0.5 and 0.27 mm: ratio of N
+  fidelity.py PROGRAM seeds [SAMPLE...]    the nine samples at 1 mm under ten seeds of noise: spread of ln N
+  fidelity.py PROGRAM noise [SAMPLE...]    noise up to 0.15 of the spacing against none: ratio of N
+  fidelity.py PROGRAM spacing [SAMPLE...]  spacings of 1, 0.5 and 0.27 mm: ratio of N
   fidelity.py PROGRAM moved FILE...    turned, moved, scaled, in another unit: ratio of N
-  fidelity.py PROGRAM physics FOLDER SET=FILE,FILE,...   a study of each set at an eighth to twice the recommended counts;
-                                       goes on where it was stopped
 Lines are printed as they come."""
 import json, math, os, statistics, subprocess, sys, tempfile
 
@@ -56,15 +54,15 @@ def spread(counts):
     return statistics.stdev(map(math.log, counts))
 
 
-def seeds():
-    for name in DEVICES:
+def seeds(names):
+    for name in names or DEVICES:
         counts = [sample(name, 1, 0.02, seed) for seed in range(1, 11)]
         print(f"{name}: {counts}, standard deviation of ln N {spread(counts):.3f}", flush=True)
         yield spread(counts) <= 0.12
 
 
-def noise():
-    for name in DEVICES[::3]:
+def noise(names):
+    for name in names or DEVICES[::3]:
         clean = sample(name, 0.5, 0)
         for share in (0.05, 0.1, 0.15):
             ratio = sample(name, 0.5, 0.5 * share) / clean
@@ -72,51 +70,61 @@ def noise():
             yield abs(ratio - 1) <= 0.15
 
 
-def spacing():
-    for name in DEVICES:
+def spacing(names):
+    for name in names or DEVICES:
         counts = [sample(name, step, 0.02) for step in (1, 0.5, 0.27)]
         print(f"{name} at 1, 0.5, 0.27 mm: {counts}, {max(counts) / min(counts):.3f}", flush=True)
         yield max(counts) / min(counts) <= 1.25
 
 
+def read_off(path):
+    words = open(path, encoding="utf-8").read().split("\n")
+    rows = [line.split() for line in words if line and not line.startswith("#")]
+    count = int(rows[1][0])
+    return [list(map(float, row[:3])) for row in rows[2 : 2 + count]], [row[:4] for row in rows[2 + count :]]
+
+
+def write_off(path, points, facets):
+    with open(path, "w", encoding="utf-8") as file:
+        file.write(f"OFF\n{len(points)} {len(facets)} 0\n")
+        file.writelines(" ".join(map(repr, p)) + "\n" for p in points)
+        file.writelines(" ".join(f) + "\n" for f in facets)
+
+
+def turned(p):
+    """By 0.7 about (1, 2, 2) / 3."""
+    axis, cosine, sine = (1 / 3, 2 / 3, 2 / 3), math.cos(0.7), math.sin(0.7)
+    along = sum(a * x for a, x in zip(axis, p))
+    across = [axis[(i + 1) % 3] * p[(i + 2) % 3] - axis[(i + 2) % 3] * p[(i + 1) % 3] for i in range(3)]
+    return [p[i] * cosine + across[i] * sine + axis[i] * along * (1 - cosine) for i in range(3)]
+
+
 def moved(paths):
     for path in paths:
-        first = choose(path)["recommended"]["triangle_count"]
         with tempfile.TemporaryDirectory() as folder:
-            other = os.path.join(folder, "moved.ply")
-            scree("export", path, "-o", other)
-            for unit in ("inch", "m"):
-                ratio = choose(other, "--unit", unit)["recommended"]["triangle_count"] / first
-                print(f"{path} in {unit}: {ratio:.3f} of {first}", flush=True)
-                yield abs(ratio - 1) <= 0.03
+            plain, other = os.path.join(folder, "plain.off"), os.path.join(folder, "other.off")
+            scree("export", path, "-o", plain)
+            points, facets = read_off(plain)
+            size = max(max(p[i] for p in points) - min(p[i] for p in points) for i in range(3))
+            ways = {"turned": turned, "moved": lambda p: [x + 3 * size for x in p], "scaled": lambda p: [2.7 * x for x in p]}
+            write_off(plain, points, facets)
+            first = choose(plain)["recommended"]["triangle_count"]
+            for name, way in ways.items():
+                write_off(other, [way(p) for p in points], facets)
+                yield told(path, name, choose(other)["recommended"]["triangle_count"], first)
+            yield told(path, "in inches", choose(plain, "--unit", "inch")["recommended"]["triangle_count"], first)
 
 
-def physics(folder, sets):
-    """Angle of repose, packing, coordination and rotation at an eighth to twice the recommended counts."""
-    os.makedirs(folder, exist_ok=True)
-    for name, paths in (one.split("=", 1) for one in sets):
-        levels = []
-        for factor in (0.125, 0.25, 0.5, 1, 1.5, 2):
-            files = []
-            for path in paths.split(","):
-                short = os.path.splitext(os.path.basename(path.replace("sample:", "")))[0]
-                level = os.path.join(folder, f"{name}-{short}-{factor}.ply")
-                if not os.path.exists(level):
-                    count = choose(path)["recommended"]["triangle_count"]
-                    scree("simplify", path, "-n", max(4, round(factor * count)), "-o", level, "-q")
-                files.append(os.path.basename(level))
-            levels.append(files)
-        study = os.path.join(folder, name + ".yaml")
-        with open(study, "w", encoding="utf-8") as file:
-            json.dump({"name": name, "replicates": 20, "base": {"preset": "small"}, "factors": {"shapes": levels}}, file)
-        print(scree("study", study, "-o", os.path.join(folder, name)), flush=True)
-        yield True
+def told(path, way, count, first):
+    print(f"{os.path.basename(path)} {way}: {count / first:.3f} of {first}", flush=True)
+    return abs(count / first - 1) <= 0.03
 
 
 def main():
     what, words = sys.argv[2], sys.argv[3:]
-    runs = {"scans": lambda: (check_scan(path) for path in words), "seeds": seeds, "noise": noise, "spacing": spacing,
-            "moved": lambda: moved(words), "physics": lambda: physics(words[0], words[1:])}
+    runs = {"scans": lambda: (check_scan(path) for path in words), "seeds": lambda: seeds(words),
+            "noise": lambda: noise(words), "spacing": lambda: spacing(words),
+            "moved": lambda: moved(words)}
     return 0 if all(list(runs[what]())) else 1
 
 

@@ -83,6 +83,9 @@ part "fuzzing, twenty minutes for each reader" ctest --preset fuzz
 part "decimation and the whole job against their peers" bench/run.sh
 part "checks of real scans against their peers" bench/check.sh
 part "worlds against their peers" bench/world.sh
+for what in seeds noise spacing; do
+  part "the recommended level: $what" bench/fidelity.py build/release/bin/scree "$what"
+done
 
 printf '\n%d s; ' "$SECONDS"
 if [ ${#failed[@]} -eq 0 ]; then
