@@ -33,7 +33,7 @@ static int run(const cli_call *call) {
 
 const cli_verb cli_verb_report = {
     .name = "report",
-    .summary = "one page to look at, turn and send",
+    .summary = "one HTML page of results, with the shapes in 3D",
     .inputs = "DIR...",
     .description =
         "Makes one self-contained HTML page of the folders that scree choose -o, scree repose -o, "

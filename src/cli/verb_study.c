@@ -165,7 +165,7 @@ static int run(const cli_call *call) {
 
 const cli_verb cli_verb_study = {
     .name = "study",
-    .summary = "run an experiment many times and say what follows",
+    .summary = "run an experiment many times: mean, spread, convergence",
     .inputs = "STUDY.yaml | status DIR",
     .description =
         "Runs the angle-of-repose experiment, or a scene of your own (base: {scene: my.yaml}), at "
