@@ -49,7 +49,9 @@ def pictures(text, page, folder):
 def main(program, library, page, long=False):
     with open(page, encoding="utf-8") as file:
         text = file.read()
-    environment = os.environ | {"PATH": os.path.dirname(os.path.abspath(program)) + ":" + os.environ["PATH"], "NO_COLOR": "1",
+    # one thread: on a busy machine several wait for each other at every step, and the results are the same
+    environment = os.environ | {"OMP_NUM_THREADS": "1", "NO_COLOR": "1",
+                                "PATH": os.path.dirname(os.path.abspath(program)) + ":" + os.environ["PATH"],
                                 "PYTHONPATH": f"{ROOT}/python", "SCREE_LIBRARY": os.path.abspath(library)}
     count, skipped = 0, False
     with tempfile.TemporaryDirectory() as folder:
