@@ -76,6 +76,9 @@ part "shapes to pour" make_shapes
 part "500 pours, none of which fails or leaves a body in another" pour 1 500
 part "200 soft pours" pour 1 200 --stiffness 0.1
 part "60 heaps" env MODE=repose tests/pours/run.sh build/release/bin/scree build/release/bin/inside "$shapes" 1 60
+part "scenes: every template to its end, and killed" tests/scenes/templates.sh build/release/bin/scree
+part "scenes: flow through round openings" tests/scenes/beverloo.sh build/release/bin/scree
+part "scenes: the surface in a drum over seeds" tests/scenes/drum.sh build/release/bin/scree
 part "sanitizer build" build asan
 part "slow and long tests under ASan and UBSan" tools/test.sh asan -L 'slow|long'
 part "fuzzing build" build fuzz -DSCREE_FUZZ_SECONDS=1200

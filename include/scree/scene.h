@@ -117,6 +117,11 @@ SCREE_API scree_status scree_scene_measure(const scree_scene *scene, double *val
  * and one at the end. The scene's own; valid until it is advanced. */
 SCREE_API const double *scree_scene_series(const scree_scene *scene, size_t *row_count);
 
+/* J of sliding work on each triangle of a wall that a wall sensor looks at (of one that is no mesh,
+ * one number): what wears it. NULL for other walls. The scene's own; valid until it is advanced. */
+SCREE_API const double *scree_scene_wear(const scree_scene *scene, size_t wall,
+                                         size_t *triangle_count);
+
 /* ---- Scenes on disk ---- */
 
 /* Writes a checkpoint (docs/reference/formats.md), which stands alone. Complete under its name or

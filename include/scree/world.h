@@ -33,6 +33,12 @@ typedef struct scree_world_options {
                               it came from */
   double skin;             /* over L; default 0.02: reach of the candidate lists. Speed only */
   double floor_height;     /* m; bodies whose centre falls below are removed; default -infinity */
+  double period[3];        /* m, along x, y and z: what leaves at one side enters at the other; 0
+                              (default): no period. At least three times the diameter of the largest
+                              body's bounding sphere; walls must look the same one period on:
+                              planes along it, endless cylinders about it */
+  double period_from[3];   /* m, where a period begins: the places of bodies are told from there on
+                              to a period further; default 0 */
 } scree_world_options;
 SCREE_API scree_world_options scree_default_world_options(void);
 

@@ -184,7 +184,7 @@ class scree_particle_measures(Structure):
 class scree_world_options(Structure):
     _fields_ = [("gravity", double3), ("law", c_int)] + [(name, c_double) for name in (
         "steps_per_contact", "time_step", "stiffness_factor", "tangential_ratio", "size", "smoothing", "sharing",
-        "overlap_limit", "skin", "floor_height")]
+        "overlap_limit", "skin", "floor_height")] + [("period", double3), ("period_from", double3)]
 
 
 class scree_material(Structure):

@@ -138,9 +138,9 @@ static scree_status on_frame(void *context, scree_scene *scene, size_t index, sc
     name_frame(r->frames.count, walls, name);
     status = path_of(r, name, path, error);
     if (status == SCREE_OK)
-      status =
-          scree_world_vtp_write(scree_scene_view(scene),
-                                walls ? SCREE_VIEW_WALLS : SCREE_VIEW_SURFACES, path, true, error);
+      status = walls ? scree_scene_walls_vtp_write(scene, path, true, error)
+                     : scree_world_vtp_write(scree_scene_view(scene), SCREE_VIEW_SURFACES, path,
+                                             true, error);
   }
   (void)index;
   if (status == SCREE_OK && !note_frame(r, scree_world_time(scree_scene_view(scene))))

@@ -14,6 +14,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/bvh.h"
 #include "mesh/measure.h"
+#include "mesh/solid_angle.h"
 
 #include <string.h>
 
@@ -108,19 +109,16 @@ static ball bounding_ball(const scree_mesh *mesh) {
 
 /* ---- The largest ball inside ---- */
 
-/* The winding number of the surface about p: the sum of solid angles (Van Oosterom, Strackee 1983).
- */
+/* The winding number of the surface about p: the sum of solid angles. */
 static double winding(const scree_mesh *mesh, vec3 p) {
   double sum = 0;
   for (size_t t = 0; t < mesh->triangle_count; t++) {
     vec3 a = vec3_sub(scree_mesh_corner(mesh, t, 0), p),
          b = vec3_sub(scree_mesh_corner(mesh, t, 1), p),
          c = vec3_sub(scree_mesh_corner(mesh, t, 2), p);
-    double la = vec3_norm(a), lb = vec3_norm(b), lc = vec3_norm(c);
-    sum += 2 * atan2(vec3_dot(a, vec3_cross(b, c)), la * lb * lc + vec3_dot(a, b) * lc +
-                                                        vec3_dot(b, c) * la + vec3_dot(c, a) * lb);
+    sum += scree_half_solid_angle(a, b, c);
   }
-  return sum / (4 * pi);
+  return sum / (2 * pi);
 }
 
 typedef struct cube {

@@ -463,7 +463,29 @@ scree_status scree_wall_mesh(const scree_world *world, size_t index, scree_mesh 
   return SCREE_OK;
 }
 
-static scree_status make_walls(const scree_world *world, sheet *s, scree_error *error) {
+static double triangle_area(const sheet *s, size_t t) {
+  const uint32_t *k = s->triangles + 3 * t;
+  return 0.5 * vec3_norm(vec3_triangle_normal(vec3_load(s->points + 3 * k[0]),
+                                              vec3_load(s->points + 3 * k[1]),
+                                              vec3_load(s->points + 3 * k[2])));
+}
+
+/* J/m2, of the wall's triangles from `begin` on; 0 where no sensor looks at it. */
+static void fill_wear(const scree_scene *scene, size_t wall, const sheet *s, size_t begin,
+                      double *wear) {
+  size_t count, triangles = s->triangle_count - begin;
+  const double *work = scree_scene_wear(scene, wall, &count);
+  double all = 0;
+  for (size_t t = 0; t < triangles; t++) all += triangle_area(s, begin + t);
+  for (size_t t = 0; t < triangles; t++) {
+    double area = count == triangles ? triangle_area(s, begin + t) : all;
+    wear[begin + t] = work && area > 0 ? work[count == triangles ? t : 0] / area : 0;
+  }
+}
+
+/* scene: whose wear it has; NULL: none. */
+static scree_status make_walls(const scree_world *world, const scree_scene *scene, sheet *s,
+                               scree_error *error) {
   size_t count = scree_world_wall_count(world), points = 0, triangles = 0;
   extent e = extent_of(world);
   for (size_t i = 0; i < count; i++) {
@@ -475,11 +497,14 @@ static scree_status make_walls(const scree_world *world, sheet *s, scree_error *
   }
   if (points > UINT32_MAX) return too_many(error, points);
   int64_t *number = NULL, *kind = NULL;
+  double *wear = NULL;
   if (make_room(s, points, triangles, triangles)) {
     number = add_array(s, "wall", SCREE_VTK_INT64, 1);
     kind = add_array(s, "kind", SCREE_VTK_INT64, 1);
+    if (scene) wear = add_array(s, "wear", SCREE_VTK_FLOAT64, 1);
   }
-  if (!number || !kind) return scree_fail_memory(error, 40 * triangles, "the walls of a world");
+  if (!number || !kind || (scene && !wear))
+    return scree_fail_memory(error, 40 * triangles, "the walls of a world");
   for (size_t i = 0; i < count; i++) {
     scree_wall wall;
     size_t begin = s->triangle_count;
@@ -489,6 +514,7 @@ static scree_status make_walls(const scree_world *world, sheet *s, scree_error *
       number[t] = (int64_t)i;
       kind[t] = wall.kind;
     }
+    if (scene) fill_wear(scene, i, s, begin, wear);
   }
   return SCREE_OK;
 }
@@ -500,8 +526,9 @@ const char *scree_world_view_name(scree_world_view view) {
   return (int)view >= 0 && view < SCREE_VIEW_COUNT ? names[view] : NULL;
 }
 
-scree_status scree_world_vtp_write(const scree_world *world, scree_world_view view,
-                                   const char *path, bool overwrite, scree_error *error) {
+static scree_status write_view(const scree_world *world, const scree_scene *scene,
+                               scree_world_view view, const char *path, bool overwrite,
+                               scree_error *error) {
   sheet s = {0};
   uint32_t *lines = NULL;
   scree_status status;
@@ -512,7 +539,7 @@ scree_status scree_world_vtp_write(const scree_world *world, scree_world_view vi
   else if (view == SCREE_VIEW_CONTACTS)
     status = make_contacts(world, &s, &lines, error);
   else if (view == SCREE_VIEW_WALLS)
-    status = make_walls(world, &s, error);
+    status = make_walls(world, scene, &s, error);
   else
     status = scree_fail(error, SCREE_BAD_ARGUMENT, "world: view %d is none of 0 to %d", (int)view,
                         SCREE_VIEW_COUNT - 1);
@@ -533,4 +560,14 @@ scree_status scree_world_vtp_write(const scree_world *world, scree_world_view vi
   free_sheet(&s);
   scree_free(lines);
   return status;
+}
+
+scree_status scree_world_vtp_write(const scree_world *world, scree_world_view view,
+                                   const char *path, bool overwrite, scree_error *error) {
+  return write_view(world, NULL, view, path, overwrite, error);
+}
+
+scree_status scree_scene_walls_vtp_write(const scree_scene *scene, const char *path, bool overwrite,
+                                         scree_error *error) {
+  return write_view(scree_scene_view(scene), scene, SCREE_VIEW_WALLS, path, overwrite, error);
 }

@@ -3,6 +3,7 @@
 #include "scene/scene.h"
 
 #include "base/alloc.h"
+#include "mesh/solid_angle.h"
 
 #include <string.h>
 
@@ -236,17 +237,15 @@ static bool box_clear_of_triangle(const double corners[9], vec3 half) {
   return false;
 }
 
-/* Solid angle of all triangles seen from p, over 4 pi (van Oosterom and Strackee 1983): 1 within a
- * closed surface that is wound outward. */
+/* Solid angle of all triangles seen from p, over 4 pi: 1 within a closed surface that is wound
+ * outward. */
 static double winding_number(const scree_bvh *bvh, vec3 p) {
   double sum = 0;
   for (size_t t = 0; t < bvh->triangle_count; t++) {
     const double *at = bvh->corners + 9 * t;
     vec3 a = vec3_sub(vec3_load(at), p), b = vec3_sub(vec3_load(at + 3), p),
          c = vec3_sub(vec3_load(at + 6), p);
-    double la = vec3_norm(a), lb = vec3_norm(b), lc = vec3_norm(c);
-    sum += atan2(vec3_dot(a, vec3_cross(b, c)),
-                 la * lb * lc + vec3_dot(a, b) * lc + vec3_dot(b, c) * la + vec3_dot(c, a) * lb);
+    sum += scree_half_solid_angle(a, b, c);
   }
   return sum / 6.283185307179586;
 }

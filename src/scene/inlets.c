@@ -175,6 +175,28 @@ static void region_of(const scree_plan_inlet *plan, double low[3], double high[3
   }
 }
 
+/* The body, and in a periodic domain its images that reach into the region. */
+static bool push_present(scree_scene *scene, const scree_placement *p, const double low[3],
+                         const double high[3]) {
+  const double *period = scene->world->options.period;
+  int most[3];
+  for (int k = 0; k < 3; k++) most[k] = period[k] > 0;
+  for (int x = -most[0]; x <= most[0]; x++)
+    for (int y = -most[1]; y <= most[1]; y++)
+      for (int z = -most[2]; z <= most[2]; z++) {
+        scree_placement image = *p;
+        image.position = vec3_add(p->position, (vec3){x * period[0], y * period[1], z * period[2]});
+        const double at[3] = {image.position.x, image.position.y, image.position.z};
+        bool inside = true;
+        for (int k = 0; k < 3; k++)
+          inside = inside && at[k] + p->radius >= low[k] && at[k] - p->radius <= high[k];
+        if (!inside) continue;
+        scree_placement_settle(&image);
+        if (!SCREE_PUSH(&scene->present, image)) return false;
+      }
+  return true;
+}
+
 /* The bodies that reach into the region. */
 static scree_status list_present(scree_scene *scene, const scree_plan_inlet *plan,
                                  scree_error *error) {
@@ -185,16 +207,10 @@ static scree_status list_present(scree_scene *scene, const scree_plan_inlet *pla
     if (scree_world_body_removed(scene->world, b)) continue;
     scree_body body;
     scree_placement p = scene->shapes[scene->shape_of.items[b]].extent;
-    bool inside = true;
     scree_world_get_body(scene->world, b, &body);
-    for (int k = 0; k < 3; k++)
-      inside =
-          inside && body.position[k] + p.radius >= low[k] && body.position[k] - p.radius <= high[k];
-    if (!inside) continue;
     p.position = vec3_load(body.position);
     p.orientation = scree_body_turn(&body);
-    scree_placement_settle(&p);
-    if (!SCREE_PUSH(&scene->present, p))
+    if (!push_present(scene, &p, low, high))
       return scree_fail_memory(error, scene->present.count * sizeof p, "an inlet's bodies");
   }
   return SCREE_OK;

@@ -18,7 +18,7 @@ static double energy_of(const scree_scene *scene, size_t b, const scree_body *bo
                                m.inertia[2] * spin.z * spin.z);
   vec3 g = vec3_load(scene->plan.gravity);
   return 0.5 * (mass * vec3_norm2(vec3_load(body->velocity)) + rotation) -
-         mass * vec3_dot(g, vec3_load(body->position));
+         mass * vec3_dot(g, scene->world->bodies.frame[b].position); /* not folded, as the ledger */
 }
 
 /* The outlet that a centre is in; their count: none. */

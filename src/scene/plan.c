@@ -493,8 +493,8 @@ static scree_status check_domain(const scree_reader *r, const void *record) {
     if (strlen(axis) != 1 || !strchr("xyz", *axis))
       status = scree_fail_place(r, &d->place, "periodic '%.20s': must be x, y or z", axis);
   }
-  if (status == SCREE_OK && d->periodic.count)
-    status = scree_fail_place(r, &d->place, "periodic: this scree has no periodic domains yet");
+  if (status == SCREE_OK && d->periodic.count > 2)
+    status = scree_fail_place(r, &d->place, "periodic: along two axes at most");
   return status;
 }
 static const scree_plan_domain domain_defaults = {{0}, NONE, NONE, {0}};
@@ -830,6 +830,24 @@ static scree_status check_phases(const scree_reader *r, const scree_plan *plan) 
   return status;
 }
 
+/* What turns does not look the same one period on. */
+static scree_status check_periodic(const scree_reader *r, const scree_plan *plan) {
+  if (!plan->domain || plan->domain->periodic.count == 0) return SCREE_OK;
+  for (size_t i = 0; i < plan->geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    const scree_plan_motion *m = g->motion.items;
+    bool fits = (given(g->plane) || (g->cylinder && g->cylinder->length == 0)) && !g->turn;
+    if (!fits)
+      return scree_fail_place(r, &g->place,
+                              "in a periodic domain geometry must go on across its boundary: a "
+                              "plane along the axis, or an endless cylinder about it");
+    for (size_t k = 0; k < g->motion.count; k++)
+      if (m[k].rotate && !g->cylinder)
+        return scree_fail_place(r, &m[k].place, "in a periodic domain planes do not rotate");
+  }
+  return SCREE_OK;
+}
+
 static scree_status check_plan(const scree_reader *r, const void *record) {
   const scree_plan *plan = record;
   if (!given(&plan->time) && plan->phases.count == 0)
@@ -843,6 +861,7 @@ static scree_status check_plan(const scree_reader *r, const void *record) {
   scree_status status = check_materials(r, plan);
   if (status == SCREE_OK) status = check_inlets(r, plan);
   if (status == SCREE_OK) status = check_phases(r, plan);
+  if (status == SCREE_OK) status = check_periodic(r, plan);
   return status == SCREE_OK ? check_sensors(r, plan) : status;
 }
 

@@ -42,6 +42,7 @@ static void code_progress(scree_codec *c, scree_scene *scene) {
                      &costs->processor_seconds, &scene->frame_coordination};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_u64(c, &costs->body_steps);
+  scree_code_u64(c, &scene->next_wear);
   scree_code_u64(c, &costs->piece_count);
   scree_code_bool(c, &scene->is_frame);
   code_size(c, &scene->phase);
@@ -72,6 +73,7 @@ static void code_inlets(scree_codec *c, scree_scene *scene) {
 static void code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor) {
   double *arrays[] = {sensor->count, sensor->mass, sensor->sum, sensor->sum2};
   for (size_t k = 0; k < 4; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
+  scree_code_reals(c, sensor->wear, sensor->wear_count);
   size_t count = sensor->side.count;
   scree_code_count(c, &count, 1);
   if (scree_codec_good(c) && !SCREE_RESERVE(&sensor->side, count)) c->out_of_memory = true;
@@ -243,6 +245,13 @@ static scree_status load_notes(loader *l) {
   return scree_scene_set_notes(l->scene, notes, count, l->error);
 }
 
+/* The walls that the plan has. */
+static size_t next_wall(const scree_scene *scene) {
+  size_t count = scene->plan.geometry.count;
+  if (count == 0) return 0;
+  return scene->geometry[count - 1].first_wall + scene->geometry[count - 1].wall_count;
+}
+
 static scree_status load(loader *l) {
   scree_scene *scene = l->scene;
   scree_status status = load_plan(l);
@@ -261,6 +270,9 @@ static scree_status load(loader *l) {
     scree_scene_measure_shape(scene, i);
   }
   find_walls(scene);
+  if (next_wall(scene) != scree_world_wall_count(scene->world)) return fail_here(l);
+  status = scree_scene_plan_wear(scene, l->error);
+  if (status != SCREE_OK) return status;
   code_state(&l->codec, scene);
   status = load_notes(l);
   if (status == SCREE_OK) status = adopt_particles(l);

@@ -29,6 +29,11 @@ static scree_world_options world_options(const scree_scene *scene, double time_s
   o.stiffness_factor = plan->contact->stiffness_factor;
   o.tangential_ratio = plan->contact->tangential_ratio;
   o.time_step = plan->contact->time_step > 0 ? plan->contact->time_step : time_step;
+  for (size_t i = 0; plan->domain && i < plan->domain->periodic.count; i++) {
+    int k = *plan->domain->periodic.items[i] - 'x';
+    o.period[k] = plan->domain->max[k] - plan->domain->min[k];
+    o.period_from[k] = plan->domain->min[k];
+  }
   return o;
 }
 
@@ -95,6 +100,24 @@ static scree_status make_world(const scree_scene *scene, double time_step, scree
   return status;
 }
 
+static scree_status check_period(const scree_scene *scene, size_t index, scree_error *error) {
+  const scree_plan_domain *d = scene->plan.domain;
+  scree_particle_measures m;
+  scree_particle_measure(scene->shapes[index].particle, &m);
+  double least = SCREE_LEAST_PERIOD * m.bounding_radius;
+  for (size_t i = 0; d && i < d->periodic.count; i++) {
+    int k = *d->periodic.items[i] - 'x';
+    scree_reader r = {scene->name, NULL, error, ""};
+    if (d->max[k] - d->min[k] >= least) continue;
+    return scree_fail_place(
+        &r, &d->place,
+        "a period of %.4g m along %c is too short for '%s', %.4g m across: at least %.4g m",
+        d->max[k] - d->min[k], "xyz"[k], scree_scene_shape_name(scene, index),
+        2 * m.bounding_radius, least);
+  }
+  return SCREE_OK;
+}
+
 /* One of each shape, far apart: it keeps the particles, and knows the time step for the worst pair
  * of all, whatever order they enter in. */
 scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
@@ -117,6 +140,8 @@ static scree_status make_gallery(scree_scene *scene, const char *folder, scree_e
   }
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
     scree_body body = scree_default_body();
+    status = check_period(scene, i, error);
+    if (status != SCREE_OK) return status;
     body.position[2] = 1e5 * far + (double)i * far;
     status = scree_scene_add_body(&scene->shapes[i], scene->gallery, &body, error);
   }
@@ -289,6 +314,7 @@ scree_status scree_scene_make(const scree_scene_file *file, const scree_scene_gi
   if (status == SCREE_OK) status = make_particles(made, file->folder, gift, progress, error);
   if (status == SCREE_OK) status = scree_scene_set_up(made, file->folder, error);
   if (status == SCREE_OK) status = scree_scene_find_surfaces(made, error);
+  if (status == SCREE_OK) status = scree_scene_plan_wear(made, error);
   if (status == SCREE_OK) status = scree_scene_check_inlets(made, error);
   if (status == SCREE_OK) status = scree_scene_plan_layers(made, error);
   if (status == SCREE_OK) status = scree_scene_begin_phases(made, error);
@@ -393,6 +419,8 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
   uint64_t left = scene->next_tick - scree_world_step_count(scene->world);
   size_t steps = wanted < left ? wanted : (size_t)left, layer = scree_scene_steps_to_layer(scene);
   if (layer < steps) steps = layer;
+  uint64_t wear = scene->next_wear - scree_world_step_count(scene->world);
+  if (scene->wear_steps && wear < steps) steps = (size_t)wear;
   double due = fmin(next_row(scene), fmin(time_limit(scene), scree_scene_phase_end(scene)));
   double until = floor((due - scree_world_time(scene->world)) / scene->time_step) - 1;
   if (until < (double)steps) steps = until > 1 ? (size_t)until : 1;
@@ -401,7 +429,8 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
 
 scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
   bool ticks = scree_world_step_count(scene->world) >= scene->next_tick;
-  scree_status status = ticks ? tick(scene, error) : SCREE_OK;
+  scree_status status = scree_scene_watch_wear(scene, error);
+  if (status == SCREE_OK && ticks) status = tick(scene, error);
   if (status == SCREE_OK) status = scree_scene_turn_phase(scene, ticks, error);
   if (status != SCREE_OK) return status;
   scene->end = find_over(scene);

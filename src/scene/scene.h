@@ -72,6 +72,8 @@ typedef struct scree_scene_sensor {
   size_t geometry;      /* of a wall or a position */
   double *count, *mass; /* of a flow and of residence, by shape, all shapes last */
   double *sum, *sum2;   /* of residence, s and s2, likewise */
+  double *wear;         /* of a wall: J by triangle of its meshes, one of each other wall */
+  size_t wear_count;
   struct {
     int8_t *items; /* of a flow: the side each body was on */
     size_t count, capacity;
@@ -136,9 +138,10 @@ struct scree_scene {
     scree_placement *items; /* scratch of inlets */
     size_t count, capacity;
   } present;
-  double time_step, size; /* s; m: the smallest shape's */
-  uint64_t tick_steps;    /* between looks at inlets, outlets, flows and the end */
-  uint64_t next_tick;     /* step */
+  double time_step, size;         /* s; m: the smallest shape's */
+  uint64_t tick_steps;            /* between looks at inlets, outlets, flows and the end */
+  uint64_t next_tick;             /* step */
+  uint64_t wear_steps, next_wear; /* likewise of looks at wear; 0: no sensor needs any */
   size_t still_ticks;
   double entered_mass, left_mass, entered_energy, left_energy;
   size_t left_count;
@@ -236,6 +239,11 @@ scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error);
 scree_status scree_scene_watch_flows(scree_scene *scene, scree_error *error);
 void scree_scene_note_leaving(scree_scene *scene, size_t body);
 scree_status scree_scene_record(scree_scene *scene, scree_error *error);
+/* wear.c: how many numbers a wall's wear is; room for all; what a tick adds. */
+size_t scree_scene_wear_cells(const scree_scene *scene, size_t wall);
+scree_status scree_scene_plan_wear(scree_scene *scene, scree_error *error);
+scree_status scree_scene_watch_wear(scree_scene *scene, scree_error *error);
+
 /* measures.c: the bodies of a pile, raised and measured. */
 typedef struct scree_scene_heap {
   scree_repose repose;

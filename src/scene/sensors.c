@@ -62,9 +62,9 @@ static bool add_all(scree_scene *scene, const char *sensor, const char *const *n
 }
 
 static bool add_sensor(scree_scene *scene, const scree_plan_sensor *plan) {
-  static const char *const wall[] = {"force_x",  "N",   "force_y",  "N",   "force_z",  "N",
-                                     "torque_x", "N m", "torque_y", "N m", "torque_z", "N m",
-                                     "power",    "W",   "energy",   "J",   NULL};
+  static const char *const wall[] = {
+      "force_x",  "N",   "force_y", "N", "force_z", "N", "torque_x", "N m", "torque_y", "N m",
+      "torque_z", "N m", "power",   "W", "energy",  "J", "wear",     "J",   NULL};
   static const char *const pile[] = {"sector_deg",     "deg", "cone_deg", "deg",
                                      "silhouette_deg", "deg", "height",   "m",
                                      "base_radius",    "m",   NULL};
@@ -137,10 +137,21 @@ static void count_crossing(scree_scene *scene, scree_scene_sensor *sensor, size_
   sensor->mass[all] += mass;
 }
 
+/* m: one that is farther from a plane than that has not crossed it but the boundary of a periodic
+ * domain. */
+static double across_boundary(const scree_scene *scene, vec3 n) {
+  const double *period = scene->world->options.period, along[3] = {n.x, n.y, n.z};
+  double far = INFINITY;
+  for (int k = 0; k < 3; k++)
+    if (period[k] > 0 && along[k] != 0) far = fmin(far, 0.25 * period[k] * fabs(along[k]));
+  return far;
+}
+
 static scree_status watch_flow(scree_scene *scene, scree_scene_sensor *sensor, scree_error *error) {
   const scree_plan_flow *plan = sensor->plan->flow;
   vec3 n = vec3_unit(vec3_load(plan->normal)), through = vec3_load(plan->through);
   size_t count = scene->shape_of.count;
+  double far = across_boundary(scene, n);
   if (!SCREE_RESERVE(&sensor->side, count))
     return scree_fail_memory(error, count, "a flow's bodies");
   for (size_t b = 0; b < count; b++) {
@@ -151,7 +162,7 @@ static scree_status watch_flow(scree_scene *scene, scree_scene_sensor *sensor, s
     double height = vec3_dot(d, n);
     int8_t side = height < 0 ? -1 : 1;
     bool known = b < sensor->side.count;
-    bool crossed = known && side != sensor->side.items[b];
+    bool crossed = known && side != sensor->side.items[b] && fabs(height) < far;
     if (crossed && (isnan(plan->radius) || vec3_norm(vec3_mad(d, n, -height)) <= plan->radius))
       count_crossing(scene, sensor, b, side);
     sensor->side.items[b] = side;
@@ -237,8 +248,8 @@ static void read_region(const scree_scene *scene, const scree_plan_box *box, dou
   *at++ = count[shapes] > 0 ? speed / count[shapes] : NAN;
 }
 
-static void read_wall(const scree_scene *scene, size_t geometry, double *at) {
-  const scree_scene_geometry *g = &scene->geometry[geometry];
+static void read_wall(const scree_scene *scene, const scree_scene_sensor *sensor, double *at) {
+  const scree_scene_geometry *g = &scene->geometry[sensor->geometry];
   for (int k = 0; k < 8; k++) at[k] = 0;
   for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
     double force[3], torque[3];
@@ -248,6 +259,8 @@ static void read_wall(const scree_scene *scene, size_t geometry, double *at) {
     for (int k = 0; k < 3; k++) at[k] += force[k], at[3 + k] += torque[k];
     at[6] += power, at[7] += energy;
   }
+  at[8] = 0;
+  for (size_t k = 0; k < sensor->wear_count; k++) at[8] += sensor->wear[k];
 }
 
 static void read_position(const scree_scene *scene, size_t geometry, double *at) {
@@ -288,7 +301,7 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
   else if (plan->region)
     read_region(scene, plan->region->box, sensor->count, sensor->mass, at);
   else if (plan->wall)
-    read_wall(scene, sensor->geometry, at);
+    read_wall(scene, sensor, at);
   else if (plan->position)
     read_position(scene, sensor->geometry, at);
   else if (plan->pile && !all && !pile_is_due(scene, plan->pile))

@@ -121,7 +121,8 @@ static double make_boxes(scree_world *world) {
   for (size_t i = 0; i < bodies->count; i++) {
     if (bodies->removed[i]) continue;
     const scree_frame *frame = &bodies->frame[i];
-    scree_box box = scree_box_moved(&bodies->particle[i]->box, &frame->rotation, frame->position);
+    scree_box box = scree_box_moved(&bodies->particle[i]->box, &frame->rotation,
+                                    scree_world_fold(world, frame->position));
     broad->boxes[i] = scree_box_grown(box, 0.5 * margin_of(world, i));
     widest = scree_max(widest, widest_side(&broad->boxes[i]));
   }
@@ -189,8 +190,8 @@ static int compare_keys(const void *x, const void *y) {
   return a < b ? -1 : a > b;
 }
 
-/* Partners of the body in one cell; of those in its own grid the ones after it. */
-static bool find_in_cell(scree_world *world, uint32_t body, const cell *c) {
+/* Partners of the body, in this box, in one cell; of those in its own grid the ones after it. */
+static bool find_in_cell(scree_world *world, uint32_t body, const scree_box *box, const cell *c) {
   scree_broad *broad = world->broad;
   bool own = broad->grid[body] == c->grid;
   size_t bucket = bucket_of(broad, c);
@@ -198,7 +199,7 @@ static bool find_in_cell(scree_world *world, uint32_t body, const cell *c) {
     const cell_entry *e = &broad->cells[k];
     uint32_t other = e->body;
     if ((own && other <= body) || e->at.x != c->x || e->at.y != c->y || e->at.z != c->z ||
-        e->at.grid != c->grid || !scree_box_meets(&broad->boxes[body], &broad->boxes[other]))
+        e->at.grid != c->grid || !scree_box_meets(box, &broad->boxes[other]))
       continue;
     uint64_t key = body < other ? key_of(body, other, false) : key_of(other, body, false);
     if (!SCREE_PUSH(&broad->found, key)) return false;
@@ -206,16 +207,54 @@ static bool find_in_cell(scree_world *world, uint32_t body, const cell *c) {
   return true;
 }
 
-/* In the grid's cells where the centre of one that reaches the body's box may lie. */
-static bool find_in_grid(scree_world *world, uint32_t body, uint32_t grid) {
+/* In the grid's cells where the centre of one that reaches the box may lie. */
+static bool find_in_grid(scree_world *world, uint32_t body, const scree_box *box, uint32_t grid) {
   const scree_broad *broad = world->broad;
-  scree_box box =
-      scree_box_grown(broad->boxes[body], (0.5 + 1e-6) * broad->width[grid]); /* and rounding */
-  cell low = cell_at(broad, box.low, grid), high = cell_at(broad, box.high, grid), c = low;
+  scree_box grown = scree_box_grown(*box, (0.5 + 1e-6) * broad->width[grid]); /* and rounding */
+  cell low = cell_at(broad, grown.low, grid), high = cell_at(broad, grown.high, grid), c = low;
   for (c.z = low.z; c.z <= high.z; c.z++)
     for (c.y = low.y; c.y <= high.y; c.y++)
       for (c.x = low.x; c.x <= high.x; c.x++)
-        if (!find_in_cell(world, body, &c)) return false;
+        if (!find_in_cell(world, body, box, &c)) return false;
+  return true;
+}
+
+static bool find_bodies(scree_world *world, uint32_t body, const scree_box *box) {
+  const scree_broad *broad = world->broad;
+  for (uint32_t g = 0; g <= broad->grid[body]; g++)
+    if (broad->used >> g & 1 && !find_in_grid(world, body, box, g)) return false;
+  return true;
+}
+
+/* Along one axis: by how many periods the box is moved to meet what lies across a boundary. All
+ * places are folded into one period; boxes reach out of it by less than `reach`. */
+static int images_along(const scree_world *world, const scree_box *box, double reach, int k,
+                        double shifts[3]) {
+  const scree_world_options *o = &world->options;
+  const double low[3] = {box->low.x, box->low.y, box->low.z},
+               high[3] = {box->high.x, box->high.y, box->high.z};
+  double begin = o->period_from[k], end = begin + o->period[k];
+  int count = 1;
+  shifts[0] = 0;
+  if (!(o->period[k] > 0)) return count;
+  if (low[k] < begin + reach) shifts[count++] = o->period[k];
+  if (high[k] > end - reach) shifts[count++] = -o->period[k];
+  return count;
+}
+
+/* Also across the boundaries of a periodic world. */
+static bool find_images(scree_world *world, uint32_t body) {
+  const scree_box *box = &world->broad->boxes[body];
+  double shifts[3][3], reach = world->broad->width[0];
+  int count[3];
+  for (int k = 0; k < 3; k++) count[k] = images_along(world, box, reach, k, shifts[k]);
+  for (int i = 0; i < count[0]; i++)
+    for (int j = 0; j < count[1]; j++)
+      for (int k = 0; k < count[2]; k++) {
+        vec3 shift = {shifts[0][i], shifts[1][j], shifts[2][k]};
+        scree_box image = {vec3_add(box->low, shift), vec3_add(box->high, shift)};
+        if (!find_bodies(world, body, &image)) return false;
+      }
   return true;
 }
 
@@ -254,8 +293,9 @@ static bool find_all(scree_world *world) {
   broad->found.count = 0;
   for (size_t i = 0; i < world->bodies.count; i++) {
     if (world->bodies.removed[i]) continue;
-    for (uint32_t g = 0; g <= broad->grid[i]; g++)
-      if (broad->used >> g & 1 && !find_in_grid(world, (uint32_t)i, g)) return false;
+    bool found = scree_world_is_periodic(world) ? find_images(world, (uint32_t)i)
+                                                : find_bodies(world, (uint32_t)i, &broad->boxes[i]);
+    if (!found) return false;
     for (size_t w = 0; w < world->walls.count; w++)
       if (near_wall(world, i, &world->walls.items[w]) &&
           !SCREE_PUSH(&broad->found, key_of((uint32_t)i, (uint32_t)w, true)))

@@ -31,7 +31,7 @@ static void add_later_work(const scree_world *world, const scree_pair *pair,
                            const scree_scratch *scratch, scree_pair_work *work) {
   const scree_frame *a = scratch->a, *b = scratch->b;
   vec3 slip = vec3_sub(a->velocity, b->velocity),
-       arm = vec3_mad(vec3_sub(a->position, b->position), slip, -scratch->drift),
+       arm = vec3_mad(scree_pair_between(world, pair, a, b), slip, -scratch->drift),
        u = vec3_sub(slip, vec3_cross(a->spin, arm)), spin = vec3_sub(a->spin, b->spin);
   double half = 0.5 * pair->kick;
   work->later_dashpot += half * power_of(&pair->dashpot, u, spin);
@@ -83,7 +83,7 @@ static double slept_path(const scree_world *world, const scree_pair *pair,
 static double relate(const scree_world *world, const scree_pair *pair, const scree_scratch *scratch,
                      scree_frame *restrict relative) {
   const scree_frame *a = scratch->a, *b = scratch->b;
-  vec3 between = vec3_sub(a->position, b->position), slip = vec3_sub(a->velocity, b->velocity),
+  vec3 between = scree_pair_between(world, pair, a, b), slip = vec3_sub(a->velocity, b->velocity),
        spin = vec3_sub(a->spin, b->spin), at_b = vec3_sub(slip, vec3_cross(a->spin, between)),
        now = vec3_sub(vec3_sub(a->velocity_now, b->velocity_now), vec3_cross(a->spin_now, between));
   const mat3 *turned = &b->rotation;

@@ -326,14 +326,15 @@ static scree_kept_load kept_load(const scree_load *load) {
                            {(float)m.x, (float)m.y, (float)m.z}};
 }
 
-static void store_loads(const scree_scratch *scratch, scree_pair *pair, const load_sums *sums) {
+static void store_loads(const scree_world *world, const scree_scratch *scratch, scree_pair *pair,
+                        const load_sums *sums) {
   const scree_frame *a = scratch->a, *b = scratch->b;
   scree_load normal = turned(&sums->normal, &b->rotation);
   scree_load dashpot = turned(&sums->dashpot, &b->rotation);
   scree_load tangential = turned(&sums->tangential, &b->rotation);
   pair->dashpot = kept_load(&dashpot);
   pair->tangential = kept_load(&tangential);
-  vec3 arm = vec3_sub(a->position, b->position);
+  vec3 arm = scree_pair_between(world, pair, a, b);
   vec3 force = vec3_add(normal.force, tangential.force),
        moment = vec3_add(normal.moment, tangential.moment);
   pair->wrench = (scree_wrench){force, vec3_sub(moment, vec3_cross(arm, force)), vec3_neg(moment)};
@@ -389,7 +390,7 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
   load_sums sums = {0};
   add_load(&sums.normal, way, arm, force);
   sums.dashpot = sums.normal;
-  store_loads(scratch, pair, &sums);
+  store_loads(world, scratch, pair, &sums);
   return (scree_powers){force * vec3_dot(v, way), 0};
 }
 
@@ -434,6 +435,6 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   pair->contact_count = contacts;
   pair->tangential_elastic = energy;
   pair->elastic += energy;
-  store_loads(scratch, pair, &sums);
+  store_loads(world, scratch, pair, &sums);
   return (scree_powers){sums.dashpot_power, sums.tangential_power};
 }

@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 12};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 13};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -52,6 +52,8 @@ static void code_options(scree_codec *c, scree_world_options *o) {
                      &o->sharing,           &o->overlap_limit, &o->skin,
                      &o->floor_height};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
+  scree_code_reals(c, o->period, 3);
+  scree_code_reals(c, o->period_from, 3);
 }
 
 static void code_material(scree_codec *c, scree_material *m) {

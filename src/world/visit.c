@@ -13,7 +13,13 @@ static bool report(const scree_world *world, const scree_pair *pair, const scree
                            .wall = pair->wall,
                            .overlap = touch->overlap,
                            .share = touch->share};
-  vec3_store(contact.position, vec3_add(mat3_mul_vec(&b->rotation, touch->at), b->position));
+  const scree_frame *a = &world->bodies.frame[pair->a]; /* the contact lies where a is told to be */
+  vec3 from_a =
+      vec3_sub(mat3_mul_vec(&b->rotation, touch->at), scree_pair_between(world, pair, a, b));
+  bool folded = scree_world_is_periodic(world);
+  vec3_store(contact.position, folded
+                                   ? vec3_add(from_a, scree_world_fold(world, a->position))
+                                   : vec3_add(mat3_mul_vec(&b->rotation, touch->at), b->position));
   vec3_store(contact.normal, mat3_mul_vec(&b->rotation, touch->normal));
   vec3_store(contact.force, mat3_mul_vec(&b->rotation, touch->force));
   return visit(context, &contact);

@@ -44,6 +44,25 @@ static scree_status check_wall(const scree_world *world, const scree_wall *wall,
   return SCREE_OK;
 }
 
+/* Whether a period along axis k leaves the wall as it is. */
+static bool repeats(const scree_wall *wall, int k) {
+  double along = wall->axis[k] * wall->axis[k], across = 0;
+  for (int i = 0; i < 3; i++) across += i == k ? 0 : wall->axis[i] * wall->axis[i];
+  if (wall->kind == SCREE_WALL_PLANE) return along <= 1e-20 * across;
+  return wall->kind == SCREE_WALL_CYLINDER && wall->length == 0 && across <= 1e-20 * along;
+}
+
+static scree_status check_period(const scree_world *world, const scree_wall *wall,
+                                 scree_error *error) {
+  for (int k = 0; k < 3; k++)
+    if (world->options.period[k] > 0 && !repeats(wall, k))
+      return scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "world: wall %zu does not go on beyond the period along %c: it must be a "
+                        "plane along that axis, or an endless cylinder about it",
+                        world->walls.count, "xyz"[k]);
+  return SCREE_OK;
+}
+
 static void set_velocity(scree_world_wall *wall, vec3 velocity, vec3 spin) {
   vec3_store(wall->given.velocity, velocity);
   vec3_store(wall->given.angular_velocity, spin);
@@ -73,6 +92,7 @@ static scree_status make_rims(scree_world_wall *wall, scree_error *error) {
 scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, size_t *index,
                                   scree_error *error) {
   scree_status status = check_wall(world, wall, error);
+  if (!status) status = check_period(world, wall, error);
   if (status) return status;
   scree_world_wall made = {
       .given = *wall, .orientation = turn_to(vec3_load(wall->axis)), .path_at_build = -1};

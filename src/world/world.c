@@ -33,6 +33,16 @@ static scree_status check_range(const char *name, double value, double low, doub
                     high);
 }
 
+/* Periods need what is to be repeated. */
+static scree_status check_periods(const scree_world_options *o, scree_error *error) {
+  for (int k = 0; k < 3; k++)
+    if (!(o->period[k] >= 0 && o->period[k] <= 1e9 && isfinite(o->period_from[k])))
+      return scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "world: period %g m from %g m along %c; 0 (none) to 1e9 m", o->period[k],
+                        o->period_from[k], "xyz"[k]);
+  return SCREE_OK;
+}
+
 static scree_status check_options(const scree_world_options *o, scree_error *error) {
   const struct {
     const char *name;
@@ -57,7 +67,7 @@ static scree_status check_options(const scree_world_options *o, scree_error *err
     status = check_range(ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high, error);
   if (!status && o->law != SCREE_LAW_LINEAR && o->law != SCREE_LAW_HYSTERETIC)
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: law number %d is none", (int)o->law);
-  return status;
+  return status ? status : check_periods(o, error);
 }
 
 scree_status scree_world_create(const scree_world_options *options, scree_world **world,
@@ -209,6 +219,33 @@ static void fill_body(scree_bodies *b, size_t i, double density) {
   b->inertia[i] = vec3_scale(vec3_load(m->inertia), density);
 }
 
+bool scree_world_is_periodic(const scree_world *world) {
+  const double *period = world->options.period;
+  return period[0] > 0 || period[1] > 0 || period[2] > 0;
+}
+
+vec3 scree_world_fold(const scree_world *world, vec3 p) {
+  const scree_world_options *o = &world->options;
+  if (!scree_world_is_periodic(world)) return p;
+  double at[3] = {p.x, p.y, p.z};
+  for (int k = 0; k < 3; k++)
+    if (o->period[k] > 0) at[k] -= o->period[k] * floor((at[k] - o->period_from[k]) / o->period[k]);
+  return vec3_load(at);
+}
+
+/* A body must not meet itself, nor another twice. */
+static scree_status check_period(const scree_world *world, const scree_particle *particle,
+                                 scree_error *error) {
+  const double radius = particle->measures.bounding_radius, least = SCREE_LEAST_PERIOD * radius;
+  for (int k = 0; k < 3; k++)
+    if (world->options.period[k] > 0 && world->options.period[k] < least)
+      return scree_fail(error, SCREE_BAD_ARGUMENT,
+                        "world: a period of %.4g m along %c is too short for a body %.4g m across: "
+                        "at least %.4g m",
+                        world->options.period[k], "xyz"[k], 2 * radius, least);
+  return SCREE_OK;
+}
+
 scree_status scree_world_add_body(scree_world *world, scree_particle *particle, size_t material,
                                   const scree_body *state, size_t *index, scree_error *error) {
   if (material >= world->material_count)
@@ -217,6 +254,7 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
   scree_body start = state ? *state : scree_default_body();
   scree_bodies *b = &world->bodies;
   scree_status status = check_state(b->count, "added with", &start, error);
+  if (!status) status = check_period(world, particle, error);
   if (status) return status;
   if (b->count == b->capacity) {
     if (b->count > UINT32_MAX / 8)
@@ -262,7 +300,7 @@ bool scree_world_body_removed(const scree_world *world, size_t index) {
 void scree_world_get_body(const scree_world *world, size_t i, scree_body *state) {
   const scree_frame *frame = &world->bodies.frame[i];
   quat q = world->bodies.orientation[i];
-  vec3_store(state->position, frame->position);
+  vec3_store(state->position, scree_world_fold(world, frame->position));
   vec3_store(state->velocity, frame->velocity);
   vec3_store(state->angular_velocity, frame->spin);
   const double orientation[4] = {q.w, q.x, q.y, q.z};
@@ -274,7 +312,7 @@ void scree_world_get_bodies(const scree_world *world, size_t first, size_t count
   for (size_t i = 0; i < count; i++) {
     const scree_frame *frame = &world->bodies.frame[first + i];
     quat q = world->bodies.orientation[first + i];
-    if (positions) vec3_store(&positions[3 * i], frame->position);
+    if (positions) vec3_store(&positions[3 * i], scree_world_fold(world, frame->position));
     if (orientations)
       memcpy(&orientations[4 * i], (double[4]){q.w, q.x, q.y, q.z}, 4 * sizeof(double));
     if (velocities) vec3_store(&velocities[3 * i], frame->velocity);

@@ -393,6 +393,25 @@ static inline void scree_set_wall_due(scree_world *world, size_t w) {
 static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const scree_pair *p) {
   return p->wall ? &w->walls.items[p->b].frame : &w->bodies.frame[p->b];
 }
+/* Radii of the largest body: two boxes with their margins then meet in one image only. */
+enum { SCREE_LEAST_PERIOD = 6 };
+bool scree_world_is_periodic(const scree_world *world);
+/* world.c: a place in the period that begins at period_from. */
+vec3 scree_world_fold(const scree_world *world, vec3 p);
+/* d, or where the world is periodic the nearest of its images. */
+static inline vec3 scree_nearest_image(const scree_world *w, vec3 d) {
+  const double *period = w->options.period;
+  if (period[0] > 0) d.x -= period[0] * floor(d.x / period[0] + 0.5);
+  if (period[1] > 0) d.y -= period[1] * floor(d.y / period[1] + 0.5);
+  if (period[2] > 0) d.z -= period[2] * floor(d.z / period[2] + 0.5);
+  return d;
+}
+/* From b to a. Where bodies are is not folded into one period, so that nothing ever jumps. */
+static inline vec3 scree_pair_between(const scree_world *w, const scree_pair *p,
+                                      const scree_frame *a, const scree_frame *b) {
+  vec3 d = vec3_sub(a->position, b->position);
+  return p->wall ? d : scree_nearest_image(w, d);
+}
 /* A body of it was removed since its last step. */
 static inline bool scree_pair_is_removed(const scree_world *w, const scree_pair *p) {
   return w->bodies.removed[p->a] || (!p->wall && w->bodies.removed[p->b]);

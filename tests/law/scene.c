@@ -32,6 +32,37 @@ static scree_body body_of(const scree_scene *scene, size_t index) {
   return body;
 }
 
+static double column_now(const scree_scene *scene, const char *name) {
+  double values[100];
+  scree_error error;
+  size_t k = 0;
+  assert_true(scree_scene_column_count(scene) <= 100);
+  CHECK_OK(scree_scene_measure(scene, values, &error), error);
+  while (strcmp(scree_scene_column_name(scene, k), name) != 0) k++;
+  return values[k];
+}
+
+/* What a box that was set on a belt of 0.6 m/s has slid away is m v^2 / 2, on the belt's upper face
+ * alone. */
+static void check_wear(const scree_scene *scene) {
+  size_t count;
+  const double *wear = scree_scene_wear(scene, 0, &count);
+  double all = 0, above = 0, work = 0.5 * 500 * 0.06 * 0.06 * 0.02 * 0.6 * 0.6;
+  scree_wall wall;
+  scree_world_get_wall(scree_scene_view(scene), 0, &wall);
+  assert_int_equal(count, 12);
+  for (size_t t = 0; t < count; t++) {
+    bool top = true;
+    for (int c = 0; c < 3; c++)
+      top = top && wall.mesh->positions[3 * wall.mesh->triangles[3 * t + (size_t)c] + 2] > 0;
+    all += wear[t];
+    above += top ? wear[t] : 0;
+  }
+  CHECK_NEAR(all, work, 0.1 * work); /* its landing is a few short hits */
+  CHECK_NEAR(above, all, 0);
+  CHECK_NEAR(column_now(scene, "load.wear"), all, 1e-12);
+}
+
 /* A box set on a belt slides until it has the belt's speed: v = mu g t, then v stays. */
 static void belt(void **state) {
   (void)state;
@@ -42,7 +73,8 @@ static void belt(void **state) {
       "geometry: {belt: {box: [4, 0.4, 0.1], at: [0, 0, -0.05], surface_velocity: [0.6, 0, 0]}}\n"
       "inlets: {i: {box: {min: [-0.031, -0.031, 0.0001], max: [0.031, 0.031, 0.0212]}, shapes: "
       "box, "
-      "count: 1, orientation: fixed}}\n");
+      "count: 1, orientation: fixed}}\n"
+      "sensors: {load: {wall: belt}}\n");
   run_until(scene, 0.05); /* it has landed */
   double begin = body_of(scene, 0).velocity[0];
   run_until(scene, 0.15);
@@ -54,6 +86,7 @@ static void belt(void **state) {
   run_until(scene, 0.9);
   double moved = body_of(scene, 0).position[0] - x, time = 0.9 - (0.6 / (0.3 * g) + 0.15);
   CHECK_NEAR(moved / time, 0.6, 0.003);
+  check_wear(scene);
   scree_scene_free(scene);
 }
 

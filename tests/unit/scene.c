@@ -54,7 +54,7 @@ static const char stream_text[] =
     "outlets: {low: {box: {min: [-1, -1, -1], max: [1, 1, -0.1]}}}\n"
     "domain: {min: [-0.4, -0.2, -0.5], max: [0.4, 0.2, 0.4]}\n"
     "sensors: {gone: {flow: {through: [0, 0, -0.05], normal: [0, 0, -1]}}, stay: {residence: {}}, "
-    "mix: {segregation: {cells: 0.03}}}\n"
+    "mix: {segregation: {cells: 0.03}}, load: {wall: chute}}\n"
     "output: {series: 0.05}\n";
 
 static void mass_is_booked(void **state) {
@@ -331,6 +331,10 @@ static scree_status write_json(void *context, scree_error *error) {
   return scree_scene_json_write(&entry, in_folder("memory.json"), true, error);
 }
 
+static scree_status write_walls(void *context, scree_error *error) {
+  return scree_scene_walls_vtp_write(context, in_folder("memory.vtp"), true, error);
+}
+
 static scree_status draw(void *context, scree_error *error) {
   scree_render_options o = scree_default_render_options();
   scree_image image = {0};
@@ -350,6 +354,7 @@ static void out_of_memory(void **state) {
   scree_scene *scene = create(file);
   advance(scene, 200);
   check_allocation_failures(write_json, scene);
+  check_allocation_failures(write_walls, scene);
   if (draw(scene, &error) == SCREE_OK) check_allocation_failures(draw, scene);
   scree_scene_free(scene);
   scree_scene_file_free(file);

@@ -1,6 +1,7 @@
 #include "simplify/guard/marker.h"
 
 #include "base/alloc.h"
+#include "mesh/solid_angle.h"
 
 scree_status scree_markers_find(const scree_halfmesh *s, scree_markers *markers,
                                 scree_error *error) {
@@ -25,12 +26,9 @@ void scree_markers_follow(scree_markers *markers, const scree_fan *fan) {
     if (markers->vertex[i] == fan->b) markers->vertex[i] = fan->a;
 }
 
-/* Half the solid angle of a triangle seen from p (van Oosterom and Strackee 1983). */
+/* Of a triangle seen from p. */
 static double half_angle(vec3 p, vec3 a, vec3 b, vec3 c) {
-  a = vec3_sub(a, p), b = vec3_sub(b, p), c = vec3_sub(c, p);
-  double x = vec3_norm(a), y = vec3_norm(b), z = vec3_norm(c);
-  return atan2(vec3_dot(a, vec3_cross(b, c)),
-               x * y * z + vec3_dot(a, b) * z + vec3_dot(b, c) * x + vec3_dot(c, a) * y);
+  return scree_half_solid_angle(vec3_sub(a, p), vec3_sub(b, p), vec3_sub(c, p));
 }
 
 static bool is_of_fan(const scree_halfmesh *s, const scree_fan *f, uint32_t v) {
