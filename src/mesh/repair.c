@@ -225,7 +225,9 @@ static bool surface_is_sound(const scree_check *check) {
 
 static scree_status mend_open(scree_repair *r, scree_error *error) {
   const scree_repair_options *o = r->options;
-  size_t edge_limit = o->fill_large_holes ? SIZE_MAX : o->hole_edges;
+  /* the holes of a surface that was closed are all of the repair's own cutting */
+  bool was_closed = r->report.before.defects[SCREE_DEFECT_BOUNDARY_EDGE] == 0;
+  size_t edge_limit = o->fill_large_holes || was_closed ? SIZE_MAX : o->hole_edges;
   scree_status status = scree_repair_scraps(r, error);
   if (status == SCREE_OK) status = scree_repair_holes(r, edge_limit, error);
   return status;
