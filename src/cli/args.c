@@ -279,7 +279,7 @@ static int add_text(const cli_verb *verb, const cli_option *option, const char *
 
 static int store(const cli_verb *verb, const cli_option *option, const char *text, void *base) {
   void *value = (char *)base + option->offset;
-  double real;
+  double real = 0;
   int result;
   switch (option->kind) {
   case CLI_FLAG:

@@ -220,7 +220,7 @@ static void note_all(choose_run *run) {
 
 static scree_status write_output(choose_run *run, scree_error *error) {
   const choose_arguments *a = run->arguments;
-  scree_choice_entry *entries = calloc(run->count, sizeof *entries);
+  scree_choice_entry *entries = calloc(run->count + 1, sizeof *entries);
   if (!entries) {
     *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for the report"};
     return SCREE_OUT_OF_MEMORY;
