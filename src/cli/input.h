@@ -2,6 +2,7 @@
 #ifndef SCREE_CLI_INPUT_H
 #define SCREE_CLI_INPUT_H
 
+#include "base/platform.h"
 #include "cli/args.h"
 
 typedef struct cli_input_options {
@@ -55,10 +56,9 @@ bool cli_is_sample(const char *word, const char **name);
  * into it. */
 void cli_input_obeys(const cli_common *common);
 /* "word: sentence" on stderr, unless it is to be quiet. */
-void cli_remark(const char *word, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void cli_remark(const char *word, const char *format, ...) SCREE_PRINTF(2, 3);
 /* One line more in a text of so many bytes. */
-void cli_add_line(char *text, size_t size, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
+void cli_add_line(char *text, size_t size, const char *format, ...) SCREE_PRINTF(3, 4);
 /* Lines where the file contradicts itself, says another unit than the options, or is of a size
  * that no particle has; positions are in metres once they are multiplied by scale. */
 void cli_scan_remarks(const cli_input_options *options, const scree_scan *scan, double scale,

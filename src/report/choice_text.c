@@ -36,7 +36,7 @@ typedef struct sentences {
   size_t count;
 } sentences;
 
-__attribute__((format(printf, 2, 3))) static void say(sentences *s, const char *format, ...) {
+SCREE_PRINTF(2, 3) static void say(sentences *s, const char *format, ...) {
   if (s->count == SCREE_CHOICE_SENTENCES) return;
   va_list arguments;
   va_start(arguments, format);

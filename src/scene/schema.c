@@ -41,8 +41,9 @@ static const char *path_of(const scree_reader *r, const char *key, char path[LON
 }
 
 /* Of the value of a key. */
-__attribute__((format(printf, 3, 4))) static scree_status
-fail_at(const scree_reader *r, const scree_yaml *node, const char *format, ...) {
+SCREE_PRINTF(3, 4)
+static scree_status
+    fail_at(const scree_reader *r, const scree_yaml *node, const char *format, ...) {
   char path[LONGEST_PATH];
   va_list arguments;
   va_start(arguments, format);

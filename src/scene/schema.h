@@ -5,6 +5,7 @@
 #define SCREE_SCENE_SCHEMA_H
 
 #include "base/arena.h"
+#include "base/error.h"
 #include "base/yaml.h"
 
 typedef enum scree_field_kind {
@@ -88,7 +89,7 @@ scree_status scree_record_read(const scree_reader *reader, const scree_yaml *nod
                                const scree_record *kind, void *record);
 /* "FILE, line L, column C: PATH: ..." as an error of SCREE_BAD_FILE. */
 scree_status scree_fail_place(const scree_reader *reader, const scree_place *place,
-                              const char *format, ...) __attribute__((format(printf, 3, 4)));
+                              const char *format, ...) SCREE_PRINTF(3, 4);
 /* Whether a field of the record was given; `field` is its offset. */
 bool scree_field_is_given(const scree_field *field, const void *record);
 

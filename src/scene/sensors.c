@@ -35,8 +35,8 @@ static const struct {
                     {"phase", ""}};
 enum { BASE_COLUMNS = sizeof base_columns / sizeof *base_columns };
 
-__attribute__((format(printf, 3, 4))) static bool add_column(scree_scene *scene, const char *unit,
-                                                             const char *format, ...) {
+SCREE_PRINTF(3, 4)
+static bool add_column(scree_scene *scene, const char *unit, const char *format, ...) {
   scree_scene_column column = {.unit = unit};
   va_list arguments;
   va_start(arguments, format);
