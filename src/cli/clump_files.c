@@ -99,9 +99,9 @@ static scree_status write_text(const clump_run *run, scree_error *error) {
   size_t size;
   scree_status status = join(run, "clump.txt", "", path, error);
   if (status != SCREE_OK) return status;
-  FILE *stream = open_memstream(&text, &size);
+  FILE *stream = scree_memory_open(&text, &size);
   if (stream) clump_print(stream, run);
-  if (!stream || fclose(stream) != 0)
+  if (!stream || !scree_memory_close(stream))
     status = cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
   else
     status = scree_text_write(text, path, a->overwrite, error);

@@ -260,7 +260,7 @@ def long_bodies_are_whole(browser, folder):
     pyramid(os.path.join(folder, "long.stl"), 10, 100)
     pyramid(os.path.join(folder, "flat.stl"), 100, 6)
     scree("choose", "--unit", "mm", "long.stl", "flat.stl", "-o", "long", folder=folder)
-    scree("drop", "sphere:20mm=3", "-c", "cylinder", "-w", "22mm", "--time", "0.5", "-o", "column", folder=folder)
+    scree("drop", "sphere:20mm=3", "--container", "cylinder", "-w", "22mm", "--time", "0.5", "-o", "column", folder=folder)
     for width in (1200, 390):
         browser.look(width=width, height=844)
         ready(browser, os.path.join(folder, "long", "report.html"))
