@@ -77,8 +77,11 @@ static scree_status set_fields(scene_run *r, scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < set->count; i++) {
     const char *equals = strchr(set->items[i], '=');
-    char *field = strndup(set->items[i], (size_t)(equals - set->items[i]));
+    size_t length = (size_t)(equals - set->items[i]);
+    char *field = malloc(length + 1);
     if (!field) return no_memory(error);
+    memcpy(field, set->items[i], length);
+    field[length] = 0;
     status = scree_scene_file_set(r->file, field, equals + 1, error);
     free(field);
   }
