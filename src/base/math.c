@@ -2,6 +2,8 @@
  * arithmetic: no fused multiply-add, no tables, no rounding modes. */
 #include "base/math.h"
 
+#include "base/exact.h"
+
 #include <stdbool.h>
 #include <stdint.h>
 #include <string.h>
@@ -188,4 +190,49 @@ double scree_cbrt(double x) {
   double size = fabs(x), root = scree_exp(scree_log(size) / 3);
   for (int i = 0; i < 2; i++) root -= (root - size / (root * root)) / 3;
   return x < 0 ? -root : root;
+}
+
+/* ---- powers of ten, by numbers of twice a double's digits ---- */
+
+typedef struct two {
+  double high, low;
+} two;
+
+static two add(two a, two b) {
+  double sum, error;
+  scree_two_sum(a.high, b.high, &sum, &error);
+  scree_quick_two_sum(sum, error + (a.low + b.low), &sum, &error);
+  return (two){sum, error};
+}
+
+static two multiply(two a, two b) {
+  double product, error;
+  scree_two_product(a.high, b.high, &product, &error);
+  scree_quick_two_sum(product, error + (a.high * b.low + a.low * b.high), &product, &error);
+  return (two){product, error};
+}
+
+static two divide(two a, double b) {
+  double quotient = a.high / b, product, error;
+  scree_two_product(quotient, b, &product, &error);
+  scree_quick_two_sum(quotient, ((a.high - product) - error + a.low) / b, &quotient, &error);
+  return (two){quotient, error};
+}
+
+/* Of |x| up to 1.2: the series of x/64, squared six times. */
+static two exponential(two x) {
+  two small = divide(x, 64), sum = {1, 0};
+  for (int k = 14; k > 0; k--) sum = add((two){1, 0}, divide(multiply(small, sum), k));
+  for (int i = 0; i < 6; i++) sum = multiply(sum, sum);
+  return sum;
+}
+
+double scree_power_of_ten(double x) {
+  static const two ln10 = {2.302585092994045901e+00, -2.170756223382249351e-16};
+  double whole = floor(x + 0.5), scale = 1;
+  if (!(fabs(whole) <= 22)) return x > 0 ? INFINITY : x < 0 ? 0 : NAN;
+  for (int i = 0; i < fabs(whole); i++) scale *= 10; /* exact so far */
+  two power = exponential(multiply((two){x - whole, 0}, ln10));
+  power = whole < 0 ? divide(power, scale) : multiply(power, (two){scale, 0});
+  return power.high;
 }

@@ -18,6 +18,8 @@ double scree_exp(double x);
 /* Natural; NaN below 0, -infinity at 0. */
 double scree_log(double x);
 double scree_cbrt(double x);
+/* 10^x for |x| up to 22: the double nearest to the true value, but for one x in some 1e12. */
+double scree_power_of_ten(double x);
 
 /* Of two equal ones, which zeros of either sign are, the first; a number rather than NaN. */
 static inline double scree_min(double a, double b) {

@@ -2,6 +2,7 @@
 #include "choice/gauge.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 #include "base/progress.h"
 
 #include <math.h>
@@ -37,7 +38,7 @@ const char *scree_shape_change_name(scree_shape_change which) {
 size_t scree_fidelity_levels(const scree_curve *curve, size_t level_indices[SCREE_FIDELITY_MOST]) {
   size_t scan = scree_curve_get_facts(curve).triangle_count, count = 0;
   for (int k = 1; count < SCREE_FIDELITY_MOST; k++) {
-    double rp = pow(10, -(double)k / SCREE_FIDELITY_PER_DECADE);
+    double rp = scree_power_of_ten(-(double)k / SCREE_FIDELITY_PER_DECADE);
     size_t target = scree_choice_target(rp, scan), index = scree_curve_find(curve, target);
     if (target > SCREE_FIDELITY_FINEST) continue;
     if (count == 0 || index != level_indices[count - 1]) level_indices[count++] = index;

@@ -9,6 +9,7 @@
  * DROP_RATIO times what the window itself varies: a shape whose error falls like 1/N has 0.8 there.
  * (The windows above are left out because correlated noise leaves S flat at the scan's end too.) */
 #include "choice/noise.h"
+#include "base/math.h"
 
 #include <math.h>
 
@@ -31,7 +32,7 @@ static size_t take_samples(const scree_level_table *table, sample *samples) {
   double scan_count = (double)table->row(table->context, 0).triangle_count;
   size_t count = 0;
   for (size_t k = 0; k <= DECADES * PER_DECADE; k++) {
-    double target = scan_count * pow(10, -(double)k / PER_DECADE);
+    double target = scan_count * scree_power_of_ten(-(double)k / PER_DECADE);
     if (target < SMALLEST_COUNT) break;
     size_t index = scree_level_find(table, (size_t)target);
     scree_level_row row = table->row(table->context, index);

@@ -11,34 +11,7 @@
  */
 #include "mesh/predicates.h"
 
-/* x + y = a + b exactly, x the rounded sum. */
-static inline void two_sum(double a, double b, double *x, double *y) {
-  double sum = a + b, b_part = sum - a, a_part = sum - b_part;
-  *y = (a - a_part) + (b - b_part);
-  *x = sum;
-}
-
-/* The same where |a| >= |b|. */
-static inline void quick_two_sum(double a, double b, double *x, double *y) {
-  double sum = a + b;
-  *y = b - (sum - a);
-  *x = sum;
-}
-
-/* Splits a into two halves of at most 26 bits (Dekker 1971). */
-static inline void split(double a, double *high, double *low) {
-  double c = 134217729.0 * a; /* 2^27 + 1 */
-  *high = c - (c - a);
-  *low = a - *high;
-}
-
-static inline void two_product(double a, double b, double *x, double *y) {
-  double a_high, a_low, b_high, b_low, product = a * b;
-  split(a, &a_high, &a_low);
-  split(b, &b_high, &b_low);
-  *y = a_low * b_low - (((product - a_high * b_high) - a_low * b_high) - a_high * b_low);
-  *x = product;
-}
+#include "base/exact.h"
 
 /* h = e + f, zeros dropped; h must not alias e or f. Returns the length, at least 1. */
 static int expansion_sum(int e_count, const double *e, int f_count, const double *f, double *h) {
@@ -48,7 +21,7 @@ static int expansion_sum(int e_count, const double *e, int f_count, const double
     /* merged by magnitude */
     bool take_e = j >= f_count || (i < e_count && fabs(e[i]) < fabs(f[j]));
     double next = take_e ? e[i++] : f[j++];
-    two_sum(sum, next, &sum, &error);
+    scree_two_sum(sum, next, &sum, &error);
     if (error != 0) h[count++] = error;
   }
   if (sum != 0 || count == 0) h[count++] = sum;
@@ -59,14 +32,14 @@ static int expansion_sum(int e_count, const double *e, int f_count, const double
 static int expansion_scale(int e_count, const double *e, double b, double *h) {
   int count = 0;
   double sum, error;
-  two_product(e[0], b, &sum, &error);
+  scree_two_product(e[0], b, &sum, &error);
   if (error != 0) h[count++] = error;
   for (int i = 1; i < e_count; i++) {
     double high, low;
-    two_product(e[i], b, &high, &low);
-    two_sum(sum, low, &sum, &error);
+    scree_two_product(e[i], b, &high, &low);
+    scree_two_sum(sum, low, &sum, &error);
     if (error != 0) h[count++] = error;
-    quick_two_sum(high, sum, &sum, &error);
+    scree_quick_two_sum(high, sum, &sum, &error);
     if (error != 0) h[count++] = error;
   }
   if (sum != 0 || count == 0) h[count++] = sum;
@@ -81,7 +54,7 @@ typedef struct difference {
 
 static difference subtract(double a, double b) {
   double high, low;
-  two_sum(a, -b, &high, &low);
+  scree_two_sum(a, -b, &high, &low);
   if (low == 0) return (difference){1, {high, 0}};
   return (difference){2, {low, high}};
 }

@@ -4,6 +4,8 @@
 #include "base/rng.h"
 #include "support/check.h"
 
+#include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { ARGUMENTS = 200000 };
@@ -86,8 +88,26 @@ static void least_and_most(void **state) {
   assert_true(isnan(scree_max(NAN, NAN)));
 }
 
+static void powers_of_ten(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 6};
+  double worst = 0;
+  for (int i = 0; i < ARGUMENTS; i++) {
+    double x = 44 * scree_rng_uniform(&rng) - 22;
+    worst = fmax(worst, ulps(scree_power_of_ten(x), powl(10, x)));
+  }
+  assert_true(worst < 0.5001);
+  for (int n = -22; n <= 22; n++) {
+    char text[8];
+    snprintf(text, sizeof text, "1e%d", n);
+    assert_true(same_bits(scree_power_of_ten(n), strtod(text, NULL)));
+  }
+  assert_true(isnan(scree_power_of_ten(NAN)));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(within_an_ulp), cmocka_unit_test(exact_cases),
-                                     cmocka_unit_test(least_and_most)};
+                                     cmocka_unit_test(least_and_most),
+                                     cmocka_unit_test(powers_of_ten)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
