@@ -236,3 +236,9 @@ double scree_power_of_ten(double x) {
   power = whole < 0 ? divide(power, scale) : multiply(power, (two){scale, 0});
   return power.high;
 }
+
+double scree_log10(double x) {
+  static const double per_ln = 0.43429448190325182765;
+  double whole = floor(scree_log(x) * per_ln + 0.5);
+  return whole + scree_log(x / scree_power_of_ten(whole)) * per_ln;
+}

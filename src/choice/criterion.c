@@ -78,7 +78,7 @@ const scree_pick *scree_choice_pick(const scree_choice *choice, scree_choice_rul
 }
 
 static double log_grid(double rp_min, int per_decade, size_t index) {
-  return scree_power_of_ten(log10(rp_min) + (double)index / per_decade);
+  return scree_power_of_ten(scree_log10(rp_min) + (double)index / per_decade);
 }
 
 static size_t log_grid_count(double rp_min, double rp_max, int per_decade) {

@@ -1,5 +1,6 @@
 /* Particles for a run from a scan: a level of its decimation, or the sphere of its volume. */
 #include "base/error.h"
+#include "base/math.h"
 
 #include <math.h>
 
@@ -51,7 +52,7 @@ static scree_status make_particle(const scree_mesh *mesh, const scree_grain_opti
                                   scree_particle **particle, scree_error *error) {
   if (options->clump) return scree_clump_fit(mesh, options->clump, progress, particle, error);
   if (options->sphere)
-    return scree_particle_sphere(cbrt(0.75 * volume / 3.14159265358979324), particle, error);
+    return scree_particle_sphere(scree_cbrt(0.75 * volume / 3.14159265358979324), particle, error);
   scree_particle_options o = scree_default_particle_options();
   o.rounding = options->rounding;
   return scree_particle_from_mesh(mesh, &o, particle, error);

@@ -2,6 +2,7 @@
 #include "pile/pour.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 #include "base/platform.h"
 
 #include <stdlib.h>
@@ -58,8 +59,8 @@ static void measure(scree_pour *pour, const scree_pour_shape *shapes) {
   scree_pour_options *o = &pour->options;
   bool round = o->container == SCREE_CONTAINER_CYLINDER;
   if (!(o->width > 0)) {
-    double abreast = fmin(particles_abreast, ceil(cbrt(count)));
-    o->width = fmax(cbrt(solid / loose_packing * (round ? 4 / 3.14159265358979323846 : 1)),
+    double abreast = fmin(particles_abreast, ceil(scree_cbrt(count)));
+    o->width = fmax(scree_cbrt(solid / loose_packing * (round ? 4 / 3.14159265358979323846 : 1)),
                     (round ? abreast + 0.5 : abreast) * pour->pitch);
   }
   if (!(o->depth > 0) || round) o->depth = o->width;

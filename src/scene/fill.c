@@ -4,6 +4,7 @@
 #include "scene/fill.h"
 
 #include "base/alloc.h"
+#include "base/math.h"
 #include "base/rng.h"
 
 /* Random numbers: one stream for the order, then one a layer. */
@@ -105,7 +106,7 @@ static void draw_place(const scree_fill_layer *layer, scree_rng *rng, double at[
   double first = scree_rng_uniform(rng), second = scree_rng_uniform(rng);
   if (layer->cylinder_radius > 0) {
     double r = layer->cylinder_radius * sqrt(first), a = 6.283185307179586 * second;
-    at[0] = r * cos(a), at[1] = r * sin(a);
+    at[0] = r * scree_cos(a), at[1] = r * scree_sin(a);
   } else {
     at[0] = layer->half[0] * (2 * first - 1), at[1] = layer->half[1] * (2 * second - 1);
   }
@@ -114,7 +115,7 @@ static void draw_place(const scree_fill_layer *layer, scree_rng *rng, double at[
 /* Whether its sphere is. */
 static bool is_round_inside(const scree_fill_layer *layer, const scree_placement *p) {
   double x = p->position.x - layer->centre[0], y = p->position.y - layer->centre[1];
-  if (layer->cylinder_radius > 0) return hypot(x, y) + p->radius <= layer->cylinder_radius;
+  if (layer->cylinder_radius > 0) return sqrt(x * x + y * y) + p->radius <= layer->cylinder_radius;
   return fabs(x) + p->radius <= layer->half[0] && fabs(y) + p->radius <= layer->half[1];
 }
 

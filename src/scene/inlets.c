@@ -5,6 +5,7 @@
 
 #include "base/alloc.h"
 #include "base/array.h"
+#include "base/math.h"
 #include "base/rng.h"
 
 #include <string.h>
@@ -96,7 +97,7 @@ static bool draw_in_cylinder(const scree_plan_cylinder *c, scree_placement *p, s
   vec3_frame(axis, &u, &w);
   bool fits = draw_along(p, axis, 0, c->length, rng, &along);
   double r = c->radius * sqrt(scree_rng_uniform(rng)), a = 2 * pi * scree_rng_uniform(rng);
-  vec3 at = vec3_mad(vec3_mad(vec3_scale(u, r * cos(a)), w, r * sin(a)), axis, along);
+  vec3 at = vec3_mad(vec3_mad(vec3_scale(u, r * scree_cos(a)), w, r * scree_sin(a)), axis, along);
   p->position = vec3_add(vec3_load(c->at), at);
   scree_placement_settle(p);
   return fits && scree_placement_within(p, vec3_load(c->at), axis, c->radius);

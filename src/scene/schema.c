@@ -42,8 +42,8 @@ static const char *path_of(const scree_reader *r, const char *key, char path[LON
 
 /* Of the value of a key. */
 SCREE_PRINTF(3, 4)
-static scree_status
-    fail_at(const scree_reader *r, const scree_yaml *node, const char *format, ...) {
+static scree_status fail_at(const scree_reader *r, const scree_yaml *node, const char *format,
+                            ...) {
   char path[LONGEST_PATH];
   va_list arguments;
   va_start(arguments, format);

@@ -2,6 +2,7 @@
  * levels go to files which every worker, the one that made them too, reads back: all have the same
  * bits. One process makes a shape, under a lease; the others wait for it. */
 #include "base/file.h"
+#include "base/math.h"
 #include "base/number.h"
 #include "base/platform.h"
 #include "base/progress.h"
@@ -425,7 +426,7 @@ static scree_status read_mesh_particle(const char *path, scree_particle **partic
 static scree_status make_particle(const scree_study *study, const scree_study_shape *shape,
                                   const char *rp, scree_particle **particle, scree_error *error) {
   if (!strcmp(rp, "spheres"))
-    return scree_particle_sphere(cbrt(0.75 * shape->volume / pi), particle, error);
+    return scree_particle_sphere(scree_cbrt(0.75 * shape->volume / pi), particle, error);
   char *path = level_path(study, shape, rp);
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_status status = scree_study_spheres(rp)

@@ -11,6 +11,7 @@
 #include "world/walls.h"
 
 #include "base/array.h"
+#include "base/math.h"
 
 #include <string.h>
 
@@ -120,7 +121,7 @@ static vec3 rotation_vector(quat q) {
   vec3 v = {q.x, q.y, q.z};
   if (q.w < 0) v = vec3_neg(v);
   double s = vec3_norm(v);
-  return vec3_scale(v, s > 1e-4 ? 2 * asin(scree_min(s, 1)) / s : 2 + s * s / 3);
+  return vec3_scale(v, s > 1e-4 ? 2 * scree_atan2(s, fabs(q.w)) / s : 2 + s * s / 3);
 }
 
 /* The way and the turn from where the wall is to a pose. */

@@ -252,7 +252,7 @@ double scree_wall_extent(const scree_world_wall *wall) {
   const scree_wall *given = &wall->given;
   if (given->kind == SCREE_WALL_DISC) return given->radius;
   if (given->kind == SCREE_WALL_CYLINDER && given->length > 0)
-    return hypot(given->radius, given->length);
+    return sqrt(given->radius * given->radius + given->length * given->length);
   if (given->kind != SCREE_WALL_MESH) return INFINITY;
   const scree_box *box = &wall->surface->box;
   return vec3_norm(vec3_max(vec3_neg(box->low), box->high));

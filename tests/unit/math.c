@@ -97,10 +97,15 @@ static void powers_of_ten(void **state) {
     worst = fmax(worst, ulps(scree_power_of_ten(x), powl(10, x)));
   }
   assert_true(worst < 0.5001);
+  for (int i = 0; i < ARGUMENTS; i++) {
+    double x = fabs(spread(&rng, 1e-20, 1e20));
+    assert_true(ulps(scree_log10(x), log10l(x)) < 2);
+  }
   for (int n = -22; n <= 22; n++) {
     char text[8];
     snprintf(text, sizeof text, "1e%d", n);
     assert_true(same_bits(scree_power_of_ten(n), strtod(text, NULL)));
+    assert_true(scree_log10(strtod(text, NULL)) == n);
   }
   assert_true(isnan(scree_power_of_ten(NAN)));
 }
