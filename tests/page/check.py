@@ -247,8 +247,8 @@ def own_scan(browser, scan, folder):
         browser.wait("document.body.dataset.largestDistance", 120)
     print(f"own scan: {taken:.1f} s to the number, {int(browser.run('return document.body.dataset.memory')) / 1e6:.0f} MB, "
           f"at most {tasks.longest():.0f} ms of the page's own at a time")
-    check(tasks.longest() <= BLOCKED, f"the page blocked for {tasks.longest():.0f} ms")
     check(saved(browser, "#save-choice")[1] == native_choice("scan.stl", folder), "the scan's choice.json is not the program's")
+    check(tasks.longest() <= BLOCKED, f"the page blocked for {tasks.longest():.0f} ms")
     check(int(browser.run("return document.body.dataset.memory")) <= MEMORY, "more memory than allowed")
 
 
