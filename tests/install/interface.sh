@@ -7,7 +7,8 @@ set -eu
 list=$1/tests/install/interface.txt
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-nm -D --defined-only "$3" | sed -n 's/^[0-9a-f]* [A-Z] //p' >"$folder/found"
+# clang exports what picks a function by the processor: NAME.resolver
+nm -D --defined-only "$3" | sed -n 's/^[0-9a-f]* [A-Z] \([^.]*\)$/\1/p' >"$folder/found"
 {
   printf '#include <scree.h>\n#include <stdio.h>\nint main(void) {\n'
   sed -n 's/^} \(scree_[a-z0-9_]*\);.*/\1/p' "$1"/include/scree/*.h |
