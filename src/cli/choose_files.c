@@ -24,7 +24,6 @@
 #include "report/provenance.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
 static const char *const FIGURES[] = {"figure.png", "figure.svg", "figure.pdf", "figure.csv",
@@ -274,18 +273,14 @@ scree_status choose_write_meshes(const choose_run *run, size_t index, const scre
 
 /* choice.txt: what choose_print says. */
 static scree_status write_text(const choose_run *run, scree_error *error) {
-  char *text = NULL, path[CHOOSE_PATH_BYTES];
-  size_t size;
+  char path[CHOOSE_PATH_BYTES];
+  scree_output output;
   scree_status status = join(run, "", "choice.txt", "", path, error);
   if (status != SCREE_OK) return status;
-  FILE *stream = scree_memory_open(&text, &size);
-  if (stream) choose_print(stream, run);
-  if (!stream || !scree_memory_close(stream))
-    status = cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
-  else
-    status = scree_text_write(text, path, run->arguments->overwrite, error);
-  free(text);
-  return status;
+  status = scree_output_open(path, run->arguments->overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  choose_print(output.stream, run);
+  return scree_output_commit(&output, error);
 }
 
 /* What is made of the other files, so the last. */

@@ -95,18 +95,14 @@ void clump_report_free(scree_clump_report *report) {
 
 static scree_status write_text(const clump_run *run, scree_error *error) {
   const clump_arguments *a = run->call->options;
-  char *text = NULL, path[CLUMP_PATH_BYTES];
-  size_t size;
+  char path[CLUMP_PATH_BYTES];
+  scree_output output;
   scree_status status = join(run, "clump.txt", "", path, error);
   if (status != SCREE_OK) return status;
-  FILE *stream = scree_memory_open(&text, &size);
-  if (stream) clump_print(stream, run);
-  if (!stream || !scree_memory_close(stream))
-    status = cli_refuse(error, SCREE_OUT_OF_MEMORY, path, "out of memory");
-  else
-    status = scree_text_write(text, path, a->overwrite, error);
-  free(text);
-  return status;
+  status = scree_output_open(path, a->overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  clump_print(output.stream, run);
+  return scree_output_commit(&output, error);
 }
 
 scree_status clump_write_files(clump_run *run, const scree_clump_report *report,

@@ -7,7 +7,6 @@
 #include "base/platform.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_PATH = 4096 };
@@ -70,19 +69,11 @@ int study_run_slurm(const cli_call *call, const scree_study *study, const char *
     return 1;
   }
   snprintf(script, sizeof script, "%s/study.sbatch", full);
-  char *text = NULL;
-  size_t size;
+  scree_output output;
   scree_error error;
-  FILE *stream = scree_memory_open(&text, &size);
-  if (stream) write_script(stream, call, file, full, tasks < runs ? tasks : runs);
-  if (!stream || !scree_memory_close(stream)) {
-    fprintf(stderr, "scree: %s: out of memory\n", cli_printable(script, shown));
-    free(text);
-    return 1;
-  }
-  scree_status status = scree_text_write(text, script, true, &error);
-  free(text);
-  if (status != SCREE_OK) return cli_fail(&error);
+  if (scree_output_open(script, true, &output, &error) != SCREE_OK) return cli_fail(&error);
+  write_script(output.stream, call, file, full, tasks < runs ? tasks : runs);
+  if (scree_output_commit(&output, &error) != SCREE_OK) return cli_fail(&error);
   if (!a->dry_run) return submit(script);
   printf("%s: not submitted; `sbatch %s` does\n", cli_printable(script, shown), shown);
   return 0;

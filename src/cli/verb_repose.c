@@ -233,22 +233,16 @@ static scree_status on_frame(void *context, scree_run *run, size_t index, scree_
 /* experiment.yaml: what is run. */
 static scree_status write_experiment(const one_run *o, scree_error *error) {
   const repose_arguments *a = o->all->arguments;
-  char path[4200], checkpoint[4200], *text = NULL;
-  size_t size;
+  char path[4200], checkpoint[4200];
+  scree_output output;
   snprintf(path, sizeof path, "%s/experiment.yaml", o->folder);
   snprintf(checkpoint, sizeof checkpoint, "%s/checkpoint.scree", o->folder);
   /* a run that goes on, or is refused as another one's, keeps the text it began with */
   if (a->resume && scree_path_exists(path) && scree_path_exists(checkpoint)) return SCREE_OK;
-  FILE *stream = scree_memory_open(&text, &size);
-  if (stream) scree_experiment_print(&o->all->experiment, stream);
-  if (!stream || !scree_memory_close(stream)) {
-    free(text);
-    *error = (scree_error){SCREE_OUT_OF_MEMORY, "out of memory for experiment.yaml"};
-    return SCREE_OUT_OF_MEMORY;
-  }
-  scree_status status = scree_text_write(text, path, a->force || a->resume, error);
-  free(text);
-  return status;
+  scree_status status = scree_output_open(path, a->force || a->resume, &output, error);
+  if (status != SCREE_OK) return status;
+  scree_experiment_print(&o->all->experiment, output.stream);
+  return scree_output_commit(&output, error);
 }
 
 /* The collection of the frames, for each view that was written. */
@@ -313,19 +307,13 @@ static void print_result(FILE *stream, const one_run *o, const scree_run *run,
 /* result.txt: what is printed. */
 static scree_status write_text_result(const one_run *o, const scree_run *run,
                                       const scree_run_result *result, scree_error *error) {
-  char *text = NULL, path[4200];
-  size_t size;
-  FILE *stream = scree_memory_open(&text, &size);
+  char path[4200];
+  scree_output output;
   snprintf(path, sizeof path, "%s/result.txt", o->folder);
-  if (stream) print_result(stream, o, run, result);
-  if (!stream || !scree_memory_close(stream)) {
-    free(text);
-    *error = (scree_error){SCREE_OUT_OF_MEMORY, "result.txt: out of memory"};
-    return error->status;
-  }
-  scree_status status = scree_text_write(text, path, true, error);
-  free(text);
-  return status;
+  scree_status status = scree_output_open(path, true, &output, error);
+  if (status != SCREE_OK) return status;
+  print_result(output.stream, o, run, result);
+  return scree_output_commit(&output, error);
 }
 
 /* What is made of the other files, so the last. */
