@@ -1,4 +1,5 @@
 /* scree curve: the table of levels. */
+#include "base/math.h"
 #include "cli/grid.h"
 #include "cli/input.h"
 #include "cli/surface.h"
@@ -122,8 +123,8 @@ static scree_status make_row(table *t, size_t index, const scree_progress *progr
 /* Rows from fine to coarse on the grid of Rp, each level once; text and CSV as they come. */
 static scree_status make_rows(table *t) {
   const curve_arguments *arguments = t->arguments;
-  double bottom = log10(t->grid.least), steps = t->grid.per_decade;
-  size_t rows = (size_t)floor((log10(t->grid.most) - bottom) * steps + GRID_SLACK) + 1;
+  double bottom = scree_log10(t->grid.least), steps = t->grid.per_decade;
+  size_t rows = (size_t)floor((scree_log10(t->grid.most) - bottom) * steps + GRID_SLACK) + 1;
   size_t last = SIZE_MAX;
   t->rows = calloc(rows, sizeof *t->rows);
   if (!t->rows) {
@@ -131,7 +132,7 @@ static scree_status make_rows(table *t) {
     return SCREE_OUT_OF_MEMORY;
   }
   for (size_t i = 0; i < rows; i++) {
-    double rp = pow(10, bottom + (double)(rows - 1 - i) / steps);
+    double rp = scree_power_of_ten(bottom + (double)(rows - 1 - i) / steps);
     size_t target = (size_t)(rp * (double)t->first.triangle_count * (1 + 1e-12));
     size_t index = scree_curve_find(t->curve, target);
     if (index == last) continue;
