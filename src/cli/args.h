@@ -100,6 +100,8 @@ void cli_print_markdown(FILE *stream, const cli_verb *verb);
 void cli_print_options(FILE *stream);
 /* For bash, zsh or fish; false, and nothing printed, for another shell. */
 bool cli_print_completion(FILE *stream, const char *shell);
+/* Every character that is in `marks` escaped by a backslash. */
+void cli_print_escaped(FILE *stream, const char *text, const char *marks);
 
 enum { CLI_PRINTABLE_BYTES = 4200 };
 /* A copy of a name as text may show it: scree_make_printable with a ?, as in errors. For people:

@@ -126,10 +126,7 @@ static void print_zsh(FILE *stream) {
 /* ---- fish ---- */
 
 static void print_fish_text(FILE *stream, const char *text) {
-  for (; *text; text++) {
-    if (strchr("'\\", *text)) fputc('\\', stream);
-    fputc(*text, stream);
-  }
+  cli_print_escaped(stream, text, "'\\");
 }
 
 static void print_fish_option(FILE *stream, const cli_verb *verb, const cli_option *option) {

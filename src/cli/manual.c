@@ -3,8 +3,7 @@
 
 #include <string.h>
 
-/* Every character that is in `marks` escaped by a backslash. */
-static void print_escaped(FILE *stream, const char *text, const char *marks) {
+void cli_print_escaped(FILE *stream, const char *text, const char *marks) {
   for (; *text; text++) {
     if (strchr(marks, *text)) fputc('\\', stream);
     fputc(*text, stream);
@@ -12,7 +11,7 @@ static void print_escaped(FILE *stream, const char *text, const char *marks) {
 }
 
 static void print_man_text(FILE *stream, const char *text) {
-  print_escaped(stream, text, "_*\\#");
+  cli_print_escaped(stream, text, "_*\\#");
 }
 
 static void print_man_options(FILE *stream, const cli_option *options, size_t count) {
@@ -74,10 +73,7 @@ void cli_print_man(FILE *stream, const cli_verb *verb) {
 }
 
 static void print_markdown_text(FILE *stream, const char *text) {
-  for (; *text; text++) {
-    if (strchr("_*\\#<>|", *text)) fputc('\\', stream);
-    fputc(*text, stream);
-  }
+  cli_print_escaped(stream, text, "_*\\#<>|");
 }
 
 static void print_markdown_options(FILE *stream, const cli_option *options, size_t count) {
