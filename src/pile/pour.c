@@ -3,9 +3,7 @@
 
 #include "base/alloc.h"
 #include "base/math.h"
-#include "base/platform.h"
 
-#include <stdlib.h>
 #include <string.h>
 
 static const double cell_share = 1.02;     /* of the largest particle's diameter: the pitch */
@@ -125,7 +123,8 @@ static void put_inlet(const scree_pour *pour, FILE *out) {
           count, -o->entry_speed);
 }
 
-static void put_scene(const scree_pour *pour, FILE *out) {
+static void put_scene(const void *context, FILE *out) {
+  const scree_pour *pour = context;
   put_world(pour, out);
   fputs("shapes:\n", out);
   for (size_t s = 0; s < pour->shape_count; s++)
@@ -136,15 +135,7 @@ static void put_scene(const scree_pour *pour, FILE *out) {
 }
 
 scree_status scree_pour_file(const scree_pour *pour, scree_scene_file **file, scree_error *error) {
-  char *text = NULL;
-  size_t length;
-  FILE *stream = scree_memory_open(&text, &length);
-  if (stream) put_scene(pour, stream);
-  bool good = stream && scree_memory_close(stream);
-  scree_status status = good ? scree_scene_file_parse(text, length, "", file, error)
-                             : scree_fail_memory(error, 0, "a pour's scene");
-  free(text);
-  return status;
+  return scree_scene_file_make(put_scene, pour, file, error);
 }
 
 /* ---- creation ---- */

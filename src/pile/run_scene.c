@@ -6,10 +6,6 @@
  * hits harder than it must. */
 #include "pile/run.h"
 
-#include "base/platform.h"
-
-#include <stdlib.h>
-
 static const double loose_packing = 0.30;    /* solid fraction that sets the height of the inlet */
 static const double clearance_share = 0.005; /* of the particle size, kept free on each side */
 static const double cylinder_length = 100;   /* m: its upper end is never met */
@@ -83,7 +79,8 @@ static void put_sensors(const scree_run *run, FILE *out) {
           e->series_interval, e->checkpoint_interval);
 }
 
-static void put_scene(const scree_run *run, FILE *out) {
+static void put_scene(const void *context, FILE *out) {
+  const scree_run *run = context;
   const scree_experiment *e = &run->experiment;
   fprintf(out, "title: angle of repose\nseed: %llu\ntick: %d\ngravity: [0, 0, %.17g]\n",
           (unsigned long long)e->seed, TICK_STEPS, -e->gravity);
@@ -114,13 +111,5 @@ scree_plan_pile scree_run_pile(const scree_run *run, const scree_experiment *mea
 }
 
 scree_status scree_run_file(const scree_run *run, scree_scene_file **file, scree_error *error) {
-  char *text = NULL;
-  size_t length;
-  FILE *stream = scree_memory_open(&text, &length);
-  if (stream) put_scene(run, stream);
-  bool good = stream && scree_memory_close(stream);
-  scree_status status = good ? scree_scene_file_parse(text, length, "", file, error)
-                             : scree_fail_memory(error, 0, "an experiment's scene");
-  free(text);
-  return status;
+  return scree_scene_file_make(put_scene, run, file, error);
 }

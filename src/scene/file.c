@@ -77,6 +77,19 @@ scree_status scree_scene_file_print(const scree_scene_file *file, FILE *stream,
   return status;
 }
 
+scree_status scree_scene_file_make(scree_scene_writer *write, const void *context,
+                                   scree_scene_file **file, scree_error *error) {
+  char *text = NULL;
+  size_t length;
+  FILE *stream = scree_memory_open(&text, &length);
+  if (stream) write(context, stream);
+  bool good = stream && scree_memory_close(stream);
+  scree_status status = good ? scree_scene_file_parse(text, length, "", file, error)
+                             : scree_fail_memory(error, 0, "a scene's text");
+  free(text);
+  return status;
+}
+
 scree_status scree_scene_file_text(const scree_scene_file *file, char **text, scree_error *error) {
   char *printed = NULL;
   size_t size;

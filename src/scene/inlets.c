@@ -198,16 +198,15 @@ static bool push_present(scree_scene *scene, const scree_placement *p, const dou
   return true;
 }
 
-/* The bodies that reach into the region. */
-static scree_status list_present(scree_scene *scene, const scree_plan_inlet *plan,
-                                 scree_error *error) {
-  double low[3], high[3];
-  region_of(plan, low, high);
+scree_status scree_scene_list_present(scree_scene *scene, const scree_placement *extents,
+                                      const double low[3], const double high[3],
+                                      scree_error *error) {
   scene->present.count = 0;
   for (size_t b = 0; b < scene->shape_of.count; b++) {
     if (scree_world_body_removed(scene->world, b)) continue;
     scree_body body;
-    scree_placement p = scene->shapes[scene->shape_of.items[b]].extent;
+    size_t shape = scene->shape_of.items[b];
+    scree_placement p = extents ? extents[shape] : scene->shapes[shape].extent;
     scree_world_get_body(scene->world, b, &body);
     p.position = vec3_load(body.position);
     p.orientation = scree_body_turn(&body);
@@ -215,6 +214,13 @@ static scree_status list_present(scree_scene *scene, const scree_plan_inlet *pla
       return scree_fail_memory(error, scene->present.count * sizeof p, "an inlet's bodies");
   }
   return SCREE_OK;
+}
+
+static scree_status list_near(scree_scene *scene, const scree_plan_inlet *plan,
+                              scree_error *error) {
+  double low[3], high[3];
+  region_of(plan, low, high);
+  return scree_scene_list_present(scene, NULL, low, high, error);
 }
 
 static bool is_free(const scree_scene *scene, const scree_placement *p) {
@@ -261,7 +267,7 @@ static scree_status fill(scree_scene *scene, size_t index, scree_error *error) {
     size_t which = scree_fill_next_shape(shares->values, shares->count, inlet->counts);
     scree_placement p;
     scree_rng rng = rng_of(scene, index);
-    scree_status status = listed ? SCREE_OK : list_present(scene, inlet->plan, error);
+    scree_status status = listed ? SCREE_OK : list_near(scene, inlet->plan, error);
     if (status != SCREE_OK) return status;
     listed = true;
     room = false;

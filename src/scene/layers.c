@@ -284,30 +284,12 @@ static double top_of(const scree_scene *scene, const scree_scene_inlet *inlet) {
   return top;
 }
 
-/* The bodies that reach above `bottom`. */
-static scree_status list_present(scree_scene *scene, const scree_scene_inlet *inlet, double bottom,
-                                 scree_error *error) {
-  scene->present.count = 0;
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
-    scree_placement p = inlet->layers.extents[scene->shape_of.items[b]];
-    if (body.position[2] + p.radius < bottom) continue;
-    p.position = vec3_load(body.position);
-    p.orientation = scree_body_turn(&body);
-    scree_placement_settle(&p);
-    if (!SCREE_PUSH(&scene->present, p))
-      return scree_fail_memory(error, scene->present.count * sizeof p, "a layer's bodies");
-  }
-  return SCREE_OK;
-}
-
 static scree_status enter_random(scree_scene *scene, scree_scene_inlet *inlet, double bottom,
                                  scree_error *error) {
   size_t left;
   double velocity[3] = {0, 0, -inlet->layers.speed};
-  scree_status status = list_present(scene, inlet, bottom, error);
+  const double low[3] = {-INFINITY, -INFINITY, bottom}, high[3] = {INFINITY, INFINITY, INFINITY};
+  scree_status status = scree_scene_list_present(scene, inlet->layers.extents, low, high, error);
   if (status != SCREE_OK) return status;
   scree_placement *waiting = list_waiting(inlet, inlet->entered, &left, error);
   if (!waiting) return SCREE_OUT_OF_MEMORY;

@@ -267,6 +267,15 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
  * had ended. */
 bool scree_scene_reopen(scree_scene *scene);
 /* What the engine must know of a shape that has its particle. */
+/* file.c: the file of the text that a program puts out, as a user would write it. */
+typedef void scree_scene_writer(const void *context, FILE *out);
+scree_status scree_scene_file_make(scree_scene_writer *write, const void *context,
+                                   scree_scene_file **file, scree_error *error);
+/* inlets.c: into scene->present, the bodies and in a periodic domain their images that reach into
+ * the box, by an extent for each shape; NULL: the shapes' own. */
+scree_status scree_scene_list_present(scree_scene *scene, const scree_placement *extents,
+                                      const double low[3], const double high[3],
+                                      scree_error *error);
 /* At rest or as `state` says, of the shape's density. */
 scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
                                   const scree_body *state, scree_error *error);
