@@ -11,6 +11,8 @@
 #include "base/progress.h"
 #include "particle/closest.h"
 
+/* A list of fast bodies should last this many steps. */
+enum { FAST_STEPS = 40 };
 static const double fast_skins =
     3; /* no list of fast bodies reaches farther than this many skins */
 
@@ -288,7 +290,7 @@ bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_fra
                .relative = relative,
                .scratch = scratch,
                .skin = scree_pair_skin(world, pair)};
-  l.skin = scree_max(l.skin, scree_min(SCREE_FAST_STEPS * pair->list.travel, fast_skins * l.skin));
+  l.skin = scree_max(l.skin, scree_min(FAST_STEPS * pair->list.travel, fast_skins * l.skin));
   l.skin =
       scree_min(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
   mark_awake(&l);

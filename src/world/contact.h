@@ -96,14 +96,6 @@ static inline double scree_pair_skin(const scree_world *w, const scree_pair *p) 
   return w->options.skin / w->options.smoothing * p->law.smoothing;
 }
 
-/* A list of fast bodies should last this many steps. */
-enum { SCREE_FAST_STEPS = 40 };
-
-/* Whether one that reaches no farther than the skin would not. */
-static inline bool scree_pair_is_fast(const scree_world *w, const scree_pair *p) {
-  return SCREE_FAST_STEPS * p->list.travel > scree_pair_skin(w, p);
-}
-
 /* The smaller body of a pair, whose motion relative to the other is measured, and a ball around it
  * and a little beyond. */
 static inline bool scree_pair_smaller_is_a(const scree_world *w, const scree_pair *p) {

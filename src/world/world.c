@@ -281,10 +281,12 @@ scree_status scree_world_set_body_density(scree_world *world, size_t index, doub
   if (!(density > 0 && isfinite(density)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: body %zu: density %g kg/m3; above 0",
                       index, density);
-  scree_body state;
-  scree_world_get_body(world, index, &state);
-  fill_body(&world->bodies, index, density);
-  place_body(world, index, &state);
+  scree_bodies *b = &world->bodies;
+  double before = b->mass[index];
+  fill_body(b, index, density);
+  b->momentum[index] = vec3_scale(b->momentum[index], b->mass[index] / before);
+  world->body_path_at_build[index] = -1;
+  scree_body_forget(world, index);
   world->time_step_stale = true;
   return SCREE_OK;
 }
