@@ -3,7 +3,7 @@
 #include "base/vec.h"
 #include "mesh/closest.h"
 #include "support/alloc_fail.h"
-#include "support/check.h"
+#include "support/curve.h"
 #include "support/shapes.h"
 
 #include <stdlib.h>
@@ -13,15 +13,6 @@ static scree_mesh bumpy_sphere(int level, uint64_t seed) {
   scree_mesh mesh = shape_icosphere(0.03, level);
   shape_roughen(&mesh, 0.1, &rng);
   return mesh;
-}
-
-static scree_curve *build(const scree_mesh *mesh, scree_method method) {
-  scree_simplify_options options = scree_default_simplify_options();
-  scree_curve *curve = NULL;
-  scree_error error;
-  options.method = method;
-  CHECK_OK(scree_curve_build(mesh, &options, NULL, &curve, &error), error);
-  return curve;
 }
 
 static vec3 corner(const scree_mesh *mesh, size_t t, int k) {
@@ -103,7 +94,7 @@ static void a_fitted_level_is_nearer_and_as_sound(void **state) {
   scree_mesh bodies[] = {bumpy_sphere(4, 1), shape_torus(0.03, 0.01, 96, 48)};
   for (int k = 0; k < 2; k++)
     for (int m = 0; m < 2; m++) {
-      scree_curve *curve = build(&bodies[k], m ? SCREE_METHOD_QECD : SCREE_METHOD_VOLUME);
+      scree_curve *curve = curve_of(&bodies[k], m ? SCREE_METHOD_QECD : SCREE_METHOD_VOLUME);
       for (int i = 0; i < 3; i++)
         check_fitted(curve, scree_curve_find(curve, targets[i]), &bodies[k], k == 1 && i == 0);
       scree_curve_free(curve);
@@ -120,7 +111,7 @@ static void threads_and_scale_change_nothing(void **state) {
   scree_mesh_scale(&mesh[1], factor);
   for (int k = 0; k < 2; k++) {
     scree_set_threads(1 + 2 * k);
-    scree_curve *curve = build(&mesh[k], SCREE_METHOD_VOLUME);
+    scree_curve *curve = curve_of(&mesh[k], SCREE_METHOD_VOLUME);
     CHECK_OK(scree_curve_fit(curve, scree_curve_find(curve, 200), &fitted[k], &error), error);
     scree_curve_free(curve);
   }
@@ -136,7 +127,7 @@ static void what_cannot_gain_stays(void **state) {
   (void)state;
   scree_mesh bodies[] = {shape_grid_box(0.1, 0.05, 0.02, 8), shape_sheet(0, 12)};
   for (int k = 0; k < 2; k++) {
-    scree_curve *curve = build(&bodies[k], SCREE_METHOD_VOLUME);
+    scree_curve *curve = curve_of(&bodies[k], SCREE_METHOD_VOLUME);
     scree_mesh plain, fitted;
     scree_error error;
     size_t last = scree_curve_level_count(curve) - 1;
@@ -163,7 +154,7 @@ static scree_status fit(void *context, scree_error *error) {
 static void failing_memory_is_told(void **state) {
   (void)state;
   scree_mesh ball = bumpy_sphere(3, 2);
-  scree_curve *curve = build(&ball, SCREE_METHOD_VOLUME);
+  scree_curve *curve = curve_of(&ball, SCREE_METHOD_VOLUME);
   check_allocation_failures(fit, curve);
   scree_curve_free(curve);
   scree_mesh_free(&ball);

@@ -1,18 +1,9 @@
 #include "base/vec.h"
 #include "support/alloc_fail.h"
-#include "support/check.h"
+#include "support/curve.h"
 #include "support/shapes.h"
 
 static const scree_method methods[] = {SCREE_METHOD_VOLUME, SCREE_METHOD_QECD};
-
-static scree_curve *build(const scree_mesh *mesh, scree_method method) {
-  scree_simplify_options options = scree_default_simplify_options();
-  scree_curve *curve = NULL;
-  scree_error error;
-  options.method = method;
-  CHECK_OK(scree_curve_build(mesh, &options, NULL, &curve, &error), error);
-  return curve;
-}
 
 /* Closed, manifold, oriented, without degenerate facets; measures as the record says. */
 static void check_level(const scree_curve *curve, size_t index, const scree_mesh *mesh) {
@@ -40,7 +31,7 @@ static void every_level_is_sound_and_as_recorded(void **state) {
                         : shape == 1 ? shape_torus(0.03, 0.01, 24, 12)
                                      : shape_grid_box(0.1, 0.05, 0.02, 8);
       if (shape == 1) shape_shake(&mesh, 2e-4, &rng);
-      scree_curve *curve = build(&mesh, methods[m]);
+      scree_curve *curve = curve_of(&mesh, methods[m]);
       scree_curve_facts facts = scree_curve_get_facts(curve);
       assert_true(facts.closed);
       assert_int_equal(facts.shell_count, 1);
@@ -71,7 +62,7 @@ static void a_box_goes_to_its_twelve_triangles(void **state) {
   (void)state;
   for (int m = 0; m < 2; m++) {
     scree_mesh mesh = shape_grid_box(0.1, 0.05, 0.02, 16), twelve;
-    scree_curve *curve = build(&mesh, methods[m]);
+    scree_curve *curve = curve_of(&mesh, methods[m]);
     size_t level = scree_curve_find(curve, 12);
     scree_level at;
     scree_error error;
@@ -123,13 +114,13 @@ static void check_the_same_bits(scree_mesh mesh) {
   scree_mesh plain = shape_weld(&mesh, NULL);
   for (int m = 0; m < 2; m++) {
     scree_set_threads(1);
-    scree_curve *curve = build(&plain, methods[m]);
+    scree_curve *curve = curve_of(&plain, methods[m]);
     uint64_t expected = fingerprint(curve);
     scree_curve_free(curve);
     for (int threads = 2; threads <= 8; threads += 1 + threads / 3 * 4) {
       scree_set_threads(threads);
       scree_mesh shuffled = shape_weld(&mesh, &rng);
-      curve = build(&shuffled, methods[m]);
+      curve = curve_of(&shuffled, methods[m]);
       assert_true(fingerprint(curve) == expected);
       scree_curve_free(curve);
       scree_mesh_free(&shuffled);
@@ -150,7 +141,7 @@ static void passes_keep_every_promise(void **state) {
   (void)state;
   for (int m = 0; m < 2; m++) {
     scree_mesh mesh = bumpy_sphere(5, 9); /* 20,480 triangles: passes come first */
-    scree_curve *curve = build(&mesh, methods[m]);
+    scree_curve *curve = curve_of(&mesh, methods[m]);
     scree_replay *replay = NULL;
     scree_error error;
     scree_level first, level;
@@ -200,7 +191,7 @@ static void shells_stay_in_and_beside_each_other(void **state) {
     }
     check_cavities(&mesh, BUBBLES);
     for (int m = 0; m < 2; m++) {
-      scree_curve *curve = build(&mesh, methods[m]);
+      scree_curve *curve = curve_of(&mesh, methods[m]);
       scree_replay *replay = NULL;
       scree_error error;
       CHECK_OK(scree_replay_start(curve, &replay, &error), error);
@@ -225,7 +216,7 @@ static void moving_scaling_turning_change_rounding_only(void **state) {
     mat3 turn = quat_to_mat3(scree_rng_rotation(&rng));
     for (int i = 0; i < 9; i++) turn.m[i / 3][i % 3] *= 7;
     shape_transform(&other, &turn, (vec3){0.5, -2, 1});
-    scree_curve *a = build(&mesh, methods[m]), *b = build(&other, methods[m]);
+    scree_curve *a = curve_of(&mesh, methods[m]), *b = curve_of(&other, methods[m]);
     for (size_t count = 16000; count > 100; count /= 2) {
       scree_level level_a, level_b;
       scree_curve_level(a, scree_curve_find(a, count), &level_a);
@@ -247,7 +238,7 @@ static void a_scaled_curve_is_the_same_curve(void **state) {
   for (int m = 0; m < 2; m++) {
     scree_mesh mesh = bumpy_sphere(4, 4), scaled = bumpy_sphere(4, 4);
     scree_simplify_options options = {.method = methods[m]};
-    scree_curve *a = build(&mesh, methods[m]), *b = NULL;
+    scree_curve *a = curve_of(&mesh, methods[m]), *b = NULL;
     scree_error error;
     assert_int_equal(scree_curve_build_scaled(&scaled, 0, &options, NULL, &b, &error),
                      SCREE_BAD_ARGUMENT);
@@ -314,7 +305,7 @@ static void numbers_change_rounding_only(void **state) {
   scree_rng rng = {.seed = 3};
   scree_mesh mesh = bumpy_sphere(5, 5), other = renumbered(&mesh, &rng);
   for (int m = 0; m < 2; m++) {
-    scree_curve *a = build(&mesh, methods[m]), *b = build(&other, methods[m]);
+    scree_curve *a = curve_of(&mesh, methods[m]), *b = curve_of(&other, methods[m]);
     for (size_t count = 16000; count > 20; count = count * 3 / 4) {
       scree_level level_a, level_b;
       scree_curve_level(a, scree_curve_find(a, count), &level_a);
@@ -393,7 +384,7 @@ static void a_shared_vertex_stays_one(void **state) {
   scree_mesh loose = shape_join(&a, &b), mesh = shape_weld(&loose, NULL);
   assert_int_equal(mesh.vertex_count, a.vertex_count + b.vertex_count - 1);
   for (int m = 0; m < 2; m++) {
-    scree_curve *curve = build(&mesh, methods[m]);
+    scree_curve *curve = curve_of(&mesh, methods[m]);
     scree_replay *replay = NULL;
     assert_int_equal(scree_curve_get_facts(curve).locked_vertex_count, 2);
     CHECK_OK(scree_replay_start(curve, &replay, &error), error);
