@@ -266,14 +266,13 @@ scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *f
     scree_free(text);
     return status;
   }
-  bool longer = plan.time > scree_world_time(scene->world);
+  scree_scene_reopen(scene, &plan);
   scene->plan.title = plan.title;
   scene->plan.time = plan.time;
   scene->plan.stop = plan.stop;
   scene->plan.output = plan.output;
   scree_free(scene->text);
   scene->text = text;
-  if (longer) scree_scene_reopen(scene);
   return SCREE_OK;
 }
 

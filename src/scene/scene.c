@@ -466,13 +466,20 @@ scree_status scree_scene_advance(scree_scene *scene, size_t step_count, scree_er
   return status;
 }
 
-bool scree_scene_reopen(scree_scene *scene) {
-  if (!scene->end) return false;
+static bool same_stop(const scree_plan_stop *a, const scree_plan_stop *b) {
+  bool same_still = a->still == b->still || (isnan(a->still) && isnan(b->still));
+  return same_still && a->empty == b->empty && a->after == b->after;
+}
+
+void scree_scene_reopen(scree_scene *scene, const scree_plan *plan) {
+  bool stops = scene->end == END_STILL || scene->end == END_EMPTY;
+  if (!stops && scene->end != END_TIME) return;
+  if (stops && same_stop(scene->plan.stop, plan->stop)) return;
+  if (plan->time <= scree_world_time(scene->world)) return;
   scene->end = GOES_ON;
-  scene->still_ticks = 0;
+  if (stops) scene->still_ticks = 0;
   if (scree_world_time(scene->world) < next_row(scene) - scene->plan.output->series)
     scene->row_count--;
-  return true;
 }
 
 /* ---- looking ---- */

@@ -263,9 +263,8 @@ scree_status scree_scene_measure_mixing(const scree_scene *scene,
 /* scene.c: the arrays of a scene that has a plan; then, with its particles, gallery and world. */
 scree_status scree_scene_prepare(scree_scene *scene, scree_error *error);
 scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_error *error);
-/* One that ended goes on where its file gives it more time, without the row of its end; whether it
- * had ended. */
-bool scree_scene_reopen(scree_scene *scene);
+/* One that ended by what is otherwise in this plan goes on, without the row of its end. */
+void scree_scene_reopen(scree_scene *scene, const scree_plan *plan);
 /* What the engine must know of a shape that has its particle. */
 /* file.c: the file of the text that a program puts out, as a user would write it. */
 typedef void scree_scene_writer(const void *context, FILE *out);

@@ -250,6 +250,46 @@ static void completed_in_pieces(void **state) {
   scree_scene_file_free(file);
 }
 
+static bool same_file(const char *path, const char *text, size_t size) {
+  char *now;
+  size_t now_size;
+  text_of(path, &now, &now_size);
+  bool same = now_size == size && !memcmp(now, text, size);
+  scree_free(now);
+  return same;
+}
+
+/* A scene that its `stop` ended is not begun anew by going on with it; another `stop` takes it on,
+ * as if it had been there from the start. */
+static void gone_on_with_after_its_end(void **state) {
+  (void)state;
+  static const char *const files[] = {"ended/series.csv", "ended/motion.scree"};
+  scree_error error;
+  scree_scene_file *file = parse(stream_text);
+  scree_scene *scene = NULL;
+  char *texts[2];
+  size_t sizes[2];
+  set(file, "stop", "{still: 1e9}");
+  scree_scene_job job = {.file = file, .folder = in_folder("ended"), .resume = true};
+  CHECK_OK(scree_scene_complete(&job, &scene, &error), error);
+  assert_string_equal(scree_scene_end(scene), "still");
+  scree_scene_free(scene);
+  for (int i = 0; i < 2; i++) text_of(in_folder(files[i]), &texts[i], &sizes[i]);
+  CHECK_OK(scree_scene_complete(&job, &scene, &error), error);
+  scree_scene_free(scene);
+  for (int i = 0; i < 2; i++) {
+    assert_true(same_file(in_folder(files[i]), texts[i], sizes[i]));
+    scree_free(texts[i]);
+  }
+  set(file, "stop.after", "0.4");
+  CHECK_OK(scree_scene_complete(&job, &scene, &error), error);
+  scree_scene *whole = run_cut(file, SIZE_MAX, 1);
+  assert_true(same_state(whole, scene));
+  scree_scene_free(whole);
+  scree_scene_free(scene);
+  scree_scene_file_free(file);
+}
+
 static void damaged_checkpoints(void **state) {
   (void)state;
   scree_error error;
@@ -370,6 +410,7 @@ int main(void) {
       cmocka_unit_test(any_cut_and_any_threads),
       cmocka_unit_test(resumed_from_any_moment),
       cmocka_unit_test(completed_in_pieces),
+      cmocka_unit_test(gone_on_with_after_its_end),
       cmocka_unit_test(damaged_checkpoints),
       cmocka_unit_test(out_of_memory),
   };
