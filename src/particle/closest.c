@@ -102,9 +102,10 @@ void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, d
     near->next = scree_smaller(near->next, near->distance[--near->count]);
 }
 
-/* Below one node, nearer child first: distance and face of what is nearer than *best2. */
-static void nearest_below(const scree_particle *particle, uint32_t start, vec3 p, double *best2,
-                          uint32_t *face) {
+/* Below one node, nearer child first: distance and face of what is nearer than *best2; or of the
+ * first that is nearer than `enough2`. */
+static void nearest_below(const scree_particle *particle, uint32_t start, vec3 p, double enough2,
+                          double *best2, uint32_t *face) {
   const scree_tree *tree = &particle->face_tree;
   const scree_tree_node *nodes = tree->nodes;
   tree_entry stack[SCREE_TREE_STACK];
@@ -130,6 +131,7 @@ static void nearest_below(const scree_particle *particle, uint32_t start, vec3 p
         if (d2 >= *best2) continue;
         *best2 = d2;
         *face = f;
+        if (d2 < enough2) return;
       }
     }
     if (depth == 0) return;
@@ -140,8 +142,16 @@ static void nearest_below(const scree_particle *particle, uint32_t start, vec3 p
 double scree_nearest_face(const scree_particle *particle, const uint32_t *nodes, int node_count,
                           vec3 p, double reach, uint32_t *face) {
   double best2 = reach * reach;
-  for (int i = 0; i < node_count; i++) nearest_below(particle, nodes[i], p, &best2, face);
+  for (int i = 0; i < node_count; i++) nearest_below(particle, nodes[i], p, 0, &best2, face);
   return best2 < reach * reach ? sqrt(best2) : INFINITY;
+}
+
+bool scree_is_near(const scree_particle *particle, vec3 p, double reach) {
+  const double reach2 = reach * reach;
+  double best2 = reach2;
+  uint32_t face;
+  nearest_below(particle, 0, p, reach2, &best2, &face);
+  return best2 < reach2;
 }
 
 /* ---- inside or outside ---- */

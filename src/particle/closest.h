@@ -77,6 +77,9 @@ void scree_closest_faces(const scree_particle *particle, vec3 p, double reach, d
 double scree_nearest_face(const scree_particle *particle, const uint32_t *nodes, int node_count,
                           vec3 p, double reach, uint32_t *face);
 
+/* Whether some face is closer than `reach`. */
+bool scree_is_near(const scree_particle *particle, vec3 p, double reach);
+
 /* Whether p is inside a closed surface: whether a ray from p leaves it more often than it enters.
  * Exact but for points within rounding of the surface, which may be either. */
 bool scree_is_inside(const scree_particle *particle, vec3 p);

@@ -37,7 +37,7 @@ static uint32_t *list_acting(scree_world *world, size_t begin, size_t end, size_
   uint32_t *acting = &world->acting.items[world->side_begin[begin]];
   size_t count = 0, k = world->side_begin[begin];
   for (size_t i = begin; i < end; i++) {
-    for (; k < world->side_begin[i + 1]; k++) {
+    for (const size_t last = world->side_begin[i + 1]; k < last; k++) {
       uint32_t side = acting[count] = world->sides.items[k];
       count += scree_pair_touches(world, side >> 1);
     }

@@ -120,9 +120,8 @@ uint32_t scree_pair_take(scree_world *world) {
 /* There is room for all. */
 void scree_pair_give_back(scree_world *world, uint32_t pair) {
   world->pairs.items[pair].active.count = 0;
-  int64_t count = atomic_load(&world->spare_pairs.count);
-  world->spare_pairs.items[count] = pair;
-  atomic_store(&world->spare_pairs.count, count + 1);
+  int64_t place = atomic_fetch_add_explicit(&world->spare_pairs.count, 1, memory_order_relaxed);
+  world->spare_pairs.items[place] = pair;
 }
 
 static bool reserve_items(scree_world *world, size_t extra) {

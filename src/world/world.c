@@ -219,20 +219,6 @@ static void fill_body(scree_bodies *b, size_t i, double density) {
   b->inertia[i] = vec3_scale(vec3_load(m->inertia), density);
 }
 
-bool scree_world_is_periodic(const scree_world *world) {
-  const double *period = world->options.period;
-  return period[0] > 0 || period[1] > 0 || period[2] > 0;
-}
-
-vec3 scree_world_fold(const scree_world *world, vec3 p) {
-  const scree_world_options *o = &world->options;
-  if (!scree_world_is_periodic(world)) return p;
-  double at[3] = {p.x, p.y, p.z};
-  for (int k = 0; k < 3; k++)
-    if (o->period[k] > 0) at[k] -= o->period[k] * floor((at[k] - o->period_from[k]) / o->period[k]);
-  return vec3_load(at);
-}
-
 /* A body must not meet itself, nor another twice. */
 static scree_status check_period(const scree_world *world, const scree_particle *particle,
                                  scree_error *error) {

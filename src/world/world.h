@@ -332,8 +332,8 @@ struct scree_world {
     uint32_t *items; /* those of the neighbours that are a body and a wall */
     size_t count, capacity;
   } wall_pairs;
-  size_t *side_begin; /* bodies.capacity + 1 */
-  size_t *offenders;  /* scratch of the gathering, by block */
+  uint32_t *side_begin; /* bodies.capacity + 1 */
+  size_t *offenders;    /* scratch of the gathering, by block */
   scree_broad *broad;
   struct {
     scree_pair_sums *items;
@@ -395,9 +395,19 @@ static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const 
 }
 /* Radii of the largest body: two boxes with their margins then meet in one image only. */
 enum { SCREE_LEAST_PERIOD = 6 };
-bool scree_world_is_periodic(const scree_world *world);
-/* world.c: a place in the period that begins at period_from. */
-vec3 scree_world_fold(const scree_world *world, vec3 p);
+static inline bool scree_world_is_periodic(const scree_world *world) {
+  const double *period = world->options.period;
+  return period[0] > 0 || period[1] > 0 || period[2] > 0;
+}
+/* A place in the period that begins at period_from. */
+static inline vec3 scree_world_fold(const scree_world *world, vec3 p) {
+  const scree_world_options *o = &world->options;
+  if (!scree_world_is_periodic(world)) return p;
+  double at[3] = {p.x, p.y, p.z};
+  for (int k = 0; k < 3; k++)
+    if (o->period[k] > 0) at[k] -= o->period[k] * floor((at[k] - o->period_from[k]) / o->period[k]);
+  return vec3_load(at);
+}
 /* d, or where the world is periodic the nearest of its images. */
 static inline vec3 scree_nearest_image(const scree_world *w, vec3 d) {
   const double *period = w->options.period;
