@@ -137,7 +137,7 @@ static void begin_grids(scree_world *world) {
       size += bodies->particle[i]->measures.size;
       present++;
     }
-  broad->margin = present ? margin_share * size / (double)present : 0;
+  world->margin = present ? margin_share * size / (double)present : 0;
   broad->widest = 0;
   broad->used = 0;
   for (size_t w = 0; w < world->walls.count; w++) broad->wall_reach[w] = 0;
@@ -218,15 +218,10 @@ static void list_sides(scree_world *world) {
 
 bool scree_broad_is_valid(const scree_world *world) {
   if (world->pairs_stale) return false;
-  for (size_t w = 0; w < world->walls.count; w++) {
-    const scree_world_wall *wall = &world->walls.items[w];
-    if (wall->path - wall->path_at_build > wall->slack) return false;
-  }
-  const scree_bodies *bodies = &world->bodies;
-  for (size_t i = 0; i < bodies->count; i++)
-    if (!bodies->removed[i] &&
-        bodies->path[i] - world->body_path_at_build[i] > scree_half_margin(world, i))
-      return false;
+  for (size_t w = 0; w < world->walls.count; w++)
+    if (scree_wall_has_left(&world->walls.items[w])) return false;
+  for (size_t i = 0; i < world->bodies.count; i++)
+    if (!world->bodies.removed[i] && scree_body_has_left(world, i)) return false;
   return true;
 }
 
@@ -249,15 +244,11 @@ scree_status scree_broad_update(scree_world *world, scree_error *error) {
   return SCREE_OK;
 }
 
-double scree_broad_margin(const scree_world *world) {
-  return world->broad ? world->broad->margin : 0;
-}
-
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error) {
   size_t count = world->neighbours.count;
   scree_status status = reserve(world, error);
   if (status) return status;
-  world->broad->margin = margin;
+  world->margin = margin;
   if (world->bodies.count == 0) return SCREE_OK; /* there are no arrays yet */
   if (!reserve_lists(world, count)) return scree_fail_memory(error, 0, "pairs of bodies");
   world->keys.count = count;

@@ -7,8 +7,7 @@
 /* broad.c: brings the list of pairs up to date when a body could have left its margin. */
 scree_status scree_broad_update(scree_world *world, scree_error *error);
 void scree_broad_free(scree_world *world);
-/* For checkpoints: the margin of the present list of pairs, and a list that was loaded. */
-double scree_broad_margin(const scree_world *world);
+/* For checkpoints: a list that was loaded, with its margin. */
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error);
 
 #endif

@@ -6,6 +6,7 @@
  * in the coarser ones, in the cells where the centre of one that reaches it may lie. */
 #include "world/grids.h"
 #include "world/lists.h"
+#include "world/stages.h"
 #include "world/walls.h"
 
 #include "particle/closest.h"
@@ -45,18 +46,18 @@ void scree_grids_box(scree_world *world, size_t i) {
   const scree_particle *particle = world->bodies.particle[i];
   scree_box box =
       scree_box_moved(&particle->box, &frame->rotation, scree_world_fold(world, frame->position));
-  broad->boxes[i] = scree_box_grown(box, scree_half_margin(world, i));
+  broad->boxes[i] = scree_box_grown(box, 0.5 * scree_body_margin(world, i));
   raise_real(&broad->widest, widest_side(&broad->boxes[i]));
   for (size_t w = 0; w < world->walls.count; w++)
     raise_real(&broad->wall_reach[w],
                vec3_distance(frame->position, world->walls.items[w].frame.position) +
-                   particle->measures.bounding_radius + 2 * broad->margin);
+                   particle->measures.bounding_radius + 2 * world->margin);
 }
 
 /* Half the margin is for the walls that move; sheets and planes have it in any case. They reach as
  * far from their position as bodies can be while the list lasts, and their own points. */
 static void prepare_walls(scree_world *world) {
-  const double margin = world->broad->margin;
+  const double margin = world->margin;
   for (size_t w = 0; w < world->walls.count; w++) {
     scree_world_wall *wall = &world->walls.items[w];
     bool still = wall->motion_count == 0 && wall->travel == 0 &&
@@ -209,7 +210,7 @@ static bool near_mesh(const scree_world *world, size_t body, const scree_world_w
   vec3 p = mat3_tmul_vec(&wall->frame.rotation,
                          vec3_sub(world->bodies.frame[body].position, wall->frame.position));
   double reach = particle->measures.bounding_radius + wall->surface->measures.rounding +
-                 scree_half_margin(world, body) + wall->slack;
+                 0.5 * scree_body_margin(world, body) + wall->slack;
   if (scree_is_near(wall->surface, p, reach)) return true;
   bool put = world->body_path_at_build[body] < 0 || wall->path_at_build < 0;
   return put && wall->surface->measures.volume > 0 && scree_is_inside(wall->surface, p);
@@ -222,7 +223,7 @@ static bool near_wall(const scree_world *world, size_t body, const scree_world_w
   vec3 p = mat3_tmul_vec(&wall->frame.rotation, vec3_sub(frame->position, wall->frame.position));
   vec3 closest, normal;
   double reach = world->bodies.particle[body]->measures.bounding_radius +
-                 scree_half_margin(world, body) + 0.5 * world->broad->margin;
+                 0.5 * scree_body_margin(world, body) + 0.5 * world->margin;
   return scree_wall_distance(wall, p, scree_wall_side(wall, p), &closest, &normal) < reach;
 }
 

@@ -22,7 +22,6 @@ typedef struct scree_cell_entry {
 } scree_cell_entry;
 
 struct scree_broad {
-  double margin;
   uint64_t widest; /* bits of the widest side of a box */
   double width[SCREE_MOST_GRIDS];
   uint32_t used; /* a bit for each grid that holds a body */
@@ -44,14 +43,6 @@ struct scree_broad {
   } match;
   scree_groups sides, walls; /* of each body: places in world->sides, neighbours that are walls */
 };
-
-/* How far body i may go until the list is made again, and its box reaches beyond it. Small bodies
- * among large ones have a margin of their own size. */
-static const double scree_own_margin_share = 0.4;
-static inline double scree_half_margin(const scree_world *world, size_t i) {
-  return 0.5 * scree_min(world->broad->margin,
-                         scree_own_margin_share * world->bodies.particle[i]->measures.size);
-}
 
 /* Until they are over: of body i its box, the widest one, and how far the walls must reach. */
 void scree_grids_box(scree_world *world, size_t i);

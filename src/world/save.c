@@ -483,7 +483,7 @@ static void save_tail(scree_codec *c, const scree_world *world) {
                       .work_tangential = world->work_tangential,
                       .applied_work = world->applied_work,
                       .largest_overlap = world->largest_overlap,
-                      .margin = scree_broad_margin(world),
+                      .margin = world->margin,
                       .step_count = world->step_count,
                       .parting_count = world->parting_count,
                       .pairs_stale = world->pairs_stale,

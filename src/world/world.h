@@ -351,6 +351,7 @@ struct scree_world {
   int scratch_count;
   double
       *body_path_at_build; /* path of each body when the pairs were made; below 0: put elsewhere */
+  double margin;           /* by which bodies' boxes are grown when the pairs are made, m */
   bool pairs_stale;
   double time, time_step;
   bool time_step_stale;

@@ -65,7 +65,7 @@ static bool is_listed(const scree_world *world, size_t a, size_t b, bool wall) {
 
 /* Counts the pairs whose boxes meet. */
 static size_t check_bodies(const scree_world *world) {
-  double margin = scree_broad_margin(world);
+  double margin = world->margin;
   size_t meeting = 0, bodies = world->bodies.count;
   unsigned char *listed = calloc(bodies * bodies, 1);
   assert_non_null(listed);
@@ -189,7 +189,7 @@ static void mesh_walls(void **state) {
              error);
   }
   CHECK_OK(scree_broad_update(world, &error), error);
-  double margin = scree_broad_margin(world);
+  double margin = world->margin;
   size_t near = 0, inside = 0, far = 0;
   for (size_t i = 0; i < 400; i++)
     for (size_t w = 0; w < 2; w++) {
