@@ -29,11 +29,25 @@ static const char *reference_text(const choose_run *run) {
                              : ", the scan's area: no noise was found";
 }
 
+/* What the columns are. */
+static void print_legend(FILE *out, const choose_run *run) {
+  bool accident = false;
+  for (size_t i = 0; i < run->count; i++) accident |= run->choices[i].paper_is_accident;
+  fprintf(out,
+          "recommended: fewest within tolerances of the distance to the scan, mean and largest\n"
+          "paper: least Ip = eps_s + %g Nr/Nm, eps_s the error of area%s%s\n"
+          "robust: the same, by the largest eps_s of this and all finer levels\n"
+          "cost: least mean distance, over the body's size, + Nr/%g\n",
+          run->options.weight, reference_text(run),
+          accident ? " (* small by accident: finer levels are worse)" : "", SCREE_COST_COUNT);
+  fprintf(out, "What follows and the files written are by: %s\n",
+          scree_choice_rule_name(run->report.rule));
+}
+
 static void print_table(FILE *out, const choose_run *run) {
   char rp[SCREE_NUMBER_SIZE];
-  fprintf(out, "Told and written: %s; method %s, Ip = eps_s + %g Nr/Nm%s, coordinates in %s\n",
-          scree_choice_rule_name(run->report.rule), scree_method_name(run->simplify.method),
-          run->options.weight, reference_text(run), cli_unit_name(run->arguments->source.unit));
+  fprintf(out, "Nr: triangles to use, of the Nm of the scan. Decimation by %s; coordinates in %s\n",
+          scree_method_name(run->simplify.method), cli_unit_name(run->arguments->source.unit));
   fprintf(out, "%-22s |%-22s |%-15s |%7s |%6s\n", "", " recommended", " paper", "robust", "cost");
   fprintf(out, "%-12s%10s |%7s%7s%8s |%7s%7s  |%7s |%6s\n", "object", "triangles", "Nr", "mean",
           "largest", "Nr", "eps_s", "Nr", "Nr");
@@ -82,16 +96,20 @@ static void print_answer(FILE *out, const choose_run *run) {
 
 void choose_print(FILE *out, const choose_run *run) {
   print_table(out, run);
+  print_legend(out, run);
   putc('\n', out);
   print_answer(out, run);
   choose_print_warnings(out, run);
   const char *folder = run->arguments->output;
   char shown[CLI_PRINTABLE_BYTES];
   if (folder)
-    fprintf(out,
-            "In %s: report.html, %s, figure.png, choice.json\n"
-            "*.mass.json: mass, centre, inertia at %g kg/m3. Placed otherwise: scree export\n",
-            cli_printable(folder, shown),
-            run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl", run->arguments->density);
+    fprintf(
+        out,
+        "In %s: report.html, %s, figure.png, choice.json\n"
+        "*.mass.json: mass, centre, inertia at %g kg/m3; scree export places a mesh otherwise\n",
+        cli_printable(folder, shown), run->count > 1 ? "*.stl (own choice), set/*.stl" : "*.stl",
+        run->arguments->density);
+  else
+    fprintf(out, "Nothing was written: -o DIR writes the meshes and a report.\n");
   print_other_errors(out, run);
 }

@@ -50,18 +50,15 @@ void cli_remark(const char *word, const char *format, ...) {
           cli_printable(strcmp(word, "-") != 0 ? word : "standard input", shown), sentence);
 }
 
-/* The largest of the three dimensions, as the positions are. */
-static double size_of(const scree_mesh *mesh) {
-  double size = 0;
-  for (size_t k = 0; k < 3; k++) {
+void cli_scan_box(const scree_mesh *mesh, double sides[3]) {
+  for (int k = 0; k < 3; k++) {
     double low = INFINITY, high = -INFINITY;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
       low = fmin(low, mesh->positions[3 * v + k]);
       high = fmax(high, mesh->positions[3 * v + k]);
     }
-    size = fmax(size, high - low);
+    sides[k] = fmax(high - low, 0);
   }
-  return size;
 }
 
 /* "mm", or "0.007 m" of a unit without a name. */
@@ -84,7 +81,9 @@ void cli_add_line(char *text, size_t size, const char *format, ...) {
 void cli_scan_remarks(const cli_input_options *options, const scree_scan *scan, double scale,
                       char *text, size_t bytes) {
   char written[32], asked[32];
-  double size = scale * size_of(&scan->mesh);
+  double sides[3];
+  cli_scan_box(&scan->mesh, sides);
+  double size = scale * fmax(sides[0], fmax(sides[1], sides[2]));
   bool states = scan->states_unit || (scan->comment_unit_m > 0 && !unit_is_given);
   if (scan->warning[0]) cli_add_line(text, bytes, "%s", scan->warning);
   if (scan->comment_unit_m > 0 && scan->comment_unit_m != options->read.unit_m)

@@ -38,6 +38,7 @@ static char *join_words(int count, char **words) {
 
 static int unknown_verb(const char *word) {
   char hint[64];
+  if (word[0] == '-') return cli_misuse(NULL, "unknown option '%s'; a verb comes first", word);
   cli_verb_hint(word, hint, sizeof hint);
   return cli_misuse(NULL, "unknown verb '%s'%s", word, hint);
 }

@@ -86,7 +86,7 @@ static void print_point(FILE *stream, const scree_study_result *r, size_t index,
     fprintf(stream, " %9s", "-");
   print_comparison(stream, r, index);
   if (p->heap_count && p->heap_count < p->counts.done)
-    fprintf(stream, "  (%zu without heap)", p->counts.done - p->heap_count);
+    fprintf(stream, "  (%zu runs left no heap)", p->counts.done - p->heap_count);
   fputs("\n", stream);
 }
 
@@ -107,7 +107,7 @@ static void print_table(FILE *stream, const scree_study_result *r) {
 static const char *range_text(scree_in_range in) {
   return in == SCREE_IN_RANGE_YES  ? "within the converged range"
          : in == SCREE_IN_RANGE_NO ? "below the converged range"
-                                   : "not to be judged: no converged range";
+                                   : "not to be judged, for the angle has not converged";
 }
 
 static void print_pick(FILE *stream, const char *what, const scree_rp_pick *pick) {
@@ -125,8 +125,7 @@ static void print_needed(FILE *stream, const scree_study_result *r, const scree_
   for (size_t k = 0; k + 1 < f->level_count; k++) {
     const scree_comparison *c = &f->comparisons[k];
     if (!isnan(c->low) && !c->equivalent && !c->different && c->count_needed)
-      fprintf(stream,
-              "Rp %s is open: with this spread about %zu replicate%s would show it the same\n",
+      fprintf(stream, "Rp %s is open: with this spread about %zu replicate%s would decide it\n",
               r->points[f->levels[k]].rp, c->count_needed, cli_plural(c->count_needed));
   }
 }
@@ -143,14 +142,15 @@ static void print_family(FILE *stream, const scree_study_result *r, const scree_
     fprintf(stream, "convergence of the angle within %g degrees is not shown (%g %% confidence)\n",
             r->margin_deg, 100 * r->confidence);
   print_needed(stream, r, f);
-  print_pick(stream, "Rp recommended", &f->recommended);
-  print_pick(stream, "Rp chosen by Ip", &f->by_ip);
-  print_pick(stream, "Rp chosen by the robust criterion", &f->by_robust);
+  print_pick(stream, "Rp that choose recommends", &f->recommended);
+  print_pick(stream, "Rp by the paper's criterion", &f->by_ip);
+  print_pick(stream, "Rp by the robust criterion", &f->by_robust);
   if (!f->time_law.count) return;
-  fprintf(stream, "time of a run ~ Rp^%.3f", f->time_law.exponent);
+  fprintf(stream, "the time of a run grows as Rp to the power %.3f", f->time_law.exponent);
   if (!isnan(f->time_law.exponent_low))
     fprintf(stream, " [%.3f, %.3f]", f->time_law.exponent_low, f->time_law.exponent_high);
-  if (f->time_curve.count) fprintf(stream, "; fourth order fits to %.3g s", f->time_curve.rms);
+  if (f->time_curve.count)
+    fprintf(stream, "; a polynomial of fourth order fits to %.3g s", f->time_curve.rms);
   fputs("\n", stream);
 }
 
@@ -180,8 +180,11 @@ void study_print(FILE *stream, const scree_study_result *r) {
   if (r->answer_count) {
     print_answers(stream, r);
   } else {
-    fprintf(stream, "angle by %s, degrees; intervals of %g %%; time of the processor\n", r->angle,
-            100 * r->confidence);
+    fprintf(
+        stream,
+        "angle of repose by %s, in degrees: mean, its %g %% interval, standard deviation (SD) and\n"
+        "coefficient of variation (CV) over the runs; processor time of a run\n",
+        r->angle, 100 * r->confidence);
     print_table(stream, r);
   }
   for (size_t f = 0; f < r->family_count; f++) print_family(stream, r, &r->families[f]);

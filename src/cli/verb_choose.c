@@ -79,7 +79,7 @@ static bool parse_bound(const char *word, scree_shape_error error, scree_choice_
   if (!strcmp(word, "none")) return true;
   if (cli_fraction_from_text(word, &value)) {
     o->tolerances[error] = value;
-    return value > 0;
+    return value > 0 && value <= 1;
   }
   bool is_distance = error == SCREE_ERROR_MEAN || error == SCREE_ERROR_HAUSDORFF;
   if (!is_distance || !cli_length_from_text(word, &value)) return false;
@@ -289,7 +289,7 @@ static int run_choose(const cli_call *call) {
     return cli_misuse(
         call->verb,
         "--tolerance '%s': must be a list of NAME=BOUND as in mean=0.3%%,hausdorff=2mm, "
-        "bounds above 0, lengths of mean and hausdorff alone",
+        "bounds above 0 and up to 100%%, lengths with a unit and of mean and hausdorff alone",
         a->tolerance);
   if (a->paper && a->rule != RULE_UNSET && a->rule != SCREE_RULE_PAPER)
     return cli_misuse(call->verb, "--paper is --rule paper");

@@ -145,6 +145,9 @@ static void print_object(FILE *out, const clump_object *object) {
           cli_count_text(object->surface.mesh.triangle_count, used),
           scree_clump_method_name(c->method), c->size / object->surface.unit_m, unit,
           object->surface.note[0] ? "; " : "", object->surface.note);
+  fprintf(out,
+          "IoU: common volume over that of both, 1 is perfect; mean, greatest: distance of the\n"
+          "surfaces; slope: between their normals; last two: criteria, the least is best\n");
   fprintf(out, "%7s %7s %9s %9s %8s %8s %7s %9s %9s\n", "spheres", "IoU", "mean", "greatest",
           "volume", "inertia", "slope", "1-IoU", "mean/L");
   fprintf(out, "%7s %7s %9s %9s %8s %8s %7s %9s %9s\n", "", "", unit, unit, "", "", "deg", "+n/200",

@@ -162,11 +162,19 @@ static scree_status write_json(table *t, const scree_scan *scan) {
   return scree_curve_json_write(&entry, t->call->command_line, "-", false, &t->error);
 }
 
+static void print_legend(const table *t) {
+  if (t->call->quiet || t->arguments->csv || t->arguments->json) return;
+  printf("Rp = share of the scan's triangles; S area, V volume; eps_s, eps_v their errors;\n"
+         "Ip = eps_s + Rp, the paper's criterion; Q quadric error, about the distance moved\n");
+  if (t->arguments->distance)
+    printf("mean, max: distance of the scan to the level; back: of the level to the scan\n");
+}
+
 static void print_facts(const table *t, const scree_scan *scan) {
   scree_curve_facts facts = scree_curve_get_facts(t->curve);
   char shown[CLI_PRINTABLE_BYTES];
   if (t->call->quiet || t->arguments->csv || t->arguments->json) return;
-  printf("%s: %zu triangles, %zu shell%s, method %s; floor %zu triangles",
+  printf("%s: %zu triangles, %zu shell%s, method %s; the coarsest level has %zu",
          cli_printable(t->call->inputs[0], shown), facts.triangle_count, facts.shell_count,
          cli_plural(facts.shell_count), scree_method_name(facts.method), facts.floor_count);
   cli_print_unit(stdout, t->call->inputs[0], scan);
@@ -210,6 +218,7 @@ static int run(const cli_call *call) {
     scree_curve_level(t.curve, 0, &t.first);
     cli_terminal_end();
     print_facts(&t, &scan);
+    print_legend(&t);
     print_header(&t);
     status = make_rows(&t);
   }

@@ -209,6 +209,13 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
 
 /* ---- at its end ---- */
 
+/* "-" where there is nothing to measure yet. */
+static const char *value_text(double value, char text[32]) {
+  if (isnan(value)) return "-";
+  snprintf(text, 32, "%.5g", value);
+  return text;
+}
+
 static void print_sensors(FILE *stream, const scree_scene *scene) {
   size_t rows, columns = scree_scene_column_count(scene), first = 0;
   const double *series = scree_scene_series(scene, &rows);
@@ -220,8 +227,10 @@ static void print_sensors(FILE *stream, const scree_scene *scene) {
     size_t count = 0;
     for (size_t i = 0; i < rows; i++)
       if (!isnan(series[i * columns + k])) sum += series[i * columns + k], count++;
-    fprintf(stream, "  %-34s %14.5g %14.5g %s\n", scree_scene_column_name(scene, k),
-            series[(rows - 1) * columns + k], count ? sum / (double)count : (double)NAN,
+    char last[32], mean[32];
+    fprintf(stream, "  %-34s %14s %14s %s\n", scree_scene_column_name(scene, k),
+            value_text(series[(rows - 1) * columns + k], last),
+            value_text(count ? sum / (double)count : (double)NAN, mean),
             scree_scene_column_unit(scene, k));
   }
 }
@@ -232,7 +241,8 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
   fprintf(stream, "%s after %.6g s, %llu steps\n", stopped ? "stopped" : scree_scene_end(scene),
           scree_world_time(scree_scene_view(scene)),
           (unsigned long long)scree_world_step_count(scree_scene_view(scene)));
-  fprintf(stream, "  %zu came in, %zu are inside, %zu went out; %.5g = %.5g + %.5g kg\n",
+  fprintf(stream,
+          "  %zu came in, %zu are inside, %zu went out: %.5g kg in, %.5g kg inside, %.5g kg out\n",
           b.entered_count, b.inside_count, b.left_count, b.entered_mass, b.inside_mass,
           b.left_mass);
   for (size_t i = 0; scree_scene_inlet_name(scene, i); i++) {
@@ -242,7 +252,7 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
       fprintf(stream, "  inlet %s: %zu wait, for there is no room\n",
               scree_scene_inlet_name(scene, i), waiting);
   }
-  fprintf(stream, "  energy unaccounted for: %.2g of what was turned over\n", b.ledger);
+  fprintf(stream, "  energy that the sums miss: %.2g of all that changed its form\n", b.ledger);
   print_sensors(stream, scene);
 }
 

@@ -1,4 +1,5 @@
 /* scree simplify: one level of the decimation as a file. */
+#include "base/number.h"
 #include "cli/input.h"
 #include "cli/output.h"
 #include "cli/surface.h"
@@ -67,7 +68,8 @@ typedef struct written {
 static void say(const cli_call *call, const scree_curve *curve, size_t index, written is) {
   const simplify_arguments *arguments = call->options;
   scree_level first, level;
-  char shown[CLI_PRINTABLE_BYTES], quadric[64] = "";
+  char shown[CLI_PRINTABLE_BYTES], quadric[64] = "", area[SCREE_NUMBER_SIZE],
+                                   volume[SCREE_NUMBER_SIZE];
   const char *word = cli_printable(call->inputs[0], shown);
   scree_curve_facts facts = scree_curve_get_facts(curve);
   scree_curve_level(curve, 0, &first);
@@ -78,12 +80,14 @@ static void say(const cli_call *call, const scree_curve *curve, size_t index, wr
     snprintf(quadric, sizeof quadric, ", quadric error %.3g mm", level.quadric_error * 1e3);
   fprintf(
       stderr,
-      "%s: %zu -> %zu triangles (Rp %.3g), method %s%s, eps_s %.3g, eps_v %.3g%s, coordinates in "
+      "%s: %zu -> %zu triangles (%.3g %%) by %s%s; area off by %s, volume by %s%s; coordinates in "
       "%s\n",
-      word, first.triangle_count, level.triangle_count, level.rp, scree_method_name(facts.method),
-      arguments->fit ? ", fitted" : "", fabs(is.area - first.area) / first.area,
-      first.volume != 0 ? fabs(is.volume - first.volume) / fabs(first.volume) : 0, quadric,
-      cli_unit_name(arguments->source.unit));
+      word, first.triangle_count, level.triangle_count, 100 * level.rp,
+      scree_method_name(facts.method), arguments->fit ? ", fitted" : "",
+      scree_percent_text(fabs(is.area - first.area) / first.area, area),
+      scree_percent_text(
+          first.volume != 0 ? fabs(is.volume - first.volume) / fabs(first.volume) : 0, volume),
+      quadric, cli_unit_name(arguments->source.unit));
   if (!facts.closed)
     fprintf(stderr, "%s: not closed: %zu boundary edge%s; the volume means nothing\n", word,
             facts.boundary_edge_count, cli_plural(facts.boundary_edge_count));

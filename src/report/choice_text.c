@@ -159,7 +159,9 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_AREA)));
   say_limit(s, report, c);
   if (pick->triangle_count > c->paper.triangle_count)
-    say(s, "In a flowing heap it costs about %s times the paper's %s triangles to simulate.",
+    say(s,
+        "In a flowing heap it takes about %s times as long to simulate as the paper's %s "
+        "triangles.",
         NUMBER(cost_of(pick->triangle_count) / cost_of(c->paper.triangle_count), 2),
         count_text(c->paper.triangle_count, other));
 }
@@ -256,10 +258,10 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
            side = 1e3 * scree_fidelity_scan(f, (scree_scan_fact)(SCREE_SCAN_BOX_LENGTH + i));
     if (fabs(change) > NOTABLE_SIZE)
       say(s,
-          "%s a feature, thinner than the tolerances keep: the %s is %s mm, not %s mm (--tolerance "
+          "The %s is %s mm, not %s mm: a feature thinner than the tolerances %s (--tolerance "
           "size=2%% keeps it).",
-          change < 0 ? "It loses" : "It enlarges", sides[i], NUMBER(side * (1 + change), 4),
-          NUMBER(side, 4));
+          sides[i], NUMBER(side * (1 + change), 4), NUMBER(side, 4),
+          change < 0 ? "is lost" : "has grown");
   }
   double normals = scree_fidelity_error(f, row, SCREE_ERROR_NORMALS);
   if (normals > NOTABLE_NORMALS)
@@ -371,6 +373,6 @@ size_t scree_choice_warnings(const scree_choice_report *report, size_t entry,
     warn_of_noise(&s, report, entry);
     warn_of_resolution(&s, report, entry);
   }
-  if (!set) warn_of_floor(&s, report, entry);
+  if (!set && !recommended) warn_of_floor(&s, report, entry);
   return s.count;
 }

@@ -87,8 +87,8 @@ double scree_world_choose_time_step(const scree_world *world, char reason[256]) 
   double dt = o->time_step > 0 ? o->time_step : contact / o->steps_per_contact;
   if (reason)
     snprintf(reason, 256,
-             "%.4g s: %s, %.3g steps per quarter period of bodies %zu and %s %zu "
-             "(m* = %.3g kg, K = %.3g N/m)",
+             "%.4g s: %s, %.3g steps in a quarter period of the fastest contact, of body %zu with "
+             "%s %zu (reduced mass %.3g kg, stiffness %.3g N/m)",
              dt, o->time_step > 0 ? "as given" : "automatic", contact / dt, first,
              wall ? "wall" : "body", second, mass, stiffness);
   return dt;

@@ -69,7 +69,7 @@ for name in icosphere-2 icosphere-3; do "$SCREE" measure by-paper/set/$name.stl 
 # noise that was not found is not said to be used
 noisy="--resolution 3mm --noise 0.6mm --sample-seed 3"
 for words in plain.stl "sample:sp-1 $noisy"; do
-  "$SCREE" choose $words --area smooth | head -n 1
+  "$SCREE" choose $words --area smooth | grep "^paper: "
 done
 "$SCREE" choose sample:sp-1 $noisy --rule robust | grep misleads | shape
 # what is worth a warning stands in the text, the JSON and the page alike, and nothing of it in one of them alone
