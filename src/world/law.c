@@ -123,20 +123,49 @@ static bool find_overlap(const scree_world *world, const scree_pair *pair,
                                     world->options.sharing, result);
 }
 
+/* dm/do of a touch. */
+static double share_of(const scree_touch *touch, const scree_smooth_maximum *maximum) {
+  double above = touch->overlap - maximum->cutoff;
+  return above > 0 ? touch->weight * above / maximum->denominator : 0;
+}
+
+/* The way by which the overlap changes in a step, where it is more than the overlap: the step in
+ * which the touch begins or ends. Else 0. */
+static double crossed_way(const scree_pair *pair, const scree_smooth_maximum *maximum,
+                          const scree_touch_list *touches, const scree_frame *relative,
+                          double step) {
+  if (maximum->value >= most_slopes[0] * pair->list.travel) return 0;
+  double rate = 0;
+  for (size_t i = 0; i < touches->count; i++) {
+    const scree_touch *touch = &touches->items[i];
+    vec3 v = vec3_add(relative->velocity_now, vec3_cross(relative->spin_now, touch->at));
+    rate += share_of(touch, maximum) * touch->lever * vec3_dot(v, touch->normal);
+  }
+  double way = fabs(rate) * step;
+  return way > maximum->value ? way : 0;
+}
+
+/* A spring that is shorter than the way of its step, pressed for the whole of it, would work on the
+ * part before the touch too. Leapfrog keeps m v v/2 + K x x'/2 from one drift to the next, x and x'
+ * being the overlaps at its ends; and so it does from before the touch, with the kick of
+ * K x (1 + x/way)/2, on either end of it. */
+static double felt(double x, double way) {
+  return x < way ? 0.5 * x * (1 + x / way) : x;
+}
+
 /* The spring's force at overlap m, less that with which the bodies hold each other, and the energy
  * that comes back from both. */
-static double spring_force(const scree_world *world, scree_pair *pair, double m) {
-  double pull = pair->law.pull;
+static double spring_force(const scree_world *world, scree_pair *pair, double m, double way) {
+  double pull = pair->law.pull, stiffness = pair->law.stiffness;
   if (world->options.law == SCREE_LAW_LINEAR) {
-    pair->elastic = 0.5 * pair->law.stiffness * m * m - pull * m;
-    return pair->law.stiffness * m - pull;
+    pair->elastic = 0.5 * stiffness * m * m - pull * m;
+    return stiffness * felt(m, way) - pull;
   }
-  double e2 = pair->law.restitution * pair->law.restitution, unloading = pair->law.stiffness / e2;
+  double e2 = pair->law.restitution * pair->law.restitution, unloading = stiffness / e2;
   pair->largest = scree_max(pair->largest, m);
-  double force =
-      scree_max(0, scree_min(pair->law.stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
+  double force = scree_max(0, scree_min(stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
   pair->elastic = 0.5 * force * force / unloading - pull * m;
-  return force - pull;
+  return force - pull; /* what it loses as it begins it wins in the mean as it ends */
 }
 
 /* How far the contact is no impact any more, from 0 to 1: the tangential dashpot. An oblique impact
@@ -408,7 +437,9 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   pair->touching = true;
   pair->age += scratch->drift;
   pair->overlap = maximum.value;
-  double spring = spring_force(world, pair, maximum.value), energy = 0;
+  double way =
+      crossed_way(pair, &maximum, touches, relative, 0.5 * (scratch->drift + scratch->step));
+  double spring = spring_force(world, pair, maximum.value, way), energy = 0;
   slider law = make_slider(world, pair, relative, scratch->drift);
   load_sums sums;
   sums.normal = sums.dashpot = sums.tangential = (scree_load){{0, 0, 0}, {0, 0, 0}};
@@ -418,7 +449,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   for (size_t i = 0; i < touches->count; i++) {
     scree_touch *touch = &touches->items[i];
     double above = touch->overlap - maximum.cutoff;
-    touch->share = above > 0 ? touch->weight * above / maximum.denominator : 0;
+    touch->share = share_of(touch, &maximum);
     if (touch->share > 0) {
       touch->lever = scree_min(touch->lever, scree_max(most_slopes[0], resolved));
       press(pair, &law, spring, touch, relative, &energy, &sums);

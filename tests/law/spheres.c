@@ -98,16 +98,16 @@ static scree_body oblique_hit(const law_setup *setup, double r, double speed, do
 
 static const double degree = 3.14159265358979323846 / 180;
 
-/* What a hit loses to the time step: in the step of the first touch the spring's force works on the
- * way before it too, K m g/2 with m + g = v dt, and at the end the other way round at e v. The mean
- * over where the touch falls in its step is (w dt)^2/6 (1 - e^2), w dt = pi/(2N). */
-static void time_step_takes_its_share(void **state) {
+/* A hit loses nothing to the time step, wherever in a step the touch begins. A spring whose force
+ * worked on the way before the touch too would take (w dt)^2/6 (1 - e^2) in the mean, w dt =
+ * pi/(2N), and 1.5 times that at worst. */
+static void a_touch_begins_within_a_step(void **state) {
   (void)state;
   const double given[] = {0.05, 0.3, 0.7};
   for (int i = 0; i < 3; i++)
     for (double steps = 20; steps <= 80; steps *= 2) {
       enum { PHASES = 32 };
-      double lost = 0, share = pow(0.5 * 3.14159265358979 / steps, 2) / 6;
+      double mean = 0, worst = 0, share = pow(0.5 * 3.14159265358979 / steps, 2) / 6;
       law_setup setup = law_default();
       setup.restitution = given[i];
       setup.steps_per_contact = steps;
@@ -124,13 +124,15 @@ static void time_step_takes_its_share(void **state) {
         law_place(world, 0, &body);
         law_step(world, 10 + 10 * (size_t)steps);
         double energy = 0.5 * scree_world_body_mass(world, 0);
-        lost += (1 - law_ledger(world, &seen) / energy) / PHASES;
+        double lost = 1 - law_ledger(world, &seen) / energy;
+        mean += lost / PHASES;
+        worst = fmax(worst, fabs(lost));
         assert_true(seen.pair_count == 0);
         scree_world_free(world);
         scree_particle_free(ball);
       }
-      LAW_RELATIVE("L17", "energy that a hit loses to the time step", lost,
-                   share * (1 - given[i] * given[i]), 0.02);
+      LAW_BELOW("L17", "energy that hits lose to the time step, mean", fabs(mean), 0.2 * share);
+      LAW_BELOW("L17", "the same, worst", worst, 0.4 * share);
     }
 }
 
@@ -339,7 +341,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(two_spheres_and_sphere_on_plane),
       cmocka_unit_test(restitution_is_what_was_asked),
-      cmocka_unit_test(time_step_takes_its_share),
+      cmocka_unit_test(a_touch_begins_within_a_step),
       cmocka_unit_test(hysteretic_restitution),
       cmocka_unit_test(gross_slip),
       cmocka_unit_test(partial_slip),
