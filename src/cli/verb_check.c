@@ -116,8 +116,8 @@ const cli_verb cli_verb_check = {
         "Counts what is wrong with each surface (holes, non-manifold edges and vertices, facets "
         "wound unlike, inside-out shells, duplicate and degenerate facets, facets that cross, "
         "touch or overlap, shells in shells) and says whether it can serve as a particle: closed, "
-        "manifold, outward, nowhere meeting itself. Cavities and separate bodies are told but not "
-        "held against it. Facets that meet are found exactly, without tolerances.\n\n"
+        "manifold, outward, nowhere meeting itself. Cavities and separate bodies are counted, "
+        "but are no defects. Facets that meet are found exactly, without tolerances.\n\n"
         "Exit code 0 where every file can serve, 1 where one cannot or could not be read.",
     .examples = "scree check scan.stl\n"
                 "scree check --json -u m *.ply\n",

@@ -184,12 +184,11 @@ const cli_verb cli_verb_repair = {
     .description =
         "Welds, drops duplicate and degenerate facets, closes seams, splits T-junctions and "
         "non-manifold edges and vertices, turns facets to agree and shells outward, fills small "
-        "holes, drops debris, fills small cavities, cuts out places where a shell meets itself (or "
-        "merges its folds, where that keeps more of the body), and merges shells that "
-        "cross, overlap or touch into the surface of their union. Prints what was done with "
-        "counts, and area and volume before and after. The result passes `scree check`, or nothing "
-        "is written and what remains is "
-        "said.\n\n"
+        "holes, drops debris and fills small cavities.\n\n"
+        "Cuts out places where a shell meets itself, or merges its folds where that keeps more of "
+        "the body. Merges shells that cross, overlap or touch into the surface of their union.\n\n"
+        "Prints what was done with counts, and area and volume before and after. The result "
+        "passes `scree check`, or nothing is written and what remains is said.\n\n"
         "Exit code 0 where the result was written, 2 for wrong usage, 1 otherwise.",
     .examples = "scree repair scan.stl -o closed.stl\n"
                 "scree repair scan.ply -o closed.ply --large-holes --largest\n",

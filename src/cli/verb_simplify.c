@@ -34,7 +34,8 @@ static const cli_option options[] = {
      4294967295.0, "recommended"},
     {"error", CLI_LENGTH, offsetof(simplify_arguments, error), "LENGTH",
      "Go as far as no collapse moves the surface by more than this, as in 0.05mm: by the quadric "
-     "error, an estimate, not a bound. Dearer collapses are left out and others go on, so that the "
+     "error, an estimate, not a bound. Costlier collapses are left out and others go on, so that "
+     "the "
      "mesh is none of the levels that curve shows. May be given with -r or -n.",
      1e-12, 1e12, NULL},
     {"method", CLI_CHOICE, offsetof(simplify_arguments, method), "METHOD",
