@@ -354,15 +354,11 @@ SCREE_API double scree_pour_filling_time(const scree_pour *pour);
 /* J: kinetic and potential energy that the particles brought with them, zero on the floor; what the
  * ledger of the world must come to. */
 SCREE_API double scree_pour_entered_energy(const scree_pour *pour);
+/* The scene that the pour is: its series, its end. */
+SCREE_API const scree_scene *scree_pour_scene(const scree_pour *pour);
 
-/* Numbers of the caller's that go into checkpoints with the pour, as where its files stand. Copied;
- * those of before are dropped. */
-SCREE_API scree_status scree_pour_set_notes(scree_pour *pour, const double *notes, size_t count,
-                                            scree_error *error);
-SCREE_API const double *scree_pour_notes(const scree_pour *pour, size_t *count);
-
-/* Writes a checkpoint: the options, all shapes, those that have not entered too, the world and the
- * notes. Complete under its name or not there; without overwrite an existing file is refused with
+/* Writes a checkpoint: the options, all shapes, those that have not entered too, and the world.
+ * Complete under its name or not there; without overwrite an existing file is refused with
  * SCREE_EXISTS. */
 SCREE_API scree_status scree_pour_save(const scree_pour *pour, const char *path, bool overwrite,
                                        scree_error *error);
@@ -370,6 +366,33 @@ SCREE_API scree_status scree_pour_save(const scree_pour *pour, const char *path,
  * pour that was saved. SCREE_BAD_FILE, with file and reason, for what is no such file, is cut short
  * or has a bit changed anywhere. */
 SCREE_API scree_status scree_pour_load(const char *path, scree_pour **pour, scree_error *error);
+
+/* What ends a whole pour, and what is written meanwhile. */
+typedef struct scree_pour_schedule {
+  double time;        /* s after the last particle entered, at most */
+  double still, rest; /* J, s: all moved with less energy a particle for so long; 0 J: never */
+  double frames;      /* s; 0: none */
+  double series;      /* s, between rows */
+  double checkpoint;  /* s of the clock */
+} scree_pour_schedule;
+
+/* As scree_scene_job, of a pour. */
+typedef struct scree_pour_job {
+  const scree_pour_shape *shapes; /* none: those of the checkpoint, which must be there */
+  size_t shape_count;
+  const scree_pour_options *options; /* with shapes; NULL: the defaults */
+  scree_pour_schedule schedule;
+  const char *folder;
+  bool resume, overwrite; /* what may differ on going on is the schedule, but for its series */
+  bool (*watch)(void *context, const scree_pour *pour, double fraction);
+  scree_status (*begun)(void *context, scree_pour *pour, bool resumed, scree_error *error);
+  scree_status (*frame)(void *context, scree_pour *pour, scree_error *error);
+  void *context;
+} scree_pour_job;
+
+/* As scree_scene_complete. */
+SCREE_API scree_status scree_pour_complete(const scree_pour_job *job, scree_pour **pour,
+                                           scree_error *error);
 
 #ifdef __cplusplus
 }

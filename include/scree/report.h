@@ -450,26 +450,17 @@ SCREE_API scree_status scree_series_csv_write(const scree_run *run, const char *
 
 /* ---- Pours: JSON ---- */
 
-/* One moment of a pour. */
-typedef struct scree_pour_point {
-  scree_observation seen;
-  double entered_energy; /* J: scree_pour_entered_energy */
-} scree_pour_point;
-
-/* A pour and its moments, the last one last. Texts are borrowed. */
+/* A pour as it stands. Texts are borrowed. */
 typedef struct scree_pour_entry {
   const scree_pour *pour;
-  const char *const *names;   /* of each shape, short */
-  const char *const *sources; /* where each came from; NULL: unknown */
-  const scree_pour_point *points;
-  size_t point_count; /* at least 1 */
-  bool still;
+  const char *const *names;    /* of each shape, short */
+  const char *const *sources;  /* where each came from; NULL: unknown */
   const char *stopped_because; /* it was interrupted, or diverged; NULL: it came to its end */
   const char *command_line;    /* NULL: unknown */
 } scree_pour_entry;
 
 /* One object: version, command, the state at the end, options, shapes in the order of their first
- * bodies, and the moments as columns (docs/reference/formats.md). "-" is stdout. */
+ * bodies, and its series as columns (docs/reference/formats.md). "-" is stdout. */
 SCREE_API scree_status scree_pour_json_write(const scree_pour_entry *entry, const char *path,
                                              bool overwrite, scree_error *error);
 

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK = 25 }; /* steps between looks at the clock and at Ctrl-C */
 /* What is not asked for is as for particles of this size; of smaller ones heights shrink with the
  * size, speeds and times with its root: a fall by one's own size looks the same at every size. */
 static const double usual_size = 0.01; /* m */
@@ -121,11 +120,7 @@ static const cli_option options[] = {
      "Begin anew in a folder with an earlier drop, whose files go.", 0, 0, NULL},
 };
 
-const drop_arguments *drop_defaults(void) {
-  return &defaults;
-}
-
-/* The largest particle's diameter. */
+/* The diameter of the largest particle: of the shapes, or of the pour that goes on. */
 static double largest_size(const drop_run *run) {
   double largest = 0;
   size_t count = run->pour ? scree_pour_shape_count(run->pour) : run->shape_count;
@@ -142,7 +137,7 @@ static void take(double *value, double usual_value) {
   if (isnan(*value)) *value = usual_value;
 }
 
-void drop_settle(drop_run *run) {
+static void settle(drop_run *run) {
   drop_arguments *a = &run->settled;
   double share = fmin(1, largest_size(run) / usual_size), root = sqrt(share);
   take(&a->drop_height, share * usual.drop_height);
@@ -150,11 +145,15 @@ void drop_settle(drop_run *run) {
   take(&a->time, root * usual.time);
   take(&a->still, share * share * share * share * usual.still); /* mass times height */
   take(&a->frame_interval, root * usual.frame_interval);
-  run->line_interval = root * usual.line_interval;
-  run->still_time = root * usual.still_time;
+  run->schedule = (scree_pour_schedule){.time = a->time,
+                                        .still = a->still,
+                                        .rest = root * usual.still_time,
+                                        .frames = a->frame_interval,
+                                        .series = root * usual.line_interval,
+                                        .checkpoint = a->checkpoint_interval};
 }
 
-scree_pour_options drop_pour_options(const drop_arguments *a) {
+static scree_pour_options pour_options(const drop_arguments *a) {
   scree_pour_options o = scree_default_pour_options();
   o.world.law = (scree_law)a->law;
   o.world.steps_per_contact = a->steps_per_contact;
@@ -175,111 +174,70 @@ scree_pour_options drop_pour_options(const drop_arguments *a) {
   return o;
 }
 
-static scree_status create_pour(drop_run *run, scree_error *error) {
-  scree_pour_options o = drop_pour_options(run->arguments);
-  scree_pour_shape *shapes = calloc(run->shape_count, sizeof *shapes);
-  if (!shapes) return drop_no_memory(error);
-  for (size_t i = 0; i < run->shape_count; i++)
-    shapes[i] = (scree_pour_shape){run->shapes[i].particle, run->shapes[i].count,
-                                   run->shapes[i].title, run->shapes[i].source};
-  scree_status status = scree_pour_create(shapes, run->shape_count, &o, &run->pour, error);
-  free(shapes);
-  return status;
-}
-
-static void say_pour(const drop_run *run) {
+static void say_pour(const drop_run *run, scree_pour *pour) {
   scree_pour_options o;
   if (run->call->quiet) return;
-  size_t count = scree_pour_particle_count(run->pour);
-  scree_pour_get_options(run->pour, &o);
+  size_t count = scree_pour_particle_count(pour);
+  scree_pour_get_options(pour, &o);
   if (o.container == SCREE_CONTAINER_BOX)
     printf("%zu particle%s into a box of %.4g x %.4g mm\n", count, cli_plural(count), 1e3 * o.width,
            1e3 * o.depth);
   else
     printf("%zu particle%s into a cylinder of %.4g mm\n", count, cli_plural(count), 1e3 * o.width);
   printf("time step %.4g us, %g steps per quarter period of the fastest contact\n",
-         1e6 * scree_world_time_step(scree_pour_world(run->pour), NULL), o.world.steps_per_contact);
+         1e6 * scree_world_time_step(scree_pour_world(pour), NULL), o.world.steps_per_contact);
   cli_flush();
 }
 
 /* ---- the run ---- */
 
-/* s, at most */
-static double schedule_of(const drop_run *run) {
-  return scree_pour_filling_time(run->pour) + run->arguments->time;
-}
-
-static scree_status write_due(drop_run *run, drop_schedule *s, double time, scree_error *error) {
-  scree_status status = SCREE_OK;
-  double interval = run->arguments->frame_interval;
-  if (interval > 0 && time >= s->next_frame) {
-    status = drop_write_frame(run, error);
-    s->next_frame = interval * (floor(time / interval) + 1);
-  }
-  if (status == SCREE_OK && time >= s->next_line) {
-    status = drop_write_line(run, error);
-    while (s->next_line <= time) s->next_line += run->line_interval;
-  }
-  return status;
-}
-
-/* Whether all has been still for a while. */
-static bool is_still(const drop_run *run, drop_schedule *s, double time) {
-  size_t count = scree_pour_particle_count(run->pour);
-  if (scree_pour_entered_count(run->pour) < count) return false;
-  scree_observation o;
-  scree_world_observe(scree_pour_world(run->pour), &o);
-  if (!(o.kinetic + o.rotational < run->arguments->still * (double)count) || o.pair_count == 0) {
-    s->still_since = NAN;
-    return false;
-  }
-  if (isnan(s->still_since)) s->still_since = time;
-  return time - s->still_since >= run->still_time;
-}
-
 /* Draws the progress; false after Ctrl-C. */
-static bool report(const drop_run *run, drop_schedule *s, double time) {
+static bool watch(void *context, const scree_pour *pour, double fraction) {
+  drop_run *run = context;
   const scree_progress *p = run->call->progress;
-  if (scree_now() - s->last_report < p->interval) return !cli_interrupted();
-  s->last_report = scree_now();
-  bool all = scree_pour_entered_count(run->pour) == scree_pour_particle_count(run->pour);
-  return p->report(p->context, all ? "settling, at most" : "pouring", time / s->end);
+  if (scree_now() - run->shown < p->interval) return !cli_interrupted();
+  run->shown = scree_now();
+  bool all = scree_pour_entered_count(pour) == scree_pour_particle_count(pour);
+  return p->report(p->context, all ? "settling, at most" : "pouring", fraction);
 }
 
-static scree_status save_in_time(drop_run *run, scree_error *error) {
-  if (scree_now() - run->schedule.last_checkpoint < run->arguments->checkpoint_interval)
-    return SCREE_OK;
-  run->schedule.last_checkpoint = scree_now();
-  return drop_save(run, error);
+static scree_status on_begin(void *context, scree_pour *pour, bool resumed, scree_error *error) {
+  drop_run *run = context;
+  say_pour(run, pour);
+  if (!resumed) return SCREE_OK;
+  return cli_frames_recall(&run->frames, run->schedule.frames, scree_pour_view(pour), error);
+}
+
+static scree_status on_frame(void *context, scree_pour *pour, scree_error *error) {
+  return drop_write_frame(context, pour, error);
 }
 
 static scree_status simulate(drop_run *run, scree_error *error) {
-  drop_schedule *s = &run->schedule;
-  double time = scree_world_time(scree_pour_world(run->pour));
-  scree_status status = SCREE_OK;
-  s->end = schedule_of(run);
-  s->last_checkpoint = scree_now();
-  while (status == SCREE_OK && time < s->end && !s->still) {
-    status = write_due(run, s, time, error);
-    if (status == SCREE_OK) status = save_in_time(run, error);
-    if (status == SCREE_OK) status = scree_pour_advance(run->pour, CHUNK, error);
-    if (status != SCREE_OK) break;
-    time = scree_world_time(scree_pour_world(run->pour));
-    s->still = is_still(run, s, time);
-    if (report(run, s, time)) continue;
-    status = drop_save(run, error);
-    if (status != SCREE_OK) break;
-    *error = (scree_error){SCREE_CANCELLED, "stopped; the same call with --resume goes on"};
-    status = SCREE_CANCELLED;
-  }
-  if (status == SCREE_OK) status = drop_save(run, error);
-  scree_error ignored; /* what there is is written in any case, and the first error is told */
-  scree_error *told = status == SCREE_OK ? error : &ignored;
-  scree_status closing = drop_write_line(run, told);
-  if (closing == SCREE_OK && run->arguments->frame_interval > 0 && status != SCREE_CANCELLED)
-    closing = drop_write_frame(run, told);
-  if (closing == SCREE_OK) closing = drop_close_output(run, told);
-  return status == SCREE_OK ? closing : status;
+  scree_pour_options o = pour_options(run->arguments);
+  scree_pour_shape *shapes = calloc(run->shape_count + 1, sizeof *shapes);
+  if (!shapes) return drop_no_memory(error);
+  for (size_t i = 0; i < run->shape_count; i++)
+    shapes[i] = (scree_pour_shape){run->shapes[i].particle, run->shapes[i].count,
+                                   run->shapes[i].title, run->shapes[i].source};
+  const scree_pour_job job = {.shapes = shapes,
+                              .shape_count = run->shape_count,
+                              .options = &o,
+                              .schedule = run->schedule,
+                              .folder = run->arguments->output,
+                              .resume = run->arguments->resume,
+                              .overwrite = run->arguments->overwrite,
+                              .watch = watch,
+                              .begun = on_begin,
+                              .frame = on_frame,
+                              .context = run};
+  scree_status status = scree_pour_complete(&job, &run->pour, error);
+  free(shapes);
+  return status;
+}
+
+static bool is_still(const drop_run *run) {
+  const char *end = scree_scene_end(scree_pour_scene(run->pour));
+  return end && !strcmp(end, "still");
 }
 
 static void print_summary(FILE *stream, const drop_run *run, bool still) {
@@ -321,7 +279,7 @@ static scree_status tell(drop_run *run, const char *stopped, double seconds, scr
   char *text = NULL;
   size_t size;
   FILE *stream = scree_memory_open(&text, &size);
-  if (stream) print_summary(stream, run, run->schedule.still);
+  if (stream) print_summary(stream, run, is_still(run));
   if (!stream || !scree_memory_close(stream)) {
     free(text);
     return drop_no_memory(error);
@@ -335,10 +293,6 @@ static scree_status tell(drop_run *run, const char *stopped, double seconds, scr
   return status;
 }
 
-static bool can_be_told(scree_status status) {
-  return status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED;
-}
-
 static scree_status draw(drop_run *run, scree_error *error) {
   if (run->arguments->no_picture) return SCREE_OK;
   scree_status status = drop_write_picture(run, error);
@@ -347,48 +301,65 @@ static scree_status draw(drop_run *run, scree_error *error) {
   return SCREE_OK;
 }
 
-/* From the beginning. */
-static scree_status begin(drop_run *run, scree_error *error) {
-  run->schedule.still_since = NAN;
-  scree_status status = drop_make_particles(run, error);
-  if (status == SCREE_OK) drop_settle(run);
-  if (status == SCREE_OK) status = create_pour(run, error);
-  return status == SCREE_OK ? drop_open_output(run, error) : status;
+/* What is as usual hangs on the particles. */
+static scree_status settle_by_particles(drop_run *run, scree_error *error) {
+  char path[DROP_PATH_BYTES];
+  scree_status status = SCREE_OK;
+  if (run->shape_count) {
+    status = drop_make_particles(run, error);
+  } else {
+    status = drop_path(run, "checkpoint.scree", path, error);
+    if (status == SCREE_OK && !scree_path_exists(path))
+      return cli_refuse(error, SCREE_IO, path, "no checkpoint to go on from");
+    if (status == SCREE_OK) status = scree_pour_load(path, &run->pour, error);
+  }
+  if (status == SCREE_OK) settle(run);
+  scree_pour_free(run->pour);
+  run->pour = NULL;
+  return status;
 }
 
 static scree_status pour(drop_run *run, scree_error *error) {
   scree_status status = drop_check_output(run, error);
-  if (status == SCREE_OK) status = drop_resume(run, error);
-  if (status == SCREE_OK && !run->pour) status = begin(run, error);
-  if (status == SCREE_OK) status = drop_keep_state(run, error);
-  if (status == SCREE_OK) status = drop_record(run, schedule_of(run), error);
+  if (status == SCREE_OK) status = settle_by_particles(run, error);
+  if (status == SCREE_OK && run->arguments->overwrite && !run->arguments->resume)
+    status = drop_clear_output(run, error);
   if (status != SCREE_OK) return status;
-  say_pour(run);
   double start = scree_now();
   status = simulate(run, error);
   double seconds = scree_now() - start;
-  if (!can_be_told(status)) return status;
+  if (!run->pour) return status;
   scree_error later; /* what happened first is what is told */
-  scree_status drawn = status == SCREE_OK ? draw(run, error) : SCREE_OK;
+  scree_status listed = drop_list_frames(run, status == SCREE_OK ? error : &later);
+  if (status == SCREE_OK) status = listed;
+  if (status == SCREE_OK) status = draw(run, error);
   scree_status told = tell(run, status == SCREE_OK ? NULL : error->message, seconds,
-                           status == SCREE_OK && drawn == SCREE_OK ? error : &later);
-  return status != SCREE_OK ? status : drawn != SCREE_OK ? drawn : told;
+                           status == SCREE_OK ? error : &later);
+  return status != SCREE_OK ? status : told;
 }
 
-/* An option that says how shapes are made, with another value than its default; NULL if none. */
+/* What may be asked of a pour that goes on without its shapes. */
+static const char *const of_any[] = {"output", "time",       "still", "frames", "checkpoint",
+                                     "resume", "no-picture", "rays",  "force"};
+
+/* An option, none of these, with another value than its default; NULL if none. */
 static const char *shape_option(const drop_arguments *a) {
-  return a->rp > 0                                ? "rp"
-         : a->triangles                           ? "count"
-         : a->clump                               ? "clump"
-         : a->particles != defaults.particles     ? "particles"
-         : a->no_repair                           ? "no-repair"
-         : a->source.unit != defaults.source.unit ? "unit"
-                                                  : NULL;
+  for (size_t i = 0; i < sizeof options / sizeof *options; i++) {
+    const cli_option *o = &options[i];
+    size_t size = o->kind == CLI_FLAG     ? sizeof(bool)
+                  : o->kind == CLI_CHOICE ? sizeof(int)
+                                          : sizeof(double);
+    bool any = false;
+    for (size_t k = 0; k < sizeof of_any / sizeof *of_any; k++)
+      any = any || !strcmp(o->name, of_any[k]);
+    if (!any && memcmp((const char *)a + o->offset, (const char *)&defaults + o->offset, size) != 0)
+      return o->name;
+  }
+  return NULL;
 }
 
 static int run(const cli_call *call) {
   drop_run run = {.call = call,
-                  .given = call->options,
                   .settled = *(const drop_arguments *)call->options,
                   .shape_count = call->input_count,
                   .start = scree_work_started()};
@@ -413,7 +384,7 @@ static int run(const cli_call *call) {
   scree_pour_free(run.pour);
   for (size_t i = 0; i < run.shape_count; i++) scree_particle_free(run.shapes[i].particle);
   free(run.shapes);
-  drop_free_output(&run);
+  free(run.frames.times);
   return code;
 }
 
@@ -434,7 +405,7 @@ const cli_verb cli_verb_drop = {
         "for any number of threads. Ctrl-C stops: what was written stays, drop.pvd lists it, the "
         "report shows it, and --resume goes on from checkpoint.scree with the same bits, as after "
         "a crash. A pour that leaves the range of the contact law stops with step, body and "
-        "cause, and leaves the state shortly before in before-failure.world.",
+        "cause, and leaves the state shortly before in stopped.scree.",
     .examples =
         "scree drop phone.stl=50\n"
         "scree drop sample:fp-1=20 sample:dc-2=20 -n 100 --container box --width 300mm -o mixed\n"

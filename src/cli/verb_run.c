@@ -1,6 +1,7 @@
 /* scree run: a scene of the user's own. */
 #include "base/file.h"
 #include "base/platform.h"
+#include "cli/frames.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 #include "report/provenance.h"
@@ -52,6 +53,7 @@ static const char *const file_names[] = {
 static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 enum { PATH_BYTES = 4200 };
+static const char *const kinds[] = {"-bodies", "-geometry"}; /* of frames */
 
 typedef struct scene_run {
   const cli_call *call;
@@ -59,10 +61,7 @@ typedef struct scene_run {
   scree_work_start start;
   scree_scene_file *file;
   scree_scene *scene; /* while it goes on: that of the job */
-  struct {
-    double *times;
-    size_t count, capacity;
-  } frames;
+  cli_frames frames;
 } scene_run;
 
 /* ---- the file ---- */
@@ -117,28 +116,12 @@ static bool watch(void *context, const scree_scene_state *state) {
   return !cli_interrupted();
 }
 
-static bool note_frame(scene_run *r, double time) {
-  if (r->frames.count == r->frames.capacity) {
-    size_t capacity = 2 * r->frames.capacity + 64;
-    double *times = realloc(r->frames.times, capacity * sizeof *times);
-    if (!times) return false;
-    r->frames.times = times;
-    r->frames.capacity = capacity;
-  }
-  r->frames.times[r->frames.count++] = time;
-  return true;
-}
-
-static void name_frame(size_t index, bool walls, char name[64]) {
-  snprintf(name, 64, "frame-%06zu-%s.vtp", index, walls ? "geometry" : "bodies");
-}
-
 static scree_status on_frame(void *context, scree_scene *scene, size_t index, scree_error *error) {
   scene_run *r = context;
   scree_status status = SCREE_OK;
   for (int walls = 0; status == SCREE_OK && walls < 2; walls++) {
-    char name[64], path[PATH_BYTES];
-    name_frame(r->frames.count, walls, name);
+    char name[CLI_FRAME_NAME], path[PATH_BYTES];
+    cli_frame_name(r->frames.count, kinds[walls], name);
     status = path_of(r, name, path, error);
     if (status == SCREE_OK)
       status = walls ? scree_scene_walls_vtp_write(scene, path, true, error)
@@ -146,46 +129,27 @@ static scree_status on_frame(void *context, scree_scene *scene, size_t index, sc
                                              true, error);
   }
   (void)index;
-  if (status == SCREE_OK && !note_frame(r, scree_world_time(scree_scene_view(scene))))
-    return no_memory(error);
-  return status;
+  if (status != SCREE_OK) return status;
+  return cli_frames_note(&r->frames, scree_world_time(scree_scene_view(scene)), error);
 }
 
 static scree_status write_collections(const scene_run *r, scree_error *error) {
-  size_t count = r->frames.count;
   scree_status status = SCREE_OK;
-  const char **files = malloc((count + 1) * sizeof *files);
-  char(*names)[64] = malloc((count + 1) * sizeof *names);
-  if (!files || !names) status = no_memory(error);
-  for (int walls = 0; status == SCREE_OK && count && walls < 2; walls++) {
+  for (int walls = 0; status == SCREE_OK && walls < 2; walls++) {
     char path[PATH_BYTES];
-    for (size_t i = 0; i < count; i++) {
-      name_frame(i, walls, names[i]);
-      files[i] = names[i];
-    }
     status = path_of(r, walls ? "geometry.pvd" : "bodies.pvd", path, error);
-    if (status == SCREE_OK)
-      status = scree_pvd_write(files, r->frames.times, count, path, true, error);
+    if (status == SCREE_OK) status = cli_frames_list(&r->frames, kinds[walls], path, error);
   }
-  free(files);
-  free(names);
   return status;
-}
-
-/* The frames that an earlier piece wrote, up to where it goes on. */
-static scree_status recall_frames(scene_run *r, const scree_scene *scene, scree_error *error) {
-  double interval = scree_scene_frame_interval(scene),
-         now = scree_world_time(scree_scene_view(scene));
-  double dt = scree_world_time_step(scree_scene_view(scene), NULL);
-  for (size_t i = 0; interval > 0 && (double)i * interval <= now; i++)
-    if (!note_frame(r, ceil((double)i * interval / dt * (1 - 1e-12)) * dt)) return no_memory(error);
-  return SCREE_OK;
 }
 
 static scree_status on_begin(void *context, scree_scene *scene, bool resumed, scree_error *error) {
   scene_run *r = context;
   char reason[256], path[PATH_BYTES];
-  scree_status status = resumed ? recall_frames(r, scene, error) : SCREE_OK;
+  scree_status status = SCREE_OK;
+  if (resumed)
+    status = cli_frames_recall(&r->frames, scree_scene_frame_interval(scene),
+                               scree_scene_view(scene), error);
   r->scene = scene;
   if (status == SCREE_OK && r->arguments->output) {
     status = path_of(r, "scene.yaml", path, error);

@@ -58,6 +58,8 @@ static const double scree_rim_slack = 0.3;
 scree_edge scree_rim_edge(vec3 start, vec3 end, vec3 outward);
 
 void scree_particle_retain(scree_particle *particle);
+/* Whether two were made alike: kind, volume, size, features and inertia are the same. */
+bool scree_particle_is_like(const scree_particle *a, const scree_particle *b);
 
 /* The surface alone, in the mesh's own coordinates, without mass: for walls. May be open. */
 scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,

@@ -123,6 +123,13 @@ static void put_inlet(const scree_pour *pour, FILE *out) {
           count, -o->entry_speed);
 }
 
+static void put_schedule(const scree_pour_schedule *s, FILE *out) {
+  fprintf(out, "stop: {filled: %.17g", s->time);
+  if (s->still > 0) fprintf(out, ", still: %.17g, rest: %.17g", s->still, s->rest);
+  fprintf(out, "}\noutput: {frames: %.17g, series: %.17g, checkpoint: %.17g}\n", s->frames,
+          s->series, s->checkpoint);
+}
+
 static void put_scene(const void *context, FILE *out) {
   const scree_pour *pour = context;
   put_world(pour, out);
@@ -131,7 +138,7 @@ static void put_scene(const void *context, FILE *out) {
     fprintf(out, "  shape-%zu: {given: shape-%zu, material: particles}\n", s, s);
   put_container(pour, out);
   put_inlet(pour, out);
-  fputs("output: {series: 1e9}\n", out);
+  put_schedule(&pour->schedule, out);
 }
 
 scree_status scree_pour_file(const scree_pour *pour, scree_scene_file **file, scree_error *error) {
@@ -162,6 +169,7 @@ scree_status scree_pour_describe(const scree_pour_shape *shapes, size_t shape_co
   scree_pour *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "a pour");
   made->options = *options;
+  made->schedule = scree_endless_pour;
   status = copy_shapes(made, shapes, shape_count, error);
   if (status == SCREE_OK) {
     measure(made, shapes);
@@ -172,14 +180,18 @@ scree_status scree_pour_describe(const scree_pour_shape *shapes, size_t shape_co
   return status;
 }
 
-static scree_status make_scene(scree_pour *pour, const scree_pour_shape *shapes,
-                               scree_error *error) {
+scree_status scree_pour_make_scene(scree_pour *pour, const scree_pour_shape *shapes,
+                                   scree_error *error) {
   scree_scene_file *file;
+  unsigned char *notes = NULL;
+  size_t note_bytes = 0;
   scree_status status = scree_pour_file(pour, &file, error);
   if (status != SCREE_OK) return status;
+  status = scree_pour_pack_notes(pour, &notes, &note_bytes, error);
   scree_particle **particles = scree_alloc(pour->shape_count, sizeof *particles);
   const char **sources = scree_alloc(pour->shape_count, sizeof *sources);
-  if (!particles || !sources) status = scree_fail_memory(error, pour->shape_count, "a pour");
+  if (status == SCREE_OK && (!particles || !sources))
+    status = scree_fail_memory(error, pour->shape_count, "a pour");
   for (size_t s = 0; status == SCREE_OK && s < pour->shape_count; s++) {
     particles[s] = shapes[s].particle;
     sources[s] = shapes[s].source;
@@ -187,10 +199,13 @@ static scree_status make_scene(scree_pour *pour, const scree_pour_shape *shapes,
   const scree_scene_gift gift = {.seal = &scree_pour_seal,
                                  .particles = particles,
                                  .sources = sources,
-                                 .options = &pour->options.world};
+                                 .options = &pour->options.world,
+                                 .notes = notes,
+                                 .note_bytes = note_bytes};
   if (status == SCREE_OK) status = scree_scene_make(file, &gift, NULL, &pour->scene, error);
   scree_free(particles);
   scree_free(sources);
+  scree_free(notes);
   scree_scene_file_free(file);
   return status;
 }
@@ -202,7 +217,7 @@ scree_status scree_pour_create(const scree_pour_shape *shapes, size_t shape_coun
   scree_pour *made;
   scree_status status = scree_pour_describe(shapes, shape_count, &o, &made, error);
   if (status != SCREE_OK) return status;
-  status = make_scene(made, shapes, error);
+  status = scree_pour_make_scene(made, shapes, error);
   if (status == SCREE_OK)
     *pour = made;
   else
@@ -217,7 +232,6 @@ void scree_pour_free(scree_pour *pour) {
   for (size_t s = 0; pour->names && s < pour->shape_count; s++) scree_free(pour->names[s]);
   scree_free(pour->names);
   scree_free(pour->counts);
-  scree_free(pour->notes);
   scree_free(pour);
 }
 
@@ -291,29 +305,11 @@ size_t scree_pour_shape_of(const scree_pour *pour, size_t index) {
   return inlet->shapes[inlet->layers.order[index]];
 }
 double scree_pour_filling_time(const scree_pour *pour) {
-  const scree_scene_layers *l = &pour->scene->inlets[0].layers;
-  return (double)((l->planned - 1) * l->steps) * pour->scene->time_step;
+  return scree_scene_filling_time(pour->scene);
 }
 double scree_pour_entered_energy(const scree_pour *pour) {
   return pour->scene->entered_energy;
 }
-
-/* ---- the caller's notes ---- */
-
-scree_status scree_pour_set_notes(scree_pour *pour, const double *notes, size_t count,
-                                  scree_error *error) {
-  double *copy;
-  SCREE_ALLOC_OR(copy, count, error, out_of_memory);
-  if (count) memcpy(copy, notes, count * sizeof *copy);
-  scree_free(pour->notes);
-  pour->notes = copy;
-  pour->note_count = count;
-  return SCREE_OK;
-out_of_memory:
-  return SCREE_OUT_OF_MEMORY;
-}
-
-const double *scree_pour_notes(const scree_pour *pour, size_t *count) {
-  *count = pour->note_count;
-  return pour->notes;
+const scree_scene *scree_pour_scene(const scree_pour *pour) {
+  return pour->scene;
 }

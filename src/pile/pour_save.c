@@ -1,6 +1,6 @@
 /* Checkpoints of a pour: those of its scene, under a seal of their own. The scene's notes hold what
- * it does not say: container, sizes and speed as they were given, of each shape its count and name,
- * and the caller's notes. */
+ * it does not say: container, sizes and speed as they were given, of each shape its count and name.
+ */
 #include "pile/pour.h"
 #include "world/checkpoint.h"
 
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-const scree_seal scree_pour_seal = {"screePOU", "checkpoint of a scree pour", "pour", 3};
+const scree_seal scree_pour_seal = {"screePOU", "checkpoint of a scree pour", "pour", 4};
 
 static void code_plan(scree_codec *c, scree_pour_options *o) {
   uint32_t container = (uint32_t)o->container;
@@ -21,28 +21,28 @@ static void code_plan(scree_codec *c, scree_pour_options *o) {
 
 /* ---- saving ---- */
 
-static scree_status pack_notes(const scree_pour *pour, scree_error *error) {
+scree_status scree_pour_pack_notes(const scree_pour *pour, unsigned char **bytes,
+                                   size_t *byte_count, scree_error *error) {
   scree_codec c = {0};
-  scree_pour state = *pour; /* its arrays are written, never changed */
-  code_plan(&c, &state.options);
+  scree_pour_options options = pour->options; /* written, never changed */
+  code_plan(&c, &options);
   for (size_t s = 0; s < pour->shape_count; s++) {
     uint64_t count = pour->counts[s];
     scree_code_u64(&c, &count);
     scree_code_text(&c, pour->names[s], strlen(pour->names[s]));
   }
-  scree_code_count(&c, &state.note_count, sizeof(double));
-  scree_code_reals(&c, state.notes, state.note_count);
-  scree_status status = c.out_of_memory
-                            ? scree_fail_memory(error, c.count, "a pour's notes")
-                            : scree_scene_set_notes(pour->scene, c.bytes, c.count, error);
-  scree_free(c.bytes);
-  return status;
+  if (c.out_of_memory) {
+    scree_free(c.bytes);
+    return scree_fail_memory(error, c.count, "a pour's notes");
+  }
+  *bytes = c.bytes;
+  *byte_count = c.count;
+  return SCREE_OK;
 }
 
 scree_status scree_pour_save(const scree_pour *pour, const char *path, bool overwrite,
                              scree_error *error) {
-  scree_status status = pack_notes(pour, error);
-  return status == SCREE_OK ? scree_scene_save(pour->scene, path, overwrite, error) : status;
+  return scree_scene_save(pour->scene, path, overwrite, error);
 }
 
 /* ---- loading ---- */
@@ -82,18 +82,20 @@ static scree_status load_shapes(loader *l) {
     l->shapes[s] =
         (scree_pour_shape){l->scene->shapes[s].particle, (size_t)many, l->names[s], NULL};
   }
-  return SCREE_OK;
+  bool whole = scree_codec_good(&l->codec) && l->codec.position == l->codec.count;
+  return whole ? SCREE_OK : refuse(l);
 }
 
-static scree_status load_notes(loader *l) {
-  size_t count = 0;
-  scree_code_count(&l->codec, &count, sizeof(double));
-  if (!scree_codec_good(&l->codec)) return refuse(l);
-  l->pour->notes = scree_alloc_zero(count, sizeof *l->pour->notes);
-  if (!l->pour->notes) return scree_fail_memory(l->error, count * sizeof(double), "notes");
-  l->pour->note_count = count;
-  scree_code_reals(&l->codec, l->pour->notes, count);
-  return scree_codec_good(&l->codec) && l->codec.position == l->codec.count ? SCREE_OK : refuse(l);
+static scree_pour_schedule schedule_of(const scree_scene *scene) {
+  const scree_plan_stop *stop = scene->plan.stop;
+  const scree_plan_output *o = scene->plan.output;
+  bool still = !isnan(stop->still);
+  return (scree_pour_schedule){.time = stop->filled,
+                               .still = still ? stop->still : 0,
+                               .rest = still ? stop->rest : 0,
+                               .frames = o->frames,
+                               .series = o->series,
+                               .checkpoint = o->checkpoint};
 }
 
 /* The scene must be the one that the options make. */
@@ -112,26 +114,35 @@ static scree_status load(loader *l) {
   if (status == SCREE_OK)
     status = scree_pour_describe(l->shapes, SCREE_SCENE_SHAPES(l->scene), &l->options, &l->pour,
                                  l->error);
-  if (status == SCREE_OK) status = load_notes(l);
-  return status == SCREE_OK ? compare(l) : status;
+  if (status != SCREE_OK) return status;
+  l->pour->schedule = schedule_of(l->scene);
+  return compare(l);
+}
+
+scree_status scree_pour_of_scene(scree_scene *scene, const char *path, scree_pour **pour,
+                                 scree_error *error) {
+  loader l = {.codec = {.source = scene->notes.bytes, .count = scene->notes.count, .loading = true},
+              .name = path,
+              .error = error,
+              .scene = scene};
+  scree_status status = load(&l);
+  for (size_t s = 0; l.names && s < SCREE_SCENE_SHAPES(scene); s++) scree_free(l.names[s]);
+  scree_free(l.names);
+  scree_free(l.shapes);
+  if (status != SCREE_OK) {
+    scree_pour_free(l.pour);
+    return status;
+  }
+  l.pour->scene = scene;
+  *pour = l.pour;
+  return SCREE_OK;
 }
 
 scree_status scree_pour_load(const char *path, scree_pour **pour, scree_error *error) {
-  loader l = {.name = path, .error = error};
-  scree_status status = scree_scene_load_as(&scree_pour_seal, path, &l.scene, error);
+  scree_scene *scene;
+  scree_status status = scree_scene_load_as(&scree_pour_seal, path, &scene, error);
   if (status != SCREE_OK) return status;
-  l.codec =
-      (scree_codec){.source = l.scene->notes.bytes, .count = l.scene->notes.count, .loading = true};
-  status = load(&l);
-  for (size_t s = 0; l.names && s < SCREE_SCENE_SHAPES(l.scene); s++) scree_free(l.names[s]);
-  scree_free(l.names);
-  scree_free(l.shapes);
-  if (status == SCREE_OK) {
-    l.pour->scene = l.scene;
-    *pour = l.pour;
-    return SCREE_OK;
-  }
-  scree_pour_free(l.pour);
-  scree_scene_free(l.scene);
+  status = scree_pour_of_scene(scene, path, pour, error);
+  if (status != SCREE_OK) scree_scene_free(scene);
   return status;
 }

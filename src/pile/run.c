@@ -221,14 +221,6 @@ static scree_status check_experiment(const scree_experiment *now, const scree_ex
   return SCREE_OK;
 }
 
-static bool same_shape(const scree_run_shape *a, const scree_run_shape *b) {
-  const scree_particle_measures *m = &a->particle->measures, *n = &b->particle->measures;
-  return a->density_factor == b->density_factor && m->kind == n->kind && m->volume == n->volume &&
-         m->bounding_radius == n->bounding_radius && m->triangle_count == n->triangle_count &&
-         m->point_count == n->point_count && m->inertia[0] == n->inertia[0] &&
-         m->inertia[2] == n->inertia[2];
-}
-
 static scree_status check_job(const work *w, const char *path, scree_error *error) {
   const scree_run_job *job = w->job;
   const scree_run *run = w->run;
@@ -236,7 +228,8 @@ static scree_status check_job(const work *w, const char *path, scree_error *erro
   if (status != SCREE_OK || !job->shapes) return status;
   bool same = job->shape_count == run->shape_count;
   for (size_t i = 0; same && i < run->shape_count; i++)
-    same = same_shape(&job->shapes[i], &run->shapes[i]);
+    same = job->shapes[i].density_factor == run->shapes[i].density_factor &&
+           scree_particle_is_like(job->shapes[i].particle, run->shapes[i].particle);
   return same ? SCREE_OK : scree_fail(error, SCREE_BAD_ARGUMENT, "%s: is of other shapes", path);
 }
 

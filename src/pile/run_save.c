@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-const scree_seal scree_run_seal = {"screeRUN", "checkpoint or frame of a scree run", "run", 2};
+const scree_seal scree_run_seal = {"screeRUN", "checkpoint or frame of a scree run", "run", 3};
 
 /* ---- saving ---- */
 

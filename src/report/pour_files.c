@@ -65,70 +65,54 @@ static void json_shapes(scree_json *json, const scree_pour_entry *entry, const s
 
 /* ---- moments ---- */
 
-typedef struct column {
-  const char *name;
-  size_t offset; /* in scree_pour_point */
-  bool is_count; /* a size_t; else a double */
-} column;
-
-#define REAL(name)                                                                                 \
-  { #name, offsetof(scree_pour_point, seen.name), false }
-#define COUNT(name)                                                                                \
-  { #name, offsetof(scree_pour_point, seen.name), true }
-static const column columns[] = {
-    REAL(time),
-    COUNT(body_count),
-    REAL(kinetic),
-    REAL(rotational),
-    REAL(potential),
-    REAL(elastic),
-    REAL(dissipated_dashpot),
-    REAL(dissipated_friction),
-    {"entered_energy", offsetof(scree_pour_point, entered_energy), false},
-    COUNT(pair_count),
-    COUNT(contact_count),
-    REAL(coordination),
-    REAL(largest_overlap),
-    REAL(highest_speed),
-    REAL(mean_rotation)};
-#undef REAL
-#undef COUNT
+/* Of the scene's series: its name here and there. */
+static const char *const columns[][2] = {{"time", "time"},
+                                         {"body_count", "inside"},
+                                         {"kinetic", "kinetic"},
+                                         {"rotational", "rotational"},
+                                         {"potential", "potential"},
+                                         {"elastic", "elastic"},
+                                         {"dissipated_dashpot", "dissipated_dashpot"},
+                                         {"dissipated_friction", "dissipated_friction"},
+                                         {"entered_energy", "entered_energy"},
+                                         {"pair_count", "pairs"},
+                                         {"contact_count", "contacts"},
+                                         {"coordination", "coordination"},
+                                         {"largest_overlap", "largest_overlap"},
+                                         {"highest_speed", "highest_speed"},
+                                         {"mean_rotation", "mean_rotation"}};
 enum { COLUMNS = sizeof columns / sizeof *columns };
 
-static void json_value(scree_json *json, const char *key, const scree_pour_point *point,
-                       const column *c) {
-  const char *at = (const char *)point + c->offset;
-  double real;
-  size_t count;
-  if (c->is_count) {
-    memcpy(&count, at, sizeof count);
-    scree_json_count(json, key, count);
-  } else {
-    memcpy(&real, at, sizeof real);
-    scree_json_number(json, key, real);
-  }
+static size_t column_of(const scree_scene *scene, size_t index) {
+  size_t k = 0;
+  while (strcmp(scree_scene_column_name(scene, k), columns[index][1]) != 0) k++;
+  return k;
 }
 
-static void json_result(scree_json *json, const scree_pour_entry *entry) {
+static void json_result(scree_json *json, const scree_pour_entry *entry, const double *now) {
   const scree_world *world = scree_pour_view(entry->pour);
+  const scree_scene *scene = scree_pour_scene(entry->pour);
+  const char *end = scree_scene_end(scene);
   scree_json_object(json, "result");
-  scree_json_bool(json, "still", entry->still);
+  scree_json_bool(json, "still", end && !strcmp(end, "still"));
   scree_json_text(json, "stopped_because", entry->stopped_because);
   scree_json_count(json, "particle_count", scree_pour_particle_count(entry->pour));
   scree_json_count(json, "entered_count", scree_pour_entered_count(entry->pour));
   scree_json_count(json, "step_count", scree_world_step_count(world));
   scree_json_number(json, "time_step", scree_world_time_step(world, NULL));
   for (size_t k = 0; k < COLUMNS; k++)
-    json_value(json, columns[k].name, &entry->points[entry->point_count - 1], &columns[k]);
+    scree_json_number(json, columns[k][0], now[column_of(scene, k)]);
   scree_json_end(json);
 }
 
-static void json_series(scree_json *json, const scree_pour_entry *entry) {
+static void json_series(scree_json *json, const scree_scene *scene) {
+  size_t rows, width = scree_scene_column_count(scene);
+  const double *series = scree_scene_series(scene, &rows);
   scree_json_object(json, "series");
   for (size_t k = 0; k < COLUMNS; k++) {
-    scree_json_row_array(json, columns[k].name);
-    for (size_t i = 0; i < entry->point_count; i++)
-      json_value(json, NULL, &entry->points[i], &columns[k]);
+    scree_json_row_array(json, columns[k][0]);
+    for (size_t i = 0; i < rows; i++)
+      scree_json_number(json, NULL, series[i * width + column_of(scene, k)]);
     scree_json_end(json);
   }
   scree_json_end(json);
@@ -137,25 +121,27 @@ static void json_series(scree_json *json, const scree_pour_entry *entry) {
 scree_status scree_pour_json_write(const scree_pour_entry *entry, const char *path, bool overwrite,
                                    scree_error *error) {
   scree_output output;
-  size_t shapes = scree_pour_shape_count(entry->pour), *order = NULL;
-  if (entry->point_count == 0)
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: a pour without a point in time", path);
-  order = scree_alloc(shapes, sizeof *order);
-  if (!order) return scree_fail_memory(error, shapes * sizeof *order, "the shapes of a pour");
-  scree_status status = order_shapes(entry->pour, order, error);
+  const scree_scene *scene = scree_pour_scene(entry->pour);
+  size_t shapes = scree_pour_shape_count(entry->pour);
+  size_t *order = scree_alloc(shapes, sizeof *order);
+  double *now = scree_alloc(scree_scene_column_count(scene), sizeof *now);
+  scree_status status = order && now ? scree_scene_measure(scene, now, error)
+                                     : scree_fail_memory(error, shapes, "the JSON of a pour");
+  if (status == SCREE_OK) status = order_shapes(entry->pour, order, error);
   if (status == SCREE_OK) status = scree_output_open(path, overwrite, &output, error);
   if (status == SCREE_OK) {
     scree_json json = scree_json_start(output.stream);
     scree_json_object(&json, NULL);
     scree_json_text(&json, "version", scree_version());
     scree_json_text(&json, "command", entry->command_line);
-    json_result(&json, entry);
+    json_result(&json, entry, now);
     json_options(&json, entry->pour);
     json_shapes(&json, entry, order);
-    json_series(&json, entry);
+    json_series(&json, scene);
     scree_json_end(&json);
     status = scree_output_commit(&output, error);
   }
   scree_free(order);
+  scree_free(now);
   return status;
 }

@@ -116,8 +116,9 @@ static scree_status open_motion(work *w, bool go_on, scree_error *error) {
                                              : scree_scene_duration(w->scene) / MOTION_FRAMES;
   char *path = path_in(w, "motion.scree", error);
   if (!path) return SCREE_OUT_OF_MEMORY;
+  interval = fmax(interval, w->scene->time_step); /* one may end at its beginning */
   scree_status status = scree_motion_open(&w->motion, path, interval, go_on, now_of(w), error);
-  w->motion.walls = !w->drive->cylinder_height;
+  w->motion.walls = w->drive->walls;
   scree_free(path);
   return status;
 }
@@ -237,14 +238,14 @@ static int shown(const char *line, size_t length) {
 }
 
 static scree_status compare_texts(const char *here, const char *there, const char *path,
-                                  scree_error *error) {
+                                  const char *whose, scree_error *error) {
   for (;;) {
     size_t m = 0, n = 0;
     const char *a = next_line(&here, &m), *b = next_line(&there, &n);
     if (!a && !b) return SCREE_OK;
     if (a && b && m == n && !strncmp(a, b, m)) continue;
     return scree_fail(error, SCREE_BAD_ARGUMENT,
-                      "%s: is of another scene: '%.*s' there and '%.*s' here", path,
+                      "%s: is of another %s: '%.*s' there and '%.*s' here", path, whose,
                       b ? shown(b, n) : 7, b ? b + strspn(b, " ") : "nothing", a ? shown(a, m) : 7,
                       a ? a + strspn(a, " ") : "nothing");
   }
@@ -256,12 +257,12 @@ scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *f
   char *text;
   scree_status status = scree_scene_file_text(file, &text, error);
   if (status != SCREE_OK) return status;
-  status = compare_texts(text, scene->text, path, error);
+  status = compare_texts(text, scene->text, path, scene->seal->whose, error);
   if (status == SCREE_OK) status = scree_scene_file_plan(file, &scene->arena, &plan, error);
   if (status == SCREE_OK && plan.output->series != scene->plan.output->series)
     status = scree_fail(error, SCREE_BAD_ARGUMENT,
-                        "%s: is of another scene: output.series is %g there and %g here", path,
-                        scene->plan.output->series, plan.output->series);
+                        "%s: is of another %s: output.series is %g there and %g here", path,
+                        scene->seal->whose, scene->plan.output->series, plan.output->series);
   if (status != SCREE_OK) {
     scree_free(text);
     return status;
@@ -303,7 +304,8 @@ static scree_status find_checkpoint(work *w, scree_error *error) {
   if (status == SCREE_OK) status = check_found(w, path, error);
   if (status != SCREE_OK) goto done;
   w->scene->costs.piece_count++;
-  while (now_of(w) >= next_frame(w)) w->frame_count++;
+  /* that of this very moment comes after its checkpoint */
+  while (now_of(w) - 0.5 * w->scene->time_step > next_frame(w)) w->frame_count++;
 done:
   scree_free(path);
   return status;
@@ -373,6 +375,7 @@ scree_status scree_scene_complete(const scree_scene_job *job, scree_scene **scen
   const scree_scene_drive drive = {.job = &own,
                                    .seal = &scree_scene_seal,
                                    .motion = true,
+                                   .walls = true,
                                    .series = true,
                                    .closing = true,
                                    .make = make_scene,

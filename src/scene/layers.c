@@ -360,6 +360,19 @@ size_t scree_scene_steps_to_layer(const scree_scene *scene) {
   return least;
 }
 
+double scree_scene_filling_time(const scree_scene *scene) {
+  double latest = 0;
+  if (scree_scene_is_filled(scene))
+    return scene->entered_at.count ? scene->entered_at.items[scene->entered_at.count - 1] : 0;
+  for (size_t i = 0; i < scene->plan.inlets.count; i++) {
+    const scree_scene_layers *l = &scene->inlets[i].layers;
+    double interval = l->steps ? (double)l->steps * scene->time_step : l->interval;
+    if (!scene->inlets[i].plan->layers) return INFINITY;
+    latest = fmax(latest, (double)(l->planned - 1) * interval);
+  }
+  return latest;
+}
+
 static scree_status enter_layer(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   const scree_plan_layers *plan = inlet->plan->layers;
   double above = plan->above + (plan->packed ? (cell_share - 1) * inlet->layers.pitch : 0),

@@ -108,7 +108,7 @@ double scree_scene_phase_times(const scree_scene *scene) {
 
 double scree_scene_fraction(const scree_scene *scene) {
   double time = scree_world_time(scene->world), all = scree_scene_phase_times(scene), done = 0;
-  if (scene->plan.phases.count == 0) return fmin(1, time / scene->plan.time);
+  if (scene->plan.phases.count == 0) return fmin(1, time / scree_scene_duration(scene));
   for (size_t i = 0; i < scene->phase && i < scene->plan.phases.count; i++)
     done += SCREE_PLAN_AT(&scene->plan, phases, scree_plan_phase, i)->time;
   if (phase_of(scene)) done += fmin(time - scene->phase_start, phase_of(scene)->time);

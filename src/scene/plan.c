@@ -648,11 +648,14 @@ static const scree_record contact_record = {"contact", FIELDS(contact_fields),
 static const scree_field stop_fields[] = {
     {"still", SCREE_FIELD_REAL, AT(still), 0, 1e9, "J",
      "all have entered and move with less energy a body", NULL},
+    {"rest", SCREE_FIELD_REAL, AT(rest), 0, 1e9, "s", "for so long; not given: for ten ticks",
+     NULL},
+    {"filled", SCREE_FIELD_REAL, AT(filled), 0, 1e9, "s", "so long after all have entered", NULL},
     {"empty", SCREE_FIELD_FLAG, AT(empty), 0, 0, "", "all have entered and left", NULL},
     {"after", SCREE_FIELD_REAL, AT(after), 0, 1e9, "s", "not before", NULL},
 };
 #undef AT
-static const scree_plan_stop stop_defaults = {{0}, NAN, 0, false};
+static const scree_plan_stop stop_defaults = {{0}, NAN, NAN, NAN, 0, false};
 static const scree_record stop_record = {"stop", FIELDS(stop_fields), sizeof(scree_plan_stop),
                                          &stop_defaults, NULL};
 

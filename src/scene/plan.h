@@ -162,7 +162,7 @@ typedef struct scree_plan_sensor {
 
 typedef struct scree_plan_stop {
   scree_place place;
-  double still, after;
+  double still, rest, filled, after;
   bool empty;
 } scree_plan_stop;
 

@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-const scree_seal scree_scene_seal = {"screeSCN", "checkpoint of a scree scene", "scene", 2};
+const scree_seal scree_scene_seal = {"screeSCN", "checkpoint of a scree scene", "scene", 3};
 
 /* ---- the fields, in and out alike ---- */
 
@@ -32,7 +32,7 @@ static void code_books(scree_codec *c, scree_scene *scene) {
   code_size(c, &scene->still_ticks);
   code_size(c, &scene->left_count);
   scree_code_u32(c, &end);
-  if (end > 4 || scene->tick_steps == 0) c->failed = true;
+  if (end >= SCREE_SCENE_ENDS || scene->tick_steps == 0) c->failed = true;
   scene->end = (int)end;
 }
 

@@ -14,9 +14,10 @@ static const double tick_share = 0.25; /* of the way a body falls in, or flies, 
 static const double clearance_share = 0.01; /* of a body's size, kept free around it on entering */
 enum { STILL_TICKS = 10 };                  /* about the time of falling by a radius */
 
-static const char *const ends[] = {NULL, "the time is over", "still", "empty",
-                                   "the phases are over"};
-enum { GOES_ON, END_TIME, END_STILL, END_EMPTY, END_PHASES };
+static const char *const ends[SCREE_SCENE_ENDS] = {
+    NULL,    "the time is over",    "still",
+    "empty", "the phases are over", "the time after filling is over"};
+enum { GOES_ON, END_TIME, END_STILL, END_EMPTY, END_PHASES, END_FILLED };
 
 /* ---- making ---- */
 
@@ -376,7 +377,13 @@ static bool is_still(scree_scene *scene) {
   scree_world_observe(scene->world, &o);
   bool still = o.kinetic + o.rotational < stop->still * (double)o.body_count && o.pair_count > 0;
   scene->still_ticks = still ? scene->still_ticks + 1 : 0;
-  return scene->still_ticks >= STILL_TICKS;
+  double rest = stop->rest / ((double)scene->tick_steps * scene->time_step);
+  return (double)scene->still_ticks >= (isnan(rest) ? STILL_TICKS : ceil(rest));
+}
+
+static bool is_over_after_filling(const scree_scene *scene) {
+  double end = scree_scene_filling_time(scene) + scene->plan.stop->filled;
+  return scree_scene_is_filled(scene) && scree_world_time(scene->world) >= end;
 }
 
 static double time_limit(const scree_scene *scene) {
@@ -396,6 +403,7 @@ static int find_end(scree_scene *scene) {
   if (scree_world_time(scene->world) < stop->after) return GOES_ON;
   if (stop->empty && scene->left_count == scene->shape_of.count && scree_scene_is_filled(scene))
     return END_EMPTY;
+  if (is_over_after_filling(scene)) return END_FILLED;
   return is_still(scene) ? END_STILL : GOES_ON;
 }
 
@@ -466,18 +474,23 @@ scree_status scree_scene_advance(scree_scene *scene, size_t step_count, scree_er
   return status;
 }
 
+static bool same_number(double a, double b) {
+  return a == b || (isnan(a) && isnan(b));
+}
+
 static bool same_stop(const scree_plan_stop *a, const scree_plan_stop *b) {
-  bool same_still = a->still == b->still || (isnan(a->still) && isnan(b->still));
-  return same_still && a->empty == b->empty && a->after == b->after;
+  return same_number(a->still, b->still) && same_number(a->rest, b->rest) &&
+         same_number(a->filled, b->filled) && a->empty == b->empty && a->after == b->after;
 }
 
 void scree_scene_reopen(scree_scene *scene, const scree_plan *plan) {
-  bool stops = scene->end == END_STILL || scene->end == END_EMPTY;
+  bool stops = scene->end == END_STILL || scene->end == END_EMPTY || scene->end == END_FILLED;
   if (!stops && scene->end != END_TIME) return;
   if (stops && same_stop(scene->plan.stop, plan->stop)) return;
   if (plan->time <= scree_world_time(scene->world)) return;
   scene->end = GOES_ON;
-  if (stops) scene->still_ticks = 0;
+  const scree_plan_stop *was = scene->plan.stop;
+  if (was->still != plan->stop->still || was->after != plan->stop->after) scene->still_ticks = 0;
   if (scree_world_time(scene->world) < next_row(scene) - scene->plan.output->series)
     scene->row_count--;
 }
@@ -488,8 +501,10 @@ const char *scree_scene_end(const scree_scene *scene) {
   return ends[scene->end];
 }
 double scree_scene_duration(const scree_scene *scene) {
-  double phases = scene->plan.phases.count ? scree_scene_phase_times(scene) : time_limit(scene);
-  return fmin(time_limit(scene), phases);
+  const scree_plan_stop *stop = scene->plan.stop;
+  double most = scene->plan.phases.count ? scree_scene_phase_times(scene) : (double)INFINITY;
+  if (!isnan(stop->filled)) most = fmin(most, scree_scene_filling_time(scene) + stop->filled);
+  return fmin(time_limit(scene), most);
 }
 const char *scree_scene_title(const scree_scene *scene) {
   return scene->plan.title;

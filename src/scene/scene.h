@@ -158,6 +158,8 @@ struct scree_scene {
   double frame_coordination; /* of a frame, as its contacts were */
 };
 
+enum { SCREE_SCENE_ENDS = 6 }; /* that a scene may have, 0: none yet */
+
 extern const scree_seal scree_scene_seal;
 
 /* scene.c: as scree_scene_create, with what a program gives. */
@@ -215,6 +217,8 @@ scree_status scree_scene_enter_layers(scree_scene *scene, scree_error *error);
 /* Steps until the next layer: 0, it is due; SIZE_MAX: there is none. Near its time it is 1, since
  * it falls on the first step at or past it. */
 size_t scree_scene_steps_to_layer(const scree_scene *scene);
+/* s: when the last body entered, or will as planned; infinity where there is no plan. */
+double scree_scene_filling_time(const scree_scene *scene);
 /* inlets.c: one body more in the world; `which` of the inlet's shapes. */
 scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
                                const scree_placement *placement, const double velocity[3],
@@ -294,7 +298,8 @@ typedef struct scree_scene_drive {
   const scree_seal *seal;
   bool motion, series; /* what the folder gets besides checkpoints */
   bool closing;        /* The end is a frame too; one that stopped is given as it stands. */
-  double (*cylinder_height)(const scree_scene *scene); /* beside the motion; NULL: the walls are */
+  bool walls;          /* beside the motion of the bodies; */
+  double (*cylinder_height)(const scree_scene *scene); /* or this; NULL: 0 */
   scree_status (*make)(void *context, scree_scene **scene, scree_error *error);
   /* Of a checkpoint that was found at path; also takes over what may differ. */
   scree_status (*check)(void *context, scree_scene *scene, const char *path, scree_error *error);

@@ -230,8 +230,6 @@ static void what_cannot_be_poured_is_refused(void **state) {
   pour = make_pour(&o, 1, 1);
   assert_int_equal(scree_pour_record(pour, in_folder("x"), 0, &error), SCREE_BAD_ARGUMENT);
   assert_int_equal(scree_pour_record(pour, in_folder("no/x"), 1, &error), SCREE_IO);
-  assert_int_equal(scree_pour_json_write(&(scree_pour_entry){.pour = pour}, "-", true, &error),
-                   SCREE_BAD_ARGUMENT);
   scree_pour_free(pour);
 }
 
@@ -242,8 +240,6 @@ static void a_pour_goes_on_with_the_same_bits(void **state) {
   for (int c = 0; c < 2; c++) {
     scree_pour_options o = soft_options(c ? SCREE_CONTAINER_BOX : SCREE_CONTAINER_CYLINDER, 0.15);
     scree_pour *whole = make_pour(&o, 9, 9), *cut = make_pour(&o, 9, 9);
-    const double notes[2] = {1.5, -0.1};
-    CHECK_OK(scree_pour_set_notes(cut, notes, 2, &error), error);
     for (int i = 0; i < 100 && scree_pour_entered_count(cut) < 18; i++) {
       CHECK_OK(scree_pour_advance(whole, 2000, &error), error);
       CHECK_OK(scree_pour_advance(cut, 2000, &error), error);
@@ -258,10 +254,6 @@ static void a_pour_goes_on_with_the_same_bits(void **state) {
     }
     assert_int_equal(scree_pour_entered_count(cut), 18);
     assert_true(scree_pour_filling_time(whole) == scree_pour_filling_time(cut));
-    size_t count;
-    const double *kept = scree_pour_notes(cut, &count);
-    assert_int_equal(count, 2);
-    assert_true(kept[0] == notes[0] && kept[1] == notes[1]);
     assert_int_equal(scree_pour_shape_count(cut), 2);
     scree_pour_shape first = scree_pour_get_shape(cut, 0), second = scree_pour_get_shape(cut, 1);
     assert_int_equal(first.count, 9);
@@ -303,9 +295,7 @@ static void damaged_checkpoints_are_refused(void **state) {
 
 static scree_status save_and_load(void *context, scree_error *error) {
   scree_pour *pour = NULL;
-  const double notes[3] = {1, 2, 3};
-  scree_status status = scree_pour_set_notes(context, notes, 3, error);
-  if (status == SCREE_OK) status = scree_pour_save(context, in_folder("saved"), true, error);
+  scree_status status = scree_pour_save(context, in_folder("saved"), true, error);
   if (status == SCREE_OK) status = scree_pour_load(in_folder("saved"), &pour, error);
   scree_pour_free(pour);
   return status;
@@ -315,24 +305,75 @@ static scree_status pour_all(void *context, scree_error *error) {
   const scree_pour_shape shape = {context, 3, "box", "box.stl"};
   scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0);
   const char *name = "box";
-  scree_pour_point point = {.entered_energy = 0};
-  scree_pour_entry entry = {.names = &name, .points = &point, .point_count = 1};
+  scree_pour_entry entry = {.names = &name};
   scree_pour *pour = NULL;
   scree_status status = scree_pour_create(&shape, 1, &o, &pour, error);
   if (status == SCREE_OK) status = scree_pour_record(pour, in_folder("m"), 1e-4, error);
   if (status == SCREE_OK) status = scree_pour_advance(pour, 10, error);
   if (status == SCREE_OK) status = scree_pour_record_end(pour, error);
-  if (status == SCREE_OK) scree_world_observe(scree_pour_view(pour), &point.seen);
   entry.pour = pour;
   if (status == SCREE_OK) status = scree_pour_json_write(&entry, in_folder("j"), true, error);
   scree_pour_free(pour);
   return status;
 }
 
+static scree_status complete(void *context, scree_error *error) {
+  const scree_pour_shape shape = {context, 3, "box", "box.stl"};
+  scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0);
+  scree_pour *pour = NULL;
+  scree_pour_job job = {.shapes = &shape,
+                        .shape_count = 1,
+                        .options = &o,
+                        .schedule = {.time = 0, .series = 1, .checkpoint = 60},
+                        .folder = in_folder("complete"),
+                        .overwrite = true};
+  scree_status status = scree_pour_complete(&job, &pour, error);
+  scree_pour_free(pour);
+  if (status != SCREE_OK) return status;
+  pour = NULL;
+  job.shape_count = 0; /* those of the checkpoint */
+  job.resume = true;
+  status = scree_pour_complete(&job, &pour, error);
+  scree_pour_free(pour);
+  return status;
+}
+
+/* Ends a second after the last has entered, or when it has been still for as long as is said. */
+static void a_whole_pour_ends_as_asked(void **state) {
+  (void)state;
+  scree_error error;
+  scree_particle *box = box_particle(0.05, 0.03, 0.02);
+  const scree_pour_shape shape = {box, 5, "box", NULL};
+  scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0.2);
+  for (int still = 0; still < 2; still++) {
+    scree_pour *pour = NULL;
+    const scree_pour_job job = {.shapes = &shape,
+                                .shape_count = 1,
+                                .options = &o,
+                                .schedule = {.time = still ? 5 : 0.02,
+                                             .still = still ? 1e-3 : 0,
+                                             .rest = 0.05,
+                                             .series = 0.01,
+                                             .checkpoint = 60}};
+    CHECK_OK(scree_pour_complete(&job, &pour, &error), error);
+    double time = scree_world_time(scree_pour_view(pour)), filled = scree_pour_filling_time(pour);
+    assert_int_equal(scree_pour_entered_count(pour), 5);
+    assert_string_equal(scree_scene_end(scree_pour_scene(pour)),
+                        still ? "still" : "the time after filling is over");
+    if (still)
+      assert_true(time > filled + 0.05 && time < filled + 5);
+    else
+      CHECK_NEAR(time, filled + 0.02, 5e-3);
+    scree_pour_free(pour);
+  }
+  scree_particle_free(box);
+}
+
 static void memory_running_out_is_told(void **state) {
   (void)state;
   scree_particle *box = box_particle(0.05, 0.03, 0.02);
   check_allocation_failures(pour_all, box);
+  check_allocation_failures(complete, box);
   scree_particle_free(box);
   scree_error error;
   scree_pour_options o = soft_options(SCREE_CONTAINER_CYLINDER, 0.1);
@@ -351,6 +392,7 @@ int main(void) {
       cmocka_unit_test(what_cannot_be_poured_is_refused),
       cmocka_unit_test(a_pour_goes_on_with_the_same_bits),
       cmocka_unit_test(damaged_checkpoints_are_refused),
+      cmocka_unit_test(a_whole_pour_ends_as_asked),
       cmocka_unit_test(memory_running_out_is_told),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
