@@ -13,7 +13,7 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$root"
 sources=(src/world/device/kernels.c src/base/math.c)
-for name in contact touch edges law candidates substep seam depth wall pair pool step integrate; do
+for name in contact touch edges law candidates substep seam depth wall motion pair pool step integrate; do
   [ ! -e src/world/$name.c ] || sources+=(src/world/$name.c)
 done
 for name in closest tree; do sources+=(src/particle/$name.c); done
@@ -25,7 +25,7 @@ for source in "${sources[@]}"; do
 done
 "$llvm/llvm-link" "$work"/*.bc -S -o "$work/all.ll"
 # what marks a kernel for llvm 14
-kernels=$(sed -n 's/^  X(\([a-z]*\)).*/scree_kernel_\1/p' src/world/device/device.h)
+kernels=$(sed -n 's/^  X(\([a-z_]*\)).*/scree_kernel_\1/p' src/world/device/device.h)
 {
   number=9000 nodes=
   for kernel in $kernels; do

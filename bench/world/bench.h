@@ -32,7 +32,7 @@ scree_world *stack_scene(const scree_world *from, size_t copies);
  * at rest without the hours that a column of them takes to settle. */
 scree_world *shelve_scene(const scree_world *from, size_t copies, double time);
 /* The scene after its cylinder has risen by `height`, at full stiffness. */
-scree_world *lift_scene(const scree_world *from, double height);
+void lift_scene(scree_world *world, double height);
 /* The scene with the time step given, or 0: automatic. */
 scree_world *retime_scene(const scree_world *from, double time_step);
 

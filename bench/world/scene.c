@@ -6,14 +6,13 @@
 #include <math.h>
 #include <stdlib.h>
 
-static const double soft = 0.3;               /* stiffness while a scene is made */
-static const double entry_speed = 3;          /* m/s, about */
-static const double soft_time = 0.5;          /* s at rest, soft */
-static const double hard_time = 0.15;         /* s at rest, at full stiffness */
-static const double gentle_time = 1;          /* s of copies sinking onto each other, g / 10 */
-static const double stack_time = 1.2;         /* s at rest after that */
-static const double lift_speed = 0.1;         /* m/s, the paper's */
-static const double flowing_hard_time = 0.02; /* s of the lift at full stiffness before measuring */
+static const double soft = 0.3;       /* stiffness while a scene is made */
+static const double entry_speed = 3;  /* m/s, about */
+static const double soft_time = 0.5;  /* s at rest, soft */
+static const double hard_time = 0.15; /* s at rest, at full stiffness */
+static const double gentle_time = 1;  /* s of copies sinking onto each other, g / 10 */
+static const double stack_time = 1.2; /* s at rest after that */
+static const double lift_speed = 0.1; /* m/s, the paper's */
 
 /* How a world is to be made again. */
 typedef struct remake {
@@ -22,7 +21,6 @@ typedef struct remake {
   size_t copies;
   double pitch; /* of the copies */
   bool shelves; /* each copy on a disc of its own, in an endless cylinder */
-  bool lifting; /* the cylinder rises */
 } remake;
 
 static void advance(scree_world *world, double time) {
@@ -93,7 +91,7 @@ static scree_world *make_again(const scree_world *from, const remake *how) {
     scree_wall wall;
     scree_world_get_wall(from, w, &wall);
     wall.material = 1;
-    wall.velocity[2] = how->lifting && wall.kind == SCREE_WALL_CYLINDER ? lift_speed : 0;
+    wall.velocity[2] = 0;
     if (how->shelves && wall.kind == SCREE_WALL_CYLINDER) wall.length = 0;
     size_t count = how->shelves && wall.kind == SCREE_WALL_DISC ? how->copies : 1;
     for (size_t c = 0; c < count; c++, wall.position[2] += how->pitch)
@@ -212,12 +210,16 @@ scree_world *shelve_scene(const scree_world *from, size_t copies, double time) {
   return world;
 }
 
-scree_world *lift_scene(const scree_world *from, double height) {
-  remake how = {.stiffness_factor = soft, .gravity = 9.81, .lifting = true};
-  scree_world *world = make_again(from, &how);
+void lift_scene(scree_world *world, double height) {
+  const double up[3] = {0, 0, lift_speed}, still[3] = {0, 0, 0};
+  scree_error error;
+  for (size_t w = 0; w < scree_world_wall_count(world); w++) {
+    scree_wall wall;
+    scree_world_get_wall(world, w, &wall);
+    if (wall.kind == SCREE_WALL_CYLINDER)
+      need(scree_world_set_wall_velocity(world, w, up, still, &error), &error);
+  }
   advance(world, height / lift_speed);
-  how.stiffness_factor = 1;
-  return stage(world, how, flowing_hard_time);
 }
 
 scree_world *retime_scene(const scree_world *from, double time_step) {

@@ -8,6 +8,7 @@
  *   bench_world retime DT IN OUT                   with time step DT s
  *   bench_world dump IN OUT                        the scene as text, for the peers (print_scene)
  *   bench_world time THREADS SECONDS IN            measures, after a tenth of the time to warm up
+ *   bench_world batch WORLDS SECONDS IN            measures as many worlds at once, a thread each
  *   bench_world hash THREADS STEPS IN              prints the hash of the state after these steps
  *
  * IN and OUT are checkpoints. `time` prints one CSV line: bodies, triangles of the first body, time
@@ -17,6 +18,7 @@
  * energy J, largest overlap m, peak memory bytes. */
 #include "bench.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -78,10 +80,9 @@ static int shelve(char **a) {
 }
 
 static int lift(char **a) {
-  scree_world *from = load(a[1]);
-  int status = save(lift_scene(from, strtod(a[0], NULL)), a[2]);
-  scree_world_free(from);
-  return status;
+  scree_world *world = load(a[1]);
+  lift_scene(world, strtod(a[0], NULL));
+  return save(world, a[2]);
 }
 
 static int retime(char **a) {
@@ -187,6 +188,49 @@ static int measure(char **a) {
   return 0;
 }
 
+/* One of several worlds that are stepped at once. */
+typedef struct lane {
+  scree_world *world;
+  double until; /* of the clock */
+  size_t steps;
+  pthread_t thread;
+} lane;
+
+static void *run_lane(void *context) {
+  lane *l = context;
+  scree_error error;
+  for (; seconds(CLOCK_MONOTONIC) < l->until; l->steps += at_once)
+    need(scree_world_step(l->world, at_once, &error), &error);
+  return NULL;
+}
+
+/* Prints worlds, bodies of one, wall s and particle-steps per second of all. */
+static int batch(char **a) {
+  size_t count = strtoul(a[0], NULL, 10);
+  double wanted = strtod(a[1], NULL), sum = 0, start = 0;
+  lane *lanes = calloc(count, sizeof *lanes);
+  scree_set_threads(1);
+  for (size_t i = 0; i < count; i++) lanes[i].world = load(a[2]);
+  for (int warm = 1; warm >= 0; warm--) {
+    start = seconds(CLOCK_MONOTONIC);
+    for (size_t i = 0; i < count; i++) {
+      lanes[i].steps = 0;
+      lanes[i].until = start + (warm ? 0.1 : 1) * wanted;
+      pthread_create(&lanes[i].thread, NULL, run_lane, &lanes[i]);
+    }
+    for (size_t i = 0; i < count; i++) pthread_join(lanes[i].thread, NULL);
+  }
+  double wall = seconds(CLOCK_MONOTONIC) - start;
+  size_t bodies = scree_world_body_count(lanes[0].world);
+  for (size_t i = 0; i < count; i++) {
+    sum += (double)(bodies * lanes[i].steps);
+    scree_world_free(lanes[i].world);
+  }
+  printf("%zu,%zu,%.3f,%.0f\n", count, bodies, wall, sum / wall);
+  free(lanes);
+  return 0;
+}
+
 static int hash(char **a) {
   scree_error error;
   scree_set_threads(atoi(a[0]));
@@ -214,16 +258,18 @@ int main(int argc, char **argv) {
     int (*run)(char **arguments);
   } commands[] = {{"fill", 4, fill},     {"refit", 5, refit}, {"stack", 3, stack},
                   {"shelve", 4, shelve}, {"lift", 3, lift},   {"retime", 3, retime},
-                  {"time", 3, measure},  {"hash", 3, hash},   {"dump", 2, dump}};
+                  {"time", 3, measure},  {"batch", 3, batch}, {"hash", 3, hash},
+                  {"dump", 2, dump}};
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
     if (argc == commands[i].argument_count + 2 && strcmp(argv[1], commands[i].name) == 0)
       return commands[i].run(argv + 2);
-  fprintf(stderr,
-          "usage: %s [--backend NAME] fill KIND TRIANGLES COUNT OUT | refit KIND FROM TRIANGLES IN "
-          "OUT | "
-          "stack COPIES IN OUT | shelve COPIES SECONDS IN OUT | lift HEIGHT IN OUT | retime DT IN "
-          "OUT | "
-          "time THREADS SECONDS IN | hash THREADS STEPS IN | dump IN OUT\n",
-          argv[0]);
+  fprintf(
+      stderr,
+      "usage: %s [--backend NAME] fill KIND TRIANGLES COUNT OUT | refit KIND FROM TRIANGLES IN "
+      "OUT | "
+      "stack COPIES IN OUT | shelve COPIES SECONDS IN OUT | lift HEIGHT IN OUT | retime DT IN "
+      "OUT | "
+      "time THREADS SECONDS IN | batch WORLDS SECONDS IN | hash THREADS STEPS IN | dump IN OUT\n",
+      argv[0]);
   return 2;
 }

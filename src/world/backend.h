@@ -9,8 +9,8 @@ typedef struct scree_backend {
   const char *name;
   /* The state goes to where it is stepped; nothing else changes it until it is fetched. */
   scree_status (*begin)(scree_world *world, scree_error *error);
-  /* One step. What is wrong is in world->failure. */
-  scree_status (*step)(scree_world *world);
+  /* Some steps, at least one and at most `most`; how many. What is wrong is in world->failure. */
+  scree_status (*step)(scree_world *world, size_t most, size_t *done);
   /* The world's own arrays hold the state. */
   scree_status (*fetch)(scree_world *world, scree_error *error);
   void (*release)(scree_world *world);

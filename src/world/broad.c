@@ -94,8 +94,8 @@ static bool reserve_lists(scree_world *world, uint64_t count) {
   size_t k = (size_t)count;
   return count < INT32_MAX && SCREE_RESERVE(&world->keys, k) &&
          SCREE_RESERVE(&world->broad->match, k) && SCREE_RESERVE(&world->neighbours, k) &&
-         SCREE_RESERVE(&world->pair_of, k) && SCREE_RESERVE(&world->sides, 2 * k) &&
-         SCREE_RESERVE(&world->acting, 2 * k) &&
+         SCREE_RESERVE(&world->pair_of, k) && SCREE_RESERVE(&world->ledger, k) &&
+         SCREE_RESERVE(&world->sides, 2 * k) && SCREE_RESERVE(&world->acting, 2 * k) &&
          SCREE_RESERVE(&world->due, world->bodies.count + world->walls.count) &&
          SCREE_RESERVE(&world->slots, k) && SCREE_RESERVE(&world->touching, k / 64 + 1) &&
          SCREE_RESERVE(&world->wall_pairs, k);
@@ -152,7 +152,6 @@ static void keep_keys(scree_world *world) {
   broad->old_keys = world->keys.items;
   broad->old_key_capacity = world->keys.capacity;
   broad->old_begin = broad->listed.begin;
-  broad->old_count = world->neighbours.count;
   world->keys.items = keys;
   world->keys.capacity = capacity;
   broad->listed.begin = begin;
@@ -175,6 +174,7 @@ static void move_neighbours(scree_world *world, size_t k) {
   uint32_t from = world->broad->match.items[k];
   world->neighbours.items[k] = world->neighbours.items[from];
   world->pair_of.items[k] = world->pair_of.items[from];
+  world->ledger.items[k] = world->ledger.items[from];
 }
 
 /* Those that stay, in place: first those that move down, then from the end those that move up. As
@@ -194,7 +194,8 @@ static void list_neighbours(scree_world *world) {
   run(world, scree_grids_write, bodies);
   run(world, scree_lists_sort, bodies);
   run(world, scree_lists_match, count);
-  run(world, scree_lists_drop, world->broad->old_count);
+  run(world, scree_lists_drop, world->broad->old_bodies);
+  run(world, scree_lists_drop_wall, world->walls.count);
   carry_neighbours(world);
   world->neighbours.count = world->pair_of.count = count;
   run(world, scree_lists_renew, count);

@@ -16,16 +16,7 @@ enum { FAST_STEPS = 40 };
 static const double fast_skins =
     3; /* no list of fast bodies reaches farther than this many skins */
 
-typedef struct listing {
-  const scree_world *world;
-  scree_pair *pair;
-  const scree_particle *a, *b; /* b: of an analytic wall its rims, or NULL */
-  const scree_frame *relative;
-  scree_scratch *scratch;
-  double skin;
-  uint64_t awake[4]; /* mark_awake */
-  bool full;         /* the pool of sleepers */
-} listing;
+typedef scree_listing listing; /* contact.h */
 
 /* What tells one item from another: the cached face is not part of it. */
 static uint64_t name_of(uint32_t kind, uint32_t a, uint32_t b) {
@@ -55,30 +46,35 @@ static bool is_awake(const listing *l, uint32_t kind, uint32_t a, uint32_t b) {
 
 static void put_to_sleep(listing *l, scree_item_kind kind, uint32_t a, uint32_t b, double gap) {
   if (gap > l->skin || is_awake(l, kind, a, b)) return;
+  const scree_sleeper sleeper = {l->pair->list.path + gap, a, b, kind};
   scree_range *sleeping = &l->scratch->neighbours->sleeping;
-  if (l->full || !scree_reserve_sleepers(l->scratch, sleeping->count + 1)) {
-    l->full = true;
-    return;
+  switch (l->taking) {
+  case SCREE_TAKING_COUNT:
+    l->count++;
+    break;
+  case SCREE_TAKING_WRITE:
+    l->to[l->count++] = sleeper;
+    break;
+  case SCREE_TAKING_APPEND:
+    l->full = l->full || !scree_reserve_sleepers(l->scratch, sleeping->count + 1);
+    if (!l->full) scree_sleepers(l->scratch)[sleeping->count++] = sleeper;
+    break;
   }
-  scree_sleepers(l->scratch)[sleeping->count++] =
-      (scree_sleeper){l->pair->list.path + gap, a, b, kind};
 }
 
 static vec3 into_b(const listing *l, vec3 p) {
   return vec3_add(mat3_mul_vec(&l->relative->rotation, p), l->relative->position);
 }
 
-static void list_wall_points(listing *l) {
+static void list_wall_point(listing *l, uint32_t i) {
   const scree_world_wall *wall = &l->world->walls.items[l->pair->b];
-  for (uint32_t i = 0; i < l->a->point_count; i++) {
-    vec3 closest, normal, p = into_b(l, l->a->points[i]);
-    double side = scree_wall_side(wall, p);
-    if (scree_pair_is_new(l->pair))
-      side = scree_wall_first_side(wall, p, l->relative->position,
-                                   scree_pair_clearance(l->pair, l->a, i));
-    double d = scree_wall_distance(wall, p, side, &closest, &normal);
-    put_to_sleep(l, SCREE_ITEM_POINT_WALL, i, 0, d - l->a->point_radii[i] - l->pair->law.smoothing);
-  }
+  vec3 closest, normal, p = into_b(l, l->a->points[i]);
+  double side = scree_wall_side(wall, p);
+  if (scree_pair_is_new(l->pair))
+    side = scree_wall_first_side(wall, p, l->relative->position,
+                                 scree_pair_clearance(l->pair, l->a, i));
+  double d = scree_wall_distance(wall, p, side, &closest, &normal);
+  put_to_sleep(l, SCREE_ITEM_POINT_WALL, i, 0, d - l->a->point_radii[i] - l->pair->law.smoothing);
 }
 
 /* Nodes of the other side's tree under which everything lies that can be near the present node. A
@@ -132,16 +128,16 @@ static void list_point(const point_listing *pl, uint32_t i, const front *near) {
   double touch = pl->from->point_radii[i] + pl->to->radius + l->pair->law.smoothing;
   uint32_t face;
   double distance = scree_nearest_face(pl->to, near->nodes, near->count, p, l->skin + touch, &face);
-  l->scratch->closest_queries++;
+  l->closest_queries++;
   if (!(distance < INFINITY)) return;
   double gap = distance - touch;
   if (gap > 0 && scree_pair_is_new(l->pair) && pl->to->measures.volume > 0 &&
       scree_is_inside(pl->to, p))
     gap = 0; /* made or moved there: nothing was seen from outside */
   if (pl->forth)
-    put_to_sleep(l, SCREE_ITEM_POINT_FACE, i, face, gap);
+    put_to_sleep(l, SCREE_ITEM_POINT_FACE, i, 0, gap);
   else
-    put_to_sleep(l, SCREE_ITEM_FACE_POINT, face, i, gap);
+    put_to_sleep(l, SCREE_ITEM_FACE_POINT, 0, i, gap);
 }
 
 static void list_points_below(const point_listing *pl, uint32_t index, const front *above) {
@@ -158,8 +154,8 @@ static void list_points_below(const point_listing *pl, uint32_t index, const fro
   list_points_below(pl, node->first + 1, &here);
 }
 
-static void list_surface_points(listing *l, const scree_particle *from, const scree_particle *to,
-                                bool forth) {
+static point_listing points_against(listing *l, bool forth) {
+  const scree_particle *from = forth ? l->a : l->b, *to = forth ? l->b : l->a;
   const scree_frame *r = l->relative;
   point_listing pl = {l, from, to, forth, r->rotation, r->position, 0};
   if (!forth) {
@@ -167,18 +163,15 @@ static void list_surface_points(listing *l, const scree_particle *from, const sc
     pl.shift = vec3_neg(mat3_mul_vec(&pl.rotation, r->position));
   }
   pl.far = l->skin + l->pair->law.smoothing + to->radius; /* boxes hold the radii */
-  const front whole = {.nodes = {0}, .count = 1};
-  if (from->point_count) list_points_below(&pl, 0, &whole);
+  return pl;
 }
 
-static void list_sphere_pairs(listing *l) {
-  for (uint32_t i = 0; i < l->a->point_count; i++) {
-    vec3 p = into_b(l, l->a->points[i]);
-    for (uint32_t j = 0; j < l->b->point_count; j++)
-      put_to_sleep(l, SCREE_ITEM_POINT_POINT, i, j,
-                   vec3_distance(p, l->b->points[j]) - l->a->point_radii[i] - l->b->point_radii[j] -
-                       l->pair->law.smoothing);
-  }
+static void list_sphere(listing *l, uint32_t i) {
+  vec3 p = into_b(l, l->a->points[i]);
+  for (uint32_t j = 0; j < l->b->point_count; j++)
+    put_to_sleep(l, SCREE_ITEM_POINT_POINT, i, j,
+                 vec3_distance(p, l->b->points[j]) - l->a->point_radii[i] - l->b->point_radii[j] -
+                     l->pair->law.smoothing);
 }
 
 /* One edge of a against the edges of b. Edges can touch only along a direction that is outward for
@@ -232,11 +225,6 @@ static void list_edges_below(listing *l, uint32_t index, const front *above) {
   list_edges_below(l, node->first + 1, &here);
 }
 
-static void list_edges(listing *l) {
-  const front whole = {.nodes = {0}, .count = 1};
-  if (l->a->edge_count > 0 && l->b->edge_count > 0) list_edges_below(l, 0, &whole);
-}
-
 static double box_gap(const scree_box *a, const scree_box *b) {
   double x = scree_max(a->low.x - b->high.x, b->low.x - a->high.x),
          y = scree_max(a->low.y - b->high.y, b->low.y - a->high.y),
@@ -280,38 +268,103 @@ static void set_region(listing *l) {
   pair->list.region_radius = best < smaller ? best : 0;
 }
 
-bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_frame *relative,
-                     scree_scratch *scratch) {
-  double started = scree_now();
-  listing l = {.world = world,
-               .pair = pair,
-               .a = world->bodies.particle[pair->a],
-               .b = scree_pair_shape_b(world, pair),
-               .relative = relative,
-               .scratch = scratch,
-               .skin = scree_pair_skin(world, pair)};
-  l.skin = scree_max(l.skin, scree_min(FAST_STEPS * pair->list.travel, fast_skins * l.skin));
-  l.skin =
-      scree_min(l.skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
-  mark_awake(&l);
-  scratch->neighbours->sleeping.count = 0;
+/* Features of one kind that may touch: those of `from`, in the order of its tree, against all of
+ * the other body's. */
+typedef enum group {
+  GROUP_WALL_POINTS,
+  GROUP_POINTS,
+  GROUP_POINTS_OF_B,
+  GROUP_EDGES,
+  GROUP_SPHERES,
+  GROUP_COUNT
+} group;
+
+static size_t group_size(const listing *l, group g) {
+  const scree_particle *a = l->a, *b = l->b;
+  switch (g) {
+  case GROUP_WALL_POINTS:
+    return l->analytic ? a->point_count : 0;
+  case GROUP_POINTS:
+    return b && b->face_count ? a->point_count : 0;
+  case GROUP_POINTS_OF_B:
+    return b && a->face_count ? b->point_count : 0;
+  case GROUP_EDGES:
+    return b && b->edge_count ? a->edge_count : 0;
+  default:
+    return b && !l->pair->wall && !a->face_count && !b->face_count ? a->point_count : 0;
+  }
+}
+
+/* All features of a group, with the trees' help. */
+static void list_group(listing *l, group g) {
+  const front whole = {.nodes = {0}, .count = 1};
+  size_t count = group_size(l, g);
+  if (count == 0) return;
+  if (g == GROUP_EDGES) {
+    list_edges_below(l, 0, &whole);
+  } else if (g == GROUP_POINTS || g == GROUP_POINTS_OF_B) {
+    point_listing pl = points_against(l, g == GROUP_POINTS);
+    list_points_below(&pl, 0, &whole);
+  } else {
+    for (uint32_t i = 0; i < count; i++)
+      g == GROUP_SPHERES ? list_sphere(l, i) : list_wall_point(l, i);
+  }
+}
+
+size_t scree_listing_count(const scree_listing *l) {
+  size_t count = 0;
+  for (int g = 0; g < GROUP_COUNT; g++) count += group_size(l, (group)g);
+  return count;
+}
+
+void scree_listing_take(scree_listing *l, size_t entry) {
+  const front whole = {.nodes = {0}, .count = 1};
+  int g = 0;
+  while (entry >= group_size(l, (group)g)) entry -= group_size(l, (group)g++);
+  if (g == GROUP_EDGES) {
+    list_edge(l, l->a->edge_tree.order[entry], &whole);
+  } else if (g == GROUP_POINTS || g == GROUP_POINTS_OF_B) {
+    point_listing pl = points_against(l, g == GROUP_POINTS);
+    list_point(&pl, pl.from->point_tree.order[entry], &whole);
+  } else if (g == GROUP_SPHERES) {
+    list_sphere(l, (uint32_t)entry);
+  } else {
+    list_wall_point(l, (uint32_t)entry);
+  }
+}
+
+bool scree_listing_begin(scree_listing *l, const scree_world *world, scree_pair *pair,
+                         scree_scratch *scratch) {
   bool analytic = pair->wall && scree_wall_is_analytic(&world->walls.items[pair->b]);
-  double apart = analytic ? 0 : least_distance(&l);
+  double skin = scree_pair_skin(world, pair);
+  skin = scree_max(skin, scree_min(FAST_STEPS * pair->list.travel, fast_skins * skin));
+  skin = scree_min(skin, scree_cone_slack * scree_pair_radius(world, pair)); /* of edges' cones */
+  *l = (listing){.world = world,
+                 .pair = pair,
+                 .a = world->bodies.particle[pair->a],
+                 .b = scree_pair_shape_b(world, pair),
+                 .relative = &scratch->relative,
+                 .scratch = scratch,
+                 .skin = skin,
+                 .analytic = analytic};
+  mark_awake(l);
+  scratch->neighbours->sleeping.count = 0;
+  double apart = analytic ? 0 : least_distance(l);
   pair->list.region_radius = 0;
-  if (apart > l.skin) {
-    pair->list.end = pair->list.path + apart;
-    return true;
-  }
-  if (!pair->wall) set_region(&l);
-  if (analytic) list_wall_points(&l);
-  if (l.b) {
-    if (l.b->face_count) list_surface_points(&l, l.a, l.b, true);
-    if (l.a->face_count) list_surface_points(&l, l.b, l.a, false);
-    list_edges(&l);
-    if (!pair->wall && !l.a->face_count && !l.b->face_count) list_sphere_pairs(&l);
-  }
-  pair->list.end = pair->list.path + l.skin;
+  pair->list.next_item = -INFINITY;
+  pair->list.end = pair->list.path + scree_max(apart, l->skin);
+  if (apart > l->skin) return false;
+  if (!pair->wall) set_region(l);
+  return true;
+}
+
+bool scree_pair_list(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  double started = scree_now();
+  listing l;
+  if (!scree_listing_begin(&l, world, pair, scratch)) return true;
+  for (int g = 0; g < GROUP_COUNT; g++) list_group(&l, (group)g);
   scratch->list_builds++;
+  scratch->closest_queries += l.closest_queries;
   scratch->candidate_seconds += scree_now() - started;
   return !l.full;
 }

@@ -43,6 +43,19 @@ static void add_later_work(const scree_world *world, const scree_pair *pair,
   work->later_tangential += half * power_of(&pair->tangential, u, spin);
 }
 
+/* Of the wall on the body in half a step, by the pair's wrench and the wall's last drift. A belt's
+ * surface moves along itself, so that friction alone works on it. */
+static double half_work_of_wall(const scree_world *world, const scree_pair *pair) {
+  const scree_world_wall *wall = &world->walls.items[pair->b];
+  const scree_frame *frame = &wall->frame;
+  double power =
+      vec3_dot(pair->wrench.force, frame->velocity) - vec3_dot(pair->wrench.torque_b, frame->spin);
+  if (scree_wall_is_belt(wall))
+    power += power_of(&pair->tangential, mat3_mul_vec(&frame->rotation, wall->surface_velocity),
+                      mat3_mul_vec(&frame->rotation, wall->surface_spin));
+  return 0.5 * world->time_step * power;
+}
+
 static double bodies_path(const scree_world *world, const scree_pair *pair) {
   const double *path = world->bodies.path;
   return path[pair->a] + (pair->wall ? world->walls.items[pair->b].path : path[pair->b]);
@@ -67,7 +80,9 @@ static double moving_ball(const scree_world *world, const scree_pair *pair, vec3
  * of the bodies' paths is a bound, but bodies that fly together hardly move relative to each other:
  * the net motion is another, and as good, since nothing can have touched in between. */
 static double slept_path(const scree_world *world, const scree_pair *pair,
-                         const scree_neighbours *n, const scree_frame *relative) {
+                         const scree_scratch *scratch) {
+  const scree_neighbours *n = scratch->neighbours;
+  const scree_frame *relative = &scratch->relative;
   vec3 centre;
   double radius = moving_ball(world, pair, n->asleep_at, &centre);
   mat3 then = quat_to_mat3(n->asleep_turned);
@@ -80,8 +95,8 @@ static double slept_path(const scree_world *world, const scree_pair *pair,
 
 /* a in the frame of b, its velocity and spin such that a's point at q moves with velocity + spin x
  * q. Answers a bound on the relative speed of the points that count. */
-static double relate(const scree_world *world, const scree_pair *pair, const scree_scratch *scratch,
-                     scree_frame *restrict relative) {
+static double relate(const scree_world *world, const scree_pair *pair, scree_scratch *scratch) {
+  scree_frame *relative = &scratch->relative;
   const scree_frame *a = scratch->a, *b = scratch->b;
   vec3 between = scree_pair_between(world, pair, a, b), slip = vec3_sub(a->velocity, b->velocity),
        spin = vec3_sub(a->spin, b->spin), at_b = vec3_sub(slip, vec3_cross(a->spin, between)),
@@ -132,23 +147,30 @@ static bool has_room(const scree_pair *pair, scree_scratch *scratch) {
          scree_reserve_sleepers(scratch, scratch->neighbours->sleeping.count + pair->active.count);
 }
 
-/* Evaluates the awake items; those that cannot touch soon go to sleep. */
-static bool visit_items(const scree_world *world, scree_pair *pair, const scree_frame *relative,
-                        scree_scratch *scratch) {
-  double nap = least_sleep * pair->list.travel + scree_pair_claim(pair);
-  size_t kept = 0;
+static void begin_visits(const scree_pair *pair, scree_scratch *scratch) {
+  scratch->nap = least_sleep * pair->list.travel + scree_pair_claim(pair);
+  scratch->touches.count = 0;
+}
+
+void scree_pair_visit_item(const scree_world *world, const scree_pair *pair, uint32_t i,
+                           scree_scratch *scratch) {
+  scree_item *item = &scratch->items[i];
+  item->gap = scree_item_touch(world, pair, item, &scratch->relative, scratch);
+}
+
+/* What the visits found. Items that cannot touch soon go to sleep, but move only after the law: the
+ * touches point at their anchors. */
+static void end_visits(const scree_pair *pair, scree_scratch *scratch) {
   scratch->least_gap = INFINITY;
   scratch->any_inside = false;
-  /* asleep items move only after all touches are found: touches point at anchors */
+  scratch->to_sleep = 0;
   for (uint32_t i = 0; i < pair->active.count; i++) {
     scree_item *item = &scratch->items[i];
-    double gap = scree_item_touch(world, pair, item, relative, scratch);
-    item->gap = gap > nap && gap > 0 && !item->inside ? gap : 0;
-    kept += item->gap > 0;
-    if (gap < scratch->least_gap) scratch->least_gap = gap;
+    if (item->gap < scratch->least_gap) scratch->least_gap = item->gap;
     scratch->any_inside |= item->inside;
+    if (!(item->gap > scratch->nap && item->gap > 0) || item->inside) item->gap = 0;
+    scratch->to_sleep += item->gap > 0;
   }
-  return kept > 0;
 }
 
 static void settle_items(scree_pair *pair, scree_scratch *scratch) {
@@ -202,32 +224,32 @@ static bool passes_unseen(const scree_world *world, const scree_pair *pair) {
   return pair->active.count > 0 && !(pair->list.travel <= 2 * pair->law.thin);
 }
 
-/* Brings the lists up to date; false where there is too little room. */
-static bool prepare(const scree_world *world, scree_pair *pair, const scree_frame *relative,
-                    scree_scratch *scratch) {
-  if (pair->list.path + 2 * pair->list.travel >= pair->list.end) {
-    if (!scree_pair_list(world, pair, relative, scratch)) return false;
-    pair->list.next_item = -INFINITY;
-  }
-  return wake_items(pair, scratch) && has_room(pair, scratch);
+bool scree_pair_is_due(const scree_pair *pair) {
+  return pair->list.path + 2 * pair->list.travel >= pair->list.end;
 }
 
-/* Where the two are; `own` is room for places that are the pair's alone. */
-static void take_places(const scree_world *world, const scree_pair *pair, scree_frame own[2],
-                        scree_scratch *scratch) {
+bool scree_pair_wake(scree_pair *pair, scree_scratch *scratch) {
+  if (!wake_items(pair, scratch) || !has_room(pair, scratch)) return false;
+  begin_visits(pair, scratch);
+  return true;
+}
+
+/* Where the two are. */
+static void take_places(const scree_world *world, const scree_pair *pair, scree_scratch *scratch) {
   scratch->a = &world->bodies.frame[pair->a];
   scratch->b = scree_pair_frame_b(world, pair);
   scratch->drift = world->time_step / pair->substeps;
   if (pair->substeps == 1) return;
-  own[0] = scree_owed_frame(world, pair, false);
-  own[1] = scree_owed_frame(world, pair, true);
-  scratch->a = &own[0];
-  scratch->b = &own[1];
+  scratch->own[0] = scree_owed_frame(world, pair, false);
+  scratch->own[1] = scree_owed_frame(world, pair, true);
+  scratch->a = &scratch->own[0];
+  scratch->b = &scratch->own[1];
 }
 
 /* The law at the present places. */
-static void press(const scree_world *world, scree_pair *pair, const scree_frame *relative,
-                  scree_scratch *scratch, scree_pair_work *work) {
+static void press(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                  scree_pair_work *work) {
+  const scree_frame *relative = &scratch->relative;
   bool parting = pair->parting, parted = pair->parted;
   pair->parted = false;
   scree_pair_feel_depths(world, pair, relative, scratch, work);
@@ -250,57 +272,71 @@ static void press(const scree_world *world, scree_pair *pair, const scree_frame 
   work->beyond_limit |= !(pair->overlap <= pair->law.limit) && !pair->parting;
 }
 
-bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                     scree_frame *relative, scree_pair_work *work) {
-  const scree_list_state before = pair->list;
-  const bool slept = pair->asleep;
-  scree_frame own[2];
-  take_places(world, pair, own, scratch);
-  *work = (scree_pair_work){.later_dashpot = pair->later_dashpot,
-                            .later_tangential = pair->later_tangential};
-  if (pair->touching) add_later_work(world, pair, scratch, work);
-  double speed = relate(world, pair, scratch, relative);
+void scree_pair_relate(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  scratch->before = pair->list;
+  scratch->slept = pair->asleep;
+  take_places(world, pair, scratch);
+  scratch->work = (scree_pair_work){.later_dashpot = pair->later_dashpot,
+                                    .later_tangential = pair->later_tangential};
+  if (pair->touching) add_later_work(world, pair, scratch, &scratch->work);
+  if (pair->touching && pair->wall) scratch->work.wall = half_work_of_wall(world, pair);
+  double speed = relate(world, pair, scratch);
   pair->list.travel = speed * world->time_step;
-  pair->list.path +=
-      slept ? slept_path(world, pair, scratch->neighbours, relative) : speed * scratch->drift;
+  pair->list.path += scratch->slept ? slept_path(world, pair, scratch) : speed * scratch->drift;
   pair->asleep = false;
-  if (!prepare(world, pair, relative, scratch)) {
-    pair->list = before;
-    pair->asleep = slept;
+}
+
+void scree_pair_step_back(scree_pair *pair, const scree_scratch *scratch) {
+  pair->list = scratch->before;
+  pair->asleep = scratch->slept;
+}
+
+void scree_pair_press(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  scratch->work.too_fast = passes_unseen(world, pair);
+  pair->later_dashpot = pair->later_tangential = 0;
+  end_visits(pair, scratch);
+  scratch->substeps = scree_substep_count(world, pair, &scratch->relative, scratch);
+  scratch->step = world->time_step / scratch->substeps;
+  press(world, pair, scratch, &scratch->work);
+  if (scratch->to_sleep > 0) settle_items(pair, scratch);
+}
+
+bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  scree_pair_relate(world, pair, scratch);
+  if ((scree_pair_is_due(pair) && !scree_pair_list(world, pair, scratch)) ||
+      !scree_pair_wake(pair, scratch)) {
+    scree_pair_step_back(pair, scratch);
     return false;
   }
-  work->too_fast = passes_unseen(world, pair);
-  pair->later_dashpot = pair->later_tangential = 0;
-  scratch->touches.count = 0;
-  bool some_sleep = visit_items(world, pair, relative, scratch);
-  scratch->substeps = scree_substep_count(world, pair, relative, scratch);
-  scratch->step = world->time_step / scratch->substeps;
-  press(world, pair, relative, scratch, work);
-  if (some_sleep) settle_items(pair, scratch);
+  for (uint32_t i = 0; i < pair->active.count; i++) scree_pair_visit_item(world, pair, i, scratch);
+  scree_pair_press(world, pair, scratch);
   return true;
 }
 
-void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                             scree_pair_work *work) {
+void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   scree_pair_work part = {0};
-  scree_frame relative;
   if (pair->touching) add_later_work(world, pair, scratch, &part);
-  pair->list.travel = relate(world, pair, scratch, &relative) * scratch->drift;
+  pair->list.travel = relate(world, pair, scratch) * scratch->drift;
   pair->list.path += pair->list.travel;
-  scratch->touches.count = 0;
-  visit_items(world, pair, &relative, scratch);
-  press(world, pair, &relative, scratch, &part);
+  begin_visits(pair, scratch);
+  for (uint32_t i = 0; i < pair->active.count; i++) scree_pair_visit_item(world, pair, i, scratch);
+  end_visits(pair, scratch);
+  press(world, pair, scratch, &part);
   pair->later_dashpot += part.later_dashpot + part.dashpot - part.lost - part.let_go;
   pair->later_tangential += part.later_tangential + part.tangential;
-  work->begins_parting |= part.begins_parting;
-  work->beyond_limit |= part.beyond_limit;
+  scratch->work.begins_parting |= part.begins_parting;
+  scratch->work.beyond_limit |= part.beyond_limit;
 }
 
-bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                         scree_pair_work *work) {
-  scree_frame relative;
-  if (!scree_pair_look(world, pair, scratch, &relative, work)) return false;
-  if (scratch->substeps > 1 || pair->substeps > 1) scree_pair_follow(world, pair, scratch, work);
+void scree_pair_leave(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  const scree_frame relative = scratch->relative; /* of the step's beginning */
+  if (scratch->substeps > 1 || pair->substeps > 1) scree_pair_follow(world, pair, scratch);
+  if (pair->touching && pair->wall) scratch->work.wall += half_work_of_wall(world, pair);
   if (!scree_pair_stays_awake(pair)) fall_asleep(world, pair, scratch->neighbours, &relative);
+}
+
+bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  if (!scree_pair_look(world, pair, scratch)) return false;
+  scree_pair_leave(world, pair, scratch);
   return true;
 }

@@ -20,7 +20,19 @@ typedef struct scree_touch_list {
   size_t count, capacity;
 } scree_touch_list;
 
-/* Scratch of one worker, and where the lists of the pair in hand lie. */
+/* What a pair's evaluation adds to the ledger, J, and what is wrong with it. */
+typedef struct scree_pair_work {
+  double later_dashpot, later_tangential; /* second half of the last step */
+  double dashpot, tangential;             /* first half of this */
+  double lost;                            /* in the hysteretic spring */
+  double let_go;                          /* by springs whose references start anew */
+  double wall;                            /* of a wall on the body */
+  double start_depth;                     /* in each other from the start, m; 0: none */
+  bool too_fast, beyond_limit, begins_parting;
+} scree_pair_work;
+
+/* A pair in hand: where its lists and its bodies are, and what is found out about it in a step. A
+ * worker has one, a device one for every pair that is awake. */
 struct scree_scratch {
   scree_pools *pools;
   scree_neighbours *neighbours; /* of the pair */
@@ -28,26 +40,24 @@ struct scree_scratch {
   scree_further *further;
   scree_touch_list touches;
   size_t touches_needed; /* by a pair that found too little room */
+  size_t first_touch;    /* of a device: in the pool of touches */
   uint64_t item_evaluations, closest_queries, list_builds;
   uint64_t depth_queries;
   double candidate_seconds;
+  double nap;               /* items that cannot touch for longer go to sleep */
   double least_gap;         /* of the items */
   const scree_frame *a, *b; /* where the pair's two are */
+  scree_frame own[2];       /* these where they are the pair's alone */
+  scree_frame relative;     /* a in the frame of b */
   double drift, step;       /* s, of their last drift and of the coming one */
   uint32_t substeps;        /* of the coming step */
-  bool any_inside;          /* one of them is */
+  uint32_t to_sleep;        /* items that go to sleep */
+  bool any_inside;          /* an item is */
+  bool slept;               /* the pair did, until this step */
+  scree_list_state before;  /* of the pair, when the step began */
+  scree_pair_work work;
   scree_anchor no_anchor;
 };
-
-/* What a pair's evaluation adds to the ledger, J, and what is wrong with it. */
-typedef struct scree_pair_work {
-  double later_dashpot, later_tangential; /* second half of the last step */
-  double dashpot, tangential;             /* first half of this */
-  double lost;                            /* in the hysteretic spring */
-  double let_go;                          /* by springs whose references start anew */
-  double start_depth;                     /* in each other from the start, m; 0: none */
-  bool too_fast, beyond_limit, begins_parting;
-} scree_pair_work;
 
 /* pool.c: a larger place for the pair's items, or for the sleepers of the neighbours in hand; false
  * where the pool has too little room. */
@@ -108,8 +118,30 @@ static inline double scree_pair_radius(const scree_world *w, const scree_pair *p
 }
 
 /* candidates.c: which items could touch within the skin; fills sleeping, keeps active. */
-bool scree_pair_list(const scree_world *world, scree_pair *pair, const scree_frame *relative,
-                     scree_scratch *scratch);
+bool scree_pair_list(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
+
+/* The same in pieces, for many threads: entries, each some features against the other body, count
+ * what they find, and write it from where the counts of those before end. */
+typedef struct scree_listing {
+  const scree_world *world;
+  scree_pair *pair;
+  const scree_particle *a, *b; /* b: of an analytic wall its rims, or NULL */
+  const scree_frame *relative;
+  scree_scratch *scratch;
+  double skin;
+  uint64_t awake[4]; /* bits of names of items that are */
+  bool analytic;
+  bool full; /* the pool of sleepers */
+  uint64_t closest_queries;
+  enum { SCREE_TAKING_APPEND, SCREE_TAKING_COUNT, SCREE_TAKING_WRITE } taking;
+  uint32_t count; /* of what was found, or written: */
+  scree_sleeper *to;
+} scree_listing;
+/* False where the two are too far apart for any. */
+bool scree_listing_begin(scree_listing *listing, const scree_world *world, scree_pair *pair,
+                         scree_scratch *scratch);
+size_t scree_listing_count(const scree_listing *listing); /* of entries */
+void scree_listing_take(scree_listing *listing, size_t entry);
 
 /* touch.c: the touching features of one item, appended to touches; returns its gap, the way it must
  * move before it can touch (0 or less: it does, or nearly). relative: a in the frame of b. */
@@ -165,14 +197,26 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
 
 /* contact.c: the whole of a pair's step, its lists being in hand. False where a pool, or the
  * scratch, has too little room: the pair is as before, but for lists that are made again. */
-bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                         scree_pair_work *work);
+bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 /* The contact at the present places, without what follows of it: the first part of the step. */
-bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                     scree_frame *relative, scree_pair_work *work);
+bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
+
+/* The parts of both, one after another. How the two have moved: */
+void scree_pair_relate(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
+/* Whether its lists are to be made anew. */
+bool scree_pair_is_due(const scree_pair *pair);
+/* Items wake; room for what they find. False where there is too little. */
+bool scree_pair_wake(scree_pair *pair, scree_scratch *scratch);
+/* Then the pair is as it was before the step. */
+void scree_pair_step_back(scree_pair *pair, const scree_scratch *scratch);
+/* The touches of item i. */
+void scree_pair_visit_item(const scree_world *world, const scree_pair *pair, uint32_t i,
+                           scree_scratch *scratch);
+/* After those of all items: the law. And what comes after it. */
+void scree_pair_press(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
+void scree_pair_leave(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 /* The contact in the midst of a step, at the places in scratch; its work is kept in the pair. */
-void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                             scree_pair_work *work);
+void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 
 /* substep.c: into how many parts the coming step is cut for this pair. */
 uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
@@ -180,7 +224,6 @@ uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
 /* Pose and motion of a, or b, as this pair sees it, which moved it in sub-steps. */
 scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair, bool of_b);
 /* After scree_pair_look: the rest of the step's parts; the wrench is their mean. */
-void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                       scree_pair_work *work);
+void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 
 #endif

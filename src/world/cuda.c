@@ -3,9 +3,10 @@
  * both sides run the same code on the same indices.
  *
  * The state goes to the device when steps begin and comes back when they end. In between the host
- * moves the walls, asks after every step whether the neighbours still hold, and makes them anew
- * with its own broad phase where they do not. A pair that finds too little room in a pool stops the
- * step: the host lets the pools grow, and it is evaluated again (world.h, scree_pools). */
+ * only asks for steps, several at once: where the neighbours hold no longer, a pair finds too
+ * little room in a pool, or something is wrong, the kernels do nothing more until the host has
+ * mended it. Every world has a queue of its own, so that worlds that are stepped by several threads
+ * share the device. */
 #include "world/backend.h"
 #include "world/broad.h"
 #include "world/contact.h"
@@ -35,12 +36,28 @@ typedef struct span {
   bool comes_back;
 } span;
 
-enum { MOST_SPANS = 40, FIRST_TOUCHES = 4096 };
+enum { MOST_SPANS = 40, FIRST_TOUCHES = 4096, STEPS_AT_ONCE = 8 };
+
+/* What the device alone has. */
+enum {
+  BLOCK_PARTICLES,
+  BLOCK_SHAPES,
+  BLOCK_WALLS,
+  BLOCK_WORLD,
+  BLOCK_STEP,
+  BLOCK_HANDS,
+  BLOCK_PROGRESS,
+  BLOCK_TOUCHES,
+  BLOCK_TOUCH_COUNTS,
+  BLOCK_DUE,
+  BLOCK_VISITS,
+  BLOCK_COUNT = BLOCK_VISITS + SCREE_VISIT_KINDS
+};
 
 struct scree_device_world {
-  int device;
-  block arrays[MOST_SPANS], particles, shapes, walls, world, step, counts, done, work, touches;
-  uint64_t touch_capacity;
+  scree_cuda_queue queue;
+  block arrays[MOST_SPANS], own[BLOCK_COUNT];
+  uint64_t touch_capacity, touches_used;
   scree_device_step header;
   scree_world *image;          /* the device's struct */
   const scree_particle **seen; /* bodies' particles whose shapes are on the device */
@@ -51,10 +68,6 @@ struct scree_device_world {
 };
 
 #define FIELD(member) offsetof(scree_world, member)
-
-static size_t blocks_of(const scree_world *world) {
-  return scree_block_count(world->neighbours.count, SCREE_PAIR_BLOCK);
-}
 
 /* All arrays that the kernels use, but for those with pointers in them. */
 static size_t list_spans(const scree_world *w, span spans[MOST_SPANS]) {
@@ -79,6 +92,7 @@ static size_t list_spans(const scree_world *w, span spans[MOST_SPANS]) {
       OF(bodies.removed, n, true),
       OF(neighbours.items, k, true),
       OF(pair_of.items, k, true),
+      OF(ledger.items, k, true),
       OF(pairs.items, p, true),
       OF(spare_pairs.items, p, true),
       POOL(pools.items, pools->item_capacity, items),
@@ -90,10 +104,13 @@ static size_t list_spans(const scree_world *w, span spans[MOST_SPANS]) {
       OF(sides.items, w->sides.count, false),
       OF(wall_pairs.items, w->wall_pairs.count, false),
       OF(bodies.applied, w->bodies.applied ? n : 0, true),
+      OF(bodies.booked, n, false),
       OF(side_begin, n + 1, false),
       {FIELD(acting.items), w->sides.count * sizeof(uint32_t), 0, false},
-      {FIELD(sums.items), blocks_of(w) * sizeof(scree_pair_sums), 0, false},
       {FIELD(awake.items), k * sizeof(uint32_t), 0, false},
+      OF(body_path_at_build, n, false),
+      OF(motions.items, w->motions.count, false),
+      OF(motion_rows.items, w->motion_rows.count, false),
   };
 #undef OF
 #undef POOL
@@ -193,20 +210,23 @@ static scree_status send_shapes(scree_world *w, struct scree_device_world *d, sc
   if (!seen || !addresses) return scree_fail_memory(error, count * sizeof *d->addresses, "shapes");
   packer measured = {0};
   pack_shapes(w, &measured, d->addresses);
-  scree_status status =
-      scree_cuda_reserve(&d->shapes.at, &d->shapes.capacity, measured.used, error);
+  scree_status status = scree_cuda_reserve(&d->own[BLOCK_SHAPES].at, &d->own[BLOCK_SHAPES].capacity,
+                                           measured.used, error);
   if (status) return status;
-  packer p = {scree_alloc_zero(measured.used, 1), 0, d->shapes.at};
+  packer p = {scree_alloc_zero(measured.used, 1), 0, d->own[BLOCK_SHAPES].at};
   if (!p.bytes) return scree_fail_memory(error, measured.used, "shapes");
   pack_shapes(w, &p, d->addresses);
-  status = scree_cuda_write(d->shapes.at, p.bytes, p.used, error);
+  status = scree_cuda_write(&d->queue, d->own[BLOCK_SHAPES].at, p.bytes, p.used, error);
   scree_free(p.bytes);
   if (status) return status;
   for (size_t i = 0; i < count; i++) d->seen[i] = shape_at(w, i);
   d->seen_count = count;
   size_t bytes = w->bodies.count * sizeof *d->addresses;
-  status = scree_cuda_reserve(&d->particles.at, &d->particles.capacity, bytes, error);
-  return status ? status : scree_cuda_write(d->particles.at, d->addresses, bytes, error);
+  status = scree_cuda_reserve(&d->own[BLOCK_PARTICLES].at, &d->own[BLOCK_PARTICLES].capacity, bytes,
+                              error);
+  return status
+             ? status
+             : scree_cuda_write(&d->queue, d->own[BLOCK_PARTICLES].at, d->addresses, bytes, error);
 }
 
 static void lead_to(void *pointer, scree_device_address address) {
@@ -222,8 +242,9 @@ static scree_status send_walls(const scree_world *w, struct scree_device_world *
   if (!copy) return scree_fail_memory(error, bytes, "walls");
   memcpy(copy, w->walls.items, bytes);
   for (size_t i = 0; i < count; i++) lead_to(&copy[i].surface, d->addresses[w->bodies.count + i]);
-  scree_status status = scree_cuda_reserve(&d->walls.at, &d->walls.capacity, bytes, error);
-  if (!status) status = scree_cuda_write(d->walls.at, copy, bytes, error);
+  scree_status status =
+      scree_cuda_reserve(&d->own[BLOCK_WALLS].at, &d->own[BLOCK_WALLS].capacity, bytes, error);
+  if (!status) status = scree_cuda_write(&d->queue, d->own[BLOCK_WALLS].at, copy, bytes, error);
   scree_free(copy);
   return status;
 }
@@ -234,47 +255,45 @@ static scree_status send_image(scree_world *w, struct scree_device_world *d, scr
   span spans[MOST_SPANS];
   size_t count = list_spans(w, spans);
   memcpy(d->image, w, sizeof *w);
-  void **const hosts_own[] = {(void **)&d->image->broad,
-                              (void **)&d->image->scratch,
-                              (void **)&d->image->keys.items,
-                              (void **)&d->image->progress.items,
-                              (void **)&d->image->offenders,
-                              (void **)&d->image->body_path_at_build,
-                              (void **)&d->image->bodies.material,
-                              (void **)&d->image->motions.items,
-                              (void **)&d->image->motion_rows.items,
-                              (void **)&d->image->on_device,
-                              (void **)&d->image->kept.path,
+  void **const hosts_own[] = {(void **)&d->image->broad,      (void **)&d->image->scratch,
+                              (void **)&d->image->keys.items, (void **)&d->image->progress.items,
+                              (void **)&d->image->offenders,  (void **)&d->image->bodies.material,
+                              (void **)&d->image->on_device,  (void **)&d->image->kept.path,
                               (void **)&d->image->kept.bytes};
   for (size_t i = 0; i < sizeof hosts_own / sizeof *hosts_own; i++) *hosts_own[i] = NULL;
   for (size_t i = 0; i < count; i++)
     if (pointer_at(w, spans[i].field)) lead_to((char *)d->image + spans[i].field, d->arrays[i].at);
-  lead_to(&d->image->bodies.particle, d->particles.at);
-  lead_to(&d->image->walls.items, d->walls.at);
-  lead_to(&d->image->pools.touches, d->touches.at);
+  lead_to(&d->image->bodies.particle, d->own[BLOCK_PARTICLES].at);
+  lead_to(&d->image->walls.items, d->own[BLOCK_WALLS].at);
+  lead_to(&d->image->pools.touches, d->own[BLOCK_TOUCHES].at);
   d->image->pools.touch_capacity = d->touch_capacity;
-  lead_to(&d->header.counts, d->counts.at);
-  lead_to(&d->header.done, d->done.at);
-  lead_to(&d->header.work, d->work.at);
-  return scree_cuda_write(d->world.at, d->image, sizeof *w, error);
+  d->image->pools.touches_used = d->touches_used;
+  lead_to(&d->header.hands, d->own[BLOCK_HANDS].at);
+  lead_to(&d->header.progress, d->own[BLOCK_PROGRESS].at);
+  lead_to(&d->header.touch_counts, d->own[BLOCK_TOUCH_COUNTS].at);
+  lead_to(&d->header.due, d->own[BLOCK_DUE].at);
+  for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
+    lead_to(&d->header.visits[kind], d->own[BLOCK_VISITS + kind].at);
+  return scree_cuda_write(&d->queue, d->own[BLOCK_WORLD].at, d->image, sizeof *w, error);
 }
 
-static scree_status reserve_scratch(const scree_world *w, struct scree_device_world *d,
-                                    scree_error *error) {
+static scree_status reserve_own(const scree_world *w, struct scree_device_world *d,
+                                scree_error *error) {
   const size_t k = w->neighbours.count;
   if (d->touch_capacity == 0) d->touch_capacity = FIRST_TOUCHES;
-  const struct {
-    block *block;
-    size_t size;
-  } all[] = {{&d->world, sizeof *w},
-             {&d->step, sizeof d->header},
-             {&d->counts, blocks_of(w) * sizeof(uint32_t)},
-             {&d->done, k},
-             {&d->work, k * sizeof(scree_pair_work)},
-             {&d->touches, d->touch_capacity * sizeof(scree_touch)}};
+  size_t sizes[BLOCK_COUNT] = {[BLOCK_WORLD] = sizeof *w,
+                               [BLOCK_STEP] = sizeof d->header,
+                               [BLOCK_HANDS] = k * sizeof(scree_scratch),
+                               [BLOCK_PROGRESS] = k,
+                               [BLOCK_TOUCHES] = d->touch_capacity * sizeof(scree_touch),
+                               [BLOCK_TOUCH_COUNTS] = d->touch_capacity,
+                               [BLOCK_DUE] = (k < SCREE_MOST_LISTS ? k : SCREE_MOST_LISTS) *
+                                             sizeof(scree_due_list)};
+  for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
+    sizes[BLOCK_VISITS + kind] = w->pools.item_capacity * sizeof(scree_visit);
   scree_status status = SCREE_OK;
-  for (size_t i = 0; i < sizeof all / sizeof *all && !status; i++)
-    status = scree_cuda_reserve(&all[i].block->at, &all[i].block->capacity, all[i].size, error);
+  for (int i = 0; i < BLOCK_COUNT && !status; i++)
+    status = scree_cuda_reserve(&d->own[i].at, &d->own[i].capacity, sizes[i], error);
   return status;
 }
 
@@ -283,108 +302,34 @@ static scree_status send(scree_world *w, struct scree_device_world *d, scree_err
   size_t count = list_spans(w, spans);
   scree_status status = send_shapes(w, d, error);
   if (!status) status = send_walls(w, d, error);
-  if (!status) status = reserve_scratch(w, d, error);
+  if (!status) status = reserve_own(w, d, error);
   for (size_t i = 0; i < count && !status; i++) {
     status = scree_cuda_reserve(&d->arrays[i].at, &d->arrays[i].capacity, spans[i].capacity, error);
     if (!status)
-      status =
-          scree_cuda_write(d->arrays[i].at, pointer_at(w, spans[i].field), spans[i].used, error);
+      status = scree_cuda_write(&d->queue, d->arrays[i].at, pointer_at(w, spans[i].field),
+                                spans[i].used, error);
   }
   if (!status) status = send_image(w, d, error);
   d->current = status == SCREE_OK;
   return status;
 }
 
-/* What a step changes of the struct itself. */
+/* What steps change of the struct itself. */
 static void take_numbers(scree_world *w, const scree_world *image) {
-  w->work_dashpot = image->work_dashpot;
-  w->work_tangential = image->work_tangential;
-  w->applied_work = image->applied_work;
-  w->parting_count = image->parting_count;
   w->largest_overlap = image->largest_overlap;
   w->spare_pairs.count = image->spare_pairs.count;
   w->pools.items_used = image->pools.items_used;
   w->pools.sleepers_used = image->pools.sleepers_used;
 }
 
-static scree_status fetch(scree_world *w, scree_error *error) {
-  struct scree_device_world *d = w->on_device;
-  if (!d || !d->current) return SCREE_OK;
-  scree_status status = scree_cuda_read(d->image, d->world.at, sizeof *w, error);
-  if (status) return status;
-  take_numbers(w, d->image);
-  span spans[MOST_SPANS];
-  size_t count = list_spans(w, spans);
-  for (size_t i = 0; i < count && !status; i++) {
-    size_t used = spans[i].used < spans[i].capacity ? spans[i].used : spans[i].capacity;
-    if (spans[i].comes_back)
-      status = scree_cuda_read(pointer_at(w, spans[i].field), d->arrays[i].at, used, error);
-  }
-  size_t removed = 0;
-  for (size_t i = 0; i < w->bodies.count; i++) removed += w->bodies.removed[i];
-  w->bodies.removed_count = removed;
-  return status;
-}
-
-static scree_status fetch_to_host(scree_world *w, scree_error *error) {
-  scree_status status = fetch(w, error);
-  if (w->on_device) w->on_device->current = false;
-  return status;
-}
-
-/* ---- a step ---- */
-
-static scree_status launch(scree_world *w, scree_kernel first, scree_kernel last) {
-  struct scree_device_world *d = w->on_device;
-  const size_t
-      blocks = blocks_of(w),
-      counts[SCREE_KERNEL_COUNT] = {
-          [SCREE_KERNEL_awake] = blocks,           [SCREE_KERNEL_evaluate] = w->neighbours.count,
-          [SCREE_KERNEL_settle] = blocks,          [SCREE_KERNEL_combine] = 1,
-          [SCREE_KERNEL_gather] = w->bodies.count, [SCREE_KERNEL_book] = 1,
-          [SCREE_KERNEL_advance] = w->bodies.count};
-  scree_status status = scree_cuda_write(d->step.at, &d->header, sizeof d->header, &w->failure);
-  for (int k = (int)first; k <= (int)last && !status; k++)
-    status = scree_cuda_launch(d->device, (scree_kernel)k, counts[k], d->world.at, d->step.at,
-                               &w->failure);
-  return status ? status : scree_cuda_read(&d->header, d->step.at, sizeof d->header, &w->failure);
-}
-
-/* The pools that were asked for more than they have. */
-static scree_status make_room(scree_world *w) {
-  struct scree_device_world *d = w->on_device;
-  scree_status status = fetch_to_host(w, &w->failure);
-  if (status) return status;
-  uint64_t touches = d->image->pools.touches_used;
-  while (d->touch_capacity < touches) d->touch_capacity *= 2;
-  bool good = w->spare_pairs.count >= 0 || scree_pairs_grow(w);
-  if (!good || !scree_pools_grow(&w->pools, w->pairs.items, w->pairs.count, w->neighbours.items,
-                                 w->neighbours.count))
-    return scree_fail_memory(&w->failure, 0, "contact features of a pair");
-  return send(w, d, &w->failure);
-}
-
-static scree_status evaluate(scree_world *w) {
-  struct scree_device_world *d = w->on_device;
-  d->header.offender = scree_none;
-  d->header.too_small = d->header.fallen = 0;
-  d->header.sums = scree_no_sums();
-  scree_status status = launch(w, SCREE_KERNEL_awake, SCREE_KERNEL_advance);
-  while (!status && d->header.too_small) {
-    status = make_room(w);
-    d->header.too_small = 0;
-    if (!status) status = launch(w, SCREE_KERNEL_evaluate, SCREE_KERNEL_advance);
-  }
-  return status;
-}
-
-/* What the walls did, which is booked on the device. */
-static scree_status fetch_walls(scree_world *w, struct scree_device_world *d) {
+/* The walls have come elsewhere. */
+static scree_status fetch_walls(scree_world *w, struct scree_device_world *d, scree_error *error) {
   size_t count = w->walls.count;
   if (count == 0) return SCREE_OK;
   scree_world_wall *copy = scree_alloc(count, sizeof *copy);
-  if (!copy) return scree_fail_memory(&w->failure, count * sizeof *copy, "walls");
-  scree_status status = scree_cuda_read(copy, d->walls.at, count * sizeof *copy, &w->failure);
+  if (!copy) return scree_fail_memory(error, count * sizeof *copy, "walls");
+  scree_status status =
+      scree_cuda_read(&d->queue, copy, d->own[BLOCK_WALLS].at, count * sizeof *copy, error);
   for (size_t i = 0; i < count && !status; i++) {
     scree_particle *surface = w->walls.items[i].surface;
     w->walls.items[i] = copy[i];
@@ -394,87 +339,150 @@ static scree_status fetch_walls(scree_world *w, struct scree_device_world *d) {
   return status;
 }
 
-/* The host moves the walls, and says until when those that sleep near them may. */
-static scree_status move_walls(scree_world *w) {
+static scree_status fetch(scree_world *w, scree_error *error) {
   struct scree_device_world *d = w->on_device;
-  scree_status status = fetch_walls(w, d);
+  if (!d || !d->current) return SCREE_OK;
+  d->current = false;
+  scree_status status =
+      scree_cuda_read(&d->queue, d->image, d->own[BLOCK_WORLD].at, sizeof *w, error);
   if (status) return status;
-  scree_walls_advance(w);
-  status = send_walls(w, d, &w->failure);
+  take_numbers(w, d->image);
+  d->touches_used = d->image->pools.touches_used;
   span spans[MOST_SPANS];
-  size_t count = list_spans(w, spans), from = w->bodies.count * sizeof *w->due.items;
-  for (size_t i = 0; i < count && !status; i++)
-    if (spans[i].field == FIELD(due.items))
-      status = scree_cuda_write(d->arrays[i].at + from, w->due.items + w->bodies.count,
-                                spans[i].used - from, &w->failure);
+  size_t count = list_spans(w, spans);
+  for (size_t i = 0; i < count && !status; i++) {
+    size_t used = spans[i].used < spans[i].capacity ? spans[i].used : spans[i].capacity;
+    if (spans[i].comes_back)
+      status =
+          scree_cuda_read(&d->queue, pointer_at(w, spans[i].field), d->arrays[i].at, used, error);
+  }
+  if (!status) status = fetch_walls(w, d, error);
+  size_t removed = 0;
+  for (size_t i = 0; i < w->bodies.count; i++) removed += w->bodies.removed[i];
+  w->pairs_stale |= removed != w->bodies.removed_count;
+  w->bodies.removed_count = removed;
   return status;
 }
 
-/* For the host's question whether the neighbours hold. */
-static scree_status read_paths(scree_world *w) {
+/* ---- steps ---- */
+
+/* For the kernels of so many steps, one after another; waits for them. */
+static scree_status launch(scree_world *w, size_t steps) {
   struct scree_device_world *d = w->on_device;
-  span spans[MOST_SPANS];
-  size_t count = list_spans(w, spans);
-  for (size_t i = 0; i < count; i++)
-    if (spans[i].field == FIELD(bodies.path))
-      return scree_cuda_read(w->bodies.path, d->arrays[i].at, spans[i].used, &w->failure);
-  return SCREE_OK;
+  const size_t pairs = w->neighbours.count, bodies = w->bodies.count,
+               counts[SCREE_KERNEL_COUNT] = {[SCREE_KERNEL_awake] = pairs,
+                                             [SCREE_KERNEL_relate] = pairs,
+                                             [SCREE_KERNEL_list_count] = pairs,
+                                             [SCREE_KERNEL_list_place] = pairs,
+                                             [SCREE_KERNEL_list_write] = pairs,
+                                             [SCREE_KERNEL_list_end] = pairs,
+                                             [SCREE_KERNEL_visit] = w->pools.item_capacity,
+                                             [SCREE_KERNEL_press] = pairs,
+                                             [SCREE_KERNEL_gather] = bodies,
+                                             [SCREE_KERNEL_advance] = bodies + w->walls.count,
+                                             [SCREE_KERNEL_end] = 1};
+  scree_device_address at = d->own[BLOCK_STEP].at;
+  scree_status status = scree_cuda_write(&d->queue, at, &d->header, sizeof d->header, &w->failure);
+  for (size_t i = 0; i < steps; i++)
+    for (int k = 0; k < SCREE_KERNEL_COUNT && !status; k++)
+      status = scree_cuda_launch(&d->queue, (scree_kernel)k, counts[k], d->own[BLOCK_WORLD].at, at,
+                                 &w->failure);
+  return status ? status
+                : scree_cuda_read(&d->queue, &d->header, at, sizeof d->header, &w->failure);
+}
+
+/* The pools that were asked for more than they have grow. */
+static scree_status make_room(scree_world *w) {
+  struct scree_device_world *d = w->on_device;
+  scree_status status = fetch(w, &w->failure);
+  if (status) return status;
+  while (d->touch_capacity < d->touches_used) d->touch_capacity *= 2;
+  bool good = w->spare_pairs.count >= 0 || scree_pairs_grow(w);
+  if (!good || !scree_pools_grow(&w->pools, w->pairs.items, w->pairs.count, w->neighbours.items,
+                                 w->neighbours.count))
+    return scree_fail_memory(&w->failure, 0, "contact features of a pair");
+  return send(w, d, &w->failure);
 }
 
 static scree_status update_neighbours(scree_world *w) {
   struct scree_device_world *d = w->on_device;
-  if (d->current && scree_broad_is_valid(w)) return SCREE_OK;
-  scree_status status = fetch_to_host(w, &w->failure);
+  if (d->current && !d->header.stale && !d->header.fallen) return SCREE_OK;
+  scree_status status = fetch(w, &w->failure);
+  d->header.stale = d->header.fallen = 0;
+  d->touches_used = 0;
   if (!status) status = scree_broad_update(w, &w->failure);
   if (!status) status = scree_reserve_blocks(w, &w->failure);
   return status ? status : send(w, d, &w->failure);
 }
 
-static scree_status finish(scree_world *w) {
-  struct scree_device_world *d = w->on_device;
-  scree_status status = scree_describe_trouble(w, &d->header.sums);
-  if (status) return status;
-  if (d->header.offender != scree_none) return scree_describe_offender(w, d->header.offender);
-  return SCREE_OK;
+static void begin_steps(struct scree_device_world *d, size_t wanted) {
+  scree_device_step *h = &d->header;
+  h->done = 0;
+  h->wanted = wanted;
+  h->awake_count = h->resume = 0;
+  h->offender = scree_none;
+  h->trouble = (scree_trouble){scree_none, scree_none, scree_none, 0};
+  h->largest_overlap = h->partings = h->list_builds = h->evaluations = 0;
 }
 
-static scree_status step(scree_world *w) {
+/* What was not done of a step that has begun goes on. */
+static void go_on(struct scree_device_world *d, bool resume) {
+  scree_device_step *h = &d->header;
+  h->stop = h->too_small = h->again = h->due_count = 0;
+  h->resume = resume;
+  for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++) h->visit_counts[kind] = 0;
+}
+
+static scree_status finish(scree_world *w) {
+  const scree_device_step *h = &w->on_device->header;
+  const scree_trouble *t = &h->trouble;
+  if ((t->start & t->beyond_limit & t->too_fast & h->offender) == scree_none) return SCREE_OK;
+  scree_status status = fetch(w, &w->failure);
+  if (status) return status;
+  return h->offender != scree_none ? scree_describe_offender(w, h->offender)
+                                   : scree_describe_trouble(w, t);
+}
+
+static void count_steps(scree_world *w, const scree_device_step *h, double started) {
+  for (uint64_t i = 0; i < h->done; i++) w->time += w->time_step;
+  w->step_count += h->done;
+  w->parting_count += h->partings;
+  w->timings.contacts += scree_now() - started;
+  w->timings.total += scree_now() - started;
+  w->timings.steps += h->done;
+  w->timings.list_builds += h->list_builds;
+  w->timings.pair_evaluations += h->done * w->neighbours.count;
+}
+
+static scree_status step(scree_world *w, size_t most, size_t *done) {
   struct scree_device_world *d = w->on_device;
-  if (w->bodies.count == 0) return scree_backend_cpu.step(w); /* there are no arrays yet */
-  double start = scree_now();
+  if (w->bodies.count == 0) return scree_backend_cpu.step(w, most, done); /* there are no arrays */
+  double started = scree_now();
   scree_status status = update_neighbours(w);
   double after_broad = scree_now();
-  if (!status) status = evaluate(w);
-  if (status) return status;
-  bool trouble = (d->header.sums.start & d->header.sums.beyond_limit & d->header.sums.too_fast &
-                  d->header.offender) != scree_none;
-  if (trouble) {
-    status = fetch_to_host(w, &w->failure);
-    return status ? status : finish(w);
+  w->timings.broad += after_broad - started;
+  w->timings.total += after_broad - started;
+  if (most > STEPS_AT_ONCE) most = STEPS_AT_ONCE;
+  begin_steps(d, most);
+  for (bool resume = false; !status; resume = true) {
+    go_on(d, resume);
+    status = launch(w, most - d->header.done);
+    if (status || !(d->header.too_small || d->header.again)) break;
+    if (d->header.too_small) status = make_room(w);
   }
-  w->largest_overlap = d->header.sums.largest_overlap;
-  status = move_walls(w);
-  if (!status) status = read_paths(w);
-  if (d->header.fallen) w->pairs_stale = true;
-  w->time += w->time_step;
-  w->step_count++;
-  double end = scree_now();
-  w->timings.broad += after_broad - start;
-  w->timings.contacts += end - after_broad;
-  w->timings.total += end - start;
-  w->timings.steps++;
-  w->timings.pair_evaluations += w->neighbours.count;
-  return status;
+  if (status) return status;
+  *done = d->header.done;
+  count_steps(w, &d->header, after_broad);
+  return finish(w);
 }
 
 static void release(scree_world *w) {
   struct scree_device_world *d = w->on_device;
   scree_error error;
-  if (!d || scree_cuda_use(d->device, &error)) return;
+  if (!d || scree_cuda_use(d->queue.device, &error)) return;
   for (size_t i = 0; i < MOST_SPANS; i++) scree_cuda_free(d->arrays[i].at);
-  const block *all[] = {&d->particles, &d->shapes, &d->walls, &d->world,  &d->step,
-                        &d->counts,    &d->done,   &d->work,  &d->touches};
-  for (size_t i = 0; i < sizeof all / sizeof *all; i++) scree_cuda_free(all[i]->at);
+  for (size_t i = 0; i < BLOCK_COUNT; i++) scree_cuda_free(d->own[i].at);
+  scree_cuda_close_queue(&d->queue);
   scree_free(d->image);
   scree_free(d->seen);
   scree_free(d->addresses);
@@ -483,20 +491,21 @@ static void release(scree_world *w) {
 }
 
 static scree_status begin(scree_world *w, scree_error *error) {
-  if (!w->on_device) {
-    struct scree_device_world *d = scree_alloc_zero(1, sizeof *d);
-    if (d) d->image = scree_alloc_zero(1, sizeof *d->image);
-    if (!d || !d->image) {
-      scree_free(d);
-      return scree_fail_memory(error, sizeof *w, "a world on a device");
-    }
-    d->device = scree_backend_device();
-    w->on_device = d;
+  int device = scree_backend_device();
+  if (w->on_device) return scree_cuda_use(w->on_device->queue.device, error);
+  struct scree_device_world *d = scree_alloc_zero(1, sizeof *d);
+  if (d) d->image = scree_alloc_zero(1, sizeof *d->image);
+  if (!d || !d->image) {
+    scree_free(d);
+    return scree_fail_memory(error, sizeof *w, "a world on a device");
   }
-  return scree_cuda_use(w->on_device->device, error);
+  w->on_device = d;
+  d->queue.device = device;
+  scree_status status = scree_cuda_use(device, error);
+  return status ? status : scree_cuda_open_queue(&d->queue, error);
 }
 
-const scree_backend scree_backend_cuda = {"cuda", begin, step, fetch_to_host, release};
+const scree_backend scree_backend_cuda = {"cuda", begin, step, fetch, release};
 
 #else
 

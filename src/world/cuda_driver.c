@@ -9,9 +9,15 @@
 
 extern const char scree_ptx[]; /* made by cmake/ptx.sh */
 
-enum { MOST_DEVICES = 16, THREADS = 128, STACK_BYTES = 24576 };
+enum { MOST_DEVICES = 16, THREADS = 64, MOST_BLOCKS = 2048, STACK_BYTES = 24576 };
 /* The driver's own numbers. */
-enum { LIMIT_STACK = 0, JIT_ERROR_LOG = 5, JIT_ERROR_LOG_SIZE = 6, OUT_OF_MEMORY = 2 };
+enum {
+  LIMIT_STACK = 0,
+  JIT_ERROR_LOG = 5,
+  JIT_ERROR_LOG_SIZE = 6,
+  OUT_OF_MEMORY = 2,
+  NON_BLOCKING = 1
+};
 
 typedef void *handle;
 static struct {
@@ -27,8 +33,11 @@ static struct {
   int (*get_function)(handle *, handle, const char *);
   int (*allocate)(scree_device_address *, size_t);
   int (*release)(scree_device_address);
-  int (*write)(scree_device_address, const void *, size_t);
-  int (*read)(void *, scree_device_address, size_t);
+  int (*open_queue)(handle *, unsigned);
+  int (*close_queue)(handle);
+  int (*wait)(handle);
+  int (*write)(scree_device_address, const void *, size_t, handle);
+  int (*read)(void *, scree_device_address, size_t, handle);
   int (*launch)(handle, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
                 handle, void **, void **);
   int (*error_text)(int, const char **);
@@ -49,8 +58,11 @@ static const struct {
              {(void **)&cu.get_function, "cuModuleGetFunction"},
              {(void **)&cu.allocate, "cuMemAlloc_v2"},
              {(void **)&cu.release, "cuMemFree_v2"},
-             {(void **)&cu.write, "cuMemcpyHtoD_v2"},
-             {(void **)&cu.read, "cuMemcpyDtoH_v2"},
+             {(void **)&cu.open_queue, "cuStreamCreate"},
+             {(void **)&cu.close_queue, "cuStreamDestroy_v2"},
+             {(void **)&cu.wait, "cuStreamSynchronize"},
+             {(void **)&cu.write, "cuMemcpyHtoDAsync_v2"},
+             {(void **)&cu.read, "cuMemcpyDtoHAsync_v2"},
              {(void **)&cu.launch, "cuLaunchKernel"},
              {(void **)&cu.error_text, "cuGetErrorString"}};
 
@@ -163,23 +175,36 @@ void scree_cuda_free(scree_device_address block) {
   if (block) cu.release(block);
 }
 
-scree_status scree_cuda_write(scree_device_address to, const void *from, size_t size,
-                              scree_error *error) {
-  return size ? check(cu.write(to, from, size), "to the device", error) : SCREE_OK;
+scree_status scree_cuda_open_queue(scree_cuda_queue *queue, scree_error *error) {
+  return check(cu.open_queue(&queue->stream, NON_BLOCKING), "a queue", error);
 }
 
-scree_status scree_cuda_read(void *to, scree_device_address from, size_t size, scree_error *error) {
-  return size ? check(cu.read(to, from, size), "from the device", error) : SCREE_OK;
+void scree_cuda_close_queue(scree_cuda_queue *queue) {
+  if (queue->stream) cu.close_queue(queue->stream);
 }
 
-scree_status scree_cuda_launch(int device, scree_kernel kernel, size_t count,
+scree_status scree_cuda_write(const scree_cuda_queue *queue, scree_device_address to,
+                              const void *from, size_t size, scree_error *error) {
+  if (size == 0) return SCREE_OK;
+  return check(cu.write(to, from, size, queue->stream), "to the device", error);
+}
+
+scree_status scree_cuda_read(const scree_cuda_queue *queue, void *to, scree_device_address from,
+                             size_t size, scree_error *error) {
+  if (size == 0) return SCREE_OK;
+  scree_status status = check(cu.read(to, from, size, queue->stream), "from the device", error);
+  return status ? status : check(cu.wait(queue->stream), "kernels", error);
+}
+
+scree_status scree_cuda_launch(const scree_cuda_queue *queue, scree_kernel kernel, size_t count,
                                scree_device_address world, scree_device_address step,
                                scree_error *error) {
   void *arguments[] = {&world, &step};
+  size_t blocks = scree_block_count(count, THREADS);
   if (count == 0) return SCREE_OK;
-  return check(cu.launch(devices[device].functions[kernel],
-                         (unsigned)scree_block_count(count, THREADS), 1, 1, THREADS, 1, 1, 0, NULL,
-                         arguments, NULL),
+  if (blocks > MOST_BLOCKS) blocks = MOST_BLOCKS;
+  return check(cu.launch(devices[queue->device].functions[kernel], (unsigned)blocks, 1, 1, THREADS,
+                         1, 1, 0, queue->stream, arguments, NULL),
                "a kernel", error);
 }
 

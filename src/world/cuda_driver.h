@@ -19,16 +19,27 @@ scree_status scree_cuda_open(int device, char description[256], scree_error *err
 
 /* The calling thread's calls go to this device, which is open. */
 scree_status scree_cuda_use(int device, scree_error *error);
+
+/* What is asked of a queue is done in that order, beside what other queues do. */
+typedef struct scree_cuda_queue {
+  int device;
+  void *stream;
+} scree_cuda_queue;
+scree_status scree_cuda_open_queue(scree_cuda_queue *queue, scree_error *error);
+void scree_cuda_close_queue(scree_cuda_queue *queue);
+
 /* Larger, when it is too small; its content goes then. */
 scree_status scree_cuda_reserve(scree_device_address *block, size_t *capacity, size_t size,
                                 scree_error *error);
 void scree_cuda_free(scree_device_address block);
-scree_status scree_cuda_write(scree_device_address to, const void *from, size_t size,
-                              scree_error *error);
-/* After all kernels that were launched. */
-scree_status scree_cuda_read(void *to, scree_device_address from, size_t size, scree_error *error);
-/* A thread for each of `count` elements, of the two arguments that every kernel has. */
-scree_status scree_cuda_launch(int device, scree_kernel kernel, size_t count,
+scree_status scree_cuda_write(const scree_cuda_queue *queue, scree_device_address to,
+                              const void *from, size_t size, scree_error *error);
+/* Waits for all that was asked of the queue. */
+scree_status scree_cuda_read(const scree_cuda_queue *queue, void *to, scree_device_address from,
+                             size_t size, scree_error *error);
+/* Threads for about so many elements, over which kernels loop; of the two arguments that every
+ * kernel has. */
+scree_status scree_cuda_launch(const scree_cuda_queue *queue, scree_kernel kernel, size_t count,
                                scree_device_address world, scree_device_address step,
                                scree_error *error);
 

@@ -35,7 +35,7 @@ struct scree_broad {
   uint32_t *found_count; /* of all */
   scree_groups listed;   /* keys of each body that comes first in them */
   uint64_t *old_keys;    /* what was listed before, and where those of the bodies of then begin */
-  size_t old_key_capacity, old_count, old_bodies;
+  size_t old_key_capacity, old_bodies;
   uint32_t *old_begin;
   struct {
     uint32_t *items; /* where those listed were in the old list; scree_none: nowhere */

@@ -152,10 +152,20 @@ bool scree_world_gather(scree_world *world) {
   return true;
 }
 
+/* The work of an applied force, by the velocities before and after each kick: the second half of
+ * the last step and the first of this one. */
+static void book_applied(scree_applied *applied, const scree_frame *frame, double dt) {
+  vec3 force = vec3_add(applied->now.force, applied->last.force),
+       torque = vec3_add(applied->now.moment, applied->last.moment);
+  applied->work += 0.5 * dt * (vec3_dot(force, frame->velocity) + vec3_dot(torque, frame->spin));
+  applied->last = applied->now;
+}
+
 void scree_advance_body(scree_world *world, size_t i) {
   scree_bodies *b = &world->bodies;
   scree_frame *frame = &b->frame[i];
   double dt = world->time_step;
+  if (b->applied) book_applied(&b->applied[i], frame, dt);
   vec3 g = vec3_load(world->options.gravity);
   vec3 acceleration = vec3_mad(g, b->force[i], 1 / b->mass[i]);
   frame->velocity = vec3_mad(frame->velocity, acceleration, dt);
@@ -174,22 +184,6 @@ void scree_advance_body(scree_world *world, size_t i) {
   scree_set_body_due(world, i);
 }
 
-/* The work of the applied forces, by the velocities before and after each kick: the second half of
- * the last step and the first of this one. */
-static void book_applied(scree_world *world) {
-  const scree_bodies *b = &world->bodies;
-  if (!b->applied) return;
-  for (size_t i = 0; i < b->count; i++) {
-    if (b->removed[i]) continue;
-    const scree_load *now = &b->applied[i].now, *last = &b->applied[i].last;
-    vec3 force = vec3_add(now->force, last->force), torque = vec3_add(now->moment, last->moment);
-    world->applied_work +=
-        0.5 * world->time_step *
-        (vec3_dot(force, b->frame[i].velocity) + vec3_dot(torque, b->frame[i].spin));
-    b->applied[i].last = *now;
-  }
-}
-
 static void advance_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block;
   (void)worker;
@@ -198,15 +192,9 @@ static void advance_block(void *context, size_t begin, size_t end, size_t block,
     if (!world->bodies.removed[i]) scree_advance_body(world, i);
 }
 
-void scree_book_work(scree_world *world) {
-  scree_walls_book(world);
-  book_applied(world);
-}
-
 void scree_world_advance(scree_world *world) {
-  scree_book_work(world);
   scree_parallel_for(world->bodies.count, BODY_BLOCK, advance_block, world);
-  scree_walls_advance(world);
+  for (size_t w = 0; w < world->walls.count; w++) scree_wall_advance(world, w);
   if (world->options.floor_height == -INFINITY) return;
   for (size_t i = 0; i < world->bodies.count; i++)
     if (!world->bodies.removed[i] &&

@@ -34,9 +34,10 @@ scree_status scree_world_keep(scree_world *world, const char *path, uint64_t ste
   return scree_world_keep_all(world, path, step_interval, pack_world, world, error);
 }
 
-bool scree_world_keep_is_due(const scree_world *world) {
-  return world->kept.path &&
-         (!world->kept.bytes || world->step_count - world->kept.step >= world->kept.interval);
+size_t scree_world_steps_to_keep(const scree_world *world) {
+  if (!world->kept.path) return SIZE_MAX;
+  uint64_t since = world->step_count - world->kept.step, interval = world->kept.interval;
+  return world->kept.bytes && since < interval ? (size_t)(interval - since) : 0;
 }
 
 scree_status scree_world_keep_state(scree_world *world, scree_error *error) {

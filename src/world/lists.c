@@ -64,12 +64,27 @@ void scree_lists_match(scree_world *world, size_t k) {
                               : scree_none;
 }
 
-void scree_lists_drop(scree_world *world, size_t k) {
+static bool is_dropped(const scree_world *world, size_t k) {
   const scree_broad *broad = world->broad;
-  uint32_t pair = world->pair_of.items[k];
-  if (pair != scree_none &&
-      find_key(world->keys.items, broad->listed.begin, broad->old_keys[k]) == scree_none)
-    scree_pair_give_back(world, pair);
+  return find_key(world->keys.items, broad->listed.begin, broad->old_keys[k]) == scree_none;
+}
+
+void scree_lists_drop(scree_world *world, size_t i) {
+  const uint32_t *begin = world->broad->old_begin;
+  for (uint32_t k = begin[i]; k < begin[i + 1]; k++) {
+    if (!is_dropped(world, k)) continue;
+    world->bodies.booked[i].dashpot += world->ledger.items[k].dashpot;
+    world->bodies.booked[i].tangential += world->ledger.items[k].tangential;
+    if (world->pair_of.items[k] != scree_none) scree_pair_give_back(world, world->pair_of.items[k]);
+  }
+}
+
+void scree_lists_drop_wall(scree_world *world, size_t w) {
+  for (size_t i = 0; i < world->wall_pairs.count; i++) {
+    uint32_t k = world->wall_pairs.items[i];
+    if (world->neighbours.items[k].b == w && is_dropped(world, k))
+      world->walls.items[w].energy += world->ledger.items[k].wall;
+  }
 }
 
 void scree_lists_renew(scree_world *world, size_t k) {
@@ -78,6 +93,7 @@ void scree_lists_renew(scree_world *world, size_t k) {
     world->neighbours.items[k] =
         scree_neighbours_new(world, first_of(key), second_of(key), is_with_wall(key));
     world->pair_of.items[k] = scree_none;
+    world->ledger.items[k] = (scree_booked){0, 0, 0};
     return;
   }
   scree_pair *pair = scree_pair_of(world, k);

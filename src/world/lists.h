@@ -17,8 +17,10 @@ void scree_lists_sort(scree_world *world, size_t i);
 
 /* Where neighbours k were in the old list. */
 void scree_lists_match(scree_world *world, size_t k);
-/* Neighbours k of the old list give back their pair when they are listed no longer. */
-void scree_lists_drop(scree_world *world, size_t k);
+/* Of the old list those that are listed no longer: those of body i give back their pairs, and what
+ * was booked goes to it; that of wall w to the wall. */
+void scree_lists_drop(scree_world *world, size_t i);
+void scree_lists_drop_wall(scree_world *world, size_t w);
 /* New ones begin; the pairs of others learn where they are. */
 void scree_lists_renew(scree_world *world, size_t k);
 

@@ -166,20 +166,19 @@ static void follow_velocity(scree_world_wall *wall, double dt) {
   frame->rotation = quat_to_mat3(wall->orientation);
 }
 
-void scree_walls_advance(scree_world *world) {
+void scree_wall_advance(scree_world *world, size_t w) {
   double dt = world->time_step;
+  scree_world_wall *wall = &world->walls.items[w];
   const scree_motion_state *motions = world->motions.items;
   const scree_motion_row *rows = world->motion_rows.items;
-  for (size_t w = 0; w < world->walls.count; w++) {
-    scree_world_wall *wall = &world->walls.items[w];
-    if (wall->motion_count)
-      follow_motions(wall, motions, rows, world->time + dt, dt);
-    else
-      follow_velocity(wall, dt);
-    for (size_t i = 0; i < wall->motion_count; i++) rows += motions++->row_count;
-    scree_wall_book_later(wall, dt);
-    if (world->bodies.count > 0) scree_set_wall_due(world, w);
-  }
+  for (size_t before = 0; before < w; before++)
+    for (size_t i = 0; i < world->walls.items[before].motion_count; i++)
+      rows += motions++->row_count;
+  if (wall->motion_count)
+    follow_motions(wall, motions, rows, world->time + dt, dt);
+  else
+    follow_velocity(wall, dt);
+  if (world->bodies.count > 0) scree_set_wall_due(world, w);
 }
 
 /* ---- setting ---- */

@@ -77,6 +77,28 @@ static double tangential_elastic(const scree_world *world) {
   return scree_sum_value(sum);
 }
 
+/* Of all that are neighbours or were. */
+static void add_ledger(const scree_world *world, scree_observation *o) {
+  scree_sum dashpot = {0}, tangential = {0}, wall = {0}, applied = {0};
+  for (size_t k = 0; k < world->neighbours.count; k++) {
+    const scree_booked *booked = &world->ledger.items[k];
+    scree_sum_add(&dashpot, booked->dashpot);
+    scree_sum_add(&tangential, booked->tangential);
+    scree_sum_add(&wall, booked->wall);
+  }
+  for (size_t w = 0; w < world->walls.count; w++)
+    scree_sum_add(&wall, world->walls.items[w].energy);
+  for (size_t i = 0; i < world->bodies.count; i++) {
+    scree_sum_add(&dashpot, world->bodies.booked[i].dashpot);
+    scree_sum_add(&tangential, world->bodies.booked[i].tangential);
+    if (world->bodies.applied) scree_sum_add(&applied, world->bodies.applied[i].work);
+  }
+  o->dissipated_dashpot = -scree_sum_value(dashpot);
+  o->dissipated_friction = -scree_sum_value(tangential) - tangential_elastic(world);
+  o->wall_work = scree_sum_value(wall);
+  o->applied_work = scree_sum_value(applied);
+}
+
 void scree_world_observe(const scree_world *world, scree_observation *observation) {
   scree_observation o = {.time = world->time, .largest_overlap = world->largest_overlap};
   double dt = world->step_count ? world->time_step : 0;
@@ -99,11 +121,8 @@ void scree_world_observe(const scree_world *world, scree_observation *observatio
     o.momentum[k] = scree_sum_value(sums.momentum[k]);
     o.angular_momentum[k] = scree_sum_value(sums.angular[k]);
   }
-  o.dissipated_dashpot = -world->work_dashpot;
-  o.dissipated_friction = -world->work_tangential - tangential_elastic(world);
   o.parting_count = world->parting_count;
-  for (size_t w = 0; w < world->walls.count; w++) o.wall_work += world->walls.items[w].energy;
-  o.applied_work = world->applied_work;
+  add_ledger(world, &o);
   *observation = o;
 }
 

@@ -254,10 +254,8 @@ bool scree_copy_pair(const scree_world *world, const scree_pair *pair, scree_pai
 
 bool scree_evaluate_copy(const scree_world *world, scree_pair_copy *copy) {
   for (;;) {
-    scree_pair_work work;
-    scree_frame relative;
     scree_take_in_hand(&copy->scratch, &copy->pools, &copy->pair, &copy->neighbours);
-    if (scree_pair_look(world, &copy->pair, &copy->scratch, &relative, &work)) return true;
+    if (scree_pair_look(world, &copy->pair, &copy->scratch)) return true;
     if (!SCREE_RESERVE(&copy->scratch.touches, copy->scratch.touches_needed) ||
         !scree_pools_grow(&copy->pools, &copy->pair, 1, &copy->neighbours, 1))
       return false;

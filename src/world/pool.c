@@ -52,6 +52,7 @@ bool scree_reserve_touches(scree_scratch *s, size_t needed) {
   if (!pools->touches) return false;
   uint64_t first = atomic_fetch_add_explicit(&pools->touches_used, needed, memory_order_relaxed);
   if (first + needed > pools->touch_capacity) return false;
+  s->first_touch = (size_t)first;
   s->touches = (scree_touch_list){pools->touches + first, 0, needed};
   return true;
 }

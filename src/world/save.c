@@ -18,7 +18,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 13};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 14};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -155,7 +155,6 @@ static void code_wall_state(scree_codec *c, scree_world_wall *w) {
   code_quat(c, &w->start_orientation);
   scree_code_real(c, &w->power);
   scree_code_real(c, &w->energy);
-  scree_code_real(c, &w->energy_due);
   scree_code_count(c, &w->motion_count, 8 * sizeof(double));
 }
 
@@ -215,6 +214,12 @@ static void code_load(scree_codec *c, scree_kept_load *l) {
     scree_code_real(c, &number);
     numbers[i / 3][i % 3] = (float)number;
   }
+}
+
+static void code_booked(scree_codec *c, scree_booked *b) {
+  scree_code_real(c, &b->dashpot);
+  scree_code_real(c, &b->tangential);
+  scree_code_real(c, &b->wall);
 }
 
 static void code_pair_name(scree_codec *c, scree_neighbours *n) {
@@ -293,6 +298,7 @@ typedef struct body_record {
   vec3 momentum, inertia, force, torque;
   double mass, travel, path, path_at_build;
   bool removed;
+  scree_booked booked;
 } body_record;
 
 static void code_body(scree_codec *c, body_record *b) {
@@ -305,11 +311,12 @@ static void code_body(scree_codec *c, body_record *b) {
   scree_code_real(c, &b->path);
   scree_code_real(c, &b->path_at_build);
   scree_code_bool(c, &b->removed);
+  code_booked(c, &b->booked);
 }
 
 /* What the world counts, and how it ended. */
 typedef struct tail_record {
-  double time, time_step, work_dashpot, work_tangential, applied_work, largest_overlap, margin;
+  double time, time_step, largest_overlap, margin;
   uint64_t step_count, parting_count;
   bool pairs_stale, time_step_stale, diverged;
   uint32_t failure;
@@ -317,8 +324,7 @@ typedef struct tail_record {
 } tail_record;
 
 static void code_tail(scree_codec *c, tail_record *t) {
-  double *reals[] = {&t->time,         &t->time_step,       &t->work_dashpot, &t->work_tangential,
-                     &t->applied_work, &t->largest_overlap, &t->margin};
+  double *reals[] = {&t->time, &t->time_step, &t->largest_overlap, &t->margin};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_u64(c, &t->step_count);
   scree_code_u64(c, &t->parting_count);
@@ -432,6 +438,7 @@ static void save_setup(scree_codec *c, const scree_world *world) {
 static void code_applied(scree_codec *c, scree_applied *a) {
   vec3 *vectors[] = {&a->now.force, &a->now.moment, &a->last.force, &a->last.moment};
   for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) scree_code_vec3(c, vectors[i]);
+  scree_code_real(c, &a->work);
 }
 
 static void save_bodies(scree_codec *c, const scree_world *world) {
@@ -447,7 +454,8 @@ static void save_bodies(scree_codec *c, const scree_world *world) {
                           .travel = b->travel[i],
                           .path = b->path[i],
                           .path_at_build = world->body_path_at_build[i],
-                          .removed = b->removed[i]};
+                          .removed = b->removed[i],
+                          .booked = b->booked[i]};
     code_body(c, &record);
   }
   bool any = b->applied != NULL;
@@ -468,6 +476,8 @@ static void save_pairs(scree_codec *c, const scree_world *world) {
     if (!pair) scree_pair_begin(pair = &asleep, n, k);
     code_pair_name(c, n);
     code_pair_state(c, pair, n);
+    scree_booked booked = world->ledger.items[k];
+    code_booked(c, &booked);
     scree_range items = pair->active, sleepers = n->sleeping;
     for (uint32_t i = 0; i < items.count; i++)
       code_item(c, &pools->items[items.first + i], &pools->further[items.first + i]);
@@ -479,9 +489,6 @@ static void save_pairs(scree_codec *c, const scree_world *world) {
 static void save_tail(scree_codec *c, const scree_world *world) {
   tail_record tail = {.time = world->time,
                       .time_step = world->time_step,
-                      .work_dashpot = world->work_dashpot,
-                      .work_tangential = world->work_tangential,
-                      .applied_work = world->applied_work,
                       .largest_overlap = world->largest_overlap,
                       .margin = world->margin,
                       .step_count = world->step_count,
@@ -664,6 +671,7 @@ static void load_bodies(loader *l) {
     b->travel[i] = record.travel;
     b->path[i] = record.path;
     b->removed[i] = record.removed;
+    b->booked[i] = record.booked;
     b->removed_count += record.removed;
     l->world->body_path_at_build[i] = record.path_at_build;
   }
@@ -761,6 +769,7 @@ static void load_pair(loader *l, uint32_t k, uint32_t index) {
   scree_pair *pair = &world->pairs.items[index];
   scree_pair_begin(pair, n, k);
   code_pair_state(&l->codec, pair, n);
+  code_booked(&l->codec, &world->ledger.items[k]);
   load_items(l, pair);
   pair->law = n->law;
   if (scree_pair_stays_awake(pair)) {
@@ -774,9 +783,10 @@ static void load_pair(loader *l, uint32_t k, uint32_t index) {
 static void load_pairs(loader *l) {
   scree_world *world = l->world;
   size_t count = 0;
-  scree_code_count(&l->codec, &count, 460);
+  scree_code_count(&l->codec, &count, 484);
   if (count >= scree_none) l->codec.failed = true;
-  if (!SCREE_RESERVE(&world->neighbours, count) || !SCREE_RESERVE(&world->pair_of, count))
+  if (!SCREE_RESERVE(&world->neighbours, count) || !SCREE_RESERVE(&world->pair_of, count) ||
+      !SCREE_RESERVE(&world->ledger, count))
     l->codec.out_of_memory = true;
   for (uint32_t k = 0; k < count && good(l); k++) {
     scree_neighbours name = {0};
@@ -806,9 +816,6 @@ static void load_tail(loader *l) {
   if (!good(l) || scree_broad_restore(world, tail.margin, &l->error)) return;
   world->time = tail.time;
   world->time_step = tail.time_step;
-  world->work_dashpot = tail.work_dashpot;
-  world->work_tangential = tail.work_tangential;
-  world->applied_work = tail.applied_work;
   world->largest_overlap = tail.largest_overlap;
   world->step_count = tail.step_count;
   world->parting_count = tail.parting_count;

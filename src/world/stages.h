@@ -8,19 +8,16 @@
 
 enum { SCREE_PAIR_BLOCK = 128 }; /* neighbours: whole words of world->touching */
 
-/* step.c: who is awake or due of the neighbours [begin, end). */
-size_t scree_list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake);
+/* step.c: whether neighbours k are awake or due. */
+bool scree_is_awake(const scree_world *world, size_t k);
 /* The pair of neighbours k, which may be one that begins; scree_none when there is no spare one. */
 uint32_t scree_pair_at(scree_world *world, uint32_t k);
 /* After its evaluation: whether the pair is given back. */
 bool scree_settle_pair(scree_world *world, const scree_pair *pair);
-scree_pair_sums scree_no_sums(void);
-void scree_add_work(scree_pair_sums *sums, const scree_pair_work *work, const scree_pair *pair);
-/* Adds all blocks to the world's ledger; answers the largest overlap and the first trouble. */
-scree_pair_sums scree_combine_sums(scree_world *world);
+void scree_book(scree_booked *booked, const scree_pair_work *work);
 
-/* A sentence in world->failure; OK where there is no trouble. */
-scree_status scree_describe_trouble(scree_world *world, const scree_pair_sums *sums);
+/* A sentence in world->failure. */
+scree_status scree_describe_trouble(scree_world *world, const scree_trouble *trouble);
 /* Room for the blocks' results. */
 scree_status scree_reserve_blocks(scree_world *world, scree_error *error);
 
@@ -45,8 +42,5 @@ bool scree_gather_body(scree_world *world, size_t i);
 void scree_advance_body(scree_world *world, size_t i);
 /* For a body that scree_gather_body refused: a sentence in world->failure. */
 scree_status scree_describe_offender(scree_world *world, size_t i);
-/* The work of walls and of applied forces in this step, before anything moves: one after another.
- */
-void scree_book_work(scree_world *world);
 
 #endif

@@ -1,6 +1,5 @@
-/* The step: pairs, forces, sums, advance. Pairs are evaluated in blocks of the sorted list; what a
- * block adds up is combined in block order, and every body sums its pairs in list order, so the
- * result does not depend on the threads. */
+/* The step: pairs, forces, advance. Every pair adds to a ledger of its own, and every body sums its
+ * pairs in list order, so that the result does not depend on the threads. */
 #include "world/backend.h"
 #include "world/broad.h"
 #include "world/checkpoint.h"
@@ -23,14 +22,17 @@
  * asked for. */
 enum { MOST_BLOCKS = 8, LEAST_PARTS = 32 };
 
+bool scree_is_awake(const scree_world *world, size_t k) {
+  const scree_slot *slot = &world->slots.items[k];
+  return world->due.items[slot->a] + world->due.items[slot->b] >= slot->wake;
+}
+
 /* Without branches: one in five is. */
-size_t scree_list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake) {
-  const double *due = world->due.items;
+static size_t list_awake(const scree_world *world, size_t begin, size_t end, uint32_t *awake) {
   size_t count = 0;
   for (size_t k = begin; k < end; k++) {
-    const scree_slot *slot = &world->slots.items[k];
     awake[count] = (uint32_t)k;
-    count += due[slot->a] + due[slot->b] >= slot->wake;
+    count += scree_is_awake(world, k);
   }
   return count;
 }
@@ -89,31 +91,32 @@ SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair 
 
 enum { PAIRS_AHEAD = 8, ITEMS_AHEAD = 4, FEATURES_AHEAD = 2 };
 
-scree_pair_sums scree_no_sums(void) {
-  return (scree_pair_sums){.beyond_limit = scree_none, .too_fast = scree_none, .start = scree_none};
+static const scree_trouble no_trouble = {scree_none, scree_none, scree_none, 0};
+
+static bool is_trouble(const scree_trouble *trouble) {
+  return (trouble->start & trouble->beyond_limit & trouble->too_fast) != scree_none;
 }
 
-static void note_trouble(scree_pair_sums *sums, const scree_pair_work *work, uint32_t k) {
-  if (work->beyond_limit && sums->beyond_limit == scree_none) sums->beyond_limit = k;
-  if (work->too_fast && sums->too_fast == scree_none) sums->too_fast = k;
-  if (work->start_depth > sums->start_depth) {
-    sums->start = k;
-    sums->start_depth = work->start_depth;
+void scree_book(scree_booked *booked, const scree_pair_work *work) {
+  booked->dashpot += work->later_dashpot + work->dashpot - work->lost - work->let_go;
+  booked->tangential += work->later_tangential + work->tangential;
+  booked->wall += work->wall;
+}
+
+/* The neighbours of a part come in their order. */
+static void note_work(scree_pair_progress *part, const scree_pair_work *work,
+                      const scree_pair *pair) {
+  uint32_t k = pair->neighbours;
+  scree_trouble *trouble = &part->trouble;
+  if (work->beyond_limit && trouble->beyond_limit == scree_none) trouble->beyond_limit = k;
+  if (work->too_fast && trouble->too_fast == scree_none) trouble->too_fast = k;
+  if (work->start_depth > 0 && trouble->start == scree_none) {
+    trouble->start = k;
+    trouble->start_depth = work->start_depth;
   }
-}
-
-void scree_add_work(scree_pair_sums *sums, const scree_pair_work *work, const scree_pair *pair) {
-  if (work->beyond_limit || work->too_fast || work->start_depth > 0)
-    note_trouble(sums, work, pair->neighbours);
-  sums->dashpot += work->later_dashpot;
-  sums->dashpot += work->dashpot;
-  sums->dashpot -= work->lost;
-  sums->dashpot -= work->let_go;
-  sums->tangential += work->later_tangential;
-  sums->tangential += work->tangential;
-  if (pair->touching && !(pair->overlap <= sums->largest_overlap))
-    sums->largest_overlap = pair->overlap;
-  sums->partings += work->begins_parting;
+  if (pair->touching && !(pair->overlap <= part->largest_overlap))
+    part->largest_overlap = pair->overlap;
+  part->partings += work->begins_parting;
 }
 
 uint32_t scree_pair_at(scree_world *world, uint32_t k) {
@@ -141,11 +144,13 @@ bool scree_settle_pair(scree_world *world, const scree_pair *pair) {
 }
 
 /* False where a pool has too little room: the pair is to be evaluated again. */
-static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *scratch) {
-  scree_pair_work work;
-  scree_take_in_hand(scratch, &world->pools, pair, &world->neighbours.items[pair->neighbours]);
-  if (!scree_pair_evaluate(world, pair, scratch, &work)) return false;
-  scree_add_work(&world->sums.items[pair->neighbours / SCREE_PAIR_BLOCK], &work, pair);
+static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                          scree_pair_progress *part) {
+  uint32_t k = pair->neighbours;
+  scree_take_in_hand(scratch, &world->pools, pair, &world->neighbours.items[k]);
+  if (!scree_pair_evaluate(world, pair, scratch)) return false;
+  scree_book(&world->ledger.items[k], &scratch->work);
+  note_work(part, &scratch->work, pair);
   return true;
 }
 
@@ -161,10 +166,9 @@ SCREE_PREFETCHES void fetch_ahead(const scree_world *world, const uint32_t *awak
 static void begin_blocks(scree_world *world, size_t begin, size_t end,
                          scree_pair_progress *progress) {
   uint32_t *awake = &world->awake.items[begin];
-  *progress = (scree_pair_progress){.awake = (uint32_t)scree_list_awake(world, begin, end, awake)};
+  *progress = (scree_pair_progress){.awake = (uint32_t)list_awake(world, begin, end, awake),
+                                    .trouble = no_trouble};
   for (size_t k = 0; k < PAIRS_AHEAD && k < progress->awake; k++) fetch_pair(world, awake[k]);
-  for (size_t block = begin / SCREE_PAIR_BLOCK; block * SCREE_PAIR_BLOCK < end; block++)
-    world->sums.items[block] = scree_no_sums();
 }
 
 /* From where it stopped, if it did. Pairs that fall asleep take the places of those already done.
@@ -181,7 +185,7 @@ static void evaluate_blocks(void *context, size_t begin, size_t end, size_t part
     uint32_t index = scree_pair_at(world, awake[i]);
     if (index == scree_none) break;
     scree_pair *pair = &world->pairs.items[index];
-    if (!evaluate_pair(world, pair, &world->scratch[worker])) break;
+    if (!evaluate_pair(world, pair, &world->scratch[worker], progress)) break;
     if (scree_settle_pair(world, pair)) awake[progress->given++] = index;
   }
   progress->done = (uint32_t)i;
@@ -209,6 +213,16 @@ static bool make_room(scree_world *world) {
                           world->neighbours.items, world->neighbours.count);
 }
 
+/* The first of all. */
+static void add_trouble(scree_trouble *all, const scree_trouble *part) {
+  if (all->start == scree_none) {
+    all->start = part->start;
+    all->start_depth = part->start_depth;
+  }
+  if (all->beyond_limit == scree_none) all->beyond_limit = part->beyond_limit;
+  if (all->too_fast == scree_none) all->too_fast = part->too_fast;
+}
+
 static scree_status evaluate_pairs(scree_world *world) {
   size_t count = world->neighbours.count, size = pairs_at_once(world),
          parts = scree_block_count(count, size);
@@ -219,10 +233,17 @@ static scree_status evaluate_pairs(scree_world *world) {
       return scree_fail_memory(&world->failure, 0, "contact features of a pair");
     scree_parallel_for(count, size, evaluate_blocks, world);
   }
-  for (size_t p = 0; p < parts; p++)
-    for (uint32_t i = 0; i < world->progress.items[p].given; i++)
+  scree_trouble trouble = no_trouble;
+  world->largest_overlap = 0;
+  for (size_t p = 0; p < parts; p++) {
+    const scree_pair_progress *part = &world->progress.items[p];
+    for (uint32_t i = 0; i < part->given; i++)
       scree_pair_give_back(world, world->awake.items[p * size + i]);
-  return SCREE_OK;
+    world->largest_overlap = scree_max(world->largest_overlap, part->largest_overlap);
+    world->parting_count += part->partings;
+    add_trouble(&trouble, &part->trouble);
+  }
+  return is_trouble(&trouble) ? scree_describe_trouble(world, &trouble) : SCREE_OK;
 }
 
 static scree_status describe_overlap(scree_world *world, uint32_t k) {
@@ -255,8 +276,8 @@ static const char *describe_shape(const scree_particle *p, char text[64]) {
   return text;
 }
 
-static scree_status describe_start(scree_world *world, const scree_pair_sums *sums) {
-  const scree_neighbours *n = &world->neighbours.items[sums->start];
+static scree_status describe_start(scree_world *world, const scree_trouble *trouble) {
+  const scree_neighbours *n = &world->neighbours.items[trouble->start];
   static const char *const walls[] = {"plane", "disc", "cylinder", "mesh"};
   char a[64], b[64];
   describe_shape(world->bodies.particle[n->a], a);
@@ -268,42 +289,20 @@ static scree_status describe_start(scree_world *world, const scree_pair_sums *su
                     "world: step %llu, body %u (%s) and %s %u (%s) lie %.3g m deep in each other "
                     "from the start, or since one was put there: put them apart",
                     (unsigned long long)world->step_count, n->a, a, n->wall ? "wall" : "body", n->b,
-                    b, sums->start_depth);
+                    b, trouble->start_depth);
 }
 
-scree_pair_sums scree_combine_sums(scree_world *world) {
-  scree_pair_sums all = scree_no_sums();
-  size_t blocks = scree_block_count(world->neighbours.count, SCREE_PAIR_BLOCK);
-  bool trouble = false;
-  for (size_t block = 0; block < blocks; block++) {
-    const scree_pair_sums *sums = &world->sums.items[block];
-    world->work_dashpot += sums->dashpot;
-    world->work_tangential += sums->tangential;
-    world->parting_count += sums->partings;
-    all.largest_overlap = scree_max(all.largest_overlap, sums->largest_overlap);
-    if (trouble || (sums->start & sums->beyond_limit & sums->too_fast) == scree_none) continue;
-    trouble = true;
-    all.start = sums->start;
-    all.start_depth = sums->start_depth;
-    all.beyond_limit = sums->beyond_limit;
-    all.too_fast = sums->too_fast;
-  }
-  world->largest_overlap = all.largest_overlap;
-  return all;
-}
-
-scree_status scree_describe_trouble(scree_world *world, const scree_pair_sums *sums) {
-  if (sums->start != scree_none) return describe_start(world, sums);
-  if (sums->beyond_limit != scree_none) return describe_overlap(world, sums->beyond_limit);
-  if (sums->too_fast != scree_none) return describe_speed(world, sums->too_fast);
-  return SCREE_OK;
+scree_status scree_describe_trouble(scree_world *world, const scree_trouble *trouble) {
+  if (trouble->start != scree_none) return describe_start(world, trouble);
+  if (trouble->beyond_limit != scree_none) return describe_overlap(world, trouble->beyond_limit);
+  return describe_speed(world, trouble->too_fast);
 }
 
 scree_status scree_reserve_blocks(scree_world *world, scree_error *error) {
   size_t blocks = scree_block_count(world->neighbours.count, SCREE_PAIR_BLOCK);
-  if (!SCREE_RESERVE(&world->sums, blocks) || !SCREE_RESERVE(&world->progress, blocks) ||
+  if (!SCREE_RESERVE(&world->progress, blocks) ||
       !SCREE_RESERVE(&world->awake, world->neighbours.count))
-    return scree_fail_memory(error, blocks * sizeof *world->sums.items, "sums");
+    return scree_fail_memory(error, blocks * sizeof *world->progress.items, "pairs");
   int workers = scree_worker_count();
   if (workers <= world->scratch_count) return SCREE_OK;
   scree_scratch *scratch = scree_resize(world->scratch, (size_t)workers, sizeof *scratch);
@@ -315,7 +314,9 @@ scree_status scree_reserve_blocks(scree_world *world, scree_error *error) {
   return SCREE_OK;
 }
 
-static scree_status one_step(scree_world *world) {
+static scree_status one_step(scree_world *world, size_t most, size_t *done) {
+  (void)most;
+  *done = 1;
   scree_timings *timings = &world->timings;
   double start = scree_now();
   scree_status status = scree_broad_update(world, &world->failure);
@@ -323,10 +324,6 @@ static scree_status one_step(scree_world *world) {
   if (status) return status;
   double after_broad = scree_now();
   status = evaluate_pairs(world);
-  if (!status) {
-    scree_pair_sums sums = scree_combine_sums(world);
-    status = scree_describe_trouble(world, &sums);
-  }
   double after_contacts = scree_now();
   if (!status && !scree_world_gather(world)) status = world->failure.status;
   if (!status) {
@@ -379,13 +376,15 @@ scree_status scree_world_step(scree_world *world, size_t step_count, scree_error
   scree_status status = check_time_step(world, error);
   if (!status) status = backend->begin(world, error);
   if (status) return status;
-  for (size_t k = 0; k < step_count; k++) {
-    if (scree_world_keep_is_due(world)) {
+  for (size_t k = 0, done = 0; k < step_count; k += done) {
+    size_t to_keep = scree_world_steps_to_keep(world);
+    if (to_keep == 0) {
       status = backend->fetch(world, error);
       if (!status) status = scree_world_keep_state(world, error);
       if (status) return status;
+      to_keep = scree_world_steps_to_keep(world);
     }
-    status = backend->step(world);
+    status = backend->step(world, to_keep < step_count - k ? to_keep : step_count - k, &done);
     if (status == SCREE_OK) continue;
     world->diverged = true;
     scree_world_write_kept(world);

@@ -145,8 +145,7 @@ static vec3 motion_ahead(vec3 owed, vec3 force, double half, vec3 mean, double d
   return vec3_mad(vec3_mad(owed, force, half), mean, -0.5 * dt);
 }
 
-void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                       scree_pair_work *work) {
+void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const uint32_t count = scratch->substeps;
   const double dt = world->time_step, h = scratch->step;
   const shown first = {pair->elastic, pair->tangential_elastic, pair->contact_count};
@@ -168,7 +167,7 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
     drift(&now[1], h);
     if (i == count) break;
     scratch->drift = h;
-    scree_pair_look_between(world, pair, scratch, work);
+    scree_pair_look_between(world, pair, scratch);
   }
   settle_debts(pair, begin, now, dt);
   if (pair->wall) pair->wrench.torque_b = on_wall;

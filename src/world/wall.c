@@ -183,10 +183,15 @@ bool scree_wall_is_belt(const scree_world_wall *wall) {
   return vec3_norm2(wall->surface_velocity) + vec3_norm2(wall->surface_spin) > 0;
 }
 
-static bool may_work(const scree_world_wall *wall) {
-  return wall->motion_count > 0 ||
-         vec3_norm2(wall->frame.velocity) + vec3_norm2(wall->frame.spin) > 0 ||
-         scree_wall_is_belt(wall);
+/* Of the wall on bodies, with the velocities of the last drift. A belt's surface moves along
+ * itself, so that friction alone works on it. */
+static double power_of(const scree_world_wall *wall) {
+  double power =
+      -vec3_dot(wall->force, wall->frame.velocity) - vec3_dot(wall->torque, wall->frame.spin);
+  if (!scree_wall_is_belt(wall)) return power;
+  const mat3 *rotation = &wall->frame.rotation;
+  return power + vec3_dot(wall->friction.force, mat3_mul_vec(rotation, wall->surface_velocity)) +
+         vec3_dot(wall->friction.moment, mat3_mul_vec(rotation, wall->surface_spin));
 }
 
 void scree_walls_sum_forces(scree_world *world) {
@@ -205,34 +210,8 @@ void scree_walls_sum_forces(scree_world *world) {
     wall->friction.force = vec3_add(wall->friction.force, (vec3){f[0], f[1], f[2]});
     wall->friction.moment = vec3_add(wall->friction.moment, (vec3){m[0], m[1], m[2]});
   }
-}
-
-/* Of the wall on bodies, with the velocities of the last drift. A belt's surface moves along
- * itself, so that friction alone works on it. */
-static double power_of(const scree_world_wall *wall) {
-  double power =
-      -vec3_dot(wall->force, wall->frame.velocity) - vec3_dot(wall->torque, wall->frame.spin);
-  if (!scree_wall_is_belt(wall)) return power;
-  const mat3 *rotation = &wall->frame.rotation;
-  return power + vec3_dot(wall->friction.force, mat3_mul_vec(rotation, wall->surface_velocity)) +
-         vec3_dot(wall->friction.moment, mat3_mul_vec(rotation, wall->surface_spin));
-}
-
-/* The work of a step is W.(v before + v after the kick) dt/2, as that of dashpots (contact.c). */
-void scree_walls_book(scree_world *world) {
-  bool any = false;
-  for (size_t w = 0; w < world->walls.count; w++) any |= may_work(&world->walls.items[w]);
-  if (any) scree_walls_sum_forces(world);
-  for (size_t w = 0; w < world->walls.count; w++) {
-    scree_world_wall *wall = &world->walls.items[w];
-    wall->power = may_work(wall) ? power_of(wall) : 0;
-    wall->energy += wall->energy_due + 0.5 * world->time_step * wall->power;
-    wall->energy_due = 0;
-  }
-}
-
-void scree_wall_book_later(scree_world_wall *wall, double time_step) {
-  wall->energy_due = may_work(wall) ? 0.5 * time_step * power_of(wall) : 0;
+  for (size_t w = 0; w < world->walls.count; w++)
+    world->walls.items[w].power = power_of(&world->walls.items[w]);
 }
 
 void scree_world_wall_force(const scree_world *world, size_t index, double force[3],
@@ -244,6 +223,10 @@ void scree_world_wall_force(const scree_world *world, size_t index, double force
 void scree_world_wall_power(const scree_world *world, size_t index, double *power, double *energy) {
   *power = world->walls.items[index].power;
   *energy = world->walls.items[index].energy;
+  for (size_t i = 0; i < world->wall_pairs.count; i++) {
+    uint32_t k = world->wall_pairs.items[i];
+    if (world->neighbours.items[k].b == index) *energy += world->ledger.items[k].wall;
+  }
 }
 
 /* ---- distances ---- */

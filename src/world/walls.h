@@ -19,14 +19,11 @@ double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, ve
 bool scree_wall_is_belt(const scree_world_wall *wall);
 /* From now on. */
 void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin);
-/* Forces and torques on walls from the pairs of the last step. */
+/* Forces and torques on walls from the pairs of the last step, and their power. */
 void scree_walls_sum_forces(scree_world *world);
-/* The work of walls in this step: before they move, with the forces of the step; and after. */
-void scree_walls_book(scree_world *world);
-void scree_wall_book_later(scree_world_wall *wall, double time_step);
 /* How far from its position a wall extends; INFINITY for planes and endless cylinders. */
 double scree_wall_extent(const scree_world_wall *wall);
-/* motion.c: every wall's drift. */
-void scree_walls_advance(scree_world *world);
+/* motion.c: the wall's drift. */
+void scree_wall_advance(scree_world *world, size_t index);
 
 #endif

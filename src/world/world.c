@@ -88,7 +88,7 @@ static void free_bodies(scree_bodies *b) {
   for (size_t i = 0; i < b->count; i++) scree_particle_free(b->particle[i]);
   void *arrays[] = {b->frame,    b->orientation, b->momentum, b->inertia, b->force,
                     b->torque,   b->mass,        b->travel,   b->path,    b->particle,
-                    b->material, b->removed,     b->turn,     b->applied};
+                    b->material, b->removed,     b->turn,     b->applied, b->booked};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) scree_free(arrays[i]);
 }
 
@@ -115,7 +115,7 @@ void scree_world_free(scree_world *world) {
   scree_free(world->acting.items);
   scree_free(world->side_begin);
   scree_free(world->offenders);
-  scree_free(world->sums.items);
+  scree_free(world->ledger.items);
   scree_free(world->awake.items);
   scree_free(world->progress.items);
   scree_free(world->body_path_at_build);
@@ -160,6 +160,7 @@ static scree_status grow_bodies(scree_world *world, scree_error *error) {
       {(void **)&b->particle, sizeof *b->particle},
       {(void **)&b->material, sizeof *b->material},
       {(void **)&b->removed, sizeof *b->removed},
+      {(void **)&b->booked, sizeof *b->booked},
       {(void **)&world->side_begin, sizeof *world->side_begin},
       {(void **)&world->offenders, sizeof *world->offenders},
       {(void **)&world->body_path_at_build, sizeof *world->body_path_at_build},
@@ -255,6 +256,7 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
   b->particle[i] = particle;
   fill_body(b, i, world->materials[material].density);
   if (b->applied) b->applied[i] = (scree_applied){0};
+  b->booked[i] = (scree_booked){0, 0, 0};
   scree_particle_retain(particle);
   place_body(world, i, &start);
   world->time_step_stale = true;

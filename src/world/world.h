@@ -42,9 +42,8 @@ typedef struct scree_world_wall {
   vec3 force, torque;      /* on the wall in the last step, about its position */
   scree_load friction;     /* the tangential part of them, on the bodies */
   vec3 surface_velocity, surface_spin; /* of a belt, in the wall's own frame */
-  double power, energy,
-      energy_due;      /* done on bodies: W, J so far, J of the last step's later half */
-  vec3 start_position; /* when its motions were set */
+  double power, energy; /* done on bodies: W in the last step; J on those that are no more near */
+  vec3 start_position;  /* when its motions were set */
   quat start_orientation;
   size_t motion_count; /* its own in world->motions, after those of the walls before it */
 } scree_world_wall;
@@ -67,7 +66,15 @@ typedef struct scree_motion_row {
 /* Force and torque of scree_world_set_body_force. */
 typedef struct scree_applied {
   scree_load now, last; /* last: of the last step */
+  double work;          /* J, done so far */
 } scree_applied;
+
+/* Work, J: of dashpots and of tangential forces on two neighbours, and of a wall on a body. Each
+ * books its own while they are neighbours, then it is the first body's or the wall's. So no step
+ * adds anything up. */
+typedef struct scree_booked {
+  double dashpot, tangential, wall;
+} scree_booked;
 
 /* Bodies, one array per field; those of the same index are one body. */
 typedef struct scree_bodies {
@@ -80,6 +87,7 @@ typedef struct scree_bodies {
   double *travel;         /* most any of its points moved in the last step */
   double *path;           /* sum of travel */
   scree_applied *applied; /* NULL: there never were any */
+  scree_booked *booked;   /* with those that are no more its neighbours; without walls' */
   vec3 *turn; /* angular velocity in the body's own frame after the coming kick (scratch) */
   scree_particle **particle;
   uint8_t *material;
@@ -244,19 +252,19 @@ typedef struct scree_pools {
   atomic_uint_least64_t touches_used;
 } scree_pools;
 
-/* What a block of pairs adds up, in their order; combined in block order. */
-typedef struct scree_pair_sums {
-  double dashpot, tangential;
-  double largest_overlap;
-  uint32_t beyond_limit, too_fast, start; /* the first neighbours, or scree_none */
-  double start_depth;                     /* of that one, in each other from the start */
-  uint64_t partings;                      /* begun */
-} scree_pair_sums;
+/* What is wrong after a step: the first neighbours of which it is, or scree_none. */
+typedef struct scree_trouble {
+  uint32_t start, beyond_limit, too_fast;
+  double start_depth; /* how deep those lie in each other from the start, m */
+} scree_trouble;
 
 /* How far some blocks of the neighbours have come in a step. */
 typedef struct scree_pair_progress {
   uint32_t awake, done; /* of those that are awake */
   uint32_t given;       /* pairs that fell asleep */
+  scree_trouble trouble;
+  double largest_overlap;
+  uint64_t partings; /* begun */
 } scree_pair_progress;
 
 /* What the step reads of all neighbours, in their order. */
@@ -299,6 +307,10 @@ struct scree_world {
     size_t count, capacity;
   } pair_of;
   struct {
+    scree_booked *items; /* of the neighbours */
+    size_t count, capacity;
+  } ledger;
+  struct {
     scree_pair *items; /* awake, or spare */
     size_t count, capacity;
   } pairs;
@@ -336,10 +348,6 @@ struct scree_world {
   size_t *offenders;    /* scratch of the gathering, by block */
   scree_broad *broad;
   struct {
-    scree_pair_sums *items;
-    size_t count, capacity;
-  } sums;
-  struct {
     uint32_t *items; /* indices of neighbours, from where their blocks begin; behind, pairs given */
     size_t count, capacity;
   } awake;
@@ -356,7 +364,6 @@ struct scree_world {
   double time, time_step;
   bool time_step_stale;
   uint64_t step_count, parting_count;
-  double work_dashpot, work_tangential, applied_work; /* done on bodies, so far */
   double largest_overlap;
   bool diverged;
   scree_error failure;
@@ -381,8 +388,12 @@ static inline bool scree_pair_touches(const scree_world *world, size_t pair) {
   return world->touching.items[pair / 64] >> pair % 64 & 1;
 }
 static inline void scree_mark_touching(scree_world *world, size_t pair, bool touching) {
-  uint64_t bit = (uint64_t)1 << pair % 64, *word = &world->touching.items[pair / 64];
-  *word = touching ? *word | bit : *word & ~bit;
+  uint64_t bit = (uint64_t)1 << pair % 64;
+  atomic_uint_least64_t *word = (atomic_uint_least64_t *)&world->touching.items[pair / 64];
+  if (touching)
+    atomic_fetch_or_explicit(word, bit, memory_order_relaxed);
+  else
+    atomic_fetch_and_explicit(word, ~bit, memory_order_relaxed);
 }
 static inline void scree_set_body_due(scree_world *world, size_t i) {
   world->due.items[i] = world->bodies.path[i] + 2 * world->bodies.travel[i];

@@ -15,7 +15,8 @@ TYPES = {
     **{f"{kind}{bits}": f"{'int' if kind == 's' else 'uint'}{bits}_t"
        for kind in "usb" for bits in (8, 16, 32, 64)},
 }
-SPECIAL = {"%ctaid.x": "block_index", "%ntid.x": "block_size", "%tid.x": "thread_index"}
+SPECIAL = {"%ctaid.x": "block_index", "%nctaid.x": "block_count", "%ntid.x": "block_size",
+           "%tid.x": "thread_index"}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
 UNORDERED = {"equ": "==", "neu": "!=", "ltu": "<", "leu": "<=", "gtu": ">", "geu": ">="}
 
@@ -24,7 +25,7 @@ PRELUDE = """/* Made from PTX. */
 #include <string.h>
 extern int watching;
 void note_access(const void *at, uint64_t size, int is_write);
-_Thread_local uint32_t thread_index, block_index, block_size = 1;
+_Thread_local uint32_t thread_index, block_index, block_size = 1, block_count = 1;
 static inline double of_bits(uint64_t b) { double d; memcpy(&d, &b, 8); return d; }
 static inline float of_bits_f(uint32_t b) { float d; memcpy(&d, &b, 4); return d; }
 static inline uint64_t bits_of(double d) { uint64_t b; memcpy(&b, &d, 8); return b; }
@@ -43,6 +44,11 @@ static inline double lesser(double a, double b) {
 static inline uint32_t fetch_min(uint32_t *at, uint32_t v) {
   uint32_t old = __atomic_load_n(at, __ATOMIC_RELAXED);
   while (v < old && !__atomic_compare_exchange_n(at, &old, v, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+  return old;
+}
+static inline uint64_t fetch_max64(uint64_t *at, uint64_t v) {
+  uint64_t old = __atomic_load_n(at, __ATOMIC_RELAXED);
+  while (v > old && !__atomic_compare_exchange_n(at, &old, v, 0, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
   return old;
 }
 static inline uint32_t fetch_max(uint32_t *at, uint32_t v) {
@@ -318,6 +324,12 @@ class Translator:
         at, value = self.address(a[1]), self.operand(a[2], p[-1])
         if names in (["add", "u64"], ["add", "u32"], ["add", "s32"], ["add", "s64"]):
             return self.set(a, f"__atomic_fetch_add(({TYPES[p[-1]]} *)({at}), {value}, __ATOMIC_RELAXED)")
+        if names == ["exch", "b64"]:
+            return self.set(a, f"__atomic_exchange_n((uint64_t *)({at}), {value}, __ATOMIC_RELAXED)")
+        if names in (["and", "b64"], ["or", "b64"]):
+            return self.set(a, f"__atomic_fetch_{names[0]}((uint64_t *)({at}), {value}, __ATOMIC_RELAXED)")
+        if names == ["max", "u64"]:
+            return self.set(a, f"fetch_max64((uint64_t *)({at}), {value})")
         if names in (["min", "u32"], ["max", "u32"]):
             return self.set(a, f"fetch_{names[0]}((uint32_t *)({at}), {value})")
         fail(".".join(p))

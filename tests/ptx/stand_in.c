@@ -17,7 +17,7 @@ typedef struct kernel {
   void (*run)(void *, void *);
 } kernel;
 extern const kernel kernels[];
-extern _Thread_local uint32_t thread_index, block_index, block_size;
+extern _Thread_local uint32_t thread_index, block_index, block_size, block_count;
 extern const char translated_ptx[]; /* what the kernels were translated from */
 
 enum { INVALID_VALUE = 1, OUT_OF_MEMORY = 2, INVALID_PTX = 218, NOT_FOUND = 500, LOST = 719 };
@@ -99,32 +99,35 @@ static struct watched {
   size_t size;
   access *bytes;
 } blocks[256];
-static size_t block_count;
+static size_t watched_count;
 static const uint64_t many = UINT32_MAX;
 
 static void watch_block(char *begin, size_t size) {
-  if (block_count == sizeof blocks / sizeof *blocks) abort();
-  blocks[block_count++] = (struct watched){begin, size, calloc(size, sizeof(access))};
+  if (watched_count == sizeof blocks / sizeof *blocks) abort();
+  blocks[watched_count++] = (struct watched){begin, size, calloc(size, sizeof(access))};
 }
 
 static void forget_block(const char *begin) {
-  for (size_t i = 0; i < block_count; i++)
+  for (size_t i = 0; i < watched_count; i++)
     if (blocks[i].begin == begin) {
       free(blocks[i].bytes);
-      blocks[i] = blocks[--block_count];
+      blocks[i] = blocks[--watched_count];
       return;
     }
 }
 
-static void note_byte(access *byte, int is_write) {
+static const char *running; /* the kernel */
+
+static void note_byte(const struct watched *block, size_t at, int is_write) {
+  access *byte = &block->bytes[at];
   uint64_t launch = (uint64_t)launches << 32,
            self = launch | ((uint64_t)block_index * block_size + thread_index + 1);
   bool written = byte->writer >> 32 == launches && byte->writer != self,
        read = byte->reader >> 32 == launches && byte->reader != self;
   if (written || (is_write && read)) {
-    fprintf(stderr, "stand-in: threads %llu and %llu of launch %lu meet\n",
+    fprintf(stderr, "stand-in: threads %llu and %llu of launch %lu, %s, meet at byte %zu of %zu\n",
             (unsigned long long)((written ? byte->writer : byte->reader) & many) - 1,
-            (unsigned long long)(self & many) - 1, launches);
+            (unsigned long long)(self & many) - 1, launches, running, at, block->size);
     exit(3);
   }
   if (is_write)
@@ -134,11 +137,11 @@ static void note_byte(access *byte, int is_write) {
 }
 
 void note_access(const void *at, uint64_t size, int is_write) {
-  for (size_t i = 0; i < block_count; i++) {
+  for (size_t i = 0; i < watched_count; i++) {
     const struct watched *block = &blocks[i];
     if ((const char *)at < block->begin || (const char *)at >= block->begin + block->size) continue;
     size_t first = (size_t)((const char *)at - block->begin);
-    for (size_t k = first; k < first + size; k++) note_byte(&block->bytes[k], is_write);
+    for (size_t k = first; k < first + size; k++) note_byte(block, k, is_write);
     return;
   }
 }
@@ -168,11 +171,25 @@ int cuMemFree_v2(unsigned long long address) {
   free(block);
   return 0;
 }
-int cuMemcpyHtoD_v2(unsigned long long to, const void *from, size_t size) {
+/* Queues: each does at once what it is asked. */
+int cuStreamCreate(void **stream, unsigned flags) {
+  static int only;
+  *stream = &only;
+  return flags == 1 ? 0 : INVALID_VALUE;
+}
+int cuStreamDestroy_v2(void *stream) {
+  return stream ? 0 : INVALID_VALUE;
+}
+int cuStreamSynchronize(void *stream) {
+  return stream ? 0 : INVALID_VALUE;
+}
+int cuMemcpyHtoDAsync_v2(unsigned long long to, const void *from, size_t size, void *stream) {
+  if (!stream) return INVALID_VALUE;
   memcpy((void *)(uintptr_t)to, from, size);
   return 0;
 }
-int cuMemcpyDtoH_v2(void *to, unsigned long long from, size_t size) {
+int cuMemcpyDtoHAsync_v2(void *to, unsigned long long from, size_t size, void *stream) {
+  if (!stream) return INVALID_VALUE;
   memcpy(to, (const void *)(uintptr_t)from, size);
   return 0;
 }
@@ -202,6 +219,8 @@ int cuLaunchKernel(void *function, unsigned grid_x, unsigned grid_y, unsigned gr
        shuffle = order && strcmp(order, "shuffled") == 0;
   size_t count = (size_t)grid_x * block_x;
   block_size = block_x;
+  block_count = grid_x;
+  running = ((const kernel *)function)->name;
   for (size_t i = 0; i < count; i++) {
     size_t thread = reverse ? count - 1 - i : shuffle ? shuffled(i, count) : i;
     block_index = (uint32_t)(thread / block_x);

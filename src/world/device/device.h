@@ -1,28 +1,63 @@
-/* What the kernels of a step and their host share beside the world: what one launch tells the next,
- * and the host. Kernels take the world and this, both on the device. */
+/* What the kernels of a step and their host share beside the world. Kernels take the world and
+ * this, both on the device. */
 #ifndef SCREE_WORLD_DEVICE_DEVICE_H
 #define SCREE_WORLD_DEVICE_DEVICE_H
 
 #include "world/contact.h"
 
+/* Items of one kind are visited side by side. */
+enum { SCREE_VISIT_EDGES, SCREE_VISIT_SURFACES, SCREE_VISIT_OTHERS, SCREE_VISIT_KINDS };
+
+/* An item that is to be visited: by the place of its pair among those awake, and its own there. */
+typedef struct scree_visit {
+  uint32_t place, item;
+} scree_visit;
+
+/* A list that is to be made, in parts of as many entries each. */
+enum { SCREE_LIST_PARTS = 256, SCREE_MOST_LISTS = 1 << 15 };
+typedef struct scree_due_list {
+  scree_listing listing;
+  uint32_t place; /* of the pair */
+  uint32_t entries;
+  uint32_t found[SCREE_LIST_PARTS]; /* by each part; then, by those before it */
+} scree_due_list;
+
+/* How far a pair has come in a step. */
+enum { SCREE_PAIR_NEW, SCREE_PAIR_LISTING, SCREE_PAIR_LISTED, SCREE_PAIR_READY };
+
 typedef struct scree_device_step {
-  uint32_t *counts;      /* of awake neighbours, by block; they lie in world->awake */
-  uint8_t *done;         /* by place in world->awake */
-  scree_pair_work *work; /* likewise */
-  uint32_t too_small;    /* some found too little room: evaluate again */
-  uint32_t fallen;       /* some body was below the floor, and is removed */
-  uint32_t offender;     /* first body that would move too far, or scree_none */
-  scree_pair_sums sums;  /* of all pairs */
+  scree_scratch *hands; /* by place in world->awake, as is the next */
+  uint8_t *progress;
+  uint8_t *touch_counts; /* of items, by where their touches begin in the pool of touches */
+  scree_visit *visits[SCREE_VISIT_KINDS];
+  scree_due_list *due;
+
+  uint32_t awake_count, due_count, visit_counts[SCREE_VISIT_KINDS]; /* in this step */
+  uint32_t stop;            /* no further step before the host has looked */
+  uint32_t resume;          /* the step has begun, and is gone on with */
+  uint32_t too_small;       /* some pair found too little room in the pools */
+  uint32_t again;           /* there were more lists to be made than places for them */
+  uint32_t stale;           /* the neighbours hold no longer */
+  uint32_t fallen;          /* some body was below the floor, and is removed */
+  uint32_t offender;        /* first body that would move too far, or scree_none */
+  scree_trouble trouble;    /* of pairs */
+  uint64_t largest_overlap; /* the bits of the number, which is not negative */
+  uint64_t partings, list_builds, evaluations;
+  uint64_t done, wanted; /* steps */
 } scree_device_step;
 
-/* In the order of a step. */
+/* In the order of a step, with a thread for each: */
 #define SCREE_KERNELS(X)                                                                           \
-  X(awake)    /* a thread for each block of neighbours */                                          \
-  X(evaluate) /* for each place of awake ones */                                                   \
-  X(settle)   /* for each block */                                                                 \
-  X(combine)  /* one */                                                                            \
-  X(gather)   /* for each body */                                                                  \
-  X(book)     /* one */                                                                            \
-  X(advance)  /* for each body */
+  X(awake)      /* of the neighbours */                                                            \
+  X(relate)     /* pair that is awake */                                                           \
+  X(list_count) /* part of a list that is due */                                                   \
+  X(list_place) /* such list */                                                                    \
+  X(list_write) /* part of it */                                                                   \
+  X(list_end)   /* list */                                                                         \
+  X(visit)      /* item that is awake */                                                           \
+  X(press)      /* pair */                                                                         \
+  X(gather)     /* body */                                                                         \
+  X(advance)    /* body or wall */                                                                 \
+  X(end)        /* step */
 
 #endif

@@ -1,16 +1,22 @@
-/* The kernels: each stage of a step as one thread an element, around the very functions that the
- * loops of step.c and integrate.c call. A kernel returns at once where an earlier one of the same
- * step stopped it. Every element is written by the one thread that has it; several threads meet
- * only at counters, whose order shows nowhere. */
+/* The kernels: each stage of a step as loops over its elements, around the very functions that the
+ * loops of step.c and integrate.c call. A kernel returns at once where an earlier one stopped the
+ * steps. Every element is written by the one thread that has it; several threads meet only at
+ * counters and lists of work, whose order shows nowhere. */
 #include "world/contact.h"
 #include "world/device/device.h"
+#include "world/pairs.h"
 #include "world/stages.h"
+#include "world/walls.h"
 
 /* What clang calls for an atomic operation of C, by the names that it uses. */
 uint64_t scree_fetch_add(volatile void *at, uint64_t value,
                          int order) __asm__("__atomic_fetch_add_8");
 uint64_t scree_fetch_sub(volatile void *at, uint64_t value,
                          int order) __asm__("__atomic_fetch_sub_8");
+uint64_t scree_fetch_or(volatile void *at, uint64_t value,
+                        int order) __asm__("__atomic_fetch_or_8");
+uint64_t scree_fetch_and(volatile void *at, uint64_t value,
+                         int order) __asm__("__atomic_fetch_and_8");
 uint64_t scree_fetch_add(volatile void *at, uint64_t value, int order) {
   (void)order;
   return (uint64_t)__nvvm_atom_add_gen_ll((volatile long long *)at, (long long)value);
@@ -18,88 +24,356 @@ uint64_t scree_fetch_add(volatile void *at, uint64_t value, int order) {
 uint64_t scree_fetch_sub(volatile void *at, uint64_t value, int order) {
   return scree_fetch_add(at, (uint64_t)0 - value, order);
 }
+uint64_t scree_fetch_or(volatile void *at, uint64_t value, int order) {
+  (void)order;
+  return (uint64_t)__nvvm_atom_or_gen_ll((volatile long long *)at, (long long)value);
+}
+uint64_t scree_fetch_and(volatile void *at, uint64_t value, int order) {
+  (void)order;
+  return (uint64_t)__nvvm_atom_and_gen_ll((volatile long long *)at, (long long)value);
+}
 /* A device has no clock that timers could use. */
 double scree_now(void) {
   return 0;
 }
 
-static uint32_t thread_index(void) {
-  return __nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
+static size_t first_element(void) {
+  return (size_t)__nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
          __nvvm_read_ptx_sreg_tid_x();
 }
-
-static bool has_trouble(const scree_pair_sums *sums) {
-  return (sums->start & sums->beyond_limit & sums->too_fast) != scree_none;
+static size_t thread_count(void) {
+  return (size_t)__nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x();
 }
+#define EACH(i, count) (size_t i = first_element(), end_ = (count); i < end_; i += thread_count())
+
+static uint32_t take(uint32_t *counter, uint32_t count) {
+  return (uint32_t)__nvvm_atom_add_gen_i((volatile int *)counter, (int)count);
+}
+static void raise_flag(uint32_t *flag) {
+  __nvvm_atom_max_gen_ui(flag, 1);
+}
+static void lower_to(uint32_t *first, uint32_t index) {
+  __nvvm_atom_min_gen_ui(first, index);
+}
+
+/* Some pairs are not ready. No kernel asks for what it may itself find: other threads of it may
+ * have, sooner or later. */
+static bool pairs_wait(const scree_device_step *step) {
+  return step->stop || step->too_small || step->again;
+}
+/* Or something is wrong with some. */
+static bool bodies_wait(const scree_device_step *step) {
+  const scree_trouble *t = &step->trouble;
+  return pairs_wait(step) || (t->start & t->beyond_limit & t->too_fast) != scree_none;
+}
+/* Or with some body. */
+static bool is_held(const scree_device_step *step) {
+  return bodies_wait(step) || step->offender != scree_none;
+}
+
+/* ---- pairs ---- */
 
 void scree_kernel_awake(scree_world *world, scree_device_step *step) {
-  uint32_t block = thread_index();
-  size_t begin = (size_t)block * SCREE_PAIR_BLOCK, count = world->neighbours.count;
-  if (begin >= count) return;
-  size_t end = begin + SCREE_PAIR_BLOCK < count ? begin + SCREE_PAIR_BLOCK : count;
-  step->counts[block] = (uint32_t)scree_list_awake(world, begin, end, &world->awake.items[begin]);
-  for (uint32_t j = 0; j < step->counts[block]; j++) step->done[begin + j] = 0;
+  if (step->stop || step->resume) return;
+  for
+    EACH(k, world->neighbours.count) {
+      if (!scree_is_awake(world, k)) continue;
+      uint32_t place = take(&step->awake_count, 1);
+      world->awake.items[place] = (uint32_t)k;
+      step->progress[place] = SCREE_PAIR_NEW;
+    }
 }
 
-void scree_kernel_evaluate(scree_world *world, scree_device_step *step) {
-  uint32_t at = thread_index();
-  if (at >= world->neighbours.count ||
-      at % SCREE_PAIR_BLOCK >= step->counts[at / SCREE_PAIR_BLOCK] || step->done[at])
+/* The pair at this place, with its lists in hand. */
+static scree_pair *take_pair(scree_world *world, scree_device_step *step, size_t place) {
+  scree_scratch *hand = &step->hands[place];
+  scree_pair *pair = &world->pairs.items[world->pair_of.items[world->awake.items[place]]];
+  scree_take_in_hand(hand, &world->pools, pair, &world->neighbours.items[pair->neighbours]);
+  hand->touches.items = world->pools.touches + hand->first_touch;
+  return pair;
+}
+
+static int kind_of_visit(const scree_item *item) {
+  return item->kind == SCREE_ITEM_EDGE_EDGE ? SCREE_VISIT_EDGES
+         : item->kind == SCREE_ITEM_POINT_FACE || item->kind == SCREE_ITEM_FACE_POINT
+             ? SCREE_VISIT_SURFACES
+             : SCREE_VISIT_OTHERS;
+}
+
+/* A pair that is ready asks for visits of its items. */
+static void ask_for_visits(scree_device_step *step, const scree_pair *pair, size_t place) {
+  const scree_item *items = step->hands[place].items;
+  uint32_t counts[SCREE_VISIT_KINDS] = {0}, first[SCREE_VISIT_KINDS];
+  for (uint32_t i = 0; i < pair->active.count; i++) counts[kind_of_visit(&items[i])]++;
+  for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
+    if (counts[kind] > 0) first[kind] = take(&step->visit_counts[kind], counts[kind]);
+  for (uint32_t i = 0; i < pair->active.count; i++) {
+    int kind = kind_of_visit(&items[i]);
+    step->visits[kind][first[kind]++] = (scree_visit){(uint32_t)place, i};
+  }
+}
+
+/* Pairs that find too little room are as before, and begin anew when the step is gone on with. */
+static void send_back(scree_device_step *step, scree_pair *pair, size_t place, uint32_t *why) {
+  scree_pair_step_back(pair, &step->hands[place]);
+  step->progress[place] = SCREE_PAIR_NEW;
+  raise_flag(why);
+}
+
+static void wake(scree_device_step *step, scree_pair *pair, size_t place) {
+  scree_scratch *hand = &step->hands[place];
+  hand->touches.capacity = 0;
+  if (!scree_pair_wake(pair, hand)) {
+    send_back(step, pair, place, &step->too_small);
     return;
-  uint32_t index = scree_pair_at(world, world->awake.items[at]);
-  scree_scratch scratch = {0};
-  bool done = false;
-  if (index != scree_none) {
-    scree_pair *pair = &world->pairs.items[index];
-    scree_take_in_hand(&scratch, &world->pools, pair, &world->neighbours.items[pair->neighbours]);
-    done = scree_pair_evaluate(world, pair, &scratch, &step->work[at]);
   }
-  step->done[at] = done;
-  if (!done) __nvvm_atom_max_gen_ui(&step->too_small, 1);
+  step->progress[place] = SCREE_PAIR_READY;
+  ask_for_visits(step, pair, place);
 }
 
-void scree_kernel_settle(scree_world *world, scree_device_step *step) {
-  uint32_t block = thread_index(), begin = block * SCREE_PAIR_BLOCK;
-  if (begin >= world->neighbours.count || step->too_small) return;
-  scree_pair_sums sums = scree_no_sums();
-  for (uint32_t at = begin; at < begin + step->counts[block]; at++) {
-    uint32_t index = world->pair_of.items[world->awake.items[at]];
-    scree_pair *pair = &world->pairs.items[index];
-    scree_add_work(&sums, &step->work[at], pair);
-    if (!scree_settle_pair(world, pair)) continue;
-    int64_t place = atomic_fetch_add_explicit(&world->spare_pairs.count, 1, memory_order_relaxed);
-    world->spare_pairs.items[place] = index;
+static void begin_list(scree_world *world, scree_device_step *step, scree_pair *pair,
+                       size_t place) {
+  uint32_t at = take(&step->due_count, 1);
+  if (at >= SCREE_MOST_LISTS) {
+    send_back(step, pair, place, &step->again);
+    return;
   }
-  world->sums.items[block] = sums;
+  scree_due_list *list = &step->due[at];
+  bool near = scree_listing_begin(&list->listing, world, pair, &step->hands[place]);
+  list->place = (uint32_t)place;
+  list->entries = near ? (uint32_t)scree_listing_count(&list->listing) : 0;
+  step->progress[place] = SCREE_PAIR_LISTING;
 }
 
-void scree_kernel_combine(scree_world *world, scree_device_step *step) {
-  if (thread_index() > 0 || step->too_small) return;
-  step->sums = scree_combine_sums(world);
+void scree_kernel_relate(scree_world *world, scree_device_step *step) {
+  if (step->stop) return;
+  for
+    EACH(place, step->awake_count) {
+      if (step->progress[place] != SCREE_PAIR_NEW) {
+        ask_for_visits(step, take_pair(world, step, place), place);
+        continue;
+      }
+      if (scree_pair_at(world, world->awake.items[place]) == scree_none) {
+        raise_flag(&step->too_small);
+        continue;
+      }
+      scree_pair *pair = take_pair(world, step, place);
+      scree_pair_relate(world, pair, &step->hands[place]);
+      if (scree_pair_is_due(pair))
+        begin_list(world, step, pair, place);
+      else
+        wake(step, pair, place);
+    }
 }
+
+/* ---- lists ---- */
+
+static size_t list_count(const scree_device_step *step) {
+  return step->due_count < SCREE_MOST_LISTS ? step->due_count : SCREE_MOST_LISTS;
+}
+
+/* The entries of a part, one after another. */
+static uint32_t take_part(const scree_due_list *list, scree_listing *listing, size_t part) {
+  uint32_t size = (list->entries + SCREE_LIST_PARTS - 1) / SCREE_LIST_PARTS;
+  size_t begin = part * size, end = begin + size < list->entries ? begin + size : list->entries;
+  listing->count = 0;
+  for (size_t e = begin; e < end; e++) scree_listing_take(listing, e);
+  return listing->count;
+}
+
+void scree_kernel_list_count(scree_world *world, scree_device_step *step) {
+  (void)world;
+  if (step->stop) return;
+  for
+    EACH(i, list_count(step) * SCREE_LIST_PARTS) {
+      scree_due_list *list = &step->due[i / SCREE_LIST_PARTS];
+      scree_listing listing = list->listing;
+      listing.taking = SCREE_TAKING_COUNT;
+      list->found[i % SCREE_LIST_PARTS] = take_part(list, &listing, i % SCREE_LIST_PARTS);
+    }
+}
+
+void scree_kernel_list_place(scree_world *world, scree_device_step *step) {
+  if (step->stop) return;
+  for
+    EACH(i, list_count(step)) {
+      scree_due_list *list = &step->due[i];
+      uint32_t total = 0;
+      for (int part = 0; part < SCREE_LIST_PARTS; part++) {
+        uint32_t found = list->found[part];
+        list->found[part] = total;
+        total += found;
+      }
+      scree_scratch *hand = &step->hands[list->place];
+      take_pair(world, step, list->place);
+      if (!scree_reserve_sleepers(hand, total)) continue;
+      hand->neighbours->sleeping.count = total;
+      step->progress[list->place] = SCREE_PAIR_LISTED;
+    }
+}
+
+void scree_kernel_list_write(scree_world *world, scree_device_step *step) {
+  if (step->stop) return;
+  for
+    EACH(i, list_count(step) * SCREE_LIST_PARTS) {
+      const scree_due_list *list = &step->due[i / SCREE_LIST_PARTS];
+      const scree_range *sleeping = &step->hands[list->place].neighbours->sleeping;
+      size_t part = i % SCREE_LIST_PARTS;
+      uint32_t begin = list->found[part],
+               end = part + 1 < SCREE_LIST_PARTS ? list->found[part + 1] : sleeping->count;
+      if (step->progress[list->place] != SCREE_PAIR_LISTED || begin == end) continue;
+      scree_listing listing = list->listing;
+      listing.taking = SCREE_TAKING_WRITE;
+      listing.to = world->pools.sleepers + sleeping->first + begin;
+      take_part(list, &listing, part);
+    }
+}
+
+void scree_kernel_list_end(scree_world *world, scree_device_step *step) {
+  if (step->stop) return;
+  for
+    EACH(i, list_count(step)) {
+      size_t place = step->due[i].place;
+      scree_pair *pair = take_pair(world, step, place);
+      if (step->progress[place] == SCREE_PAIR_LISTED)
+        wake(step, pair, place);
+      else
+        send_back(step, pair, place, &step->too_small);
+    }
+}
+
+/* ---- contacts ---- */
+
+static void visit(scree_world *world, scree_device_step *step, const scree_visit *v) {
+  const scree_scratch *hand = &step->hands[v->place];
+  const scree_pair *pair = &world->pairs.items[world->pair_of.items[world->awake.items[v->place]]];
+  size_t first = hand->first_touch + (size_t)SCREE_ANCHORS * v->item;
+  scree_scratch own; /* of the item's visit, which needs no more of it: */
+  own.pools = &world->pools;
+  own.items = hand->items;
+  own.further = hand->further;
+  own.touches = (scree_touch_list){world->pools.touches + first, 0, SCREE_ANCHORS};
+  own.item_evaluations = own.closest_queries = 0;
+  scree_item *item = &hand->items[v->item];
+  item->gap = scree_item_touch(world, pair, item, &hand->relative, &own);
+  step->touch_counts[first] = (uint8_t)own.touches.count;
+}
+
+/* Items of one kind follow each other, and no warp has two kinds. */
+void scree_kernel_visit(scree_world *world, scree_device_step *step) {
+  if (pairs_wait(step)) return;
+  enum { WARP = 32 };
+  size_t ends[SCREE_VISIT_KINDS], all = 0;
+  for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
+    ends[kind] = all += (step->visit_counts[kind] + WARP - 1) / WARP * WARP;
+  for
+    EACH(i, all) {
+      size_t at = i;
+      int kind = 0;
+      while (i >= ends[kind]) at = i - ends[kind++];
+      if (at < step->visit_counts[kind]) visit(world, step, &step->visits[kind][at]);
+    }
+}
+
+/* The touches of all items, one after another. */
+static void gather_touches(const scree_device_step *step, const scree_pair *pair,
+                           scree_scratch *hand) {
+  scree_touch *touches = hand->touches.items;
+  size_t count = 0;
+  for (uint32_t i = 0; i < pair->active.count; i++) {
+    size_t from = (size_t)SCREE_ANCHORS * i,
+           end = from + step->touch_counts[hand->first_touch + from];
+    for (; from < end; from++, count++)
+      if (from != count) touches[count] = touches[from];
+  }
+  hand->touches.count = count;
+}
+
+static void note_work(scree_device_step *step, const scree_pair *pair,
+                      const scree_pair_work *work) {
+  uint32_t k = pair->neighbours;
+  if (work->beyond_limit) lower_to(&step->trouble.beyond_limit, k);
+  if (work->too_fast) lower_to(&step->trouble.too_fast, k);
+  if (work->start_depth > 0) lower_to(&step->trouble.start, k);
+  if (work->begins_parting) scree_fetch_add(&step->partings, 1, 0);
+  if (!pair->touching) return;
+  unsigned long long bits;
+  double overlap = pair->overlap;
+  __builtin_memcpy(&bits, &overlap, sizeof bits);
+  __nvvm_atom_max_gen_ull((volatile unsigned long long *)&step->largest_overlap, bits);
+}
+
+void scree_kernel_press(scree_world *world, scree_device_step *step) {
+  if (pairs_wait(step)) return;
+  for
+    EACH(place, step->awake_count) {
+      scree_pair *pair = take_pair(world, step, place);
+      scree_scratch *hand = &step->hands[place];
+      uint32_t k = pair->neighbours, index = world->pair_of.items[k];
+      gather_touches(step, pair, hand);
+      scree_pair_press(world, pair, hand);
+      scree_pair_leave(world, pair, hand);
+      scree_book(&world->ledger.items[k], &hand->work);
+      note_work(step, pair, &hand->work);
+      if (scree_settle_pair(world, pair)) scree_pair_give_back(world, index);
+    }
+}
+
+/* ---- bodies and walls ---- */
 
 void scree_kernel_gather(scree_world *world, scree_device_step *step) {
-  uint32_t i = thread_index();
-  if (i >= world->bodies.count || world->bodies.removed[i] || step->too_small ||
-      has_trouble(&step->sums))
-    return;
-  if (!scree_gather_body(world, i)) __nvvm_atom_min_gen_ui(&step->offender, i);
+  if (bodies_wait(step)) return;
+  for
+    EACH(i, world->bodies.count)
+  if (!world->bodies.removed[i] && !scree_gather_body(world, i))
+    lower_to(&step->offender, (uint32_t)i);
 }
 
-void scree_kernel_book(scree_world *world, scree_device_step *step) {
-  if (thread_index() > 0 || step->too_small || has_trouble(&step->sums) ||
-      step->offender != scree_none)
-    return;
-  scree_book_work(world);
+static void advance_body(scree_world *world, scree_device_step *step, size_t i) {
+  if (world->bodies.removed[i]) return;
+  scree_advance_body(world, i);
+  if (scree_body_has_left(world, i)) raise_flag(&step->stale);
+  if (!(world->bodies.frame[i].position.z < world->options.floor_height)) return;
+  world->bodies.removed[i] = true;
+  raise_flag(&step->fallen);
 }
 
 void scree_kernel_advance(scree_world *world, scree_device_step *step) {
-  uint32_t i = thread_index();
-  if (i >= world->bodies.count || world->bodies.removed[i] || step->too_small ||
-      has_trouble(&step->sums) || step->offender != scree_none)
+  if (is_held(step)) return;
+  size_t bodies = world->bodies.count;
+  for
+    EACH(i, bodies + world->walls.count) {
+      if (i < bodies) {
+        advance_body(world, step, i);
+        continue;
+      }
+      scree_wall_advance(world, i - bodies);
+      if (scree_wall_has_left(&world->walls.items[i - bodies])) raise_flag(&step->stale);
+    }
+}
+
+/* How deep the pair that overlaps from the start does. */
+static void find_start(const scree_world *world, scree_device_step *step) {
+  for (uint32_t place = 0; place < step->awake_count; place++)
+    if (world->awake.items[place] == step->trouble.start)
+      step->trouble.start_depth = step->hands[place].work.start_depth;
+}
+
+void scree_kernel_end(scree_world *world, scree_device_step *step) {
+  if (first_element() > 0 || step->stop) return;
+  step->stop = is_held(step);
+  if (step->stop) {
+    if (step->trouble.start != scree_none) find_start(world, step);
     return;
-  scree_advance_body(world, i);
-  if (!(world->bodies.frame[i].position.z < world->options.floor_height)) return;
-  world->bodies.removed[i] = true;
-  __nvvm_atom_max_gen_ui(&step->fallen, 1);
+  }
+  world->time += world->time_step;
+  __builtin_memcpy(&world->largest_overlap, &step->largest_overlap, sizeof world->largest_overlap);
+  scree_fetch_and(&world->pools.touches_used, 0, 0);
+  step->evaluations += step->awake_count;
+  step->list_builds += step->due_count;
+  step->largest_overlap = 0;
+  step->resume = step->awake_count = step->due_count = 0;
+  for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++) step->visit_counts[kind] = 0;
+  step->done++;
+  step->stop = step->stale || step->fallen || step->done == step->wanted;
 }
