@@ -15,10 +15,11 @@
 #include "base/math.h"
 
 #include "base/alloc.h"
-#include "base/math.h"
+#include "base/number.h"
 #include "choice/noise.h"
 
 #include <math.h>
+#include <string.h>
 
 /* What the recommended level keeps by default. */
 static const struct {
@@ -97,6 +98,18 @@ size_t scree_choice_grid_count(const scree_choice_options *options) {
   const scree_choice_options defaults = scree_default_choice_options();
   if (!options) options = &defaults;
   return log_grid_count(options->rp_min, options->rp_max, options->per_decade);
+}
+
+bool scree_choice_is_recommended(const char *rp, double *factor) {
+  static const char word[] = "recommended";
+  char number[SCREE_NUMBER_SIZE];
+  size_t length = strcspn(rp, "*");
+  *factor = 1;
+  if (!rp[length]) return !strcmp(rp, word);
+  if (length >= sizeof number || strcmp(rp + length + 1, word) != 0) return false;
+  memcpy(number, rp, length);
+  number[length] = 0;
+  return scree_number_read(number, factor) && *factor > 0 && *factor < INFINITY;
 }
 
 size_t scree_choice_target(double rp, size_t triangle_count) {

@@ -43,4 +43,8 @@ static inline double scree_level_ip(const scree_choice_level *level, scree_crite
  * it was not measured. */
 size_t scree_choice_best_level(const scree_choice *choice, scree_shape_error which, double weight);
 
+/* Whether a text means the recommended Rp, as "recommended", or a multiple of it, as
+ * "0.5*recommended"; the factor. */
+bool scree_choice_is_recommended(const char *rp, double *factor);
+
 #endif

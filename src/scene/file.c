@@ -50,6 +50,7 @@ void scree_scene_file_free(scree_scene_file *file) {
 
 scree_status scree_scene_file_set(scree_scene_file *file, const char *field, const char *value,
                                   scree_error *error) {
+  if (file->root.kind != SCREE_YAML_MAPPING) return scree_scene_file_check(file, error);
   return scree_yaml_set(&file->root, field, value, error);
 }
 

@@ -3,6 +3,8 @@
 #include "scene/scene.h"
 
 #include "base/alloc.h"
+#include "base/number.h"
+#include "choice/criterion.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -44,10 +46,10 @@ static scree_status read_scan(making *m, const char *path, scree_error *error) {
 static scree_status pick_level(const making *m, const scree_curve *curve, size_t *level,
                                scree_error *error) {
   const scree_plan_shape *s = m->shape;
-  char *end = NULL;
-  size_t count = s->triangles ? strtoul(s->triangles, &end, 10) : 0;
+  double rp;
+  size_t count = s->triangles ? strtoul(s->triangles, NULL, 10) : 0;
   if (scree_plan_spheres(s) && !s->triangles) count = SCREE_CLUMP_TRIANGLES;
-  if (!isnan(s->rp)) count = scree_choice_target(s->rp, m->triangle_count);
+  if (s->rp && scree_number_read(s->rp, &rp)) count = scree_choice_target(rp, m->triangle_count);
   if (count) {
     *level = scree_curve_find(curve, count);
     return SCREE_OK;
@@ -56,6 +58,10 @@ static scree_status pick_level(const making *m, const scree_curve *curve, size_t
   scree_status status = scree_choose(curve, &m->mesh, NULL, m->progress, &choice, error);
   if (status != SCREE_OK) return status;
   *level = choice.recommended.level_index;
+  if (s->rp && scree_choice_is_recommended(s->rp, &rp)) {
+    rp = fmin(1, rp * choice.recommended.rp);
+    *level = scree_curve_find(curve, scree_choice_target(rp, m->triangle_count));
+  }
   scree_choice_free(&choice);
   return SCREE_OK;
 }
@@ -63,7 +69,7 @@ static scree_status pick_level(const making *m, const scree_curve *curve, size_t
 static bool stays_whole(const making *m) {
   const scree_plan_shape *s = m->shape;
   if (s->triangles && !strcmp(s->triangles, "all")) return true;
-  if (!s->triangles && isnan(s->rp)) return m->triangle_count <= SCREE_DENSE_SCAN;
+  if (!s->triangles && !s->rp) return m->triangle_count <= SCREE_DENSE_SCAN;
   return s->triangles && strtoul(s->triangles, NULL, 10) >= m->triangle_count;
 }
 

@@ -1,6 +1,9 @@
 /* The fields of a scene in tables, and what fields must be together. */
 #include "scene/plan.h"
 
+#include "base/number.h"
+#include "choice/criterion.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -102,7 +105,8 @@ static const scree_field shape_fields[] = {
      NULL},
     {"triangles", SCREE_FIELD_TEXT, AT(triangles), 0, 0, "",
      "recommended (as `scree choose` does), all, or at most so many", NULL},
-    {"rp", SCREE_FIELD_REAL, AT(rp), 1e-12, 1, "", "or this share of the triangles", NULL},
+    {"rp", SCREE_FIELD_TEXT, AT(rp), 0, 0, "",
+     "or this share of the triangles; recommended, or as 0.5*recommended a multiple", NULL},
     {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
     {"density", SCREE_FIELD_REAL, AT(density), 1e-3, 1e6, "kg/m3", "another than its material's",
      NULL},
@@ -135,6 +139,12 @@ static scree_status check_spheres(const scree_reader *r, const scree_plan_shape 
   return SCREE_OK;
 }
 
+static bool is_rp(const char *text) {
+  double rp;
+  return scree_choice_is_recommended(text, &rp) ||
+         (scree_number_read(text, &rp) && rp > 0 && rp <= 1);
+}
+
 static scree_status check_shape(const scree_reader *r, const void *record) {
   const scree_plan_shape *s = record;
   bool table = s->clump && !is_number(s->clump);
@@ -145,10 +155,15 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
   if (status == SCREE_OK && s->clump && !table) status = check_spheres(r, s);
   if (status != SCREE_OK) return status;
   bool scan = s->file || s->sample;
-  if (s->triangles && given(&s->rp))
+  if (s->triangles && s->rp)
     return scree_fail_place(r, &s->place, "triangles and rp say the same in two ways: give one");
-  if (!scan && (s->triangles || given(&s->rp)))
+  if (!scan && (s->triangles || s->rp))
     return scree_fail_place(r, &s->place, "triangles and rp are of scans: this one has none");
+  if (s->rp && !is_rp(s->rp))
+    return scree_fail_place(r, &s->place,
+                            "rp '%.60s': must be above 0 and at most 1, recommended, or a multiple "
+                            "as 0.5*recommended",
+                            s->rp);
   if (s->triangles && strcmp(s->triangles, "recommended") != 0 &&
       strcmp(s->triangles, "all") != 0 && !is_count(s->triangles))
     return scree_fail_place(r, &s->place,
@@ -157,7 +172,7 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
   return SCREE_OK;
 }
 static const scree_plan_shape shape_defaults = {
-    .sphere = NAN, .box = NONE, .rp = NAN, .resolution = NAN, .density = NAN, .unit = 2};
+    .sphere = NAN, .box = NONE, .resolution = NAN, .density = NAN, .unit = 2};
 static const scree_record shape_record = {"a shape", FIELDS(shape_fields), sizeof(scree_plan_shape),
                                           &shape_defaults, check_shape};
 

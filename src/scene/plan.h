@@ -19,8 +19,8 @@ typedef struct scree_plan_pair {
  * others' surface. */
 typedef struct scree_plan_shape {
   scree_place place;
-  const char *file, *sample, *clump, *given, *triangles, *material;
-  double sphere, box[3], rp, resolution, density;
+  const char *file, *sample, *clump, *given, *triangles, *rp, *material;
+  double sphere, box[3], resolution, density;
   int unit;
 } scree_plan_shape;
 

@@ -239,7 +239,7 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
 static scree_status fail_shape(const scree_scene *scene, const scree_plan_shape *plan,
                                const scree_error *why, scree_status status, scree_error *error) {
   scree_reader r = {scene->name, NULL, error, ""};
-  if (status == SCREE_BAD_FILE || status == SCREE_IO || status == SCREE_BAD_MESH)
+  if (status != SCREE_OUT_OF_MEMORY && status != SCREE_CANCELLED)
     scree_fail_place(&r, &plan->place, "%s", why->message);
   else if (error)
     *error = *why;

@@ -284,7 +284,7 @@ static scree_status average_rotation(const analysis *a, size_t point, scree_poin
 static double rp_value(const scree_study *study, const scree_study_point *point) {
   const scree_shape_set *set = &study->sets[point->set];
   double value = !strcmp(point->rp, "scan") ? 1 : NAN, factor, sum = 0;
-  if (!scree_study_is_recommended(point->rp, &factor)) {
+  if (!scree_choice_is_recommended(point->rp, &factor)) {
     scree_number_read(point->rp, &value);
     return value;
   }
@@ -421,7 +421,7 @@ static void gather_picks(const analysis *a, size_t point, scree_family_result *f
   family->recommended = gather_pick(a, point, offsetof(scree_study_shape, recommended_rp), family);
   const char *from = a->result->points[family->levels[family->converged_from]].rp;
   if (family->recommended.in_range != SCREE_IN_RANGE_UNKNOWN &&
-      scree_study_is_recommended(from, &factor))
+      scree_choice_is_recommended(from, &factor))
     family->recommended.in_range = factor <= 1 ? SCREE_IN_RANGE_YES : SCREE_IN_RANGE_NO;
 }
 

@@ -326,7 +326,7 @@ static bool is_rp(const char *text) {
   double rp;
   if (scree_study_spheres(text)) return true;
   if (!strcmp(text, "spheres") || !strcmp(text, "scan")) return true;
-  if (scree_study_is_recommended(text, &rp)) return true;
+  if (scree_choice_is_recommended(text, &rp)) return true;
   return scree_number_read(text, &rp) && rp > 0 && rp <= 1;
 }
 

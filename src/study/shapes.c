@@ -94,23 +94,11 @@ size_t scree_study_spheres(const char *rp) {
   return good ? (size_t)count : 0;
 }
 
-bool scree_study_is_recommended(const char *rp, double *factor) {
-  static const char word[] = "recommended";
-  char number[SCREE_NUMBER_SIZE];
-  size_t length = strcspn(rp, "*");
-  *factor = 1;
-  if (!rp[length]) return !strcmp(rp, word);
-  if (length >= sizeof number || strcmp(rp + length + 1, word) != 0) return false;
-  memcpy(number, rp, length);
-  number[length] = 0;
-  return scree_number_read(number, factor) && *factor > 0 && *factor < INFINITY;
-}
-
 /* Of a text that the plan has found to be one of the shape's levels. */
 static double rp_of(const scree_study_shape *shape, const char *text) {
   double rp = NAN, factor;
   if (!strcmp(text, "scan")) return 1;
-  if (scree_study_is_recommended(text, &factor)) return fmin(1, factor * shape->recommended_rp);
+  if (scree_choice_is_recommended(text, &factor)) return fmin(1, factor * shape->recommended_rp);
   scree_number_read(text, &rp);
   return rp;
 }
@@ -123,7 +111,7 @@ static char *level_path(const scree_study *study, const scree_study_shape *shape
     snprintf(ending, sizeof ending, "-scan.ply");
   } else if (scree_study_spheres(rp)) {
     snprintf(ending, sizeof ending, "-clump%zu.csv", scree_study_spheres(rp));
-  } else if (scree_study_is_recommended(rp, &factor)) {
+  } else if (scree_choice_is_recommended(rp, &factor)) {
     scree_number_format_digits(factor, 9, number);
     snprintf(ending, sizeof ending, "-%s-recommended.ply", number);
   } else {

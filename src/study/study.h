@@ -3,6 +3,7 @@
 #define SCREE_STUDY_STUDY_H
 
 #include "base/arena.h"
+#include "choice/criterion.h"
 
 enum { SCREE_RUN_KEY_BYTES = 24 };
 
@@ -109,10 +110,7 @@ scree_status scree_study_experiment(const scree_study *study, size_t run,
 /* Names every run by its content; all shapes must be known. */
 scree_status scree_study_make_keys(scree_study *study, scree_error *error);
 
-/* shapes.c: whether a text means the recommended Rp, as "recommended", or a multiple of it, as
- * "0.5*recommended"; the factor. */
-bool scree_study_is_recommended(const char *rp, double *factor);
-/* Reads what the folder has on the shapes; where it has all, names the runs too. */
+/* shapes.c: reads what the folder has on the shapes; where it has all, names the runs too. */
 scree_status scree_study_know_shapes(scree_study *study, scree_error *error);
 /* Spheres of the clumps that "clump:20" stands for, 1 to 300; 0 where it is none. */
 size_t scree_study_spheres(const char *rp);

@@ -3,7 +3,7 @@
 # (Beverloo, Leniger and van de Velde 1961), W ~ (D - 1.4 d)^2.5, within 0.2.
 # usage: beverloo.sh SCREE
 set -euo pipefail
-scree=$(realpath "$1")
+scree=$(realpath -e "$1")
 cd "$(mktemp -d)"
 trap 'rm -rf "$PWD"' EXIT
 export OMP_NUM_THREADS=1

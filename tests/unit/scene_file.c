@@ -64,6 +64,9 @@ static const struct {
     {"sphere: 0.01", "sphere: 0.01, triangles: 100", "line 10", "are of scans"},
     {"sphere: 0.01", "file: a.stl, triangles: few", "line 10",
      "must be recommended, all, or a count of 4 or more"},
+    {"sphere: 0.01", "file: a.stl, rp: 2", "line 10", "rp '2': must be above 0 and at most 1"},
+    {"sphere: 0.01", "file: a.stl, rp: -1*recommended", "line 10", "or a multiple as 0.5*"},
+    {"sphere: 0.01", "file: a.stl, rp: recomended", "line 10", "must be above 0"},
     {"sphere: 0.01", "file: a.stl, unit: miles", "line 10", "must be one of m|cm|mm"},
     {"sphere: 0.01", "file: a.stl, triangles: 100, rp: 1e-3", "line 10", "give one"},
     {"ball: {sphere: 0.01, material: grain}", "ball: {sphere: 0.01}", "line 10",
@@ -216,6 +219,10 @@ static void fields_are_set(void **state) {
   assert_int_equal(scree_scene_file_check(file, &error), SCREE_BAD_FILE);
   assert_non_null(strstr(error.message, "my.yaml as changed: time: 'soon'"));
   scree_scene_file_free(file);
+  file = parse("hello");
+  assert_int_equal(scree_scene_file_set(file, "time", "2", &error), SCREE_BAD_FILE);
+  assert_non_null(strstr(error.message, "my.yaml, line 1, column 1: a scene is"));
+  scree_scene_file_free(file);
 }
 
 /* What only the files and the geometry can say. */
@@ -225,6 +232,7 @@ static void scenes_that_cannot_be(void **state) {
     const char *from, *to, *says;
   } rows[] = {
       {"sphere: 0.01", "file: nowhere.stl", "line 10, column 9: shapes.ball: nowhere.stl"},
+      {"sphere: 0.01", "sample: fp-9", "line 10, column 9: shapes.ball: 'fp-9' is no sample"},
       {"at: [0, 0, 0.1]", "at: [0, 0, 0.25]", NULL},
       {"sphere: 0.01", "given: ball", "line 10, column 9: shapes.ball: given: 'ball' comes from a"},
       {"rate: 20, until: 1", "count: 3000, layers: {pack_time: 0.001}", "would have to enter at"},
