@@ -17,7 +17,7 @@ replicates: ${REPLICATES:-20}
 shapes: [$2]
 unit: $3
 base:
-  preset: small
+  preset: ${PRESET:-small}
   particles: ${PARTICLES:-300}
   cylinder: {diameter: $4}
   disc: {diameter: $5}

@@ -1,7 +1,8 @@
 /* Distances from the scan are taken at the points spread over it. A vertex of the scan lies no
  * farther from the level than its point does, plus the way between them; vertices that could be the
- * farthest by that bound are asked themselves. Distances back are those of the level's parts to the
- * scan (mesh/distance.c), bounded only where they could exceed the distance forward. */
+ * farthest by that bound are asked themselves. Distances back are taken at points spread over the
+ * level, half as many: its facets are few and flat. Facets of the level are cut (mesh/distance.c)
+ * where they could hold a point farther than the farthest found. */
 #include "choice/gauge.h"
 
 #include "base/alloc.h"
@@ -15,8 +16,7 @@
 
 enum {
   PROBE_STEP = 4,   /* points per probe */
-  PARTS = 16,       /* points per facet of a level whose parts give the mean */
-  CUT_SHARE = 1,    /* samples of a level for bounding the way back, per point of the spread */
+  BACK_STEP = 2,    /* points of the spread per point of the level; per sample for cutting, too */
   QUERY_BLOCK = 256 /* points that share a start */
 };
 /* Facets of the scan no larger than this hide nothing between their corners; of D. */
@@ -166,7 +166,13 @@ static void keep_farthest(forward *f, double distance, vec3 at) {
   f->at = at;
 }
 
-/* Vertices round point i, where one of them could be the farthest. */
+static double facet_distance(const scree_bvh *bvh, uint32_t facet, vec3 p) {
+  vec3 point;
+  return sqrt(scree_triangle_closest(bvh->corners + 9 * (size_t)facet, p, &point));
+}
+
+/* Vertices round point i, where one of them could be the farthest: by the way from the point, and
+ * by the facet that is nearest to the point. */
 static void ask_vertices(forward *f, size_t i, double gap) {
   const scree_spread *s = &f->gauge->spread;
   uint32_t near = f->nearest[i];
@@ -174,6 +180,7 @@ static void ask_vertices(forward *f, size_t i, double gap) {
     vec3 p = vec3_load(f->gauge->scan->positions + 3 * (size_t)s->vertices[k]);
     double bound = f->distances[i] + vec3_distance(p, s->points[i]);
     if (bound <= (1 + gap) * f->maximum) continue;
+    if (facet_distance(&f->level->bvh, near, p) <= (1 + gap) * f->maximum) continue;
     keep_farthest(f, scree_surface_nearest(f->level, p, &near), p);
   }
 }
@@ -272,32 +279,39 @@ static void read_measures(const scree_gauge *g, const scree_measures *m, scree_g
 
 /* ---- Both ways ---- */
 
-/* Facets as small as the points are apart have few samples each: their mean distance is better
- * taken at points spread over all of them. */
-static scree_status spread_mean(const forward *f, double *mean, scree_error *error) {
+/* From points spread over the level; their mean distance from the scan. */
+static scree_status go_back(forward *f, double *mean, scree_error *error) {
   const scree_gauge *g = f->gauge;
-  scree_spread points;
+  scree_spread points = {0};
   scree_sum sum = {0, 0};
-  uint32_t near = 0;
-  scree_status status = scree_spread_make(&f->level->mesh, g->spread.count, &points, error);
+  double *distances = NULL;
+  scree_status status =
+      scree_spread_make(&f->level->mesh, g->spread.count / BACK_STEP, &points, error);
   if (status != SCREE_OK) return status;
-  for (size_t i = 0; i < points.count; i++)
-    scree_sum_add(&sum, scree_surface_nearest(g->surface, points.points[i], &near));
+  status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(distances, points.count, error, done);
+  scree_surface_distances(g->surface, &points.points->x, points.count, distances);
+  for (size_t i = 0; i < points.count; i++) {
+    scree_sum_add(&sum, distances[i]);
+    keep_farthest(f, distances[i], points.points[i]);
+  }
   *mean = scree_sum_value(sum) / (double)points.count;
+  status = SCREE_OK;
+done:
   scree_spread_free(&points);
-  return SCREE_OK;
+  scree_free(distances);
+  return status;
 }
 
-/* Where a facet of the scan spans a hollow of the level, it is farther off than its corners. */
-static scree_status search_facets(forward *f, double gap, scree_error *error) {
-  const scree_gauge *g = f->gauge;
+/* A facet that spans a hollow of the other surface is farther off than its corners. */
+static scree_status search_facets(forward *f, const scree_surface *from, const scree_surface *to,
+                                  double gap, scree_error *error) {
   scree_deviation d;
   const scree_way way = {.sample_count = 1,
                          .gap = gap,
                          .known = f->maximum,
-                         .cut_budget = CUT_SHARE * g->spread.count};
-  if (!g->refined || sqrt(g->surface->largest_facet) < SMALL_FACET * g->length) return SCREE_OK;
-  scree_status status = scree_surface_deviation(g->surface, f->level, &way, NULL, &d, error);
+                         .cut_budget = f->gauge->spread.count / BACK_STEP};
+  scree_status status = scree_surface_deviation(from, to, &way, NULL, &d, error);
   if (status == SCREE_OK) keep_farthest(f, d.maximum, vec3_load(d.at));
   return status;
 }
@@ -305,22 +319,17 @@ static scree_status search_facets(forward *f, double gap, scree_error *error) {
 static scree_status read_distances(forward *f, double gap, scree_gauge_reading *r,
                                    scree_error *error) {
   const scree_gauge *g = f->gauge;
-  scree_deviation back;
+  double back;
   go_forward(f, gap);
-  scree_status status = search_facets(f, gap, error);
+  scree_status status = go_back(f, &back, error);
+  if (status == SCREE_OK) status = search_facets(f, f->level, g->surface, gap, error);
+  if (status == SCREE_OK && g->refined &&
+      sqrt(g->surface->largest_facet) >= SMALL_FACET * g->length)
+    status = search_facets(f, g->surface, f->level, gap, error);
   if (status != SCREE_OK) return status;
-  const scree_way way = {.sample_count = g->spread.count / 2,
-                         .gap = gap,
-                         .known = f->maximum,
-                         .cut_budget = CUT_SHARE * g->spread.count};
-  status = scree_surface_deviation(f->level, g->surface, &way, NULL, &back, error);
-  if (status == SCREE_OK && f->level->mesh.triangle_count > g->spread.count / PARTS)
-    status = spread_mean(f, &back.mean, error);
-  if (status != SCREE_OK) return status;
-  r->errors[SCREE_ERROR_MEAN] = fmax(f->mean, back.mean) / g->length;
-  r->errors[SCREE_ERROR_HAUSDORFF] = fmax(f->maximum, back.maximum) / g->length;
+  r->errors[SCREE_ERROR_MEAN] = fmax(f->mean, back) / g->length;
+  r->errors[SCREE_ERROR_HAUSDORFF] = f->maximum / g->length;
   vec3_store(r->farthest, f->at);
-  if (back.maximum > f->maximum) memcpy(r->farthest, back.at, sizeof r->farthest);
   return SCREE_OK;
 }
 

@@ -1,29 +1,23 @@
-/* Errors of single levels hop: a bump of the scan is lost at one count and found again at the next.
- * So the load, the largest error over its tolerance, is not taken level by level. A straight line
- * is fitted to ln load against ln N round each level, and the trend is what these lines have in
- * their middle. Where it crosses 1, from the finest level down, lies the count sought.
+/* The load of a level is its largest error over its tolerance. From the finest level measured down,
+ * the first whose load is too much and the one before enclose the level sought. They are narrowed
+ * by halves until a level that keeps all tolerances is next to one that does not. That is the
+ * coarsest level which keeps them as all finer ones measured do.
  *
- * The level recommended is the one nearest to that count that keeps all tolerances, and does not
- * keep them by far. Levels round the crossing are tried, a small step at a time on both sides,
- * finer ones alone where those within reach do not do. What is tried is measured with many more
- * points than the sweep's, so that the answer holds for a measurement by others. */
+ * What is found is measured once more with many more points than the sweep's, so that the answer
+ * holds for a measurement by others. Where it does not keep all by that, the search goes on at the
+ * finer side with as many points. */
 #include "choice/recommend.h"
 
 #include "base/alloc.h"
 
 #include <math.h>
 
-enum { DENSE_POINTS = 40000, MOST_TRIES = 60 };
+enum { DENSE_POINTS = 40000 };
 static const double DENSE_GAP = 0.004;
+/* The most load of a level that will do: leaves room for what the measurement misses. */
+static const double MOST_LOAD = 0.98;
 /* Half the width of the window of a line, in ln N: a factor of 1.8 either way. */
 static const double WINDOW = 0.6;
-/* Levels whose load is in this range by the dense measurement will do: the upper end leaves room
- * for what that misses, the lower for no waste. */
-static const double MOST_LOAD = 0.98, LEAST_LOAD = 0.88;
-/* The sweep's points are fewer: levels beyond these are not measured densely. */
-static const double MOST_QUICK_LOAD = 1.01, LEAST_QUICK_LOAD = 0.85;
-/* A step between levels tried, and how far from the crossing both sides are tried; in ln N. */
-static const double STEP = 0.015, NEAR = 0.16;
 /* Errors below are none: their logarithm would rule the line. */
 static const double LEAST_ERROR = 1e-9;
 
@@ -40,7 +34,8 @@ double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
 
 /* ---- The trend ---- */
 
-/* ln of the trend at level i. */
+/* ln of the trend at level i: what the straight line through ln load against ln N round it has in
+ * its middle. Errors of single levels hop. */
 static double trend_at(const scree_kept *levels, size_t count, size_t i) {
   double middle = log((double)levels[i].triangle_count), n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
   for (size_t k = 0; k < count; k++) {
@@ -52,22 +47,6 @@ static double trend_at(const scree_kept *levels, size_t count, size_t i) {
   double spread = sxx - sx * sx / n;
   double slope = spread > 1e-9 ? (sxy - sx * sy / n) / spread : 0;
   return (sy - slope * sx) / n;
-}
-
-double scree_trend_crossing(const scree_kept *levels, size_t count) {
-  double finer = trend_at(levels, count, 0);
-  if (finer > 0) return (double)levels[0].triangle_count;
-  for (size_t i = 1; i < count; i++) {
-    double here = trend_at(levels, count, i);
-    if (here > 0) {
-      double part = (0 - finer) / (here - finer);
-      double a = log((double)levels[i - 1].triangle_count),
-             b = log((double)levels[i].triangle_count);
-      return exp(a + part * (b - a));
-    }
-    finer = here;
-  }
-  return (double)levels[count - 1].triangle_count;
 }
 
 scree_least scree_trend_least(const scree_kept *levels, size_t count, double scale) {
@@ -92,101 +71,96 @@ scree_least scree_trend_least(const scree_kept *levels, size_t count, double sca
 
 /* ---- The level ---- */
 
-/* Levels are tried by their count; each at most once. */
 typedef struct search {
   const scree_curve *curve;
-  const scree_gauge *quick;
-  scree_gauge dense;
   const double *tolerances;
+  scree_gauge_reading reading; /* of the last level that was found to keep all */
   scree_error *error;
 } search;
 
-/* What a level tried came to: its load, which is by the quick measurement where that is enough. */
-typedef struct attempt {
-  size_t level_index;
-  double load;
-  bool is_dense;
-  scree_gauge_reading reading;
-} attempt;
+/* Level `fine` keeps all, or is taken to; `coarse` does not, or is none of the curve's. */
+typedef struct bracket {
+  size_t fine, coarse;
+} bracket;
 
-static scree_status try_level(search *s, size_t level_index, bool always_dense, attempt *a) {
+static scree_status keeps_all(search *s, const scree_gauge *gauge, double gap, size_t level_index,
+                              bool *keeps) {
   scree_mesh mesh = {0};
-  a->level_index = level_index;
+  scree_gauge_reading reading;
   scree_status status = scree_curve_mesh(s->curve, level_index, &mesh, s->error);
-  if (status == SCREE_OK)
-    status = scree_gauge_read(s->quick, &mesh, SCREE_GAUGE_GAP, &a->reading, s->error);
-  a->is_dense = false;
-  if (status == SCREE_OK) {
-    a->load = scree_load(a->reading.errors, s->tolerances, NULL);
-    a->is_dense = always_dense ? a->load <= MOST_QUICK_LOAD
-                               : a->load <= MOST_QUICK_LOAD && a->load >= LEAST_QUICK_LOAD;
-  }
-  if (status == SCREE_OK && a->is_dense) {
-    status = scree_gauge_read(&s->dense, &mesh, DENSE_GAP, &a->reading, s->error);
-    a->load = scree_load(a->reading.errors, s->tolerances, NULL);
-  }
+  if (status == SCREE_OK) status = scree_gauge_read(gauge, &mesh, gap, &reading, s->error);
   scree_mesh_free(&mesh);
-  return status;
+  if (status != SCREE_OK) return status;
+  *keeps = scree_load(reading.errors, s->tolerances, NULL) <= MOST_LOAD;
+  if (*keeps || level_index == 0) s->reading = reading;
+  return SCREE_OK;
 }
 
-/* The levels of a curve within NEAR of the crossing, the nearest first, until one will do. */
-static scree_status try_near(search *s, double crossing, attempt *best, bool *found) {
-  attempt a;
-  size_t tried[2] = {SIZE_MAX, SIZE_MAX};
-  for (int i = 0; i * STEP / 2 <= NEAR; i++) {
-    double away = (i % 2 ? 1 : -1) * ((i + 1) / 2) * STEP;
-    size_t index = scree_curve_find(s->curve, (size_t)(crossing * exp(away)));
-    if (index == tried[0] || index == tried[1]) continue;
-    tried[i % 2] = index;
-    scree_status status = try_level(s, index, false, &a);
+static scree_status narrow(search *s, const scree_gauge *gauge, double gap, bracket *b) {
+  while (b->coarse - b->fine > 1) {
+    size_t middle = b->fine + (b->coarse - b->fine) / 2;
+    bool keeps;
+    scree_status status = keeps_all(s, gauge, gap, middle, &keeps);
     if (status != SCREE_OK) return status;
-    if (!a.is_dense || a.load > MOST_LOAD || a.load < LEAST_LOAD) continue;
-    *best = a;
-    *found = true;
-    return SCREE_OK;
+    if (keeps)
+      b->fine = middle;
+    else
+      b->coarse = middle;
   }
   return SCREE_OK;
 }
 
-/* From the crossing to finer levels, until one keeps all: the scan itself does. */
-static scree_status try_finer(search *s, double crossing, attempt *best) {
-  double count = crossing;
-  for (int i = 0;; i++) {
-    size_t index = scree_curve_find(s->curve, (size_t)count);
-    scree_status status = try_level(s, index, true, best);
-    if (status != SCREE_OK || index == 0 || (best->is_dense && best->load <= MOST_LOAD))
-      return status;
-    /* what is far from kept is farther on */
-    count *= i < MOST_TRIES ? exp(STEP * fmax(1, fmin(4, log(best->load) / STEP / 2))) : 2;
-    if ((size_t)count <= scree_curve_get_facts(s->curve).floor_count) count += 2;
+/* Between the finest level measured that does not keep all and the one before it. */
+static bracket first_bracket(const search *s, const scree_fidelity *f) {
+  bracket b = {0, 1};
+  for (size_t row = 0; row < scree_fidelity_count(f); row++) {
+    double errors[SCREE_SHAPE_ERROR_COUNT];
+    for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+      errors[e] = scree_fidelity_error(f, row, (scree_shape_error)e);
+    b.coarse = scree_fidelity_level_index(f, row);
+    if (scree_load(errors, s->tolerances, NULL) > MOST_LOAD) return b;
+    b.fine = b.coarse;
+    b.coarse++;
   }
+  return b;
+}
+
+/* From a level that keeps not all to the next finer one measured, or the scan. */
+static bracket finer_bracket(const scree_fidelity *f, size_t level_index) {
+  bracket b = {0, level_index};
+  for (size_t row = 0; row < scree_fidelity_count(f); row++)
+    if (scree_fidelity_level_index(f, row) < level_index)
+      b.fine = scree_fidelity_level_index(f, row);
+  return b;
+}
+
+static scree_status find_level(search *s, const scree_gauge *quick, const scree_gauge *dense,
+                               const scree_fidelity *f, size_t *level_index) {
+  bracket b = first_bracket(s, f);
+  scree_status status = narrow(s, quick, SCREE_GAUGE_GAP, &b);
+  for (bool keeps = false; status == SCREE_OK;) {
+    *level_index = b.fine;
+    status = keeps_all(s, dense, DENSE_GAP, b.fine, &keeps);
+    if (status != SCREE_OK || keeps || b.fine == 0) break;
+    b = finer_bracket(f, b.fine);
+    status = narrow(s, dense, DENSE_GAP, &b);
+  }
+  return status;
 }
 
 scree_status scree_recommend(const scree_curve *curve, const scree_gauge *gauge,
                              const scree_fidelity *fidelity,
                              const double tolerances[SCREE_SHAPE_ERROR_COUNT],
                              scree_recommended *found, scree_error *error) {
-  size_t count = scree_fidelity_count(fidelity);
-  scree_kept *levels = scree_alloc(count, sizeof *levels);
-  if (!levels) return scree_fail_memory(error, count * sizeof *levels, "loads of levels");
-  for (size_t i = 0; i < count; i++) {
-    double errors[SCREE_SHAPE_ERROR_COUNT];
-    for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
-      errors[e] = scree_fidelity_error(fidelity, i, (scree_shape_error)e);
-    levels[i] = (scree_kept){scree_fidelity_triangle_count(fidelity, i),
-                             scree_load(errors, tolerances, NULL)};
-  }
-  double crossing = scree_trend_crossing(levels, count);
-  scree_free(levels);
-  search s = {.curve = curve, .quick = gauge, .tolerances = tolerances, .error = error};
-  attempt best;
-  bool near = false;
-  scree_status status = scree_gauge_refine(gauge, DENSE_POINTS, &s.dense, error);
+  search s = {.curve = curve, .tolerances = tolerances, .error = error};
+  scree_gauge dense;
+  scree_recommended made;
+  scree_status status = scree_gauge_refine(gauge, DENSE_POINTS, &dense, error);
   if (status != SCREE_OK) return status;
-  status = try_near(&s, crossing, &best, &near);
-  if (status == SCREE_OK && !near) status = try_finer(&s, crossing, &best);
-  scree_gauge_free(&s.dense);
+  status = find_level(&s, gauge, &dense, fidelity, &made.level_index);
+  scree_gauge_free(&dense);
   if (status != SCREE_OK) return status;
-  *found = (scree_recommended){best.level_index, best.reading};
+  made.reading = s.reading;
+  *found = made;
   return SCREE_OK;
 }

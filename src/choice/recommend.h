@@ -16,11 +16,6 @@ typedef struct scree_kept {
 double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
                   const double tolerances[SCREE_SHAPE_ERROR_COUNT], scree_shape_error *which);
 
-/* The count, not whole, at which the trend of the load crosses 1, from the finest level down;
- * levels of falling count. The finest count where not even that keeps its tolerances, the last
- * where all do. */
-double scree_trend_crossing(const scree_kept *levels, size_t count);
-
 /* The least of the trend of load + count / scale, and from which to which count it is at most
  * SCREE_SIMILAR_IP times that. */
 typedef struct scree_least {

@@ -34,7 +34,7 @@ static const cli_option options[] = {
      0, 0, "recommended|robust|paper"},
     {"tolerance", CLI_TEXT, AT(tolerance), "LIST",
      "What the recommended level keeps, instead of the defaults, as shares or, of distances, "
-     "lengths: mean=0.3%,hausdorff=3%,inertia=2%,thickness=3% are the defaults; also area, volume, "
+     "lengths: mean=0.3%,hausdorff=4%,inertia=2%,thickness=3% are the defaults; also area, volume, "
      "size, thinnest, convexity, normals; none: does not count.",
      0, 0, NULL},
     {"method", CLI_CHOICE, AT(method), "NAME",
@@ -330,7 +330,7 @@ const cli_verb cli_verb_choose = {
     .description =
         "Decimates each scan once, through every triangle count, and recommends the coarsest level "
         "that keeps a tolerance on each of several errors against the scan: mean distance 0.3 %, "
-        "Hausdorff distance 3 % (of the body's size, the diameter of the sphere of its area), "
+        "Hausdorff distance 4 % (of the body's size, the diameter of the sphere of its area), "
         "inertia 2 %, and 3 % for the mean of distance over local wall thickness.\n\n"
         "Beside it stand the paper's criterion (Katagiri and Koyanaka 2020), Ip = eps_s + W Nr/Nm "
         "with eps_s = |S - Sm|/Sm and Rp = Nr/Nm: the least on a logarithmic grid of Rp; and the "

@@ -66,17 +66,14 @@ static void rays_meet_what_is_in_their_way(void **state) {
   scree_mesh_free(&box);
 }
 
-/* A power law with single levels that hop: the trend crosses where the law does. */
-static void trends_do_not_hop(void **state) {
+/* The least of a/N + N/b lies at sqrt(a b). */
+static void the_least_of_the_trend_is_where_it_must_be(void **state) {
   (void)state;
   scree_kept levels[30];
   for (int i = 0; i < 30; i++) {
     levels[i].triangle_count = (size_t)(2500 * pow(10, -i / 9.0));
-    levels[i].load = 200 / (double)levels[i].triangle_count * (i % 2 ? 1.2 : 1 / 1.2);
+    levels[i].load = 0.5 / (double)levels[i].triangle_count;
   }
-  CHECK_NEAR(scree_trend_crossing(levels, 22) / 200, 1, 0.1);
-  /* the least of a/N + N/b lies at sqrt(a b) */
-  for (int i = 0; i < 30; i++) levels[i].load = 0.5 / (double)levels[i].triangle_count;
   scree_least least = scree_trend_least(levels, 22, 1e5);
   CHECK_NEAR(least.triangle_count / sqrt(0.5e5), 1, 0.05);
   CHECK_NEAR(least.sum, 2 * sqrt(0.5 / 1e5), 1e-4);
@@ -203,7 +200,20 @@ static void noise_is_told_from_shape(void **state) {
   scree_mesh_free(&ball);
 }
 
-/* By a measurement of other samples, and without much to spare. */
+/* The largest error over its tolerance of a level, by a sweep over it alone. */
+static double load_of(const body *b, size_t level_index) {
+  const scree_choice_options o = scree_default_choice_options();
+  double errors[SCREE_SHAPE_ERROR_COUNT];
+  scree_fidelity *f;
+  scree_error error;
+  CHECK_OK(scree_fidelity_measure(b->curve, &b->scan, &level_index, 1, NULL, &f, &error), error);
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
+    errors[e] = scree_fidelity_error(f, 0, (scree_shape_error)e);
+  scree_fidelity_free(f);
+  return scree_load(errors, o.tolerances, NULL);
+}
+
+/* By a measurement of other samples, and without much to spare; the next level does not. */
 static void the_recommended_level_keeps_every_tolerance(void **state) {
   (void)state;
   static const char *const samples[] = {"fp-2", "sp-1"};
@@ -220,6 +230,7 @@ static void the_recommended_level_keeps_every_tolerance(void **state) {
                             thickness / o.tolerances[SCREE_ERROR_THICKNESS]));
     assert_true(most <= 1);
     assert_true(most > 0.7); /* levels of so few triangles lie far apart */
+    assert_true(load_of(&b, b.choice.recommended.level_index + 1) > 0.96);
     free_body(&b);
   }
 }
@@ -228,7 +239,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(points_are_spread_evenly),
       cmocka_unit_test(rays_meet_what_is_in_their_way),
-      cmocka_unit_test(trends_do_not_hop),
+      cmocka_unit_test(the_least_of_the_trend_is_where_it_must_be),
       cmocka_unit_test(errors_are_those_of_dense_samples),
       cmocka_unit_test(a_smaller_ball_is_off_by_the_difference),
       cmocka_unit_test(noise_is_told_from_shape),
