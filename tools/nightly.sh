@@ -28,7 +28,8 @@ windows() {
 # takes 800 MB, and it builds all of the program once more.
 browser() {
   make page npm && cc -O2 -std=gnu17 bench/decimation/shape.c -o "$shapes/shape" -lm && "$shapes/shape" phone 762008 "$shapes/phone.stl" &&
-    SCREE_SCAN="$shapes/phone.stl" ctest --preset release --output-on-failure -R '^page\.'
+    SCREE_SCAN="$shapes/phone.stl" ctest --preset release --output-on-failure -R '^page\.' &&
+    tests/page/picture.py build/page/scree.html build/page/browser.png
 }
 
 # Samples at 20, 60 and 200 triangles, to pour.

@@ -1,7 +1,9 @@
 /* scree run: a scene of the user's own. */
 #include "base/file.h"
+#include "base/number.h"
 #include "base/platform.h"
 #include "cli/frames.h"
+#include "cli/options.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
 #include "report/provenance.h"
@@ -143,6 +145,23 @@ static scree_status write_collections(const scene_run *r, scree_error *error) {
   return status;
 }
 
+/* Names values of the scene that no material has, as those of options are. */
+static void remark_values(const char *text) {
+  char key[64];
+  double value;
+  for (const char *line = text; line; line = strchr(line, '\n')) {
+    line += *line == '\n';
+    size_t indent = strspn(line, " "), length = strcspn(line + indent, ":\n");
+    const char *behind = line + indent + length, *end = behind + strcspn(behind, "\n");
+    if (length >= sizeof key || end - behind < 3) continue;
+    if (!scree_number_parse(behind + 2, end, &value)) continue;
+    snprintf(key, sizeof key, "%.*s", (int)length, line + indent);
+    const cli_meaning *m = cli_find_meaning(key);
+    if (m && m->expected && (value < m->least || value > m->most))
+      fprintf(stderr, "scree: %s %g: %s\n", key, value, m->expected);
+  }
+}
+
 static scree_status on_begin(void *context, scree_scene *scene, bool resumed, scree_error *error) {
   scene_run *r = context;
   char reason[256], path[PATH_BYTES];
@@ -157,6 +176,7 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   }
   if (status != SCREE_OK || r->call->quiet || r->arguments->json) return status;
   cli_terminal_end();
+  if (!resumed) remark_values(scree_scene_text(scene));
   if (scree_scene_title(scene)) printf("%s\n", scree_scene_title(scene));
   for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
     const char *source = scree_scene_shape_source(scene, i);

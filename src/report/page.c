@@ -305,7 +305,10 @@ static scree_status find_results(page *p, const char *folder, name_list *found) 
   name_list names;
   size_t before = found->count;
   if (!scree_path_look(folder, &info) || info.kind != SCREE_PATH_FOLDER)
-    return scree_fail(p->error, SCREE_IO, "%s: is no folder", folder);
+    return scree_fail(p->error, SCREE_IO,
+                      "%s: is no folder: a report is of what `-o DIR` of choose, clump, drop, "
+                      "repose, run or study wrote",
+                      folder);
   if (has_results(folder)) return add_name(p, found, folder);
   scree_status status = list_names(folder, &names, p->error);
   for (size_t i = 0; i < names.count && status == SCREE_OK; i++) {

@@ -13,6 +13,7 @@ run run nowhere.yaml
 run run hopper.yaml --resume 2>&1 | head -2
 sed 's/friction: 0.3/fricton: 0.3/' hopper.yaml >wrong.yaml
 run run wrong.yaml
+"$SCREE" run hopper.yaml --set materials.grain.friction=50 --set materials.grain.density=2.65 --set time=1e-5 2>&1 | head -n 2
 run run small.yaml -o out --no-picture -q | numbers
 ls out
 run run small.yaml -o out --no-picture

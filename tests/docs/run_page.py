@@ -8,7 +8,8 @@ Fenced blocks are taken in their order:
   ```python           is run by python3, which finds the module scree; takes needs= and long too
   ```yaml file=NAME   becomes the file NAME (any language)
 Each picture that a tutorial shows must be among the files that the commands made; UPDATE=1 copies it into the page's
-place. Exit code 77 where there is nothing to run."""
+place. What the page quotes in backticks as the program's answer, `Use N triangles ...`, must be what the program said.
+Exit code 77 where there is nothing to run."""
 import os
 import re
 import shutil
@@ -53,7 +54,7 @@ def main(program, library, page, long=False):
     environment = os.environ | {"OMP_NUM_THREADS": "1", "NO_COLOR": "1",
                                 "PATH": os.path.dirname(os.path.abspath(program)) + ":" + os.environ["PATH"],
                                 "PYTHONPATH": f"{ROOT}/python", "SCREE_LIBRARY": os.path.abspath(library)}
-    count, skipped = 0, False
+    count, skipped, heard = 0, False, ""
     with tempfile.TemporaryDirectory() as folder:
         for language, flags, body in blocks(text):
             if "file" in flags:
@@ -65,10 +66,13 @@ def main(program, library, page, long=False):
                     continue
                 start = time.monotonic()
                 said = run(language, body, folder, environment)
-                count += 1
+                count, heard = count + 1, heard + said
                 if os.environ.get("VERBOSE"):
                     print(f"--- {time.monotonic() - start:.1f} s\n{body}{said}")
-        if "/tutorials/" in os.path.abspath(page) and (not skipped or long):
+        for quote in re.findall(r"`(Use \d[^`]*)`", text):
+            if quote not in heard:
+                sys.exit(f"{page} quotes what the program does not say: {quote}")
+        if count and "/tutorials/" in os.path.abspath(page) and (not skipped or long):
             pictures(text, page, folder)
     if not count:
         print("nothing to run")

@@ -1,0 +1,22 @@
+#!/usr/bin/python3
+"""The picture of the browser tutorial: the page with its sample, after the choice, in a headless Chromium.
+usage: picture.py PAGE PICTURE.png       PAGE: build/page/scree.html, as `make page` builds it"""
+import os
+import sys
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "report"))
+from browser import Browser, missing  # noqa: E402
+
+page, picture = sys.argv[1:]
+if missing() or not os.path.exists(page):
+    print(f"no {missing() or page}")
+    sys.exit(77)
+with Browser() as browser:
+    browser.look(1000, 860)
+    browser.open(page)
+    browser.wait("document.body?.dataset.ready")
+    browser.run("document.querySelector('#sample').click()")
+    browser.wait("document.body.dataset.chosen > 0 || document.querySelector('.error')", 300)
+    browser.wait("document.querySelector('#panel-0').dataset.busy === 'false'", 300)
+    browser.run("window.scrollTo(0, 0)")
+    browser.screenshot(picture, whole=False)
