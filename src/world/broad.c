@@ -19,23 +19,12 @@ enum { STAGE_BLOCK = 128 };
 void scree_broad_free(scree_world *world) {
   scree_broad *broad = world->broad;
   if (!broad) return;
-  void *arrays[] = {broad->boxes,
-                    broad->cells,
-                    broad->wall_reach,
-                    broad->buckets.count,
-                    broad->buckets.begin,
-                    broad->binned,
-                    broad->found,
-                    broad->found_count,
-                    broad->listed.count,
-                    broad->listed.begin,
-                    broad->old_keys,
-                    broad->old_begin,
-                    broad->match.items,
-                    broad->sides.count,
-                    broad->walls.count,
-                    broad->walls.begin,
-                    broad};
+  void *arrays[] = {
+      broad->boxes,         broad->cells,        broad->wall_reach,  broad->buckets.count,
+      broad->buckets.begin, broad->binned,       broad->found,       broad->found_count,
+      broad->listed.count,  broad->listed.begin, broad->old_keys,    broad->old_begin,
+      broad->match.items,   broad->left.count,   broad->left.begin,  broad->left_items.items,
+      broad->sides.count,   broad->walls.count,  broad->walls.begin, broad};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) scree_free(arrays[i]);
 }
 
@@ -56,6 +45,8 @@ static scree_status reserve_bodies(scree_broad *broad, size_t capacity, scree_er
                 {(void **)&broad->buckets.begin, buckets + 1, sizeof *broad->buckets.begin, false},
                 {(void **)&broad->listed.begin, capacity + 1, sizeof *broad->listed.begin, false},
                 {(void **)&broad->walls.begin, capacity + 1, sizeof *broad->walls.begin, false},
+                {(void **)&broad->left.begin, capacity + 1, sizeof *broad->left.begin, false},
+                {(void **)&broad->left.count, capacity, sizeof *broad->left.count, false},
                 {(void **)&broad->buckets.count, buckets, sizeof *broad->buckets.count, true},
                 {(void **)&broad->listed.count, capacity, sizeof *broad->listed.count, true},
                 {(void **)&broad->sides.count, capacity, sizeof *broad->sides.count, true},
@@ -92,12 +83,13 @@ static scree_status reserve(scree_world *world, scree_error *error) {
 /* For the lists of `count` neighbours. */
 static bool reserve_lists(scree_world *world, uint64_t count) {
   size_t k = (size_t)count;
-  return count < INT32_MAX && SCREE_RESERVE(&world->keys, k) &&
+  return count < SCREE_MOST_NEIGHBOURS && SCREE_RESERVE(&world->keys, k) &&
          SCREE_RESERVE(&world->broad->match, k) && SCREE_RESERVE(&world->neighbours, k) &&
          SCREE_RESERVE(&world->pair_of, k) && SCREE_RESERVE(&world->ledger, k) &&
          SCREE_RESERVE(&world->sides, 2 * k) && SCREE_RESERVE(&world->acting, 2 * k) &&
          SCREE_RESERVE(&world->due, world->bodies.count + world->walls.count) &&
          SCREE_RESERVE(&world->slots, k) && SCREE_RESERVE(&world->touching, k / 64 + 1) &&
+         SCREE_RESERVE(&world->broad->left_items, world->wall_pairs.count) &&
          SCREE_RESERVE(&world->wall_pairs, k);
 }
 
@@ -127,8 +119,7 @@ static void place_groups(scree_groups *scan) {
   scree_groups_place(scan, 0);
 }
 
-static void begin_grids(scree_world *world) {
-  scree_broad *broad = world->broad;
+double scree_broad_margin(const scree_world *world) {
   const scree_bodies *bodies = &world->bodies;
   double size = 0;
   size_t present = 0;
@@ -137,10 +128,7 @@ static void begin_grids(scree_world *world) {
       size += bodies->particle[i]->measures.size;
       present++;
     }
-  world->margin = present ? margin_share * size / (double)present : 0;
-  broad->widest = 0;
-  broad->used = 0;
-  for (size_t w = 0; w < world->walls.count; w++) broad->wall_reach[w] = 0;
+  return present ? margin_share * size / (double)present : 0;
 }
 
 /* What is listed becomes the old list. */
@@ -160,7 +148,10 @@ static void keep_keys(scree_world *world) {
 /* Who is near whom, counted by first body. */
 static void find_all(scree_world *world) {
   size_t bodies = world->bodies.count;
-  begin_grids(world);
+  world->margin = scree_broad_margin(world);
+  world->broad->widest = 0;
+  world->broad->used = 0;
+  for (size_t w = 0; w < world->walls.count; w++) world->broad->wall_reach[w] = 0;
   run(world, scree_grids_box, bodies);
   run(world, scree_grids_begin, 1);
   run(world, scree_grids_cell, bodies);
@@ -170,32 +161,38 @@ static void find_all(scree_world *world) {
   place_groups(&world->broad->listed);
 }
 
-static void move_neighbours(scree_world *world, size_t k) {
-  uint32_t from = world->broad->match.items[k];
-  world->neighbours.items[k] = world->neighbours.items[from];
-  world->pair_of.items[k] = world->pair_of.items[from];
-  world->ledger.items[k] = world->ledger.items[from];
-}
-
 /* Those that stay, in place: first those that move down, then from the end those that move up. As
  * none overtakes another, nothing is written over that is still to move. */
 static void carry_neighbours(scree_world *world) {
   const uint32_t *from = world->broad->match.items;
   size_t count = world->keys.count;
   for (size_t k = 0; k < count; k++)
-    if (from[k] != scree_none && from[k] > k) move_neighbours(world, k);
+    if (from[k] != scree_none && from[k] > k) scree_lists_carry(world, k);
   for (size_t k = count; k-- > 0;)
-    if (from[k] != scree_none && from[k] < k) move_neighbours(world, k);
+    if (from[k] != scree_none && from[k] < k) scree_lists_carry(world, k);
+}
+
+/* Those that do not stay. */
+static void drop_neighbours(scree_world *world) {
+  scree_broad *broad = world->broad;
+  broad->left.length = broad->old_bodies;
+  run(world, scree_lists_drop, broad->old_bodies);
+  place_groups(&broad->left);
+  run(world, scree_lists_leave, broad->old_bodies);
+  run(world, scree_lists_leave_wall, world->walls.count);
 }
 
 /* The neighbours by the new keys. */
 static void list_neighbours(scree_world *world) {
+  scree_broad *broad = world->broad;
   size_t bodies = world->bodies.count, count = world->keys.count;
+  broad->old_neighbours = world->neighbours.items;
+  broad->old_pair_of = world->pair_of.items;
+  broad->old_ledger = world->ledger.items;
   run(world, scree_grids_write, bodies);
   run(world, scree_lists_sort, bodies);
   run(world, scree_lists_match, count);
-  run(world, scree_lists_drop, world->broad->old_bodies);
-  run(world, scree_lists_drop_wall, world->walls.count);
+  drop_neighbours(world);
   carry_neighbours(world);
   world->neighbours.count = world->pair_of.count = count;
   run(world, scree_lists_renew, count);
@@ -243,6 +240,10 @@ scree_status scree_broad_update(scree_world *world, scree_error *error) {
   world->pairs_stale = false;
   world->timings.broad_builds++;
   return SCREE_OK;
+}
+
+bool scree_broad_reserve(scree_world *world) {
+  return reserve_lists(world, world->neighbours.count);
 }
 
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error) {

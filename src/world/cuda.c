@@ -10,7 +10,7 @@
 #include "world/backend.h"
 #include "world/broad.h"
 #include "world/contact.h"
-#include "world/cuda_driver.h"
+#include "world/cuda_broad.h"
 #include "world/pairs.h"
 #include "world/stages.h"
 #include "world/walls.h"
@@ -23,11 +23,6 @@
 #include <string.h>
 
 #ifdef SCREE_WITH_CUDA
-
-typedef struct block {
-  scree_device_address at;
-  size_t capacity; /* bytes */
-} block;
 
 /* An array of the world and its mirror. */
 typedef struct span {
@@ -56,7 +51,8 @@ enum {
 
 struct scree_device_world {
   scree_cuda_queue queue;
-  block arrays[MOST_SPANS], own[BLOCK_COUNT];
+  scree_cuda_block arrays[MOST_SPANS], own[BLOCK_COUNT];
+  scree_cuda_broad *broad;
   uint64_t touch_capacity, touches_used;
   scree_device_step header;
   scree_world *image;          /* the device's struct */
@@ -65,6 +61,7 @@ struct scree_device_world {
   scree_device_address *addresses; /* of the bodies' shapes, then of the walls' */
   size_t address_count;
   bool current; /* the device has the state */
+  bool listed;  /* the neighbours were made there */
 };
 
 #define FIELD(member) offsetof(scree_world, member)
@@ -90,9 +87,11 @@ static size_t list_spans(const scree_world *w, span spans[MOST_SPANS]) {
       OF(bodies.path, n, true),
       OF(bodies.turn, n, true),
       OF(bodies.removed, n, true),
+      OF(bodies.material, n, false),
       OF(neighbours.items, k, true),
       OF(pair_of.items, k, true),
       OF(ledger.items, k, true),
+      OF(keys.items, k, false),
       OF(pairs.items, p, true),
       OF(spare_pairs.items, p, true),
       POOL(pools.items, pools->item_capacity, items),
@@ -104,11 +103,11 @@ static size_t list_spans(const scree_world *w, span spans[MOST_SPANS]) {
       OF(sides.items, w->sides.count, false),
       OF(wall_pairs.items, w->wall_pairs.count, false),
       OF(bodies.applied, w->bodies.applied ? n : 0, true),
-      OF(bodies.booked, n, false),
+      OF(bodies.booked, n, true),
       OF(side_begin, n + 1, false),
       {FIELD(acting.items), w->sides.count * sizeof(uint32_t), 0, false},
       {FIELD(awake.items), k * sizeof(uint32_t), 0, false},
-      OF(body_path_at_build, n, false),
+      OF(body_path_at_build, n, true),
       OF(motions.items, w->motions.count, false),
       OF(motion_rows.items, w->motion_rows.count, false),
   };
@@ -251,29 +250,46 @@ static scree_status send_walls(const scree_world *w, struct scree_device_world *
 
 /* ---- the whole state, there and back ---- */
 
-static scree_status send_image(scree_world *w, struct scree_device_world *d, scree_error *error) {
+/* The memory of one of those arrays. */
+static scree_cuda_block *array_at(scree_world *w, size_t field) {
   span spans[MOST_SPANS];
-  size_t count = list_spans(w, spans);
-  memcpy(d->image, w, sizeof *w);
-  void **const hosts_own[] = {(void **)&d->image->broad,      (void **)&d->image->scratch,
-                              (void **)&d->image->keys.items, (void **)&d->image->progress.items,
-                              (void **)&d->image->offenders,  (void **)&d->image->bodies.material,
-                              (void **)&d->image->on_device,  (void **)&d->image->kept.path,
-                              (void **)&d->image->kept.bytes};
-  for (size_t i = 0; i < sizeof hosts_own / sizeof *hosts_own; i++) *hosts_own[i] = NULL;
-  for (size_t i = 0; i < count; i++)
-    if (pointer_at(w, spans[i].field)) lead_to((char *)d->image + spans[i].field, d->arrays[i].at);
-  lead_to(&d->image->bodies.particle, d->own[BLOCK_PARTICLES].at);
-  lead_to(&d->image->walls.items, d->own[BLOCK_WALLS].at);
-  lead_to(&d->image->pools.touches, d->own[BLOCK_TOUCHES].at);
-  d->image->pools.touch_capacity = d->touch_capacity;
-  d->image->pools.touches_used = d->touches_used;
+  size_t count = list_spans(w, spans), i = 0;
+  while (i < count && spans[i].field != field) i++;
+  return &w->on_device->arrays[i];
+}
+
+static scree_cuda_place place_of(const struct scree_device_world *d) {
+  return (scree_cuda_place){&d->queue, d->own[BLOCK_WORLD].at, d->own[BLOCK_STEP].at, d->image,
+                            array_at};
+}
+
+static void lead_header(struct scree_device_world *d) {
   lead_to(&d->header.hands, d->own[BLOCK_HANDS].at);
   lead_to(&d->header.progress, d->own[BLOCK_PROGRESS].at);
   lead_to(&d->header.touch_counts, d->own[BLOCK_TOUCH_COUNTS].at);
   lead_to(&d->header.due, d->own[BLOCK_DUE].at);
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
     lead_to(&d->header.visits[kind], d->own[BLOCK_VISITS + kind].at);
+}
+
+static scree_status send_image(scree_world *w, struct scree_device_world *d,
+                               scree_device_address broad, scree_error *error) {
+  span spans[MOST_SPANS];
+  size_t count = list_spans(w, spans);
+  memcpy(d->image, w, sizeof *w);
+  void **const hosts_own[] = {(void **)&d->image->scratch,   (void **)&d->image->progress.items,
+                              (void **)&d->image->offenders, (void **)&d->image->on_device,
+                              (void **)&d->image->kept.path, (void **)&d->image->kept.bytes};
+  for (size_t i = 0; i < sizeof hosts_own / sizeof *hosts_own; i++) *hosts_own[i] = NULL;
+  for (size_t i = 0; i < count; i++)
+    lead_to((char *)d->image + spans[i].field, spans[i].capacity ? d->arrays[i].at : 0);
+  lead_to(&d->image->broad, broad);
+  lead_to(&d->image->bodies.particle, d->own[BLOCK_PARTICLES].at);
+  lead_to(&d->image->walls.items, d->own[BLOCK_WALLS].at);
+  lead_to(&d->image->pools.touches, d->own[BLOCK_TOUCHES].at);
+  d->image->pools.touch_capacity = d->touch_capacity;
+  d->image->pools.touches_used = d->touches_used;
+  lead_header(d);
   return scree_cuda_write(&d->queue, d->own[BLOCK_WORLD].at, d->image, sizeof *w, error);
 }
 
@@ -309,7 +325,10 @@ static scree_status send(scree_world *w, struct scree_device_world *d, scree_err
       status = scree_cuda_write(&d->queue, d->arrays[i].at, pointer_at(w, spans[i].field),
                                 spans[i].used, error);
   }
-  if (!status) status = send_image(w, d, error);
+  scree_device_address broad = 0;
+  scree_cuda_place place = place_of(d);
+  if (!status) status = scree_cuda_broad_send(&d->broad, w, &place, &broad, error);
+  if (!status) status = send_image(w, d, broad, error);
   d->current = status == SCREE_OK;
   return status;
 }
@@ -339,14 +358,12 @@ static scree_status fetch_walls(scree_world *w, struct scree_device_world *d, sc
   return status;
 }
 
-static scree_status fetch(scree_world *w, scree_error *error) {
-  struct scree_device_world *d = w->on_device;
-  if (!d || !d->current) return SCREE_OK;
-  d->current = false;
+static scree_status fetch_all(scree_world *w, struct scree_device_world *d, scree_error *error) {
   scree_status status =
       scree_cuda_read(&d->queue, d->image, d->own[BLOCK_WORLD].at, sizeof *w, error);
   if (status) return status;
   take_numbers(w, d->image);
+  if (d->listed && !scree_broad_reserve(w)) return scree_fail_memory(error, 0, "pairs of bodies");
   d->touches_used = d->image->pools.touches_used;
   span spans[MOST_SPANS];
   size_t count = list_spans(w, spans);
@@ -357,10 +374,31 @@ static scree_status fetch(scree_world *w, scree_error *error) {
           scree_cuda_read(&d->queue, pointer_at(w, spans[i].field), d->arrays[i].at, used, error);
   }
   if (!status) status = fetch_walls(w, d, error);
+  if (!status && d->listed) status = scree_broad_restore(w, w->margin, error);
+  if (!status) d->listed = false;
   size_t removed = 0;
   for (size_t i = 0; i < w->bodies.count; i++) removed += w->bodies.removed[i];
   w->pairs_stale |= removed != w->bodies.removed_count;
   w->bodies.removed_count = removed;
+  return status;
+}
+
+/* The device has the state, and it does not come back. What is here can be looked at, without the
+ * neighbours that were made there; it is stepped no more. */
+static void lose(scree_world *w) {
+  w->on_device->current = false;
+  w->neighbours.count = w->wall_pairs.count = 0;
+  w->diverged = true;
+}
+
+static scree_status fetch(scree_world *w, scree_error *error) {
+  struct scree_device_world *d = w->on_device;
+  if (!d || !d->current) return SCREE_OK;
+  scree_status status = fetch_all(w, d, &w->failure);
+  d->current = false;
+  if (!status) return SCREE_OK;
+  lose(w);
+  if (error && error != &w->failure) *error = w->failure;
   return status;
 }
 
@@ -370,7 +408,7 @@ static scree_status fetch(scree_world *w, scree_error *error) {
 static scree_status launch(scree_world *w, size_t steps) {
   struct scree_device_world *d = w->on_device;
   const size_t pairs = w->neighbours.count, bodies = w->bodies.count,
-               counts[SCREE_KERNEL_COUNT] = {[SCREE_KERNEL_awake] = pairs,
+               counts[SCREE_STEP_KERNELS] = {[SCREE_KERNEL_awake] = pairs,
                                              [SCREE_KERNEL_relate] = pairs,
                                              [SCREE_KERNEL_list_count] = pairs,
                                              [SCREE_KERNEL_list_place] = pairs,
@@ -384,7 +422,7 @@ static scree_status launch(scree_world *w, size_t steps) {
   scree_device_address at = d->own[BLOCK_STEP].at;
   scree_status status = scree_cuda_write(&d->queue, at, &d->header, sizeof d->header, &w->failure);
   for (size_t i = 0; i < steps; i++)
-    for (int k = 0; k < SCREE_KERNEL_COUNT && !status; k++)
+    for (int k = 0; k < SCREE_STEP_KERNELS && !status; k++)
       status = scree_cuda_launch(&d->queue, (scree_kernel)k, counts[k], d->own[BLOCK_WORLD].at, at,
                                  &w->failure);
   return status ? status
@@ -404,15 +442,32 @@ static scree_status make_room(scree_world *w) {
   return send(w, d, &w->failure);
 }
 
+/* Of a state that is there already. */
+static scree_status list_there(scree_world *w, struct scree_device_world *d) {
+  scree_cuda_place place = place_of(d);
+  size_t count = 0, removed = 0;
+  d->listed = true;
+  scree_status status = scree_cuda_broad_find(d->broad, w, &place, &count, &w->failure);
+  if (!status) status = scree_cuda_broad_list(d->broad, w, &place, count, &w->failure);
+  if (!status) status = reserve_own(w, d, &w->failure);
+  lead_header(d);
+  for (size_t i = 0; i < w->bodies.count; i++) removed += w->bodies.removed[i];
+  w->bodies.removed_count = removed;
+  return status;
+}
+
+static scree_status list_here(scree_world *w, struct scree_device_world *d) {
+  scree_status status = scree_broad_update(w, &w->failure);
+  d->touches_used = 0;
+  if (!status) status = scree_reserve_blocks(w, &w->failure);
+  return status ? status : send(w, d, &w->failure);
+}
+
 static scree_status update_neighbours(scree_world *w) {
   struct scree_device_world *d = w->on_device;
   if (d->current && !d->header.stale && !d->header.fallen) return SCREE_OK;
-  scree_status status = fetch(w, &w->failure);
   d->header.stale = d->header.fallen = 0;
-  d->touches_used = 0;
-  if (!status) status = scree_broad_update(w, &w->failure);
-  if (!status) status = scree_reserve_blocks(w, &w->failure);
-  return status ? status : send(w, d, &w->failure);
+  return d->current ? list_there(w, d) : list_here(w, d);
 }
 
 static void begin_steps(struct scree_device_world *d, size_t wanted) {
@@ -470,6 +525,7 @@ static scree_status step(scree_world *w, size_t most, size_t *done) {
     if (status || !(d->header.too_small || d->header.again)) break;
     if (d->header.too_small) status = make_room(w);
   }
+  if (status && d->current) lose(w);
   if (status) return status;
   *done = d->header.done;
   count_steps(w, &d->header, after_broad);
@@ -480,6 +536,7 @@ static void release(scree_world *w) {
   struct scree_device_world *d = w->on_device;
   scree_error error;
   if (!d || scree_cuda_use(d->queue.device, &error)) return;
+  scree_cuda_broad_free(d->broad);
   for (size_t i = 0; i < MOST_SPANS; i++) scree_cuda_free(d->arrays[i].at);
   for (size_t i = 0; i < BLOCK_COUNT; i++) scree_cuda_free(d->own[i].at);
   scree_cuda_close_queue(&d->queue);

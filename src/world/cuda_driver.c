@@ -38,6 +38,7 @@ static struct {
   int (*wait)(handle);
   int (*write)(scree_device_address, const void *, size_t, handle);
   int (*read)(void *, scree_device_address, size_t, handle);
+  int (*clear)(scree_device_address, unsigned char, size_t, handle);
   int (*launch)(handle, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned, unsigned,
                 handle, void **, void **);
   int (*error_text)(int, const char **);
@@ -63,6 +64,7 @@ static const struct {
              {(void **)&cu.wait, "cuStreamSynchronize"},
              {(void **)&cu.write, "cuMemcpyHtoDAsync_v2"},
              {(void **)&cu.read, "cuMemcpyDtoHAsync_v2"},
+             {(void **)&cu.clear, "cuMemsetD8Async"},
              {(void **)&cu.launch, "cuLaunchKernel"},
              {(void **)&cu.error_text, "cuGetErrorString"}};
 
@@ -97,7 +99,7 @@ static scree_status load_driver(scree_error *error) {
 
 static scree_status load_kernels(struct opened *device, scree_error *error) {
 #define SCREE_NAME(name) "scree_kernel_" #name,
-  static const char *const kernels[] = {SCREE_KERNELS(SCREE_NAME)};
+  static const char *const kernels[] = {SCREE_KERNELS(SCREE_NAME) SCREE_BROAD_KERNELS(SCREE_NAME)};
 #undef SCREE_NAME
   char log[512] = "";
   int options[] = {JIT_ERROR_LOG, JIT_ERROR_LOG_SIZE};
@@ -194,6 +196,11 @@ scree_status scree_cuda_read(const scree_cuda_queue *queue, void *to, scree_devi
   if (size == 0) return SCREE_OK;
   scree_status status = check(cu.read(to, from, size, queue->stream), "from the device", error);
   return status ? status : check(cu.wait(queue->stream), "kernels", error);
+}
+
+scree_status scree_cuda_clear(const scree_cuda_queue *queue, scree_device_address at, size_t size,
+                              scree_error *error) {
+  return size ? check(cu.clear(at, 0, size, queue->stream), "memory", error) : SCREE_OK;
 }
 
 scree_status scree_cuda_launch(const scree_cuda_queue *queue, scree_kernel kernel, size_t count,

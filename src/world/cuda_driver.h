@@ -9,7 +9,9 @@ typedef unsigned long long scree_device_address;
 
 typedef enum scree_kernel {
 #define SCREE_NAME(name) SCREE_KERNEL_##name,
-  SCREE_KERNELS(SCREE_NAME)
+  SCREE_KERNELS(SCREE_NAME) SCREE_STEP_KERNELS,
+  SCREE_STEP_LAST = SCREE_STEP_KERNELS - 1,
+  SCREE_BROAD_KERNELS(SCREE_NAME)
 #undef SCREE_NAME
       SCREE_KERNEL_COUNT
 } scree_kernel;
@@ -28,12 +30,20 @@ typedef struct scree_cuda_queue {
 scree_status scree_cuda_open_queue(scree_cuda_queue *queue, scree_error *error);
 void scree_cuda_close_queue(scree_cuda_queue *queue);
 
+/* Memory of the device. */
+typedef struct scree_cuda_block {
+  scree_device_address at;
+  size_t capacity; /* bytes */
+} scree_cuda_block;
 /* Larger, when it is too small; its content goes then. */
 scree_status scree_cuda_reserve(scree_device_address *block, size_t *capacity, size_t size,
                                 scree_error *error);
 void scree_cuda_free(scree_device_address block);
 scree_status scree_cuda_write(const scree_cuda_queue *queue, scree_device_address to,
                               const void *from, size_t size, scree_error *error);
+/* To zeros. */
+scree_status scree_cuda_clear(const scree_cuda_queue *queue, scree_device_address at, size_t size,
+                              scree_error *error);
 /* Waits for all that was asked of the queue. */
 scree_status scree_cuda_read(const scree_cuda_queue *queue, void *to, scree_device_address from,
                              size_t size, scree_error *error);

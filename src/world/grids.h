@@ -8,6 +8,7 @@
 #include "world/groups.h"
 #include "world/world.h"
 
+enum { SCREE_MOST_NEIGHBOURS = INT32_MAX }; /* sides are numbers of 32 bits */
 enum { SCREE_MOST_GRIDS = 32, SCREE_FOUND = 16 };
 static const uint32_t scree_wall_partner = 0x80000000u; /* of a wall's number */
 
@@ -41,7 +42,16 @@ struct scree_broad {
     uint32_t *items; /* where those listed were in the old list; scree_none: nowhere */
     size_t capacity;
   } match;
+  scree_groups left; /* walls that each body is no longer near */
+  struct {
+    uint32_t *items; /* old neighbours */
+    size_t capacity;
+  } left_items;
   scree_groups sides, walls; /* of each body: places in world->sides, neighbours that are walls */
+  /* Where the old ones are; here they are moved in place, on a device to other memory. */
+  scree_neighbours *old_neighbours;
+  uint32_t *old_pair_of;
+  scree_booked *old_ledger;
 };
 
 /* Until they are over: of body i its box, the widest one, and how far the walls must reach. */

@@ -15,6 +15,10 @@ typedef struct scree_groups {
   uint64_t total;
 } scree_groups;
 
+/* At least one, which says that there are none. */
+static inline size_t scree_groups_chunks(const scree_groups *groups) {
+  return groups->length > groups->chunk ? (groups->length - 1) / groups->chunk + 1 : 1;
+}
 /* Of one chunk; then, when all chunks have their sums, the places of its owners. */
 static inline void scree_groups_sum(const scree_groups *groups, size_t chunk) {
   size_t begin = chunk * groups->chunk, end = begin + groups->chunk;

@@ -70,21 +70,42 @@ static bool is_dropped(const scree_world *world, size_t k) {
 }
 
 void scree_lists_drop(scree_world *world, size_t i) {
-  const uint32_t *begin = world->broad->old_begin;
-  for (uint32_t k = begin[i]; k < begin[i + 1]; k++) {
+  const scree_broad *broad = world->broad;
+  scree_booked *booked = &world->bodies.booked[i];
+  uint32_t walls = 0;
+  for (uint32_t k = broad->old_begin[i]; k < broad->old_begin[i + 1]; k++) {
     if (!is_dropped(world, k)) continue;
-    world->bodies.booked[i].dashpot += world->ledger.items[k].dashpot;
-    world->bodies.booked[i].tangential += world->ledger.items[k].tangential;
-    if (world->pair_of.items[k] != scree_none) scree_pair_give_back(world, world->pair_of.items[k]);
+    booked->dashpot += broad->old_ledger[k].dashpot;
+    booked->tangential += broad->old_ledger[k].tangential;
+    if (broad->old_pair_of[k] != scree_none) scree_pair_give_back(world, broad->old_pair_of[k]);
+    walls += is_with_wall(broad->old_keys[k]);
+  }
+  broad->left.count[i] = walls;
+}
+
+void scree_lists_leave(scree_world *world, size_t i) {
+  const scree_broad *broad = world->broad;
+  uint32_t place = broad->left.begin[i], end = broad->left.begin[i + 1];
+  for (uint32_t k = broad->old_begin[i + 1]; place < end; k--)
+    if (is_dropped(world, k - 1)) broad->left_items.items[--end] = k - 1;
+}
+
+void scree_lists_leave_wall(scree_world *world, size_t w) {
+  const scree_broad *broad = world->broad;
+  for (uint64_t j = 0; j < broad->left.total; j++) {
+    uint32_t k = broad->left_items.items[j];
+    if (second_of(broad->old_keys[k]) == w)
+      world->walls.items[w].energy += broad->old_ledger[k].wall;
   }
 }
 
-void scree_lists_drop_wall(scree_world *world, size_t w) {
-  for (size_t i = 0; i < world->wall_pairs.count; i++) {
-    uint32_t k = world->wall_pairs.items[i];
-    if (world->neighbours.items[k].b == w && is_dropped(world, k))
-      world->walls.items[w].energy += world->ledger.items[k].wall;
-  }
+void scree_lists_carry(scree_world *world, size_t k) {
+  const scree_broad *broad = world->broad;
+  uint32_t from = broad->match.items[k];
+  if (from == scree_none) return;
+  world->neighbours.items[k] = broad->old_neighbours[from];
+  world->pair_of.items[k] = broad->old_pair_of[from];
+  world->ledger.items[k] = broad->old_ledger[from];
 }
 
 void scree_lists_renew(scree_world *world, size_t k) {

@@ -17,10 +17,14 @@ void scree_lists_sort(scree_world *world, size_t i);
 
 /* Where neighbours k were in the old list. */
 void scree_lists_match(scree_world *world, size_t k);
-/* Of the old list those that are listed no longer: those of body i give back their pairs, and what
- * was booked goes to it; that of wall w to the wall. */
+/* Of the old list those that are listed no longer. Those of body i give back their pairs, what was
+ * booked goes to it, and the walls among them are counted; then, these are written; then, what they
+ * booked goes to wall w. */
 void scree_lists_drop(scree_world *world, size_t i);
-void scree_lists_drop_wall(scree_world *world, size_t w);
+void scree_lists_leave(scree_world *world, size_t i);
+void scree_lists_leave_wall(scree_world *world, size_t w);
+/* Those that stay come to their place. */
+void scree_lists_carry(scree_world *world, size_t k);
 /* New ones begin; the pairs of others learn where they are. */
 void scree_lists_renew(scree_world *world, size_t k);
 

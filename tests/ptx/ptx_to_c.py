@@ -326,8 +326,8 @@ class Translator:
             return self.set(a, f"__atomic_fetch_add(({TYPES[p[-1]]} *)({at}), {value}, __ATOMIC_RELAXED)")
         if names == ["exch", "b64"]:
             return self.set(a, f"__atomic_exchange_n((uint64_t *)({at}), {value}, __ATOMIC_RELAXED)")
-        if names in (["and", "b64"], ["or", "b64"]):
-            return self.set(a, f"__atomic_fetch_{names[0]}((uint64_t *)({at}), {value}, __ATOMIC_RELAXED)")
+        if names in (["and", "b64"], ["or", "b64"], ["or", "b32"]):
+            return self.set(a, f"__atomic_fetch_{names[0]}(({TYPES[p[-1]]} *)({at}), {value}, __ATOMIC_RELAXED)")
         if names == ["max", "u64"]:
             return self.set(a, f"fetch_max64((uint64_t *)({at}), {value})")
         if names in (["min", "u32"], ["max", "u32"]):

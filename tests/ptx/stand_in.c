@@ -194,6 +194,12 @@ int cuMemcpyDtoHAsync_v2(void *to, unsigned long long from, size_t size, void *s
   return 0;
 }
 
+int cuMemsetD8Async(unsigned long long at, unsigned char value, size_t size, void *stream) {
+  (void)stream;
+  memset((void *)(uintptr_t)at, value, size);
+  return 0;
+}
+
 /* A permutation of the threads: i times a number that has no divisor in common with the count. */
 static size_t shuffled(size_t i, size_t count) {
   size_t step = count / 3 * 2 + 1;

@@ -60,4 +60,37 @@ typedef struct scree_device_step {
   X(advance)    /* body or wall */                                                                 \
   X(end)        /* step */
 
+/* In the order of a broad phase (grids.h, lists.h). Of each list of lists first the sums of chunks,
+ * then the places. */
+#define SCREE_BROAD_KERNELS(X)                                                                     \
+  X(box)           /* of the bodies */                                                             \
+  X(grids)         /* once */                                                                      \
+  X(cell)          /* body */                                                                      \
+  X(bucket_sums)   /* chunk of buckets */                                                          \
+  X(bucket_places) /* chunk */                                                                     \
+  X(bin)           /* body */                                                                      \
+  X(find)          /* body */                                                                      \
+  X(key_sums)      /* chunk of bodies */                                                           \
+  X(key_places)    /* chunk */                                                                     \
+  X(key_write)     /* body */                                                                      \
+  X(key_sort)      /* body */                                                                      \
+  X(match)         /* neighbours */                                                                \
+  X(drop)          /* body of the old list */                                                      \
+  X(left_sums)     /* chunk of those */                                                            \
+  X(left_places)   /* chunk */                                                                     \
+  X(leave)         /* body of the old list */                                                      \
+  X(leave_wall)    /* wall */                                                                      \
+  X(carry)         /* neighbours */                                                                \
+  X(renew)         /* neighbours */                                                                \
+  X(side_count)    /* neighbours */                                                                \
+  X(side_sums)     /* chunk of bodies */                                                           \
+  X(side_places)   /* chunk */                                                                     \
+  X(side)          /* neighbours */                                                                \
+  X(list_body)     /* body */                                                                      \
+  X(wall_sums)     /* chunk of bodies */                                                           \
+  X(wall_places)   /* chunk */                                                                     \
+  X(list_walls)    /* body */                                                                      \
+  X(list_touching) /* 64 neighbours */                                                             \
+  X(list_date)     /* body, and all walls */
+
 #endif

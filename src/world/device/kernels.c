@@ -4,6 +4,7 @@
  * counters and lists of work, whose order shows nowhere. */
 #include "world/contact.h"
 #include "world/device/device.h"
+#include "world/device/threads.h"
 #include "world/pairs.h"
 #include "world/stages.h"
 #include "world/walls.h"
@@ -36,15 +37,6 @@ uint64_t scree_fetch_and(volatile void *at, uint64_t value, int order) {
 double scree_now(void) {
   return 0;
 }
-
-static size_t first_element(void) {
-  return (size_t)__nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +
-         __nvvm_read_ptx_sreg_tid_x();
-}
-static size_t thread_count(void) {
-  return (size_t)__nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x();
-}
-#define EACH(i, count) (size_t i = first_element(), end_ = (count); i < end_; i += thread_count())
 
 static uint32_t take(uint32_t *counter, uint32_t count) {
   return (uint32_t)__nvvm_atom_add_gen_i((volatile int *)counter, (int)count);
@@ -360,7 +352,7 @@ static void find_start(const scree_world *world, scree_device_step *step) {
 }
 
 void scree_kernel_end(scree_world *world, scree_device_step *step) {
-  if (first_element() > 0 || step->stop) return;
+  if (FIRST_ELEMENT > 0 || step->stop) return;
   step->stop = is_held(step);
   if (step->stop) {
     if (step->trouble.start != scree_none) find_start(world, step);

@@ -1,0 +1,32 @@
+/* The broad phase of a world whose state is on a device. Nothing but counts comes back. */
+#ifndef SCREE_WORLD_CUDA_BROAD_H
+#define SCREE_WORLD_CUDA_BROAD_H
+
+#include "world/cuda_driver.h"
+
+/* Where the world is on the device. */
+typedef struct scree_cuda_place {
+  const scree_cuda_queue *queue;
+  scree_device_address world, step;
+  scree_world *image; /* the device's struct, with its pointers */
+  /* The memory of an array of the world, by where its pointer is in the struct. */
+  scree_cuda_block *(*array)(scree_world *world, size_t field);
+} scree_cuda_place;
+
+typedef struct scree_cuda_broad scree_cuda_broad; /* what the broad phase has there of its own */
+
+/* After the world's arrays were written: what the next list is compared with. Makes *broad, when it
+ * is NULL, and answers where the device's scree_broad is. */
+scree_status scree_cuda_broad_send(scree_cuda_broad **broad, scree_world *world,
+                                   const scree_cuda_place *place, scree_device_address *at,
+                                   scree_error *error);
+/* Finds who is near whom, which says how many neighbours there will be. */
+scree_status scree_cuda_broad_find(scree_cuda_broad *broad, scree_world *world,
+                                   const scree_cuda_place *place, size_t *count,
+                                   scree_error *error);
+/* Then makes so many, and all lists that follow from them. */
+scree_status scree_cuda_broad_list(scree_cuda_broad *broad, scree_world *world,
+                                   const scree_cuda_place *place, size_t count, scree_error *error);
+void scree_cuda_broad_free(scree_cuda_broad *broad);
+
+#endif
