@@ -82,13 +82,19 @@ export class Pile {
     quaternion.set(a[4], a[5], a[6], a[3]).slerp(new Quaternion(b[4], b[5], b[6], b[3]), part);
   }
 
-  // What a scene's picture is fitted to: its walls at the begin, but for endless ones; where there is none, its bodies.
+  // What a scene's picture is fitted to: its walls, but for endless ones, while they have not moved off by more than
+  // their own size; where there is none, its bodies.
   sceneBox() {
-    const box = new Box3(), position = new Vector3(), turn = new Quaternion(), one = new Vector3(1, 1, 1), at = this.momentAt(this.times[0]);
+    const box = new Box3(), position = new Vector3(), turn = new Quaternion(), one = new Vector3(1, 1, 1), first = new Vector3();
     for (const wall of this.walls.filter(({ endless }) => !endless)) {
-      this.wallPose(wall, at, position, turn);
-      const { min, max } = new Box3().setFromArray(wall.mesh.points);
-      for (const corner of corners(min.toArray(), max.toArray())) box.expandByPoint(corner.clone().applyMatrix4(new Matrix4().compose(position, turn, one)));
+      const own = new Box3().setFromArray(wall.mesh.points), size = own.getSize(new Vector3()).length();
+      for (const [i, time] of this.times.entries()) {
+        this.wallPose(wall, this.momentAt(time), position, turn);
+        if (i === 0) first.copy(position);
+        if (position.distanceTo(first) > size) break;
+        const placed = new Matrix4().compose(position, turn, one);
+        for (const corner of corners(own.min.toArray(), own.max.toArray())) box.expandByPoint(corner.clone().applyMatrix4(placed));
+      }
     }
     for (const time of this.times.filter((_, i) => box.isEmpty() || i === 0 || i === this.times.length >> 1)) {
       for (let i = 0; i < this.bodyCount; i++) if (this.pose(i, this.momentAt(time), position, turn)) box.expandByPoint(position);
