@@ -165,8 +165,33 @@ static void sizes(void **state) {
   check(&(scene_kind){make_sizes, go_on_sizes});
 }
 
+/* A device that is lost on the way: a sentence, again and again; what is here can be looked at. */
+static void lost(void **state) {
+  (void)state;
+  scree_error error, again;
+  scree_observation o;
+  scree_rng rng = {.seed = 5};
+  CHECK_OK(scree_set_backend(backend, &error), error);
+  scree_world *world = make_periodic(&rng);
+  scree_status status = SCREE_OK;
+  for (int piece = 0; piece < PIECES && !status; piece++) {
+    status = scree_world_step(world, STEPS, &error);
+    scree_world_observe(world, &o);
+    scree_world_hash(world);
+  }
+  assert_int_equal(status, SCREE_NO_BACKEND);
+  assert_string_equal(error.message, "cuda: a kernel: unspecified launch failure (error 719)");
+  assert_int_equal(scree_world_step(world, 1, &again), status);
+  assert_string_equal(again.message, error.message);
+  scree_world_free(world);
+  free_shapes();
+}
+
+/* With a backend's name: there; with a word more: that is lost. */
 int main(int argc, char **argv) {
   if (argc > 1) backend = argv[1];
+  const struct CMUnitTest losing[] = {cmocka_unit_test(lost)};
+  if (argc > 2) return cmocka_run_group_tests(losing, NULL, NULL);
   const struct CMUnitTest tests[] = {cmocka_unit_test(periodic), cmocka_unit_test(sizes)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
