@@ -449,7 +449,7 @@ static inline const scree_particle *scree_pair_shape_b(const scree_world *w, con
 }
 /* Else it sleeps until the bodies' paths have grown. */
 static inline bool scree_pair_stays_awake(const scree_pair *p) {
-  return p->active.count > 0 || p->depth > 0 || p->parting || p->substeps > 1;
+  return p->active.count > 0 || p->depth > 0 || p->parting || p->substeps > 1 || p->touching;
 }
 
 #endif
