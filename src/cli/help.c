@@ -66,7 +66,7 @@ void cli_print_help(FILE *stream, const cli_verb *verb) {
 }
 
 void cli_print_overview(FILE *stream) {
-  fputs("scree: from a 3D scan to the triangle count a DEM particle needs, and the proof\n\n"
+  fputs("scree: from a 3D scan to the particle that a DEM simulation needs\n\n"
         "usage: scree VERB [options] INPUT...\n\n",
         stream);
   for (const cli_verb *const *verb = cli_verbs; *verb; verb++)
