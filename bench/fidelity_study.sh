@@ -32,7 +32,7 @@ for set in "${@:-devices stones tools}"; do
   for name in $set; do
     case $name in
     devices) study devices "sample:fp-1, sample:fp-2, sample:fp-3, sample:dc-1, sample:dc-2, sample:dc-3, sample:sp-1, sample:sp-2, sample:sp-3" mm 0.4 3 ;;
-    stones) study stones "$scans/stone_073ac.ply, $scans/stone_E22.ply" m 0.6 4 ;;
+    stones) study stones "$scans/stone_073ac.ply, $scans/stone_E22.ply" m ${CYLINDER:-0.6} 4 ;;
     tools) # in one unit: the hammer's is the inch
       [ -e hammer.ply ] || "$scree" export "$scans/scan_hammer_raw.obj" -u inch -o hammer.ply -q
       study tools "$scans/ycb_power_drill.obj, hammer.ply" m 0.9 5
