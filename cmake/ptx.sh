@@ -29,7 +29,7 @@ kernels=$(sed -n 's/^  X(\([a-z_]*\)).*/scree_kernel_\1/p' src/world/device/devi
 {
   number=9000 nodes=
   for kernel in $kernels; do
-    echo "!$number = !{void (%struct.scree_world*, %struct.scree_device_step*)* @$kernel, !\"kernel\", i32 1}"
+    echo "!$number = !{void (%struct.scree_world**, %struct.scree_device_step*)* @$kernel, !\"kernel\", i32 1}"
     nodes="$nodes${nodes:+, }!$number" number=$((number + 1))
   done
   echo "!nvvm.annotations = !{$nodes}"

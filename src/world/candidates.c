@@ -48,18 +48,13 @@ static void put_to_sleep(listing *l, scree_item_kind kind, uint32_t a, uint32_t 
   if (gap > l->skin || is_awake(l, kind, a, b)) return;
   const scree_sleeper sleeper = {l->pair->list.path + gap, a, b, kind};
   scree_range *sleeping = &l->scratch->neighbours->sleeping;
-  switch (l->taking) {
-  case SCREE_TAKING_COUNT:
+  if (l->to) {
+    if (l->count < l->room) l->to[l->count] = sleeper;
     l->count++;
-    break;
-  case SCREE_TAKING_WRITE:
-    l->to[l->count++] = sleeper;
-    break;
-  case SCREE_TAKING_APPEND:
-    l->full = l->full || !scree_reserve_sleepers(l->scratch, sleeping->count + 1);
-    if (!l->full) scree_sleepers(l->scratch)[sleeping->count++] = sleeper;
-    break;
+    return;
   }
+  l->full = l->full || !scree_reserve_sleepers(l->scratch, sleeping->count + 1);
+  if (!l->full) scree_sleepers(l->scratch)[sleeping->count++] = sleeper;
 }
 
 static vec3 into_b(const listing *l, vec3 p) {

@@ -246,13 +246,19 @@ static void take_places(const scree_world *world, const scree_pair *pair, scree_
   scratch->b = &scratch->own[1];
 }
 
+/* What is to be found before the law. */
+static void ask(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  scratch->parting = pair->parting;
+  scratch->parted = pair->parted;
+  pair->parted = false;
+  scree_pair_ask_depths(world, pair, scratch);
+}
+
 /* The law at the present places. */
 static void press(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
                   scree_pair_work *work) {
   const scree_frame *relative = &scratch->relative;
-  bool parting = pair->parting, parted = pair->parted;
-  pair->parted = false;
-  scree_pair_feel_depths(world, pair, relative, scratch, work);
+  const bool parting = scratch->parting, parted = scratch->parted;
   if (pair->parting) work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
   clear_results(pair);
   double largest = pair->largest;
@@ -291,12 +297,16 @@ void scree_pair_step_back(scree_pair *pair, const scree_scratch *scratch) {
   pair->asleep = scratch->slept;
 }
 
-void scree_pair_press(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+void scree_pair_meet(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   scratch->work.too_fast = passes_unseen(world, pair);
   pair->later_dashpot = pair->later_tangential = 0;
   end_visits(pair, scratch);
   scratch->substeps = scree_substep_count(world, pair, &scratch->relative, scratch);
   scratch->step = world->time_step / scratch->substeps;
+  ask(world, pair, scratch);
+}
+
+void scree_pair_press(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   press(world, pair, scratch, &scratch->work);
   if (scratch->to_sleep > 0) settle_items(pair, scratch);
 }
@@ -309,6 +319,8 @@ bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *
     return false;
   }
   for (uint32_t i = 0; i < pair->active.count; i++) scree_pair_visit_item(world, pair, i, scratch);
+  scree_pair_meet(world, pair, scratch);
+  scree_pair_find_depths(world, pair, scratch, &scratch->work);
   scree_pair_press(world, pair, scratch);
   return true;
 }
@@ -321,6 +333,8 @@ void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_s
   begin_visits(pair, scratch);
   for (uint32_t i = 0; i < pair->active.count; i++) scree_pair_visit_item(world, pair, i, scratch);
   end_visits(pair, scratch);
+  ask(world, pair, scratch);
+  scree_pair_find_depths(world, pair, scratch, &part);
   press(world, pair, scratch, &part);
   pair->later_dashpot += part.later_dashpot + part.dashpot - part.lost - part.let_go;
   pair->later_tangential += part.later_tangential + part.tangential;

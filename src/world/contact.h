@@ -31,6 +31,19 @@ typedef struct scree_pair_work {
   bool too_fast, beyond_limit, begins_parting;
 } scree_pair_work;
 
+/* Whether a pair asks for depths: from the start; of edges that lie deeper than `above`, m. */
+typedef struct scree_depth_question {
+  bool start, edges;
+  double above;
+} scree_depth_question;
+
+/* The deepest point of an edge: the way along it, the depth (below 0 outside), its slope in space
+ * and along. */
+typedef struct scree_depth {
+  double s, depth, rate;
+  vec3 slope;
+} scree_depth;
+
 /* A pair in hand: where its lists and its bodies are, and what is found out about it in a step. A
  * worker has one, a device one for every pair that is awake. */
 struct scree_scratch {
@@ -41,6 +54,7 @@ struct scree_scratch {
   scree_touch_list touches;
   size_t touches_needed; /* by a pair that found too little room */
   size_t first_touch;    /* of a device: in the pool of touches */
+  size_t first_depth;    /* likewise, among the depths that were found for it */
   uint64_t item_evaluations, closest_queries, list_builds;
   uint64_t depth_queries;
   double candidate_seconds;
@@ -54,7 +68,9 @@ struct scree_scratch {
   uint32_t to_sleep;        /* items that go to sleep */
   bool any_inside;          /* an item is */
   bool slept;               /* the pair did, until this step */
-  scree_list_state before;  /* of the pair, when the step began */
+  bool parting, parted;     /* as it was then */
+  scree_depth_question question;
+  scree_list_state before; /* of the pair, when the step began */
   scree_pair_work work;
   scree_anchor no_anchor;
 };
@@ -133,9 +149,8 @@ typedef struct scree_listing {
   bool analytic;
   bool full; /* the pool of sleepers */
   uint64_t closest_queries;
-  enum { SCREE_TAKING_APPEND, SCREE_TAKING_COUNT, SCREE_TAKING_WRITE } taking;
-  uint32_t count; /* of what was found, or written: */
-  scree_sleeper *to;
+  scree_sleeper *to;    /* what is found is written here; NULL: it goes to the neighbours */
+  uint32_t count, room; /* of what was found; how much of it is written */
 } scree_listing;
 /* False where the two are too far apart for any. */
 bool scree_listing_begin(scree_listing *listing, const scree_world *world, scree_pair *pair,
@@ -166,8 +181,16 @@ static inline double scree_smooth_slope(double from, double to, double x) {
 }
 
 /* depth.c: adds touches for edges inside the other body where features may feel less; notes bodies
- * that lie in each other from the start. */
-void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+ * that lie in each other from the start. First what is to be found, then finding it, in one piece
+ * or with many threads: entries, each an edge or a point. */
+void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
+void scree_pair_find_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                            scree_pair_work *work);
+size_t scree_depth_count(const scree_world *world, const scree_pair *pair,
+                         const scree_scratch *scratch);
+scree_depth scree_depth_of(const scree_world *world, const scree_pair *pair,
+                           const scree_scratch *scratch, size_t entry);
+void scree_pair_take_depths(const scree_world *world, scree_pair *pair, const scree_depth *found,
                             scree_scratch *scratch, scree_pair_work *work);
 /* The edges that lie deeper in the other body than `above`, as touches, the deepest SCREE_DEPTHS of
  * them; the depth of the deepest, m, or `above`. */
@@ -212,7 +235,9 @@ void scree_pair_step_back(scree_pair *pair, const scree_scratch *scratch);
 /* The touches of item i. */
 void scree_pair_visit_item(const scree_world *world, const scree_pair *pair, uint32_t i,
                            scree_scratch *scratch);
-/* After those of all items: the law. And what comes after it. */
+/* After those of all items: what they found, and which depths are to be found (depth.c). With
+ * these, the law. And what comes after it. */
+void scree_pair_meet(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 void scree_pair_press(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 void scree_pair_leave(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 /* The contact in the midst of a step, at the places in scratch; its work is kept in the pair. */

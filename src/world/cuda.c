@@ -10,6 +10,7 @@
 #include "world/backend.h"
 #include "world/broad.h"
 #include "world/contact.h"
+#include "world/cuda_batch.h"
 #include "world/cuda_broad.h"
 #include "world/pairs.h"
 #include "world/stages.h"
@@ -32,6 +33,8 @@ typedef struct span {
 } span;
 
 enum { MOST_SPANS = 40, FIRST_TOUCHES = 4096, STEPS_AT_ONCE = 8 };
+/* For how many threads are started: entries of lists; items of a pair. */
+enum { LISTS_AT_ONCE = 32768, VISITS = 4 };
 
 /* What the device alone has. */
 enum {
@@ -39,12 +42,14 @@ enum {
   BLOCK_SHAPES,
   BLOCK_WALLS,
   BLOCK_WORLD,
-  BLOCK_STEP,
+  BLOCK_WORLDS, /* where it is: a list of one */
   BLOCK_HANDS,
   BLOCK_PROGRESS,
   BLOCK_TOUCHES,
   BLOCK_TOUCH_COUNTS,
   BLOCK_DUE,
+  BLOCK_DEPTH_JOBS,
+  BLOCK_DEPTHS,
   BLOCK_VISITS,
   BLOCK_COUNT = BLOCK_VISITS + SCREE_VISIT_KINDS
 };
@@ -54,6 +59,7 @@ struct scree_device_world {
   scree_cuda_block arrays[MOST_SPANS], own[BLOCK_COUNT];
   scree_cuda_broad *broad;
   uint64_t touch_capacity, touches_used;
+  size_t awake; /* pairs in a step, about */
   scree_device_step header;
   scree_world *image;          /* the device's struct */
   const scree_particle **seen; /* bodies' particles whose shapes are on the device */
@@ -250,6 +256,16 @@ static scree_status send_walls(const scree_world *w, struct scree_device_world *
 
 /* ---- the whole state, there and back ---- */
 
+/* How many lists are made at once, and how many depths looked for. */
+static uint32_t lists_of(const scree_world *w) {
+  size_t share = w->neighbours.count / 32;
+  return share < 64 ? 64 : share > 4096 ? 4096 : (uint32_t)share;
+}
+static size_t depths_of(const scree_world *w) {
+  size_t share = 8 * w->neighbours.count;
+  return share < 65536 ? 65536 : share > 1 << 22 ? 1 << 22 : share;
+}
+
 /* The memory of one of those arrays. */
 static scree_cuda_block *array_at(scree_world *w, size_t field) {
   span spans[MOST_SPANS];
@@ -259,15 +275,19 @@ static scree_cuda_block *array_at(scree_world *w, size_t field) {
 }
 
 static scree_cuda_place place_of(const struct scree_device_world *d) {
-  return (scree_cuda_place){&d->queue, d->own[BLOCK_WORLD].at, d->own[BLOCK_STEP].at, d->image,
+  return (scree_cuda_place){&d->queue, d->own[BLOCK_WORLD].at, d->own[BLOCK_WORLDS].at, d->image,
                             array_at};
 }
 
-static void lead_header(struct scree_device_world *d) {
+static void lead_header(const scree_world *w, struct scree_device_world *d) {
   lead_to(&d->header.hands, d->own[BLOCK_HANDS].at);
   lead_to(&d->header.progress, d->own[BLOCK_PROGRESS].at);
   lead_to(&d->header.touch_counts, d->own[BLOCK_TOUCH_COUNTS].at);
   lead_to(&d->header.due, d->own[BLOCK_DUE].at);
+  d->header.due_capacity = lists_of(w);
+  lead_to(&d->header.depth_jobs, d->own[BLOCK_DEPTH_JOBS].at);
+  lead_to(&d->header.depths, d->own[BLOCK_DEPTHS].at);
+  d->header.depth_capacity = depths_of(w);
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
     lead_to(&d->header.visits[kind], d->own[BLOCK_VISITS + kind].at);
 }
@@ -289,7 +309,7 @@ static scree_status send_image(scree_world *w, struct scree_device_world *d,
   lead_to(&d->image->pools.touches, d->own[BLOCK_TOUCHES].at);
   d->image->pools.touch_capacity = d->touch_capacity;
   d->image->pools.touches_used = d->touches_used;
-  lead_header(d);
+  lead_header(w, d);
   return scree_cuda_write(&d->queue, d->own[BLOCK_WORLD].at, d->image, sizeof *w, error);
 }
 
@@ -298,13 +318,14 @@ static scree_status reserve_own(const scree_world *w, struct scree_device_world 
   const size_t k = w->neighbours.count;
   if (d->touch_capacity == 0) d->touch_capacity = FIRST_TOUCHES;
   size_t sizes[BLOCK_COUNT] = {[BLOCK_WORLD] = sizeof *w,
-                               [BLOCK_STEP] = sizeof d->header,
+                               [BLOCK_WORLDS] = sizeof(scree_device_address),
                                [BLOCK_HANDS] = k * sizeof(scree_scratch),
                                [BLOCK_PROGRESS] = k,
                                [BLOCK_TOUCHES] = d->touch_capacity * sizeof(scree_touch),
                                [BLOCK_TOUCH_COUNTS] = d->touch_capacity,
-                               [BLOCK_DUE] = (k < SCREE_MOST_LISTS ? k : SCREE_MOST_LISTS) *
-                                             sizeof(scree_due_list)};
+                               [BLOCK_DUE] = lists_of(w) * sizeof(scree_due_list),
+                               [BLOCK_DEPTH_JOBS] = SCREE_MOST_DEPTH_JOBS * sizeof(scree_depth_job),
+                               [BLOCK_DEPTHS] = depths_of(w) * sizeof(scree_depth)};
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
     sizes[BLOCK_VISITS + kind] = w->pools.item_capacity * sizeof(scree_visit);
   scree_status status = SCREE_OK;
@@ -329,6 +350,10 @@ static scree_status send(scree_world *w, struct scree_device_world *d, scree_err
   scree_cuda_place place = place_of(d);
   if (!status) status = scree_cuda_broad_send(&d->broad, w, &place, &broad, error);
   if (!status) status = send_image(w, d, broad, error);
+  if (!status)
+    status = scree_cuda_write(&d->queue, d->own[BLOCK_WORLDS].at, &d->own[BLOCK_WORLD].at,
+                              sizeof(scree_device_address), error);
+  if (!status) status = scree_cuda_wait(&d->queue, error); /* steps have another queue */
   d->current = status == SCREE_OK;
   return status;
 }
@@ -404,29 +429,27 @@ static scree_status fetch(scree_world *w, scree_error *error) {
 
 /* ---- steps ---- */
 
-/* For the kernels of so many steps, one after another; waits for them. */
+/* For so many steps. */
 static scree_status launch(scree_world *w, size_t steps) {
   struct scree_device_world *d = w->on_device;
-  const size_t pairs = w->neighbours.count, bodies = w->bodies.count,
-               counts[SCREE_STEP_KERNELS] = {[SCREE_KERNEL_awake] = pairs,
-                                             [SCREE_KERNEL_relate] = pairs,
-                                             [SCREE_KERNEL_list_count] = pairs,
-                                             [SCREE_KERNEL_list_place] = pairs,
-                                             [SCREE_KERNEL_list_write] = pairs,
-                                             [SCREE_KERNEL_list_end] = pairs,
-                                             [SCREE_KERNEL_visit] = w->pools.item_capacity,
-                                             [SCREE_KERNEL_press] = pairs,
-                                             [SCREE_KERNEL_gather] = bodies,
-                                             [SCREE_KERNEL_advance] = bodies + w->walls.count,
-                                             [SCREE_KERNEL_end] = 1};
-  scree_device_address at = d->own[BLOCK_STEP].at;
-  scree_status status = scree_cuda_write(&d->queue, at, &d->header, sizeof d->header, &w->failure);
-  for (size_t i = 0; i < steps; i++)
-    for (int k = 0; k < SCREE_STEP_KERNELS && !status; k++)
-      status = scree_cuda_launch(&d->queue, (scree_kernel)k, counts[k], d->own[BLOCK_WORLD].at, at,
-                                 &w->failure);
-  return status ? status
-                : scree_cuda_read(&d->queue, &d->header, at, sizeof d->header, &w->failure);
+  const size_t bodies = w->bodies.count, awake = d->awake ? d->awake : w->neighbours.count;
+  const scree_cuda_request request = {.world = d->own[BLOCK_WORLD].at,
+                                      .step = &d->header,
+                                      .steps = steps,
+                                      .counts = {[SCREE_KERNEL_awake] = w->neighbours.count,
+                                                 [SCREE_KERNEL_relate] = awake,
+                                                 [SCREE_KERNEL_list_count] = LISTS_AT_ONCE,
+                                                 [SCREE_KERNEL_list_place] = awake,
+                                                 [SCREE_KERNEL_list_write] = LISTS_AT_ONCE,
+                                                 [SCREE_KERNEL_list_end] = awake,
+                                                 [SCREE_KERNEL_visit] = VISITS * awake,
+                                                 [SCREE_KERNEL_meet] = awake,
+                                                 [SCREE_KERNEL_depth] = LISTS_AT_ONCE,
+                                                 [SCREE_KERNEL_press] = awake,
+                                                 [SCREE_KERNEL_gather] = bodies,
+                                                 [SCREE_KERNEL_advance] = bodies + w->walls.count,
+                                                 [SCREE_KERNEL_end] = 1}};
+  return scree_cuda_do_steps(d->queue.device, &request, &w->failure);
 }
 
 /* The pools that were asked for more than they have grow. */
@@ -450,7 +473,8 @@ static scree_status list_there(scree_world *w, struct scree_device_world *d) {
   scree_status status = scree_cuda_broad_find(d->broad, w, &place, &count, &w->failure);
   if (!status) status = scree_cuda_broad_list(d->broad, w, &place, count, &w->failure);
   if (!status) status = reserve_own(w, d, &w->failure);
-  lead_header(d);
+  if (!status) status = scree_cuda_wait(&d->queue, &w->failure);
+  lead_header(w, d);
   for (size_t i = 0; i < w->bodies.count; i++) removed += w->bodies.removed[i];
   w->bodies.removed_count = removed;
   return status;
@@ -474,7 +498,8 @@ static void begin_steps(struct scree_device_world *d, size_t wanted) {
   scree_device_step *h = &d->header;
   h->done = 0;
   h->wanted = wanted;
-  h->awake_count = h->resume = 0;
+  h->awake_count = h->depth_job_count = h->resume = 0;
+  h->depths_used = 0;
   h->offender = scree_none;
   h->trouble = (scree_trouble){scree_none, scree_none, scree_none, 0};
   h->largest_overlap = h->partings = h->list_builds = h->evaluations = 0;
@@ -505,6 +530,7 @@ static void count_steps(scree_world *w, const scree_device_step *h, double start
   w->timings.contacts += scree_now() - started;
   w->timings.total += scree_now() - started;
   w->timings.steps += h->done;
+  if (h->done) w->on_device->awake = (size_t)(h->evaluations / h->done);
   w->timings.list_builds += h->list_builds;
   w->timings.pair_evaluations += h->done * w->neighbours.count;
 }

@@ -162,9 +162,8 @@ static scree_status launch(const scree_cuda_broad *broad, const scree_world *w,
                };
   scree_status status = SCREE_OK;
   for (int kernel = (int)first; kernel <= (int)last && !status; kernel++)
-    status =
-        scree_cuda_launch(place->queue, (scree_kernel)kernel, counts[kernel] ? counts[kernel] : n,
-                          place->world, place->step, error);
+    status = scree_cuda_launch(place->queue, (scree_kernel)kernel,
+                               counts[kernel] ? counts[kernel] : n, 1, place->worlds, 0, error);
   return status;
 }
 

@@ -7,8 +7,8 @@
 /* Where the world is on the device. */
 typedef struct scree_cuda_place {
   const scree_cuda_queue *queue;
-  scree_device_address world, step;
-  scree_world *image; /* the device's struct, with its pointers */
+  scree_device_address world, worlds; /* a list of it alone */
+  scree_world *image;                 /* the device's struct, with its pointers */
   /* The memory of an array of the world, by where its pointer is in the struct. */
   scree_cuda_block *(*array)(scree_world *world, size_t field);
 } scree_cuda_place;

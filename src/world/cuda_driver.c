@@ -9,7 +9,7 @@
 
 extern const char scree_ptx[]; /* made by cmake/ptx.sh */
 
-enum { MOST_DEVICES = 16, THREADS = 64, MOST_BLOCKS = 2048, STACK_BYTES = 24576 };
+enum { THREADS = 64, MOST_BLOCKS = 2048, LEAST_BLOCKS = 64, STACK_BYTES = 24576 };
 /* The driver's own numbers. */
 enum {
   LIMIT_STACK = 0,
@@ -71,7 +71,7 @@ static const struct {
 static struct opened {
   handle context, functions[SCREE_KERNEL_COUNT];
   char description[256];
-} devices[MOST_DEVICES];
+} devices[SCREE_MOST_DEVICES];
 
 static scree_status check(int result, const char *what, scree_error *error) {
   const char *text = NULL;
@@ -123,7 +123,7 @@ static scree_status open_device(int number, scree_error *error) {
   if (status) return status;
   status = check(cu.device_count(&count), "devices", error);
   if (status) return status;
-  if (number >= count || number >= MOST_DEVICES)
+  if (number >= count || number >= SCREE_MOST_DEVICES)
     return scree_fail(error, SCREE_NO_BACKEND, "cuda: device %d of %d", number, count);
   struct opened *device = &devices[number];
   if (device->context) return SCREE_OK;
@@ -185,6 +185,10 @@ void scree_cuda_close_queue(scree_cuda_queue *queue) {
   if (queue->stream) cu.close_queue(queue->stream);
 }
 
+scree_status scree_cuda_wait(const scree_cuda_queue *queue, scree_error *error) {
+  return check(cu.wait(queue->stream), "kernels", error);
+}
+
 scree_status scree_cuda_write(const scree_cuda_queue *queue, scree_device_address to,
                               const void *from, size_t size, scree_error *error) {
   if (size == 0) return SCREE_OK;
@@ -195,7 +199,7 @@ scree_status scree_cuda_read(const scree_cuda_queue *queue, void *to, scree_devi
                              size_t size, scree_error *error) {
   if (size == 0) return SCREE_OK;
   scree_status status = check(cu.read(to, from, size, queue->stream), "from the device", error);
-  return status ? status : check(cu.wait(queue->stream), "kernels", error);
+  return status ? status : scree_cuda_wait(queue, error);
 }
 
 scree_status scree_cuda_clear(const scree_cuda_queue *queue, scree_device_address at, size_t size,
@@ -204,14 +208,15 @@ scree_status scree_cuda_clear(const scree_cuda_queue *queue, scree_device_addres
 }
 
 scree_status scree_cuda_launch(const scree_cuda_queue *queue, scree_kernel kernel, size_t count,
-                               scree_device_address world, scree_device_address step,
+                               size_t worlds, scree_device_address world, scree_device_address step,
                                scree_error *error) {
   void *arguments[] = {&world, &step};
   size_t blocks = scree_block_count(count, THREADS);
+  size_t most = MOST_BLOCKS / worlds > LEAST_BLOCKS ? MOST_BLOCKS / worlds : LEAST_BLOCKS;
   if (count == 0) return SCREE_OK;
-  if (blocks > MOST_BLOCKS) blocks = MOST_BLOCKS;
-  return check(cu.launch(devices[queue->device].functions[kernel], (unsigned)blocks, 1, 1, THREADS,
-                         1, 1, 0, queue->stream, arguments, NULL),
+  if (blocks > most) blocks = most;
+  return check(cu.launch(devices[queue->device].functions[kernel], (unsigned)blocks,
+                         (unsigned)worlds, 1, THREADS, 1, 1, 0, queue->stream, arguments, NULL),
                "a kernel", error);
 }
 

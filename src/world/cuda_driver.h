@@ -7,6 +7,8 @@
 
 typedef unsigned long long scree_device_address;
 
+enum { SCREE_MOST_DEVICES = 16 };
+
 typedef enum scree_kernel {
 #define SCREE_NAME(name) SCREE_KERNEL_##name,
   SCREE_KERNELS(SCREE_NAME) SCREE_STEP_KERNELS,
@@ -39,6 +41,8 @@ typedef struct scree_cuda_block {
 scree_status scree_cuda_reserve(scree_device_address *block, size_t *capacity, size_t size,
                                 scree_error *error);
 void scree_cuda_free(scree_device_address block);
+/* Until all that was asked of the queue is done. */
+scree_status scree_cuda_wait(const scree_cuda_queue *queue, scree_error *error);
 scree_status scree_cuda_write(const scree_cuda_queue *queue, scree_device_address to,
                               const void *from, size_t size, scree_error *error);
 /* To zeros. */
@@ -47,10 +51,10 @@ scree_status scree_cuda_clear(const scree_cuda_queue *queue, scree_device_addres
 /* Waits for all that was asked of the queue. */
 scree_status scree_cuda_read(const scree_cuda_queue *queue, void *to, scree_device_address from,
                              size_t size, scree_error *error);
-/* Threads for about so many elements, over which kernels loop; of the two arguments that every
- * kernel has. */
+/* Threads for about so many elements of each of `worlds` worlds, over which kernels loop; of the
+ * two arguments that every kernel has: arrays of the worlds' and the steps' structs. */
 scree_status scree_cuda_launch(const scree_cuda_queue *queue, scree_kernel kernel, size_t count,
-                               scree_device_address world, scree_device_address step,
+                               size_t worlds, scree_device_address world, scree_device_address step,
                                scree_error *error);
 
 #endif

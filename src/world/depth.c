@@ -54,11 +54,7 @@ typedef struct line {
   double from, to;
 } line;
 
-/* A point of it: the way along, the depth (below 0 outside), its slope in space and along. */
-typedef struct sample {
-  double s, depth, rate;
-  vec3 slope;
-} sample;
+typedef scree_depth sample; /* contact.h */
 
 /* False where nothing of the edge lies within the box. */
 static bool make_line(const side *sd, const scree_edge *edge, double above, line *l) {
@@ -123,27 +119,28 @@ static sample refine(const scree_particle *to, const line *l, sample low, sample
   return best;
 }
 
-/* The deepest point of an edge where it is deeper than `above`. */
-static bool find_deepest(const side *sd, const scree_edge *edge, double above, sample *deepest) {
+/* The deepest point of an edge where it is deeper than `above`; else no deeper than that. */
+static sample find_deepest(const side *sd, const scree_edge *edge, double above) {
   line l;
-  if (!make_line(sd, edge, above, &l)) return false;
+  sample deepest = {.depth = above};
+  if (!make_line(sd, edge, above, &l)) return deepest;
   double least = scree_max(least_stride * (l.to - l.from), 1e-9 * edge->length);
   sample before = sample_at(sd->to, &l, l.from);
-  *deepest = before;
-  if (!(before.depth > above)) deepest->depth = above;
+  deepest = before;
+  if (!(before.depth > above)) deepest.depth = above;
   while (before.s < l.to) {
     double way = before.depth < above ? above - before.depth : stride_share * fabs(before.depth);
     sample here = sample_at(sd->to, &l, scree_min(before.s + scree_max(way, least), l.to));
     bool peak = before.rate > 0 && here.rate < 0 &&
-                0.5 * (before.depth + here.depth + here.s - before.s) > deepest->depth;
-    if (here.depth > deepest->depth) *deepest = here;
+                0.5 * (before.depth + here.depth + here.s - before.s) > deepest.depth;
+    if (here.depth > deepest.depth) deepest = here;
     if (peak) {
       sample top = refine(sd->to, &l, before, here);
-      if (top.depth > deepest->depth) *deepest = top;
+      if (top.depth > deepest.depth) deepest = top;
     }
     before = here;
   }
-  return deepest->depth > above;
+  return deepest;
 }
 
 /* ---- the edges of a pair ---- */
@@ -180,18 +177,18 @@ static void add_depth(const side *sd, scree_pair *pair, vec3 p, const sample *de
   touch->of_depth = true;
 }
 
-/* Adds the edge as a touch where it is deeper than `above`; answers that depth, else `above`. */
+/* Adds an edge as a touch whose deepest point lies deeper than `above`; answers that depth, or
+ * `above`. */
 static double touch_edge(const side *sd, scree_pair *pair, const scree_edge *edge, double above,
-                         scree_scratch *scratch) {
-  sample deep;
-  if (!find_deepest(sd, edge, above, &deep)) return above;
-  vec3 along = vec3_mad(edge->start, edge->along, deep.s),
+                         const sample *deep, scree_scratch *scratch) {
+  if (!(deep->depth > above)) return above;
+  vec3 along = vec3_mad(edge->start, edge->along, deep->s),
        p = vec3_add(mat3_mul_vec(&sd->rotation, along), sd->shift);
-  if (deep.depth <= -pair->law.smoothing) return deep.depth;
+  if (deep->depth <= -pair->law.smoothing) return deep->depth;
   /* pseudonormals of folds may lie */
-  if (deep.depth > pair->law.smoothing && !scree_is_inside(sd->to, p)) return above;
-  add_depth(sd, pair, p, &deep, scratch);
-  return deep.depth;
+  if (deep->depth > pair->law.smoothing && !scree_is_inside(sd->to, p)) return above;
+  add_depth(sd, pair, p, deep, scratch);
+  return deep->depth;
 }
 
 static double touch_side(const side *sd, scree_pair *pair, double above, scree_scratch *scratch) {
@@ -208,7 +205,8 @@ static double touch_side(const side *sd, scree_pair *pair, double above, scree_s
     if (!scree_box_meets(&box, &within)) continue;
     for (uint32_t k = 0; k < node->count; k++) {
       const scree_edge *edge = &sd->from->edges[tree->order[node->first + k]];
-      deepest = scree_max(deepest, touch_edge(sd, pair, edge, above, scratch));
+      sample deep = find_deepest(sd, edge, above);
+      deepest = scree_max(deepest, touch_edge(sd, pair, edge, above, &deep, scratch));
     }
     if (node->count) continue;
     stack[depth++] = node->first + 1;
@@ -239,25 +237,27 @@ static double depth_of_point(const side *sd, vec3 own, double radius, double dee
   return deeper && (!is_solid(sd->from) || scree_is_inside(sd->from, own)) ? d : deepest;
 }
 
-/* Of bodies that were made in each other no edge need be inside: the deepest of drawn-in corners
- * and of spheres. */
-static double deepest_point(const side *sd, double deepest) {
+/* Of bodies that were made in each other no edge need be inside: the deepest of a drawn-in corner,
+ * or of a sphere. */
+static double depth_of_corner(const side *sd, size_t i) {
   const scree_particle *from = sd->from;
-  if (!is_solid(sd->to) || (from->face_count && !is_solid(from))) return deepest;
-  for (size_t i = 0; i < from->point_count; i++) {
-    bool sphere = !from->face_count;
-    if (sphere) deepest = depth_of_point(sd, from->points[i], from->point_radii[i], deepest);
-    for (int k = 0; k < DRAWN_COUNT && !sphere; k++)
-      deepest = depth_of_point(sd, vec3_scale(from->points[i], drawn_in[k]), 0, deepest);
-  }
+  if (!is_solid(sd->to) || (from->face_count && !is_solid(from))) return 0;
+  if (!from->face_count) return depth_of_point(sd, from->points[i], from->point_radii[i], 0);
+  double deepest = 0;
+  for (int k = 0; k < DRAWN_COUNT; k++)
+    deepest = depth_of_point(sd, vec3_scale(from->points[i], drawn_in[k]), 0, deepest);
   return deepest;
 }
 
 static double start_depth(const scree_world *world, const scree_pair *pair,
                           const scree_frame *relative) {
   side sides[2];
+  double deepest = 0;
   make_sides(world, pair, relative, sides);
-  return deepest_point(&sides[1], deepest_point(&sides[0], 0));
+  for (int k = 0; k < 2; k++)
+    for (size_t i = 0; i < sides[k].from->point_count; i++)
+      deepest = scree_max(deepest, depth_of_corner(&sides[k], i));
+  return deepest;
 }
 
 /* ---- when depths are asked for ---- */
@@ -281,22 +281,28 @@ static scree_smooth_maximum felt_overlap(const scree_world *world, const scree_p
   return (scree_smooth_maximum){.cutoff = -pair->law.smoothing};
 }
 
+/* Bodies that part are apart here: once they are pushed, where their springs would hardly press. */
+static double apart_depth(const scree_pair *pair) {
+  bool pushed = vec3_norm2(pair->way) > 0;
+  return pushed ? -apart_share * pair->law.reach : 0;
+}
+
 static void note_start(const scree_pair *pair, double depth, scree_pair_work *work) {
   if (depth > scree_max(start_share * pair->law.limit, pair->law.reach))
     work->start_depth = scree_max(work->start_depth, depth);
 }
 
-void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
-                            scree_scratch *scratch, scree_pair_work *work) {
+void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
+  scree_depth_question *question = &scratch->question;
+  *question = (scree_depth_question){false, false, 0};
   if (!b || !a->face_count || !b->face_count) pair->parting = false; /* no depth is known */
   if (!b) return;
-  bool new = scree_pair_is_new(pair);
-  if (new) note_start(pair, start_depth(world, pair, relative), work);
+  question->start = scree_pair_is_new(pair);
   if (!a->face_count || !b->face_count) return;
   double near = near_share * pair->law.reach,
          far = near + 2 * pair->list.travel - pair->law.reach - pair->law.smoothing;
-  if (!pair->parting && !scratch->any_inside && !(pair->depth > 0) && !new &&
+  if (!pair->parting && !scratch->any_inside && !(pair->depth > 0) && !question->start &&
       scratch->least_gap >= far) {
     pair->depth = -INFINITY; /* cores that were apart meet at features, of which none is near */
     return;
@@ -309,17 +315,90 @@ void scree_pair_feel_depths(const scree_world *world, scree_pair *pair, const sc
     pair->depth += pair->list.travel;
     return;
   }
-  /* once they are pushed apart, until their springs would hardly press */
-  bool pushed = vec3_norm2(pair->way) > 0;
-  double apart = pushed ? -apart_share * pair->law.reach : 0,
-         least = pair->parting ? apart : scree_min(above - near, 0.5 * above);
-  pair->depth = scree_touch_depths(world, pair, relative, least, scratch);
+  question->edges = true;
+  question->above = pair->parting ? apart_depth(pair) : scree_min(above - near, 0.5 * above);
+}
+
+static void answer(scree_pair *pair, double start, double depth, scree_scratch *scratch,
+                   scree_pair_work *work) {
+  const scree_depth_question *question = &scratch->question;
+  if (question->start) note_start(pair, start, work);
+  if (!question->edges) return;
+  pair->depth = depth;
   scratch->depth_queries++;
-  if (new) note_start(pair, pair->depth, work);
-  if (!pair->parting || pair->depth > apart) return;
+  if (question->start) note_start(pair, pair->depth, work);
+  if (!pair->parting || pair->depth > apart_depth(pair)) return;
   pair->parting = false;
   pair->parted = true;
   pair->way = (vec3){0, 0, 0};
   start_anew(pair, scratch);
   work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
+}
+
+void scree_pair_find_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                            scree_pair_work *work) {
+  const scree_depth_question *question = &scratch->question;
+  const scree_frame *relative = &scratch->relative;
+  double start = question->start ? start_depth(world, pair, relative) : 0, depth = 0;
+  if (question->edges) depth = scree_touch_depths(world, pair, relative, question->above, scratch);
+  answer(pair, start, depth, scratch, work);
+}
+
+/* ---- the same in pieces ---- */
+
+/* The edges of a and of b, where they are asked for, then their points. */
+typedef struct entries {
+  side sides[2];
+  size_t edges[2], points[2];
+} entries;
+
+static entries entries_of(const scree_world *world, const scree_pair *pair,
+                          const scree_scratch *scratch) {
+  entries all;
+  make_sides(world, pair, &scratch->relative, all.sides);
+  for (int k = 0; k < 2; k++) {
+    all.edges[k] = scratch->question.edges ? all.sides[k].from->edge_count : 0;
+    all.points[k] = scratch->question.start ? all.sides[k].from->point_count : 0;
+  }
+  return all;
+}
+
+size_t scree_depth_count(const scree_world *world, const scree_pair *pair,
+                         const scree_scratch *scratch) {
+  if (!scratch->question.edges && !scratch->question.start) return 0;
+  entries all = entries_of(world, pair, scratch);
+  return all.edges[0] + all.edges[1] + all.points[0] + all.points[1];
+}
+
+scree_depth scree_depth_of(const scree_world *world, const scree_pair *pair,
+                           const scree_scratch *scratch, size_t entry) {
+  const entries all = entries_of(world, pair, scratch);
+  const double above = scratch->question.above;
+  for (int k = 0; k < 2; k++) {
+    const side *sd = &all.sides[k];
+    if (entry < all.edges[k])
+      return is_solid(sd->to)
+                 ? find_deepest(sd, &sd->from->edges[sd->from->edge_tree.order[entry]], above)
+                 : (scree_depth){.depth = above};
+    entry -= all.edges[k];
+  }
+  int k = entry >= all.points[0];
+  return (scree_depth){.depth = depth_of_corner(&all.sides[k], entry - (k ? all.points[0] : 0))};
+}
+
+void scree_pair_take_depths(const scree_world *world, scree_pair *pair, const scree_depth *found,
+                            scree_scratch *scratch, scree_pair_work *work) {
+  const entries all = entries_of(world, pair, scratch);
+  double start = 0, depth = scratch->question.above;
+  for (int k = 0; k < 2; k++) {
+    const side *sd = &all.sides[k];
+    for (size_t i = 0; i < all.edges[k]; i++, found++) {
+      const scree_edge *edge = &sd->from->edges[sd->from->edge_tree.order[i]];
+      double own = touch_edge(sd, pair, edge, scratch->question.above, found, scratch);
+      depth = scree_max(depth, own);
+    }
+  }
+  for (size_t i = 0; i < all.points[0] + all.points[1]; i++)
+    start = scree_max(start, found[i].depth);
+  answer(pair, start, depth, scratch, work);
 }

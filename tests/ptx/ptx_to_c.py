@@ -16,7 +16,7 @@ TYPES = {
        for kind in "usb" for bits in (8, 16, 32, 64)},
 }
 SPECIAL = {"%ctaid.x": "block_index", "%nctaid.x": "block_count", "%ntid.x": "block_size",
-           "%tid.x": "thread_index"}
+           "%tid.x": "thread_index", "%ctaid.y": "world_index"}
 COMPARISONS = {"eq": "==", "ne": "!=", "lt": "<", "le": "<=", "gt": ">", "ge": ">="}
 UNORDERED = {"equ": "==", "neu": "!=", "ltu": "<", "leu": "<=", "gtu": ">", "geu": ">="}
 
@@ -25,7 +25,7 @@ PRELUDE = """/* Made from PTX. */
 #include <string.h>
 extern int watching;
 void note_access(const void *at, uint64_t size, int is_write);
-_Thread_local uint32_t thread_index, block_index, block_size = 1, block_count = 1;
+_Thread_local uint32_t thread_index, block_index, block_size = 1, block_count = 1, world_index;
 static inline double of_bits(uint64_t b) { double d; memcpy(&d, &b, 8); return d; }
 static inline float of_bits_f(uint32_t b) { float d; memcpy(&d, &b, 4); return d; }
 static inline uint64_t bits_of(double d) { uint64_t b; memcpy(&b, &d, 8); return b; }

@@ -17,7 +17,7 @@ typedef struct kernel {
   void (*run)(void *, void *);
 } kernel;
 extern const kernel kernels[];
-extern _Thread_local uint32_t thread_index, block_index, block_size, block_count;
+extern _Thread_local uint32_t thread_index, block_index, block_size, block_count, world_index;
 extern const char translated_ptx[]; /* what the kernels were translated from */
 
 enum { INVALID_VALUE = 1, OUT_OF_MEMORY = 2, INVALID_PTX = 218, NOT_FOUND = 500, LOST = 719 };
@@ -121,7 +121,7 @@ static const char *running; /* the kernel */
 static void note_byte(const struct watched *block, size_t at, int is_write) {
   access *byte = &block->bytes[at];
   uint64_t launch = (uint64_t)launches << 32,
-           self = launch | ((uint64_t)block_index * block_size + thread_index + 1);
+           self = launch | (((uint64_t)world_index * block_count + block_index) * block_size + thread_index + 1);
   bool written = byte->writer >> 32 == launches && byte->writer != self,
        read = byte->reader >> 32 == launches && byte->reader != self;
   if (written || (is_write && read)) {
@@ -218,18 +218,19 @@ int cuLaunchKernel(void *function, unsigned grid_x, unsigned grid_y, unsigned gr
                    unsigned block_x, unsigned block_y, unsigned block_z, unsigned shared,
                    void *stream, void **arguments, void **extra) {
   (void)stream, (void)extra;
-  if (grid_y * grid_z * block_y * block_z != 1 || shared) return INVALID_VALUE;
+  if (grid_z * block_y * block_z != 1 || shared) return INVALID_VALUE;
   if (++launches == setting("SCREE_STAND_IN_LOST", 0)) return LOST;
   const char *order = getenv("SCREE_STAND_IN_ORDER");
   bool reverse = order && strcmp(order, "reverse") == 0,
        shuffle = order && strcmp(order, "shuffled") == 0;
-  size_t count = (size_t)grid_x * block_x;
+  size_t in_world = (size_t)grid_x * block_x, count = in_world * grid_y;
   block_size = block_x;
   block_count = grid_x;
   running = ((const kernel *)function)->name;
   for (size_t i = 0; i < count; i++) {
     size_t thread = reverse ? count - 1 - i : shuffle ? shuffled(i, count) : i;
-    block_index = (uint32_t)(thread / block_x);
+    world_index = (uint32_t)(thread / in_world);
+    block_index = (uint32_t)(thread % in_world / block_x);
     thread_index = (uint32_t)(thread % block_x);
     ((const kernel *)function)->run(arguments[0], arguments[1]);
   }

@@ -5,24 +5,20 @@
 #include "world/lists.h"
 
 #define STAGE(name, function, count)                                                               \
-  void scree_kernel_##name(scree_world *world, scree_device_step *step) {                          \
-    (void)step;                                                                                    \
-    for                                                                                            \
-      EACH(i, count) function(world, i);                                                           \
+  void scree_kernel_##name(scree_world **worlds, scree_device_step *steps) {                       \
+    scree_world *world = worlds[WORLD_INDEX];                                                      \
+    (void)steps;                                                                                   \
+    FOR_EACH (i, count) function(world, i);                                                        \
   }
 #define GROUPS(name, member)                                                                       \
-  void scree_kernel_##name##_sums(scree_world *world, scree_device_step *step) {                   \
-    (void)step;                                                                                    \
-    for                                                                                            \
-      EACH(c, scree_groups_chunks(&world->broad->member))                                          \
+  static void sum_##name(scree_world *world, size_t c) {                                           \
     scree_groups_sum(&world->broad->member, c);                                                    \
   }                                                                                                \
-  void scree_kernel_##name##_places(scree_world *world, scree_device_step *step) {                 \
-    (void)step;                                                                                    \
-    for                                                                                            \
-      EACH(c, scree_groups_chunks(&world->broad->member))                                          \
+  static void place_##name(scree_world *world, size_t c) {                                         \
     scree_groups_place(&world->broad->member, c);                                                  \
-  }
+  }                                                                                                \
+  STAGE(name##_sums, sum_##name, scree_groups_chunks(&world->broad->member))                       \
+  STAGE(name##_places, place_##name, scree_groups_chunks(&world->broad->member))
 
 STAGE(box, scree_grids_box, world->bodies.count)
 STAGE(grids, scree_grids_begin, 1)
@@ -48,16 +44,13 @@ GROUPS(wall, walls)
 STAGE(list_walls, scree_lists_walls, world->bodies.count)
 STAGE(list_touching, scree_lists_touching, world->keys.count / 64 + 1)
 
-void scree_kernel_list_date(scree_world *world, scree_device_step *step) {
-  (void)step;
-  size_t bodies = world->bodies.count;
-  for
-    EACH(i, bodies + 1) {
-      if (i < bodies) {
-        scree_lists_date(world, i);
-        continue;
-      }
-      scree_lists_end(world, 0);
-      scree_lists_date_walls(world, 0);
-    }
+/* Bodies, and after them all walls. */
+static void date(scree_world *world, size_t i) {
+  if (i < world->bodies.count) {
+    scree_lists_date(world, i);
+    return;
+  }
+  scree_lists_end(world, 0);
+  scree_lists_date_walls(world, 0);
 }
+STAGE(list_date, date, world->bodies.count + 1)

@@ -13,17 +13,27 @@ typedef struct scree_visit {
   uint32_t place, item;
 } scree_visit;
 
-/* A list that is to be made, in parts of as many entries each. */
-enum { SCREE_LIST_PARTS = 256, SCREE_MOST_LISTS = 1 << 15 };
+/* A list that is to be made, in parts of as many entries each. What a part finds is kept where it
+ * is little, as mostly it is; else it is found again to be written. */
+enum { SCREE_LIST_PARTS = 512, SCREE_LIST_KEPT = 4 };
 typedef struct scree_due_list {
   scree_listing listing;
   uint32_t place; /* of the pair */
   uint32_t entries;
   uint32_t found[SCREE_LIST_PARTS]; /* by each part; then, by those before it */
+  scree_sleeper kept[SCREE_LIST_PARTS][SCREE_LIST_KEPT];
 } scree_due_list;
 
+/* A pair that asks for depths (depth.c), of which there are `count` from `first` on. */
+enum { SCREE_DEPTH_PARTS = 1024, SCREE_MOST_DEPTH_JOBS = 1024 };
+typedef struct scree_depth_job {
+  uint32_t place;
+  uint32_t count;
+  uint64_t first;
+} scree_depth_job;
+
 /* How far a pair has come in a step. */
-enum { SCREE_PAIR_NEW, SCREE_PAIR_LISTING, SCREE_PAIR_LISTED, SCREE_PAIR_READY };
+enum { SCREE_PAIR_NEW, SCREE_PAIR_LISTING, SCREE_PAIR_LISTED, SCREE_PAIR_READY, SCREE_PAIR_ASKS };
 
 typedef struct scree_device_step {
   scree_scratch *hands; /* by place in world->awake, as is the next */
@@ -31,8 +41,13 @@ typedef struct scree_device_step {
   uint8_t *touch_counts; /* of items, by where their touches begin in the pool of touches */
   scree_visit *visits[SCREE_VISIT_KINDS];
   scree_due_list *due;
+  uint32_t due_capacity;
+  scree_depth_job *depth_jobs;
+  scree_depth *depths;
+  uint64_t depth_capacity, depths_used;
 
-  uint32_t awake_count, due_count, visit_counts[SCREE_VISIT_KINDS]; /* in this step */
+  uint32_t awake_count, due_count, depth_job_count; /* in this step */
+  uint32_t visit_counts[SCREE_VISIT_KINDS];
   uint32_t stop;            /* no further step before the host has looked */
   uint32_t resume;          /* the step has begun, and is gone on with */
   uint32_t too_small;       /* some pair found too little room in the pools */
@@ -55,6 +70,8 @@ typedef struct scree_device_step {
   X(list_write) /* part of it */                                                                   \
   X(list_end)   /* list */                                                                         \
   X(visit)      /* item that is awake */                                                           \
+  X(meet)       /* pair */                                                                         \
+  X(depth)      /* edge or point of a pair that asks for depths */                                 \
   X(press)      /* pair */                                                                         \
   X(gather)     /* body */                                                                         \
   X(advance)    /* body or wall */                                                                 \

@@ -65,15 +65,14 @@ static bool is_held(const scree_device_step *step) {
 
 /* ---- pairs ---- */
 
-void scree_kernel_awake(scree_world *world, scree_device_step *step) {
+static void do_awake(scree_world *world, scree_device_step *step) {
   if (step->stop || step->resume) return;
-  for
-    EACH(k, world->neighbours.count) {
-      if (!scree_is_awake(world, k)) continue;
-      uint32_t place = take(&step->awake_count, 1);
-      world->awake.items[place] = (uint32_t)k;
-      step->progress[place] = SCREE_PAIR_NEW;
-    }
+  FOR_EACH (k, world->neighbours.count) {
+    if (!scree_is_awake(world, k)) continue;
+    uint32_t place = take(&step->awake_count, 1);
+    world->awake.items[place] = (uint32_t)k;
+    step->progress[place] = SCREE_PAIR_NEW;
+  }
 }
 
 /* The pair at this place, with its lists in hand. */
@@ -125,113 +124,117 @@ static void wake(scree_device_step *step, scree_pair *pair, size_t place) {
 
 static void begin_list(scree_world *world, scree_device_step *step, scree_pair *pair,
                        size_t place) {
+  scree_listing listing;
+  if (!scree_listing_begin(&listing, world, pair, &step->hands[place])) {
+    wake(step, pair, place);
+    return;
+  }
   uint32_t at = take(&step->due_count, 1);
-  if (at >= SCREE_MOST_LISTS) {
+  if (at >= step->due_capacity) {
     send_back(step, pair, place, &step->again);
     return;
   }
   scree_due_list *list = &step->due[at];
-  bool near = scree_listing_begin(&list->listing, world, pair, &step->hands[place]);
+  list->listing = listing;
   list->place = (uint32_t)place;
-  list->entries = near ? (uint32_t)scree_listing_count(&list->listing) : 0;
+  list->entries = (uint32_t)scree_listing_count(&listing);
   step->progress[place] = SCREE_PAIR_LISTING;
 }
 
-void scree_kernel_relate(scree_world *world, scree_device_step *step) {
+static void do_relate(scree_world *world, scree_device_step *step) {
   if (step->stop) return;
-  for
-    EACH(place, step->awake_count) {
-      if (step->progress[place] != SCREE_PAIR_NEW) {
-        ask_for_visits(step, take_pair(world, step, place), place);
-        continue;
-      }
-      if (scree_pair_at(world, world->awake.items[place]) == scree_none) {
-        raise_flag(&step->too_small);
-        continue;
-      }
-      scree_pair *pair = take_pair(world, step, place);
-      scree_pair_relate(world, pair, &step->hands[place]);
-      if (scree_pair_is_due(pair))
-        begin_list(world, step, pair, place);
-      else
-        wake(step, pair, place);
+  FOR_EACH (place, step->awake_count) {
+    if (step->progress[place] != SCREE_PAIR_NEW) {
+      ask_for_visits(step, take_pair(world, step, place), place);
+      continue;
     }
+    if (scree_pair_at(world, world->awake.items[place]) == scree_none) {
+      raise_flag(&step->too_small);
+      continue;
+    }
+    scree_pair *pair = take_pair(world, step, place);
+    scree_pair_relate(world, pair, &step->hands[place]);
+    if (scree_pair_is_due(pair))
+      begin_list(world, step, pair, place);
+    else
+      wake(step, pair, place);
+  }
 }
 
 /* ---- lists ---- */
 
 static size_t list_count(const scree_device_step *step) {
-  return step->due_count < SCREE_MOST_LISTS ? step->due_count : SCREE_MOST_LISTS;
+  return step->due_count < step->due_capacity ? step->due_count : step->due_capacity;
 }
 
-/* The entries of a part, one after another. */
-static uint32_t take_part(const scree_due_list *list, scree_listing *listing, size_t part) {
+/* The entries of a part, one after another; how many features they find. */
+static uint32_t take_part(const scree_due_list *list, size_t part, scree_sleeper *to,
+                          uint32_t room) {
   uint32_t size = (list->entries + SCREE_LIST_PARTS - 1) / SCREE_LIST_PARTS;
   size_t begin = part * size, end = begin + size < list->entries ? begin + size : list->entries;
-  listing->count = 0;
-  for (size_t e = begin; e < end; e++) scree_listing_take(listing, e);
-  return listing->count;
+  scree_listing listing = list->listing;
+  listing.to = to;
+  listing.room = room;
+  listing.count = 0;
+  for (size_t e = begin; e < end; e++) scree_listing_take(&listing, e);
+  return listing.count;
 }
 
-void scree_kernel_list_count(scree_world *world, scree_device_step *step) {
+static void do_list_count(scree_world *world, scree_device_step *step) {
   (void)world;
   if (step->stop) return;
-  for
-    EACH(i, list_count(step) * SCREE_LIST_PARTS) {
-      scree_due_list *list = &step->due[i / SCREE_LIST_PARTS];
-      scree_listing listing = list->listing;
-      listing.taking = SCREE_TAKING_COUNT;
-      list->found[i % SCREE_LIST_PARTS] = take_part(list, &listing, i % SCREE_LIST_PARTS);
-    }
+  FOR_EACH (i, list_count(step) * SCREE_LIST_PARTS) {
+    scree_due_list *list = &step->due[i / SCREE_LIST_PARTS];
+    size_t part = i % SCREE_LIST_PARTS;
+    list->found[part] = take_part(list, part, list->kept[part], SCREE_LIST_KEPT);
+  }
 }
 
-void scree_kernel_list_place(scree_world *world, scree_device_step *step) {
+static void do_list_place(scree_world *world, scree_device_step *step) {
   if (step->stop) return;
-  for
-    EACH(i, list_count(step)) {
-      scree_due_list *list = &step->due[i];
-      uint32_t total = 0;
-      for (int part = 0; part < SCREE_LIST_PARTS; part++) {
-        uint32_t found = list->found[part];
-        list->found[part] = total;
-        total += found;
-      }
-      scree_scratch *hand = &step->hands[list->place];
-      take_pair(world, step, list->place);
-      if (!scree_reserve_sleepers(hand, total)) continue;
-      hand->neighbours->sleeping.count = total;
-      step->progress[list->place] = SCREE_PAIR_LISTED;
+  FOR_EACH (i, list_count(step)) {
+    scree_due_list *list = &step->due[i];
+    uint32_t total = 0;
+    for (int part = 0; part < SCREE_LIST_PARTS; part++) {
+      uint32_t found = list->found[part];
+      list->found[part] = total;
+      total += found;
     }
+    scree_scratch *hand = &step->hands[list->place];
+    take_pair(world, step, list->place);
+    if (!scree_reserve_sleepers(hand, total)) continue;
+    hand->neighbours->sleeping.count = total;
+    step->progress[list->place] = SCREE_PAIR_LISTED;
+  }
 }
 
-void scree_kernel_list_write(scree_world *world, scree_device_step *step) {
+static void do_list_write(scree_world *world, scree_device_step *step) {
   if (step->stop) return;
-  for
-    EACH(i, list_count(step) * SCREE_LIST_PARTS) {
-      const scree_due_list *list = &step->due[i / SCREE_LIST_PARTS];
-      const scree_range *sleeping = &step->hands[list->place].neighbours->sleeping;
-      size_t part = i % SCREE_LIST_PARTS;
-      uint32_t begin = list->found[part],
-               end = part + 1 < SCREE_LIST_PARTS ? list->found[part + 1] : sleeping->count;
-      if (step->progress[list->place] != SCREE_PAIR_LISTED || begin == end) continue;
-      scree_listing listing = list->listing;
-      listing.taking = SCREE_TAKING_WRITE;
-      listing.to = world->pools.sleepers + sleeping->first + begin;
-      take_part(list, &listing, part);
-    }
+  FOR_EACH (i, list_count(step) * SCREE_LIST_PARTS) {
+    const scree_due_list *list = &step->due[i / SCREE_LIST_PARTS];
+    const scree_range *sleeping = &step->hands[list->place].neighbours->sleeping;
+    size_t part = i % SCREE_LIST_PARTS;
+    uint32_t begin = list->found[part],
+             end = part + 1 < SCREE_LIST_PARTS ? list->found[part + 1] : sleeping->count;
+    if (step->progress[list->place] != SCREE_PAIR_LISTED || begin == end) continue;
+    scree_sleeper *to = world->pools.sleepers + sleeping->first + begin;
+    if (end - begin > SCREE_LIST_KEPT)
+      take_part(list, part, to, end - begin);
+    else
+      for (uint32_t k = 0; k < end - begin; k++) to[k] = list->kept[part][k];
+  }
 }
 
-void scree_kernel_list_end(scree_world *world, scree_device_step *step) {
+static void do_list_end(scree_world *world, scree_device_step *step) {
   if (step->stop) return;
-  for
-    EACH(i, list_count(step)) {
-      size_t place = step->due[i].place;
-      scree_pair *pair = take_pair(world, step, place);
-      if (step->progress[place] == SCREE_PAIR_LISTED)
-        wake(step, pair, place);
-      else
-        send_back(step, pair, place, &step->too_small);
-    }
+  FOR_EACH (i, list_count(step)) {
+    size_t place = step->due[i].place;
+    scree_pair *pair = take_pair(world, step, place);
+    if (step->progress[place] == SCREE_PAIR_LISTED)
+      wake(step, pair, place);
+    else
+      send_back(step, pair, place, &step->too_small);
+  }
 }
 
 /* ---- contacts ---- */
@@ -252,19 +255,18 @@ static void visit(scree_world *world, scree_device_step *step, const scree_visit
 }
 
 /* Items of one kind follow each other, and no warp has two kinds. */
-void scree_kernel_visit(scree_world *world, scree_device_step *step) {
+static void do_visit(scree_world *world, scree_device_step *step) {
   if (pairs_wait(step)) return;
   enum { WARP = 32 };
   size_t ends[SCREE_VISIT_KINDS], all = 0;
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
     ends[kind] = all += (step->visit_counts[kind] + WARP - 1) / WARP * WARP;
-  for
-    EACH(i, all) {
-      size_t at = i;
-      int kind = 0;
-      while (i >= ends[kind]) at = i - ends[kind++];
-      if (at < step->visit_counts[kind]) visit(world, step, &step->visits[kind][at]);
-    }
+  FOR_EACH (i, all) {
+    size_t at = i;
+    int kind = 0;
+    while (i >= ends[kind]) at = i - ends[kind++];
+    if (at < step->visit_counts[kind]) visit(world, step, &step->visits[kind][at]);
+  }
 }
 
 /* The touches of all items, one after another. */
@@ -295,30 +297,72 @@ static void note_work(scree_device_step *step, const scree_pair *pair,
   __nvvm_atom_max_gen_ull((volatile unsigned long long *)&step->largest_overlap, bits);
 }
 
-void scree_kernel_press(scree_world *world, scree_device_step *step) {
+/* Where there is room many threads look for the depths; else this one. */
+static void ask_for_depths(scree_world *world, scree_device_step *step, scree_pair *pair,
+                           size_t place) {
+  scree_scratch *hand = &step->hands[place];
+  size_t count = scree_depth_count(world, pair, hand);
+  if (count == 0) return;
+  uint64_t first = scree_fetch_add(&step->depths_used, count, 0);
+  uint32_t at = take(&step->depth_job_count, 1);
+  if (first + count > step->depth_capacity || at >= SCREE_MOST_DEPTH_JOBS) {
+    if (at < SCREE_MOST_DEPTH_JOBS) step->depth_jobs[at].count = 0;
+    scree_pair_find_depths(world, pair, hand, &hand->work);
+    return;
+  }
+  step->depth_jobs[at] = (scree_depth_job){(uint32_t)place, (uint32_t)count, first};
+  hand->first_depth = (size_t)first;
+  step->progress[place] = SCREE_PAIR_ASKS;
+}
+
+static void do_meet(scree_world *world, scree_device_step *step) {
   if (pairs_wait(step)) return;
-  for
-    EACH(place, step->awake_count) {
-      scree_pair *pair = take_pair(world, step, place);
-      scree_scratch *hand = &step->hands[place];
-      uint32_t k = pair->neighbours, index = world->pair_of.items[k];
-      gather_touches(step, pair, hand);
-      scree_pair_press(world, pair, hand);
-      scree_pair_leave(world, pair, hand);
-      scree_book(&world->ledger.items[k], &hand->work);
-      note_work(step, pair, &hand->work);
-      if (scree_settle_pair(world, pair)) scree_pair_give_back(world, index);
-    }
+  FOR_EACH (place, step->awake_count) {
+    scree_pair *pair = take_pair(world, step, place);
+    gather_touches(step, pair, &step->hands[place]);
+    scree_pair_meet(world, pair, &step->hands[place]);
+    ask_for_depths(world, step, pair, place);
+  }
+}
+
+static void do_depth(scree_world *world, scree_device_step *step) {
+  if (pairs_wait(step)) return;
+  size_t jobs =
+      step->depth_job_count < SCREE_MOST_DEPTH_JOBS ? step->depth_job_count : SCREE_MOST_DEPTH_JOBS;
+  FOR_EACH (i, jobs * SCREE_DEPTH_PARTS) {
+    const scree_depth_job *job = &step->depth_jobs[i / SCREE_DEPTH_PARTS];
+    if (job->count == 0) continue;
+    const scree_scratch *hand = &step->hands[job->place];
+    const scree_pair *pair =
+        &world->pairs.items[world->pair_of.items[world->awake.items[job->place]]];
+    for (size_t e = i % SCREE_DEPTH_PARTS; e < job->count; e += SCREE_DEPTH_PARTS)
+      step->depths[job->first + e] = scree_depth_of(world, pair, hand, e);
+  }
+}
+
+static void do_press(scree_world *world, scree_device_step *step) {
+  if (pairs_wait(step)) return;
+  FOR_EACH (place, step->awake_count) {
+    scree_pair *pair = take_pair(world, step, place);
+    scree_scratch *hand = &step->hands[place];
+    uint32_t k = pair->neighbours, index = world->pair_of.items[k];
+    if (step->progress[place] == SCREE_PAIR_ASKS)
+      scree_pair_take_depths(world, pair, step->depths + hand->first_depth, hand, &hand->work);
+    scree_pair_press(world, pair, hand);
+    scree_pair_leave(world, pair, hand);
+    scree_book(&world->ledger.items[k], &hand->work);
+    note_work(step, pair, &hand->work);
+    if (scree_settle_pair(world, pair)) scree_pair_give_back(world, index);
+  }
 }
 
 /* ---- bodies and walls ---- */
 
-void scree_kernel_gather(scree_world *world, scree_device_step *step) {
+static void do_gather(scree_world *world, scree_device_step *step) {
   if (bodies_wait(step)) return;
-  for
-    EACH(i, world->bodies.count)
-  if (!world->bodies.removed[i] && !scree_gather_body(world, i))
-    lower_to(&step->offender, (uint32_t)i);
+  FOR_EACH (i, world->bodies.count)
+    if (!world->bodies.removed[i] && !scree_gather_body(world, i))
+      lower_to(&step->offender, (uint32_t)i);
 }
 
 static void advance_body(scree_world *world, scree_device_step *step, size_t i) {
@@ -330,18 +374,17 @@ static void advance_body(scree_world *world, scree_device_step *step, size_t i) 
   raise_flag(&step->fallen);
 }
 
-void scree_kernel_advance(scree_world *world, scree_device_step *step) {
+static void do_advance(scree_world *world, scree_device_step *step) {
   if (is_held(step)) return;
   size_t bodies = world->bodies.count;
-  for
-    EACH(i, bodies + world->walls.count) {
-      if (i < bodies) {
-        advance_body(world, step, i);
-        continue;
-      }
-      scree_wall_advance(world, i - bodies);
-      if (scree_wall_has_left(&world->walls.items[i - bodies])) raise_flag(&step->stale);
+  FOR_EACH (i, bodies + world->walls.count) {
+    if (i < bodies) {
+      advance_body(world, step, i);
+      continue;
     }
+    scree_wall_advance(world, i - bodies);
+    if (scree_wall_has_left(&world->walls.items[i - bodies])) raise_flag(&step->stale);
+  }
 }
 
 /* How deep the pair that overlaps from the start does. */
@@ -351,7 +394,7 @@ static void find_start(const scree_world *world, scree_device_step *step) {
       step->trouble.start_depth = step->hands[place].work.start_depth;
 }
 
-void scree_kernel_end(scree_world *world, scree_device_step *step) {
+static void do_end(scree_world *world, scree_device_step *step) {
   if (FIRST_ELEMENT > 0 || step->stop) return;
   step->stop = is_held(step);
   if (step->stop) {
@@ -364,8 +407,15 @@ void scree_kernel_end(scree_world *world, scree_device_step *step) {
   step->evaluations += step->awake_count;
   step->list_builds += step->due_count;
   step->largest_overlap = 0;
-  step->resume = step->awake_count = step->due_count = 0;
+  step->resume = step->awake_count = step->due_count = step->depth_job_count = 0;
+  step->depths_used = 0;
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++) step->visit_counts[kind] = 0;
   step->done++;
   step->stop = step->stale || step->fallen || step->done == step->wanted;
 }
+
+#define SCREE_KERNEL(name)                                                                         \
+  void scree_kernel_##name(scree_world **worlds, scree_device_step *steps) {                       \
+    do_##name(worlds[WORLD_INDEX], &steps[WORLD_INDEX]);                                           \
+  }
+SCREE_KERNELS(SCREE_KERNEL)

@@ -1,4 +1,5 @@
-/* Kernels as loops over their elements: whatever the number of threads is, each takes its share. */
+/* Kernels as loops over their elements: whatever the number of threads is, each takes its share. A
+ * launch is of several worlds. */
 #ifndef SCREE_WORLD_DEVICE_THREADS_H
 #define SCREE_WORLD_DEVICE_THREADS_H
 
@@ -7,7 +8,9 @@
 #define FIRST_ELEMENT                                                                              \
   ((size_t)__nvvm_read_ptx_sreg_ctaid_x() * __nvvm_read_ptx_sreg_ntid_x() +                        \
    __nvvm_read_ptx_sreg_tid_x())
-#define THREAD_COUNT   ((size_t)__nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x())
-#define EACH(i, count) (size_t i = FIRST_ELEMENT, end_ = (count); i < end_; i += THREAD_COUNT)
+#define THREAD_COUNT ((size_t)__nvvm_read_ptx_sreg_nctaid_x() * __nvvm_read_ptx_sreg_ntid_x())
+#define WORLD_INDEX  __nvvm_read_ptx_sreg_ctaid_y()
+#define FOR_EACH(i, count)                                                                         \
+  for (size_t i = FIRST_ELEMENT, end_ = (count); i < end_; i += THREAD_COUNT)
 
 #endif
