@@ -121,7 +121,8 @@ static const char *running; /* the kernel */
 static void note_byte(const struct watched *block, size_t at, int is_write) {
   access *byte = &block->bytes[at];
   uint64_t launch = (uint64_t)launches << 32,
-           self = launch | (((uint64_t)world_index * block_count + block_index) * block_size + thread_index + 1);
+           self = launch | (((uint64_t)world_index * block_count + block_index) * block_size +
+                            thread_index + 1);
   bool written = byte->writer >> 32 == launches && byte->writer != self,
        read = byte->reader >> 32 == launches && byte->reader != self;
   if (written || (is_write && read)) {
