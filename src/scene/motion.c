@@ -91,12 +91,15 @@ static scree_status fail_write(const scree_motion_file *file, scree_error *error
   return scree_fail(error, SCREE_IO, "%s: cannot write: %s", file->path, strerror(errno));
 }
 
-/* Cuts off what comes after `time`; false where nothing can be kept. */
-static bool keep_frames(scree_motion_file *file, double time) {
+/* Cuts off what comes after `time`; without a stream where nothing can be kept. */
+static scree_status keep_frames(scree_motion_file *file, double time, scree_error *error) {
   char *bytes;
   size_t count, end = 0;
   walk w;
-  if (scree_file_read(file->path, 0, &bytes, &count, NULL) != SCREE_OK) return false;
+  scree_error unread;
+  scree_status status = scree_file_read(file->path, 0, &bytes, &count, &unread);
+  if (status == SCREE_OUT_OF_MEMORY) *error = unread;
+  if (status != SCREE_OK) return status == SCREE_OUT_OF_MEMORY ? status : SCREE_OK;
   if (walk_start(&w, bytes, count)) {
     end = HEADER;
     while (walk_next(&w) && w.frame.time <= time) {
@@ -105,11 +108,11 @@ static bool keep_frames(scree_motion_file *file, double time) {
     }
   }
   scree_free(bytes);
-  if (!end || !(file->stream = scree_open_stream(file->path, "r+b"))) return false;
-  if (scree_cut(file->stream, end)) return true;
+  if (!end || !(file->stream = scree_open_stream(file->path, "r+b"))) return SCREE_OK;
+  if (scree_cut(file->stream, end)) return SCREE_OK;
   fclose(file->stream);
   file->stream = NULL;
-  return false;
+  return SCREE_OK;
 }
 
 static scree_status begin(scree_motion_file *file, scree_error *error) {
@@ -134,11 +137,12 @@ scree_status scree_motion_open(scree_motion_file *file, const char *path, double
                                bool go_on, double time, scree_error *error) {
   *file = (scree_motion_file){.interval = interval, .last = -INFINITY, .path = scree_strdup(path)};
   if (!file->path) return scree_fail_memory(error, strlen(path), "a path");
-  if (go_on && keep_frames(file, time)) {
+  scree_status status = go_on ? keep_frames(file, time, error) : SCREE_OK;
+  if (status == SCREE_OK && file->stream) {
     while (time >= scree_motion_next(file)) file->count++;
     return SCREE_OK;
   }
-  scree_status status = begin(file, error);
+  if (status == SCREE_OK) status = begin(file, error);
   if (status != SCREE_OK) scree_motion_close(file);
   return status;
 }
