@@ -18,6 +18,10 @@ void study_print(FILE *stream, const scree_study_result *result);
  * Returns an exit code after telling stderr what went wrong. */
 int study_run_jobs(const cli_call *call, scree_study *study, const char *folder, size_t jobs);
 
+/* The same in as many threads of this process. */
+int study_run_lanes(const cli_call *call, const scree_study_options *options, const char *folder,
+                    size_t count);
+
 /* Writes FOLDER/study.sbatch and, unless only that is asked for, submits it. */
 int study_run_slurm(const cli_call *call, const scree_study *study, const char *folder);
 

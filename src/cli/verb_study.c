@@ -11,8 +11,9 @@ static const cli_option options[] = {
      "Folder of the study. Default: the file's name without its ending, in the present folder.", 0,
      0, NULL},
     {"jobs", CLI_COUNT, AT(jobs), "N",
-     "Runs at the same time, each in a process of its own. Default: one per processor, at most one "
-     "per run.",
+     "Runs at the same time, each in a process of its own; with --backend cuda in threads that "
+     "share "
+     "the device. Default: one per processor, or 80 on a device; at most one per run.",
      0, 1024, NULL},
     {"lease", CLI_REAL, AT(lease), "SECONDS",
      "A run whose worker on another machine gave no sign of life for so long is taken over. "
@@ -38,6 +39,7 @@ static const cli_option options[] = {
     {"csv", CLI_FLAG, AT(csv), NULL, "Print the results as CSV, a row per point.", 0, 0, NULL},
 };
 static const study_arguments defaults = {.lease = 300};
+enum { RUNS_ON_DEVICE = 80 };
 
 static const char *default_folder(const char *path, char *buffer, size_t size) {
   const char *slash = strrchr(path, '/');
@@ -111,7 +113,8 @@ static int work(const cli_call *call, scree_study *study, const char *folder, bo
   const study_arguments *a = call->options;
   scree_study_options o = work_options(a);
   size_t runs = scree_study_run_count(study);
-  size_t jobs = a->jobs ? a->jobs : (size_t)scree_threads();
+  bool on_device = call->backend && strncmp(call->backend, "cuda", 4) == 0;
+  size_t jobs = a->jobs ? a->jobs : on_device ? RUNS_ON_DEVICE : (size_t)scree_threads();
   if (jobs > runs) jobs = runs;
   if (!worker && !a->keep_failed && scree_study_reopen(study, error) != SCREE_OK)
     return cli_fail(error);
@@ -119,7 +122,8 @@ static int work(const cli_call *call, scree_study *study, const char *folder, bo
     scree_status status = scree_study_work(study, &o, call->progress, NULL, error);
     return status == SCREE_OK ? 0 : cli_fail(error);
   }
-  return study_run_jobs(call, study, folder, jobs);
+  return on_device ? study_run_lanes(call, &o, folder, jobs)
+                   : study_run_jobs(call, study, folder, jobs);
 }
 
 static int run_study(const cli_call *call, scree_study *study, const char *folder,

@@ -1,0 +1,69 @@
+/* Workers as threads of this process: on a device their worlds share launches, which those of
+ * several processes cannot. */
+#include "base/parallel.h"
+#include "cli/study.h"
+#include "cli/terminal.h"
+
+#include <stdlib.h>
+
+typedef struct lane {
+  const cli_call *call;
+  const char *folder;
+  scree_study_options options;
+  scree_status status;
+  scree_error error;
+  size_t completed;
+} lane;
+
+/* Of all lanes' runs one shows how far it is. */
+static bool look(void *context, const char *phase, double fraction) {
+  const lane *l = context;
+  scree_enter_alone();
+  bool going = l->call->progress->report(l->call->progress->context, phase, fraction);
+  scree_leave_alone();
+  return going;
+}
+
+static bool look_away(void *context, const char *phase, double fraction) {
+  (void)context, (void)phase, (void)fraction;
+  return !cli_interrupted();
+}
+
+static void work_in_lane(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)end, (void)block, (void)worker;
+  lane *l = (lane *)context + begin;
+  const scree_progress progress = {begin == 0 ? look : look_away, l, l->call->progress->interval};
+  scree_study *study = NULL;
+  l->status = scree_study_read(l->call->inputs[0], &study, &l->error);
+  if (!l->status) l->status = scree_study_open(study, l->folder, &l->error);
+  if (!l->status) l->status = scree_study_prepare(study, &l->options, &progress, &l->error);
+  if (!l->status)
+    l->status = scree_study_work(study, &l->options, &progress, &l->completed, &l->error);
+  scree_study_free(study);
+}
+
+/* A lane whose run found no room on the device leaves it to the others, if one of them did any. */
+static int conclude(const lane *lanes, size_t count) {
+  size_t completed = 0;
+  for (size_t i = 0; i < count; i++) completed += lanes[i].completed;
+  for (size_t i = 0; i < count; i++)
+    if (lanes[i].status && (lanes[i].status != SCREE_OUT_OF_MEMORY || completed == 0))
+      return cli_fail(&lanes[i].error);
+  return 0;
+}
+
+int study_run_lanes(const cli_call *call, const scree_study_options *options, const char *folder,
+                    size_t count) {
+  lane *lanes = calloc(count, sizeof *lanes);
+  if (!lanes) {
+    fprintf(stderr, "scree: out of memory\n");
+    return 1;
+  }
+  for (size_t i = 0; i < count; i++)
+    lanes[i] = (lane){.call = call, .folder = folder, .options = *options};
+  scree_set_threads((int)count);
+  scree_parallel_for(count, 1, work_in_lane, lanes);
+  int code = conclude(lanes, count);
+  free(lanes);
+  return code;
+}
