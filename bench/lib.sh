@@ -13,7 +13,7 @@ export LC_ALL=C
 provenance() {
   local changed=
   git -C "$root" diff --quiet HEAD 2>/dev/null || changed=', changed since'
-  echo "# scree $(cat "$root/VERSION"), commit $(git -C "$root" rev-parse --short HEAD)$changed"
+  echo "# scree $(cat "$root/VERSION"), commit $(git -C "$root" rev-parse --short HEAD 2>/dev/null || cat "$root/.commit")$changed"
   echo "# machine: $(lscpu | sed -n 's/^Model name: *//p' | head -1), $(nproc) processors, $(
     awk '/MemTotal/ { printf "%.0f GiB", $2 / 1048576 }' /proc/meminfo), $(uname -sm)"
   echo "# load before the run: $(cut -d' ' -f1-3 /proc/loadavg)"

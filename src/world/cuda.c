@@ -33,8 +33,9 @@ typedef struct span {
 } span;
 
 enum { MOST_SPANS = 40, FIRST_TOUCHES = 4096, STEPS_AT_ONCE = 8 };
-/* For how many threads are started: entries of lists; items of a pair. */
-enum { LISTS_AT_ONCE = 32768, VISITS = 4 };
+/* For how many threads are started: parts of lists and of depths, in all and for each of the
+ * neighbours; items of a pair. */
+enum { PARTS_AT_ONCE = 32768, PARTS = 64, VISITS = 4 };
 
 /* What the device alone has. */
 enum {
@@ -432,19 +433,21 @@ static scree_status fetch(scree_world *w, scree_error *error) {
 /* For so many steps. */
 static scree_status launch(scree_world *w, size_t steps) {
   struct scree_device_world *d = w->on_device;
-  const size_t bodies = w->bodies.count, awake = d->awake ? d->awake : w->neighbours.count;
+  const size_t bodies = w->bodies.count, pairs = w->neighbours.count,
+               awake = d->awake ? d->awake : pairs,
+               parts = PARTS * pairs < PARTS_AT_ONCE ? PARTS * pairs : PARTS_AT_ONCE;
   const scree_cuda_request request = {.world = d->own[BLOCK_WORLD].at,
                                       .step = &d->header,
                                       .steps = steps,
-                                      .counts = {[SCREE_KERNEL_awake] = w->neighbours.count,
+                                      .counts = {[SCREE_KERNEL_awake] = pairs,
                                                  [SCREE_KERNEL_relate] = awake,
-                                                 [SCREE_KERNEL_list_count] = LISTS_AT_ONCE,
+                                                 [SCREE_KERNEL_list_count] = parts,
                                                  [SCREE_KERNEL_list_place] = awake,
-                                                 [SCREE_KERNEL_list_write] = LISTS_AT_ONCE,
+                                                 [SCREE_KERNEL_list_write] = parts,
                                                  [SCREE_KERNEL_list_end] = awake,
                                                  [SCREE_KERNEL_visit] = VISITS * awake,
                                                  [SCREE_KERNEL_meet] = awake,
-                                                 [SCREE_KERNEL_depth] = LISTS_AT_ONCE,
+                                                 [SCREE_KERNEL_depth] = parts,
                                                  [SCREE_KERNEL_press] = awake,
                                                  [SCREE_KERNEL_gather] = bodies,
                                                  [SCREE_KERNEL_advance] = bodies + w->walls.count,

@@ -21,7 +21,7 @@ extern _Thread_local uint32_t thread_index, block_index, block_size, block_count
 extern const char translated_ptx[]; /* what the kernels were translated from */
 
 enum { INVALID_VALUE = 1, OUT_OF_MEMORY = 2, INVALID_PTX = 218, NOT_FOUND = 500, LOST = 719 };
-static size_t used;
+static _Atomic size_t used;
 static unsigned long launches;
 int watching;
 void note_access(const void *at, uint64_t size, int is_write);
