@@ -44,12 +44,13 @@ scree_status cli_frames_list(const cli_frames *frames, const char *kind, const c
   if (count == 0) return SCREE_OK;
   const char **files = malloc(count * sizeof *files);
   char(*names)[CLI_FRAME_NAME] = malloc(count * sizeof *names);
-  scree_status status = files && names ? SCREE_OK : no_memory(error);
-  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
+  bool room = files && names;
+  for (size_t i = 0; room && i < count; i++) {
     cli_frame_name(i, kind, names[i]);
     files[i] = names[i];
   }
-  if (status == SCREE_OK) status = scree_pvd_write(files, frames->times, count, path, true, error);
+  scree_status status =
+      room ? scree_pvd_write(files, frames->times, count, path, true, error) : no_memory(error);
   free(files);
   free(names);
   return status;

@@ -316,15 +316,15 @@ void scree_listing_take(scree_listing *l, size_t entry) {
   const front whole = {.nodes = {0}, .count = 1};
   int g = 0;
   while (entry >= group_size(l, (group)g)) entry -= group_size(l, (group)g++);
-  if (g == GROUP_EDGES) {
+  if (g == GROUP_WALL_POINTS || !l->b) {
+    list_wall_point(l, (uint32_t)entry);
+  } else if (g == GROUP_EDGES) {
     list_edge(l, l->a->edge_tree.order[entry], &whole);
-  } else if (g == GROUP_POINTS || g == GROUP_POINTS_OF_B) {
-    point_listing pl = points_against(l, g == GROUP_POINTS);
-    list_point(&pl, pl.from->point_tree.order[entry], &whole);
   } else if (g == GROUP_SPHERES) {
     list_sphere(l, (uint32_t)entry);
   } else {
-    list_wall_point(l, (uint32_t)entry);
+    point_listing pl = points_against(l, g == GROUP_POINTS);
+    list_point(&pl, pl.from->point_tree.order[entry], &whole);
   }
 }
 

@@ -102,7 +102,7 @@ static scree_world *make_sizes(scree_rng *rng) {
 
 static void go_on_sizes(scree_world *world, scree_rng *rng, int piece) {
   (void)rng;
-  scree_world_remove_body(world, (size_t)(7 * piece));
+  scree_world_remove_body(world, 7 * (size_t)piece);
 }
 
 typedef struct scene_kind {
