@@ -1,12 +1,14 @@
 /* Edge against edge: signed overlap, normal and contact point of one item.
  *
  * Closest points of the segments; while apart, direction and distance are theirs. Deeper, the
- * crossing normal, the way that the edges' faces look. A crossing counts deep down when it was seen
- * to come about from outside, or where only its normal is one of both edges, a closest point lies
- * in the other body and the pair presses that way already: an edge that comes in behind a corner
- * was never outside. It counts as far as its normal is one of both edges: edges that slid around a
- * corner inside each other would claim any depth. Nearly parallel edges have no crossing: their
- * ends, which are points against faces, stand for them; the weight fades below sin = 4e-3.
+ * crossing normal: which of the two the normals of the faces say where only one is a normal of both
+ * edges, else (two blades) the reference kept from outside. A crossing counts deep down when it was
+ * seen to come about from outside ("armed"), where only one of the two normals is one of both edges
+ * and a closest point lies in the other body as it begins, or where the pair presses that way
+ * already: an edge that comes in behind a corner was last seen from the wrong side. It counts as
+ * far as its normal is one of both edges: edges that slid around a corner inside each other would
+ * claim any depth. Nearly parallel edges have no crossing: their ends, which are points against
+ * faces, stand for them; the weight fades below sin = 4e-3.
  *
  * Ends, where crossings come and go. With e the way from the nearest end to the plane of the other
  * edge and the normal, the weight fades within a tenth of roundings and overlap. What the overlap
@@ -14,7 +16,7 @@
  * on alone, and is pushed out by the nearer face where the crossing asks for the whole depth of the
  * edge. Both slopes are in the force.
  *
- * A crossing that begins to count in the midst of both edges does so from nothing, or from what the
+ * A crossing that begins to count other than at its ends does so from nothing, or from what the
  * pair has already: what is more is held back, until the edges are apart. */
 #include "world/contact.h"
 
@@ -23,7 +25,8 @@
 static const double parallel_sines[2] = {1e-3, 4e-3};
 static const double beyond_cosines[2] = {0.8660254, 0.9659258}; /* 30 and 15 degrees */
 static const double beyond_sines[2] = {0.5, 0.2588190};
-static const double pressing_cosine = 0.2; /* 78 degrees */
+static const double crossing_cosines[2] = {0.3, 0.6}; /* crossing normal against the reference */
+static const double pressing_cosine = 0.2;            /* 78 degrees */
 /* of the slack of cones, and of twice that */
 static const double slack_cosines[2] = {0.9982005, 0.9928086};
 static const double slack_sines[2] = {0.0599640, 0.1197122};
@@ -115,13 +118,29 @@ static double facing_share(const crossing *x) {
   return scree_smooth_step(none, full, -vec3_dot(x->axis_a, b->axis));
 }
 
-/* Below half the roundings: which of the two crossing normals is the way out the faces say. */
-static vec3 way_out(const crossing *x) {
-  double facing = vec3_dot(x->across, x->eb->normals.axis) - vec3_dot(x->across, x->axis_a);
-  return facing < 0 ? vec3_neg(x->across) : x->across;
+/* Below half the roundings: which of the two crossing normals is the way out the faces say where
+ * only one of them is a normal of both edges. Edges of two blades may have it either way: there the
+ * reference says it where it lies along the crossing normals; where it lies across them (of a
+ * corner that came in beside the edge, for one) the faces do. Where the two disagree the weight
+ * passes through 0 from one to the other. */
+static vec3 way_out(const scree_item *item, const crossing *x, double *weight) {
+  double toward = vec3_dot(x->across, item->reference),
+         facing = vec3_dot(x->across, x->eb->normals.axis) - vec3_dot(x->across, x->axis_a);
+  vec3 back = vec3_neg(x->across);
+  if ((toward < 0) != (facing < 0)) {
+    double one = common_share(x, x->across), other = common_share(x, back),
+           doubt = one > 0 && other > 0 ? 2 * scree_min(one, other) / (one + other) : 0,
+           known =
+               doubt * scree_smooth_step(crossing_cosines[0], crossing_cosines[1], fabs(toward));
+    *weight *= fabs(2 * known - 1);
+    if (known < 0.5) toward = facing;
+  }
+  return toward < 0 ? back : x->across;
 }
 
-/* Whether edges have crossed: a closest point lies in the other body. */
+/* Whether edges that claim to have crossed deeply have: a closest point lies in the other body. The
+ * claim is stale when the edges went around each other instead. Where an edge is so sharp that the
+ * crossing's normal points back into no material, neither does. */
 static bool is_crossed(const scree_world *world, const scree_pair *pair,
                        const scree_frame *relative, const crossing *x) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
@@ -212,8 +231,9 @@ static bool is_only_normal(const crossing *x, vec3 n) {
  * other way round, and that is the way in which the pair presses already. So do edges that come in
  * behind a corner which leaves by another face. */
 static bool is_met_from_behind(const scree_world *world, const scree_pair *pair,
-                               const scree_frame *relative, const crossing *x) {
-  if (!pair->touching) return false;
+                               const scree_item *item, const scree_frame *relative,
+                               const crossing *x) {
+  if (!pair->touching || !item->has_reference) return false;
   vec3 behind = vec3_scale(x->offset, -1 / x->distance);
   if (!is_only_normal(x, behind)) return false;
   const float *along = pair->tangential.force;
@@ -223,6 +243,19 @@ static bool is_met_from_behind(const scree_world *world, const scree_pair *pair,
          is_crossed(world, pair, relative, x);
 }
 
+/* The way out is the present one. */
+static void keep_reference(scree_item *item, vec3 normal) {
+  item->reference = normal;
+  item->has_reference = true;
+}
+
+/* No crossing: the edges' points speak for themselves. */
+static void leave_to_points(const scree_pair *pair, scree_item *item, const crossing *x) {
+  bool apart = x->distance > 0.5 * pair->law.reach;
+  if (apart && !pair->touching) item->inside = false;
+  if (apart && !item->inside) keep_reference(item, vec3_scale(x->offset, 1 / x->distance));
+}
+
 /* How a crossing touches. */
 typedef struct edge_contact {
   vec3 normal;             /* towards a */
@@ -230,30 +263,65 @@ typedef struct edge_contact {
   double first;            /* of its overlap, what may count when it begins to */
 } edge_contact;
 
+/* Whether edges that were not seen to cross lie across each other all the same. */
+static bool is_clear(const scree_world *world, const scree_pair *pair, const scree_item *item,
+                     const scree_frame *relative, const crossing *x, const edge_contact *c) {
+  if (!is_only_normal(x, c->normal)) return false;
+  return c->distance >= 0 ||
+         (item->crossing == SCREE_CROSSING_NONE && is_crossed(world, pair, relative, x));
+}
+
+/* What may count at once of a crossing that begins to: all where it begins at an end, where
+ * nothing is left of it, or where the pair is new. */
+static double first_overlap(const scree_pair *pair, const scree_item *item, const crossing *x) {
+  bool at_end = item->crossing == SCREE_CROSSING_NONE &&
+                x->end <= end_share * pair->law.reach + 2 * pair->list.travel;
+  return at_end || scree_pair_is_new(pair) ? INFINITY : 0;
+}
+
 /* A crossing whose cores are near each other or have met: false where it does not count. */
 static bool find_deep_contact(const scree_world *world, const scree_pair *pair, scree_item *item,
-                              const crossing *x, bool behind, edge_contact *c) {
-  c->normal = way_out(x);
+                              const scree_frame *relative, const crossing *x, bool behind,
+                              edge_contact *c) {
+  if (!item->has_reference) return false; /* not armed */
+  c->normal = way_out(item, x, &c->weight);
   c->distance = vec3_dot(x->offset, c->normal);
-  bool apart = c->distance >= -2 * pair->list.travel, counts = item->inside || behind || apart;
-  item->inside = counts && c->distance < 0.5 * pair->law.reach;
+  bool apart = c->distance >= -2 * pair->list.travel,
+       armed = item->inside || behind ||
+               (apart && vec3_dot(c->normal, item->reference) >= -crossing_cosines[0]);
+  if (!armed && is_clear(world, pair, item, relative, x, c)) {
+    keep_reference(item, c->normal);
+    armed = true;
+  }
+  /* one that counted is followed: of sharp edges the closest points need not lie in the others */
+  bool stale = item->crossing != SCREE_CROSSING_COUNTS && c->distance < -pair->law.thin &&
+               !is_crossed(world, pair, relative, x);
+  item->inside = armed && !stale && c->distance < 0.5 * pair->law.reach;
   if (!apart && !scree_pair_is_new(pair)) c->first = 0;
   if (behind) /* what changes nothing */
     c->first =
         scree_max(c->first, pair->overlap * (1 - world->options.sharing) - pair->law.smoothing);
-  return counts;
+  return armed && !stale;
+}
+
+/* Whether edges passed each other since the last step, over more than half the roundings. */
+static bool has_leapt(const scree_pair *pair, const scree_item *item, const edge_contact *c) {
+  return item->has_reference && c->distance < pair->list.travel &&
+         vec3_dot(c->normal, item->reference) < 0;
 }
 
 /* False where the crossing does not count. */
 static bool find_contact(const scree_world *world, const scree_pair *pair, scree_item *item,
                          const scree_frame *relative, const crossing *x, edge_contact *c) {
   *c = (edge_contact){.normal = vec3_scale(x->offset, 1 / scree_max(x->distance, 1e-300)),
-                      .distance = x->distance,
-                      .first = INFINITY};
+                      .distance = x->distance};
+  if (item->crossing != SCREE_CROSSING_COUNTS) c->first = first_overlap(pair, item, x);
   c->weight = scree_smooth_step(parallel_sines[0], parallel_sines[1], x->sine) * facing_share(x);
-  bool behind = !item->inside && is_met_from_behind(world, pair, relative, x),
-       deep = item->inside || behind || x->distance < 0.5 * pair->law.reach;
-  if (deep && !find_deep_contact(world, pair, item, x, behind, c)) return false;
+  bool behind = !item->inside && is_met_from_behind(world, pair, item, relative, x),
+       deep = item->inside || behind || x->distance < 0.5 * pair->law.reach ||
+              has_leapt(pair, item, c);
+  if (deep && !find_deep_contact(world, pair, item, relative, x, behind, c)) return false;
+  if (!item->inside) keep_reference(item, c->normal);
   double out_a = -vec3_dot(x->axis_a, c->normal), out_b = vec3_dot(x->eb->normals.axis, c->normal);
   if (out_a <= x->ea->facing || out_b <= x->eb->facing) return false; /* seen through a body */
   if (item->inside) c->weight *= common_share(x, c->normal);
@@ -274,16 +342,18 @@ static void hold_back(const scree_pair *pair, scree_item *item, scree_touch *tou
 
 double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
                          const scree_frame *relative, scree_scratch *scratch) {
-  crossing x = {0};
+  crossing x;
   edge_contact c;
   bool crosses = find_crossing(world, pair, item, relative, &x);
   double far = x.distance - pair->law.reach - pair->law.smoothing;
-  bool heard = far < scree_pair_claim(pair) || item->inside,
-       apart = x.distance > 0.5 * pair->law.reach;
-  if (heard && !crosses && apart && !pair->touching) item->inside = false;
+  bool heard = far < scree_pair_claim(pair) || item->inside;
+  if (!heard)
+    keep_reference(item, vec3_scale(x.offset, 1 / x.distance));
+  else if (!crosses)
+    leave_to_points(pair, item, &x);
   if (!crosses || !find_contact(world, pair, item, relative, &x, &c)) {
     item->anchor.share = 0;
-    item->crossing = SCREE_CROSSING_NONE;
+    item->crossing = crosses ? SCREE_CROSSING_REFUSED : SCREE_CROSSING_NONE;
     return heard ? scree_min(far, 0) : far;
   }
   double rounding = world->bodies.particle[pair->a]->radius;

@@ -706,7 +706,7 @@ static bool names_features(const loader *l, const scree_pair *pair, uint32_t kin
 
 static bool is_item(const loader *l, const scree_pair *pair, const scree_item *item) {
   if (!names_features(l, pair, item->kind, item->a, item->b)) return false;
-  if (item->kind == SCREE_ITEM_EDGE_EDGE) return item->crossing <= SCREE_CROSSING_COUNTS;
+  if (item->kind == SCREE_ITEM_EDGE_EDGE) return item->crossing <= SCREE_CROSSING_REFUSED;
   if (item->face_count > SCREE_CACHED_FACES) return false;
   const scree_particle *surface = item->kind == SCREE_ITEM_FACE_POINT
                                       ? l->world->bodies.particle[pair->a]

@@ -121,8 +121,9 @@ enum { SCREE_CACHED_FACES = 4, SCREE_ANCHORS = 3 };
 
 /* Whether the closest points of two edges lie within both. */
 typedef enum scree_crossing {
-  SCREE_CROSSING_NONE, /* or none that counts */
+  SCREE_CROSSING_NONE,
   SCREE_CROSSING_COUNTS,
+  SCREE_CROSSING_REFUSED, /* which way it is out is not known */
 } scree_crossing;
 
 /* A feature pair that is evaluated every step: two cache lines. */
@@ -140,7 +141,7 @@ typedef struct scree_item {
     double valid; /* of a point: path up to which no other face can be nearer */
     double held;  /* of edges: overlap that does not count (edges.c) */
   };
-  vec3 reference; /* of a point: the way out, kept from the last time the cores were apart */
+  vec3 reference; /* the way out, kept from the last time the cores were apart */
   double gap;     /* found in this step; 0: stay awake */
   scree_anchor anchor;
 } scree_item;
