@@ -504,7 +504,7 @@ static void begin_steps(struct scree_device_world *d, size_t wanted) {
   h->awake_count = h->depth_job_count = h->resume = 0;
   h->depths_used = 0;
   h->offender = scree_none;
-  h->trouble = (scree_trouble){scree_none, scree_none, scree_none, 0};
+  h->trouble = scree_no_trouble;
   h->largest_overlap = h->partings = h->list_builds = h->evaluations = 0;
 }
 
@@ -519,7 +519,7 @@ static void go_on(struct scree_device_world *d, bool resume) {
 static scree_status finish(scree_world *w) {
   const scree_device_step *h = &w->on_device->header;
   const scree_trouble *t = &h->trouble;
-  if ((t->start & t->beyond_limit & t->too_fast & h->offender) == scree_none) return SCREE_OK;
+  if (!scree_is_trouble(t) && h->offender == scree_none) return SCREE_OK;
   scree_status status = fetch(w, &w->failure);
   if (status) return status;
   return h->offender != scree_none ? scree_describe_offender(w, h->offender)

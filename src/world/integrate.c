@@ -102,25 +102,9 @@ typedef struct gathering {
   size_t *offender; /* by block: first body beyond its limit; SIZE_MAX for none */
 } gathering;
 
-/* As list_acting, for one body alone: so many are asked for at once, since a thread of a device
- * would wait for each. */
-static size_t list_own(scree_world *world, size_t i, uint32_t *acting) {
-  enum { AT_ONCE = 8 };
-  size_t count = 0, last = world->side_begin[i + 1];
-  for (size_t k = world->side_begin[i]; k < last; k += AT_ONCE) {
-    uint32_t sides[AT_ONCE];
-    bool touches[AT_ONCE];
-    for (size_t j = 0; j < AT_ONCE; j++) sides[j] = world->sides.items[k + j < last ? k + j : k];
-    for (size_t j = 0; j < AT_ONCE; j++) touches[j] = scree_pair_touches(world, sides[j] >> 1);
-    for (size_t j = 0; j < AT_ONCE && k + j < last; j++)
-      if (touches[j]) acting[count++] = sides[j];
-  }
-  return count;
-}
-
 bool scree_gather_body(scree_world *world, size_t i) {
-  uint32_t *acting = &world->acting.items[world->side_begin[i]];
-  size_t end = list_own(world, i, acting);
+  size_t end = 0;
+  const uint32_t *acting = list_acting(world, i, i + 1, &end);
   sum_forces(world, i, acting, 0, end, end);
   world->bodies.travel[i] = coming_travel(world, i);
   return world->bodies.travel[i] <= travel_limit(world, i);

@@ -16,6 +16,10 @@ uint32_t scree_pair_at(scree_world *world, uint32_t k);
 bool scree_settle_pair(scree_world *world, const scree_pair *pair);
 void scree_book(scree_booked *booked, const scree_pair_work *work);
 
+static const scree_trouble scree_no_trouble = {scree_none, scree_none, scree_none, 0};
+static inline bool scree_is_trouble(const scree_trouble *trouble) {
+  return (trouble->start & trouble->beyond_limit & trouble->too_fast) != scree_none;
+}
 /* A sentence in world->failure. */
 scree_status scree_describe_trouble(scree_world *world, const scree_trouble *trouble);
 /* Room for the blocks' results. */

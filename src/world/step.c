@@ -91,12 +91,6 @@ SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair 
 
 enum { PAIRS_AHEAD = 8, ITEMS_AHEAD = 4, FEATURES_AHEAD = 2 };
 
-static const scree_trouble no_trouble = {scree_none, scree_none, scree_none, 0};
-
-static bool is_trouble(const scree_trouble *trouble) {
-  return (trouble->start & trouble->beyond_limit & trouble->too_fast) != scree_none;
-}
-
 void scree_book(scree_booked *booked, const scree_pair_work *work) {
   booked->dashpot += work->later_dashpot + work->dashpot - work->lost - work->let_go;
   booked->tangential += work->later_tangential + work->tangential;
@@ -167,7 +161,7 @@ static void begin_blocks(scree_world *world, size_t begin, size_t end,
                          scree_pair_progress *progress) {
   uint32_t *awake = &world->awake.items[begin];
   *progress = (scree_pair_progress){.awake = (uint32_t)list_awake(world, begin, end, awake),
-                                    .trouble = no_trouble};
+                                    .trouble = scree_no_trouble};
   for (size_t k = 0; k < PAIRS_AHEAD && k < progress->awake; k++) fetch_pair(world, awake[k]);
 }
 
@@ -233,7 +227,7 @@ static scree_status evaluate_pairs(scree_world *world) {
       return scree_fail_memory(&world->failure, 0, "contact features of a pair");
     scree_parallel_for(count, size, evaluate_blocks, world);
   }
-  scree_trouble trouble = no_trouble;
+  scree_trouble trouble = scree_no_trouble;
   world->largest_overlap = 0;
   for (size_t p = 0; p < parts; p++) {
     const scree_pair_progress *part = &world->progress.items[p];
@@ -243,7 +237,7 @@ static scree_status evaluate_pairs(scree_world *world) {
     world->parting_count += part->partings;
     add_trouble(&trouble, &part->trouble);
   }
-  return is_trouble(&trouble) ? scree_describe_trouble(world, &trouble) : SCREE_OK;
+  return scree_is_trouble(&trouble) ? scree_describe_trouble(world, &trouble) : SCREE_OK;
 }
 
 static scree_status describe_overlap(scree_world *world, uint32_t k) {

@@ -2,6 +2,7 @@
  * loops of step.c and integrate.c call. A kernel returns at once where an earlier one stopped the
  * steps. Every element is written by the one thread that has it; several threads meet only at
  * counters and lists of work, whose order shows nowhere. */
+#include "base/atomic.h"
 #include "world/contact.h"
 #include "world/device/device.h"
 #include "world/device/threads.h"
@@ -38,9 +39,6 @@ double scree_now(void) {
   return 0;
 }
 
-static uint32_t take(uint32_t *counter, uint32_t count) {
-  return (uint32_t)__nvvm_atom_add_gen_i((volatile int *)counter, (int)count);
-}
 static void raise_flag(uint32_t *flag) {
   __nvvm_atom_max_gen_ui(flag, 1);
 }
@@ -55,8 +53,7 @@ static bool pairs_wait(const scree_device_step *step) {
 }
 /* Or something is wrong with some. */
 static bool bodies_wait(const scree_device_step *step) {
-  const scree_trouble *t = &step->trouble;
-  return pairs_wait(step) || (t->start & t->beyond_limit & t->too_fast) != scree_none;
+  return pairs_wait(step) || scree_is_trouble(&step->trouble);
 }
 /* Or with some body. */
 static bool is_held(const scree_device_step *step) {
@@ -69,16 +66,20 @@ static void do_awake(scree_world *world, scree_device_step *step) {
   if (step->stop || step->resume) return;
   FOR_EACH (k, world->neighbours.count) {
     if (!scree_is_awake(world, k)) continue;
-    uint32_t place = take(&step->awake_count, 1);
+    uint32_t place = scree_atomic_add(&step->awake_count, 1);
     world->awake.items[place] = (uint32_t)k;
     step->progress[place] = SCREE_PAIR_NEW;
   }
 }
 
+static scree_pair *pair_at(const scree_world *world, size_t place) {
+  return scree_pair_of(world, world->awake.items[place]);
+}
+
 /* The pair at this place, with its lists in hand. */
 static scree_pair *take_pair(scree_world *world, scree_device_step *step, size_t place) {
   scree_scratch *hand = &step->hands[place];
-  scree_pair *pair = &world->pairs.items[world->pair_of.items[world->awake.items[place]]];
+  scree_pair *pair = pair_at(world, place);
   scree_take_in_hand(hand, &world->pools, pair, &world->neighbours.items[pair->neighbours]);
   hand->touches.items = world->pools.touches + hand->first_touch;
   return pair;
@@ -97,7 +98,7 @@ static void ask_for_visits(scree_device_step *step, const scree_pair *pair, size
   uint32_t counts[SCREE_VISIT_KINDS] = {0}, first[SCREE_VISIT_KINDS];
   for (uint32_t i = 0; i < pair->active.count; i++) counts[kind_of_visit(&items[i])]++;
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
-    if (counts[kind] > 0) first[kind] = take(&step->visit_counts[kind], counts[kind]);
+    if (counts[kind] > 0) first[kind] = scree_atomic_add(&step->visit_counts[kind], counts[kind]);
   for (uint32_t i = 0; i < pair->active.count; i++) {
     int kind = kind_of_visit(&items[i]);
     step->visits[kind][first[kind]++] = (scree_visit){(uint32_t)place, i};
@@ -129,7 +130,7 @@ static void begin_list(scree_world *world, scree_device_step *step, scree_pair *
     wake(step, pair, place);
     return;
   }
-  uint32_t at = take(&step->due_count, 1);
+  uint32_t at = scree_atomic_add(&step->due_count, 1);
   if (at >= step->due_capacity) {
     send_back(step, pair, place, &step->again);
     return;
@@ -241,7 +242,7 @@ static void do_list_end(scree_world *world, scree_device_step *step) {
 
 static void visit(scree_world *world, scree_device_step *step, const scree_visit *v) {
   const scree_scratch *hand = &step->hands[v->place];
-  const scree_pair *pair = &world->pairs.items[world->pair_of.items[world->awake.items[v->place]]];
+  const scree_pair *pair = pair_at(world, v->place);
   size_t first = hand->first_touch + (size_t)SCREE_ANCHORS * v->item;
   scree_scratch own; /* of the item's visit, which needs no more of it: */
   own.pools = &world->pools;
@@ -291,10 +292,10 @@ static void note_work(scree_device_step *step, const scree_pair *pair,
   if (work->start_depth > 0) lower_to(&step->trouble.start, k);
   if (work->begins_parting) scree_fetch_add(&step->partings, 1, 0);
   if (!pair->touching) return;
-  unsigned long long bits;
+  uint64_t bits;
   double overlap = pair->overlap;
   __builtin_memcpy(&bits, &overlap, sizeof bits);
-  __nvvm_atom_max_gen_ull((volatile unsigned long long *)&step->largest_overlap, bits);
+  scree_atomic_raise(&step->largest_overlap, bits);
 }
 
 /* Where there is room many threads look for the depths; else this one. */
@@ -304,7 +305,7 @@ static void ask_for_depths(scree_world *world, scree_device_step *step, scree_pa
   size_t count = scree_depth_count(world, pair, hand);
   if (count == 0) return;
   uint64_t first = scree_fetch_add(&step->depths_used, count, 0);
-  uint32_t at = take(&step->depth_job_count, 1);
+  uint32_t at = scree_atomic_add(&step->depth_job_count, 1);
   if (first + count > step->depth_capacity || at >= SCREE_MOST_DEPTH_JOBS) {
     if (at < SCREE_MOST_DEPTH_JOBS) step->depth_jobs[at].count = 0;
     scree_pair_find_depths(world, pair, hand, &hand->work);
@@ -333,8 +334,7 @@ static void do_depth(scree_world *world, scree_device_step *step) {
     const scree_depth_job *job = &step->depth_jobs[i / SCREE_DEPTH_PARTS];
     if (job->count == 0) continue;
     const scree_scratch *hand = &step->hands[job->place];
-    const scree_pair *pair =
-        &world->pairs.items[world->pair_of.items[world->awake.items[job->place]]];
+    const scree_pair *pair = pair_at(world, job->place);
     for (size_t e = i % SCREE_DEPTH_PARTS; e < job->count; e += SCREE_DEPTH_PARTS)
       step->depths[job->first + e] = scree_depth_of(world, pair, hand, e);
   }
