@@ -67,6 +67,7 @@ enum { SCREE_PAIR_LIMIT = 20000000 };
 typedef struct scree_check {
   size_t triangle_count, vertex_count;
   size_t shell_count; /* sets of facets connected through shared edges */
+  double size[3];     /* along x, y, z, m; 0 where coordinates are bad or there are no facets */
   size_t defects[SCREE_DEFECT_COUNT];
   bool intersections_known; /* the exact test was made; else the pairs above are 0 */
   bool too_many_pairs;      /* it found more than SCREE_PAIR_LIMIT and left off: of what kind they

@@ -95,8 +95,8 @@ class scree_distance_options(Structure):
 
 class scree_check(Structure):
     _fields_ = [("triangle_count", c_size_t), ("vertex_count", c_size_t), ("shell_count", c_size_t),
-                ("defects", c_size_t * DEFECT_COUNT), ("intersections_known", c_bool), ("too_many_pairs", c_bool),
-                ("volume_known", c_bool), ("volume", c_double), ("usable", c_bool), ("verdict", c_char * 512)]
+                ("size", c_double * 3), ("defects", c_size_t * DEFECT_COUNT), ("intersections_known", c_bool),
+                ("too_many_pairs", c_bool), ("volume_known", c_bool), ("volume", c_double), ("usable", c_bool), ("verdict", c_char * 512)]
 
 
 class scree_check_options(Structure):

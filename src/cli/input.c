@@ -50,15 +50,18 @@ void cli_remark(const char *word, const char *format, ...) {
           cli_printable(strcmp(word, "-") != 0 ? word : "standard input", shown), sentence);
 }
 
-void cli_scan_box(const scree_mesh *mesh, double sides[3]) {
+/* The longest side of the box around a mesh. */
+static double longest_side(const scree_mesh *mesh) {
+  double longest = 0;
   for (int k = 0; k < 3; k++) {
     double low = INFINITY, high = -INFINITY;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
       low = fmin(low, mesh->positions[3 * v + k]);
       high = fmax(high, mesh->positions[3 * v + k]);
     }
-    sides[k] = fmax(high - low, 0);
+    longest = fmax(longest, high - low);
   }
+  return longest;
 }
 
 /* "mm", or "0.007 m" of a unit without a name. */
@@ -81,9 +84,7 @@ void cli_add_line(char *text, size_t size, const char *format, ...) {
 void cli_scan_remarks(const cli_input_options *options, const scree_scan *scan, double scale,
                       char *text, size_t bytes) {
   char written[32], asked[32];
-  double sides[3];
-  cli_scan_box(&scan->mesh, sides);
-  double size = scale * fmax(sides[0], fmax(sides[1], sides[2]));
+  double size = scale * longest_side(&scan->mesh);
   bool states = scan->states_unit || (scan->comment_unit_m > 0 && !unit_is_given);
   if (scan->warning[0]) cli_add_line(text, bytes, "%s", scan->warning);
   if (scan->comment_unit_m > 0 && scan->comment_unit_m != options->read.unit_m)

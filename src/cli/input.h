@@ -52,9 +52,6 @@ cli_input_options cli_source_options(const cli_source *source);
 /* Whether the word names a built-in sample; then *name (may be NULL) is its name. */
 bool cli_is_sample(const char *word, const char **name);
 
-/* The extents along x, y and z, as the positions are; 0 without vertices. */
-void cli_scan_box(const scree_mesh *mesh, double sides[3]);
-
 /* From here on --quiet and --unit count: without -u, what scree wrote is in the unit that it wrote
  * into it. */
 void cli_input_obeys(const cli_common *common);

@@ -49,6 +49,23 @@ static scree_status load_unscaled(const char *word, const cli_input_options *opt
   return SCREE_OK;
 }
 
+static void scale_check(scree_check *check, double scale) {
+  for (int k = 0; k < 3; k++) check->size[k] *= scale;
+  check->volume *= scale * scale * scale;
+}
+
+/* What was done to a mesh, as if the mesh had been larger by the scale. */
+static void scale_report(scree_repair_report *report, double scale) {
+  report->seam_distance *= scale;
+  report->area_before *= scale * scale;
+  report->area_after *= scale * scale;
+  report->volume_before *= scale * scale * scale;
+  report->volume_after *= scale * scale * scale;
+  report->filled_volume *= scale * scale * scale;
+  scale_check(&report->before, scale);
+  scale_check(&report->after, scale);
+}
+
 scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
                              const scree_progress *progress, scree_scan *scan, double *scale,
                              scree_repair_report *report, scree_error *error) {
@@ -61,6 +78,7 @@ scree_status cli_load_closed(const char *word, const cli_input_options *options,
                                 &made, error);
     if (status != SCREE_OK && !no_repair) cli_hint_at_option(&made, &repair, error);
     if (status != SCREE_OK) scree_scan_free(scan);
+    if (scale) scale_report(&made, *scale);
   }
   if (report) *report = made;
   return status == SCREE_OK ? status : cli_name_in_error(word, error);
@@ -109,6 +127,9 @@ void cli_print_left_out(FILE *stream, size_t count) {
 }
 
 void cli_print_check(FILE *stream, const scree_check *check) {
+  if (check->size[0] > 0 || check->size[1] > 0 || check->size[2] > 0)
+    fprintf(stream, "%10.4g x %.4g x %.4g mm size along x, y, z\n", 1e3 * check->size[0],
+            1e3 * check->size[1], 1e3 * check->size[2]);
   fprintf(stream, "%10zu triangle%s\n%10zu vertices\n%10zu shell%s\n", check->triangle_count,
           cli_plural(check->triangle_count), check->vertex_count, check->shell_count,
           cli_plural(check->shell_count));

@@ -7,7 +7,7 @@
 /* cli_load, and what is no closed surface is repaired, or with no_repair refused; samples are made
  * closed and not looked at. Errors name the word. scale is NULL where the surface is not decimated;
  * else it is in metres only once it is multiplied by *scale, as scree_curve_build_scaled does,
- * because levels must not hang on the unit. report may be NULL. */
+ * because levels must not hang on the unit. report is in metres, and may be NULL. */
 scree_status cli_load_closed(const char *word, const cli_input_options *options, bool no_repair,
                              const scree_progress *progress, scree_scan *scan, double *scale,
                              scree_repair_report *report, scree_error *error);
@@ -57,7 +57,7 @@ void cli_hint_at_option(const scree_repair_report *report, const scree_repair_op
 
 /* The facets that reading left out, where there were any. */
 void cli_print_left_out(FILE *stream, size_t count);
-/* The counts that are not 0, a line each, and the volume. */
+/* The size, the counts that are not 0, a line each, and the volume. */
 void cli_print_check(FILE *stream, const scree_check *check);
 /* "repaired: 3 holes filled, ..." of a surface that needed it, else "". */
 void cli_repair_text(const scree_repair_report *report, char *buffer, size_t size);

@@ -28,7 +28,6 @@ typedef struct checked {
   scree_scan scan;
   scree_check check;
   scree_error error;
-  double box[3];
   bool read;
 } checked;
 
@@ -40,7 +39,6 @@ static scree_status check_one(const cli_call *call, const char *path, checked *c
   scree_status status = cli_load(path, &input, call->progress, &c->scan, &c->error);
   if (status != SCREE_OK) return status;
   c->read = true;
-  cli_scan_box(&c->scan.mesh, c->box);
   status = scree_mesh_check(&c->scan.mesh, &how, call->progress, &c->check, &c->error);
   scree_mesh_free(&c->scan.mesh); /* the counts are enough */
   return status == SCREE_OK ? status : cli_name_in_error(path, &c->error);
@@ -53,8 +51,6 @@ static void print_one(const cli_call *call, const char *path, const checked *c) 
   printf("%10s", c->scan.format);
   cli_print_unit(stdout, path, &c->scan);
   putchar('\n');
-  printf("%10.4g x %.4g x %.4g mm size along x, y, z\n", 1e3 * c->box[0], 1e3 * c->box[1],
-         1e3 * c->box[2]);
   cli_print_left_out(stdout, c->scan.degenerate_count);
   cli_print_check(stdout, &c->check);
 }

@@ -15,6 +15,7 @@
 #include "mesh/adjacency.h"
 #include "mesh/apart.h"
 #include "mesh/intersect.h"
+#include "mesh/measure.h"
 #include "mesh/mesh.h"
 #include "mesh/sharp.h"
 #include "mesh/shells.h"
@@ -327,8 +328,13 @@ scree_status scree_mesh_check(const scree_mesh *mesh, const scree_check_options 
   if (status != SCREE_OK) return status;
   for (size_t v = 0; v < mesh->vertex_count; v++)
     made.defects[SCREE_DEFECT_BAD_COORDINATE] += scree_vertex_is_bad(mesh->positions + 3 * v);
-  if (!made.defects[SCREE_DEFECT_BAD_COORDINATE])
-    status = examine(mesh, options ? options : &defaults, progress, &made, error);
+  bool finite = !made.defects[SCREE_DEFECT_BAD_COORDINATE];
+  if (finite && mesh->triangle_count) {
+    vec3 low, high;
+    scree_mesh_bounds(mesh, &low, &high);
+    vec3_store(made.size, vec3_sub(high, low));
+  }
+  if (finite) status = examine(mesh, options ? options : &defaults, progress, &made, error);
   if (status != SCREE_OK) return status;
   conclude(&made);
   *check = made;

@@ -125,10 +125,17 @@ def answer_is_the_programs(browser, folder):
     check(saved(browser, "#save-choice") == ("choice.json", native_choice(scan, folder)), "choice.json is not the program's")
     answer = json.loads(native_choice(scan, folder))[0]
     check(browser.text(".answer") == " ".join(answer["answer"]), f"the page answers {browser.text('.answer')}")
-    told = scree("check", "fp-1.stl", "-u", "mm", folder=folder).stdout.decode().splitlines()
-    log = browser.run("return document.querySelector('.scans .log').textContent").splitlines()
-    check(told[1:] == log, f"the log says {log}, the program {told}")
+    log_is_the_programs(browser, folder, "mm")
+    chosen(browser, lambda: pick(browser, "#unit", "inch"))
+    log_is_the_programs(browser, folder, "inch")
+    chosen(browser, lambda: pick(browser, "#unit", "mm"))
     return scan, answer
+
+
+def log_is_the_programs(browser, folder, unit):
+    told = scree("check", "fp-1.stl", "-u", unit, folder=folder).stdout.decode().splitlines()
+    log = browser.run("return document.querySelector('.scans .log').textContent").splitlines()
+    check(told[1:] == log, f"in {unit} the log says {log}, the program {told}")
 
 
 def another_tolerance(browser, folder, scan):

@@ -19,6 +19,8 @@ export interface Check {
   triangle_count: number;
   vertex_count: number;
   shell_count: number;
+  /** Along x, y and z, m. */
+  size: [number, number, number];
   /** m3; null where it is unknown. */
   volume: number | null;
   /** How many of each, by name. */
