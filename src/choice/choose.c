@@ -64,12 +64,13 @@ static scree_pick pick_at(const scree_curve *curve, const scree_choice *choice, 
 static scree_status choose_by_cost(const scree_curve *curve, scree_choice *choice,
                                    scree_error *error) {
   const scree_fidelity *f = choice->fidelity;
-  size_t count = scree_fidelity_count(f);
-  scree_kept *levels = scree_alloc(count, sizeof *levels);
-  if (!levels) return scree_fail_memory(error, count * sizeof *levels, "errors of levels");
-  for (size_t i = 0; i < count; i++)
-    levels[i] = (scree_kept){scree_fidelity_triangle_count(f, i),
-                             scree_fidelity_error(f, i, SCREE_ERROR_MEAN)};
+  size_t count = 0, rows = scree_fidelity_count(f);
+  scree_kept *levels = scree_alloc(rows, sizeof *levels);
+  if (!levels) return scree_fail_memory(error, rows * sizeof *levels, "errors of levels");
+  for (size_t i = 0; i < rows; i++)
+    if (scree_fidelity_is_usual(f, i))
+      levels[count++] = (scree_kept){scree_fidelity_triangle_count(f, i),
+                                     scree_fidelity_error(f, i, SCREE_ERROR_MEAN)};
   scree_least least = scree_trend_least(levels, count, SCREE_COST_COUNT);
   choice->cost =
       pick_at(curve, choice, scree_curve_find(curve, (size_t)least.triangle_count), least.sum);

@@ -11,6 +11,7 @@
 typedef struct level_row {
   size_t level_index, triangle_count;
   scree_gauge_reading reading;
+  bool usual;
 } level_row;
 
 enum { FACTS = SCREE_SCAN_BOX_HEIGHT + 1 };
@@ -76,6 +77,15 @@ static scree_status sweep(scree_fidelity *f, const scree_gauge *gauge, const scr
   return status;
 }
 
+/* Both lists ascend. */
+static void mark_usual(scree_fidelity *f, const scree_curve *curve) {
+  size_t usual[SCREE_FIDELITY_MOST], count = scree_fidelity_levels(curve, usual);
+  for (size_t i = 0, k = 0; i < f->count; i++) {
+    while (k < count && usual[k] < f->rows[i].level_index) k++;
+    f->rows[i].usual = k < count && usual[k] == f->rows[i].level_index;
+  }
+}
+
 static void keep_facts(scree_fidelity *f, const scree_gauge *g) {
   f->scan[SCREE_SCAN_LENGTH] = g->length;
   f->scan[SCREE_SCAN_NOISE] = g->fit.sigma;
@@ -100,6 +110,7 @@ scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *c
     status = scree_fail_memory(error, level_count * sizeof *made->rows, "errors of levels");
   for (size_t i = 0; status == SCREE_OK && i < level_count; i++)
     made->rows[i].level_index = level_indices[i];
+  if (status == SCREE_OK) mark_usual(made, curve);
   keep_facts(made, gauge);
   if (status == SCREE_OK) status = sweep(made, gauge, curve, progress, error);
   if (status == SCREE_OK)
@@ -138,7 +149,7 @@ scree_status scree_fidelity_insert(scree_fidelity *f, size_t level_index, size_t
     f->rows = grown;
     memmove(&f->rows[at + 1], &f->rows[at], (f->count++ - at) * sizeof *grown);
   }
-  f->rows[at] = (level_row){level_index, triangle_count, *reading};
+  f->rows[at] = (level_row){level_index, triangle_count, *reading, false};
   *row = at;
   return SCREE_OK;
 }
@@ -151,6 +162,10 @@ void scree_fidelity_free(scree_fidelity *fidelity) {
 
 size_t scree_fidelity_count(const scree_fidelity *fidelity) {
   return fidelity->count;
+}
+
+bool scree_fidelity_is_usual(const scree_fidelity *fidelity, size_t row) {
+  return fidelity->rows[row].usual;
 }
 
 size_t scree_fidelity_level_index(const scree_fidelity *fidelity, size_t row) {

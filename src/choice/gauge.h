@@ -59,6 +59,10 @@ scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *c
                                   const scree_progress *progress, scree_fidelity **fidelity,
                                   scree_error *error);
 
+/* Whether the row's level is one of scree_fidelity_levels. Choices are made from these alone, so
+ * that they do not depend on the other levels asked for. */
+bool scree_fidelity_is_usual(const scree_fidelity *fidelity, size_t row);
+
 /* Adds a row at its place, or replaces the one of that level. */
 scree_status scree_fidelity_insert(scree_fidelity *fidelity, size_t level_index,
                                    size_t triangle_count, const scree_gauge_reading *reading,

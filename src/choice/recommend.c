@@ -4,8 +4,9 @@
  * coarsest level which keeps them as all finer ones measured do.
  *
  * What is found is measured once more with many more points than the sweep's, so that the answer
- * holds for a measurement by others. Where it does not keep all by that, the search goes on at the
- * finer side with as many points. */
+ * holds for a measurement by others. Where it does not keep all by that, levels finer by 1, 2, 4
+ * collapses and so on are measured with as many points until one does, and halves narrow what lies
+ * between. */
 #include "choice/recommend.h"
 
 #include "base/alloc.h"
@@ -110,11 +111,12 @@ static scree_status narrow(search *s, const scree_gauge *gauge, double gap, brac
   return SCREE_OK;
 }
 
-/* Between the finest level measured that does not keep all and the one before it. */
+/* Between the finest usual level that does not keep all and the one before it. */
 static bracket first_bracket(const search *s, const scree_fidelity *f) {
   bracket b = {0, 1};
   for (size_t row = 0; row < scree_fidelity_count(f); row++) {
     double errors[SCREE_SHAPE_ERROR_COUNT];
+    if (!scree_fidelity_is_usual(f, row)) continue;
     for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
       errors[e] = scree_fidelity_error(f, row, (scree_shape_error)e);
     b.coarse = scree_fidelity_level_index(f, row);
@@ -125,26 +127,19 @@ static bracket first_bracket(const search *s, const scree_fidelity *f) {
   return b;
 }
 
-/* From a level that keeps not all to the next finer one measured, or the scan. */
-static bracket finer_bracket(const scree_fidelity *f, size_t level_index) {
-  bracket b = {0, level_index};
-  for (size_t row = 0; row < scree_fidelity_count(f); row++)
-    if (scree_fidelity_level_index(f, row) < level_index)
-      b.fine = scree_fidelity_level_index(f, row);
-  return b;
-}
-
 static scree_status find_level(search *s, const scree_gauge *quick, const scree_gauge *dense,
                                const scree_fidelity *f, size_t *level_index) {
   bracket b = first_bracket(s, f);
   scree_status status = narrow(s, quick, SCREE_GAUGE_GAP, &b);
-  for (bool keeps = false; status == SCREE_OK;) {
-    *level_index = b.fine;
+  for (size_t step = 1; status == SCREE_OK; step *= 2) {
+    bool keeps;
     status = keeps_all(s, dense, DENSE_GAP, b.fine, &keeps);
     if (status != SCREE_OK || keeps || b.fine == 0) break;
-    b = finer_bracket(f, b.fine);
-    status = narrow(s, dense, DENSE_GAP, &b);
+    b.coarse = b.fine;
+    b.fine -= step < b.fine ? step : b.fine;
   }
+  if (status == SCREE_OK) status = narrow(s, dense, DENSE_GAP, &b);
+  *level_index = b.fine;
   return status;
 }
 

@@ -235,6 +235,28 @@ static void the_recommended_level_keeps_every_tolerance(void **state) {
   }
 }
 
+/* Levels that only another grid has count for neither choice. */
+static void another_grid_gives_the_same_choices(void **state) {
+  (void)state;
+  body b;
+  make_body("fp-2", 3e-3, &b);
+  for (int per_decade = 2; per_decade <= 40; per_decade += 19) {
+    scree_choice_options o = scree_default_choice_options();
+    scree_choice other;
+    scree_error error;
+    o.rp_min = 1e-3;
+    o.rp_max = 0.9;
+    o.per_decade = per_decade;
+    CHECK_OK(scree_choose(b.curve, &b.scan, &o, NULL, &other, &error), error);
+    assert_int_equal(other.recommended.triangle_count, b.choice.recommended.triangle_count);
+    assert_int_equal(other.cost.triangle_count, b.choice.cost.triangle_count);
+    assert_int_equal(other.cost.fewest, b.choice.cost.fewest);
+    assert_int_equal(other.cost.most, b.choice.cost.most);
+    scree_choice_free(&other);
+  }
+  free_body(&b);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(points_are_spread_evenly),
@@ -244,6 +266,7 @@ int main(void) {
       cmocka_unit_test(a_smaller_ball_is_off_by_the_difference),
       cmocka_unit_test(noise_is_told_from_shape),
       cmocka_unit_test(the_recommended_level_keeps_every_tolerance),
+      cmocka_unit_test(another_grid_gives_the_same_choices),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
