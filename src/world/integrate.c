@@ -11,26 +11,6 @@
 
 enum { BODY_BLOCK = 128 };
 
-/* I^-1 R^T momentum: angular velocity in the body's frame. */
-vec3 scree_local_spin(vec3 inertia, const mat3 *rotation, vec3 momentum) {
-  vec3 local = mat3_tmul_vec(rotation, momentum);
-  return (vec3){local.x / inertia.x, local.y / inertia.y, local.z / inertia.z};
-}
-
-vec3 scree_spin_of(const scree_bodies *bodies, size_t i, const mat3 *rotation, vec3 momentum) {
-  return mat3_mul_vec(rotation, scree_local_spin(bodies->inertia[i], rotation, momentum));
-}
-
-quat scree_half_turned(const quat *q, vec3 turn, double dt) {
-  return quat_mul(*q, quat_from_rotation_vector(vec3_scale(turn, 0.5 * dt)));
-}
-
-quat scree_turned(const quat *q, vec3 turn, vec3 inertia, vec3 momentum, double dt) {
-  mat3 half = quat_to_mat3(scree_half_turned(q, turn, dt));
-  turn = scree_local_spin(inertia, &half, momentum);
-  return quat_unit(quat_mul(*q, quat_from_rotation_vector(vec3_scale(turn, dt))));
-}
-
 /* Of the sides of bodies [begin, end) those that touch, and where each body's end. Without
  * branches: which of them do is as good as random. */
 static uint32_t *list_acting(scree_world *world, size_t begin, size_t end, size_t *ends) {
