@@ -252,9 +252,9 @@ static void add_load(scree_load *load, vec3 direction, vec3 arm, double size) {
 /* Most that steps resolve of the slope of a blend or of a fading weight, which lets go of much of
  * the overlap in a small part of the way: the force must move the bodies by little of that way in a
  * step, by K m dt^2/m* = (pi dt/contact time)^2 m. */
-static double resolved_slope(const scree_pair *pair, double step) {
+static double most_resolved(const scree_pair *pair, double step, double least) {
   double turn = 3.14159265358979323846 * step / pair->law.contact_time;
-  return resolved_share * pair->law.reach / (pair->overlap * turn * turn);
+  return scree_max(least, resolved_share * pair->law.reach / (pair->overlap * turn * turn));
 }
 
 /* One touching feature: its forces, added to the sums. */
@@ -309,6 +309,8 @@ static void fade(double spring, double by_weight, double most, scree_touch *touc
  * they are where features alone cancel and the contact lasts, deeper than references count from:
  * the next step asks for the depth. */
 static void judge(scree_pair *pair, const scree_touch_list *touches) {
+  bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1;
+  if (!jammed && !touches->items[touches->count - 1].of_depth) return; /* depths come last */
   vec3 net = {0, 0, 0};
   double total = 0, of_depth = 0;
   for (size_t i = 0; i < touches->count; i++) {
@@ -317,7 +319,6 @@ static void judge(scree_pair *pair, const scree_touch_list *touches) {
     total += touch->share;
     if (touch->of_depth) of_depth += touch->share;
   }
-  bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1;
   if ((of_depth == 0 && !jammed) || vec3_norm(net) >= pinched_net * total) return;
   pair->parting = true;
   if (of_depth == 0) pair->depth = -INFINITY;
@@ -445,17 +446,17 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   sums.normal = sums.dashpot = sums.tangential = (scree_load){{0, 0, 0}, {0, 0, 0}};
   sums.dashpot_power = sums.tangential_power = sums.pressed = 0;
   uint32_t contacts = 0;
-  double resolved = resolved_slope(pair, scratch->step);
   for (size_t i = 0; i < touches->count; i++) {
     scree_touch *touch = &touches->items[i];
     double above = touch->overlap - maximum.cutoff;
     touch->share = share_of(touch, &maximum);
     if (touch->share > 0) {
-      touch->lever = scree_min(touch->lever, scree_max(most_slopes[0], resolved));
+      if (touch->lever > most_slopes[0])
+        touch->lever = scree_min(touch->lever, most_resolved(pair, scratch->step, most_slopes[0]));
       press(pair, &law, spring, touch, relative, &energy, &sums);
       if (touch->fading.x != 0 || touch->fading.y != 0 || touch->fading.z != 0)
-        fade(spring, 0.5 * above * above / maximum.denominator, scree_max(most_slopes[1], resolved),
-             touch, &sums);
+        fade(spring, 0.5 * above * above / maximum.denominator,
+             most_resolved(pair, scratch->step, most_slopes[1]), touch, &sums);
       contacts++;
     } else {
       touch->anchor->share = 0;
