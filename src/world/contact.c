@@ -320,7 +320,8 @@ bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *
   }
   for (uint32_t i = 0; i < pair->active.count; i++) scree_pair_visit_item(world, pair, i, scratch);
   scree_pair_meet(world, pair, scratch);
-  scree_pair_find_depths(world, pair, scratch, &scratch->work);
+  if (scree_asks_depths(&scratch->question))
+    scree_pair_find_depths(world, pair, scratch, &scratch->work);
   scree_pair_press(world, pair, scratch);
   return true;
 }
@@ -334,7 +335,7 @@ void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_s
   for (uint32_t i = 0; i < pair->active.count; i++) scree_pair_visit_item(world, pair, i, scratch);
   end_visits(pair, scratch);
   ask(world, pair, scratch);
-  scree_pair_find_depths(world, pair, scratch, &part);
+  if (scree_asks_depths(&scratch->question)) scree_pair_find_depths(world, pair, scratch, &part);
   press(world, pair, scratch, &part);
   pair->later_dashpot += part.later_dashpot + part.dashpot - part.lost - part.let_go;
   pair->later_tangential += part.later_tangential + part.tangential;

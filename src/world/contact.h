@@ -37,6 +37,11 @@ typedef struct scree_depth_question {
   double above;
 } scree_depth_question;
 
+/* Whether there is anything to be found before the law. */
+static inline bool scree_asks_depths(const scree_depth_question *question) {
+  return question->start || question->edges;
+}
+
 /* The deepest point of an edge: the way along it, the depth (below 0 outside), its slope in space
  * and along. */
 typedef struct scree_depth {
@@ -165,8 +170,25 @@ double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_
 /* A touch between spheres or rounded surfaces: normal n, towards a, from the point c of b. values:
  * distance of the rounding's centre of a along n, roundings of a and of b, weight. The gap; nothing
  * is appended, and the anchor forgets, where that is not below 0. */
-double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
-                       const double values[4], scree_anchor *anchor);
+static inline double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
+                                     const double values[4], scree_anchor *anchor) {
+  double distance = values[0], above = values[1], below = values[2], weight = values[3];
+  double overlap = above + below - distance, gap = -overlap - pair->law.smoothing;
+  if (gap >= 0 || !(weight > 0)) {
+    anchor->share = 0;
+    return gap;
+  }
+  scree_touch *touch = &scratch->touches.items[scratch->touches.count++];
+  touch->at = vec3_mad(c, n, 0.5 * (distance - above + below));
+  touch->normal = n;
+  touch->lever = 1;
+  touch->fading = (vec3){0, 0, 0};
+  touch->of_depth = false;
+  touch->overlap = overlap;
+  touch->weight = weight;
+  touch->anchor = anchor;
+  return gap;
+}
 /* edges.c: the same for two edges. */
 double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
                          const scree_frame *relative, scree_scratch *scratch);

@@ -365,7 +365,7 @@ static entries entries_of(const scree_world *world, const scree_pair *pair,
 
 size_t scree_depth_count(const scree_world *world, const scree_pair *pair,
                          const scree_scratch *scratch) {
-  if (!scratch->question.edges && !scratch->question.start) return 0;
+  if (!scree_asks_depths(&scratch->question)) return 0;
   entries all = entries_of(world, pair, scratch);
   return all.edges[0] + all.edges[1] + all.points[0] + all.points[1];
 }

@@ -30,26 +30,6 @@ typedef struct surface_contact {
   double lever; /* by how much the distance grows along the normal: 1, but where two are blended */
 } surface_contact;
 
-double scree_add_touch(scree_scratch *scratch, const scree_pair *pair, vec3 c, vec3 n,
-                       const double values[4], scree_anchor *anchor) {
-  double distance = values[0], above = values[1], below = values[2], weight = values[3];
-  double overlap = above + below - distance, gap = -overlap - pair->law.smoothing;
-  if (gap >= 0 || !(weight > 0)) {
-    anchor->share = 0;
-    return gap;
-  }
-  scree_touch *touch = &scratch->touches.items[scratch->touches.count++];
-  touch->at = vec3_mad(c, n, 0.5 * (distance - above + below));
-  touch->normal = n;
-  touch->lever = 1;
-  touch->fading = (vec3){0, 0, 0};
-  touch->of_depth = false;
-  touch->overlap = overlap;
-  touch->weight = weight;
-  touch->anchor = anchor;
-  return gap;
-}
-
 /* ---- points against surfaces ---- */
 
 static void refresh_faces(const scree_particle *surface, vec3 p, scree_item *item, double path,

@@ -179,10 +179,6 @@ scree_status scree_world_set_wall_surface(scree_world *world, size_t index,
 
 /* ---- forces on walls, and the work that they do ---- */
 
-bool scree_wall_is_belt(const scree_world_wall *wall) {
-  return vec3_norm2(wall->surface_velocity) + vec3_norm2(wall->surface_spin) > 0;
-}
-
 /* Of the wall on bodies, with the velocities of the last drift. A belt's surface moves along
  * itself, so that friction alone works on it. */
 static double power_of(const scree_world_wall *wall) {

@@ -16,7 +16,9 @@ double scree_wall_first_side(const scree_world_wall *wall, vec3 p, vec3 centre, 
 double scree_wall_distance(const scree_world_wall *wall, vec3 p, double side, vec3 *closest,
                            vec3 *normal);
 
-bool scree_wall_is_belt(const scree_world_wall *wall);
+static inline bool scree_wall_is_belt(const scree_world_wall *wall) {
+  return vec3_norm2(wall->surface_velocity) + vec3_norm2(wall->surface_spin) > 0;
+}
 /* From now on. */
 void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin);
 /* Forces and torques on walls from the pairs of the last step, and their power. */
