@@ -342,7 +342,7 @@ static void hold_back(const scree_pair *pair, scree_item *item, scree_touch *tou
 
 double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
                          const scree_frame *relative, scree_scratch *scratch) {
-  crossing x;
+  crossing x = {0};
   edge_contact c;
   bool crosses = find_crossing(world, pair, item, relative, &x);
   double far = x.distance - pair->law.reach - pair->law.smoothing;
