@@ -40,14 +40,14 @@ typedef struct scree_fidelity scree_fidelity;
  * NULL: scree_fidelity_levels of them. scan is the mesh that the curve was built from.
  *
  * Some 10,000 points are spread over the scan, and half as many over each level; means are exact
- * to 2 per cent. The Hausdorff distance is bounded by how far points lie apart, and what could be
+ * to 3 per cent. The Hausdorff distance is bounded by how far points lie apart, and what could be
  * farther than the largest found is looked at closer, to 1 per cent. Walls are where a ray inward
  * from one of the points meets the surface again, facing back. Noise is what a quadric through the
  * points round each leaves over, as far as that does not depend on how many.
  *
  * The same for any number of threads. Fails with SCREE_BAD_MESH where the scan has no area,
  * SCREE_BAD_ARGUMENT where the indices do not ascend, SCREE_OUT_OF_MEMORY, SCREE_CANCELLED. Cost:
- * 0.2 to 1.3 times the curve's, the more the smaller the scan. */
+ * 0.2 to 2 times the curve's, the more the smaller the scan. */
 SCREE_API scree_status scree_fidelity_measure(const scree_curve *curve, const scree_mesh *scan,
                                               const size_t *level_indices, size_t level_count,
                                               const scree_progress *progress,
