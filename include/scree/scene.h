@@ -147,8 +147,8 @@ typedef struct scree_scene_job {
    * end; series.csv; motion.scree. Made if need be. NULL: nothing is written. */
   const char *folder;
   /* Go on from the folder's checkpoint.scree where there is one; one of another scene is refused.
-   * Only title, time, stop and output may differ. Without resume a folder that has one is refused
-   * with SCREE_EXISTS, unless overwrite. */
+   * Only title, time, stop and output may differ, but for output.frames and series. Without resume
+   * a folder that has one is refused with SCREE_EXISTS, unless overwrite. */
   bool resume, overwrite;
   const scree_progress *progress; /* of making the scene; may be NULL */
   /* Called a few times a second; false cancels: the checkpoint is written, and the answer is

@@ -203,14 +203,13 @@ static scree_status begin(void *context, scree_scene **scene, scree_error *error
   return status;
 }
 
-/* Only where and how often things are written may differ. */
+/* Only how often a checkpoint is written may differ. */
 static scree_status check_experiment(const scree_experiment *now, const scree_experiment *saved,
                                      const char *path, scree_error *error) {
   for (size_t i = 0; scree_experiment_key(i); i++) {
     const char *key = scree_experiment_key(i);
     char a[64], b[64];
-    if (!strcmp(key, "output.frame_interval") || !strcmp(key, "output.checkpoint_interval"))
-      continue;
+    if (!strcmp(key, "output.checkpoint_interval")) continue;
     scree_experiment_get(now, key, a, sizeof a);
     scree_experiment_get(saved, key, b, sizeof b);
     if (strcmp(a, b) != 0)
@@ -238,7 +237,6 @@ static scree_status take_over(scree_run *run, const scree_experiment *experiment
   scree_scene_file *file;
   unsigned char *notes;
   size_t note_bytes;
-  run->experiment.frame_interval = experiment->frame_interval;
   run->experiment.checkpoint_interval = experiment->checkpoint_interval;
   scree_status status = scree_run_file(run, &file, error);
   if (status != SCREE_OK) return status;

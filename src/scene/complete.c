@@ -251,6 +251,18 @@ static scree_status compare_texts(const char *here, const char *there, const cha
   }
 }
 
+/* What was written so far lies at these intervals, and is numbered by them. */
+static scree_status compare_intervals(const scree_scene *scene, const scree_plan_output *now,
+                                      const char *path, scree_error *error) {
+  const scree_plan_output *was = scene->plan.output;
+  bool series = now->series != was->series;
+  if (!series && now->frames == was->frames) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_ARGUMENT,
+                    "%s: is of another %s: output.%s is %g there and %g here", path,
+                    scene->seal->whose, series ? "series" : "frames",
+                    series ? was->series : was->frames, series ? now->series : now->frames);
+}
+
 scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
                                    const char *path, scree_error *error) {
   scree_plan plan;
@@ -259,10 +271,7 @@ scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *f
   if (status != SCREE_OK) return status;
   status = compare_texts(text, scene->text, path, scene->seal->whose, error);
   if (status == SCREE_OK) status = scree_scene_file_plan(file, &scene->arena, &plan, error);
-  if (status == SCREE_OK && plan.output->series != scene->plan.output->series)
-    status = scree_fail(error, SCREE_BAD_ARGUMENT,
-                        "%s: is of another %s: output.series is %g there and %g here", path,
-                        scene->seal->whose, scene->plan.output->series, plan.output->series);
+  if (status == SCREE_OK) status = compare_intervals(scene, plan.output, path, error);
   if (status != SCREE_OK) {
     scree_free(text);
     return status;

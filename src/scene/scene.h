@@ -308,7 +308,7 @@ typedef struct scree_scene_drive {
 scree_status scree_scene_drive_on(const scree_scene_drive *drive, scree_scene **scene,
                                   scree_error *error);
 /* A checkpoint's scene goes on by this file, where it says the same but for title, time, stop and
- * output. */
+ * output, of which frames and series must be the same. */
 scree_status scree_scene_take_over(scree_scene *scene, const scree_scene_file *file,
                                    const char *path, scree_error *error);
 

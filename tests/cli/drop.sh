@@ -92,6 +92,7 @@ done
 ls whole/frame* cut/frame* | wc -l
 run drop --resume -o cut --friction 0.4
 run drop $pour --seed 3 --resume -o cut
+run drop --resume -o cut --frames 0.01
 run drop sphere:41mm=6 sphere:40mm=6 --stiffness 1e-2 --resume -o cut 2>&1 | grep -v mm
 run drop --resume -o none
 for words in '-r 0.5' '-n 12' '-N 5' --no-repair '-u m'; do run drop --resume -o cut $words 2>&1 | sed -n 2p; done

@@ -34,7 +34,8 @@ grep friction_particle whole/experiment.yaml | cut -d"#" -f1
 # without shapes named it is the experiment of the checkpoint, and what is said of it must be so there
 run repose --resume -o whole --friction 0.1 --lift-speed 0.5 --seed 9
 run repose --resume -o whole -p demo 2>&1 | cut -d: -f-3
-run repose --resume -o whole -c small.yaml --friction 0.5 --no-picture | sed -n 2p | rest
+run repose --resume -o whole -c small.yaml --friction 0.5 --frames 0.1 --no-picture | sed -n 2p | rest
+run repose --resume -o whole --frames 0.2
 for words in '--rp 0.5' '--rp 0.5,1 -m qecd' --spheres --no-repair '-u m'; do
   run repose --resume -o whole $words 2>&1 | sed -n 2p
 done

@@ -18,6 +18,7 @@ run run small.yaml -o out --no-picture -q | numbers
 ls out
 run run small.yaml -o out --no-picture
 run run small.yaml -o out --no-picture --resume -q --set inlets.feed.count=21
+run run small.yaml -o out --no-picture --resume -q --set output.frames=0.001
 run run small.yaml -o out --no-picture -f -q | head -2 | numbers
 run run -o out --resume -q --no-picture | head -2 | numbers
 sed -n 2p out/series.csv | cut -c 1-75
