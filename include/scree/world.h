@@ -28,7 +28,8 @@ typedef struct scree_world_options {
   double size;             /* m, the L of K = E L; 0 (default): each pair its smaller body's */
   double smoothing;        /* l0 over L; default 4e-5, 2 um at 50 mm: overlaps this close share */
   double sharing;          /* kappa, in [0, 0.5]; default 0.1: deeper contacts share more widely */
-  double overlap_limit;    /* over L; default 0.1, 5 mm at 50 mm: beyond it the run stops with
+  double overlap_limit;    /* over L; default 0.1, 5 mm at 50 mm: beyond it meshes of which edges
+                              lie in each other part (parting_count), else the run stops with
                               SCREE_DIVERGED. Walls may be thinner: a point keeps to the side that
                               it came from */
   double skin;             /* over L; default 0.02: reach of the candidate lists. Speed only */

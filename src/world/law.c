@@ -307,10 +307,13 @@ static void fade(double spring, double by_weight, double most, scree_touch *touc
 
 /* Where the touches hold the bodies against each other these are to part, from the next step on. So
  * they are where features alone cancel and the contact lasts, deeper than references count from:
- * the next step asks for the depth. */
+ * the next step asks for the depth. And so they are where edges lie inside and are pressed beyond
+ * the overlap limit. */
 static void judge(scree_pair *pair, const scree_touch_list *touches) {
-  bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1;
-  if (!jammed && !touches->items[touches->count - 1].of_depth) return; /* depths come last */
+  bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1,
+       pressed = pair->overlap > pair->law.limit && pair->depth > 0;
+  if (!jammed && !pressed && !touches->items[touches->count - 1].of_depth)
+    return; /* depths come last */
   vec3 net = {0, 0, 0};
   double total = 0, of_depth = 0;
   for (size_t i = 0; i < touches->count; i++) {
@@ -319,7 +322,8 @@ static void judge(scree_pair *pair, const scree_touch_list *touches) {
     total += touch->share;
     if (touch->of_depth) of_depth += touch->share;
   }
-  if ((of_depth == 0 && !jammed) || vec3_norm(net) >= pinched_net * total) return;
+  bool held = (of_depth > 0 || jammed) && vec3_norm(net) < pinched_net * total;
+  if (!held && !pressed) return;
   pair->parting = true;
   if (of_depth == 0) pair->depth = -INFINITY;
 }
