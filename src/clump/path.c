@@ -44,12 +44,12 @@ static void measure(scree_path *p, scree_trial *t) {
   t->overlap = scree_ruler_measure(&p->ruler, t->spheres, t->count, NULL);
 }
 
-/* What held moments out of tolerance cost. */
+/* What held moments out of tolerance cost, as IoU. */
 static double penalty(const scree_path *p, const scree_trial *t) {
   double worst = 0;
   for (size_t m = 0; m < held_moments(t->count); m++) {
     double error = fabs(t->overlap.moments[m] - p->body->moments[m]);
-    worst = fmax(worst, p->mover.price[m] * (error - p->mover.tolerance[m]));
+    worst = fmax(worst, error - p->mover.tolerance[m]);
   }
   return worst;
 }

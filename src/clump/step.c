@@ -31,27 +31,18 @@ static const double directions_in_all =
     least_radius = 0.01,       /* no smaller spheres */
     slack_volume = 0.005,      /* tolerances: volume */
     slack_centroid = 0.001,    /* centroid */
-    slack_inertia = 0.014,     /* second moments, of the moments of inertia they enter */
-    inertia_price = 0.1,       /* IoU that a whole moment of inertia is worth */
+    slack_second = 0.011,      /* second moments, of their trace */
     slack_kept = 0.5,          /* part of a tolerance that a step aims into */
     slack_restored = 0.8;      /* likewise when only moments are restored */
 
 static const int degree[SCREE_MOMENTS] = {0, 1, 1, 1, 2, 2, 2, 2, 2, 2};
 
-/* So that each principal moment of inertia, a sum of two second moments, stays within 3 %. */
 static void set_tolerances(scree_mover *m) {
-  const double *second = m->body->moments + 4;
-  const double inertia[3] = {second[1] + second[2], second[0] + second[2], second[0] + second[1]};
+  const double *second = m->body->moments + SCREE_FIRST_SECOND;
+  double trace = second[0] + second[1] + second[2];
   m->tolerance[0] = slack_volume;
-  for (int k = 0; k < 3; k++) {
-    m->tolerance[1 + k] = slack_centroid;
-    m->tolerance[4 + k] = slack_inertia * fmin(inertia[(k + 1) % 3], inertia[(k + 2) % 3]);
-  }
-  m->tolerance[7] = slack_inertia * fmin(inertia[0], inertia[1]);
-  m->tolerance[8] = slack_inertia * fmin(inertia[0], inertia[2]);
-  m->tolerance[9] = slack_inertia * fmin(inertia[1], inertia[2]);
-  for (int k = 0; k < SCREE_MOMENTS; k++)
-    m->price[k] = k < SCREE_FIRST_SECOND ? 1 : inertia_price * slack_inertia / m->tolerance[k];
+  for (int k = 1; k < SCREE_FIRST_SECOND; k++) m->tolerance[k] = slack_centroid;
+  for (int k = SCREE_FIRST_SECOND; k < SCREE_MOMENTS; k++) m->tolerance[k] = slack_second * trace;
 }
 
 scree_status scree_mover_make(const scree_target *body, const scree_field *field,
@@ -172,49 +163,26 @@ static void set_targets(const scree_mover *mover, size_t count, scree_step *step
   }
 }
 
-/* The multipliers that are free, those that are not being as they are. */
-static void solve_multipliers(const double *matrix, const double *wanted, const bool *free,
-                              double *multipliers) {
-  double a[SCREE_MOMENTS * SCREE_MOMENTS], b[SCREE_MOMENTS];
-  for (size_t p = 0; p < SCREE_MOMENTS; p++) {
-    b[p] = free[p] ? wanted[p] : multipliers[p];
-    for (size_t q = 0; q < SCREE_MOMENTS; q++) {
-      double between = matrix[SCREE_MOMENTS * (p > q ? p : q) + (p > q ? q : p)];
-      a[SCREE_MOMENTS * p + q] = free[p] && free[q] ? between : p == q;
-      if (free[p] && !free[q]) b[p] -= between * multipliers[q];
-    }
-  }
-  factor(a, SCREE_MOMENTS);
-  solve(a, SCREE_MOMENTS, b);
-  memcpy(multipliers, b, sizeof b);
-}
-
-/* The multipliers: of moments that are not active, 0. That of a second moment is what holding it
- * costs, at most its price: beyond, the moment gives way. */
+/* The multipliers: of moments that are not active, 0. */
 static void find_multipliers(const scree_mover *mover, size_t count, scree_step *step,
                              double multipliers[SCREE_MOMENTS]) {
-  double matrix[SCREE_MOMENTS * SCREE_MOMENTS] = {0}, wanted[SCREE_MOMENTS];
-  bool free[SCREE_MOMENTS], dear = false;
-  set_targets(mover, count, step, wanted);
+  double matrix[SCREE_MOMENTS][SCREE_MOMENTS] = {{0}};
+  set_targets(mover, count, step, multipliers);
   for (size_t i = 0; i < count; i++) {
     const scree_normal_equations *e = &mover->equations[i];
     for (size_t p = 0; p < SCREE_MOMENTS; p++) {
-      wanted[p] -= dot4(e->slopes[p], e->gradient);
-      for (size_t q = 0; q <= p; q++)
-        matrix[SCREE_MOMENTS * p + q] += dot4(e->slopes[p], e->answers[q]);
+      multipliers[p] -= dot4(e->slopes[p], e->gradient);
+      for (size_t q = 0; q <= p; q++) matrix[p][q] += dot4(e->slopes[p], e->answers[q]);
     }
   }
-  for (size_t p = 0; p < SCREE_MOMENTS; p++)
-    matrix[(SCREE_MOMENTS + 1) * p] += 1e-4 * matrix[(SCREE_MOMENTS + 1) * p] + 1e-9;
-  memcpy(free, step->active, sizeof free);
-  solve_multipliers(matrix, wanted, free, multipliers);
-  for (size_t m = SCREE_FIRST_SECOND; m < SCREE_MOMENTS; m++) {
-    if (!(fabs(multipliers[m]) > mover->price[m])) continue;
-    multipliers[m] = copysign(mover->price[m], multipliers[m]);
-    free[m] = false;
-    dear = true;
+  for (size_t p = 0; p < SCREE_MOMENTS; p++) {
+    matrix[p][p] += 1e-4 * matrix[p][p] + 1e-9;
+    for (size_t q = 0; q <= p; q++)
+      if (!step->active[p] || !step->active[q]) matrix[p][q] = p == q;
+    if (!step->active[p]) multipliers[p] = 0;
   }
-  if (dear) solve_multipliers(matrix, wanted, free, multipliers);
+  factor(matrix[0], SCREE_MOMENTS);
+  solve(matrix[0], SCREE_MOMENTS, multipliers);
 }
 
 /* The sphere within the body's box, and of a size that is allowed. */

@@ -20,7 +20,6 @@ typedef struct scree_mover {
   const scree_target *body;
   const scree_field *field;
   double tolerance[SCREE_MOMENTS]; /* how far the union's moments may be from the body's */
-  double price[SCREE_MOMENTS];     /* IoU that is given up at most for each moment */
   double most_outside;             /* no sphere stands out of the body by more; INFINITY: any */
   scree_directions directions;
   scree_normal_equations *equations; /* SCREE_MOST_SPHERES */
