@@ -383,8 +383,7 @@ typedef struct scree_pour_job {
   const scree_pour_options *options; /* with shapes; NULL: the defaults */
   scree_pour_schedule schedule;
   const char *folder;
-  bool resume,
-      overwrite; /* what may differ on going on is the schedule, but for frames and series */
+  bool resume, overwrite; /* on going on the schedule may differ, but for frames and series */
   bool (*watch)(void *context, const scree_pour *pour, double fraction);
   scree_status (*begun)(void *context, scree_pour *pour, bool resumed, scree_error *error);
   scree_status (*frame)(void *context, scree_pour *pour, scree_error *error);
