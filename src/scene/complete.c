@@ -184,7 +184,7 @@ static scree_status cancel(work *w, scree_error *error) {
   scree_status status = checkpoint(w, error);
   if (status != SCREE_OK) return status;
   return scree_fail(error, SCREE_CANCELLED, "cancelled at %.6g s of simulated time%s", now_of(w),
-                    w->job->folder ? "; the checkpoint is written" : "");
+                    w->job->folder ? "; it can be resumed from its checkpoint" : "");
 }
 
 static scree_status go_on(work *w, scree_error *error) {

@@ -86,5 +86,22 @@ hashes study-linux >a
 hashes study-windows >b
 try "ends in the same states" cmp a b
 
+# Ctrl-C keeps what was done; 58 are the last eight bits of what Windows calls an end by Ctrl-C.
+interrupted() {
+  wine "$exe" drop sample:icosphere-2=100 -o dropped >out 2>err &
+  program=$!
+  for _ in $(seq 300); do
+    [ -e dropped/motion.scree ] && break
+    sleep 0.2
+  done
+  kill -INT $program
+  got=0
+  wait $program || got=$?
+  [ "$got" -eq 58 ] && [ -e dropped/checkpoint.scree ]
+}
+try "Ctrl-C leaves a checkpoint" interrupted
+try "says so" grep -q "can be resumed" err
+try "and it goes on" expect_code 0 drop sample:icosphere-2=100 -o dropped --resume -q
+
 printf '\n%d passed, %d failed\n' "$passed" "$failed"
 [ "$failed" -eq 0 ]
