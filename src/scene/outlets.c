@@ -1,5 +1,6 @@
 /* Outlets: bodies whose centre is in one, or beyond the domain, are taken out and booked. */
 #include "scene/scene.h"
+#include "world/backend.h"
 
 static bool is_in(const double p[3], const double low[3], const double high[3]) {
   for (int k = 0; k < 3; k++)
@@ -17,6 +18,7 @@ static double energy_of(const scree_scene *scene, size_t b, const scree_body *bo
   double rotation = density * (m.inertia[0] * spin.x * spin.x + m.inertia[1] * spin.y * spin.y +
                                m.inertia[2] * spin.z * spin.z);
   vec3 g = vec3_load(scene->plan.gravity);
+  scree_world_bring(scene->world, SCREE_PART_POSES, NULL);
   return 0.5 * (mass * vec3_norm2(vec3_load(body->velocity)) + rotation) -
          mass * vec3_dot(g, scene->world->bodies.frame[b].position); /* not folded, as the ledger */
 }

@@ -121,17 +121,9 @@ static void code_state(scree_codec *c, scree_scene *scene) {
 
 /* ---- saving ---- */
 
-/* A frame's world is the same but for its contacts. */
-static scree_status save_world(scree_codec *c, const scree_scene *scene, bool as_frame,
-                               scree_error *error) {
-  scree_world bare = *scene->world; /* its arrays are written, never changed */
-  if (as_frame) bare.neighbours.count = 0;
-  return scree_world_save_block(c, as_frame ? &bare : scene->world, error);
-}
-
 static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame,
                          scree_error *error) {
-  scree_scene state = *scene; /* likewise */
+  scree_scene state = *scene; /* its arrays are written, never changed */
   scree_observation o;
   scree_world_observe(scene->world, &o);
   state.is_frame = as_frame;
@@ -141,8 +133,8 @@ static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame
   scree_code_text(c, scene->text, strlen(scene->text));
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
     scree_code_text(c, scene->shapes[i].source, strlen(scene->shapes[i].source));
-  scree_status status = scree_world_save_block(c, scene->gallery, error);
-  if (status == SCREE_OK) status = save_world(c, scene, as_frame, error);
+  scree_status status = scree_world_save_block(c, scene->gallery, true, error);
+  if (status == SCREE_OK) status = scree_world_save_block(c, scene->world, !as_frame, error);
   code_state(c, &state);
   scree_code_count(c, &state.notes.count, 1);
   scree_code_bytes(c, state.notes.bytes, state.notes.count);

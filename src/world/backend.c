@@ -2,6 +2,7 @@
 #include "world/backend.h"
 
 #include "world/cuda_driver.h"
+#include "world/walls.h"
 
 #include "base/error.h"
 
@@ -46,5 +47,19 @@ scree_status scree_set_backend(const char *name, scree_error *error) {
   char description[256];
   scree_status status = scree_check_backend(name, description, error);
   if (status == SCREE_OK) chosen = find(name, &chosen_device);
+  return status;
+}
+
+scree_status scree_world_bring(const scree_world *world, unsigned parts, scree_error *error) {
+  struct scree_device_world *there = world->on_device;
+  return there ? scree_backend_cuda.bring(there, parts, error) : SCREE_OK;
+}
+
+scree_status scree_world_change(scree_world *world, unsigned parts, scree_error *error) {
+  bool settle =
+      parts & (SCREE_PART_WALLS | SCREE_PART_LISTS); /* forces on walls follow from them */
+  scree_status status = scree_world_bring(world, parts | (settle ? SCREE_PART_WALLS : 0), error);
+  if (!status && settle) scree_walls_settle(world);
+  if (!status && world->on_device) scree_backend_cuda.change(world->on_device, parts);
   return status;
 }

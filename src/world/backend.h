@@ -1,18 +1,27 @@
 /* Backends: where a world's steps are computed. The processor's (step.c) is always there; the cuda
- * one (cuda.c) takes the state to a device, runs the same stages there, and gives it back. */
+ * one (cuda.c) takes the state to a device and runs the same stages there.
+ *
+ * The state stays on the device. What the world's own arrays do not have comes when it is asked
+ * for: every reader of arrays calls scree_world_bring first, everything that changes them
+ * scree_world_change. Until then the world's pointers to what is newer there are NULL, so that none
+ * can be forgotten. */
 #ifndef SCREE_WORLD_BACKEND_H
 #define SCREE_WORLD_BACKEND_H
 
-#include "scree.h"
+#include "world/sums.h"
 
 typedef struct scree_backend {
   const char *name;
-  /* The state goes to where it is stepped; nothing else changes it until it is fetched. */
+  /* The state may be stepped there from now on. */
   scree_status (*begin)(scree_world *world, scree_error *error);
   /* Some steps, at least one and at most `most`; how many. What is wrong is in world->failure. */
   scree_status (*step)(scree_world *world, size_t most, size_t *done);
-  /* The world's own arrays hold the state. */
-  scree_status (*fetch)(scree_world *world, scree_error *error);
+  /* Of a world on a device. Parts come to the world's arrays. */
+  scree_status (*bring)(struct scree_device_world *there, unsigned parts, scree_error *error);
+  /* They are newer here now. */
+  void (*change)(struct scree_device_world *there, unsigned parts);
+  /* Sums of an observation; false where the world's arrays have all. */
+  bool (*sum)(struct scree_device_world *there, scree_sums *sums);
   void (*release)(scree_world *world);
 } scree_backend;
 
@@ -21,5 +30,11 @@ extern const scree_backend scree_backend_cpu, scree_backend_cuda;
 /* What scree_set_backend chose last. */
 const scree_backend *scree_backend_chosen(void);
 int scree_backend_device(void);
+
+/* Before arrays of these parts are read. Where a device does not give them back, the world has
+ * diverged; it shows what it had before, without its neighbours. */
+scree_status scree_world_bring(const scree_world *world, unsigned parts, scree_error *error);
+/* Before they are changed: brings them, and the next step takes them from here. */
+scree_status scree_world_change(scree_world *world, unsigned parts, scree_error *error);
 
 #endif

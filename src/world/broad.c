@@ -63,7 +63,7 @@ static scree_status reserve_bodies(scree_broad *broad, size_t capacity, scree_er
   return SCREE_OK;
 }
 
-static scree_status reserve(scree_world *world, scree_error *error) {
+scree_status scree_broad_reserve_bodies(scree_world *world, scree_error *error) {
   if (!world->broad) world->broad = scree_alloc_zero(1, sizeof *world->broad);
   scree_broad *broad = world->broad;
   if (!broad) return scree_fail_memory(error, sizeof *broad, "the broad phase");
@@ -225,7 +225,7 @@ bool scree_broad_is_valid(const scree_world *world) {
 
 scree_status scree_broad_update(scree_world *world, scree_error *error) {
   if (world->bodies.count == 0 || scree_broad_is_valid(world)) return SCREE_OK;
-  scree_status status = reserve(world, error);
+  scree_status status = scree_broad_reserve_bodies(world, error);
   if (status) return status;
   keep_keys(world);
   find_all(world);
@@ -248,7 +248,7 @@ bool scree_broad_reserve(scree_world *world) {
 
 scree_status scree_broad_restore(scree_world *world, double margin, scree_error *error) {
   size_t count = world->neighbours.count;
-  scree_status status = reserve(world, error);
+  scree_status status = scree_broad_reserve_bodies(world, error);
   if (status) return status;
   world->margin = margin;
   if (world->bodies.count == 0) return SCREE_OK; /* there are no arrays yet */

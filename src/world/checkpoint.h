@@ -4,11 +4,12 @@
 
 #include "world/world.h"
 
-/* save.c: a checkpoint's bytes, free with scree_free; and back, `name` for messages. */
-scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, size_t *byte_count,
-                              scree_error *error);
+/* save.c: a checkpoint's bytes, free with scree_free; and back, `name` for messages. Without its
+ * contacts a world can be looked at, and not gone on with. */
+scree_status scree_world_pack(const scree_world *world, bool contacts, unsigned char **bytes,
+                              size_t *byte_count, scree_error *error);
 /* The same within a larger file: its count of bytes, and the bytes. */
-scree_status scree_world_save_block(scree_codec *codec, const scree_world *world,
+scree_status scree_world_save_block(scree_codec *codec, const scree_world *world, bool contacts,
                                     scree_error *error);
 scree_status scree_world_load_block(scree_codec *codec, const char *name, scree_world **world,
                                     scree_error *error);

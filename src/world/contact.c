@@ -18,10 +18,9 @@
 
 static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
 
-static double power_of(const scree_kept_load *load, vec3 velocity, vec3 spin) {
-  const float *f = load->force, *m = load->moment;
-  return f[0] * velocity.x + f[1] * velocity.y + f[2] * velocity.z + m[0] * spin.x + m[1] * spin.y +
-         m[2] * spin.z;
+static double power_of(const scree_kept_load *kept, vec3 velocity, vec3 spin) {
+  scree_load load = scree_kept_as_load(kept);
+  return vec3_dot(load.force, velocity) + vec3_dot(load.moment, spin);
 }
 
 /* The second half: the loads of the last evaluation with the velocities after their kick. With
@@ -43,17 +42,11 @@ static void add_later_work(const scree_world *world, const scree_pair *pair,
   work->later_tangential += half * power_of(&pair->tangential, u, spin);
 }
 
-/* Of the wall on the body in half a step, by the pair's wrench and the wall's last drift. A belt's
- * surface moves along itself, so that friction alone works on it. */
+/* Of the wall on the body in half a step, by the pair's wrench and the wall's last drift. */
 static double half_work_of_wall(const scree_world *world, const scree_pair *pair) {
-  const scree_world_wall *wall = &world->walls.items[pair->b];
-  const scree_frame *frame = &wall->frame;
-  double power =
-      vec3_dot(pair->wrench.force, frame->velocity) - vec3_dot(pair->wrench.torque_b, frame->spin);
-  if (scree_wall_is_belt(wall))
-    power += power_of(&pair->tangential, mat3_mul_vec(&frame->rotation, wall->surface_velocity),
-                      mat3_mul_vec(&frame->rotation, wall->surface_spin));
-  return 0.5 * world->time_step * power;
+  const scree_load all = {pair->wrench.force, vec3_neg(pair->wrench.torque_b)},
+                   friction = scree_kept_as_load(&pair->tangential);
+  return 0.5 * world->time_step * scree_wall_power(&world->walls.items[pair->b], &all, &friction);
 }
 
 static double bodies_path(const scree_world *world, const scree_pair *pair) {

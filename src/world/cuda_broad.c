@@ -67,9 +67,8 @@ static void lead(void *structure, size_t field, scree_device_address address) {
   memcpy((char *)structure + field, &at, sizeof at);
 }
 
-/* A field of the device's world, where it is not as it is there. */
-static scree_status tell(const scree_cuda_place *place, size_t field, const void *value,
-                         size_t size, scree_error *error) {
+scree_status scree_cuda_broad_tell(const scree_cuda_place *place, size_t field, const void *value,
+                                   size_t size, scree_error *error) {
   char *known = (char *)place->image + field;
   if (memcmp(known, value, size) == 0) return SCREE_OK;
   memcpy(known, value, size);
@@ -113,7 +112,7 @@ scree_status scree_cuda_broad_send(scree_cuda_broad **made, scree_world *w,
   if (!broad) return scree_fail_memory(error, sizeof *broad, "the broad phase");
   scree_broad *b = &broad->image;
   const size_t n = w->bodies.count;
-  *b = (scree_broad){.bucket_count = w->broad->bucket_count, .old_bodies = n};
+  *b = (scree_broad){.bucket_count = w->broad->bucket_count, .old_bodies = w->broad->old_bodies};
   set_length(&b->buckets, b->bucket_count);
   scree_groups *by_body[] = {&b->listed, &b->left, &b->walls, &b->sides};
   for (size_t i = 0; i < sizeof by_body / sizeof *by_body; i++) set_length(by_body[i], n);
@@ -128,9 +127,17 @@ scree_status scree_cuda_broad_send(scree_cuda_broad **made, scree_world *w,
   if (!status) status = clear_counts(broad, place, error);
   if (!status)
     status = scree_cuda_write(place->queue, (uintptr_t)b->listed.begin, w->broad->listed.begin,
-                              (n + 1) * sizeof *b->listed.begin, error);
+                              (b->old_bodies + 1) * sizeof *b->listed.begin, error);
   *at = broad->own.at;
   return status ? status : write_image(broad, place, error);
+}
+
+scree_status scree_cuda_broad_keep(const scree_cuda_broad *broad, scree_world *w,
+                                   const scree_cuda_place *place, scree_error *error) {
+  const scree_broad *b = &broad->image;
+  w->broad->old_bodies = b->old_bodies;
+  return scree_cuda_read(place->queue, w->broad->listed.begin, (uintptr_t)b->listed.begin,
+                         (b->old_bodies + 1) * sizeof *b->listed.begin, error);
 }
 
 /* Kernels [first, last]. */
@@ -178,12 +185,9 @@ scree_status scree_cuda_broad_find(scree_cuda_broad *broad, scree_world *w,
                                    const scree_cuda_place *place, size_t *count,
                                    scree_error *error) {
   scree_broad *b = &broad->image;
-  scree_status status = scree_cuda_read(place->queue, w->bodies.removed,
-                                        place->array(w, offsetof(scree_world, bodies.removed))->at,
-                                        w->bodies.count * sizeof *w->bodies.removed, error);
-  if (status) return status;
   w->margin = scree_broad_margin(w);
-  status = tell(place, offsetof(scree_world, margin), &w->margin, sizeof w->margin, error);
+  scree_status status = scree_cuda_broad_tell(place, offsetof(scree_world, margin), &w->margin,
+                                              sizeof w->margin, error);
   exchange_begins(b);
   b->widest = 0;
   b->used = 0;
@@ -213,7 +217,7 @@ static scree_status exchange_neighbours(scree_cuda_broad *broad, scree_world *w,
     status = reserve(now, count * one->size, error);
     uintptr_t at = (uintptr_t)now->at;
     lead(&broad->image, one->old_field, old->at);
-    if (!status) status = tell(place, one->field, &at, sizeof at, error);
+    if (!status) status = scree_cuda_broad_tell(place, one->field, &at, sizeof at, error);
   }
   return status;
 }
@@ -232,7 +236,7 @@ static scree_status reserve_lists(scree_world *w, const scree_cuda_place *place,
     scree_cuda_block *block = place->array(w, all[i].field);
     status = reserve(block, all[i].size, error);
     uintptr_t at = (uintptr_t)block->at;
-    if (!status) status = tell(place, all[i].field, &at, sizeof at, error);
+    if (!status) status = scree_cuda_broad_tell(place, all[i].field, &at, sizeof at, error);
   }
   return status;
 }
@@ -255,13 +259,16 @@ scree_status scree_cuda_broad_list(scree_cuda_broad *broad, scree_world *w,
   if (!status) status = reserve_lists(w, place, count, error);
   if (!status) status = reserve_own(broad, w->neighbours.count, count, error);
   if (!status)
-    status = tell(place, offsetof(scree_world, neighbours.count), &count, sizeof count, error);
-  if (!status) status = tell(place, offsetof(scree_world, keys.count), &count, sizeof count, error);
+    status = scree_cuda_broad_tell(place, offsetof(scree_world, neighbours.count), &count,
+                                   sizeof count, error);
+  if (!status)
+    status = scree_cuda_broad_tell(place, offsetof(scree_world, keys.count), &count, sizeof count,
+                                   error);
   if (!status) status = write_image(broad, place, error);
   if (status) return status;
   w->neighbours.count = count;
   status = launch(broad, w, place, SCREE_KERNEL_key_write, SCREE_KERNEL_list_date, error);
-  broad->image.old_bodies = w->bodies.count;
+  broad->image.old_bodies = w->broad->old_bodies = w->bodies.count;
   w->pairs_stale = false;
   w->timings.broad_builds++;
   return status;

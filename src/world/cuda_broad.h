@@ -15,6 +15,13 @@ typedef struct scree_cuda_place {
 
 typedef struct scree_cuda_broad scree_cuda_broad; /* what the broad phase has there of its own */
 
+/* A field of the device's world, where it is not as it is there. */
+scree_status scree_cuda_broad_tell(const scree_cuda_place *place, size_t field, const void *value,
+                                   size_t size, scree_error *error);
+/* Before scree_cuda_broad_send makes room for more bodies: where those of the list are comes here.
+ */
+scree_status scree_cuda_broad_keep(const scree_cuda_broad *broad, scree_world *world,
+                                   const scree_cuda_place *place, scree_error *error);
 /* After the world's arrays were written: what the next list is compared with. Makes *broad, when it
  * is NULL, and answers where the device's scree_broad is. */
 scree_status scree_cuda_broad_send(scree_cuda_broad **broad, scree_world *world,

@@ -26,7 +26,7 @@ scree_status scree_world_keep_all(scree_world *world, const char *path, uint64_t
 
 static scree_status pack_world(const void *world, unsigned char **bytes, size_t *byte_count,
                                scree_error *error) {
-  return scree_world_pack(world, bytes, byte_count, error);
+  return scree_world_pack(world, true, bytes, byte_count, error);
 }
 
 scree_status scree_world_keep(scree_world *world, const char *path, uint64_t step_interval,

@@ -23,9 +23,6 @@ SORTS(sort_sides, uint32_t)
 static uint32_t first_of(uint64_t key) {
   return (uint32_t)(key >> 32);
 }
-static uint32_t second_of(uint64_t key) {
-  return (uint32_t)key & ~scree_wall_partner;
-}
 static bool is_with_wall(uint64_t key) {
   return (key & scree_wall_partner) != 0;
 }
@@ -94,7 +91,7 @@ void scree_lists_leave_wall(scree_world *world, size_t w) {
   const scree_broad *broad = world->broad;
   for (uint64_t j = 0; j < broad->left.total; j++) {
     uint32_t k = broad->left_items.items[j];
-    if (second_of(broad->old_keys[k]) == w)
+    if (scree_key_second(broad->old_keys[k]) == w)
       world->walls.items[w].energy += broad->old_ledger[k].wall;
   }
 }
@@ -112,7 +109,7 @@ void scree_lists_renew(scree_world *world, size_t k) {
   uint64_t key = world->keys.items[k];
   if (world->broad->match.items[k] == scree_none) {
     world->neighbours.items[k] =
-        scree_neighbours_new(world, first_of(key), second_of(key), is_with_wall(key));
+        scree_neighbours_new(world, first_of(key), scree_key_second(key), is_with_wall(key));
     world->pair_of.items[k] = scree_none;
     world->ledger.items[k] = (scree_booked){0, 0, 0};
     return;
@@ -123,7 +120,7 @@ void scree_lists_renew(scree_world *world, size_t k) {
 
 void scree_lists_count(scree_world *world, size_t k) {
   uint64_t key = world->keys.items[k];
-  if (!is_with_wall(key)) scree_atomic_add(&world->broad->sides.count[second_of(key)], 1);
+  if (!is_with_wall(key)) scree_atomic_add(&world->broad->sides.count[scree_key_second(key)], 1);
 }
 
 /* A body's sides are first those of neighbours that it is second in, which all come earlier in the
@@ -132,7 +129,7 @@ void scree_lists_side(scree_world *world, size_t k) {
   const scree_broad *broad = world->broad;
   const uint32_t *begin = broad->listed.begin, *sides = broad->sides.begin;
   uint64_t key = world->keys.items[k];
-  uint32_t a = first_of(key), b = second_of(key);
+  uint32_t a = first_of(key), b = scree_key_second(key);
   world->sides.items[sides[a + 1] - (begin[a + 1] - (uint32_t)k)] = (uint32_t)(2 * k);
   if (!is_with_wall(key))
     world->sides.items[scree_groups_take(&broad->sides, b) - (begin[b + 1] - begin[b])] =

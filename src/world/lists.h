@@ -10,6 +10,10 @@ static inline uint64_t scree_key_of(uint32_t a, uint32_t b, bool wall) {
   return (uint64_t)a << 32 | (wall ? scree_wall_partner : 0) | b;
 }
 
+static inline uint32_t scree_key_second(uint64_t key) {
+  return (uint32_t)key & ~scree_wall_partner;
+}
+
 /* Of neighbours that are there, whose keys are not: the key, counted. */
 void scree_lists_key(scree_world *world, size_t k);
 /* Sorts the keys of body i. */

@@ -4,6 +4,7 @@
  * cut off at zero (Schwager and Poeschel 2007, Granular Matter 9, 465, eq. 20 to 22), with w =
  * sqrt(|1 - eta^2|): eta < 1:  e = exp(-eta/w (pi - atan2(2 eta w, 1 - 2 eta^2))) eta > 1:  e =
  * exp(-eta/w ln((eta + w)/(eta - w))) e falls monotonically with eta, so bisection finds it. */
+#include "world/backend.h"
 #include "world/materials.h"
 #include "world/pairs.h"
 
@@ -79,6 +80,7 @@ scree_status scree_world_add_material(scree_world *world, const scree_material *
                       material->density);
   scree_material_contact own = contact_of(material, material);
   scree_status status = check_contact(&own, error);
+  if (!status) status = scree_world_change(world, SCREE_ALL_PARTS, error);
   if (status) return status;
   size_t k = world->material_count++;
   world->materials[k] = *material;
@@ -108,6 +110,7 @@ scree_status scree_world_set_pair(scree_world *world, size_t a, size_t b,
                                   const scree_material_contact *contact, scree_error *error) {
   scree_status status = check_materials(world, a, b, error);
   if (!status) status = check_contact(contact, error);
+  if (!status) status = scree_world_change(world, SCREE_ALL_PARTS, error);
   if (status) return status;
   world->contacts[a][b] = world->contacts[b][a] = make_contact(contact);
   scree_neighbours_set_up(world);

@@ -8,6 +8,7 @@
  * the derivative, and nothing drifts however long it runs. The frame's velocity and spin are the
  * means over the last drift, as those of bodies are: springs stretch and the ledger counts by them.
  */
+#include "world/backend.h"
 #include "world/walls.h"
 
 #include "base/array.h"
@@ -301,10 +302,12 @@ scree_status scree_world_set_wall_motion(scree_world *world, size_t index,
                       world->walls.count);
   size_t row_count = 0;
   for (size_t i = 0; i < count; i++) {
-    scree_status status = check_motion(&motions[i], index, i, error);
-    if (status) return status;
+    scree_status wrong = check_motion(&motions[i], index, i, error);
+    if (wrong) return wrong;
     if (has_table(&motions[i])) row_count += motions[i].row_count;
   }
+  scree_status status = scree_world_change(world, SCREE_PART_WALLS, error);
+  if (status) return status;
   motion_range r = motions_of(world, index);
   if (!SCREE_RESERVE(&world->motions, world->motions.count + count) ||
       !SCREE_RESERVE(&world->motion_rows, world->motion_rows.count + row_count))

@@ -1,6 +1,7 @@
 /* Neighbours are made by the broad phase and kept while two bounding boxes are near; pairs while
  * they are awake. Pairs are recycled with their places for items. */
 #include "world/contact.h"
+#include "world/grids.h"
 #include "world/materials.h"
 #include "world/pairs.h"
 
@@ -215,9 +216,14 @@ void scree_neighbours_set_up(scree_world *world) {
   }
 }
 
+bool scree_body_has_neighbours(const scree_world *world, size_t body) {
+  return world->broad && body < world->broad->old_bodies;
+}
+
 /* All memory goes, also what is read only while they sleep: a checkpoint holds it. */
 void scree_body_forget(scree_world *world, size_t body) {
   world->pairs_stale = true;
+  if (!scree_body_has_neighbours(world, body)) return;
   for (size_t k = 0; k < world->neighbours.count; k++) {
     scree_neighbours *n = &world->neighbours.items[k];
     if (n->a != body && (n->wall || n->b != body)) continue;

@@ -12,6 +12,8 @@ scree_neighbours scree_neighbours_new(const scree_world *world, uint32_t a, uint
 void scree_neighbours_set_up(scree_world *world);
 /* world.c: room for forces on bodies, none at first. */
 scree_status scree_bodies_make_applied(scree_bodies *bodies, scree_error *error);
+/* Whether neighbours were ever made of it. */
+bool scree_body_has_neighbours(const scree_world *world, size_t body);
 /* After a jump: the body's contacts start anew. */
 void scree_body_forget(scree_world *world, size_t body);
 /* Half the particle's thinnest wall, m. */

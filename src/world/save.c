@@ -10,10 +10,12 @@
 #include "base/array.h"
 #include "base/file.h"
 #include "base/seal.h"
+#include "world/backend.h"
 #include "world/broad.h"
 #include "world/checkpoint.h"
 #include "world/contact.h"
 #include "world/pairs.h"
+#include "world/walls.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -466,9 +468,9 @@ static void save_bodies(scree_codec *c, const scree_world *world) {
   }
 }
 
-static void save_pairs(scree_codec *c, const scree_world *world) {
+static void save_pairs(scree_codec *c, const scree_world *world, bool contacts) {
   const scree_pools *pools = &world->pools;
-  size_t count = world->neighbours.count;
+  size_t count = contacts ? world->neighbours.count : 0;
   scree_code_count(c, &count, 1);
   for (uint32_t k = 0; k < count; k++) {
     scree_neighbours *n = &world->neighbours.items[k]; /* only read, and so are its lists */
@@ -501,16 +503,20 @@ static void save_tail(scree_codec *c, const scree_world *world) {
   code_tail(c, &tail);
 }
 
-scree_status scree_world_pack(const scree_world *world, unsigned char **bytes, size_t *byte_count,
-                              scree_error *error) {
+scree_status scree_world_pack(const scree_world *world, bool contacts, unsigned char **bytes,
+                              size_t *byte_count, scree_error *error) {
+  scree_status status = scree_world_bring(
+      world, contacts ? SCREE_ALL_PARTS : SCREE_ALL_PARTS & ~SCREE_PART_LISTS, error);
+  if (status) return status;
+  scree_walls_settle(world);
   scree_codec c = {0};
   scree_seal_begin(&c);
   save_setup(&c, world);
   save_particles(&c, world);
   save_bodies(&c, world);
-  save_pairs(&c, world);
+  save_pairs(&c, world, contacts);
   save_tail(&c, world);
-  scree_status status = scree_seal_end(&c, &seal, error);
+  status = scree_seal_end(&c, &seal, error);
   if (status != SCREE_OK) {
     scree_free(c.bytes);
     return status;
@@ -524,7 +530,7 @@ scree_status scree_world_save(const scree_world *world, const char *path, bool o
                               scree_error *error) {
   unsigned char *bytes;
   size_t count;
-  scree_status status = scree_world_pack(world, &bytes, &count, error);
+  scree_status status = scree_world_pack(world, true, &bytes, &count, error);
   if (status) return status;
   status = scree_seal_write(bytes, count, path, overwrite, error);
   scree_free(bytes);
@@ -818,6 +824,10 @@ static void load_tail(loader *l) {
   world->time_step = tail.time_step;
   world->largest_overlap = tail.largest_overlap;
   world->step_count = tail.step_count;
+  for (size_t w = 0; w < world->walls.count; w++) {
+    world->walls.items[w].summed = tail.step_count;
+    world->walls.items[w].work = scree_wall_work(world, w);
+  }
   world->parting_count = tail.parting_count;
   world->pairs_stale = tail.pairs_stale;
   world->time_step_stale = tail.time_step_stale;
@@ -853,11 +863,11 @@ scree_status scree_world_unpack(const unsigned char *bytes, size_t byte_count, c
   return status;
 }
 
-scree_status scree_world_save_block(scree_codec *codec, const scree_world *world,
+scree_status scree_world_save_block(scree_codec *codec, const scree_world *world, bool contacts,
                                     scree_error *error) {
   unsigned char *bytes;
   size_t count;
-  scree_status status = scree_world_pack(world, &bytes, &count, error);
+  scree_status status = scree_world_pack(world, contacts, &bytes, &count, error);
   if (status) return status;
   scree_code_count(codec, &count, 1);
   scree_code_bytes(codec, bytes, count);

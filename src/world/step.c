@@ -335,16 +335,17 @@ static scree_status one_step(scree_world *world, size_t most, size_t *done) {
   return status;
 }
 
-/* The state is where it is stepped already. */
-static scree_status stay(scree_world *world, scree_error *error) {
-  (void)world, (void)error;
-  return SCREE_OK;
+/* The state is stepped where it is, but for one that was on a device. */
+static scree_status begin(scree_world *world, scree_error *error) {
+  return world->on_device ? scree_world_change(world, SCREE_ALL_PARTS, error) : SCREE_OK;
 }
 
-const scree_backend scree_backend_cpu = {"cpu", stay, one_step, stay, NULL};
+const scree_backend scree_backend_cpu = {"cpu", begin, one_step, NULL, NULL, NULL, NULL};
 
 static scree_status check_time_step(scree_world *world, scree_error *error) {
   if (!world->time_step_stale) return SCREE_OK;
+  scree_status status = scree_world_bring(world, SCREE_PART_WALLS, error);
+  if (status) return status;
   world->time_step = scree_world_choose_time_step(world, NULL);
   world->time_step_stale = false;
   if (!(world->options.time_step > 0)) return SCREE_OK;
@@ -373,8 +374,7 @@ scree_status scree_world_step(scree_world *world, size_t step_count, scree_error
   for (size_t k = 0, done = 0; k < step_count; k += done) {
     size_t to_keep = scree_world_steps_to_keep(world);
     if (to_keep == 0) {
-      status = backend->fetch(world, error);
-      if (!status) status = scree_world_keep_state(world, error);
+      status = scree_world_keep_state(world, error);
       if (status) return status;
       to_keep = scree_world_steps_to_keep(world);
     }
@@ -385,8 +385,5 @@ scree_status scree_world_step(scree_world *world, size_t step_count, scree_error
     if (error) *error = world->failure;
     return status;
   }
-  status = backend->fetch(world, error);
-  if (status) return status;
-  scree_walls_sum_forces(world);
   return SCREE_OK;
 }

@@ -1,5 +1,6 @@
 /* Contacts for reports: every pair is evaluated once more at the present positions on a copy of its
  * memory, so that looking changes nothing. */
+#include "world/backend.h"
 #include "world/contact.h"
 #include "world/pairs.h"
 
@@ -27,6 +28,8 @@ static bool report(const scree_world *world, const scree_pair *pair, const scree
 
 scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_visitor *visit,
                                         void *context, scree_error *error) {
+  scree_status status = scree_world_bring(world, SCREE_ALL_PARTS, error);
+  if (status) return status;
   scree_pair_copy copy = {0};
   bool good = true, going = true;
   for (size_t k = 0; k < world->neighbours.count && good && going; k++) {

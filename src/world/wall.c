@@ -3,6 +3,8 @@
  * A wall's frame has its origin in `position` and its z axis along `axis`. Distances are signed,
  * positive on the side of the bodies. A plane is solid behind; discs and cylinders are sheets, met
  * from either side: a point belongs to the side where it was last seen clear of the sheet. */
+#include "world/backend.h"
+#include "world/lists.h"
 #include "world/walls.h"
 
 #include "base/array.h"
@@ -93,9 +95,12 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
                                   scree_error *error) {
   scree_status status = check_wall(world, wall, error);
   if (!status) status = check_period(world, wall, error);
+  if (!status) status = scree_world_change(world, SCREE_ALL_PARTS, error);
   if (status) return status;
-  scree_world_wall made = {
-      .given = *wall, .orientation = turn_to(vec3_load(wall->axis)), .path_at_build = -1};
+  scree_world_wall made = {.given = *wall,
+                           .orientation = turn_to(vec3_load(wall->axis)),
+                           .path_at_build = -1,
+                           .summed = world->step_count};
   made.frame.position = vec3_load(wall->position);
   made.frame.rotation = quat_to_mat3(made.orientation);
   set_velocity(&made, vec3_load(wall->velocity), vec3_load(wall->angular_velocity));
@@ -121,6 +126,7 @@ size_t scree_world_wall_count(const scree_world *world) {
 }
 
 void scree_world_get_wall(const scree_world *world, size_t index, scree_wall *wall) {
+  scree_world_bring(world, SCREE_PART_WALLS, NULL);
   const scree_world_wall *w = &world->walls.items[index];
   *wall = w->given;
   vec3_store(wall->position, w->frame.position);
@@ -133,6 +139,7 @@ void scree_world_get_wall(const scree_world *world, size_t index, scree_wall *wa
 }
 
 void scree_world_wall_orientation(const scree_world *world, size_t index, double orientation[4]) {
+  scree_world_bring(world, SCREE_PART_WALLS, NULL);
   quat q = world->walls.items[index].orientation;
   orientation[0] = q.w, orientation[1] = q.x, orientation[2] = q.y, orientation[3] = q.z;
 }
@@ -154,13 +161,14 @@ void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, ve
   set_velocity(wall, velocity, spin);
   double travel = (vec3_norm(velocity) + wall->reach * vec3_norm(spin)) * world->time_step;
   wall->travel = scree_max(wall->travel, travel);
-  if (!world->pairs_stale) scree_set_wall_due(world, index);
+  if (!world->pairs_stale && world->due.items) scree_set_wall_due(world, index); /* else later */
 }
 
 scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
                                            const double velocity[3],
                                            const double angular_velocity[3], scree_error *error) {
   scree_status status = check_velocities(world, index, velocity, angular_velocity, error);
+  if (!status) status = scree_world_change(world, SCREE_PART_WALLS, error);
   if (status) return status;
   if (world->walls.items[index].motion_count > 0)
     status = scree_world_set_wall_motion(world, index, NULL, 0, error);
@@ -173,56 +181,64 @@ scree_status scree_world_set_wall_surface(scree_world *world, size_t index,
                                           const double velocity[3],
                                           const double angular_velocity[3], scree_error *error) {
   scree_status status = check_velocities(world, index, velocity, angular_velocity, error);
+  if (!status) status = scree_world_change(world, SCREE_PART_WALLS, error);
   if (!status) set_surface(&world->walls.items[index], velocity, angular_velocity);
   return status;
 }
 
 /* ---- forces on walls, and the work that they do ---- */
 
-/* Of the wall on bodies, with the velocities of the last drift. A belt's surface moves along
- * itself, so that friction alone works on it. */
-static double power_of(const scree_world_wall *wall) {
-  double power =
-      -vec3_dot(wall->force, wall->frame.velocity) - vec3_dot(wall->torque, wall->frame.spin);
-  if (!scree_wall_is_belt(wall)) return power;
-  const mat3 *rotation = &wall->frame.rotation;
-  return power + vec3_dot(wall->friction.force, mat3_mul_vec(rotation, wall->surface_velocity)) +
-         vec3_dot(wall->friction.moment, mat3_mul_vec(rotation, wall->surface_spin));
+/* Whether those of world->wall_pairs.items[i] are a body and wall w. */
+static bool is_with(const scree_world *world, size_t i, size_t w) {
+  return scree_key_second(world->keys.items[world->wall_pairs.items[i]]) == w;
 }
 
-void scree_walls_sum_forces(scree_world *world) {
-  const vec3 none = {0, 0, 0};
-  for (size_t w = 0; w < world->walls.count; w++) {
-    scree_world_wall *wall = &world->walls.items[w];
-    wall->force = wall->torque = wall->friction.force = wall->friction.moment = none;
-  }
+double scree_wall_work(const scree_world *world, size_t w) {
+  double work = world->walls.items[w].energy;
+  for (size_t i = 0; i < world->wall_pairs.count; i++)
+    if (is_with(world, i, w)) work += world->ledger.items[world->wall_pairs.items[i]].wall;
+  return work;
+}
+
+void scree_wall_sum(const scree_world *world, size_t w) {
+  scree_world_wall *wall = &world->walls.items[w];
+  scree_load all = {{0, 0, 0}, {0, 0, 0}}, friction = all;
   for (size_t i = 0; i < world->wall_pairs.count; i++) {
+    if (!is_with(world, i, w)) continue;
     const scree_pair *pair = scree_pair_of(world, world->wall_pairs.items[i]);
     if (!pair || !pair->touching) continue;
-    scree_world_wall *wall = &world->walls.items[pair->b];
-    wall->force = vec3_sub(wall->force, pair->wrench.force);
-    wall->torque = vec3_add(wall->torque, pair->wrench.torque_b);
-    const float *f = pair->tangential.force, *m = pair->tangential.moment;
-    wall->friction.force = vec3_add(wall->friction.force, (vec3){f[0], f[1], f[2]});
-    wall->friction.moment = vec3_add(wall->friction.moment, (vec3){m[0], m[1], m[2]});
+    const scree_load rubs = scree_kept_as_load(&pair->tangential);
+    all.force = vec3_add(all.force, pair->wrench.force);
+    all.moment = vec3_sub(all.moment, pair->wrench.torque_b);
+    friction.force = vec3_add(friction.force, rubs.force);
+    friction.moment = vec3_add(friction.moment, rubs.moment);
   }
+  wall->force = vec3_sub((vec3){0, 0, 0}, all.force); /* and never -0 */
+  wall->torque = vec3_sub((vec3){0, 0, 0}, all.moment);
+  wall->friction = friction;
+  wall->power = scree_wall_power(wall, &all, &friction);
+  wall->work = scree_wall_work(world, w);
+  wall->summed = world->step_count;
+}
+
+void scree_walls_settle(const scree_world *world) {
   for (size_t w = 0; w < world->walls.count; w++)
-    world->walls.items[w].power = power_of(&world->walls.items[w]);
+    if (world->walls.items[w].summed != world->step_count) scree_wall_sum(world, w);
 }
 
 void scree_world_wall_force(const scree_world *world, size_t index, double force[3],
                             double torque[3]) {
+  scree_world_bring(world, SCREE_PART_WALLS, NULL);
+  scree_walls_settle(world);
   vec3_store(force, world->walls.items[index].force);
   vec3_store(torque, world->walls.items[index].torque);
 }
 
 void scree_world_wall_power(const scree_world *world, size_t index, double *power, double *energy) {
+  scree_world_bring(world, SCREE_PART_WALLS, NULL);
+  scree_walls_settle(world);
   *power = world->walls.items[index].power;
-  *energy = world->walls.items[index].energy;
-  for (size_t i = 0; i < world->wall_pairs.count; i++) {
-    uint32_t k = world->wall_pairs.items[i];
-    if (world->neighbours.items[k].b == index) *energy += world->ledger.items[k].wall;
-  }
+  *energy = world->walls.items[index].work;
 }
 
 /* ---- distances ---- */

@@ -21,8 +21,24 @@ static inline bool scree_wall_is_belt(const scree_world_wall *wall) {
 }
 /* From now on. */
 void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, vec3 spin);
-/* Forces and torques on walls from the pairs of the last step, and their power. */
-void scree_walls_sum_forces(scree_world *world);
+/* Power on bodies of forces and torques on them, about the wall's position, and of the tangential
+ * part of these, with the velocities of the last drift. A belt's surface moves along itself, so
+ * that friction alone works on it. */
+static inline double scree_wall_power(const scree_world_wall *wall, const scree_load *all,
+                                      const scree_load *friction) {
+  const scree_frame *frame = &wall->frame;
+  double power = vec3_dot(all->force, frame->velocity) + vec3_dot(all->moment, frame->spin);
+  if (!scree_wall_is_belt(wall)) return power;
+  const mat3 *rotation = &frame->rotation;
+  return power + vec3_dot(friction->force, mat3_mul_vec(rotation, wall->surface_velocity)) +
+         vec3_dot(friction->moment, mat3_mul_vec(rotation, wall->surface_spin));
+}
+/* Force and torque on wall w from the pairs of the last step, its power and its work so far: when
+ * they are asked for, or what they follow from is about to change. */
+void scree_wall_sum(const scree_world *world, size_t w);
+void scree_walls_settle(const scree_world *world);
+/* The work alone, from the ledger. */
+double scree_wall_work(const scree_world *world, size_t w);
 /* How far from its position a wall extends; INFINITY for planes and endless cylinders. */
 double scree_wall_extent(const scree_world_wall *wall);
 /* motion.c: the wall's drift. */

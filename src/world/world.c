@@ -94,6 +94,7 @@ static void free_bodies(scree_bodies *b) {
 
 void scree_world_free(scree_world *world) {
   if (!world) return;
+  if (world->on_device) scree_backend_cuda.release(world);
   free_bodies(&world->bodies);
   for (size_t i = 0; i < world->walls.count; i++)
     scree_particle_free(world->walls.items[i].surface);
@@ -106,7 +107,6 @@ void scree_world_free(scree_world *world) {
   scree_free(world->pairs.items);
   scree_free(world->spare_pairs.items);
   scree_pools_free(&world->pools);
-  if (world->on_device) scree_backend_cuda.release(world);
   scree_free(world->slots.items);
   scree_free(world->due.items);
   scree_free(world->touching.items);
@@ -233,6 +233,14 @@ static scree_status check_period(const scree_world *world, const scree_particle 
   return SCREE_OK;
 }
 
+/* What a body has before it has neighbours. */
+static const unsigned of_bodies = SCREE_PART_REMOVED | SCREE_PART_POSES | SCREE_PART_BODIES;
+
+/* All that changes when its contacts start anew. */
+static unsigned parts_around(const scree_world *world, size_t body) {
+  return scree_body_has_neighbours(world, body) ? SCREE_ALL_PARTS : of_bodies;
+}
+
 scree_status scree_world_add_body(scree_world *world, scree_particle *particle, size_t material,
                                   const scree_body *state, size_t *index, scree_error *error) {
   if (material >= world->material_count)
@@ -242,6 +250,7 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
   scree_bodies *b = &world->bodies;
   scree_status status = check_state(b->count, "added with", &start, error);
   if (!status) status = check_period(world, particle, error);
+  if (!status) status = scree_world_change(world, of_bodies, error);
   if (status) return status;
   if (b->count == b->capacity) {
     if (b->count > UINT32_MAX / 8)
@@ -269,6 +278,8 @@ scree_status scree_world_set_body_density(scree_world *world, size_t index, doub
   if (!(density > 0 && isfinite(density)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: body %zu: density %g kg/m3; above 0",
                       index, density);
+  scree_status status = scree_world_change(world, parts_around(world, index), error);
+  if (status) return status;
   scree_bodies *b = &world->bodies;
   double before = b->mass[index];
   fill_body(b, index, density);
@@ -288,6 +299,7 @@ bool scree_world_body_removed(const scree_world *world, size_t index) {
 }
 
 void scree_world_get_body(const scree_world *world, size_t i, scree_body *state) {
+  scree_world_bring(world, SCREE_PART_POSES, NULL);
   const scree_frame *frame = &world->bodies.frame[i];
   quat q = world->bodies.orientation[i];
   vec3_store(state->position, scree_world_fold(world, frame->position));
@@ -299,6 +311,7 @@ void scree_world_get_body(const scree_world *world, size_t i, scree_body *state)
 
 void scree_world_get_bodies(const scree_world *world, size_t first, size_t count, double *positions,
                             double *orientations, double *velocities, double *angular_velocities) {
+  scree_world_bring(world, SCREE_PART_POSES, NULL);
   for (size_t i = 0; i < count; i++) {
     const scree_frame *frame = &world->bodies.frame[first + i];
     quat q = world->bodies.orientation[first + i];
@@ -326,7 +339,8 @@ scree_status scree_world_set_body_force(scree_world *world, size_t index, const 
     if (!isfinite(force[i] + torque[i]))
       return scree_fail(error, SCREE_BAD_ARGUMENT,
                         "world: body %zu is given a force or torque that is not finite", index);
-  scree_status status = scree_bodies_make_applied(b, error);
+  scree_status status = scree_world_change(world, SCREE_PART_BODIES, error);
+  if (!status) status = scree_bodies_make_applied(b, error);
   if (!status) b->applied[index].now = (scree_load){vec3_load(force), vec3_load(torque)};
   return status;
 }
@@ -334,6 +348,7 @@ scree_status scree_world_set_body_force(scree_world *world, size_t index, const 
 scree_status scree_world_set_body(scree_world *world, size_t index, const scree_body *state,
                                   scree_error *error) {
   scree_status status = check_state(index, "set to", state, error);
+  if (!status) status = scree_world_change(world, parts_around(world, index), error);
   if (status) return status;
   place_body(world, index, state);
   return SCREE_OK;
@@ -353,6 +368,7 @@ double scree_world_body_mass(const scree_world *world, size_t index) {
 
 void scree_world_remove_body(scree_world *world, size_t index) {
   if (world->bodies.removed[index]) return;
+  scree_world_change(world, SCREE_PART_REMOVED, NULL);
   world->bodies.removed[index] = true;
   world->bodies.removed_count++;
   world->pairs_stale = true;
@@ -367,6 +383,7 @@ uint64_t scree_world_step_count(const scree_world *world) {
 }
 
 double scree_world_time_step(const scree_world *world, char reason[256]) {
+  scree_world_bring(world, SCREE_PART_WALLS, NULL);
   return scree_world_choose_time_step(world, reason);
 }
 

@@ -42,8 +42,10 @@ typedef struct scree_world_wall {
   vec3 force, torque;      /* on the wall in the last step, about its position */
   scree_load friction;     /* the tangential part of them, on the bodies */
   vec3 surface_velocity, surface_spin; /* of a belt, in the wall's own frame */
-  double power, energy; /* done on bodies: W in the last step; J on those that are no more near */
-  vec3 start_position;  /* when its motions were set */
+  uint64_t summed;                     /* the step whose forces these are (scree_wall_sum) */
+  double power, work;                  /* done on bodies: W in that step; J until then */
+  double energy;       /* the part of that work that was done on those that are no more near */
+  vec3 start_position; /* when its motions were set */
   quat start_orientation;
   size_t motion_count; /* its own in world->motions, after those of the walls before it */
 } scree_world_wall;
@@ -163,6 +165,11 @@ typedef struct scree_kept_load {
   float force[3], moment[3];
 } scree_kept_load;
 
+static inline scree_load scree_kept_as_load(const scree_kept_load *kept) {
+  const float *f = kept->force, *m = kept->moment;
+  return (scree_load){{f[0], f[1], f[2]}, {m[0], m[1], m[2]}};
+}
+
 /* What follows of the two bodies' sizes, masses and materials. */
 typedef struct scree_pair_law {
   double stiffness, damping, friction; /* K, C, mu */
@@ -280,6 +287,16 @@ typedef struct scree_scratch scree_scratch; /* contact.h */
 typedef scree_status scree_packer(const void *what, unsigned char **bytes, size_t *byte_count,
                                   scree_error *error);
 
+/* Parts of the state: of some a device may have a newer copy than these arrays (backend.h). */
+enum {
+  SCREE_PART_REMOVED = 1, /* who is removed: never newer there */
+  SCREE_PART_POSES = 2,   /* frames and orientations of bodies */
+  SCREE_PART_BODIES = 4,  /* all else of them */
+  SCREE_PART_WALLS = 8,
+  SCREE_PART_LISTS = 16, /* neighbours, pairs and all that belongs to them */
+  SCREE_ALL_PARTS = 31
+};
+
 struct scree_world {
   scree_world_options options;
   scree_material materials[SCREE_MATERIALS];
@@ -376,7 +393,8 @@ struct scree_world {
     size_t byte_count;
   } kept;
   scree_timings timings;
-  struct scree_device_world *on_device; /* cuda.c; NULL: it never was on one */
+  struct scree_device_world *on_device; /* cuda_state.h; NULL: it never was on one */
+  struct scree_sums *sums;              /* of a device: what the parts of an observation come to */
 };
 
 /* The pair of these neighbours; NULL: they are asleep, or new. */

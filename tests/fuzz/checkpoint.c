@@ -16,7 +16,7 @@ static void use(scree_world *world) {
   scree_world *again = NULL;
   scree_observation seen;
   scree_checksum hash = scree_world_hash(world);
-  FUZZ_CHECK(scree_world_pack(world, &bytes, &count, &error) == SCREE_OK);
+  FUZZ_CHECK(scree_world_pack(world, true, &bytes, &count, &error) == SCREE_OK);
   FUZZ_CHECK(scree_world_unpack(bytes, count, "again", &again, &error) == SCREE_OK);
   scree_checksum same = scree_world_hash(again);
   FUZZ_CHECK(hash.high == same.high && hash.low == same.low);

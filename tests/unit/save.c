@@ -22,7 +22,7 @@ static void step(scree_world *world, size_t count) {
 static packed pack(const scree_world *world) {
   scree_error error;
   packed p = {0};
-  CHECK_OK(scree_world_pack(world, &p.bytes, &p.count, &error), error);
+  CHECK_OK(scree_world_pack(world, true, &p.bytes, &p.count, &error), error);
   return p;
 }
 

@@ -4,12 +4,6 @@
 #include "world/device/threads.h"
 #include "world/lists.h"
 
-#define STAGE(name, function, count)                                                               \
-  void scree_kernel_##name(scree_world **worlds, scree_device_step *steps) {                       \
-    scree_world *world = worlds[WORLD_INDEX];                                                      \
-    (void)steps;                                                                                   \
-    FOR_EACH (i, count) function(world, i);                                                        \
-  }
 #define GROUPS(name, member)                                                                       \
   static void sum_##name(scree_world *world, size_t c) {                                           \
     scree_groups_sum(&world->broad->member, c);                                                    \

@@ -57,6 +57,7 @@ typedef struct scree_device_step {
   uint32_t offender;        /* first body that would move too far, or scree_none */
   scree_trouble trouble;    /* of pairs */
   uint64_t largest_overlap; /* the bits of the number, which is not negative */
+  double last_overlap;      /* of the last step that is done */
   uint64_t partings, list_builds, evaluations;
   uint64_t done, wanted; /* steps */
 } scree_device_step;
@@ -109,5 +110,11 @@ typedef struct scree_device_step {
   X(list_walls)    /* body */                                                                      \
   X(list_touching) /* 64 neighbours */                                                             \
   X(list_date)     /* body, and all walls */
+
+/* For whoever looks at a world between steps, or has changed it. */
+#define SCREE_LOOK_KERNELS(X)                                                                      \
+  X(sums)        /* of the parts of an observation */                                              \
+  X(wall_forces) /* wall */                                                                        \
+  X(wall_due)    /* wall */
 
 #endif

@@ -402,7 +402,7 @@ static void do_end(scree_world *world, scree_device_step *step) {
     return;
   }
   world->time += world->time_step;
-  __builtin_memcpy(&world->largest_overlap, &step->largest_overlap, sizeof world->largest_overlap);
+  __builtin_memcpy(&step->last_overlap, &step->largest_overlap, sizeof step->last_overlap);
   scree_fetch_and(&world->pools.touches_used, 0, 0);
   step->evaluations += step->awake_count;
   step->list_builds += step->due_count;

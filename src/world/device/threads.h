@@ -13,4 +13,12 @@
 #define FOR_EACH(i, count)                                                                         \
   for (size_t i = FIRST_ELEMENT, end_ = (count); i < end_; i += THREAD_COUNT)
 
+/* A kernel that calls a function for each element of a world. */
+#define STAGE(name, function, count)                                                               \
+  void scree_kernel_##name(scree_world **worlds, scree_device_step *steps) {                       \
+    scree_world *world = worlds[WORLD_INDEX];                                                      \
+    (void)steps;                                                                                   \
+    FOR_EACH (i, count) function(world, i);                                                        \
+  }
+
 #endif
