@@ -58,7 +58,7 @@ make_scene devices133 fill devices 760 133
 make_scene devices stack 9 @devices133.scree
 make_scene flowing lift 0.25 @devices.scree
 for n in 100 300 1500; do
-  make_scene devices133_$n refit devices 760 $n @devices133.scree
+  make_scene devices133_$n fill devices $n 133
   make_scene devices_$n shelve 9 0.05 @devices133_$n.scree
 done
 make_scene devices12000 shelve 10 0.05 @devices.scree
