@@ -16,7 +16,8 @@
  * the centroid is taken. And distance changes no faster than position: it is also at most that of
  * the centroid plus the way to the farthest corner (Tang, Lee, Kim 2009, "Interactive Hausdorff
  * distance computation for general polygonal models"; Guthe, Borodin, Klein 2005). On request parts
- * whose bound is above the largest distance found are cut in four, again and again.
+ * whose bound is above the largest distance found are cut in four, the largest bound of a block
+ * first.
  *
  * Facets are visited in the order of their tree, so that each query starts from the triangle found
  * by the one before; blocks have a fixed size and start afresh. */
@@ -32,8 +33,7 @@
 enum {
   BLOCK = 512,             /* vertices or facets that share a start */
   CHUNK = 256 * BLOCK,     /* between two reports of progress */
-  CUT_FIRST = 8,           /* samples for cutting one facet in the first round */
-  CUT_MOST = 1 << 14,      /* samples for cutting one facet */
+  HEAP_MOST = 1 << 16,     /* parts of a block's facets that wait to be cut */
   SAMPLE_LEAST = 10000,    /* by default, to begin with */
   SAMPLE_LIMIT = 1 << 28,  /* per surface */
   CONVERGE_MOST = 1 << 24, /* samples per surface while converging */
@@ -177,7 +177,7 @@ typedef struct sweep {
   double *vertex_distance;
   uint32_t *vertex_near; /* a triangle of to.bvh, per vertex of from */
   double *facet_bound;   /* per facet in tree order, where gap is asked */
-  queued *heaps;         /* CUT_MOST per worker, where gap is asked */
+  queued *heaps;         /* HEAP_MOST per worker, where gap is asked */
   tally *tallies;        /* per block of a chunk */
   size_t first;          /* of the chunk */
 } sweep;
@@ -371,15 +371,29 @@ static queued heap_pop(queued *heap, size_t *count) {
   return top;
 }
 
-static void push_part(const sweep *s, const part *p, uint32_t near, queued *heap, size_t *count,
-                      tally *t) {
-  queued item = {.part = *p, .near = near};
-  sample_part(s, p, &item.near, t, &item.bound);
-  heap_push(heap, count, &item);
+/* The cutting of a block: parts by falling bound, and the largest bound of those let go. */
+typedef struct cutting {
+  const sweep *sweep;
+  queued *heap;
+  size_t count;
+  double settled;
+  tally tally;
+} cutting;
+
+/* What is below the largest distance found, give or take the gap, is done with. */
+static double enough(const cutting *c) {
+  const sweep *s = c->sweep;
+  return fmax(s->found, c->tally.maximum) * (1 + s->gap) + ROUNDING * s->to->size;
 }
 
-static void push_quarters(const sweep *s, const queued *whole, queued *heap, size_t *count,
-                          tally *t) {
+static void keep_part(cutting *c, const queued *item) {
+  if (item->bound > enough(c))
+    heap_push(c->heap, &c->count, item);
+  else
+    c->settled = fmax(c->settled, item->bound);
+}
+
+static void cut_in_four(cutting *c, const queued *whole) {
   const vec3 *corner = whole->part.corner;
   vec3 side[3];
   for (int k = 0; k < 3; k++)
@@ -388,58 +402,35 @@ static void push_quarters(const sweep *s, const queued *whole, queued *heap, siz
                          {{side[2], corner[1], side[0]}},
                          {{side[1], side[0], corner[2]}},
                          {{side[0], side[1], side[2]}}};
-  for (int k = 0; k < 4; k++) push_part(s, &parts[k], whole->near, heap, count, t);
-}
-
-/* What is below the largest distance found, give or take the gap, is done with. *bound becomes
- * what no point of the facet exceeds. Answers how many samples that took, at most the budget. */
-static size_t cut_facet(const sweep *s, const part *facet, uint32_t near, size_t budget,
-                        queued *heap, tally *t, double *bound) {
-  size_t count = 0, spent = 1;
-  push_part(s, facet, near, heap, &count, t);
-  for (;; spent += 4) {
-    double enough = fmax(s->found, t->maximum) * (1 + s->gap) + ROUNDING * s->to->size;
-    if (heap[0].bound <= enough || spent + 4 > budget) break;
-    queued top = heap_pop(heap, &count);
-    push_quarters(s, &top, heap, &count, t);
-  }
-  *bound = fmin(*bound, heap[0].bound);
-  return spent;
-}
-
-/* The facets of a block by falling bound. */
-static void sort_by_bound(const double *bounds, size_t count, uint16_t order[BLOCK]) {
-  for (size_t i = 0; i < count; i++) {
-    size_t k = i;
-    for (; k > 0 && bounds[order[k - 1]] < bounds[i]; k--) order[k] = order[k - 1];
-    order[k] = (uint16_t)i;
+  for (int k = 0; k < 4; k++) {
+    queued item = {.part = parts[k], .near = whole->near};
+    sample_part(c->sweep, &item.part, &item.near, &c->tally, &item.bound);
+    item.bound = fmin(item.bound, whole->bound);
+    keep_part(c, &item);
   }
 }
 
-/* In two rounds, those of the largest bounds first: a few samples for each find a distance that
- * settles most, then the rest of the block's samples go to what is left. */
 static void sweep_bounds(void *context, size_t begin, size_t end, size_t block, int worker) {
   const sweep *s = context;
-  tally t = {.maximum = -1};
-  queued *heap = s->heaps + (size_t)worker * CUT_MOST;
-  double *bounds = s->facet_bound + s->first + begin;
-  uint16_t order[BLOCK];
-  size_t left = (size_t)(s->budget * (double)(end - begin));
-  for (int round = 0; round < 2; round++) {
-    sort_by_bound(bounds, end - begin, order);
-    for (size_t k = 0; k < end - begin && left > 0; k++) {
-      size_t i = s->first + begin + order[k];
-      double enough = fmax(s->found, t.maximum) * (1 + s->gap) + ROUNDING * s->to->size;
-      if (bounds[order[k]] <= enough) break;
-      const double *c = s->from->bvh.corners + 9 * i;
-      part facet = {{vec3_load(c), vec3_load(c + 3), vec3_load(c + 6)}};
-      uint32_t near = s->vertex_near[s->from->mesh.triangles[3 * (size_t)s->from->bvh.order[i]]];
-      size_t most = round == 0 ? CUT_FIRST : CUT_MOST;
-      left -= cut_facet(s, &facet, near, most < left ? most : left, heap, &t, &bounds[order[k]]);
-    }
+  cutting c = {.sweep = s,
+               .heap = s->heaps + (size_t)worker * HEAP_MOST,
+               .settled = 0,
+               .tally = {.maximum = -1}};
+  for (size_t i = s->first + begin; i < s->first + end; i++) {
+    const double *p = s->from->bvh.corners + 9 * i;
+    uint32_t corner = s->from->mesh.triangles[3 * (size_t)s->from->bvh.order[i]];
+    keep_part(&c, &(queued){.part = {{vec3_load(p), vec3_load(p + 3), vec3_load(p + 6)}},
+                            .bound = s->facet_bound[i],
+                            .near = s->vertex_near[corner]});
   }
-  for (size_t k = 0; k < end - begin; k++) t.bound = fmax(t.bound, bounds[k]);
-  s->tallies[block] = t;
+  double left = s->budget * (double)(end - begin);
+  for (; c.count && c.heap[0].bound > enough(&c) && left >= 4 && c.count + 4 <= HEAP_MOST;
+       left -= 4) {
+    queued top = heap_pop(c.heap, &c.count);
+    cut_in_four(&c, &top);
+  }
+  c.tally.bound = fmax(c.settled, c.count ? c.heap[0].bound : 0);
+  s->tallies[block] = c.tally;
 }
 
 static void add_tally(tally *total, const tally *t) {
@@ -555,7 +546,7 @@ static scree_status deviate(const scree_surface *from, const scree_surface *to,
   s.budget = fmax(s.budget, (double)way->cut_least);
   if (s.gap > 0) {
     SCREE_ALLOC_OR(s.facet_bound, from->mesh.triangle_count, error, done);
-    SCREE_ALLOC_OR(s.heaps, (size_t)scree_worker_count() * CUT_MOST, error, done);
+    SCREE_ALLOC_OR(s.heaps, (size_t)scree_worker_count() * HEAP_MOST, error, done);
   }
   status = run_sweeps(&s, way, st, &vertices, &facets, &cuts, error);
   if (status == SCREE_OK) *deviation = conclude(&vertices, &facets, &cuts);
