@@ -24,8 +24,6 @@ void free_shapes(shape_set *set);
 
 /* Fills `count` bodies into a cylinder of 0.4 m on a disc of 3 m and lets them come to rest. */
 scree_world *fill_scene(const shape_set *shapes, size_t count, uint64_t seed);
-/* The same scene with other shapes of the same kinds in the same places, at rest again. */
-scree_world *refit_scene(const scree_world *from, const shape_set *before, const shape_set *after);
 /* `copies` of the scene above each other in the same cylinder, sunk into each other and at rest. */
 scree_world *stack_scene(const scree_world *from, size_t copies);
 /* `copies` of the scene above each other, each on a floor of its own, after `time` s: many bodies

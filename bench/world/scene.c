@@ -17,7 +17,6 @@ static const double lift_speed = 0.1; /* m/s, the paper's */
 /* How a world is to be made again. */
 typedef struct remake {
   double stiffness_factor, time_step, gravity;
-  const shape_set *before, *after; /* NULL: the shapes stay */
   size_t copies;
   double pitch; /* of the copies */
   bool shelves; /* each copy on a disc of its own, in an endless cylinder */
@@ -35,43 +34,6 @@ static void turn(const double q[4], const double v[3], double result[3]) {
   result[0] = v[0] + q[0] * t[0] + q[2] * t[2] - q[3] * t[1];
   result[1] = v[1] + q[0] * t[1] + q[3] * t[0] - q[1] * t[2];
   result[2] = v[2] + q[0] * t[2] + q[1] * t[1] - q[2] * t[0];
-}
-
-static void multiply(const double a[4], const double b[4], double result[4]) {
-  result[0] = a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3];
-  result[1] = a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2];
-  result[2] = a[0] * b[2] - a[1] * b[3] + a[2] * b[0] + a[3] * b[1];
-  result[3] = a[0] * b[3] + a[1] * b[2] - a[2] * b[1] + a[3] * b[0];
-}
-
-/* The state that puts particle `after` where `before` was, by the frame both were made in. */
-static void refit_body(const scree_particle *before, const scree_particle *after,
-                       scree_body *state) {
-  scree_particle_measures from, to;
-  scree_particle_measure(before, &from);
-  scree_particle_measure(after, &to);
-  const double back[4] = {from.orientation[0], -from.orientation[1], -from.orientation[2],
-                          -from.orientation[3]};
-  double shape[4], shift[3], offset[3];
-  multiply(state->orientation, back, shape);
-  for (int k = 0; k < 3; k++) offset[k] = to.centre[k] - from.centre[k];
-  turn(shape, offset, shift);
-  for (int k = 0; k < 3; k++) state->position[k] += shift[k];
-  multiply(shape, to.orientation, state->orientation);
-}
-
-static scree_particle *replacement(const remake *how, scree_particle *particle, scree_body *state) {
-  if (!how->before) return particle;
-  scree_particle_measures mine, other;
-  scree_particle_measure(particle, &mine);
-  for (size_t i = 0; i < how->before->count; i++) {
-    scree_particle_measure(how->before->items[i], &other);
-    if (other.volume != mine.volume) continue;
-    refit_body(particle, how->after->items[i], state);
-    return how->after->items[i];
-  }
-  fprintf(stderr, "bench_world: the scene has other shapes than it was made from\n");
-  exit(1);
 }
 
 /* Materials: one of bodies, one of walls, as the paper has them. */
@@ -102,7 +64,7 @@ static scree_world *make_again(const scree_world *from, const remake *how) {
       scree_body state;
       if (scree_world_body_removed(from, i)) continue;
       scree_world_get_body(from, i, &state);
-      scree_particle *particle = replacement(how, scree_world_body_particle(from, i), &state);
+      scree_particle *particle = scree_world_body_particle(from, i);
       state.position[2] += (double)c * how->pitch;
       need(scree_world_add_body(world, particle, 0, &state, NULL, &error), &error);
     }
@@ -158,16 +120,6 @@ scree_world *fill_scene(const shape_set *shapes, size_t count, uint64_t seed) {
       make_again(scree_run_world(run), &(remake){.stiffness_factor = soft, .gravity = 9.81});
   scree_run_free(run);
   scree_experiment_free(&e);
-  return settle(world);
-}
-
-scree_world *refit_scene(const scree_world *from, const shape_set *before, const shape_set *after) {
-  /* shapes that stand in each other by some tenths of a millimetre are let apart gently */
-  scree_world *world = make_again(from, &(remake){.stiffness_factor = 0.1 * soft,
-                                                  .gravity = 0.981,
-                                                  .before = before,
-                                                  .after = after});
-  advance(world, 0.1);
   return settle(world);
 }
 

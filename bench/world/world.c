@@ -1,7 +1,6 @@
 /* The speed of scree's world:
  *
  *   bench_world fill KIND TRIANGLES COUNT OUT      a scene at rest in a cylinder of 0.4 m
- *   bench_world refit KIND FROM TRIANGLES IN OUT   the same with KIND at TRIANGLES instead of FROM
  *   bench_world stack COPIES IN OUT                copies sunk onto each other, at rest
  *   bench_world shelve COPIES SECONDS IN OUT       copies above each other, each on its own floor
  *   bench_world lift HEIGHT IN OUT                 after the cylinder has risen by HEIGHT m
@@ -50,18 +49,6 @@ static int fill(char **a) {
   make_shapes(a[0], strtoul(a[1], NULL, 10), &shapes);
   int status = save(fill_scene(&shapes, strtoul(a[2], NULL, 10), 1), a[3]);
   free_shapes(&shapes);
-  return status;
-}
-
-static int refit(char **a) {
-  shape_set before, after;
-  make_shapes(a[0], strtoul(a[1], NULL, 10), &before);
-  make_shapes(a[0], strtoul(a[2], NULL, 10), &after);
-  scree_world *from = load(a[3]);
-  int status = save(refit_scene(from, &before, &after), a[4]);
-  scree_world_free(from);
-  free_shapes(&before);
-  free_shapes(&after);
   return status;
 }
 
@@ -256,17 +243,15 @@ int main(int argc, char **argv) {
     const char *name;
     int argument_count;
     int (*run)(char **arguments);
-  } commands[] = {{"fill", 4, fill},     {"refit", 5, refit}, {"stack", 3, stack},
-                  {"shelve", 4, shelve}, {"lift", 3, lift},   {"retime", 3, retime},
-                  {"time", 3, measure},  {"batch", 3, batch}, {"hash", 3, hash},
-                  {"dump", 2, dump}};
+  } commands[] = {{"fill", 4, fill},   {"stack", 3, stack},   {"shelve", 4, shelve},
+                  {"lift", 3, lift},   {"retime", 3, retime}, {"time", 3, measure},
+                  {"batch", 3, batch}, {"hash", 3, hash},     {"dump", 2, dump}};
   for (size_t i = 0; i < sizeof commands / sizeof *commands; i++)
     if (argc == commands[i].argument_count + 2 && strcmp(argv[1], commands[i].name) == 0)
       return commands[i].run(argv + 2);
   fprintf(
       stderr,
-      "usage: %s [--backend NAME] fill KIND TRIANGLES COUNT OUT | refit KIND FROM TRIANGLES IN "
-      "OUT | "
+      "usage: %s [--backend NAME] fill KIND TRIANGLES COUNT OUT | "
       "stack COPIES IN OUT | shelve COPIES SECONDS IN OUT | lift HEIGHT IN OUT | retime DT IN "
       "OUT | "
       "time THREADS SECONDS IN | batch WORLDS SECONDS IN | hash THREADS STEPS IN | dump IN OUT\n",

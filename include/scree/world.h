@@ -8,7 +8,9 @@
 extern "C" {
 #endif
 
-/* Bodies under gravity, touching each other and walls by the law of docs/background/physics.md. */
+/* Bodies under gravity, touching each other and walls by the law of docs/background/physics.md. A
+ * world is one thread's at a time, for reading too: what is read may first have to come back from a
+ * device. */
 typedef struct scree_world scree_world;
 
 typedef enum scree_law {
