@@ -38,6 +38,8 @@ static scree_status next_event(reader *r, yaml_event_t *event) {
   if (yaml_parser_parse(&r->parser, event)) return SCREE_OK;
   const char *problem = r->parser.problem ? r->parser.problem : "cannot be read as YAML";
   if (r->parser.error == YAML_MEMORY_ERROR) return scree_fail_memory(r->error, 0, r->name);
+  if (r->parser.context && strstr(r->parser.context, "simple key"))
+    return fail_at(r, &r->parser.context_mark, "must be `key: value`");
   return fail_at(r, &r->parser.problem_mark, problem);
 }
 

@@ -212,9 +212,9 @@ scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
     double volume = scree_solid_of_mesh(&p->mesh).volume;
     p->measures.volume = volume;
     if (!(volume > 0))
-      status = scree_fail(
-          error, SCREE_BAD_MESH,
-          "particle: the closed surface encloses a volume of %g m3: turned inside out?", volume);
+      status = scree_fail(error, SCREE_BAD_MESH,
+                          "the closed surface is turned inside out: it encloses a volume of %g m3",
+                          volume);
   }
   if (!status) status = measure_thickness(p, error);
   if (!status) status = finish_mesh(p, error);

@@ -38,14 +38,11 @@ static size_t material_of(const scree_scene *scene, const char *name) {
 
 static scree_status add_wall(const scree_scene *scene, const scree_plan_geometry *g,
                              scree_world *world, scree_wall *wall, scree_error *error) {
-  scree_error why;
   wall->material = material_of(scene, g->material);
   memcpy(wall->position, g->at, sizeof wall->position);
   if (!isnan(g->surface_velocity[0]))
     memcpy(wall->surface_velocity, g->surface_velocity, sizeof wall->surface_velocity);
-  scree_status status = scree_world_add_wall(world, wall, NULL, &why);
-  if (status == SCREE_OK) return status;
-  return scree_fail(error, status, "%s: %s: %s", scene->name, g->place.path, why.message);
+  return scree_world_add_wall(world, wall, NULL, error);
 }
 
 static scree_status add_mesh(const scree_scene *scene, const scree_plan_geometry *g,
@@ -150,17 +147,26 @@ static scree_status set_motions(const scree_scene *scene, size_t index, scree_wo
   return status;
 }
 
+static scree_status add_one(scree_scene *scene, size_t index, const char *folder,
+                            scree_world *world, scree_error *error) {
+  const scree_plan_geometry *g = plan_of(scene, index);
+  scree_scene_geometry *made = &scene->geometry[index];
+  made->first_wall = scree_world_wall_count(world);
+  made->wall_count = g->file.count ? g->file.count : 1;
+  scree_status status = SCREE_OK;
+  for (size_t k = 0; status == SCREE_OK && k < g->file.count; k++)
+    status = add_file(scene, g, folder, g->file.items[k], world, error);
+  if (status == SCREE_OK && g->file.count == 0) status = add_solid(scene, g, world, error);
+  return status == SCREE_OK ? set_motions(scene, index, world, error) : status;
+}
+
 scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, scree_world *world,
                                       scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < scene->plan.geometry.count; i++) {
-    const scree_plan_geometry *g = plan_of(scene, i);
-    scene->geometry[i].first_wall = scree_world_wall_count(world);
-    scene->geometry[i].wall_count = g->file.count ? g->file.count : 1;
-    for (size_t k = 0; status == SCREE_OK && k < g->file.count; k++)
-      status = add_file(scene, g, folder, g->file.items[k], world, error);
-    if (status == SCREE_OK && g->file.count == 0) status = add_solid(scene, g, world, error);
-    if (status == SCREE_OK) status = set_motions(scene, i, world, error);
+    scree_error why;
+    status = add_one(scene, i, folder, world, &why);
+    status = scree_scene_blame(scene, &plan_of(scene, i)->place, status, &why, error);
   }
   scene->wall_count = scree_world_wall_count(world);
   return status;

@@ -137,13 +137,12 @@ static scree_status check_shape(scree_scene *scene, size_t index, size_t shape,
     if (within > FIRST_TRIES / 8) break;
   }
   const char *name = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, shape)->place.name;
-  scree_reader r = {scene->name, NULL, error, ""};
   if (!within)
-    return scree_fail_place(&r, place,
+    return scree_scene_fail(scene, place, error,
                             "is too small for '%s', %.4g x %.4g x %.4g m with the room about it",
                             name, 2 * p.half.x, 2 * p.half.y, 2 * p.half.z);
   size_t g = scree_scene_wall_geometry(scene, wall);
-  return scree_fail_place(&r, place,
+  return scree_scene_fail(scene, place, error,
                           "lies in '%s': nowhere in it is there room for '%s' clear of that wall",
                           scree_scene_geometry_name(scene, g), name);
 }

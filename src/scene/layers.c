@@ -11,8 +11,6 @@
 #include "base/array.h"
 #include "base/rng.h"
 
-#include <stdarg.h>
-
 static const double layer_thickness = 1.5;   /* of the longest body */
 static const double layer_spacing = 1.05;    /* of a layer's height, travelled before the next */
 static const double fastest = 8;             /* m/s: faster hits leave the contact law's range */
@@ -46,18 +44,6 @@ static uint64_t seed_of(const scree_scene *scene, const scree_scene_inlet *inlet
 }
 
 /* ---- planning ---- */
-
-SCREE_PRINTF(4, 5)
-static scree_status fail_inlet(const scree_scene *scene, const scree_scene_inlet *inlet,
-                               scree_error *error, const char *format, ...) {
-  scree_reader r = {scene->name, NULL, error, ""};
-  char text[400];
-  va_list arguments;
-  va_start(arguments, format);
-  vsnprintf(text, sizeof text, format, arguments);
-  va_end(arguments);
-  return scree_fail_place(&r, &inlet->plan->place, "%s", text);
-}
 
 static scree_status allocate(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   scree_scene_layers *l = &inlet->layers;
@@ -123,20 +109,21 @@ static scree_status count_layers(const scree_scene *scene, scree_scene_inlet *in
     layer.layer_index = layers;
     size_t more = scree_fill_place(&layer, waiting + placed, count - placed);
     if (more == 0)
-      status = fail_inlet(scene, inlet, error,
-                          "a particle %.4g mm across does not fit into the %s of %.4g mm",
-                          1e3 * box_length(&waiting[placed]), r.radius > 0 ? "cylinder" : "box",
-                          2e3 * (r.radius > 0 ? r.radius : fmin(r.half_x, r.half_y)));
+      status =
+          scree_scene_fail(scene, &inlet->plan->place, error,
+                           "a particle %.4g mm across does not fit into the %s of %.4g mm",
+                           1e3 * box_length(&waiting[placed]), r.radius > 0 ? "cylinder" : "box",
+                           2e3 * (r.radius > 0 ? r.radius : fmin(r.half_x, r.half_y)));
     placed += more;
   }
   if (status == SCREE_OK && inlet->layers.count == 0) {
     scree_fill_layer layer = layer_at(scene, inlet, r.middle.z);
     layer.is_clear = is_clear, layer.context = scene;
     if (scree_fill_place(&layer, waiting, 1) == 0)
-      status = fail_inlet(scene, inlet, error,
-                          "nowhere at %.4g m, where its layers begin, is there room for a "
-                          "particle %.4g mm across clear of the walls",
-                          r.middle.z, 1e3 * box_length(&waiting[0]));
+      status = scree_scene_fail(scene, &inlet->plan->place, error,
+                                "nowhere at %.4g m, where its layers begin, is there room for a "
+                                "particle %.4g mm across clear of the walls",
+                                r.middle.z, 1e3 * box_length(&waiting[0]));
   }
   scree_free(waiting);
   inlet->layers.planned = layers;
@@ -167,8 +154,8 @@ static scree_status plan_random(const scree_scene *scene, scree_scene_inlet *inl
     l->speed = l->planned > 1 ? travel / l->interval : 0;
   }
   if (l->speed <= fastest) return SCREE_OK;
-  return fail_inlet(
-      scene, inlet, error,
+  return scree_scene_fail(
+      scene, &inlet->plan->place, error,
       "%zu particles make %zu layers of %.4g mm, which would have to enter at %.3g m/s; at "
       "most %g m/s: set %s to %.3g s or more, or a wider cylinder",
       inlet->plan->count, l->planned, 1e3 * l->height, l->speed, fastest,
@@ -203,10 +190,11 @@ static scree_status make_cells(scree_scene *scene, scree_scene_inlet *inlet, scr
   double count = (double)inlet->plan->count, width = 2 * (round ? r.radius : r.half_x),
          depth = 2 * (round ? r.radius : r.half_y), narrow = fmin(width, depth);
   if (narrow < l->pitch)
-    return fail_inlet(scene, inlet, error,
-                      "a container %.4g m wide is too narrow for a particle %.4g m across: at "
-                      "least %.4g m",
-                      narrow, l->pitch / cell_share, l->pitch);
+    return scree_scene_fail(
+        scene, &inlet->plan->place, error,
+        "a container %.4g m wide is too narrow for a particle %.4g m across: at "
+        "least %.4g m",
+        narrow, l->pitch / cell_share, l->pitch);
   double most_x = floor(width / l->pitch), most_y = floor(depth / l->pitch);
   if (most_x * most_y > count) { /* no more than are used: nearly a square */
     double side = ceil(sqrt(count)) + 2;
@@ -255,8 +243,8 @@ scree_status scree_scene_plan_layers(scree_scene *scene, scree_error *error) {
     if (!inlet->plan->layers) continue;
     bool moves = inlet->plan->velocity[2] < 0 || !isnan(inlet->plan->layers->pack_time);
     if (!moves && !(scene->plan.gravity[2] < 0))
-      return fail_inlet(scene, inlet, error,
-                        "its layers need a velocity or a pack_time: nothing falls");
+      return scree_scene_fail(scene, &inlet->plan->place, error,
+                              "its layers need a velocity or a pack_time: nothing falls");
     status = allocate(scene, inlet, error);
     if (status == SCREE_OK)
       status = inlet->plan->layers->packed ? plan_grid(scene, inlet, error)

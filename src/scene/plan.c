@@ -2,6 +2,7 @@
 #include "scene/plan.h"
 
 #include "base/number.h"
+#include "base/vec.h"
 #include "choice/criterion.h"
 
 #include <math.h>
@@ -32,6 +33,11 @@ static bool given(const double *value) {
 
 static bool has_length(const double *v) {
   return v[0] != 0 || v[1] != 0 || v[2] != 0;
+}
+
+static bool is_across(const double *v, const double *n) {
+  vec3 a = vec3_load(v), b = vec3_load(n);
+  return fabs(vec3_dot(a, b)) <= 1e-6 * vec3_norm(a) * vec3_norm(b);
 }
 
 /* Exactly one of those must be given. */
@@ -134,8 +140,6 @@ static scree_status check_spheres(const scree_reader *r, const scree_plan_shape 
   if (count < 1 || count > MOST_SPHERES)
     return scree_fail_place(r, &s->place, "clump %.20s: must be 1 to %d spheres", s->clump,
                             MOST_SPHERES);
-  if (given(&s->sphere) || s->given)
-    return scree_fail_place(r, &s->place, "clump %zu: is for a file, sample or box", count);
   return SCREE_OK;
 }
 
@@ -148,6 +152,10 @@ static bool is_rp(const char *text) {
 static scree_status check_shape(const scree_reader *r, const void *record) {
   const scree_plan_shape *s = record;
   bool table = s->clump && !is_number(s->clump);
+  if (s->clump && !table && !s->file && !s->sample && !given(s->box))
+    return scree_fail_place(r, &s->place,
+                            "clump %.20s: so many spheres stand for a file, sample or box: give it",
+                            s->clump);
   const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere),
                         table,           given(s->box),     s->given != NULL};
   scree_status status =
@@ -384,6 +392,10 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
   if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
     status = scree_fail_place(r, &g->cylinder->place,
                               "at stands beside the cylinder, as of all geometry, not in it");
+  const double *normal = g->disc ? g->disc->normal : g->plane;
+  if (status == SCREE_OK && given(g->surface_velocity) && (g->disc || given(g->plane)) &&
+      !is_across(g->surface_velocity, normal))
+    status = scree_fail_place(r, &g->place, "surface_velocity must lie in the surface");
   const scree_plan_motion *motions = g->motion.items;
   for (size_t i = 0; status == SCREE_OK && g->motion.count > 1 && i < g->motion.count; i++)
     if (motions[i].during)
@@ -468,6 +480,8 @@ static scree_status check_inlet(const scree_reader *r, const void *record) {
   if (i->shapes.count == 0) return scree_fail_place(r, &i->place, "needs shapes: {name: share}");
   if (!rates[0] && !rates[1] && !rates[2])
     return scree_fail_place(r, &i->place, "needs a rate, a mass_rate or a count");
+  if ((rates[0] && i->rate == 0) || (rates[1] && i->mass_rate == 0))
+    return scree_fail_place(r, &i->place, "a rate of 0: nothing would ever enter");
   if (rates[0] && rates[1])
     return scree_fail_place(r, &i->place, "only one of rate, mass_rate may be given");
   return check_window(r, &i->place, i->from, i->until);
@@ -764,12 +778,21 @@ static scree_status need_name(const scree_reader *r, const scree_place *place,
 #define NEED(records, type, what, name, place)                                                     \
   need_name(r, place, &plan->records, sizeof(type), what, name)
 
+static bool are_same(const scree_texts *a, const scree_texts *b) {
+  bool crossed = strcmp(a->items[0], b->items[0]) != 0;
+  return !strcmp(a->items[0], b->items[crossed]) && !strcmp(a->items[1], b->items[!crossed]);
+}
+
 static scree_status check_materials(const scree_reader *r, const scree_plan *plan) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < plan->pairs.count; i++) {
     const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
     for (size_t k = 0; status == SCREE_OK && k < 2; k++)
       status = NEED(materials, scree_plan_material, "material", p->between.items[k], &p->place);
+    for (size_t k = 0; status == SCREE_OK && k < i; k++)
+      if (are_same(&p->between, &SCREE_PLAN_AT(plan, pairs, scree_plan_pair, k)->between))
+        status = scree_fail_place(r, &p->place, "'%.60s' and '%.60s' are a pair already",
+                                  p->between.items[0], p->between.items[1]);
   }
   for (size_t i = 0; status == SCREE_OK && i < plan->shapes.count; i++) {
     const scree_plan_shape *s = SCREE_PLAN_AT(plan, shapes, scree_plan_shape, i);
@@ -819,6 +842,11 @@ static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) 
   return status;
 }
 
+static bool is_along(const double *v, const double *g) {
+  vec3 a = vec3_load(v), b = vec3_load(g);
+  return vec3_norm(vec3_cross(a, b)) <= 1e-6 * vec3_norm(a) * vec3_norm(b);
+}
+
 static scree_status check_sensors(const scree_reader *r, const scree_plan *plan) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < plan->sensors.count; i++) {
@@ -827,6 +855,9 @@ static scree_status check_sensors(const scree_reader *r, const scree_plan *plan)
     if (of) status = NEED(geometry, scree_plan_geometry, "geometry", of, &s->place);
     for (size_t k = 0; status == SCREE_OK && s->pile && k < s->pile->during.count; k++)
       status = NEED(phases, scree_plan_phase, "phase", s->pile->during.items[k], &s->pile->place);
+    if (status == SCREE_OK && s->slope && is_along(s->slope->axis, plan->gravity))
+      status =
+          scree_fail_place(r, &s->place, "axis along gravity: from above a surface has no slope");
     if (status == SCREE_OK && s->segregation && plan->shapes.count < 2)
       status = scree_fail_place(r, &s->place, "segregation needs two shapes at least");
   }

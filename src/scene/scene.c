@@ -8,6 +8,7 @@
 #include "base/platform.h"
 #include "base/progress.h"
 
+#include <stdarg.h>
 #include <string.h>
 
 static const double tick_share = 0.25; /* of the way a body falls in, or flies, by its radius */
@@ -101,6 +102,27 @@ static scree_status make_world(const scree_scene *scene, double time_step, scree
   return status;
 }
 
+scree_status scree_scene_fail(const scree_scene *scene, const scree_place *place,
+                              scree_error *error, const char *format, ...) {
+  scree_reader r = {scene->name, NULL, error, ""};
+  char text[sizeof error->message];
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(text, sizeof text, format, arguments);
+  va_end(arguments);
+  return scree_fail_place(&r, place, "%s", text);
+}
+
+scree_status scree_scene_blame(const scree_scene *scene, const scree_place *place,
+                               scree_status status, const scree_error *why, scree_error *error) {
+  if (status == SCREE_OK) return status;
+  if (status != SCREE_OUT_OF_MEMORY && status != SCREE_CANCELLED)
+    scree_scene_fail(scene, place, error, "%s", why->message);
+  else if (error)
+    *error = *why;
+  return status;
+}
+
 static scree_status check_period(const scree_scene *scene, size_t index, scree_error *error) {
   const scree_plan_domain *d = scene->plan.domain;
   scree_particle_measures m;
@@ -108,10 +130,9 @@ static scree_status check_period(const scree_scene *scene, size_t index, scree_e
   double least = SCREE_LEAST_PERIOD * m.bounding_radius;
   for (size_t i = 0; d && i < d->periodic.count; i++) {
     int k = *d->periodic.items[i] - 'x';
-    scree_reader r = {scene->name, NULL, error, ""};
     if (d->max[k] - d->min[k] >= least) continue;
-    return scree_fail_place(
-        &r, &d->place,
+    return scree_scene_fail(
+        scene, &d->place, error,
         "a period of %.4g m along %c is too short for '%s', %.4g m across: at least %.4g m",
         d->max[k] - d->min[k], "xyz"[k], scree_scene_shape_name(scene, index),
         2 * m.bounding_radius, least);
@@ -229,6 +250,10 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) scree_scene_measure_shape(scene, i);
   scree_status status = make_gallery(scene, folder, error);
   if (status != SCREE_OK) return status;
+  scree_error why; /* a time step that is too long */
+  status = scree_world_step(scene->gallery, 0, &why);
+  status = scree_scene_blame(scene, &scene->plan.contact->place, status, &why, error);
+  if (status != SCREE_OK) return status;
   scene->time_step = scree_world_time_step(scene->gallery, NULL);
   plan_ticks(scene);
   status = make_world(scene, scene->time_step, &scene->world, error);
@@ -236,23 +261,12 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
   return status;
 }
 
-static scree_status fail_shape(const scree_scene *scene, const scree_plan_shape *plan,
-                               const scree_error *why, scree_status status, scree_error *error) {
-  scree_reader r = {scene->name, NULL, error, ""};
-  if (status != SCREE_OUT_OF_MEMORY && status != SCREE_CANCELLED)
-    scree_fail_place(&r, &plan->place, "%s", why->message);
-  else if (error)
-    *error = *why;
-  return status;
-}
-
 static scree_status take_given_particle(scree_scene *scene, const scree_scene_gift *gift,
                                         size_t index, scree_error *error) {
   const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, index);
   scree_scene_shape *s = &scene->shapes[index];
-  scree_reader r = {scene->name, NULL, error, ""};
   if (!gift || !gift->particles)
-    return scree_fail_place(&r, &plan->place,
+    return scree_scene_fail(scene, &plan->place, error,
                             "given: '%.60s' comes from a program; here a shape needs a file, "
                             "sample, sphere, clump or box",
                             plan->given);
@@ -275,7 +289,7 @@ static scree_status make_particles(scree_scene *scene, const char *folder,
       continue;
     }
     status = scree_scene_make_particle(plan, folder, progress, &s->particle, &s->source, &why);
-    if (status != SCREE_OK) status = fail_shape(scene, plan, &why, status, error);
+    status = scree_scene_blame(scene, &plan->place, status, &why, error);
   }
   return status;
 }

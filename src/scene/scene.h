@@ -198,6 +198,12 @@ char *scree_scene_path(const char *folder, const char *name);
 /* geometry.c: walls into a world, and what placing must know of them. */
 scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, scree_world *world,
                                       scree_error *error);
+/* What is wrong with what the scene's file has at that place. */
+scree_status scree_scene_fail(const scree_scene *scene, const scree_place *place,
+                              scree_error *error, const char *format, ...) SCREE_PRINTF(4, 5);
+/* The status; a failure that is told by `why` is told with its place. */
+scree_status scree_scene_blame(const scree_scene *scene, const scree_place *place,
+                               scree_status status, const scree_error *why, scree_error *error);
 scree_status scree_scene_find_surfaces(scree_scene *scene, scree_error *error);
 /* Whether a body in that place is clear of all walls; else *wall is one that it is not clear of. */
 bool scree_scene_is_clear(const scree_scene *scene, const scree_placement *placement, size_t *wall);

@@ -128,11 +128,10 @@ static scree_status read_real(const scree_reader *r, const scree_yaml *node, con
   double number;
   if (node->kind != SCREE_YAML_SCALAR) return fail_at(r, node, "must be one number");
   if (!read_number(node->text, unit, &number)) {
-    double lead;
-    const char *text = node->text;
-    if (*unit && scree_number_parse(text, text + strlen(text), &lead))
-      return fail_at(r, node, "'%.60s': must be a number in %s, such as %g", text, unit, lead);
-    return fail_at(r, node, "'%.60s': must be a number%s%s", text, *unit ? " in " : "", unit);
+    const char *text = node->text, *rest = scree_number_parse(text, text + strlen(text), &number);
+    bool more = rest && *(rest += strspn(rest, " "));
+    return fail_at(r, node, "'%.60s': must be a number%s%s%s%.60s%s", text, *unit ? " in " : "",
+                   unit, more ? "; what is '" : "", more ? rest : "", more ? "'?" : "");
   }
   if ((f->minimum != 0 || f->maximum != 0) && !(number >= f->minimum && number <= f->maximum))
     return fail_at(r, node, "%g: must be %g to %g%s%s", number, f->minimum, f->maximum,
@@ -272,6 +271,9 @@ static scree_status read_weights(const scree_reader *r, const scree_yaml *node,
       status = read_text(r, &item, &value->names[i]);
     }
     if (status != SCREE_OK) return status;
+    for (size_t k = 0; k < i; k++)
+      if (!strcmp(value->names[i], value->names[k]))
+        return fail_at(r, &item, "'%.60s' stands here twice", value->names[i]);
   }
   return SCREE_OK;
 }
@@ -519,7 +521,7 @@ static void put_comment(FILE *stream, const scree_field *f) {
   if (f->kind == SCREE_FIELD_WORD)
     fprintf(stream, "  # %s; %s", f->unit, f->comment);
   else if (*unit)
-    fprintf(stream, "  # %s; %s", unit, f->comment);
+    fprintf(stream, "  # %s%s%s", unit, *f->comment ? "; " : "", f->comment);
   else if (f->comment && *f->comment)
     fprintf(stream, "  # %s", f->comment);
 }

@@ -13,6 +13,18 @@ run run nowhere.yaml
 run run hopper.yaml --resume 2>&1 | head -2
 sed 's/friction: 0.3/fricton: 0.3/' hopper.yaml >wrong.yaml
 run run wrong.yaml
+# geometry from inside, a period that a ball does not fit into: the place in the file, and no folder
+printf 'OFF\n4 4 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 1 2\n3 0 3 1\n3 0 2 3\n3 1 3 2\n' >inward.off
+cat >places.yaml <<'END'
+time: 1
+shapes: {ball: {sphere: 0.01}}
+geometry: {tip: {file: inward.off}}
+inlets: {feed: {box: {min: [0, 0, 0.1], max: [0.02, 0.1, 0.2]}, shapes: ball, rate: 20}}
+END
+run run places.yaml -o nothing
+sed -i 's/^geometry.*/domain: {min: [0, 0, 0], max: [0.02, 1, 1], periodic: x}/' places.yaml
+run run places.yaml -o nothing
+[ -e nothing ] || echo nothing written
 "$SCREE" run hopper.yaml --set materials.grain.friction=50 --set materials.grain.density=2.65 --set time=1e-5 2>&1 | head -n 2
 run run small.yaml -o out --no-picture -q | numbers
 ls out
