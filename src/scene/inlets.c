@@ -215,6 +215,20 @@ scree_status scree_scene_list_present(scree_scene *scene, const scree_placement 
   return SCREE_OK;
 }
 
+double scree_scene_highest(const scree_scene *scene, const scree_placement *extents,
+                           double slowest) {
+  double top = -INFINITY;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    size_t shape = scene->shape_of.items[b];
+    double radius = extents ? extents[shape].radius : scene->shapes[shape].extent.radius;
+    if (body.velocity[2] >= slowest) top = fmax(top, body.position[2] + radius);
+  }
+  return top;
+}
+
 static scree_status list_near(scree_scene *scene, const scree_plan_inlet *plan,
                               scree_error *error) {
   double low[3], high[3];

@@ -58,8 +58,9 @@ static scree_status allocate(scree_scene *scene, scree_scene_inlet *inlet, scree
     double given = inlet->plan->layers->clearance;
     scree_particle_measures m;
     scree_particle_measure(scene->shapes[i].particle, &m);
-    l->extents[i] = scree_placement_of(scene->shapes[i].particle,
-                                       isnan(given) ? clearance_share * m.size : given);
+    if (isnan(given)) given = clearance_share * m.size;
+    l->extents[i] =
+        scree_placement_of(scene->shapes[i].particle, inlet->plan->layers->packed ? 0 : given);
   }
   return SCREE_OK;
 }
@@ -214,17 +215,11 @@ static scree_status make_cells(scree_scene *scene, scree_scene_inlet *inlet, scr
   return SCREE_OK;
 }
 
-static double bounding_radius(const scree_scene *scene, size_t shape) {
-  scree_particle_measures m;
-  scree_particle_measure(scene->shapes[shape].particle, &m);
-  return m.bounding_radius;
-}
-
 static scree_status plan_grid(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   scree_scene_layers *l = &inlet->layers;
   double largest = 0;
   for (size_t k = 0; k < inlet->plan->shapes.count; k++)
-    largest = fmax(largest, bounding_radius(scene, inlet->shapes[k]));
+    largest = fmax(largest, l->extents[inlet->shapes[k]].radius);
   l->pitch = 2 * cell_share * largest;
   scree_status status = make_cells(scene, inlet, error);
   if (status != SCREE_OK) return status;
@@ -255,23 +250,6 @@ scree_status scree_scene_plan_layers(scree_scene *scene, scree_error *error) {
 
 /* ---- entering ---- */
 
-/* The height of the highest body; of one that is just entering in random layers it does not count:
- * it moves out of the way. */
-static double top_of(const scree_scene *scene, const scree_scene_inlet *inlet) {
-  double top = -INFINITY;
-  bool grid = inlet->plan->layers->packed;
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
-    size_t shape = scene->shape_of.items[b];
-    double radius = grid ? bounding_radius(scene, shape) : inlet->layers.extents[shape].radius;
-    if (grid || body.velocity[2] >= -0.5 * inlet->layers.speed)
-      top = fmax(top, body.position[2] + radius);
-  }
-  return top;
-}
-
 static scree_status enter_random(scree_scene *scene, scree_scene_inlet *inlet, double bottom,
                                  scree_error *error) {
   size_t left;
@@ -293,10 +271,10 @@ static scree_status enter_random(scree_scene *scene, scree_scene_inlet *inlet, d
 }
 
 /* The place of a body in its cell: the room that a smaller one has is used at random. */
-static scree_placement place_in_cell(const scree_scene *scene, const scree_scene_inlet *inlet,
-                                     size_t shape, vec3 cell, scree_rng *rng) {
+static scree_placement place_in_cell(const scree_scene_inlet *inlet, size_t shape, vec3 cell,
+                                     scree_rng *rng) {
   scree_placement p = inlet->layers.extents[shape];
-  double room = 0.5 * inlet->layers.pitch - cell_share * bounding_radius(scene, shape);
+  double room = 0.5 * inlet->layers.pitch - cell_share * p.radius;
   vec3 shift = vec3_scale(scree_rng_direction(rng), room > 0 ? room * scree_rng_uniform(rng) : 0);
   p.position = vec3_add(cell, shift);
   p.orientation = scree_rng_rotation(rng);
@@ -317,7 +295,7 @@ static scree_status enter_grid(scree_scene *scene, scree_scene_inlet *inlet, dou
     if (inlet->entered == inlet->plan->count) break;
     size_t which = l->order[inlet->entered];
     vec3 cell = l->cells[l->cell_order[k]];
-    scree_placement p = place_in_cell(scene, inlet, inlet->shapes[which], cell, &rng);
+    scree_placement p = place_in_cell(inlet, inlet->shapes[which], cell, &rng);
     p.position.x += r.middle.x, p.position.y += r.middle.y;
     p.position.z += bottom + 0.5 * l->pitch;
     status = scree_scene_enter(scene, inlet, which, &p, velocity, error);
@@ -363,8 +341,11 @@ double scree_scene_filling_time(const scree_scene *scene) {
 
 static scree_status enter_layer(scree_scene *scene, scree_scene_inlet *inlet, scree_error *error) {
   const scree_plan_layers *plan = inlet->plan->layers;
+  /* What is just entering in random layers does not count: it moves out of the way. */
+  double slowest = plan->packed ? -INFINITY : -0.5 * inlet->layers.speed;
   double above = plan->above + (plan->packed ? (cell_share - 1) * inlet->layers.pitch : 0),
-         bottom = fmax(region_of(inlet->plan).middle.z, top_of(scene, inlet) + above);
+         bottom = fmax(region_of(inlet->plan).middle.z,
+                       scree_scene_highest(scene, inlet->layers.extents, slowest) + above);
   scree_status status = plan->packed ? enter_grid(scene, inlet, bottom, error)
                                      : enter_random(scene, inlet, bottom, error);
   inlet->layers.count++;

@@ -47,22 +47,11 @@ scree_status scree_scene_begin_phases(scree_scene *scene, scree_error *error) {
 
 /* ---- their ends ---- */
 
-static double highest(const scree_scene *scene) {
-  double top = -INFINITY;
-  for (size_t b = 0; b < scene->shape_of.count; b++) {
-    scree_body body;
-    if (scree_world_body_removed(scene->world, b)) continue;
-    scree_world_get_body(scene->world, b, &body);
-    top = fmax(top, body.position[2] + scene->shapes[scene->shape_of.items[b]].extent.radius);
-  }
-  return top;
-}
-
 static bool is_above_all(const scree_scene *scene, const char *name) {
   size_t g = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), name);
   scree_wall wall;
   scree_world_get_wall(scene->world, scene->geometry[g].first_wall, &wall);
-  return wall.position[2] > highest(scene);
+  return wall.position[2] > scree_scene_highest(scene, NULL, -INFINITY);
 }
 
 /* Whether all has been still for a while. */

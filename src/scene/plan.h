@@ -198,6 +198,8 @@ typedef struct scree_plan {
 } scree_plan;
 
 extern const scree_record scree_plan_record;
+/* plan_check.c: of a whole scree_plan, whose records are good each. */
+scree_status scree_plan_check(const scree_reader *reader, const void *plan);
 
 /* Reads and checks it all but the files it names. */
 scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root, scree_plan *plan);

@@ -285,6 +285,9 @@ scree_status scree_scene_file_make(scree_scene_writer *write, const void *contex
 scree_status scree_scene_list_present(scree_scene *scene, const scree_placement *extents,
                                       const double low[3], const double high[3],
                                       scree_error *error);
+/* m: of the highest body, but those that move slower up than `slowest` (or faster down). */
+double scree_scene_highest(const scree_scene *scene, const scree_placement *extents,
+                           double slowest);
 /* At rest or as `state` says, of the shape's density. */
 scree_status scree_scene_add_body(const scree_scene_shape *shape, scree_world *world,
                                   const scree_body *state, scree_error *error);

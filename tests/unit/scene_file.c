@@ -115,6 +115,8 @@ static const struct {
      "must be one of random|grid"},
     {"rate: 20, until: 1", "count: 20, velocity: [0, 0, 1], layers: {}", "line 16",
      "layers enter downwards"},
+    {"rate: 20, until: 1", "count: 20, layers: {packed: grid, clearance: 1e-3}", "line 16",
+     "clearance is of random layers"},
     {"rate: 20, until: 1", "count: 20, layers: {packed: grid, pack_time: 2}", "line 16",
      "pack_time is of random layers"},
     {"stop:", "phases: {fill: {filled: true}}\nstop:", "line 23", "phases.fill: needs a time"},

@@ -1,0 +1,167 @@
+/* What records of a scene must be to each other: names that others refer to, regions within the
+ * domain, what a periodic domain allows. */
+#include "scene/plan.h"
+
+#include "base/vec.h"
+
+#include <string.h>
+
+/* A name that another record must have. */
+static scree_status need_name(const scree_reader *r, const scree_place *place,
+                              const scree_records *records, size_t size, const char *what,
+                              const char *name) {
+  const char *names[64] = {NULL};
+  char list[400] = "";
+  size_t count = 0;
+  if (scree_plan_find(records, size, name) < records->count) return SCREE_OK;
+  for (size_t i = 0; i < records->count && count < 64; i++) {
+    const scree_place *other = (const void *)((const char *)records->items + i * size);
+    size_t used = strlen(list);
+    names[count++] = other->name;
+    snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", other->name);
+  }
+  const char *nearest = scree_nearest_name(name, names, count);
+  if (nearest)
+    return scree_fail_place(r, place, "no %s '%.64s'; did you mean '%s'?", what, name, nearest);
+  return scree_fail_place(r, place, "no %s '%.64s'; there %s %s", what, name,
+                          count == 1 ? "is" : "are", count ? list : "none");
+}
+
+#define NEED(records, type, what, name, place)                                                     \
+  need_name(r, place, &plan->records, sizeof(type), what, name)
+
+static bool are_same(const scree_texts *a, const scree_texts *b) {
+  bool crossed = strcmp(a->items[0], b->items[0]) != 0;
+  return !strcmp(a->items[0], b->items[crossed]) && !strcmp(a->items[1], b->items[!crossed]);
+}
+
+static scree_status check_materials(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->pairs.count; i++) {
+    const scree_plan_pair *p = SCREE_PLAN_AT(plan, pairs, scree_plan_pair, i);
+    for (size_t k = 0; status == SCREE_OK && k < 2; k++)
+      status = NEED(materials, scree_plan_material, "material", p->between.items[k], &p->place);
+    for (size_t k = 0; status == SCREE_OK && k < i; k++)
+      if (are_same(&p->between, &SCREE_PLAN_AT(plan, pairs, scree_plan_pair, k)->between))
+        status = scree_fail_place(r, &p->place, "'%.60s' and '%.60s' are a pair already",
+                                  p->between.items[0], p->between.items[1]);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < plan->shapes.count; i++) {
+    const scree_plan_shape *s = SCREE_PLAN_AT(plan, shapes, scree_plan_shape, i);
+    if (s->material)
+      status = NEED(materials, scree_plan_material, "material", s->material, &s->place);
+    else if (plan->materials.count > 1)
+      status = scree_fail_place(r, &s->place, "needs a material: there are several");
+  }
+  for (size_t i = 0; status == SCREE_OK && i < plan->geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    if (g->material)
+      status = NEED(materials, scree_plan_material, "material", g->material, &g->place);
+    else if (plan->materials.count > 1)
+      status = scree_fail_place(r, &g->place, "needs a material: there are several");
+  }
+  return status;
+}
+
+static scree_status check_inside(const scree_reader *r, const scree_plan *plan,
+                                 const scree_plan_inlet *inlet) {
+  const scree_plan_domain *d = plan->domain;
+  if (!d) return SCREE_OK;
+  double low[3], high[3];
+  for (int k = 0; k < 3; k++) {
+    const scree_plan_cylinder *c = inlet->cylinder;
+    low[k] = c ? c->at[k] : inlet->box->min[k];
+    high[k] = c ? c->at[k] : inlet->box->max[k];
+    if (inlet->layers && k == 2) high[k] = low[k];
+    if (low[k] < d->min[k] || high[k] > d->max[k])
+      return scree_fail_place(r, &inlet->place,
+                              "lies outside the domain along %c: what enters would leave at once",
+                              "xyz"[k]);
+  }
+  return SCREE_OK;
+}
+
+static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->inlets.count; i++) {
+    const scree_plan_inlet *inlet = SCREE_PLAN_AT(plan, inlets, scree_plan_inlet, i);
+    for (size_t k = 0; status == SCREE_OK && k < inlet->shapes.count; k++)
+      status = NEED(shapes, scree_plan_shape, "shape", inlet->shapes.names[k], &inlet->place);
+    if (status == SCREE_OK) status = check_inside(r, plan, inlet);
+    if (status == SCREE_OK && inlet->layers && plan->gravity[2] > 0)
+      status = scree_fail_place(r, &inlet->layers->place, "layers need a gravity that points down");
+  }
+  return status;
+}
+
+static bool is_along(const double *v, const double *g) {
+  vec3 a = vec3_load(v), b = vec3_load(g);
+  return vec3_norm(vec3_cross(a, b)) <= 1e-6 * vec3_norm(a) * vec3_norm(b);
+}
+
+static scree_status check_sensors(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->sensors.count; i++) {
+    const scree_plan_sensor *s = SCREE_PLAN_AT(plan, sensors, scree_plan_sensor, i);
+    const char *of = s->wall ? s->wall : s->position;
+    if (of) status = NEED(geometry, scree_plan_geometry, "geometry", of, &s->place);
+    for (size_t k = 0; status == SCREE_OK && s->pile && k < s->pile->during.count; k++)
+      status = NEED(phases, scree_plan_phase, "phase", s->pile->during.items[k], &s->pile->place);
+    if (status == SCREE_OK && s->slope && is_along(s->slope->axis, plan->gravity))
+      status =
+          scree_fail_place(r, &s->place, "axis along gravity: from above a surface has no slope");
+    if (status == SCREE_OK && s->segregation && plan->shapes.count < 2)
+      status = scree_fail_place(r, &s->place, "segregation needs two shapes at least");
+  }
+  return status;
+}
+
+static scree_status check_phases(const scree_reader *r, const scree_plan *plan) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < plan->phases.count; i++) {
+    const scree_plan_phase *p = SCREE_PLAN_AT(plan, phases, scree_plan_phase, i);
+    if (p->clear) status = NEED(geometry, scree_plan_geometry, "geometry", p->clear, &p->place);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < plan->geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    const scree_plan_motion *m = g->motion.items;
+    if (g->motion.count && m->during)
+      status = NEED(phases, scree_plan_phase, "phase", m->during, &m->place);
+  }
+  return status;
+}
+
+/* What turns does not look the same one period on. */
+static scree_status check_periodic(const scree_reader *r, const scree_plan *plan) {
+  if (!plan->domain || plan->domain->periodic.count == 0) return SCREE_OK;
+  for (size_t i = 0; i < plan->geometry.count; i++) {
+    const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
+    const scree_plan_motion *m = g->motion.items;
+    bool fits = (!isnan(g->plane[0]) || (g->cylinder && g->cylinder->length == 0)) && !g->turn;
+    if (!fits)
+      return scree_fail_place(r, &g->place,
+                              "in a periodic domain geometry must go on across its boundary: a "
+                              "plane along the axis, or an endless cylinder about it");
+    for (size_t k = 0; k < g->motion.count; k++)
+      if (m[k].rotate && !g->cylinder)
+        return scree_fail_place(r, &m[k].place, "in a periodic domain planes do not rotate");
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_plan_check(const scree_reader *r, const void *record) {
+  const scree_plan *plan = record;
+  if (isnan(plan->time) && plan->phases.count == 0)
+    return scree_fail_place(r, &plan->place, "needs time: how many seconds to simulate");
+  if (plan->materials.count > 64)
+    return scree_fail_place(r, &plan->place, "%zu materials: at most 64", plan->materials.count);
+  if (plan->shapes.count == 0)
+    return scree_fail_place(r, &plan->place, "needs shapes: {name: {file: ...}}");
+  if (plan->inlets.count == 0)
+    return scree_fail_place(r, &plan->place, "needs inlets: nothing would ever be in it");
+  scree_status status = check_materials(r, plan);
+  if (status == SCREE_OK) status = check_inlets(r, plan);
+  if (status == SCREE_OK) status = check_phases(r, plan);
+  if (status == SCREE_OK) status = check_periodic(r, plan);
+  return status == SCREE_OK ? check_sensors(r, plan) : status;
+}
