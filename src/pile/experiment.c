@@ -1,82 +1,79 @@
-/* The experiment's fields in one table: key, unit, range, what it is and where the default comes
- * from. The table reads YAML, sets single fields and prints the commented file. */
+/* The experiment's fields in one table (scene/schema.h): key, unit, range, what it is and where the
+ * default comes from. The table reads YAML, sets single fields and prints the commented file. */
 #include "base/alloc.h"
-#include "base/number.h"
 #include "base/yaml.h"
+#include "scene/schema.h"
 
-#include <errno.h>
-#include <stdlib.h>
+#include "scree.h"
+
 #include <string.h>
-
-typedef enum field_kind { FIELD_COUNT, FIELD_SEED, FIELD_REAL, FIELD_FLAG, FIELD_WORD } field_kind;
-
-typedef struct field {
-  const char *key; /* "group.name" or "name" */
-  field_kind kind;
-  size_t offset;
-  double minimum, maximum;
-  const char *unit; /* of FIELD_REAL; "" for a pure number; the words of FIELD_WORD */
-  const char *comment;
-} field;
 
 #define AT(name) offsetof(scree_experiment, name)
 /* Sources: [p] the paper, section 2.3; [p*] the paper, read as docs/background/method.md says; [s]
  * scree. */
-static const field fields[] = {
-    {"particles", FIELD_COUNT, AT(particle_count), 1, 1e7, "",
-     "how many, in equal shares of the shapes [p]"},
-    {"seed", FIELD_SEED, AT(seed), 0, 0, "",
-     "of positions, orientations and order; replicates add 1"},
-    {"density", FIELD_REAL, AT(density), 1, 1e5, "kg/m3", "not given in the paper [s]"},
-    {"mass_from", FIELD_WORD, AT(mass_rule), 0, 0, "mesh|scan",
-     "volume that gives the mass: of each decimated mesh, or of the scan at every level [s]"},
-    {"cylinder.diameter", FIELD_REAL, AT(cylinder_diameter), 1e-4, 1e3, "m", "inside [p*]"},
-    {"disc.diameter", FIELD_REAL, AT(disc_diameter), 1e-4, 1e4, "m",
-     "bottom; what leaves it falls off [p*]"},
-    {"phases.pack_time", FIELD_REAL, AT(pack_time), 0, 1e4, "s",
-     "particles are filled in from above [p]"},
-    {"phases.settle_time", FIELD_REAL, AT(settle_time), 0, 1e4, "s", "they come to rest [p]"},
-    {"phases.lift_speed", FIELD_REAL, AT(lift_speed), 1e-5, 10, "m/s",
-     "of the cylinder, upwards [p]"},
-    {"phases.lift_time", FIELD_REAL, AT(lift_time), 0, 1e5, "s", "[p]"},
-    {"phases.hold_time", FIELD_REAL, AT(hold_time), 0, 1e5, "s",
-     "after the lift, at most, until still [s]"},
-    {"phases.stop_when_still", FIELD_FLAG, AT(stop_when_still), 0, 0, "",
-     "end settling, lifting (once the cylinder is clear) and holding early when still [s]"},
-    {"phases.still_energy", FIELD_REAL, AT(still_energy), 0, 1, "J",
-     "kinetic energy a particle below which the heap is still [s]"},
-    {"phases.inlet", FIELD_WORD, AT(inlet), 0, 0, "top|heap",
+static const scree_field fields[] = {
+    {"particles", SCREE_FIELD_COUNT, AT(particle_count), 1, 1e7, "",
+     "how many, in equal shares of the shapes [p]", NULL},
+    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "",
+     "of positions, orientations and order; replicates add 1", NULL},
+    {"density", SCREE_FIELD_REAL, AT(density), 1, 1e5, "kg/m3", "not given in the paper [s]", NULL},
+    {"mass_from", SCREE_FIELD_WORD, AT(mass_rule), 0, 0, "mesh|scan",
+     "volume that gives the mass: of each decimated mesh, or of the scan at every level [s]", NULL},
+    {"cylinder.diameter", SCREE_FIELD_REAL, AT(cylinder_diameter), 1e-4, 1e3, "m", "inside [p*]",
+     NULL},
+    {"disc.diameter", SCREE_FIELD_REAL, AT(disc_diameter), 1e-4, 1e4, "m",
+     "bottom; what leaves it falls off [p*]", NULL},
+    {"phases.pack_time", SCREE_FIELD_REAL, AT(pack_time), 0, 1e4, "s",
+     "particles are filled in from above [p]", NULL},
+    {"phases.settle_time", SCREE_FIELD_REAL, AT(settle_time), 0, 1e4, "s", "they come to rest [p]",
+     NULL},
+    {"phases.lift_speed", SCREE_FIELD_REAL, AT(lift_speed), 1e-5, 10, "m/s",
+     "of the cylinder, upwards [p]", NULL},
+    {"phases.lift_time", SCREE_FIELD_REAL, AT(lift_time), 0, 1e5, "s", "[p]", NULL},
+    {"phases.hold_time", SCREE_FIELD_REAL, AT(hold_time), 0, 1e5, "s",
+     "after the lift, at most, until still [s]", NULL},
+    {"phases.stop_when_still", SCREE_FIELD_FLAG, AT(stop_when_still), 0, 0, "",
+     "end settling, lifting (once the cylinder is clear) and holding early when still [s]", NULL},
+    {"phases.still_energy", SCREE_FIELD_REAL, AT(still_energy), 0, 1, "J",
+     "kinetic energy a particle below which the heap is still [s]", NULL},
+    {"phases.inlet", SCREE_FIELD_WORD, AT(inlet), 0, 0, "top|heap",
      "particles fall from above where the packed heap will end [p], or from near the heap as it "
-     "grows: slower hits [s]"},
-    {"phases.drop_height", FIELD_REAL, AT(drop_height), 0, 100, "m",
-     "from the heap's top to the layer filled in, at least [s]"},
-    {"contact.young_particle", FIELD_REAL, AT(young_particle), 1e3, 1e13, "Pa", "[p]"},
-    {"contact.young_wall", FIELD_REAL, AT(young_wall), 1e3, 1e13, "Pa", "[p]"},
-    {"contact.restitution", FIELD_REAL, AT(restitution), 0.01, 1, "", "[p]"},
-    {"contact.friction_particle", FIELD_REAL, AT(friction_particle), 0, 10, "",
-     "particle on particle [p]"},
-    {"contact.friction_wall", FIELD_REAL, AT(friction_wall), 0, 10, "", "particle on wall [p]"},
-    {"contact.law", FIELD_WORD, AT(contact_law), 0, 0, "linear|hysteretic", "[p]: linear"},
-    {"contact.steps", FIELD_REAL, AT(steps_per_contact), 15, 1000, "",
-     "time steps in a quarter of a contact's period; below 15 corners are not resolved [s]"},
-    {"contact.stiffness_factor", FIELD_REAL, AT(stiffness_factor), 1e-4, 10, "",
+     "grows: slower hits [s]",
+     NULL},
+    {"phases.drop_height", SCREE_FIELD_REAL, AT(drop_height), 0, 100, "m",
+     "from the heap's top to the layer filled in, at least [s]", NULL},
+    {"contact.young_particle", SCREE_FIELD_REAL, AT(young_particle), 1e3, 1e13, "Pa", "[p]", NULL},
+    {"contact.young_wall", SCREE_FIELD_REAL, AT(young_wall), 1e3, 1e13, "Pa", "[p]", NULL},
+    {"contact.restitution", SCREE_FIELD_REAL, AT(restitution), 0.01, 1, "", "[p]", NULL},
+    {"contact.friction_particle", SCREE_FIELD_REAL, AT(friction_particle), 0, 10, "",
+     "particle on particle [p]", NULL},
+    {"contact.friction_wall", SCREE_FIELD_REAL, AT(friction_wall), 0, 10, "",
+     "particle on wall [p]", NULL},
+    {"contact.law", SCREE_FIELD_WORD, AT(contact_law), 0, 0, "linear|hysteretic", "[p]: linear",
+     NULL},
+    {"contact.steps", SCREE_FIELD_REAL, AT(steps_per_contact), 15, 1000, "",
+     "time steps in a quarter of a contact's period; below 15 corners are not resolved [s]", NULL},
+    {"contact.stiffness_factor", SCREE_FIELD_REAL, AT(stiffness_factor), 1e-4, 10, "",
      "multiplies every stiffness: below 1 the time step grows with its root, overlaps with its "
-     "inverse [s]"},
-    {"gravity", FIELD_REAL, AT(gravity), 0, 1e3, "m/s2", "downwards"},
-    {"output.frame_interval", FIELD_REAL, AT(frame_interval), 0, 1e5, "s",
-     "of simulated time; 0: only the last [s]"},
-    {"output.checkpoint_interval", FIELD_REAL, AT(checkpoint_interval), 0.01, 1e6, "s",
-     "of wall-clock time: what a crash costs at most [s]"},
-    {"output.series_interval", FIELD_REAL, AT(series_interval), 1e-5, 1e4, "s",
-     "of simulated time between the points of the series [s]"},
-    {"output.angle_interval", FIELD_REAL, AT(angle_interval), 0, 1e5, "s",
-     "between points with angles, while lifting and holding; 0: only the last [s]"},
-    {"measure.cell", FIELD_REAL, AT(height_cell), 0, 1, "m",
-     "of the height field; 0: a tenth of the particle size [s]"},
-    {"measure.sectors", FIELD_COUNT, AT(sector_count), 1, 3600, "", "azimuth sectors [s]"},
-    {"measure.band_low", FIELD_REAL, AT(band_low), 0, 1, "",
-     "the flank begins at this share of the height [s]"},
-    {"measure.band_high", FIELD_REAL, AT(band_high), 0, 1, "", "and ends at this one [s]"},
+     "inverse [s]",
+     NULL},
+    {"gravity", SCREE_FIELD_REAL, AT(gravity), 0, 1e3, "m/s2", "downwards", NULL},
+    {"output.frame_interval", SCREE_FIELD_REAL, AT(frame_interval), 0, 1e5, "s",
+     "of simulated time; 0: only the last [s]", NULL},
+    {"output.checkpoint_interval", SCREE_FIELD_REAL, AT(checkpoint_interval), 0.01, 1e6, "s",
+     "of wall-clock time: what a crash costs at most [s]", NULL},
+    {"output.series_interval", SCREE_FIELD_REAL, AT(series_interval), 1e-5, 1e4, "s",
+     "of simulated time between the points of the series [s]", NULL},
+    {"output.angle_interval", SCREE_FIELD_REAL, AT(angle_interval), 0, 1e5, "s",
+     "between points with angles, while lifting and holding; 0: only the last [s]", NULL},
+    {"measure.cell", SCREE_FIELD_REAL, AT(height_cell), 0, 1, "m",
+     "of the height field; 0: a tenth of the particle size [s]", NULL},
+    {"measure.sectors", SCREE_FIELD_COUNT, AT(sector_count), 1, 3600, "", "azimuth sectors [s]",
+     NULL},
+    {"measure.band_low", SCREE_FIELD_REAL, AT(band_low), 0, 1, "",
+     "the flank begins at this share of the height [s]", NULL},
+    {"measure.band_high", SCREE_FIELD_REAL, AT(band_high), 0, 1, "", "and ends at this one [s]",
+     NULL},
 };
 enum { FIELD_COUNT_ALL = sizeof fields / sizeof *fields };
 
@@ -186,63 +183,7 @@ void scree_experiment_free(scree_experiment *experiment) {
 
 /* ---- setting a field ---- */
 
-static bool word_index(const char *words, const char *text, int *index) {
-  size_t length = strlen(text);
-  *index = 0;
-  for (const char *word = words;; (*index)++) {
-    size_t word_length = strcspn(word, "|");
-    if (word_length == length && !strncmp(word, text, length)) return true;
-    if (!word[word_length]) return false;
-    word += word_length + 1;
-  }
-}
-
-/* Writes the value into the field, or tells in `reason` what is wrong with it. */
-static bool set_field(const field *f, const char *text, scree_experiment *e, char *reason,
-                      size_t size) {
-  void *value = (char *)e + f->offset;
-  char *end;
-  errno = 0;
-  switch (f->kind) {
-  case FIELD_FLAG:
-    if (strcmp(text, "true") != 0 && strcmp(text, "false") != 0) {
-      snprintf(reason, size, "must be true or false");
-      return false;
-    }
-    *(bool *)value = text[0] == 't';
-    return true;
-  case FIELD_WORD:
-    snprintf(reason, size, "must be one of %s", f->unit);
-    return word_index(f->unit, text, value);
-  case FIELD_SEED:
-  case FIELD_COUNT: {
-    unsigned long long whole = strtoull(text, &end, 10);
-    snprintf(reason, size, "must be a whole number");
-    if (*text < '0' || *text > '9' || *end || errno) return false;
-    if (f->kind == FIELD_SEED) {
-      *(uint64_t *)value = whole;
-      return true;
-    }
-    snprintf(reason, size, "must be %g to %g", f->minimum, f->maximum);
-    if ((double)whole < f->minimum || (double)whole > f->maximum) return false;
-    *(size_t *)value = (size_t)whole;
-    return true;
-  }
-  case FIELD_REAL: {
-    double real;
-    snprintf(reason, size, "must be a number");
-    if (!scree_number_read(text, &real)) return false;
-    snprintf(reason, size, "must be %g to %g%s%s", f->minimum, f->maximum, *f->unit ? " " : "",
-             f->unit);
-    if (real < f->minimum || real > f->maximum) return false;
-    *(double *)value = real;
-    return true;
-  }
-  }
-  return false;
-}
-
-static const field *find_field(const char *key) {
+static const scree_field *find_field(const char *key) {
   for (size_t i = 0; i < FIELD_COUNT_ALL; i++)
     if (!strcmp(fields[i].key, key)) return &fields[i];
   return NULL;
@@ -269,44 +210,44 @@ const char *scree_experiment_key(size_t index) {
   return index < FIELD_COUNT_ALL ? fields[index].key : NULL;
 }
 const char *scree_experiment_unit(const char *key) {
-  const field *f = find_field(key);
+  const scree_field *f = find_field(key);
   return f ? f->unit : NULL;
 }
 const char *scree_experiment_comment(const char *key) {
-  const field *f = find_field(key);
+  const scree_field *f = find_field(key);
   return f ? f->comment : NULL;
 }
 
 scree_status scree_experiment_set(scree_experiment *experiment, const char *key, const char *value,
                                   scree_error *error) {
-  const field *f = find_field(key);
-  char reason[128];
+  const scree_field *f = find_field(key);
+  scree_error why;
+  scree_reader reader = {"", NULL, &why, ""};
+  char text[200];
   if (!f)
     return scree_fail(error, SCREE_BAD_ARGUMENT,
                       "no field '%s' in an experiment; print one to see all", key);
-  scree_experiment changed = *experiment;
-  if (!set_field(f, value, &changed, reason, sizeof reason))
-    return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: '%s': %s", key, value, reason);
-  *experiment = changed;
-  return SCREE_OK;
+  snprintf(text, sizeof text, "%s", value);
+  scree_yaml node = {.kind = SCREE_YAML_SCALAR, .text = text};
+  scree_status status = scree_field_read(&reader, &node, f, experiment);
+  if (status == SCREE_OK) return status;
+  return scree_fail(error, SCREE_BAD_ARGUMENT, "%s: %s", key, why.message);
 }
 
 /* ---- YAML ---- */
 
-static scree_status read_value(const char *path, const scree_yaml *node, const char *key,
-                               scree_experiment *e, scree_error *error) {
-  const field *f = find_field(key);
-  char reason[128];
-  if (!f)
-    return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu, column %zu: no field '%s'", path,
-                      node->line, node->column, key);
-  if (node->kind != SCREE_YAML_SCALAR)
-    return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu, column %zu: %s: must be one value",
-                      path, node->line, node->column, key);
-  if (!set_field(f, node->text, e, reason, sizeof reason))
-    return scree_fail(error, SCREE_BAD_FILE, "%s, line %zu, column %zu: %s: '%s': %s", path,
-                      node->line, node->column, key, node->text, reason);
-  return SCREE_OK;
+/* Item `item` of the group, or of the whole where that is "". */
+static scree_status read_value(const scree_reader *r, const scree_yaml *item, scree_experiment *e) {
+  char key[128];
+  snprintf(key, sizeof key, "%s%s%s", r->path, *r->path ? "." : "", item->key);
+  const scree_field *f = find_field(key);
+  if (f) return scree_field_read(r, item, f, e);
+  const char *names[FIELD_COUNT_ALL];
+  for (size_t i = 0; i < FIELD_COUNT_ALL; i++) names[i] = fields[i].key;
+  const char *nearest = scree_nearest_name(key, names, FIELD_COUNT_ALL);
+  scree_place place = {NULL, "", item->key_line, item->key_column};
+  return scree_fail_place(r, &place, "no field '%s'%s%s%s", key, nearest ? "; did you mean '" : "",
+                          nearest ? nearest : "", nearest ? "'?" : "");
 }
 
 static bool is_group(const char *name) {
@@ -316,14 +257,13 @@ static bool is_group(const char *name) {
   return false;
 }
 
-static scree_status read_group(const char *path, const scree_yaml *group, scree_experiment *e,
-                               scree_error *error) {
+static scree_status read_group(const scree_reader *r, const scree_yaml *group,
+                               scree_experiment *e) {
+  scree_reader inner = *r;
   scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < group->item_count; i++) {
-    char key[128];
-    snprintf(key, sizeof key, "%s.%s", group->key, group->items[i].key);
-    status = read_value(path, &group->items[i], key, e, error);
-  }
+  inner.path = group->key;
+  for (size_t i = 0; status == SCREE_OK && i < group->item_count; i++)
+    status = read_value(&inner, &group->items[i], e);
   return status;
 }
 
@@ -344,13 +284,13 @@ static scree_status read_root(const char *path, const scree_yaml *root, scree_ex
     return scree_fail(error, SCREE_BAD_FILE,
                       "%s, line %zu, column %zu: an experiment is `key: value` lines", path,
                       root->line, root->column);
+  scree_reader reader = {path, NULL, error, ""};
   scree_status status = read_preset(path, root, e, error);
   for (size_t i = 0; status == SCREE_OK && i < root->item_count; i++) {
     const scree_yaml *item = &root->items[i];
     if (!strcmp(item->key, "preset")) continue;
-    status = item->kind == SCREE_YAML_MAPPING && is_group(item->key)
-                 ? read_group(path, item, e, error)
-                 : read_value(path, item, item->key, e, error);
+    status = item->kind == SCREE_YAML_MAPPING && is_group(item->key) ? read_group(&reader, item, e)
+                                                                     : read_value(&reader, item, e);
   }
   return status == SCREE_OK ? check_together(e, path, error) : status;
 }
@@ -399,43 +339,11 @@ scree_status scree_experiment_copy(const scree_experiment *experiment, scree_exp
   return SCREE_OK;
 }
 
-/* The shortest of %.6g to %.17g that reads back as the same number. */
-static void real_text(double value, char *buffer, size_t size) {
-  char text[SCREE_NUMBER_SIZE];
-  double back;
-  for (int digits = 6; digits <= 17; digits++) {
-    scree_number_format_digits(value, digits, text);
-    if (scree_number_read(text, &back) && back == value) break;
-  }
-  snprintf(buffer, size, "%s", text);
-}
-
 bool scree_experiment_get(const scree_experiment *experiment, const char *key, char *buffer,
                           size_t size) {
-  const field *f = find_field(key);
-  if (!f) return false;
-  const void *value = (const char *)experiment + f->offset;
-  switch (f->kind) {
-  case FIELD_FLAG:
-    snprintf(buffer, size, "%s", *(const bool *)value ? "true" : "false");
-    break;
-  case FIELD_WORD: {
-    const char *word = f->unit;
-    for (int i = *(const int *)value; i > 0; i--) word += strcspn(word, "|") + 1;
-    snprintf(buffer, size, "%.*s", (int)strcspn(word, "|"), word);
-    break;
-  }
-  case FIELD_SEED:
-    snprintf(buffer, size, "%llu", (unsigned long long)*(const uint64_t *)value);
-    break;
-  case FIELD_COUNT:
-    snprintf(buffer, size, "%zu", *(const size_t *)value);
-    break;
-  case FIELD_REAL:
-    real_text(*(const double *)value, buffer, size);
-    break;
-  }
-  return true;
+  const scree_field *f = find_field(key);
+  if (f) scree_field_text(f, experiment, buffer, size);
+  return f != NULL;
 }
 
 void scree_experiment_print(const scree_experiment *experiment, FILE *stream) {
@@ -447,7 +355,7 @@ void scree_experiment_print(const scree_experiment *experiment, FILE *stream) {
           scree_version());
   fprintf(stream, "# %s\npreset: %s\n", preset_difference(experiment->preset), experiment->preset);
   for (size_t i = 0; i < FIELD_COUNT_ALL; i++) {
-    const field *f = &fields[i];
+    const scree_field *f = &fields[i];
     const char *dot = strchr(f->key, '.'), *name = dot ? dot + 1 : f->key;
     size_t length = dot ? (size_t)(dot - f->key) : 0;
     if (length && (length != group_length || strncmp(group, f->key, length) != 0))
@@ -455,8 +363,9 @@ void scree_experiment_print(const scree_experiment *experiment, FILE *stream) {
     group = f->key;
     group_length = length;
     char value[64];
-    scree_experiment_get(experiment, f->key, value, sizeof value);
-    fprintf(stream, "%s%s: %s  # %s%s%s\n", length ? "  " : "", name, value, f->unit,
-            *f->unit ? "; " : "", f->comment);
+    scree_field_text(f, experiment, value, sizeof value);
+    fprintf(stream, "%s%s: %s", length ? "  " : "", name, value);
+    scree_field_print_comment(f, stream);
+    putc('\n', stream);
   }
 }

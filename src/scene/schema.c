@@ -332,8 +332,8 @@ static scree_status read_one(const scree_reader *r, const scree_yaml *node, cons
   return read_inner(r, node, path_of(r, node->key, path), f->record, record);
 }
 
-static scree_status read_field(const scree_reader *r, const scree_yaml *node, const scree_field *f,
-                               void *record) {
+scree_status scree_field_read(const scree_reader *r, const scree_yaml *node, const scree_field *f,
+                              void *record) {
   void *value = (char *)record + f->offset;
   uint64_t whole = 0;
   scree_status status;
@@ -380,7 +380,7 @@ scree_status scree_record_read(const scree_reader *reader, const scree_yaml *nod
     for (size_t k = 0; k < kind->field_count; k++)
       if (!strcmp(kind->fields[k].key, node->items[i].key)) field = &kind->fields[k];
     if (!field) return fail_unknown(reader, &node->items[i], kind);
-    scree_status status = read_field(reader, &node->items[i], field, record);
+    scree_status status = scree_field_read(reader, &node->items[i], field, record);
     if (status != SCREE_OK) return status;
   }
   return kind->check ? kind->check(reader, record) : SCREE_OK;
@@ -428,9 +428,18 @@ static void put_text(FILE *stream, const char *text) {
   putc('"', stream);
 }
 
+/* With the fewest of 6 to 17 digits that read back as the same number. */
+static void real_text(double value, char text[SCREE_NUMBER_SIZE]) {
+  double back;
+  for (int digits = 6; digits <= 17; digits++) {
+    scree_number_format_digits(value, digits, text);
+    if (scree_number_read(text, &back) && back == value) break;
+  }
+}
+
 static void put_real(FILE *stream, double value) {
   char text[SCREE_NUMBER_SIZE];
-  scree_number_format(value, text);
+  real_text(value, text);
   fputs(text, stream);
 }
 
@@ -440,11 +449,6 @@ static void put_reals(FILE *stream, const double *values, size_t count) {
     put_real(stream, values[i]);
   }
   putc(']', stream);
-}
-
-static void put_word(FILE *stream, const char *words, int index) {
-  for (; index > 0; index--) words += strcspn(words, "|") + 1;
-  fprintf(stream, "%.*s", (int)strcspn(words, "|"), words);
 }
 
 static void put_weights(FILE *stream, const scree_weights *w) {
@@ -476,23 +480,34 @@ static void put_texts(FILE *stream, const scree_texts *texts) {
   putc(']', stream);
 }
 
-static void put_value(FILE *stream, const scree_field *f, const void *value) {
+void scree_field_text(const scree_field *f, const void *record, char *text, size_t size) {
+  const void *value = (const char *)record + f->offset;
+  char real[SCREE_NUMBER_SIZE];
+  const char *word = f->unit;
   switch (f->kind) {
-  case SCREE_FIELD_REAL:
-    put_real(stream, *(const double *)value);
-    break;
   case SCREE_FIELD_COUNT:
-    fprintf(stream, "%zu", *(const size_t *)value);
+    snprintf(text, size, "%zu", *(const size_t *)value);
     break;
   case SCREE_FIELD_SEED:
-    fprintf(stream, "%llu", (unsigned long long)*(const uint64_t *)value);
+    snprintf(text, size, "%llu", (unsigned long long)*(const uint64_t *)value);
     break;
   case SCREE_FIELD_FLAG:
-    fputs(*(const bool *)value ? "true" : "false", stream);
+    snprintf(text, size, "%s", *(const bool *)value ? "true" : "false");
     break;
   case SCREE_FIELD_WORD:
-    put_word(stream, f->unit, *(const int *)value);
+    for (int i = *(const int *)value; i > 0; i--) word += strcspn(word, "|") + 1;
+    snprintf(text, size, "%.*s", (int)strcspn(word, "|"), word);
     break;
+  default:
+    real_text(*(const double *)value, real);
+    snprintf(text, size, "%s", real);
+  }
+}
+
+static void put_value(FILE *stream, const scree_field *f, const void *record) {
+  const void *value = (const char *)record + f->offset;
+  char text[64];
+  switch (f->kind) {
   case SCREE_FIELD_TEXT:
     put_text(stream, *(const char *const *)value);
     break;
@@ -512,11 +527,12 @@ static void put_value(FILE *stream, const scree_field *f, const void *value) {
     put_weights(stream, value);
     break;
   default:
-    break;
+    scree_field_text(f, record, text, sizeof text);
+    fputs(text, stream);
   }
 }
 
-static void put_comment(FILE *stream, const scree_field *f) {
+void scree_field_print_comment(const scree_field *f, FILE *stream) {
   const char *unit = f->unit && f->kind != SCREE_FIELD_WORD ? f->unit : "";
   if (f->kind == SCREE_FIELD_WORD)
     fprintf(stream, "  # %s; %s", f->unit, f->comment);
@@ -557,9 +573,9 @@ void scree_record_print(const scree_record *kind, const void *record, int depth,
       fputs(is_empty(f->record, *(void *const *)value) ? " {}" : "", stream);
     } else if (!records) {
       putc(' ', stream);
-      put_value(stream, f, value);
+      put_value(stream, f, record);
     }
-    if (comments) put_comment(stream, f);
+    if (comments) scree_field_print_comment(f, stream);
     putc('\n', stream);
     if (records) put_records(stream, f, value, depth + 1, comments);
     if (f->kind == SCREE_FIELD_RECORD)

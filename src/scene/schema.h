@@ -90,6 +90,13 @@ scree_status scree_record_read(const scree_reader *reader, const scree_yaml *nod
 /* "FILE, line L, column C: PATH: ..." as an error of SCREE_BAD_FILE. */
 scree_status scree_fail_place(const scree_reader *reader, const scree_place *place,
                               const char *format, ...) SCREE_PRINTF(3, 4);
+/* One field of a record, which need not begin with a scree_place, from its value. */
+scree_status scree_field_read(const scree_reader *reader, const scree_yaml *node,
+                              const scree_field *field, void *record);
+/* A number, flag or word as text that reads back to the same. */
+void scree_field_text(const scree_field *field, const void *record, char *text, size_t size);
+/* "  # unit; sentence" */
+void scree_field_print_comment(const scree_field *field, FILE *stream);
 /* Whether a field of the record was given; `field` is its offset. */
 bool scree_field_is_given(const scree_field *field, const void *record);
 

@@ -60,10 +60,14 @@ static void errors_say_line_column_value_and_limit(void **state) {
   static const struct {
     const char *text, *message;
   } cases[] = {
-      {"seed: 1\ndensity: heavy\n", "line 2, column 10: density: 'heavy': must be a number"},
+      {"seed: 1\ndensity: heavy\n",
+       "line 2, column 10: density: 'heavy': must be a number in kg/m3"},
       {"contact:\n  restitution: 1.5\n",
-       "line 2, column 16: contact.restitution: '1.5': must be 0.01 to 1"},
-      {"colour: red\n", "line 1, column 9: no field 'colour'"},
+       "line 2, column 16: contact.restitution: 1.5: must be 0.01 to 1"},
+      {"colour: red\n", "line 1, column 1: no field 'colour'"},
+      {"phases: {lift_sped: 1}\n", "column 10: no field 'phases.lift_sped'; did you mean "
+                                   "'phases.lift_speed'?"},
+      {"disc: {diameter: 2 mm}\n", "disc.diameter: '2 mm': must be a number in m; what is 'mm'?"},
       {"contact:\n  law: cubic\n",
        "line 2, column 8: contact.law: 'cubic': must be one of linear|hysteretic"},
       {"seed: 1\nseed: 2\n", "line 2, column 1: this key stands here twice"},

@@ -145,7 +145,7 @@ static void errors_say_line_column_and_limit(void **state) {
        "must be a number above 0 and at most 1, recommended, a multiple"},
       {"shapes: [sample:box]\nfactors: {rp: [1e-3, 1e-3]}\n", "the level '1e-3' stands here twice"},
       {"shapes: [sample:box]\nfactors: {contact: {restitution: [0.3, 3]}}\n",
-       "line 2, column 40: contact.restitution: '3': must be 0.01 to 1"},
+       "line 2, column 40: contact.restitution: 3: must be 0.01 to 1"},
       {"shapes: [sample:box]\nfactors: {wetness: [1]}\n", "line 2, column 21: no field 'wetness'"},
       {"shapes: [sample:box]\nfactors: {seed: [1, 2]}\n", "seed is no factor"},
       {"shapes: [sample:box]\nfactors: {rp: 1e-3}\n", "must be a list of levels"},
