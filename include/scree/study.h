@@ -166,6 +166,7 @@ typedef struct scree_point_result {
   scree_summary left;          /* share of the particles that fell off the disc */
   scree_summary peak_rotation; /* rad/s: the greatest mean rotation after the lift began */
   scree_summary *answers;      /* of a scene, as many as the study has */
+  const char **values;         /* of the factors, as many as the study has */
   /* Mean over the replicates of the particles' mean |omega|, against the time since the cylinder
    * began to rise, with one standard deviation either way. A run that ended still counts with its
    * last value, another one no longer. */
@@ -212,6 +213,7 @@ typedef struct scree_study_result {
   const char *name, *design, *method, *angle, *version;
   size_t replicate_count, point_count, factor_count;
   const char **answers; /* of a scene: their names */
+  const char **factors; /* their keys */
   size_t answer_count;  /* 0: an experiment's */
   uint64_t seed;
   double margin_deg, confidence;

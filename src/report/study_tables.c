@@ -1,5 +1,6 @@
 /* What a study says as JSON and CSV. */
 #include "base/file.h"
+#include "base/number.h"
 #include "report/csv.h"
 #include "report/json.h"
 
@@ -41,6 +42,15 @@ static void put_point(scree_json *json, const scree_study_result *r, const scree
   scree_json_text(json, "rp", p->rp);
   scree_json_text(json, "shapes", p->shapes);
   scree_json_text(json, "pile", p->pile);
+  scree_json_row_object(json, "factors");
+  for (size_t k = 0; k < r->factor_count; k++) {
+    double number;
+    if (scree_number_read(p->values[k], &number))
+      scree_json_number(json, r->factors[k], number);
+    else
+      scree_json_text(json, r->factors[k], p->values[k]);
+  }
+  scree_json_end(json);
   put_counts(json, &p->counts);
   scree_json_count(json, "heap_count", p->heap_count);
   scree_json_number(json, "triangle_count", p->triangle_count);
@@ -179,6 +189,11 @@ static void csv_summary(FILE *stream, const scree_summary *s) {
   }
 }
 
+/* Factors that have no column of their own. */
+static bool has_column(const char *factor) {
+  return !strcmp(factor, "rp") || !strcmp(factor, "shapes");
+}
+
 scree_status scree_study_csv_write(const scree_study_result *result, const char *path,
                                    bool overwrite, scree_error *error) {
   static const char *const names[] = {"angle_deg", "seconds",      "height",
@@ -188,7 +203,13 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
   FILE *stream = output.stream;
-  fputs("label,rp,shapes,done,failed,waiting,heap_count,triangle_count", stream);
+  fputs("label,rp,shapes", stream);
+  for (size_t k = 0; k < result->factor_count; k++) {
+    if (has_column(result->factors[k])) continue;
+    putc(',', stream);
+    scree_csv_text(stream, result->factors[k]);
+  }
+  fputs(",done,failed,waiting,heap_count,triangle_count", stream);
   for (size_t i = 0; i < sizeof names / sizeof *names; i++)
     fprintf(stream, ",%s,%s_low,%s_high,%s_sd,%s_sd_low,%s_sd_high,%s_cv", names[i], names[i],
             names[i], names[i], names[i], names[i], names[i]);
@@ -212,6 +233,11 @@ scree_status scree_study_csv_write(const scree_study_result *result, const char 
     scree_csv_text(stream, p->rp);
     putc(',', stream);
     scree_csv_text(stream, p->shapes);
+    for (size_t k = 0; k < result->factor_count; k++) {
+      if (has_column(result->factors[k])) continue;
+      putc(',', stream);
+      scree_csv_text(stream, p->values[k]);
+    }
     fprintf(stream, ",%zu,%zu,%zu,%zu,", p->counts.done, p->counts.failed,
             p->counts.waiting + p->counts.leased + p->counts.running, p->heap_count);
     scree_csv_number(stream, p->triangle_count);

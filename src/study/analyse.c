@@ -191,14 +191,18 @@ static scree_status summarise_answers(const analysis *a, size_t point, scree_poi
   return SCREE_OK;
 }
 
-static scree_status name_answers(const analysis *a) {
+static scree_status name_columns(const analysis *a) {
   scree_study_result *r = a->result;
-  r->answers = take(a, a->study->answer_count, sizeof *r->answers);
-  if (!r->answers) return no_memory(a);
-  for (size_t k = 0; k < a->study->answer_count; k++)
+  r->answer_count = a->study->answer_count;
+  r->answers = take(a, r->answer_count, sizeof *r->answers);
+  r->factors = take(a, r->factor_count, sizeof *r->factors);
+  if (!r->answers || !r->factors) return no_memory(a);
+  for (size_t k = 0; k < r->answer_count; k++)
     if (!(r->answers[k] = scree_arena_text(a->arena, a->study->answers[k].name)))
       return no_memory(a);
-  r->answer_count = a->study->answer_count;
+  for (size_t k = 0; k < r->factor_count; k++)
+    if (!(r->factors[k] = scree_arena_text(a->arena, a->study->factors[k].key)))
+      return no_memory(a);
   return SCREE_OK;
 }
 
@@ -302,7 +306,10 @@ static scree_status make_point(const analysis *a, size_t index, double *scratch)
   p->label = scree_arena_text(a->arena, point->label);
   p->rp = scree_arena_text(a->arena, point->rp);
   p->shapes = scree_arena_text(a->arena, a->study->sets[point->set].label);
-  if (!p->label || !p->rp || !p->shapes) return no_memory(a);
+  p->values = take(a, a->study->factor_count, sizeof *p->values);
+  if (!p->label || !p->rp || !p->shapes || !p->values) return no_memory(a);
+  for (size_t k = 0; k < a->study->factor_count; k++)
+    if (!(p->values[k] = scree_arena_text(a->arena, point->values[k]))) return no_memory(a);
   p->rp_value = rp_value(a->study, point);
   for (size_t i = 0; i < a->row_count; i++) { /* rows of low replicates come first */
     const row *r = &a->rows[i];
@@ -522,7 +529,7 @@ static scree_status make_result(analysis *a) {
   scree_status status = read_rows(a);
   if (status == SCREE_OK) status = read_all_series(a);
   if (status == SCREE_OK) status = read_answers(a);
-  if (status == SCREE_OK) status = name_answers(a);
+  if (status == SCREE_OK) status = name_columns(a);
   for (size_t p = 0; status == SCREE_OK && p < s->point_count; p++)
     status = make_point(a, p, scratch);
   if (status == SCREE_OK) status = make_families(a);

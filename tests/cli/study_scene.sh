@@ -20,6 +20,7 @@ END
 table() { sed -E 's/ +[0-9.e-]+ +[0-9.e-]+$//'; }
 run study study.yaml -o out -q | table
 sed -n '1s/.*,\(all.count.*\)/\1/p' out/points.csv
+head -2 out/points.csv | cut -d, -f1-8
 head -1 out/scene.yaml | sed 's/of .*\//of /'
 run study status out | head -1
 rm chute.yaml

@@ -434,6 +434,26 @@ def a_real_study(browser, folder):
     pictures(browser, "real-study")
 
 
+def a_study_of_a_scene(browser, folder):
+    with open(os.path.join(folder, "rain.yaml"), "w", encoding="utf-8") as file:
+        file.write("time: 0.1\nshapes: {ball: {sphere: 0.01}}\ngeometry: {floor: {plane: [0, 0, 1]}}\n"
+                   "inlets: {feed: {box: {min: [0, 0, 0.1], max: [0.1, 0.1, 0.2]}, shapes: ball, rate: 100}}\n"
+                   "sensors: {load: {wall: floor}, all: {region: {box: {min: [-1, -1, -1], max: [1, 1, 1]}}}}\n")
+    with open(os.path.join(folder, "rains.yaml"), "w", encoding="utf-8") as file:
+        file.write("base: {scene: rain.yaml}\nfactors: {inlets.feed.rate: [50, 100], inlets.feed.orientation: [fixed, random]}\n"
+                   "answers: [all.count, load.force_z]\nreplicates: 2\n")
+    scree("study", "rains.yaml", "-o", "rains", "--jobs", "1", folder=folder)
+    with open(os.path.join(folder, "rains", "study.json"), encoding="utf-8") as file:
+        check(json.load(file)["points"][3]["factors"] == {"inlets.feed.rate": 100, "inlets.feed.orientation": "random"}, "the factors are others")
+    ready(browser, os.path.join(folder, "rains", "report.html"))
+    check(browser.run("return document.querySelectorAll('.uplot canvas').length") == 2, "not a chart of each answer")
+    text = browser.text("main")
+    for part in ("inlets.feed.rate", "inlets.feed.orientation fixed", "load.force_z", "Bars: the interval of the mean"):
+        check(part in text, f"the scene's study does not say: {part}")
+    no_complaints(browser, "a study of a scene")
+    pictures(browser, "scene-study")
+
+
 def summary(mean, sd):
     return {"count": 8, "mean": mean, "mean_low": mean - sd, "mean_high": mean + sd, "sd": sd, "sd_low": sd / 2,
             "sd_high": 2 * sd, "cv": sd / mean}
@@ -523,6 +543,7 @@ def main():
             heap = a_heap(browser, folder)
             pour = a_pour(browser, folder)
             a_real_study(browser, folder)
+            a_study_of_a_scene(browser, folder)
             a_large_page(browser, folder)
         what_is_missing_is_said(page, heap, pour)
     return 0

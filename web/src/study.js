@@ -34,13 +34,35 @@ export class StudySection {
     this.tellTables();
   }
 
-  // Of a scene: a table for each answer.
+  // Of a scene: each answer against the first factor that is a number, a series for each choice of the others.
+  drawAnswer(answer) {
+    const { host, study: { points } } = this;
+    const levels = (key) => [...new Set(points.map(({ factors }) => factors[key]))];
+    const along = Object.keys(points[0].factors ?? {}).find((key) => levels(key).length > 1 && levels(key).every((x) => typeof x === 'number'));
+    if (!along) return;
+    const xs = levels(along).sort((a, b) => a - b), groups = new Map();
+    for (const point of points) {
+      const name = Object.entries(point.factors).filter(([key]) => key !== along).map(([key, value]) => `${key} ${value}`).join(', ');
+      groups.set(name, [...(groups.get(name) ?? []), point]);
+    }
+    const text = (v) => number(v, 4);
+    const series = [...groups].map(([name, group], i) => {
+      const column = (key) => xs.map((x) => group.find(({ factors }) => factors[along] === x)?.answers[answer][key] ?? null);
+      return { label: name || answer, values: column('mean'), low: column('mean_low'), high: column('mean_high'), color: palette[i % palette.length], width: 2, points: true, text };
+    });
+    if (!series.some((s) => s.values.some(known))) return;
+    new Chart(element('div', null, host, { class: 'chart' }), { x: { label: along, values: xs, text }, yLabel: answer, logX: false, logY: false, series });
+    if (series.some((s) => s.low.some(known))) element('p', 'Bars: the interval of the mean.', host, { class: 'soft' });
+  }
+
+  // Of a scene: a chart and a table for each answer.
   tellAnswers() {
     const { host, study } = this;
     element('h1', `Study ${study.name}`, host);
     element('p', `${whole(study.runs.done)} of ${counted(study.points.length * study.replicates, 'run')} are done; ${counted(study.replicates, 'replicate')} a point. Intervals are of ${number(100 * study.confidence)} % confidence.`, host, { class: 'soft' });
     for (const answer of this.answers) {
       element('h2', answer, host);
+      this.drawAnswer(answer);
       table(host, [
         { head: 'point', value: (p) => p.label || study.name }, { head: 'runs done', value: (p) => p.runs.done },
         ...[['mean', 'mean'], ['low', 'mean_low'], ['high', 'mean_high'], ['sd', 'sd'], ['CV', 'cv']].map(([head, key]) => ({ head, value: (p) => p.answers[answer][key], text: (p) => (known(p.answers[answer][key]) ? number(p.answers[answer][key], 5) : '–') })),
