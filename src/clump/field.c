@@ -124,7 +124,8 @@ static scree_status fill(const scree_target *body, scree_field *f, scree_lines *
                          .ny = (f->n[1] - 1) * SCREE_FINER + 1,
                          .x0 = f->low[0] + 1.237e-6 * fine, /* off vertices on round numbers */
                          .y0 = f->low[1] + 2.311e-6 * fine,
-                         .step = fine};
+                         .step = fine,
+                         .cosine = 1};
   scree_status status = scree_lines_cast(body, lines, error);
   if (status != SCREE_OK) return status;
   SCREE_ALLOC_OR(f->values, count, error, out_of_memory);

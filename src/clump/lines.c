@@ -78,7 +78,8 @@ scree_status scree_lines_cast(const scree_target *body, scree_lines *lines, scre
   bool ok = true;
   for (size_t t = 0; ok && t < body->mesh.triangle_count; t++) {
     vec3 p[3];
-    for (int k = 0; k < 3; k++) p[k] = scree_mesh_corner(&body->mesh, t, k);
+    for (int k = 0; k < 3; k++)
+      p[k] = scree_lines_turn(lines, scree_mesh_corner(&body->mesh, t, k));
     ok = cast_triangle(lines, p, &found);
   }
   if (ok) {

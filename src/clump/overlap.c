@@ -5,20 +5,35 @@
 #include <string.h>
 
 /* Across a compact body some 100 lines: IoU within 2e-4 of finer ones. */
-static const double lines_over_body = 10000, lines_over_all = 80000;
+static const double lines_over_body = 10000, lines_over_all = 160000;
+/* The lattice of lines is turned against the body's axes, by the angle whose tangent is the golden
+ * ratio: else a flat face along a row of it would count by whole rows. */
+static const double cosine = 0.52573111211913, sine = 0.85065080835204;
+
+/* Where the body stands in the lattice's frame. */
+static void find_extent(const scree_target *body, const scree_lines *l, vec3 *low, vec3 *high) {
+  *low = (vec3){INFINITY, INFINITY, 0}, *high = (vec3){-INFINITY, -INFINITY, 0};
+  for (size_t v = 0; v < body->mesh.vertex_count; v++) {
+    vec3 p = scree_lines_turn(l, vec3_load(body->mesh.positions + 3 * v));
+    low->x = fmin(low->x, p.x), low->y = fmin(low->y, p.y);
+    high->x = fmax(high->x, p.x), high->y = fmax(high->y, p.y);
+  }
+}
 
 scree_status scree_ruler_make(const scree_target *body, scree_ruler *ruler, scree_error *error) {
-  vec3 size = vec3_sub(body->high, body->low);
-  double rim = 2 * SCREE_LARGEST_SPHERE;
-  double step = fmax(sqrt(size.x * size.y / lines_over_body),
+  scree_ruler g = {.body = body, .lines = {.cosine = cosine, .sine = sine}};
+  vec3 low, high, section = vec3_sub(body->high, body->low);
+  find_extent(body, &g.lines, &low, &high);
+  vec3 size = vec3_sub(high, low);
+  double reach = SCREE_LARGEST_SPHERE, rim = 2 * reach;
+  double step = fmax(sqrt(section.x * section.y / lines_over_body),
                      sqrt((size.x + rim) * (size.y + rim) / lines_over_all));
-  double x_rim = ceil(SCREE_LARGEST_SPHERE / step), y_rim = x_rim;
-  scree_ruler g = {.body = body,
-                   .lines = {.nx = (size_t)(ceil(size.x / step) + 2 * x_rim),
-                             .ny = (size_t)(ceil(size.y / step) + 2 * y_rim),
-                             .x0 = body->low.x + (0.5 - x_rim) * step,
-                             .y0 = body->low.y + (0.5 - y_rim) * step,
-                             .step = step}};
+  double rim_lines = ceil(reach / step);
+  g.lines.nx = (size_t)(ceil(size.x / step) + 2 * rim_lines);
+  g.lines.ny = (size_t)(ceil(size.y / step) + 2 * rim_lines);
+  g.lines.x0 = low.x + (0.5 - rim_lines) * step;
+  g.lines.y0 = low.y + (0.5 - rim_lines) * step;
+  g.lines.step = step;
   scree_status status = scree_lines_cast(body, &g.lines, error);
   if (status != SCREE_OK) return status;
   SCREE_ALLOC_OR(g.count, g.lines.nx * g.lines.ny, error, out_of_memory);
@@ -62,16 +77,16 @@ static void each_chord(scree_ruler *g, const scree_sphere *s, uint32_t number,
                        chord_function *call) {
   const scree_lines *l = &g->lines;
   size_t across[2], along[2];
+  vec3 centre = scree_lines_turn(l, vec3_load(s->centre));
   double r2 = s->radius * s->radius;
-  line_range(s->centre[0], s->radius, l->x0, l->step, l->nx, across);
+  line_range(centre.x, s->radius, l->x0, l->step, l->nx, across);
   for (size_t i = across[0]; i < across[1]; i++) {
-    double dx = l->x0 + (double)i * l->step - s->centre[0], q = r2 - dx * dx;
+    double dx = l->x0 + (double)i * l->step - centre.x, q = r2 - dx * dx;
     if (q <= 0) continue;
-    line_range(s->centre[1], sqrt(q), l->y0, l->step, l->ny, along);
+    line_range(centre.y, sqrt(q), l->y0, l->step, l->ny, along);
     for (size_t j = along[0]; j < along[1]; j++) {
-      double dy = l->y0 + (double)j * l->step - s->centre[1],
-             half = sqrt(scree_larger(q - dy * dy, 0));
-      call(g, i * l->ny + j, (scree_chord){s->centre[2] - half, s->centre[2] + half, number});
+      double dy = l->y0 + (double)j * l->step - centre.y, half = sqrt(scree_larger(q - dy * dy, 0));
+      call(g, i * l->ny + j, (scree_chord){centre.z - half, centre.z + half, number});
     }
   }
 }
@@ -117,11 +132,14 @@ static double length_inside(const scree_lines *l, size_t line, double low, doubl
 /* A stretch of the union on the line, whose cross-section is `area`. */
 static void add_stretch(const scree_lines *l, size_t line, double area, scree_span z,
                         scree_overlap *o) {
-  double x = l->x0 + (double)(line / l->ny) * l->step, y = l->y0 + (double)(line % l->ny) * l->step;
+  vec3 at = scree_lines_turn_back(l, (vec3){l->x0 + (double)(line / l->ny) * l->step,
+                                            l->y0 + (double)(line % l->ny) * l->step, 0});
+  double x = at.x, y = at.y;
   double z1 = area * (z.high - z.low), z2 = area * (z.high * z.high - z.low * z.low) / 2,
          z3 = area * (z.high * z.high * z.high - z.low * z.low * z.low) / 3;
-  const double terms[SCREE_MOMENTS] = {z1,         z1 * x, z1 * y,     z2,     z1 * x * x,
-                                       z1 * y * y, z3,     z1 * x * y, z2 * x, z2 * y};
+  const double terms[SCREE_MOMENTS] = {
+      z1,         z1 * x, z1 * y, z2, z1 * y * y + z3, z1 * x * x + z3, z1 * (x * x + y * y),
+      z1 * x * y, z2 * x, z2 * y};
   for (int m = 0; m < SCREE_MOMENTS; m++) o->moments[m] += terms[m];
   o->common += area * length_inside(l, line, z.low, z.high);
 }

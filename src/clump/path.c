@@ -33,7 +33,7 @@ enum {
 
 /* How many moments a clump of n spheres can hold. */
 static size_t held_moments(size_t n) {
-  return n >= 10 ? SCREE_MOMENTS : n >= 4 ? 4 : 1;
+  return n >= 10 ? SCREE_MOMENTS : n >= 4 ? SCREE_FIRST_INERTIA : 1;
 }
 
 static bool is_strict(const scree_path *p) {
@@ -58,15 +58,12 @@ static double score(const scree_path *p, const scree_trial *t) {
   return t->overlap.iou - (is_strict(p) ? 0 : penalty(p, t));
 }
 
-/* Volume and centroid to those of the body, by the least motion that does it. */
+/* Held moments to those of the body, by the least motion that does it. */
 static void restore(scree_path *p, scree_trial *t, int steps) {
   double share = 1;
   scree_trial *next = &p->work[3];
-  scree_step step = {.softness = 1,
-                     .damping = 1,
-                     .outside = 1,
-                     .held = t->count >= 4 ? SCREE_FIRST_SECOND : 1,
-                     .restore = true};
+  scree_step step = {
+      .softness = 1, .damping = 1, .outside = 1, .held = held_moments(t->count), .restore = true};
   for (int k = 0; k < steps && penalty(p, t) > 0; k++) {
     *next = *t;
     step.hold = share;
@@ -101,23 +98,24 @@ static bool add_sphere(scree_path *p, scree_trial *t, size_t skip) {
   return true;
 }
 
-/* How many spheres would hardly be missed; the least missed. */
-static size_t find_useless(scree_path *p, scree_trial *t, size_t *least) {
+/* How many spheres hardly change the IoU; which is the least missed, and what IoU loses by it. */
+static size_t find_useless(scree_path *p, scree_trial *t, size_t *least, double *least_loss) {
   scree_alone alone[SCREE_MOST_SPHERES];
   size_t useless = 0;
-  double least_loss = INFINITY;
+  *least_loss = INFINITY;
   t->overlap = scree_ruler_measure(&p->ruler, t->spheres, t->count, alone);
   for (size_t i = 0; i < t->count; i++) {
     double loss = scree_overlap_loss(&t->overlap, &alone[i]);
-    useless += loss < least_gain;
-    if (loss < least_loss) *least = i, least_loss = loss;
+    useless += fabs(loss) < least_gain;
+    if (loss < *least_loss) *least = i, *least_loss = loss;
   }
   return useless;
 }
 
 static void remove_sphere(scree_path *p, scree_trial *t) {
   size_t least = 0;
-  find_useless(p, t, &least);
+  double loss;
+  find_useless(p, t, &least, &loss);
   t->spheres[least] = t->spheres[--t->count];
 }
 
@@ -225,14 +223,17 @@ static void sweep_random(scree_path *p) {
 static void refresh(scree_path *p, size_t n) {
   scree_trial *best = &p->best[n], *t = &p->work[0];
   for (int attempt = 0; attempt < MENDING_TRIES; attempt++) {
-    size_t least, count = find_useless(p, best, &least);
+    size_t least, count;
+    double loss;
+    count = find_useless(p, best, &least, &loss);
     if (count == 0 || 2 * count > n) return;
     *t = *best;
     for (size_t i = 0; i < count; i++) remove_sphere(p, t);
     for (size_t i = 0; i < count; i++)
       if (!add_sphere(p, t, (size_t)attempt)) return;
     optimise(p, t, STEPS, soft_begin);
-    if (find_useless(p, t, &least) < count && score(p, t) > score(p, best) - least_gain) *best = *t;
+    if (find_useless(p, t, &least, &loss) < count && score(p, t) > score(p, best) - least_gain)
+      *best = *t;
   }
 }
 
@@ -249,18 +250,22 @@ static void catch_up(scree_path *p, size_t n, size_t last) {
   }
 }
 
-/* Drops what has a sphere too many, once the clump without it has had its chance. */
+/* Drops what has a sphere too many, once the clump without it has had its chance. A sphere that
+ * costs IoU may be what holds the moments: it stays unless the clump without it is better. */
 static void settle(scree_path *p) {
   for (size_t n = p->most; n > 1; n--) {
-    size_t least;
-    if (!p->best[n].count || find_useless(p, &p->best[n], &least) == 0) continue;
+    size_t least = 0, useless;
+    double loss;
+    if (!p->best[n].count) continue;
+    useless = find_useless(p, &p->best[n], &least, &loss);
+    if (loss >= least_gain) continue;
     scree_trial *t = &p->work[0];
     *t = p->best[n];
-    remove_sphere(p, t);
+    t->spheres[least] = t->spheres[--t->count];
     measure(p, t);
     if (!is_strict(p)) restore(p, t, RESTORING_STEPS);
     scree_path_keep(p, t);
-    p->best[n].count = 0;
+    if (useless) p->best[n].count = 0;
   }
   size_t last = 1;
   for (size_t n = 2; n <= p->most; n++) {

@@ -128,17 +128,18 @@ static scree_clump_gap gap_from_mesh(const scree_judge *j, const scree_sphere *s
   return gap;
 }
 
-/* Principal moments of inertia from moments, descending. */
+/* Principal moments of inertia about the centroid, from moments about the origin. */
 static void principal_inertia(const double *m, double inertia[3]) {
-  static const int index[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};
-  mat3 second, axes;
-  double values[3];
-  for (int k = 0; k < 6; k++) {
-    int a = index[k][0], b = index[k][1];
-    second.m[a][b] = second.m[b][a] = m[4 + k] - m[1 + a] * m[1 + b] / m[0];
+  const double *about = m + SCREE_FIRST_INERTIA, *products = m + SCREE_FIRST_PRODUCT;
+  const vec3 c = {m[1], m[2], m[3]};
+  const double first[3] = {c.x, c.y, c.z}, c2 = vec3_dot(c, c);
+  mat3 tensor, axes;
+  for (int a = 0; a < 3; a++) {
+    tensor.m[a][a] = about[a] - (c2 - first[a] * first[a]) / m[0];
+    for (int b = 0; b < a; b++)
+      tensor.m[a][b] = tensor.m[b][a] = first[a] * first[b] / m[0] - products[a + b - 1];
   }
-  scree_eigen_symmetric(&second, values, &axes);
-  for (int k = 0; k < 3; k++) inertia[k] = values[(k + 1) % 3] + values[(k + 2) % 3];
+  scree_eigen_symmetric(&tensor, inertia, &axes);
 }
 
 static double inertia_error(const double *clump, const double *body) {
@@ -172,7 +173,7 @@ static void measure_volumes(scree_judge *j, const scree_sphere *spheres, size_t 
   c->centroid_error = sqrt(m[1] * m[1] + m[2] * m[2] + m[3] * m[3]) / m[0] / SCREE_UNIT_SIZE;
   c->inertia_error = inertia_error(m, j->body->moments);
   for (size_t i = 0; i < count; i++)
-    c->useless_count += scree_overlap_loss(&o, &alone[i]) < least_gain;
+    c->useless_count += fabs(scree_overlap_loss(&o, &alone[i])) < least_gain;
 }
 
 scree_clump scree_judge_clump(scree_judge *j, const scree_sphere *spheres, size_t count) {

@@ -31,18 +31,29 @@ static const double directions_in_all =
     least_radius = 0.01,       /* no smaller spheres */
     slack_volume = 0.005,      /* tolerances: volume */
     slack_centroid = 0.001,    /* centroid */
-    slack_second = 0.011,      /* second moments, of their trace */
-    slack_kept = 0.5,          /* part of a tolerance that a step aims into */
-    slack_restored = 0.8;      /* likewise when only moments are restored */
+    slack_inertia = 0.026,     /* moments of inertia about the axes, of each */
+    slack_tilt = 0.002,        /* what a product of inertia may add to a principal moment, of it */
+    slack_kept = 0.6,          /* part of a tolerance that a step aims into */
+    slack_restored = 0.9;      /* likewise when only moments are restored */
 
 static const int degree[SCREE_MOMENTS] = {0, 1, 1, 1, 2, 2, 2, 2, 2, 2};
 
+/* A product q of inertia moves the two principal moments, `gap` apart, by s = (sqrt(gap^2 + 4 q^2)
+ * - gap) / 2. */
+static double product_for(double shift, double gap) {
+  return sqrt(shift * (shift + gap));
+}
+
 static void set_tolerances(scree_mover *m) {
-  const double *second = m->body->moments + SCREE_FIRST_SECOND;
-  double trace = second[0] + second[1] + second[2];
+  const double *inertia = m->body->moments + SCREE_FIRST_INERTIA;
   m->tolerance[0] = slack_volume;
-  for (int k = 1; k < SCREE_FIRST_SECOND; k++) m->tolerance[k] = slack_centroid;
-  for (int k = SCREE_FIRST_SECOND; k < SCREE_MOMENTS; k++) m->tolerance[k] = slack_second * trace;
+  for (int k = 1; k < SCREE_FIRST_INERTIA; k++) m->tolerance[k] = slack_centroid;
+  for (int a = 0; a < 3; a++) {
+    m->tolerance[SCREE_FIRST_INERTIA + a] = slack_inertia * inertia[a];
+    for (int b = 0; b < a; b++)
+      m->tolerance[SCREE_FIRST_PRODUCT + a + b - 1] =
+          product_for(slack_tilt * fmin(inertia[a], inertia[b]), fabs(inertia[a] - inertia[b]));
+  }
 }
 
 scree_status scree_mover_make(const scree_target *body, const scree_field *field,

@@ -82,7 +82,9 @@ scree_status scree_target_make(const scree_mesh *mesh, scree_target *body, scree
   b.centre = solid.centre;
   b.scale = cbrt(solid.volume);
   b.moments[0] = 1;
-  for (int k = 0; k < 3; k++) b.moments[4 + k] = second[k] / (solid.volume * b.scale * b.scale);
+  for (int k = 0; k < 3; k++)
+    b.moments[SCREE_FIRST_INERTIA + k] =
+        (second[(k + 1) % 3] + second[(k + 2) % 3]) / (solid.volume * b.scale * b.scale);
   status = scree_mesh_copy(mesh, &b.mesh, error);
   if (status != SCREE_OK) return status;
   into_frame(&b);
@@ -106,7 +108,7 @@ void scree_target_free(scree_target *body) {
 void scree_target_monomials(vec3 p, double m[SCREE_MOMENTS]) {
   m[0] = 1;
   m[1] = p.x, m[2] = p.y, m[3] = p.z;
-  m[4] = p.x * p.x, m[5] = p.y * p.y, m[6] = p.z * p.z;
+  m[4] = p.y * p.y + p.z * p.z, m[5] = p.x * p.x + p.z * p.z, m[6] = p.x * p.x + p.y * p.y;
   m[7] = p.x * p.y, m[8] = p.x * p.z, m[9] = p.y * p.z;
 }
 

@@ -7,8 +7,9 @@
 #include "mesh/bvh.h"
 #include "mesh/mesh.h"
 
-/* Moments of a solid, in this order: volume; x y z; xx yy zz xy xz yz. */
-enum { SCREE_MOMENTS = 10, SCREE_FIRST_SECOND = 4 };
+/* Moments of a solid, in this order: volume; x y z; moments of inertia about the axes, yy + zz,
+ * xx + zz, xx + yy; xy xz yz. */
+enum { SCREE_MOMENTS = 10, SCREE_FIRST_INERTIA = 4, SCREE_FIRST_PRODUCT = 7 };
 enum { SCREE_MOST_SPHERES = 400 };
 /* The diameter of the sphere of volume 1. */
 #define SCREE_UNIT_SIZE 1.2407009817988

@@ -54,6 +54,41 @@ static void holds_its_promises(void **state) {
   scree_mesh_free(&mesh);
 }
 
+/* A root with a thin blade: the sphere at its tip covers more outside than inside, and holds the
+ * centroid. */
+static void a_thin_blade_keeps_its_spheres(void **state) {
+  (void)state;
+  scree_mesh mesh = shape_icosphere(1, 3);
+  for (size_t v = 0; v < mesh.vertex_count; v++) {
+    double *p = mesh.positions + 3 * v, tip = fmax(0, p[2]);
+    p[0] *= 1 - 0.85 * fmin(1, 4 * tip);
+    p[2] += 2 * tip;
+  }
+  scree_clumps clumps = make(&mesh, 12);
+  assert_int_equal(scree_clumps_of_count(&clumps, 6)->sphere_count, 6);
+  assert_int_equal(scree_clumps_of_count(&clumps, 9)->sphere_count, 9);
+  for (size_t i = 0; i < clumps.clump_count; i++) {
+    const scree_clump *c = &clumps.clumps[i];
+    if (c->sphere_count >= 4) CHECK_NEAR(c->centroid_error, 0, 0.002);
+    if (c->sphere_count >= 10) CHECK_NEAR(c->inertia_error, 0, 0.03);
+    assert_true(c->useless_count == 0);
+  }
+  scree_clumps_free(&clumps);
+  scree_mesh_free(&mesh);
+}
+
+/* Flat faces along the axes count in full. */
+static void measures_a_plate(void **state) {
+  (void)state;
+  scree_mesh mesh = shape_grid_box(1, 0.4, 0.05, 4);
+  scree_clumps clumps = make(&mesh, 5);
+  const scree_clump *c = scree_clumps_of_count(&clumps, 5);
+  overlap_counts counts = overlap_count(&mesh, c->spheres, c->sphere_count, 20000);
+  CHECK_NEAR(overlap_iou(&counts), c->iou, 0.004);
+  scree_clumps_free(&clumps);
+  scree_mesh_free(&mesh);
+}
+
 static void measures_are_those_of_points(void **state) {
   (void)state;
   scree_mesh mesh = make_body();
@@ -218,6 +253,7 @@ static void a_thin_plate_warns(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(holds_its_promises),        cmocka_unit_test(measures_are_those_of_points),
+      cmocka_unit_test(measures_a_plate),          cmocka_unit_test(a_thin_blade_keeps_its_spheres),
       cmocka_unit_test(a_ball_is_one_sphere),      cmocka_unit_test(finds_the_spheres_of_a_body),
       cmocka_unit_test(a_turned_body_is_the_same), cmocka_unit_test(spheres_stay_inside),
       cmocka_unit_test(same_bits_for_any_threads), cmocka_unit_test(memory_may_run_out),
