@@ -70,7 +70,7 @@ static scree_status sweep(scree_fidelity *f, const scree_gauge *gauge, const scr
       status = scree_fail(error, SCREE_CANCELLED, "cancelled while measuring levels");
     if (status == SCREE_OK) status = scree_replay_step(replay, r->level_index, &level, error);
     if (status == SCREE_OK)
-      status = scree_gauge_read(gauge, level, SCREE_GAUGE_GAP, &r->reading, error);
+      status = scree_gauge_read(gauge, level, SCREE_GAUGE_GAP, NULL, &r->reading, error);
     if (status == SCREE_OK) r->triangle_count = level->triangle_count;
   }
   scree_replay_free(replay);

@@ -15,16 +15,34 @@
 #include <string.h>
 
 enum {
-  PROBE_STEP = 4,   /* points per probe */
-  BACK_STEP = 2,    /* points of the spread per point of the level; per sample for cutting, too */
-  QUERY_BLOCK = 256 /* points that share a start */
+  PROBE_STEP = 4,    /* points per probe */
+  BACK_STEP = 2,     /* points of the spread per point of the level, at least */
+  BACK_LEAST = 1000, /* points of a level */
+  CUT_STEP = 5,      /* points of the spread per sample for cutting */
+  QUERY_BLOCK = 256  /* points that share a start */
 };
 /* Facets of the scan no larger than this hide nothing between their corners; of D. */
 static const double SMALL_FACET = 0.002;
+/* Of how many points of a level the mean distance is known to one per cent: so many times the root
+ * of its facets, for the error falls with the points a facet and averages over facets. */
+static const double POINTS_PER_ROOT = 600;
+/* Maxima of the distance over a facet rise from it by no more than this: 30 degrees. */
+static const double SLOPE = 0.5;
 /* A wall's other side faces back: the cosine of its normal with the ray inward. */
 static const double FACING_BACK = 0.8;
 /* Thinner is the surface itself, seen from beside the point; of D. */
 static const double LEAST_WALL = 0.002;
+double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
+                  const double tolerances[SCREE_SHAPE_ERROR_COUNT], scree_shape_error *which) {
+  double load = 0;
+  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) {
+    if (!(errors[e] / tolerances[e] > load)) continue;
+    load = errors[e] / tolerances[e];
+    if (which) *which = (scree_shape_error)e;
+  }
+  return load;
+}
+
 /* ---- The scan ---- */
 
 static int ascending(const void *a, const void *b) {
@@ -153,11 +171,8 @@ typedef struct forward {
 static void ask_points(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)block, (void)worker;
   const forward *f = context;
-  uint32_t near = 0;
-  for (size_t i = begin; i < end; i++) {
-    f->distances[i] = scree_surface_nearest(f->level, f->gauge->spread.points[i], &near);
-    f->nearest[i] = near;
-  }
+  scree_surface_nearest_points(f->level, f->gauge->spread.points + begin, end - begin,
+                               f->distances + begin, f->nearest + begin);
 }
 
 static void keep_farthest(forward *f, double distance, vec3 at) {
@@ -279,14 +294,19 @@ static void read_measures(const scree_gauge *g, const scree_measures *m, scree_g
 
 /* ---- Both ways ---- */
 
+static size_t back_points(const scree_gauge *g, size_t facet_count) {
+  double enough = g->refined ? INFINITY : POINTS_PER_ROOT * sqrt((double)facet_count);
+  return (size_t)fmax(BACK_LEAST, fmin(enough, (double)(g->spread.count / BACK_STEP)));
+}
+
 /* From points spread over the level; their mean distance from the scan. */
 static scree_status go_back(forward *f, double *mean, scree_error *error) {
   const scree_gauge *g = f->gauge;
   scree_spread points = {0};
   scree_sum sum = {0, 0};
   double *distances = NULL;
-  scree_status status =
-      scree_spread_make(&f->level->mesh, g->spread.count / BACK_STEP, &points, error);
+  scree_status status = scree_spread_make(
+      &f->level->mesh, back_points(g, f->level->mesh.triangle_count), &points, error);
   if (status != SCREE_OK) return status;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(distances, points.count, error, done);
@@ -309,32 +329,50 @@ static scree_status search_facets(forward *f, const scree_surface *from, const s
   scree_deviation d;
   const scree_way way = {.sample_count = 1,
                          .gap = gap,
+                         .slope = f->gauge->refined ? 1 : SLOPE,
                          .known = f->maximum,
-                         .cut_budget = f->gauge->spread.count / BACK_STEP};
+                         .cut_budget =
+                             f->gauge->spread.count / (f->gauge->refined ? BACK_STEP : CUT_STEP)};
   scree_status status = scree_surface_deviation(from, to, &way, NULL, &d, error);
   if (status == SCREE_OK) keep_farthest(f, d.maximum, vec3_load(d.at));
   return status;
 }
 
-static scree_status read_distances(forward *f, double gap, scree_gauge_reading *r,
-                                   scree_error *error) {
-  const scree_gauge *g = f->gauge;
+static scree_status read_means(forward *f, double gap, scree_gauge_reading *r, scree_error *error) {
   double back;
   go_forward(f, gap);
   scree_status status = go_back(f, &back, error);
-  if (status == SCREE_OK) status = search_facets(f, f->level, g->surface, gap, error);
+  if (status == SCREE_OK) r->errors[SCREE_ERROR_MEAN] = fmax(f->mean, back) / f->gauge->length;
+  return status;
+}
+
+static scree_status read_farthest(forward *f, double gap, scree_gauge_reading *r,
+                                  scree_error *error) {
+  const scree_gauge *g = f->gauge;
+  scree_status status = search_facets(f, f->level, g->surface, gap, error);
   if (status == SCREE_OK && g->refined &&
       sqrt(g->surface->largest_facet) >= SMALL_FACET * g->length)
     status = search_facets(f, g->surface, f->level, gap, error);
-  if (status != SCREE_OK) return status;
-  r->errors[SCREE_ERROR_MEAN] = fmax(f->mean, back) / g->length;
   r->errors[SCREE_ERROR_HAUSDORFF] = f->maximum / g->length;
   vec3_store(r->farthest, f->at);
-  return SCREE_OK;
+  return status;
+}
+
+static scree_status read_level(forward *f, double gap, const double *tolerances,
+                               scree_gauge_reading *r, scree_error *error) {
+  scree_status status = read_means(f, gap, r, error);
+  if (status != SCREE_OK || (tolerances && scree_load(r->errors, tolerances, NULL) > 1))
+    return status;
+  status = read_farthest(f, gap, r, error);
+  if (status == SCREE_OK) status = read_walls(f, r, error);
+  r->errors[SCREE_ERROR_NORMALS] = normals_error(f);
+  r->errors[SCREE_ERROR_THINNEST] = fabs(r->changes[SCREE_CHANGE_THINNEST]);
+  return status;
 }
 
 scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level, double gap,
-                              scree_gauge_reading *reading, scree_error *error) {
+                              const double *tolerances, scree_gauge_reading *reading,
+                              scree_error *error) {
   scree_surface *surface = NULL;
   scree_measures measures;
   scree_gauge_reading r = {0};
@@ -347,12 +385,8 @@ scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level,
   SCREE_ALLOC_OR(f.nearest, gauge->spread.count, error, done);
   f.level = surface;
   read_measures(gauge, &measures, &r);
-  status = read_distances(&f, gap, &r, error);
-  if (status == SCREE_OK) status = read_walls(&f, &r, error);
-  if (status != SCREE_OK) goto done;
-  r.errors[SCREE_ERROR_NORMALS] = normals_error(&f);
-  r.errors[SCREE_ERROR_THINNEST] = fabs(r.changes[SCREE_CHANGE_THINNEST]);
-  *reading = r;
+  status = read_level(&f, gap, tolerances, &r, error);
+  if (status == SCREE_OK) *reading = r;
 done:
   scree_surface_free(surface);
   scree_free(f.distances);

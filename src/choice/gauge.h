@@ -49,9 +49,16 @@ scree_status scree_gauge_refine(const scree_gauge *gauge, size_t point_count, sc
                                 scree_error *error);
 void scree_gauge_free(scree_gauge *gauge);
 
-/* The Hausdorff distance is known to `gap` of itself. */
+/* The Hausdorff distance is known to `gap` of itself. Where tolerances are given, and an error
+ * found is above its own, those that take longer to find may stay 0. */
 scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level, double gap,
-                              scree_gauge_reading *reading, scree_error *error);
+                              const double *tolerances, scree_gauge_reading *reading,
+                              scree_error *error);
+
+/* The largest error over its tolerance; *which is that error (may be NULL). Errors that are NaN do
+ * not count. */
+double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
+                  const double tolerances[SCREE_SHAPE_ERROR_COUNT], scree_shape_error *which);
 
 /* scree_fidelity_measure with a gauge at hand. */
 scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *curve,

@@ -22,17 +22,6 @@ static const double WINDOW = 0.6;
 /* Errors below are none: their logarithm would rule the line. */
 static const double LEAST_ERROR = 1e-9;
 
-double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
-                  const double tolerances[SCREE_SHAPE_ERROR_COUNT], scree_shape_error *which) {
-  double load = 0;
-  for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) {
-    if (!(errors[e] / tolerances[e] > load)) continue;
-    load = errors[e] / tolerances[e];
-    if (which) *which = (scree_shape_error)e;
-  }
-  return load;
-}
-
 /* ---- The trend ---- */
 
 /* ln of the trend at level i: what the straight line through ln load against ln N round it has in
@@ -89,7 +78,9 @@ static scree_status keeps_all(search *s, const scree_gauge *gauge, double gap, s
   scree_mesh mesh = {0};
   scree_gauge_reading reading;
   scree_status status = scree_curve_mesh(s->curve, level_index, &mesh, s->error);
-  if (status == SCREE_OK) status = scree_gauge_read(gauge, &mesh, gap, &reading, s->error);
+  if (status == SCREE_OK)
+    status =
+        scree_gauge_read(gauge, &mesh, gap, level_index ? s->tolerances : NULL, &reading, s->error);
   scree_mesh_free(&mesh);
   if (status != SCREE_OK) return status;
   *keeps = scree_load(reading.errors, s->tolerances, NULL) <= MOST_LOAD;

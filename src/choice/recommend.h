@@ -11,11 +11,6 @@ typedef struct scree_kept {
   double load;
 } scree_kept;
 
-/* The largest error over its tolerance; *which is that error (may be NULL). Errors that are NaN do
- * not count. */
-double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
-                  const double tolerances[SCREE_SHAPE_ERROR_COUNT], scree_shape_error *which);
-
 /* The least of the trend of load + count / scale, and from which to which count it is at most
  * SCREE_SIMILAR_IP times that. */
 typedef struct scree_least {

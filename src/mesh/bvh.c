@@ -400,3 +400,58 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
   }
   return found;
 }
+
+/* ---- Of many points ---- */
+
+static box box_of_points(const scree_points *points) {
+  box b = nothing;
+  for (int i = 0; i < points->count; i++) {
+    const double p[3] = {points->at[0][i], points->at[1][i], points->at[2][i]};
+    grow(&b, p, p);
+  }
+  return b;
+}
+
+/* How far apart two boxes are, squared. */
+static double boxes_apart2(const scree_bvh_node *node, const box *b) {
+  double sum = 0;
+  for (int k = 0; k < 3; k++) {
+    double below = node->low[k] - b->high[k], above = b->low[k] - node->high[k];
+    double gap = below > above ? below : above;
+    sum += gap > 0 ? gap * gap : 0;
+  }
+  return sum;
+}
+
+void scree_bvh_closest_points(const scree_bvh *bvh, scree_points *points) {
+  struct {
+    uint32_t node;
+    double apart2;
+  } stack[STACK];
+  int depth = 0;
+  box bounds = box_of_points(points);
+  double farthest2 = scree_points_farthest(points);
+  vec3 middle = vec3_scale(vec3_add(vec3_load(bounds.low), vec3_load(bounds.high)), 0.5);
+  if (bvh->node_count == 0) return;
+  stack[depth].node = 0;
+  stack[depth++].apart2 = boxes_apart2(bvh->nodes, &bounds);
+  while (depth > 0) {
+    depth--;
+    if (stack[depth].apart2 >= farthest2) continue;
+    const scree_bvh_node *node = &bvh->nodes[stack[depth].node];
+    if (node->count) {
+      if (!scree_points_near(points, node->low, node->high)) continue;
+      for (uint32_t i = node->first; i < node->first + node->count; i++)
+        scree_points_closest(points, bvh->corners + 9 * (size_t)i, i);
+      farthest2 = scree_points_farthest(points);
+      continue;
+    }
+    uint32_t near = node->first, far = near + 1;
+    if (box_distance2(&bvh->nodes[far], middle) < box_distance2(&bvh->nodes[near], middle))
+      near++, far--;
+    double near2 = boxes_apart2(&bvh->nodes[near], &bounds),
+           far2 = boxes_apart2(&bvh->nodes[far], &bounds);
+    if (far2 < farthest2) stack[depth].node = far, stack[depth++].apart2 = far2;
+    if (near2 < farthest2) stack[depth].node = near, stack[depth++].apart2 = near2;
+  }
+}

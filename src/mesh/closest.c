@@ -142,107 +142,84 @@ SCREE_LANES_INLINE vec3 nearest_lane(const lane_triangle *t, vec3 p, double *dis
   return choose_point(outside, found, inside);
 }
 
-SCREE_LANES_INLINE vec3 lane_of(const double (*axes)[SCREE_EIGHT], int lane) {
-  return (vec3){axes[0][lane], axes[1][lane], axes[2][lane]};
+static int whole_eights(int count) {
+  return (count + SCREE_EIGHT - 1) / SCREE_EIGHT * SCREE_EIGHT;
 }
 
-SCREE_LANES_INLINE void set_lane(double (*axes)[SCREE_EIGHT], int lane, vec3 x) {
-  axes[0][lane] = x.x;
-  axes[1][lane] = x.y;
-  axes[2][lane] = x.z;
-}
-
-/* What the corners tell. */
-SCREE_LANES static void eight_lanes(scree_eight *restrict e) {
-  for (int i = 0; i < SCREE_EIGHT; i++) {
-    lane_triangle t = triangle_of(lane_of(e->at[0], i), lane_of(e->at[1], i), lane_of(e->at[2], i));
-    set_lane(e->side[0], i, t.ab);
-    set_lane(e->side[1], i, t.bc);
-    set_lane(e->side[2], i, t.ca);
-    set_lane(e->n, i, t.n);
-    e->length2[0][i] = t.ab2;
-    e->length2[1][i] = t.bc2;
-    e->length2[2][i] = t.ca2;
-    e->n2[i] = t.n2;
-    e->needle[i] = is_needle(t.n2, t.ab2, t.ca2);
+/* Up to a whole number of eights with the first point. */
+void scree_points_set(scree_points *q, const vec3 *at, int count) {
+  q->count = count;
+  for (int i = 0; i < whole_eights(count); i++) {
+    vec3 p = at[i < count ? i : 0];
+    q->at[0][i] = p.x;
+    q->at[1][i] = p.y;
+    q->at[2][i] = p.z;
+    q->distance2[i] = INFINITY;
+    q->index[i] = 0;
   }
 }
 
-void scree_eights_fill(const double (*corners)[9], size_t count, scree_eight *eights) {
-  for (size_t first = 0; first < count; first += SCREE_EIGHT) {
-    scree_eight *e = &eights[first / SCREE_EIGHT];
-    for (size_t lane = 0; lane < SCREE_EIGHT; lane++) {
-      const double *from = corners[first + lane < count ? first + lane : count - 1];
-      for (size_t k = 0; k < 9; k++) e->at[k / 3][k % 3][lane] = from[k];
-    }
-    eight_lanes(e);
-    e->has_needle = false;
-    for (size_t lane = 0; lane < SCREE_EIGHT; lane++) e->has_needle |= e->needle[lane];
-  }
-}
-
-SCREE_LANES static void eights_lanes(const scree_eight *eights, size_t count, vec3 p,
-                                     double *restrict out) {
-  for (const scree_eight *e = eights; e < eights + count; e++, out += SCREE_EIGHT)
-    for (int i = 0; i < SCREE_EIGHT; i++) {
-      lane_triangle t = {.a = lane_of(e->at[0], i),
-                         .b = lane_of(e->at[1], i),
-                         .c = lane_of(e->at[2], i),
-                         .ab = lane_of(e->side[0], i),
-                         .bc = lane_of(e->side[1], i),
-                         .ca = lane_of(e->side[2], i),
-                         .n = lane_of(e->n, i),
-                         .n2 = e->n2[i],
-                         .ab2 = e->length2[0][i],
-                         .bc2 = e->length2[1][i],
-                         .ca2 = e->length2[2][i]};
-      nearest_lane(&t, p, &out[i]);
-    }
-}
-
-void scree_eights_closest(const scree_eight *eights, size_t eight_count, vec3 p,
-                          double *distance2) {
-  eights_lanes(eights, eight_count, p, distance2);
-  for (const scree_eight *e = eights; e < eights + eight_count; e++) {
-    if (!e->has_needle) continue;
-    for (size_t i = 0; i < SCREE_EIGHT; i++) {
-      double corners[9];
-      vec3 point;
-      if (!e->needle[i]) continue;
-      for (size_t k = 0; k < 9; k++) corners[k] = e->at[k / 3][k % 3][i];
-      distance2[SCREE_EIGHT * (size_t)(e - eights) + i] =
-          scree_triangle_closest(corners, p, &point);
-    }
-  }
-}
-
-SCREE_LANES static void points_lanes(const lane_triangle *of, scree_points *q, int count) {
+SCREE_LANES static void points_lanes(const lane_triangle *of, scree_points *q, int count,
+                                     uint64_t index) {
   const lane_triangle t = *of; /* that q cannot be part of */
   for (int begin = 0; begin < count; begin += SCREE_EIGHT)
     for (int i = begin; i < begin + SCREE_EIGHT; i++) {
       vec3 p = {q->at[0][i], q->at[1][i], q->at[2][i]};
-      vec3 found = nearest_lane(&t, p, &q->distance2[i]);
-      q->nearest[0][i] = found.x;
-      q->nearest[1][i] = found.y;
-      q->nearest[2][i] = found.z;
+      double distance2;
+      nearest_lane(&t, p, &distance2);
+      uint64_t nearer = -(uint64_t)(distance2 < q->distance2[i]);
+      q->distance2[i] = choose(distance2 < q->distance2[i], distance2, q->distance2[i]);
+      q->index[i] = (index & nearer) | (q->index[i] & ~nearer);
     }
 }
 
-void scree_points_closest(const double corners[9], scree_points *q) {
-  lane_triangle t = triangle_of(vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6));
-  if (is_needle(t.n2, t.ab2, t.ca2)) {
-    for (int i = 0; i < q->count; i++) {
-      vec3 found;
-      q->distance2[i] =
-          scree_triangle_closest(corners, (vec3){q->at[0][i], q->at[1][i], q->at[2][i]}, &found);
-      q->nearest[0][i] = found.x;
-      q->nearest[1][i] = found.y;
-      q->nearest[2][i] = found.z;
-    }
-    return;
+static void keep_needle(scree_points *q, const double corners[9], uint32_t index) {
+  for (int i = 0; i < whole_eights(q->count); i++) {
+    vec3 found;
+    double distance2 =
+        scree_triangle_closest(corners, (vec3){q->at[0][i], q->at[1][i], q->at[2][i]}, &found);
+    if (distance2 < q->distance2[i]) q->distance2[i] = distance2, q->index[i] = index;
   }
-  int width = (q->count + SCREE_EIGHT - 1) / SCREE_EIGHT * SCREE_EIGHT;
-  for (int k = 0; k < 3; k++)
-    for (int i = q->count; i < width; i++) q->at[k][i] = q->at[k][0];
-  points_lanes(&t, q, width);
+}
+
+void scree_points_closest(scree_points *q, const double corners[9], uint32_t index) {
+  lane_triangle t = triangle_of(vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6));
+  if (is_needle(t.n2, t.ab2, t.ca2))
+    keep_needle(q, corners, index);
+  else
+    points_lanes(&t, q, whole_eights(q->count), index);
+}
+
+double scree_points_farthest(const scree_points *q) {
+  double most[SCREE_EIGHT] = {0}, farthest = 0;
+  for (int begin = 0; begin < q->count; begin += SCREE_EIGHT)
+    for (int i = 0; i < SCREE_EIGHT; i++)
+      most[i] = most[i] > q->distance2[begin + i] ? most[i] : q->distance2[begin + i];
+  for (int i = 0; i < SCREE_EIGHT; i++) farthest = farthest > most[i] ? farthest : most[i];
+  return farthest;
+}
+
+/* How far x is outside [low, high]; not by fmax, which is a call. */
+SCREE_LANES_INLINE double outside(double low, double high, double x) {
+  double below = low - x, above = x - high;
+  double more = choose(below > above, below, above);
+  return choose(more > 0, more, 0);
+}
+
+SCREE_LANES static uint64_t near_lanes(const scree_points *q, int count, const double low[3],
+                                       const double high[3]) {
+  uint64_t near[SCREE_EIGHT] = {0}, any = 0;
+  for (int begin = 0; begin < count; begin += SCREE_EIGHT)
+    for (int i = 0; i < SCREE_EIGHT; i++) {
+      double x = outside(low[0], high[0], q->at[0][begin + i]),
+             y = outside(low[1], high[1], q->at[1][begin + i]),
+             z = outside(low[2], high[2], q->at[2][begin + i]);
+      near[i] |= (uint64_t)(x * x + y * y + z * z < q->distance2[begin + i]);
+    }
+  for (int i = 0; i < SCREE_EIGHT; i++) any |= near[i];
+  return any;
+}
+
+bool scree_points_near(const scree_points *q, const double low[3], const double high[3]) {
+  return near_lanes(q, whole_eights(q->count), low, high) != 0;
 }

@@ -31,6 +31,7 @@
 #include <string.h>
 
 enum {
+  TOGETHER = 16,           /* points that go down the tree side by side */
   BLOCK = 512,             /* vertices or facets that share a start */
   CHUNK = 256 * BLOCK,     /* between two reports of progress */
   HEAP_MOST = 1 << 16,     /* parts of a block's facets that wait to be cut */
@@ -115,6 +116,23 @@ double scree_surface_nearest(const scree_surface *surface, vec3 p, uint32_t *nea
   return sqrt(hit.distance2);
 }
 
+void scree_surface_nearest_points(const scree_surface *surface, const vec3 *points, size_t count,
+                                  double *distances, uint32_t *nearest) {
+  uint32_t near = 0;
+  scree_points together;
+  for (size_t first = 0; first < count; first += (size_t)together.count) {
+    size_t left = count - first;
+    scree_points_set(&together, points + first, left < TOGETHER ? (int)left : TOGETHER);
+    scree_points_closest(&together, surface->bvh.corners + 9 * (size_t)near, near);
+    scree_bvh_closest_points(&surface->bvh, &together);
+    for (int i = 0; i < together.count; i++) {
+      distances[first + (size_t)i] = sqrt(together.distance2[i]);
+      nearest[first + (size_t)i] = (uint32_t)together.index[i];
+    }
+    near = nearest[first + (size_t)together.count - 1];
+  }
+}
+
 typedef struct point_query {
   const scree_surface *surface;
   const double *points;
@@ -172,6 +190,7 @@ typedef struct sweep {
   const scree_surface *from, *to;
   double density; /* samples per m^2 */
   double gap;     /* as asked; 0: parts are not cut further */
+  double slope;   /* as asked */
   double budget;  /* samples for cutting, per facet of a block */
   double found;   /* the largest distance of the sweeps before */
   double *vertex_distance;
@@ -222,10 +241,10 @@ static double bound_by_triangle(const sweep *s, const part *p, uint32_t near) {
   return sqrt(largest2);
 }
 
-static double bound_by_way(const part *p, vec3 middle, double distance) {
+static double bound_by_way(const part *p, vec3 middle, double distance, double slope) {
   double way2 = 0;
   for (int k = 0; k < 3; k++) way2 = fmax(way2, vec3_norm2(vec3_sub(p->corner[k], middle)));
-  return distance + sqrt(way2);
+  return distance + slope * sqrt(way2);
 }
 
 /* Samples the middle of a part; returns its distance. The bound is taken only where it could be the
@@ -234,7 +253,7 @@ static double sample_part(const sweep *s, const part *p, uint32_t *near, tally *
   vec3 middle = part_middle(p);
   double distance = scree_surface_nearest(s->to, middle, near);
   note(t, distance, middle);
-  *bound = bound_by_way(p, middle, distance);
+  *bound = bound_by_way(p, middle, distance, s->slope);
   if (*bound > fmax(s->found, t->maximum)) *bound = fmin(*bound, bound_by_triangle(s, p, *near));
   return distance;
 }
@@ -534,7 +553,7 @@ static scree_deviation conclude(const tally *vertices, const tally *facets, cons
 static scree_status deviate(const scree_surface *from, const scree_surface *to,
                             const scree_way *way, stage *st, scree_deviation *deviation,
                             scree_error *error) {
-  sweep s = {.from = from, .to = to, .gap = way->gap};
+  sweep s = {.from = from, .to = to, .gap = way->gap, .slope = way->slope};
   size_t vertex_count = from->mesh.vertex_count;
   tally vertices, facets = {0}, cuts = {.maximum = -1};
   scree_status status = SCREE_OUT_OF_MEMORY;
@@ -577,7 +596,7 @@ static scree_status set_way(const scree_distance_options *options, const scree_s
   const scree_distance_options defaults = scree_default_distance_options();
   const scree_distance_options *o = options ? options : &defaults;
   size_t more = a->used_count > b->used_count ? a->used_count : b->used_count;
-  *way = (scree_way){o->sample_count,  o->sample_count == 0, o->hausdorff_gap, 0,
+  *way = (scree_way){o->sample_count,  o->sample_count == 0, o->hausdorff_gap, 1, 0,
                      SCREE_CUT_BUDGET, SCREE_CUT_LEAST};
   if (way->converge) way->sample_count = more < SAMPLE_LEAST ? SAMPLE_LEAST : more;
   if (way->sample_count > SAMPLE_LIMIT)

@@ -17,11 +17,16 @@ struct scree_surface {
  * nearest. */
 double scree_surface_nearest(const scree_surface *surface, vec3 p, uint32_t *near);
 
+/* The same for points of which neighbours in the list are near each other. */
+void scree_surface_nearest_points(const scree_surface *surface, const vec3 *points, size_t count,
+                                  double *distances, uint32_t *nearest);
+
 /* How one way is measured. */
 typedef struct scree_way {
   size_t sample_count; /* spread over the surface */
   bool converge;       /* and four times as many, until the mean is known to 1 per cent */
   double gap;          /* as scree_distance_options.hausdorff_gap */
+  double slope;        /* how steep distances are taken to change over a part; 1 is certain */
   double known;        /* m; what is nearer need not be bounded: 0, or a distance known elsewhere */
   /* Samples for bounding, all facets together, but at least cut_least for each: surfaces that all
    * but coincide would be cut without end. */

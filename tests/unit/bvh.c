@@ -82,43 +82,34 @@ static void test_triangle(void **state) {
   }
 }
 
-/* Side by side the same bits: some triangles from every point, and some points to every triangle.
- */
+/* Side by side the same bits, anywhere, at corners and on edges. */
 static void test_side_by_side(void **state) {
   (void)state;
-  enum { TRIANGLES = 23 };
   scree_rng rng = {.seed = 27};
-  scree_eight eights[TRIANGLES / SCREE_EIGHT + 1];
-  double corners[TRIANGLES][9], distance2[TRIANGLES + SCREE_EIGHT];
-  size_t flat = 0;
-  for (int round = 0; round < 300; round++) {
-    size_t count = 1 + scree_rng_below(&rng, TRIANGLES);
-    scree_points points = {.count = 0};
-    for (size_t i = 0; i < count; i++)
-      random_triangle(&rng, (int)scree_rng_below(&rng, 4), corners[i]);
-    scree_eights_fill(corners, count, eights);
-    int wanted = 1 + (int)scree_rng_below(&rng, SCREE_POINTS);
-    while (points.count < wanted) { /* anywhere, at corners and on edges */
-      const double *c = corners[scree_rng_below(&rng, count)];
-      int kind = points.count % 3;
-      vec3 on = vec3_lerp(vec3_load(c), vec3_load(c + 3), kind == 1 ? 0 : scree_rng_uniform(&rng));
-      scree_points_add(&points, kind == 0 ? random_point(&rng, 2) : on);
+  for (int round = 0; round < 3000; round++) {
+    double c[2][9];
+    vec3 at[SCREE_POINTS];
+    scree_points points;
+    int count = 1 + (int)scree_rng_below(&rng, SCREE_POINTS);
+    for (int t = 0; t < 2; t++) random_triangle(&rng, (int)scree_rng_below(&rng, 4), c[t]);
+    for (int i = 0; i < count; i++) {
+      double along = i % 3 == 1 ? 0 : scree_rng_uniform(&rng);
+      at[i] = i % 3 == 0 ? random_point(&rng, 2)
+                         : vec3_lerp(vec3_load(c[i % 2]), vec3_load(c[i % 2] + 3), along);
     }
-    for (size_t t = 0; t < count; t++) {
-      scree_points_closest(corners[t], &points);
-      flat += eights[t / SCREE_EIGHT].needle[t % SCREE_EIGHT];
-      for (int i = 0; i < points.count; i++) {
-        vec3 p = {points.at[0][i], points.at[1][i], points.at[2][i]}, nearest;
-        double expected = scree_triangle_closest(corners[t], p, &nearest);
-        assert_true(points.distance2[i] == expected);
-        assert_true(points.nearest[0][i] == nearest.x && points.nearest[1][i] == nearest.y &&
-                    points.nearest[2][i] == nearest.z);
-        scree_eights_closest(eights, scree_eight_count(count), p, distance2);
-        assert_true(distance2[t] == expected);
-      }
+    scree_points_set(&points, at, count);
+    for (uint32_t t = 0; t < 2; t++) scree_points_closest(&points, c[t], t);
+    double farthest = 0;
+    for (int i = 0; i < count; i++) {
+      vec3 nearest;
+      double first = scree_triangle_closest(c[0], at[i], &nearest),
+             second = scree_triangle_closest(c[1], at[i], &nearest);
+      assert_true(points.distance2[i] == fmin(first, second));
+      assert_int_equal(points.index[i], second < first);
+      farthest = fmax(farthest, fmin(first, second));
     }
+    assert_true(scree_points_farthest(&points) == farthest);
   }
-  assert_true(flat > 100);
 }
 
 /* ---- Nearest points ---- */
@@ -168,6 +159,35 @@ static void test_closest(void **state) {
       bounded.index = 12345;
       assert_false(scree_bvh_closest(&bvh, p, &bounded));
       assert_int_equal(bounded.index, 12345);
+    }
+    scree_bvh_free(&bvh);
+    scree_mesh_free(&mesh);
+  }
+}
+
+/* Sets of points, some of which lie side by side, find what each finds alone. */
+static void test_closest_points(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 23};
+  for (int i = 0; i < 200; i++) {
+    scree_mesh mesh = random_surface(&rng, i % 5);
+    scree_bvh bvh = build(&mesh);
+    for (int k = 0; k < 20; k++) {
+      vec3 at[SCREE_POINTS], middle = random_point(&rng, exp(2 * scree_rng_normal(&rng)));
+      int count = 1 + (int)scree_rng_below(&rng, SCREE_POINTS);
+      double spread = exp(3 * scree_rng_normal(&rng));
+      scree_points points;
+      for (int j = 0; j < count; j++) at[j] = vec3_add(middle, random_point(&rng, spread));
+      scree_points_set(&points, at, count);
+      scree_bvh_closest_points(&bvh, &points);
+      for (int j = 0; j < count; j++) {
+        double expected = brute_distance2(&mesh, at[j]);
+        vec3 nearest;
+        if (mesh.triangle_count == 0) continue;
+        CHECK_NEAR(points.distance2[j], expected, 4e-16 * expected);
+        assert_true(points.distance2[j] ==
+                    scree_triangle_closest(bvh.corners + 9 * points.index[j], at[j], &nearest));
+      }
     }
     scree_bvh_free(&bvh);
     scree_mesh_free(&mesh);
@@ -235,7 +255,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_triangle), cmocka_unit_test(test_side_by_side),
       cmocka_unit_test(test_closest),  cmocka_unit_test(test_structure),
-      cmocka_unit_test(test_threads),
+      cmocka_unit_test(test_threads),  cmocka_unit_test(test_closest_points),
   };
   scree_set_threads(
       1); /* thousands of tiny trees: waking threads would take longer than the work */

@@ -157,7 +157,7 @@ static void a_smaller_ball_is_off_by_the_difference(void **state) {
   scree_gauge_reading r;
   scree_error error;
   CHECK_OK(scree_gauge_make(&ball, 4000, &gauge, &error), error);
-  CHECK_OK(scree_gauge_read(&gauge, &smaller, 0.01, &r, &error), error);
+  CHECK_OK(scree_gauge_read(&gauge, &smaller, 0.01, NULL, &r, &error), error);
   CHECK_NEAR(gauge.length, 2, 1e-3);
   CHECK_NEAR(gauge.thickness, 2, 1e-3);
   CHECK_NEAR(r.errors[SCREE_ERROR_MEAN], 0.01, 1e-4);
