@@ -44,12 +44,9 @@ static const struct {
                     {"levels/", ".levels", "screeLVL"}};
 enum { LEVELS_FILE = 5, OBJECT_FILE_COUNT };
 
-/* FOLDER/before name after */
 static scree_status join_in(const char *folder, const char *before, const char *name,
                             const char *after, char path[CHOOSE_PATH_BYTES], scree_error *error) {
-  int length = snprintf(path, CHOOSE_PATH_BYTES, "%s/%s%s%s", folder, before, name, after);
-  if (length < CHOOSE_PATH_BYTES) return SCREE_OK;
-  return cli_refuse(error, SCREE_LIMIT, folder, "the path is too long");
+  return cli_join_path(folder, before, name, after, path, CHOOSE_PATH_BYTES, error);
 }
 
 /* The same where it is written. */

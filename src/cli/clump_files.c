@@ -17,30 +17,18 @@ static int figure_count(void) {
   return scree_build_has(SCREE_BUILD_PICTURES) ? FIGURE_COUNT : 0;
 }
 
-static bool name_taken(const clump_run *run, size_t before, const char *name) {
-  for (size_t k = 0; k < before; k++)
-    if (!strcmp(run->objects[k].name, name)) return true;
-  return false;
-}
-
 void clump_name_objects(clump_run *run) {
   for (size_t i = 0; i < run->count; i++) {
-    char *name = run->objects[i].name, plain[CLUMP_NAME_BYTES - 24];
     run->objects[i].word = run->call->inputs[i];
-    cli_short_name(run->objects[i].word, plain, sizeof plain);
-    snprintf(name, CLUMP_NAME_BYTES, "%s", plain);
-    for (size_t n = 2; name_taken(run, i, name); n++)
-      snprintf(name, CLUMP_NAME_BYTES, "%s-%zu", plain, n);
+    cli_distinct_name(run->objects[i].word, run->objects[0].name, sizeof *run->objects, i,
+                      CLUMP_NAME_BYTES);
   }
 }
 
 static scree_status join(const clump_run *run, const char *name, const char *ending,
                          char path[CLUMP_PATH_BYTES], scree_error *error) {
   const clump_arguments *a = run->call->options;
-  int length = snprintf(path, CLUMP_PATH_BYTES, "%s/%s%s", a->output, name, ending);
-  return length < CLUMP_PATH_BYTES
-             ? SCREE_OK
-             : cli_refuse(error, SCREE_LIMIT, a->output, "the path is too long");
+  return cli_join_path(a->output, "", name, ending, path, CLUMP_PATH_BYTES, error);
 }
 
 static scree_status check(const clump_run *run, const char *name, const char *ending,

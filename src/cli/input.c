@@ -159,6 +159,20 @@ void cli_short_name(const char *word, char *buffer, size_t size) {
   scree_make_printable(buffer, '_'); /* a name goes into tables and file names */
 }
 
+static bool name_taken(const char *names, size_t stride, size_t before, const char *name) {
+  for (size_t k = 0; k < before; k++)
+    if (!strcmp(names + k * stride, name)) return true;
+  return false;
+}
+
+void cli_distinct_name(const char *word, char *names, size_t stride, size_t before, size_t size) {
+  char *name = names + before * stride;
+  cli_short_name(word, name, size - 24);
+  size_t length = strlen(name);
+  for (size_t n = 2; name_taken(names, stride, before, name); n++)
+    snprintf(name + length, size - length, "-%zu", n);
+}
+
 static bool begins_character(char c) {
   return ((unsigned char)c & 0xc0) != 0x80;
 }

@@ -76,6 +76,9 @@ void cli_print_unit(FILE *stream, const char *word, const scree_scan *scan);
 
 /* The word without folders and ending, or the sample's name, into buffer; "stdin" for "-". */
 void cli_short_name(const char *word, char *buffer, size_t size);
+/* The same into the name after `before` others that lie `stride` bytes apart, the first at `names`,
+ * each of `size` bytes: of equal ones come name, name-2, name-3. */
+void cli_distinct_name(const char *word, char *names, size_t stride, size_t before, size_t size);
 /* UTF-8 text as a cell of a table: of at least and at most so many characters. What is longer has a
  * ~ in its middle, for names are told apart by their beginnings or their ends. */
 void cli_print_cell(FILE *stream, const char *text, size_t least, size_t most);

@@ -209,3 +209,10 @@ scree_status cli_beside(const char *path, const char *ending, char *buffer, size
   *error = (scree_error){SCREE_LIMIT, "the output's name is too long"};
   return SCREE_LIMIT;
 }
+
+scree_status cli_join_path(const char *folder, const char *before, const char *name,
+                           const char *after, char *buffer, size_t size, scree_error *error) {
+  int length = snprintf(buffer, size, "%s/%s%s%s", folder, before, name, after);
+  if (length >= 0 && (size_t)length < size) return SCREE_OK;
+  return cli_refuse(error, SCREE_LIMIT, folder, "the path is too long");
+}

@@ -46,6 +46,10 @@ scree_status cli_make_folder(const char *path, scree_error *error);
  * written anything leaves nothing. */
 void cli_remove_empty_folders(void);
 
+/* FOLDER/before name after. SCREE_LIMIT where it does not fit. */
+scree_status cli_join_path(const char *folder, const char *before, const char *name,
+                           const char *after, char *buffer, size_t size, scree_error *error);
+
 /* The path with another ending, as "p.json" of "p.stl": a file beside it. SCREE_LIMIT where it does
  * not fit. */
 scree_status cli_beside(const char *path, const char *ending, char *buffer, size_t size,

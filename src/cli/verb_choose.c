@@ -115,21 +115,10 @@ static bool parse_tolerances(const char *text, scree_choice_options *o) {
   return true;
 }
 
-static bool name_taken(const choose_run *run, size_t before, const char *name) {
-  for (size_t k = 0; k < before; k++)
-    if (!strcmp(run->objects[k].name, name)) return true;
-  return false;
-}
-
-/* Files of the same name in several folders become name, name-2, name-3. */
 static void name_objects(choose_run *run) {
-  for (size_t i = 0; i < run->count; i++) {
-    char *name = run->objects[i].name, plain[CHOOSE_NAME_BYTES - 24];
-    cli_short_name(run->objects[i].word, plain, sizeof plain);
-    snprintf(name, CHOOSE_NAME_BYTES, "%s", plain);
-    for (size_t n = 2; name_taken(run, i, name); n++)
-      snprintf(name, CHOOSE_NAME_BYTES, "%s-%zu", plain, n);
-  }
+  for (size_t i = 0; i < run->count; i++)
+    cli_distinct_name(run->objects[i].word, run->objects[0].name, sizeof *run->objects, i,
+                      CHOOSE_NAME_BYTES);
 }
 
 static bool list_objects(choose_run *run) {

@@ -154,7 +154,10 @@ static void print_object(FILE *out, const clump_object *object) {
           "+n/5000");
   for (size_t i = 0; i < c->clump_count; i++)
     if (is_told(object, i))
-      print_row(out, object, &c->clumps[i], i == c->recommended ? " recommended" : "");
+      print_row(out, object, &c->clumps[i],
+                i == c->recommended               ? " recommended"
+                : &c->clumps[i] == object->chosen ? " chosen"
+                                                  : "");
 }
 
 static void print_advice(FILE *out, const clump_object *object) {

@@ -44,8 +44,7 @@ static void json_repair(scree_json *json, const scree_repair_report *repair) {
 
 static void json_entry(scree_json *json, const scree_check_entry *entry, const char *command_line) {
   scree_json_object(json, NULL);
-  scree_json_text(json, "version", scree_version());
-  scree_json_text(json, "command", command_line);
+  scree_json_maker(json, command_line);
   scree_json_text(json, "file", entry->file);
   if (entry->scan) {
     char checksum[SCREE_CHECKSUM_TEXT];

@@ -165,11 +165,8 @@ static void json_options(scree_json *json, const scree_choice_report *report) {
 }
 
 static void json_source(scree_json *json, const scree_choice_entry *entry) {
-  char checksum[SCREE_CHECKSUM_TEXT];
   scree_json_text(json, "name", entry->name);
-  scree_json_text(json, "format", entry->format);
-  scree_json_text(json, "checksum", scree_checksum_text(entry->checksum, checksum));
-  scree_json_number(json, "unit_m", entry->unit_m);
+  scree_json_source(json, entry->format, entry->checksum, entry->unit_m);
   if (entry->is_sample) {
     scree_json_row_object(json, "sample");
     scree_json_number(json, "resolution_m", entry->sample_resolution);
@@ -207,8 +204,7 @@ static void json_entry(scree_json *json, const scree_choice_report *report, size
                    report->rule == SCREE_RULE_PAPER ? choice->paper_finer_count
                                                     : choice->finer_count);
   json_source(json, entry);
-  scree_json_text(json, "version", scree_version());
-  scree_json_text(json, "command", report->command_line);
+  scree_json_maker(json, report->command_line);
   json_options(json, report);
   scree_json_end(json);
 }
@@ -251,8 +247,7 @@ static void json_set(scree_json *json, const scree_choice_report *report) {
   scree_json_number(json, "robust_spread", set->robust_spread);
   scree_json_number(json, "triangle_ratio_if_scanned_twice_as_fine",
                     report->rule == SCREE_RULE_PAPER ? set->paper_growth : set->robust_growth);
-  scree_json_text(json, "version", scree_version());
-  scree_json_text(json, "command", report->command_line);
+  scree_json_maker(json, report->command_line);
   json_options(json, report);
   scree_json_end(json);
 }

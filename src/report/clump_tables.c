@@ -126,14 +126,11 @@ static void json_surface(scree_json *json, const scree_mesh *mesh, double size) 
 
 static void json_entry(scree_json *json, const scree_clump_report *report,
                        const scree_clump_entry *e) {
-  char checksum[SCREE_CHECKSUM_TEXT];
   const scree_clumps *c = e->clumps;
   scree_json_object(json, NULL);
   scree_json_text(json, "file", e->file);
   scree_json_text(json, "name", e->name);
-  scree_json_text(json, "format", e->format);
-  scree_json_text(json, "checksum", scree_checksum_text(e->checksum, checksum));
-  scree_json_number(json, "unit_m", e->unit_m);
+  scree_json_source(json, e->format, e->checksum, e->unit_m);
   scree_json_text(json, "note", e->note);
   scree_json_count(json, "scan_triangle_count", e->scan_triangle_count);
   scree_json_count(json, "triangle_count", e->mesh->triangle_count);
@@ -145,8 +142,7 @@ static void json_entry(scree_json *json, const scree_clump_report *report,
   scree_json_text(json, "clump_file", e->clump_file);
   json_clumps(json, c);
   json_surface(json, e->mesh, c->size);
-  scree_json_text(json, "version", scree_version());
-  scree_json_text(json, "command", report->command_line);
+  scree_json_maker(json, report->command_line);
   scree_json_end(json);
 }
 

@@ -154,8 +154,7 @@ scree_status scree_heap_json_write(const scree_heap_entry *entry, const char *pa
   const scree_experiment *own = scree_run_experiment(entry->run);
   scree_json json = scree_json_start(output.stream);
   scree_json_object(&json, NULL);
-  scree_json_text(&json, "version", scree_version());
-  scree_json_text(&json, "command", entry->command_line);
+  scree_json_maker(&json, entry->command_line);
   scree_json_text(&json, "file", entry->file);
   scree_json_text(&json, "phase", scree_phase_name(scree_run_phase(entry->run)));
   json_result(&json, entry->result);

@@ -103,3 +103,16 @@ void scree_json_bool(scree_json *json, const char *key, bool value) {
   lead(json, key);
   fputs(value ? "true" : "false", json->stream);
 }
+
+void scree_json_source(scree_json *json, const char *format, scree_checksum checksum,
+                       double unit_m) {
+  char text[SCREE_CHECKSUM_TEXT];
+  scree_json_text(json, "format", format);
+  scree_json_text(json, "checksum", scree_checksum_text(checksum, text));
+  scree_json_number(json, "unit_m", unit_m);
+}
+
+void scree_json_maker(scree_json *json, const char *command_line) {
+  scree_json_text(json, "version", scree_version());
+  scree_json_text(json, "command", command_line);
+}

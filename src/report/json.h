@@ -39,4 +39,10 @@ void scree_json_number(scree_json *json, const char *key, double value);
 void scree_json_count(scree_json *json, const char *key, uint64_t value);
 void scree_json_bool(scree_json *json, const char *key, bool value);
 
+/* Fields that many files have. Of what: a file's format, checksum, and unit of length in metres. */
+void scree_json_source(scree_json *json, const char *format, scree_checksum checksum,
+                       double unit_m);
+/* By what: version and command. */
+void scree_json_maker(scree_json *json, const char *command_line);
+
 #endif

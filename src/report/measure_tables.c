@@ -136,19 +136,11 @@ static void json_field(scree_json *json, const scree_measure_entry *entry, const
   }
 }
 
-static void json_provenance(scree_json *json, const char *command_line) {
-  scree_json_text(json, "version", scree_version());
-  scree_json_text(json, "command", command_line);
-}
-
 static void json_entry(scree_json *json, const scree_measure_entry *entry,
                        const char *command_line) {
-  char checksum[SCREE_CHECKSUM_TEXT];
   scree_json_object(json, NULL);
   scree_json_text(json, "file", entry->file);
-  scree_json_text(json, "format", entry->format);
-  scree_json_text(json, "checksum", scree_checksum_text(entry->checksum, checksum));
-  scree_json_number(json, "unit_m", entry->unit_m);
+  scree_json_source(json, entry->format, entry->checksum, entry->unit_m);
   for (int i = 0; i < MEASURE_FIELDS; i++) json_field(json, entry, &measure_fields[i]);
   scree_json_object(json, "shape");
   for (int i = 0; i < SHAPE_FIELDS; i++) json_field(json, entry, &shape_fields[i]);
@@ -156,7 +148,7 @@ static void json_entry(scree_json *json, const scree_measure_entry *entry,
   scree_json_object(json, "topology");
   for (int i = 0; i < TOPOLOGY_FIELDS; i++) json_field(json, entry, &topology_fields[i]);
   scree_json_end(json);
-  json_provenance(json, command_line);
+  scree_json_maker(json, command_line);
   scree_json_end(json);
 }
 
@@ -210,7 +202,7 @@ scree_status scree_distance_json_write(const scree_distance_entry *entry, const 
   scree_json_number(&json, "hausdorff_gap", entry->options.hausdorff_gap);
   scree_json_bool(&json, "one_way", entry->options.one_way);
   scree_json_end(&json);
-  json_provenance(&json, command_line);
+  scree_json_maker(&json, command_line);
   scree_json_end(&json);
   return scree_output_commit(&output, error);
 }
@@ -238,15 +230,12 @@ static void json_row(scree_json *json, const scree_curve_row *row, bool distance
 scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *command_line,
                                     const char *path, bool overwrite, scree_error *error) {
   scree_output output;
-  char checksum[SCREE_CHECKSUM_TEXT];
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
   scree_json json = scree_json_start(output.stream);
   scree_json_object(&json, NULL);
   scree_json_text(&json, "file", entry->file);
-  scree_json_text(&json, "format", entry->format);
-  scree_json_text(&json, "checksum", scree_checksum_text(entry->checksum, checksum));
-  scree_json_number(&json, "unit_m", entry->unit_m);
+  scree_json_source(&json, entry->format, entry->checksum, entry->unit_m);
   scree_json_text(&json, "method", scree_method_name(entry->facts.method));
   scree_json_count(&json, "triangle_count", entry->facts.triangle_count);
   scree_json_number(&json, "area", entry->area);
@@ -259,7 +248,7 @@ scree_status scree_curve_json_write(const scree_curve_entry *entry, const char *
   scree_json_array(&json, "levels");
   for (size_t i = 0; i < entry->row_count; i++) json_row(&json, &entry->rows[i], entry->distances);
   scree_json_end(&json);
-  json_provenance(&json, command_line);
+  scree_json_maker(&json, command_line);
   scree_json_end(&json);
   return scree_output_commit(&output, error);
 }

@@ -70,8 +70,7 @@ void scree_export_json_provenance(scree_json *json, const scree_export_options *
   char checksum[SCREE_CHECKSUM_TEXT];
   scree_json_text(json, "file", options->source);
   scree_json_text(json, "checksum", scree_checksum_text(options->checksum, checksum));
-  scree_json_text(json, "version", scree_version());
-  scree_json_text(json, "command", options->command_line);
+  scree_json_maker(json, options->command_line);
 }
 
 static scree_status write_json(const scree_export_options *options, const scree_mesh *mesh,

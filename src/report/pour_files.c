@@ -132,8 +132,7 @@ scree_status scree_pour_json_write(const scree_pour_entry *entry, const char *pa
   if (status == SCREE_OK) {
     scree_json json = scree_json_start(output.stream);
     scree_json_object(&json, NULL);
-    scree_json_text(&json, "version", scree_version());
-    scree_json_text(&json, "command", entry->command_line);
+    scree_json_maker(&json, entry->command_line);
     json_result(&json, entry, now);
     json_options(&json, entry->pour);
     json_shapes(&json, entry, order);

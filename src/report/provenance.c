@@ -19,8 +19,7 @@ scree_status scree_provenance_write(const scree_work_start *start, const char *c
   scree_system_name(system);
   scree_processor_name(processor);
   scree_json_object(&json, NULL);
-  scree_json_text(&json, "version", scree_version());
-  scree_json_text(&json, "command", command_line);
+  scree_json_maker(&json, command_line);
   scree_json_text(&json, "started", started);
   scree_json_number(&json, "elapsed_s", scree_now() - start->elapsed);
   scree_json_number(&json, "processor_s", scree_processor_time() - start->processor);

@@ -108,8 +108,7 @@ static void write_scene(FILE *stream, const scree_scene_entry *entry, const doub
   const scree_world *world = scree_scene_view(scene);
   scree_json json = scree_json_start(stream);
   scree_json_object(&json, NULL);
-  scree_json_text(&json, "version", scree_version());
-  scree_json_text(&json, "command", entry->command_line);
+  scree_json_maker(&json, entry->command_line);
   scree_json_text(&json, "title", scree_scene_title(scene));
   scree_json_text(&json, "file", entry->file);
   scree_json_text(&json, "ended_because",

@@ -19,6 +19,12 @@ function frameOf(surface) {
   return { centre: low.map((x, k) => (x + high[k]) / 2), half, size: 2 * Math.hypot(...half) || 1 };
 }
 
+// How well so many spheres cover the body, in words.
+function coverage(body, count) {
+  const clump = body.clumps.find((c) => c.sphere_count === count);
+  return `${whole(count)} ${count === 1 ? 'sphere covers' : 'spheres cover'} it with an intersection over union of ${number(clump.iou, 3)}, on average within ${number(mm * meanOf(clump), 3)} mm`;
+}
+
 export class ClumpSection {
   constructor(host, folder) {
     this.host = host;
@@ -34,26 +40,28 @@ export class ClumpSection {
     const { bodies, host } = this;
     const [first] = bodies;
     element('h1', bodies.length > 1 ? `How many spheres do these ${bodies.length} bodies need?` : `How many spheres does ${first.name} need?`, host);
-    const told = bodies.map((body) => {
-      const clump = body.clumps.find((c) => c.sphere_count === body.recommended);
-      return `${bodies.length > 1 ? `${body.name}: ` : ''}${whole(body.recommended)} ${body.recommended === 1 ? 'sphere covers' : 'spheres cover'} it with an intersection over union of ${number(clump.iou, 3)}, on average within ${number(mm * meanOf(clump), 3)} mm`;
-    });
-    element('p', `${told.join('; ')}.`, host, { class: 'answer' });
+    for (const body of bodies) {
+      const { chosen, recommended } = body;
+      const name = bodies.length > 1 ? `${body.name}: ` : '';
+      const other = chosen === recommended ? '' : ` Recommended, of those tried: ${coverage(body, recommended)}.`;
+      element('p', `${name}${coverage(body, chosen)}.${other}`, host, { class: 'answer' });
+    }
     element('p', `Recommended: the least 1 − IoU + n/200. Mass, centre and inertia that go with a clump are the surface's own, whatever those of the spheres' union. Method: ${first.method}.`, host, { class: 'soft' });
     for (const body of bodies.filter((b) => b.wall_cells < 3))
       element('p', `${body.name}: its walls of ${number(mm * body.thickness, 3)} mm are thinner than the spheres can follow; take its mesh.`, host, { class: 'soft' });
   }
 
   tellBodies() {
-    const recommended = (body) => body.clumps.find((c) => c.sphere_count === body.recommended);
+    const chosen = (body) => body.clumps.find((c) => c.sphere_count === body.chosen);
     element('h2', 'Each body', this.host);
     table(this.host, [
       { head: 'body', value: (b) => b.name },
-      { head: 'spheres', value: (b) => b.recommended, text: (b) => whole(b.recommended) },
-      { head: 'IoU', value: (b) => recommended(b).iou, text: (b) => number(recommended(b).iou, 4) },
-      { head: 'mean distance / mm', value: (b) => mm * meanOf(recommended(b)), text: (b) => number(mm * meanOf(recommended(b)), 3) },
+      { head: 'spheres', value: (b) => b.chosen, text: (b) => whole(b.chosen) },
+      { head: 'IoU', value: (b) => chosen(b).iou, text: (b) => number(chosen(b).iou, 4) },
+      { head: 'mean distance / mm', value: (b) => mm * meanOf(chosen(b)), text: (b) => number(mm * meanOf(chosen(b)), 3) },
+      { head: 'recommended', value: (b) => b.recommended, text: (b) => whole(b.recommended) },
       { head: 'by mean distance', value: (b) => b.recommended_by_distance, text: (b) => whole(b.recommended_by_distance) },
-    ], this.bodies, 'clumps.csv', 'Bodies and the spheres recommended for each');
+    ], this.bodies, 'clumps.csv', 'Bodies and the spheres chosen for each');
   }
 
   build() {
