@@ -13,15 +13,11 @@ if(NOT SCREE_CUDA STREQUAL "OFF" AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
 endif()
 if(SCREE_WITH_CUDA)
   set(SCREE_PTX ${CMAKE_BINARY_DIR}/scree_kernels)
-  find_program(SCREE_PTXAS ptxas)
-  if(SCREE_PTXAS)
-    set(SCREE_PTX_CHECK ${SCREE_PTXAS})
-  endif()
   file(GLOB SCREE_PTX_SOURCES CONFIGURE_DEPENDS src/world/*.[ch] src/particle/*.[ch] src/base/*.[ch]
        src/world/device/*.[ch] src/world/device/include/*.h include/scree/*.h)
-  list(FILTER SCREE_PTX_SOURCES EXCLUDE REGEX "/(cuda|cuda_driver|backend|save|keep|observe|visit|broad|material)\\.c$")
+  list(FILTER SCREE_PTX_SOURCES EXCLUDE REGEX "/(cuda[a-z_]*|backend|save|keep|observe|visit|broad|material)\\.c$")
   add_custom_command(OUTPUT ${SCREE_PTX}.ptx ${SCREE_PTX}.c
-    COMMAND ${PROJECT_SOURCE_DIR}/cmake/ptx.sh ${SCREE_CLANG_NVPTX} ${SCREE_LLVM_BIN} ${SCREE_PTX} ${SCREE_PTX_CHECK}
+    COMMAND ${PROJECT_SOURCE_DIR}/cmake/ptx.sh ${SCREE_CLANG_NVPTX} ${SCREE_LLVM_BIN} ${SCREE_PTX}
     DEPENDS ${PROJECT_SOURCE_DIR}/cmake/ptx.sh ${SCREE_PTX_SOURCES} VERBATIM)
   list(APPEND SCREE_SOURCES ${SCREE_PTX}.c)
 endif()

@@ -1,13 +1,13 @@
 #!/bin/bash
 # The kernels of a step as PTX text, from the sources that the processor runs, by clang and llvm alone.
 #
-#   cmake/ptx.sh CLANG LLVM_BIN OUT [PTXAS]
+#   cmake/ptx.sh CLANG LLVM_BIN OUT
 #
-# Writes OUT.ptx, and OUT.c with it as scree_ptx. CLANG has the NVPTX target (Debian's clang-14 has). Every double operation is rounded to nearest and none
-# is contracted: the script fails where one is not, or where something is left undefined. With PTXAS the
-# text is assembled for sm_75, sm_90 and sm_120 as far as that knows them, as a check.
+# Writes OUT.ptx, and OUT.c with it as scree_ptx. CLANG has the NVPTX target (Debian's clang-14 has). Every double
+# operation is rounded to nearest and none is contracted: the script fails where one is not, or where something is
+# left undefined.
 set -euo pipefail
-clang=$1 llvm=$2 out=$3 ptxas=${4:-}
+clang=$1 llvm=$2 out=$3
 root=$(cd "$(dirname "$0")/.." && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
@@ -41,12 +41,6 @@ sed -e 's/[[:space:]]*\/\/.*$//' -e '/^[[:space:]]*$/d' "$work/raw.ptx" >"$work/
 if grep -nE '\bfma\b|\b(add|sub|mul|div|sqrt|rcp)\.(f64|f32|approx|full|ftz)|^\.extern' "$work/out.ptx" | head -5 | grep .; then
   echo "ptx.sh: the lines above are contracted, not rounded to nearest, or undefined" >&2
   exit 1
-fi
-if [ -n "$ptxas" ]; then
-  for target in sm_75 sm_90 sm_120; do
-    "$ptxas" --list-arch 2>/dev/null | grep -qx "$target" || "$ptxas" -h | grep -q "$target" || continue
-    "$ptxas" -arch=$target "$work/out.ptx" -o /dev/null
-  done
 fi
 {
   echo '/* Made by cmake/ptx.sh. */'

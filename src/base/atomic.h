@@ -24,6 +24,18 @@ static inline void scree_atomic_or(uint32_t *at, uint32_t bits) {
 #endif
 }
 
+/* The smaller of the two stays. */
+static inline void scree_atomic_lower(uint32_t *at, uint32_t value) {
+#ifdef __NVPTX__
+  __nvvm_atom_min_gen_ui(at, value);
+#else
+  uint32_t old = __atomic_load_n(at, __ATOMIC_RELAXED);
+  while (old > value &&
+         !__atomic_compare_exchange_n(at, &old, value, 1, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+#endif
+}
+
 /* The larger of the two stays. */
 static inline void scree_atomic_raise(uint64_t *at, uint64_t value) {
 #ifdef __NVPTX__

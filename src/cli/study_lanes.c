@@ -12,7 +12,6 @@ typedef struct lane {
   scree_study_options options;
   scree_status status;
   scree_error error;
-  size_t completed;
 } lane;
 
 /* Of all lanes' runs one shows how far it is. */
@@ -37,19 +36,24 @@ static void work_in_lane(void *context, size_t begin, size_t end, size_t block, 
   l->status = scree_study_read(l->call->inputs[0], &study, &l->error);
   if (!l->status) l->status = scree_study_open(study, l->folder, &l->error);
   if (!l->status) l->status = scree_study_prepare(study, &l->options, &progress, &l->error);
-  if (!l->status)
-    l->status = scree_study_work(study, &l->options, &progress, &l->completed, &l->error);
+  if (!l->status) l->status = scree_study_work(study, &l->options, &progress, NULL, &l->error);
   scree_study_free(study);
 }
 
-/* A lane whose run found no room on the device leaves it to the others, if one of them did any. */
+/* A lane whose run found no room on the device has left it to the others: one of them must have
+ * come to the end. */
 static int conclude(const lane *lanes, size_t count) {
-  size_t completed = 0;
-  for (size_t i = 0; i < count; i++) completed += lanes[i].completed;
-  for (size_t i = 0; i < count; i++)
-    if (lanes[i].status && (lanes[i].status != SCREE_OUT_OF_MEMORY || completed == 0))
+  const lane *crowded = NULL;
+  size_t good = 0;
+  for (size_t i = 0; i < count; i++) {
+    if (lanes[i].status == SCREE_OUT_OF_MEMORY)
+      crowded = &lanes[i];
+    else if (lanes[i].status)
       return cli_fail(&lanes[i].error);
-  return 0;
+    else
+      good++;
+  }
+  return crowded && good == 0 ? cli_fail(&crowded->error) : 0;
 }
 
 int study_run_lanes(const cli_call *call, const scree_study_options *options, const char *folder,

@@ -1,8 +1,8 @@
 /* Working on runs. A run is taken by its lease, worked on from its last checkpoint, and ends with a
  * record. What is the run's fault (its shapes, its numbers, a run that diverges) is recorded and
- * the next run taken; what is the machine's (no memory, no disk) ends the work and leaves the run
- * to others. A run in which several workers died one after the other is a failed one: whatever
- * kills them is in it. */
+ * the next run taken; what is the machine's (no memory, no disk, no device) ends the work and
+ * leaves the run to others. A run in which several workers died one after the other is a failed
+ * one: whatever kills them is in it. */
 #include "base/file.h"
 #include "base/number.h"
 #include "base/platform.h"
@@ -175,7 +175,8 @@ static scree_status make_and_simulate(work *w, scree_study_record *record, scree
 
 /* What says that another run would fare no better here. */
 static bool is_machines_fault(scree_status status) {
-  return status == SCREE_IO || status == SCREE_OUT_OF_MEMORY || status == SCREE_CANCELLED;
+  return status == SCREE_IO || status == SCREE_OUT_OF_MEMORY || status == SCREE_CANCELLED ||
+         status == SCREE_NO_BACKEND; /* a device that is lost */
 }
 
 static scree_status write_record(const work *w, const scree_study_record *record,

@@ -109,8 +109,8 @@ static void begin_steps(struct scree_device_world *d, size_t wanted) {
   h->awake_count = h->depth_job_count = h->resume = 0;
   h->depths_used = 0;
   h->offender = scree_none;
-  h->trouble = scree_no_trouble;
-  h->largest_overlap = h->partings = h->list_builds = h->evaluations = 0;
+  h->tally = (scree_tally){.trouble = scree_no_trouble};
+  h->list_builds = h->evaluations = 0;
 }
 
 /* What was not done of a step that has begun goes on. */
@@ -136,7 +136,7 @@ static scree_status note_fallen(scree_world *w) {
 
 static scree_status finish(scree_world *w) {
   const scree_device_step *h = &w->on_device->header;
-  const scree_trouble *t = &h->trouble;
+  const scree_trouble *t = &h->tally.trouble;
   if (!scree_is_trouble(t) && h->offender == scree_none) return SCREE_OK;
   scree_status status = scree_cuda_fetch(w, w->on_device, SCREE_ALL_PARTS, &w->failure);
   if (status) return status;
@@ -147,7 +147,7 @@ static scree_status finish(scree_world *w) {
 static void count_steps(scree_world *w, const scree_device_step *h, double started) {
   for (uint64_t i = 0; i < h->done; i++) w->time += w->time_step;
   w->step_count += h->done;
-  w->parting_count += h->partings;
+  w->parting_count += h->tally.partings;
   if (h->done) w->largest_overlap = h->last_overlap;
   w->timings.contacts += scree_now() - started;
   w->timings.total += scree_now() - started;

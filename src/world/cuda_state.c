@@ -2,6 +2,7 @@
  * newer there are parked in the meantime. */
 #include "world/cuda_state.h"
 #include "world/broad.h"
+#include "world/checkpoint.h"
 
 #include "base/alloc.h"
 
@@ -493,6 +494,7 @@ void scree_cuda_lose(scree_world *w) {
   w->on_device->changed = 0;
   w->neighbours.count = w->wall_pairs.count = 0;
   w->diverged = true;
+  scree_world_write_kept(w);
 }
 
 /* What steps change of the struct itself. */

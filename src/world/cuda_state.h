@@ -67,7 +67,7 @@ scree_status scree_cuda_send_changed(scree_world *w, struct scree_device_world *
 /* From now on all is newer there: the world's pointers to it become NULL. */
 void scree_cuda_part_with(scree_world *w, struct scree_device_world *d);
 /* Parts come back, as they are there. On failure the state is lost: what is here can be looked at,
- * without the neighbours; it is stepped no more. */
+ * without the neighbours; it is stepped no more. A state that was kept (keep.c) is written. */
 scree_status scree_cuda_fetch(scree_world *w, struct scree_device_world *d, unsigned parts,
                               scree_error *error);
 void scree_cuda_lose(scree_world *w);

@@ -1,6 +1,7 @@
 /* The last good state of a run that fails: a checkpoint in memory, made anew every so many steps
- * and written when a step leaves the model's range. It is older than the failure, since the failing
- * step has already changed the contacts' memory; being exact, it leads there again. */
+ * and written when a step leaves the model's range, finds no memory or loses its device. It is
+ * older than the failure, since the failing step has already changed the contacts' memory; being
+ * exact, it leads there again. */
 #include "world/checkpoint.h"
 
 #include "base/alloc.h"
@@ -53,8 +54,7 @@ scree_status scree_world_keep_state(scree_world *world, scree_error *error) {
 }
 
 void scree_world_write_kept(scree_world *world) {
-  const scree_status why = world->failure.status;
-  if (!world->kept.bytes || (why != SCREE_DIVERGED && why != SCREE_NO_BACKEND)) return;
+  if (!world->kept.bytes) return;
   scree_error error;
   char *message = world->failure.message;
   size_t used = strlen(message), left = sizeof world->failure.message - used;
@@ -64,4 +64,6 @@ void scree_world_write_kept(scree_world *world) {
              (unsigned long long)world->kept.step, world->kept.path);
   else
     snprintf(message + used, left, "; its checkpoint could not be written: %.300s", error.message);
+  scree_free(world->kept.bytes); /* once */
+  world->kept.bytes = NULL;
 }

@@ -15,6 +15,11 @@ uint32_t scree_pair_at(scree_world *world, uint32_t k);
 /* After its evaluation: whether the pair is given back. */
 bool scree_settle_pair(scree_world *world, const scree_pair *pair);
 void scree_book(scree_booked *booked, const scree_pair_work *work);
+/* Pairs may be noted in any order, and several at once. How deep the first pair that overlaps from
+ * the start does is left to the caller. */
+void scree_note_pair(scree_tally *tally, const scree_pair *pair, const scree_pair_work *work);
+/* 0 where none overlaps. */
+double scree_largest_overlap(const scree_tally *tally);
 
 static const scree_trouble scree_no_trouble = {scree_none, scree_none, scree_none, 0};
 static inline bool scree_is_trouble(const scree_trouble *trouble) {

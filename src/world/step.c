@@ -12,6 +12,7 @@
 
 #include "base/alloc.h"
 #include "base/array.h"
+#include "base/atomic.h"
 #include "base/parallel.h"
 #include "base/progress.h"
 
@@ -97,20 +98,22 @@ void scree_book(scree_booked *booked, const scree_pair_work *work) {
   booked->wall += work->wall;
 }
 
-/* The neighbours of a part come in their order. */
-static void note_work(scree_pair_progress *part, const scree_pair_work *work,
-                      const scree_pair *pair) {
+void scree_note_pair(scree_tally *tally, const scree_pair *pair, const scree_pair_work *work) {
   uint32_t k = pair->neighbours;
-  scree_trouble *trouble = &part->trouble;
-  if (work->beyond_limit && trouble->beyond_limit == scree_none) trouble->beyond_limit = k;
-  if (work->too_fast && trouble->too_fast == scree_none) trouble->too_fast = k;
-  if (work->start_depth > 0 && trouble->start == scree_none) {
-    trouble->start = k;
-    trouble->start_depth = work->start_depth;
-  }
-  if (pair->touching && !(pair->overlap <= part->largest_overlap))
-    part->largest_overlap = pair->overlap;
-  part->partings += work->begins_parting;
+  if (work->beyond_limit) scree_atomic_lower(&tally->trouble.beyond_limit, k);
+  if (work->too_fast) scree_atomic_lower(&tally->trouble.too_fast, k);
+  if (work->start_depth > 0) scree_atomic_lower(&tally->trouble.start, k);
+  if (work->begins_parting) scree_atomic_add(&tally->partings, 1);
+  if (!pair->touching) return;
+  uint64_t bits;
+  memcpy(&bits, &pair->overlap, sizeof bits);
+  scree_atomic_raise(&tally->largest_overlap, bits);
+}
+
+double scree_largest_overlap(const scree_tally *tally) {
+  double overlap;
+  memcpy(&overlap, &tally->largest_overlap, sizeof overlap);
+  return overlap;
 }
 
 uint32_t scree_pair_at(scree_world *world, uint32_t k) {
@@ -144,7 +147,8 @@ static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *s
   scree_take_in_hand(scratch, &world->pools, pair, &world->neighbours.items[k]);
   if (!scree_pair_evaluate(world, pair, scratch)) return false;
   scree_book(&world->ledger.items[k], &scratch->work);
-  note_work(part, &scratch->work, pair);
+  scree_note_pair(&part->tally, pair, &scratch->work);
+  if (part->tally.trouble.start == k) part->tally.trouble.start_depth = scratch->work.start_depth;
   return true;
 }
 
@@ -161,7 +165,7 @@ static void begin_blocks(scree_world *world, size_t begin, size_t end,
                          scree_pair_progress *progress) {
   uint32_t *awake = &world->awake.items[begin];
   *progress = (scree_pair_progress){.awake = (uint32_t)list_awake(world, begin, end, awake),
-                                    .trouble = scree_no_trouble};
+                                    .tally = {.trouble = scree_no_trouble}};
   for (size_t k = 0; k < PAIRS_AHEAD && k < progress->awake; k++) fetch_pair(world, awake[k]);
 }
 
@@ -233,9 +237,9 @@ static scree_status evaluate_pairs(scree_world *world) {
     const scree_pair_progress *part = &world->progress.items[p];
     for (uint32_t i = 0; i < part->given; i++)
       scree_pair_give_back(world, world->awake.items[p * size + i]);
-    world->largest_overlap = scree_max(world->largest_overlap, part->largest_overlap);
-    world->parting_count += part->partings;
-    add_trouble(&trouble, &part->trouble);
+    world->largest_overlap = scree_max(world->largest_overlap, scree_largest_overlap(&part->tally));
+    world->parting_count += part->tally.partings;
+    add_trouble(&trouble, &part->tally.trouble);
   }
   return scree_is_trouble(&trouble) ? scree_describe_trouble(world, &trouble) : SCREE_OK;
 }

@@ -265,13 +265,18 @@ typedef struct scree_trouble {
   double start_depth; /* how deep those lie in each other from the start, m */
 } scree_trouble;
 
+/* What is noted of the pairs of a step. */
+typedef struct scree_tally {
+  scree_trouble trouble;
+  uint64_t largest_overlap; /* the bits of the number, which is not negative, m */
+  uint32_t partings;        /* begun */
+} scree_tally;
+
 /* How far some blocks of the neighbours have come in a step. */
 typedef struct scree_pair_progress {
   uint32_t awake, done; /* of those that are awake */
   uint32_t given;       /* pairs that fell asleep */
-  scree_trouble trouble;
-  double largest_overlap;
-  uint64_t partings; /* begun */
+  scree_tally tally;
 } scree_pair_progress;
 
 /* What the step reads of all neighbours, in their order. */

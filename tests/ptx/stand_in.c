@@ -2,10 +2,10 @@
  * translated to C (ptx_to_c.py), and run on the processor, one thread after another. Memory of the
  * device is memory. SCREE_STAND_IN_ORDER is the order of a launch's threads: forward, reverse or
  * shuffled; SCREE_STAND_IN_MEMORY the device's bytes; SCREE_STAND_IN_LOST=N loses the device at the
- * Nth launch. With SCREE_STAND_IN_RACES=1 every plain access of a thread to the device's memory is
- * noted: where of two threads of one launch one writes what the other reads or writes, the program
- * ends with a message. With SCREE_STAND_IN_COUNTS=1 it says at the end what was written and read.
- */
+ * Nth launch. Tests may also set stand_in_lost and stand_in_full. With SCREE_STAND_IN_RACES=1 every
+ * plain access of a thread to the device's memory is noted: where of two threads of one launch one
+ * writes what the other reads or writes, the program ends with a message. With
+ * SCREE_STAND_IN_COUNTS=1 it says at the end what was written and read. */
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -22,8 +22,9 @@ extern _Thread_local uint32_t thread_index, block_index, block_size, block_count
 extern const char translated_ptx[]; /* what the kernels were translated from */
 
 enum { INVALID_VALUE = 1, OUT_OF_MEMORY = 2, INVALID_PTX = 218, NOT_FOUND = 500, LOST = 719 };
-static _Atomic size_t used;
-static unsigned long launches;
+static _Atomic size_t used, peak;
+static _Atomic unsigned long launches, refused;
+int stand_in_lost, stand_in_full; /* every call fails; there is no more memory */
 int watching;
 void note_access(const void *at, uint64_t size, int is_write);
 
@@ -33,11 +34,13 @@ static size_t setting(const char *name, size_t otherwise) {
 }
 
 /* Bytes to the device and back. */
-unsigned long long stand_in_written, stand_in_read;
+_Atomic unsigned long long stand_in_written, stand_in_read;
 
 static void tell_counts(void) {
-  fprintf(stderr, "stand-in: %llu bytes written, %llu read, %lu launches\n", stand_in_written,
-          stand_in_read, launches);
+  fprintf(stderr,
+          "stand-in: %llu bytes written, %llu read, %lu launches, %zu bytes in use at most, %lu "
+          "times too little memory\n",
+          stand_in_written, stand_in_read, launches, peak, refused);
 }
 
 int cuInit(unsigned flags) {
@@ -162,12 +165,17 @@ void note_access(const void *at, uint64_t size, int is_write) {
 /* The size of a block lies before it. */
 int cuMemAlloc_v2(unsigned long long *address, size_t size) {
   size_t most = setting("SCREE_STAND_IN_MEMORY", (size_t)8 << 30);
-  char *block =
-      size && used + size <= most ? aligned_alloc(256, (size + 511) & ~(size_t)255) : NULL;
-  if (!block) return OUT_OF_MEMORY;
+  bool fits = size && !stand_in_full && used + size <= most;
+  if (stand_in_lost) return LOST;
+  char *block = fits ? aligned_alloc(256, (size + 511) & ~(size_t)255) : NULL;
+  if (!block) {
+    refused++;
+    return OUT_OF_MEMORY;
+  }
   memcpy(block, &size, sizeof size);
   memset(block + 256, 0xA5, size);
   used += size;
+  if (used > peak) peak = used;
   watching = setting("SCREE_STAND_IN_RACES", 0) != 0;
   if (watching) watch_block(block + 256, size);
   *address = (uintptr_t)(block + 256);
@@ -192,16 +200,18 @@ int cuStreamDestroy_v2(void *stream) {
   return stream ? 0 : INVALID_VALUE;
 }
 int cuStreamSynchronize(void *stream) {
-  return stream ? 0 : INVALID_VALUE;
+  return stand_in_lost ? LOST : stream ? 0 : INVALID_VALUE;
 }
 int cuMemcpyHtoDAsync_v2(unsigned long long to, const void *from, size_t size, void *stream) {
   if (!stream) return INVALID_VALUE;
+  if (stand_in_lost) return LOST;
   memcpy((void *)(uintptr_t)to, from, size);
   stand_in_written += size;
   return 0;
 }
 int cuMemcpyDtoHAsync_v2(void *to, unsigned long long from, size_t size, void *stream) {
   if (!stream) return INVALID_VALUE;
+  if (stand_in_lost) return LOST;
   memcpy(to, (const void *)(uintptr_t)from, size);
   stand_in_read += size;
   return 0;
@@ -209,6 +219,7 @@ int cuMemcpyDtoHAsync_v2(void *to, unsigned long long from, size_t size, void *s
 
 int cuMemsetD8Async(unsigned long long at, unsigned char value, size_t size, void *stream) {
   (void)stream;
+  if (stand_in_lost) return LOST;
   memset((void *)(uintptr_t)at, value, size);
   return 0;
 }
@@ -232,7 +243,8 @@ int cuLaunchKernel(void *function, unsigned grid_x, unsigned grid_y, unsigned gr
                    void *stream, void **arguments, void **extra) {
   (void)stream, (void)extra;
   if (grid_z * block_y * block_z != 1 || shared) return INVALID_VALUE;
-  if (++launches == setting("SCREE_STAND_IN_LOST", 0)) return LOST;
+  if (++launches == setting("SCREE_STAND_IN_LOST", 0)) stand_in_lost = 1;
+  if (stand_in_lost) return LOST;
   const char *order = getenv("SCREE_STAND_IN_ORDER");
   bool reverse = order && strcmp(order, "reverse") == 0,
        shuffle = order && strcmp(order, "shuffled") == 0;

@@ -356,45 +356,6 @@ static void files(void **state) {
   scree_world_free(loaded);
 }
 
-/* A ball too fast for its floor: the run stops, and leaves a state from before which it stops in
- * the same way again. */
-static void a_failing_run_leaves_its_last_good_state(void **state) {
-  (void)state;
-  char path[] = "/tmp/scree-kept-XXXXXX";
-  scree_error error, again;
-  close(mkstemp(path));
-  scree_world *world = NULL, *loaded = NULL;
-  scree_particle *ball = NULL;
-  scree_material material = scree_default_material();
-  scree_wall floor = {.kind = SCREE_WALL_PLANE, .axis = {0, 0, 1}};
-  scree_body body = scree_default_body();
-  body.position[2] = 0.1;
-  body.velocity[2] = -60;
-  CHECK_OK(scree_world_create(NULL, &world, &error), error);
-  CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
-  CHECK_OK(scree_world_add_wall(world, &floor, NULL, &error), error);
-  CHECK_OK(scree_particle_sphere(0.02, &ball, &error), error);
-  CHECK_OK(scree_world_add_body(world, ball, 0, &body, NULL, &error), error);
-  assert_int_equal(scree_world_keep(world, path, 0, &error), SCREE_BAD_ARGUMENT);
-  CHECK_OK(scree_world_keep(world, path, 50, &error), error);
-  assert_int_equal(scree_world_step(world, 100000, &error), SCREE_DIVERGED);
-  assert_non_null(strstr(error.message, "overlaps wall 0"));
-  assert_non_null(strstr(error.message, path));
-  CHECK_OK(scree_world_load(path, &loaded, &error), error);
-  uint64_t steps = scree_world_step_count(world), kept = scree_world_step_count(loaded);
-  assert_true(kept % 50 == 0 && kept <= steps && kept + 50 > steps);
-  step(loaded, (size_t)(steps - kept)); /* good to here */
-  assert_int_equal(scree_world_step(loaded, 1, &again), SCREE_DIVERGED);
-  scree_world_step(world, 1, &error);
-  *strchr(error.message, ';') = 0;
-  if (strchr(again.message, ';')) *strchr(again.message, ';') = 0;
-  assert_string_equal(error.message, again.message);
-  scree_world_free(world);
-  scree_world_free(loaded);
-  scree_particle_free(ball);
-  unlink(path);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(continues_linear),
@@ -408,7 +369,6 @@ int main(void) {
       cmocka_unit_test(refuses_clumps_that_cannot_be),
       cmocka_unit_test(survives_forgery),
       cmocka_unit_test(files),
-      cmocka_unit_test(a_failing_run_leaves_its_last_good_state),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }

@@ -48,17 +48,16 @@ typedef struct scree_device_step {
 
   uint32_t awake_count, due_count, depth_job_count; /* in this step */
   uint32_t visit_counts[SCREE_VISIT_KINDS];
-  uint32_t stop;            /* no further step before the host has looked */
-  uint32_t resume;          /* the step has begun, and is gone on with */
-  uint32_t too_small;       /* some pair found too little room in the pools */
-  uint32_t again;           /* there were more lists to be made than places for them */
-  uint32_t stale;           /* the neighbours hold no longer */
-  uint32_t fallen;          /* some body was below the floor, and is removed */
-  uint32_t offender;        /* first body that would move too far, or scree_none */
-  scree_trouble trouble;    /* of pairs */
-  uint64_t largest_overlap; /* the bits of the number, which is not negative */
-  double last_overlap;      /* of the last step that is done */
-  uint64_t partings, list_builds, evaluations;
+  uint32_t stop;       /* no further step before the host has looked */
+  uint32_t resume;     /* the step has begun, and is gone on with */
+  uint32_t too_small;  /* some pair found too little room in the pools */
+  uint32_t again;      /* there were more lists to be made than places for them */
+  uint32_t stale;      /* the neighbours hold no longer */
+  uint32_t fallen;     /* some body was below the floor, and is removed */
+  uint32_t offender;   /* first body that would move too far, or scree_none */
+  scree_tally tally;   /* of pairs: of this step; partings of all */
+  double last_overlap; /* of the last step that is done */
+  uint64_t list_builds, evaluations;
   uint64_t done, wanted; /* steps */
 } scree_device_step;
 

@@ -42,9 +42,6 @@ double scree_now(void) {
 static void raise_flag(uint32_t *flag) {
   __nvvm_atom_max_gen_ui(flag, 1);
 }
-static void lower_to(uint32_t *first, uint32_t index) {
-  __nvvm_atom_min_gen_ui(first, index);
-}
 
 /* Some pairs are not ready. No kernel asks for what it may itself find: other threads of it may
  * have, sooner or later. */
@@ -53,7 +50,7 @@ static bool pairs_wait(const scree_device_step *step) {
 }
 /* Or something is wrong with some. */
 static bool bodies_wait(const scree_device_step *step) {
-  return pairs_wait(step) || scree_is_trouble(&step->trouble);
+  return pairs_wait(step) || scree_is_trouble(&step->tally.trouble);
 }
 /* Or with some body. */
 static bool is_held(const scree_device_step *step) {
@@ -284,20 +281,6 @@ static void gather_touches(const scree_device_step *step, const scree_pair *pair
   hand->touches.count = count;
 }
 
-static void note_work(scree_device_step *step, const scree_pair *pair,
-                      const scree_pair_work *work) {
-  uint32_t k = pair->neighbours;
-  if (work->beyond_limit) lower_to(&step->trouble.beyond_limit, k);
-  if (work->too_fast) lower_to(&step->trouble.too_fast, k);
-  if (work->start_depth > 0) lower_to(&step->trouble.start, k);
-  if (work->begins_parting) scree_fetch_add(&step->partings, 1, 0);
-  if (!pair->touching) return;
-  uint64_t bits;
-  double overlap = pair->overlap;
-  __builtin_memcpy(&bits, &overlap, sizeof bits);
-  scree_atomic_raise(&step->largest_overlap, bits);
-}
-
 /* Where there is room many threads look for the depths; else this one. */
 static void ask_for_depths(scree_world *world, scree_device_step *step, scree_pair *pair,
                            size_t place) {
@@ -351,7 +334,7 @@ static void do_press(scree_world *world, scree_device_step *step) {
     scree_pair_press(world, pair, hand);
     scree_pair_leave(world, pair, hand);
     scree_book(&world->ledger.items[k], &hand->work);
-    note_work(step, pair, &hand->work);
+    scree_note_pair(&step->tally, pair, &hand->work);
     if (scree_settle_pair(world, pair)) scree_pair_give_back(world, index);
   }
 }
@@ -362,7 +345,7 @@ static void do_gather(scree_world *world, scree_device_step *step) {
   if (bodies_wait(step)) return;
   FOR_EACH (i, world->bodies.count)
     if (!world->bodies.removed[i] && !scree_gather_body(world, i))
-      lower_to(&step->offender, (uint32_t)i);
+      scree_atomic_lower(&step->offender, (uint32_t)i);
 }
 
 static void advance_body(scree_world *world, scree_device_step *step, size_t i) {
@@ -390,23 +373,23 @@ static void do_advance(scree_world *world, scree_device_step *step) {
 /* How deep the pair that overlaps from the start does. */
 static void find_start(const scree_world *world, scree_device_step *step) {
   for (uint32_t place = 0; place < step->awake_count; place++)
-    if (world->awake.items[place] == step->trouble.start)
-      step->trouble.start_depth = step->hands[place].work.start_depth;
+    if (world->awake.items[place] == step->tally.trouble.start)
+      step->tally.trouble.start_depth = step->hands[place].work.start_depth;
 }
 
 static void do_end(scree_world *world, scree_device_step *step) {
   if (FIRST_ELEMENT > 0 || step->stop) return;
   step->stop = is_held(step);
   if (step->stop) {
-    if (step->trouble.start != scree_none) find_start(world, step);
+    if (step->tally.trouble.start != scree_none) find_start(world, step);
     return;
   }
   world->time += world->time_step;
-  __builtin_memcpy(&step->last_overlap, &step->largest_overlap, sizeof step->last_overlap);
+  step->last_overlap = scree_largest_overlap(&step->tally);
   scree_fetch_and(&world->pools.touches_used, 0, 0);
   step->evaluations += step->awake_count;
   step->list_builds += step->due_count;
-  step->largest_overlap = 0;
+  step->tally.largest_overlap = 0;
   step->resume = step->awake_count = step->due_count = step->depth_job_count = 0;
   step->depths_used = 0;
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++) step->visit_counts[kind] = 0;
