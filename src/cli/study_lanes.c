@@ -40,22 +40,22 @@ static void work_in_lane(void *context, size_t begin, size_t end, size_t block, 
   scree_study_free(study);
 }
 
-/* A lane whose run found no room on the device has left it to the others: one of them must have
- * come to the end. */
-static int conclude(const lane *lanes, size_t count) {
-  const lane *crowded = NULL;
-  size_t good = 0;
-  for (size_t i = 0; i < count; i++) {
-    if (lanes[i].status == SCREE_OUT_OF_MEMORY)
-      crowded = &lanes[i];
-    else if (lanes[i].status)
-      return cli_fail(&lanes[i].error);
-    else
-      good++;
-  }
-  return crowded && good == 0 ? cli_fail(&crowded->error) : 0;
+/* A lane whose run finds no room on the device leaves it to the others: whether there were any. */
+static bool all_crowded(const lane *lanes, size_t count) {
+  size_t crowded = 0;
+  for (size_t i = 0; i < count; i++) crowded += lanes[i].status == SCREE_OUT_OF_MEMORY;
+  return crowded == count;
 }
 
+static int conclude(const lane *lanes, size_t count) {
+  const bool alone = all_crowded(lanes, count);
+  for (size_t i = 0; i < count; i++)
+    if (lanes[i].status && (alone || lanes[i].status != SCREE_OUT_OF_MEMORY))
+      return cli_fail(&lanes[i].error);
+  return 0;
+}
+
+/* Lanes that leave no room to each other are too many. */
 int study_run_lanes(const cli_call *call, const scree_study_options *options, const char *folder,
                     size_t count) {
   lane *lanes = calloc(count, sizeof *lanes);
@@ -63,10 +63,13 @@ int study_run_lanes(const cli_call *call, const scree_study_options *options, co
     fprintf(stderr, "scree: out of memory\n");
     return 1;
   }
-  for (size_t i = 0; i < count; i++)
-    lanes[i] = (lane){.call = call, .folder = folder, .options = *options};
-  scree_set_threads((int)count);
-  scree_parallel_for(count, 1, work_in_lane, lanes);
+  for (bool again = true; again; count = again ? count / 2 : count) {
+    for (size_t i = 0; i < count; i++)
+      lanes[i] = (lane){.call = call, .folder = folder, .options = *options};
+    scree_set_threads((int)count);
+    scree_parallel_for(count, 1, work_in_lane, lanes);
+    again = count > 1 && all_crowded(lanes, count);
+  }
   int code = conclude(lanes, count);
   free(lanes);
   return code;
