@@ -225,19 +225,42 @@ bool scree_is_inside(const scree_particle *particle, vec3 p) {
   return turns > 0;
 }
 
-double scree_ray_depth(const scree_particle *particle, vec3 p, vec3 direction, size_t skip_face) {
-  double best = INFINITY;
-  for (size_t f = 0; f < particle->face_count; f++) {
-    const scree_face *face = &particle->faces[f];
-    double slope = vec3_dot(face->normal, direction);
-    if (f == skip_face || slope < 0.8) continue; /* only walls that stand across */
-    double s = vec3_dot(vec3_sub(face->corner, p), face->normal) / slope;
-    if (!(s > 0 && s < best)) continue;
-    vec3 hit = vec3_mad(p, direction, s), w = vec3_sub(hit, face->corner);
-    double d1 = vec3_dot(w, face->along1), d2 = vec3_dot(w, face->along2);
-    double u = (face->d22 * d1 - face->d12 * d2) * face->inverse,
-           v = (face->d11 * d2 - face->d12 * d1) * face->inverse;
-    if (u >= 0 && v >= 0 && u + v <= 1) best = s;
+/* Where the way passes through a face's plane within its borders; else INFINITY. */
+static double passage_of(const scree_face *face, const scree_way *way, double slope) {
+  const double slack = 1e-12; /* so that no way slips through between two faces */
+  double s = vec3_dot(vec3_sub(face->corner, way->start), face->normal) / slope;
+  if (!(s > way->after && s <= way->before)) return INFINITY;
+  vec3 w = vec3_sub(vec3_mad(way->start, way->along, s), face->corner);
+  double d1 = vec3_dot(w, face->along1), d2 = vec3_dot(w, face->along2);
+  double u = (face->d22 * d1 - face->d12 * d2) * face->inverse,
+         v = (face->d11 * d2 - face->d12 * d1) * face->inverse;
+  return u >= -slack && v >= -slack && u + v <= 1 + slack ? s : INFINITY;
+}
+
+double scree_next_passage(const scree_particle *particle, const scree_way *way, double least,
+                          size_t skip, uint32_t *face) {
+  const scree_tree *tree = &particle->face_tree;
+  double next = INFINITY, slack = 1e-12 * particle->measures.bounding_radius;
+  uint32_t stack[SCREE_TREE_STACK];
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+    const scree_box box = scree_box_grown(node->box, slack);
+    double from = way->after, to = scree_smaller(way->before, next);
+    if (!scree_box_cut(&box, way->start, way->along, &from, &to)) continue;
+    for (uint32_t k = 0; k < node->count; k++) {
+      uint32_t f = tree->order[node->first + k];
+      double slope = vec3_dot(particle->faces[f].normal, way->along);
+      if (f == skip || slope == 0 || (least > 0 && slope < least)) continue;
+      double s = passage_of(&particle->faces[f], way, slope);
+      if (s >= next) continue;
+      next = s;
+      *face = f;
+    }
+    if (node->count) continue;
+    stack[depth++] = node->first + 1;
+    stack[depth++] = node->first;
   }
-  return best;
+  return next;
 }

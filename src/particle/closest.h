@@ -84,7 +84,15 @@ bool scree_is_near(const scree_particle *particle, vec3 p, double reach);
  * Exact but for points within rounding of the surface, which may be either. */
 bool scree_is_inside(const scree_particle *particle, vec3 p);
 
-/* Least distance from p against direction to a face met from behind; INFINITY for none. */
-double scree_ray_depth(const scree_particle *particle, vec3 p, vec3 direction, size_t skip_face);
+/* A straight way start + s along, `along` a unit vector, for s in (after, before]. */
+typedef struct scree_way {
+  vec3 start, along;
+  double after, before;
+} scree_way;
+
+/* Where the way next passes through a face whose normal has a dot product of at least `least` with
+ * `along`, or with its opposite where `least` is 0, other than `skip`; INFINITY for none. */
+double scree_next_passage(const scree_particle *particle, const scree_way *way, double least,
+                          size_t skip, uint32_t *face);
 
 #endif

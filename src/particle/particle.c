@@ -40,6 +40,9 @@ static void drop_features(scree_particle *p) {
   scree_free(p->point_radii);
   scree_free(p->edges);
   scree_free(p->core);
+  scree_tree_free(&p->face_tree);
+  scree_tree_free(&p->edge_tree);
+  scree_tree_free(&p->point_tree);
   p->faces = NULL, p->face_signs = NULL, p->points = NULL, p->point_radii = NULL;
   p->edges = NULL, p->core = NULL, p->point_count = p->edge_count = 0;
 }
@@ -48,9 +51,6 @@ void scree_particle_free(scree_particle *p) {
   if (!p || atomic_fetch_sub(&p->reference_count, 1) > 1) return;
   scree_mesh_free(&p->mesh);
   drop_features(p);
-  scree_tree_free(&p->face_tree);
-  scree_tree_free(&p->edge_tree);
-  scree_tree_free(&p->point_tree);
   scree_free(p);
 }
 
@@ -106,24 +106,26 @@ static int compare_walls(const void *a, const void *b) {
   return x->depth < y->depth ? -1 : x->depth > y->depth;
 }
 
+static const double least_across = 0.8; /* cosine, of walls that count as facing away */
+
 /* Distance through the solid from a face's middle against its normal, to a wall that faces away:
- * the depth that 1 % of the surface stays below (single rays graze corners and notches). About a
- * thousand faces are tried at most, evenly chosen: the cost is the square of the count. */
+ * the depth that 1 % of the surface stays below (single rays graze corners and notches). */
 static scree_status measure_thickness(scree_particle *p, scree_error *error) {
-  size_t stride = p->face_count / 1000 + 1, count = 0;
   wall_sample *walls = scree_alloc(p->face_count, sizeof *walls);
   if (!walls) return scree_fail_memory(error, p->face_count * sizeof *walls, "wall depths");
   double total = 0, below = 0;
-  for (size_t f = 0; f < p->face_count; f += stride) {
+  for (size_t f = 0; f < p->face_count; f++) {
     const scree_face *face = &p->faces[f];
     vec3 middle = vec3_mad(face->corner, vec3_add(face->along1, face->along2), 1.0 / 3);
-    double area = 0.5 / sqrt(face->inverse);
-    walls[count++] = (wall_sample){scree_ray_depth(p, middle, vec3_neg(face->normal), f), area};
-    total += area;
+    const scree_way inwards = {middle, vec3_neg(face->normal), 0, INFINITY};
+    uint32_t across;
+    walls[f] = (wall_sample){scree_next_passage(p, &inwards, least_across, f, &across),
+                             0.5 / sqrt(face->inverse)};
+    total += walls[f].area;
   }
-  qsort(walls, count, sizeof *walls, compare_walls);
+  qsort(walls, p->face_count, sizeof *walls, compare_walls);
   size_t k = 0;
-  while (k + 1 < count && (below += walls[k].area) < 0.01 * total) k++;
+  while (k + 1 < p->face_count && (below += walls[k].area) < 0.01 * total) k++;
   p->measures.thickness = walls[k].depth;
   scree_free(walls);
   return SCREE_OK;
@@ -135,8 +137,10 @@ static void set_counts(scree_particle *p) {
   p->measures.edge_count = p->edge_count;
 }
 
-static scree_status finish_mesh(scree_particle *p, scree_error *error) {
-  scree_status status = scree_particle_build_trees(p, error);
+/* Features, their trees, and what is counted and measured of them. */
+static scree_status extract_all(scree_particle *p, bool may_be_open, scree_error *error) {
+  scree_status status = scree_particle_extract_features(p, may_be_open, error);
+  if (!status) status = scree_particle_build_trees(p, error);
   if (status) return status;
   set_bounding_radius(p);
   set_counts(p);
@@ -158,7 +162,7 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
     double *position = &p->mesh.positions[3 * v];
     vec3_store(position, into_frame(&p->measures, position));
   }
-  scree_status status = scree_particle_extract_features(p, false, error);
+  scree_status status = extract_all(p, false, error);
   if (!status) status = measure_thickness(p, error);
   if (status) return status;
   scree_particle_measures *m = &p->measures;
@@ -166,8 +170,7 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
   m->rounding = rounding > 0 ? rounding : scree_min(least, most_rounding * m->thickness);
   p->radius = radius_of(m);
   drop_features(p);
-  status = scree_particle_extract_features(p, false, error);
-  return status ? status : finish_mesh(p, error);
+  return extract_all(p, false, error);
 }
 
 /* What the features' extraction does not see: surfaces that meet themselves, shells in shells. */
@@ -207,7 +210,7 @@ scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
   if (!p) return SCREE_OUT_OF_MEMORY;
   p->measures.rounding = p->radius = rounding;
   scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
-  if (!status) status = scree_particle_extract_features(p, true, error);
+  if (!status) status = extract_all(p, true, error);
   if (!status && !p->sheet) {
     double volume = scree_solid_of_mesh(&p->mesh).volume;
     p->measures.volume = volume;
@@ -217,7 +220,6 @@ scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
                           volume);
   }
   if (!status) status = measure_thickness(p, error);
-  if (!status) status = finish_mesh(p, error);
   if (status) {
     scree_particle_free(p);
     return status;

@@ -147,3 +147,19 @@ scree_box scree_box_moved(const scree_box *box, const mat3 *rotation, vec3 shift
                 fabs(rotation->m[2][2]) * half.z};
   return (scree_box){vec3_sub(c, h), vec3_add(c, h)};
 }
+
+bool scree_box_cut(const scree_box *box, vec3 start, vec3 along, double *from, double *to) {
+  const double starts[3] = {start.x, start.y, start.z}, alongs[3] = {along.x, along.y, along.z},
+               low[3] = {box->low.x, box->low.y, box->low.z},
+               high[3] = {box->high.x, box->high.y, box->high.z};
+  for (int k = 0; k < 3; k++) {
+    if (alongs[k] == 0) {
+      if (starts[k] < low[k] || starts[k] > high[k]) return false;
+      continue;
+    }
+    double t0 = (low[k] - starts[k]) / alongs[k], t1 = (high[k] - starts[k]) / alongs[k];
+    *from = scree_larger(*from, scree_smaller(t0, t1));
+    *to = scree_smaller(*to, scree_larger(t0, t1));
+  }
+  return *from <= *to;
+}

@@ -70,6 +70,9 @@ static inline bool scree_box_meets(const scree_box *a, const scree_box *b) {
   return (a->low.x <= b->high.x) & (b->low.x <= a->high.x) & (a->low.y <= b->high.y) &
          (b->low.y <= a->high.y) & (a->low.z <= b->high.z) & (b->low.z <= a->high.z);
 }
+/* Cuts [from, to] to the part of the way start + s along that lies within the box; false for none.
+ */
+bool scree_box_cut(const scree_box *box, vec3 start, vec3 along, double *from, double *to);
 /* The box of `box` after x -> rotation x + shift. */
 scree_box scree_box_moved(const scree_box *box, const mat3 *rotation, vec3 shift);
 

@@ -42,10 +42,9 @@ static inline bool scree_asks_depths(const scree_depth_question *question) {
   return question->start || question->edges;
 }
 
-/* The deepest point of an edge: the way along it, the depth (below 0 outside), its slope in space
- * and along. */
+/* The deepest point of an edge: the way along it, the depth (below 0 outside) and its slope. */
 typedef struct scree_depth {
-  double s, depth, rate;
+  double s, depth;
   vec3 slope;
 } scree_depth;
 
@@ -222,7 +221,10 @@ double scree_touch_depths(const scree_world *world, scree_pair *pair, const scre
 
 /* seam.c: the area of b's surface inside a as a vector, outward, in the frame of b, m2: the way in
  * which the common volume falls fastest as a moves. 0 where the surfaces do not cross. */
-vec3 scree_way_apart(const scree_world *world, const scree_pair *pair, const scree_frame *relative);
+vec3 scree_way_apart(const scree_particle *a, const scree_particle *b, const scree_frame *relative);
+/* Whether they do; a stands `relative` to b. */
+bool scree_surfaces_cross(const scree_particle *a, const scree_particle *b,
+                          const scree_frame *relative);
 
 /* The smooth maximum m of overlaps, t, and the denominator of the shares (law.c). */
 typedef struct scree_smooth_maximum {

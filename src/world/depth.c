@@ -8,8 +8,10 @@
  * rightly feel more, and the pair's smooth maximum leaves depths out (o <= t). Where features fail
  * depths take over.
  *
- * How far a point is from a surface changes by no more than its own way, so that every sample along
- * an edge tells how far to go on. */
+ * Nothing lies inside unless the surfaces cross. Along an edge the distance from one face is
+ * convex, so that it lies below its chord, and the distance from the surface below the chords of
+ * the faces that are nearest at both ends of a stretch: where these meet is the next place to look
+ * at, until no chord lies above the deepest place that is known. */
 #include "world/contact.h"
 
 #include "particle/closest.h"
@@ -18,13 +20,11 @@
 static const double start_share = 0.05;
 static const double near_share = 0.25;   /* of the roundings: depths are asked for from here on */
 static const double apart_share = 0.9;   /* of the roundings: bodies that part are apart */
-static const double stride_share = 0.25; /* of the depth, while an edge is gone along */
-static const double least_stride = 1.0 / 64; /* of the edge's way within the other's box */
-static const double flat_bend = 1e-12;       /* of slopes along an edge */
+static const double tolerance = 1e-6;    /* of the depth, within which the deepest place is found */
 /* Points of a mesh are looked for in the other from the start: corners, drawn towards the centre.
  */
 static const double drawn_in[] = {0.9, 0.5, 0};
-enum { REFINEMENTS = 24, HALVE_EVERY = 4, DRAWN_COUNT = sizeof drawn_in / sizeof *drawn_in };
+enum { MOST_STRETCHES = 64, DRAWN_COUNT = sizeof drawn_in / sizeof *drawn_in };
 
 /* The edges of one body against the surface of the other. */
 typedef struct side {
@@ -54,93 +54,191 @@ typedef struct line {
   double from, to;
 } line;
 
-typedef scree_depth sample; /* contact.h */
-
 /* False where nothing of the edge lies within the box. */
 static bool make_line(const side *sd, const scree_edge *edge, double above, line *l) {
   *l = (line){vec3_add(mat3_mul_vec(&sd->rotation, edge->start), sd->shift),
               mat3_mul_vec(&sd->rotation, edge->along), 0, edge->length};
   scree_box box = scree_box_grown(sd->to->face_tree.nodes[0].box, -above);
-  const double start[3] = {l->start.x, l->start.y, l->start.z},
-               along[3] = {l->along.x, l->along.y, l->along.z},
-               low[3] = {box.low.x, box.low.y, box.low.z},
-               high[3] = {box.high.x, box.high.y, box.high.z};
-  for (int k = 0; k < 3; k++) {
-    if (along[k] == 0 && (start[k] < low[k] || start[k] > high[k])) return false;
-    if (along[k] == 0) continue;
-    double t0 = (low[k] - start[k]) / along[k], t1 = (high[k] - start[k]) / along[k];
-    l->from = scree_larger(l->from, scree_smaller(t0, t1));
-    l->to = scree_smaller(l->to, scree_larger(t0, t1));
-  }
-  return l->from <= l->to;
+  return scree_box_cut(&box, l->start, l->along, &l->from, &l->to);
 }
 
-static sample sample_at(const scree_particle *to, const line *l, double s) {
-  const uint32_t root = 0;
-  uint32_t face = 0;
+static vec3 at_of(const line *l, double s) {
+  return vec3_mad(l->start, l->along, s);
+}
+
+static double face_distance(const scree_particle *to, uint32_t face, vec3 p) {
   int region;
-  vec3 p = vec3_mad(l->start, l->along, s);
-  double d = scree_nearest_face(to, &root, 1, p, INFINITY, &face);
-  if (!(d < INFINITY)) return (sample){s, -INFINITY, 0, {0, 0, 0}}; /* no number, or too far */
-  vec3 offset = vec3_sub(p, scree_closest_on_face(&to->faces[face], p, &region)),
-       outward = scree_outward(to, face, region);
-  bool outside = vec3_dot(offset, outward) >= 0;
-  vec3 slope =
-      d > 1e-12 ? vec3_scale(offset, (outside ? -1 : 1) / d) : vec3_neg(vec3_unit(outward));
-  return (sample){s, outside ? -d : d, vec3_dot(slope, l->along), slope};
+  return vec3_distance(p, scree_closest_on_face(&to->faces[face], p, &region));
 }
 
-/* Where the tangents at two points meet. */
-static double meeting_of(const sample *low, const sample *high) {
-  return (high->depth - low->depth + low->rate * low->s - high->rate * high->s) /
-         (low->rate - high->rate);
+/* A place on the line, its distance from the surface, and the face that is nearest. */
+typedef struct place {
+  double s, distance;
+  uint32_t face;
+} place;
+
+/* `near` and `other` are faces that are likely near. */
+static place place_at(const scree_particle *to, const line *l, double s, uint32_t near,
+                      uint32_t other) {
+  const uint32_t root = 0;
+  vec3 p = at_of(l, s);
+  place here = {s, face_distance(to, near, p), near};
+  double of_other = other == near ? here.distance : face_distance(to, other, p);
+  if (of_other < here.distance) here = (place){s, of_other, other};
+  double nearer = scree_nearest_face(to, &root, 1, p, here.distance, &here.face);
+  here.distance = scree_smaller(nearer, here.distance);
+  return here;
 }
 
-/* The maximum between two points of which the depth grows towards the other: where tangents meet,
- * until none lies above the depth there. Its slope is the mean that stands across the edge. */
-static sample refine(const scree_particle *to, const line *l, sample low, sample high) {
-  for (int k = 1; k <= REFINEMENTS && low.rate - high.rate > flat_bend; k++) {
-    double s = meeting_of(&low, &high);
-    if (!(s > low.s && s < high.s) || k % HALVE_EVERY == 0) s = 0.5 * (low.s + high.s);
-    sample here = sample_at(to, l, s);
-    bool met = fabs(here.depth - (low.depth + low.rate * (s - low.s))) <= 1e-12;
-    if (met || high.s - low.s < 1e-9 * (1e-6 + low.depth)) break;
-    *(here.rate > 0 ? &low : &high) = here;
+/* Part of the line that lies inside. */
+typedef struct stretch {
+  place low, high;
+} stretch;
+
+/* Where the chords of the nearest faces at both ends meet, and how far from the surface the stretch
+ * is at most. */
+static double chords_meet(const scree_particle *to, const line *l, const stretch *in,
+                          double *most) {
+  const place *low = &in->low, *high = &in->high;
+  double rise = face_distance(to, high->face, at_of(l, low->s)) - low->distance,
+         fall = face_distance(to, low->face, at_of(l, high->s)) - high->distance;
+  if (low->face == high->face || !(rise + fall > 0)) {
+    *most = scree_larger(low->distance, high->distance);
+    return low->s;
   }
-  sample best = low.depth > high.depth ? low : high;
-  double bend = low.rate - high.rate, share = bend > flat_bend ? -high.rate / bend : 0.5;
-  share = share < 0 ? 0 : share > 1 ? 1 : share;
-  double s = bend > flat_bend ? meeting_of(&low, &high) : best.s;
-  if (s >= low.s && s <= high.s && bend > flat_bend) {
-    best.s = s;
-    best.depth = low.depth + low.rate * (s - low.s);
+  double share = rise / (rise + fall);
+  *most = low->distance + (high->distance + fall - low->distance) * share;
+  return low->s + (high->s - low->s) * share;
+}
+
+static void keep_deeper(const place *here, place *deepest) {
+  if (here->distance > deepest->distance) *deepest = *here;
+}
+
+static void search(const scree_particle *to, const line *l, const stretch *whole, place *deepest) {
+  stretch stack[MOST_STRETCHES];
+  int count = 0, looked_at = 0;
+  stack[count++] = *whole;
+  while (count > 0 && looked_at++ < MOST_STRETCHES) {
+    const stretch in = stack[--count];
+    double most, s = chords_meet(to, l, &in, &most);
+    if (!(most > deepest->distance * (1 + tolerance)) || !(s > in.low.s && s < in.high.s)) continue;
+    place here = place_at(to, l, s, in.low.face, in.high.face);
+    keep_deeper(&here, deepest);
+    if (count + 2 > MOST_STRETCHES) continue;
+    stack[count++] = (stretch){in.low, here};
+    stack[count++] = (stretch){here, in.high};
   }
-  best.slope = vec3_add(vec3_scale(low.slope, share), vec3_scale(high.slope, 1 - share));
-  return best;
+}
+
+/* From `low` to `high`, of which those where the line passes through the surface are known: `ends`
+ * of them. No point is deeper than its way from there. */
+static void search_between(const scree_particle *to, const line *l, stretch in, const bool known[2],
+                           place *deepest) {
+  int ends = known[0] + known[1];
+  if (ends && (in.high.s - in.low.s) / ends <= deepest->distance) return;
+  if (!known[0]) in.low = place_at(to, l, in.low.s, in.high.face, in.high.face);
+  if (!known[1]) in.high = place_at(to, l, in.high.s, in.low.face, in.low.face);
+  keep_deeper(&in.low, deepest);
+  keep_deeper(&in.high, deepest);
+  search(to, l, &in, deepest);
+}
+
+/* The deepest place of the line inside, where it is deeper than `deepest`. */
+static void search_inside(const scree_particle *to, const line *l, place *deepest) {
+  const size_t none = SIZE_MAX;
+  scree_way way = {l->start, l->along, l->from, l->to};
+  stretch in = {.low = {.s = l->from}};
+  bool known[2] = {false, true}, entered = false;
+  while (known[1]) {
+    uint32_t face = in.low.face;
+    double s = scree_next_passage(to, &way, 0, none, &face);
+    known[1] = s < INFINITY;
+    in.high = (place){known[1] ? s : l->to, 0, face};
+    bool inside = entered;
+    if (known[1])
+      inside = vec3_dot(to->faces[face].normal, l->along) > 0;
+    else if (!known[0])
+      inside = scree_is_inside(to, at_of(l, 0.5 * (l->from + l->to)));
+    if (inside) search_between(to, l, in, known, deepest);
+    entered = known[1] && !inside;
+    in.low = in.high;
+    known[0] = true;
+    way.after = s;
+  }
+}
+
+/* The slope of the depth: of the nearest faces those along which it grows most and falls most. */
+static vec3 slope_at(const scree_particle *to, const line *l, const place *deepest) {
+  scree_near near;
+  vec3 p = at_of(l, deepest->s), up = {0, 0, 0}, down = {0, 0, 0};
+  double most = -INFINITY, least = INFINITY;
+  scree_closest_faces(to, p, INFINITY, 10 * tolerance * deepest->distance, &near);
+  for (int k = 0; k < near.count; k++) {
+    int region;
+    const scree_face *face = &to->faces[near.face[k]];
+    vec3 slope = vec3_unit(vec3_sub(p, scree_closest_on_face(face, p, &region)));
+    double rate = vec3_dot(slope, l->along);
+    if (rate > most) most = rate, up = slope;
+    if (rate < least) least = rate, down = slope;
+  }
+  if (!(most > 0 && least < 0)) return fabs(most) < fabs(least) ? up : down;
+  double share = most / (most - least); /* the edge's own rate is 0 there */
+  return vec3_add(vec3_scale(up, 1 - share), vec3_scale(down, share));
+}
+
+/* Least distance between a segment and a face's borders. */
+static double border_distance(const scree_face *face, vec3 start, vec3 along, double length) {
+  const vec3 sides[3] = {face->along1, vec3_sub(face->along2, face->along1),
+                         vec3_neg(face->along2)};
+  double least = INFINITY;
+  vec3 corner = face->corner;
+  for (int k = 0; k < 3; k++) {
+    double s, t, size = vec3_norm(sides[k]);
+    vec3 border = vec3_scale(sides[k], 1 / size);
+    scree_closest_on_segments(start, along, length, corner, border, size, &s, &t);
+    least = scree_smaller(
+        least, vec3_distance(vec3_mad(start, along, s), vec3_mad(corner, border, t)));
+    corner = vec3_add(corner, sides[k]);
+  }
+  return least;
+}
+
+/* Least distance of the line from the surface where it is below `reach`; else that. */
+static double line_distance(const scree_particle *to, const line *l, double reach) {
+  const scree_tree *tree = &to->face_tree;
+  vec3 ends[2] = {at_of(l, l->from), at_of(l, l->to)};
+  uint32_t stack[SCREE_TREE_STACK];
+  int depth = 0;
+  stack[depth++] = 0;
+  while (depth > 0) {
+    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+    scree_box within = scree_box_grown(scree_box_of(ends[0], ends[1]), reach);
+    if (!scree_box_meets(&within, &node->box)) continue;
+    for (uint32_t k = 0; k < node->count; k++) {
+      uint32_t face = tree->order[node->first + k];
+      for (int e = 0; e < 2; e++)
+        reach = scree_smaller(reach, face_distance(to, face, ends[e]));
+      reach = scree_smaller(reach, border_distance(&to->faces[face], ends[0], l->along,
+                                                   l->to - l->from));
+    }
+    if (node->count) continue;
+    stack[depth++] = node->first + 1;
+    stack[depth++] = node->first;
+  }
+  return reach;
 }
 
 /* The deepest point of an edge where it is deeper than `above`; else no deeper than that. */
-static sample find_deepest(const side *sd, const scree_edge *edge, double above) {
+static scree_depth find_deepest(const side *sd, const scree_edge *edge, double above) {
   line l;
-  sample deepest = {.depth = above};
-  if (!make_line(sd, edge, above, &l)) return deepest;
-  double least = scree_max(least_stride * (l.to - l.from), 1e-9 * edge->length);
-  sample before = sample_at(sd->to, &l, l.from);
-  deepest = before;
-  if (!(before.depth > above)) deepest.depth = above;
-  while (before.s < l.to) {
-    double way = before.depth < above ? above - before.depth : stride_share * fabs(before.depth);
-    sample here = sample_at(sd->to, &l, scree_min(before.s + scree_max(way, least), l.to));
-    bool peak = before.rate > 0 && here.rate < 0 &&
-                0.5 * (before.depth + here.depth + here.s - before.s) > deepest.depth;
-    if (here.depth > deepest.depth) deepest = here;
-    if (peak) {
-      sample top = refine(sd->to, &l, before, here);
-      if (top.depth > deepest.depth) deepest = top;
-    }
-    before = here;
-  }
-  return deepest;
+  if (!make_line(sd, edge, above, &l)) return (scree_depth){.depth = above};
+  place deepest = {.distance = scree_max(above, 0)};
+  double least = deepest.distance;
+  search_inside(sd->to, &l, &deepest);
+  if (deepest.distance > least)
+    return (scree_depth){deepest.s, deepest.distance, slope_at(sd->to, &l, &deepest)};
+  return (scree_depth){.depth = above < 0 ? -line_distance(sd->to, &l, -above) : above};
 }
 
 /* ---- the edges of a pair ---- */
@@ -157,7 +255,7 @@ static bool make_place(scree_scratch *scratch, double overlap) {
   return true;
 }
 
-static void add_depth(const side *sd, scree_pair *pair, vec3 p, const sample *deep,
+static void add_depth(const side *sd, scree_pair *pair, vec3 p, const scree_depth *deep,
                       scree_scratch *scratch) {
   double lever = vec3_norm(deep->slope), overlap = deep->depth - pair->law.smoothing;
   bool slopes = lever > 1e-6; /* in the midst of a wall it is as deep however it moves */
@@ -180,15 +278,20 @@ static void add_depth(const side *sd, scree_pair *pair, vec3 p, const sample *de
 /* Adds an edge as a touch whose deepest point lies deeper than `above`; answers that depth, or
  * `above`. */
 static double touch_edge(const side *sd, scree_pair *pair, const scree_edge *edge, double above,
-                         const sample *deep, scree_scratch *scratch) {
+                         const scree_depth *deep, scree_scratch *scratch) {
   if (!(deep->depth > above)) return above;
+  if (!(deep->depth > 0)) return deep->depth;
   vec3 along = vec3_mad(edge->start, edge->along, deep->s),
        p = vec3_add(mat3_mul_vec(&sd->rotation, along), sd->shift);
-  if (deep->depth <= -pair->law.smoothing) return deep->depth;
-  /* pseudonormals of folds may lie */
+  /* where a core is folded it passes through itself */
   if (deep->depth > pair->law.smoothing && !scree_is_inside(sd->to, p)) return above;
   add_depth(sd, pair, p, deep, scratch);
   return deep->depth;
+}
+
+/* Whether all that lies in the ball is outside, and farther from the surface than `beyond`. */
+static bool is_outside(const scree_particle *to, vec3 centre, double radius, double beyond) {
+  return !scree_is_near(to, centre, radius + beyond) && !scree_is_inside(to, centre);
 }
 
 static double touch_side(const side *sd, scree_pair *pair, double above, scree_scratch *scratch) {
@@ -203,9 +306,12 @@ static double touch_side(const side *sd, scree_pair *pair, double above, scree_s
     const scree_tree_node *node = &tree->nodes[stack[--depth]];
     scree_box box = scree_box_moved(&node->box, &sd->rotation, sd->shift);
     if (!scree_box_meets(&box, &within)) continue;
+    vec3 centre = vec3_scale(vec3_add(box.low, box.high), 0.5);
+    double radius = 0.5 * vec3_distance(node->box.low, node->box.high);
+    if (is_outside(sd->to, centre, radius, scree_max(-above, 0))) continue;
     for (uint32_t k = 0; k < node->count; k++) {
       const scree_edge *edge = &sd->from->edges[tree->order[node->first + k]];
-      sample deep = find_deepest(sd, edge, above);
+      scree_depth deep = find_deepest(sd, edge, above);
       deepest = scree_max(deepest, touch_edge(sd, pair, edge, above, &deep, scratch));
     }
     if (node->count) continue;
@@ -292,6 +398,19 @@ static void note_start(const scree_pair *pair, double depth, scree_pair_work *wo
     work->start_depth = scree_max(work->start_depth, depth);
 }
 
+/* How far apart the cores are, by features that meet from outside, less what these may be off by. */
+static double gap_of_cores(const scree_pair *pair, const scree_scratch *scratch) {
+  double touching = scree_min(scratch->least_gap, 0); /* what sleeps is farther */
+  return scree_max(0, touching + (1 - near_share) * pair->law.reach + pair->law.smoothing);
+}
+
+/* Whether the cores were so far apart before the step that they cannot have met in it. */
+static bool stay_apart(const scree_pair *pair, const scree_scratch *scratch) {
+  double before = scratch->slept ? (near_share - 1) * pair->law.reach : pair->depth;
+  return !pair->parting && !scratch->any_inside && !scratch->question.start &&
+         before + pair->list.travel <= 0;
+}
+
 void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   scree_depth_question *question = &scratch->question;
@@ -300,23 +419,22 @@ void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scr
   if (!b) return;
   question->start = scree_pair_is_new(pair);
   if (!a->face_count || !b->face_count) return;
-  double near = near_share * pair->law.reach,
-         far = near + 2 * pair->list.travel - pair->law.reach - pair->law.smoothing;
-  if (!pair->parting && !scratch->any_inside && !(pair->depth > 0) && !question->start &&
-      scratch->least_gap >= far) {
-    pair->depth = -INFINITY; /* cores that were apart meet at features, of which none is near */
+  if (stay_apart(pair, scratch)) {
+    pair->depth = -gap_of_cores(pair, scratch);
     return;
   }
   scree_smooth_maximum felt = felt_overlap(world, pair, &scratch->touches);
-  double above = felt.cutoff + pair->law.smoothing; /* what lies lower counts for nothing */
+  double above = felt.cutoff + pair->law.smoothing, /* what lies lower counts for nothing */
+      near = near_share * pair->law.reach;
   /* features that look the wrong way claim any depth */
   if (felt.value > pair->law.limit) pair->parting = true;
   if (!pair->parting && pair->depth > -INFINITY && pair->depth + pair->list.travel < above) {
     pair->depth += pair->list.travel;
     return;
   }
-  question->edges = true;
-  question->above = pair->parting ? apart_depth(pair) : scree_min(above - near, 0.5 * above);
+  question->above = pair->parting ? apart_depth(pair) : scree_max(0, above - near);
+  question->edges = pair->parting || scree_surfaces_cross(a, b, &scratch->relative);
+  if (!question->edges) pair->depth = -gap_of_cores(pair, scratch);
 }
 
 static void answer(scree_pair *pair, double start, double depth, scree_scratch *scratch,

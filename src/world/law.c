@@ -380,7 +380,8 @@ static void store_loads(const scree_world *world, const scree_scratch *scratch, 
 static vec3 way_of_parting(const scree_world *world, scree_pair *pair,
                            const scree_frame *relative) {
   if (vec3_norm2(pair->way) > 0) return pair->way;
-  pair->way = vec3_unit(scree_way_apart(world, pair, relative));
+  const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
+  pair->way = vec3_unit(scree_way_apart(a, b, relative));
   if (vec3_norm2(pair->way) == 0) pair->way = vec3_unit(relative->position);
   if (vec3_norm2(pair->way) == 0) pair->way = (vec3){0, 0, 1};
   return pair->way;

@@ -1,4 +1,5 @@
-/* The way apart of bodies that are in each other: along the area vector of their seam.
+/* Where the surfaces of two bodies cross, and the way apart of those that are in each other: along
+ * the area vector of their seam.
  *
  * The part of b's surface that lies inside a is bounded by the seam, the closed line along which
  * the surfaces cross. Its area as a vector is sum of p x q/2 over the seam's segments from p to q,
@@ -45,39 +46,132 @@ static vec3 area_of_segment(const triangle *a, const triangle *b, vec3 about) {
   return vec3_dot(vec3_sub(q, p), forward) < 0 ? vec3_neg(area) : area;
 }
 
-static vec3 area_in_face(const triangle *a, const scree_particle *b, vec3 about) {
-  vec3 area = {0, 0, 0};
-  const scree_tree *tree = &b->face_tree;
-  scree_box box = scree_box_of(a->corner[0], a->corner[1]);
-  box = scree_box_join(box, (scree_box){a->corner[2], a->corner[2]});
-  uint32_t stack[SCREE_TREE_STACK];
-  int depth = 0;
-  stack[depth++] = 0;
-  while (depth > 0) {
-    const scree_tree_node *node = &tree->nodes[stack[--depth]];
-    if (!scree_box_meets(&box, &node->box)) continue;
-    for (uint32_t k = 0; k < node->count; k++) {
-      triangle other = triangle_of(&b->faces[tree->order[node->first + k]]);
-      area = vec3_add(area, area_of_segment(a, &other, about));
-    }
-    if (node->count) continue;
-    stack[depth++] = node->first + 1;
-    stack[depth++] = node->first;
-  }
-  return area;
+/* Whether all of a lies on one side of b's plane. */
+static bool is_beside(const triangle *a, const triangle *b) {
+  bool below[3];
+  for (int k = 0; k < 3; k++)
+    below[k] = vec3_dot(vec3_sub(a->corner[k], b->corner[0]), b->normal) < 0;
+  return below[0] == below[1] && below[1] == below[2];
 }
 
-vec3 scree_way_apart(const scree_world *world, const scree_pair *pair,
-                     const scree_frame *relative) {
-  const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  vec3 area = {0, 0, 0};
-  for (size_t f = 0; f < a->face_count; f++) {
-    triangle face = triangle_of(&a->faces[f]);
-    face.normal = mat3_mul_vec(&relative->rotation, face.normal);
-    for (int k = 0; k < 3; k++)
-      face.corner[k] =
-          vec3_add(mat3_mul_vec(&relative->rotation, face.corner[k]), relative->position);
-    area = vec3_add(area, area_in_face(&face, b, relative->position));
+static bool triangles_cross(const triangle *a, const triangle *b) {
+  vec3 at;
+  if (is_beside(a, b) || is_beside(b, a)) return false;
+  for (int k = 0; k < 3; k++)
+    if (pierces(a->corner[k], a->corner[(k + 1) % 3], b, &at) ||
+        pierces(b->corner[k], b->corner[(k + 1) % 3], a, &at))
+      return true;
+  return false;
+}
+
+/* ---- the faces that are near each other ---- */
+
+/* Nodes of the face trees of a and of b of which the boxes meet. */
+typedef struct meeting {
+  uint32_t a, b;
+  scree_box box; /* of a's, in the frame of b */
+} meeting;
+
+/* Down both trees, and over the faces of the leaves that meet. */
+typedef struct descent {
+  const scree_particle *a, *b;
+  const scree_frame *relative;
+  meeting stack[SCREE_TREE_STACK]; /* one a level of either tree */
+  int depth;
+  const scree_tree_node *leaf_of_a, *leaf_of_b; /* in hand */
+  uint32_t next_of_a, next_of_b;
+  triangle of_a, of_b; /* the faces in hand, in the frame of b */
+} descent;
+
+static void visit(descent *d, uint32_t a, uint32_t b, const scree_box *box) {
+  if (!scree_box_meets(box, &d->b->face_tree.nodes[b].box)) return;
+  d->stack[d->depth++] = (meeting){a, b, *box};
+}
+
+static scree_box moved_box(const descent *d, uint32_t a) {
+  const scree_frame *r = d->relative;
+  return scree_box_moved(&d->a->face_tree.nodes[a].box, &r->rotation, r->position);
+}
+
+static void begin_descent(descent *d, const scree_particle *a, const scree_particle *b,
+                          const scree_frame *relative) {
+  d->a = a;
+  d->b = b;
+  d->relative = relative;
+  d->depth = 0;
+  d->leaf_of_a = NULL;
+  d->of_a = d->of_b = (triangle){0};
+  scree_box box = moved_box(d, 0);
+  visit(d, 0, 0, &box);
+}
+
+static double size_of(const scree_box *box) {
+  vec3 size = vec3_sub(box->high, box->low);
+  return size.x + size.y + size.z;
+}
+
+/* Takes the next two leaves of which the boxes meet in hand; false for no more. */
+static bool take_leaves(descent *d) {
+  while (d->depth > 0) {
+    const meeting m = d->stack[--d->depth];
+    const scree_tree_node *a = &d->a->face_tree.nodes[m.a], *b = &d->b->face_tree.nodes[m.b];
+    if (a->count && b->count) {
+      d->leaf_of_a = a;
+      d->leaf_of_b = b;
+      d->next_of_a = 0;
+      d->next_of_b = b->count;
+      return true;
+    }
+    if (b->count || (!a->count && size_of(&m.box) > size_of(&b->box))) {
+      scree_box first = moved_box(d, a->first), second = moved_box(d, a->first + 1);
+      visit(d, a->first, m.b, &first);
+      visit(d, a->first + 1, m.b, &second);
+    } else {
+      visit(d, m.a, b->first, &m.box);
+      visit(d, m.a, b->first + 1, &m.box);
+    }
   }
+  return false;
+}
+
+/* Of a, in the frame of b. */
+static triangle moved_triangle(const descent *d, uint32_t place) {
+  const scree_frame *r = d->relative;
+  triangle t = triangle_of(&d->a->faces[d->a->face_tree.order[place]]);
+  t.normal = mat3_mul_vec(&r->rotation, t.normal);
+  for (int k = 0; k < 3; k++)
+    t.corner[k] = vec3_add(mat3_mul_vec(&r->rotation, t.corner[k]), r->position);
+  return t;
+}
+
+/* Takes the next two faces in hand of which leaves meet. */
+static bool take_faces(descent *d) {
+  if (!d->leaf_of_a && !take_leaves(d)) return false;
+  while (d->next_of_b == d->leaf_of_b->count) {
+    if (d->next_of_a == d->leaf_of_a->count && !take_leaves(d)) return false;
+    d->of_a = moved_triangle(d, d->leaf_of_a->first + d->next_of_a++);
+    d->next_of_b = 0;
+  }
+  const scree_tree *tree = &d->b->face_tree;
+  d->of_b = triangle_of(&d->b->faces[tree->order[d->leaf_of_b->first + d->next_of_b++]]);
+  return true;
+}
+
+bool scree_surfaces_cross(const scree_particle *a, const scree_particle *b,
+                          const scree_frame *relative) {
+  descent d;
+  begin_descent(&d, a, b, relative);
+  while (take_faces(&d))
+    if (triangles_cross(&d.of_a, &d.of_b)) return true;
+  return false;
+}
+
+vec3 scree_way_apart(const scree_particle *a, const scree_particle *b,
+                     const scree_frame *relative) {
+  vec3 area = {0, 0, 0};
+  descent d;
+  begin_descent(&d, a, b, relative);
+  while (take_faces(&d))
+    area = vec3_add(area, area_of_segment(&d.of_a, &d.of_b, relative->position));
   return area;
 }
