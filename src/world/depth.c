@@ -18,9 +18,9 @@
 
 /* Bodies that lie deeper in each other from the start, of the limit, are refused. */
 static const double start_share = 0.05;
-static const double near_share = 0.25;   /* of the roundings: depths are asked for from here on */
-static const double apart_share = 0.9;   /* of the roundings: bodies that part are apart */
-static const double tolerance = 1e-6;    /* of the depth, within which the deepest place is found */
+static const double near_share = 0.25; /* of the roundings: depths are asked for from here on */
+static const double apart_share = 0.9; /* of the roundings: bodies that part are apart */
+static const double tolerance = 1e-6;  /* of the depth, within which the deepest place is found */
 /* Points of a mesh are looked for in the other from the start: corners, drawn towards the centre.
  */
 static const double drawn_in[] = {0.9, 0.5, 0};
@@ -197,8 +197,8 @@ static double border_distance(const scree_face *face, vec3 start, vec3 along, do
     double s, t, size = vec3_norm(sides[k]);
     vec3 border = vec3_scale(sides[k], 1 / size);
     scree_closest_on_segments(start, along, length, corner, border, size, &s, &t);
-    least = scree_smaller(
-        least, vec3_distance(vec3_mad(start, along, s), vec3_mad(corner, border, t)));
+    least =
+        scree_smaller(least, vec3_distance(vec3_mad(start, along, s), vec3_mad(corner, border, t)));
     corner = vec3_add(corner, sides[k]);
   }
   return least;
@@ -217,10 +217,9 @@ static double line_distance(const scree_particle *to, const line *l, double reac
     if (!scree_box_meets(&within, &node->box)) continue;
     for (uint32_t k = 0; k < node->count; k++) {
       uint32_t face = tree->order[node->first + k];
-      for (int e = 0; e < 2; e++)
-        reach = scree_smaller(reach, face_distance(to, face, ends[e]));
-      reach = scree_smaller(reach, border_distance(&to->faces[face], ends[0], l->along,
-                                                   l->to - l->from));
+      for (int e = 0; e < 2; e++) reach = scree_smaller(reach, face_distance(to, face, ends[e]));
+      reach = scree_smaller(reach,
+                            border_distance(&to->faces[face], ends[0], l->along, l->to - l->from));
     }
     if (node->count) continue;
     stack[depth++] = node->first + 1;
@@ -398,7 +397,8 @@ static void note_start(const scree_pair *pair, double depth, scree_pair_work *wo
     work->start_depth = scree_max(work->start_depth, depth);
 }
 
-/* How far apart the cores are, by features that meet from outside, less what these may be off by. */
+/* How far apart the cores are, by features that meet from outside, less what these may be off by.
+ */
 static double gap_of_cores(const scree_pair *pair, const scree_scratch *scratch) {
   double touching = scree_min(scratch->least_gap, 0); /* what sleeps is farther */
   return scree_max(0, touching + (1 - near_share) * pair->law.reach + pair->law.smoothing);
