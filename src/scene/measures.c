@@ -38,6 +38,11 @@ static bool is_of_pile(const scree_scene *scene, const scree_plan_pile *plan, si
          (isnan(plan->disc) || hypot(body->position[0], body->position[1]) <= plan->disc);
 }
 
+/* Diameter of the sphere of the body's volume. */
+static double size_of(const scree_scene *scene, size_t b) {
+  return 2 * cbrt(scene->shapes[scene->shape_of.items[b]].volume / 4.18879020478639);
+}
+
 typedef struct extent {
   double centre[2], reach, size; /* mean position; of the farthest; mean size */
 } extent;
@@ -49,7 +54,7 @@ static extent find_extent(const scree_scene *scene, const scree_plan_pile *plan)
   for (size_t b = 0; b < scene->shape_of.count; b++) {
     if (!is_of_pile(scene, plan, b, &body)) continue;
     for (int k = 0; k < 2; k++) e.centre[k] += body.position[k];
-    e.size += 2 * cbrt(scene->shapes[scene->shape_of.items[b]].volume / 4.18879020478639);
+    e.size += size_of(scene, b);
     count++;
   }
   if (count == 0) return e;
@@ -119,38 +124,91 @@ scree_status scree_scene_measure_pile(const scree_scene *scene, const scree_plan
 
 /* ---- the slope of a surface ---- */
 
-enum { SLOPE_BINS = 24 };
-static const double middle_share = 0.5; /* of the bed's width: near the walls the surface bends */
+static const double surface_reach = 1.5; /* standard deviations of the bed's width about its
+                                            middle: near the walls the surface bends */
+static const double surface_cell = 0.25; /* of a body's size */
+enum { MOST_ACROSS = 500 };              /* cells */
 
-/* The bed is seen along the axis. Each of the bins across it has a highest body; a line through
- * the tops of the middle half of them, by least squares, is the surface. */
-double scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan) {
+/* The turn from one unit vector to another; half a turn is about `axis`, across both. */
+static quat turn_between(vec3 from, vec3 to, vec3 axis) {
+  vec3 c = vec3_cross(from, to);
+  quat q = {1 + vec3_dot(from, to), c.x, c.y, c.z};
+  return q.w > 1e-9 ? quat_unit(q) : (quat){0, axis.x, axis.y, axis.z};
+}
+
+/* The bed as seen along the axis: that is the plane of x and z, with z up. */
+typedef struct bed {
+  quat turn;
+  double x, y, floor, width, size; /* its middle; its lowest, standard deviation, mean size */
+} bed;
+
+static scree_body seen_body(const scree_scene *scene, const bed *seen, size_t b) {
+  scree_body body;
+  scree_world_get_body(scene->world, b, &body);
+  mat3 turn = quat_to_mat3(seen->turn);
+  quat q = quat_mul(seen->turn, scree_body_turn(&body));
+  vec3_store(body.position, mat3_mul_vec(&turn, vec3_load(body.position)));
+  memcpy(body.orientation, (double[4]){q.w, q.x, q.y, q.z}, sizeof body.orientation);
+  return body;
+}
+
+/* false: there is none. */
+static bool find_bed(const scree_scene *scene, const scree_plan_slope *plan, bed *seen) {
   vec3 axis = vec3_unit(vec3_load(plan->axis)), g = vec3_load(scene->plan.gravity);
-  vec3 up = vec3_unit(vec3_mad(vec3_neg(g), axis, vec3_dot(g, axis))),
-       across = vec3_cross(up, axis);
-  double low = INFINITY, high = -INFINITY, top[SLOPE_BINS], at[SLOPE_BINS];
-  for (int pass = 0; pass < 2; pass++) {
-    for (int k = 0; k < SLOPE_BINS; k++) top[k] = -INFINITY;
-    for (size_t b = 0; b < scene->shape_of.count; b++) {
-      scree_body body;
-      if (scree_world_body_removed(scene->world, b)) continue;
-      scree_world_get_body(scene->world, b, &body);
-      double x = vec3_dot(across, vec3_load(body.position));
-      if (pass == 0) low = fmin(low, x), high = fmax(high, x);
-      if (pass == 0 || !(high > low)) continue;
-      int k = (int)(SLOPE_BINS * (x - low) / (high - low) * (1 - 1e-9));
-      double y = vec3_dot(up, vec3_load(body.position));
-      if (y > top[k]) top[k] = y, at[k] = x;
-    }
+  vec3 up = vec3_unit(vec3_mad(vec3_neg(g), axis, vec3_dot(g, axis))), z = {0, 0, 1};
+  quat first = turn_between(up, z, axis);
+  mat3 upright = quat_to_mat3(first);
+  quat second = turn_between(mat3_mul_vec(&upright, axis), (vec3){0, -1, 0}, z);
+  *seen = (bed){.turn = quat_mul(second, first), .floor = INFINITY};
+  double count = 0, squares = 0;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_body body = seen_body(scene, seen, b);
+    const scree_scene_shape *shape = &scene->shapes[scene->shape_of.items[b]];
+    double away = body.position[0] - seen->x;
+    count++;
+    seen->x += away / count;
+    squares += away * (body.position[0] - seen->x);
+    seen->y += (body.position[1] - seen->y) / count;
+    seen->size += (size_of(scene, b) - seen->size) / count;
+    seen->floor = fmin(seen->floor, body.position[2] - shape->extent.radius);
   }
+  seen->width = count > 0 ? sqrt(squares / count) : 0;
+  return seen->width > seen->size;
+}
+
+/* A line by least squares through the heights of all cells where something lies. */
+static double slope_of(const scree_height_field *field) {
   double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0;
-  for (int k = 0; k < SLOPE_BINS; k++) {
-    if (fabs(k + 0.5 - 0.5 * SLOPE_BINS) > 0.5 * middle_share * SLOPE_BINS) continue;
-    if (!(top[k] > -INFINITY)) continue;
-    n++, sx += at[k], sy += top[k], sxx += at[k] * at[k], sxy += at[k] * top[k];
-  }
+  for (size_t j = 0; j < field->rows; j++)
+    for (size_t i = 0; i < field->columns; i++) {
+      double x = ((double)i + 0.5) * field->cell, h = field->height[j * field->columns + i];
+      if (h > 0) n++, sx += x, sy += h, sxx += x * x, sxy += x * h;
+    }
   double spread = n * sxx - sx * sx;
-  return n >= 3 && spread > 0 ? degree * atan((n * sxy - sx * sy) / spread) : NAN;
+  return spread > 0 ? degree * atan((n * sxy - sx * sy) / spread) : NAN;
+}
+
+/* The field is square about the bed's middle, so it is cut off along the axis where that is long.
+ */
+scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan,
+                                       double *at, scree_error *error) {
+  bed seen;
+  scree_height_field field;
+  *at = NAN;
+  if (!find_bed(scene, plan, &seen)) return SCREE_OK;
+  double half = surface_reach * seen.width;
+  double cell = fmax(surface_cell * seen.size, 2 * half / MOST_ACROSS);
+  scree_status status = scree_height_field_create(seen.x, seen.y, half, cell, &field, error);
+  if (status != SCREE_OK) return status;
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_body body = seen_body(scene, &seen, b);
+    raise_body(scene, b, &body, seen.floor, &field);
+  }
+  *at = slope_of(&field);
+  scree_height_field_free(&field);
+  return SCREE_OK;
 }
 
 /* ---- mixing ---- */

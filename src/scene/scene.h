@@ -265,7 +265,8 @@ scree_status scree_scene_measure_heap(const scree_scene *scene, const scree_plan
 /* Into columns from `at` on. */
 scree_status scree_scene_measure_pile(const scree_scene *scene, const scree_plan_pile *plan,
                                       double *at, scree_error *error);
-double scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan);
+scree_status scree_scene_measure_slope(const scree_scene *scene, const scree_plan_slope *plan,
+                                       double *at, scree_error *error);
 scree_status scree_scene_measure_mixing(const scree_scene *scene,
                                         const scree_plan_segregation *plan, double *at,
                                         scree_error *error);

@@ -312,7 +312,7 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
   else if (plan->pile)
     status = scree_scene_measure_pile(scene, plan->pile, at, error);
   else if (plan->slope)
-    *at = scree_scene_measure_slope(scene, plan->slope);
+    status = scree_scene_measure_slope(scene, plan->slope, at, error);
   else if (plan->segregation)
     status = scree_scene_measure_mixing(scene, plan->segregation, at, error);
   else

@@ -1,4 +1,5 @@
-/* Scenes against closed forms: a belt, a tilted plate, a shaken plate, a hopper that runs out
+/* Scenes against closed forms: a belt, a tilted plate, a shaken plate, a hopper that runs out, the
+ * surface of a bed
  * (docs/background/verification.md). */
 #include "scree.h"
 #include "support/check.h"
@@ -190,12 +191,66 @@ static void discharge(void **state) {
   }
 }
 
+typedef double vector[3];
+
+/* Puts the bodies on a lattice that fills a lying drum up to a surface at the angle; answers how
+ * many it took. NULL: only counts. */
+static size_t fill_drum(scree_scene *scene, const vector axis, const vector up, double angle) {
+  const double pitch = 0.01, radius = 0.1, surface = -0.02;
+  const vector across = {up[1] * axis[2] - up[2] * axis[1], up[2] * axis[0] - up[0] * axis[2],
+                         up[0] * axis[1] - up[1] * axis[0]};
+  size_t count = 0;
+  for (int i = -10; i <= 10; i++)
+    for (int j = 0; j < 10; j++)
+      for (int k = -2; k <= 2; k++) {
+        double s = pitch * i, h = surface - 0.005 - pitch * j;
+        if (s * s + h * h > radius * radius) continue;
+        scree_body body = scree_default_body();
+        scree_error error;
+        for (int m = 0; m < 3; m++)
+          body.position[m] = (s * cos(angle) - h * sin(angle)) * across[m] +
+                             (s * sin(angle) + h * cos(angle)) * up[m] + pitch * k * axis[m];
+        body.orientation[0] = cos(count), body.orientation[1] = sin(count);
+        if (scene)
+          CHECK_OK(scree_world_set_body(scree_scene_world(scene), count, &body, &error), error);
+        count++;
+      }
+  return count;
+}
+
+/* The surface of balls and boxes in a drum is found at its angle, whatever the drum's axis and
+ * whichever way is up. */
+static void surface(void **state) {
+  (void)state;
+  static const struct {
+    vector axis, up;
+    double angle;
+  } rows[] = {{{0, 1, 0}, {0, 0, 1}, 0},    {{0, 1, 0}, {0, 0, 1}, 0.4},
+              {{0, -1, 0}, {0, 0, 1}, 0.4}, {{1, 0, 0}, {0, 0, 1}, -0.3},
+              {{0, 0, 1}, {0, 1, 0}, 0.5},  {{0, 1, 0}, {0, 0, -1}, 0.2}};
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    const double *a = rows[i].axis, *u = rows[i].up;
+    char text[800];
+    snprintf(text, sizeof text,
+             "time: 1\n"
+             "gravity: [%g, %g, %g]\n"
+             "shapes: {ball: {sphere: 0.01}, box: {box: [0.008, 0.008, 0.008]}}\n"
+             "inlets: {i: {box: {min: [-1, -1, -1], max: [1, 1, 1]}, shapes: [ball, box], count: "
+             "%zu}}\n"
+             "sensors: {s: {slope: {axis: [%g, %g, %g]}}}\n",
+             -g * u[0], -g * u[1], -g * u[2], fill_drum(NULL, a, u, 0), a[0], a[1], a[2]);
+    scree_scene *scene = create(text);
+    run_until(scene, 1e-9);
+    fill_drum(scene, a, u, rows[i].angle);
+    CHECK_NEAR(column_now(scene, "s.angle_deg"), 57.29577951308232 * rows[i].angle, 1);
+    scree_scene_free(scene);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(belt),
-      cmocka_unit_test(tilted_plate),
-      cmocka_unit_test(shaken_plate),
-      cmocka_unit_test(discharge),
+      cmocka_unit_test(belt),      cmocka_unit_test(tilted_plate), cmocka_unit_test(shaken_plate),
+      cmocka_unit_test(discharge), cmocka_unit_test(surface),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
