@@ -4,7 +4,7 @@
 #
 #   bench/clumps.sh [FILE...]
 #
-# Writes results/clumps.csv. SCREE_BENCH_SPHERES: the largest count (default 100).
+# Writes results/clumps.csv. SCREE_BENCH_SPHERES: the largest count (default 100); SCREE_BENCH_METHOD: one method alone.
 set -euo pipefail
 . "$(dirname "$0")/lib.sh"
 
@@ -26,7 +26,7 @@ for scan in "${scans[@]}"; do
   name=$(basename "${scan#sample:}")
   level=$work/${name%.*}.stl
   "$bin/scree" simplify "$scan" -n 2000 -o "$level" -f -q
-  OMP_NUM_THREADS=1 "$bin/bench_clumps" "$level" 1e-3 "${SCREE_BENCH_SPHERES:-100}" 1000000 >>"$output"
+  OMP_NUM_THREADS=1 "$bin/bench_clumps" "$level" 1e-3 "${SCREE_BENCH_SPHERES:-100}" 1000000 ${SCREE_BENCH_METHOD:-} >>"$output"
 done
 # Where another method is above the fitted spheres.
 awk -F, '!/^#/ && $1 != "body" { if ($2 == "fitted") best[$1, $3] = $5; else if ($5 > best[$1, $3]) print "above fitted: " $0 }' "$output"

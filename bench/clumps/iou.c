@@ -1,7 +1,8 @@
 /* Intersection over union of clumps and the body they stand for, by points of its own: along
  * parallel lines, one at random in each square of a grid, each within the body by the crossings of
  * all triangles below it.
- * usage: bench_clumps FILE UNIT_M MOST POINTS; a row on stdout for every method and count. */
+ * usage: bench_clumps FILE UNIT_M MOST POINTS [METHOD]; a row on stdout for every count, of one
+ * method or of all. */
 #include "scree.h"
 
 #include <math.h>
@@ -88,8 +89,10 @@ static double measure_iou(const scree_mesh *mesh, const scree_clump *clump, size
 }
 
 /* A method may give fewer spheres than asked for. */
-static void compare(const scree_mesh *mesh, const char *name, size_t most, size_t points) {
+static void compare(const scree_mesh *mesh, const char *name, size_t most, size_t points,
+                    const char *only) {
   for (int method = 0; method < METHODS; method++) {
+    if (only && strcmp(only, scree_clump_method_name((scree_clump_method)method))) continue;
     scree_clump_options o = scree_default_clump_options();
     scree_clumps clumps;
     scree_error error;
@@ -117,8 +120,8 @@ int main(int argc, char **argv) {
   scree_read_options read = scree_default_read_options();
   scree_scan scan;
   scree_error error;
-  if (argc != 5) {
-    fprintf(stderr, "usage: %s FILE UNIT_M MOST POINTS\n", argv[0]);
+  if (argc != 5 && argc != 6) {
+    fprintf(stderr, "usage: %s FILE UNIT_M MOST POINTS [METHOD]\n", argv[0]);
     return 2;
   }
   read.unit_m = atof(argv[2]);
@@ -130,7 +133,8 @@ int main(int argc, char **argv) {
   char name[200];
   snprintf(name, sizeof name, "%s", slash ? slash + 1 : argv[1]);
   if (strrchr(name, '.')) *strrchr(name, '.') = 0;
-  compare(&scan.mesh, name, strtoul(argv[3], NULL, 10), strtoul(argv[4], NULL, 10));
+  compare(&scan.mesh, name, strtoul(argv[3], NULL, 10), strtoul(argv[4], NULL, 10),
+          argc > 5 ? argv[5] : NULL);
   scree_scan_free(&scan);
   return 0;
 }
