@@ -32,6 +32,7 @@ static const double directions_in_all =
     slack_volume = 0.005,      /* tolerances: volume */
     slack_centroid = 0.001,    /* centroid */
     slack_inertia = 0.026,     /* moments of inertia about the axes, of each */
+    slack_trace = 0.0046,      /* and of the trace of the inertia tensor */
     slack_tilt = 0.002,        /* what a product of inertia may add to a principal moment, of it */
     slack_kept = 0.6,          /* part of a tolerance that a step aims into */
     slack_restored = 0.9;      /* likewise when only moments are restored */
@@ -45,11 +46,12 @@ static double product_for(double shift, double gap) {
 }
 
 static void set_tolerances(scree_mover *m) {
-  const double *inertia = m->body->moments + SCREE_FIRST_INERTIA;
+  const double *inertia = m->body->moments + SCREE_FIRST_INERTIA,
+               trace = inertia[0] + inertia[1] + inertia[2];
   m->tolerance[0] = slack_volume;
   for (int k = 1; k < SCREE_FIRST_INERTIA; k++) m->tolerance[k] = slack_centroid;
   for (int a = 0; a < 3; a++) {
-    m->tolerance[SCREE_FIRST_INERTIA + a] = slack_inertia * inertia[a];
+    m->tolerance[SCREE_FIRST_INERTIA + a] = fmin(slack_inertia * inertia[a], slack_trace * trace);
     for (int b = 0; b < a; b++)
       m->tolerance[SCREE_FIRST_PRODUCT + a + b - 1] =
           product_for(slack_tilt * fmin(inertia[a], inertia[b]), fabs(inertia[a] - inertia[b]));
