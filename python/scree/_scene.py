@@ -73,6 +73,8 @@ class Scene:
         run()."""
         if not (math.isfinite(interval) and interval > 0):
             raise ValueError(f"an interval is {interval} s; finite and above 0")
+        if not callable(function):
+            raise TypeError(f"{function!r} cannot be called")
         self._hooks.append([interval, self.time, function])
 
     def step(self, count=1):
@@ -82,6 +84,8 @@ class Scene:
     def run(self, until=math.inf):
         """Advances to a time, s, or to the scene's end; between steps it calls the hooks of every() that are due."""
         step = self.world.time_step
+        if math.isnan(until):
+            raise ValueError(f"until {until} s: a time, or nothing for the scene's end")
         while self.end is None and self.time < until:
             for hook in self._hooks:
                 if self.time >= hook[1]:

@@ -62,7 +62,7 @@ static scree_status fail_series(scree_error *error) {
   return scree_fail(error, SCREE_IO, "series.csv: cannot write: %s", strerror(errno));
 }
 
-/* The rows that are not written yet. A column is NAME_UNIT, as in time_s. */
+/* The rows that are not written yet. A column is `NAME [UNIT]`, as in `time [s]`. */
 static scree_status write_rows(work *w, scree_error *error) {
   const scree_scene *scene = w->scene;
   size_t columns = scene->columns.count;

@@ -506,6 +506,10 @@ output: {series: 0.05}
             raise KeyError("enough")
 
         scene = scree.Scene("scene.yaml")
+        with self.assertRaisesRegex(TypeError, "cannot be called"):
+            scene.every(0.01, 3)
+        with self.assertRaisesRegex(ValueError, "until nan s"):
+            scene.run(float("nan"))
         scene.every(0.01, stop)
         with self.assertRaisesRegex(KeyError, "enough"):
             scene.run()

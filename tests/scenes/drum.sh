@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# The surface of the drum template over seeds: the mean angle from 4 s on, after its first turn. Seeds differ by about 3
-# degrees, where 1 is asked (docs/background/verification.md); what holds is that the standard error of the mean of the
-# three stays below 1.5 degrees, and the mean between 15 and 25.
+# The surface of the drum template over seeds: the mean angle from 4 s on, after its first turn. A seed's mean over 6 s has
+# a standard error of about half a degree (docs/background/verification.md). That of the mean of the three stays below 1.5
+# degrees, and the mean between 15 and 25.
 # usage: drum.sh SCREE
 set -euo pipefail
 scree=$(realpath -e "$1")
