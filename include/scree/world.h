@@ -245,6 +245,7 @@ typedef struct scree_observation {
   double coordination;                     /* mean number of touching bodies and walls */
   size_t body_count, removed_count;
   size_t pair_count;      /* touching pairs of bodies, and of body and wall */
+  size_t parting_pairs;   /* of them, those that held each other and are being moved apart */
   size_t contact_count;   /* touching features */
   uint64_t parting_count; /* how often two bodies that held each other had to be moved apart since
                              the start (docs/background/physics.md); 0 in most runs */

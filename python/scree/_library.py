@@ -219,7 +219,7 @@ class scree_observation(Structure):
         "time", "kinetic", "rotational", "potential", "elastic", "dissipated_dashpot", "dissipated_friction",
         "wall_work", "applied_work")] + [("momentum", double3), ("angular_momentum", double3)] + [(name, c_double) for name in (
             "mean_rotation", "largest_overlap", "highest_speed", "coordination")] + [(name, c_size_t) for name in (
-                "body_count", "removed_count", "pair_count", "contact_count")] + [("parting_count", c_uint64)]
+                "body_count", "removed_count", "pair_count", "parting_pairs", "contact_count")] + [("parting_count", c_uint64)]
 
 
 class scree_contact(Structure):

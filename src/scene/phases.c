@@ -59,8 +59,7 @@ static bool is_over_early(scree_scene *scene, const scree_plan_phase *phase) {
   scree_observation o;
   if (isnan(phase->still)) return false;
   scree_world_observe(scene->world, &o);
-  double count = (double)(o.body_count > 0 ? o.body_count : 1);
-  if ((o.kinetic + o.rotational) / count >= phase->still) {
+  if (!scree_is_still(&o, phase->still)) {
     scene->still_since = NAN;
     return false;
   }

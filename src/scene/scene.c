@@ -389,7 +389,7 @@ static bool is_still(scree_scene *scene) {
   scree_observation o;
   if (isnan(stop->still) || !scree_scene_is_filled(scene)) return false;
   scree_world_observe(scene->world, &o);
-  bool still = o.kinetic + o.rotational < stop->still * (double)o.body_count && o.pair_count > 0;
+  bool still = scree_is_still(&o, stop->still) && o.pair_count > 0;
   scene->still_ticks = still ? scene->still_ticks + 1 : 0;
   double rest = stop->rest / ((double)scene->tick_steps * scene->time_step);
   return (double)scene->still_ticks >= (isnan(rest) ? STILL_TICKS : ceil(rest));

@@ -217,6 +217,12 @@ bool scree_scene_is_filled(const scree_scene *scene);
 /* scene.c: a particle's extents with `more` m kept free all around. */
 scree_placement scree_placement_of(const scree_particle *particle, double more);
 
+/* Whether bodies move by less than `still` J each, and none is being moved out of another. */
+static inline bool scree_is_still(const scree_observation *o, double still) {
+  double count = (double)(o->body_count > 0 ? o->body_count : 1);
+  return o->kinetic + o->rotational < still * count && o->parting_pairs == 0;
+}
+
 /* layers.c: plans those of an inlet, refusing what cannot be; lets in those that are due. */
 scree_status scree_scene_plan_layers(scree_scene *scene, scree_error *error);
 scree_status scree_scene_enter_layers(scree_scene *scene, scree_error *error);

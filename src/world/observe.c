@@ -21,6 +21,7 @@ void scree_world_observe(const scree_world *world, scree_observation *observatio
       .body_count = (size_t)s.bodies,
       .removed_count = (size_t)s.removed,
       .pair_count = (size_t)s.pairs,
+      .parting_pairs = (size_t)s.parting,
       .contact_count = (size_t)s.contacts,
       .kinetic = scree_sum_value(s.kinetic),
       .rotational = scree_sum_value(s.rotational),

@@ -50,6 +50,7 @@ static void add_pair(const scree_world *world, const scree_pair *pair, scree_sum
   if (pair->followed && !pair->wall)
     add_motion_ahead(world, pair->b, vec3_neg(ahead->force), ahead->torque_b, sums);
   sums->pairs++;
+  sums->parting += pair->parting;
   sums->contacts += pair->contact_count;
   sums->body_sides += pair->wall ? 1 : 2;
 }
@@ -125,6 +126,7 @@ void scree_sums_merge(scree_sums *sums, const scree_sums *part) {
   sums->bodies += part->bodies;
   sums->removed += part->removed;
   sums->pairs += part->pairs;
+  sums->parting += part->parting;
   sums->contacts += part->contacts;
   sums->body_sides += part->body_sides;
 }
