@@ -125,7 +125,8 @@ static scree_status open_device(int number, scree_error *error) {
   status = check(cu.device_count(&count), "devices", error);
   if (status) return status;
   if (number >= count || number >= SCREE_MOST_DEVICES)
-    return scree_fail(error, SCREE_NO_BACKEND, "cuda: device %d of %d", number, count);
+    return scree_fail(error, SCREE_NO_BACKEND,
+                      "cuda: there is no device %d; there are %d, numbered from 0", number, count);
   struct opened *device = &devices[number];
   if (device->context) return SCREE_OK;
   char name[128];
