@@ -86,14 +86,16 @@ there() {
 
 # same SCENE STEPS NAME: both hashes; the bits of the state after so many steps.
 same() {
-  local file=$scenes/$1.scree want got
+  local file=$scenes/$1.scree want got code=0
   there "$1" 60 || return 0
   want=$("$bin/bench_world" hash 0 "$2" "$file")
-  if got=$(timeout "$(left)" "$bin/bench_world" --backend "$backend" hash 0 "$2" "$file"); then
-    [ "$want" = "$got" ] && got="the same bits" || got="OTHER BITS"
-  else
-    got="failed"
-  fi
+  got=$(timeout "$(left)" "$bin/bench_world" --backend "$backend" hash 0 "$2" "$file") || code=$?
+  case $code,$got in
+  "0,$want") got="the same bits" ;;
+  0,*) got="OTHER BITS" ;;
+  124,*) got="no time left" ;;
+  *) got="failed" ;;
+  esac
   echo "| $3 | $2 | $got |" | tee -a "$rows" >&2
 }
 
