@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # The surface of the drum template over seeds: the mean angle from 4 s on, after its first turn. A seed's mean over 6 s has
-# a standard error of about half a degree (docs/background/verification.md). That of the mean of the three stays below 1.5
-# degrees, and the mean between 15 and 25.
+# a standard error of about half a degree (docs/background/verification.md). That of the mean of the three stays below 1
+# degree, and the mean between 15 and 25.
 # usage: drum.sh SCREE
 set -euo pipefail
 scree=$(realpath -e "$1")
@@ -17,4 +17,4 @@ done
 awk '{ if (NR == 1 || $2 < low) low = $2; if (NR == 1 || $2 > high) high = $2; sum += $2; squares += $2 * $2 }
   END { mean = sum / NR; error = sqrt((squares / NR - mean * mean) / (NR - 1))
     printf "angles differ by %.2f degrees; mean %.2f, standard error %.2f\n", high - low, mean, error
-    exit !(error < 1.5 && mean > 15 && mean < 25) }' angles
+    exit !(error < 1 && mean > 15 && mean < 25) }' angles
