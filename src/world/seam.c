@@ -76,6 +76,8 @@ typedef struct meeting {
 typedef struct descent {
   const scree_particle *a, *b;
   const scree_frame *relative;
+  mat3 back; /* the frame of b into a's */
+  vec3 shift;
   meeting stack[SCREE_TREE_STACK]; /* one a level of either tree */
   int depth;
   const scree_tree_node *leaf_of_a, *leaf_of_b; /* in hand */
@@ -83,8 +85,12 @@ typedef struct descent {
   triangle of_a, of_b; /* the faces in hand, in the frame of b */
 } descent;
 
+/* In either frame the other's box is loose; where they are apart in one they are. */
 static void visit(descent *d, uint32_t a, uint32_t b, const scree_box *box) {
-  if (!scree_box_meets(box, &d->b->face_tree.nodes[b].box)) return;
+  const scree_box *of_a = &d->a->face_tree.nodes[a].box, *of_b = &d->b->face_tree.nodes[b].box;
+  if (!scree_box_meets(box, of_b)) return;
+  scree_box moved = scree_box_moved(of_b, &d->back, d->shift);
+  if (!scree_box_meets(&moved, of_a)) return;
   d->stack[d->depth++] = (meeting){a, b, *box};
 }
 
@@ -98,6 +104,8 @@ static void begin_descent(descent *d, const scree_particle *a, const scree_parti
   d->a = a;
   d->b = b;
   d->relative = relative;
+  d->back = mat3_transpose(&relative->rotation);
+  d->shift = vec3_neg(mat3_mul_vec(&d->back, relative->position));
   d->depth = 0;
   d->leaf_of_a = NULL;
   d->of_a = d->of_b = (triangle){0};
