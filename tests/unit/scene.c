@@ -158,18 +158,21 @@ static void any_cut_and_any_threads(void **state) {
   scree_scene_file_free(file);
 }
 
-/* Saved and loaded once in a while, in the middle of everything. */
+/* Saved and loaded once in a while, in the middle of everything, and on three threads. */
 static void check_resumed(scree_scene_file *file, size_t steps, size_t piece) {
   scree_error error;
   scree_scene *whole = create(file), *cut = create(file);
   const char *path = in_folder("checkpoint.scree");
+  scree_set_threads(1);
   advance(whole, steps);
+  scree_set_threads(3);
   for (size_t done = 0; done < steps; done += piece) {
     advance(cut, piece < steps - done ? piece : steps - done);
     CHECK_OK(scree_scene_save(cut, path, true, &error), error);
     scree_scene_free(cut);
     CHECK_OK(scree_scene_load(path, &cut, &error), error);
   }
+  scree_set_threads(0);
   assert_true(same_state(whole, cut));
   scree_scene_free(whole);
   scree_scene_free(cut);
