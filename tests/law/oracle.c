@@ -594,7 +594,7 @@ static void depth_of_edges(void **state) {
   scree_rng rng = {.seed = 23};
   scree_scratch scratch = {0};
   assert_true(SCREE_RESERVE(&scratch.touches, SCREE_DEPTHS));
-  size_t deep = 0, missed = 0, apart = 0;
+  size_t deep = 0, missed = 0, apart = 0, unseen = 0;
   double beyond = 0;
   for (uint32_t i = 0; i < 4; i++) law_body(world, shapes[i], scree_default_body());
   for (int k = 0; k < 400; k++) {
@@ -610,13 +610,16 @@ static void depth_of_edges(void **state) {
     scratch.touches.count = 0;
     double depth = scree_touch_depths(world, &pair, &relative, least, &scratch);
     deep += depth > least;
-    apart += sampled == 0;
+    bool cross = scree_surfaces_cross(a, b, &relative);
+    apart += !cross;
+    unseen += sampled > 0 && !cross;
     missed += 1.125 * depth < sampled;
     if (depth > least) beyond = fmax(beyond, depth - sampled);
   }
   scree_free(scratch.touches.items);
   assert_true(deep > 100 && apart > 10);
   LAW_NEAR("-", "edges deep in the other body that are missed", (double)missed, 0, 0);
+  LAW_NEAR("-", "edges in the other body while no surfaces cross", (double)unseen, 0, 0);
   LAW_BELOW("-", "deeper than samples are (m)", beyond, 1e-4); /* half the way between two */
   scree_world_free(world);
   for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
