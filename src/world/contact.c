@@ -296,6 +296,7 @@ void scree_pair_meet(const scree_world *world, scree_pair *pair, scree_scratch *
   end_visits(pair, scratch);
   scratch->substeps = scree_substep_count(world, pair, &scratch->relative, scratch);
   scratch->step = world->time_step / scratch->substeps;
+  scratch->last = pair->touching ? pair->wrench : (scree_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   ask(world, pair, scratch);
 }
 

@@ -75,6 +75,7 @@ struct scree_scratch {
   bool parting, parted;     /* as it was then */
   scree_depth_question question;
   scree_list_state before; /* of the pair, when the step began */
+  scree_wrench last;       /* the pair's of the last step, where sub-steps come */
   scree_pair_work work;
   scree_anchor no_anchor;
 };

@@ -3,10 +3,11 @@
  *
  * Where the way of a step is not small beside the roundings, blends between features are crossed in
  * one step, and no force that is a slope of the energy could be told from samples so far apart. The
- * two bodies are moved on copies, by leapfrog with steps dt/n, under the forces of their pair
- * alone. What the world's step is given is the mean wrench that brings its own leapfrog to where
- * the copies have come; what their velocities have more by then is owed to the bodies, and the pair
- * begins its next step with it. So no other part of the step knows of sub-steps.
+ * two bodies are moved on copies, by leapfrog with steps dt/n, under the forces of their pair, and
+ * under all others as they were in the last step. What the world's step is given is the mean wrench
+ * that brings its own leapfrog to where the copies have come, less that of the others; what their
+ * velocities have more by then is owed to the bodies, and the pair begins its next step with it. So
+ * no other part of the step knows of sub-steps.
  *
  * Leapfrog with steps that differ kicks with the mean of the steps before and after. */
 #include "world/contact.h"
@@ -22,6 +23,7 @@ typedef struct mover {
   scree_frame frame;
   quat orientation;
   vec3 momentum, inertia;
+  scree_load others; /* force and moment of all but the pair, as in the last step */
   double mass;
   bool free;
 } mover;
@@ -31,13 +33,25 @@ static mover mover_of(const scree_world *world, uint32_t index, bool is_wall) {
   if (is_wall)
     return (mover){.frame = world->walls.items[index].frame,
                    .orientation = world->walls.items[index].orientation};
-  return (mover){b->frame[index],   b->orientation[index], b->momentum[index],
-                 b->inertia[index], b->mass[index],        true};
+  return (mover){.frame = b->frame[index],
+                 .orientation = b->orientation[index],
+                 .momentum = b->momentum[index],
+                 .inertia = b->inertia[index],
+                 .mass = b->mass[index],
+                 .free = true};
 }
 
 static vec3 spin_of(const mover *m, vec3 momentum) {
   const mat3 *rotation = &m->frame.rotation;
   return mat3_mul_vec(rotation, scree_local_spin(m->inertia, rotation, momentum));
+}
+
+/* Of a body, which the pair pressed with that force and moment. */
+static scree_load others_of(const scree_world *world, uint32_t index, vec3 force, vec3 moment) {
+  const scree_bodies *b = &world->bodies;
+  vec3 weight = vec3_scale(vec3_load(world->options.gravity), b->mass[index]);
+  return (scree_load){vec3_add(vec3_sub(b->force[index], force), weight),
+                      vec3_sub(b->torque[index], moment)};
 }
 
 /* An impulse and its moment; `ahead`: what of it the velocities half a step on have more. */
@@ -65,6 +79,18 @@ static void drift(mover *m, double dt) {
   vec3 ahead = vec3_sub(m->frame.spin_now, m->frame.spin);
   m->frame.spin = spin_of(m, m->momentum);
   m->frame.spin_now = vec3_add(m->frame.spin, ahead);
+}
+
+static void kick_by_others(mover *m, double time, double half) {
+  if (!m->free) return;
+  const double now = time + half;
+  vec3 acceleration = vec3_scale(m->others.force, 1 / m->mass),
+       turning = spin_of(m, m->others.moment);
+  m->momentum = vec3_mad(m->momentum, m->others.moment, time);
+  m->frame.velocity = vec3_mad(m->frame.velocity, acceleration, time);
+  m->frame.velocity_now = vec3_mad(m->frame.velocity_now, acceleration, now);
+  m->frame.spin = vec3_mad(m->frame.spin, turning, time);
+  m->frame.spin_now = vec3_mad(m->frame.spin_now, turning, now);
 }
 
 static void kick_both(mover *a, mover *b, const scree_wrench *w, double dt, double ahead) {
@@ -125,7 +151,16 @@ typedef struct shown {
   uint32_t contact_count;
 } shown;
 
-static void settle_debts(scree_pair *pair, const mover begin[2], const mover end[2], double dt) {
+static void take_out(scree_wrench *wrench, const mover movers[2], double time) {
+  wrench->force = vec3_mad(wrench->force, movers[0].others.force, -time);
+  wrench->torque_a = vec3_mad(wrench->torque_a, movers[0].others.moment, -time);
+  wrench->torque_b = vec3_mad(wrench->torque_b, movers[1].others.moment, -time);
+}
+
+/* What the others did is theirs: in the mean of the step, and by half of what the last part ends
+ * later than the step's mean does. */
+static void settle_debts(scree_pair *pair, const mover begin[2], const mover end[2], double dt,
+                         double h) {
   const mover *a = &begin[0], *b = &begin[1];
   vec3 mean = vec3_scale(vec3_sub(end[0].frame.position, a->frame.position), 1 / dt),
        turning_a = turning_momentum(a, end[0].orientation, dt), turning_b = {0, 0, 0};
@@ -138,6 +173,8 @@ static void settle_debts(scree_pair *pair, const mover begin[2], const mover end
     pair->wrench.torque_b = vec3_scale(vec3_sub(turning_b, b->momentum), 1 / dt);
     pair->owed.torque_b = vec3_sub(end[1].momentum, turning_b);
   }
+  take_out(&pair->wrench, begin, 1);
+  take_out(&pair->owed, begin, 0.5 * (dt - h));
 }
 
 /* The impulse up to the step's beginning, less half of the step's. */
@@ -149,7 +186,11 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
   const uint32_t count = scratch->substeps;
   const double dt = world->time_step, h = scratch->step;
   const shown first = {pair->elastic, pair->tangential_elastic, pair->contact_count};
-  const mover begin[2] = {mover_of(world, pair->a, false), mover_of(world, pair->b, pair->wall)};
+  mover begin[2] = {mover_of(world, pair->a, false), mover_of(world, pair->b, pair->wall)};
+  const scree_wrench *last = &scratch->last;
+  begin[0].others = others_of(world, pair->a, last->force, last->torque_a);
+  if (!pair->wall)
+    begin[1].others = others_of(world, pair->b, vec3_neg(last->force), last->torque_b);
   mover now[2] = {begin[0], begin[1]};
   kick_both(&now[0], &now[1], &pair->owed, 1, 0);
   const scree_wrench w = pair->wrench, owed = pair->owed; /* at the step's beginning */
@@ -163,13 +204,14 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
     acts |= pair->touching;
     on_wall = vec3_mad(on_wall, pair->wrench.torque_b, time / dt);
     kick_both(&now[0], &now[1], &pair->wrench, time, time > 0 ? 0.5 * h / time : 0);
+    for (int k = 0; k < 2; k++) kick_by_others(&now[k], i == 1 ? 0.5 * (dt + h) : h, 0.5 * h);
     drift(&now[0], h);
     drift(&now[1], h);
     if (i == count) break;
     scratch->drift = h;
     scree_pair_look_between(world, pair, scratch);
   }
-  settle_debts(pair, begin, now, dt);
+  settle_debts(pair, begin, now, dt, h);
   if (pair->wall) pair->wrench.torque_b = on_wall;
   if (count == 1) pair->owed = (scree_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   pair->touching = pair->followed = acts;
