@@ -402,6 +402,19 @@ static vec3 place_of_push(const scree_world *world, const scree_pair *pair,
   return scree_pair_smaller_is_a(world, pair) ? relative->position : (vec3){0, 0, 0};
 }
 
+/* With what force, along the way, all else pressed the bodies together in the last step: what is
+ * held is not moved by less. */
+static double held_with(const scree_world *world, const scree_pair *pair, vec3 way,
+                        const scree_scratch *scratch) {
+  const scree_bodies *b = &world->bodies;
+  vec3 out = mat3_mul_vec(&scratch->b->rotation, way), last = scratch->last.force;
+  double of_a = vec3_dot(vec3_sub(b->force[pair->a], last), out), mass = b->mass[pair->a];
+  if (pair->wall) /* which does not fall with it */
+    return scree_max(0, -of_a - mass * vec3_dot(vec3_load(world->options.gravity), out));
+  double of_b = vec3_dot(vec3_add(b->force[pair->b], last), out), other = b->mass[pair->b];
+  return scree_max(0, (of_b * mass - of_a * other) / (mass + other));
+}
+
 /* Edges that lie in each other may each be nearest to a way out that is the other's way in. Then no
  * feature counts: the bodies are brought to `parting_speed` along one way, by no more than a spring
  * as deep as they are would press with. */
@@ -421,7 +434,8 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
   double pace = pair->law.contact_time / 3.14159265358979323846,
          mass = pair->law.stiffness * pace * pace,
          brake = parting_damping * mass / world->time_step * (parting_speed - vec3_dot(seen, way)),
-         force = scree_min(pair->law.stiffness * pair->overlap, brake < 0 ? 0 : brake);
+         push = scree_max(0, brake + held_with(world, pair, way, scratch)),
+         force = scree_min(pair->law.stiffness * pair->overlap, push);
   load_sums sums = {0};
   add_load(&sums.normal, way, arm, force);
   sums.dashpot = sums.normal;
