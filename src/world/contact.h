@@ -75,7 +75,7 @@ struct scree_scratch {
   bool parting, parted;     /* as it was then */
   scree_depth_question question;
   scree_list_state before; /* of the pair, when the step began */
-  scree_wrench last;       /* the pair's of the last step, where sub-steps come */
+  scree_wrench last;       /* the pair's of the last step */
   scree_pair_work work;
   scree_anchor no_anchor;
 };
@@ -273,6 +273,9 @@ uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
                              const scree_frame *relative, const scree_scratch *scratch);
 /* Pose and motion of a, or b, as this pair sees it, which moved it in sub-steps. */
 scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair, bool of_b);
+/* Force and moment of all but the pair on a, or b, in the last step; of a wall none. */
+scree_load scree_load_of_others(const scree_world *world, const scree_pair *pair,
+                                const scree_scratch *scratch, bool of_b);
 /* After scree_pair_look: the rest of the step's parts; the wrench is their mean. */
 void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 

@@ -406,12 +406,12 @@ static vec3 place_of_push(const scree_world *world, const scree_pair *pair,
  * held is not moved by less. */
 static double held_with(const scree_world *world, const scree_pair *pair, vec3 way,
                         const scree_scratch *scratch) {
-  const scree_bodies *b = &world->bodies;
-  vec3 out = mat3_mul_vec(&scratch->b->rotation, way), last = scratch->last.force;
-  double of_a = vec3_dot(vec3_sub(b->force[pair->a], last), out), mass = b->mass[pair->a];
-  if (pair->wall) /* which does not fall with it */
-    return scree_max(0, -of_a - mass * vec3_dot(vec3_load(world->options.gravity), out));
-  double of_b = vec3_dot(vec3_add(b->force[pair->b], last), out), other = b->mass[pair->b];
+  vec3 out = mat3_mul_vec(&scratch->b->rotation, way);
+  scree_load on_a = scree_load_of_others(world, pair, scratch, false),
+             on_b = scree_load_of_others(world, pair, scratch, true);
+  double of_a = vec3_dot(on_a.force, out), mass = world->bodies.mass[pair->a];
+  if (pair->wall) return scree_max(0, -of_a);
+  double of_b = vec3_dot(on_b.force, out), other = world->bodies.mass[pair->b];
   return scree_max(0, (of_b * mass - of_a * other) / (mass + other));
 }
 

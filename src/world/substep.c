@@ -46,10 +46,15 @@ static vec3 spin_of(const mover *m, vec3 momentum) {
   return mat3_mul_vec(rotation, scree_local_spin(m->inertia, rotation, momentum));
 }
 
-/* Of a body, which the pair pressed with that force and moment. */
-static scree_load others_of(const scree_world *world, uint32_t index, vec3 force, vec3 moment) {
+scree_load scree_load_of_others(const scree_world *world, const scree_pair *pair,
+                                const scree_scratch *scratch, bool of_b) {
   const scree_bodies *b = &world->bodies;
-  vec3 weight = vec3_scale(vec3_load(world->options.gravity), b->mass[index]);
+  const scree_wrench *last = &scratch->last;
+  if (of_b && pair->wall) return (scree_load){{0, 0, 0}, {0, 0, 0}};
+  uint32_t index = of_b ? pair->b : pair->a;
+  vec3 force = of_b ? vec3_neg(last->force) : last->force,
+       moment = of_b ? last->torque_b : last->torque_a,
+       weight = vec3_scale(vec3_load(world->options.gravity), b->mass[index]);
   return (scree_load){vec3_add(vec3_sub(b->force[index], force), weight),
                       vec3_sub(b->torque[index], moment)};
 }
@@ -187,10 +192,7 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
   const double dt = world->time_step, h = scratch->step;
   const shown first = {pair->elastic, pair->tangential_elastic, pair->contact_count};
   mover begin[2] = {mover_of(world, pair->a, false), mover_of(world, pair->b, pair->wall)};
-  const scree_wrench *last = &scratch->last;
-  begin[0].others = others_of(world, pair->a, last->force, last->torque_a);
-  if (!pair->wall)
-    begin[1].others = others_of(world, pair->b, vec3_neg(last->force), last->torque_b);
+  for (int k = 0; k < 2; k++) begin[k].others = scree_load_of_others(world, pair, scratch, k == 1);
   mover now[2] = {begin[0], begin[1]};
   kick_both(&now[0], &now[1], &pair->owed, 1, 0);
   const scree_wrench w = pair->wrench, owed = pair->owed; /* at the step's beginning */
