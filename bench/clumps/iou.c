@@ -92,7 +92,7 @@ static double measure_iou(const scree_mesh *mesh, const scree_clump *clump, size
 static void compare(const scree_mesh *mesh, const char *name, size_t most, size_t points,
                     const char *only) {
   for (int method = 0; method < METHODS; method++) {
-    if (only && strcmp(only, scree_clump_method_name((scree_clump_method)method))) continue;
+    if (only && strcmp(only, scree_clump_method_name((scree_clump_method)method)) != 0) continue;
     scree_clump_options o = scree_default_clump_options();
     scree_clumps clumps;
     scree_error error;
