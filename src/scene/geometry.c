@@ -2,8 +2,7 @@
  */
 #include "scene/scene.h"
 
-#include "base/alloc.h"
-#include "mesh/solid_angle.h"
+#include "particle/closest.h"
 
 #include <string.h>
 
@@ -172,35 +171,6 @@ scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, sc
   return status;
 }
 
-/* ---- what placing must know ---- */
-
-static scree_status find_closed(const scree_mesh *mesh, bool *closed, scree_error *error) {
-  scree_check_options o = {.intersections = false};
-  scree_check check;
-  scree_status status = scree_mesh_check(mesh, &o, NULL, &check, error);
-  *closed = status == SCREE_OK && check.defects[SCREE_DEFECT_BOUNDARY_EDGE] == 0 &&
-            check.defects[SCREE_DEFECT_INCONSISTENT_EDGE] == 0;
-  return status;
-}
-
-scree_status scree_scene_find_surfaces(scree_scene *scene, scree_error *error) {
-  scene->wall_count = scree_world_wall_count(scene->world);
-  scene->surfaces = scree_alloc_zero(scene->wall_count, sizeof *scene->surfaces);
-  if (!scene->surfaces)
-    return scree_fail_memory(error, scene->wall_count * sizeof *scene->surfaces, "walls");
-  scree_status status = SCREE_OK;
-  for (size_t w = 0; status == SCREE_OK && w < scene->wall_count; w++) {
-    scree_wall wall;
-    scree_world_get_wall(scene->world, w, &wall);
-    if (wall.kind != SCREE_WALL_MESH) continue;
-    scree_bvh bvh;
-    status = scree_bvh_build(wall.mesh, &bvh, error);
-    if (status == SCREE_OK) scene->surfaces[w].bvh = bvh;
-    if (status == SCREE_OK) status = find_closed(wall.mesh, &scene->surfaces[w].closed, error);
-  }
-  return status;
-}
-
 /* ---- whether a body is clear ---- */
 
 static bool clear_of_plane(const scree_wall *wall, const scree_placement *p) {
@@ -226,11 +196,10 @@ static bool clear_of_cylinder(const scree_wall *wall, const scree_placement *p) 
   return away > wall->radius + p->radius || scree_placement_within(p, from, axis, wall->radius);
 }
 
-/* Whether a plane lies between the box and the triangle: the thirteen candidates of the separating
- * axis theorem, in the box's frame (Akenine-Moeller 2001). */
-static bool box_clear_of_triangle(const double corners[9], vec3 half) {
+/* Whether a plane lies between the box, in its own frame, and the triangle: the thirteen candidates
+ * of the separating axis theorem (Akenine-Moeller 2001). */
+static bool box_clear_of_triangle(const vec3 c[3], vec3 half) {
   const double h[3] = {half.x, half.y, half.z};
-  vec3 c[3] = {vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6)};
   vec3 axes[13] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, vec3_triangle_normal(c[0], c[1], c[2])};
   for (int e = 0; e < 3; e++)
     for (int k = 0; k < 3; k++)
@@ -243,40 +212,44 @@ static bool box_clear_of_triangle(const double corners[9], vec3 half) {
   return false;
 }
 
-/* Solid angle of all triangles seen from p, over 4 pi: 1 within a closed surface that is wound
- * outward. */
-static double winding_number(const scree_bvh *bvh, vec3 p) {
-  double sum = 0;
-  for (size_t t = 0; t < bvh->triangle_count; t++) {
-    const double *at = bvh->corners + 9 * t;
-    vec3 a = vec3_sub(vec3_load(at), p), b = vec3_sub(vec3_load(at + 3), p),
-         c = vec3_sub(vec3_load(at + 6), p);
-    sum += scree_half_solid_angle(a, b, c);
+static bool box_clear_of_face(const scree_oriented_box *box, const scree_face *face) {
+  const vec3 c[3] = {face->corner, vec3_add(face->corner, face->along1),
+                     vec3_add(face->corner, face->along2)};
+  vec3 seen[3];
+  for (int i = 0; i < 3; i++) seen[i] = mat3_tmul_vec(&box->axes, vec3_sub(c[i], box->centre));
+  return box_clear_of_triangle(seen, box->half);
+}
+
+/* Whether the box, in the surface's frame, is clear of its faces. */
+static bool box_clear_of_faces(const scree_oriented_box *box, const scree_particle *surface) {
+  const scree_tree *tree = &surface->face_tree;
+  const scree_box own = {vec3_neg(box->half), box->half};
+  const scree_box around = scree_box_moved(&own, &box->axes, box->centre);
+  uint32_t stack[SCREE_TREE_STACK] = {0};
+  for (int depth = 1; depth > 0;) {
+    const scree_tree_node *node = &tree->nodes[stack[--depth]];
+    if (!scree_box_meets(&node->box, &around)) continue;
+    if (node->count == 0) {
+      stack[depth++] = node->first;
+      stack[depth++] = node->first + 1;
+    }
+    for (uint32_t i = 0; i < node->count; i++)
+      if (!box_clear_of_face(box, &surface->faces[tree->order[node->first + i]])) return false;
   }
-  return sum / 6.283185307179586;
+  return true;
 }
 
 static bool clear_of_mesh(const scree_scene *scene, size_t index, const scree_wall *wall,
                           const scree_placement *p) {
-  const scree_scene_surface *surface = &scene->surfaces[index];
+  const scree_particle *surface = scree_world_wall_surface(scene->world, index);
   double q[4];
   scree_world_wall_orientation(scene->world, index, q);
   mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
-  vec3 centre = mat3_tmul_vec(&turn, vec3_sub(p->position, vec3_load(wall->position)));
-  scree_bvh_hit hit = {.distance2 = p->radius * p->radius};
-  bool near = scree_bvh_closest(&surface->bvh, centre, &hit);
-  if (!near) return !surface->closed || winding_number(&surface->bvh, centre) < 0.5;
-  vec3 middle = mat3_tmul_vec(&turn, vec3_sub(p->box.centre, vec3_load(wall->position)));
-  mat3 axes = mat3_tmul(&turn, &p->box.axes);
-  for (size_t t = 0; t < surface->bvh.triangle_count; t++) {
-    double corners[9];
-    for (int c = 0; c < 3; c++) {
-      vec3 corner = vec3_sub(vec3_load(surface->bvh.corners + 9 * t + 3 * c), middle);
-      vec3_store(corners + 3 * c, mat3_tmul_vec(&axes, corner));
-    }
-    if (!box_clear_of_triangle(corners, p->half)) return false;
-  }
-  return !surface->closed || winding_number(&surface->bvh, centre) < 0.5;
+  vec3 at = vec3_load(wall->position), centre = mat3_tmul_vec(&turn, vec3_sub(p->position, at));
+  scree_oriented_box box = {mat3_tmul_vec(&turn, vec3_sub(p->box.centre, at)), p->box.half,
+                            mat3_tmul(&turn, &p->box.axes)};
+  if (scree_is_near(surface, centre, p->radius) && !box_clear_of_faces(&box, surface)) return false;
+  return surface->sheet || !scree_is_inside(surface, centre);
 }
 
 bool scree_scene_is_clear(const scree_scene *scene, const scree_placement *placement,

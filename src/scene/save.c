@@ -213,6 +213,8 @@ static scree_status adopt_particles(loader *l) {
     scree_particle_free(*held);
     *held = particle;
   }
+  scree_world_share_walls(scene->world, scene->gallery);
+  scene->wall_count = scree_world_wall_count(scene->world);
   return SCREE_OK;
 }
 
@@ -268,7 +270,6 @@ static scree_status load(loader *l) {
   code_state(&l->codec, scene);
   status = load_notes(l);
   if (status == SCREE_OK) status = adopt_particles(l);
-  if (status == SCREE_OK) status = scree_scene_find_surfaces(scene, l->error);
   return status == SCREE_OK ? scree_scene_plan_layers(scene, l->error) : status;
 }
 

@@ -258,6 +258,7 @@ scree_status scree_scene_set_up(scree_scene *scene, const char *folder, scree_er
   plan_ticks(scene);
   status = make_world(scene, scene->time_step, &scene->world, error);
   if (status == SCREE_OK) status = scree_scene_add_geometry(scene, folder, scene->world, error);
+  if (status == SCREE_OK) scree_world_share_walls(scene->world, scene->gallery);
   return status;
 }
 
@@ -328,7 +329,6 @@ scree_status scree_scene_make(const scree_scene_file *file, const scree_scene_gi
   scree_status status = take_file(made, file, gift, error);
   if (status == SCREE_OK) status = make_particles(made, file->folder, gift, progress, error);
   if (status == SCREE_OK) status = scree_scene_set_up(made, file->folder, error);
-  if (status == SCREE_OK) status = scree_scene_find_surfaces(made, error);
   if (status == SCREE_OK) status = scree_scene_plan_wear(made, error);
   if (status == SCREE_OK) status = scree_scene_check_inlets(made, error);
   if (status == SCREE_OK) status = scree_scene_plan_layers(made, error);
@@ -365,11 +365,8 @@ void scree_scene_free(scree_scene *scene) {
     scree_particle_free(scene->shapes[i].particle);
     scree_free(scene->shapes[i].source);
   }
-  for (size_t w = 0; scene->surfaces && w < scene->wall_count; w++)
-    scree_bvh_free(&scene->surfaces[w].bvh);
   for (size_t i = 0; scene->sensors && i < scene->plan.sensors.count; i++)
     scree_free(scene->sensors[i].side.items);
-  scree_free(scene->surfaces);
   scree_free(scene->columns.items);
   scree_free(scene->series.items);
   scree_free(scene->shape_of.items);

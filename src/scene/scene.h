@@ -3,7 +3,6 @@
 #define SCREE_SCENE_SCENE_H
 
 #include "base/seal.h"
-#include "mesh/bvh.h"
 #include "scene/fill.h"
 #include "scene/motion.h"
 #include "scene/plan.h"
@@ -30,12 +29,6 @@ typedef struct scree_scene_shape {
 typedef struct scree_scene_geometry {
   size_t first_wall, wall_count;
 } scree_scene_geometry;
-
-/* What placing a body must know of a wall made of triangles. */
-typedef struct scree_scene_surface {
-  scree_bvh bvh; /* of a mesh; else empty */
-  bool closed;
-} scree_scene_surface;
 
 /* Of an inlet by layers; all but the count of layers follows from the plan. */
 typedef struct scree_scene_layers {
@@ -112,7 +105,6 @@ struct scree_scene {
   scree_world *world, *gallery; /* the gallery has one body of each shape, never moved */
   scree_scene_shape *shapes;
   scree_scene_geometry *geometry;
-  scree_scene_surface *surfaces; /* by wall */
   size_t wall_count;
   scree_scene_inlet *inlets;
   scree_scene_outlet *outlets; /* and the domain's rim */
@@ -195,7 +187,7 @@ scree_status scree_scene_box_mesh(const double sides[3], scree_mesh *mesh, scree
 /* Where a file named in a scene lies; NULL when memory is out. */
 char *scree_scene_path(const char *folder, const char *name);
 
-/* geometry.c: walls into a world, and what placing must know of them. */
+/* geometry.c: walls into a world. */
 scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, scree_world *world,
                                       scree_error *error);
 /* What is wrong with what the scene's file has at that place. */
@@ -204,7 +196,6 @@ scree_status scree_scene_fail(const scree_scene *scene, const scree_place *place
 /* The status; a failure that is told by `why` is told with its place. */
 scree_status scree_scene_blame(const scree_scene *scene, const scree_place *place,
                                scree_status status, const scree_error *why, scree_error *error);
-scree_status scree_scene_find_surfaces(scree_scene *scene, scree_error *error);
 /* Whether a body in that place is clear of all walls; else *wall is one that it is not clear of. */
 bool scree_scene_is_clear(const scree_scene *scene, const scree_placement *placement, size_t *wall);
 

@@ -2,6 +2,7 @@
  * force of a contact and v_t how fast the body slides there. It is looked at every few steps,
  * several times in the shortest contact, and counted for all of them: over many looks the sum is
  * the integral. */
+#include "particle/closest.h"
 #include "scene/scene.h"
 
 #include <string.h>
@@ -63,14 +64,16 @@ static double sliding_power(const scree_scene *scene, const scree_wall *wall,
 /* The triangle of the wall that the contact is on. */
 static size_t cell_of(const scree_scene *scene, size_t index, const scree_wall *wall,
                       const double position[3]) {
-  const scree_bvh *bvh = &scene->surfaces[index].bvh;
+  const uint32_t root = 0;
+  uint32_t face = 0;
   double q[4];
-  scree_bvh_hit hit = {.distance2 = INFINITY};
   if (wall->kind != SCREE_WALL_MESH) return 0;
   scree_world_wall_orientation(scene->world, index, q);
   mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
   vec3 local = mat3_tmul_vec(&turn, vec3_sub(vec3_load(position), vec3_load(wall->position)));
-  return scree_bvh_closest(bvh, local, &hit) ? bvh->order[hit.index] : 0;
+  scree_nearest_face(scree_world_wall_surface(scene->world, index), &root, 1, local, INFINITY,
+                     &face);
+  return face;
 }
 
 static bool feel(void *context, const scree_contact *c) {

@@ -121,6 +121,28 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
   return SCREE_OK;
 }
 
+const scree_particle *scree_world_wall_surface(const scree_world *world, size_t index) {
+  scree_world_bring(world, SCREE_PART_WALLS, NULL);
+  return world->walls.items[index].surface;
+}
+
+static bool may_stand_for(const scree_particle *a, const scree_particle *b) {
+  return a && b && a->face_count == b->face_count && a->edge_count == b->edge_count &&
+         a->point_count == b->point_count;
+}
+
+void scree_world_share_walls(scree_world *world, const scree_world *like) {
+  for (size_t i = 0; i < world->walls.count; i++) {
+    scree_world_wall *wall = &world->walls.items[i];
+    scree_particle *surface = like->walls.items[i].surface;
+    if (!may_stand_for(surface, wall->surface)) continue;
+    scree_particle_retain(surface);
+    scree_particle_free(wall->surface);
+    wall->surface = surface;
+    if (!scree_wall_is_analytic(wall)) wall->given.mesh = &surface->mesh;
+  }
+}
+
 size_t scree_world_wall_count(const scree_world *world) {
   return world->walls.count;
 }
