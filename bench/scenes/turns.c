@@ -5,8 +5,8 @@
  *   bench_scene memory STEPS A           loads A and advances it
  *
  * A and B are checkpoints of scenes. `turns` prints, a line for each round, the processor time of A
- * and of B in s per step; `memory` prints the bodies inside, the most bytes that the library held
- * and the most that the process did. */
+ * and of B in s per step; `memory` prints the bodies inside, the bytes that the library holds,
+ * the most that it held and the most that the process did. */
 #include "scree.h"
 
 #include <stdio.h>
@@ -89,7 +89,8 @@ static int memory(size_t steps, const char *path) {
   advance(scene, steps);
   scree_scene_get_book(scene, &book);
   getrusage(RUSAGE_SELF, &usage);
-  printf("%zu %zu %ld\n", book.inside_count, scree_memory_peak(), usage.ru_maxrss * 1024);
+  printf("%zu %zu %zu %ld\n", book.inside_count, scree_memory_used(), scree_memory_peak(),
+         usage.ru_maxrss * 1024);
   scree_scene_free(scene);
   return 0;
 }

@@ -60,12 +60,19 @@ bool scree_reserve_touches(scree_scratch *s, size_t needed) {
 /* Of a pool whose lists have `total` places. What was asked for in vain is in `used`. */
 static uint64_t roomy(uint64_t total, uint64_t extra, uint64_t used, uint64_t capacity) {
   uint64_t asked = used > capacity ? used - capacity : 0, needed = total + extra + asked;
-  return needed < 512 ? 1024 : 2 * needed;
+  return needed < 512 ? 1024 : needed + needed / 2;
+}
+
+/* Room for as much again as is in the list: what was needed once, right after the neighbours were
+ * found, is given up. */
+static uint32_t trimmed(const scree_range *range, uint32_t least) {
+  uint32_t most = 2 * range->count < least ? least : 2 * range->count;
+  return range->capacity < most ? range->capacity : most;
 }
 
 bool scree_pack_items(scree_pools *pools, scree_pair *pairs, size_t count, size_t extra) {
   uint64_t total = 0;
-  for (size_t p = 0; p < count; p++) total += pairs[p].active.capacity;
+  for (size_t p = 0; p < count; p++) total += trimmed(&pairs[p].active, SCREE_FIRST_ITEMS);
   uint64_t capacity = roomy(total, extra, atomic_load(&pools->items_used), pools->item_capacity);
   if (capacity > UINT32_MAX) return false;
   scree_item *items = scree_alloc(capacity, sizeof *items);
@@ -83,6 +90,7 @@ bool scree_pack_items(scree_pools *pools, scree_pair *pairs, size_t count, size_
       if (items[used + i].notched) further[used + i] = pools->further[range->first + i];
     }
     range->first = used;
+    range->capacity = trimmed(range, SCREE_FIRST_ITEMS);
     used += range->capacity;
   }
   scree_free(pools->items);
@@ -96,7 +104,8 @@ bool scree_pack_items(scree_pools *pools, scree_pair *pairs, size_t count, size_
 
 bool scree_pack_sleepers(scree_pools *pools, scree_neighbours *neighbours, size_t count) {
   uint64_t total = 0;
-  for (size_t k = 0; k < count; k++) total += neighbours[k].sleeping.capacity;
+  for (size_t k = 0; k < count; k++)
+    total += trimmed(&neighbours[k].sleeping, SCREE_FIRST_SLEEPERS);
   uint64_t capacity = roomy(total, 0, atomic_load(&pools->sleepers_used), pools->sleeper_capacity);
   if (capacity > UINT32_MAX) return false;
   scree_sleeper *sleepers = scree_alloc(capacity, sizeof *sleepers);
@@ -107,6 +116,7 @@ bool scree_pack_sleepers(scree_pools *pools, scree_neighbours *neighbours, size_
     if (range->count)
       memcpy(sleepers + used, pools->sleepers + range->first, range->count * sizeof *sleepers);
     range->first = used;
+    range->capacity = trimmed(range, SCREE_FIRST_SLEEPERS);
     used += range->capacity;
   }
   scree_free(pools->sleepers);
