@@ -11,20 +11,13 @@ static scree_status need_name(const scree_reader *r, const scree_place *place,
                               const scree_records *records, size_t size, const char *what,
                               const char *name) {
   const char *names[64] = {NULL};
-  char list[400] = "";
   size_t count = 0;
   if (scree_plan_find(records, size, name) < records->count) return SCREE_OK;
   for (size_t i = 0; i < records->count && count < 64; i++) {
     const scree_place *other = (const void *)((const char *)records->items + i * size);
-    size_t used = strlen(list);
     names[count++] = other->name;
-    snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", other->name);
   }
-  const char *nearest = scree_nearest_name(name, names, count);
-  if (nearest)
-    return scree_fail_place(r, place, "no %s '%.64s'; did you mean '%s'?", what, name, nearest);
-  return scree_fail_place(r, place, "no %s '%.64s'; there %s %s", what, name,
-                          count == 1 ? "is" : "are", count ? list : "none");
+  return scree_fail_name(r, place, what, name, names, count);
 }
 
 #define NEED(records, type, what, name, place)                                                     \

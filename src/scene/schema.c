@@ -93,6 +93,21 @@ const char *scree_nearest_name(const char *word, const char *const *names, size_
   return nearest;
 }
 
+scree_status scree_fail_name(const scree_reader *reader, const scree_place *place, const char *what,
+                             const char *name, const char *const *names, size_t count) {
+  char list[400] = "";
+  for (size_t i = 0; i < count; i++) {
+    size_t used = strlen(list);
+    snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", names[i]);
+  }
+  const char *nearest = scree_nearest_name(name, names, count);
+  if (nearest)
+    return scree_fail_place(reader, place, "no %s '%.64s'; did you mean '%s'?", what, name,
+                            nearest);
+  return scree_fail_place(reader, place, "no %s '%.64s'; there %s %s", what, name,
+                          count == 1 ? "is" : "are", count ? list : "none");
+}
+
 static scree_status fail_unknown(const scree_reader *r, const scree_yaml *item,
                                  const scree_record *kind) {
   const char *names[64] = {NULL};

@@ -90,6 +90,9 @@ scree_status scree_record_read(const scree_reader *reader, const scree_yaml *nod
 /* "FILE, line L, column C: PATH: ..." as an error of SCREE_BAD_FILE. */
 scree_status scree_fail_place(const scree_reader *reader, const scree_place *place,
                               const char *format, ...) SCREE_PRINTF(3, 4);
+/* "no material 'glas'; did you mean 'glass'?" or which there are. */
+scree_status scree_fail_name(const scree_reader *reader, const scree_place *place, const char *what,
+                             const char *name, const char *const *names, size_t count);
 /* One field of a record, which need not begin with a scree_place, from its value. */
 scree_status scree_field_read(const scree_reader *reader, const scree_yaml *node,
                               const scree_field *field, void *record);

@@ -31,7 +31,9 @@ factors: {inlets.feed.rat: [50, 100]}
 answers: [all.count]
 END
 run study wrong.yaml 2>&1 | sed 's/: [^ ]*chute/: chute/' | cut -c 1-110
-sed -i 's/rat:/rate:/; s/all.count/all.cuont/' wrong.yaml
+sed -i 's/inlets.feed.rat:/inlets.fed.rate:/' wrong.yaml
+run study wrong.yaml 2>&1 | sed 's/: [^ ]*chute/: chute/'
+sed -i 's/fed.rate:/feed.rate:/; s/all.count/all.cuont/' wrong.yaml
 run study wrong.yaml 2>&1 | cut -c 1-110
 sed -i 's/answers.*//' wrong.yaml
 run study wrong.yaml
