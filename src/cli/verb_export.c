@@ -60,18 +60,21 @@ static const cli_option options[] = {
     {"force", CLI_FLAG, AT(overwrite), NULL, "Overwrite existing files.", 0, 0, NULL},
 };
 
-typedef enum input_kind { SURFACE, WORLD, RUN } input_kind;
+typedef enum input_kind { WORLD, RUN, SCENE, POUR, SURFACE } input_kind;
 
 /* By content. */
 static input_kind kind_of(const char *word) {
+  static const char magics[][9] = {"screeWLD", "screeRUN", "screeSCN", "screePOU"};
   char magic[8] = "";
+  int kind = WORLD;
   if (!strcmp(word, "-") || cli_is_sample(word, NULL)) return SURFACE;
   FILE *file = scree_open_stream(word, "rb");
   if (!file) return SURFACE;
   size_t count = fread(magic, 1, sizeof magic, file);
   fclose(file);
   if (count < sizeof magic) return SURFACE;
-  return !memcmp(magic, "screeWLD", 8) ? WORLD : !memcmp(magic, "screeRUN", 8) ? RUN : SURFACE;
+  while (kind < SURFACE && memcmp(magic, magics[kind], sizeof magic) != 0) kind++;
+  return (input_kind)kind;
 }
 
 static scree_export_options export_options(const cli_call *call) {
@@ -168,7 +171,7 @@ static scree_status make_clump(const cli_call *call, scree_particle **particle,
   const export_arguments *a = call->options;
   const char *word = call->inputs[0];
   cli_input_options input = cli_source_options(&a->source);
-  if (cli_is_clump(word)) return scree_particle_clump_read(word, a->source.unit, particle, error);
+  if (cli_is_clump(word)) return scree_particle_clump_read(word, &input.read, particle, error);
   cli_clump_surface surface = {.triangles = SCREE_CLUMP_TRIANGLES};
   scree_clump_options o = scree_default_clump_options();
   scree_clumps clumps;
@@ -214,25 +217,32 @@ static scree_status export_clump(const cli_call *call, scree_error *error) {
 
 /* ---- Checkpoints ---- */
 
-/* A world, or the run that it belongs to. */
+/* A world, and what it belongs to: at most one of these. */
 typedef struct checkpoint {
-  scree_run *run; /* NULL: a world of its own */
+  scree_run *run;
+  scree_scene *scene;
+  scree_pour *pour;
   scree_world *world;
 } checkpoint;
 
 static scree_status load_checkpoint(const char *word, checkpoint *c, scree_error *error) {
+  input_kind kind = kind_of(word);
   *c = (checkpoint){0};
-  if (kind_of(word) == WORLD) return scree_world_load(word, &c->world, error);
-  scree_status status = scree_run_load(word, &c->run, error);
-  if (status == SCREE_OK) c->world = scree_run_world(c->run);
+  scree_status status = kind == WORLD   ? scree_world_load(word, &c->world, error)
+                        : kind == SCENE ? scree_scene_load(word, &c->scene, error)
+                        : kind == POUR  ? scree_pour_load(word, &c->pour, error)
+                                        : scree_run_load(word, &c->run, error);
+  if (c->run) c->world = scree_run_world(c->run);
+  if (c->scene) c->world = scree_scene_world(c->scene);
+  if (c->pour) c->world = scree_pour_world(c->pour);
   return status;
 }
 
 static void free_checkpoint(checkpoint *c) {
-  if (c->run)
-    scree_run_free(c->run);
-  else
-    scree_world_free(c->world);
+  if (!c->run && !c->scene && !c->pour) scree_world_free(c->world);
+  scree_run_free(c->run);
+  scree_scene_free(c->scene);
+  scree_pour_free(c->pour);
 }
 
 static scree_status write_view(const cli_call *call, const checkpoint *c, const char *word,

@@ -86,6 +86,7 @@ for how in INT KILL; do
   ls cut | cmp - left.txt
   [ $how = KILL ] || rm -r cut
 done
+run export cut/checkpoint.scree --view contacts -o contacts.vtp
 # a drop that is done is done at once, or goes on for longer
 "$SCREE" drop --resume -o cut --time 0.3 --still 0 --frames 0.05 --no-picture -q | head -1 | shape
 "$SCREE" drop --resume -o cut --time 0.4 --still 0 --frames 0.05 --no-picture -q >/dev/null

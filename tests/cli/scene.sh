@@ -8,6 +8,9 @@ head -2 hopper.yaml | tail -1
 grep -E '^time|count|sphere' small.yaml
 run run hopper.yaml --set inlets.feed.cuont=20 2>&1 | cut -c 1-120
 run run hopper.yaml --set inlets 2>&1 | head -2
+# a name that the file lacks makes no thing that nothing uses
+run run hopper.yaml --set materials.grian.friction=0.3
+run run hopper.yaml --set outlets.chute.from=1
 run run hopper.yaml --set time=short
 run run nowhere.yaml
 run run hopper.yaml --resume 2>&1 | head -2
@@ -43,3 +46,8 @@ wait $victim 2>/dev/null
 "$SCREE" run small.yaml --set output.checkpoint=0.01 -o killed --no-picture -q --resume >/dev/null
 cmp out/series.csv killed/series.csv && echo same series
 cmp out/motion.scree killed/motion.scree && echo same motion
+# its checkpoint for ParaView, and as a folder
+run export out/checkpoint.scree --view walls -o walls.vtp
+grep -c '<VTKFile' walls.vtp
+run export out/checkpoint.scree -o pile
+grep -c ',' pile/bodies.csv
