@@ -109,7 +109,7 @@ SCREE_API scree_status scree_clump_fit(const scree_mesh *mesh, size_t count,
                                        scree_error *error);
 
 /* A sphere a line, x,y,z,radius below a line of words and the body's mass properties, in units of
- * unit_m metres: what scree_particle_clump_read reads. */
+ * unit_m metres, which a comment names: what scree_particle_clump_read reads. */
 SCREE_API scree_status scree_spheres_write(const scree_clumps *clumps, const scree_clump *clump,
                                            double unit_m, const char *path, bool overwrite,
                                            scree_error *error);

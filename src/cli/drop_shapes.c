@@ -175,9 +175,10 @@ static scree_status make_particle(const drop_run *run, drop_shape *shape, scree_
   describe(shape, NULL);
   if (shape->diameter > 0)
     return scree_particle_sphere(0.5 * shape->diameter, &shape->particle, error);
-  if (cli_is_clump(shape->name))
-    return scree_particle_clump_read(shape->name, run->arguments->source.unit, &shape->particle,
-                                     error);
+  if (cli_is_clump(shape->name)) {
+    cli_input_options input = cli_source_options(&run->arguments->source);
+    return scree_particle_clump_read(shape->name, &input.read, &shape->particle, error);
+  }
   scree_mesh mesh;
   double scale;
   scree_status status = load(run, shape, &mesh, &scale, error);

@@ -199,13 +199,13 @@ static scree_status make_from_scan(const maker *m, size_t shape, const char *wor
 /* ---- clumps ---- */
 
 static scree_status make_from_clump(const maker *m, size_t shape, const char *word) {
+  cli_input_options input = cli_source_options(&m->options->source);
   scree_status status = SCREE_OK;
   for (size_t level = 0; status == SCREE_OK && level < m->grains->level_count; level++) {
     size_t index = level * m->grains->shape_count + shape;
     scree_grain *grain = &m->grains->grains[index];
     scree_particle_measures measures;
-    status =
-        scree_particle_clump_read(word, m->options->source.unit, &grain->run.particle, m->error);
+    status = scree_particle_clump_read(word, &input.read, &grain->run.particle, m->error);
     if (status != SCREE_OK) return status;
     scree_particle_measure(grain->run.particle, &measures);
     grain->run.density_factor = 1;

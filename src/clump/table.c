@@ -2,6 +2,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/number.h"
+#include "mesh/write.h"
 #include "scree.h"
 
 #include <stdio.h>
@@ -37,7 +38,9 @@ scree_status scree_spheres_write(const scree_clumps *clumps, const scree_clump *
   scree_output output;
   scree_status status = scree_output_open(path, overwrite, &output, error);
   if (status != SCREE_OK) return status;
-  fputs("x,y,z,radius\n", output.stream);
+  char provenance[SCREE_PROVENANCE_SIZE];
+  scree_provenance_text(unit_m, NULL, provenance);
+  fprintf(output.stream, "x,y,z,radius\n# %s\n", provenance);
   put_body(output.stream, &clumps->measures, unit_m);
   for (size_t i = 0; i < clump->sphere_count; i++) {
     const scree_sphere *s = &clump->spheres[i];

@@ -238,16 +238,15 @@ static scree_status check_mesh(const scree_mesh *mesh, const char *path,
   return SCREE_OK;
 }
 
-static void make_provenance(scree_writing *w, const char *comment) {
+void scree_provenance_text(double unit_m, const char *comment, char text[SCREE_PROVENANCE_SIZE]) {
   char unit[SCREE_NUMBER_SIZE];
-  scree_number_format(w->unit_m, unit);
-  snprintf(w->provenance, sizeof w->provenance, "scree %s, unit %s m%s%s", scree_version(), unit,
+  scree_number_format(unit_m, unit);
+  snprintf(text, SCREE_PROVENANCE_SIZE, "scree %s, unit %s m%s%s", scree_version(), unit,
            comment ? "; " : "", comment ? comment : "");
-  for (char *p = w->provenance; *p; p++)
+  for (char *p = text; *p; p++)
     if ((unsigned char)*p < ' ' || *p == 127) *p = ' ';
 }
 
-/* "scree VERSION, unit NUMBER m" */
 double scree_provenance_unit(const char *begin, const char *end) {
   static const char name[] = "scree ", unit[] = " unit ";
   const size_t name_length = sizeof name - 1, unit_length = sizeof unit - 1;
@@ -295,7 +294,7 @@ scree_status scree_mesh_write(const scree_mesh *mesh, const char *path,
   if (status != SCREE_OK) return status;
   if (used.format == SCREE_FORMAT_3MF) scree_3mf_unit(&used.unit_m);
   scree_writing w = {.mesh = mesh, .stream = output.stream, .unit_m = used.unit_m};
-  make_provenance(&w, used.comment);
+  scree_provenance_text(w.unit_m, used.comment, w.provenance);
   write_body(&w, used.format);
   return scree_output_commit(&output, error);
 }

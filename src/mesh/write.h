@@ -7,12 +7,14 @@
 
 #include <stdio.h>
 
+enum { SCREE_PROVENANCE_SIZE = 256 };
+
 /* A mesh on its way into a stream. */
 typedef struct scree_writing {
   const scree_mesh *mesh;
   FILE *stream;
   double unit_m;
-  char provenance[256]; /* one line, printable */
+  char provenance[SCREE_PROVENANCE_SIZE]; /* one line, printable */
 } scree_writing;
 
 /* In the file's unit. */
@@ -21,6 +23,8 @@ static inline vec3 scree_writing_position(const scree_writing *w, uint32_t verte
   return (vec3){p.x / w->unit_m, p.y / w->unit_m, p.z / w->unit_m};
 }
 
+/* "scree VERSION, unit NUMBER m; COMMENT", the comment may be NULL. */
+void scree_provenance_text(double unit_m, const char *comment, char text[SCREE_PROVENANCE_SIZE]);
 /* The unit in metres of a provenance that begins so, as a comment in a file has it; 0: it is none
  * of scree's. */
 double scree_provenance_unit(const char *begin, const char *end);

@@ -1,7 +1,8 @@
 /* Clumps from tables: x, y, z and radius of a sphere a line, between blanks, commas or semicolons;
- * a first line of words, empty lines and lines that begin with # are passed over, but for those of
- * the body that the clump stands for:
+ * a first line of words, empty lines and lines that begin with # are passed over, but for that of
+ * the unit, which stands before all numbers, and those of the body that the clump stands for:
  *
+ *   # scree VERSION, unit NUMBER m
  *   # volume V
  *   # centroid X Y Z
  *   # inertia XX YY ZZ XY XZ YZ
@@ -13,6 +14,7 @@
 #include "base/number.h"
 #include "mesh/text.h"
 #include "mesh/weld.h"
+#include "mesh/write.h"
 #include "particle/particle.h"
 
 #include <math.h>
@@ -27,6 +29,7 @@ typedef struct spheres {
   size_t count, centre_capacity, radius_capacity;
   scree_solid body; /* that it stands for */
   unsigned known;   /* what of it was read */
+  bool keep_unit;   /* whatever the table says */
 } spheres;
 
 static bool push_sphere(spheres *s, const double row[4]) {
@@ -85,6 +88,8 @@ static bool read_body(scree_text *t, spheres *s) {
   t->p++;
   scree_text_skip_blanks(t);
   if (scree_text_at_line_end(t)) return true;
+  double unit = s->count || s->known || s->keep_unit ? 0 : scree_provenance_unit(t->p, t->end);
+  if (unit > 0) t->unit_m = unit;
   scree_token word = scree_text_next(t);
   if (scree_token_is(word, "volume")) {
     s->known |= VOLUME;
@@ -135,14 +140,15 @@ static scree_status read_spheres(scree_text *t, spheres *s) {
   return SCREE_OK;
 }
 
-scree_status scree_particle_clump_read(const char *path, double unit_m, scree_particle **particle,
-                                       scree_error *error) {
+scree_status scree_particle_clump_read(const char *path, const scree_read_options *options,
+                                       scree_particle **particle, scree_error *error) {
+  const scree_read_options o = options ? *options : scree_default_read_options();
   char *bytes;
   size_t count;
-  spheres s = {0};
-  scree_status status = scree_file_read(path, 0, &bytes, &count, error);
+  spheres s = {.keep_unit = o.ignore_comment_unit};
+  scree_status status = scree_file_read(path, o.max_bytes, &bytes, &count, error);
   if (status != SCREE_OK) return status;
-  scree_text text = {bytes, bytes, bytes + count, path, unit_m, error};
+  scree_text text = {bytes, bytes, bytes + count, path, o.unit_m, error};
   status = read_spheres(&text, &s);
   if (status == SCREE_OK)
     status = scree_particle_clump_of(s.centres, s.radii, s.count,

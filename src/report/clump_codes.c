@@ -168,6 +168,7 @@ static scree_status write_lammps(const clump_job *j, scree_error *error) {
 
 static void put_liggghts_input(const clump_job *j, FILE *f) {
   double w = j->width / 2, reach = j->m.bounding_radius;
+  double least = 1e-3 * j->m.volume; /* what LIGGGHTS takes for none; its 1e-12 m3 are a grain */
   fprintf(f,
           "# lets %zu clumps fall into a box: liggghts -in in.%s\n"
           "units si\natom_style granular\natom_modify map array\nboundary f f f\nnewton off\n"
@@ -191,17 +192,18 @@ static void put_liggghts_input(const clump_job *j, FILE *f) {
           -w, w, -w, w);
   fprintf(
       f,
-      "fix clump all particletemplate/multisphere 15485863 atom_type 1 density constant %.6g "
-      "nspheres %zu ntry 1000000 spheres file %s.txt scale 1.0 type 1 mass %.12g inertia_tensor "
+      "fix clump all particletemplate/multisphere 15485863 atom_type 1 volume_limit %.3g density "
+      "constant %.6g nspheres %zu ntry 1000000 spheres file %s.txt scale 1.0 type 1 mass %.12g "
+      "inertia_tensor "
       "%.12g 0 0 %.12g 0 %.12g use_volume\n"
       "fix mix all particledistribution/discrete 15485867 1 clump 1.0\n"
-      "region top block %.6g %.6g %.6g %.6g %.6g %.6g units box\n"
+      "region top block %.6g %.6g %.6g %.6g %.6g %.6g units box volume_limit %.3g\n"
       "fix fall all insert/pack seed 32452843 distributiontemplate mix maxattempt 1000 "
       "insert_every once overlapcheck yes all_in yes vel constant 0 0 -0.1 orientation random "
       "region top particles_in_region %zu\n"
       "fix move all multisphere\n",
-      j->options->density, j->m.point_count, j->name, j->mass, j->inertia[0], j->inertia[1],
-      j->inertia[2], -w, w, -w, w, 0.1 * reach, 2.9 * j->height, j->options->count);
+      least, j->options->density, j->m.point_count, j->name, j->mass, j->inertia[0], j->inertia[1],
+      j->inertia[2], -w, w, -w, w, 0.1 * reach, 2.9 * j->height, least, j->options->count);
   fprintf(f,
           "compute mass all multisphere property masstotal\nthermo 1000\n"
           "thermo_style custom step atoms ke\nthermo_modify lost ignore norm no\n"

@@ -144,8 +144,11 @@ static scree_status make(making *m, const char *path, scree_particle **particle,
                          scree_error *error) {
   const scree_plan_shape *s = m->shape;
   if (!isnan(s->sphere)) return scree_particle_sphere(0.5 * s->sphere, particle, error);
-  if (s->clump && !scree_plan_spheres(s))
-    return scree_particle_clump_read(path, scree_plan_unit(s->unit), particle, error);
+  if (s->clump && !scree_plan_spheres(s)) {
+    scree_read_options o = scree_default_read_options();
+    o.unit_m = scree_plan_unit(s->unit);
+    return scree_particle_clump_read(path, &o, particle, error);
+  }
   scree_status status;
   if (s->sample)
     status = make_sample(m, error);

@@ -415,10 +415,12 @@ static scree_status make_particle(const scree_study *study, const scree_study_sh
                                   const char *rp, scree_particle **particle, scree_error *error) {
   if (!strcmp(rp, "spheres"))
     return scree_particle_sphere(scree_cbrt(0.75 * shape->volume / pi), particle, error);
+  scree_read_options read = scree_default_read_options();
+  read.unit_m = 1;
   char *path = level_path(study, shape, rp);
   if (!path) return scree_fail_memory(error, 0, "a path");
   scree_status status = scree_study_spheres(rp)
-                            ? scree_particle_clump_read(path, 1, particle, error)
+                            ? scree_particle_clump_read(path, &read, particle, error)
                             : read_mesh_particle(path, particle, error);
   scree_free(path);
   if (status == SCREE_OK || !error) return status;

@@ -9,6 +9,11 @@ run clump box.off -n 2 -o out -q
 ls out
 head -1 out/box.csv
 grep -c '^[^#x]' out/box.csv
+# a table names its unit, and is read in it
+run clump box.off -u m -n 1 -o metres -q
+sed -n 2p metres/box.csv | sed 's/[0-9.]*, /N, /'
+run export metres/box.csv --to edem -o edem -q -d 1
+sed 1d edem/box.tsv | cut -f4 | cut -c1-3
 run clump box.off -n 2 -o out -q
 run clump box.off -n 2 -o out -q -f -m peeling
 run clump box.off -n 2 -o out/box.csv -q

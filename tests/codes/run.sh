@@ -41,6 +41,12 @@ for count in 1 4; do
     grep -q "^$count clumps of 0.6604" yade.log || fail "yade: bodies"
   fi
 done
+# powders: grains of 60 um
+"$SCREE" sample box-12 -o box.off -q
+if command -v liggghts >/dev/null; then
+  "$SCREE" export box.off -u um --to liggghts -n 2 --particles 2 -o powder -q || fail "scree export"
+  (cd powder && timeout 120 liggghts -in in.box) >liggghts.log 2>&1 || fail "liggghts: powder"
+fi
 [ $ran = 1 ] || {
   echo "skipped: neither lmp nor liggghts nor yade"
   exit 77

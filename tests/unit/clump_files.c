@@ -121,7 +121,7 @@ static void the_bodys_mass_goes_along(void **state) {
   CHECK_OK(scree_spheres_write(&m.clumps, m.entry.chosen, 1e-3, in_folder("c.csv"), false, &error),
            error);
   scree_particle *read;
-  CHECK_OK(scree_particle_clump_read(in_folder("c.csv"), 1e-3, &read, &error), error);
+  CHECK_OK(scree_particle_clump_read(in_folder("c.csv"), NULL, &read, &error), error);
   const double s[3] = {0.03, 0.02, 0.012}, volume = s[0] * s[1] * s[2];
   scree_particle *both[2] = {m.particle, read};
   for (int i = 0; i < 2; i++) {
@@ -140,6 +140,33 @@ static void the_bodys_mass_goes_along(void **state) {
   clean_up(&m);
 }
 
+/* A table names the unit that it was written in, which holds unless the options say otherwise. */
+static void a_table_names_its_unit(void **state) {
+  (void)state;
+  static const double units[] = {1, 1e-3, 0.0254};
+  made m;
+  scree_error error;
+  scree_particle_measures p, q;
+  set_up(&m);
+  scree_particle_measure(m.particle, &p);
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++) {
+    scree_particle *read;
+    scree_read_options o = scree_default_read_options();
+    CHECK_OK(
+        scree_spheres_write(&m.clumps, m.entry.chosen, units[i], in_folder("u.csv"), true, &error),
+        error);
+    for (int given = 0; given < 2; given++) {
+      double scale = given ? pow(o.unit_m / units[i], 3) : 1;
+      o.ignore_comment_unit = given;
+      CHECK_OK(scree_particle_clump_read(in_folder("u.csv"), &o, &read, &error), error);
+      scree_particle_measure(read, &q);
+      CHECK_NEAR(q.volume, scale * p.volume, 1e-9 * scale * p.volume);
+      scree_particle_free(read);
+    }
+  }
+  clean_up(&m);
+}
+
 /* EDEM's table, read as any other, has the particle's spheres; MFiX's has them in diameters of the
  * bounding sphere, each with no more than its whole surface and all with more than the largest. */
 static void other_codes_get_the_spheres(void **state) {
@@ -155,7 +182,9 @@ static void other_codes_get_the_spheres(void **state) {
   o.name = "other";
   CHECK_OK(scree_clump_code_write(m.particle, SCREE_DEM_EDEM, &o, in_folder("."), &error), error);
   CHECK_OK(scree_clump_code_write(m.particle, SCREE_DEM_MFIX, &o, in_folder("."), &error), error);
-  CHECK_OK(scree_particle_clump_read(in_folder("other.tsv"), 1, &read, &error), error);
+  scree_read_options metres = scree_default_read_options();
+  metres.unit_m = 1;
+  CHECK_OK(scree_particle_clump_read(in_folder("other.tsv"), &metres, &read, &error), error);
   scree_particle_measures q;
   scree_particle_measure(read, &q);
   assert_int_equal(q.point_count, p.point_count);
@@ -195,7 +224,7 @@ static void a_wrong_mass_is_told(void **state) {
     (void)fclose(f);
     scree_particle *particle;
     scree_error error;
-    assert_int_equal(scree_particle_clump_read(in_folder("w.csv"), 1e-3, &particle, &error),
+    assert_int_equal(scree_particle_clump_read(in_folder("w.csv"), NULL, &particle, &error),
                      SCREE_BAD_FILE);
     assert_non_null(strstr(error.message, "line 2"));
   }
@@ -262,6 +291,7 @@ int main(void) {
       cmocka_unit_test(peeling_begins_with_the_largest_ball),
       cmocka_unit_test(bubbles_keep_their_angle),
       cmocka_unit_test(the_bodys_mass_goes_along),
+      cmocka_unit_test(a_table_names_its_unit),
       cmocka_unit_test(other_codes_get_the_spheres),
       cmocka_unit_test(a_wrong_mass_is_told),
       cmocka_unit_test(memory_may_run_out),

@@ -19,7 +19,7 @@ static scree_status make_particles(void *context, scree_error *error) {
   if (status == SCREE_OK) status = scree_particle_clump(centres, radii, 2, NULL, &made[2], error);
   if (status == SCREE_OK)
     status = scree_particle_clump(centres, radii, 2, made[0], &made[3], error);
-  if (status == SCREE_OK) status = scree_particle_clump_read(file, 1e-3, &made[4], error);
+  if (status == SCREE_OK) status = scree_particle_clump_read(file, NULL, &made[4], error);
   for (int i = 0; i < 5; i++) scree_particle_free(made[i]);
   return status;
 }
