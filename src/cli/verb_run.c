@@ -261,7 +261,7 @@ static scree_status draw(const scene_run *r, scree_error *error) {
     status = scree_scene_picture(r->scene, &o, r->call->progress, &image, error);
   if (status == SCREE_OK) status = scree_image_write_png(&image, path, true, error);
   scree_image_free(&image);
-  if (status != SCREE_UNSUPPORTED) return status;
+  if (status != SCREE_UNSUPPORTED && status != SCREE_CANCELLED) return status;
   fprintf(stderr, "no picture: %s\n", error->message);
   return SCREE_OK;
 }
@@ -316,6 +316,13 @@ static scree_status check_output(const scene_run *r, scree_error *error) {
   return status;
 }
 
+/* The state in which the scene failed: the report plays up to it, and nothing goes on from it. */
+static void keep_end(const scene_run *r) {
+  char path[PATH_BYTES];
+  if (r->arguments->output && path_of(r, "checkpoint.scree", path, NULL) == SCREE_OK)
+    (void)scree_scene_save(r->scene, path, true, NULL);
+}
+
 static scree_status simulate(scene_run *r, scree_error *error) {
   scree_status status = check_output(r, error);
   if (status != SCREE_OK) return status;
@@ -334,6 +341,7 @@ static scree_status simulate(scene_run *r, scree_error *error) {
   bool told =
       r->scene && (status == SCREE_OK || status == SCREE_CANCELLED || status == SCREE_DIVERGED);
   if (!told) return status;
+  if (status == SCREE_DIVERGED) keep_end(r);
   scree_error later; /* what happened first is what is told */
   scree_status telling = tell(r, status == SCREE_OK ? NULL : error->message, seconds,
                               status == SCREE_OK ? error : &later);

@@ -9,6 +9,7 @@
 #include "base/progress.h"
 
 #include <stdarg.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const double tick_share = 0.25; /* of the way a body falls in, or flies, by its radius */
@@ -473,6 +474,17 @@ static scree_status advance(scree_scene *scene, size_t step_count, scree_error *
   return SCREE_OK;
 }
 
+/* A world counts its walls; a scene's have names. */
+static void name_wall(const scree_scene *scene, scree_error *error) {
+  const char *found = error ? strstr(error->message, " wall ") : NULL;
+  char *end;
+  if (!found) return;
+  size_t index = strtoul(found + 6, &end, 10), used = strlen(error->message);
+  if (end == found + 6 || index >= scree_world_wall_count(scene->world)) return;
+  snprintf(error->message + used, sizeof error->message - used, "; wall %zu is '%s'", index,
+           scree_scene_geometry_name(scene, scree_scene_wall_geometry(scene, index)));
+}
+
 scree_status scree_scene_advance(scree_scene *scene, size_t step_count, scree_error *error) {
   if (scene->is_frame)
     return scree_fail(error, SCREE_UNSUPPORTED,
@@ -480,6 +492,7 @@ scree_status scree_scene_advance(scree_scene *scene, size_t step_count, scree_er
                       scene->seal->whose);
   double wall = scree_now(), processor = scree_processor_time();
   scree_status status = advance(scene, step_count, error);
+  if (status == SCREE_DIVERGED) name_wall(scene, error);
   scene->costs.wall_seconds += scree_now() - wall;
   scene->costs.processor_seconds += scree_processor_time() - processor;
   return status;

@@ -1,6 +1,7 @@
 // Curves on logarithmic axes through uPlot, with marks, and redrawn for print in dark on white.
 import uPlot from 'uplot';
 import 'uplot/dist/uPlot.min.css';
+import { ticks } from './text.js';
 
 let printing = false;
 const charts = new Set();
@@ -46,7 +47,7 @@ export class Chart {
     const axis = (label, log) => ({
       label, stroke: ink, ticks: { stroke: rule }, labelSize: 24,
       grid: { stroke: rule, width: 1, ...(log ? { filter: (_, at) => major(at) } : {}) },
-      ...(log ? { values: (_, at) => major(at).map((v) => (v === null ? '' : power(v))) } : {}),
+      ...(log ? { values: (_, at) => major(at).map((v) => (v === null ? '' : power(v))) } : { values: (_, at) => ticks(at) }),
     });
     const options = {
       width: Math.max(260, host.clientWidth), height: 340,

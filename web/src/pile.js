@@ -212,7 +212,7 @@ export class PileView extends View {
     group.scale.setScalar(scale);
     group.position.z = -middle * scale;
     const floor = new Mesh(new CircleGeometry(pile.discRadius || pile.width, 96), new MeshStandardMaterial({ color: 0x9a9aa2, roughness: 1, transparent: true, opacity: 0.5, side: DoubleSide }));
-    floor.position.z = -0.0005;
+    floor.position.z = -0.0005 * radius; // below what lies on it, for the eye only
     this.wall = new Mesh(wallGeometry(pile), new MeshBasicMaterial({ color: 0x8899bb, transparent: true, opacity: 0.16, side: DoubleSide, depthWrite: false }));
     group.add(floor, this.wall);
     return [[radius, 0], [radius, top], [container, filled]].flatMap(([r, z]) => ring(r * scale, (z - middle) * scale));

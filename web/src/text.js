@@ -14,6 +14,13 @@ export function number(x, digits = 4) {
   return exponent ? `${short}e${Number(exponent)}` : short;
 }
 
+// Evenly spaced numbers, with the digits that tell neighbours apart.
+export function ticks(at) {
+  const step = at.length > 1 ? at[1] - at[0] : Math.abs(at[0]) || 1;
+  const power = (v) => Math.floor(Math.log10(v) + 1e-9);
+  return at.map((v) => number(Math.round(v / step) * step, 2 + Math.max(0, power(Math.max(Math.abs(v), step)) - power(step))));
+}
+
 export const percent = (x) => (Math.abs(x) < 1e-10 ? '0 %' : `${number(100 * x, 2)} %`); // below: rounding
 
 export function rpText(rp) {
