@@ -25,7 +25,8 @@ const scree_yaml *scree_yaml_find(const scree_yaml *mapping, const char *key) {
 
 typedef struct reader {
   yaml_parser_t parser;
-  const char *name;
+  const char *bytes, *name;
+  size_t byte_count;
   scree_error *error;
 } reader;
 
@@ -34,12 +35,34 @@ static scree_status fail_at(reader *r, const yaml_mark_t *mark, const char *what
                     mark->line + 1, mark->column + 1, what);
 }
 
+/* Bytes that are no text: the parser reads ahead and knows only their place in the file. */
+static scree_status fail_encoding(reader *r, const char *problem) {
+  yaml_mark_t mark = {0};
+  size_t end = r->parser.problem_offset < r->byte_count ? r->parser.problem_offset : r->byte_count;
+  for (size_t i = 0; i < end; i++, mark.column++)
+    if (r->bytes[i] == '\n') mark = (yaml_mark_t){.line = mark.line + 1, .column = (size_t)-1};
+  bool foreign = strstr(problem, "UTF-8") != NULL;
+  return fail_at(r, &mark, foreign ? "no UTF-8 text: save the file as UTF-8" : problem);
+}
+
+static bool is_tab(const reader *r, const yaml_mark_t *mark) {
+  const char *p = r->bytes, *end = r->bytes + r->byte_count;
+  for (size_t line = 0; p && line < mark->line; line++) {
+    p = memchr(p, '\n', (size_t)(end - p));
+    if (p) p++;
+  }
+  return p && mark->column < (size_t)(end - p) && p[mark->column] == '\t';
+}
+
 static scree_status next_event(reader *r, yaml_event_t *event) {
   if (yaml_parser_parse(&r->parser, event)) return SCREE_OK;
   const char *problem = r->parser.problem ? r->parser.problem : "cannot be read as YAML";
   if (r->parser.error == YAML_MEMORY_ERROR) return scree_fail_memory(r->error, 0, r->name);
   if (r->parser.context && strstr(r->parser.context, "simple key"))
     return fail_at(r, &r->parser.context_mark, "must be `key: value`");
+  if (r->parser.error == YAML_READER_ERROR) return fail_encoding(r, problem);
+  if (is_tab(r, &r->parser.problem_mark))
+    return fail_at(r, &r->parser.problem_mark, "a tab: lines are indented by blanks");
   return fail_at(r, &r->parser.problem_mark, problem);
 }
 
@@ -153,7 +176,7 @@ static scree_status read_stream(reader *r, scree_yaml *root) {
 
 scree_status scree_yaml_parse(const char *bytes, size_t byte_count, const char *name,
                               scree_yaml *root, scree_error *error) {
-  reader r = {.name = name, .error = error};
+  reader r = {.bytes = bytes, .name = name, .byte_count = byte_count, .error = error};
   if (!yaml_parser_initialize(&r.parser)) return scree_fail_memory(error, 0, name);
   yaml_parser_set_input_string(&r.parser, (const unsigned char *)bytes, byte_count);
   scree_yaml made;

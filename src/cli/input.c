@@ -28,8 +28,9 @@ static void hint_sample(const char *word, scree_error *error) {
 
 /* ---- Remarks ---- */
 
-/* What particles are: from fine sand to boulders. */
-static const double smallest_size = 1e-4, largest_size = 10; /* m */
+/* What particles are: from fine sand to boulders, and scans in a unit that nobody named from gravel
+ * on: one in metres, taken for millimetres, is smaller. */
+static const double smallest_size = 1e-4, smallest_unnamed = 1e-3, largest_size = 10; /* m */
 
 static bool is_quiet, unit_is_given;
 
@@ -92,10 +93,10 @@ void cli_scan_remarks(const cli_input_options *options, const scree_scan *scan, 
                  unit_is_given ? "scree wrote it in %s; read in %s, as -u says"
                                : "read in %s, as scree wrote it, not in %s",
                  unit_text(scan->comment_unit_m, written), unit_text(options->read.unit_m, asked));
-  if (size < smallest_size || size > largest_size)
-    cli_add_line(text, bytes, "%.3g %s across: no size of a particle, is the unit right?%s",
-                 size < 1 ? 1e3 * size : size, size < 1 ? "mm" : "m",
-                 states ? "" : " -u says which it is");
+  double least = states || unit_is_given ? smallest_size : smallest_unnamed;
+  if (size < least || size > largest_size)
+    cli_add_line(text, bytes, "%.3g %s across: is the unit right?%s", size < 1 ? 1e3 * size : size,
+                 size < 1 ? "mm" : "m", states ? "" : " -u says which it is");
 }
 
 void cli_remark_scan(const char *word, const cli_input_options *options, const scree_scan *scan,

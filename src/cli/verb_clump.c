@@ -135,7 +135,15 @@ static void print_row(FILE *out, const clump_object *object, const scree_clump *
           c->slope_deg, c->volume_criterion, c->distance_criterion, mark);
 }
 
-static void print_object(FILE *out, const clump_object *object) {
+/* Of the last of so many as were to be tried it is not known whether more were better. */
+static const char *mark_of(const clump_object *object, size_t index, size_t most) {
+  const scree_clumps *c = &object->clumps;
+  bool last = index + 1 == c->clump_count && c->clumps[index].sphere_count >= most;
+  if (index == c->recommended) return last ? " least of those tried" : " recommended";
+  return &c->clumps[index] == object->chosen ? " chosen" : "";
+}
+
+static void print_object(FILE *out, const clump_object *object, size_t most) {
   const scree_clumps *c = &object->clumps;
   char shown[CLI_PRINTABLE_BYTES], scan[32], used[32];
   const char *unit = cli_unit_name(object->surface.unit_m);
@@ -153,11 +161,7 @@ static void print_object(FILE *out, const clump_object *object) {
   fprintf(out, "%7s %7s %9s %9s %8s %8s %7s %9s %9s\n", "", "", unit, unit, "", "", "deg", "+n/200",
           "+n/5000");
   for (size_t i = 0; i < c->clump_count; i++)
-    if (is_told(object, i))
-      print_row(out, object, &c->clumps[i],
-                i == c->recommended               ? " recommended"
-                : &c->clumps[i] == object->chosen ? " chosen"
-                                                  : "");
+    if (is_told(object, i)) print_row(out, object, &c->clumps[i], mark_of(object, i, most));
 }
 
 static void print_advice(FILE *out, const clump_object *object) {
@@ -187,9 +191,10 @@ static void warn(const cli_call *call, const clump_object *object) {
 }
 
 void clump_print(FILE *out, const clump_run *run) {
+  size_t most = clump_options(run->call->options).most;
   for (size_t i = 0; i < run->count; i++) {
     if (i) putc('\n', out);
-    print_object(out, &run->objects[i]);
+    print_object(out, &run->objects[i], most);
     print_advice(out, &run->objects[i]);
   }
 }

@@ -51,4 +51,7 @@ run choose bowl.off --no-repair
 "$SCREE" simplify sample:box-12 -n 12 -u m -o metres.stl -q
 cp metres.stl here.stl
 for unit in "" "-u mm" "-u m" "-u km"; do run measure here.stl $unit 2>&1 | grep -E "^(here|\\$)|dimensions x"; done
+# as small as a scan in metres would be: a question, but where the unit is said
+box 0.2 0.1 0.1 >stone.off
+for unit in "" "-u mm"; do run measure stone.off $unit 2>&1 | head -n 2; done
 run export here.stl -o there.stl -d 1.2 2>&1 | head -n 3

@@ -14,6 +14,11 @@ run run hopper.yaml --set outlets.chute.from=1
 run run hopper.yaml --set time=short
 run run nowhere.yaml
 run run hopper.yaml --resume 2>&1 | head -2
+# another encoding, a tab, a control character: in their line
+printf 'time: 1\ntitle: Gr\374n\n' >latin.yaml
+printf 'time: 1\nshapes:\n\tball: {sphere: 0.01}\n' >tab.yaml
+printf 'time: 1\ntitle: \007\n' >bell.yaml
+for file in latin tab bell; do run run $file.yaml; done
 sed 's/friction: 0.3/fricton: 0.3/' hopper.yaml >wrong.yaml
 run run wrong.yaml
 # geometry from inside, a period that a ball does not fit into: the place in the file, and no folder

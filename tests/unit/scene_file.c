@@ -49,7 +49,7 @@ static const struct {
     {"seed: 3", "seed: 1.5", "line 3", "must be a whole number"},
     {"time: 2\n", "time: 0,2\n", "line 2, column 7", "must be a number in s; what is ',2'?"},
     {"time: 2\n", "time 2\n", "line 2, column 1", "must be `key: value`"},
-    {"time: 2\n", "\ttime: 2\n", "line 2, column 1", "a tab character"},
+    {"time: 2\n", "\ttime: 2\n", "line 2, column 1", "a tab: lines are indented"},
     {"young: 1e6", "young: 1e6 MPa", "line 5", "must be a number in Pa; what is 'MPa'?"},
     {"young: 1e6", "youngs: 1e6", "line 5, column 11", "did you mean 'young'"},
     {"density: 2500", "density: 0", "line 5", "materials.grain.density: 0: must be"},
