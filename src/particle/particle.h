@@ -56,6 +56,13 @@ static const double scree_rim_slack = 0.3;
 /* Where a sheet ends: met from below and from both of its faces, a little more than half around:
  * what lies flat on the sheet and reaches beyond it presses on the rim squarely to either. */
 scree_edge scree_rim_edge(vec3 start, vec3 end, vec3 outward);
+static inline bool scree_is_rim(const scree_edge *edge) {
+  return edge->facing < 0;
+}
+/* Whether it is more than spheres: a mesh, or rims alone. */
+static inline bool scree_has_features(const scree_particle *particle) {
+  return particle->face_count > 0 || particle->edge_count > 0;
+}
 
 void scree_particle_retain(scree_particle *particle);
 /* Whether two were made alike: kind, volume, size, features and inertia are the same. */

@@ -220,6 +220,11 @@ enum { SCREE_DEPTHS = 32 };
 double scree_touch_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                           double above, scree_scratch *scratch);
 
+/* The way, in the frame of b, out of which b's rims lead from the places where they lie in a, each
+ * as far as it is deep. 0 where none does. */
+vec3 scree_way_off_rims(const scree_world *world, const scree_pair *pair,
+                        const scree_frame *relative);
+
 /* seam.c: the area of b's surface inside a as a vector, outward, in the frame of b, m2: the way in
  * which the common volume falls fastest as a moves. 0 where the surfaces do not cross. */
 vec3 scree_way_apart(const scree_particle *a, const scree_particle *b, const scree_frame *relative);

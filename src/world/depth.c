@@ -328,6 +328,21 @@ double scree_touch_depths(const scree_world *world, scree_pair *pair, const scre
   return scree_max(of_a, touch_side(&sides[1], pair, above, scratch));
 }
 
+vec3 scree_way_off_rims(const scree_world *world, const scree_pair *pair,
+                        const scree_frame *relative) {
+  side sides[2];
+  vec3 way = {0, 0, 0};
+  make_sides(world, pair, relative, sides);
+  const side *sd = &sides[1];
+  for (size_t i = 0; i < sd->from->edge_count; i++) {
+    const scree_edge *edge = &sd->from->edges[i];
+    if (!scree_is_rim(edge)) continue;
+    scree_depth deep = find_deepest(sd, edge, 0);
+    way = vec3_mad(way, edge->normals.axis, deep.depth);
+  }
+  return way;
+}
+
 /* ---- bodies in each other from the start ---- */
 
 /* How deep a point of `from`, in its frame and with a radius, lies in `to`, where deeper than
@@ -367,10 +382,12 @@ static double start_depth(const scree_world *world, const scree_pair *pair,
 
 /* ---- when depths are asked for ---- */
 
-/* Nothing lies inside: what features that hold the bodies remember is from the wrong side. */
+/* Nothing lies inside: what features that hold the bodies remember is from the wrong side. Points
+ * keep to their side of a disc or cylinder. */
 static void start_anew(const scree_pair *pair, scree_scratch *scratch) {
   for (uint32_t i = 0; i < pair->active.count; i++) {
     scree_item *item = &scratch->items[i];
+    if (item->kind == SCREE_ITEM_POINT_WALL) continue;
     *item = (scree_item){.kind = item->kind, .a = item->a, .b = item->b};
   }
   scratch->touches.count = 0;
@@ -415,10 +432,15 @@ void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scr
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   scree_depth_question *question = &scratch->question;
   *question = (scree_depth_question){false, false, 0};
-  if (!b || !a->face_count || !b->face_count) pair->parting = false; /* no depth is known */
+  if (!b || !a->face_count || !scree_has_features(b)) pair->parting = false; /* no depth is known */
   if (!b) return;
   question->start = scree_pair_is_new(pair);
-  if (!a->face_count || !b->face_count) return;
+  if (!a->face_count || !scree_has_features(b)) return;
+  if (!b->face_count) { /* rims alone are felt by features until they part */
+    question->edges = pair->parting;
+    question->above = apart_depth(pair);
+    return;
+  }
   if (stay_apart(pair, scratch)) {
     pair->depth = -gap_of_cores(pair, scratch);
     return;
@@ -437,15 +459,24 @@ void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scr
   if (!question->edges) pair->depth = -gap_of_cores(pair, scratch);
 }
 
-static void answer(scree_pair *pair, double start, double depth, scree_scratch *scratch,
-                   scree_pair_work *work) {
+/* Bodies are apart where their edges are; from a sheet, which has no inside, where it does not pass
+ * through the body beside its rims either. */
+static bool are_apart(const scree_world *world, const scree_pair *pair,
+                      const scree_scratch *scratch) {
+  const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
+  if (pair->depth > apart_depth(pair)) return false;
+  return !b->sheet || !scree_surfaces_cross(a, b, &scratch->relative);
+}
+
+static void answer(const scree_world *world, scree_pair *pair, double start, double depth,
+                   scree_scratch *scratch, scree_pair_work *work) {
   const scree_depth_question *question = &scratch->question;
   if (question->start) note_start(pair, start, work);
   if (!question->edges) return;
   pair->depth = depth;
   scratch->depth_queries++;
   if (question->start) note_start(pair, pair->depth, work);
-  if (!pair->parting || pair->depth > apart_depth(pair)) return;
+  if (!pair->parting || !are_apart(world, pair, scratch)) return;
   pair->parting = false;
   pair->parted = true;
   pair->way = (vec3){0, 0, 0};
@@ -459,7 +490,7 @@ void scree_pair_find_depths(const scree_world *world, scree_pair *pair, scree_sc
   const scree_frame *relative = &scratch->relative;
   double start = question->start ? start_depth(world, pair, relative) : 0, depth = 0;
   if (question->edges) depth = scree_touch_depths(world, pair, relative, question->above, scratch);
-  answer(pair, start, depth, scratch, work);
+  answer(world, pair, start, depth, scratch, work);
 }
 
 /* ---- the same in pieces ---- */
@@ -518,5 +549,5 @@ void scree_pair_take_depths(const scree_world *world, scree_pair *pair, const sc
   }
   for (size_t i = 0; i < all.points[0] + all.points[1]; i++)
     start = scree_max(start, found[i].depth);
-  answer(pair, start, depth, scratch, work);
+  answer(world, pair, start, depth, scratch, work);
 }

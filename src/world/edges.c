@@ -10,14 +10,15 @@
  * claim any depth. Nearly parallel edges have no crossing: their ends, which are points against
  * faces, stand for them; the weight fades below sin = 4e-3.
  *
- * Ends, where crossings come and go. With e the way from the nearest end to the plane of the other
- * edge and the normal, the weight fades within a tenth of roundings and overlap. What the overlap
- * has more than that of the corner at the end tapers over a way as long as itself: the corner goes
- * on alone, and is pushed out by the nearer face where the crossing asks for the whole depth of the
- * edge. Both slopes are in the force.
+ * Ends, where crossings come and go. With e the way from an end to the plane of the other edge and
+ * the normal, the weight fades within a tenth of roundings and overlap from the nearest. What the
+ * overlap has more than that of the corner at an end tapers over a way as long as itself: the
+ * corner goes on alone, and is pushed out by the nearer face where the crossing asks for the whole
+ * depth of the edge. The end that leaves least counts. Both slopes are in the force.
  *
- * A crossing that begins to count other than at its ends does so from nothing, or from what the
- * pair has already: what is more is held back, until the edges are apart. */
+ * A crossing that begins to count other than at its ends, or had no normal of both edges, does so
+ * from nothing, or from what the pair has already: what is more is held back, until the edges are
+ * apart. */
 #include "world/contact.h"
 
 #include "particle/closest.h"
@@ -33,33 +34,44 @@ static const double slack_sines[2] = {0.0599640, 0.1197122};
 static const double end_share = 0.1;
 static const double facing_cosine = 0.3;
 
+/* An end of one of the two edges. */
+typedef struct edge_end {
+  bool of_a, at_start;
+  double way; /* to the plane of the other edge and `across` */
+} edge_end;
+
 /* Closest points of a pair's two edges, in the frame of b. */
 typedef struct crossing {
   const scree_edge *ea, *eb;
   vec3 on_a, on_b, offset; /* from on_b to on_a */
   double distance;
   /* Where the points lie within both edges, and these are not parallel: */
-  double end;          /* way from the nearest end to the plane of the other edge and `across` */
-  vec3 ua, ub;         /* along the edges, unit */
-  bool of_a, at_start; /* which end that is */
-  vec3 across;         /* unit, to both edges */
-  double sine;         /* of the angle between the edges */
-  vec3 axis_a;         /* outward at the edge of a */
+  vec3 ua, ub; /* along the edges, unit */
+  edge_end ends[4];
+  int nearest; /* of the ends */
+  vec3 across; /* unit, to both edges */
+  double sine; /* of the angle between the edges */
+  vec3 axis_a; /* outward at the edge of a */
 } crossing;
 
-/* From the ends: s and t along the edges. */
+/* The closest points lie at s and t along the edges. */
 static void measure_ends(crossing *x, double s, double t) {
-  double far_s = x->ea->length - s, far_t = x->eb->length - t, end_a = s < far_s ? s : far_s,
-         end_b = t < far_t ? t : far_t;
-  x->of_a = end_a < end_b;
-  x->at_start = x->of_a ? s < far_s : t < far_t;
-  x->end = (x->of_a ? end_a : end_b) * x->sine;
+  const double ways[4] = {s, x->ea->length - s, t, x->eb->length - t};
+  x->nearest = 0;
+  for (int k = 0; k < 4; k++) {
+    x->ends[k] = (edge_end){k < 2, k % 2 == 0, ways[k] * x->sine};
+    if (ways[k] < ways[x->nearest]) x->nearest = k;
+  }
 }
 
-/* Along which the way from the nearest end grows as a moves. */
-static vec3 inward(const crossing *x) {
-  vec3 u = x->of_a ? x->ua : x->ub, other = x->of_a ? x->ub : x->ua;
-  double sign = x->of_a == x->at_start ? -1 : 1;
+static double way_from_end(const crossing *x) {
+  return x->ends[x->nearest].way;
+}
+
+/* Along which the way from the end grows as a moves. */
+static vec3 inward(const crossing *x, const edge_end *end) {
+  vec3 u = end->of_a ? x->ua : x->ub, other = end->of_a ? x->ub : x->ua;
+  double sign = end->of_a == end->at_start ? -1 : 1;
   return vec3_scale(vec3_mad(u, other, -vec3_dot(u, other)), sign / x->sine);
 }
 
@@ -157,30 +169,32 @@ static double fading_way(double overlap, double reach) {
 
 /* The weight near an end, and how it falls. */
 static void fade(scree_touch *touch, const crossing *x, double reach) {
-  double way = fading_way(touch->overlap, reach), grown = end_share * (reach + touch->overlap);
-  if (x->end >= way) return;
-  double fall = touch->weight * scree_smooth_slope(0, way, x->end),
-         longer = touch->overlap > 0 && way == grown ? end_share * x->end / way : 0;
-  touch->weight *= scree_smooth_step(0, way, x->end);
-  touch->fading = vec3_scale(vec3_mad(inward(x), touch->normal, longer), -fall);
+  double way = fading_way(touch->overlap, reach), grown = end_share * (reach + touch->overlap),
+         end = way_from_end(x);
+  if (end >= way) return;
+  double fall = touch->weight * scree_smooth_slope(0, way, end),
+         longer = touch->overlap > 0 && way == grown ? end_share * end / way : 0;
+  vec3 along = inward(x, &x->ends[x->nearest]);
+  touch->weight *= scree_smooth_step(0, way, end);
+  touch->fading = vec3_scale(vec3_mad(along, touch->normal, longer), -fall);
 }
 
-/* The overlap of the corner at the nearest end with the faces at the other edge that look the way
- * out, and the way along which it falls as a moves; at most the crossing's. */
+/* The overlap of the corner at an end with the faces at the other edge that look the way out, and
+ * the way along which it falls as a moves; at most the crossing's. */
 typedef struct corner {
   double overlap;
   vec3 slope;
 } corner;
 
-static corner corner_at_end(const scree_frame *relative, const crossing *x,
+static corner corner_at_end(const scree_frame *relative, const crossing *x, const edge_end *end,
                             const scree_touch *touch, double reach) {
-  const scree_edge *own = x->of_a ? x->ea : x->eb, *other = x->of_a ? x->eb : x->ea;
-  vec3 at = x->at_start ? own->start : own->end;
-  if (x->of_a) at = vec3_add(mat3_mul_vec(&relative->rotation, at), relative->position);
-  vec3 away = vec3_sub(at, x->of_a ? x->on_b : x->on_a),
-       axis = x->of_a ? other->normals.axis : x->axis_a,
-       side = vec3_cross(axis, x->of_a ? x->ub : x->ua),
-       out = x->of_a ? touch->normal : vec3_neg(touch->normal);
+  const bool of_a = end->of_a;
+  const scree_edge *own = of_a ? x->ea : x->eb, *other = of_a ? x->eb : x->ea;
+  vec3 at = end->at_start ? own->start : own->end;
+  if (of_a) at = vec3_add(mat3_mul_vec(&relative->rotation, at), relative->position);
+  vec3 away = vec3_sub(at, of_a ? x->on_b : x->on_a), axis = of_a ? other->normals.axis : x->axis_a,
+       side = vec3_cross(axis, of_a ? x->ub : x->ua),
+       out = of_a ? touch->normal : vec3_neg(touch->normal);
   const scree_cone *n = &other->normals; /* without the slack: from face to face */
   double cosine = n->cosine * slack_cosines[0] + n->sine * slack_sines[0],
          sine = n->sine * slack_cosines[0] - n->cosine * slack_sines[0];
@@ -195,23 +209,38 @@ static corner corner_at_end(const scree_frame *relative, const crossing *x,
     least = (corner){overlap, slope};
   }
   if (least.overlap < 0) return (corner){0, {0, 0, 0}};
-  return x->of_a ? least : (corner){least.overlap, vec3_neg(least.slope)};
+  return of_a ? least : (corner){least.overlap, vec3_neg(least.slope)};
 }
 
 /* Towards an end the overlap tapers to that of the corner there, over a way as long as what goes;
  * the force is the slope of what is left. */
-static void taper(scree_touch *touch, const scree_frame *relative, const crossing *x,
-                  double reach) {
-  if (x->end >= end_share * reach + touch->overlap || touch->overlap <= 0) return;
-  corner c = corner_at_end(relative, x, touch, reach);
-  double excess = touch->overlap - c.overlap, way = end_share * reach + excess, t = x->end / way;
-  if (t >= 1 || excess <= 0) return;
+static corner tapered(const scree_touch *touch, const scree_frame *relative, const crossing *x,
+                      const edge_end *end, double reach) {
+  const corner whole = {touch->overlap, touch->normal};
+  if (end->way >= end_share * reach + touch->overlap) return whole;
+  corner c = corner_at_end(relative, x, end, touch, reach);
+  double excess = touch->overlap - c.overlap, way = end_share * reach + excess, t = end->way / way;
+  if (t >= 1 || excess <= 0) return whole;
   double share = t * (2 - t), by_end = 2 * (1 - t) * excess / way, by_overlap = share - t * by_end;
   vec3 slope = vec3_mad(vec3_scale(touch->normal, by_overlap), c.slope, 1 - by_overlap);
-  slope = vec3_mad(slope, inward(x), -by_end); /* the overlap falls along it */
-  touch->overlap = c.overlap + excess * share;
-  touch->lever = vec3_norm(slope);
-  touch->normal = vec3_unit(slope);
+  slope = vec3_mad(slope, inward(x, end), -by_end); /* the overlap falls along it */
+  return (corner){c.overlap + excess * share, slope};
+}
+
+/* By all ends, of which more than one may be near: an overlap by the nearest alone would leap where
+ * that changes. */
+static void taper(scree_touch *touch, const scree_frame *relative, const crossing *x,
+                  double reach) {
+  if (touch->overlap <= 0) return;
+  corner least = {touch->overlap, touch->normal};
+  for (int k = 0; k < 4; k++) {
+    corner c = tapered(touch, relative, x, &x->ends[k], reach);
+    if (c.overlap < least.overlap) least = c;
+  }
+  if (!(least.overlap < touch->overlap)) return;
+  touch->overlap = least.overlap;
+  touch->lever = vec3_norm(least.slope);
+  touch->normal = vec3_unit(least.slope);
 }
 
 /* Whether a direction with this cosine from the edge's outward one has a share above 0. */
@@ -275,7 +304,7 @@ static bool is_clear(const scree_world *world, const scree_pair *pair, const scr
  * nothing is left of it, or where the pair is new. */
 static double first_overlap(const scree_pair *pair, const scree_item *item, const crossing *x) {
   bool at_end = item->crossing == SCREE_CROSSING_NONE &&
-                x->end <= end_share * pair->law.reach + 2 * pair->list.travel;
+                way_from_end(x) <= end_share * pair->law.reach + 2 * pair->list.travel;
   return at_end || scree_pair_is_new(pair) ? INFINITY : 0;
 }
 
@@ -325,7 +354,8 @@ static bool find_contact(const scree_world *world, const scree_pair *pair, scree
   double out_a = -vec3_dot(x->axis_a, c->normal), out_b = vec3_dot(x->eb->normals.axis, c->normal);
   if (out_a <= x->ea->facing || out_b <= x->eb->facing) return false; /* seen through a body */
   if (item->inside) c->weight *= common_share(x, c->normal);
-  return true;
+  /* edges in each other's bodies that turn until they have a normal in common begin anew then */
+  return c->weight > 0 || !item->inside;
 }
 
 /* A crossing that begins to count in the midst of both edges does so from what `first` allows: the

@@ -374,14 +374,16 @@ static void store_loads(const scree_world *world, const scree_scratch *scratch, 
   pair->wrench = (scree_wrench){force, vec3_sub(moment, vec3_cross(arm, force)), vec3_neg(moment)};
 }
 
-/* The way in which bodies part: that of their seam's area when they begin to, kept in the frame of
- * b until they are apart. Of a body that pierces a wall the areas where it enters and leaves
- * cancel, and what is left points here and there from step to step. */
+/* The way in which bodies part: that of their seam's area when they begin to, off a sheet that over
+ * its rims; kept in the frame of b until they are apart. Of a body that pierces a wall the areas
+ * where it enters and leaves cancel, and what is left points here and there from step to step. */
 static vec3 way_of_parting(const scree_world *world, scree_pair *pair,
                            const scree_frame *relative) {
   if (vec3_norm2(pair->way) > 0) return pair->way;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  pair->way = vec3_unit(scree_way_apart(a, b, relative));
+  pair->way = vec3_unit(scree_way_off_rims(world, pair, relative));
+  if (vec3_norm2(pair->way) == 0 && b->face_count)
+    pair->way = vec3_unit(scree_way_apart(a, b, relative));
   if (vec3_norm2(pair->way) == 0) pair->way = vec3_unit(relative->position);
   if (vec3_norm2(pair->way) == 0) pair->way = (vec3){0, 0, 1};
   return pair->way;
