@@ -167,10 +167,11 @@ static void print_object(FILE *out, const clump_object *object, size_t most) {
 static void print_advice(FILE *out, const clump_object *object) {
   const scree_clumps *c = &object->clumps;
   const scree_clump *chosen = object->chosen;
-  fprintf(out,
-          "%zu spheres: the union's volume is %.4g of the body's; mass, centre and inertia that go "
-          "with the clump are the body's own.\n",
-          chosen->sphere_count, 1 + chosen->volume_error);
+  fprintf(
+      out,
+      "%zu sphere%s: the union's volume is %.4g of the body's; mass, centre and inertia that go "
+      "with the clump are the body's own.\n",
+      chosen->sphere_count, cli_plural(chosen->sphere_count), 1 + chosen->volume_error);
   if (c->wall_cells < LEAST_CELLS)
     fprintf(out,
             "Its walls of %.3g %s are thinner than three cells of the grid: spheres are the wrong "

@@ -114,8 +114,14 @@ static scree_status refine(scree_mesh *mesh, scree_error *error) {
   return SCREE_OK;
 }
 
-/* Cuts away what stands between the viewer and the middle, floors excepted. */
-static void cut_open(scree_mesh *mesh, const scree_render_item *item, const double middle[3],
+/* Where the bodies are: their middle, and the centres of the lowest and of the highest. */
+typedef struct crowd {
+  double middle[3], low, high;
+} crowd;
+
+/* Cuts away what stands between the viewer and the middle, but not what lies below all bodies, nor
+ * floors that one may lie on. */
+static void cut_open(scree_mesh *mesh, const scree_render_item *item, const crowd *all,
                      const scree_render_options *o) {
   double azimuth = o->azimuth_deg / 57.29577951308232;
   vec3 viewer = {cos(azimuth), sin(azimuth), 0};
@@ -130,15 +136,17 @@ static void cut_open(scree_mesh *mesh, const scree_render_item *item, const doub
     }
     vec3 n = vec3_unit(vec3_triangle_normal(c[0], c[1], c[2]));
     vec3 at = vec3_scale(vec3_add(c[0], vec3_add(c[1], c[2])), 1.0 / 3);
-    bool before = vec3_dot(vec3_sub(at, vec3_load(middle)), viewer) > 0;
-    if (before && fabs(n.z) < steep) continue;
+    bool before = vec3_dot(vec3_sub(at, vec3_load(all->middle)), viewer) > 0;
+    bool below = fmax(c[0].z, fmax(c[1].z, c[2].z)) < all->low;
+    bool floor = fabs(n.z) >= steep && at.z < all->high;
+    if (before && !below && !floor) continue;
     memmove(mesh->triangles + 3 * kept++, mesh->triangles + 3 * t, 3 * sizeof *mesh->triangles);
   }
   mesh->triangle_count = kept;
 }
 
 static scree_status add_walls(const scree_world *world, const scree_render_options *o,
-                              const double middle[3], drawing *s, scree_mesh *meshes,
+                              const crowd *all, drawing *s, scree_mesh *meshes,
                               scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t w = 0; status == SCREE_OK && w < scree_world_wall_count(world); w++) {
@@ -153,23 +161,26 @@ static scree_status add_walls(const scree_world *world, const scree_render_optio
     memcpy(item->position, wall.position, sizeof item->position);
     scree_world_wall_orientation(world, w, item->quaternion);
     memcpy(item->color, wall_color, sizeof item->color);
-    if (status == SCREE_OK) cut_open(&meshes[w], item, middle, o);
+    if (status == SCREE_OK) cut_open(&meshes[w], item, all, o);
     s->item_count += status == SCREE_OK && meshes[w].triangle_count > 0;
   }
   return status;
 }
 
-static void find_middle(const scree_world *world, double middle[3]) {
+static crowd find_crowd(const scree_world *world) {
   size_t count = 0;
-  memset(middle, 0, 3 * sizeof *middle);
+  crowd all = {.low = INFINITY, .high = -INFINITY};
   for (size_t i = 0; i < scree_world_body_count(world); i++) {
     scree_body body;
     if (scree_world_body_removed(world, i)) continue;
     scree_world_get_body(world, i, &body);
-    for (int k = 0; k < 3; k++) middle[k] += body.position[k];
+    for (int k = 0; k < 3; k++) all.middle[k] += body.position[k];
+    all.low = fmin(all.low, body.position[2]);
+    all.high = fmax(all.high, body.position[2]);
     count++;
   }
-  for (int k = 0; count && k < 3; k++) middle[k] /= (double)count;
+  for (int k = 0; count && k < 3; k++) all.middle[k] /= (double)count;
+  return all;
 }
 
 scree_status scree_scene_picture(const scree_scene *scene, const scree_render_options *options,
@@ -179,8 +190,7 @@ scree_status scree_scene_picture(const scree_scene *scene, const scree_render_op
   scree_render_options o = options ? *options : scree_default_render_options();
   size_t bodies = scree_world_body_count(world), walls = scree_world_wall_count(world);
   drawing s = {0};
-  double middle[3];
-  find_middle(world, middle);
+  const crowd all = find_crowd(world);
   scree_status status = scree_shapes_find(world, &s.shapes, error);
   if (status != SCREE_OK) return status;
   scree_mesh *meshes = scree_alloc_zero(walls, sizeof *meshes);
@@ -191,7 +201,7 @@ scree_status scree_scene_picture(const scree_scene *scene, const scree_render_op
   if (status == SCREE_OK) status = make_spheres(&s, error);
   if (status == SCREE_OK) {
     add_bodies(world, NULL, scene, &s);
-    status = add_walls(world, &o, middle, &s, meshes, error);
+    status = add_walls(world, &o, &all, &s, meshes, error);
   }
   if (status == SCREE_OK) {
     scree_render_cell cell = {s.items, s.item_count, NULL};

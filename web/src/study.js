@@ -107,7 +107,7 @@ export class StudySection {
         ? `${what}${start[0]} ${rpName(f.converged_from)} on the angle of repose is that of ${rpName(f.finest)}, within ${number(study.margin_deg)}°.`
         : `${what}${start[1]} runs done do not show at any level that the angle of repose is that of ${rpName(f.finest)} within ${number(study.margin_deg)}°.`;
     });
-    element('p', answers.join(' ') || 'No level can be compared with a finer one yet.', host, { class: 'answer' });
+    element('p', answers.join(' ') || 'There are not two levels with heaps to compare.', host, { class: 'answer' });
     element('p', `${whole(runs.done)} of ${counted(all, 'run')} ${all === 1 ? 'is' : 'are'} done${runs.failed ? `, ${whole(runs.failed)} failed` : ''}; ${counted(study.replicates, 'replicate')} a point. Intervals are of ${number(100 * study.confidence)} % confidence. Angle measured: ${study.angle}.${study.mixed_versions ? ' The runs come from different versions of scree.' : ''}`, host, { class: 'soft' });
   }
 
