@@ -242,8 +242,12 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
 
 static scree_status write_json(const scene_run *r, const char *stopped, double seconds,
                                const char *path, scree_error *error) {
+  char kept[PATH_BYTES]; /* what one goes on with that no file was given for */
+  const bool given = r->call->input_count > 0;
+  scree_status status = given ? SCREE_OK : path_of(r, "scene.yaml", kept, error);
+  if (status != SCREE_OK) return status;
   scree_scene_entry entry = {.scene = r->scene,
-                             .file = r->call->input_count ? r->call->inputs[0] : NULL,
+                             .file = given ? r->call->inputs[0] : kept,
                              .stopped_because = stopped,
                              .command_line = r->call->command_line,
                              .seconds = seconds};

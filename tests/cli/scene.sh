@@ -41,6 +41,7 @@ run run small.yaml -o out --no-picture --resume -q --set inlets.feed.count=21
 run run small.yaml -o out --no-picture --resume -q --set output.frames=0.001
 run run small.yaml -o out --no-picture -f -q | head -2 | numbers
 run run -o out --resume -q --no-picture | head -2 | numbers
+grep '"file"' out/result.json
 sed -n 2p out/series.csv | cut -c 1-75
 # killed outright and gone on with: the same as in one piece
 "$SCREE" run small.yaml --set output.checkpoint=0.01 -o killed --no-picture -q >/dev/null 2>&1 &
