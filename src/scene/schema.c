@@ -271,15 +271,18 @@ static scree_status read_weights(const scree_reader *r, const scree_yaml *node,
   value->values = scree_arena_take(r->arena, count, sizeof *value->values);
   if (!value->names || !value->values) return fail_memory(r);
   value->count = count;
+  char path[LONGEST_PATH];
+  scree_reader inner = *r;
+  inner.path = path_of(r, node->key, path);
   for (size_t i = 0; i < count; i++) {
     scree_yaml item = one ? *node : node->items[i];
     scree_status status = SCREE_OK;
     value->values[i] = 1;
     if (weighted) {
       value->names[i] = keep_text(r, item.key);
-      status = read_real(r, &item, f, &value->values[i]);
+      status = read_real(&inner, &item, f, &value->values[i]);
       if (status == SCREE_OK && !(value->values[i] > 0))
-        status = fail_at(r, &item, "%g: a share must be above 0", value->values[i]);
+        status = fail_at(&inner, &item, "%g: a share must be above 0", value->values[i]);
       if (!value->names[i]) return fail_memory(r);
     } else {
       item.key = node->key;

@@ -99,7 +99,7 @@ static const struct {
     {"until: 1", "from: 3, until: 1", "line 16", "until 1 s must be after from 3 s"},
     {"ball: 3, brick: 1", "bal: 3", "line 16", "no shape 'bal'; did you mean 'ball'"},
     {"{ball: 3, brick: 1}", "[ball, ball]", "line 16", "'ball' stands here twice"},
-    {"ball: 3, brick: 1", "ball: 0", "line 16", "a share must be above 0"},
+    {"ball: 3, brick: 1", "ball: 0", "line 16", "shapes.ball: 0: a share must be above 0"},
     {"min: [-0.1, -0.1, 0.2]", "min: [-0.1, -0.1, 0.4]", "line 16",
      "min 0.4 must be below max 0.3 along z"},
     {"max: [0.1, 0.1, 0.3]", "max: [3, 0.1, 0.3]", "line 16", "outside the domain along x"},
