@@ -206,7 +206,7 @@ static scree_status tell(const clump_run *run, const scree_clump_report *report,
   for (size_t i = 0; i < run->count && !run->call->quiet; i++) warn(run->call, &run->objects[i]);
   if (a->json) return scree_clump_json_write(report, "-", false, error);
   if (a->csv) return scree_clump_csv_write(report, "-", false, error);
-  if (!run->call->quiet) clump_print(stdout, run);
+  if (!run->call->quiet || !a->output) clump_print(stdout, run);
   return SCREE_OK;
 }
 

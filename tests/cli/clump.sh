@@ -3,6 +3,7 @@
 numbers() { sed -E 's/([0-9]*\.[0-9]{2})[0-9]+/\1/g; s/  +/ /g'; }
 box 10 20 30 >box.off
 run clump box.off --max 3 | numbers
+run clump box.off --max 1 -q | tail -1
 run clump box.off --max 3 --csv | cut -d, -f1-4,17- | numbers
 run clump box.off --max 3 --json | grep -E '"(name|method|recommended|chosen|clump_file|sphere_count)"' | cut -c 1-28
 run clump box.off -n 2 -o out -q
