@@ -20,6 +20,7 @@
 static const double start_share = 0.05;
 static const double near_share = 0.25; /* of the roundings: depths are asked for from here on */
 static const double apart_share = 0.9; /* of the roundings: bodies that part are apart */
+static const double look_share = 0.2;  /* of the depth: bodies that part are looked at so often */
 static const double tolerance = 1e-6;  /* of the depth, within which the deepest place is found */
 /* Points of a mesh are looked for in the other from the start: corners, drawn towards the centre.
  */
@@ -428,6 +429,13 @@ static bool stay_apart(const scree_pair *pair, const scree_scratch *scratch) {
          before + pair->list.travel <= 0;
 }
 
+/* Bodies that part are so much deeper in each other than where they are apart that they need no
+ * look. */
+static bool part_still(const scree_pair *pair, double least) {
+  bool pushed = vec3_norm2(pair->way) > 0;
+  return pair->parting && pushed && least > (1 - look_share) * pair->found && least > 0;
+}
+
 void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   scree_depth_question *question = &scratch->question;
@@ -436,6 +444,10 @@ void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scr
   if (!b) return;
   question->start = scree_pair_is_new(pair);
   if (!a->face_count || !scree_has_features(b)) return;
+  if (!question->start && part_still(pair, pair->depth - pair->list.travel)) {
+    pair->depth -= pair->list.travel;
+    return;
+  }
   if (!b->face_count) { /* rims alone are felt by features until they part */
     question->edges = pair->parting;
     question->above = apart_depth(pair);
@@ -473,7 +485,7 @@ static void answer(const scree_world *world, scree_pair *pair, double start, dou
   const scree_depth_question *question = &scratch->question;
   if (question->start) note_start(pair, start, work);
   if (!question->edges) return;
-  pair->depth = depth;
+  pair->depth = pair->found = depth;
   scratch->depth_queries++;
   if (question->start) note_start(pair, pair->depth, work);
   if (!pair->parting || !are_apart(world, pair, scratch)) return;

@@ -396,7 +396,6 @@ static vec3 place_of_push(const scree_world *world, const scree_pair *pair,
   double total = 0;
   for (size_t i = 0; i < touches->count; i++) {
     double weight = touches->items[i].overlap + pair->law.smoothing;
-    touches->items[i].anchor->share = 0;
     sum = vec3_mad(sum, touches->items[i].at, weight);
     total += weight;
   }
@@ -422,8 +421,10 @@ static double held_with(const scree_world *world, const scree_pair *pair, vec3 w
  * as deep as they are would press with. */
 static scree_powers part(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                          scree_scratch *scratch) {
-  vec3 at = place_of_push(world, pair, &scratch->touches, relative),
-       way = way_of_parting(world, pair, relative), arm = vec3_cross(at, way);
+  scree_touch_list *touches = &scratch->touches;
+  for (size_t i = 0; i < touches->count; i++) touches->items[i].anchor->share = 0;
+  if (scratch->question.edges) pair->pushed = place_of_push(world, pair, touches, relative);
+  vec3 at = pair->pushed, way = way_of_parting(world, pair, relative), arm = vec3_cross(at, way);
   pair->touching = true;
   pair->contact_count = 1;
   pair->age += scratch->drift;

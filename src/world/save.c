@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 14};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 15};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -269,6 +269,8 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   p->elastic_since = (float)since;
   scree_code_vec3(c, &p->rolled);
   scree_code_vec3(c, &p->way);
+  scree_code_vec3(c, &p->pushed);
+  scree_code_real(c, &p->found);
   code_wrench(c, &p->wrench);
   code_wrench(c, &p->owed);
   code_wrench(c, &p->ahead);

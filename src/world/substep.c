@@ -124,8 +124,9 @@ uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
                              const scree_frame *relative, const scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   const double longest = longest_way * pair->law.reach;
-  if (!(pair->list.travel > longest)) return 1;                 /* than which none moves farther */
-  if (!a->face_count || !b || !scree_has_features(b)) return 1; /* nothing is blended */
+  if (!(pair->list.travel > longest)) return 1; /* than which none moves farther */
+  if (!a->face_count || !b || !scree_has_features(b) || pair->parting)
+    return 1; /* nothing is blended */
   if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) return 1;
   double parts = 0;
   for (size_t i = 0; i < scratch->touches.count; i++) {

@@ -225,6 +225,8 @@ typedef struct scree_pair {
   double kick;  /* s, for which the last wrench acts; 0: there was none */
   double later_dashpot, later_tangential; /* J of the last step's sub-steps, not yet booked */
   vec3 way;                               /* in which it parts, in the frame of b; 0: not yet */
+  vec3 pushed;                            /* where, while it parts, in the frame of b */
+  double found;       /* m: the depth there, which is looked for when they have come some way */
   scree_wrench owed;  /* impulses and their moments of the last step's sub-steps: substep.c */
   scree_wrench ahead; /* impulses: what the motion at the step's beginning has more than the mean */
 } scree_pair;

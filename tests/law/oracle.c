@@ -266,10 +266,11 @@ static void wake_everything(scree_world *world, size_t k) {
   size_t count = a->point_count + b->point_count + a->edge_count * b->edge_count, made = 0;
   scree_list_state *list = pair ? &pair->list : &n->list;
   if (list->end < INFINITY) { /* for the first time */
+    scree_scratch hand = {.pools = &world->pools, .neighbours = n};
     n->sleeping.count = 0;
-    n->sleeping.capacity = (uint32_t)count;
-    assert_true(
-        scree_pack_sleepers(&world->pools, world->neighbours.items, world->neighbours.count));
+    while (!scree_reserve_sleepers(&hand, (uint32_t)count))
+      assert_true(
+          scree_pack_sleepers(&world->pools, world->neighbours.items, world->neighbours.count));
     scree_sleeper *all = &world->pools.sleepers[n->sleeping.first];
     for (uint32_t i = 0; i < a->point_count; i++)
       all[made++] = (scree_sleeper){0, i, 0, SCREE_ITEM_POINT_FACE};
