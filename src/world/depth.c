@@ -429,8 +429,15 @@ static bool stay_apart(const scree_pair *pair, const scree_scratch *scratch) {
          before + pair->list.travel <= 0;
 }
 
-/* Bodies that part are so much deeper in each other than where they are apart that they need no
- * look. */
+/* How far a point of body a can have come in b since the last look, whatever the lists hold. */
+static double way_since(const scree_particle *a, const scree_scratch *scratch) {
+  const scree_frame *relative = &scratch->relative;
+  vec3 turning = vec3_cross(relative->spin, relative->position);
+  return scratch->drift * (vec3_norm(vec3_add(relative->velocity, turning)) +
+                           a->measures.bounding_radius * vec3_norm(relative->spin));
+}
+
+/* Bodies that part, and at `least` so deep, need no look. */
 static bool part_still(const scree_pair *pair, double least) {
   bool pushed = vec3_norm2(pair->way) > 0;
   return pair->parting && pushed && least > (1 - look_share) * pair->found && least > 0;
@@ -444,8 +451,9 @@ void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scr
   if (!b) return;
   question->start = scree_pair_is_new(pair);
   if (!a->face_count || !scree_has_features(b)) return;
-  if (!question->start && part_still(pair, pair->depth - pair->list.travel)) {
-    pair->depth -= pair->list.travel;
+  double least = pair->depth - way_since(a, scratch);
+  if (!question->start && part_still(pair, least)) {
+    pair->depth = least;
     return;
   }
   if (!b->face_count) { /* rims alone are felt by features until they part */

@@ -52,6 +52,7 @@ typedef struct crossing {
   vec3 across; /* unit, to both edges */
   double sine; /* of the angle between the edges */
   vec3 axis_a; /* outward at the edge of a */
+  double way;  /* by which a has come here since the last look */
 } crossing;
 
 /* The closest points lie at s and t along the edges. */
@@ -304,7 +305,7 @@ static bool is_clear(const scree_world *world, const scree_pair *pair, const scr
  * nothing is left of it, or where the pair is new. */
 static double first_overlap(const scree_pair *pair, const scree_item *item, const crossing *x) {
   bool at_end = item->crossing == SCREE_CROSSING_NONE &&
-                way_from_end(x) <= end_share * pair->law.reach + 2 * pair->list.travel;
+                way_from_end(x) <= end_share * pair->law.reach + 2 * x->way;
   return at_end || scree_pair_is_new(pair) ? INFINITY : 0;
 }
 
@@ -315,7 +316,7 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
   if (!item->has_reference) return false; /* not armed */
   c->normal = way_out(item, x, &c->weight);
   c->distance = vec3_dot(x->offset, c->normal);
-  bool apart = c->distance >= -2 * pair->list.travel,
+  bool apart = c->distance >= -2 * x->way,
        armed = item->inside || behind ||
                (apart && vec3_dot(c->normal, item->reference) >= -crossing_cosines[0]);
   if (!armed && is_clear(world, pair, item, relative, x, c)) {
@@ -334,9 +335,8 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
 }
 
 /* Whether edges passed each other since the last step, over more than half the roundings. */
-static bool has_leapt(const scree_pair *pair, const scree_item *item, const edge_contact *c) {
-  return item->has_reference && c->distance < pair->list.travel &&
-         vec3_dot(c->normal, item->reference) < 0;
+static bool has_leapt(const scree_item *item, const crossing *x, const edge_contact *c) {
+  return item->has_reference && c->distance < x->way && vec3_dot(c->normal, item->reference) < 0;
 }
 
 /* False where the crossing does not count. */
@@ -347,8 +347,8 @@ static bool find_contact(const scree_world *world, const scree_pair *pair, scree
   if (item->crossing != SCREE_CROSSING_COUNTS) c->first = first_overlap(pair, item, x);
   c->weight = scree_smooth_step(parallel_sines[0], parallel_sines[1], x->sine) * facing_share(x);
   bool behind = !item->inside && is_met_from_behind(world, pair, item, relative, x),
-       deep = item->inside || behind || x->distance < 0.5 * pair->law.reach ||
-              has_leapt(pair, item, c);
+       deep =
+           item->inside || behind || x->distance < 0.5 * pair->law.reach || has_leapt(item, x, c);
   if (deep && !find_deep_contact(world, pair, item, relative, x, behind, c)) return false;
   if (!item->inside) keep_reference(item, c->normal);
   double out_a = -vec3_dot(x->axis_a, c->normal), out_b = vec3_dot(x->eb->normals.axis, c->normal);
@@ -361,9 +361,9 @@ static bool find_contact(const scree_world *world, const scree_pair *pair, scree
 /* A crossing that begins to count in the midst of both edges does so from what `first` allows: the
  * rest is held back. What is held falls with the overlap, so that nothing is once they are apart.
  */
-static void hold_back(const scree_pair *pair, scree_item *item, scree_touch *touch, double first) {
+static void hold_back(const crossing *x, scree_item *item, scree_touch *touch, double first) {
   double overlap = scree_max(touch->overlap, 0);
-  bool outside = overlap <= 2 * pair->list.travel; /* a step ago */
+  bool outside = overlap <= 2 * x->way; /* a step ago */
   if (item->crossing != SCREE_CROSSING_COUNTS)
     item->held = outside ? 0 : scree_max(overlap - first, 0);
   item->held = scree_min(item->held, overlap);
@@ -375,6 +375,8 @@ double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree
   crossing x = {0};
   edge_contact c;
   bool crosses = find_crossing(world, pair, item, relative, &x);
+  vec3 turning = vec3_cross(relative->spin, x.on_b);
+  x.way = scratch->drift * vec3_norm(vec3_add(relative->velocity, turning));
   double far = x.distance - pair->law.reach - pair->law.smoothing;
   bool heard = far < scree_pair_claim(pair) || item->inside;
   if (!heard)
@@ -394,7 +396,7 @@ double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree
     scree_touch *touch = &scratch->touches.items[touches];
     fade(touch, &x, pair->law.reach);
     taper(touch, relative, &x, pair->law.reach);
-    hold_back(pair, item, touch, c.first);
+    hold_back(&x, item, touch, c.first);
   } else {
     item->held = 0;
   }

@@ -248,6 +248,7 @@ static void visit(scree_world *world, scree_device_step *step, const scree_visit
   own.touches = (scree_touch_list){world->pools.touches + first, 0, SCREE_ANCHORS};
   own.item_evaluations = own.closest_queries = 0;
   scree_item *item = &hand->items[v->item];
+  own.drift = hand->drift;
   item->gap = scree_item_touch(world, pair, item, &hand->relative, &own);
   step->touch_counts[first] = (uint8_t)own.touches.count;
 }
