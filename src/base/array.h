@@ -7,10 +7,11 @@
 
 #include "base/alloc.h"
 
-/* Makes room for at least `needed` items, doubling; false when memory is out (content stays). */
+/* Makes room for at least `needed` items, or for half as many again as there was; false when memory
+ * is out (content stays). */
 static inline bool scree_array_reserve(void **items, size_t *capacity, size_t needed, size_t size) {
   if (needed <= *capacity) return true;
-  size_t grown = *capacity < 8 ? 8 : *capacity > SIZE_MAX / 2 ? SIZE_MAX : *capacity * 2;
+  size_t grown = *capacity < 8 ? 8 : *capacity + *capacity / 2;
   if (grown < needed) grown = needed;
   void *moved = scree_resize(*items, grown, size);
   if (!moved) return false;
