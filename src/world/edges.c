@@ -46,27 +46,37 @@ typedef struct crossing {
   vec3 on_a, on_b, offset; /* from on_b to on_a */
   double distance;
   /* Where the points lie within both edges, and these are not parallel: */
-  vec3 ua, ub; /* along the edges, unit */
-  edge_end ends[4];
-  int nearest; /* of the ends */
-  vec3 across; /* unit, to both edges */
-  double sine; /* of the angle between the edges */
-  vec3 axis_a; /* outward at the edge of a */
-  double way;  /* by which a has come here since the last look */
+  vec3 ua, ub;    /* along the edges, unit */
+  double ways[4]; /* from the start and the end of a's, and of b's */
+  int nearest;    /* of these */
+  vec3 across;    /* unit, to both edges */
+  double sine;    /* of the angle between the edges */
+  vec3 axis_a;    /* outward at the edge of a */
+  const scree_frame *relative;
+  double drift; /* s, since the last look */
 } crossing;
 
 /* The closest points lie at s and t along the edges. */
 static void measure_ends(crossing *x, double s, double t) {
-  const double ways[4] = {s, x->ea->length - s, t, x->eb->length - t};
+  x->ways[0] = s, x->ways[1] = x->ea->length - s;
+  x->ways[2] = t, x->ways[3] = x->eb->length - t;
   x->nearest = 0;
-  for (int k = 0; k < 4; k++) {
-    x->ends[k] = (edge_end){k < 2, k % 2 == 0, ways[k] * x->sine};
-    if (ways[k] < ways[x->nearest]) x->nearest = k;
-  }
+  for (int k = 1; k < 4; k++)
+    if (x->ways[k] < x->ways[x->nearest]) x->nearest = k;
+}
+
+static edge_end end_of(const crossing *x, int k) {
+  return (edge_end){k < 2, k % 2 == 0, x->ways[k] * x->sine};
 }
 
 static double way_from_end(const crossing *x) {
-  return x->ends[x->nearest].way;
+  return x->ways[x->nearest] * x->sine;
+}
+
+/* By which a has come here since the last look. */
+static double way_since(const crossing *x) {
+  vec3 turning = vec3_cross(x->relative->spin, x->on_b);
+  return x->drift * vec3_norm(vec3_add(x->relative->velocity, turning));
 }
 
 /* Along which the way from the end grows as a moves. */
@@ -175,7 +185,8 @@ static void fade(scree_touch *touch, const crossing *x, double reach) {
   if (end >= way) return;
   double fall = touch->weight * scree_smooth_slope(0, way, end),
          longer = touch->overlap > 0 && way == grown ? end_share * end / way : 0;
-  vec3 along = inward(x, &x->ends[x->nearest]);
+  edge_end nearest = end_of(x, x->nearest);
+  vec3 along = inward(x, &nearest);
   touch->weight *= scree_smooth_step(0, way, end);
   touch->fading = vec3_scale(vec3_mad(along, touch->normal, longer), -fall);
 }
@@ -232,10 +243,11 @@ static corner tapered(const scree_touch *touch, const scree_frame *relative, con
  * that changes. */
 static void taper(scree_touch *touch, const scree_frame *relative, const crossing *x,
                   double reach) {
-  if (touch->overlap <= 0) return;
+  if (touch->overlap <= 0 || way_from_end(x) >= end_share * reach + touch->overlap) return;
   corner least = {touch->overlap, touch->normal};
   for (int k = 0; k < 4; k++) {
-    corner c = tapered(touch, relative, x, &x->ends[k], reach);
+    edge_end end = end_of(x, k);
+    corner c = tapered(touch, relative, x, &end, reach);
     if (c.overlap < least.overlap) least = c;
   }
   if (!(least.overlap < touch->overlap)) return;
@@ -305,7 +317,7 @@ static bool is_clear(const scree_world *world, const scree_pair *pair, const scr
  * nothing is left of it, or where the pair is new. */
 static double first_overlap(const scree_pair *pair, const scree_item *item, const crossing *x) {
   bool at_end = item->crossing == SCREE_CROSSING_NONE &&
-                way_from_end(x) <= end_share * pair->law.reach + 2 * x->way;
+                way_from_end(x) <= end_share * pair->law.reach + 2 * way_since(x);
   return at_end || scree_pair_is_new(pair) ? INFINITY : 0;
 }
 
@@ -316,7 +328,7 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
   if (!item->has_reference) return false; /* not armed */
   c->normal = way_out(item, x, &c->weight);
   c->distance = vec3_dot(x->offset, c->normal);
-  bool apart = c->distance >= -2 * x->way,
+  bool apart = c->distance >= -2 * way_since(x),
        armed = item->inside || behind ||
                (apart && vec3_dot(c->normal, item->reference) >= -crossing_cosines[0]);
   if (!armed && is_clear(world, pair, item, relative, x, c)) {
@@ -336,7 +348,8 @@ static bool find_deep_contact(const scree_world *world, const scree_pair *pair, 
 
 /* Whether edges passed each other since the last step, over more than half the roundings. */
 static bool has_leapt(const scree_item *item, const crossing *x, const edge_contact *c) {
-  return item->has_reference && c->distance < x->way && vec3_dot(c->normal, item->reference) < 0;
+  return item->has_reference && vec3_dot(c->normal, item->reference) < 0 &&
+         c->distance < way_since(x);
 }
 
 /* False where the crossing does not count. */
@@ -363,20 +376,19 @@ static bool find_contact(const scree_world *world, const scree_pair *pair, scree
  */
 static void hold_back(const crossing *x, scree_item *item, scree_touch *touch, double first) {
   double overlap = scree_max(touch->overlap, 0);
-  bool outside = overlap <= 2 * x->way; /* a step ago */
-  if (item->crossing != SCREE_CROSSING_COUNTS)
+  if (item->crossing != SCREE_CROSSING_COUNTS) {
+    bool outside = overlap <= 2 * way_since(x); /* a step ago */
     item->held = outside ? 0 : scree_max(overlap - first, 0);
+  }
   item->held = scree_min(item->held, overlap);
   touch->overlap -= item->held;
 }
 
 double scree_touch_edges(const scree_world *world, const scree_pair *pair, scree_item *item,
                          const scree_frame *relative, scree_scratch *scratch) {
-  crossing x = {0};
+  crossing x = {.relative = relative, .drift = scratch->drift};
   edge_contact c;
   bool crosses = find_crossing(world, pair, item, relative, &x);
-  vec3 turning = vec3_cross(relative->spin, x.on_b);
-  x.way = scratch->drift * vec3_norm(vec3_add(relative->velocity, turning));
   double far = x.distance - pair->law.reach - pair->law.smoothing;
   bool heard = far < scree_pair_claim(pair) || item->inside;
   if (!heard)
