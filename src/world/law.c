@@ -418,7 +418,7 @@ static double held_with(const scree_world *world, const scree_pair *pair, vec3 w
 
 /* Edges that lie in each other may each be nearest to a way out that is the other's way in. Then no
  * feature counts: the bodies are brought to `parting_speed` along one way, by no more than a spring
- * as deep as they are would press with. */
+ * as deep as they are, or at its limit, would press with: what lies behind must bear it too. */
 static scree_powers part(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                          scree_scratch *scratch) {
   scree_touch_list *touches = &scratch->touches;
@@ -438,7 +438,8 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
          mass = pair->law.stiffness * pace * pace,
          brake = parting_damping * mass / world->time_step * (parting_speed - vec3_dot(seen, way)),
          push = scree_max(0, brake + held_with(world, pair, way, scratch)),
-         force = scree_min(pair->law.stiffness * pair->overlap, push);
+         most = pair->law.stiffness * scree_min(pair->overlap, pair->law.limit),
+         force = scree_min(most, push);
   load_sums sums = {0};
   add_load(&sums.normal, way, arm, force);
   sums.dashpot = sums.normal;
