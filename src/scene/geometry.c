@@ -167,7 +167,6 @@ scree_status scree_scene_add_geometry(scree_scene *scene, const char *folder, sc
     status = add_one(scene, i, folder, world, &why);
     status = scree_scene_blame(scene, &plan_of(scene, i)->place, status, &why, error);
   }
-  scene->wall_count = scree_world_wall_count(world);
   return status;
 }
 
@@ -239,29 +238,27 @@ static bool box_clear_of_faces(const scree_oriented_box *box, const scree_partic
   return true;
 }
 
-static bool clear_of_mesh(const scree_scene *scene, size_t index, const scree_wall *wall,
-                          const scree_placement *p) {
-  const scree_particle *surface = scree_world_wall_surface(scene->world, index);
-  double q[4];
-  scree_world_wall_orientation(scene->world, index, q);
-  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
-  vec3 at = vec3_load(wall->position), centre = mat3_tmul_vec(&turn, vec3_sub(p->position, at));
-  scree_oriented_box box = {mat3_tmul_vec(&turn, vec3_sub(p->box.centre, at)), p->box.half,
-                            mat3_tmul(&turn, &p->box.axes)};
-  if (scree_is_near(surface, centre, p->radius) && !box_clear_of_faces(&box, surface)) return false;
-  return surface->sheet || !scree_is_inside(surface, centre);
+static bool clear_of_mesh(const scree_world_wall *wall, const scree_placement *p) {
+  const mat3 *turn = &wall->frame.rotation;
+  vec3 at = wall->frame.position, centre = mat3_tmul_vec(turn, vec3_sub(p->position, at));
+  scree_oriented_box box = {mat3_tmul_vec(turn, vec3_sub(p->box.centre, at)), p->box.half,
+                            mat3_tmul(turn, &p->box.axes)};
+  if (scree_is_near(wall->surface, centre, p->radius) && !box_clear_of_faces(&box, wall->surface))
+    return false;
+  return wall->surface->sheet || !scree_is_inside(wall->surface, centre);
 }
 
 bool scree_scene_is_clear(const scree_scene *scene, const scree_placement *placement,
                           size_t *blocking) {
-  for (size_t w = 0; w < scene->wall_count; w++) {
+  for (size_t w = 0; w < scree_world_wall_count(scene->world); w++) {
     scree_wall wall;
     bool clear = true;
     scree_world_get_wall(scene->world, w, &wall);
     if (wall.kind == SCREE_WALL_PLANE) clear = clear_of_plane(&wall, placement);
     if (wall.kind == SCREE_WALL_DISC) clear = clear_of_disc(&wall, placement);
     if (wall.kind == SCREE_WALL_CYLINDER) clear = clear_of_cylinder(&wall, placement);
-    if (wall.kind == SCREE_WALL_MESH) clear = clear_of_mesh(scene, w, &wall, placement);
+    if (wall.kind == SCREE_WALL_MESH)
+      clear = clear_of_mesh(scree_world_wall_at(scene->world, w), placement);
     *blocking = w;
     if (!clear) return false;
   }

@@ -214,7 +214,6 @@ static scree_status adopt_particles(loader *l) {
     *held = particle;
   }
   scree_world_share_walls(scene->world, scene->gallery);
-  scene->wall_count = scree_world_wall_count(scene->world);
   return SCREE_OK;
 }
 

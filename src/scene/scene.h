@@ -105,7 +105,6 @@ struct scree_scene {
   scree_world *world, *gallery; /* the gallery has one body of each shape, never moved */
   scree_scene_shape *shapes;
   scree_scene_geometry *geometry;
-  size_t wall_count;
   scree_scene_inlet *inlets;
   scree_scene_outlet *outlets; /* and the domain's rim */
   scree_scene_sensor *sensors;

@@ -62,17 +62,13 @@ static double sliding_power(const scree_scene *scene, const scree_wall *wall,
 }
 
 /* The triangle of the wall that the contact is on. */
-static size_t cell_of(const scree_scene *scene, size_t index, const scree_wall *wall,
-                      const double position[3]) {
+static size_t cell_of(const scree_world_wall *wall, const double position[3]) {
   const uint32_t root = 0;
   uint32_t face = 0;
-  double q[4];
-  if (wall->kind != SCREE_WALL_MESH) return 0;
-  scree_world_wall_orientation(scene->world, index, q);
-  mat3 turn = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
-  vec3 local = mat3_tmul_vec(&turn, vec3_sub(vec3_load(position), vec3_load(wall->position)));
-  scree_nearest_face(scree_world_wall_surface(scene->world, index), &root, 1, local, INFINITY,
-                     &face);
+  if (scree_wall_is_analytic(wall)) return 0;
+  const scree_frame *f = &wall->frame;
+  vec3 local = mat3_tmul_vec(&f->rotation, vec3_sub(vec3_load(position), f->position));
+  scree_nearest_face(wall->surface, &root, 1, local, INFINITY, &face);
   return face;
 }
 
@@ -84,7 +80,8 @@ static bool feel(void *context, const scree_contact *c) {
   scree_wall wall;
   scree_world_get_wall(scene->world, c->other, &wall);
   double work = sliding_power(scene, &wall, c) * (double)scene->wear_steps * scene->time_step;
-  if (work > 0) sensor->wear[first + cell_of(scene, c->other, &wall, c->position)] += work;
+  if (work > 0)
+    sensor->wear[first + cell_of(scree_world_wall_at(scene->world, c->other), c->position)] += work;
   return true;
 }
 

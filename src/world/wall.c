@@ -121,9 +121,9 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
   return SCREE_OK;
 }
 
-const scree_particle *scree_world_wall_surface(const scree_world *world, size_t index) {
+const scree_world_wall *scree_world_wall_at(const scree_world *world, size_t index) {
   scree_world_bring(world, SCREE_PART_WALLS, NULL);
-  return world->walls.items[index].surface;
+  return &world->walls.items[index];
 }
 
 static bool may_stand_for(const scree_particle *a, const scree_particle *b) {

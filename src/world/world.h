@@ -473,8 +473,8 @@ static inline const scree_particle *scree_shape_of(const scree_world *w, uint32_
 static inline const scree_particle *scree_pair_shape_b(const scree_world *w, const scree_pair *p) {
   return scree_shape_of(w, p->b, p->wall);
 }
-/* wall.c: the faces of a mesh wall or the rims of another, in its own frame; NULL for none. */
-const scree_particle *scree_world_wall_surface(const scree_world *world, size_t index);
+/* wall.c: where it is now, until the next step, and its faces. */
+const scree_world_wall *scree_world_wall_at(const scree_world *world, size_t index);
 /* Of two worlds with the same walls: both keep one surface of each. */
 void scree_world_share_walls(scree_world *world, const scree_world *like);
 /* Else it sleeps until the bodies' paths have grown. */
