@@ -266,9 +266,9 @@ static const scree_record box_record = {"a box", FIELDS(box_fields), sizeof(scre
 static const scree_field translate_fields[] = {
     {"velocity", SCREE_FIELD_VECTOR, AT(velocity), -1e3, 1e3, "m/s", "", NULL},
     {"along", SCREE_FIELD_VECTOR, AT(along), 0, 0, "", "direction of what the table says", NULL},
-    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "", "[time in s, speed in m/s], linear between",
-     NULL},
-    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "",
+    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "s|m/s",
+     "[time in s, speed in m/s], linear between", NULL},
+    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "s|m",
      "or [time in s, way in m], linear between", NULL},
 };
 #undef AT
@@ -292,9 +292,9 @@ static const scree_field rotate_fields[] = {
     {"axis", SCREE_FIELD_VECTOR, AT(axis), 0, 0, "", "", NULL},
     {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of the axis", NULL},
     {"speed", SCREE_FIELD_REAL, AT(speed), -1e4, 1e4, "rad/s", "right-handed about the axis", NULL},
-    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "", "[time in s, speed in rad/s], linear between",
-     NULL},
-    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "",
+    {"table", SCREE_FIELD_TABLE, AT(table), 0, 0, "s|rad/s",
+     "[time in s, speed in rad/s], linear between", NULL},
+    {"positions", SCREE_FIELD_TABLE, AT(positions), 0, 0, "s|rad",
      "or [time in s, angle in rad], linear between", NULL},
 };
 #undef AT

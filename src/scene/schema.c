@@ -1,7 +1,9 @@
 #include "scene/schema.h"
 
 #include "base/number.h"
+#include "base/unit.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -129,30 +131,57 @@ static scree_status fail_unknown(const scree_reader *r, const scree_yaml *item,
 
 /* ---- single values ---- */
 
-/* A number, behind which its unit may stand. */
-static bool read_number(const char *text, const char *unit, double *value) {
-  const char *end = text + strlen(text), *behind = scree_number_parse(text, end, value);
-  if (!behind || !isfinite(*value)) return false;
-  behind += strspn(behind, " ");
-  return !*behind || (*unit && !strcmp(behind, unit));
+/* The column of a unit as "s|m/s", or the whole of one that has none. */
+static const char *unit_of(const scree_field *f, size_t column, char unit[32]) {
+  const char *at = f->unit ? f->unit : "";
+  for (; column > 0 && strchr(at, '|'); column--) at = strchr(at, '|') + 1;
+  snprintf(unit, 32, "%.*s", (int)strcspn(at, "|"), at);
+  return unit;
 }
 
-static scree_status read_real(const scree_reader *r, const scree_yaml *node, const scree_field *f,
-                              double *value) {
-  const char *unit = f->unit ? f->unit : "";
+static bool has_decimal_comma(const char *text) {
+  size_t digits = strspn(text, "+-0123456789");
+  return digits > 0 && text[digits] == ',' && text[digits + 1] >= '0' && text[digits + 1] <= '9';
+}
+
+/* A number, behind which a unit may stand, as one in the field's. */
+static scree_status read_number(const scree_reader *r, const scree_yaml *node, const char *unit,
+                                double *value) {
+  const char *text = node->text, *in = *unit ? " in " : "";
+  const char *rest = scree_number_parse(text, text + strlen(text), value);
+  if (!rest || !isfinite(*value))
+    return fail_at(r, node, "'%.60s': must be a number%s%s", text, in, unit);
+  if (has_decimal_comma(text))
+    return fail_at(r, node, "'%.60s': has a decimal comma; write a point, as in 0.5", text);
+  rest += strspn(rest, " ");
+  scree_unit_answer answer = *rest ? scree_unit_convert(rest, unit, value) : SCREE_UNIT_FITS;
+  if (answer == SCREE_UNIT_UNKNOWN)
+    return fail_at(r, node, "'%.60s': must be a number%s%s; what is '%.60s'?", text, in, unit,
+                   rest);
+  if (answer == SCREE_UNIT_DIFFERS)
+    return fail_at(r, node, "'%.60s': must be a number%s%s; '%.60s' measures something else", text,
+                   in, unit, rest);
+  return SCREE_OK;
+}
+
+static scree_status read_column(const scree_reader *r, const scree_yaml *node, const scree_field *f,
+                                size_t column, double *value) {
+  char unit[32];
   double number;
+  unit_of(f, column, unit);
   if (node->kind != SCREE_YAML_SCALAR) return fail_at(r, node, "must be one number");
-  if (!read_number(node->text, unit, &number)) {
-    const char *text = node->text, *rest = scree_number_parse(text, text + strlen(text), &number);
-    bool more = rest && *(rest += strspn(rest, " "));
-    return fail_at(r, node, "'%.60s': must be a number%s%s%s%.60s%s", text, *unit ? " in " : "",
-                   unit, more ? "; what is '" : "", more ? rest : "", more ? "'?" : "");
-  }
+  scree_status status = read_number(r, node, unit, &number);
+  if (status != SCREE_OK) return status;
   if ((f->minimum != 0 || f->maximum != 0) && !(number >= f->minimum && number <= f->maximum))
     return fail_at(r, node, "%g: must be %g to %g%s%s", number, f->minimum, f->maximum,
                    *unit ? " " : "", unit);
   *value = number;
   return SCREE_OK;
+}
+
+static scree_status read_real(const scree_reader *r, const scree_yaml *node, const scree_field *f,
+                              double *value) {
+  return read_column(r, node, f, 0, value);
 }
 
 static scree_status read_whole(const scree_reader *r, const scree_yaml *node, const scree_field *f,
@@ -225,8 +254,9 @@ static scree_status read_reals(const scree_reader *r, const scree_yaml *node, co
                                size_t count, double *values) {
   double read[4];
   if (node->kind != SCREE_YAML_SEQUENCE || node->item_count != count)
-    return fail_at(r, node, "must be %zu numbers%s%s, as in %s", count, *f->unit ? " in " : "",
-                   f->unit, count == 3 ? "[0, 0, 1]" : "[1, 0, 0, 0]");
+    return fail_at(r, node, "must be %zu numbers%s%s, as in %s%s", count, *f->unit ? " in " : "",
+                   f->unit, count == 3 ? "[0, 0, 1]" : "[1, 0, 0, 0]",
+                   node->item_count > count ? "; decimals stand behind a point, not a comma" : "");
   for (size_t i = 0; i < count; i++) {
     scree_yaml item = node->items[i];
     item.key = node->key;
@@ -252,7 +282,7 @@ static scree_status read_table(const scree_reader *r, const scree_yaml *node, co
     for (size_t k = 0; k < 2; k++) {
       scree_yaml item = row.items[k];
       item.key = node->key;
-      scree_status status = read_real(r, &item, f, &value->items[i][k]);
+      scree_status status = read_column(r, &item, f, k, &value->items[i][k]);
       if (status != SCREE_OK) return status;
     }
     if (i && !(value->items[i][0] > value->items[i - 1][0]))
@@ -389,16 +419,32 @@ scree_status scree_field_read(const scree_reader *r, const scree_yaml *node, con
   return SCREE_OK;
 }
 
+/* `{sphere: 0,01}` has a key 01. */
+static scree_status check_commas(const scree_reader *r, const scree_yaml *node) {
+  for (size_t i = 1; i < node->item_count; i++) {
+    const scree_yaml *item = &node->items[i], *before = item - 1;
+    const char *text = before->kind == SCREE_YAML_SCALAR ? before->text : "";
+    if (!*text || text[strspn(text, "+-0123456789")] || !isdigit((unsigned char)*item->key))
+      continue;
+    scree_place place = {NULL, r->path, before->line, before->column};
+    return scree_fail_place(r, &place, "%s: %s,%s: has a decimal comma; write %s.%s", before->key,
+                            text, item->key, text, item->key);
+  }
+  return SCREE_OK;
+}
+
 scree_status scree_record_read(const scree_reader *reader, const scree_yaml *node,
                                const scree_record *kind, void *record) {
   memcpy(record, kind->defaults, kind->size);
   *(scree_place *)record = (scree_place){NULL, reader->path, node->line, node->column};
+  scree_status status = check_commas(reader, node);
+  if (status != SCREE_OK) return status;
   for (size_t i = 0; i < node->item_count; i++) {
     const scree_field *field = NULL;
     for (size_t k = 0; k < kind->field_count; k++)
       if (!strcmp(kind->fields[k].key, node->items[i].key)) field = &kind->fields[k];
     if (!field) return fail_unknown(reader, &node->items[i], kind);
-    scree_status status = scree_field_read(reader, &node->items[i], field, record);
+    status = scree_field_read(reader, &node->items[i], field, record);
     if (status != SCREE_OK) return status;
   }
   return kind->check ? kind->check(reader, record) : SCREE_OK;
@@ -551,7 +597,8 @@ static void put_value(FILE *stream, const scree_field *f, const void *record) {
 }
 
 void scree_field_print_comment(const scree_field *f, FILE *stream) {
-  const char *unit = f->unit && f->kind != SCREE_FIELD_WORD ? f->unit : "";
+  bool one = f->kind != SCREE_FIELD_WORD && f->kind != SCREE_FIELD_TABLE;
+  const char *unit = f->unit && one ? f->unit : "";
   if (f->kind == SCREE_FIELD_WORD)
     fprintf(stream, "  # %s; %s", f->unit, f->comment);
   else if (*unit)

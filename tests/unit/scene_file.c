@@ -41,19 +41,20 @@ static const struct {
     {"time: 2\n", "tiem: 2\n", "line 2, column 1",
      "no field 'tiem' in a scene; did you mean 'time'"},
     {"time: 2\n", "", "line 1, column 1", "needs time"},
-    {"time: 2\n", "time: 2 min\n", "line 2, column 7", "'2 min': must be a number in s"},
+    {"time: 2\n", "time: 2 mins\n", "line 2, column 7", "must be a number in s; what is 'mins'?"},
+    {"time: 2\n", "time: 2 kg\n", "line 2, column 7", "in s; 'kg' measures something else"},
     {"time: 2\n", "time: -2\n", "line 2", "-2: must be 1e-09 to 1e+09 s"},
     {"time: 2\n", "time: soon\n", "line 2", "'soon': must be a number in s"},
     {"time: 2\n", "time: [2]\n", "line 2", "must be one number"},
     {"time: 2\n", "time: 2\ntime: 3\n", "line 3, column 1", "this key stands here twice"},
     {"seed: 3", "seed: 1.5", "line 3", "must be a whole number"},
-    {"time: 2\n", "time: 0,2\n", "line 2, column 7", "must be a number in s; what is ',2'?"},
+    {"time: 2\n", "time: 0,2\n", "line 2, column 7", "'0,2': has a decimal comma; write a point"},
     {"time: 2\n", "time 2\n", "line 2, column 1", "must be `key: value`"},
     {"time: 2\n", "\ttime: 2\n", "line 2, column 1", "a tab: lines are indented"},
-    {"young: 1e6", "young: 1e6 MPa", "line 5", "must be a number in Pa; what is 'MPa'?"},
+    {"young: 1e6", "young: 1e6 mN", "line 5", "a number in Pa; 'mN' measures something"},
     {"young: 1e6", "youngs: 1e6", "line 5, column 11", "did you mean 'young'"},
     {"density: 2500", "density: 0", "line 5", "materials.grain.density: 0: must be"},
-    {"friction: 0.5", "friction: 0,5", "line 5", "no field '5'"},
+    {"friction: 0.5", "friction: 0,5", "line 5", "friction: 0,5: has a decimal comma; write 0.5"},
     {"friction: 0.5", "friction: -0.5", "line 5", "-0.5: must be 0 to 100"},
     {"restitution: 0.5", "restitution: 1.5", "line 8", "1.5: must be 0.01 to 1"},
     {"between: [grain, steel]", "between: [grain, steal]", "line 8",
@@ -62,7 +63,7 @@ static const struct {
     {"pairs:\n", "pairs:\n  - {between: [steel, grain]}\n", "line 9, column 5",
      "'grain' and 'steel' are a pair already"},
     {"pairs:\n  - ", "pairs:\n  a: ", "line 8", "must be a list of groups"},
-    {"sphere: 0.01", "sphere: 10mm", "line 10", "'10mm': must be a number in m"},
+    {"sphere: 0.01", "sphere: 10 km", "line 10", "shapes.ball.sphere: 10000: must be"},
     {"sphere: 0.01", "sphere: 0", "line 10", "shapes.ball.sphere: 0: must be"},
     {"sphere: 0.01, ", "", "line 10", "needs one of file, sample, sphere"},
     {"sphere: 0.01", "sphere: 0.01, file: a.stl", "line 10", "only one of file, sample, sphere"},
@@ -79,6 +80,7 @@ static const struct {
     {"ball: {sphere: 0.01, material: grain}", "ball: {sphere: 0.01}", "line 10",
      "needs a material"},
     {"ball: {sphere: 0.01, material: grain}", "ball: 0.01", "line 10", "must be a group"},
+    {"at: [0, 0, 0]", "at: [0, 0,1, 0]", "line 13", "not a comma"},
     {"plane: [0, 0, 1]", "plane: [0, 0]", "line 13", "must be 3 numbers"},
     {"plane: [0, 0, 1]", "plane: [0, 0, 0]", "line 13", "points nowhere"},
     {"plane: [0, 0, 1]", "plane: [0, 0, 1], surface_velocity: [0, 0, 1]", "line 13",
@@ -92,6 +94,7 @@ static const struct {
      "rotate: {table: [[0, 1], [0, 2]]}", "line 14", "times must rise: 0 s after 0 s"},
     {"vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}", "rotate: {axis: [0, 0, 1]}",
      "line 14", "needs one of speed, table"},
+    {"rate: 20", "rate: 20 rpm", "line 16", "in 1/s; 'rpm' measures something else"},
     {"rate: 20", "rate: -20", "line 16", "-20: must be 0 to 1e+09 1/s"},
     {"rate: 20", "rate: 0", "line 16", "nothing would ever enter"},
     {"rate: 20, until: 1", "until: 1", "line 16", "needs a rate, a mass_rate or a count"},
@@ -137,7 +140,7 @@ static const struct {
      "line 14", "no field 'freq' in vibrate; there are along, amplitude, frequency, phase"},
     {"wall: deck", "wall: deck, pile: {}", "line 22", "only one of flow, region"},
     {"empty: true", "empty: yes", "line 23", "must be true or false"},
-    {"1e-6 J", "1e-6 kJ", "line 23", "must be a number in J; what is 'kJ'?"},
+    {"1e-6 J", "1e-6 kW", "line 23", "must be a number in J; 'kW' measures something else"},
     {"series: 0.01", "series: 0", "line 24", "output.series: 0: must be"},
     {"output: {frames", "output: {frames: 0.1\n", "line 25", ""},
 };
@@ -242,6 +245,45 @@ static void fields_are_set(void **state) {
   scree_scene_file_free(file);
 }
 
+/* Numbers in any unit are those in the field's own, to the last bit. */
+static void units(void **state) {
+  (void)state;
+  static const struct {
+    const char *field, *value, *printed;
+  } rows[] = {
+      {"shapes.ball.sphere", "10 mm", "sphere: 0.01 "},
+      {"shapes.ball.sphere", "1cm", "sphere: 0.01 "},
+      {"shapes.brick.box", "[20 mm, 1 cm, 1e4 um]", "box: [0.02, 0.01, 0.01]"},
+      {"time", "2 min", "time: 120 "},
+      {"materials.grain.young", "210 GPa", "young: 2.1e+11 "},
+      {"materials.grain.density", "2.5 t/m3", "density: 2500 "},
+      {"materials.grain.density", "2.5 g/cm^3", "density: 2500 "},
+      {"materials.grain.friction", "50 %", "friction: 0.5 "},
+      {"gravity", "[0, 0, -981 cm/s2]", "gravity: [0, 0, -9.81]"},
+      {"inlets.feed.rate", "120 1/min", "rate: 2 "},
+      {"inlets.feed",
+       "{box: {min: [-0.1, -0.1, 0.2], max: [0.1, 0.1, 0.3]}, shapes: ball, "
+       "mass_rate: 0.72 t/h}",
+       "mass_rate: 0.2 "},
+      {"geometry.deck.motion.0", "{rotate: {speed: 30 rpm}}", "speed: 3.14159265358979"},
+      {"geometry.deck.motion.0", "{rotate: {positions: [[0, 0], [500 ms, 180 deg]]}}",
+       "positions: [[0, 0], [0.5, 3.141592653589793]]"},
+      {"geometry.floor.turn", "{angle_deg: 0.5 rev}", "angle_deg: 180 "},
+      {"stop.still", "1 uJ", "still: 1e-06 "},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    scree_error error;
+    scree_scene_file *file = parse(good);
+    CHECK_OK(scree_scene_file_set(file, rows[i].field, rows[i].value, &error), error);
+    CHECK_OK(scree_scene_file_check(file, &error), error);
+    char *text = print_file(file);
+    if (!strstr(text, rows[i].printed))
+      fail_msg("%s: %s, not %s", rows[i].field, rows[i].value, rows[i].printed);
+    free(text);
+    scree_scene_file_free(file);
+  }
+}
+
 /* What only the files and the geometry can say. */
 static void scenes_that_cannot_be(void **state) {
   (void)state;
@@ -285,9 +327,8 @@ static void scenes_that_cannot_be(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(wrong_files),
-      cmocka_unit_test(printed_reads_back),
-      cmocka_unit_test(fields_are_set),
+      cmocka_unit_test(wrong_files),           cmocka_unit_test(printed_reads_back),
+      cmocka_unit_test(fields_are_set),        cmocka_unit_test(units),
       cmocka_unit_test(scenes_that_cannot_be),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
