@@ -421,7 +421,7 @@ static double held_with(const scree_world *world, const scree_pair *pair, vec3 w
  * as deep as they are, or at its limit, would press with: what lies behind must bear it too. */
 static scree_powers part(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                          scree_scratch *scratch) {
-  scree_touch_list *touches = &scratch->touches;
+  scree_touch_list *touches = &scratch->touches; /* with room for more than one */
   for (size_t i = 0; i < touches->count; i++) touches->items[i].anchor->share = 0;
   if (scratch->question.edges) pair->pushed = place_of_push(world, pair, touches, relative);
   vec3 at = pair->pushed, way = way_of_parting(world, pair, relative), arm = vec3_cross(at, way);
@@ -443,6 +443,14 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
   load_sums sums = {0};
   add_load(&sums.normal, way, arm, force);
   sums.dashpot = sums.normal;
+  touches->items[0] = (scree_touch){.at = at,
+                                    .normal = way,
+                                    .overlap = pair->overlap,
+                                    .weight = 1,
+                                    .share = 1,
+                                    .lever = 1,
+                                    .force = vec3_scale(way, force)};
+  touches->count = 1; /* who looks at the contacts sees the push */
   store_loads(world, scratch, pair, &sums);
   return (scree_powers){force * vec3_dot(v, way), 0};
 }
