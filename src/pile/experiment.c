@@ -1,8 +1,8 @@
-/* The experiment's fields in one table (scene/schema.h): key, unit, range, what it is and where the
+/* The experiment's fields in one table (base/schema.h): key, unit, range, what it is and where the
  * default comes from. The table reads YAML, sets single fields and prints the commented file. */
 #include "base/alloc.h"
+#include "base/schema.h"
 #include "base/yaml.h"
-#include "scene/schema.h"
 
 #include "scree.h"
 

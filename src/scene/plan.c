@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define UNITS "m|cm|mm|um|inch|ft|km"
 #define NONE                                                                                       \
   { NAN, NAN, NAN }
 #define FIELDS(table) (table), sizeof(table) / sizeof *(table)
@@ -106,7 +105,7 @@ static const scree_field shape_fields[] = {
      "a table of spheres: x, y, z, radius; or so many that stand for the shape", NULL},
     {"box", SCREE_FIELD_VECTOR, AT(box), 1e-9, 1e3, "m", "three sides", NULL},
     {"given", SCREE_FIELD_TEXT, AT(given), 0, 0, "", "by the program that makes the scene", NULL},
-    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, UNITS, "of the file's lengths", NULL},
+    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "of the file's lengths", NULL},
     {"resolution", SCREE_FIELD_REAL, AT(resolution), 0.02e-3, 5e-3, "m", "of a sample's vertices",
      NULL},
     {"triangles", SCREE_FIELD_TEXT, AT(triangles), 0, 0, "",
@@ -373,7 +372,7 @@ static const scree_field geometry_fields[] = {
     {"disc", SCREE_FIELD_RECORD, AT(disc), 0, 0, "", "", &disc_record},
     {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "a sheet from `at` along its axis",
      &cylinder_record},
-    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, UNITS, "of the file's lengths", NULL},
+    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "of the file's lengths", NULL},
     {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m", "where its origin goes", NULL},
     {"turn", SCREE_FIELD_RECORD, AT(turn), 0, 0, "", "about its origin, before it goes there",
      &turn_record},

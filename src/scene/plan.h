@@ -2,7 +2,9 @@
 #ifndef SCREE_SCENE_PLAN_H
 #define SCREE_SCENE_PLAN_H
 
-#include "scene/schema.h"
+#include "base/schema.h"
+
+#define SCREE_PLAN_UNITS "m|cm|mm|um|inch|ft|km"
 
 typedef struct scree_plan_material {
   scree_place place;

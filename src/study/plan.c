@@ -1,21 +1,125 @@
 /* The study's file, strictly: every key is known, every value in its range, every error has line
  * and column. Values of the experiment are tried on a copy at once, so that no run meets one that
  * cannot be. */
-#include "base/array.h"
+#include "scene/plan.h"
 #include "base/file.h"
 #include "base/number.h"
-#include "base/yaml.h"
 #include "study/design.h"
 #include "study/study.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
-#include <stdlib.h>
 #include <string.h>
 
-enum { LARGEST_FILE = 1 << 20, MOST_REPLICATES = 100000 };
+enum { LARGEST_FILE = 1 << 20 };
 static const double most_points = 1e6;
+
+/* ---- what its fields are ---- */
+
+typedef struct sample_fields {
+  scree_place place;
+  double resolution, noise;
+  uint64_t seed;
+} sample_fields;
+
+typedef struct analysis_fields {
+  scree_place place;
+  int angle;
+  double margin_deg, confidence;
+} analysis_fields;
+
+typedef struct study_fields {
+  scree_place place;
+  const char *name;
+  uint64_t seed;
+  size_t replicates, attempts, points;
+  int design, method, unit;
+  sample_fields *sample;
+  analysis_fields *analysis;
+  const scree_yaml *base, *shapes, *answers, *factors;
+} study_fields;
+
+typedef struct range_fields {
+  scree_place place;
+  double from, to;
+  int scale;
+  size_t levels;
+} range_fields;
+
+typedef struct window_fields {
+  scree_place place;
+  double from, until;
+} window_fields;
+
+#define FIELDS(table) (table), sizeof(table) / sizeof *(table)
+
+#define AT(member) offsetof(sample_fields, member)
+static const scree_field sample_table[] = {
+    {"resolution", SCREE_FIELD_REAL, AT(resolution), 0.02e-3, 5e-3, "m", "", NULL},
+    {"noise", SCREE_FIELD_REAL, AT(noise), 0, 1.25e-3, "m", "", NULL},
+    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "", NULL},
+};
+#undef AT
+static const sample_fields sample_defaults = {.resolution = NAN, .noise = NAN, .seed = 1};
+static const scree_record sample_record = {"sample", FIELDS(sample_table), sizeof(sample_fields),
+                                           &sample_defaults, NULL};
+
+#define AT(member) offsetof(analysis_fields, member)
+static const scree_field analysis_table[] = {
+    {"angle", SCREE_FIELD_WORD, AT(angle), 0, 0, "sector|cone|silhouette", "", NULL},
+    {"margin_deg", SCREE_FIELD_REAL, AT(margin_deg), 1e-6, 90, "deg", "", NULL},
+    {"confidence", SCREE_FIELD_REAL, AT(confidence), 0.5, 0.9999, "", "", NULL},
+};
+#undef AT
+static const analysis_fields analysis_defaults = {.margin_deg = 2, .confidence = 0.95};
+static const scree_record analysis_record = {"analysis", FIELDS(analysis_table),
+                                             sizeof(analysis_fields), &analysis_defaults, NULL};
+
+#define AT(member) offsetof(study_fields, member)
+static const scree_field study_table[] = {
+    {"name", SCREE_FIELD_TEXT, AT(name), 0, 0, "", "", NULL},
+    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "", NULL},
+    {"replicates", SCREE_FIELD_COUNT, AT(replicates), 1, 100000, "", "", NULL},
+    {"attempts", SCREE_FIELD_COUNT, AT(attempts), 1, 1000, "", "", NULL},
+    {"shapes", SCREE_FIELD_NODE, AT(shapes), 0, 0, "", "", NULL},
+    {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "", NULL},
+    {"sample", SCREE_FIELD_RECORD, AT(sample), 0, 0, "", "", &sample_record},
+    {"method", SCREE_FIELD_WORD, AT(method), 0, 0, "volume|qecd", "", NULL},
+    {"base", SCREE_FIELD_NODE, AT(base), 0, 0, "", "", NULL},
+    {"answers", SCREE_FIELD_NODE, AT(answers), 0, 0, "", "", NULL},
+    {"factors", SCREE_FIELD_NODE, AT(factors), 0, 0, "", "", NULL},
+    {"design", SCREE_FIELD_WORD, AT(design), 0, 0, "grid|latin|sobol", "", NULL},
+    {"points", SCREE_FIELD_COUNT, AT(points), 1, 1e6, "", "", NULL},
+    {"analysis", SCREE_FIELD_RECORD, AT(analysis), 0, 0, "", "", &analysis_record},
+};
+#undef AT
+static const study_fields study_defaults = {.replicates = 10, .attempts = 5, .unit = 2};
+static const scree_record study_record = {"a study", FIELDS(study_table), sizeof(study_fields),
+                                          &study_defaults, NULL};
+
+#define AT(member) offsetof(range_fields, member)
+static const scree_field range_table[] = {
+    {"from", SCREE_FIELD_REAL, AT(from), -1e300, 1e300, "", "", NULL},
+    {"to", SCREE_FIELD_REAL, AT(to), -1e300, 1e300, "", "", NULL},
+    {"scale", SCREE_FIELD_WORD, AT(scale), 0, 0, "linear|log", "", NULL},
+    {"levels", SCREE_FIELD_COUNT, AT(levels), 2, 10000, "", "", NULL},
+};
+#undef AT
+static const range_fields range_defaults = {.from = NAN, .to = NAN};
+static const scree_record range_record = {"a range", FIELDS(range_table), sizeof(range_fields),
+                                          &range_defaults, NULL};
+
+#define AT(member) offsetof(window_fields, member)
+static const scree_field window_table[] = {
+    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "", NULL},
+    {"until", SCREE_FIELD_REAL, AT(until), 0, 1e9, "s", "", NULL},
+};
+#undef AT
+static const window_fields window_defaults = {.until = INFINITY};
+static const scree_record window_record = {"an answer", FIELDS(window_table), sizeof(window_fields),
+                                           &window_defaults, NULL};
+
+/* ---- reading ---- */
 
 typedef struct reader {
   scree_study *study;
@@ -46,58 +150,16 @@ static scree_status fail_memory(const reader *r) {
   return scree_fail_memory(r->error, 0, r->name);
 }
 
-/* ---- values ---- */
+/* A group of fields; `path` stands before their names in errors. */
+static scree_status read_record(const reader *r, const scree_yaml *node, const char *path,
+                                const scree_record *kind, void *record) {
+  const scree_reader in = {r->name, &r->study->arena, r->error, path};
+  return scree_record_read(&in, node, kind, record);
+}
 
 static scree_status need_scalar(const reader *r, const scree_yaml *node) {
   if (node->kind == SCREE_YAML_SCALAR) return SCREE_OK;
   return fail_at(r, node, "%s: must be one value", node->key ? node->key : "an item");
-}
-
-static scree_status read_real(const reader *r, const scree_yaml *node, double low, double high,
-                              double *value) {
-  scree_status status = need_scalar(r, node);
-  if (status != SCREE_OK) return status;
-  double real;
-  if (!scree_number_read(node->text, &real))
-    return fail_at(r, node, "%s: '%s': must be a number", node->key, node->text);
-  if (real < low || real > high)
-    return fail_at(r, node, "%s: '%s': must be %g to %g", node->key, node->text, low, high);
-  *value = real;
-  return SCREE_OK;
-}
-
-static scree_status read_count(const reader *r, const scree_yaml *node, double low, double high,
-                               uint64_t *value) {
-  scree_status status = need_scalar(r, node);
-  if (status != SCREE_OK) return status;
-  char *end;
-  errno = 0;
-  unsigned long long whole = strtoull(node->text, &end, 10);
-  if (*node->text < '0' || *node->text > '9' || *end || errno)
-    return fail_at(r, node, "%s: '%s': must be a whole number", node->key, node->text);
-  if ((double)whole < low || (double)whole > high)
-    return fail_at(r, node, "%s: '%s': must be %g to %g", node->key, node->text, low, high);
-  *value = whole;
-  return SCREE_OK;
-}
-
-/* The index of the node's word among "one|two|three". */
-static scree_status read_word(const reader *r, const scree_yaml *node, const char *words,
-                              int *index) {
-  scree_status status = need_scalar(r, node);
-  if (status != SCREE_OK) return status;
-  size_t length = strlen(node->text);
-  int i = 0;
-  for (const char *word = words;; i++) {
-    size_t word_length = strcspn(word, "|");
-    if (word_length == length && !strncmp(word, node->text, length)) {
-      *index = i;
-      return SCREE_OK;
-    }
-    if (!word[word_length]) break;
-    word += word_length + 1;
-  }
-  return fail_at(r, node, "%s: '%s': must be one of %s", node->key, node->text, words);
 }
 
 /* ---- base ---- */
@@ -160,17 +222,11 @@ static scree_status read_answer(const reader *r, const scree_yaml *item, scree_a
   const char *column = item->text;
   if (item->kind == SCREE_YAML_MAPPING && item->item_count == 1 &&
       item->items[0].kind == SCREE_YAML_MAPPING) {
-    const scree_yaml *window = &item->items[0];
-    column = window->key;
-    a->mean = true;
-    for (size_t i = 0; i < window->item_count; i++) {
-      const scree_yaml *field = &window->items[i];
-      bool from = !strcmp(field->key, "from");
-      if (!from && strcmp(field->key, "until") != 0)
-        return fail_at(r, field, "no field '%s' in an answer; there are from, until", field->key);
-      scree_status status = read_real(r, field, 0, 1e9, from ? &a->from : &a->until);
-      if (status != SCREE_OK) return status;
-    }
+    window_fields window;
+    column = item->items[0].key;
+    scree_status status = read_record(r, &item->items[0], column, &window_record, &window);
+    if (status != SCREE_OK) return status;
+    *a = (scree_answer){.mean = true, .from = window.from, .until = window.until};
   } else if (item->kind != SCREE_YAML_SCALAR) {
     return fail_at(r, item,
                    "an answer must be a column such as torque.power, or {torque.power: "
@@ -413,32 +469,16 @@ static scree_status check_range(const reader *r, const scree_yaml *node, scree_f
 
 /* {from: A, to: B, scale: linear|log, levels: N} */
 static scree_status read_range(const reader *r, const scree_yaml *node, scree_factor *f) {
-  int scale = 0;
-  uint64_t levels = 0;
-  bool from = false, to = false;
+  range_fields range;
+  scree_status status = read_record(r, node, f->key, &range_record, &range);
+  if (status != SCREE_OK) return status;
+  if (isnan(range.from) || isnan(range.to))
+    return fail_at(r, node, "%s: a range needs from and to", f->key);
   f->range = true;
-  for (size_t i = 0; i < node->item_count; i++) {
-    const scree_yaml *item = &node->items[i];
-    scree_status status;
-    if (!strcmp(item->key, "from")) {
-      status = read_real(r, item, -1e300, 1e300, &f->from);
-      from = true;
-    } else if (!strcmp(item->key, "to")) {
-      status = read_real(r, item, -1e300, 1e300, &f->to);
-      to = true;
-    } else if (!strcmp(item->key, "scale")) {
-      status = read_word(r, item, "linear|log", &scale);
-    } else if (!strcmp(item->key, "levels")) {
-      status = read_count(r, item, 2, 10000, &levels);
-    } else {
-      status = fail_at(r, item, "%s: no field '%s' in a range; there are from, to, scale, levels",
-                       f->key, item->key);
-    }
-    if (status != SCREE_OK) return status;
-  }
-  if (!from || !to) return fail_at(r, node, "%s: a range needs from and to", f->key);
-  f->logarithmic = scale == 1;
-  return check_range(r, node, f, (size_t)levels);
+  f->from = range.from;
+  f->to = range.to;
+  f->logarithmic = range.scale == 1;
+  return check_range(r, node, f, range.levels);
 }
 
 static scree_status add_factor(const reader *r, const char *key, const scree_yaml *node) {
@@ -486,107 +526,7 @@ static scree_status read_factors(const reader *r, const scree_yaml *node) {
   return status;
 }
 
-/* ---- the other keys ---- */
-
-static scree_status read_sample(const reader *r, const scree_yaml *node) {
-  scree_sample_options *o = &r->study->sample;
-  if (node->kind != SCREE_YAML_MAPPING)
-    return fail_at(r, node, "sample: must be {resolution: M, noise: M, seed: N}");
-  for (size_t i = 0; i < node->item_count; i++) {
-    const scree_yaml *item = &node->items[i];
-    scree_status status;
-    if (!strcmp(item->key, "resolution"))
-      status = read_real(r, item, 0.02e-3, 5e-3, &o->resolution);
-    else if (!strcmp(item->key, "noise"))
-      status = read_real(r, item, 0, 1.25e-3, &o->noise);
-    else if (!strcmp(item->key, "seed"))
-      status = read_count(r, item, 0, 1.9e19, &o->seed);
-    else
-      status =
-          fail_at(r, item, "no field '%s' in sample; there are resolution, noise, seed", item->key);
-    if (status != SCREE_OK) return status;
-  }
-  return SCREE_OK;
-}
-
-static scree_status read_analysis(const reader *r, const scree_yaml *node) {
-  static const char *const angles[] = {"sector", "cone", "silhouette"};
-  if (node->kind != SCREE_YAML_MAPPING)
-    return fail_at(r, node, "analysis: must be {angle: WAY, margin_deg: D, confidence: C}");
-  for (size_t i = 0; i < node->item_count; i++) {
-    const scree_yaml *item = &node->items[i];
-    scree_status status;
-    int way = 0;
-    if (!strcmp(item->key, "angle")) {
-      status = read_word(r, item, "sector|cone|silhouette", &way);
-      if (way >= 0 && way < 3) r->study->analysis_angle = angles[way];
-    } else if (!strcmp(item->key, "margin_deg")) {
-      status = read_real(r, item, 1e-6, 90, &r->study->margin_deg);
-    } else if (!strcmp(item->key, "confidence")) {
-      status = read_real(r, item, 0.5, 0.9999, &r->study->confidence);
-    } else {
-      status = fail_at(
-          r, item, "no field '%s' in analysis; there are angle, margin_deg, confidence", item->key);
-    }
-    if (status != SCREE_OK) return status;
-  }
-  return SCREE_OK;
-}
-
-static scree_status read_unit(const reader *r, const scree_yaml *node) {
-  static const double metres[] = {1, 1e-3, 1e-2, 1e-6, 0.0254};
-  int unit = 0;
-  scree_status status = read_word(r, node, "m|mm|cm|um|inch", &unit);
-  if (unit >= 0 && unit < 5) r->study->unit_m = metres[unit];
-  return status;
-}
-
-static scree_status read_plain(const reader *r, const scree_yaml *item) {
-  scree_study *study = r->study;
-  scree_status status;
-  uint64_t count = 0;
-  int word = 0;
-  if (!strcmp(item->key, "name")) {
-    status = need_scalar(r, item);
-    if (status == SCREE_OK && !(study->name = scree_arena_text(&study->arena, item->text)))
-      status = fail_memory(r);
-  } else if (!strcmp(item->key, "seed")) {
-    status = read_count(r, item, 0, 1.8e19, &study->seed);
-  } else if (!strcmp(item->key, "replicates")) {
-    status = read_count(r, item, 1, MOST_REPLICATES, &count);
-    study->replicate_count = (size_t)count;
-  } else if (!strcmp(item->key, "attempts")) {
-    status = read_count(r, item, 1, 1000, &count);
-    study->attempt_limit = (size_t)count;
-  } else if (!strcmp(item->key, "points")) {
-    status = read_count(r, item, 1, most_points, &count);
-    study->wanted_points = (size_t)count;
-  } else if (!strcmp(item->key, "design")) {
-    status = read_word(r, item, "grid|latin|sobol", &word);
-    study->design = (scree_design)word;
-  } else if (!strcmp(item->key, "method")) {
-    status = read_word(r, item, "volume|qecd", &word);
-    study->method = (scree_method)word;
-  } else if (!strcmp(item->key, "unit")) {
-    status = read_unit(r, item);
-  } else if (!strcmp(item->key, "sample")) {
-    status = read_sample(r, item);
-  } else if (!strcmp(item->key, "analysis")) {
-    status = read_analysis(r, item);
-  } else {
-    status =
-        fail_at(r, item,
-                "no field '%s' in a study; there are name, seed, replicates, attempts, shapes, "
-                "unit, sample, method, base, answers, factors, design, points, analysis",
-                item->key);
-  }
-  return status;
-}
-
-static bool is_late(const char *key) {
-  return !strcmp(key, "base") || !strcmp(key, "factors") || !strcmp(key, "shapes") ||
-         !strcmp(key, "answers");
-}
+/* ---- the whole ---- */
 
 /* What only the whole can say. */
 static scree_status check_whole(const reader *r, const scree_yaml *root) {
@@ -627,26 +567,44 @@ static size_t count_items(const scree_yaml *node) {
   return count;
 }
 
+static void take_fields(scree_study *study, const study_fields *f) {
+  static const char *const angles[] = {"sector", "cone", "silhouette"};
+  const analysis_fields *analysis = f->analysis ? f->analysis : &analysis_defaults;
+  if (f->name) study->name = f->name;
+  study->seed = f->seed;
+  study->replicate_count = f->replicates;
+  study->attempt_limit = f->attempts;
+  study->wanted_points = f->points;
+  study->design = (scree_design)f->design;
+  study->method = (scree_method)f->method;
+  study->unit_m = scree_plan_unit(f->unit);
+  study->sample = scree_default_sample_options();
+  if (f->sample && !isnan(f->sample->resolution)) study->sample.resolution = f->sample->resolution;
+  if (f->sample && !isnan(f->sample->noise)) study->sample.noise = f->sample->noise;
+  if (f->sample) study->sample.seed = f->sample->seed;
+  study->analysis_angle = angles[analysis->angle];
+  study->margin_deg = analysis->margin_deg;
+  study->confidence = analysis->confidence;
+}
+
 static scree_status read_root(const reader *r, const scree_yaml *root) {
   scree_study *study = r->study;
+  study_fields f;
   if (root->kind != SCREE_YAML_MAPPING) return fail_at(r, root, "a study is `key: value` lines");
   size_t most = count_items(root); /* factors, sets: no more than there are nodes */
   study->factors = scree_arena_take(&study->arena, most, sizeof *study->factors);
   study->sets = scree_arena_take(&study->arena, most, sizeof *study->sets);
   study->shapes = scree_arena_take(&study->arena, SCREE_MOST_SHAPES, sizeof *study->shapes);
   if (!study->factors || !study->sets || !study->shapes) return fail_memory(r);
-  scree_status status = SCREE_OK;
-  for (size_t i = 0; status == SCREE_OK && i < root->item_count; i++)
-    if (!is_late(root->items[i].key)) status = read_plain(r, &root->items[i]);
-  const scree_yaml *base = scree_yaml_find(root, "base"), *shapes = scree_yaml_find(root, "shapes");
-  const scree_yaml *factors = scree_yaml_find(root, "factors");
   size_t set;
-  if (status == SCREE_OK && base) status = read_base(r, base);
+  scree_status status = read_record(r, root, "", &study_record, &f);
+  if (status != SCREE_OK) return status;
+  take_fields(study, &f);
+  if (f.base) status = read_base(r, f.base);
   if (status == SCREE_OK && !scree_yaml_find(root, "seed")) study->seed = study->base.seed;
-  if (status == SCREE_OK && shapes) status = read_set(r, shapes, &set);
-  const scree_yaml *answers = scree_yaml_find(root, "answers");
-  if (status == SCREE_OK && answers) status = read_answers(r, answers);
-  if (status == SCREE_OK && factors) status = read_factors(r, factors);
+  if (status == SCREE_OK && f.shapes) status = read_set(r, f.shapes, &set);
+  if (status == SCREE_OK && f.answers) status = read_answers(r, f.answers);
+  if (status == SCREE_OK && f.factors) status = read_factors(r, f.factors);
   return status == SCREE_OK ? check_whole(r, root) : status;
 }
 
@@ -661,13 +619,6 @@ static scree_status start(scree_study *study, const char *path, scree_error *err
   if (dot && dot != name) *dot = 0;
   study->name = scree_arena_text(&study->arena, name);
   if (!study->path || !study->name) return scree_fail_memory(error, strlen(path), path);
-  study->replicate_count = 10;
-  study->attempt_limit = 5;
-  study->unit_m = 1e-3;
-  study->sample = scree_default_sample_options();
-  study->analysis_angle = "sector";
-  study->margin_deg = 2;
-  study->confidence = 0.95;
   return SCREE_OK;
 }
 

@@ -134,11 +134,11 @@ static void errors_say_line_column_and_limit(void **state) {
   static const struct {
     const char *text, *message;
   } cases[] = {
-      {"replicates: 0\nshapes: [sample:box]\n", "line 1, column 13: replicates: '0': must be 1 to"},
+      {"replicates: 0\nshapes: [sample:box]\n", "line 1, column 13: replicates: 0: must be 1 to"},
       {"shapes: [sample:bax]\n", "line 1, column 10: no built-in sample 'sample:bax'"},
       {"shapes: [a.stl, a.stl]\n", "line 1, column 17: the shape 'a.stl' stands here twice"},
       {"name: x\n", "needs shapes:"},
-      {"shapes: [sample:box]\ncolour: red\n", "line 2, column 9: no field 'colour' in a study"},
+      {"shapes: [sample:box]\ncolour: red\n", "line 2, column 1: no field 'colour' in a study"},
       {"shapes: [sample:box]\nfactors: {rp: [2]}\n",
        "line 2, column 16: rp: '2': must be a number"},
       {"shapes: [sample:box]\nfactors: {rp: [0*recommended]}\n",

@@ -1,8 +1,8 @@
 /* Records that are read from YAML by a table of their fields: each has a key, a kind, a range, a
  * unit and a sentence. The same table reads, refuses what is wrong with its place, and prints the
  * record with units and comments. */
-#ifndef SCREE_SCENE_SCHEMA_H
-#define SCREE_SCENE_SCHEMA_H
+#ifndef SCREE_BASE_SCHEMA_H
+#define SCREE_BASE_SCHEMA_H
 
 #include "base/arena.h"
 #include "base/error.h"
@@ -23,6 +23,8 @@ typedef enum scree_field_kind {
   SCREE_FIELD_RECORD,  /* struct *; NULL: not given */
   SCREE_FIELD_NAMED,   /* scree_records: {name: record, ...} */
   SCREE_FIELD_LIST,    /* scree_records: [record, ...] */
+  SCREE_FIELD_NODE, /* const scree_yaml *: as it stands there, for its reader to look at; NULL: not
+                       given; never printed */
 } scree_field_kind;
 
 typedef struct scree_texts {

@@ -1,9 +1,10 @@
-#include "scene/schema.h"
+#include "base/schema.h"
 
 #include "base/number.h"
 #include "base/unit.h"
 
 #include <ctype.h>
+#include <errno.h>
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -190,8 +191,10 @@ static scree_status read_whole(const scree_reader *r, const scree_yaml *node, co
   if (node->kind != SCREE_YAML_SCALAR || *node->text < '0' || *node->text > '9')
     return fail_at(r, node, "%s%.60s%s: must be a whole number", node->text ? "'" : "",
                    node->text ? node->text : "a group", node->text ? "'" : "");
+  errno = 0;
   unsigned long long whole = strtoull(node->text, &end, 10);
   double real;
+  if (errno) return fail_at(r, node, "'%.60s': is too large", node->text);
   if (*end && scree_number_read(node->text, &real) && real == floor(real) && real < 1e18)
     whole = (unsigned long long)real, end = NULL; /* 1e4 */
   if (end && *end) return fail_at(r, node, "'%.60s': must be a whole number", node->text);
@@ -415,6 +418,9 @@ scree_status scree_field_read(const scree_reader *r, const scree_yaml *node, con
   case SCREE_FIELD_NAMED:
   case SCREE_FIELD_LIST:
     return read_records(r, node, f, value);
+  case SCREE_FIELD_NODE:
+    *(const scree_yaml **)value = node;
+    return SCREE_OK;
   }
   return SCREE_OK;
 }
@@ -461,6 +467,7 @@ bool scree_field_is_given(const scree_field *field, const void *record) {
     return *(const size_t *)value > 0;
   case SCREE_FIELD_TEXT:
   case SCREE_FIELD_RECORD:
+  case SCREE_FIELD_NODE:
     return *(void *const *)value != NULL;
   case SCREE_FIELD_TEXTS:
     return ((const scree_texts *)value)->count > 0;
