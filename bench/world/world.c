@@ -150,7 +150,7 @@ static void print_line(const scree_world *world, const scree_timings *before, do
          100 * (t.bodies - before->bodies) / total);
   printf("%.2f,%.2f,%.2f,%.3f,%.3g,%.3g,%ld\n", (double)o.pair_count / n,
          (double)o.contact_count / n,
-         (double)(t.item_evaluations - before->item_evaluations) / (n * steps),
+         (double)(t.feature_evaluations - before->feature_evaluations) / (n * steps),
          1000 * (double)(t.list_builds - before->list_builds) / (n * steps),
          o.kinetic + o.rotational, o.largest_overlap, usage.ru_maxrss * 1024);
 }

@@ -31,7 +31,7 @@ typedef struct scree_world_options {
   double smoothing;        /* l0 over L; default 4e-5, 2 um at 50 mm: overlaps this close share */
   double sharing;          /* kappa, in [0, 0.5]; default 0.1: deeper contacts share more widely */
   double overlap_limit;    /* over L; default 0.1, 5 mm at 50 mm: beyond it meshes of which edges
-                              lie in each other part (parting_count), else the run stops with
+                              lie in each other part (depenetration_count), else the run stops with
                               SCREE_DIVERGED. Walls may be thinner: a point keeps to the side that
                               it came from */
   double skin;             /* over L; default 0.02: reach of the candidate lists. Speed only */
@@ -244,11 +244,11 @@ typedef struct scree_observation {
   double highest_speed;                    /* m/s */
   double coordination;                     /* mean number of touching bodies and walls */
   size_t body_count, removed_count;
-  size_t pair_count;      /* touching pairs of bodies, and of body and wall */
-  size_t parting_pairs;   /* of them, those that held each other and are being moved apart */
-  size_t contact_count;   /* touching features */
-  uint64_t parting_count; /* how often two bodies that held each other had to be moved apart since
-                             the start (docs/background/physics.md); 0 in most runs */
+  size_t pair_count;            /* touching pairs of bodies, and of body and wall */
+  size_t depenetrating_pairs;   /* of them, those that held each other and are being moved apart */
+  size_t contact_count;         /* touching features */
+  uint64_t depenetration_count; /* how often two bodies that held each other had to be moved apart
+                             since the start (docs/background/physics.md); 0 in most runs */
 } scree_observation;
 /* Cost one pass over the bodies. */
 SCREE_API void scree_world_observe(const scree_world *world, scree_observation *observation);
@@ -257,10 +257,10 @@ SCREE_API void scree_world_observe(const scree_world *world, scree_observation *
 typedef struct scree_contact {
   size_t body, other; /* other: a body, or with `wall` a wall */
   bool wall;
-  double position[3];    /* m */
-  double normal[3];      /* towards `body` */
-  double force[3];       /* N, on `body`, normal and tangential */
-  double overlap, share; /* m; part of the pair's spring, at most 1/(1 - kappa) in all */
+  double position[3];     /* m */
+  double normal[3];       /* towards `body` */
+  double force[3];        /* N, on `body`, normal and tangential */
+  double overlap, weight; /* m; part of the pair's spring, at most 1/(1 - kappa) in all */
 } scree_contact;
 /* Calls for every touching feature in a fixed order, from a fresh evaluation of forces at the
  * present positions; changes nothing. False from the callback ends it. */
@@ -272,7 +272,7 @@ SCREE_API scree_status scree_world_visit_contacts(const scree_world *world,
 /* Where the time went since creation: seconds of wall clock per stage, and counts. */
 typedef struct scree_timings {
   double broad, candidates, contacts, bodies, total; /* s; candidates is part of contacts */
-  uint64_t steps, broad_builds, list_builds, item_evaluations, closest_queries, pair_evaluations;
+  uint64_t steps, broad_builds, list_builds, feature_evaluations, closest_queries, pair_evaluations;
 } scree_timings;
 SCREE_API void scree_world_timings(const scree_world *world, scree_timings *timings);
 

@@ -219,12 +219,12 @@ class scree_observation(Structure):
         "time", "kinetic", "rotational", "potential", "elastic", "dissipated_dashpot", "dissipated_friction",
         "wall_work", "applied_work")] + [("momentum", double3), ("angular_momentum", double3)] + [(name, c_double) for name in (
             "mean_rotation", "largest_overlap", "highest_speed", "coordination")] + [(name, c_size_t) for name in (
-                "body_count", "removed_count", "pair_count", "parting_pairs", "contact_count")] + [("parting_count", c_uint64)]
+                "body_count", "removed_count", "pair_count", "depenetrating_pairs", "contact_count")] + [("depenetration_count", c_uint64)]
 
 
 class scree_contact(Structure):
     _fields_ = [("body", c_size_t), ("other", c_size_t), ("wall", c_bool), ("position", double3),
-                ("normal", double3), ("force", double3), ("overlap", c_double), ("share", c_double)]
+                ("normal", double3), ("force", double3), ("overlap", c_double), ("weight", c_double)]
 
 
 class scree_export_options(Structure):

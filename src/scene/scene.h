@@ -210,7 +210,7 @@ scree_placement scree_placement_of(const scree_particle *particle, double more);
 /* Whether bodies move by less than `still` J each, and none is being moved out of another. */
 static inline bool scree_is_still(const scree_observation *o, double still) {
   double count = (double)(o->body_count > 0 ? o->body_count : 1);
-  return o->kinetic + o->rotational < still * count && o->parting_pairs == 0;
+  return o->kinetic + o->rotational < still * count && o->depenetrating_pairs == 0;
 }
 
 /* layers.c: plans those of an inlet, refusing what cannot be; lets in those that are due. */

@@ -23,7 +23,7 @@ void scree_broad_free(scree_world *world) {
       broad->boxes,         broad->cells,        broad->wall_reach,  broad->buckets.count,
       broad->buckets.begin, broad->binned,       broad->found,       broad->found_count,
       broad->listed.count,  broad->listed.begin, broad->old_keys,    broad->old_begin,
-      broad->match.items,   broad->left.count,   broad->left.begin,  broad->left_items.items,
+      broad->match.items,   broad->left.count,   broad->left.begin,  broad->left_features.items,
       broad->sides.count,   broad->walls.count,  broad->walls.begin, broad};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) scree_free(arrays[i]);
 }
@@ -87,9 +87,9 @@ static bool reserve_lists(scree_world *world, uint64_t count) {
          SCREE_RESERVE(&world->broad->match, k) && SCREE_RESERVE(&world->neighbours, k) &&
          SCREE_RESERVE(&world->pair_of, k) && SCREE_RESERVE(&world->ledger, k) &&
          SCREE_RESERVE(&world->sides, 2 * k) && SCREE_RESERVE(&world->acting, 2 * k) &&
-         SCREE_RESERVE(&world->due, world->bodies.count + world->walls.count) &&
+         SCREE_RESERVE(&world->wake_threshold, world->bodies.count + world->walls.count) &&
          SCREE_RESERVE(&world->slots, k) && SCREE_RESERVE(&world->touching, k / 64 + 1) &&
-         SCREE_RESERVE(&world->broad->left_items, world->wall_pairs.count) &&
+         SCREE_RESERVE(&world->broad->left_features, world->wall_pairs.count) &&
          SCREE_RESERVE(&world->wall_pairs, k);
 }
 

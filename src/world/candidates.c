@@ -18,18 +18,18 @@ static const double fast_skins =
 
 typedef scree_listing listing; /* contact.h */
 
-/* What tells one item from another: the cached face is not part of it. */
+/* What tells one feature pair from another: the cached face is not part of it. */
 static uint64_t name_of(uint32_t kind, uint32_t a, uint32_t b) {
-  if (kind == SCREE_ITEM_POINT_FACE || kind == SCREE_ITEM_POINT_WALL) b = 0;
-  if (kind == SCREE_ITEM_FACE_POINT) a = 0;
+  if (kind == SCREE_FEATURE_POINT_FACE || kind == SCREE_FEATURE_POINT_WALL) b = 0;
+  if (kind == SCREE_FEATURE_FACE_POINT) a = 0;
   return (((uint64_t)a << 32 | b) + kind) * 0x9E3779B97F4A7C15u;
 }
 
-/* One bit for each awake item's name: most names are not among them. */
+/* One bit for each awake feature pair's name: most names are not among them. */
 static void mark_awake(listing *l) {
   for (uint32_t i = 0; i < l->pair->active.count; i++) {
-    const scree_item *item = &l->scratch->items[i];
-    uint64_t bit = name_of(item->kind, item->a, item->b) >> 56;
+    const scree_feature_pair *feature = &l->scratch->features[i];
+    uint64_t bit = name_of(feature->kind, feature->a, feature->b) >> 56;
     l->awake[bit >> 6] |= (uint64_t)1 << (bit & 63);
   }
 }
@@ -38,23 +38,23 @@ static bool is_awake(const listing *l, uint32_t kind, uint32_t a, uint32_t b) {
   uint64_t name = name_of(kind, a, b), bit = name >> 56;
   if (!(l->awake[bit >> 6] >> (bit & 63) & 1)) return false;
   for (uint32_t i = 0; i < l->pair->active.count; i++) {
-    const scree_item *item = &l->scratch->items[i];
-    if (item->kind == kind && name_of(kind, item->a, item->b) == name) return true;
+    const scree_feature_pair *feature = &l->scratch->features[i];
+    if (feature->kind == kind && name_of(kind, feature->a, feature->b) == name) return true;
   }
   return false;
 }
 
-static void put_to_sleep(listing *l, scree_item_kind kind, uint32_t a, uint32_t b, double gap) {
+static void put_to_sleep(listing *l, scree_feature_kind kind, uint32_t a, uint32_t b, double gap) {
   if (gap > l->skin || is_awake(l, kind, a, b)) return;
-  const scree_sleeper sleeper = {l->pair->list.path + gap, a, b, kind};
+  const scree_sleeping_feature sleeping_feature = {l->pair->list.path + gap, a, b, kind};
   scree_range *sleeping = &l->scratch->neighbours->sleeping;
   if (l->to) {
-    if (l->count < l->room) l->to[l->count] = sleeper;
+    if (l->count < l->room) l->to[l->count] = sleeping_feature;
     l->count++;
     return;
   }
-  l->full = l->full || !scree_reserve_sleepers(l->scratch, sleeping->count + 1);
-  if (!l->full) scree_sleepers(l->scratch)[sleeping->count++] = sleeper;
+  l->full = l->full || !scree_reserve_sleeping(l->scratch, sleeping->count + 1);
+  if (!l->full) scree_sleeping_features(l->scratch)[sleeping->count++] = sleeping_feature;
 }
 
 static vec3 into_b(const listing *l, vec3 p) {
@@ -69,7 +69,8 @@ static void list_wall_point(listing *l, uint32_t i) {
     side = scree_wall_first_side(wall, p, l->relative->position,
                                  scree_pair_clearance(l->pair, l->a, i));
   double d = scree_wall_distance(wall, p, side, &closest, &normal);
-  put_to_sleep(l, SCREE_ITEM_POINT_WALL, i, 0, d - l->a->point_radii[i] - l->pair->law.smoothing);
+  put_to_sleep(l, SCREE_FEATURE_POINT_WALL, i, 0,
+               d - l->a->point_radii[i] - l->pair->law.smoothing);
 }
 
 /* Nodes of the other side's tree under which everything lies that can be near the present node. A
@@ -120,19 +121,20 @@ typedef struct point_listing {
 static void list_point(const point_listing *pl, uint32_t i, const front *near) {
   listing *l = pl->list;
   vec3 p = vec3_add(mat3_mul_vec(&pl->rotation, pl->from->points[i]), pl->shift);
-  double touch = pl->from->point_radii[i] + pl->to->radius + l->pair->law.smoothing;
+  double contact = pl->from->point_radii[i] + pl->to->radius + l->pair->law.smoothing;
   uint32_t face;
-  double distance = scree_nearest_face(pl->to, near->nodes, near->count, p, l->skin + touch, &face);
+  double distance =
+      scree_nearest_face(pl->to, near->nodes, near->count, p, l->skin + contact, &face);
   l->closest_queries++;
   if (!(distance < INFINITY)) return;
-  double gap = distance - touch;
+  double gap = distance - contact;
   if (gap > 0 && scree_pair_is_new(l->pair) && pl->to->measures.volume > 0 &&
       scree_is_inside(pl->to, p))
     gap = 0; /* made or moved there: nothing was seen from outside */
   if (pl->forth)
-    put_to_sleep(l, SCREE_ITEM_POINT_FACE, i, 0, gap);
+    put_to_sleep(l, SCREE_FEATURE_POINT_FACE, i, 0, gap);
   else
-    put_to_sleep(l, SCREE_ITEM_FACE_POINT, 0, i, gap);
+    put_to_sleep(l, SCREE_FEATURE_FACE_POINT, 0, i, gap);
 }
 
 static void list_points_below(const point_listing *pl, uint32_t index, const front *above) {
@@ -164,7 +166,7 @@ static point_listing points_against(listing *l, bool forth) {
 static void list_sphere(listing *l, uint32_t i) {
   vec3 p = into_b(l, l->a->points[i]);
   for (uint32_t j = 0; j < l->b->point_count; j++)
-    put_to_sleep(l, SCREE_ITEM_POINT_POINT, i, j,
+    put_to_sleep(l, SCREE_FEATURE_POINT_POINT, i, j,
                  vec3_distance(p, l->b->points[j]) - l->a->point_radii[i] - l->b->point_radii[j] -
                      l->pair->law.smoothing);
 }
@@ -176,8 +178,8 @@ static void list_edge(listing *l, uint32_t i, const front *above) {
   const mat3 *r = &l->relative->rotation;
   vec3 p0 = into_b(l, ea->start), p1 = into_b(l, ea->end), along = mat3_mul_vec(r, ea->along);
   scree_cone cone = scree_cone_opposite(&ea->normals, r);
-  double touch = l->pair->law.reach + l->pair->law.smoothing;
-  sieve s = {&l->b->edge_tree, scree_box_grown(scree_box_of(p0, p1), l->skin + touch), &cone};
+  double contact = l->pair->law.reach + l->pair->law.smoothing;
+  sieve s = {&l->b->edge_tree, scree_box_grown(scree_box_of(p0, p1), l->skin + contact), &cone};
   uint32_t stack[FRONT_SIZE + SCREE_TREE_STACK];
   int depth = 0;
   for (int k = above->count; k-- > 0;) stack[depth++] = above->nodes[k];
@@ -198,7 +200,7 @@ static void list_edge(listing *l, uint32_t i, const front *above) {
       scree_closest_on_segments(p0, along, ea->length, eb->start, eb->along, eb->length, &s_a,
                                 &s_b);
       double d = vec3_distance(vec3_mad(p0, along, s_a), vec3_mad(eb->start, eb->along, s_b));
-      put_to_sleep(l, SCREE_ITEM_EDGE_EDGE, i, j, d - touch);
+      put_to_sleep(l, SCREE_FEATURE_EDGE_EDGE, i, j, d - contact);
     }
   }
 }
@@ -228,7 +230,7 @@ static double box_gap(const scree_box *a, const scree_box *b) {
 }
 
 /* The shapes are at least this far apart: the larger gap of the two boxes in either frame. Boxes
- * hold the roundings. */
+ * hold the contact radii. */
 static double least_distance(const listing *l) {
   const scree_frame *r = l->relative;
   scree_box moved = scree_box_moved(&l->a->box, &r->rotation, r->position);
@@ -346,7 +348,7 @@ bool scree_listing_begin(scree_listing *l, const scree_world *world, scree_pair 
   scratch->neighbours->sleeping.count = 0;
   double apart = analytic ? 0 : least_distance(l);
   pair->list.region_radius = 0;
-  pair->list.next_item = -INFINITY;
+  pair->list.next_feature = -INFINITY;
   pair->list.end = pair->list.path + scree_max(apart, l->skin);
   if (apart > l->skin) return false;
   if (!pair->wall) set_region(l);

@@ -1,4 +1,5 @@
-/* A pair's step: wake what is due, find the touching features, apply the law, let the rest sleep.
+/* A pair's step: wake what has reached its threshold, find the touching features, apply the law,
+ * let the rest sleep.
  *
  * Sleeping is exact. The pair's `path` bounds from above how far any two points near the contact
  * have moved relative to each other; a feature pair that is `gap` from touching cannot touch before
@@ -18,8 +19,8 @@
 
 static const double least_sleep = 4; /* steps of travel: shorter naps cost more than they save */
 
-static double power_of(const scree_kept_load *kept, vec3 velocity, vec3 spin) {
-  scree_load load = scree_kept_as_load(kept);
+static double power_of(const scree_kept_wrench *kept, vec3 velocity, vec3 spin) {
+  scree_wrench load = scree_kept_as_wrench(kept);
   return vec3_dot(load.force, velocity) + vec3_dot(load.moment, spin);
 }
 
@@ -44,8 +45,8 @@ static void add_later_work(const scree_world *world, const scree_pair *pair,
 
 /* Of the wall on the body in half a step, by the pair's wrench and the wall's last drift. */
 static double half_work_of_wall(const scree_world *world, const scree_pair *pair) {
-  const scree_load all = {pair->wrench.force, vec3_neg(pair->wrench.torque_b)},
-                   friction = scree_kept_as_load(&pair->tangential);
+  const scree_wrench all = {pair->wrench.force, vec3_neg(pair->wrench.torque_b)},
+                     friction = scree_kept_as_wrench(&pair->tangential);
   return 0.5 * world->time_step * scree_wall_power(&world->walls.items[pair->b], &all, &friction);
 }
 
@@ -107,79 +108,83 @@ static double relate(const scree_world *world, const scree_pair *pair, scree_scr
   return vec3_norm(there) + radius * vec3_norm(spin);
 }
 
-/* What is due wakes; when there is no room for all some are awake already, which is no harm. */
-static bool wake_items(scree_pair *pair, scree_scratch *scratch) {
-  double due = pair->list.path + 2 * pair->list.travel + scree_pair_claim(pair), next = INFINITY;
-  if (due < pair->list.next_item) return true;
+/* What reaches its threshold wakes; when there is no room for all some are awake already, which is
+ * no harm. */
+static bool wake_features(scree_pair *pair, scree_scratch *scratch) {
+  double wakes = pair->list.path + 2 * pair->list.travel + scree_pair_edge_reach(pair),
+         next = INFINITY;
+  if (wakes < pair->list.next_feature) return true;
   scree_range *sleeping = &scratch->neighbours->sleeping;
-  scree_sleeper *sleepers = scree_sleepers(scratch);
+  scree_sleeping_feature *sleeping_features = scree_sleeping_features(scratch);
   bool room = true;
   uint32_t kept = 0;
   for (uint32_t i = 0; i < sleeping->count; i++) {
-    scree_sleeper sleeper = sleepers[i];
-    room =
-        room && (due < sleeper.wake || scree_reserve_items(scratch, pair, pair->active.count + 1));
-    if (due < sleeper.wake || !room) {
-      next = scree_min(next, sleeper.wake);
-      if (kept < i) sleepers[kept] = sleeper;
+    scree_sleeping_feature sleeping_feature = sleeping_features[i];
+    room = room && (wakes < sleeping_feature.wake ||
+                    scree_reserve_features(scratch, pair, pair->active.count + 1));
+    if (wakes < sleeping_feature.wake || !room) {
+      next = scree_min(next, sleeping_feature.wake);
+      if (kept < i) sleeping_features[kept] = sleeping_feature;
       kept++;
       continue;
     }
-    scratch->items[pair->active.count++] =
-        (scree_item){.kind = (uint8_t)sleeper.kind, .a = sleeper.a, .b = sleeper.b};
+    scratch->features[pair->active.count++] = (scree_feature_pair){
+        .kind = (uint8_t)sleeping_feature.kind, .a = sleeping_feature.a, .b = sleeping_feature.b};
   }
   sleeping->count = kept;
-  pair->list.next_item = next;
+  pair->list.next_feature = next;
   return room;
 }
 
-/* For the touches of all awake items and of edges inside, and for them all to fall asleep. */
+/* For the contacts of all awake feature pairs and of edges inside, and for them all to fall asleep.
+ */
 static bool has_room(const scree_pair *pair, scree_scratch *scratch) {
-  size_t touches = (size_t)SCREE_ANCHORS * pair->active.count + SCREE_DEPTHS;
-  return scree_reserve_touches(scratch, touches) &&
-         scree_reserve_sleepers(scratch, scratch->neighbours->sleeping.count + pair->active.count);
+  size_t contacts = (size_t)SCREE_ANCHORS * pair->active.count + SCREE_DEPTHS;
+  return scree_reserve_contacts(scratch, contacts) &&
+         scree_reserve_sleeping(scratch, scratch->neighbours->sleeping.count + pair->active.count);
 }
 
 static void begin_visits(const scree_pair *pair, scree_scratch *scratch) {
-  scratch->nap = least_sleep * pair->list.travel + scree_pair_claim(pair);
-  scratch->touches.count = 0;
+  scratch->nap = least_sleep * pair->list.travel + scree_pair_edge_reach(pair);
+  scratch->contacts.count = 0;
 }
 
-void scree_pair_visit_item(const scree_world *world, const scree_pair *pair, uint32_t i,
-                           scree_scratch *scratch) {
-  scree_item *item = &scratch->items[i];
-  item->gap = scree_item_touch(world, pair, item, &scratch->relative, scratch);
+void scree_pair_visit_feature(const scree_world *world, const scree_pair *pair, uint32_t i,
+                              scree_scratch *scratch) {
+  scree_feature_pair *feature = &scratch->features[i];
+  feature->gap = scree_feature_contact(world, pair, feature, &scratch->relative, scratch);
 }
 
-/* What the visits found. Items that cannot touch soon go to sleep, but move only after the law: the
- * touches point at their anchors. */
+/* What the visits found. Feature pairs that cannot touch soon go to sleep, but move only after the
+ * law: the contacts point at their anchors. */
 static void end_visits(const scree_pair *pair, scree_scratch *scratch) {
   scratch->least_gap = INFINITY;
   scratch->any_inside = false;
   scratch->to_sleep = 0;
   for (uint32_t i = 0; i < pair->active.count; i++) {
-    scree_item *item = &scratch->items[i];
-    if (item->gap < scratch->least_gap) scratch->least_gap = item->gap;
-    scratch->any_inside |= item->inside;
-    if (!(item->gap > scratch->nap && item->gap > 0) || item->inside) item->gap = 0;
-    scratch->to_sleep += item->gap > 0;
+    scree_feature_pair *feature = &scratch->features[i];
+    if (feature->gap < scratch->least_gap) scratch->least_gap = feature->gap;
+    scratch->any_inside |= feature->inside;
+    if (!(feature->gap > scratch->nap && feature->gap > 0) || feature->inside) feature->gap = 0;
+    scratch->to_sleep += feature->gap > 0;
   }
 }
 
-static void settle_items(scree_pair *pair, scree_scratch *scratch) {
-  scree_sleeper *sleepers = scree_sleepers(scratch);
+static void settle_features(scree_pair *pair, scree_scratch *scratch) {
+  scree_sleeping_feature *sleeping_features = scree_sleeping_features(scratch);
   uint32_t kept = 0;
   for (uint32_t i = 0; i < pair->active.count; i++) {
-    const scree_item *item = &scratch->items[i];
-    if (item->gap > 0) {
-      scree_sleeper sleeper = {pair->list.path + item->gap, item->a, item->b, item->kind};
-      sleepers[scratch->neighbours->sleeping.count++] = sleeper;
-      pair->list.next_item = scree_min(pair->list.next_item, sleeper.wake);
+    const scree_feature_pair *feature = &scratch->features[i];
+    if (feature->gap > 0) {
+      scree_sleeping_feature sleeping_feature = {pair->list.path + feature->gap, feature->a,
+                                                 feature->b, feature->kind};
+      sleeping_features[scratch->neighbours->sleeping.count++] = sleeping_feature;
+      pair->list.next_feature = scree_min(pair->list.next_feature, sleeping_feature.wake);
       continue;
     }
     if (kept != i) {
-      scratch->items[kept] = *item;
-      if (item->notched) scratch->further[kept] = scratch->further[i];
+      scratch->features[kept] = *feature;
+      if (feature->notched) scratch->further[kept] = scratch->further[i];
     }
     kept++;
   }
@@ -189,7 +194,7 @@ static void settle_items(scree_pair *pair, scree_scratch *scratch) {
 static void fall_asleep(const scree_world *world, scree_pair *pair, scree_neighbours *n,
                         const scree_frame *relative) {
   n->asleep_since = bodies_path(world, pair);
-  n->wake = n->asleep_since + scree_min(pair->list.next_item, pair->list.end) - pair->list.path;
+  n->wake = n->asleep_since + scree_min(pair->list.next_feature, pair->list.end) - pair->list.path;
   n->asleep_at = relative->position;
   n->asleep_turned = turned(world, pair);
   pair->asleep = true;
@@ -217,12 +222,12 @@ static bool passes_unseen(const scree_world *world, const scree_pair *pair) {
   return pair->active.count > 0 && !(pair->list.travel <= 2 * pair->law.thin);
 }
 
-bool scree_pair_is_due(const scree_pair *pair) {
+bool scree_pair_needs_list(const scree_pair *pair) {
   return pair->list.path + 2 * pair->list.travel >= pair->list.end;
 }
 
 bool scree_pair_wake(scree_pair *pair, scree_scratch *scratch) {
-  if (!wake_items(pair, scratch) || !has_room(pair, scratch)) return false;
+  if (!wake_features(pair, scratch) || !has_room(pair, scratch)) return false;
   begin_visits(pair, scratch);
   return true;
 }
@@ -241,34 +246,35 @@ static void take_places(const scree_world *world, const scree_pair *pair, scree_
 
 /* What is to be found before the law. */
 static void ask(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
-  scratch->parting = pair->parting;
-  scratch->parted = pair->parted;
-  pair->parted = false;
+  scratch->depenetrating = pair->depenetrating;
+  scratch->was_depenetrating = pair->was_depenetrating;
+  pair->was_depenetrating = false;
   scree_pair_ask_depths(world, pair, scratch);
 }
 
 /* The law at the present places. */
-static void press(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
-                  scree_pair_work *work) {
+static void apply_contact_law(const scree_world *world, scree_pair *pair, scree_scratch *scratch,
+                              scree_pair_work *work) {
   const scree_frame *relative = &scratch->relative;
-  const bool parting = scratch->parting, parted = scratch->parted;
-  if (pair->parting) work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
+  const bool depenetrating = scratch->depenetrating, was_depenetrating = scratch->was_depenetrating;
+  if (pair->depenetrating)
+    work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
   clear_results(pair);
   double largest = pair->largest;
   scree_powers powers = scree_pair_apply_law(world, pair, relative, scratch);
   pair->kick = 0;
-  if (parted)
+  if (was_depenetrating)
     work->let_go -= pair->elastic; /* what the features feel anew was not loaded by work */
   if (!pair->touching) return;
   pair->kick = 0.5 * (scratch->drift + scratch->step);
-  work->begins_parting |= !parting && pair->parting;
+  work->begins_depenetration |= !depenetrating && pair->depenetrating;
   const double half = 0.5 * scratch->drift, rest = 0.5 * pair->kick - half;
   work->dashpot = half * powers.dashpot;
   work->tangential = half * powers.tangential;
   pair->later_dashpot += rest * powers.dashpot;
   pair->later_tangential += rest * powers.tangential;
   if (pair->largest > largest) work->lost = hysteresis_loss(pair, largest);
-  work->beyond_limit |= !(pair->overlap <= pair->law.limit) && !pair->parting;
+  work->beyond_limit |= !(pair->overlap <= pair->law.limit) && !pair->depenetrating;
 }
 
 void scree_pair_relate(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
@@ -296,44 +302,48 @@ void scree_pair_meet(const scree_world *world, scree_pair *pair, scree_scratch *
   end_visits(pair, scratch);
   scratch->substeps = scree_substep_count(world, pair, &scratch->relative, scratch);
   scratch->step = world->time_step / scratch->substeps;
-  scratch->last = pair->touching ? pair->wrench : (scree_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  scratch->last =
+      pair->touching ? pair->wrench : (scree_pair_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   ask(world, pair, scratch);
 }
 
-void scree_pair_press(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
-  press(world, pair, scratch, &scratch->work);
-  if (scratch->to_sleep > 0) settle_items(pair, scratch);
+void scree_pair_contact_law(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+  apply_contact_law(world, pair, scratch, &scratch->work);
+  if (scratch->to_sleep > 0) settle_features(pair, scratch);
 }
 
-bool scree_pair_look(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+bool scree_pair_narrow_phase(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   scree_pair_relate(world, pair, scratch);
-  if ((scree_pair_is_due(pair) && !scree_pair_list(world, pair, scratch)) ||
+  if ((scree_pair_needs_list(pair) && !scree_pair_list(world, pair, scratch)) ||
       !scree_pair_wake(pair, scratch)) {
     scree_pair_step_back(pair, scratch);
     return false;
   }
-  for (uint32_t i = 0; i < pair->active.count; i++) scree_pair_visit_item(world, pair, i, scratch);
+  for (uint32_t i = 0; i < pair->active.count; i++)
+    scree_pair_visit_feature(world, pair, i, scratch);
   scree_pair_meet(world, pair, scratch);
   if (scree_asks_depths(&scratch->question))
     scree_pair_find_depths(world, pair, scratch, &scratch->work);
-  scree_pair_press(world, pair, scratch);
+  scree_pair_contact_law(world, pair, scratch);
   return true;
 }
 
-void scree_pair_look_between(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
+void scree_pair_narrow_phase_between(const scree_world *world, scree_pair *pair,
+                                     scree_scratch *scratch) {
   scree_pair_work part = {0};
   if (pair->touching) add_later_work(world, pair, scratch, &part);
   pair->list.travel = relate(world, pair, scratch) * scratch->drift;
   pair->list.path += pair->list.travel;
   begin_visits(pair, scratch);
-  for (uint32_t i = 0; i < pair->active.count; i++) scree_pair_visit_item(world, pair, i, scratch);
+  for (uint32_t i = 0; i < pair->active.count; i++)
+    scree_pair_visit_feature(world, pair, i, scratch);
   end_visits(pair, scratch);
   ask(world, pair, scratch);
   if (scree_asks_depths(&scratch->question)) scree_pair_find_depths(world, pair, scratch, &part);
-  press(world, pair, scratch, &part);
+  apply_contact_law(world, pair, scratch, &part);
   pair->later_dashpot += part.later_dashpot + part.dashpot - part.lost - part.let_go;
   pair->later_tangential += part.later_tangential + part.tangential;
-  scratch->work.begins_parting |= part.begins_parting;
+  scratch->work.begins_depenetration |= part.begins_depenetration;
   scratch->work.beyond_limit |= part.beyond_limit;
 }
 
@@ -345,7 +355,7 @@ void scree_pair_leave(const scree_world *world, scree_pair *pair, scree_scratch 
 }
 
 bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
-  if (!scree_pair_look(world, pair, scratch)) return false;
+  if (!scree_pair_narrow_phase(world, pair, scratch)) return false;
   scree_pair_leave(world, pair, scratch);
   return true;
 }

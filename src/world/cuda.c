@@ -3,7 +3,8 @@
  * The state goes to the device when steps begin, and stays there. The host only asks for steps,
  * several at once: where the neighbours hold no longer, a pair finds too little room in a pool, or
  * something is wrong, the kernels do nothing more until the host has mended it. Every world has a
- * queue of its own, so that worlds that are stepped by several threads share the device. */
+ * queue of its own, so that worlds that are stepped by several threads share the device.
+ */
 #include "world/backend.h"
 #include "world/broad.h"
 #include "world/contact.h"
@@ -21,7 +22,7 @@
 
 enum { STEPS_AT_ONCE = 8 };
 /* For how many threads are started: parts of lists and of depths, in all and for each of the
- * neighbours; items of a pair. */
+ * neighbours; feature pairs of a pair. */
 enum { PARTS_AT_ONCE = 32768, PARTS = 64, VISITS = 4 };
 
 /* For so many steps. */
@@ -42,7 +43,7 @@ static scree_status launch(scree_world *w, size_t steps) {
                                                  [SCREE_KERNEL_visit] = VISITS * awake,
                                                  [SCREE_KERNEL_meet] = awake,
                                                  [SCREE_KERNEL_depth] = parts,
-                                                 [SCREE_KERNEL_press] = awake,
+                                                 [SCREE_KERNEL_contact_law] = awake,
                                                  [SCREE_KERNEL_gather] = bodies,
                                                  [SCREE_KERNEL_advance] = bodies + w->walls.count,
                                                  [SCREE_KERNEL_end] = 1}};
@@ -54,7 +55,7 @@ static scree_status make_room(scree_world *w) {
   struct scree_device_world *d = w->on_device;
   scree_status status = scree_cuda_fetch(w, d, SCREE_ALL_PARTS, &w->failure);
   if (status) return status;
-  while (d->touch_capacity < d->touches_used) d->touch_capacity *= 2;
+  while (d->contact_capacity < d->contacts_used) d->contact_capacity *= 2;
   bool good = w->spare_pairs.count >= 0 || scree_pairs_grow(w);
   if (!good || !scree_pools_grow(&w->pools, w->pairs.items, w->pairs.count, w->neighbours.items,
                                  w->neighbours.count))
@@ -82,7 +83,7 @@ static scree_status list_there(scree_world *w, struct scree_device_world *d) {
 
 static scree_status list_here(scree_world *w, struct scree_device_world *d) {
   scree_status status = scree_broad_update(w, &w->failure);
-  d->touches_used = 0;
+  d->contacts_used = 0;
   if (!status) status = scree_reserve_blocks(w, &w->failure);
   return status ? status : scree_cuda_send(w, d, &w->failure);
 }
@@ -116,7 +117,7 @@ static void begin_steps(struct scree_device_world *d, size_t wanted) {
 /* What was not done of a step that has begun goes on. */
 static void go_on(struct scree_device_world *d, bool resume) {
   scree_device_step *h = &d->header;
-  h->stop = h->too_small = h->again = h->due_count = 0;
+  h->stop = h->too_small = h->again = h->new_list_count = 0;
   h->resume = resume;
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++) h->visit_counts[kind] = 0;
 }
@@ -147,7 +148,7 @@ static scree_status finish(scree_world *w) {
 static void count_steps(scree_world *w, const scree_device_step *h, double started) {
   for (uint64_t i = 0; i < h->done; i++) w->time += w->time_step;
   w->step_count += h->done;
-  w->parting_count += h->tally.partings;
+  w->depenetration_count += h->tally.depenetrations;
   if (h->done) w->largest_overlap = h->last_overlap;
   w->timings.contacts += scree_now() - started;
   w->timings.total += scree_now() - started;

@@ -246,9 +246,9 @@ static scree_status reserve_own(scree_cuda_broad *broad, size_t old, size_t coun
                                 scree_error *error) {
   scree_broad *b = &broad->image;
   scree_status status = reserve(&broad->match, count * sizeof *b->match.items, error);
-  if (!status) status = reserve(&broad->left, old * sizeof *b->left_items.items, error);
+  if (!status) status = reserve(&broad->left, old * sizeof *b->left_features.items, error);
   lead(b, FIELD(match.items), broad->match.at);
-  lead(b, FIELD(left_items.items), broad->left.at);
+  lead(b, FIELD(left_features.items), broad->left.at);
   return status;
 }
 

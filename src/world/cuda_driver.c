@@ -100,7 +100,7 @@ static scree_status load_driver(scree_error *error) {
 static scree_status load_kernels(struct opened *device, scree_error *error) {
 #define SCREE_NAME(name) "scree_kernel_" #name,
   static const char *const kernels[] = {SCREE_KERNELS(SCREE_NAME) SCREE_BROAD_KERNELS(SCREE_NAME)
-                                            SCREE_LOOK_KERNELS(SCREE_NAME)};
+                                            SCREE_OBSERVE_KERNELS(SCREE_NAME)};
 #undef SCREE_NAME
   char log[512] = "";
   int options[] = {JIT_ERROR_LOG, JIT_ERROR_LOG_SIZE};

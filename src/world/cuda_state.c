@@ -22,7 +22,7 @@ typedef struct span {
   } kind;
 } span;
 
-enum { FIRST_TOUCHES = 4096 };
+enum { FIRST_CONTACTS = 4096 };
 
 #define FIELD(member) offsetof(scree_world, member)
 
@@ -35,7 +35,7 @@ static bool has_applied(const scree_world *w) {
 static size_t list_spans(const scree_world *w, span spans[SCREE_MOST_SPANS]) {
   const size_t n = w->bodies.count, k = w->neighbours.count, p = w->pairs.count;
   const scree_pools *pools = &w->pools;
-  const size_t items = pools->items_used, sleepers = pools->sleepers_used;
+  const size_t items = pools->features_used, sleeping_features = pools->sleeping_used;
 #define OF(member, count, part, kind)                                                              \
   {                                                                                                \
     FIELD(member), (count) * sizeof *w->member, (count) * sizeof *w->member, SCREE_PART_##part,    \
@@ -65,16 +65,16 @@ static size_t list_spans(const scree_world *w, span spans[SCREE_MOST_SPANS]) {
       OF(keys.items, k, LISTS, MADE),
       OF(pairs.items, p, LISTS, COMES_BACK),
       OF(spare_pairs.items, p, LISTS, COMES_BACK),
-      POOL(pools.items, pools->item_capacity, items),
-      POOL(pools.further, pools->item_capacity, items),
-      POOL(pools.sleepers, pools->sleeper_capacity, sleepers),
+      POOL(pools.features, pools->feature_capacity, items),
+      POOL(pools.further, pools->feature_capacity, items),
+      POOL(pools.sleeping_features, pools->sleeping_capacity, sleeping_features),
       OF(slots.items, k, LISTS, COMES_BACK),
-      OF(due.items, w->on_device->body_count + w->walls.count, LISTS, COMES_BACK),
+      OF(wake_threshold.items, w->on_device->body_count + w->walls.count, LISTS, COMES_BACK),
       OF(touching.items, k / 64 + 1, LISTS, COMES_BACK),
       OF(sides.items, w->sides.count, LISTS, MADE),
       OF(wall_pairs.items, w->wall_pairs.count, LISTS, MADE),
       OF(bodies.applied, has_applied(w) ? n : 0, BODIES, COMES_BACK),
-      OF(bodies.booked, n, BODIES, COMES_BACK),
+      OF(bodies.balance, n, BODIES, COMES_BACK),
       OF(side_begin, n + 1, LISTS, SENT),
       {FIELD(acting.items), w->sides.count * sizeof(uint32_t), 0, SCREE_PART_LISTS, MADE},
       {FIELD(awake.items), k * sizeof(uint32_t), 0, SCREE_PART_LISTS, MADE},
@@ -277,9 +277,9 @@ scree_cuda_place scree_cuda_place_of(struct scree_device_world *d) {
 void scree_cuda_lead_header(const scree_world *w, struct scree_device_world *d) {
   lead_to(&d->header.hands, d->own[BLOCK_HANDS].at);
   lead_to(&d->header.progress, d->own[BLOCK_PROGRESS].at);
-  lead_to(&d->header.touch_counts, d->own[BLOCK_TOUCH_COUNTS].at);
-  lead_to(&d->header.due, d->own[BLOCK_DUE].at);
-  d->header.due_capacity = lists_of(w);
+  lead_to(&d->header.contact_counts, d->own[BLOCK_CONTACT_COUNTS].at);
+  lead_to(&d->header.new_lists, d->own[BLOCK_NEW_LISTS].at);
+  d->header.new_list_capacity = lists_of(w);
   lead_to(&d->header.depth_jobs, d->own[BLOCK_DEPTH_JOBS].at);
   lead_to(&d->header.depths, d->own[BLOCK_DEPTHS].at);
   d->header.depth_capacity = depths_of(w);
@@ -302,9 +302,9 @@ static scree_status send_image(scree_world *w, struct scree_device_world *d,
   lead_to(&d->image->sums, d->own[BLOCK_SUMS].at);
   lead_to(&d->image->bodies.particle, d->own[BLOCK_PARTICLES].at);
   lead_to(&d->image->walls.items, d->own[BLOCK_WALLS].at);
-  lead_to(&d->image->pools.touches, d->own[BLOCK_TOUCHES].at);
-  d->image->pools.touch_capacity = d->touch_capacity;
-  d->image->pools.touches_used = d->touches_used;
+  lead_to(&d->image->pools.contacts, d->own[BLOCK_CONTACTS].at);
+  d->image->pools.contact_capacity = d->contact_capacity;
+  d->image->pools.contacts_used = d->contacts_used;
   scree_cuda_lead_header(w, d);
   return scree_cuda_write(&d->queue, d->own[BLOCK_WORLD].at, d->image, sizeof *w, error);
 }
@@ -312,18 +312,18 @@ static scree_status send_image(scree_world *w, struct scree_device_world *d,
 scree_status scree_cuda_reserve_own(const scree_world *w, struct scree_device_world *d,
                                     scree_error *error) {
   const size_t k = w->neighbours.count;
-  if (d->touch_capacity == 0) d->touch_capacity = FIRST_TOUCHES;
+  if (d->contact_capacity == 0) d->contact_capacity = FIRST_CONTACTS;
   size_t sizes[BLOCK_COUNT] = {[BLOCK_WORLD] = sizeof *w,
                                [BLOCK_WORLDS] = sizeof(scree_device_address),
                                [BLOCK_HANDS] = k * sizeof(scree_scratch),
                                [BLOCK_PROGRESS] = k,
-                               [BLOCK_TOUCHES] = d->touch_capacity * sizeof(scree_touch),
-                               [BLOCK_TOUCH_COUNTS] = d->touch_capacity,
-                               [BLOCK_DUE] = lists_of(w) * sizeof(scree_due_list),
+                               [BLOCK_CONTACTS] = d->contact_capacity * sizeof(scree_contact_point),
+                               [BLOCK_CONTACT_COUNTS] = d->contact_capacity,
+                               [BLOCK_NEW_LISTS] = lists_of(w) * sizeof(scree_new_list),
                                [BLOCK_DEPTH_JOBS] = SCREE_MOST_DEPTH_JOBS * sizeof(scree_depth_job),
                                [BLOCK_DEPTHS] = depths_of(w) * sizeof(scree_depth)};
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
-    sizes[BLOCK_VISITS + kind] = w->pools.item_capacity * sizeof(scree_visit);
+    sizes[BLOCK_VISITS + kind] = w->pools.feature_capacity * sizeof(scree_visit);
   scree_status status = SCREE_OK;
   for (int i = 0; i < BLOCK_COUNT && !status; i++)
     status = scree_cuda_reserve(&d->own[i].at, &d->own[i].capacity, sizes[i], error);
@@ -385,7 +385,8 @@ static scree_status make_room_for_bodies(scree_world *w, struct scree_device_wor
   const struct {
     size_t field, size;
   } lists[] = {{FIELD(side_begin), (w->bodies.count + 1) * sizeof *w->side_begin},
-               {FIELD(due.items), (w->bodies.count + w->walls.count) * sizeof *w->due.items}};
+               {FIELD(wake_threshold.items),
+                (w->bodies.count + w->walls.count) * sizeof *w->wake_threshold.items}};
   scree_cuda_place place = scree_cuda_place_of(d);
   scree_device_address broad;
   scree_status status = scree_broad_reserve_bodies(w, error);
@@ -442,8 +443,8 @@ scree_status scree_cuda_send_changed(scree_world *w, struct scree_device_world *
   if (!status && d->changed & SCREE_PART_WALLS) {
     status = send_walls(w, d, error);
     if (!status)
-      status = scree_cuda_launch(&d->queue, SCREE_KERNEL_wall_due, w->walls.count, 1, place.worlds,
-                                 0, error);
+      status = scree_cuda_launch(&d->queue, SCREE_KERNEL_wall_threshold, w->walls.count, 1,
+                                 place.worlds, 0, error);
   }
   if (!status) status = scree_cuda_wait(&d->queue, error);
   if (!status) d->changed = 0;
@@ -506,9 +507,9 @@ static scree_status fetch_numbers(scree_world *w, struct scree_device_world *d,
       scree_cuda_read(&d->queue, (char *)image + from, d->own[BLOCK_WORLD].at + from, size, error);
   if (status) return status;
   w->spare_pairs.count = image->spare_pairs.count;
-  w->pools.items_used = image->pools.items_used;
-  w->pools.sleepers_used = image->pools.sleepers_used;
-  d->touches_used = image->pools.touches_used;
+  w->pools.features_used = image->pools.features_used;
+  w->pools.sleeping_used = image->pools.sleeping_used;
+  d->contacts_used = image->pools.contacts_used;
   return SCREE_OK;
 }
 

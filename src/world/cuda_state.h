@@ -18,9 +18,9 @@ enum {
   BLOCK_WORLDS, /* where it is: a list of one */
   BLOCK_HANDS,
   BLOCK_PROGRESS,
-  BLOCK_TOUCHES,
-  BLOCK_TOUCH_COUNTS,
-  BLOCK_DUE,
+  BLOCK_CONTACTS,
+  BLOCK_CONTACT_COUNTS,
+  BLOCK_NEW_LISTS,
   BLOCK_DEPTH_JOBS,
   BLOCK_DEPTHS,
   BLOCK_SUMS,
@@ -33,7 +33,7 @@ struct scree_device_world {
   scree_cuda_queue queue;
   scree_cuda_block arrays[SCREE_MOST_SPANS], own[BLOCK_COUNT];
   scree_cuda_broad *broad;
-  uint64_t touch_capacity, touches_used;
+  uint64_t contact_capacity, contacts_used;
   size_t awake; /* pairs in a step, about */
   scree_device_step header;
   scree_world *image;          /* the device's struct */

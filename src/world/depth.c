@@ -18,8 +18,8 @@
 
 /* Bodies that lie deeper in each other from the start, of the limit, are refused. */
 static const double start_share = 0.05;
-static const double near_share = 0.25; /* of the roundings: depths are asked for from here on */
-static const double apart_share = 0.9; /* of the roundings: bodies that part are apart */
+static const double near_share = 0.25; /* of the contact radii: depths are asked for from here on */
+static const double apart_share = 0.9; /* of the contact radii: bodies that part are apart */
 static const double look_share = 0.2;  /* of the depth: bodies that part are looked at so often */
 static const double tolerance = 1e-6;  /* of the depth, within which the deepest place is found */
 /* Points of a mesh are looked for in the other from the start: corners, drawn towards the centre.
@@ -243,23 +243,23 @@ static scree_depth find_deepest(const side *sd, const scree_edge *edge, double a
 
 /* ---- the edges of a pair ---- */
 
-/* A place among the touches of depths: a new one, or that of the least deep. */
+/* A place among the contacts of depths: a new one, or that of the least deep. */
 static bool make_place(scree_scratch *scratch, double overlap) {
-  scree_touch *touches = scratch->touches.items;
-  size_t count = scratch->touches.count, depths = 0, least = count;
-  for (size_t i = count; i > 0 && touches[i - 1].of_depth; i--, depths++)
-    if (least == count || touches[i - 1].overlap < touches[least].overlap) least = i - 1;
+  scree_contact_point *contacts = scratch->contacts.items;
+  size_t count = scratch->contacts.count, depths = 0, least = count;
+  for (size_t i = count; i > 0 && contacts[i - 1].of_depth; i--, depths++)
+    if (least == count || contacts[i - 1].overlap < contacts[least].overlap) least = i - 1;
   if (depths < SCREE_DEPTHS) return true;
-  if (touches[least].overlap >= overlap) return false;
-  touches[least] = touches[--scratch->touches.count];
+  if (contacts[least].overlap >= overlap) return false;
+  contacts[least] = contacts[--scratch->contacts.count];
   return true;
 }
 
 static void add_depth(const side *sd, scree_pair *pair, vec3 p, const scree_depth *deep,
                       scree_scratch *scratch) {
-  double lever = vec3_norm(deep->slope), overlap = deep->depth - pair->law.smoothing;
-  bool slopes = lever > 1e-6; /* in the midst of a wall it is as deep however it moves */
-  vec3 out = slopes ? vec3_scale(deep->slope, -1 / lever) : (vec3){0, 0, 1},
+  double gap_gradient = vec3_norm(deep->slope), overlap = deep->depth - pair->law.smoothing;
+  bool slopes = gap_gradient > 1e-6; /* in the midst of a wall it is as deep however it moves */
+  vec3 out = slopes ? vec3_scale(deep->slope, -1 / gap_gradient) : (vec3){0, 0, 1},
        at = vec3_mad(p, out, overlap);
   const double values[4] = {-overlap, 0, 0, 1};
   if (!make_place(scratch, overlap)) return;
@@ -267,18 +267,18 @@ static void add_depth(const side *sd, scree_pair *pair, vec3 p, const scree_dept
     at = mat3_tmul_vec(&sd->rotation, vec3_sub(p, sd->shift));
     out = vec3_neg(mat3_tmul_vec(&sd->rotation, out));
   }
-  size_t count = scratch->touches.count;
-  scree_add_touch(scratch, pair, at, out, values, &scratch->no_anchor);
-  if (scratch->touches.count == count) return;
-  scree_touch *touch = &scratch->touches.items[count];
-  touch->lever = slopes ? lever : 0;
-  touch->of_depth = true;
+  size_t count = scratch->contacts.count;
+  scree_add_contact(scratch, pair, at, out, values, &scratch->no_anchor);
+  if (scratch->contacts.count == count) return;
+  scree_contact_point *contact = &scratch->contacts.items[count];
+  contact->gap_gradient = slopes ? gap_gradient : 0;
+  contact->of_depth = true;
 }
 
 /* Adds an edge as a touch whose deepest point lies deeper than `above`; answers that depth, or
  * `above`. */
-static double touch_edge(const side *sd, scree_pair *pair, const scree_edge *edge, double above,
-                         const scree_depth *deep, scree_scratch *scratch) {
+static double contact_edge(const side *sd, scree_pair *pair, const scree_edge *edge, double above,
+                           const scree_depth *deep, scree_scratch *scratch) {
   if (!(deep->depth > above)) return above;
   if (!(deep->depth > 0)) return deep->depth;
   vec3 along = vec3_mad(edge->start, edge->along, deep->s),
@@ -294,7 +294,7 @@ static bool is_outside(const scree_particle *to, vec3 centre, double radius, dou
   return !scree_is_near(to, centre, radius + beyond) && !scree_is_inside(to, centre);
 }
 
-static double touch_side(const side *sd, scree_pair *pair, double above, scree_scratch *scratch) {
+static double contact_side(const side *sd, scree_pair *pair, double above, scree_scratch *scratch) {
   if (!sd->from->edge_count || !is_solid(sd->to)) return above;
   const scree_tree *tree = &sd->from->edge_tree;
   scree_box within = scree_box_grown(sd->to->face_tree.nodes[0].box, -above);
@@ -312,7 +312,7 @@ static double touch_side(const side *sd, scree_pair *pair, double above, scree_s
     for (uint32_t k = 0; k < node->count; k++) {
       const scree_edge *edge = &sd->from->edges[tree->order[node->first + k]];
       scree_depth deep = find_deepest(sd, edge, above);
-      deepest = scree_max(deepest, touch_edge(sd, pair, edge, above, &deep, scratch));
+      deepest = scree_max(deepest, contact_edge(sd, pair, edge, above, &deep, scratch));
     }
     if (node->count) continue;
     stack[depth++] = node->first + 1;
@@ -321,16 +321,16 @@ static double touch_side(const side *sd, scree_pair *pair, double above, scree_s
   return deepest;
 }
 
-double scree_touch_depths(const scree_world *world, scree_pair *pair, const scree_frame *relative,
-                          double above, scree_scratch *scratch) {
+double scree_depth_contacts(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                            double above, scree_scratch *scratch) {
   side sides[2];
   make_sides(world, pair, relative, sides);
-  double of_a = touch_side(&sides[0], pair, above, scratch);
-  return scree_max(of_a, touch_side(&sides[1], pair, above, scratch));
+  double of_a = contact_side(&sides[0], pair, above, scratch);
+  return scree_max(of_a, contact_side(&sides[1], pair, above, scratch));
 }
 
-vec3 scree_way_off_rims(const scree_world *world, const scree_pair *pair,
-                        const scree_frame *relative) {
+vec3 scree_separation_off_rims(const scree_world *world, const scree_pair *pair,
+                               const scree_frame *relative) {
   side sides[2];
   vec3 way = {0, 0, 0};
   make_sides(world, pair, relative, sides);
@@ -387,18 +387,18 @@ static double start_depth(const scree_world *world, const scree_pair *pair,
  * keep to their side of a disc or cylinder. */
 static void start_anew(const scree_pair *pair, scree_scratch *scratch) {
   for (uint32_t i = 0; i < pair->active.count; i++) {
-    scree_item *item = &scratch->items[i];
-    if (item->kind == SCREE_ITEM_POINT_WALL) continue;
-    *item = (scree_item){.kind = item->kind, .a = item->a, .b = item->b};
+    scree_feature_pair *feature = &scratch->features[i];
+    if (feature->kind == SCREE_FEATURE_POINT_WALL) continue;
+    *feature = (scree_feature_pair){.kind = feature->kind, .a = feature->a, .b = feature->b};
   }
-  scratch->touches.count = 0;
+  scratch->contacts.count = 0;
 }
 
 /* What the features feel. */
 static scree_smooth_maximum felt_overlap(const scree_world *world, const scree_pair *pair,
-                                         const scree_touch_list *touches) {
+                                         const scree_contact_list *contacts) {
   scree_smooth_maximum felt;
-  if (scree_solve_smooth_maximum(touches->items, touches->count, pair->law.smoothing,
+  if (scree_solve_smooth_maximum(contacts->items, contacts->count, pair->law.smoothing,
                                  world->options.sharing, &felt))
     return felt;
   return (scree_smooth_maximum){.cutoff = -pair->law.smoothing};
@@ -406,7 +406,7 @@ static scree_smooth_maximum felt_overlap(const scree_world *world, const scree_p
 
 /* Bodies that part are apart here: once they are pushed, where their springs would hardly press. */
 static double apart_depth(const scree_pair *pair) {
-  bool pushed = vec3_norm2(pair->way) > 0;
+  bool pushed = vec3_norm2(pair->separation) > 0;
   return pushed ? -apart_share * pair->law.reach : 0;
 }
 
@@ -425,7 +425,7 @@ static double gap_of_cores(const scree_pair *pair, const scree_scratch *scratch)
 /* Whether the cores were so far apart before the step that they cannot have met in it. */
 static bool stay_apart(const scree_pair *pair, const scree_scratch *scratch) {
   double before = scratch->slept ? (near_share - 1) * pair->law.reach : pair->depth;
-  return !pair->parting && !scratch->any_inside && !scratch->question.start &&
+  return !pair->depenetrating && !scratch->any_inside && !scratch->question.start &&
          before + pair->list.travel <= 0;
 }
 
@@ -439,15 +439,16 @@ static double way_since(const scree_particle *a, const scree_scratch *scratch) {
 
 /* Bodies that part, and at `least` so deep, need no look. */
 static bool part_still(const scree_pair *pair, double least) {
-  bool pushed = vec3_norm2(pair->way) > 0;
-  return pair->parting && pushed && least > (1 - look_share) * pair->found && least > 0;
+  bool pushed = vec3_norm2(pair->separation) > 0;
+  return pair->depenetrating && pushed && least > (1 - look_share) * pair->found && least > 0;
 }
 
 void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   scree_depth_question *question = &scratch->question;
   *question = (scree_depth_question){false, false, 0};
-  if (!b || !a->face_count || !scree_has_features(b)) pair->parting = false; /* no depth is known */
+  if (!b || !a->face_count || !scree_has_features(b))
+    pair->depenetrating = false; /* no depth is known */
   if (!b) return;
   question->start = scree_pair_is_new(pair);
   if (!a->face_count || !scree_has_features(b)) return;
@@ -457,7 +458,7 @@ void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scr
     return;
   }
   if (!b->face_count) { /* rims alone are felt by features until they part */
-    question->edges = pair->parting;
+    question->edges = pair->depenetrating;
     question->above = apart_depth(pair);
     return;
   }
@@ -465,17 +466,17 @@ void scree_pair_ask_depths(const scree_world *world, scree_pair *pair, scree_scr
     pair->depth = -gap_of_cores(pair, scratch);
     return;
   }
-  scree_smooth_maximum felt = felt_overlap(world, pair, &scratch->touches);
+  scree_smooth_maximum felt = felt_overlap(world, pair, &scratch->contacts);
   double above = felt.cutoff + pair->law.smoothing, /* what lies lower counts for nothing */
       near = near_share * pair->law.reach;
   /* features that look the wrong way claim any depth */
-  if (felt.value > pair->law.limit) pair->parting = true;
-  if (!pair->parting && pair->depth > -INFINITY && pair->depth + pair->list.travel < above) {
+  if (felt.value > pair->law.limit) pair->depenetrating = true;
+  if (!pair->depenetrating && pair->depth > -INFINITY && pair->depth + pair->list.travel < above) {
     pair->depth += pair->list.travel;
     return;
   }
-  question->above = pair->parting ? apart_depth(pair) : scree_max(0, above - near);
-  question->edges = pair->parting || scree_surfaces_cross(a, b, &scratch->relative);
+  question->above = pair->depenetrating ? apart_depth(pair) : scree_max(0, above - near);
+  question->edges = pair->depenetrating || scree_surfaces_cross(a, b, &scratch->relative);
   if (!question->edges) pair->depth = -gap_of_cores(pair, scratch);
 }
 
@@ -496,10 +497,10 @@ static void answer(const scree_world *world, scree_pair *pair, double start, dou
   pair->depth = pair->found = depth;
   scratch->depth_queries++;
   if (question->start) note_start(pair, pair->depth, work);
-  if (!pair->parting || !are_apart(world, pair, scratch)) return;
-  pair->parting = false;
-  pair->parted = true;
-  pair->way = (vec3){0, 0, 0};
+  if (!pair->depenetrating || !are_apart(world, pair, scratch)) return;
+  pair->depenetrating = false;
+  pair->was_depenetrating = true;
+  pair->separation = (vec3){0, 0, 0};
   start_anew(pair, scratch);
   work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
 }
@@ -509,7 +510,8 @@ void scree_pair_find_depths(const scree_world *world, scree_pair *pair, scree_sc
   const scree_depth_question *question = &scratch->question;
   const scree_frame *relative = &scratch->relative;
   double start = question->start ? start_depth(world, pair, relative) : 0, depth = 0;
-  if (question->edges) depth = scree_touch_depths(world, pair, relative, question->above, scratch);
+  if (question->edges)
+    depth = scree_depth_contacts(world, pair, relative, question->above, scratch);
   answer(world, pair, start, depth, scratch, work);
 }
 
@@ -563,7 +565,7 @@ void scree_pair_take_depths(const scree_world *world, scree_pair *pair, const sc
     const side *sd = &all.sides[k];
     for (size_t i = 0; i < all.edges[k]; i++, found++) {
       const scree_edge *edge = &sd->from->edges[sd->from->edge_tree.order[i]];
-      double own = touch_edge(sd, pair, edge, scratch->question.above, found, scratch);
+      double own = contact_edge(sd, pair, edge, scratch->question.above, found, scratch);
       depth = scree_max(depth, own);
     }
   }

@@ -46,12 +46,12 @@ struct scree_broad {
   struct {
     uint32_t *items; /* old neighbours */
     size_t capacity;
-  } left_items;
+  } left_features;
   scree_groups sides, walls; /* of each body: places in world->sides, neighbours that are walls */
   /* Where the old ones are; here they are moved in place, on a device to other memory. */
   scree_neighbours *old_neighbours;
   uint32_t *old_pair_of;
-  scree_booked *old_ledger;
+  scree_balance *old_ledger;
 };
 
 /* Until they are over: of body i its box, the widest one, and how far the walls must reach. */

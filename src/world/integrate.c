@@ -36,13 +36,13 @@ static void sum_forces(scree_world *world, size_t i, const uint32_t *acting, siz
   for (size_t k = from; k < to; k++) {
     if (k + FORCES_AHEAD < count)
       scree_prefetch(scree_pair_of(world, acting[k + FORCES_AHEAD] >> 1), 128);
-    const scree_wrench *w = &scree_pair_of(world, acting[k] >> 1)->wrench;
+    const scree_pair_wrench *w = &scree_pair_of(world, acting[k] >> 1)->wrench;
     bool of_b = acting[k] & 1;
     force = vec3_mad(force, w->force, of_b ? -1 : 1);
     torque = vec3_add(torque, of_b ? w->torque_b : w->torque_a);
   }
   if (world->bodies.applied) {
-    const scree_load *applied = &world->bodies.applied[i].now;
+    const scree_wrench *applied = &world->bodies.applied[i].now;
     force = vec3_add(force, applied->force);
     torque = vec3_add(torque, applied->moment);
   }
@@ -134,7 +134,7 @@ bool scree_world_gather(scree_world *world) {
 
 /* The work of an applied force, by the velocities before and after each kick: the second half of
  * the last step and the first of this one. */
-static void book_applied(scree_applied *applied, const scree_frame *frame, double dt) {
+static void add_applied_work(scree_applied *applied, const scree_frame *frame, double dt) {
   vec3 force = vec3_add(applied->now.force, applied->last.force),
        torque = vec3_add(applied->now.moment, applied->last.moment);
   applied->work += 0.5 * dt * (vec3_dot(force, frame->velocity) + vec3_dot(torque, frame->spin));
@@ -145,7 +145,7 @@ void scree_advance_body(scree_world *world, size_t i) {
   scree_bodies *b = &world->bodies;
   scree_frame *frame = &b->frame[i];
   double dt = world->time_step;
-  if (b->applied) book_applied(&b->applied[i], frame, dt);
+  if (b->applied) add_applied_work(&b->applied[i], frame, dt);
   vec3 g = vec3_load(world->options.gravity);
   vec3 acceleration = vec3_mad(g, b->force[i], 1 / b->mass[i]);
   frame->velocity = vec3_mad(frame->velocity, acceleration, dt);
@@ -161,7 +161,7 @@ void scree_advance_body(scree_world *world, size_t i) {
   frame->spin = scree_spin_of(b, i, &rotation, momentum);
   frame->spin_now = scree_spin_of(b, i, &rotation, vec3_mad(momentum, b->torque[i], 0.5 * dt));
   b->path[i] += b->travel[i];
-  scree_set_body_due(world, i);
+  scree_set_body_wake_threshold(world, i);
 }
 
 static void advance_block(void *context, size_t begin, size_t end, size_t block, int worker) {

@@ -4,28 +4,28 @@
  * with the overlap, l = l0 + kappa m: m = (t + l0)/(1 - kappa), where t solves
  *   sum_i w_i (o_i - t)+^2 = l^2.
  * One feature gives m = o; n equal ones at most (o + l0)/(1 - kappa). U = K m^2/2 is the energy and
- * s_i = dm/do_i = w_i (o_i - t)+ / (S (1 - kappa) + kappa l), S = sum w_i (o_i - t)+, the shares:
- *   f_i = max(0, s_i (K m + C do_i/dt)).
- * Tangentially each feature has a spring K_t s_i stretched by xi_i, which turns with both, follows
- * the sliding, and is shortened to the Coulomb limit; when the share grows the force stays (xi s is
- * kept), so that energy is only ever lost.
- * Hysteretic: F = K m on first loading, K/e^2 (m - m0) below the largest m, m0 = (1 - e^2) max m.
+ * s_i = dm/do_i = w_i (o_i - t)+ / (S (1 - kappa) + kappa l), S = sum w_i (o_i - t)+, the contact
+ * weights: f_i = max(0, s_i (K m + C do_i/dt)). Tangentially each feature has a spring K_t s_i
+ * stretched by xi_i, which turns with both, follows the sliding, and is shortened to the Coulomb
+ * limit; when the contact weight grows the force stays (xi s is kept), so that energy is only ever
+ * lost. Hysteretic: F = K m on first loading, K/e^2 (m - m0) below the largest m, m0 = (1 - e^2)
+ * max m.
  */
 #include "world/contact.h"
 #include "world/walls.h"
 
 enum { NEWTON_STEPS = 30, CLOSED_ROUNDS = 3 };
 
-/* Slopes that steps do not resolve: at most so steep, of blends and of fading weights. */
+/* Slopes that steps do not resolve: at most so steep, of blends and of fading tapers. */
 static const double most_slopes[2] = {3, 1};
-/* Bodies part where the normals' mean by shares and levers is shorter than this: */
+/* Bodies part where the normals' mean by contact weights and gap gradients is shorter than this: */
 static const double pinched_net = 0.35;
-static const double parting_speed = 0.1; /* m/s, at most */
+static const double depenetration_speed = 0.1; /* m/s, at most */
 /* Of the reduced mass, taken in a step: a corner's is up to seven times smaller, and no more than
  * all may be. */
-static const double parting_damping = 0.1;
+static const double depenetration_damping = 0.1;
 
-static const double resolved_share = 0.01; /* of the roundings in a step */
+static const double resolved_share = 0.01; /* of the contact radii in a step */
 
 /* Closed form. With h the highest overlap, d_i = h - o_i, x = h - t and k = kappa/(1 - kappa), the
  * features of a set all count where x > d_i, and the equation of the set is the quadratic
@@ -33,23 +33,23 @@ static const double resolved_share = 0.01; /* of the roundings in a step */
  * with W, D1, D2 the sums of w, w d, w d2. A set that its own root names is the solution, which is
  * unique. Features at rest lie close together, so that the first or second set is the one. False
  * when no set was found. */
-static bool solve_closed(const scree_touch *touches, size_t count, double l0, double k,
+static bool solve_closed(const scree_contact_point *contacts, size_t count, double l0, double k,
                          double highest, double *x, double *sum) {
   double c = l0 + k * (highest + l0), reach = INFINITY;
   for (int round = 0; round < CLOSED_ROUNDS; round++) {
-    double weight = 0, first = 0, second = 0, farthest = 0, next = INFINITY;
+    double taper = 0, first = 0, second = 0, farthest = 0, next = INFINITY;
     for (size_t i = 0; i < count; i++) {
-      double d = highest - touches[i].overlap, w = touches[i].weight;
+      double d = highest - contacts[i].overlap, w = contacts[i].taper;
       if (d >= reach) {
         next = d < next ? d : next;
         continue;
       }
-      weight += w;
+      taper += w;
       first += w * d;
       second += w * d * d;
       farthest = d > farthest ? d : farthest;
     }
-    double a = weight - k * k, b = first - k * c, e = c * c - second, square = b * b + a * e;
+    double a = taper - k * k, b = first - k * c, e = c * c - second, square = b * b + a * e;
     if (!(square >= 0)) {
       reach = farthest; /* far features spoil the quadratic: leave the farthest out */
       continue;
@@ -57,7 +57,7 @@ static bool solve_closed(const scree_touch *touches, size_t count, double l0, do
     double root = sqrt(square);
     *x = b > 0 ? (b + root) / a : e / (root - b);
     if (farthest < *x && next >= *x && *x > 0) {
-      *sum = weight * *x - first;
+      *sum = taper * *x - first;
       return true;
     }
     reach = *x > 0 ? *x : farthest;
@@ -67,15 +67,15 @@ static bool solve_closed(const scree_touch *touches, size_t count, double l0, do
 
 /* Newton from below the root, where the function is positive, falling and convex: every step stays
  * on that side. */
-static void solve_by_steps(const scree_touch *touches, size_t count, double l0, double k, double *t,
-                           double *sum) {
+static void solve_by_steps(const scree_contact_point *contacts, size_t count, double l0, double k,
+                           double *t, double *sum) {
   for (int step = 0; step < NEWTON_STEPS; step++) {
     double square = 0, l = l0 + k * (*t + l0);
     *sum = 0;
     for (size_t i = 0; i < count; i++) {
-      double above = touches[i].overlap - *t;
+      double above = contacts[i].overlap - *t;
       if (above <= 0) continue;
-      double weighted = touches[i].weight * above;
+      double weighted = contacts[i].taper * above;
       *sum += weighted;
       square += weighted * above;
     }
@@ -85,61 +85,61 @@ static void solve_by_steps(const scree_touch *touches, size_t count, double l0, 
   }
 }
 
-bool scree_solve_smooth_maximum(const scree_touch *touches, size_t count, double l0, double kappa,
-                                scree_smooth_maximum *result) {
-  double highest = -l0, weight = 1, at_zero = 0;
+bool scree_solve_smooth_maximum(const scree_contact_point *contacts, size_t count, double l0,
+                                double kappa, scree_smooth_maximum *result) {
+  double highest = -l0, taper = 1, at_zero = 0;
   for (size_t i = 0; i < count; i++) {
-    double o = touches[i].overlap, above = o + l0;
-    at_zero += touches[i].weight * above * above;
-    if (o > highest) highest = o, weight = touches[i].weight;
+    double o = contacts[i].overlap, above = o + l0;
+    at_zero += contacts[i].taper * above * above;
+    if (o > highest) highest = o, taper = contacts[i].taper;
   }
   if (!(at_zero > l0 * l0)) return false;
   double k = kappa / (1 - kappa), x, t, sum = 0;
-  if (solve_closed(touches, count, l0, k, highest, &x, &sum)) {
+  if (solve_closed(contacts, count, l0, k, highest, &x, &sum)) {
     t = highest - x;
   } else {
-    t = scree_max(-l0, highest - (l0 + k * (highest + l0)) / sqrt(weight));
-    solve_by_steps(touches, count, l0, k, &t, &sum);
+    t = scree_max(-l0, highest - (l0 + k * (highest + l0)) / sqrt(taper));
+    solve_by_steps(contacts, count, l0, k, &t, &sum);
   }
   double m = (t + l0) / (1 - kappa), l = l0 + kappa * m;
   *result = (scree_smooth_maximum){m, t, sum * (1 - kappa) + kappa * l};
   return m > 0;
 }
 
-static void solve_one(const scree_touch *touch, double l0, double kappa,
+static void solve_one(const scree_contact_point *contact, double l0, double kappa,
                       scree_smooth_maximum *result) {
-  double l = l0 + kappa * touch->overlap;
-  *result = (scree_smooth_maximum){touch->overlap, touch->overlap - l, l};
+  double l = l0 + kappa * contact->overlap;
+  *result = (scree_smooth_maximum){contact->overlap, contact->overlap - l, l};
 }
 
 static bool find_overlap(const scree_world *world, const scree_pair *pair,
-                         const scree_touch_list *touches, scree_smooth_maximum *result) {
-  if (touches->count == 1 && touches->items[0].weight == 1) {
-    if (!(touches->items[0].overlap > 0)) return false;
-    solve_one(&touches->items[0], pair->law.smoothing, world->options.sharing, result);
+                         const scree_contact_list *contacts, scree_smooth_maximum *result) {
+  if (contacts->count == 1 && contacts->items[0].taper == 1) {
+    if (!(contacts->items[0].overlap > 0)) return false;
+    solve_one(&contacts->items[0], pair->law.smoothing, world->options.sharing, result);
     return true;
   }
-  return scree_solve_smooth_maximum(touches->items, touches->count, pair->law.smoothing,
+  return scree_solve_smooth_maximum(contacts->items, contacts->count, pair->law.smoothing,
                                     world->options.sharing, result);
 }
 
 /* dm/do of a touch. */
-static double share_of(const scree_touch *touch, const scree_smooth_maximum *maximum) {
-  double above = touch->overlap - maximum->cutoff;
-  return above > 0 ? touch->weight * above / maximum->denominator : 0;
+static double weight_of(const scree_contact_point *contact, const scree_smooth_maximum *maximum) {
+  double above = contact->overlap - maximum->cutoff;
+  return above > 0 ? contact->taper * above / maximum->denominator : 0;
 }
 
 /* The way by which the overlap changes in a step, where it is more than the overlap: the step in
  * which the touch begins or ends. Else 0. */
 static double crossed_way(const scree_pair *pair, const scree_smooth_maximum *maximum,
-                          const scree_touch_list *touches, const scree_frame *relative,
+                          const scree_contact_list *contacts, const scree_frame *relative,
                           double step) {
   if (maximum->value >= most_slopes[0] * pair->list.travel) return 0;
   double rate = 0;
-  for (size_t i = 0; i < touches->count; i++) {
-    const scree_touch *touch = &touches->items[i];
-    vec3 v = vec3_add(relative->velocity_now, vec3_cross(relative->spin_now, touch->at));
-    rate += share_of(touch, maximum) * touch->lever * vec3_dot(v, touch->normal);
+  for (size_t i = 0; i < contacts->count; i++) {
+    const scree_contact_point *contact = &contacts->items[i];
+    vec3 v = vec3_add(relative->velocity_now, vec3_cross(relative->spin_now, contact->at));
+    rate += weight_of(contact, maximum) * contact->gap_gradient * vec3_dot(v, contact->normal);
   }
   double way = fabs(rate) * step;
   return way > maximum->value ? way : 0;
@@ -175,9 +175,11 @@ static double lasting(const scree_pair *pair) {
   return age < 1.5 ? 0 : age > 3 ? 1 : (age - 1.5) / 1.5;
 }
 
-/* What all touches of the pair share: in sliding, and the motion that their dashpots see. */
+/* What all contacts of the pair share: in sliding, and the motion that their dashpots see.
+ */
 typedef struct slider {
-  double stiffness, damping, friction, time_step; /* k_t over share, c_t over share, mu, dt */
+  double stiffness, damping, friction,
+      time_step; /* k_t over contact weight, c_t over contact weight, mu, dt */
   vec3 velocity, spin;
   bool belt; /* b's surface moves along itself so: */
   vec3 belt_velocity, belt_spin;
@@ -216,11 +218,11 @@ static slider make_slider(const scree_world *world, const scree_pair *pair,
 static vec3 slide(const slider *law, scree_anchor *anchor, double s, vec3 n, vec3 v, vec3 spin,
                   vec3 seen, double normal_force, double *energy) {
   vec3 xi = {0, 0, 0};
-  if (anchor->share > 0) {
+  if (anchor->weight > 0) {
     vec3 rate = vec3_mad(v, vec3_cross(spin, anchor->stretch), 0.5);
     xi = vec3_mad(anchor->stretch, rate, law->time_step);
     xi = vec3_mad(xi, n, -vec3_dot(xi, n));
-    if (s > anchor->share) xi = vec3_scale(xi, anchor->share / s);
+    if (s > anchor->weight) xi = vec3_scale(xi, anchor->weight / s);
   }
   double k = law->stiffness * s, c = law->damping * s, most = law->friction * normal_force;
   double length2 = vec3_norm2(xi);
@@ -239,17 +241,17 @@ static vec3 slide(const slider *law, scree_anchor *anchor, double s, vec3 n, vec
 /* Forces on a and their moments about the origin of b, in its frame: normal ones, the dashpots'
  * part of them, tangential ones; and the power of the latter two in the last drift. */
 typedef struct load_sums {
-  scree_load normal, dashpot, tangential;
+  scree_wrench normal, dashpot, tangential;
   double dashpot_power, tangential_power;
   double pressed; /* the normal forces, without what holds the bodies together */
 } load_sums;
 
-static void add_load(scree_load *load, vec3 direction, vec3 arm, double size) {
+static void add_wrench(scree_wrench *load, vec3 direction, vec3 arm, double size) {
   load->force = vec3_mad(load->force, direction, size);
   load->moment = vec3_mad(load->moment, arm, size);
 }
 
-/* Most that steps resolve of the slope of a blend or of a fading weight, which lets go of much of
+/* Most that steps resolve of the slope of a blend or of a fading taper, which lets go of much of
  * the overlap in a small part of the way: the force must move the bodies by little of that way in a
  * step, by K m dt^2/m* = (pi dt/contact time)^2 m. */
 static double most_resolved(const scree_pair *pair, double step, double least) {
@@ -258,73 +260,75 @@ static double most_resolved(const scree_pair *pair, double step, double least) {
 }
 
 /* One touching feature: its forces, added to the sums. */
-static void press(const scree_pair *pair, const slider *law, double spring, scree_touch *touch,
-                  const scree_frame *relative, double *energy, load_sums *sums) {
-  vec3 n = touch->normal, arm = vec3_cross(touch->at, n);
-  vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, touch->at));
+static void contact_force(const scree_pair *pair, const slider *law, double spring,
+                          scree_contact_point *contact, const scree_frame *relative, double *energy,
+                          load_sums *sums) {
+  vec3 n = contact->normal, arm = vec3_cross(contact->at, n);
+  vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, contact->at));
   double approach = vec3_dot(v, n);
   v = vec3_mad(v, n, -approach);
-  vec3 seen = vec3_add(law->velocity, vec3_cross(law->spin, touch->at));
+  vec3 seen = vec3_add(law->velocity, vec3_cross(law->spin, contact->at));
   double rate = -vec3_dot(seen, n);
   seen = vec3_mad(seen, n, rate);
   if (law->belt) {
-    vec3 belt = vec3_add(law->belt_velocity, vec3_cross(law->belt_spin, touch->at));
+    vec3 belt = vec3_add(law->belt_velocity, vec3_cross(law->belt_spin, contact->at));
     belt = vec3_mad(belt, n, -vec3_dot(belt, n));
     v = vec3_sub(v, belt);
     seen = vec3_sub(seen, belt);
   }
-  double share = touch->share * touch->lever, pull = share * pair->law.pull,
-         pressing = share * spring + pull,
-         normal = pressing + share * pair->law.damping * touch->lever * rate;
+  double weight = contact->weight * contact->gap_gradient, pull = weight * pair->law.pull,
+         pressing = weight * spring + pull,
+         normal = pressing + weight * pair->law.damping * contact->gap_gradient * rate;
   if (!(normal > 0)) normal = 0;
   double dashpot = normal - pressing, pressed = normal;
   normal -= pull;
   sums->pressed += pressed;
-  add_load(&sums->normal, n, arm, normal);
-  add_load(&sums->dashpot, n, arm, dashpot);
+  add_wrench(&sums->normal, n, arm, normal);
+  add_wrench(&sums->dashpot, n, arm, dashpot);
   sums->dashpot_power += dashpot * approach;
-  touch->force = vec3_scale(n, normal);
-  if (touch->of_depth) return;
-  vec3 along = slide(law, touch->anchor, touch->share, n, v, relative->spin, seen, pressed, energy);
-  touch->force = vec3_mad(along, n, normal);
-  touch->anchor->normal = n;
-  touch->anchor->share = touch->share;
+  contact->force = vec3_scale(n, normal);
+  if (contact->of_depth) return;
+  vec3 along =
+      slide(law, contact->anchor, contact->weight, n, v, relative->spin, seen, pressed, energy);
+  contact->force = vec3_mad(along, n, normal);
+  contact->anchor->normal = n;
+  contact->anchor->weight = contact->weight;
   sums->tangential.force = vec3_add(sums->tangential.force, along);
-  sums->tangential.moment = vec3_add(sums->tangential.moment, vec3_cross(touch->at, along));
+  sums->tangential.moment = vec3_add(sums->tangential.moment, vec3_cross(contact->at, along));
   sums->tangential_power += vec3_dot(along, v);
 }
 
-/* The weight's part of the slope, with dm/dw = (o - t)^2/(2 (S (1 - kappa) + kappa l)). */
-static void fade(double spring, double by_weight, double most, scree_touch *touch,
+/* The taper's part of the slope, with dm/dw = (o - t)^2/(2 (S (1 - kappa) + kappa l)). */
+static void fade(double spring, double by_weight, double most, scree_contact_point *contact,
                  load_sums *sums) {
-  vec3 slope = vec3_scale(touch->fading, by_weight);
+  vec3 slope = vec3_scale(contact->fading, by_weight);
   double size = vec3_norm(slope);
   vec3 force = vec3_scale(slope, size > most ? spring * most / size : spring);
-  touch->force = vec3_add(touch->force, force);
+  contact->force = vec3_add(contact->force, force);
   sums->normal.force = vec3_add(sums->normal.force, force);
-  sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(touch->at, force));
+  sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(contact->at, force));
 }
 
-/* Where the touches hold the bodies against each other these are to part, from the next step on. So
- * they are where features alone cancel and the contact lasts, deeper than references count from:
+/* Where the contacts hold the bodies against each other these are to part, from the next step on.
+ * So they are where features alone cancel and the contact lasts, deeper than references count from:
  * the next step asks for the depth. And so they are where edges lie inside and are pressed beyond
  * the overlap limit. */
-static void judge(scree_pair *pair, const scree_touch_list *touches) {
+static void judge(scree_pair *pair, const scree_contact_list *contacts) {
   bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1,
        pressed = pair->overlap > pair->law.limit && pair->depth > 0;
-  if (!jammed && !pressed && !touches->items[touches->count - 1].of_depth)
+  if (!jammed && !pressed && !contacts->items[contacts->count - 1].of_depth)
     return; /* depths come last */
   vec3 net = {0, 0, 0};
   double total = 0, of_depth = 0;
-  for (size_t i = 0; i < touches->count; i++) {
-    const scree_touch *touch = &touches->items[i];
-    net = vec3_mad(net, touch->normal, touch->share * touch->lever);
-    total += touch->share;
-    if (touch->of_depth) of_depth += touch->share;
+  for (size_t i = 0; i < contacts->count; i++) {
+    const scree_contact_point *contact = &contacts->items[i];
+    net = vec3_mad(net, contact->normal, contact->weight * contact->gap_gradient);
+    total += contact->weight;
+    if (contact->of_depth) of_depth += contact->weight;
   }
   bool held = (of_depth > 0 || jammed) && vec3_norm(net) < pinched_net * total;
   if (!held && !pressed) return;
-  pair->parting = true;
+  pair->depenetrating = true;
   if (of_depth == 0) pair->depth = -INFINITY;
 }
 
@@ -342,7 +346,7 @@ static void roll(scree_pair *pair, const slider *sliding, const scree_frame *rel
   vec3 n = vec3_scale(sums->normal.force, 1 / size),
        turning = vec3_mad(relative->spin, n, -vec3_dot(relative->spin, n)),
        seen = vec3_mad(sliding->spin, n, -vec3_dot(sliding->spin, n));
-  scree_anchor spring = {.stretch = pair->rolled, .share = 1};
+  scree_anchor spring = {.stretch = pair->rolled, .weight = 1};
   vec3 couple = slide(&law, &spring, 1, n, turning, relative->spin, seen, sums->pressed, energy);
   pair->rolled = spring.stretch;
   sums->tangential.moment = vec3_add(sums->tangential.moment, couple);
@@ -350,53 +354,53 @@ static void roll(scree_pair *pair, const slider *sliding, const scree_frame *rel
 }
 
 /* Into space. */
-static scree_load turned(const scree_load *load, const mat3 *rotation) {
-  return (scree_load){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
+static scree_wrench turned(const scree_wrench *load, const mat3 *rotation) {
+  return (scree_wrench){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
 }
 
-static scree_kept_load kept_load(const scree_load *load) {
+static scree_kept_wrench kept_wrench(const scree_wrench *load) {
   vec3 f = load->force, m = load->moment;
-  return (scree_kept_load){{(float)f.x, (float)f.y, (float)f.z},
-                           {(float)m.x, (float)m.y, (float)m.z}};
+  return (scree_kept_wrench){{(float)f.x, (float)f.y, (float)f.z},
+                             {(float)m.x, (float)m.y, (float)m.z}};
 }
 
-static void store_loads(const scree_world *world, const scree_scratch *scratch, scree_pair *pair,
-                        const load_sums *sums) {
+static void store_wrenches(const scree_world *world, const scree_scratch *scratch, scree_pair *pair,
+                           const load_sums *sums) {
   const scree_frame *a = scratch->a, *b = scratch->b;
-  scree_load normal = turned(&sums->normal, &b->rotation);
-  scree_load dashpot = turned(&sums->dashpot, &b->rotation);
-  scree_load tangential = turned(&sums->tangential, &b->rotation);
-  pair->dashpot = kept_load(&dashpot);
-  pair->tangential = kept_load(&tangential);
+  scree_wrench normal = turned(&sums->normal, &b->rotation);
+  scree_wrench dashpot = turned(&sums->dashpot, &b->rotation);
+  scree_wrench tangential = turned(&sums->tangential, &b->rotation);
+  pair->dashpot = kept_wrench(&dashpot);
+  pair->tangential = kept_wrench(&tangential);
   vec3 arm = scree_pair_between(world, pair, a, b);
   vec3 force = vec3_add(normal.force, tangential.force),
        moment = vec3_add(normal.moment, tangential.moment);
-  pair->wrench = (scree_wrench){force, vec3_sub(moment, vec3_cross(arm, force)), vec3_neg(moment)};
+  pair->wrench =
+      (scree_pair_wrench){force, vec3_sub(moment, vec3_cross(arm, force)), vec3_neg(moment)};
 }
 
 /* The way in which bodies part: that of their seam's area when they begin to, off a sheet that over
  * its rims; kept in the frame of b until they are apart. Of a body that pierces a wall the areas
  * where it enters and leaves cancel, and what is left points here and there from step to step. */
-static vec3 way_of_parting(const scree_world *world, scree_pair *pair,
-                           const scree_frame *relative) {
-  if (vec3_norm2(pair->way) > 0) return pair->way;
+static vec3 separation_of(const scree_world *world, scree_pair *pair, const scree_frame *relative) {
+  if (vec3_norm2(pair->separation) > 0) return pair->separation;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  pair->way = vec3_unit(scree_way_off_rims(world, pair, relative));
-  if (vec3_norm2(pair->way) == 0 && b->face_count)
-    pair->way = vec3_unit(scree_way_apart(a, b, relative));
-  if (vec3_norm2(pair->way) == 0) pair->way = vec3_unit(relative->position);
-  if (vec3_norm2(pair->way) == 0) pair->way = (vec3){0, 0, 1};
-  return pair->way;
+  pair->separation = vec3_unit(scree_separation_off_rims(world, pair, relative));
+  if (vec3_norm2(pair->separation) == 0 && b->face_count)
+    pair->separation = vec3_unit(scree_separation_direction(a, b, relative));
+  if (vec3_norm2(pair->separation) == 0) pair->separation = vec3_unit(relative->position);
+  if (vec3_norm2(pair->separation) == 0) pair->separation = (vec3){0, 0, 1};
+  return pair->separation;
 }
 
 /* Where bodies that part are pushed. */
 static vec3 place_of_push(const scree_world *world, const scree_pair *pair,
-                          const scree_touch_list *touches, const scree_frame *relative) {
+                          const scree_contact_list *contacts, const scree_frame *relative) {
   vec3 sum = {0, 0, 0};
   double total = 0;
-  for (size_t i = 0; i < touches->count; i++) {
-    double weight = touches->items[i].overlap + pair->law.smoothing;
-    sum = vec3_mad(sum, touches->items[i].at, weight);
+  for (size_t i = 0; i < contacts->count; i++) {
+    double weight = contacts->items[i].overlap + pair->law.smoothing;
+    sum = vec3_mad(sum, contacts->items[i].at, weight);
     total += weight;
   }
   if (total > 0) return vec3_scale(sum, 1 / total);
@@ -408,23 +412,24 @@ static vec3 place_of_push(const scree_world *world, const scree_pair *pair,
 static double held_with(const scree_world *world, const scree_pair *pair, vec3 way,
                         const scree_scratch *scratch) {
   vec3 out = mat3_mul_vec(&scratch->b->rotation, way);
-  scree_load on_a = scree_load_of_others(world, pair, scratch, false),
-             on_b = scree_load_of_others(world, pair, scratch, true);
+  scree_wrench on_a = scree_wrench_of_others(world, pair, scratch, false),
+               on_b = scree_wrench_of_others(world, pair, scratch, true);
   double of_a = vec3_dot(on_a.force, out), mass = world->bodies.mass[pair->a];
   if (pair->wall) return scree_max(0, -of_a);
   double of_b = vec3_dot(on_b.force, out), other = world->bodies.mass[pair->b];
   return scree_max(0, (of_b * mass - of_a * other) / (mass + other));
 }
 
-/* Edges that lie in each other may each be nearest to a way out that is the other's way in. Then no
- * feature counts: the bodies are brought to `parting_speed` along one way, by no more than a spring
- * as deep as they are, or at its limit, would press with: what lies behind must bear it too. */
+/* Edges that lie in each other may each be nearest to a separation direction that is the other's
+ * way in. Then no feature counts: the bodies are brought to `depenetration_speed` along one way, by
+ * no more than a spring as deep as they are, or at its limit, would press with: what lies behind
+ * must bear it too. */
 static scree_powers part(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                          scree_scratch *scratch) {
-  scree_touch_list *touches = &scratch->touches; /* with room for more than one */
-  for (size_t i = 0; i < touches->count; i++) touches->items[i].anchor->share = 0;
-  if (scratch->question.edges) pair->pushed = place_of_push(world, pair, touches, relative);
-  vec3 at = pair->pushed, way = way_of_parting(world, pair, relative), arm = vec3_cross(at, way);
+  scree_contact_list *contacts = &scratch->contacts; /* with room for more than one */
+  for (size_t i = 0; i < contacts->count; i++) contacts->items[i].anchor->weight = 0;
+  if (scratch->question.edges) pair->pushed = place_of_push(world, pair, contacts, relative);
+  vec3 at = pair->pushed, way = separation_of(world, pair, relative), arm = vec3_cross(at, way);
   pair->touching = true;
   pair->contact_count = 1;
   pair->age += scratch->drift;
@@ -436,32 +441,33 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
        v = vec3_add(relative->velocity, vec3_cross(relative->spin, at));
   double pace = pair->law.contact_time / 3.14159265358979323846,
          mass = pair->law.stiffness * pace * pace,
-         brake = parting_damping * mass / world->time_step * (parting_speed - vec3_dot(seen, way)),
+         brake = depenetration_damping * mass / world->time_step *
+                 (depenetration_speed - vec3_dot(seen, way)),
          push = scree_max(0, brake + held_with(world, pair, way, scratch)),
          most = pair->law.stiffness * scree_min(pair->overlap, pair->law.limit),
          force = scree_min(most, push);
   load_sums sums = {0};
-  add_load(&sums.normal, way, arm, force);
+  add_wrench(&sums.normal, way, arm, force);
   sums.dashpot = sums.normal;
-  touches->items[0] = (scree_touch){.at = at,
-                                    .normal = way,
-                                    .overlap = pair->overlap,
-                                    .weight = 1,
-                                    .share = 1,
-                                    .lever = 1,
-                                    .force = vec3_scale(way, force)};
-  touches->count = 1; /* who looks at the contacts sees the push */
-  store_loads(world, scratch, pair, &sums);
+  contacts->items[0] = (scree_contact_point){.at = at,
+                                             .normal = way,
+                                             .overlap = pair->overlap,
+                                             .taper = 1,
+                                             .weight = 1,
+                                             .gap_gradient = 1,
+                                             .force = vec3_scale(way, force)};
+  contacts->count = 1; /* who looks at the contacts sees the push */
+  store_wrenches(world, scratch, pair, &sums);
   return (scree_powers){force * vec3_dot(v, way), 0};
 }
 
 scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
                                   const scree_frame *relative, scree_scratch *scratch) {
-  scree_touch_list *touches = &scratch->touches;
+  scree_contact_list *contacts = &scratch->contacts;
   scree_smooth_maximum maximum;
-  if (pair->parting) return part(world, pair, relative, scratch);
-  if (touches->count == 0 || !find_overlap(world, pair, touches, &maximum)) {
-    for (size_t i = 0; i < touches->count; i++) touches->items[i].anchor->share = 0;
+  if (pair->depenetrating) return part(world, pair, relative, scratch);
+  if (contacts->count == 0 || !find_overlap(world, pair, contacts, &maximum)) {
+    for (size_t i = 0; i < contacts->count; i++) contacts->items[i].anchor->weight = 0;
     pair->largest = pair->age = 0;
     pair->rolled = (vec3){0, 0, 0};
     return (scree_powers){0, 0};
@@ -470,34 +476,35 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
   pair->age += scratch->drift;
   pair->overlap = maximum.value;
   double way =
-      crossed_way(pair, &maximum, touches, relative, 0.5 * (scratch->drift + scratch->step));
+      crossed_way(pair, &maximum, contacts, relative, 0.5 * (scratch->drift + scratch->step));
   double spring = spring_force(world, pair, maximum.value, way), energy = 0;
   slider law = make_slider(world, pair, relative, scratch->drift);
   load_sums sums;
-  sums.normal = sums.dashpot = sums.tangential = (scree_load){{0, 0, 0}, {0, 0, 0}};
+  sums.normal = sums.dashpot = sums.tangential = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
   sums.dashpot_power = sums.tangential_power = sums.pressed = 0;
-  uint32_t contacts = 0;
-  for (size_t i = 0; i < touches->count; i++) {
-    scree_touch *touch = &touches->items[i];
-    double above = touch->overlap - maximum.cutoff;
-    touch->share = share_of(touch, &maximum);
-    if (touch->share > 0) {
-      if (touch->lever > most_slopes[0])
-        touch->lever = scree_min(touch->lever, most_resolved(pair, scratch->step, most_slopes[0]));
-      press(pair, &law, spring, touch, relative, &energy, &sums);
-      if (touch->fading.x != 0 || touch->fading.y != 0 || touch->fading.z != 0)
+  uint32_t count = 0;
+  for (size_t i = 0; i < contacts->count; i++) {
+    scree_contact_point *contact = &contacts->items[i];
+    double above = contact->overlap - maximum.cutoff;
+    contact->weight = weight_of(contact, &maximum);
+    if (contact->weight > 0) {
+      if (contact->gap_gradient > most_slopes[0])
+        contact->gap_gradient =
+            scree_min(contact->gap_gradient, most_resolved(pair, scratch->step, most_slopes[0]));
+      contact_force(pair, &law, spring, contact, relative, &energy, &sums);
+      if (contact->fading.x != 0 || contact->fading.y != 0 || contact->fading.z != 0)
         fade(spring, 0.5 * above * above / maximum.denominator,
-             most_resolved(pair, scratch->step, most_slopes[1]), touch, &sums);
-      contacts++;
+             most_resolved(pair, scratch->step, most_slopes[1]), contact, &sums);
+      count++;
     } else {
-      touch->anchor->share = 0;
+      contact->anchor->weight = 0;
     }
   }
-  judge(pair, touches);
+  judge(pair, contacts);
   roll(pair, &law, relative, &energy, &sums);
-  pair->contact_count = contacts;
+  pair->contact_count = count;
   pair->tangential_elastic = energy;
   pair->elastic += energy;
-  store_loads(world, scratch, pair, &sums);
+  store_wrenches(world, scratch, pair, &sums);
   return (scree_powers){sums.dashpot_power, sums.tangential_power};
 }

@@ -10,10 +10,10 @@
     while (gap < count / 3) gap = 3 * gap + 1;                                                     \
     for (; gap > 0; gap /= 3)                                                                      \
       for (size_t i = gap; i < count; i++) {                                                       \
-        type item = items[i];                                                                      \
+        type feature = items[i];                                                                   \
         size_t j = i;                                                                              \
-        for (; j >= gap && items[j - gap] > item; j -= gap) items[j] = items[j - gap];             \
-        items[j] = item;                                                                           \
+        for (; j >= gap && items[j - gap] > feature; j -= gap) items[j] = items[j - gap];          \
+        items[j] = feature;                                                                        \
       }                                                                                            \
   }
 SORTS(sort_keys, uint64_t)
@@ -68,12 +68,12 @@ static bool is_dropped(const scree_world *world, size_t k) {
 
 void scree_lists_drop(scree_world *world, size_t i) {
   const scree_broad *broad = world->broad;
-  scree_booked *booked = &world->bodies.booked[i];
+  scree_balance *balance = &world->bodies.balance[i];
   uint32_t walls = 0;
   for (uint32_t k = broad->old_begin[i]; k < broad->old_begin[i + 1]; k++) {
     if (!is_dropped(world, k)) continue;
-    booked->dashpot += broad->old_ledger[k].dashpot;
-    booked->tangential += broad->old_ledger[k].tangential;
+    balance->dashpot += broad->old_ledger[k].dashpot;
+    balance->tangential += broad->old_ledger[k].tangential;
     if (broad->old_pair_of[k] != scree_none) scree_pair_give_back(world, broad->old_pair_of[k]);
     walls += is_with_wall(broad->old_keys[k]);
   }
@@ -84,13 +84,13 @@ void scree_lists_leave(scree_world *world, size_t i) {
   const scree_broad *broad = world->broad;
   uint32_t place = broad->left.begin[i], end = broad->left.begin[i + 1];
   for (uint32_t k = broad->old_begin[i + 1]; place < end; k--)
-    if (is_dropped(world, k - 1)) broad->left_items.items[--end] = k - 1;
+    if (is_dropped(world, k - 1)) broad->left_features.items[--end] = k - 1;
 }
 
 void scree_lists_leave_wall(scree_world *world, size_t w) {
   const scree_broad *broad = world->broad;
   for (uint64_t j = 0; j < broad->left.total; j++) {
-    uint32_t k = broad->left_items.items[j];
+    uint32_t k = broad->left_features.items[j];
     if (scree_key_second(broad->old_keys[k]) == w)
       world->walls.items[w].energy += broad->old_ledger[k].wall;
   }
@@ -111,7 +111,7 @@ void scree_lists_renew(scree_world *world, size_t k) {
     world->neighbours.items[k] =
         scree_neighbours_new(world, first_of(key), scree_key_second(key), is_with_wall(key));
     world->pair_of.items[k] = scree_none;
-    world->ledger.items[k] = (scree_booked){0, 0, 0};
+    world->ledger.items[k] = (scree_balance){0, 0, 0};
     return;
   }
   scree_pair *pair = scree_pair_of(world, k);
@@ -147,7 +147,7 @@ void scree_lists_body(scree_world *world, size_t i) {
   while (walls < end - begin && is_with_wall(world->keys.items[end - 1 - walls])) walls++;
   broad->walls.count[i] = walls;
   broad->listed.count[i] = 0;
-  scree_set_body_due(world, i);
+  scree_set_body_wake_threshold(world, i);
 }
 
 void scree_lists_walls(scree_world *world, size_t i) {
@@ -169,10 +169,10 @@ void scree_lists_touching(scree_world *world, size_t word) {
 void scree_lists_end(scree_world *world, size_t i) {
   (void)i;
   world->slots.count = world->neighbours.count;
-  world->due.count = world->bodies.count + world->walls.count;
+  world->wake_threshold.count = world->bodies.count + world->walls.count;
   world->sides.count = world->broad->sides.total;
   world->wall_pairs.count = world->broad->walls.total;
-  for (size_t w = 0; w < world->walls.count; w++) scree_set_wall_due(world, w);
+  for (size_t w = 0; w < world->walls.count; w++) scree_set_wall_wake_threshold(world, w);
 }
 
 void scree_lists_date(scree_world *world, size_t i) {

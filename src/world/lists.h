@@ -22,8 +22,8 @@ void scree_lists_sort(scree_world *world, size_t i);
 /* Where neighbours k were in the old list. */
 void scree_lists_match(scree_world *world, size_t k);
 /* Of the old list those that are listed no longer. Those of body i give back their pairs, what was
- * booked goes to it, and the walls among them are counted; then, these are written; then, what they
- * booked goes to wall w. */
+ * entered in the balance goes to it, and the walls among them are counted; then, these are written;
+ * then, what they entered in the balance goes to wall w. */
 void scree_lists_drop(scree_world *world, size_t i);
 void scree_lists_leave(scree_world *world, size_t i);
 void scree_lists_leave_wall(scree_world *world, size_t w);

@@ -179,7 +179,7 @@ void scree_wall_advance(scree_world *world, size_t w) {
     follow_motions(wall, motions, rows, world->time + dt, dt);
   else
     follow_velocity(wall, dt);
-  if (world->bodies.count > 0) scree_set_wall_due(world, w);
+  if (world->bodies.count > 0) scree_set_wall_wake_threshold(world, w);
 }
 
 /* ---- setting ---- */

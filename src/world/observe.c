@@ -21,7 +21,7 @@ void scree_world_observe(const scree_world *world, scree_observation *observatio
       .body_count = (size_t)s.bodies,
       .removed_count = (size_t)s.removed,
       .pair_count = (size_t)s.pairs,
-      .parting_pairs = (size_t)s.parting,
+      .depenetrating_pairs = (size_t)s.depenetrating,
       .contact_count = (size_t)s.contacts,
       .kinetic = scree_sum_value(s.kinetic),
       .rotational = scree_sum_value(s.rotational),
@@ -35,7 +35,7 @@ void scree_world_observe(const scree_world *world, scree_observation *observatio
       .dissipated_friction = -scree_sum_value(s.tangential) - scree_sum_value(s.tangential_elastic),
       .wall_work = scree_sum_value(s.wall),
       .applied_work = scree_sum_value(s.applied),
-      .parting_count = world->parting_count};
+      .depenetration_count = world->depenetration_count};
   for (int k = 0; k < 3; k++) {
     o.momentum[k] = scree_sum_value(s.momentum[k]);
     o.angular_momentum[k] = scree_sum_value(s.angular[k]);
@@ -67,15 +67,15 @@ scree_checksum scree_world_hash(const scree_world *world) {
   for (size_t k = 0; k < world->neighbours.count; k++) {
     const scree_pair *pair = scree_pair_of(world, k);
     for (uint32_t i = 0; pair && i < pair->active.count; i++) {
-      const scree_item *item = &world->pools.items[pair->active.first + i];
+      const scree_feature_pair *feature = &world->pools.features[pair->active.first + i];
       const scree_further *further = &world->pools.further[pair->active.first + i];
-      const uint32_t names[5] = {pair->a, pair->b, item->kind, item->a, item->b};
+      const uint32_t names[5] = {pair->a, pair->b, feature->kind, feature->a, feature->b};
       mix(&hash, names, sizeof names);
-      for (int j = 0; j < (item->notched ? SCREE_ANCHORS : 1); j++) {
-        const scree_anchor *anchor = j ? &further->anchor[j - 1] : &item->anchor;
-        if (anchor->share <= 0) continue;
+      for (int j = 0; j < (feature->notched ? SCREE_ANCHORS : 1); j++) {
+        const scree_anchor *anchor = j ? &further->anchor[j - 1] : &feature->anchor;
+        if (anchor->weight <= 0) continue;
         mix(&hash, &anchor->stretch, sizeof anchor->stretch);
-        mix(&hash, &anchor->share, sizeof anchor->share);
+        mix(&hash, &anchor->weight, sizeof anchor->weight);
       }
     }
   }

@@ -1,5 +1,5 @@
 /* Neighbours are made by the broad phase and kept while two bounding boxes are near; pairs while
- * they are awake. Pairs are recycled with their places for items. */
+ * they are awake. Pairs are recycled with their places for feature pairs. */
 #include "world/contact.h"
 #include "world/grids.h"
 #include "world/materials.h"
@@ -13,7 +13,7 @@ static double size_of(const scree_world *world, const scree_particle *particle) 
 }
 
 double scree_thin_overlap(const scree_particle *particle) {
-  /* rays grazing a notch find walls thinner than they are: never below four roundings */
+  /* rays grazing a notch find walls thinner than they are: never below four contact radii */
   const scree_particle_measures *m = &particle->measures;
   return scree_max(0.5 * m->thickness, 4 * particle->radius);
 }
@@ -89,7 +89,7 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
 
 scree_neighbours scree_neighbours_new(const scree_world *world, uint32_t a, uint32_t b, bool wall) {
   scree_neighbours n = {.a = a, .b = b, .wall = wall};
-  n.list.next_item = n.list.end = -INFINITY;
+  n.list.next_feature = n.list.end = -INFINITY;
   set_up(world, &n);
   return n;
 }
@@ -125,10 +125,10 @@ void scree_pair_give_back(scree_world *world, uint32_t pair) {
   world->spare_pairs.items[place] = pair;
 }
 
-static bool reserve_items(scree_world *world, size_t extra) {
+static bool reserve_features(scree_world *world, size_t extra) {
   scree_pools *pools = &world->pools;
-  return atomic_load(&pools->items_used) + extra <= pools->item_capacity ||
-         scree_pack_items(pools, world->pairs.items, world->pairs.count, extra);
+  return atomic_load(&pools->features_used) + extra <= pools->feature_capacity ||
+         scree_pack_features(pools, world->pairs.items, world->pairs.count, extra);
 }
 
 /* As many again as there are, from 64 to 8192. */
@@ -141,37 +141,37 @@ bool scree_pairs_grow(scree_world *world) {
                  missing;
   if (total + count >= scree_none || !SCREE_RESERVE(&world->pairs, total + count) ||
       !SCREE_RESERVE(&world->spare_pairs, total + count) ||
-      !reserve_items(world, SCREE_FIRST_ITEMS * count))
+      !reserve_features(world, SCREE_FIRST_FEATURES * count))
     return false;
-  uint32_t first = (uint32_t)atomic_load(&world->pools.items_used);
-  for (size_t i = 0; i < count; i++, first += SCREE_FIRST_ITEMS)
-    world->pairs.items[total + i] = (scree_pair){.active = {first, 0, SCREE_FIRST_ITEMS}};
-  atomic_store(&world->pools.items_used, first);
+  uint32_t first = (uint32_t)atomic_load(&world->pools.features_used);
+  for (size_t i = 0; i < count; i++, first += SCREE_FIRST_FEATURES)
+    world->pairs.items[total + i] = (scree_pair){.active = {first, 0, SCREE_FIRST_FEATURES}};
+  atomic_store(&world->pools.features_used, first);
   world->pairs.count = total + count;
   atomic_store(&world->spare_pairs.count, spare < 0 ? 0 : spare);
   for (size_t i = total + count; i-- > total;) scree_pair_give_back(world, (uint32_t)i);
   return true;
 }
 
-/* Two pairs change places; their items too where these take as much room, so that they stay in the
- * order of their pairs. */
+/* Two pairs change places; their feature pairs too where these take as much room, so that they stay
+ * in the order of their pairs. */
 static void exchange_pairs(scree_world *world, scree_pair *one, scree_pair *other) {
   scree_pair kept = *one;
   *one = *other;
   *other = kept;
   if (one->active.capacity != other->active.capacity) return;
-  scree_item *items = world->pools.items;
+  scree_feature_pair *items = world->pools.features;
   scree_further *further = world->pools.further;
   uint32_t to = other->active.first, from = one->active.first, count = other->active.count;
   other->active.first = from;
   one->active.first = to;
   if (count < one->active.count) count = one->active.count;
   for (uint32_t i = 0; i < count; i++) {
-    scree_item item = items[from + i];
+    scree_feature_pair feature = items[from + i];
     scree_further more = further[from + i];
     items[from + i] = items[to + i];
     further[from + i] = further[to + i];
-    items[to + i] = item;
+    items[to + i] = feature;
     further[to + i] = more;
   }
 }
@@ -244,25 +244,25 @@ bool scree_copy_pair(const scree_world *world, const scree_pair *pair, scree_pai
   *p = *pair;
   *n = world->neighbours.items[pair->neighbours];
   p->active.count = n->sleeping.count = 0; /* nothing to move yet */
-  if (!scree_pack_items(&copy->pools, p, 1, 0) || !scree_pack_sleepers(&copy->pools, n, 1))
+  if (!scree_pack_features(&copy->pools, p, 1, 0) || !scree_pack_sleeping(&copy->pools, n, 1))
     return false;
   p->active.count = pair->active.count;
   n->sleeping.count = world->neighbours.items[pair->neighbours].sleeping.count;
   for (uint32_t i = 0; i < p->active.count; i++) {
-    copy->pools.items[i] = from->items[pair->active.first + i];
+    copy->pools.features[i] = from->features[pair->active.first + i];
     copy->pools.further[i] = from->further[pair->active.first + i];
   }
   uint32_t first = world->neighbours.items[pair->neighbours].sleeping.first;
   for (uint32_t i = 0; i < n->sleeping.count; i++)
-    copy->pools.sleepers[i] = from->sleepers[first + i];
+    copy->pools.sleeping_features[i] = from->sleeping_features[first + i];
   return true;
 }
 
 bool scree_evaluate_copy(const scree_world *world, scree_pair_copy *copy) {
   for (;;) {
     scree_take_in_hand(&copy->scratch, &copy->pools, &copy->pair, &copy->neighbours);
-    if (scree_pair_look(world, &copy->pair, &copy->scratch)) return true;
-    if (!SCREE_RESERVE(&copy->scratch.touches, copy->scratch.touches_needed) ||
+    if (scree_pair_narrow_phase(world, &copy->pair, &copy->scratch)) return true;
+    if (!SCREE_RESERVE(&copy->scratch.contacts, copy->scratch.contacts_needed) ||
         !scree_pools_grow(&copy->pools, &copy->pair, 1, &copy->neighbours, 1))
       return false;
   }
@@ -270,5 +270,5 @@ bool scree_evaluate_copy(const scree_world *world, scree_pair_copy *copy) {
 
 void scree_free_pair_copy(scree_pair_copy *copy) {
   scree_pools_free(&copy->pools);
-  scree_free(copy->scratch.touches.items);
+  scree_free(copy->scratch.contacts.items);
 }

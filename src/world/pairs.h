@@ -18,9 +18,9 @@ bool scree_body_has_neighbours(const scree_world *world, size_t body);
 void scree_body_forget(scree_world *world, size_t body);
 /* Half the particle's thinnest wall, m. */
 double scree_thin_overlap(const scree_particle *particle);
-/* As a pair of neighbours that are asleep or new; its place for items stays. */
+/* As a pair of neighbours that are asleep or new; its place for feature pairs stays. */
 void scree_pair_begin(scree_pair *pair, const scree_neighbours *neighbours, uint32_t index);
-/* What is kept of a pair without awake items. */
+/* What is kept of a pair without awake feature pairs. */
 void scree_pair_end(const scree_pair *pair, scree_neighbours *neighbours);
 /* A spare pair, in a step by many threads at once; scree_none when there is none. */
 uint32_t scree_pair_take(scree_world *world);
@@ -39,7 +39,7 @@ typedef struct scree_pair_copy {
 } scree_pair_copy;
 /* Of an awake pair; false when memory is out. */
 bool scree_copy_pair(const scree_world *world, const scree_pair *pair, scree_pair_copy *copy);
-/* Its contact at this moment; the touches are in the copy's scratch. False when memory is out. */
+/* Its contact at this moment; the contacts are in the copy's scratch. False when memory is out. */
 bool scree_evaluate_copy(const scree_world *world, scree_pair_copy *copy);
 void scree_free_pair_copy(scree_pair_copy *copy);
 
@@ -47,8 +47,8 @@ void scree_free_pair_copy(scree_pair_copy *copy);
 
 /* The lists packed in the order of their owners, with room for `extra` more, and for as much again.
  * False when memory is out; nothing has moved then. */
-bool scree_pack_items(scree_pools *pools, scree_pair *pairs, size_t count, size_t extra);
-bool scree_pack_sleepers(scree_pools *pools, scree_neighbours *neighbours, size_t count);
+bool scree_pack_features(scree_pools *pools, scree_pair *pairs, size_t count, size_t extra);
+bool scree_pack_sleeping(scree_pools *pools, scree_neighbours *neighbours, size_t count);
 /* The pools that were asked for more than they have grow; false when memory is out. */
 bool scree_pools_grow(scree_pools *pools, scree_pair *pairs, size_t pair_count,
                       scree_neighbours *neighbours, size_t neighbour_count);

@@ -17,43 +17,43 @@ static bool take_place(atomic_uint_least64_t *used, uint64_t pool_capacity, uint
   return first + capacity <= pool_capacity;
 }
 
-bool scree_grow_items(scree_scratch *s, scree_pair *pair, uint32_t needed) {
+bool scree_grow_features(scree_scratch *s, scree_pair *pair, uint32_t needed) {
   scree_pools *pools = s->pools;
   scree_range place;
-  if (!take_place(&pools->items_used, pools->item_capacity, SCREE_FIRST_ITEMS, needed,
+  if (!take_place(&pools->features_used, pools->feature_capacity, SCREE_FIRST_FEATURES, needed,
                   &pair->active, &place))
     return false;
   for (uint32_t i = 0; i < place.count; i++) {
-    pools->items[place.first + i] = s->items[i];
-    if (s->items[i].notched) pools->further[place.first + i] = s->further[i];
+    pools->features[place.first + i] = s->features[i];
+    if (s->features[i].notched) pools->further[place.first + i] = s->further[i];
   }
   pair->active = place;
-  s->items = pools->items + place.first;
+  s->features = pools->features + place.first;
   s->further = pools->further + place.first;
   return true;
 }
 
-bool scree_grow_sleepers(scree_scratch *s, uint32_t needed) {
+bool scree_grow_sleeping(scree_scratch *s, uint32_t needed) {
   scree_pools *pools = s->pools;
   scree_range place;
-  if (!take_place(&pools->sleepers_used, pools->sleeper_capacity, SCREE_FIRST_SLEEPERS, needed,
+  if (!take_place(&pools->sleeping_used, pools->sleeping_capacity, SCREE_FIRST_SLEEPING, needed,
                   &s->neighbours->sleeping, &place))
     return false;
-  const scree_sleeper *from = scree_sleepers(s);
-  for (uint32_t i = 0; i < place.count; i++) pools->sleepers[place.first + i] = from[i];
+  const scree_sleeping_feature *from = scree_sleeping_features(s);
+  for (uint32_t i = 0; i < place.count; i++) pools->sleeping_features[place.first + i] = from[i];
   s->neighbours->sleeping = place;
   return true;
 }
 
-bool scree_reserve_touches(scree_scratch *s, size_t needed) {
+bool scree_reserve_contacts(scree_scratch *s, size_t needed) {
   scree_pools *pools = s->pools;
-  if (needed <= s->touches.capacity) return true;
-  s->touches_needed = needed;
-  if (!pools->touches) return false;
-  uint64_t first = atomic_fetch_add_explicit(&pools->touches_used, needed, memory_order_relaxed);
-  if (first + needed > pools->touch_capacity) return false;
-  s->first_touch = (size_t)first;
-  s->touches = (scree_touch_list){pools->touches + first, 0, needed};
+  if (needed <= s->contacts.capacity) return true;
+  s->contacts_needed = needed;
+  if (!pools->contacts) return false;
+  uint64_t first = atomic_fetch_add_explicit(&pools->contacts_used, needed, memory_order_relaxed);
+  if (first + needed > pools->contact_capacity) return false;
+  s->first_contact = (size_t)first;
+  s->contacts = (scree_contact_list){pools->contacts + first, 0, needed};
   return true;
 }
 
@@ -70,12 +70,13 @@ static uint32_t trimmed(const scree_range *range, uint32_t least) {
   return range->capacity < most ? range->capacity : most;
 }
 
-bool scree_pack_items(scree_pools *pools, scree_pair *pairs, size_t count, size_t extra) {
+bool scree_pack_features(scree_pools *pools, scree_pair *pairs, size_t count, size_t extra) {
   uint64_t total = 0;
-  for (size_t p = 0; p < count; p++) total += trimmed(&pairs[p].active, SCREE_FIRST_ITEMS);
-  uint64_t capacity = roomy(total, extra, atomic_load(&pools->items_used), pools->item_capacity);
+  for (size_t p = 0; p < count; p++) total += trimmed(&pairs[p].active, SCREE_FIRST_FEATURES);
+  uint64_t capacity =
+      roomy(total, extra, atomic_load(&pools->features_used), pools->feature_capacity);
   if (capacity > UINT32_MAX) return false;
-  scree_item *items = scree_alloc(capacity, sizeof *items);
+  scree_feature_pair *items = scree_alloc(capacity, sizeof *items);
   scree_further *further = scree_alloc(capacity, sizeof *further);
   if (!items || !further) {
     scree_free(items);
@@ -86,56 +87,57 @@ bool scree_pack_items(scree_pools *pools, scree_pair *pairs, size_t count, size_
   for (size_t p = 0; p < count; p++) {
     scree_range *range = &pairs[p].active;
     for (uint32_t i = 0; i < range->count; i++) {
-      items[used + i] = pools->items[range->first + i];
+      items[used + i] = pools->features[range->first + i];
       if (items[used + i].notched) further[used + i] = pools->further[range->first + i];
     }
     range->first = used;
-    range->capacity = trimmed(range, SCREE_FIRST_ITEMS);
+    range->capacity = trimmed(range, SCREE_FIRST_FEATURES);
     used += range->capacity;
   }
-  scree_free(pools->items);
+  scree_free(pools->features);
   scree_free(pools->further);
-  pools->items = items;
+  pools->features = items;
   pools->further = further;
-  pools->item_capacity = capacity;
-  atomic_store(&pools->items_used, used);
+  pools->feature_capacity = capacity;
+  atomic_store(&pools->features_used, used);
   return true;
 }
 
-bool scree_pack_sleepers(scree_pools *pools, scree_neighbours *neighbours, size_t count) {
+bool scree_pack_sleeping(scree_pools *pools, scree_neighbours *neighbours, size_t count) {
   uint64_t total = 0;
   for (size_t k = 0; k < count; k++)
-    total += trimmed(&neighbours[k].sleeping, SCREE_FIRST_SLEEPERS);
-  uint64_t capacity = roomy(total, 0, atomic_load(&pools->sleepers_used), pools->sleeper_capacity);
+    total += trimmed(&neighbours[k].sleeping, SCREE_FIRST_SLEEPING);
+  uint64_t capacity = roomy(total, 0, atomic_load(&pools->sleeping_used), pools->sleeping_capacity);
   if (capacity > UINT32_MAX) return false;
-  scree_sleeper *sleepers = scree_alloc(capacity, sizeof *sleepers);
-  if (!sleepers) return false;
+  scree_sleeping_feature *sleeping_features = scree_alloc(capacity, sizeof *sleeping_features);
+  if (!sleeping_features) return false;
   uint32_t used = 0;
   for (size_t k = 0; k < count; k++) {
     scree_range *range = &neighbours[k].sleeping;
     if (range->count)
-      memcpy(sleepers + used, pools->sleepers + range->first, range->count * sizeof *sleepers);
+      memcpy(sleeping_features + used, pools->sleeping_features + range->first,
+             range->count * sizeof *sleeping_features);
     range->first = used;
-    range->capacity = trimmed(range, SCREE_FIRST_SLEEPERS);
+    range->capacity = trimmed(range, SCREE_FIRST_SLEEPING);
     used += range->capacity;
   }
-  scree_free(pools->sleepers);
-  pools->sleepers = sleepers;
-  pools->sleeper_capacity = capacity;
-  atomic_store(&pools->sleepers_used, used);
+  scree_free(pools->sleeping_features);
+  pools->sleeping_features = sleeping_features;
+  pools->sleeping_capacity = capacity;
+  atomic_store(&pools->sleeping_used, used);
   return true;
 }
 
 bool scree_pools_grow(scree_pools *pools, scree_pair *pairs, size_t pair_count,
                       scree_neighbours *neighbours, size_t neighbour_count) {
-  return (atomic_load(&pools->items_used) <= pools->item_capacity ||
-          scree_pack_items(pools, pairs, pair_count, 0)) &&
-         (atomic_load(&pools->sleepers_used) <= pools->sleeper_capacity ||
-          scree_pack_sleepers(pools, neighbours, neighbour_count));
+  return (atomic_load(&pools->features_used) <= pools->feature_capacity ||
+          scree_pack_features(pools, pairs, pair_count, 0)) &&
+         (atomic_load(&pools->sleeping_used) <= pools->sleeping_capacity ||
+          scree_pack_sleeping(pools, neighbours, neighbour_count));
 }
 
 void scree_pools_free(scree_pools *pools) {
-  scree_free(pools->items);
+  scree_free(pools->features);
   scree_free(pools->further);
-  scree_free(pools->sleepers);
+  scree_free(pools->sleeping_features);
 }

@@ -24,8 +24,8 @@ static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "worl
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
-                   (sizeof(scree_item) == 128 && sizeof(scree_anchor) == 56 &&
-                    sizeof(scree_sleeper) == 24 && sizeof(scree_pair) == 640 &&
+                   (sizeof(scree_feature_pair) == 128 && sizeof(scree_anchor) == 56 &&
+                    sizeof(scree_sleeping_feature) == 24 && sizeof(scree_pair) == 640 &&
                     sizeof(scree_neighbours) == 264 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
@@ -163,25 +163,25 @@ static void code_wall_state(scree_codec *c, scree_world_wall *w) {
 static void code_anchor(scree_codec *c, scree_anchor *a) {
   scree_code_vec3(c, &a->stretch);
   scree_code_vec3(c, &a->normal);
-  scree_code_real(c, &a->share);
+  scree_code_real(c, &a->weight);
 }
 
 /* Memory that has come to nothing is saved as such: whether a world has been saved in between does
  * not show. */
-static void code_further(scree_codec *c, scree_item *i, scree_further *further) {
+static void code_further(scree_codec *c, scree_feature_pair *i, scree_further *further) {
   bool any = false;
   for (int k = 0; k < SCREE_ANCHORS - 1; k++) {
     scree_anchor *own = &further->anchor[k], none = {0};
-    code_anchor(c, c->loading || (i->notched && own->share > 0) ? own : &none);
-    any = any || (c->loading && own->share > 0);
+    code_anchor(c, c->loading || (i->notched && own->weight > 0) ? own : &none);
+    any = any || (c->loading && own->weight > 0);
   }
   if (c->loading) i->notched = any;
 }
 
-static void code_item(scree_codec *c, scree_item *i, scree_further *further) {
+static void code_feature(scree_codec *c, scree_feature_pair *i, scree_further *further) {
   uint32_t kind = i->kind;
   scree_code_u32(c, &kind);
-  if (kind > SCREE_ITEM_POINT_WALL) c->failed = true;
+  if (kind > SCREE_FEATURE_POINT_WALL) c->failed = true;
   if (c->loading) i->kind = (uint8_t)kind;
   scree_code_u32(c, &i->a);
   scree_code_u32(c, &i->b);
@@ -196,20 +196,20 @@ static void code_item(scree_codec *c, scree_item *i, scree_further *further) {
   code_further(c, i, further);
 }
 
-static void code_sleeper(scree_codec *c, scree_sleeper *s) {
+static void code_sleeping(scree_codec *c, scree_sleeping_feature *s) {
   scree_code_real(c, &s->wake);
   scree_code_u32(c, &s->a);
   scree_code_u32(c, &s->b);
   scree_code_u32(c, &s->kind);
 }
 
-static void code_wrench(scree_codec *c, scree_wrench *w) {
+static void code_wrench(scree_codec *c, scree_pair_wrench *w) {
   scree_code_vec3(c, &w->force);
   scree_code_vec3(c, &w->torque_a);
   scree_code_vec3(c, &w->torque_b);
 }
 
-static void code_load(scree_codec *c, scree_kept_load *l) {
+static void code_load(scree_codec *c, scree_kept_wrench *l) {
   float *numbers[2] = {l->force, l->moment};
   for (int i = 0; i < 6; i++) {
     double number = numbers[i / 3][i % 3];
@@ -218,7 +218,7 @@ static void code_load(scree_codec *c, scree_kept_load *l) {
   }
 }
 
-static void code_booked(scree_codec *c, scree_booked *b) {
+static void code_balance(scree_codec *c, scree_balance *b) {
   scree_code_real(c, &b->dashpot);
   scree_code_real(c, &b->tangential);
   scree_code_real(c, &b->wall);
@@ -233,8 +233,8 @@ static void code_pair_name(scree_codec *c, scree_neighbours *n) {
 static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) {
   scree_code_bool(c, &p->asleep);
   scree_code_bool(c, &p->touching);
-  scree_code_bool(c, &p->parting);
-  scree_code_bool(c, &p->parted);
+  scree_code_bool(c, &p->depenetrating);
+  scree_code_bool(c, &p->was_depenetrating);
   scree_code_bool(c, &p->followed);
   double since = p->elastic_since;
   double *reals[] = {&n->law.stiffness,
@@ -252,7 +252,7 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
                      &p->list.path,
                      &n->wake,
                      &n->asleep_since,
-                     &p->list.next_item,
+                     &p->list.next_feature,
                      &p->list.end,
                      &p->elastic,
                      &p->tangential_elastic,
@@ -268,7 +268,7 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   p->elastic_since = (float)since;
   scree_code_vec3(c, &p->rolled);
-  scree_code_vec3(c, &p->way);
+  scree_code_vec3(c, &p->separation);
   scree_code_vec3(c, &p->pushed);
   scree_code_real(c, &p->found);
   code_wrench(c, &p->wrench);
@@ -302,7 +302,7 @@ typedef struct body_record {
   vec3 momentum, inertia, force, torque;
   double mass, travel, path, path_at_build;
   bool removed;
-  scree_booked booked;
+  scree_balance balance;
 } body_record;
 
 static void code_body(scree_codec *c, body_record *b) {
@@ -315,13 +315,13 @@ static void code_body(scree_codec *c, body_record *b) {
   scree_code_real(c, &b->path);
   scree_code_real(c, &b->path_at_build);
   scree_code_bool(c, &b->removed);
-  code_booked(c, &b->booked);
+  code_balance(c, &b->balance);
 }
 
 /* What the world counts, and how it ended. */
 typedef struct tail_record {
   double time, time_step, largest_overlap, margin;
-  uint64_t step_count, parting_count;
+  uint64_t step_count, depenetration_count;
   bool pairs_stale, time_step_stale, diverged;
   uint32_t failure;
   char message[sizeof((scree_error *)0)->message];
@@ -331,7 +331,7 @@ static void code_tail(scree_codec *c, tail_record *t) {
   double *reals[] = {&t->time, &t->time_step, &t->largest_overlap, &t->margin};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
   scree_code_u64(c, &t->step_count);
-  scree_code_u64(c, &t->parting_count);
+  scree_code_u64(c, &t->depenetration_count);
   scree_code_bool(c, &t->pairs_stale);
   scree_code_bool(c, &t->time_step_stale);
   scree_code_bool(c, &t->diverged);
@@ -459,7 +459,7 @@ static void save_bodies(scree_codec *c, const scree_world *world) {
                           .path = b->path[i],
                           .path_at_build = world->body_path_at_build[i],
                           .removed = b->removed[i],
-                          .booked = b->booked[i]};
+                          .balance = b->balance[i]};
     code_body(c, &record);
   }
   bool any = b->applied != NULL;
@@ -480,13 +480,13 @@ static void save_pairs(scree_codec *c, const scree_world *world, bool contacts) 
     if (!pair) scree_pair_begin(pair = &asleep, n, k);
     code_pair_name(c, n);
     code_pair_state(c, pair, n);
-    scree_booked booked = world->ledger.items[k];
-    code_booked(c, &booked);
-    scree_range items = pair->active, sleepers = n->sleeping;
+    scree_balance balance = world->ledger.items[k];
+    code_balance(c, &balance);
+    scree_range items = pair->active, sleeping_features = n->sleeping;
     for (uint32_t i = 0; i < items.count; i++)
-      code_item(c, &pools->items[items.first + i], &pools->further[items.first + i]);
-    for (uint32_t i = 0; i < sleepers.count; i++)
-      code_sleeper(c, &pools->sleepers[sleepers.first + i]);
+      code_feature(c, &pools->features[items.first + i], &pools->further[items.first + i]);
+    for (uint32_t i = 0; i < sleeping_features.count; i++)
+      code_sleeping(c, &pools->sleeping_features[sleeping_features.first + i]);
   }
 }
 
@@ -496,7 +496,7 @@ static void save_tail(scree_codec *c, const scree_world *world) {
                       .largest_overlap = world->largest_overlap,
                       .margin = world->margin,
                       .step_count = world->step_count,
-                      .parting_count = world->parting_count,
+                      .depenetration_count = world->depenetration_count,
                       .pairs_stale = world->pairs_stale,
                       .time_step_stale = world->time_step_stale,
                       .diverged = world->diverged,
@@ -679,7 +679,7 @@ static void load_bodies(loader *l) {
     b->travel[i] = record.travel;
     b->path[i] = record.path;
     b->removed[i] = record.removed;
-    b->booked[i] = record.booked;
+    b->balance[i] = record.balance;
     b->removed_count += record.removed;
     l->world->body_path_at_build[i] = record.path_at_build;
   }
@@ -694,33 +694,33 @@ static bool names_features(const loader *l, const scree_pair *pair, uint32_t kin
                            uint32_t b) {
   const scree_particle *of_a = l->world->bodies.particle[pair->a],
                        *of_b = scree_pair_shape_b(l->world, pair);
-  if (kind == SCREE_ITEM_POINT_WALL)
+  if (kind == SCREE_FEATURE_POINT_WALL)
     return pair->wall && scree_wall_is_analytic(&l->world->walls.items[pair->b]) &&
            a < of_a->point_count;
   if (!of_b) return false;
   switch (kind) {
-  case SCREE_ITEM_POINT_FACE:
+  case SCREE_FEATURE_POINT_FACE:
     return of_b->face_count > 0 && a < of_a->point_count;
-  case SCREE_ITEM_FACE_POINT:
+  case SCREE_FEATURE_FACE_POINT:
     return of_a->face_count > 0 && b < of_b->point_count;
-  case SCREE_ITEM_EDGE_EDGE:
+  case SCREE_FEATURE_EDGE_EDGE:
     return a < of_a->edge_count && b < of_b->edge_count;
-  case SCREE_ITEM_POINT_POINT:
+  case SCREE_FEATURE_POINT_POINT:
     return a < of_a->point_count && b < of_b->point_count;
   default:
     return false;
   }
 }
 
-static bool is_item(const loader *l, const scree_pair *pair, const scree_item *item) {
-  if (!names_features(l, pair, item->kind, item->a, item->b)) return false;
-  if (item->kind == SCREE_ITEM_EDGE_EDGE) return item->crossing <= SCREE_CROSSING_REFUSED;
-  if (item->face_count > SCREE_CACHED_FACES) return false;
-  const scree_particle *surface = item->kind == SCREE_ITEM_FACE_POINT
+static bool is_feature(const loader *l, const scree_pair *pair, const scree_feature_pair *feature) {
+  if (!names_features(l, pair, feature->kind, feature->a, feature->b)) return false;
+  if (feature->kind == SCREE_FEATURE_EDGE_EDGE) return feature->crossing <= SCREE_CROSSING_REFUSED;
+  if (feature->face_count > SCREE_CACHED_FACES) return false;
+  const scree_particle *surface = feature->kind == SCREE_FEATURE_FACE_POINT
                                       ? l->world->bodies.particle[pair->a]
                                       : scree_pair_shape_b(l->world, pair);
-  for (uint32_t k = 0; k < item->face_count; k++)
-    if (!surface || item->face[k] >= surface->face_count) return false;
+  for (uint32_t k = 0; k < feature->face_count; k++)
+    if (!surface || feature->face[k] >= surface->face_count) return false;
   return true;
 }
 
@@ -730,8 +730,8 @@ static bool make_room(loader *l, scree_pair *pair, uint32_t active, uint32_t sle
   scree_neighbours *n = &world->neighbours.items[pair->neighbours];
   for (;;) {
     scree_take_in_hand(&l->scratch, &world->pools, pair, n);
-    if (scree_reserve_items(&l->scratch, pair, active) &&
-        scree_reserve_sleepers(&l->scratch, sleeping))
+    if (scree_reserve_features(&l->scratch, pair, active) &&
+        scree_reserve_sleeping(&l->scratch, sleeping))
       return true;
     if (!scree_pools_grow(&world->pools, world->pairs.items, world->pairs.count,
                           world->neighbours.items, world->neighbours.count))
@@ -739,27 +739,27 @@ static bool make_room(loader *l, scree_pair *pair, uint32_t active, uint32_t sle
   }
 }
 
-static void load_items(loader *l, scree_pair *pair) {
-  scree_range *sleepers = &l->world->neighbours.items[pair->neighbours].sleeping;
-  uint32_t active = pair->active.count, sleeping = sleepers->count;
-  pair->active.count = sleepers->count = 0;
-  bool awake = active > 0 || pair->depth > 0 || pair->parting || pair->substeps > 1;
+static void load_features(loader *l, scree_pair *pair) {
+  scree_range *sleeping_features = &l->world->neighbours.items[pair->neighbours].sleeping;
+  uint32_t active = pair->active.count, sleeping = sleeping_features->count;
+  pair->active.count = sleeping_features->count = 0;
+  bool awake = active > 0 || pair->depth > 0 || pair->depenetrating || pair->substeps > 1;
   if ((pair->asleep || pair->touching) && pair->asleep == awake) l->codec.failed = true;
   if (!good(l)) return;
   if (!make_room(l, pair, active, sleeping)) l->codec.out_of_memory = true;
   for (uint32_t i = 0; i < active && good(l); i++) {
-    scree_item *item = &l->scratch.items[i];
-    *item = (scree_item){0};
+    scree_feature_pair *feature = &l->scratch.features[i];
+    *feature = (scree_feature_pair){0};
     l->scratch.further[i] = (scree_further){0};
-    code_item(&l->codec, item, &l->scratch.further[i]);
-    if (!is_item(l, pair, item)) l->codec.failed = true;
+    code_feature(&l->codec, feature, &l->scratch.further[i]);
+    if (!is_feature(l, pair, feature)) l->codec.failed = true;
     pair->active.count++;
   }
   for (uint32_t i = 0; i < sleeping && good(l); i++) {
-    scree_sleeper s = {0};
-    code_sleeper(&l->codec, &s);
+    scree_sleeping_feature s = {0};
+    code_sleeping(&l->codec, &s);
     if (!names_features(l, pair, s.kind, s.a, s.b)) l->codec.failed = true;
-    scree_sleepers(&l->scratch)[sleepers->count++] = s;
+    scree_sleeping_features(&l->scratch)[sleeping_features->count++] = s;
   }
 }
 
@@ -777,8 +777,8 @@ static void load_pair(loader *l, uint32_t k, uint32_t index) {
   scree_pair *pair = &world->pairs.items[index];
   scree_pair_begin(pair, n, k);
   code_pair_state(&l->codec, pair, n);
-  code_booked(&l->codec, &world->ledger.items[k]);
-  load_items(l, pair);
+  code_balance(&l->codec, &world->ledger.items[k]);
+  load_features(l, pair);
   pair->law = n->law;
   if (scree_pair_stays_awake(pair)) {
     world->pair_of.items[k] = index;
@@ -830,7 +830,7 @@ static void load_tail(loader *l) {
     world->walls.items[w].summed = tail.step_count;
     world->walls.items[w].work = scree_wall_work(world, w);
   }
-  world->parting_count = tail.parting_count;
+  world->depenetration_count = tail.depenetration_count;
   world->pairs_stale = tail.pairs_stale;
   world->time_step_stale = tail.time_step_stale;
   world->diverged = tail.diverged;

@@ -174,8 +174,8 @@ bool scree_surfaces_cross(const scree_particle *a, const scree_particle *b,
   return false;
 }
 
-vec3 scree_way_apart(const scree_particle *a, const scree_particle *b,
-                     const scree_frame *relative) {
+vec3 scree_separation_direction(const scree_particle *a, const scree_particle *b,
+                                const scree_frame *relative) {
   vec3 area = {0, 0, 0};
   descent d;
   begin_descent(&d, a, b, relative);

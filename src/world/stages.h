@@ -8,13 +8,13 @@
 
 enum { SCREE_PAIR_BLOCK = 128 }; /* neighbours: whole words of world->touching */
 
-/* step.c: whether neighbours k are awake or due. */
+/* step.c: whether neighbours k are awake or have come to their threshold. */
 bool scree_is_awake(const scree_world *world, size_t k);
 /* The pair of neighbours k, which may be one that begins; scree_none when there is no spare one. */
 uint32_t scree_pair_at(scree_world *world, uint32_t k);
 /* After its evaluation: whether the pair is given back. */
 bool scree_settle_pair(scree_world *world, const scree_pair *pair);
-void scree_book(scree_booked *booked, const scree_pair_work *work);
+void scree_balance_add(scree_balance *balance, const scree_pair_work *work);
 /* Pairs may be noted in any order, and several at once. How deep the first pair that overlaps from
  * the start does is left to the caller. */
 void scree_note_pair(scree_tally *tally, const scree_pair *pair, const scree_pair_work *work);

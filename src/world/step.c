@@ -25,7 +25,7 @@ enum { MOST_BLOCKS = 8, LEAST_PARTS = 32 };
 
 bool scree_is_awake(const scree_world *world, size_t k) {
   const scree_slot *slot = &world->slots.items[k];
-  return world->due.items[slot->a] + world->due.items[slot->b] >= slot->wake;
+  return world->wake_threshold.items[slot->a] + world->wake_threshold.items[slot->b] >= slot->wake;
 }
 
 /* Without branches: one in five is. */
@@ -42,60 +42,64 @@ static size_t list_awake(const scree_world *world, size_t begin, size_t end, uin
 SCREE_PREFETCHES void fetch_pair(const scree_world *world, size_t k) {
   const scree_pair *pair = scree_pair_of(world, k);
   if (pair)
-    scree_prefetch(pair, offsetof(scree_pair, way));
+    scree_prefetch(pair, offsetof(scree_pair, separation));
   else
     scree_prefetch(&world->neighbours.items[k], sizeof(scree_neighbours));
   size_t b = world->slots.items[k].b;
   if (b < world->bodies.count) scree_prefetch(&world->bodies.frame[b], sizeof(scree_frame));
 }
 
-/* Whether it is likely that items of the pair wake in the coming step. */
-static bool may_wake_items(const scree_pair *pair) {
-  return pair->list.path + 4 * pair->list.travel >= pair->list.next_item;
+/* Whether it is likely that feature pairs of the pair wake in the coming step. */
+static bool may_wake_features(const scree_pair *pair) {
+  return pair->list.path + 4 * pair->list.travel >= pair->list.next_feature;
 }
 
-/* The items of a pair that has come, wherever they are. */
-SCREE_PREFETCHES void fetch_items(const scree_world *world, const scree_pair *pair) {
-  if (!pair) return;
-  const scree_item *items = &world->pools.items[pair->active.first];
-  scree_prefetch(items, sizeof *items);
-  if (pair->active.count > 1) scree_prefetch(items + 1, (pair->active.count - 1) * sizeof *items);
-  if (may_wake_items(pair)) scree_prefetch(&world->neighbours.items[pair->neighbours].sleeping, 1);
-}
-
-SCREE_PREFETCHES void fetch_faces(const scree_particle *surface, const scree_item *item) {
-  for (uint32_t i = 0; i < item->face_count; i++)
-    scree_prefetch(&surface->faces[item->face[i]], sizeof(scree_face));
-}
-
-/* What items that have come read of their shapes. */
+/* The feature pairs of a pair that has come, wherever they are. */
 SCREE_PREFETCHES void fetch_features(const scree_world *world, const scree_pair *pair) {
+  if (!pair) return;
+  const scree_feature_pair *features = &world->pools.features[pair->active.first];
+  scree_prefetch(features, sizeof *features);
+  if (pair->active.count > 1)
+    scree_prefetch(features + 1, (pair->active.count - 1) * sizeof *features);
+  if (may_wake_features(pair))
+    scree_prefetch(&world->neighbours.items[pair->neighbours].sleeping, 1);
+}
+
+SCREE_PREFETCHES void fetch_faces(const scree_particle *surface,
+                                  const scree_feature_pair *feature) {
+  for (uint32_t i = 0; i < feature->face_count; i++)
+    scree_prefetch(&surface->faces[feature->face[i]], sizeof(scree_face));
+}
+
+/* What feature pairs that have come read of their shapes. */
+SCREE_PREFETCHES void fetch_shapes(const scree_world *world, const scree_pair *pair) {
   if (!pair) return;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   for (uint32_t i = 0; i < pair->active.count; i++) {
-    const scree_item *item = &world->pools.items[pair->active.first + i];
-    if (item->kind == SCREE_ITEM_EDGE_EDGE) {
-      scree_prefetch(&a->edges[item->a], sizeof(scree_edge));
-      scree_prefetch(&b->edges[item->b], sizeof(scree_edge));
-    } else if (item->kind == SCREE_ITEM_POINT_FACE) {
-      scree_prefetch(&a->points[item->a], 1);
-      fetch_faces(b, item);
-    } else if (item->kind == SCREE_ITEM_FACE_POINT) {
-      scree_prefetch(&b->points[item->b], 1);
-      fetch_faces(a, item);
+    const scree_feature_pair *feature = &world->pools.features[pair->active.first + i];
+    if (feature->kind == SCREE_FEATURE_EDGE_EDGE) {
+      scree_prefetch(&a->edges[feature->a], sizeof(scree_edge));
+      scree_prefetch(&b->edges[feature->b], sizeof(scree_edge));
+    } else if (feature->kind == SCREE_FEATURE_POINT_FACE) {
+      scree_prefetch(&a->points[feature->a], 1);
+      fetch_faces(b, feature);
+    } else if (feature->kind == SCREE_FEATURE_FACE_POINT) {
+      scree_prefetch(&b->points[feature->b], 1);
+      fetch_faces(a, feature);
     }
   }
-  if (may_wake_items(pair))
-    scree_prefetch(&world->pools.sleepers[world->neighbours.items[pair->neighbours].sleeping.first],
-                   256);
+  if (may_wake_features(pair))
+    scree_prefetch(
+        &world->pools.sleeping_features[world->neighbours.items[pair->neighbours].sleeping.first],
+        256);
 }
 
-enum { PAIRS_AHEAD = 8, ITEMS_AHEAD = 4, FEATURES_AHEAD = 2 };
+enum { PAIRS_AHEAD = 8, FEATURES_AHEAD = 4, SHAPES_AHEAD = 2 };
 
-void scree_book(scree_booked *booked, const scree_pair_work *work) {
-  booked->dashpot += work->later_dashpot + work->dashpot - work->lost - work->let_go;
-  booked->tangential += work->later_tangential + work->tangential;
-  booked->wall += work->wall;
+void scree_balance_add(scree_balance *balance, const scree_pair_work *work) {
+  balance->dashpot += work->later_dashpot + work->dashpot - work->lost - work->let_go;
+  balance->tangential += work->later_tangential + work->tangential;
+  balance->wall += work->wall;
 }
 
 void scree_note_pair(scree_tally *tally, const scree_pair *pair, const scree_pair_work *work) {
@@ -103,7 +107,7 @@ void scree_note_pair(scree_tally *tally, const scree_pair *pair, const scree_pai
   if (work->beyond_limit) scree_atomic_lower(&tally->trouble.beyond_limit, k);
   if (work->too_fast) scree_atomic_lower(&tally->trouble.too_fast, k);
   if (work->start_depth > 0) scree_atomic_lower(&tally->trouble.start, k);
-  if (work->begins_parting) scree_atomic_add(&tally->partings, 1);
+  if (work->begins_depenetration) scree_atomic_add(&tally->depenetrations, 1);
   if (!pair->touching) return;
   uint64_t bits;
   memcpy(&bits, &pair->overlap, sizeof bits);
@@ -146,7 +150,7 @@ static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *s
   uint32_t k = pair->neighbours;
   scree_take_in_hand(scratch, &world->pools, pair, &world->neighbours.items[k]);
   if (!scree_pair_evaluate(world, pair, scratch)) return false;
-  scree_book(&world->ledger.items[k], &scratch->work);
+  scree_balance_add(&world->ledger.items[k], &scratch->work);
   scree_note_pair(&part->tally, pair, &scratch->work);
   if (part->tally.trouble.start == k) part->tally.trouble.start_depth = scratch->work.start_depth;
   return true;
@@ -156,9 +160,9 @@ static bool evaluate_pair(scree_world *world, scree_pair *pair, scree_scratch *s
 SCREE_PREFETCHES void fetch_ahead(const scree_world *world, const uint32_t *awake, size_t i,
                                   size_t count) {
   if (i + PAIRS_AHEAD < count) fetch_pair(world, awake[i + PAIRS_AHEAD]);
-  if (i + ITEMS_AHEAD < count) fetch_items(world, scree_pair_of(world, awake[i + ITEMS_AHEAD]));
   if (i + FEATURES_AHEAD < count)
     fetch_features(world, scree_pair_of(world, awake[i + FEATURES_AHEAD]));
+  if (i + SHAPES_AHEAD < count) fetch_shapes(world, scree_pair_of(world, awake[i + SHAPES_AHEAD]));
 }
 
 static void begin_blocks(scree_world *world, size_t begin, size_t end,
@@ -205,7 +209,7 @@ static bool make_room(scree_world *world) {
   if (atomic_load(&world->spare_pairs.count) < 0 && !scree_pairs_grow(world)) return false;
   for (int i = 0; i < world->scratch_count; i++) {
     scree_scratch *scratch = &world->scratch[i];
-    if (!SCREE_RESERVE(&scratch->touches, scratch->touches_needed)) return false;
+    if (!SCREE_RESERVE(&scratch->contacts, scratch->contacts_needed)) return false;
   }
   return scree_pools_grow(&world->pools, world->pairs.items, world->pairs.count,
                           world->neighbours.items, world->neighbours.count);
@@ -238,7 +242,7 @@ static scree_status evaluate_pairs(scree_world *world) {
     for (uint32_t i = 0; i < part->given; i++)
       scree_pair_give_back(world, world->awake.items[p * size + i]);
     world->largest_overlap = scree_max(world->largest_overlap, scree_largest_overlap(&part->tally));
-    world->parting_count += part->tally.partings;
+    world->depenetration_count += part->tally.depenetrations;
     add_trouble(&trouble, &part->tally.trouble);
   }
   return scree_is_trouble(&trouble) ? scree_describe_trouble(world, &trouble) : SCREE_OK;

@@ -1,13 +1,13 @@
 /* Sub-steps: a pair that is deep and fast is followed alone, in shorter steps, while all else
  * waits.
  *
- * Where the way of a step is not small beside the roundings, blends between features are crossed in
- * one step, and no force that is a slope of the energy could be told from samples so far apart. The
- * two bodies are moved on copies, by leapfrog with steps dt/n, under the forces of their pair, and
- * under all others as they were in the last step. What the world's step is given is the mean wrench
- * that brings its own leapfrog to where the copies have come, less that of the others; what their
- * velocities have more by then is owed to the bodies, and the pair begins its next step with it. So
- * no other part of the step knows of sub-steps.
+ * Where the way of a step is not small beside the contact radii, blends between features are
+ * crossed in one step, and no force that is a slope of the energy could be told from samples so far
+ * apart. The two bodies are moved on copies, by leapfrog with steps dt/n, under the forces of their
+ * pair, and under all others as they were in the last step. What the world's step is given is the
+ * mean wrench that brings its own leapfrog to where the copies have come, less that of the others;
+ * what their velocities have more by then is owed to the bodies, and the pair begins its next step
+ * with it. So no other part of the step knows of sub-steps.
  *
  * Leapfrog with steps that differ kicks with the mean of the steps before and after. */
 #include "world/contact.h"
@@ -15,15 +15,16 @@
 #include "world/walls.h"
 
 enum { ROUNDS = 4 };
-static const double least_depth = 0.5;  /* of the roundings: from there on features are blended */
-static const double longest_way = 0.04; /* of the roundings, in a sub-step */
+static const double least_depth =
+    0.5; /* of the contact radii: from there on features are blended */
+static const double longest_way = 0.04; /* of the contact radii, in a sub-step */
 
 /* A body, or a wall, of which `free` is false. */
 typedef struct mover {
   scree_frame frame;
   quat orientation;
   vec3 momentum, inertia;
-  scree_load others; /* force and moment of all but the pair, as in the last step */
+  scree_wrench others; /* force and moment of all but the pair, as in the last step */
   double mass;
   bool free;
 } mover;
@@ -46,17 +47,17 @@ static vec3 spin_of(const mover *m, vec3 momentum) {
   return mat3_mul_vec(rotation, scree_local_spin(m->inertia, rotation, momentum));
 }
 
-scree_load scree_load_of_others(const scree_world *world, const scree_pair *pair,
-                                const scree_scratch *scratch, bool of_b) {
+scree_wrench scree_wrench_of_others(const scree_world *world, const scree_pair *pair,
+                                    const scree_scratch *scratch, bool of_b) {
   const scree_bodies *b = &world->bodies;
-  const scree_wrench *last = &scratch->last;
-  if (of_b && pair->wall) return (scree_load){{0, 0, 0}, {0, 0, 0}};
+  const scree_pair_wrench *last = &scratch->last;
+  if (of_b && pair->wall) return (scree_wrench){{0, 0, 0}, {0, 0, 0}};
   uint32_t index = of_b ? pair->b : pair->a;
   vec3 force = of_b ? vec3_neg(last->force) : last->force,
        moment = of_b ? last->torque_b : last->torque_a,
        weight = vec3_scale(vec3_load(world->options.gravity), b->mass[index]);
-  return (scree_load){vec3_add(vec3_sub(b->force[index], force), weight),
-                      vec3_sub(b->torque[index], moment)};
+  return (scree_wrench){vec3_add(vec3_sub(b->force[index], force), weight),
+                        vec3_sub(b->torque[index], moment)};
 }
 
 /* An impulse and its moment; `ahead`: what of it the velocities half a step on have more. */
@@ -98,7 +99,7 @@ static void kick_by_others(mover *m, double time, double half) {
   m->frame.spin_now = vec3_mad(m->frame.spin_now, turning, now);
 }
 
-static void kick_both(mover *a, mover *b, const scree_wrench *w, double dt, double ahead) {
+static void kick_both(mover *a, mover *b, const scree_pair_wrench *w, double dt, double ahead) {
   kick(a, vec3_scale(w->force, dt), vec3_scale(w->torque_a, dt), ahead);
   kick(b, vec3_scale(w->force, -dt), vec3_scale(w->torque_b, dt), ahead);
 }
@@ -125,15 +126,15 @@ uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   const double longest = longest_way * pair->law.reach;
   if (!(pair->list.travel > longest)) return 1; /* than which none moves farther */
-  if (!a->face_count || !b || !scree_has_features(b) || pair->parting)
+  if (!a->face_count || !b || !scree_has_features(b) || pair->depenetrating)
     return 1; /* nothing is blended */
   if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) return 1;
   double parts = 0;
-  for (size_t i = 0; i < scratch->touches.count; i++) {
-    const scree_touch *touch = &scratch->touches.items[i];
-    vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, touch->at));
+  for (size_t i = 0; i < scratch->contacts.count; i++) {
+    const scree_contact_point *contact = &scratch->contacts.items[i];
+    vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, contact->at));
     double way = vec3_norm(v) * world->time_step;
-    if (touch->overlap + way > least_depth * pair->law.reach)
+    if (contact->overlap + way > least_depth * pair->law.reach)
       parts = scree_max(parts, way / longest);
   }
   if (!(parts > 1)) return 1;
@@ -143,7 +144,7 @@ uint32_t scree_substep_count(const scree_world *world, const scree_pair *pair,
 scree_frame scree_owed_frame(const scree_world *world, const scree_pair *pair, bool of_b) {
   mover m = mover_of(world, of_b ? pair->b : pair->a, of_b && pair->wall);
   scree_frame f = m.frame;
-  const scree_wrench *owed = &pair->owed;
+  const scree_pair_wrench *owed = &pair->owed;
   kick(&m, of_b ? vec3_neg(owed->force) : owed->force, of_b ? owed->torque_b : owed->torque_a, 0);
   vec3 ahead = vec3_sub(f.velocity_now, f.velocity), spin = vec3_sub(f.spin_now, f.spin);
   m.frame.velocity_now = vec3_mad(m.frame.velocity, ahead, 1.0 / pair->substeps);
@@ -157,7 +158,7 @@ typedef struct shown {
   uint32_t contact_count;
 } shown;
 
-static void take_out(scree_wrench *wrench, const mover movers[2], double time) {
+static void take_out(scree_pair_wrench *wrench, const mover movers[2], double time) {
   wrench->force = vec3_mad(wrench->force, movers[0].others.force, -time);
   wrench->torque_a = vec3_mad(wrench->torque_a, movers[0].others.moment, -time);
   wrench->torque_b = vec3_mad(wrench->torque_b, movers[1].others.moment, -time);
@@ -193,10 +194,11 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
   const double dt = world->time_step, h = scratch->step;
   const shown first = {pair->elastic, pair->tangential_elastic, pair->contact_count};
   mover begin[2] = {mover_of(world, pair->a, false), mover_of(world, pair->b, pair->wall)};
-  for (int k = 0; k < 2; k++) begin[k].others = scree_load_of_others(world, pair, scratch, k == 1);
+  for (int k = 0; k < 2; k++)
+    begin[k].others = scree_wrench_of_others(world, pair, scratch, k == 1);
   mover now[2] = {begin[0], begin[1]};
   kick_both(&now[0], &now[1], &pair->owed, 1, 0);
-  const scree_wrench w = pair->wrench, owed = pair->owed; /* at the step's beginning */
+  const scree_pair_wrench w = pair->wrench, owed = pair->owed; /* at the step's beginning */
   const double half = pair->touching ? 0.5 * scratch->drift : 0;
   bool acts = vec3_norm2(owed.force) > 0;
   vec3 on_wall = {0, 0, 0};
@@ -212,16 +214,16 @@ void scree_pair_follow(const scree_world *world, scree_pair *pair, scree_scratch
     drift(&now[1], h);
     if (i == count) break;
     scratch->drift = h;
-    scree_pair_look_between(world, pair, scratch);
+    scree_pair_narrow_phase_between(world, pair, scratch);
   }
   settle_debts(pair, begin, now, dt, h);
   if (pair->wall) pair->wrench.torque_b = on_wall;
-  if (count == 1) pair->owed = (scree_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
+  if (count == 1) pair->owed = (scree_pair_wrench){{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
   pair->touching = pair->followed = acts;
   pair->ahead =
-      (scree_wrench){motion_ahead(owed.force, w.force, half, pair->wrench.force, dt),
-                     motion_ahead(owed.torque_a, w.torque_a, half, pair->wrench.torque_a, dt),
-                     motion_ahead(owed.torque_b, w.torque_b, half, pair->wrench.torque_b, dt)};
+      (scree_pair_wrench){motion_ahead(owed.force, w.force, half, pair->wrench.force, dt),
+                          motion_ahead(owed.torque_a, w.torque_a, half, pair->wrench.torque_a, dt),
+                          motion_ahead(owed.torque_b, w.torque_b, half, pair->wrench.torque_b, dt)};
   pair->elastic_since = (float)(pair->elastic - first.elastic);
   pair->elastic = first.elastic;
   pair->tangential_elastic = first.tangential_elastic;

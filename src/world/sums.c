@@ -45,12 +45,12 @@ static void add_motion_ahead(const scree_world *world, size_t i, vec3 impulse, v
 static void add_pair(const scree_world *world, const scree_pair *pair, scree_sums *sums) {
   scree_sum_add(&sums->elastic, pair->elastic);
   scree_sum_add(&sums->tangential_elastic, pair->tangential_elastic);
-  const scree_wrench *ahead = &pair->ahead;
+  const scree_pair_wrench *ahead = &pair->ahead;
   if (pair->followed) add_motion_ahead(world, pair->a, ahead->force, ahead->torque_a, sums);
   if (pair->followed && !pair->wall)
     add_motion_ahead(world, pair->b, vec3_neg(ahead->force), ahead->torque_b, sums);
   sums->pairs++;
-  sums->parting += pair->parting;
+  sums->depenetrating += pair->depenetrating;
   sums->contacts += pair->contact_count;
   sums->body_sides += pair->wall ? 1 : 2;
 }
@@ -58,8 +58,8 @@ static void add_pair(const scree_world *world, const scree_pair *pair, scree_sum
 /* The ledger is of all that are neighbours or were. */
 static void sum_body(const scree_world *world, size_t i, scree_sums *sums) {
   const scree_bodies *b = &world->bodies;
-  scree_sum_add(&sums->dashpot, b->booked[i].dashpot);
-  scree_sum_add(&sums->tangential, b->booked[i].tangential);
+  scree_sum_add(&sums->dashpot, b->balance[i].dashpot);
+  scree_sum_add(&sums->tangential, b->balance[i].tangential);
   if (b->applied) scree_sum_add(&sums->applied, b->applied[i].work);
   if (b->removed[i]) {
     sums->removed++;
@@ -70,10 +70,10 @@ static void sum_body(const scree_world *world, size_t i, scree_sums *sums) {
 }
 
 static void sum_neighbours(const scree_world *world, size_t k, scree_sums *sums) {
-  const scree_booked *booked = &world->ledger.items[k];
-  scree_sum_add(&sums->dashpot, booked->dashpot);
-  scree_sum_add(&sums->tangential, booked->tangential);
-  scree_sum_add(&sums->wall, booked->wall);
+  const scree_balance *balance = &world->ledger.items[k];
+  scree_sum_add(&sums->dashpot, balance->dashpot);
+  scree_sum_add(&sums->tangential, balance->tangential);
+  scree_sum_add(&sums->wall, balance->wall);
   const scree_pair *pair = scree_pair_of(world, k);
   if (pair && pair->touching && !scree_pair_is_removed(world, pair)) add_pair(world, pair, sums);
 }
@@ -126,7 +126,7 @@ void scree_sums_merge(scree_sums *sums, const scree_sums *part) {
   sums->bodies += part->bodies;
   sums->removed += part->removed;
   sums->pairs += part->pairs;
-  sums->parting += part->parting;
+  sums->depenetrating += part->depenetrating;
   sums->contacts += part->contacts;
   sums->body_sides += part->body_sides;
 }

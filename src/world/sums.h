@@ -12,7 +12,7 @@ typedef struct scree_sums {
   scree_sum kinetic, rotational, potential, rotation, momentum[3], angular[3];
   scree_sum elastic, tangential_elastic, dashpot, tangential, wall, applied;
   double speed; /* the highest */
-  uint64_t bodies, removed, pairs, parting, contacts, body_sides;
+  uint64_t bodies, removed, pairs, depenetrating, contacts, body_sides;
 } scree_sums;
 
 size_t scree_sum_part_count(const scree_world *world);

@@ -6,23 +6,23 @@
 
 #include "base/alloc.h"
 
-static bool report(const scree_world *world, const scree_pair *pair, const scree_touch *touch,
-                   scree_contact_visitor *visit, void *context) {
+static bool report(const scree_world *world, const scree_pair *pair,
+                   const scree_contact_point *point, scree_contact_visitor *visit, void *context) {
   const scree_frame *b = scree_pair_frame_b(world, pair);
   scree_contact contact = {.body = pair->a,
                            .other = pair->b,
                            .wall = pair->wall,
-                           .overlap = touch->overlap,
-                           .share = touch->share};
+                           .overlap = point->overlap,
+                           .weight = point->weight};
   const scree_frame *a = &world->bodies.frame[pair->a]; /* the contact lies where a is told to be */
   vec3 from_a =
-      vec3_sub(mat3_mul_vec(&b->rotation, touch->at), scree_pair_between(world, pair, a, b));
+      vec3_sub(mat3_mul_vec(&b->rotation, point->at), scree_pair_between(world, pair, a, b));
   bool folded = scree_world_is_periodic(world);
   vec3_store(contact.position, folded
                                    ? vec3_add(from_a, scree_world_fold(world, a->position))
-                                   : vec3_add(mat3_mul_vec(&b->rotation, touch->at), b->position));
-  vec3_store(contact.normal, mat3_mul_vec(&b->rotation, touch->normal));
-  vec3_store(contact.force, mat3_mul_vec(&b->rotation, touch->force));
+                                   : vec3_add(mat3_mul_vec(&b->rotation, point->at), b->position));
+  vec3_store(contact.normal, mat3_mul_vec(&b->rotation, point->normal));
+  vec3_store(contact.force, mat3_mul_vec(&b->rotation, point->force));
   return visit(context, &contact);
 }
 
@@ -36,10 +36,10 @@ scree_status scree_world_visit_contacts(const scree_world *world, scree_contact_
     const scree_pair *pair = scree_pair_of(world, k);
     if (!pair || !pair->touching || scree_pair_is_removed(world, pair)) continue;
     good = scree_copy_pair(world, pair, &copy) && scree_evaluate_copy(world, &copy);
-    const scree_touch_list *touches = &copy.scratch.touches;
-    for (size_t i = 0; i < touches->count && good && going && copy.pair.touching; i++)
-      if (touches->items[i].share > 0)
-        going = report(world, &copy.pair, &touches->items[i], visit, context);
+    const scree_contact_list *contacts = &copy.scratch.contacts;
+    for (size_t i = 0; i < contacts->count && good && going && copy.pair.touching; i++)
+      if (contacts->items[i].weight > 0)
+        going = report(world, &copy.pair, &contacts->items[i], visit, context);
   }
   scree_free_pair_copy(&copy);
   return good ? SCREE_OK : scree_fail_memory(error, 0, "contacts");

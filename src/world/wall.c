@@ -183,7 +183,8 @@ void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, ve
   set_velocity(wall, velocity, spin);
   double travel = (vec3_norm(velocity) + wall->reach * vec3_norm(spin)) * world->time_step;
   wall->travel = scree_max(wall->travel, travel);
-  if (!world->pairs_stale && world->due.items) scree_set_wall_due(world, index); /* else later */
+  if (!world->pairs_stale && world->wake_threshold.items)
+    scree_set_wall_wake_threshold(world, index); /* else later */
 }
 
 scree_status scree_world_set_wall_velocity(scree_world *world, size_t index,
@@ -224,12 +225,12 @@ double scree_wall_work(const scree_world *world, size_t w) {
 
 void scree_wall_sum(const scree_world *world, size_t w) {
   scree_world_wall *wall = &world->walls.items[w];
-  scree_load all = {{0, 0, 0}, {0, 0, 0}}, friction = all;
+  scree_wrench all = {{0, 0, 0}, {0, 0, 0}}, friction = all;
   for (size_t i = 0; i < world->wall_pairs.count; i++) {
     if (!is_with(world, i, w)) continue;
     const scree_pair *pair = scree_pair_of(world, world->wall_pairs.items[i]);
     if (!pair || !pair->touching) continue;
-    const scree_load rubs = scree_kept_as_load(&pair->tangential);
+    const scree_wrench rubs = scree_kept_as_wrench(&pair->tangential);
     all.force = vec3_add(all.force, pair->wrench.force);
     all.moment = vec3_sub(all.moment, pair->wrench.torque_b);
     friction.force = vec3_add(friction.force, rubs.force);

@@ -24,8 +24,8 @@ void scree_wall_set_velocity(scree_world *world, size_t index, vec3 velocity, ve
 /* Power on bodies of forces and torques on them, about the wall's position, and of the tangential
  * part of these, with the velocities of the last drift. A belt's surface moves along itself, so
  * that friction alone works on it. */
-static inline double scree_wall_power(const scree_world_wall *wall, const scree_load *all,
-                                      const scree_load *friction) {
+static inline double scree_wall_power(const scree_world_wall *wall, const scree_wrench *all,
+                                      const scree_wrench *friction) {
   const scree_frame *frame = &wall->frame;
   double power = vec3_dot(all->force, frame->velocity) + vec3_dot(all->moment, frame->spin);
   if (!scree_wall_is_belt(wall)) return power;

@@ -88,7 +88,7 @@ static void free_bodies(scree_bodies *b) {
   for (size_t i = 0; i < b->count; i++) scree_particle_free(b->particle[i]);
   void *arrays[] = {b->frame,    b->orientation, b->momentum, b->inertia, b->force,
                     b->torque,   b->mass,        b->travel,   b->path,    b->particle,
-                    b->material, b->removed,     b->turn,     b->applied, b->booked};
+                    b->material, b->removed,     b->turn,     b->applied, b->balance};
   for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) scree_free(arrays[i]);
 }
 
@@ -108,7 +108,7 @@ void scree_world_free(scree_world *world) {
   scree_free(world->spare_pairs.items);
   scree_pools_free(&world->pools);
   scree_free(world->slots.items);
-  scree_free(world->due.items);
+  scree_free(world->wake_threshold.items);
   scree_free(world->touching.items);
   scree_free(world->keys.items);
   scree_free(world->sides.items);
@@ -119,7 +119,7 @@ void scree_world_free(scree_world *world) {
   scree_free(world->awake.items);
   scree_free(world->progress.items);
   scree_free(world->body_path_at_build);
-  for (int i = 0; i < world->scratch_count; i++) scree_free(world->scratch[i].touches.items);
+  for (int i = 0; i < world->scratch_count; i++) scree_free(world->scratch[i].contacts.items);
   scree_free(world->scratch);
   scree_broad_free(world);
   scree_free(world->kept.path);
@@ -160,7 +160,7 @@ static scree_status grow_bodies(scree_world *world, scree_error *error) {
       {(void **)&b->particle, sizeof *b->particle},
       {(void **)&b->material, sizeof *b->material},
       {(void **)&b->removed, sizeof *b->removed},
-      {(void **)&b->booked, sizeof *b->booked},
+      {(void **)&b->balance, sizeof *b->balance},
       {(void **)&world->side_begin, sizeof *world->side_begin},
       {(void **)&world->offenders, sizeof *world->offenders},
       {(void **)&world->body_path_at_build, sizeof *world->body_path_at_build},
@@ -265,7 +265,7 @@ scree_status scree_world_add_body(scree_world *world, scree_particle *particle, 
   b->particle[i] = particle;
   fill_body(b, i, world->materials[material].density);
   if (b->applied) b->applied[i] = (scree_applied){0};
-  b->booked[i] = (scree_booked){0, 0, 0};
+  b->balance[i] = (scree_balance){0, 0, 0};
   scree_particle_retain(particle);
   place_body(world, i, &start);
   world->time_step_stale = true;
@@ -341,7 +341,7 @@ scree_status scree_world_set_body_force(scree_world *world, size_t index, const 
                         "world: body %zu is given a force or torque that is not finite", index);
   scree_status status = scree_world_change(world, SCREE_PART_BODIES, error);
   if (!status) status = scree_bodies_make_applied(b, error);
-  if (!status) b->applied[index].now = (scree_load){vec3_load(force), vec3_load(torque)};
+  if (!status) b->applied[index].now = (scree_wrench){vec3_load(force), vec3_load(torque)};
   return status;
 }
 
@@ -391,7 +391,7 @@ void scree_world_timings(const scree_world *world, scree_timings *timings) {
   *timings = world->timings;
   for (int i = 0; i < world->scratch_count; i++) {
     const scree_scratch *s = &world->scratch[i];
-    timings->item_evaluations += s->item_evaluations;
+    timings->feature_evaluations += s->feature_evaluations;
     timings->closest_queries += s->closest_queries;
     timings->list_builds += s->list_builds;
     timings->candidates += s->candidate_seconds;

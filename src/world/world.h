@@ -25,9 +25,9 @@ typedef struct scree_material_pair {
 } scree_material_pair;
 
 /* Force on a and its moment about the centre of b. */
-typedef struct scree_load {
+typedef struct scree_wrench {
   vec3 force, moment;
-} scree_load;
+} scree_wrench;
 
 typedef struct scree_world_wall {
   scree_wall given; /* position and velocity kept up to date */
@@ -40,7 +40,7 @@ typedef struct scree_world_wall {
   double reach;            /* from its position: farther out there is none of it, or no body */
   double slack;            /* by which it may move before the pairs must be made again */
   vec3 force, torque;      /* on the wall in the last step, about its position */
-  scree_load friction;     /* the tangential part of them, on the bodies */
+  scree_wrench friction;   /* the tangential part of them, on the bodies */
   vec3 surface_velocity, surface_spin; /* of a belt, in the wall's own frame */
   uint64_t summed;                     /* the step whose forces these are (scree_wall_sum) */
   double power, work;                  /* done on bodies: W in that step; J until then */
@@ -67,16 +67,16 @@ typedef struct scree_motion_row {
 
 /* Force and torque of scree_world_set_body_force. */
 typedef struct scree_applied {
-  scree_load now, last; /* last: of the last step */
-  double work;          /* J, done so far */
+  scree_wrench now, last; /* last: of the last step */
+  double work;            /* J, done so far */
 } scree_applied;
 
 /* Work, J: of dashpots and of tangential forces on two neighbours, and of a wall on a body. Each
- * books its own while they are neighbours, then it is the first body's or the wall's. So no step
+ * enters its own while they are neighbours, then it is the first body's or the wall's. So no step
  * adds anything up. */
-typedef struct scree_booked {
+typedef struct scree_balance {
   double dashpot, tangential, wall;
-} scree_booked;
+} scree_balance;
 
 /* Bodies, one array per field; those of the same index are one body. */
 typedef struct scree_bodies {
@@ -89,7 +89,7 @@ typedef struct scree_bodies {
   double *travel;         /* most any of its points moved in the last step */
   double *path;           /* sum of travel */
   scree_applied *applied; /* NULL: there never were any */
-  scree_booked *booked;   /* with those that are no more its neighbours; without walls' */
+  scree_balance *balance; /* with those that are no more its neighbours; without walls' */
   vec3 *turn; /* angular velocity in the body's own frame after the coming kick (scratch) */
   scree_particle **particle;
   uint8_t *material;
@@ -99,25 +99,25 @@ typedef struct scree_bodies {
 
 /* What a touching feature remembers: the anchored tangential spring. */
 typedef struct scree_anchor {
-  vec3 stretch; /* xi, in the frame of b */
-  vec3 normal;  /* of the last step, in the frame of b */
-  double share; /* of the last step; 0: no memory */
+  vec3 stretch;  /* xi, in the frame of b */
+  vec3 normal;   /* of the last step, in the frame of b */
+  double weight; /* of the last step; 0: no memory */
 } scree_anchor;
 
-typedef enum scree_item_kind {
-  SCREE_ITEM_POINT_FACE,  /* point of a, surface of b */
-  SCREE_ITEM_FACE_POINT,  /* surface of a, point of b */
-  SCREE_ITEM_EDGE_EDGE,   /* edge of a, edge of b */
-  SCREE_ITEM_POINT_POINT, /* spheres */
-  SCREE_ITEM_POINT_WALL,  /* point of a, analytic wall */
-} scree_item_kind;
+typedef enum scree_feature_kind {
+  SCREE_FEATURE_POINT_FACE,  /* point of a, surface of b */
+  SCREE_FEATURE_FACE_POINT,  /* surface of a, point of b */
+  SCREE_FEATURE_EDGE_EDGE,   /* edge of a, edge of b */
+  SCREE_FEATURE_POINT_POINT, /* spheres */
+  SCREE_FEATURE_POINT_WALL,  /* point of a, analytic wall */
+} scree_feature_kind;
 
 /* A feature pair that cannot touch before the pair's path reaches `wake`. */
-typedef struct scree_sleeper {
+typedef struct scree_sleeping_feature {
   double wake;
   uint32_t a, b;
   uint32_t kind;
-} scree_sleeper;
+} scree_sleeping_feature;
 
 enum { SCREE_CACHED_FACES = 4, SCREE_ANCHORS = 3 };
 
@@ -129,7 +129,7 @@ typedef enum scree_crossing {
 } scree_crossing;
 
 /* A feature pair that is evaluated every step: two cache lines. */
-typedef struct scree_item {
+typedef struct scree_feature_pair {
   uint8_t kind;
   bool has_reference, inside;
   bool notched; /* it has further anchors */
@@ -143,31 +143,31 @@ typedef struct scree_item {
     double valid; /* of a point: path up to which no other face can be nearer */
     double held;  /* of edges: overlap that does not count (edges.c) */
   };
-  vec3 reference; /* the way out, kept from the last time the cores were apart */
+  vec3 reference; /* the separation direction, kept from the last time the cores were apart */
   double gap;     /* found in this step; 0: stay awake */
   scree_anchor anchor;
-} scree_item;
+} scree_feature_pair;
 
-/* The anchors of a point in a notch beyond the first: few items ever read them. */
+/* The anchors of a point in a notch beyond the first: few feature pairs ever read them. */
 typedef struct scree_further {
   scree_anchor anchor[SCREE_ANCHORS - 1];
 } scree_further;
 
 /* Force and torques about the centres of a and b (about its position for a wall), on a and on b;
  * the force on b is the opposite. */
-typedef struct scree_wrench {
+typedef struct scree_pair_wrench {
   vec3 force, torque_a, torque_b;
-} scree_wrench;
+} scree_pair_wrench;
 
 /* A load in space as the ledger keeps it from one step to the next: the bodies do not feel its
  * rounding. */
-typedef struct scree_kept_load {
+typedef struct scree_kept_wrench {
   float force[3], moment[3];
-} scree_kept_load;
+} scree_kept_wrench;
 
-static inline scree_load scree_kept_as_load(const scree_kept_load *kept) {
+static inline scree_wrench scree_kept_as_wrench(const scree_kept_wrench *kept) {
   const float *f = kept->force, *m = kept->moment;
-  return (scree_load){{f[0], f[1], f[2]}, {m[0], m[1], m[2]}};
+  return (scree_wrench){{f[0], f[1], f[2]}, {m[0], m[1], m[2]}};
 }
 
 /* What follows of the two bodies' sizes, masses and materials. */
@@ -181,10 +181,11 @@ typedef struct scree_pair_law {
   double rolling, rolling_damping;     /* mu_r R, m; torque over angular velocity */
 } scree_pair_law;
 
-/* How far the list of items lasts; the pair has it while awake, its neighbours while asleep. */
+/* How far the list of feature pairs lasts; the pair has it while awake, its neighbours while
+ * asleep. */
 typedef struct scree_list_state {
-  double travel, path;   /* of the relative motion: last step, and sum; upper bounds */
-  double next_item, end; /* on path */
+  double travel, path;      /* of the relative motion: last step, and sum; upper bounds */
+  double next_feature, end; /* on path */
   vec3 region; /* ball in the frame of b that holds what the list is about, until it ends */
   double region_radius; /* 0: none */
 } scree_list_state;
@@ -196,39 +197,41 @@ typedef struct scree_range {
 
 enum { SCREE_MOST_SUBSTEPS = 16 };
 
-/* A pair that is awake. What every step touches comes first. Pairs lie together, apart from what is
- * kept of those asleep: a step comes to one pair of neighbours in five, and each would lie on a
+/* A pair that is awake. What every step touches comes first. Pairs lie together, apart from what
+ * is kept of those asleep: a step comes to one pair of neighbours in five, and each would lie on a
  * page of its own. */
 typedef struct scree_pair {
   _Alignas(64) uint32_t a;
   uint32_t b;
   bool wall;   /* b is a wall */
-  bool asleep; /* no item can touch before the bodies' paths reach the neighbours' `wake` */
+  bool asleep; /* no feature pair can touch before the bodies' paths reach the neighbours' `wake` */
   bool touching;
-  bool parting, parted; /* is moved apart (law.c); was, until the last step */
-  uint8_t substeps;     /* of the last step (substep.c) */
+  bool depenetrating, was_depenetrating; /* is moved apart (law.c); was, until the last step */
+  uint8_t substeps;                      /* of the last step (substep.c) */
   bool followed; /* the wrench is a mean over those, or holds what was owed: `ahead` counts */
   uint32_t contact_count;
-  float elastic_since; /* J, by which `elastic` has grown since, where there were sub-steps */
-  scree_wrench wrench; /* here: the bodies read it with what is above */
+  float elastic_since;      /* J, by which `elastic` has grown since, where there were sub-steps */
+  scree_pair_wrench wrench; /* here: the bodies read it with what is above */
   scree_list_state list;
   double age;          /* since the touch began */
-  scree_range active;  /* in the pool of items */
+  scree_range active;  /* in the pool of feature pairs */
   uint32_t neighbours; /* index */
   double overlap;      /* m */
   scree_pair_law law;
-  scree_kept_load dashpot, tangential; /* parts of the wrench, for the ledger */
-  double elastic, tangential_elastic;  /* U of all springs, and of the tangential ones */
-  double largest;                      /* m of this contact (hysteresis) */
+  scree_kept_wrench dashpot, tangential; /* parts of the wrench, for the ledger */
+  double elastic, tangential_elastic;    /* U of all springs, and of the tangential ones */
+  double largest;                        /* m of this contact (hysteresis) */
   vec3 rolled;  /* the spring of rolling resistance, rad, in the frame of b */
   double depth; /* no edge lies deeper inside the other body; -INFINITY: not known */
   double kick;  /* s, for which the last wrench acts; 0: there was none */
-  double later_dashpot, later_tangential; /* J of the last step's sub-steps, not yet booked */
-  vec3 way;                               /* in which it parts, in the frame of b; 0: not yet */
-  vec3 pushed;                            /* where, while it parts, in the frame of b */
-  double found;       /* m: the depth there, which is looked for when they have come some way */
-  scree_wrench owed;  /* impulses and their moments of the last step's sub-steps: substep.c */
-  scree_wrench ahead; /* impulses: what the motion at the step's beginning has more than the mean */
+  double later_dashpot,
+      later_tangential;   /* J of the last step's sub-steps, not yet entered in the balance */
+  vec3 separation;        /* in which it parts, in the frame of b; 0: not yet */
+  vec3 pushed;            /* where, while it parts, in the frame of b */
+  double found;           /* m: the depth there, which is looked for when they have come some way */
+  scree_pair_wrench owed; /* impulses and their moments of the last step's sub-steps: substep.c */
+  scree_pair_wrench
+      ahead; /* impulses: what the motion at the step's beginning has more than the mean */
 } scree_pair;
 
 /* Two bodies, or a body and a wall, whose boxes are near each other: what is kept of them while
@@ -241,24 +244,24 @@ typedef struct scree_neighbours {
   double wake, asleep_since; /* on path[a] + path[b] */
   vec3 asleep_at;            /* a in the frame of b when they fell asleep */
   quat asleep_turned;
-  scree_range sleeping; /* in the pool of sleepers; awake or not */
+  scree_range sleeping; /* in the pool of sleeping feature pairs; awake or not */
   scree_pair_law law;
 } scree_neighbours;
 
 /* The lists of all pairs, one array a kind. A list that outgrows its place takes one behind `used`,
  * in a step by many threads at once. Where that is beyond the capacity the pair is evaluated again,
  * from the beginning, after the pools have grown (pool.c). */
-enum { SCREE_FIRST_ITEMS = 2, SCREE_FIRST_SLEEPERS = 8 }; /* places of a list that begins */
+enum { SCREE_FIRST_FEATURES = 2, SCREE_FIRST_SLEEPING = 8 }; /* places of a list that begins */
 typedef struct scree_pools {
-  scree_item *items;
-  scree_further *further; /* of the items */
-  scree_sleeper *sleepers;
-  uint64_t item_capacity, sleeper_capacity;
-  atomic_uint_least64_t items_used, sleepers_used;
+  scree_feature_pair *features;
+  scree_further *further; /* of the feature pairs */
+  scree_sleeping_feature *sleeping_features;
+  uint64_t feature_capacity, sleeping_capacity;
+  atomic_uint_least64_t features_used, sleeping_used;
   /* of a device, whose threads have no scratch of their own; else NULL */
-  struct scree_touch *touches;
-  uint64_t touch_capacity;
-  atomic_uint_least64_t touches_used;
+  struct scree_contact_point *contacts;
+  uint64_t contact_capacity;
+  atomic_uint_least64_t contacts_used;
 } scree_pools;
 
 /* What is wrong after a step: the first neighbours of which it is, or scree_none. */
@@ -271,7 +274,7 @@ typedef struct scree_trouble {
 typedef struct scree_tally {
   scree_trouble trouble;
   uint64_t largest_overlap; /* the bits of the number, which is not negative, m */
-  uint32_t partings;        /* begun */
+  uint32_t depenetrations;  /* begun */
 } scree_tally;
 
 /* How far some blocks of the neighbours have come in a step. */
@@ -284,7 +287,7 @@ typedef struct scree_pair_progress {
 /* What the step reads of all neighbours, in their order. */
 typedef struct scree_slot {
   double wake;   /* while they are asleep; -infinity while they are awake */
-  uint32_t a, b; /* places in world->due */
+  uint32_t a, b; /* places in world->wake_threshold */
 } scree_slot;
 
 typedef struct scree_broad scree_broad;
@@ -331,7 +334,7 @@ struct scree_world {
     size_t count, capacity;
   } pair_of;
   struct {
-    scree_booked *items; /* of the neighbours */
+    scree_balance *items; /* of the neighbours */
     size_t count, capacity;
   } ledger;
   struct {
@@ -351,7 +354,8 @@ struct scree_world {
   struct {
     double *items;
     size_t count, capacity;
-  } due; /* of the bodies, then of the walls, path + 2 travel: who sleeps until then is looked at */
+  } wake_threshold; /* of the bodies, then of the walls, path + 2 travel: who sleeps until then is
+                       looked at */
   struct {
     uint64_t *items;
     size_t count, capacity;
@@ -387,7 +391,7 @@ struct scree_world {
   bool pairs_stale;
   double time, time_step;
   bool time_step_stale;
-  uint64_t step_count, parting_count;
+  uint64_t step_count, depenetration_count;
   double largest_overlap;
   bool diverged;
   scree_error failure;
@@ -420,12 +424,12 @@ static inline void scree_mark_touching(scree_world *world, size_t pair, bool tou
   else
     atomic_fetch_and_explicit(word, ~bit, memory_order_relaxed);
 }
-static inline void scree_set_body_due(scree_world *world, size_t i) {
-  world->due.items[i] = world->bodies.path[i] + 2 * world->bodies.travel[i];
+static inline void scree_set_body_wake_threshold(scree_world *world, size_t i) {
+  world->wake_threshold.items[i] = world->bodies.path[i] + 2 * world->bodies.travel[i];
 }
-static inline void scree_set_wall_due(scree_world *world, size_t w) {
+static inline void scree_set_wall_wake_threshold(scree_world *world, size_t w) {
   const scree_world_wall *wall = &world->walls.items[w];
-  world->due.items[world->bodies.count + w] = wall->path + 2 * wall->travel;
+  world->wake_threshold.items[world->bodies.count + w] = wall->path + 2 * wall->travel;
 }
 static inline const scree_frame *scree_pair_frame_b(const scree_world *w, const scree_pair *p) {
   return p->wall ? &w->walls.items[p->b].frame : &w->bodies.frame[p->b];
@@ -479,7 +483,7 @@ const scree_world_wall *scree_world_wall_at(const scree_world *world, size_t ind
 void scree_world_share_walls(scree_world *world, const scree_world *like);
 /* Else it sleeps until the bodies' paths have grown. */
 static inline bool scree_pair_stays_awake(const scree_pair *p) {
-  return p->active.count > 0 || p->depth > 0 || p->parting || p->substeps > 1 || p->touching;
+  return p->active.count > 0 || p->depth > 0 || p->depenetrating || p->substeps > 1 || p->touching;
 }
 
 #endif

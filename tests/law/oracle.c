@@ -161,7 +161,7 @@ static void lists_change_nothing(void **state) {
 
 /* Energy of a pair's contact at its bodies' frames, on a copy of its memory; its wrench too. */
 static double energy_of_copy(const scree_world *world, const scree_pair *pair,
-                             scree_wrench *wrench) {
+                             scree_pair_wrench *wrench) {
   scree_pair_copy copy = {0};
   assert_true(scree_copy_pair(world, pair, &copy));
   copy.pair.list.end = INFINITY; /* the present list */
@@ -177,7 +177,7 @@ static double slope_error(scree_world *world, const scree_pair *pair) {
   const double h = 1e-9, arm = 0.03;
   scree_frame *frame = &world->bodies.frame[0];
   const scree_frame here = *frame;
-  scree_wrench wrench, unused;
+  scree_pair_wrench wrench, unused;
   energy_of_copy(world, pair, &wrench);
   double size = vec3_norm(wrench.force), worst = 0;
   for (int k = 0; k < 6; k++) {
@@ -268,24 +268,24 @@ static void wake_everything(scree_world *world, size_t k) {
   if (list->end < INFINITY) { /* for the first time */
     scree_scratch hand = {.pools = &world->pools, .neighbours = n};
     n->sleeping.count = 0;
-    while (!scree_reserve_sleepers(&hand, (uint32_t)count))
+    while (!scree_reserve_sleeping(&hand, (uint32_t)count))
       assert_true(
-          scree_pack_sleepers(&world->pools, world->neighbours.items, world->neighbours.count));
-    scree_sleeper *all = &world->pools.sleepers[n->sleeping.first];
+          scree_pack_sleeping(&world->pools, world->neighbours.items, world->neighbours.count));
+    scree_sleeping_feature *all = &world->pools.sleeping_features[n->sleeping.first];
     for (uint32_t i = 0; i < a->point_count; i++)
-      all[made++] = (scree_sleeper){0, i, 0, SCREE_ITEM_POINT_FACE};
+      all[made++] = (scree_sleeping_feature){0, i, 0, SCREE_FEATURE_POINT_FACE};
     for (uint32_t i = 0; i < b->point_count; i++)
-      all[made++] = (scree_sleeper){0, 0, i, SCREE_ITEM_FACE_POINT};
+      all[made++] = (scree_sleeping_feature){0, 0, i, SCREE_FEATURE_FACE_POINT};
     for (uint32_t i = 0; i < a->edge_count; i++)
       for (uint32_t j = 0; j < b->edge_count; j++)
-        all[made++] = (scree_sleeper){0, i, j, SCREE_ITEM_EDGE_EDGE};
+        all[made++] = (scree_sleeping_feature){0, i, j, SCREE_FEATURE_EDGE_EDGE};
     n->sleeping.count = (uint32_t)made;
     if (pair) pair->active.count = 0;
     list->end = INFINITY;
   }
   for (uint32_t i = 0; i < n->sleeping.count; i++)
-    world->pools.sleepers[n->sleeping.first + i].wake = -INFINITY;
-  list->next_item = -INFINITY;
+    world->pools.sleeping_features[n->sleeping.first + i].wake = -INFINITY;
+  list->next_feature = -INFINITY;
   n->asleep = false;
 }
 
@@ -594,7 +594,7 @@ static void depth_of_edges(void **state) {
   scree_world *world = elastic_world(0.02);
   scree_rng rng = {.seed = 23};
   scree_scratch scratch = {0};
-  assert_true(SCREE_RESERVE(&scratch.touches, SCREE_DEPTHS));
+  assert_true(SCREE_RESERVE(&scratch.contacts, SCREE_DEPTHS));
   size_t deep = 0, missed = 0, apart = 0, unseen = 0;
   double beyond = 0;
   for (uint32_t i = 0; i < 4; i++) law_body(world, shapes[i], scree_default_body());
@@ -608,8 +608,8 @@ static void depth_of_edges(void **state) {
     double sampled =
         fmax(sampled_depth(a, b, &relative.rotation, relative.position),
              sampled_depth(b, a, &back, vec3_neg(mat3_mul_vec(&back, relative.position))));
-    scratch.touches.count = 0;
-    double depth = scree_touch_depths(world, &pair, &relative, least, &scratch);
+    scratch.contacts.count = 0;
+    double depth = scree_depth_contacts(world, &pair, &relative, least, &scratch);
     deep += depth > least;
     bool cross = scree_surfaces_cross(a, b, &relative);
     apart += !cross;
@@ -617,7 +617,7 @@ static void depth_of_edges(void **state) {
     missed += 1.125 * depth < sampled;
     if (depth > least) beyond = fmax(beyond, depth - sampled);
   }
-  scree_free(scratch.touches.items);
+  scree_free(scratch.contacts.items);
   assert_true(deep > 100 && apart > 10);
   LAW_NEAR("-", "edges deep in the other body that are missed", (double)missed, 0, 0);
   LAW_NEAR("-", "edges in the other body while no surfaces cross", (double)unseen, 0, 0);

@@ -224,24 +224,24 @@ static double press_too_deep(vec3 turn, vec3 aside) {
   scree_observation o;
   law_step(world, 1);
   double before = law_ledger(world, &o), worst = 0, deepest = 0;
-  size_t parting = 0, looks = 0;
+  size_t depenetrating = 0, looks = 0;
   while (scree_world_time(world) < 0.3) {
     uint64_t looked = depth_queries(world);
     law_step(world, 10);
     worst = fmax(worst, fabs(law_ledger(world, &o) / before - 1));
     deepest = fmax(deepest, o.largest_overlap);
-    parting += o.parting_pairs;
-    if (o.parting_pairs) looks += depth_queries(world) - looked;
+    depenetrating += o.depenetrating_pairs;
+    if (o.depenetrating_pairs) looks += depth_queries(world) - looked;
   }
   print_message("deepest %.3g m of %.3g m; %zu looks in %zu steps\n", deepest, m.size, looks,
-                10 * parting);
+                10 * depenetrating);
   assert_true(deepest > 0.1 * m.size);
-  assert_true(parting > 0 && o.parting_pairs == 0 && o.parting_count >= 1);
+  assert_true(depenetrating > 0 && o.depenetrating_pairs == 0 && o.depenetration_count >= 1);
   assert_int_equal(o.pair_count, 0);
   LAW_BELOW("L17", "pressed beyond the limit: ledger", worst, 0.01);
   scree_world_free(world);
   scree_particle_free(cube);
-  return 0.1 * (double)looks / (double)parting;
+  return 0.1 * (double)looks / (double)depenetrating;
 }
 
 static void what_is_pressed_too_deep_parts(void **state) {

@@ -32,7 +32,7 @@ static void what_touched_is_awake(void **state) {
   assert_true(scree_pair_touches(world, 0));
   assert_non_null(pair);
   assert_int_equal(pair->active.count, 0);
-  assert_true(pair->touching && pair->substeps == 1 && !(pair->depth > 0) && !pair->parting);
+  assert_true(pair->touching && pair->substeps == 1 && !(pair->depth > 0) && !pair->depenetrating);
   law_step(world, 100);
   assert_false(scree_pair_touches(world, 0));
   scree_world_free(world);

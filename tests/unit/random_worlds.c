@@ -96,7 +96,7 @@ static void check_finite(const scree_world *world) {
 
 static bool count_contact(void *context, const scree_contact *contact) {
   assert_true(isfinite(contact->force[0] + contact->overlap + contact->position[2]));
-  assert_true(contact->share > 0);
+  assert_true(contact->weight > 0);
   ++*(size_t *)context;
   return true;
 }

@@ -7,24 +7,25 @@
 #include "world/contact.h"
 
 /* sum w (o - t)+^2 - l^2 at t. */
-static double equation(const scree_touch *touches, size_t count, double l0, double kappa,
+static double equation(const scree_contact_point *contacts, size_t count, double l0, double kappa,
                        double t) {
   double l = l0 + kappa * (t + l0) / (1 - kappa), sum = -l * l;
   for (size_t i = 0; i < count; i++) {
-    double above = fmax(0, touches[i].overlap - t);
-    sum += touches[i].weight * above * above;
+    double above = fmax(0, contacts[i].overlap - t);
+    sum += contacts[i].taper * above * above;
   }
   return sum;
 }
 
 /* The root between -l0 and the highest overlap; false where the pair does not touch. */
-static bool bisect(const scree_touch *touches, size_t count, double l0, double kappa, double *t) {
+static bool bisect(const scree_contact_point *contacts, size_t count, double l0, double kappa,
+                   double *t) {
   double low = -l0, high = -l0;
-  for (size_t i = 0; i < count; i++) high = fmax(high, touches[i].overlap);
-  if (!(equation(touches, count, l0, kappa, low) > 0)) return false;
+  for (size_t i = 0; i < count; i++) high = fmax(high, contacts[i].overlap);
+  if (!(equation(contacts, count, l0, kappa, low) > 0)) return false;
   for (int i = 0; i < 200; i++) {
     double middle = 0.5 * (low + high);
-    if (equation(touches, count, l0, kappa, middle) > 0)
+    if (equation(contacts, count, l0, kappa, middle) > 0)
       low = middle;
     else
       high = middle;
@@ -43,22 +44,22 @@ static void closed_form(void **state) {
   const double l0 = 2e-6;
   size_t touching = 0;
   for (int trial = 0; trial < 20000; trial++) {
-    scree_touch touches[24] = {0};
+    scree_contact_point contacts[24] = {0};
     size_t count = 1 + scree_rng_below(&rng, trial % 3 ? 5 : 24);
     double kappa = 0.05 * (double)scree_rng_below(&rng, 8), depth = power_between(&rng, 1e-8, 1e-3);
     for (size_t i = 0; i < count; i++) {
-      touches[i].overlap = trial % 2 ? depth * (1 - 1e-3 * scree_rng_uniform(&rng))
-                                     : depth * scree_rng_uniform(&rng) - l0;
-      touches[i].weight = trial % 5 ? 1 : power_between(&rng, 1e-9, 1);
+      contacts[i].overlap = trial % 2 ? depth * (1 - 1e-3 * scree_rng_uniform(&rng))
+                                      : depth * scree_rng_uniform(&rng) - l0;
+      contacts[i].taper = trial % 5 ? 1 : power_between(&rng, 1e-9, 1);
     }
     double t, sum = 0;
     scree_smooth_maximum got;
-    bool expected = bisect(touches, count, l0, kappa, &t);
-    assert_int_equal(scree_solve_smooth_maximum(touches, count, l0, kappa, &got), expected);
+    bool expected = bisect(contacts, count, l0, kappa, &t);
+    assert_int_equal(scree_solve_smooth_maximum(contacts, count, l0, kappa, &got), expected);
     if (!expected) continue;
     touching++;
     double m = (t + l0) / (1 - kappa), scale = depth + l0;
-    for (size_t i = 0; i < count; i++) sum += touches[i].weight * fmax(0, touches[i].overlap - t);
+    for (size_t i = 0; i < count; i++) sum += contacts[i].taper * fmax(0, contacts[i].overlap - t);
     assert_true(fabs(got.cutoff - t) < 1e-13 * scale);
     assert_true(fabs(got.value - m) < 1e-13 * scale);
     double denominator = sum * (1 - kappa) + kappa * (l0 + kappa * m);

@@ -74,7 +74,7 @@ static outcome run(bool frames) {
     }
   }
   out.friction = o.dissipated_friction;
-  out.partings = o.parting_count;
+  out.partings = o.depenetration_count;
   scree_scene_free(scene);
   return out;
 }

@@ -1,28 +1,29 @@
-/* What the kernels of a step and their host share beside the world. Kernels take the world and
- * this, both on the device. */
+/* What the kernels of a step and their host share beside the world. Kernels take the world
+ * and this, both on the device. */
 #ifndef SCREE_WORLD_DEVICE_DEVICE_H
 #define SCREE_WORLD_DEVICE_DEVICE_H
 
 #include "world/contact.h"
 
-/* Items of one kind are visited side by side. */
+/* Feature pairs of one kind are visited side by side. */
 enum { SCREE_VISIT_EDGES, SCREE_VISIT_SURFACES, SCREE_VISIT_OTHERS, SCREE_VISIT_KINDS };
 
-/* An item that is to be visited: by the place of its pair among those awake, and its own there. */
+/* A feature pair that is to be visited: by the place of its pair among those awake, and its own
+ * there. */
 typedef struct scree_visit {
-  uint32_t place, item;
+  uint32_t place, feature;
 } scree_visit;
 
 /* A list that is to be made, in parts of as many entries each. What a part finds is kept where it
  * is little, as mostly it is; else it is found again to be written. */
 enum { SCREE_LIST_PARTS = 512, SCREE_LIST_KEPT = 4 };
-typedef struct scree_due_list {
+typedef struct scree_new_list {
   scree_listing listing;
   uint32_t place; /* of the pair */
   uint32_t entries;
   uint32_t found[SCREE_LIST_PARTS]; /* by each part; then, by those before it */
-  scree_sleeper kept[SCREE_LIST_PARTS][SCREE_LIST_KEPT];
-} scree_due_list;
+  scree_sleeping_feature kept[SCREE_LIST_PARTS][SCREE_LIST_KEPT];
+} scree_new_list;
 
 /* A pair that asks for depths (depth.c), of which there are `count` from `first` on. */
 enum { SCREE_DEPTH_PARTS = 1024, SCREE_MOST_DEPTH_JOBS = 1024 };
@@ -38,15 +39,16 @@ enum { SCREE_PAIR_NEW, SCREE_PAIR_LISTING, SCREE_PAIR_LISTED, SCREE_PAIR_READY, 
 typedef struct scree_device_step {
   scree_scratch *hands; /* by place in world->awake, as is the next */
   uint8_t *progress;
-  uint8_t *touch_counts; /* of items, by where their touches begin in the pool of touches */
+  uint8_t
+      *contact_counts; /* of feature pairs, by where their contacts begin in the pool of contacts */
   scree_visit *visits[SCREE_VISIT_KINDS];
-  scree_due_list *due;
-  uint32_t due_capacity;
+  scree_new_list *new_lists;
+  uint32_t new_list_capacity;
   scree_depth_job *depth_jobs;
   scree_depth *depths;
   uint64_t depth_capacity, depths_used;
 
-  uint32_t awake_count, due_count, depth_job_count; /* in this step */
+  uint32_t awake_count, new_list_count, depth_job_count; /* in this step */
   uint32_t visit_counts[SCREE_VISIT_KINDS];
   uint32_t stop;       /* no further step before the host has looked */
   uint32_t resume;     /* the step has begun, and is gone on with */
@@ -55,7 +57,7 @@ typedef struct scree_device_step {
   uint32_t stale;      /* the neighbours hold no longer */
   uint32_t fallen;     /* some body was below the floor, and is removed */
   uint32_t offender;   /* first body that would move too far, or scree_none */
-  scree_tally tally;   /* of pairs: of this step; partings of all */
+  scree_tally tally;   /* of pairs: of this step; depenetrations of all */
   double last_overlap; /* of the last step that is done */
   uint64_t list_builds, evaluations;
   uint64_t done, wanted; /* steps */
@@ -63,19 +65,19 @@ typedef struct scree_device_step {
 
 /* In the order of a step, with a thread for each: */
 #define SCREE_KERNELS(X)                                                                           \
-  X(awake)      /* of the neighbours */                                                            \
-  X(relate)     /* pair that is awake */                                                           \
-  X(list_count) /* part of a list that is due */                                                   \
-  X(list_place) /* such list */                                                                    \
-  X(list_write) /* part of it */                                                                   \
-  X(list_end)   /* list */                                                                         \
-  X(visit)      /* item that is awake */                                                           \
-  X(meet)       /* pair */                                                                         \
-  X(depth)      /* edge or point of a pair that asks for depths */                                 \
-  X(press)      /* pair */                                                                         \
-  X(gather)     /* body */                                                                         \
-  X(advance)    /* body or wall */                                                                 \
-  X(end)        /* step */
+  X(awake)       /* of the neighbours */                                                           \
+  X(relate)      /* pair that is awake */                                                          \
+  X(list_count)  /* part of a list that ended   */                                                 \
+  X(list_place)  /* such list */                                                                   \
+  X(list_write)  /* part of it */                                                                  \
+  X(list_end)    /* list */                                                                        \
+  X(visit)       /* feature pair that is awake */                                                  \
+  X(meet)        /* pair */                                                                        \
+  X(depth)       /* edge or point of a pair that asks for depths */                                \
+  X(contact_law) /* pair */                                                                        \
+  X(gather)      /* body */                                                                        \
+  X(advance)     /* body or wall */                                                                \
+  X(end)         /* step */
 
 /* In the order of a broad phase (grids.h, lists.h). Of each list of lists first the sums of chunks,
  * then the places. */
@@ -111,9 +113,9 @@ typedef struct scree_device_step {
   X(list_date)     /* body, and all walls */
 
 /* For whoever looks at a world between steps, or has changed it. */
-#define SCREE_LOOK_KERNELS(X)                                                                      \
-  X(sums)        /* of the parts of an observation */                                              \
-  X(wall_forces) /* wall */                                                                        \
-  X(wall_due)    /* wall */
+#define SCREE_OBSERVE_KERNELS(X)                                                                   \
+  X(sums)           /* of the parts of an observation */                                           \
+  X(wall_forces)    /* wall */                                                                     \
+  X(wall_threshold) /* wall */
 
 #endif

@@ -78,26 +78,26 @@ static scree_pair *take_pair(scree_world *world, scree_device_step *step, size_t
   scree_scratch *hand = &step->hands[place];
   scree_pair *pair = pair_at(world, place);
   scree_take_in_hand(hand, &world->pools, pair, &world->neighbours.items[pair->neighbours]);
-  hand->touches.items = world->pools.touches + hand->first_touch;
+  hand->contacts.items = world->pools.contacts + hand->first_contact;
   return pair;
 }
 
-static int kind_of_visit(const scree_item *item) {
-  return item->kind == SCREE_ITEM_EDGE_EDGE ? SCREE_VISIT_EDGES
-         : item->kind == SCREE_ITEM_POINT_FACE || item->kind == SCREE_ITEM_FACE_POINT
+static int kind_of_visit(const scree_feature_pair *feature) {
+  return feature->kind == SCREE_FEATURE_EDGE_EDGE ? SCREE_VISIT_EDGES
+         : feature->kind == SCREE_FEATURE_POINT_FACE || feature->kind == SCREE_FEATURE_FACE_POINT
              ? SCREE_VISIT_SURFACES
              : SCREE_VISIT_OTHERS;
 }
 
-/* A pair that is ready asks for visits of its items. */
+/* A pair that is ready asks for visits of its feature pairs. */
 static void ask_for_visits(scree_device_step *step, const scree_pair *pair, size_t place) {
-  const scree_item *items = step->hands[place].items;
+  const scree_feature_pair *features = step->hands[place].features;
   uint32_t counts[SCREE_VISIT_KINDS] = {0}, first[SCREE_VISIT_KINDS];
-  for (uint32_t i = 0; i < pair->active.count; i++) counts[kind_of_visit(&items[i])]++;
+  for (uint32_t i = 0; i < pair->active.count; i++) counts[kind_of_visit(&features[i])]++;
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++)
     if (counts[kind] > 0) first[kind] = scree_atomic_add(&step->visit_counts[kind], counts[kind]);
   for (uint32_t i = 0; i < pair->active.count; i++) {
-    int kind = kind_of_visit(&items[i]);
+    int kind = kind_of_visit(&features[i]);
     step->visits[kind][first[kind]++] = (scree_visit){(uint32_t)place, i};
   }
 }
@@ -111,7 +111,7 @@ static void send_back(scree_device_step *step, scree_pair *pair, size_t place, u
 
 static void wake(scree_device_step *step, scree_pair *pair, size_t place) {
   scree_scratch *hand = &step->hands[place];
-  hand->touches.capacity = 0;
+  hand->contacts.capacity = 0;
   if (!scree_pair_wake(pair, hand)) {
     send_back(step, pair, place, &step->too_small);
     return;
@@ -127,12 +127,12 @@ static void begin_list(scree_world *world, scree_device_step *step, scree_pair *
     wake(step, pair, place);
     return;
   }
-  uint32_t at = scree_atomic_add(&step->due_count, 1);
-  if (at >= step->due_capacity) {
+  uint32_t at = scree_atomic_add(&step->new_list_count, 1);
+  if (at >= step->new_list_capacity) {
     send_back(step, pair, place, &step->again);
     return;
   }
-  scree_due_list *list = &step->due[at];
+  scree_new_list *list = &step->new_lists[at];
   list->listing = listing;
   list->place = (uint32_t)place;
   list->entries = (uint32_t)scree_listing_count(&listing);
@@ -152,7 +152,7 @@ static void do_relate(scree_world *world, scree_device_step *step) {
     }
     scree_pair *pair = take_pair(world, step, place);
     scree_pair_relate(world, pair, &step->hands[place]);
-    if (scree_pair_is_due(pair))
+    if (scree_pair_needs_list(pair))
       begin_list(world, step, pair, place);
     else
       wake(step, pair, place);
@@ -162,11 +162,12 @@ static void do_relate(scree_world *world, scree_device_step *step) {
 /* ---- lists ---- */
 
 static size_t list_count(const scree_device_step *step) {
-  return step->due_count < step->due_capacity ? step->due_count : step->due_capacity;
+  return step->new_list_count < step->new_list_capacity ? step->new_list_count
+                                                        : step->new_list_capacity;
 }
 
 /* The entries of a part, one after another; how many features they find. */
-static uint32_t take_part(const scree_due_list *list, size_t part, scree_sleeper *to,
+static uint32_t take_part(const scree_new_list *list, size_t part, scree_sleeping_feature *to,
                           uint32_t room) {
   uint32_t size = (list->entries + SCREE_LIST_PARTS - 1) / SCREE_LIST_PARTS;
   size_t begin = part * size, end = begin + size < list->entries ? begin + size : list->entries;
@@ -182,7 +183,7 @@ static void do_list_count(scree_world *world, scree_device_step *step) {
   (void)world;
   if (step->stop) return;
   FOR_EACH (i, list_count(step) * SCREE_LIST_PARTS) {
-    scree_due_list *list = &step->due[i / SCREE_LIST_PARTS];
+    scree_new_list *list = &step->new_lists[i / SCREE_LIST_PARTS];
     size_t part = i % SCREE_LIST_PARTS;
     list->found[part] = take_part(list, part, list->kept[part], SCREE_LIST_KEPT);
   }
@@ -191,7 +192,7 @@ static void do_list_count(scree_world *world, scree_device_step *step) {
 static void do_list_place(scree_world *world, scree_device_step *step) {
   if (step->stop) return;
   FOR_EACH (i, list_count(step)) {
-    scree_due_list *list = &step->due[i];
+    scree_new_list *list = &step->new_lists[i];
     uint32_t total = 0;
     for (int part = 0; part < SCREE_LIST_PARTS; part++) {
       uint32_t found = list->found[part];
@@ -200,7 +201,7 @@ static void do_list_place(scree_world *world, scree_device_step *step) {
     }
     scree_scratch *hand = &step->hands[list->place];
     take_pair(world, step, list->place);
-    if (!scree_reserve_sleepers(hand, total)) continue;
+    if (!scree_reserve_sleeping(hand, total)) continue;
     hand->neighbours->sleeping.count = total;
     step->progress[list->place] = SCREE_PAIR_LISTED;
   }
@@ -209,13 +210,13 @@ static void do_list_place(scree_world *world, scree_device_step *step) {
 static void do_list_write(scree_world *world, scree_device_step *step) {
   if (step->stop) return;
   FOR_EACH (i, list_count(step) * SCREE_LIST_PARTS) {
-    const scree_due_list *list = &step->due[i / SCREE_LIST_PARTS];
+    const scree_new_list *list = &step->new_lists[i / SCREE_LIST_PARTS];
     const scree_range *sleeping = &step->hands[list->place].neighbours->sleeping;
     size_t part = i % SCREE_LIST_PARTS;
     uint32_t begin = list->found[part],
              end = part + 1 < SCREE_LIST_PARTS ? list->found[part + 1] : sleeping->count;
     if (step->progress[list->place] != SCREE_PAIR_LISTED || begin == end) continue;
-    scree_sleeper *to = world->pools.sleepers + sleeping->first + begin;
+    scree_sleeping_feature *to = world->pools.sleeping_features + sleeping->first + begin;
     if (end - begin > SCREE_LIST_KEPT)
       take_part(list, part, to, end - begin);
     else
@@ -226,7 +227,7 @@ static void do_list_write(scree_world *world, scree_device_step *step) {
 static void do_list_end(scree_world *world, scree_device_step *step) {
   if (step->stop) return;
   FOR_EACH (i, list_count(step)) {
-    size_t place = step->due[i].place;
+    size_t place = step->new_lists[i].place;
     scree_pair *pair = take_pair(world, step, place);
     if (step->progress[place] == SCREE_PAIR_LISTED)
       wake(step, pair, place);
@@ -240,20 +241,20 @@ static void do_list_end(scree_world *world, scree_device_step *step) {
 static void visit(scree_world *world, scree_device_step *step, const scree_visit *v) {
   const scree_scratch *hand = &step->hands[v->place];
   const scree_pair *pair = pair_at(world, v->place);
-  size_t first = hand->first_touch + (size_t)SCREE_ANCHORS * v->item;
-  scree_scratch own; /* of the item's visit, which needs no more of it: */
+  size_t first = hand->first_contact + (size_t)SCREE_ANCHORS * v->feature;
+  scree_scratch own; /* of the feature pair's visit, which needs no more of it: */
   own.pools = &world->pools;
-  own.items = hand->items;
+  own.features = hand->features;
   own.further = hand->further;
-  own.touches = (scree_touch_list){world->pools.touches + first, 0, SCREE_ANCHORS};
-  own.item_evaluations = own.closest_queries = 0;
-  scree_item *item = &hand->items[v->item];
+  own.contacts = (scree_contact_list){world->pools.contacts + first, 0, SCREE_ANCHORS};
+  own.feature_evaluations = own.closest_queries = 0;
+  scree_feature_pair *feature = &hand->features[v->feature];
   own.drift = hand->drift;
-  item->gap = scree_item_touch(world, pair, item, &hand->relative, &own);
-  step->touch_counts[first] = (uint8_t)own.touches.count;
+  feature->gap = scree_feature_contact(world, pair, feature, &hand->relative, &own);
+  step->contact_counts[first] = (uint8_t)own.contacts.count;
 }
 
-/* Items of one kind follow each other, and no warp has two kinds. */
+/* Feature pairs of one kind follow each other, and no warp has two kinds. */
 static void do_visit(scree_world *world, scree_device_step *step) {
   if (pairs_wait(step)) return;
   enum { WARP = 32 };
@@ -268,18 +269,18 @@ static void do_visit(scree_world *world, scree_device_step *step) {
   }
 }
 
-/* The touches of all items, one after another. */
+/* The contacts of all feature pairs, one after another. */
 static void gather_touches(const scree_device_step *step, const scree_pair *pair,
                            scree_scratch *hand) {
-  scree_touch *touches = hand->touches.items;
+  scree_contact_point *contacts = hand->contacts.items;
   size_t count = 0;
   for (uint32_t i = 0; i < pair->active.count; i++) {
     size_t from = (size_t)SCREE_ANCHORS * i,
-           end = from + step->touch_counts[hand->first_touch + from];
+           end = from + step->contact_counts[hand->first_contact + from];
     for (; from < end; from++, count++)
-      if (from != count) touches[count] = touches[from];
+      if (from != count) contacts[count] = contacts[from];
   }
-  hand->touches.count = count;
+  hand->contacts.count = count;
 }
 
 /* Where there is room many threads look for the depths; else this one. */
@@ -324,7 +325,7 @@ static void do_depth(scree_world *world, scree_device_step *step) {
   }
 }
 
-static void do_press(scree_world *world, scree_device_step *step) {
+static void do_contact_law(scree_world *world, scree_device_step *step) {
   if (pairs_wait(step)) return;
   FOR_EACH (place, step->awake_count) {
     scree_pair *pair = take_pair(world, step, place);
@@ -332,9 +333,9 @@ static void do_press(scree_world *world, scree_device_step *step) {
     uint32_t k = pair->neighbours, index = world->pair_of.items[k];
     if (step->progress[place] == SCREE_PAIR_ASKS)
       scree_pair_take_depths(world, pair, step->depths + hand->first_depth, hand, &hand->work);
-    scree_pair_press(world, pair, hand);
+    scree_pair_contact_law(world, pair, hand);
     scree_pair_leave(world, pair, hand);
-    scree_book(&world->ledger.items[k], &hand->work);
+    scree_balance_add(&world->ledger.items[k], &hand->work);
     scree_note_pair(&step->tally, pair, &hand->work);
     if (scree_settle_pair(world, pair)) scree_pair_give_back(world, index);
   }
@@ -387,11 +388,11 @@ static void do_end(scree_world *world, scree_device_step *step) {
   }
   world->time += world->time_step;
   step->last_overlap = scree_largest_overlap(&step->tally);
-  scree_fetch_and(&world->pools.touches_used, 0, 0);
+  scree_fetch_and(&world->pools.contacts_used, 0, 0);
   step->evaluations += step->awake_count;
-  step->list_builds += step->due_count;
+  step->list_builds += step->new_list_count;
   step->tally.largest_overlap = 0;
-  step->resume = step->awake_count = step->due_count = step->depth_job_count = 0;
+  step->resume = step->awake_count = step->new_list_count = step->depth_job_count = 0;
   step->depths_used = 0;
   for (int kind = 0; kind < SCREE_VISIT_KINDS; kind++) step->visit_counts[kind] = 0;
   step->done++;

@@ -1,5 +1,5 @@
-/* Kernels as loops over their elements: whatever the number of threads is, each takes its share. A
- * launch is of several worlds. */
+/* Kernels as loops over their elements: whatever the number of threads is, each takes its share.
+ * A launch is of several worlds. */
 #ifndef SCREE_WORLD_DEVICE_THREADS_H
 #define SCREE_WORLD_DEVICE_THREADS_H
 

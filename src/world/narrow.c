@@ -1,15 +1,17 @@
-/* From features to overlaps: for one item the signed overlap, the normal, the contact point.
+/* From features to overlaps: for one feature pair the signed overlap, the normal, the contact
+ * point.
  *
- * Point and surface. The overlap is the sum of the roundings less the signed distance. While the
- * cores are apart by more than half the roundings, the closest point is exact and its direction is
- * kept as the reference: the way out. Deeper, only faces that look that way count (within about 80
- * degrees), and the depth is measured to the nearest of them. Without this, plates that hit each
- * other squarely and fast would be pushed out sideways, at corners where the nearest face is the
- * side. Where the point is sideways of all such faces, the closest point of the whole surface takes
- * over within half the roundings: in a wedge no face that looks the way out need be above it. A
- * point that has come out on the other side of a thin wall is held to the side it came from in the
- * same way. In a notch up to two further faces count, those onto which the point projects and whose
- * normals differ by 15 (weight 0) to 25 degrees (weight 1): a body in a V needs both to rest.
+ * Point and surface. The overlap is the sum of the contact radii less the signed distance. While
+ * the cores are apart by more than half the contact radii, the closest point is exact and its
+ * direction is kept as the reference: the separation direction. Deeper, only faces that look that
+ * way count (within about 80 degrees), and the depth is measured to the nearest of them. Without
+ * this, plates that hit each other squarely and fast would be pushed out sideways, at corners where
+ * the nearest face is the side. Where the point is sideways of all such faces, the closest point of
+ * the whole surface takes over within half the contact radii: in a wedge no face that looks the
+ * separation direction need be above it. A point that has come out on the other side of a thin wall
+ * is held to the side it came from in the same way. In a notch up to two further faces count, those
+ * onto which the point projects and whose normals differ by 15 (taper 0) to 25 degrees (taper 1):
+ * a body in a V needs both to rest.
  *
  * Cached faces: the nearest faces of a point stay the nearest while its path is under half the
  * distance to the next one. */
@@ -18,36 +20,38 @@
 
 #include "particle/closest.h"
 
-static const double way_out_cosine = 0.15;     /* 81 degrees: thin wedges still count */
+static const double facing_cosine = 0.15;      /* 81 degrees: thin wedges still count */
 static const double same_distance2 = 1 + 1e-9; /* squares of distances of one point */
 static const double notch_cosines[2] = {0.9659258, 0.9063078}; /* 15 and 25 degrees */
 
 typedef struct surface_contact {
   vec3 closest, normal;
-  vec3 aside; /* from where the faces that look the way out end; 0 over or behind one of them */
-  double distance, weight;
-  bool over;    /* the closest point is none of an edge */
-  double lever; /* by how much the distance grows along the normal: 1, but where two are blended */
+  vec3 aside; /* from where the faces that look the separation direction end; 0 over or behind one
+                 of them */
+  double distance, taper;
+  bool over;           /* the closest point is none of an edge */
+  double gap_gradient; /* by how much the distance grows along the normal: 1, but where two are
+                          blended */
 } surface_contact;
 
 /* ---- points against surfaces ---- */
 
-static void refresh_faces(const scree_particle *surface, vec3 p, scree_item *item, double path,
-                          double slack) {
+static void refresh_faces(const scree_particle *surface, vec3 p, scree_feature_pair *feature,
+                          double path, double slack) {
   scree_near near;
   scree_closest_faces(surface, p, INFINITY, slack, &near);
   int count = near.count < SCREE_CACHED_FACES ? near.count : SCREE_CACHED_FACES;
   double next = near.count > count ? near.distance[count] : near.next;
-  for (int k = 0; k < count; k++) item->face[k] = near.face[k];
-  item->face_count = (uint32_t)count;
-  item->valid = path + 0.5 * (next - near.distance[0]);
+  for (int k = 0; k < count; k++) feature->face[k] = near.face[k];
+  feature->face_count = (uint32_t)count;
+  feature->valid = path + 0.5 * (next - near.distance[0]);
 }
 
 /* Of the faces that look along `way` within reach: closest point and normal of the nearest, and by
  * how much p is sideways of the one behind which it is most nearly; false for none. With `behind`,
  * p must not be in front of a face. */
-static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double reach, bool behind,
-                         surface_contact *out) {
+static bool find_facing(const scree_particle *surface, vec3 p, vec3 way, double reach, bool behind,
+                        surface_contact *out) {
   const scree_tree_node *nodes = surface->face_tree.nodes;
   uint32_t stack[SCREE_TREE_STACK];
   int depth = 0;
@@ -68,7 +72,7 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
       double looks = vec3_dot(normal, way);
       if (surface->sheet && looks < 0)
         looks = -looks, normal = vec3_neg(normal); /* has two sides */
-      if (looks < way_out_cosine) continue;
+      if (looks < facing_cosine) continue;
       int region;
       vec3 c = scree_closest_on_face(face, p, &region), offset = vec3_sub(p, c);
       double d2 = vec3_norm2(offset), height = vec3_dot(offset, normal);
@@ -97,39 +101,39 @@ static bool find_way_out(const scree_particle *surface, vec3 p, vec3 way, double
   return any;
 }
 
-/* As the weight of a contact fades the other takes over. One distance, the weighted mean of both,
- * so that the force stays the slope of the energy; the weight changes by `change` along `aside`. */
+/* As the taper of a contact fades the other takes over. One distance, the weighted mean of both,
+ * so that the force stays the slope of the energy; the taper changes by `change` along `aside`. */
 static void pass_over(vec3 p, double change, const surface_contact *other,
                       surface_contact *contact) {
-  double w = contact->weight, sideways = vec3_norm(contact->aside);
-  vec3 slope = vec3_add(vec3_scale(contact->normal, w * contact->lever),
-                        vec3_scale(other->normal, (1 - w) * other->lever));
+  double w = contact->taper, sideways = vec3_norm(contact->aside);
+  vec3 slope = vec3_add(vec3_scale(contact->normal, w * contact->gap_gradient),
+                        vec3_scale(other->normal, (1 - w) * other->gap_gradient));
   slope =
       vec3_mad(slope, contact->aside, change / sideways * (contact->distance - other->distance));
   contact->distance = w * contact->distance + (1 - w) * other->distance;
-  contact->lever = vec3_norm(slope);
+  contact->gap_gradient = vec3_norm(slope);
   contact->normal = vec3_unit(slope);
   contact->closest = vec3_mad(p, contact->normal, -contact->distance);
-  contact->weight = 1;
+  contact->taper = 1;
 }
 
-/* Within half the roundings from the faces that look the way out what is sideways of them passes to
- * the closest point of the whole surface. */
+/* Within half the contact radii from the faces that look the separation direction what is sideways
+ * of them passes to the closest point of the whole surface. */
 static void slide_off(vec3 p, double half, const surface_contact *closest,
                       surface_contact *contact) {
   pass_over(p, -scree_smooth_slope(0, half, vec3_norm(contact->aside)), closest, contact);
 }
 
-/* Below half the roundings, or through a wall: depth along the reference. In front of the faces
- * that look that way the closest point of the whole surface takes over within half the roundings
- * too, as far as that is not the same: where a point beside an edge sinks below the plane of the
- * face, both sides of it are `w` times 0. So does it inside, in the wall of a recess, as far again:
- * further on the depth is that to the faces, which are its floor's border. */
-static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item *item,
+/* Below half the contact radii, or through a wall: depth along the reference. In front of the faces
+ * that look that way the closest point of the whole surface takes over within half the contact
+ * radii too, as far as that is not the same: where a point beside an edge sinks below the plane of
+ * the face, both sides of it are `w` times 0. So does it inside, in the wall of a recess, as far
+ * again: further on the depth is that to the faces, which are its floor's border. */
+static bool deep_contact(const scree_particle *surface, vec3 p, const scree_feature_pair *feature,
                          const scree_pair *pair, bool pierced, bool outside,
                          surface_contact *closest, surface_contact *contact) {
   double half = 0.5 * pair->law.reach, reach = 1.5 * pair->law.limit + pair->law.reach;
-  if (!find_way_out(surface, p, item->reference, reach, pierced, contact)) return false;
+  if (!find_facing(surface, p, feature->reference, reach, pierced, contact)) return false;
   vec3 offset = vec3_sub(p, contact->closest);
   double height = vec3_dot(offset, contact->normal), distance = vec3_norm(offset);
   bool in_front = height > 0,
@@ -138,32 +142,32 @@ static bool deep_contact(const scree_particle *surface, vec3 p, const scree_item
   if (along && !outside) {
     surface_contact border = {.normal = vec3_scale(offset, -1 / distance), .aside = contact->aside};
     border.distance = -distance;
-    border.lever = 1;
-    border.weight = 1 - scree_smooth_step(0, half, vec3_norm(border.aside));
-    if (border.weight < 1) slide_off(p, half, closest, &border);
+    border.gap_gradient = 1;
+    border.taper = 1 - scree_smooth_step(0, half, vec3_norm(border.aside));
+    if (border.taper < 1) slide_off(p, half, closest, &border);
     border.aside = offset;
-    border.weight = scree_smooth_step(half, 2 * half, distance);
+    border.taper = scree_smooth_step(half, 2 * half, distance);
     pass_over(p, scree_smooth_slope(half, 2 * half, distance), closest, &border);
     *closest = border;
   }
-  contact->weight = contact->lever = 1;
+  contact->taper = contact->gap_gradient = 1;
   contact->distance = nearest ? distance : outside || along ? height : -distance;
   if ((nearest || !(outside || along)) && distance > 1e-9 * half)
     contact->normal = vec3_scale(offset, 1 / contact->distance);
   if (nearest) return true;
   contact->closest = vec3_mad(p, contact->normal, -contact->distance);
   if (along) contact->aside = offset;
-  contact->weight = 1 - scree_smooth_step(0, half, vec3_norm(contact->aside));
+  contact->taper = 1 - scree_smooth_step(0, half, vec3_norm(contact->aside));
   return true;
 }
 
 /* Further faces of a notch, onto which the point projects. */
-static int notch_contacts(const scree_particle *surface, vec3 p, const scree_item *item,
+static int notch_contacts(const scree_particle *surface, vec3 p, const scree_feature_pair *feature,
                           uint32_t nearest, surface_contact contacts[SCREE_ANCHORS]) {
   int count = 1;
-  for (uint32_t k = 0; k < item->face_count && count < SCREE_ANCHORS; k++) {
+  for (uint32_t k = 0; k < feature->face_count && count < SCREE_ANCHORS; k++) {
     if (k == nearest) continue;
-    const scree_face *face = &surface->faces[item->face[k]];
+    const scree_face *face = &surface->faces[feature->face[k]];
     int region;
     vec3 c = scree_closest_on_face(face, p, &region), normal = face->normal;
     double d = vec3_dot(vec3_sub(p, c), normal);
@@ -171,21 +175,21 @@ static int notch_contacts(const scree_particle *surface, vec3 p, const scree_ite
     double alike = vec3_dot(normal, contacts[0].normal);
     if (alike >= notch_cosines[0]) continue;
     if (region != SCREE_REGION_INSIDE || d <= 0) continue;
-    double weight = 1 - scree_smooth_step(notch_cosines[1], notch_cosines[0], alike);
-    contacts[count++] = (surface_contact){c, normal, {0, 0, 0}, d, weight, true, 1};
+    double taper = 1 - scree_smooth_step(notch_cosines[1], notch_cosines[0], alike);
+    contacts[count++] = (surface_contact){c, normal, {0, 0, 0}, d, taper, true, 1};
   }
   return count;
 }
 
 /* Contacts of the point p with the surface, the nearest first. */
-static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *item,
+static int surface_contacts(const scree_particle *surface, vec3 p, scree_feature_pair *feature,
                             const scree_pair *pair, surface_contact contacts[SCREE_ANCHORS]) {
   uint32_t nearest = 0;
   int nearest_region = 0;
   double best2 = INFINITY;
-  for (uint32_t k = 0; k < item->face_count; k++) {
+  for (uint32_t k = 0; k < feature->face_count; k++) {
     int region;
-    vec3 c = scree_closest_on_face(&surface->faces[item->face[k]], p, &region);
+    vec3 c = scree_closest_on_face(&surface->faces[feature->face[k]], p, &region);
     double d2 = vec3_norm2(vec3_sub(p, c));
     if (d2 >= best2) continue;
     best2 = d2;
@@ -194,9 +198,9 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
     contacts[0].closest = c;
   }
   vec3 offset = vec3_sub(p, contacts[0].closest);
-  vec3 outward = scree_outward(surface, item->face[nearest], nearest_region);
+  vec3 outward = scree_outward(surface, feature->face[nearest], nearest_region);
   if (surface->sheet) { /* the side on which it was last seen clear; a rim has none */
-    if (vec3_dot(outward, item->has_reference ? item->reference : offset) < 0)
+    if (vec3_dot(outward, feature->has_reference ? feature->reference : offset) < 0)
       outward = vec3_neg(outward);
     if (vec3_norm2(outward) == 0) outward = offset;
   }
@@ -206,76 +210,77 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_item *i
   if (!outside && surface->measures.volume > 0) outside = !scree_is_inside(surface, p);
   bool deep = !outside || d < 0.5 * pair->law.reach;
   /* out on the other side of a wall that is thinner than the overlap: held while it is behind it */
-  bool pierced = !deep && item->inside && vec3_dot(outward, item->reference) < 0;
-  contacts[0].weight = contacts[0].lever = 1;
+  bool pierced = !deep && feature->inside && vec3_dot(outward, feature->reference) < 0;
+  contacts[0].taper = contacts[0].gap_gradient = 1;
   contacts[0].distance = outside ? d : -d;
   contacts[0].normal = d > 1e-12 ? vec3_scale(offset, (outside ? 1 : -1) / d) : vec3_unit(outward);
   surface_contact out;
-  if ((deep || pierced) && item->has_reference &&
-      deep_contact(surface, p, item, pair, pierced, outside, &contacts[0], &out) &&
-      (deep || out.weight > 0)) {
-    item->inside = !outside || out.weight > 0;
-    if (out.weight < 1) slide_off(p, 0.5 * pair->law.reach, &contacts[0], &out);
+  if ((deep || pierced) && feature->has_reference &&
+      deep_contact(surface, p, feature, pair, pierced, outside, &contacts[0], &out) &&
+      (deep || out.taper > 0)) {
+    feature->inside = !outside || out.taper > 0;
+    if (out.taper < 1) slide_off(p, 0.5 * pair->law.reach, &contacts[0], &out);
     contacts[0] = out;
     return 1;
   }
-  item->inside = false;
-  if (!deep || !item->has_reference) {
-    item->reference = contacts[0].normal;
-    item->has_reference = true;
+  feature->inside = false;
+  if (!deep || !feature->has_reference) {
+    feature->reference = contacts[0].normal;
+    feature->has_reference = true;
   }
-  return deep ? 1 : notch_contacts(surface, p, item, nearest, contacts);
+  return deep ? 1 : notch_contacts(surface, p, feature, nearest, contacts);
 }
 
-static scree_anchor *anchor_of(const scree_scratch *scratch, scree_item *item, int k) {
-  return k == 0 ? &item->anchor : &scratch->further[item - scratch->items].anchor[k - 1];
+static scree_anchor *anchor_of(const scree_scratch *scratch, scree_feature_pair *feature, int k) {
+  return k == 0 ? &feature->anchor : &scratch->further[feature - scratch->features].anchor[k - 1];
 }
 
 /* Gives each contact the memory of the last step whose normal is most like its own. */
-static void match_anchors(const scree_scratch *scratch, scree_item *item, const vec3 *normals,
-                          int count) {
-  scree_anchor *first = &item->anchor;
-  if (count == 1 && !item->notched) { /* mostly */
-    if (first->share > 0 && !(vec3_dot(first->normal, normals[0]) > 0.5)) first->share = 0;
+static void match_anchors(const scree_scratch *scratch, scree_feature_pair *feature,
+                          const vec3 *normals, int count) {
+  scree_anchor *first = &feature->anchor;
+  if (count == 1 && !feature->notched) { /* mostly */
+    if (first->weight > 0 && !(vec3_dot(first->normal, normals[0]) > 0.5)) first->weight = 0;
     return;
   }
   scree_anchor old[SCREE_ANCHORS] = {*first};
   bool used[SCREE_ANCHORS] = {false};
   for (int k = 0; k < SCREE_ANCHORS; k++) {
-    if (item->notched) old[k] = *anchor_of(scratch, item, k);
-    *anchor_of(scratch, item, k) = (scree_anchor){0};
+    if (feature->notched) old[k] = *anchor_of(scratch, feature, k);
+    *anchor_of(scratch, feature, k) = (scree_anchor){0};
   }
-  item->notched = count > 1;
+  feature->notched = count > 1;
   for (int j = 0; j < count; j++) {
     int best = -1;
     double best_dot = 0.5;
     for (int k = 0; k < SCREE_ANCHORS; k++) {
-      if (used[k] || old[k].share <= 0) continue;
+      if (used[k] || old[k].weight <= 0) continue;
       double dot = vec3_dot(old[k].normal, normals[j]);
       if (dot > best_dot) best_dot = dot, best = k;
     }
     if (best < 0) continue;
     used[best] = true;
-    *anchor_of(scratch, item, j) = old[best];
+    *anchor_of(scratch, feature, j) = old[best];
   }
 }
 
-static double touch_surface(const scree_world *world, const scree_pair *pair, scree_item *item,
-                            const scree_frame *relative, scree_scratch *scratch) {
-  bool forth = item->kind == SCREE_ITEM_POINT_FACE;
+static double point_surface_contact(const scree_world *world, const scree_pair *pair,
+                                    scree_feature_pair *feature, const scree_frame *relative,
+                                    scree_scratch *scratch) {
+  bool forth = feature->kind == SCREE_FEATURE_POINT_FACE;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
   const scree_particle *from = forth ? a : b, *surface = forth ? b : a;
-  uint32_t point = forth ? item->a : item->b;
+  uint32_t point = forth ? feature->a : feature->b;
   vec3 p = from->points[point];
   p = forth ? vec3_add(mat3_mul_vec(&relative->rotation, p), relative->position)
             : mat3_tmul_vec(&relative->rotation, vec3_sub(p, relative->position));
-  if (item->face_count == 0 || pair->list.path > item->valid) {
-    refresh_faces(surface, p, item, pair->list.path,
+  if (feature->face_count == 0 || pair->list.path > feature->valid) {
+    refresh_faces(surface, p, feature, pair->list.path,
                   scree_max(0.25 * pair->law.reach, 8 * pair->list.travel));
     scratch->closest_queries++;
   }
   surface_contact contacts[SCREE_ANCHORS];
-  int count = surface_contacts(surface, p, item, pair, contacts);
+  int count = surface_contacts(surface, p, feature, pair, contacts);
   vec3 at[SCREE_ANCHORS], normals[SCREE_ANCHORS];
   for (int k = 0; k < count; k++) {
     at[k] = contacts[k].closest;
@@ -285,16 +290,17 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
     at[k] = vec3_add(mat3_mul_vec(&relative->rotation, p), relative->position);
     normals[k] = vec3_neg(mat3_mul_vec(&relative->rotation, normals[k]));
   }
-  match_anchors(scratch, item, normals, count);
+  match_anchors(scratch, feature, normals, count);
   double least = INFINITY, surface_radius = surface->radius,
          point_radius = from->point_radii[point];
   for (int k = 0; k < count; k++) {
     const double values[4] = {contacts[k].distance, forth ? point_radius : surface_radius,
-                              forth ? surface_radius : point_radius, contacts[k].weight};
-    size_t touches = scratch->touches.count;
+                              forth ? surface_radius : point_radius, contacts[k].taper};
+    size_t added = scratch->contacts.count;
     double gap =
-        scree_add_touch(scratch, pair, at[k], normals[k], values, anchor_of(scratch, item, k));
-    if (scratch->touches.count > touches) scratch->touches.items[touches].lever = contacts[k].lever;
+        scree_add_contact(scratch, pair, at[k], normals[k], values, anchor_of(scratch, feature, k));
+    if (scratch->contacts.count > added)
+      scratch->contacts.items[added].gap_gradient = contacts[k].gap_gradient;
     if (gap < least) least = gap;
   }
   return least;
@@ -302,29 +308,31 @@ static double touch_surface(const scree_world *world, const scree_pair *pair, sc
 
 /* ---- spheres and analytic walls ---- */
 
-static double touch_spheres(const scree_world *world, const scree_pair *pair, scree_item *item,
-                            const scree_frame *relative, scree_scratch *scratch) {
+static double sphere_contact(const scree_world *world, const scree_pair *pair,
+                             scree_feature_pair *feature, const scree_frame *relative,
+                             scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[item->a]), relative->position);
-  vec3 q = b->points[item->b], offset = vec3_sub(p, q);
+  vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[feature->a]), relative->position);
+  vec3 q = b->points[feature->b], offset = vec3_sub(p, q);
   double d = vec3_norm(offset);
   vec3 n = d > 0 ? vec3_scale(offset, 1 / d) : (vec3){0, 0, 1};
-  const double values[4] = {d, a->point_radii[item->a], b->point_radii[item->b], 1};
-  return scree_add_touch(scratch, pair, q, n, values, &item->anchor);
+  const double values[4] = {d, a->point_radii[feature->a], b->point_radii[feature->b], 1};
+  return scree_add_contact(scratch, pair, q, n, values, &feature->anchor);
 }
 
-static double touch_wall(const scree_world *world, const scree_pair *pair, scree_item *item,
-                         const scree_frame *relative, scree_scratch *scratch) {
+static double wall_contact(const scree_world *world, const scree_pair *pair,
+                           scree_feature_pair *feature, const scree_frame *relative,
+                           scree_scratch *scratch) {
   const scree_particle *a = world->bodies.particle[pair->a];
-  vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[item->a]), relative->position);
+  vec3 p = vec3_add(mat3_mul_vec(&relative->rotation, a->points[feature->a]), relative->position);
   const scree_world_wall *wall = &world->walls.items[pair->b];
   vec3 c, n;
   double side = scree_wall_side(wall, p), d = scree_wall_distance(wall, p, side, &c, &n), own;
-  if (item->has_reference) {
-    own = item->reference.x; /* evaluated a step ago: through the sheet it cannot have come */
+  if (feature->has_reference) {
+    own = feature->reference.x; /* evaluated a step ago: through the sheet it cannot have come */
   } else if (scree_pair_is_new(pair)) {
-    own =
-        scree_wall_first_side(wall, p, relative->position, scree_pair_clearance(pair, a, item->a));
+    own = scree_wall_first_side(wall, p, relative->position,
+                                scree_pair_clearance(pair, a, feature->a));
   } else { /* the step that woke it may have taken it in */
     vec3 v = vec3_add(relative->velocity, vec3_cross(relative->spin, p)),
          before = vec3_mad(p, v, -2 * world->time_step);
@@ -335,25 +343,26 @@ static double touch_wall(const scree_world *world, const scree_pair *pair, scree
     double d_own = scree_wall_distance(wall, p, own, &c_own, &n_own);
     if (d_own < 0) side = own, d = d_own, c = c_own, n = n_own; /* else it is past the rim */
   }
-  item->reference.x = side;
-  item->has_reference = true;
-  const double values[4] = {d, a->point_radii[item->a], 0, 1};
-  return scree_add_touch(scratch, pair, c, n, values, &item->anchor);
+  feature->reference.x = side;
+  feature->has_reference = true;
+  const double values[4] = {d, a->point_radii[feature->a], 0, 1};
+  return scree_add_contact(scratch, pair, c, n, values, &feature->anchor);
 }
 
-double scree_item_touch(const scree_world *world, const scree_pair *pair, scree_item *item,
-                        const scree_frame *relative, scree_scratch *scratch) {
-  scratch->item_evaluations++;
-  switch ((scree_item_kind)item->kind) {
-  case SCREE_ITEM_POINT_FACE:
-  case SCREE_ITEM_FACE_POINT:
-    return touch_surface(world, pair, item, relative, scratch);
-  case SCREE_ITEM_EDGE_EDGE:
-    return scree_touch_edges(world, pair, item, relative, scratch);
-  case SCREE_ITEM_POINT_POINT:
-    return touch_spheres(world, pair, item, relative, scratch);
-  case SCREE_ITEM_POINT_WALL:
-    return touch_wall(world, pair, item, relative, scratch);
+double scree_feature_contact(const scree_world *world, const scree_pair *pair,
+                             scree_feature_pair *feature, const scree_frame *relative,
+                             scree_scratch *scratch) {
+  scratch->feature_evaluations++;
+  switch ((scree_feature_kind)feature->kind) {
+  case SCREE_FEATURE_POINT_FACE:
+  case SCREE_FEATURE_FACE_POINT:
+    return point_surface_contact(world, pair, feature, relative, scratch);
+  case SCREE_FEATURE_EDGE_EDGE:
+    return scree_edge_contact(world, pair, feature, relative, scratch);
+  case SCREE_FEATURE_POINT_POINT:
+    return sphere_contact(world, pair, feature, relative, scratch);
+  case SCREE_FEATURE_POINT_WALL:
+    return wall_contact(world, pair, feature, relative, scratch);
   }
   return INFINITY;
 }

@@ -11,4 +11,4 @@ static void sum(scree_world *world, size_t part) {
 
 STAGE(sums, sum, scree_sum_part_count(world))
 STAGE(wall_forces, scree_wall_sum, world->walls.count)
-STAGE(wall_due, scree_set_wall_due, world->walls.count)
+STAGE(wall_threshold, scree_set_wall_wake_threshold, world->walls.count)
