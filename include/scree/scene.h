@@ -83,6 +83,10 @@ SCREE_API const char *scree_scene_shape_name(const scree_scene *scene, size_t in
 SCREE_API const char *scree_scene_shape_source(const scree_scene *scene, size_t index);
 SCREE_API scree_particle *scree_scene_shape_particle(const scree_scene *scene, size_t index);
 SCREE_API const char *scree_scene_geometry_name(const scree_scene *scene, size_t index);
+/* What its meshes are as walls, and what was mended of them, a line each: facets, solids,
+ * containers (with bodies in them), sheets. NULL: it has no file and nothing to tell, or the scene
+ * was loaded. */
+SCREE_API const char *scree_scene_geometry_note(const scree_scene *scene, size_t index);
 SCREE_API const char *scree_scene_inlet_name(const scree_scene *scene, size_t index);
 SCREE_API const char *scree_scene_outlet_name(const scree_scene *scene, size_t index);
 /* The shape of body `index` of the world, and the geometry that wall `index` is part of. */

@@ -97,7 +97,9 @@ typedef enum scree_wall_kind {
   SCREE_WALL_CYLINDER, /* a sheet; from position along axis over length (0: endless). The rims of
                           discs and cylinders are polygons of 720 points and edges, which touch
                           faces and edges as those of a body do */
-  SCREE_WALL_MESH,     /* any consistently wound triangles, also open; outside is in front */
+  SCREE_WALL_MESH, /* any consistently wound triangles, two at an edge or, where a sheet ends, one.
+                      An open one is a sheet, a closed one solid behind its facets: one that is
+                      wound inwards holds what is in it */
 } scree_wall_kind;
 
 typedef struct scree_wall {
@@ -108,6 +110,7 @@ typedef struct scree_wall {
   double radius;      /* m, disc and cylinder */
   double length;      /* m, cylinder; 0: endless */
   const scree_mesh *mesh;
+  bool two_sided;             /* a closed mesh too is a sheet, with bodies on both sides */
   double velocity[3];         /* m/s, prescribed; may be changed at any time */
   double angular_velocity[3]; /* rad/s about position */
   /* Of its surface while the wall itself stays where it is, as of a belt or a roller: m/s, and

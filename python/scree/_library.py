@@ -199,8 +199,9 @@ class scree_material_contact(Structure):
 
 class scree_wall(Structure):
     _fields_ = [("kind", c_int), ("material", c_size_t), ("position", double3), ("axis", double3),
-                ("radius", c_double), ("length", c_double), ("mesh", POINTER(scree_mesh)), ("velocity", double3),
-                ("angular_velocity", double3), ("surface_velocity", double3), ("surface_angular_velocity", double3)]
+                ("radius", c_double), ("length", c_double), ("mesh", POINTER(scree_mesh)),
+                ("two_sided", c_bool), ("velocity", double3), ("angular_velocity", double3),
+                ("surface_velocity", double3), ("surface_angular_velocity", double3)]
 
 
 class scree_wall_motion(Structure):
@@ -478,6 +479,7 @@ _PLAIN = {  # result, argument types
     "scene_world": (_H, (_H,)),
     "scene_shape_name": (_S, (_H, c_size_t)),
     "scene_geometry_name": (_S, (_H, c_size_t)),
+    "scene_geometry_note": (_S, (_H, c_size_t)),
     "scene_inlet_name": (_S, (_H, c_size_t)),
     "scene_outlet_name": (_S, (_H, c_size_t)),
     "scene_body_shape": (c_size_t, (_H, c_size_t)),

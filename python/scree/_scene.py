@@ -68,6 +68,14 @@ class Scene:
     shapes = property(lambda self: _names("scene_shape_name", self._handle), doc="Names.")
     geometry = property(lambda self: _names("scene_geometry_name", self._handle), doc="Names.")
 
+    def geometry_note(self, index):
+        """What the meshes of a geometry are as walls, and what was mended of them, a line each; None: nothing to tell."""
+        names = self.geometry
+        if not 0 <= whole(index, "a geometry") < len(names):
+            raise IndexError(f"geometry {index} of {len(names)}")
+        note = lib["scene_geometry_note"](self._handle, index)
+        return note.decode() if note else None
+
     def every(self, interval, function):
         """run() calls function(scene) between steps, once every `interval` of simulated time, s; what it raises ends
         run()."""

@@ -111,7 +111,8 @@ class World:
 
     def add_wall(self, kind, material, mesh=None, **values):
         """Its index. kind plane, disc, cylinder or mesh; position, axis, radius, length, velocity,
-        angular_velocity; surface_velocity and surface_angular_velocity of a belt."""
+        angular_velocity; surface_velocity and surface_angular_velocity of a belt; two_sided: a closed mesh too is a
+        sheet. One that is wound inwards holds what is in it."""
         wall = c.scree_wall(kind=index_of(kind, c.WALL_KINDS, "wall"), axis=(0, 0, 1))
         set_fields(wall, {"material": material, **values}, "a wall")
         if mesh is not None:

@@ -162,6 +162,15 @@ static void remark_values(const char *text) {
   }
 }
 
+static void print_walls(const scree_scene *scene) {
+  for (size_t i = 0; scree_scene_geometry_name(scene, i); i++)
+    for (const char *line = scree_scene_geometry_note(scene, i); line && *line;) {
+      size_t length = strcspn(line, "\n");
+      printf("  wall %-15s %.*s\n", scree_scene_geometry_name(scene, i), (int)length, line);
+      line += length + (line[length] == '\n');
+    }
+}
+
 static scree_status on_begin(void *context, scree_scene *scene, bool resumed, scree_error *error) {
   scene_run *r = context;
   char reason[256], path[PATH_BYTES];
@@ -185,6 +194,7 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
     printf("  shape %-14s size %.4g mm%s%s\n", scree_scene_shape_name(scene, i), 1e3 * m.size,
            *source ? "  " : "", source);
   }
+  print_walls(scene);
   printf("  time step %s\n", (scree_scene_time_step_reason(scene, reason), reason));
   if (resumed) printf("  goes on at %.6g s\n", scree_world_time(scree_scene_view(scene)));
   cli_flush();

@@ -207,7 +207,7 @@ static bool meets_ray(const scree_box *box, vec3 p, double slack) {
 bool scree_is_inside(const scree_particle *particle, vec3 p) {
   const scree_tree *tree = &particle->face_tree;
   const scree_box *whole = &tree->nodes[0].box;
-  if (scree_box_distance2(whole, p) > 0) return false;
+  if (scree_box_distance2(whole, p) > 0) return particle->hollow;
   vec3 extent = vec3_sub(whole->high, whole->low);
   double slack = 1e-12 * (extent.x + extent.y + extent.z + vec3_norm(whole->low));
   uint32_t stack[SCREE_TREE_STACK];
@@ -222,7 +222,7 @@ bool scree_is_inside(const scree_particle *particle, vec3 p) {
     stack[depth++] = node->first + 1;
     stack[depth++] = node->first;
   }
-  return turns > 0;
+  return turns + particle->hollow > 0;
 }
 
 /* Where the way passes through a face's plane within its borders; else INFINITY. */

@@ -80,7 +80,8 @@ double scree_nearest_face(const scree_particle *particle, const uint32_t *nodes,
 /* Whether some face is closer than `reach`. */
 bool scree_is_near(const scree_particle *particle, vec3 p, double reach);
 
-/* Whether p is inside a closed surface: whether a ray from p leaves it more often than it enters.
+/* Whether p is in the solid of a closed surface: whether a ray from p leaves it more often than it
+ * enters; of a hollow one, not less often.
  * Exact but for points within rounding of the surface, which may be either. */
 bool scree_is_inside(const scree_particle *particle, vec3 p);
 

@@ -23,6 +23,7 @@
 static const double flat_angle = 2e-5;             /* rad; sagitta 0.05 um over 10 mm; above the
                                                       noise of single-precision coordinates */
 static const double sharp_angle = 0.5 * 0.0174533; /* rad; design value, see above */
+static const double folded = 1e-6; /* length of the sum of two normals; of a knife without angle */
 
 typedef struct half_edge {
   uint32_t low, high; /* vertices, low < high */
@@ -87,9 +88,10 @@ static scree_status make_faces(scree_particle *p, scree_error *error) {
     face->d12 = vec3_dot(face->along1, face->along2);
     double area2 = vec3_norm2(n), longest2 = scree_max(face->d11, face->d22);
     if (!(area2 > 1e-20 * longest2 * longest2))
-      return scree_fail(error, SCREE_BAD_MESH,
-                        "particle: triangle %zu has no area (%g m2, longest edge %g m)", f,
-                        0.5 * sqrt(area2), sqrt(longest2));
+      return scree_fail(
+          error, SCREE_BAD_MESH,
+          "triangle %zu at (%.6g, %.6g, %.6g) m has no area (%g m2, longest edge %g m)", f,
+          face->corner.x, face->corner.y, face->corner.z, 0.5 * sqrt(area2), sqrt(longest2));
     face->inverse = 1 / area2;
     face->normal = vec3_scale(n, 1 / sqrt(area2));
   }
@@ -123,29 +125,40 @@ static double turn_over(const scree_particle *p, const half_edge *a, const half_
   return scree_atan2(sine, vec3_dot(n1, n2));
 }
 
-static scree_status pair_halves(extraction *x, bool may_be_open, scree_error *error) {
+static scree_status fail_wall(const scree_particle *p, const half_edge *edge, const char *what,
+                              scree_error *error) {
+  vec3 a = position_of(p, edge->low), b = position_of(p, edge->high);
+  return scree_fail(error, SCREE_BAD_MESH,
+                    "wall: %s at the edge from (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g) m", what,
+                    a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+static scree_status pair_halves(extraction *x, bool is_wall, scree_error *error) {
   scree_particle *p = x->particle;
   size_t half_count = 3 * p->mesh.triangle_count;
   for (size_t i = 0; i < half_count;) {
     const half_edge *a = &x->halves[i], *b = a;
     size_t same = 1;
     while (i + same < half_count && a[same].low == a->low && a[same].high == a->high) same++;
+    if (same > 2 && is_wall) return fail_wall(p, a, "three facets or more meet", error);
     if (same > 2)
       return scree_fail(error, SCREE_BAD_MESH,
                         "particle: the edge between vertices %u and %u belongs to %zu triangles",
                         a->low, a->high, same);
-    if (same == 1 && !may_be_open)
+    if (same == 1 && !is_wall)
       return scree_fail(error, SCREE_BAD_MESH,
                         "particle: the mesh is open at the edge between vertices %u and %u of "
                         "triangle %u",
                         a->low, a->high, a->face);
     if (same == 2) {
       b = a + 1;
+      if (a->reversed == b->reversed && is_wall)
+        return fail_wall(p, a, "two facets are wound against each other", error);
       if (a->reversed == b->reversed)
         return scree_fail(error, SCREE_BAD_MESH,
                           "particle: triangles %u and %u are wound against each other", a->face,
                           b->face);
-      if (scree_normals_are_sharp(p->faces[a->face].normal, p->faces[b->face].normal))
+      if (!is_wall && scree_normals_are_sharp(p->faces[a->face].normal, p->faces[b->face].normal))
         return scree_fail(error, SCREE_BAD_MESH,
                           "particle: triangles %u and %u make an edge of less than %g degrees",
                           a->face, b->face, SCREE_LEAST_EDGE_DEG);
@@ -278,6 +291,7 @@ static void make_points_and_edges(extraction *x) {
     }
     double half = scree_min(0.5 * turn + scree_cone_slack, 1.57);
     vec3 sum = vec3_add(p->faces[edge->face1].normal, p->faces[edge->face2].normal);
+    if (vec3_norm(sum) < folded) sum = rim_outward(x, edge);
     if (edge->turn < 0) sum = vec3_neg(sum); /* of a sheet: convex from behind */
     p->edges[p->edge_count++] = (scree_edge){start,
                                              end,
@@ -288,12 +302,10 @@ static void make_points_and_edges(extraction *x) {
   }
 }
 
-scree_status scree_particle_extract_features(scree_particle *p, bool may_be_open,
-                                             scree_error *error) {
+scree_status scree_particle_extract_features(scree_particle *p, bool is_wall, scree_error *error) {
   const scree_mesh *mesh = &p->mesh;
   scree_status status = check_indices(mesh, error);
   if (status) return status;
-  p->sheet = false;
   extraction x = {.particle = p};
   status = SCREE_OUT_OF_MEMORY;
   size_t halves = 3 * mesh->triangle_count;
@@ -315,7 +327,7 @@ scree_status scree_particle_extract_features(scree_particle *p, bool may_be_open
   if (!status && p->core) status = make_faces(p, error);
   if (status) goto done;
   list_halves(mesh, x.halves);
-  status = pair_halves(&x, may_be_open, error);
+  status = pair_halves(&x, is_wall, error);
   if (status) goto done;
   status = make_corner_signs(p, error);
   if (status) goto done;

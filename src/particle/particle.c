@@ -138,8 +138,8 @@ static void set_counts(scree_particle *p) {
 }
 
 /* Features, their trees, and what is counted and measured of them. */
-static scree_status extract_all(scree_particle *p, bool may_be_open, scree_error *error) {
-  scree_status status = scree_particle_extract_features(p, may_be_open, error);
+static scree_status extract_all(scree_particle *p, bool is_wall, scree_error *error) {
+  scree_status status = scree_particle_extract_features(p, is_wall, error);
   if (!status) status = scree_particle_build_trees(p, error);
   if (status) return status;
   set_bounding_radius(p);
@@ -204,20 +204,18 @@ scree_status scree_particle_from_mesh(const scree_mesh *mesh, const scree_partic
   return SCREE_OK;
 }
 
-scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
+scree_status scree_particle_surface(const scree_mesh *mesh, double rounding, bool two_sided,
                                     scree_particle **particle, scree_error *error) {
   scree_particle *p = new_particle(SCREE_PARTICLE_MESH, error);
   if (!p) return SCREE_OUT_OF_MEMORY;
   p->measures.rounding = p->radius = rounding;
+  p->sheet = two_sided;
   scree_status status = scree_mesh_copy(mesh, &p->mesh, error);
   if (!status) status = extract_all(p, true, error);
   if (!status && !p->sheet) {
     double volume = scree_solid_of_mesh(&p->mesh).volume;
-    p->measures.volume = volume;
-    if (!(volume > 0))
-      status = scree_fail(error, SCREE_BAD_MESH,
-                          "the closed surface is turned inside out: it encloses a volume of %g m3",
-                          volume);
+    p->hollow = volume < 0;
+    p->measures.volume = fabs(volume);
   }
   if (!status) status = measure_thickness(p, error);
   if (status) {

@@ -48,7 +48,9 @@ struct scree_particle {
   size_t edge_count;
   scree_tree face_tree, edge_tree, point_tree;
   scree_box box; /* of everything, rounding included */
-  bool sheet;    /* an open surface: met from both sides, and where it ends by rims */
+  bool sheet;  /* met from both sides, and where it ends by rims: an open surface, or one that is to
+                  be */
+  bool hollow; /* wound inwards: what lies outside it is solid */
 };
 
 /* Of rims: cosine of contacts from a sheet's own side. */
@@ -68,8 +70,10 @@ void scree_particle_retain(scree_particle *particle);
 /* Whether two were made alike: kind, volume, size, features and inertia are the same. */
 bool scree_particle_is_like(const scree_particle *a, const scree_particle *b);
 
-/* The surface alone, in the mesh's own coordinates, without mass: for walls. May be open. */
-scree_status scree_particle_surface(const scree_mesh *mesh, double rounding,
+/* The surface alone, in the mesh's own coordinates, without mass: for walls. May be open; one that
+ * is closed and wound inwards holds what is in it; `two_sided`: as if it were open. Its measured
+ * volume is what it encloses, 0 where nothing is solid. */
+scree_status scree_particle_surface(const scree_mesh *mesh, double rounding, bool two_sided,
                                     scree_particle **particle, scree_error *error);
 
 /* Volume, size, centre, orientation and moments of inertia. */
@@ -97,8 +101,9 @@ scree_status scree_particle_restore(const scree_particle_measures *measures, con
                                     const double *centres, const double *radii, size_t count,
                                     scree_particle **particle, scree_error *error);
 
-/* features.c: fills faces, signs, points and edges from particle->mesh. */
-scree_status scree_particle_extract_features(scree_particle *particle, bool may_be_open,
+/* features.c: fills faces, signs, points and edges from particle->mesh. A wall may be open, and its
+ * edges as sharp as they come. */
+scree_status scree_particle_extract_features(scree_particle *particle, bool is_wall,
                                              scree_error *error);
 /* inset.c: the core that lies `by` inside the faces, or nearer where the shape has no room. */
 scree_status scree_particle_make_core(scree_particle *particle, double by, scree_error *error);

@@ -1,6 +1,6 @@
 /* Geometry: walls of the world, their motions, and whether a body that is placed is clear of them.
  */
-#include "scene/scene.h"
+#include "scene/walls.h"
 
 #include "particle/closest.h"
 
@@ -44,18 +44,41 @@ static scree_status add_wall(const scree_scene *scene, const scree_plan_geometry
   return scree_world_add_wall(world, wall, NULL, error);
 }
 
-static scree_status add_mesh(const scree_scene *scene, const scree_plan_geometry *g,
-                             scree_world *world, scree_mesh *mesh, scree_error *error) {
-  scree_wall wall = {.kind = SCREE_WALL_MESH, .axis = {0, 0, 1}, .mesh = mesh};
+/* A line more about the geometry; the first time that it is made. */
+static scree_status note(scree_scene *scene, size_t index, const char *text, scree_error *error) {
+  const char *old = scene->geometry[index].note;
+  size_t size = (old ? strlen(old) + 1 : 0) + strlen(text) + 1;
+  char *lines = scree_arena_take(&scene->arena, size, 1);
+  if (!lines) return scree_fail_memory(error, size, "a wall's line");
+  snprintf(lines, size, "%s%s%s", old ? old : "", old ? "\n" : "", text);
+  scene->geometry[index].note = lines;
+  return SCREE_OK;
+}
+
+/* What is solid and what is a sheet of it; of a file (NULL: there is none) with what was done. */
+static scree_status add_mesh(scree_scene *scene, size_t index, const char *file, scree_world *world,
+                             scree_mesh *mesh, scree_error *error) {
+  const scree_plan_geometry *g = plan_of(scene, index);
+  scree_scene_walls walls;
   turn_mesh(g, mesh);
-  scree_status status = add_wall(scene, g, world, &wall, error);
+  scree_status status = scree_scene_make_walls(scene, g, mesh, &walls, error);
   scree_mesh_free(mesh);
+  if (status != SCREE_OK) return status;
+  scree_wall wall = {.kind = SCREE_WALL_MESH, .axis = {0, 0, 1}, .mesh = &walls.solid};
+  if (walls.solid.triangle_count) status = add_wall(scene, g, world, &wall, error);
+  wall.mesh = &walls.sheet;
+  wall.two_sided = true;
+  if (status == SCREE_OK && walls.sheet.triangle_count)
+    status = add_wall(scene, g, world, &wall, error);
+  bool tells = world == scene->gallery && (file || !walls.is_plain);
+  if (status == SCREE_OK && tells) status = note(scene, index, walls.note, error);
+  scree_scene_walls_free(&walls);
   return status;
 }
 
-static scree_status add_file(const scree_scene *scene, const scree_plan_geometry *g,
-                             const char *folder, const char *name, scree_world *world,
-                             scree_error *error) {
+static scree_status add_file(scree_scene *scene, size_t index, const char *folder, const char *name,
+                             scree_world *world, scree_error *error) {
+  const scree_plan_geometry *g = plan_of(scene, index);
   scree_read_options o = scree_default_read_options();
   scree_scan scan;
   o.unit_m = scree_plan_unit(g->unit);
@@ -63,16 +86,17 @@ static scree_status add_file(const scree_scene *scene, const scree_plan_geometry
   if (!path) return scree_fail_memory(error, strlen(name), "a path");
   scree_status status = scree_scan_read(path, &o, &scan, error);
   scree_free(path);
-  return status == SCREE_OK ? add_mesh(scene, g, world, &scan.mesh, error) : status;
+  return status == SCREE_OK ? add_mesh(scene, index, name, world, &scan.mesh, error) : status;
 }
 
-static scree_status add_solid(const scree_scene *scene, const scree_plan_geometry *g,
-                              scree_world *world, scree_error *error) {
+static scree_status add_solid(scree_scene *scene, size_t index, scree_world *world,
+                              scree_error *error) {
+  const scree_plan_geometry *g = plan_of(scene, index);
   scree_wall wall = {.kind = SCREE_WALL_PLANE};
   if (!isnan(g->box[0])) {
     scree_mesh mesh;
     scree_status status = scree_scene_box_mesh(g->box, &mesh, error);
-    return status == SCREE_OK ? add_mesh(scene, g, world, &mesh, error) : status;
+    return status == SCREE_OK ? add_mesh(scene, index, NULL, world, &mesh, error) : status;
   }
   if (g->disc) {
     wall.kind = SCREE_WALL_DISC;
@@ -151,11 +175,11 @@ static scree_status add_one(scree_scene *scene, size_t index, const char *folder
   const scree_plan_geometry *g = plan_of(scene, index);
   scree_scene_geometry *made = &scene->geometry[index];
   made->first_wall = scree_world_wall_count(world);
-  made->wall_count = g->file.count ? g->file.count : 1;
   scree_status status = SCREE_OK;
   for (size_t k = 0; status == SCREE_OK && k < g->file.count; k++)
-    status = add_file(scene, g, folder, g->file.items[k], world, error);
-  if (status == SCREE_OK && g->file.count == 0) status = add_solid(scene, g, world, error);
+    status = add_file(scene, index, folder, g->file.items[k], world, error);
+  if (status == SCREE_OK && g->file.count == 0) status = add_solid(scene, index, world, error);
+  made->wall_count = scree_world_wall_count(world) - made->first_wall;
   return status == SCREE_OK ? set_motions(scene, index, world, error) : status;
 }
 

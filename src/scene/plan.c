@@ -376,6 +376,8 @@ static const scree_field geometry_fields[] = {
     {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m", "where its origin goes", NULL},
     {"turn", SCREE_FIELD_RECORD, AT(turn), 0, 0, "", "about its origin, before it goes there",
      &turn_record},
+    {"side", SCREE_FIELD_WORD, AT(side), 0, 0, "auto|outside|inside|both",
+     "of a closed mesh or box: where bodies are; auto: where the inlets are", NULL},
     {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
     {"motion", SCREE_FIELD_LIST, AT(motion), 0, 0, "", "in this order", &motion_record},
     {"surface_velocity", SCREE_FIELD_VECTOR, AT(surface_velocity), -1e3, 1e3, "m/s",
@@ -391,6 +393,8 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
   if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
     status = scree_fail_place(r, &g->cylinder->place,
                               "at stands beside the cylinder, as of all geometry, not in it");
+  if (status == SCREE_OK && g->side && !there[0] && !there[1])
+    status = scree_fail_place(r, &g->place, "side is of a file or a box, which may be closed");
   const double *normal = g->disc ? g->disc->normal : g->plane;
   if (status == SCREE_OK && given(g->surface_velocity) && (g->disc || given(g->plane)) &&
       !is_across(g->surface_velocity, normal))

@@ -81,7 +81,7 @@ typedef struct scree_plan_geometry {
   scree_place place;
   scree_texts file;
   const char *material;
-  int unit;
+  int unit, side; /* side: 0 auto, 1 outside, 2 inside, 3 both */
   double box[3], plane[3], at[3], surface_velocity[3];
   scree_plan_disc *disc;
   scree_plan_cylinder *cylinder;

@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-const scree_seal scree_scene_seal = {"screeSCN", "checkpoint of a scree scene", "scene", 3};
+const scree_seal scree_scene_seal = {"screeSCN", "checkpoint of a scree scene", "scene", 4};
 
 /* ---- the fields, in and out alike ---- */
 
@@ -119,6 +119,19 @@ static void code_state(scree_codec *c, scree_scene *scene) {
   code_series(c, scene);
 }
 
+/* How many walls each piece of geometry is. */
+static void code_geometry(scree_codec *c, scree_scene *scene) {
+  size_t next = 0;
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
+    scree_scene_geometry *g = &scene->geometry[i];
+    code_size(c, &g->wall_count);
+    if (g->wall_count < 1 || g->wall_count > UINT32_MAX) c->failed = true;
+    if (!scree_codec_good(c)) return;
+    g->first_wall = next;
+    next += g->wall_count;
+  }
+}
+
 /* ---- saving ---- */
 
 static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame,
@@ -135,6 +148,7 @@ static scree_status save(scree_codec *c, const scree_scene *scene, bool as_frame
     scree_code_text(c, scene->shapes[i].source, strlen(scene->shapes[i].source));
   scree_status status = scree_world_save_block(c, scene->gallery, true, error);
   if (status == SCREE_OK) status = scree_world_save_block(c, scene->world, !as_frame, error);
+  code_geometry(c, &state);
   code_state(c, &state);
   scree_code_count(c, &state.notes.count, 1);
   scree_code_bytes(c, state.notes.bytes, state.notes.count);
@@ -217,15 +231,6 @@ static scree_status adopt_particles(loader *l) {
   return SCREE_OK;
 }
 
-static void find_walls(scree_scene *scene) {
-  size_t next = 0;
-  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
-    const scree_plan_geometry *g = SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, i);
-    scene->geometry[i] = (scree_scene_geometry){next, g->file.count ? g->file.count : 1};
-    next += scene->geometry[i].wall_count;
-  }
-}
-
 /* The last of the file. */
 static scree_status load_notes(loader *l) {
   size_t count = 0;
@@ -262,8 +267,9 @@ static scree_status load(loader *l) {
     scree_particle_retain(scene->shapes[i].particle);
     scree_scene_measure_shape(scene, i);
   }
-  find_walls(scene);
-  if (next_wall(scene) != scree_world_wall_count(scene->world)) return fail_here(l);
+  code_geometry(&l->codec, scene);
+  if (!scree_codec_good(&l->codec) || next_wall(scene) != scree_world_wall_count(scene->world))
+    return fail_here(l);
   status = scree_scene_plan_wear(scene, l->error);
   if (status != SCREE_OK) return status;
   code_state(&l->codec, scene);

@@ -566,6 +566,9 @@ scree_particle *scree_scene_shape_particle(const scree_scene *scene, size_t inde
 const char *scree_scene_geometry_name(const scree_scene *scene, size_t index) {
   return name_at(&scene->plan.geometry, sizeof(scree_plan_geometry), index);
 }
+const char *scree_scene_geometry_note(const scree_scene *scene, size_t index) {
+  return scene->geometry[index].note;
+}
 const char *scree_scene_inlet_name(const scree_scene *scene, size_t index) {
   return name_at(&scene->plan.inlets, sizeof(scree_plan_inlet), index);
 }

@@ -25,9 +25,11 @@ typedef struct scree_scene_shape {
   size_t entered, left;
 } scree_scene_shape;
 
-/* A piece of geometry is one wall of the world or several. */
+/* A piece of geometry is one wall of the world or several; of a mesh one of what is solid and one
+ * of sheets. */
 typedef struct scree_scene_geometry {
   size_t first_wall, wall_count;
+  const char *note; /* lines about its meshes; NULL: none, or from a checkpoint */
 } scree_scene_geometry;
 
 /* Of an inlet by layers; all but the count of layers follows from the plan. */

@@ -20,7 +20,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 15};
+static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "world", 16};
 
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
@@ -112,6 +112,7 @@ static void code_given_wall(scree_codec *c, scree_wall *w) {
   if (kind > SCREE_WALL_MESH) c->failed = true;
   w->kind = (scree_wall_kind)kind;
   w->material = material;
+  scree_code_bool(c, &w->two_sided);
   scree_code_reals(c, w->position, 3);
   scree_code_reals(c, w->axis, 3);
   scree_code_real(c, &w->radius);

@@ -106,7 +106,7 @@ scree_status scree_world_add_wall(scree_world *world, const scree_wall *wall, si
   set_velocity(&made, vec3_load(wall->velocity), vec3_load(wall->angular_velocity));
   set_surface(&made, wall->surface_velocity, wall->surface_angular_velocity);
   if (wall->kind == SCREE_WALL_MESH) {
-    status = scree_particle_surface(wall->mesh, 0, &made.surface, error);
+    status = scree_particle_surface(wall->mesh, 0, wall->two_sided, &made.surface, error);
     if (!status) made.given.mesh = &made.surface->mesh;
   } else {
     status = make_rims(&made, error);

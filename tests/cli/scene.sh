@@ -21,12 +21,12 @@ printf 'time: 1\ntitle: \007\n' >bell.yaml
 for file in latin tab bell; do run run $file.yaml; done
 sed 's/friction: 0.3/fricton: 0.3/' hopper.yaml >wrong.yaml
 run run wrong.yaml
-# geometry from inside, a period that a ball does not fit into: the place in the file, and no folder
-printf 'OFF\n4 4 0\n0 0 0\n9 0 0\n0 9 0\n0 0 9\n3 0 1 2\n3 0 3 1\n3 0 2 3\n3 1 3 2\n' >inward.off
+# geometry without area, a period that a ball does not fit into: the place in the file, and no folder
+printf 'OFF\n3 1 0\n0 0 7\n9 0 7\n4 0 7\n3 0 1 2\n' >line.off
 cat >places.yaml <<'END'
 time: 1
 shapes: {ball: {sphere: 0.01}}
-geometry: {tip: {file: inward.off}}
+geometry: {tip: {file: line.off}}
 inlets: {feed: {box: {min: [0, 0, 0.1], max: [0.02, 0.1, 0.2]}, shapes: ball, rate: 20}}
 END
 run run places.yaml -o nothing

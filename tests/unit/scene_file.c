@@ -297,7 +297,7 @@ static void scenes_that_cannot_be(void **state) {
       {"rate: 20, until: 1", "count: 3000, layers: {pack_time: 0.001}", "would have to enter at"},
       {"max: [0.1, 0.1, 0.3]", "max: [-0.095, 0.1, 0.3]", "inlets.feed: is too small for"},
       {"rate: 20, until: 1}", "count: 20, layers: {packed: grid}, velocity: [0, 0, -1]}", NULL},
-      {"box: [0.1, 0.1, 0.01], at: [0, 0, 0.1]", "box: [1, 1, 1], at: [0, 0, 0.25]",
+      {"box: [0.1, 0.1, 0.01], at: [0, 0, 0.1]", "box: [1, 1, 1], side: outside, at: [0, 0, 0.25]",
        "inlets.feed: lies in 'deck': nowhere in it is there room for 'ball' clear of that wall"},
       {"plane: [0, 0, 1], at: [0, 0, 0]", "plane: [0, 0, 1], at: [0, 0, 0.5]",
        "inlets.feed: lies in 'floor'"},

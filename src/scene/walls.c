@@ -1,0 +1,343 @@
+/* Mesh walls: any soup mended (mesh/soup.h), and on which side of what is closed the bodies are.
+ *
+ * Closed pieces divide space into regions, each within its outermost pieces. An inlet marks the
+ * region that most of it lies in: bodies are there. Between a region with bodies and one without,
+ * the piece is solid on the side without: a container holds what is in it. With bodies on both
+ * sides it is a sheet. Where no body is on either side it is as its surroundings are not: a shaft
+ * is solid, a hollow in it is none. What is solid is one wall, sheets are another; sheets all
+ * inside of solids are left out. */
+#include "scene/walls.h"
+
+#include "base/alloc.h"
+#include "mesh/adjacency.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { GRID = 4, LOOKS = 8 };
+typedef enum piece_side {
+  OUTSIDE,
+  INSIDE,
+  BOTH
+} piece_side; /* where bodies are; as plan->side - 1 */
+
+typedef struct division {
+  scree_pieces pieces;
+  uint32_t *parent; /* of a closed piece: the closed one that it lies in, or their count */
+  uint32_t *level;  /* how many it lies in */
+  uint8_t *side;
+  bool *bodies;  /* by region: within that piece; the last: outside all */
+  size_t hidden; /* sheets left out */
+} division;
+
+static void free_division(division *d) {
+  scree_pieces_free(&d->pieces);
+  scree_free(d->parent);
+  scree_free(d->level);
+  scree_free(d->side);
+  scree_free(d->bodies);
+}
+
+/* ---- how pieces lie in each other ---- */
+
+static vec3 middle_of(const scree_mesh *mesh, size_t facet) {
+  vec3 sum = {0, 0, 0};
+  for (int k = 0; k < 3; k++) sum = vec3_add(sum, scree_mesh_corner(mesh, facet, k));
+  return vec3_scale(sum, 1.0 / 3);
+}
+
+/* Whether most of some places on it are in the other. */
+static bool lies_in(const scree_pieces *p, size_t piece, size_t other) {
+  const scree_piece *one = &p->items[piece];
+  int in = 0;
+  for (size_t i = 0; i < 3; i++)
+    in += scree_piece_winding(p, other,
+                              middle_of(&p->mesh, one->first + i * (one->count - 1) / 2)) != 0;
+  return in >= 2;
+}
+
+static void nest(division *d) {
+  const scree_pieces *p = &d->pieces;
+  for (size_t i = 0; i < p->count; i++)
+    for (size_t k = 0; k < p->count; k++)
+      d->level[i] += k != i && p->items[i].closed && p->items[k].closed && lies_in(p, i, k);
+  for (size_t i = 0; i < p->count; i++) {
+    d->parent[i] = (uint32_t)p->count;
+    for (size_t k = 0; k < p->count; k++)
+      if (k != i && p->items[i].closed && p->items[k].closed && d->level[k] + 1 == d->level[i] &&
+          lies_in(p, i, k))
+        d->parent[i] = (uint32_t)k;
+  }
+}
+
+/* The innermost closed piece around p, or their count. */
+static size_t region_at(const division *d, vec3 p) {
+  const scree_pieces *pieces = &d->pieces;
+  size_t found = pieces->count;
+  for (size_t i = 0; i < pieces->count; i++)
+    if (pieces->items[i].closed && (found == pieces->count || d->level[i] > d->level[found]) &&
+        scree_piece_winding(pieces, i, p))
+      found = i;
+  return found;
+}
+
+/* ---- where bodies are ---- */
+
+/* Place `index` of GRID^3 in an inlet's region; of layers in what the first covers. */
+static vec3 place_in(const scree_scene *scene, const scree_plan_inlet *inlet, int index) {
+  const double share[3] = {(index % GRID + 0.5) / GRID, (index / GRID % GRID + 0.5) / GRID,
+                           (index / GRID / GRID + 0.5) / GRID};
+  double thick = 0;
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
+    thick = fmax(thick, 2 * scene->shapes[i].extent.radius);
+  if (inlet->box) {
+    const scree_plan_box *b = inlet->box;
+    double at[3];
+    for (int k = 0; k < 3; k++) at[k] = b->min[k] + share[k] * (b->max[k] - b->min[k]);
+    if (inlet->layers) at[2] = b->min[2] + share[2] * thick;
+    return vec3_load(at);
+  }
+  const scree_plan_cylinder *c = inlet->cylinder;
+  vec3 axis = vec3_unit(vec3_load(c->axis)), u, w;
+  vec3_frame(axis, &u, &w);
+  double r = c->radius * sqrt(share[0]), angle = 6.283185307179586 * share[1],
+         along = share[2] * (inlet->layers ? thick : c->length);
+  if (inlet->layers && axis.z < 0) along = -along;
+  vec3 from = vec3_load(c->at);
+  return vec3_mad(vec3_mad(vec3_mad(from, axis, along), u, r * scree_cos(angle)), w,
+                  r * scree_sin(angle));
+}
+
+/* The region that most of the inlet lies in. */
+static size_t region_of_inlet(const scree_scene *scene, const division *d,
+                              const scree_plan_inlet *inlet, vec3 at) {
+  size_t best = d->pieces.count, most = 0, found[GRID * GRID * GRID];
+  for (int i = 0; i < GRID * GRID * GRID; i++)
+    found[i] = region_at(d, vec3_sub(place_in(scene, inlet, i), at));
+  for (int i = 0; i < GRID * GRID * GRID; i++) {
+    size_t same = 0;
+    for (int k = 0; k < GRID * GRID * GRID; k++) same += found[k] == found[i];
+    if (same > most) most = same, best = found[i];
+  }
+  return best;
+}
+
+static void mark_bodies(const scree_scene *scene, const scree_plan_geometry *g, division *d) {
+  size_t count = d->pieces.count;
+  for (size_t i = 0; i < scene->plan.inlets.count && g->side == 0; i++) {
+    const scree_plan_inlet *inlet = SCREE_PLAN_AT(&scene->plan, inlets, scree_plan_inlet, i);
+    d->bodies[region_of_inlet(scene, d, inlet, vec3_load(g->at))] = true;
+  }
+  if (g->side == 0) return;
+  d->bodies[count] = g->side - 1 != INSIDE;
+  for (size_t i = 0; i < count && g->side - 1 != OUTSIDE; i++)
+    if (d->pieces.items[i].closed && (d->level[i] == 0 || g->side - 1 == BOTH)) d->bodies[i] = true;
+}
+
+/* From the outermost pieces inwards. */
+static void decide_sides(division *d) {
+  size_t count = d->pieces.count, deepest = 0;
+  for (size_t i = 0; i < count; i++) deepest = d->level[i] > deepest ? d->level[i] : deepest;
+  for (size_t level = 0; level <= deepest; level++)
+    for (size_t i = 0; i < count; i++) {
+      const scree_piece *piece = &d->pieces.items[i];
+      if (!piece->closed || d->level[i] != level) continue;
+      bool within = d->bodies[i], around = d->bodies[d->parent[i]],
+           in_solid = d->parent[i] < count && d->side[d->parent[i]] == OUTSIDE;
+      d->side[i] = within && around ? BOTH : within || (!around && in_solid) ? INSIDE : OUTSIDE;
+      bool inwards = piece->volume < 0;
+      if (d->side[i] != BOTH && inwards != (d->side[i] == INSIDE)) scree_piece_turn(&d->pieces, i);
+    }
+}
+
+/* ---- the walls ---- */
+
+static bool is_solid(const division *d, size_t piece) {
+  return d->pieces.items[piece].closed && d->side[piece] != BOTH;
+}
+
+static bool is_in_solid(const division *d, vec3 p) {
+  int winding = 0;
+  double volume = 0;
+  for (size_t i = 0; i < d->pieces.count; i++) {
+    if (!is_solid(d, i)) continue;
+    volume += d->pieces.items[i].volume;
+    winding += scree_piece_winding(&d->pieces, i, p);
+  }
+  return winding + (volume < 0) > 0;
+}
+
+/* Whether no body can come to the sheet. */
+static bool is_hidden(const division *d, size_t piece) {
+  const scree_piece *sheet = &d->pieces.items[piece];
+  for (size_t i = 0; i < LOOKS; i++)
+    if (!is_in_solid(
+            d, middle_of(&d->pieces.mesh, sheet->first + i * (sheet->count - 1) / (LOOKS - 1))))
+      return false;
+  return true;
+}
+
+/* The pieces that are marked, as a mesh; without triangles where there are none. */
+static scree_status gather(const division *d, const bool *chosen, scree_mesh *mesh,
+                           scree_error *error) {
+  const scree_mesh *all = &d->pieces.mesh;
+  scree_mesh made = {0};
+  uint32_t *number = scree_alloc(all->vertex_count, sizeof *number);
+  if (!number) return scree_fail_memory(error, all->vertex_count * sizeof *number, "a wall");
+  memset(number, 0xff, all->vertex_count * sizeof *number);
+  scree_status status = SCREE_OUT_OF_MEMORY;
+  SCREE_ALLOC_OR(made.positions, 3 * all->vertex_count, error, done);
+  SCREE_ALLOC_OR(made.triangles, 3 * all->triangle_count, error, done);
+  for (size_t i = 0; i < d->pieces.count; i++) {
+    if (!chosen[i]) continue;
+    const scree_piece *piece = &d->pieces.items[i];
+    memcpy(made.triangles + 3 * made.triangle_count, all->triangles + 3 * piece->first,
+           3 * piece->count * sizeof *made.triangles);
+    made.triangle_count += piece->count;
+  }
+  for (size_t c = 0; c < 3 * made.triangle_count; c++) number[made.triangles[c]] = 0;
+  for (size_t v = 0; v < all->vertex_count; v++) {
+    if (number[v]) continue;
+    number[v] = (uint32_t)made.vertex_count;
+    memcpy(made.positions + 3 * made.vertex_count++, all->positions + 3 * v, 3 * sizeof(double));
+  }
+  for (size_t c = 0; c < 3 * made.triangle_count; c++)
+    made.triangles[c] = number[made.triangles[c]];
+  *mesh = made;
+  made = (scree_mesh){0};
+  status = SCREE_OK;
+done:
+  scree_mesh_free(&made);
+  scree_free(number);
+  return status;
+}
+
+static scree_status make_walls(division *d, scree_scene_walls *walls, scree_error *error) {
+  size_t count = d->pieces.count, solids = 0, open = 0;
+  bool *chosen = scree_alloc_zero(count, sizeof *chosen);
+  if (!chosen) return scree_fail_memory(error, count, "a wall's pieces");
+  for (size_t i = 0; i < count; i++) solids += chosen[i] = is_solid(d, i);
+  scree_status status = SCREE_OK;
+  if (solids) status = gather(d, chosen, &walls->solid, error);
+  for (size_t i = 0; i < count; i++) {
+    bool hidden = !d->pieces.items[i].closed && solids && is_hidden(d, i);
+    chosen[i] = !is_solid(d, i) && !hidden;
+    d->hidden += hidden;
+    open += chosen[i];
+  }
+  if (status == SCREE_OK && open) status = gather(d, chosen, &walls->sheet, error);
+  scree_free(chosen);
+  return status;
+}
+
+/* ---- what is told ---- */
+
+typedef struct line {
+  char *text;
+  size_t size;
+} line;
+
+SCREE_PRINTF(2, 3)
+static void add(const line *l, const char *format, ...) {
+  size_t used = strlen(l->text);
+  va_list arguments;
+  va_start(arguments, format);
+  vsnprintf(l->text + used, l->size - used, format, arguments);
+  va_end(arguments);
+}
+
+/* Separated from what is there. */
+static void add_count(const line *l, const char *before, size_t count, const char *one,
+                      const char *many) {
+  if (count) add(l, "%s%zu %s", before, count, count == 1 ? one : many);
+}
+
+static void describe(const division *d, scree_scene_walls *walls) {
+  const line l = {walls->note, sizeof walls->note};
+  const scree_mending *m = &d->pieces.mending;
+  size_t counts[4] = {0};
+  for (size_t i = 0; i < d->pieces.count; i++) counts[d->pieces.items[i].closed ? d->side[i] : 3]++;
+  walls->is_plain = counts[INSIDE] + counts[BOTH] == 0;
+  *l.text = 0;
+  add_count(&l, "", d->pieces.mesh.triangle_count, "facet", "facets");
+  add_count(&l, ", ", counts[OUTSIDE], "solid", "solids");
+  add_count(&l, ", ", counts[INSIDE], "container: bodies are in it",
+            "containers: bodies are in them");
+  add_count(&l, ", ", counts[BOTH], "closed sheet with bodies on both sides",
+            "closed sheets with bodies on both sides");
+  add_count(&l, ", ", counts[3], "open sheet", "open sheets");
+  const struct {
+    size_t count;
+    const char *one, *many;
+  } done[] = {
+      {m->welded, "vertex welded to another", "vertices welded to others"},
+      {m->flat, "facet without area dropped", "facets without area dropped"},
+      {m->joined, "vertex set into an edge that ran past it",
+       "vertices set into edges that ran past them"},
+      {m->doubled, "facet that lay on others dropped", "facets that lay on others dropped"},
+      {m->parted, "edge of three facets or more parted", "edges of three facets or more parted"},
+      {m->turned, "facet turned over", "facets turned over"},
+      {d->hidden, "sheet inside of solids left out", "sheets inside of solids left out"},
+  };
+  const char *before = "; mended: ";
+  for (size_t i = 0; i < sizeof done / sizeof *done; i++) {
+    add_count(&l, before, done[i].count, done[i].one, done[i].many);
+    if (done[i].count) before = ", ";
+  }
+}
+
+/* A side was asked of what has none. */
+static scree_status refuse_open(const scree_plan_geometry *g, const scree_mesh *mesh,
+                                scree_error *error) {
+  static const char *const sides[] = {"outside", "inside", "both"};
+  scree_adjacency adjacency;
+  scree_status status = scree_adjacency_build(mesh, &adjacency, error);
+  if (status != SCREE_OK) return status;
+  uint32_t h = 0;
+  while (h + 1 < 3 * mesh->triangle_count && adjacency.ring[h] != h) h++;
+  vec3 a = vec3_add(scree_mesh_corner(mesh, h / 3, (int)(h % 3)), vec3_load(g->at)),
+       b = vec3_add(scree_mesh_corner(mesh, h / 3, (int)(h % 3 + 1) % 3), vec3_load(g->at));
+  scree_adjacency_free(&adjacency);
+  return scree_fail(error, SCREE_BAD_MESH,
+                    "side: %s is of closed surfaces; the wall is open, as at the edge from (%.6g, "
+                    "%.6g, %.6g) to (%.6g, %.6g, %.6g) m",
+                    sides[g->side - 1], a.x, a.y, a.z, b.x, b.y, b.z);
+}
+
+scree_status scree_scene_make_walls(const scree_scene *scene, const scree_plan_geometry *g,
+                                    const scree_mesh *mesh, scree_scene_walls *walls,
+                                    scree_error *error) {
+  division d = {.hidden = 0};
+  scree_scene_walls made = {.is_plain = true};
+  scree_status status = scree_pieces_make(mesh, &d.pieces, error);
+  if (status != SCREE_OK) return status;
+  size_t count = d.pieces.count, closed = 0;
+  for (size_t i = 0; i < count; i++) closed += d.pieces.items[i].closed;
+  d.parent = scree_alloc_zero(count, sizeof *d.parent);
+  d.level = scree_alloc_zero(count, sizeof *d.level);
+  d.side = scree_alloc_zero(count, sizeof *d.side);
+  d.bodies = scree_alloc_zero(count + 1, sizeof *d.bodies);
+  if (!d.parent || !d.level || !d.side || !d.bodies)
+    status = scree_fail_memory(error, count * sizeof *d.parent, "a wall's pieces");
+  else if (g->side && !closed)
+    status = refuse_open(g, &d.pieces.mesh, error);
+  if (status == SCREE_OK && closed) {
+    nest(&d);
+    mark_bodies(scene, g, &d);
+    decide_sides(&d);
+  }
+  if (status == SCREE_OK) status = make_walls(&d, &made, error);
+  if (status == SCREE_OK) describe(&d, &made);
+  free_division(&d);
+  if (status == SCREE_OK)
+    *walls = made;
+  else
+    scree_scene_walls_free(&made);
+  return status;
+}
+
+void scree_scene_walls_free(scree_scene_walls *walls) {
+  scree_mesh_free(&walls->solid);
+  scree_mesh_free(&walls->sheet);
+}
