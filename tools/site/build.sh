@@ -5,7 +5,9 @@ set -eu
 build=$1
 output=${2:-$build/../docs}
 here=$(cd "$(dirname "$0")" && pwd)
-command -v mkdocs >/dev/null || { echo "the site needs MkDocs (apt-get install mkdocs)" >&2; exit 77; }
-/usr/bin/python3 "$here/generate.py" "$build/bin/scree" "$build/libscree.so" "$build/site" "$output"
-mkdocs build --quiet --strict --clean -f "$build/site.yml"
+/usr/bin/python3 -c 'import furo, myst_parser, sphinx_copybutton' 2>/dev/null && [ -d /usr/share/nodejs/katex ] ||
+  { echo "the site needs Sphinx, Furo, MyST and KaTeX: the packages of the manual in tools/packages.txt" >&2; exit 77; }
+/usr/bin/python3 "$here/generate.py" "$build/bin/scree" "$build/libscree.so" "$build/site"
+rm -rf "$output"
+/usr/bin/python3 -m sphinx -q -W --keep-going -b html -d "$build/site.doctrees" -E -c "$here" "$build/site" "$output"
 echo "$(cd "$output" && pwd)/index.html"

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Gathers the manual for MkDocs: docs/ as it is, and pages made from the program's tables, the public headers and the
-Python module. usage: generate.py PROGRAM LIBRARY SOURCE_FOLDER SITE_FOLDER
-SOURCE_FOLDER gets the pages and mkdocs.yml; the order of the navigation is that of the links in each part's index.md."""
+"""Gathers the manual for Sphinx: docs/ as it is, and pages made from the program's tables, the public headers and the
+Python module. usage: generate.py PROGRAM LIBRARY SOURCE_FOLDER
+SOURCE_FOLDER gets the pages, with the site's tree of contents; the order of the navigation is that of the links in each part's index.md."""
 import inspect
 import os
 import re
@@ -158,38 +158,42 @@ def links(page):
     return [l for l in re.findall(r"\]\(([^)#:]+\.md)", read(page)) if not l.startswith("..")]
 
 
-def title(page):
-    return re.search(r"^# (.*)", read(page), re.MULTILINE)[1].replace("`", "").replace("\\", "")
+def tree_of(pages):
+    return "\n```{toctree}\n:hidden:\n\n" + "\n".join(page[:-3] for page in pages) + "\n```\n"
+
+
+def append(path, text):
+    with open(path, "a", encoding="utf-8") as file:
+        file.write(text)
 
 
 def navigation(source, made):
-    nav = ["  - index.md"]
+    """Each part's pages under its index, in the order of its links; pages that are made under an index of their own."""
     for folder, name in PARTS:
         index = f"{source}/{folder}/index.md"
-        if not os.path.exists(index):
-            continue
-        nav += [f"  - {name}:", f"      - {folder}/index.md"]
-        nav += [f"      - {folder}/{page}" for page in dict.fromkeys(links(index))
-                if os.path.dirname(page) == "" and os.path.exists(f"{source}/{folder}/{page}")]
-        for heading, pages in made.get(folder, {}).items():
-            nav += [f"      - {heading}:"] + [f"          - {page}" for page in pages]
-    return "nav:\n" + "\n".join(nav + [f"  - {page}" for page in ("faq.md", "glossary.md", "releasing.md")
-                                       if os.path.exists(f"{source}/{page}")]) + "\n"
+        pages = [page for page in dict.fromkeys(links(index))
+                 if os.path.dirname(page) == "" and os.path.exists(f"{source}/{folder}/{page}")]
+        append(index, tree_of(pages + made.get(folder, [])))
+    append(f"{source}/index.md", tree_of(["install.md"] + [f"{folder}/index.md" for folder, _ in PARTS]
+                                         + ["faq.md", "glossary.md", "releasing.md"]))
 
 
-def main(program, library, source, site):
+def with_pages_below(folder, pages):
+    """The index of pages that are made, as the entry of their part."""
+    if not pages:
+        return []
+    append(f"{folder}/index.md", tree_of([page for page in pages if page != "index.md"]))
+    return [f"{os.path.basename(folder)}/index.md"]
+
+
+def main(program, library, source):
     shutil.rmtree(source, ignore_errors=True)
     shutil.copytree(f"{ROOT}/docs", source)
-    shutil.copy(f"{ROOT}/tools/site/site.css", source)
     reference = f"{source}/reference"
-    verbs = [f"reference/verbs/{page}" for page in make_verbs(program, f"{reference}/verbs")]
-    c = [f"reference/c/{page}" for page in make_c(f"{reference}/c", f"{source}.doxygen")]
-    module = [f"reference/{page}" for page in make_python(f"{reference}/python-module.md", library)]
-    made = {"reference": {key: pages for key, pages in (("Verbs", verbs), ("C interface", c), ("Python module", module)) if pages}}
-    config = read(f"{ROOT}/tools/site/mkdocs.yml").replace("custom_dir: theme", f"custom_dir: {ROOT}/tools/site/theme")
-    config = config.replace("- hooks.py", f"- {ROOT}/tools/site/hooks.py")
-    write(f"{source}.yml", config + f"docs_dir: {os.path.abspath(source)}\nsite_dir: {os.path.abspath(site)}\n"
-          + navigation(source, made))
+    made = with_pages_below(f"{reference}/verbs", make_verbs(program, f"{reference}/verbs"))
+    made += with_pages_below(f"{reference}/c", make_c(f"{reference}/c", f"{source}.doxygen"))
+    made += make_python(f"{reference}/python-module.md", library)
+    navigation(source, {"reference": made})
 
 
 if __name__ == "__main__":
