@@ -21,7 +21,7 @@ apt="apt-get -qq -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts=$PWD
   -o Dir::State::Lists=$PWD/apt/lists -o APT::Sandbox::User=root"
 # shellcheck disable=SC2086
 $apt update
-for package in qhull xxhash libyaml meshoptimizer; do
+for package in qhull xxhash libyaml meshoptimizer expat zlib; do
   # shellcheck disable=SC2086
   $apt source --download-only "$package" >/dev/null
   dpkg-source --no-check -x "$package"_*.dsc "$package" >/dev/null

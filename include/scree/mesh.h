@@ -44,7 +44,7 @@ SCREE_API scree_read_options scree_default_read_options(void);
 /* A scan: its welded surface and what the file said. */
 typedef struct scree_scan {
   scree_mesh mesh;         /* metres; vertices and triangles in canonical order (scree_mesh_weld) */
-  scree_checksum checksum; /* of the file's bytes */
+  scree_checksum checksum; /* of the file's bytes, and of those beside it that it names */
   size_t byte_count;
   double unit_m;           /* metres per unit of the file: of the options, or what it states */
   bool states_unit;        /* the file does */
@@ -55,7 +55,7 @@ typedef struct scree_scan {
   size_t solid_count;      /* `solid`s of an ASCII STL; else 1 */
   size_t
       ignored_byte_count; /* bytes after the last facet of a binary STL, fewer than a facet has */
-  char warning[192];      /* in what the file contradicts itself, one sentence; "": in nothing */
+  char warning[192];      /* in what it contradicts itself or what is left out; "": nothing */
 } scree_scan;
 
 SCREE_API void scree_scan_free(scree_scan *scan);
@@ -63,9 +63,10 @@ SCREE_API void scree_scan_free(scree_scan *scan);
 /* Reads and welds a scan. path "-" is standard input. The format is found by content, not by name:
  * STL (binary, also big-endian, with colours or a header that begins with `solid`; ASCII), PLY
  * (ASCII, both byte orders, polygons, triangle strips), OBJ (polygons, v/vt/vn, negative indices),
- * OFF (also with colours, normals, texture coordinates); in a build with assimp also 3MF, glTF
- * (binary; text with embedded data), COLLADA, X3D, AMF, FBX and 3DS, imported in a child process
- * with limits on memory and time (docs/reference/formats.md). options NULL means the defaults.
+ * OFF (also with colours, normals, texture coordinates), 3MF, glTF (binary or text, with data
+ * inside or in files beside it); in a build with assimp also COLLADA, X3D, AMF, FBX and 3DS,
+ * imported in a child process with limits on memory and time (docs/reference/mesh-files.md).
+ * options NULL means the defaults.
  *
  * Sizes in the file are believed only where its length allows them, so memory stays within a fixed
  * multiple of the file's length (of its triangles for 3MF and glTF). Errors: SCREE_IO, also where

@@ -9,15 +9,23 @@
 static const double MOST_SIZE_M = 1e30;
 
 const scree_import_kind scree_import_kinds[] = {
-    [SCREE_IMPORT_3MF] = {"3MF", "3mf", SCREE_UNIT_IN_ROOT},
-    [SCREE_IMPORT_GLB] = {"glTF binary", "glb", SCREE_UNIT_METRE},
-    [SCREE_IMPORT_GLTF] = {"glTF text", "gltf", SCREE_UNIT_METRE},
     [SCREE_IMPORT_COLLADA] = {"COLLADA", "dae", SCREE_UNIT_METRE},
     [SCREE_IMPORT_X3D] = {"X3D", "x3d", SCREE_UNIT_METRE},
     [SCREE_IMPORT_AMF] = {"AMF", "amf", SCREE_UNIT_IN_ROOT},
     [SCREE_IMPORT_FBX] = {"FBX", "fbx", SCREE_UNIT_IN_SCENE},
     [SCREE_IMPORT_3DS] = {"3DS", "3ds", SCREE_UNIT_ASKED},
 };
+
+double scree_unit_of_root(const char *name) {
+  static const struct {
+    const char *name;
+    double unit_m;
+  } units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2}, {"inch", 0.0254},
+               {"foot", 0.3048}, {"feet", 0.3048},     {"meter", 1}};
+  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
+    if (!strcmp(units[i].name, name)) return units[i].unit_m;
+  return 0;
+}
 
 /* One printable line, whatever the file put into it. */
 static void make_printable(char *text, size_t size) {

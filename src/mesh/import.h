@@ -6,9 +6,6 @@
 #include "base/error.h"
 
 typedef enum scree_import_format {
-  SCREE_IMPORT_3MF,
-  SCREE_IMPORT_GLB,
-  SCREE_IMPORT_GLTF,
   SCREE_IMPORT_COLLADA,
   SCREE_IMPORT_X3D,
   SCREE_IMPORT_AMF,
@@ -33,12 +30,15 @@ extern const scree_import_kind scree_import_kinds[]; /* by scree_import_format *
 
 enum { SCREE_IMPORT_MOST = 1 << 26 }; /* triangles */
 
+/* The metres of a unit that the root element of a 3MF or AMF names (3MF Core 1.3, 3.4; ISO/ASTM
+ * 52915); 0: there is none of this name. */
+double scree_unit_of_root(const char *name);
+
 /* What the child answers before the corners: nine doubles per triangle. */
 typedef struct scree_import_answer {
   uint64_t triangle_count;
   double unit_m;
   int64_t status;
-  int64_t is_split; /* names parts in other files of its archive */
   char unit_name[16];
   char message[256];
 } scree_import_answer;

@@ -289,8 +289,8 @@ static scree_status read_3ds(scree_reading *r) {
 }
 
 /* The version that stands behind the mark of a binary glTF, or in the member `asset` of a text. */
-static bool is_gltf_1(const scree_reading *r, scree_import_format format) {
-  if (format == SCREE_IMPORT_GLB) return r->byte_count >= 8 && load_u32(r->bytes + 4) == 1;
+static bool is_gltf_1(const scree_reading *r, bool is_binary) {
+  if (is_binary) return r->byte_count >= 8 && load_u32(r->bytes + 4) == 1;
   static const char *const way[] = {"\"asset\"", "\"version\"", "\""};
   const char *p = (const char *)r->bytes, *end = p + r->byte_count;
   for (size_t i = 0; i < sizeof way / sizeof *way; i++) {
@@ -302,10 +302,17 @@ static bool is_gltf_1(const scree_reading *r, scree_import_format format) {
   return *p == '1';
 }
 
-static scree_status read_gltf(scree_reading *r, scree_import_format format) {
-  if (!is_gltf_1(r, format)) return scree_read_import(r, format);
+static scree_status read_gltf(scree_reading *r, bool is_binary) {
+  if (!is_gltf_1(r, is_binary)) return scree_read_gltf(r, is_binary);
   return scree_reading_fail(r, SCREE_UNSUPPORTED,
                             "is glTF 1.0, and 2.0 is what scree reads; convert it first");
+}
+
+static scree_status read_glb(scree_reading *r) {
+  return read_gltf(r, true);
+}
+static scree_status read_fbx(scree_reading *r) {
+  return scree_read_import(r, SCREE_IMPORT_FBX);
 }
 
 /* Text but for a few bytes, and where the first of these is: no float and no count looks so. */
@@ -332,29 +339,26 @@ static bool is_binary_off(scree_text text) {
   return scree_is_off_word(word) && scree_token_is(scree_text_next(&text), "binary");
 }
 
-/* How files that assimp reads begin; 3DS besides (looks_like_3ds). */
+/* How binary files begin that are read; STL and 3DS have no such mark. */
 static const struct {
   const char *bytes;
-  scree_import_format format;
-} imported_marks[] = {{"PK\x03\x04", SCREE_IMPORT_3MF},
-                      {"glTF", SCREE_IMPORT_GLB},
-                      {"Kaydara FBX Binary", SCREE_IMPORT_FBX}};
-enum { IMPORTED_MARK_COUNT = sizeof imported_marks / sizeof *imported_marks };
+  scree_status (*read)(scree_reading *r);
+} binary_marks[] = {
+    {"PK\x03\x04", scree_read_3mf}, {"glTF", read_glb}, {"Kaydara FBX Binary", read_fbx}};
+enum { BINARY_MARK_COUNT = sizeof binary_marks / sizeof *binary_marks };
 
-/* IMPORTED_MARK_COUNT: none. */
-static size_t imported_mark_of(const scree_reading *r) {
+/* BINARY_MARK_COUNT: none. */
+static size_t binary_mark_of(const scree_reading *r) {
   size_t i = 0;
-  while (i < IMPORTED_MARK_COUNT &&
-         !starts_with(r, imported_marks[i].bytes, strlen(imported_marks[i].bytes)))
+  while (i < BINARY_MARK_COUNT &&
+         !starts_with(r, binary_marks[i].bytes, strlen(binary_marks[i].bytes)))
     i++;
   return i;
 }
 
 static scree_status read_binary_or_fail(scree_reading *r) {
-  size_t imported = imported_mark_of(r);
-  if (imported < IMPORTED_MARK_COUNT && imported_marks[imported].format == SCREE_IMPORT_GLB)
-    return read_gltf(r, SCREE_IMPORT_GLB);
-  if (imported < IMPORTED_MARK_COUNT) return scree_read_import(r, imported_marks[imported].format);
+  size_t marked = binary_mark_of(r);
+  if (marked < BINARY_MARK_COUNT) return binary_marks[marked].read(r);
   if (looks_like_3ds(r)) return read_3ds(r);
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++) {
     const mark *m = &foreign_marks[i];
@@ -388,11 +392,11 @@ static scree_status read_any(scree_reading *r) {
   if (scree_token_is(word, "solid")) return scree_read_stl_ascii(r);
   if (looks_like_off(text)) return scree_read_off(r);
   if (looks_like_obj(text)) return scree_read_obj(r);
-  if (looks_like_gltf(text)) return read_gltf(r, SCREE_IMPORT_GLTF);
+  if (looks_like_gltf(text)) return read_gltf(r, false);
   scree_import_format format;
   if (find_xml_format(text, &format)) return scree_read_import(r, format);
   scree_text_skip_space(&text);
-  if (begins_with(&text, "; fbx")) return scree_read_import(r, SCREE_IMPORT_FBX);
+  if (begins_with(&text, "; fbx")) return read_fbx(r);
   return fail_text(r, text);
 }
 
@@ -405,25 +409,28 @@ static scree_status check_options(const scree_read_options *o, scree_error *erro
   return SCREE_OK;
 }
 
-static scree_status parse(const void *bytes, size_t byte_count, size_t whole_count,
-                          const char *name, const scree_read_options *options, scree_scan *scan,
-                          scree_error *error) {
-  scree_read_options used = options ? *options : scree_default_read_options();
-  scree_status status = check_options(&used, error);
+/* Reads what r names; its unit and scan are set here. */
+static scree_status parse(scree_reading *r, scree_scan *scan) {
+  scree_status status = check_options(r->options, r->error);
   if (status != SCREE_OK) return status;
-  scree_scan made = {.byte_count = byte_count};
-  scree_reading r = {name, bytes, byte_count, whole_count, &used, used.unit_m, &made, error};
-  status = read_any(&r);
-  made.unit_m = r.unit_m;
+  scree_scan made = {.byte_count = r->byte_count};
+  r->scan = &made;
+  r->unit_m = r->options->unit_m;
+  status = read_any(r);
+  made.unit_m = r->unit_m;
   if (status == SCREE_OK && made.mesh.triangle_count == 0)
-    status = scree_reading_fail(&r, SCREE_BAD_MESH,
+    status = scree_reading_fail(r, SCREE_BAD_MESH,
                                 "all %zu facets are degenerate: two corners of each coincide",
                                 made.facet_count);
   if (status != SCREE_OK) {
     scree_scan_free(&made);
     return status;
   }
-  made.checksum = scree_checksum_of(bytes, byte_count);
+  made.checksum = scree_checksum_of(r->bytes, r->byte_count);
+  if (r->beside.high | r->beside.low) {
+    scree_checksum sums[2] = {made.checksum, r->beside};
+    made.checksum = scree_checksum_of(sums, sizeof sums);
+  }
   *scan = made;
   return SCREE_OK;
 }
@@ -431,11 +438,18 @@ static scree_status parse(const void *bytes, size_t byte_count, size_t whole_cou
 scree_status scree_scan_parse(const void *bytes, size_t byte_count, const char *name,
                               const scree_read_options *options, scree_scan *scan,
                               scree_error *error) {
-  return parse(bytes, byte_count, byte_count, name, options, scan, error);
+  scree_read_options used = options ? *options : scree_default_read_options();
+  scree_reading r = {.name = name,
+                     .bytes = bytes,
+                     .byte_count = byte_count,
+                     .whole_count = byte_count,
+                     .options = &used,
+                     .error = error};
+  return parse(&r, scan);
 }
 
 /* What a stream is may show at its end only where it begins with white space or comments, or where
- * one of assimp's formats may follow. */
+ * glTF or one of assimp's formats may follow. */
 static bool may_be_text_format(scree_text text) {
   scree_text start = text;
   scree_token word = first_word(text);
@@ -451,14 +465,19 @@ static bool may_be_text_format(scree_text text) {
 static size_t judge(const char *beginning, size_t byte_count, size_t whole_count) {
   const scree_read_options options = scree_default_read_options();
   const unsigned char *bytes = (const unsigned char *)beginning;
-  scree_reading r = {"", bytes, byte_count, whole_count, &options, 1, NULL, NULL};
+  scree_reading r = {.name = "",
+                     .bytes = bytes,
+                     .byte_count = byte_count,
+                     .whole_count = whole_count,
+                     .options = &options,
+                     .unit_m = 1};
   scree_text text = scree_reading_text(&r), start = text;
   size_t damaged = 0;
   if (byte_count < SCREE_JUDGED_BYTES) return SIZE_MAX; /* it has ended */
   if (scree_token_is(scree_text_next(&start), "ply")) return SIZE_MAX;
   if (scree_stl_length_of(bytes, whole_count) == SCREE_STL_WHOLE) return SIZE_MAX;
   if (looks_like_text(bytes, byte_count)) return may_be_text_format(text) ? SIZE_MAX : byte_count;
-  if (imported_mark_of(&r) < IMPORTED_MARK_COUNT || starts_with(&r, "MM", 2)) return SIZE_MAX;
+  if (binary_mark_of(&r) < BINARY_MARK_COUNT || starts_with(&r, "MM", 2)) return SIZE_MAX;
   for (size_t i = 0; i < sizeof foreign_marks / sizeof *foreign_marks; i++)
     if (starts_with(&r, foreign_marks[i].bytes, foreign_marks[i].length)) return byte_count;
   if (is_binary_off(text) || is_damaged_text(&r, &damaged)) return byte_count;
@@ -477,8 +496,13 @@ static scree_status read_stream(const char *path, const scree_read_options *opti
   if (!scree_stream_open(path, &stream)) return SCREE_OK;
   if (!options->max_bytes || stream.byte_count <= options->max_bytes) {
     scree_scan made = {.byte_count = stream.byte_count, .unit_m = options->unit_m};
-    scree_reading r = {path,  NULL, stream.byte_count, stream.byte_count, options, options->unit_m,
-                       &made, error};
+    scree_reading r = {.name = path,
+                       .byte_count = stream.byte_count,
+                       .whole_count = stream.byte_count,
+                       .options = options,
+                       .unit_m = options->unit_m,
+                       .scan = &made,
+                       .error = error};
     status = scree_read_stl_stream(&r, &stream, done);
     made.checksum = scree_stream_checksum(&stream);
     made.unit_m = r.unit_m;
@@ -504,8 +528,15 @@ scree_status scree_scan_read(const char *path, const scree_read_options *options
   status =
       scree_file_read_judged(path, used.max_bytes, judge, &bytes, &byte_count, &whole_count, error);
   if (status != SCREE_OK) return status;
-  const char *name = strcmp(path, "-") != 0 ? path : "standard input";
-  status = parse(bytes, byte_count, whole_count, name, options, scan, error);
+  bool is_file = strcmp(path, "-") != 0;
+  scree_reading r = {.name = is_file ? path : "standard input",
+                     .bytes = (const unsigned char *)bytes,
+                     .byte_count = byte_count,
+                     .whole_count = whole_count,
+                     .options = &used,
+                     .error = error,
+                     .path = is_file ? path : NULL};
+  status = parse(&r, scan);
   scree_free(bytes);
   return status;
 }

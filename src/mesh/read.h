@@ -18,6 +18,8 @@ typedef struct scree_reading {
   double unit_m;    /* metres per unit: of the options, unless the file states its own */
   scree_scan *scan; /* filled; its mesh is freed by the caller on failure */
   scree_error *error;
+  const char *path;      /* of the file, for others beside it; NULL: bytes in memory, or a stream */
+  scree_checksum beside; /* of those that were read; zero: none */
 } scree_reading;
 
 /* The file as text, behind a byte order mark. */
@@ -43,6 +45,8 @@ scree_status scree_read_stl_ascii(scree_reading *r);
 scree_status scree_read_ply(scree_reading *r);
 scree_status scree_read_obj(scree_reading *r);
 scree_status scree_read_off(scree_reading *r);
+scree_status scree_read_3mf(scree_reading *r);
+scree_status scree_read_gltf(scree_reading *r, bool is_binary);
 /* Formats read through assimp; a build without it answers SCREE_UNSUPPORTED. */
 scree_status scree_read_import(scree_reading *r, scree_import_format format);
 /* How long a file of byte_count bytes that begins so (at least SCREE_STL_HEADER of them, or all) is

@@ -1,4 +1,4 @@
-/* 3MF, glTF and others through assimp's C interface, in a child process under limits
+/* COLLADA, X3D, AMF, FBX and 3DS through assimp's C interface, in a child process under limits
  * (base/child.h): assimp reads forty formats, and hostile files break it. The child answers a
  * record and then the corners of all triangles; nothing it says is believed before it is checked.
  *
@@ -6,15 +6,14 @@
  * double precision, mirrored nodes are turned outward again, an instance counts each time it is
  * placed, and welding is scree's. assimp holds coordinates in single precision.
  *
- * Units: glTF and X3D are in metres by their specifications; assimp brings COLLADA to metres. 3MF
- * and AMF name one in their root element (3MF Core 1.3, 3.4; ISO/ASTM 52915), which assimp 5.2 does
- * not pass on, so the child looks into the file itself. FBX tells how many centimetres a unit has.
- * 3DS has none. */
+ * Units: X3D is in metres by its specification; assimp brings COLLADA to metres. AMF names one in
+ * its root element (ISO/ASTM 52915), which assimp 5.2 does not pass on, so the child looks into the
+ * file itself. FBX tells how many centimetres a unit has. 3DS has none. */
 #include "mesh/read.h"
 
 #ifdef SCREE_WITH_ASSIMP
 #include "base/child.h"
-#include "mesh/zip.h"
+#include "mesh/placement.h"
 
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
@@ -39,7 +38,7 @@ typedef struct import {
   scree_import_format format;
 } import;
 
-/* ---- in the child: the unit of a 3MF or AMF ---- */
+/* ---- in the child: the unit of an AMF ---- */
 
 /* Behind the next `mark`, or NULL. */
 static const char *behind(const char *text, const char *mark) {
@@ -85,79 +84,34 @@ static bool read_unit_name(const char *p, char name[16]) {
   }
 }
 
-/* The start of what holds the root element, ended by a zero; false after filling the answer. */
-static bool peek_root(const import *im, char text[PEEK_BYTES + 1], scree_import_answer *a) {
-  size_t count = im->byte_count < PEEK_BYTES ? im->byte_count : PEEK_BYTES;
-  scree_zip_member model;
-  if (im->format != SCREE_IMPORT_3MF) {
-    memcpy(text, im->bytes, count);
-  } else if (scree_zip_find(im->bytes, im->byte_count, "3D/3dmodel.model", &model)) {
-    count = scree_zip_peek(&model, text, PEEK_BYTES);
-  } else {
-    a->status = SCREE_BAD_FILE;
-    snprintf(
-        a->message, sizeof a->message,
-        "is a zip archive in which 3D/3dmodel.model is not found: cut off, damaged, or no 3MF");
-    return false;
-  }
-  text[count] = 0;
-  return true;
-}
-
 static void find_root_unit(const import *im, scree_import_answer *a) {
-  static const struct {
-    const char *name;
-    double unit_m;
-  } units[] = {{"micron", 1e-6}, {"millimeter", 1e-3}, {"centimeter", 1e-2}, {"inch", 0.0254},
-               {"foot", 0.3048}, {"feet", 0.3048},     {"meter", 1}};
   static char text[PEEK_BYTES + 1];
-  const char *name = scree_import_kinds[im->format].name,
-             *root = im->format == SCREE_IMPORT_3MF ? "model" : "amf";
-  if (!peek_root(im, text, a)) return;
+  size_t count = im->byte_count < PEEK_BYTES ? im->byte_count : PEEK_BYTES;
+  memcpy(text, im->bytes, count);
+  text[count] = 0;
+  const char *attributes = find_root_attributes(text, "amf");
   a->status = SCREE_BAD_FILE;
-  a->is_split = strstr(text, ":path=") != NULL;
-  const char *attributes = find_root_attributes(text, root);
   if (!attributes || !read_unit_name(attributes, a->unit_name)) {
-    snprintf(a->message, sizeof a->message, "as %s: %s does not begin with an XML element <%s ...>",
-             name, im->format == SCREE_IMPORT_3MF ? "3D/3dmodel.model" : "it", root);
+    snprintf(a->message, sizeof a->message,
+             "as AMF: it does not begin with an XML element <amf ...>");
     return;
   }
-  for (size_t i = 0; i < sizeof units / sizeof *units; i++)
-    if (!strcmp(units[i].name, a->unit_name)) {
-      a->unit_m = units[i].unit_m;
-      a->status = SCREE_OK;
-      return;
-    }
-  snprintf(a->message, sizeof a->message,
-           "as %s: the unit is '%s'; it should be micron, millimeter, centimeter, inch, foot or "
-           "meter",
-           name, a->unit_name);
+  a->unit_m = scree_unit_of_root(a->unit_name);
+  if (a->unit_m > 0)
+    a->status = SCREE_OK;
+  else
+    snprintf(a->message, sizeof a->message,
+             "as AMF: the unit is '%s'; it should be micron, millimeter, centimeter, inch, foot or "
+             "meter",
+             a->unit_name);
 }
 
 /* ---- in the child: the scene ---- */
 
-typedef struct placement {
-  double m[3][4]; /* rows: p becomes m[.][0..2] p + m[.][3] */
-} placement;
-
-static placement place_in(const placement *outer, const struct aiMatrix4x4 *t) {
-  const double in[3][4] = {
-      {t->a1, t->a2, t->a3, t->a4}, {t->b1, t->b2, t->b3, t->b4}, {t->c1, t->c2, t->c3, t->c4}};
-  placement p;
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 4; j++) {
-      p.m[i][j] = j == 3 ? outer->m[i][3] : 0;
-      for (int k = 0; k < 3; k++) p.m[i][j] += outer->m[i][k] * in[k][j];
-    }
-  return p;
-}
-
-static bool is_mirrored(const placement *p) {
-  const double(*m)[4] = p->m;
-  return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]) <
-         0;
+static scree_placement place_in(const scree_placement *outer, const struct aiMatrix4x4 *t) {
+  scree_placement inner = {
+      {{t->a1, t->a2, t->a3, t->a4}, {t->b1, t->b2, t->b3, t->b4}, {t->c1, t->c2, t->c3, t->c4}}};
+  return scree_placement_in(outer, &inner);
 }
 
 /* The walk over all placed meshes: once to count, once to write. */
@@ -177,7 +131,7 @@ static void flush_chunk(walk *w) {
 }
 
 static void walk_face(walk *w, const struct aiMesh *mesh, const struct aiFace *face,
-                      const placement *p, bool mirrored) {
+                      const scree_placement *p, bool mirrored) {
   if (w->output >= 0 && w->chunk_count == CHUNK_TRIANGLES) flush_chunk(w);
   for (int c = 0; c < 3; c++) {
     unsigned index = face->mIndices[mirrored ? 2 - c : c];
@@ -185,18 +139,17 @@ static void walk_face(walk *w, const struct aiMesh *mesh, const struct aiFace *f
       w->is_valid = false;
       return;
     }
-    struct aiVector3D v = mesh->mVertices[index];
-    for (int i = 0; i < 3 && w->output >= 0; i++)
-      w->chunk[w->chunk_count][c][i] =
-          p->m[i][0] * v.x + p->m[i][1] * v.y + p->m[i][2] * v.z + p->m[i][3];
+    const struct aiVector3D *v = &mesh->mVertices[index];
+    if (w->output >= 0)
+      scree_placement_apply(p, (double[3]){v->x, v->y, v->z}, w->chunk[w->chunk_count][c]);
   }
   w->chunk_count++;
   w->triangle_count++;
 }
 
-static void walk_node(walk *w, const struct aiNode *node, const placement *outer) {
-  placement p = place_in(outer, &node->mTransformation);
-  bool mirrored = is_mirrored(&p);
+static void walk_node(walk *w, const struct aiNode *node, const scree_placement *outer) {
+  scree_placement p = place_in(outer, &node->mTransformation);
+  bool mirrored = scree_placement_mirrors(&p);
   for (unsigned i = 0; i < node->mNumMeshes && w->is_valid; i++) {
     if (node->mMeshes[i] >= w->scene->mNumMeshes) w->is_valid = false;
     if (!w->is_valid || w->triangle_count > SCREE_IMPORT_MOST) return;
@@ -210,12 +163,11 @@ static void walk_node(walk *w, const struct aiNode *node, const placement *outer
 }
 
 static void walk_scene(walk *w, const struct aiScene *scene, int output) {
-  static const placement identity = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
   w->scene = scene;
   w->output = output;
   w->is_valid = w->is_written = true;
   w->triangle_count = w->chunk_count = 0;
-  if (scene->mRootNode) walk_node(w, scene->mRootNode, &identity);
+  if (scene->mRootNode) walk_node(w, scene->mRootNode, &scree_placement_none);
 }
 
 /* An FBX's centimetres per unit; 1 where it does not say. */
@@ -242,30 +194,12 @@ static void explain_refusal(const import *im, scree_import_answer *a) {
            scree_import_kinds[im->format].name, *reason ? reason : "no reason given");
 }
 
-static void explain_split(const import *im, scree_import_answer *a) {
-  a->status = SCREE_BAD_FILE;
-  snprintf(
-      a->message, sizeof a->message,
-      "as %s: its parts lie in several files of the archive, which is not read; save it as one",
-      scree_import_kinds[im->format].name);
-}
-
 /* What assimp makes of the file; NULL with the reason in the answer. */
 static const struct aiScene *import_scene(const import *im, scree_import_answer *a) {
-  const scree_import_kind *kind = &scree_import_kinds[im->format];
-  unsigned char *narrow = NULL;
-  size_t count = im->byte_count;
-  if (im->format == SCREE_IMPORT_3MF && !scree_zip_narrow(im->bytes, count, &narrow, &count)) {
-    a->status = SCREE_LIMIT;
-    snprintf(a->message, sizeof a->message, "as %s: reading it takes more memory than it is given",
-             kind->name);
-    return NULL;
-  }
   const struct aiScene *scene =
-      aiImportFileFromMemory((const char *)(narrow ? narrow : im->bytes), (unsigned)count,
-                             aiProcess_Triangulate, kind->hint);
+      aiImportFileFromMemory((const char *)im->bytes, (unsigned)im->byte_count,
+                             aiProcess_Triangulate, scree_import_kinds[im->format].hint);
   if (!scene) explain_refusal(im, a);
-  free(narrow);
   return scene;
 }
 
@@ -289,7 +223,6 @@ static bool import_in_child(void *context, int output) {
                scree_import_kinds[im->format].name, SCREE_IMPORT_MOST);
     }
   }
-  if (a.is_split && (!scene || a.triangle_count == 0)) explain_split(im, &a);
   if (!scree_child_write(output, &a, sizeof a)) return false;
   if (!scene || a.status != SCREE_OK) return true;
   walk_scene(&w, scene, output);
@@ -323,18 +256,13 @@ import im = {r->bytes, r->byte_count, format };
 #else
 scree_status scree_read_import(scree_reading *r, scree_import_format format) {
   static const char *const sentences[] = {
-      [SCREE_IMPORT_3MF] = "is a zip archive (3MF is one)",
-      [SCREE_IMPORT_GLB] = "is a glTF model",
-      [SCREE_IMPORT_GLTF] = "is a glTF model",
-      [SCREE_IMPORT_COLLADA] = "is a COLLADA model",
-      [SCREE_IMPORT_X3D] = "is an X3D model",
-      [SCREE_IMPORT_AMF] = "is an AMF model",
-      [SCREE_IMPORT_FBX] = "is an FBX model",
+      [SCREE_IMPORT_COLLADA] = "is a COLLADA model", [SCREE_IMPORT_X3D] = "is an X3D model",
+      [SCREE_IMPORT_AMF] = "is an AMF model",        [SCREE_IMPORT_FBX] = "is an FBX model",
       [SCREE_IMPORT_3DS] = "is a 3DS model",
   };
-  return scree_reading_fail(
-      r, SCREE_UNSUPPORTED,
-      "%s; this build of scree reads STL, PLY, OBJ and OFF, and other formats only with assimp",
-      sentences[format]);
+  return scree_reading_fail(r, SCREE_UNSUPPORTED,
+                            "%s; this build of scree reads STL, PLY, OBJ, OFF, 3MF and glTF, and "
+                            "other formats only with assimp",
+                            sentences[format]);
 }
 #endif

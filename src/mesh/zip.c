@@ -3,11 +3,11 @@
  * lie (PKWARE APPNOTE 4.3). In zip64, what is all ones there stands with 64 bits in another end
  * record and in the extra fields of an entry. No encryption, methods 0 (stored) and 8 (deflate).
  * Every offset is checked against the file's length. */
-#ifdef SCREE_WITH_ASSIMP
 #include "mesh/zip.h"
 
+#include "base/alloc.h"
+
 #include <stdint.h>
-#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <zlib.h>
@@ -22,6 +22,7 @@ enum {
   MOST_COMMENT = 65535,
   STORED = 0,
   DEFLATED = 8,
+  PIECE = 1 << 16,
   RAW_WINDOW = -15 /* zlib: deflate without a header */
 };
 
@@ -66,8 +67,7 @@ typedef struct entry {
   const unsigned char *head, *name, *content;
   size_t name_length;
   uint64_t stored_count, content_count, local;
-  uint32_t method;
-  bool is_wide;
+  uint32_t method, crc;
 } entry;
 
 /* Of content_count, stored_count and local those that are all ones stand in a field of the extra
@@ -83,7 +83,6 @@ static bool widen(entry *e) {
     if (at + 8 > length) return false;
     *numbers[i] = get64(fields + at);
     at += 8;
-    e->is_wide = true;
   }
   return true;
 }
@@ -110,6 +109,7 @@ static bool next_entry(const unsigned char *bytes, size_t byte_count, uint64_t *
                .name = head + ENTRY_SIZE,
                .name_length = get16(head + 28),
                .method = get16(head + 10),
+               .crc = get32(head + 16),
                .stored_count = get32(head + 20),
                .content_count = get32(head + 24),
                .local = get32(head + 42)};
@@ -128,102 +128,62 @@ bool scree_zip_find(const unsigned char *bytes, size_t byte_count, const char *n
         strncasecmp((const char *)e.name, name, e.name_length) != 0)
       continue;
     if (!locate(bytes, byte_count, &e)) return false;
-    *member = (scree_zip_member){e.content, e.stored_count, e.method == DEFLATED};
+    *member = (scree_zip_member){e.content, (size_t)e.stored_count, e.crc, e.method == DEFLATED};
     return true;
   }
   return false;
 }
 
-/* ---- Without zip64 ---- */
-
-static unsigned char *put(unsigned char *out, uint64_t value, int byte_count) {
-  for (int i = 0; i < byte_count; i++) *out++ = (unsigned char)(value >> 8 * i);
-  return out;
+static void *zip_alloc(void *context, unsigned count, unsigned size) {
+  (void)context;
+  return scree_alloc(count, size);
 }
 
-/* What local header and directory have in common: version to name length, and no extra fields. */
-static unsigned char *put_common(unsigned char *out, const entry *e) {
-  out = put(out, 20, 2); /* the version that can read it: 2.0 */
-  memcpy(out, e->head + 8, 12);
-  out[0] &= (unsigned char)~8; /* the sizes stand here, not behind the content */
-  out = put(out + 12, e->stored_count, 4);
-  out = put(out, e->content_count, 4);
-  out = put(out, e->name_length, 2);
-  return put(out, 0, 2);
+static void zip_free(void *context, void *block) {
+  (void)context;
+  scree_free(block);
 }
 
-/* Header and content of one member; answers what lies behind. */
-static unsigned char *put_member(unsigned char *out, const entry *e) {
-  out = put_common(put(out, 0x04034b50, 4), e);
-  memcpy(out, e->name, e->name_length);
-  out += e->name_length;
-  memcpy(out, e->content, e->stored_count);
-  return out + e->stored_count;
+/* The next piece of the content: its length, and zlib's code. */
+static int inflate_piece(z_stream *z, const scree_zip_member *member, size_t *done,
+                         unsigned char *piece, size_t *made) {
+  uint64_t left = member->stored_count - *done;
+  z->next_in = (Bytef *)(uintptr_t)(member->bytes + *done);
+  z->avail_in = left < UINT32_MAX ? (uInt)left : UINT32_MAX;
+  size_t given = z->avail_in;
+  z->next_out = piece;
+  z->avail_out = PIECE;
+  int code = inflate(z, Z_NO_FLUSH);
+  *done += given - z->avail_in;
+  *made = PIECE - z->avail_out;
+  return code;
 }
 
-static unsigned char *put_entry(unsigned char *out, const entry *e, uint64_t local) {
-  out = put_common(put(put(out, 0x02014b50, 4), 20, 2), e);
-  memset(out, 0, 10); /* no comment, first disk, no attributes */
-  out = put(out + 10, local, 4);
-  memcpy(out, e->name, e->name_length);
-  return out + e->name_length;
+static int copy_piece(const scree_zip_member *member, size_t *done, unsigned char *piece,
+                      size_t *made) {
+  size_t left = member->stored_count - *done;
+  *made = left < PIECE ? left : PIECE;
+  memcpy(piece, member->bytes + *done, *made);
+  *done += *made;
+  return *made == left ? Z_STREAM_END : Z_OK;
 }
 
-bool scree_zip_narrow(const unsigned char *bytes, size_t byte_count, unsigned char **narrow,
-                      size_t *narrow_count) {
-  directory d;
-  entry e;
-  bool is_wide = false;
-  *narrow = NULL;
-  if (!find_directory(bytes, byte_count, &d) || d.entry_count >= UINT16_MAX) return true;
-  uint64_t size = END_SIZE, at = d.at, local = 0;
-  for (uint64_t i = 0; i < d.entry_count; i++) {
-    if (!next_entry(bytes, byte_count, &at, &e) || !locate(bytes, byte_count, &e)) return true;
-    size += LOCAL_SIZE + ENTRY_SIZE + 2 * e.name_length + e.stored_count;
-    is_wide |= e.is_wide;
+scree_status scree_zip_stream(const scree_zip_member *member, scree_zip_taker *take,
+                              void *context) {
+  unsigned char *piece = scree_alloc(PIECE, 1);
+  z_stream z = {.zalloc = zip_alloc, .zfree = zip_free};
+  int code = piece ? inflateInit2(&z, RAW_WINDOW) : Z_MEM_ERROR;
+  uLong crc = crc32(0, NULL, 0);
+  size_t done = 0, made = 0;
+  while (code == Z_OK) {
+    code = member->is_deflated ? inflate_piece(&z, member, &done, piece, &made)
+                               : copy_piece(member, &done, piece, &made);
+    if (code != Z_OK && code != Z_STREAM_END) break;
+    crc = crc32(crc, piece, (uInt)made);
+    if (!take(context, piece, made, code == Z_STREAM_END)) code = Z_ERRNO;
   }
-  if (!is_wide || size >= UINT32_MAX) return true;
-  unsigned char *made = malloc(size), *out = made;
-  if (!made) return false;
-  at = d.at;
-  for (uint64_t i = 0; i < d.entry_count; i++) {
-    next_entry(bytes, byte_count, &at, &e), locate(bytes, byte_count, &e);
-    out = put_member(out, &e);
-  }
-  unsigned char *entries = out;
-  at = d.at;
-  for (uint64_t i = 0; i < d.entry_count; i++) {
-    next_entry(bytes, byte_count, &at, &e), locate(bytes, byte_count, &e);
-    out = put_entry(out, &e, local);
-    local += LOCAL_SIZE + e.name_length + e.stored_count;
-  }
-  unsigned char *end = out;
-  out = put(put(out, 0x06054b50, 4), 0, 4);
-  out = put(put(out, d.entry_count, 2), d.entry_count, 2);
-  out = put(put(out, (uint64_t)(end - entries), 4), (uint64_t)(entries - made), 4);
-  out = put(out, 0, 2);
-  *narrow = made;
-  *narrow_count = (size_t)(out - made);
-  return true;
+  if (piece) inflateEnd(&z);
+  scree_free(piece);
+  if (code == Z_MEM_ERROR) return SCREE_OUT_OF_MEMORY;
+  return code == Z_STREAM_END && crc == member->crc ? SCREE_OK : SCREE_BAD_FILE;
 }
-
-size_t scree_zip_peek(const scree_zip_member *member, char *out, size_t capacity) {
-  if (!member->is_deflated) {
-    size_t count = member->stored_count < capacity ? member->stored_count : capacity;
-    memcpy(out, member->bytes, count);
-    return count;
-  }
-  z_stream stream = {0};
-  if (inflateInit2(&stream, RAW_WINDOW) != Z_OK) return 0;
-  stream.next_in = (Bytef *)(uintptr_t)member->bytes;
-  stream.avail_in = member->stored_count < UINT32_MAX ? (uInt)member->stored_count : UINT32_MAX;
-  stream.next_out = (Bytef *)out;
-  stream.avail_out = (uInt)capacity;
-  (void)inflate(&stream, Z_SYNC_FLUSH);
-  size_t count = capacity - stream.avail_out;
-  inflateEnd(&stream);
-  return count;
-}
-#else
-typedef int scree_zip_unused; /* a translation unit is never empty */
-#endif

@@ -1,13 +1,13 @@
-/* Finding one member of a zip archive, and looking at its beginning. */
+/* Finding a member of a zip archive and reading it. */
 #ifndef SCREE_MESH_ZIP_H
 #define SCREE_MESH_ZIP_H
 
-#include <stdbool.h>
-#include <stddef.h>
+#include "base/error.h"
 
 typedef struct scree_zip_member {
   const unsigned char *bytes; /* as stored, inside the archive */
   size_t stored_count;
+  uint32_t crc; /* of the content, as the archive says */
   bool is_deflated;
 } scree_zip_member;
 
@@ -16,13 +16,10 @@ typedef struct scree_zip_member {
 bool scree_zip_find(const unsigned char *bytes, size_t byte_count, const char *name,
                     scree_zip_member *member);
 
-/* The same archive without zip64, which assimp cannot read, where it has any and does without: then
- * *narrow is to be freed with free(), else NULL. False where memory is out. For a child process, so
- * that it allocates as assimp does. */
-bool scree_zip_narrow(const unsigned char *bytes, size_t byte_count, unsigned char **narrow,
-                      size_t *narrow_count);
-
-/* The first `capacity` bytes of the member, or fewer; answers how many. */
-size_t scree_zip_peek(const scree_zip_member *member, char *out, size_t capacity);
+/* Is given the content piece by piece; false ends it. */
+typedef bool scree_zip_taker(void *context, const unsigned char *bytes, size_t count, bool is_last);
+/* SCREE_BAD_FILE where the member is damaged (by its CRC-32 too) or take answered false;
+ * SCREE_OUT_OF_MEMORY. */
+scree_status scree_zip_stream(const scree_zip_member *member, scree_zip_taker *take, void *context);
 
 #endif

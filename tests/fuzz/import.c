@@ -1,4 +1,4 @@
-/* What the child process that reads 3MF and the like hands back, as one that a hostile file has
+/* What the child process that reads COLLADA and the like hands back, as one that a hostile file has
  * taken over would. */
 #include "fuzz/reading.h"
 #include "mesh/read.h"
@@ -18,7 +18,14 @@ static void take(scree_import_format format, bool fitting, const uint8_t *data, 
     size = sizeof(scree_import_answer) + (size_t)count * 9 * sizeof(double);
     memcpy(answer, &count, sizeof count);
   }
-  scree_reading r = {"fuzz", data, size, size, &options, options.unit_m, &scan, &error};
+  scree_reading r = {.name = "fuzz",
+                     .bytes = data,
+                     .byte_count = size,
+                     .whole_count = size,
+                     .options = &options,
+                     .unit_m = options.unit_m,
+                     .scan = &scan,
+                     .error = &error};
   scree_reset_memory_peak();
   scree_status status = scree_import_take(&r, format, answer, size);
   FUZZ_CHECK(scree_memory_peak() - used <= FUZZ_BYTES_PER_BYTE * size + FUZZ_LEAST_BYTES);

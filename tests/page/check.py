@@ -189,8 +189,7 @@ def broken_files_say_why(browser, folder):
         drop(browser, os.path.join(folder, name))
         browser.wait("document.querySelector('.scans li:last-child .error')")
         said = browser.text(".scans li:last-child .error").strip()
-        if not name.endswith("3mf"):  # which other builds read
-            check(said == sentence, f"{name}: the page says {said!r}, the program {sentence!r}")
+        check(said == sentence, f"{name}: the page says {said!r}, the program {sentence!r}")
         idle(browser)
         browser.run("document.querySelector('.scans li:last-child button').click()")
         idle(browser)

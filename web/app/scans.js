@@ -51,7 +51,7 @@ export class ScansTab {
     const drop = element('label', null, host, { class: 'drop' });
     element('span', 'Drop scans here, or pick them', drop, { class: 'call' });
     element('span', 'STL, PLY, OBJ or OFF, closed or not. They are read, repaired and decimated in this page and never leave your computer.', drop, { class: 'soft' });
-    this.picker = element('input', null, drop, { type: 'file', id: 'file', multiple: '', accept: '.stl,.ply,.obj,.off,model/stl' });
+    this.picker = element('input', null, drop, { type: 'file', id: 'file', multiple: '', accept: '.stl,.ply,.obj,.off,.3mf,.glb,.gltf,model/stl' });
     this.picker.addEventListener('change', () => {
       this.add([...this.picker.files]);
       this.picker.value = '';
