@@ -107,6 +107,19 @@ SCREE_API size_t scree_scene_inlet_count(const scree_scene *scene, size_t index,
                                          size_t *waiting);
 SCREE_API size_t scree_scene_outlet_count(const scree_scene *scene, size_t index, double *mass);
 
+/* What left the domain. Where the scene names none that is the box of its geometry as it stands,
+ * inlets, outlets and sensors with as much again on every side, looked at with every row of the
+ * series, and nothing was meant to leave it. */
+typedef struct scree_scene_loss {
+  size_t count;
+  double mass;                       /* kg */
+  double first_time, first_place[3]; /* s, m: of the first */
+  double low[3], high[3];            /* m: the domain, infinite where it has no end */
+  bool is_meant;                     /* the scene names its domain */
+} scree_scene_loss;
+/* False where nothing did. */
+SCREE_API bool scree_scene_loss_of(const scree_scene *scene, scree_scene_loss *loss);
+
 /* ---- Sensors ---- */
 
 /* Every number that is followed is a column: "time", "inside", "throughput.mass_rate". Its name and

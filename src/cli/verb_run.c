@@ -229,6 +229,17 @@ static void print_sensors(FILE *stream, const scree_scene *scene) {
   }
 }
 
+static void print_loss(FILE *stream, const scree_scene *scene) {
+  scree_scene_loss loss;
+  if (!scree_scene_loss_of(scene, &loss)) return;
+  fprintf(stream, "  %zu left the domain, the first at %.4g s at (%.4g, %.4g, %.4g) m", loss.count,
+          loss.first_time, loss.first_place[0], loss.first_place[1], loss.first_place[2]);
+  if (!loss.is_meant)
+    fprintf(stream, ": past all geometry, where no outlet was meant; give outlets or a domain if "
+                    "one was, and look for a gap in the walls if not");
+  putc('\n', stream);
+}
+
 static void print_summary(FILE *stream, const scree_scene *scene, const char *stopped) {
   scree_scene_book b;
   scree_scene_get_book(scene, &b);
@@ -246,6 +257,7 @@ static void print_summary(FILE *stream, const scree_scene *scene, const char *st
       fprintf(stream, "  inlet %s: %zu wait, for there is no room\n",
               scree_scene_inlet_name(scene, i), waiting);
   }
+  print_loss(stream, scene);
   fprintf(stream, "  energy that the sums miss: %.2g of all that changed its form\n", b.ledger);
   print_sensors(stream, scene);
 }

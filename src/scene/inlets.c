@@ -159,7 +159,7 @@ scree_status scree_scene_check_inlets(scree_scene *scene, scree_error *error) {
 
 /* ---- filling ---- */
 
-static void region_of(const scree_plan_inlet *plan, double low[3], double high[3]) {
+void scree_scene_region_of(const scree_plan_inlet *plan, double low[3], double high[3]) {
   if (plan->box) {
     memcpy(low, plan->box->min, 3 * sizeof *low);
     memcpy(high, plan->box->max, 3 * sizeof *high);
@@ -232,7 +232,7 @@ double scree_scene_highest(const scree_scene *scene, const scree_placement *exte
 static scree_status list_near(scree_scene *scene, const scree_plan_inlet *plan,
                               scree_error *error) {
   double low[3], high[3];
-  region_of(plan, low, high);
+  scree_scene_region_of(plan, low, high);
   return scree_scene_list_present(scene, NULL, low, high, error);
 }
 

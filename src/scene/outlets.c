@@ -1,6 +1,9 @@
-/* Outlets: bodies whose centre is in one, or beyond the domain, are taken out and booked. */
+/* Outlets: bodies whose centre is in one, or beyond the domain, are taken out and booked. A domain
+ * that the scene does not name is looked at with every row of the series only. */
 #include "scene/scene.h"
 #include "world/backend.h"
+
+#include <string.h>
 
 static bool is_in(const double p[3], const double low[3], const double high[3]) {
   for (int k = 0; k < 3; k++)
@@ -35,11 +38,16 @@ static size_t outlet_at(const scree_scene *scene, const double p[3], double time
   return count;
 }
 
-static void take_out(scree_scene *scene, size_t b, const scree_body *body, size_t outlet) {
+static void take_out(scree_scene *scene, size_t b, const scree_body *body, size_t index) {
   double mass = scree_world_body_mass(scene->world, b);
+  scree_scene_outlet *outlet = &scene->outlets[index];
   scree_scene_note_leaving(scene, b);
-  scene->outlets[outlet].left++;
-  scene->outlets[outlet].mass += mass;
+  if (outlet->left == 0) {
+    outlet->first_time = scree_world_time(scene->world);
+    memcpy(outlet->first_place, body->position, sizeof outlet->first_place);
+  }
+  outlet->left++;
+  outlet->mass += mass;
   scene->left_mass += mass;
   scene->left_energy += energy_of(scene, b, body);
   scene->left_count++;
@@ -60,4 +68,30 @@ void scree_scene_empty(scree_scene *scene) {
     if (outlet < rim || (d && !is_in(body.position, d->min, d->max)))
       take_out(scene, b, &body, outlet);
   }
+}
+
+void scree_scene_take_lost(scree_scene *scene) {
+  if (scene->plan.domain) return;
+  scree_scene_reach reach = scree_scene_domain(scene);
+  for (size_t b = 0; b < scene->shape_of.count; b++) {
+    scree_body body;
+    if (scree_world_body_removed(scene->world, b)) continue;
+    scree_world_get_body(scene->world, b, &body);
+    if (!is_in(body.position, reach.low, reach.high))
+      take_out(scene, b, &body, scene->plan.outlets.count);
+  }
+}
+
+bool scree_scene_loss_of(const scree_scene *scene, scree_scene_loss *loss) {
+  const scree_scene_outlet *rim = &scene->outlets[scene->plan.outlets.count];
+  scree_scene_reach reach = scree_scene_domain(scene);
+  *loss = (scree_scene_loss){.count = rim->left,
+                             .mass = rim->mass,
+                             .first_time = rim->first_time,
+                             .is_meant = scene->plan.domain != NULL};
+  memcpy(loss->first_place, rim->first_place, sizeof loss->first_place);
+  const scree_plan_domain *d = scene->plan.domain;
+  memcpy(loss->low, d ? d->min : reach.low, sizeof loss->low);
+  memcpy(loss->high, d ? d->max : reach.high, sizeof loss->high);
+  return rim->left > 0;
 }

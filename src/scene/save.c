@@ -63,6 +63,8 @@ static void code_inlets(scree_codec *c, scree_scene *scene) {
   for (size_t i = 0; i <= scene->plan.outlets.count; i++) {
     code_size(c, &scene->outlets[i].left);
     scree_code_real(c, &scene->outlets[i].mass);
+    scree_code_real(c, &scene->outlets[i].first_time);
+    scree_code_reals(c, scene->outlets[i].first_place, 3);
   }
   for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++) {
     code_size(c, &scene->shapes[i].entered);

@@ -449,6 +449,7 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
 
 scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
   bool ticks = scree_world_step_count(scene->world) >= scene->next_tick;
+  if (scree_world_time(scene->world) >= next_row(scene)) scree_scene_take_lost(scene);
   scree_status status = scree_scene_watch_wear(scene, error);
   if (status == SCREE_OK && ticks) status = tick(scene, error);
   if (status == SCREE_OK) status = scree_scene_turn_phase(scene, ticks, error);

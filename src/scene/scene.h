@@ -59,6 +59,7 @@ typedef struct scree_scene_inlet {
 typedef struct scree_scene_outlet {
   size_t left;
   double mass;
+  double first_time, first_place[3]; /* s, m: of the first that left */
 } scree_scene_outlet;
 
 typedef struct scree_scene_sensor {
@@ -200,7 +201,8 @@ scree_status scree_scene_blame(const scree_scene *scene, const scree_place *plac
 /* Whether a body in that place is clear of all walls; else *wall is one that it is not clear of. */
 bool scree_scene_is_clear(const scree_scene *scene, const scree_placement *placement, size_t *wall);
 
-/* inlets.c */
+/* inlets.c: the box around an inlet's region; then checks and filling. */
+void scree_scene_region_of(const scree_plan_inlet *plan, double low[3], double high[3]);
 scree_status scree_scene_check_inlets(scree_scene *scene, scree_error *error);
 scree_status scree_scene_fill(scree_scene *scene, scree_error *error);
 /* Whether nothing more will come, ever. */
@@ -240,6 +242,14 @@ bool scree_scene_is_in_phase(const scree_scene *scene, const scree_texts *names)
 
 /* outlets.c: takes out what is in an outlet or left the domain. */
 void scree_scene_empty(scree_scene *scene);
+/* What left the domain that the scene has where it names none. */
+void scree_scene_take_lost(scree_scene *scene);
+/* domain.c: the box of geometry as it stands and of the inlets; that domain. */
+typedef struct scree_scene_reach {
+  double low[3], high[3]; /* m; infinite where there is no end */
+} scree_scene_reach;
+scree_scene_reach scree_scene_reach_of(const scree_scene *scene);
+scree_scene_reach scree_scene_domain(const scree_scene *scene);
 
 /* sensors.c */
 scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error);
