@@ -102,6 +102,21 @@ typedef struct scree_scene_book {
   double ledger; /* energy unaccounted for, as a share of all that was turned over */
 } scree_scene_book;
 SCREE_API void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book);
+/* The contact that may be pressed beyond its limit the most, by the speed of an inlet, the fall
+ * from it to the lowest geometry and the motion of walls. */
+typedef struct scree_scene_softness {
+  size_t inlet, shape, other;   /* whose bodies; against a shape, or a geometry */
+  bool is_wall;                 /* other: a geometry */
+  double speed, overlap, limit; /* m/s; m: v sqrt(m/K), and what the law reads */
+  double size;                  /* m, of the smaller */
+  double stiffer; /* so many times as stiff it would hold, in the root as many steps */
+} scree_scene_softness;
+/* False where none may. The sentence that says so is put into text. */
+SCREE_API bool scree_scene_soft(const scree_scene *scene, scree_scene_softness *softness);
+SCREE_API void scree_scene_describe_softness(const scree_scene *scene,
+                                             const scree_scene_softness *softness, char *text,
+                                             size_t size);
+
 /* The same of one inlet, of one outlet; the outlet past the last is the domain's rim. */
 SCREE_API size_t scree_scene_inlet_count(const scree_scene *scene, size_t index, double *mass,
                                          size_t *waiting);

@@ -186,6 +186,12 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   if (status != SCREE_OK || r->call->quiet || r->arguments->json) return status;
   cli_terminal_end();
   if (!resumed) remark_values(scree_scene_text(scene));
+  scree_scene_softness soft;
+  char sentence[600];
+  if (!resumed && scree_scene_soft(scene, &soft)) {
+    scree_scene_describe_softness(scene, &soft, sentence, sizeof sentence);
+    fprintf(stderr, "scree: %s\n", sentence);
+  }
   if (scree_scene_title(scene)) printf("%s\n", scree_scene_title(scene));
   for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
     const char *source = scree_scene_shape_source(scene, i);

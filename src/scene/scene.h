@@ -240,6 +240,8 @@ double scree_scene_phase_end(const scree_scene *scene);
 double scree_scene_phase_times(const scree_scene *scene);
 bool scree_scene_is_in_phase(const scree_scene *scene, const scree_texts *names);
 
+/* softness.c: refuses inlets so fast that bodies would pass what they hit. */
+scree_status scree_scene_check_softness(const scree_scene *scene, scree_error *error);
 /* outlets.c: takes out what is in an outlet or left the domain. */
 void scree_scene_empty(scree_scene *scene);
 /* What left the domain that the scene has where it names none. */
