@@ -29,12 +29,12 @@ static const cli_option options[] = {
     {"sample-seed", CLI_COUNT, offsetof(sample_arguments, seed), "N",
      "Another seed, another scan of the same device. Default: 1.", 0, 9007199254740992.0, NULL},
     {"list", CLI_FLAG, offsetof(sample_arguments, list), NULL,
-     "List the samples and write nothing.", 0, 0, NULL},
+     "List the samples and write nothing, as without NAME and --output.", 0, 0, NULL},
     {"force", CLI_FLAG, offsetof(sample_arguments, force), NULL, "Overwrite existing files.", 0, 0,
      NULL},
 };
 
-static const sample_arguments defaults = {".", 0.27e-3, 0.02e-3, 1, false, false};
+static const sample_arguments defaults = {NULL, 0.27e-3, 0.02e-3, 1, false, false};
 
 static void list_samples(void) {
   for (size_t i = 0; i < scree_sample_count(); i++)
@@ -97,13 +97,13 @@ static void name_output(const char *output, const char *name, char path[PATH_BYT
 
 static int run(const cli_call *call) {
   const sample_arguments *arguments = call->options;
-  if (arguments->list) {
+  bool all = call->input_count == 0 || (call->input_count == 1 && !strcmp(call->inputs[0], "all"));
+  if (arguments->list || (call->input_count == 0 && !arguments->output)) {
     list_samples();
     return 0;
   }
-  bool all = call->input_count == 0 || (call->input_count == 1 && !strcmp(call->inputs[0], "all"));
   size_t count = all ? SCREE_SAMPLE_DEVICES : call->input_count;
-  const char *output = arguments->output;
+  const char *output = arguments->output ? arguments->output : ".";
   bool to_file = names_file(output);
   if (to_file && count != 1)
     return cli_misuse(call->verb, "%zu samples do not fit into one file: -o takes a folder", count);
@@ -135,7 +135,8 @@ const cli_verb cli_verb_sample = {
     .description =
         "Writes the built-in samples as they would come from a structured-light scanner: nine "
         "devices (feature phones fp-1 to fp-3, digital cameras dc-1 to dc-3, smartphones sp-1 to "
-        "sp-3; all of them where no NAME is given) and four test solids (see --list). They are "
+        "sp-3; all of them by `all`, or by --output alone) and four test solids (see --list). They "
+        "are "
         "synthetic: drawn as distance fields, meshed closed and manifold, and given the scanner's "
         "noise. Files are in millimetres, as scanners write. The same options give the same bits.",
     .examples = "scree sample -o samples\n"

@@ -1,6 +1,8 @@
 /* The paper's Fig. 4: (a) the surface error, (b) the criterion, against Rp, on log axes. Thin lines
- * are the dense curve, markers the paper's grid; a ring goes around the paper's choice and a star
- * stands at the robust one. With one object the robust criterion is drawn too. */
+ * are the dense curve, markers the paper's grid. A ring goes around the paper's choice, a square
+ * around the robust one, and a star stands at the recommended one. With one object the robust
+ * criterion is drawn too. */
+#include "report/choice.h"
 #include "report/plot.h"
 
 #include "base/alloc.h"
@@ -12,7 +14,7 @@ static const double PANEL_WIDTH = 350, PANEL_HEIGHT = 310;
 /* eps_s crosses zero; below this part of the largest error nothing is to be read. */
 static const double ERROR_FLOOR = 1e-4;
 
-enum { SERIES_PER_ENTRY = 2, EXTRA_SERIES = 3, NOTE_BYTES = 256 };
+enum { SERIES_PER_ENTRY = 2, EXTRA_SERIES = 4, NOTE_BYTES = 256 };
 
 typedef struct panel_data {
   scree_series *series;
@@ -80,25 +82,43 @@ static double pick_rp(const scree_choice *choice, const scree_pick *pick) {
   return fmax(pick->rp, (double)pick->triangle_count / (double)choice->triangle_count);
 }
 
-static void add_picks(const scree_choice_report *report, bool robust, bool criterion,
+/* What each rule chooses: every figure marks them all. */
+static const struct {
+  scree_choice_rule rule;
+  const char *label;
+  scree_marker marker;
+} picks[] = {{SCREE_RULE_PAPER, "paper's choice (grid minimum)", SCREE_MARKER_RING},
+             {SCREE_RULE_ROBUST, "robust choice", SCREE_MARKER_FRAME},
+             {SCREE_RULE_RECOMMENDED, "recommended", SCREE_MARKER_STAR}};
+enum { PICKS = sizeof picks / sizeof *picks };
+
+/* A robust choice's error is the worst at finer levels: the level's own is drawn. */
+static double pick_value(const scree_choice_report *report, const scree_choice *choice,
+                         const scree_pick *pick, bool criterion) {
+  double penalty =
+      report->options->weight * (double)pick->triangle_count / (double)choice->triangle_count;
+  return pick->level_eps_s + (criterion ? penalty : 0);
+}
+
+static void add_picks(const scree_choice_report *report, size_t which, bool criterion,
                       panel_data *data) {
   size_t count = report->entry_count;
   double *x = take(data, count), *y = take(data, count);
   for (size_t e = 0; e < count; e++) {
     const scree_choice *choice = report->entries[e].choice;
-    const scree_pick *pick = robust ? &choice->robust : &choice->paper;
-    double part = pick->ip - pick->eps_s; /* w Nr / Nm */
+    const scree_pick *pick = scree_choice_pick(choice, picks[which].rule);
     x[e] = pick_rp(choice, pick);
-    y[e] = pick->level_eps_s + (criterion ? part : 0);
+    bool known = picks[which].rule != SCREE_RULE_RECOMMENDED || choice->fidelity;
+    y[e] = known ? pick_value(report, choice, pick, criterion) : NAN;
   }
   data->series[data->series_count++] =
-      (scree_series){.label = robust ? "robust choice" : "paper's choice (grid minimum)",
+      (scree_series){.label = picks[which].label,
                      .x = x,
                      .y = y,
                      .count = count,
                      .style = SCREE_STYLE_INK,
                      .draw = SCREE_DRAW_MARKERS | SCREE_DRAW_UNFITTED,
-                     .marker = robust ? SCREE_MARKER_STAR : SCREE_MARKER_RING};
+                     .marker = picks[which].marker};
 }
 
 /* Up to the grid's end, or to a choice behind it. */
@@ -106,8 +126,8 @@ static double largest_rp(const scree_choice_report *report) {
   double rp = report->options->rp_max;
   for (size_t e = 0; e < report->entry_count; e++) {
     const scree_choice *choice = report->entries[e].choice;
-    rp = fmax(rp, pick_rp(choice, &choice->paper));
-    if (report->rule != SCREE_RULE_PAPER) rp = fmax(rp, pick_rp(choice, &choice->robust));
+    for (size_t k = 0; k < PICKS; k++)
+      rp = fmax(rp, pick_rp(choice, scree_choice_pick(choice, picks[k].rule)));
   }
   return rp / 0.75;
 }
@@ -129,12 +149,15 @@ static void fit_errors(const scree_choice_report *report, bool criterion, scree_
   double grid[2] = {INFINITY, 0}, drawn[2] = {INFINITY, 0}, rp_max = largest_rp(report);
   for (size_t e = 0; e < report->entry_count; e++) {
     const scree_choice *choice = report->entries[e].choice;
-    double penalty = choice->robust.ip - choice->robust.eps_s;
     find_range(choice->levels, choice->level_count, rp_max, criterion, false, grid);
     find_range(choice->trace, choice->trace_count, rp_max, criterion, report->entry_count == 1,
                drawn);
-    if (report->rule != SCREE_RULE_PAPER)
-      drawn[1] = fmax(drawn[1], choice->robust.level_eps_s + (criterion ? penalty : 0));
+    for (size_t k = 0; k < PICKS; k++) {
+      double value =
+          pick_value(report, choice, scree_choice_pick(choice, picks[k].rule), criterion);
+      if (value > 0) drawn[0] = fmin(drawn[0], value);
+      drawn[1] = fmax(drawn[1], value);
+    }
   }
   double low = criterion ? fmin(grid[0], drawn[0]) : grid[0], high = fmax(grid[1], drawn[1]);
   if (!(high > 0)) return;
@@ -144,7 +167,7 @@ static void fit_errors(const scree_choice_report *report, bool criterion, scree_
 
 static scree_status allocate(const scree_choice_report *report, panel_data *data,
                              scree_error *error) {
-  size_t points = 4 * report->entry_count;
+  size_t points = 2 * PICKS * report->entry_count;
   for (size_t e = 0; e < report->entry_count; e++)
     points += 2 * (report->entries[e].choice->level_count + report->entries[e].choice->trace_count);
   points += 2 * report->entries[0].choice->trace_count;
@@ -163,20 +186,20 @@ static scree_panel make_panel(const scree_choice_report *report, bool criterion,
                        .y = {criterion ? "I_{p}" : "\u03b5_{s}", SCREE_SCALE_LOG, 0, 0}};
   add_entries(report, criterion, data);
   if (report->entry_count == 1) add_robust_line(report->entries[0].choice, criterion, data);
-  add_picks(report, false, criterion, data);
-  if (report->rule != SCREE_RULE_PAPER) add_picks(report, true, criterion, data);
+  for (size_t k = 0; k < PICKS; k++) add_picks(report, k, criterion, data);
   fit_errors(report, criterion, &panel.y);
   panel.series = data->series;
   panel.series_count = data->series_count;
   return panel;
 }
 
-/* The set's choice as a line, where there is a set to speak of. */
+/* The set's one Rp as a line, as the text names it. */
 static size_t set_guide(const scree_choice_report *report, char *text, size_t size,
                         scree_guide *guide) {
   if (report->entry_count < 2 || !report->set) return 0;
-  double rp = report->rule == SCREE_RULE_PAPER ? report->set->paper.rp : report->set->robust.rp;
-  snprintf(text, size, "set: %.2g", rp);
+  double rp = scree_report_set_pick(report)->rp;
+  snprintf(text, size, "%s for the set: %.2g",
+           report->rule == SCREE_RULE_ROBUST ? "robust" : "paper's", rp);
   *guide = (scree_guide){text, rp, false};
   return 1;
 }

@@ -2,6 +2,7 @@
  * here, so that none tells what another keeps silent about. */
 #include "base/error.h"
 #include "base/number.h"
+#include "report/choice.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -84,7 +85,7 @@ static bool is_recommended(const scree_choice_report *report, const scree_choice
   return report->rule == SCREE_RULE_RECOMMENDED && choice->fidelity;
 }
 
-static const scree_set_pick *set_pick(const scree_choice_report *report) {
+const scree_set_pick *scree_report_set_pick(const scree_choice_report *report) {
   return report->rule == SCREE_RULE_ROBUST ? &report->set->robust : &report->set->paper;
 }
 
@@ -195,7 +196,7 @@ static const scree_choice_level *level_at(const scree_choice_report *report, siz
 static void say_common_rp(sentences *s, const scree_choice_report *report, const char *begin,
                           const char *end) {
   size_t least = SIZE_MAX, most = 0;
-  double worst = 0, rp = set_pick(report)->rp;
+  double worst = 0, rp = scree_report_set_pick(report)->rp;
   for (size_t i = 0; i < report->entry_count; i++) {
     const scree_choice_level *level = level_at(report, i, rp);
     if (level->triangle_count < least) least = level->triangle_count;
@@ -210,7 +211,7 @@ static void say_common_rp(sentences *s, const scree_choice_report *report, const
 }
 
 static void say_set(sentences *s, const scree_choice_report *report) {
-  const scree_set_pick *pick = set_pick(report);
+  const scree_set_pick *pick = scree_report_set_pick(report);
   char low[NUMBER_BYTES], high[NUMBER_BYTES];
   if (!is_recommended(report, report->entries[0].choice)) {
     say_common_rp(s, report, "Use", "");

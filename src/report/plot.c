@@ -174,10 +174,14 @@ static void draw_marker(cairo_t *cr, const scree_series *series, double x, doubl
   case SCREE_MARKER_RING:
     cairo_arc(cr, x, y, BIG_MARKER, 0, 2 * pi);
     break;
+  case SCREE_MARKER_FRAME:
+    cairo_rectangle(cr, x - BIG_MARKER, y - BIG_MARKER, 2 * BIG_MARKER, 2 * BIG_MARKER);
+    break;
   default:
     cairo_arc(cr, x, y, r, 0, 2 * pi);
   }
-  if (marker == SCREE_MARKER_RING || marker == SCREE_MARKER_PLUS || marker == SCREE_MARKER_CROSS) {
+  if (marker == SCREE_MARKER_RING || marker == SCREE_MARKER_FRAME || marker == SCREE_MARKER_PLUS ||
+      marker == SCREE_MARKER_CROSS) {
     cairo_stroke(cr);
     return;
   }

@@ -38,8 +38,9 @@ typedef enum scree_marker {
   SCREE_MARKER_PLUS,
   SCREE_MARKER_CROSS,
   SCREE_MARKER_TRIANGLE_LEFT,
-  SCREE_MARKER_RING, /* large and open: goes around another one */
-  SCREE_MARKER_STAR, /* large */
+  SCREE_MARKER_RING,  /* large and open: goes around another one */
+  SCREE_MARKER_FRAME, /* likewise, a square */
+  SCREE_MARKER_STAR,  /* large */
   SCREE_MARKER_COUNT
 } scree_marker;
 
