@@ -3,9 +3,8 @@
  * Closed pieces divide space into regions, each within its outermost pieces. An inlet marks the
  * region that most of it lies in: bodies are there. Between a region with bodies and one without,
  * the piece is solid on the side without: a container holds what is in it. With bodies on both
- * sides it is a sheet. Where no body is on either side it is as its surroundings are not: a shaft
- * is solid, a hollow in it is none. What is solid is one wall, sheets are another; sheets all
- * inside of solids are left out. */
+ * sides it is a sheet. Where no body is on either side it is solid. What is solid is one wall,
+ * sheets are another; sheets all inside of solids are left out. */
 #include "scene/walls.h"
 
 #include "base/alloc.h"
@@ -47,14 +46,21 @@ static vec3 middle_of(const scree_mesh *mesh, size_t facet) {
   return vec3_scale(sum, 1.0 / 3);
 }
 
-/* Whether most of some places on it are in the other. */
+static bool is_within(vec3 p, const scree_piece *piece) {
+  return p.x >= piece->low.x && p.y >= piece->low.y && p.z >= piece->low.z &&
+         p.x <= piece->high.x && p.y <= piece->high.y && p.z <= piece->high.z;
+}
+
+/* Whether places all over it are in the other: what crosses it or touches it is not. */
 static bool lies_in(const scree_pieces *p, size_t piece, size_t other) {
   const scree_piece *one = &p->items[piece];
-  int in = 0;
-  for (size_t i = 0; i < 3; i++)
-    in += scree_piece_winding(p, other,
-                              middle_of(&p->mesh, one->first + i * (one->count - 1) / 2)) != 0;
-  return in >= 2;
+  if (!is_within(one->low, &p->items[other]) || !is_within(one->high, &p->items[other]))
+    return false;
+  for (size_t i = 0; i < LOOKS; i++) {
+    size_t facet = one->first + i * (one->count - 1) / (LOOKS - 1);
+    if (!scree_piece_winding(p, other, middle_of(&p->mesh, facet))) return false;
+  }
+  return true;
 }
 
 static void nest(division *d) {
@@ -135,20 +141,14 @@ static void mark_bodies(const scree_scene *scene, const scree_plan_geometry *g, 
     if (d->pieces.items[i].closed && (d->level[i] == 0 || g->side - 1 == BOTH)) d->bodies[i] = true;
 }
 
-/* From the outermost pieces inwards. */
 static void decide_sides(division *d) {
-  size_t count = d->pieces.count, deepest = 0;
-  for (size_t i = 0; i < count; i++) deepest = d->level[i] > deepest ? d->level[i] : deepest;
-  for (size_t level = 0; level <= deepest; level++)
-    for (size_t i = 0; i < count; i++) {
-      const scree_piece *piece = &d->pieces.items[i];
-      if (!piece->closed || d->level[i] != level) continue;
-      bool within = d->bodies[i], around = d->bodies[d->parent[i]],
-           in_solid = d->parent[i] < count && d->side[d->parent[i]] == OUTSIDE;
-      d->side[i] = within && around ? BOTH : within || (!around && in_solid) ? INSIDE : OUTSIDE;
-      bool inwards = piece->volume < 0;
-      if (d->side[i] != BOTH && inwards != (d->side[i] == INSIDE)) scree_piece_turn(&d->pieces, i);
-    }
+  for (size_t i = 0; i < d->pieces.count; i++) {
+    const scree_piece *piece = &d->pieces.items[i];
+    if (!piece->closed) continue;
+    bool within = d->bodies[i], around = d->bodies[d->parent[i]], inwards = piece->volume < 0;
+    d->side[i] = within && around ? BOTH : within ? INSIDE : OUTSIDE;
+    if (d->side[i] != BOTH && inwards != (d->side[i] == INSIDE)) scree_piece_turn(&d->pieces, i);
+  }
 }
 
 /* ---- the walls ---- */

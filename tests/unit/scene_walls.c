@@ -1,6 +1,7 @@
 /* Mesh walls of scenes: closed ones hold the bodies where the inlets are, however they are wound;
  * what lies in them is asked for itself; `side` says it too; what has no side is told with a place;
  * a geometry of several walls goes on from its checkpoint. */
+#include "base/vec.h"
 #include "scree.h"
 #include "support/check.h"
 #include "support/folder.h"
@@ -148,6 +149,40 @@ static void one_in_another(void **state) {
   scree_scene_file_free(file);
 }
 
+/* Solids that cross or touch each other, as paddles on a shaft, stay solids. */
+static void solids_that_meet(void **state) {
+  (void)state;
+  static const double boxes[][2][3] = {{{0.03, -0.1, -0.1}, {0.06, 0.1, 0.1}},
+                                       {{-0.04, -0.01, -0.01}, {0.05, 0.01, 0.01}},
+                                       {{-0.06, -0.02, -0.02}, {0.04, 0.02, 0.02}},
+                                       {{0.06, -0.1, -0.1}, {0.09, 0.1, 0.05}},
+                                       {{0.06, -0.05, 0.05}, {0.09, 0.1, 0.1}}};
+  scree_mesh all = {0};
+  size_t count = sizeof boxes / sizeof *boxes;
+  for (size_t i = 0; i < count; i++) {
+    vec3 low = vec3_load(boxes[i][0]), sides = vec3_sub(vec3_load(boxes[i][1]), low);
+    scree_mesh one = shape_grid_box(sides.x, sides.y, sides.z, 2), before = all;
+    shape_move(&one, low);
+    all = shape_join(&before, &one);
+    scree_mesh_free(&before);
+    scree_mesh_free(&one);
+  }
+  write_stl(&all);
+  scree_mesh_free(&all);
+  scree_scene_file *file = parse(text);
+  scree_scene *scene;
+  const char *inlets[] = {"{min: [-0.2, -0.1, 0.12], max: [0.3, 0.1, 0.3]}",
+                          "{min: [-0.2, -0.1, -0.1], max: [0.3, 0.1, 0.1]}"};
+  for (int i = 0; i < 2; i++) {
+    set(file, "inlets.feed.box", inlets[i]);
+    scene = create(file);
+    const char *note = scree_scene_geometry_note(scene, 0);
+    if (!strstr(note, "5 solids") || strstr(note, "container")) fail_msg("%s", note);
+    scree_scene_free(scene);
+  }
+  scree_scene_file_free(file);
+}
+
 static void what_has_no_side(void **state) {
   (void)state;
   scree_scene_file *file = parse(text);
@@ -199,8 +234,9 @@ static void goes_on(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(containers_hold), cmocka_unit_test(boxes_too),
-                                     cmocka_unit_test(one_in_another),
-                                     cmocka_unit_test(what_has_no_side), cmocka_unit_test(goes_on)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(containers_hold),  cmocka_unit_test(boxes_too),
+      cmocka_unit_test(one_in_another),   cmocka_unit_test(solids_that_meet),
+      cmocka_unit_test(what_has_no_side), cmocka_unit_test(goes_on)};
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
