@@ -27,13 +27,16 @@ static double power_of(const scree_kept_wrench *kept, vec3 velocity, vec3 spin) 
 /* The second half: the loads of the last evaluation with the velocities after their kick. With
  * torques M - arm x F on a and -M on b, the power is F.(va - vb - wa x arm) + M.(wa - wb); the arm
  * is as it was before the drift. */
-static void add_later_work(const scree_world *world, const scree_pair *pair,
-                           const scree_scratch *scratch, scree_pair_work *work) {
+static void add_later_work(const scree_world *world, const scree_pair *pair, scree_scratch *scratch,
+                           scree_pair_work *work) {
+  scratch->spring_work = 0;
+  if (!pair->touching) return;
   const scree_frame *a = scratch->a, *b = scratch->b;
   vec3 slip = vec3_sub(a->velocity, b->velocity),
        arm = vec3_mad(scree_pair_between(world, pair, a, b), slip, -scratch->drift),
        u = vec3_sub(slip, vec3_cross(a->spin, arm)), spin = vec3_sub(a->spin, b->spin);
   double half = 0.5 * pair->kick;
+  scratch->spring_work = half * power_of(&pair->spring, u, spin);
   work->later_dashpot += half * power_of(&pair->dashpot, u, spin);
   if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) {
     const scree_world_wall *belt = &world->walls.items[pair->b];
@@ -259,6 +262,7 @@ static void apply_contact_law(const scree_world *world, scree_pair *pair, scree_
   const bool depenetrating = scratch->depenetrating, was_depenetrating = scratch->was_depenetrating;
   if (pair->depenetrating)
     work->let_go = pair->elastic + pair->elastic_since; /* of the last step */
+  scratch->overlap_before = pair->overlap;
   clear_results(pair);
   double largest = pair->largest;
   scree_powers powers = scree_pair_apply_law(world, pair, relative, scratch);
@@ -273,7 +277,8 @@ static void apply_contact_law(const scree_world *world, scree_pair *pair, scree_
   work->tangential = half * powers.tangential;
   pair->later_dashpot += rest * powers.dashpot;
   pair->later_tangential += rest * powers.tangential;
-  if (pair->largest > largest) work->lost = hysteresis_loss(pair, largest);
+  if (world->options.law == SCREE_LAW_HYSTERETIC && pair->largest > largest)
+    work->lost = hysteresis_loss(pair, largest);
   work->beyond_limit |= !(pair->overlap <= pair->law.limit) && !pair->depenetrating;
 }
 
@@ -283,7 +288,7 @@ void scree_pair_relate(const scree_world *world, scree_pair *pair, scree_scratch
   take_places(world, pair, scratch);
   scratch->work = (scree_pair_work){.later_dashpot = pair->later_dashpot,
                                     .later_tangential = pair->later_tangential};
-  if (pair->touching) add_later_work(world, pair, scratch, &scratch->work);
+  add_later_work(world, pair, scratch, &scratch->work);
   if (pair->touching && pair->wall) scratch->work.wall = half_work_of_wall(world, pair);
   double speed = relate(world, pair, scratch);
   pair->list.travel = speed * world->time_step;
@@ -331,7 +336,7 @@ bool scree_pair_narrow_phase(const scree_world *world, scree_pair *pair, scree_s
 void scree_pair_narrow_phase_between(const scree_world *world, scree_pair *pair,
                                      scree_scratch *scratch) {
   scree_pair_work part = {0};
-  if (pair->touching) add_later_work(world, pair, scratch, &part);
+  add_later_work(world, pair, scratch, &part);
   pair->list.travel = relate(world, pair, scratch) * scratch->drift;
   pair->list.path += pair->list.travel;
   begin_visits(pair, scratch);

@@ -77,6 +77,8 @@ struct scree_scratch {
   scree_list_state before; /* of the pair, when the step began */
   scree_pair_wrench last;  /* the pair's of the last step */
   scree_pair_work work;
+  double spring_work;    /* J, of the pair's spring since the last look */
+  double overlap_before; /* m, at it */
   scree_anchor no_anchor;
 };
 

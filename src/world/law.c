@@ -10,6 +10,14 @@
  * limit; when the contact weight grows the force stays (xi s is kept), so that energy is only ever
  * lost. Hysteretic: F = K m on first loading, K/e^2 (m - m0) below the largest m, m0 = (1 - e^2)
  * max m.
+ *
+ * C = 2 eta sqrt(mu K), with the effective mass mu of both bodies at the contact: 1/mu = g M^-1 g,
+ * g the mean by contact weights of the features' wrenches of length 1, M the masses and moments of
+ * inertia.
+ *
+ * Features come and go, and steps do not resolve all of it. What the spring has won or lost by
+ * that, dU + W over an impact, it gives back: its force is up to twice as large, or none, until the
+ * balance is even (compare Love and Laursen 2003, "Energy conserving algorithms for contact").
  */
 #include "world/contact.h"
 #include "world/walls.h"
@@ -129,37 +137,13 @@ static double weight_of(const scree_contact_point *contact, const scree_smooth_m
   return above > 0 ? contact->taper * above / maximum->denominator : 0;
 }
 
-/* The way by which the overlap changes in a step, where it is more than the overlap: the step in
- * which the touch begins or ends. Else 0. */
-static double crossed_way(const scree_pair *pair, const scree_smooth_maximum *maximum,
-                          const scree_contact_list *contacts, const scree_frame *relative,
-                          double step) {
-  if (maximum->value >= most_slopes[0] * pair->list.travel) return 0;
-  double rate = 0;
-  for (size_t i = 0; i < contacts->count; i++) {
-    const scree_contact_point *contact = &contacts->items[i];
-    vec3 v = vec3_add(relative->velocity_now, vec3_cross(relative->spin_now, contact->at));
-    rate += weight_of(contact, maximum) * contact->gap_gradient * vec3_dot(v, contact->normal);
-  }
-  double way = fabs(rate) * step;
-  return way > maximum->value ? way : 0;
-}
-
-/* A spring that is shorter than the way of its step, pressed for the whole of it, would work on the
- * part before the touch too. Leapfrog keeps m v v/2 + K x x'/2 from one drift to the next, x and x'
- * being the overlaps at its ends; and so it does from before the touch, with the kick of
- * K x (1 + x/way)/2, on either end of it. */
-static double felt(double x, double way) {
-  return x < way ? 0.5 * x * (1 + x / way) : x;
-}
-
-/* The spring's force at overlap m, less that with which the bodies hold each other, and the energy
- * that comes back from both. */
-static double spring_force(const scree_world *world, scree_pair *pair, double m, double way) {
+/* The spring's force at overlap m, of which `felt` is felt in a linear one, less that with which
+ * the bodies hold each other, and the energy that comes back from both. */
+static double spring_force(const scree_world *world, scree_pair *pair, double m, double felt) {
   double pull = pair->law.pull, stiffness = pair->law.stiffness;
   if (world->options.law == SCREE_LAW_LINEAR) {
     pair->elastic = 0.5 * stiffness * m * m - pull * m;
-    return stiffness * felt(m, way) - pull;
+    return stiffness * felt - pull;
   }
   double e2 = pair->law.restitution * pair->law.restitution, unloading = stiffness / e2;
   pair->largest = scree_max(pair->largest, m);
@@ -179,7 +163,8 @@ static double lasting(const scree_pair *pair) {
  */
 typedef struct slider {
   double stiffness, damping, friction,
-      time_step; /* k_t over contact weight, c_t over contact weight, mu, dt */
+      time_step;         /* k_t over contact weight, c_t over contact weight, mu, dt */
+  double normal_damping; /* C */
   vec3 velocity, spin;
   bool belt; /* b's surface moves along itself so: */
   vec3 belt_velocity, belt_spin;
@@ -251,12 +236,140 @@ static void add_wrench(scree_wrench *load, vec3 direction, vec3 arm, double size
   load->moment = vec3_mad(load->moment, arm, size);
 }
 
+/* moment I^-1 moment */
+static double by_moments(vec3 moment, vec3 inertia) {
+  return moment.x * moment.x / inertia.x + moment.y * moment.y / inertia.y +
+         moment.z * moment.z / inertia.z;
+}
+
+/* 1/m of both bodies along a wrench in the frame of b, its moment about b's origin. */
+static double inverse_mass(const scree_world *world, const scree_pair *pair,
+                           const scree_frame *relative, const scree_wrench *along) {
+  const scree_bodies *bodies = &world->bodies;
+  vec3 moment = vec3_sub(along->moment, vec3_cross(relative->position, along->force)),
+       of_a = mat3_tmul_vec(&relative->rotation, moment), of_b = along->moment;
+  double square = vec3_norm2(along->force),
+         inverse = square / bodies->mass[pair->a] + by_moments(of_a, bodies->inertia[pair->a]);
+  if (pair->wall) return inverse;
+  return inverse + square / bodies->mass[pair->b] + by_moments(of_b, bodies->inertia[pair->b]);
+}
+
 /* Most that steps resolve of the slope of a blend or of a fading taper, which lets go of much of
  * the overlap in a small part of the way: the force must move the bodies by little of that way in a
- * step, by K m dt^2/m* = (pi dt/contact time)^2 m. */
-static double most_resolved(const scree_pair *pair, double step, double least) {
-  double turn = 3.14159265358979323846 * step / pair->law.contact_time;
-  return scree_max(least, resolved_share * pair->law.reach / (pair->overlap * turn * turn));
+ * step, by K m dt^2/mu. */
+static double most_resolved(const scree_pair *pair, double step, double inverse, double least) {
+  double moves = pair->law.stiffness * step * step * inverse * pair->overlap;
+  return scree_max(least, resolved_share * pair->law.reach / moves);
+}
+
+/* What a contact's overlap adds to the slope of the pair's, the slopes limited. */
+static void add_slope(const scree_world *world, const scree_pair *pair, const scree_frame *relative,
+                      double step, scree_contact_point *contact, scree_wrench *slope) {
+  const scree_wrench along = {contact->normal, vec3_cross(contact->at, contact->normal)};
+  if (contact->gap_gradient > most_slopes[0])
+    contact->gap_gradient = scree_min(
+        contact->gap_gradient,
+        most_resolved(pair, step, inverse_mass(world, pair, relative, &along), most_slopes[0]));
+  add_wrench(slope, along.force, along.moment, contact->weight * contact->gap_gradient);
+}
+
+/* Its taper's part, with dm/dw = (o - t)^2/(2 (S (1 - kappa) + kappa l)). */
+static void add_fading(const scree_world *world, const scree_pair *pair,
+                       const scree_frame *relative, double step,
+                       const scree_smooth_maximum *maximum, scree_contact_point *contact,
+                       scree_wrench *slope) {
+  double size = vec3_norm(contact->fading), above = contact->overlap - maximum->cutoff,
+         slopes = 0.5 * above * above / maximum->denominator * size;
+  if (!(size > 0)) return;
+  vec3 n = vec3_scale(contact->fading, 1 / size);
+  const scree_wrench along = {n, vec3_cross(contact->at, n)};
+  slopes = scree_min(slopes, most_resolved(pair, step, inverse_mass(world, pair, relative, &along),
+                                           most_slopes[1]));
+  contact->fading = vec3_scale(n, slopes);
+  add_wrench(slope, along.force, along.moment, slopes);
+}
+
+/* How the pair's overlap grows with the bodies' motion, as a wrench, and the part of it that fading
+ * tapers have; the sum of the weights. */
+typedef struct overlap_slope {
+  scree_wrench whole, fading;
+  double weight;
+} overlap_slope;
+
+static overlap_slope find_slope(const scree_world *world, const scree_pair *pair,
+                                const scree_smooth_maximum *maximum, scree_scratch *scratch) {
+  overlap_slope slope = {0};
+  for (size_t i = 0; i < scratch->contacts.count; i++) {
+    scree_contact_point *contact = &scratch->contacts.items[i];
+    contact->weight = weight_of(contact, maximum);
+    if (!(contact->weight > 0)) continue;
+    slope.weight += contact->weight;
+    add_slope(world, pair, &scratch->relative, scratch->step, contact, &slope.whole);
+    add_fading(world, pair, &scratch->relative, scratch->step, maximum, contact, &slope.fading);
+  }
+  return slope;
+}
+
+/* By the pair's damping, which is that of its reduced mass; features that press against each other
+ * have no less. */
+static double damping_at(const scree_world *world, const scree_pair *pair,
+                         const scree_frame *relative, const overlap_slope *slope) {
+  double pace = pair->law.contact_time / 3.14159265358979323846,
+         reduced = pair->law.stiffness * pace * pace,
+         inverse =
+             inverse_mass(world, pair, relative, &slope->whole) / (slope->weight * slope->weight);
+  return pair->law.damping * sqrt(scree_min(1, 1 / (inverse * reduced)));
+}
+
+static double along_motion(const scree_wrench *wrench, vec3 velocity, vec3 spin) {
+  return vec3_dot(wrench->force, velocity) + vec3_dot(wrench->moment, spin);
+}
+
+/* Into space. */
+static scree_wrench turned(const scree_wrench *load, const mat3 *rotation) {
+  return (scree_wrench){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
+}
+
+static scree_kept_wrench kept_wrench(const scree_wrench *load) {
+  vec3 f = load->force, m = load->moment;
+  return (scree_kept_wrench){{(float)f.x, (float)f.y, (float)f.z},
+                             {(float)m.x, (float)m.y, (float)m.z}};
+}
+
+/* How the overlap changes: by the last drift's velocities, and by those of the present moment. */
+typedef struct overlap_rate {
+  double drift, now;
+} overlap_rate;
+
+/* Of the overlap x what the spring feels in the step in which a touch begins or ends, when x is
+ * less than the way on the other side; else all. A force K x, acting for the whole kick, would work
+ * on that way too. Leapfrog keeps v v'/2 + K x x'/2m from one drift to the next; and so it does
+ * from before the touch, or to after it, where the kick's work is K x x'/2, with x' the overlap a
+ * step further inside. The kick changes the velocity by less than itself, so that one more round
+ * finds it. */
+static double felt_overlap(const scree_pair *pair, double x, overlap_rate rate,
+                           const scree_scratch *scratch, double inverse) {
+  const double drift = scratch->drift, step = scratch->step, kick = 0.5 * (drift + step);
+  const bool begins = rate.now > 0;
+  double speed = fabs(rate.drift), outer = begins ? speed * drift : fabs(rate.now) * step, felt = x;
+  if (x >= most_slopes[0] * pair->list.travel || !(outer > x) || !(speed > 0)) return x;
+  for (int round = 0; round < 2; round++) {
+    double change = round == 0 ? 0 : pair->law.stiffness * felt * kick * inverse,
+           middle = begins ? speed - 0.5 * change : speed + 0.5 * change,
+           inner = begins ? (speed - change) * step : speed * drift;
+    felt = 0.5 * x * (x + scree_max(0, inner)) / (scree_max(middle, 0.5 * speed) * kick);
+  }
+  return felt;
+}
+
+/* By how much the spring's force is changed so that what it has won or lost in this impact by no
+ * work comes back with the kick; by no larger share than that is of its energy. Not where a touch
+ * begins or ends, which leaves a debt to the next step. */
+static double repaid(const scree_pair *pair, double balance, double kick_work, double stored) {
+  if (!(stored > 0) || kick_work == 0) return 0;
+  double most = scree_min(1, fabs(balance) / stored) * (1 - lasting(pair)),
+         share = -balance / kick_work;
+  return share > most ? most : share < -most ? -most : share;
 }
 
 /* One touching feature: its forces, added to the sums. */
@@ -278,7 +391,7 @@ static void contact_force(const scree_pair *pair, const slider *law, double spri
   }
   double weight = contact->weight * contact->gap_gradient, pull = weight * pair->law.pull,
          pressing = weight * spring + pull,
-         normal = pressing + weight * pair->law.damping * contact->gap_gradient * rate;
+         normal = pressing + weight * law->normal_damping * contact->gap_gradient * rate;
   if (!(normal > 0)) normal = 0;
   double dashpot = normal - pressing, pressed = normal;
   normal -= pull;
@@ -298,12 +411,9 @@ static void contact_force(const scree_pair *pair, const slider *law, double spri
   sums->tangential_power += vec3_dot(along, v);
 }
 
-/* The taper's part of the slope, with dm/dw = (o - t)^2/(2 (S (1 - kappa) + kappa l)). */
-static void fade(double spring, double by_weight, double most, scree_contact_point *contact,
-                 load_sums *sums) {
-  vec3 slope = vec3_scale(contact->fading, by_weight);
-  double size = vec3_norm(slope);
-  vec3 force = vec3_scale(slope, size > most ? spring * most / size : spring);
+/* What a fading taper presses with. */
+static void fade(double spring, scree_contact_point *contact, load_sums *sums) {
+  vec3 force = vec3_scale(contact->fading, spring);
   contact->force = vec3_add(contact->force, force);
   sums->normal.force = vec3_add(sums->normal.force, force);
   sums->normal.moment = vec3_add(sums->normal.moment, vec3_cross(contact->at, force));
@@ -351,17 +461,6 @@ static void roll(scree_pair *pair, const slider *sliding, const scree_frame *rel
   pair->rolled = spring.stretch;
   sums->tangential.moment = vec3_add(sums->tangential.moment, couple);
   sums->tangential_power += vec3_dot(couple, turning);
-}
-
-/* Into space. */
-static scree_wrench turned(const scree_wrench *load, const mat3 *rotation) {
-  return (scree_wrench){mat3_mul_vec(rotation, load->force), mat3_mul_vec(rotation, load->moment)};
-}
-
-static scree_kept_wrench kept_wrench(const scree_wrench *load) {
-  vec3 f = load->force, m = load->moment;
-  return (scree_kept_wrench){{(float)f.x, (float)f.y, (float)f.z},
-                             {(float)m.x, (float)m.y, (float)m.z}};
 }
 
 static void store_wrenches(const scree_world *world, const scree_scratch *scratch, scree_pair *pair,
@@ -420,6 +519,14 @@ static double held_with(const scree_world *world, const scree_pair *pair, vec3 w
   return scree_max(0, (of_b * mass - of_a * other) / (mass + other));
 }
 
+/* The pair remembers nothing of a contact. */
+static void forget_contact(scree_pair *pair, scree_contact_list *contacts) {
+  for (size_t i = 0; i < contacts->count; i++) contacts->items[i].anchor->weight = 0;
+  pair->largest = 0;
+  pair->spring = (scree_kept_wrench){{0, 0, 0}, {0, 0, 0}};
+  pair->rolled = (vec3){0, 0, 0};
+}
+
 /* Edges that lie in each other may each be nearest to a separation direction that is the other's
  * way in. Then no feature counts: the bodies are brought to `depenetration_speed` along one way, by
  * no more than a spring as deep as they are, or at its limit, would press with: what lies behind
@@ -427,14 +534,12 @@ static double held_with(const scree_world *world, const scree_pair *pair, vec3 w
 static scree_powers part(const scree_world *world, scree_pair *pair, const scree_frame *relative,
                          scree_scratch *scratch) {
   scree_contact_list *contacts = &scratch->contacts; /* with room for more than one */
-  for (size_t i = 0; i < contacts->count; i++) contacts->items[i].anchor->weight = 0;
+  forget_contact(pair, contacts);
   if (scratch->question.edges) pair->pushed = place_of_push(world, pair, contacts, relative);
   vec3 at = pair->pushed, way = separation_of(world, pair, relative), arm = vec3_cross(at, way);
   pair->touching = true;
   pair->contact_count = 1;
   pair->age += scratch->drift;
-  pair->largest = 0;
-  pair->rolled = (vec3){0, 0, 0};
   pair->overlap = scree_max(0, pair->depth + pair->law.reach);
   slider law = make_slider(world, pair, relative, scratch->drift);
   vec3 seen = vec3_add(law.velocity, vec3_cross(law.spin, at)),
@@ -461,40 +566,60 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
   return (scree_powers){force * vec3_dot(v, way), 0};
 }
 
+/* The spring's force, and what its work comes to. The balance is drawn in the midst of the last
+ * drift: leapfrog keeps m v2/2 + K x x'/2, with x' the overlap before, also where the way is bent.
+ */
+static double press(const scree_world *world, scree_pair *pair, const scree_smooth_maximum *maximum,
+                    const overlap_slope *slope, const scree_scratch *scratch) {
+  const scree_frame *relative = &scratch->relative;
+  const double drift = scratch->drift, step = scratch->step, m = maximum->value;
+  const scree_wrench all = {vec3_add(slope->whole.force, slope->fading.force),
+                            vec3_add(slope->whole.moment, slope->fading.moment)};
+  const overlap_rate rate = {-along_motion(&all, relative->velocity, relative->spin),
+                             -along_motion(&all, relative->velocity_now, relative->spin_now)};
+  double felt = felt_overlap(pair, m, rate, scratch, inverse_mass(world, pair, relative, &all));
+  double spring = spring_force(world, pair, m, felt);
+  if (world->options.law == SCREE_LAW_HYSTERETIC) return spring;
+  const double before = scratch->overlap_before, stiffness = pair->law.stiffness;
+  double half = -0.25 * (drift + step) * rate.drift,
+         stored = 0.5 * stiffness * m * before - 0.5 * pair->law.pull * (m + before),
+         worked = scratch->was_depenetrating ? -stored : pair->worked + scratch->spring_work;
+  if (felt == m)
+    spring *= 1 + repaid(pair, stored + worked, 2 * half * spring, 0.5 * stiffness * m * m);
+  pair->worked = worked + half * spring;
+  const scree_wrench pressed = {vec3_scale(all.force, spring), vec3_scale(all.moment, spring)};
+  const scree_wrench in_space = turned(&pressed, &scratch->b->rotation);
+  pair->spring = kept_wrench(&in_space);
+  return spring;
+}
+
 scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
                                   const scree_frame *relative, scree_scratch *scratch) {
   scree_contact_list *contacts = &scratch->contacts;
   scree_smooth_maximum maximum;
   if (pair->depenetrating) return part(world, pair, relative, scratch);
   if (contacts->count == 0 || !find_overlap(world, pair, contacts, &maximum)) {
-    for (size_t i = 0; i < contacts->count; i++) contacts->items[i].anchor->weight = 0;
-    pair->largest = pair->age = 0;
-    pair->rolled = (vec3){0, 0, 0};
+    forget_contact(pair, contacts);
+    pair->age = 0;
     return (scree_powers){0, 0};
   }
   pair->touching = true;
   pair->age += scratch->drift;
   pair->overlap = maximum.value;
-  double way =
-      crossed_way(pair, &maximum, contacts, relative, 0.5 * (scratch->drift + scratch->step));
-  double spring = spring_force(world, pair, maximum.value, way), energy = 0;
+  overlap_slope slope = find_slope(world, pair, &maximum, scratch);
+  double spring = press(world, pair, &maximum, &slope, scratch), energy = 0;
   slider law = make_slider(world, pair, relative, scratch->drift);
+  law.normal_damping = damping_at(world, pair, relative, &slope);
   load_sums sums;
   sums.normal = sums.dashpot = sums.tangential = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
   sums.dashpot_power = sums.tangential_power = sums.pressed = 0;
   uint32_t count = 0;
   for (size_t i = 0; i < contacts->count; i++) {
     scree_contact_point *contact = &contacts->items[i];
-    double above = contact->overlap - maximum.cutoff;
-    contact->weight = weight_of(contact, &maximum);
     if (contact->weight > 0) {
-      if (contact->gap_gradient > most_slopes[0])
-        contact->gap_gradient =
-            scree_min(contact->gap_gradient, most_resolved(pair, scratch->step, most_slopes[0]));
       contact_force(pair, &law, spring, contact, relative, &energy, &sums);
       if (contact->fading.x != 0 || contact->fading.y != 0 || contact->fading.z != 0)
-        fade(spring, 0.5 * above * above / maximum.denominator,
-             most_resolved(pair, scratch->step, most_slopes[1]), contact, &sums);
+        fade(spring, contact, &sums);
       count++;
     } else {
       contact->anchor->weight = 0;

@@ -279,6 +279,7 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   scree_code_u32(c, &substeps);
   if (substeps < 1 || substeps > SCREE_MOST_SUBSTEPS) c->failed = true;
   p->substeps = (uint8_t)substeps;
+  code_load(c, &p->spring);
   code_load(c, &p->dashpot);
   code_load(c, &p->tangential);
   uint64_t contacts = p->contact_count;

@@ -218,9 +218,12 @@ typedef struct scree_pair {
   uint32_t neighbours; /* index */
   double overlap;      /* m */
   scree_pair_law law;
-  scree_kept_wrench dashpot, tangential; /* parts of the wrench, for the ledger */
-  double elastic, tangential_elastic;    /* U of all springs, and of the tangential ones */
-  double largest;                        /* m of this contact (hysteresis) */
+  scree_kept_wrench spring, dashpot, tangential; /* parts of the wrench, for the ledger */
+  double elastic, tangential_elastic;            /* U of all springs, and of the tangential ones */
+  union {
+    double largest; /* m of this contact: hysteresis */
+    double worked;  /* J, by the spring in this contact: the other laws */
+  };
   vec3 rolled;  /* the spring of rolling resistance, rad, in the frame of b */
   double depth; /* no edge lies deeper inside the other body; -INFINITY: not known */
   double kick;  /* s, for which the last wrench acts; 0: there was none */
