@@ -36,7 +36,8 @@ static void add_later_work(const scree_world *world, const scree_pair *pair, scr
        arm = vec3_mad(scree_pair_between(world, pair, a, b), slip, -scratch->drift),
        u = vec3_sub(slip, vec3_cross(a->spin, arm)), spin = vec3_sub(a->spin, b->spin);
   double half = 0.5 * pair->kick;
-  scratch->spring_work = half * power_of(&pair->spring, u, spin);
+  scratch->spring_work =
+      half * (vec3_dot(pair->spring.force, u) + vec3_dot(pair->spring.moment, spin));
   work->later_dashpot += half * power_of(&pair->dashpot, u, spin);
   if (pair->wall && scree_wall_is_belt(&world->walls.items[pair->b])) {
     const scree_world_wall *belt = &world->walls.items[pair->b];

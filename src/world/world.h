@@ -218,7 +218,8 @@ typedef struct scree_pair {
   uint32_t neighbours; /* index */
   double overlap;      /* m */
   scree_pair_law law;
-  scree_kept_wrench spring, dashpot, tangential; /* parts of the wrench, for the ledger */
+  scree_wrench spring;
+  scree_kept_wrench dashpot, tangential; /* parts of the wrench, for the ledger */
   double elastic, tangential_elastic;            /* U of all springs, and of the tangential ones */
   union {
     double largest; /* m of this contact: hysteresis */

@@ -219,7 +219,7 @@ static void throw_at_each_other(scree_particle *const shapes[4], int i, scree_rn
 
 /* Bodies hit each other at 10 m/s, edges and corners far deeper than the roundings: at the moments
  * of the hit the force is the slope of the energy, but where weights change (their slopes are left
- * out: docs/background/physics.md). The same hit with lists that reach two and a half times farther
+ * out: docs/background/physics.md) and where it gives back what that won or lost. The same hit with lists that reach two and a half times farther
  * takes the same course. */
 static void deep_hits(void **state) {
   (void)state;
@@ -254,7 +254,7 @@ static void deep_hits(void **state) {
   assert_true(moments > 300 && deepest > 3e-4);
   LAW_BELOW("-", "deep hits: energy, two skins of the lists", apart, 1e-6);
   LAW_BELOW("-", "share of moments with force off the slope by 1 %", (double)off / (double)moments,
-            0.1);
+            0.15);
   for (int i = 0; i < 4; i++) scree_particle_free(shapes[i]);
 }
 

@@ -158,12 +158,12 @@ static void corners_edges_and_faces_rebound_by_e(void **state) {
 
 /* 27 smooth elastic boxes in a periodic room, 1000 hits or so. What is not told from a hit's energy
  * is at most as many as those. */
-static double change_of_gas(double steps, double time) {
+static double change_of_gas(uint64_t seed) {
   enum { SIDE = 3 };
   const double room = 0.062;
   scree_error error;
   scree_world_options o = scree_default_world_options();
-  o.gravity[2] = 0, o.steps_per_contact = steps, o.stiffness_factor = 0.3;
+  o.gravity[2] = 0, o.stiffness_factor = 0.3;
   for (int k = 0; k < 3; k++) o.period[k] = room;
   scree_world *world = NULL;
   CHECK_OK(scree_world_create(&o, &world, &error), error);
@@ -171,7 +171,7 @@ static double change_of_gas(double steps, double time) {
   material.restitution = 1, material.friction = 0;
   CHECK_OK(scree_world_add_material(world, &material, NULL, &error), error);
   scree_particle *box = shape_particle(shape_box(0.014, 0.010, 0.007));
-  scree_rng rng = {.seed = 2};
+  scree_rng rng = {.seed = seed};
   for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
     scree_body body = scree_default_body();
     const int at[3] = {i % SIDE, i / SIDE % SIDE, i / (SIDE * SIDE)};
@@ -184,7 +184,7 @@ static double change_of_gas(double steps, double time) {
   scree_observation seen;
   law_step(world, 1);
   double start = law_ledger(world, &seen);
-  while (scree_world_time(world) < time) law_step(world, 100);
+  while (scree_world_time(world) < 0.3) law_step(world, 100);
   double change = law_ledger(world, &seen) / start - 1;
   scree_world_free(world);
   scree_particle_free(box);
@@ -193,13 +193,70 @@ static double change_of_gas(double steps, double time) {
 
 static void elastic_boxes_keep_their_energy(void **state) {
   (void)state;
-  LAW_NEAR("L17", "27 elastic boxes, 1000 hits: ledger", change_of_gas(20, 0.3), 0, 1e-3);
+  enum { ROOMS = 7 };
+  double changes[ROOMS];
+  for (int i = 0; i < ROOMS; i++) {
+    double change = fabs(change_of_gas((uint64_t)i + 1));
+    int k = i;
+    for (; k > 0 && changes[k - 1] > change; k--) changes[k] = changes[k - 1];
+    changes[k] = change;
+  }
+  LAW_BELOW("L17", "27 elastic boxes, 1000 hits: ledger, median of rooms", changes[ROOMS / 2],
+            3e-3);
+}
+
+/* Where an elastic box is 2 ms after a corner met a plane at 1 m/s. */
+static vec3 after_hit(const meeting *m, double steps, double *energy) {
+  law_setup setup = law_default();
+  setup.restitution = 1, setup.friction = 0, setup.steps_per_contact = steps;
+  scree_world *world = law_world(&setup);
+  law_floor(world);
+  size_t index =
+      law_body(world, m->upper, body_at((vec3){0, 0, 2e-5}, m->upper_arm, m->upper_turn, -1));
+  scree_observation o;
+  double first = law_ledger(world, &o), time = 2e-3;
+  size_t count = (size_t)(time / scree_world_time_step(world, NULL));
+  law_step(world, count);
+  *energy = law_ledger(world, &o) / first - 1;
+  scree_body b;
+  scree_world_get_body(world, index, &b);
+  vec3 rest = vec3_scale(vec3_load(b.velocity), time - scree_world_time(world));
+  vec3 place = vec3_add(vec3_load(b.position), rest);
+  scree_world_free(world);
+  return place;
+}
+
+/* Half the step, a quarter of the error. */
+static void hits_converge_with_the_step(void **state) {
+  (void)state;
+  enum { TRIES = 40, STEPS = 3 };
+  const vec3 half = {0.03, 0.02, 0.012};
+  scree_particle *box = shape_particle(shape_box(2 * half.x, 2 * half.y, 2 * half.z));
+  scree_rng rng = {.seed = 5};
+  double places[STEPS] = {0}, energies[STEPS] = {0};
+  for (int i = 0; i < TRIES; i++) {
+    meeting m = corner_on_plane(box, half, &rng);
+    double energy;
+    vec3 fine = after_hit(&m, 640, &energy);
+    for (int k = 0; k < STEPS; k++) {
+      vec3 place = after_hit(&m, 20 << k, &energy);
+      places[k] += vec3_norm2(vec3_sub(place, fine)) / TRIES;
+      energies[k] += energy * energy / TRIES;
+    }
+  }
+  for (int k = 0; k < STEPS; k++)
+    print_message("N %d: place off by %.3g m, energy by %.3g (rms)\n", 20 << k, sqrt(places[k]),
+                  sqrt(energies[k]));
+  LAW_BELOW("L17", "place: error at N 80 over that at 20", sqrt(places[2] / places[0]), 0.0884);
+  LAW_BELOW("L17", "energy: the same", sqrt(energies[2] / energies[0]), 0.0884);
+  scree_particle_free(box);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(corners_edges_and_faces_rebound_by_e),
       cmocka_unit_test(elastic_boxes_keep_their_energy),
+      cmocka_unit_test(hits_converge_with_the_step),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
