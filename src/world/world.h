@@ -220,7 +220,7 @@ typedef struct scree_pair {
   scree_pair_law law;
   scree_wrench spring;
   scree_kept_wrench dashpot, tangential; /* parts of the wrench, for the ledger */
-  double elastic, tangential_elastic;            /* U of all springs, and of the tangential ones */
+  double elastic, tangential_elastic;    /* U of all springs, and of the tangential ones */
   union {
     double largest; /* m of this contact: hysteresis */
     double worked;  /* J, by the spring in this contact: the other laws */

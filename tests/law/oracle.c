@@ -219,8 +219,8 @@ static void throw_at_each_other(scree_particle *const shapes[4], int i, scree_rn
 
 /* Bodies hit each other at 10 m/s, edges and corners far deeper than the roundings: at the moments
  * of the hit the force is the slope of the energy, but where weights change (their slopes are left
- * out: docs/background/physics.md) and where it gives back what that won or lost. The same hit with lists that reach two and a half times farther
- * takes the same course. */
+ * out: docs/background/physics.md) and where it gives back what that won or lost. The same hit
+ * with lists that reach two and a half times farther takes the same course. */
 static void deep_hits(void **state) {
   (void)state;
   scree_particle *shapes[] = {shape_particle(shape_box(0.06, 0.04, 0.02)),
