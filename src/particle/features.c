@@ -174,6 +174,23 @@ static scree_status pair_halves(extraction *x, bool is_wall, scree_error *error)
   return SCREE_OK;
 }
 
+/* The parts of the surface that hang together, over edges of two faces, are numbered by their first
+ * faces. */
+static void number_sheets(extraction *x) {
+  scree_face_signs *signs = x->particle->face_signs;
+  for (uint32_t f = 0; f < x->particle->face_count; f++) signs[f].sheet = f;
+  for (size_t e = 0; e < x->edge_count; e++) {
+    uint32_t one = x->edges[e].face1, other = x->edges[e].face2;
+    while (signs[one].sheet != one) one = signs[one].sheet = signs[signs[one].sheet].sheet;
+    while (signs[other].sheet != other)
+      other = signs[other].sheet = signs[signs[other].sheet].sheet;
+    signs[one < other ? other : one].sheet = one < other ? one : other;
+  }
+  uint32_t count = 0;
+  for (uint32_t f = 0; f < x->particle->face_count; f++)
+    signs[f].sheet = signs[f].sheet == f ? count++ : signs[signs[f].sheet].sheet;
+}
+
 static scree_status make_corner_signs(scree_particle *p, scree_error *error) {
   const scree_mesh *mesh = &p->mesh;
   vec3 *sums = scree_alloc_zero(mesh->vertex_count, sizeof *sums);
@@ -329,6 +346,7 @@ scree_status scree_particle_extract_features(scree_particle *p, bool is_wall, sc
   list_halves(mesh, x.halves);
   status = pair_halves(&x, is_wall, error);
   if (status) goto done;
+  number_sheets(&x);
   status = make_corner_signs(p, error);
   if (status) goto done;
   if (p->sheet) clear_rim_signs(&x);

@@ -170,7 +170,9 @@ static scree_status make_mesh_particle(scree_particle *p, double rounding, scree
   m->rounding = rounding > 0 ? rounding : scree_min(least, most_rounding * m->thickness);
   p->radius = radius_of(m);
   drop_features(p);
-  return extract_all(p, false, error);
+  status = extract_all(p, false, error);
+  if (!status) scree_particle_find_inner(p);
+  return status;
 }
 
 /* What the features' extraction does not see: surfaces that meet themselves, shells in shells. */
@@ -300,7 +302,9 @@ static scree_status fill_clump(scree_particle *p, const double *centres, const d
   p->measures.thickness = thinnest;
   set_bounding_radius(p);
   set_counts(p);
-  return scree_particle_build_trees(p, error);
+  scree_status status = scree_particle_build_trees(p, error);
+  if (!status) scree_particle_find_inner(p);
+  return status;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
@@ -361,7 +365,9 @@ static scree_status restore(scree_particle *p, const scree_mesh *mesh, const dou
     for (size_t i = 0; i < count; i++) p->point_radii[i] = radii[i];
   }
   set_counts(p);
-  return scree_particle_build_trees(p, error);
+  scree_status status = scree_particle_build_trees(p, error);
+  if (!status) scree_particle_find_inner(p);
+  return status;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }

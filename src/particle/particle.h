@@ -17,6 +17,7 @@ typedef struct scree_face {
 typedef struct scree_face_signs {
   vec3 edge[3];   /* over the edges 01, 12, 20 */
   vec3 corner[3]; /* at the corners */
+  uint32_t sheet; /* which of the connected parts of the surface, over edges of two faces */
 } scree_face_signs;
 
 /* rad; by this the cones of edges are widened: bodies may turn by it while a list of contacts
@@ -31,6 +32,8 @@ typedef struct scree_edge {
   scree_cone normals; /* from one face's to the other's, widened (features.c) */
   double facing;      /* least cosine of a contact's normal with their axis */
 } scree_edge;
+
+enum { SCREE_INNER_PLACES = 8 };
 
 struct scree_particle {
   atomic_int reference_count;
@@ -47,7 +50,10 @@ struct scree_particle {
   scree_edge *edges;
   size_t edge_count;
   scree_tree face_tree, edge_tree, point_tree;
-  scree_box box; /* of everything, rounding included */
+  vec3 inner[SCREE_INNER_PLACES]; /* places within (inner.c), none in walls */
+  uint32_t inner_count;
+  double inner_depth; /* of the first, which is the deepest, m */
+  scree_box box;      /* of everything, rounding included */
   bool sheet;  /* met from both sides, and where it ends by rims: an open surface, or one that is to
                   be */
   bool hollow; /* wound inwards: what lies outside it is solid */
@@ -107,6 +113,8 @@ scree_status scree_particle_extract_features(scree_particle *particle, bool is_w
                                              scree_error *error);
 /* inset.c: the core that lies `by` inside the faces, or nearer where the shape has no room. */
 scree_status scree_particle_make_core(scree_particle *particle, double by, scree_error *error);
+/* inner.c: needs the trees. */
+void scree_particle_find_inner(scree_particle *particle);
 /* Trees and the box over what was extracted. */
 scree_status scree_particle_build_trees(scree_particle *particle, scree_error *error);
 

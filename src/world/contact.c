@@ -59,7 +59,7 @@ static double bodies_path(const scree_world *world, const scree_pair *pair) {
   return path[pair->a] + (pair->wall ? world->walls.items[pair->b].path : path[pair->b]);
 }
 
-static quat turned(const scree_world *world, const scree_pair *pair) {
+quat scree_pair_turned(const scree_world *world, const scree_pair *pair) {
   quat b =
       pair->wall ? world->walls.items[pair->b].orientation : world->bodies.orientation[pair->b];
   return quat_mul(quat_conjugate(b), world->bodies.orientation[pair->a]);
@@ -86,8 +86,8 @@ static double slept_path(const scree_world *world, const scree_pair *pair,
   mat3 then = quat_to_mat3(n->asleep_turned);
   vec3 of_a = mat3_tmul_vec(&then, vec3_sub(centre, n->asleep_at)),
        now = vec3_add(mat3_mul_vec(&relative->rotation, of_a), relative->position);
-  double net =
-      vec3_distance(now, centre) + radius * quat_chord(n->asleep_turned, turned(world, pair));
+  double net = vec3_distance(now, centre) +
+               radius * quat_chord(n->asleep_turned, scree_pair_turned(world, pair));
   return scree_min(net, bodies_path(world, pair) - n->asleep_since);
 }
 
@@ -200,7 +200,7 @@ static void fall_asleep(const scree_world *world, scree_pair *pair, scree_neighb
   n->asleep_since = bodies_path(world, pair);
   n->wake = n->asleep_since + scree_min(pair->list.next_feature, pair->list.end) - pair->list.path;
   n->asleep_at = relative->position;
-  n->asleep_turned = turned(world, pair);
+  n->asleep_turned = scree_pair_turned(world, pair);
   pair->asleep = true;
 }
 
@@ -355,6 +355,7 @@ void scree_pair_narrow_phase_between(const scree_world *world, scree_pair *pair,
 
 void scree_pair_leave(const scree_world *world, scree_pair *pair, scree_scratch *scratch) {
   const scree_frame relative = scratch->relative; /* of the step's beginning */
+  scree_pair_watch(world, pair, scratch);
   if (scratch->substeps > 1 || pair->substeps > 1) scree_pair_follow(world, pair, scratch);
   if (pair->touching && pair->wall) scratch->work.wall += half_work_of_wall(world, pair);
   if (!scree_pair_stays_awake(pair)) fall_asleep(world, pair, scratch->neighbours, &relative);

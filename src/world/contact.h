@@ -20,6 +20,9 @@ typedef struct scree_contact_list {
   size_t count, capacity;
 } scree_contact_list;
 
+/* m/s, at most, with which bodies are moved apart (law.c). */
+#define SCREE_DEPENETRATION_SPEED 0.1
+
 /* What a pair's evaluation adds to the ledger, J, and what is wrong with it. */
 typedef struct scree_pair_work {
   double later_dashpot, later_tangential; /* second half of the last step */
@@ -28,7 +31,7 @@ typedef struct scree_pair_work {
   double let_go;                          /* by springs whose references start anew */
   double wall;                            /* of a wall on the body */
   double start_depth;                     /* in each other from the start, m; 0: none */
-  bool too_fast, beyond_limit, begins_depenetration;
+  bool too_fast, beyond_limit, begins_depenetration, passed;
 } scree_pair_work;
 
 /* Whether a pair asks for depths: from the start; of edges that lie deeper than `above`, m. */
@@ -261,6 +264,12 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
 bool scree_pair_evaluate(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 /* The contact at the present places, without what follows of it: the first part of the step. */
 bool scree_pair_narrow_phase(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
+
+/* a's orientation in the frame of b. */
+quat scree_pair_turned(const scree_world *world, const scree_pair *pair);
+
+/* watch.c: whether one of the two has come through the other; in scratch->work. */
+void scree_pair_watch(const scree_world *world, scree_pair *pair, scree_scratch *scratch);
 
 /* The parts of both, one after another. How the two have moved: */
 void scree_pair_relate(const scree_world *world, scree_pair *pair, scree_scratch *scratch);

@@ -28,7 +28,8 @@ enum { NEWTON_STEPS = 30, CLOSED_ROUNDS = 3 };
 static const double most_slopes[2] = {3, 1};
 /* Bodies part where the normals' mean by contact weights and gap gradients is shorter than this: */
 static const double pinched_net = 0.35;
-static const double depenetration_speed = 0.1; /* m/s, at most */
+static const double back_cosine = 0.3; /* of the way out of a wall with that back */
+static const double depenetration_speed = SCREE_DEPENETRATION_SPEED;
 /* Of the reduced mass, taken in a step: a corner's is up to seven times smaller, and no more than
  * all may be. */
 static const double depenetration_damping = 0.1;
@@ -428,10 +429,12 @@ static void fade(double spring, scree_contact_point *contact, load_sums *sums) {
 
 /* Where the contacts hold the bodies against each other these are to part, from the next step on.
  * So they are where features alone cancel and the contact lasts, deeper than references count from:
- * the next step asks for the depth. And so they are where edges lie inside and are pressed beyond
- * the overlap limit. */
-static void judge(scree_pair *pair, const scree_contact_list *contacts) {
-  bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1,
+ * the next step asks for the depth; not in a sheet, which has none, and between whose sides a body
+ * may be wedged. And so they are where edges lie inside and are pressed beyond the overlap limit.
+ */
+static void judge(const scree_world *world, scree_pair *pair, const scree_contact_list *contacts) {
+  const scree_particle *b = scree_pair_shape_b(world, pair);
+  bool jammed = pair->overlap > 0.5 * pair->law.reach && lasting(pair) == 1 && !(b && b->sheet),
        pressed = pair->overlap > pair->law.limit && pair->depth > 0;
   if (!jammed && !pressed && !contacts->items[contacts->count - 1].of_depth)
     return; /* depths come last */
@@ -485,18 +488,39 @@ static void store_wrenches(const scree_world *world, const scree_scratch *scratc
       (scree_pair_wrench){force, vec3_sub(moment, vec3_cross(arm, force)), vec3_neg(moment)};
 }
 
-/* The way in which bodies part: that of their seam's area when they begin to, off a sheet that over
- * its rims; kept in the frame of b until they are apart. Of a body that pierces a wall the areas
- * where it enters and leaves cancel, and what is left points here and there from step to step. */
-static vec3 separation_of(const scree_world *world, scree_pair *pair, const scree_frame *relative) {
+/* Where the body came from, by what its features remember of the surface of b; 0: not known. */
+static vec3 remembered_side(const scree_pair *pair, const scree_scratch *scratch) {
+  vec3 sum = {0, 0, 0};
+  for (uint32_t i = 0; i < pair->active.count; i++) {
+    const scree_feature_pair *feature = &scratch->features[i];
+    if (feature->kind == SCREE_FEATURE_POINT_FACE && feature->has_reference)
+      sum = vec3_add(sum, feature->reference);
+  }
+  return vec3_unit(sum);
+}
+
+/* The way in which a body is moved out of a mesh wall: that of its seam's area, off a sheet over
+ * its rims; but back to where it came from. A sheet has no outside, and of a body that pierces a
+ * wall the areas where it enters and leaves cancel. */
+static vec3 separation_from_wall(const scree_particle *a, const scree_particle *wall,
+                                 const scree_frame *relative, vec3 came) {
+  vec3 way = vec3_unit(scree_separation_direction(a, wall, relative));
+  if (wall->sheet && vec3_dot(way, came) < 0) way = vec3_neg(way);
+  return vec3_dot(way, came) < back_cosine * vec3_norm(came) ? came : way;
+}
+
+/* The way in which bodies part, kept in the frame of b until they are apart. */
+static vec3 separation_of(const scree_world *world, scree_pair *pair, const scree_frame *relative,
+                          const scree_scratch *scratch) {
   if (vec3_norm2(pair->separation) > 0) return pair->separation;
   const scree_particle *a = world->bodies.particle[pair->a], *b = scree_pair_shape_b(world, pair);
-  pair->separation = vec3_unit(scree_separation_off_rims(world, pair, relative));
-  if (vec3_norm2(pair->separation) == 0 && b->face_count)
-    pair->separation = vec3_unit(scree_separation_direction(a, b, relative));
-  if (vec3_norm2(pair->separation) == 0) pair->separation = vec3_unit(relative->position);
-  if (vec3_norm2(pair->separation) == 0) pair->separation = (vec3){0, 0, 1};
-  return pair->separation;
+  vec3 way = vec3_unit(scree_separation_off_rims(world, pair, relative));
+  if (vec3_norm2(way) == 0 && b->face_count)
+    way = pair->wall ? separation_from_wall(a, b, relative, remembered_side(pair, scratch))
+                     : vec3_unit(scree_separation_direction(a, b, relative));
+  if (vec3_norm2(way) == 0) way = vec3_unit(relative->position);
+  if (vec3_norm2(way) == 0) way = (vec3){0, 0, 1};
+  return pair->separation = way;
 }
 
 /* Where bodies that part are pushed. */
@@ -543,7 +567,8 @@ static scree_powers part(const scree_world *world, scree_pair *pair, const scree
   scree_contact_list *contacts = &scratch->contacts; /* with room for more than one */
   forget_contact(pair, contacts);
   if (scratch->question.edges) pair->pushed = place_of_push(world, pair, contacts, relative);
-  vec3 at = pair->pushed, way = separation_of(world, pair, relative), arm = vec3_cross(at, way);
+  vec3 at = pair->pushed, way = separation_of(world, pair, relative, scratch),
+       arm = vec3_cross(at, way);
   pair->touching = true;
   pair->contact_count = 1;
   pair->age += scratch->drift;
@@ -634,7 +659,7 @@ scree_powers scree_pair_apply_law(const scree_world *world, scree_pair *pair,
       contact->anchor->weight = 0;
     }
   }
-  judge(pair, contacts);
+  judge(world, pair, contacts);
   roll(pair, &law, relative, &energy, &sums);
   pair->contact_count = count;
   pair->tangential_elastic = energy;

@@ -36,6 +36,15 @@ typedef struct surface_contact {
 
 /* ---- points against surfaces ---- */
 
+/* A point of one body, in the frame of the surface of the other. */
+typedef struct probe {
+  const scree_particle *surface;
+  const scree_pair *pair;
+  scree_feature_pair *feature;
+  vec3 p, velocity; /* velocity: against the surface; of sheets only */
+  double drift;     /* s, since the last look */
+} probe;
+
 static void refresh_faces(const scree_particle *surface, vec3 p, scree_feature_pair *feature,
                           double path, double slack) {
   scree_near near;
@@ -47,11 +56,68 @@ static void refresh_faces(const scree_particle *surface, vec3 p, scree_feature_p
   feature->valid = path + 0.5 * (next - near.distance[0]);
 }
 
-/* Of the faces that look along `way` within reach: closest point and normal of the nearest, and by
- * how much p is sideways of the one behind which it is most nearly; false for none. With `behind`,
- * p must not be in front of a face. */
-static bool find_facing(const scree_particle *surface, vec3 p, vec3 way, double reach, bool behind,
-                        surface_contact *out) {
+/* ---- sides of sheets ---- */
+
+static uint16_t sheet_of(const scree_particle *surface, uint32_t face) {
+  return (uint16_t)surface->face_signs[face].sheet;
+}
+
+/* Whether a face's normal points away from the side on which the item is. On a sheet other than
+ * that of the item's side this is where the point is, or, of a point that is through a sheet, where
+ * the reference points. */
+static bool is_turned(const probe *x, uint32_t f) {
+  const scree_feature_pair *feature = x->feature;
+  const scree_face *face = &x->surface->faces[f];
+  if (feature->side != 0 && feature->sheet == sheet_of(x->surface, f)) return feature->side < 0;
+  vec3 out =
+      feature->side == 0 || feature->inside ? feature->reference : vec3_sub(x->p, face->corner);
+  return vec3_dot(face->normal, out) < 0;
+}
+
+/* The face through which the point came since the last look, or in the step before; false for
+ * none. */
+static bool find_passage(const probe *x, double distance, uint32_t *face) {
+  double way = 2 * x->drift * vec3_norm(x->velocity);
+  if (scree_pair_is_new(x->pair) || !(distance < way)) return false;
+  vec3 along = vec3_unit(x->velocity);
+  const scree_way back = {vec3_mad(x->p, along, -way), along, 0, way};
+  return scree_next_passage(x->surface, &back, 0, SIZE_MAX, face) < INFINITY;
+}
+
+/* Whether the point is on its side of the sheet, and the way out there, which comes in as the
+ * pseudonormal where the point is nearest. A side is a sign on the oriented sheet. The point keeps
+ * it until it is seen to come through: where it comes nearer to another part without that, its side
+ * is where it is. A rim has no sides: what goes round it may come to either. */
+static bool is_on_its_side(const probe *x, vec3 offset, uint32_t face, vec3 *outward) {
+  scree_feature_pair *feature = x->feature;
+  if (vec3_norm2(*outward) == 0) {
+    if (!feature->inside) feature->side = 0;
+    *outward = offset;
+    return true;
+  }
+  const int8_t side = vec3_dot(*outward, offset) < 0 ? -1 : 1;
+  const uint16_t sheet = sheet_of(x->surface, face);
+  uint32_t passed;
+  if (!feature->inside && (feature->side != side || feature->sheet != sheet)) {
+    feature->side = side;
+    feature->sheet = sheet;
+    if (find_passage(x, vec3_norm(offset), &passed)) {
+      feature->side = vec3_dot(x->surface->faces[passed].normal, x->velocity) < 0 ? 1 : -1;
+      feature->sheet = sheet_of(x->surface, passed);
+      feature->inside = true;
+    }
+  }
+  const bool same = feature->sheet == sheet;
+  if ((same ? feature->side : side) < 0) *outward = vec3_neg(*outward);
+  return !same || feature->side == side;
+}
+
+/* Of the faces that look along the reference within reach: closest point and normal of the nearest,
+ * and by how much the point is sideways of the one behind which it is most nearly; false for none.
+ * With `behind`, it must not be in front of a face. */
+static bool find_facing(const probe *x, double reach, bool behind, surface_contact *out) {
+  const scree_particle *surface = x->surface;
+  const vec3 p = x->p;
   const scree_tree_node *nodes = surface->face_tree.nodes;
   uint32_t stack[SCREE_TREE_STACK];
   int depth = 0;
@@ -67,12 +133,11 @@ static bool find_facing(const scree_particle *surface, vec3 p, vec3 way, double 
       continue;
     }
     for (uint32_t k = 0; k < node->count; k++) {
-      const scree_face *face = &surface->faces[surface->face_tree.order[node->first + k]];
+      uint32_t f = surface->face_tree.order[node->first + k];
+      const scree_face *face = &surface->faces[f];
       vec3 normal = face->normal;
-      double looks = vec3_dot(normal, way);
-      if (surface->sheet && looks < 0)
-        looks = -looks, normal = vec3_neg(normal); /* has two sides */
-      if (looks < facing_cosine) continue;
+      if (surface->sheet && is_turned(x, f)) normal = vec3_neg(normal);
+      if (vec3_dot(normal, x->feature->reference) < facing_cosine) continue;
       int region;
       vec3 c = scree_closest_on_face(face, p, &region), offset = vec3_sub(p, c);
       double d2 = vec3_norm2(offset), height = vec3_dot(offset, normal);
@@ -129,11 +194,12 @@ static void slide_off(vec3 p, double half, const surface_contact *closest,
  * radii too, as far as that is not the same: where a point beside an edge sinks below the plane of
  * the face, both sides of it are `w` times 0. So does it inside, in the wall of a recess, as far
  * again: further on the depth is that to the faces, which are its floor's border. */
-static bool deep_contact(const scree_particle *surface, vec3 p, const scree_feature_pair *feature,
-                         const scree_pair *pair, bool pierced, bool outside,
-                         surface_contact *closest, surface_contact *contact) {
-  double half = 0.5 * pair->law.reach, reach = 1.5 * pair->law.limit + pair->law.reach;
-  if (!find_facing(surface, p, feature->reference, reach, pierced, contact)) return false;
+static bool deep_contact(const probe *x, bool pierced, bool outside, surface_contact *closest,
+                         surface_contact *contact) {
+  const scree_pair_law *law = &x->pair->law;
+  const vec3 p = x->p;
+  double half = 0.5 * law->reach, reach = 1.5 * law->limit + law->reach;
+  if (!find_facing(x, reach, pierced, contact)) return false;
   vec3 offset = vec3_sub(p, contact->closest);
   double height = vec3_dot(offset, contact->normal), distance = vec3_norm(offset);
   bool in_front = height > 0,
@@ -161,9 +227,17 @@ static bool deep_contact(const scree_particle *surface, vec3 p, const scree_feat
   return true;
 }
 
+/* Whether a place lies behind the plane of a contact: on the far side of an edge that is convex. */
+static bool is_behind(vec3 place, const surface_contact *contact) {
+  return vec3_dot(vec3_sub(place, contact->closest), contact->normal) < 0;
+}
+
 /* Further faces of a notch, onto which the point projects. */
-static int notch_contacts(const scree_particle *surface, vec3 p, const scree_feature_pair *feature,
-                          uint32_t nearest, surface_contact contacts[SCREE_ANCHORS]) {
+static int notch_contacts(const probe *x, uint32_t nearest,
+                          surface_contact contacts[SCREE_ANCHORS]) {
+  const scree_particle *surface = x->surface;
+  const scree_feature_pair *feature = x->feature;
+  const vec3 p = x->p;
   int count = 1;
   for (uint32_t k = 0; k < feature->face_count && count < SCREE_ANCHORS; k++) {
     if (k == nearest) continue;
@@ -172,6 +246,7 @@ static int notch_contacts(const scree_particle *surface, vec3 p, const scree_fea
     vec3 c = scree_closest_on_face(face, p, &region), normal = face->normal;
     double d = vec3_dot(vec3_sub(p, c), normal);
     if (surface->sheet && d < 0) d = -d, normal = vec3_neg(normal);
+    if (surface->sheet && is_behind(c, &contacts[0])) continue;
     double alike = vec3_dot(normal, contacts[0].normal);
     if (alike >= notch_cosines[0]) continue;
     if (region != SCREE_REGION_INSIDE || d <= 0) continue;
@@ -181,9 +256,12 @@ static int notch_contacts(const scree_particle *surface, vec3 p, const scree_fea
   return count;
 }
 
-/* Contacts of the point p with the surface, the nearest first. */
-static int surface_contacts(const scree_particle *surface, vec3 p, scree_feature_pair *feature,
-                            const scree_pair *pair, surface_contact contacts[SCREE_ANCHORS]) {
+/* Contacts of the point with the surface, the nearest first. */
+static int surface_contacts(const probe *x, surface_contact contacts[SCREE_ANCHORS]) {
+  const scree_particle *surface = x->surface;
+  scree_feature_pair *feature = x->feature;
+  const vec3 p = x->p;
+  const double half = 0.5 * x->pair->law.reach;
   uint32_t nearest = 0;
   int nearest_region = 0;
   double best2 = INFINITY;
@@ -199,36 +277,33 @@ static int surface_contacts(const scree_particle *surface, vec3 p, scree_feature
   }
   vec3 offset = vec3_sub(p, contacts[0].closest);
   vec3 outward = scree_outward(surface, feature->face[nearest], nearest_region);
-  if (surface->sheet) { /* the side on which it was last seen clear; a rim has none */
-    if (vec3_dot(outward, feature->has_reference ? feature->reference : offset) < 0)
-      outward = vec3_neg(outward);
-    if (vec3_norm2(outward) == 0) outward = offset;
-  }
   double d = sqrt(best2);
-  bool outside = vec3_dot(offset, outward) >= 0;
+  bool outside = surface->sheet ? is_on_its_side(x, offset, feature->face[nearest], &outward)
+                                : vec3_dot(offset, outward) >= 0;
   /* where the core of a thin shape is folded its pseudonormals lie: ask the whole surface */
   if (!outside && surface->measures.volume > 0) outside = !scree_is_inside(surface, p);
-  bool deep = !outside || d < 0.5 * pair->law.reach;
+  bool deep = !outside || d < half;
   /* out on the other side of a wall that is thinner than the overlap: held while it is behind it */
-  bool pierced = !deep && feature->inside && vec3_dot(outward, feature->reference) < 0;
+  bool pierced = !deep && feature->inside &&
+                 (vec3_dot(outward, feature->reference) < 0 ||
+                  (surface->sheet && feature->sheet != sheet_of(surface, feature->face[nearest])));
   contacts[0].taper = contacts[0].gap_gradient = 1;
   contacts[0].distance = outside ? d : -d;
   contacts[0].normal = d > 1e-12 ? vec3_scale(offset, (outside ? 1 : -1) / d) : vec3_unit(outward);
   surface_contact out;
   if ((deep || pierced) && feature->has_reference &&
-      deep_contact(surface, p, feature, pair, pierced, outside, &contacts[0], &out) &&
-      (deep || out.taper > 0)) {
+      deep_contact(x, pierced, outside, &contacts[0], &out) && (deep || out.taper > 0)) {
     feature->inside = !outside || out.taper > 0;
-    if (out.taper < 1) slide_off(p, 0.5 * pair->law.reach, &contacts[0], &out);
+    if (out.taper < 1) slide_off(p, half, &contacts[0], &out);
     contacts[0] = out;
     return 1;
   }
-  feature->inside = false;
+  feature->inside = surface->sheet && !outside;
   if (!deep || !feature->has_reference) {
     feature->reference = contacts[0].normal;
     feature->has_reference = true;
   }
-  return deep ? 1 : notch_contacts(surface, p, feature, nearest, contacts);
+  return deep ? 1 : notch_contacts(x, nearest, contacts);
 }
 
 static scree_anchor *anchor_of(const scree_scratch *scratch, scree_feature_pair *feature, int k) {
@@ -280,7 +355,10 @@ static double point_surface_contact(const scree_world *world, const scree_pair *
     scratch->closest_queries++;
   }
   surface_contact contacts[SCREE_ANCHORS];
-  int count = surface_contacts(surface, p, feature, pair, contacts);
+  probe x = {.surface = surface, .pair = pair, .feature = feature, .p = p, .drift = scratch->drift};
+  if (surface->sheet)
+    x.velocity = vec3_add(relative->velocity, vec3_cross(relative->spin, p)); /* that of a wall */
+  int count = surface_contacts(&x, contacts);
   vec3 at[SCREE_ANCHORS], normals[SCREE_ANCHORS];
   for (int k = 0; k < count; k++) {
     at[k] = contacts[k].closest;

@@ -186,7 +186,16 @@ static void code_feature(scree_codec *c, scree_feature_pair *i, scree_further *f
   if (c->loading) i->kind = (uint8_t)kind;
   scree_code_u32(c, &i->a);
   scree_code_u32(c, &i->b);
-  scree_code_u32(c, &i->face_count);
+  uint32_t state = kind == SCREE_FEATURE_EDGE_EDGE
+                       ? i->crossing
+                       : i->face_count | (uint32_t)(i->side + 1) << 8 | (uint32_t)i->sheet << 16;
+  scree_code_u32(c, &state);
+  if (c->loading && kind == SCREE_FEATURE_EDGE_EDGE) i->crossing = state;
+  if (c->loading && kind != SCREE_FEATURE_EDGE_EDGE) {
+    i->face_count = (uint8_t)state;
+    i->side = (int8_t)((int)(state >> 8 & 255) - 1);
+    i->sheet = (uint16_t)(state >> 16);
+  }
   for (int k = 0; k < SCREE_CACHED_FACES; k++) scree_code_u32(c, &i->face[k]);
   scree_code_real(c, &i->valid);
   scree_code_vec3(c, &i->reference);
@@ -195,6 +204,27 @@ static void code_feature(scree_codec *c, scree_feature_pair *i, scree_further *f
   scree_code_bool(c, &i->inside);
   code_anchor(c, &i->anchor);
   code_further(c, i, further);
+}
+
+static void code_float(scree_codec *c, float *x) {
+  double value = *x;
+  scree_code_real(c, &value);
+  *x = (float)value;
+}
+
+static void code_watch(scree_codec *c, scree_watch *w) {
+  scree_code_real(c, &w->due);
+  scree_code_vec3(c, &w->at);
+  for (int i = 0; i < 4; i++) code_float(c, &w->turned[i]);
+  for (int i = 0; i < 3; i++) code_float(c, &w->came[i]);
+  code_float(c, &w->speed);
+  scree_code_real(c, &w->since);
+  for (int i = 0; i < SCREE_INNER_PLACES; i++) {
+    uint32_t through = w->through[i];
+    scree_code_u32(c, &through);
+    w->through[i] = (uint8_t)through;
+  }
+  scree_code_bool(c, &w->taken);
 }
 
 static void code_sleeping(scree_codec *c, scree_sleeping_feature *s) {
@@ -275,6 +305,7 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
   code_wrench(c, &p->wrench);
   code_wrench(c, &p->owed);
   code_wrench(c, &p->ahead);
+  code_watch(c, &p->watch);
   uint32_t substeps = p->substeps;
   scree_code_u32(c, &substeps);
   if (substeps < 1 || substeps > SCREE_MOST_SUBSTEPS) c->failed = true;
@@ -718,7 +749,8 @@ static bool names_features(const loader *l, const scree_pair *pair, uint32_t kin
 static bool is_feature(const loader *l, const scree_pair *pair, const scree_feature_pair *feature) {
   if (!names_features(l, pair, feature->kind, feature->a, feature->b)) return false;
   if (feature->kind == SCREE_FEATURE_EDGE_EDGE) return feature->crossing <= SCREE_CROSSING_REFUSED;
-  if (feature->face_count > SCREE_CACHED_FACES) return false;
+  if (feature->face_count > SCREE_CACHED_FACES || feature->side < -1 || feature->side > 1)
+    return false;
   const scree_particle *surface = feature->kind == SCREE_FEATURE_FACE_POINT
                                       ? l->world->bodies.particle[pair->a]
                                       : scree_pair_shape_b(l->world, pair);

@@ -21,9 +21,10 @@ void scree_note_pair(scree_tally *tally, const scree_pair *pair, const scree_pai
 /* 0 where none overlaps. */
 double scree_largest_overlap(const scree_tally *tally);
 
-static const scree_trouble scree_no_trouble = {scree_none, scree_none, scree_none, 0};
+static const scree_trouble scree_no_trouble = {scree_none, scree_none, scree_none, scree_none, 0};
 static inline bool scree_is_trouble(const scree_trouble *trouble) {
-  return (trouble->start & trouble->beyond_limit & trouble->too_fast) != scree_none;
+  return (trouble->start & trouble->beyond_limit & trouble->too_fast & trouble->passed) !=
+         scree_none;
 }
 /* A sentence in world->failure. */
 scree_status scree_describe_trouble(scree_world *world, const scree_trouble *trouble);

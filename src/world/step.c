@@ -105,6 +105,7 @@ void scree_balance_add(scree_balance *balance, const scree_pair_work *work) {
 void scree_note_pair(scree_tally *tally, const scree_pair *pair, const scree_pair_work *work) {
   uint32_t k = pair->neighbours;
   if (work->beyond_limit) scree_atomic_lower(&tally->trouble.beyond_limit, k);
+  if (work->passed) scree_atomic_lower(&tally->trouble.passed, k);
   if (work->too_fast) scree_atomic_lower(&tally->trouble.too_fast, k);
   if (work->start_depth > 0) scree_atomic_lower(&tally->trouble.start, k);
   if (work->begins_depenetration) scree_atomic_add(&tally->depenetrations, 1);
@@ -222,6 +223,7 @@ static void add_trouble(scree_trouble *all, const scree_trouble *part) {
     all->start_depth = part->start_depth;
   }
   if (all->beyond_limit == scree_none) all->beyond_limit = part->beyond_limit;
+  if (all->passed == scree_none) all->passed = part->passed;
   if (all->too_fast == scree_none) all->too_fast = part->too_fast;
 }
 
@@ -248,12 +250,78 @@ static scree_status evaluate_pairs(scree_world *world) {
   return scree_is_trouble(&trouble) ? scree_describe_trouble(world, &trouble) : SCREE_OK;
 }
 
+static const double pi = 3.14159265358979323846;
+
+/* A body's shape in a few words. */
+static const char *describe_shape(const scree_particle *p, char text[64]) {
+  const scree_particle_measures *m = &p->measures;
+  if (m->kind == SCREE_PARTICLE_MESH)
+    snprintf(text, 64, "%zu triangles, size %.3g m", m->triangle_count, m->size);
+  else
+    snprintf(text, 64, "%zu sphere%s, size %.3g m", m->point_count, m->point_count == 1 ? "" : "s",
+             m->size);
+  return text;
+}
+
+/* "body 3 (60 triangles, size 0.022 m) VERB wall 0 (mesh)". */
+static void describe_both(const scree_world *world, const scree_neighbours *n, const char *verb,
+                          char text[256]) {
+  static const char *const walls[] = {"plane", "disc", "cylinder", "mesh"};
+  char a[64], b[64];
+  describe_shape(world->bodies.particle[n->a], a);
+  if (n->wall)
+    snprintf(b, sizeof b, "%s", walls[world->walls.items[n->b].given.kind]);
+  else
+    describe_shape(world->bodies.particle[n->b], b);
+  snprintf(text, 256, "body %u (%s) %s %s %u (%s)", n->a, a, verb, n->wall ? "wall" : "body", n->b,
+           b);
+}
+
+/* Where the first is, and what a contact must bear that is met at this speed: an overlap of
+ * v sqrt(m/K). */
+static void describe_demand(const scree_world *world, const scree_neighbours *n, double speed,
+                            char text[256]) {
+  const scree_pair_law *law = &n->law;
+  const double asked = speed * law->contact_time / pi,
+               factor = asked * asked / (law->limit * law->limit);
+  vec3 at = world->bodies.frame[n->a].position;
+  size_t used = (size_t)snprintf(text, 256, "; at %.4g %.4g %.4g m, met at %.3g m/s", at.x, at.y,
+                                 at.z, speed);
+  if (factor > 1)
+    snprintf(text + used, 256 - used,
+             ": a stiffness of %.3g N/m yields by %.3g m, %.3g N/m would hold (materials %.3g "
+             "times as stiff)",
+             law->stiffness, asked, factor * law->stiffness, factor);
+}
+
+static double relative_speed(const scree_world *world, const scree_neighbours *n) {
+  const scree_frame *b = n->wall ? &world->walls.items[n->b].frame : &world->bodies.frame[n->b];
+  vec3 arm = vec3_sub(world->bodies.frame[n->a].position, b->position);
+  return vec3_distance(world->bodies.frame[n->a].velocity,
+                       n->wall ? vec3_add(b->velocity, vec3_cross(b->spin, arm)) : b->velocity);
+}
+
+/* The speed with which they met follows from what the spring holds. */
 static scree_status describe_overlap(scree_world *world, uint32_t k) {
   const scree_neighbours *n = &world->neighbours.items[k];
+  double overlap = scree_pair_of(world, k)->overlap, now = relative_speed(world, n),
+         held = overlap * pi / n->law.contact_time;
+  char demand[256];
+  describe_demand(world, n, sqrt(now * now + held * held), demand);
   return scree_fail(&world->failure, SCREE_DIVERGED,
-                    "world: step %llu, body %u overlaps %s %u by %.3g m; at most %.3g m",
+                    "world: step %llu, body %u overlaps %s %u by %.3g m; at most %.3g m%s",
                     (unsigned long long)world->step_count, n->a, n->wall ? "wall" : "body", n->b,
-                    scree_pair_of(world, k)->overlap, n->law.limit);
+                    overlap, n->law.limit, demand);
+}
+
+static scree_status describe_passed(scree_world *world, uint32_t k) {
+  const scree_neighbours *n = &world->neighbours.items[k];
+  const scree_pair *pair = scree_pair_of(world, k); /* none where they are apart */
+  char both[256], demand[256];
+  describe_both(world, n, "has come through", both);
+  describe_demand(world, n, pair ? pair->watch.speed : relative_speed(world, n), demand);
+  return scree_fail(&world->failure, SCREE_DIVERGED, "world: step %llu, %s%s",
+                    (unsigned long long)world->step_count, both, demand);
 }
 
 static scree_status describe_speed(scree_world *world, uint32_t k) {
@@ -267,36 +335,20 @@ static scree_status describe_speed(scree_world *world, uint32_t k) {
       n->wall ? "wall" : "body", n->b, world->time_step, 2 * n->law.thin);
 }
 
-/* A body's shape in a few words. */
-static const char *describe_shape(const scree_particle *p, char text[64]) {
-  const scree_particle_measures *m = &p->measures;
-  if (m->kind == SCREE_PARTICLE_MESH)
-    snprintf(text, 64, "%zu triangles, size %.3g m", m->triangle_count, m->size);
-  else
-    snprintf(text, 64, "%zu sphere%s, size %.3g m", m->point_count, m->point_count == 1 ? "" : "s",
-             m->size);
-  return text;
-}
-
 static scree_status describe_start(scree_world *world, const scree_trouble *trouble) {
   const scree_neighbours *n = &world->neighbours.items[trouble->start];
-  static const char *const walls[] = {"plane", "disc", "cylinder", "mesh"};
-  char a[64], b[64];
-  describe_shape(world->bodies.particle[n->a], a);
-  if (n->wall)
-    snprintf(b, sizeof b, "%s", walls[world->walls.items[n->b].given.kind]);
-  else
-    describe_shape(world->bodies.particle[n->b], b);
+  char both[256];
+  describe_both(world, n, "and", both);
   return scree_fail(&world->failure, SCREE_DIVERGED,
-                    "world: step %llu, body %u (%s) and %s %u (%s) lie %.3g m deep in each other "
-                    "from the start, or since one was put there: put them apart",
-                    (unsigned long long)world->step_count, n->a, a, n->wall ? "wall" : "body", n->b,
-                    b, trouble->start_depth);
+                    "world: step %llu, %s lie %.3g m deep in each other from the start, or since "
+                    "one was put there: put them apart",
+                    (unsigned long long)world->step_count, both, trouble->start_depth);
 }
 
 scree_status scree_describe_trouble(scree_world *world, const scree_trouble *trouble) {
   if (trouble->start != scree_none) return describe_start(world, trouble);
   if (trouble->beyond_limit != scree_none) return describe_overlap(world, trouble->beyond_limit);
+  if (trouble->passed != scree_none) return describe_passed(world, trouble->passed);
   return describe_speed(world, trouble->too_fast);
 }
 

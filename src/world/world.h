@@ -135,8 +135,12 @@ typedef struct scree_feature_pair {
   bool notched; /* it has further anchors */
   uint32_t a, b;
   union {
-    uint32_t face_count; /* of a point: cached nearest faces */
-    uint32_t crossing;   /* of edges: a scree_crossing, of the last step */
+    struct {              /* of a point: */
+      uint8_t face_count; /* cached nearest faces */
+      int8_t side;        /* of a sheet: 1 where its normals point, -1, or 0: not known */
+      uint16_t sheet;     /* of the side */
+    };
+    uint32_t crossing; /* of edges: a scree_crossing, of the last step */
   };
   uint32_t face[SCREE_CACHED_FACES];
   union {
@@ -197,6 +201,18 @@ typedef struct scree_range {
 
 enum { SCREE_MOST_SUBSTEPS = 16 };
 
+/* What watch.c knows of a pair. */
+typedef struct scree_watch {
+  double due;      /* on the list's path: the next look */
+  vec3 at;         /* a in the frame of b when it was last looked at, */
+  float turned[4]; /* and its orientation */
+  float came[3];   /* unit, in the frame of the surface: from where what is through came */
+  float speed;     /* m/s, before the two met */
+  double since;    /* s, since when something is through */
+  uint8_t through[SCREE_INNER_PLACES]; /* how many faces each inner place is through */
+  bool taken;                          /* the pair was looked at */
+} scree_watch;
+
 /* A pair that is awake. What every step touches comes first. Pairs lie together, apart from what
  * is kept of those asleep: a step comes to one pair of neighbours in five, and each would lie on a
  * page of its own. */
@@ -234,6 +250,7 @@ typedef struct scree_pair {
   vec3 pushed;            /* where, while it parts, in the frame of b */
   double found;           /* m: the depth there, which is looked for when they have come some way */
   scree_pair_wrench owed; /* impulses and their moments of the last step's sub-steps: substep.c */
+  scree_watch watch;
   scree_pair_wrench
       ahead; /* impulses: what the motion at the step's beginning has more than the mean */
 } scree_pair;
@@ -270,7 +287,7 @@ typedef struct scree_pools {
 
 /* What is wrong after a step: the first neighbours of which it is, or scree_none. */
 typedef struct scree_trouble {
-  uint32_t start, beyond_limit, too_fast;
+  uint32_t start, beyond_limit, too_fast, passed;
   double start_depth; /* how deep those lie in each other from the start, m */
 } scree_trouble;
 
