@@ -72,6 +72,14 @@ static inline bool scree_has_features(const scree_particle *particle) {
   return particle->face_count > 0 || particle->edge_count > 0;
 }
 
+/* The contact radius of a mesh's features against another body: the surface stands out by no more
+ * than a share of the other's size. A grain on a slab would float. */
+static inline double scree_contact_radius(const scree_particle *mesh, const scree_particle *other) {
+  const double share = 0.005; /* bodies of about a size stand out by less, each by its own */
+  double excess = mesh->measures.rounding - share * other->measures.size;
+  return excess > 0 ? mesh->radius - excess : mesh->radius;
+}
+
 void scree_particle_retain(scree_particle *particle);
 /* Whether two were made alike: kind, volume, size, features and inertia are the same. */
 bool scree_particle_is_like(const scree_particle *a, const scree_particle *b);

@@ -111,6 +111,14 @@ static inline scree_sleeping_feature *scree_sleeping_features(const scree_scratc
   return s->pools->sleeping_features + s->neighbours->sleeping.first;
 }
 
+/* The contact radius of features of one of the two, a mesh; a wall has no say in it. */
+static inline double scree_pair_contact_radius(const scree_world *w, const scree_pair *p,
+                                               bool of_b) {
+  const scree_particle *a = w->bodies.particle[p->a], *b = scree_pair_shape_b(w, p);
+  if (p->wall) return of_b ? b->radius : a->radius;
+  return of_b ? scree_contact_radius(b, a) : scree_contact_radius(a, b);
+}
+
 /* Evaluated for the first time, or since a jump. */
 static inline bool scree_pair_is_new(const scree_pair *p) {
   return p->list.path <= p->list.travel;

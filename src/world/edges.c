@@ -408,7 +408,7 @@ double scree_edge_contact(const scree_world *world, const scree_pair *pair,
     feature->crossing = crosses ? SCREE_CROSSING_REFUSED : SCREE_CROSSING_NONE;
     return heard ? scree_min(far, 0) : far;
   }
-  double rounding = world->bodies.particle[pair->a]->radius;
+  double rounding = scree_pair_contact_radius(world, pair, false);
   const double values[4] = {c.distance, rounding, pair->law.reach - rounding, c.taper};
   size_t contacts = scratch->contacts.count;
   double gap = scree_add_contact(scratch, pair, x.on_b, c.normal, values, &feature->anchor);

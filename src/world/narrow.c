@@ -369,8 +369,9 @@ static double point_surface_contact(const scree_world *world, const scree_pair *
     normals[k] = vec3_neg(mat3_mul_vec(&relative->rotation, normals[k]));
   }
   match_anchors(scratch, feature, normals, count);
-  double least = INFINITY, surface_radius = surface->radius,
-         point_radius = from->point_radii[point];
+  double least = INFINITY, surface_radius = scree_pair_contact_radius(world, pair, forth),
+         point_radius = from->face_count ? scree_pair_contact_radius(world, pair, !forth)
+                                         : from->point_radii[point];
   for (int k = 0; k < count; k++) {
     const double values[4] = {contacts[k].distance, forth ? point_radius : surface_radius,
                               forth ? surface_radius : point_radius, contacts[k].taper};

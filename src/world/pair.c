@@ -84,7 +84,9 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
   n->law.smoothing = world->options.smoothing * size;
   n->law.limit = world->options.overlap_limit * size;
   n->law.thin = scree_min(n->law.limit, thin);
-  n->law.reach = (a->face_count ? a->radius : 0) + (b && b->face_count ? b->radius : 0);
+  n->law.reach = 0;
+  if (a->face_count) n->law.reach += n->wall ? a->radius : scree_contact_radius(a, b);
+  if (b && b->face_count) n->law.reach += n->wall ? b->radius : scree_contact_radius(b, a);
 }
 
 scree_neighbours scree_neighbours_new(const scree_world *world, uint32_t a, uint32_t b, bool wall) {

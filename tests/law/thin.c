@@ -264,10 +264,48 @@ static void what_is_pressed_too_deep_parts(void **state) {
   assert_true(looks > 0 && looks < 0.9); /* asked in each it is above 1 */
 }
 
+/* What stands out of a large body's surface is a small one's affair. */
+static void a_grain_rests_on_a_slab(void **state) {
+  (void)state;
+  const double half = 2.5e-4;
+  law_setup setup = law_default();
+  setup.gravity = 9.81;
+  setup.stiffness = 1e7;
+  setup.steps_per_contact = 20;
+  scree_particle *slab = shape_particle(shape_box(0.2, 0.2, 0.05)),
+                 *grains[2] = {law_sphere(half),
+                               shape_particle(shape_box(2 * half, 2 * half, 2 * half))};
+  for (int k = 0; k < 2; k++) {
+    scree_world *world = law_world(&setup);
+    law_floor(world);
+    scree_particle_measures m;
+    scree_particle_measure(slab, &m);
+    scree_body body = lying(slab);
+    body.position[2] = 0.025 + m.rounding;
+    size_t lower = law_body(world, slab, body);
+    body = scree_default_body();
+    body.position[0] = 0.03;
+    body.position[2] = 0.05 + 2 * m.rounding + half;
+    size_t upper = law_body(world, grains[k], body);
+    while (scree_world_time(world) < 0.03) law_step(world, 100);
+    scree_world_get_body(world, lower, &body);
+    double top = body.position[2] + 0.025;
+    scree_world_get_body(world, upper, &body);
+    LAW_NEAR("-", k ? "height of a cubic grain over a slab" : "height of a grain over a slab",
+             body.position[2] - half - top, 0, 1e-5);
+    scree_world_free(world);
+    scree_particle_free(grains[k]);
+  }
+  scree_particle_free(slab);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(stacks_stand_right),      cmocka_unit_test(an_open_rim_is_passed),
-      cmocka_unit_test(turned_inside_out_holds), cmocka_unit_test(what_lies_in_each_other_is_told),
-      cmocka_unit_test(blades_win_nothing),      cmocka_unit_test(what_is_pressed_too_deep_parts)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(stacks_stand_right),
+                                     cmocka_unit_test(an_open_rim_is_passed),
+                                     cmocka_unit_test(turned_inside_out_holds),
+                                     cmocka_unit_test(what_lies_in_each_other_is_told),
+                                     cmocka_unit_test(a_grain_rests_on_a_slab),
+                                     cmocka_unit_test(blades_win_nothing),
+                                     cmocka_unit_test(what_is_pressed_too_deep_parts)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
