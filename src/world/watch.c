@@ -9,9 +9,10 @@
 
 #include "particle/closest.h"
 
-static const double look_share = 0.25;  /* of the depth of the deepest place */
-static const double back_cosine = -0.5; /* what leaves within 120 degrees of where it came from */
-static const double patience = 50;      /* contact times that a place may be through */
+static const double look_share = 0.25; /* of the depth of the deepest place */
+static const double back_cosine = 0.5; /* what leaves within 60 degrees of where it came from */
+static const double rim_cosine = -0.5; /* beyond a rim, and within 120 degrees of there */
+static const double patience = 50;     /* contact times that a place may be through */
 enum { MOST_PASSAGES = 8 };
 
 /* The places of one of the two, against the surface of the other. */
@@ -79,7 +80,7 @@ static bool is_round_rim(const scree_particle *sheet, vec3 at, const scree_watch
   if (!(scree_nearest_face(sheet, &root, 1, at, INFINITY, &face) < INFINITY)) return false;
   vec3 offset = vec3_sub(at, scree_closest_on_face(&sheet->faces[face], at, &region));
   return vec3_norm2(scree_outward(sheet, face, region)) == 0 &&
-         vec3_dot(side_of(watch), vec3_unit(offset)) > back_cosine;
+         vec3_dot(side_of(watch), vec3_unit(offset)) > rim_cosine;
 }
 
 /* Whether the deepest place came out on the far side with all that is as far from it as the
