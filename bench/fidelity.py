@@ -8,7 +8,7 @@
   fidelity.py PROGRAM spacing [SAMPLE...]  spacings of 1, 0.5 and 0.27 mm: ratio of N
   fidelity.py PROGRAM moved FILE...    turned, moved, scaled, in another unit: ratio of N
 Lines are printed as they come."""
-import json, math, os, statistics, subprocess, sys, tempfile
+import json, math, os, statistics, struct, subprocess, sys, tempfile
 
 PROGRAM = sys.argv[1]
 DEVICES = [f"{kind}-{k}" for kind in ("dc", "fp", "sp") for k in (1, 2, 3)]
@@ -31,6 +31,27 @@ def inertia(path):
     return [x for row in json.loads(scree("measure", "--json", path))[0]["inertia"] for x in row]
 
 
+def corners(path):
+    """The vertices of a binary STL."""
+    data = open(path, "rb").read()
+    count = int.from_bytes(data[80:84], "little")
+    return {row[k : k + 3] for row in struct.iter_unpack("<12fH", data[84 : 84 + 50 * count]) for k in (3, 6, 9)}
+
+
+def widths(points, directions):
+    along = ([a * x + b * y + c * z for x, y, z in points] for a, b, c in directions)
+    return [max(values) - min(values) for values in along]
+
+
+def widest_change(scan, level):
+    """Along the axes of the scan's least box, and from each to the others in seven steps."""
+    axes = json.loads(scree("measure", "--json", scan))[0]["oriented_axes"]
+    steps = [(i, j, k) for i in range(-7, 8) for j in range(-7, 8) for k in range(8) if abs(i) + abs(j) + k == 7]
+    directions = [[sum(s * axis[c] for s, axis in zip(step, axes)) / math.hypot(*step) for c in range(3)] for step in steps]
+    was, now = (widths(corners(path), directions) for path in (scan, level))
+    return max(abs(b / a - 1) for a, b in zip(was, now))
+
+
 def check_scan(path):
     """The answer's errors, by other means."""
     with tempfile.TemporaryDirectory() as folder:
@@ -39,11 +60,14 @@ def check_scan(path):
         asked = answer["options"]["tolerances"]
         size, told = answer["scan"]["size"], answer["recommended"]
         words = ["--json", "--points", 1000000, "--gap", 0.002]
+        stl = os.path.join(folder, "scan.stl")
+        scree("repair", path, "-o", stl)
         far = json.loads(scree("distance", *words, path, level))
         scan, here = inertia(path), inertia(level)
         found = {"mean_distance": max(far["forward"]["mean"], far["backward"]["mean"]) / size,
                  "hausdorff": far["hausdorff"] / size,
-                 "inertia": math.dist(scan, here) / math.hypot(*scan)}
+                 "inertia": math.dist(scan, here) / math.hypot(*scan),
+                 "widths": widest_change(stl, level)}
         load = max(found.get(name, told["errors"].get(name, 0)) / asked[name] for name in asked)
         print(f"{os.path.basename(path)}: {told['triangle_count']} triangles, {load:.3f} of what is allowed, "
               + ", ".join(f"{name} {share:.4%}" for name, share in found.items()) + f"; {told['limited_by']}", flush=True)

@@ -16,7 +16,8 @@ extern "C" {
   X(HAUSDORFF, "hausdorff") /* the larger of both ways, over D */                                  \
   X(MEAN, "mean_distance")  /* the larger of both ways, over D */                                  \
   X(INERTIA, "inertia")     /* Frobenius norm of the tensors' difference over the scan's */        \
-  X(SIZE, "size")           /* largest relative change of the three principal dimensions */        \
+  X(WIDTHS, "widths")       /* largest relative change of the width along 99 fixed directions, the \
+                               scan's box axes and between them */                                 \
   X(THICKNESS, "thickness") /* mean over the scan's walls of the distance to the level over the    \
                                wall's thickness there */                                           \
   X(THINNEST, "thinnest")   /* relative change of the first percentile of the walls' thickness */  \
@@ -76,7 +77,7 @@ SCREE_API void scree_fidelity_farthest(const scree_fidelity *fidelity, size_t ro
   X(AREA, "area")         /* against the area without noise */                                     \
   X(VOLUME, "volume")     /* */                                                                    \
   X(INERTIA, "inertia")   /* of the tensor's trace */                                              \
-  X(LENGTH, "length")     /* of the least box: */                                                  \
+  X(LENGTH, "length")     /* widths along the axes of the scan's least box: */                     \
   X(WIDTH, "width")       /* */                                                                    \
   X(HEIGHT, "height")     /* */                                                                    \
   X(THINNEST, "thinnest") /* first percentile of the thickness */                                  \

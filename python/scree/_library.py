@@ -15,7 +15,7 @@ STATUSES = ("OK", "BAD_ARGUMENT", "BAD_FILE", "BAD_MESH", "IO", "OUT_OF_MEMORY",
             "UNSUPPORTED", "NO_BACKEND", "DIVERGED")
 METHODS = ("volume", "qecd")
 REFERENCES = ("scan", "smooth")
-SHAPE_ERRORS = ("area", "volume", "hausdorff", "mean_distance", "inertia", "size", "thickness", "thinnest", "convexity",
+SHAPE_ERRORS = ("area", "volume", "hausdorff", "mean_distance", "inertia", "widths", "thickness", "thinnest", "convexity",
                 "normals")
 PARTICLE_KINDS = ("mesh", "sphere", "clump")
 LAWS = ("linear", "hysteretic")

@@ -199,7 +199,7 @@ class Curve:
         return Mesh._of(mesh, self.source_mesh.source)
 
     def choose(self, progress=None, reference="scan", tolerances=None, **options):
-        """Options weight, rp_min, rp_max, per_decade, area_only; tolerances by name as shares, such as {"size": 0.02}."""
+        """Options weight, rp_min, rp_max, per_decade, area_only; tolerances by name as shares, such as {"widths": 0.02}."""
         return Choice(self, progress, reference, tolerances, **options)
 
 

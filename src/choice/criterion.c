@@ -33,6 +33,8 @@ static const struct {
     {SCREE_ERROR_HAUSDORFF, 0.04},
     /* how it turns */
     {SCREE_ERROR_INERTIA, 0.02},
+    /* how it packs: a flat body by its thickness */
+    {SCREE_ERROR_WIDTHS, 0.03},
     /* thin walls stay walls: what is 1 mm thick is 0.03 mm off in the mean */
     {SCREE_ERROR_THICKNESS, 0.03},
 };

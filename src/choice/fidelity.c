@@ -93,7 +93,7 @@ static void keep_facts(scree_fidelity *f, const scree_gauge *g) {
   f->scan[SCREE_SCAN_THICKNESS] = g->thickness;
   f->scan[SCREE_SCAN_THINNEST] = g->thinnest;
   for (int i = 0; i < 3; i++)
-    f->scan[SCREE_SCAN_BOX_LENGTH + i] = g->measures.oriented_dimensions[i];
+    f->scan[SCREE_SCAN_BOX_LENGTH + i] = scree_extent_width(&g->extent, i);
 }
 
 scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *curve,

@@ -123,6 +123,7 @@ scree_status scree_gauge_make(const scree_mesh *scan, size_t point_count, scree_
                         scan->triangle_count, made.measures.area);
   if (status != SCREE_OK) return status;
   made.length = sqrt(made.measures.area / acos(-1));
+  scree_extent_of_mesh(&made.extent, made.measures.oriented_axes, scan);
   status = scree_surface_create(scan, &made.surface, error);
   if (status == SCREE_OK) status = scree_spread_make(scan, point_count, &made.spread, error);
   if (status == SCREE_OK) status = set_probes(&made, error);
@@ -139,7 +140,8 @@ scree_status scree_gauge_refine(const scree_gauge *gauge, size_t point_count, sc
                       .surface = gauge->surface,
                       .refined = true,
                       .measures = gauge->measures,
-                      .length = gauge->length};
+                      .length = gauge->length,
+                      .extent = gauge->extent};
   scree_status status = scree_spread_make(gauge->scan, point_count, &made.spread, error);
   if (status == SCREE_OK) status = set_probes(&made, error);
   if (status == SCREE_OK)
@@ -280,16 +282,23 @@ static void read_measures(const scree_gauge *g, const scree_measures *m, scree_g
   r->changes[SCREE_CHANGE_VOLUME] = m->volume / scan->volume - 1;
   r->changes[SCREE_CHANGE_INERTIA] = trace_of(m) / trace_of(scan) - 1;
   r->changes[SCREE_CHANGE_CONVEXITY] = m->convexity / scan->convexity - 1;
-  r->errors[SCREE_ERROR_SIZE] = 0;
-  for (int i = 0; i < 3; i++) {
-    double change = m->oriented_dimensions[i] / scan->oriented_dimensions[i] - 1;
-    r->changes[SCREE_CHANGE_LENGTH + i] = change;
-    r->errors[SCREE_ERROR_SIZE] = fmax(r->errors[SCREE_ERROR_SIZE], fabs(change));
-  }
   r->errors[SCREE_ERROR_AREA] = fabs(r->changes[SCREE_CHANGE_AREA]);
   r->errors[SCREE_ERROR_VOLUME] = fabs(r->changes[SCREE_CHANGE_VOLUME]);
   r->errors[SCREE_ERROR_CONVEXITY] = fabs(r->changes[SCREE_CHANGE_CONVEXITY]);
   r->errors[SCREE_ERROR_INERTIA] = inertia_error(m, scan);
+}
+
+/* Relative changes; a body that is flat has no width across. */
+static void read_widths(const scree_gauge *g, const scree_mesh *level, scree_gauge_reading *r) {
+  scree_extent extent;
+  scree_extent_of_mesh(&extent, g->measures.oriented_axes, level);
+  r->errors[SCREE_ERROR_WIDTHS] = 0;
+  for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
+    double was = scree_extent_width(&g->extent, i),
+           change = was > 0 ? scree_extent_width(&extent, i) / was - 1 : 0;
+    if (i < 3) r->changes[SCREE_CHANGE_LENGTH + i] = change;
+    r->errors[SCREE_ERROR_WIDTHS] = fmax(r->errors[SCREE_ERROR_WIDTHS], fabs(change));
+  }
 }
 
 /* ---- Both ways ---- */
@@ -385,6 +394,7 @@ scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level,
   SCREE_ALLOC_OR(f.nearest, gauge->spread.count, error, done);
   f.level = surface;
   read_measures(gauge, &measures, &r);
+  read_widths(gauge, level, &r);
   status = read_level(&f, gap, tolerances, &r, error);
   if (status == SCREE_OK) *reading = r;
 done:

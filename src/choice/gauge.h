@@ -4,6 +4,7 @@
 
 #include "choice/fit.h"
 #include "choice/spread.h"
+#include "mesh/extent.h"
 #include "mesh/surface.h"
 
 /* A place where the body has two sides. */
@@ -20,6 +21,7 @@ typedef struct scree_gauge {
   bool refined; /* by scree_gauge_refine: the surface is another gauge's */
   scree_measures measures;
   double length, clean_area;
+  scree_extent extent; /* in the frame of its least box */
   scree_fit fit;
   scree_spread spread;
   size_t probe_step, probe_count; /* every so many points are probes: */

@@ -102,20 +102,19 @@ static scree_status narrow(search *s, const scree_gauge *gauge, double gap, brac
   return SCREE_OK;
 }
 
-/* Between the finest usual level that does not keep all and the one before it. */
+/* Between the coarsest usual level that keeps all, or the scan, and the next coarser usual one. */
 static bracket first_bracket(const search *s, const scree_fidelity *f) {
-  bracket b = {0, 1};
-  for (size_t row = 0; row < scree_fidelity_count(f); row++) {
+  size_t coarse = scree_curve_level_count(s->curve);
+  for (size_t row = scree_fidelity_count(f); row-- > 0;) {
     double errors[SCREE_SHAPE_ERROR_COUNT];
     if (!scree_fidelity_is_usual(f, row)) continue;
     for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
       errors[e] = scree_fidelity_error(f, row, (scree_shape_error)e);
-    b.coarse = scree_fidelity_level_index(f, row);
-    if (scree_load(errors, s->tolerances, NULL) > MOST_LOAD) return b;
-    b.fine = b.coarse;
-    b.coarse++;
+    size_t level_index = scree_fidelity_level_index(f, row);
+    if (scree_load(errors, s->tolerances, NULL) <= MOST_LOAD) return (bracket){level_index, coarse};
+    coarse = level_index;
   }
-  return b;
+  return (bracket){0, coarse};
 }
 
 static scree_status find_level(search *s, const scree_gauge *quick, const scree_gauge *dense,

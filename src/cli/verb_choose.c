@@ -34,8 +34,9 @@ static const cli_option options[] = {
      0, 0, "recommended|robust|paper"},
     {"tolerance", CLI_TEXT, AT(tolerance), "LIST",
      "What the recommended level keeps, instead of the defaults, as shares or, of distances, "
-     "lengths: mean=0.3%,hausdorff=4%,inertia=2%,thickness=3% are the defaults; also area, volume, "
-     "size, thinnest, convexity, normals; none: does not count.",
+     "lengths: mean=0.3%,hausdorff=4%,inertia=2%,widths=3%,thickness=3% are the defaults; also "
+     "area, "
+     "volume, thinnest, convexity, normals; none: does not count.",
      0, 0, NULL},
     {"method", CLI_CHOICE, AT(method), "NAME",
      "How to decimate: volume (keeps the volume) or qecd (as the paper). Default: volume.", 0, 0,
@@ -96,7 +97,7 @@ static bool find_error(const char *word, scree_shape_error *error) {
   return !strcmp(word, "mean");
 }
 
-/* "mean=0.3%,size=2%" */
+/* "mean=0.3%,widths=2%" */
 static bool parse_tolerances(const char *text, scree_choice_options *o) {
   while (*text) {
     char word[64];
@@ -320,7 +321,8 @@ const cli_verb cli_verb_choose = {
         "Decimates each scan once, through every triangle count, and recommends the coarsest level "
         "that keeps a tolerance on each of several errors against the scan: mean distance 0.3 %, "
         "Hausdorff distance 4 % (of the body's size, the diameter of the sphere of its area), "
-        "inertia 2 %, and 3 % for the mean of distance over local wall thickness.\n\n"
+        "inertia 2 %, every width 3 %, and 3 % for the mean of distance over local wall "
+        "thickness.\n\n"
         "Beside it stand the paper's criterion (Katagiri and Koyanaka 2020), Ip = eps_s + W Nr/Nm "
         "with eps_s = |S - Sm|/Sm and Rp = Nr/Nm: the least on a logarithmic grid of Rp; and the "
         "robust choice, which takes the worst eps_s at a count or any finer one, over every count. "

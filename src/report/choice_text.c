@@ -16,8 +16,8 @@ static const double NOTABLE_RATIO = 1.5;
 static const double PAPER_COUNT = 762008, NOTABLE_RESOLUTION = 3;
 /* And it is none where the count would hardly change. */
 static const double NOTABLE_GROWTH = 0.1;
-/* A dimension that changes by more has lost a feature. */
-static const double NOTABLE_SIZE = 0.02;
+/* A width that changes by more than is allowed unless asked otherwise has lost a feature. */
+static const double NOTABLE_WIDTH = 0.03;
 /* Mean angle of the normals over pi (18 degrees): what stands out less than the distances allowed
  * is flattened. */
 static const double NOTABLE_NORMALS = 0.1;
@@ -27,6 +27,8 @@ static const double NOTABLE_NOISE = 0.3;
 static const double NOTABLE_SHARE = 0.5;
 /* A distance of less, as a share of the size, is none. */
 static const double ROUNDING = 1e-9;
+/* Walls that a level has no more of than this are said to be gone. */
+static const double GONE = 0.01;
 /* The cost of a particle-step in a flowing heap, over that of 100 triangles: 2.5 at 1,500. */
 static const double COST_RISE = 1.5 / 1400, COST_START = 100;
 /* The paper's coarsest levels; a floor above is worth a word. */
@@ -54,8 +56,9 @@ static const char *number_text(double value, int digits, char buffer[NUMBER_BYTE
 
 /* A fraction as a change in per cent: +1.2, -3 */
 static const char *change_text(double fraction, char buffer[NUMBER_BYTES]) {
+  int digits = fabs(fraction) < 0.995 ? 2 : 6; /* no powers of ten */
   buffer[0] = '+';
-  scree_number_format_digits(100 * fraction, 2, buffer + (fraction >= 0));
+  scree_number_format_digits(100 * fraction, digits, buffer + (fraction >= 0));
   return buffer;
 }
 #define CHANGE(fraction) change_text(fraction, (char[NUMBER_BYTES]){0})
@@ -98,7 +101,7 @@ static const char *error_words(scree_shape_error which) {
       [SCREE_ERROR_HAUSDORFF] = "the largest distance",
       [SCREE_ERROR_MEAN] = "the mean distance",
       [SCREE_ERROR_INERTIA] = "the inertia",
-      [SCREE_ERROR_SIZE] = "the dimensions",
+      [SCREE_ERROR_WIDTHS] = "the widths",
       [SCREE_ERROR_THICKNESS] = "the distance over the walls' thickness",
       [SCREE_ERROR_THINNEST] = "the thinnest walls",
       [SCREE_ERROR_CONVEXITY] = "the convexity",
@@ -137,15 +140,32 @@ static void say_limit(sentences *s, const scree_choice_report *report, const scr
         scree_percent_text(error, share), scree_percent_text(most, limit));
 }
 
+/* The power of ten, in m, that a place on a body of that size is told to: a thousandth or so. */
+static double place_step(double size) {
+  return pow(10, floor(log10(1e-3 * size) + 1e-9));
+}
+
+/* In mm, rounded to the step; no more digits than that step has. */
+static const char *place_text(double metres, double step, char buffer[NUMBER_BYTES]) {
+  double rounded = step * round(metres / step);
+  scree_number_format_digits(1e3 * rounded + 0.0, 9, buffer);
+  return buffer;
+}
+#define PLACE(metres, step) place_text(metres, step, (char[NUMBER_BYTES]){0})
+
 static void say_recommended(sentences *s, const scree_choice_report *report,
                             const scree_choice *c) {
   const scree_fidelity *f = c->fidelity;
   const scree_pick *pick = &c->recommended;
   size_t row = c->recommended_row;
-  double at[3], thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST);
+  double at[3], thinnest = scree_fidelity_change(f, row, SCREE_CHANGE_THINNEST),
+                step = place_step(scree_fidelity_scan(f, SCREE_SCAN_LENGTH));
   char count[NUMBER_BYTES], rp[NUMBER_BYTES], other[NUMBER_BYTES], walls[96] = "";
   scree_fidelity_farthest(f, row, at);
-  if (isfinite(thinnest))
+  if (isfinite(thinnest) && 1 + thinnest < GONE)
+    snprintf(walls, sizeof walls, "of the thinnest walls, %s mm, some are gone; ",
+             NUMBER(1e3 * scree_fidelity_scan(f, SCREE_SCAN_THINNEST), 2));
+  else if (isfinite(thinnest))
     snprintf(walls, sizeof walls, "thinnest walls %s mm, %s %%; ",
              NUMBER(1e3 * (1 + thinnest) * scree_fidelity_scan(f, SCREE_SCAN_THINNEST), 2),
              CHANGE(thinnest));
@@ -154,8 +174,8 @@ static void say_recommended(sentences *s, const scree_choice_report *report,
       "mm); %sinertia %s %%, area %s %%.",
       count_text(pick->triangle_count, count), scree_rp_text(pick->rp, rp),
       LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_MEAN)),
-      LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF)), NUMBER(1e3 * at[0], 6),
-      NUMBER(1e3 * at[1], 6), NUMBER(1e3 * at[2], 6), walls,
+      LENGTH(c, scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF)), PLACE(at[0], step),
+      PLACE(at[1], step), PLACE(at[2], step), walls,
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_INERTIA)),
       CHANGE(scree_fidelity_change(f, row, SCREE_CHANGE_AREA)));
   say_limit(s, report, c);
@@ -257,10 +277,10 @@ static void warn_of_losses(sentences *s, const scree_choice_report *report, cons
   for (int i = 0; i < 3; i++) {
     double change = scree_fidelity_change(f, row, (scree_shape_change)(SCREE_CHANGE_LENGTH + i)),
            side = 1e3 * scree_fidelity_scan(f, (scree_scan_fact)(SCREE_SCAN_BOX_LENGTH + i));
-    if (fabs(change) > NOTABLE_SIZE)
+    if (fabs(change) > NOTABLE_WIDTH)
       say(s,
           "The %s is %s mm, not %s mm: a feature thinner than the tolerances %s (--tolerance "
-          "size=2%% keeps it).",
+          "widths=3%% keeps it).",
           sides[i], NUMBER(side * (1 + change), 4), NUMBER(side, 4),
           change < 0 ? "is lost" : "has grown");
   }

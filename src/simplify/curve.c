@@ -4,6 +4,7 @@
 #include "base/sum.h"
 #include "mesh/mesh.h"
 #include "simplify/decimate.h"
+#include "simplify/flat_fan.h"
 
 #include <math.h>
 #include <string.h>
@@ -20,6 +21,7 @@ void scree_curve_free(scree_curve *curve) {
   if (!curve) return;
   scree_record_free(&curve->record);
   scree_free(curve->counts);
+  scree_free(curve->cut.triangles);
   scree_free(curve);
 }
 
@@ -74,6 +76,20 @@ static scree_status check_options(const scree_simplify_options *options, scree_e
   return SCREE_OK;
 }
 
+/* A mesh that is no good is left to be told by what follows. */
+static scree_status cut_flat_fans(const scree_mesh *mesh, scree_curve *curve, scree_error *error) {
+  uint32_t *triangles = NULL;
+  scree_error told;
+  curve->mesh = mesh;
+  if (scree_mesh_verify(mesh, &told) != SCREE_OK) return SCREE_OK;
+  scree_status status = scree_flat_fans_cut(mesh, &triangles, error);
+  if (status != SCREE_OK || !triangles) return status;
+  curve->cut = *mesh;
+  curve->cut.triangles = triangles;
+  curve->mesh = &curve->cut;
+  return SCREE_OK;
+}
+
 scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_options *options,
                                const scree_progress *progress, scree_curve **curve,
                                scree_error *error) {
@@ -81,13 +97,13 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
   if (!options) options = &defaults;
   scree_status status = check_options(options, error);
   if (status != SCREE_OK) return status;
-  scree_decimator d;
+  scree_decimator d = {0};
   scree_curve *made = scree_alloc_zero(1, sizeof *made);
   if (!made) return scree_fail_memory(error, sizeof *made, "the curve");
-  status = scree_decimator_start(&d, mesh, options, error);
+  status = cut_flat_fans(mesh, made, error);
+  if (status == SCREE_OK) status = scree_decimator_start(&d, made->mesh, options, error);
   if (status != SCREE_OK) goto finished;
   d.ticker.progress = progress;
-  made->mesh = mesh;
   made->facts = (scree_curve_facts){.method = options->method,
                                     .triangle_count = mesh->triangle_count,
                                     .shell_count = d.s.shell_count,

@@ -200,10 +200,12 @@ static double whole_cost(const scree_decimator *d, const scree_fan *f, const scr
                          double most, scree_gathered *scratch, bool *out_of_memory) {
   if (!scree_has_samples(&d->samples)) return c->cost;
   double from = deviation_for(d, c->area, scree_tune.heed * c->cost), far = from;
-  if (scree_deviation_bound(&d->samples, &d->s, f) <= from) return c->cost;
+  double grown = scree_deviation_growth(&d->samples, &d->s, f->at);
+  if (scree_larger(grown, scree_deviation_bound(&d->samples, &d->s, f)) <= from) return c->cost;
   double rest = most - c->cost;
   double to = most < INFINITY ? deviation_for(d, c->area, rest > 0 ? rest : 0) : INFINITY;
   *out_of_memory |= !scree_deviation_find(&d->samples, &d->s, f, from, to, scratch, &far);
+  far = scree_larger(far, grown);
   if (far <= from) return c->cost;
   return far < INFINITY ? c->cost + penalty(d, c->area, far) : scree_larger(most, c->cost);
 }

@@ -16,6 +16,9 @@ typedef struct scree_tuning {
   double drift; /* weight of area times deviation^4 in the cost: the deviation begins to count at a
                    tenth of the size of the triangles, and soon decides. */
   double usual; /* deviations of so many mean ones add as much as a usual collapse costs. */
+  double grow;  /* to become wider or narrower by a share counts as a distance of so many times
+                   that share of the size: more than the tolerances ask, 3 % of a width at both ends
+                   and 4 % of the size, for what has become of a width is never made good. */
   double heed;  /* share of the cost below which the deviation's part is not looked for. */
   /* guards */
   double turn[SCREE_LENIENCIES];  /* least cosine of the turn of a normal: 84, 107, 134 degrees */
@@ -42,6 +45,7 @@ static const scree_tuning scree_tune = {.stiff = 1e-5,
                                         .tie = 1e-9,
                                         .drift = 5,
                                         .usual = 12,
+                                        .grow = 4,
                                         .heed = 0.1,
                                         .turn = {0.1, -0.3, -0.7},
                                         .fold = {-0.5, -0.7071, -0.857},

@@ -180,7 +180,7 @@ class Curves(unittest.TestCase):
         self.assertLess(choice.errors["mean_distance"], 0.003)
         looser = self.scan.choose(tolerances={"mean_distance": 0.02, "hausdorff": 0.1, "thickness": 1, "inertia": 1})
         self.assertLess(looser.recommended.triangle_count, choice.recommended.triangle_count)
-        self.assertLessEqual({"area", "volume", "mean_distance", "hausdorff", "inertia", "size"}, set(choice.best))
+        self.assertLessEqual({"area", "volume", "mean_distance", "hausdorff", "inertia", "widths"}, set(choice.best))
         self.assertGreater(len(choice.trace), 200)
 
     def test_progress(self):

@@ -144,7 +144,7 @@ static void errors_are_those_of_dense_samples(void **state) {
     /* never more than there is; less where facets of the scan are coarse */
     double found = scree_fidelity_error(f, row, SCREE_ERROR_HAUSDORFF);
     assert_true(found <= t.hausdorff_bound * 1.0001);
-    if (t.hausdorff > 0.02) CHECK_NEAR(found / t.hausdorff, 1, 0.08);
+    if (t.hausdorff > 0.02) CHECK_NEAR(found / t.hausdorff, 1, 0.12);
   }
   free_body(&b);
 }
@@ -167,11 +167,56 @@ static void a_smaller_ball_is_off_by_the_difference(void **state) {
   CHECK_NEAR(r.changes[SCREE_CHANGE_VOLUME], pow(0.98, 3) - 1, 1e-3);
   CHECK_NEAR(r.changes[SCREE_CHANGE_INERTIA], pow(0.98, 5) - 1, 1e-3);
   CHECK_NEAR(r.changes[SCREE_CHANGE_LENGTH], -0.02, 1e-3);
+  CHECK_NEAR(r.errors[SCREE_ERROR_WIDTHS], 0.02, 1e-3);
   CHECK_NEAR(r.errors[SCREE_ERROR_CONVEXITY], 0, 1e-3);
   assert_true(r.errors[SCREE_ERROR_NORMALS] < 0.01);
   scree_gauge_free(&gauge);
   scree_mesh_free(&ball);
   scree_mesh_free(&smaller);
+}
+
+/* Of a cloud of points in any frame: what the extent says against all points along each direction,
+ * and the same widths with the frame's axes in another order and turned round. Where points move by
+ * at most h, no width changes by more than 2 h. */
+static void widths_are_those_of_all_points(void **state) {
+  (void)state;
+  scree_rng rng = {.seed = 5};
+  for (int round = 0; round < 20; round++) {
+    scree_mesh ball = shape_icosphere(1, 2);
+    for (size_t i = 0; i < 3 * ball.vertex_count; i++)
+      ball.positions[i] *= 1 + 0.5 * scree_rng_normal(&rng);
+    vec3 x = vec3_unit((vec3){scree_rng_normal(&rng), scree_rng_normal(&rng), 1}),
+         y = vec3_unit(vec3_cross(x, (vec3){0, 1, 0})), z = vec3_cross(x, y);
+    const double frame[3][3] = {{x.x, x.y, x.z}, {y.x, y.y, y.z}, {z.x, z.y, z.z}},
+                 other[3][3] = {{z.x, z.y, z.z}, {-x.x, -x.y, -x.z}, {y.x, y.y, y.z}};
+    scree_extent a, b, moved;
+    scree_extent_of_mesh(&a, frame, &ball);
+    scree_extent_of_mesh(&b, other, &ball);
+    for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
+      double low = INFINITY, high = -INFINITY, most = 0;
+      for (size_t v = 0; v < ball.vertex_count; v++) {
+        double along = vec3_dot(a.direction[i], vec3_load(ball.positions + 3 * v));
+        low = fmin(low, along), high = fmax(high, along);
+      }
+      CHECK_NEAR(scree_extent_width(&a, i), high - low, 1e-12);
+      int same = 0;
+      for (int k = 0; k < SCREE_EXTENT_COUNT; k++) {
+        double cosine = fabs(vec3_dot(a.direction[i], b.direction[k]));
+        if (cosine > most) most = cosine, same = k;
+      }
+      CHECK_NEAR(most, 1, 1e-12);
+      CHECK_NEAR(scree_extent_width(&b, same), scree_extent_width(&a, i), 1e-12);
+    }
+    const double h = 1e-3;
+    for (size_t v = 0; v < ball.vertex_count; v++) {
+      vec3 d = vec3_unit((vec3){scree_rng_normal(&rng), scree_rng_normal(&rng), 0.1});
+      vec3_store(ball.positions + 3 * v, vec3_mad(vec3_load(ball.positions + 3 * v), d, h));
+    }
+    scree_extent_of_mesh(&moved, frame, &ball);
+    for (int i = 0; i < SCREE_EXTENT_COUNT; i++)
+      assert_true(fabs(scree_extent_width(&moved, i) - scree_extent_width(&a, i)) <= 2.001 * h);
+    scree_mesh_free(&ball);
+  }
 }
 
 /* Noise of a ball's vertices along their normals is told with its size, and its area is left out.
@@ -264,6 +309,7 @@ int main(void) {
       cmocka_unit_test(the_least_of_the_trend_is_where_it_must_be),
       cmocka_unit_test(errors_are_those_of_dense_samples),
       cmocka_unit_test(a_smaller_ball_is_off_by_the_difference),
+      cmocka_unit_test(widths_are_those_of_all_points),
       cmocka_unit_test(noise_is_told_from_shape),
       cmocka_unit_test(the_recommended_level_keeps_every_tolerance),
       cmocka_unit_test(another_grid_gives_the_same_choices),

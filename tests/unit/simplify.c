@@ -3,6 +3,9 @@
 #include "support/curve.h"
 #include "support/shapes.h"
 
+#include "base/alloc.h"
+#include "simplify/flat_fan.h"
+
 static const scree_method methods[] = {SCREE_METHOD_VOLUME, SCREE_METHOD_QECD};
 
 /* Closed, manifold, oriented, without degenerate facets; measures as the record says. */
@@ -107,6 +110,78 @@ static scree_mesh toothed_ring(void) {
     mesh.positions[3 * v + 1] *= stretch;
   }
   return mesh;
+}
+
+/* A prism of n sides, each end a fan about its middle, `height` above the end. */
+static scree_mesh fan_prism(uint32_t n, double height) {
+  scree_mesh mesh = shape_make(2 * n + 2, 4 * n);
+  for (uint32_t i = 0; i < 2 * n; i++) {
+    double angle = 2 * acos(-1) * (i % n) / n;
+    vec3_store(mesh.positions + 3 * i, (vec3){cos(angle), sin(angle), i < n ? -2 : 2});
+  }
+  vec3_store(mesh.positions + 6 * (size_t)n, (vec3){0, 0, -2 - height});
+  vec3_store(mesh.positions + 6 * (size_t)n + 3, (vec3){0, 0, 2 + height});
+  for (uint32_t i = 0; i < n; i++) {
+    uint32_t j = (i + 1) % n;
+    const uint32_t four[12] = {i, j, n + j, i, n + j, n + i, j, i, 2 * n, n + i, n + j, 2 * n + 1};
+    memcpy(mesh.triangles + 12 * (size_t)i, four, sizeof four);
+  }
+  return mesh;
+}
+
+/* Of 10 segments to 6,000, flat and pointed: it comes down to few triangles, and all levels on the
+ * way are sound. */
+static void fans_of_any_size_are_decimated(void **state) {
+  (void)state;
+  static const uint32_t sizes[] = {10, 128, 300, 6000};
+  for (int i = 0; i < 8; i++) {
+    scree_mesh mesh = fan_prism(sizes[i / 2], i % 2 ? 0.5 : 0);
+    scree_curve *curve;
+    scree_error error;
+    if (i == 7) { /* pointed ones take the time of their square */
+      scree_mesh_free(&mesh);
+      mesh = fan_prism(1000, 0.5);
+    }
+    CHECK_OK(scree_curve_build(&mesh, NULL, NULL, &curve, &error), error);
+    assert_true(scree_curve_get_facts(curve).floor_count <= 12);
+    static const size_t counts[] = {SIZE_MAX, 2000, 200, 40, 20};
+    for (int k = 0; k < 5; k++) {
+      scree_mesh level;
+      size_t index = scree_curve_find(curve, counts[k]);
+      CHECK_OK(scree_curve_mesh(curve, index, &level, &error), error);
+      check_level(curve, index, &level);
+      scree_mesh_free(&level);
+    }
+    scree_curve_free(curve);
+    scree_mesh_free(&mesh);
+  }
+}
+
+/* Flat fans become the same surface with few triangles at each vertex; pointed ones stay. */
+static void flat_fans_are_cut_to_the_same_surface(void **state) {
+  (void)state;
+  for (int pointed = 0; pointed < 2; pointed++) {
+    scree_mesh mesh = fan_prism(1000, pointed ? 0.5 : 0), cut = mesh;
+    scree_measures was, is;
+    scree_error error;
+    uint32_t *triangles = NULL, most = 0, *many = calloc(mesh.vertex_count, sizeof *many);
+    CHECK_OK(scree_flat_fans_cut(&mesh, &triangles, &error), error);
+    cut.triangles = triangles;
+    CHECK_OK(scree_mesh_measure(&mesh, &was, &error), error);
+    CHECK_OK(scree_mesh_measure(&cut, &is, &error), error);
+    assert_true(is.closed);
+    CHECK_NEAR(is.area / was.area, 1, 1e-12);
+    CHECK_NEAR(is.volume / was.volume, 1, 1e-12);
+    for (size_t c = 0; c < 3 * cut.triangle_count; c++) {
+      uint32_t count = ++many[cut.triangles[c]];
+      most = count > most ? count : most;
+    }
+    assert_int_equal(pointed, most == 1000);
+    if (!pointed) assert_true(most <= 128);
+    free(many);
+    scree_free(triangles);
+    scree_mesh_free(&mesh);
+  }
 }
 
 static void check_the_same_bits(scree_mesh mesh) {
@@ -549,6 +624,8 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_level_is_sound_and_as_recorded),
       cmocka_unit_test(a_box_goes_to_its_twelve_triangles),
+      cmocka_unit_test(fans_of_any_size_are_decimated),
+      cmocka_unit_test(flat_fans_are_cut_to_the_same_surface),
       cmocka_unit_test(the_same_bits_for_any_threads_and_facet_order),
       cmocka_unit_test(passes_keep_every_promise),
       cmocka_unit_test(shells_stay_in_and_beside_each_other),

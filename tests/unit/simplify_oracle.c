@@ -272,15 +272,35 @@ static double distance_from_fan(const scree_fan *f, vec3 p) {
   return sqrt(least);
 }
 
+/* So far from the surface, in the direction in which the sample is nearest to an end of the scan:
+ * the distance, or what is lost of the width. */
+static double weighted(const scree_samples *p, const scree_halfmesh *s, uint32_t v, double far) {
+  double least = INFINITY, lost = 0;
+  for (int i = 0; i < SCREE_EXTENT_COUNT; i++) {
+    double low = INFINITY, high = -INFINITY, at = 0;
+    for (size_t k = 0; k < p->scan.vertex_count; k++) {
+      double along = vec3_dot(p->extent.direction[i], p->scan.vertex[k].at);
+      low = fmin(low, along), high = fmax(high, along);
+      if (k == v) at = along;
+    }
+    double width = high - low, depth = fmin(high - at, at - low);
+    if (depth / width >= least) continue;
+    least = depth / width;
+    lost = (far - depth) * fmax(1, scree_tune.grow * sqrt(s->area / acos(-1)) / width);
+  }
+  return fmax(far, lost);
+}
+
 static double slow_deviation(const scree_decimator *d, const scree_fan *f) {
   const scree_samples *p = &d->samples;
   double worst = distance_from_all(&p->scan, f->at);
   const uint32_t ends[2] = {p->of[f->a], p->of[f->b]};
   for (int k = 0; k < 2; k++) /* now at the latest they are samples */
-    worst = fmax(worst, distance_from_fan(f, p->scan.vertex[ends[k]].at));
+    worst =
+        fmax(worst, weighted(p, &d->s, ends[k], distance_from_fan(f, p->scan.vertex[ends[k]].at)));
   for (uint32_t k = 0; k < scree_fan_triangle_count(f); k++)
     for (uint32_t v = p->first[scree_fan_triangle(&d->s, f, k)]; v != SCREE_NONE; v = p->next[v])
-      worst = fmax(worst, distance_from_fan(f, p->scan.vertex[v].at));
+      worst = fmax(worst, weighted(p, &d->s, v, distance_from_fan(f, p->scan.vertex[v].at)));
   for (uint32_t i = 0; i < f->count; i++)
     worst = fmax(worst, distance_from_all(&p->scan, vec3_lerp(f->at, f->from[i], 0.5)));
   return worst;
@@ -300,9 +320,9 @@ static void check_samples(const scree_decimator *d) {
       double far = sqrt(scree_distance2(corner, p->scan.vertex[v].at));
       CHECK_NEAR((double)p->far[v], far, 1e-6 * far + 1e-12);
       assert_true((double)p->far[v] >= (1 - 1e-6) * distance_from_all(&d->s, p->scan.vertex[v].at));
-      worst = fmax(worst, (double)p->far[v]);
+      worst = fmax(worst, weighted(p, &d->s, v, (double)p->far[v]));
     }
-    CHECK_NEAR((double)p->worst[t], worst, 1e-12);
+    CHECK_NEAR((double)p->worst[t], worst, 1e-6 * worst + 1e-12);
   }
   for (size_t v = 0; v < p->scan.vertex_count; v++) in_surface += p->far[v] == -1;
   assert_int_equal(listed + in_surface, p->scan.vertex_count);

@@ -2,6 +2,7 @@
 
 #include "base/array.h"
 #include "base/parallel.h"
+#include "simplify/morton.h"
 #include "simplify/tuning.h"
 
 #include <stdlib.h>
@@ -10,6 +11,7 @@
 enum { BLOCK = 1024 };
 /* Squared distances, and areas, that differ by rounding alone. */
 #define EQUAL 1e-9
+#define PI    3.141592653589793
 /* In place of a distance. */
 #define NOT_YET (-1.0F)
 #define DROPPED (-2.0F)
@@ -17,6 +19,7 @@ enum { BLOCK = 1024 };
 void scree_samples_free(scree_samples *p) {
   scree_halfmesh_free(&p->scan);
   scree_surface_tree_free(&p->scan_tree);
+  scree_free(p->end);
   scree_free(p->of);
   scree_free(p->first);
   scree_free(p->worst);
@@ -88,21 +91,46 @@ out_of_memory:
 }
 
 /* From the last on, so that lists ascend. */
-static void link_all(scree_samples *p, size_t triangle_count) {
-  memset(p->first, 0xff, triangle_count * sizeof *p->first);
-  memset(p->worst, 0, triangle_count * sizeof *p->worst);
+static void link_all(scree_samples *p, const scree_halfmesh *s) {
+  memset(p->first, 0xff, s->triangle_count * sizeof *p->first);
+  memset(p->worst, 0, s->triangle_count * sizeof *p->worst);
   for (uint32_t v = (uint32_t)p->scan.vertex_count; v-- > 0;) {
     if (p->far[v] < 0) continue;
     uint32_t t = p->next[v];
     p->next[v] = p->first[t];
     p->first[t] = v;
-    p->worst[t] = p->far[v] > p->worst[t] ? p->far[v] : p->worst[t];
+    p->worst[t] = fmaxf(p->worst[t], (float)scree_deviation_of(p, s, v, (double)p->far[v]));
   }
+}
+
+static void end_block(void *context, size_t begin, size_t end, size_t block, int worker) {
+  (void)block, (void)worker;
+  const scree_samples *p = context;
+  for (size_t v = begin; v < end; v++)
+    p->end[v] = (int8_t)scree_extent_end(&p->extent, p->scan.vertex[v].at);
+}
+
+static scree_status measure_extent(scree_samples *p, scree_error *error) {
+  const scree_halfmesh *scan = &p->scan;
+  const scree_places places = {&scan->vertex->at.x, sizeof *scan->vertex / sizeof(double),
+                               scan->vertex_count};
+  scree_frame_of_places frame;
+  scree_status status =
+      scree_frame_find(&places, vec3_lerp(scan->low, scan->high, 0.5), &frame, error);
+  if (status != SCREE_OK) return status;
+  scree_extent_start(&p->extent, (const double(*)[3])frame.axes.m);
+  for (size_t v = 0; v < scan->vertex_count; v++) scree_extent_add(&p->extent, scan->vertex[v].at);
+  SCREE_ALLOC_OR(p->end, scan->vertex_count, error, out_of_memory);
+  scree_parallel_for(scan->vertex_count, BLOCK, end_block, p);
+  return SCREE_OK;
+out_of_memory:
+  return SCREE_OUT_OF_MEMORY;
 }
 
 scree_status scree_samples_start(const scree_mesh *mesh, scree_samples *p, scree_error *error) {
   scree_status status = scree_halfmesh_build(mesh, NULL, &p->scan, error);
   if (status == SCREE_OK) status = scree_surface_tree_make(&p->scan, &p->scan_tree, error);
+  if (status == SCREE_OK) status = measure_extent(p, error);
   return status;
 }
 
@@ -120,7 +148,7 @@ scree_status scree_samples_find(const scree_halfmesh *surface, const scree_surfa
   status = match(&f, error);
   if (status == SCREE_OK) {
     scree_parallel_for(count, BLOCK, find_block, &f);
-    link_all(p, surface->triangle_count);
+    link_all(p, surface);
     status = scree_samples_average(p, error);
   }
   scree_free(f.stays);
@@ -261,13 +289,39 @@ double scree_deviation_bound(const scree_samples *p, const scree_halfmesh *s, co
   return worst + sqrt(rise2);
 }
 
+/* Of the width's share that is lost `far - depth` is a bound. */
+static double weight_at(const scree_samples *p, const scree_halfmesh *s, uint32_t v) {
+  int i = p->end[v] < 0 ? ~p->end[v] : p->end[v];
+  return scree_larger(1, scree_tune.grow * sqrt(s->area / PI) / scree_extent_width(&p->extent, i));
+}
+
+double scree_deviation_of(const scree_samples *p, const scree_halfmesh *s, uint32_t v, double far) {
+  double depth = scree_extent_depth(&p->extent, p->end[v], p->scan.vertex[v].at);
+  return scree_larger(far, (far - depth) * weight_at(p, s, v));
+}
+
+/* How far the sample may be for no more than this deviation. */
+static double far_for(const scree_samples *p, const scree_halfmesh *s, uint32_t v,
+                      double deviation) {
+  double depth = scree_extent_depth(&p->extent, p->end[v], p->scan.vertex[v].at);
+  return scree_smaller(deviation, depth + deviation / weight_at(p, s, v));
+}
+
+double scree_deviation_growth(const scree_samples *p, const scree_halfmesh *s, vec3 at) {
+  return scree_extent_beyond(&p->extent, at, scree_tune.grow * sqrt(s->area / PI));
+}
+
 bool scree_deviation_find(const scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
                           double from, double to, scree_gathered *g, double *deviation) {
   double worst = from * from, most = to * to;
   if (!scree_samples_gather(p, s, f, g)) return false;
   for (size_t k = 0; k < g->count && worst <= most; k++) {
-    uint32_t start = g->items[k].start;
-    worst = scree_larger(worst, to_fan(f, p->scan.vertex[g->items[k].sample].at, worst, &start));
+    uint32_t start = g->items[k].start, v = g->items[k].sample;
+    double enough = far_for(p, s, v, sqrt(worst)),
+           far2 = to_fan(f, p->scan.vertex[v].at, enough * enough, &start);
+    if (far2 <= enough * enough) continue;
+    double lost = scree_deviation_of(p, s, v, sqrt(far2));
+    worst = scree_larger(worst, lost * lost);
   }
   if (worst <= most) worst = scree_larger(worst, to_scan(p, f->at, g, p->of[f->a], worst));
   for (uint32_t i = 0; i < f->count && worst <= most; i++) {
@@ -300,7 +354,8 @@ static void thin(scree_samples *p, scree_gathered *g) {
   g->count = left;
 }
 
-void scree_samples_settle(scree_samples *p, const scree_fan *f, const scree_gathered *g) {
+void scree_samples_settle(scree_samples *p, const scree_halfmesh *s, const scree_fan *f,
+                          const scree_gathered *g) {
   for (uint32_t i = 0; i < f->count; i++) {
     p->first[f->edge[i] / 3] = SCREE_NONE;
     p->worst[f->edge[i] / 3] = 0;
@@ -310,7 +365,7 @@ void scree_samples_settle(scree_samples *p, const scree_fan *f, const scree_gath
     double distance2;
     uint32_t t = f->edge[nearest_of_fan(f, p->scan.vertex[v].at, &distance2)] / 3;
     p->far[v] = (float)sqrt(distance2);
-    p->worst[t] = p->far[v] > p->worst[t] ? p->far[v] : p->worst[t];
+    p->worst[t] = fmaxf(p->worst[t], (float)scree_deviation_of(p, s, v, (double)p->far[v]));
     p->next[v] = p->first[t];
     p->first[t] = v;
   }
@@ -320,6 +375,6 @@ bool scree_samples_move(scree_samples *p, const scree_halfmesh *s, const scree_f
                         scree_gathered *g) {
   if (!scree_samples_gather(p, s, f, g)) return false;
   if (g->count > (size_t)scree_tune.crowd * f->count) thin(p, g);
-  scree_samples_settle(p, f, g);
+  scree_samples_settle(p, s, f, g);
   return true;
 }

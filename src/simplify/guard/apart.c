@@ -1,10 +1,12 @@
 #include "simplify/guard/apart.h"
 
+#include "base/alloc.h"
 #include "mesh/intersect.h"
 
 #include <string.h>
 
-/* Triangles near one collapse: those whose leaves meet its box. More are taken as a meeting. */
+/* Of so many triangles near one collapse, those whose leaves meet its box, there is room without
+ * asking for memory. */
 enum { ROOM = 4096 };
 /* Names of moved vertices, which no vertex has. */
 #define MOVED       (SCREE_NONE - 2)
@@ -23,7 +25,7 @@ typedef struct search {
   scree_bounds box;
   corners moved[SCREE_FAN_MAX];
   scree_bounds bounds[SCREE_FAN_MAX]; /* of these */
-  uint32_t found[ROOM];
+  uint32_t own[ROOM], *found;
   size_t found_count;
 } search;
 
@@ -170,8 +172,15 @@ bool scree_apart(const scree_surroundings *around, const scree_fan *f) {
     scree_bounds_add(&q.box, f->to[i]);
   }
   if (s->closed && scree_surface_tree_faces(around->tree, &q.box, averse_of(f))) return true;
+  q.found = q.own;
   q.found_count = scree_surface_tree_overlap(around->tree, s, &q.box, q.found, ROOM);
-  if (q.found_count > ROOM) return false;
-  if (certified(&q)) return true;
-  return meets_no_more(&q) && scree_markers_stay(around->markers, s, f, &q.box, around->planned);
+  if (q.found_count > ROOM) {
+    q.found = scree_alloc(q.found_count, sizeof *q.found);
+    if (!q.found) return false;
+    scree_surface_tree_overlap(around->tree, s, &q.box, q.found, q.found_count);
+  }
+  bool apart = certified(&q) || (meets_no_more(&q) && scree_markers_stay(around->markers, s, f,
+                                                                         &q.box, around->planned));
+  if (q.found != q.own) scree_free(q.found);
+  return apart;
 }

@@ -134,8 +134,18 @@ static void drop_triangle(queue *q, uint32_t t) {
   for (uint32_t h = 3 * t; h < 3 * t + 3; h++) drop(q, edge_of(&q->d->s, h));
 }
 
+/* No edge of such a vertex may collapse: what its edges cost is asked for when it has fewer
+ * triangles. Else a fan would be summed and ranked anew as a whole for each that it loses. */
+static bool is_crowded(const scree_halfmesh *s, uint32_t v) {
+  uint32_t first = s->vertex[v].outgoing, h = first, count = 0;
+  do {
+    h = scree_turn(s, h);
+  } while (++count <= SCREE_FAN_MAX && h != first && h != SCREE_NONE);
+  return count > SCREE_FAN_MAX;
+}
+
 static void renew_sums(scree_decimator *d, uint32_t v) {
-  if (!d->coster->merge) d->coster->sum(&d->s, v);
+  if (!d->coster->merge && !is_crowded(&d->s, v)) d->coster->sum(&d->s, v);
 }
 
 /* Every edge of vertex u. */
@@ -143,6 +153,7 @@ static void renew_about(queue *q, uint32_t u) {
   const scree_halfmesh *s = &q->d->s;
   uint32_t edges[SIDE_BY_SIDE], first = s->vertex[u].outgoing, h = first, last;
   size_t count = 0;
+  if (is_crowded(s, u)) return;
   do {
     if (count == SIDE_BY_SIDE - 1) rank(q, edges, count), count = 0;
     edges[count++] = edge_of(s, h);
