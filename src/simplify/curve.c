@@ -79,10 +79,10 @@ static scree_status check_options(const scree_simplify_options *options, scree_e
 /* A mesh that is no good is left to be told by what follows. */
 static scree_status cut_flat_fans(const scree_mesh *mesh, scree_curve *curve, scree_error *error) {
   uint32_t *triangles = NULL;
-  scree_error told;
   curve->mesh = mesh;
-  if (scree_mesh_verify(mesh, &told) != SCREE_OK) return SCREE_OK;
-  scree_status status = scree_flat_fans_cut(mesh, &triangles, error);
+  scree_status status = scree_mesh_verify(mesh, error);
+  if (status != SCREE_OK) return status == SCREE_OUT_OF_MEMORY ? status : SCREE_OK;
+  status = scree_flat_fans_cut(mesh, &triangles, error);
   if (status != SCREE_OK || !triangles) return status;
   curve->cut = *mesh;
   curve->cut.triangles = triangles;
