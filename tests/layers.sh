@@ -8,7 +8,7 @@ set -eu
 cd "$1"
 root=.
 compiler=$2
-layers="base mesh simplify choice sample particle clump world heap scene pile study report"
+layers="base mesh simplify choice sample particle clump world heap scene pile study calibrate report"
 failed=0
 complain() {
   echo "$1"

@@ -1,0 +1,476 @@
+/* Heteroskedastic Gaussian process after Binois, Gramacy and Ludkovski (2018, "Practical
+ * heteroskedastic Gaussian process modeling for large simulation experiments"). Replicates enter by
+ * their means and sums of squares (their section 3.1, the Woodbury identity), so that all costs go
+ * with different places, not with runs. Where they give each place a noise variance of its own,
+ * smoothed by a second process, the logarithm of the noise is linear in the coordinates here: with
+ * the few replicates of a simulation no more can be told.
+ *
+ * Answers are brought to mean 0 and standard deviation 1. A plane with standard normal coefficients
+ * carries the trend (integrated out exactly: it is part of the covariance); a Matern 5/2 process
+ * with a length for each coordinate carries the departures. The settings are the most probable
+ * ones under weak priors, found by BFGS with the exact gradient from two starts. */
+#include "calibrate/gp.h"
+
+#include "base/math.h"
+
+#include <float.h>
+#include <string.h>
+
+/* Priors: mean and standard deviation of each kind of setting. Coordinates go from -1 to 1, answers
+ * have variance 1. */
+static const struct {
+  double mean, sd;
+} prior_length = {0.7, 0.8},   /* log: a length of the whole range */
+    prior_departure = {-1, 2}, /* log of the variance of departures from the plane */
+    prior_noise = {-2.3, 2},   /* log of the noise: a tenth of all variance */
+    prior_slope = {0, 1};      /* the noise changes e times from the middle to the end */
+static const double start_lengths[] = {1.5, 0.4};
+static const double root5 = 2.23606797749978969641;
+/* Added to every noise variance: a simulation without noise. */
+static const double least_noise = 1e-7;
+enum { MOST_ITERATIONS = 60 };
+static const double settled = 1e-5; /* change of the log density at which the search ends */
+
+struct scree_gp {
+  size_t active[SCREE_MOST_PARAMETERS], d, n, run_count, dimension_count;
+  double shift, scale;            /* y = shift + scale * ours */
+  double *x;                      /* n x d */
+  double *mean, *squares, *count; /* per place: of the replicates; squared deviations from mean */
+  double settings[SCREE_GP_MOST_SETTINGS];
+  double *inverse; /* of the covariance of the means, n x n */
+  double *weights; /* inverse times mean */
+};
+
+/* ---- covariance ---- */
+
+static double distance2(const scree_gp *gp, const double *s, const double *a, const double *b) {
+  double sum = 0;
+  for (size_t k = 0; k < gp->d; k++) {
+    double step = (a[k] - b[k]) * scree_exp(-s[k]);
+    sum += step * step;
+  }
+  return sum;
+}
+
+static double matern(double squared) {
+  double r = root5 * sqrt(squared);
+  return (1 + r + r * r / 3) * scree_exp(-r);
+}
+
+static double plane(const scree_gp *gp, const double *a, const double *b) {
+  double sum = 1;
+  for (size_t k = 0; k < gp->d; k++) sum += a[k] * b[k];
+  return sum;
+}
+
+static double covariance(const scree_gp *gp, const double *s, const double *a, const double *b) {
+  return plane(gp, a, b) + scree_exp(s[gp->d]) * matern(distance2(gp, s, a, b));
+}
+
+static double noise_at(const scree_gp *gp, const double *s, const double *x) {
+  double sum = s[gp->d + 1];
+  for (size_t k = 0; k < gp->d; k++) sum += s[gp->d + 2 + k] * x[k];
+  return least_noise + scree_exp(sum);
+}
+
+/* ---- linear algebra: symmetric positive definite, row by row ---- */
+
+/* Lower triangle of a into its Cholesky factor; false: not positive definite. */
+static bool factorise(double *a, size_t n) {
+  for (size_t i = 0; i < n; i++) {
+    double *row = a + i * n;
+    for (size_t j = 0; j <= i; j++) {
+      const double *other = a + j * n;
+      double sum = row[j];
+      for (size_t k = 0; k < j; k++) sum -= row[k] * other[k];
+      if (i != j)
+        row[j] = sum / other[j];
+      else if (sum > 0)
+        row[i] = sqrt(sum);
+      else
+        return false;
+    }
+  }
+  return true;
+}
+
+static double log_determinant(const double *factor, size_t n) {
+  double sum = 0;
+  for (size_t i = 0; i < n; i++) sum += scree_log(factor[i * n + i]);
+  return 2 * sum;
+}
+
+/* The whole inverse from the factor, which is overwritten by its own inverse on the way. */
+static void invert(double *factor, size_t n, double *inverse) {
+  for (size_t i = 0; i < n; i++) { /* row i of L^-1, in place */
+    double *row = factor + i * n;
+    double diagonal = 1 / row[i];
+    for (size_t j = 0; j < i; j++) {
+      double sum = 0;
+      for (size_t k = j; k < i; k++) sum += row[k] * factor[k * n + j];
+      inverse[j] = -sum * diagonal; /* row 0 of the answer serves as scratch */
+    }
+    memcpy(row, inverse, i * sizeof *row);
+    row[i] = diagonal;
+  }
+  for (size_t i = 0; i < n * n; i++) inverse[i] = 0;
+  for (size_t k = 0; k < n; k++) /* sum of the outer products of its rows */
+    for (size_t i = 0; i <= k; i++) {
+      double f = factor[k * n + i];
+      for (size_t j = 0; j <= i; j++) inverse[i * n + j] += f * factor[k * n + j];
+    }
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j < i; j++) inverse[j * n + i] = inverse[i * n + j];
+}
+
+/* ---- the density of the settings ---- */
+
+static size_t setting_count(const scree_gp *gp) {
+  return 2 * gp->d + 2;
+}
+
+static void prior_of(const scree_gp *gp, size_t setting, double *mean, double *sd) {
+  bool length = setting < gp->d, departure = setting == gp->d, noise = setting == gp->d + 1;
+  *mean = length      ? prior_length.mean
+          : departure ? prior_departure.mean
+          : noise     ? prior_noise.mean
+                      : prior_slope.mean;
+  *sd = length      ? prior_length.sd
+        : departure ? prior_departure.sd
+        : noise     ? prior_noise.sd
+                    : prior_slope.sd;
+}
+
+static double add_prior(const scree_gp *gp, const double *s, double *gradient) {
+  double sum = 0;
+  for (size_t i = 0; i < setting_count(gp); i++) {
+    double mean, sd;
+    prior_of(gp, i, &mean, &sd);
+    double z = (s[i] - mean) / sd;
+    sum -= 0.5 * z * z;
+    gradient[i] -= z / sd;
+  }
+  return sum;
+}
+
+/* Of the replicates about their means, and what the noise's own gradient gets from them and from
+ * the covariance of the means. */
+static double add_replicates(const scree_gp *gp, const double *s, const double *inverse,
+                             const double *weights, double *gradient) {
+  size_t d = gp->d;
+  double sum = 0;
+  for (size_t i = 0; i < gp->n; i++) {
+    const double *x = gp->x + i * d;
+    double noise = noise_at(gp, s, x), more = gp->count[i] - 1;
+    sum -= 0.5 * (more * scree_log(noise) + gp->squares[i] / noise);
+    double slope = -0.5 * (more / noise - gp->squares[i] / (noise * noise));
+    slope += 0.5 * (weights[i] * weights[i] - inverse[i * gp->n + i]) / gp->count[i];
+    slope *= noise - least_noise;
+    gradient[d + 1] += slope;
+    for (size_t k = 0; k < d; k++) gradient[d + 2 + k] += slope * x[k];
+  }
+  return sum;
+}
+
+static void add_kernel_gradient(const scree_gp *gp, const double *s, const double *inverse,
+                                const double *weights, double *gradient) {
+  size_t d = gp->d, n = gp->n;
+  double variance = scree_exp(s[d]);
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j <= i; j++) {
+      double twice = i == j ? 1 : 2;
+      double slope = 0.5 * twice * (weights[i] * weights[j] - inverse[i * n + j]);
+      double squared = distance2(gp, s, gp->x + i * d, gp->x + j * d), r = root5 * sqrt(squared);
+      double fall = variance * scree_exp(-r);
+      gradient[d] += slope * fall * (1 + r + r * r / 3);
+      for (size_t k = 0; k < d; k++) {
+        double step = (gp->x[i * d + k] - gp->x[j * d + k]) * scree_exp(-s[k]);
+        gradient[k] += slope * fall * (5.0 / 3) * (1 + r) * step * step;
+      }
+    }
+}
+
+/* factor, inverse: n x n scratch; weights: n. */
+static double density(const scree_gp *gp, const double *s, double *factor, double *inverse,
+                      double *weights, double *gradient) {
+  size_t n = gp->n, d = gp->d;
+  for (size_t i = 0; i < n; i++)
+    for (size_t j = 0; j <= i; j++)
+      factor[i * n + j] = covariance(gp, s, gp->x + i * d, gp->x + j * d) +
+                          (i == j ? noise_at(gp, s, gp->x + i * d) / gp->count[i] : 0);
+  if (!factorise(factor, n)) return -INFINITY;
+  double sum = -0.5 * log_determinant(factor, n);
+  invert(factor, n, inverse);
+  for (size_t i = 0; i < n; i++) {
+    weights[i] = 0;
+    for (size_t j = 0; j < n; j++) weights[i] += inverse[i * n + j] * gp->mean[j];
+    sum -= 0.5 * weights[i] * gp->mean[i];
+  }
+  memset(gradient, 0, setting_count(gp) * sizeof *gradient);
+  sum += add_replicates(gp, s, inverse, weights, gradient);
+  add_kernel_gradient(gp, s, inverse, weights, gradient);
+  return sum + add_prior(gp, s, gradient);
+}
+
+double scree_gp_log_density(const scree_gp *gp, const double *settings, double *gradient) {
+  double *factor = scree_alloc(gp->n * gp->n, 2 * sizeof *factor);
+  double *weights = scree_alloc(gp->n, sizeof *weights);
+  double answer = -INFINITY;
+  if (factor && weights)
+    answer = density(gp, settings, factor, factor + gp->n * gp->n, weights, gradient);
+  scree_free(factor);
+  scree_free(weights);
+  return answer;
+}
+
+/* ---- the search ---- */
+
+typedef struct search {
+  const scree_gp *gp;
+  size_t m;
+  double *factor, *inverse, *weights;
+  double s[SCREE_GP_MOST_SETTINGS], gradient[SCREE_GP_MOST_SETTINGS], value;
+  double curvature[SCREE_GP_MOST_SETTINGS * SCREE_GP_MOST_SETTINGS]; /* of BFGS: inverse Hessian */
+} search;
+
+/* Goes along the direction as far as the value rises enough; false: nowhere. */
+static bool go_uphill(search *q, const double *direction, double slope) {
+  double tried[SCREE_GP_MOST_SETTINGS], gradient[SCREE_GP_MOST_SETTINGS], longest = 0;
+  for (size_t i = 0; i < q->m; i++) longest = fmax(longest, fabs(direction[i]));
+  double step = longest > 2 ? 2 / longest : 1; /* settings are logarithms: no leap beyond e^2 */
+  for (int halving = 0; halving < 30; halving++, step *= 0.5) {
+    for (size_t i = 0; i < q->m; i++) tried[i] = q->s[i] + step * direction[i];
+    double value = density(q->gp, tried, q->factor, q->inverse, q->weights, gradient);
+    if (!(value >= q->value + 1e-4 * step * slope)) continue;
+    double y[SCREE_GP_MOST_SETTINGS], hy[SCREE_GP_MOST_SETTINGS] = {0}, sy = 0, yhy = 0;
+    for (size_t i = 0; i < q->m; i++) {
+      y[i] = q->gradient[i] - gradient[i]; /* of the negative */
+      sy += step * direction[i] * y[i];
+    }
+    for (size_t i = 0; i < q->m; i++) {
+      for (size_t j = 0; j < q->m; j++) hy[i] += q->curvature[i * q->m + j] * y[j];
+      yhy += y[i] * hy[i];
+    }
+    if (sy > 1e-12)
+      for (size_t i = 0; i < q->m; i++)
+        for (size_t j = 0; j < q->m; j++) {
+          double si = step * direction[i], sj = step * direction[j];
+          q->curvature[i * q->m + j] +=
+              (1 + yhy / sy) * si * sj / sy - (hy[i] * sj + si * hy[j]) / sy;
+        }
+    memcpy(q->s, tried, sizeof tried);
+    memcpy(q->gradient, gradient, sizeof gradient);
+    q->value = value;
+    return true;
+  }
+  return false;
+}
+
+static void climb(search *q, double log_length) {
+  for (size_t i = 0; i < q->m; i++) {
+    double sd;
+    prior_of(q->gp, i, &q->s[i], &sd);
+    if (i < q->gp->d) q->s[i] = log_length;
+    for (size_t j = 0; j < q->m; j++) q->curvature[i * q->m + j] = i == j ? 0.1 : 0;
+  }
+  q->value = density(q->gp, q->s, q->factor, q->inverse, q->weights, q->gradient);
+  if (!isfinite(q->value)) return;
+  for (int i = 0; i < MOST_ITERATIONS; i++) {
+    double direction[SCREE_GP_MOST_SETTINGS] = {0}, slope = 0, before = q->value;
+    for (size_t a = 0; a < q->m; a++) {
+      for (size_t b = 0; b < q->m; b++) direction[a] += q->curvature[a * q->m + b] * q->gradient[b];
+      slope += direction[a] * q->gradient[a];
+    }
+    if (!(slope > 0) || !go_uphill(q, direction, slope) || q->value - before < settled) return;
+  }
+}
+
+/* ---- data ---- */
+
+static bool same_place(const double *a, const double *b, size_t d) {
+  for (size_t k = 0; k < d; k++)
+    if (a[k] != b[k]) return false;
+  return true;
+}
+
+static void standardise(scree_gp *gp, const scree_gp_runs *runs) {
+  double sum = 0, squares = 0;
+  for (size_t r = 0; r < runs->run_count; r++)
+    if (!isnan(runs->y[r])) {
+      sum += runs->y[r];
+      gp->run_count++;
+    }
+  gp->shift = gp->run_count ? sum / (double)gp->run_count : 0;
+  for (size_t r = 0; r < runs->run_count; r++)
+    if (!isnan(runs->y[r])) squares += (runs->y[r] - gp->shift) * (runs->y[r] - gp->shift);
+  gp->scale = gp->run_count > 1 ? sqrt(squares / (double)(gp->run_count - 1)) : 0;
+  if (!(gp->scale > 1e-12 * fabs(gp->shift))) gp->scale = gp->shift != 0 ? fabs(gp->shift) : 1;
+}
+
+/* Places with their replicates' means and sums of squares, by Welford's recurrence. */
+static scree_status gather(scree_gp *gp, const scree_gp_runs *runs, scree_error *error) {
+  for (size_t r = 0; r < runs->run_count; r++) {
+    double place[SCREE_MOST_PARAMETERS];
+    if (isnan(runs->y[r])) continue;
+    for (size_t k = 0; k < gp->d; k++)
+      place[k] = runs->x[r * runs->dimension_count + gp->active[k]];
+    size_t i = 0;
+    while (i < gp->n && !same_place(gp->x + i * gp->d, place, gp->d)) i++;
+    if (i == SCREE_GP_MOST_PLACES)
+      return scree_fail(error, SCREE_LIMIT, "runs at more than %d settings of the parameters",
+                        SCREE_GP_MOST_PLACES);
+    if (i == gp->n) {
+      memcpy(gp->x + i * gp->d, place, gp->d * sizeof *place);
+      gp->count[i] = gp->mean[i] = gp->squares[i] = 0;
+      gp->n++;
+    }
+    double y = (runs->y[r] - gp->shift) / gp->scale, step = y - gp->mean[i];
+    gp->count[i]++;
+    gp->mean[i] += step / gp->count[i];
+    gp->squares[i] += step * (y - gp->mean[i]);
+  }
+  return SCREE_OK;
+}
+
+static scree_status allocate(scree_gp *gp, size_t runs, scree_error *error) {
+  SCREE_ALLOC_OR(gp->x, runs * gp->d + 1, error, fail);
+  SCREE_ALLOC_OR(gp->mean, runs, error, fail);
+  SCREE_ALLOC_OR(gp->squares, runs, error, fail);
+  SCREE_ALLOC_OR(gp->count, runs, error, fail);
+  SCREE_ALLOC_OR(gp->weights, runs, error, fail);
+  return SCREE_OK;
+fail:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+static scree_status find_settings(scree_gp *gp, scree_error *error) {
+  search best = {0}, q = {.gp = gp, .m = setting_count(gp), .weights = gp->weights};
+  SCREE_ALLOC_OR(q.factor, gp->n * gp->n, error, fail);
+  SCREE_ALLOC_OR(gp->inverse, gp->n * gp->n, error, fail);
+  q.inverse = gp->inverse;
+  best.value = -INFINITY;
+  for (size_t i = 0; i < sizeof start_lengths / sizeof *start_lengths; i++) {
+    climb(&q, scree_log(start_lengths[i]));
+    if (q.value > best.value) best = q;
+  }
+  if (!isfinite(best.value)) {
+    scree_free(q.factor);
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the answers' covariance cannot be inverted");
+  }
+  memcpy(gp->settings, best.s, sizeof gp->settings);
+  density(gp, gp->settings, q.factor, gp->inverse, gp->weights, q.gradient);
+  scree_free(q.factor);
+  return SCREE_OK;
+fail:
+  return SCREE_OUT_OF_MEMORY;
+}
+
+scree_status scree_gp_fit(const scree_gp_runs *runs, scree_gp **gp, scree_error *error) {
+  scree_gp *made = scree_alloc_zero(1, sizeof *made);
+  if (!made) return scree_fail_memory(error, sizeof *made, "a Gaussian process");
+  SCREE_ASSERT(runs->active_count <= SCREE_MOST_PARAMETERS);
+  made->d = runs->active_count;
+  made->dimension_count = runs->dimension_count;
+  for (size_t k = 0; k < made->d; k++) made->active[k] = runs->active[k];
+  scree_status status = allocate(made, runs->run_count, error);
+  if (status == SCREE_OK) {
+    standardise(made, runs);
+    status = gather(made, runs, error);
+    if (status == SCREE_OK && made->n < 2)
+      status = scree_fail(error, SCREE_BAD_ARGUMENT, "%zu of %zu runs gave this answer",
+                          made->run_count, runs->run_count);
+  }
+  if (status == SCREE_OK) status = find_settings(made, error);
+  if (status == SCREE_OK)
+    *gp = made;
+  else
+    scree_gp_free(made);
+  return status;
+}
+
+void scree_gp_free(scree_gp *gp) {
+  if (!gp) return;
+  scree_free(gp->x);
+  scree_free(gp->mean);
+  scree_free(gp->squares);
+  scree_free(gp->count);
+  scree_free(gp->weights);
+  scree_free(gp->inverse);
+  scree_free(gp);
+}
+
+size_t scree_gp_place_count(const scree_gp *gp) {
+  return gp->n;
+}
+size_t scree_gp_run_count(const scree_gp *gp) {
+  return gp->run_count;
+}
+size_t scree_gp_settings(const scree_gp *gp, double settings[SCREE_GP_MOST_SETTINGS]) {
+  memcpy(settings, gp->settings, sizeof gp->settings);
+  return setting_count(gp);
+}
+
+/* ---- prediction ---- */
+
+static void choose_active(const scree_gp *gp, const double *x, double *place) {
+  for (size_t k = 0; k < gp->d; k++) place[k] = x[gp->active[k]];
+}
+
+double scree_gp_noise(const scree_gp *gp, const double *x) {
+  double place[SCREE_MOST_PARAMETERS];
+  choose_active(gp, x, place);
+  return gp->scale * gp->scale * noise_at(gp, gp->settings, place);
+}
+
+double scree_gp_mean(const scree_gp *gp, const double *x) {
+  double place[SCREE_MOST_PARAMETERS], mean = 0;
+  choose_active(gp, x, place);
+  for (size_t i = 0; i < gp->n; i++)
+    mean += gp->weights[i] * covariance(gp, gp->settings, place, gp->x + i * gp->d);
+  return gp->shift + gp->scale * mean;
+}
+
+scree_gp_value scree_gp_at(const scree_gp *gp, const double *x) {
+  double place[SCREE_MOST_PARAMETERS], k[SCREE_GP_MOST_PLACES], mean = 0;
+  choose_active(gp, x, place);
+  double variance = covariance(gp, gp->settings, place, place);
+  for (size_t i = 0; i < gp->n; i++) {
+    k[i] = covariance(gp, gp->settings, place, gp->x + i * gp->d);
+    mean += gp->weights[i] * k[i];
+    const double *row = gp->inverse + i * gp->n;
+    double sum = 0.5 * row[i] * k[i];
+    for (size_t j = 0; j < i; j++) sum += row[j] * k[j];
+    variance -= 2 * k[i] * sum;
+  }
+  double squared = gp->scale * gp->scale;
+  return (scree_gp_value){gp->shift + gp->scale * mean, squared * fmax(variance, 0),
+                          squared * noise_at(gp, gp->settings, place)};
+}
+
+scree_status scree_gp_covariance(const scree_gp *gp, const double *x, size_t count, double *answer,
+                                 scree_error *error) {
+  size_t n = gp->n, d = gp->d;
+  double *places = scree_alloc(count * d + 1, sizeof *places);
+  double *k = scree_alloc(count * n, sizeof *k), *ki = scree_alloc(n, sizeof *ki);
+  bool good = places && k && ki;
+  for (size_t a = 0; good && a < count; a++) {
+    choose_active(gp, x + a * gp->dimension_count, places + a * d);
+    for (size_t i = 0; i < n; i++)
+      k[a * n + i] = covariance(gp, gp->settings, places + a * d, gp->x + i * d);
+  }
+  for (size_t a = 0; good && a < count; a++) {
+    for (size_t i = 0; i < n; i++) {
+      ki[i] = 0;
+      for (size_t j = 0; j < n; j++) ki[i] += gp->inverse[i * n + j] * k[a * n + j];
+    }
+    for (size_t b = 0; b <= a; b++) {
+      double sum = covariance(gp, gp->settings, places + a * d, places + b * d);
+      for (size_t i = 0; i < n; i++) sum -= ki[i] * k[b * n + i];
+      answer[a * count + b] = answer[b * count + a] = sum * gp->scale * gp->scale;
+    }
+  }
+  scree_free(places);
+  scree_free(k);
+  scree_free(ki);
+  return good ? SCREE_OK : scree_fail_memory(error, count * n * sizeof *k, "covariances");
+}
