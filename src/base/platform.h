@@ -153,8 +153,9 @@ void scree_machine_identity(char text[SCREE_SYSTEM_TEXT]);
 uint64_t scree_random_number(void);
 
 /* Starts a program with its words, the first its name (NULL: this program again, under the name
- * "scree"), the last NULL. 0, or errno's number. */
-int scree_process_run(const char *const *words, long *process);
+ * "scree"), the last NULL. What it prints goes to the file `output`, made new; NULL: where ours
+ * goes. 0, or errno's number. */
+int scree_process_run(const char *const *words, const char *output, long *process);
 typedef enum scree_process_state {
   SCREE_PROCESS_RUNS,
   SCREE_PROCESS_ENDED,  /* by itself: *code is its exit code */

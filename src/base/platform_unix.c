@@ -182,7 +182,7 @@ bool scree_program_path(char *path, size_t size) {
   return scree_path_full("/proc/self/exe", path, size);
 }
 
-int scree_process_run(const char *const *words, long *process) {
+int scree_process_run(const char *const *words, const char *output, long *process) {
   enum { MOST_WORDS = 64 };
   /* spawn takes no const words, and changes none */
   union {
@@ -195,8 +195,16 @@ int scree_process_run(const char *const *words, long *process) {
   line.fixed[count] = NULL;
   bool self = !strcmp(words[0], "scree");
   pid_t started;
-  int code = self ? posix_spawn(&started, "/proc/self/exe", NULL, NULL, line.words, environ)
-                  : posix_spawnp(&started, words[0], NULL, NULL, line.words, environ);
+  posix_spawn_file_actions_t actions;
+  int code = posix_spawn_file_actions_init(&actions);
+  if (code != 0) return code;
+  if (output)
+    code = posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, output,
+                                            O_WRONLY | O_CREAT | O_TRUNC, 0666);
+  if (code == 0)
+    code = self ? posix_spawn(&started, "/proc/self/exe", &actions, NULL, line.words, environ)
+                : posix_spawnp(&started, words[0], &actions, NULL, line.words, environ);
+  posix_spawn_file_actions_destroy(&actions);
   if (code == 0) *process = started;
   return code;
 }

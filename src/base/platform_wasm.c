@@ -57,8 +57,8 @@ bool scree_program_path(char *path, size_t size) {
   (void)path, (void)size;
   return false;
 }
-int scree_process_run(const char *const *words, long *process) {
-  (void)words, (void)process;
+int scree_process_run(const char *const *words, const char *output, long *process) {
+  (void)words, (void)output, (void)process;
   return ENOSYS;
 }
 scree_process_state scree_process_look(long process, bool wait, int *code) {

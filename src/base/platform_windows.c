@@ -510,7 +510,16 @@ static child *find_child(long process) {
   return NULL;
 }
 
-int scree_process_run(const char *const *words, long *process) {
+/* A file that a child process may write to. */
+static HANDLE open_for_child(const char *path) {
+  SECURITY_ATTRIBUTES inherited = {.nLength = sizeof inherited, .bInheritHandle = TRUE};
+  wide_path wide;
+  if (!widen(path, &wide)) return INVALID_HANDLE_VALUE;
+  return CreateFileW(wide.text, GENERIC_WRITE, FILE_SHARE_READ, &inherited, CREATE_ALWAYS,
+                     FILE_ATTRIBUTE_NORMAL, NULL);
+}
+
+int scree_process_run(const char *const *words, const char *output, long *process) {
   enum { LINE = 32000 };
   static wchar_t line[LINE], word[LINE], program[MOST_PATH];
   STARTUPINFOW start = {.cb = sizeof start};
@@ -525,9 +534,19 @@ int scree_process_run(const char *const *words, long *process) {
   if (used >= LINE - 1 || !place) return E2BIG;
   line[used] = 0;
   if (self && !GetModuleFileNameW(NULL, program, MOST_PATH)) return ENOENT;
-  if (!CreateProcessW(self ? program : NULL, line, NULL, NULL, FALSE, CREATE_NEW_PROCESS_GROUP,
-                      NULL, NULL, &start, &made))
-    return errno_of(GetLastError());
+  HANDLE file = output ? open_for_child(output) : INVALID_HANDLE_VALUE;
+  if (output && file == INVALID_HANDLE_VALUE) return errno_of(GetLastError());
+  if (output) {
+    start.dwFlags = STARTF_USESTDHANDLES;
+    start.hStdOutput = file;
+    start.hStdInput = GetStdHandle(STD_INPUT_HANDLE);
+    start.hStdError = GetStdHandle(STD_ERROR_HANDLE);
+  }
+  bool started = CreateProcessW(self ? program : NULL, line, NULL, NULL, output != NULL,
+                                CREATE_NEW_PROCESS_GROUP, NULL, NULL, &start, &made);
+  DWORD reason = GetLastError();
+  if (output) CloseHandle(file);
+  if (!started) return errno_of(reason);
   CloseHandle(made.hThread);
   *place = (child){(long)made.dwProcessId, made.hProcess};
   *process = place->process;

@@ -51,7 +51,7 @@ static int submit(const char *script) {
   const char *words[] = {"sbatch", script, NULL};
   char shown[CLI_PRINTABLE_BYTES];
   long process;
-  int status, code = scree_process_run(words, &process);
+  int status, code = scree_process_run(words, NULL, &process);
   if (code == 0 && scree_process_look(process, true, &status) == SCREE_PROCESS_ENDED && status == 0)
     return 0;
   fprintf(stderr, "scree: %s could not be submitted: %s\n", cli_printable(script, shown),

@@ -509,7 +509,7 @@ static scree_status make_whole(analysis *a) {
 }
 
 static scree_status make_result(analysis *a) {
-  static const char *const designs[] = {"grid", "latin", "sobol"};
+  static const char *const designs[] = {"grid", "latin", "sobol", "list"};
   const scree_study *s = a->study;
   scree_study_result *r = a->result;
   r->name = scree_arena_text(a->arena, s->name);

@@ -51,7 +51,7 @@ static void bind_whole(sqlite3_stmt *statement, int column, uint64_t value) {
 
 static scree_status put_facts(writer *w) {
   const scree_study *s = w->study;
-  static const char *const designs[] = {"grid", "latin", "sobol"};
+  static const char *const designs[] = {"grid", "latin", "sobol", "list"};
   char seed[32], margin[SCREE_NUMBER_SIZE], confidence[SCREE_NUMBER_SIZE], points[32],
       replicates[32];
   snprintf(seed, sizeof seed, "%llu", (unsigned long long)s->seed);
@@ -310,7 +310,7 @@ static scree_status put_run(writer *w, size_t index, sqlite3_stmt *insert) {
   bind_whole(insert, 2, index);
   bind_whole(insert, 3, scree_study_run_point(s, index));
   bind_whole(insert, 4, scree_study_run_replicate(s, index));
-  bind_whole(insert, 5, s->seed + scree_study_run_replicate(s, index));
+  bind_whole(insert, 5, scree_study_run_seed(s, index));
   return put(w, insert);
 }
 

@@ -48,7 +48,7 @@ typedef struct range_fields {
 
 typedef struct window_fields {
   scree_place place;
-  double from, until;
+  double from, until, at;
 } window_fields;
 
 #define FIELDS(table) (table), sizeof(table) / sizeof *(table)
@@ -88,7 +88,7 @@ static const scree_field study_table[] = {
     {"base", SCREE_FIELD_NODE, AT(base), 0, 0, "", "", NULL},
     {"answers", SCREE_FIELD_NODE, AT(answers), 0, 0, "", "", NULL},
     {"factors", SCREE_FIELD_NODE, AT(factors), 0, 0, "", "", NULL},
-    {"design", SCREE_FIELD_WORD, AT(design), 0, 0, "grid|latin|sobol", "", NULL},
+    {"design", SCREE_FIELD_WORD, AT(design), 0, 0, "grid|latin|sobol|list", "", NULL},
     {"points", SCREE_FIELD_COUNT, AT(points), 1, 1e6, "", "", NULL},
     {"analysis", SCREE_FIELD_RECORD, AT(analysis), 0, 0, "", "", &analysis_record},
 };
@@ -113,9 +113,10 @@ static const scree_record range_record = {"a range", FIELDS(range_table), sizeof
 static const scree_field window_table[] = {
     {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "", NULL},
     {"until", SCREE_FIELD_REAL, AT(until), 0, 1e9, "s", "", NULL},
+    {"at", SCREE_FIELD_REAL, AT(at), -1e9, 1e9, "s", "", NULL},
 };
 #undef AT
-static const window_fields window_defaults = {.until = INFINITY};
+static const window_fields window_defaults = {.from = NAN, .until = NAN, .at = NAN};
 static const scree_record window_record = {"an answer", FIELDS(window_table), sizeof(window_fields),
                                            &window_defaults, NULL};
 
@@ -216,9 +217,22 @@ static scree_status read_scene_base(const reader *r, const scree_yaml *base,
   return status;
 }
 
-/* COLUMN, or {COLUMN: {from: T, until: T}} for the mean over a window. */
+/* What an answer is called in tables. */
+static void name_answer(const scree_answer *a, char name[200]) {
+  char *end = name;
+  end += snprintf(name, 120, "%s%.100s", a->mean ? "mean " : "", a->column);
+  if (!isnan(a->at))
+    snprintf(end, 80, " at %g %s", a->at, a->outline ? "m" : "s");
+  else if (a->until < INFINITY)
+    snprintf(end, 80, " %g to %g s", a->from, a->until);
+  else if (a->from > 0)
+    snprintf(end, 80, " from %g s", a->from);
+}
+
+/* COLUMN for its last value, {COLUMN: {from: T, until: T}} for the mean over a window, {COLUMN:
+ * {at: T}} for the value at a time, {outline: {at: X}} for the height of what is seen along y. */
 static scree_status read_answer(const reader *r, const scree_yaml *item, scree_answer *a) {
-  *a = (scree_answer){.from = 0, .until = INFINITY};
+  *a = (scree_answer){.from = 0, .until = INFINITY, .at = NAN};
   const char *column = item->text;
   if (item->kind == SCREE_YAML_MAPPING && item->item_count == 1 &&
       item->items[0].kind == SCREE_YAML_MAPPING) {
@@ -226,34 +240,45 @@ static scree_status read_answer(const reader *r, const scree_yaml *item, scree_a
     column = item->items[0].key;
     scree_status status = read_record(r, &item->items[0], column, &window_record, &window);
     if (status != SCREE_OK) return status;
-    *a = (scree_answer){.mean = true, .from = window.from, .until = window.until};
+    bool at = !isnan(window.at), mean = !isnan(window.from) || !isnan(window.until);
+    if (at && mean) return fail_at(r, &item->items[0], "%s: at, or from and until", column);
+    a->mean = !at;
+    a->at = window.at;
+    if (!isnan(window.from)) a->from = window.from;
+    if (!isnan(window.until)) a->until = window.until;
   } else if (item->kind != SCREE_YAML_SCALAR) {
     return fail_at(r, item,
                    "an answer must be a column such as torque.power, or {torque.power: "
                    "{from: 2}} for its mean from 2 s on");
   }
-  char name[200] = "", *end = name;
-  end += snprintf(name, 120, "%s%.100s", a->mean ? "mean " : "", column);
-  if (a->until < INFINITY)
-    snprintf(end, 80, " %g to %g s", a->from, a->until);
-  else if (a->from > 0)
-    snprintf(end, 80, " from %g s", a->from);
   a->column = scree_arena_text(&r->study->arena, column);
+  if (!a->column) return fail_memory(r);
+  a->outline = r->study->scene_text && !strcmp(column, "outline");
+  if (a->outline && isnan(a->at))
+    return fail_at(r, item, "outline: needs a place, as in {outline: {at: 0.01}}");
+  if (r->study->command.count && (a->mean || !isnan(a->at)))
+    return fail_at(r, item, "%s: what a command prints has no times", column);
+  if (!a->outline && a->at < 0)
+    return fail_at(r, item, "%s: at %g s: must not be below 0", column, a->at);
+  char name[200];
+  name_answer(a, name);
   a->name = scree_arena_text(&r->study->arena, name);
-  return a->column && a->name ? SCREE_OK : fail_memory(r);
+  return a->name ? SCREE_OK : fail_memory(r);
 }
 
 static scree_status read_answers(const reader *r, const scree_yaml *node) {
   scree_study *study = r->study;
   if (node->kind != SCREE_YAML_SEQUENCE || node->item_count == 0)
     return fail_at(r, node, "answers: must be a list of columns, as in [torque.power]");
-  if (!study->scene_text) return fail_at(r, node, "answers are of scenes: base: {scene: FILE}");
+  if (!scree_study_has_answers(study))
+    return fail_at(r, node, "answers are of scenes: base: {scene: FILE}");
   study->answers = scree_arena_take(&study->arena, node->item_count, sizeof *study->answers);
   if (!study->answers) return fail_memory(r);
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
     status = read_answer(r, &node->items[i], &study->answers[i]);
-    if (status == SCREE_OK && !scree_study_has_column(study, study->answers[i].column))
+    if (status == SCREE_OK && study->scene_text && !study->answers[i].outline &&
+        !scree_study_has_column(study, study->answers[i].column))
       status = fail_at(r, &node->items[i], "no column '%s' in the scene; its sensors are %s",
                        study->answers[i].column, scree_study_sensor_names(study));
     study->answer_count += status == SCREE_OK;
@@ -261,11 +286,48 @@ static scree_status read_answers(const reader *r, const scree_yaml *node) {
   return status;
 }
 
+/* {command: [PROGRAM, WORD, ...]}, or all in one text, parted at blanks. */
+static scree_status read_command(const reader *r, const scree_yaml *base,
+                                 const scree_yaml *command) {
+  scree_study *study = r->study;
+  bool list = command->kind == SCREE_YAML_SEQUENCE;
+  size_t most = list ? command->item_count : command->text ? strlen(command->text) : 0;
+  if (base->item_count > 1)
+    return fail_at(r, base, "command: stands alone; its values are factors");
+  if (most == 0) return fail_at(r, command, "command: must be a program and its words");
+  study->command.items = scree_arena_take(&study->arena, most, sizeof *study->command.items);
+  study->sets[0] = (scree_shape_set){"", NULL, 0};
+  study->set_count = 1;
+  if (!study->command.items) return fail_memory(r);
+  for (size_t i = 0; list && i < command->item_count; i++) {
+    scree_status status = need_scalar(r, &command->items[i]);
+    if (status != SCREE_OK) return status;
+  }
+  const char *rest = list ? "" : command->text;
+  for (size_t i = 0; list ? i < most : *(rest += strspn(rest, " \t\n")) != 0; i++) {
+    char word[1024];
+    const char *text = list ? command->items[i].text : rest;
+    size_t length = list ? strlen(text) : strcspn(rest, " \t\n");
+    if (length >= sizeof word) return fail_at(r, command, "command: a word is too long");
+    snprintf(word, sizeof word, "%.*s", (int)length, text);
+    rest += list ? 0 : length;
+    if (!(study->command.items[study->command.count++] = scree_arena_text(&study->arena, word)))
+      return fail_memory(r);
+  }
+  enum { MOST_WORDS = 60 };
+  if (study->command.count == 0) return fail_at(r, command, "command: must be a program");
+  if (study->command.count > MOST_WORDS)
+    return fail_at(r, command, "command: %zu words, at most %d", study->command.count, MOST_WORDS);
+  return SCREE_OK;
+}
+
 static scree_status read_base(const reader *r, const scree_yaml *base) {
   if (base->kind != SCREE_YAML_MAPPING)
     return fail_at(r, base, "base: must be `key: value` lines of an experiment");
   const scree_yaml *scene = scree_yaml_find(base, "scene");
   if (scene) return read_scene_base(r, base, scene);
+  const scree_yaml *command = scree_yaml_find(base, "command");
+  if (command) return read_command(r, base, command);
   const scree_yaml *preset = scree_yaml_find(base, "preset");
   scree_error error;
   if (preset) {
@@ -392,6 +454,10 @@ static scree_status try_value(const reader *r, const scree_yaml *node, const cha
   scree_error wrong;
   if (r->study->scene_text)
     return place_error(r, node, scree_study_try_scene(r->study, key, text, &wrong), &wrong);
+  if (r->study->command.count)
+    return scree_study_command_has(r->study, key)
+               ? SCREE_OK
+               : fail_at(r, node, "%s: the command has no word with {%s}", key, key);
   if (!strcmp(key, "rp")) {
     if (is_rp(text)) return SCREE_OK;
     return fail_at(r, node,
@@ -419,7 +485,7 @@ static scree_status read_levels(const reader *r, const scree_yaml *node, scree_f
     if (status != SCREE_OK) return status;
     f->levels[i] = sets ? r->study->sets[f->sets[i]].label : scree_arena_text(arena, item->text);
     if (!f->levels[i]) return fail_memory(r);
-    for (size_t j = 0; j < i; j++)
+    for (size_t j = 0; j < i && r->study->design != SCREE_DESIGN_LIST; j++)
       if (!strcmp(f->levels[j], f->levels[i]))
         return fail_at(r, item, "%s: the level '%s' stands here twice", f->key, f->levels[i]);
     f->level_count++;
@@ -451,6 +517,8 @@ static scree_status check_range(const reader *r, const scree_yaml *node, scree_f
                                 size_t levels) {
   const char *text;
   if (!strcmp(f->key, "shapes")) return fail_at(r, node, "shapes: must be a list, not a range");
+  if (r->study->design == SCREE_DESIGN_LIST)
+    return fail_at(r, node, "%s: design list needs a list of levels, one for each point", f->key);
   if (!(f->from < f->to)) return fail_at(r, node, "%s: from must be below to", f->key);
   if (f->logarithmic && !(f->from > 0))
     return fail_at(r, node, "%s: from %g: must be above 0 on a log scale", f->key, f->from);
@@ -486,7 +554,7 @@ static scree_status add_factor(const reader *r, const char *key, const scree_yam
   scree_factor f = {
       .key = scree_arena_text(&study->arena, key), .line = node->line, .column = node->column};
   if (!f.key) return fail_memory(r);
-  if (!strcmp(key, "seed"))
+  if (!strcmp(key, "seed") && study->design != SCREE_DESIGN_LIST)
     return fail_at(r, node, "seed is no factor: `replicates: N` counts it up");
   scree_status status = node->kind == SCREE_YAML_SEQUENCE  ? read_levels(r, node, &f)
                         : node->kind == SCREE_YAML_MAPPING ? read_range(r, node, &f)
@@ -511,7 +579,8 @@ static scree_status read_factors(const reader *r, const scree_yaml *node) {
   for (size_t i = 0; status == SCREE_OK && i < node->item_count; i++) {
     const scree_yaml *item = &node->items[i];
     if (item->kind != SCREE_YAML_MAPPING || is_range(item)) {
-      if (r->study->scene_text && (!strcmp(item->key, "rp") || !strcmp(item->key, "shapes")))
+      if (scree_study_has_answers(r->study) &&
+          (!strcmp(item->key, "rp") || !strcmp(item->key, "shapes")))
         return fail_at(r, item, "%s: a scene's shapes are varied by fields such as shapes.NAME.rp",
                        item->key);
       status = add_factor(r, item->key, item);
@@ -528,6 +597,23 @@ static scree_status read_factors(const reader *r, const scree_yaml *node) {
 
 /* ---- the whole ---- */
 
+/* Of design list: every factor has as many levels. */
+static scree_status check_list(const reader *r, const scree_yaml *root) {
+  const scree_study *study = r->study;
+  if (study->wanted_points)
+    return fail_at(r, scree_yaml_find(root, "points"),
+                   "points belongs to design latin or sobol; a list has as many as its levels");
+  if (study->factor_count == 0)
+    return fail_at(r, scree_yaml_find(root, "design"), "this design needs factors");
+  for (size_t f = 1; f < study->factor_count; f++)
+    if (study->factors[f].level_count != study->factors[0].level_count)
+      return fail_at(r, scree_yaml_find(root, "design"),
+                     "a list needs as many levels of each factor: %zu of %s, %zu of %s",
+                     study->factors[0].level_count, study->factors[0].key,
+                     study->factors[f].level_count, study->factors[f].key);
+  return SCREE_OK;
+}
+
 /* What only the whole can say. */
 static scree_status check_whole(const reader *r, const scree_yaml *root) {
   scree_study *study = r->study;
@@ -537,14 +623,16 @@ static scree_status check_whole(const reader *r, const scree_yaml *root) {
     varied = varied || !strcmp(study->factors[i].key, "shapes");
     points *= (double)study->factors[i].level_count;
   }
-  if (study->scene_text && scree_yaml_find(root, "shapes"))
+  bool answers = scree_study_has_answers(study);
+  if (answers && scree_yaml_find(root, "shapes"))
     return fail_at(r, scree_yaml_find(root, "shapes"), "shapes stand in the scene");
-  if (study->scene_text && !study->answer_count)
-    return fail_at(r, root, "a study of a scene needs answers: [COLUMN, ...]");
-  if (!study->scene_text && varied == (scree_yaml_find(root, "shapes") != NULL))
+  if (answers && !study->answer_count)
+    return fail_at(r, root, "a study of a scene or a command needs answers: [NAME, ...]");
+  if (!answers && varied == (scree_yaml_find(root, "shapes") != NULL))
     return fail_at(r, root,
                    varied ? "shapes stands both by itself and as a factor"
                           : "needs shapes: [FILE or sample:NAME, ...]");
+  if (study->design == SCREE_DESIGN_LIST) return check_list(r, root);
   if (study->design == SCREE_DESIGN_GRID && study->wanted_points)
     return fail_at(r, scree_yaml_find(root, "points"),
                    "points belongs to design latin or sobol; a grid has as many as its levels");

@@ -33,7 +33,8 @@ static const char *value_at(scree_study *study, const scree_factor *f, double u)
   char text[SCREE_NUMBER_SIZE];
   scree_experiment copy = study->base;
   scree_number_format_digits(value, 9, text);
-  bool fits = study->scene_text
+  bool fits = study->command.count ? true
+              : study->scene_text
                   ? scree_study_try_scene(study, f->key, text, NULL) == SCREE_OK
                   : !strcmp(f->key, "rp") || scree_study_set(&copy, f->key, text, NULL) == SCREE_OK;
   if (!fits) snprintf(text, sizeof text, "%.0f", value);
@@ -41,6 +42,7 @@ static const char *value_at(scree_study *study, const scree_factor *f, double u)
 }
 
 static const char *grid_value(const scree_study *study, size_t point, size_t factor) {
+  if (study->design == SCREE_DESIGN_LIST) return study->factors[factor].levels[point];
   for (size_t f = study->factor_count; f-- > factor + 1;) point /= study->factors[f].level_count;
   const scree_factor *f = &study->factors[factor];
   return f->levels[point % f->level_count];
@@ -82,6 +84,7 @@ static scree_status check_scene_point(const scree_study *study, const scree_stud
 static scree_status check_point(scree_study *study, const scree_study_point *point,
                                 scree_error *error) {
   if (study->scene_text) return check_scene_point(study, point, error);
+  if (study->command.count) return SCREE_OK; /* its values are the command's to judge */
   scree_experiment copy = study->base;
   scree_error reason;
   for (size_t f = 0; f < study->factor_count; f++) {
@@ -118,7 +121,9 @@ scree_status scree_study_make_points(scree_study *study, scree_error *error) {
   size_t dimensions = study->factor_count, *order = NULL;
   double *unit = NULL;
   study->point_count = study->wanted_points;
-  if (study->design == SCREE_DESIGN_GRID) {
+  if (study->design == SCREE_DESIGN_LIST) {
+    study->point_count = study->factors[0].level_count;
+  } else if (study->design == SCREE_DESIGN_GRID) {
     study->point_count = 1;
     for (size_t f = 0; f < dimensions; f++) study->point_count *= study->factors[f].level_count;
   } else {
@@ -140,6 +145,14 @@ scree_status scree_study_make_points(scree_study *study, scree_error *error) {
 
 /* ---- runs ---- */
 
+uint64_t scree_study_run_seed(const scree_study *study, size_t run) {
+  const scree_study_point *point = &study->points[scree_study_run_point(study, run)];
+  uint64_t seed = study->seed;
+  for (size_t f = 0; f < study->factor_count; f++)
+    if (!strcmp(study->factors[f].key, "seed")) seed = strtoull(point->values[f], NULL, 10);
+  return seed + scree_study_run_replicate(study, run);
+}
+
 scree_status scree_study_experiment(const scree_study *study, size_t run,
                                     scree_experiment *experiment, scree_error *error) {
   const scree_study_point *point = &study->points[scree_study_run_point(study, run)];
@@ -148,10 +161,10 @@ scree_status scree_study_experiment(const scree_study *study, size_t run,
   if (status != SCREE_OK) return status;
   for (size_t f = 0; status == SCREE_OK && f < study->factor_count; f++) {
     const char *key = study->factors[f].key;
-    if (!study->scene_text && strcmp(key, "rp") != 0 && strcmp(key, "shapes") != 0)
+    if (!scree_study_has_answers(study) && strcmp(key, "rp") != 0 && strcmp(key, "shapes") != 0)
       status = scree_study_set(&made, key, point->values[f], error);
   }
-  made.seed = study->seed + scree_study_run_replicate(study, run);
+  made.seed = scree_study_run_seed(study, run);
   if (status == SCREE_OK)
     *experiment = made;
   else
@@ -178,6 +191,20 @@ static scree_status write_scene_identity(const scree_study *study, size_t run, F
   for (size_t i = 0; i < study->answer_count; i++)
     fprintf(stream, "answer=%s\n", study->answers[i].name);
   scree_scene_file_free(file);
+  return status;
+}
+
+/* The same of a command: its words. */
+static scree_status write_command_identity(const scree_study *study, size_t run, FILE *stream,
+                                           scree_error *error) {
+  char text[1024];
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < study->command.count; i++) {
+    status = scree_study_command_word(study, run, i, NULL, text, sizeof text, error);
+    if (status == SCREE_OK) fprintf(stream, "word=%s\n", text);
+  }
+  for (size_t i = 0; i < study->answer_count; i++)
+    fprintf(stream, "answer=%s\n", study->answers[i].name);
   return status;
 }
 
@@ -213,6 +240,8 @@ static scree_status make_key(const scree_study *study, size_t run, char key[SCRE
   if (stream) {
     if (study->scene_text)
       status = write_scene_identity(study, run, stream, error);
+    else if (study->command.count)
+      status = write_command_identity(study, run, stream, error);
     else
       write_identity(study, &study->points[scree_study_run_point(study, run)], &e, stream);
     bool good = !ferror(stream);
@@ -260,7 +289,7 @@ scree_status scree_study_get_run(const scree_study *study, size_t index, scree_s
   size_t point = scree_study_run_point(study, index);
   *run = (scree_study_run){.point = point,
                            .replicate = scree_study_run_replicate(study, index),
-                           .seed = study->seed + scree_study_run_replicate(study, index),
+                           .seed = scree_study_run_seed(study, index),
                            .label = study->points[point].label,
                            .rp = study->points[point].rp,
                            .shapes = study->sets[study->points[point].set].label,

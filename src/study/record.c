@@ -87,6 +87,19 @@ void scree_study_record_free(scree_study_record *record) {
   record->series_count = 0;
 }
 
+scree_run_result scree_no_result(void) {
+  return (scree_run_result){.repose = {.sector_deg = NAN,
+                                       .sector_sd_deg = NAN,
+                                       .cone_deg = NAN,
+                                       .silhouette_deg = NAN,
+                                       .silhouette_sd_deg = NAN,
+                                       .height = NAN,
+                                       .base_radius = NAN,
+                                       .run_out = NAN},
+                            .packing_fraction = NAN,
+                            .particle_size = NAN};
+}
+
 /* ---- writing ---- */
 
 static void write_real(FILE *stream, double value) {

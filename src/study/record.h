@@ -23,6 +23,15 @@ typedef struct scree_study_record {
 scree_status scree_study_record_scene(const scree_study *study, scree_scene *scene,
                                       scree_study_record *record, scree_error *error);
 
+/* command_base.c: runs the command, whose own files go to `folder`, and keeps what it prints. watch
+ * is called a few times a second; false ends it, with SCREE_CANCELLED. */
+scree_status scree_study_record_command(const scree_study *study, size_t run, const char *folder,
+                                        bool (*watch)(void *context), void *context,
+                                        scree_study_record *record, scree_error *error);
+
+/* Of a run without a heap of the experiment: no number is known. */
+scree_run_result scree_no_result(void);
+
 /* FOLDER/results/KEY.yaml, which is JSON too. */
 scree_status scree_study_record_write(const scree_study_record *record, const char *path,
                                       scree_error *error);

@@ -2,6 +2,7 @@
  * as an answer. The scene stands in the study as its own text, with every default. */
 #include "base/file.h"
 #include "base/platform.h"
+#include "study/outline.h"
 #include "study/record.h"
 
 #include <inttypes.h>
@@ -84,8 +85,7 @@ scree_status scree_study_run_scene(const scree_study *study, size_t run, scree_s
   char seed[32];
   scree_status status = scree_study_scene(study, point->values, file, error);
   if (status != SCREE_OK) return status;
-  snprintf(seed, sizeof seed, "%" PRIu64,
-           study->seed + (uint64_t)scree_study_run_replicate(study, run));
+  snprintf(seed, sizeof seed, "%" PRIu64, scree_study_run_seed(study, run));
   status = scree_scene_file_set(*file, "seed", seed, error);
   if (status != SCREE_OK) scree_scene_file_free(*file);
   return status;
@@ -151,12 +151,25 @@ const char *scree_study_sensor_names(const scree_study *study) {
   return kept ? kept : none;
 }
 
+/* Between two rows of the series as on a straight line. */
+static double value_at(const double *series, size_t rows, size_t columns, size_t k, double time) {
+  size_t i = 0;
+  while (i < rows && series[i * columns] < time) i++;
+  if (i == rows) return NAN;
+  const double *row = series + i * columns, *before = i ? row - columns : row;
+  if (i == 0 && row[0] > time) return NAN;
+  double part = row[0] > before[0] ? (time - before[0]) / (row[0] - before[0]) : 1;
+  return part == 1 ? row[k] : before[k] + part * (row[k] - before[k]);
+}
+
 static double answer_of(const scree_answer *answer, const scree_scene *scene) {
   size_t rows, columns = scree_scene_column_count(scene), k = 0, count = 0;
   const double *series = scree_scene_series(scene, &rows);
   double sum = 0;
+  if (answer->outline) return scree_outline_height(scree_scene_view(scene), answer->at);
   while (k < columns && strcmp(scree_scene_column_name(scene, k), answer->column) != 0) k++;
   if (k == columns || rows == 0) return NAN;
+  if (!isnan(answer->at)) return value_at(series, rows, columns, k, answer->at);
   if (!answer->mean) return series[(rows - 1) * columns + k];
   for (size_t i = 0; i < rows; i++) {
     double time = series[i * columns], value = series[i * columns + k];
@@ -184,20 +197,11 @@ scree_status scree_study_record_scene(const scree_study *study, scree_scene *sce
   record->costs.step_count = scree_world_step_count(world);
   record->costs.piece_count = 1;
   record->costs.largest_overlap = o.largest_overlap;
-  record->result = (scree_run_result){.repose = {.sector_deg = NAN,
-                                                 .sector_sd_deg = NAN,
-                                                 .cone_deg = NAN,
-                                                 .silhouette_deg = NAN,
-                                                 .silhouette_sd_deg = NAN,
-                                                 .height = NAN,
-                                                 .base_radius = NAN,
-                                                 .run_out = NAN},
-                                      .body_count = book.inside_count,
-                                      .left_count = book.left_count,
-                                      .packing_fraction = NAN,
-                                      .coordination = o.coordination,
-                                      .particle_size = NAN,
-                                      .kinetic = o.kinetic + o.rotational,
-                                      .time = o.time};
+  record->result = scree_no_result();
+  record->result.body_count = book.inside_count;
+  record->result.left_count = book.left_count;
+  record->result.coordination = o.coordination;
+  record->result.kinetic = o.kinetic + o.rotational;
+  record->result.time = o.time;
   return SCREE_OK;
 }

@@ -2,7 +2,7 @@
 #ifndef SCREE_STUDY_STUDY_H
 #define SCREE_STUDY_STUDY_H
 
-#include "base/arena.h"
+#include "base/schema.h"
 #include "choice/criterion.h"
 
 enum { SCREE_RUN_KEY_BYTES = 24 };
@@ -46,14 +46,17 @@ typedef struct scree_study_point {
 typedef enum scree_design {
   SCREE_DESIGN_GRID,
   SCREE_DESIGN_LATIN,
-  SCREE_DESIGN_SOBOL
+  SCREE_DESIGN_SOBOL,
+  SCREE_DESIGN_LIST /* point i has level i of every factor */
 } scree_design;
 
-/* A column of a scene's sensors: its last value, or its mean over a window of time. */
+/* A column of a scene's sensors: its last value, its mean over a window of time, or its value at a
+ * time; the outline of its heap at a place; a number that a command prints. */
 typedef struct scree_answer {
   const char *name, *column;
-  bool mean;
+  bool mean, outline;
   double from, until; /* s */
+  double at;          /* s; of an outline m; NAN: the last */
 } scree_answer;
 
 struct scree_study {
@@ -67,6 +70,7 @@ struct scree_study {
   const char *scene_text, *scene_path; /* where the base is a scene; else NULL */
   const char *(*settings)[2];          /* its fields that the base changes, and their values */
   size_t setting_count;
+  scree_texts command; /* where the base is one: its words; else none */
   scree_answer *answers;
   size_t answer_count;
   uint64_t seed;
@@ -96,6 +100,11 @@ static inline size_t scree_study_run_replicate(const scree_study *study, size_t 
   return run / study->point_count;
 }
 
+/* Whether runs give answers of the user's, of a scene or of a command. */
+static inline bool scree_study_has_answers(const scree_study *study) {
+  return study->scene_text || study->command.count > 0;
+}
+
 /* Copies into the arena; NULL when memory is out. */
 const char *scree_arena_text(scree_arena *arena, const char *text);
 
@@ -107,6 +116,8 @@ scree_status scree_study_set(scree_experiment *experiment, const char *key, cons
 /* The experiment of a point with the seed of a replicate. Free with scree_experiment_free. */
 scree_status scree_study_experiment(const scree_study *study, size_t run,
                                     scree_experiment *experiment, scree_error *error);
+/* The seed of a run: the study's, or its point's where seed is a factor, and the replicate. */
+uint64_t scree_study_run_seed(const scree_study *study, size_t run);
 /* Names every run by its content; all shapes must be known. */
 scree_status scree_study_make_keys(scree_study *study, scree_error *error);
 
@@ -135,6 +146,14 @@ bool scree_study_has_column(const scree_study *study, const char *column);
 const char *scree_study_sensor_names(const scree_study *study);
 /* The scene's text into the study's folder. */
 scree_status scree_study_keep_scene(const scree_study *study, scree_error *error);
+
+/* command_base.c: whether the command has a word with {key} in it. */
+bool scree_study_command_has(const scree_study *study, const char *key);
+/* The word of the command with a run's values, as text in the arena's way; folder NULL: {folder} is
+ * left as it is. */
+scree_status scree_study_command_word(const scree_study *study, size_t run, size_t word,
+                                      const char *folder, char *text, size_t size,
+                                      scree_error *error);
 
 /* folder.c: FOLDER/KIND/NAME ENDING, to be freed with scree_free; NULL when memory is out. */
 char *scree_study_path(const scree_study *study, const char *kind, const char *name,

@@ -155,7 +155,26 @@ static scree_status simulate_scene(work *w, scree_study_record *record, scree_er
   return status;
 }
 
+/* ---- one run of a command ---- */
+
+static bool watch_command(void *context) {
+  return keep_lease(context, 0, "command");
+}
+
+static scree_status run_command(work *w, scree_study_record *record, scree_error *error) {
+  char *folder = run_file(w, "runs", "", error);
+  if (!folder) return SCREE_OUT_OF_MEMORY;
+  double wall = scree_now();
+  scree_status status = scree_folder_create(folder, error);
+  if (status == SCREE_OK)
+    status = scree_study_record_command(w->study, w->run, folder, watch_command, w, record, error);
+  record->costs.wall_seconds = record->costs.processor_seconds = scree_now() - wall;
+  scree_free(folder);
+  return status;
+}
+
 static scree_status make_and_simulate(work *w, scree_study_record *record, scree_error *error) {
+  if (w->study->command.count) return run_command(w, record, error);
   if (w->study->scene_text) return simulate_scene(w, record, error);
   scree_run_shape shapes[SCREE_MOST_SHAPES];
   scree_experiment e;

@@ -1,0 +1,150 @@
+/* Studies whose base is a command: any program that takes its parameters as words and prints its
+ * answers, a line each: NAME: NUMBER or NAME = NUMBER. All other lines are its own. */
+#include "base/file.h"
+#include "base/number.h"
+#include "base/platform.h"
+#include "study/record.h"
+
+#include <ctype.h>
+#include <inttypes.h>
+#include <math.h>
+#include <string.h>
+
+enum { LONGEST_WORD = 1024, LARGEST_OUTPUT = 64 << 20 };
+static const double first_look_s = 0.002, longest_look_s = 0.2;
+
+bool scree_study_command_has(const scree_study *study, const char *key) {
+  char braces[140];
+  snprintf(braces, sizeof braces, "{%.130s}", key);
+  for (size_t i = 0; i < study->command.count; i++)
+    if (strstr(study->command.items[i], braces)) return true;
+  return false;
+}
+
+/* What stands for {NAME} in a run; NULL: nothing does. */
+static const char *value_of(const scree_study *study, size_t run, const char *name,
+                            const char *folder, char buffer[32]) {
+  const scree_study_point *point = &study->points[scree_study_run_point(study, run)];
+  for (size_t f = 0; f < study->factor_count; f++)
+    if (strcmp(name, "seed") != 0 && !strcmp(study->factors[f].key, name)) return point->values[f];
+  if (!strcmp(name, "folder")) return folder ? folder : "{folder}";
+  if (strcmp(name, "seed") != 0) return NULL;
+  snprintf(buffer, 32, "%" PRIu64, scree_study_run_seed(study, run));
+  return buffer;
+}
+
+scree_status scree_study_command_word(const scree_study *study, size_t run, size_t word,
+                                      const char *folder, char *text, size_t size,
+                                      scree_error *error) {
+  size_t used = 0;
+  *text = 0;
+  for (const char *at = study->command.items[word]; *at;) {
+    char name[64], number[32];
+    size_t length = *at == '{' ? strcspn(at, "}") : 0;
+    const char *value = NULL;
+    if (length > 0 && at[length] == '}' && length < sizeof name) {
+      snprintf(name, sizeof name, "%.*s", (int)length - 1, at + 1);
+      value = value_of(study, run, name, folder, number);
+    }
+    int put = value ? snprintf(text + used, size - used, "%s", value)
+                    : snprintf(text + used, size - used, "%c", *at);
+    used += (size_t)put;
+    if (used >= size)
+      return scree_fail(error, SCREE_LIMIT, "command: a word of more than %zu bytes", size);
+    at += value ? length + 1 : 1;
+  }
+  return SCREE_OK;
+}
+
+/* ---- running ---- */
+
+static scree_status start(const scree_study *study, size_t run, const char *folder,
+                          const char *output, long *process, scree_error *error) {
+  size_t count = study->command.count;
+  const char **words = scree_alloc(count + 1, sizeof *words);
+  char *texts = scree_alloc(count, LONGEST_WORD);
+  scree_status status = words && texts ? SCREE_OK : scree_fail_memory(error, 0, "a command");
+  for (size_t i = 0; status == SCREE_OK && i < count; i++) {
+    words[i] = texts + i * LONGEST_WORD;
+    status = scree_study_command_word(study, run, i, folder, texts + i * LONGEST_WORD, LONGEST_WORD,
+                                      error);
+  }
+  if (status == SCREE_OK) {
+    words[count] = NULL;
+    int code = scree_process_run(words, output, process);
+    if (code != 0)
+      status = scree_fail(error, SCREE_BAD_ARGUMENT, "command: cannot start %s: %s", words[0],
+                          strerror(code));
+  }
+  scree_free(words);
+  scree_free(texts);
+  return status;
+}
+
+/* Looks more seldom the longer it takes: what ends at once is not waited for. */
+static scree_status wait_for(long process, bool (*watch)(void *context), void *context,
+                             scree_error *error) {
+  int code = 0;
+  double pause = first_look_s;
+  scree_process_state state;
+  while ((state = scree_process_look(process, false, &code)) == SCREE_PROCESS_RUNS) {
+    if (!watch(context)) {
+      scree_process_stop(process);
+      scree_process_look(process, true, &code);
+      return scree_fail(error, SCREE_CANCELLED, "cancelled");
+    }
+    scree_sleep(pause);
+    pause = fmin(1.5 * pause, longest_look_s);
+  }
+  if (state == SCREE_PROCESS_KILLED)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the command was killed by signal %d", code);
+  if (code != 0)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the command ended with code %d", code);
+  return SCREE_OK;
+}
+
+/* ---- its answers ---- */
+
+/* The number behind NAME: or NAME = on the last line that begins so; false: there is none. */
+static bool find_answer(const char *text, const char *name, double *value) {
+  size_t length = strlen(name);
+  bool found = false;
+  for (const char *line = text; *line; line += strcspn(line, "\n"), line += *line == '\n') {
+    const char *at = line;
+    while (*at == ' ' || *at == '\t' || *at == '"') at++;
+    if (strncmp(at, name, length) != 0) continue;
+    at += length;
+    while (*at == ' ' || *at == '\t' || *at == '"') at++;
+    if (*at != ':' && *at != '=') continue;
+    at++;
+    while (*at == ' ' || *at == '\t') at++;
+    const char *end = scree_number_parse(at, at + strcspn(at, "\n"), value);
+    if (!end && (tolower((unsigned char)*at) != 'n')) continue; /* nan, null: none in this run */
+    if (!end) *value = NAN;
+    found = true;
+  }
+  return found;
+}
+
+scree_status scree_study_record_command(const scree_study *study, size_t run, const char *folder,
+                                        bool (*watch)(void *context), void *context,
+                                        scree_study_record *record, scree_error *error) {
+  char output[4200], *text;
+  long process;
+  size_t size;
+  snprintf(output, sizeof output, "%.4100s/output.txt", folder);
+  scree_status status = start(study, run, folder, output, &process, error);
+  if (status == SCREE_OK) status = wait_for(process, watch, context, error);
+  if (status == SCREE_OK) status = scree_file_read(output, LARGEST_OUTPUT, &text, &size, error);
+  if (status != SCREE_OK) return status;
+  record->answers = scree_alloc(study->answer_count, sizeof *record->answers);
+  if (!record->answers) status = scree_fail_memory(error, 0, "a run's answers");
+  for (size_t i = 0; status == SCREE_OK && i < study->answer_count; i++)
+    if (!find_answer(text, study->answers[i].column, &record->answers[i]))
+      status = scree_fail(error, SCREE_BAD_ARGUMENT, "the command printed no line '%s: NUMBER'",
+                          study->answers[i].column);
+  record->answer_count = status == SCREE_OK ? study->answer_count : 0;
+  scree_free(text);
+  record->result = scree_no_result();
+  return status;
+}
