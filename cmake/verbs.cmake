@@ -1,10 +1,10 @@
 # The verbs are the files src/cli/verb_*.c; each defines `const cli_verb cli_verb_NAME`. Their order in
 # the overview is that of the flow; a verb not named here comes last.
-set(flow sample check repair measure distance simplify curve choose clump run drop repose pile study render report export)
+set(flow sample check repair measure distance simplify curve choose clump run drop repose pile study calibrate optimise render report export)
 file(GLOB verb_files CONFIGURE_DEPENDS src/cli/verb_*.c)
 if(NOT SCREE_STUDY)
-  list(REMOVE_ITEM flow study)
-  list(FILTER verb_files EXCLUDE REGEX "/verb_study\\.c$")
+  list(REMOVE_ITEM flow study calibrate optimise)
+  list(FILTER verb_files EXCLUDE REGEX "/verb_(study|calibrate|optimise)\\.c$")
 endif()
 set(verbs)
 foreach(verb ${flow})

@@ -41,6 +41,7 @@
 #include "scree/scene.h"
 #include "scree/simplify.h"
 #include "scree/study.h"
+#include "scree/calibrate.h"
 #include "scree/world.h"
 
 #endif

@@ -16,7 +16,7 @@ complain() {
 }
 
 earlier=""
-for header in base mesh measure check simplify fidelity choice sample particle clump world heap scene pile study report; do
+for header in base mesh measure check simplify fidelity choice sample particle clump world heap scene pile study calibrate report; do
   for included in $(sed -n 's/^#include "scree\/\([a-z]*\)\.h"/\1/p' "$root/include/scree/$header.h"); do
     case " $earlier " in
       *" $included "*) ;;

@@ -14,16 +14,38 @@ typedef struct study_arguments {
 /* The states, a table of the points, and what follows from them, on one screen. */
 void study_print(FILE *stream, const scree_study_result *result);
 
-/* Works on the study in `jobs` processes of one thread or more each. Dead ones are replaced.
- * Returns an exit code after telling stderr what went wrong. */
-int study_run_jobs(const cli_call *call, scree_study *study, const char *folder, size_t jobs);
+/* Workers of a study or of what is made of studies; the verb's options begin with
+ * study_arguments. */
+typedef struct study_crew {
+  const cli_call *call;
+  const char *folder;
+  size_t jobs;
+  double (*fraction)(void *context); /* how much is done, 0 to 1 */
+  void *context;
+  /* The work of one that shares this process with others. */
+  scree_status (*work)(const cli_call *call, const char *folder, const scree_study_options *options,
+                       const scree_progress *progress, scree_error *error);
+} study_crew;
+
+/* How a worker takes part, by its options. */
+scree_study_options study_work_options(const study_arguments *arguments);
+
+/* Workers by --jobs, else as many as there are processors, or as fit a device; at most so many. */
+size_t study_jobs_wanted(const cli_call *call, size_t most);
+
+/* In as many processes of one thread or more each. Dead ones are replaced. Returns an exit code
+ * after telling stderr what went wrong. */
+int study_run_jobs(const study_crew *crew);
 
 /* The same in as many threads of this process. */
-int study_run_lanes(const cli_call *call, const scree_study_options *options, const char *folder,
-                    size_t count);
+int study_run_lanes(const study_crew *crew);
 
-/* Writes FOLDER/study.sbatch and, unless only that is asked for, submits it. */
-int study_run_slurm(const cli_call *call, const scree_study *study, const char *folder);
+/* Writes FOLDER/study.sbatch and, unless only that is asked for, submits it; at most so many tasks.
+ */
+int study_run_slurm(const cli_call *call, const char *folder, size_t most_tasks);
+
+/* As the options and the launcher want it: by this process, in several, or in lanes of a device. */
+int study_run_crew(const study_crew *crew, bool worker);
 
 /* Number of this process among those that mpirun or srun started together, 0 without these. */
 size_t study_rank(void);

@@ -21,9 +21,9 @@ size_t study_rank(void) {
 }
 
 typedef struct pool {
+  const study_crew *crew;
   const cli_call *call;
-  const char *folder;
-  char threads[24], lease[40], memory[24];
+  char threads[24], lease[40], memory[24], jobs[24];
   long workers[MOST_JOBS];
   size_t alive, replaced;
   bool told; /* the workers, to end */
@@ -32,9 +32,10 @@ typedef struct pool {
 
 static bool start_worker(pool *p, size_t slot) {
   const study_arguments *a = p->call->options;
-  const char *words[18] = {"scree",   "study",     "-o",       p->folder, "--worker",
-                           "--quiet", "--threads", p->threads, "--lease", p->lease};
-  size_t count = 10;
+  const char *words[20] = {"scree",     p->call->verb->name, "-o",      p->crew->folder,
+                           "--worker",  "--quiet",           "--jobs",  p->jobs,
+                           "--threads", p->threads,          "--lease", p->lease};
+  size_t count = 12;
   if (a->no_wait) words[count++] = "--no-wait";
   if (p->call->max_memory) {
     words[count++] = "--max-memory";
@@ -82,27 +83,20 @@ static void pass_on(pool *p, size_t jobs) {
   p->told = true;
 }
 
-static void look_around(pool *p, scree_study *study, bool collect) {
-  double fraction = 0;
-  scree_study_result result;
-  if (!collect) return;
-  if (scree_study_collect(study, false, NULL) == SCREE_OK &&
-      scree_study_analyse(study, &result, NULL) == SCREE_OK) {
-    size_t count = scree_study_run_count(study);
-    fraction = (double)(result.counts.done + result.counts.failed) / (double)count;
-    scree_study_result_free(&result);
-  }
-  p->call->progress->report(p->call->progress->context, "runs", fraction);
+static void look_around(const pool *p) {
+  const scree_progress *progress = p->call->progress;
+  progress->report(progress->context, "runs", p->crew->fraction(p->crew->context));
 }
 
-int study_run_jobs(const cli_call *call, scree_study *study, const char *folder, size_t jobs) {
-  const study_arguments *a = call->options;
-  pool p = {.call = call, .folder = folder};
-  if (jobs > MOST_JOBS) jobs = MOST_JOBS;
+int study_run_jobs(const study_crew *crew) {
+  const study_arguments *a = crew->call->options;
+  pool p = {.crew = crew, .call = crew->call};
+  size_t jobs = crew->jobs > MOST_JOBS ? MOST_JOBS : crew->jobs;
   int threads = scree_threads() / (int)jobs;
   snprintf(p.threads, sizeof p.threads, "%d", threads > 1 ? threads : 1);
   snprintf(p.lease, sizeof p.lease, "%.9g", a->lease);
-  snprintf(p.memory, sizeof p.memory, "%zu", call->max_memory);
+  snprintf(p.memory, sizeof p.memory, "%zu", crew->call->max_memory);
+  snprintf(p.jobs, sizeof p.jobs, "%zu", jobs);
   for (size_t i = 0; i < jobs; i++)
     if (!start_worker(&p, i)) break;
   for (size_t look = 1; p.alive > 0; look++) {
@@ -114,7 +108,20 @@ int study_run_jobs(const cli_call *call, scree_study *study, const char *folder,
       if (state != SCREE_PROCESS_RUNS) bury(&p, i, state, code, jobs);
     }
     if (cli_interrupted() && !p.told && look % 5 == 0) pass_on(&p, jobs);
-    look_around(&p, study, look % LOOKS_A_COLLECT == 0);
+    if (look % LOOKS_A_COLLECT == 0) look_around(&p);
   }
   return p.result;
+}
+
+int study_run_crew(const study_crew *crew, bool worker) {
+  const study_arguments *a = crew->call->options;
+  const char *backend = crew->call->backend;
+  scree_study_options o = study_work_options(a);
+  bool launched = getenv("OMPI_COMM_WORLD_RANK") || getenv("PMI_RANK");
+  if (worker || crew->jobs == 1 || launched) {
+    scree_error error;
+    scree_status status = crew->work(crew->call, crew->folder, &o, crew->call->progress, &error);
+    return status == SCREE_OK ? 0 : cli_fail(&error);
+  }
+  return backend && strncmp(backend, "cuda", 4) == 0 ? study_run_lanes(crew) : study_run_jobs(crew);
 }

@@ -7,9 +7,7 @@
 #include <stdlib.h>
 
 typedef struct lane {
-  const cli_call *call;
-  const char *folder;
-  scree_study_options options;
+  const study_crew *crew;
   scree_status status;
   scree_error error;
 } lane;
@@ -18,7 +16,8 @@ typedef struct lane {
 static bool look(void *context, const char *phase, double fraction) {
   const lane *l = context;
   scree_enter_alone();
-  bool going = l->call->progress->report(l->call->progress->context, phase, fraction);
+  const scree_progress *p = l->crew->call->progress;
+  bool going = p->report(p->context, phase, fraction);
   scree_leave_alone();
   return going;
 }
@@ -31,13 +30,10 @@ static bool look_away(void *context, const char *phase, double fraction) {
 static void work_in_lane(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)end, (void)block, (void)worker;
   lane *l = (lane *)context + begin;
-  const scree_progress progress = {begin == 0 ? look : look_away, l, l->call->progress->interval};
-  scree_study *study = NULL;
-  l->status = scree_study_read(l->call->inputs[0], &study, &l->error);
-  if (!l->status) l->status = scree_study_open(study, l->folder, &l->error);
-  if (!l->status) l->status = scree_study_prepare(study, &l->options, &progress, &l->error);
-  if (!l->status) l->status = scree_study_work(study, &l->options, &progress, NULL, &l->error);
-  scree_study_free(study);
+  const cli_call *call = l->crew->call;
+  const scree_progress progress = {begin == 0 ? look : look_away, l, call->progress->interval};
+  scree_study_options options = study_work_options(call->options);
+  l->status = l->crew->work(call, l->crew->folder, &options, &progress, &l->error);
 }
 
 /* A lane whose run finds no room on the device leaves it to the others: whether there were any. */
@@ -56,16 +52,15 @@ static int conclude(const lane *lanes, size_t count) {
 }
 
 /* Lanes that leave no room to each other are too many. */
-int study_run_lanes(const cli_call *call, const scree_study_options *options, const char *folder,
-                    size_t count) {
+int study_run_lanes(const study_crew *crew) {
+  size_t count = crew->jobs;
   lane *lanes = calloc(count, sizeof *lanes);
   if (!lanes) {
     fprintf(stderr, "scree: out of memory\n");
     return 1;
   }
   for (bool again = true; again; count = again ? count / 2 : count) {
-    for (size_t i = 0; i < count; i++)
-      lanes[i] = (lane){.call = call, .folder = folder, .options = *options};
+    for (size_t i = 0; i < count; i++) lanes[i] = (lane){.crew = crew};
     scree_set_threads((int)count);
     scree_parallel_for(count, 1, work_in_lane, lanes);
     again = count > 1 && all_crowded(lanes, count);

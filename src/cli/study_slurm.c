@@ -9,7 +9,7 @@
 #include <errno.h>
 #include <string.h>
 
-enum { MOST_PATH = 4096 };
+enum { MOST_PATH = 4096, MOST_JOBS = 1024 };
 
 /* In single quotes, for a shell. */
 static void write_quoted(FILE *stream, const char *text) {
@@ -25,8 +25,8 @@ static void write_script(FILE *stream, const cli_call *call, const char *study, 
   if (!scree_program_path(program, sizeof program)) snprintf(program, sizeof program, "scree");
   fprintf(stream,
           "#!/bin/sh\n"
-          "# scree %s: workers of a study; more of them, here or elsewhere, may join at any time.\n"
-          "#SBATCH --job-name=scree-study\n"
+          "# scree %s: workers of one %s; more of them, here or elsewhere, may join at any time.\n"
+          "#SBATCH --job-name=scree-%s\n"
           "#SBATCH --array=0-%zu\n"
           "#SBATCH --ntasks=1\n"
           "#SBATCH --cpus-per-task=1\n"
@@ -34,15 +34,16 @@ static void write_script(FILE *stream, const cli_call *call, const char *study, 
           "#SBATCH --open-mode=append\n"
           "#SBATCH --signal=B:TERM@60\n"
           "#SBATCH --output=",
-          scree_version(), tasks - 1);
+          scree_version(), call->verb->name, call->verb->name, tasks - 1);
   write_quoted(stream, folder);
   fputs("/slurm-%A_%a.out\nexec ", stream);
   write_quoted(stream, program);
-  fputs(" study -o ", stream);
+  fprintf(stream, " %s -o ", call->verb->name);
   write_quoted(stream, folder);
   if (call->max_memory) fprintf(stream, " --max-memory %zu", call->max_memory);
   if (call->backend) fprintf(stream, " --backend %s", call->backend);
-  fprintf(stream, " --worker --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ", a->lease);
+  fprintf(stream, " --worker --jobs %zu --lease %.9g --threads \"${SLURM_CPUS_PER_TASK:-1}\" -- ",
+          tasks < MOST_JOBS ? tasks : MOST_JOBS, a->lease);
   write_quoted(stream, study);
   putc('\n', stream);
 }
@@ -59,10 +60,10 @@ static int submit(const char *script) {
   return 1;
 }
 
-int study_run_slurm(const cli_call *call, const scree_study *study, const char *folder) {
+int study_run_slurm(const cli_call *call, const char *folder, size_t most_tasks) {
   const study_arguments *a = call->options;
   char file[MOST_PATH], full[MOST_PATH], script[MOST_PATH + 16], shown[CLI_PRINTABLE_BYTES];
-  size_t runs = scree_study_run_count(study), tasks = a->tasks ? a->tasks : runs;
+  size_t tasks = a->tasks ? a->tasks : most_tasks;
   if (!scree_path_full(call->inputs[0], file, sizeof file) ||
       !scree_path_full(folder, full, sizeof full)) {
     fprintf(stderr, "scree: %s: %s\n", cli_printable(folder, shown), strerror(errno));
@@ -72,7 +73,7 @@ int study_run_slurm(const cli_call *call, const scree_study *study, const char *
   scree_output output;
   scree_error error;
   if (scree_output_open(script, true, &output, &error) != SCREE_OK) return cli_fail(&error);
-  write_script(output.stream, call, file, full, tasks < runs ? tasks : runs);
+  write_script(output.stream, call, file, full, tasks < most_tasks ? tasks : most_tasks);
   if (scree_output_commit(&output, &error) != SCREE_OK) return cli_fail(&error);
   if (!a->dry_run) return submit(script);
   printf("%s: not submitted; `sbatch %s` does\n", cli_printable(script, shown), shown);

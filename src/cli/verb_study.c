@@ -100,41 +100,69 @@ static int list_runs(const scree_study *study) {
   return 0;
 }
 
-static scree_study_options work_options(const study_arguments *a) {
+scree_study_options study_work_options(const study_arguments *a) {
   scree_study_options o = scree_default_study_options();
   o.lease_s = a->lease;
   o.wait = !a->no_wait;
   return o;
 }
 
+static double fraction_done(void *context) {
+  scree_study *study = context;
+  scree_study_result result;
+  double fraction = 0;
+  if (scree_study_collect(study, false, NULL) == SCREE_OK &&
+      scree_study_analyse(study, &result, NULL) == SCREE_OK) {
+    size_t count = scree_study_run_count(study);
+    fraction = (double)(result.counts.done + result.counts.failed) / (double)count;
+    scree_study_result_free(&result);
+  }
+  return fraction;
+}
+
+static scree_status work_as_one(const cli_call *call, const char *folder,
+                                const scree_study_options *o, const scree_progress *progress,
+                                scree_error *error) {
+  scree_study *study = NULL;
+  scree_status status = scree_study_read(call->inputs[0], &study, error);
+  if (status == SCREE_OK) status = scree_study_open(study, folder, error);
+  if (status == SCREE_OK) status = scree_study_prepare(study, o, progress, error);
+  if (status == SCREE_OK) status = scree_study_work(study, o, progress, NULL, error);
+  scree_study_free(study);
+  return status;
+}
+
+size_t study_jobs_wanted(const cli_call *call, size_t most) {
+  const study_arguments *a = call->options;
+  bool on_device = call->backend && strncmp(call->backend, "cuda", 4) == 0;
+  size_t jobs = a->jobs ? a->jobs : on_device ? RUNS_ON_DEVICE : (size_t)scree_threads();
+  return jobs > most ? most : jobs;
+}
+
 /* Works in this process, or in several. */
 static int work(const cli_call *call, scree_study *study, const char *folder, bool worker,
                 scree_error *error) {
   const study_arguments *a = call->options;
-  scree_study_options o = work_options(a);
-  size_t runs = scree_study_run_count(study);
-  bool on_device = call->backend && strncmp(call->backend, "cuda", 4) == 0;
-  size_t jobs = a->jobs ? a->jobs : on_device ? RUNS_ON_DEVICE : (size_t)scree_threads();
-  if (jobs > runs) jobs = runs;
+  study_crew crew = {.call = call,
+                     .folder = folder,
+                     .jobs = study_jobs_wanted(call, scree_study_run_count(study)),
+                     .fraction = fraction_done,
+                     .context = study,
+                     .work = work_as_one};
   if (!worker && !a->keep_failed && scree_study_reopen(study, error) != SCREE_OK)
     return cli_fail(error);
-  if (worker || jobs == 1 || getenv("OMPI_COMM_WORLD_RANK") || getenv("PMI_RANK")) {
-    scree_status status = scree_study_work(study, &o, call->progress, NULL, error);
-    return status == SCREE_OK ? 0 : cli_fail(error);
-  }
-  return on_device ? study_run_lanes(call, &o, folder, jobs)
-                   : study_run_jobs(call, study, folder, jobs);
+  return study_run_crew(&crew, worker);
 }
 
 static int run_study(const cli_call *call, scree_study *study, const char *folder,
                      scree_error *error) {
   const study_arguments *a = call->options;
   bool worker = a->worker || study_rank() > 0, failed = false;
-  scree_study_options o = work_options(a);
+  scree_study_options o = study_work_options(a);
   scree_status status = scree_study_open(study, folder, error);
   if (status == SCREE_OK) status = scree_study_prepare(study, &o, call->progress, error);
   if (status != SCREE_OK) return cli_fail(error);
-  if (a->slurm) return study_run_slurm(call, study, folder);
+  if (a->slurm) return study_run_slurm(call, folder, scree_study_run_count(study));
   int code = work(call, study, folder, worker, error);
   if (worker) return code;
   scree_error late; /* what happened first is what is told */

@@ -1,0 +1,196 @@
+/* A calibration: what its file says, its folder, its runs, and the model of them. */
+#ifndef SCREE_CALIBRATE_CALIBRATION_H
+#define SCREE_CALIBRATE_CALIBRATION_H
+
+#include "base/schema.h"
+#include "calibrate/model.h"
+#include "study/study.h"
+
+/* ---- the file ---- */
+
+typedef struct scree_plan_experiment {
+  scree_place place;
+  const char *scene;
+  scree_texts command;
+  const scree_yaml *set;
+  double cost; /* NAN: as measured */
+} scree_plan_experiment;
+
+typedef struct scree_plan_parameter {
+  scree_place place;
+  scree_texts fields; /* none: its name, of a command */
+  double from, to;
+  int scale; /* 1: logarithmic */
+  scree_texts values;
+} scree_plan_parameter;
+
+typedef struct scree_plan_quantity {
+  scree_place place;
+  const char *experiment, *answer, *curve;
+  double at, from, until;
+  double value, uncertainty;
+  const scree_yaml *measured;
+  size_t repeats;
+  double at_most, at_least;
+} scree_plan_quantity;
+
+typedef struct scree_plan_budget {
+  scree_place place;
+  size_t runs;
+  double time; /* s of processor time; NAN: no limit */
+} scree_plan_budget;
+
+typedef struct scree_plan_start {
+  scree_place place;
+  size_t points;
+} scree_plan_start;
+
+typedef struct scree_plan_calibration {
+  scree_place place;
+  const char *title;
+  uint64_t seed;
+  scree_records experiments, parameters, targets, predict, limits;
+  scree_plan_quantity *minimise, *maximise;
+  scree_plan_budget *budget;
+  scree_plan_start *start;
+  size_t batch;
+  double confidence;
+} scree_plan_calibration;
+
+/* ---- what follows from it ---- */
+
+typedef enum scree_quantity_kind {
+  SCREE_QUANTITY_TARGET, /* measured, or on offer */
+  SCREE_QUANTITY_PREDICTION,
+  SCREE_QUANTITY_SOUGHT,
+  SCREE_QUANTITY_LIMIT
+} scree_quantity_kind;
+
+/* Something that the simulation answers: one number, or a curve of them. */
+typedef struct scree_quantity {
+  scree_quantity_kind kind;
+  const scree_plan_quantity *plan;
+  size_t experiment;
+  size_t first_answer, answer_count; /* of those of its experiment's study */
+  bool measured;
+  double value, uncertainty, scatter, repeat_count;
+  double *x, *y; /* of a curve: answer_count points; else NULL */
+} scree_quantity;
+
+typedef struct scree_experiment_plan {
+  const scree_plan_experiment *plan;
+  const char *scene_path;                             /* in full; NULL: a command */
+  size_t active[SCREE_MOST_PARAMETERS], active_count; /* parameters that it has */
+  const char *answers;                                /* the lines of its study */
+  size_t answer_count;
+} scree_experiment_plan;
+
+/* A run that was planned. */
+typedef struct scree_planned_run {
+  size_t experiment, round;
+  uint64_t seed;
+  const char *values[SCREE_MOST_PARAMETERS]; /* as in the scene */
+  double x[SCREE_MOST_PARAMETERS];
+} scree_planned_run;
+
+struct scree_calibration {
+  scree_arena arena; /* all that follows from the file */
+  scree_yaml root;
+  scree_plan_calibration plan;
+  const char *path, *text;
+  size_t text_size;
+  char *folder; /* NULL before it is opened */
+  size_t experiment_count, parameter_count, quantity_count;
+  scree_experiment_plan *experiments;
+  const scree_plan_parameter *parameters;
+  scree_quantity *quantities;
+  /* rounds.c */
+  scree_arena run_arena;
+  scree_planned_run *runs;
+  size_t run_count, round_count;
+};
+
+/* read.c: the value at a coordinate as the scene takes it, in the arena; NULL: memory is out. The
+ * coordinate of a value; NAN: it is none of the parameter's list. */
+const char *scree_parameter_text(const scree_plan_parameter *parameter, double x,
+                                 scree_arena *arena);
+double scree_parameter_value(const scree_plan_parameter *parameter, double x);
+double scree_parameter_coordinate(const scree_plan_parameter *parameter, const char *value);
+/* The same of a list: the value where it is a number, else its place in the list. */
+double scree_parameter_number(const scree_plan_parameter *parameter, double x);
+/* The coordinate that stands for x: of a list that of the nearest value. */
+double scree_parameter_snap(const scree_plan_parameter *parameter, double x);
+/* read_curve.c: reads the two columns of a CSV file into the quantity. */
+scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *quantity,
+                                       const char *path, scree_error *error);
+
+/* rounds.c: FOLDER/NAME in a buffer. */
+char *scree_calibration_path(const scree_calibration *c, const char *name);
+/* Reads all rounds of the folder. */
+scree_status scree_rounds_read(scree_calibration *c, scree_error *error);
+/* Writes one more, whole or not at all. */
+scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *picks, size_t count,
+                              double seconds, scree_error *error);
+/* The study of an experiment with all its runs, opened and prepared. *study NULL: it has none. */
+scree_status scree_rounds_study(const scree_calibration *c, size_t experiment, scree_study **study,
+                                scree_error *error);
+/* Why it has stopped, as far as this file says; "" where it has not. In the run arena. */
+scree_status scree_rounds_end(scree_calibration *c, const char **reason, scree_error *error);
+scree_status scree_rounds_stop(scree_calibration *c, const char *reason, double seconds,
+                               scree_error *error);
+double scree_rounds_seconds(const scree_calibration *c);
+
+/* ---- results ---- */
+
+/* What the runs of the first rounds gave. */
+typedef struct scree_answers {
+  size_t experiment_count;
+  size_t *run_counts;        /* of each experiment */
+  double **x, **answers;     /* run_counts x parameters; run_counts x answer_count, NAN: none */
+  double *costs, seconds;    /* of a run, without a clock; processor time of all */
+  size_t done, failed, open; /* open: not ended yet */
+  char **failures;           /* reasons, each once */
+  size_t failure_count;
+} scree_answers;
+scree_status scree_gather(const scree_calibration *c, scree_answers *gathered, scree_error *error);
+void scree_answers_free(scree_answers *gathered);
+
+/* curve.c: the shapes in which curves vary. centre: point_count; basis: component_count x
+ * point_count, of root mean square 1. */
+enum { SCREE_MOST_COMPONENTS = 4 };
+typedef struct scree_curve_basis {
+  size_t point_count, component_count;
+  double *centre, *basis;
+} scree_curve_basis;
+scree_status scree_curve_basis_make(const double *curves, size_t count, size_t point_count,
+                                    scree_curve_basis *basis, scree_error *error);
+void scree_curve_basis_free(scree_curve_basis *basis);
+double scree_curve_score(const scree_curve_basis *basis, size_t component, const double *curve);
+
+/* The model of all quantities, from the first `round_count` rounds. */
+typedef struct scree_calibration_model {
+  scree_model model;
+  size_t *first, *count;    /* responses of each quantity */
+  scree_curve_basis *bases; /* of each quantity; empty where it is no curve */
+} scree_calibration_model;
+scree_status scree_calibration_fit(const scree_calibration *c, const scree_answers *gathered,
+                                   size_t round_count, scree_calibration_model *model,
+                                   scree_error *error);
+void scree_calibration_model_free(const scree_calibration *c, scree_calibration_model *model);
+
+/* posterior.c: samples of the parameters' coordinates, *count x parameters, to be freed; `effort` 0
+ * for planning, 1 for the answer. */
+scree_status scree_calibration_sample(const scree_calibration *c, const scree_model *model,
+                                      int effort, double **samples, size_t *count,
+                                      scree_error *error);
+
+/* search.c: the next places of a search, and its candidates. */
+scree_status scree_search_next(const scree_calibration *c, const scree_calibration_model *model,
+                               const scree_answers *gathered, size_t count, scree_place_pick *picks,
+                               double *left, scree_error *error);
+/* Its candidates and history into the result. */
+scree_status scree_search_describe(const scree_calibration *c, const scree_calibration_model *m,
+                                   const scree_answers *gathered, scree_arena *arena,
+                                   scree_calibration_result *result, scree_error *error);
+
+#endif

@@ -1,0 +1,655 @@
+/* The file of a calibration, by its table of fields; then what only the whole can say: which
+ * parameter acts in which experiment, and which answers each has to give. */
+#include "base/file.h"
+#include "base/math.h"
+#include "base/number.h"
+#include "base/platform.h"
+#include "calibrate/calibration.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LARGEST_FILE = 1 << 20, MOST_CURVE = 40 };
+
+#define FIELDS(table) (table), sizeof(table) / sizeof *(table)
+
+#define AT(member) offsetof(scree_plan_experiment, member)
+static const scree_field experiment_table[] = {
+    {"scene", SCREE_FIELD_TEXT, AT(scene), 0, 0, "", "file of a scene", NULL},
+    {"command", SCREE_FIELD_TEXTS, AT(command), 0, 0, "", "program and words", NULL},
+    {"set", SCREE_FIELD_NODE, AT(set), 0, 0, "", "fields of the scene that differ here", NULL},
+    {"cost", SCREE_FIELD_REAL, AT(cost), 1e-9, 1e9, "", "of a run, beside the others", NULL},
+};
+#undef AT
+static const scree_plan_experiment experiment_defaults = {.cost = NAN};
+static const scree_record experiment_record = {"an experiment", FIELDS(experiment_table),
+                                               sizeof(scree_plan_experiment), &experiment_defaults,
+                                               NULL};
+
+#define AT(member) offsetof(scree_plan_parameter, member)
+static const scree_field parameter_table[] = {
+    {"field", SCREE_FIELD_TEXTS, AT(fields), 0, 0, "", "of the scenes", NULL},
+    {"from", SCREE_FIELD_REAL, AT(from), -1e300, 1e300, "", "", NULL},
+    {"to", SCREE_FIELD_REAL, AT(to), -1e300, 1e300, "", "", NULL},
+    {"scale", SCREE_FIELD_WORD, AT(scale), 0, 0, "linear|log", "", NULL},
+    {"values", SCREE_FIELD_TEXTS, AT(values), 0, 0, "", "in place of a range", NULL},
+};
+#undef AT
+static const scree_plan_parameter parameter_defaults = {.from = NAN, .to = NAN};
+static const scree_record parameter_record = {"a parameter", FIELDS(parameter_table),
+                                              sizeof(scree_plan_parameter), &parameter_defaults,
+                                              NULL};
+
+#define AT(member) offsetof(scree_plan_quantity, member)
+#define ANSWER                                                                                     \
+  {"experiment", SCREE_FIELD_TEXT, AT(experiment), 0, 0, "", "", NULL},                            \
+      {"answer", SCREE_FIELD_TEXT, AT(answer), 0, 0, "", "column of a sensor, or outline", NULL},  \
+      {"at", SCREE_FIELD_REAL, AT(at), -1e9, 1e9, "", "s; of an outline m", NULL},                 \
+      {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "of the mean over a window", NULL}, {      \
+    "until", SCREE_FIELD_REAL, AT(until), 0, 1e9, "s", "", NULL                                    \
+  }
+#define MEASURED                                                                                   \
+  {"value", SCREE_FIELD_REAL, AT(value), -1e300, 1e300, "", "measured", NULL},                     \
+      {"measured", SCREE_FIELD_NODE, AT(measured), 0, 0, "", "repeats, a list", NULL},             \
+      {"curve", SCREE_FIELD_TEXT, AT(curve), 0, 0, "", "file of two columns", NULL},               \
+      {"uncertainty", SCREE_FIELD_REAL, AT(uncertainty), 0, 1e300, "", "standard", NULL}, {        \
+    "repeats", SCREE_FIELD_COUNT, AT(repeats), 1, 1e6, "", "that the value is the mean of", NULL   \
+  }
+static const scree_field target_table[] = {ANSWER, MEASURED};
+static const scree_field sought_table[] = {ANSWER};
+static const scree_field limit_table[] = {
+    ANSWER,
+    {"at_most", SCREE_FIELD_REAL, AT(at_most), -1e300, 1e300, "", "", NULL},
+    {"at_least", SCREE_FIELD_REAL, AT(at_least), -1e300, 1e300, "", "", NULL},
+};
+#undef AT
+static const scree_plan_quantity quantity_defaults = {.at = NAN,
+                                                      .from = NAN,
+                                                      .until = NAN,
+                                                      .value = NAN,
+                                                      .uncertainty = 0,
+                                                      .repeats = 1,
+                                                      .at_most = NAN,
+                                                      .at_least = NAN};
+static const scree_record target_record = {"a target", FIELDS(target_table),
+                                           sizeof(scree_plan_quantity), &quantity_defaults, NULL};
+static const scree_record sought_record = {"what is sought", FIELDS(sought_table),
+                                           sizeof(scree_plan_quantity), &quantity_defaults, NULL};
+static const scree_record limit_record = {"a limit", FIELDS(limit_table),
+                                          sizeof(scree_plan_quantity), &quantity_defaults, NULL};
+
+#define AT(member) offsetof(scree_plan_budget, member)
+static const scree_field budget_table[] = {
+    {"runs", SCREE_FIELD_COUNT, AT(runs), 2, 1000, "", "of all experiments together", NULL},
+    {"time", SCREE_FIELD_REAL, AT(time), 0, 1e12, "s", "of the processor", NULL},
+};
+#undef AT
+static const scree_plan_budget budget_defaults = {.runs = 100, .time = NAN};
+static const scree_record budget_record = {"the budget", FIELDS(budget_table),
+                                           sizeof(scree_plan_budget), &budget_defaults, NULL};
+
+#define AT(member) offsetof(scree_plan_start, member)
+static const scree_field start_table[] = {
+    {"points", SCREE_FIELD_COUNT, AT(points), 2, 1000, "", "of each experiment", NULL},
+};
+#undef AT
+static const scree_plan_start start_defaults = {.points = 0};
+static const scree_record start_record = {"the start", FIELDS(start_table),
+                                          sizeof(scree_plan_start), &start_defaults, NULL};
+
+#define AT(member) offsetof(scree_plan_calibration, member)
+static const scree_field calibration_table[] = {
+    {"title", SCREE_FIELD_TEXT, AT(title), 0, 0, "", "", NULL},
+    {"seed", SCREE_FIELD_SEED, AT(seed), 0, 0, "", "", NULL},
+    {"experiments", SCREE_FIELD_NAMED, AT(experiments), 0, 0, "", "", &experiment_record},
+    {"parameters", SCREE_FIELD_NAMED, AT(parameters), 0, 0, "", "", &parameter_record},
+    {"targets", SCREE_FIELD_NAMED, AT(targets), 0, 0, "", "", &target_record},
+    {"predict", SCREE_FIELD_NAMED, AT(predict), 0, 0, "", "", &target_record},
+    {"minimise", SCREE_FIELD_RECORD, AT(minimise), 0, 0, "", "", &sought_record},
+    {"maximise", SCREE_FIELD_RECORD, AT(maximise), 0, 0, "", "", &sought_record},
+    {"limits", SCREE_FIELD_NAMED, AT(limits), 0, 0, "", "", &limit_record},
+    {"budget", SCREE_FIELD_RECORD, AT(budget), 0, 0, "", "", &budget_record},
+    {"start", SCREE_FIELD_RECORD, AT(start), 0, 0, "", "", &start_record},
+    {"batch", SCREE_FIELD_COUNT, AT(batch), 1, 1000, "", "runs planned at a time", NULL},
+    {"confidence", SCREE_FIELD_REAL, AT(confidence), 0.5, 0.9999, "", "of intervals", NULL},
+};
+#undef AT
+static const scree_plan_calibration calibration_defaults = {
+    .seed = 1, .batch = 8, .confidence = 0.9};
+static const scree_record calibration_record = {"a calibration", FIELDS(calibration_table),
+                                                sizeof(scree_plan_calibration),
+                                                &calibration_defaults, NULL};
+
+typedef struct reader {
+  scree_calibration *c;
+  scree_reader in;
+} reader;
+
+#define ITEM(records, type, index) ((const type *)(records).items + (index))
+
+static scree_status fail_memory(const reader *r) {
+  return scree_fail_memory(r->in.error, 0, r->in.file);
+}
+
+/* ---- parameters ---- */
+
+double scree_parameter_value(const scree_plan_parameter *p, double x) {
+  double u = 0.5 * (x + 1);
+  return p->scale ? scree_exp(scree_log(p->from) + u * (scree_log(p->to) - scree_log(p->from)))
+                  : p->from + u * (p->to - p->from);
+}
+
+/* Which of the list; each has as much of [-1, 1]. */
+static size_t level_of(const scree_plan_parameter *p, double x) {
+  double level = floor(0.5 * (x + 1) * (double)p->values.count);
+  return level < 0 ? 0 : level >= (double)p->values.count ? p->values.count - 1 : (size_t)level;
+}
+
+static double level_coordinate(const scree_plan_parameter *p, size_t level) {
+  return (2 * (double)level + 1) / (double)p->values.count - 1;
+}
+
+double scree_parameter_snap(const scree_plan_parameter *p, double x) {
+  return p->values.count ? level_coordinate(p, level_of(p, x)) : x;
+}
+
+double scree_parameter_number(const scree_plan_parameter *p, double x) {
+  double number;
+  if (!p->values.count) return scree_parameter_value(p, x);
+  size_t level = level_of(p, x);
+  return scree_number_read(p->values.items[level], &number) ? number : (double)level;
+}
+
+const char *scree_parameter_text(const scree_plan_parameter *p, double x, scree_arena *arena) {
+  char number[SCREE_NUMBER_SIZE];
+  if (p->values.count) return p->values.items[level_of(p, x)];
+  scree_number_format_digits(scree_parameter_value(p, x), 9, number);
+  return scree_arena_text(arena, number);
+}
+
+double scree_parameter_coordinate(const scree_plan_parameter *p, const char *value) {
+  double number;
+  for (size_t i = 0; i < p->values.count; i++)
+    if (!strcmp(p->values.items[i], value)) return level_coordinate(p, i);
+  if (p->values.count || !scree_number_read(value, &number)) return NAN;
+  if (!p->scale) return 2 * (number - p->from) / (p->to - p->from) - 1;
+  return 2 * scree_log(number / p->from) / scree_log(p->to / p->from) - 1;
+}
+
+static scree_status check_parameter(const reader *r, const scree_plan_parameter *p) {
+  if (p->values.count) {
+    if (!isnan(p->from) || !isnan(p->to))
+      return scree_fail_place(&r->in, &p->place, "needs from and to, or values, not both");
+    if (p->values.count == 1) return scree_fail_place(&r->in, &p->place, "one value is no choice");
+    for (size_t i = 0; i < p->values.count; i++)
+      for (size_t j = 0; j < i; j++)
+        if (!strcmp(p->values.items[i], p->values.items[j]))
+          return scree_fail_place(&r->in, &p->place, "the value '%s' stands here twice",
+                                  p->values.items[i]);
+    return SCREE_OK;
+  }
+  if (isnan(p->from) || isnan(p->to))
+    return scree_fail_place(&r->in, &p->place, "needs a range, from and to, or values");
+  if (!(p->from < p->to))
+    return scree_fail_place(&r->in, &p->place, "from %g must be below to %g", p->from, p->to);
+  if (p->scale && !(p->from > 0))
+    return scree_fail_place(&r->in, &p->place, "from %g must be above 0 on a log scale", p->from);
+  return SCREE_OK;
+}
+
+/* ---- experiments ---- */
+
+/* A path beside the calibration's file, in full. */
+static const char *full_path(const reader *r, const char *name) {
+  char path[4096], full[4096];
+  const char *slash = strrchr(r->in.file, '/');
+  snprintf(path, sizeof path, "%.*s%s", *name == '/' || !slash ? 0 : (int)(slash + 1 - r->in.file),
+           r->in.file, name);
+  return scree_arena_text(&r->c->arena, scree_path_full(path, full, sizeof full) ? full : path);
+}
+
+static bool is_command(const scree_plan_experiment *e) {
+  return e->command.count > 0;
+}
+
+static scree_status check_experiment(const reader *r, const scree_plan_experiment *e) {
+  static const char taken[] = "rounds";
+  if (!strcmp(e->place.name, taken) || strspn(e->place.name, ".") == strlen(e->place.name) ||
+      strpbrk(e->place.name, "/\\"))
+    return scree_fail_place(&r->in, &e->place, "'%s' cannot be a folder's name here",
+                            e->place.name);
+  if (is_command(e) == (e->scene != NULL))
+    return scree_fail_place(&r->in, &e->place, "needs either scene or command");
+  if (e->set && (is_command(e) || e->set->kind != SCREE_YAML_MAPPING))
+    return scree_fail_place(&r->in, &e->place, "set: must be `FIELD: VALUE` lines of a scene");
+  return SCREE_OK;
+}
+
+/* The scene with what is set here, to be freed. */
+static scree_status read_scene(const reader *r, const scree_experiment_plan *e,
+                               scree_scene_file **file) {
+  scree_error error;
+  scree_status status = scree_scene_file_read(e->scene_path, file, &error);
+  if (status != SCREE_OK) return scree_fail_place(&r->in, &e->plan->place, "%s", error.message);
+  const scree_yaml *set = e->plan->set;
+  for (size_t i = 0; status == SCREE_OK && set && i < set->item_count; i++) {
+    const scree_yaml *item = &set->items[i];
+    scree_place place = {NULL, e->plan->place.path, item->line, item->column};
+    if (item->kind != SCREE_YAML_SCALAR)
+      status = scree_fail_place(&r->in, &place, "set.%s: must be one value", item->key);
+    else if (scree_scene_file_set(*file, item->key, item->text, &error) != SCREE_OK)
+      status = scree_fail_place(&r->in, &place, "set.%s: %s", item->key, error.message);
+  }
+  if (status == SCREE_OK && scree_scene_file_check(*file, &error) != SCREE_OK)
+    status = scree_fail_place(&r->in, &e->plan->place, "%s", error.message);
+  if (status != SCREE_OK) scree_scene_file_free(*file);
+  return status;
+}
+
+/* Whether the scene takes a parameter's ends; else why not. */
+static bool takes(scree_scene_file *file, const scree_plan_parameter *p, scree_arena *arena,
+                  scree_error *why) {
+  bool any = false;
+  for (size_t f = 0; f < p->fields.count; f++) {
+    bool good = true;
+    for (int end = -1; good && end <= 1; end += 2) {
+      const char *text = scree_parameter_text(p, end, arena);
+      good = text && scree_scene_file_set(file, p->fields.items[f], text, why) == SCREE_OK;
+    }
+    any = any || good;
+  }
+  return any;
+}
+
+static bool command_takes(const scree_plan_experiment *e, const char *name) {
+  char braces[140];
+  snprintf(braces, sizeof braces, "{%.130s}", name);
+  for (size_t i = 0; i < e->command.count; i++)
+    if (strstr(e->command.items[i], braces)) return true;
+  return false;
+}
+
+static scree_status find_active(const reader *r, scree_error *why, bool *anywhere) {
+  scree_calibration *c = r->c;
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < c->experiment_count; i++) {
+    scree_experiment_plan *e = &c->experiments[i];
+    scree_scene_file *file = NULL;
+    if (!is_command(e->plan)) status = read_scene(r, e, &file);
+    for (size_t p = 0; status == SCREE_OK && p < c->parameter_count; p++) {
+      const scree_plan_parameter *parameter = &c->parameters[p];
+      if (!(file ? takes(file, parameter, &c->arena, &why[p])
+                 : command_takes(e->plan, parameter->place.name)))
+        continue;
+      e->active[e->active_count++] = p;
+      anywhere[p] = true;
+    }
+    if (status == SCREE_OK) scree_scene_file_free(file);
+    if (status == SCREE_OK && e->active_count == 0)
+      status = scree_fail_place(&r->in, &e->plan->place,
+                                is_command(e->plan)
+                                    ? "none of its words has a parameter, as in {friction}"
+                                    : "has none of the parameters' fields");
+  }
+  return status;
+}
+
+static scree_status read_experiments(const reader *r) {
+  scree_calibration *c = r->c;
+  scree_error why[SCREE_MOST_PARAMETERS] = {0};
+  bool anywhere[SCREE_MOST_PARAMETERS] = {false};
+  c->experiments = scree_arena_take(&c->arena, c->experiment_count, sizeof *c->experiments);
+  if (!c->experiments) return fail_memory(r);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < c->experiment_count; i++) {
+    scree_experiment_plan *e = &c->experiments[i];
+    *e = (scree_experiment_plan){.plan = ITEM(c->plan.experiments, scree_plan_experiment, i)};
+    status = check_experiment(r, e->plan);
+    if (status == SCREE_OK && !is_command(e->plan) &&
+        !(e->scene_path = full_path(r, e->plan->scene)))
+      status = fail_memory(r);
+  }
+  for (size_t i = 0; status == SCREE_OK && i < c->parameter_count; i++)
+    status = check_parameter(r, &c->parameters[i]);
+  if (status == SCREE_OK) status = find_active(r, why, anywhere);
+  for (size_t p = 0; status == SCREE_OK && p < c->parameter_count; p++)
+    if (!anywhere[p])
+      status = scree_fail_place(&r->in, &c->parameters[p].place,
+                                why[p].message[0] ? "%s" : "no experiment has such a parameter%s",
+                                why[p].message);
+  return status;
+}
+
+/* ---- quantities ---- */
+
+static scree_status read_repeats(const reader *r, scree_quantity *q) {
+  const scree_yaml *list = q->plan->measured;
+  scree_place place = {NULL, q->plan->place.path, list->line, list->column};
+  double sum = 0, squares = 0;
+  if (list->kind != SCREE_YAML_SEQUENCE || list->item_count < 2)
+    return scree_fail_place(&r->in, &place,
+                            "measured: must be a list of two numbers or more; a "
+                            "single one is a value");
+  for (size_t i = 0; i < list->item_count; i++) {
+    double number;
+    const scree_yaml *item = &list->items[i];
+    if (item->kind != SCREE_YAML_SCALAR || !scree_number_read(item->text, &number))
+      return scree_fail_place(&r->in, &place, "measured: '%s' is no number",
+                              item->text ? item->text : "");
+    double step = number - sum;
+    sum += step / (double)(i + 1);
+    squares += step * (number - sum);
+  }
+  q->value = sum;
+  q->scatter = sqrt(squares / (double)(list->item_count - 1));
+  q->repeat_count = (double)list->item_count;
+  return SCREE_OK;
+}
+
+static scree_status read_measured(const reader *r, scree_quantity *q) {
+  const scree_plan_quantity *p = q->plan;
+  int ways = !isnan(p->value) + (p->measured != NULL) + (p->curve != NULL);
+  if (ways > 1)
+    return scree_fail_place(&r->in, &p->place, "needs one of value, measured and curve");
+  if (p->measured && p->repeats > 1)
+    return scree_fail_place(&r->in, &p->place, "repeats: measured has its own");
+  q->measured = ways > 0;
+  q->value = p->value;
+  q->repeat_count = (double)p->repeats;
+  q->uncertainty = p->uncertainty;
+  if (p->measured) return read_repeats(r, q);
+  if (!p->curve) return SCREE_OK;
+  if (!isnan(p->at) || !isnan(p->from) || !isnan(p->until))
+    return scree_fail_place(&r->in, &p->place, "a curve has its own places or times");
+  if (p->uncertainty == 0)
+    return scree_fail_place(&r->in, &p->place,
+                            "a curve needs the uncertainty of measuring it, in its own unit");
+  const char *path = full_path(r, p->curve);
+  return path ? scree_quantity_read_curve(r->c, q, path, r->in.error) : fail_memory(r);
+}
+
+static scree_status find_experiment(const reader *r, scree_quantity *q) {
+  const scree_calibration *c = r->c;
+  const char *names[64];
+  size_t count = c->experiment_count < 64 ? c->experiment_count : 64;
+  if (!q->plan->experiment && c->experiment_count == 1) return SCREE_OK;
+  if (!q->plan->experiment)
+    return scree_fail_place(&r->in, &q->plan->place, "needs its experiment");
+  for (size_t i = 0; i < count; i++) {
+    names[i] = c->experiments[i].plan->place.name;
+    if (strcmp(names[i], q->plan->experiment) != 0) continue;
+    q->experiment = i;
+    return SCREE_OK;
+  }
+  return scree_fail_name(&r->in, &q->plan->place, "experiment", q->plan->experiment, names, count);
+}
+
+/* That its scene has such a column. */
+static scree_status check_answer(const reader *r, const scree_quantity *q) {
+  const scree_plan_quantity *p = q->plan;
+  const scree_experiment_plan *e = &r->c->experiments[q->experiment];
+  bool outline = !strcmp(p->answer, "outline");
+  if (is_command(e->plan))
+    return isnan(p->at) && isnan(p->from) && isnan(p->until) && !p->curve
+               ? SCREE_OK
+               : scree_fail_place(&r->in, &p->place, "what a command prints has no times");
+  if (outline && isnan(p->at) && !p->curve)
+    return scree_fail_place(&r->in, &p->place, "an outline needs a curve, or at");
+  if (!isnan(p->at) && (!isnan(p->from) || !isnan(p->until)))
+    return scree_fail_place(&r->in, &p->place, "needs at, or from and until");
+  if (outline) return SCREE_OK;
+  scree_scene_file *file;
+  char name[96] = "?";
+  enum { MOST_NAMES = 400 };
+  const char *names[MOST_NAMES];
+  size_t count = 0;
+  bool found = false;
+  scree_status status = read_scene(r, e, &file);
+  if (status != SCREE_OK) return status;
+  while (!found && count < MOST_NAMES &&
+         scree_scene_file_column(file, count, name, NULL) == SCREE_OK && *name) {
+    found = !strcmp(name, p->answer);
+    if (!(names[count++] = scree_arena_text(&r->c->arena, name))) break;
+  }
+  scree_scene_file_free(file);
+  return found ? SCREE_OK : scree_fail_name(&r->in, &p->place, "column", p->answer, names, count);
+}
+
+/* Its lines in the study of its experiment. */
+static scree_status add_answers(const reader *r, scree_quantity *q) {
+  scree_experiment_plan *e = &r->c->experiments[q->experiment];
+  const scree_plan_quantity *p = q->plan;
+  char *text = NULL;
+  size_t size = 0;
+  FILE *stream = scree_memory_open(&text, &size);
+  if (!stream) return fail_memory(r);
+  if (e->answers) fputs(e->answers, stream);
+  q->first_answer = e->answer_count;
+  q->answer_count = q->x ? q->answer_count : 1;
+  for (size_t i = 0; i < q->answer_count; i++) {
+    char number[2][SCREE_NUMBER_SIZE];
+    double at = q->x ? q->x[i] : p->at;
+    if (!isnan(at)) {
+      scree_number_format(at, number[0]);
+      fprintf(stream, "  - \"%s\": {at: %s}\n", p->answer, number[0]);
+    } else if (!isnan(p->from) || !isnan(p->until)) {
+      scree_number_format(isnan(p->from) ? 0 : p->from, number[0]);
+      scree_number_format(isnan(p->until) ? 1e9 : p->until, number[1]);
+      fprintf(stream, "  - \"%s\": {from: %s, until: %s}\n", p->answer, number[0], number[1]);
+    } else {
+      fprintf(stream, "  - \"%s\"\n", p->answer);
+    }
+  }
+  e->answer_count += q->answer_count;
+  bool good = !ferror(stream);
+  good = scree_memory_close(stream) && good;
+  e->answers = NULL;
+  if (good) {
+    char *kept = scree_arena_take(&r->c->arena, size + 1, 1);
+    if (kept) memcpy(kept, text, size + 1);
+    e->answers = kept;
+  }
+  free(text);
+  return e->answers ? SCREE_OK : fail_memory(r);
+}
+
+static scree_status read_quantity(const reader *r, scree_quantity *q) {
+  if (!q->plan->answer) return scree_fail_place(&r->in, &q->plan->place, "needs its answer");
+  scree_status status = find_experiment(r, q);
+  if (status == SCREE_OK) status = read_measured(r, q);
+  if (status == SCREE_OK) status = check_answer(r, q);
+  if (status == SCREE_OK && q->kind == SCREE_QUANTITY_LIMIT && isnan(q->plan->at_most) &&
+      isnan(q->plan->at_least))
+    status = scree_fail_place(&r->in, &q->plan->place, "needs at_most or at_least");
+  return status == SCREE_OK ? add_answers(r, q) : status;
+}
+
+static void list_quantities(scree_calibration *c, scree_quantity_kind kind,
+                            const scree_records *records) {
+  for (size_t i = 0; i < records->count; i++)
+    c->quantities[c->quantity_count++] =
+        (scree_quantity){.kind = kind, .plan = ITEM(*records, scree_plan_quantity, i)};
+}
+
+static scree_status read_quantities(const reader *r) {
+  scree_calibration *c = r->c;
+  const scree_plan_calibration *p = &c->plan;
+  const scree_plan_quantity *sought = p->minimise ? p->minimise : p->maximise;
+  size_t most = p->targets.count + p->predict.count + p->limits.count + 1;
+  c->quantities = scree_arena_take(&c->arena, most, sizeof *c->quantities);
+  if (!c->quantities) return fail_memory(r);
+  if (sought)
+    c->quantities[c->quantity_count++] =
+        (scree_quantity){.kind = SCREE_QUANTITY_SOUGHT, .plan = sought};
+  list_quantities(c, SCREE_QUANTITY_LIMIT, &p->limits);
+  list_quantities(c, SCREE_QUANTITY_TARGET, &p->targets);
+  list_quantities(c, SCREE_QUANTITY_PREDICTION, &p->predict);
+  bool measured = false, used[64] = {false};
+  scree_status status = SCREE_OK;
+  size_t responses = 0;
+  for (size_t i = 0; status == SCREE_OK && i < c->quantity_count; i++) {
+    scree_quantity *q = &c->quantities[i];
+    status = read_quantity(r, q);
+    measured = measured || (q->measured && q->kind == SCREE_QUANTITY_TARGET);
+    used[q->experiment] = true;
+    responses += q->x ? SCREE_MOST_COMPONENTS : 1;
+  }
+  if (status != SCREE_OK) return status;
+  if (!sought && !measured)
+    return scree_fail_place(&r->in, &p->place, "needs a target with a value, measured or curve");
+  if (responses > SCREE_MOST_RESPONSES)
+    return scree_fail_place(&r->in, &p->place,
+                            "too many targets: %zu, a curve counting %d times, "
+                            "at most %d",
+                            responses, SCREE_MOST_COMPONENTS, SCREE_MOST_RESPONSES);
+  for (size_t e = 0; e < c->experiment_count; e++)
+    if (!used[e])
+      return scree_fail_place(&r->in, &c->experiments[e].plan->place, "no target is of it");
+  return SCREE_OK;
+}
+
+/* ---- the whole ---- */
+
+static scree_status check_whole(const reader *r) {
+  const scree_plan_calibration *p = &r->c->plan;
+  bool search = p->minimise || p->maximise;
+  if (p->minimise && p->maximise)
+    return scree_fail_place(&r->in, &p->place, "minimise or maximise, not both");
+  if (search && (p->targets.count || p->predict.count))
+    return scree_fail_place(&r->in, &p->place,
+                            "targets and predict are of a calibration, which "
+                            "has no %s",
+                            p->minimise ? "minimise" : "maximise");
+  if (!search && p->limits.count)
+    return scree_fail_place(&r->in, &p->place, "limits are of minimise or maximise");
+  if (p->experiments.count == 0 || p->experiments.count > 64)
+    return scree_fail_place(&r->in, &p->place, "needs 1 to 64 experiments, not %zu",
+                            p->experiments.count);
+  if (p->parameters.count == 0 || p->parameters.count > SCREE_MOST_PARAMETERS)
+    return scree_fail_place(&r->in, &p->place, "needs 1 to %d parameters, not %zu",
+                            SCREE_MOST_PARAMETERS, p->parameters.count);
+  return SCREE_OK;
+}
+
+static scree_status read_all(scree_calibration *c, scree_error *error) {
+  static const scree_plan_budget no_budget = {.runs = 100, .time = NAN};
+  reader r = {c, {c->path, &c->arena, error, ""}};
+  scree_status status = scree_yaml_parse(c->text, c->text_size, c->path, &c->root, error);
+  if (status == SCREE_OK && c->root.kind != SCREE_YAML_MAPPING)
+    return scree_fail(error, SCREE_BAD_FILE, "%s: a calibration is `key: value` lines", c->path);
+  if (status == SCREE_OK)
+    status = scree_record_read(&r.in, &c->root, &calibration_record, &c->plan);
+  if (status != SCREE_OK) return status;
+  if (!c->plan.budget && (c->plan.budget = scree_arena_take(&c->arena, 1, sizeof no_budget)))
+    *c->plan.budget = no_budget;
+  if (!c->plan.budget) return fail_memory(&r);
+  c->experiment_count = c->plan.experiments.count;
+  c->parameter_count = c->plan.parameters.count;
+  c->parameters = c->plan.parameters.items;
+  status = check_whole(&r);
+  if (status == SCREE_OK) status = read_experiments(&r);
+  if (status == SCREE_OK) status = read_quantities(&r);
+  return status;
+}
+
+scree_status scree_calibration_read(const char *path, scree_calibration **calibration,
+                                    scree_error *error) {
+  scree_calibration *c = scree_alloc_zero(1, sizeof *c);
+  if (!c) return scree_fail_memory(error, sizeof *c, "a calibration");
+  char *bytes = NULL;
+  scree_status status = scree_file_read(path, LARGEST_FILE, &bytes, &c->text_size, error);
+  if (status == SCREE_OK) {
+    c->text = scree_arena_text(&c->arena, bytes);
+    c->path = scree_arena_text(&c->arena, path);
+    if (!c->text || !c->path) status = scree_fail_memory(error, c->text_size, path);
+  }
+  scree_free(bytes);
+  if (status == SCREE_OK) status = read_all(c, error);
+  if (status == SCREE_OK)
+    *calibration = c;
+  else
+    scree_calibration_free(c);
+  return status;
+}
+
+void scree_calibration_free(scree_calibration *c) {
+  if (!c) return;
+  scree_yaml_free(&c->root);
+  scree_free(c->folder);
+  scree_free(c->runs);
+  scree_arena_free(&c->run_arena);
+  scree_arena_free(&c->arena);
+  scree_free(c);
+}
+
+bool scree_calibration_is_search(const scree_calibration *c) {
+  return c->plan.minimise || c->plan.maximise;
+}
+
+/* ---- curves ---- */
+
+/* The next number of a line, behind what parts them; NULL: there is none. */
+static const char *next_number(const char *at, const char *end, double *value) {
+  while (at < end && strchr(" \t,;", *at)) at++;
+  return scree_number_parse(at, end, value);
+}
+
+/* Means of MOST_CURVE equal parts, where there are more points. */
+static void thin_curve(scree_quantity *q, double *x, double *y, size_t count) {
+  if (count > MOST_CURVE) {
+    double low = x[0], width = (x[count - 1] - x[0]) / MOST_CURVE;
+    size_t made = 0, i = 0;
+    for (size_t part = 0; part < MOST_CURVE && i < count; part++) {
+      double sum_x = 0, sum_y = 0, used = 0;
+      for (; i < count && (x[i] < low + width * (double)(part + 1) || part + 1 == MOST_CURVE);
+           i++) {
+        sum_x += x[i];
+        sum_y += y[i];
+        used++;
+      }
+      if (used == 0) continue;
+      x[made] = sum_x / used;
+      y[made++] = sum_y / used;
+    }
+    count = made;
+  }
+  q->x = x;
+  q->y = y;
+  q->answer_count = count;
+}
+
+scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *q, const char *path,
+                                       scree_error *error) {
+  char *bytes;
+  size_t size, count = 0, line_number = 0;
+  scree_status status = scree_file_read(path, 16 << 20, &bytes, &size, error);
+  if (status != SCREE_OK) return status;
+  double *x = scree_arena_take(&c->arena, size / 2 + 1, sizeof *x);
+  double *y = scree_arena_take(&c->arena, size / 2 + 1, sizeof *y);
+  if (!x || !y) status = scree_fail_memory(error, size, path);
+  bool begun = false;
+  for (const char *line = bytes; status == SCREE_OK && *line;) {
+    const char *end = line + strcspn(line, "\r\n"), *at;
+    line_number++;
+    at = next_number(line, end, &x[count]);
+    if (at) at = next_number(at, end, &y[count]);
+    bool blank = line == end || *line == '#';
+    if (at) {
+      if (count > 0 && !(x[count] > x[count - 1]))
+        status = scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: %g does not come after %g", path,
+                            line_number, x[count], x[count - 1]);
+      count++;
+    } else if (!blank && begun) { /* the first line may be a head */
+      status =
+          scree_fail(error, SCREE_BAD_FILE, "%s, line %zu: needs two numbers", path, line_number);
+    }
+    begun = begun || !blank;
+    line = *end ? end + 1 : end;
+  }
+  scree_free(bytes);
+  if (status == SCREE_OK && count < 3)
+    status =
+        scree_fail(error, SCREE_BAD_FILE, "%s: a curve needs three points, not %zu", path, count);
+  if (status == SCREE_OK) thin_curve(q, x, y, count);
+  return status;
+}

@@ -1,0 +1,524 @@
+/* What a calibration says: intervals of parameters, pairs that trade against each other, answers
+ * beside what was measured, and which measurement would help most. */
+#include "base/math.h"
+#include "base/rng.h"
+#include "calibrate/calibration.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+/* A parameter is called identified where its interval is at most this share of that of its range.
+ */
+static const double identified_share = 0.5;
+/* Two trade against each other where one tells this share of the other's variance. */
+static const double trade_share = 0.5;
+enum { BINS = 8, MOST_HISTORY = 10, ANSWER_STREAM = 6 << 20, MOST_ADVISED = 500 };
+
+typedef struct analysis {
+  const scree_calibration *c;
+  scree_answers gathered;
+  scree_calibration_model model;
+  scree_arena arena; /* all of the result */
+  scree_calibration_result *r;
+  double *samples; /* coordinates, sample_count x d */
+  double *column;  /* scratch: sample_count */
+  scree_error *error;
+} analysis;
+
+static scree_status fail_memory(const analysis *a) {
+  return scree_fail_memory(a->error, 0, "a calibration's result");
+}
+
+static int compare(const void *a, const void *b) {
+  double x = *(const double *)a, y = *(const double *)b;
+  return (x > y) - (x < y);
+}
+
+/* Of sorted values, between neighbours as on a straight line. */
+static double quantile(const double *sorted, size_t count, double p) {
+  double place = p * (double)(count - 1);
+  size_t i = (size_t)place;
+  return i + 1 < count ? sorted[i] + (place - (double)i) * (sorted[i + 1] - sorted[i]) : sorted[i];
+}
+
+typedef struct interval {
+  double mean, sd, median, low, high;
+} interval;
+
+/* Sorts the values. */
+static interval summarise(double *values, size_t count, double confidence) {
+  interval s = {0};
+  for (size_t i = 0; i < count; i++) s.mean += values[i] / (double)count;
+  for (size_t i = 0; i < count; i++)
+    s.sd += (values[i] - s.mean) * (values[i] - s.mean) / (double)(count > 1 ? count - 1 : 1);
+  s.sd = sqrt(s.sd);
+  qsort(values, count, sizeof *values, compare);
+  s.median = quantile(values, count, 0.5);
+  s.low = quantile(values, count, 0.5 * (1 - confidence));
+  s.high = quantile(values, count, 0.5 * (1 + confidence));
+  return s;
+}
+
+/* ---- parameters ---- */
+
+/* Width of the interval of a coordinate beside that of its range. */
+static double narrowed(const double *samples, size_t count, size_t d, size_t k, double confidence,
+                       double *scratch) {
+  for (size_t i = 0; i < count; i++) scratch[i] = samples[i * d + k];
+  interval s = summarise(scratch, count, confidence);
+  return (s.high - s.low) / (2 * confidence);
+}
+
+static scree_status describe_parameters(analysis *a) {
+  const scree_calibration *c = a->c;
+  size_t d = c->parameter_count, n = a->r->sample_count;
+  a->r->parameters = scree_arena_take(&a->arena, d, sizeof *a->r->parameters);
+  a->r->samples = scree_arena_take(&a->arena, n * d + 1, sizeof *a->r->samples);
+  if (!a->r->parameters || !a->r->samples) return fail_memory(a);
+  a->r->parameter_count = d;
+  for (size_t k = 0; k < d; k++) {
+    const scree_plan_parameter *p = &c->parameters[k];
+    scree_parameter_result *out = &a->r->parameters[k];
+    *out = (scree_parameter_result){.name = scree_arena_text(&a->arena, p->place.name),
+                                    .logarithmic = p->scale == 1,
+                                    .from = scree_parameter_number(p, -1),
+                                    .to = scree_parameter_number(p, 1)};
+    if (!out->name) return fail_memory(a);
+    if (n == 0) continue;
+    for (size_t i = 0; i < n; i++)
+      a->column[i] = a->r->samples[i * d + k] = scree_parameter_number(p, a->samples[i * d + k]);
+    interval s = summarise(a->column, n, a->r->confidence);
+    out->mean = s.mean;
+    out->sd = s.sd;
+    out->median = s.median;
+    out->low = s.low;
+    out->high = s.high;
+    out->narrowed = narrowed(a->samples, n, d, k, a->r->confidence, a->column);
+    out->identified = out->narrowed <= identified_share;
+  }
+  return SCREE_OK;
+}
+
+/* ---- pairs ---- */
+
+typedef struct pair {
+  double a, b;
+} pair;
+
+static int compare_pairs(const void *x, const void *y) {
+  double p = ((const pair *)x)->a, q = ((const pair *)y)->a;
+  return (p > q) - (p < q);
+}
+
+/* The share of b's variance that a tells: between the means of parts of equal count along a (the
+ * correlation ratio), which also sees lines that are bent. Sorts by a. */
+static double told_share(pair *pairs, size_t count) {
+  double mean = 0, whole = 0, between = 0;
+  qsort(pairs, count, sizeof *pairs, compare_pairs);
+  for (size_t i = 0; i < count; i++) mean += pairs[i].b / (double)count;
+  for (size_t i = 0; i < count; i++) whole += (pairs[i].b - mean) * (pairs[i].b - mean);
+  for (size_t bin = 0; bin < BINS; bin++) {
+    size_t begin = bin * count / BINS, end = (bin + 1) * count / BINS;
+    double sum = 0;
+    for (size_t i = begin; i < end; i++) sum += pairs[i].b - mean;
+    if (end > begin) between += sum * sum / (double)(end - begin);
+  }
+  return whole > 0 ? between / whole : 0;
+}
+
+static double correlation(const pair *pairs, size_t count) {
+  double a = 0, b = 0, aa = 0, bb = 0, ab = 0;
+  for (size_t i = 0; i < count; i++) {
+    a += pairs[i].a / (double)count;
+    b += pairs[i].b / (double)count;
+  }
+  for (size_t i = 0; i < count; i++) {
+    aa += (pairs[i].a - a) * (pairs[i].a - a);
+    bb += (pairs[i].b - b) * (pairs[i].b - b);
+    ab += (pairs[i].a - a) * (pairs[i].b - b);
+  }
+  return aa > 0 && bb > 0 ? ab / sqrt(aa * bb) : 0;
+}
+
+static void load_pairs(const analysis *a, size_t first, size_t second, pair *pairs) {
+  size_t d = a->c->parameter_count;
+  for (size_t i = 0; i < a->r->sample_count; i++)
+    pairs[i] = (pair){a->samples[i * d + first], a->samples[i * d + second]};
+}
+
+/* Where the line begins and ends: the means of the tenths of samples with the least and the
+ * greatest a. `pairs` are sorted. */
+static void find_ends(const analysis *a, const pair *pairs, scree_trade *trade) {
+  size_t n = a->r->sample_count, tenth = n / 10 ? n / 10 : 1;
+  for (int end = 0; end < 2; end++) {
+    double sum[2] = {0};
+    for (size_t i = 0; i < tenth; i++) {
+      const pair *p = &pairs[end ? n - 1 - i : i];
+      sum[0] += p->a / (double)tenth;
+      sum[1] += p->b / (double)tenth;
+    }
+    trade->ends[end][0] = scree_parameter_number(&a->c->parameters[trade->a], sum[0]);
+    trade->ends[end][1] = scree_parameter_number(&a->c->parameters[trade->b], sum[1]);
+  }
+}
+
+static scree_status find_trades(analysis *a) {
+  size_t d = a->c->parameter_count, n = a->r->sample_count;
+  a->r->trades = scree_arena_take(&a->arena, d * d, sizeof *a->r->trades);
+  pair *pairs = scree_alloc(n, sizeof *pairs);
+  if (!a->r->trades || !pairs) {
+    scree_free(pairs);
+    return fail_memory(a);
+  }
+  for (size_t i = 0; i < d; i++)
+    for (size_t j = i + 1; j < d; j++) {
+      scree_trade trade = {.a = i, .b = j};
+      if (a->r->parameters[i].identified && a->r->parameters[j].identified) continue;
+      load_pairs(a, j, i, pairs);
+      trade.share = told_share(pairs, n);
+      load_pairs(a, i, j, pairs);
+      trade.share = fmax(trade.share, told_share(pairs, n));
+      if (trade.share < trade_share) continue;
+      trade.correlation = correlation(pairs, n);
+      find_ends(a, pairs, &trade);
+      a->r->trades[a->r->trade_count++] = trade;
+    }
+  scree_free(pairs);
+  return SCREE_OK;
+}
+
+/* ---- answers ---- */
+
+/* Draws of a response over the posterior: its mean, and one measurement of it. */
+typedef struct draws {
+  double *mean, *single, *measured;
+} draws;
+
+static double draw_response(const scree_response *r, const double *x, scree_rng *rng,
+                            double *single, double *measured) {
+  scree_gp_value value = scree_gp_at(r->gp, x);
+  double mean = value.mean + sqrt(value.variance) * scree_rng_normal(rng);
+  double scatter = sqrt(fmax(value.noise, r->scatter * r->scatter));
+  double error = r->uncertainty * scree_rng_normal(rng), z = scree_rng_normal(rng);
+  *single = mean + scatter * z + error;
+  *measured = mean + scatter / sqrt(r->repeat_count) * z + error;
+  return mean;
+}
+
+static void describe_scalar(analysis *a, const scree_response *r, size_t stream, draws *d,
+                            scree_answer_result *out) {
+  size_t n = a->r->sample_count, dimensions = a->c->parameter_count;
+  double noise = 0;
+  for (size_t i = 0; i < n; i++) {
+    const double *x = a->samples + i * dimensions;
+    scree_rng rng = {a->r->seed, ANSWER_STREAM + stream, 16 * i};
+    d->mean[i] = draw_response(r, x, &rng, &d->single[i], &d->measured[i]);
+    noise += scree_gp_noise(r->gp, x) / (double)n;
+  }
+  interval mean = summarise(d->mean, n, a->r->confidence);
+  interval single = summarise(d->single, n, a->r->confidence);
+  interval measured = summarise(d->measured, n, a->r->confidence);
+  out->mean = mean.mean;
+  out->low = mean.low;
+  out->high = mean.high;
+  out->single_low = single.low;
+  out->single_high = single.high;
+  out->noise = sqrt(noise);
+  out->inside = out->value >= measured.low && out->value <= measured.high;
+}
+
+/* A curve from draws of its scores; `inside` where no point but some of the share that may be
+ * outside is. */
+static scree_status describe_curve(analysis *a, size_t quantity, draws *d,
+                                   scree_answer_result *out) {
+  const scree_quantity *q = &a->c->quantities[quantity];
+  const scree_curve_basis *b = &a->model.bases[quantity];
+  size_t n = a->r->sample_count, points = q->answer_count, outside = 0;
+  double *scores = scree_alloc(n * b->component_count, sizeof *scores), left = 0;
+  double *room = scree_arena_take(&a->arena, 5 * points, sizeof *room);
+  if (!scores || !room) {
+    scree_free(scores);
+    return fail_memory(a);
+  }
+  out->point_count = points;
+  out->x = memcpy(room, q->x, points * sizeof *room);
+  out->y = memcpy(room + points, q->y, points * sizeof *room);
+  out->curve_mean = room + 2 * points;
+  out->curve_low = room + 3 * points;
+  out->curve_high = room + 4 * points;
+  for (size_t k = 0; k < b->component_count; k++)
+    for (size_t i = 0; i < n; i++) {
+      const scree_response *r = &a->model.model.items[a->model.first[quantity] + k];
+      scree_rng rng = {a->r->seed, ANSWER_STREAM + a->model.first[quantity] + k, 16 * i};
+      draw_response(r, a->samples + i * a->c->parameter_count, &rng, &d->single[0],
+                    &scores[i * b->component_count + k]);
+    }
+  for (size_t p = 0; p < points; p++) {
+    double known = b->centre[p];
+    for (size_t i = 0; i < n; i++) {
+      d->mean[i] = b->centre[p];
+      for (size_t k = 0; k < b->component_count; k++)
+        d->mean[i] += scores[i * b->component_count + k] * b->basis[k * points + p];
+    }
+    interval s = summarise(d->mean, n, a->r->confidence);
+    out->curve_mean[p] = s.mean;
+    out->curve_low[p] = s.low;
+    out->curve_high[p] = s.high;
+    outside += q->y[p] < s.low || q->y[p] > s.high;
+    for (size_t k = 0; k < b->component_count; k++)
+      known += scree_curve_score(b, k, q->y) * b->basis[k * points + p];
+    left += (q->y[p] - known) * (q->y[p] - known);
+  }
+  scree_free(scores);
+  out->unexplained = sqrt(left / (double)points);
+  out->inside = (double)outside <= 2 * (1 - a->r->confidence) * (double)points;
+  return SCREE_OK;
+}
+
+static scree_status describe_answer(analysis *a, size_t quantity, draws *d) {
+  const scree_quantity *q = &a->c->quantities[quantity];
+  const scree_response *r = &a->model.model.items[a->model.first[quantity]];
+  scree_answer_result *out = &a->r->answers[quantity];
+  const char *name = q->plan->place.name ? q->plan->place.name : q->plan->answer;
+  *out = (scree_answer_result){
+      .name = scree_arena_text(&a->arena, name),
+      .experiment = scree_arena_text(&a->arena, a->c->experiments[q->experiment].plan->place.name),
+      .answer = scree_arena_text(&a->arena, q->plan->answer),
+      .measured = q->measured,
+      .predicted = q->kind == SCREE_QUANTITY_PREDICTION,
+      .value = q->value,
+      .uncertainty = q->uncertainty,
+      .scatter = q->scatter > 0 ? q->scatter : NAN,
+      .repeat_count = q->repeat_count,
+      .mean = NAN,
+      .low = NAN,
+      .high = NAN,
+      .single_low = NAN,
+      .single_high = NAN,
+      .noise = NAN,
+      .run_count = scree_gp_run_count(r->gp),
+      .unexplained = NAN};
+  if (!out->name || !out->experiment || !out->answer) return fail_memory(a);
+  out->missing = a->gathered.run_counts[q->experiment] - out->run_count;
+  if (a->r->sample_count == 0) return SCREE_OK;
+  if (q->x) return describe_curve(a, quantity, d, out);
+  describe_scalar(a, r, a->model.first[quantity], d, out);
+  return SCREE_OK;
+}
+
+static scree_status describe_answers(analysis *a) {
+  size_t n = a->r->sample_count + 1;
+  draws d = {scree_alloc(n, sizeof(double)), scree_alloc(n, sizeof(double)),
+             scree_alloc(n, sizeof(double))};
+  a->r->answer_count = a->c->quantity_count;
+  a->r->answers = scree_arena_take(&a->arena, a->c->quantity_count, sizeof *a->r->answers);
+  scree_status status =
+      d.mean && d.single && d.measured && a->r->answers ? SCREE_OK : fail_memory(a);
+  for (size_t q = 0; status == SCREE_OK && q < a->c->quantity_count; q++)
+    status = describe_answer(a, q, &d);
+  scree_free(d.mean);
+  scree_free(d.single);
+  scree_free(d.measured);
+  return status;
+}
+
+/* ---- advice ---- */
+
+/* Expected widths after some more measurements of a quantity. */
+static scree_status expect(analysis *a, size_t quantity, size_t repeats, const double *thinned,
+                           size_t count, const double *now, scree_advice *out) {
+  size_t d = a->c->parameter_count, chosen[SCREE_MOST_COMPONENTS];
+  double sd[SCREE_MOST_PARAMETERS];
+  for (size_t k = 0; k < a->model.count[quantity]; k++) chosen[k] = a->model.first[quantity] + k;
+  scree_status status = scree_model_expect(&a->model.model, thinned, count, chosen,
+                                           a->model.count[quantity], (double)repeats, sd, a->error);
+  out->repeat_count = repeats;
+  out->identified = 0;
+  for (size_t k = 0; status == SCREE_OK && k < d; k++) {
+    out->narrowed[k] = now[k] > 0 ? a->r->parameters[k].narrowed * sd[k] / now[k] : 0;
+    out->identified += out->narrowed[k] <= identified_share;
+  }
+  return status;
+}
+
+static double mean_of(const double *values, size_t count) {
+  double sum = 0;
+  for (size_t i = 0; i < count; i++) sum += values[i] / (double)count;
+  return sum;
+}
+
+/* As many repeats as are worth it: fewer would leave a tenth more. */
+static scree_status advise(analysis *a, size_t quantity, const double *thinned, size_t count,
+                           const double *now) {
+  static const size_t repeats[] = {16, 8, 4, 2, 1};
+  size_t d = a->c->parameter_count;
+  scree_advice best = {.narrowed = scree_arena_take(&a->arena, d, sizeof(double))};
+  scree_advice tried = {.narrowed = scree_arena_take(&a->arena, d, sizeof(double))};
+  if (!best.narrowed || !tried.narrowed) return fail_memory(a);
+  scree_status status = expect(a, quantity, repeats[0], thinned, count, now, &best);
+  double limit = 1.1 * mean_of(best.narrowed, d);
+  for (size_t i = 1; status == SCREE_OK && i < sizeof repeats / sizeof *repeats; i++) {
+    status = expect(a, quantity, repeats[i], thinned, count, now, &tried);
+    if (status != SCREE_OK || tried.identified < best.identified ||
+        mean_of(tried.narrowed, d) > limit)
+      break;
+    scree_advice swap = best;
+    best = tried;
+    tried = swap;
+  }
+  best.name = a->r->answers[quantity].name;
+  a->r->advice[a->r->advice_count++] = best;
+  return status;
+}
+
+static scree_status advise_all(analysis *a) {
+  const scree_calibration *c = a->c;
+  size_t d = c->parameter_count, n = a->r->sample_count,
+         count = n < MOST_ADVISED ? n : MOST_ADVISED;
+  double now[SCREE_MOST_PARAMETERS];
+  double *thinned = scree_alloc(count * d, sizeof *thinned);
+  a->r->advice = scree_arena_take(&a->arena, c->quantity_count, sizeof *a->r->advice);
+  scree_status status = thinned && a->r->advice ? SCREE_OK : fail_memory(a);
+  for (size_t i = 0; status == SCREE_OK && i < count; i++)
+    memcpy(thinned + i * d, a->samples + i * n / count * d, d * sizeof *thinned);
+  for (size_t k = 0; status == SCREE_OK && k < d; k++) {
+    for (size_t i = 0; i < count; i++) a->column[i] = thinned[i * d + k];
+    now[k] = summarise(a->column, count, a->r->confidence).sd;
+  }
+  for (size_t q = 0; status == SCREE_OK && q < c->quantity_count; q++)
+    if (c->quantities[q].kind == SCREE_QUANTITY_TARGET) status = advise(a, q, thinned, count, now);
+  scree_free(thinned);
+  for (size_t i = 1; status == SCREE_OK && i < a->r->advice_count; i++) /* the best first */
+    for (size_t j = i;
+         j > 0 && mean_of(a->r->advice[j].narrowed, d) < mean_of(a->r->advice[j - 1].narrowed, d);
+         j--) {
+      scree_advice swap = a->r->advice[j];
+      a->r->advice[j] = a->r->advice[j - 1];
+      a->r->advice[j - 1] = swap;
+    }
+  return status;
+}
+
+/* ---- history ---- */
+
+/* What was known after some rounds: their number, then the widths. */
+static scree_status look_back(analysis *a, size_t rounds, double *row) {
+  size_t d = a->c->parameter_count, count;
+  scree_calibration_model model;
+  double *samples = NULL, *scratch = NULL;
+  scree_status status = scree_calibration_fit(a->c, &a->gathered, rounds, &model, a->error);
+  if (status != SCREE_OK) return status;
+  status = scree_calibration_sample(a->c, &model.model, 0, &samples, &count, a->error);
+  if (status == SCREE_OK && !(scratch = scree_alloc(count, sizeof *scratch)))
+    status = fail_memory(a);
+  row[0] = 0;
+  for (size_t i = 0; i < a->c->run_count; i++) row[0] += a->c->runs[i].round < rounds;
+  for (size_t k = 0; status == SCREE_OK && k < d; k++)
+    row[1 + k] = narrowed(samples, count, d, k, a->r->confidence, scratch);
+  scree_free(samples);
+  scree_free(scratch);
+  scree_calibration_model_free(a->c, &model);
+  return status;
+}
+
+static scree_status describe_history(analysis *a) {
+  size_t rounds = a->c->round_count, d = a->c->parameter_count;
+  size_t steps = rounds < MOST_HISTORY ? rounds : MOST_HISTORY;
+  a->r->history = scree_arena_take(&a->arena, steps * (1 + d), sizeof *a->r->history);
+  if (!a->r->history) return fail_memory(a);
+  for (size_t i = 0; i < steps; i++) {
+    size_t until = steps > 1 ? 1 + i * (rounds - 1) / (steps - 1) : 1;
+    scree_status status = look_back(a, until, a->r->history + a->r->history_count * (1 + d));
+    if (status == SCREE_OUT_OF_MEMORY) return status;
+    a->r->history_count += status == SCREE_OK; /* too few runs to say anything yet */
+  }
+  return SCREE_OK;
+}
+
+/* ---- the whole ---- */
+
+static scree_status start(analysis *a, scree_calibration *c) {
+  scree_status status = scree_rounds_read(c, a->error);
+  if (status == SCREE_OK) status = scree_gather(c, &a->gathered, a->error);
+  if (status == SCREE_OK && c->round_count == 0)
+    status = scree_fail(a->error, SCREE_BAD_ARGUMENT, "%s: no run has been made yet", c->folder);
+  if (status == SCREE_OK)
+    status = scree_calibration_fit(c, &a->gathered, c->round_count, &a->model, a->error);
+  if (status != SCREE_OK) return status;
+  const char *end;
+  scree_calibration_result *r = a->r;
+  status = scree_rounds_end(c, &end, a->error);
+  r->progress = (scree_calibration_progress){.rounds = c->round_count,
+                                             .run_count = c->run_count,
+                                             .done = a->gathered.done,
+                                             .failed = a->gathered.failed,
+                                             .budget = c->plan.budget->runs,
+                                             .seconds = a->gathered.seconds,
+                                             .planning_seconds = scree_rounds_seconds(c)};
+  r->title = scree_arena_text(&a->arena, c->plan.title ? c->plan.title : c->path);
+  r->version = scree_version();
+  r->stopped =
+      status == SCREE_OK && *end && a->gathered.open == 0 ? scree_arena_text(&a->arena, end) : NULL;
+  r->is_search = scree_calibration_is_search(c);
+  r->maximise = c->plan.maximise != NULL;
+  r->confidence = c->plan.confidence;
+  r->seed = c->plan.seed;
+  r->failure_count = a->gathered.failure_count;
+  r->failures = scree_arena_take(&a->arena, r->failure_count + 1, sizeof *r->failures);
+  if (!r->title || !r->failures) return fail_memory(a);
+  for (size_t i = 0; i < r->failure_count; i++)
+    if (!(r->failures[i] = scree_arena_text(&a->arena, a->gathered.failures[i])))
+      return fail_memory(a);
+  return status;
+}
+
+static scree_status calibrate(analysis *a) {
+  scree_status status = scree_calibration_sample(a->c, &a->model.model, 1, &a->samples,
+                                                 &a->r->sample_count, a->error);
+  if (status == SCREE_OK && !(a->column = scree_alloc(a->r->sample_count, sizeof *a->column)))
+    status = fail_memory(a);
+  if (status == SCREE_OK) status = describe_parameters(a);
+  if (status == SCREE_OK) status = find_trades(a);
+  if (status == SCREE_OK) status = describe_answers(a);
+  if (status == SCREE_OK) status = advise_all(a);
+  return status == SCREE_OK ? describe_history(a) : status;
+}
+
+static scree_status search(analysis *a) {
+  scree_status status = describe_parameters(a);
+  if (status == SCREE_OK) status = describe_answers(a);
+  return status == SCREE_OK
+             ? scree_search_describe(a->c, &a->model, &a->gathered, &a->arena, a->r, a->error)
+             : status;
+}
+
+scree_status scree_calibration_analyse(scree_calibration *calibration,
+                                       scree_calibration_result *result, scree_error *error) {
+  scree_calibration_result made = {0};
+  analysis a = {.c = calibration, .r = &made, .error = error};
+  if (!calibration->folder)
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "the calibration is not opened");
+  scree_status status = start(&a, calibration);
+  if (status == SCREE_OK) status = made.is_search ? search(&a) : calibrate(&a);
+  scree_calibration_model_free(calibration, &a.model);
+  scree_answers_free(&a.gathered);
+  scree_free(a.samples);
+  scree_free(a.column);
+  scree_arena *kept = status == SCREE_OK ? scree_alloc(1, sizeof *kept) : NULL;
+  if (status == SCREE_OK && !kept) status = scree_fail_memory(error, sizeof *kept, "a result");
+  if (status == SCREE_OK) {
+    *kept = a.arena;
+    made.memory = kept;
+    *result = made;
+  } else {
+    scree_arena_free(&a.arena);
+  }
+  return status;
+}
+
+void scree_calibration_result_free(scree_calibration_result *result) {
+  if (!result || !result->memory) return;
+  scree_arena_free(result->memory);
+  scree_free(result->memory);
+  *result = (scree_calibration_result){0};
+}

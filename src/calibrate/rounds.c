@@ -1,0 +1,410 @@
+/* A calibration's folder:
+ *
+ *   calibrate.yaml    the file as last given
+ *   rounds/0001.yaml  the runs that were planned at a time
+ *   rounds/end.yaml   why it stopped
+ *   EXPERIMENT/       a study of all runs of an experiment (study/folder.c)
+ *
+ * A round is written when all runs before it have ended, by whoever holds the lease; it depends on
+ * their results alone. Seeds count up over all runs, so that no two share one. */
+#include "base/array.h"
+#include "base/file.h"
+#include "base/number.h"
+#include "base/platform.h"
+#include "calibrate/calibration.h"
+
+#include <inttypes.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+char *scree_calibration_path(const scree_calibration *c, const char *name) {
+  size_t size = strlen(c->folder) + strlen(name) + 2;
+  char *path = scree_alloc(size, 1);
+  if (path) snprintf(path, size, "%s/%s", c->folder, name);
+  return path;
+}
+
+/* ---- opening ---- */
+
+static const char origin_mark[] = "# calibration of ";
+
+static scree_status write_text(const scree_calibration *c, const char *name, const char *text,
+                               size_t size, scree_error *error) {
+  char *path = scree_calibration_path(c, name), *old = NULL;
+  size_t old_size = 0;
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  scree_status status = SCREE_OK;
+  bool same = scree_path_exists(path) &&
+              scree_file_read(path, 0, &old, &old_size, NULL) == SCREE_OK && old_size == size &&
+              !memcmp(old, text, size);
+  scree_free(old);
+  if (!same) {
+    scree_output output;
+    status = scree_output_open(path, true, &output, error);
+    if (status == SCREE_OK) {
+      fwrite(text, 1, size, output.stream);
+      status = scree_output_commit(&output, error);
+    }
+  }
+  scree_free(path);
+  return status;
+}
+
+/* The file's text, and where the original lies, beside which its scenes and curves are. */
+static scree_status keep_copy(const scree_calibration *c, scree_error *error) {
+  char full[4096], *text = NULL;
+  size_t size = 0;
+  if (!scree_path_full(c->path, full, sizeof full))
+    return scree_fail(error, SCREE_IO, "%s: cannot be found", c->path);
+  FILE *stream = scree_memory_open(&text, &size);
+  if (!stream) return scree_fail_memory(error, 0, "a copy");
+  fprintf(stream, "%s%s\n%s", origin_mark, full, c->text);
+  scree_status status = scree_memory_close(stream)
+                            ? write_text(c, "calibrate.yaml", text, size, error)
+                            : scree_fail_memory(error, 0, "a copy");
+  free(text);
+  return status;
+}
+
+scree_status scree_calibration_open(scree_calibration *c, const char *folder, scree_error *error) {
+  char *copy = scree_strdup(folder);
+  if (!copy) return scree_fail_memory(error, strlen(folder), "a path");
+  scree_free(c->folder);
+  c->folder = copy;
+  char *rounds = scree_calibration_path(c, "rounds");
+  scree_status status =
+      rounds ? scree_folder_create(folder, error) : scree_fail_memory(error, 0, "a path");
+  if (status == SCREE_OK) status = scree_folder_create(rounds, error);
+  scree_free(rounds);
+  if (status == SCREE_OK) status = scree_rounds_read(c, error);
+  return status == SCREE_OK ? keep_copy(c, error) : status;
+}
+
+scree_status scree_calibration_open_folder(const char *folder, scree_calibration **calibration,
+                                           scree_error *error) {
+  char path[4200], original[4096], *bytes;
+  size_t size;
+  snprintf(path, sizeof path, "%.4100s/calibrate.yaml", folder);
+  if (!scree_path_exists(path))
+    return scree_fail(error, SCREE_IO, "%s: is no folder of a calibration: no calibrate.yaml in it",
+                      folder);
+  scree_status status = scree_file_read(path, 2 << 20, &bytes, &size, error);
+  if (status != SCREE_OK) return status;
+  original[0] = 0;
+  if (!strncmp(bytes, origin_mark, sizeof origin_mark - 1))
+    snprintf(original, sizeof original, "%.*s",
+             (int)strcspn(bytes, "\n") - (int)sizeof origin_mark + 1,
+             bytes + sizeof origin_mark - 1);
+  scree_free(bytes);
+  status = scree_calibration_read(original[0] ? original : path, calibration, error);
+  if (status != SCREE_OK) return status;
+  status = scree_calibration_open(*calibration, folder, error);
+  if (status != SCREE_OK) scree_calibration_free(*calibration);
+  return status;
+}
+
+/* ---- rounds ---- */
+
+static char *round_path(const scree_calibration *c, size_t number) {
+  char name[40];
+  snprintf(name, sizeof name, "rounds/%04zu.yaml", number);
+  return scree_calibration_path(c, name);
+}
+
+static scree_status refuse(const char *path, scree_error *error) {
+  return scree_fail(error, SCREE_BAD_FILE,
+                    "%s: is no round of this calibration; take another folder, or remove what is "
+                    "in this one",
+                    path);
+}
+
+static const char *text_of(const scree_yaml *node, const char *key) {
+  const scree_yaml *item = scree_yaml_find(node, key);
+  return item && item->kind == SCREE_YAML_SCALAR ? item->text : NULL;
+}
+
+static scree_status check_names(const scree_calibration *c, const char *path,
+                                const scree_yaml *names, scree_error *error) {
+  bool same =
+      names && names->kind == SCREE_YAML_SEQUENCE && names->item_count == c->parameter_count;
+  for (size_t p = 0; same && p < c->parameter_count; p++)
+    same = names->items[p].kind == SCREE_YAML_SCALAR &&
+           !strcmp(names->items[p].text, c->parameters[p].place.name);
+  if (same) return SCREE_OK;
+  return scree_fail(error, SCREE_BAD_FILE,
+                    "%s: was planned for other parameters than those of %s; take another folder",
+                    path, c->path);
+}
+
+static scree_status read_run(scree_calibration *c, const char *path, const scree_yaml *node,
+                             scree_error *error) {
+  scree_planned_run run = {.round = c->round_count};
+  const scree_yaml *values =
+      node->kind == SCREE_YAML_MAPPING ? scree_yaml_find(node, "values") : NULL;
+  const char *experiment = values ? text_of(node, "experiment") : NULL,
+             *seed = values ? text_of(node, "seed") : NULL;
+  if (!experiment || !seed || values->kind != SCREE_YAML_SEQUENCE ||
+      values->item_count != c->parameter_count)
+    return refuse(path, error);
+  run.seed = strtoull(seed, NULL, 10);
+  while (run.experiment < c->experiment_count &&
+         strcmp(c->experiments[run.experiment].plan->place.name, experiment) != 0)
+    run.experiment++;
+  if (run.experiment == c->experiment_count)
+    return scree_fail(error, SCREE_BAD_FILE,
+                      "%s: has a run of the experiment '%s', which %s has no more", path,
+                      experiment, c->path);
+  for (size_t p = 0; p < c->parameter_count; p++) {
+    if (values->items[p].kind != SCREE_YAML_SCALAR) return refuse(path, error);
+    run.values[p] = scree_arena_text(&c->run_arena, values->items[p].text);
+    if (!run.values[p]) return scree_fail_memory(error, 0, path);
+    run.x[p] = scree_parameter_coordinate(&c->parameters[p], run.values[p]);
+    if (isnan(run.x[p])) return refuse(path, error);
+  }
+  scree_planned_run *more = scree_resize(c->runs, c->run_count + 1, sizeof *more);
+  if (!more) return scree_fail_memory(error, 0, path);
+  c->runs = more;
+  c->runs[c->run_count++] = run;
+  return SCREE_OK;
+}
+
+static scree_status read_round(scree_calibration *c, const char *path, scree_error *error) {
+  scree_yaml root;
+  scree_status status = scree_yaml_read(path, &root, error);
+  if (status != SCREE_OK) return status;
+  bool mapping = root.kind == SCREE_YAML_MAPPING;
+  const scree_yaml *runs = mapping ? scree_yaml_find(&root, "runs") : NULL;
+  if (!runs || runs->kind != SCREE_YAML_SEQUENCE)
+    status = refuse(path, error);
+  else
+    status = check_names(c, path, scree_yaml_find(&root, "parameters"), error);
+  for (size_t i = 0; status == SCREE_OK && i < runs->item_count; i++)
+    status = read_run(c, path, &runs->items[i], error);
+  scree_yaml_free(&root);
+  return status;
+}
+
+scree_status scree_rounds_read(scree_calibration *c, scree_error *error) {
+  scree_status status = SCREE_OK;
+  scree_arena_free(&c->run_arena);
+  c->run_count = c->round_count = 0;
+  while (status == SCREE_OK) {
+    char *path = round_path(c, c->round_count + 1);
+    if (!path) return scree_fail_memory(error, 0, "a path");
+    bool there = scree_path_exists(path);
+    if (there) status = read_round(c, path, error);
+    scree_free(path);
+    if (!there) break;
+    c->round_count++;
+  }
+  return status;
+}
+
+static void put_text(FILE *stream, const char *text) {
+  putc('"', stream);
+  for (; *text; text++) {
+    if (*text == '"' || *text == '\\') putc('\\', stream);
+    putc(*text, stream);
+  }
+  putc('"', stream);
+}
+
+scree_status scree_rounds_add(scree_calibration *c, const scree_place_pick *picks, size_t count,
+                              double seconds, scree_error *error) {
+  char *path = round_path(c, c->round_count + 1);
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  scree_output output;
+  scree_status status = scree_output_open(path, true, &output, error);
+  scree_free(path);
+  if (status != SCREE_OK) return status;
+  FILE *s = output.stream;
+  fprintf(s, "seconds: %.3f\nparameters: [", seconds);
+  for (size_t p = 0; p < c->parameter_count; p++) {
+    fputs(p ? ", " : "", s);
+    put_text(s, c->parameters[p].place.name);
+  }
+  fputs("]\nruns:\n", s);
+  for (size_t i = 0; i < count; i++) {
+    fputs("  - {experiment: ", s);
+    put_text(s, c->experiments[picks[i].experiment].plan->place.name);
+    fprintf(s, ", seed: %" PRIu64 ", values: [", c->plan.seed + c->run_count + i);
+    for (size_t p = 0; p < c->parameter_count; p++) {
+      const char *value = scree_parameter_text(&c->parameters[p], picks[i].x[p], &c->run_arena);
+      fputs(p ? ", " : "", s);
+      put_text(s, value ? value : "");
+    }
+    fputs("]}\n", s);
+  }
+  return scree_output_commit(&output, error);
+}
+
+/* ---- the end ---- */
+
+/* What was asked: another file goes on. */
+static void mark_of(const scree_calibration *c, char mark[SCREE_CHECKSUM_TEXT]) {
+  scree_checksum_text(scree_checksum_of(c->text, c->text_size), mark);
+}
+
+scree_status scree_rounds_stop(scree_calibration *c, const char *reason, double seconds,
+                               scree_error *error) {
+  char text[400], mark[SCREE_CHECKSUM_TEXT];
+  mark_of(c, mark);
+  int size = snprintf(text, sizeof text, "seconds: %.3f\nfile: \"%s\"\nreason: \"%s\"\n", seconds,
+                      mark, reason);
+  return write_text(c, "rounds/end.yaml", text, (size_t)size, error);
+}
+
+scree_status scree_rounds_end(scree_calibration *c, const char **reason, scree_error *error) {
+  char *path = scree_calibration_path(c, "rounds/end.yaml"), mark[SCREE_CHECKSUM_TEXT];
+  scree_yaml root;
+  *reason = "";
+  if (!path) return scree_fail_memory(error, 0, "a path");
+  bool there = scree_path_exists(path);
+  scree_status status = there ? scree_yaml_read(path, &root, error) : SCREE_OK;
+  scree_free(path);
+  if (!there || status != SCREE_OK) return status;
+  mark_of(c, mark);
+  const char *file = root.kind == SCREE_YAML_MAPPING ? text_of(&root, "file") : NULL;
+  const char *said = file ? text_of(&root, "reason") : NULL;
+  if (said && !strcmp(file, mark)) *reason = scree_arena_text(&c->run_arena, said);
+  scree_yaml_free(&root);
+  return *reason ? SCREE_OK : scree_fail_memory(error, 0, "an end");
+}
+
+static double seconds_in(const scree_calibration *c, const char *name) {
+  char *path = scree_calibration_path(c, name);
+  scree_yaml root;
+  double seconds = 0;
+  if (path && scree_path_exists(path) && scree_yaml_read(path, &root, NULL) == SCREE_OK) {
+    const char *text = root.kind == SCREE_YAML_MAPPING ? text_of(&root, "seconds") : NULL;
+    if (text) scree_number_read(text, &seconds);
+    scree_yaml_free(&root);
+  }
+  scree_free(path);
+  return seconds;
+}
+
+double scree_rounds_seconds(const scree_calibration *c) {
+  double sum = seconds_in(c, "rounds/end.yaml");
+  for (size_t i = 1; i <= c->round_count; i++) {
+    char name[40];
+    snprintf(name, sizeof name, "rounds/%04zu.yaml", i);
+    sum += seconds_in(c, name);
+  }
+  return sum;
+}
+
+/* ---- an experiment's study ---- */
+
+/* {here} is the folder of the calibration's file. */
+static void put_word(const scree_calibration *c, FILE *stream, const char *word) {
+  char full[4096];
+  if (!scree_path_full(c->path, full, sizeof full)) snprintf(full, sizeof full, "%s", c->path);
+  char *slash = strrchr(full, '/');
+  const char *here = strstr(word, "{here}");
+  if (slash) *slash = 0;
+  char text[8192];
+  if (here)
+    snprintf(text, sizeof text, "%.*s%s%s", (int)(here - word), word, slash ? full : ".", here + 6);
+  put_text(stream, here ? text : word);
+}
+
+static void put_factor(const scree_calibration *c, FILE *s, size_t experiment, const char *key,
+                       size_t parameter) {
+  bool first = true;
+  fputs("  ", s);
+  put_text(s, key);
+  fputs(": [", s);
+  for (size_t i = 0; i < c->run_count; i++) {
+    if (c->runs[i].experiment != experiment) continue;
+    fputs(first ? "" : ", ", s);
+    if (parameter < c->parameter_count)
+      put_text(s, c->runs[i].values[parameter]);
+    else
+      fprintf(s, "%" PRIu64, c->runs[i].seed);
+    first = false;
+  }
+  fputs("]\n", s);
+}
+
+/* Its fields that the scene has; of a command the parameter's name. */
+static void put_parameter(const scree_calibration *c, FILE *s, size_t experiment,
+                          size_t parameter) {
+  const scree_plan_parameter *p = &c->parameters[parameter];
+  if (c->experiments[experiment].plan->command.count) {
+    put_factor(c, s, experiment, p->place.name, parameter);
+    return;
+  }
+  for (size_t f = 0; f < p->fields.count; f++)
+    put_factor(c, s, experiment, p->fields.items[f], parameter);
+}
+
+static void put_study(const scree_calibration *c, size_t experiment, FILE *s) {
+  const scree_experiment_plan *e = &c->experiments[experiment];
+  fputs("name: ", s);
+  put_text(s, e->plan->place.name);
+  if (e->plan->command.count) {
+    fputs("\nbase:\n  command: [", s);
+    for (size_t i = 0; i < e->plan->command.count; i++) {
+      fputs(i ? ", " : "", s);
+      put_word(c, s, e->plan->command.items[i]);
+    }
+    fputs("]\n", s);
+  } else {
+    fputs("\nbase:\n  scene: ", s);
+    put_text(s, e->scene_path);
+    putc('\n', s);
+    for (size_t i = 0; e->plan->set && i < e->plan->set->item_count; i++) {
+      fputs("  ", s);
+      put_text(s, e->plan->set->items[i].key);
+      fputs(": ", s);
+      put_text(s, e->plan->set->items[i].text);
+      putc('\n', s);
+    }
+  }
+  fprintf(s, "design: list\nreplicates: 1\nanswers:\n%sfactors:\n", e->answers);
+  put_factor(c, s, experiment, "seed", SIZE_MAX);
+  for (size_t a = 0; a < e->active_count; a++) put_parameter(c, s, experiment, e->active[a]);
+}
+
+static scree_status write_study(const scree_calibration *c, size_t experiment, const char *folder,
+                                scree_error *error) {
+  char *text = NULL, name[200];
+  size_t size = 0;
+  FILE *stream = scree_memory_open(&text, &size);
+  if (!stream) return scree_fail_memory(error, 0, "a study");
+  put_study(c, experiment, stream);
+  scree_status status = scree_memory_close(stream) ? scree_folder_create(folder, error)
+                                                   : scree_fail_memory(error, 0, "a study");
+  snprintf(name, sizeof name, "%.150s/study.yaml", c->experiments[experiment].plan->place.name);
+  if (status == SCREE_OK) status = write_text(c, name, text, size, error);
+  free(text);
+  return status;
+}
+
+scree_status scree_rounds_study(const scree_calibration *c, size_t experiment, scree_study **study,
+                                scree_error *error) {
+  bool any = false;
+  *study = NULL;
+  for (size_t i = 0; i < c->run_count; i++) any = any || c->runs[i].experiment == experiment;
+  if (!any) return SCREE_OK;
+  char *folder = scree_calibration_path(c, c->experiments[experiment].plan->place.name);
+  char *path = folder ? scree_alloc(strlen(folder) + 16, 1) : NULL;
+  scree_study *made = NULL;
+  scree_status status = path ? SCREE_OK : scree_fail_memory(error, 0, "a path");
+  if (status == SCREE_OK) status = write_study(c, experiment, folder, error);
+  if (status == SCREE_OK) {
+    snprintf(path, strlen(folder) + 16, "%s/study.yaml", folder);
+    status = scree_study_read(path, &made, error);
+  }
+  if (status == SCREE_OK) status = scree_study_open(made, folder, error);
+  if (status == SCREE_OK) status = scree_study_prepare(made, NULL, NULL, error);
+  scree_free(folder);
+  scree_free(path);
+  if (status == SCREE_OK)
+    *study = made;
+  else
+    scree_study_free(made);
+  return status;
+}

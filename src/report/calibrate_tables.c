@@ -1,0 +1,312 @@
+/* A calibration's results as text, JSON and CSV. */
+#include "base/file.h"
+#include "report/csv.h"
+#include "report/json.h"
+
+#include <math.h>
+#include <string.h>
+
+/* ---- text ---- */
+
+static const char *plural(size_t count) {
+  return count == 1 ? "" : "s";
+}
+
+static void print_head(const scree_calibration_result *r, FILE *s) {
+  const scree_calibration_progress *p = &r->progress;
+  char title[300];
+  snprintf(title, sizeof title, "%.290s", r->title);
+  scree_make_printable(title, '?');
+  fprintf(s, "%s: %zu run%s in %zu round%s", title, p->done, plural(p->done), p->rounds,
+          plural(p->rounds));
+  if (p->failed) fprintf(s, ", %zu failed", p->failed);
+  fprintf(s, "; %s\n",
+          r->stopped                           ? r->stopped
+          : p->done + p->failed < p->run_count ? "not ended yet"
+                                               : "the next are to be planned");
+  for (size_t i = 0; i < r->failure_count && i < 5; i++) fprintf(s, "failed: %s\n", r->failures[i]);
+}
+
+static void print_parameters(const scree_calibration_result *r, FILE *s) {
+  fprintf(s, "\n%-24s %10s %10s  %-25s %9s\n", "parameter", "mean", "SD", "interval", "of range");
+  for (size_t k = 0; k < r->parameter_count; k++) {
+    const scree_parameter_result *p = &r->parameters[k];
+    fprintf(s, "%-24s %10.4g %10.3g  [%10.4g, %10.4g] %8.0f %%  %s\n", p->name, p->mean, p->sd,
+            p->low, p->high, 100 * p->narrowed, p->identified ? "identified" : "not identifiable");
+  }
+  fprintf(s, "intervals of %g %%; `of range`: their width beside that of the range\n",
+          100 * r->confidence);
+}
+
+static void print_trades(const scree_calibration_result *r, FILE *s) {
+  for (size_t i = 0; i < r->trade_count; i++) {
+    const scree_trade *t = &r->trades[i];
+    const char *a = r->parameters[t->a].name, *b = r->parameters[t->b].name;
+    fprintf(s,
+            "\n%s and %s trade against each other: %s %.3g with %s %.3g gives the same answers as "
+            "%s %.3g with %s %.3g\n",
+            a, b, a, t->ends[0][0], b, t->ends[0][1], a, t->ends[1][0], b, t->ends[1][1]);
+  }
+  for (size_t k = 0; k < r->parameter_count; k++) {
+    bool traded = r->parameters[k].identified;
+    for (size_t i = 0; i < r->trade_count; i++)
+      traded = traded || r->trades[i].a == k || r->trades[i].b == k;
+    if (!traded)
+      fprintf(s, "\n%s is not told by these measurements: values of %.3g to %.3g agree with them\n",
+              r->parameters[k].name, r->parameters[k].low, r->parameters[k].high);
+  }
+}
+
+static void print_answers(const scree_calibration_result *r, FILE *s) {
+  fprintf(s, "\n%-24s %12s %12s  %-27s %-27s\n", "answer", "measured", "simulated",
+          "interval of the mean", "of a single one");
+  for (size_t i = 0; i < r->answer_count; i++) {
+    const scree_answer_result *a = &r->answers[i];
+    if (a->point_count) {
+      fprintf(s, "%-24s a curve of %zu points, %s the interval; %.3g of it no setting has\n",
+              a->name, a->point_count, a->inside ? "within" : "outside", a->unexplained);
+    } else {
+      char value[32] = "";
+      if (a->measured) snprintf(value, sizeof value, "%.5g", a->value);
+      fprintf(s, "%-24s %12s %12.5g  [%12.5g, %12.5g] [%12.5g, %12.5g]%s%s\n", a->name, value,
+              a->mean, a->low, a->high, a->single_low, a->single_high,
+              a->predicted ? "  predicted" : "",
+              !a->measured ? ""
+              : a->inside  ? ""
+                           : "  OUTSIDE");
+    }
+    if (a->missing)
+      fprintf(s, "  %zu run%s of %s gave no %s and %s left out\n", a->missing, plural(a->missing),
+              a->experiment, a->answer, a->missing == 1 ? "was" : "were");
+  }
+}
+
+static void print_advice(const scree_calibration_result *r, FILE *s) {
+  bool all = true;
+  for (size_t k = 0; k < r->parameter_count; k++) all = all && r->parameters[k].identified;
+  if (r->advice_count == 0) return;
+  const scree_advice *best = &r->advice[0];
+  fprintf(s, "\n%s %s, measured %zu time%s more, would tell most: ",
+          all ? "all parameters are identified;" : "of the tests in the file,", best->name,
+          best->repeat_count, plural(best->repeat_count));
+  for (size_t k = 0; k < r->parameter_count; k++)
+    fprintf(s, "%s%s to %.0f %% of its range", k ? ", " : "", r->parameters[k].name,
+            100 * best->narrowed[k]);
+  fputs("\n", s);
+}
+
+static void print_search(const scree_calibration_result *r, FILE *s) {
+  fprintf(s, "\n%s %s\n", r->maximise ? "the most of" : "the least of", r->sought);
+  for (size_t k = 0; k < r->parameter_count; k++) fprintf(s, "%14.14s ", r->parameters[k].name);
+  fprintf(s, "%12s  %-27s %8s %5s\n", "mean", "interval", "allowed", "runs");
+  for (size_t i = 0; i < r->candidate_count; i++) {
+    const scree_setting *c = &r->candidates[i];
+    for (size_t k = 0; k < r->parameter_count; k++) fprintf(s, "%14.6g ", c->values[k]);
+    fprintf(s, "%12.5g  [%12.5g, %12.5g] %6.0f %% %5zu%s\n", c->mean, c->low, c->high,
+            100 * c->allowed, c->run_count, i == 0 ? "  best" : "");
+  }
+  fprintf(s, "intervals of %g %% of the mean; allowed: probability that all limits hold\n",
+          100 * r->confidence);
+  if (r->candidate_count && r->candidates[0].allowed < 0.5)
+    fputs("no setting that was tried likely keeps the limits; the first comes nearest\n", s);
+}
+
+void scree_calibration_print(const scree_calibration_result *result, FILE *stream) {
+  print_head(result, stream);
+  if (result->is_search) {
+    print_search(result, stream);
+    return;
+  }
+  print_parameters(result, stream);
+  print_trades(result, stream);
+  print_answers(result, stream);
+  print_advice(result, stream);
+}
+
+/* ---- JSON ---- */
+
+static void put_numbers(scree_json *json, const char *key, const double *values, size_t count) {
+  scree_json_row_array(json, key);
+  for (size_t i = 0; i < count; i++) scree_json_number(json, NULL, values[i]);
+  scree_json_end(json);
+}
+
+static void put_parameters(scree_json *json, const scree_calibration_result *r) {
+  scree_json_array(json, "parameters");
+  for (size_t k = 0; k < r->parameter_count; k++) {
+    const scree_parameter_result *p = &r->parameters[k];
+    scree_json_object(json, NULL);
+    scree_json_text(json, "name", p->name);
+    scree_json_text(json, "scale", p->logarithmic ? "log" : "linear");
+    scree_json_number(json, "from", p->from);
+    scree_json_number(json, "to", p->to);
+    if (!r->is_search) {
+      scree_json_number(json, "mean", p->mean);
+      scree_json_number(json, "sd", p->sd);
+      scree_json_number(json, "median", p->median);
+      scree_json_number(json, "low", p->low);
+      scree_json_number(json, "high", p->high);
+      scree_json_number(json, "narrowed", p->narrowed);
+      scree_json_bool(json, "identified", p->identified);
+    }
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+}
+
+static void put_trades(scree_json *json, const scree_calibration_result *r) {
+  scree_json_array(json, "trades");
+  for (size_t i = 0; i < r->trade_count; i++) {
+    const scree_trade *t = &r->trades[i];
+    scree_json_object(json, NULL);
+    scree_json_text(json, "a", r->parameters[t->a].name);
+    scree_json_text(json, "b", r->parameters[t->b].name);
+    scree_json_number(json, "correlation", t->correlation);
+    scree_json_number(json, "share", t->share);
+    put_numbers(json, "one_end", t->ends[0], 2);
+    put_numbers(json, "other_end", t->ends[1], 2);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+}
+
+static void put_answer(scree_json *json, const scree_answer_result *a) {
+  scree_json_object(json, NULL);
+  scree_json_text(json, "name", a->name);
+  scree_json_text(json, "experiment", a->experiment);
+  scree_json_text(json, "answer", a->answer);
+  scree_json_bool(json, "measured", a->measured);
+  scree_json_bool(json, "predicted", a->predicted);
+  scree_json_number(json, "value", a->value);
+  scree_json_number(json, "uncertainty", a->uncertainty);
+  scree_json_number(json, "scatter", a->scatter);
+  scree_json_number(json, "repeats", a->repeat_count);
+  scree_json_number(json, "mean", a->mean);
+  scree_json_number(json, "low", a->low);
+  scree_json_number(json, "high", a->high);
+  scree_json_number(json, "single_low", a->single_low);
+  scree_json_number(json, "single_high", a->single_high);
+  scree_json_number(json, "noise", a->noise);
+  scree_json_count(json, "runs", a->run_count);
+  scree_json_count(json, "missing", a->missing);
+  scree_json_bool(json, "inside", a->inside);
+  if (a->point_count) {
+    put_numbers(json, "x", a->x, a->point_count);
+    put_numbers(json, "y", a->y, a->point_count);
+    put_numbers(json, "curve_mean", a->curve_mean, a->point_count);
+    put_numbers(json, "curve_low", a->curve_low, a->point_count);
+    put_numbers(json, "curve_high", a->curve_high, a->point_count);
+    scree_json_number(json, "unexplained", a->unexplained);
+  }
+  scree_json_end(json);
+}
+
+static void put_advice(scree_json *json, const scree_calibration_result *r) {
+  scree_json_array(json, "advice");
+  for (size_t i = 0; i < r->advice_count; i++) {
+    scree_json_object(json, NULL);
+    scree_json_text(json, "name", r->advice[i].name);
+    scree_json_count(json, "repeats", r->advice[i].repeat_count);
+    put_numbers(json, "narrowed", r->advice[i].narrowed, r->parameter_count);
+    scree_json_count(json, "identified", r->advice[i].identified);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+}
+
+static void put_candidates(scree_json *json, const scree_calibration_result *r) {
+  scree_json_text(json, "sought", r->sought);
+  scree_json_bool(json, "maximise", r->maximise);
+  scree_json_array(json, "candidates");
+  for (size_t i = 0; i < r->candidate_count; i++) {
+    const scree_setting *c = &r->candidates[i];
+    scree_json_object(json, NULL);
+    put_numbers(json, "values", c->values, r->parameter_count);
+    scree_json_number(json, "mean", c->mean);
+    scree_json_number(json, "low", c->low);
+    scree_json_number(json, "high", c->high);
+    scree_json_number(json, "allowed", c->allowed);
+    scree_json_count(json, "runs", c->run_count);
+    scree_json_end(json);
+  }
+  scree_json_end(json);
+}
+
+static void put_result(scree_json *json, const scree_calibration_result *r) {
+  size_t width = r->is_search ? 2 : 1 + r->parameter_count;
+  scree_json_object(json, NULL);
+  scree_json_text(json, "title", r->title);
+  scree_json_text(json, "version", r->version);
+  scree_json_count(json, "seed", r->seed);
+  scree_json_number(json, "confidence", r->confidence);
+  scree_json_text(json, "stopped", r->stopped);
+  scree_json_count(json, "rounds", r->progress.rounds);
+  scree_json_count(json, "runs", r->progress.run_count);
+  scree_json_count(json, "done", r->progress.done);
+  scree_json_count(json, "failed", r->progress.failed);
+  scree_json_count(json, "budget", r->progress.budget);
+  scree_json_number(json, "seconds", r->progress.seconds);
+  scree_json_number(json, "planning_seconds", r->progress.planning_seconds);
+  put_parameters(json, r);
+  if (!r->is_search) put_trades(json, r);
+  scree_json_array(json, "answers");
+  for (size_t i = 0; i < r->answer_count; i++) put_answer(json, &r->answers[i]);
+  scree_json_end(json);
+  if (r->is_search)
+    put_candidates(json, r);
+  else
+    put_advice(json, r);
+  scree_json_array(json, "history");
+  for (size_t i = 0; i < r->history_count; i++)
+    put_numbers(json, NULL, r->history + i * width, width);
+  scree_json_end(json);
+  scree_json_array(json, "failures");
+  for (size_t i = 0; i < r->failure_count; i++) scree_json_text(json, NULL, r->failures[i]);
+  scree_json_end(json);
+  scree_json_end(json);
+}
+
+scree_status scree_calibration_json_write(const scree_calibration_result *result, const char *path,
+                                          bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  scree_json json = scree_json_start(output.stream);
+  put_result(&json, result);
+  return scree_output_commit(&output, error);
+}
+
+/* ---- CSV ---- */
+
+static void put_row(FILE *s, const double *values, size_t count) {
+  for (size_t k = 0; k < count; k++) {
+    if (k) putc(',', s);
+    scree_csv_number(s, values[k]);
+  }
+}
+
+scree_status scree_calibration_csv_write(const scree_calibration_result *r, const char *path,
+                                         bool overwrite, scree_error *error) {
+  scree_output output;
+  scree_status status = scree_output_open(path, overwrite, &output, error);
+  if (status != SCREE_OK) return status;
+  FILE *s = output.stream;
+  for (size_t k = 0; k < r->parameter_count; k++) {
+    if (k) putc(',', s);
+    scree_csv_text(s, r->parameters[k].name);
+  }
+  fputs(r->is_search ? ",mean,low,high,allowed,runs\n" : "\n", s);
+  for (size_t i = 0; !r->is_search && i < r->sample_count; i++) {
+    put_row(s, r->samples + i * r->parameter_count, r->parameter_count);
+    putc('\n', s);
+  }
+  for (size_t i = 0; r->is_search && i < r->candidate_count; i++) {
+    const scree_setting *c = &r->candidates[i];
+    const double rest[] = {c->mean, c->low, c->high, c->allowed, (double)c->run_count};
+    put_row(s, c->values, r->parameter_count);
+    putc(',', s);
+    put_row(s, rest, sizeof rest / sizeof *rest);
+    putc('\n', s);
+  }
+  return scree_output_commit(&output, error);
+}
