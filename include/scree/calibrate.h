@@ -120,8 +120,8 @@ typedef struct scree_calibration_result {
   /* After each round: runs, and narrowed of every parameter; of a search the best mean so far. */
   double *history;    /* history_count x (1 + parameter_count) or x 2 */
   const char *sought; /* of a search: the answer */
-  size_t candidate_count;
-  scree_setting *candidates; /* the best first */
+  size_t setting_count;
+  scree_setting *settings; /* the best first */
   size_t failure_count;
   const char **failures; /* why runs failed, each reason once */
   void *memory;          /* private */

@@ -235,19 +235,19 @@ scree_status scree_search_describe(const scree_calibration *c, const scree_calib
                                    scree_calibration_result *r, scree_error *error) {
   size_t d = c->parameter_count;
   scree_status status = SCREE_OK;
-  r->candidates = scree_arena_take(arena, g->run_counts[0], sizeof *r->candidates);
+  r->settings = scree_arena_take(arena, g->run_counts[0], sizeof *r->settings);
   r->sought = scree_arena_text(arena, c->quantities[sought(c)].plan->answer);
-  if (!r->candidates || !r->sought) return scree_fail_memory(error, 0, "candidates");
+  if (!r->settings || !r->sought) return scree_fail_memory(error, 0, "candidates");
   for (size_t i = 0; status == SCREE_OK && i < g->run_counts[0]; i++) {
     if (seen_before(g, i, d)) continue;
     scree_setting made;
     status = describe_place(c, m, g, g->x[0] + i * d, arena, &made);
-    size_t at = r->candidate_count++;
-    for (; at > 0 && is_better(c, &made, &r->candidates[at - 1]); at--)
-      r->candidates[at] = r->candidates[at - 1];
-    r->candidates[at] = made;
+    size_t at = r->setting_count++;
+    for (; at > 0 && is_better(c, &made, &r->settings[at - 1]); at--)
+      r->settings[at] = r->settings[at - 1];
+    r->settings[at] = made;
   }
-  if (r->candidate_count > MOST_NEAR) r->candidate_count = MOST_NEAR;
+  if (r->setting_count > MOST_NEAR) r->setting_count = MOST_NEAR;
   if (status == SCREE_OK) status = describe_rounds(c, m, arena, r);
   return status == SCREE_OK ? status : scree_fail_memory(error, 0, "candidates");
 }

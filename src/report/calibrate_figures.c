@@ -222,7 +222,7 @@ scree_status scree_calibration_report_write(const scree_calibration_result *resu
       scree_calibration_json_write(result, IN_FOLDER("calibration.json"), true, error);
   if (status == SCREE_OK)
     status = scree_calibration_csv_write(
-        result, IN_FOLDER(result->is_search ? "candidates.csv" : "samples.csv"), true, error);
+        result, IN_FOLDER(result->is_search ? "settings.csv" : "samples.csv"), true, error);
   if (status == SCREE_OK) status = write_text(result, IN_FOLDER("calibration.txt"), error);
   scree_status drawn = status;
   if (drawn == SCREE_OK && !result->is_search)

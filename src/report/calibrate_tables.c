@@ -99,15 +99,15 @@ static void print_search(const scree_calibration_result *r, FILE *s) {
   fprintf(s, "\n%s %s\n", r->maximise ? "the most of" : "the least of", r->sought);
   for (size_t k = 0; k < r->parameter_count; k++) fprintf(s, "%14.14s ", r->parameters[k].name);
   fprintf(s, "%12s  %-27s %8s %5s\n", "mean", "interval", "allowed", "runs");
-  for (size_t i = 0; i < r->candidate_count; i++) {
-    const scree_setting *c = &r->candidates[i];
+  for (size_t i = 0; i < r->setting_count; i++) {
+    const scree_setting *c = &r->settings[i];
     for (size_t k = 0; k < r->parameter_count; k++) fprintf(s, "%14.6g ", c->values[k]);
     fprintf(s, "%12.5g  [%12.5g, %12.5g] %6.0f %% %5zu%s\n", c->mean, c->low, c->high,
             100 * c->allowed, c->run_count, i == 0 ? "  best" : "");
   }
   fprintf(s, "intervals of %g %% of the mean; allowed: probability that all limits hold\n",
           100 * r->confidence);
-  if (r->candidate_count && r->candidates[0].allowed < 0.5)
+  if (r->setting_count && r->settings[0].allowed < 0.5)
     fputs("no setting that was tried likely keeps the limits; the first comes nearest\n", s);
 }
 
@@ -214,12 +214,23 @@ static void put_advice(scree_json *json, const scree_calibration_result *r) {
   scree_json_end(json);
 }
 
-static void put_candidates(scree_json *json, const scree_calibration_result *r) {
+/* Some of them, evenly: all are in samples.csv. */
+static void put_samples(scree_json *json, const scree_calibration_result *r) {
+  enum { MOST_ROWS = 300 };
+  size_t count = r->sample_count < MOST_ROWS ? r->sample_count : MOST_ROWS;
+  scree_json_array(json, "samples");
+  for (size_t i = 0; i < count; i++)
+    put_numbers(json, NULL, r->samples + i * r->sample_count / count * r->parameter_count,
+                r->parameter_count);
+  scree_json_end(json);
+}
+
+static void put_settings(scree_json *json, const scree_calibration_result *r) {
   scree_json_text(json, "sought", r->sought);
   scree_json_bool(json, "maximise", r->maximise);
-  scree_json_array(json, "candidates");
-  for (size_t i = 0; i < r->candidate_count; i++) {
-    const scree_setting *c = &r->candidates[i];
+  scree_json_array(json, "settings");
+  for (size_t i = 0; i < r->setting_count; i++) {
+    const scree_setting *c = &r->settings[i];
     scree_json_object(json, NULL);
     put_numbers(json, "values", c->values, r->parameter_count);
     scree_json_number(json, "mean", c->mean);
@@ -252,10 +263,12 @@ static void put_result(scree_json *json, const scree_calibration_result *r) {
   scree_json_array(json, "answers");
   for (size_t i = 0; i < r->answer_count; i++) put_answer(json, &r->answers[i]);
   scree_json_end(json);
-  if (r->is_search)
-    put_candidates(json, r);
-  else
+  if (r->is_search) {
+    put_settings(json, r);
+  } else {
     put_advice(json, r);
+    put_samples(json, r);
+  }
   scree_json_array(json, "history");
   for (size_t i = 0; i < r->history_count; i++)
     put_numbers(json, NULL, r->history + i * width, width);
@@ -300,8 +313,8 @@ scree_status scree_calibration_csv_write(const scree_calibration_result *r, cons
     put_row(s, r->samples + i * r->parameter_count, r->parameter_count);
     putc('\n', s);
   }
-  for (size_t i = 0; r->is_search && i < r->candidate_count; i++) {
-    const scree_setting *c = &r->candidates[i];
+  for (size_t i = 0; r->is_search && i < r->setting_count; i++) {
+    const scree_setting *c = &r->settings[i];
     const double rest[] = {c->mean, c->low, c->high, c->allowed, (double)c->run_count};
     put_row(s, c->values, r->parameter_count);
     putc(',', s);

@@ -29,7 +29,7 @@ static const char ending[] = ".levels";
 
 /* What a folder may hold: the file, the page's name for it, what says it to readers without
  * JavaScript, and the picture that stands in for the 3D view (NULL: none). */
-enum { CHOICE, STUDY, CLUMP, HEAP, POUR, SCENE, RESULT_COUNT };
+enum { CHOICE, STUDY, CLUMP, HEAP, POUR, SCENE, CALIBRATION, RESULT_COUNT };
 static const struct {
   const char *file, *key, *text, *picture;
 } results[RESULT_COUNT] = {{"choice.json", "choice", "choice.txt", NULL},
@@ -37,7 +37,8 @@ static const struct {
                            {"clump.json", "clump", "clump.txt", NULL},
                            {"result.json", "heap", "result.txt", "heap.png"},
                            {"drop.json", "pour", "drop.txt", "drop.png"},
-                           {"result.json", "scene", "result.txt", "scene.png"}};
+                           {"result.json", "scene", "result.txt", "scene.png"},
+                           {"calibration.json", "calibration", "calibration.txt", "corner.png"}};
 static const char scene_file[] = "scene.yaml"; /* beside a scene's result.json, not a heap's */
 
 typedef struct page {
@@ -321,7 +322,7 @@ static scree_status find_results(page *p, const char *folder, name_list *found) 
     status = scree_fail(p->error, SCREE_BAD_FILE,
                         "%s: holds no results: no choice.json (scree choose), result.json (run, "
                         "repose), drop.json, "
-                        "study.json or clump.json",
+                        "study.json, clump.json or calibration.json",
                         folder);
   return status;
 }

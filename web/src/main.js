@@ -1,5 +1,6 @@
 // Fills the page from the data in it. Everything that comes from files is set as text.
 import './page.css';
+import { CalibrationSection } from './calibrate.js';
 import { ChoiceSection } from './choice.js';
 import { ClumpSection } from './clump.js';
 import { HeapSection } from './heap.js';
@@ -31,6 +32,8 @@ function provenanceRows(folder) {
     add('study', `${folder.study.name}: design ${folder.study.design}, decimation ${folder.study.method}, seed ${folder.study.seed}`);
     add('runs made by', `scree ${folder.study.version}, ${folder.study.workers ? `${folder.study.workers} workers at work, ` : ''}${number(folder.study.seconds_spent, 3)} s of processor time`);
   }
+  if (folder.calibration) add('scree', folder.calibration.version);
+  if (folder.calibration) add('seed', folder.calibration.seed);
   add('started', run.started);
   if (run.elapsed_s !== undefined) add('time', `${number(run.elapsed_s, 3)} s, ${number(run.processor_s, 3)} s of processor time, ${run.threads} threads`);
   if (run.processor) add('machine', `${run.processor}, ${run.processors} processors; ${run.system}`);
@@ -53,6 +56,7 @@ async function fill() {
     if (folder.pour) new PourSection(host, folder);
     if (folder.scene) new SceneSection(host, folder);
     if (folder.study) new StudySection(host, folder);
+    if (folder.calibration) new CalibrationSection(host, folder);
     element('h2', 'How this was made', host);
     table(host, [{ head: 'what', value: (row) => row.what }, { head: 'value', value: (row) => row.value }],
       provenanceRows(folder), 'provenance.csv', 'Version, command, inputs, machine and times').classList.add('texts');
