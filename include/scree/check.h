@@ -102,6 +102,7 @@ SCREE_API scree_status scree_mesh_check(const scree_mesh *mesh, const scree_chec
 /* What a repair does, in this order: X(NAME, "name in JSON", "what one is", "what several
  * are"). */
 #define SCREE_REPAIR_LIST(X)                                                                       \
+  X(CUT_OFF, "cut_off_facets", "facet below the plane cut off", "facets below the plane cut off")  \
   X(DROP_BAD, "dropped_bad_facets", "facet with coordinates that are no numbers dropped",          \
     "facets with coordinates that are no numbers dropped")                                         \
   X(WELD, "welded_vertices", "vertex united with another at its position",                         \
@@ -152,6 +153,20 @@ typedef enum scree_repair_action {
 SCREE_API const char *scree_repair_action_name(scree_repair_action action);
 SCREE_API const char *scree_repair_action_text(scree_repair_action action, size_t count);
 
+/* Whether what lies below a plane is cut off before all else, as a table that was scanned with the
+ * body on it. */
+typedef enum scree_cut_kind {
+  SCREE_CUT_NONE,
+  SCREE_CUT_AUTO, /* the plane that carries most of the boundary, and what reaches farther from it
+                   */
+  SCREE_CUT_GIVEN /* plane */
+} scree_cut_kind;
+
+/* normal . p = offset, m; kept is what lies in the direction of the normal, of unit length. */
+typedef struct scree_cut_plane {
+  double normal[3], offset;
+} scree_cut_plane;
+
 typedef struct scree_repair_options {
   /* Boundary vertices no farther apart than this share of the bounding box diagonal may become one
    * where that closes a seam, in [0, 0.01]; default 1e-4. The smallest distance that does is used,
@@ -192,6 +207,10 @@ typedef struct scree_repair_options {
   /* Refuse where cutting and merging change the volume by more than this share of it, in [0, 1];
    * default 0.01. Dropping debris and cavities is no such change. */
   double volume_change;
+  /* Default none. Of what is left the largest shell is kept, and holes up to 4,096 edges are closed
+   * without new vertices, so that the body is flat where it stood. */
+  scree_cut_kind cut;
+  scree_cut_plane plane;
 } scree_repair_options;
 SCREE_API scree_repair_options scree_default_repair_options(void);
 
@@ -203,6 +222,7 @@ typedef struct scree_repair_report {
    * came of it; NaN where none did. */
   double volume_before, volume_after;
   double filled_volume;      /* of the small cavities, m^3 */
+  scree_cut_plane plane;     /* at which facets were cut off, with done[SCREE_REPAIR_CUT_OFF] */
   scree_check before, after; /* after: of the result, or of what the failed attempt came to */
 } scree_repair_report;
 
@@ -214,7 +234,7 @@ typedef struct scree_repair_report {
  * the volume better is taken. repaired may be mesh itself: then one that needs nothing is not
  * copied, and what it held is freed where it is replaced; on failure it is as it was. options and
  * progress may be NULL; *report (may be NULL) is filled on success and on SCREE_BAD_MESH. Other
- * errors as scree_mesh_check. */
+ * errors as scree_mesh_check. With a cut, before and volume_before are of the mesh as it came. */
 SCREE_API scree_status scree_mesh_repair(const scree_mesh *mesh,
                                          const scree_repair_options *options,
                                          const scree_progress *progress, scree_mesh *repaired,

@@ -61,16 +61,25 @@ SCREE_API scree_status scree_particle_sphere(double radius, scree_particle **par
 SCREE_API scree_status scree_particle_clump(const double *centres, const double *radii,
                                             size_t count, const scree_particle *like,
                                             scree_particle **particle, scree_error *error);
-/* The clump of a table: a sphere a line, its centre x, y, z and its radius, between blanks, commas
- * or semicolons; a first line of words, empty lines and lines that begin with # are passed over,
- * but for the unit that scree's own comment names (else it is that of the options, of which NULL
- * are the defaults; unit_m, max_bytes and ignore_comment_unit are used), and `# volume V`, `#
- * centroid X Y Z` and `# inertia XX YY ZZ XY XZ YZ` (about the centroid, for density 1) in that
- * unit: with all three these are the clump's, as of a particle that it is like. At most 10,000
- * spheres. Errors: SCREE_BAD_FILE, naming file and line. */
+/* The clump of a table: a sphere a line, between blanks, commas, semicolons or tabs. A first line
+ * names the columns, in any order and among others that are passed over: x, y, z and radius (r) or
+ * diameter (d), as "X (mm)" with their unit. Without it they are x, y, z, radius, as CLUMP, MClump
+ * of MercuryDPM and Chrono's DEM-Engine write them, behind the line's number where there are five.
+ * Empty lines and comments (#, %, //) are passed over, but for the unit that scree's own comment
+ * names (else it is that of the names or the options, of which NULL are the defaults; unit_m,
+ * max_bytes and ignore_comment_unit are used), and `# volume V`, `# centroid X Y Z` and `# inertia
+ * XX YY ZZ XY XZ YZ` (about the centroid, for density 1) in that unit: with all three these are the
+ * clump's, as of a particle that it is like. PFC's `clump template create` with `pebbles`, and with
+ * `volume` and `inertia` as the body's, is read too. At most 10,000 spheres. Errors:
+ * SCREE_BAD_FILE, naming file and line. */
 SCREE_API scree_status scree_particle_clump_read(const char *path,
                                                  const scree_read_options *options,
                                                  scree_particle **particle, scree_error *error);
+/* Whether a path ends as that of a table of spheres: .csv, .tsv, .txt, .dat, .p3dat. */
+SCREE_API bool scree_is_clump_table(const char *path);
+/* Into how many groups the spheres fall that reach each other: 1 where they hang together, and for
+ * meshes. Cost: quadratic in the spheres. */
+SCREE_API size_t scree_particle_piece_count(const scree_particle *particle);
 /* Worlds hold their own reference: freeing before the world is legal. */
 SCREE_API void scree_particle_free(scree_particle *particle);
 

@@ -266,13 +266,17 @@ typedef struct scree_code_options {
   double density;   /* kg/m3, default 2000 */
   size_t count;     /* of clumps that the scripts let fall; default 27 */
   bool overwrite;
+  /* Pa, of the scripts; default 0: so soft that a body that falls from the script's height presses
+   * itself a tenth of its radius into the floor, at least 1e6. */
+  double young;
 } scree_code_options;
 SCREE_API scree_code_options scree_default_code_options(void);
 
 /* Writes a clump (or sphere) into an existing folder as the code reads it, in SI units: its spheres
  * about the centre of mass along the principal axes, the particle's mass and inertia (EDEM and MFiX
  * work these out for themselves), and for LAMMPS, LIGGGHTS and YADE a script that lets some fall
- * into a box, with made-up materials. */
+ * into a box, with made-up materials, and ends with an error where a sphere is missing. In file
+ * names, characters other than letters, digits, points, - and _ become _. */
 SCREE_API scree_status scree_clump_code_write(const scree_particle *particle, scree_dem_code code,
                                               const scree_code_options *options, const char *folder,
                                               scree_error *error);

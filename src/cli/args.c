@@ -345,7 +345,8 @@ typedef struct parser {
   int word_count;
   char **words;
   int next;
-  bool given[MOST_OPTIONS]; /* of the verb's */
+  bool given[MOST_OPTIONS];        /* of the verb's */
+  const char *texts[MOST_OPTIONS]; /* what stood behind them */
   const char **inputs;
   size_t input_count;
 } parser;
@@ -375,6 +376,12 @@ static bool is_given(const parser *p, const char *name, size_t length) {
 static void mark_given(parser *p, found_option found) {
   size_t index = (size_t)(found.option - p->verb->options);
   if (found.base == p->options && index < MOST_OPTIONS) p->given[index] = true;
+}
+
+static int take_value(parser *p, found_option found, const char *text) {
+  size_t index = (size_t)(found.option - p->verb->options);
+  if (found.base == p->options && index < MOST_OPTIONS) p->texts[index] = text;
+  return store(p->verb, found.option, text, found.base);
 }
 
 static bool has_input(const parser *p, const char *beginning, size_t length) {
@@ -436,11 +443,11 @@ static int parse_long(parser *p, const char *word) {
     if (equals) return cli_misuse(p->verb, "--%s takes no value", found.option->name);
     return store(p->verb, found.option, NULL, found.base);
   }
-  if (equals) return store(p->verb, found.option, equals + 1, found.base);
+  if (equals) return take_value(p, found, equals + 1);
   if (p->next >= p->word_count)
     return cli_misuse(p->verb, "--%s needs a value %s", found.option->name,
                       found.option->value_name);
-  return store(p->verb, found.option, p->words[p->next++], found.base);
+  return take_value(p, found, p->words[p->next++]);
 }
 
 /* -qv, -n100, -n 100 */
@@ -453,10 +460,10 @@ static int parse_letters(parser *p, const char *word) {
       store(p->verb, found.option, NULL, found.base);
       continue;
     }
-    if (letter[1]) return store(p->verb, found.option, letter + 1, found.base);
+    if (letter[1]) return take_value(p, found, letter + 1);
     if (p->next >= p->word_count)
       return cli_misuse(p->verb, "-%c needs a value %s", *letter, found.option->value_name);
-    return store(p->verb, found.option, p->words[p->next++], found.base);
+    return take_value(p, found, p->words[p->next++]);
   }
   return 0;
 }
@@ -495,6 +502,27 @@ static void remark_values(const parser *p) {
   }
 }
 
+/* A number without a unit is in metres, and whoever thinks in the unit of the files means another.
+ */
+static void remark_lengths(const parser *p) {
+  static const double far_apart = 100;
+  size_t unit_index = index_of(p, "unit", strlen("unit"));
+  if (unit_index == MOST_OPTIONS || p->verb->options[unit_index].kind != CLI_UNIT) return;
+  double number,
+      unit = *(const double *)((const char *)p->options + p->verb->options[unit_index].offset);
+  if (unit < far_apart && unit * far_apart > 1) return;
+  for (size_t i = 0; i < p->verb->option_count && i < MOST_OPTIONS; i++) {
+    const cli_option *option = &p->verb->options[i];
+    if ((option->kind != CLI_LENGTH && option->kind != CLI_LENGTH_TEXT) || !p->texts[i]) continue;
+    if (!cli_real_from_text(p->texts[i], &number) || number == 0) continue;
+    fprintf(stderr,
+            "scree: --%s %s is in m, as lengths without a unit are, and the files are in %s: "
+            "write %s%s or %sm\n",
+            option->name, p->texts[i], cli_unit_name(unit), p->texts[i], cli_unit_name(unit),
+            p->texts[i]);
+  }
+}
+
 int cli_parse(const cli_verb *verb, int word_count, char **words, void *options, cli_common *common,
               const char **inputs, size_t *input_count) {
   parser p = {.verb = verb,
@@ -521,6 +549,9 @@ int cli_parse(const cli_verb *verb, int word_count, char **words, void *options,
   int result = check_input_count(verb, inputs, *input_count);
   common->unit_given = is_given(&p, "unit", strlen("unit"));
   if (result == 0) result = check_partners(&p);
-  if (result == 0 && !common->quiet) remark_values(&p);
+  if (result == 0 && !common->quiet) {
+    remark_values(&p);
+    remark_lengths(&p);
+  }
   return result;
 }

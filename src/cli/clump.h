@@ -2,13 +2,11 @@
 #ifndef SCREE_CLI_CLUMP_H
 #define SCREE_CLI_CLUMP_H
 
-#include <stdbool.h>
-#include <string.h>
+#include "scree.h"
 
-/* Whether a word of the command line names a clump: a file .csv. */
+/* Whether a word of the command line names a clump. */
 static inline bool cli_is_clump(const char *word) {
-  const char *dot = strrchr(word, '.');
-  return dot && !strcmp(dot, ".csv");
+  return scree_is_clump_table(word);
 }
 
 #endif

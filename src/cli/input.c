@@ -73,6 +73,12 @@ static const char *unit_text(double unit_m, char buffer[32]) {
   return buffer;
 }
 
+void cli_remark_size(const char *word, double size, const char *hint) {
+  if (size < smallest_unnamed || size > largest_size)
+    cli_remark(word, "%.3g %s across: is the unit right? %s", size < 1 ? 1e3 * size : size,
+               size < 1 ? "mm" : "m", hint);
+}
+
 void cli_add_line(char *text, size_t size, const char *format, ...) {
   size_t used = strlen(text);
   va_list arguments;

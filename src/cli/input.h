@@ -57,6 +57,9 @@ bool cli_is_sample(const char *word, const char **name);
 void cli_input_obeys(const cli_common *common);
 /* "word: sentence" on stderr, unless it is to be quiet. */
 void cli_remark(const char *word, const char *format, ...) SCREE_PRINTF(2, 3);
+/* The same where a size (m) whose unit nobody may have named is as of a wrong one; hint: how it is
+ * named. */
+void cli_remark_size(const char *word, double size, const char *hint);
 /* One line more in a text of so many bytes. */
 void cli_add_line(char *text, size_t size, const char *format, ...) SCREE_PRINTF(3, 4);
 /* Lines where the file contradicts itself, says another unit than the options, or is of a size

@@ -22,6 +22,7 @@ const cli_meaning cli_meanings[] = {
     {.name = "container", .meaning = "What particles are poured into."},
     {"count", 'n', "How many triangles, or spheres of a clump, to keep.", 0, 0, NULL},
     {.name = "csv", .meaning = "Print CSV instead of text."},
+    {.name = "cut-plane", .meaning = "Cut off what lies below a plane."},
     {.name = "cylinder", .meaning = "Inner diameter of the lifted cylinder."},
     {.name = "debris", .meaning = "Shells below this share of the largest one's area go."},
     {"density", 'd', "Density of the solid.", 50, 25000,

@@ -13,7 +13,7 @@
 typedef struct export_arguments {
   const char *output, *reference, *to;
   cli_source source;
-  double density;
+  double density, young;
   size_t count, particles;
   int view;
   bool centre, principal, overwrite;
@@ -43,6 +43,10 @@ static const cli_option options[] = {
      300, NULL},
     {"particles", CLI_COUNT, AT(particles), "N",
      "For a DEM code: clumps that the script lets fall. Default: 27.", 1, 100000, NULL},
+    {"young", CLI_REAL, AT(young), "PA",
+     "For a DEM code: Young's modulus of its script. Default: so soft that a body that falls from "
+     "the script's height presses itself a tenth of its radius into the floor.",
+     1e4, 1.3e12, NULL},
     {"centre", CLI_FLAG, AT(centre), NULL, "Put the centre of mass at the origin.", 0, 0, NULL},
     {"principal", CLI_FLAG, AT(principal), NULL,
      "And turn the principal axes of inertia along x, y and z, the long one along x.", 0, 0, NULL},
@@ -171,7 +175,16 @@ static scree_status make_clump(const cli_call *call, scree_particle **particle,
   const export_arguments *a = call->options;
   const char *word = call->inputs[0];
   cli_input_options input = cli_source_options(&a->source);
-  if (cli_is_clump(word)) return scree_particle_clump_read(word, &input.read, particle, error);
+  if (cli_is_clump(word)) {
+    scree_status read = scree_particle_clump_read(word, &input.read, particle, error);
+    size_t pieces = read == SCREE_OK ? scree_particle_piece_count(*particle) : 1;
+    if (pieces > 1)
+      cli_remark(word,
+                 "the spheres lie in %zu pieces that do not touch: are the columns x, y, z, "
+                 "radius, and all in one unit?",
+                 pieces);
+    return read;
+  }
   cli_clump_surface surface = {.triangles = SCREE_CLUMP_TRIANGLES};
   scree_clump_options o = scree_default_clump_options();
   scree_clumps clumps;
@@ -198,6 +211,7 @@ static scree_status export_clump(const cli_call *call, scree_error *error) {
   o.name = name;
   o.density = a->density;
   o.count = a->particles;
+  o.young = a->young;
   o.overwrite = a->overwrite;
   scree_status status = cli_make_folder(a->output, error);
   if (status == SCREE_OK) status = make_clump(call, &particle, error);

@@ -8,7 +8,7 @@
 #include <string.h>
 
 typedef struct repair_arguments {
-  const char *output;
+  const char *output, *cut_plane;
   cli_source source;
   double seam_tolerance, debris_share, cavity_share, volume_change;
   size_t hole_edges; /* HOLES_UNSET: the library's default */
@@ -51,6 +51,11 @@ static const cli_option options[] = {
      0, 1, NULL},
     {"drop-cavities", CLI_FLAG, AT(drop_cavities), NULL, "Fill all cavities: drop their shells.", 0,
      0, NULL},
+    {"cut-plane", CLI_TEXT, AT(cut_plane), "auto|z=LENGTH",
+     "Cut off what lies below a plane, keep the largest shell that stands on it and close it flat: "
+     "auto, the plane that carries most of the boundary, as a table's rim; or z=12mm (x=, y=), "
+     "without a unit in the file's.",
+     0, 0, NULL},
     {"no-cut", CLI_FLAG, AT(no_cut), NULL,
      "Refuse a surface that meets itself instead of cutting the place out and filling the hole.", 0,
      0, NULL},
@@ -94,6 +99,22 @@ static scree_repair_options options_of(const repair_arguments *a) {
   o.merge_folds = a->folds;
   o.intersections = !a->fast;
   return o;
+}
+
+/* 0, or 2 after telling what is wrong. */
+static int take_plane(const cli_call *call, double unit, scree_repair_options *o) {
+  const char *text = ((const repair_arguments *)call->options)->cut_plane;
+  double plain;
+  if (!text) return 0;
+  o->cut = SCREE_CUT_AUTO;
+  if (!strcmp(text, "auto")) return 0;
+  o->cut = SCREE_CUT_GIVEN;
+  if (*text < 'x' || *text > 'z' || text[1] != '=' ||
+      !cli_length_from_text(text + 2, &o->plane.offset))
+    return cli_misuse(call->verb, "--cut-plane %s: must be auto, or as z=12mm", text);
+  if (cli_real_from_text(text + 2, &plain)) o->plane.offset = plain * unit;
+  o->plane.normal[*text - 'x'] = 1;
+  return 0;
 }
 
 static scree_status write_result(const cli_call *call, const scree_mesh *mesh, scree_error *error) {
@@ -159,9 +180,12 @@ static int run(const cli_call *call) {
     return cli_misuse(call->verb, "--holes and --large-holes exclude each other");
   int code = cli_check_ending(call->verb, a->output, CLI_MESH);
   if (code) return code;
+  code = take_plane(call, a->source.unit, &how);
+  if (code) return code;
   if (cli_check_output(call, a->output, a->force, &error) != SCREE_OK ||
       cli_load(call->inputs[0], &input, call->progress, &scan, &error) != SCREE_OK)
     return cli_fail(&error);
+  (void)take_plane(call, scan.unit_m, &how); /* which the file may state */
   scree_status status =
       scree_mesh_repair(&scan.mesh, &how, call->progress, &repaired, &report, &error);
   if (status == SCREE_BAD_MESH) cli_hint_at_option(&report, &how, &error);
@@ -191,7 +215,8 @@ const cli_verb cli_verb_repair = {
         "passes `scree check`, or nothing is written and what remains is said.\n\n"
         "Exit code 0 where the result was written, 2 for wrong usage, 1 otherwise.",
     .examples = "scree repair scan.stl -o closed.stl\n"
-                "scree repair scan.ply -o closed.ply --large-holes --largest\n",
+                "scree repair scan.ply -o closed.ply --large-holes --largest\n"
+                "scree repair rock-on-table.obj --cut-plane auto -o rock.ply\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .defaults = &defaults,

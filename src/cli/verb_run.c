@@ -3,6 +3,7 @@
 #include "base/number.h"
 #include "base/platform.h"
 #include "cli/frames.h"
+#include "cli/input.h"
 #include "cli/options.h"
 #include "cli/output.h"
 #include "cli/terminal.h"
@@ -162,6 +163,17 @@ static void remark_values(const char *text) {
   }
 }
 
+/* As of files that other verbs read: a scene's shapes are in mm where their unit is not said. */
+static void remark_sizes(const scree_scene *scene) {
+  for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
+    scree_particle_measures m;
+    const char *source = scree_scene_shape_source(scene, i);
+    if (!source || !*source) continue; /* the scene says its size itself */
+    scree_particle_measure(scree_scene_shape_particle(scene, i), &m);
+    cli_remark_size(scree_scene_shape_name(scene, i), m.size, "unit: says which it is");
+  }
+}
+
 static void print_walls(const scree_scene *scene) {
   for (size_t i = 0; scree_scene_geometry_name(scene, i); i++)
     for (const char *line = scree_scene_geometry_note(scene, i); line && *line;) {
@@ -186,6 +198,7 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   if (status != SCREE_OK || r->call->quiet || r->arguments->json) return status;
   cli_terminal_end();
   if (!resumed) remark_values(scree_scene_text(scene));
+  if (!resumed) remark_sizes(scene);
   scree_scene_softness soft;
   char sentence[600];
   if (!resumed && scree_scene_soft(scene, &soft)) {

@@ -511,6 +511,40 @@ static scree_status repair_checked(const scree_mesh *mesh, const scree_check *be
   return status;
 }
 
+/* What stands on a plane, repaired. */
+static scree_status repair_cut_off(const scree_mesh *mesh, const scree_repair_options *options,
+                                   const scree_progress *progress, scree_mesh *repaired,
+                                   scree_repair_report *report, scree_error *error) {
+  scree_repair_options chosen = *options;
+  scree_check_options how = {.intersections = chosen.intersections};
+  scree_repair_report made = {.seam_distance = 0};
+  scree_cut_plane plane;
+  scree_check before;
+  scree_mesh above, whole;
+  size_t dropped;
+  double area, unsaid;
+  scree_status status = scree_mesh_check(mesh, &how, progress, &before, error);
+  if (status == SCREE_OK) status = measure(mesh, &before, &area, &unsaid, error);
+  if (status == SCREE_OK)
+    status = scree_repair_cut_off(mesh, chosen.cut == SCREE_CUT_GIVEN ? &chosen.plane : NULL,
+                                  &plane, &dropped, &above, error);
+  if (status != SCREE_OK) return status;
+  chosen.cut = SCREE_CUT_NONE;
+  chosen.keep_largest = chosen.fill_large_holes = chosen.flat_large_holes = true;
+  status = scree_mesh_repair(&above, &chosen, progress, &whole, &made, error);
+  scree_mesh_free(&above);
+  made.done[SCREE_REPAIR_CUT_OFF] = dropped;
+  made.plane = plane;
+  made.before = before;
+  made.area_before = area;
+  made.volume_before = before.volume_known ? before.volume : NAN;
+  if (report && (status == SCREE_OK || status == SCREE_BAD_MESH)) *report = made;
+  if (status != SCREE_OK) return status;
+  if (mesh == repaired) scree_mesh_free(repaired);
+  *repaired = whole;
+  return SCREE_OK;
+}
+
 scree_status scree_mesh_repair(const scree_mesh *mesh, const scree_repair_options *options,
                                const scree_progress *progress, scree_mesh *repaired,
                                scree_repair_report *report, scree_error *error) {
@@ -519,6 +553,8 @@ scree_status scree_mesh_repair(const scree_mesh *mesh, const scree_repair_option
   scree_repair_report untouched = {.seam_distance = 0};
   scree_check *before = &untouched.before;
   scree_status status = verify_options(&chosen, error);
+  if (status == SCREE_OK && chosen.cut != SCREE_CUT_NONE)
+    return repair_cut_off(mesh, &chosen, progress, repaired, report, error);
   if (status == SCREE_OK) status = scree_mesh_check(mesh, &how, progress, before, error);
   if (status != SCREE_OK) return status;
   if (mesh == repaired && needs_nothing(mesh, before)) {

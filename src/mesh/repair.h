@@ -54,6 +54,12 @@ bool scree_repair_spokes(const scree_mesh *mesh, const scree_adjacency *adjacenc
 
 /* ---- The stages ---- */
 
+/* repair_plane.c: what lies above the plane given, or above the one found (NULL), which goes to
+ * *plane. SCREE_BAD_MESH where none is found, or where all lies on one side. */
+scree_status scree_repair_cut_off(const scree_mesh *mesh, const scree_cut_plane *given,
+                                  scree_cut_plane *plane, size_t *dropped, scree_mesh *above,
+                                  scree_error *error);
+
 /* repair.c: facets on the same three vertices as another. */
 scree_status scree_repair_duplicates(scree_repair *r, scree_error *error);
 /* repair_seams.c: facets without area; boundary vertices close to each other; boundary vertices on

@@ -18,15 +18,16 @@ typedef struct clump_job {
   scree_particle_measures m;
   double mass, inertia[3];
   double width, height; /* of the script's box, m */
+  double young;         /* Pa */
   double time_step;     /* s */
   double damping;       /* LAMMPS's gamma_n, 1/(m s) */
-  char name[128];       /* without blanks */
+  char name[128];       /* letters, digits, points, - and _ */
 } clump_job;
 
 static const double pi = 3.14159265358979323846;
 
-/* Young's modulus, Poisson's ratio and friction of the scripts: to be edited there. */
-static const double young = 1e7, poisson = 0.3, friction = 0.5, gravity = 9.81;
+/* Of the scripts, to be edited there. */
+static const double poisson = 0.3, friction = 0.5, gravity = 9.81;
 
 static double least_radius(const clump_job *j) {
   double least = INFINITY, centre[3], radius;
@@ -40,13 +41,38 @@ static double least_radius(const clump_job *j) {
 /* A third of the critical damping at an overlap of 2 % of the radius: Hertz's stiffness is E
  * sqrt(overlap radius), and the damping gamma m sqrt(overlap radius). */
 static double damping_rate(const clump_job *j, double least) {
-  return 2. / 3 * sqrt(young / (j->mass * sqrt(0.02) * least));
+  return 2. / 3 * sqrt(j->young / (j->mass * sqrt(0.02) * least));
+}
+
+/* So that a sphere of the body's volume that falls from the script's height presses itself a tenth
+ * of its radius into the floor (Hertz: overlap = (15 m v2 / (16 E* sqrt(r)))^(2/5)): softer bodies
+ * of any size would fall through it, and stiffer ones take more steps. */
+static double softened_modulus(const clump_job *j) {
+  const double share = 0.1, speed2 = 2 * gravity * j->height;
+  double plane = 15. / 16 * (4. / 3 * pi) * j->options->density * speed2 / pow(share, 2.5);
+  return fmax(1e6, plane * (1 - poisson * poisson));
 }
 
 /* A tenth of Rayleigh's time of the smallest sphere (Li, Xu, Thornton 2005). */
 static double rayleigh_step(const clump_job *j, double least) {
-  double shear = young / (2 * (1 + poisson));
+  double shear = j->young / (2 * (1 + poisson));
   return 0.1 * pi * least * sqrt(j->options->density / shear) / (0.1631 * poisson + 0.8766);
+}
+
+/* Other characters mean something in one of the scripts; of UTF-8 one stands for all its bytes. */
+static void name_files(clump_job *j) {
+  static const char allowed[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.";
+  size_t used = 0;
+  for (const char *c = j->options->name; *c && used + 1 < sizeof j->name; c++) {
+    if (((unsigned char)*c & 0xc0) == 0x80) continue;
+    bool is_kept = strchr(allowed, *c) && (used || (*c != '-' && *c != '.'));
+    j->name[used++] = is_kept ? *c : '_';
+  }
+}
+
+static const char *modulus_source(const clump_job *j) {
+  return j->options->young > 0 ? "as asked for"
+                               : "softened, so that the fall presses a tenth of a radius";
 }
 
 static clump_job prepare(const scree_particle *particle, const scree_code_options *o,
@@ -58,11 +84,10 @@ static clump_job prepare(const scree_particle *particle, const scree_code_option
   j.width = 4 * j.m.bounding_radius * ceil(cbrt((double)o->count)) / 2;
   j.height = 2 * j.m.bounding_radius * (2 + ceil(cbrt((double)o->count))) * 2;
   double least = least_radius(&j);
+  j.young = o->young > 0 ? o->young : softened_modulus(&j);
   j.time_step = rayleigh_step(&j, least);
   j.damping = damping_rate(&j, least);
-  size_t used = 0;
-  for (const char *c = o->name; *c && used + 1 < sizeof j.name; c++)
-    j.name[used++] = strchr(" \t\"'\\/", *c) ? '_' : *c;
+  name_files(&j);
   return j;
 }
 
@@ -117,39 +142,55 @@ static void put_molecule(const clump_job *j, FILE *f) {
   }
 }
 
+/* Overlapping spheres would each take their own weight, about another centre than the body's:
+ * gravity is of the bodies, by `disable` and the keyword of `rigid/small`. */
 static void put_lammps_input(const clump_job *j, FILE *f) {
   double reach = j->m.bounding_radius;
   /* so many steps as a fall over three radii takes */
   double apart = ceil(sqrt(6 * reach / gravity) / j->time_step);
+  double settling = 4 * ceil(sqrt(2 * j->height / gravity) / j->time_step);
   fprintf(f,
           "# lets %zu clumps fall into a box: lmp -in in.%s\n"
+          "# Young's modulus %.3g Pa: %s\n"
+          "variable young index %.6g\nvariable damping index %.6g\nvariable friction index %.6g\n"
+          "variable down_x index 0\nvariable down_z index -1\n"
           "units si\natom_style sphere\natom_modify map array\nboundary f f f\nnewton off\n"
           "comm_modify vel yes cutoff %.6g\nregion box block %.6g %.6g %.6g %.6g 0 %.6g units box\n"
           "create_box 1 box\nfix body all property/atom mol ghost yes\nneighbor %.6g "
           "bin\nneigh_modify exclude molecule/intra all\n"
           "molecule clump %s.mol\n",
-          j->options->count, j->name, 2.5 * reach, -j->width / 2, j->width / 2, -j->width / 2,
-          j->width / 2, j->height + 6 * reach, 0.1 * reach, j->name);
+          j->options->count, j->name, j->young, modulus_source(j), j->young, j->damping, friction,
+          2.5 * reach, -j->width / 2, j->width / 2, -j->width / 2, j->width / 2,
+          j->height + 6 * reach, 0.1 * reach, j->name);
   fprintf(f,
-          "pair_style gran/hertz/history %.6g NULL %.6g NULL %.6g 1\npair_coeff * *\n"
-          "timestep %.6g\nfix gravity all gravity %.6g vector 0 0 -1\n",
-          young, j->damping, friction, j->time_step, gravity);
+          "pair_style gran/hertz/history ${young} NULL ${damping} NULL ${friction} 1\n"
+          "pair_coeff * *\ntimestep %.6g\n"
+          "fix gravity all gravity %.6g vector ${down_x} 0 ${down_z} disable\n",
+          j->time_step, gravity);
   for (int k = 0; k < 2; k++)
-    fprintf(
-        f, "fix sides%d all wall/gran hertz/history %.6g NULL %.6g NULL %.6g 1 %cplane %.6g %.6g\n",
-        k, young, j->damping, friction, "xy"[k], -j->width / 2, j->width / 2);
+    fprintf(f,
+            "fix sides%d all wall/gran hertz/history ${young} NULL ${damping} NULL ${friction} 1 "
+            "%cplane %.6g %.6g\n",
+            k, "xy"[k], -j->width / 2, j->width / 2);
+  fprintf(
+      f,
+      "fix floor all wall/gran hertz/history ${young} NULL ${damping} NULL ${friction} 1 zplane "
+      "0 NULL\n"
+      "fix move all rigid/small molecule mol clump gravity gravity\n"
+      "region top block %.6g %.6g %.6g %.6g %.6g %.6g units box\n"
+      "fix fall all deposit %zu 0 %.0f 48271 region top mol clump rigid move attempt 1000\n"
+      "compute bodies all rigid/local move id mass x y z vx vy vz omegax omegay omegaz inertiax "
+      "inertiay inertiaz\n"
+      "dump bodies all local %.0f bodies.dump index c_bodies[*]\n"
+      "thermo %.0f\nthermo_style custom step atoms ke\nthermo_modify lost error\nrun %.0f\n",
+      -j->width / 2 + reach, j->width / 2 - reach, -j->width / 2 + reach, j->width / 2 - reach,
+      j->height, j->height + reach, j->options->count, apart, apart, apart,
+      apart * (double)j->options->count + settling);
   fprintf(f,
-          "fix floor all wall/gran hertz/history %.6g NULL %.6g NULL %.6g 1 zplane 0 NULL\n"
-          "fix move all rigid/small molecule mol clump\n"
-          "region top block %.6g %.6g %.6g %.6g %.6g %.6g units box\n"
-          "fix fall all deposit %zu 0 %.0f 48271 region top mol clump rigid move attempt 100\n"
-          "compute bodies all rigid/local move id mass x y z\n"
-          "dump bodies all local %.0f bodies.dump index c_bodies[1] c_bodies[2] c_bodies[3] "
-          "c_bodies[4] c_bodies[5]\n"
-          "thermo %.0f\nthermo_style custom step atoms ke\nthermo_modify lost warn\nrun %.0f\n",
-          young, j->damping, friction, -j->width / 2 + reach, j->width / 2 - reach,
-          -j->width / 2 + reach, j->width / 2 - reach, j->height, j->height + reach,
-          j->options->count, apart, apart, apart, apart * (double)(j->options->count + 3));
+          "variable there equal atoms\n"
+          "if \"${there} != %zu\" then \"print 'only ${there} of %zu spheres are in the box'\" "
+          "\"quit 1\"\n",
+          j->options->count * j->m.point_count, j->options->count * j->m.point_count);
 }
 
 static scree_status write_lammps(const clump_job *j, scree_error *error) {
@@ -171,18 +212,23 @@ static void put_liggghts_input(const clump_job *j, FILE *f) {
   double least = 1e-3 * j->m.volume; /* what LIGGGHTS takes for none; its 1e-12 m3 are a grain */
   fprintf(f,
           "# lets %zu clumps fall into a box: liggghts -in in.%s\n"
+          "# Young's modulus %.3g Pa: %s\n"
+          "variable young index %.6g\nvariable friction index %.6g\n"
+          "variable down_x index 0\nvariable down_z index -1\n"
           "units si\natom_style granular\natom_modify map array\nboundary f f f\nnewton off\n"
-          "communicate single vel yes\nregion box block %.6g %.6g %.6g %.6g %.6g %.6g units box\n"
+          "communicate single vel yes\nsoft_particles yes\nhard_particles yes\nregion box block "
+          "%.6g %.6g %.6g %.6g %.6g %.6g units box\n"
           "create_box 1 box\nneighbor %.6g bin\nneigh_modify delay 0\n",
-          j->options->count, j->name, -w, w, -w, w, -reach, 3 * j->height, 0.1 * reach);
+          j->options->count, j->name, j->young, modulus_source(j), j->young, friction, -w, w, -w, w,
+          -reach, 3 * j->height, 0.1 * reach);
   fprintf(f,
-          "fix m1 all property/global youngsModulus peratomtype %.6g\n"
+          "fix m1 all property/global youngsModulus peratomtype ${young}\n"
           "fix m2 all property/global poissonsRatio peratomtype %.6g\n"
           "fix m3 all property/global coefficientRestitution peratomtypepair 1 0.3\n"
-          "fix m4 all property/global coefficientFriction peratomtypepair 1 %.6g\n"
+          "fix m4 all property/global coefficientFriction peratomtypepair 1 ${friction}\n"
           "pair_style gran model hertz tangential history\npair_coeff * *\ntimestep %.6g\n"
-          "fix gravity all gravity %.6g vector 0 0 -1\n",
-          young, poisson, friction, j->time_step, gravity);
+          "fix gravity all gravity %.6g vector ${down_x} 0 ${down_z}\n",
+          poisson, j->time_step, gravity);
   fprintf(f,
           "fix floor all wall/gran model hertz tangential history primitive type 1 zplane 0.0\n"
           "fix left all wall/gran model hertz tangential history primitive type 1 xplane %.6g\n"
@@ -204,11 +250,23 @@ static void put_liggghts_input(const clump_job *j, FILE *f) {
       "fix move all multisphere\n",
       least, j->options->density, j->m.point_count, j->name, j->mass, j->inertia[0], j->inertia[1],
       j->inertia[2], -w, w, -w, w, 0.1 * reach, 2.9 * j->height, least, j->options->count);
-  fprintf(f,
-          "compute mass all multisphere property masstotal\nthermo 1000\n"
-          "thermo_style custom step atoms ke\nthermo_modify lost ignore norm no\n"
-          "run 1\ndump bodies all local 1000 bodies.dump c_mass\nrun %.0f\n",
-          ceil(2 * sqrt(2 * j->height / gravity) / j->time_step));
+  fprintf(
+      f,
+      "compute mass all multisphere property masstotal\n"
+      "compute place all multisphere property xcm\ncompute speed all multisphere property vcm\n"
+      "compute spin all multisphere property omega\n"
+      "compute moments all multisphere property inertia\n"
+      "thermo 1000\nthermo_style custom step atoms ke\nthermo_modify lost error norm no\n"
+      "run 1\nvariable there equal atoms\n"
+      "if \"${there} != %zu\" then \"print 'only ${there} of %zu spheres are in the box'\" "
+      "\"quit 1\"\n"
+      "dump bodies all local 1000 bodies.dump c_mass c_place[1] c_place[2] c_place[3] c_speed[1] "
+      "c_speed[2] c_speed[3] c_spin[1] c_spin[2] c_spin[3] c_moments[1] c_moments[2] "
+      "c_moments[3]\nrun %.0f\n"
+      "if \"${there} != %zu\" then \"print 'only ${there} of %zu spheres are left'\" \"quit 1\"\n",
+      j->options->count * j->m.point_count, j->options->count * j->m.point_count,
+      ceil(4 * sqrt(2 * j->height / gravity) / j->time_step), j->options->count * j->m.point_count,
+      j->options->count * j->m.point_count);
 }
 
 static scree_status write_liggghts(const clump_job *j, scree_error *error) {
@@ -225,65 +283,76 @@ static scree_status write_liggghts(const clump_job *j, scree_error *error) {
 
 /* ---- YADE ---- */
 
+/* YADE works a clump's mass, centre and axes out from its members. So the spheres get next to none,
+ * and the body's lies in six points that touch nothing, two on each principal axis, each a sixth of
+ * the mass m: at sqrt(3 S / m) of an axis whose second moment is S. */
 static void put_yade(const clump_job *j, FILE *f) {
   fprintf(f,
           "\"\"\"Clumps %s from scree %s: yade -n -x %s.py\n\n"
           "MASS, INERTIA: kg, kg m2, of the body; SPHERES: x, y, z, radius, m, about its centre of "
-          "mass, along its\nprincipal axes. add_clump() may be called from other scripts.\"\"\"\n"
+          "mass, along its\nprincipal axes. add_clump() may be called from other scripts.\n"
+          "YOUNG: Pa, %s.\"\"\"\n"
+          "from math import atan, pi\n\n"
           "MASS = %.12g\nINERTIA = (%.12g, %.12g, %.12g)\nSPHERES = [\n",
-          j->name, scree_version(), j->name, j->mass, j->inertia[0], j->inertia[1], j->inertia[2]);
+          j->name, scree_version(), j->name, modulus_source(j), j->mass, j->inertia[0],
+          j->inertia[1], j->inertia[2]);
   for (size_t i = 0; i < j->m.point_count; i++) {
     double c[3], r;
     scree_particle_point(j->particle, i, c, &r);
     fprintf(f, "    (%.12g, %.12g, %.12g, %.12g),\n", c[0], c[1], c[2], r);
   }
   fprintf(f,
-          "]\nGRAVITY, SIZE, COUNT = %.6g, %.6g, %zu\n"
-          "material = O.materials.append(FrictMat(density=%.6g, young=%.6g, poisson=%.6g, "
-          "frictionAngle=%.6g))\n",
-          gravity, j->m.bounding_radius, j->options->count, j->options->density, young, poisson,
-          atan(friction));
-  fputs("\n\n"
-        "def add_clump(position, turn=Quaternion.Identity):\n"
-        "    \"\"\"The mass and inertia of the body, whatever the spheres' are.\"\"\"\n"
-        "    balls = [sphere(Vector3(*position) + turn * Vector3(x, y, z), r, material=material) "
-        "for x, y, z, r in SPHERES]\n"
-        "    number, _ = O.bodies.appendClumped(balls, discretization=20)\n"
-        "    state = O.bodies[number].state\n"
-        "    # YADE keeps a clump's inertia along axes of its own\n"
-        "    axes = state.ori.conjugate() * turn\n"
-        "    state.mass = MASS\n"
-        "    state.inertia = Vector3(*(sum(INERTIA[k] * (axes * Vector3.Unit(k))[i] ** 2 for k in "
-        "range(3)) for i in range(3)))\n"
-        "    return number\n\n\n",
-        f);
+          "]\nGRAVITY = Vector3(0, 0, -%.6g)\nSIZE, COUNT = %.6g, %zu\n"
+          "DENSITY, YOUNG, POISSON, FRICTION = %.6g, %.6g, %.6g, %.6g\n",
+          gravity, j->m.bounding_radius, j->options->count, j->options->density, j->young, poisson,
+          friction);
   fputs(
-      "clumps = []\n"
-      "side = 1\n"
-      "while side ** 3 < COUNT:\n    side += 1\n"
-      "for n in range(COUNT):\n"
-      "    cell = (n % side, n // side % side, n // side ** 2)\n"
-      "    clumps.append(add_clump([2.1 * SIZE * (c + 0.5) for c in cell], Quaternion(Vector3(1, "
-      "2, "
-      "3).normalized(), n)))\n"
-      "O.bodies.append(utils.wall(0, axis=2, sense=1, material=material))\n"
-      "for axis in (0, 1):\n"
-      "    O.bodies.append(utils.wall(0, axis=axis, sense=1, material=material))\n"
-      "    O.bodies.append(utils.wall(2.1 * SIZE * side, axis=axis, sense=-1, material=material))\n"
-      "O.engines = [\n"
-      "    ForceResetter(),\n"
-      "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),\n"
-      "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()], "
-      "[Ip2_FrictMat_FrictMat_FrictPhys()],\n"
-      "                    [Law2_ScGeom_FrictPhys_CundallStrack()]),\n"
-      "    NewtonIntegrator(damping=0.3, gravity=(0, 0, -GRAVITY)),\n"
-      "]\n"
-      "O.dt = 0.3 * PWaveTimeStep()\n"
-      "O.run(int(3 * (2 * SIZE / GRAVITY) ** 0.5 / O.dt), True)\n"
-      "print(f'{len(clumps)} clumps of {O.bodies[clumps[0]].state.mass:.6g} kg, '\n"
-      "      f'{O.interactions.countReal()} contacts after {O.time:.4g} s, '\n"
-      "      f'lowest centre {min(O.bodies[c].state.pos[2] for c in clumps):.4g} m')\n",
+      "POINT = 1e-3 * min(r for x, y, z, r in SPHERES)\n"
+      "solid = dict(young=YOUNG, poisson=POISSON, frictionAngle=atan(FRICTION))\n"
+      "light = O.materials.append(FrictMat(density=1e-12 * DENSITY, **solid))\n"
+      "heavy = O.materials.append(FrictMat(density=MASS / 6 / (4 / 3 * pi * POINT**3), **solid))\n"
+      "\n\n"
+      "def add_clump(position, turn=Quaternion.Identity):\n"
+      "    \"\"\"The spheres get next to no mass; the body's is in six points that touch "
+      "nothing.\"\"\"\n"
+      "    def ball(centre, radius, **more):\n"
+      "        return sphere(Vector3(*position) + turn * Vector3(*centre), radius, **more)\n"
+      "    members = [ball((x, y, z), r, material=light) for x, y, z, r in SPHERES]\n"
+      "    for axis in range(3):\n"
+      "        arm = (3 * max(0, sum(INERTIA) / 2 - INERTIA[axis]) / MASS) ** 0.5\n"
+      "        for end in (-arm, arm):\n"
+      "            members.append(ball(end * Vector3.Unit(axis), POINT, material=heavy, mask=0))\n"
+      "    return O.bodies.appendClumped(members, discretization=0)[0]\n\n\n",
       f);
+  fputs("clumps = []\n"
+        "side = 1\n"
+        "while side**3 < COUNT:\n    side += 1\n"
+        "for n in range(COUNT):\n"
+        "    cell = (n % side, n // side % side, n // side**2)\n"
+        "    turn = Quaternion(Vector3(1, 2, 3).normalized(), n)\n"
+        "    clumps.append(add_clump([2.1 * SIZE * (c + 0.5) for c in cell], turn))\n"
+        "O.bodies.append(utils.wall(0, axis=2, sense=1, material=light))\n"
+        "for axis in (0, 1):\n"
+        "    O.bodies.append(utils.wall(0, axis=axis, sense=1, material=light))\n"
+        "    O.bodies.append(utils.wall(2.1 * SIZE * side, axis=axis, sense=-1, material=light))\n"
+        "O.engines = [\n"
+        "    ForceResetter(),\n"
+        "    InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),\n"
+        "    InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()], "
+        "[Ip2_FrictMat_FrictMat_FrictPhys()],\n"
+        "                    [Law2_ScGeom_FrictPhys_CundallStrack()]),\n"
+        "    NewtonIntegrator(damping=0.3, dampGravity=False, gravity=GRAVITY),\n"
+        "]\n",
+        f);
+  fprintf(f,
+          "O.dt = 0.3 * min(r for x, y, z, r in SPHERES) * (DENSITY / YOUNG) ** 0.5\n"
+          "STEPS = int(6 * (2 * SIZE / %.6g) ** 0.5 / O.dt)\n"
+          "O.run(STEPS, True)\n"
+          "states = [O.bodies[c].state for c in clumps]\n"
+          "print(f'{len(clumps)} clumps of {states[0].mass:.6g} kg, '\n"
+          "      f'{O.interactions.countReal()} contacts after {O.time:.4g} s, '\n"
+          "      f'lowest centre {min(s.pos[2] for s in states):.4g} m')\n",
+          gravity);
 }
 
 /* ---- PFC and Chrono ---- */

@@ -117,7 +117,7 @@ static scree_status from_mesh(making *m, scree_particle **particle, scree_error 
 
 /* "phone.stl, CHECKSUM, 120 of 40000 triangles" */
 static char *describe(const making *m, const char *word, const scree_particle *particle) {
-  char text[600], sum[SCREE_CHECKSUM_TEXT];
+  char text[700], sum[SCREE_CHECKSUM_TEXT];
   scree_particle_measures measures;
   scree_particle_measure(particle, &measures);
   if (!*word) return scree_strdup(""); /* the scene says it all */
@@ -129,7 +129,17 @@ static char *describe(const making *m, const char *word, const scree_particle *p
              measures.triangle_count, m->triangle_count);
   else if (measures.triangle_count)
     snprintf(text + used, sizeof text - (size_t)used, ", %zu triangles", measures.triangle_count);
+  size_t pieces = scree_particle_piece_count(particle);
+  if (pieces > 1)
+    snprintf(text + strlen(text), sizeof text - strlen(text),
+             ", spheres in %zu pieces that do not touch", pieces);
   return scree_strdup(text);
+}
+
+/* The table of spheres that the shape is; NULL: it is none. */
+static const char *table_of(const scree_plan_shape *s) {
+  if (s->file && scree_is_clump_table(s->file)) return s->file;
+  return s->clump && !scree_plan_spheres(s) ? s->clump : NULL;
 }
 
 /* What a file's name means: beside the scene's file, unless it begins at the root. */
@@ -144,7 +154,7 @@ static scree_status make(making *m, const char *path, scree_particle **particle,
                          scree_error *error) {
   const scree_plan_shape *s = m->shape;
   if (!isnan(s->sphere)) return scree_particle_sphere(0.5 * s->sphere, particle, error);
-  if (s->clump && !scree_plan_spheres(s)) {
+  if (table_of(s)) {
     scree_read_options o = scree_default_read_options();
     o.unit_m = scree_plan_unit(s->unit);
     return scree_particle_clump_read(path, &o, particle, error);
@@ -165,7 +175,7 @@ scree_status scree_scene_make_particle(const scree_plan_shape *shape, const char
                                        const scree_progress *progress, scree_particle **particle,
                                        char **source, scree_error *error) {
   making m = {.shape = shape, .progress = progress, .scale = 1};
-  const char *table = scree_plan_spheres(shape) ? NULL : shape->clump;
+  const char *table = table_of(shape);
   const char *word = shape->file     ? shape->file
                      : table         ? table
                      : shape->sample ? shape->sample

@@ -98,7 +98,7 @@ static const scree_record pair_record = {"a pair", FIELDS(pair_fields), sizeof(s
 
 #define AT(member) offsetof(scree_plan_shape, member)
 static const scree_field shape_fields[] = {
-    {"file", SCREE_FIELD_TEXT, AT(file), 0, 0, "", "a scan", NULL},
+    {"file", SCREE_FIELD_TEXT, AT(file), 0, 0, "", "a scan, or a table of spheres", NULL},
     {"sample", SCREE_FIELD_TEXT, AT(sample), 0, 0, "", "a built-in one, as sp-1", NULL},
     {"sphere", SCREE_FIELD_REAL, AT(sphere), 1e-9, 1e3, "m", "diameter", NULL},
     {"clump", SCREE_FIELD_TEXT, AT(clump), 0, 0, "",
@@ -161,7 +161,10 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
       one_of(r, &s->place, there, 6, "file, sample, sphere (its diameter), clump, box");
   if (status == SCREE_OK && s->clump && !table) status = check_spheres(r, s);
   if (status != SCREE_OK) return status;
-  bool scan = s->file || s->sample;
+  bool scan = (s->file && !scree_is_clump_table(s->file)) || s->sample;
+  if (scree_plan_spheres(s) && s->file && !scan)
+    return scree_fail_place(r, &s->place, "%.100s is a table of spheres: leave out clump: %.20s",
+                            s->file, s->clump);
   if (s->triangles && s->rp)
     return scree_fail_place(r, &s->place, "triangles and rp say the same in two ways: give one");
   if (!scan && (s->triangles || s->rp))

@@ -1,4 +1,5 @@
 /* Greedy methods, and what clumps are written to: tables, figures, particles, other codes. */
+#include "base/rng.h"
 #include "base/vec.h"
 #include "support/alloc_fail.h"
 #include "support/check.h"
@@ -230,6 +231,126 @@ static void a_wrong_mass_is_told(void **state) {
   }
 }
 
+static scree_status read_text(const char *text, scree_particle **particle, scree_error *error) {
+  FILE *f = fopen(in_folder("t.csv"), "w");
+  assert_non_null(f);
+  assert_true(fputs(text, f) >= 0);
+  (void)fclose(f);
+  *error = (scree_error){0};
+  return scree_particle_clump_read(in_folder("t.csv"), NULL, particle, error);
+}
+
+/* The same two spheres, in mm, as every program writes them. */
+static void columns_go_by_their_names(void **state) {
+  (void)state;
+  static const char *const tables[] = {
+      "1 2 3 4\n6 2 3 2\n",          /* CLUMP */
+      "1,2,3,4\n6,2,3,2\n",          /* MClump */
+      "x,y,z,r\n1,2,3,4\n6,2,3,2\n", /* DEM-Engine */
+      "radius,x,y,z\n4,1,2,3\n2,6,2,3\n",
+      "x,y,z,diameter\n1,2,3,8\n6,2,3,4\n",
+      "# a comment\n% another\nid;name;D;Z;Y;X\n7;big;8;3;2;1\n9;small;4;3;2;6\n",
+      "X (m)\tY (m)\tZ (m)\tRadius (m)\n.001\t.002\t.003\t.004\n.006\t.002\t.003\t.002\n",
+      "1 1 2 3 4\n2 6 2 3 2\n",
+      "0, 1, 2, 3, 4 # the big one\n1, 6, 2, 3, 2\n",
+      "# x y z r\n1 2 3 4\n6 2 3 2\n",
+      "\"pos_x\",\"pos_y\",\"pos_z\",\"Sphere radius [mm]\"\n1,2,3,4\n6,2,3,2\n",
+      "; a pebble more\nclump template create ...\n name 'a' ...\n pebbles 2 ...\n 4 1 2 3 ... ; "
+      "big\n"
+      " 2 6 2 3\n"};
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+    scree_particle *p;
+    scree_error error;
+    scree_particle_measures m;
+    double a[3], b[3], r, s;
+    CHECK_OK(read_text(tables[i], &p, &error), error);
+    scree_particle_measure(p, &m);
+    assert_int_equal(m.point_count, 2);
+    scree_particle_point(p, 0, a, &r), scree_particle_point(p, 1, b, &s);
+    CHECK_NEAR(fmax(r, s), 4e-3, 1e-12);
+    CHECK_NEAR(fmin(r, s), 2e-3, 1e-12);
+    CHECK_NEAR(vec3_distance(vec3_load(a), vec3_load(b)), 5e-3, 1e-9);
+    assert_int_equal(scree_particle_piece_count(p), 1);
+    scree_particle_free(p);
+  }
+}
+
+static void what_is_no_table_is_told(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *said;
+  } tables[] = {{"x,y,z\n1,2,3\n", "no column is named radius or diameter"},
+                {"x,y,radius\n1,2,3\n", "no column is named z"},
+                {"x,y,z,r,X\n1,2,3,4,5\n", "columns 1 and 5 both say x"},
+                {"x;y;z;r\n0,1;0,2;0,3;0,4\n", "a number with a decimal point"},
+                {"x,y,z,r\n1,2,3\n", "3 columns, but the first line names 4"},
+                {"1 2 3\n", "line 1: must be x, y, z, radius"},
+                {"5 1 2 3 4\n9 1 2 3 4\n", "other columns are named in a first line"},
+                {"a b c\n", "must be x, y, z, radius"},
+                {"x,y,z,r\n1,2,3,-4\n", "the radius is"},
+                {"clump template create pebbles 2 1 0 0 0", "pebble 2 of 2"},
+                {"clump template create", "no pebbles"}};
+  for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
+    scree_particle *p;
+    scree_error error;
+    assert_int_equal(read_text(tables[i].text, &p, &error), SCREE_BAD_FILE);
+    if (!strstr(error.message, tables[i].said)) fail_msg("'%s'", error.message);
+  }
+}
+
+/* PFC's own mass and moments come back. */
+static void pebbles_bring_their_body(void **state) {
+  (void)state;
+  made m;
+  scree_error error;
+  scree_particle *read;
+  scree_particle_measures p, q;
+  scree_code_options o = scree_default_code_options();
+  scree_read_options metres = scree_default_read_options();
+  set_up(&m);
+  o.name = "pebbles";
+  metres.unit_m = 1;
+  CHECK_OK(scree_clump_code_write(m.particle, SCREE_DEM_PFC, &o, in_folder("."), &error), error);
+  CHECK_OK(scree_particle_clump_read(in_folder("pebbles.dat"), &metres, &read, &error), error);
+  scree_particle_measure(m.particle, &p);
+  scree_particle_measure(read, &q);
+  assert_int_equal(p.point_count, q.point_count);
+  CHECK_NEAR(q.volume, p.volume, 1e-9 * p.volume);
+  for (int k = 0; k < 3; k++) CHECK_NEAR(q.inertia[k], p.inertia[k], 1e-8 * p.inertia[k]);
+  scree_particle_free(read);
+  clean_up(&m);
+}
+
+/* Against all pairs, on random spheres. */
+static void pieces_are_counted(void **state) {
+  (void)state;
+  scree_rng rng = {4, 0, 0};
+  enum { COUNT = 12 };
+  for (int round = 0; round < 200; round++) {
+    double centres[3 * COUNT], radii[COUNT];
+    int group[COUNT], pieces = COUNT;
+    scree_particle *p;
+    scree_error error;
+    for (int i = 0; i < COUNT; i++) {
+      for (int k = 0; k < 3; k++) centres[3 * i + k] = 4 * scree_rng_uniform(&rng);
+      radii[i] = 0.2 + 0.5 * scree_rng_uniform(&rng);
+      group[i] = i;
+    }
+    for (int i = 0; i < COUNT; i++)
+      for (int j = 0; j < i; j++) {
+        double d = vec3_distance(vec3_load(centres + 3 * i), vec3_load(centres + 3 * j));
+        int from = group[i], to = group[j];
+        if (d > radii[i] + radii[j] || from == to) continue;
+        pieces--;
+        for (int k = 0; k < COUNT; k++)
+          if (group[k] == from) group[k] = to;
+      }
+    CHECK_OK(scree_particle_clump(centres, radii, COUNT, NULL, &p, &error), error);
+    assert_int_equal(scree_particle_piece_count(p), pieces);
+    scree_particle_free(p);
+  }
+}
+
 static scree_status write_json(void *context, scree_error *error) {
   made *m = context;
   return scree_clump_json_write(&m->report, in_folder("a.json"), true, error);
@@ -294,6 +415,10 @@ int main(void) {
       cmocka_unit_test(a_table_names_its_unit),
       cmocka_unit_test(other_codes_get_the_spheres),
       cmocka_unit_test(a_wrong_mass_is_told),
+      cmocka_unit_test(columns_go_by_their_names),
+      cmocka_unit_test(what_is_no_table_is_told),
+      cmocka_unit_test(pebbles_bring_their_body),
+      cmocka_unit_test(pieces_are_counted),
       cmocka_unit_test(memory_may_run_out),
       cmocka_unit_test(a_mesh_is_no_clump),
   };
