@@ -1,5 +1,5 @@
 /* The fields of a scene in tables, and what fields must be together. */
-#include "scene/plan.h"
+#include "scene/plan_fields.h"
 
 #include "base/number.h"
 #include "base/vec.h"
@@ -9,9 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define NONE                                                                                       \
-  { NAN, NAN, NAN }
-#define FIELDS(table) (table), sizeof(table) / sizeof *(table)
 
 double scree_plan_unit(int unit) {
   static const double metres[] = {1, 1e-2, 1e-3, 1e-6, 0.0254, 0.3048, 1e3};
@@ -26,10 +23,6 @@ size_t scree_plan_find(const scree_records *records, size_t size, const char *na
   return records->count;
 }
 
-static bool given(const double *value) {
-  return !isnan(*value);
-}
-
 static bool has_length(const double *v) {
   return v[0] != 0 || v[1] != 0 || v[2] != 0;
 }
@@ -39,9 +32,8 @@ static bool is_across(const double *v, const double *n) {
   return fabs(vec3_dot(a, b)) <= 1e-6 * vec3_norm(a) * vec3_norm(b);
 }
 
-/* Exactly one of those must be given. */
-static scree_status one_of(const scree_reader *r, const scree_place *place, const bool *there,
-                           size_t count, const char *names) {
+scree_status scree_plan_one_of(const scree_reader *r, const scree_place *place, const bool *there,
+                               size_t count, const char *names) {
   size_t found = 0;
   for (size_t i = 0; i < count; i++) found += there[i];
   if (found == 1) return SCREE_OK;
@@ -49,8 +41,8 @@ static scree_status one_of(const scree_reader *r, const scree_place *place, cons
                           names);
 }
 
-static scree_status check_direction(const scree_reader *r, const scree_place *place,
-                                    const char *what, const double *v) {
+scree_status scree_plan_check_direction(const scree_reader *r, const scree_place *place,
+                                        const char *what, const double *v) {
   if (!given(v) || has_length(v)) return SCREE_OK;
   return scree_fail_place(r, place, "%s [0, 0, 0] points nowhere", what);
 }
@@ -158,7 +150,7 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
   const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere),
                         table,           given(s->box),     s->given != NULL};
   scree_status status =
-      one_of(r, &s->place, there, 6, "file, sample, sphere (its diameter), clump, box");
+      scree_plan_one_of(r, &s->place, there, 6, "file, sample, sphere (its diameter), clump, box");
   if (status == SCREE_OK && s->clump && !table) status = check_spheres(r, s);
   if (status != SCREE_OK) return status;
   bool scan = (s->file && !scree_is_clump_table(s->file)) || s->sample;
@@ -197,7 +189,7 @@ static const scree_field turn_fields[] = {
 #undef AT
 static scree_status check_turn(const scree_reader *r, const void *record) {
   const scree_plan_turn *t = record;
-  return check_direction(r, &t->place, "axis", t->axis);
+  return scree_plan_check_direction(r, &t->place, "axis", t->axis);
 }
 static const scree_plan_turn turn_defaults = {{0}, {0, 0, 1}, 0};
 static const scree_record turn_record = {"a turn", FIELDS(turn_fields), sizeof(scree_plan_turn),
@@ -212,7 +204,7 @@ static const scree_field disc_fields[] = {
 static scree_status check_disc(const scree_reader *r, const void *record) {
   const scree_plan_disc *d = record;
   if (!given(&d->radius)) return scree_fail_place(r, &d->place, "needs a radius");
-  return check_direction(r, &d->place, "normal", d->normal);
+  return scree_plan_check_direction(r, &d->place, "normal", d->normal);
 }
 static const scree_plan_disc disc_defaults = {{0}, {0, 0, 1}, NAN};
 static const scree_record disc_record = {"a disc", FIELDS(disc_fields), sizeof(scree_plan_disc),
@@ -231,7 +223,7 @@ static const scree_field cylinder_fields[] = {
 static scree_status check_cylinder(const scree_reader *r, const void *record) {
   const scree_plan_cylinder *c = record;
   if (!given(&c->radius)) return scree_fail_place(r, &c->place, "needs a radius");
-  return check_direction(r, &c->place, "axis", c->axis);
+  return scree_plan_check_direction(r, &c->place, "axis", c->axis);
 }
 static const scree_plan_cylinder cylinder_defaults = {{0}, NONE, {0, 0, 1}, NAN, 0};
 static const scree_record cylinder_record = {"a cylinder", FIELDS(cylinder_fields),
@@ -259,8 +251,8 @@ static scree_status check_box(const scree_reader *r, const void *record) {
   return check_corners(r, &b->place, b->min, b->max);
 }
 static const scree_plan_box box_defaults = {{0}, NONE, NONE};
-static const scree_record box_record = {"a box", FIELDS(box_fields), sizeof(scree_plan_box),
-                                        &box_defaults, check_box};
+const scree_record scree_plan_box_record = {"a box", FIELDS(box_fields), sizeof(scree_plan_box),
+                                            &box_defaults, check_box};
 
 /* ---- motions ---- */
 
@@ -277,12 +269,12 @@ static const scree_field translate_fields[] = {
 static scree_status check_translate(const scree_reader *r, const void *record) {
   const scree_plan_translate *t = record;
   const bool there[] = {given(t->velocity), t->table.count > 0, t->positions.count > 0};
-  scree_status status =
-      one_of(r, &t->place, there, 3, "velocity, table (with along), positions (with along)");
+  scree_status status = scree_plan_one_of(r, &t->place, there, 3,
+                                          "velocity, table (with along), positions (with along)");
   if (status != SCREE_OK) return status;
   if (!there[0] && !given(t->along))
     return scree_fail_place(r, &t->place, "a table needs along: [x, y, z]");
-  return check_direction(r, &t->place, "along", t->along);
+  return scree_plan_check_direction(r, &t->place, "along", t->along);
 }
 static const scree_plan_translate translate_defaults = {{0}, NONE, NONE, {0}, {0}};
 static const scree_record translate_record = {"translate", FIELDS(translate_fields),
@@ -303,8 +295,8 @@ static const scree_field rotate_fields[] = {
 static scree_status check_rotate(const scree_reader *r, const void *record) {
   const scree_plan_rotate *t = record;
   const bool there[] = {given(&t->speed), t->table.count > 0, t->positions.count > 0};
-  scree_status status = one_of(r, &t->place, there, 3, "speed, table, positions");
-  return status == SCREE_OK ? check_direction(r, &t->place, "axis", t->axis) : status;
+  scree_status status = scree_plan_one_of(r, &t->place, there, 3, "speed, table, positions");
+  return status == SCREE_OK ? scree_plan_check_direction(r, &t->place, "axis", t->axis) : status;
 }
 static const scree_plan_rotate rotate_defaults = {{0}, {0, 0, 1}, {0, 0, 0}, NAN, {0}, {0}};
 static const scree_record rotate_record = {
@@ -322,7 +314,7 @@ static scree_status check_vibrate(const scree_reader *r, const void *record) {
   const scree_plan_vibrate *v = record;
   if (!given(&v->amplitude) || !given(&v->frequency))
     return scree_fail_place(r, &v->place, "needs amplitude and frequency");
-  return check_direction(r, &v->place, "along", v->along);
+  return scree_plan_check_direction(r, &v->place, "along", v->along);
 }
 static const scree_plan_vibrate vibrate_defaults = {{0}, {0, 0, 1}, NAN, NAN, 0};
 static const scree_record vibrate_record = {"vibrate", FIELDS(vibrate_fields),
@@ -334,11 +326,6 @@ static scree_status check_window(const scree_reader *r, const scree_place *place
   if (!given(&until) || from < until) return SCREE_OK;
   return scree_fail_place(r, place, "until %g s must be after from %g s", until, from);
 }
-
-#define WINDOW(type)                                                                               \
-  {"from", SCREE_FIELD_REAL, offsetof(type, from), 0, 1e9, "s", "", NULL}, {                       \
-    "until", SCREE_FIELD_REAL, offsetof(type, until), 0, 1e9, "s", "not given: to the end", NULL   \
-  }
 
 #define AT(member) offsetof(scree_plan_motion, member)
 static const scree_field motion_fields[] = {
@@ -352,7 +339,7 @@ static const scree_field motion_fields[] = {
 static scree_status check_motion(const scree_reader *r, const void *record) {
   const scree_plan_motion *m = record;
   const bool there[] = {m->translate != NULL, m->rotate != NULL, m->vibrate != NULL};
-  scree_status status = one_of(r, &m->place, there, 3, "translate, rotate, vibrate");
+  scree_status status = scree_plan_one_of(r, &m->place, there, 3, "translate, rotate, vibrate");
   bool constant =
       (m->translate && given(m->translate->velocity)) || (m->rotate && given(&m->rotate->speed));
   if (status == SCREE_OK && m->during && !constant)
@@ -391,8 +378,9 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
   const scree_plan_geometry *g = record;
   const bool there[] = {g->file.count > 0, given(g->box), given(g->plane), g->disc != NULL,
                         g->cylinder != NULL};
-  scree_status status = one_of(r, &g->place, there, 5, "file, box, plane, disc, cylinder");
-  if (status == SCREE_OK) status = check_direction(r, &g->place, "plane", g->plane);
+  scree_status status =
+      scree_plan_one_of(r, &g->place, there, 5, "file, box, plane, disc, cylinder");
+  if (status == SCREE_OK) status = scree_plan_check_direction(r, &g->place, "plane", g->plane);
   if (status == SCREE_OK && g->cylinder && given(g->cylinder->at))
     status = scree_fail_place(r, &g->cylinder->place,
                               "at stands beside the cylinder, as of all geometry, not in it");
@@ -444,7 +432,8 @@ static const scree_record layers_record = {
 
 #define AT(member) offsetof(scree_plan_inlet, member)
 static const scree_field inlet_fields[] = {
-    {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "bodies begin wholly inside", &box_record},
+    {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "bodies begin wholly inside",
+     &scree_plan_box_record},
     {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "likewise", &cylinder_record},
     {"shapes", SCREE_FIELD_WEIGHTS, AT(shapes), 0, 1e12, "", "and their shares by number", NULL},
     {"rate", SCREE_FIELD_REAL, AT(rate), 0, 1e9, "1/s", "bodies a second", NULL},
@@ -481,7 +470,7 @@ static scree_status check_inlet(const scree_reader *r, const void *record) {
   const scree_plan_inlet *i = record;
   const bool there[] = {i->box != NULL, i->cylinder != NULL};
   const bool rates[] = {given(&i->rate), given(&i->mass_rate), i->count > 0};
-  scree_status status = one_of(r, &i->place, there, 2, "box, cylinder");
+  scree_status status = scree_plan_one_of(r, &i->place, there, 2, "box, cylinder");
   if (status != SCREE_OK) return status;
   if (i->layers) return check_layered(r, i);
   if (i->cylinder && (!given(i->cylinder->at) || !(i->cylinder->length > 0)))
@@ -502,7 +491,7 @@ static const scree_record inlet_record = {"an inlet", FIELDS(inlet_fields),
 #define AT(member) offsetof(scree_plan_outlet, member)
 static const scree_field outlet_fields[] = {
     {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "bodies whose centre is inside are taken out",
-     &box_record},
+     &scree_plan_box_record},
     WINDOW(scree_plan_outlet),
 };
 #undef AT
@@ -538,130 +527,6 @@ static scree_status check_domain(const scree_reader *r, const void *record) {
 static const scree_plan_domain domain_defaults = {{0}, NONE, NONE, {0}};
 static const scree_record domain_record = {
     "the domain", FIELDS(domain_fields), sizeof(scree_plan_domain), &domain_defaults, check_domain};
-
-/* ---- sensors ---- */
-
-#define AT(member) offsetof(scree_plan_flow, member)
-static const scree_field flow_fields[] = {
-    {"through", SCREE_FIELD_VECTOR, AT(through), -1e6, 1e6, "m", "a point of the plane", NULL},
-    {"normal", SCREE_FIELD_VECTOR, AT(normal), 0, 0, "", "along it counts up, against it down",
-     NULL},
-    {"radius", SCREE_FIELD_REAL, AT(radius), 0, 1e6, "m", "about the point; not given: all of it",
-     NULL},
-};
-#undef AT
-static scree_status check_flow(const scree_reader *r, const void *record) {
-  const scree_plan_flow *f = record;
-  if (!given(f->through)) return scree_fail_place(r, &f->place, "needs through: [x, y, z]");
-  return check_direction(r, &f->place, "normal", f->normal);
-}
-static const scree_plan_flow flow_defaults = {{0}, NONE, {0, 0, 1}, NAN};
-static const scree_record flow_record = {"a flow", FIELDS(flow_fields), sizeof(scree_plan_flow),
-                                         &flow_defaults, check_flow};
-
-static const scree_field region_fields[] = {
-    {"box", SCREE_FIELD_RECORD, offsetof(scree_plan_region, box), 0, 0, "", "", &box_record},
-};
-static scree_status check_region(const scree_reader *r, const void *record) {
-  const scree_plan_region *g = record;
-  return g->box ? SCREE_OK : scree_fail_place(r, &g->place, "needs a box: {min: ..., max: ...}");
-}
-static const scree_plan_region region_defaults = {{0}, NULL};
-static const scree_record region_record = {
-    "a region", FIELDS(region_fields), sizeof(scree_plan_region), &region_defaults, check_region};
-
-#define AT(member) offsetof(scree_plan_pile, member)
-static const scree_field pile_fields[] = {
-    {"floor", SCREE_FIELD_REAL, AT(floor), -1e6, 1e6, "m", "height of what the pile stands on",
-     NULL},
-    {"cell", SCREE_FIELD_REAL, AT(cell), 0, 1e3, "m", "of the height field; 0: a tenth of the size",
-     NULL},
-    {"disc", SCREE_FIELD_REAL, AT(disc), 1e-9, 1e6, "m",
-     "radius about the origin; bodies beyond are not of the pile; not given: all are", NULL},
-    {"reach", SCREE_FIELD_REAL, AT(reach), 1e-9, 1e6, "m",
-     "of the height field with a disc; not given: two sizes beyond it", NULL},
-    {"size", SCREE_FIELD_REAL, AT(size), 1e-9, 1e3, "m",
-     "of a body; not given: the mean of those there", NULL},
-    {"sectors", SCREE_FIELD_COUNT, AT(sectors), 1, 3600, "", "in azimuth", NULL},
-    {"band_low", SCREE_FIELD_REAL, AT(band_low), 0, 1, "", "of the height: the flank begins", NULL},
-    {"band_high", SCREE_FIELD_REAL, AT(band_high), 0, 1, "", "and ends", NULL},
-    {"every", SCREE_FIELD_REAL, AT(every), 0, 1e9, "s",
-     "between lines of the series that have it; 0: only the last; not given: all", NULL},
-    {"during", SCREE_FIELD_TEXTS, AT(during), 0, 0, "", "phases; not given: all", NULL},
-};
-#undef AT
-static scree_status check_pile(const scree_reader *r, const void *record) {
-  const scree_plan_pile *p = record;
-  if (p->band_low < p->band_high) return SCREE_OK;
-  return scree_fail_place(r, &p->place, "band_low %g must be below band_high %g", p->band_low,
-                          p->band_high);
-}
-static const scree_plan_pile pile_defaults = {.disc = NAN,
-                                              .reach = NAN,
-                                              .size = NAN,
-                                              .every = NAN,
-                                              .band_low = 0.2,
-                                              .band_high = 0.8,
-                                              .sectors = 36};
-static const scree_record pile_record = {"a pile", FIELDS(pile_fields), sizeof(scree_plan_pile),
-                                         &pile_defaults, check_pile};
-
-static const scree_field slope_fields[] = {
-    {"axis", SCREE_FIELD_VECTOR, offsetof(scree_plan_slope, axis), 0, 0, "",
-     "the surface is seen along it", NULL},
-};
-static scree_status check_slope(const scree_reader *r, const void *record) {
-  const scree_plan_slope *s = record;
-  return check_direction(r, &s->place, "axis", s->axis);
-}
-static const scree_plan_slope slope_defaults = {{0}, {1, 0, 0}};
-static const scree_record slope_record = {"a slope", FIELDS(slope_fields), sizeof(scree_plan_slope),
-                                          &slope_defaults, check_slope};
-
-static const scree_field segregation_fields[] = {
-    {"cells", SCREE_FIELD_REAL, offsetof(scree_plan_segregation, cells), 1e-9, 1e6, "m",
-     "side of the cells that are compared", NULL},
-};
-static scree_status check_segregation(const scree_reader *r, const void *record) {
-  const scree_plan_segregation *s = record;
-  return given(&s->cells) ? SCREE_OK : scree_fail_place(r, &s->place, "needs cells: their side");
-}
-static const scree_plan_segregation segregation_defaults = {{0}, NAN};
-static const scree_record segregation_record = {"segregation", FIELDS(segregation_fields),
-                                                sizeof(scree_plan_segregation),
-                                                &segregation_defaults, check_segregation};
-
-static const scree_plan_residence residence_defaults = {{0}};
-static const scree_record residence_record = {
-    "residence", NULL, 0, sizeof(scree_plan_residence), &residence_defaults, NULL};
-
-#define AT(member) offsetof(scree_plan_sensor, member)
-static const scree_field sensor_fields[] = {
-    {"flow", SCREE_FIELD_RECORD, AT(flow), 0, 0, "", "count and mass through a plane, by shape",
-     &flow_record},
-    {"region", SCREE_FIELD_RECORD, AT(region), 0, 0, "", "what is in a box", &region_record},
-    {"wall", SCREE_FIELD_TEXT, AT(wall), 0, 0, "", "force, torque, power and wear of a geometry",
-     NULL},
-    {"position", SCREE_FIELD_TEXT, AT(position), 0, 0, "", "where a geometry is", NULL},
-    {"pile", SCREE_FIELD_RECORD, AT(pile), 0, 0, "", "angle of repose three ways", &pile_record},
-    {"slope", SCREE_FIELD_RECORD, AT(slope), 0, 0, "", "angle of the surface", &slope_record},
-    {"segregation", SCREE_FIELD_RECORD, AT(segregation), 0, 0, "", "Lacey's index by shape",
-     &segregation_record},
-    {"residence", SCREE_FIELD_RECORD, AT(residence), 0, 0, "", "time from inlet to outlet",
-     &residence_record},
-};
-#undef AT
-static scree_status check_sensor(const scree_reader *r, const void *record) {
-  const scree_plan_sensor *s = record;
-  const bool there[] = {s->flow != NULL,      s->region != NULL,  s->wall != NULL,
-                        s->pile != NULL,      s->slope != NULL,   s->segregation != NULL,
-                        s->residence != NULL, s->position != NULL};
-  return one_of(r, &s->place, there, 8,
-                "flow, region, wall, position, pile, slope, segregation, residence");
-}
-static const scree_plan_sensor sensor_defaults = {.wall = NULL};
-static const scree_record sensor_record = {
-    "a sensor", FIELDS(sensor_fields), sizeof(scree_plan_sensor), &sensor_defaults, check_sensor};
 
 /* ---- the rest ---- */
 
@@ -753,7 +618,7 @@ static const scree_field plan_fields[] = {
     {"outlets", SCREE_FIELD_NAMED, AT(outlets), 0, 0, "", "", &outlet_record},
     {"domain", SCREE_FIELD_RECORD, AT(domain), 0, 0, "", "what leaves it is taken out",
      &domain_record},
-    {"sensors", SCREE_FIELD_NAMED, AT(sensors), 0, 0, "", "", &sensor_record},
+    {"sensors", SCREE_FIELD_NAMED, AT(sensors), 0, 0, "", "", &scree_plan_sensor_record},
     {"phases", SCREE_FIELD_NAMED, AT(phases), 0, 0, "",
      "follow each other; after the last the scene ends", &phase_record},
     {"stop", SCREE_FIELD_RECORD, AT(stop), 0, 0, "", "what ends it before its time", &stop_record},

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Every field of a scene that the program reads (the tables of src/scene/plan.c) stands in docs/reference/scenes.md, and
+"""Every field of a scene that the program reads (the tables of src/scene/plan*.c) stands in docs/reference/scenes.md, and
 so does every template. usage: scene_fields.py ROOT PROGRAM"""
 import re
 import subprocess
@@ -15,8 +15,7 @@ def read(path):
 
 page = read("docs/reference/scenes.md")
 named = set(re.findall(r"[\w-]+", " ".join(re.findall(r"`[^`\n]+`", page))))
-tables = re.findall(r"^static const scree_field (\w+)_fields\[\] = \{\n(.*?)^\};", read("src/scene/plan.c"),
-                    re.MULTILINE | re.DOTALL)
+tables = re.findall(r"^static const scree_field (\w+)_fields\[\] = \{\n(.*?)^\};", read("src/scene/plan.c") + read("src/scene/plan_sensors.c"), re.MULTILINE | re.DOTALL)
 hidden = {("shape", "given")}  # of scenes that the program writes for itself
 missing = [f"{record}: {key}" for record, body in tables for key in re.findall(r'\{"(\w+)", SCREE_FIELD', body)
            if key not in named and (record, key) not in hidden]
