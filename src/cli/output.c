@@ -97,9 +97,11 @@ bool cli_finish_printing(void) {
 
 /* ---- what a run leaves in its folder ---- */
 
-/* Whether the file is called so; of a # in the name, any digits. */
+/* Whether the file is called so; of a # in the name, any digits, of a *, anything. */
 static bool is_called(const char *file, const char *name) {
   for (; *name; name++) {
+    size_t left = strlen(name + 1), there = strlen(file);
+    if (*name == '*') return there >= left && !strcmp(file + there - left, name + 1);
     size_t digits = *name == '#' ? strspn(file, "0123456789") : 0;
     if (*name == '#' ? digits == 0 : *file != *name) return false;
     file += digits ? digits : 1;
@@ -117,10 +119,10 @@ static scree_status visit_file(const cli_call *call, const char *folder, const c
   return visit(call, path, error);
 }
 
-/* Of a name with a # those that are there, of another one the file, there or not. */
+/* Of a name with a # or a * those that are there, of another one the file, there or not. */
 static scree_status visit_files(const cli_call *call, const char *folder, const char *name,
                                 run_file_visit *visit, scree_error *error) {
-  if (!strchr(name, '#')) return visit_file(call, folder, name, visit, error);
+  if (!strpbrk(name, "#*")) return visit_file(call, folder, name, visit, error);
   scree_status status = SCREE_OK;
   scree_folder *entries = scree_folder_open(folder);
   if (!entries) return cli_refuse(error, SCREE_IO, folder, strerror(errno));

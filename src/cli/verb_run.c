@@ -52,7 +52,7 @@ static const char *const file_names[] = {
     "checkpoint.scree",     "series.csv",  "motion.scree", "scene.yaml",
     "frame-#-bodies.vtp",   "bodies.pvd",  "geometry.pvd", "scene.png",
     "frame-#-geometry.vtp", "result.json", "result.txt",   "stopped.scree",
-    "provenance.json",      "report.html"};
+    "provenance.json",      "report.html", "sensor-*.csv"};
 static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 enum { PATH_BYTES = 4200 };
@@ -453,7 +453,8 @@ const cli_verb cli_verb_run = {
         "in a file is told with line and column, and with what is allowed.\n\n"
         "Prints what came in, is inside and went out, and what the sensors read. With -o DIR "
         "writes result.json, series.csv (all numbers over time), scene.yaml (the scene with every "
-        "default), bodies.pvd and geometry.pvd with their frames for ParaView, scene.png, and "
+        "default), sensor-*.csv (what sensors have besides columns), bodies.pvd and geometry.pvd "
+        "with their frames for ParaView, scene.png, and "
         "report.html, which plays it. Ctrl-C leaves a checkpoint, as a crash does: --resume goes "
         "on with the same bits. The same file gives the same bits for any number of threads. A "
         "scene that leaves the range of the contact law stops with step, body and cause, and "

@@ -52,6 +52,7 @@ static scree_status checkpoint(work *w, scree_error *error) {
   char *path = path_in(w, checkpoint_name, error);
   if (!path) return SCREE_OUT_OF_MEMORY;
   scree_status status = scree_scene_save(w->scene, path, true, error);
+  if (status == SCREE_OK) status = scree_scene_write_tables(w->scene, w->job->folder, error);
   scree_free(path);
   return status;
 }

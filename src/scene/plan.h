@@ -146,6 +146,13 @@ typedef struct scree_plan_segregation {
   double cells;
 } scree_plan_segregation;
 
+typedef struct scree_plan_impacts {
+  scree_place place;
+  int by; /* 0 shape, 1 material */
+  double least, most, threshold, from, window;
+  size_t bins;
+} scree_plan_impacts;
+
 typedef struct scree_plan_residence {
   scree_place place;
 } scree_plan_residence;
@@ -160,6 +167,7 @@ typedef struct scree_plan_sensor {
   scree_plan_slope *slope;
   scree_plan_segregation *segregation;
   scree_plan_residence *residence;
+  scree_plan_impacts *impacts;
 } scree_plan_sensor;
 
 typedef struct scree_plan_stop {

@@ -96,6 +96,31 @@ static const scree_plan_residence residence_defaults = {{0}};
 static const scree_record residence_record = {
     "residence", NULL, 0, sizeof(scree_plan_residence), &residence_defaults, NULL};
 
+#define AT(member) offsetof(scree_plan_impacts, member)
+static const scree_field impacts_fields[] = {
+    {"by", SCREE_FIELD_WORD, AT(by), 0, 0, "shape|material", "classes of bodies; geometry by name",
+     NULL},
+    {"least", SCREE_FIELD_REAL, AT(least), 1e-18, 1e12, "J", "where the spectra begin", NULL},
+    {"most", SCREE_FIELD_REAL, AT(most), 1e-18, 1e12, "J", "and end", NULL},
+    {"bins", SCREE_FIELD_COUNT, AT(bins), 1, 100, "", "in a decade of energy", NULL},
+    {"threshold", SCREE_FIELD_REAL, AT(threshold), 0, 1e12, "J",
+     "damage is what the energy of approach exceeds it by", NULL},
+    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "nothing before is counted", NULL},
+    {"window", SCREE_FIELD_REAL, AT(window), 1e-9, 1e9, "s",
+     "a spectrum for each; not given: one of all", NULL},
+};
+#undef AT
+static scree_status check_impacts(const scree_reader *r, const void *record) {
+  const scree_plan_impacts *p = record;
+  if (p->least < p->most) return SCREE_OK;
+  return scree_fail_place(r, &p->place, "least %g J must be below most %g J", p->least, p->most);
+}
+static const scree_plan_impacts impacts_defaults = {
+    .least = 1e-9, .most = 1e3, .bins = 5, .window = NAN};
+static const scree_record impacts_record = {"impacts", FIELDS(impacts_fields),
+                                            sizeof(scree_plan_impacts), &impacts_defaults,
+                                            check_impacts};
+
 #define AT(member) offsetof(scree_plan_sensor, member)
 static const scree_field sensor_fields[] = {
     {"flow", SCREE_FIELD_RECORD, AT(flow), 0, 0, "", "count and mass through a plane, by shape",
@@ -110,15 +135,18 @@ static const scree_field sensor_fields[] = {
      &segregation_record},
     {"residence", SCREE_FIELD_RECORD, AT(residence), 0, 0, "", "time from inlet to outlet",
      &residence_record},
+    {"impacts", SCREE_FIELD_RECORD, AT(impacts), 0, 0, "", "energies of contacts, by class",
+     &impacts_record},
 };
 #undef AT
 static scree_status check_sensor(const scree_reader *r, const void *record) {
   const scree_plan_sensor *s = record;
-  const bool there[] = {s->flow != NULL,      s->region != NULL,  s->wall != NULL,
-                        s->pile != NULL,      s->slope != NULL,   s->segregation != NULL,
-                        s->residence != NULL, s->position != NULL};
-  return scree_plan_one_of(r, &s->place, there, 8,
-                           "flow, region, wall, position, pile, slope, segregation, residence");
+  const bool there[] = {s->flow != NULL,      s->region != NULL,   s->wall != NULL,
+                        s->pile != NULL,      s->slope != NULL,    s->segregation != NULL,
+                        s->residence != NULL, s->position != NULL, s->impacts != NULL};
+  return scree_plan_one_of(
+      r, &s->place, there, sizeof there / sizeof *there,
+      "flow, region, wall, position, pile, slope, segregation, residence, impacts");
 }
 static const scree_plan_sensor sensor_defaults = {.wall = NULL};
 const scree_record scree_plan_sensor_record = {

@@ -3,7 +3,7 @@
  * bodies; the series; the notes of the program that made it. What follows from the file is made
  * again. A frame's world has its bodies and walls without what contacts remember; what follows from
  * contacts is kept as a number. */
-#include "scene/scene.h"
+#include "scene/impacts.h"
 #include "world/checkpoint.h"
 
 #include "base/alloc.h"
@@ -72,10 +72,51 @@ static void code_inlets(scree_codec *c, scree_scene *scene) {
   }
 }
 
+/* An array that grows. */
+#define CODE_REALS(codec, list)                                                                    \
+  do {                                                                                             \
+    size_t count_ = (list)->count;                                                                 \
+    scree_code_count((codec), &count_, sizeof(double));                                            \
+    if (scree_codec_good(codec) && !SCREE_RESERVE(list, count_)) (codec)->out_of_memory = true;    \
+    if (scree_codec_good(codec)) {                                                                 \
+      (list)->count = count_;                                                                      \
+      scree_code_reals((codec), (list)->items, count_);                                            \
+    }                                                                                              \
+  } while (0)
+
+static void code_impacts(scree_codec *c, scree_scene_impacts *impacts) {
+  scree_code_reals(c, impacts->sums, impacts->class_count * SCREE_IMPACT_SUMS);
+  scree_code_reals(c, impacts->spectra,
+                   impacts->class_count * SCREE_IMPACT_SPECTRA * impacts->bin_count);
+  scree_code_real(c, &impacts->window_from);
+  CODE_REALS(c, &impacts->windows);
+  CODE_REALS(c, &impacts->bodies);
+}
+
+static void code_hits(scree_codec *c, scree_scene *scene) {
+  size_t count = scene->hits.count;
+  scree_code_u64(c, &scene->next_hits);
+  scree_code_count(c, &count, 50);
+  if (scree_codec_good(c) && !SCREE_RESERVE(&scene->hits, count)) c->out_of_memory = true;
+  if (!scree_codec_good(c)) return;
+  scene->hits.count = count;
+  for (size_t i = 0; i < count; i++) {
+    scree_scene_hit *hit = &scene->hits.items[i];
+    double *reals[] = {&hit->seen_normal, &hit->seen_tangential, &hit->approach, &hit->normal,
+                       &hit->tangential};
+    scree_code_u32(c, &hit->a);
+    scree_code_u32(c, &hit->b);
+    scree_code_bool(c, &hit->wall);
+    scree_code_bool(c, &hit->touching);
+    for (size_t k = 0; k < sizeof reals / sizeof *reals; k++) scree_code_real(c, reals[k]);
+  }
+}
+
 static void code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *sensor) {
   double *arrays[] = {sensor->count, sensor->mass, sensor->sum, sensor->sum2};
   for (size_t k = 0; k < 4; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
   scree_code_reals(c, sensor->wear, sensor->wear_count);
+  if (sensor->impacts) code_impacts(c, sensor->impacts);
   size_t count = sensor->side.count;
   scree_code_count(c, &count, 1);
   if (scree_codec_good(c) && !SCREE_RESERVE(&sensor->side, count)) c->out_of_memory = true;
@@ -117,6 +158,7 @@ static void code_state(scree_codec *c, scree_scene *scene) {
   code_progress(c, scene);
   code_inlets(c, scene);
   for (size_t i = 0; i < scene->plan.sensors.count; i++) code_sensor(c, scene, &scene->sensors[i]);
+  code_hits(c, scene);
   code_bodies(c, scene);
   code_series(c, scene);
 }

@@ -367,8 +367,12 @@ void scree_scene_free(scree_scene *scene) {
     scree_particle_free(scene->shapes[i].particle);
     scree_free(scene->shapes[i].source);
   }
-  for (size_t i = 0; scene->sensors && i < scene->plan.sensors.count; i++)
+  for (size_t i = 0; scene->sensors && i < scene->plan.sensors.count; i++) {
     scree_free(scene->sensors[i].side.items);
+    scree_scene_free_impacts(&scene->sensors[i]);
+  }
+  scree_free(scene->hits.items);
+  scree_free(scene->hits_now.items);
   scree_free(scene->columns.items);
   scree_free(scene->series.items);
   scree_free(scene->shape_of.items);
@@ -440,8 +444,9 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
   uint64_t left = scene->next_tick - scree_world_step_count(scene->world);
   size_t steps = wanted < left ? wanted : (size_t)left, layer = scree_scene_steps_to_layer(scene);
   if (layer < steps) steps = layer;
-  uint64_t wear = scene->next_wear - scree_world_step_count(scene->world);
-  if (scene->wear_steps && wear < steps) steps = (size_t)wear;
+  uint64_t done = scree_world_step_count(scene->world);
+  if (scene->wear_steps && scene->next_wear - done < steps) steps = scene->next_wear - done;
+  if (scene->hit_steps && scene->next_hits - done < steps) steps = scene->next_hits - done;
   double due = fmin(next_row(scene), fmin(time_limit(scene), scree_scene_phase_end(scene)));
   double until = floor((due - scree_world_time(scene->world)) / scene->time_step) - 1;
   if (until < (double)steps) steps = until > 1 ? (size_t)until : 1;
@@ -452,6 +457,7 @@ scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
   bool ticks = scree_world_step_count(scene->world) >= scene->next_tick;
   if (scree_world_time(scene->world) >= next_row(scene)) scree_scene_take_lost(scene);
   scree_status status = scree_scene_watch_wear(scene, error);
+  if (status == SCREE_OK) status = scree_scene_watch_impacts(scene, error);
   if (status == SCREE_OK && ticks) status = tick(scene, error);
   if (status == SCREE_OK) status = scree_scene_turn_phase(scene, ticks, error);
   if (status != SCREE_OK) return status;

@@ -62,6 +62,21 @@ typedef struct scree_scene_outlet {
   double first_time, first_place[3]; /* s, m: of the first that left */
 } scree_scene_outlet;
 
+/* A contact that is followed (impacts.c), or the last one of these neighbours. */
+typedef struct scree_scene_hit {
+  uint32_t a, b;
+  bool wall, touching;
+  double seen_normal, seen_tangential; /* J, the pair's losses at the last look */
+  double approach, normal, tangential; /* J, of the contact */
+} scree_scene_hit;
+
+typedef struct scree_scene_hits {
+  scree_scene_hit *items; /* in the order of the world's neighbours */
+  size_t count, capacity;
+} scree_scene_hits;
+
+typedef struct scree_scene_impacts scree_scene_impacts; /* impacts.h */
+
 typedef struct scree_scene_sensor {
   const scree_plan_sensor *plan;
   size_t first_column;
@@ -70,6 +85,7 @@ typedef struct scree_scene_sensor {
   double *sum, *sum2;   /* of residence, s and s2, likewise */
   double *wear;         /* of a wall: J by triangle of its meshes, one of each other wall */
   size_t wear_count;
+  scree_scene_impacts *impacts;
   struct {
     int8_t *items; /* of a flow: the side each body was on */
     size_t count, capacity;
@@ -132,10 +148,12 @@ struct scree_scene {
     scree_placement *items; /* scratch of inlets */
     size_t count, capacity;
   } present;
-  double time_step, size;         /* s; m: the smallest shape's */
-  uint64_t tick_steps;            /* between looks at inlets, outlets, flows and the end */
-  uint64_t next_tick;             /* step */
-  uint64_t wear_steps, next_wear; /* likewise of looks at wear; 0: no sensor needs any */
+  double time_step, size;          /* s; m: the smallest shape's */
+  uint64_t tick_steps;             /* between looks at inlets, outlets, flows and the end */
+  uint64_t next_tick;              /* step */
+  uint64_t wear_steps, next_wear;  /* likewise of looks at wear; 0: no sensor needs any */
+  uint64_t hit_steps, next_hits;   /* and of looks at impacts */
+  scree_scene_hits hits, hits_now; /* hits_now: scratch */
   size_t still_ticks;
   double entered_mass, left_mass, entered_energy, left_energy;
   size_t left_count;
@@ -263,6 +281,16 @@ scree_status scree_scene_record(scree_scene *scene, scree_error *error);
 size_t scree_scene_wear_cells(const scree_scene *scene, size_t wall);
 scree_status scree_scene_plan_wear(scree_scene *scene, scree_error *error);
 scree_status scree_scene_watch_wear(scree_scene *scene, scree_error *error);
+
+/* impacts.c: likewise. */
+scree_status scree_scene_plan_impacts(scree_scene *scene, scree_scene_sensor *sensor,
+                                      scree_error *error);
+scree_status scree_scene_watch_impacts(scree_scene *scene, scree_error *error);
+void scree_scene_free_impacts(scree_scene_sensor *sensor);
+
+/* tables.c: what sensors have besides columns, as CSV files in the folder. */
+scree_status scree_scene_write_tables(const scree_scene *scene, const char *folder,
+                                      scree_error *error);
 
 /* measures.c: the bodies of a pile, raised and measured. */
 typedef struct scree_scene_heap {

@@ -1,6 +1,6 @@
 /* Sensors as columns of numbers: what each is called, what it reads now, and what flows and
  * residence gather from tick to tick. */
-#include "scene/scene.h"
+#include "scene/impacts.h"
 
 #include "base/alloc.h"
 #include "base/array.h"
@@ -38,6 +38,16 @@ static const struct {
                     {"phase", ""}};
 enum { BASE_COLUMNS = sizeof base_columns / sizeof *base_columns };
 
+/* Of impacts; the rate follows from the count. */
+static const struct {
+  const char *name, *unit;
+  int sum;
+} impact_columns[] = {
+    {"count", "", SCREE_IMPACT_COUNT},    {"approach", "J", SCREE_IMPACT_APPROACH},
+    {"normal", "J", SCREE_IMPACT_NORMAL}, {"tangential", "J", SCREE_IMPACT_TANGENTIAL},
+    {"damage", "J", SCREE_IMPACT_DAMAGE}, {"rate", "1/s", -1}};
+enum { IMPACT_COLUMNS = sizeof impact_columns / sizeof *impact_columns };
+
 SCREE_PRINTF(3, 4)
 static bool add_column(scree_scene *scene, const char *unit, const char *format, ...) {
   scree_scene_column column = {.unit = unit};
@@ -64,7 +74,25 @@ static bool add_all(scree_scene *scene, const char *sensor, const char *const *n
   return good;
 }
 
-static bool add_sensor(scree_scene *scene, const scree_plan_sensor *plan) {
+/* SENSOR.WHAT, and where there are several classes SENSOR.WHAT.A-B. */
+static bool add_impacts(scree_scene *scene, const scree_scene_sensor *sensor) {
+  bool good = true;
+  for (size_t k = 0; good && k < IMPACT_COLUMNS; k++) {
+    const char *what = impact_columns[k].name, *unit = impact_columns[k].unit;
+    size_t classes = sensor->impacts->class_count;
+    good = add_column(scene, unit, "%s.%s", sensor->plan->place.name, what);
+    for (size_t c = 0; good && classes > 1 && c < classes; c++) {
+      const char *names[2];
+      scree_impact_class_names(scene, sensor, c, names);
+      good = add_column(scene, unit, "%s.%s.%s-%s", sensor->plan->place.name, what, names[0],
+                        names[1]);
+    }
+  }
+  return good;
+}
+
+static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
+  const scree_plan_sensor *plan = sensor->plan;
   static const char *const wall[] = {
       "force_x",  "N",   "force_y", "N", "force_z", "N", "torque_x", "N m", "torque_y", "N m",
       "torque_z", "N m", "power",   "W", "energy",  "J", "wear",     "J",   NULL};
@@ -88,6 +116,7 @@ static bool add_sensor(scree_scene *scene, const scree_plan_sensor *plan) {
   if (plan->pile) return add_all(scene, name, pile);
   if (plan->slope) return add_column(scene, "deg", "%s.angle_deg", name);
   if (plan->segregation) return add_by_shape(scene, name, "lacey", "", false);
+  if (plan->impacts) return add_impacts(scene, sensor);
   return add_by_shape(scene, name, "count", "", true) &&
          add_by_shape(scene, name, "mean", "s", true) && add_by_shape(scene, name, "sd", "s", true);
 }
@@ -114,7 +143,10 @@ scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error) {
     const char *of = sensor->plan->wall ? sensor->plan->wall : sensor->plan->position;
     if (of)
       sensor->geometry = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), of);
-    good = add_sensor(scene, sensor->plan) && allocate_sums(scene, sensor);
+    scree_status status =
+        sensor->plan->impacts ? scree_scene_plan_impacts(scene, sensor, error) : SCREE_OK;
+    if (status != SCREE_OK) return status;
+    good = add_sensor(scene, sensor) && allocate_sums(scene, sensor);
   }
   return good ? SCREE_OK : scree_fail_memory(error, 0, "sensors");
 }
@@ -206,21 +238,45 @@ static void put_by_shape(const scree_scene *scene, const double *values, double 
   for (size_t s = 0; shapes > 1 && s < shapes; s++) *(*at)++ = factor * values[s];
 }
 
+/* The last row of the series; *since is then its time, if that is later. NULL: none. */
+static const double *row_before(const scree_scene *scene, double *since) {
+  if (!scene->row_count) return NULL;
+  const double *row = scene->series.items + (scene->row_count - 1) * scene->columns.count;
+  *since = fmax(*since, row[0]);
+  return row;
+}
+
 /* Counts and masses, and since the last row how many a second. */
 static void read_flow(const scree_scene *scene, const scree_scene_sensor *sensor, double time,
                       double *at) {
   size_t shapes = SCREE_SCENE_SHAPES(scene), width = shapes > 1 ? shapes + 1 : 1;
-  const double *now = at, *before = NULL;
+  const double *now = at;
   double since = 0;
-  if (scene->row_count) {
-    const double *row = scene->series.items + (scene->row_count - 1) * scene->columns.count;
-    before = row + sensor->first_column;
-    since = row[0];
-  }
+  const double *row = row_before(scene, &since), *before = row ? row + sensor->first_column : NULL;
   put_by_shape(scene, sensor->count, 1, &at);
   put_by_shape(scene, sensor->mass, 1, &at);
   for (size_t k = 0; k < 2 * width; k++)
     *at++ = time > since ? (now[k] - (before ? before[k] : 0)) / (time - since) : NAN;
+}
+
+static void read_impacts(const scree_scene *scene, const scree_scene_sensor *sensor, double time,
+                         double *at) {
+  const scree_scene_impacts *impacts = sensor->impacts;
+  size_t classes = impacts->class_count, width = classes > 1 ? classes + 1 : 1;
+  double since = sensor->plan->impacts->from, *counts = at;
+  const double *before = row_before(scene, &since);
+  for (size_t k = 0; k + 1 < IMPACT_COLUMNS; k++, at += width) {
+    at[0] = 0;
+    for (size_t c = 0; c < classes; c++) {
+      double value = impacts->sums[c * SCREE_IMPACT_SUMS + (size_t)impact_columns[k].sum];
+      at[0] += value;
+      if (classes > 1) at[1 + c] = value;
+    }
+  }
+  for (size_t k = 0; k < width; k++)
+    at[k] = time > since
+                ? (counts[k] - (before ? before[sensor->first_column + k] : 0)) / (time - since)
+                : NAN;
 }
 
 static void read_region(const scree_scene *scene, const scree_plan_box *box, double *count,
@@ -315,6 +371,8 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
     status = scree_scene_measure_slope(scene, plan->slope, at, error);
   else if (plan->segregation)
     status = scree_scene_measure_mixing(scene, plan->segregation, at, error);
+  else if (plan->impacts)
+    read_impacts(scene, sensor, values[0], at);
   else
     read_residence(scene, sensor, at);
   return status;
