@@ -273,7 +273,7 @@ static scree_status read_reals(const scree_reader *r, const scree_yaml *node, co
 static scree_status read_table(const scree_reader *r, const scree_yaml *node, const scree_field *f,
                                scree_table *value) {
   if (node->kind != SCREE_YAML_SEQUENCE || node->item_count < 1)
-    return fail_at(r, node, "must be a list of [time in s, value], as in [[0, 0], [1, 2]]");
+    return fail_at(r, node, "must be a list of %s, as in [[0, 0], [1, 2]]", f->comment);
   value->items = scree_arena_take(r->arena, node->item_count, sizeof *value->items);
   if (!value->items) return fail_memory(r);
   value->count = node->item_count;
@@ -281,7 +281,7 @@ static scree_status read_table(const scree_reader *r, const scree_yaml *node, co
     scree_yaml row = node->items[i];
     row.key = node->key;
     if (row.kind != SCREE_YAML_SEQUENCE || row.item_count != 2)
-      return fail_at(r, &row, "row %zu must be [time in s, value]", i + 1);
+      return fail_at(r, &row, "row %zu must be two numbers: %s", i + 1, f->comment);
     for (size_t k = 0; k < 2; k++) {
       scree_yaml item = row.items[k];
       item.key = node->key;
@@ -289,8 +289,8 @@ static scree_status read_table(const scree_reader *r, const scree_yaml *node, co
       if (status != SCREE_OK) return status;
     }
     if (i && !(value->items[i][0] > value->items[i - 1][0]))
-      return fail_at(r, &row, "times must rise: %g s after %g s", value->items[i][0],
-                     value->items[i - 1][0]);
+      return fail_at(r, &row, "the first number of rows must rise: %g after %g",
+                     value->items[i][0], value->items[i - 1][0]);
   }
   return SCREE_OK;
 }

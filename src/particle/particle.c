@@ -387,6 +387,36 @@ scree_status scree_particle_restore(const scree_particle_measures *measures, con
   return SCREE_OK;
 }
 
+static void scale_measures(scree_particle_measures *m, double factor) {
+  const double square = factor * factor;
+  double *const lengths[] = {&m->size, &m->bounding_radius, &m->thickness, &m->rounding};
+  m->volume *= factor * square;
+  for (int k = 0; k < 3; k++) m->centre[k] *= factor, m->inertia[k] *= factor * square * square;
+  for (size_t i = 0; i < sizeof lengths / sizeof *lengths; i++) *lengths[i] *= factor;
+}
+
+scree_status scree_particle_scaled(const scree_particle *from, double factor,
+                                   scree_particle **particle, scree_error *error) {
+  scree_particle_measures m = from->measures;
+  scree_mesh mesh = {0};
+  double *spheres = scree_alloc(from->point_count, 4 * sizeof *spheres);
+  if (!spheres) return scree_fail_memory(error, from->point_count, "a particle of another size");
+  double *radii = spheres + 3 * from->point_count;
+  scale_measures(&m, factor);
+  for (size_t i = 0; i < from->point_count; i++) {
+    vec3_store(spheres + 3 * i, vec3_scale(from->points[i], factor));
+    radii[i] = factor * from->point_radii[i];
+  }
+  scree_status status = scree_mesh_copy(&from->mesh, &mesh, error);
+  if (status == SCREE_OK) {
+    scree_mesh_scale(&mesh, factor);
+    status = scree_particle_restore(&m, &mesh, spheres, radii, from->point_count, particle, error);
+  }
+  scree_mesh_free(&mesh);
+  scree_free(spheres);
+  return status;
+}
+
 void scree_particle_measure(const scree_particle *particle, scree_particle_measures *measures) {
   *measures = particle->measures;
 }

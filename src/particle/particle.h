@@ -115,6 +115,10 @@ scree_status scree_particle_restore(const scree_particle_measures *measures, con
                                     const double *centres, const double *radii, size_t count,
                                     scree_particle **particle, scree_error *error);
 
+/* The same shape, `factor` times as large. */
+scree_status scree_particle_scaled(const scree_particle *from, double factor,
+                                   scree_particle **particle, scree_error *error);
+
 /* features.c: fills faces, signs, points and edges from particle->mesh. A wall may be open, and its
  * edges as sharp as they come. */
 scree_status scree_particle_extract_features(scree_particle *particle, bool is_wall,

@@ -26,12 +26,12 @@ static bool by_material(const scree_scene_sensor *sensor) {
 
 static size_t body_class(const scree_scene *scene, const scree_scene_sensor *sensor, size_t body) {
   size_t shape = scene->shape_of.items[body];
-  return by_material(sensor) ? scene->shapes[shape].material : shape;
+  return by_material(sensor) ? scene->shapes[shape].material : scene->shapes[shape].family;
 }
 
 static size_t body_class_count(const scree_scene *scene, const scree_scene_sensor *sensor) {
   size_t materials = scene->plan.materials.count;
-  return by_material(sensor) ? (materials ? materials : 1) : SCREE_SCENE_SHAPES(scene);
+  return by_material(sensor) ? (materials ? materials : 1) : scene->plan.families.count;
 }
 
 size_t scree_impact_class_count(const scree_scene *scene, const scree_scene_sensor *sensor) {
@@ -41,7 +41,8 @@ size_t scree_impact_class_count(const scree_scene *scene, const scree_scene_sens
 
 static const char *body_class_name(const scree_scene *scene, const scree_scene_sensor *sensor,
                                    size_t index) {
-  if (!by_material(sensor)) return scree_scene_shape_name(scene, index);
+  if (!by_material(sensor))
+    return SCREE_PLAN_AT(&scene->plan, families, scree_plan_shape, index)->place.name;
   if (scene->plan.materials.count == 0) return "bodies";
   return SCREE_PLAN_AT(&scene->plan, materials, scree_plan_material, index)->place.name;
 }

@@ -197,3 +197,18 @@ scree_status scree_scene_make_particle(const scree_plan_shape *shape, const char
   scree_particle_free(made);
   return scree_fail_memory(error, 0, "a shape's source");
 }
+
+scree_status scree_scene_make_scaled(const scree_plan_shape *shape, const char *folder,
+                                     const scree_progress *progress, scree_particle **unscaled,
+                                     scree_scene_shape *made, scree_error *error) {
+  char *source = NULL;
+  scree_status status = SCREE_OK;
+  if (!*unscaled)
+    status = scree_scene_make_particle(shape, folder, progress, unscaled, &source, error);
+  scree_free(source);
+  if (status != SCREE_OK) return status;
+  double factor = shape->scaled / (*unscaled)->measures.size;
+  made->source = scree_strdup(shape->file ? shape->file : shape->sample ? shape->sample : "");
+  if (!made->source) return scree_fail_memory(error, 0, "a shape's source");
+  return scree_particle_scaled(*unscaled, factor, &made->particle, error);
+}

@@ -9,7 +9,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-
 double scree_plan_unit(int unit) {
   static const double metres[] = {1, 1e-2, 1e-3, 1e-6, 0.0254, 0.3048, 1e3};
   return metres[unit];
@@ -107,6 +106,8 @@ static const scree_field shape_fields[] = {
     {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
     {"density", SCREE_FIELD_REAL, AT(density), 1e-3, 1e6, "kg/m3", "another than its material's",
      NULL},
+    {"size", SCREE_FIELD_RECORD, AT(size), 0, 0, "",
+     "of many sizes, each the diameter of the sphere of equal volume", &scree_plan_size_record},
 };
 #undef AT
 
@@ -149,6 +150,12 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
                             s->clump);
   const bool there[] = {s->file != NULL, s->sample != NULL, given(&s->sphere),
                         table,           given(s->box),     s->given != NULL};
+  bool none = true;
+  for (int i = 0; i < 6; i++) none = none && !there[i];
+  if (s->size && none) return SCREE_OK; /* spheres */
+  if (s->size && (s->given || given(&s->sphere)))
+    return scree_fail_place(r, &s->place,
+                            "size is of a file, sample, clump or box; alone, of spheres");
   scree_status status =
       scree_plan_one_of(r, &s->place, there, 6, "file, sample, sphere (its diameter), clump, box");
   if (status == SCREE_OK && s->clump && !table) status = check_spheres(r, s);
@@ -174,7 +181,7 @@ static scree_status check_shape(const scree_reader *r, const void *record) {
   return SCREE_OK;
 }
 static const scree_plan_shape shape_defaults = {
-    .sphere = NAN, .box = NONE, .resolution = NAN, .density = NAN, .unit = 2};
+    .sphere = NAN, .box = NONE, .resolution = NAN, .density = NAN, .scaled = NAN, .unit = 2};
 static const scree_record shape_record = {"a shape", FIELDS(shape_fields), sizeof(scree_plan_shape),
                                           &shape_defaults, check_shape};
 

@@ -17,6 +17,29 @@ typedef struct scree_plan_pair {
   double restitution, friction, rolling_friction, surface_energy, pull_off;
 } scree_plan_pair;
 
+/* Rosin-Rammler: size d', spread n; lognormal: median, standard deviation of the logarithm. */
+typedef struct scree_plan_rosin_rammler {
+  scree_place place;
+  double size, spread;
+} scree_plan_rosin_rammler;
+
+typedef struct scree_plan_lognormal {
+  scree_place place;
+  double median, deviation;
+} scree_plan_lognormal;
+
+/* One of distribution, rosin_rammler, lognormal, uniform. */
+typedef struct scree_plan_size {
+  scree_place place;
+  scree_table distribution;
+  scree_plan_rosin_rammler *rosin_rammler;
+  scree_plan_lognormal *lognormal;
+  bool uniform, cumulative;
+  int by; /* 0 mass, 1 number */
+  double least, most;
+  size_t classes;
+} scree_plan_size;
+
 /* One of file, sample, sphere, clump (a table), box, given; a clump that is a count is one of the
  * others' surface. */
 typedef struct scree_plan_shape {
@@ -24,6 +47,9 @@ typedef struct scree_plan_shape {
   const char *file, *sample, *clump, *given, *triangles, *rp, *material;
   double sphere, box[3], resolution, density;
   int unit;
+  scree_plan_size *size;
+  double scaled; /* m: to this size; NAN: as it is (of scree_plan_expand, as family) */
+  size_t family; /* index among the families */
 } scree_plan_shape;
 
 /* Spheres of the clump that stands for the shape's surface; 0: its clump is a table, or none. */
@@ -201,6 +227,7 @@ typedef struct scree_plan {
   uint64_t seed;
   size_t tick;
   scree_plan_contact *contact;
+  scree_records families; /* the shapes of the file (scree_plan_expand) */
   scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors, phases;
   scree_plan_domain *domain;
   scree_plan_stop *stop;
@@ -210,6 +237,17 @@ typedef struct scree_plan {
 extern const scree_record scree_plan_record;
 /* plan_check.c: of a whole scree_plan, whose records are good each. */
 scree_status scree_plan_check(const scree_reader *reader, const void *plan);
+
+/* sizes.c: a class of a distribution of sizes. */
+typedef struct scree_size_class {
+  double size, share; /* m, the diameter of the sphere of equal volume; by number, all together 1 */
+} scree_size_class;
+/* In the arena; of as much mass and number as the distribution has in them. NULL: no memory. */
+scree_size_class *scree_plan_size_classes(const scree_plan_size *size, scree_arena *arena,
+                                          size_t *count);
+/* A shape of many sizes becomes one for each class, in inlets by its share. */
+scree_status scree_plan_expand(scree_plan *plan, scree_arena *arena, scree_error *error);
+extern const scree_record scree_plan_size_record;
 
 /* Reads and checks it all but the files it names. */
 scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root, scree_plan *plan);

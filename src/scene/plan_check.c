@@ -103,7 +103,8 @@ static scree_status check_sensors(const scree_reader *r, const scree_plan *plan)
     if (status == SCREE_OK && s->slope && is_along(s->slope->axis, plan->gravity))
       status =
           scree_fail_place(r, &s->place, "axis along gravity: from above a surface has no slope");
-    if (status == SCREE_OK && s->segregation && plan->shapes.count < 2)
+    if (status == SCREE_OK && s->segregation && plan->shapes.count < 2 &&
+        !SCREE_PLAN_AT(plan, shapes, scree_plan_shape, 0)->size)
       status = scree_fail_place(r, &s->place, "segregation needs two shapes at least");
   }
   return status;

@@ -191,6 +191,7 @@ void scree_scene_measure_shape(scree_scene *scene, size_t index) {
   s->density = plan->density > 0             ? plan->density
                : scene->plan.materials.count ? material_at(scene, s->material)->density
                                              : scree_default_material().density;
+  s->family = plan->family;
   s->volume = m.volume;
   s->mass = s->density * m.volume;
   scene->size = index ? fmin(scene->size, m.size) : m.size;
@@ -226,6 +227,8 @@ static scree_status allocate_inlets(scree_scene *scene) {
 
 scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   const scree_plan *plan = &scene->plan;
+  scree_status status = scree_plan_expand(&scene->plan, &scene->arena, error);
+  if (status != SCREE_OK) return status;
   const struct {
     void **items;
     size_t count, size;
@@ -282,17 +285,26 @@ static scree_status make_particles(scree_scene *scene, const char *folder,
                                    const scree_scene_gift *gift, const scree_progress *progress,
                                    scree_error *error) {
   scree_status status = SCREE_OK;
+  scree_particle *unscaled = NULL; /* of the classes of one family */
   for (size_t i = 0; status == SCREE_OK && i < SCREE_SCENE_SHAPES(scene); i++) {
     const scree_plan_shape *plan = SCREE_PLAN_AT(&scene->plan, shapes, scree_plan_shape, i);
     scree_error why;
     scree_scene_shape *s = &scene->shapes[i];
+    if (i && plan->family != (plan - 1)->family) {
+      scree_particle_free(unscaled);
+      unscaled = NULL;
+    }
     if (plan->given) {
       status = take_given_particle(scene, gift, i, error);
       continue;
     }
-    status = scree_scene_make_particle(plan, folder, progress, &s->particle, &s->source, &why);
+    if (isnan(plan->scaled))
+      status = scree_scene_make_particle(plan, folder, progress, &s->particle, &s->source, &why);
+    else
+      status = scree_scene_make_scaled(plan, folder, progress, &unscaled, s, &why);
     status = scree_scene_blame(scene, &plan->place, status, &why, error);
   }
+  scree_particle_free(unscaled);
   return status;
 }
 

@@ -19,6 +19,7 @@ typedef struct scree_scene_shape {
   scree_particle *particle; /* held */
   char *source;             /* where it came from */
   size_t material;          /* of the world */
+  size_t family;            /* of the plan */
   scree_placement extent;   /* clearance included */
   quat as_given;            /* its orientation as in its file */
   double density, mass, volume;
@@ -201,6 +202,11 @@ scree_status scree_scene_matches(const scree_scene *scene, const scree_scene_fil
 scree_status scree_scene_make_particle(const scree_plan_shape *shape, const char *folder,
                                        const scree_progress *progress, scree_particle **particle,
                                        char **source, scree_error *error);
+
+/* One of the classes of a family, from its particle in *unscaled, made where that is NULL. */
+scree_status scree_scene_make_scaled(const scree_plan_shape *shape, const char *folder,
+                                     const scree_progress *progress, scree_particle **unscaled,
+                                     scree_scene_shape *made, scree_error *error);
 
 /* A box about the origin; free with scree_mesh_free. */
 scree_status scree_scene_box_mesh(const double sides[3], scree_mesh *mesh, scree_error *error);

@@ -91,7 +91,7 @@ static const struct {
     {"motion: [{vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}}]",
      "motion: {vibrate: {frequency: 20}}", "line 14", "must be a list of groups"},
     {"vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}",
-     "rotate: {table: [[0, 1], [0, 2]]}", "line 14", "times must rise: 0 s after 0 s"},
+     "rotate: {table: [[0, 1], [0, 2]]}", "line 14", "the first number of rows must rise: 0 after 0"},
     {"vibrate: {along: [0, 0, 1], amplitude: 1e-3, frequency: 20}", "rotate: {axis: [0, 0, 1]}",
      "line 14", "needs one of speed, table"},
     {"rate: 20", "rate: 20 rpm", "line 16", "in 1/s; 'rpm' measures something else"},
