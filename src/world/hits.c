@@ -2,17 +2,17 @@
 
 bool scree_next_losses(const scree_world *world, size_t *k, scree_pair_losses *losses) {
   for (; *k < world->neighbours.count; (*k)++) {
-    const scree_booked *booked = &world->ledger.items[*k];
+    const scree_balance *balance = &world->ledger.items[*k];
     const scree_pair *pair = scree_pair_of(world, *k);
     bool touching = pair && pair->touching && !scree_pair_is_removed(world, pair);
-    if (!touching && booked->dashpot == 0 && booked->tangential == 0) continue;
+    if (!touching && balance->dashpot == 0 && balance->tangential == 0) continue;
     const scree_neighbours *n = &world->neighbours.items[*k];
     *losses = (scree_pair_losses){.a = n->a,
                                   .b = n->b,
                                   .wall = n->wall,
                                   .touching = touching,
-                                  .normal = -booked->dashpot,
-                                  .tangential = -booked->tangential};
+                                  .normal = -balance->dashpot,
+                                  .tangential = -balance->tangential};
     (*k)++;
     return true;
   }
@@ -38,20 +38,20 @@ bool scree_pair_normal_energy(const scree_world *world, size_t neighbours, scree
   if (!pair) return true;
   if (!scree_copy_pair(world, pair, copy) || !scree_evaluate_copy(world, copy)) return false;
   const scree_pair *now = &copy->pair;
-  const scree_touch_list *touches = &copy->scratch.touches;
+  const scree_contact_list *contacts = &copy->scratch.contacts;
   vec3 n = {0, 0, 0}, at = {0, 0, 0};
-  double shares = 0;
-  for (size_t i = 0; now->touching && i < touches->count; i++) {
-    const scree_touch *touch = &touches->items[i];
-    n = vec3_mad(n, touch->normal, touch->share);
-    at = vec3_mad(at, touch->at, touch->share);
-    shares += touch->share;
+  double weights = 0;
+  for (size_t i = 0; now->touching && i < contacts->count; i++) {
+    const scree_contact_point *point = &contacts->items[i];
+    n = vec3_mad(n, point->normal, point->weight);
+    at = vec3_mad(at, point->at, point->weight);
+    weights += point->weight;
   }
   *energy = now->elastic - now->tangential_elastic;
-  if (!(shares > 0) || !(vec3_norm(n) > 0)) return true;
+  if (!(weights > 0) || !(vec3_norm(n) > 0)) return true;
   const scree_frame *a = &world->bodies.frame[now->a], *b = scree_pair_frame_b(world, now);
   n = vec3_unit(mat3_mul_vec(&b->rotation, n));
-  vec3 from_b = mat3_mul_vec(&b->rotation, vec3_scale(at, 1 / shares)),
+  vec3 from_b = mat3_mul_vec(&b->rotation, vec3_scale(at, 1 / weights)),
        from_a = vec3_sub(from_b, scree_pair_between(world, now, a, b));
   double light = mobility(world, now->a, from_a, n);
   if (!now->wall) light += mobility(world, now->b, from_b, n);
