@@ -289,8 +289,8 @@ static scree_status read_table(const scree_reader *r, const scree_yaml *node, co
       if (status != SCREE_OK) return status;
     }
     if (i && !(value->items[i][0] > value->items[i - 1][0]))
-      return fail_at(r, &row, "the first number of rows must rise: %g after %g",
-                     value->items[i][0], value->items[i - 1][0]);
+      return fail_at(r, &row, "the first number of rows must rise: %g after %g", value->items[i][0],
+                     value->items[i - 1][0]);
   }
   return SCREE_OK;
 }

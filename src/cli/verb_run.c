@@ -183,6 +183,22 @@ static void print_walls(const scree_scene *scene) {
     }
 }
 
+static void print_forecast(const scree_scene *scene) {
+  scree_scene_forecast f;
+  scree_scene_foretell(scene, &f);
+  printf("  %.0f steps of up to %.0f bodies: ", f.step_count, f.body_count);
+  if (f.seconds < 60)
+    printf("seconds");
+  else if (f.seconds < 5400)
+    printf("about %.0f minutes", f.seconds / 60);
+  else
+    printf("about %.3g hours", f.seconds / 3600);
+  printf(" on one core");
+  if (f.frame_count > 0)
+    printf("; %.0f frames, up to %.3g MB", f.frame_count, 1e-6 * f.frame_count * f.frame_bytes);
+  putchar('\n');
+}
+
 static scree_status on_begin(void *context, scree_scene *scene, bool resumed, scree_error *error) {
   scene_run *r = context;
   char reason[256], path[PATH_BYTES];
@@ -205,6 +221,9 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
     scree_scene_describe_softness(scene, &soft, sentence, sizeof sentence);
     fprintf(stderr, "scree: %s\n", sentence);
   }
+  char remark[SCREE_REMARK];
+  for (size_t i = 0; !resumed && scree_scene_remark(scene, i, remark); i++)
+    fprintf(stderr, "scree: %s\n", remark);
   if (scree_scene_title(scene)) printf("%s\n", scree_scene_title(scene));
   for (size_t i = 0; scree_scene_shape_name(scene, i); i++) {
     const char *source = scree_scene_shape_source(scene, i);
@@ -215,6 +234,7 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
   }
   print_walls(scene);
   printf("  time step %s\n", (scree_scene_time_step_reason(scene, reason), reason));
+  print_forecast(scene);
   if (resumed) printf("  goes on at %.6g s\n", scree_world_time(scree_scene_view(scene)));
   cli_flush();
   return SCREE_OK;

@@ -87,6 +87,18 @@ static scree_status check_inlets(const scree_reader *r, const scree_plan *plan) 
   return status;
 }
 
+static scree_status check_outlets(const scree_reader *r, const scree_plan *plan) {
+  const scree_plan_domain *d = plan->domain;
+  for (size_t i = 0; d && i < plan->outlets.count; i++) {
+    const scree_plan_outlet *o = SCREE_PLAN_AT(plan, outlets, scree_plan_outlet, i);
+    for (int k = 0; k < 3; k++)
+      if (o->box->min[k] >= d->max[k] || o->box->max[k] <= d->min[k])
+        return scree_fail_place(
+            r, &o->place, "lies outside the domain along %c: nothing ever gets there", "xyz"[k]);
+  }
+  return SCREE_OK;
+}
+
 static bool is_along(const double *v, const double *g) {
   vec3 a = vec3_load(v), b = vec3_load(g);
   return vec3_norm(vec3_cross(a, b)) <= 1e-6 * vec3_norm(a) * vec3_norm(b);
@@ -155,6 +167,7 @@ scree_status scree_plan_check(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &plan->place, "needs inlets: nothing would ever be in it");
   scree_status status = check_materials(r, plan);
   if (status == SCREE_OK) status = check_inlets(r, plan);
+  if (status == SCREE_OK) status = check_outlets(r, plan);
   if (status == SCREE_OK) status = check_phases(r, plan);
   if (status == SCREE_OK) status = check_periodic(r, plan);
   return status == SCREE_OK ? check_sensors(r, plan) : status;

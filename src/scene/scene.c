@@ -319,12 +319,26 @@ scree_status scree_scene_set_notes(scree_scene *scene, const unsigned char *byte
   return SCREE_OK;
 }
 
+/* Which materials have no density of their own. */
+static scree_status note_densities(scree_scene *scene, const scree_scene_file *file,
+                                   scree_error *error) {
+  const scree_yaml *materials = scree_yaml_find(&file->root, "materials");
+  size_t count = scene->plan.materials.count;
+  scene->usual_density = scree_arena_take(&scene->arena, count, sizeof *scene->usual_density);
+  if (!scene->usual_density) return scree_fail_memory(error, count, "materials");
+  for (size_t i = 0; i < count; i++)
+    scene->usual_density[i] = !scree_yaml_find(&materials->items[i], "density");
+  return SCREE_OK;
+}
+
 /* Name, text and plan of the file. */
 static scree_status take_file(scree_scene *scene, const scree_scene_file *file,
                               const scree_scene_gift *gift, scree_error *error) {
   scene->seal = gift ? gift->seal : &scree_scene_seal;
   scene->base = gift && gift->options ? *gift->options : scree_default_world_options();
   scree_status status = scree_scene_file_plan(file, &scene->arena, &scene->plan, error);
+  if (status != SCREE_OK) return status;
+  status = note_densities(scene, file, error);
   if (status != SCREE_OK) return status;
   scene->name = scree_strdup(file->name);
   if (!scene->name) return scree_fail_memory(error, 0, "a scene's name");

@@ -149,9 +149,10 @@ struct scree_scene {
     scree_placement *items; /* scratch of inlets */
     size_t count, capacity;
   } present;
-  double time_step, size;          /* s; m: the smallest shape's */
-  uint64_t tick_steps;             /* between looks at inlets, outlets, flows and the end */
-  uint64_t next_tick;              /* step */
+  bool *usual_density;    /* of materials: none is given; NULL where the file is not known */
+  double time_step, size; /* s; m: the smallest shape's */
+  uint64_t tick_steps;    /* between looks at inlets, outlets, flows and the end */
+  uint64_t next_tick;     /* step */
   uint64_t wear_steps, next_wear;  /* likewise of looks at wear; 0: no sensor needs any */
   uint64_t hit_steps, next_hits;   /* and of looks at impacts */
   scree_scene_hits hits, hits_now; /* hits_now: scratch */

@@ -108,6 +108,9 @@ static const struct {
      "min 0.4 must be below max 0.3 along z"},
     {"max: [0.1, 0.1, 0.3]", "max: [3, 0.1, 0.3]", "line 16", "outside the domain along x"},
     {"max: [2, 1, 1]}}", "max: [2, 1]}}", "line 18", "must be 3 numbers"},
+    {"min: [0.5, -1, -1]", "min: [0.5, 1, -1]", "line 18", "min 1 must be below max 1 along y"},
+    {"min: [0.5, -1, -1], max: [2, 1, 1]", "min: [2, -1, -1], max: [3, 1, 1]", "line 18",
+     "outlets.end: lies outside the domain along x: nothing ever gets there"},
     {"domain: {min: [-1, -1, -1]", "domain: {periodic: [w], min: [-1, -1, -1]", "line 19",
      "must be x, y or z"},
     {"domain: {min: [-1, -1, -1]", "domain: {periodic: [x, y, z], min: [-1, -1, -1]", "line 19",
@@ -326,11 +329,45 @@ static void scenes_that_cannot_be(void **state) {
   }
 }
 
+/* What is probably a slip is told before the first step, and nothing else is. */
+static void remarks(void **state) {
+  (void)state;
+  static const struct {
+    const char *field, *value, *says;
+  } rows[] = {
+      {"seed", "4", NULL},
+      {"materials.grain", "{young: 1e6}", "materials.grain: no density is given: 2000 kg/m3"},
+      {"materials.steel", "{young: 1e7}", NULL}, /* no shape is of it */
+      {"inlets.feed.rate", "20000", "inlets.feed: of 20000 bodies about"},
+      {"inlets.feed.count", "10", NULL},
+      {"output.frames", "1e-6", "output.frames: 1e-06 s is shorter than a time step"},
+      {"output.frames", "2e-4", NULL},
+      {"output.frames", "5e-5", "output.frames: 40001 frames"},
+  };
+  for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+    scree_error error;
+    scree_scene *scene = NULL;
+    char text[SCREE_REMARK] = "";
+    scree_scene_file *file = parse(good);
+    CHECK_OK(scree_scene_file_set(file, rows[i].field, rows[i].value, &error), error);
+    CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
+    bool any = scree_scene_remark(scene, 0, text);
+    if (any != (rows[i].says != NULL) || (any && !strstr(text, rows[i].says)))
+      fail_msg("%s: %s: '%s'", rows[i].field, rows[i].value, text);
+    scree_scene_forecast f;
+    scree_scene_foretell(scene, &f);
+    CHECK_NEAR(f.step_count, 2 / scree_world_time_step(scree_scene_view(scene), NULL), 1);
+    if (i == 0) CHECK_NEAR(f.body_count, 20, 0); /* 20 a second, until 1 s */
+    scree_scene_free(scene);
+    scree_scene_file_free(file);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(wrong_files),           cmocka_unit_test(printed_reads_back),
-      cmocka_unit_test(fields_are_set),        cmocka_unit_test(units),
-      cmocka_unit_test(scenes_that_cannot_be),
+      cmocka_unit_test(wrong_files),    cmocka_unit_test(printed_reads_back),
+      cmocka_unit_test(fields_are_set), cmocka_unit_test(units),
+      cmocka_unit_test(remarks),        cmocka_unit_test(scenes_that_cannot_be),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
