@@ -74,7 +74,8 @@ typedef enum scree_vtk_type {
   SCREE_VTK_FLOAT64,
   SCREE_VTK_FLOAT32,
   SCREE_VTK_INT64,
-  SCREE_VTK_UINT8
+  SCREE_VTK_UINT8,
+  SCREE_VTK_INT32
 } scree_vtk_type;
 
 /* A named array over points or cells. */
@@ -88,7 +89,8 @@ typedef struct scree_vtk_array {
 /* What goes into one .vtp file (VTK XML PolyData): points, and over them either triangles, line
  * segments, or, where both are NULL, one vertex cell a point. */
 typedef struct scree_vtk_data {
-  const double *points; /* 3 * point_count, m */
+  const double *points;       /* 3 * point_count, m */
+  const float *points_single; /* instead of these, where not NULL */
   size_t point_count;
   const uint32_t *triangles; /* 3 * cell_count indices, or NULL */
   const uint32_t *lines;     /* 2 * cell_count indices, or NULL */
@@ -98,6 +100,7 @@ typedef struct scree_vtk_data {
   const scree_vtk_array *cell_arrays;
   size_t cell_array_count;
   double time; /* s, written as field data TimeValue; NaN: none; not infinite */
+  bool bare;   /* no vertex cells either: glyphs need none */
 } scree_vtk_data;
 
 /* Writes version 1.0 XML with raw appended data, 64-bit headers: read by VTK 6 and later. */
@@ -148,6 +151,18 @@ SCREE_API scree_status scree_world_vtp_write(const scree_world *world, scree_wor
  * sliding work (scree_scene_wear). As scree_world_vtp_write. */
 SCREE_API scree_status scree_scene_walls_vtp_write(const scree_scene *scene, const char *path,
                                                    bool overwrite, scree_error *error);
+
+/* The bodies of a scene as instances: a point a body at its centre of mass, in single precision, 97
+ * bytes. Per point: orientation (w x y z), velocity, angular velocity, contact force (N, the sum of
+ * all), stress (Pa, its mean in the body by its contacts, pressure positive: xx, yy, zz, xy, yz,
+ * xz), size (m), body, shape; names carry units. SCREE_LIMIT above 256 shapes, else as
+ * scree_world_vtp_write. */
+SCREE_API scree_status scree_scene_bodies_vtp_write(const scree_scene *scene, const char *path,
+                                                    bool overwrite, scree_error *error);
+/* The triangles of one of its shapes in the particle's frame, for glyphs; spheres as 320 each. */
+SCREE_API scree_status scree_scene_shape_vtp_write(const scree_scene *scene, size_t shape,
+                                                   const char *path, bool overwrite,
+                                                   scree_error *error);
 
 /* The particle of `shape`, numbered as above, borrowed; NULL beyond the last. Cost: one pass over
  * the bodies. */

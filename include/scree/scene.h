@@ -72,6 +72,8 @@ SCREE_API const char *scree_scene_title(const scree_scene *scene);
 SCREE_API const char *scree_scene_text(const scree_scene *scene);
 /* s: output.frames. */
 SCREE_API double scree_scene_frame_interval(const scree_scene *scene);
+/* output.bodies: whether frames have instances (scree_scene_bodies_vtp_write), not surfaces. */
+SCREE_API bool scree_scene_frames_are_instances(const scree_scene *scene);
 /* s, of the whole scene, for its worst pair of shapes; reason as of scree_world_time_step. */
 SCREE_API double scree_scene_time_step_reason(const scree_scene *scene, char reason[256]);
 /* For observing and frames, not to be changed. */

@@ -52,7 +52,7 @@ static const char *const file_names[] = {
     "checkpoint.scree",     "series.csv",  "motion.scree", "scene.yaml",
     "frame-#-bodies.vtp",   "bodies.pvd",  "geometry.pvd", "scene.png",
     "frame-#-geometry.vtp", "result.json", "result.txt",   "stopped.scree",
-    "provenance.json",      "report.html", "sensor-*.csv"};
+    "provenance.json",      "report.html", "sensor-*.csv", "shape-#.vtp"};
 static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 enum { PATH_BYTES = 4200 };
@@ -119,6 +119,16 @@ static bool watch(void *context, const scree_scene_state *state) {
   return !cli_interrupted();
 }
 
+static scree_status write_collections(const scene_run *r, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (int walls = 0; status == SCREE_OK && walls < 2; walls++) {
+    char path[PATH_BYTES];
+    status = path_of(r, walls ? "geometry.pvd" : "bodies.pvd", path, error);
+    if (status == SCREE_OK) status = cli_frames_list(&r->frames, kinds[walls], path, error);
+  }
+  return status;
+}
+
 static scree_status on_frame(void *context, scree_scene *scene, size_t index, scree_error *error) {
   scene_run *r = context;
   scree_status status = SCREE_OK;
@@ -126,22 +136,31 @@ static scree_status on_frame(void *context, scree_scene *scene, size_t index, sc
     char name[CLI_FRAME_NAME], path[PATH_BYTES];
     cli_frame_name(r->frames.count, kinds[walls], name);
     status = path_of(r, name, path, error);
-    if (status == SCREE_OK)
-      status = walls ? scree_scene_walls_vtp_write(scene, path, true, error)
-                     : scree_world_vtp_write(scree_scene_view(scene), SCREE_VIEW_SURFACES, path,
-                                             true, error);
+    if (status == SCREE_OK && walls)
+      status = scree_scene_walls_vtp_write(scene, path, true, error);
+    else if (status == SCREE_OK && scree_scene_frames_are_instances(scene))
+      status = scree_scene_bodies_vtp_write(scene, path, true, error);
+    else if (status == SCREE_OK)
+      status =
+          scree_world_vtp_write(scree_scene_view(scene), SCREE_VIEW_SURFACES, path, true, error);
   }
   (void)index;
-  if (status != SCREE_OK) return status;
-  return cli_frames_note(&r->frames, scree_world_time(scree_scene_view(scene)), error);
+  if (status == SCREE_OK)
+    status = cli_frames_note(&r->frames, scree_world_time(scree_scene_view(scene)), error);
+  return status == SCREE_OK ? write_collections(r, error) : status;
 }
 
-static scree_status write_collections(const scene_run *r, scree_error *error) {
+/* Each shape once, for frames of instances. */
+static scree_status write_shapes(const scene_run *r, const scree_scene *scene, scree_error *error) {
   scree_status status = SCREE_OK;
-  for (int walls = 0; status == SCREE_OK && walls < 2; walls++) {
-    char path[PATH_BYTES];
-    status = path_of(r, walls ? "geometry.pvd" : "bodies.pvd", path, error);
-    if (status == SCREE_OK) status = cli_frames_list(&r->frames, kinds[walls], path, error);
+  if (!r->arguments->output || !(scree_scene_frame_interval(scene) > 0) ||
+      !scree_scene_frames_are_instances(scene))
+    return SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && scree_scene_shape_name(scene, i); i++) {
+    char name[32], path[PATH_BYTES];
+    snprintf(name, sizeof name, "shape-%zu.vtp", i);
+    status = path_of(r, name, path, error);
+    if (status == SCREE_OK) status = scree_scene_shape_vtp_write(scene, i, path, true, error);
   }
   return status;
 }
@@ -211,6 +230,7 @@ static scree_status on_begin(void *context, scree_scene *scene, bool resumed, sc
     status = path_of(r, "scene.yaml", path, error);
     if (status == SCREE_OK) status = scree_text_write(scree_scene_text(scene), path, true, error);
   }
+  if (status == SCREE_OK) status = write_shapes(r, scene, error);
   if (status != SCREE_OK || r->call->quiet || r->arguments->json) return status;
   cli_terminal_end();
   if (!resumed) remark_values(scree_scene_text(scene));

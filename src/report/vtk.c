@@ -11,7 +11,7 @@
 static const struct {
   const char *name;
   size_t size;
-} types[] = {{"Float64", 8}, {"Float32", 4}, {"Int64", 8}, {"UInt8", 1}};
+} types[] = {{"Float64", 8}, {"Float32", 4}, {"Int64", 8}, {"UInt8", 1}, {"Int32", 4}};
 
 enum { CHUNK = 4096 };
 
@@ -102,7 +102,7 @@ typedef struct cells {
 static cells cells_of(const scree_vtk_data *data) {
   if (data->triangles) return (cells){"Polys", data->triangles, data->cell_count, 3};
   if (data->lines) return (cells){"Lines", data->lines, data->cell_count, 2};
-  return (cells){"Verts", NULL, data->point_count, 1};
+  return (cells){"Verts", NULL, data->bare ? 0 : data->point_count, 1};
 }
 
 static void write_header(writer *w, const scree_vtk_data *data, const cells *c) {
@@ -129,7 +129,8 @@ static void write_header(writer *w, const scree_vtk_data *data, const cells *c) 
   declare_all(w, "PointData", data->point_arrays, data->point_array_count, data->point_count);
   declare_all(w, "CellData", data->cell_arrays, data->cell_array_count, c->count);
   fputs("      <Points>\n", w->stream);
-  declare(w, "Points", SCREE_VTK_FLOAT64, 3, data->point_count);
+  declare(w, "Points", data->points_single ? SCREE_VTK_FLOAT32 : SCREE_VTK_FLOAT64, 3,
+          data->point_count);
   fprintf(w->stream, "      </Points>\n      <%s>\n", c->element);
   declare(w, "connectivity", SCREE_VTK_INT64, 1, c->size * c->count);
   declare(w, "offsets", SCREE_VTK_INT64, 1, c->count);
@@ -149,7 +150,10 @@ scree_status scree_vtp_write(const scree_vtk_data *data, const char *path, bool 
   write_header(&w, data, &c);
   append_all(&w, data->point_arrays, data->point_array_count, data->point_count);
   append_all(&w, data->cell_arrays, data->cell_array_count, c.count);
-  append(&w, data->points, 24 * (uint64_t)data->point_count);
+  if (data->points_single)
+    append(&w, data->points_single, 12 * (uint64_t)data->point_count);
+  else
+    append(&w, data->points, 24 * (uint64_t)data->point_count);
   append_connectivity(&w, c.corners, c.size * c.count);
   append_offsets(&w, c.count, c.size);
   fputs("\n  </AppendedData>\n</VTKFile>\n", w.stream);

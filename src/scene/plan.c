@@ -596,6 +596,8 @@ static const scree_record phase_record = {"a phase", FIELDS(phase_fields), sizeo
 static const scree_field output_fields[] = {
     {"frames", SCREE_FIELD_REAL, AT(frames), 0, 1e9, "s", "between files for ParaView; 0: none",
      NULL},
+    {"bodies", SCREE_FIELD_WORD, AT(bodies), 0, 0, "instances|surfaces",
+     "of files for ParaView: a point for each, and each shape once; or all their triangles", NULL},
     {"series", SCREE_FIELD_REAL, AT(series), 1e-9, 1e9, "s", "between the lines of series.csv",
      NULL},
     {"motion", SCREE_FIELD_REAL, AT(motion), 0, 1e9, "s",
@@ -603,7 +605,7 @@ static const scree_field output_fields[] = {
     {"checkpoint", SCREE_FIELD_REAL, AT(checkpoint), 0.01, 1e9, "s", "of the clock", NULL},
 };
 #undef AT
-static const scree_plan_output output_defaults = {{0}, 0, 0.01, 60, 0};
+static const scree_plan_output output_defaults = {{0}, 0, 0.01, 60, 0, 0};
 static const scree_record output_record = {"output", FIELDS(output_fields),
                                            sizeof(scree_plan_output), &output_defaults, NULL};
 

@@ -212,6 +212,7 @@ typedef struct scree_plan_phase {
 typedef struct scree_plan_output {
   scree_place place;
   double frames, series, checkpoint, motion;
+  int bodies; /* of frames: 0 instances, 1 surfaces */
 } scree_plan_output;
 
 typedef struct scree_plan_contact {

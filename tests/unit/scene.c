@@ -378,6 +378,13 @@ static scree_status write_walls(void *context, scree_error *error) {
   return scree_scene_walls_vtp_write(context, in_folder("memory.vtp"), true, error);
 }
 
+static scree_status write_bodies(void *context, scree_error *error) {
+  scree_status status =
+      scree_scene_shape_vtp_write(context, 0, in_folder("shape.vtp"), true, error);
+  if (status != SCREE_OK) return status;
+  return scree_scene_bodies_vtp_write(context, in_folder("bodies.vtp"), true, error);
+}
+
 static scree_status draw(void *context, scree_error *error) {
   scree_render_options o = scree_default_render_options();
   scree_image image = {0};
@@ -398,6 +405,7 @@ static void out_of_memory(void **state) {
   advance(scene, 200);
   check_allocation_failures(write_json, scene);
   check_allocation_failures(write_walls, scene);
+  check_allocation_failures(write_bodies, scene);
   if (draw(scene, &error) == SCREE_OK) check_allocation_failures(draw, scene);
   scree_scene_free(scene);
   scree_scene_file_free(file);
