@@ -377,6 +377,10 @@ static const scree_field geometry_fields[] = {
      "of a closed mesh or box: where bodies are; auto: where the inlets are", NULL},
     {"material", SCREE_FIELD_TEXT, AT(material), 0, 0, "", "", NULL},
     {"motion", SCREE_FIELD_LIST, AT(motion), 0, 0, "", "in this order", &motion_record},
+    {"slide", SCREE_FIELD_RECORD, AT(slide), 0, 0, "", "moved by forces along a direction",
+     &scree_plan_slide_record},
+    {"hinge", SCREE_FIELD_RECORD, AT(hinge), 0, 0, "", "turned by forces about an axis",
+     &scree_plan_hinge_record},
     {"surface_velocity", SCREE_FIELD_VECTOR, AT(surface_velocity), -1e3, 1e3, "m/s",
      "of a belt that stays where it is", NULL},
 };
@@ -397,6 +401,8 @@ static scree_status check_geometry(const scree_reader *r, const void *record) {
   if (status == SCREE_OK && given(g->surface_velocity) && (g->disc || given(g->plane)) &&
       !is_across(g->surface_velocity, normal))
     status = scree_fail_place(r, &g->place, "surface_velocity must lie in the surface");
+  if (status == SCREE_OK && (g->slide != NULL) + (g->hinge != NULL) + (g->motion.count > 0) > 1)
+    status = scree_fail_place(r, &g->place, "only one of motion, slide, hinge may be given");
   const scree_plan_motion *motions = g->motion.items;
   for (size_t i = 0; status == SCREE_OK && g->motion.count > 1 && i < g->motion.count; i++)
     if (motions[i].during)

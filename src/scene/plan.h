@@ -102,6 +102,22 @@ typedef struct scree_plan_motion {
   const char *during; /* a phase */
 } scree_plan_motion;
 
+/* Keeps a force (N) or torque (N m) on bodies; speed: m/s or rad/s, at most. */
+typedef struct scree_plan_servo {
+  scree_place place;
+  double force, speed;
+} scree_plan_servo;
+
+/* What moves by forces along one coordinate, a slide (m) or a hinge (rad). */
+typedef struct scree_plan_part {
+  scree_place place;
+  double axis[3], through[3], centre[3]; /* of a hinge: a point of its axis, the centre of mass */
+  double mass, inertia, spring, rest, damper;
+  double force, amplitude, frequency; /* of the drive; of a hinge a torque */
+  double from, least, most;
+  scree_plan_servo *servo;
+} scree_plan_part;
+
 /* One of file, box, plane, disc, cylinder. */
 typedef struct scree_plan_geometry {
   scree_place place;
@@ -113,6 +129,7 @@ typedef struct scree_plan_geometry {
   scree_plan_cylinder *cylinder;
   scree_plan_turn *turn;
   scree_records motion; /* of scree_plan_motion */
+  scree_plan_part *slide, *hinge;
 } scree_plan_geometry;
 
 typedef struct scree_plan_layers {
@@ -188,7 +205,7 @@ typedef struct scree_plan_sensor {
   scree_place place;
   scree_plan_flow *flow;
   scree_plan_region *region;
-  const char *wall, *position; /* of a geometry */
+  const char *wall, *position, *part; /* of a geometry */
   scree_plan_pile *pile;
   scree_plan_slope *slope;
   scree_plan_segregation *segregation;
@@ -249,6 +266,8 @@ scree_size_class *scree_plan_size_classes(const scree_plan_size *size, scree_are
 /* A shape of many sizes becomes one for each class, in inlets by its share. */
 scree_status scree_plan_expand(scree_plan *plan, scree_arena *arena, scree_error *error);
 extern const scree_record scree_plan_size_record;
+/* plan_parts.c */
+extern const scree_record scree_plan_slide_record, scree_plan_hinge_record;
 
 /* Reads and checks it all but the files it names. */
 scree_status scree_plan_read(const scree_reader *reader, const scree_yaml *root, scree_plan *plan);

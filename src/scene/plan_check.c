@@ -108,8 +108,15 @@ static scree_status check_sensors(const scree_reader *r, const scree_plan *plan)
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < plan->sensors.count; i++) {
     const scree_plan_sensor *s = SCREE_PLAN_AT(plan, sensors, scree_plan_sensor, i);
-    const char *of = s->wall ? s->wall : s->position;
+    const char *of = s->wall ? s->wall : s->part ? s->part : s->position;
     if (of) status = NEED(geometry, scree_plan_geometry, "geometry", of, &s->place);
+    if (status == SCREE_OK && s->part) {
+      const scree_plan_geometry *g =
+          SCREE_PLAN_AT(plan, geometry, scree_plan_geometry,
+                        scree_plan_find(&plan->geometry, sizeof(scree_plan_geometry), s->part));
+      if (!g->slide && !g->hinge)
+        status = scree_fail_place(r, &s->place, "'%.60s' has neither slide nor hinge", s->part);
+    }
     for (size_t k = 0; status == SCREE_OK && s->pile && k < s->pile->during.count; k++)
       status = NEED(phases, scree_plan_phase, "phase", s->pile->during.items[k], &s->pile->place);
     if (status == SCREE_OK && s->slope && is_along(s->slope->axis, plan->gravity))
@@ -143,6 +150,8 @@ static scree_status check_periodic(const scree_reader *r, const scree_plan *plan
   for (size_t i = 0; i < plan->geometry.count; i++) {
     const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
     const scree_plan_motion *m = g->motion.items;
+    if (g->slide || g->hinge)
+      return scree_fail_place(r, &g->place, "in a periodic domain nothing moves by forces");
     bool fits = (!isnan(g->plane[0]) || (g->cylinder && g->cylinder->length == 0)) && !g->turn;
     if (!fits)
       return scree_fail_place(r, &g->place,

@@ -129,6 +129,7 @@ static const scree_field sensor_fields[] = {
     {"wall", SCREE_FIELD_TEXT, AT(wall), 0, 0, "", "force, torque, power and wear of a geometry",
      NULL},
     {"position", SCREE_FIELD_TEXT, AT(position), 0, 0, "", "where a geometry is", NULL},
+    {"part", SCREE_FIELD_TEXT, AT(part), 0, 0, "", "of a geometry that forces move", NULL},
     {"pile", SCREE_FIELD_RECORD, AT(pile), 0, 0, "", "angle of repose three ways", &pile_record},
     {"slope", SCREE_FIELD_RECORD, AT(slope), 0, 0, "", "angle of the surface", &slope_record},
     {"segregation", SCREE_FIELD_RECORD, AT(segregation), 0, 0, "", "Lacey's index by shape",
@@ -143,10 +144,11 @@ static scree_status check_sensor(const scree_reader *r, const void *record) {
   const scree_plan_sensor *s = record;
   const bool there[] = {s->flow != NULL,      s->region != NULL,   s->wall != NULL,
                         s->pile != NULL,      s->slope != NULL,    s->segregation != NULL,
-                        s->residence != NULL, s->position != NULL, s->impacts != NULL};
+                        s->residence != NULL, s->position != NULL, s->impacts != NULL,
+                        s->part != NULL};
   return scree_plan_one_of(
       r, &s->place, there, sizeof there / sizeof *there,
-      "flow, region, wall, position, pile, slope, segregation, residence, impacts");
+      "flow, region, wall, position, part, pile, slope, segregation, residence, impacts");
 }
 static const scree_plan_sensor sensor_defaults = {.wall = NULL};
 const scree_record scree_plan_sensor_record = {

@@ -153,11 +153,21 @@ static void code_series(scree_codec *c, scree_scene *scene) {
   scree_code_reals(c, scene->series.items, rows * columns);
 }
 
+static void code_parts(scree_codec *c, scree_scene *scene) {
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
+    scree_scene_part *part = scene->geometry[i].part;
+    if (!part) continue;
+    double *reals[] = {&part->way, &part->speed, &part->push, &part->work, &part->lost};
+    for (size_t k = 0; k < sizeof reals / sizeof *reals; k++) scree_code_real(c, reals[k]);
+  }
+}
+
 static void code_state(scree_codec *c, scree_scene *scene) {
   code_books(c, scene);
   code_progress(c, scene);
   code_inlets(c, scene);
   for (size_t i = 0; i < scene->plan.sensors.count; i++) code_sensor(c, scene, &scene->sensors[i]);
+  code_parts(c, scene);
   code_hits(c, scene);
   code_bodies(c, scene);
   code_series(c, scene);

@@ -246,6 +246,8 @@ scree_status scree_scene_prepare(scree_scene *scene, scree_error *error) {
   }
   scene->still_since = NAN;
   scene->costs.piece_count = 1;
+  status = scree_scene_plan_parts(scene, error);
+  if (status != SCREE_OK) return status;
   if (allocate_inlets(scene) != SCREE_OK) return scree_fail_memory(error, 0, "inlets");
   return scree_scene_plan_columns(scene, error);
 }
@@ -498,7 +500,9 @@ static scree_status advance(scree_scene *scene, size_t step_count, scree_error *
   while (step_count > 0 && !scene->end) {
     scree_status status = scree_scene_decide(scene, error);
     if (status != SCREE_OK || scene->end) return status;
-    size_t steps = steps_to_decision(scene, step_count);
+    size_t steps = scene->has_parts ? 1 : steps_to_decision(scene, step_count);
+    if (scene->has_parts) status = scree_scene_move_parts(scene, error);
+    if (status != SCREE_OK) return status;
     status = scree_world_step(scene->world, steps, error);
     if (status != SCREE_OK) return status;
     scene->costs.body_steps +=
@@ -641,6 +645,7 @@ void scree_scene_get_book(const scree_scene *scene, scree_scene_book *book) {
   double should = scene->entered_energy - scene->left_energy + o.wall_work + o.applied_work;
   double turned =
       lost + o.kinetic + o.rotational + o.elastic + fabs(o.wall_work) + fabs(o.applied_work);
+  is += scree_scene_parts_balance(scene); /* their energy, less what they got from elsewhere */
   b.ledger = turned > 0 ? (is - should) / turned : 0;
   *book = b;
 }

@@ -26,11 +26,19 @@ typedef struct scree_scene_shape {
   size_t entered, left;
 } scree_scene_shape;
 
+/* Where a part that forces move is (parts.c). */
+typedef struct scree_scene_part {
+  double way, speed; /* m, m/s or rad, rad/s */
+  double push;       /* N or N m, of bodies in the step before the last */
+  double work, lost; /* J, by the drive; by the damper and the ends */
+} scree_scene_part;
+
 /* A piece of geometry is one wall of the world or several; of a mesh one of what is solid and one
  * of sheets. */
 typedef struct scree_scene_geometry {
   size_t first_wall, wall_count;
-  const char *note; /* lines about its meshes; NULL: none, or from a checkpoint */
+  struct scree_scene_part *part; /* NULL: no forces move it */
+  const char *note;              /* lines about its meshes; NULL: none, or from a checkpoint */
 } scree_scene_geometry;
 
 /* Of an inlet by layers; all but the count of layers follows from the plan. */
@@ -156,6 +164,7 @@ struct scree_scene {
   uint64_t wear_steps, next_wear;  /* likewise of looks at wear; 0: no sensor needs any */
   uint64_t hit_steps, next_hits;   /* and of looks at impacts */
   scree_scene_hits hits, hits_now; /* hits_now: scratch */
+  bool has_parts;
   size_t still_ticks;
   double entered_mass, left_mass, entered_energy, left_energy;
   size_t left_count;
@@ -288,6 +297,16 @@ scree_status scree_scene_record(scree_scene *scene, scree_error *error);
 size_t scree_scene_wear_cells(const scree_scene *scene, size_t wall);
 scree_status scree_scene_plan_wear(scree_scene *scene, scree_error *error);
 scree_status scree_scene_watch_wear(scree_scene *scene, scree_error *error);
+
+/* parts.c: room for those that forces move; their coming step; J, kinetic and potential, and what
+ * one's walls have done on bodies; what the books of all miss. */
+scree_status scree_scene_plan_parts(scree_scene *scene, scree_error *error);
+scree_status scree_scene_move_parts(scree_scene *scene, scree_error *error);
+double scree_scene_part_energy(const scree_scene *scene, size_t geometry);
+double scree_scene_wall_work(const scree_scene *scene, size_t geometry);
+/* N along the slide or N m about the hinge, of all bodies in the last step. */
+double scree_scene_push(const scree_scene *scene, size_t geometry);
+double scree_scene_parts_balance(const scree_scene *scene);
 
 /* impacts.c: likewise. */
 scree_status scree_scene_plan_impacts(scree_scene *scene, scree_scene_sensor *sensor,

@@ -91,6 +91,10 @@ static bool add_impacts(scree_scene *scene, const scree_scene_sensor *sensor) {
   return good;
 }
 
+static bool is_hinge(const scree_scene *scene, const scree_scene_sensor *sensor) {
+  return SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, sensor->geometry)->hinge;
+}
+
 static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   const scree_plan_sensor *plan = sensor->plan;
   static const char *const wall[] = {
@@ -99,6 +103,10 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   static const char *const pile[] = {"sector_deg",     "deg", "cone_deg", "deg",
                                      "silhouette_deg", "deg", "height",   "m",
                                      "base_radius",    "m",   NULL};
+  static const char *const slide[] = {"way", "m",    "speed", "m/s",  "force", "N", "energy",
+                                      "J",   "work", "J",     "lost", "J",     NULL};
+  static const char *const hinge[] = {"way", "rad",  "speed", "rad/s", "force", "N m", "energy",
+                                      "J",   "work", "J",     "lost",  "J",     NULL};
   static const char *const position[] = {"x", "m", "y", "m", "z", "m", NULL};
   const char *name = plan->place.name;
   if (plan->flow)
@@ -113,6 +121,7 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
            add_column(scene, "m/s", "%s.mean_speed", name);
   if (plan->wall) return add_all(scene, name, wall);
   if (plan->position) return add_all(scene, name, position);
+  if (plan->part) return add_all(scene, name, is_hinge(scene, sensor) ? hinge : slide);
   if (plan->pile) return add_all(scene, name, pile);
   if (plan->slope) return add_column(scene, "deg", "%s.angle_deg", name);
   if (plan->segregation) return add_by_shape(scene, name, "lacey", "", false);
@@ -140,7 +149,8 @@ scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error) {
     scree_scene_sensor *sensor = &scene->sensors[i];
     sensor->plan = SCREE_PLAN_AT(&scene->plan, sensors, scree_plan_sensor, i);
     sensor->first_column = scene->columns.count;
-    const char *of = sensor->plan->wall ? sensor->plan->wall : sensor->plan->position;
+    const scree_plan_sensor *p = sensor->plan;
+    const char *of = p->wall ? p->wall : p->part ? p->part : p->position;
     if (of)
       sensor->geometry = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), of);
     scree_status status =
@@ -322,6 +332,17 @@ static void read_wall(const scree_scene *scene, const scree_scene_sensor *sensor
   for (size_t k = 0; k < sensor->wear_count; k++) at[8] += sensor->wear[k];
 }
 
+static void read_part(const scree_scene *scene, size_t geometry, double *at) {
+  const scree_scene_part *part = scene->geometry[geometry].part;
+  const double values[6] = {part->way,
+                            part->speed,
+                            scree_scene_push(scene, geometry),
+                            scree_scene_part_energy(scene, geometry),
+                            part->work,
+                            part->lost};
+  memcpy(at, values, sizeof values);
+}
+
 static void read_position(const scree_scene *scene, size_t geometry, double *at) {
   scree_wall wall;
   scree_world_get_wall(scene->world, scene->geometry[geometry].first_wall, &wall);
@@ -361,6 +382,8 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
     read_region(scene, plan->region->box, sensor->count, sensor->mass, at);
   else if (plan->wall)
     read_wall(scene, sensor, at);
+  else if (plan->part)
+    read_part(scene, sensor->geometry, at);
   else if (plan->position)
     read_position(scene, sensor->geometry, at);
   else if (plan->pile && !all && !pile_is_due(scene, plan->pile))

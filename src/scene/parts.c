@@ -1,0 +1,205 @@
+/* Walls that forces move: one coordinate q, a way along a direction or an angle about an axis, with
+ * a mass or a moment of inertia M.
+ *
+ * Between two steps, with Q the force along q of bodies, gravity, spring and drive and c the
+ * damper,
+ *
+ *     u = (u (1 - c dt/2M) + Q dt/M)/(1 + c dt/2M),   q = q + u dt
+ *
+ * The bodies' part of Q is known of the last step; it is led on to the coming one by its slope, so
+ * that the part and what touches it exchange no energy that neither has. The wall gets the
+ * velocity that takes it to its place in the coming step, on the circle for a hinge. At an end it
+ * stops, and what it moved with is lost. A servo has no mass: u is its speed times the share of the
+ * force that is missing, at most that speed. */
+#include "scene/scene.h"
+
+#include "base/math.h"
+
+#include <string.h>
+
+static const scree_plan_part *plan_of(const scree_scene *scene, size_t geometry) {
+  const scree_plan_geometry *g =
+      SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, geometry);
+  return g->slide ? g->slide : g->hinge;
+}
+
+static bool turns(const scree_scene *scene, size_t geometry) {
+  return SCREE_PLAN_AT(&scene->plan, geometry, scree_plan_geometry, geometry)->hinge != NULL;
+}
+
+static vec3 axis_of(const scree_plan_part *plan) {
+  return vec3_unit(vec3_load(plan->axis));
+}
+
+scree_status scree_scene_plan_parts(scree_scene *scene, scree_error *error) {
+  size_t count = scene->plan.geometry.count;
+  for (size_t i = 0; i < count; i++) {
+    if (!plan_of(scene, i)) continue;
+    scree_scene_part *part = scree_arena_take(&scene->arena, 1, sizeof *part);
+    if (!part) return scree_fail_memory(error, sizeof *part, "a machine's part");
+    *part = (scree_scene_part){0};
+    scene->geometry[i].part = part;
+    scene->has_parts = true;
+  }
+  return SCREE_OK;
+}
+
+/* ---- forces ---- */
+
+double scree_scene_push(const scree_scene *scene, size_t geometry) {
+  const scree_plan_part *plan = plan_of(scene, geometry);
+  const scree_scene_geometry *g = &scene->geometry[geometry];
+  vec3 axis = axis_of(plan);
+  double sum = 0;
+  for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
+    double force[3], torque[3];
+    scree_wall wall;
+    scree_world_wall_force(scene->world, w, force, torque);
+    scree_world_get_wall(scene->world, w, &wall);
+    vec3 f = vec3_load(force), arm = vec3_sub(vec3_load(wall.position), vec3_load(plan->through));
+    sum += turns(scene, geometry) ? vec3_dot(axis, vec3_add(vec3_load(torque), vec3_cross(arm, f)))
+                                  : vec3_dot(axis, f);
+  }
+  return sum;
+}
+
+/* Where the centre of mass is of a hinge at q, from its axis. */
+static vec3 arm_of_centre(const scree_plan_part *plan, double q) {
+  mat3 turn = quat_to_mat3(quat_from_rotation_vector(vec3_scale(axis_of(plan), q)));
+  return mat3_mul_vec(&turn, vec3_sub(vec3_load(plan->centre), vec3_load(plan->through)));
+}
+
+static double weight_of(const scree_scene *scene, size_t geometry, double q) {
+  const scree_plan_part *plan = plan_of(scene, geometry);
+  vec3 g = vec3_scale(vec3_load(scene->plan.gravity), plan->mass);
+  if (!turns(scene, geometry)) return vec3_dot(axis_of(plan), g);
+  if (isnan(plan->centre[0])) return 0;
+  return vec3_dot(axis_of(plan), vec3_cross(arm_of_centre(plan, q), g));
+}
+
+/* J, of gravity and the spring; the change since q = 0. */
+static double potential_of(const scree_scene *scene, size_t geometry, double q) {
+  const scree_plan_part *plan = plan_of(scene, geometry);
+  vec3 g = vec3_scale(vec3_load(scene->plan.gravity), plan->mass), moved = {0, 0, 0};
+  if (!turns(scene, geometry))
+    moved = vec3_scale(axis_of(plan), q);
+  else if (!isnan(plan->centre[0]))
+    moved = vec3_sub(arm_of_centre(plan, q), arm_of_centre(plan, 0));
+  double stretch = q - plan->rest, first = plan->rest;
+  return 0.5 * plan->spring * (stretch * stretch - first * first) - vec3_dot(g, moved);
+}
+
+static double drive_of(const scree_plan_part *plan, double time) {
+  const double turn = 6.283185307179586;
+  double t = time - plan->from;
+  return plan->force + plan->amplitude * scree_sin(turn * plan->frequency * t);
+}
+
+/* ---- a step ---- */
+
+/* Stops at its ends. */
+static void stop_at_ends(const scree_plan_part *plan, double inertia, double dt,
+                         scree_scene_part *part) {
+  double to = part->way + part->speed * dt, end = to;
+  if (!isnan(plan->least)) end = fmax(end, plan->least);
+  if (!isnan(plan->most)) end = fmin(end, plan->most);
+  if (end == to) return;
+  double speed = (end - part->way) / dt;
+  part->lost += 0.5 * inertia * (part->speed * part->speed - speed * speed);
+  part->speed = speed;
+}
+
+static double step_free(const scree_scene *scene, size_t geometry, double push, double time) {
+  const scree_plan_part *plan = plan_of(scene, geometry);
+  const scree_scene_part *part = scene->geometry[geometry].part;
+  double dt = scene->time_step, m = turns(scene, geometry) ? plan->inertia : plan->mass,
+         damp = 0.5 * plan->damper * dt / m;
+  double all = push + weight_of(scene, geometry, part->way) -
+               plan->spring * (part->way - plan->rest) + drive_of(plan, time);
+  return (part->speed * (1 - damp) + all * dt / m) / (1 + damp);
+}
+
+static double step_servo(const scree_plan_servo *servo, double push) {
+  double missing = (servo->force + push) / fabs(servo->force);
+  return servo->speed * fmax(-1, fmin(1, missing));
+}
+
+/* The velocity that takes a wall from where it stands to where the part is after the step. */
+static scree_status lead_wall(const scree_scene *scene, size_t geometry, size_t index,
+                              scree_error *error) {
+  const scree_plan_part *plan = plan_of(scene, geometry);
+  double speed = scene->geometry[geometry].part->speed, dt = scene->time_step, v[3], w[3] = {0};
+  vec3 axis = axis_of(plan);
+  scree_wall wall;
+  scree_world_get_wall(scene->world, index, &wall);
+  vec3_store(v, vec3_scale(axis, speed));
+  if (turns(scene, geometry)) {
+    vec3 arm = vec3_sub(vec3_load(wall.position), vec3_load(plan->through));
+    mat3 turn = quat_to_mat3(quat_from_rotation_vector(vec3_scale(axis, speed * dt)));
+    vec3_store(w, vec3_scale(axis, speed));
+    vec3_store(v, vec3_scale(vec3_sub(mat3_mul_vec(&turn, arm), arm), 1 / dt));
+  }
+  return scree_world_set_wall_velocity(scene->world, index, v, w, error);
+}
+
+static void move(scree_scene *scene, size_t geometry) {
+  const scree_plan_part *plan = plan_of(scene, geometry);
+  scree_scene_part *part = scene->geometry[geometry].part;
+  double time = scree_world_time(scene->world), dt = scene->time_step, before = part->speed,
+         m = turns(scene, geometry) ? plan->inertia : plan->mass;
+  double now = scree_scene_push(scene, geometry), push = now != 0 ? 2 * now - part->push : 0;
+  part->push = now;
+  if (time < plan->from) return;
+  part->speed = plan->servo ? step_servo(plan->servo, now) : step_free(scene, geometry, push, time);
+  if (!plan->servo) {
+    double mean = 0.5 * (before + part->speed);
+    part->work += drive_of(plan, time) * mean * dt;
+    part->lost += plan->damper * mean * mean * dt;
+  }
+  stop_at_ends(plan, plan->servo ? 0 : m, dt, part);
+  part->way += part->speed * dt;
+}
+
+scree_status scree_scene_move_parts(scree_scene *scene, scree_error *error) {
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.geometry.count; i++) {
+    const scree_scene_geometry *g = &scene->geometry[i];
+    if (!g->part) continue;
+    move(scene, i);
+    for (size_t w = 0; status == SCREE_OK && w < g->wall_count; w++)
+      status = lead_wall(scene, i, g->first_wall + w, error);
+  }
+  return status;
+}
+
+/* ---- energies ---- */
+
+double scree_scene_part_energy(const scree_scene *scene, size_t geometry) {
+  const scree_plan_part *plan = plan_of(scene, geometry);
+  const scree_scene_part *part = scene->geometry[geometry].part;
+  if (plan->servo) return 0;
+  double m = turns(scene, geometry) ? plan->inertia : plan->mass;
+  return 0.5 * m * part->speed * part->speed + potential_of(scene, geometry, part->way);
+}
+
+double scree_scene_wall_work(const scree_scene *scene, size_t geometry) {
+  const scree_scene_geometry *g = &scene->geometry[geometry];
+  double sum = 0;
+  for (size_t w = g->first_wall; w < g->first_wall + g->wall_count; w++) {
+    double power, energy;
+    scree_world_wall_power(scene->world, w, &power, &energy);
+    sum += energy;
+  }
+  return sum;
+}
+
+double scree_scene_parts_balance(const scree_scene *scene) {
+  double sum = 0;
+  for (size_t i = 0; i < scene->plan.geometry.count; i++) {
+    const scree_scene_part *part = scene->geometry[i].part;
+    if (!part || plan_of(scene, i)->servo) continue;
+    sum += scree_scene_part_energy(scene, i) + part->lost - part->work +
+           scree_scene_wall_work(scene, i);
+  }
+  return sum;
+}
