@@ -52,7 +52,8 @@ static const char *const file_names[] = {
     "checkpoint.scree",     "series.csv",  "motion.scree", "scene.yaml",
     "frame-#-bodies.vtp",   "bodies.pvd",  "geometry.pvd", "scene.png",
     "frame-#-geometry.vtp", "result.json", "result.txt",   "stopped.scree",
-    "provenance.json",      "report.html", "sensor-*.csv", "shape-#.vtp"};
+    "provenance.json",      "report.html", "sensor-*.csv", "sensor-*.vts",
+    "shape-#.vtp"};
 static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 enum { PATH_BYTES = 4200 };

@@ -233,9 +233,9 @@ static scree_status check_cylinder(const scree_reader *r, const void *record) {
   return scree_plan_check_direction(r, &c->place, "axis", c->axis);
 }
 static const scree_plan_cylinder cylinder_defaults = {{0}, NONE, {0, 0, 1}, NAN, 0};
-static const scree_record cylinder_record = {"a cylinder", FIELDS(cylinder_fields),
-                                             sizeof(scree_plan_cylinder), &cylinder_defaults,
-                                             check_cylinder};
+const scree_record scree_plan_cylinder_record = {"a cylinder", FIELDS(cylinder_fields),
+                                                 sizeof(scree_plan_cylinder), &cylinder_defaults,
+                                                 check_cylinder};
 
 #define AT(member) offsetof(scree_plan_box, member)
 static const scree_field box_fields[] = {
@@ -368,7 +368,7 @@ static const scree_field geometry_fields[] = {
     {"plane", SCREE_FIELD_VECTOR, AT(plane), 0, 0, "", "normal, out of the solid", NULL},
     {"disc", SCREE_FIELD_RECORD, AT(disc), 0, 0, "", "", &disc_record},
     {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "a sheet from `at` along its axis",
-     &cylinder_record},
+     &scree_plan_cylinder_record},
     {"unit", SCREE_FIELD_WORD, AT(unit), 0, 0, SCREE_PLAN_UNITS, "of the file's lengths", NULL},
     {"at", SCREE_FIELD_VECTOR, AT(at), -1e6, 1e6, "m", "where its origin goes", NULL},
     {"turn", SCREE_FIELD_RECORD, AT(turn), 0, 0, "", "about its origin, before it goes there",
@@ -447,7 +447,8 @@ static const scree_record layers_record = {
 static const scree_field inlet_fields[] = {
     {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "bodies begin wholly inside",
      &scree_plan_box_record},
-    {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "likewise", &cylinder_record},
+    {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "likewise",
+     &scree_plan_cylinder_record},
     {"shapes", SCREE_FIELD_WEIGHTS, AT(shapes), 0, 1e12, "", "and their shares by number", NULL},
     {"rate", SCREE_FIELD_REAL, AT(rate), 0, 1e9, "1/s", "bodies a second", NULL},
     {"mass_rate", SCREE_FIELD_REAL, AT(mass_rate), 0, 1e9, "kg/s", "or mass a second", NULL},

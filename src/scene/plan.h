@@ -196,6 +196,14 @@ typedef struct scree_plan_impacts {
   size_t bins;
 } scree_plan_impacts;
 
+typedef struct scree_plan_grid {
+  scree_place place;
+  scree_plan_box *box;
+  scree_plan_cylinder *cylinder;
+  double cells[3], width, from, every;
+  const char *with; /* a geometry */
+} scree_plan_grid;
+
 typedef struct scree_plan_residence {
   scree_place place;
 } scree_plan_residence;
@@ -211,6 +219,7 @@ typedef struct scree_plan_sensor {
   scree_plan_segregation *segregation;
   scree_plan_residence *residence;
   scree_plan_impacts *impacts;
+  scree_plan_grid *grid;
 } scree_plan_sensor;
 
 typedef struct scree_plan_stop {

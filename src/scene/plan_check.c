@@ -108,6 +108,9 @@ static scree_status check_sensors(const scree_reader *r, const scree_plan *plan)
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < plan->sensors.count; i++) {
     const scree_plan_sensor *s = SCREE_PLAN_AT(plan, sensors, scree_plan_sensor, i);
+    if (s->grid && s->grid->with)
+      status = NEED(geometry, scree_plan_geometry, "geometry", s->grid->with, &s->grid->place);
+    if (status != SCREE_OK) return status;
     const char *of = s->wall ? s->wall : s->part ? s->part : s->position;
     if (of) status = NEED(geometry, scree_plan_geometry, "geometry", of, &s->place);
     if (status == SCREE_OK && s->part) {

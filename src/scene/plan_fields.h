@@ -25,7 +25,7 @@ scree_status scree_plan_one_of(const scree_reader *r, const scree_place *place, 
                                size_t count, const char *names);
 scree_status scree_plan_check_direction(const scree_reader *r, const scree_place *place,
                                         const char *what, const double *v);
-extern const scree_record scree_plan_box_record;
+extern const scree_record scree_plan_box_record, scree_plan_cylinder_record;
 /* plan_sensors.c */
 extern const scree_record scree_plan_sensor_record;
 

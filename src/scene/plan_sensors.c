@@ -121,6 +121,42 @@ static const scree_record impacts_record = {"impacts", FIELDS(impacts_fields),
                                             sizeof(scree_plan_impacts), &impacts_defaults,
                                             check_impacts};
 
+#define AT(member) offsetof(scree_plan_grid, member)
+static const scree_field grid_fields[] = {
+    {"box", SCREE_FIELD_RECORD, AT(box), 0, 0, "", "", &scree_plan_box_record},
+    {"cylinder", SCREE_FIELD_RECORD, AT(cylinder), 0, 0, "", "instead of a box",
+     &scree_plan_cylinder_record},
+    {"cells", SCREE_FIELD_VECTOR, AT(cells), 1, 1000, "",
+     "along x, y and z; of a cylinder outward, around and along", NULL},
+    {"width", SCREE_FIELD_REAL, AT(width), 1e-9, 1e3, "m",
+     "of coarse graining; not given: the largest body's size", NULL},
+    {"from", SCREE_FIELD_REAL, AT(from), 0, 1e9, "s", "nothing before is counted", NULL},
+    {"every", SCREE_FIELD_REAL, AT(every), 1e-9, 1e9, "s",
+     "between samples; not given: as the series", NULL},
+    {"with", SCREE_FIELD_TEXT, AT(with), 0, 0, "",
+     "a geometry: the grid is in its frame and moves with it", NULL},
+};
+#undef AT
+static scree_status check_grid(const scree_reader *r, const void *record) {
+  const scree_plan_grid *p = record;
+  const bool there[] = {p->box != NULL, p->cylinder != NULL};
+  scree_status status = scree_plan_one_of(r, &p->place, there, 2, "box, cylinder");
+  if (status != SCREE_OK) return status;
+  if (!given(p->cells)) return scree_fail_place(r, &p->place, "needs cells: [10, 10, 10]");
+  for (int k = 0; k < 3; k++)
+    if (p->cells[k] != floor(p->cells[k]))
+      return scree_fail_place(r, &p->place, "cells %g: must be whole numbers", p->cells[k]);
+  if (p->cells[0] * p->cells[1] * p->cells[2] > 1e6)
+    return scree_fail_place(r, &p->place, "%g cells: at most 1e6",
+                            p->cells[0] * p->cells[1] * p->cells[2]);
+  if (p->cylinder && (!given(p->cylinder->at) || !(p->cylinder->length > 0)))
+    return scree_fail_place(r, &p->cylinder->place, "needs at: [x, y, z] and a length above 0");
+  return SCREE_OK;
+}
+static const scree_plan_grid grid_defaults = {.cells = NONE, .width = NAN, .every = NAN};
+static const scree_record grid_record = {"a grid", FIELDS(grid_fields), sizeof(scree_plan_grid),
+                                         &grid_defaults, check_grid};
+
 #define AT(member) offsetof(scree_plan_sensor, member)
 static const scree_field sensor_fields[] = {
     {"flow", SCREE_FIELD_RECORD, AT(flow), 0, 0, "", "count and mass through a plane, by shape",
@@ -136,6 +172,8 @@ static const scree_field sensor_fields[] = {
      &segregation_record},
     {"residence", SCREE_FIELD_RECORD, AT(residence), 0, 0, "", "time from inlet to outlet",
      &residence_record},
+    {"grid", SCREE_FIELD_RECORD, AT(grid), 0, 0, "", "fields of means over time, for ParaView",
+     &grid_record},
     {"impacts", SCREE_FIELD_RECORD, AT(impacts), 0, 0, "", "energies of contacts, by class",
      &impacts_record},
 };
@@ -145,10 +183,10 @@ static scree_status check_sensor(const scree_reader *r, const void *record) {
   const bool there[] = {s->flow != NULL,      s->region != NULL,   s->wall != NULL,
                         s->pile != NULL,      s->slope != NULL,    s->segregation != NULL,
                         s->residence != NULL, s->position != NULL, s->impacts != NULL,
-                        s->part != NULL};
+                        s->part != NULL,      s->grid != NULL};
   return scree_plan_one_of(
       r, &s->place, there, sizeof there / sizeof *there,
-      "flow, region, wall, position, part, pile, slope, segregation, residence, impacts");
+      "flow, region, wall, position, part, pile, slope, segregation, residence, impacts, grid");
 }
 static const scree_plan_sensor sensor_defaults = {.wall = NULL};
 const scree_record scree_plan_sensor_record = {

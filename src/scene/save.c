@@ -3,6 +3,7 @@
  * bodies; the series; the notes of the program that made it. What follows from the file is made
  * again. A frame's world has its bodies and walls without what contacts remember; what follows from
  * contacts is kept as a number. */
+#include "scene/grid.h"
 #include "scene/impacts.h"
 #include "world/checkpoint.h"
 
@@ -117,6 +118,11 @@ static void code_sensor(scree_codec *c, scree_scene *scene, scree_scene_sensor *
   for (size_t k = 0; k < 4; k++) scree_code_reals(c, arrays[k], SCREE_SCENE_SHAPES(scene) + 1);
   scree_code_reals(c, sensor->wear, sensor->wear_count);
   if (sensor->impacts) code_impacts(c, sensor->impacts);
+  if (sensor->grid) {
+    scree_code_reals(c, sensor->grid->sums, sensor->grid->number_count);
+    scree_code_u64(c, &sensor->grid->next);
+    scree_code_u64(c, &sensor->grid->sample_count);
+  }
   size_t count = sensor->side.count;
   scree_code_count(c, &count, 1);
   if (scree_codec_good(c) && !SCREE_RESERVE(&sensor->side, count)) c->out_of_memory = true;

@@ -475,6 +475,8 @@ static size_t steps_to_decision(const scree_scene *scene, size_t wanted) {
   uint64_t done = scree_world_step_count(scene->world);
   if (scene->wear_steps && scene->next_wear - done < steps) steps = scene->next_wear - done;
   if (scene->hit_steps && scene->next_hits - done < steps) steps = scene->next_hits - done;
+  uint64_t sample = scree_scene_next_sample(scene);
+  if (sample - done < steps) steps = sample > done ? (size_t)(sample - done) : 1;
   double due = fmin(next_row(scene), fmin(time_limit(scene), scree_scene_phase_end(scene)));
   double until = floor((due - scree_world_time(scene->world)) / scene->time_step) - 1;
   if (until < (double)steps) steps = until > 1 ? (size_t)until : 1;
@@ -486,6 +488,7 @@ scree_status scree_scene_decide(scree_scene *scene, scree_error *error) {
   if (scree_world_time(scene->world) >= next_row(scene)) scree_scene_take_lost(scene);
   scree_status status = scree_scene_watch_wear(scene, error);
   if (status == SCREE_OK) status = scree_scene_watch_impacts(scene, error);
+  if (status == SCREE_OK) status = scree_scene_watch_grids(scene, error);
   if (status == SCREE_OK && ticks) status = tick(scene, error);
   if (status == SCREE_OK) status = scree_scene_turn_phase(scene, ticks, error);
   if (status != SCREE_OK) return status;

@@ -85,6 +85,7 @@ typedef struct scree_scene_hits {
 } scree_scene_hits;
 
 typedef struct scree_scene_impacts scree_scene_impacts; /* impacts.h */
+typedef struct scree_scene_grid scree_scene_grid;       /* grid.h */
 
 typedef struct scree_scene_sensor {
   const scree_plan_sensor *plan;
@@ -95,6 +96,7 @@ typedef struct scree_scene_sensor {
   double *wear;         /* of a wall: J by triangle of its meshes, one of each other wall */
   size_t wear_count;
   scree_scene_impacts *impacts;
+  struct scree_scene_grid *grid;
   struct {
     int8_t *items; /* of a flow: the side each body was on */
     size_t count, capacity;
@@ -313,6 +315,12 @@ scree_status scree_scene_plan_impacts(scree_scene *scene, scree_scene_sensor *se
                                       scree_error *error);
 scree_status scree_scene_watch_impacts(scree_scene *scene, scree_error *error);
 void scree_scene_free_impacts(scree_scene_sensor *sensor);
+
+/* grid.c: likewise; the step of the next sample. */
+scree_status scree_scene_plan_grid(scree_scene *scene, scree_scene_sensor *sensor,
+                                   scree_error *error);
+scree_status scree_scene_watch_grids(scree_scene *scene, scree_error *error);
+uint64_t scree_scene_next_sample(const scree_scene *scene);
 
 /* tables.c: what sensors have besides columns, as CSV files in the folder. */
 scree_status scree_scene_write_tables(const scree_scene *scene, const char *folder,

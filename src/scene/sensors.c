@@ -1,5 +1,6 @@
 /* Sensors as columns of numbers: what each is called, what it reads now, and what flows and
  * residence gather from tick to tick. */
+#include "scene/grid.h"
 #include "scene/impacts.h"
 
 #include "base/alloc.h"
@@ -107,6 +108,8 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
                                       "J",   "work", "J",     "lost", "J",     NULL};
   static const char *const hinge[] = {"way", "rad",  "speed", "rad/s", "force", "N m", "energy",
                                       "J",   "work", "J",     "lost",  "J",     NULL};
+  static const char *const grid[] = {"samples",     "",      "solid",    "",   "speed", "m/s",
+                                     "temperature", "m2/s2", "pressure", "Pa", NULL};
   static const char *const position[] = {"x", "m", "y", "m", "z", "m", NULL};
   const char *name = plan->place.name;
   if (plan->flow)
@@ -125,6 +128,7 @@ static bool add_sensor(scree_scene *scene, const scree_scene_sensor *sensor) {
   if (plan->pile) return add_all(scene, name, pile);
   if (plan->slope) return add_column(scene, "deg", "%s.angle_deg", name);
   if (plan->segregation) return add_by_shape(scene, name, "lacey", "", false);
+  if (plan->grid) return add_all(scene, name, grid);
   if (plan->impacts) return add_impacts(scene, sensor);
   return add_by_shape(scene, name, "count", "", true) &&
          add_by_shape(scene, name, "mean", "s", true) && add_by_shape(scene, name, "sd", "s", true);
@@ -150,11 +154,15 @@ scree_status scree_scene_plan_columns(scree_scene *scene, scree_error *error) {
     sensor->plan = SCREE_PLAN_AT(&scene->plan, sensors, scree_plan_sensor, i);
     sensor->first_column = scene->columns.count;
     const scree_plan_sensor *p = sensor->plan;
+    if (p->grid && p->grid->with)
+      sensor->geometry =
+          scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), p->grid->with);
     const char *of = p->wall ? p->wall : p->part ? p->part : p->position;
     if (of)
       sensor->geometry = scree_plan_find(&scene->plan.geometry, sizeof(scree_plan_geometry), of);
     scree_status status =
         sensor->plan->impacts ? scree_scene_plan_impacts(scene, sensor, error) : SCREE_OK;
+    if (status == SCREE_OK && p->grid) status = scree_scene_plan_grid(scene, sensor, error);
     if (status != SCREE_OK) return status;
     good = add_sensor(scene, sensor) && allocate_sums(scene, sensor);
   }
@@ -332,6 +340,22 @@ static void read_wall(const scree_scene *scene, const scree_scene_sensor *sensor
   for (size_t k = 0; k < sensor->wear_count; k++) at[8] += sensor->wear[k];
 }
 
+/* Means over the cells: of speed and temperature by mass. */
+static void read_grid(const scree_scene *scene, const scree_scene_sensor *sensor, double *at) {
+  double n = (double)sensor->grid->cell_count, mass = 0, speed = 0, heat = 0, solid = 0, press = 0;
+  for (size_t c = 0; c < sensor->grid->cell_count; c++) {
+    scree_grid_fields f = scree_grid_fields_at(scene, sensor, c);
+    solid += f.solid / n;
+    mass += f.density;
+    speed += f.density * vec3_norm(vec3_load(f.velocity));
+    heat += f.density * f.temperature;
+    press += (f.stress[0] + f.stress[1] + f.stress[2]) / (3 * n);
+  }
+  const double values[5] = {(double)sensor->grid->sample_count, solid,
+                            mass > 0 ? speed / mass : NAN, mass > 0 ? heat / mass : NAN, press};
+  memcpy(at, values, sizeof values);
+}
+
 static void read_part(const scree_scene *scene, size_t geometry, double *at) {
   const scree_scene_part *part = scene->geometry[geometry].part;
   const double values[6] = {part->way,
@@ -394,6 +418,8 @@ static scree_status read_sensor(const scree_scene *scene, const scree_scene_sens
     status = scree_scene_measure_slope(scene, plan->slope, at, error);
   else if (plan->segregation)
     status = scree_scene_measure_mixing(scene, plan->segregation, at, error);
+  else if (plan->grid)
+    read_grid(scene, sensor, at);
   else if (plan->impacts)
     read_impacts(scene, sensor, values[0], at);
   else

@@ -1,4 +1,5 @@
 /* Tables of sensors: what has more numbers than columns of the series. */
+#include "scene/grid.h"
 #include "scene/impacts.h"
 
 #include "base/alloc.h"
@@ -17,7 +18,7 @@ static void put_name(char *to, const char *name) {
   *to = 0;
 }
 
-/* FOLDER/sensor-NAME-WHAT.csv, a file of its own until it is whole. */
+/* FOLDER/sensor-NAME-WHAT, a file of its own until it is whole. */
 static scree_status open_table(const char *folder, const scree_scene_sensor *sensor,
                                const char *what, scree_output *output, scree_error *error) {
   const char *name = sensor->plan->place.name;
@@ -26,7 +27,7 @@ static scree_status open_table(const char *folder, const scree_scene_sensor *sen
   if (!path) return scree_fail_memory(error, size, "a path");
   char *at = path + snprintf(path, size, "%s/sensor-", folder);
   put_name(at, name);
-  strcat(strcat(strcat(at, "-"), what), ".csv");
+  strcat(strcat(at, "-"), what);
   scree_status status = scree_output_open(path, true, output, error);
   scree_free(path);
   return status;
@@ -57,7 +58,7 @@ static scree_status write_spectra(const scree_scene *scene, const scree_scene_se
   const scree_scene_impacts *impacts = sensor->impacts;
   const size_t width = impacts->class_count * SCREE_IMPACT_SPECTRA * impacts->bin_count + 2;
   scree_output output;
-  scree_status status = open_table(folder, sensor, "spectra", &output, error);
+  scree_status status = open_table(folder, sensor, "spectra.csv", &output, error);
   if (status != SCREE_OK) return status;
   fputs("from [s],until [s],a,b,energy_from [J],energy_until [J],approach,normal,tangential\n",
         output.stream);
@@ -73,7 +74,7 @@ static scree_status write_bodies(const scree_scene *scene, const scree_scene_sen
                                  const char *folder, scree_error *error) {
   const scree_scene_impacts *impacts = sensor->impacts;
   scree_output output;
-  scree_status status = open_table(folder, sensor, "bodies", &output, error);
+  scree_status status = open_table(folder, sensor, "bodies.csv", &output, error);
   if (status != SCREE_OK) return status;
   fputs("body,shape,count,approach [J],normal [J],tangential [J],damage [J],largest [J]\n",
         output.stream);
@@ -88,11 +89,93 @@ static scree_status write_bodies(const scree_scene *scene, const scree_scene_sen
   return scree_output_commit(&output, error);
 }
 
+/* ---- grids ---- */
+
+static void begin_array(FILE *stream, const char *name, int components) {
+  fprintf(stream,
+          "        <DataArray type=\"Float32\" Name=\"%s\" NumberOfComponents=\"%d\" "
+          "format=\"ascii\">\n",
+          name, components);
+}
+
+static void put_numbers(FILE *stream, const double *values, int count) {
+  for (int k = 0; k < count; k++) fprintf(stream, "%.7g%c", values[k], k + 1 < count ? ' ' : '\n');
+}
+
+/* One field of all cells: `count` numbers of the record from `offset` on. */
+static void put_field(FILE *stream, const scree_scene *scene, const scree_scene_sensor *sensor,
+                      const char *name, size_t offset, int count) {
+  begin_array(stream, name, count);
+  for (size_t c = 0; c < sensor->grid->cell_count; c++) {
+    scree_grid_fields f = scree_grid_fields_at(scene, sensor, c);
+    put_numbers(stream, (const double *)(const void *)((const char *)&f + offset), count);
+  }
+  fputs("        </DataArray>\n", stream);
+}
+
+static void put_shares(FILE *stream, const scree_scene *scene, const scree_scene_sensor *sensor) {
+  for (size_t s = 0; s < scene->plan.families.count; s++) {
+    char name[96];
+    snprintf(name, sizeof name, "share of %s",
+             SCREE_PLAN_AT(&scene->plan, families, scree_plan_shape, s)->place.name);
+    begin_array(stream, name, 1);
+    for (size_t c = 0; c < sensor->grid->cell_count; c++) {
+      scree_grid_fields f = scree_grid_fields_at(scene, sensor, c);
+      double n = (double)(sensor->grid->sample_count ? sensor->grid->sample_count : 1),
+             share = f.density > 0 ? f.shares[s] / n / f.density : 0;
+      put_numbers(stream, &share, 1);
+    }
+    fputs("        </DataArray>\n", stream);
+  }
+}
+
+static void put_corners(FILE *stream, const scree_plan_grid *plan, const size_t n[3]) {
+  for (size_t k = 0; k <= n[2]; k++)
+    for (size_t j = 0; j <= n[1]; j++)
+      for (size_t i = 0; i <= n[0]; i++) {
+        double at[3];
+        vec3_store(at, scree_grid_corner(plan, i, j, k));
+        put_numbers(stream, at, 3);
+      }
+}
+
+/* VTK's XML of a structured grid, as text. */
+static scree_status write_grid(const scree_scene *scene, const scree_scene_sensor *sensor,
+                               const char *folder, scree_error *error) {
+  const scree_plan_grid *plan = sensor->plan->grid;
+  const size_t n[3] = {(size_t)plan->cells[0], (size_t)plan->cells[1], (size_t)plan->cells[2]};
+  scree_output output;
+  scree_status status = open_table(folder, sensor, "grid.vts", &output, error);
+  if (status != SCREE_OK) return status;
+  FILE *out = output.stream;
+  fprintf(out,
+          "<?xml version=\"1.0\"?>\n<VTKFile type=\"StructuredGrid\" version=\"1.0\">\n"
+          "  <StructuredGrid WholeExtent=\"0 %zu 0 %zu 0 %zu\">\n"
+          "    <Piece Extent=\"0 %zu 0 %zu 0 %zu\">\n      <CellData>\n",
+          n[0], n[1], n[2], n[0], n[1], n[2]);
+#define FIELD(name, member, count)                                                                 \
+  put_field(out, scene, sensor, name, offsetof(scree_grid_fields, member), count)
+  FIELD("solid fraction", solid, 1);
+  FIELD("density [kg/m3]", density, 1);
+  FIELD("velocity [m/s]", velocity, 3);
+  FIELD("granular temperature [m2/s2]", temperature, 1);
+  FIELD("stress [Pa]", stress, 6);
+#undef FIELD
+  put_shares(out, scene, sensor);
+  fputs("      </CellData>\n      <Points>\n", out);
+  begin_array(out, "Points", 3);
+  put_corners(out, plan, n);
+  fputs("        </DataArray>\n      </Points>\n    </Piece>\n  </StructuredGrid>\n</VTKFile>\n",
+        out);
+  return scree_output_commit(&output, error);
+}
+
 scree_status scree_scene_write_tables(const scree_scene *scene, const char *folder,
                                       scree_error *error) {
   scree_status status = SCREE_OK;
   for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++) {
     const scree_scene_sensor *sensor = &scene->sensors[i];
+    if (sensor->grid) status = write_grid(scene, sensor, folder, error);
     if (sensor->impacts) status = write_spectra(scene, sensor, folder, error);
     if (sensor->impacts && status == SCREE_OK) status = write_bodies(scene, sensor, folder, error);
   }

@@ -18,6 +18,7 @@ shapes: {ball: {sphere: 0.02}, brick: {box: [0.01, 0.02, 0.03]}}
 geometry: {floor: {plane: [0, 0, 1]}}
 inlets: {i: {box: {min: [0, 0, 0.01], max: [0.2, 0.2, 0.2]}, shapes: {ball: 1, brick: 1}, count: 20}}
 output: {frames: 0.05}
+sensors: {field: {grid: {cylinder: {at: [0.1, 0.1, 0], radius: 0.15, length: 0.2}, cells: [3, 8, 4]}}}
 """
 folder = tempfile.mkdtemp()
 with open(f"{folder}/scene.yaml", "w", encoding="utf-8") as file:
@@ -57,4 +58,13 @@ for k in range(20):
     third = (2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y))
     reach = min(sum(a * b for a, b in zip(third, brick.GetPoint(i))) for i in range(brick.GetNumberOfPoints()))
     assert last.GetPoint(k)[2] + reach > -1e-4, k
+# a grid: the mass of all bodies is in its cells, or near them
+reader = vtk.vtkXMLStructuredGridReader()
+reader.SetFileName(f"{folder}/out/sensor-field-grid.vts")
+reader.Update()
+grid = reader.GetOutput()
+assert reader.GetErrorCode() == 0 and grid.GetNumberOfCells() == 3 * 8 * 4
+cells = grid.GetCellData()
+assert [cells.GetArray(n).GetNumberOfComponents() for n in ("velocity [m/s]", "stress [Pa]", "share of ball")] == [3, 6, 1]
+assert 0 < max(cells.GetArray("solid fraction").GetRange()) < 0.7
 print("20 bodies in 4 frames")

@@ -1,0 +1,268 @@
+/* Fields over a grid by coarse graining (Goldhirsch, Granular Matter 12, 239, 2010), averaged over
+ * time. With W a Gaussian of width w about a cell's middle r, cut off at 4 w, and sums over bodies,
+ *
+ *     solid fraction  sum V_i W           density  rho = sum m_i W
+ *     velocity        v = sum m_i v_i W/rho
+ *     temperature     T = sum m_i |v_i - v|^2 W/(3 rho)
+ *     stress          sum m_i (v_i - v)(v_i - v) W + sum f_ij r_ij int_0^1 W(r - r_j - s r_ij) ds
+ *
+ * the last over contacts: f_ij acts on i, r_ij from the centre of j, or the place on a wall, to
+ * that of i; pressure is positive. Fluctuations are from the mean over time. In a grid that moves
+ * with a geometry all places, velocities and forces are in that one's frame, and relative to it. */
+#include "scene/grid.h"
+
+#include "base/alloc.h"
+#include "base/math.h"
+
+#include <string.h>
+
+static const double cut_off = 4;  /* widths */
+static const double piece = 0.25; /* of a width, of a contact's line */
+static const double turn = 6.283185307179586;
+
+/* ---- cells ---- */
+
+static const size_t *cells_of(const scree_plan_grid *plan, size_t cells[3]) {
+  for (int k = 0; k < 3; k++) cells[k] = (size_t)plan->cells[k];
+  return cells;
+}
+
+static size_t cell_count(const scree_plan_grid *plan) {
+  size_t n[3];
+  cells_of(plan, n);
+  return n[0] * n[1] * n[2];
+}
+
+/* A corner of the grid, counted along x, y, z or outward, around, along; halves are middles. */
+static vec3 place_at(const scree_plan_grid *plan, double i, double j, double k) {
+  if (plan->box) {
+    vec3 low = vec3_load(plan->box->min), sides = vec3_sub(vec3_load(plan->box->max), low);
+    return (vec3){low.x + sides.x * i / plan->cells[0], low.y + sides.y * j / plan->cells[1],
+                  low.z + sides.z * k / plan->cells[2]};
+  }
+  const scree_plan_cylinder *c = plan->cylinder;
+  vec3 axis = vec3_unit(vec3_load(c->axis)), u, v;
+  vec3_frame(axis, &u, &v);
+  double r = c->radius * i / plan->cells[0], a = turn * j / plan->cells[1];
+  vec3 out = vec3_mad(vec3_scale(u, r * scree_cos(a)), v, r * scree_sin(a));
+  return vec3_mad(vec3_add(vec3_load(c->at), out), axis, c->length * k / plan->cells[2]);
+}
+
+vec3 scree_grid_corner(const scree_plan_grid *plan, size_t i, size_t j, size_t k) {
+  return place_at(plan, (double)i, (double)j, (double)k);
+}
+
+/* The cells along one of the grid's directions whose middles lie within `reach` of x; of count
+ * cells from low to high. */
+static void range_of(double x, double reach, double low, double high, size_t count,
+                     size_t range[2]) {
+  double cell = (high - low) / (double)count, from = ceil((x - reach - low) / cell - 0.5),
+         to = floor((x + reach - low) / cell - 0.5) + 1;
+  range[0] = from > 0 ? (size_t)fmin(from, (double)count) : 0;
+  range[1] = to > 0 ? (size_t)fmin(to, (double)count) : 0;
+}
+
+static void ranges_of(const scree_plan_grid *plan, vec3 p, double reach, size_t ranges[3][2]) {
+  size_t n[3];
+  cells_of(plan, n);
+  if (plan->box) {
+    const double *low = plan->box->min, *high = plan->box->max;
+    range_of(p.x, reach, low[0], high[0], n[0], ranges[0]);
+    range_of(p.y, reach, low[1], high[1], n[1], ranges[1]);
+    range_of(p.z, reach, low[2], high[2], n[2], ranges[2]);
+    return;
+  }
+  const scree_plan_cylinder *c = plan->cylinder;
+  vec3 axis = vec3_unit(vec3_load(c->axis)), d = vec3_sub(p, vec3_load(c->at));
+  double along = vec3_dot(d, axis), away = vec3_norm(vec3_mad(d, axis, -along));
+  range_of(away, reach, 0, c->radius, n[0], ranges[0]);
+  ranges[1][0] = 0, ranges[1][1] = n[1];
+  range_of(along, reach, 0, c->length, n[2], ranges[2]);
+}
+
+scree_status scree_scene_plan_grid(scree_scene *scene, scree_scene_sensor *sensor,
+                                   scree_error *error) {
+  const scree_plan_grid *plan = sensor->plan->grid;
+  scree_scene_grid *made = scree_arena_take(&scene->arena, 1, sizeof *made);
+  size_t count = cell_count(plan), numbers = count * (SCREE_GRID_SUMS + scene->plan.families.count);
+  if (!made) return scree_fail_memory(error, sizeof *made, "a grid");
+  *made = (scree_scene_grid){.cell_count = count, .number_count = numbers};
+  made->sums = scree_arena_take(&scene->arena, numbers, sizeof *made->sums);
+  made->middles = scree_arena_take(&scene->arena, count, sizeof *made->middles);
+  if (!made->sums || !made->middles)
+    return scree_fail_memory(error, numbers * sizeof *made->sums, "a grid");
+  memset(made->sums, 0, numbers * sizeof *made->sums);
+  size_t n[3], at = 0;
+  cells_of(plan, n);
+  for (size_t k = 0; k < n[2]; k++)
+    for (size_t j = 0; j < n[1]; j++)
+      for (size_t i = 0; i < n[0]; i++)
+        made->middles[at++] = place_at(plan, (double)i + 0.5, (double)j + 0.5, (double)k + 0.5);
+  sensor->grid = made;
+  return SCREE_OK;
+}
+
+/* ---- sampling ---- */
+
+typedef struct sampling {
+  const scree_scene *scene;
+  scree_scene_sensor *sensor;
+  double width, scale; /* m; of W, 1/m3 */
+  vec3 at, velocity, spin;
+  mat3 rotation; /* of the frame */
+} sampling;
+
+/* What a cell gets, times W there. */
+typedef struct deposit {
+  double sums[SCREE_GRID_SUMS];
+  size_t family;
+  double share; /* of the family; 0: of none */
+} deposit;
+
+static vec3 into_frame(const sampling *s, vec3 p) {
+  return mat3_tmul_vec(&s->rotation, vec3_sub(p, s->at));
+}
+
+static void put(const sampling *s, vec3 p, const deposit *d, double factor) {
+  const scree_plan_grid *plan = s->sensor->plan->grid;
+  scree_scene_grid *grid = s->sensor->grid;
+  size_t n[3], ranges[3][2], families = s->scene->plan.families.count;
+  const double reach = cut_off * s->width, narrow = -0.5 / (s->width * s->width);
+  cells_of(plan, n);
+  ranges_of(plan, p, reach, ranges);
+  for (size_t k = ranges[2][0]; k < ranges[2][1]; k++)
+    for (size_t j = ranges[1][0]; j < ranges[1][1]; j++)
+      for (size_t i = ranges[0][0]; i < ranges[0][1]; i++) {
+        size_t cell = (k * n[1] + j) * n[0] + i;
+        double r2 = vec3_norm2(vec3_sub(grid->middles[cell], p));
+        if (r2 > reach * reach) continue;
+        double weight = factor * s->scale * scree_exp(narrow * r2);
+        double *sums = grid->sums + cell * (SCREE_GRID_SUMS + families);
+        for (int q = 0; q < SCREE_GRID_SUMS; q++) sums[q] += weight * d->sums[q];
+        sums[SCREE_GRID_SUMS + d->family] += weight * d->share;
+      }
+}
+
+/* xx, yy, zz, xy, yz, xz. */
+static void add_product(double *to, vec3 a, vec3 b, double factor) {
+  to[0] += factor * a.x * b.x;
+  to[1] += factor * a.y * b.y;
+  to[2] += factor * a.z * b.z;
+  to[3] += 0.5 * factor * (a.x * b.y + a.y * b.x);
+  to[4] += 0.5 * factor * (a.y * b.z + a.z * b.y);
+  to[5] += 0.5 * factor * (a.x * b.z + a.z * b.x);
+}
+
+static void put_bodies(const sampling *s) {
+  for (size_t b = 0; b < s->scene->shape_of.count; b++) {
+    if (scree_world_body_removed(s->scene->world, b)) continue;
+    const scree_scene_shape *shape = &s->scene->shapes[s->scene->shape_of.items[b]];
+    scree_body body;
+    scree_world_get_body(s->scene->world, b, &body);
+    vec3 p = vec3_load(body.position), arm = vec3_sub(p, s->at),
+         v = vec3_sub(vec3_load(body.velocity), vec3_add(s->velocity, vec3_cross(s->spin, arm)));
+    v = mat3_tmul_vec(&s->rotation, v);
+    deposit d = {.family = shape->family, .share = shape->mass};
+    d.sums[SCREE_GRID_SOLID] = shape->volume;
+    d.sums[SCREE_GRID_DENSITY] = shape->mass;
+    vec3_store(d.sums + SCREE_GRID_MOMENTUM, vec3_scale(v, shape->mass));
+    add_product(d.sums + SCREE_GRID_FLUX, v, v, shape->mass);
+    put(s, into_frame(s, p), &d, 1);
+  }
+}
+
+static bool put_contact(void *context, const scree_contact *c) {
+  const sampling *s = context;
+  scree_body a, b;
+  scree_world_get_body(s->scene->world, c->body, &a);
+  vec3 from = vec3_load(c->position), to = vec3_load(a.position);
+  if (!c->wall) {
+    scree_world_get_body(s->scene->world, c->other, &b);
+    vec3 d = vec3_sub(to, vec3_load(b.position));
+    from = vec3_sub(to, scree_nearest_image(s->scene->world, d));
+  }
+  vec3 branch = mat3_tmul_vec(&s->rotation, vec3_sub(to, from)),
+       force = mat3_tmul_vec(&s->rotation, vec3_load(c->force));
+  deposit d = {.share = 0};
+  add_product(d.sums + SCREE_GRID_CONTACT, force, branch, 1);
+  size_t pieces = (size_t)ceil(fmin(1000, vec3_norm(branch) / (piece * s->width))) + 1;
+  for (size_t i = 0; i < pieces; i++)
+    put(s, into_frame(s, vec3_lerp(from, to, ((double)i + 0.5) / (double)pieces)), &d,
+        1 / (double)pieces);
+  return true;
+}
+
+static sampling begin(scree_scene *scene, scree_scene_sensor *sensor) {
+  const scree_plan_grid *plan = sensor->plan->grid;
+  sampling s = {.scene = scene, .sensor = sensor};
+  for (size_t i = 0; i < SCREE_SCENE_SHAPES(scene); i++)
+    s.width = fmax(s.width, scene->shapes[i].particle->measures.size);
+  if (!isnan(plan->width)) s.width = plan->width;
+  s.rotation = quat_to_mat3((quat){1, 0, 0, 0});
+  s.scale = 1 / (turn * s.width * s.width * sqrt(turn) * s.width);
+  if (!plan->with) return s;
+  size_t wall_index = scene->geometry[sensor->geometry].first_wall;
+  double q[4];
+  scree_wall wall;
+  scree_world_get_wall(scene->world, wall_index, &wall);
+  scree_world_wall_orientation(scene->world, wall_index, q);
+  s.at = vec3_load(wall.position);
+  s.velocity = vec3_load(wall.velocity);
+  s.spin = vec3_load(wall.angular_velocity);
+  s.rotation = quat_to_mat3((quat){q[0], q[1], q[2], q[3]});
+  return s;
+}
+
+static uint64_t interval_of(const scree_scene *scene, const scree_plan_grid *plan) {
+  double every = isnan(plan->every) ? scene->plan.output->series : plan->every;
+  return (uint64_t)fmax(1, floor(every / scene->time_step + 0.5));
+}
+
+uint64_t scree_scene_next_sample(const scree_scene *scene) {
+  uint64_t next = UINT64_MAX;
+  for (size_t i = 0; i < scene->plan.sensors.count; i++) {
+    const scree_scene_grid *grid = scene->sensors[i].grid;
+    if (grid && grid->next < next) next = grid->next;
+  }
+  return next;
+}
+
+scree_status scree_scene_watch_grids(scree_scene *scene, scree_error *error) {
+  uint64_t step = scree_world_step_count(scene->world);
+  scree_status status = SCREE_OK;
+  for (size_t i = 0; status == SCREE_OK && i < scene->plan.sensors.count; i++) {
+    scree_scene_sensor *sensor = &scene->sensors[i];
+    if (!sensor->grid || step < sensor->grid->next) continue;
+    sensor->grid->next = step + interval_of(scene, sensor->plan->grid);
+    if (scree_world_time(scene->world) < sensor->plan->grid->from) continue;
+    sampling s = begin(scene, sensor);
+    put_bodies(&s);
+    status = scree_world_visit_contacts(scene->world, put_contact, &s, error);
+    sensor->grid->sample_count++;
+  }
+  return status;
+}
+
+/* ---- fields ---- */
+
+scree_grid_fields scree_grid_fields_at(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                       size_t cell) {
+  const scree_scene_grid *grid = sensor->grid;
+  const double *sums = grid->sums + cell * (SCREE_GRID_SUMS + scene->plan.families.count),
+               n = (double)(grid->sample_count ? grid->sample_count : 1);
+  scree_grid_fields f = {.solid = sums[SCREE_GRID_SOLID] / n,
+                         .density = sums[SCREE_GRID_DENSITY] / n,
+                         .shares = sums + SCREE_GRID_SUMS};
+  bool any = sums[SCREE_GRID_DENSITY] > 0;
+  vec3 v = {0, 0, 0};
+  if (any) v = vec3_scale(vec3_load(sums + SCREE_GRID_MOMENTUM), 1 / sums[SCREE_GRID_DENSITY]);
+  vec3_store(f.velocity, v);
+  double mean[6] = {0};
+  add_product(mean, v, v, f.density);
+  for (int k = 0; k < 6; k++) {
+    double kinetic = sums[SCREE_GRID_FLUX + k] / n - mean[k];
+    if (k < 3 && any) f.temperature += fmax(0, kinetic) / (3 * f.density);
+    f.stress[k] = kinetic + sums[SCREE_GRID_CONTACT + k] / n;
+  }
+  return f;
+}

@@ -1,0 +1,36 @@
+/* Fields over the cells of a grid. */
+#ifndef SCREE_SCENE_GRID_H
+#define SCREE_SCENE_GRID_H
+
+#include "scene/scene.h"
+
+/* Sums over samples in a cell: places of numbers; of density, momentum and its flux by mass. Behind
+ * them the density of each family. */
+enum {
+  SCREE_GRID_SOLID,
+  SCREE_GRID_DENSITY,
+  SCREE_GRID_MOMENTUM,
+  SCREE_GRID_FLUX = SCREE_GRID_MOMENTUM + 3,
+  SCREE_GRID_CONTACT = SCREE_GRID_FLUX + 6,
+  SCREE_GRID_SUMS = SCREE_GRID_CONTACT + 6
+};
+
+struct scree_scene_grid {
+  size_t cell_count, number_count;
+  double *sums;
+  vec3 *middles;         /* of the cells, in the grid's frame */
+  uint64_t next;         /* step of the next sample */
+  uint64_t sample_count; /* taken */
+};
+
+/* Means over the samples: kg/m3, m/s, m2/s2, Pa. */
+typedef struct scree_grid_fields {
+  double solid, density, velocity[3], temperature, stress[6];
+  const double *shares; /* density of each family, as sums */
+} scree_grid_fields;
+scree_grid_fields scree_grid_fields_at(const scree_scene *scene, const scree_scene_sensor *sensor,
+                                       size_t cell);
+/* Counted along x, y, z, or outward, around, along. */
+vec3 scree_grid_corner(const scree_plan_grid *plan, size_t i, size_t j, size_t k);
+
+#endif
