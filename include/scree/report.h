@@ -89,8 +89,7 @@ typedef struct scree_vtk_array {
 /* What goes into one .vtp file (VTK XML PolyData): points, and over them either triangles, line
  * segments, or, where both are NULL, one vertex cell a point. */
 typedef struct scree_vtk_data {
-  const double *points;       /* 3 * point_count, m */
-  const float *points_single; /* instead of these, where not NULL */
+  const double *points; /* 3 * point_count, m */
   size_t point_count;
   const uint32_t *triangles; /* 3 * cell_count indices, or NULL */
   const uint32_t *lines;     /* 2 * cell_count indices, or NULL */
@@ -99,8 +98,9 @@ typedef struct scree_vtk_data {
   size_t point_array_count;
   const scree_vtk_array *cell_arrays;
   size_t cell_array_count;
-  double time; /* s, written as field data TimeValue; NaN: none; not infinite */
-  bool bare;   /* no vertex cells either: glyphs need none */
+  double time;                /* s, written as field data TimeValue; NaN: none; not infinite */
+  const float *points_single; /* instead of points, where not NULL */
+  bool bare;                  /* no vertex cells either: glyphs need none */
 } scree_vtk_data;
 
 /* Writes version 1.0 XML with raw appended data, 64-bit headers: read by VTK 6 and later. */

@@ -17,9 +17,10 @@ int main(int argc, char **argv) {
                                        {"velocity", SCREE_VTK_FLOAT32, 3, velocity},
                                        {"shape", SCREE_VTK_INT64, 1, shape}};
   const scree_vtk_array at_cells[] = {{"area", SCREE_VTK_FLOAT64, 1, area}};
-  scree_vtk_data mesh = {points, 4, triangles, NULL, 4, at_points, 3, at_cells, 1, NAN};
-  scree_vtk_data bodies = {points, 4, NULL, NULL, 0, at_points, 3, NULL, 0, 0.25};
-  scree_vtk_data contacts = {points, 4, NULL, lines, 2, NULL, 0, at_cells, 1, 0.5};
+  scree_vtk_data mesh = {points, 4,        triangles, NULL, 4,    at_points,
+                         3,      at_cells, 1,         NAN,  NULL, false};
+  scree_vtk_data bodies = {points, 4, NULL, NULL, 0, at_points, 3, NULL, 0, 0.25, NULL, false};
+  scree_vtk_data contacts = {points, 4, NULL, lines, 2, NULL, 0, at_cells, 1, 0.5, NULL, false};
   const scree_vtk_data *all[] = {&mesh, &bodies, &contacts};
   const char *names[] = {"mesh.vtp", "bodies.vtp", "contacts.vtp"};
   for (int i = 0; i < 3; i++) {
