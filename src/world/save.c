@@ -25,7 +25,7 @@ static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "worl
 /* Whoever changes these records must add the fields below, and raise the version. */
 _Static_assert(sizeof(void *) != 8 ||
                    (sizeof(scree_feature_pair) == 128 && sizeof(scree_anchor) == 56 &&
-                    sizeof(scree_sleeping_feature) == 24 && sizeof(scree_pair) == 704 &&
+                    sizeof(scree_sleeping_feature) == 24 && sizeof(scree_pair) == 768 &&
                     sizeof(scree_neighbours) == 264 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
