@@ -27,6 +27,7 @@
 #define SCREE_H
 
 #include "scree/base.h"
+#include "scree/calibrate.h"
 #include "scree/check.h"
 #include "scree/choice.h"
 #include "scree/clump.h"
@@ -41,7 +42,6 @@
 #include "scree/scene.h"
 #include "scree/simplify.h"
 #include "scree/study.h"
-#include "scree/calibrate.h"
 #include "scree/world.h"
 
 #endif

@@ -5,6 +5,8 @@
 
 #include "scree/study.h"
 
+#include <stdio.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -9,6 +9,7 @@
 SI units: metres, kilograms, seconds, radians. Tables are numpy arrays where numpy is installed, memoryviews and
 lists where it is not. What the library refuses is a scree.Error with one sentence and a `status`. Long work takes
 `progress`, a function of (phase, fraction) that cancels by returning False; Ctrl-C works anyway."""
+from ._calibrate import calibrate, optimise
 from ._library import Error, c_uint32 as _uint32, lib as _lib
 from ._mesh import Choice, Curve, Mesh, load, sample, samples
 from ._pour import Pour
@@ -17,8 +18,8 @@ from ._scene import Scene
 from ._values import whole as _whole
 from ._world import Particle, World, write_pvd
 
-__all__ = ["Choice", "Curve", "Error", "Experiment", "Mesh", "Motion", "Particle", "Pour", "Run", "Scene", "World", "load", "report",
-           "repose", "sample", "samples", "set_threads", "version", "write_pvd"]
+__all__ = ["Choice", "Curve", "Error", "Experiment", "Mesh", "Motion", "Particle", "Pour", "Run", "Scene", "World", "calibrate", "load",
+           "optimise", "report", "repose", "sample", "samples", "set_threads", "version", "write_pvd"]
 
 
 def version():

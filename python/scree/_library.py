@@ -323,6 +323,23 @@ class scree_heap_entry(Structure):
                 ("measure", POINTER(scree_experiment)), ("command_line", c_char_p)]
 
 
+class scree_calibration_progress(Structure):
+    _fields_ = [(name, c_size_t) for name in ("rounds", "run_count", "done", "failed", "budget")] + [
+        ("seconds", c_double), ("planning_seconds", c_double)]
+
+
+class scree_calibration_result(Structure):
+    _fields_ = [("title", c_char_p), ("version", c_char_p), ("stopped", c_char_p), ("is_search", c_bool),
+                ("maximise", c_bool), ("confidence", c_double), ("seed", c_uint64),
+                ("progress", scree_calibration_progress)] + [
+        (name, c_size_t) for name in ("parameter_count", "trade_count", "answer_count", "advice_count", "sample_count",
+                                      "history_count")] + [
+        (name, c_void_p) for name in ("parameters", "trades", "answers", "advice")] + [
+        ("samples", POINTER(c_double)), ("history", POINTER(c_double)), ("sought", c_char_p),
+        ("setting_count", c_size_t), ("settings", c_void_p), ("failure_count", c_size_t), ("failures", c_void_p),
+        ("memory", c_void_p)]
+
+
 VISITOR = CFUNCTYPE(c_bool, c_void_p, POINTER(scree_contact))
 
 _E, _H, _P = POINTER(scree_error), c_void_p, POINTER(scree_progress)  # error, opaque handle, progress
@@ -371,6 +388,11 @@ _FALLIBLE = {  # argument types before the error
     "run_load": (_S, _HH),
     "run_measure": (_H, POINTER(scree_run_result)),
     "run_complete": (POINTER(scree_run_job), _HH),
+    "calibration_read": (_S, _HH),
+    "calibration_open": (_H, _S),
+    "calibration_work": (_H, c_size_t, _H, _P),
+    "calibration_analyse": (_H, POINTER(scree_calibration_result)),
+    "calibration_report_write": (POINTER(scree_calibration_result), _S),
     "motion_read": (_S, POINTER(scree_motion)),
     "pour_create": (POINTER(scree_pour_shape), c_size_t, POINTER(scree_pour_options), _HH),
     "pour_advance": (_H, c_size_t),
@@ -469,6 +491,9 @@ _PLAIN = {  # result, argument types
     "run_is_frame": (c_bool, (_H,)),
     "run_series": (POINTER(scree_run_point), (_H, POINTER(c_size_t))),
     "phase_name": (_S, (c_int,)),
+    "calibration_free": (None, (_H,)),
+    "calibration_is_search": (c_bool, (_H,)),
+    "calibration_result_free": (None, (POINTER(scree_calibration_result),)),
     "scene_file_free": (None, (_H,)),
     "scene_template_name": (_S, (c_size_t,)),
     "scene_template": (_S, (_S,)),

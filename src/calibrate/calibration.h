@@ -120,7 +120,9 @@ double scree_parameter_coordinate(const scree_plan_parameter *parameter, const c
 double scree_parameter_number(const scree_plan_parameter *parameter, double x);
 /* The coordinate that stands for x: of a list that of the nearest value. */
 double scree_parameter_snap(const scree_plan_parameter *parameter, double x);
-/* read_curve.c: reads the two columns of a CSV file into the quantity. */
+/* Points of an experiment's first runs. */
+size_t scree_calibration_start(const scree_calibration *c, size_t experiment);
+/* Reads the two columns of a CSV file into the quantity. */
 scree_status scree_quantity_read_curve(scree_calibration *c, scree_quantity *quantity,
                                        const char *path, scree_error *error);
 

@@ -134,6 +134,7 @@ void scree_calibration_model_free(const scree_calibration *c, scree_calibration_
   scree_free(m->first);
   scree_free(m->count);
   scree_model_free(&m->model);
+  *m = (scree_calibration_model){0};
 }
 
 typedef struct fitting {

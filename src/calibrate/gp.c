@@ -362,6 +362,7 @@ static scree_status find_settings(scree_gp *gp, scree_error *error) {
   scree_free(q.factor);
   return SCREE_OK;
 fail:
+  scree_free(q.factor);
   return SCREE_OUT_OF_MEMORY;
 }
 

@@ -531,6 +531,28 @@ static scree_status check_whole(const reader *r) {
   return SCREE_OK;
 }
 
+size_t scree_calibration_start(const scree_calibration *c, size_t experiment) {
+  return c->plan.start && c->plan.start->points ? c->plan.start->points
+                                                : 4 * (c->experiments[experiment].active_count + 1);
+}
+
+/* The first runs of each experiment are points, every second one twice. */
+static scree_status check_budget(const reader *r) {
+  const scree_calibration *c = r->c;
+  const scree_plan_budget *budget = c->plan.budget;
+  size_t first = 0;
+  for (size_t e = 0; e < c->experiment_count; e++) {
+    size_t points = scree_calibration_start(c, e);
+    first += points + points / 2;
+  }
+  if (first <= budget->runs) return SCREE_OK;
+  const scree_place *place = budget->place.line ? &budget->place : &c->plan.place;
+  return scree_fail_place(&r->in, place,
+                          "%zu runs are too few for the %zu that come first; give more, or fewer "
+                          "points as `start: {points: N}`",
+                          budget->runs, first);
+}
+
 static scree_status read_all(scree_calibration *c, scree_error *error) {
   static const scree_plan_budget no_budget = {.runs = 100, .time = NAN};
   reader r = {c, {c->path, &c->arena, error, ""}};
@@ -549,7 +571,7 @@ static scree_status read_all(scree_calibration *c, scree_error *error) {
   status = check_whole(&r);
   if (status == SCREE_OK) status = read_experiments(&r);
   if (status == SCREE_OK) status = read_quantities(&r);
-  return status;
+  return status == SCREE_OK ? check_budget(&r) : status;
 }
 
 scree_status scree_calibration_read(const char *path, scree_calibration **calibration,

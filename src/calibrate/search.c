@@ -152,7 +152,7 @@ scree_status scree_search_next(const scree_calibration *c, const scree_calibrati
                                const scree_answers *g, size_t count, scree_place_pick *picks,
                                double *left, scree_error *error) {
   size_t d = c->parameter_count, made = 0;
-  const double *place = NULL;
+  const double *place = g->x[0];
   field f = {0};
   double best = find_best(c, m, g, &place), low = INFINITY, high = -INFINITY, first = 0;
   scree_status status = make_field(c, m, place, &f, error);

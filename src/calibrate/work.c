@@ -60,20 +60,11 @@ scree_status scree_calibration_sample(const scree_calibration *c, const scree_mo
 /* Points of Sobol's sequence, every second one twice: the replicates tell the scatter. */
 static scree_status plan_start(scree_calibration *c, scree_error *error) {
   size_t d = c->parameter_count, count = 0;
-  size_t wanted = c->plan.start ? c->plan.start->points : 0;
   scree_place_pick *picks = scree_alloc(SCREE_GP_MOST_PLACES * 2, sizeof *picks);
   double *unit = scree_alloc(SCREE_GP_MOST_PLACES * d, sizeof *unit);
   scree_status status = picks && unit ? SCREE_OK : scree_fail_memory(error, 0, "the first runs");
   for (size_t e = 0; status == SCREE_OK && e < c->experiment_count; e++) {
-    size_t points = wanted ? wanted : 4 * (c->experiments[e].active_count + 1);
-    if (count + points + points / 2 > c->plan.budget->runs) {
-      status = scree_fail(error, SCREE_BAD_FILE,
-                          "%s: budget: %zu runs are too few for the first of each experiment, %zu "
-                          "points and every second one twice; give more, or fewer as `start: "
-                          "{points: N}`",
-                          c->path, c->plan.budget->runs, points);
-      break;
-    }
+    size_t points = scree_calibration_start(c, e);
     scree_design_sobol(c->plan.seed + e, points, d, unit);
     for (size_t i = 0; i < points; i++)
       for (size_t twin = 0; twin < 1 + i % 2; twin++) {
@@ -119,8 +110,12 @@ static scree_status plan_next(scree_calibration *c, const scree_answers *g, size
   if (count == 0 || g->seconds > budget->time)
     return scree_rounds_stop(c, "the budget is spent", 0, error);
   scree_calibration_model m;
-  scree_status status = scree_calibration_fit(c, g, c->round_count, &m, error);
-  if (status != SCREE_OK) return status;
+  scree_error why;
+  scree_status status = scree_calibration_fit(c, g, c->round_count, &m, &why);
+  if (status != SCREE_OK)
+    return scree_fail(error, status, "%.400s%s%.500s", why.message,
+                      g->failure_count ? "; of those that failed: " : "",
+                      g->failure_count ? g->failures[0] : "");
   scree_place_pick *picks = scree_alloc(count, sizeof *picks);
   if (!picks)
     status = scree_fail_memory(error, 0, "the next runs");

@@ -2,7 +2,7 @@
 #ifndef SCREE_STUDY_OUTLINE_H
 #define SCREE_STUDY_OUTLINE_H
 
-#include "scree/world.h"
+#include "base/error.h"
 
 /* The greatest z of all bodies' surfaces where x is this, m; 0 where there are none: the floor. */
 double scree_outline_height(const scree_world *world, double x);

@@ -455,7 +455,7 @@ static scree_status try_value(const reader *r, const scree_yaml *node, const cha
   if (r->study->scene_text)
     return place_error(r, node, scree_study_try_scene(r->study, key, text, &wrong), &wrong);
   if (r->study->command.count)
-    return scree_study_command_has(r->study, key)
+    return !strcmp(key, "seed") || scree_study_command_has(r->study, key) /* or it has no scatter */
                ? SCREE_OK
                : fail_at(r, node, "%s: the command has no word with {%s}", key, key);
   if (!strcmp(key, "rp")) {

@@ -450,6 +450,29 @@ class Experiments(unittest.TestCase):
             scree.repose([], self.experiment())
 
 
+class Calibrations(unittest.TestCase):
+    """A line with noise, by a command: what was measured is found again."""
+
+    def test_a_line_is_found(self):
+        with open("line.sh", "w") as file:
+            file.write("awk -v a=$1 -v s=$2 'BEGIN { print \"answer:\", 10 * a + (s * 7919 % 101 - 50) / 500 }'\n")
+        with open("line.yaml", "w") as file:
+            file.write("experiments: {line: {command: [sh, '{here}/line.sh', '{a}', '{seed}']}}\n"
+                       "parameters: {a: {from: 0, to: 1}}\n"
+                       "targets: {t: {answer: answer, value: 3, uncertainty: 0.1}}\n"
+                       "budget: {runs: 16}\n")
+        found = scree.calibrate("line.yaml", "line")
+        self.assertEqual(found.names, ["a"])
+        self.assertAlmostEqual(found.parameters[0]["mean"], 0.3, delta=0.03)
+        self.assertTrue(found.parameters[0]["identified"])
+        values = [row[0] for row in (found.samples.tolist() if hasattr(found.samples, "tolist") else found.samples)]
+        self.assertAlmostEqual(sum(values) / len(values), found.parameters[0]["mean"], delta=1e-9)
+        again = scree.calibrate("line.yaml", "line")
+        self.assertEqual(again.parameters, found.parameters)
+        with self.assertRaisesRegex(ValueError, "is for scree.calibrate"):
+            scree.optimise("line.yaml", "other")
+
+
 class Scenes(unittest.TestCase):
     FILE = """
 time: 0.2

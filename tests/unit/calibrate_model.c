@@ -361,7 +361,7 @@ static void picks_are_the_best_of_all_candidates(void **state) {
       }
     }
     for (size_t t = 0; t < SAMPLES; t++)
-      if (!memcmp(samples + 2 * t, picks[p].x + 4, 2 * sizeof(double))) chosen[p] = t;
+      if (samples[2 * t] == picks[p].x[4] && samples[2 * t + 1] == picks[p].x[5]) chosen[p] = t;
     CHECK_NEAR(picks[p].x[0], picks[p].x[4], 0);
     CHECK_NEAR(picks[p].x[1], picks[p].x[5], 0);
     assert_int_equal(picks[p].experiment, 0);

@@ -1,0 +1,64 @@
+# A calibration on a closed form with noise: a banana is told as one, a second test would tell, what was killed
+# gives the same answer, another budget goes on, what is wrong is told.
+cat >model.sh <<'END'
+#!/bin/sh
+# model.sh FRICTION ROLLING SEED
+awk -v a="$1" -v b="$2" -v s="$3" 'BEGIN {
+  for (i = 0; i < 12; i++) { s = (s * 16807 + 12345) % 2147483647; n += s / 2147483647 }
+  printf "a line of its own\nangle: %.9g\ntime = %.9g\n", 30 + 20 * (a - 0.5) + 15 * (b - 0.4) * (1 + b) + n - 6, 5 - 3 * a + 0.1 * (n - 6)
+}'
+END
+chmod +x model.sh
+cat >heap.yaml <<'END'
+title: a heap
+experiments:
+  heap: {command: ["{here}/model.sh", "{friction}", "{rolling}", "{seed}"]}
+parameters:
+  friction: {from: 0.1, to: 0.9}
+  rolling: {from: 0, to: 0.8}
+targets:
+  angle: {answer: angle, value: 30.5, uncertainty: 0.2}
+  discharge: {answer: time, uncertainty: 0.05}
+predict:
+  twice: {answer: angle}
+budget: {runs: 34}
+END
+words() { sed -nE 's/^(friction|rolling) .* (identified|not identifiable)$/\1 \2/p; s/ (0\.[0-9]+) / N /g; /trade|would tell/p' | sed -E 's/ [0-9.]+( with| gives| of|$)/ N\1/g; s/[0-9]+ (times?|%)/N \1/g; s/ [0-9.]+,/ N,/g'; }
+"$SCREE" calibrate heap.yaml -o whole -q --jobs 2 >whole.txt 2>errors.txt || cat errors.txt
+words <whole.txt
+sed -n 1p whole.txt
+ls whole | tr '\n' ' '
+echo
+grep -c . whole/samples.csv
+# killed at random moments: the same answer
+killed=0
+for moment in 0.15 0.3 0.2 0.4 0.25 0.35 0.1 0.45 0.22 0.31; do
+  timeout -s KILL $moment "$SCREE" calibrate heap.yaml -o killed -q --jobs 1 >/dev/null 2>&1 || killed=$((killed + 1))
+done
+[ $killed -ge 3 ] || echo "killed only $killed times"
+"$SCREE" calibrate heap.yaml -o killed -q --jobs 1 >/dev/null || echo "does not go on"
+cmp whole/samples.csv killed/samples.csv && echo "the same samples"
+# another budget and the second test measured: it goes on
+sed -i 's/runs: 34/runs: 50/; s/answer: time, /answer: time, value: 3.5, /' heap.yaml
+"$SCREE" calibrate heap.yaml -o whole -q --jobs 2 >more.txt
+sed -n 1p more.txt
+words <more.txt
+"$SCREE" calibrate status whole -q | sed -n 1p
+# the least of an answer under a limit
+sed -e 's/^targets:/limits:/; /angle:.*value/d; s/discharge: .*/least: {answer: angle, at_least: 27}/; /^predict/d; /twice/d' \
+  -e 's/^limits:/minimise: {answer: time}\nlimits:/; s/runs: 50/runs: 40/' heap.yaml >search.yaml
+"$SCREE" optimise search.yaml -o search -q | sed -nE '1p; 3p; s/^ *(0\.[0-9])[0-9]* .*best$/friction \1/p'
+run calibrate search.yaml 2>&1 | head -2
+# what is wrong
+wrong() {
+  sed "$1" heap.yaml >wrong.yaml
+  run calibrate wrong.yaml -o wrong 2>&1
+}
+wrong 's/answer: angle, value: 30.5/answr: angle, value: 30.5/'
+wrong 's/value: 30.5/value: 30.5, measured: [30, 31]/'
+wrong 's/to: 0.9/to: 0.05/'
+wrong 's/friction: {/fricton: {/'
+wrong 's/runs: 50/runs: 12/'
+wrong 's/angle: {answer: angle/angle: {experiment: drum, answer: angle/'
+wrong 's/answer: angle}/answer: angle, at: 3}/'
+wrong 's/{friction}/{friction}x/; s/answer: angle}/answer: angel}/'
