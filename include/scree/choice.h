@@ -64,7 +64,8 @@ typedef struct scree_choice_options {
   bool area_only; /* no errors but area's and volume's, and no recommended choice; false */
 } scree_choice_options;
 
-/* The tolerances: mean distance 0.3 %, Hausdorff distance 4 %, inertia 2 %, widths 3 %, thickness 3 %. */
+/* The tolerances: mean distance 0.3 %, Hausdorff distance 4 %, inertia 2 %, widths 3 %, thickness 3
+ * %. */
 SCREE_API scree_choice_options scree_default_choice_options(void);
 
 /* Point `index` of the grid: rp_min 10^(index / per_decade); index 0 is rp_min. */
