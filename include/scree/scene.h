@@ -181,6 +181,11 @@ SCREE_API scree_status scree_scene_save(const scree_scene *scene, const char *pa
  * file and reason. */
 SCREE_API scree_status scree_scene_load(const char *path, scree_scene **scene, scree_error *error);
 
+/* Its bodies as a table that `bodies: {file: ...}` of a scene reads: shape, position, orientation,
+ * velocity, angular velocity and size, in SI units named by the header. */
+SCREE_API scree_status scree_scene_bodies_write(const scree_scene *scene, const char *path,
+                                                bool overwrite, scree_error *error);
+
 /* How a whole scene goes on, for a watcher. */
 typedef struct scree_scene_state {
   const scree_scene *scene;

@@ -53,7 +53,7 @@ static const char *const file_names[] = {
     "frame-#-bodies.vtp",   "bodies.pvd",  "geometry.pvd", "scene.png",
     "frame-#-geometry.vtp", "result.json", "result.txt",   "stopped.scree",
     "provenance.json",      "report.html", "sensor-*.csv", "sensor-*.vts",
-    "shape-#.vtp"};
+    "bodies.csv",           "shape-#.vtp"};
 static const cli_run_files run_files = {file_names, sizeof file_names / sizeof *file_names};
 
 enum { PATH_BYTES = 4200 };
@@ -358,6 +358,8 @@ static scree_status write_all(const scene_run *r, const char *stopped, double se
   scree_status status = write_collections(r, error);
   if (status == SCREE_OK) status = path_of(r, "result.json", path, error);
   if (status == SCREE_OK) status = write_json(r, stopped, seconds, path, error);
+  if (status == SCREE_OK) status = path_of(r, "bodies.csv", path, error);
+  if (status == SCREE_OK) status = scree_scene_bodies_write(r->scene, path, true, error);
   if (status == SCREE_OK) status = path_of(r, "result.txt", path, error);
   if (status == SCREE_OK) status = scree_text_write(text, path, true, error);
   if (status == SCREE_OK) status = path_of(r, "provenance.json", path, error);

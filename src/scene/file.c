@@ -157,6 +157,7 @@ static const char *input_at(const scree_plan *plan, size_t index) {
     const char *name = s->file || scree_plan_spheres(s) ? s->file : s->clump;
     if (name && index-- == 0) return name;
   }
+  if (plan->bodies && index-- == 0) return plan->bodies->file;
   for (size_t i = 0; i < plan->geometry.count; i++) {
     const scree_plan_geometry *g = SCREE_PLAN_AT(plan, geometry, scree_plan_geometry, i);
     if (index < g->file.count) return g->file.items[index];

@@ -243,6 +243,28 @@ static bool is_free(const scree_scene *scene, const scree_placement *p) {
   return scree_scene_is_clear(scene, p, &wall);
 }
 
+scree_status scree_scene_admit(scree_scene *scene, size_t shape, const scree_body *body,
+                               scree_error *error) {
+  scree_scene_shape *s = &scene->shapes[shape];
+  if (!SCREE_RESERVE(&scene->shape_of, scene->shape_of.count + 1) ||
+      !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1))
+    return scree_fail_memory(error, scene->shape_of.count * sizeof *body, "bodies");
+  scree_status status = scree_scene_add_body(s, scene->world, body, error);
+  if (status != SCREE_OK) return status;
+  scene->shape_of.items[scene->shape_of.count++] = (uint32_t)shape;
+  scene->entered_at.items[scene->entered_at.count++] = scree_world_time(scene->world);
+  const double *moments = s->particle->measures.inertia;
+  mat3 turn = quat_to_mat3(scree_body_turn(body));
+  vec3 v = vec3_load(body->velocity), g = vec3_load(scene->plan.gravity),
+       w = mat3_tmul_vec(&turn, vec3_load(body->angular_velocity));
+  double spin = moments[0] * w.x * w.x + moments[1] * w.y * w.y + moments[2] * w.z * w.z;
+  scene->entered_energy += s->mass * (0.5 * vec3_norm2(v) - vec3_dot(g, vec3_load(body->position)));
+  scene->entered_energy += 0.5 * s->density * spin;
+  scene->entered_mass += s->mass;
+  s->entered++;
+  return SCREE_OK;
+}
+
 scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
                                const scree_placement *p, const double velocity[3],
                                scree_error *error) {
@@ -253,21 +275,13 @@ scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, siz
   const double q[4] = {p->orientation.w, p->orientation.x, p->orientation.y, p->orientation.z};
   memcpy(body.orientation, q, sizeof q);
   memcpy(body.velocity, velocity, sizeof body.velocity);
-  if (!SCREE_PUSH(&scene->present, *p) ||
-      !SCREE_RESERVE(&scene->shape_of, scene->shape_of.count + 1) ||
-      !SCREE_RESERVE(&scene->entered_at, scene->entered_at.count + 1))
-    return scree_fail_memory(error, scene->shape_of.count * sizeof *p, "bodies");
-  scree_status status = scree_scene_add_body(s, scene->world, &body, error);
+  if (!SCREE_PUSH(&scene->present, *p))
+    return scree_fail_memory(error, scene->present.count * sizeof *p, "bodies");
+  scree_status status = scree_scene_admit(scene, shape, &body, error);
   if (status != SCREE_OK) return status;
-  scene->shape_of.items[scene->shape_of.count++] = (uint32_t)shape;
-  scene->entered_at.items[scene->entered_at.count++] = scree_world_time(scene->world);
-  vec3 v = vec3_load(body.velocity), g = vec3_load(scene->plan.gravity);
-  scene->entered_energy += s->mass * (0.5 * vec3_norm2(v) - vec3_dot(g, p->position));
-  scene->entered_mass += s->mass;
   inlet->mass += s->mass;
   inlet->entered++;
   inlet->counts[which]++;
-  s->entered++;
   return SCREE_OK;
 }
 

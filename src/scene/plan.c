@@ -561,6 +561,18 @@ static const scree_plan_contact contact_defaults = {{0}, 0, 20, 1, 1, 0};
 static const scree_record contact_record = {"contact", FIELDS(contact_fields),
                                             sizeof(scree_plan_contact), &contact_defaults, NULL};
 
+static const scree_field bodies_fields[] = {
+    {"file", SCREE_FIELD_TEXT, offsetof(scree_plan_bodies, file), 0, 0, "",
+     "a table with a line for each", NULL},
+};
+static scree_status check_bodies(const scree_reader *r, const void *record) {
+  const scree_plan_bodies *b = record;
+  return b->file ? SCREE_OK : scree_fail_place(r, &b->place, "needs a file");
+}
+static const scree_plan_bodies bodies_defaults = {{0}, NULL};
+static const scree_record bodies_record = {
+    "bodies", FIELDS(bodies_fields), sizeof(scree_plan_bodies), &bodies_defaults, check_bodies};
+
 #define AT(member) offsetof(scree_plan_stop, member)
 static const scree_field stop_fields[] = {
     {"still", SCREE_FIELD_REAL, AT(still), 0, 1e9, "J",
@@ -630,6 +642,8 @@ static const scree_field plan_fields[] = {
     {"pairs", SCREE_FIELD_LIST, AT(pairs), 0, 0, "", "", &pair_record},
     {"shapes", SCREE_FIELD_NAMED, AT(shapes), 0, 0, "", "", &shape_record},
     {"geometry", SCREE_FIELD_NAMED, AT(geometry), 0, 0, "", "", &geometry_record},
+    {"bodies", SCREE_FIELD_RECORD, AT(bodies), 0, 0, "", "that are there from the start",
+     &bodies_record},
     {"inlets", SCREE_FIELD_NAMED, AT(inlets), 0, 0, "", "", &inlet_record},
     {"outlets", SCREE_FIELD_NAMED, AT(outlets), 0, 0, "", "", &outlet_record},
     {"domain", SCREE_FIELD_RECORD, AT(domain), 0, 0, "", "what leaves it is taken out",

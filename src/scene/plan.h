@@ -241,6 +241,11 @@ typedef struct scree_plan_output {
   int bodies; /* of frames: 0 instances, 1 surfaces */
 } scree_plan_output;
 
+typedef struct scree_plan_bodies {
+  scree_place place;
+  const char *file;
+} scree_plan_bodies;
+
 typedef struct scree_plan_contact {
   scree_place place;
   int law;
@@ -257,6 +262,7 @@ typedef struct scree_plan {
   scree_records families; /* the shapes of the file (scree_plan_expand) */
   scree_records materials, pairs, shapes, geometry, inlets, outlets, sensors, phases;
   scree_plan_domain *domain;
+  scree_plan_bodies *bodies;
   scree_plan_stop *stop;
   scree_plan_output *output;
 } scree_plan;

@@ -175,8 +175,8 @@ scree_status scree_plan_check(const scree_reader *r, const void *record) {
     return scree_fail_place(r, &plan->place, "%zu materials: at most 64", plan->materials.count);
   if (plan->shapes.count == 0)
     return scree_fail_place(r, &plan->place, "needs shapes: {name: {file: ...}}");
-  if (plan->inlets.count == 0)
-    return scree_fail_place(r, &plan->place, "needs inlets: nothing would ever be in it");
+  if (plan->inlets.count == 0 && !plan->bodies)
+    return scree_fail_place(r, &plan->place, "needs inlets or bodies: nothing would ever be in it");
   scree_status status = check_materials(r, plan);
   if (status == SCREE_OK) status = check_inlets(r, plan);
   if (status == SCREE_OK) status = check_outlets(r, plan);

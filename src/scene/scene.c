@@ -362,6 +362,7 @@ scree_status scree_scene_make(const scree_scene_file *file, const scree_scene_gi
   if (status == SCREE_OK) status = scree_scene_check_inlets(made, error);
   if (status == SCREE_OK) status = scree_scene_plan_layers(made, error);
   if (status == SCREE_OK) status = scree_scene_check_softness(made, error);
+  if (status == SCREE_OK) status = scree_scene_read_bodies(made, file->folder, error);
   if (status == SCREE_OK) status = scree_scene_begin_phases(made, error);
   if (status == SCREE_OK)
     *scene = made;

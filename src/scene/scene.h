@@ -261,7 +261,12 @@ scree_status scree_scene_enter_layers(scree_scene *scene, scree_error *error);
 size_t scree_scene_steps_to_layer(const scree_scene *scene);
 /* s: when the last body entered, or will as planned; infinity where there is no plan. */
 double scree_scene_filling_time(const scree_scene *scene);
-/* inlets.c: one body more in the world; `which` of the inlet's shapes. */
+/* inlets.c: one body more in the world, and in the books. */
+scree_status scree_scene_admit(scree_scene *scene, size_t shape, const scree_body *body,
+                               scree_error *error);
+/* bodies.c: those that are there from the start. */
+scree_status scree_scene_read_bodies(scree_scene *scene, const char *folder, scree_error *error);
+/* `which` of the inlet's shapes. */
 scree_status scree_scene_enter(scree_scene *scene, scree_scene_inlet *inlet, size_t which,
                                const scree_placement *placement, const double velocity[3],
                                scree_error *error);

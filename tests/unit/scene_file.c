@@ -43,6 +43,7 @@ static const struct {
     {"time: 2\n", "", "line 1, column 1", "needs time"},
     {"time: 2\n", "time: 2 mins\n", "line 2, column 7", "must be a number in s; what is 'mins'?"},
     {"time: 2\n", "time: 2 kg\n", "line 2, column 7", "in s; 'kg' measures something else"},
+    {"time: 2\n", "time: 2\nbodies: {}\n", "line 3", "bodies: needs a file"},
     {"time: 2\n", "time: -2\n", "line 2", "-2: must be 1e-09 to 1e+09 s"},
     {"time: 2\n", "time: soon\n", "line 2", "'soon': must be a number in s"},
     {"time: 2\n", "time: [2]\n", "line 2", "must be one number"},
