@@ -9,10 +9,10 @@
 
 #include "particle/closest.h"
 
-static const double look_share = 0.25; /* of the depth of the deepest place */
-static const double back_cosine = 0.5; /* what leaves within 60 degrees of where it came from */
-static const double rim_cosine = -0.5; /* beyond a rim, and within 120 degrees of there */
-static const double patience = 50;     /* contact times that a place may be through */
+static const double look_share = 0.25;   /* of the depth of the deepest place */
+static const double back_cosine = -0.25; /* what leaves within 105 degrees of where it came from */
+static const double rim_cosine = -0.5;   /* beyond a rim, and within 120 degrees of there */
+static const double patience = 50;       /* contact times that a place may be through */
 enum { MOST_PASSAGES = 8 };
 
 /* The places of one of the two, against the surface of the other. */

@@ -155,9 +155,9 @@ static void no_bodies_pass_each_other_unseen(void **state) {
   size_t counts[OUTCOMES] = {0};
   for (uint64_t i = 0; i < (uint64_t)shots; i++) counts[meet(i)]++;
   print_message("of %d meetings %zu held, %zu were told\n", shots, counts[HELD], counts[TOLD]);
-  /* of those that turn in each other a place may come out by the side by which it came in */
-  LAW_BELOW("-", "share past each other, and nothing was told",
-            (double)counts[BEHIND] / (double)shots, 0.002);
+  /* of two that turn in each other a place may come out by the side by which it came in */
+  LAW_BELOW("-", "past each other, and nothing was told", (double)counts[BEHIND],
+            1 + shots / 500.0);
 }
 
 int main(int argc, char **argv) {
