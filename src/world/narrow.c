@@ -62,9 +62,9 @@ static uint16_t sheet_of(const scree_particle *surface, uint32_t face) {
   return (uint16_t)surface->face_signs[face].sheet;
 }
 
-/* Whether a face's normal points away from the side on which the item is. On a sheet other than
- * that of the item's side this is where the point is, or, of a point that is through a sheet, where
- * the reference points. */
+/* Whether a face's normal points away from the side on which the feature is. On a sheet other than
+ * that of the feature's side this is where the point is, or, of a point that is through a sheet,
+ * where the reference points. */
 static bool is_turned(const probe *x, uint32_t f) {
   const scree_feature_pair *feature = x->feature;
   const scree_face *face = &x->surface->faces[f];
