@@ -20,7 +20,8 @@ typedef struct clump_object {
   const char *word;
   char name[CLUMP_NAME_BYTES], file[CLUMP_PATH_BYTES];
   cli_clump_surface surface;
-  bool made; /* the clumps */
+  size_t mesh_count; /* triangles of the mesh to take instead; 0: spheres will do */
+  bool made;         /* the clumps */
   scree_clumps clumps;
   const scree_clump *chosen;
 } clump_object;

@@ -34,7 +34,7 @@ static const cli_option options[] = {
      0, 180, NULL},
     {"triangles", CLI_COUNT, AT(triangles), "N",
      "Fit to the surface decimated to so many triangles: spheres show no finer detail. Default: "
-     "2000.",
+     "2000; all with --inside and --outside.",
      100, 1000000, NULL},
     {"unit", CLI_UNIT, AT(source.unit), "UNIT",
      "The files' unit of length, which clumps are written in, too. Default: mm.", 0, 0, NULL},
@@ -53,6 +53,8 @@ static const clump_arguments defaults = {.source = CLI_SOURCE_DEFAULTS,
                                          .angle = 150,
                                          .triangles = SCREE_CLUMP_TRIANGLES};
 
+/* Below this IoU spheres are told to be the wrong shape. */
+static const double LEAST_IOU = 0.6;
 /* Walls of fewer cells of the grid than this are not seen. */
 static const double LEAST_CELLS = 3;
 
@@ -62,7 +64,8 @@ static scree_status load(const cli_call *call, const scree_progress *progress, c
                          scree_error *error) {
   const clump_arguments *a = call->options;
   cli_input_options input = cli_source_options(&a->source);
-  object->surface.triangles = a->triangles;
+  /* what stands out of the surface is told of the file's own */
+  object->surface.triangles = a->inside || a->outside < INFINITY ? SIZE_MAX : a->triangles;
   object->surface.no_repair = a->no_repair;
   return cli_load_for_clump(object->word, &input, progress, &object->surface, error);
 }
@@ -99,6 +102,24 @@ static scree_status choose(const clump_arguments *a, clump_object *object, scree
   return SCREE_LIMIT;
 }
 
+/* Where the grid does not see the walls, or the spheres hardly cover the body: how many triangles
+ * its mesh needs. */
+static scree_status look_at_shape(const clump_arguments *a, clump_object *object,
+                                  scree_error *error) {
+  const scree_clumps *c = &object->clumps;
+  bool best = a->method == SCREE_CLUMP_FITTED && !a->inside && !(a->outside < INFINITY);
+  scree_mesh level = {0};
+  scree_choice choice = {0};
+  bool more = c->recommended + 1 < c->clump_count; /* were tried, and are not worth it */
+  bool poor = best && more && c->clumps[c->recommended].iou < LEAST_IOU;
+  if (c->wall_cells >= LEAST_CELLS && !poor) return SCREE_OK;
+  scree_status status = scree_choose_mesh(&object->surface.mesh, 1, NULL, &level, &choice, error);
+  object->mesh_count = level.triangle_count;
+  scree_mesh_free(&level);
+  scree_choice_free(&choice);
+  return status;
+}
+
 static scree_status make(const cli_call *call, clump_object *object, cli_share *share, double from,
                          double part, scree_error *error) {
   const clump_arguments *a = call->options;
@@ -111,7 +132,8 @@ static scree_status make(const cli_call *call, clump_object *object, cli_share *
     if (status != SCREE_OK) return cli_name_in_error(object->word, error);
     object->made = true;
   }
-  return status == SCREE_OK ? choose(a, object, error) : status;
+  if (status == SCREE_OK) status = choose(a, object, error);
+  return status == SCREE_OK ? look_at_shape(a, object, error) : status;
 }
 
 /* ---- Telling ---- */
@@ -139,7 +161,8 @@ static void print_row(FILE *out, const clump_object *object, const scree_clump *
 static const char *mark_of(const clump_object *object, size_t index, size_t most) {
   const scree_clumps *c = &object->clumps;
   bool last = index + 1 == c->clump_count && c->clumps[index].sphere_count >= most;
-  if (index == c->recommended) return last ? " least of those tried" : " recommended";
+  if (index == c->recommended)
+    return last || object->mesh_count ? " least of those tried" : " recommended";
   return &c->clumps[index] == object->chosen ? " chosen" : "";
 }
 
@@ -164,19 +187,33 @@ static void print_object(FILE *out, const clump_object *object, size_t most) {
     if (is_told(object, i)) print_row(out, object, &c->clumps[i], mark_of(object, i, most));
 }
 
-static void print_advice(FILE *out, const clump_object *object) {
+/* Why spheres are the wrong shape, and what to take instead. */
+static void print_wrong_shape(FILE *out, const clump_object *object) {
   const scree_clumps *c = &object->clumps;
+  const char *unit = cli_unit_name(object->surface.unit_m);
+  char shown[CLI_PRINTABLE_BYTES], count[32];
+  if (c->wall_cells < LEAST_CELLS)
+    fprintf(out,
+            "Its walls of %.3g %s are thinner than three cells of the grid: spheres are the wrong "
+            "shape for it.",
+            c->thickness / object->surface.unit_m, unit);
+  else
+    fprintf(out,
+            "The spheres and the body have less than %g of the volume of both in common (IoU): "
+            "spheres are the wrong shape for it.",
+            LEAST_IOU);
+  fprintf(out, " Take its mesh, of %s triangles: scree choose %s -u %s -o DIR\n",
+          cli_count_text(object->mesh_count, count), cli_printable(object->word, shown), unit);
+}
+
+static void print_advice(FILE *out, const clump_object *object) {
   const scree_clump *chosen = object->chosen;
   fprintf(
       out,
       "%zu sphere%s: the union's volume is %.4g of the body's; mass, centre and inertia that go "
       "with the clump are the body's own.\n",
       chosen->sphere_count, cli_plural(chosen->sphere_count), 1 + chosen->volume_error);
-  if (c->wall_cells < LEAST_CELLS)
-    fprintf(out,
-            "Its walls of %.3g %s are thinner than three cells of the grid: spheres are the wrong "
-            "shape for it; take its mesh.\n",
-            c->thickness / object->surface.unit_m, cli_unit_name(object->surface.unit_m));
+  if (object->mesh_count) print_wrong_shape(out, object);
 }
 
 /* What was asked for and is not there. */
@@ -186,9 +223,12 @@ static void warn(const cli_call *call, const clump_object *object) {
   cli_terminal_end();
   if (a->count > object->chosen->sphere_count)
     fprintf(stderr,
-            "%s: %zu spheres, not %zu: others gain less than 1e-4 of IoU (from 4 on they hold the "
-            "centroid, from 10 on the inertia), or the method gives no more\n",
-            cli_printable(object->word, shown), object->chosen->sphere_count, a->count);
+            a->method == SCREE_CLUMP_FITTED
+                ? "%s: %zu spheres, not %zu: of %zu and more none was found whose IoU is larger by "
+                  "1e-4 while volume, centre and inertia are held\n"
+                : "%s: %zu spheres, not %zu: the method places no more than %zu\n",
+            cli_printable(object->word, shown), object->chosen->sphere_count, a->count,
+            object->chosen->sphere_count + (a->method == SCREE_CLUMP_FITTED));
 }
 
 void clump_print(FILE *out, const clump_run *run) {

@@ -10,6 +10,10 @@ run clump box.off -n 2 -o out -q
 ls out
 head -1 out/box.csv
 grep -c '^[^#x]' out/box.csv
+# a plate is told to be the wrong shape for spheres, and how many triangles its mesh has; inscribed ones are not judged so
+box 60 40 1 >plate.off
+run clump plate.off --max 12 | tail -2 | numbers
+run clump plate.off --max 4 --inside | tail -1 | numbers
 # a table names its unit, and is read in it
 run clump box.off -u m -n 1 -o metres -q
 sed -n 2p metres/box.csv | sed 's/[0-9.]*, /N, /'

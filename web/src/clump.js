@@ -47,6 +47,9 @@ export class ClumpSection {
       element('p', `${name}${coverage(body, chosen)}.${other}`, host, { class: 'answer' });
     }
     element('p', `Recommended: the least 1 − IoU + n/200. Mass, centre and inertia that go with a clump are the surface's own, whatever those of the spheres' union. Method: ${first.method}.`, host, { class: 'soft' });
+    const iou = (body) => body.clumps.find((c) => c.sphere_count === body.recommended).iou;
+    for (const body of bodies.filter((b) => b.wall_cells >= 3 && iou(b) < 0.6))
+      element('p', `${body.name}: spheres and body have less than 0.6 of the volume of both in common; spheres are the wrong shape for it; take its mesh.`, host, { class: 'soft' });
     for (const body of bodies.filter((b) => b.wall_cells < 3))
       element('p', `${body.name}: its walls of ${number(mm * body.thickness, 3)} mm are thinner than the spheres can follow; take its mesh.`, host, { class: 'soft' });
   }
@@ -79,6 +82,15 @@ export class ClumpSection {
     const label = element('label', 'spheres ', host);
     this.slider = element('input', null, label, { type: 'range', min: 0, step: 1 });
     this.slider.addEventListener('input', () => this.pick(Number(this.slider.value)));
+    this.told = element('p', null, host, { 'aria-live': 'polite' });
+    this.buildView();
+    element('h2', 'Errors against the number of spheres', host);
+    this.chartHost = element('div', null, host);
+    this.tableHost = element('div', null, host);
+  }
+
+  buildView() {
+    const host = element('div', null, this.host);
     const check = element('label', null, host);
     const box = element('input', null, check, { type: 'checkbox', checked: '' });
     check.append(' edges of the surface');
@@ -86,11 +98,12 @@ export class ClumpSection {
       this.state.surface = box.checked;
       this.draw();
     });
-    this.told = element('p', null, host, { 'aria-live': 'polite' });
-    this.view = new View(element('div', null, element('div', null, host, { class: 'view' })), 'The clump over the surface');
-    element('h2', 'Errors against the number of spheres', host);
-    this.chartHost = element('div', null, host);
-    this.tableHost = element('div', null, host);
+    try {
+      this.view = new View(element('div', null, element('div', null, host, { class: 'view' })), 'The clump over the surface');
+    } catch {
+      host.replaceChildren();
+      element('p', 'This browser shows no WebGL, so the spheres over the surface in 3D are left out here. The curve and all tables are complete.', host, { class: 'no-webgl', role: 'note' });
+    }
   }
 
   select(index) {
@@ -117,7 +130,7 @@ export class ClumpSection {
 
   draw() {
     const { spheres } = this.bodies[this.state.body].clumps[this.state.row];
-    this.view.showSpheres(spheres, this.mesh, this.frame, this.state.surface);
+    this.view?.showSpheres(spheres, this.mesh, this.frame, this.state.surface);
   }
 
   drawChart() {
