@@ -149,6 +149,17 @@ void cli_print_check(FILE *stream, const scree_check *check) {
             check->intersections_known ? "" : ": self-intersections were not looked for");
 }
 
+/* "; volume 4.15 -> 4.21 cm3", where it is another or was not known. */
+static size_t tell_change(const char *what, const char *unit, double before, double after,
+                          char *buffer, size_t size) {
+  int length = 0;
+  if (isnan(before))
+    length = snprintf(buffer, size, "; %s %.6g %s, unknown before", what, after, unit);
+  else if (fabs(after / before - 1) >= CLI_NOTABLE_CHANGE)
+    length = snprintf(buffer, size, "; %s %.6g -> %.6g %s", what, before, after, unit);
+  return length > 0 && (size_t)length < size ? (size_t)length : 0;
+}
+
 void cli_repair_text(const scree_repair_report *report, char *buffer, size_t size) {
   size_t used = 0;
   buffer[0] = 0;
@@ -164,10 +175,12 @@ void cli_repair_text(const scree_repair_report *report, char *buffer, size_t siz
                                1e9 * report->filled_volume,
                                100 * report->filled_volume / report->volume_after);
   }
-  double change = fabs(report->volume_after / report->volume_before - 1);
-  if (change >= CLI_NOTABLE_CHANGE && used + 1 < size)
-    snprintf(buffer + used, size - used, "; volume %.6g -> %.6g cm3", 1e6 * report->volume_before,
-             1e6 * report->volume_after);
+  if (used > 0 && used < size)
+    used += tell_change("area", "cm2", 1e4 * report->area_before, 1e4 * report->area_after,
+                        buffer + used, size - used);
+  if (used > 0 && used < size)
+    tell_change("volume", "cm3", 1e6 * report->volume_before, 1e6 * report->volume_after,
+                buffer + used, size - used);
 }
 
 /* "4.15 -> 4.21 cm2 area (+1.5 %)" */
