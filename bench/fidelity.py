@@ -48,7 +48,7 @@ def widest_change(scan, level):
     axes = json.loads(scree("measure", "--json", scan))[0]["oriented_axes"]
     steps = [(i, j, k) for i in range(-7, 8) for j in range(-7, 8) for k in range(8) if abs(i) + abs(j) + k == 7]
     directions = [[sum(s * axis[c] for s, axis in zip(step, axes)) / math.hypot(*step) for c in range(3)] for step in steps]
-    was, now = (widths(corners(path), directions) for path in (scan, level))
+    was, now = widths(read_off(scan)[0], directions), widths(corners(level), directions)
     return max(abs(b / a - 1) for a, b in zip(was, now))
 
 
@@ -60,14 +60,14 @@ def check_scan(path):
         asked = answer["options"]["tolerances"]
         size, told = answer["scan"]["size"], answer["recommended"]
         words = ["--json", "--points", 1000000, "--gap", 0.002]
-        stl = os.path.join(folder, "scan.stl")
-        scree("repair", path, "-o", stl)
+        whole = os.path.join(folder, "scan.off")
+        scree("repair", path, "-o", whole)
         far = json.loads(scree("distance", *words, path, level))
         scan, here = inertia(path), inertia(level)
         found = {"mean_distance": max(far["forward"]["mean"], far["backward"]["mean"]) / size,
                  "hausdorff": far["hausdorff"] / size,
                  "inertia": math.dist(scan, here) / math.hypot(*scan),
-                 "widths": widest_change(stl, level)}
+                 "widths": widest_change(whole, level)}
         load = max(found.get(name, told["errors"].get(name, 0)) / asked[name] for name in asked)
         print(f"{os.path.basename(path)}: {told['triangle_count']} triangles, {load:.3f} of what is allowed, "
               + ", ".join(f"{name} {share:.4%}" for name, share in found.items()) + f"; {told['limited_by']}", flush=True)
