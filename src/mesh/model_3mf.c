@@ -187,21 +187,19 @@ static void start_object(scree_3mf_parse *p, const char **attributes) {
 
 static void start_vertex(scree_3mf_parse *p, scree_3mf_object *o, const char **attributes) {
   static const char *const axes[] = {"x", "y", "z"};
-  double *out;
-  if (!SCREE_RESERVE(&p->model->vertices, p->model->vertices.count + 3)) {
-    scree_3mf_stop_memory(p);
-    return;
-  }
-  out = p->model->vertices.items + p->model->vertices.count;
   for (int k = 0; k < 3; k++) {
     const char *text = scree_3mf_attribute(attributes, axes[k]);
-    if (!read_number(text, &out[k])) {
+    double value;
+    if (!read_number(text, &value)) {
       stop(p, SCREE_BAD_FILE, "%s of a vertex is '%.40s'; it must be a number", axes[k],
            text ? text : "");
       return;
     }
+    if (!SCREE_PUSH(&p->model->vertices, value)) {
+      scree_3mf_stop_memory(p);
+      return;
+    }
   }
-  p->model->vertices.count += 3;
   o->vertex_count += 3;
 }
 

@@ -17,13 +17,17 @@ enum { MOST_DEPTH = 256 };
 
 /* cgltf's blocks in a ring: what it forgets is freed with the others, and whether memory was out is
  * known, which not all its answers tell. */
+typedef struct links {
+  struct links *next, *previous;
+} links;
+
 typedef struct block {
-  struct block *next, *previous;
+  links links;
   _Alignas(64) unsigned char bytes[];
 } block;
 
 typedef struct pool {
-  block ring;
+  links ring;
   bool is_out;
 } pool;
 
@@ -34,23 +38,24 @@ static void *give(void *context, size_t size) {
     p->is_out = true;
     return NULL;
   }
-  b->next = p->ring.next;
-  b->previous = &p->ring;
-  b->next->previous = p->ring.next = b;
+  b->links = (links){p->ring.next, &p->ring};
+  b->links.next->previous = p->ring.next = &b->links;
   return b->bytes;
+}
+
+static void drop(links *l) {
+  l->next->previous = l->previous;
+  l->previous->next = l->next;
+  scree_free(l); /* the block begins with it */
 }
 
 static void take_back(void *context, void *bytes) {
   (void)context;
-  if (!bytes) return;
-  block *b = (block *)(void *)((unsigned char *)bytes - offsetof(block, bytes));
-  b->next->previous = b->previous;
-  b->previous->next = b->next;
-  scree_free(b);
+  if (bytes) drop((links *)(void *)((unsigned char *)bytes - offsetof(block, bytes)));
 }
 
 static void empty(pool *p) {
-  while (p->ring.next != &p->ring) take_back(p, p->ring.next->bytes);
+  while (p->ring.next != &p->ring) drop(p->ring.next);
 }
 
 typedef struct model {
@@ -400,8 +405,9 @@ scree_status scree_read_gltf(scree_reading *r, bool is_binary) {
   snprintf(r->scan->format, sizeof r->scan->format, "glTF %s", is_binary ? "binary" : "text");
   if (r->byte_count > INT_MAX) return fail(&m, SCREE_LIMIT, "longer than 2 GiB");
   cgltf_result result = cgltf_parse(&m.options, r->bytes, r->byte_count, &m.data);
-  scree_status status = result == cgltf_result_success ? check_extensions(&m) : explain(&m, result);
-  if (status == SCREE_OK) status = load_buffers(&m);
+  scree_status status =
+      result == cgltf_result_success && m.data ? check_extensions(&m) : explain(&m, result);
+  if (status == SCREE_OK && m.data) status = load_buffers(&m);
   r->unit_m = 1;
   r->scan->states_unit = true;
   if (status == SCREE_OK) status = place_scene(&m);

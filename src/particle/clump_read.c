@@ -186,7 +186,7 @@ static const char *comment_in(const char *line, const char *end) {
 
 static scree_status read_line(scree_text *t, spheres *s, const char *line, const char *end) {
   scree_token cells[SCREE_MOST_COLUMNS];
-  double row[4], value;
+  double row[4] = {0}, value;
   scree_status status;
   if (!s->is_begun && s->columns.count == 0 && !scree_number_parse(line, end, &value)) {
     s->is_begun = true;
