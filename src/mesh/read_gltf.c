@@ -405,12 +405,12 @@ scree_status scree_read_gltf(scree_reading *r, bool is_binary) {
   snprintf(r->scan->format, sizeof r->scan->format, "glTF %s", is_binary ? "binary" : "text");
   if (r->byte_count > INT_MAX) return fail(&m, SCREE_LIMIT, "longer than 2 GiB");
   cgltf_result result = cgltf_parse(&m.options, r->bytes, r->byte_count, &m.data);
-  scree_status status =
-      result == cgltf_result_success && m.data ? check_extensions(&m) : explain(&m, result);
-  if (status == SCREE_OK && m.data) status = load_buffers(&m);
+  bool is_parsed = result == cgltf_result_success && m.data;
+  scree_status status = is_parsed ? check_extensions(&m) : explain(&m, result);
   r->unit_m = 1;
   r->scan->states_unit = true;
-  if (status == SCREE_OK) status = place_scene(&m);
+  if (is_parsed && status == SCREE_OK) status = load_buffers(&m);
+  if (is_parsed && status == SCREE_OK) status = place_scene(&m);
   strncat(r->scan->format, ", meter", sizeof r->scan->format - strlen(r->scan->format) - 1);
   if (status == SCREE_OK) status = scree_placed_weld(r, &m.placed);
   scree_placed_free(&m.placed);
