@@ -101,6 +101,23 @@ SCREE_API scree_status scree_scan_parse(const void *bytes, size_t byte_count, co
 SCREE_API scree_status scree_mesh_weld(const double *corner_positions, size_t facet_count,
                                        double tolerance, scree_mesh *mesh, size_t *degenerate_count,
                                        scree_error *error);
+/* What was done to a wall. */
+typedef struct scree_wall_mending {
+  size_t welded;  /* vertices that became one with another nearby */
+  size_t flat;    /* facets without area, dropped */
+  size_t joined;  /* vertices set into edges that ran past them */
+  size_t doubled; /* facets that lay on others, dropped */
+  size_t parted;  /* edges where three or more facets met, or where a surface met its other side */
+  size_t turned;  /* facets wound against most of their piece */
+} scree_wall_mending;
+/* Any triangle soup as a wall for scree_world_add_wall: vertices within 2e-6 of the diagonal are
+ * one, edges that run past a vertex are split there, facets without area or on others are dropped,
+ * pieces are parted where three facets or more meet, and wound one way. A closed piece keeps the
+ * winding of most of its facets: one that is wound inwards holds bodies (SCREE_WALL_MESH). A clean
+ * mesh comes out as it went in, to the last bit. mending may be NULL. SCREE_BAD_MESH where no facet
+ * has an area, with a place. Cost n log n. Free *wall with scree_mesh_free. */
+SCREE_API scree_status scree_wall_mend(const scree_mesh *soup, scree_mesh *wall,
+                                       scree_wall_mending *mending, scree_error *error);
 /* Brings a mesh into canonical order by welding equal positions: what reading gives back of a
  * lossless file of it. A mesh that was read stays as it is. A particle's forces add up in the order
  * of its mesh, so that runs of the same bits need the same order. On failure *mesh is untouched. */

@@ -197,6 +197,10 @@ class scree_material_contact(Structure):
         "restitution", "friction", "rolling_friction", "pull_off", "surface_energy")]
 
 
+class scree_wall_mending(Structure):
+    _fields_ = [(name, c_size_t) for name in ("welded", "flat", "joined", "doubled", "parted", "turned")]
+
+
 class scree_wall(Structure):
     _fields_ = [("kind", c_int), ("material", c_size_t), ("position", double3), ("axis", double3),
                 ("radius", c_double), ("length", c_double), ("mesh", POINTER(scree_mesh)),
@@ -348,6 +352,7 @@ _FALLIBLE = {  # argument types before the error
     "scan_read": (_S, POINTER(scree_read_options), POINTER(scree_scan)),
     "mesh_weld": (POINTER(c_double), c_size_t, c_double, _M, POINTER(c_size_t)),
     "mesh_copy": (_M, _M),
+    "wall_mend": (_M, _M, POINTER(scree_wall_mending)),
     "mesh_write": (_M, _S, POINTER(scree_write_options)),
     "mesh_measure": (_M, POINTER(scree_measures)),
     "mesh_topology": (_M, POINTER(scree_topology)),

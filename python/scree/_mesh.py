@@ -44,6 +44,13 @@ class Mesh:
         mesh.source = source
         return mesh
 
+    def as_wall(self):
+        """Any facets as a wall for World.add_wall, and what was mended: welded, split where an edge ran past a vertex,
+        without facets that have no area or lie on others, parted where three facets meet, wound one way."""
+        made, mending = c.scree_mesh(), c.scree_wall_mending()
+        call("wall_mend", self._struct, made, mending)
+        return Mesh._of(made, self.source), from_struct(mending)
+
     vertex_count = property(lambda self: self._struct.vertex_count)
     triangle_count = property(lambda self: self._struct.triangle_count)
 

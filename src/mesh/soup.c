@@ -480,6 +480,8 @@ static scree_status divide(scree_mesh *mesh, double tolerance, scree_pieces *out
     scree_soup_drop(mesh, gone);
     scree_free(gone);
     out->mending.doubled += covered;
+    if (status == SCREE_OK && covered) /* edges may have lost their other facet */
+      status = scree_soup_join(mesh, tolerance, &out->mending, error);
     if (status != SCREE_OK || covered == 0) return status;
   }
 }
@@ -527,6 +529,18 @@ void scree_pieces_free(scree_pieces *pieces) {
   scree_mesh_free(&pieces->mesh);
   scree_free(pieces->items);
   *pieces = (scree_pieces){.count = 0};
+}
+
+scree_status scree_wall_mend(const scree_mesh *soup, scree_mesh *wall, scree_wall_mending *mending,
+                             scree_error *error) {
+  scree_pieces pieces;
+  scree_status status = scree_pieces_make(soup, &pieces, error);
+  if (status != SCREE_OK) return status;
+  if (mending) *mending = pieces.mending;
+  *wall = pieces.mesh;
+  pieces.mesh = (scree_mesh){0};
+  scree_pieces_free(&pieces);
+  return SCREE_OK;
 }
 
 /* ---- inside and outside ---- */

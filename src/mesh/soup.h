@@ -5,16 +5,6 @@
 
 #include "mesh/mesh.h"
 
-/* What was done. */
-typedef struct scree_mending {
-  size_t welded;  /* vertices that became one with another nearby */
-  size_t flat;    /* facets without area, dropped */
-  size_t joined;  /* vertices set into edges that ran past them */
-  size_t doubled; /* facets that lay on others, dropped */
-  size_t parted;  /* edges where three or more facets met, or where a surface met its other side */
-  size_t turned;  /* facets wound against most of their piece */
-} scree_mending;
-
 /* Facets that are joined by edges, wound alike. */
 typedef struct scree_piece {
   size_t first, count; /* facets of the mesh */
@@ -27,7 +17,7 @@ typedef struct scree_pieces {
   scree_mesh mesh; /* pieces share no vertices */
   scree_piece *items;
   size_t count;
-  scree_mending mending;
+  scree_wall_mending mending;
 } scree_pieces;
 
 /* A clean mesh of one piece comes out as it went in, to the last bit. SCREE_BAD_MESH where no facet

@@ -38,7 +38,7 @@ void scree_soup_drop(scree_mesh *mesh, const uint8_t *gone) {
 
 /* ---- vertices ---- */
 
-static scree_status weld(scree_mesh *mesh, double tolerance, scree_mending *mending,
+static scree_status weld(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                          scree_error *error) {
   scree_mesh welded = {0};
   vec3 low = vec3_load(mesh->positions), high = low;
@@ -71,7 +71,7 @@ static double height_of(const scree_mesh *mesh, size_t t) {
   return longest > 0 ? area2 / longest : 0;
 }
 
-static scree_status drop_flat(scree_mesh *mesh, double tolerance, scree_mending *mending,
+static scree_status drop_flat(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                               scree_error *error) {
   uint8_t *gone = scree_alloc_zero(mesh->triangle_count, 1);
   if (!gone) return scree_fail_memory(error, mesh->triangle_count, "a wall's facets");
@@ -259,7 +259,8 @@ static corners corners_of(const scree_mesh *mesh, uint32_t facet) {
   return c;
 }
 
-static scree_status drop_doubles(scree_mesh *mesh, scree_mending *mending, scree_error *error) {
+static scree_status drop_doubles(scree_mesh *mesh, scree_wall_mending *mending,
+                                 scree_error *error) {
   size_t count = mesh->triangle_count;
   corners *all = scree_alloc(count, sizeof *all);
   uint8_t *gone = scree_alloc_zero(count, 1);
@@ -281,15 +282,21 @@ static scree_status drop_doubles(scree_mesh *mesh, scree_mending *mending, scree
   return status;
 }
 
-scree_status scree_soup_tidy(scree_mesh *mesh, double tolerance, scree_mending *mending,
+scree_status scree_soup_join(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
+                             scree_error *error) {
+  for (int pass = 0; pass < PASSES; pass++) {
+    size_t before = mending->joined;
+    scree_status status = join_once(mesh, tolerance, &mending->joined, error);
+    if (status != SCREE_OK || mending->joined == before) return status;
+  }
+  return SCREE_OK;
+}
+
+scree_status scree_soup_tidy(scree_mesh *mesh, double tolerance, scree_wall_mending *mending,
                              scree_error *error) {
   scree_status status = weld(mesh, tolerance, mending, error);
   if (status == SCREE_OK) status = drop_flat(mesh, tolerance, mending, error);
   if (status == SCREE_OK) status = drop_doubles(mesh, mending, error); /* which have no rims */
-  for (int pass = 0; status == SCREE_OK && pass < PASSES; pass++) {
-    size_t before = mending->joined;
-    status = join_once(mesh, tolerance, &mending->joined, error);
-    if (mending->joined == before) break;
-  }
+  if (status == SCREE_OK) status = scree_soup_join(mesh, tolerance, mending, error);
   return status == SCREE_OK ? drop_doubles(mesh, mending, error) : status;
 }

@@ -129,8 +129,9 @@ static scree_status fail_wall(const scree_particle *p, const half_edge *edge, co
                               scree_error *error) {
   vec3 a = position_of(p, edge->low), b = position_of(p, edge->high);
   return scree_fail(error, SCREE_BAD_MESH,
-                    "wall: %s at the edge from (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g) m", what,
-                    a.x, a.y, a.z, b.x, b.y, b.z);
+                    "wall: %s at the edge from (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g) m; "
+                    "scree_wall_mend makes a wall of any facets",
+                    what, a.x, a.y, a.z, b.x, b.y, b.z);
 }
 
 static scree_status pair_halves(extraction *x, bool is_wall, scree_error *error) {

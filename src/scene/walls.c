@@ -255,7 +255,7 @@ static void add_count(const line *l, const char *before, size_t count, const cha
 
 static void describe(const division *d, scree_scene_walls *walls) {
   const line l = {walls->note, sizeof walls->note};
-  const scree_mending *m = &d->pieces.mending;
+  const scree_wall_mending *m = &d->pieces.mending;
   size_t counts[4] = {0};
   for (size_t i = 0; i < d->pieces.count; i++) counts[d->pieces.items[i].closed ? d->side[i] : 3]++;
   walls->is_plain = counts[INSIDE] + counts[BOTH] == 0;

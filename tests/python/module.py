@@ -262,6 +262,21 @@ class Worlds(unittest.TestCase):
         with self.assertRaises(TypeError):
             world.add_wall("plane", 1, colour="red")
 
+    def test_any_facets_as_a_wall(self):
+        # two sides of a sheet that another stands on, wound anyhow
+        points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0, 0), (0.5, 1, 0), (0.5, 0, 1), (0.5, 1, 1)]
+        facets = [(0, 1, 2), (0, 3, 2), (0, 1, 3), (1, 2, 3), (4, 5, 7), (4, 7, 6)]
+        soup, world = scree.Mesh(points, facets), scree.World()
+        steel = world.add_material(wall=True)
+        with self.assertRaisesRegex(scree.Error, r"wall: .* at the edge from \(0, 0, 0\).*scree_wall_mend"):
+            world.add_wall("mesh", steel, mesh=soup)
+        wall, mended = soup.as_wall()
+        self.assertEqual((mended.doubled, mended.flat), (2, 0))
+        self.assertEqual((mended.joined, wall.triangle_count), (2, 6))
+        self.assertEqual(world.add_wall("mesh", steel, mesh=wall), 0)
+        again, mended = wall.as_wall()
+        self.assertEqual((again.triangle_count, mended.doubled, mended.joined), (6, 0, 0))
+
     def test_motions(self):
         world = scree.World(gravity=(0, 0, 0), time_step=5e-6)
         world.add_wall("plane", world.add_material(wall=True), surface_velocity=(0.5, 0, 0))

@@ -198,7 +198,7 @@ static void what_is_clean_stays(void **state) {
                         3 * mesh.vertex_count * sizeof *mesh.positions);
     assert_memory_equal(pieces.mesh.triangles, mesh.triangles,
                         3 * mesh.triangle_count * sizeof *mesh.triangles);
-    const scree_mending none = {0};
+    const scree_wall_mending none = {0};
     assert_memory_equal(&pieces.mending, &none, sizeof none);
     scree_pieces_free(&pieces);
     scree_mesh_free(&mesh);
@@ -372,9 +372,11 @@ static void twisted_band(void **state) {
 }
 
 static scree_status make(void *context, scree_error *error) {
-  scree_pieces pieces = {.count = 0};
-  scree_status status = scree_pieces_make(context, &pieces, error);
-  scree_pieces_free(&pieces);
+  scree_mesh wall = {0};
+  scree_wall_mending mending;
+  scree_status status = scree_wall_mend(context, &wall, &mending, error);
+  if (status == SCREE_OK) assert_true(mending.doubled + mending.flat >= 18);
+  scree_mesh_free(&wall);
   return status;
 }
 
