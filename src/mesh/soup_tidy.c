@@ -223,7 +223,7 @@ static scree_status join_once(scree_mesh *mesh, double tolerance, size_t *joined
     if (is_rim(&adjacency, h)) good = look_along(mesh, h, axis, tolerance, list, count, &found);
   if (good) {
     scree_free(list);
-    qsort(found.items, found.count, sizeof *found.items, by_half);
+    if (found.count) qsort(found.items, found.count, sizeof *found.items, by_half);
     good = split_facets(mesh, &found, joined);
   }
   if (!good && status == SCREE_OK)

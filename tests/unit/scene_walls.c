@@ -163,9 +163,9 @@ static void solids_that_meet(void **state) {
     vec3 low = vec3_load(boxes[i][0]), sides = vec3_sub(vec3_load(boxes[i][1]), low);
     scree_mesh one = shape_grid_box(sides.x, sides.y, sides.z, 2), before = all;
     shape_move(&one, low);
-    all = shape_join(&before, &one);
-    scree_mesh_free(&before);
-    scree_mesh_free(&one);
+    all = i ? shape_join(&before, &one) : one;
+    if (i) scree_mesh_free(&one);
+    if (i) scree_mesh_free(&before);
   }
   write_stl(&all);
   scree_mesh_free(&all);
