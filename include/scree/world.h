@@ -16,6 +16,8 @@ typedef struct scree_world scree_world;
 typedef enum scree_law {
   SCREE_LAW_LINEAR,     /* spring, dashpot, Coulomb slider: the paper's */
   SCREE_LAW_HYSTERETIC, /* Walton and Braun 1986: loading K, unloading K/e2, no dashpot */
+  SCREE_LAW_HERTZ, /* Hertz and Mindlin, damped as by Tsuji and others 1992, where a sphere or a
+                      clump touches anything; two meshes touch by the linear law */
 } scree_law;
 
 typedef struct scree_world_options {
@@ -52,6 +54,8 @@ typedef struct scree_material {
   double friction;         /* at least 0; default 0.5 (the paper) */
   double rolling_friction; /* of spheres, at least 0; default 0: rolls freely */
   double surface_energy;   /* J/m2, at least 0; default 0: does not stick */
+  double poisson; /* in [0, 0.5]; default 0.3; of SCREE_LAW_HERTZ, which takes `stiffness` for
+                     Young's modulus, Pa */
 } scree_material;
 SCREE_API scree_material scree_default_material(void);
 SCREE_API scree_material scree_default_wall_material(void);

@@ -18,7 +18,7 @@ REFERENCES = ("scan", "smooth")
 SHAPE_ERRORS = ("area", "volume", "hausdorff", "mean_distance", "inertia", "widths", "thickness", "thinnest", "convexity",
                 "normals")
 PARTICLE_KINDS = ("mesh", "sphere", "clump")
-LAWS = ("linear", "hysteretic")
+LAWS = ("linear", "hysteretic", "hertz")
 CONTAINERS = ("cylinder", "box")
 WALL_KINDS = ("plane", "disc", "cylinder", "mesh")
 MOTION_LAWS = ("constant", "sine", "positions", "speeds")
@@ -189,7 +189,7 @@ class scree_world_options(Structure):
 
 class scree_material(Structure):
     _fields_ = [("stiffness", c_double), ("density", c_double), ("restitution", c_double), ("friction", c_double),
-                ("rolling_friction", c_double), ("surface_energy", c_double)]
+                ("rolling_friction", c_double), ("surface_energy", c_double), ("poisson", c_double)]
 
 
 class scree_material_contact(Structure):

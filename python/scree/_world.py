@@ -92,7 +92,7 @@ class World:
 
     def add_material(self, wall=False, **values):
         """Its index. stiffness (N/m2), density (kg/m3), restitution, friction, rolling_friction,
-        surface_energy (J/m2); wall: the defaults of walls."""
+        surface_energy (J/m2), poisson (of the law hertz); wall: the defaults of walls."""
         material = lib["default_wall_material" if wall else "default_material"]()
         return self._add("world_add_material", set_fields(material, values, "a material"))
 

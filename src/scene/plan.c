@@ -50,7 +50,8 @@ scree_status scree_plan_check_direction(const scree_reader *r, const scree_place
 
 #define AT(member) offsetof(scree_plan_material, member)
 static const scree_field material_fields[] = {
-    {"young", SCREE_FIELD_REAL, AT(young), 1, 1e16, "Pa", "stiffness of a contact over size", NULL},
+    {"young", SCREE_FIELD_REAL, AT(young), 1, 1e16, "Pa",
+     "stiffness of a contact over size; of the law hertz Young's modulus", NULL},
     {"density", SCREE_FIELD_REAL, AT(density), 1e-3, 1e6, "kg/m3", "of particles", NULL},
     {"restitution", SCREE_FIELD_REAL, AT(restitution), 0.01, 1, "",
      "of a pair, the lower of the two, unless `pairs` says more", NULL},
@@ -59,9 +60,11 @@ static const scree_field material_fields[] = {
      "of spheres, likewise; 0: they roll freely", NULL},
     {"surface_energy", SCREE_FIELD_REAL, AT(surface_energy), 0, 1e6, "J/m2",
      "of cohesion, likewise; 0: nothing sticks", NULL},
+    {"poisson", SCREE_FIELD_REAL, AT(poisson), 0, 0.5, "", "Poisson's ratio, of the law hertz",
+     NULL},
 };
 #undef AT
-static const scree_plan_material material_defaults = {{0}, 1e8, 2000, 0.3, 0.5, 0, 0};
+static const scree_plan_material material_defaults = {{0}, 1e8, 2000, 0.3, 0.5, 0, 0, 0.3};
 static const scree_record material_record = {"a material", FIELDS(material_fields),
                                              sizeof(scree_plan_material), &material_defaults, NULL};
 
@@ -546,8 +549,8 @@ static const scree_record domain_record = {
 
 #define AT(member) offsetof(scree_plan_contact, member)
 static const scree_field contact_fields[] = {
-    {"law", SCREE_FIELD_WORD, AT(law), 0, 0, "linear|hysteretic", "docs/background/physics.md",
-     NULL},
+    {"law", SCREE_FIELD_WORD, AT(law), 0, 0, "linear|hysteretic|hertz",
+     "docs/background/physics.md", NULL},
     {"steps", SCREE_FIELD_REAL, AT(steps), 15, 1e6, "",
      "time steps in a quarter of the fastest contact's period", NULL},
     {"stiffness_factor", SCREE_FIELD_REAL, AT(stiffness_factor), 1e-9, 1e9, "",

@@ -8,7 +8,7 @@
 
 typedef struct scree_plan_material {
   scree_place place;
-  double young, density, restitution, friction, rolling_friction, surface_energy;
+  double young, density, restitution, friction, rolling_friction, surface_energy, poisson;
 } scree_plan_material;
 
 typedef struct scree_plan_pair {

@@ -76,6 +76,7 @@ static scree_status add_materials(const scree_scene *scene, scree_world *world,
     made.friction = m->friction;
     made.rolling_friction = m->rolling_friction;
     made.surface_energy = m->surface_energy;
+    made.poisson = m->poisson;
     status = scree_world_add_material(world, &made, NULL, error);
   }
   for (size_t i = 0; status == SCREE_OK && i < plan->pairs.count; i++) {

@@ -15,6 +15,9 @@
  * g the mean by contact weights of the features' wrenches of length 1, M the masses and moments of
  * inertia.
  *
+ * Hertz: U = 2/5 h m^5/2 and K_t = 8 G* (R* m)^1/2, by which the tangential force grows with the
+ * sliding as Mindlin's without micro-slip does.
+ *
  * Features come and go, and steps do not resolve all of it. What the spring has won or lost by
  * that, dU + W over an impact, it gives back: its force is up to twice as large, or none, until the
  * balance is even (compare Love and Laursen 2003, "Energy conserving algorithms for contact").
@@ -138,6 +141,25 @@ static double weight_of(const scree_contact_point *contact, const scree_smooth_m
   return above > 0 ? contact->taper * above / maximum->denominator : 0;
 }
 
+/* Of the pair's spring, at an overlap of 0 or more. */
+typedef struct spring_state {
+  double force, energy;
+} spring_state;
+
+static spring_state spring_at(const scree_pair *pair, double m) {
+  double k = pair->law.stiffness, hertz = pair->law.hertz;
+  if (hertz == 0) return (spring_state){k * m, 0.5 * k * m * m};
+  double force = hertz * m * sqrt(m);
+  return (spring_state){force, 0.4 * force * m};
+}
+
+/* What leapfrog keeps of the spring's energy in the midst of a drift from one overlap to another:
+ * K x y/2 of a linear one. */
+static double energy_between(const scree_pair *pair, double x, double y) {
+  spring_state at_x = spring_at(pair, x), at_y = spring_at(pair, y);
+  return 0.5 * (at_x.energy + at_y.energy) - 0.25 * (at_x.force - at_y.force) * (x - y);
+}
+
 /* How far the contact is no impact any more, from 0 to 1: the tangential dashpot. An oblique impact
  * follows the spring and slider alone; what rests on each other is calmed. */
 static double lasting(const scree_pair *pair) {
@@ -151,6 +173,7 @@ typedef struct slider {
   double stiffness, damping, friction,
       time_step;         /* k_t over contact weight, c_t over contact weight, mu, dt */
   double normal_damping; /* C */
+  double grown;          /* by which the contact weights count in sliding */
   vec3 velocity, spin;
   bool belt; /* b's surface moves along itself so: */
   vec3 belt_velocity, belt_spin;
@@ -163,6 +186,14 @@ typedef struct slider {
  * u + a dt/2 it never came to rest, and what trembles creeps. */
 static const double impact_lead = 1, lasting_lead = -0.5; /* of u to u + a dt/2 */
 
+/* K_t and C_t, C by the ratio of tangential and normal stiffness, over the root of the overlap. */
+static void set_mindlin(const scree_pair *pair, slider *law, double lasts) {
+  double ratio = pair->law.mindlin / (1.5 * pair->law.hertz);
+  law->grown = sqrt(pair->overlap);
+  law->stiffness = pair->law.mindlin;
+  law->damping = lasts * pair->law.damping * sqrt(ratio) / sqrt(law->grown);
+}
+
 static slider make_slider(const scree_world *world, const scree_pair *pair,
                           const scree_frame *relative, double drift) {
   double ratio = world->options.tangential_ratio, lasts = lasting(pair),
@@ -171,10 +202,12 @@ static slider make_slider(const scree_world *world, const scree_pair *pair,
        spin = vec3_sub(relative->spin_now, relative->spin);
   slider law = {.stiffness = pair->law.stiffness * ratio,
                 .damping = lasts * pair->law.damping * sqrt(ratio),
+                .grown = 1,
                 .friction = pair->law.friction,
                 .time_step = drift,
                 .velocity = vec3_mad(relative->velocity, velocity, lead),
                 .spin = vec3_mad(relative->spin, spin, lead)};
+  if (pair->law.hertz > 0) set_mindlin(pair, &law, lasts);
   const scree_world_wall *wall = pair->wall ? &world->walls.items[pair->b] : NULL;
   if (!wall || !scree_wall_is_belt(wall)) return law;
   law.belt = true;
@@ -244,7 +277,7 @@ static double inverse_mass(const scree_world *world, const scree_pair *pair,
  * the overlap in a small part of the way: the force must move the bodies by little of that way in a
  * step, by K m dt^2/mu. */
 static double most_resolved(const scree_pair *pair, double step, double inverse, double least) {
-  double moves = pair->law.stiffness * step * step * inverse * pair->overlap;
+  double moves = spring_at(pair, pair->overlap).force * step * step * inverse;
   return scree_max(least, resolved_share * pair->law.reach / moves);
 }
 
@@ -304,7 +337,8 @@ static double damping_at(const scree_world *world, const scree_pair *pair,
          reduced = pair->law.stiffness * pace * pace,
          inverse =
              inverse_mass(world, pair, relative, &slope->whole) / (slope->weight * slope->weight);
-  return pair->law.damping * sqrt(scree_min(1, 1 / (inverse * reduced)));
+  double damping = pair->law.damping * sqrt(scree_min(1, 1 / (inverse * reduced)));
+  return pair->law.hertz > 0 ? damping * sqrt(sqrt(pair->overlap)) : damping;
 }
 
 static double along_motion(const scree_wrench *wrench, vec3 velocity, vec3 spin) {
@@ -327,30 +361,31 @@ typedef struct overlap_rate {
   double drift, now;
 } overlap_rate;
 
-/* What acts in a kick: the spring as of this overlap, and this share of what holds the bodies. */
+/* What acts in a kick: the spring's force, and this share of what holds the bodies. */
 typedef struct felt {
-  double overlap, pull;
+  double force, pull;
+  bool whole;
 } felt;
 
 /* In the step in which a touch begins or ends the overlap x is less than the way on the other side.
- * A force K x, acting for the whole kick, would work on that way too. Leapfrog keeps v v'/2 + K x
- * x'/2m - P (x + x')/2m from one drift to the next; and so it does from before the touch, or to
- * after it, where the kick's work is K x x'/2 - P (x + x')/2, with x' the overlap a step further
- * inside. The kick changes the velocity by less than itself, so that one more round finds it. */
+ * The whole force, acting for the whole kick, would work on that way too. Leapfrog keeps m v2/2 + U
+ * from one drift to the next, with U = K x x'/2 - P (x + x')/2 of a linear spring; and so it does
+ * from before the touch, or to after it, where the kick's work is this U, with x' the overlap a
+ * step further inside. The kick changes the velocity by less than itself, so that one more round
+ * finds it. */
 static felt felt_overlap(const scree_pair *pair, double x, overlap_rate rate,
                          const scree_scratch *scratch, double inverse) {
   const double drift = scratch->drift, step = scratch->step, kick = 0.5 * (drift + step);
   const bool begins = rate.now > 0;
   double speed = fabs(rate.drift), outer = begins ? speed * drift : fabs(rate.now) * step;
-  felt f = {x, 1};
+  felt f = {spring_at(pair, x).force, 1, true};
   if (x >= most_slopes[0] * pair->list.travel || !(outer > x) || !(speed > 0)) return f;
   for (int round = 0; round < 2; round++) {
-    double force = pair->law.stiffness * f.overlap - pair->law.pull * f.pull,
-           change = round == 0 ? 0 : force * kick * inverse,
+    double change = round == 0 ? 0 : (f.force - pair->law.pull * f.pull) * kick * inverse,
            middle = begins ? speed - 0.5 * change : speed + 0.5 * change,
            inner = scree_max(0, begins ? (speed - change) * step : speed * drift),
            way = scree_max(middle, 0.5 * speed) * kick;
-    f = (felt){0.5 * x * (x + inner) / way, (x + 0.5 * inner) / way};
+    f = (felt){energy_between(pair, x, x + inner) / way, (x + 0.5 * inner) / way, false};
   }
   return f;
 }
@@ -359,9 +394,9 @@ static felt felt_overlap(const scree_pair *pair, double x, overlap_rate rate,
  * the bodies hold each other, and the energy that comes back from both. */
 static double spring_force(const scree_world *world, scree_pair *pair, double m, const felt *part) {
   double pull = pair->law.pull, stiffness = pair->law.stiffness;
-  if (world->options.law == SCREE_LAW_LINEAR) {
-    pair->elastic = 0.5 * stiffness * m * m - pull * m;
-    return stiffness * part->overlap - pull * part->pull;
+  if (world->options.law != SCREE_LAW_HYSTERETIC) {
+    pair->elastic = spring_at(pair, m).energy - pull * m;
+    return part->force - pull * part->pull;
   }
   double e2 = pair->law.restitution * pair->law.restitution, unloading = stiffness / e2;
   pair->largest = scree_max(pair->largest, m);
@@ -409,11 +444,12 @@ static void contact_force(const scree_pair *pair, const slider *law, double spri
   sums->dashpot_power += dashpot * approach;
   contact->force = vec3_scale(n, normal);
   if (contact->of_depth) return;
+  const double weight_along = contact->weight * law->grown;
   vec3 along =
-      slide(law, contact->anchor, contact->weight, n, v, relative->spin, seen, pressed, energy);
+      slide(law, contact->anchor, weight_along, n, v, relative->spin, seen, pressed, energy);
   contact->force = vec3_mad(along, n, normal);
   contact->anchor->normal = n;
-  contact->anchor->weight = contact->weight;
+  contact->anchor->weight = weight_along;
   sums->tangential.force = vec3_add(sums->tangential.force, along);
   sums->tangential.moment = vec3_add(sums->tangential.moment, vec3_cross(contact->at, along));
   sums->tangential_power += vec3_dot(along, v);
@@ -459,7 +495,9 @@ static void roll(scree_pair *pair, const slider *sliding, const scree_frame *rel
                  double *energy, load_sums *sums) {
   double arm = pair->law.rolling, size = vec3_norm(sums->normal.force);
   if (!(arm > 0 && size > 0)) return;
-  const slider law = {.stiffness = 2.25 * pair->law.stiffness * arm * arm,
+  double stiffness =
+      pair->law.hertz > 0 ? 1.5 * pair->law.hertz * sqrt(pair->overlap) : pair->law.stiffness;
+  const slider law = {.stiffness = 2.25 * stiffness * arm * arm,
                       .damping = pair->law.rolling_damping,
                       .friction = arm,
                       .time_step = sliding->time_step};
@@ -613,14 +651,13 @@ static double press(const scree_world *world, scree_pair *pair, const scree_smoo
   double spring = spring_force(world, pair, m, &f);
   if (world->options.law == SCREE_LAW_HYSTERETIC) return spring;
   const bool first = scratch->overlap_before == 0 || scratch->was_depenetrating;
-  const double before = first ? scree_max(0, m - rate.drift * drift) : scratch->overlap_before,
-               stiffness = pair->law.stiffness;
+  const double before = first ? scree_max(0, m - rate.drift * drift) : scratch->overlap_before;
   double half = -0.25 * (drift + step) * rate.drift,
-         stored = 0.5 * stiffness * m * before - 0.5 * pair->law.pull * (m + before),
+         stored = energy_between(pair, m, before) - 0.5 * pair->law.pull * (m + before),
          worked = pair->worked + scratch->spring_work;
   if (first) worked = before > 0 ? -stored : 0; /* what is there already */
-  if (f.overlap == m)
-    spring *= 1 + repaid(pair, stored + worked, 2 * half * spring, 0.5 * stiffness * m * m);
+  if (f.whole)
+    spring *= 1 + repaid(pair, stored + worked, 2 * half * spring, spring_at(pair, m).energy);
   pair->worked = worked + half * spring;
   const scree_wrench pressed = {vec3_scale(all.force, spring), vec3_scale(all.moment, spring)};
   pair->spring = turned(&pressed, &scratch->b->rotation);

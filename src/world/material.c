@@ -3,17 +3,24 @@
  * The dashpot's eta follows from the restitution e of a linear spring and dashpot whose force is
  * cut off at zero (Schwager and Poeschel 2007, Granular Matter 9, 465, eq. 20 to 22), with w =
  * sqrt(|1 - eta^2|): eta < 1:  e = exp(-eta/w (pi - atan2(2 eta w, 1 - 2 eta^2))) eta > 1:  e =
- * exp(-eta/w ln((eta + w)/(eta - w))) e falls monotonically with eta, so bisection finds it. */
+ * exp(-eta/w ln((eta + w)/(eta - w))) e falls monotonically with eta, so bisection finds it.
+ *
+ * Hertz's spring h m^3/2 with the dashpot alpha (m* h)^1/2 m^1/4 of Tsuji, Tanaka and Ishida
+ * (Powder Technology 71, 239, 1992) has an e that no speed changes. Theirs is of a force that may
+ * pull; here it is cut off at zero too, and e follows from the motion itself: x'' = -max(0, x^3/2 +
+ * alpha x^1/4 x') from x = 0, x' = 1. */
 #include "world/backend.h"
 #include "world/materials.h"
 #include "world/pairs.h"
 
 scree_material scree_default_material(void) {
-  return (scree_material){.stiffness = 1e8, .density = 2000, .restitution = 0.3, .friction = 0.5};
+  return (scree_material){
+      .stiffness = 1e8, .density = 2000, .restitution = 0.3, .friction = 0.5, .poisson = 0.3};
 }
 
 scree_material scree_default_wall_material(void) {
-  return (scree_material){.stiffness = 1e11, .density = 2000, .restitution = 0.3, .friction = 0.5};
+  return (scree_material){
+      .stiffness = 1e11, .density = 2000, .restitution = 0.3, .friction = 0.5, .poisson = 0.3};
 }
 
 static double restitution_of(double eta) {
@@ -31,6 +38,41 @@ double scree_damping_ratio(double restitution) {
   for (int i = 0; i < 100; i++) {
     double middle = 0.5 * (low + high);
     if (restitution_of(middle) > restitution)
+      low = middle;
+    else
+      high = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+static double hertz_acceleration(double alpha, double x, double v) {
+  if (!(x > 0)) return 0;
+  double root = sqrt(x), force = x * root + alpha * sqrt(root) * v;
+  return force > 0 ? -force : 0;
+}
+
+/* By Runge and Kutta's fourth order. */
+static double hertz_restitution_of(double alpha) {
+  const double step = 0.01, most = 100;
+  double x = 0, v = 1;
+  for (double t = 0; t < most && (x > 0 || v > 0); t += step) {
+    double a1 = hertz_acceleration(alpha, x, v), v2 = v + 0.5 * step * a1,
+           a2 = hertz_acceleration(alpha, x + 0.5 * step * v, v2), v3 = v + 0.5 * step * a2,
+           a3 = hertz_acceleration(alpha, x + 0.5 * step * v2, v3), v4 = v + step * a3,
+           a4 = hertz_acceleration(alpha, x + step * v3, v4);
+    x += step / 6 * (v + 2 * v2 + 2 * v3 + v4);
+    v += step / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+  }
+  return -v;
+}
+
+double scree_hertz_damping(double restitution) {
+  if (restitution >= 1) return 0;
+  double low = 0, high = 1;
+  while (hertz_restitution_of(high) > restitution && high < 1e3) high *= 2;
+  for (int i = 0; i < 40; i++) {
+    double middle = 0.5 * (low + high);
+    if (hertz_restitution_of(middle) > restitution)
       low = middle;
     else
       high = middle;
@@ -56,8 +98,11 @@ static scree_status check_contact(const scree_material_contact *c, scree_error *
   return SCREE_OK;
 }
 
-static scree_material_pair make_contact(const scree_material_contact *given) {
-  return (scree_material_pair){*given, scree_damping_ratio(given->restitution)};
+static scree_material_pair make_contact(const scree_world *world,
+                                        const scree_material_contact *given) {
+  bool hertz = world->options.law == SCREE_LAW_HERTZ;
+  return (scree_material_pair){*given, scree_damping_ratio(given->restitution),
+                               hertz ? scree_hertz_damping(given->restitution) : 0};
 }
 
 static scree_material_contact contact_of(const scree_material *a, const scree_material *b) {
@@ -78,6 +123,9 @@ scree_status scree_world_add_material(scree_world *world, const scree_material *
   if (!(material->density > 0 && isfinite(material->density)))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: density %g kg/m3; above 0",
                       material->density);
+  if (!(material->poisson >= 0 && material->poisson <= 0.5))
+    return scree_fail(error, SCREE_BAD_ARGUMENT, "world: Poisson's ratio %g; 0 to 0.5",
+                      material->poisson);
   scree_material_contact own = contact_of(material, material);
   scree_status status = check_contact(&own, error);
   if (!status) status = scree_world_change(world, SCREE_ALL_PARTS, error);
@@ -86,7 +134,7 @@ scree_status scree_world_add_material(scree_world *world, const scree_material *
   world->materials[k] = *material;
   for (size_t i = 0; i <= k; i++) {
     scree_material_contact contact = contact_of(material, &world->materials[i]);
-    world->contacts[i][k] = world->contacts[k][i] = make_contact(&contact);
+    world->contacts[i][k] = world->contacts[k][i] = make_contact(world, &contact);
   }
   if (index) *index = k;
   return SCREE_OK;
@@ -112,7 +160,7 @@ scree_status scree_world_set_pair(scree_world *world, size_t a, size_t b,
   if (!status) status = check_contact(contact, error);
   if (!status) status = scree_world_change(world, SCREE_ALL_PARTS, error);
   if (status) return status;
-  world->contacts[a][b] = world->contacts[b][a] = make_contact(contact);
+  world->contacts[a][b] = world->contacts[b][a] = make_contact(world, contact);
   scree_neighbours_set_up(world);
   return SCREE_OK;
 }

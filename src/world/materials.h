@@ -6,11 +6,19 @@
 
 /* material.c: eta of the clamped linear dashpot for a restitution in (0, 1]. */
 double scree_damping_ratio(double restitution);
+/* alpha of Hertz's, C = alpha (m* h)^1/2 m^1/4 with F = h m^3/2. */
+double scree_hertz_damping(double restitution);
 
 /* time_step.c */
 double scree_world_choose_time_step(const scree_world *world, char reason[256]);
-/* K of a pair of materials at size L. */
-double scree_pair_stiffness(const scree_world *world, size_t material_a, size_t material_b,
-                            double size);
+/* Two sides of a contact: their shapes and materials. */
+typedef struct scree_contact_sides {
+  const scree_particle *a, *b; /* b NULL: a wall */
+  size_t material_a, material_b;
+  double size, mass; /* L of the smaller; reduced */
+} scree_contact_sides;
+/* Stiffnesses of the law: K, and those of Hertz and Mindlin; the rest is left as it is. */
+void scree_set_stiffness(const scree_world *world, const scree_contact_sides *sides,
+                         scree_pair_law *law);
 
 #endif

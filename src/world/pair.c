@@ -72,10 +72,14 @@ static void set_up(const scree_world *world, scree_neighbours *n) {
     thin = scree_min(thin, scree_thin_overlap(b));
   }
   const scree_material_pair *contact = &world->contacts[material_a][material_b];
-  n->law.stiffness = scree_pair_stiffness(world, material_a, material_b, size);
-  n->law.damping = world->options.law == SCREE_LAW_LINEAR
-                       ? 2 * contact->damping_ratio * sqrt(mass * n->law.stiffness)
-                       : 0;
+  const scree_contact_sides sides = {a, n->wall ? NULL : b, material_a, material_b, size, mass};
+  scree_set_stiffness(world, &sides, &n->law);
+  if (n->law.hertz > 0)
+    n->law.damping = contact->hertz_damping * sqrt(mass * n->law.hertz);
+  else if (world->options.law == SCREE_LAW_HYSTERETIC)
+    n->law.damping = 0;
+  else
+    n->law.damping = 2 * contact->damping_ratio * sqrt(mass * n->law.stiffness);
   n->law.contact_time = 3.14159265358979323846 * sqrt(mass / n->law.stiffness);
   n->law.friction = contact->given.friction;
   n->law.restitution = contact->given.restitution;

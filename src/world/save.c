@@ -26,7 +26,7 @@ static const scree_seal seal = {"screeWLD", "checkpoint of a scree world", "worl
 _Static_assert(sizeof(void *) != 8 ||
                    (sizeof(scree_feature_pair) == 128 && sizeof(scree_anchor) == 56 &&
                     sizeof(scree_sleeping_feature) == 24 && sizeof(scree_pair) == 768 &&
-                    sizeof(scree_neighbours) == 264 && sizeof(scree_frame) == 192),
+                    sizeof(scree_neighbours) == 280 && sizeof(scree_frame) == 192),
                "a field was added: add it to the checkpoint");
 
 /* ---- field lists ---- */
@@ -65,11 +65,13 @@ static void code_material(scree_codec *c, scree_material *m) {
   scree_code_real(c, &m->friction);
   scree_code_real(c, &m->rolling_friction);
   scree_code_real(c, &m->surface_energy);
+  scree_code_real(c, &m->poisson);
 }
 
 static void code_contact(scree_codec *c, scree_material_pair *p) {
   double *reals[] = {&p->given.restitution, &p->given.friction,       &p->given.rolling_friction,
-                     &p->given.pull_off,    &p->given.surface_energy, &p->damping_ratio};
+                     &p->given.pull_off,    &p->given.surface_energy, &p->damping_ratio,
+                     &p->hertz_damping};
   for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) scree_code_real(c, reals[i]);
 }
 
@@ -279,6 +281,8 @@ static void code_pair_state(scree_codec *c, scree_pair *p, scree_neighbours *n) 
                      &n->law.pull,
                      &n->law.rolling,
                      &n->law.rolling_damping,
+                     &n->law.hertz,
+                     &n->law.mindlin,
                      &p->list.travel,
                      &p->list.path,
                      &n->wake,

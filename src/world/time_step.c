@@ -4,16 +4,51 @@
  * fraction of the loading half of the shortest contact: dt = (pi/2) sqrt(m/K)/N with the reduced
  * mass m, over all pairs of
  * kinds of body and of kind of body and wall. A hit on a corner feels an effective mass up to seven
- * times smaller than m, which N = 15 still resolves. */
+ * times smaller than m, which N = 15 still resolves.
+ *
+ * Hertz: 1/E* = sum (1 - nu^2)/E, 1/G* = sum 2 (2 - nu) (1 + nu)/E, 1/R* = sum 1/R, where R of a
+ * clump is half its size and a mesh or wall has none. A contact that begins at v lasts 2.943
+ * (m/h)^2/5 (4/5)^-2/5 v^-1/5 (Johnson 1985, Contact Mechanics, eq. 11.24); K is that of a linear
+ * one which lasts as long for v = 1 m/s. */
 #include "world/materials.h"
 
 static const double pi = 3.14159265358979323846;
 
-double scree_pair_stiffness(const scree_world *world, size_t material_a, size_t material_b,
-                            double size) {
-  double ka = world->materials[material_a].stiffness * size,
-         kb = world->materials[material_b].stiffness * size;
-  return world->options.stiffness_factor * ka * kb / (ka + kb);
+static bool is_round(const scree_particle *particle) {
+  return particle && particle->measures.kind != SCREE_PARTICLE_MESH;
+}
+
+static double curvature_of(const scree_particle *particle) {
+  if (!is_round(particle)) return 0;
+  bool sphere = particle->measures.kind == SCREE_PARTICLE_SPHERE;
+  return 1 / (sphere ? particle->point_radii[0] : 0.5 * particle->measures.size);
+}
+
+/* Of a linear contact as long as Hertz's: the turning point at x = (5/4 m v^2/h)^2/5 after
+ * 1.4716 x/v. */
+static double stiffness_of_hertz(double hertz, double mass) {
+  const double two_fifths = 0.4, rise = 1.25 * mass / hertz; /* v = 1 m/s */
+  double deepest = scree_exp(two_fifths * scree_log(rise)), time = 2 * 1.4716 * deepest;
+  return mass * pi * pi / (time * time);
+}
+
+void scree_set_stiffness(const scree_world *world, const scree_contact_sides *sides,
+                         scree_pair_law *law) {
+  const scree_material *a = &world->materials[sides->material_a],
+                       *b = &world->materials[sides->material_b];
+  double ka = a->stiffness * sides->size, kb = b->stiffness * sides->size,
+         factor = world->options.stiffness_factor;
+  law->stiffness = factor * ka * kb / (ka + kb);
+  law->hertz = law->mindlin = 0;
+  if (world->options.law != SCREE_LAW_HERTZ || !(is_round(sides->a) || is_round(sides->b))) return;
+  double ease = (1 - a->poisson * a->poisson) / a->stiffness +
+                (1 - b->poisson * b->poisson) / b->stiffness,
+         shear_ease = 2 * (2 - a->poisson) * (1 + a->poisson) / a->stiffness +
+                      2 * (2 - b->poisson) * (1 + b->poisson) / b->stiffness,
+         root = sqrt(1 / (curvature_of(sides->a) + curvature_of(sides->b)));
+  law->hertz = 4.0 / 3 * factor * root / ease;
+  law->mindlin = 8 * factor * root / shear_ease;
+  law->stiffness = stiffness_of_hertz(law->hertz, sides->mass);
 }
 
 /* Bodies of one particle and material are one kind. */
@@ -60,19 +95,28 @@ double scree_world_choose_time_step(const scree_world *world, char reason[256]) 
   double best = INFINITY, mass = 0, stiffness = 0;
   size_t first = 0, second = 0;
   bool wall = false;
+  scree_pair_law law;
   for (size_t i = 0; i < count; i++) {
     double mi = bodies->mass[kinds[i].body], li = size_of(world, kinds[i].body);
     for (size_t j = i; j < count; j++) {
       double mj = bodies->mass[kinds[j].body], m = mi * mj / (mi + mj);
-      double k = scree_pair_stiffness(world, kinds[i].material, kinds[j].material,
-                                      scree_min(li, size_of(world, kinds[j].body)));
+      const scree_contact_sides sides = {kinds[i].particle,
+                                         kinds[j].particle,
+                                         kinds[i].material,
+                                         kinds[j].material,
+                                         scree_min(li, size_of(world, kinds[j].body)),
+                                         m};
+      scree_set_stiffness(world, &sides, &law);
+      double k = law.stiffness;
       if (m / k < best)
         best = m / k, mass = m, stiffness = k, first = kinds[i].body, second = kinds[j].body,
         wall = false;
     }
     for (size_t w = 0; w < world->walls.count; w++) {
-      double k =
-          scree_pair_stiffness(world, kinds[i].material, world->walls.items[w].given.material, li);
+      const scree_contact_sides sides = {
+          kinds[i].particle, NULL, kinds[i].material, world->walls.items[w].given.material, li, mi};
+      scree_set_stiffness(world, &sides, &law);
+      double k = law.stiffness;
       if (mi / k < best)
         best = mi / k, mass = mi, stiffness = k, first = kinds[i].body, second = w, wall = true;
     }

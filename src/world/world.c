@@ -65,7 +65,7 @@ static scree_status check_options(const scree_world_options *o, scree_error *err
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < sizeof ranges / sizeof *ranges && !status; i++)
     status = check_range(ranges[i].name, ranges[i].value, ranges[i].low, ranges[i].high, error);
-  if (!status && o->law != SCREE_LAW_LINEAR && o->law != SCREE_LAW_HYSTERETIC)
+  if (!status && !(o->law <= SCREE_LAW_HERTZ))
     return scree_fail(error, SCREE_BAD_ARGUMENT, "world: law number %d is none", (int)o->law);
   return status ? status : check_periods(o, error);
 }

@@ -21,7 +21,7 @@ typedef struct scree_frame {
 
 typedef struct scree_material_pair {
   scree_material_contact given;
-  double damping_ratio; /* eta */
+  double damping_ratio, hertz_damping; /* eta; alpha, 0 where the law is not Hertz's */
 } scree_material_pair;
 
 /* Force on a and its moment about the centre of b. */
@@ -183,6 +183,9 @@ typedef struct scree_pair_law {
   double restitution;                  /* e */
   double pull;                         /* N, with which they hold each other */
   double rolling, rolling_damping;     /* mu_r R, m; torque over angular velocity */
+  double hertz,
+      mindlin; /* 4/3 E* R*^1/2 and 8 G* R*^1/2, N/m^3/2; 0: K holds. Else K is that of a
+                  linear contact as long as one that begins at 1 m/s, and C is over m^1/4 */
 } scree_pair_law;
 
 /* How far the list of feature pairs lasts; the pair has it while awake, its neighbours while

@@ -42,11 +42,17 @@ static void hysteretic(void **state) {
   check(SCREE_LAW_HYSTERETIC, 1500, 0xd9bf85e5d22beb4d, 0x8844c70842cd9038);
 }
 
+static void hertz(void **state) {
+  (void)state;
+  check(SCREE_LAW_HERTZ, 1500, 0, 0);
+}
+
 /* With a backend's name: the same bits there. */
 int main(int argc, char **argv) {
   scree_error error;
   on_device = argc > 1;
   if (on_device) CHECK_OK(scree_set_backend(argv[1], &error), error);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(linear), cmocka_unit_test(hysteretic)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(linear), cmocka_unit_test(hysteretic),
+                                     cmocka_unit_test(hertz)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

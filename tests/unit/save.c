@@ -85,6 +85,11 @@ static void continues_hysteretic(void **state) {
   continues(SCREE_LAW_HYSTERETIC, 6);
 }
 
+static void continues_hertz(void **state) {
+  (void)state;
+  continues(SCREE_LAW_HERTZ, 6);
+}
+
 /* Changes made between save and load's continuation: both worlds take them alike. */
 static void takes_changes(void **state) {
   (void)state;
@@ -360,6 +365,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(continues_linear),
       cmocka_unit_test(continues_hysteretic),
+      cmocka_unit_test(continues_hertz),
       cmocka_unit_test(takes_changes),
       cmocka_unit_test(motions_go_on),
       cmocka_unit_test(pairs_taken_again_know_nothing),
