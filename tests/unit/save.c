@@ -363,18 +363,12 @@ static void files(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(continues_linear),
-      cmocka_unit_test(continues_hysteretic),
-      cmocka_unit_test(continues_hertz),
-      cmocka_unit_test(takes_changes),
-      cmocka_unit_test(motions_go_on),
-      cmocka_unit_test(pairs_taken_again_know_nothing),
-      cmocka_unit_test(keeps_failure),
-      cmocka_unit_test(refuses_damage),
-      cmocka_unit_test(refuses_other_versions),
-      cmocka_unit_test(refuses_clumps_that_cannot_be),
-      cmocka_unit_test(survives_forgery),
-      cmocka_unit_test(files),
+      cmocka_unit_test(continues_linear),       cmocka_unit_test(continues_hysteretic),
+      cmocka_unit_test(continues_hertz),        cmocka_unit_test(takes_changes),
+      cmocka_unit_test(motions_go_on),          cmocka_unit_test(pairs_taken_again_know_nothing),
+      cmocka_unit_test(keeps_failure),          cmocka_unit_test(refuses_damage),
+      cmocka_unit_test(refuses_other_versions), cmocka_unit_test(refuses_clumps_that_cannot_be),
+      cmocka_unit_test(survives_forgery),       cmocka_unit_test(files),
   };
   return cmocka_run_group_tests(tests, make_folder, remove_folder);
 }
