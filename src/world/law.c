@@ -373,13 +373,15 @@ typedef struct felt {
  * from before the touch, or to after it, where the kick's work is this U, with x' the overlap a
  * step further inside. The kick changes the velocity by less than itself, so that one more round
  * finds it. */
-static felt felt_overlap(const scree_pair *pair, double x, overlap_rate rate,
-                         const scree_scratch *scratch, double inverse) {
+static felt felt_overlap(const scree_world *world, const scree_pair *pair, double x,
+                         overlap_rate rate, const scree_scratch *scratch,
+                         const scree_wrench *slope) {
   const double drift = scratch->drift, step = scratch->step, kick = 0.5 * (drift + step);
   const bool begins = rate.now > 0;
   double speed = fabs(rate.drift), outer = begins ? speed * drift : fabs(rate.now) * step;
   felt f = {spring_at(pair, x).force, 1, true};
   if (x >= most_slopes[0] * pair->list.travel || !(outer > x) || !(speed > 0)) return f;
+  const double inverse = inverse_mass(world, pair, &scratch->relative, slope);
   for (int round = 0; round < 2; round++) {
     double change = round == 0 ? 0 : (f.force - pair->law.pull * f.pull) * kick * inverse,
            middle = begins ? speed - 0.5 * change : speed + 0.5 * change,
@@ -643,11 +645,16 @@ static double press(const scree_world *world, scree_pair *pair, const scree_smoo
                     const overlap_slope *slope, const scree_scratch *scratch) {
   const scree_frame *relative = &scratch->relative;
   const double drift = scratch->drift, step = scratch->step, m = maximum->value;
+  if (lasting(pair) == 1 && m >= most_slopes[0] * pair->list.travel) { /* nothing is repaid */
+    const felt whole = {spring_at(pair, m).force, 1, true};
+    pair->spring = (scree_wrench){{0, 0, 0}, {0, 0, 0}};
+    return spring_force(world, pair, m, &whole);
+  }
   const scree_wrench all = {vec3_add(slope->whole.force, slope->fading.force),
                             vec3_add(slope->whole.moment, slope->fading.moment)};
   const overlap_rate rate = {-along_motion(&all, relative->velocity, relative->spin),
                              -along_motion(&all, relative->velocity_now, relative->spin_now)};
-  const felt f = felt_overlap(pair, m, rate, scratch, inverse_mass(world, pair, relative, &all));
+  const felt f = felt_overlap(world, pair, m, rate, scratch, &all);
   double spring = spring_force(world, pair, m, &f);
   if (world->options.law == SCREE_LAW_HYSTERETIC) return spring;
   const bool first = scratch->overlap_before == 0 || scratch->was_depenetrating;
