@@ -22,8 +22,10 @@ apt="apt-get -qq -o Dir::Etc::sourcelist=/dev/null -o Dir::Etc::sourceparts=$PWD
 # shellcheck disable=SC2086
 $apt update
 for package in qhull xxhash libyaml meshoptimizer expat zlib; do
+  # a mirror may lack what the security archive's index names
   # shellcheck disable=SC2086
-  $apt source --download-only "$package" >/dev/null
+  $apt source --download-only "$package" >/dev/null 2>&1 ||
+    $apt source --download-only "$package/$(. /etc/os-release && echo "$VERSION_CODENAME")" >/dev/null
   dpkg-source --no-check -x "$package"_*.dsc "$package" >/dev/null
 done
 npm pack --silent better-sqlite3@12 >/dev/null
