@@ -23,7 +23,7 @@ CONTAINERS = ("cylinder", "box")
 WALL_KINDS = ("plane", "disc", "cylinder", "mesh")
 MOTION_LAWS = ("constant", "sine", "positions", "speeds")
 VIEWS = ("surfaces", "points", "contacts", "walls")
-DEFECT_COUNT, REPAIR_ACTION_COUNT = 18, 22
+DEFECT_COUNT, REPAIR_ACTION_COUNT = 18, 23
 
 
 class scree_error(Structure):
@@ -103,17 +103,22 @@ class scree_check_options(Structure):
     _fields_ = [("intersections", c_bool)]
 
 
+class scree_cut_plane(Structure):
+    _fields_ = [("normal", double3), ("offset", c_double)]
+
+
 class scree_repair_options(Structure):
     _fields_ = [("seam_tolerance", c_double), ("hole_edges", c_size_t), ("fill_large_holes", c_bool),
                 ("flat_large_holes", c_bool), ("debris_share", c_double), ("drop_cavities", c_bool), ("keep_largest", c_bool),
                 ("cut_intersections", c_bool), ("merge_shells", c_bool), ("merge_folds", c_bool),
-                ("intersections", c_bool), ("cavity_share", c_double), ("volume_change", c_double)]
+                ("intersections", c_bool), ("cavity_share", c_double), ("volume_change", c_double), ("cut", c_int),
+                ("plane", scree_cut_plane)]
 
 
 class scree_repair_report(Structure):
     _fields_ = [("done", c_size_t * REPAIR_ACTION_COUNT), ("seam_distance", c_double), ("area_before", c_double),
                 ("area_after", c_double), ("volume_before", c_double), ("volume_after", c_double),
-                ("filled_volume", c_double), ("before", scree_check),
+                ("filled_volume", c_double), ("plane", scree_cut_plane), ("before", scree_check),
                 ("after", scree_check)]
 
 

@@ -2,6 +2,7 @@
  * are the dense curve, markers the paper's grid. A ring goes around the paper's choice, a square
  * around the robust one, and a star stands at the recommended one. With one object the robust
  * criterion is drawn too. */
+#include "base/number.h"
 #include "report/choice.h"
 #include "report/plot.h"
 
@@ -198,8 +199,9 @@ static size_t set_guide(const scree_choice_report *report, char *text, size_t si
                         scree_guide *guide) {
   if (report->entry_count < 2 || !report->set) return 0;
   double rp = scree_report_set_pick(report)->rp;
-  snprintf(text, size, "%s for the set: %.2g",
-           report->rule == SCREE_RULE_ROBUST ? "robust" : "paper's", rp);
+  char number[SCREE_NUMBER_SIZE];
+  snprintf(text, size, "%s for the set: %s",
+           report->rule == SCREE_RULE_ROBUST ? "robust" : "paper's", scree_rp_text(rp, number));
   *guide = (scree_guide){text, rp, false};
   return 1;
 }
@@ -214,6 +216,7 @@ static bool has_below(const scree_choice_level *levels, size_t count, double rp_
  * it. */
 static const char *missing_text(const scree_choice_report *report, char text[64]) {
   scree_axis axis = {.minimum = 0};
+  char number[SCREE_NUMBER_SIZE];
   bool missing = false;
   double rp_max = largest_rp(report);
   fit_errors(report, false, &axis);
@@ -223,7 +226,7 @@ static const char *missing_text(const scree_choice_report *report, char text[64]
               has_below(choice->trace, choice->trace_count, rp_max, axis.minimum);
   }
   if (axis.minimum > 0)
-    snprintf(text, 64, "; not in (a): \u03b5_{s} < %.1e", axis.minimum);
+    snprintf(text, 64, "; not in (a): \u03b5_{s} < %s", scree_rp_text(axis.minimum, number));
   else
     snprintf(text, 64, "; not in (a): \u03b5_{s} = 0");
   return missing ? text : "";

@@ -13,9 +13,9 @@ if ! "$compiler" -m32 try.c -o try 2>/dev/null || ! ./try >/dev/null; then
   echo "skipped: $compiler -m32 makes no program that runs here (Debian: gcc-multilib)"
   exit 77
 fi
-flags="-std=gnu17 -O1 -msse2 -mfpmath=sse -ffp-contract=off -w -Wno-psabi -I $root/src -I $root/include"
+flags="-std=gnu17 -O1 -msse2 -mfpmath=sse -ffp-contract=off -w -Wno-psabi -ffunction-sections -I $root/src -I $root/include"
 base="alloc arena eigen error math parallel platform_posix platform_unix progress radix rng"
-mesh="mesh closest intersect predicates"
+mesh="mesh adjacency closest extent intersect measure predicates"
 # build BITS: the program of that kind in BITS/curve
 build() {
   mkdir "$1"
@@ -25,7 +25,7 @@ build() {
     find "$root/src/simplify" -name '*.c'
     echo "$root/tests/bits32/record_of_torus.c"
   } | (cd "$1" && xargs -n 6 -P 2 "$compiler" "-m$1" $flags '-DSCREE_VERSION="0"' -c)
-  "$compiler" "-m$1" "$1"/*.o -lm -lpthread -o "$1/curve"
+  "$compiler" "-m$1" -Wl,--gc-sections "$1"/*.o -lm -lpthread -o "$1/curve"
 }
 build 64
 build 32

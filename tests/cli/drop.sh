@@ -52,9 +52,9 @@ grep -c "$(ls stopped/frame-*.vtp | tail -1 | sed 's/.*\///')" stopped/drop.pvd
 printf 'x,y,z,r\n-12,0,0,10\n12,0,0,8\n0,0,5,9\n' >clump.csv
 drop clump.csv=3 --frames 0 --no-picture --time 0 -o clumps | head -1
 printf '1,2,3,-4\n' >negative.csv
-printf '1,2,3,4,5\n' >five.csv
+printf '1,2,3\n' >three.csv
 run drop negative.csv -o no
-run drop five.csv -o no
+run drop three.csv -o no
 # stopped, killed, and gone on with: the same files as those of a drop left alone
 pour="sphere:40mm=6 sample:icosphere-1=6 --time 0.3 --still 0 --frames 0.05 --no-picture --stiffness 1e-2"
 "$SCREE" drop $pour -o whole -q >/dev/null

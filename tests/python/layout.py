@@ -15,7 +15,7 @@ enums = {f"SCREE_{name}": i for i, name in enumerate(c.STATUSES)}
 for prefix, words in (("METHOD", c.METHODS), ("REFERENCE", c.REFERENCES), ("PARTICLE", c.PARTICLE_KINDS),
                       ("LAW", c.LAWS), ("CONTAINER", c.CONTAINERS), ("WALL", c.WALL_KINDS), ("VIEW", c.VIEWS)):
     enums |= {f"SCREE_{prefix}_{word.upper()}": i for i, word in enumerate(words)}
-for i, word in enumerate(("AREA", "VOLUME", "HAUSDORFF", "MEAN", "INERTIA", "SIZE")):
+for i, word in enumerate(("AREA", "VOLUME", "HAUSDORFF", "MEAN", "INERTIA", "WIDTHS")):
     enums[f"SCREE_ERROR_{word}"] = i
 enums |= {"SCREE_STATUS_COUNT": len(c.STATUSES), "SCREE_SHAPE_ERROR_COUNT": len(c.SHAPE_ERRORS),
           "SCREE_DEFECT_COUNT": c.DEFECT_COUNT, "SCREE_REPAIR_ACTION_COUNT": c.REPAIR_ACTION_COUNT,

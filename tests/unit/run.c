@@ -411,7 +411,7 @@ static void a_full_disk_ends_a_run_and_keeps_its_checkpoint(void **state) {
 /* A run that is to fail: its particles are far too soft. */
 static pot make_soft_pot(void) {
   pot p = make_pot();
-  p.experiment.young_particle = 2e3;
+  p.experiment.young_particle = 6e3;
   return p;
 }
 
