@@ -179,11 +179,10 @@ static void start_object(scree_3mf_parse *p, const char **attributes) {
                         .first_component = m->components.count,
                         .is_support =
                             type && (!strcmp(type, "support") || !strcmp(type, "solidsupport"))};
-  if (m->objects.count >= MOST_OBJECTS) {
+  if (!SCREE_PUSH(&m->objects, o))
+    scree_3mf_stop_memory(p);
+  else if (m->objects.count > MOST_OBJECTS)
     stop(p, SCREE_LIMIT, "more than %d objects", MOST_OBJECTS);
-    return;
-  }
-  if (!SCREE_PUSH(&m->objects, o)) scree_3mf_stop_memory(p);
 }
 
 static void start_vertex(scree_3mf_parse *p, scree_3mf_object *o, const char **attributes) {

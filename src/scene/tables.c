@@ -27,7 +27,7 @@ static scree_status open_table(const char *folder, const scree_scene_sensor *sen
   if (!path) return scree_fail_memory(error, size, "a path");
   char *at = path + snprintf(path, size, "%s/sensor-", folder);
   put_name(at, name);
-  strcat(strcat(at, "-"), what);
+  snprintf(path + strlen(path), size - strlen(path), "-%s", what);
   scree_status status = scree_output_open(path, true, output, error);
   scree_free(path);
   return status;

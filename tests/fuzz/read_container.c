@@ -23,14 +23,15 @@ static uint32_t crc_of(const uint8_t *bytes, size_t size) {
 static size_t make_archive(const uint8_t *data, size_t size, uint8_t *out) {
   uint32_t crc = crc_of(data, size), entry = (uint32_t)(LOCAL + NAME + size);
   memset(out, 0, LOCAL + NAME + size + ENTRY + NAME + END);
-  memcpy(out, "PK\3\4", 4), memcpy(out + entry, "PK\1\2", 4);
+  static const uint8_t marks[3][4] = {{'P', 'K', 3, 4}, {'P', 'K', 1, 2}, {'P', 'K', 5, 6}};
+  memcpy(out, marks[0], 4), memcpy(out + entry, marks[1], 4);
   put(out + 14, crc, 4), put(out + 18, (uint32_t)size, 4), put(out + 22, (uint32_t)size, 4);
   put(out + 26, NAME, 2);
   memcpy(out + entry + 16, out + 14, 14);
   memcpy(out + LOCAL, name, NAME), memcpy(out + LOCAL + NAME, data, size);
   memcpy(out + entry + ENTRY, name, NAME);
   uint8_t *end = out + entry + ENTRY + NAME;
-  memcpy(end, "PK\5\6", 4), put(end + 8, 1, 2), put(end + 10, 1, 2);
+  memcpy(end, marks[2], 4), put(end + 8, 1, 2), put(end + 10, 1, 2);
   put(end + 12, ENTRY + NAME, 4), put(end + 16, entry, 4);
   return entry + ENTRY + NAME + END;
 }

@@ -255,9 +255,7 @@ static void columns_go_by_their_names(void **state) {
       "0, 1, 2, 3, 4 # the big one\n1, 6, 2, 3, 2\n",
       "# x y z r\n1 2 3 4\n6 2 3 2\n",
       "\"pos_x\",\"pos_y\",\"pos_z\",\"Sphere radius [mm]\"\n1,2,3,4\n6,2,3,2\n",
-      "; a pebble more\nclump template create ...\n name 'a' ...\n pebbles 2 ...\n 4 1 2 3 ... ; "
-      "big\n"
-      " 2 6 2 3\n"};
+      "; a comment\nclump template create ...\n pebbles 2 ...\n 4 1 2 3 ... ; big\n 2 6 2 3\n"};
   for (size_t i = 0; i < sizeof tables / sizeof *tables; i++) {
     scree_particle *p;
     scree_error error;
