@@ -61,7 +61,7 @@ void scree_code_reals(scree_codec *c, double *values, size_t count) {
 }
 
 void scree_code_bool(scree_codec *c, bool *value) {
-  uint8_t byte = *value;
+  uint8_t byte = c->loading ? 0 : *value; /* a place that is loaded may hold anything */
   scree_code_u8(c, &byte);
   if (byte > 1) c->failed = true;
   *value = byte == 1;
