@@ -200,10 +200,12 @@ void cli_print_repair(FILE *stream, const scree_repair_report *report) {
     fprintf(stream, "%10zu %s\n", report->done[i],
             scree_repair_action_text((scree_repair_action)i, report->done[i]));
   }
-  if (report->done[SCREE_REPAIR_CUT_OFF])
-    fprintf(stream, "%10s the plane %.4g x %+.4g y %+.4g z = %.6g mm\n", "at",
-            report->plane.normal[0], report->plane.normal[1], report->plane.normal[2],
+  if (report->done[SCREE_REPAIR_CUT_OFF]) {
+    double n[3]; /* without what rounding left */
+    for (int k = 0; k < 3; k++) n[k] = round(1e4 * report->plane.normal[k]) / 1e4 + 0.0;
+    fprintf(stream, "%10s the plane %.4g x %+.4g y %+.4g z = %.6g mm\n", "at", n[0], n[1], n[2],
             1e3 * report->plane.offset);
+  }
   if (report->seam_distance > 0)
     fprintf(stream, "%10.3g mm is the distance within which seams were closed\n",
             report->seam_distance * 1e3);
