@@ -4,27 +4,13 @@
 #include "scree.h"
 #include "support/check.h"
 #include "support/folder.h"
+#include "support/scene.h"
 
 static const double g = 9.81, pi = 3.14159265358979;
 
 #define BALL                                                                                       \
   "materials: {m: {young: 5e6, density: 2500, restitution: %g, friction: 0.3}}\n"                  \
   "shapes: {ball: {sphere: 0.02}}\n"
-
-static scree_scene *create(const char *text) {
-  scree_error error;
-  scree_scene_file *file = NULL;
-  scree_scene *scene = NULL;
-  CHECK_OK(scree_scene_file_parse(text, strlen(text), "test.yaml", &file, &error), error);
-  CHECK_OK(scree_scene_create(file, NULL, &scene, &error), error);
-  scree_scene_file_free(file);
-  return scene;
-}
-
-static void run_to_end(scree_scene *scene) {
-  scree_error error;
-  while (!scree_scene_end(scene)) CHECK_OK(scree_scene_advance(scene, 1000, &error), error);
-}
 
 static size_t column_of(const scree_scene *scene, const char *name) {
   size_t k = 0;
