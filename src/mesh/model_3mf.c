@@ -239,13 +239,18 @@ static void start_placed(scree_3mf_parse *p, scree_3mf_object *o, const char **a
     o->component_count++;
 }
 
+/* The object whose elements are read, or NULL. */
+static scree_3mf_object *open_object(scree_3mf_parse *p) {
+  scree_3mf *m = p->model;
+  if (!m->objects.count || m->objects.items[m->objects.count - 1].part != p->part) return NULL;
+  return &m->objects.items[m->objects.count - 1];
+}
+
 static void start_element(void *context, const char *name, const char **attributes) {
   scree_3mf_parse *p = context;
-  scree_3mf *m = p->model;
   const char *core = p->status == SCREE_OK ? core_name(p, name) : NULL;
-  scree_3mf_object *o = m->objects.count ? &m->objects.items[m->objects.count - 1] : NULL;
   if (!core) return;
-  if (o && o->part != p->part) o = NULL;
+  scree_3mf_object *o = open_object(p);
   if (!strcmp(core, "model")) start_model(p, attributes);
   if (!strcmp(core, "object")) start_object(p, attributes);
   if (!strcmp(core, "vertex") && o) start_vertex(p, o, attributes);
