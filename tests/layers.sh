@@ -67,6 +67,10 @@ for file in $(grep -lE "^ *# *include *<($system)\.h>" "$root"/src/*/*.c "$root"
   esac
 done
 
+for name in $(find src include -name '*.h' ! -path '*/vendor/*' | xargs sed -n 's/^} \(scree_[a-z0-9_]*\);$/\1/p' | sort | uniq -d); do
+  complain "$name: two types have this name"
+done
+
 for header in "$root"/include/scree.h $(find "$root/include/scree" "$root/src" -name '*.h'); do
   echo "#include \"$header\"" |
     "$compiler" -std=c17 -D_POSIX_C_SOURCE=200809L -fsyntax-only -Wall -Wextra -Werror \

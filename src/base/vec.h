@@ -53,6 +53,9 @@ static inline vec3 vec3_mad(vec3 a, vec3 b, double s) {
 static inline vec3 vec3_lerp(vec3 a, vec3 b, double t) {
   return vec3_mad(a, vec3_sub(b, a), t);
 }
+static inline double vec3_along(vec3 a, int axis) {
+  return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
+}
 static inline double vec3_dot(vec3 a, vec3 b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }

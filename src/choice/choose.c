@@ -103,7 +103,7 @@ static scree_status measure(const scree_curve *curve, const scree_mesh *scan,
   if (status == SCREE_OK)
     status = scree_recommend(curve, &gauge, choice->fidelity, tolerances, &found, error);
   if (status == SCREE_OK) {
-    double load = scree_load(found.reading.errors, tolerances, &choice->limited_by);
+    double load = scree_normalised_error(found.reading.errors, tolerances, &choice->limited_by);
     choice->recommended = pick_at(curve, choice, found.level_index, load);
     status = scree_fidelity_insert(choice->fidelity, found.level_index,
                                    choice->recommended.triangle_count, &found.reading,

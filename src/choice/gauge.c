@@ -32,8 +32,9 @@ static const double SLOPE = 0.5;
 static const double FACING_BACK = 0.8;
 /* Thinner is the surface itself, seen from beside the point; of D. */
 static const double LEAST_WALL = 0.002;
-double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
-                  const double tolerances[SCREE_SHAPE_ERROR_COUNT], scree_shape_error *which) {
+double scree_normalised_error(const double errors[SCREE_SHAPE_ERROR_COUNT],
+                              const double tolerances[SCREE_SHAPE_ERROR_COUNT],
+                              scree_shape_error *which) {
   double load = 0;
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++) {
     if (!(errors[e] / tolerances[e] > load)) continue;
@@ -336,12 +337,12 @@ done:
 static scree_status search_facets(forward *f, const scree_surface *from, const scree_surface *to,
                                   double gap, scree_error *error) {
   scree_deviation d;
-  const scree_way way = {.sample_count = 1,
-                         .gap = gap,
-                         .slope = f->gauge->refined ? 1 : SLOPE,
-                         .known = f->maximum,
-                         .cut_budget =
-                             f->gauge->spread.count / (f->gauge->refined ? BACK_STEP : CUT_STEP)};
+  const scree_deviation_rule way = {.sample_count = 1,
+                                    .gap = gap,
+                                    .slope = f->gauge->refined ? 1 : SLOPE,
+                                    .known = f->maximum,
+                                    .cut_budget = f->gauge->spread.count /
+                                                  (f->gauge->refined ? BACK_STEP : CUT_STEP)};
   scree_status status = scree_surface_deviation(from, to, &way, NULL, &d, error);
   if (status == SCREE_OK) keep_farthest(f, d.maximum, vec3_load(d.at));
   return status;
@@ -370,7 +371,7 @@ static scree_status read_farthest(forward *f, double gap, scree_gauge_reading *r
 static scree_status read_level(forward *f, double gap, const double *tolerances,
                                scree_gauge_reading *r, scree_error *error) {
   scree_status status = read_means(f, gap, r, error);
-  if (status != SCREE_OK || (tolerances && scree_load(r->errors, tolerances, NULL) > 1))
+  if (status != SCREE_OK || (tolerances && scree_normalised_error(r->errors, tolerances, NULL) > 1))
     return status;
   status = read_farthest(f, gap, r, error);
   if (status == SCREE_OK) status = read_walls(f, r, error);

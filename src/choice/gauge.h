@@ -59,8 +59,9 @@ scree_status scree_gauge_read(const scree_gauge *gauge, const scree_mesh *level,
 
 /* The largest error over its tolerance; *which is that error (may be NULL). Errors that are NaN do
  * not count. */
-double scree_load(const double errors[SCREE_SHAPE_ERROR_COUNT],
-                  const double tolerances[SCREE_SHAPE_ERROR_COUNT], scree_shape_error *which);
+double scree_normalised_error(const double errors[SCREE_SHAPE_ERROR_COUNT],
+                              const double tolerances[SCREE_SHAPE_ERROR_COUNT],
+                              scree_shape_error *which);
 
 /* scree_fidelity_measure with a gauge at hand. */
 scree_status scree_fidelity_sweep(const scree_gauge *gauge, const scree_curve *curve,

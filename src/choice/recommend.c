@@ -83,7 +83,7 @@ static scree_status keeps_all(search *s, const scree_gauge *gauge, double gap, s
         scree_gauge_read(gauge, &mesh, gap, level_index ? s->tolerances : NULL, &reading, s->error);
   scree_mesh_free(&mesh);
   if (status != SCREE_OK) return status;
-  *keeps = scree_load(reading.errors, s->tolerances, NULL) <= MOST_LOAD;
+  *keeps = scree_normalised_error(reading.errors, s->tolerances, NULL) <= MOST_LOAD;
   if (*keeps || level_index == 0) s->reading = reading;
   return SCREE_OK;
 }
@@ -111,7 +111,8 @@ static bracket first_bracket(const search *s, const scree_fidelity *f) {
     for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
       errors[e] = scree_fidelity_error(f, row, (scree_shape_error)e);
     size_t level_index = scree_fidelity_level_index(f, row);
-    if (scree_load(errors, s->tolerances, NULL) <= MOST_LOAD) return (bracket){level_index, coarse};
+    if (scree_normalised_error(errors, s->tolerances, NULL) <= MOST_LOAD)
+      return (bracket){level_index, coarse};
     coarse = level_index;
   }
   return (bracket){0, coarse};

@@ -111,7 +111,7 @@ static scree_status make(const scree_target *body, const scree_clump_options *o,
                                            : scree_greedy_fill(&path, o, error);
   c->size = SCREE_UNIT_SIZE * body->scale;
   c->thickness = body->scale * path.field.thickness;
-  c->wall_cells = scree_field_cells(&path.field);
+  c->wall_cells = scree_distance_field_cells(&path.field);
   if (status == SCREE_OK) status = collect(&path, c, error);
   scree_path_free(&path);
   return status;

@@ -25,7 +25,7 @@ static double choose_step(const scree_target *body, size_t most, double thicknes
   return fmax(wanted, cbrt(box / MOST_NODES));
 }
 
-static void lay_grid(const scree_target *body, scree_field *f) {
+static void lay_grid(const scree_target *body, scree_distance_field *f) {
   const double low[3] = {body->low.x, body->low.y, body->low.z},
                high[3] = {body->high.x, body->high.y, body->high.z};
   for (int k = 0; k < 3; k++) {
@@ -37,15 +37,15 @@ static void lay_grid(const scree_target *body, scree_field *f) {
 
 typedef struct job {
   const scree_target *body;
-  scree_field *field;
+  scree_distance_field *field;
   const scree_lines *lines; /* through all fine nodes */
   const size_t *cells;      /* of each brick, its lowest node */
 } job;
 
 /* Signed distance at the fine node (i, j, k); *bound2 is a distance squared that is enough. */
 static float node_distance(const job *j, const size_t at[3], double bound2) {
-  const scree_field *f = j->field;
-  double fine = scree_field_spacing(f);
+  const scree_distance_field *f = j->field;
+  double fine = scree_distance_field_spacing(f);
   vec3 p = {f->low[0] + (double)at[0] * fine, f->low[1] + (double)at[1] * fine,
             f->low[2] + (double)at[2] * fine};
   scree_bvh_hit hit = {.distance2 = bound2};
@@ -62,7 +62,7 @@ static double bound_from(float before, double way) {
 
 static void fill_rows(void *context, size_t begin, size_t end, size_t block, int worker) {
   const job *j = context;
-  const scree_field *f = j->field;
+  const scree_distance_field *f = j->field;
   (void)block, (void)worker;
   for (size_t row = begin; row < end; row++)
     for (size_t k = 0; k < f->n[2]; k++) {
@@ -74,7 +74,7 @@ static void fill_rows(void *context, size_t begin, size_t end, size_t block, int
 
 static void fill_bricks(void *context, size_t begin, size_t end, size_t block, int worker) {
   const job *j = context;
-  const scree_field *f = j->field;
+  const scree_distance_field *f = j->field;
   (void)block, (void)worker;
   for (size_t b = begin; b < end; b++) {
     float *value = f->bricks[b];
@@ -83,7 +83,8 @@ static void fill_bricks(void *context, size_t begin, size_t end, size_t block, i
     for (size_t i = 0; i < SCREE_BRICK_NODES; i++) {
       size_t at[3] = {i / SCREE_BRICK_SIDE / SCREE_BRICK_SIDE,
                       i / SCREE_BRICK_SIDE % SCREE_BRICK_SIDE, i % SCREE_BRICK_SIDE};
-      double way = (i % SCREE_BRICK_SIDE ? 1 : SCREE_BRICK_SIDE + 1) * scree_field_spacing(f);
+      double way =
+          (i % SCREE_BRICK_SIDE ? 1 : SCREE_BRICK_SIDE + 1) * scree_distance_field_spacing(f);
       double bound2 = i ? bound_from(value[i - 1], way) : INFINITY;
       for (int k = 0; k < 3; k++) at[k] += origin[k] * SCREE_FINER;
       value[i] = node_distance(j, at, bound2);
@@ -92,7 +93,7 @@ static void fill_bricks(void *context, size_t begin, size_t end, size_t block, i
 }
 
 /* Whether the surface may pass the coarse cell or come near it. */
-static bool is_near(const scree_field *f, const size_t at[3]) {
+static bool is_near(const scree_distance_field *f, const size_t at[3]) {
   if (at[0] + 1 >= f->n[0] || at[1] + 1 >= f->n[1] || at[2] + 1 >= f->n[2]) return false;
   const float *p = f->values + (at[0] * f->n[1] + at[1]) * f->n[2] + at[2];
   double reach = 0.87 * f->step; /* half a cell's diagonal */
@@ -104,7 +105,7 @@ static bool is_near(const scree_field *f, const size_t at[3]) {
 }
 
 /* Numbers the bricks, and lists their cells. */
-static size_t number_bricks(scree_field *f, size_t *cells) {
+static size_t number_bricks(scree_distance_field *f, size_t *cells) {
   size_t count = 0, node = 0;
   for (size_t i = 0; i < f->n[0]; i++)
     for (size_t j = 0; j < f->n[1]; j++)
@@ -116,10 +117,10 @@ static size_t number_bricks(scree_field *f, size_t *cells) {
   return count;
 }
 
-static scree_status fill(const scree_target *body, scree_field *f, scree_lines *lines,
+static scree_status fill(const scree_target *body, scree_distance_field *f, scree_lines *lines,
                          size_t **cells, scree_error *error) {
   size_t count = f->n[0] * f->n[1] * f->n[2];
-  double fine = scree_field_spacing(f);
+  double fine = scree_distance_field_spacing(f);
   *lines = (scree_lines){.nx = (f->n[0] - 1) * SCREE_FINER + 1,
                          .ny = (f->n[1] - 1) * SCREE_FINER + 1,
                          .x0 = f->low[0] + 1.237e-6 * fine, /* off vertices on round numbers */
@@ -141,9 +142,9 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-scree_status scree_field_make(const scree_target *body, size_t most, scree_field *field,
-                              scree_error *error) {
-  scree_field f = {0};
+scree_status scree_distance_field_make(const scree_target *body, size_t most,
+                                       scree_distance_field *field, scree_error *error) {
+  scree_distance_field f = {0};
   scree_lines lines = {0};
   size_t *cells = NULL;
   scree_status status = scree_target_thickness(body, &f.thickness, error);
@@ -156,15 +157,15 @@ scree_status scree_field_make(const scree_target *body, size_t most, scree_field
   if (status == SCREE_OK)
     *field = f;
   else
-    scree_field_free(&f);
+    scree_distance_field_free(&f);
   return status;
 }
 
-void scree_field_free(scree_field *field) {
+void scree_distance_field_free(scree_distance_field *field) {
   scree_free(field->values);
   scree_free(field->brick);
   scree_free(field->bricks);
-  *field = (scree_field){0};
+  *field = (scree_distance_field){0};
 }
 
 /* p: the value at the cell's lowest corner; dy and dx: how far its neighbours stand. */
@@ -177,7 +178,7 @@ static float between(const float *p, size_t dx, size_t dy, const float t[3]) {
   return a + t[0] * (c - a);
 }
 
-float scree_field_at(const scree_field *f, const double p[3]) {
+float scree_distance_field_at(const scree_distance_field *f, const double p[3]) {
   float t[3], outside2 = 0;
   size_t at[3], fine[3];
   for (int k = 0; k < 3; k++) {

@@ -31,7 +31,7 @@ static scree_sphere inscribed(const scree_path *p, vec3 at) {
   double distance;
   vec3_store(s.centre, at);
   scree_target_nearest(p->body, at, &distance);
-  if (scree_field_at(&p->field, s.centre) < 0) s.radius = distance;
+  if (scree_distance_field_at(&p->field, s.centre) < 0) s.radius = distance;
   return s;
 }
 
@@ -49,7 +49,7 @@ static void put_all(scree_path *p, const scree_sphere *spheres, size_t count) {
 
 /* ---- Favier ---- */
 
-static vec3 slice_centroid(const scree_places *places, double low, double high) {
+static vec3 slice_centroid(const scree_sphere_sites *places, double low, double high) {
   double volume = 0;
   vec3 sum = {0, 0, 0};
   for (size_t i = 0; i < places->count; i++) {
@@ -110,9 +110,9 @@ static vec3 climb(const scree_path *p, const scree_sphere *spheres, size_t count
 
 static void fill_peeling(scree_path *p) {
   scree_sphere spheres[SCREE_MOST_SPHERES];
-  scree_place place;
+  scree_sphere_candidate place;
   size_t count = 0;
-  while (count < p->most && scree_places_free_of(&p->places, spheres, count, 0, &place, 1)) {
+  while (count < p->most && scree_sphere_sites_free_of(&p->places, spheres, count, 0, &place, 1)) {
     vec3 at = climb(p, spheres, count, vec3_load(place.sphere.centre));
     spheres[count] = inscribed(p, at);
     if (!(spheres[count].radius > 0)) break;

@@ -83,16 +83,17 @@ static void clip(const scree_path *p, scree_trial *t) {
     scree_sphere *s = &t->spheres[i];
     double distance;
     scree_target_nearest(p->body, vec3_load(s->centre), &distance);
-    double depth = scree_field_at(&p->field, s->centre) < 0 ? distance : -distance;
+    double depth = scree_distance_field_at(&p->field, s->centre) < 0 ? distance : -distance;
     s->radius = fmax(1e-6, fmin(s->radius, depth + p->mover.most_outside));
   }
 }
 
 /* One more sphere, where most is gained; `skip`: at the next best places. */
 static bool add_sphere(scree_path *p, scree_trial *t, size_t skip) {
-  scree_place found[CHOICES];
+  scree_sphere_candidate found[CHOICES];
   double outside = fmax(t->overlap.iou, least_outside);
-  size_t count = scree_places_free_of(&p->places, t->spheres, t->count, outside, found, CHOICES);
+  size_t count =
+      scree_sphere_sites_free_of(&p->places, t->spheres, t->count, outside, found, CHOICES);
   if (count == 0) return false;
   t->spheres[t->count++] = found[skip < count ? skip : count - 1].sphere;
   return true;
@@ -122,7 +123,8 @@ static void remove_sphere(scree_path *p, scree_trial *t) {
 /* Spheres that ran off the body start again elsewhere. */
 static void recall(scree_path *p, scree_trial *t) {
   for (size_t i = t->count; i-- > 0;) {
-    if ((double)scree_field_at(&p->field, t->spheres[i].centre) <= lost * t->spheres[i].radius)
+    if ((double)scree_distance_field_at(&p->field, t->spheres[i].centre) <=
+        lost * t->spheres[i].radius)
       continue;
     scree_sphere kept = t->spheres[i];
     t->spheres[i] = t->spheres[--t->count];
@@ -176,7 +178,7 @@ static void sweep_up(scree_path *p) {
     if (!add_sphere(p, t, 0)) return;
     try_start(p, t);
     *t = (scree_trial){.count = n};
-    if (!scree_places_spread(&p->places, n, t->spheres)) continue;
+    if (!scree_sphere_sites_spread(&p->places, n, t->spheres)) continue;
     measure(p, t);
     try_start(p, t);
   }
@@ -291,7 +293,7 @@ scree_status scree_path_search(scree_path *p, scree_error *error) {
   if (!p->best[1].count)
     return scree_fail(error, SCREE_LIMIT,
                       "no point of the grid lies inside: walls are thinner than %g of the size",
-                      scree_field_spacing(&p->field) / SCREE_UNIT_SIZE);
+                      scree_distance_field_spacing(&p->field) / SCREE_UNIT_SIZE);
   settle(p);
   return p->ruler.failed ? scree_fail_memory(error, 0, "the chords of a clump") : SCREE_OK;
 }
@@ -301,10 +303,10 @@ scree_status scree_path_make(const scree_target *body, size_t most, double most_
   scree_path p = {.body = body, .most = most, .room = most > 20 ? most + SPARE_COUNTS : most + 2};
   p.ticker = (scree_ticker){.progress = progress};
   *path = p;
-  scree_status status = scree_field_make(body, most, &path->field, error);
+  scree_status status = scree_distance_field_make(body, most, &path->field, error);
   if (status == SCREE_OK) status = scree_ruler_make(body, &path->ruler, error);
   if (status == SCREE_OK) status = scree_mover_make(body, &path->field, &path->mover, error);
-  if (status == SCREE_OK) status = scree_places_make(&path->field, &path->places, error);
+  if (status == SCREE_OK) status = scree_sphere_sites_make(&path->field, &path->places, error);
   if (status == SCREE_OK) {
     path->mover.most_outside = most_outside;
     path->best = scree_alloc_zero(path->room + 1, sizeof *path->best);
@@ -317,10 +319,10 @@ scree_status scree_path_make(const scree_target *body, size_t most, double most_
 }
 
 void scree_path_free(scree_path *path) {
-  scree_field_free(&path->field);
+  scree_distance_field_free(&path->field);
   scree_ruler_free(&path->ruler);
   scree_mover_free(&path->mover);
-  scree_places_free(&path->places);
+  scree_sphere_sites_free(&path->places);
   scree_free(path->best);
   scree_free(path->work);
   *path = (scree_path){0};

@@ -3,7 +3,7 @@
 #define SCREE_CLUMP_PATH_H
 
 #include "base/progress.h"
-#include "clump/places.h"
+#include "clump/sites.h"
 #include "clump/step.h"
 
 typedef struct scree_trial {
@@ -15,10 +15,10 @@ typedef struct scree_trial {
 /* Everything that the search works with. */
 typedef struct scree_path {
   const scree_target *body;
-  scree_field field;
+  scree_distance_field field;
   scree_ruler ruler;
   scree_mover mover;
-  scree_places places;
+  scree_sphere_sites places;
   size_t most;              /* counts to answer for */
   size_t room;              /* counts that are searched: some more, as a start for the way down */
   scree_trial *best, *work; /* room + 1, by count; 4 to work with */

@@ -18,7 +18,7 @@ enum {
   NORMALS_APART = 8 /* normals are compared at every so many of them */
 };
 
-scree_status scree_judge_make(const scree_target *body, const scree_field *field,
+scree_status scree_judge_make(const scree_target *body, const scree_distance_field *field,
                               scree_ruler *ruler, scree_judge *judge, scree_error *error) {
   *judge = (scree_judge){.body = body, .field = field, .ruler = ruler};
   judge->points =
@@ -40,7 +40,7 @@ typedef struct surface_sums {
 /* Answers how far it lies from the body's surface. */
 static double add_point(scree_judge *j, vec3 p, vec3 normal, double area, surface_sums *sums) {
   const double at[3] = {p.x, p.y, p.z};
-  double height = scree_field_at(j->field, at);
+  double height = scree_distance_field_at(j->field, at);
   sums->area += area;
   sums->distance += area * fabs(height);
   sums->height += area * height;
@@ -155,7 +155,7 @@ static double farthest_out(const scree_judge *j, const scree_sphere *spheres, si
   for (size_t i = 0; i < count; i++) {
     double distance;
     scree_target_nearest(j->body, vec3_load(spheres[i].centre), &distance);
-    double depth = scree_field_at(j->field, spheres[i].centre) < 0 ? distance : -distance;
+    double depth = scree_distance_field_at(j->field, spheres[i].centre) < 0 ? distance : -distance;
     worst = fmax(worst, spheres[i].radius - depth);
   }
   return worst;

@@ -9,14 +9,14 @@
 /* A body, what measures spheres against it, and scratch. */
 typedef struct scree_judge {
   const scree_target *body;
-  const scree_field *field;
+  const scree_distance_field *field;
   scree_ruler *ruler;
   scree_directions directions;
   vec3 *points; /* on the exposed surface of the clump at hand */
   size_t point_count;
 } scree_judge;
 
-scree_status scree_judge_make(const scree_target *body, const scree_field *field,
+scree_status scree_judge_make(const scree_target *body, const scree_distance_field *field,
                               scree_ruler *ruler, scree_judge *judge, scree_error *error);
 void scree_judge_free(scree_judge *judge);
 

@@ -58,7 +58,7 @@ static void set_tolerances(scree_mover *m) {
   }
 }
 
-scree_status scree_mover_make(const scree_target *body, const scree_field *field,
+scree_status scree_mover_make(const scree_target *body, const scree_distance_field *field,
                               scree_mover *mover, scree_error *error) {
   *mover = (scree_mover){.body = body, .field = field, .most_outside = INFINITY};
   mover->equations = scree_alloc(SCREE_MOST_SPHERES, sizeof *mover->equations);
@@ -108,7 +108,7 @@ static void add_sphere(const scree_mover *mover, const scree_sphere *spheres, si
     double area = patch * (double)shares[k], force = 0, stiffness = 1;
     if (!step->restore) {
       const double at[3] = {p.x, p.y, p.z};
-      double phi = scree_field_at(mover->field, at), weight = phi > 0 ? step->outside : 1;
+      double phi = scree_distance_field_at(mover->field, at), weight = phi > 0 ? step->outside : 1;
       force = weight * scree_larger(-1, scree_smaller(1, phi * per_softness));
       stiffness = weight / scree_larger(fabs(phi), step->softness);
     }

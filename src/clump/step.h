@@ -18,14 +18,14 @@ typedef struct scree_normal_equations {
 /* What moves spheres: the body's field, and scratch. */
 typedef struct scree_mover {
   const scree_target *body;
-  const scree_field *field;
+  const scree_distance_field *field;
   double tolerance[SCREE_MOMENTS]; /* how far the union's moments may be from the body's */
   double most_outside;             /* no sphere stands out of the body by more; INFINITY: any */
   scree_directions directions;
   scree_normal_equations *equations; /* SCREE_MOST_SPHERES */
 } scree_mover;
 
-scree_status scree_mover_make(const scree_target *body, const scree_field *field,
+scree_status scree_mover_make(const scree_target *body, const scree_distance_field *field,
                               scree_mover *mover, scree_error *error);
 void scree_mover_free(scree_mover *mover);
 

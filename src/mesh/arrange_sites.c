@@ -212,32 +212,13 @@ static bool is_beside(const scree_mesh *mesh, uint32_t t, uint32_t u, double tol
   return false;
 }
 
-static bool boxes_near(const scree_box *a, const scree_box *b, double tolerance) {
-  for (int k = 0; k < 3; k++)
-    if (a->low[k] > b->high[k] + tolerance || b->low[k] > a->high[k] + tolerance) return false;
-  return true;
-}
-
-static scree_box box_of(const scree_mesh *mesh, uint32_t t) {
-  scree_box box;
-  for (int k = 0; k < 3; k++) {
-    double x = mesh->positions[3 * (size_t)mesh->triangles[3 * (size_t)t] + (size_t)k];
-    box.low[k] = box.high[k] = x;
-    for (size_t c = 1; c < 3; c++) {
-      x = mesh->positions[3 * (size_t)mesh->triangles[3 * (size_t)t + c] + (size_t)k];
-      box.low[k] = fmin(box.low[k], x), box.high[k] = fmax(box.high[k], x);
-    }
-  }
-  return box;
-}
-
 static bool list_leaf(const scree_facet_tree *tree, const scree_facet_node *n, uint32_t t,
                       const scree_box *box, double tolerance, scree_facet_pairs *pairs) {
   for (uint32_t i = n->begin; i < n->begin + n->count; i++) {
     uint32_t u = tree->order[i];
     if (u <= t) continue;
-    scree_box other = box_of(tree->mesh, u);
-    if (!boxes_near(box, &other, tolerance) || is_beyond(tree->mesh, t, u, tolerance) ||
+    scree_box other = scree_facet_box(tree->mesh, u);
+    if (!scree_box_meets(box, &other) || is_beyond(tree->mesh, t, u, tolerance) ||
         is_beyond(tree->mesh, u, t, tolerance) || is_beside(tree->mesh, t, u, tolerance) ||
         is_beside(tree->mesh, u, t, tolerance))
       continue;
@@ -255,16 +236,16 @@ static int compare_pairs(const void *a, const void *b) {
 bool scree_near_pairs(const scree_facet_tree *tree, double tolerance, scree_facet_pairs *pairs) {
   size_t first = pairs->count;
   for (uint32_t t = 0; t < tree->mesh->triangle_count; t++) {
-    scree_box box = box_of(tree->mesh, t);
+    scree_box grown = scree_box_grown(scree_facet_box(tree->mesh, t), tolerance);
     uint32_t stack[STACK];
     int depth = 0;
     stack[depth++] = 0;
     while (depth > 0) {
       uint32_t index = stack[--depth];
       const scree_facet_node *n = &tree->nodes.items[index];
-      if (!boxes_near(&box, &n->bounds, tolerance)) continue;
+      if (!scree_box_meets(&grown, &n->bounds)) continue;
       if (scree_facet_node_is_leaf(n)) {
-        if (!list_leaf(tree, n, t, &box, tolerance, pairs)) return false;
+        if (!list_leaf(tree, n, t, &grown, tolerance, pairs)) return false;
       } else {
         stack[depth++] = n->right;
         stack[depth++] = index + 1;

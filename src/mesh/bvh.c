@@ -403,7 +403,7 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit) {
 
 /* ---- Of many points ---- */
 
-static box box_of_points(const scree_points *points) {
+static box box_of_points(const scree_point_block *points) {
   box b = nothing;
   for (int i = 0; i < points->count; i++) {
     const double p[3] = {points->at[0][i], points->at[1][i], points->at[2][i]};
@@ -423,14 +423,14 @@ static double boxes_apart2(const scree_bvh_node *node, const box *b) {
   return sum;
 }
 
-void scree_bvh_closest_points(const scree_bvh *bvh, scree_points *points) {
+void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points) {
   struct {
     uint32_t node;
     double apart2;
   } stack[STACK];
   int depth = 0;
   box bounds = box_of_points(points);
-  double farthest2 = scree_points_farthest(points);
+  double farthest2 = scree_point_block_farthest(points);
   vec3 middle = vec3_scale(vec3_add(vec3_load(bounds.low), vec3_load(bounds.high)), 0.5);
   if (bvh->node_count == 0) return;
   stack[depth].node = 0;
@@ -440,10 +440,10 @@ void scree_bvh_closest_points(const scree_bvh *bvh, scree_points *points) {
     if (stack[depth].apart2 >= farthest2) continue;
     const scree_bvh_node *node = &bvh->nodes[stack[depth].node];
     if (node->count) {
-      if (!scree_points_near(points, node->low, node->high)) continue;
+      if (!scree_point_block_near(points, node->low, node->high)) continue;
       for (uint32_t i = node->first; i < node->first + node->count; i++)
-        scree_points_closest(points, bvh->corners + 9 * (size_t)i, i);
-      farthest2 = scree_points_farthest(points);
+        scree_point_block_closest(points, bvh->corners + 9 * (size_t)i, i);
+      farthest2 = scree_point_block_farthest(points);
       continue;
     }
     uint32_t near = node->first, far = near + 1;

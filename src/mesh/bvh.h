@@ -40,6 +40,6 @@ bool scree_bvh_closest(const scree_bvh *bvh, vec3 p, scree_bvh_hit *hit);
 
 /* The same for many points at once: those of the set that have a nearer triangle get it. Saves most
  * where the points lie as near to each other as the triangles are large. */
-void scree_bvh_closest_points(const scree_bvh *bvh, scree_points *points);
+void scree_bvh_closest_block(const scree_bvh *bvh, scree_point_block *points);
 
 #endif

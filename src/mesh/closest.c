@@ -147,7 +147,7 @@ static int whole_eights(int count) {
 }
 
 /* Up to a whole number of eights with the first point. */
-void scree_points_set(scree_points *q, const vec3 *at, int count) {
+void scree_point_block_set(scree_point_block *q, const vec3 *at, int count) {
   q->count = count;
   for (int i = 0; i < whole_eights(count); i++) {
     vec3 p = at[i < count ? i : 0];
@@ -159,7 +159,7 @@ void scree_points_set(scree_points *q, const vec3 *at, int count) {
   }
 }
 
-SCREE_LANES static void points_lanes(const lane_triangle *of, scree_points *q, int count,
+SCREE_LANES static void points_lanes(const lane_triangle *of, scree_point_block *q, int count,
                                      uint64_t index) {
   const lane_triangle t = *of; /* that q cannot be part of */
   for (int begin = 0; begin < count; begin += SCREE_EIGHT)
@@ -173,7 +173,7 @@ SCREE_LANES static void points_lanes(const lane_triangle *of, scree_points *q, i
     }
 }
 
-static void keep_needle(scree_points *q, const double corners[9], uint32_t index) {
+static void keep_needle(scree_point_block *q, const double corners[9], uint32_t index) {
   for (int i = 0; i < whole_eights(q->count); i++) {
     vec3 found;
     double distance2 =
@@ -182,7 +182,7 @@ static void keep_needle(scree_points *q, const double corners[9], uint32_t index
   }
 }
 
-void scree_points_closest(scree_points *q, const double corners[9], uint32_t index) {
+void scree_point_block_closest(scree_point_block *q, const double corners[9], uint32_t index) {
   lane_triangle t = triangle_of(vec3_load(corners), vec3_load(corners + 3), vec3_load(corners + 6));
   if (is_needle(t.n2, t.ab2, t.ca2))
     keep_needle(q, corners, index);
@@ -190,7 +190,7 @@ void scree_points_closest(scree_points *q, const double corners[9], uint32_t ind
     points_lanes(&t, q, whole_eights(q->count), index);
 }
 
-double scree_points_farthest(const scree_points *q) {
+double scree_point_block_farthest(const scree_point_block *q) {
   double most[SCREE_EIGHT] = {0}, farthest = 0;
   for (int begin = 0; begin < q->count; begin += SCREE_EIGHT)
     for (int i = 0; i < SCREE_EIGHT; i++)
@@ -206,7 +206,7 @@ SCREE_LANES_INLINE double outside(double low, double high, double x) {
   return choose(more > 0, more, 0);
 }
 
-SCREE_LANES static uint64_t near_lanes(const scree_points *q, int count, const double low[3],
+SCREE_LANES static uint64_t near_lanes(const scree_point_block *q, int count, const double low[3],
                                        const double high[3]) {
   uint64_t near[SCREE_EIGHT] = {0}, any = 0;
   for (int begin = 0; begin < count; begin += SCREE_EIGHT)
@@ -220,6 +220,6 @@ SCREE_LANES static uint64_t near_lanes(const scree_points *q, int count, const d
   return any;
 }
 
-bool scree_points_near(const scree_points *q, const double low[3], const double high[3]) {
+bool scree_point_block_near(const scree_point_block *q, const double low[3], const double high[3]) {
   return near_lanes(q, whole_eights(q->count), low, high) != 0;
 }

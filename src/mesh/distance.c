@@ -119,12 +119,12 @@ double scree_surface_nearest(const scree_surface *surface, vec3 p, uint32_t *nea
 void scree_surface_nearest_points(const scree_surface *surface, const vec3 *points, size_t count,
                                   double *distances, uint32_t *nearest) {
   uint32_t near = 0;
-  scree_points together;
+  scree_point_block together;
   for (size_t first = 0; first < count; first += (size_t)together.count) {
     size_t left = count - first;
-    scree_points_set(&together, points + first, left < TOGETHER ? (int)left : TOGETHER);
-    scree_points_closest(&together, surface->bvh.corners + 9 * (size_t)near, near);
-    scree_bvh_closest_points(&surface->bvh, &together);
+    scree_point_block_set(&together, points + first, left < TOGETHER ? (int)left : TOGETHER);
+    scree_point_block_closest(&together, surface->bvh.corners + 9 * (size_t)near, near);
+    scree_bvh_closest_block(&surface->bvh, &together);
     for (int i = 0; i < together.count; i++) {
       distances[first + (size_t)i] = sqrt(together.distance2[i]);
       nearest[first + (size_t)i] = (uint32_t)together.index[i];
@@ -520,8 +520,8 @@ static scree_status sweep_until_converged(sweep *s, bool converge, stage *st, ta
   return status;
 }
 
-static scree_status run_sweeps(sweep *s, const scree_way *way, stage *st, tally *vertices,
-                               tally *facets, tally *cuts, scree_error *error) {
+static scree_status run_sweeps(sweep *s, const scree_deviation_rule *way, stage *st,
+                               tally *vertices, tally *facets, tally *cuts, scree_error *error) {
   scree_status status = run_sweep(s, s->from->used_count, sweep_vertices, st, vertices, error);
   s->found = fmax(way->known, vertices->maximum);
   if (status == SCREE_OK) status = sweep_until_converged(s, way->converge, st, facets, error);
@@ -551,7 +551,7 @@ static scree_deviation conclude(const tally *vertices, const tally *facets, cons
 }
 
 static scree_status deviate(const scree_surface *from, const scree_surface *to,
-                            const scree_way *way, stage *st, scree_deviation *deviation,
+                            const scree_deviation_rule *way, stage *st, scree_deviation *deviation,
                             scree_error *error) {
   sweep s = {.from = from, .to = to, .gap = way->gap, .slope = way->slope};
   size_t vertex_count = from->mesh.vertex_count;
@@ -579,8 +579,9 @@ done:
 }
 
 scree_status scree_surface_deviation(const scree_surface *from, const scree_surface *to,
-                                     const scree_way *way, const scree_progress *progress,
-                                     scree_deviation *deviation, scree_error *error) {
+                                     const scree_deviation_rule *way,
+                                     const scree_progress *progress, scree_deviation *deviation,
+                                     scree_error *error) {
   stage st = {.ticker = {.progress = progress}, .share = way->gap > 0 ? 1.0 / 3 : 0.5};
   return deviate(from, to, way, &st, deviation, error);
 }
@@ -592,12 +593,12 @@ scree_distance_options scree_default_distance_options(void) {
 }
 
 static scree_status set_way(const scree_distance_options *options, const scree_surface *a,
-                            const scree_surface *b, scree_way *way, scree_error *error) {
+                            const scree_surface *b, scree_deviation_rule *way, scree_error *error) {
   const scree_distance_options defaults = scree_default_distance_options();
   const scree_distance_options *o = options ? options : &defaults;
   size_t more = a->used_count > b->used_count ? a->used_count : b->used_count;
-  *way = (scree_way){o->sample_count,  o->sample_count == 0, o->hausdorff_gap, 1, 0,
-                     SCREE_CUT_BUDGET, SCREE_CUT_LEAST};
+  *way = (scree_deviation_rule){o->sample_count,  o->sample_count == 0, o->hausdorff_gap, 1, 0,
+                                SCREE_CUT_BUDGET, SCREE_CUT_LEAST};
   if (way->converge) way->sample_count = more < SAMPLE_LEAST ? SAMPLE_LEAST : more;
   if (way->sample_count > SAMPLE_LIMIT)
     return scree_fail(error, SCREE_LIMIT, "%zu samples, above the limit of %d", way->sample_count,
@@ -612,7 +613,7 @@ scree_status scree_surface_distance(const scree_surface *a, const scree_surface 
                                     const scree_distance_options *options,
                                     const scree_progress *progress, scree_distance *distance,
                                     scree_error *error) {
-  scree_way way;
+  scree_deviation_rule way;
   scree_distance d = {0};
   scree_status status = set_way(options, a, b, &way, error);
   if (status != SCREE_OK) return status;

@@ -57,22 +57,11 @@ typedef struct scree_facet_cone {
 scree_box scree_facet_box(const scree_mesh *mesh, uint32_t t) {
   vec3 p = scree_mesh_corner(mesh, t, 0), q = scree_mesh_corner(mesh, t, 1),
        r = scree_mesh_corner(mesh, t, 2);
-  scree_box b;
-  vec3_store(b.low, vec3_min(vec3_min(p, q), r));
-  vec3_store(b.high, vec3_max(vec3_max(p, q), r));
-  return b;
-}
-
-static void box_add(scree_box *b, const scree_box *other) {
-  for (int k = 0; k < 3; k++) {
-    if (other->low[k] < b->low[k]) b->low[k] = other->low[k];
-    if (other->high[k] > b->high[k]) b->high[k] = other->high[k];
-  }
+  return scree_box_join(scree_box_of(p, q), (scree_box){r, r});
 }
 
 static double along(const scree_facet_tree *t, uint32_t facet, int axis) {
-  const vec3 *m = &t->middle[facet];
-  return axis == 0 ? m->x : axis == 1 ? m->y : m->z;
+  return vec3_along(t->middle[facet], axis);
 }
 
 /* Moves facets whose middle lies below `at` to the front; returns how many. */
@@ -229,14 +218,10 @@ static scree_facet_cone cone_of(const scree_facet_tree *t, const scree_facet_nod
 
 /* Gives the node a second box where that is much the smaller one, or a cone. */
 static bool add_frame(scree_facet_tree *t, scree_facet_node *n, const longest *l) {
-  double volume = 1, diagonal2 = 0;
+  vec3 sides = vec3_sub(n->bounds.high, n->bounds.low);
+  double volume = sides.x * sides.y * sides.z;
   scree_facet_frame f = {.cone = NO_CONE};
-  for (int k = 0; k < 3; k++) {
-    double side = n->bounds.high[k] - n->bounds.low[k];
-    volume *= side;
-    diagonal2 += side * side;
-  }
-  if (sqrt(l->length2) < FRAME_LENGTH * sqrt(diagonal2)) return true;
+  if (sqrt(l->length2) < FRAME_LENGTH * vec3_norm(sides)) return true;
   uint32_t hub = n->count > 1 ? common_vertex(t, n) : NO_VERTEX;
   bool useful = hub != NO_VERTEX && n->count > SCREE_LEAF_FACETS / 2;
   if (!frame_axes(t, l->facet, l->edge, &f)) return true;
@@ -278,7 +263,7 @@ static bool cones_apart(const scree_facet_cone *a, const scree_facet_cone *b) {
 
 bool scree_facet_nodes_apart(const scree_facet_tree *t, const scree_facet_node *a,
                              const scree_facet_node *b) {
-  if (scree_box_apart(&a->bounds, &b->bounds)) return true;
+  if (!scree_box_meets(&a->bounds, &b->bounds)) return true;
   if (a->frame == NO_FRAME || b->frame == NO_FRAME) return false;
   const scree_facet_frame *f = &t->frames.items[a->frame], *g = &t->frames.items[b->frame];
   if (frames_apart_along(f, g) || frames_apart_along(g, f)) return true;
@@ -288,10 +273,8 @@ bool scree_facet_nodes_apart(const scree_facet_tree *t, const scree_facet_node *
 
 static void leaf_bounds(const scree_facet_tree *t, scree_facet_node *n) {
   n->bounds = scree_facet_box(t->mesh, t->order[n->begin]);
-  for (uint32_t i = n->begin + 1; i < n->begin + n->count; i++) {
-    scree_box b = scree_facet_box(t->mesh, t->order[i]);
-    box_add(&n->bounds, &b);
-  }
+  for (uint32_t i = n->begin + 1; i < n->begin + n->count; i++)
+    n->bounds = scree_box_join(n->bounds, scree_facet_box(t->mesh, t->order[i]));
 }
 
 /* Builds the node of [begin, end) and all below it; tells its longest edge. */
@@ -309,8 +292,7 @@ static bool build(scree_facet_tree *t, uint32_t begin, uint32_t end, longest *l)
     n.right = (uint32_t)t->nodes.count;
     if (!build(t, split, end, &r)) return false;
     if (r.length2 > l->length2) *l = r;
-    n.bounds = t->nodes.items[index + 1].bounds;
-    box_add(&n.bounds, &t->nodes.items[n.right].bounds);
+    n.bounds = scree_box_join(t->nodes.items[index + 1].bounds, t->nodes.items[n.right].bounds);
   }
   if (n.count <= FRAME_FACETS && !add_frame(t, &n, l)) return false;
   t->nodes.items[index] = n;
@@ -324,7 +306,7 @@ static void middle_block(void *context, size_t begin, size_t end, size_t block, 
   for (size_t i = begin; i < end; i++) {
     scree_box b = scree_facet_box(t->mesh, (uint32_t)i);
     t->order[i] = (uint32_t)i;
-    t->middle[i] = vec3_lerp(vec3_load(b.low), vec3_load(b.high), 0.5);
+    t->middle[i] = vec3_lerp(b.low, b.high, 0.5);
   }
 }
 
@@ -451,8 +433,7 @@ static void join_tops(const tops *p) {
                           .count = t->end - t->begin,
                           .right = (uint32_t)p->list.items[t->left + 1].node,
                           .frame = NO_FRAME};
-    n.bounds = nodes[t->node + 1].bounds;
-    box_add(&n.bounds, &nodes[n.right].bounds);
+    n.bounds = scree_box_join(nodes[t->node + 1].bounds, nodes[n.right].bounds);
     nodes[t->node] = n;
   }
 }

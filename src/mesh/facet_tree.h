@@ -3,20 +3,12 @@
 #ifndef SCREE_MESH_FACET_TREE_H
 #define SCREE_MESH_FACET_TREE_H
 
+#include "base/box.h"
 #include "mesh/mesh.h"
 
 enum { SCREE_LEAF_FACETS = 4 };
 
-typedef struct scree_box {
-  double low[3], high[3];
-} scree_box;
-
 scree_box scree_facet_box(const scree_mesh *mesh, uint32_t facet);
-
-static inline bool scree_box_apart(const scree_box *a, const scree_box *b) {
-  return a->low[0] > b->high[0] || b->low[0] > a->high[0] || a->low[1] > b->high[1] ||
-         b->low[1] > a->high[1] || a->low[2] > b->high[2] || b->low[2] > a->high[2];
-}
 
 /* Node i's children are i + 1 and right; a leaf has right == 0 and at most SCREE_LEAF_FACETS. */
 typedef struct scree_facet_node {

@@ -19,7 +19,7 @@ typedef enum scree_meet {
 } scree_meet;
 
 /* Classifies triangles t and u of three vertex indices each; bounding boxes are not looked at, so
- * compare those first (scree_box_apart). The order of the two, and of the corners in each, does
+ * compare those first (scree_box_meets). The order of the two, and of the corners in each, does
  * not matter. A triangle without area meets nothing. Cost: about 20 ns where a plane obviously
  * separates them, a microsecond or two where rounding could deceive. */
 scree_meet scree_triangles_meet(const double *positions, const uint32_t t[3], const uint32_t u[3]);

@@ -197,12 +197,12 @@ static scree_status measure_hull(const scree_mesh *mesh, vec3 origin, scree_meas
   vec3 *points = NULL;
   size_t point_count = 0;
   scree_hull hull = {0};
-  scree_oriented_box box;
+  scree_minimum_box box;
   mat3 axes;
   memcpy(axes.m, m->principal_axes, sizeof axes.m);
   scree_status status = gather_points(mesh, origin, &points, &point_count, error);
   if (status == SCREE_OK) status = scree_hull_build(points, point_count, &hull, error);
-  if (status == SCREE_OK) status = scree_oriented_box_fit(&hull, &axes, &box, error);
+  if (status == SCREE_OK) status = scree_minimum_box_fit(&hull, &axes, &box, error);
   if (status == SCREE_OK) {
     m->hull_area = hull.area;
     m->hull_volume = hull.volume;

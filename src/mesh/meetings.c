@@ -58,7 +58,7 @@ static void list_near(const scree_facet_tree *t, const scree_facet_node *leaf, c
   for (uint32_t i = leaf->begin; i < leaf->begin + leaf->count; i++) {
     near->facet[near->count] = t->order[i];
     near->box[near->count] = scree_facet_box(t->mesh, t->order[i]);
-    near->count += scree_box_apart(&near->box[near->count], box) ? 0 : 1;
+    near->count += scree_box_meets(&near->box[near->count], box);
   }
 }
 
@@ -70,7 +70,7 @@ static bool test_leaves(search *s, const scree_facet_node *a, const scree_facet_
   list_near(s->tree, b, &a->bounds, &of_b);
   for (int i = 0; i < of_a.count; i++)
     for (int j = a == b ? i + 1 : 0; j < of_b.count; j++)
-      if (!scree_box_apart(&of_a.box[i], &of_b.box[j]) &&
+      if (scree_box_meets(&of_a.box[i], &of_b.box[j]) &&
           !test_pair(s, of_a.facet[i], of_b.facet[j], out))
         return false;
   return true;

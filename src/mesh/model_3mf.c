@@ -117,8 +117,8 @@ static bool read_number(const char *text, double *value) {
 }
 
 /* Twelve numbers, by columns of ours. */
-static bool read_placement(const char *text, scree_placement *where) {
-  *where = scree_placement_none;
+static bool read_placement(const char *text, scree_affine *where) {
+  *where = scree_affine_none;
   if (!text) return true;
   const char *end = text + strlen(text);
   for (int i = 0; i < 12; i++) {

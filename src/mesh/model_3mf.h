@@ -25,7 +25,7 @@ typedef struct scree_3mf_volume {
 typedef struct scree_3mf_component {
   uint32_t object_id;
   size_t part; /* in which it is defined */
-  scree_placement where;
+  scree_affine where;
 } scree_3mf_component;
 
 typedef struct scree_3mf_object {

@@ -313,8 +313,8 @@ static mat3 search(fitter *fitters, start_list *list, const mat3 *axes) {
 }
 
 /* Rows in descending order of size, signs canonical. */
-static scree_oriented_box finish(const scree_hull *hull, const mat3 *axes) {
-  scree_oriented_box box = {.axes = *axes};
+static scree_minimum_box finish(const scree_hull *hull, const mat3 *axes) {
+  scree_minimum_box box = {.axes = *axes};
   vec3 low, high;
   extents(hull, axes, &low, &high);
   double size[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
@@ -375,8 +375,8 @@ out_of_memory:
   return NULL;
 }
 
-scree_status scree_oriented_box_fit(const scree_hull *hull, const mat3 *axes,
-                                    scree_oriented_box *box, scree_error *error) {
+scree_status scree_minimum_box_fit(const scree_hull *hull, const mat3 *axes, scree_minimum_box *box,
+                                   scree_error *error) {
   facing *facings = NULL;
   fitter *fitters = NULL;
   start_list list = {0};

@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-scree_status scree_placed_add(scree_reading *r, scree_placed *placed, const scree_placement *where,
+scree_status scree_placed_add(scree_reading *r, scree_placed *placed, const scree_affine *where,
                               const double *vertices, size_t vertex_count) {
   size_t before = placed->positions.count;
   if (before / 3 + vertex_count > SCREE_IMPORT_MOST)
@@ -15,7 +15,7 @@ scree_status scree_placed_add(scree_reading *r, scree_placed *placed, const scre
     return scree_fail_memory(r->error, 3 * vertex_count * sizeof *vertices, "placed vertices");
   for (size_t v = 0; v < vertex_count; v++) {
     double *out = placed->positions.items + before + 3 * v;
-    scree_placement_apply(where, vertices + 3 * v, out);
+    scree_affine_apply(where, vertices + 3 * v, out);
     for (int k = 0; k < 3; k++)
       if (!(fabs(out[k] * r->unit_m) <= SCREE_COORDINATE_LIMIT))
         return scree_reading_fail(

@@ -3,7 +3,7 @@
 #ifndef SCREE_MESH_PLACED_H
 #define SCREE_MESH_PLACED_H
 
-#include "mesh/placement.h"
+#include "mesh/affine.h"
 #include "mesh/read.h"
 
 typedef struct scree_placed {
@@ -16,7 +16,7 @@ typedef struct scree_placed {
 
 /* Adds vertex_count vertices, placed, and the triangles between them, which stay outward where the
  * placement mirrors. SCREE_LIMIT above SCREE_IMPORT_MOST of either. */
-scree_status scree_placed_add(scree_reading *r, scree_placed *placed, const scree_placement *where,
+scree_status scree_placed_add(scree_reading *r, scree_placed *placed, const scree_affine *where,
                               const double *vertices, size_t vertex_count);
 scree_status scree_placed_add_triangle(scree_reading *r, scree_placed *placed, size_t first_vertex,
                                        const uint32_t corners[3], bool is_mirrored);

@@ -93,11 +93,10 @@ typedef struct placing {
   size_t count;
 } placing;
 
-static scree_status place_mesh(placing *p, const scree_3mf_object *o,
-                               const scree_placement *where) {
+static scree_status place_mesh(placing *p, const scree_3mf_object *o, const scree_affine *where) {
   const scree_3mf *m = p->model;
   size_t first = p->placed.positions.count / 3;
-  bool is_mirrored = scree_placement_mirrors(where);
+  bool is_mirrored = scree_affine_mirrors(where);
   if (o->vertex_count == 0) return SCREE_OK;
   scree_status status = scree_placed_add(p->r, &p->placed, where,
                                          m->vertices.items + o->first_vertex, o->vertex_count / 3);
@@ -109,7 +108,7 @@ static scree_status place_mesh(placing *p, const scree_3mf_object *o,
   return status;
 }
 
-static scree_status place(placing *p, const scree_3mf_component *c, const scree_placement *outer,
+static scree_status place(placing *p, const scree_3mf_component *c, const scree_affine *outer,
                           int depth) {
   scree_3mf *m = p->model;
   const scree_3mf_object *o = scree_3mf_find(m, c->part, c->object_id);
@@ -126,7 +125,7 @@ static scree_status place(placing *p, const scree_3mf_component *c, const scree_
     m->left_out[SCREE_3MF_SUPPORT]++;
     return SCREE_OK;
   }
-  scree_placement where = scree_placement_in(outer, &c->where);
+  scree_affine where = scree_affine_in(outer, &c->where);
   scree_status status = place_mesh(p, o, &where);
   for (size_t i = 0; i < o->component_count && status == SCREE_OK; i++) {
     const scree_3mf_component *inner = &m->components.items[o->first_component + i];
@@ -162,7 +161,7 @@ static scree_status place_build(scree_reading *r, scree_3mf *m) {
   placing p = {.r = r, .model = m};
   scree_status status = SCREE_OK;
   for (size_t i = 0; i < m->items.count && status == SCREE_OK; i++)
-    status = place(&p, &m->items.items[i], &scree_placement_none, 0);
+    status = place(&p, &m->items.items[i], &scree_affine_none, 0);
   if (status == SCREE_OK) status = scree_placed_weld(r, &p.placed);
   if (status == SCREE_OK) tell_left_out(r, m);
   scree_placed_free(&p.placed);

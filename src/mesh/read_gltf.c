@@ -327,8 +327,7 @@ static scree_status place_triangles(model *m, const cgltf_primitive *p, size_t f
   return status;
 }
 
-static scree_status place_primitive(model *m, const cgltf_primitive *p,
-                                    const scree_placement *where) {
+static scree_status place_primitive(model *m, const cgltf_primitive *p, const scree_affine *where) {
   const cgltf_accessor *positions = NULL;
   for (size_t i = 0; i < p->attributes_count; i++)
     if (p->attributes[i].type == cgltf_attribute_type_position) positions = p->attributes[i].data;
@@ -337,13 +336,13 @@ static scree_status place_primitive(model *m, const cgltf_primitive *p,
   scree_status status = load_positions(m, positions);
   if (status == SCREE_OK && m->vertices.count)
     status = scree_placed_add(m->r, &m->placed, where, m->vertices.items, m->vertices.count / 3);
-  if (status == SCREE_OK) status = place_triangles(m, p, first, scree_placement_mirrors(where));
+  if (status == SCREE_OK) status = place_triangles(m, p, first, scree_affine_mirrors(where));
   return status;
 }
 
 /* cgltf's matrix of a node is in single precision. */
-static scree_placement placement_of(const cgltf_node *n) {
-  scree_placement p;
+static scree_affine placement_of(const cgltf_node *n) {
+  scree_affine p;
   double x = (double)n->rotation[0], y = (double)n->rotation[1], z = (double)n->rotation[2],
          w = (double)n->rotation[3];
   double length = sqrt(x * x + y * y + z * z + w * w);
@@ -362,9 +361,9 @@ static scree_placement placement_of(const cgltf_node *n) {
   return p;
 }
 
-static scree_status place_node(model *m, const cgltf_node *n, const scree_placement *outer,
+static scree_status place_node(model *m, const cgltf_node *n, const scree_affine *outer,
                                int depth) {
-  scree_placement inner = placement_of(n), where = scree_placement_in(outer, &inner);
+  scree_affine inner = placement_of(n), where = scree_affine_in(outer, &inner);
   scree_status status = SCREE_OK;
   if (depth > MOST_DEPTH)
     return scree_reading_fail(m->r, SCREE_LIMIT, "as %s: nodes lie more than %d deep in each other",
@@ -382,9 +381,9 @@ static scree_status place_scene(model *m) {
   const cgltf_scene *scene = d->scene ? d->scene : d->scenes_count ? d->scenes : NULL;
   scree_status status = SCREE_OK;
   for (size_t i = 0; scene && i < scene->nodes_count && status == SCREE_OK; i++)
-    status = place_node(m, scene->nodes[i], &scree_placement_none, 0);
+    status = place_node(m, scene->nodes[i], &scree_affine_none, 0);
   for (size_t i = 0; !scene && i < d->nodes_count && status == SCREE_OK; i++)
-    if (!d->nodes[i].parent) status = place_node(m, &d->nodes[i], &scree_placement_none, 0);
+    if (!d->nodes[i].parent) status = place_node(m, &d->nodes[i], &scree_affine_none, 0);
   return status;
 }
 

@@ -13,7 +13,7 @@
 
 #ifdef SCREE_WITH_ASSIMP
 #include "base/child.h"
-#include "mesh/placement.h"
+#include "mesh/affine.h"
 
 #include <assimp/cimport.h>
 #include <assimp/postprocess.h>
@@ -108,10 +108,10 @@ static void find_root_unit(const import *im, scree_import_answer *a) {
 
 /* ---- in the child: the scene ---- */
 
-static scree_placement place_in(const scree_placement *outer, const struct aiMatrix4x4 *t) {
-  scree_placement inner = {
+static scree_affine place_in(const scree_affine *outer, const struct aiMatrix4x4 *t) {
+  scree_affine inner = {
       {{t->a1, t->a2, t->a3, t->a4}, {t->b1, t->b2, t->b3, t->b4}, {t->c1, t->c2, t->c3, t->c4}}};
-  return scree_placement_in(outer, &inner);
+  return scree_affine_in(outer, &inner);
 }
 
 /* The walk over all placed meshes: once to count, once to write. */
@@ -131,7 +131,7 @@ static void flush_chunk(walk *w) {
 }
 
 static void walk_face(walk *w, const struct aiMesh *mesh, const struct aiFace *face,
-                      const scree_placement *p, bool mirrored) {
+                      const scree_affine *p, bool mirrored) {
   if (w->output >= 0 && w->chunk_count == CHUNK_TRIANGLES) flush_chunk(w);
   for (int c = 0; c < 3; c++) {
     unsigned index = face->mIndices[mirrored ? 2 - c : c];
@@ -141,15 +141,15 @@ static void walk_face(walk *w, const struct aiMesh *mesh, const struct aiFace *f
     }
     const struct aiVector3D *v = &mesh->mVertices[index];
     if (w->output >= 0)
-      scree_placement_apply(p, (double[3]){v->x, v->y, v->z}, w->chunk[w->chunk_count][c]);
+      scree_affine_apply(p, (double[3]){v->x, v->y, v->z}, w->chunk[w->chunk_count][c]);
   }
   w->chunk_count++;
   w->triangle_count++;
 }
 
-static void walk_node(walk *w, const struct aiNode *node, const scree_placement *outer) {
-  scree_placement p = place_in(outer, &node->mTransformation);
-  bool mirrored = scree_placement_mirrors(&p);
+static void walk_node(walk *w, const struct aiNode *node, const scree_affine *outer) {
+  scree_affine p = place_in(outer, &node->mTransformation);
+  bool mirrored = scree_affine_mirrors(&p);
   for (unsigned i = 0; i < node->mNumMeshes && w->is_valid; i++) {
     if (node->mMeshes[i] >= w->scene->mNumMeshes) w->is_valid = false;
     if (!w->is_valid || w->triangle_count > SCREE_IMPORT_MOST) return;
@@ -167,7 +167,7 @@ static void walk_scene(walk *w, const struct aiScene *scene, int output) {
   w->output = output;
   w->is_valid = w->is_written = true;
   w->triangle_count = w->chunk_count = 0;
-  if (scene->mRootNode) walk_node(w, scene->mRootNode, &scree_placement_none);
+  if (scene->mRootNode) walk_node(w, scene->mRootNode, &scree_affine_none);
 }
 
 /* An FBX's centimetres per unit; 1 where it does not say. */

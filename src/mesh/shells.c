@@ -210,8 +210,8 @@ static int crossing(const scree_mesh *mesh, uint32_t facet, const double *p) {
 }
 
 static bool ray_misses(const scree_box *box, const double *p) {
-  return box->high[0] < p[0] || box->low[1] > p[1] || box->high[1] < p[1] || box->low[2] > p[2] ||
-         box->high[2] < p[2];
+  return box->high.x < p[0] || box->low.y > p[1] || box->high.y < p[1] || box->low.z > p[2] ||
+         box->high.z < p[2];
 }
 
 /* A facet that a ray goes through. */

@@ -213,21 +213,15 @@ typedef struct cover {
   double tolerance;
 } cover;
 
-static bool is_near_box(const scree_box *box, vec3 p, double reach) {
-  const double at[3] = {p.x, p.y, p.z};
-  for (int k = 0; k < 3; k++)
-    if (at[k] < box->low[k] - reach || at[k] > box->high[k] + reach) return false;
-  return true;
-}
-
 static bool lies_on(const cover *c, uint32_t facet, vec3 p) {
   uint32_t stack[STACK];
   int depth = 0;
+  const scree_box near = scree_box_grown((scree_box){p, p}, c->tolerance);
   stack[depth++] = 0;
   while (depth > 0) {
     uint32_t at = stack[--depth];
     const scree_facet_node *node = &c->tree->nodes.items[at];
-    if (!is_near_box(&node->bounds, p, c->tolerance)) continue;
+    if (!scree_box_meets(&node->bounds, &near)) continue;
     if (!scree_facet_node_is_leaf(node)) {
       stack[depth++] = node->right;
       stack[depth++] = at + 1;

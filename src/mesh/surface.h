@@ -22,7 +22,7 @@ void scree_surface_nearest_points(const scree_surface *surface, const vec3 *poin
                                   double *distances, uint32_t *nearest);
 
 /* How one way is measured. */
-typedef struct scree_way {
+typedef struct scree_deviation_rule {
   size_t sample_count; /* spread over the surface */
   bool converge;       /* and four times as many, until the mean is known to 1 per cent */
   double gap;          /* as scree_distance_options.hausdorff_gap */
@@ -31,13 +31,14 @@ typedef struct scree_way {
   /* Samples for bounding, all facets together, but at least cut_least for each: surfaces that all
    * but coincide would be cut without end. */
   size_t cut_budget, cut_least;
-} scree_way;
+} scree_deviation_rule;
 
 enum { SCREE_CUT_BUDGET = 1 << 22, SCREE_CUT_LEAST = 32 };
 
 /* From every point of one surface to the other. */
 scree_status scree_surface_deviation(const scree_surface *from, const scree_surface *to,
-                                     const scree_way *way, const scree_progress *progress,
-                                     scree_deviation *deviation, scree_error *error);
+                                     const scree_deviation_rule *way,
+                                     const scree_progress *progress, scree_deviation *deviation,
+                                     scree_error *error);
 
 #endif

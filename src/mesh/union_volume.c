@@ -372,9 +372,7 @@ scree_status scree_union_volume(const scree_facet_tree *tree, const scree_adjace
                                 const scree_meetings *found, double *volume, bool *known,
                                 scree_error *error) {
   const scree_box *box = &tree->nodes.items[0].bounds;
-  work w = {.tree = tree,
-            .mesh = tree->mesh,
-            .origin = vec3_lerp(vec3_load(box->low), vec3_load(box->high), 0.5)};
+  work w = {.tree = tree, .mesh = tree->mesh, .origin = vec3_lerp(box->low, box->high, 0.5)};
   scree_sum sum = {0};
   scree_status status = list_partners(&w, found, error);
   if (status == SCREE_OK) status = list_asked(&w, adjacency, error);

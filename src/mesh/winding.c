@@ -15,8 +15,8 @@ enum { STACK = 256 };
 
 double scree_winding_rounding(const scree_facet_tree *tree) {
   const scree_box *box = &tree->nodes.items[0].bounds;
-  double largest = 0;
-  for (int k = 0; k < 3; k++) largest = fmax(largest, fmax(-box->low[k], box->high[k]));
+  vec3 reach = vec3_max(vec3_neg(box->low), box->high);
+  double largest = fmax(0, fmax(reach.x, fmax(reach.y, reach.z)));
   return HEIGHT_ROUNDING * largest;
 }
 
@@ -115,8 +115,8 @@ bool scree_winding_look(const scree_winding *w, uint32_t facet, const scree_view
   while (depth > 0) {
     uint32_t index = stack[--depth];
     const scree_facet_node *n = &w->tree->nodes.items[index];
-    if (n->bounds.low[f->u] > p.x || n->bounds.high[f->u] < p.x || n->bounds.low[f->v] > p.y ||
-        n->bounds.high[f->v] < p.y)
+    if (vec3_along(n->bounds.low, f->u) > p.x || vec3_along(n->bounds.high, f->u) < p.x ||
+        vec3_along(n->bounds.low, f->v) > p.y || vec3_along(n->bounds.high, f->v) < p.y)
       continue;
     if (!scree_facet_node_is_leaf(n)) {
       stack[depth++] = n->right;

@@ -226,7 +226,7 @@ bool scree_is_inside(const scree_particle *particle, vec3 p) {
 }
 
 /* Where the way passes through a face's plane within its borders; else INFINITY. */
-static double passage_of(const scree_face *face, const scree_way *way, double slope) {
+static double passage_of(const scree_face *face, const scree_ray_interval *way, double slope) {
   const double slack = 1e-12; /* so that no way slips through between two faces */
   double s = vec3_dot(vec3_sub(face->corner, way->start), face->normal) / slope;
   if (!(s > way->after && s <= way->before)) return INFINITY;
@@ -237,8 +237,8 @@ static double passage_of(const scree_face *face, const scree_way *way, double sl
   return u >= -slack && v >= -slack && u + v <= 1 + slack ? s : INFINITY;
 }
 
-double scree_next_passage(const scree_particle *particle, const scree_way *way, double least,
-                          size_t skip, uint32_t *face) {
+double scree_next_passage(const scree_particle *particle, const scree_ray_interval *way,
+                          double least, size_t skip, uint32_t *face) {
   const scree_tree *tree = &particle->face_tree;
   double next = INFINITY, slack = 1e-12 * particle->measures.bounding_radius;
   uint32_t stack[SCREE_TREE_STACK];

@@ -86,14 +86,14 @@ bool scree_is_near(const scree_particle *particle, vec3 p, double reach);
 bool scree_is_inside(const scree_particle *particle, vec3 p);
 
 /* A straight way start + s along, `along` a unit vector, for s in (after, before]. */
-typedef struct scree_way {
+typedef struct scree_ray_interval {
   vec3 start, along;
   double after, before;
-} scree_way;
+} scree_ray_interval;
 
 /* Where the way next passes through a face whose normal has a dot product of at least `least` with
  * `along`, or with its opposite where `least` is 0, other than `skip`; INFINITY for none. */
-double scree_next_passage(const scree_particle *particle, const scree_way *way, double least,
-                          size_t skip, uint32_t *face);
+double scree_next_passage(const scree_particle *particle, const scree_ray_interval *way,
+                          double least, size_t skip, uint32_t *face);
 
 #endif

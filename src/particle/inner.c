@@ -28,7 +28,7 @@ static void find_chords(const scree_particle *p, chosen_places *places) {
   for (size_t f = 0; f < p->face_count; f += stride) {
     const scree_face *face = &p->faces[f];
     vec3 middle = vec3_mad(face->corner, vec3_add(face->along1, face->along2), 1.0 / 3);
-    const scree_way inwards = {middle, vec3_neg(face->normal), 0, INFINITY};
+    const scree_ray_interval inwards = {middle, vec3_neg(face->normal), 0, INFINITY};
     uint32_t across;
     double length = scree_next_passage(p, &inwards, 0, f, &across);
     if (length < INFINITY) try_place(p, vec3_mad(middle, face->normal, -0.5 * length), places);

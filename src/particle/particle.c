@@ -117,7 +117,7 @@ static scree_status measure_thickness(scree_particle *p, scree_error *error) {
   for (size_t f = 0; f < p->face_count; f++) {
     const scree_face *face = &p->faces[f];
     vec3 middle = vec3_mad(face->corner, vec3_add(face->along1, face->along2), 1.0 / 3);
-    const scree_way inwards = {middle, vec3_neg(face->normal), 0, INFINITY};
+    const scree_ray_interval inwards = {middle, vec3_neg(face->normal), 0, INFINITY};
     uint32_t across;
     walls[f] = (wall_sample){scree_next_passage(p, &inwards, least_across, f, &across),
                              0.5 / sqrt(face->inverse)};

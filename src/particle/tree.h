@@ -3,12 +3,8 @@
 #ifndef SCREE_PARTICLE_TREE_H
 #define SCREE_PARTICLE_TREE_H
 
+#include "base/box.h"
 #include "base/error.h"
-#include "base/vec.h"
-
-typedef struct scree_box {
-  vec3 low, high;
-} scree_box;
 
 typedef struct scree_tree_node {
   scree_box box;
@@ -49,27 +45,6 @@ static inline scree_cone scree_cone_opposite(const scree_cone *cone, const mat3 
   return (scree_cone){vec3_neg(mat3_mul_vec(rotation, cone->axis)), cone->cosine, cone->sine};
 }
 
-/* Squared distance from p to the box, 0 inside. */
-static inline double scree_box_distance2(const scree_box *box, vec3 p) {
-  double x = p.x < box->low.x ? box->low.x - p.x : p.x > box->high.x ? p.x - box->high.x : 0;
-  double y = p.y < box->low.y ? box->low.y - p.y : p.y > box->high.y ? p.y - box->high.y : 0;
-  double z = p.z < box->low.z ? box->low.z - p.z : p.z > box->high.z ? p.z - box->high.z : 0;
-  return x * x + y * y + z * z;
-}
-static inline scree_box scree_box_of(vec3 a, vec3 b) {
-  return (scree_box){vec3_min(a, b), vec3_max(a, b)};
-}
-static inline scree_box scree_box_join(scree_box a, scree_box b) {
-  return (scree_box){vec3_min(a.low, b.low), vec3_max(a.high, b.high)};
-}
-static inline scree_box scree_box_grown(scree_box a, double r) {
-  vec3 d = {r, r, r};
-  return (scree_box){vec3_sub(a.low, d), vec3_add(a.high, d)};
-}
-static inline bool scree_box_meets(const scree_box *a, const scree_box *b) {
-  return (a->low.x <= b->high.x) & (b->low.x <= a->high.x) & (a->low.y <= b->high.y) &
-         (b->low.y <= a->high.y) & (a->low.z <= b->high.z) & (b->low.z <= a->high.z);
-}
 /* Cuts [from, to] to the part of the way start + s along that lies within the box; false for none.
  */
 bool scree_box_cut(const scree_box *box, vec3 start, vec3 along, double *from, double *to);

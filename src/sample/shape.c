@@ -70,7 +70,7 @@ static vec3 bend_forward(const scree_part *part, vec3 p) {
 
 /* Grows the shape's box by the box of one solid (its corners, and for a bent part the points
  * between them). */
-static void grow_box(scree_shape *shape, const scree_piece *solid) {
+static void grow_box(scree_shape *shape, const scree_shape_piece *solid) {
   const scree_part *part = &shape->parts[solid->part];
   vec3 h = solid->half;
   if (solid->kind == SCREE_PIECE_TORUS) h = (vec3){h.x + h.y, h.x + h.y, h.y};
@@ -89,7 +89,7 @@ static void grow_box(scree_shape *shape, const scree_piece *solid) {
 }
 
 /* Puts copy i of a ring where it belongs: in the plane of the solid's own x and y. */
-static void place_on_ring(const scree_piece_mm *line, int i, scree_piece *solid) {
+static void place_on_ring(const scree_piece_mm *line, int i, scree_shape_piece *solid) {
   mat3 spin = axis_turn(2, 360.0 * i / line->ring_copies * DEGREE);
   vec3 arm = {line->ring_radius * MM, 0, 0};
   solid->turn = mat3_mul(&solid->turn, &spin);
@@ -102,8 +102,8 @@ static bool add_solid(scree_shape *shape, const scree_piece_mm *line) {
   if (line->ring_copies > 1) nx = line->ring_copies;
   for (int i = 0; i < nx * ny; i++) {
     if (shape->piece_count == SCREE_SHAPE_PIECES || shape->part_count == 0) return false;
-    scree_piece *solid = &shape->pieces[shape->piece_count++];
-    *solid = (scree_piece){
+    scree_shape_piece *solid = &shape->pieces[shape->piece_count++];
+    *solid = (scree_shape_piece){
         .kind = line->kind,
         .op = line->op,
         .part = (uint16_t)(shape->part_count - 1),
@@ -189,7 +189,8 @@ static void into_part(const scree_part *part, const scree_points *from, size_t c
 
 /* ---- Distances ---- */
 
-static void slab_distance(const scree_piece *s, const scree_points *p, size_t count, double *d) {
+static void slab_distance(const scree_shape_piece *s, const scree_points *p, size_t count,
+                          double *d) {
   double r = s->corner, f = s->fillet, inner_x = s->half.x - r, inner_y = s->half.y - r,
          inner_z = s->half.z - f, taper = s->taper, cosine = s->taper_cosine, scale = s->scale;
   for (size_t i = 0; i < count; i++) {
@@ -202,7 +203,8 @@ static void slab_distance(const scree_piece *s, const scree_points *p, size_t co
   }
 }
 
-static void capsule_distance(const scree_piece *s, const scree_points *p, size_t count, double *d) {
+static void capsule_distance(const scree_shape_piece *s, const scree_points *p, size_t count,
+                             double *d) {
   double h = s->half.z, r = s->half.x;
   for (size_t i = 0; i < count; i++) {
     double x = p->x[i], y = p->y[i], z = max2(fabs(p->z[i]) - h, 0);
@@ -210,14 +212,15 @@ static void capsule_distance(const scree_piece *s, const scree_points *p, size_t
   }
 }
 
-static void torus_distance(const scree_piece *s, const scree_points *p, size_t count, double *d) {
+static void torus_distance(const scree_shape_piece *s, const scree_points *p, size_t count,
+                           double *d) {
   for (size_t i = 0; i < count; i++) {
     double x = p->x[i], y = p->y[i], z = p->z[i], q = sqrt(x * x + y * y) - s->half.x;
     d[i] = sqrt(q * q + z * z) - s->half.y;
   }
 }
 
-static void solid_distance(const scree_piece *solid, const scree_points *points, size_t count,
+static void solid_distance(const scree_shape_piece *solid, const scree_points *points, size_t count,
                            scree_points *scratch, double *d) {
   into_frame(solid->at, &solid->turn, solid->turned, points, count, scratch);
   if (solid->kind == SCREE_PIECE_CAPSULE)
@@ -253,7 +256,7 @@ void scree_shape_distance(const scree_shape *shape, const scree_shape_list *list
     into_part(part, points, count, &local);
     for (size_t i = 0; i < count; i++) of_part[i] = FAR_AWAY;
     for (; at < list->count && shape->pieces[list->pieces[at]].part == part_index; at++) {
-      const scree_piece *solid = &shape->pieces[list->pieces[at]];
+      const scree_shape_piece *solid = &shape->pieces[list->pieces[at]];
       solid_distance(solid, &local, count, &scratch, of_solid);
       combine(solid->op, solid->blend, count, of_solid, of_part);
     }
@@ -285,7 +288,7 @@ void scree_shape_prune(const scree_shape *shape, vec3 centre, double radius, dou
   point.z[0] = centre.z;
   list->count = 0;
   for (size_t i = shape->piece_count; i-- > 0;) {
-    const scree_piece *solid = &shape->pieces[i];
+    const scree_shape_piece *solid = &shape->pieces[i];
     const scree_part *part = &shape->parts[solid->part];
     if (solid->part != part_now) {
       into_part(part, &point, 1, &local);

@@ -45,7 +45,7 @@ typedef struct scree_piece_mm {
 } scree_piece_mm;
 
 /* The same, in metres and ready to evaluate. */
-typedef struct scree_piece {
+typedef struct scree_shape_piece {
   scree_piece_kind kind;
   scree_piece_op op;
   bool turned;
@@ -53,7 +53,7 @@ typedef struct scree_piece {
   vec3 at, half;
   double corner, fillet, taper, taper_cosine, scale, blend;
   mat3 turn; /* local = transpose(turn) (p - at) */
-} scree_piece;
+} scree_shape_piece;
 
 typedef struct scree_part {
   scree_piece_op op;
@@ -65,7 +65,7 @@ typedef struct scree_part {
 } scree_part;
 
 typedef struct scree_shape {
-  scree_piece pieces[SCREE_SHAPE_PIECES];
+  scree_shape_piece pieces[SCREE_SHAPE_PIECES];
   scree_part parts[SCREE_SHAPE_PARTS];
   size_t piece_count, part_count;
   double blend_max;

@@ -19,7 +19,7 @@ scree_simplify_options scree_default_simplify_options(void) {
 
 void scree_curve_free(scree_curve *curve) {
   if (!curve) return;
-  scree_record_free(&curve->record);
+  scree_collapse_record_free(&curve->record);
   scree_free(curve->counts);
   scree_free(curve->cut.triangles);
   scree_free(curve);
@@ -32,7 +32,7 @@ static size_t count_at(const scree_curve *curve, size_t level) {
 /* Turns the changes into the levels' values, in metres. */
 static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum volume, double scale,
                                scree_error *error) {
-  scree_record *r = &curve->record;
+  scree_collapse_record *r = &curve->record;
   double worst = 0;
   curve->area = scree_sum_value(area) * scale * scale;
   curve->volume = scree_sum_value(volume) * scale * scale * scale;
@@ -46,13 +46,13 @@ static scree_status accumulate(scree_curve *curve, scree_sum area, scree_sum vol
     double move = sqrt((double)r->error[i]) * scale;
     worst = move > worst ? move : worst;
     r->error[i] = (float)worst;
-    all_two &= scree_record_triangles(r, i) == 2;
+    all_two &= scree_collapse_record_triangles(r, i) == 2;
   }
   if (all_two) return SCREE_OK;
   SCREE_ALLOC_OR(curve->counts, r->count + 1, error, out_of_memory);
   curve->counts[0] = count;
   for (size_t i = 0; i < r->count; i++)
-    curve->counts[i + 1] = count -= scree_record_triangles(r, i);
+    curve->counts[i + 1] = count -= scree_collapse_record_triangles(r, i);
   return SCREE_OK;
 out_of_memory:
   return SCREE_OUT_OF_MEMORY;
@@ -60,9 +60,10 @@ out_of_memory:
 
 /* Drops collapses beyond the first level that is low enough. */
 static void cut_at_stop(scree_decimator *d) {
-  scree_record *r = &d->record;
+  scree_collapse_record *r = &d->record;
   size_t count = d->first_triangle_count, i = 0;
-  while (i < r->count && count > d->options.stop_count) count -= scree_record_triangles(r, i++);
+  while (i < r->count && count > d->options.stop_count)
+    count -= scree_collapse_record_triangles(r, i++);
   r->count = i;
 }
 
@@ -116,10 +117,10 @@ scree_status scree_curve_build(const scree_mesh *mesh, const scree_simplify_opti
                d.s.live_triangle_count);
   if (status != SCREE_OK) goto finished;
   cut_at_stop(&d);
-  status = scree_record_shrink(&d.record, error);
+  status = scree_collapse_record_shrink(&d.record, error);
   if (status != SCREE_OK) goto finished;
   made->record = d.record;
-  d.record = (scree_record){0};
+  d.record = (scree_collapse_record){0};
   status = accumulate(made, d.area, d.volume, d.s.scale, error);
   if (status == SCREE_OK)
     made->facts.floor_count = count_at(made, scree_curve_level_count(made) - 1);
@@ -137,7 +138,7 @@ static void scale_places(vec3 *position, size_t count, double scale) {
 }
 
 static void scale_curve(scree_curve *curve, double scale) {
-  scree_record *r = &curve->record;
+  scree_collapse_record *r = &curve->record;
   double square = scale * scale, cube = square * scale;
   curve->area *= square;
   curve->volume *= cube;
@@ -173,7 +174,7 @@ size_t scree_curve_level_count(const scree_curve *curve) {
 }
 
 void scree_curve_level(const scree_curve *curve, size_t index, scree_level *level) {
-  const scree_record *r = &curve->record;
+  const scree_collapse_record *r = &curve->record;
   size_t count = count_at(curve, index);
   *level = (scree_level){.triangle_count = count,
                          .rp = (double)count / (double)curve->mesh->triangle_count,
@@ -202,9 +203,9 @@ size_t scree_curve_collapse_count(const scree_curve *curve) {
 }
 
 void scree_curve_collapse(const scree_curve *curve, size_t index, scree_collapse *collapse) {
-  const scree_record *r = &curve->record;
-  *collapse = (scree_collapse){.kept = scree_record_kept(r, index),
+  const scree_collapse_record *r = &curve->record;
+  *collapse = (scree_collapse){.kept = scree_collapse_record_kept(r, index),
                                .gone = r->gone[index],
-                               .triangle_count = scree_record_triangles(r, index)};
+                               .triangle_count = scree_collapse_record_triangles(r, index)};
   vec3_store(collapse->position, r->position[index]);
 }

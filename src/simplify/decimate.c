@@ -117,7 +117,8 @@ scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
   d->error_limit = limit > 0 ? limit * limit : INFINITY;
   status = measure_surface(&d->s, &d->area, &d->volume, error);
   d->s.area = scree_sum_value(d->area);
-  if (status == SCREE_OK) status = scree_record_allocate(&d->record, d->s.live_vertex_count, error);
+  if (status == SCREE_OK)
+    status = scree_collapse_record_allocate(&d->record, d->s.live_vertex_count, error);
   if (status == SCREE_OK) status = sum_all(d);
   if (status == SCREE_OK) status = scree_surface_tree_make(&d->s, &d->tree, error);
   return status;
@@ -125,7 +126,7 @@ scree_status scree_decimator_start(scree_decimator *d, const scree_mesh *mesh,
 
 void scree_decimator_free(scree_decimator *d) {
   scree_halfmesh_free(&d->s);
-  scree_record_free(&d->record);
+  scree_collapse_record_free(&d->record);
   scree_surface_tree_free(&d->tree);
   scree_markers_free(&d->markers);
   scree_samples_free(&d->samples);
@@ -252,7 +253,7 @@ scree_verdict scree_decimate_judge(const scree_decimator *d, uint32_t h, double 
 
 bool scree_decimate_collapse(scree_decimator *d, size_t i, const scree_fan *f, double error,
                              scree_gathered *scratch) {
-  scree_record *r = &d->record;
+  scree_collapse_record *r = &d->record;
   scree_halfmesh *s = &d->s;
   bool one = s->half[f->half_edge].twin == SCREE_NONE;
   r->kept[i] = s->vertex[f->a].origin | (one ? SCREE_ONE_TRIANGLE : 0);

@@ -16,7 +16,7 @@ typedef struct scree_decimator {
   scree_simplify_options options;
   scree_sum area, volume; /* of the mesh, in the box */
   double error_limit;     /* mean square, unit box; INFINITY: none */
-  scree_record record;
+  scree_collapse_record record;
   size_t first_triangle_count;
   size_t pass_least;       /* triangles below which there are no passes: SCREE_PASS_LEAST */
   scree_surface_tree tree; /* of the surface */

@@ -23,12 +23,12 @@ typedef struct block_sums {
 } block_sums;
 
 typedef struct framing {
-  const scree_places *places;
-  scree_frame_of_places *frame;
+  const scree_positions *places;
+  scree_principal_frame *frame;
   block_sums *blocks;
 } framing;
 
-static vec3 place(const scree_places *p, size_t index) {
+static vec3 place(const scree_positions *p, size_t index) {
   return vec3_load(p->at + p->stride * index);
 }
 
@@ -47,10 +47,10 @@ static void measure_block(void *context, size_t begin, size_t end, size_t block,
 static void look_block(void *context, size_t begin, size_t end, size_t block, int worker) {
   (void)worker;
   const framing *f = context;
-  vec3 p = scree_into_frame(f->frame, place(f->places, begin));
+  vec3 p = scree_principal_frame_into(f->frame, place(f->places, begin));
   block_sums sums = {.low = p, .high = p, .third = {0, 0, 0}};
   for (size_t i = begin; i < end; i++) {
-    p = scree_into_frame(f->frame, place(f->places, i));
+    p = scree_principal_frame_into(f->frame, place(f->places, i));
     sums.low = vec3_min(sums.low, p);
     sums.high = vec3_max(sums.high, p);
     sums.third = vec3_add(sums.third, (vec3){p.x * p.x * p.x, p.y * p.y * p.y, 0});
@@ -95,7 +95,7 @@ static void direct_axes(framing *f, size_t blocks) {
     high = vec3_max(high, f->blocks[i].high);
     third = vec3_add(third, f->blocks[i].third);
   }
-  scree_frame_of_places *frame = f->frame;
+  scree_principal_frame *frame = f->frame;
   vec3 extent = vec3_sub(high, low);
   frame->extent = fmax(extent.x, fmax(extent.y, extent.z));
   bool x = third.x < 0, y = third.y < 0;
@@ -106,8 +106,8 @@ static void direct_axes(framing *f, size_t blocks) {
   frame->high = high;
 }
 
-scree_status scree_frame_find(const scree_places *places, vec3 centre, scree_frame_of_places *frame,
-                              scree_error *error) {
+scree_status scree_principal_frame_find(const scree_positions *places, vec3 centre,
+                                        scree_principal_frame *frame, scree_error *error) {
   size_t blocks = scree_block_count(places->count, BLOCK);
   framing f = {.places = places, .frame = frame};
   SCREE_ALLOC_OR(f.blocks, blocks, error, out_of_memory);
@@ -120,9 +120,9 @@ out_of_memory:
   return SCREE_OUT_OF_MEMORY;
 }
 
-vec3 scree_frame_steps(const scree_frame_of_places *frame, double steps, vec3 p) {
+vec3 scree_principal_frame_steps(const scree_principal_frame *frame, double steps, vec3 p) {
   /* half a step less, or rounding would say in which step the farthest lies */
-  return vec3_scale(vec3_sub(scree_into_frame(frame, p), frame->low),
+  return vec3_scale(vec3_sub(scree_principal_frame_into(frame, p), frame->low),
                     (steps - 0.5) / frame->extent);
 }
 
@@ -144,13 +144,13 @@ uint32_t scree_morton_code(vec3 steps) {
 }
 
 typedef struct coding {
-  scree_places places;
-  scree_frame_of_places frame;
+  scree_positions places;
+  scree_principal_frame frame;
   scree_keyed *items;
 } coding;
 
 static vec3 steps_of(const coding *c, size_t v) {
-  return scree_frame_steps(&c->frame, STEPS, place(&c->places, v));
+  return scree_principal_frame_steps(&c->frame, STEPS, place(&c->places, v));
 }
 
 static void code_block(void *context, size_t begin, size_t end, size_t block, int worker) {
@@ -186,7 +186,7 @@ scree_status scree_order_vertices(const scree_mesh *mesh, vec3 centre, uint32_t 
   size_t count = mesh->vertex_count;
   coding c = {.places = {mesh->positions, 3, count}};
   scree_keyed *swap = NULL;
-  scree_status status = scree_frame_find(&c.places, centre, &c.frame, error);
+  scree_status status = scree_principal_frame_find(&c.places, centre, &c.frame, error);
   if (status != SCREE_OK) return status;
   status = SCREE_OUT_OF_MEMORY;
   SCREE_ALLOC_OR(c.items, count, error, done);

@@ -2,17 +2,18 @@
 
 #include "base/alloc.h"
 
-void scree_record_free(scree_record *r) {
+void scree_collapse_record_free(scree_collapse_record *r) {
   scree_free(r->kept);
   scree_free(r->gone);
   scree_free(r->position);
   scree_free(r->area);
   scree_free(r->volume);
   scree_free(r->error);
-  *r = (scree_record){0};
+  *r = (scree_collapse_record){0};
 }
 
-scree_status scree_record_allocate(scree_record *r, size_t capacity, scree_error *error) {
+scree_status scree_collapse_record_allocate(scree_collapse_record *r, size_t capacity,
+                                            scree_error *error) {
   r->capacity = capacity;
   SCREE_ALLOC_OR(r->kept, capacity, error, out_of_memory);
   SCREE_ALLOC_OR(r->gone, capacity, error, out_of_memory);
@@ -22,11 +23,11 @@ scree_status scree_record_allocate(scree_record *r, size_t capacity, scree_error
   SCREE_ALLOC_OR(r->error, capacity, error, out_of_memory);
   return SCREE_OK;
 out_of_memory:
-  scree_record_free(r);
+  scree_collapse_record_free(r);
   return SCREE_OUT_OF_MEMORY;
 }
 
-scree_status scree_record_shrink(scree_record *r, scree_error *error) {
+scree_status scree_collapse_record_shrink(scree_collapse_record *r, scree_error *error) {
   if (r->count > r->capacity / 16 * 15) return SCREE_OK;
   struct {
     void **block;

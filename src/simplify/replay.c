@@ -56,11 +56,12 @@ out_of_memory:
 }
 
 static void replay_collapses(scree_replay *r, size_t level) {
-  const scree_record *record = &r->curve->record;
+  const scree_collapse_record *record = &r->curve->record;
   for (size_t i = level; i-- > r->level;)
-    r->root[record->gone[i]] = r->root[scree_record_kept(record, i)];
+    r->root[record->gone[i]] = r->root[scree_collapse_record_kept(record, i)];
   for (size_t i = r->level; i < level; i++)
-    vec3_store(r->position + 3 * (size_t)scree_record_kept(record, i), record->position[i]);
+    vec3_store(r->position + 3 * (size_t)scree_collapse_record_kept(record, i),
+               record->position[i]);
   size_t count = 0;
   for (size_t t = 0; t < r->triangle_count; t++) {
     uint32_t c0 = r->root[r->corner[3 * t]], c1 = r->root[r->corner[3 * t + 1]],

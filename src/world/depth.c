@@ -148,7 +148,7 @@ static void search_between(const scree_particle *to, const line *l, stretch in, 
 /* The deepest place of the line inside, where it is deeper than `deepest`. */
 static void search_inside(const scree_particle *to, const line *l, place *deepest) {
   const size_t none = SIZE_MAX;
-  scree_way way = {l->start, l->along, l->from, l->to};
+  scree_ray_interval way = {l->start, l->along, l->from, l->to};
   stretch in = {.low = {.s = l->from}};
   bool known[2] = {false, true}, entered = false;
   while (known[1]) {

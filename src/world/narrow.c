@@ -80,7 +80,7 @@ static bool find_passage(const probe *x, double distance, uint32_t *face) {
   double way = 2 * x->drift * vec3_norm(x->velocity);
   if (scree_pair_is_new(x->pair) || !(distance < way)) return false;
   vec3 along = vec3_unit(x->velocity);
-  const scree_way back = {vec3_mad(x->p, along, -way), along, 0, way};
+  const scree_ray_interval back = {vec3_mad(x->p, along, -way), along, 0, way};
   return scree_next_passage(x->surface, &back, 0, SIZE_MAX, face) < INFINITY;
 }
 

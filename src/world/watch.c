@@ -63,7 +63,7 @@ static void pass(const scree_face *face, vec3 along, uint32_t i, scree_watch *wa
 static void follow(const scree_particle *to, vec3 then, vec3 now, uint32_t i, scree_watch *watch) {
   double length = vec3_distance(then, now);
   if (!(length > 0)) return;
-  scree_way way = {then, vec3_scale(vec3_sub(now, then), 1 / length), 0, length};
+  scree_ray_interval way = {then, vec3_scale(vec3_sub(now, then), 1 / length), 0, length};
   for (int k = 0; k < MOST_PASSAGES; k++) {
     uint32_t face;
     way.after = scree_next_passage(to, &way, 0, SIZE_MAX, &face);

@@ -89,7 +89,7 @@ static void test_side_by_side(void **state) {
   for (int round = 0; round < 3000; round++) {
     double c[2][9];
     vec3 at[SCREE_POINTS];
-    scree_points points;
+    scree_point_block points;
     int count = 1 + (int)scree_rng_below(&rng, SCREE_POINTS);
     for (int t = 0; t < 2; t++) random_triangle(&rng, (int)scree_rng_below(&rng, 4), c[t]);
     for (int i = 0; i < count; i++) {
@@ -97,8 +97,8 @@ static void test_side_by_side(void **state) {
       at[i] = i % 3 == 0 ? random_point(&rng, 2)
                          : vec3_lerp(vec3_load(c[i % 2]), vec3_load(c[i % 2] + 3), along);
     }
-    scree_points_set(&points, at, count);
-    for (uint32_t t = 0; t < 2; t++) scree_points_closest(&points, c[t], t);
+    scree_point_block_set(&points, at, count);
+    for (uint32_t t = 0; t < 2; t++) scree_point_block_closest(&points, c[t], t);
     double farthest = 0;
     for (int i = 0; i < count; i++) {
       vec3 nearest;
@@ -108,7 +108,7 @@ static void test_side_by_side(void **state) {
       assert_int_equal(points.index[i], second < first);
       farthest = fmax(farthest, fmin(first, second));
     }
-    assert_true(scree_points_farthest(&points) == farthest);
+    assert_true(scree_point_block_farthest(&points) == farthest);
   }
 }
 
@@ -176,10 +176,10 @@ static void test_closest_points(void **state) {
       vec3 at[SCREE_POINTS], middle = random_point(&rng, exp(2 * scree_rng_normal(&rng)));
       int count = 1 + (int)scree_rng_below(&rng, SCREE_POINTS);
       double spread = exp(3 * scree_rng_normal(&rng));
-      scree_points points;
+      scree_point_block points;
       for (int j = 0; j < count; j++) at[j] = vec3_add(middle, random_point(&rng, spread));
-      scree_points_set(&points, at, count);
-      scree_bvh_closest_points(&bvh, &points);
+      scree_point_block_set(&points, at, count);
+      scree_bvh_closest_block(&bvh, &points);
       for (int j = 0; j < count; j++) {
         double expected = brute_distance2(&mesh, at[j]);
         vec3 nearest;

@@ -255,7 +255,7 @@ static double load_of(const body *b, size_t level_index) {
   for (int e = 0; e < SCREE_SHAPE_ERROR_COUNT; e++)
     errors[e] = scree_fidelity_error(f, 0, (scree_shape_error)e);
   scree_fidelity_free(f);
-  return scree_load(errors, o.tolerances, NULL);
+  return scree_normalised_error(errors, o.tolerances, NULL);
 }
 
 /* By a measurement of other samples, and without much to spare; the next level does not. */

@@ -490,10 +490,10 @@ static void test_oriented_box(void **state) {
       points[k] = mat3_mul_vec(
           &map, (vec3){scree_rng_normal(&rng), scree_rng_normal(&rng), scree_rng_normal(&rng)});
     scree_hull hull;
-    scree_oriented_box box;
+    scree_minimum_box box;
     scree_error error;
     CHECK_OK(scree_hull_build(points, count, &hull, &error), error);
-    CHECK_OK(scree_oriented_box_fit(&hull, &one, &box, &error), error);
+    CHECK_OK(scree_minimum_box_fit(&hull, &one, &box, &error), error);
     double volume = box.size.x * box.size.y * box.size.z;
     CHECK_NEAR(volume, box_volume(points, count, &box.axes), TIGHT * volume);
     for (size_t k = 0; k < count; k++) {

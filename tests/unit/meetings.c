@@ -31,7 +31,7 @@ static void compare_with_all_pairs(const scree_mesh *mesh, size_t *found_count) 
     for (uint32_t b = a + 1; b < mesh->triangle_count; b++) {
       const uint32_t *t = mesh->triangles + 3 * a, *u = mesh->triangles + 3 * b;
       scree_box of_a = scree_facet_box(mesh, a), of_b = scree_facet_box(mesh, b);
-      if (scree_box_apart(&of_a, &of_b)) continue;
+      if (!scree_box_meets(&of_a, &of_b)) continue;
       scree_meet meet = scree_triangles_meet(mesh->positions, t, u);
       if (meet == SCREE_MEET_NOT) continue;
       assert_true(next < found.count);

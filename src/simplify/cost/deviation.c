@@ -112,11 +112,11 @@ static void end_block(void *context, size_t begin, size_t end, size_t block, int
 
 static scree_status measure_extent(scree_samples *p, scree_error *error) {
   const scree_halfmesh *scan = &p->scan;
-  const scree_places places = {&scan->vertex->at.x, sizeof *scan->vertex / sizeof(double),
-                               scan->vertex_count};
-  scree_frame_of_places frame;
+  const scree_positions places = {&scan->vertex->at.x, sizeof *scan->vertex / sizeof(double),
+                                  scan->vertex_count};
+  scree_principal_frame frame;
   scree_status status =
-      scree_frame_find(&places, vec3_lerp(scan->low, scan->high, 0.5), &frame, error);
+      scree_principal_frame_find(&places, vec3_lerp(scan->low, scan->high, 0.5), &frame, error);
   if (status != SCREE_OK) return status;
   scree_extent_start(&p->extent, (const double(*)[3])frame.axes.m);
   for (size_t v = 0; v < scan->vertex_count; v++) scree_extent_add(&p->extent, scan->vertex[v].at);

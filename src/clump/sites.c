@@ -1,4 +1,4 @@
-#include "clump/places.h"
+#include "clump/sites.h"
 
 #include "base/alloc.h"
 
@@ -14,7 +14,7 @@ static bool is_taken(size_t i, size_t j, size_t k) {
   return (i + j + k) % 2 == 0;
 }
 
-static void push(scree_places *p, const double at[3], float value, double volume) {
+static void push(scree_sphere_sites *p, const double at[3], float value, double volume) {
   if (!(value < 0)) return;
   p->x[p->count] = (float)at[0];
   p->y[p->count] = (float)at[1];
@@ -24,9 +24,9 @@ static void push(scree_places *p, const double at[3], float value, double volume
 }
 
 /* Nodes of one cell's finer grid, each of which belongs to one cell alone. */
-static void push_brick(const scree_field *f, const size_t cell[3], const float *values,
-                       scree_places *p) {
-  double fine = scree_field_spacing(f), volume = 2 * fine * fine * fine;
+static void push_brick(const scree_distance_field *f, const size_t cell[3], const float *values,
+                       scree_sphere_sites *p) {
+  double fine = scree_distance_field_spacing(f), volume = 2 * fine * fine * fine;
   for (size_t i = 0; i < SCREE_FINER; i++)
     for (size_t j = 0; j < SCREE_FINER; j++)
       for (size_t k = 0; k < SCREE_FINER; k++) {
@@ -38,7 +38,7 @@ static void push_brick(const scree_field *f, const size_t cell[3], const float *
       }
 }
 
-static void collect(const scree_field *f, scree_places *p) {
+static void collect(const scree_distance_field *f, scree_sphere_sites *p) {
   size_t node = 0;
   for (size_t i = 0; i < f->n[0]; i++)
     for (size_t j = 0; j < f->n[1]; j++)
@@ -52,10 +52,11 @@ static void collect(const scree_field *f, scree_places *p) {
       }
 }
 
-scree_status scree_places_make(const scree_field *field, scree_places *places, scree_error *error) {
+scree_status scree_sphere_sites_make(const scree_distance_field *field, scree_sphere_sites *places,
+                                     scree_error *error) {
   size_t room = field->n[0] * field->n[1] * field->n[2] +
                 field->brick_count * SCREE_FINER * SCREE_FINER * SCREE_FINER / 2;
-  scree_places p = {0};
+  scree_sphere_sites p = {0};
   SCREE_ALLOC_OR(p.x, room, error, out_of_memory);
   SCREE_ALLOC_OR(p.y, room, error, out_of_memory);
   SCREE_ALLOC_OR(p.z, room, error, out_of_memory);
@@ -67,11 +68,11 @@ scree_status scree_places_make(const scree_field *field, scree_places *places, s
   *places = p;
   return SCREE_OK;
 out_of_memory:
-  scree_places_free(&p);
+  scree_sphere_sites_free(&p);
   return SCREE_OUT_OF_MEMORY;
 }
 
-void scree_places_free(scree_places *places) {
+void scree_sphere_sites_free(scree_sphere_sites *places) {
   scree_free(places->x);
   scree_free(places->y);
   scree_free(places->z);
@@ -79,15 +80,15 @@ void scree_places_free(scree_places *places) {
   scree_free(places->volume);
   scree_free(places->left);
   scree_free(places->cluster);
-  *places = (scree_places){0};
+  *places = (scree_sphere_sites){0};
 }
 
-static float distance2(const scree_places *p, size_t i, float x, float y, float z) {
+static float distance2(const scree_sphere_sites *p, size_t i, float x, float y, float z) {
   float dx = p->x[i] - x, dy = p->y[i] - y, dz = p->z[i] - z;
   return dx * dx + dy * dy + dz * dz;
 }
 
-static void keep_off(scree_places *p, const scree_sphere *s) {
+static void keep_off(scree_sphere_sites *p, const scree_sphere *s) {
   float x = (float)s->centre[0], y = (float)s->centre[1], z = (float)s->centre[2],
         r = (float)s->radius;
   for (size_t i = 0; i < p->count; i++) {
@@ -96,7 +97,7 @@ static void keep_off(scree_places *p, const scree_sphere *s) {
   }
 }
 
-static size_t deepest(const scree_places *p) {
+static size_t deepest(const scree_sphere_sites *p) {
   size_t best = 0;
   for (size_t i = 1; i < p->count; i++)
     if (p->left[i] > p->left[best]) best = i;
@@ -104,7 +105,7 @@ static size_t deepest(const scree_places *p) {
 }
 
 /* As counted by the points within: those that are free, and the sphere's volume outside. */
-static double gain_of(const scree_places *p, const scree_sphere *s, double outside) {
+static double gain_of(const scree_sphere_sites *p, const scree_sphere *s, double outside) {
   const double pi = 3.14159265358979323846;
   float x = (float)s->centre[0], y = (float)s->centre[1], z = (float)s->centre[2],
         r2 = (float)(s->radius * s->radius), free = 0, inside = 0;
@@ -117,13 +118,13 @@ static double gain_of(const scree_places *p, const scree_sphere *s, double outsi
   return (double)free - outside * fmax(0, all - (double)inside);
 }
 
-static void insert(scree_place *found, size_t count, scree_place place) {
+static void insert(scree_sphere_candidate *found, size_t count, scree_sphere_candidate place) {
   for (; count > 0 && found[count - 1].gain < place.gain; count--) found[count] = found[count - 1];
   found[count] = place;
 }
 
-size_t scree_places_free_of(scree_places *p, const scree_sphere *spheres, size_t count,
-                            double outside, scree_place *found, size_t most) {
+size_t scree_sphere_sites_free_of(scree_sphere_sites *p, const scree_sphere *spheres, size_t count,
+                                  double outside, scree_sphere_candidate *found, size_t most) {
   const float passed_over = 1e-30f; /* free, but never the deepest */
   size_t number = 0;
   if (p->count == 0) return 0;
@@ -133,7 +134,7 @@ size_t scree_places_free_of(scree_places *p, const scree_sphere *spheres, size_t
     size_t best = deepest(p);
     float free = p->left[best], x = p->x[best], y = p->y[best], z = p->z[best];
     if (!(free > passed_over)) break;
-    scree_place place = {
+    scree_sphere_candidate place = {
         {{(double)x, (double)y, (double)z}, fmax((double)(reach * free), least_radius)}, 0};
     place.gain = gain_of(p, &place.sphere, outside);
     insert(found, number++, place);
@@ -148,12 +149,12 @@ size_t scree_places_free_of(scree_places *p, const scree_sphere *spheres, size_t
 
 enum { SPREAD_POINTS = 3000, LLOYD_ITERATIONS = 15 };
 
-static size_t stride_of(const scree_places *p) {
+static size_t stride_of(const scree_sphere_sites *p) {
   return 1 + p->count / SPREAD_POINTS;
 }
 
 /* The first points, each the farthest from those before; `left` is the distance squared. */
-static void spread_first(scree_places *p, size_t count, scree_sphere *spheres) {
+static void spread_first(scree_sphere_sites *p, size_t count, scree_sphere *spheres) {
   size_t stride = stride_of(p), at = 0;
   for (size_t i = 0; i < p->count; i += stride) p->left[i] = INFINITY;
   for (size_t s = 0; s < count; s++) {
@@ -168,7 +169,7 @@ static void spread_first(scree_places *p, size_t count, scree_sphere *spheres) {
 }
 
 /* Every point to the nearest centre. */
-static void assign(scree_places *p, size_t count, const scree_sphere *spheres) {
+static void assign(scree_sphere_sites *p, size_t count, const scree_sphere *spheres) {
   for (size_t i = 0; i < p->count; i += stride_of(p)) p->left[i] = INFINITY;
   for (size_t s = 0; s < count; s++) {
     float x = (float)spheres[s].centre[0], y = (float)spheres[s].centre[1],
@@ -181,7 +182,7 @@ static void assign(scree_places *p, size_t count, const scree_sphere *spheres) {
 }
 
 /* Centres to the centroids of their clusters, radii to spheres of their volumes. */
-static void centre(const scree_places *p, size_t count, scree_sphere *spheres) {
+static void centre(const scree_sphere_sites *p, size_t count, scree_sphere *spheres) {
   double sums[SCREE_MOST_SPHERES][4] = {{0}}, all = 0;
   for (size_t i = 0; i < p->count; i += stride_of(p)) {
     double *sum = sums[p->cluster[i]], volume = (double)p->volume[i];
@@ -198,7 +199,7 @@ static void centre(const scree_places *p, size_t count, scree_sphere *spheres) {
   }
 }
 
-bool scree_places_spread(scree_places *p, size_t count, scree_sphere *spheres) {
+bool scree_sphere_sites_spread(scree_sphere_sites *p, size_t count, scree_sphere *spheres) {
   if (p->count < count * stride_of(p)) return false;
   spread_first(p, count, spheres);
   for (int i = 0; i < LLOYD_ITERATIONS; i++) {
